@@ -4,7 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from bends import BEND, HOOK_LOWER_LEFT, HOOK_LOWER_RIGHT, HOOK_UPPER_LEFT, HOOK_UPPER_RIGHT, WAVE, WIGGLE
+from bends import (
+    BEND,
+    HOOK_LOWER_LEFT,
+    HOOK_LOWER_RIGHT,
+    HOOK_UPPER_LEFT,
+    HOOK_UPPER_RIGHT,
+    WAVE,
+    WIGGLE,
+)
 from circuit import CIRCUIT
 from lettering import write
 from shapes import BLACK, WHITE, Box, Canvas, Point, Rgb, blank, disc, paint, polygon, rect, ring
@@ -88,7 +96,12 @@ OBSTACLES_LABELS: tuple[Label, ...] = (
     (2117.48, 1123.36, "x: 2202, y: 46"),
 )
 
-FINISH_BAND: tuple[Point, ...] = ((302.99, 896.69), (533.02, 777.23), (544.9, 799.48), (314.22, 919.28))
+FINISH_BAND: tuple[Point, ...] = (
+    (302.99, 896.69),
+    (533.02, 777.23),
+    (544.9, 799.48),
+    (314.22, 919.28),
+)
 FLAG_TIPS: tuple[tuple[Point, ...], ...] = (
     ((202.65, 935.45), (237.22, 965.06), (221.34, 973.05)),
     ((535.75, 765.35), (565.99, 794.8), (552.05, 802.71)),
@@ -104,7 +117,16 @@ def _labels(canvas: Canvas, labels: Sequence[Label]) -> None:
 def line_following_test() -> Canvas:
     """Lines to follow, harder from left to right: snakes, a zigzag, hooks, a broken line."""
     canvas = blank()
-    bent = (SNAKE_1, SNAKE_2, SNAKE_3, HOOK_UPPER_LEFT, HOOK_UPPER_RIGHT, HOOK_LOWER_LEFT, HOOK_LOWER_RIGHT, WIGGLE)
+    bent = (
+        SNAKE_1,
+        SNAKE_2,
+        SNAKE_3,
+        HOOK_UPPER_LEFT,
+        HOOK_UPPER_RIGHT,
+        HOOK_LOWER_LEFT,
+        HOOK_LOWER_RIGHT,
+        WIGGLE,
+    )
     for points in bent:
         paint(canvas, BLACK, stroke(points, LINE_WIDTH), smooth=True)
     paint(canvas, BLACK, stroke([(2139.93, 163.75), (2139.93, -2.0)], LINE_WIDTH), smooth=True)
@@ -118,7 +140,9 @@ def junction_handling_test() -> Canvas:
     """Lines with crossings and roundabouts; green squares say where to turn."""
     canvas = blank()
     *lower, top = CROSS_LINES
-    uprights: list[Box] = [(left, UPRIGHT_TOP, left + LINE_WIDTH, UPRIGHT_BOTTOM) for left in UPRIGHT_LEFTS]
+    uprights: list[Box] = [
+        (left, UPRIGHT_TOP, left + LINE_WIDTH, UPRIGHT_BOTTOM) for left in UPRIGHT_LEFTS
+    ]
     for box in (*lower, *uprights, top):
         rect(canvas, BLACK, box)
     for centre in CIRCLES:
@@ -145,22 +169,37 @@ def obstacles_test() -> Canvas:
     return canvas
 
 
-def _flag(canvas: Canvas, corners: tuple[Point, Point, Point], row_heights: Sequence[float], first_black: int) -> None:
+def _flag(
+    canvas: Canvas,
+    corners: tuple[Point, Point, Point],
+    row_heights: Sequence[float],
+    first_black: int,
+) -> None:
     """A chequered flag: its top left, top right and bottom left corner."""
     (x0, y0), (x1, y1), (x2, y2) = corners
 
     def at(column: float, down: float) -> Point:
         across, along = column / FLAG_COLUMNS, down / sum(row_heights)
-        return x0 + across * (x1 - x0) + along * (x2 - x0), y0 + across * (y1 - y0) + along * (y2 - y0)
+        return x0 + across * (x1 - x0) + along * (x2 - x0), y0 + across * (y1 - y0) + along * (
+            y2 - y0
+        )
 
     top = 0.0
     for row, height in enumerate(row_heights):
         for column in range(FLAG_COLUMNS):
             if (row + column) % 2 == first_black:
-                cell = [at(column, top), at(column + 1, top), at(column + 1, top + height), at(column, top + height)]
+                cell = [
+                    at(column, top),
+                    at(column + 1, top),
+                    at(column + 1, top + height),
+                    at(column, top + height),
+                ]
                 paint(canvas, BLACK, polygon(cell), smooth=True)
         top += height
-    edge = [(*at(column, down), 1.0) for column, down in ((0, 0), (FLAG_COLUMNS, 0), (FLAG_COLUMNS, top), (0, top))]
+    edge = [
+        (*at(column, down), 1.0)
+        for column, down in ((0, 0), (FLAG_COLUMNS, 0), (FLAG_COLUMNS, top), (0, top))
+    ]
     paint(canvas, BLACK, closed_line(edge), smooth=True)
 
 

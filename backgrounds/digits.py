@@ -63,7 +63,9 @@ def _trembled(digit: str, seed: int) -> list[list[Point]]:
 
 
 def _length(hand: list[list[Point]]) -> float:
-    return sum(math.hypot(x2 - x1, y2 - y1) for stroke in hand for (x1, y1), (x2, y2) in pairwise(stroke))
+    return sum(
+        math.hypot(x2 - x1, y2 - y1) for stroke in hand for (x1, y1), (x2, y2) in pairwise(stroke)
+    )
 
 
 def _fitted(hand: list[list[Point]], box: Box, pen: float) -> list[list[Point]]:
@@ -74,7 +76,10 @@ def _fitted(hand: list[list[Point]], box: Box, pen: float) -> list[list[Point]]:
     margin = pen / 2 - 0.2
     x0, y0, x1, y1 = box[0] + margin, box[1] + margin, box[2] - margin, box[3] - margin
     scale_x, scale_y = max(x1 - x0, 0.2) / (right - left), max(y1 - y0, 0.2) / (bottom - top)
-    return [[(x0 + (x - left) * scale_x, y0 + (y - top) * scale_y) for x, y in stroke] for stroke in hand]
+    return [
+        [(x0 + (x - left) * scale_x, y0 + (y - top) * scale_y) for x, y in stroke]
+        for stroke in hand
+    ]
 
 
 def digit_ink(digit: str, box: Box, mean: float, seed: int) -> Floats:
@@ -110,7 +115,9 @@ def digit_ink(digit: str, box: Box, mean: float, seed: int) -> Floats:
 def _digit_sheet(ground: Rgb, sheet: Sheet, first_seed: int) -> Canvas:
     canvas = blank(ground)
     for row, (labels, boxes, means) in enumerate(zip(*sheet, strict=True)):
-        for column, (label, box, mean) in enumerate(zip(labels, boxes.split(), means.split(), strict=True)):
+        for column, (label, box, mean) in enumerate(
+            zip(labels, boxes.split(), means.split(), strict=True)
+        ):
             x0, y0, x1, y1 = (int(figure, 16) for figure in box)
             ink = digit_ink(label, (x0, y0, x1, y1), float(mean), first_seed + 100 * row + column)
             left, top = CELL_LEFT + PITCH * column, CELL_TOP + PITCH * row

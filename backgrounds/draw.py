@@ -50,7 +50,9 @@ def is_current(name: str, folder: Path = FOLDER) -> bool:
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command; return its exit code, 1 if a checked picture differs."""
     parser = argparse.ArgumentParser(description="Redraw the mats from their numbers.")
-    parser.add_argument("names", nargs="*", metavar="NAME", help="mats to draw; all if none is named")
+    parser.add_argument(
+        "names", nargs="*", metavar="NAME", help="mats to draw; all if none is named"
+    )
     parser.add_argument("--check", action="store_true", help="compare only, write nothing")
     chosen = parser.parse_args(arguments)
     unknown = sorted(set(chosen.names) - set(MATS))
@@ -59,7 +61,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
     names = chosen.names or list(MATS)
     if chosen.check:
         stale = [name for name in names if not is_current(name)]
-        print(f"differs from its numbers: {', '.join(stale)}" if stale else f"{len(names)} mats are current")
+        print(
+            f"differs from its numbers: {', '.join(stale)}"
+            if stale
+            else f"{len(names)} mats are current"
+        )
         return 1 if stale else 0
     for name in names:
         path = write(name)

@@ -68,7 +68,11 @@ def _frame(canvas: Canvas, rgb: Rgb, box: Box, width: float, inside: Rgb) -> Non
 def _field(canvas: Canvas, left: float, light: Rgb, dark: Rgb) -> None:
     for furrow in range(FIELD_HEIGHT // FURROW_WIDTH):
         top = FIELD_TOP + furrow * FURROW_WIDTH
-        rect(canvas, dark if furrow % 2 else light, (left, top, left + FIELD_WIDTH, top + FURROW_WIDTH))
+        rect(
+            canvas,
+            dark if furrow % 2 else light,
+            (left, top, left + FIELD_WIDTH, top + FURROW_WIDTH),
+        )
 
 
 def _trails(canvas: Canvas) -> None:
@@ -76,7 +80,11 @@ def _trails(canvas: Canvas) -> None:
         paint(canvas, BLACK, stroke(bent(points, 24), LINE_WIDTH), smooth=True)
     for _, left, _, _ in FIELDS:
         middle = left + FIELD_WIDTH / 2
-        rect(canvas, BLACK, (middle - LINE_WIDTH / 2, FIELD_TOP + FIELD_HEIGHT, middle + LINE_WIDTH / 2, 560))
+        rect(
+            canvas,
+            BLACK,
+            (middle - LINE_WIDTH / 2, FIELD_TOP + FIELD_HEIGHT, middle + LINE_WIDTH / 2, 560),
+        )
     rect(canvas, BLACK, (MILL[0] - LINE_WIDTH / 2, 560, MILL[0] + LINE_WIDTH / 2, MILL[1]))
 
 
@@ -92,7 +100,11 @@ def _buildings(canvas: Canvas) -> None:
 def harvest_trail() -> Canvas:
     """The farm."""
     canvas = blank(HEDGE)
-    rect(canvas, WHITE, (HEDGE_WIDTH, HEDGE_WIDTH, canvas.shape[1] - HEDGE_WIDTH, canvas.shape[0] - HEDGE_WIDTH))
+    rect(
+        canvas,
+        WHITE,
+        (HEDGE_WIDTH, HEDGE_WIDTH, canvas.shape[1] - HEDGE_WIDTH, canvas.shape[0] - HEDGE_WIDTH),
+    )
     _trails(canvas)
     for name, left, light, dark in FIELDS:
         _field(canvas, left, light, dark)

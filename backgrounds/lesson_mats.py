@@ -18,7 +18,13 @@ BANDS: dict[str, dict[int, Rgb]] = {
     "other_greys": {250: (225, 225, 225), 650: (207, 207, 207), 1050: (124, 124, 124), 1450: BLACK},
     "lighter_dark": {250: VERY_LIGHT_GREY, 650: LIGHT_GREY, 1050: (129, 129, 129), 1450: BLACK},
     "other_places": {450: (190, 190, 190), 850: (150, 150, 150), 1250: (96, 96, 96), 1650: BLACK},
-    "mid_first": {250: LIGHT_GREY, 650: VERY_LIGHT_GREY, 1050: LIGHT_GREY, 1450: MID_GREY, 1850: BLACK},
+    "mid_first": {
+        250: LIGHT_GREY,
+        650: VERY_LIGHT_GREY,
+        1050: LIGHT_GREY,
+        1450: MID_GREY,
+        1850: BLACK,
+    },
     "colours_elsewhere": {330: RED, 790: GREEN, 1130: BLUE, 1610: BLACK},
     "more_colours": {250: YELLOW, 580: RED, 930: GREEN, 1290: RED, 1630: BLUE, 1990: BLACK},
 }

@@ -71,7 +71,9 @@ def empty_map() -> Canvas:
 def grey_bands() -> Canvas:
     """Four upright bands from very light grey to black, then three coloured dots."""
     canvas = blank()
-    for (x0, x1), rgb in zip(BAND_COLUMNS, (VERY_LIGHT_GREY, LIGHT_GREY, MID_GREY, BLACK), strict=True):
+    for (x0, x1), rgb in zip(
+        BAND_COLUMNS, (VERY_LIGHT_GREY, LIGHT_GREY, MID_GREY, BLACK), strict=True
+    ):
         rect(canvas, rgb, (x0, BAND_TOP, x1, 901))
     for cy, rgb in ((300.5, RED), (500.5, GREEN), (700.5, BLUE)):
         paint(canvas, rgb, disc((1900.5, cy), 50.5))
@@ -83,7 +85,9 @@ def grey_and_black() -> Canvas:
     canvas = blank()
     rect(canvas, BLACK, (200, 100, 1801, 201))
     edges = (200, 600, 1000, 1400, 1801)
-    for (x0, x1), rgb in zip(pairwise(edges), (LIGHT_GREY, BLACK, VERY_LIGHT_GREY, MID_GREY), strict=True):
+    for (x0, x1), rgb in zip(
+        pairwise(edges), (LIGHT_GREY, BLACK, VERY_LIGHT_GREY, MID_GREY), strict=True
+    ):
         rect(canvas, rgb, (x0, 600, x1, 701))
     return canvas
 
@@ -100,7 +104,9 @@ def rainbow_bands() -> Canvas:
     """Seven upright bands side by side."""
     canvas = blank()
     edges = (200, 400, 600, 800, 1000, 1200, 1400, 1601)
-    for (x0, x1), rgb in zip(pairwise(edges), (RED, GREEN, BLUE, CYAN, MAGENTA, YELLOW, BLACK), strict=True):
+    for (x0, x1), rgb in zip(
+        pairwise(edges), (RED, GREEN, BLUE, CYAN, MAGENTA, YELLOW, BLACK), strict=True
+    ):
         rect(canvas, rgb, (x0, BAND_TOP, x1, 751))
     return canvas
 
@@ -187,7 +193,12 @@ def testcard() -> Canvas:
     canvas = blank()
     frame: Rgb = (15, 15, 15)
     right, bottom = 2215, 1073
-    for line in ((0, 0, right, 1), (0, bottom - 1, right, bottom), (0, 0, 1, bottom), (right - 1, 0, right, bottom)):
+    for line in (
+        (0, 0, right, 1),
+        (0, bottom - 1, right, bottom),
+        (0, 0, 1, bottom),
+        (right - 1, 0, right, bottom),
+    ):
         rect(canvas, frame, line)
     card(canvas, Placement(1485.44, 527.98, 67.4913, 67.536, ramp_white=0.045))
     card(canvas, Placement(404.62, 804.27, 29.995, 30.019, ramp_white=0.083))

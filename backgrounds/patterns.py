@@ -114,7 +114,11 @@ def simple_shapes() -> Canvas:
     for code in range(len(CODED)):
         grey = 85 * code // 2
         left = PATCH_LEFT + code * PATCH_PITCH
-        rect(canvas, (grey, grey, grey), (left, PATCH_TOP, left + PATCH_WIDTH, PATCH_TOP + PATCH_HEIGHT))
+        rect(
+            canvas,
+            (grey, grey, grey),
+            (left, PATCH_TOP, left + PATCH_WIDTH, PATCH_TOP + PATCH_HEIGHT),
+        )
     return canvas
 
 

@@ -74,7 +74,9 @@ def pixel_centres(box: Box) -> tuple[Floats, Floats]:
 
 def _share(low: float, high: float, centres: Floats) -> Floats:
     """How much of each pixel lies between two edges, 0 … 1."""
-    share: Floats = np.clip(np.minimum(high, centres + 0.5) - np.maximum(low, centres - 0.5), 0.0, 1.0)
+    share: Floats = np.clip(
+        np.minimum(high, centres + 0.5) - np.maximum(low, centres - 0.5), 0.0, 1.0
+    )
     return share
 
 
@@ -140,7 +142,10 @@ def coverage(shape: Shape, height: int, width: int) -> Canvas:
 
 def _points(span: slice) -> Floats:
     """Where a smooth edge looks at some rows or columns: SUBPIXELS places in each."""
-    return np.arange(span.start * SUBPIXELS, max(span.stop, span.start) * SUBPIXELS) / SUBPIXELS + 0.5 / SUBPIXELS
+    return (
+        np.arange(span.start * SUBPIXELS, max(span.stop, span.start) * SUBPIXELS) / SUBPIXELS
+        + 0.5 / SUBPIXELS
+    )
 
 
 def ellipse(centre: Point, rx: float, ry: float) -> Shape:
@@ -187,8 +192,14 @@ def union(parts: Sequence[Shape]) -> Shape:
     def inside(x: Floats, y: Floats) -> Mask:
         found = np.zeros((y.size, x.size), np.bool_)
         # A part far smaller than the whole is asked only about points near it.
-        left, right = np.searchsorted(x[0], boxes[:, 0]), np.searchsorted(x[0], boxes[:, 2], "right")
-        top, bottom = np.searchsorted(y[:, 0], boxes[:, 1]), np.searchsorted(y[:, 0], boxes[:, 3], "right")
+        left, right = (
+            np.searchsorted(x[0], boxes[:, 0]),
+            np.searchsorted(x[0], boxes[:, 2], "right"),
+        )
+        top, bottom = (
+            np.searchsorted(y[:, 0], boxes[:, 1]),
+            np.searchsorted(y[:, 0], boxes[:, 3], "right"),
+        )
         for at in np.flatnonzero((left < right) & (top < bottom)).tolist():
             rows, columns = slice(top[at], bottom[at]), slice(left[at], right[at])
             found[rows, columns] |= parts[at].inside(x[:, columns], y[rows])
@@ -219,7 +230,9 @@ def row_gradient(canvas: Canvas, y0: int, y1: int, start: int, span: int) -> Non
     canvas[y0:y1] = np.maximum(0, start - steps)[:, None, None]
 
 
-def radial_gradient(canvas: Canvas, centre: Point, scale: float, exponent: float, inner: Rgb, outer: Rgb) -> None:
+def radial_gradient(
+    canvas: Canvas, centre: Point, scale: float, exponent: float, inner: Rgb, outer: Rgb
+) -> None:
     """Paint a round glow over the whole canvas.
 
     Args:

@@ -44,7 +44,14 @@ DOCKS: tuple[tuple[str, Box, Rgb], ...] = (
 )
 """Letter, box and colour; each lies at the end of a short line from the orbit."""
 HANGAR_BOX: Box = (50, 840, 330, 1090)
-TAXIWAY: tuple[Point, ...] = ((330, 965), (520, 965), (760, 1090), (900, 1010), (960, 960), (1080, 940))
+TAXIWAY: tuple[Point, ...] = (
+    (330, 965),
+    (520, 965),
+    (760, 1090),
+    (900, 1010),
+    (960, 960),
+    (1080, 940),
+)
 CRATERS: tuple[tuple[float, float, float, int], ...] = (
     (180, 160, 75, 60),
     (400, 250, 60, 110),
@@ -53,7 +60,13 @@ CRATERS: tuple[tuple[float, float, float, int], ...] = (
 )
 """Column, row, radius and grey."""
 PAD: Point = (2100, 880)
-PAD_RINGS: tuple[tuple[float, Rgb], ...] = ((190, YELLOW), (150, BLACK), (110, YELLOW), (70, BLACK), (30, RED))
+PAD_RINGS: tuple[tuple[float, Rgb], ...] = (
+    (190, YELLOW),
+    (150, BLACK),
+    (110, YELLOW),
+    (70, BLACK),
+    (30, RED),
+)
 PAD_ROAD: tuple[Point, ...] = ((1540, 820), (1640, 900), (1760, 980), (1860, 880), (1920, 880))
 RUNWAY: Box = (1640, 60, 2310, 230)
 RUNWAY_GREY: Rgb = (120, 120, 120)
@@ -68,7 +81,9 @@ def _stars(canvas: Canvas) -> None:
 
 def _orbit(canvas: Canvas) -> None:
     half = LINE_WIDTH / 2
-    outer, inner = (ellipse(ORBIT_MIDDLE, ORBIT_X + side * half, ORBIT_Y + side * half) for side in (1, -1))
+    outer, inner = (
+        ellipse(ORBIT_MIDDLE, ORBIT_X + side * half, ORBIT_Y + side * half) for side in (1, -1)
+    )
     paint(canvas, WHITE, without(outer, inner), smooth=True)
     x, y = ORBIT_MIDDLE
     rect(canvas, WHITE, (x - half, 130, x + half, y - ORBIT_Y))
@@ -105,6 +120,10 @@ def space_port() -> Canvas:
     for letter, box, rgb in DOCKS:
         rect(canvas, rgb, box)
         write_middle(canvas, letter, (box[0] + 30, box[1] + 30), 48, BLACK)
-    for text, middle in (("HANGAR", (190, 1060)), ("RUNWAY", (1975, 265)), ("LAUNCH", (PAD[0], 1105))):
+    for text, middle in (
+        ("HANGAR", (190, 1060)),
+        ("RUNWAY", (1975, 265)),
+        ("LAUNCH", (PAD[0], 1105)),
+    ):
         write_middle(canvas, text, middle, 40, WHITE)
     return canvas

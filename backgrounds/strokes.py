@@ -55,10 +55,14 @@ def _mitre(before: Point, corner: Point, after: Point, width: float) -> Shape:
     side = -math.copysign(math.pi / 2, turn)
     tip = width / 2 / math.cos(turn / 2)
     arms = [(away1 + side, width / 2), (away1 + turn / 2 + side, tip), (away2 + side, width / 2)]
-    return polygon([corner, *((corner[0] + math.cos(a) * r, corner[1] + math.sin(a) * r) for a, r in arms)])
+    return polygon(
+        [corner, *((corner[0] + math.cos(a) * r, corner[1] + math.sin(a) * r) for a, r in arms)]
+    )
 
 
-def stroke(points: Sequence[Point], width: float, join: Literal["round", "miter"] = "round") -> Shape:
+def stroke(
+    points: Sequence[Point], width: float, join: Literal["round", "miter"] = "round"
+) -> Shape:
     """Return a line of constant width along straight pieces, cut square at both ends.
 
     Args:
@@ -68,7 +72,9 @@ def stroke(points: Sequence[Point], width: float, join: Literal["round", "miter"
     """
     parts = [_piece((*start, width), (*end, width)) for start, end in pairwise(points)]
     for before, corner, after in zip(points, points[1:], points[2:], strict=False):
-        parts.append(disc(corner, width / 2) if join == "round" else _mitre(before, corner, after, width))
+        parts.append(
+            disc(corner, width / 2) if join == "round" else _mitre(before, corner, after, width)
+        )
     return union(parts)
 
 
@@ -96,4 +102,7 @@ def _pen_piece(start: Point, end: Point, pen_width: float, pen_height: float) ->
         return found
 
     half_x, half_y = pen_width / 2, pen_height / 2
-    return Shape((min(x1, x2) - half_x, min(y1, y2) - half_y, max(x1, x2) + half_x, max(y1, y2) + half_y), inside)
+    return Shape(
+        (min(x1, x2) - half_x, min(y1, y2) - half_y, max(x1, x2) + half_x, max(y1, y2) + half_y),
+        inside,
+    )

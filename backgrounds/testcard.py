@@ -10,7 +10,21 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from shapes import BLACK, Box, Canvas, Floats, Point, Rgb, ellipse, paint, pixel_centres, polygon, rect, shade, without
+from shapes import (
+    BLACK,
+    Box,
+    Canvas,
+    Floats,
+    Point,
+    Rgb,
+    ellipse,
+    paint,
+    pixel_centres,
+    polygon,
+    rect,
+    shade,
+    without,
+)
 
 HALF_WIDTH_U, HALF_HEIGHT_V = 9.6, 7.2
 LINE_WIDTH_U, LINE_HEIGHT_V = 0.075, 0.0504
@@ -64,7 +78,10 @@ BLOCKS: tuple[tuple[Box, Rgb], ...] = (
 
 RAMP_END_U, RAMP_FULL_U = 2.0, -4.0
 """A ramp has its full colour up to RAMP_FULL_U and is black at RAMP_END_U."""
-RAMPS: tuple[tuple[float, float, Rgb], ...] = ((3.0, 4.0, (253, 13, 94)), (4.0, BOTTOM_V, (95, 64, 254)))
+RAMPS: tuple[tuple[float, float, Rgb], ...] = (
+    (3.0, 4.0, (253, 13, 94)),
+    (4.0, BOTTOM_V, (95, 64, 254)),
+)
 """Top, bottom and colour."""
 
 BURST_V = (1.0, 2.0)
@@ -146,7 +163,9 @@ def _grid(canvas: Canvas, place: Placement) -> None:
         rect(canvas, CARD_WHITE, place.box(line))
 
 
-def _row_of_blocks(canvas: Canvas, place: Placement, v0: float, v1: float, blocks: Sequence[tuple[float, Rgb]]) -> None:
+def _row_of_blocks(
+    canvas: Canvas, place: Placement, v0: float, v1: float, blocks: Sequence[tuple[float, Rgb]]
+) -> None:
     """Blocks side by side from LEFT_U on, each given by its right edge and colour."""
     left = LEFT_U
     for right, rgb in blocks:
@@ -163,7 +182,9 @@ def _ramp(canvas: Canvas, place: Placement, v0: float, v1: float, rgb: Rgb) -> N
     shade(canvas, place.box(area), color + white * (np.asarray(CARD_WHITE) - color))
 
 
-def _burst(canvas: Canvas, place: Placement, u0: float, u1: float, darkness_percent: Sequence[int]) -> None:
+def _burst(
+    canvas: Canvas, place: Placement, u0: float, u1: float, darkness_percent: Sequence[int]
+) -> None:
     """Fine upright stripes; each pixel gets the mean of the stripes that it covers."""
     area = (u0, BURST_V[0], u1, BURST_V[1])
     u, v = place.centres(area)
@@ -183,7 +204,11 @@ def _circle(canvas: Canvas, place: Placement) -> None:
     if place.turned:
         wide, high = high, wide
     outer, inner = (
-        ellipse(centre, (CIRCLE_RADIUS + side * wide) * place.unit_x, (CIRCLE_RADIUS + side * high) * place.unit_y)
+        ellipse(
+            centre,
+            (CIRCLE_RADIUS + side * wide) * place.unit_x,
+            (CIRCLE_RADIUS + side * high) * place.unit_y,
+        )
         for side in (1, -1)
     )
     paint(canvas, CARD_WHITE, without(outer, inner), smooth=True)

@@ -35,7 +35,10 @@ MATS = {name: getattr(mat_cache, name) for name in ("_in_use", "_store")}
 """How mats are looked for and stored by users."""
 
 settings.register_profile(
-    "quick", max_examples=15, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
+    "quick",
+    max_examples=15,
+    deadline=None,
+    suppress_health_check=[HealthCheck.function_scoped_fixture],
 )
 settings.register_profile("thorough", settings.get_profile("quick"), max_examples=100)
 settings.load_profile("quick")
@@ -83,7 +86,9 @@ def pytest_pycollect_makeitem() -> Generator[None, Any, Any]:
 def _mark_slow_cases(cases: list[pytest.Function], mark: pytest.Mark) -> None:
     ids = [case.callspec.id for case in cases]
     if missing := [name for name in mark.args if not any(fnmatchcase(at, name) for at in ids)]:
-        raise pytest.UsageError(f"{cases[0].originalname}: no case {', '.join(missing)} among {', '.join(ids)}")
+        raise pytest.UsageError(
+            f"{cases[0].originalname}: no case {', '.join(missing)} among {', '.join(ids)}"
+        )
     for case, at in zip(cases, ids, strict=True):
         is_named = any(fnmatchcase(at, name) for name in mark.args)
         if is_named == (mark.name == "slow_cases"):
@@ -128,7 +133,11 @@ def _mats_are_prepared_once(tmp_path_factory: pytest.TempPathFactory) -> Iterato
     in_use, store = MATS.values()
 
     def in_use_or_kept(path: Path, size: int) -> bool:
-        if path.is_relative_to(cache_folder()) and not path.exists() and in_use(kept / path.name, size):
+        if (
+            path.is_relative_to(cache_folder())
+            and not path.exists()
+            and in_use(kept / path.name, size)
+        ):
             with suppress(OSError):
                 make_private_folder(path.parent)
                 link(kept / path.name, path)
@@ -181,7 +190,9 @@ def root() -> Path:
 
 
 @pytest.fixture
-def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> Command:
+def here(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> Command:
     """As `tuisim`, but in this process, which saves the start of another one where that is not what is tested."""
     monkeypatch.chdir(tmp_path)
 
@@ -236,7 +247,11 @@ def start() -> Iterator[Start]:
         **options: Any,
     ) -> RunHandle:
         world = WorldSpec(
-            background=background, start=Pose(*pose), noise=NoiseSpec(*noise), pen_marks=pen_marks, solid=solid
+            background=background,
+            start=Pose(*pose),
+            noise=NoiseSpec(*noise),
+            pen_marks=pen_marks,
+            solid=solid,
         )
         spec = RunSpec(RobotSpec(pen=pen or PenSpec()), world, PROFILES[profile], seed)
         options.setdefault("time_limit_s", 20.0)

@@ -62,13 +62,19 @@ def _stored(programs: Mapping[str, str]) -> dict[str, Stored]:
     for info in RunStore().runs():
         run = RunStore().load_run(info.id)
         # The longest, since one program may be the end of another.
-        fits = [name for name, text in programs.items() if run.program.text.rstrip().endswith(text.rstrip())]
+        fits = [
+            name
+            for name, text in programs.items()
+            if run.program.text.rstrip().endswith(text.rstrip())
+        ]
         name = max(fits, key=lambda one: len(programs[one]))
         # One that is falsified holds whatever its program has left.
         rows = [] if run.state == "falsified" else run.output.all_rows()
         printed = tuple(row.text for row in rows if row.stream == Stream.STDOUT)
         end = run.end
-        found[name] = Stored(str(run.state), end.exit_code if end else 0, end.tick if end else 0, printed)
+        found[name] = Stored(
+            str(run.state), end.exit_code if end else 0, end.tick if end else 0, printed
+        )
     return found
 
 
@@ -123,16 +129,24 @@ def _app(programs: Mapping[str, str], folder: Path) -> Hosted:
     files = _write(folder / "own", programs)
 
     async def all_runs() -> None:
-        async with LabApp(settings(background="Empty_Map", speed=0.0)).run_test(size=(80, 24)) as pilot:
+        async with LabApp(settings(background="Empty_Map", speed=0.0)).run_test(
+            size=(80, 24)
+        ) as pilot:
             app = await ready(pilot)
             runs = app.run_controller
 
             def is_open(file: str) -> bool:
                 program = runs.program
-                return runs.mat is not None and program is not None and Path(program.path) == Path(file)
+                return (
+                    runs.mat is not None
+                    and program is not None
+                    and Path(program.path) == Path(file)
+                )
 
             def is_over(before: RunHandle | None) -> bool:
-                return runs.run is not before and runs.run is not None and runs.run.ended is not None
+                return (
+                    runs.run is not before and runs.run is not None and runs.run.ended is not None
+                )
 
             for file in files:
                 before = runs.run

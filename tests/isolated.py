@@ -20,4 +20,6 @@ def refusal() -> str:
     return ""
 
 
-needs_isolation = pytest.mark.skipif(bool(refusal()), reason=f"programs cannot be isolated here: {refusal()}")
+needs_isolation = pytest.mark.skipif(
+    bool(refusal()), reason=f"programs cannot be isolated here: {refusal()}"
+)

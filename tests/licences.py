@@ -28,7 +28,11 @@ NOT_BROUGHT = {"tuisim", "pip", "setuptools", "wheel"}
 def licence(found: Distribution) -> str:
     """Return what a package says about its licence: an expression, its classifiers, or the first line of a text."""
     said = found.metadata.json
-    classifiers = [one.rpartition(" :: ")[2] for one in said.get("classifier", []) if one.startswith("License ::")]
+    classifiers = [
+        one.rpartition(" :: ")[2]
+        for one in said.get("classifier", [])
+        if one.startswith("License ::")
+    ]
     text = str(said.get("license", "")).strip().split("\n")[0]
     return str(said.get("license_expression") or ", ".join(classifiers) or text)
 

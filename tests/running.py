@@ -51,7 +51,9 @@ class Done:
     @property
     def recording(self) -> tuple[bytes, ...]:
         """Everything the run recorded."""
-        return tuple((self.run.folder / name).read_bytes() for name in ("telemetry.bin", "output.bin"))
+        return tuple(
+            (self.run.folder / name).read_bytes() for name in ("telemetry.bin", "output.bin")
+        )
 
 
 Start = Callable[..., RunHandle]
@@ -97,11 +99,24 @@ class AsPython:
 def as_python(text: str, folder: Path) -> AsPython:
     """Run a program by Python itself, as `program.py` in a folder."""
     (folder / "program.py").write_text(text, encoding="utf-8", newline="")
-    environment = {"PYTHONUTF8": "1", "PYTHONHASHSEED": "0", "PYTHONIOENCODING": "utf-8:backslashreplace"}
+    environment = {
+        "PYTHONUTF8": "1",
+        "PYTHONHASHSEED": "0",
+        "PYTHONIOENCODING": "utf-8:backslashreplace",
+    }
     # Without a buffer, which a program that ends at once would lose.
     done = subprocess.run(
-        [sys.executable, "-u", "program.py"], cwd=folder, env=environment, stdin=subprocess.DEVNULL,
-        capture_output=True, timeout=PATIENCE_S, start_new_session=True,
-    )  # fmt: skip
-    out, err = (data.decode(errors="replace").removesuffix("\n") for data in (done.stdout, done.stderr))
-    return AsPython(out, err, done.returncode if done.returncode >= 0 else SIGNALLED - done.returncode)
+        [sys.executable, "-u", "program.py"],
+        cwd=folder,
+        env=environment,
+        stdin=subprocess.DEVNULL,
+        capture_output=True,
+        timeout=PATIENCE_S,
+        start_new_session=True,
+    )
+    out, err = (
+        data.decode(errors="replace").removesuffix("\n") for data in (done.stdout, done.stderr)
+    )
+    return AsPython(
+        out, err, done.returncode if done.returncode >= 0 else SIGNALLED - done.returncode
+    )

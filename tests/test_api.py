@@ -33,13 +33,17 @@ def test_a_run_has_samples_telemetry_output_and_a_picture() -> None:
     picture = run.picture()
     assert picture.size == (897, 491)
     # The red trace crosses the first grey band.
-    assert {picture.getpixel((175, row)) for row in range(266, 273)} == {(255, 0, 0), (220, 220, 220)}
+    assert {picture.getpixel((175, row)) for row in range(266, 273)} == {
+        (255, 0, 0),
+        (220, 220, 220),
+    }
 
 
 def test_same_seed_same_frames() -> None:
     noisy = "for _ in range(20):\n    print('Colour:', colorLeft.reflected_light_intensity_pc)\n"
     first, second, other = (
-        tuisim.simulate(noisy, background="Grey_bands", x=300, sensornoise=20, seed=seed).samples for seed in (3, 3, 4)
+        tuisim.simulate(noisy, background="Grey_bands", x=300, sensornoise=20, seed=seed).samples
+        for seed in (3, 3, 4)
     )
     assert first.equals(second)
     assert not first.equals(other)
@@ -66,12 +70,20 @@ def test_bad_choices_are_refused(choices: dict[str, Any], expected: str) -> None
 
 
 def test_import_loads_next_to_nothing() -> None:
-    program = "import sys; before = set(sys.modules); import tuisim; print(*(set(sys.modules) - before))"
-    done = subprocess.run([sys.executable, "-c", program], cwd=ROOT, capture_output=True, text=True, check=True)
-    assert not {"numpy", "pandas", "PIL", "IPython", "tuisim.api", "tuisim.runs.handle"} & set(done.stdout.split())
+    program = (
+        "import sys; before = set(sys.modules); import tuisim; print(*(set(sys.modules) - before))"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", program], cwd=ROOT, capture_output=True, text=True, check=True
+    )
+    assert not {"numpy", "pandas", "PIL", "IPython", "tuisim.api", "tuisim.runs.handle"} & set(
+        done.stdout.split()
+    )
 
 
-def test_the_guides_example_does_as_it_says(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_guides_example_does_as_it_says(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.chdir(tmp_path)
     blocks = find_page("notebooks").source.split("```python\n")[1:]
     (example,) = [block.partition("```")[0] for block in blocks if "simulate(" in block]
@@ -99,7 +111,10 @@ def test_a_program_runs_in_a_world_file(tmp_path: Path) -> None:
     start = run.stored.spec.world.start
     assert (start.x_mm, start.y_mm, start.heading_deg) == (400, 300, -90)
     assert (run.stored.spec.world.background, run.output) == ("Loop", "['fast']\n")
-    assert tuisim.simulate(POSE, arguments=["slow"], world=tmp_path / "lab.toml").output == "['slow']\n"
+    assert (
+        tuisim.simulate(POSE, arguments=["slow"], world=tmp_path / "lab.toml").output
+        == "['slow']\n"
+    )
 
 
 PYBRICKS = """\
@@ -129,10 +144,16 @@ def test_a_pybricks_program_in_an_experiment() -> None:
     assert frame["Distance_last"].tolist() == [100, 100]
 
 
-def test_an_experiment_takes_place_in_a_world_file_instead_of_that_of_its_goals(tmp_path: Path) -> None:
+def test_an_experiment_takes_place_in_a_world_file_instead_of_that_of_its_goals(
+    tmp_path: Path,
+) -> None:
     (tmp_path / "lab.toml").write_text(LAB)
-    (tmp_path / "goals.toml").write_text("background = 'Square'\n[[goal]]\nname = 'done'\nfinish = true\n")
-    frame = tuisim.experiment(POSE, seeds=[1, 2], world=tmp_path / "lab.toml", goals=tmp_path / "goals.toml", jobs=1)
+    (tmp_path / "goals.toml").write_text(
+        "background = 'Square'\n[[goal]]\nname = 'done'\nfinish = true\n"
+    )
+    frame = tuisim.experiment(
+        POSE, seeds=[1, 2], world=tmp_path / "lab.toml", goals=tmp_path / "goals.toml", jobs=1
+    )
     assert (frame["x_mm"].tolist(), frame["goal.done"].tolist()) == ([400, 400], [True, True])
 
 
@@ -170,7 +191,9 @@ def test_what_names_no_run_is_refused(run: Any, words: str) -> None:
     ("given", "words"),
     [
         pytest.param({"seeds": 3}, "seeds: must be several, got 3", id="one seed"),
-        pytest.param({"jobs": -1}, "jobs: must be a whole number from 0 to 1000, got -1", id="jobs"),
+        pytest.param(
+            {"jobs": -1}, "jobs: must be a whole number from 0 to 1000, got -1", id="jobs"
+        ),
     ],
 )
 def test_a_wrong_experiment_is_refused(given: dict[str, Any], words: str) -> None:

@@ -38,5 +38,9 @@ def test_home_is_private_and_exports_are_as_the_umask_says(
     write_notes(notes_of_file(tmp_path / "a.csv"), [Note("x", 0.0, 0.0)])
     rights = {path: stat.S_IMODE(path.stat().st_mode) for path in (home, *home.rglob("*"))}
     assert len(rights) > 12
-    assert not {path.name: oct(mode) for path, mode in rights.items() if mode != (0o700 if path.is_dir() else 0o600)}
+    assert not {
+        path.name: oct(mode)
+        for path, mode in rights.items()
+        if mode != (0o700 if path.is_dir() else 0o600)
+    }
     assert stat.S_IMODE((tmp_path / "a.csv").stat().st_mode) == 0o666

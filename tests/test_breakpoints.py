@@ -37,17 +37,32 @@ RULES: dict[str, tuple[BreakRule, str]] = {
     "left.color = Blue": (ValueCondition("left_color", "==", "Blue"), "left_color == Blue"),
     "left.color == Blue": (ValueCondition("left_color", "==", "Blue"), "left_color == Blue"),
     "ultrasonic<200": (ValueCondition("ultrasonic_mm", "<", "200"), "ultrasonic_mm < 200"),
-    "ultrasonic sensor <= 2.5e2": (ValueCondition("ultrasonic_mm", "<=", "250"), "ultrasonic_mm <= 250"),
+    "ultrasonic sensor <= 2.5e2": (
+        ValueCondition("ultrasonic_mm", "<=", "250"),
+        "ultrasonic_mm <= 250",
+    ),
     "gyro > 90": (ValueCondition("gyro_deg", ">", "90"), "gyro_deg > 90"),
     "gyro.rate != 0": (ValueCondition("gyro_rate_dps", "!=", "0"), "gyro_rate_dps != 0"),
     "x_mm > 1000": (ValueCondition("x_mm", ">", "1000"), "x_mm > 1000"),
-    "x_mm > 0.1234567890123456": (ValueCondition("x_mm", ">", "0.1234567890123456"), "x_mm > 0.1234567890123456"),
+    "x_mm > 0.1234567890123456": (
+        ValueCondition("x_mm", ">", "0.1234567890123456"),
+        "x_mm > 0.1234567890123456",
+    ),
     "time 3.5": (TimeBreak(3.5), "time 3.5"),
     "time 3.5 s": (TimeBreak(3.5), "time 3.5"),
     "sample Colour": (ValueCondition("Colour", "is seen", "", ValueSource.SAMPLE), "sample Colour"),
-    "sample Colour changes": (ValueCondition("Colour", "changes", "", ValueSource.SAMPLE), "sample Colour changes"),
-    "sample Colour >= -1.5": (ValueCondition("Colour", ">=", "-1.5", ValueSource.SAMPLE), "sample Colour >= -1.5"),
-    "print matches a|b c": (ValueCondition("", "matches", "a|b c", ValueSource.PRINT), "print matches a|b c"),
+    "sample Colour changes": (
+        ValueCondition("Colour", "changes", "", ValueSource.SAMPLE),
+        "sample Colour changes",
+    ),
+    "sample Colour >= -1.5": (
+        ValueCondition("Colour", ">=", "-1.5", ValueSource.SAMPLE),
+        "sample Colour >= -1.5",
+    ),
+    "print matches a|b c": (
+        ValueCondition("", "matches", "a|b c", ValueSource.PRINT),
+        "print matches a|b c",
+    ),
     "stall": (StallBreak(), "stall"),
 }
 
@@ -83,7 +98,9 @@ WRONG = {
 }
 
 
-@pytest.mark.parametrize(("text", "why"), WRONG.items(), ids=[text[:20] or "empty" for text in WRONG])
+@pytest.mark.parametrize(
+    ("text", "why"), WRONG.items(), ids=[text[:20] or "empty" for text in WRONG]
+)
 def test_what_is_no_break_says_why_and_what_is_allowed(text: str, why: str) -> None:
     with pytest.raises(ConfigError, match="break: ") as refused:
         parse_break(text, ROBOT)
@@ -94,7 +111,9 @@ def test_what_is_no_break_says_why_and_what_is_allowed(text: str, why: str) -> N
 def test_every_column_of_a_robot_can_be_compared_and_without_one_any_name() -> None:
     for column in columns_of(ROBOT):
         for name in (column.name, *column.also):
-            assert parse_break(f"{name} > 1.5", ROBOT).rule == ValueCondition(column.name, ">", "1.5")
+            assert parse_break(f"{name} > 1.5", ROBOT).rule == ValueCondition(
+                column.name, ">", "1.5"
+            )
     assert parse_break("middle.red > 1").rule == ValueCondition("middle.red", ">", "1")
 
 

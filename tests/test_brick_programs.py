@@ -37,4 +37,8 @@ WITH_FILE = [name for name in PROGRAMS if (FOLDER / name / "robot.toml").exists(
 def test_it_does_what_a_brick_does(name: str, robot: str, tmp_path: Path, here: Command) -> None:
     place = ["-x", 157, "-y", 800] if name in FROM_THE_LEFT else []
     file = ["-r", FOLDER / name / robot] if robot else []
-    check_typed(FOLDER / name, run_typed(FOLDER / name, here, tmp_path, *place, *file), EXIT_CODES.get(name, 0))
+    check_typed(
+        FOLDER / name,
+        run_typed(FOLDER / name, here, tmp_path, *place, *file),
+        EXIT_CODES.get(name, 0),
+    )

@@ -52,7 +52,9 @@ def test_run_prints_to_stdout_and_the_last_state_to_stderr(program: Path, here: 
     assert done.returncode == 0
     assert done.stdout == "".join(f"Number: {number}\n" for number in range(5))
     (line,) = done.stderr.splitlines()
-    assert line.startswith("prog.py: finished · 0.000 s, tick 0 · x 100.00 mm, y 800.00 mm, heading 0.00° · 5 samples")
+    assert line.startswith(
+        "prog.py: finished · 0.000 s, tick 0 · x 100.00 mm, y 800.00 mm, heading 0.00° · 5 samples"
+    )
 
 
 PUSHES = """#!/usr/bin/env python3
@@ -70,13 +72,20 @@ def test_the_last_line_says_that_the_robot_stood_at_the_wall(tmp_path: Path, her
     for profile in ("ev3", "robolab"):
         done = here("run", "push.py", "-x", "2200", "--profile", profile)
         told[profile] = done.stderr.splitlines()[-1]
-    assert " · stood at the wall from 0.77 s on, its wheels pushed for 1.2 s · 0 samples · run " in told["ev3"]
+    assert (
+        " · stood at the wall from 0.77 s on, its wheels pushed for 1.2 s · 0 samples · run "
+        in told["ev3"]
+    )
     assert "stood" not in told["robolab"]
-    stood = json.loads(here("run", "push.py", "-x", "2200", "--profile", "ev3", "--json").stdout)["standstill"]
+    stood = json.loads(here("run", "push.py", "-x", "2200", "--profile", "ev3", "--json").stdout)[
+        "standstill"
+    ]
     assert (stood["at"], stood["times"], stood["until_s"]) == ("the wall", 1, None)
 
 
-def test_program_that_raises_shows_its_own_lines_only_and_keeps_its_rows(tmp_path: Path, here: Command) -> None:
+def test_program_that_raises_shows_its_own_lines_only_and_keeps_its_rows(
+    tmp_path: Path, here: Command
+) -> None:
     (tmp_path / "prog.py").write_text(RAISES)
     done = here("run", "prog.py", "--export", "rows.csv")
     assert done.returncode == 1
@@ -87,7 +96,9 @@ def test_program_that_raises_shows_its_own_lines_only_and_keeps_its_rows(tmp_pat
     assert len(pd.read_csv(tmp_path / "rows.csv")) == 5
 
 
-def test_a_program_may_bear_the_name_of_a_module_that_the_library_imports(tmp_path: Path, here: Command) -> None:
+def test_a_program_may_bear_the_name_of_a_module_that_the_library_imports(
+    tmp_path: Path, here: Command
+) -> None:
     (tmp_path / "beside.py").write_text("TIMES = 2\n")
     (tmp_path / "logging.py").write_text("from beside import TIMES\nprint(TIMES * colorLeft.rgb)\n")
     done = here("run", "logging.py")
@@ -97,7 +108,14 @@ def test_a_program_may_bear_the_name_of_a_module_that_the_library_imports(tmp_pa
 def test_json_is_one_object_alone_on_stdout(program: Path, here: Command) -> None:
     done = here("run", program.name, "--json", "--seed", 7, "-b", "Loop")
     facts = json.loads(done.stdout)
-    wanted = {"program": "prog.py", "state": "finished", "seed": 7, "background": "Loop", "samples": 5, "exit_code": 0}
+    wanted = {
+        "program": "prog.py",
+        "state": "finished",
+        "seed": 7,
+        "background": "Loop",
+        "samples": 5,
+        "exit_code": 0,
+    }
     assert facts.items() >= wanted.items()
     assert "Number: 4" in done.stderr
 
@@ -122,7 +140,9 @@ EXITS = {
 
 
 @pytest.mark.parametrize(("text", "words", "code"), EXITS.values(), ids=EXITS)
-def test_exit_codes(text: str, words: list[object], code: int, tmp_path: Path, here: Command) -> None:
+def test_exit_codes(
+    text: str, words: list[object], code: int, tmp_path: Path, here: Command
+) -> None:
     (tmp_path / "prog.py").write_text(text)
     done = here("run", "prog.py", *words)
     assert done.returncode == code, done.stderr
@@ -146,9 +166,16 @@ def test_several_programs_run_in_turn_into_one_log_and_the_worst_exit_code_count
 
 
 def test_command_line_wins_over_the_magic_line(tmp_path: Path, here: Command) -> None:
-    (tmp_path / "prog.py").write_text("%%sim_magic_preloaded -b Loop -x 700 -OHR\nprint(gyro.angle)\n")
+    (tmp_path / "prog.py").write_text(
+        "%%sim_magic_preloaded -b Loop -x 700 -OHR\nprint(gyro.angle)\n"
+    )
     facts = json.loads(here("run", "prog.py", "-b", "Square", "--json").stdout)
-    assert (facts["background"], facts["x_mm"], facts["y_mm"], facts["heading_deg"]) == ("Square", 700, 300, -90)
+    assert (facts["background"], facts["x_mm"], facts["y_mm"], facts["heading_deg"]) == (
+        "Square",
+        700,
+        300,
+        -90,
+    )
 
 
 @pytest.mark.parametrize(
@@ -160,7 +187,9 @@ def test_command_line_wins_over_the_magic_line(tmp_path: Path, here: Command) ->
     ],
     ids=["calm", "noise", "old"],
 )
-def test_the_same_run_gives_the_same_files_at_any_speed(words: list[object], tmp_path: Path, here: Command) -> None:
+def test_the_same_run_gives_the_same_files_at_any_speed(
+    words: list[object], tmp_path: Path, here: Command
+) -> None:
     (tmp_path / "prog.py").write_text(DRIVES)
     speeds = {"max": "max", "again": "max", "paced": "40"}
     for name, speed in speeds.items():
@@ -206,7 +235,9 @@ def test_version(here: Command) -> None:
     assert here("--version").stdout == f"tuisim {package.__version__}\n"
 
 
-def test_our_own_mistake_is_one_line(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+def test_our_own_mistake_is_one_line(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
     def fail(words: object) -> int:
         raise ValueError("first line\nsecond line")
 
@@ -230,8 +261,12 @@ def start(folder: Path, *words: str) -> subprocess.Popen[str]:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)], ids=["ctrl-C", "terminate"])
-def test_signal_stops_the_run_and_exports_its_rows(number: signal.Signals, code: int, tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    ("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)], ids=["ctrl-C", "terminate"]
+)
+def test_signal_stops_the_run_and_exports_its_rows(
+    number: signal.Signals, code: int, tmp_path: Path
+) -> None:
     (tmp_path / "prog.py").write_text(FIVE + "while True:\n    pass\n")
     running = start(tmp_path, "run", "prog.py", "--speed", "1", "--export", "rows.csv")
     assert running.stdout is not None
@@ -247,7 +282,9 @@ def test_signal_stops_the_run_and_exports_its_rows(number: signal.Signals, code:
 
 @pytest.mark.slow
 def test_closed_pipe_is_quiet_and_stops_the_run(tmp_path: Path) -> None:
-    (tmp_path / "prog.py").write_text("number = 0\nwhile True:\n    print(number)\n    number += 1\n")
+    (tmp_path / "prog.py").write_text(
+        "number = 0\nwhile True:\n    print(number)\n    number += 1\n"
+    )
     running = start(tmp_path, "run", "prog.py", "--timeout", "1000000")
     assert running.stdout is not None
     assert running.stderr is not None

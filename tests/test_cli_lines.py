@@ -27,13 +27,40 @@ ROWS = [json.loads(line) for line in TABLE.read_text(encoding="utf-8").split("\n
 MOST_CHARACTERS = 40
 """Of what a command prints."""
 RUN_OPTIONS = (
-    "export", "telemetry", "timeout", "input", "press", "breaks", "watches", "break_then", "all", "json"
-)  # fmt: skip
+    "export",
+    "telemetry",
+    "timeout",
+    "input",
+    "press",
+    "breaks",
+    "watches",
+    "break_then",
+    "all",
+    "json",
+)
 RUN_DEFAULTS = {"timeout": 600.0, "break_then": "go"}
 LOG_OPTIONS = (
-    "words", "time", "unit", "value", "variable", "telemetry", "json", "out", "at", "hysteresis", "between", "width",
-    "period", "expression", "facets", "marks", "from", "to", "against", "size",
-)  # fmt: skip
+    "words",
+    "time",
+    "unit",
+    "value",
+    "variable",
+    "telemetry",
+    "json",
+    "out",
+    "at",
+    "hysteresis",
+    "between",
+    "width",
+    "period",
+    "expression",
+    "facets",
+    "marks",
+    "from",
+    "to",
+    "against",
+    "size",
+)
 LOG_DEFAULTS = {"between": "hold", "width": 5}
 
 FILES = {
@@ -79,19 +106,30 @@ def plain(value: Any) -> Any:
 def chosen(arguments: Any, names: tuple[str, ...], defaults: dict[str, Any]) -> dict[str, Any]:
     """The named attributes that are there and not at their defaults."""
     found = {name: plain(getattr(arguments, name, None)) for name in names}
-    return {name: one for name, one in found.items() if one not in (None, "", [], False, defaults.get(name))}
+    return {
+        name: one
+        for name, one in found.items()
+        if one not in (None, "", [], False, defaults.get(name))
+    }
 
 
 def _run_one(one: Any, arguments: Any, *_: Any) -> Any:
     program = {"program": one.program.name, "arguments": list(one.program.arguments)}
-    raise Stop(**program, settings=plain(one.settings), **chosen(arguments, RUN_OPTIONS, RUN_DEFAULTS))
+    raise Stop(
+        **program, settings=plain(one.settings), **chosen(arguments, RUN_OPTIONS, RUN_DEFAULTS)
+    )
 
 
 def _run_app(app: Any) -> int:
     settings = {} if app.settings is None else plain(app.settings)
     world = app.world_file.name if app.world_file else None
     replay = app.replay.number if app.replay else None
-    given = {"speed": app.speed, "panels_on": sorted(app.panels_on), "colors": app.colors, "quiet": app.quiet}
+    given = {
+        "speed": app.speed,
+        "panels_on": sorted(app.panels_on),
+        "colors": app.colors,
+        "quiet": app.quiet,
+    }
     program = app.program.name if app.program else None
     raise Stop(program=program, world=world, replay=replay, settings=settings, app=given)
 
@@ -106,7 +144,10 @@ def _log(action: str) -> Any:
 def _told(action: str, *names: str) -> Any:
     def work(*values: Any, **named: Any) -> Any:
         found = dict(zip(names, values, strict=True)) | named
-        raise Stop(action=action, **{name: plain(one) for name, one in found.items() if not name.startswith("_")})
+        raise Stop(
+            action=action,
+            **{name: plain(one) for name, one in found.items() if not name.startswith("_")},
+        )
 
     return work
 
@@ -114,7 +155,9 @@ def _told(action: str, *names: str) -> Any:
 def _run_action(action: str, work: Any) -> Any:
     def record(words: Any = (), older_than: Any = None, every: bool = False, **named: Any) -> int:
         if not words and action not in ("list", "compact") and older_than is None:
-            return int(work(words=words, **({"older_than": None} if action == "rm" else {}), **named))
+            return int(
+                work(words=words, **({"older_than": None} if action == "rm" else {}), **named)
+            )
         match action:
             case "list":
                 raise Stop(action=action, **named)
@@ -134,11 +177,15 @@ def watch(patch: pytest.MonkeyPatch) -> None:
     for stream in (sys.stdin, sys.stdout):
         patch.setattr(stream, "isatty", lambda: True)
     patch.setattr("tuisim.app.app.run_app", _run_app)
-    patch.setattr("tuisim.app.analyser.app.run_analyser", lambda wanted: _told("analyse", "log")(wanted))
+    patch.setattr(
+        "tuisim.app.analyser.app.run_analyser", lambda wanted: _told("analyse", "log")(wanted)
+    )
     patch.setattr("tuisim.commands.run._run_one", _run_one)
     for name, entry in SUBCOMMANDS.items():
         module, _, function = entry.path.partition(":")
-        patch.setattr(importlib.import_module(f"tuisim.commands.logs.{module}"), function, _log(name))
+        patch.setattr(
+            importlib.import_module(f"tuisim.commands.logs.{module}"), function, _log(name)
+        )
     for command in (list_runs, show, rm, rerun_runs, compact, export):
         patch.setattr(command, "callback", _run_action(command.name or "", command.callback))
     patch.setattr("tuisim.commands.kernel._list", _told("list", "_kernels"))
@@ -161,7 +208,11 @@ def outcome(line: str, capsys: pytest.CaptureFixture[str]) -> Any:
     except SystemExit as left:
         code = int(left.code or 0)
     out, err = capsys.readouterr()
-    return {"exit": code, "out": out.partition("\n")[0][:MOST_CHARACTERS], "err": err.removesuffix("\n")}
+    return {
+        "exit": code,
+        "out": out.partition("\n")[0][:MOST_CHARACTERS],
+        "err": err.removesuffix("\n"),
+    }
 
 
 def prepared(folder: Path, patch: pytest.MonkeyPatch) -> None:

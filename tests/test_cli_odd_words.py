@@ -14,13 +14,32 @@ LONG, NOBODY = "x" * 300, "~nobody-at-all/x"
 @pytest.mark.parametrize(
     "command",
     [
-        "run", "runs show", "runs rm", "log summary", "goals check", "mark", "batch", "batch --seeds 0 --jobs 1",
-        "learn check", "learn list --folder", "obstacles", "robots", "profiles", "guide", "backgrounds --mats",
-        "backgrounds --use-originals", "run --world", "run --background", "run --mats", "run --robot",
+        "run",
+        "runs show",
+        "runs rm",
+        "log summary",
+        "goals check",
+        "mark",
+        "batch",
+        "batch --seeds 0 --jobs 1",
+        "learn check",
+        "learn list --folder",
+        "obstacles",
+        "robots",
+        "profiles",
+        "guide",
+        "backgrounds --mats",
+        "backgrounds --use-originals",
+        "run --world",
+        "run --background",
+        "run --mats",
+        "run --robot",
         "kernel remove --prefix",
     ],
-)  # fmt: skip
-def test_a_word_that_can_be_no_file_is_refused(command: str, word: str, capsys: pytest.CaptureFixture[str]) -> None:
+)
+def test_a_word_that_can_be_no_file_is_refused(
+    command: str, word: str, capsys: pytest.CaptureFixture[str]
+) -> None:
     words = [*command.split(), word]
     if command.startswith("run --"):
         words.append("line_follower")

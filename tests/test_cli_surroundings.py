@@ -47,7 +47,9 @@ def test_the_command_itself_does_not_mind_such_a_module(tuisim: Command, tmp_pat
 
 
 @pytest.mark.parametrize("name", ["errors", "core", "source"])
-def test_a_program_does_not_find_our_modules_as_its_own(here: Command, tmp_path: Path, name: str) -> None:
+def test_a_program_does_not_find_our_modules_as_its_own(
+    here: Command, tmp_path: Path, name: str
+) -> None:
     (tmp_path / "main.py").write_text(f"import {name}")
     done = here("run", "main.py")
     assert done.returncode == 1
@@ -55,7 +57,9 @@ def test_a_program_does_not_find_our_modules_as_its_own(here: Command, tmp_path:
 
 
 @pytest.mark.parametrize("allowed", [10, 14, 40])
-def test_too_few_open_files_are_told_in_a_sentence(tmp_path: Path, root: Path, allowed: int) -> None:
+def test_too_few_open_files_are_told_in_a_sentence(
+    tmp_path: Path, root: Path, allowed: int
+) -> None:
     (tmp_path / "main.py").write_text("print('A: 1')")
     words = [sys.executable, "-m", "tuisim", "run", "main.py"]
     done = subprocess.run(

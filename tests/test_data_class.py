@@ -71,7 +71,13 @@ def build(decorate: Decorator, frozen: bool, slots: bool) -> dict[str, type]:
 
 
 GIVEN: dict[str, list[tuple[tuple[Any, ...], dict[str, Any]]]] = {
-    "Plain": [((1,), {}), ((1, "b"), {}), ((2,), {"text": "c", "items": [1]}), ((), {}), ((1, 2, 3, 4), {})],
+    "Plain": [
+        ((1,), {}),
+        ((1, "b"), {}),
+        ((2,), {"text": "c", "items": [1]}),
+        ((), {}),
+        ((1, 2, 3, 4), {}),
+    ],
     "Single": [((1.5,), {}), ((), {"number": 2}), ((1,), {"numbre": 2})],
     "Empty": [((), {}), ((1,), {})],
     "Hidden": [((1,), {}), ((1, 4), {}), ((1, 4), {"secret": 8}), ((2,), {}), ((1,), {"fixed": 1})],
@@ -92,8 +98,14 @@ def outcome(call: Callable[..., object], /, *args: object, **by_name: object) ->
 @pytest.mark.parametrize(("frozen", "slots"), KINDS)
 def test_objects_do_what_those_of_python_do(frozen: bool, slots: bool) -> None:
     def told(kinds: dict[str, type]) -> object:
-        made = [outcome(kinds[name], *args, **by_name) for name in kinds for args, by_name in GIVEN[name]]
-        objects = [one for one in made if dataclasses.is_dataclass(one) and not isinstance(one, type)]
+        made = [
+            outcome(kinds[name], *args, **by_name)
+            for name in kinds
+            for args, by_name in GIVEN[name]
+        ]
+        objects = [
+            one for one in made if dataclasses.is_dataclass(one) and not isinstance(one, type)
+        ]
         assert len(objects) == 15
         with_number = [one for one in objects if hasattr(one, "number")]
         return {
@@ -107,7 +119,9 @@ def test_objects_do_what_those_of_python_do(frozen: bool, slots: bool) -> None:
             "deleted": [outcome(delattr, one, "number") for one in with_number],
         }
 
-    assert told(build(data_class.dataclass, frozen, slots)) == told(build(dataclasses.dataclass, frozen, slots))
+    assert told(build(data_class.dataclass, frozen, slots)) == told(
+        build(dataclasses.dataclass, frozen, slots)
+    )
 
 
 @pytest.mark.parametrize(("frozen", "slots"), KINDS)
@@ -122,7 +136,10 @@ def test_classes_look_like_those_of_python(frozen: bool, slots: bool) -> None:
             kind.__hash__ is None,
         )
 
-    ours, theirs = build(data_class.dataclass, frozen, slots), build(dataclasses.dataclass, frozen, slots)
+    ours, theirs = (
+        build(data_class.dataclass, frozen, slots),
+        build(dataclasses.dataclass, frozen, slots),
+    )
     assert [told(kind) for kind in ours.values()] == [told(kind) for kind in theirs.values()]
 
 
@@ -166,7 +183,12 @@ class Point:
 
 def test_frozen_objects_can_be_copied() -> None:
     point = Point(1, [2])
-    for copied in (copy.copy(point), copy.deepcopy(point), pickle.loads(pickle.dumps(point)), replace(point)):
+    for copied in (
+        copy.copy(point),
+        copy.deepcopy(point),
+        pickle.loads(pickle.dumps(point)),
+        replace(point),
+    ):
         assert copied == point
         with pytest.raises(FrozenInstanceError):
             copied.x = 2  # type: ignore[misc]
@@ -185,7 +207,11 @@ def test_ordered_objects_are_sorted_and_frozen() -> None:
         major: int
         minor: int = 0
 
-    assert sorted({Version(2), Version(1, 3), Version(1)}) == [Version(1), Version(1, 3), Version(2)]
+    assert sorted({Version(2), Version(1, 3), Version(1)}) == [
+        Version(1),
+        Version(1, 3),
+        Version(2),
+    ]
     with pytest.raises(FrozenInstanceError):
         Version(1).major = 2  # type: ignore[misc]
 

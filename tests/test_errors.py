@@ -19,7 +19,9 @@ SHOWN = "a\ufffd[31m\ufffdb\ufffd"
 def log(tmp_path: Path) -> str:
     """A log that needs a note, of a variable with an evil name."""
     path = tmp_path / f"{EVIL}.jsonl"
-    path.write_text("\n".join(json.dumps({"time": at, EVIL: at}) for at in range(9)) + "\nno object\n")
+    path.write_text(
+        "\n".join(json.dumps({"time": at, EVIL: at}) for at in range(9)) + "\nno object\n"
+    )
     return str(path)
 
 
@@ -34,7 +36,10 @@ CALLS = {
 
 @pytest.mark.parametrize("words", CALLS.values(), ids=CALLS)
 def test_names_are_shown(
-    log: str, words: tuple[str, ...], capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+    log: str,
+    words: tuple[str, ...],
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(sys.stdout, "isatty", lambda: True)
     monkeypatch.setenv("NO_COLOR", "1")
@@ -62,7 +67,9 @@ def test_printable(text: str, shown: str) -> None:
 def test_of_many_names_some_are_listed() -> None:
     assert listed(iter("ab")) == "a, b"
     assert listed(()) == "none"
-    assert listed(map(str, range(10_000))).endswith(f", {MOST_LISTED - 1} and {10_000 - MOST_LISTED} more")
+    assert listed(map(str, range(10_000))).endswith(
+        f", {MOST_LISTED - 1} and {10_000 - MOST_LISTED} more"
+    )
 
 
 PROGRAM = f"""# %%sim_magic_preloaded
@@ -102,7 +109,10 @@ STORED_CALLS = {
 @pytest.mark.slow
 @pytest.mark.parametrize("words", STORED_CALLS.values(), ids=STORED_CALLS)
 def test_stored_text_is_shown(
-    stored: Path, words: tuple[str, ...], capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+    stored: Path,
+    words: tuple[str, ...],
+    capfd: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.chdir(stored.parent)
     monkeypatch.setenv("TUISIM_HOME", str(stored.parent))

@@ -17,7 +17,9 @@ CODES = {"run": 1, "batch": 1}
 """Exit codes of the commands that tell how programs end."""
 
 
-@pytest.mark.parametrize("host", [pytest.param(host, marks=[pytest.mark.slow] * (host in SLOW)) for host in HOSTS])
+@pytest.mark.parametrize(
+    "host", [pytest.param(host, marks=[pytest.mark.slow] * (host in SLOW)) for host in HOSTS]
+)
 def test_an_enemy_affects_its_own_run_only(host: str, tmp_path: Path) -> None:
     found = hosted(host, PROGRAMS, tmp_path / "place")
     assert [found.runs[name].end for name in PROGRAMS] == ["finished", "falsified", "finished"]
@@ -28,13 +30,23 @@ def test_an_enemy_affects_its_own_run_only(host: str, tmp_path: Path) -> None:
 
 @pytest.mark.usefixtures("home")
 def test_goals_are_checked_for_the_others(here: Command, tmp_path: Path) -> None:
-    (tmp_path / "goals.toml").write_text('title = "Done"\n[[goal]]\nname = "finish"\nfinish = true\n')
+    (tmp_path / "goals.toml").write_text(
+        'title = "Done"\n[[goal]]\nname = "finish"\nfinish = true\n'
+    )
     for name, text in PROGRAMS.items():
         (tmp_path / f"{name}.py").write_text(text)
     ran = here("run", "ada.py", "eve.py", "zoe.py")
-    ends = [line.split()[1].strip(":") for line in ran.stderr.splitlines() if line.partition(".")[0] in PROGRAMS]
+    ends = [
+        line.split()[1].strip(":")
+        for line in ran.stderr.splitlines()
+        if line.partition(".")[0] in PROGRAMS
+    ]
     assert (ran.returncode, ends) == (1, ["finished", "falsified", "finished"]), ran
     done = here("goals", "check", "goals.toml", "1", "2", "3")
-    marks = [line.partition(" · ")[2] for line in done.stdout.splitlines() if line.startswith("run ")]
-    assert marks == [f"Done: {points} of 1 goal, {points} of 1 points" for points in (1, 0, 1)], done.stdout
+    marks = [
+        line.partition(" · ")[2] for line in done.stdout.splitlines() if line.startswith("run ")
+    ]
+    assert marks == [f"Done: {points} of 1 goal, {points} of 1 points" for points in (1, 0, 1)], (
+        done.stdout
+    )
     assert done.returncode == 1

@@ -8,9 +8,11 @@ import tomllib
 from tests.conftest import ROOT
 
 TABLE = dict(
-    re.findall(r"^\| ([a-z0-9-]+) \| (.*?) \|$", (ROOT / "tuisim/guide/pages/licences.md").read_text(), re.MULTILINE)[
-        1:
-    ]
+    re.findall(
+        r"^\| ([a-z0-9-]+) \| (.*?) \|$",
+        (ROOT / "tuisim/guide/pages/licences.md").read_text(),
+        re.MULTILINE,
+    )[1:]
 )
 
 

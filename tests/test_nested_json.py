@@ -18,7 +18,14 @@ from tuisim.logs.arrow import METADATA_KEY, metadata_in
 from tuisim.logs.export import companion_of
 from tuisim.logs.reader import _metadata_beside
 from tuisim.marks.journal import Journal
-from tuisim.runs.side_files import MODULES_FILE, READS_FILE, STOP_FILE, read_modules, read_reads, read_stop_tick
+from tuisim.runs.side_files import (
+    MODULES_FILE,
+    READS_FILE,
+    STOP_FILE,
+    read_modules,
+    read_reads,
+    read_stop_tick,
+)
 
 DEEP = b"[" * 100_000 + b"\n"
 PROGRAM = "drive.py"
@@ -81,14 +88,18 @@ def of_batch(_folder: Path) -> object:
         (of_batch, None),
     ],
 )
-def test_what_can_be_left_out_is_left_out(read: Callable[[Path], object], nothing: object, tmp_path: Path) -> None:
+def test_what_can_be_left_out_is_left_out(
+    read: Callable[[Path], object], nothing: object, tmp_path: Path
+) -> None:
     assert read(tmp_path) == nothing
 
 
 @pytest.mark.parametrize(
     ("name", "data", "read"),
     [
-        pytest.param("notes.jsonl", DEEP, lambda folder: read_notes(folder / "notes.jsonl"), id="notes"),
+        pytest.param(
+            "notes.jsonl", DEEP, lambda folder: read_notes(folder / "notes.jsonl"), id="notes"
+        ),
         pytest.param(MODULES_FILE, DEEP, read_modules, id="modules"),
         pytest.param(READS_FILE, DEEP, read_reads, id="reads"),
         pytest.param(STOP_FILE, DEEP, read_stop_tick, id="stop"),

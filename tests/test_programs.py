@@ -70,7 +70,9 @@ def test_example_finishes(name: str, profile: str, here: Command) -> None:
 
 @pytest.mark.quick_cases("calm")
 @pytest.mark.parametrize(
-    "words", [[], ["-N", 20, "-M", 50], ["-N", 20, "-M", 50, "--seed", 3]], ids=["calm", "noise", "seed"]
+    "words",
+    [[], ["-N", 20, "-M", 50], ["-N", 20, "-M", 50, "--seed", 3]],
+    ids=["calm", "noise", "seed"],
 )
 def test_line_follower_arrives_at_the_red_bar(words: list[object], here: Command) -> None:
     done = here("run", "follow_line", "--json", "--timeout", 100, *words)
@@ -108,7 +110,9 @@ def test_colour_is_named_and_said(x_mm: int, name: str, code: int, here: Command
 
 
 @pytest.mark.parametrize(
-    ("x_mm", "value"), [(125, 255), (325, 220), (725, 211), (1125, 128), (1525, 0)], ids=lambda value: str(value)
+    ("x_mm", "value"),
+    [(125, 255), (325, 220), (725, 211), (1125, 128), (1525, 0)],
+    ids=lambda value: str(value),
 )
 def test_all_properties_of_a_grey(x_mm: int, value: int, here: Command) -> None:
     code, name = (6, "White") if value else (1, "Black")
@@ -125,15 +129,32 @@ def test_all_properties_of_a_grey(x_mm: int, value: int, here: Command) -> None:
 def test_log_of_the_greys_has_the_plateaus_in_driving_order(here: Command) -> None:
     printed = here("run", "log_greys").stdout.splitlines()
     values = [float(line.removeprefix("Colour: ")) for line in printed]
-    bands = [value for value, after in zip(values, [*values[1:], None], strict=True) if value == after or after is None]
-    plateaus = [value for value, before in zip(bands, [None, *bands], strict=False) if value != before]
-    assert plateaus == [100, 86.27450980392157, 100, 82.74509803921568, 100, 50.19607843137255, 100, 0]
+    bands = [
+        value
+        for value, after in zip(values, [*values[1:], None], strict=True)
+        if value == after or after is None
+    ]
+    plateaus = [
+        value for value, before in zip(bands, [None, *bands], strict=False) if value != before
+    ]
+    assert plateaus == [
+        100,
+        86.27450980392157,
+        100,
+        82.74509803921568,
+        100,
+        50.19607843137255,
+        100,
+        0,
+    ]
 
 
 def test_display_shows_the_light_as_a_bar(here: Command) -> None:
     run = load_run(json.loads(here("run", "draw_light", "--json").stdout)["id"])
     pictures = [
-        face_after(BrickState(), [row]).picture for row in run.output.all_rows() if row.stream == Stream.DISPLAY
+        face_after(BrickState(), [row]).picture
+        for row in run.output.all_rows()
+        if row.stream == Stream.DISPLAY
     ]
     # One for each light on the mat, and those half way across an edge.
     assert len(pictures) > 5
@@ -153,13 +174,18 @@ def test_pybricks_line_follower_stays_on_the_stick(here: Command) -> None:
 
 def test_pybricks_missions_end_where_they_began(here: Command) -> None:
     facts = json.loads(here("run", "pybricks_mission", "--json").stdout)
-    assert (facts["x_mm"], facts["y_mm"]) == (pytest.approx(400, abs=15), pytest.approx(600, abs=15))
+    assert (facts["x_mm"], facts["y_mm"]) == (
+        pytest.approx(400, abs=15),
+        pytest.approx(600, abs=15),
+    )
     assert facts["heading_deg"] == pytest.approx(-360, abs=2)
     corner = here("run", "pybricks_mission", "--press", "right@1")
     assert corner.stdout == "Gyro: 0\n"
 
 
-def test_pybricks_data_log_has_a_row_for_each_sample_but_the_last(tmp_path: Path, here: Command) -> None:
+def test_pybricks_data_log_has_a_row_for_each_sample_but_the_last(
+    tmp_path: Path, here: Command
+) -> None:
     printed = here("run", "pybricks_data_log").stdout.splitlines()
     header, *rows = (tmp_path / "greys.csv").read_text().splitlines()
     assert header == "time_ms, light, way_mm"

@@ -41,9 +41,12 @@ CASES: Mapping[str, Case] = {
     "03_gyro_turn": Case((1203, 591, -12)),
     "04_gyro_straight": Case((1783, 571, 0)),
     "05_line_follower": Case((758, 777, -19)),
-    "06_button_menu": Case((1381, 571, -90), given="--press left@1 --press right@6 --press enter@9"),
+    "06_button_menu": Case(
+        (1381, 571, -90), given="--press left@1 --press right@6 --press enter@9"
+    ),
     "07_missions_in_files": Case(
-        (1331, 571, 90), given="--press enter@1 --press down@15 --press enter@16 --press backspace@25"
+        (1331, 571, 90),
+        given="--press enter@1 --press down@15 --press enter@16 --press backspace@25",
     ),
     "08_gripper": Case(),
     "09_wall_distance": Case((2040, 571, 0)),
@@ -78,7 +81,9 @@ CASES: Mapping[str, Case] = {
     "38_f_strings": Case((1181, 571, -90)),
     "39_state_machine": Case((1181, 571, -45)),
     "40_forgot_stop": Case((1281, 571, 0), code=1),
-    "41_mission_menu": Case((1479, 372, 0), code=3, given="--press enter@1 --press enter@20 --timeout 40"),
+    "41_mission_menu": Case(
+        (1479, 372, 0), code=3, given="--press enter@1 --press enter@20 --timeout 40"
+    ),
     "42_gyro_square": Case((1307, 430, 0)),
     "43_line_follow_p": Case((1183, 390, -178), code=3, given="--timeout 20"),
     "44_pid_line_two": Case((1427, 336, -77)),
@@ -108,9 +113,17 @@ def test_every_program_is_in_the_table() -> None:
 
 @pytest.mark.parametrize("name", CASES)
 @pytest.mark.quick_cases(
-    "02_square", "06_button_menu", "08_gripper", "12_threads", "15_v1_drive", "16_v1_display", "19_control_settings",
-    "20_data_log", "26_settings_file", "30_nxt_light_sensor",
-)  # fmt: skip
+    "02_square",
+    "06_button_menu",
+    "08_gripper",
+    "12_threads",
+    "15_v1_drive",
+    "16_v1_display",
+    "19_control_settings",
+    "20_data_log",
+    "26_settings_file",
+    "30_nxt_light_sensor",
+)
 def test_it_does_what_a_brick_does(name: str, tmp_path: Path, here: Command) -> None:
     case = CASES[name]
     done = run_typed(FOLDER / name, here, tmp_path, *shlex.split(case.given))

@@ -37,14 +37,18 @@ TABLES = {
     "movie format": MOVIE_FORMATS,
     "option": [option.flags[0] for option in OPTIONS],
     "panel's key": [label_of_key(panel.key) for panel in PANELS.values()],
-    "app's key": [action.key_label for action in ACTIONS.values() if not action.id.startswith("nudge-")],
+    "app's key": [
+        action.key_label for action in ACTIONS.values() if not action.id.startswith("nudge-")
+    ],
     "analyser's key": [action.key_label for action in ANALYSER_ACTIONS.values()],
 }
 
 
 def is_documented(name: str) -> bool:
     """Whether a name is in backticks; a key of several letters may also be in a list of keys."""
-    return name in QUOTED | WORDS or (len(name) > 1 and re.search(rf"[ |]{re.escape(name)}[ ,|]", GUIDE) is not None)
+    return name in QUOTED | WORDS or (
+        len(name) > 1 and re.search(rf"[ |]{re.escape(name)}[ ,|]", GUIDE) is not None
+    )
 
 
 @pytest.mark.parametrize("what", TABLES)
@@ -53,7 +57,10 @@ def test_everything_in_a_table_is_documented(what: str) -> None:
 
 
 def test_every_sensor_of_a_robot_file_is_documented() -> None:
-    found = {mount.key: re.search(rf"^{mount.key} =|\[{mount.key}[.\]]", GUIDE, re.MULTILINE) for mount in MOUNTS}
+    found = {
+        mount.key: re.search(rf"^{mount.key} =|\[{mount.key}[.\]]", GUIDE, re.MULTILINE)
+        for mount in MOUNTS
+    }
     assert [key for key, place in found.items() if place is None] == []
 
 
@@ -71,12 +78,20 @@ def test_places_to_add_things_exist() -> None:
 
 def block(language: str, holding: str) -> str:
     """The one block of code in a language that holds a text."""
-    (found,) = [code for code in re.findall(rf"```{language}\n(.*?)```", GUIDE, re.DOTALL) if holding in code]
+    (found,) = [
+        code
+        for code in re.findall(rf"```{language}\n(.*?)```", GUIDE, re.DOTALL)
+        if holding in code
+    ]
     return str(found)
 
 
-def test_a_students_first_program_runs_also_with_a_robot_of_ones_own(tmp_path: Path, here: Command) -> None:
-    (tmp_path / "my_program.py").write_text(block("python", "tank_drive.on(SpeedPercent(50), SpeedPercent(50))"))
+def test_a_students_first_program_runs_also_with_a_robot_of_ones_own(
+    tmp_path: Path, here: Command
+) -> None:
+    (tmp_path / "my_program.py").write_text(
+        block("python", "tank_drive.on(SpeedPercent(50), SpeedPercent(50))")
+    )
     (tmp_path / "robot.toml").write_text(block("toml", "# robot.toml"))
     for robot in ("Default_Robot", "robot.toml"):
         done = here("run", "my_program.py", "-r", robot)
@@ -84,7 +99,9 @@ def test_a_students_first_program_runs_also_with_a_robot_of_ones_own(tmp_path: P
 
 
 def test_logs_and_runs_are_read_as_documented(tmp_path: Path, here: Command) -> None:
-    assert here("run", "log_greys", "--export", "greys.csv", "--export", "greys.jsonl").returncode == 0
+    assert (
+        here("run", "log_greys", "--export", "greys.csv", "--export", "greys.jsonl").returncode == 0
+    )
     names: dict[str, Any] = {}
     exec(block("python", "read_log("), names)
     assert names["df"]["variable"].unique().tolist() == ["Colour"]

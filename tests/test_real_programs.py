@@ -46,17 +46,27 @@ class Case:
 
 OWN: Mapping[str, Case] = {
     "any_touch": Case("1 touch, 4 ultrasonic, A left wheel, B -, C -, D right wheel", "0 6 True"),
-    "argparse_defaults": Case("A left wheel, B medium motor, C -, D right wheel", "30 ev3-ports:outB"),
+    "argparse_defaults": Case(
+        "A left wheel, B medium motor, C -, D right wheel", "30 ev3-ports:outB"
+    ),
     "balancer": Case("1 touch, A right wheel, B -, C -, D left wheel", ""),
     "class_with_arguments": Case("A right wheel, B large motor, C -, D left wheel", "90"),
-    "constants": Case("1 touch, 2 ultrasonic, 4 left, A left wheel, B medium motor, C -, D right wheel", "100 0 45"),
+    "constants": Case(
+        "1 touch, 2 ultrasonic, 4 left, A left wheel, B medium motor, C -, D right wheel",
+        "100 0 45",
+    ),
     "dict_of_motors": Case("A right wheel, C medium motor", "[180, 180, -30]"),
     "dict_ports": Case(
-        "1 left, 2 right, 3 gyro, 4 ultrasonic, A left wheel, B right wheel, C medium motor", "True 100"
+        "1 left, 2 right, 3 gyro, 4 ultrasonic, A left wheel, B right wheel, C medium motor",
+        "True 100",
     ),
-    "differential_own_wheel": Case("", "280", {"wheel_diameter_mm": 81.6, "wheel_spacing_mm": 115.5}),
+    "differential_own_wheel": Case(
+        "", "280", {"wheel_diameter_mm": 81.6, "wheel_spacing_mm": 115.5}
+    ),
     "differential_tire": Case(
-        "A left wheel, B right wheel, C -", "True", {"wheel_diameter_mm": 43.2, "wheel_spacing_mm": 128.0}
+        "A left wheel, B right wheel, C -",
+        "True",
+        {"wheel_diameter_mm": 43.2, "wheel_spacing_mm": 128.0},
     ),
     "differential_usual": Case("", "there"),
     "enum_ports": Case("4 touch, A medium motor, B -, C left wheel, D right wheel", "0 False"),
@@ -64,7 +74,9 @@ OWN: Mapping[str, Case] = {
     "every_sensor": Case("1 touch, 2 gyro, 4 ultrasonic", "0 0 White True"),
     "factory": Case("1 left, 2 ultrasonic, A left wheel, B -, D medium motor", "White 45"),
     "four_large": Case("A large motor, D large motor", "4"),
-    "from_modules/main": Case("1 left, 2 ultrasonic, A left wheel, B medium motor, C -, D right wheel", "White 60"),
+    "from_modules/main": Case(
+        "1 left, 2 ultrasonic, A left wheel, B medium motor, C -, D right wheel", "White 60"
+    ),
     "generic_motor": Case("1 left, 2 ultrasonic, A left wheel, B -, C -, D right wheel", "100 360"),
     "gyro_and_infrared": Case("1 infrared", "True 87"),
     "homing_arm_wait": Case("D medium motor", "True True", {"outD": (-245.0, 45.0)}),
@@ -72,22 +84,32 @@ OWN: Mapping[str, Case] = {
     "homing_stalled_state": Case("A medium motor", "closed True\nopen", {"outA": (-45.0, 225.0)}),
     "joystick": Case("A left wheel, B -", "ok"),
     "long_text_ports": Case("1 gyro, 4 ultrasonic, B -, D left wheel", "ev3-ports:in4 True"),
-    "loop_of_ports": Case("1 left, 2 middle, A left wheel, B -, C -, D right wheel", "[100, 100, 100]"),
-    "medium_wheels": Case(
-        "A left wheel (medium motor), B right wheel (medium motor), C medium motor", "lego-ev3-m-motor 1080"
+    "loop_of_ports": Case(
+        "1 left, 2 middle, A left wheel, B -, C -, D right wheel", "[100, 100, 100]"
     ),
-    "module_alias": Case("1 left, 2 ultrasonic, 3 gyro, 4 right, A medium motor, C -, D right wheel", "White White"),
+    "medium_wheels": Case(
+        "A left wheel (medium motor), B right wheel (medium motor), C medium motor",
+        "lego-ev3-m-motor 1080",
+    ),
+    "module_alias": Case(
+        "1 left, 2 ultrasonic, 3 gyro, 4 right, A medium motor, C -, D right wheel", "White White"
+    ),
     "motor_set": Case(
-        "A left wheel, B -, C medium motor, D right wheel", "['ev3-ports:outA', 'ev3-ports:outC', 'ev3-ports:outD']"
+        "A left wheel, B -, C medium motor, D right wheel",
+        "['ev3-ports:outA', 'ev3-ports:outC', 'ev3-ports:outD']",
     ),
     "negative_speed": Case("", "True"),
     "optional_parts": Case("1 touch, A medium motor", "True True"),
     "own_library_only/main": Case("2 gyro, 4 left, A left wheel, B right wheel, C -", "True"),
     "plain_import": Case("3 touch, D medium motor", "lego-ev3-m-motor True"),
-    "rc_tank": Case("1 infrared, A medium motor", "lego-ev3-ir", {"left_reversed": True, "right_reversed": True}),
+    "rc_tank": Case(
+        "1 infrared, A medium motor", "lego-ev3-ir", {"left_reversed": True, "right_reversed": True}
+    ),
     "reversed_tank": Case("", "inversed", {"left_reversed": True, "right_reversed": True}),
     "reversed_wheels": Case(
-        "A left wheel, B right wheel, C -", "720 inversed", {"left_reversed": True, "right_reversed": True}
+        "A left wheel, B right wheel, C -",
+        "720 inversed",
+        {"left_reversed": True, "right_reversed": True},
     ),
     "robot_class": Case("A left wheel, B -, C medium motor, D right wheel", "360 360 720"),
     "sensor_by_mode": Case("4 infrared", "lego-ev3-ir 100"),
@@ -95,11 +117,17 @@ OWN: Mapping[str, Case] = {
     "swapped_tank": Case("B right wheel, C left wheel", "ev3-ports:outC"),
     "tank_a_d": Case("A left wheel, B -, C -, D right wheel", "ev3-ports:outA 360"),
     "tank_subclass": Case("A medium motor", "120"),
-    "text_ports": Case("1 infrared, 2 gyro, 4 left, A left wheel, B right wheel, C -, D medium motor", "far True"),
-    "threads": Case("1 right, 3 ultrasonic, A left wheel, B medium motor, C -, D right wheel", "stopped"),
+    "text_ports": Case(
+        "1 infrared, 2 gyro, 4 left, A left wheel, B right wheel, C -, D medium motor", "far True"
+    ),
+    "threads": Case(
+        "1 right, 3 ultrasonic, A left wheel, B medium motor, C -, D right wheel", "stopped"
+    ),
     "three_colors": Case("1 middle", "100 100 100"),
     "three_medium": Case("A medium motor, B medium motor, C medium motor", "[40, 40, 40]"),
-    "touch_at_the_top": Case("1 touch, A large motor", "at the top 1", {"outA": (-225.0, 45.0), "in1": "outA high"}),
+    "touch_at_the_top": Case(
+        "1 touch, A large motor", "at the top 1", {"outA": (-225.0, 45.0), "in1": "outA high"}
+    ),
     "two_sonars": Case("4 ultrasonic_left", "116 51"),
     "two_touches": Case("1 touch, 4 touch_right", "bump 1 1"),
     "unused_imports": Case("", "White"),
@@ -114,87 +142,159 @@ MIDDLE = (1181, 572)
 LINE, BANDS = "-b Line_Following_Test --profile ev3", "-b Coloured_bands --profile ev3"
 BLIND: Mapping[str, Case] = {
     "baken_volger": Case(
-        "4 infrared, A medium motor, B right wheel, C left wheel", "", {},
-        "--world programs/beacon.toml --timeout 10", 3, (1717, 830),
+        "4 infrared, A medium motor, B right wheel, C left wheel",
+        "",
+        {},
+        "--world programs/beacon.toml --timeout 10",
+        3,
+        (1717, 830),
     ),
     "color_sorter": Case(
-        "1 touch, A medium motor, D large motor", "",
-        {"outA": (-225.0, 45.0), "outD": (-45.0, 575.0), "in1": "outD low"}, "--press enter@20-21", 0, MIDDLE,
+        "1 touch, A medium motor, D large motor",
+        "",
+        {"outA": (-225.0, 45.0), "outD": (-45.0, 575.0), "in1": "outD low"},
+        "--press enter@20-21",
+        0,
+        MIDDLE,
     ),
     # Its gyro hangs upside down, so on this robot it turns for ever.
     "fetch_can": Case(
-        "1 left, 2 gyro, 4 ultrasonic, A right wheel, B -, C medium motor, D left wheel", "",
-        {"wheel_diameter_mm": 43.2, "outC": (-45.0, 225.0)}, "--timeout 20", 3, MIDDLE,
+        "1 left, 2 gyro, 4 ultrasonic, A right wheel, B -, C medium motor, D left wheel",
+        "",
+        {"wheel_diameter_mm": 43.2, "outC": (-45.0, 225.0)},
+        "--timeout 20",
+        3,
+        MIDDLE,
     ),
     "fll_2019/main": Case(
-        "1 left, 2 ultrasonic, A medium motor, D medium motor", "run_crane 8.8", {"wheel_diameter_mm": 81.6},
-        f"{BANDS} --press enter@5-5.2 --press backspace@20-20.5", 0, (292, 800),
+        "1 left, 2 ultrasonic, A medium motor, D medium motor",
+        "run_crane 8.8",
+        {"wheel_diameter_mm": 81.6},
+        f"{BANDS} --press enter@5-5.2 --press backspace@20-20.5",
+        0,
+        (292, 800),
     ),
     "floor_scan/scan": Case(
         "2 gyro, 4 left", "row 3: 150 samples", {"wheel_spacing_mm": 118.0}, "", 0, (1180, 397)
     ),
     "gyro_square": Case(
-        "2 gyro, 4 left, A left wheel, B -, C -, D right wheel", "side 4 gyro 7", {},
-        "-x 1181 -y 200 -a 90", 0, (1134, 159),
+        "2 gyro, 4 left, A left wheel, B -, C -, D right wheel",
+        "side 4 gyro 7",
+        {},
+        "-x 1181 -y 200 -a 90",
+        0,
+        (1134, 159),
     ),
     # The head turns, but the ultrasonic sensor on it looks ahead.
     "laberinto": Case(
-        "A left wheel, B medium motor, C -, D right wheel", "fin 60 pasos", {"wheel_spacing_mm": 121.0}, "", 0,
+        "A left wheel, B medium motor, C -, D right wheel",
+        "fin 60 pasos",
+        {"wheel_spacing_mm": 121.0},
+        "",
+        0,
         (1146, 544),
     ),
     "line_pid_two": Case(
         "1 left, 2 ultrasonic, 3 gyro, 4 right", "stopped", {}, f"{LINE} --timeout 7", 3, (133, 975)
     ),
     "mini_medium": Case(
-        "1 infrared, B left wheel (medium motor), C right wheel (medium motor)", "",
-        {"wheel_diameter_mm": 30.0, "wheel_spacing_mm": 88.0, **REVERSED}, "--press enter@20-21", 0, (1173, 754),
+        "1 infrared, B left wheel (medium motor), C right wheel (medium motor)",
+        "",
+        {"wheel_diameter_mm": 30.0, "wheel_spacing_mm": 88.0, **REVERSED},
+        "--press enter@20-21",
+        0,
+        (1173, 754),
     ),
     "motorlevel": Case(
         "1 touch", "parked 764 3207", REVERSED, "-b Grey_bands --profile ev3", 0, (1344, 126)
     ),
     "odometry_tour": Case(
-        "", "66 points saved", {"wheel_diameter_mm": 81.6, "wheel_spacing_mm": 136.0}, "-x 1181 -y 900", 0, (1544, 335)
+        "",
+        "66 points saved",
+        {"wheel_diameter_mm": 81.6, "wheel_spacing_mm": 136.0},
+        "-x 1181 -y 900",
+        0,
+        (1544, 335),
     ),
     "plotter/plotter": Case(
-        "A medium motor, B large motor, C large motor", "U 0.0 0.0", {"outB": (-45.0, None)}, "", 0, MIDDLE
+        "A medium motor, B large motor, C large motor",
+        "U 0.0 0.0",
+        {"outB": (-45.0, None)},
+        "",
+        0,
+        MIDDLE,
     ),
     "police_patrol": Case("1 gyro, 4 ultrasonic", "", {}, "--timeout 20", 3, (1922, 457)),
     "puppy": Case(
-        "1 touch, 2 ultrasonic, 4 left, A large motor, B -, C medium motor, D large motor", "", {}, "--timeout 20", 3,
+        "1 touch, 2 ultrasonic, 4 left, A large motor, B -, C medium motor, D large motor",
+        "",
+        {},
+        "--timeout 20",
+        3,
         MIDDLE,
     ),
     "radar": Case(
-        "1 touch, 4 ultrasonic, A medium motor", "sweep 3 nearest 116.1 cm at 90 deg",
-        {"outA": (-45.0, None), "in1": "outA low"}, "", 0, MIDDLE,
+        "1 touch, 4 ultrasonic, A medium motor",
+        "sweep 3 nearest 116.1 cm at 90 deg",
+        {"outA": (-45.0, None), "in1": "outA low"},
+        "",
+        0,
+        MIDDLE,
     ),
     "rob_subclass": Case(
         "1 gyro, 4 ultrasonic, A left wheel, B -", "[  18.83] bye", {}, LINE, 0, (291, 727)
     ),
     "robot_arm": Case(
-        "1 touch, A medium motor, B large motor, C large motor", "",
-        {"outA": (-225.0, 45.0), "outC": (-45.0, 945.0), "in1": "outC low"}, "", 0, MIDDLE,
+        "1 touch, A medium motor, B large motor, C large motor",
+        "",
+        {"outA": (-225.0, 45.0), "outC": (-45.0, 945.0), "in1": "outC low"},
+        "",
+        0,
+        MIDDLE,
     ),
     "simple_line": Case(
-        "A left wheel, B right wheel, C -", "Press a button", {},
-        "-b Loop -x 315 -y 500 -a 90 --profile ev3 --press enter@1 --press enter@6-6.3", 0, (370, 914),
+        "A left wheel, B right wheel, C -",
+        "Press a button",
+        {},
+        "-b Loop -x 315 -y 500 -a 90 --profile ev3 --press enter@1 --press enter@6-6.3",
+        0,
+        (370, 914),
     ),
     "staubsauger": Case(
-        "1 touch, 2 touch_right, A left wheel, B right wheel, C medium motor", "Hindernis Nr. 8", REVERSED,
-        "--timeout 30", 3, (1469, 1011),
+        "1 touch, 2 touch_right, A left wheel, B right wheel, C medium motor",
+        "Hindernis Nr. 8",
+        REVERSED,
+        "--timeout 30",
+        3,
+        (1469, 1011),
     ),
     "suiveur3": Case("1 left, 2 middle", "", {}, f"{LINE} --timeout 7", 3, (175, 865)),
     "sumo": Case(
-        "1 touch, 4 infrared, A left wheel, B -, C medium motor, D right wheel", "", {},
-        "--press enter@1 --press backspace@15-16", 0, (574, 1017),
+        "1 touch, 4 infrared, A left wheel, B -, C medium motor, D right wheel",
+        "",
+        {},
+        "--press enter@1 --press backspace@15-16",
+        0,
+        (574, 1017),
     ),
-    "track3r_remote": Case("1 infrared, A medium motor", "", {}, "--world programs/beacon.toml", 0, (1370, 572)),
+    "track3r_remote": Case(
+        "1 infrared, A medium motor", "", {}, "--world programs/beacon.toml", 0, (1370, 572)
+    ),
     "wallfollow": Case("1 touch, 2 ultrasonic", "", {}, "", 0, (1924, 134)),
     "wro_regular/main": Case(
-        "1 left, 2 right, 3 middle, A medium motor, D medium motor", "",
-        {"wheel_diameter_mm": 62.4, "wheel_spacing_mm": 178.0, "outA": (-45.0, 355.0), "outD": (-225.0, 45.0)}, BANDS,
-        0, (878, 995),
+        "1 left, 2 right, 3 middle, A medium motor, D medium motor",
+        "",
+        {
+            "wheel_diameter_mm": 62.4,
+            "wheel_spacing_mm": 178.0,
+            "outA": (-45.0, 355.0),
+            "outD": (-225.0, 45.0),
+        },
+        BANDS,
+        0,
+        (878, 995),
     ),
-}  # fmt: skip
+}
 CASES = {**OWN, **{f"blind/{name}": case for name, case in BLIND.items()}}
 RUN = [name for name, case in CASES.items() if case.printed is not None]
 
@@ -211,13 +311,19 @@ def ports_in(robot: RobotSpec) -> str:
 
 def mechanics_of(robot: RobotSpec) -> dict[str, object]:
     keys = ("wheel_diameter_mm", "wheel_spacing_mm", "left_reversed", "right_reversed")
-    found: dict[str, object] = {key: getattr(robot, key) for key in keys if getattr(robot, key) != getattr(USUAL, key)}
+    found: dict[str, object] = {
+        key: getattr(robot, key) for key in keys if getattr(robot, key) != getattr(USUAL, key)
+    }
     found |= {
         one.port: (one.low_deg, one.high_deg)
         for one in robot.extra_motors
         if (one.low_deg, one.high_deg) != (None, None)
     }
-    found |= {one.port: f"{one.pressed_by} {one.pressed_at}" for one in robot.touch_sensors if one.pressed_by}
+    found |= {
+        one.port: f"{one.pressed_by} {one.pressed_at}"
+        for one in robot.touch_sensors
+        if one.pressed_by
+    }
     return found
 
 
@@ -243,9 +349,16 @@ def test_the_robot_is_the_one_that_the_program_talks_about(name: str) -> None:
 
 @pytest.mark.parametrize("name", RUN)
 @pytest.mark.quick_cases(
-    "tank_a_d", "robot_class", "from_modules/main", "homing_claw", "touch_at_the_top", "blind/floor_scan/scan"
+    "tank_a_d",
+    "robot_class",
+    "from_modules/main",
+    "homing_claw",
+    "touch_at_the_top",
+    "blind/floor_scan/scan",
 )
-def test_it_runs_as_it_is_and_with_its_robot_in_a_file_to_the_bit(name: str, tmp_path: Path, here: Command) -> None:
+def test_it_runs_as_it_is_and_with_its_robot_in_a_file_to_the_bit(
+    name: str, tmp_path: Path, here: Command
+) -> None:
     program = tmp_path / "programs" / f"{name}.py"
     shutil.copytree(FOLDER, tmp_path / "programs")
     case, options = CASES[name], shlex.split(CASES[name].options)
@@ -264,7 +377,9 @@ def test_it_runs_as_it_is_and_with_its_robot_in_a_file_to_the_bit(name: str, tmp
 
 
 @pytest.mark.slow
-def test_a_gyro_upside_down_is_that_of_a_robot_with_swapped_sides(tmp_path: Path, here: Command) -> None:
+def test_a_gyro_upside_down_is_that_of_a_robot_with_swapped_sides(
+    tmp_path: Path, here: Command
+) -> None:
     program = file_of("blind/fetch_can")
     here("robots", "--from", program, "--out", "robot.toml")
     text = (tmp_path / "robot.toml").read_text()

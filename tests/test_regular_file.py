@@ -47,24 +47,52 @@ def sparse(path: Path) -> None:
 
 
 KINDS: dict[str, Callable[[Path], None]] = {
-    "a pipe": pipe, "a device": device, "a folder": Path.mkdir, "a dangling link": dangling, "a link to itself": loop,
+    "a pipe": pipe,
+    "a device": device,
+    "a folder": Path.mkdir,
+    "a dangling link": dangling,
+    "a link to itself": loop,
     "a hole of 64 GB": sparse,
-}  # fmt: skip
+}
 
-SHOWN = ("runs", "runs show 1", "log summary 1", "log report 1", "runs rerun 1", "runs compact 1", "doctor", "runs")
+SHOWN = (
+    "runs",
+    "runs show 1",
+    "log summary 1",
+    "log report 1",
+    "runs rerun 1",
+    "runs compact 1",
+    "doctor",
+    "runs",
+)
 FILES: dict[str, tuple[str, ...]] = {
-    "RUN/run.json": SHOWN, "RUN/telemetry.bin": SHOWN, "RUN/output.bin": SHOWN, "RUN/actions.jsonl": SHOWN,
-    "RUN/stop.json": SHOWN, "RUN/modules.jsonl": SHOWN, "RUN/lock": SHOWN, "RUN/notes.jsonl": SHOWN,
-    "PACKED/telemetry.bin.packed": SHOWN, "PACKED/output.bin.packed": SHOWN,
-    "home/runs.db": ("runs", "runs show 1"), "home/runs.lock": ("runs", "runs rm 1"),
-    "home/config.toml": ("config", "runs"), "home/preferences.json": ("runs", "doctor"),
+    "RUN/run.json": SHOWN,
+    "RUN/telemetry.bin": SHOWN,
+    "RUN/output.bin": SHOWN,
+    "RUN/actions.jsonl": SHOWN,
+    "RUN/stop.json": SHOWN,
+    "RUN/modules.jsonl": SHOWN,
+    "RUN/lock": SHOWN,
+    "RUN/notes.jsonl": SHOWN,
+    "PACKED/telemetry.bin.packed": SHOWN,
+    "PACKED/output.bin.packed": SHOWN,
+    "home/runs.db": ("runs", "runs show 1"),
+    "home/runs.lock": ("runs", "runs rm 1"),
+    "home/config.toml": ("config", "runs"),
+    "home/preferences.json": ("runs", "doctor"),
     "home/lessons/progress.json": ("learn",),
-    "log.csv": ("log summary log.csv", "log report log.csv"), "log.csv.json": ("log summary log.csv",),
-    "program.py": ("run program.py",), "world.toml": ("run none.py --world world.toml",),
-    "robot.toml": ("robots robot.toml",), "profile.toml": ("profiles profile.toml",),
-    "obstacles.toml": ("obstacles obstacles.toml",), "goals.toml": ("goals check goals.toml 1",),
-    "batch.toml": ("batch batch.toml",), "notebook.ipynb": ("run notebook.ipynb",), "mat.png": ("backgrounds mat.png",),
-}  # fmt: skip
+    "log.csv": ("log summary log.csv", "log report log.csv"),
+    "log.csv.json": ("log summary log.csv",),
+    "program.py": ("run program.py",),
+    "world.toml": ("run none.py --world world.toml",),
+    "robot.toml": ("robots robot.toml",),
+    "profile.toml": ("profiles profile.toml",),
+    "obstacles.toml": ("obstacles obstacles.toml",),
+    "goals.toml": ("goals check goals.toml 1",),
+    "batch.toml": ("batch batch.toml",),
+    "notebook.ipynb": ("run notebook.ipynb",),
+    "mat.png": ("backgrounds mat.png",),
+}
 MAY_WAIT = {("log.csv", "a pipe")}
 """A log may come through a pipe."""
 

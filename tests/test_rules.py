@@ -40,7 +40,16 @@ BROAD = {"Exception", "BaseException"}
 REASON = re.compile(r"# (?!noqa|type:|pragma|fmt:)\w")
 # Reading these would make the same run come out differently.
 WALL_CLOCK = {"time", "datetime", "random", "secrets", "uuid"}
-HELP_MAY_NOT_LOAD = ("numpy", "pandas", "pyarrow", "PIL", "plotext", "textual", "platformdirs", "msgspec")
+HELP_MAY_NOT_LOAD = (
+    "numpy",
+    "pandas",
+    "pyarrow",
+    "PIL",
+    "plotext",
+    "textual",
+    "platformdirs",
+    "msgspec",
+)
 CHILD_MAY_NOT_LOAD = (*HELP_MAY_NOT_LOAD, "argparse", "click")
 PRINTS = {"echo.py": "the one place", "relay.py": "passes on what a program prints"}
 """Files of the commands that may write to the terminal by themselves."""
@@ -127,7 +136,11 @@ class Source:
             and isinstance(node.value.value, str)
         }
         tokens = tokenize.generate_tokens(io.StringIO(self.text).readline)
-        return [token.start[0] for token in tokens if token.type not in LAYOUT and token.start not in alone]
+        return [
+            token.start[0]
+            for token in tokens
+            if token.type not in LAYOUT and token.start not in alone
+        ]
 
     @property
     def attributes(self) -> Iterator[ast.Attribute]:
@@ -147,7 +160,9 @@ PROGRAMS = frozenset({"brick_programs", "pybricks_programs", "real_programs"})
 
 
 def python_files(folder: str) -> list[Path]:
-    return [path for path in sorted((ROOT / folder).rglob("*.py")) if PROGRAMS.isdisjoint(path.parts)]
+    return [
+        path for path in sorted((ROOT / folder).rglob("*.py")) if PROGRAMS.isdisjoint(path.parts)
+    ]
 
 
 PACKAGE = python_files("tuisim")
@@ -202,15 +217,21 @@ def large_functions(source: Source) -> Iterable[object]:
 
 def test_what_is_oversized_exists() -> None:
     names = {path.relative_to(ROOT).as_posix() for path in CODE}
-    assert {name for kind in OVERSIZED.values() for name in kind if name.split(":")[0] not in names} == set()
+    assert {
+        name for kind in OVERSIZED.values() for name in kind if name.split(":")[0] not in names
+    } == set()
 
 
 def prints(source: Source) -> Iterable[object]:
     if source.path.name in PRINTS:
         return []
-    calls = [node.lineno for node in source.nodes if isinstance(node, ast.Name) and node.id == "print"]
+    calls = [
+        node.lineno for node in source.nodes if isinstance(node, ast.Name) and node.id == "print"
+    ]
     return calls + [
-        node.lineno for node in source.attributes if node.attr == "write" and ast.unparse(node.value).startswith("sys.")
+        node.lineno
+        for node in source.attributes
+        if node.attr == "write" and ast.unparse(node.value).startswith("sys.")
     ]
 
 
@@ -228,7 +249,9 @@ def unexplained_broad_excepts(source: Source) -> Iterable[object]:
         for handler in source.nodes
         if isinstance(handler, ast.ExceptHandler)
         and (not caught(handler) or caught(handler) & BROAD)
-        and not any(REASON.search(line) for line in source.lines[handler.lineno - 2 : handler.lineno])
+        and not any(
+            REASON.search(line) for line in source.lines[handler.lineno - 2 : handler.lineno]
+        )
     ]
 
 
@@ -245,7 +268,9 @@ def clocks_and_global_random(source: Source) -> Iterable[object]:
 def public(body: list[ast.stmt], prefix: str = "") -> Iterator[tuple[str, Function | ast.ClassDef]]:
     """Yield public functions, classes and methods."""
     for node in body:
-        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef) and not node.name.startswith("_"):
+        if isinstance(
+            node, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef
+        ) and not node.name.startswith("_"):
             yield prefix + node.name, node
             if isinstance(node, ast.ClassDef):
                 yield from public(node.body, f"{node.name}.")
@@ -277,7 +302,9 @@ def bare_names(source: Source) -> Iterable[object]:
 
 
 def open_ends_and_machines(source: Source) -> Iterable[object]:
-    return [line for line in source.lines if LEFT_OPEN.search(line) and not line.endswith(OF_THE_BRICK)]
+    return [
+        line for line in source.lines if LEFT_OPEN.search(line) and not line.endswith(OF_THE_BRICK)
+    ]
 
 
 def other_line_splits(source: Source) -> Iterable[object]:
@@ -310,7 +337,11 @@ def subjects() -> frozenset[str]:
 def untested(source: Source) -> Iterable[object]:
     """A long module has a test that is named after it, or is in the table of those that have not; never both."""
     module = source.path.relative_to(ROOT / "tuisim").as_posix()
-    is_tested = module in subjects() or len(source.token_lines) <= LONG_TOKENS or source.path.stem == "__init__"
+    is_tested = (
+        module in subjects()
+        or len(source.token_lines) <= LONG_TOKENS
+        or source.path.stem == "__init__"
+    )
     if module not in TESTED_BESIDE:
         return [] if is_tested else [f"{len(source.token_lines)} tokens and no test"]
     beside = ROOT / "tests" / TESTED_BESIDE[module]
@@ -318,7 +349,11 @@ def untested(source: Source) -> Iterable[object]:
 
 
 def hex_colors(source: Source) -> Iterable[object]:
-    return re.findall(r"#(?:[0-9a-fA-F]{3,4}){1,2}\b", source.text) if source.path.name not in WITH_COLORS else []
+    return (
+        re.findall(r"#(?:[0-9a-fA-F]{3,4}){1,2}\b", source.text)
+        if source.path.name not in WITH_COLORS
+        else []
+    )
 
 
 def misnamed(source: Source) -> Iterable[object]:
@@ -339,9 +374,15 @@ def private_names_of_textual(source: Source) -> Iterable[object]:
     own = {"self", "cls", *OTHERS_OWN}
     for node in source.nodes:
         if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("textual"):
-            yield from (name for name in (*str(node.module).split("."), *_aliases(node)) if name.startswith("_"))
+            yield from (
+                name
+                for name in (*str(node.module).split("."), *_aliases(node))
+                if name.startswith("_")
+            )
         elif isinstance(node, ast.Import):
-            yield from (name for name in _aliases(node) if name.startswith("textual") and "._" in name)
+            yield from (
+                name for name in _aliases(node) if name.startswith("textual") and "._" in name
+            )
     for one in source.attributes:
         # Named tuples have `_replace` as well.
         if one.attr in textual_names() - {"_replace"} and ast.unparse(one.value) not in own:
@@ -357,14 +398,20 @@ def inner_parts_of_terminal(source: Source) -> Iterable[object]:
     for node in source.nodes:
         if isinstance(node, ast.ImportFrom) and node.module == "tuisim.terminal":
             yield from {*_aliases(node)} - {*terminal.__all__}
-        elif isinstance(node, ast.ImportFrom) and (node.module or "").startswith("tuisim.terminal."):
+        elif isinstance(node, ast.ImportFrom) and (node.module or "").startswith(
+            "tuisim.terminal."
+        ):
             yield from {str(node.module).split(".")[2]} - {*terminal.__all__}
 
 
 def slow_data_classes(source: Source) -> Iterable[object]:
     """Imports of Python's own data class, which is compiled at each start."""
     for node in source.nodes:
-        if isinstance(node, ast.ImportFrom) and node.module == "dataclasses" and "dataclass" in _aliases(node):
+        if (
+            isinstance(node, ast.ImportFrom)
+            and node.module == "dataclasses"
+            and "dataclass" in _aliases(node)
+        ):
             yield node.lineno
 
 
@@ -386,7 +433,10 @@ RULES: dict[str, tuple[Callable[[Source], Iterable[object]], list[Path]]] = {
     "nothing is left open and no machine is named": (open_ends_and_machines, [*CODE, *PROSE]),
     "lines are split by source_lines": (other_line_splits, PACKAGE),
     "commands print by echo": (prints, python_files("tuisim/commands")),
-    "core has no clock and no global random": (clocks_and_global_random, python_files("tuisim/core")),
+    "core has no clock and no global random": (
+        clocks_and_global_random,
+        python_files("tuisim/core"),
+    ),
     "no test is skipped": (skipped_tests, TESTS),
     "long modules have tests of their own": (untested, PACKAGE),
     "tests are named after modules": (misnamed, MIRRORED),
@@ -413,13 +463,17 @@ def test_rule(rule: str) -> None:
 
 def tool(*words: str) -> str:
     """Run a checker over the project and return what it complains about."""
-    done = subprocess.run([sys.executable, "-m", *words], cwd=ROOT, capture_output=True, text=True, check=False)
+    done = subprocess.run(
+        [sys.executable, "-m", *words], cwd=ROOT, capture_output=True, text=True, check=False
+    )
     return "" if done.returncode == 0 else done.stdout + done.stderr
 
 
 def test_imports_go_one_way() -> None:
     program = "import sys; from importlinter.cli import lint_imports; sys.exit(lint_imports(no_cache=True))"
-    done = subprocess.run([sys.executable, "-c", program], cwd=ROOT, capture_output=True, text=True, check=False)
+    done = subprocess.run(
+        [sys.executable, "-c", program], cwd=ROOT, capture_output=True, text=True, check=False
+    )
     assert done.returncode == 0, done.stdout + done.stderr
 
 
@@ -451,13 +505,17 @@ def test_child_starts_light(module: str) -> None:
         " if not m.name.endswith('__main__')]\n"
         f"print(*(set({CHILD_MAY_NOT_LOAD!r}) & set(sys.modules)))"
     )
-    done = subprocess.run([sys.executable, "-c", program], cwd=ROOT, capture_output=True, text=True, check=True)
+    done = subprocess.run(
+        [sys.executable, "-c", program], cwd=ROOT, capture_output=True, text=True, check=True
+    )
     assert done.stdout.split() == []
 
 
 def test_help_starts_light() -> None:
     program = "import sys; from tuisim.cli import run_command\ntry: run_command(['--help'])\nexcept SystemExit: pass\n"
     program += "print('LOADED', *sys.modules)"
-    done = subprocess.run([sys.executable, "-c", program], cwd=ROOT, capture_output=True, text=True, check=True)
+    done = subprocess.run(
+        [sys.executable, "-c", program], cwd=ROOT, capture_output=True, text=True, check=True
+    )
     loaded = done.stdout.split("LOADED")[1].split()
     assert not {*HELP_MAY_NOT_LOAD, "tuisim.commands.run", "tuisim.commands.listings"} & set(loaded)

@@ -19,7 +19,9 @@ ODD = f"# \x0c\n\x0cx = '''{NO_ENDS}'''\nprint('A: 1')\nz = 1 / 0\n"
 """The error is in line 4."""
 
 
-@pytest.mark.parametrize("text", ["", "\n", "a", "a\n", "a\n\n", "a\r\nb\rc\n", f"a{NO_ENDS}\nb", "\x0c\n"], ids=repr)
+@pytest.mark.parametrize(
+    "text", ["", "\n", "a", "a\n", "a\n\n", "a\r\nb\rc\n", f"a{NO_ENDS}\nb", "\x0c\n"], ids=repr
+)
 def test_lines_are_those_of_python(text: str, tmp_path: Path) -> None:
     file = tmp_path / "a.py"
     file.write_bytes(text.encode())
@@ -56,7 +58,9 @@ def test_an_encoding_that_is_none_is_told(tmp_path: Path, encoding: str, read: o
         read(file)
 
 
-@pytest.mark.parametrize("name", ["größe.py", "\u2028\U0001f600.py", "x" * 600 + ".py"], ids=["letters", "odd", "long"])
+@pytest.mark.parametrize(
+    "name", ["größe.py", "\u2028\U0001f600.py", "x" * 600 + ".py"], ids=["letters", "odd", "long"]
+)
 def test_a_stuck_line_is_found_whatever_the_program_is_called(tmp_path: Path, name: str) -> None:
     written = name.encode("ascii", "backslashreplace").decode()
     shown = written if len(name) <= 500 else written[:500] + "..."

@@ -44,9 +44,15 @@ def test_installed_copy_runs_its_own_programs(installed: Path, tmp_path: Path) -
 
 
 def test_wheel_holds_every_mat_program_style_and_module(installed: Path) -> None:
-    for folder, pattern in (("backgrounds", "*.png"), ("backgrounds", "*.toml"), ("programs", "*.py")):
+    for folder, pattern in (
+        ("backgrounds", "*.png"),
+        ("backgrounds", "*.toml"),
+        ("programs", "*.py"),
+    ):
         wanted = {path.name for path in (ROOT / folder).glob(pattern)}
-        assert wanted == {path.name for path in (installed / "tuisim" / "_assets" / folder).glob(pattern)}
+        assert wanted == {
+            path.name for path in (installed / "tuisim" / "_assets" / folder).glob(pattern)
+        }
     for pattern in ("*.tcss", "*.py", "*.ttf", "LICENSE-*"):
         wanted = {str(path.relative_to(ROOT)) for path in (ROOT / "tuisim").rglob(pattern)}
         found = {path.relative_to(installed) for path in (installed / "tuisim").rglob(pattern)}

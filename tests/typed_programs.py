@@ -18,7 +18,9 @@ def names_in(collection: Path) -> list[str]:
     return sorted(path.name for path in collection.iterdir())
 
 
-def run_typed(program: Path, here: Command, tmp_path: Path, *options: object) -> subprocess.CompletedProcess[str]:
+def run_typed(
+    program: Path, here: Command, tmp_path: Path, *options: object
+) -> subprocess.CompletedProcess[str]:
     """Run a copy of a program in the terminal."""
     copy = tmp_path / program.name
     shutil.copytree(program, copy)

@@ -57,7 +57,9 @@ class SimulatedRun:
     @property
     def output(self) -> str:
         """The program's output on stdout."""
-        return "".join(row.text + "\n" for row in self.stored.output.rows() if row.stream == Stream.STDOUT)
+        return "".join(
+            row.text + "\n" for row in self.stored.output.rows() if row.stream == Stream.STDOUT
+        )
 
     @property
     def samples(self) -> pd.DataFrame:
@@ -119,11 +121,19 @@ def _source(program: str | Path) -> ProgramSource:
 
 def _in_world(world: str | Path | None, given: Mapping[str, Any]) -> Mapping[str, Any]:
     """Return the settings of a world file; none without one."""
-    return load_world(find_program(str(world)), given.get("mats")).settings if world is not None else {}
+    return (
+        load_world(find_program(str(world)), given.get("mats")).settings
+        if world is not None
+        else {}
+    )
 
 
 def _prepared(
-    program: str | Path, arguments: Sequence[str], *layers: Mapping[str, Any], in_world: bool, of_task: bool = False
+    program: str | Path,
+    arguments: Sequence[str],
+    *layers: Mapping[str, Any],
+    in_world: bool,
+    of_task: bool = False,
 ) -> tuple[Program, ProgramSettings]:
     """Return a program to start, and its settings; arguments of the call take precedence over those of the settings."""
     source = _source(program)
@@ -164,7 +174,9 @@ def simulate(
     """
     _check_timeout(timeout_s)
     given = choices_of(choices)
-    started, found = _prepared(program, arguments, _in_world(world, given), given, in_world=world is not None)
+    started, found = _prepared(
+        program, arguments, _in_world(world, given), given, in_world=world is not None
+    )
     options = RunOptions(time_limit_s=timeout_s, answers=tuple(answers))
     handle = start_run(started, build_run_spec(found.settings), options, RunStore())
     try:
@@ -237,14 +249,24 @@ def experiment(
         raise ConfigError("no program is named", key="program")
     varied = {name: _choice(name, values) for name, values in (parameters or {}).items()}
     if not isinstance(seeds, Iterable):
-        raise ConfigError(f"must be several, got {seeds!r}", "such as range(200) or '0..199'", key="seeds")
-    chosen = parse_seeds(seeds, "seeds") if isinstance(seeds, str) else checked_seeds(list(seeds), "seeds")
+        raise ConfigError(
+            f"must be several, got {seeds!r}", "such as range(200) or '0..199'", key="seeds"
+        )
+    chosen = (
+        parse_seeds(seeds, "seeds")
+        if isinstance(seeds, str)
+        else checked_seeds(list(seeds), "seeds")
+    )
     if chosen:
         varied[SEED] = chosen
-    options = RunOptions(time_limit_s=timeout_s, answers=tuple(answers) or (task.answers if task else ()))
+    options = RunOptions(
+        time_limit_s=timeout_s, answers=tuple(answers) or (task.answers if task else ())
+    )
 
     def options_of(spec: RunSpec) -> RunOptions:
-        return replace(options, actions=press_actions(task.presses if task else (), spec.profile.tick_hz))
+        return replace(
+            options, actions=press_actions(task.presses if task else (), spec.profile.tick_hz)
+        )
 
     judged = task.goals if task else ()
     plan = Plan(tuple(subjects), varied, Path("parameters"), judged, Keep(keep), options_of)

@@ -10,7 +10,13 @@ import ast
 import re
 from collections.abc import Iterable
 
-from tuisim.core.conditions import ValueCondition, ValueSource, comparison_form, finite_number, run_condition_in
+from tuisim.core.conditions import (
+    ValueCondition,
+    ValueSource,
+    comparison_form,
+    finite_number,
+    run_condition_in,
+)
 from tuisim.core.spec import RobotSpec
 from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError, see_page
@@ -18,7 +24,10 @@ from tuisim.errors import ConfigError, see_page
 FORMS = (
     ("12", "line 12 is about to run, or the next line of code if 12 is blank or a comment"),
     ("12 if x > 3", "line 12 is about to run, and the expression is true"),
-    ("left_red_pc < 10", "a column becomes so; also ultrasonic_mm <= 200, gyro_deg > 90, x_mm > 1000"),
+    (
+        "left_red_pc < 10",
+        "a column becomes so; also ultrasonic_mm <= 200, gyro_deg > 90, x_mm > 1000",
+    ),
     ("left_color changes", "the sensor sees another colour; left_color == Blue: it sees this one"),
     ("sample Colour < 50", "such a sample is printed; also sample Colour changes, sample Colour"),
     ("print matches black", "a line is printed in which the regular expression is found"),
@@ -35,7 +44,10 @@ ALLOWED = (
 _PRINT_FORM = "such as: print matches black|white"
 _NO_CONDITION = {
     "print": ("what is printed can only be matched", _PRINT_FORM),
-    "sample": ("a sample has a name", f"{comparison_form()}, such as: sample Colour < 50, sample Colour changes"),
+    "sample": (
+        "a sample has a name",
+        f"{comparison_form()}, such as: sample Colour < 50, sample Colour changes",
+    ),
 }
 """What is wrong with a text that begins like a condition, and the hint."""
 
@@ -95,7 +107,9 @@ def parse_break(text: str, robot: RobotSpec | None = None) -> Breakpoint:
     return Breakpoint(rule, _common_text(rule), disabled)
 
 
-def parse_breakpoints(texts: Iterable[str], robot: RobotSpec | None = None) -> tuple[Breakpoint, ...]:
+def parse_breakpoints(
+    texts: Iterable[str], robot: RobotSpec | None = None
+) -> tuple[Breakpoint, ...]:
     """Return the breakpoints of several texts; see `parse_break`."""
     return tuple(parse_break(text, robot) for text in texts)
 
@@ -123,7 +137,9 @@ def moved(one: Breakpoint, line: int) -> Breakpoint:
     return Breakpoint(rule, _common_text(rule), one.disabled)
 
 
-def _refuse(text: str, why: str, hint: str = f"{ALLOWED}; {see_page('breakpoints')}") -> ConfigError:
+def _refuse(
+    text: str, why: str, hint: str = f"{ALLOWED}; {see_page('breakpoints')}"
+) -> ConfigError:
     return ConfigError(f"{text!r}: {why}", hint, key="break")
 
 

@@ -50,23 +50,43 @@ COMMANDS: Mapping[str, CommandEntry] = {
     "open": CommandEntry("commands.app:open_app", "Open the app (the default command)"),
     "serve": CommandEntry("commands.serve:serve", "Open the app in a browser"),
     "run": CommandEntry("commands.run:run", "Run programs without the app"),
-    "batch": CommandEntry("commands.batch:batch", "Run programs with many seeds and settings; one row per run"),
+    "batch": CommandEntry(
+        "commands.batch:batch", "Run programs with many seeds and settings; one row per run"
+    ),
     "runs": CommandEntry("commands.runs:runs", "List, show, export, draw or remove stored runs"),
     "goals": CommandEntry("commands.goals:goals", "Check whether runs meet the goals of a task"),
-    "mark": CommandEntry("commands.mark:mark", "Mark the programs of a class by the goals of a task"),
+    "mark": CommandEntry(
+        "commands.mark:mark", "Mark the programs of a class by the goals of a task"
+    ),
     "learn": CommandEntry("commands.learn:learn", "Learn to program the robot: lessons in the app"),
-    "guide": CommandEntry("commands.guide:guide", "Read the guide: tutorials, how-to pages, reference"),
+    "guide": CommandEntry(
+        "commands.guide:guide", "Read the guide: tutorials, how-to pages, reference"
+    ),
     "log": CommandEntry("commands.log:log", "Analyse logs: statistics, bands, events, signals"),
-    "analyse": CommandEntry("commands.app:analyse", "Explore logs in the app: table, chart, bands, notes"),
+    "analyse": CommandEntry(
+        "commands.app:analyse", "Explore logs in the app: table, chart, bands, notes"
+    ),
     "backgrounds": CommandEntry("commands.listings:backgrounds", "List the mats"),
     "robots": CommandEntry("commands.listings:robots", "List the robots, or print one as a file"),
-    "obstacles": CommandEntry("commands.listings:obstacles", "List the sets of obstacles, or print one as a file"),
+    "obstacles": CommandEntry(
+        "commands.listings:obstacles", "List the sets of obstacles, or print one as a file"
+    ),
     "programs": CommandEntry("commands.listings:programs", "List the example programs"),
-    "profiles": CommandEntry("commands.listings:profiles", "List the profiles and the simulated time of each call"),
-    "kernel": CommandEntry("commands.kernel:kernel", "Install the Jupyter kernel for a course's notebooks"),
-    "config": CommandEntry("commands.system.user_config:config", "Show your settings, and where each comes from"),
-    "doctor": CommandEntry("commands.system.doctor:doctor", "Check the terminal and the machine; restore a terminal"),
-    "completion": CommandEntry("cli:completion", "Print a script that completes commands in your shell"),
+    "profiles": CommandEntry(
+        "commands.listings:profiles", "List the profiles and the simulated time of each call"
+    ),
+    "kernel": CommandEntry(
+        "commands.kernel:kernel", "Install the Jupyter kernel for a course's notebooks"
+    ),
+    "config": CommandEntry(
+        "commands.system.user_config:config", "Show your settings, and where each comes from"
+    ),
+    "doctor": CommandEntry(
+        "commands.system.doctor:doctor", "Check the terminal and the machine; restore a terminal"
+    ),
+    "completion": CommandEntry(
+        "cli:completion", "Print a script that completes commands in your shell"
+    ),
     "man": CommandEntry("cli:man", "Print the page for man"),
 }
 
@@ -87,7 +107,9 @@ def _check_command(word: str) -> None:
     from tuisim.config.program_file import find_program
 
     if not os.path.exists(find_program(word)):
-        raise ConfigError(f"{word}: no such command or program", did_you_mean([f"`tuisim {close[0]}`"]))
+        raise ConfigError(
+            f"{word}: no such command or program", did_you_mean([f"`tuisim {close[0]}`"])
+        )
 
 
 def _check_open_files() -> None:
@@ -127,7 +149,9 @@ ROOT = _Root(
     lists its options.
     """,
 )
-click.version_option(__version__, prog_name="tuisim", message="%(prog)s %(version)s", help="Print the version.")(ROOT)
+click.version_option(
+    __version__, prog_name="tuisim", message="%(prog)s %(version)s", help="Print the version."
+)(ROOT)
 
 
 @command(
@@ -226,5 +250,7 @@ def run_command(words: Sequence[str]) -> int:
         if os.environ.get("TUISIM_DEBUG"):
             raise
         text = printable(shortened(f"{type(error).__name__}: {error}"))
-        print(f"tuisim: internal error: {text} (TUISIM_DEBUG=1 shows the traceback)", file=sys.stderr)
+        print(
+            f"tuisim: internal error: {text} (TUISIM_DEBUG=1 shows the traceback)", file=sys.stderr
+        )
         return EXIT_OUR_MISTAKE

@@ -63,7 +63,11 @@ def _init(cls: type, frozen: bool) -> Any:
         if one.default_factory is not MISSING:
             names[f"_make_{name}"] = one.default_factory
             default = "=_FACTORY"
-            value = f"_make_{name}() if {name} is _FACTORY else {name}" if one.init else f"_make_{name}()"
+            value = (
+                f"_make_{name}() if {name} is _FACTORY else {name}"
+                if one.init
+                else f"_make_{name}()"
+            )
         elif one.default is not MISSING:
             names[f"_default_{name}"] = one.default
             default = f"=_default_{name}"

@@ -96,7 +96,11 @@ def printable(text: str) -> str:
 
 def _without_middle(line: str) -> str:
     """Return a line of at most `MOST_LINE` characters: it may quote a word of thousands."""
-    return line if len(line) <= MOST_LINE else f"{line[:LINE_START]} … {line[LINE_START - MOST_LINE :]}"
+    return (
+        line
+        if len(line) <= MOST_LINE
+        else f"{line[:LINE_START]} … {line[LINE_START - MOST_LINE :]}"
+    )
 
 
 class TuisimError(Exception):
@@ -207,7 +211,11 @@ class ExportError(TuisimError):
 
 
 def require_one_of(
-    value: object, what: str, allowed: Iterable[object], key: str, error: type[ConfigError] = RobotError
+    value: object,
+    what: str,
+    allowed: Iterable[object],
+    key: str,
+    error: type[ConfigError] = RobotError,
 ) -> None:
     """Check that a value is one of `allowed`.
 
@@ -223,7 +231,11 @@ def require_one_of(
     """
     allowed = tuple(allowed)
     if value not in allowed or isinstance(value, bool):
-        raise error(f"no such {what} {reprlib.repr(value)}", f"one of {', '.join(map(str, allowed))}", key=key)
+        raise error(
+            f"no such {what} {reprlib.repr(value)}",
+            f"one of {', '.join(map(str, allowed))}",
+            key=key,
+        )
 
 
 def require_regex(pattern: str, key: str) -> None:

@@ -147,7 +147,9 @@ BEFORE_NEXT_TICK = -1
 NO_ANSWER = "there is no further answer to input()"
 """Message of the EOFError from input() when no answer is available."""
 _SURROGATE = re.compile("[\ud800-\udfff]")
-_encoded = json.JSONEncoder(separators=(",", ":"), ensure_ascii=False, default=lambda part: asdict(part)).encode
+_encoded = json.JSONEncoder(
+    separators=(",", ":"), ensure_ascii=False, default=lambda part: asdict(part)
+).encode
 
 UNKNOWN_ORDINAL = -2
 """Ordinal of a line in a tick whose lines were not counted from its start."""
@@ -165,7 +167,9 @@ class Message:
 
     def encode(self) -> bytes:
         """Return the message as one JSON line."""
-        text = _encoded({"kind": self.kind, **{name: getattr(self, name) for name in self.__dataclass_fields__}})
+        text = _encoded(
+            {"kind": self.kind, **{name: getattr(self, name) for name in self.__dataclass_fields__}}
+        )
         # A lone surrogate, such as in a file name that is not UTF-8, is not valid text: it is written as an escape.
         return _SURROGATE.sub(lambda found: f"\\\\u{ord(found[0]):x}", text).encode() + b"\n"
 
@@ -299,7 +303,9 @@ class SetButtons(Message):
         object.__setattr__(self, "pressed", tuple(self.pressed))
         for name in self.pressed:
             if name not in BUTTONS:
-                raise ConfigError(f"the brick has no button {name!r}", f"one of {', '.join(BUTTONS)}")
+                raise ConfigError(
+                    f"the brick has no button {name!r}", f"one of {', '.join(BUTTONS)}"
+                )
 
 
 @dataclass(frozen=True, slots=True)
@@ -325,8 +331,18 @@ class Reply(Message):
 ACTIONS: tuple[type[Message], ...] = (SetPose, SetNoise, SetPen, SetButtons, Answer, Reply)
 """The commands that are user actions."""
 _CONTROLS: tuple[type[Message], ...] = (
-    Stop, Pause, Resume, StepTicks, StepLine, RunToLine, RunToInstant, SetBreaks, Inspect, RequestHistory, SetSpeed,
-)  # fmt: skip
+    Stop,
+    Pause,
+    Resume,
+    StepTicks,
+    StepLine,
+    RunToLine,
+    RunToInstant,
+    SetBreaks,
+    Inspect,
+    RequestHistory,
+    SetSpeed,
+)
 COMMANDS: dict[str, type[Message]] = {command.kind: command for command in (*_CONTROLS, *ACTIONS)}
 
 
@@ -504,7 +520,19 @@ class LineHistory(Message):
     lines: tuple[ExecutedLine, ...]
 
 
-_EVENTS = (Started, Paused, Resumed, Inspected, LineHistory, Spoke, BusyLoop, InputWanted, ReplyWanted, Wheels, Ended)
+_EVENTS = (
+    Started,
+    Paused,
+    Resumed,
+    Inspected,
+    LineHistory,
+    Spoke,
+    BusyLoop,
+    InputWanted,
+    ReplyWanted,
+    Wheels,
+    Ended,
+)
 EVENTS: dict[str, type[Message]] = {event.kind: event for event in _EVENTS}
 
 

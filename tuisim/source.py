@@ -32,7 +32,11 @@ def say(txt, wait=False, show=True):
     Sound().speak(str(txt).replace("'", "\\u2019"), play_type=0 if wait else 1)
 """
 
-PRELUDE_TEXTS: Mapping[str, str] = {"none": "", "imports": _IMPORTS, "preloaded": _IMPORTS + _INSTANCES}
+PRELUDE_TEXTS: Mapping[str, str] = {
+    "none": "",
+    "imports": _IMPORTS,
+    "preloaded": _IMPORTS + _INSTANCES,
+}
 """The text of each prelude, by name: it runs before a program and defines names for it."""
 
 PYBRICKS = "pybricks"

@@ -22,13 +22,19 @@ FOUND = {
 
 
 @pytest.mark.parametrize(("text", "events"), FOUND.values(), ids=FOUND)
-def test_where_variables_cross_a_value(text: str, events: list[tuple[str, bool, float, int]]) -> None:
+def test_where_variables_cross_a_value(
+    text: str, events: list[tuple[str, bool, float, int]]
+) -> None:
     log = long_log()
     found = events_of(log, thresholds_of(text, log))
-    assert [(event.variable, event.crossing.rising, event.crossing.time_s, event.row) for event in found] == events
+    assert [
+        (event.variable, event.crossing.rising, event.crossing.time_s, event.row) for event in found
+    ] == events
 
 
-@pytest.mark.parametrize(("text", "said"), [("Colour", "no threshold"), ("Color < 5", "no variable 'Color'")])
+@pytest.mark.parametrize(
+    ("text", "said"), [("Colour", "no threshold"), ("Color < 5", "no variable 'Color'")]
+)
 def test_what_is_no_threshold(text: str, said: str) -> None:
     with pytest.raises(LogError, match=said):
         thresholds_of(text, long_log())

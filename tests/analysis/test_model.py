@@ -25,7 +25,11 @@ def test_the_cursor_goes_along_the_selected_variable() -> None:
 def test_a_row_belongs_to_its_own_run() -> None:
     model = model_of(long_log(runs=2))
     assert (model.trace_of_row(0).name, model.run_of(0)) == ("Colour #1", 0)
-    assert (model.trace_of_row(39).name, model.run_of(39), model.time_of(39)) == ("Left #2", 1, 18.0)
+    assert (model.trace_of_row(39).name, model.run_of(39), model.time_of(39)) == (
+        "Left #2",
+        1,
+        18.0,
+    )
 
 
 def test_zoom_keeps_the_cursor_and_pan_stays_inside() -> None:
@@ -45,7 +49,9 @@ def test_zoom_keeps_the_cursor_and_pan_stays_inside() -> None:
 
 
 @pytest.mark.parametrize(
-    ("way", "place"), [("time", 18.0), ("distance", 900.0), ("Colour < 45", 9.0)], ids=["time", "distance", "event"]
+    ("way", "place"),
+    [("time", 18.0), ("distance", 900.0), ("Colour < 45", 9.0)],
+    ids=["time", "distance", "event"],
 )
 def test_runs_are_laid_over_each_other(way: str, place: float) -> None:
     model = model_of(long_log(runs=2))

@@ -16,8 +16,16 @@ def _labels(*pins: Pin) -> list[tuple[float, str]]:
 
 
 def test_a_label_that_another_one_would_cover_stands_below() -> None:
-    pins = [Pin("1", 900, 500, True, ""), Pin("2", 960, 500, False, ""), Pin("3", 1600, 500, True, "")]
-    assert [(way > 0, text) for way, text in _labels(*pins)] == [(False, "✓1"), (True, "✗2"), (False, "✓3")]
+    pins = [
+        Pin("1", 900, 500, True, ""),
+        Pin("2", 960, 500, False, ""),
+        Pin("3", 1600, 500, True, ""),
+    ]
+    assert [(way > 0, text) for way, text in _labels(*pins)] == [
+        (False, "✓1"),
+        (True, "✗2"),
+        (False, "✓3"),
+    ]
 
 
 def test_places_that_are_one_share_a_ring() -> None:

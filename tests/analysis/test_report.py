@@ -100,14 +100,20 @@ def test_a_run_is_told_whole(driven: Driven) -> None:
     facts, run = driven.page.section["Facts"], driven.run
     told = dict(zip(facts[::2], facts[1::2], strict=True))
     assert (told["mat"], told["profile"], told["seed"]) == ("Grey_bands", "robolab", "0")
-    assert (told["SHA-256"], told["end"], told["noise"]) == (run.program.sha256, "finished", "light 0, motor 0")
+    assert (told["SHA-256"], told["end"], told["noise"]) == (
+        run.program.sha256,
+        "finished",
+        "light 0, motor 0",
+    )
     assert run.end is not None
     assert told["simulated time"] == f"{run.end.time_ns / 1e9:.3f} s, tick {run.end.tick}"
     assert list(driven.page.section)[:7] == [
         *("Facts", "World", "Chart", "Bands", "Statistics", "Notes", "Program greys.py"),
     ]
-    assert any("5 levels: 100.00 white (4x), 86.27 pale grey, 82.75 light grey, 50.20 grey" in text
-               for text in driven.page.section["Bands"])  # fmt: skip
+    assert any(
+        "5 levels: 100.00 white (4x), 86.27 pale grey, 82.75 light grey, 50.20 grey" in text
+        for text in driven.page.section["Bands"]
+    )
     assert driven.page.section["Statistics"].count("Colour") == 1
     assert driven.page.section["Notes"][-3:] == ["0.50 to 1.25", "Colour", "the <i>first</i> white"]
     assert {"Colour", "Way_mm (mm)", "time (s)", "86.27"} <= set(driven.page.section["Chart"])
@@ -124,7 +130,9 @@ def test_a_page_needs_nothing_from_elsewhere(driven: Driven) -> None:
     assert not {"script", "link", "iframe", "object", "i", "b"} & set(driven.page.tags)
     for name, value in driven.page.attributes:
         assert not name.startswith("on")
-        assert name not in ("href", "srcset") and (name != "src" or re.match("data:image/(png|webp);base64,", value))
+        assert name not in ("href", "srcset") and (
+            name != "src" or re.match("data:image/(png|webp);base64,", value)
+        )
 
 
 def test_the_world_shows_the_way(driven: Driven) -> None:
@@ -138,12 +146,17 @@ def test_the_world_shows_the_way(driven: Driven) -> None:
 def test_a_small_movie_shows_the_run(driven: Driven) -> None:
     _, source = (value for name, value in driven.page.attributes if name == "src")
     content = base64.b64decode(source.partition(",")[2])
-    (said,) = [text for text in driven.page.section["World"] if text.startswith("Movie of the run: ")]
+    (said,) = [
+        text for text in driven.page.section["World"] if text.startswith("Movie of the run: ")
+    ]
     end_s = (driven.run.telemetry.count - 1) / 100
     assert said == f"Movie of the run: {end_s:.1f} s in real time, {len(content) / 1000:.0f} kB"
     assert len(content) < 100_000
     with Image.open(io.BytesIO(content)) as movie:
-        assert (movie.format, getattr(movie, "n_frames", 1)) == ("WEBP", driven.run.telemetry.count // 10 + 2)
+        assert (movie.format, getattr(movie, "n_frames", 1)) == (
+            "WEBP",
+            driven.run.telemetry.count // 10 + 2,
+        )
 
 
 @pytest.mark.slow
@@ -170,17 +183,23 @@ def test_several_runs_stand_side_by_side(here: Command, tmp_path: Path, driven: 
     assert {"Colour #1", "Colour #2"} <= set(page.section["Statistics"])
 
 
-def test_a_run_without_samples_shows_its_telemetry(here: Command, home: Path, tmp_path: Path) -> None:
+def test_a_run_without_samples_shows_its_telemetry(
+    here: Command, home: Path, tmp_path: Path
+) -> None:
     (tmp_path / "quiet.py").write_text("tank_drive.on_for_rotations(20, 20, 1)\n1/0\n")
     here("run", "quiet.py", "--preload", "preloaded")
     here("log", "report", "last", "--out", "quiet.HTML")
     page = page_of(tmp_path / "quiet.HTML")
     assert any("printed no samples" in text for text in page.words)
     assert "left_red" in page.section["Chart"]
-    assert any(text.endswith("ZeroDivisionError: division by zero") for text in page.section["Facts"])
+    assert any(
+        text.endswith("ZeroDivisionError: division by zero") for text in page.section["Facts"]
+    )
 
 
-def test_a_mat_that_is_gone_costs_only_its_picture(here: Command, home: Path, tmp_path: Path, driven: Driven) -> None:
+def test_a_mat_that_is_gone_costs_only_its_picture(
+    here: Command, home: Path, tmp_path: Path, driven: Driven
+) -> None:
     folder = home / "runs" / driven.run.id
     copytree(driven.run.folder, folder)
     path = folder / "run.json"
@@ -192,20 +211,31 @@ def test_a_mat_that_is_gone_costs_only_its_picture(here: Command, home: Path, tm
 
 
 @pytest.mark.slow
-def test_the_page_is_called_after_the_program(here: Command, tmp_path: Path, driven: Driven) -> None:
+def test_the_page_is_called_after_the_program(
+    here: Command, tmp_path: Path, driven: Driven
+) -> None:
     done = here("log", "report", driven.run.id)
     assert (done.returncode, done.stdout, done.stderr) == (0, "greys-report.html\n", "")
     assert [path.name for path in tmp_path.iterdir()] == ["greys-report.html"]
 
 
-def test_a_file_is_told_without_program_and_world(here: Command, home: Path, tmp_path: Path) -> None:
+def test_a_file_is_told_without_program_and_world(
+    here: Command, home: Path, tmp_path: Path
+) -> None:
     log = tmp_path / "some.csv"
-    log.write_text("time,<b>\n" + "".join(f"{at},{50 * (at // 20)}\n" for at in range(40)) + "40,oops\n")
+    log.write_text(
+        "time,<b>\n" + "".join(f"{at},{50 * (at // 20)}\n" for at in range(40)) + "40,oops\n"
+    )
     write_notes(notes_of_file(log), [Note("here", 3.0, 3.0)])
     assert here("log", "report", "some.csv").stdout == "some-report.html\n"
     page = page_of(tmp_path / "some-report.html")
     assert list(page.section) == ["Facts", "Chart", "Bands", "Statistics", "Notes"]
-    assert page.section["Facts"][:4] == ["file", "some.csv", "rows", "41, and 1 that could not be read"]
+    assert page.section["Facts"][:4] == [
+        "file",
+        "some.csv",
+        "rows",
+        "41, and 1 that could not be read",
+    ]
     assert "<b>" in page.section["Chart"]
     assert "here" in page.section["Notes"]
 
@@ -235,7 +265,9 @@ BAD = {
 
 
 @pytest.mark.parametrize(("words", "expected"), BAD.values(), ids=BAD)
-def test_bad_input(here: Command, home: Path, tmp_path: Path, words: tuple[str, ...], expected: str) -> None:
+def test_bad_input(
+    here: Command, home: Path, tmp_path: Path, words: tuple[str, ...], expected: str
+) -> None:
     log, no_numbers = tmp_path / "log.csv", tmp_path / "words.csv"
     log.write_text("time,a\n0,1\n1,2\n")
     no_numbers.write_text("who,what\nme,this\nyou,that\n")

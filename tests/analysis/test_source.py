@@ -8,7 +8,14 @@ import pytest
 
 from tests.app.analyser.logs import long_log, model_of
 from tuisim.analysis.model import Model
-from tuisim.analysis.source import LogRequest, Note, OpenedLog, notes_of_file, read_notes, write_notes
+from tuisim.analysis.source import (
+    LogRequest,
+    Note,
+    OpenedLog,
+    notes_of_file,
+    read_notes,
+    write_notes,
+)
 from tuisim.errors import LogError
 
 

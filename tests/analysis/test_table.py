@@ -24,10 +24,17 @@ def test_a_search_goes_round_in_stretches(monkeypatch: pytest.MonkeyPatch) -> No
     for here in random.Random(1).sample(range(10), 10):
         for wanted in ("20", "70"):
             # The x_mm of a sample is 900 less ten times its value: another row has the text as well.
-            there = sorted(at for at, value in enumerate(values) if wanted in (value, str(900 - 10 * int(value))[:2]))
+            there = sorted(
+                at
+                for at, value in enumerate(values)
+                if wanted in (value, str(900 - 10 * int(value))[:2])
+            )
             onwards = next((at for at in there if at > here), there[0])
             back = next((at for at in reversed(there) if at < here), there[-1])
-            assert (rows.find(wanted, here, 1), rows.find(wanted, here, -1)) == (onwards, back), (here, wanted)
+            assert (rows.find(wanted, here, 1), rows.find(wanted, here, -1)) == (onwards, back), (
+                here,
+                wanted,
+            )
     assert rows.find("nowhere", 4, 1) is None
 
 
@@ -70,7 +77,9 @@ def test_a_condition_that_is_none_is_said(text: str) -> None:
 
 def test_sorting_goes_with_a_filter() -> None:
     model = model_of(long_log())
-    model.rows.view = model.rows.filtered(tuple(conditions_of("variable == Colour", model.rows.columns)))
+    model.rows.view = model.rows.filtered(
+        tuple(conditions_of("variable == Colour", model.rows.columns))
+    )
     model.rows.view = model.rows.sorted("value", False)
     assert values(model) == [float(10 * at) for at in range(10)]
     model.rows.view = model.rows.sorted("value", True)

@@ -33,8 +33,12 @@ def test_angles_and_places_have_their_own_scales() -> None:
     assert [trace.scale for trace in traces] == ["", "°", "mm"]
 
 
-@pytest.mark.parametrize(("values", "alike"), [([0.0, 90.0], True), ([0.0, 1.0], False), ([0.0, 9000.0], False)])
-def test_what_would_be_flat_beside_the_others_is_not_like_them(values: list[float], alike: bool) -> None:
+@pytest.mark.parametrize(
+    ("values", "alike"), [([0.0, 90.0], True), ([0.0, 1.0], False), ([0.0, 9000.0], False)]
+)
+def test_what_would_be_flat_beside_the_others_is_not_like_them(
+    values: list[float], alike: bool
+) -> None:
     traces = LogTraces(log_of(light=[0.0, 100.0], new=values))
     assert traces.named("new").is_like([traces.named("light")]) is alike
 

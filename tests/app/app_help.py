@@ -31,7 +31,9 @@ ENDLESS = "tank_drive.on(SpeedPercent(10), SpeedPercent(10))\nwhile True:\n    p
 
 
 def program(text: str) -> Program:
-    return Program(name="prog.py", text=text, prelude="preloaded", path=str(Path("prog.py").absolute()))
+    return Program(
+        name="prog.py", text=text, prelude="preloaded", path=str(Path("prog.py").absolute())
+    )
 
 
 def settings(text: str | None = None, background: str = "Grey_bands", **more: Any) -> AppSettings:
@@ -72,7 +74,9 @@ def message_of(app: LabApp) -> str:
 
 def screen_text(app: LabApp) -> str:
     """What is on the screen, as lines of text."""
-    return "\n".join("".join(s.text for s in strip) for strip in app.screen._compositor.render_strips())
+    return "\n".join(
+        "".join(s.text for s in strip) for strip in app.screen._compositor.render_strips()
+    )
 
 
 async def until_shown(pilot: Pilot[Any], text: str) -> None:

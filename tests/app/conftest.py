@@ -80,7 +80,9 @@ def open_terminal(tmp_path: Path) -> Iterator[Callable[[], Terminal]]:
     opened: list[Terminal] = []
 
     def another() -> Terminal:
-        opened.append(Terminal(f"tuisim-{os.getpid()}-{tmp_path.name[-20:]}-{len(opened)}", tmp_path))
+        opened.append(
+            Terminal(f"tuisim-{os.getpid()}-{tmp_path.name[-20:]}-{len(opened)}", tmp_path)
+        )
         return opened[-1]
 
     yield another

@@ -19,7 +19,9 @@ from tuisim.config.program_file import read_program
 from tuisim.lessons.files import load_lesson
 from tuisim.lessons.progress import load_progress, prepare_program
 
-PROGRAM = "x = 1\nprint('Level: 50')\ntank_drive.on_for_seconds(SpeedPercent(30), SpeedPercent(30), 2)\n"
+PROGRAM = (
+    "x = 1\nprint('Level: 50')\ntank_drive.on_for_seconds(SpeedPercent(30), SpeedPercent(30), 2)\n"
+)
 LESSON = f"""\
 +++
 title = "Try it"
@@ -78,7 +80,10 @@ def opened(tmp_path: Path, check: str = "show = 'chart'") -> AppSettings:
 def with_lines(settings_: AppSettings, count: int) -> AppSettings:
     """The same with a lesson whose text has so many lines."""
     assert settings_.lesson is not None
-    return replace(settings_, lesson=replace(settings_.lesson, intro="\n\n".join(f"Line {at}" for at in range(count))))
+    return replace(
+        settings_,
+        lesson=replace(settings_.lesson, intro="\n\n".join(f"Line {at}" for at in range(count))),
+    )
 
 
 def shown(app: LabApp) -> str:

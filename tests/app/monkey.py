@@ -21,16 +21,65 @@ from tuisim.app.analyser.app import Analyser
 from tuisim.app.dialogs.question import LeaveQuestion, Question
 
 NAMED = (
-    *("enter", "escape", "tab", "shift+tab", "backspace", "delete", "home", "end", "pageup", "pagedown", "insert"),
-    *("left", "right", "up", "down", "shift+left", "shift+right", "shift+up", "shift+down", "ctrl+left", "ctrl+right"),
+    *(
+        "enter",
+        "escape",
+        "tab",
+        "shift+tab",
+        "backspace",
+        "delete",
+        "home",
+        "end",
+        "pageup",
+        "pagedown",
+        "insert",
+    ),
+    *(
+        "left",
+        "right",
+        "up",
+        "down",
+        "shift+left",
+        "shift+right",
+        "shift+up",
+        "shift+down",
+        "ctrl+left",
+        "ctrl+right",
+    ),
     *("f1", "f3", "shift+f3", "f5", "ctrl+home", "ctrl+end", "ctrl+at", "ctrl+underscore"),
     *(f"ctrl+{letter}" for letter in "abcdefghijklmnoprstuvwxyz"),
 )
 """Keys without a character of their own; `ctrl+q` is pressed less often."""
 PRINTED = [chr(code) for code in range(33, 127) if chr(code) != "q"] + ["ä", "€", "漢"]
 """Without `q`, which is pressed less often: it ends the app."""
-OFTEN = ("enter", "escape", "ctrl+p", "ctrl+s", "tab", "space", "R", "o", "b", "h", "d", "l", "+", "question_mark")
-SIZES = [(80, 24), (120, 40), (200, 60), (60, 18), (40, 12), (20, 5), (3, 2), (1, 1), (300, 8), (9, 100)]
+OFTEN = (
+    "enter",
+    "escape",
+    "ctrl+p",
+    "ctrl+s",
+    "tab",
+    "space",
+    "R",
+    "o",
+    "b",
+    "h",
+    "d",
+    "l",
+    "+",
+    "question_mark",
+)
+SIZES = [
+    (80, 24),
+    (120, 40),
+    (200, 60),
+    (60, 18),
+    (40, 12),
+    (20, 5),
+    (3, 2),
+    (1, 1),
+    (300, 8),
+    (9, 100),
+]
 
 
 def key_event(key: str) -> events.Key:
@@ -53,7 +102,9 @@ def at_once(pilot: Pilot[Any], keys: Sequence[str]) -> None:
 def _mouse(pilot: Pilot[Any], kind: type[events.MouseEvent], x: int, y: int, button: int) -> str:
     driver = pilot.app._driver
     assert driver is not None
-    driver.process_message(kind(None, x, y, 0, 0, button, False, False, False, screen_x=x, screen_y=y))
+    driver.process_message(
+        kind(None, x, y, 0, 0, button, False, False, False, screen_x=x, screen_y=y)
+    )
     return f"{kind.__name__} {x} {y} {button}"
 
 
@@ -64,7 +115,10 @@ def _point(pilot: Pilot[Any], rng: Random) -> list[str]:
     done = [_mouse(pilot, events.MouseMove, x, y, 0)]
     way = rng.choice(("click", "click", "twice", "drag", "scroll", "half"))
     if way == "scroll":
-        return [*done, _mouse(pilot, rng.choice((events.MouseScrollUp, events.MouseScrollDown)), x, y, 0)]
+        return [
+            *done,
+            _mouse(pilot, rng.choice((events.MouseScrollUp, events.MouseScrollDown)), x, y, 0),
+        ]
     button = rng.choice((1, 1, 1, 3))
     for _ in range(2 if way == "twice" else 1):
         done.append(_mouse(pilot, events.MouseDown, x, y, button))

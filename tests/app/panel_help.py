@@ -61,10 +61,14 @@ def moment(pose: Pose = Pose(1000.0, 500.0, 0.0), **changes: Any) -> Snapshot:
         speed=1.0,
         pen_down=True,
     )
-    fields = {name: value for name, value in changes.items() if name in Snapshot.__dataclass_fields__}
+    fields = {
+        name: value for name, value in changes.items() if name in Snapshot.__dataclass_fields__
+    }
     changed = replace(now, **fields)
     # What is measured is kept there once it has been asked for.
-    changed.__dict__.update(READINGS, **{name: value for name, value in changes.items() if name not in fields})
+    changed.__dict__.update(
+        READINGS, **{name: value for name, value in changes.items() if name not in fields}
+    )
     return changed
 
 

@@ -36,12 +36,21 @@ class Terminal:
         size = ["-x", str(columns), "-y", str(rows)]
         shell = f"{command}; echo EXIT $?; exec cat"
         # Where these two are set, they win over the size of the terminal.
-        inherited = {name: value for name, value in os.environ.items() if name not in ("COLUMNS", "LINES")}
-        environment = {**inherited, "TERM": "xterm-256color", "LANG": "C.UTF-8", "PYTHONPATH": str(Path.cwd())}
+        inherited = {
+            name: value for name, value in os.environ.items() if name not in ("COLUMNS", "LINES")
+        }
+        environment = {
+            **inherited,
+            "TERM": "xterm-256color",
+            "LANG": "C.UTF-8",
+            "PYTHONPATH": str(Path.cwd()),
+        }
         self._run("new-session", "-d", *size, "-c", str(self._folder), shell, env=environment)
 
     def _run(self, *words: str, env: dict[str, str] | None = None) -> str:
-        done = subprocess.run([*self._tmux, *words], capture_output=True, text=True, check=True, env=env)
+        done = subprocess.run(
+            [*self._tmux, *words], capture_output=True, text=True, check=True, env=env
+        )
         return done.stdout
 
     def shell_id(self) -> int:

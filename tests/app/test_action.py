@@ -40,7 +40,9 @@ FITTED = {80: 9, 120: 11, 200: 15, 300: 20}
 
 
 @pytest.mark.parametrize(("columns", "most"), FITTED.items(), ids=map(str, FITTED))
-def test_the_footer_has_few_entries_in_groups_with_the_palette_among_them(columns: int, most: int) -> None:
+def test_the_footer_has_few_entries_in_groups_with_the_palette_among_them(
+    columns: int, most: int
+) -> None:
     shown = fitting([*ACTIONS.values()], columns, most_entries(columns))
     assert len(shown) <= most
     assert {"palette", "help", "quit"} <= {one.id for one in shown}

@@ -61,7 +61,11 @@ def is_open(app: App[Any]) -> bool:
 
 
 def children() -> set[str]:
-    return {pid for listed in Path("/proc/self/task").glob("*/children") for pid in listed.read_text().split()}
+    return {
+        pid
+        for listed in Path("/proc/self/task").glob("*/children")
+        for pid in listed.read_text().split()
+    }
 
 
 def wait_for_children(before: set[str]) -> None:
@@ -83,7 +87,9 @@ async def one_go(pilot: Pilot[Any], rng: Random, count: int, done: list[str]) ->
     # Whatever it is, it helps to know what was pressed.
     except BaseException as error:
         notices = [str(notice.message) for notice in pilot.app._notifications]
-        error.add_note(f"after {done}, with the notices {notices} and the work {list(pilot.app.workers)}")
+        error.add_note(
+            f"after {done}, with the notices {notices} and the work {list(pilot.app.workers)}"
+        )
         raise
 
 

@@ -11,10 +11,14 @@ from tests.app.terminals import Terminal
 pytestmark = [pytest.mark.tmux, pytest.mark.slow, pytest.mark.usefixtures("home")]
 
 
-def test_a_program_runs_to_its_end_and_its_log_is_exported(terminal: Terminal, tmp_path: Path) -> None:
+def test_a_program_runs_to_its_end_and_its_log_is_exported(
+    terminal: Terminal, tmp_path: Path
+) -> None:
     terminal.start(["log_greys", "-R"], 120, 40)
     # The panels are painted one after another.
-    terminal.until(lambda text: "running" in text.splitlines()[-1] and "World" in text and "Ultrasonic" in text)
+    terminal.until(
+        lambda text: "running" in text.splitlines()[-1] and "World" in text and "Ultrasonic" in text
+    )
     terminal.until(lambda text: "finished" in text.splitlines()[-1] and "Colour: 0.0" in text)
     terminal.keys("e")
     terminal.until(lambda text: "Export the log" in text)
@@ -26,7 +30,9 @@ def test_a_program_runs_to_its_end_and_its_log_is_exported(terminal: Terminal, t
 
 
 def test_stop_reaches_a_program_that_spins(terminal: Terminal, tmp_path: Path) -> None:
-    (tmp_path / "spin.py").write_text("while True:\n    try:\n        pass\n    except:\n        pass\n")
+    (tmp_path / "spin.py").write_text(
+        "while True:\n    try:\n        pass\n    except:\n        pass\n"
+    )
     terminal.start(["spin.py", "-R"], 80, 24)
     terminal.until(lambda text: "running" in text.splitlines()[-1])
     terminal.keys("S")
@@ -53,7 +59,12 @@ def test_capital_and_small_letters_are_different_keys(terminal: Terminal) -> Non
 
 @pytest.mark.parametrize(
     ("arguments", "opened"),
-    [(["log_greys"], ()), (["log_greys"], ("question_mark",)), (["analyse", "some.csv"], ()), (["log_greys"], ("d",))],
+    [
+        (["log_greys"], ()),
+        (["log_greys"], ("question_mark",)),
+        (["analyse", "some.csv"], ()),
+        (["log_greys"], ("d",)),
+    ],
     ids=["app", "dialog", "analyser", "editor"],
 )
 def test_a_key_draws_what_something_else_has_written_over(
@@ -88,11 +99,15 @@ runpy.run_module("tuisim", run_name="__main__", alter_sys=True)
 """The app with a Textual whose version cannot be told."""
 
 
-def test_with_an_untried_textual_it_runs_without_private_names(terminal: Terminal, tmp_path: Path) -> None:
+def test_with_an_untried_textual_it_runs_without_private_names(
+    terminal: Terminal, tmp_path: Path
+) -> None:
     terminal.start([str(tmp_path), "log_greys"], 120, 40, code=UNTRIED)
     terminal.until(lambda text: "R run" in text.splitlines()[-1])
     terminal.keys("R")
-    text = terminal.until(lambda text: "finished" in text.splitlines()[-1] and "Colour: 0.0" in text)
+    text = terminal.until(
+        lambda text: "finished" in text.splitlines()[-1] and "Colour: 0.0" in text
+    )
     assert "▀" in text
     terminal.keys("?")
     terminal.until(lambda text: "Guide" in text and "esc closes" in text)

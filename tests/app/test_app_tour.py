@@ -74,7 +74,9 @@ def test_the_tour_can_be_typed(terminal: Terminal, tmp_path: Path) -> None:
             # Without code, chart and debugger there is room for the position among the readings.
             # The first press of a key focuses the panel.
             terminal.keys("D", "c", "c", "G", "G")
-            terminal.until(lambda text: "─ Code" not in text and re.search(_POSITION, text) is not None)
+            terminal.until(
+                lambda text: "─ Code" not in text and re.search(_POSITION, text) is not None
+            )
         before = terminal.screen()
         for key in keys_of(row):
             terminal.keys(_TMUX.get(key, key))

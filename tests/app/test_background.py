@@ -99,7 +99,9 @@ class LeftError(Exception):
 
 
 @pytest.fixture
-def work_that_writes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[tuple[Path, Event]]:
+def work_that_writes(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> Iterator[tuple[Path, Event]]:
     """A file that a thread writes until it may go on."""
     began, may_end, path = Event(), Event(), tmp_path / "movie.gif"
 
@@ -131,7 +133,9 @@ def test_what_is_nearly_written_is_finished(work_that_writes: tuple[Path, Event]
 
 
 def test_what_takes_longer_is_dropped_and_said(
-    work_that_writes: tuple[Path, Event], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    work_that_writes: tuple[Path, Event],
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
 ) -> None:
     path, _ = work_that_writes
     monkeypatch.setattr(background, "FINISHES_WITHIN_S", 0.0)

@@ -91,19 +91,29 @@ async def test_a_branch_is_the_same_run_up_to_its_instant(deed: Deed, kind: str)
         await deed(pilot, app)
         await until(pilot, lambda: "Branch from 2.60 s?" in screen_text(app))
         await pilot.press("y")
-        await until(pilot, lambda: app.run_controller.run_id != first and app.run_controller.timeline.newest > 300)
+        await until(
+            pilot,
+            lambda: app.run_controller.run_id != first and app.run_controller.timeline.newest > 300,
+        )
         await stop(pilot, app)
         branch = RunStore().load_run(app.run_controller.run_id)
         old, new = telemetry(first), branch.telemetry.array()
         assert old[:260].tobytes() == new[:260].tobytes()
         assert branch.tags == ("branch-of-1", "at-2.60s")
         done = [(action.tick, action.command.kind) for action in branch.actions]
-        before = [(a.tick, a.command.kind) for a in RunStore().load_run(first).actions if a.tick <= 260]
+        before = [
+            (a.tick, a.command.kind) for a in RunStore().load_run(first).actions if a.tick <= 260
+        ]
         assert done == before + ([(260, kind)] if kind else [])
         assert any("branch of run 1 at 2.60 s" in notice for notice in notices(app))
         if not kind:
             # On a slow machine some of what the user did comes later than the branch.
-            later = [a.tick for run in (RunStore().load_run(first), branch) for a in run.actions if a.tick > 260]
+            later = [
+                a.tick
+                for run in (RunStore().load_run(first), branch)
+                for a in run.actions
+                if a.tick > 260
+            ]
             both = min(len(old), len(new), *later)
             assert both > 260
             assert old[:both].tobytes() == new[:both].tobytes()
@@ -125,13 +135,22 @@ async def test_a_paused_run_branches_paused_and_is_kept() -> None:
         await pilot.press("y")
         await until_shown(pilot, "Branch from")
         await pilot.press("y")
-        await until(pilot, lambda: app.run_controller.run_id != first and app.run_controller.state == RunPhase.PAUSED)
+        await until(
+            pilot,
+            lambda: (
+                app.run_controller.run_id != first and app.run_controller.state == RunPhase.PAUSED
+            ),
+        )
         assert app.run_controller.timeline.newest == at
         assert not app.run_controller.in_past
         assert RunStore().load_run(first).state == "stopped"
         await pilot.press("space")
         await until(
-            pilot, lambda: app.run_controller.state == RunPhase.RUNNING and app.run_controller.timeline.newest > at
+            pilot,
+            lambda: (
+                app.run_controller.state == RunPhase.RUNNING
+                and app.run_controller.timeline.newest > at
+            ),
         )
         await stop(pilot, app)
 
@@ -149,7 +168,10 @@ async def test_an_edited_program_says_where_it_went_another_way() -> None:
         await pilot.press("R")
         await until(pilot, lambda: "The edited program" in screen_text(app))
         await pilot.press("y")
-        await until(pilot, lambda: app.run_controller.run_id != first and app.run_controller.timeline.newest > 260)
+        await until(
+            pilot,
+            lambda: app.run_controller.run_id != first and app.run_controller.timeline.newest > 260,
+        )
         await until(pilot, lambda: any("it differs from 0." in notice for notice in notices(app)))
         await stop(pilot, app)
 
@@ -161,7 +183,12 @@ async def test_from_the_past_the_program_can_be_run_from_its_start() -> None:
         await pilot.press("less_than_sign", "R")
         await until(pilot, lambda: len(app.screen_stack) == 2)
         await pilot.press("r")
-        await until(pilot, lambda: app.run_controller.run_id != first and app.run_controller.state == RunPhase.RUNNING)
+        await until(
+            pilot,
+            lambda: (
+                app.run_controller.run_id != first and app.run_controller.state == RunPhase.RUNNING
+            ),
+        )
         assert not app.run_controller.in_past
         await until(pilot, lambda: app.run_controller.timeline.newest > 5)
         assert not RunStore().load_run(app.run_controller.run_id).tags
@@ -179,8 +206,15 @@ async def test_a_program_that_ends_before_the_instant_is_told() -> None:
         await pilot.press("y")
         await until_shown(pilot, "Branch from")
         await pilot.press("y")
-        await until(pilot, lambda: app.run_controller.run_id != first and app.run_controller.state == RunPhase.ENDED)
-        await until(pilot, lambda: any("of the edited program: it differs" in n for n in notices(app)))
+        await until(
+            pilot,
+            lambda: (
+                app.run_controller.run_id != first and app.run_controller.state == RunPhase.ENDED
+            ),
+        )
+        await until(
+            pilot, lambda: any("of the edited program: it differs" in n for n in notices(app))
+        )
 
 
 @pytest.mark.slow
@@ -194,10 +228,16 @@ async def test_a_branch_is_compared_with_the_run_that_it_left() -> None:
         app.run_controller.set_noise(NoiseSpec(5, 0))
         await until_shown(pilot, "Branch from 2.00 s?")
         await pilot.press("y")
-        await until(pilot, lambda: app.run_controller.run_id != first and app.run_controller.timeline.newest > 260)
+        await until(
+            pilot,
+            lambda: app.run_controller.run_id != first and app.run_controller.timeline.newest > 260,
+        )
         await stop(pilot, app)
         await pilot.press("equals_sign")
-        await until(pilot, lambda: "Compare run 2 with" in screen_text(app) and "1 of 1 runs" in screen_text(app))
+        await until(
+            pilot,
+            lambda: "Compare run 2 with" in screen_text(app) and "1 of 1 runs" in screen_text(app),
+        )
         await pilot.press("enter")
         await until(pilot, lambda: "first differing tick" in screen_text(app))
         assert "tick 200, 2.00 s: actions" in screen_text(app)

@@ -62,7 +62,9 @@ def cursor_to(app: LabApp, line: int) -> None:
 
 async def stands(pilot: Pilot[Any], app: LabApp, at: int) -> None:
     """Wait until the program stands at a line and has been looked at."""
-    await until(pilot, lambda: app.debugger.view is not None and line(app) == at and not app.debugger.busy)
+    await until(
+        pilot, lambda: app.debugger.view is not None and line(app) == at and not app.debugger.busy
+    )
 
 
 async def press(pilot: Pilot[Any], app: LabApp, key: str, *lines: int) -> None:
@@ -232,7 +234,9 @@ async def test_the_variables_of_any_former_instant(home: object) -> None:
         assert values(app) == {"total": "10", "i": "4"}
         await pilot.press("G")
         app.run_controller.timeline.go(42)
-        await until(pilot, lambda: values(app) == {"total": "36", "i": "8"} and not app.debugger.busy)
+        await until(
+            pilot, lambda: values(app) == {"total": "36", "i": "8"} and not app.debugger.busy
+        )
         await until(pilot, lambda: "sleeps until 0.45 s" in drawn(app))
         app.run_controller.timeline.go(7)
         await until(pilot, lambda: values(app) == {"total": "1", "i": "1"})

@@ -33,7 +33,11 @@ def held_after(terminal: Terminal, key: str) -> tuple[int, str, str]:
     """Press a key and wait until the program stands at another line."""
     before = held_at(terminal.screen())[0]
     terminal.keys(key)
-    return held_at(terminal.until(lambda text: held_at(text)[0] not in (0, before) and not _IS_BUSY.search(text)))
+    return held_at(
+        terminal.until(
+            lambda text: held_at(text)[0] not in (0, before) and not _IS_BUSY.search(text)
+        )
+    )
 
 
 def hold_at_line_15(terminal: Terminal) -> None:

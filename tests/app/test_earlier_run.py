@@ -34,7 +34,10 @@ async def run(pilot: Pilot[None], app: LabApp, text: str) -> None:
     before = app.run_controller.run_id
     app.run_controller.program = program(text)
     await pilot.press("m", "R")
-    await until(pilot, lambda: app.run_controller.run_id != before and app.run_controller.state is RunPhase.ENDED)
+    await until(
+        pilot,
+        lambda: app.run_controller.run_id != before and app.run_controller.state is RunPhase.ENDED,
+    )
 
 
 def earlier_pose(app: LabApp) -> Pose | None:
@@ -69,7 +72,12 @@ async def test_a_key_goes_to_where_they_parted() -> None:
         await until(pilot, lambda: any(notice.startswith(none) for notice in notices(app)))
         await run(pilot, app, STRAIGHT)
         await pilot.press("exclamation_mark")
-        await until(pilot, lambda: any(notice.startswith("The robot has driven as in run") for notice in notices(app)))
+        await until(
+            pilot,
+            lambda: any(
+                notice.startswith("The robot has driven as in run") for notice in notices(app)
+            ),
+        )
         await run(pilot, app, STRAIGHT.replace("20, 20, 1", "20, 10, 1"))
         await pilot.press("exclamation_mark")
         timeline = app.run_controller.timeline
@@ -97,7 +105,9 @@ def test_without_a_run_before_it_is_the_last_stored_one_of_the_program() -> None
 
 
 def test_a_run_on_another_mat_is_not_comparable() -> None:
-    bands, shapes = (Recording(stored(STRAIGHT, {"background": mat})) for mat in ("Grey_bands", "Two_shapes"))
+    bands, shapes = (
+        Recording(stored(STRAIGHT, {"background": mat})) for mat in ("Grey_bands", "Two_shapes")
+    )
     assert is_comparable(bands, bands)
     assert not is_comparable(shapes, bands)
 

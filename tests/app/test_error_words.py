@@ -25,16 +25,34 @@ MAT = "line 1: no such mat 'Grey_bnds', did you mean Grey_bands?"
     [
         pytest.param(NAME, 76, NAME, id="it fits"),
         pytest.param(NAME, 64, NAME.removeprefix("NameError: "), id="without its class"),
-        pytest.param(NAME, 50, "no tank_drvie: did you mean tank_drive?", id="without its sentence"),
-        pytest.param(TYPO, 76, "no reflected_lihgt_intensity: did you mean reflected_light_intensity?", id="80x24"),
+        pytest.param(
+            NAME, 50, "no tank_drvie: did you mean tank_drive?", id="without its sentence"
+        ),
+        pytest.param(
+            TYPO,
+            76,
+            "no reflected_lihgt_intensity: did you mean reflected_light_intensity?",
+            id="80x24",
+        ),
         pytest.param(TYPO, 39, "did you mean reflected_light_intensity?", id="what is meant"),
         pytest.param(TYPO, 28, "reflected_light_intensity?", id="only the name"),
         pytest.param(MAT, 39, "no Grey_bnds: did you mean Grey_bands?", id="mat"),
-        pytest.param(PORT, 76, "no ColorSensor on in1; the robot has in1 us, in2 color, in4 gyro", id="port, 80x24"),
-        pytest.param(PORT, 54, "no ColorSensor on in1: in1 us, in2 color, in4 gyro", id="port and parts"),
+        pytest.param(
+            PORT,
+            76,
+            "no ColorSensor on in1; the robot has in1 us, in2 color, in4 gyro",
+            id="port, 80x24",
+        ),
+        pytest.param(
+            PORT, 54, "no ColorSensor on in1: in1 us, in2 color, in4 gyro", id="port and parts"
+        ),
         pytest.param(PORT, 39, "in1 us, in2 color, in4 gyro", id="parts"),
-        pytest.param("ZeroDivisionError: division by zero", 20, "division by zero", id="another error"),
-        pytest.param("SyntaxError: a very long sentence about it", 20, "a very long sentenc…", id="cut"),
+        pytest.param(
+            "ZeroDivisionError: division by zero", 20, "division by zero", id="another error"
+        ),
+        pytest.param(
+            "SyntaxError: a very long sentence about it", 20, "a very long sentenc…", id="cut"
+        ),
         pytest.param("boom", 0, "", id="no room"),
     ],
 )
@@ -57,7 +75,10 @@ def test_the_remedy_is_told(words: str, told: str) -> None:
 @pytest.mark.parametrize(
     ("hint", "told"),
     [
-        ("did you mean Loop? one of Loop, Square, or the path of an image", "no mat 'lop' (did you mean Loop?)"),
+        (
+            "did you mean Loop? one of Loop, Square, or the path of an image",
+            "no mat 'lop' (did you mean Loop?)",
+        ),
         ("one of Loop, Square, or the path of an image", "no mat 'lop'"),
         ("see `tuisim programs` for examples", "no mat 'lop'"),
         ("at most 10 mm", "no mat 'lop' (at most 10 mm)"),

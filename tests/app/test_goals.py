@@ -91,7 +91,11 @@ async def test_a_run_is_judged_when_it_has_ended(task: Path) -> None:
         assert "R runs the program" in screen_text(app)
         await pilot.press("R")
         await until(
-            pilot, lambda: "2 of 5 points" in shown(app) and "✗ missed said                        0/3" in shown(app)
+            pilot,
+            lambda: (
+                "2 of 5 points" in shown(app)
+                and "✗ missed said                        0/3" in shown(app)
+            ),
         )
         assert shown(app)[-1] == "Hint: Print it at the end."
         assert "R runs the program" not in screen_text(app)
@@ -119,7 +123,10 @@ async def test_a_past_instant_shows_the_goals_as_of_then(task: Path) -> None:
         panel, judgements = app.panel_area.goals, app.goals._judgements
         assert panel is not None
         tick = judgements[0].changes[0].tick
-        for at, there, total in ((tick - 1, "· open", "0 of 5 points"), (tick, "✓ met", "2 of 5 points")):
+        for at, there, total in (
+            (tick - 1, "· open", "0 of 5 points"),
+            (tick, "✓ met", "2 of 5 points"),
+        ):
             app.run_controller.timeline.go(at)
             app.draw(force=True)
             assert (state(app, "there"), state(app, "said")) == (there, "· open")
@@ -137,7 +144,9 @@ async def test_a_stored_run_is_judged(task: Path) -> None:
     assert run.wait(PATIENCE_S)
     async with LabApp(replace(made, replay=run.stored())).run_test(size=SIZE) as pilot:
         app = await ready(pilot)
-        await until(pilot, lambda: (state(app, "there"), state(app, "said")) == ("✓ met", "✗ missed"))
+        await until(
+            pilot, lambda: (state(app, "there"), state(app, "said")) == ("✓ met", "✗ missed")
+        )
 
 
 async def test_keys_and_mouse_choose_the_goal_that_is_shown_in_detail(task: Path) -> None:
@@ -235,7 +244,9 @@ async def test_goals_that_change_on_disk_are_read_again(task: Path, is_world: bo
         assert state(app, "there") == "✗ missed"
 
 
-async def test_nothing_is_judged_while_the_panel_is_closed(task: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+async def test_nothing_is_judged_while_the_panel_is_closed(
+    task: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     judged = []
     judge = app_goals._judged
 
@@ -277,7 +288,10 @@ STARTS = {
     "as the world": (["task_goals.toml"], (300.0, None, 2)),
     "as the world, of a program": (["task_goals.toml", "mine.py"], (300.0, "mine.py", 2)),
     "by option": (["--goals", "task_goals.toml", "mine.py"], (300.0, "mine.py", 2)),
-    "by option, in another world": (["--goals", "task_goals.toml", "lab.toml", "mine.py"], (700.0, "mine.py", 2)),
+    "by option, in another world": (
+        ["--goals", "task_goals.toml", "lab.toml", "mine.py"],
+        (700.0, "mine.py", 2),
+    ),
     "an example by name": (["--goals", "square"], (300.0, "square.py", 5)),
     "an example by file": (["square_goals.toml"], (300.0, "square.py", 5)),
     "no goals": (["lab.toml"], (700.0, None, 0)),
@@ -285,7 +299,9 @@ STARTS = {
 
 
 @pytest.mark.parametrize("name", STARTS)
-def test_goals_on_the_command_line(name: str, task: Path, here: Command, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_goals_on_the_command_line(
+    name: str, task: Path, here: Command, monkeypatch: pytest.MonkeyPatch
+) -> None:
     words, (x_mm, program, count) = STARTS[name]
     (task.parent / "mine.py").write_text(DRIVES)
     (task.parent / "lab.toml").write_text("start.x_mm = 700\n")
@@ -310,4 +326,7 @@ def test_wrong_goals_on_the_command_line(task: Path, here: Command) -> None:
     task.write_text(GOALS.replace("points = 2", "points = -2000"))
     done = here("open", "--goals", task.name)
     assert done.returncode == 2
-    assert "task_goals.toml, line 12: goal[1].points: must be a number from -1000 to 1000, got -2000" in done.stderr
+    assert (
+        "task_goals.toml, line 12: goal[1].points: must be a number from -1000 to 1000, got -2000"
+        in done.stderr
+    )

@@ -18,17 +18,29 @@ from tuisim.guide import tables
 @pytest.mark.parametrize(
     ("keys", "written"),
     [
-        pytest.param({"run": ("x",), "clear-log": ("f5",)}, {"run": "x", "clear-log": "f5"}, id="a key passed on"),
-        pytest.param({"run": ("S",), "stop": ("R",)}, {"run": "S", "stop": "R"}, id="two keys swapped"),
-        pytest.param({"help": ("?", "F1")}, {"help": "question_mark,f1"}, id="several, one as before"),
+        pytest.param(
+            {"run": ("x",), "clear-log": ("f5",)},
+            {"run": "x", "clear-log": "f5"},
+            id="a key passed on",
+        ),
+        pytest.param(
+            {"run": ("S",), "stop": ("R",)}, {"run": "S", "stop": "R"}, id="two keys swapped"
+        ),
+        pytest.param(
+            {"help": ("?", "F1")}, {"help": "question_mark,f1"}, id="several, one as before"
+        ),
         pytest.param({"zoom": ("Ctrl+K",)}, {"zoom": "ctrl+k"}, id="modifiers in capitals"),
         pytest.param({"zoom": ("%",)}, {"zoom": "percent_sign"}, id="a sign"),
         pytest.param({"zoom": ("ä",)}, {"zoom": "ä"}, id="another letter"),
     ],
 )
-def test_keys_are_those_of_the_user(keys: dict[str, tuple[str, ...]], written: dict[str, str]) -> None:
+def test_keys_are_those_of_the_user(
+    keys: dict[str, tuple[str, ...]], written: dict[str, str]
+) -> None:
     found = with_keys(ACTIONS, UserConfig(Path("config.toml"), keys=keys))
-    assert {name: action.key for name, action in found.items() if action != ACTIONS[name]} == written
+    assert {
+        name: action.key for name, action in found.items() if action != ACTIONS[name]
+    } == written
 
 
 async def test_the_new_key_works_and_is_shown_and_the_old_one_does_nothing(tmp_path: Path) -> None:
@@ -52,7 +64,9 @@ async def test_the_new_key_works_and_is_shown_and_the_old_one_does_nothing(tmp_p
 
 @pytest.mark.quick_cases("positioning-*")
 @pytest.mark.parametrize(("panel", "shown"), [("positioning", "[ Start"), ("settings", "% Robots")])
-async def test_the_words_of_a_panel_follow_the_new_key(panel: str, shown: str, tmp_path: Path) -> None:
+async def test_the_words_of_a_panel_follow_the_new_key(
+    panel: str, shown: str, tmp_path: Path
+) -> None:
     (tmp_path / "config.toml").write_text("[keys]\nrobot = '%'\nhome = '['\nslower = 'm'\n")
     async with LabApp(settings(panels_on=frozenset({panel}))).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)
@@ -66,7 +80,12 @@ async def test_notices_and_panels_name_the_new_key(panel: str, tmp_path: Path) -
         app = await ready(pilot)
         await until(pilot, lambda: "% opens one" in screen_text(app))
         await pilot.press("ctrl+k")
-        await until(pilot, lambda: [notice.message for notice in app._notifications] == ["No program yet: % opens one"])
+        await until(
+            pilot,
+            lambda: (
+                [notice.message for notice in app._notifications] == ["No program yet: % opens one"]
+            ),
+        )
 
 
 async def test_the_welcome_obeys_the_new_key(tmp_path: Path) -> None:
@@ -79,12 +98,17 @@ async def test_the_welcome_obeys_the_new_key(tmp_path: Path) -> None:
 
 
 async def test_a_wrong_file_is_told_and_the_app_works_with_what_is_right(tmp_path: Path) -> None:
-    (tmp_path / "config.toml").write_text("[app]\ntheme = 'light'\nfps = 0\n[keys]\npen = 'R'\nzoom = 'ctrl+k'\n")
+    (tmp_path / "config.toml").write_text(
+        "[app]\ntheme = 'light'\nfps = 0\n[keys]\npen = 'R'\nzoom = 'ctrl+k'\n"
+    )
     async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)
         await until(pilot, lambda: len(app._notifications) == 2)
         said = [notice.message for notice in app._notifications]
-        assert ["app.fps: must be" in said[0], "R is also the key of run" in said[1]] == [True, True]
+        assert ["app.fps: must be" in said[0], "R is also the key of run" in said[1]] == [
+            True,
+            True,
+        ]
         assert app.theme == "light"
         assert app.ACTIONS is ACTIONS or dict(app.ACTIONS) == dict(ACTIONS)
 
@@ -93,7 +117,9 @@ def test_the_guide_shows_the_keys_of_the_user_but_not_to_others(tmp_path: Path) 
     (tmp_path / "config.toml").write_text("[keys]\npen = '%'\n")
     tables.table.cache_clear()
     try:
-        mine, usual = (tables.table("keys", for_others=others).markdown() for others in (False, True))
+        mine, usual = (
+            tables.table("keys", for_others=others).markdown() for others in (False, True)
+        )
     finally:
         tables.table.cache_clear()
     assert "| `%` | Pen up or down |" in mine

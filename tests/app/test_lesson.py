@@ -12,7 +12,16 @@ from textual.pilot import Pilot
 from textual.widgets import Static
 
 from tests.app.app_help import ready, until
-from tests.app.lesson_help import LARGE, SMALL, opened, run_over, shown, states, type_answer, with_lines
+from tests.app.lesson_help import (
+    LARGE,
+    SMALL,
+    opened,
+    run_over,
+    shown,
+    states,
+    type_answer,
+    with_lines,
+)
 from tuisim.analysis.source import NOTES_FILE, Note, write_notes
 from tuisim.app.analyser.app import Analyser
 from tuisim.app.app import LabApp
@@ -50,9 +59,9 @@ async def test_answer_about_another_place_is_not_wrong(tmp_path: Path) -> None:
 
 @pytest.mark.usefixtures("home")
 async def test_note_that_does_not_pass_is_told_why(tmp_path: Path) -> None:
-    async with LabApp(opened(tmp_path, "note = { matches = 'dark', level = 86 }\nmodel = 'dark'")).run_test(
-        size=SMALL
-    ) as pilot:
+    async with LabApp(
+        opened(tmp_path, "note = { matches = 'dark', level = 86 }\nmodel = 'dark'")
+    ).run_test(size=SMALL) as pilot:
         app = await ready(pilot)
         app.lesson.skip_step()
         app.lesson.skip_step()
@@ -60,13 +69,17 @@ async def test_note_that_does_not_pass_is_told_why(tmp_path: Path) -> None:
         recording = app.run_controller.timeline.recording
         assert recording is not None
         write_notes(recording.folder / NOTES_FILE, [Note("dark", 0.0, 0.1, "Level")])
-        words = "Your note “dark” is on samples with a mean of 50.0; this step is about those with 86."
+        words = (
+            "Your note “dark” is on samples with a mean of 50.0; this step is about those with 86."
+        )
         await until(pilot, lambda: words in " ".join(shown(app).split()))
 
 
 @pytest.mark.usefixtures("home")
 async def test_panel_of_a_paused_program(tmp_path: Path) -> None:
-    async with LabApp(opened(tmp_path, "show = { panel = 'debug', paused = true }")).run_test(size=SMALL) as pilot:
+    async with LabApp(opened(tmp_path, "show = { panel = 'debug', paused = true }")).run_test(
+        size=SMALL
+    ) as pilot:
         app = await ready(pilot)
         app.lesson.skip_step()
         app.lesson.skip_step()
@@ -94,7 +107,9 @@ async def test_lesson_is_in_sight_while_one_types_in_a_small_terminal(tmp_path: 
 
 @pytest.mark.usefixtures("home")
 @pytest.mark.parametrize(("size", "has_world"), [(SMALL, False), (LARGE, True)], ids=["80", "120"])
-async def test_lesson_is_beside_the_log(size: tuple[int, int], has_world: bool, tmp_path: Path) -> None:
+async def test_lesson_is_beside_the_log(
+    size: tuple[int, int], has_world: bool, tmp_path: Path
+) -> None:
     async with LabApp(opened(tmp_path, PLACED)).run_test(size=size) as pilot:
         app = await ready(pilot)
         await run_over(pilot, app)
@@ -103,7 +118,9 @@ async def test_lesson_is_beside_the_log(size: tuple[int, int], has_world: bool, 
         analyser = app.screen
         assert isinstance(analyser, Analyser)
         beside = analyser.query_one(LessonPanel)
-        await until(pilot, lambda: beside.region.width >= 32 and analyser.world.display is has_world)
+        await until(
+            pilot, lambda: beside.region.width >= 32 and analyser.world.display is has_world
+        )
         await pilot.press("w")
         await until(pilot, lambda: analyser.world.display is not has_world)
         assert beside.display is has_world
@@ -118,7 +135,8 @@ async def test_program_is_tried_from_another_start(tmp_path: Path) -> None:
     text = (tmp_path / "lessons" / "try.md").read_text()
     # 20 mm of tolerance, and a start 40 mm farther back.
     wide = text.replace(
-        'run = "far"', "run = { goals = ['far'], also = [{ where = 'from farther back', start = { x_mm = 460 } }] }"
+        'run = "far"',
+        "run = { goals = ['far'], also = [{ where = 'from farther back', start = { x_mm = 460 } }] }",
     )
     (tmp_path / "lessons" / "try.md").write_text(wide)
     async with LabApp(made).run_test(size=LARGE) as pilot:
@@ -127,7 +145,8 @@ async def test_program_is_tried_from_another_start(tmp_path: Path) -> None:
         app.lesson.skip_step()
         await run_over(pilot, app)
         words = (
-            "Also tried from farther back, it does not work (start x = 460 mm): At the end the robot was 40 mm left of"
+            "Also tried from farther back, it does not work (start x = 460 mm): "
+            "At the end the robot was 40 mm left of"
         )
         await until(pilot, lambda: words in " ".join(shown(app).split()))
         assert "drive" not in states()
@@ -145,7 +164,10 @@ async def test_lesson_scrolls_while_one_types_in_a_small_terminal(tmp_path: Path
         app = await ready(pilot)
         await pilot.press("d")
         code, lesson = app.panel_area.code, app.panel_area.lesson
-        await until(pilot, lambda: code is not None and code.typing and "1. Think" in shown(app).split("\n")[1])
+        await until(
+            pilot,
+            lambda: code is not None and code.typing and "1. Think" in shown(app).split("\n")[1],
+        )
         assert code is not None and lesson is not None
         cursor = code.cursor_line
         assert "ctrl+↑ ctrl+↓ read on" in str(lesson.border_subtitle)
@@ -162,13 +184,17 @@ async def test_lesson_scrolls_while_one_types_in_a_small_terminal(tmp_path: Path
 @pytest.mark.usefixtures("home")
 async def test_way_to_the_next_lesson_is_in_sight_in_a_small_terminal(tmp_path: Path) -> None:
     made = opened(tmp_path)
-    (tmp_path / "lessons" / "zz.md").write_text((tmp_path / "lessons" / "try.md").read_text().replace("Try it", "Next"))
+    (tmp_path / "lessons" / "zz.md").write_text(
+        (tmp_path / "lessons" / "try.md").read_text().replace("Try it", "Next")
+    )
     async with LabApp(made).run_test(size=SMALL) as pilot:
         app = await ready(pilot)
         app.lesson.skip_step()
         app.lesson.skip_step()
         await pilot.press("c")
-        await until(pilot, lambda: "M, then enter: the next lesson, Next." in " ".join(shown(app).split()))
+        await until(
+            pilot, lambda: "M, then enter: the next lesson, Next." in " ".join(shown(app).split())
+        )
 
 
 @pytest.mark.usefixtures("home")

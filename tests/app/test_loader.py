@@ -9,7 +9,17 @@ import pytest
 from textual.pilot import Pilot
 from textual.widgets import Input
 
-from tests.app.app_help import ENDLESS, LOGS, message_of, notices, ready, screen_text, settings, until, until_shown
+from tests.app.app_help import (
+    ENDLESS,
+    LOGS,
+    message_of,
+    notices,
+    ready,
+    screen_text,
+    settings,
+    until,
+    until_shown,
+)
 from tuisim.app.app import AppSettings, LabApp
 from tuisim.app.snapshot import RunPhase
 from tuisim.config.build import build_run_spec
@@ -116,7 +126,12 @@ def with_magic(words: str) -> str:
 @pytest.mark.quick_cases("chart")
 @pytest.mark.parametrize(
     ("words", "panel", "shown"),
-    [(" -c", "chart", True), (" -X", "positioning", True), (" -W", "world", False), (" -O", "output", True)],
+    [
+        (" -c", "chart", True),
+        (" -X", "positioning", True),
+        (" -W", "world", False),
+        (" -O", "output", True),
+    ],
     ids=["chart", "positioning", "no world", "shown anyway"],
 )
 async def test_panels_of_a_magic_line_come_and_go_as_it_is_saved(
@@ -182,7 +197,11 @@ async def test_what_cannot_be_written_is_told(folder: Path) -> None:
             app.screen.query_one(Input).value = typed
             await pilot.press("enter")
             await until_shown(pilot, said)
-        assert sorted(path.name for path in folder.iterdir()) == ["lab.toml", "mine.py", "mine.toml"]
+        assert sorted(path.name for path in folder.iterdir()) == [
+            "lab.toml",
+            "mine.py",
+            "mine.toml",
+        ]
 
 
 async def test_a_changed_program_is_reloaded_at_once(folder: Path) -> None:
@@ -223,7 +242,11 @@ async def test_a_changed_magic_line_applies_what_is_new_in_it(folder: Path) -> N
         path.write_text(MINE.replace("Loop", "Square"))
         look(app)
         spec = app.run_controller.next_run.spec
-        assert (spec.world.background, spec.robot.name, spec.world.noise.motor) == ("Square", "Default_Robot", 0)
+        assert (spec.world.background, spec.robot.name, spec.world.noise.motor) == (
+            "Square",
+            "Default_Robot",
+            0,
+        )
         await until(pilot, lambda: app.loader.mat_is_ready)
 
 
@@ -237,13 +260,19 @@ async def test_a_program_changed_during_a_run_waits_for_its_end(folder: Path) ->
         await until(pilot, lambda: app.run_controller.state == RunPhase.RUNNING)
         path.write_text("print('Later: 2')\n")
         look(app)
-        await until(pilot, lambda: notices(app) == ["mine.py changed on disk: reloaded when the run ends"])
+        await until(
+            pilot, lambda: notices(app) == ["mine.py changed on disk: reloaded when the run ends"]
+        )
         assert app.run_controller.program is not None
         assert app.run_controller.program.text == ENDLESS
         await pilot.press("S")
         await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED)
         await until(
-            pilot, lambda: app.run_controller.program is not None and "Later" in app.run_controller.program.text
+            pilot,
+            lambda: (
+                app.run_controller.program is not None
+                and "Later" in app.run_controller.program.text
+            ),
         )
 
 
@@ -285,7 +314,9 @@ async def test_robot_obstacles_and_world_are_reloaded(folder: Path) -> None:
         look(app)
         spec = app.run_controller.next_run.spec
         assert (spec.robot.wheel_diameter_mm, len(spec.world.obstacles)) == (44, 1)
-        (folder / "lab.toml").write_text((folder / "lab.toml").read_text().replace("light = 7", "light = 8"))
+        (folder / "lab.toml").write_text(
+            (folder / "lab.toml").read_text().replace("light = 7", "light = 8")
+        )
         look(app)
         assert app.run_controller.next_run.spec.world.noise.light == 8
         assert app.run_controller.next_run.spec.robot.wheel_diameter_mm == 44
@@ -313,7 +344,9 @@ async def test_the_command_opens_a_world_that_is_watched(folder: Path) -> None:
 
 
 @pytest.mark.slow
-async def test_an_example_is_opened_by_its_name_and_the_footer_shows_the_keys_again(folder: Path) -> None:
+async def test_an_example_is_opened_by_its_name_and_the_footer_shows_the_keys_again(
+    folder: Path,
+) -> None:
     async with LabApp(settings()).run_test(size=(80, 24)) as pilot:
         app = await ready(pilot)
         await pilot.press("o", *"log_greys", "enter")
@@ -325,7 +358,9 @@ async def test_an_example_is_opened_by_its_name_and_the_footer_shows_the_keys_ag
 
 
 @pytest.mark.slow
-async def test_the_output_has_the_name_of_its_own_program_until_another_one_runs(folder: Path) -> None:
+async def test_the_output_has_the_name_of_its_own_program_until_another_one_runs(
+    folder: Path,
+) -> None:
     async with LabApp(with_file(folder / "mine.py", speed=0.0)).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)
         output = app.panel_area.output

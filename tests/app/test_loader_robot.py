@@ -30,7 +30,9 @@ def opened(path: Path) -> AppSettings:
     source = read_program(path)
     found = program_settings(source)
     spec = build_run_spec(found.settings)
-    return AppSettings(spec=spec, settings=found.settings, program=source.program, decided=found.decided)
+    return AppSettings(
+        spec=spec, settings=found.settings, program=source.program, decided=found.decided
+    )
 
 
 def extra_ports(app: LabApp) -> list[str]:
@@ -40,7 +42,10 @@ def extra_ports(app: LabApp) -> list[str]:
 async def test_it_is_told_and_the_dialog_lists_its_ports(claw: Path) -> None:
     async with LabApp(opened(claw)).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)
-        await until(pilot, lambda: any("built from it: medium motor on outA" in notice for notice in notices(app)))
+        await until(
+            pilot,
+            lambda: any("built from it: medium motor on outA" in notice for notice in notices(app)),
+        )
         await pilot.press("r")
         await until(pilot, lambda: "Robot of claw.py" in screen_text(app))
         for part in ("B C wheels", "A   medium motor", "1   ultrasonic", "2   left", "4   gyro"):
@@ -54,7 +59,12 @@ async def test_what_the_brick_would_refuse_is_told(claw: Path) -> None:
     claw.write_text("from pybricks.tools import wait\nprint(f'{1}')\n")
     async with LabApp(opened(claw)).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)
-        await until(pilot, lambda: any("claw.py:2: the brick's Python would refuse" in one for one in notices(app)))
+        await until(
+            pilot,
+            lambda: any(
+                "claw.py:2: the brick's Python would refuse" in one for one in notices(app)
+            ),
+        )
 
 
 async def test_another_robot_is_chosen_and_the_program_s_again(claw: Path) -> None:
@@ -108,7 +118,11 @@ async def test_programs_of_both_libraries_run_one_after_another(claw: Path) -> N
     start = AppSettings(spec=build_run_spec(settings), settings=settings, decided=decided)
     async with LabApp(start).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)
-        for name, profile in (("drives", "lego-micropython"), ("claw", "ev3"), ("drives", "lego-micropython")):
+        for name, profile in (
+            ("drives", "lego-micropython"),
+            ("claw", "ev3"),
+            ("drives", "lego-micropython"),
+        ):
             app.loader.open_file(str(claw.parent / f"{name}.py"))
             await until(pilot, lambda: app.loader.mat_is_ready)
             await pilot.press("R")
@@ -119,7 +133,9 @@ async def test_programs_of_both_libraries_run_one_after_another(claw: Path) -> N
             assert str(run.stored().state) == "finished"
 
 
-async def test_a_chosen_profile_that_does_not_fit_the_program_is_told_when_it_is_to_run(claw: Path) -> None:
+async def test_a_chosen_profile_that_does_not_fit_the_program_is_told_when_it_is_to_run(
+    claw: Path,
+) -> None:
     async with LabApp(opened(claw)).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)
         app.loader.attempt(lambda plan: plans.with_profile(plan, "pybricks4"))

@@ -21,7 +21,9 @@ USERS = frozenset({"code", "output"})
 """Panels with the user's own text, whose lines may be longer than any panel."""
 CUT = re.compile(r"\S…")
 """The end of a text that was cut; `go to …` is a text of its own."""
-in_each_size = pytest.mark.parametrize("size", [*SIZES, (40, 12)], ids=lambda size: f"{size[0]}x{size[1]}")
+in_each_size = pytest.mark.parametrize(
+    "size", [*SIZES, (40, 12)], ids=lambda size: f"{size[0]}x{size[1]}"
+)
 
 
 def cut(app: LabApp) -> Iterator[str]:
@@ -29,7 +31,9 @@ def cut(app: LabApp) -> Iterator[str]:
     for name, box in app.panel_area.arrangement.boxes.items():
         panel = app.panel_area.panels[name]
         if name not in USERS and CUT.search(text_of(app, panel)):
-            yield f"{name}: " + next(line for line in text_of(app, panel).split("\n") if CUT.search(line))
+            yield f"{name}: " + next(
+                line for line in text_of(app, panel).split("\n") if CUT.search(line)
+            )
         for title in (panel.border_title, panel.border_subtitle):
             if name not in USERS and title and cell_len(str(title)) > box.width - 6:
                 yield f"{name}: {title}"
@@ -72,7 +76,10 @@ async def test_the_world_is_as_large_as_its_panel(size: tuple[int, int]) -> None
         port = view._port
         assert port is not None
         cell = view.cell_for(view.graphics)
-        columns, rows = FIELD_WIDTH_MM / port.mm_per_px / cell.cols, FIELD_HEIGHT_MM / port.mm_per_row / cell.rows
+        columns, rows = (
+            FIELD_WIDTH_MM / port.mm_per_px / cell.cols,
+            FIELD_HEIGHT_MM / port.mm_per_row / cell.rows,
+        )
         # The whole mat, with one of its sides as long as the panel's, within a cell.
         assert columns <= view.size.width + 1 and rows <= view.size.height + 1
         assert columns >= view.size.width - 1 or rows >= view.size.height - 1

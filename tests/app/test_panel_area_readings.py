@@ -31,4 +31,6 @@ async def test_all_readings_are_of_one_instant() -> None:
         await until(pilot, has_seen_five)
         await pilot.press("S")
         await until(pilot, lambda: run.state == RunPhase.ENDED)
-        await until(pilot, lambda: f"{run.timeline.newest / run.timeline.tick_hz:.2f} s" in screen_text(app))
+        await until(
+            pilot, lambda: f"{run.timeline.newest / run.timeline.tick_hz:.2f} s" in screen_text(app)
+        )

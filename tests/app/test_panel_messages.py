@@ -35,6 +35,8 @@ async def test_the_panel_is_named_once_while_it_is_hidden() -> None:
         app = await ready(pilot)
         for _ in range(2):
             await pilot.press("R")
-            await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED and not app._last_words)
+            await until(
+                pilot, lambda: app.run_controller.state == RunPhase.ENDED and not app._last_words
+            )
         expected = [notice for notice in notices(app) if notice.startswith("The program")]
         assert expected == ["The program uses the brick's display: K opens its panel"]

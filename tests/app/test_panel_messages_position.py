@@ -12,7 +12,9 @@ from tuisim.core.geometry import Pose
 
 @pytest.mark.slow
 async def test_bad_position_is_refused_with_a_reason() -> None:
-    async with LabApp(settings(LOGS, panels_on=frozenset({"positioning"}))).run_test(size=(120, 40)) as pilot:
+    async with LabApp(settings(LOGS, panels_on=frozenset({"positioning"}))).run_test(
+        size=(120, 40)
+    ) as pilot:
         app = await ready(pilot)
         await until(pilot, lambda: len(app.query("Positioning Input")) == 3)
         for field, typed, message in (
@@ -33,7 +35,9 @@ async def test_bad_position_is_refused_with_a_reason() -> None:
 
 
 async def test_good_position_is_applied() -> None:
-    async with LabApp(settings(LOGS, panels_on=frozenset({"positioning"}))).run_test(size=(120, 40)) as pilot:
+    async with LabApp(settings(LOGS, panels_on=frozenset({"positioning"}))).run_test(
+        size=(120, 40)
+    ) as pilot:
         app = await ready(pilot)
         await until(pilot, lambda: len(app.query("Positioning Input")) == 3)
         app.query_one("#x", Input).focus()

@@ -37,7 +37,9 @@ async def test_the_chart_is_what_was_drawn(protocol: Protocol) -> None:
     async with on_wire(LabApp(settings(panels_on=frozenset({"chart"}))), "truecolor") as pilot:
         await answered(pilot, ANSWERS[protocol])
         view = _fed(pilot, 7.9)
-        await until(pilot, lambda: view._tiles is not None and not pilot.app.query_one(Chart)._dirty)
+        await until(
+            pilot, lambda: view._tiles is not None and not pilot.app.query_one(Chart)._dirty
+        )
         await until_quiet(pilot)
         # With other limits everything would move.
         chart = pilot.app.query_one(Chart)
@@ -79,7 +81,9 @@ def _is_of_pixels(view: PlotView) -> bool:
 
 
 @pytest.mark.slow
-async def test_a_chart_falls_back_to_characters_and_returns_to_pixels(monkeypatch: pytest.MonkeyPatch) -> None:
+async def test_a_chart_falls_back_to_characters_and_returns_to_pixels(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     async with on_wire(LabApp(settings(panels_on=frozenset({"chart"}))), "truecolor") as pilot:
         await answered(pilot, ANSWERS[Protocol.KITTY])
         view = _fed(pilot, 5.0)

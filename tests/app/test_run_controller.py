@@ -47,7 +47,11 @@ async def test_the_end_says_that_the_robot_stood_at_a_wall() -> None:
         stood = "stood at the wall from 0.77 s on, its wheels pushed for 1.2 s"
         # The output panel breaks the line.
         await until(
-            pilot, lambda: "— finished at 2.00 s" in screen_text(app) and "stood at the wall" in screen_text(app)
+            pilot,
+            lambda: (
+                "— finished at 2.00 s" in screen_text(app)
+                and "stood at the wall" in screen_text(app)
+            ),
         )
         assert f"finished, {stood}" not in notices(app)
 
@@ -75,7 +79,9 @@ async def test_the_same_run_again_gives_the_same_log(tmp_path: Path) -> None:
 async def test_export_asks_before_it_replaces_a_file(tmp_path: Path) -> None:
     target = tmp_path / "old.csv"
     target.write_text("mine")
-    async with LabApp(settings("print('A: 1')\n", autorun=True, speed=0.0)).run_test(size=(120, 40)) as pilot:
+    async with LabApp(settings("print('A: 1')\n", autorun=True, speed=0.0)).run_test(
+        size=(120, 40)
+    ) as pilot:
         app = await ready(pilot)
         await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED)
         await pilot.press("e")
@@ -89,7 +95,9 @@ async def test_export_asks_before_it_replaces_a_file(tmp_path: Path) -> None:
         assert target.read_text() == "mine"
         await pilot.press("enter")
         await until(pilot, lambda: len(app.screen_stack) == 1)
-        await until(pilot, lambda: any(text.endswith("its units: old.csv.json") for text in notices(app)))
+        await until(
+            pilot, lambda: any(text.endswith("its units: old.csv.json") for text in notices(app))
+        )
     assert target.read_text() != "mine"
 
 
@@ -98,7 +106,10 @@ async def test_pause_one_tick_go_on_and_stop() -> None:
         app = await ready(pilot)
         await until(
             pilot,
-            lambda: app.run_controller.state == RunPhase.RUNNING and app.run_controller.snapshot().instant.tick > 5,
+            lambda: (
+                app.run_controller.state == RunPhase.RUNNING
+                and app.run_controller.snapshot().instant.tick > 5
+            ),
         )
         await pilot.press("space")
         await until(pilot, lambda: app.run_controller.state == RunPhase.PAUSED)
@@ -125,7 +136,10 @@ async def test_the_robot_can_be_placed_during_a_run() -> None:
         last = recording.telemetry.last()
         assert last is not None
         # The recording ends in the middle of the drive; what is shown is a robot that stands.
-        assert (last.left_speed_dps > 0, app.run_controller.snapshot().instant.left_speed_dps) == (True, 0.0)
+        assert (last.left_speed_dps > 0, app.run_controller.snapshot().instant.left_speed_dps) == (
+            True,
+            0.0,
+        )
         await pilot.press("R")
         await until(pilot, lambda: app.run_controller.state == RunPhase.RUNNING)
         # A run begins where the last one began, unless the robot was placed at rest.
@@ -133,12 +147,17 @@ async def test_the_robot_can_be_placed_during_a_run() -> None:
 
 
 async def test_an_error_is_shown_with_its_line() -> None:
-    async with LabApp(settings("print('A: 1')\nprint(nothing)\n", autorun=True)).run_test(size=(120, 40)) as pilot:
+    async with LabApp(settings("print('A: 1')\nprint(nothing)\n", autorun=True)).run_test(
+        size=(120, 40)
+    ) as pilot:
         app = await ready(pilot)
         await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED)
         await until(pilot, lambda: all(words in screen_text(app) for words in ("NameError", "✗ 2")))
         assert screen_text(app).count("Traceback") == 1
-        await until(pilot, lambda: "name 'nothing' is not defined" in str(app.query_one(Code).border_subtitle))
+        await until(
+            pilot,
+            lambda: "name 'nothing' is not defined" in str(app.query_one(Code).border_subtitle),
+        )
         assert not any("NameError" in notice for notice in notices(app))
 
 
@@ -208,7 +227,9 @@ async def test_quit_during_a_run_asks_and_leaves_no_child() -> None:
     assert run.ended is not None
 
 
-async def test_a_mat_that_failed_is_prepared_again_for_a_run(monkeypatch: pytest.MonkeyPatch) -> None:
+async def test_a_mat_that_failed_is_prepared_again_for_a_run(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     open_field, tries = mat_cache.open_field, []
 
     def opened(files: mat_cache.FieldFiles) -> Field:
@@ -228,7 +249,12 @@ async def test_a_mat_that_failed_is_prepared_again_for_a_run(monkeypatch: pytest
 async def test_no_words_say_that_the_robot_stands_before_it_does() -> None:
     async with LabApp(settings(ENDLESS, autorun=True)).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)
-        await until(pilot, lambda: app.run_controller.state == RunPhase.RUNNING and app.run_controller.pose.x_mm > 160)
+        await until(
+            pilot,
+            lambda: (
+                app.run_controller.state == RunPhase.RUNNING and app.run_controller.pose.x_mm > 160
+            ),
+        )
         # The terminal still shows the last frame: no further one is due.
         app.pacer.ready = lambda: False  # type: ignore[method-assign]
         for key, word in (("space", "paused"), ("S", "stopped")):

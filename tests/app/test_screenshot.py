@@ -26,7 +26,8 @@ pytestmark = pytest.mark.usefixtures("home")
 def words_in(path: Path) -> str:
     """The text in an SVG file, without spaces."""
     return "".join(
-        "".join(node.itertext()) for node in ElementTree.parse(path).iter("{http://www.w3.org/2000/svg}text")
+        "".join(node.itertext())
+        for node in ElementTree.parse(path).iter("{http://www.w3.org/2000/svg}text")
     )
 
 
@@ -43,7 +44,9 @@ def _in_a_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 async def test_a_key_saves_the_screen_and_names_the_files(tmp_path: Path) -> None:
     async with LabApp(settings()).run_test(size=(100, 30)) as pilot:
         app = await ready(pilot)
-        await until(pilot, lambda: any(look.ink == GREY for row in screen_cells(app) for _, look in row))
+        await until(
+            pilot, lambda: any(look.ink == GREY for row in screen_cells(app) for _, look in row)
+        )
         for number, key in enumerate(("I", "f12"), 1):
             await pilot.press(key)
             said = f"Saved tuisim-{number}.svg and tuisim-{number}.png in {tmp_path}"
@@ -63,9 +66,15 @@ async def test_a_dialog_and_the_screen_below_it(tmp_path: Path) -> None:
         await until(pilot, lambda: len(app.screen_stack) == 2)
         await pilot.press("f12")
         await until(pilot, lambda: (tmp_path / "tuisim-1.png").exists())
-    assert {word for word in ("Grey_bands", "Lollipop", "World") if word in words_in(tmp_path / "tuisim-1.svg")} == {
-        "Grey_bands", "Lollipop", "World",
-    }  # fmt: skip
+    assert {
+        word
+        for word in ("Grey_bands", "Lollipop", "World")
+        if word in words_in(tmp_path / "tuisim-1.svg")
+    } == {
+        "Grey_bands",
+        "Lollipop",
+        "World",
+    }
 
 
 @pytest.mark.slow
@@ -90,10 +99,17 @@ async def test_the_analyser(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-async def test_a_folder_that_cannot_be_written(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+async def test_a_folder_that_cannot_be_written(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     gone = tmp_path / "gone"
     monkeypatch.setattr(Path, "cwd", lambda: gone)
     async with LabApp(settings()).run_test(size=(100, 30)) as pilot:
         app = await ready(pilot)
         await pilot.press("I")
-        await until(pilot, lambda: f"cannot write {gone / 'tuisim-1.svg'}: there is no folder {gone}" in notices(app))
+        await until(
+            pilot,
+            lambda: (
+                f"cannot write {gone / 'tuisim-1.svg'}: there is no folder {gone}" in notices(app)
+            ),
+        )

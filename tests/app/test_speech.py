@@ -33,7 +33,9 @@ def test_a_tone_has_its_length_pitch_and_pause() -> None:
 @pytest.mark.slow
 def test_silence_and_the_longest_sound() -> None:
     assert not any(samples(wav_of([[0.0, 100.0, 0.0]])))
-    assert len(samples(wav_of([[100.0, 1e9, 1e9], [100.0, 1e9, 0.0]]))) == int(MAX_SOUND_S * RATE_HZ)
+    assert len(samples(wav_of([[100.0, 1e9, 1e9], [100.0, 1e9, 0.0]]))) == int(
+        MAX_SOUND_S * RATE_HZ
+    )
 
 
 @pytest.fixture
@@ -73,11 +75,17 @@ def test_files_are_played(players: Path, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("quiet", "environment"), [(True, {}), (False, {"SSH_TTY": "/dev/pts/1"})], ids=["quiet", "remote"]
+    ("quiet", "environment"),
+    [(True, {}), (False, {"SSH_TTY": "/dev/pts/1"})],
+    ids=["quiet", "remote"],
 )
 def test_nothing_is_heard(players: Path, quiet: bool, environment: dict[str, str]) -> None:
     voice = Voice(quiet, environment)
-    for sound in (Spoke("hello", 0), Spoke("[beep]", 0, "[[440, 50, 0]]"), Spoke("[x]", 0, "", "/dev/null")):
+    for sound in (
+        Spoke("hello", 0),
+        Spoke("[beep]", 0, "[[440, 50, 0]]"),
+        Spoke("[x]", 0, "", "/dev/null"),
+    ):
         voice.play(sound)
     assert voice._sounding is None
     voice.stop()

@@ -11,7 +11,11 @@ from tests.app.terminals import Terminal
 from tuisim.app.app import LabApp
 from tuisim.app.terminal_app import MINIMUM, is_too_small, message_lines
 
-SIZES = [Size(width, height) for width in range(1, MINIMUM.width + 1) for height in range(1, MINIMUM.height + 1)]
+SIZES = [
+    Size(width, height)
+    for width in range(1, MINIMUM.width + 1)
+    for height in range(1, MINIMUM.height + 1)
+]
 
 
 def test_the_message_fits_in_every_size() -> None:
@@ -39,7 +43,9 @@ def test_the_message_says_as_much_as_fits(size: Size, expected: str) -> None:
 
 @pytest.mark.quick_cases("20x5")
 @pytest.mark.parametrize("size", [(20, 5), (1, 1), (300, 8)], ids=["20x5", "1x1", "300x8"])
-async def test_a_terminal_that_shrinks_and_grows_again_shows_what_it_showed(size: tuple[int, int]) -> None:
+async def test_a_terminal_that_shrinks_and_grows_again_shows_what_it_showed(
+    size: tuple[int, int],
+) -> None:
     async with LabApp(settings(LOGS)).run_test(size=(80, 24)) as pilot:
         app = await ready(pilot)
         await until(pilot, lambda: all(words in screen_text(app) for words in ("White", "Gyro")))
@@ -58,7 +64,9 @@ async def test_what_is_not_seen_is_not_clicked_on() -> None:
         # The words of the keys are in the last row that is laid out.
         for x in range(20):
             for kind in (events.MouseDown, events.MouseUp):
-                app.post_message(kind(None, x, 17, 0, 0, 1, False, False, False, screen_x=x, screen_y=17))
+                app.post_message(
+                    kind(None, x, 17, 0, 0, 1, False, False, False, screen_x=x, screen_y=17)
+                )
         await pilot.pause()
         assert (len(app.screen_stack), app.run_controller.run) == (1, None)
 

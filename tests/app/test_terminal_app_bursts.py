@@ -22,12 +22,17 @@ from tuisim.terminal.queries import AnswerParser
 ENTER, TAB, BACK_TAB, BACKSPACE, DELETE = "\r", "\t", "\x1b[Z", "\x7f", "\x1b[3~"
 UP, DOWN, RIGHT, LEFT, HOME, END = "\x1b[A", "\x1b[B", "\x1b[C", "\x1b[D", "\x1b[H", "\x1b[F"
 PAGE_UP, PAGE_DOWN, F3 = "\x1b[5~", "\x1b[6~", "\x1bOR"
-CTRL_A, CTRL_F, CTRL_G, CTRL_P, CTRL_S, CTRL_T, CTRL_U, CTRL_Y, CTRL_Z = map(chr, (1, 6, 7, 16, 19, 20, 21, 25, 26))
+CTRL_A, CTRL_F, CTRL_G, CTRL_P, CTRL_S, CTRL_T, CTRL_U, CTRL_Y, CTRL_Z = map(
+    chr, (1, 6, 7, 16, 19, 20, 21, 25, 26)
+)
 MOVES = [UP, DOWN, LEFT, RIGHT, HOME, END, PAGE_UP, PAGE_DOWN]
 EDITS = [BACKSPACE, BACKSPACE, BACKSPACE, DELETE, TAB, ENTER]
 SURFACES: dict[str, tuple[str, list[str]]] = {
     # What opens it, and what is pressed there, or in the lab once it is closed: no key that quits or runs.
-    "editor": ("d", [*"abc :(#", *MOVES, *EDITS, CTRL_A, CTRL_F, CTRL_G, CTRL_U, CTRL_Y, CTRL_Z, F3, BACK_TAB]),
+    "editor": (
+        "d",
+        [*"abc :(#", *MOVES, *EDITS, CTRL_A, CTRL_F, CTRL_G, CTRL_U, CTRL_Y, CTRL_Z, F3, BACK_TAB],
+    ),
     "dialogs": ("", [*"pvpv./", *MOVES, *EDITS, CTRL_S, "g", "T"]),
     "chooser": ("o", [*"pk./", *MOVES, *EDITS, BACK_TAB, "o"]),
     "analyser": ("", [*"bcdmnz+-", *MOVES, ENTER, TAB, BACKSPACE]),
@@ -49,7 +54,10 @@ async def settle(pilot: Pilot[Any]) -> None:
     app = pilot.app
     assert isinstance(app, TerminalApp)
     await pilot.pause()
-    await until(pilot, lambda: app._exit or (app._input.is_idle and all(one.is_finished for one in app.workers)))
+    await until(
+        pilot,
+        lambda: app._exit or (app._input.is_idle and all(one.is_finished for one in app.workers)),
+    )
     await pilot.pause()
 
 
@@ -67,12 +75,22 @@ def state(app: App[Any]) -> list[object]:
     for screen in app.screen_stack:
         if isinstance(screen, Analyser):
             model = screen.model
-            found += [screen.pane.name_shown, screen.pane.chosen, model.row, model.selected, len(model.notes)]
-    found.append(sorted((path.name, path.read_text()) for path in Path.cwd().iterdir() if path.is_file()))
+            found += [
+                screen.pane.name_shown,
+                screen.pane.chosen,
+                model.row,
+                model.selected,
+                len(model.notes),
+            ]
+    found.append(
+        sorted((path.name, path.read_text()) for path in Path.cwd().iterdir() if path.is_file())
+    )
     return found
 
 
-async def pressed(surface: str, keys: list[str], folder: Path, monkeypatch: pytest.MonkeyPatch) -> list[object]:
+async def pressed(
+    surface: str, keys: list[str], folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> list[object]:
     """Press keys, each of which may be several, in a new app; return its state."""
     folder.mkdir(parents=True)
     monkeypatch.chdir(folder)
@@ -94,7 +112,9 @@ async def pressed(surface: str, keys: list[str], folder: Path, monkeypatch: pyte
 
 @pytest.mark.quick_cases("editor-0", "dialogs-0")
 @pytest.mark.parametrize("burst", BURSTS)
-async def test_a_burst_does_what_its_keys_do(burst: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+async def test_a_burst_does_what_its_keys_do(
+    burst: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     rng, surface = Random(burst), burst.partition("-")[0]
     opens, alphabet = SURFACES[surface]
     keys = [*opens, *rng.choices(alphabet, k=rng.randint(2, 30))]

@@ -42,7 +42,9 @@ async def test_an_action_that_no_page_has_is_ignored() -> None:
 
 
 async def test_a_click_on_the_empty_panel_of_lessons_offers_them() -> None:
-    async with LabApp(settings(ENDLESS, panels_on=frozenset({"lesson"}))).run_test(size=(120, 40)) as pilot:
+    async with LabApp(settings(ENDLESS, panels_on=frozenset({"lesson"}))).run_test(
+        size=(120, 40)
+    ) as pilot:
         app = await ready(pilot)
         await until(pilot, lambda: app.panel_area.shown("lesson"))
         await pilot.click(app.panel_area.lesson, offset=(5, 5))
@@ -54,7 +56,9 @@ async def test_a_button_says_that_it_does_nothing_above_the_lab() -> None:
     async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)
         app.post_message(ActionAsked("run"))
-        await until(pilot, lambda: app.situation().has_run and app.run_controller.state not in IN_RUN)
+        await until(
+            pilot, lambda: app.situation().has_run and app.run_controller.state not in IN_RUN
+        )
         app.post_message(ActionAsked("analyse"))
         await until(pilot, lambda: isinstance(app.screen, Analyser))
         app.post_message(ActionAsked("run"))

@@ -37,7 +37,9 @@ async def test_the_first_paint_shows_the_panels_before_the_mat(colors: str) -> N
 
         sent = "".join(wire_of(pilot).sent)
         assert wire_of(pilot).kilobytes <= 30
-        assert max(sent.index(title) for title in ("World", "Instrumentation", "Output")) < sent.index("▀")
+        assert max(
+            sent.index(title) for title in ("World", "Instrumentation", "Output")
+        ) < sent.index("▀")
 
 
 @pytest.mark.slow
@@ -81,7 +83,9 @@ async def sent_for_a_while(pilot: Pilot[Any]) -> str:
         for _ in range(BEATS):
             app._on_frame_timer()
     # Whatever has a timer of its own is due sooner or later.
-    for timer in {timer for node in pilot.app.screen.walk_children(with_self=True) for timer in node._timers}:
+    for timer in {
+        timer for node in pilot.app.screen.walk_children(with_self=True) for timer in node._timers
+    }:
         if timer._callback and is_active(timer) and timer._repeat != 0:
             await invoke(timer._callback)
     await until_quiet(pilot)
@@ -105,7 +109,9 @@ def has_state(app: LabApp, state: str) -> bool:
 @pytest.mark.slow
 @pytest.mark.parametrize("panels", [[], ["chart"]], ids=["no chart", "chart"])
 async def test_a_run_that_stands_still_or_is_over_sends_nothing(panels: list[str]) -> None:
-    async with on_wire(LabApp(settings(ENDLESS, panels_on=frozenset(panels), autorun=True))) as pilot:
+    async with on_wire(
+        LabApp(settings(ENDLESS, panels_on=frozenset(panels), autorun=True))
+    ) as pilot:
         app = await ready(pilot)
         await until(pilot, lambda: app.run_controller.state == "running")
         for key, state in (("space", "paused"), ("S", "ended")):
@@ -126,7 +132,9 @@ async def test_the_analyser_at_rest_sends_nothing(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-async def test_the_app_rests_when_nothing_happens_and_wakes_at_a_key(monkeypatch: pytest.MonkeyPatch) -> None:
+async def test_the_app_rests_when_nothing_happens_and_wakes_at_a_key(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     async with on_wire(LabApp(settings())) as pilot:
         app = await ready(pilot)
         await until(pilot, lambda: not is_active(app._frame_timer))
@@ -138,7 +146,9 @@ async def test_the_app_rests_when_nothing_happens_and_wakes_at_a_key(monkeypatch
         await until(pilot, lambda: is_active(app._frame_timer))
 
 
-async def test_what_the_robot_does_is_shown_while_the_program_prints(monkeypatch: pytest.MonkeyPatch) -> None:
+async def test_what_the_robot_does_is_shown_while_the_program_prints(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     async with on_wire(LabApp(settings())) as pilot:
         app = await ready(pilot)
         app.pacer = Pacer(app.settings.fps, clock=partial(next, count(0.0, 1.0)))
@@ -152,7 +162,9 @@ async def test_what_the_robot_does_is_shown_while_the_program_prints(monkeypatch
 
 
 @pytest.mark.slow
-async def test_the_first_frame_of_a_run_waits_for_its_first_tick(monkeypatch: pytest.MonkeyPatch) -> None:
+async def test_the_first_frame_of_a_run_waits_for_its_first_tick(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     monkeypatch.setattr(app_module, "_STARTING_S", 2 * PATIENCE_S)
     async with on_wire(LabApp(settings(ENDLESS))) as pilot:
         app = await ready(pilot)
@@ -178,4 +190,6 @@ async def test_frames_of_a_run_that_pauses_at_its_first_line_do_not_wait_for_a_t
 
         await pilot.press("n")
 
-        await until(pilot, lambda: app.run_controller.state is RunPhase.PAUSED and not app._starting_until_s)
+        await until(
+            pilot, lambda: app.run_controller.state is RunPhase.PAUSED and not app._starting_until_s
+        )

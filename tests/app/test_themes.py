@@ -23,20 +23,43 @@ from tuisim.app.themes import HIGH_CONTRAST, LIGHT, OWN_THEME, UNUSED_THEMES, Th
 from tuisim.charts.traces import TRACE_COLORS
 
 THEMES = [
-    *(pytest.param(theme, id=name) for name, theme in BUILTIN_THEMES.items() if name not in UNUSED_THEMES),
+    *(
+        pytest.param(theme, id=name)
+        for name, theme in BUILTIN_THEMES.items()
+        if name not in UNUSED_THEMES
+    ),
     pytest.param(HIGH_CONTRAST, id="high contrast"),
     pytest.param(LIGHT, id="light"),
 ]
-TEXT = ["#d8dee6", "#ffffff", "#9fb0c3", "#8fa0b2", "#7f8fa1", "#5fafff", "#ffd75f", "#ff6e6e", "#87d7af", "#d7a0ff"]
+TEXT = [
+    "#d8dee6",
+    "#ffffff",
+    "#9fb0c3",
+    "#8fa0b2",
+    "#7f8fa1",
+    "#5fafff",
+    "#ffd75f",
+    "#ff6e6e",
+    "#87d7af",
+    "#d7a0ff",
+]
 GROUNDS = ["#10151c", "#18202a", "#1c242e", "#263545"]
 
 
 def test_every_colour_of_the_palette_is_used_and_named_once() -> None:
     folder = Path(tuisim.app.__file__).parents[1]
-    files = [path for path in folder.rglob("*") if path.suffix in (".py", ".tcss") and path.name != "palette.py"]
+    files = [
+        path
+        for path in folder.rglob("*")
+        if path.suffix in (".py", ".tcss") and path.name != "palette.py"
+    ]
     text = "".join(path.read_text("utf-8") for path in files)
 
-    used = {name for name in palette.COLORS if f"palette.{name}" in text or f"$tuisim-{_in_css(name)}" in text}
+    used = {
+        name
+        for name in palette.COLORS
+        if f"palette.{name}" in text or f"$tuisim-{_in_css(name)}" in text
+    }
 
     assert used == set(palette.COLORS)
     assert len(set(palette.COLORS.values())) == len(palette.COLORS)
@@ -62,7 +85,10 @@ def test_text_can_be_read_under_any_theme(theme: object) -> None:
     traces = [f"#{red:02x}{green:02x}{blue:02x}" for red, green, blue in TRACE_COLORS]
 
     for text, ground in itertools.product([*TEXT, *traces], GROUNDS):
-        assert contrast(*shown(colors, Style(color=text, bgcolor=ground))) >= least - 0.05, (text, ground)
+        assert contrast(*shown(colors, Style(color=text, bgcolor=ground))) >= least - 0.05, (
+            text,
+            ground,
+        )
 
 
 def test_colours_that_a_sensor_sees_stay_as_they_are() -> None:
@@ -98,9 +124,21 @@ async def test_a_theme_is_chosen_from_the_list_and_kept() -> None:
 
 # Machado, Oliveira, Fernandes 2009, severity 1.0: https://www.inf.ufrgs.br/~oliveira/pubs_files/CVD_Simulation/
 SEEN_BY = {
-    "protan": [[0.152286, 1.052583, -0.204868], [0.114503, 0.786281, 0.099216], [-0.003882, -0.048116, 1.051998]],
-    "deutan": [[0.367322, 0.860646, -0.227968], [0.280085, 0.672501, 0.047413], [-0.01182, 0.04294, 0.968881]],
-    "tritan": [[1.255528, -0.076749, -0.178779], [-0.078411, 0.930809, 0.147602], [0.004733, 0.691367, 0.3039]],
+    "protan": [
+        [0.152286, 1.052583, -0.204868],
+        [0.114503, 0.786281, 0.099216],
+        [-0.003882, -0.048116, 1.051998],
+    ],
+    "deutan": [
+        [0.367322, 0.860646, -0.227968],
+        [0.280085, 0.672501, 0.047413],
+        [-0.01182, 0.04294, 0.968881],
+    ],
+    "tritan": [
+        [1.255528, -0.076749, -0.178779],
+        [-0.078411, 0.930809, 0.147602],
+        [0.004733, 0.691367, 0.3039],
+    ],
 }
 
 

@@ -26,7 +26,9 @@ PEN = LOGS.replace("tank_drive.on", "print('off we go')\ntank_drive.on", 1)
 
 
 @asynccontextmanager
-async def a_run(text: str = LOGS, size: tuple[int, int] = (120, 40)) -> AsyncIterator[tuple[Pilot[None], LabApp]]:
+async def a_run(
+    text: str = LOGS, size: tuple[int, int] = (120, 40)
+) -> AsyncIterator[tuple[Pilot[None], LabApp]]:
     """A run that is over, in the app."""
     async with LabApp(settings(text, autorun=True, speed=0.0)).run_test(size=size) as pilot:
         app = await ready(pilot)
@@ -41,10 +43,18 @@ async def test_keys_go_back_and_forward() -> None:
     async with a_run() as (pilot, app):
         timeline, newest = app.run_controller.timeline, app.run_controller.timeline.newest
         steps = [
-            ("comma", newest - 1), ("comma", newest - 2), ("full_stop", newest - 1), ("less_than_sign", newest - 101),
-            ("greater_than_sign", newest - 1), ("full_stop", None), ("home", 0), ("greater_than_sign", 100),
-            ("end", None), ("less_than_sign", newest - 100), ("escape", None),
-        ]  # fmt: skip
+            ("comma", newest - 1),
+            ("comma", newest - 2),
+            ("full_stop", newest - 1),
+            ("less_than_sign", newest - 101),
+            ("greater_than_sign", newest - 1),
+            ("full_stop", None),
+            ("home", 0),
+            ("greater_than_sign", 100),
+            ("end", None),
+            ("less_than_sign", newest - 100),
+            ("escape", None),
+        ]
         for key, tick in steps:
             await pilot.press(key)
             assert timeline.at == tick, key
@@ -67,7 +77,14 @@ async def test_a_former_instant_is_shown_as_it_was() -> None:
         record, line = recording.telemetry.record(200), app.debugger.view.paused.line
         then = instant_of(record, recording.spec, recording.spec.world.noise)
         expected = Snapshot(
-            RunPhase.ENDED, End.FINISHED, recording.spec, mat.field, then, line, speed=0.0, pen_down=False
+            RunPhase.ENDED,
+            End.FINISHED,
+            recording.spec,
+            mat.field,
+            then,
+            line,
+            speed=0.0,
+            pen_down=False,
         )
         shown = app.run_controller.snapshot()
         plain = replace(shown, next_spec=None, past=False, now_tick=0, now_pose=None, program=None)
@@ -105,7 +122,9 @@ async def test_the_pen_has_drawn_no_more_than_then() -> None:
         drawn = [piece.xs_mm for piece in world._view.past_trace.pieces(0)]
         if drawn:
             ahead = recording.spec.robot.pen.y_mm
-            assert max(float(xs[-1]) for xs in drawn) <= recording.telemetry.record(150).x_mm + abs(ahead)
+            assert max(float(xs[-1]) for xs in drawn) <= recording.telemetry.record(150).x_mm + abs(
+                ahead
+            )
         await pilot.press("end", "S")
         await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED)
         assert world._view.past_trace is None
@@ -116,7 +135,11 @@ async def test_looking_back_pauses_a_running_program_and_space_plays_it_on() -> 
     async with LabApp(settings(ENDLESS, autorun=True, speed=4.0)).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)
         await until(
-            pilot, lambda: app.run_controller.state == RunPhase.RUNNING and app.run_controller.timeline.newest > 300
+            pilot,
+            lambda: (
+                app.run_controller.state == RunPhase.RUNNING
+                and app.run_controller.timeline.newest > 300
+            ),
         )
         await pilot.press("less_than_sign", "home")
         await until(pilot, lambda: app.run_controller.state == RunPhase.PAUSED)
@@ -129,10 +152,17 @@ async def test_looking_back_pauses_a_running_program_and_space_plays_it_on() -> 
         at = app.run_controller.timeline.at
         assert at is not None
         await pilot.press("full_stop")
-        assert (app.run_controller.timeline.at, app.run_controller.timeline.newest) == (at + 1, newest)
+        assert (app.run_controller.timeline.at, app.run_controller.timeline.newest) == (
+            at + 1,
+            newest,
+        )
         await pilot.press("space")
         await until(
-            pilot, lambda: app.run_controller.state == RunPhase.RUNNING and app.run_controller.timeline.newest > newest
+            pilot,
+            lambda: (
+                app.run_controller.state == RunPhase.RUNNING
+                and app.run_controller.timeline.newest > newest
+            ),
         )
         assert not app.run_controller.in_past
         await pilot.press("S")
@@ -143,11 +173,16 @@ async def test_a_click_on_the_bar_or_a_panel_leaves_no_instant() -> None:
     async with a_run() as (pilot, app):
         world = app.panel_area.world
         assert world is not None
-        await until(pilot, lambda: world.time_bar._times is not None and world.time_bar.region.width > 0)
+        await until(
+            pilot, lambda: world.time_bar._times is not None and world.time_bar.region.width > 0
+        )
         await pilot.click(world.time_bar, offset=(20, 0))
         await until(pilot, lambda: app.run_controller.in_past)
         at = app.run_controller.timeline.at
-        await until(pilot, lambda: screen_text(app).count(f"past {app.run_controller.timeline.time_s:.2f} s") == 2)
+        await until(
+            pilot,
+            lambda: screen_text(app).count(f"past {app.run_controller.timeline.time_s:.2f} s") == 2,
+        )
         await pilot.click("Instrumentation", offset=(5, 1))
         assert app.run_controller.timeline.at == at
 
@@ -173,11 +208,20 @@ async def test_the_bar_is_clicked_and_dragged() -> None:
 
 async def test_words_that_are_no_place_are_answered() -> None:
     table = {
-        "": "no instant", "tomorrow": "not an instant", "9999": "run has reached", "tick 99999": "run has reached",
-        "line 99": "no line 99", "sample Nothing": "there are Colour", "sample Colour < zero": "is not a number",
-        "print [": "not a regular expression", "print never": "nothing printed", "sample Colour < -5": "no sample",
-        "line 1": "does not run after", "tick -1": "not an instant", "sample Colour < 1.2.3": "is not a number",
-    }  # fmt: skip
+        "": "no instant",
+        "tomorrow": "not an instant",
+        "9999": "run has reached",
+        "tick 99999": "run has reached",
+        "line 99": "no line 99",
+        "sample Nothing": "there are Colour",
+        "sample Colour < zero": "is not a number",
+        "print [": "not a regular expression",
+        "print never": "nothing printed",
+        "sample Colour < -5": "no sample",
+        "line 1": "does not run after",
+        "tick -1": "not an instant",
+        "sample Colour < 1.2.3": "is not a number",
+    }
     async with a_run() as (_, app):
         app.run_controller.timeline.go(200)
         for text, answer in table.items():
@@ -190,16 +234,31 @@ async def test_words_find_their_instants() -> None:
         timeline, recording = app.run_controller.timeline, app.run_controller.timeline.recording
         assert recording is not None
         rows = list(recording.rows.rows(0))
-        dark = next(row.tick for row in rows if row.text.startswith("Colour: ") and float(row.text[8:]) < 90)
+        dark = next(
+            row.tick for row in rows if row.text.startswith("Colour: ") and float(row.text[8:]) < 90
+        )
         waits = next(tick for tick in range(1, 400) if recording.telemetry.record(tick).line == 9)
-        values = [(row.tick, float(row.text[8:])) for row in rows if row.text.startswith("Colour: ")]
+        values = [
+            (row.tick, float(row.text[8:])) for row in rows if row.text.startswith("Colour: ")
+        ]
         changed = [tick for (_, before), (tick, value) in pairwise(values) if before != value]
         table = {
-            "3.5": 350, " 3.5 s": 350, "3.5s": 350, "tick 120": 120, "start": 0, "end": timeline.newest,
-            "sample Colour < 90": dark, "print off": rows[1].tick, "line 9": waits, "line 4 back": None,
-            "sample back": None, "sample": rows[0].tick, "print matches off": rows[1].tick,
-            "sample Colour < 90 first": dark, "sample Colour changes": changed[0],
-        }  # fmt: skip
+            "3.5": 350,
+            " 3.5 s": 350,
+            "3.5s": 350,
+            "tick 120": 120,
+            "start": 0,
+            "end": timeline.newest,
+            "sample Colour < 90": dark,
+            "print off": rows[1].tick,
+            "line 9": waits,
+            "line 4 back": None,
+            "sample back": None,
+            "sample": rows[0].tick,
+            "print matches off": rows[1].tick,
+            "sample Colour < 90 first": dark,
+            "sample Colour changes": changed[0],
+        }
         for text, tick in table.items():
             timeline.go(0)
             if tick is None:
@@ -211,11 +270,17 @@ async def test_words_find_their_instants() -> None:
         timeline.go(None)
         # At the end there is nothing after.
         assert find("sample Colour", timeline) == find("sample", timeline) == newest
-        assert find("sample Colour < 90 first", timeline) == find("first sample Colour < 90", timeline) == dark
+        assert (
+            find("sample Colour < 90 first", timeline)
+            == find("first sample Colour < 90", timeline)
+            == dark
+        )
         assert find("sample Colour < 90", timeline, first_at_end=True) == dark
         assert find("back sample Colour", timeline, first_at_end=True) == newest
         timeline.go(dark)
-        assert find("sample Colour changes back", timeline) == max(tick for tick in changed if tick < dark)
+        assert find("sample Colour changes back", timeline) == max(
+            tick for tick in changed if tick < dark
+        )
         assert find("sample Colour back", timeline) == max(r.tick for r in rows if r.tick < dark)
         assert find("sample", timeline) == min(r.tick for r in rows if r.tick > dark)
 
@@ -231,7 +296,9 @@ async def test_the_dialog_says_what_is_wrong_and_the_keys_go_from_sample_to_samp
         recording = app.run_controller.timeline.recording
         assert recording is not None
         ticks = sorted({row.tick for row in recording.rows.rows(0)})
-        await pilot.press("right_parenthesis", "right_parenthesis", "right_parenthesis", "left_parenthesis")
+        await pilot.press(
+            "right_parenthesis", "right_parenthesis", "right_parenthesis", "left_parenthesis"
+        )
         assert app.run_controller.timeline.at == ticks[1]
 
 

@@ -25,7 +25,9 @@ async def entered(pilot: Pilot[Any], text: str) -> None:
 
 @pytest.mark.slow
 async def test_every_trace_of_the_chart_can_be_typed(home: object) -> None:
-    app = LabApp(settings(PROGRAM, autorun=True, speed=0.0, background="Grey_bands", panels_on=("chart",)))
+    app = LabApp(
+        settings(PROGRAM, autorun=True, speed=0.0, background="Grey_bands", panels_on=("chart",))
+    )
     async with app.run_test(size=(120, 40)) as pilot:
         await ready(pilot)
         await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED)

@@ -11,11 +11,17 @@ import pytest
 from tuisim.app.timeline import Timeline, _left, forms, proposal
 
 
-@pytest.mark.parametrize(("tick", "which"), [(3, "the next"), (10, "the first")], ids=["past", "end"])
+@pytest.mark.parametrize(
+    ("tick", "which"), [(3, "the next"), (10, "the first")], ids=["past", "end"]
+)
 def test_they_say_in_which_direction_the_search_goes(tick: int, which: str) -> None:
     timeline: Any = SimpleNamespace(tick=tick, newest=10)
 
-    assert all(which in meaning for form, meaning in forms(timeline) if form.startswith(("line", "sample", "print")))
+    assert all(
+        which in meaning
+        for form, meaning in forms(timeline)
+        if form.startswith(("line", "sample", "print"))
+    )
 
 
 def test_nothing_is_proposed_before_the_first_run() -> None:

@@ -27,13 +27,30 @@ SIZE_PX = 1100, 720
 _FONT = "DejaVu Sans Mono"
 _XTERM = ("xterm", "-fa", _FONT, "-fs", "9", "-geometry", "130x44")
 _KITTY = (
-    "kitty", "--config", "NONE", "-o", "font_size=9", "-o", "remember_window_size=no", "-o", "update_check_interval=0",
-    "-o", f"initial_window_width={SIZE_PX[0]}", "-o", f"initial_window_height={SIZE_PX[1]}",
-)  # fmt: skip
+    "kitty",
+    "--config",
+    "NONE",
+    "-o",
+    "font_size=9",
+    "-o",
+    "remember_window_size=no",
+    "-o",
+    "update_check_interval=0",
+    "-o",
+    f"initial_window_width={SIZE_PX[0]}",
+    "-o",
+    f"initial_window_height={SIZE_PX[1]}",
+)
 _WESTON = (
-    "weston", "--backend=x11-backend.so", "--use-pixman", "--no-config", "--shell=kiosk-shell.so",
-    f"--width={SIZE_PX[0]}", f"--height={SIZE_PX[1]}", "--socket=tuisim-test",
-)  # fmt: skip
+    "weston",
+    "--backend=x11-backend.so",
+    "--use-pixman",
+    "--no-config",
+    "--shell=kiosk-shell.so",
+    f"--width={SIZE_PX[0]}",
+    f"--height={SIZE_PX[1]}",
+    "--socket=tuisim-test",
+)
 _ALWAYS = ("Xvfb", "import")
 
 
@@ -48,7 +65,9 @@ class Window:
     environment: Mapping[str, str] = field(default_factory=dict)
     server: tuple[str, ...] = ()
     """A compositor that has to run before."""
-    around: Callable[[ExitStack, str, Path, Mapping[str, str]], str] = lambda _, program, __, ___: program
+    around: Callable[[ExitStack, str, Path, Mapping[str, str]], str] = lambda _, program, __, ___: (
+        program
+    )
     """Returns a command line that runs a program in a multiplexer."""
 
     @property
@@ -84,7 +103,9 @@ def _in_mosh(stack: ExitStack, program: str, _: Path, environment: Mapping[str, 
 
 
 def _quiet(command: list[str], environment: Mapping[str, str] | None = None) -> None:
-    subprocess.run(command, env={**os.environ, **(environment or {})}, capture_output=True, check=False)
+    subprocess.run(
+        command, env={**os.environ, **(environment or {})}, capture_output=True, check=False
+    )
 
 
 def _end(process_id: int) -> None:
@@ -102,7 +123,8 @@ WINDOWS: Mapping[str, Window] = {
     "xterm-sixel": Window((*_XTERM, "-ti", "vt340", "-e", "sh", "-c")),
     "kitty": Window((*_KITTY, "sh", "-c"), environment=_SOFTWARE),
     "foot": Window(
-        ("foot", "-o", f"font={_FONT}:size=9", "sh", "-c"), environment={"WAYLAND_DISPLAY": "tuisim-test"},
+        ("foot", "-o", f"font={_FONT}:size=9", "sh", "-c"),
+        environment={"WAYLAND_DISPLAY": "tuisim-test"},
         server=_WESTON,
     ),
     "screen": Window(_XTERM_256, ("screen",), around=_in_screen),
@@ -110,7 +132,7 @@ WINDOWS: Mapping[str, Window] = {
     "tmux": Window(_XTERM_256, ("tmux",), around=_in_tmux),
     "tmux-in-kitty": Window((*_KITTY, "sh", "-c"), ("tmux",), _SOFTWARE, around=_in_tmux),
     "mosh": Window(_XTERM_256, ("mosh-server", "mosh-client"), around=_in_mosh),
-}  # fmt: skip
+}
 """By name."""
 
 
@@ -163,9 +185,14 @@ def shown_in(window: Window, arguments: list[str], folder: Path) -> Iterator[Dis
         name = stack.enter_context(_x_server())
         kept = {key: value for key, value in os.environ.items() if key not in _OF_TERMINALS}
         environment = {
-            **kept, "LANG": "C.UTF-8", "PYTHONPATH": str(Path.cwd()), "DISPLAY": name, "HOME": str(folder),
-            "XDG_RUNTIME_DIR": str(folder), **window.environment,
-        }  # fmt: skip
+            **kept,
+            "LANG": "C.UTF-8",
+            "PYTHONPATH": str(Path.cwd()),
+            "DISPLAY": name,
+            "HOME": str(folder),
+            "XDG_RUNTIME_DIR": str(folder),
+            **window.environment,
+        }
         folder.chmod(0o700)
         if window.server:
             stack.enter_context(_running(list(window.server), environment, folder))
@@ -177,9 +204,18 @@ def shown_in(window: Window, arguments: list[str], folder: Path) -> Iterator[Dis
 
 
 _OF_TERMINALS = (
-    "COLORTERM", "COLUMNS", "LC_ALL", "LC_CTYPE", "LINES", "NO_COLOR", "STY", "TERMCAP", "TERM_PROGRAM", "TMUX",
+    "COLORTERM",
+    "COLUMNS",
+    "LC_ALL",
+    "LC_CTYPE",
+    "LINES",
+    "NO_COLOR",
+    "STY",
+    "TERMCAP",
+    "TERM_PROGRAM",
+    "TMUX",
     "WAYLAND_DISPLAY",
-)  # fmt: skip
+)
 """Variables of the terminal that the tests run in."""
 
 

@@ -44,7 +44,9 @@ def wire_of(pilot: Pilot[Any]) -> Wire:
 
 
 @asynccontextmanager
-async def on_wire(app: App[Any], colors: str = "256", *, notifications: bool = False) -> AsyncIterator[Pilot[Any]]:
+async def on_wire(
+    app: App[Any], colors: str = "256", *, notifications: bool = False
+) -> AsyncIterator[Pilot[Any]]:
     """An app in such a terminal of 120×40, with notices or without."""
     app.driver_class = Wire
     app.console._color_system = COLOR_SYSTEMS[colors]

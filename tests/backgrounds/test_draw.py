@@ -90,7 +90,9 @@ def test_picture_is_small(name: str) -> None:
         ("Testcard", 1485, 450, (254, 254, 254)),
     ],
 )
-def test_pixels_known_from_the_numbers(name: str, column: int, row: int, rgb: tuple[int, int, int]) -> None:
+def test_pixels_known_from_the_numbers(
+    name: str, column: int, row: int, rgb: tuple[int, int, int]
+) -> None:
     assert stored(name).getpixel((column, row)) == rgb
 
 
@@ -131,8 +133,12 @@ def test_the_command_checks_a_copy_of_the_folder(tmp_path: Path) -> None:
     for path in FOLDER.glob("*.py"):
         shutil.copy(path, tmp_path)
     command = [sys.executable, "-B", str(tmp_path / "draw.py")]
-    before = subprocess.run([*command, "--check", "Empty_Map"], capture_output=True, text=True, check=False)
+    before = subprocess.run(
+        [*command, "--check", "Empty_Map"], capture_output=True, text=True, check=False
+    )
     drawn = subprocess.run([*command, "Empty_Map"], capture_output=True, text=True, check=False)
-    after = subprocess.run([*command, "--check", "Empty_Map"], capture_output=True, text=True, check=False)
+    after = subprocess.run(
+        [*command, "--check", "Empty_Map"], capture_output=True, text=True, check=False
+    )
     assert (before.returncode, drawn.returncode, after.returncode) == (1, 0, 0)
     assert "Empty_Map" in before.stdout

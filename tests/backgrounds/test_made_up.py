@@ -20,12 +20,18 @@ SHEET_IDS = list(SHEETS)
 
 def cells(sheet: Sheet) -> list[tuple[int, int, str]]:
     """Row, column and label of every cell."""
-    return [(row, column, label) for row, labels in enumerate(sheet.labels) for column, label in enumerate(labels)]
+    return [
+        (row, column, label)
+        for row, labels in enumerate(sheet.labels)
+        for column, label in enumerate(labels)
+    ]
 
 
 def tile(sheet_picture: np.ndarray, row: int, column: int) -> np.ndarray:
     """One digit, shape (14, 14)."""
-    ink: np.ndarray = sheet_picture[56 + 100 * row : 70 + 100 * row, 73 + 100 * column : 87 + 100 * column, 0]
+    ink: np.ndarray = sheet_picture[
+        56 + 100 * row : 70 + 100 * row, 73 + 100 * column : 87 + 100 * column, 0
+    ]
     return ink.astype(int)
 
 
@@ -35,7 +41,9 @@ def test_sheet_layout(name: str) -> None:
     sheet, ground = SHEETS[name]
     expected, free = np.full((1143, 2362), ground), np.ones((1143, 2362), bool)
     for row, column, label in cells(sheet):
-        expected[53 + 100 * row : 77 + 100 * row, 111 + 100 * column : 132 + 100 * column] = 25 * int(label)
+        expected[53 + 100 * row : 77 + 100 * row, 111 + 100 * column : 132 + 100 * column] = (
+            25 * int(label)
+        )
         free[56 + 100 * row : 70 + 100 * row, 73 + 100 * column : 87 + 100 * column] = False
     drawn = picture(name)
     assert len(cells(sheet)) == 220
@@ -54,14 +62,22 @@ def test_each_digit_is_as_bright_and_as_large_as_its_cell_says(name: str) -> Non
         assert ink.mean() == pytest.approx(float(sheet.means[row].split()[column]), abs=0.1)
         bright_rows, bright_columns = np.nonzero(ink > 64)
         x0, y0, x1, y1 = (int(figure, 16) for figure in sheet.boxes[row].split()[column])
-        found = (bright_columns.min(), bright_rows.min(), bright_columns.max() + 1, bright_rows.max() + 1)
+        found = (
+            bright_columns.min(),
+            bright_rows.min(),
+            bright_columns.max() + 1,
+            bright_rows.max() + 1,
+        )
         assert np.abs(np.subtract(found, (x0, y0, x1, y1))).max() <= 2
 
 
 @pytest.mark.slow
 def test_digits_of_one_sheet_teach_those_of_the_other() -> None:
     drawn = {name: picture(name) for name in SHEET_IDS}
-    learnt = [(label, tile(drawn["MNIST_Digits"], row, column)) for row, column, label in cells(WHITE_SHEET)]
+    learnt = [
+        (label, tile(drawn["MNIST_Digits"], row, column))
+        for row, column, label in cells(WHITE_SHEET)
+    ]
     right = 0
     for row, column, label in cells(BLACK_SHEET):
         unknown = tile(drawn["MNIST_Digits_Black"], row, column)
@@ -99,7 +115,9 @@ def test_the_noise_is_of_the_measured_kind() -> None:
     red, green = ground[:, :, 0] - ground[:, :, 0].mean(), ground[:, :, 1] - ground[:, :, 1].mean()
     assert abs((red * green).mean() / red.std() / green.std()) < 0.1
     for lag, expected in ((1, 0.986), (5, 0.885), (11, 0.575)):
-        assert (red[:, lag:] * red[:, :-lag]).mean() / red.var() == pytest.approx(expected, abs=0.05)
+        assert (red[:, lag:] * red[:, :-lag]).mean() / red.var() == pytest.approx(
+            expected, abs=0.05
+        )
 
 
 @pytest.mark.slow
@@ -119,12 +137,16 @@ def test_the_noise_is_of_the_measured_kind() -> None:
         ("Space_Port", 2100, 880, "Red"),
     ],
 )
-def test_the_places_of_the_own_mats_have_their_colours(name: str, column: int, row: int, color: str) -> None:
+def test_the_places_of_the_own_mats_have_their_colours(
+    name: str, column: int, row: int, color: str
+) -> None:
     assert COLOR_NAMES[color_code(*picture(name)[row, column].tolist())] == color
 
 
 @pytest.mark.quick_cases("A", "Z", "7", "-")
-@pytest.mark.parametrize("letter", [*"ABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789", "x", "y", ":", ",", ".", "-"])
+@pytest.mark.parametrize(
+    "letter", [*"ABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789", "x", "y", ":", ",", ".", "-"]
+)
 def test_a_letter_keeps_to_its_place(letter: str) -> None:
     canvas = shapes.blank()
     lettering.write(canvas, letter, (100, 200), 40, shapes.BLACK)

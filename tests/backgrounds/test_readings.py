@@ -87,7 +87,9 @@ READINGS = table()
 def seen(field: Field, pose: Pose) -> np.ndarray:
     """The mean of the disc under the left sensor: red, green, blue."""
     diameter = SENSOR.diameter_mm
-    box = np.frombuffer(field.box(diameter, *box_corner(pose, SENSOR)), np.uint8).reshape(diameter, diameter, 3)
+    box = np.frombuffer(field.box(diameter, *box_corner(pose, SENSOR)), np.uint8).reshape(
+        diameter, diameter, 3
+    )
     mean: np.ndarray = box[np.array(disc_mask(diameter))].mean(axis=0)
     return mean
 
@@ -103,7 +105,9 @@ def test_the_sensor_reads_what_it_must(name: str) -> None:
         field = Field(image.width, image.height, memoryview(image.tobytes()), {})
     for kind in (kind for mat, kind in READINGS if mat == name):
         rows = READINGS[name, kind]
-        differences = [np.abs(seen(field, Pose(x, y, heading)) - rgb) for x, y, heading, *rgb in rows]
+        differences = [
+            np.abs(seen(field, Pose(x, y, heading)) - rgb) for x, y, heading, *rgb in rows
+        ]
         limit = allowed(name, kind)
         assert np.mean(differences) <= limit.mean + ROUNDED, kind
         assert np.max(differences) <= limit.largest + ROUNDED, kind

@@ -24,8 +24,14 @@ def area(shape: Shape, *, smooth: bool = False) -> float:
 @pytest.mark.parametrize(
     ("box", "covered"),
     [
-        pytest.param((10, 20, 13, 22), {(20, 10): 1, (21, 12): 1, (22, 10): 0, (20, 13): 0}, id="whole pixels"),
-        pytest.param((10.25, 20, 12, 21), {(20, 10): 0.75, (20, 11): 1, (20, 9): 0}, id="left edge inside"),
+        pytest.param(
+            (10, 20, 13, 22),
+            {(20, 10): 1, (21, 12): 1, (22, 10): 0, (20, 13): 0},
+            id="whole pixels",
+        ),
+        pytest.param(
+            (10.25, 20, 12, 21), {(20, 10): 0.75, (20, 11): 1, (20, 9): 0}, id="left edge inside"
+        ),
         pytest.param((10.25, 20.5, 10.5, 20.75), {(20, 10): 0.0625}, id="within one pixel"),
         pytest.param((-5, -5, 1, 1), {(0, 0): 1, (0, 1): 0}, id="partly off the mat"),
         pytest.param((2361, 1142, 2400, 1200), {(1142, 2361): 1, (1142, 2360): 0}, id="last pixel"),
@@ -52,21 +58,53 @@ def test_rect_off_the_mat_paints_nothing() -> None:
         pytest.param(shapes.disc((500, 500), 40), math.pi * 40**2, id="disc"),
         pytest.param(shapes.ellipse((500, 500), 60, 30), math.pi * 60 * 30, id="ellipse"),
         pytest.param(shapes.ring((500, 500), 50, 30), math.pi * (50**2 - 30**2), id="ring"),
-        pytest.param(shapes.rounded_rect((100, 100, 300, 200), 30), 20_000 - (4 - math.pi) * 900, id="rounded_rect"),
+        pytest.param(
+            shapes.rounded_rect((100, 100, 300, 200), 30),
+            20_000 - (4 - math.pi) * 900,
+            id="rounded_rect",
+        ),
         pytest.param(shapes.polygon([(100, 100), (200, 100), (100, 180)]), 4000, id="triangle"),
         pytest.param(
             shapes.polygon(
-                [(0, 0), (60, 0), (60, 60), (0, 60), (0, 0), (20, 20), (40, 20), (40, 40), (20, 40), (20, 20)]
+                [
+                    (0, 0),
+                    (60, 0),
+                    (60, 60),
+                    (0, 60),
+                    (0, 0),
+                    (20, 20),
+                    (40, 20),
+                    (40, 40),
+                    (20, 40),
+                    (20, 20),
+                ]
             ),
             3200,
             id="polygon with a hole",
         ),
         pytest.param(strokes.stroke([(100, 100), (160, 180)], 10), 1000, id="stroke"),
-        pytest.param(strokes.stroke([(100, 100), (200, 100), (200, 200)], 20, "miter"), 4000, id="stroke, mitred"),
-        pytest.param(strokes.stroke([(200, 200), (200, 100), (100, 100)], 20, "miter"), 4000, id="mitred, other way"),
-        pytest.param(strokes.stroke([(100, 100), (200, 100), (200, 200)], 20), 3900 + math.pi * 25, id="rounded"),
         pytest.param(
-            shapes.union([shapes.rounded_rect((100, 100, 200, 150), 0), shapes.rounded_rect((150, 100, 250, 150), 0)]),
+            strokes.stroke([(100, 100), (200, 100), (200, 200)], 20, "miter"),
+            4000,
+            id="stroke, mitred",
+        ),
+        pytest.param(
+            strokes.stroke([(200, 200), (200, 100), (100, 100)], 20, "miter"),
+            4000,
+            id="mitred, other way",
+        ),
+        pytest.param(
+            strokes.stroke([(100, 100), (200, 100), (200, 200)], 20),
+            3900 + math.pi * 25,
+            id="rounded",
+        ),
+        pytest.param(
+            shapes.union(
+                [
+                    shapes.rounded_rect((100, 100, 200, 150), 0),
+                    shapes.rounded_rect((150, 100, 250, 150), 0),
+                ]
+            ),
             7500,
             id="union",
         ),
@@ -75,8 +113,12 @@ def test_rect_off_the_mat_paints_nothing() -> None:
             16_000 - 400 + 100 * math.pi,
             id="closed line",
         ),
-        pytest.param(strokes.pen_line([(100, 100), (200, 100)], 30, 20), 2000 + 150 * math.pi, id="pen line"),
-        pytest.param(strokes.pen_line([(100, 100), (100, 100)], 90, 60), 1350 * math.pi, id="pen dot"),
+        pytest.param(
+            strokes.pen_line([(100, 100), (200, 100)], 30, 20), 2000 + 150 * math.pi, id="pen line"
+        ),
+        pytest.param(
+            strokes.pen_line([(100, 100), (100, 100)], 90, 60), 1350 * math.pi, id="pen dot"
+        ),
     ],
 )
 @pytest.mark.parametrize("smooth", [False, True], ids=["hard", "smooth"])

@@ -29,7 +29,9 @@ def result_of(task: Task, **changed: Any) -> Result:
         "heading_deg": 90.0,
     }
     if not failed:
-        found["variables"] = {"Colour": VariableStatistics(seed + 0.1, 2, seed + 0.05, 0.05, float(seed), seed + 0.1)}
+        found["variables"] = {
+            "Colour": VariableStatistics(seed + 0.1, 2, seed + 0.05, 0.05, float(seed), seed + 0.1)
+        }
     return Result(**found | changed)
 
 

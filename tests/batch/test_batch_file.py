@@ -54,8 +54,11 @@ def test_every_key_is_read(write: Any, tmp_path: Path) -> None:
         "seed": (0, 1, 2, 3),
     }
     assert (found.jobs, found.keep, found.out, found.goals) == (
-        2, "failed", str(tmp_path / "rows.csv"), str(tmp_path / "goals.toml"),
-    )  # fmt: skip
+        2,
+        "failed",
+        str(tmp_path / "rows.csv"),
+        str(tmp_path / "goals.toml"),
+    )
     assert found.expressions == {"far_mm": "hypot(x_mm, y_mm)"}
     assert found.world is not None and found.world.settings["background"] == "Loop"
 
@@ -78,21 +81,47 @@ def test_a_batch_file_has_a_table_batch(write: Any, text: str, expected: bool) -
 @pytest.mark.parametrize(
     "text, words",
     [
-        pytest.param("[batch]\nprogramm = 'a.py'", "batch.programm: no such key .did you mean program", id="misspelt"),
+        pytest.param(
+            "[batch]\nprogramm = 'a.py'",
+            "batch.programm: no such key .did you mean program",
+            id="misspelt",
+        ),
         pytest.param("[batch]\njobs = 0", "batch.jobs: must be a whole number from 1", id="jobs"),
         pytest.param("[batch]\nseeds = [1, 1]", "batch.seeds: the seed 1 occurs twice", id="seeds"),
         pytest.param("[batch]\nseeds = '3..1'", "batch.seeds: 3..1 has no values", id="seed text"),
-        pytest.param("[batch]\nseeds = 1\nset.seed = 2", "batch.seeds: is given together with set.seed", id="twice"),
-        pytest.param("[batch]\nset.noise.motor = []", "batch.set.noise.motor: has no values", id="no values"),
-        pytest.param("[batch]\nset.a = [[1]]", r"batch.set.a\[1\]: must be a text, a number", id="nested list"),
+        pytest.param(
+            "[batch]\nseeds = 1\nset.seed = 2",
+            "batch.seeds: is given together with set.seed",
+            id="twice",
+        ),
+        pytest.param(
+            "[batch]\nset.noise.motor = []", "batch.set.noise.motor: has no values", id="no values"
+        ),
+        pytest.param(
+            "[batch]\nset.a = [[1]]",
+            r"batch.set.a\[1\]: must be a text, a number",
+            id="nested list",
+        ),
         pytest.param("[batch]\nset.a = '1:2:0'", "batch.set.a: 1:2:0 has no values", id="range"),
         pytest.param("[batch]\nkeep = 'some'", "batch.keep: no such value 'some'", id="keep"),
-        pytest.param("[batch]\nexpressions.a = 1", "batch.expressions.a: must be text", id="expression"),
-        pytest.param("[batch]\nworld = 'none.toml'", "none.toml: there is no such file", id="no world"),
-        pytest.param("walls = true\n[batch]\nworld = 'a.toml'", "batch.world: is given together with", id="two"),
-        pytest.param("wall = true\n[batch]", "spec.toml: wall: no such key .did you mean walls", id="key of a world"),
+        pytest.param(
+            "[batch]\nexpressions.a = 1", "batch.expressions.a: must be text", id="expression"
+        ),
+        pytest.param(
+            "[batch]\nworld = 'none.toml'", "none.toml: there is no such file", id="no world"
+        ),
+        pytest.param(
+            "walls = true\n[batch]\nworld = 'a.toml'",
+            "batch.world: is given together with",
+            id="two",
+        ),
+        pytest.param(
+            "wall = true\n[batch]",
+            "spec.toml: wall: no such key .did you mean walls",
+            id="key of a world",
+        ),
     ],
-)  # fmt: skip
+)
 def test_wrong_files_are_explained(write: Any, text: str, words: str) -> None:
     with pytest.raises(ConfigError, match=words):
         load_batch(write(text))

@@ -42,19 +42,37 @@ class Department:
     def __init__(self, folder: Path, stack: ExitStack) -> None:
         self._stack, self._folder = stack, folder
         self._file = folder / "scheduler.json"
-        words = ("--host", "127.0.0.1", "--port", "0", "--no-dashboard", "--scheduler-file", str(self._file))
+        words = (
+            "--host",
+            "127.0.0.1",
+            "--port",
+            "0",
+            "--no-dashboard",
+            "--scheduler-file",
+            str(self._file),
+        )
         self.scheduler = self._start("", "scheduler", *words)
         self.workers: list[subprocess.Popen[bytes]] = []
 
     def add(self, count: int = 1, first: str = "") -> None:
         """Start workers, which execute a text of Python first."""
-        words = ("worker", "--scheduler-file", str(self._file), "--nthreads", "1", "--no-nanny", "--no-dashboard")
+        words = (
+            "worker",
+            "--scheduler-file",
+            str(self._file),
+            "--nthreads",
+            "1",
+            "--no-nanny",
+            "--no-dashboard",
+        )
         self.workers += [self._start(first, *words) for _ in range(count)]
 
     def _start(self, first: str, *words: str) -> subprocess.Popen[bytes]:
         command = [sys.executable, "-c", f"{first}\n{_DASK}", *words]
         process = self._stack.enter_context(
-            subprocess.Popen(command, cwd=self._folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+            subprocess.Popen(
+                command, cwd=self._folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
+            )
         )
         self._stack.callback(process.kill)
         return process
@@ -64,7 +82,9 @@ class Department:
         """Where the scheduler listens; blocks until all workers are there."""
         import distributed
 
-        with distributed.Client(scheduler_file=str(self._file), timeout=PATIENCE_S, set_as_default=False) as client:
+        with distributed.Client(
+            scheduler_file=str(self._file), timeout=PATIENCE_S, set_as_default=False
+        ) as client:
             if self.workers:
                 client.wait_for_workers(len(self.workers), timeout=PATIENCE_S)
             return str(client.scheduler.address)
@@ -127,10 +147,26 @@ def test_a_cluster_that_cannot_work_is_told_in_one_line(
 def _check_told(folder: Path, address: str, message: str) -> None:
     """Check that a batch tells in one line that a cluster cannot work."""
     (folder / "p.py").write_text("print('a: 1')\n")
-    command = [sys.executable, "-m", "tuisim", "batch", "p.py", "--seeds", "0..9", "--scheduler", address]
+    command = [
+        sys.executable,
+        "-m",
+        "tuisim",
+        "batch",
+        "p.py",
+        "--seeds",
+        "0..9",
+        "--scheduler",
+        address,
+    ]
     environment = {**os.environ, "PYTHONPATH": str(ROOT)}
     done = subprocess.run(
-        command, cwd=folder, env=environment, capture_output=True, text=True, timeout=PATIENCE_S, check=False
+        command,
+        cwd=folder,
+        env=environment,
+        capture_output=True,
+        text=True,
+        timeout=PATIENCE_S,
+        check=False,
     )
     assert (done.returncode, done.stdout, done.stderr.count("\n")) == (2, "", 1), done.stderr
     assert message in done.stderr
@@ -141,7 +177,9 @@ def test_what_greets_otherwise_is_told_in_one_line(tmp_path: Path) -> None:
         greeted = pool.submit(lambda: listens.accept()[0])
         greeted.add_done_callback(lambda found: found.result().sendall(b"SSH-2.0-OpenSSH_9.6\r\n"))
         address = f"tcp://127.0.0.1:{listens.getsockname()[1]}"
-        _check_told(tmp_path, address, f"no scheduler answers at {address}: what listens there is none")
+        _check_told(
+            tmp_path, address, f"no scheduler answers at {address}: what listens there is none"
+        )
         greeted.result().close()
 
 

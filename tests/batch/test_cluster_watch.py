@@ -35,7 +35,9 @@ class Cluster:
         assert isinstance(state, dict)
         return dict.fromkeys(state, 1)
 
-    def run(self, _call: Callable[..., object], _text: str, workers: list[str], on_error: str) -> dict[str, Any]:
+    def run(
+        self, _call: Callable[..., object], _text: str, workers: list[str], on_error: str
+    ) -> dict[str, Any]:
         assert on_error == "return"
         self.asked.append(workers)
         state = self._states[0]
@@ -52,7 +54,10 @@ class Cluster:
 
 
 CANNOT_WORK = {
-    "no worker": (({},), "tcp://lab:8786: the cluster has no worker (start one with `dask worker tcp://lab:8786`)"),
+    "no worker": (
+        ({},),
+        "tcp://lab:8786: the cluster has no worker (start one with `dask worker tcp://lab:8786`)",
+    ),
     "no worker any more": (
         ({"a": __version__}, {}),
         "tcp://lab:8786: the cluster has no worker (with --out, --resume goes on with the rows so far)",
@@ -81,7 +86,9 @@ CANNOT_WORK = {
 
 
 @pytest.mark.parametrize(("states", "message"), CANNOT_WORK.values(), ids=CANNOT_WORK)
-def test_a_cluster_that_cannot_work_is_told_within_ten_seconds(states: tuple[Any, ...], message: str) -> None:
+def test_a_cluster_that_cannot_work_is_told_within_ten_seconds(
+    states: tuple[Any, ...], message: str
+) -> None:
     cluster = Cluster(*states)
     watch = cluster.watch()
     with pytest.raises(HostError) as told:

@@ -41,7 +41,9 @@ def test_a_task_gives_what_a_single_run_gives(tmp_path: Path) -> None:
     assert result.variables["Light"].count == 10
 
 
-def test_a_prepared_mat_that_was_deleted_is_prepared_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_prepared_mat_that_was_deleted_is_prepared_again(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     _prepared.cache_clear()
     for home in ("first", "second"):
         monkeypatch.setenv("TUISIM_HOME", str(tmp_path / home))
@@ -60,7 +62,9 @@ def test_each_end_is_a_result(end: str, tmp_path: Path) -> None:
     assert result.run_id == ""
 
 
-@pytest.mark.parametrize(("text", "kept"), [("x = 1", False), ("1 / 0", True)], ids=["met", "missed"])
+@pytest.mark.parametrize(
+    ("text", "kept"), [("x = 1", False), ("1 / 0", True)], ids=["met", "missed"]
+)
 def test_failed_runs_are_kept(text: str, kept: bool, tmp_path: Path) -> None:
     goals = (Goal(name="end", condition=FinishCondition()),)
     result = execute(task(text, goals=goals, keep=Keep.FAILED), tmp_path)
@@ -68,7 +72,9 @@ def test_failed_runs_are_kept(text: str, kept: bool, tmp_path: Path) -> None:
     assert (result.judgements[0].state is GoalState.MET) is not kept
 
 
-def test_a_failed_run_that_printed_much_is_not_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_failed_run_that_printed_much_is_not_kept(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     assert execute_module.MOST_OUTPUT_BYTES == 16 << 20
     monkeypatch.setattr(execute_module, "MOST_OUTPUT_BYTES", 100)
     for keep, kept in ((Keep.FAILED, False), (Keep.ALL, True)):
@@ -91,16 +97,27 @@ own = [file for file in files if 'tmp_path' in file and file.endswith('.bin')]
 
 HARM = {
     "writes into its recording": ("open(own[0], 'r+b').write(bytes(range(1, 60)))", "falsified", 1),
-    "writes and crashes": ("open(own[0], 'r+b').write(bytes(range(1, 60)))\nos.kill(os.getpid(), 9)", "falsified", 1),
+    "writes and crashes": (
+        "open(own[0], 'r+b').write(bytes(range(1, 60)))\nos.kill(os.getpid(), 9)",
+        "falsified",
+        1,
+    ),
     "deletes its recording": ("shutil.rmtree(os.path.dirname(own[0]))", "falsified", 0),
 }
 
 
 @pytest.mark.parametrize(("harm", "end", "judged"), HARM.values(), ids=HARM)
-def test_a_program_that_damages_its_recording_gets_a_result(tmp_path: Path, harm: str, end: str, judged: int) -> None:
+def test_a_program_that_damages_its_recording_gets_a_result(
+    tmp_path: Path, harm: str, end: str, judged: int
+) -> None:
     text = OWN_FILES.replace("tmp_path", tmp_path.name) + harm
-    result = execute(task(text, goals=(Goal("far", ReachCondition(x_mm=1000, y_mm=100)),)), tmp_path)
-    assert (result.end, [one.state for one in result.judgements]) == (end, [GoalState.MISSED] * judged)
+    result = execute(
+        task(text, goals=(Goal("far", ReachCondition(x_mm=1000, y_mm=100)),)), tmp_path
+    )
+    assert (result.end, [one.state for one in result.judgements]) == (
+        end,
+        [GoalState.MISSED] * judged,
+    )
 
 
 def test_a_mat_that_does_not_exist_is_a_result(tmp_path: Path) -> None:
@@ -112,11 +129,15 @@ def test_a_mat_that_does_not_exist_is_a_result(tmp_path: Path) -> None:
 
 
 def test_a_run_without_a_folder_is_told(tmp_path: Path) -> None:
-    with pytest.raises(LogError, match=r"missing: no folder for temporary runs can be created: No such file"):
+    with pytest.raises(
+        LogError, match=r"missing: no folder for temporary runs can be created: No such file"
+    ):
         execute(task("print(1)"), tmp_path / "missing")
 
 
-def test_a_run_whose_folder_is_gone_is_not_started(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_run_whose_folder_is_gone_is_not_started(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setattr(temporary, "RUN_FILE", "missing/run.json")
     result = execute(task("print(1)"), tmp_path)
     assert (result.end, result.exit_code) == ("", 2)

@@ -6,7 +6,14 @@ from itertools import pairwise
 
 import pytest
 
-from tuisim.batch.parameters import RandomDraw, SampleValues, grid_of, parse_seeds, parse_set, parse_values
+from tuisim.batch.parameters import (
+    RandomDraw,
+    SampleValues,
+    grid_of,
+    parse_seeds,
+    parse_set,
+    parse_values,
+)
 from tuisim.errors import ConfigError
 
 
@@ -15,7 +22,11 @@ from tuisim.errors import ConfigError
     [
         pytest.param("0,20,50", (0, 20, 50), id="a list of numbers"),
         pytest.param(" 0 , -2.5,1e3", (0, -2.5, 1000.0), id="blanks, signs and exponents"),
-        pytest.param("54:58:0.5", (54.0, 54.5, 55.0, 55.5, 56.0, 56.5, 57.0, 57.5, 58.0), id="a range with its end"),
+        pytest.param(
+            "54:58:0.5",
+            (54.0, 54.5, 55.0, 55.5, 56.0, 56.5, 57.0, 57.5, 58.0),
+            id="a range with its end",
+        ),
         pytest.param("0:0.3:0.1", (0.0, 0.1, 0.2, 0.3), id="a range without rounding errors"),
         pytest.param("1:4", (1, 2, 3, 4), id="a range in steps of one"),
         pytest.param("4:0:-2", (4, 2, 0), id="a falling range"),
@@ -26,9 +37,13 @@ from tuisim.errors import ConfigError
         pytest.param("../maze.png", ("../maze.png",), id="the path of a file"),
         pytest.param("'a,b.png',\"7\"", ("a,b.png", "7"), id="words in quotes"),
         pytest.param("true,off,ON", (True, False, True), id="truth values"),
-        pytest.param("random(0, 50, 20)", SampleValues(RandomDraw.RANDOM, 0.0, 50.0, 20), id="random numbers"),
         pytest.param(
-            "latin(54,58.5,10, seed=3)", SampleValues(RandomDraw.LATIN, 54.0, 58.5, 10, 3), id="a Latin hypercube"
+            "random(0, 50, 20)", SampleValues(RandomDraw.RANDOM, 0.0, 50.0, 20), id="random numbers"
+        ),
+        pytest.param(
+            "latin(54,58.5,10, seed=3)",
+            SampleValues(RandomDraw.LATIN, 54.0, 58.5, 10, 3),
+            id="a Latin hypercube",
         ),
     ],
 )
@@ -42,10 +57,14 @@ def test_values_are_read(text: str, expected: object) -> None:
         pytest.param("", "a value is missing", id="nothing"),
         pytest.param("1,,2", "a value is missing", id="an empty value"),
         pytest.param("54:58:0", "a step of 0 does not lead from 54 to 58", id="a step of zero"),
-        pytest.param("58:54", "a step of 1 does not lead from 58 to 54", id="a step that leads away"),
+        pytest.param(
+            "58:54", "a step of 1 does not lead from 58 to 54", id="a step that leads away"
+        ),
         pytest.param("0:1:0.3", "does not reach 1 .*0:0.9:0.3", id="an end between two steps"),
         pytest.param("0:1e9:1", "at most 1,000,000", id="too many values"),
-        pytest.param("random(0, 50)", "random.0, 50, 20.*number of values", id="no number of values"),
+        pytest.param(
+            "random(0, 50)", "random.0, 50, 20.*number of values", id="no number of values"
+        ),
         pytest.param("random(50, 0, 3)", "50 is not less than 0", id="an empty interval"),
         pytest.param("random(0, 1, 0)", "a whole number from 1", id="no values"),
         pytest.param("rand(0, 1, 5)", "did you mean random", id="an unknown sample"),
@@ -73,7 +92,12 @@ def test_seeds_are_read(text: str, expected: tuple[int, ...]) -> None:
 
 @pytest.mark.parametrize(
     "text, words",
-    [("-1", "whole number from 0"), ("0.5", "whole number"), ("a", "whole number"), ("1,2,1", "occurs twice")],
+    [
+        ("-1", "whole number from 0"),
+        ("0.5", "whole number"),
+        ("a", "whole number"),
+        ("1,2,1", "occurs twice"),
+    ],
 )
 def test_wrong_seeds_are_explained(text: str, words: str) -> None:
     with pytest.raises(ConfigError, match=rf"^--seeds: .*{words}"):
@@ -83,7 +107,12 @@ def test_wrong_seeds_are_explained(text: str, words: str) -> None:
 def test_the_last_parameter_varies_fastest() -> None:
     grid = grid_of({"a": (1, 2), "b": ("x", "y", "z"), "seed": (0, 1)})
     assert (len(grid), grid.names) == (12, ("a", "b", "seed"))
-    assert [tuple(point.values()) for point in grid][:4] == [(1, "x", 0), (1, "x", 1), (1, "y", 0), (1, "y", 1)]
+    assert [tuple(point.values()) for point in grid][:4] == [
+        (1, "x", 0),
+        (1, "x", 1),
+        (1, "y", 0),
+        (1, "y", 1),
+    ]
 
 
 def test_random_numbers_lie_inside_and_repeat() -> None:
@@ -92,11 +121,20 @@ def test_random_numbers_lie_inside_and_repeat() -> None:
     assert all(54 <= value <= 58 for value in values)
     assert values == sample.values("a", whole=False)
     assert not set(values) & set(sample.values("b", whole=False))
-    assert not set(values) & set(SampleValues(RandomDraw.RANDOM, 54, 58, 200, seed=1).values("a", whole=False))
+    assert not set(values) & set(
+        SampleValues(RandomDraw.RANDOM, 54, 58, 200, seed=1).values("a", whole=False)
+    )
 
 
 def test_whole_random_numbers_include_both_ends() -> None:
-    assert set(SampleValues(RandomDraw.RANDOM, 0, 5, 300).values("a", whole=True)) == {0, 1, 2, 3, 4, 5}
+    assert set(SampleValues(RandomDraw.RANDOM, 0, 5, 300).values("a", whole=True)) == {
+        0,
+        1,
+        2,
+        3,
+        4,
+        5,
+    }
 
 
 def test_a_latin_hypercube_has_one_value_in_each_part_of_each_parameter() -> None:
@@ -111,7 +149,12 @@ def test_a_latin_hypercube_has_one_value_in_each_part_of_each_parameter() -> Non
 
 def test_the_parameters_of_a_latin_hypercube_have_the_same_number_of_values() -> None:
     with pytest.raises(ConfigError, match=r"^b: .*same number of values and seed as a .*4, seed=0"):
-        grid_of({"a": SampleValues(RandomDraw.LATIN, 0, 1, 4), "b": SampleValues(RandomDraw.LATIN, 0, 1, 5)})
+        grid_of(
+            {
+                "a": SampleValues(RandomDraw.LATIN, 0, 1, 4),
+                "b": SampleValues(RandomDraw.LATIN, 0, 1, 5),
+            }
+        )
 
 
 def test_too_many_combinations_are_refused() -> None:

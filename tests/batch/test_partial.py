@@ -10,7 +10,10 @@ import pytest
 from tuisim.batch.partial import PartialTable, partial_of
 from tuisim.errors import ConfigError, ExportError
 
-ROWS = {0: {"run": 1, "x_mm": 0.1 + 0.2, "end": "finished"}, 2: {"run": 3, "x_mm": math.nan, "end": "räised\n"}}
+ROWS = {
+    0: {"run": 1, "x_mm": 0.1 + 0.2, "end": "finished"},
+    2: {"run": 3, "x_mm": math.nan, "end": "räised\n"},
+}
 
 
 def table(folder: Path, sha256: str = "a") -> PartialTable:

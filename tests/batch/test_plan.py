@@ -18,7 +18,9 @@ from tuisim.source import Program
 HERE = Path("--set")
 
 
-def subject(name: str = "a.py", given: tuple[str, ...] = (), settings: Mapping[str, Any] | None = None) -> Subject:
+def subject(
+    name: str = "a.py", given: tuple[str, ...] = (), settings: Mapping[str, Any] | None = None
+) -> Subject:
     return Subject(Program(name, "pass"), Settings(settings or {}), frozenset(given))
 
 
@@ -27,12 +29,23 @@ def plan(choices: dict[str, Any], *subjects: Subject, **how: Any) -> Plan:
 
 
 def test_every_combination_is_a_task_and_the_seed_varies_fastest() -> None:
-    tasks = list(plan({"noise.motor": (0, 20), "seed": (5, 6)}, subject("a.py"), subject("b.py")).tasks())
-    found = [(task.index, task.program.name, task.spec.world.noise.motor, task.spec.seed) for task in tasks]
+    tasks = list(
+        plan({"noise.motor": (0, 20), "seed": (5, 6)}, subject("a.py"), subject("b.py")).tasks()
+    )
+    found = [
+        (task.index, task.program.name, task.spec.world.noise.motor, task.spec.seed)
+        for task in tasks
+    ]
     assert found == [
-        (0, "a.py", 0, 5), (1, "a.py", 0, 6), (2, "a.py", 20, 5), (3, "a.py", 20, 6),
-        (4, "b.py", 0, 5), (5, "b.py", 0, 6), (6, "b.py", 20, 5), (7, "b.py", 20, 6),
-    ]  # fmt: skip
+        (0, "a.py", 0, 5),
+        (1, "a.py", 0, 6),
+        (2, "a.py", 20, 5),
+        (3, "a.py", 20, 6),
+        (4, "b.py", 0, 5),
+        (5, "b.py", 0, 6),
+        (6, "b.py", 20, 5),
+        (7, "b.py", 20, 6),
+    ]
     assert tasks[2].parameters == {"noise.motor": 20, "seed": 5}
 
 
@@ -47,7 +60,10 @@ def test_a_program_runs_in_the_folder_and_with_the_modules_of_the_user(
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("PYTHONPATH", "own")
     (task,) = plan({}).tasks()
-    assert (task.program.working_directory, task.program.python_path) == (str(tmp_path), (str(tmp_path / "own"),))
+    assert (task.program.working_directory, task.program.python_path) == (
+        str(tmp_path),
+        (str(tmp_path / "own"),),
+    )
 
 
 def test_tasks_that_are_done_are_left_out() -> None:
@@ -61,10 +77,16 @@ def test_arguments_of_the_program_are_a_parameter() -> None:
 
 @pytest.mark.parametrize(
     "name, whole",
-    [pytest.param("noise.motor", True, id="whole"), pytest.param("robot.wheel_diameter_mm", False, id="real")],
+    [
+        pytest.param("noise.motor", True, id="whole"),
+        pytest.param("robot.wheel_diameter_mm", False, id="real"),
+    ],
 )
 def test_samples_are_whole_where_the_key_takes_whole_numbers(name: str, whole: bool) -> None:
-    values = [task.parameters[name] for task in plan({name: SampleValues(RandomDraw.RANDOM, 50, 60, 4)}).tasks()]
+    values = [
+        task.parameters[name]
+        for task in plan({name: SampleValues(RandomDraw.RANDOM, 50, 60, 4)}).tasks()
+    ]
     assert {type(value) for value in values} == {int if whole else float}
 
 
@@ -72,7 +94,8 @@ def test_a_mat_brings_its_start_pose_unless_one_is_chosen() -> None:
     mats = {"background": ("Lollipop", "Loop")}
     own = [task.spec.world.start for task in plan(mats).tasks()]
     chosen = [
-        task.spec.world.start for task in plan(mats, subject("a.py", ("start.x_mm",), {"start.x_mm": 321.0})).tasks()
+        task.spec.world.start
+        for task in plan(mats, subject("a.py", ("start.x_mm",), {"start.x_mm": 321.0})).tasks()
     ]
     assert own[0] != own[1]
     assert [(pose.x_mm, pose.y_mm) for pose in chosen] == [(321.0, pose.y_mm) for pose in own]
@@ -81,17 +104,39 @@ def test_a_mat_brings_its_start_pose_unless_one_is_chosen() -> None:
 @pytest.mark.parametrize(
     "choices, given, words",
     [
-        pytest.param({"noise.motr": (1,)}, (), "--set: noise.motr: no such key .did you mean motor", id="misspelt"),
-        pytest.param({"noise.motor": (0, 501)}, (), "noise.motor: must be a whole number from 0", id="too large"),
-        pytest.param({"seed": (-1,)}, (), "seed: .*whole number from 0", id="seed"),
-        pytest.param({"noise.motor": (1,)}, ("noise.motor",), "noise.motor varies what an option sets", id="option"),
-        pytest.param({"seed": (1,)}, ("seed",), "seed varies what an option sets", id="option for the seed"),
         pytest.param(
-            {"noise.motor": SampleValues(RandomDraw.RANDOM, 600, 700, 2)}, (), "noise.motor: must be", id="sample"
+            {"noise.motr": (1,)},
+            (),
+            "--set: noise.motr: no such key .did you mean motor",
+            id="misspelt",
+        ),
+        pytest.param(
+            {"noise.motor": (0, 501)},
+            (),
+            "noise.motor: must be a whole number from 0",
+            id="too large",
+        ),
+        pytest.param({"seed": (-1,)}, (), "seed: .*whole number from 0", id="seed"),
+        pytest.param(
+            {"noise.motor": (1,)},
+            ("noise.motor",),
+            "noise.motor varies what an option sets",
+            id="option",
+        ),
+        pytest.param(
+            {"seed": (1,)}, ("seed",), "seed varies what an option sets", id="option for the seed"
+        ),
+        pytest.param(
+            {"noise.motor": SampleValues(RandomDraw.RANDOM, 600, 700, 2)},
+            (),
+            "noise.motor: must be",
+            id="sample",
         ),
     ],
-)  # fmt: skip
-def test_wrong_parameters_are_found_before_anything_is_run(choices: Any, given: tuple[str, ...], words: str) -> None:
+)
+def test_wrong_parameters_are_found_before_anything_is_run(
+    choices: Any, given: tuple[str, ...], words: str
+) -> None:
     with pytest.raises(ConfigError, match=words):
         plan(choices, subject(given=given))
 
@@ -100,7 +145,9 @@ def test_a_profile_for_another_library_is_found_before_anything_is_run() -> None
     pybricks = Program("p.py", "from pybricks.tools import wait\n")
     known = Subject(pybricks, Settings({"profile": "lego-micropython"}))
     assert len(plan({"profile": ("lego-micropython", "pybricks4")}, known)) == 2
-    with pytest.raises(ConfigError, match=r"p\.py uses pybricks, and the profile ev3 is for ev3dev2"):
+    with pytest.raises(
+        ConfigError, match=r"p\.py uses pybricks, and the profile ev3 is for ev3dev2"
+    ):
         plan({"profile": ("pybricks4", "ev3")}, known)
 
 
@@ -110,9 +157,19 @@ def test_a_profile_for_another_library_is_found_before_anything_is_run() -> None
         pytest.param(plan({"seed": (1, 2)}), True, id="equal"),
         pytest.param(plan({"seed": (1, 3)}), False, id="other seeds"),
         pytest.param(plan({"noise.motor": (0,), "seed": (1, 2)}), False, id="another parameter"),
-        pytest.param(plan({"seed": (1, 2)}, subject(settings={"noise.light": 3})), False, id="other settings"),
-        pytest.param(plan({"seed": (1, 2)}, Subject(Program("a.py", "print()"), Settings())), False, id="other text"),
-        pytest.param(plan({"seed": (1, 2)}, options_of=lambda _: RunOptions(time_limit_s=5)), False, id="other limit"),
+        pytest.param(
+            plan({"seed": (1, 2)}, subject(settings={"noise.light": 3})), False, id="other settings"
+        ),
+        pytest.param(
+            plan({"seed": (1, 2)}, Subject(Program("a.py", "print()"), Settings())),
+            False,
+            id="other text",
+        ),
+        pytest.param(
+            plan({"seed": (1, 2)}, options_of=lambda _: RunOptions(time_limit_s=5)),
+            False,
+            id="other limit",
+        ),
     ],
 )
 def test_a_batch_is_identified_by_all_that_its_rows_depend_on(other: Plan, same: bool) -> None:

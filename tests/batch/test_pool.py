@@ -105,7 +105,9 @@ def test_tasks_of_a_worker_that_was_killed_are_executed_again(tmp_path: Path) ->
 def test_workers_end_with_the_process_that_was_killed(tmp_path: Path, root: Path) -> None:
     script = tmp_path / "script.py"
     script.write_text(ORPHANS)
-    with subprocess.Popen([sys.executable, script], cwd=root, stdout=subprocess.PIPE, text=True) as run:
+    with subprocess.Popen(
+        [sys.executable, script], cwd=root, stdout=subprocess.PIPE, text=True
+    ) as run:
         assert run.stdout is not None
         workers = run.stdout.readline().split()
         run.kill()
@@ -121,13 +123,20 @@ def test_a_script_needs_no_guard(tmp_path: Path, root: Path) -> None:
         "print(sorted(one.end for one in run_many([task('x = 1', index) for index in range(3)], 2)))\n"
     )
     done = subprocess.run(
-        [sys.executable, str(script)], capture_output=True, text=True, env={**os.environ, "PYTHONPATH": str(root)}
+        [sys.executable, str(script)],
+        capture_output=True,
+        text=True,
+        env={**os.environ, "PYTHONPATH": str(root)},
     )
     assert (done.stdout, done.stderr) == ("['finished', 'finished', 'finished']\n", "")
 
 
-def test_a_batch_without_a_folder_for_its_runs_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_batch_without_a_folder_for_its_runs_is_told(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     missing = tmp_path / "missing"
     monkeypatch.setattr(temporary, "_parent", lambda: missing)
-    with pytest.raises(LogError, match=r"missing: no folder for temporary runs can be created: No such file"):
+    with pytest.raises(
+        LogError, match=r"missing: no folder for temporary runs can be created: No such file"
+    ):
         next(run_many([task("print(1)")], 1))

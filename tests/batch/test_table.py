@@ -9,7 +9,14 @@ import pytest
 
 from tests.batch.stand_in import result_of
 from tests.batch.test_plan import plan, subject
-from tuisim.batch.table import check_expressions, frame_of, metadata_of, result_columns, row_of, summaries
+from tuisim.batch.table import (
+    check_expressions,
+    frame_of,
+    metadata_of,
+    result_columns,
+    row_of,
+    summaries,
+)
 from tuisim.errors import ConfigError, LogError
 
 NOISES = plan({"noise.motor": (0, 20), "seed": (1, 2, 13)})
@@ -20,22 +27,43 @@ def test_there_is_one_row_for_each_run_whatever_the_order() -> None:
     frame = frame_of(reversed(ROWS))
     assert frame["run"].tolist() == [1, 2, 3, 4, 5, 6]
     assert list(frame.columns) == [
-        "run", "noise.motor", "seed", "end", "exit_code", "summary", "error_line", "time_s", "x_mm", "y_mm",
-        "heading_deg", "Colour_last", "Colour_count", "Colour_mean", "Colour_std", "Colour_min", "Colour_max",
-    ]  # fmt: skip
+        "run",
+        "noise.motor",
+        "seed",
+        "end",
+        "exit_code",
+        "summary",
+        "error_line",
+        "time_s",
+        "x_mm",
+        "y_mm",
+        "heading_deg",
+        "Colour_last",
+        "Colour_count",
+        "Colour_mean",
+        "Colour_std",
+        "Colour_min",
+        "Colour_max",
+    ]
     assert frame.equals(frame_of(ROWS))
 
 
 def test_a_column_has_the_narrowest_type_and_nan_where_nothing_was_printed() -> None:
     frame = frame_of(ROWS)
-    kinds = {name: frame[name].dtype.kind for name in ("noise.motor", "seed", "x_mm", "Colour_count")}
+    kinds = {
+        name: frame[name].dtype.kind for name in ("noise.motor", "seed", "x_mm", "Colour_count")
+    }
     assert kinds == {"noise.motor": "i", "seed": "i", "x_mm": "f", "Colour_count": "f"}
     assert frame["Colour_last"].isna().tolist() == [False, False, True] * 2
 
 
 def test_the_program_is_a_column_if_there_are_several() -> None:
     (task,) = plan({}, subject("a.py")).tasks()
-    assert list(frame_of([row_of(result_of(task), "a.py", 0)]).columns)[:3] == ["run", "program", "seed"]
+    assert list(frame_of([row_of(result_of(task), "a.py", 0)]).columns)[:3] == [
+        "run",
+        "program",
+        "seed",
+    ]
 
 
 def test_values_of_several_types_are_written_as_text() -> None:
@@ -65,7 +93,9 @@ def test_a_later_expression_uses_an_earlier_one() -> None:
 @pytest.mark.parametrize(
     "name, text, words",
     [
-        pytest.param("new", "x_m + 1", "no column 'x_m'.*did you mean x_mm.*NAME_last", id="misspelt"),
+        pytest.param(
+            "new", "x_m + 1", "no column 'x_m'.*did you mean x_mm.*NAME_last", id="misspelt"
+        ),
         pytest.param("new", "x_mm +", "cannot read the expression", id="syntax"),
         pytest.param("new", "open(1)", "no function 'open'", id="function"),
         pytest.param("x_mm", "1", "is no name for a new column", id="taken"),
@@ -73,13 +103,19 @@ def test_a_later_expression_uses_an_earlier_one() -> None:
         pytest.param("Colour_last", "1", "is no name for a new column", id="a variable's"),
     ],
 )
-def test_wrong_expressions_are_found_before_anything_is_run(name: str, text: str, words: str) -> None:
+def test_wrong_expressions_are_found_before_anything_is_run(
+    name: str, text: str, words: str
+) -> None:
     with pytest.raises(ConfigError, match=f"--expr {name}: .*{words}"):
         check_expressions({name: text}, ["noise.motor", "seed"], [])
 
 
 def test_right_expressions_are_accepted() -> None:
-    check_expressions({"a": "noise.motor + Colour_last", "b": "a + `goal.reach end`"}, ["noise.motor"], ["reach end"])
+    check_expressions(
+        {"a": "noise.motor + Colour_last", "b": "a + `goal.reach end`"},
+        ["noise.motor"],
+        ["reach end"],
+    )
 
 
 def test_an_expression_over_text_is_refused() -> None:
@@ -90,20 +126,34 @@ def test_an_expression_over_text_is_refused() -> None:
 def test_a_summary_has_one_line_for_each_combination_of_parameters() -> None:
     lines = summaries(frame_of(ROWS), NOISES.names, ["x_mm"])
     assert [(dict(line.group), line.statistics.mean) for line in lines] == [
-        ({"noise.motor": 0}, 100.0), ({"noise.motor": 20}, pytest.approx(100 + 20 * 16 / 3)),
-    ]  # fmt: skip
+        ({"noise.motor": 0}, 100.0),
+        ({"noise.motor": 20}, pytest.approx(100 + 20 * 16 / 3)),
+    ]
 
 
 def test_a_summary_of_many_combinations_is_about_all_runs() -> None:
-    rows: list[dict[str, Any]] = [{"run": run, "noise.motor": run, "x_mm": 1.0} for run in range(50)]
-    assert [dict(line.group) for line in summaries(frame_of(rows), ["noise.motor"], ["x_mm"])] == [{}]
+    rows: list[dict[str, Any]] = [
+        {"run": run, "noise.motor": run, "x_mm": 1.0} for run in range(50)
+    ]
+    assert [dict(line.group) for line in summaries(frame_of(rows), ["noise.motor"], ["x_mm"])] == [
+        {}
+    ]
 
 
 def test_a_summary_begins_with_what_was_computed() -> None:
     frame = frame_of(ROWS, {"error_mm": "x_mm - 100"})
-    assert result_columns(frame, ["error_mm"]) == ["error_mm", "x_mm", "y_mm", "heading_deg", "time_s", "Colour_last"]
+    assert result_columns(frame, ["error_mm"]) == [
+        "error_mm",
+        "x_mm",
+        "y_mm",
+        "heading_deg",
+        "time_s",
+        "Colour_last",
+    ]
 
 
 def test_units_are_stored_with_a_table() -> None:
-    units = metadata_of(frame_of([{"run": 1, "x_mm": 1.0, "far_mm_mean": 2.0, "n": 1}]), {})["units"]
+    units = metadata_of(frame_of([{"run": 1, "x_mm": 1.0, "far_mm_mean": 2.0, "n": 1}]), {})[
+        "units"
+    ]
     assert units == {"x_mm": "mm", "far_mm_mean": "mm"}

@@ -74,10 +74,16 @@ def main(words: Sequence[str]) -> int:
 
     A missed goal is a figure, not an error.
     """
-    parser = argparse.ArgumentParser(prog="python -m tests.bench", description="What running and showing costs.")
-    parser.add_argument("names", nargs="*", metavar="NAME", help=f"some of {', '.join(BENCHES)}; otherwise all")
+    parser = argparse.ArgumentParser(
+        prog="python -m tests.bench", description="What running and showing costs."
+    )
+    parser.add_argument(
+        "names", nargs="*", metavar="NAME", help=f"some of {', '.join(BENCHES)}; otherwise all"
+    )
     parser.add_argument("--quick", action="store_true", help="measure less often")
-    parser.add_argument("--json", action="store_true", help="print a JSON list instead of the table")
+    parser.add_argument(
+        "--json", action="store_true", help="print a JSON list instead of the table"
+    )
     arguments = parser.parse_args(words)
     if unknown := [name for name in arguments.names if name not in BENCHES]:
         parser.error(f"no such bench: {', '.join(unknown)}; one of {', '.join(BENCHES)}")

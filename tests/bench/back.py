@@ -28,20 +28,38 @@ def back(effort: Effort) -> Iterator[Figure]:
     """Yield the time that it takes to see an instant of a ten-minute run."""
     for words, noise in (("without noise", 0), ("with noise", 20)):
         spec = build_run_spec(
-            Settings({"background": "Grey_bands", "noise.light": noise, "noise.motor": noise, "pen.down": True})
+            Settings(
+                {
+                    "background": "Grey_bands",
+                    "noise.light": noise,
+                    "noise.motor": noise,
+                    "pen.down": True,
+                }
+            )
         )
         run = start_run(Program("bench.py", LOG, "preloaded"), spec, RunOptions(time_limit_s=RUN_S))
         run.wait()
         with Terminal(["open", "--run", run.run_id, *PANELS]) as terminal:
             _wait_until_quiet(terminal)
-            jumps = [_jump(terminal, f"{at_s:.2f}") for at_s in _instants(effort.repeats * JUMPS_A_REPEAT)]
+            jumps = [
+                _jump(terminal, f"{at_s:.2f}")
+                for at_s in _instants(effort.repeats * JUMPS_A_REPEAT)
+            ]
             steps = [_pressed(terminal, b",") for _ in jumps]
         jump_s, step_s = (median(took_s for took_s, _ in taken) for taken in (jumps, steps))
         ratio = paints_elapsed(jump_s)
-        yield Figure(f"any instant of 10 minutes, {words}", 1e3 * jump_s, "ms", most=0.3, ratio=ratio)
-        yield Figure(f"the slowest of them, {words}", 1e3 * max(took_s for took_s, _ in jumps), "ms")
-        yield Figure(f"one tick back, {words}", 1e3 * step_s, "ms", most=0.14, ratio=paints_elapsed(step_s))
-        yield Figure(f"sent for one tick back, {words}", median(sent for _, sent in steps) / 1e3, "kB")
+        yield Figure(
+            f"any instant of 10 minutes, {words}", 1e3 * jump_s, "ms", most=0.3, ratio=ratio
+        )
+        yield Figure(
+            f"the slowest of them, {words}", 1e3 * max(took_s for took_s, _ in jumps), "ms"
+        )
+        yield Figure(
+            f"one tick back, {words}", 1e3 * step_s, "ms", most=0.14, ratio=paints_elapsed(step_s)
+        )
+        yield Figure(
+            f"sent for one tick back, {words}", median(sent for _, sent in steps) / 1e3, "kB"
+        )
 
 
 def _instants(count: int) -> list[float]:

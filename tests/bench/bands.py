@@ -28,4 +28,6 @@ def bands(effort: Effort) -> Iterator[Figure]:
         taken = in_turns(printed_cpu_s, start_cpu_s, effort)
     ratio = Ratio(taken.ratio, "x python -c pass")
     yield Figure(f"log bands, {ROWS:,} rows", taken.value, "s CPU", most=200, ratio=ratio)
-    yield Figure(f"log bands, {ROWS:,} rows: memory", max(one.peak_mb for one in used), "MB", most=400)
+    yield Figure(
+        f"log bands, {ROWS:,} rows: memory", max(one.peak_mb for one in used), "MB", most=400
+    )

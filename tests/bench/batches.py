@@ -38,21 +38,42 @@ NOISE = ("--set", "noise.light=10", "--set", "noise.motor=20")
 def batches(effort: Effort) -> Iterator[Figure]:
     """Yield what the runs of whole commands cost, the memory of their processes, and the time until a run has moved."""
     few, many = (300, 1000) if effort.repeats < 5 else (1000, 10_000)
-    runs = ((few, 1, (), None), (few, 2, (), None), (many, 2, (), MOST), (many, 2, NOISE, MOST_NOISY))
+    runs = (
+        (few, 1, (), None),
+        (few, 2, (), None),
+        (many, 2, (), MOST),
+        (many, 2, NOISE, MOST_NOISY),
+    )
     for count, jobs, words, most in runs:
         done = _command(round(count * effort.simulated), jobs, words)
         name = f"{count:,} runs, {jobs} jobs{', noise' if words else ''}"
-        yield Figure(name, done.runs_s, "runs / s", ratio=Ratio(done.runs_s * usual(start_wall_s), "x python -c pass"))
         yield Figure(
-            f"CPU of all processes a run, {name}", done.cpu_s * 1e3, "ms CPU", most=most, ratio=starts(done.cpu_s)
+            name,
+            done.runs_s,
+            "runs / s",
+            ratio=Ratio(done.runs_s * usual(start_wall_s), "x python -c pass"),
+        )
+        yield Figure(
+            f"CPU of all processes a run, {name}",
+            done.cpu_s * 1e3,
+            "ms CPU",
+            most=most,
+            ratio=starts(done.cpu_s),
         )
         yield Figure(f"memory of the largest process, {name}", done.peak_mb, "MB", most=150)
     for name, keeps_warm in (("started by itself", False), ("forked", True)):
         found = [_until_moved_s(keeps_warm) for _ in range(STARTS)]
-        for which, took_s, goal in (("median", median(found), 30.0), ("p90", quantiles(found, n=10)[-1], None)):
+        for which, took_s, goal in (
+            ("median", median(found), 30.0),
+            ("p90", quantiles(found, n=10)[-1], None),
+        ):
             most = goal if keeps_warm else None
             yield Figure(
-                f"until the robot has moved, {name}, {which}", took_s * 1e3, "ms", most=most, ratio=forks(took_s)
+                f"until the robot has moved, {name}, {which}",
+                took_s * 1e3,
+                "ms",
+                most=most,
+                ratio=forks(took_s),
             )
 
 
@@ -73,7 +94,17 @@ def _command(count: int, jobs: int, more: Sequence[str] = ()) -> Batch:
     with tempfile.TemporaryDirectory() as folder:
         program, table = Path(folder, "program.py"), Path(folder, "rows.csv")
         program.write_text(f"# %%sim_magic_preloaded -b Grey_bands\n{PROGRAM}")
-        words = ["batch", program, "--seeds", f"0..{count - 1}", "--jobs", jobs, "--out", table, *more]
+        words = [
+            "batch",
+            program,
+            "--seeds",
+            f"0..{count - 1}",
+            "--jobs",
+            jobs,
+            "--out",
+            table,
+            *more,
+        ]
         begun = time.perf_counter()
         used = command_used(*map(str, words))
         elapsed_s = time.perf_counter() - begun

@@ -54,8 +54,17 @@ def lab_of(rgb: Rgb) -> Lab:
     """Return CIE L*a*b* (D65) of sRGB values of 0 to 255."""
     light = rgb / 255
     light = np.where(light <= 0.04045, light / 12.92, ((light + 0.055) / 1.055) ** 2.4)
-    xyz = light @ np.array([[0.4124564, 0.2126729, 0.0193339], [0.3575761, 0.7151522, 0.1191920],
-                            [0.1804375, 0.0721750, 0.9503041]]) / np.array([0.95047, 1.0, 1.08883])  # fmt: skip
+    xyz = (
+        light
+        @ np.array(
+            [
+                [0.4124564, 0.2126729, 0.0193339],
+                [0.3575761, 0.7151522, 0.1191920],
+                [0.1804375, 0.0721750, 0.9503041],
+            ]
+        )
+        / np.array([0.95047, 1.0, 1.08883])
+    )
     root = np.where(xyz > (6 / 29) ** 3, np.cbrt(xyz), xyz * (29 / 6) ** 2 / 3 + 4 / 29)
     x, y, z = root[..., 0], root[..., 1], root[..., 2]
     return np.stack((116 * y - 16, 500 * (x - y), 200 * (y - z)), axis=-1).astype(np.float32)
@@ -69,7 +78,9 @@ def averaged(mat: Pixels, view: Viewport) -> Errors:
         edges = first_mm + np.arange(count + 1) * mm_per_px
         low, high = edges[:-1, None], edges[1:, None]
         at = np.arange(size_mm)[None]
-        shares: Errors = np.clip(np.minimum(high, at + 1) - np.maximum(low, at), 0, None) / mm_per_px
+        shares: Errors = (
+            np.clip(np.minimum(high, at + 1) - np.maximum(low, at), 0, None) / mm_per_px
+        )
         return shares
 
     across = weights(view.left_mm, view.mm_per_px, view.width_px, width_mm)
@@ -125,8 +136,14 @@ def errors_of(mat: Pixels, cell_set: CellSet, headings: tuple[int, ...]) -> tupl
     """Return the mean colour difference of a mat with the robot: as drawn, and of the best splits."""
     glyphs = glyph_set(cell_set)
     view = whole_field(COLS * glyphs.cols, ROWS * glyphs.rows, CellPoints(glyphs.cols, glyphs.rows))
-    true_view = Viewport(COLS * CELL_PX[0], ROWS * CELL_PX[1], view.mm_per_px * glyphs.cols / CELL_PX[0],
-                         view.left_mm, view.top_mm, CellPoints(*CELL_PX))  # fmt: skip
+    true_view = Viewport(
+        COLS * CELL_PX[0],
+        ROWS * CELL_PX[1],
+        view.mm_per_px * glyphs.cols / CELL_PX[0],
+        view.left_mm,
+        view.top_mm,
+        CellPoints(*CELL_PX),
+    )
     truth = averaged(mat, true_view)
     ground = in_cells(truth)
     picture = shrink(mat, view, GROUND)
@@ -137,10 +154,14 @@ def errors_of(mat: Pixels, cell_set: CellSet, headings: tuple[int, ...]) -> tupl
         pose = Pose(*MIDDLE_MM, heading)
         now, real = picture.copy(), np.rint(truth).astype(np.uint8)
         draw_robot(now, view, pose, outline_of(ROBOT), COLORED)
-        draw_robot(real, true_view, pose, outline_of(ROBOT), COLORED, detail_cols=min(glyphs.cols, 2))
+        draw_robot(
+            real, true_view, pose, outline_of(ROBOT), COLORED, detail_cols=min(glyphs.cols, 2)
+        )
         at = changed_cells(picture, now, glyphs)
         flat = at[0] * COLS + at[1]
-        with_robot = _compared(fit_cells(now, glyphs, at), cell_set, in_cells(real.astype(float))[flat])
+        with_robot = _compared(
+            fit_cells(now, glyphs, at), cell_set, in_cells(real.astype(float))[flat]
+        )
         for which, (without, among) in enumerate(zip((drawn, best), with_robot, strict=True)):
             totals[which] += without.sum() - without[flat].sum() + among.sum()
     drawn_mean, best_mean = totals / len(headings) / (ROWS * COLS)
@@ -200,7 +221,9 @@ def _sent(buffer: FrameBuffer, cells: Cells) -> int:
 def _driving(frame: int) -> SceneState:
     turn = frame * 0.03
     pose = Pose(1181 + 400 * math.cos(turn), 571 + 300 * math.sin(turn), math.degrees(turn) + 90)
-    return SceneState(ROBOT, pose, rays=tuple((pose.heading_deg + aside, 600.0) for aside in range(-21, 22, 7)))
+    return SceneState(
+        ROBOT, pose, rays=tuple((pose.heading_deg + aside, 600.0) for aside in range(-21, 22, 7))
+    )
 
 
 def cells(effort: Effort) -> Iterator[Figure]:
@@ -221,13 +244,25 @@ def cells(effort: Effort) -> Iterator[Figure]:
             yield Figure(f"{name}, {cell_set}", error, "ΔE")
     for cell_set in SETS:
         most = 0.70 if cell_set is CellSet.OCTANT else None
-        yield Figure(f"all mats, {cell_set}, of half blocks", drawn[cell_set] / drawn[CellSet.HALF], "", most=most)
-        yield Figure(f"all mats, {cell_set}, of the best splits", drawn[cell_set] / best[cell_set], "", most=1.05)
+        yield Figure(
+            f"all mats, {cell_set}, of half blocks",
+            drawn[cell_set] / drawn[CellSet.HALF],
+            "",
+            most=most,
+        )
+        yield Figure(
+            f"all mats, {cell_set}, of the best splits",
+            drawn[cell_set] / best[cell_set],
+            "",
+            most=1.05,
+        )
     assert last is not None
     half_bytes = frame_bytes(last, CellSet.HALF, 120)
     for cell_set in SETS:
         many = frame_bytes(last, cell_set, 120)
-        yield Figure(f"bytes of a frame, {cell_set}, of half blocks", many / half_bytes, "", most=1.6)
+        yield Figure(
+            f"bytes of a frame, {cell_set}, of half blocks", many / half_bytes, "", most=1.6
+        )
     for cell_set in SETS:
         cpu_s = min(frame_cpu_s(last, cell_set, 100) for _ in range(effort.repeats))
         yield Figure(f"drawing a frame, {cell_set}", 1e3 * cpu_s, "ms CPU")

@@ -37,7 +37,9 @@ def crowd(count: int, free_x_mm: float, free_y_mm: float) -> tuple[Obstacle, ...
     dice = random.Random(7)
     boxes: list[Obstacle] = []
     while len(boxes) < count:
-        box = Obstacle(dice.uniform(0, 2340), dice.uniform(0, 1120), dice.uniform(5, 40), dice.uniform(5, 40))
+        box = Obstacle(
+            dice.uniform(0, 2340), dice.uniform(0, 1120), dice.uniform(5, 40), dice.uniform(5, 40)
+        )
         if abs(box.x_mm - START.x_mm) > free_x_mm or abs(box.y_mm - START.y_mm) > free_y_mm:
             boxes.append(box)
     return tuple(boxes)
@@ -48,8 +50,13 @@ def crowded(effort: Effort) -> Iterator[Figure]:
     around, jammed = crowd(OBSTACLES, 700, 420), crowd(OBSTACLES, 250, 250)
     options = RunOptions(time_limit_s=SIMULATED_S * effort.simulated)
     empty = _world()
-    for name, boxes, most in (("robot with room to drive", around, 3.3), ("robot jammed among them", jammed, 6.0)):
-        in_it, in_empty = (partial(simulating_cpu_s, ROUNDS, world, options) for world in (_world(boxes), empty))
+    for name, boxes, most in (
+        ("robot with room to drive", around, 3.3),
+        ("robot jammed among them", jammed, 6.0),
+    ):
+        in_it, in_empty = (
+            partial(simulating_cpu_s, ROUNDS, world, options) for world in (_world(boxes), empty)
+        )
         samples = in_turns(in_it, in_empty, effort)
         yield Figure(f"{OBSTACLES} solid obstacles, {name}", samples.ratio, "x empty", most=most)
 

@@ -18,25 +18,53 @@ PATIENCE_S = 5.0
 NEVER = 999
 """A line that no program has."""
 BUSY = "n = 0\nwhile True:\n    n += 1\n"
-BUSY_BREAKS: Mapping[str, str] = {"plain condition": "3 if n < 0", "condition with a call": "3 if len(str(n)) > 99"}
+BUSY_BREAKS: Mapping[str, str] = {
+    "plain condition": "3 if n < 0",
+    "condition with a call": "3 if len(str(n)) > 99",
+}
 PAUSE_GOALS: Mapping[str, float] = {"plain condition": 0.08, "condition with a call": 0.36}
 
 
 def debugging(effort: Effort) -> Iterator[Figure]:
     """Yield speeds with tracing off and on, and how soon commands are heard."""
-    for name, breaks, simulated_s, goal in (("off", (), 1400.0, 0.13), ("on", (str(NEVER),), 350.0, 0.035)):
+    for name, breaks, simulated_s, goal in (
+        ("off", (), 1400.0, 0.13),
+        ("on", (str(NEVER),), 350.0, 0.035),
+    ):
         yield speed(
-            f"line follower, tracing {name}", LINE, "Two_shapes", "robolab", simulated_s, breaks,
-            effort=effort, goal=goal,
-        )  # fmt: skip
+            f"line follower, tracing {name}",
+            LINE,
+            "Two_shapes",
+            "robolab",
+            simulated_s,
+            breaks,
+            effort=effort,
+            goal=goal,
+        )
     for name, text in BUSY_BREAKS.items():
         taken_s = median(_pause_s(text) for _ in range(effort.stops))
         yield Figure(
-            f"pause, busy loop, {name}", taken_s * 1e3, "ms", most=PAUSE_GOALS[name], ratio=starts_elapsed(taken_s)
+            f"pause, busy loop, {name}",
+            taken_s * 1e3,
+            "ms",
+            most=PAUSE_GOALS[name],
+            ratio=starts_elapsed(taken_s),
         )
     steps, looks = _steps_s(10 * effort.stops)
-    yield Figure("step to the next line", median(steps) * 1e3, "ms", most=0.024, ratio=starts_elapsed(median(steps)))
-    yield Figure("look at the variables", median(looks) * 1e3, "ms", most=0.42, ratio=starts_elapsed(median(looks)))
+    yield Figure(
+        "step to the next line",
+        median(steps) * 1e3,
+        "ms",
+        most=0.024,
+        ratio=starts_elapsed(median(steps)),
+    )
+    yield Figure(
+        "look at the variables",
+        median(looks) * 1e3,
+        "ms",
+        most=0.42,
+        ratio=starts_elapsed(median(looks)),
+    )
 
 
 def _pause_s(text: str) -> float:

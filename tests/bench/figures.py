@@ -37,7 +37,9 @@ class Figure:
 
     def __post_init__(self) -> None:
         for number in (self.value, *([self.ratio.value] if self.ratio else [])):
-            possible = isnan(number) or (isfinite(number) and (number > 0 or (not number and self.may_be_zero)))
+            possible = isnan(number) or (
+                isfinite(number) and (number > 0 or (not number and self.may_be_zero))
+            )
             if not possible:
                 raise MeasuringError(f"{self.name}: {number:g} {self.unit} is not possible")
 
@@ -54,9 +56,13 @@ class Figure:
         """`met`, `missed`, `loose` if it is met by more than a factor, or empty where there is no goal."""
         value = self.ratio.value if self.ratio else self.value
         if self.least is not None:
-            return "missed" if value < self.least else "loose" if value > LOOSE * self.least else "met"
+            return (
+                "missed" if value < self.least else "loose" if value > LOOSE * self.least else "met"
+            )
         if self.most is not None:
-            return "missed" if value > self.most else "loose" if LOOSE * value < self.most else "met"
+            return (
+                "missed" if value > self.most else "loose" if LOOSE * value < self.most else "met"
+            )
         return ""
 
 
@@ -83,7 +89,10 @@ def as_table(figures: Sequence[Figure]) -> str:
 def as_json(figures: Iterable[Figure]) -> str:
     """Return the figures as a JSON list of objects; what was not measured is null."""
     objects = [{**asdict(figure), "verdict": figure.verdict} for figure in figures]
-    return json.dumps([{**one, "value": None if isnan(one["value"]) else one["value"]} for one in objects], indent=1)
+    return json.dumps(
+        [{**one, "value": None if isnan(one["value"]) else one["value"]} for one in objects],
+        indent=1,
+    )
 
 
 def _rounded(value: float) -> str:
@@ -92,4 +101,10 @@ def _rounded(value: float) -> str:
         return "–"
     if abs(value) >= 100:
         return f"{value:,.0f}"
-    return f"{value:.1f}" if abs(value) >= 10 else f"{value:.2f}" if abs(value) >= 1 or not value else f"{value:.2g}"
+    return (
+        f"{value:.1f}"
+        if abs(value) >= 10
+        else f"{value:.2f}"
+        if abs(value) >= 1 or not value
+        else f"{value:.2g}"
+    )

@@ -50,7 +50,9 @@ class Watched:
 def frames(effort: Effort) -> Iterator[Figure]:
     """Yield bytes a frame with all panels but the chart."""
     seen = _watch(ALL_BUT_CHART, effort.watch_s)
-    yield Figure("a frame, all panels but the chart", seen.bytes_sent / seen.frames / 1e3, "kB", most=1.2)
+    yield Figure(
+        "a frame, all panels but the chart", seen.bytes_sent / seen.frames / 1e3, "kB", most=1.2
+    )
     yield Figure("frames", seen.frames / seen.wall_s, "/ s")
     yield Figure("app's CPU for a frame", 1e3 * seen.frame_cpu_s, "ms CPU")
     seen = _watch(ALL_BUT_CHART, effort.watch_s, colorterm="truecolor")
@@ -63,15 +65,26 @@ def chart(effort: Effort) -> Iterator[Figure]:
     yield Figure("a second, with the chart", seen.bytes_sent / seen.wall_s / 1e3, "kB", most=13)
     yield Figure("frames, with the chart", seen.frames / seen.wall_s, "/ s")
     ratio = paints(seen.frame_cpu_s)
-    yield Figure("app's CPU for a frame, with the chart", 1e3 * seen.frame_cpu_s, "ms CPU", most=0.13, ratio=ratio)
+    yield Figure(
+        "app's CPU for a frame, with the chart",
+        1e3 * seen.frame_cpu_s,
+        "ms CPU",
+        most=0.13,
+        ratio=ratio,
+    )
     seen = _watch(WITH_CHART, effort.watch_s, colorterm="truecolor")
-    yield Figure("a second, with the chart, in full colour", seen.bytes_sent / seen.wall_s / 1e3, "kB")
+    yield Figure(
+        "a second, with the chart, in full colour", seen.bytes_sent / seen.wall_s / 1e3, "kB"
+    )
 
 
 def pictures(effort: Effort) -> Iterator[Figure]:
     """Yield bytes a second with each set of glyphs and each protocol for pixels, in terminals of three sizes."""
     for size in SIZES:
-        for words in (*(("--cells", cells) for cells in CellSet), *(("--pixels", protocol) for protocol in Protocol)):
+        for words in (
+            *(("--cells", cells) for cells in CellSet),
+            *(("--pixels", protocol) for protocol in Protocol),
+        ):
             seen = _watch((*ALL_BUT_CHART, *words), effort.watch_s, size, colorterm="truecolor")
             name = f"{size[0]}x{size[1]}, {' '.join(words)[2:]}"
             yield Figure(name, seen.bytes_sent / seen.wall_s / 1e3, "kB / s")
@@ -79,7 +92,9 @@ def pictures(effort: Effort) -> Iterator[Figure]:
             yield Figure(f"{name}, app's CPU for a frame", 1e3 * seen.frame_cpu_s, "ms CPU")
 
 
-def _watch(panels: tuple[str, ...], seconds: float, size: tuple[int, int] = SIZES[1], colorterm: str = "") -> Watched:
+def _watch(
+    panels: tuple[str, ...], seconds: float, size: tuple[int, int] = SIZES[1], colorterm: str = ""
+) -> Watched:
     with tempfile.TemporaryDirectory() as folder:
         program = Path(folder) / "circle.py"
         program.write_text(CIRCLE, "utf-8")

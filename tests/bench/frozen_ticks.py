@@ -88,9 +88,21 @@ class World:
         left, right, drive = self.left, self.right, self.drive
         at = RECORD.size * (self.tick % ROOM)
         RECORD.pack_into(
-            self._buffer, at, self.tick, 1, drive.x_mm, drive.y_mm, drive.heading_deg, left.position_deg,
-            right.position_deg, left.counting_dps, right.counting_dps, 0.0, 3, 0
-        )  # fmt: skip
+            self._buffer,
+            at,
+            self.tick,
+            1,
+            drive.x_mm,
+            drive.y_mm,
+            drive.heading_deg,
+            left.position_deg,
+            right.position_deg,
+            left.counting_dps,
+            right.counting_dps,
+            0.0,
+            3,
+            0,
+        )
 
     def steer(self) -> None:
         """Read the light and tell the motors, as a program that follows a line."""

@@ -52,7 +52,10 @@ class Link:
         return self
 
     def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
     ) -> None:
         self._do(self._close())
         self._loop.call_soon_threadsafe(self._loop.stop)
@@ -69,7 +72,9 @@ class Link:
             task.cancel()
         await asyncio.gather(*others, return_exceptions=True)
 
-    async def _connected(self, client: asyncio.StreamReader, to_client: asyncio.StreamWriter) -> None:
+    async def _connected(
+        self, client: asyncio.StreamReader, to_client: asyncio.StreamWriter
+    ) -> None:
         server, to_server = await asyncio.open_connection("127.0.0.1", self._to_port, limit=_CHUNK)
         try:
             async with asyncio.TaskGroup() as both:
@@ -84,13 +89,17 @@ class Link:
             to_client.close()
             to_server.close()
 
-    async def _pass_on(self, source: asyncio.StreamReader, target: asyncio.StreamWriter, counter: str) -> None:
+    async def _pass_on(
+        self, source: asyncio.StreamReader, target: asyncio.StreamWriter, counter: str
+    ) -> None:
         queue: asyncio.Queue[tuple[float, bytes]] = asyncio.Queue(_HELD // _CHUNK)
         async with asyncio.TaskGroup() as both:
             both.create_task(self._take(source, queue))
             both.create_task(self._give(queue, target, counter))
 
-    async def _take(self, source: asyncio.StreamReader, queue: asyncio.Queue[tuple[float, bytes]]) -> None:
+    async def _take(
+        self, source: asyncio.StreamReader, queue: asyncio.Queue[tuple[float, bytes]]
+    ) -> None:
         free_s = 0.0
         while data := await source.read(_CHUNK):
             # The line is busy with what came before.

@@ -33,11 +33,15 @@ def listing(effort: Effort) -> Iterator[Figure]:
         _fill(Path(home))
         for which, most in (("the first time", 55), ("again", 22)):
             took_s = _first_byte_s(home, "list")
-            yield Figure(f"list {RUNS:,} runs, {which}", took_s, "s", most=most, ratio=starts_elapsed(took_s))
+            yield Figure(
+                f"list {RUNS:,} runs, {which}", took_s, "s", most=most, ratio=starts_elapsed(took_s)
+            )
     long = begin(MANY, options=RunOptions())
     long.wait()
     took_s = _first_byte_s(os.environ["TUISIM_HOME"], "show", "last")
-    yield Figure("show 24 MB of output, first byte", took_s, "s", most=18, ratio=starts_elapsed(took_s))
+    yield Figure(
+        "show 24 MB of output, first byte", took_s, "s", most=18, ratio=starts_elapsed(took_s)
+    )
 
 
 def _fill(home: Path) -> None:
@@ -56,7 +60,9 @@ def _first_byte_s(home: str, *words: str) -> float:
     """Return the time from the start of `tuisim runs …` to its first byte."""
     begun = time.monotonic()
     command = [sys.executable, "-m", "tuisim", "runs", *words]
-    with subprocess.Popen(command, stdout=subprocess.PIPE, env=app_environment(TUISIM_HOME=home)) as process:
+    with subprocess.Popen(
+        command, stdout=subprocess.PIPE, env=app_environment(TUISIM_HOME=home)
+    ) as process:
         assert process.stdout is not None
         process.stdout.read(1)
         took_s = time.monotonic() - begun

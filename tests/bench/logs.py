@@ -65,7 +65,9 @@ def _opened(name: str, path: Path, rows: int, repeats: int) -> Iterator[Figure]:
             whole.append(viewer.until(_whole(rows)))
     goal = MOST_OPEN if path.suffix == ".csv" else None
     for what, used_s in (("first chart", median(first)), ("chart of all rows", median(whole))):
-        yield Figure(f"{name}: open to the {what}", used_s, "s CPU", most=goal, ratio=paints(used_s))
+        yield Figure(
+            f"{name}: open to the {what}", used_s, "s CPU", most=goal, ratio=paints(used_s)
+        )
 
 
 def _keys(name: str, path: Path, rows: int) -> Iterator[Figure]:
@@ -76,7 +78,9 @@ def _keys(name: str, path: Path, rows: int) -> Iterator[Figure]:
             used = [viewer.key_s(key) for key in keys]
             for which, used_s in (("median", median(used)), (f"worst of {len(keys)}", max(used))):
                 ratio = paints(used_s)
-                yield Figure(f"{name}: {what}, {which}", 1e3 * used_s, "ms CPU", most=MOST_KEY, ratio=ratio)
+                yield Figure(
+                    f"{name}: {what}, {which}", 1e3 * used_s, "ms CPU", most=MOST_KEY, ratio=ratio
+                )
 
 
 def _parquet(path: Path, kind: str, rows: int) -> Iterator[Figure]:
@@ -93,7 +97,9 @@ def _parquet(path: Path, kind: str, rows: int) -> Iterator[Figure]:
     growth = _peak_bytes(path, rows) - own_bytes
     yield Figure(f"{name}: columns in memory", columns_bytes / 1e6, "MB")
     yield Figure(f"{name}: peak beyond that of a log of {FEW_ROWS:,} rows", growth / 1e6, "MB")
-    yield Figure(f"{name}: as a multiple of the columns", growth / columns_bytes, "", most=MOST_TIMES)
+    yield Figure(
+        f"{name}: as a multiple of the columns", growth / columns_bytes, "", most=MOST_TIMES
+    )
     path.unlink()
 
 
@@ -113,4 +119,10 @@ def _redraws() -> Iterator[Figure]:
     told = subprocess.run(command, env=app_environment(), stdout=subprocess.PIPE, check=True).stdout
     for what, used_s in json.loads(told).items():
         name = f"chart of {REDRAWN:,} samples: redraw, {what}"
-        yield Figure(name, 1e3 * used_s, "ms CPU", most=MOST_REDRAW if what == "median" else None, ratio=paints(used_s))
+        yield Figure(
+            name,
+            1e3 * used_s,
+            "ms CPU",
+            most=MOST_REDRAW if what == "median" else None,
+            ratio=paints(used_s),
+        )

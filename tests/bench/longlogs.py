@@ -27,9 +27,16 @@ def samples(rows: int) -> pa.Table:
     light = _light(rows)
     values = np.choose(
         at % 4,
-        (light + chance.normal(0.0, 0.3, rows), light, np.rint(2550 * chance.random(rows)), np.sin(at / 1e4) * 90),
+        (
+            light + chance.normal(0.0, 0.3, rows),
+            light,
+            np.rint(2550 * chance.random(rows)),
+            np.sin(at / 1e4) * 90,
+        ),
     )
-    names = pa.DictionaryArray.from_arrays((at % 4).astype(np.int32), ["Colour", "Right", "Ultrasonic", "Gyro"])
+    names = pa.DictionaryArray.from_arrays(
+        (at % 4).astype(np.int32), ["Colour", "Right", "Ultrasonic", "Gyro"]
+    )
     return pa.table(
         {
             "index": pa.array(at * 50_000_000, pa.duration("ns")),
@@ -61,7 +68,9 @@ def telemetry(rows: int) -> pa.Table:
     }
     for side in ("left", "right"):
         for colour in ("red", "green", "blue"):
-            columns[f"{side}_{colour}"] = np.round(2.55 * _light(rows) + chance.normal(0.0, 1.0, rows), 4)
+            columns[f"{side}_{colour}"] = np.round(
+                2.55 * _light(rows) + chance.normal(0.0, 1.0, rows), 4
+            )
     columns["ultrasonic_mm"] = np.rint(2550 * chance.random(rows))
     columns["gyro_deg"] = np.rint(at / 50) % 360
     columns["gyro_rate_dps"] = np.zeros(rows)
@@ -79,7 +88,9 @@ def written(table: pa.Table, path: Path) -> Path:
         pq.write_table(table, path)
         return path
     if "index" in table.column_names:
-        table = table.set_column(table.column_names.index("index"), "index", _spans(table.column("index")))
+        table = table.set_column(
+            table.column_names.index("index"), "index", _spans(table.column("index"))
+        )
     pa_csv.write_csv(table, path, pa_csv.WriteOptions(quoting_style="none"))
     return path
 
@@ -92,6 +103,12 @@ def _spans(column: pa.ChunkedArray) -> pa.Array:
     def digits(numbers: pa.Array, width: int = 1) -> pa.Array:
         return pc.utf8_lpad(pc.cast(pa.array(numbers), pa.string()), width, "0")
 
-    clock = (digits(seconds // 3600 % 24, 2), digits(seconds // 60 % 60, 2), digits(seconds % 60, 2))
+    clock = (
+        digits(seconds // 3600 % 24, 2),
+        digits(seconds // 60 % 60, 2),
+        digits(seconds % 60, 2),
+    )
     whole = pc.binary_join_element_wise(*clock, ":")
-    return pc.binary_join_element_wise(digits(seconds // 86400), " days ", whole, ".", digits(micros % MILLION, 6), "")
+    return pc.binary_join_element_wise(
+        digits(seconds // 86400), " days ", whole, ".", digits(micros % MILLION, 6), ""
+    )

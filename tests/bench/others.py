@@ -46,7 +46,9 @@ def _visidata(path: Path) -> Iterator[Figure]:
         for keys in _TO_TIME_AND_VALUE:
             viewer.work_s(keys)
         chart_s = viewer.work_s(b".")
-        yield Figure("VisiData on the same file: open to the chart of all rows", opened_s + chart_s, "s CPU")
+        yield Figure(
+            "VisiData on the same file: open to the chart of all rows", opened_s + chart_s, "s CPU"
+        )
         zooms = [1e3 * viewer.work_s(key) for key in (b"+", b"+", b"-")]
         yield Figure("VisiData on the same file: zoom, median", median(zooms), "ms CPU")
         yield Figure("VisiData on the same file: peak of memory", viewer.peak_bytes() / 1e6, "MB")
@@ -58,7 +60,11 @@ def _toolong(path: Path) -> Iterator[Figure]:
         yield Figure("toolong on the same file: not installed", NOT_MEASURED, "")
         return
     with Viewer([command, str(path)]) as viewer:
-        yield Figure("toolong on the same file: open to its last lines, no chart", viewer.until_calm(), "s CPU")
+        yield Figure(
+            "toolong on the same file: open to its last lines, no chart",
+            viewer.until_calm(),
+            "s CPU",
+        )
         pages = [1e3 * viewer.work_s(b"\x1b[5~") for _ in range(5)]
         yield Figure("toolong on the same file: page up, median", median(pages), "ms CPU")
         yield Figure("toolong on the same file: peak of memory", viewer.peak_bytes() / 1e6, "MB")

@@ -107,6 +107,8 @@ def command_used(*words: str) -> Used:
     """Run `tuisim` with some words to its end and return what it has cost."""
     # A process counts the memory of the one that has started it, which is a small one here.
     command = [sys.executable, "-I", "-c", COUNTED, sys.executable, "-m", "tuisim", *words]
-    done = subprocess.run(command, env=app_environment(), capture_output=True, text=True, check=True)
+    done = subprocess.run(
+        command, env=app_environment(), capture_output=True, text=True, check=True
+    )
     peak_kb, used_s = map(float, done.stdout.split())
     return Used(used_s, peak_kb / 1024)

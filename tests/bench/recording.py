@@ -70,7 +70,10 @@ def _cost(effort: Effort) -> Iterator[Figure]:
     for name, load in LOADS.items():
         spec = build_run_spec(Settings({"background": load.mat}))
         run_s = load.simulated_s * effort.simulated
-        kept, dropped = (partial(_simulating_cpu_s, load.text, spec, run_s, module) for module in (RECORDED, DROPPED))
+        kept, dropped = (
+            partial(_simulating_cpu_s, load.text, spec, run_s, module)
+            for module in (RECORDED, DROPPED)
+        )
         samples = in_turns(kept, dropped, effort)
         yield Figure(f"recorded, {name}", samples.ratio, "x dropped", most=1.3)
 
@@ -78,13 +81,17 @@ def _cost(effort: Effort) -> Iterator[Figure]:
 def _simulating_cpu_s(text: str, spec: RunSpec, run_s: float, module: str) -> float:
     """Return the CPU seconds of a run beyond those of an empty program."""
     started_s = _child_cpu_s(EMPTY, spec, run_s, module)
-    return measured(_child_cpu_s(text, spec, run_s, module) - started_s, "CPU time beyond the start of a run")
+    return measured(
+        _child_cpu_s(text, spec, run_s, module) - started_s, "CPU time beyond the start of a run"
+    )
 
 
 def _child_cpu_s(text: str, spec: RunSpec, run_s: float, module: str) -> float:
     program, options = Program("bench.py", text, "preloaded"), RunOptions(time_limit_s=run_s)
     with TemporaryDirectory() as home:
-        new = RunStore(Path(home)).new_run(program, spec, field_files(spec).to_plain(), options.to_plain())
+        new = RunStore(Path(home)).new_run(
+            program, spec, field_files(spec).to_plain(), options.to_plain()
+        )
         pipes = [os.pipe() for _ in range(3)]
         # The ends as the child has them: commands and lifeline to read, events to write.
         ends = (pipes[0][0], pipes[1][1], pipes[2][0], new.lock_fd)
@@ -105,17 +112,33 @@ def _packing(effort: Effort) -> Iterator[Figure]:
     for name, (text, mat) in DRIVES.items():
         for (words, (light, motor)), most in zip(NOISES.items(), PACKED[name], strict=False):
             run = _recorded(
-                text, build_run_spec(Settings({"background": mat, "noise.light": light, "noise.motor": motor}))
+                text,
+                build_run_spec(
+                    Settings({"background": mat, "noise.light": light, "noise.motor": motor})
+                ),
             )
             start = time.process_time()
             _, size = compact_run(run)
             used_s = time.process_time() - start
-            yield Figure(f"packed, {name}{words}", size / run.telemetry.count, "bytes a tick", most=most)
+            yield Figure(
+                f"packed, {name}{words}", size / run.telemetry.count, "bytes a tick", most=most
+            )
             samples = in_turns(partial(_opened_cpu_s, run), tick_cpu_s, effort)
             ratio = Ratio(samples.ratio / (100 * RUN_S), "x frozen ticks")
-            yield Figure(f"opening 10 minutes, {name}{words}", 1e3 * samples.value, "ms CPU", most=2, ratio=ratio)
+            yield Figure(
+                f"opening 10 minutes, {name}{words}",
+                1e3 * samples.value,
+                "ms CPU",
+                most=2,
+                ratio=ratio,
+            )
             if not light and not motor:
-                yield Figure(f"packing 10 minutes, {name}", 1e3 * used_s, "ms CPU", ratio=ticks(used_s, RUN_S))
+                yield Figure(
+                    f"packing 10 minutes, {name}",
+                    1e3 * used_s,
+                    "ms CPU",
+                    ratio=ticks(used_s, RUN_S),
+                )
                 again_s = median(_again_s(run) for _ in range(effort.repeats))
                 yield Figure(f"re-run, {name}", RUN_S / again_s, "sim s / s")
 
@@ -123,7 +146,9 @@ def _packing(effort: Effort) -> Iterator[Figure]:
 def _recorded(text: str, spec: RunSpec) -> StoredRun:
     """Return a run that has not been packed yet."""
     store = unpacked_store()
-    handle = start_run(Program("bench.py", text, "preloaded"), spec, RunOptions(time_limit_s=RUN_S), store)
+    handle = start_run(
+        Program("bench.py", text, "preloaded"), spec, RunOptions(time_limit_s=RUN_S), store
+    )
     handle.wait()
     return store.load_run(handle.run_id)
 

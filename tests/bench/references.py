@@ -57,7 +57,9 @@ class Ratio:
 def _tick() -> tuple[float, float]:
     """Return the CPU seconds and the seconds of one of the frozen ticks, in a process of its own."""
     command = [sys.executable, "-I", str(FROZEN_TICKS), str(TICKS)]
-    told = subprocess.run(command, env=plain_environment(), stdout=subprocess.PIPE, check=True).stdout
+    told = subprocess.run(
+        command, env=plain_environment(), stdout=subprocess.PIPE, check=True
+    ).stdout
     used_s, took_s = map(float, told.split())
     return used_s / TICKS, took_s / TICKS
 
@@ -136,7 +138,9 @@ def tick_speed(speed: float, cpu_s_a_tick: float, tick_hz: float = 100.0) -> Rat
     """
     share = speed * cpu_s_a_tick * tick_hz
     if share > MOST_SPEED:
-        raise MeasuringError(f"{speed:,.0f} simulated seconds a CPU second are {share:,.0f} x frozen ticks")
+        raise MeasuringError(
+            f"{speed:,.0f} simulated seconds a CPU second are {share:,.0f} x frozen ticks"
+        )
     return Ratio(share, "x frozen ticks")
 
 

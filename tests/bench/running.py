@@ -80,17 +80,26 @@ def unpacked_store() -> RunStore:
 
 
 def spec_of(
-    mat: str = "Grey_bands", profile: str = "robolab", values: Mapping[str, int] = MappingProxyType({})
+    mat: str = "Grey_bands",
+    profile: str = "robolab",
+    values: Mapping[str, int] = MappingProxyType({}),
 ) -> RunSpec:
     """Return what a program is run with; further values by their path."""
     return build_run_spec(Settings({"background": mat, "profile": profile, **values}))
 
 
 def begin(
-    text: str, mat: str = "Grey_bands", profile: str = "robolab", prelude: str = "preloaded", *, options: RunOptions
+    text: str,
+    mat: str = "Grey_bands",
+    profile: str = "robolab",
+    prelude: str = "preloaded",
+    *,
+    options: RunOptions,
 ) -> RunHandle:
     """Start a program, as the headless command or the app does."""
-    return start_run(Program("bench.py", text, prelude), spec_of(mat, profile), options, unpacked_store())
+    return start_run(
+        Program("bench.py", text, prelude), spec_of(mat, profile), options, unpacked_store()
+    )
 
 
 def started_by_itself() -> AbstractContextManager[object]:
@@ -111,7 +120,11 @@ def run_cpu_s(text: str, spec: RunSpec, options: RunOptions, prelude: str = "pre
     return measured(children_cpu_s() - before, "CPU time of a run")
 
 
-def simulating_cpu_s(text: str, spec: RunSpec, options: RunOptions, prelude: str = "preloaded") -> float:
+def simulating_cpu_s(
+    text: str, spec: RunSpec, options: RunOptions, prelude: str = "preloaded"
+) -> float:
     """Return the CPU seconds that a run takes beyond those of an empty program, which runs first."""
     started_s = run_cpu_s(EMPTY, spec, RunOptions(), prelude)
-    return measured(run_cpu_s(text, spec, options, prelude) - started_s, "CPU time beyond the start of a run")
+    return measured(
+        run_cpu_s(text, spec, options, prelude) - started_s, "CPU time beyond the start of a run"
+    )

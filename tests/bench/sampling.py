@@ -52,7 +52,9 @@ class Samples:
     @property
     def ratio(self) -> float:
         """The median of the ratios of each value to the reference beside it."""
-        return median(value / beside for value, beside in zip(self.values, self.references, strict=True))
+        return median(
+            value / beside for value, beside in zip(self.values, self.references, strict=True)
+        )
 
 
 def measured(value: float, what: str = "time") -> float:

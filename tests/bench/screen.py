@@ -8,7 +8,9 @@ import pyte
 
 from tests.bench.terminal import COLUMNS, ROWS, Terminal
 
-_UNKNOWN = re.compile(rb"\x1b\[[<>=?][0-9;]*[a-zA-Z]|\x1b\[[?>]?[0-9;]*\$p|\x1bP[^\x1b]*\x1b\\|\x1b_[^\x1b]*\x1b\\")
+_UNKNOWN = re.compile(
+    rb"\x1b\[[<>=?][0-9;]*[a-zA-Z]|\x1b\[[?>]?[0-9;]*\$p|\x1bP[^\x1b]*\x1b\\|\x1b_[^\x1b]*\x1b\\"
+)
 """Sequences that ask for abilities of a terminal; the screen in memory has none of them."""
 
 

@@ -41,7 +41,13 @@ def speeds(effort: Effort) -> Iterator[Figure]:
         for name, load in LOADS.items():
             goal = load.goal if profile == "robolab" else None
             yield speed(
-                f"speed, {name}, {profile}", load.text, load.mat, profile, load.simulated_s, effort=effort, goal=goal
+                f"speed, {name}, {profile}",
+                load.text,
+                load.mat,
+                profile,
+                load.simulated_s,
+                effort=effort,
+                goal=goal,
             )
 
 
@@ -74,7 +80,9 @@ def libraries(effort: Effort) -> Iterator[Figure]:
     options = RunOptions(time_limit_s=TWIN_S * effort.simulated)
 
     def cpu_s(profile: str) -> float:
-        return simulating_cpu_s(TWINS[profile], spec_of(LOADS["line follower"].mat, profile), options, "none")
+        return simulating_cpu_s(
+            TWINS[profile], spec_of(LOADS["line follower"].mat, profile), options, "none"
+        )
 
     samples = in_turns(lambda: cpu_s("ev3"), lambda: cpu_s("lego-micropython"), effort)
     yield Figure("speed, line follower, Pybricks / ev3dev2", samples.ratio, "x as fast", 1.0)
@@ -91,7 +99,9 @@ def noise(effort: Effort) -> Iterator[Figure]:
         load = LOADS[name]
         options = RunOptions(time_limit_s=load.simulated_s * effort.simulated)
 
-        def cpu_s(values: Mapping[str, int], load: Load = load, options: RunOptions = options) -> float:
+        def cpu_s(
+            values: Mapping[str, int], load: Load = load, options: RunOptions = options
+        ) -> float:
             return simulating_cpu_s(load.text, spec_of(load.mat, values=values), options)
 
         samples = in_turns(partial(cpu_s, NOISE), partial(cpu_s, {}), effort)

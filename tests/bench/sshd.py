@@ -30,7 +30,11 @@ StrictModes no
 def missing() -> str:
     """Return what to install before there can be a server, empty for nothing."""
     found = shutil.which("ssh") and shutil.which("ssh-keygen") and _server_path()
-    return "" if found else "needs an SSH server and client: apt-get install openssh-server openssh-client"
+    return (
+        ""
+        if found
+        else "needs an SSH server and client: apt-get install openssh-server openssh-client"
+    )
 
 
 def _server_path() -> str | None:
@@ -66,7 +70,10 @@ class Sshd:
         return self
 
     def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
     ) -> None:
         self._process.terminate()
         self._process.wait()

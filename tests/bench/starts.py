@@ -32,7 +32,13 @@ def first_line(effort: Effort) -> Iterator[Figure]:
 
 
 def _start(name: str, samples: Samples, most: float | None) -> Figure:
-    return Figure(name, samples.value * 1e3, "ms CPU", most=most, ratio=Ratio(samples.ratio, "x python -c pass"))
+    return Figure(
+        name,
+        samples.value * 1e3,
+        "ms CPU",
+        most=most,
+        ratio=Ratio(samples.ratio, "x python -c pass"),
+    )
 
 
 def _first_line_cpu_s(prelude: str) -> float:
@@ -52,7 +58,11 @@ def _first_line_cpu_s(prelude: str) -> float:
 
 def help_text(effort: Effort) -> Iterator[Figure]:
     """Yield the CPU of `tuisim --help`."""
-    yield _start("tuisim --help", in_turns(lambda: command_cpu_s("-m", "tuisim", "--help"), start_cpu_s, effort), 6)
+    yield _start(
+        "tuisim --help",
+        in_turns(lambda: command_cpu_s("-m", "tuisim", "--help"), start_cpu_s, effort),
+        6,
+    )
 
 
 def commands(effort: Effort) -> Iterator[Figure]:
@@ -63,7 +73,12 @@ def commands(effort: Effort) -> Iterator[Figure]:
             Path(home, name).write_text(text, encoding="utf-8")
         run = partial(command_cpu_s, "-m", "tuisim", environment=environment)
         run("run", f"{home}/few.py")
-        for words, most in (("runs list", 11), ("log bands 1", 28), ("log plot 1", 35), (f"run {home}/none.py", 24)):
+        for words, most in (
+            ("runs list", 11),
+            ("log bands 1", 28),
+            ("log plot 1", 35),
+            (f"run {home}/none.py", 24),
+        ):
             samples = in_turns(partial(run, *words.split()), start_cpu_s, effort)
             yield _start(f"tuisim {words.replace(f'{home}/', '')}", samples, most)
 
@@ -97,4 +112,6 @@ def _added_cpu_s(before: str, added: str) -> float:
     """Return the CPU seconds of some code after other code, as its process tells them."""
     script = f"import time; {before}; begun = time.process_time(); {added}; print(time.process_time() - begun)"
     command = [sys.executable, "-c", script]
-    return float(subprocess.run(command, env=app_environment(), stdout=subprocess.PIPE, check=True).stdout)
+    return float(
+        subprocess.run(command, env=app_environment(), stdout=subprocess.PIPE, check=True).stdout
+    )

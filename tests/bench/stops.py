@@ -24,11 +24,21 @@ PATIENCE_S = 5.0
 def stop_latency(effort: Effort) -> Iterator[Figure]:
     """Yield the latency from the stop to the run's last event, at the 90th percentile."""
     for name, options, most in (("live", LIVE, 1.5), ("headless", HEADLESS, 1.9)):
-        taken = [_latency_s(text, options, at) for text in (SPIN, SLEEP) for at in range(effort.stops)]
+        taken = [
+            _latency_s(text, options, at) for text in (SPIN, SLEEP) for at in range(effort.stops)
+        ]
         took_s = _p90(taken)
-        yield Figure(f"stop, Python code, {name}, p90", took_s * 1e3, "ms", most=most, ratio=starts_elapsed(took_s))
+        yield Figure(
+            f"stop, Python code, {name}, p90",
+            took_s * 1e3,
+            "ms",
+            most=most,
+            ratio=starts_elapsed(took_s),
+        )
     # Each half of them live, half headless: it makes no difference to code that hears nothing.
-    stuck = [_latency_s(STUCK, options, at) for options in (LIVE, HEADLESS) for at in range(effort.stops)]
+    stuck = [
+        _latency_s(STUCK, options, at) for options in (LIVE, HEADLESS) for at in range(effort.stops)
+    ]
     # A timer ends it after 400 ms: no figure of the machine.
     yield Figure("stop, stuck in C, p90", _p90(stuck) * 1e3, "ms", most=450)
 

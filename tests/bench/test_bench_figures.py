@@ -21,7 +21,7 @@ from tests.bench.references import (
     start_wall_s,
     tick_cpu_s,
     tick_speed,
-)  # fmt: skip
+)
 from tests.bench.sampling import QUICK, MeasuringError
 from tests.bench.starts import help_text
 
@@ -41,7 +41,12 @@ from tests.bench.starts import help_text
     ],
 )
 def test_a_figure_or_its_ratio_is_compared_with_the_goal(
-    value: float, ratio: float | None, least: float | None, most: float | None, goal: str, verdict: str
+    value: float,
+    ratio: float | None,
+    least: float | None,
+    most: float | None,
+    goal: str,
+    verdict: str,
 ) -> None:
     compared = None if ratio is None else Ratio(ratio, "x something")
     figure = Figure("thing", value, "kB", least, most, compared)
@@ -84,7 +89,10 @@ def test_each_reference_costs_something(reference: Callable[[], float]) -> None:
 
 
 def test_the_table_has_a_line_a_figure_and_json_says_the_same() -> None:
-    figures = [Figure("one", 1234.5, "ms", most=10.0, ratio=Ratio(12.0, "x app")), Figure("another", 1.25, "kB")]
+    figures = [
+        Figure("one", 1234.5, "ms", most=10.0, ratio=Ratio(12.0, "x app")),
+        Figure("another", 1.25, "kB"),
+    ]
     heads, first, second = as_table(figures).splitlines()
     assert heads.split() == ["name", "figure", "ratio", "goal"]
     assert first.split() == ["one", "1,234", "ms", "12.0", "x", "app", "<=", "10", "x", "missed"]
@@ -94,7 +102,9 @@ def test_the_table_has_a_line_a_figure_and_json_says_the_same() -> None:
     assert [line["ratio"] for line in plain] == [{"value": 12.0, "reference": "x app"}, None]
 
 
-def test_an_unknown_bench_is_refused_with_those_there_are(capsys: pytest.CaptureFixture[str]) -> None:
+def test_an_unknown_bench_is_refused_with_those_there_are(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
     with pytest.raises(SystemExit) as left:
         main(["nonsense"])
     assert left.value.code == 2

@@ -43,7 +43,10 @@ def echo_port() -> Iterator[int]:
 )
 def test_a_line_takes_its_time(line: Line, least_s: float, echo_port: int) -> None:
     said = bytes(range(200)) * (_HALF // 200)
-    with Link(line, echo_port) as link, socket.create_connection(("127.0.0.1", link.port)) as client:
+    with (
+        Link(line, echo_port) as link,
+        socket.create_connection(("127.0.0.1", link.port)) as client,
+    ):
         began_s = time.monotonic()
         client.sendall(said)
         heard = b""

@@ -30,7 +30,9 @@ def test_a_long_log_is_read_whole(tmp_path: Path, kind: str, suffix: str) -> Non
         assert str(log.table.column("index")[30].as_py()) == "0 days 00:00:01.500000"
 
 
-def test_what_is_not_installed_is_not_measured(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_is_not_installed_is_not_measured(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setenv("PATH", str(tmp_path))
     for _, variable, _ in (VISIDATA, TOOLONG):
         monkeypatch.delenv(variable, raising=False)

@@ -37,7 +37,9 @@ from tuisim.runs.packed_files import compact
 
 pytestmark = pytest.mark.bench
 
-TINY = Effort(repeats=1, stops=2, watch_s=1.0, parquet_rows=1_000_000, least_cpu_s=0.1, simulated=0.2)
+TINY = Effort(
+    repeats=1, stops=2, watch_s=1.0, parquet_rows=1_000_000, least_cpu_s=0.1, simulated=0.2
+)
 LEAST = 3.0
 """So much worse is a figure with what is planted, at least: it makes the work more than ten times slower."""
 NOTHING = "\x1b[m"
@@ -55,7 +57,9 @@ def seen_welcome() -> Iterator[None]:
     usual.cache_clear()
 
 
-def figures_of(bench: str, *plants: AbstractContextManager[None], effort: Effort = TINY) -> dict[str, Figure]:
+def figures_of(
+    bench: str, *plants: AbstractContextManager[None], effort: Effort = TINY
+) -> dict[str, Figure]:
     """Measure, with what is planted."""
     with ExitStack() as stack:
         for plant in plants:
@@ -76,7 +80,9 @@ def assert_worse(before: Mapping[str, Figure], after: Mapping[str, Figure]) -> N
     assert min(factors.values()) > LEAST, factors
 
 
-def assert_each_worse(bench: str, *plants: AbstractContextManager[None], effort: Effort = TINY) -> None:
+def assert_each_worse(
+    bench: str, *plants: AbstractContextManager[None], effort: Effort = TINY
+) -> None:
     """Measure without and with a slow-down, and compare."""
     assert_worse(figures_of(bench, effort=effort), figures_of(bench, *plants, effort=effort))
 
@@ -128,7 +134,9 @@ def test_slow_lists_are_seen(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_slow_looks_at_the_past_are_seen(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(variables, "RUN_S", 60.0)
     monkeypatch.setattr(variables, "PLACES_A_REPEAT", 2)
-    assert_each_worse("variables", in_runs(SLOW.format(turns=150) + ANSWERS.format(turns=40_000_000)))
+    assert_each_worse(
+        "variables", in_runs(SLOW.format(turns=150) + ANSWERS.format(turns=40_000_000))
+    )
 
 
 @pytest.mark.parametrize("bench", ["frames", "chart", "pictures"])
@@ -167,7 +175,11 @@ def test_slow_and_large_recordings_are_seen(monkeypatch: pytest.MonkeyPatch) -> 
         (folder / "ballast").write_bytes(bytes(100_000))
 
     monkeypatch.setattr("tuisim.runs.store.compact", compact_badly)
-    plants = in_runs(SLOW.format(turns=500)), in_commands(RECORDED.format(turns=1000)), here(SLOW.format(turns=1000))
+    plants = (
+        in_runs(SLOW.format(turns=500)),
+        in_commands(RECORDED.format(turns=1000)),
+        here(SLOW.format(turns=1000)),
+    )
     assert_worse(before, figures_of("recording", *plants))
 
 

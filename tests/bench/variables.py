@@ -33,7 +33,9 @@ class Asking:
     """
 
     def __init__(self, noise: int) -> None:
-        spec = build_run_spec(Settings({"background": "Grey_bands", "noise.light": noise, "noise.motor": noise}))
+        spec = build_run_spec(
+            Settings({"background": "Grey_bands", "noise.light": noise, "noise.motor": noise})
+        )
         run = start_run(Program("bench.py", LOG, "preloaded"), spec, RunOptions(time_limit_s=RUN_S))
         run.wait()
         self.recording = Recording(load_run(run.run_id))
@@ -69,7 +71,9 @@ class Asking:
 
     def back_s(self, at: Position) -> float:
         """Return how long it takes to go a line back from an instant."""
-        return self.took_s(lambda: self.replay_debugger.lines_back(self.recording, at, 1, Inspect()))
+        return self.took_s(
+            lambda: self.replay_debugger.lines_back(self.recording, at, 1, Inspect())
+        )
 
 
 def variables(effort: Effort) -> Iterator[Figure]:
@@ -82,7 +86,11 @@ def variables(effort: Effort) -> Iterator[Figure]:
         asking.replay_debugger.close()
         ratio = ticks_elapsed(median(known), RUN_S)
         yield Figure(
-            f"variables of any instant of 10 minutes, {words}", 1e3 * median(known), "ms", most=most, ratio=ratio
+            f"variables of any instant of 10 minutes, {words}",
+            1e3 * median(known),
+            "ms",
+            most=most,
+            ratio=ratio,
         )
         yield Figure(f"the slowest of them, {words}", 1e3 * max(known), "ms")
         yield Figure(f"one line back, with variables, {words}", 1e3 * median(back), "ms")

@@ -34,7 +34,10 @@ _SETTLE_S = 1.0
 _RESUMED_S = 2.0
 """So long the robot has driven again when the next key is pressed."""
 _PICTURES = (
-    *(("--cells", cells) for cells in (CellSet.HALF, CellSet.QUADRANT, CellSet.SEXTANT, CellSet.OCTANT)),
+    *(
+        ("--cells", cells)
+        for cells in (CellSet.HALF, CellSet.QUADRANT, CellSet.SEXTANT, CellSet.OCTANT)
+    ),
     *(("--pixels", protocol) for protocol in Protocol),
 )
 _TOASTS_S = 5.0
@@ -80,7 +83,10 @@ class Remote:
         return self
 
     def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
     ) -> None:
         pid = self.pid()
         self._rest.close()
@@ -175,7 +181,9 @@ def _paints(server: Sshd, colors: str) -> Iterator[Figure]:
         yield Figure(f"first paint, {colors}", remote.first_paint()[0], "kB", most=60)
         for name, (key, shows) in _DIALOGS.items():
             yield Figure(f"{name} opens, {colors}", remote.paint(key, shows)[0], "kB", most=35)
-            yield Figure(f"{name} closes, {colors}", remote.paint(b"\x1b", shows, on=False)[0], "kB", most=35)
+            yield Figure(
+                f"{name} closes, {colors}", remote.paint(b"\x1b", shows, on=False)[0], "kB", most=35
+            )
 
 
 def _rests(server: Sshd, circle: Path, short: Path, watch_s: float) -> Iterator[Figure]:
@@ -196,7 +204,9 @@ def _rests(server: Sshd, circle: Path, short: Path, watch_s: float) -> Iterator[
             down, up, cpu = remote.at_rest(watch_s)
             yield Figure(f"at rest, {name}, down", down, "B/s", most=0, may_be_zero=True)
             yield Figure(f"at rest, {name}, up", up, "B/s", most=0, may_be_zero=True)
-            yield Figure(f"at rest, {name}", cpu, "% CPU", most=round(least + 0.5, 1), may_be_zero=True)
+            yield Figure(
+                f"at rest, {name}", cpu, "% CPU", most=round(least + 0.5, 1), may_be_zero=True
+            )
 
     world = ("-b", "Grey_bands")
     yield from rest("world", *world, shows="▀")
@@ -230,15 +240,24 @@ def _answers(server: Sshd, line: Line, circle: Path) -> Iterator[Figure]:
             remote.until("running")
             yield from _driving(remote, f"driving, {panels}, {line.name}")
             remote.terminal.type(b" ")
-            yield Figure(f"space until 'paused', {panels}, {line.name}", remote.until("paused"), "s", most=1)
+            yield Figure(
+                f"space until 'paused', {panels}, {line.name}", remote.until("paused"), "s", most=1
+            )
             remote.until_quiet()
             for name in ("help", "palette"):
                 key, shows = _DIALOGS[name]
                 yield Figure(f"{name} opens, {line.name}", remote.paint(key, shows)[1], "s", most=1)
-                yield Figure(f"{name} closes, {line.name}", remote.paint(b"\x1b", shows, on=False)[1], "s", most=1)
+                yield Figure(
+                    f"{name} closes, {line.name}",
+                    remote.paint(b"\x1b", shows, on=False)[1],
+                    "s",
+                    most=1,
+                )
 
 
-def _driven(server: Sshd, line: Line, circle: Path, words: tuple[str, str], stops: int) -> Iterator[Figure]:
+def _driven(
+    server: Sshd, line: Line, circle: Path, words: tuple[str, str], stops: int
+) -> Iterator[Figure]:
     """Yield how soon a key is answered while the robot drives, and what is sent, with a set of glyphs or a protocol."""
     name = f"{' '.join(words)[2:]}, {line.name}"
     with Remote(server, line, _app(str(circle), "-R", "--colors", "truecolor", *words)) as remote:

@@ -41,7 +41,9 @@ def test_one_value_of_any_size_has_limits_around_it(value: float) -> None:
     assert bottom < value < top
 
 
-@pytest.mark.parametrize(("end_s", "upper_s"), [(0, 5), (5, 5), (5.1, 10), (45, 60), (61, 120), (600, 600), (700, 720)])
+@pytest.mark.parametrize(
+    ("end_s", "upper_s"), [(0, 5), (5, 5), (5.1, 10), (45, 60), (61, 120), (600, 600), (700, 720)]
+)
 def test_time_limits(end_s: float, upper_s: float) -> None:
     assert axes.time_limits(end_s) == (0, upper_s)
 
@@ -57,7 +59,10 @@ def test_time_axis_has_the_width_and_a_unit(columns: int, end_s: float) -> None:
 def test_columns_and_times_agree(columns: int) -> None:
     limits = (0.0, 30.0)
 
-    back = [axes.column_of(axes.at_column(column, limits, columns), limits, columns) for column in range(columns)]
+    back = [
+        axes.column_of(axes.at_column(column, limits, columns), limits, columns)
+        for column in range(columns)
+    ]
 
     assert back == list(range(columns))
 
@@ -83,7 +88,12 @@ def test_labels(value: float, step: float, text: str) -> None:
     [
         pytest.param((40.0, 100.0), 4, {0: "100", 3: "40"}, id="few rows"),
         pytest.param((0.0, 100.0), 1, {0: "100"}, id="one row"),
-        pytest.param((0.0, 100.0), 12, {0: "100", 2: "80", 4: "60", 7: "40", 9: "20", 11: "0"}, id="many rows"),
+        pytest.param(
+            (0.0, 100.0),
+            12,
+            {0: "100", 2: "80", 4: "60", 7: "40", 9: "20", 11: "0"},
+            id="many rows",
+        ),
         pytest.param((-1.0, 1.0), 4, {0: "1.0", 3: "-1.0"}, id="fractions"),
     ],
 )
@@ -91,7 +101,9 @@ def test_row_labels(limits: tuple[float, float], rows: int, labels: dict[int, st
     assert axes.row_labels(limits, rows) == labels
 
 
-@pytest.mark.parametrize("limits", [(0.0, 100.0), (0.0, 60.0), (-2.0, 1.0), (85.0, 100.0), (0.0, 0.25)])
+@pytest.mark.parametrize(
+    "limits", [(0.0, 100.0), (0.0, 60.0), (-2.0, 1.0), (85.0, 100.0), (0.0, 0.25)]
+)
 @pytest.mark.parametrize("rows", range(7, 60))
 def test_extended_limits_have_ticks_at_equal_distances_in_the_middle_of_rows(
     limits: tuple[float, float], rows: int

@@ -11,7 +11,12 @@ from tuisim.charts.text_chart import ChartPainter, ChartState
 from tuisim.charts.traces import Traces
 
 LEVELS = [100.0] * 20 + [60.0] * 20 + [0.0] * 20
-GROUND, AXIS, WHITE, SHADED = (10, 20, 30), (200, 200, 200), (255, 255, 255), ((40, 50, 60), (30, 40, 50))
+GROUND, AXIS, WHITE, SHADED = (
+    (10, 20, 30),
+    (200, 200, 200),
+    (255, 255, 255),
+    ((40, 50, 60), (30, 40, 50)),
+)
 
 
 def chart(values: list[float]) -> tuple[Traces, ChartState]:
@@ -23,7 +28,11 @@ def chart(values: list[float]) -> tuple[Traces, ChartState]:
 def test_each_band_is_named_by_its_level_and_grey() -> None:
     _, state = chart(LEVELS)
 
-    assert [span.texts for span in state.spans] == [("100 white", "100"), ("60", "60"), ("0 black", "0")]
+    assert [span.texts for span in state.spans] == [
+        ("100 white", "100"),
+        ("60", "60"),
+        ("0 black", "0"),
+    ]
     assert [(span.start, span.stop) for span in state.spans] == [(0.0, 1.9), (2.0, 3.9), (4.0, 5.9)]
 
 
@@ -74,7 +83,9 @@ def test_a_band_in_pixels_is_shaded_and_named_where_nothing_is_drawn() -> None:
     image = plot_image(plot, (8, 16), PlotInks(GROUND, AXIS, WHITE, SHADED))
 
     first, second, third = np.array_split(image[:, 8 : 8 + plot.columns * 8], 3, axis=1)
-    assert [bool((part == rgb).all(axis=2).any()) for part in (first, second) for rgb in SHADED] == [1, 0, 0, 1]
+    assert [
+        bool((part == rgb).all(axis=2).any()) for part in (first, second) for rgb in SHADED
+    ] == [1, 0, 0, 1]
     lowest = slice((plot.rows - 1) * 16, plot.rows * 16 - 2)
     named = [bool((part[lowest, 20:-20] == AXIS).all(axis=2).any()) for part in (first, third)]
     assert named == [True, False]

@@ -54,13 +54,20 @@ def test_one_variable_against_another_has_a_title_and_marks_the_point() -> None:
     values = np.array([0.0, 1.0, 2.0, np.nan])
     lines = xy_lines(values, values, 1, ("x", "y"), RED, "o", 20, 10)
     assert lines[0][0][0] == "y against x"
-    here = [part for line in lines for part, style in line if style.bgcolor is not None and style.bold]
+    here = [
+        part for line in lines for part, style in line if style.bgcolor is not None and style.bold
+    ]
     assert len(here) == 1
-    assert not any(style.bgcolor for line in xy_lines(values, values, None, ("x", "y"), RED, "o", 20, 10)
-                   for _, style in line)  # fmt: skip
+    assert not any(
+        style.bgcolor
+        for line in xy_lines(values, values, None, ("x", "y"), RED, "o", 20, 10)
+        for _, style in line
+    )
 
 
-@pytest.mark.parametrize("ys", [np.full(3, np.nan), np.array([np.nan, 1.0, np.nan])], ids=["none", "not together"])
+@pytest.mark.parametrize(
+    "ys", [np.full(3, np.nan), np.array([np.nan, 1.0, np.nan])], ids=["none", "not together"]
+)
 def test_samples_that_have_not_both_are_told(ys: np.ndarray) -> None:
     lines = xy_lines(np.array([1.0, np.nan, 2.0]), ys, None, ("x", "y"), RED, "o", 20, 10)
     assert lines[1][0][0] == "no sample has both"
@@ -78,7 +85,13 @@ def test_a_line_is_drawn_around_its_place() -> None:
     def dots(value: float) -> list[int]:
         rows = canvas([curve([value, value], marker="braille")], 9, 11, (0.0, 1.0), (0.0, 100.0))
         cells = [ord("".join(part for part, _ in row)[4]) for row in rows]
-        return [4 * row + dot for row, cell in enumerate(cells) if cell > 0x2800 for dot in range(3) if cell >> dot & 1]
+        return [
+            4 * row + dot
+            for row, cell in enumerate(cells)
+            if cell > 0x2800
+            for dot in range(3)
+            if cell >> dot & 1
+        ]
 
     # A row of ten per cent has four dots: the line at 50 is between those in the middle of its row.
     assert dots(50.0) == [21, 22]
@@ -88,5 +101,11 @@ def test_a_line_is_drawn_around_its_place() -> None:
 
 def test_equal_lines_are_seen_in_turns() -> None:
     level = [5.0] * 4
-    (row,) = canvas([curve(level, marker="braille"), curve(level, BLUE, "braille")], 12, 1, (0.0, 3.0), (0.0, 10.0))
+    (row,) = canvas(
+        [curve(level, marker="braille"), curve(level, BLUE, "braille")],
+        12,
+        1,
+        (0.0, 3.0),
+        (0.0, 10.0),
+    )
     assert [(len(part), rgb) for part, rgb in row] == [(4, BLUE), (4, RED), (4, BLUE)]

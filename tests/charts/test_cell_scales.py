@@ -34,12 +34,21 @@ def test_two_scales() -> None:
 def test_a_narrow_chart_has_both_scales_before_the_last_values(width: int, has_ends: bool) -> None:
     made = traces({"Colour": [0.0, 100.0], "front_mm": [2000.0, 886.0]})
     rows = text(ChartPainter().paint(made, ChartState(), width, 16))
-    assert any(row.startswith("100┤") for row in rows) and any(row.rstrip().endswith("├2000mm") for row in rows)
+    assert any(row.startswith("100┤") for row in rows) and any(
+        row.rstrip().endswith("├2000mm") for row in rows
+    )
     assert any("886mm" in row for row in rows) is has_ends
 
 
 def test_percent_millimetres_and_degrees_have_a_scale_each() -> None:
-    made = traces({"Colour": [0.0, 100.0], "front_mm": [2000.0, 100.0], "turn_deg": [0.0, 35.0], "error": [0.0, 0.5]})
+    made = traces(
+        {
+            "Colour": [0.0, 100.0],
+            "front_mm": [2000.0, 100.0],
+            "turn_deg": [0.0, 35.0],
+            "error": [0.0, 0.5],
+        }
+    )
 
     picture = ChartPainter().paint(made, ChartState(), 80, 16)
     rows = text(picture)
@@ -48,7 +57,12 @@ def test_percent_millimetres_and_degrees_have_a_scale_each() -> None:
     assert re.search("├2000mm *├40° *├0.6$", top.rstrip())
     assert picture.plot is not None
     # Each line reaches from one edge of its scale to the other.
-    assert [np.ptp(curve.values).round(1) for curve in picture.plot.curves] == [100.0, 95.0, 87.5, 83.3]
+    assert [np.ptp(curve.values).round(1) for curve in picture.plot.curves] == [
+        100.0,
+        95.0,
+        87.5,
+        83.3,
+    ]
 
 
 @pytest.mark.parametrize(
@@ -58,14 +72,22 @@ def test_percent_millimetres_and_degrees_have_a_scale_each() -> None:
         pytest.param({"front_mm": [0.0, 1250.0]}, ["1250mm"], id="with its unit"),
         pytest.param({"Left": [0.0, 100.0], "Right": [0.0, 100.0]}, ["100"], id="at one place"),
         pytest.param({"Left": [9.0, 0.0], "Right": [9.0, 0.0]}, ["0"], id="at the lower edge"),
-        pytest.param({"Left": [9.0, 1.0], "Right": [9.0, 1.1]}, ["1", "1.1"], id="beside each other"),
+        pytest.param(
+            {"Left": [9.0, 1.0], "Right": [9.0, 1.1]}, ["1", "1.1"], id="beside each other"
+        ),
     ],
 )
-def test_the_last_value_stands_at_the_end_of_each_line(values: dict[str, list[float]], last: list[str]) -> None:
+def test_the_last_value_stands_at_the_end_of_each_line(
+    values: dict[str, list[float]], last: list[str]
+) -> None:
     made = traces(values)
 
     picture = ChartPainter().paint(made, ChartState(), 80, 14)
-    ends = [row[-1] for row in picture.lines[picture.top : picture.top + picture.rows] if row[-1][0].strip()]
+    ends = [
+        row[-1]
+        for row in picture.lines[picture.top : picture.top + picture.rows]
+        if row[-1][0].strip()
+    ]
 
     assert [end.strip() for end, _ in ends] == last
     own = [trace.rgb for trace in made]

@@ -24,7 +24,8 @@ def poses(*groups: PoseGroup) -> EndPoses:
 
 
 NEAR = poses(
-    group([800.0, 810, 805], [500.0, 520, 510], "noise.motor 0"), group([790.0, 850], [480.0, 560], "noise.motor 50")
+    group([800.0, 810, 805], [500.0, 520, 510], "noise.motor 0"),
+    group([790.0, 850], [480.0, 560], "noise.motor 50"),
 )
 FAR = poses(group([100.0, 2000], [100.0, 1000]))
 OFF = poses(group([100.0, 2500], [100.0, 1000]))
@@ -44,7 +45,9 @@ def test_the_part_of_the_field_holds_every_pose(found: EndPoses, limits: object)
 
 
 @pytest.mark.quick_cases("size1-*")
-@pytest.mark.parametrize("found", [NEAR, FAR, OFF, NONE], ids=["near", "far", "off the field", "none"])
+@pytest.mark.parametrize(
+    "found", [NEAR, FAR, OFF, NONE], ids=["near", "far", "off the field", "none"]
+)
 @pytest.mark.parametrize("size", [(960, 600), (200, 150)])
 def test_end_poses_are_written_as_svg_and_png(found: EndPoses, size: tuple[int, int]) -> None:
     drawing = drawing_of_poses(found, *size)
@@ -54,7 +57,9 @@ def test_end_poses_are_written_as_svg_and_png(found: EndPoses, size: tuple[int, 
 
 def test_the_scales_of_both_axes_are_equal() -> None:
     for found in (NEAR, FAR):
-        raster = next(shape for shape in drawing_of_poses(found, 960, 600).shapes if isinstance(shape, Raster))
+        raster = next(
+            shape for shape in drawing_of_poses(found, 960, 600).shapes if isinstance(shape, Raster)
+        )
         points = next(
             s.points
             for s in drawing_of_poses(found, 960, 600).shapes

@@ -24,7 +24,10 @@ each_format = pytest.mark.parametrize("suffix", CHART_FORMATS)
 @pytest.mark.parametrize("facets", [False, True], ids=["one", "facets"])
 def test_every_format_has_a_size_of_its_own(tmp_path: Path, suffix: str, facets: bool) -> None:
     kind = CHART_FORMATS[suffix]
-    assert all(low <= side <= high for low, side, high in zip(kind.least, kind.size, kind.most, strict=True))
+    assert all(
+        low <= side <= high
+        for low, side, high in zip(kind.least, kind.size, kind.most, strict=True)
+    )
     written = []
     for name, size in (("own", None), ("least", kind.least), ("least_again", kind.least)):
         target = tmp_path / f"{name}{suffix.upper()}"
@@ -39,7 +42,9 @@ def full(_: int) -> None:
 
 
 @each_format
-def test_a_failed_chart_leaves_what_was_there(tmp_path: Path, suffix: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_failed_chart_leaves_what_was_there(
+    tmp_path: Path, suffix: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
     target = tmp_path / f"x{suffix}"
     target.write_text("old")
     monkeypatch.setattr(os, "fsync", full)
@@ -48,7 +53,9 @@ def test_a_failed_chart_leaves_what_was_there(tmp_path: Path, suffix: str, monke
     assert (target.read_text(), list(tmp_path.iterdir())) == ("old", [target])
 
 
-def test_a_failed_report_leaves_what_was_there(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_failed_report_leaves_what_was_there(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     target = tmp_path / "x.html"
     target.write_text("old")
     monkeypatch.setattr(os, "fsync", full)
@@ -67,9 +74,18 @@ def test_a_report_is_called_after_its_log(file: str, name: str) -> None:
 
 def test_what_an_export_says_of_its_runs_may_be_anything() -> None:
     log = long_log()
-    odd = {"runs": [{"world": "<none>", "seed": {"x": 1}, "program": {"name": "<p>", "sha256": 3}}, 7, None]}
+    odd = {
+        "runs": [
+            {"world": "<none>", "seed": {"x": 1}, "program": {"name": "<p>", "sha256": 3}},
+            7,
+            None,
+        ]
+    }
     page = report_of(OpenedLog(LogRequest(), replace(log, metadata=odd)))
-    assert "<td>&lt;p&gt;</td>" in page and "<p>" not in page.split("<h2>Facts</h2>")[1].split("</section>")[0]
+    assert (
+        "<td>&lt;p&gt;</td>" in page
+        and "<p>" not in page.split("<h2>Facts</h2>")[1].split("</section>")[0]
+    )
 
 
 def test_nothing_is_nothing_to_report_on() -> None:

@@ -29,7 +29,13 @@ COLUMNS: dict[str, dict[str, object]] = {
     "at one time": {"time": RAMP * 0, "a": RAMP},
     "backwards": {"time": RAMP[::-1], "a": RAMP},
     "infinite now and then": {"time": RAMP, "a": np.where(RAMP % 7, RAMP, np.inf)},
-    "hostile names": {"time": RAMP, "new\nline": RAMP, "\x1b[31mred": RAMP, "<b>&\u202e": RAMP, "日本語" * 30: RAMP},
+    "hostile names": {
+        "time": RAMP,
+        "new\nline": RAMP,
+        "\x1b[31mred": RAMP,
+        "<b>&\u202e": RAMP,
+        "日本語" * 30: RAMP,
+    },
     "two scales": {"time": RAMP, "red": RAMP, "way_mm": RAMP * 1e6, "turn_deg": -RAMP},
 }
 VIEWS = {
@@ -57,10 +63,14 @@ def test_every_format_is_whole(columns: dict[str, object], view: View) -> None:
         assert not re.search(r'="[^"]*(nan|inf)', text)
         # One pixel for rounding.
         strokes = [shape.points for shape in drawing.shapes if isinstance(shape, Stroke)]
-        assert all((-1 <= points).all() and (points <= (width + 1, height + 1)).all() for points in strokes)
+        assert all(
+            (-1 <= points).all() and (points <= (width + 1, height + 1)).all() for points in strokes
+        )
     assert image_of(drawing).size == (960, 420)
     for width, height in ((20, 8), (80, 24)):
-        lines = text_of(chart_of(model, view, 2 * width, 4 * height), width, height).plain.split("\n")
+        lines = text_of(chart_of(model, view, 2 * width, 4 * height), width, height).plain.split(
+            "\n"
+        )
         assert max(map(cell_len, lines)) <= width
         assert not re.search(r"[\x00-\x1f\x7f]", "".join(lines))
 
@@ -78,7 +88,10 @@ def test_a_screen_and_a_file_have_the_same_scales(columns: dict[str, object]) ->
         assert not model.traces.drawn()
         return
     (frame,) = drawing.plots
-    assert (picture.plot.x_limits, picture.plot.y_limits) == (frame.x, axes.on_rows(frame.y, picture.rows))
+    assert (picture.plot.x_limits, picture.plot.y_limits) == (
+        frame.x,
+        axes.on_rows(frame.y, picture.rows),
+    )
     drawn = sum(
         isinstance(shape, Stroke) and len(shape.points) and shape.points[0, 1] >= frame.top - 1
         for shape in drawing.shapes
@@ -94,11 +107,16 @@ def test_a_screen_and_a_file_have_the_same_scales_when_zoomed(name: str) -> None
     for trace in model.traces.ticked():
         trace.prepare(model.x_limits(), 960, False)
 
-    picture = ChartPainter().paint(model.traces, ChartState(x_limits=model.x_limits(), zoomed=True), 400, 24)
+    picture = ChartPainter().paint(
+        model.traces, ChartState(x_limits=model.x_limits(), zoomed=True), 400, 24
+    )
 
     (frame,) = laid_out(chart, 960, 420).plots
     assert picture.plot is not None
-    assert (picture.plot.x_limits, picture.plot.y_limits) == (frame.x, axes.on_rows(frame.y, picture.rows))
+    assert (picture.plot.x_limits, picture.plot.y_limits) == (
+        frame.x,
+        axes.on_rows(frame.y, picture.rows),
+    )
     shown = [(trace.name, trace.scale) for trace in model.traces.drawn()]
     assert shown == [(line.name, line.scale) for line in chart.lines]
 
@@ -111,7 +129,9 @@ def test_a_chart_is_cut_off_at_its_limits() -> None:
 
 
 def test_held_values_have_corners() -> None:
-    (line,) = chart_of(log_of({"time": [0.0, 1.0], "a": [3.0, 5.0]}), View(hold=True), 800, 400).lines
+    (line,) = chart_of(
+        log_of({"time": [0.0, 1.0], "a": [3.0, 5.0]}), View(hold=True), 800, 400
+    ).lines
     assert (line.xs.tolist(), line.ys.tolist()) == ([0.0, 1.0, 1.0], [3.0, 3.0, 5.0])
 
 
@@ -140,7 +160,9 @@ def test_facets_stand_below_each_other() -> None:
     assert any(isinstance(shape, Rule) and shape.faint for shape in drawing.shapes)
 
 
-@pytest.mark.parametrize("view", [View(), View(facets=True), View(against=("x_mm", "Colour"))], ids=str)
+@pytest.mark.parametrize(
+    "view", [View(), View(facets=True), View(against=("x_mm", "Colour"))], ids=str
+)
 def test_only_data_have_colours_for_any_ground(view: View) -> None:
     text = text_of(chart_of(model_of(long_log()), view, 160, 96), 80, 24, colors=True)
     styles = {str(span.style) for span in text.spans}

@@ -41,20 +41,30 @@ DRAWN = {
     "marks": (curve((0, 0), (0, 100), (10, 0), (10, 100), marker="o"), CURVE, CORNERS),
     "a cursor": (replace(EMPTY, cursors=(0.0,)), CURSOR, {(row, 0) for row in range(ROWS)}),
     "a cursor that is not in view": (replace(EMPTY, cursors=(11.0,)), CURSOR, set()),
-    "axes": (EMPTY, AXIS, {(row, -1) for row in range(ROWS + 1)} | {(ROWS, col) for col in range(COLUMNS)}),
+    "axes": (
+        EMPTY,
+        AXIS,
+        {(row, -1) for row in range(ROWS + 1)} | {(ROWS, col) for col in range(COLUMNS)},
+    ),
     "no time line": (replace(EMPTY, has_time_line=False), AXIS, {(row, -1) for row in range(ROWS)}),
 }
 
 
 @pytest.mark.parametrize(("plot", "rgb", "expected"), DRAWN.values(), ids=DRAWN)
-def test_everything_is_where_it_belongs(plot: Plot, rgb: Rgb, expected: set[tuple[int, int]]) -> None:
+def test_everything_is_where_it_belongs(
+    plot: Plot, rgb: Rgb, expected: set[tuple[int, int]]
+) -> None:
     assert cells_with(plot, rgb) == expected
 
 
 def test_the_grid_is_at_the_labels() -> None:
     limits = 0.0, 100.0
     grid = 48, 56, 64
-    plot = replace(EMPTY, y_ticks=tuple(axes.row_ticks(limits, ROWS)), x_ticks=tuple(axes.time_ticks((0.0, 10.0), 30)))
+    plot = replace(
+        EMPTY,
+        y_ticks=tuple(axes.row_ticks(limits, ROWS)),
+        x_ticks=tuple(axes.time_ticks((0.0, 10.0), 30)),
+    )
     found = cells_with(plot, grid)
     rows = {row for row in range(ROWS) if all((row, col) in found for col in range(COLUMNS))}
     cols = {col for col in range(COLUMNS) if all((row, col) in found for row in range(ROWS))}

@@ -21,7 +21,12 @@ TELEMETRY = ("left_red_pc", "gyro_deg")
 def traces(*names: str) -> Traces:
     made = Traces()
     for at, name in enumerate(names):
-        made.append(name, [0.0, 1.0, 2.0, 3.0], [at + 0.0, at + 100.0, at + 50.0, at + 50.0], name not in TELEMETRY)
+        made.append(
+            name,
+            [0.0, 1.0, 2.0, 3.0],
+            [at + 0.0, at + 100.0, at + 50.0, at + 50.0],
+            name not in TELEMETRY,
+        )
     return made
 
 
@@ -36,7 +41,14 @@ SIZES = [(20, 6), (38, 8), (72, 16), (160, 20)]
 @pytest.mark.parametrize("cursor_s", [None, 1.5], ids=["no cursor", "cursor"])
 @pytest.mark.parametrize("grey", [False, True], ids=["colours", "grey"])
 def test_it_fits(width: int, height: int, cursor_s: float | None, grey: bool) -> None:
-    made = traces("Colour", "Light_left", "Ultrasonic", "left_red_pc", "gyro_deg", "a_very_long_name_of_a_trace")
+    made = traces(
+        "Colour",
+        "Light_left",
+        "Ultrasonic",
+        "left_red_pc",
+        "gyro_deg",
+        "a_very_long_name_of_a_trace",
+    )
 
     picture = ChartPainter().paint(made, ChartState("Colour", cursor_s, grey=grey), width, height)
 
@@ -62,7 +74,10 @@ def test_a_chart_without_a_tick_says_so() -> None:
     for made in (logged, measured):
         for trace in made:
             trace.on = False
-    said = ["\n".join(text(ChartPainter().paint(made, ChartState(), 80, 16))) for made in (logged, measured)]
+    said = [
+        "\n".join(text(ChartPainter().paint(made, ChartState(), 80, 16)))
+        for made in (logged, measured)
+    ]
     assert ["No trace is ticked" in words for words in said] == [True, False]
     assert not any("space" in words for words in said)
     focused = ChartPainter().paint(logged, ChartState("Colour"), 80, 16)
@@ -82,7 +97,16 @@ def test_a_chart_without_a_tick_says_so() -> None:
         ("Distance", [60.0, 98.8], ChartState(), "60"),
         ("Light_slope", [-20.0, 40.0], ChartState(), "-20"),
     ],
-    ids=["percent", "level", "telemetry", "column", "zoomed", "out of range", "other reading", "below zero"],
+    ids=[
+        "percent",
+        "level",
+        "telemetry",
+        "column",
+        "zoomed",
+        "out of range",
+        "other reading",
+        "below zero",
+    ],
 )
 def test_readings_with_a_known_range_begin_at_zero(
     name: str, values: list[float], state: ChartState, lowest: str
@@ -182,12 +206,17 @@ def test_names_of_bands_have_the_colour_of_their_curve_beside_others(other: str)
     made = traces(*filter(None, ("Colour", other)))
     spans = (band_span("Colour", 1.5, 3.0, 50.0, ""),)
     lines = ChartPainter().paint(made, ChartState(spans=spans), 80, 16).lines
-    (color,) = {style.color for line in lines for part, style in line if part == "50" and style.bgcolor}
+    (color,) = {
+        style.color for line in lines for part, style in line if part == "50" and style.bgcolor
+    }
     assert (color == styled(next(iter(made)).rgb).color) is bool(other)
 
 
 def test_values_at_the_cursor() -> None:
-    assert values_at(list(traces("Colour", "way_mm")), 1.25, "s", 80) == "1.25 s  Colour 100  way_mm 101mm"
+    assert (
+        values_at(list(traces("Colour", "way_mm")), 1.25, "s", 80)
+        == "1.25 s  Colour 100  way_mm 101mm"
+    )
 
 
 def test_values_that_do_not_fit_are_counted() -> None:
@@ -197,7 +226,10 @@ def test_values_that_do_not_fit_are_counted() -> None:
 
 
 def test_a_chart_of_twelve_rows_has_ten_for_its_lines() -> None:
-    assert ChartPainter().paint(traces("Colour"), ChartState(cursor_s=1.0, grid=True), 78, 12).rows == 10
+    assert (
+        ChartPainter().paint(traces("Colour"), ChartState(cursor_s=1.0, grid=True), 78, 12).rows
+        == 10
+    )
 
 
 def test_the_canvas_is_kept_while_only_the_cursor_moves(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -222,7 +254,10 @@ def test_limits_stay_while_frozen() -> None:
     made = traces("Colour")
     made.append("Colour", [100.0], [1.0])
 
-    assert ChartPainter().paint(made, ChartState(x_limits=(0.0, 5.0)), 80, 16).x_limits == (0.0, 5.0)
+    assert ChartPainter().paint(made, ChartState(x_limits=(0.0, 5.0)), 80, 16).x_limits == (
+        0.0,
+        5.0,
+    )
     assert ChartPainter().paint(made, ChartState(), 80, 16).x_limits == (0.0, 100.0)
 
 
@@ -240,7 +275,9 @@ def test_points_out_of_order_and_numbers_that_are_none() -> None:
 def test_many_points() -> None:
     made = Traces()
     for at in range(100):
-        made.append("t", [at * 10.0 + step for step in range(10)], [float(step) for step in range(10)])
+        made.append(
+            "t", [at * 10.0 + step for step in range(10)], [float(step) for step in range(10)]
+        )
 
     assert len(next(iter(made)).times_s) == 1000
     assert made.end_s() == 999.0
@@ -251,7 +288,13 @@ def test_a_faint_grid_stands_at_the_labels_and_gives_way_to_curves_and_cursors()
     traces.append("Colour", [0.0, 10.0], [0.0, 100.0])
     state = ChartState(grid=True, cursor_s=2.5)
     picture = ChartPainter().paint(traces, state, 60, 16)
-    rows = ["".join(text for text, _ in line) for line in picture.lines[picture.top : picture.top + picture.rows]]
+    rows = [
+        "".join(text for text, _ in line)
+        for line in picture.lines[picture.top : picture.top + picture.rows]
+    ]
     for row in rows:
         assert ("┈" in row) is ("┤" in row)
-    assert all(row[picture.left + axes.column_of(2.5, picture.x_limits, picture.columns)] != "┈" for row in rows)
+    assert all(
+        row[picture.left + axes.column_of(2.5, picture.x_limits, picture.columns)] != "┈"
+        for row in rows
+    )

@@ -12,7 +12,9 @@ from tuisim.logs.signals import summary_of
 TIMES = np.arange(200_000) / 1000.0
 
 
-@pytest.mark.parametrize("limits", [(0.0, 200.0), (50.0, 150.0), (10.0, 10.05), (-5.0, 500.0)], ids=str)
+@pytest.mark.parametrize(
+    "limits", [(0.0, 200.0), (50.0, 150.0), (10.0, 10.05), (-5.0, 500.0)], ids=str
+)
 def test_few_points_reach_as_far_as_all(limits: tuple[float, float]) -> None:
     values = np.sin(TIMES)
     values[123_456] = 9.0
@@ -31,7 +33,9 @@ def test_what_is_not_finite_or_not_in_order_is_put_right() -> None:
     assert pyramid.between(1.0, 3.0)[1].tolist() == [10.0, 30.0]
 
 
-@pytest.mark.parametrize("span", [(0.0, 200.0), (3.0011, 171.9), (5.008, 5.02), (90.0, 80.0)], ids=str)
+@pytest.mark.parametrize(
+    "span", [(0.0, 200.0), (3.0011, 171.9), (5.008, 5.02), (90.0, 80.0)], ids=str
+)
 def test_figures_of_a_span_are_those_of_its_points(span: tuple[float, float]) -> None:
     values = 1e6 + np.sin(TIMES) * np.random.default_rng(1).random(len(TIMES))
     inside = values[(span[0] <= TIMES) & (span[1] >= TIMES)]

@@ -60,7 +60,9 @@ def screen() -> Iterator[Screen]:
     made.close()
 
 
-def start(screen: Screen, folder: Path, *words: str, stdin: int | None = None) -> subprocess.Popen[bytes]:
+def start(
+    screen: Screen, folder: Path, *words: str, stdin: int | None = None
+) -> subprocess.Popen[bytes]:
     with (folder / "errors").open("wb") as errors:
         return subprocess.Popen(
             [sys.executable, "-m", "tuisim", *words],

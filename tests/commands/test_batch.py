@@ -35,15 +35,31 @@ def test_rows_are_in_the_order_of_the_parameters(batch: Batch) -> None:
     assert batch("mine.py", "--set", "noise.motor=0,20", "--seeds", "1,2", "--out", "rows.csv") == 0
     frame = pd.read_csv("rows.csv")
     assert frame[["run", "noise.motor", "seed", "x_mm"]].to_numpy().tolist() == [
-        [1, 0, 1, 100], [2, 0, 2, 100], [3, 20, 1, 120], [4, 20, 2, 140],
-    ]  # fmt: skip
+        [1, 0, 1, 100],
+        [2, 0, 2, 100],
+        [3, 20, 1, 120],
+        [4, 20, 2, 140],
+    ]
 
 
-def test_the_summary_names_ends_and_quantiles(batch: Batch, capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_summary_names_ends_and_quantiles(
+    batch: Batch, capsys: pytest.CaptureFixture[str]
+) -> None:
     assert batch("mine.py", "--seeds", "11..13", "--expr", "far_mm=x_mm + 1") == 1
     ends, reason, heads, first = capsys.readouterr().out.split("\n")[:4]
     assert (ends, reason) == ("3 runs: 2 finished, 1 raised", "  1 × ValueError: 13")
-    assert heads.split() == ["COLUMN", "MEAN", "STD", "MIN", "Q5", "Q25", "Q50", "Q75", "Q95", "MAX"]
+    assert heads.split() == [
+        "COLUMN",
+        "MEAN",
+        "STD",
+        "MIN",
+        "Q5",
+        "Q25",
+        "Q50",
+        "Q75",
+        "Q95",
+        "MAX",
+    ]
     assert first.split() == ["far_mm", "101", "0", *["101"] * 7]
 
 
@@ -66,9 +82,14 @@ def test_a_batch_file_holds_everything(batch: Batch) -> None:
 GOALS = 'program = "mine.py"\n[[goal]]\nname = "end"\nsay = "End."\npoints = 2\nfinish = true\n'
 
 
-@pytest.mark.parametrize("words", [("goals.toml",), ("mine.py", "--goals", "goals.toml"), ("--goals", "goals.toml")])
+@pytest.mark.parametrize(
+    "words", [("goals.toml",), ("mine.py", "--goals", "goals.toml"), ("--goals", "goals.toml")]
+)
 def test_goals_are_judged_in_their_world(
-    words: tuple[str, ...], batch: Batch, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    words: tuple[str, ...],
+    batch: Batch,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
 ) -> None:
     Path("goals.toml").write_text(f'background = "Loop"\n{GOALS}')
 
@@ -77,12 +98,19 @@ def test_goals_are_judged_in_their_world(
             assert task.spec.world.background == "Loop"
             met = Change(3, 0.1, GoalState.MET, 0, 0)
             yield result_of(
-                task, judgements=tuple(Judgement(goal, (met,) * (task.spec.seed < 2)) for goal in task.goals)
+                task,
+                judgements=tuple(
+                    Judgement(goal, (met,) * (task.spec.seed < 2)) for goal in task.goals
+                ),
             )
 
     monkeypatch.setattr(sweep, "run_many", judged)
     assert batch(*words, "--seeds", "0..2", "--out", "rows.csv") == 0
-    assert pd.read_csv("rows.csv")[["goal.end", "points"]].to_numpy().tolist() == [[True, 2], [True, 2], [False, 0]]
+    assert pd.read_csv("rows.csv")[["goal.end", "points"]].to_numpy().tolist() == [
+        [True, 2],
+        [True, 2],
+        [False, 0],
+    ]
     assert "end: met in 2 of 3 (67 %)" in capsys.readouterr().out
 
 
@@ -100,7 +128,10 @@ def test_an_interrupted_batch_keeps_what_is_done(
     monkeypatch.setattr(sweep, "run_many", interrupt_after(2))
     assert batch("mine.py", "--seeds", "0..4", "--out", "rows.csv") == 130
     assert pd.read_csv("rows.csv")["seed"].tolist() == [0, 1]
-    assert "interrupted after 2 of 5 runs; rows.csv has these rows, and --resume goes on" in capsys.readouterr().err
+    assert (
+        "interrupted after 2 of 5 runs; rows.csv has these rows, and --resume goes on"
+        in capsys.readouterr().err
+    )
 
 
 @pytest.mark.quick_cases("csv")
@@ -139,7 +170,16 @@ def test_a_complete_batch_keeps_a_column_that_is_empty(batch: Batch) -> None:
 def test_a_complete_batch_is_not_run_again_for_another_picture(
     batch: Batch, suffix: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    words = ("mine.py", "--seeds", "10..14", "--set", "robot.weight=light,heavy", "--expr", "a=x_mm + 1", "--out")
+    words = (
+        "mine.py",
+        "--seeds",
+        "10..14",
+        "--set",
+        "robot.weight=light,heavy",
+        "--expr",
+        "a=x_mm + 1",
+        "--out",
+    )
     assert batch(*words, f"rows.{suffix}") == 1
     summary, whole = capsys.readouterr().out, Path(f"rows.{suffix}").read_bytes()
     monkeypatch.setattr(sweep, "run_many", lambda tasks, jobs: (1 / 0 for _ in tasks))
@@ -151,14 +191,23 @@ def test_a_complete_batch_is_not_run_again_for_another_picture(
 @pytest.mark.parametrize(
     "words, message",
     [
-        pytest.param((), "rows.csv.part: holds the rows of an interrupted batch (--resume goes on", id="again"),
-        pytest.param(("--resume", "-M", "5"), "rows.csv.part: is of another batch", id="another batch"),
+        pytest.param(
+            (),
+            "rows.csv.part: holds the rows of an interrupted batch (--resume goes on",
+            id="again",
+        ),
+        pytest.param(
+            ("--resume", "-M", "5"), "rows.csv.part: is of another batch", id="another batch"
+        ),
     ],
 )
 def test_the_rows_of_an_interrupted_batch_are_not_lost(
-    batch: Batch, words: tuple[str, ...], message: str, monkeypatch: pytest.MonkeyPatch,
+    batch: Batch,
+    words: tuple[str, ...],
+    message: str,
+    monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
-) -> None:  # fmt: skip
+) -> None:
     monkeypatch.setattr(sweep, "run_many", interrupt_after(2))
     batch("mine.py", "--seeds", "0..4", "--out", "rows.csv")
     part = Path("rows.csv.part").read_bytes()
@@ -173,7 +222,9 @@ def test_the_end_poses_are_written_to_a_file(
 ) -> None:
     plan = ("mine.py", "--seeds", "1..9", "--set", "noise.motor=0,20", "--out", "rows.csv")
     assert batch(*plan, *words, "--picture", "poses.svg") == 0
-    assert "noise.motor 20: x 200.0 ± 51.6, y 198.3 ± 0.9 mm (9 runs)" in Path("poses.svg").read_text()
+    assert (
+        "noise.motor 20: x 200.0 ± 51.6, y 198.3 ± 0.9 mm (9 runs)" in Path("poses.svg").read_text()
+    )
     assert batch(*plan, "--resume", *words, "--picture", "poses.png") == 0
     assert Path("poses.png").read_bytes().startswith(b"\x89PNG")
     assert "End poses" not in capsys.readouterr().out
@@ -205,18 +256,38 @@ def test_a_row_equals_the_run_of_its_own(
         alone, kept = (RunStore().load_run(word) for word in ("last", frame.loc[at, "id"]))
         last = alone.telemetry.last()
         assert last is not None
-        assert frame.loc[at, ["x_mm", "y_mm", "heading_deg"]].tolist() == [last.x_mm, last.y_mm, last.heading_deg]
+        assert frame.loc[at, ["x_mm", "y_mm", "heading_deg"]].tolist() == [
+            last.x_mm,
+            last.y_mm,
+            last.heading_deg,
+        ]
         assert (kept.program, kept.spec) == (alone.program, alone.spec)
         for name in ("telemetry.bin", "output.bin"):
             assert (kept.folder / name).read_bytes() == (alone.folder / name).read_bytes()
 
 
 @pytest.mark.slow
-def test_an_experiment_gives_the_rows_of_the_command(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_experiment_gives_the_rows_of_the_command(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.chdir(tmp_path)
     Path("mine.py").write_text(PROGRAM)
     assert (
-        run_command(["batch", "mine.py", "--seeds", "0..3", "--set", "noise.motor=0,50", "--out", "rows.parquet"]) == 0
+        run_command(
+            [
+                "batch",
+                "mine.py",
+                "--seeds",
+                "0..3",
+                "--set",
+                "noise.motor=0,50",
+                "--out",
+                "rows.parquet",
+            ]
+        )
+        == 0
     )
-    frame = tuisim.experiment("mine.py", seeds=range(4), parameters={"noise.motor": [0, 50]}, jobs=2)
+    frame = tuisim.experiment(
+        "mine.py", seeds=range(4), parameters={"noise.motor": [0, 50]}, jobs=2
+    )
     assert frame.equals(pd.read_parquet("rows.parquet"))

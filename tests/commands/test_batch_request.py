@@ -19,7 +19,9 @@ from tuisim.batch import sweep
         pytest.param(("--seed", "4"), [[0, 4], [20, 4]], id="the option for the seed"),
     ],
 )
-def test_options_override_the_batch_file(batch: Batch, words: tuple[str, ...], rows: list[list[int]]) -> None:
+def test_options_override_the_batch_file(
+    batch: Batch, words: tuple[str, ...], rows: list[list[int]]
+) -> None:
     Path("spec.toml").write_text(SPEC)
     assert batch("spec.toml", *words) == 0
     assert pd.read_csv("rows.csv")[["noise.motor", "seed"]].to_numpy().tolist() == rows
@@ -35,25 +37,63 @@ def test_the_option_for_a_parameter_of_the_batch_file_replaces_it(batch: Batch) 
 @pytest.mark.parametrize(
     "words, message",
     [
-        pytest.param(("--set", "noise.motr=1"), "--set: noise.motr: no such key (did you mean motor?)", id="key"),
-        pytest.param(("--set", "noise.motor=1", "-M", "5"), "noise.motor varies what an option sets", id="option"),
-        pytest.param(("--scheduler", "localhost"), "--scheduler: is no address of a scheduler: 'localhost'", id="port"),
-        pytest.param(("--seeds", "1..3", "--seed", "5"), "seed varies what an option sets", id="seed option"),
-        pytest.param(("--seeds", "1..3", "--set", "seed=5"), "--seeds: is given together with", id="two seeds"),
-        pytest.param(("--set", "pen.down=on", "--set", "pen.down=off"), "pen.down is given twice", id="twice"),
+        pytest.param(
+            ("--set", "noise.motr=1"),
+            "--set: noise.motr: no such key (did you mean motor?)",
+            id="key",
+        ),
+        pytest.param(
+            ("--set", "noise.motor=1", "-M", "5"),
+            "noise.motor varies what an option sets",
+            id="option",
+        ),
+        pytest.param(
+            ("--scheduler", "localhost"),
+            "--scheduler: is no address of a scheduler: 'localhost'",
+            id="port",
+        ),
+        pytest.param(
+            ("--seeds", "1..3", "--seed", "5"), "seed varies what an option sets", id="seed option"
+        ),
+        pytest.param(
+            ("--seeds", "1..3", "--set", "seed=5"),
+            "--seeds: is given together with",
+            id="two seeds",
+        ),
+        pytest.param(
+            ("--set", "pen.down=on", "--set", "pen.down=off"), "pen.down is given twice", id="twice"
+        ),
         pytest.param(("--expr", "x"), "--expr: must be NAME=EXPR", id="expression"),
-        pytest.param(("--expr", "a=x_m"), "--expr a: there will be no column 'x_m'", id="column of an expression"),
+        pytest.param(
+            ("--expr", "a=x_m"),
+            "--expr a: there will be no column 'x_m'",
+            id="column of an expression",
+        ),
         pytest.param(("--resume",), "--resume: needs the table", id="resume nothing"),
         pytest.param(("--out", "rows.txt"), "unknown format '.txt'", id="format"),
-        pytest.param(("--picture", "a.gif"), "unknown format '.gif' (a picture ends in .svg, .png)", id="picture"),
-        pytest.param(("--picture-of", "x_mm"), "--picture-of: cannot draw 'x_mm' (only poses,", id="column"),
+        pytest.param(
+            ("--picture", "a.gif"),
+            "unknown format '.gif' (a picture ends in .svg, .png)",
+            id="picture",
+        ),
+        pytest.param(
+            ("--picture-of", "x_mm"), "--picture-of: cannot draw 'x_mm' (only poses,", id="column"
+        ),
         pytest.param(("--goals", "none.toml"), "none.toml: there is no such file", id="goals"),
         pytest.param(("--jobs", "0"), "--jobs: must be a whole number from 1", id="jobs"),
-        pytest.param(("--jobs", "2", "--workers", "2"), "--workers: is given together with --jobs", id="workers"),
-        pytest.param(("--scheduler", "tcp://a:1", "--workers", "2"), "--workers: is given together with", id="cluster"),
+        pytest.param(
+            ("--jobs", "2", "--workers", "2"),
+            "--workers: is given together with --jobs",
+            id="workers",
+        ),
+        pytest.param(
+            ("--scheduler", "tcp://a:1", "--workers", "2"),
+            "--workers: is given together with",
+            id="cluster",
+        ),
         pytest.param(("--speed", "1"), "no such option: --speed", id="speed"),
     ],
-)  # fmt: skip
+)
 def test_what_is_wrong_is_said_before_anything_is_run(
     batch: Batch,
     words: tuple[str, ...],

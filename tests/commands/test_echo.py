@@ -34,7 +34,9 @@ class Terminal(io.StringIO):
 
     def until(self, text: str) -> str:
         with self._changed:
-            assert self._changed.wait_for(lambda: text in self.getvalue(), PATIENCE_S), self.getvalue()
+            assert self._changed.wait_for(lambda: text in self.getvalue(), PATIENCE_S), (
+                self.getvalue()
+            )
         return self.getvalue()
 
 
@@ -104,7 +106,9 @@ NOBODY: dict[str, Callable[[pytest.MonkeyPatch, Terminal], Any]] = {
 
 @pytest.mark.parametrize("change", NOBODY.values(), ids=NOBODY)
 def test_nothing_is_drawn_for(
-    show: Show, monkeypatch: pytest.MonkeyPatch, change: Callable[[pytest.MonkeyPatch, Terminal], Any]
+    show: Show,
+    monkeypatch: pytest.MonkeyPatch,
+    change: Callable[[pytest.MonkeyPatch, Terminal], Any],
 ) -> None:
     terminal = show()
     change(monkeypatch, terminal)
@@ -132,9 +136,13 @@ class Clock:
         self._answers.put(True)
 
 
-@pytest.mark.parametrize("change", [NOBODY["a pipe"], NOBODY["a dumb terminal"]], ids=["a pipe", "a dumb terminal"])
+@pytest.mark.parametrize(
+    "change", [NOBODY["a pipe"], NOBODY["a dumb terminal"]], ids=["a pipe", "a dumb terminal"]
+)
 def test_long_work_writes_a_line_a_minute_where_there_is_no_bar(
-    show: Show, monkeypatch: pytest.MonkeyPatch, change: Callable[[pytest.MonkeyPatch, Terminal], Any]
+    show: Show,
+    monkeypatch: pytest.MonkeyPatch,
+    change: Callable[[pytest.MonkeyPatch, Terminal], Any],
 ) -> None:
     clock, file = Clock(), show()
     change(monkeypatch, file)
@@ -146,11 +154,16 @@ def test_long_work_writes_a_line_a_minute_where_there_is_no_bar(
         clock.passes()
         file.until("after 2 min")
         clock.is_over()
-    assert file.getvalue() == "tuisim: after 1 min: marking\ntuisim: after 2 min: run 8 of 40\ufffd[2J\n"
+    assert (
+        file.getvalue()
+        == "tuisim: after 1 min: marking\ntuisim: after 2 min: run 8 of 40\ufffd[2J\n"
+    )
     assert set(clock.waited_s) == {60.0}
 
 
-def test_short_work_ends_at_once_without_a_line(show: Show, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_short_work_ends_at_once_without_a_line(
+    show: Show, monkeypatch: pytest.MonkeyPatch
+) -> None:
     file = show()
     NOBODY["a pipe"](monkeypatch, file)
     with Progress("marking", in_lines=True):
@@ -158,16 +171,24 @@ def test_short_work_ends_at_once_without_a_line(show: Show, monkeypatch: pytest.
     assert file.getvalue() == ""
 
 
-@pytest.mark.parametrize("words", [("batch", "p.py", "--seeds", "0,1"), ("mark", "g.toml", "p.py", "--seeds", "0,1")])
+@pytest.mark.parametrize(
+    "words", [("batch", "p.py", "--seeds", "0,1"), ("mark", "g.toml", "p.py", "--seeds", "0,1")]
+)
 def test_commands_of_many_runs_tell_their_progress_in_lines(
-    home: object, here: Command, tmp_path: Any, monkeypatch: pytest.MonkeyPatch, words: tuple[str, ...]
+    home: object,
+    here: Command,
+    tmp_path: Any,
+    monkeypatch: pytest.MonkeyPatch,
+    words: tuple[str, ...],
 ) -> None:
     (tmp_path / "p.py").write_text("print('a: 1')\n")
     (tmp_path / "g.toml").write_text("[[goal]]\nname = 'done'\nfinish = true\n")
     heard: list[str] = []
 
     class Spy(Progress):
-        def __init__(self, what: str, total: float | None = None, *, in_lines: bool = False) -> None:
+        def __init__(
+            self, what: str, total: float | None = None, *, in_lines: bool = False
+        ) -> None:
             super().__init__(what, total, in_lines=in_lines)
 
         def tell(self, what: str, done: float, total: float | None = None) -> None:
@@ -186,7 +207,10 @@ COMMANDS = {
     "run, several": (("run", "p.py", "p.py"), ("1 of 2, p.py", "2 of 2, p.py")),
     "rerun": (("runs", "rerun", "last"), ("rerunning run 1: p.py", "comparing run 1")),
     "compact": (("runs", "compact", "--all"), ("compacting run",)),
-    "export": (("runs", "export", "1", "a.csv", "--telemetry", "b.csv"), ("writing a.csv", "writing b.csv")),
+    "export": (
+        ("runs", "export", "1", "a.csv", "--telemetry", "b.csv"),
+        ("writing a.csv", "writing b.csv"),
+    ),
     "bands": (("log", "bands", "1"), ("log bands 1",)),
     "report": (("log", "report", "1"), ("log report 1",)),
     "a file": (("log", "summary", "log.csv"), ("reading log.csv", "summary log.csv")),
@@ -196,9 +220,16 @@ COMMANDS = {
 
 @pytest.mark.parametrize(("words", "told"), COMMANDS.values(), ids=COMMANDS)
 def test_commands_tell_how_far_they_are(
-    home: object, here: Command, tmp_path: Any, monkeypatch: pytest.MonkeyPatch, words: Any, told: tuple[str, ...]
+    home: object,
+    here: Command,
+    tmp_path: Any,
+    monkeypatch: pytest.MonkeyPatch,
+    words: Any,
+    told: tuple[str, ...],
 ) -> None:
-    (tmp_path / "p.py").write_text("tank_drive.on_for_seconds(20, 30, 0.3)\nfor n in range(9): print('a:', n)\n")
+    (tmp_path / "p.py").write_text(
+        "tank_drive.on_for_seconds(20, 30, 0.3)\nfor n in range(9): print('a:', n)\n"
+    )
     (tmp_path / "log.csv").write_text("time,red\n0,1\n1,2\n")
     here("run", "p.py")
     heard: list[str] = []

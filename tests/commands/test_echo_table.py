@@ -10,7 +10,18 @@ Table = tuple[tuple[str, ...], list[tuple[object, ...]]]
 """Heads and rows."""
 
 BANDS: Table = (
-    ("VARIABLE", "NUMBER", "START S", "STOP S", "SAMPLES", "LEVEL", "TRUE LEVEL", "SPREAD", "GREY", "WIDTH MM"),
+    (
+        "VARIABLE",
+        "NUMBER",
+        "START S",
+        "STOP S",
+        "SAMPLES",
+        "LEVEL",
+        "TRUE LEVEL",
+        "SPREAD",
+        "GREY",
+        "WIDTH MM",
+    ),
     [("Colour", 1, "0.02", "0.54", 27, "100.00", "100.00", "0.00", "light grey", 185)],
 )
 WORDS: Table = (
@@ -31,7 +42,13 @@ ROBOTS: Table = (
 )
 FILES: Table = (
     ("MAT", "START", "SHOWS"),
-    [("Junior", "1181, 150, 90°", "Olympiad 2018, Regular Junior: supply WRO-2018-Regular-Junior.png")],
+    [
+        (
+            "Junior",
+            "1181, 150, 90°",
+            "Olympiad 2018, Regular Junior: supply WRO-2018-Regular-Junior.png",
+        )
+    ],
 )
 LONG_NAME: Table = (("NAME", "AT"), [("x" * 100, "2026-11-23 16:35:43")])
 TABLES: dict[str, Table] = {

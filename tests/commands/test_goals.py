@@ -88,7 +88,9 @@ def test_json(task: Path, here: Command) -> None:
     record(mm=100).end()
     (found,) = json.loads(here("goals", "check", task, "--json").stdout)
     assert (found["run"], found["points"], found["of"]) == (1, 1, 3)
-    assert [(goal["name"], goal["state"], goal["line"], goal["hint"]) for goal in found["goals"]] == [
+    assert [
+        (goal["name"], goal["state"], goal["line"], goal["hint"]) for goal in found["goals"]
+    ] == [
         ("there", "missed", 3, "Drive on."),
         ("said", "met", 4, ""),
     ]
@@ -112,7 +114,9 @@ RUNS = {
 
 
 @pytest.mark.parametrize(("words", "code", "numbers"), RUNS.values(), ids=RUNS)
-def test_runs_by_name(words: tuple[str, ...], code: int, numbers: list[int], task: Path, here: Command) -> None:
+def test_runs_by_name(
+    words: tuple[str, ...], code: int, numbers: list[int], task: Path, here: Command
+) -> None:
     for mm in (200, 100, 200):
         record(mm=mm).end()
     done = here("goals", "check", task, *words, "--json")
@@ -160,7 +164,9 @@ def test_a_run_on_the_own_mat_of_its_task_is_not_noted(
         assert here("goals", "check", named).stderr == ""
 
 
-def test_a_run_from_a_start_of_its_magic_line_is_noted(task: Path, here: Command, tmp_path: Path) -> None:
+def test_a_run_from_a_start_of_its_magic_line_is_noted(
+    task: Path, here: Command, tmp_path: Path
+) -> None:
     task.write_text(f"background = 'Empty_Map'\n{GOALS}")
     (tmp_path / "p.py").write_text("# %%sim_magic_preloaded -b Loop -x 600\nprint('done')\n")
     assert here("run", task, "p.py").returncode == 0
@@ -169,7 +175,9 @@ def test_a_run_from_a_start_of_its_magic_line_is_noted(task: Path, here: Command
 
 
 def test_run_of_another_world_and_by_hand_is_noted(task: Path, here: Command) -> None:
-    task.write_text(f"background = 'Loop'\n{GOALS}[start]\nx_mm = 200\n".replace("[start]", "[start]", 1))
+    task.write_text(
+        f"background = 'Loop'\n{GOALS}[start]\nx_mm = 200\n".replace("[start]", "[start]", 1)
+    )
     run = record()
     run.recorder.act("set_noise", light=1, motor=0)
     run.end()
@@ -209,7 +217,9 @@ def test_run_without_telemetry(lines: int, task: Path, here: Command) -> None:
 def test_program_that_does_not_compile(task: Path, here: Command) -> None:
     Path("broken.py").write_text("while True\n")
     here("run", "broken.py")
-    task.write_text(f"{GOALS}[[goal]]\nname = 'still'\ntouch_nothing = true\n[[goal]]\nname = 'use'\nuse = 'print'\n")
+    task.write_text(
+        f"{GOALS}[[goal]]\nname = 'still'\ntouch_nothing = true\n[[goal]]\nname = 'use'\nuse = 'print'\n"
+    )
     done = here("goals", "check", task)
     assert (done.returncode, done.stdout.split("\n")[0]) == (
         1,
@@ -245,7 +255,10 @@ def test_a_drawn_mat_is_a_world_of_a_task(kind: str, task: Path, here: Command) 
 WRONG_MATS = {
     "kind": ("band", "KIND: no such kind of mat 'band' (did you mean bands?)"),
     "seed": ("bands --seed -1", "--seed: must be from 0 to"),
-    "format": ("bands --out a.jpg", "cannot write a.jpg: unknown format '.jpg' (a mat ends in .png)"),
+    "format": (
+        "bands --out a.jpg",
+        "cannot write a.jpg: unknown format '.jpg' (a mat ends in .png)",
+    ),
     "folder": ("line --out none/a.png", "cannot write none/a.png: there is no folder none"),
 }
 

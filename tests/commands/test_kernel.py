@@ -32,19 +32,30 @@ def test_a_kernel_is_added_listed_and_removed(place: str, here: Command, tmp_pat
     assert (done.returncode, done.stderr) == (0, "")
     assert f"'RoboLab (tuisim)' installed in {folder}" in done.stdout
     spec = json.loads((folder / "kernel.json").read_text())
-    assert (spec["display_name"], spec["language"], spec["argv"][0]) == ("RoboLab (tuisim)", "python", sys.executable)
+    assert (spec["display_name"], spec["language"], spec["argv"][0]) == (
+        "RoboLab (tuisim)",
+        "python",
+        sys.executable,
+    )
     listed = json.loads(here("kernel", "list", "--json", *words).stdout)
     assert [(kernel["name"], kernel["folder"]) for kernel in listed] == [("tuisim", str(folder))]
     assert str(folder) in here("kernel", *words).stdout
     assert here("kernel", "remove", *words).stdout == f"kernel 'tuisim' removed from {folder}\n"
     assert not folder.exists()
-    assert here("kernel", *words).stdout == "no tuisim kernel is installed; `tuisim kernel install` adds one\n"
+    assert (
+        here("kernel", *words).stdout
+        == "no tuisim kernel is installed; `tuisim kernel install` adds one\n"
+    )
 
 
 def test_a_kernel_may_have_a_name_of_its_own(here: Command) -> None:
     here("kernel", "install", "--name", "lab-2")
     here("kernel", "install")
-    assert [line.split()[0] for line in here("kernel").stdout.splitlines()] == ["NAME", "lab-2", "tuisim"]
+    assert [line.split()[0] for line in here("kernel").stdout.splitlines()] == [
+        "NAME",
+        "lab-2",
+        "tuisim",
+    ]
     here("kernel", "remove")
     assert [line.split()[0] for line in here("kernel").stdout.splitlines()] == ["NAME", "lab-2"]
 
@@ -59,17 +70,35 @@ def foreign(prefix: Path) -> None:
 @pytest.mark.parametrize(
     ("words", "told"),
     [
-        pytest.param("instal", "kernel: no such command 'instal' (did you mean install", id="action"),
+        pytest.param(
+            "instal", "kernel: no such command 'instal' (did you mean install", id="action"
+        ),
         pytest.param("remove", "--name: no tuisim kernel 'tuisim' is installed", id="none"),
-        pytest.param("install --name a/b", "--name: may contain only lower-case letters, digits and . _ -", id="name"),
-        pytest.param("install --user --sys-prefix", "name one of --user and --sys-prefix", id="two places"),
+        pytest.param(
+            "install --name a/b",
+            "--name: may contain only lower-case letters, digits and . _ -",
+            id="name",
+        ),
+        pytest.param(
+            "install --user --sys-prefix", "name one of --user and --sys-prefix", id="two places"
+        ),
         pytest.param("install --prefix file", "kernel.json: cannot be written: ", id="no folder"),
-        pytest.param("install --prefix prefix --name other", "--name: 'other' already names another", id="other's"),
-        pytest.param("remove --prefix prefix --name other", "no tuisim kernel 'other' is installed", id="not ours"),
+        pytest.param(
+            "install --prefix prefix --name other",
+            "--name: 'other' already names another",
+            id="other's",
+        ),
+        pytest.param(
+            "remove --prefix prefix --name other",
+            "no tuisim kernel 'other' is installed",
+            id="not ours",
+        ),
         pytest.param("install --json", "no such option: --json", id="json"),
     ],
 )
-def test_what_is_wrong_is_told(words: str, told: str, here: Command, tmp_path: Path, prefix: Path) -> None:
+def test_what_is_wrong_is_told(
+    words: str, told: str, here: Command, tmp_path: Path, prefix: Path
+) -> None:
     (tmp_path / "file").touch()
     foreign(prefix)
     done = here("kernel", *words.split())
@@ -79,7 +108,9 @@ def test_what_is_wrong_is_told(words: str, told: str, here: Command, tmp_path: P
     assert (prefix / FOLDER / "other" / "kernel.json").exists()
 
 
-def test_without_ipykernel_it_says_what_to_install(here: Command, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_without_ipykernel_it_says_what_to_install(
+    here: Command, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setitem(sys.modules, "ipykernel", None)
     done = here("kernel", "install")
     assert (done.returncode, done.stdout) == (2, "")

@@ -22,7 +22,10 @@ FAULTY = {
         ("SpeedPercent(30), 5)", "SpeedPercent(30), 2.842)"),
         "this wrong program (wrong place) passes “Drive them”",
     ),
-    "error": (("500 / (3.14159 * 56)", "1 / 0"), "it ended with: ZeroDivisionError: division by zero"),
+    "error": (
+        ("500 / (3.14159 * 56)", "1 / 0"),
+        "it ended with: ZeroDivisionError: division by zero",
+    ),
 }
 
 
@@ -41,7 +44,9 @@ def test_lessons_are_listed_with_those_of_a_folder(here: Command, own: Path) -> 
     assert any("half" in line and "Drive half a metre" in line and "new" in line for line in lines)
 
 
-def test_folder_of_the_environment(here: Command, own: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_folder_of_the_environment(
+    here: Command, own: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setenv("TUISIM_LESSONS", str(own))
     assert "half" in [one["name"] for one in json.loads(here("learn", "list", "--json").stdout)]
 
@@ -64,7 +69,10 @@ def test_model_answer_appears_when_every_step_is_done(here: Command, own: Path) 
 
 def test_status_for_a_tutor(here: Command, own: Path) -> None:
     at = "2026-01-01T00:00:00+00:00"
-    save_progress("half", LessonProgress(opened_at=at).with_step("turns", state=StepState.SKIPPED, at=at, hints=2))
+    save_progress(
+        "half",
+        LessonProgress(opened_at=at).with_step("turns", state=StepState.SKIPPED, at=at, hints=2),
+    )
     found = json.loads(here("learn", "status", "--json", "--folder", own).stdout)
     assert found[-1] == {
         "lesson": "half",
@@ -73,8 +81,22 @@ def test_status_for_a_tutor(here: Command, own: Path) -> None:
         "of": 2,
         "opened_at": at,
         "steps": [
-            {"name": "turns", "title": "How many rotations?", "state": "skipped", "at": at, "tries": 0, "hints": 2},
-            {"name": "drive", "title": "Drive them", "state": "open", "at": None, "tries": 0, "hints": 0},
+            {
+                "name": "turns",
+                "title": "How many rotations?",
+                "state": "skipped",
+                "at": at,
+                "tries": 0,
+                "hints": 2,
+            },
+            {
+                "name": "drive",
+                "title": "Drive them",
+                "state": "open",
+                "at": None,
+                "tries": 0,
+                "hints": 0,
+            },
         ],
     }
     assert "  – How many rotations? (2 hints)" in here("learn", "status", "--folder", own).stdout
@@ -83,11 +105,16 @@ def test_status_for_a_tutor(here: Command, own: Path) -> None:
 def test_new_lesson_is_in_order(here: Command, home: Path) -> None:
     assert here("learn", "new", "mine.md").returncode == 0
     done = here("learn", "check", "mine.md")
-    assert (done.returncode, done.stdout) == (0, "mine.md: 2 steps, 2 goals, 5 wrong ways: all is well\n")
+    assert (done.returncode, done.stdout) == (
+        0,
+        "mine.md: 2 steps, 2 goals, 5 wrong ways: all is well\n",
+    )
 
 
 @pytest.mark.parametrize(("change", "fault"), FAULTY.values(), ids=FAULTY)
-def test_author_is_told_what_is_wrong(change: tuple[str, str], fault: str, here: Command, tmp_path: Path) -> None:
+def test_author_is_told_what_is_wrong(
+    change: tuple[str, str], fault: str, here: Command, tmp_path: Path
+) -> None:
     assert change[0] in SKELETON
     (tmp_path / "mine.md").write_text(SKELETON.replace(*change))
     done = here("learn", "check", "mine.md")
@@ -108,7 +135,9 @@ def started(monkeypatch: pytest.MonkeyPatch) -> list[AppSettings]:
     return found
 
 
-def test_in_a_terminal_the_app_opens_the_lesson(here: Command, own: Path, started: list[AppSettings]) -> None:
+def test_in_a_terminal_the_app_opens_the_lesson(
+    here: Command, own: Path, started: list[AppSettings]
+) -> None:
     assert here("learn", "half", "--folder", own).returncode == 0
     (settings,) = started
     assert settings.lesson is not None
@@ -123,7 +152,9 @@ def opened_at(second: int, done: bool = False) -> LessonProgress:
     """Progress on `half`, which was last opened at a second."""
     progress = LessonProgress(opened_at=f"2026-01-01T00:00:0{second}+00:00")
     return (
-        progress.with_step("turns", state=StepState.DONE).with_step("drive", state=StepState.DONE) if done else progress
+        progress.with_step("turns", state=StepState.DONE).with_step("drive", state=StepState.DONE)
+        if done
+        else progress
     )
 
 
@@ -136,7 +167,11 @@ NEXT = {
 
 @pytest.mark.parametrize(("progress", "name"), NEXT.values(), ids=NEXT)
 def test_without_a_name_the_next_lesson_opens(
-    progress: dict[str, LessonProgress], name: str, here: Command, own: Path, started: list[AppSettings]
+    progress: dict[str, LessonProgress],
+    name: str,
+    here: Command,
+    own: Path,
+    started: list[AppSettings],
 ) -> None:
     for lesson, one in progress.items():
         save_progress(lesson, one)
@@ -144,7 +179,9 @@ def test_without_a_name_the_next_lesson_opens(
     assert [settings.lesson.name for settings in started if settings.lesson] == [name]
 
 
-def test_text_is_printed_in_a_terminal_if_asked_for(here: Command, started: list[AppSettings]) -> None:
+def test_text_is_printed_in_a_terminal_if_asked_for(
+    here: Command, started: list[AppSettings]
+) -> None:
     assert "1. Run the program" in here("learn", "first-run", "--text").stdout
     assert started == []
 
@@ -161,7 +198,10 @@ BAD = {
         ("2", "--library", "pybricks"),
         "--library: the lesson sensor-eyes is not told for pybricks (one of first-",
     ),
-    "a library of no lesson": (("--library", "pybricks"), "--library: needs a lesson (name one, such as 1)"),
+    "a library of no lesson": (
+        ("--library", "pybricks"),
+        "--library: needs a lesson (name one, such as 1)",
+    ),
 }
 
 
@@ -194,12 +234,18 @@ def test_program_of_a_telling_runs_by_the_rules_of_its_library(
 
 
 def test_missing_wrong_way_is_a_warning(here: Command, tmp_path: Path) -> None:
-    (tmp_path / "mine.md").write_text("\n".join(
-        line for line in SKELETON.split("\n") if not line.startswith("excludes")
-    ))  # fmt: skip
+    (tmp_path / "mine.md").write_text(
+        "\n".join(line for line in SKELETON.split("\n") if not line.startswith("excludes"))
+    )
     done = here("learn", "check", "mine.md", "--no-runs")
-    assert "warning: mine.md, line 72: no wrong way “no sensor” is tried on “Drive them”, nor excluded" in done.stdout
-    assert (done.returncode, here("learn", "check", "mine.md", "--no-runs", "--strict").returncode) == (0, 1)
+    assert (
+        "warning: mine.md, line 72: no wrong way “no sensor” is tried on “Drive them”, nor excluded"
+        in done.stdout
+    )
+    assert (
+        done.returncode,
+        here("learn", "check", "mine.md", "--no-runs", "--strict").returncode,
+    ) == (0, 1)
 
 
 def test_check_without_a_file_is_of_the_lessons_of_tuisim(here: Command) -> None:

@@ -26,7 +26,10 @@ def test_bands_of_the_greys(here: Command, profile: str) -> None:
     assert tuple(band["grey"] for band in found) == ORDER
     assert {band["level"] for band in found} == set(FIVE)
     said = here("log", "bands", "last").stdout
-    assert "5 levels: 100.00 white (4x), 86.27 pale grey, 82.75 light grey, 50.20 grey, 0.00 black" in said
+    assert (
+        "5 levels: 100.00 white (4x), 86.27 pale grey, 82.75 light grey, 50.20 grey, 0.00 black"
+        in said
+    )
 
 
 def test_bands_under_noise(here: Command) -> None:
@@ -51,7 +54,10 @@ def frame_of(text: str) -> pd.DataFrame:
 
 SIGNALS: dict[str, tuple[tuple[str, ...], Callable[[pd.DataFrame], bool]]] = {
     "derive": ((), lambda f: bool((f[f.variable == "left"].derivative - 2.0).abs().max() < 1e-9)),
-    "integrate": (("--between", "linear"), lambda f: f[f.variable == "left"].integral.iloc[-1] == 20.25),
+    "integrate": (
+        ("--between", "linear"),
+        lambda f: f[f.variable == "left"].integral.iloc[-1] == 20.25,
+    ),
     "average": (("--width", "3"), lambda f: f[f.variable == "right"].average.iloc[1] == 9.0),
     "resample": (("--period", "1"), lambda f: list(f.left) == [0, 2, 4, 6, 8]),
     "calc": (("--expression", "left + right"), lambda f: list(f.result) == [10.0] * 10),
@@ -59,7 +65,9 @@ SIGNALS: dict[str, tuple[tuple[str, ...], Callable[[pd.DataFrame], bool]]] = {
 
 
 @pytest.mark.parametrize(("action", "how"), SIGNALS.items(), ids=SIGNALS)
-def test_signals(here: Command, log: Path, action: str, how: tuple[tuple[str, ...], Callable[..., bool]]) -> None:
+def test_signals(
+    here: Command, log: Path, action: str, how: tuple[tuple[str, ...], Callable[..., bool]]
+) -> None:
     assert how[1](frame_of(here("log", action, str(log), *how[0]).stdout))
 
 

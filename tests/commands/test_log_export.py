@@ -91,8 +91,9 @@ def test_runs_come_back(kept: dict[str, Kept], table: str, suffix: str) -> None:
 
 @each_table
 @each_format
-def test_runs_come_back_from_the_log(here: Command, tmp_path: Path, kept: dict[str, Kept], table: str,
-                                     suffix: str) -> None:  # fmt: skip
+def test_runs_come_back_from_the_log(
+    here: Command, tmp_path: Path, kept: dict[str, Kept], table: str, suffix: str
+) -> None:
     assert here("log", "export", *kept[table].runs, "--out", f"x{suffix}").returncode == 0
     kept[table].check(tmp_path / f"x{suffix}")
 
@@ -100,8 +101,9 @@ def test_runs_come_back_from_the_log(here: Command, tmp_path: Path, kept: dict[s
 @pytest.mark.quick_cases("*-samples")
 @each_table
 @each_format
-def test_files_become_each_other(here: Command, tmp_path: Path, kept: dict[str, Kept], table: str,
-                                 suffix: str) -> None:  # fmt: skip
+def test_files_become_each_other(
+    here: Command, tmp_path: Path, kept: dict[str, Kept], table: str, suffix: str
+) -> None:
     for source in EXPORTERS:
         target = tmp_path / f"from{source}{suffix}"
         done = here("log", "export", kept[table].files / f"log{source}", "--out", target)
@@ -109,12 +111,16 @@ def test_files_become_each_other(here: Command, tmp_path: Path, kept: dict[str, 
         kept[table].check(target)
 
 
-def test_a_file_that_lost_its_companion_keeps_its_types(here: Command, tmp_path: Path, kept: dict[str, Kept]) -> None:
+def test_a_file_that_lost_its_companion_keeps_its_types(
+    here: Command, tmp_path: Path, kept: dict[str, Kept]
+) -> None:
     alone = tmp_path / "alone.csv"
     alone.write_bytes((kept["samples"].files / "log.csv").read_bytes())
     assert not companion_of(alone).exists()
     here("log", "export", alone, "--out", "x.parquet")
-    pd.testing.assert_frame_equal(read_log(tmp_path / "x.parquet"), kept["samples"].frame, check_exact=True)
+    pd.testing.assert_frame_equal(
+        read_log(tmp_path / "x.parquet"), kept["samples"].frame, check_exact=True
+    )
 
 
 def test_what_other_programs_call_index_or_line_stays(here: Command, tmp_path: Path) -> None:
@@ -127,10 +133,22 @@ def test_what_other_programs_call_index_or_line_stays(here: Command, tmp_path: P
 
 def test_only_some_variables(here: Command, tmp_path: Path, kept: dict[str, Kept]) -> None:
     one = kept["samples"]
-    here("log", "export", one.files / "log.csv", "--variable", "Größe", "--variable", "NA #2", "--out", "some.csv")
+    here(
+        "log",
+        "export",
+        one.files / "log.csv",
+        "--variable",
+        "Größe",
+        "--variable",
+        "NA #2",
+        "--out",
+        "some.csv",
+    )
     frame = one.frame
     wanted = (frame["variable"] == "Größe") | ((frame["variable"] == "NA") & (frame["run"] == 2))
-    pd.testing.assert_frame_equal(read_log(tmp_path / "some.csv"), frame[wanted].reset_index(drop=True))
+    pd.testing.assert_frame_equal(
+        read_log(tmp_path / "some.csv"), frame[wanted].reset_index(drop=True)
+    )
     here("log", "export", *kept["telemetry"].runs, "--variable", "gyro_deg", "--out", "gyro.arrow")
     assert list(read_log(tmp_path / "gyro.arrow")) == ["time", "gyro_deg", "line"]
     assert set(open_log(tmp_path / "gyro.arrow").metadata["units"]) == {"time", "gyro_deg"}

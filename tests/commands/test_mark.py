@@ -42,8 +42,28 @@ def _few(*names: str) -> tuple[Student, ...]:
 def _command(*words: str) -> list[str]:
     """Mark a class into files named the same wherever they are."""
     return [
-        *(sys.executable, "-m", "tuisim", "mark", str(GOALS), "class", "--seeds", SEEDS, "--timeout", "30"),
-        *("--export", "marks.csv", "--export", "marks.parquet", "--export", "marks.html", "--feedback", "feedback"),
+        *(
+            sys.executable,
+            "-m",
+            "tuisim",
+            "mark",
+            str(GOALS),
+            "class",
+            "--seeds",
+            SEEDS,
+            "--timeout",
+            "30",
+        ),
+        *(
+            "--export",
+            "marks.csv",
+            "--export",
+            "marks.parquet",
+            "--export",
+            "marks.html",
+            "--feedback",
+            "feedback",
+        ),
         *words,
     ]
 
@@ -64,7 +84,11 @@ def _mark(folder: Path, home: Path, *words: str) -> subprocess.CompletedProcess[
 
 def _results(folder: Path) -> dict[str, bytes]:
     """Return everything that marking has written, by path."""
-    files = [path for path in folder.rglob("*") if path.is_file() and path.relative_to(folder).parts[0] != "class"]
+    files = [
+        path
+        for path in folder.rglob("*")
+        if path.is_file() and path.relative_to(folder).parts[0] != "class"
+    ]
     return {str(path.relative_to(folder)): path.read_bytes() for path in files}
 
 
@@ -86,10 +110,17 @@ def test_every_student_of_the_class_has_the_expected_marks(marked: Path) -> None
     for student in CLASS:
         row = frame.loc[student.row]
         points = tuple(row[f"goal_{goal}"] for goal in GOAL_POINTS)
-        expected = tuple(0.0 if goal in student.missed else float(most) for goal, most in GOAL_POINTS.items())
+        expected = tuple(
+            0.0 if goal in student.missed else float(most) for goal, most in GOAL_POINTS.items()
+        )
         line = row["line"] if student.line else 0
         robust = 0.0 if student.missed else 1.0
-        if (points, row["points"], row["robustness"], line) != (expected, student.points, robust, student.line):
+        if (points, row["points"], row["robustness"], line) != (
+            expected,
+            student.points,
+            robust,
+            student.line,
+        ):
             wrong.append((student.name, points, row["reason"], int(row["line"]), student.why))
     assert not wrong
     assert len(frame) == len(CLASS)
@@ -98,8 +129,14 @@ def test_every_student_of_the_class_has_the_expected_marks(marked: Path) -> None
 @pytest.mark.slow
 def test_students_files_are_as_before(marked: Path, tmp_path: Path) -> None:
     fresh = write_class(tmp_path / "class")
-    files = {path.relative_to(fresh): path.read_bytes() for path in fresh.rglob("*") if path.is_file()}
-    left = {path.relative_to(marked / "class") for path in (marked / "class").rglob("*") if path.is_file()}
+    files = {
+        path.relative_to(fresh): path.read_bytes() for path in fresh.rglob("*") if path.is_file()
+    }
+    left = {
+        path.relative_to(marked / "class")
+        for path in (marked / "class").rglob("*")
+        if path.is_file()
+    }
     assert left == set(files)
     assert all((marked / "class" / path).read_bytes() == content for path, content in files.items())
 
@@ -108,13 +145,17 @@ def test_students_files_are_as_before(marked: Path, tmp_path: Path) -> None:
 def test_each_failed_run_has_a_report_and_each_student_feedback(marked: Path) -> None:
     page = (marked / "marks.html").read_text()
     links = [part.partition('"')[0] for part in page.split('href="')[1:]]
-    assert links and all((marked / link.replace("%20", " ")).is_file() for link in links if "%" not in link)
+    assert links and all(
+        (marked / link.replace("%20", " ")).is_file() for link in links if "%" not in link
+    )
     assert "marks-runs/gustav-seed-0.html" in links and not any("ada" in link for link in links)
     assert len(list((marked / "feedback").iterdir())) == len(CLASS)
 
 
 @pytest.mark.slow
-def test_marking_again_elsewhere_gives_the_same_bytes(marked: Path, tmp_path_factory: pytest.TempPathFactory) -> None:
+def test_marking_again_elsewhere_gives_the_same_bytes(
+    marked: Path, tmp_path_factory: pytest.TempPathFactory
+) -> None:
     folder = tmp_path_factory.mktemp("again")
     write_class(folder / "class")
     done = _mark(folder, tmp_path_factory.mktemp("home"), "--jobs", "1")
@@ -129,7 +170,9 @@ def test_an_interrupted_marking_is_resumed(tmp_path: Path) -> None:
     folder, home = tmp_path / "work", tmp_path / "home"
     write_class(folder / "class", _few(*FEW, "endless.py"))
     environment = {**os.environ, "PYTHONPATH": str(ROOT), "TUISIM_HOME": str(home)}
-    command = subprocess.Popen(_command("--jobs", "1"), cwd=folder, env=environment, stderr=subprocess.PIPE, text=True)
+    command = subprocess.Popen(
+        _command("--jobs", "1"), cwd=folder, env=environment, stderr=subprocess.PIPE, text=True
+    )
     give_up = time.monotonic() + PATIENCE_S
     journals: list[Path] = []
     while not journals or journals[0].read_bytes().count(b"\n") < 2:
@@ -194,19 +237,36 @@ BAD = {
     "folder without programs": ("goals.toml empty", "empty: has no programs"),
     "goals without a goal": ("world.toml class", "world.toml, line 1: goal: there are no goals"),
     "no such seeds": ("goals.toml class --seeds 3..x", "--seeds: "),
-    "one seed and many": ("goals.toml class --seed 3", "no such option: --seed (did you mean --seeds"),
+    "one seed and many": (
+        "goals.toml class --seed 3",
+        "no such option: --seed (did you mean --seeds",
+    ),
     "a speed": ("goals.toml class --speed 1", "no such option: --speed"),
-    "no workers": ("goals.toml class --jobs 0", "--jobs: must be a whole number from 1 to 1000, got '0'"),
-    "unknown format": ("goals.toml class --export marks.doc", "cannot write marks.doc: unknown format '.doc'"),
+    "no workers": (
+        "goals.toml class --jobs 0",
+        "--jobs: must be a whole number from 1 to 1000, got '0'",
+    ),
+    "unknown format": (
+        "goals.toml class --export marks.doc",
+        "cannot write marks.doc: unknown format '.doc'",
+    ),
     "page into no folder": ("goals.toml class --export no/marks.html", "there is no folder no"),
-    "a file twice": ("goals.toml class --export m.csv --export ./m.csv", "--export: a file is named twice"),
-    "feedback into a file": ("goals.toml class --feedback goals.toml", "--feedback: goals.toml is no folder"),
+    "a file twice": (
+        "goals.toml class --export m.csv --export ./m.csv",
+        "--export: a file is named twice",
+    ),
+    "feedback into a file": (
+        "goals.toml class --feedback goals.toml",
+        "--feedback: goals.toml is no folder",
+    ),
     "unknown mat": ("goals.toml class -b Grey", "no such mat 'Grey'"),
 }
 
 
 @pytest.mark.parametrize(("words", "message"), BAD.values(), ids=BAD)
-def test_bad_input_is_refused_before_anything_is_run(tmp_path: Path, here: Command, words: str, message: str) -> None:
+def test_bad_input_is_refused_before_anything_is_run(
+    tmp_path: Path, here: Command, words: str, message: str
+) -> None:
     write_class(tmp_path / "class", _few("ada.py"))
     (tmp_path / "empty").mkdir()
     (tmp_path / "goals.toml").write_bytes(GOALS.read_bytes())
@@ -217,13 +277,17 @@ def test_bad_input_is_refused_before_anything_is_run(tmp_path: Path, here: Comma
     assert sorted(tmp_path.rglob("*")) == before
 
 
-def test_a_wrong_file_of_a_student_is_named_without_the_path_of_the_class(tmp_path: Path, here: Command) -> None:
+def test_a_wrong_file_of_a_student_is_named_without_the_path_of_the_class(
+    tmp_path: Path, here: Command
+) -> None:
     (tmp_path / "class" / "ada").mkdir(parents=True)
     (tmp_path / "class" / "ada" / "main.py").write_text("# %%sim_magic -r robot.toml\n")
     (tmp_path / "class" / "ada" / "robot.toml").write_text("base = 1\n")
     (tmp_path / "goals.toml").write_text("[[goal]]\nname = 'done'\nfinish = true\n")
     done = here("mark", "goals.toml", tmp_path / "class", "--seeds", "0")
-    assert ("  robot.toml: base: " in done.stdout, str(tmp_path) in done.stdout) == (True, False), done.stdout
+    assert ("  robot.toml: base: " in done.stdout, str(tmp_path) in done.stdout) == (True, False), (
+        done.stdout
+    )
 
 
 UNREADABLE = {
@@ -245,18 +309,26 @@ print = "green"
 """
 
 
-def test_a_program_that_cannot_be_read_gets_what_a_syntax_error_gets(tmp_path: Path, here: Command) -> None:
+def test_a_program_that_cannot_be_read_gets_what_a_syntax_error_gets(
+    tmp_path: Path, here: Command
+) -> None:
     (tmp_path / "class").mkdir()
     for name, content in {**UNREADABLE, "syntax": b"print('green'\n"}.items():
         (tmp_path / "class" / f"{name}.py").write_bytes(content)
     (tmp_path / "goals.toml").write_text(STILL_GOALS)
-    done = here("mark", "goals.toml", "class", "--seeds", "0", "--jobs", "1", "--export", "marks.csv")
+    done = here(
+        "mark", "goals.toml", "class", "--seeds", "0", "--jobs", "1", "--export", "marks.csv"
+    )
     frame = pd.read_csv(tmp_path / "marks.csv").set_index("student")
     assert (done.returncode, set(frame["points"])) == (0, {0.0}), done.stdout
-    assert all(reason.startswith(("SyntaxError: ", "TabError: ")) for reason in frame["reason"]), done.stdout
+    assert all(reason.startswith(("SyntaxError: ", "TabError: ")) for reason in frame["reason"]), (
+        done.stdout
+    )
 
 
-def test_the_world_of_the_goals_replaces_that_of_a_magic_line(tmp_path: Path, here: Command) -> None:
+def test_the_world_of_the_goals_replaces_that_of_a_magic_line(
+    tmp_path: Path, here: Command
+) -> None:
     (tmp_path / "class").mkdir()
     cheat = "# %%sim_magic_preloaded -b Empty_Map -x 1750 -y 500\n"
     (tmp_path / "class" / "cheat.py").write_text(cheat)
@@ -277,8 +349,16 @@ FINISH = "[[goal]]\nname = 'done'\nfinish = true\n"
     [
         ("title = 'No world'\n", ["1", "1"], ""),
         ("background = 'Loop'\n", ["1", "1"], ""),
-        ("profile = 'robolab'\n", ["1", "0"], "lego.py uses pybricks, and the profile robolab is for ev3dev2"),
-        ("profile = 'pybricks4'\n", ["0", "1"], "dev.py uses ev3dev2, and the profile pybricks4 is for pybricks"),
+        (
+            "profile = 'robolab'\n",
+            ["1", "0"],
+            "lego.py uses pybricks, and the profile robolab is for ev3dev2",
+        ),
+        (
+            "profile = 'pybricks4'\n",
+            ["0", "1"],
+            "dev.py uses ev3dev2, and the profile pybricks4 is for pybricks",
+        ),
     ],
     ids=["no world", "a mat", "a profile of ev3dev2", "a profile of pybricks"],
 )
@@ -294,7 +374,9 @@ def test_each_program_runs_by_the_rules_for_its_library(
     assert told in done.stdout
 
 
-def test_a_task_with_the_profile_of_another_library_than_all_programs_is_refused(tmp_path: Path, here: Command) -> None:
+def test_a_task_with_the_profile_of_another_library_than_all_programs_is_refused(
+    tmp_path: Path, here: Command
+) -> None:
     (tmp_path / "class").mkdir()
     (tmp_path / "class" / "lego.py").write_text(BOTH_LIBRARIES["lego"])
     (tmp_path / "goals.toml").write_text("profile = 'ev3'\n" + FINISH)
@@ -303,9 +385,15 @@ def test_a_task_with_the_profile_of_another_library_than_all_programs_is_refused
     assert "profile: lego.py uses pybricks, and the profile ev3 is for ev3dev2" in done.stderr
 
 
-@pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)], ids=["int", "term"])
+@pytest.mark.parametrize(
+    ("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)], ids=["int", "term"]
+)
 def test_a_signal_ends_a_marking_in_good_order(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], number: int, code: int
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+    number: int,
+    code: int,
 ) -> None:
     def interrupted(*_: object) -> Iterator[tuple[str, Outcome]]:
         os.kill(os.getpid(), number)
@@ -335,15 +423,23 @@ def test_a_program_that_this_machine_cannot_read_is_missing_in_the_marks(
         return opened(path, *how, **more)
 
     monkeypatch.setattr(Path, "open", fails)
-    assert run_command(["mark", str(GOALS), str(tmp_path / "class"), "--seeds", "0", "--keep", "none"]) == 1
+    assert (
+        run_command(["mark", str(GOALS), str(tmp_path / "class"), "--seeds", "0", "--keep", "none"])
+        == 1
+    )
     said = capsys.readouterr()
     assert "ada      10      100%" in said.out
     assert "the marks are without eve: eve.py: cannot be read: Input/output error" in said.err
 
 
 def test_a_mat_that_cannot_be_read_is_the_students_own_fault(tmp_path: Path, here: Command) -> None:
-    (tmp_path / "goals.toml").write_text('title = "Done"\n[[goal]]\nname = "finish"\nfinish = true\n')
-    harms: dict[str, Callable[[Path], object]] = {"eve": lambda mat: mat.write_bytes(b"no image"), "zoe": os.mkfifo}
+    (tmp_path / "goals.toml").write_text(
+        'title = "Done"\n[[goal]]\nname = "finish"\nfinish = true\n'
+    )
+    harms: dict[str, Callable[[Path], object]] = {
+        "eve": lambda mat: mat.write_bytes(b"no image"),
+        "zoe": os.mkfifo,
+    }
     for name, harm in harms.items():
         (tmp_path / "class" / name).mkdir(parents=True)
         (tmp_path / "class" / name / "main.py").write_text("# %%sim_magic -b ./mat.png\nprint(1)\n")
@@ -360,7 +456,17 @@ def test_a_run_that_could_not_be_started_is_missing_in_the_marks_until_it_is_res
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     write_class(tmp_path / "class", _few("ada.py"))
-    words = ["mark", str(GOALS), str(tmp_path / "class"), "--seeds", "0,1", "--jobs", "1", "--keep", "none"]
+    words = [
+        "mark",
+        str(GOALS),
+        str(tmp_path / "class"),
+        "--seeds",
+        "0,1",
+        "--jobs",
+        "1",
+        "--keep",
+        "none",
+    ]
     seeds: list[int] = []
 
     def started(*of_run: Any, **more: Any) -> RunHandle:
@@ -390,11 +496,22 @@ def test_a_careless_regular_expression_is_named_and_the_rest_is_marked(
     (tmp_path / "class").mkdir()
     for name, text in {"ada": "aaa", "ben": "a" * 60 + "!"}.items():
         (tmp_path / "class" / f"{name}.py").write_text(f"print({text!r})\n")
-    words = ["mark", str(tmp_path / "goals.toml"), str(tmp_path / "class"), "--seeds", "0", "--jobs", "1"]
+    words = [
+        "mark",
+        str(tmp_path / "goals.toml"),
+        str(tmp_path / "class"),
+        "--seeds",
+        "0",
+        "--jobs",
+        "1",
+    ]
     assert run_command(words) == 1
     said = capsys.readouterr()
     assert "ada      2       100%        1     1" in said.out
-    assert "ben      1       0%          0     1      The regular expression '(a+)+$' takes more than" in said.out
+    assert (
+        "ben      1       0%          0     1      The regular expression '(a+)+$' takes more than"
+        in said.out
+    )
     assert "tuisim: “said” cannot be judged and counts as missed, for ben:" in said.err
 
 
@@ -404,4 +521,7 @@ def test_a_marking_without_a_place_for_copies_says_so(
     write_class(tmp_path / "class", _few("ada.py"))
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / "nowhere"))
     done = here("mark", GOALS, "class", "--jobs", "1")
-    assert (done.returncode, "no folder for temporary runs can be created" in done.stderr) == (2, True), done.stderr
+    assert (done.returncode, "no folder for temporary runs can be created" in done.stderr) == (
+        2,
+        True,
+    ), done.stderr

@@ -47,7 +47,9 @@ def _field(folder: Path, goals: str = "") -> Path:
     (folder / "goals.toml").write_text(goals or GOALS.read_text())
     (folder / "secret.txt").write_text(SECRET)
     (folder / "class" / "ada.py").write_text(HOPS)
-    (folder / "class" / "ben" / "main.py").write_text(MAGIC + "tank_drive.on_for_rotations(50, 50, 9)\n")
+    (folder / "class" / "ben" / "main.py").write_text(
+        MAGIC + "tank_drive.on_for_rotations(50, 50, 9)\n"
+    )
     (folder / "class" / "zoe.py").write_text("")
     return folder
 
@@ -60,7 +62,18 @@ def field(tmp_path: Path) -> Path:
 
 def _mark(field: Path, isolation: str, seeds: str = "0") -> tuple[Rows, str]:
     """Mark the class; return its rows by student, and what was said."""
-    words = ("mark", "goals.toml", "class", "--seeds", seeds, "--timeout", "30", "--jobs", "2", isolation)
+    words = (
+        "mark",
+        "goals.toml",
+        "class",
+        "--seeds",
+        seeds,
+        "--timeout",
+        "30",
+        "--jobs",
+        "2",
+        isolation,
+    )
     into = ("--export", "marks.csv", "--export", "marks.html", "--feedback", "told")
     done = subprocess.run(
         [sys.executable, "-m", "tuisim", *words, *into],
@@ -89,13 +102,21 @@ def honest(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Rows]:
 
 
 def _contents(folder: Path) -> dict[str, bytes]:
-    return {str(path): path.read_bytes() for path in folder.rglob("*") if path.is_file() and not path.is_symlink()}
+    return {
+        str(path): path.read_bytes()
+        for path in folder.rglob("*")
+        if path.is_file() and not path.is_symlink()
+    }
 
 
 def _told(field: Path, said: str) -> bytes:
     """Return all that a marking has written, and said."""
     results = [field / "marks.csv", field / "marks.html"]
-    written = [content for name in ("home", "told", "marks-runs") for content in _contents(field / name).values()]
+    written = [
+        content
+        for name in ("home", "told", "marks-runs")
+        for content in _contents(field / name).values()
+    ]
     return b"\n".join((*written, *(path.read_bytes() for path in results), said.encode()))
 
 
@@ -125,14 +146,24 @@ def test_an_attack_changes_no_other_mark_and_reads_nothing_else(
         assert all("Error" in row["reason"] for row in rows.values())
     if table == "names":
         page = (field / "marks.html").read_bytes()
-        assert (b"<img src=x" in page, b"\x1b" in page + told.partition(b"student  ")[2]) == (False, False)
+        assert (b"<img src=x" in page, b"\x1b" in page + told.partition(b"student  ")[2]) == (
+            False,
+            False,
+        )
         assert not any(name.startswith(("=", "+", "-", "@")) for name in rows)
 
 
 def test_a_link_in_a_recording_does_not_end_the_marking(field: Path, here: Command) -> None:
     attacks = {name: text for name, text in RUN_FOLDER.items() if name == "links in its recording"}
     write_attackers(field / "class", attacks)
-    done = here("mark", str(field / "goals.toml"), str(field / "class"), "--seeds=0", "--jobs=1", "--no-isolate")
+    done = here(
+        "mark",
+        str(field / "goals.toml"),
+        str(field / "class"),
+        "--seeds=0",
+        "--jobs=1",
+        "--no-isolate",
+    )
     assert (done.returncode, SECRET in done.stdout) == (0, False)
     rows = [line.split()[:2] for line in done.stdout.splitlines()]
     assert ["ada", "10"] in rows and ["links", "in"] in rows
@@ -156,7 +187,9 @@ def port() -> Iterator[int]:
 
 
 @pytest.mark.slow
-def test_what_the_guide_says_that_only_isolation_prevents(tmp_path: Path, isolation: str, port: int) -> None:
+def test_what_the_guide_says_that_only_isolation_prevents(
+    tmp_path: Path, isolation: str, port: int
+) -> None:
     field = _field(tmp_path / "field", FINISH)
     write_attackers(field / "class", DEEDS, port)
     rows, _ = _mark(field, isolation)

@@ -33,14 +33,25 @@ def in_run(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Stored]:
 @pytest.mark.slow
 def test_each_has_an_end_of_its_own(in_run: dict[str, Stored]) -> None:
     assert in_run.keys() == FAIR.keys()
-    ends = {"raises": "raised", "raises_a_group": "raised", "a_long_chain": "raised", "endless_recursion": "raised"}
-    assert {name: run.end for name, run in in_run.items()} == {name: ends.get(name, "finished") for name in FAIR}
-    assert {name: run.exit_code for name, run in in_run.items() if run.exit_code not in (0, 1)} == {"exits": 3}
+    ends = {
+        "raises": "raised",
+        "raises_a_group": "raised",
+        "a_long_chain": "raised",
+        "endless_recursion": "raised",
+    }
+    assert {name: run.end for name, run in in_run.items()} == {
+        name: ends.get(name, "finished") for name in FAIR
+    }
+    assert {name: run.exit_code for name, run in in_run.items() if run.exit_code not in (0, 1)} == {
+        "exits": 3
+    }
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("host", [host for host in HOSTS if host != "run"])
-def test_the_end_is_the_same_in_every_host(host: str, in_run: dict[str, Stored], tmp_path: Path) -> None:
+def test_the_end_is_the_same_in_every_host(
+    host: str, in_run: dict[str, Stored], tmp_path: Path
+) -> None:
     found = hosted(host, FAIR, tmp_path / "place").runs
     assert {name: found.get(name) for name in FAIR if found.get(name) != in_run[name]} == {}
 
@@ -88,5 +99,7 @@ def idle(tmp_path_factory: pytest.TempPathFactory) -> bytes:
 
 
 @pytest.mark.slow
-def test_the_marks_are_the_same_beside_four_busy_processes(idle: bytes, busy: None, tmp_path: Path) -> None:
+def test_the_marks_are_the_same_beside_four_busy_processes(
+    idle: bytes, busy: None, tmp_path: Path
+) -> None:
     assert _marks(tmp_path / "place", "--no-isolate") == idle

@@ -75,7 +75,9 @@ def view(width_px: int, height_px: int) -> Viewport:
 
 @pytest.mark.quick_cases(".webp")
 @pytest.mark.parametrize("suffix", [".gif", ".webp"])
-def test_a_movie_follows_the_robot(here: Command, run: StoredRun, tmp_path: Path, suffix: str) -> None:
+def test_a_movie_follows_the_robot(
+    here: Command, run: StoredRun, tmp_path: Path, suffix: str
+) -> None:
     done = here("runs", "movie", "last", "--out", f"a{suffix}", "--fps", "10")
     assert (done.returncode, told(done)) == (0, [])
     assert done.stdout.startswith(f"a{suffix}: 11 frames, 2.1 s at 1×, ")
@@ -97,7 +99,20 @@ def test_colours_of_the_mat_are_exact_in_a_gif(here: Command, tmp_path: Path) ->
 
 
 def test_a_part_at_another_speed(here: Command, tmp_path: Path) -> None:
-    words = ("--from", "0.8", "--to", "1", "--speed", "2", "--fps", "20", "--panels", "world", "--size", "320x200")
+    words = (
+        "--from",
+        "0.8",
+        "--to",
+        "1",
+        "--speed",
+        "2",
+        "--fps",
+        "20",
+        "--panels",
+        "world",
+        "--size",
+        "320x200",
+    )
     here("runs", "movie", "1", "--out", "a.webp", *words)
     frames, durations = frames_of(tmp_path / "a.webp")
     assert (len(frames), sum(durations)) == (3, 150 + END_MS)
@@ -115,13 +130,18 @@ def test_a_picture_shows_an_instant(here: Command, tmp_path: Path, at: str, valu
     assert texts[:2] == [f"{float(at):.2f} s", f"Colour: {value}"]
     assert {"left", "right", "time (s)"} <= set(texts)
     with Image.open(tmp_path / "a.png") as picture:
-        assert (str(picture.width), str(picture.height)) == (root.attrib["width"], root.attrib["height"])
+        assert (str(picture.width), str(picture.height)) == (
+            root.attrib["width"],
+            root.attrib["height"],
+        )
 
 
 def test_a_long_run_is_shown_faster(here: Command) -> None:
     record(*[100, -100] * 61)
     words = ("--out", "a.webp", "--fps", "1", "--size", "160x120", "--panels", "world")
-    assert here("runs", "movie", "last", *words).stdout.startswith("a.webp: 32 frames, 33.0 s at 2×, ")
+    assert here("runs", "movie", "last", *words).stdout.startswith(
+        "a.webp: 32 frames, 33.0 s at 2×, "
+    )
 
 
 def test_a_run_without_samples_has_no_chart(here: Command, tmp_path: Path) -> None:
@@ -146,7 +166,9 @@ def test_a_small_movie_of_a_long_run_is_faster() -> None:
 
 
 @pytest.mark.slow_cases("too large")
-@pytest.mark.parametrize(("speed_dps", "most"), [(0, SMALL_BYTES), (100, 1000)], ids=["stands still", "too large"])
+@pytest.mark.parametrize(
+    ("speed_dps", "most"), [(0, SMALL_BYTES), (100, 1000)], ids=["stands still", "too large"]
+)
 def test_no_small_movie(monkeypatch: pytest.MonkeyPatch, speed_dps: float, most: int) -> None:
     monkeypatch.setattr("tuisim.movies.files.SMALL_BYTES", most)
     assert small_movie(Recorded(record(speed_dps))) is None
@@ -154,13 +176,22 @@ def test_no_small_movie(monkeypatch: pytest.MonkeyPatch, speed_dps: float, most:
 
 # Words after `runs`, and what the line on stderr must say.
 BAD = {
-    "unknown format": ("movie last --out a.mp4", "unknown format '.mp4' (a movie ends in .gif, .webp)"),
-    "unknown format of a picture": ("picture last --out a.gif", "unknown format '.gif' (a picture ends in .png, .svg)"),
+    "unknown format": (
+        "movie last --out a.mp4",
+        "unknown format '.mp4' (a movie ends in .gif, .webp)",
+    ),
+    "unknown format of a picture": (
+        "picture last --out a.gif",
+        "unknown format '.gif' (a picture ends in .png, .svg)",
+    ),
     "no folder": ("movie last --out no/a.gif", "cannot write no/a.gif: there is no folder no"),
     "folder": ("movie last --out folder.gif", "cannot write folder.gif: it is a folder"),
     "no run": ("movie", "RUN is missing (see `tuisim runs movie --help`)"),
     "unknown run": ("movie 99", "no run '99'"),
-    "nothing after the end": ("movie last --from 2", "nothing to show from 2 s to 1 s (run 1 lasts from 0 s to 1 s)"),
+    "nothing after the end": (
+        "movie last --from 2",
+        "nothing to show from 2 s to 1 s (run 1 lasts from 0 s to 1 s)",
+    ),
     "range backwards": ("movie last --from 0.5 --to 0.2", "nothing to show from 0.5 s to 0.2 s"),
     "empty range": ("movie last --from 0.5 --to 0.5", "nothing to show from 0.5 s to 0.5 s"),
     "no number": ("movie last --from nan", "nothing to show from nan s"),
@@ -168,12 +199,18 @@ BAD = {
     "speed": ("movie last --speed 0", "--speed: must be from 0.01 to 1000, got 0"),
     "frames a second": ("movie last --fps 60", "--fps: must be from 1 to 50, got 60"),
     "panel": ("movie last --panels wrld", "--panels: no such panel 'wrld' (did you mean world?)"),
-    "no panel": ("movie last --panels ,", "--panels: no panel given (some of world, chart, arrays)"),
+    "no panel": (
+        "movie last --panels ,",
+        "--panels: no panel given (some of world, chart, arrays)",
+    ),
     "size": (
         "movie last --size 20x20",
         "--size: no such size '20x20' (width and height in pixels, 160x120 to 3840x2160)",
     ),
-    "no room": ("movie last --size 160x120", "--size: 160x120 is too small (no room for the panel world)"),
+    "no room": (
+        "movie last --size 160x120",
+        "--size: 160x120 is too small (no room for the panel world)",
+    ),
     "too large": (
         "movie last --speed 0.01 --fps 50",
         "too large: 5,001 frames of 600x545, at most 1,223 (--out FILE.webp,",
@@ -202,7 +239,8 @@ def test_a_run_without_ticks(here: Command, run: StoredRun, tmp_path: Path) -> N
 
 @pytest.mark.quick_cases("x_mm-nan")
 @pytest.mark.parametrize(
-    ("field", "value"), [("x_mm", math.nan), ("y_mm", 1e30), ("heading_deg", math.inf), ("left_speed_dps", math.nan)]
+    ("field", "value"),
+    [("x_mm", math.nan), ("y_mm", 1e30), ("heading_deg", math.inf), ("left_speed_dps", math.nan)],
 )
 def test_damaged_records_cost_only_their_frames(
     here: Command, run: StoredRun, tmp_path: Path, field: str, value: float
@@ -215,7 +253,9 @@ def test_damaged_records_cost_only_their_frames(
     # A line to a point far away takes minutes to draw.
     piece = pen_trace(SPEC, records)
     assert not (np.abs([piece.xs_mm, piece.ys_mm]) > 10_000).any()
-    done = here("runs", "movie", "last", "--out", "a.webp", "--fps", "2", "--panels", "world,chart,arrays")
+    done = here(
+        "runs", "movie", "last", "--out", "a.webp", "--fps", "2", "--panels", "world,chart,arrays"
+    )
     note = f"note: {TELEMETRY_FILE}: 3 of 101 records are damaged and left out"
     assert (done.returncode, done.stderr.splitlines()) == (0, [note])
     assert len(frames_of(tmp_path / "a.webp")[0]) == 3
@@ -224,10 +264,15 @@ def test_damaged_records_cost_only_their_frames(
 def test_a_run_that_has_not_ended(here: Command, run: StoredRun) -> None:
     RunStore().new_run(PROGRAM, run.spec)
     done = here("runs", "movie", "last")
-    assert (done.returncode, "run 2 is still running (wait until it ends, or stop it)" in done.stderr) == (2, True)
+    assert (
+        done.returncode,
+        "run 2 is still running (wait until it ends, or stop it)" in done.stderr,
+    ) == (2, True)
 
 
-def test_ctrl_c_leaves_nothing(here: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_ctrl_c_leaves_nothing(
+    here: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     def interrupted(*_: object) -> None:
         raise KeyboardInterrupt
 

@@ -20,7 +20,10 @@ def course(tmp_path: Path) -> Path:
     folder = tmp_path / "course"
     for name in ("2 more", "10 last/.ipynb_checkpoints"):
         (folder / name).mkdir(parents=True)
-    write(folder / "2 more" / "b.ipynb", [("code", "%sim_magic -b Rainbow_bands -x 300"), ("code", RGB)])
+    write(
+        folder / "2 more" / "b.ipynb",
+        [("code", "%sim_magic -b Rainbow_bands -x 300"), ("code", RGB)],
+    )
     write(folder / "2 more" / "a.ipynb", [("markdown", "# Only text")])
     write(folder / "10 last" / "l.ipynb", [*BESIDE, ("code", RGB)])
     write(folder / "10 last" / ".ipynb_checkpoints" / "l-checkpoint.ipynb", [("code", RGB)])
@@ -28,10 +31,15 @@ def course(tmp_path: Path) -> Path:
     return folder
 
 
-def test_all_notebooks_of_a_folder_run_in_order_each_in_its_own_world(course: Path, here: Command) -> None:
+def test_all_notebooks_of_a_folder_run_in_order_each_in_its_own_world(
+    course: Path, here: Command
+) -> None:
     done = here("run", course, "--all")
     printed, table = done.stdout.splitlines()[:3], done.stdout.splitlines()[3:]
-    assert (done.returncode, printed) == (0, ["(255, 0, 0)", f"30 {course.parent.name}", "(255, 255, 255)"])
+    assert (done.returncode, printed) == (
+        0,
+        ["(255, 0, 0)", f"30 {course.parent.name}", "(255, 255, 255)"],
+    )
     names = ["2 more/b.ipynb#1", "10 last/l.ipynb#1", "10 last/l.ipynb#2"]
     assert [line.split("  ")[0] for line in table] == ["cell", *names]
 
@@ -46,7 +54,9 @@ BROKEN: dict[str, tuple[str | list[tuple[str, str]], str]] = {
 
 
 @pytest.mark.parametrize("name", BROKEN)
-def test_what_is_wrong_in_one_notebook_keeps_no_other_from_running(name: str, here: Command, tmp_path: Path) -> None:
+def test_what_is_wrong_in_one_notebook_keeps_no_other_from_running(
+    name: str, here: Command, tmp_path: Path
+) -> None:
     content, label = BROKEN[name]
     for number in (1, 3):
         write(tmp_path / f"{number}.ipynb", [("code", f"%%sim_magic\nprint({number})\n")])
@@ -57,8 +67,10 @@ def test_what_is_wrong_in_one_notebook_keeps_no_other_from_running(name: str, he
     done = here("run", tmp_path, "--all")
     assert done.stdout.splitlines()[:2] == ["1", "3"]
     assert [line.split()[:2] for line in done.stdout.splitlines()[-3:]] == [
-        ["1.ipynb#1", "finished"], [label, "not_run"], ["3.ipynb#1", "finished"],
-    ]  # fmt: skip
+        ["1.ipynb#1", "finished"],
+        [label, "not_run"],
+        ["3.ipynb#1", "finished"],
+    ]
     assert done.returncode == 2
     assert f"tuisim: {label} was not run: " in done.stderr
 
@@ -67,20 +79,32 @@ def test_the_worst_end_is_the_exit_code_and_json_tells_each(here: Command, tmp_p
     write(tmp_path / "1.ipynb", LESSON)
     write(tmp_path / "2.ipynb", [("code", "%%sim_magic -b Nope\npass")])
     done = here("run", tmp_path, "--all", "--json")
-    ends = [(one["program"], one["state"], one["exit_code"]) for one in map(json.loads, done.stdout.splitlines())]
-    assert (done.returncode, ends[2:]) == (2, [("1.ipynb#3", "raised", 1), ("2.ipynb#1", "not_run", 2)])
+    ends = [
+        (one["program"], one["state"], one["exit_code"])
+        for one in map(json.loads, done.stdout.splitlines())
+    ]
+    assert (done.returncode, ends[2:]) == (
+        2,
+        [("1.ipynb#3", "raised", 1), ("2.ipynb#1", "not_run", 2)],
+    )
 
 
 @pytest.mark.parametrize(
     ("cells", "words", "told"),
     [
         pytest.param([], "--all", "is a folder without notebooks", id="no notebooks"),
-        pytest.param([("markdown", "# Text")], "--all", "has no notebook with a program", id="no programs"),
-        pytest.param(VARIABLES[:2], "--all", "has no notebook with a program", id="none that runs here"),
+        pytest.param(
+            [("markdown", "# Text")], "--all", "has no notebook with a program", id="no programs"
+        ),
+        pytest.param(
+            VARIABLES[:2], "--all", "has no notebook with a program", id="none that runs here"
+        ),
         pytest.param(LESSON, "", "is a folder of 1 notebook (tuisim run ", id="not told to"),
         pytest.param(LESSON, "--all -b Nope", "tuisim: -b: no such mat 'Nope'", id="wrong switch"),
         pytest.param(LESSON, "--all -- 5", "notebooks take no arguments", id="arguments"),
-        pytest.param(LESSON, "--all --telemetry t.csv", "--telemetry: takes one program", id="telemetry"),
+        pytest.param(
+            LESSON, "--all --telemetry t.csv", "--telemetry: takes one program", id="telemetry"
+        ),
     ],
 )
 def test_what_is_wrong_with_the_folder_is_told(
@@ -97,4 +121,7 @@ def test_what_is_wrong_with_the_folder_is_told(
 def test_the_program_of_a_folder_is_named(here: Command, tmp_path: Path) -> None:
     (tmp_path / "team").mkdir()
     (tmp_path / "team" / "main.py").write_text("print(1)\n")
-    assert "team: is a folder without notebooks (name its program team/main.py)" in here("run", "team").stderr
+    assert (
+        "team: is a folder without notebooks (name its program team/main.py)"
+        in here("run", "team").stderr
+    )

@@ -32,12 +32,27 @@ def folder(tmp_path: Path) -> Path:
 
 # The words of `tuisim run`, and what is then known of the run.
 RUNS: dict[str, tuple[list[object], dict[str, Any]]] = {
-    "the world's own program": (["lab.toml"], {"program": "where.py", "background": "Square", "seed": 5, "x_mm": 600}),
+    "the world's own program": (
+        ["lab.toml"],
+        {"program": "where.py", "background": "Square", "seed": 5, "x_mm": 600},
+    ),
     "key by key": (["lab.toml"], {"x_mm": 600, "y_mm": 700, "heading_deg": -90, "robot": "lab"}),
-    "another program": (["lab.toml", "other.py"], {"program": "other.py", "background": "Square", "seed": 5}),
-    "as a switch": (["other.py", "--world", "lab.toml"], {"program": "other.py", "background": "Square", "x_mm": 600}),
-    "switches win": (["lab.toml", "-b", "Loop", "-x", 5, "--seed", 9], {"background": "Loop", "seed": 9, "x_mm": 5}),
-    "magic alone": (["other.py"], {"background": "Loop", "seed": 3, "y_mm": 700, "robot": "Default_Robot"}),
+    "another program": (
+        ["lab.toml", "other.py"],
+        {"program": "other.py", "background": "Square", "seed": 5},
+    ),
+    "as a switch": (
+        ["other.py", "--world", "lab.toml"],
+        {"program": "other.py", "background": "Square", "x_mm": 600},
+    ),
+    "switches win": (
+        ["lab.toml", "-b", "Loop", "-x", 5, "--seed", 9],
+        {"background": "Loop", "seed": 9, "x_mm": 5},
+    ),
+    "magic alone": (
+        ["other.py"],
+        {"background": "Loop", "seed": 3, "y_mm": 700, "robot": "Default_Robot"},
+    ),
 }
 
 
@@ -63,9 +78,13 @@ def test_a_printed_robot_and_printed_obstacles_are_files(folder: Path, here: Com
     assert json.loads(done.stdout)["robot"] == "Small_Robot"
 
 
-def test_files_of_a_magic_line_are_looked_for_beside_the_program(folder: Path, here: Command) -> None:
+def test_files_of_a_magic_line_are_looked_for_beside_the_program(
+    folder: Path, here: Command
+) -> None:
     (folder / "sub" / "eyes.toml").write_text("[color_sensors.left]\ndiameter_mm = 8\n")
-    (folder / "sub" / "look.py").write_text("# %%sim_magic_preloaded -r eyes.toml\nprint(colorLeft.rgb)\n")
+    (folder / "sub" / "look.py").write_text(
+        "# %%sim_magic_preloaded -r eyes.toml\nprint(colorLeft.rgb)\n"
+    )
     done = here("run", "sub/look.py", "--json")
     assert json.loads(done.stdout)["robot"] == "eyes"
 
@@ -75,12 +94,17 @@ def test_files_of_a_magic_line_are_looked_for_beside_the_program(folder: Path, h
     [
         ("seed = 3", "lab.toml names no program (tuisim run PROGRAM…)"),
         ("program = 'whre.py'", "whre.py: there is no such program"),
-        ("program = 'sub/whre.py'", "sub/whre.py: there is no such program (did you mean where.py?)"),
+        (
+            "program = 'sub/whre.py'",
+            "sub/whre.py: there is no such program (did you mean where.py?)",
+        ),
         ("program = 3", "lab.toml: program: must be text, got 3"),
     ],
     ids=["no program", "missing program", "misspelt program", "program's type"],
 )
-def test_a_world_without_a_program_to_run(text: str, said: str, folder: Path, here: Command) -> None:
+def test_a_world_without_a_program_to_run(
+    text: str, said: str, folder: Path, here: Command
+) -> None:
     (folder / "lab.toml").write_text(text)
     done = here("run", "lab.toml")
     assert done.stderr.startswith(f"tuisim: {said}")
@@ -106,4 +130,6 @@ def test_profiles_of_ones_own_stand_beside_the_others(folder: Path, here: Comman
     assert [line.split()[:5] for line in lines if line.startswith("color_read")] == [
         ["color_read", "10", "ms", "25", "ms"]
     ]
-    assert "measured on the old simulator" in next(line for line in lines if line.startswith("color_read"))
+    assert "measured on the old simulator" in next(
+        line for line in lines if line.startswith("color_read")
+    )

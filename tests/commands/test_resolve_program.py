@@ -49,21 +49,41 @@ def test_a_run_says_in_one_line_what_was_built(folder: Path, here: Command) -> N
     ]
 
 
-def test_the_robot_is_printed_as_a_file_that_says_which_line_asks_for_what(folder: Path, here: Command) -> None:
+def test_the_robot_is_printed_as_a_file_that_says_which_line_asks_for_what(
+    folder: Path, here: Command
+) -> None:
     done = here("robots", "--from", "claw.py")
     table = tomllib.loads(done.stdout)
     assert table["base"] == "Default_Robot"
-    assert (table["left_port"], table["right_port"], table["motors"]) == ("outA", "outD", {"outB": "medium"})
+    assert (table["left_port"], table["right_port"], table["motors"]) == (
+        "outA",
+        "outD",
+        {"outB": "medium"},
+    )
     assert "ultrasonic" in table and table["ultrasonic"] is False
-    for line, what in ((4, "wheels on outA"), (5, "medium motor on outB"), (6, "touch sensor on in1")):
+    for line, what in (
+        (4, "wheels on outA"),
+        (5, "medium motor on outB"),
+        (6, "touch sensor on in1"),
+    ):
         assert f"claw.py, line {line}: {what}" in done.stdout
 
 
-def test_a_program_that_needs_no_other_robot_gets_the_usual_one(folder: Path, here: Command) -> None:
-    (folder / "usual.py").write_text("from ev3dev2.motor import LargeMotor\nLargeMotor('outB').on(5)\n")
+def test_a_program_that_needs_no_other_robot_gets_the_usual_one(
+    folder: Path, here: Command
+) -> None:
+    (folder / "usual.py").write_text(
+        "from ev3dev2.motor import LargeMotor\nLargeMotor('outB').on(5)\n"
+    )
     assert here("robots", "--from", "usual.py", "--out", "usual.toml").returncode == 0
-    assert tomllib.loads((folder / "usual.toml").read_text()) == {"base": "Default_Robot", "name": "Default_Robot"}
-    assert json.loads(here("robots", "--from", "usual.py", "--json").stdout)[0]["name"] == "Default_Robot"
+    assert tomllib.loads((folder / "usual.toml").read_text()) == {
+        "base": "Default_Robot",
+        "name": "Default_Robot",
+    }
+    assert (
+        json.loads(here("robots", "--from", "usual.py", "--json").stdout)[0]["name"]
+        == "Default_Robot"
+    )
 
 
 @pytest.mark.parametrize(
@@ -82,7 +102,9 @@ def test_wrong_words(words: list[str], message: str, folder: Path, here: Command
     assert (done.returncode, message in done.stderr) == (2, True), done.stderr
 
 
-def test_comments_in_a_robot_file_stay_when_it_is_written_again(folder: Path, here: Command) -> None:
+def test_comments_in_a_robot_file_stay_when_it_is_written_again(
+    folder: Path, here: Command
+) -> None:
     here("robots", "--from", "claw.py", "--out", "claw.toml")
     file = folder / "claw.toml"
     file.write_text("# My own robot.\n" + file.read_text().replace('"outD"', '"outC"'))
@@ -102,8 +124,13 @@ def test_a_stored_run_has_its_robot_and_runs_again_to_the_bit(folder: Path, here
 def test_a_missing_part_says_what_to_do(folder: Path, here: Command) -> None:
     done = here("run", "claw.py", "-r", "Default_Robot")
     assert done.returncode == 1
-    assert "LargeMotor(ev3-ports:outA) is not connected. This robot has: outB lego-ev3-l-motor" in done.stderr
-    assert "Another robot: -r ROBOT; `tuisim robots --from PROGRAM --out FILE` writes" in done.stderr
+    assert (
+        "LargeMotor(ev3-ports:outA) is not connected. This robot has: outB lego-ev3-l-motor"
+        in done.stderr
+    )
+    assert (
+        "Another robot: -r ROBOT; `tuisim robots --from PROGRAM --out FILE` writes" in done.stderr
+    )
 
 
 def test_a_batch_varies_the_robot_that_was_built(folder: Path, here: Command) -> None:
@@ -113,14 +140,20 @@ def test_a_batch_varies_the_robot_that_was_built(folder: Path, here: Command) ->
     assert [round(row["x_mm"]) for row in rows] == [1357, 1269]
 
 
-def test_marks_use_the_robot_of_the_task_and_else_that_of_the_program(folder: Path, here: Command) -> None:
+def test_marks_use_the_robot_of_the_task_and_else_that_of_the_program(
+    folder: Path, here: Command
+) -> None:
     (folder / "class").mkdir()
     (folder / "class" / "ann.py").write_text(CLAW)
     for world, points in (("", 1.0), ("seed = 3\n", 0.0)):
         (folder / "goals.toml").write_text(world + GOALS)
-        done = here("mark", "goals.toml", "class", "--seeds", "1", "--jobs", 1, "--export", "marks.csv")
+        done = here(
+            "mark", "goals.toml", "class", "--seeds", "1", "--jobs", 1, "--export", "marks.csv"
+        )
         assert done.returncode == 0, done.stderr
-        assert (folder / "marks.csv").read_text().splitlines()[1].split(",")[2] == f"{points}", world
+        assert (folder / "marks.csv").read_text().splitlines()[1].split(",")[2] == f"{points}", (
+            world
+        )
 
 
 def test_a_task_that_is_run_as_a_world_keeps_its_robot_too(folder: Path, here: Command) -> None:
@@ -130,7 +163,9 @@ def test_a_task_that_is_run_as_a_world_keeps_its_robot_too(folder: Path, here: C
     assert here("run", "world.toml", "claw.py").returncode == 0
 
 
-def test_the_api_builds_the_robot_and_says_so(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_api_builds_the_robot_and_says_so(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.chdir(folder)
     run = tuisim.simulate("claw.py")
     assert (run.state, run.output) == ("finished", "Claw: 45\n")
@@ -146,7 +181,9 @@ Motor(Port.A, gears=[12, 36]).run_angle(300, 90)
 
 
 @pytest.mark.parametrize("command", ["run", "batch"])
-def test_a_task_with_a_profile_for_another_library_is_refused(folder: Path, here: Command, command: str) -> None:
+def test_a_task_with_a_profile_for_another_library_is_refused(
+    folder: Path, here: Command, command: str
+) -> None:
     (folder / "lego.py").write_text(LEGO)
     (folder / "goals.toml").write_text("profile = 'ev3'\n" + GOALS)
     done = here(command, "goals.toml", "lego.py")
@@ -158,4 +195,8 @@ def test_a_task_with_a_profile_for_another_library_is_refused(folder: Path, here
 def test_the_robot_of_a_pybricks_program_is_printed_as_a_file(folder: Path, here: Command) -> None:
     (folder / "lego.py").write_text(LEGO)
     table = tomllib.loads(here("robots", "--from", "lego.py").stdout)
-    assert table == {"base": "Default_Robot", "name": "Robot of lego.py", "motors": {"outA": "medium"}}
+    assert table == {
+        "base": "Default_Robot",
+        "name": "Robot of lego.py",
+        "motors": {"outA": "medium"},
+    }

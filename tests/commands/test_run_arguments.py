@@ -61,7 +61,9 @@ def folder(tmp_path: Path) -> Path:
         ("p.py --world lab.toml", ["from", "a world"]),
     ],
 )
-def test_the_program_finds_its_arguments(folder: Path, here: Command, words: str, arguments: list[str]) -> None:
+def test_the_program_finds_its_arguments(
+    folder: Path, here: Command, words: str, arguments: list[str]
+) -> None:
     done = here("run", *words.split())
     (path, *found) = eval(done.stdout)
     assert (Path(path).name, found, done.returncode) == ("p.py", arguments, 0)
@@ -74,12 +76,17 @@ def test_the_program_finds_its_arguments(folder: Path, here: Command, words: str
         ("p.py p.py -- A", "tuisim: --: arguments go to one program (got 2)"),
         ("run -- A", "tuisim: --: arguments need a program (tuisim PROGRAM -- ARGUMENTS)"),
         ("-- A", "tuisim: --: arguments need a program (tuisim PROGRAM -- ARGUMENTS)"),
-        ("run cells.ipynb -- A", "tuisim: --: cells.ipynb is a notebook; its cells take no arguments"),
+        (
+            "run cells.ipynb -- A",
+            "tuisim: --: cells.ipynb is a notebook; its cells take no arguments",
+        ),
         ("open --run last -- A", "tuisim: --: a stored run has its own arguments (leave them out)"),
         ("none.toml -- A", "tuisim: --: none.toml names no program to pass arguments to"),
     ],
 )
-def test_arguments_of_nobody_are_refused(folder: Path, here: Command, words: str, message: str) -> None:
+def test_arguments_of_nobody_are_refused(
+    folder: Path, here: Command, words: str, message: str
+) -> None:
     done = here(*words.split())
     assert (done.returncode, done.stderr.strip(), done.stdout) == (2, message, "")
 
@@ -92,7 +99,9 @@ def test_arguments_of_nobody_are_refused(folder: Path, here: Command, words: str
         ('["a", "b\\u0000"]', "arguments[2]: must be text without null characters"),
     ],
 )
-def test_wrong_arguments_in_a_world_file(folder: Path, here: Command, value: str, message: str) -> None:
+def test_wrong_arguments_in_a_world_file(
+    folder: Path, here: Command, value: str, message: str
+) -> None:
     (folder / "lab.toml").write_text(f'program = "p.py"\narguments = {value}\n')
     done = here("run", "lab.toml")
     assert (done.returncode, done.stderr.strip()) == (2, f"tuisim: lab.toml: {message}")
@@ -104,7 +113,10 @@ def test_a_world_is_saved_with_the_arguments(folder: Path) -> None:
 
 
 def test_arguments_are_shown_with_the_run(folder: Path, here: Command) -> None:
-    assert json.loads(here("run", "p.py", "--json", "--", "A", "B C").stdout)["arguments"] == ["A", "B C"]
+    assert json.loads(here("run", "p.py", "--json", "--", "A", "B C").stdout)["arguments"] == [
+        "A",
+        "B C",
+    ]
     assert "arguments: A 'B C'" in here("runs", "show", "last").stdout.splitlines()
     assert json.loads(here("runs", "show", "last", "--json").stdout)["arguments"] == ["A", "B C"]
     here("run", "p.py", "--", "A")
@@ -154,7 +166,10 @@ def stored(folder: Path, here: Command, monkeypatch: pytest.MonkeyPatch) -> Path
     monkeypatch.setenv("PYTHONPATH", "elsewhere")
     done = here("run", "mine/uses.py", "--", "A")
     assert done.stdout.splitlines()[:2] == ["No module named 'absent'", "['A'] 1 2020-01-01 3 2020"]
-    assert done.stderr.count("helper.py\", line 4, in fail\n    def fail(): raise ValueError('ä')") == 1
+    assert (
+        done.stderr.count("helper.py\", line 4, in fail\n    def fail(): raise ValueError('ä')")
+        == 1
+    )
     monkeypatch.delenv("PYTHONPATH")
     return folder
 
@@ -215,10 +230,14 @@ def test_a_run_of_before_has_no_arguments(folder: Path, here: Command) -> None:
 
 
 @pytest.mark.parametrize("profile", PROFILES)
-def test_on_the_brick_a_program_starts_in_its_own_folder(folder: Path, here: Command, profile: str) -> None:
+def test_on_the_brick_a_program_starts_in_its_own_folder(
+    folder: Path, here: Command, profile: str
+) -> None:
     (folder / "own").mkdir()
     (folder / "own/cfg.json").write_text("found")
-    reads = "# %%sim_magic\nimport os\nprint(os.path.exists('cfg.json'), os.path.exists(__file__))\n"
+    reads = (
+        "# %%sim_magic\nimport os\nprint(os.path.exists('cfg.json'), os.path.exists(__file__))\n"
+    )
     (folder / "own/reads.py").write_text(reads)
     on_brick = PROFILES[profile].starts_in_own_folder
     assert here("run", "own/reads.py", "--profile", profile).stdout == f"{on_brick} True\n"
@@ -231,7 +250,9 @@ def shows(folder: Path, *arguments: str) -> AppSettings:
     """The app with the program that shows its arguments."""
     path = str(folder / "p.py")
     settings = Settings({"arguments": arguments, "speed": 0.0})
-    return AppSettings(build_run_spec(settings), settings, program=Program("p.py", SHOWS, path=path), speed=0.0)
+    return AppSettings(
+        build_run_spec(settings), settings, program=Program("p.py", SHOWS, path=path), speed=0.0
+    )
 
 
 async def test_the_app_gives_arguments_that_can_be_edited(folder: Path) -> None:
@@ -242,7 +263,10 @@ async def test_the_app_gives_arguments_that_can_be_edited(folder: Path) -> None:
         assert edit.read(app.run_controller.next_run) == "A 'B C'"
         assert app.loader.attempt(lambda plan: edit.write(plan, "X 'Y Z'"))
         await pilot.press("R")
-        await until(pilot, lambda: app.run_controller.run is not None and app.run_controller.run.ended is not None)
+        await until(
+            pilot,
+            lambda: app.run_controller.run is not None and app.run_controller.run.ended is not None,
+        )
         run = RunStore().load_run("last")
         assert run.program.arguments == ("X", "Y Z")
         assert app.run_controller.timeline.recording is not None

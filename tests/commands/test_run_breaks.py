@@ -27,8 +27,15 @@ def program(tmp_path: Path) -> str:
     return str(path)
 
 
-def test_a_break_is_told_and_the_run_goes_on(program: str, capsys: pytest.CaptureFixture[str]) -> None:
-    assert run_command(["run", program, "--break", "6 if i == 2", "--watch", "total * 2", "--watch", "nothing"]) == 0
+def test_a_break_is_told_and_the_run_goes_on(
+    program: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert (
+        run_command(
+            ["run", program, "--break", "6 if i == 2", "--watch", "total * 2", "--watch", "nothing"]
+        )
+        == 0
+    )
     out, err = capsys.readouterr()
     assert out.splitlines() == ["Total: 0", "Total: 1", "Total: 3"]
     assert err.splitlines()[:6] == [
@@ -50,7 +57,9 @@ def test_a_break_may_end_the_run(program: str, capsys: pytest.CaptureFixture[str
     assert ": stopped · 0.150 s" in err
 
 
-def test_a_break_for_another_robot_is_refused(program: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_break_for_another_robot_is_refused(
+    program: str, capsys: pytest.CaptureFixture[str]
+) -> None:
     assert run_command(["run", program, "--break", "middle.red < 3"]) == 2
     assert "this robot has no 'middle.red' (did you mean left_red?)" in capsys.readouterr().err
 
@@ -59,7 +68,10 @@ def test_a_break_for_another_robot_is_refused(program: str, capsys: pytest.Captu
     ("words", "said"),
     [
         (["--watch", "total"], "watch: needs a breakpoint (add one with --break"),
-        (["--break", "6", "--watch", "total["], "watch: 'total[' is not an expression: '[' was never closed"),
+        (
+            ["--break", "6", "--watch", "total["],
+            "watch: 'total[' is not an expression: '[' was never closed",
+        ),
     ],
     ids=["no break", "no expression"],
 )

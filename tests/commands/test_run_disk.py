@@ -77,7 +77,9 @@ def files_of_at_most(size: int) -> Iterator[None]:
 
 
 @pytest.mark.slow
-def test_run_that_fills_the_disk_stops_and_keeps_its_rows(endless: Path, tuisim: Command, tmp_path: Path) -> None:
+def test_run_that_fills_the_disk_stops_and_keeps_its_rows(
+    endless: Path, tuisim: Command, tmp_path: Path
+) -> None:
     with files_of_at_most(TELEMETRY_CHUNK + 300_000):
         done = tuisim("run", endless, "--timeout", "1e5", "--export", "a.csv")
     assert (done.returncode, done.stderr.count("\n")) == (3, 1), done.stderr
@@ -90,7 +92,9 @@ def test_run_that_fills_the_disk_stops_and_keeps_its_rows(endless: Path, tuisim:
 
 
 @pytest.mark.usefixtures("real_start")
-def test_program_cannot_swallow_the_end_of_the_disk(start: Start, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_program_cannot_swallow_the_end_of_the_disk(
+    start: Start, monkeypatch: pytest.MonkeyPatch
+) -> None:
     text = "import time\nwhile True:\n    try:\n        print('x' * 5000)\n    except Exception:\n        pass\n"
     with files_of_at_most(TELEMETRY_CHUNK + 5000):
         handle = start(text, time_limit_s=0.0)
@@ -119,7 +123,10 @@ def test_end_that_cannot_be_stored_costs_no_row(
     monkeypatch.setattr(store_module, "write_run_file", fail)
     done = here("run", short, "--export", "a.csv")
     assert (done.returncode, done.stdout) == (2, "n: 0\nn: 1\nn: 2\n")
-    assert "short.py: finished: its end cannot be stored: run.json: cannot write: No space" in done.stderr
+    assert (
+        "short.py: finished: its end cannot be stored: run.json: cannot write: No space"
+        in done.stderr
+    )
     assert done.stderr.count("\n") == 1
     assert len(read_log(tmp_path / "a.csv")) == 3
 
@@ -145,7 +152,10 @@ def _delete_once_begun(home: Path, delete: Callable[[Path], None]) -> threading.
     def wait() -> None:
         give_up = time.monotonic() + PATIENCE_S
         # The last file that a run begins with; one that came into a folder as it is deleted would stay there.
-        while not (begun := list((home / "runs").glob(f"*/{STACK_FILE}"))) and time.monotonic() < give_up:
+        while (
+            not (begun := list((home / "runs").glob(f"*/{STACK_FILE}")))
+            and time.monotonic() < give_up
+        ):
             time.sleep(0.01)
         delete(begun[0].parent)
 
@@ -154,18 +164,27 @@ def _delete_once_begun(home: Path, delete: Callable[[Path], None]) -> threading.
     return deleting
 
 
-def test_folder_that_is_deleted_in_mid_run_is_told_in_one_line(endless: Path, home: Path, here: Command) -> None:
+def test_folder_that_is_deleted_in_mid_run_is_told_in_one_line(
+    endless: Path, home: Path, here: Command
+) -> None:
     field_files(SPEC)
-    deleting = _delete_once_begun(home, lambda folder: shutil.rmtree(folder.parent, ignore_errors=True))
+    deleting = _delete_once_begun(
+        home, lambda folder: shutil.rmtree(folder.parent, ignore_errors=True)
+    )
     done = here("run", endless, "--speed", "1", "--export", "a.csv")
     deleting.join()
     assert done.returncode == 2
-    assert done.stderr == "tuisim: endless.py: run 1 was not stored: its folder was deleted while it ran\n"
+    assert (
+        done.stderr
+        == "tuisim: endless.py: run 1 was not stored: its folder was deleted while it ran\n"
+    )
     assert not list(home.glob("runs/*"))
     assert RunStore().runs() == []
 
 
-def test_a_run_file_that_is_deleted_in_mid_run_is_written_again(endless: Path, home: Path, here: Command) -> None:
+def test_a_run_file_that_is_deleted_in_mid_run_is_written_again(
+    endless: Path, home: Path, here: Command
+) -> None:
     field_files(SPEC)
     deleting = _delete_once_begun(home, lambda folder: (folder / RUN_FILE).unlink())
     done = here("run", endless, "--speed", "4", "--timeout", "12")
@@ -176,7 +195,12 @@ def test_a_run_file_that_is_deleted_in_mid_run_is_written_again(endless: Path, h
 
 @pytest.mark.parametrize(("presses", "rows"), [(1, 3), (2, None)], ids=["once", "twice"])
 def test_ctrl_c_while_the_export_is_written(
-    short: Path, here: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, presses: int, rows: int | None
+    short: Path,
+    here: Command,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    presses: int,
+    rows: int | None,
 ) -> None:
     def export(runs: Sequence[StoredRun], target: str) -> None:
         for _ in range(presses):
@@ -197,7 +221,9 @@ def test_answer_does_not_wait_for_the_packing(home: Path) -> None:
     with open(home / PACKER_LOCK_FILE, "wb") as lock:
         # As long as another one packs, this run's recording is not.
         fcntl.flock(lock, fcntl.LOCK_EX)
-        handle = start_run(Program("p.py", "import time\ntime.sleep(80)"), SPEC, RunOptions(time_limit_s=0.0))
+        handle = start_run(
+            Program("p.py", "import time\ntime.sleep(80)"), SPEC, RunOptions(time_limit_s=0.0)
+        )
         assert over(handle).ended.end == "finished"
         assert handle.stored().state == "finished"
         assert (handle.folder / TELEMETRY_FILE).exists()

@@ -23,14 +23,20 @@ def test_a_press_is_read(text: str, press: ButtonPress) -> None:
 
 
 WRONG = {
-    "no time": ("enter", "--press: must be BUTTON@FROM or BUTTON@FROM-UNTIL, got 'enter' (such as enter@1.5)"),
+    "no time": (
+        "enter",
+        "--press: must be BUTTON@FROM or BUTTON@FROM-UNTIL, got 'enter' (such as enter@1.5)",
+    ),
     "no button": ("entre@1", "--press: the brick has no button 'entre' (did you mean enter?)"),
     "empty": ("@1", f"--press: the brick has no button '' (one of {', '.join(BUTTONS)})"),
     "no number": ("up@soon", "--press: must be a number from 0 to 1e+06, got 'soon'"),
     "negative": ("up@-1", "--press: must be a number from 0 to 1e+06, got '-1'"),
     "not a number": ("up@nan", "--press: must be a number from 0 to 1e+06, got 'nan'"),
     "no end": ("up@1-", "--press: must be a number from 0 to 1e+06, got ''"),
-    "backwards": ("up@2-1", "--press: 'up@2-1' ends before it begins (BUTTON@FROM-UNTIL, in simulated seconds)"),
+    "backwards": (
+        "up@2-1",
+        "--press: 'up@2-1' ends before it begins (BUTTON@FROM-UNTIL, in simulated seconds)",
+    ),
 }
 
 

@@ -8,12 +8,18 @@ import pytest
 
 from tests.conftest import Command
 
-ASKS = "from ev3dev2.sensor.lego import {0}\nfrom ev3dev2.sensor import INPUT_1\nprint({0}(INPUT_1))\n"
+ASKS = (
+    "from ev3dev2.sensor.lego import {0}\nfrom ev3dev2.sensor import INPUT_1\nprint({0}(INPUT_1))\n"
+)
 
 
 def test_bumper_meets_the_wall_from_robot_and_obstacle_files(here: Command, tmp_path: Path) -> None:
-    (tmp_path / "robot.toml").write_text("ultrasonic = false\n[touch_sensors.nose]\nport = 'in1'\ny_mm = 60\n")
-    (tmp_path / "boxes.toml").write_text("[[obstacle]]\nx_mm = 1000\ny_mm = 400\nwidth_mm = 50\nheight_mm = 400\n")
+    (tmp_path / "robot.toml").write_text(
+        "ultrasonic = false\n[touch_sensors.nose]\nport = 'in1'\ny_mm = 60\n"
+    )
+    (tmp_path / "boxes.toml").write_text(
+        "[[obstacle]]\nx_mm = 1000\ny_mm = 400\nwidth_mm = 50\nheight_mm = 400\n"
+    )
     (tmp_path / "prog.py").write_text(
         "# %%sim_magic_imports -r robot.toml -o boxes.toml -x 600 -y 600 --solid\n"
         "from ev3dev2.sensor.lego import TouchSensor\n"
@@ -53,7 +59,9 @@ def test_beacon_and_remote_of_a_world_file(here: Command, tmp_path: Path) -> Non
         "for _ in range(3):\n    print(eye.buttons_pressed(1))\n    sleep(0.8)\n"
     )
     done = here("run", "lab.toml", "prog.py")
-    assert done.stdout.splitlines() == ["True None", "[]", "['top_left', 'top_right']", "[]"], done.stderr
+    assert done.stdout.splitlines() == ["True None", "[]", "['top_left', 'top_right']", "[]"], (
+        done.stderr
+    )
 
 
 @pytest.mark.parametrize(
@@ -114,7 +122,9 @@ def test_missing_part_of_the_prelude_is_told_where_it_is_used(
     here: Command, tmp_path: Path, use: str, missing: str
 ) -> None:
     (tmp_path / "robot.toml").write_text(WITHOUT_WHEELS)
-    (tmp_path / "prog.py").write_text(f"# %%sim_magic_preloaded -r robot.toml\nprint('First')\n{use}\n")
+    (tmp_path / "prog.py").write_text(
+        f"# %%sim_magic_preloaded -r robot.toml\nprint('First')\n{use}\n"
+    )
     done = here("run", "prog.py")
     assert (done.returncode, done.stdout) == (1, "First\n")
     assert f"DeviceNotFound: {missing} is not connected" in done.stderr
@@ -130,7 +140,10 @@ BAD = {
     "no such motor": ("[motors]\noutA = 'huge'", "motors.outA: no such value 'huge'"),
     "no such motor port": ("[motors]\nin1 = 'large'", "motors.in1: no such key"),
     "no such port": ("[infrared]\nport = 'in9'", "no such port 'in9'"),
-    "no such key": ("[touch_sensors.nose]\nport = 'in1'\ndepth = 3", "touch_sensors.nose.depth: no such key"),
+    "no such key": (
+        "[touch_sensors.nose]\nport = 'in1'\ndepth = 3",
+        "touch_sensors.nose.depth: no such key",
+    ),
     "no name": ("[ultrasonics.'2nd one']\nport = 'in1'", "is not a valid sensor name"),
 }
 
@@ -168,14 +181,19 @@ except Exception as error:
 
 
 @pytest.mark.parametrize(
-    ("profile", "position"), [("robolab", "720"), ("ev3", "720"), ("nbev3devsim", "809.6000000000001")]
+    ("profile", "position"),
+    [("robolab", "720"), ("ev3", "720"), ("nbev3devsim", "809.6000000000001")],
 )
-def test_wheels_of_medium_motors(here: Command, tmp_path: Path, profile: str, position: str) -> None:
+def test_wheels_of_medium_motors(
+    here: Command, tmp_path: Path, profile: str, position: str
+) -> None:
     (tmp_path / "robot.toml").write_text(MEDIUM_WHEELS)
     (tmp_path / "prog.py").write_text(DRIVES)
     done = here("run", "prog.py", "--profile", profile)
     *values, error = done.stdout.splitlines()
-    assert values == [f"lego-ev3-m-motor 1560 360 {position}", "1560 1560", "ev3-ports:outB"], done.stderr
+    assert values == [f"lego-ev3-m-motor 1560 360 {position}", "1560 1560", "ev3-ports:outB"], (
+        done.stderr
+    )
     there = "This robot has: outB lego-ev3-m-motor, outC lego-ev3-m-motor."
     assert error.startswith(f"LargeMotor(ev3-ports:outB) is not connected. {there} ")
 
@@ -192,4 +210,9 @@ def test_several_infrared_sensors(here: Command, tmp_path: Path) -> None:
     )
     done = here("run", "prog.py", "--telemetry", "log.csv")
     assert done.stdout == "20 100\n", done.stderr
-    assert (tmp_path / "log.csv").read_text().partition("\n")[0].endswith("infrared_proximity,back_proximity,line")
+    assert (
+        (tmp_path / "log.csv")
+        .read_text()
+        .partition("\n")[0]
+        .endswith("infrared_proximity,back_proximity,line")
+    )

@@ -26,8 +26,14 @@ def test_batches_and_marks_tell_what_the_brick_would_refuse(here: Command, tmp_p
     (tmp_path / "goals.toml").write_text("[[goal]]\nname = 'end'\npoints = 1\nfinish = true\n")
     told = "ada.py:3: the brick's Python would refuse this line (f-string)"
     done = here("batch", "class/ada.py", "class/bob.py", "--seeds", "1,2")
-    assert (done.returncode, done.stderr.count(f"note: {told}"), done.stderr.count("note: ")) == (0, 1, 1)
-    done = here("mark", "goals.toml", "class", "--seeds", "0,1", "--jobs", "1", "--feedback", "told")
+    assert (done.returncode, done.stderr.count(f"note: {told}"), done.stderr.count("note: ")) == (
+        0,
+        1,
+        1,
+    )
+    done = here(
+        "mark", "goals.toml", "class", "--seeds", "0,1", "--jobs", "1", "--feedback", "told"
+    )
     assert done.returncode == 0
     assert f"note: ada: {told}" in done.stderr and "note: bob" not in done.stderr
     feedback = " ".join((tmp_path / "told" / "ada.txt").read_text().split())

@@ -54,7 +54,8 @@ def test_list_shows_sizes(make: Make, here: Command) -> None:
 
 
 @pytest.mark.parametrize(
-    ("count", "shown"), [(0, "0.0 kB"), (1234, "1.2 kB"), (29_400_000, "29.4 MB"), (5e15, "5000.0 TB")]
+    ("count", "shown"),
+    [(0, "0.0 kB"), (1234, "1.2 kB"), (29_400_000, "29.4 MB"), (5e15, "5000.0 TB")],
 )
 def test_size(count: int, shown: str) -> None:
     assert size(count) == shown
@@ -69,13 +70,17 @@ AGES = {
 
 
 @pytest.mark.parametrize(("age", "left", "said"), AGES.values(), ids=AGES)
-def test_runs_of_an_age_are_removed(make: Make, here: Command, age: str, left: list[int], said: str) -> None:
+def test_runs_of_an_age_are_removed(
+    make: Make, here: Command, age: str, left: list[int], said: str
+) -> None:
     home = make().folder.parent.parent
     make(), make()
     with closing(sqlite3.connect(home / CATALOGUE_FILE)) as connection, connection:
         for number, days in ((1, 30), (2, 14), (3, 1)):
             made = datetime.now(UTC) - timedelta(days=days)
-            connection.execute("UPDATE runs SET created = ? WHERE number = ?", (made.isoformat(), number))
+            connection.execute(
+                "UPDATE runs SET created = ? WHERE number = ?", (made.isoformat(), number)
+            )
     done = here("runs", "rm", "--older-than", age)
     assert said in done.stdout
     assert [run.number for run in RunStore().runs()] == left
@@ -152,7 +157,10 @@ def test_a_listing_counts_only_so_many_samples(make: Make, monkeypatch: pytest.M
     ("words", "said"),
     [
         (["runs", "rerun", "last"], "telemetry.bin was truncated: the last"),
-        (["log", "summary", "last", "--telemetry"], "no ticks: its recording is empty or truncated"),
+        (
+            ["log", "summary", "last", "--telemetry"],
+            "no ticks: its recording is empty or truncated",
+        ),
     ],
     ids=["rerun", "log of every tick"],
 )
@@ -175,14 +183,19 @@ def test_rerun_without_a_folder_for_temporary_runs_is_told(
     assert capsys.readouterr().err == f"tuisim: {tmp_path}/missing: {reason}\n"
 
 
-def test_a_file_of_another_run_is_listed_and_missed(here: Command, home: Path, tmp_path: Path) -> None:
+def test_a_file_of_another_run_is_listed_and_missed(
+    here: Command, home: Path, tmp_path: Path
+) -> None:
     (tmp_path / "first.py").write_text("open('cal\\x1b.txt', 'w').write('42')\n")
     (tmp_path / "second.py").write_text("open('cal\\x1b.txt').read()\n")
     file = tmp_path / "cal\x1b.txt"
     here("run", "first.py")
     here("run", "second.py")
     assert "file " not in here("runs", "show", "1").stdout
-    assert f"file read (2 bytes): {tmp_path}/cal\ufffd.txt" in here("runs", "show", "2").stdout.splitlines()
+    assert (
+        f"file read (2 bytes): {tmp_path}/cal\ufffd.txt"
+        in here("runs", "show", "2").stdout.splitlines()
+    )
     (listed,) = json.loads(here("runs", "show", "2", "--json").stdout)["files_read"]
     assert (listed["path"], listed["there"], listed["bytes"]) == (str(file), True, 2)
     assert here("runs", "rerun", "2").stderr == ""
@@ -198,7 +211,10 @@ def test_a_file_of_another_run_is_listed_and_missed(here: Command, home: Path, t
 def test_a_file_that_was_not_there_is_listed(here: Command, home: Path, tmp_path: Path) -> None:
     (tmp_path / "tries.py").write_text("try:\n    open('cal.txt')\nexcept OSError:\n    pass\n")
     here("run", "tries.py")
-    assert f"file looked for, and not there: {tmp_path}/cal.txt" in here("runs", "show", "1").stdout.splitlines()
+    assert (
+        f"file looked for, and not there: {tmp_path}/cal.txt"
+        in here("runs", "show", "1").stdout.splitlines()
+    )
     (tmp_path / "cal.txt").write_text("")
     assert "was not there, and is there now" in here("runs", "rerun", "1").stderr
 

@@ -91,7 +91,10 @@ def catalogue(sql: str) -> Damage:
     """Change the catalogue."""
 
     def harm(folder: Path) -> None:
-        with closing(sqlite3.connect(folder.parent.parent / CATALOGUE_FILE)) as connection, connection:
+        with (
+            closing(sqlite3.connect(folder.parent.parent / CATALOGUE_FILE)) as connection,
+            connection,
+        ):
             connection.executescript(sql)
 
     return harm
@@ -133,10 +136,16 @@ DAMAGES: dict[str, Damage] = {
     "motors without numbers": row(Stream.MOTORS, b'[["a", null]]'),
     "a length of output without end": at(OUTPUT_FILE, 16, b"\xff" * 8),
     "a folder of output": folder_for(OUTPUT_FILE),
-    "an action without end": text(ACTIONS_FILE, '{"tick": 1e999, "kind": "set_pen", "down": true}\n'),
+    "an action without end": text(
+        ACTIONS_FILE, '{"tick": 1e999, "kind": "set_pen", "down": true}\n'
+    ),
     "an action without fields": text(ACTIONS_FILE, '{"tick": 1, "kind": "set_noise"}\n'),
-    "noise in words": text(ACTIONS_FILE, '{"tick": 1, "kind": "set_noise", "light": "x", "motor": null}\n'),
-    "noise below 0": text(ACTIONS_FILE, '{"tick": 1, "kind": "set_noise", "light": -5, "motor": 0}\n'),
+    "noise in words": text(
+        ACTIONS_FILE, '{"tick": 1, "kind": "set_noise", "light": "x", "motor": null}\n'
+    ),
+    "noise below 0": text(
+        ACTIONS_FILE, '{"tick": 1, "kind": "set_noise", "light": -5, "motor": 0}\n'
+    ),
     "an action of another kind": text(ACTIONS_FILE, '{"tick": 1, "kind": "fly", "down": 3}\n'),
     "a folder of actions": folder_for(ACTIONS_FILE),
     "a stop that is none": text(STOP_FILE, "[]"),
@@ -179,7 +188,9 @@ DAMAGES: dict[str, Damage] = {
     "a name that no file can have": key("program.name", "\ud800"),
     "answers of a number": key("options.answers", 1.5),
     "answers of lists": key("options.answers", [[]]),
-    "a mat without sums": key("field", {"width_px": 2362, "height_px": 1143, "pixels": "/x", "sums": []}),
+    "a mat without sums": key(
+        "field", {"width_px": 2362, "height_px": 1143, "pixels": "/x", "sums": []}
+    ),
     "no robot": key("spec.robot", None),
     "a catalogue with holes": catalogue('UPDATE runs SET seed = "x", samples = "y"'),
     "a catalogue of bytes": catalogue("UPDATE runs SET program = x'ff00'"),
@@ -187,17 +198,34 @@ DAMAGES: dict[str, Damage] = {
     "a catalogue without a column": catalogue("ALTER TABLE runs DROP COLUMN summary"),
     "an id of 10,000 digits": catalogue(f"UPDATE runs SET id = '{'9' * 10_000}' WHERE number = 1"),
     "an id elsewhere": catalogue("UPDATE runs SET id = '../x' WHERE number = 1"),
-    "a seed of 10,000 digits": catalogue(f"UPDATE runs SET seed = '{'9' * 10_000}' WHERE number = 1"),
+    "a seed of 10,000 digits": catalogue(
+        f"UPDATE runs SET seed = '{'9' * 10_000}' WHERE number = 1"
+    ),
     "a number of 10,000 digits": text(RUN_FILE, '{"format": 1, "number": ' + "9" * 10_000 + "}"),
-    "a catalogue of text": lambda folder: (folder.parent.parent / CATALOGUE_FILE).write_text("x" * 5000),
+    "a catalogue of text": lambda folder: (folder.parent.parent / CATALOGUE_FILE).write_text(
+        "x" * 5000
+    ),
 }
 
 WORDS = (
-    "runs", "runs --json", "runs show 1", "runs show 1 --json", "runs export 1 a.csv", "log summary 1", "log bands 1",
-    "runs export 1 --telemetry a.parquet", "log reckon 1", "log diff 1 2", "log diff 2 1 --json", "log report 1",
-    "log plot 1 --telemetry --size 60x20", "runs compact 1", "runs rerun 1", "runs picture 1 --out a.png",
+    "runs",
+    "runs --json",
+    "runs show 1",
+    "runs show 1 --json",
+    "runs export 1 a.csv",
+    "log summary 1",
+    "log bands 1",
+    "runs export 1 --telemetry a.parquet",
+    "log reckon 1",
+    "log diff 1 2",
+    "log diff 2 1 --json",
+    "log report 1",
+    "log plot 1 --telemetry --size 60x20",
+    "runs compact 1",
+    "runs rerun 1",
+    "runs picture 1 --out a.png",
     f"goals check {ROOT / 'programs' / 'square_goals.toml'} 1",
-)  # fmt: skip
+)
 
 
 @pytest.mark.slow

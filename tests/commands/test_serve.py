@@ -44,8 +44,14 @@ def served(monkeypatch: pytest.MonkeyPatch) -> list[tuple[list[str], ServerLimit
 OPENED = {
     "nothing": ("", ""),
     "a program": ("prog.py", "prog.py"),
-    "options of the app": ("prog.py --profile ev3 -b Loop --seed 3 -R", "prog.py --profile ev3 -b Loop --seed 3 -R"),
-    "options of the server between": ("--port 0 prog.py --idle=5 -x=5 --max-visitors 3", "prog.py -x=5"),
+    "options of the app": (
+        "prog.py --profile ev3 -b Loop --seed 3 -R",
+        "prog.py --profile ev3 -b Loop --seed 3 -R",
+    ),
+    "options of the server between": (
+        "--port 0 prog.py --idle=5 -x=5 --max-visitors 3",
+        "prog.py -x=5",
+    ),
     "arguments of the program": ("prog.py --port 0 -- --port 5 --", "prog.py -- --port 5 --"),
 }
 
@@ -63,7 +69,10 @@ def test_what_to_open_is_passed_on(
 SOME_LIMITS = ServerLimits(2, VisitLimits(idle_s=90.0, keep_s=120.0))
 LIMITS = {
     "usual": ("", (ServerLimits(8), "127.0.0.1", 8000)),
-    "all": ("--max-visitors 2 --idle 1.5 --keep 2 --host 0.0.0.0 --port 81", (SOME_LIMITS, "0.0.0.0", 81)),
+    "all": (
+        "--max-visitors 2 --idle 1.5 --keep 2 --host 0.0.0.0 --port 81",
+        (SOME_LIMITS, "0.0.0.0", 81),
+    ),
 }
 
 
@@ -78,14 +87,19 @@ def test_the_server_is_limited(
     assert served[0][1:] == limits
 
 
-HOSTS = {"": "127.0.0.1", "--host ::1": r"\[::1\]", "--host 0.0.0.0": re.escape(socket.gethostname())}
+HOSTS = {
+    "": "127.0.0.1",
+    "--host ::1": r"\[::1\]",
+    "--host 0.0.0.0": re.escape(socket.gethostname()),
+}
 
 
 @pytest.mark.parametrize(("words", "host"), HOSTS.items(), ids=HOSTS.values())
 @pytest.mark.usefixtures("served")
 def test_the_first_line_names_the_address_and_warns(words: str, host: str, here: Command) -> None:
     line = (
-        rf"Open http://{host}:8000/[\w-]{{32}}/ in a browser\. Whoever has this address can run programs as you; .*\n"
+        rf"Open http://{host}:8000/[\w-]{{32}}/ in a browser\. "
+        r"Whoever has this address can run programs as you; .*\n"
     )
     assert re.fullmatch(line, here("serve", *words.split()).stdout)
 
@@ -97,13 +111,22 @@ def a_port_in_use() -> Iterator[str]:
 
 
 REFUSED = {
-    "a port in use": ("--port PORT", "--port: port PORT is in use (name another one, or 0 for any free one)"),
+    "a port in use": (
+        "--port PORT",
+        "--port: port PORT is in use (name another one, or 0 for any free one)",
+    ),
     "no port": ("--port 70000", "--port: must be a whole number from 0 to 65535, got '70000'"),
-    "no visitors": ("--max-visitors 0", "--max-visitors: must be a whole number from 1 to 1000, got '0'"),
+    "no visitors": (
+        "--max-visitors 0",
+        "--max-visitors: must be a whole number from 1 to 1000, got '0'",
+    ),
     "no minutes": ("--idle 0", "--idle: must be a number from 0.001 to 100000, got '0'"),
     "no such program": ("nope.py", "nope.py: there is no such program"),
     "a wrong option of the app": ("-x abc", "-x: must be a number"),
-    "a host of another machine": ("--host 192.0.2.1 --port 0", "--host: cannot listen on 192.0.2.1: "),
+    "a host of another machine": (
+        "--host 192.0.2.1 --port 0",
+        "--host: cannot listen on 192.0.2.1: ",
+    ),
 }
 
 
@@ -115,7 +138,9 @@ def test_what_cannot_be_served_is_refused(words: str, told: str, here: Command) 
         assert done.stderr.startswith("tuisim: " + told.replace("PORT", port))
 
 
-def test_without_the_extra_the_command_to_install_it_is_named(here: Command, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_without_the_extra_the_command_to_install_it_is_named(
+    here: Command, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.delitem(sys.modules, "tuisim.web.server")
     monkeypatch.delattr("tuisim.web.server")
     monkeypatch.setitem(sys.modules, "textual_serve", None)
@@ -135,7 +160,9 @@ def test_a_notebook_of_several_cells_is_listed(here: Command, tmp_path: Path) ->
 
 
 @pytest.fixture
-def a_class(program: None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> list[tuple[Classroom, str, int]]:
+def a_class(
+    program: None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> list[tuple[Classroom, str, int]]:
     """A list of a class beside the program; notes what would be served."""
     (tmp_path / "class.txt").write_text("Ada\nBob\n")
     found: list[tuple[Classroom, str, int]] = []
@@ -166,11 +193,15 @@ def test_each_student_gets_a_link_and_it_stays(
     assert a_class[0][1:] == ("127.0.0.1", 81)
 
 
-@pytest.mark.parametrize(("words", "most"), [("", 2), ("--max-visitors 1", 1)], ids=["a student each", "fewer"])
+@pytest.mark.parametrize(
+    ("words", "most"), [("", 2), ("--max-visitors 1", 1)], ids=["a student each", "fewer"]
+)
 def test_the_apps_of_a_class_are_limited(
     words: str, most: int, a_class: list[tuple[Classroom, str, int]], here: Command, tmp_path: Path
 ) -> None:
-    done = here("serve", *words.split(), "--students", "class.txt", "--homes", "elsewhere", "--no-isolate")
+    done = here(
+        "serve", *words.split(), "--students", "class.txt", "--homes", "elsewhere", "--no-isolate"
+    )
     assert done.returncode == 0
     servers = a_class[0][0]._servers
     assert ({one._among.most for one in servers.values()}, [*servers]) == ({most}, ["Ada", "Bob"])
@@ -186,7 +217,9 @@ def test_without_isolation_the_tutor_is_told(
     monkeypatch.setattr(isolation, "check_isolation", refuse)
     done = here("serve", "--students", "class.txt")
     assert done.returncode == 0
-    assert done.stderr.startswith("note: bwrap is not installed: students' programs can read and change")
+    assert done.stderr.startswith(
+        "note: bwrap is not installed: students' programs can read and change"
+    )
     assert here("serve", "--students", "class.txt", "--isolate").returncode == 2
     assert here("serve", "--students", "class.txt", "--no-isolate").stderr == ""
     assert len(a_class) == 2
@@ -199,7 +232,10 @@ NO_CLASS = {
     "folders without a list": ("--homes x", "--homes: is for a class (give --students FILE, too)"),
     "links without a list": ("--links x", "--links: is for a class"),
     "isolation without a list": ("--no-isolate", "--no-isolate: is for a class"),
-    "both": ("--students class.txt --isolate --no-isolate", "--isolate: is given together with --no-isolate"),
+    "both": (
+        "--students class.txt --isolate --no-isolate",
+        "--isolate: is given together with --no-isolate",
+    ),
     "a program that is none": ("nope.py --students class.txt", "nope.py: there is no such program"),
 }
 

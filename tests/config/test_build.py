@@ -27,7 +27,12 @@ def test_the_robot_starts_where_solid_walls_let_it_turn(name: str) -> None:
     assert reach <= start.y_mm <= FIELD_HEIGHT_MM - reach
     assert start.heading_deg == mat.heading_deg
     assert build_run_spec(Settings({"background": name})).world.start == mat
-    assert build_run_spec(Settings({"background": name, "profile": "ev3", "start.x_mm": 90.0})).world.start.x_mm == 90.0
+    assert (
+        build_run_spec(
+            Settings({"background": name, "profile": "ev3", "start.x_mm": 90.0})
+        ).world.start.x_mm
+        == 90.0
+    )
 
 
 def test_default_robot_is_the_default_of_the_specification() -> None:
@@ -45,9 +50,14 @@ def test_default_robot_is_the_default_of_the_specification() -> None:
     ids=lambda value: value if isinstance(value, str) else "",
 )
 def test_robots(
-    name: str, wheel_mm: float, spacing_mm: float, back_mm: float, weight: float,
-    sensors: list[tuple[float, float, int]], ultrasonic_y_mm: float,
-) -> None:  # fmt: skip
+    name: str,
+    wheel_mm: float,
+    spacing_mm: float,
+    back_mm: float,
+    weight: float,
+    sensors: list[tuple[float, float, int]],
+    ultrasonic_y_mm: float,
+) -> None:
     robot = ROBOTS[name]
     shape = (robot.wheel_diameter_mm, robot.wheel_spacing_mm, robot.back_mm, robot.weight)
     assert shape == (wheel_mm, spacing_mm, back_mm, weight)
@@ -64,7 +74,10 @@ def test_robots(
         ("Central_post", {Obstacle(900, 500, 200, 200)}),
         (
             "Square_posts",
-            {Obstacle(x, y, 100, 100) for x, y in ((500, 200), (500, 700), (1500, 200), (1500, 700))},
+            {
+                Obstacle(x, y, 100, 100)
+                for x, y in ((500, 200), (500, 700), (1500, 200), (1500, 700))
+            },
         ),
         ("Wall", {Obstacle(1500, 200, 200, 800)}),
     ],
@@ -94,13 +107,18 @@ def test_start_pose_is_the_mats_unless_given(words: str, start: Pose) -> None:
 def test_sensors_are_moved_on_the_mat_that_wants_it_and_nowhere_else() -> None:
     moved = build_run_spec(Settings({"background": "Radial_grey"})).robot
     assert [sensor.x_mm for sensor in moved.color_sensors] == [-60, 60]
-    assert build_run_spec(Settings({"background": "Grey_bands"})).robot.color_sensors == RobotSpec().color_sensors
+    assert (
+        build_run_spec(Settings({"background": "Grey_bands"})).robot.color_sensors
+        == RobotSpec().color_sensors
+    )
 
 
 @pytest.mark.parametrize("name", SHIPPED)
 def test_every_mat_makes_a_run_that_survives_its_plain_form(name: str) -> None:
     spec = build_run_spec(
-        Settings({"background": name, "seed": 7, "noise.light": 20, "noise.motor": 50, "pen.down": True})
+        Settings(
+            {"background": name, "seed": 7, "noise.light": 20, "noise.motor": 50, "pen.down": True}
+        )
     )
     assert from_plain(to_plain(spec)) == spec
     assert (spec.world.background, spec.seed, spec.robot.pen.down) == (name, 7, True)
@@ -118,6 +136,8 @@ def test_every_mat_makes_a_run_that_survives_its_plain_form(name: str) -> None:
     ],
     ids=["near mat", "far mat", "robot", "obstacles", "profile"],
 )
-def test_unknown_names_say_what_there_is(settings: Settings, error: type[ConfigError], said: str) -> None:
+def test_unknown_names_say_what_there_is(
+    settings: Settings, error: type[ConfigError], said: str
+) -> None:
     with pytest.raises(error, match=said):
         build_run_spec(settings)

@@ -26,7 +26,10 @@ ASKED = {
     "a column to stop at": ("run prog.py --break left_r", ["left_red", "left_red_pc"]),
     "a column of a log": ("log events last --when gyro_", ["gyro_deg", "gyro_rate_dps"]),
     "a name": ("run -b Grey_b", ["Grey_bands"]),
-    "a profile": ("run --profile ", ["robolab", "nbev3devsim", "ev3", "lego-micropython", "pybricks4"]),
+    "a profile": (
+        "run --profile ",
+        ["robolab", "nbev3devsim", "ev3", "lego-micropython", "pybricks4"],
+    ),
     "actions": ("runs re", ["rerun"]),
     "options of an action": ("runs export --", ["--telemetry", "--help"]),
     "options of the default action": ("runs --js", ["--json"]),
@@ -45,7 +48,11 @@ def asked(shell: str, typed: str) -> dict[str, str]:
     incomplete = "" if typed.endswith(" ") or not typed else words[-1]
     count = len(words) - (1 if incomplete else 0)
     where = incomplete if shell == "fish" else str(count)
-    return {"_TUISIM_COMPLETE": f"{shell}_complete", "COMP_WORDS": " ".join(words), "COMP_CWORD": where}
+    return {
+        "_TUISIM_COMPLETE": f"{shell}_complete",
+        "COMP_WORDS": " ".join(words),
+        "COMP_CWORD": where,
+    }
 
 
 def offered(shell: str, said: str) -> list[str]:
@@ -59,7 +66,12 @@ def offered(shell: str, said: str) -> list[str]:
 @pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
 @pytest.mark.parametrize(("typed", "words"), ASKED.values(), ids=ASKED)
 def test_words_are_offered(
-    shell: str, typed: str, words: list[str], here: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    shell: str,
+    typed: str,
+    words: list[str],
+    here: Command,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     for name in ("prog.py", "log.csv"):
         (tmp_path / name).touch()
@@ -93,7 +105,9 @@ def test_bash_completes_with_the_script(tmp_path: Path) -> None:
     assert done.stdout == "plot\n", done.stderr
 
 
-def tree(command: click.Command, path: tuple[str, ...] = ()) -> Iterator[tuple[tuple[str, ...], click.Command]]:
+def tree(
+    command: click.Command, path: tuple[str, ...] = ()
+) -> Iterator[tuple[tuple[str, ...], click.Command]]:
     """Yield every command with its path."""
     yield path, command
     if isinstance(command, Group):
@@ -112,7 +126,9 @@ def test_help_fits_a_terminal_and_lists_the_options_of_the_command(
     done = here(*path, "--help")
     assert done.returncode == 0
     assert [line for line in done.stdout.split("\n") if len(line) > 80] == []
-    options = [param for param in command.params if isinstance(param, click.Option) and not param.hidden]
+    options = [
+        param for param in command.params if isinstance(param, click.Option) and not param.hidden
+    ]
     assert [option.opts[0] for option in options if option.opts[0] not in done.stdout] == []
     assert [option.opts[0] for option in options if not (option.help or "").strip()] == []
 
@@ -123,4 +139,6 @@ def test_every_command_is_found_under_its_own_name() -> None:
 
 def test_a_command_that_is_left_out_is_asked_for(capsys: pytest.CaptureFixture[str]) -> None:
     assert run_command(["log"]) == 2
-    assert capsys.readouterr().err.startswith("tuisim: log: no command given (one of summary, bands, ")
+    assert capsys.readouterr().err.startswith(
+        "tuisim: log: no command given (one of summary, bands, "
+    )

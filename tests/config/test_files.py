@@ -71,9 +71,13 @@ def test_obstacles_read_back_to_the_last_bit(found: tuple[Obstacle, ...], tmp_pa
 
 
 own_profiles = st.builds(
-    lambda base, cost_ns, speed: replace(base, name="mine", color_read_ns=cost_ns, max_speed_dps=speed),
-    st.sampled_from(list(PROFILES.values())), st.integers(0, 10**10), mm(1, 1e5),
-)  # fmt: skip
+    lambda base, cost_ns, speed: replace(
+        base, name="mine", color_read_ns=cost_ns, max_speed_dps=speed
+    ),
+    st.sampled_from(list(PROFILES.values())),
+    st.integers(0, 10**10),
+    mm(1, 1e5),
+)
 
 
 @given(
@@ -81,7 +85,9 @@ own_profiles = st.builds(
     background=st.sampled_from(["Empty_Map", "Radial_grey"]),
     obstacles=st.sampled_from(list(OBSTACLES)) | st.lists(boxes, max_size=3).map(tuple),
     profile=st.sampled_from(list(PROFILES)) | own_profiles,
-    flags=st.fixed_dictionaries({key: st.booleans() for key in ("walls", "solid", "pen_marks", "pen.down")}),
+    flags=st.fixed_dictionaries(
+        {key: st.booleans() for key in ("walls", "solid", "pen_marks", "pen.down")}
+    ),
     numbers=st.fixed_dictionaries(
         {
             "start.x_mm": mm(-1e4, 1e4),
@@ -110,7 +116,11 @@ def test_a_world_makes_the_same_run_again(
     assert world.program == program
 
 
-EXPLORER = {field.name: getattr(ROBOTS["Explorer"], field.name) for field in fields(RobotSpec) if field.name != "name"}
+EXPLORER = {
+    field.name: getattr(ROBOTS["Explorer"], field.name)
+    for field in fields(RobotSpec)
+    if field.name != "name"
+}
 
 
 @pytest.mark.parametrize(
@@ -122,7 +132,11 @@ EXPLORER = {field.name: getattr(ROBOTS["Explorer"], field.name) for field in fie
         ("left_port = 'outA'\nright_port = 'outD'", {"left_port": "outA", "right_port": "outD"}),
         (
             "left_port = 'none'\nright_port = 'none'\n[motors.outC]\nlow_deg = -90",
-            {"left_port": "none", "right_port": "none", "extra_motors": (MotorSpec("outC", "medium", -90.0),)},
+            {
+                "left_port": "none",
+                "right_port": "none",
+                "extra_motors": (MotorSpec("outC", "medium", -90.0),),
+            },
         ),
         ("gyro = false\nultrasonic = false", {"gyro": None, "ultrasonic": None}),
         ("[gyro]\nport = 'in4'", {}),
@@ -133,7 +147,10 @@ EXPLORER = {field.name: getattr(ROBOTS["Explorer"], field.name) for field in fie
         (
             "[motors]\noutD = 'large'\n[motors.outA]\nlow_deg = -90\nhigh_deg = 0\n[motors.outB]\nkind = 'medium'",
             {
-                "extra_motors": (MotorSpec("outD", "large"), MotorSpec("outA", "medium", -90.0, 0.0)),
+                "extra_motors": (
+                    MotorSpec("outD", "large"),
+                    MotorSpec("outA", "medium", -90.0, 0.0),
+                ),
                 "left_motor": "medium",
             },
         ),
@@ -158,7 +175,10 @@ EXPLORER = {field.name: getattr(ROBOTS["Explorer"], field.name) for field in fie
             "ultrasonic = false\n[touch_sensors.nose]\nport = 'in1'",
             {"ultrasonic": None, "touch_sensors": (TouchSpec("nose"),)},
         ),
-        ("gyro = false\n[infrared]\nangle_deg = 5", {"gyro": None, "infrared": InfraredSpec(angle_deg=5)}),
+        (
+            "gyro = false\n[infrared]\nangle_deg = 5",
+            {"gyro": None, "infrared": InfraredSpec(angle_deg=5)},
+        ),
         (
             "gyro = false\n[ultrasonics.back]\nport = 'in4'\nangle_deg = 180",
             {"gyro": None, "extra_ultrasonics": (UltrasonicSpec("back", "in4", angle_deg=180),)},
@@ -190,12 +210,16 @@ EXPLORER = {field.name: getattr(ROBOTS["Explorer"], field.name) for field in fie
         "further parts taken away",
     ],
 )
-def test_a_robot_file_says_only_what_differs(text: str, changes: dict[str, Any], write: Write) -> None:
+def test_a_robot_file_says_only_what_differs(
+    text: str, changes: dict[str, Any], write: Write
+) -> None:
     assert load_robot(write("mine.toml", text)) == replace(RobotSpec(name="mine"), **changes)
 
 
 def test_a_robot_file_may_differ_from_any_robot(write: Write) -> None:
-    found = load_robot(write("mine.toml", "base = 'Small_Robot_Wide_Eyes'\nname = 'Wide'\nback_mm = -70"))
+    found = load_robot(
+        write("mine.toml", "base = 'Small_Robot_Wide_Eyes'\nname = 'Wide'\nback_mm = -70")
+    )
     assert found == replace(ROBOTS["Small_Robot_Wide_Eyes"], name="Wide", back_mm=-70.0)
 
 
@@ -206,24 +230,30 @@ def test_a_robot_file_may_differ_from_any_robot(write: Write) -> None:
         ("[color_sensors]\nleft = false", [("right", 20)]),
         ("[color_sensors]\nleft = false\nright = false", []),
         ("[color_sensors]\nright = {}\nleft = {}", [("right", 20), ("left", 20)]),
-        ("gyro = false\n[color_sensors.middle]\nport = 'in4'\nx_mm = 0\ny_mm = 50\ndiameter_mm = 8",
-         [("left", 20), ("right", 20), ("middle", 8)]),
+        (
+            "gyro = false\n[color_sensors.middle]\nport = 'in4'\nx_mm = 0\ny_mm = 50\ndiameter_mm = 8",
+            [("left", 20), ("right", 20), ("middle", 8)],
+        ),
     ],
     ids=["one changed", "one gone", "none", "other order", "a third"],
-)  # fmt: skip
+)
 def test_colour_sensors_of_a_file(text: str, sensors: list[tuple[str, int]], write: Write) -> None:
     found = load_robot(write("mine.toml", text)).color_sensors
     assert [(sensor.name, sensor.diameter_mm) for sensor in found] == sensors
 
 
 COURSE_ROBOT = {
-    "wheeldiameter": 28, "wheelSpacing": 90, "wheelNoise": 50, "back": -60, "weight": "weightless",
+    "wheeldiameter": 28,
+    "wheelSpacing": 90,
+    "wheelNoise": 50,
+    "back": -60,
+    "weight": "weightless",
     "pen": {"x": 1, "y": 2, "color": "Orange", "width": 8},
     "sensor1": {"enabled": True, "x": -10, "y": 15, "diameter": 10},
     "sensor2": {"enabled": False},
     "ultrasonic": {"enabled": True, "x": 0, "y": 10, "angle": 5, "noise": 2},
     "gyro": {"enabled": False},
-}  # fmt: skip
+}
 
 
 def test_the_json_of_the_course_is_read(write: Write) -> None:
@@ -240,8 +270,13 @@ def test_the_json_of_the_course_is_read(write: Write) -> None:
 
 
 SAVED_ROBOT = {
-    **COURSE_ROBOT, "baseWeight": "medium", "width": 98, "height": 130, "wheelNoise": 7, "sensorNoise": 12,
-}  # fmt: skip
+    **COURSE_ROBOT,
+    "baseWeight": "medium",
+    "width": 98,
+    "height": 130,
+    "wheelNoise": 7,
+    "sensorNoise": 12,
+}
 
 
 @pytest.mark.parametrize(
@@ -258,11 +293,28 @@ SAVED_ROBOT = {
             {"notes": "old.json: ignored unknown keys: pen.cap, gyro.drift, colour"},
         ),
     ],
-    ids=["whole", "box", "no noises", "null weight", "empty weight", "no ultrasonic noise", "unknown keys"],
+    ids=[
+        "whole",
+        "box",
+        "no noises",
+        "null weight",
+        "empty weight",
+        "no ultrasonic noise",
+        "unknown keys",
+    ],
 )
-def test_a_saved_robot_in_full(changes: dict[str, Any], found: dict[str, Any], write: Write) -> None:
+def test_a_saved_robot_in_full(
+    changes: dict[str, Any], found: dict[str, Any], write: Write
+) -> None:
     choice = choose_robot(str(write("old.json", json.dumps({**SAVED_ROBOT, **changes}))))
-    expected = {"noise.motor": 7, "noise.light": 12, "weight": 0.0, "ultrasonic_mm": 2.0, "notes": "", **found}
+    expected = {
+        "noise.motor": 7,
+        "noise.light": 12,
+        "weight": 0.0,
+        "ultrasonic_mm": 2.0,
+        "notes": "",
+        **found,
+    }
     ultrasonic = choice.spec.ultrasonic
     assert ultrasonic is not None
     assert {
@@ -274,8 +326,12 @@ def test_a_saved_robot_in_full(changes: dict[str, Any], found: dict[str, Any], w
     } == expected
 
 
-@pytest.mark.parametrize(("words", "noise"), [("", 50), ("-M 7", 7), ("-M 0", 0)], ids=["file", "switch", "none"])
-def test_wheel_noise_of_the_file_is_the_runs_unless_a_switch_says_another(words: str, noise: int, write: Write) -> None:
+@pytest.mark.parametrize(
+    ("words", "noise"), [("", 50), ("-M 7", 7), ("-M 0", 0)], ids=["file", "switch", "none"]
+)
+def test_wheel_noise_of_the_file_is_the_runs_unless_a_switch_says_another(
+    words: str, noise: int, write: Write
+) -> None:
     robot = write("old.json", json.dumps(COURSE_ROBOT))
     spec = build_run_spec(settings_of({"robot": robot}, parse_words(words.split())))
     assert spec.world.noise.motor == noise
@@ -293,16 +349,26 @@ def test_wheel_noise_of_the_file_is_the_runs_unless_a_switch_says_another(words:
 def test_eyes_that_a_file_places_stay_on_a_mat_with_places_of_its_own(
     text: str, xs_mm: list[float], write: Write
 ) -> None:
-    spec = build_run_spec(Settings({"background": "Radial_grey", "robot": write("mine.toml", text)}))
+    spec = build_run_spec(
+        Settings({"background": "Radial_grey", "robot": write("mine.toml", text)})
+    )
     assert [sensor.x_mm for sensor in spec.robot.color_sensors] == xs_mm
 
 
 @pytest.mark.parametrize(
     ("name", "text", "found"),
     [
-        ("a.toml", "[[obstacle]]\nx_mm = 1\ny_mm = 2\nwidth_mm = 3\nheight_mm = 4.5", (Obstacle(1, 2, 3, 4.5),)),
+        (
+            "a.toml",
+            "[[obstacle]]\nx_mm = 1\ny_mm = 2\nwidth_mm = 3\nheight_mm = 4.5",
+            (Obstacle(1, 2, 3, 4.5),),
+        ),
         ("a.toml", "obstacle = []", ()),
-        ("a.json", "[[1, 2, 3, 4.5], [5, 6, 7, 8]]", (Obstacle(1, 2, 3, 4.5), Obstacle(5, 6, 7, 8))),
+        (
+            "a.json",
+            "[[1, 2, 3, 4.5], [5, 6, 7, 8]]",
+            (Obstacle(1, 2, 3, 4.5), Obstacle(5, 6, 7, 8)),
+        ),
         ("a.json", "[]", ()),
     ],
     ids=["toml", "toml, none", "json", "json, none"],
@@ -316,14 +382,22 @@ def test_obstacle_files(name: str, text: str, found: tuple[Obstacle, ...], write
     [
         ("color_read_ms = 2.5", {"color_read_ns": 2_500_000}),
         ("clock_read_ns = 7", {"clock_read_ns": 7}),
-        ("tick_hz = 50\nsolid = true\ntitle = 'Mine'", {"tick_hz": 50, "solid": True, "title": "Mine"}),
-        ("base = 'nbev3devsim'\nname = 'older'\ngyro_read_ms = 0", {"name": "older", "gyro_read_ns": 0}),
+        (
+            "tick_hz = 50\nsolid = true\ntitle = 'Mine'",
+            {"tick_hz": 50, "solid": True, "title": "Mine"},
+        ),
+        (
+            "base = 'nbev3devsim'\nname = 'older'\ngyro_read_ms = 0",
+            {"name": "older", "gyro_read_ns": 0},
+        ),
         ("motor_law = 'nbev3devsim'", {"motor_law": MotorLaw.NBEV3DEVSIM}),
         ("halve_position_moves = true\npair_tail_ms = 110", {"motor_law": MotorLaw.NBEV3DEVSIM}),
     ],
     ids=["ms", "ns", "rules", "base", "motor law", "motor law before it had a name"],
 )
-def test_a_profile_file_says_only_what_differs(text: str, changes: dict[str, Any], write: Write) -> None:
+def test_a_profile_file_says_only_what_differs(
+    text: str, changes: dict[str, Any], write: Write
+) -> None:
     base = PROFILES["nbev3devsim" if "base" in text else "robolab"]
     assert load_profile(write("mine.toml", text)) == replace(base, **{"name": "mine", **changes})
 
@@ -333,7 +407,9 @@ def test_every_number_of_a_profile_says_where_it_comes_from() -> None:
     assert lacking == {"name", "title"}
 
 
-def test_paths_in_a_world_are_relative_to_its_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_paths_in_a_world_are_relative_to_its_folder(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     lab = tmp_path / "lab"
     lab.mkdir()
     (tmp_path / "small.toml").write_text("base = 'Small_Robot'")
@@ -348,12 +424,24 @@ def test_paths_in_a_world_are_relative_to_its_folder(tmp_path: Path, monkeypatch
     world = load_world("lab/lab.toml")
     asked = settings_of(world.settings)
     spec = build_run_spec(asked)
-    assert (spec.robot.name, spec.world.obstacles, spec.profile.tick_hz) == ("small", (Obstacle(1, 2, 3, 4),), 50)
+    assert (spec.robot.name, spec.world.obstacles, spec.profile.tick_hz) == (
+        "small",
+        (Obstacle(1, 2, 3, 4),),
+        50,
+    )
     assert world.program == "lab/drive.py"
     assert [str(file) for file in world.files] == [
-        "lab/lab.toml", "small.toml", "lab/boxes.json", "lab/slow.toml", "lab/drive.py",
-    ]  # fmt: skip
-    assert (asked["panels_on"], asked["panels_off"], asked["rays"]) == (("chart", "arrays"), ("controls",), True)
+        "lab/lab.toml",
+        "small.toml",
+        "lab/boxes.json",
+        "lab/slow.toml",
+        "lab/drive.py",
+    ]
+    assert (asked["panels_on"], asked["panels_off"], asked["rays"]) == (
+        ("chart", "arrays"),
+        ("controls",),
+        True,
+    )
 
 
 @pytest.mark.parametrize("name", ["mat.png", "mat", "pics/mat.png"])
@@ -404,7 +492,9 @@ def test_pen_and_world_switches_reach_the_run() -> None:
 
 def run_like(**changes: Any) -> RunSpec:
     spec = build_run_spec(Settings())
-    return replace(spec, **{key: replace(getattr(spec, key), **change) for key, change in changes.items()})
+    return replace(
+        spec, **{key: replace(getattr(spec, key), **change) for key, change in changes.items()}
+    )
 
 
 @pytest.mark.parametrize(
@@ -417,7 +507,14 @@ def run_like(**changes: Any) -> RunSpec:
         (save_world, run_like(robot={"name": ""}), RobotError),
         (save_world, run_like(profile={"tick_hz": 50}), ConfigError),
     ],
-    ids=["robot's name", "colour", "sensor's name", "many obstacles", "robot in a world", "profile in a world"],
+    ids=[
+        "robot's name",
+        "colour",
+        "sensor's name",
+        "many obstacles",
+        "robot in a world",
+        "profile in a world",
+    ],
 )
 def test_what_no_file_can_say_is_not_written(
     save: Callable[..., None], thing: object, error: type[ConfigError], tmp_path: Path
@@ -431,7 +528,9 @@ def test_what_no_file_can_say_is_not_written(
 
 
 @pytest.mark.parametrize("name", ["folder.toml", "no/such.toml", "robot.txt", "robot"])
-def test_a_place_that_cannot_be_written_is_told_and_left_as_it_is(name: str, tmp_path: Path) -> None:
+def test_a_place_that_cannot_be_written_is_told_and_left_as_it_is(
+    name: str, tmp_path: Path
+) -> None:
     (tmp_path / "folder.toml").mkdir()
     with pytest.raises(RobotError, match=name):
         save_robot(RobotSpec(), tmp_path / name)
@@ -450,8 +549,15 @@ def test_the_files_of_the_guide_work_together(tmp_path: Path) -> None:
     assert load_obstacles(str(tmp_path / "obstacles.toml")) == (Obstacle(900, 500, 200, 100),)
     explorer = load_robot(str(tmp_path / "explorer.toml"))
     assert [sensor.name for sensor in explorer.sensors] == ["left", "middle", "back", "bumper"]
-    assert [goal.name for goal in load_goals(tmp_path / "bands_goals.toml").goals] == ["levels", "black", "finish"]
+    assert [goal.name for goal in load_goals(tmp_path / "bands_goals.toml").goals] == [
+        "levels",
+        "black",
+        "finish",
+    ]
     assert load_batch(tmp_path / "square.toml").programs == ("square.py",)
     gripper = load_robot(str(tmp_path / "gripper.toml"))
-    assert (gripper.gear_ratio, gripper.extra_motors) == (0.5, (MotorSpec("outA", "medium", -90.0, 0.0),))
+    assert (gripper.gear_ratio, gripper.extra_motors) == (
+        0.5,
+        (MotorSpec("outA", "medium", -90.0, 0.0),),
+    )
     assert len(blocks) == 8

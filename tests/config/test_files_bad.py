@@ -95,112 +95,313 @@ FILES = {
 """By the first words of a case: the switch and the file's name."""
 
 # What is wrong with what a file says, and what must be said after the file's name.
-# fmt: off
 WRONG: dict[str, tuple[str, str]] = {
-    "robot: misspelt key": ("weel_diameter_mm = 3", "weel_diameter_mm: no such key (did you mean wheel_d"),
+    "robot: misspelt key": (
+        "weel_diameter_mm = 3",
+        "weel_diameter_mm: no such key (did you mean wheel_d",
+    ),
     "robot: text": ("back_mm = 'far'", "back_mm: must be a number from -1000 to 0, got 'far'"),
     "robot: truth": ("back_mm = true", "back_mm: must be a number from -1000 to 0, got true"),
     "robot: NaN": ("back_mm = nan", "back_mm: must be a number from -1000 to 0, got nan"),
-    "robot: infinite": ("wheel_width_mm = inf", "wheel_width_mm: must be a number from 1 to 200, got inf"),
-    "robot: negative": ("wheel_spacing_mm = -5", "wheel_spacing_mm: must be a number from 1 to 1000, got -5"),
-    "robot: 1e9": ("wheel_diameter_mm = 1e9", "wheel_diameter_mm: must be a number from 1 to 500, got 1000000000.0"),
+    "robot: infinite": (
+        "wheel_width_mm = inf",
+        "wheel_width_mm: must be a number from 1 to 200, got inf",
+    ),
+    "robot: negative": (
+        "wheel_spacing_mm = -5",
+        "wheel_spacing_mm: must be a number from 1 to 1000, got -5",
+    ),
+    "robot: 1e9": (
+        "wheel_diameter_mm = 1e9",
+        "wheel_diameter_mm: must be a number from 1 to 500, got 1000000000.0",
+    ),
     "robot: weight": ("weight = 'hevy'", "weight: must be weightless, light, medium, heavy, or a"),
     "robot: base": ("base = 'Big'", "base: no such value 'Big' (one of Default_Robot, Small_Robot"),
     "robot: name": ('name = "a\\nb"', "name: must be one line of 1 to 100 characters, got 'a\\nb'"),
-    "robot: long name": (f"name = '{'a' * 101}'", "name: must be one line of 1 to 100 characters, got 'aa"),
-    "robot: motor port": ("left_port = 'outE'", "left_port: no such port 'outE' (one of outA, outB"),
+    "robot: long name": (
+        f"name = '{'a' * 101}'",
+        "name: must be one line of 1 to 100 characters, got 'aa",
+    ),
+    "robot: motor port": (
+        "left_port = 'outE'",
+        "left_port: no such port 'outE' (one of outA, outB",
+    ),
     "robot: one wheel": ("left_port = 'none'", "left_port: no such port 'none' (one of outA, outB"),
-    "robot: motors": ("left_port = 'outC'", "right_port: both motors are on outC (give each its own port)"),
-    "robot: sensors": (EYE + "port = 'in3'", "right.port: two sensors are on in3 (give each its own port, or remove"),
-    "robot: half a pixel": (EYE + "diameter_mm = 2.5", "color_sensors.left.diameter_mm: must be a whole number"),
-    "robot: eye too far": (EYE + "x_mm = 501", "color_sensors.left.x_mm: must be a number from -500 to 500, got 501"),
-    "robot: strategy": (EYE + "strategy = 'max'", "color_sensors.left.strategy: no such strategy 'max' (one of"),
-    "robot: third eye": ("[color_sensors.up]\nx_mm = 0\ny_mm = 0", "color_sensors.up.port: is missing"),
-    "robot: eye's name": ("[color_sensors.'a b']", "color_sensors.a b: is not a valid sensor name (letters"),
-    "robot: eyes listed": ("color_sensors = ['left']", "color_sensors: must be a table of keys and values, got"),
-    "robot: no rays": ("[ultrasonic]\nray_angles_deg = []", "ultrasonic.ray_angles_deg: must be 1 to 100 numbers"),
-    "robot: ray": ("[ultrasonic]\nray_angles_deg = [0, 'x']", "ultrasonic.ray_angles_deg[2]: must be a number"),
+    "robot: motors": (
+        "left_port = 'outC'",
+        "right_port: both motors are on outC (give each its own port)",
+    ),
+    "robot: sensors": (
+        EYE + "port = 'in3'",
+        "right.port: two sensors are on in3 (give each its own port, or remove",
+    ),
+    "robot: half a pixel": (
+        EYE + "diameter_mm = 2.5",
+        "color_sensors.left.diameter_mm: must be a whole number",
+    ),
+    "robot: eye too far": (
+        EYE + "x_mm = 501",
+        "color_sensors.left.x_mm: must be a number from -500 to 500, got 501",
+    ),
+    "robot: strategy": (
+        EYE + "strategy = 'max'",
+        "color_sensors.left.strategy: no such strategy 'max' (one of",
+    ),
+    "robot: third eye": (
+        "[color_sensors.up]\nx_mm = 0\ny_mm = 0",
+        "color_sensors.up.port: is missing",
+    ),
+    "robot: eye's name": (
+        "[color_sensors.'a b']",
+        "color_sensors.a b: is not a valid sensor name (letters",
+    ),
+    "robot: eyes listed": (
+        "color_sensors = ['left']",
+        "color_sensors: must be a table of keys and values, got",
+    ),
+    "robot: no rays": (
+        "[ultrasonic]\nray_angles_deg = []",
+        "ultrasonic.ray_angles_deg: must be 1 to 100 numbers",
+    ),
+    "robot: ray": (
+        "[ultrasonic]\nray_angles_deg = [0, 'x']",
+        "ultrasonic.ray_angles_deg[2]: must be a number",
+    ),
     "robot: gyro": ("gyro = 3", "gyro: must be a table of keys and values, got 3"),
     "robot: pen": ("[pen]\ncolor = 'reed'", "pen.color: no such colour 'reed' (did you mean red"),
-    "robot: wide pen": ("[pen]\nwidth_mm = 201", "pen.width_mm: must be a number from 0.1 to 200, got 201"),
-    "robot: huge whole number": ("back_mm = -1" + "0" * 400, "back_mm: must be a number from -1000 to 0, got -10000"),
-    "robot: huge diameter": (EYE + "diameter_mm = " + "9" * 400, "color_sensors.left.diameter_mm: must be a whole num"),
-    "robot: date": ("back_mm = 2026-11-22", "back_mm: must be a number from -1000 to 0, got datetime"),
-    "robot: truth as a diameter": (EYE + "diameter_mm = true", "color_sensors.left.diameter_mm: must be a whole num"),
-    "robot: eye renamed": (EYE + "name = 'x'", "color_sensors.left.name: no such key (one of port, x_mm"),
-    "robot: eye without a table": ("color_sensors.left = 3", "color_sensors.left: must be a table of keys and values"),
+    "robot: wide pen": (
+        "[pen]\nwidth_mm = 201",
+        "pen.width_mm: must be a number from 0.1 to 200, got 201",
+    ),
+    "robot: huge whole number": (
+        "back_mm = -1" + "0" * 400,
+        "back_mm: must be a number from -1000 to 0, got -10000",
+    ),
+    "robot: huge diameter": (
+        EYE + "diameter_mm = " + "9" * 400,
+        "color_sensors.left.diameter_mm: must be a whole num",
+    ),
+    "robot: date": (
+        "back_mm = 2026-11-22",
+        "back_mm: must be a number from -1000 to 0, got datetime",
+    ),
+    "robot: truth as a diameter": (
+        EYE + "diameter_mm = true",
+        "color_sensors.left.diameter_mm: must be a whole num",
+    ),
+    "robot: eye renamed": (
+        EYE + "name = 'x'",
+        "color_sensors.left.name: no such key (one of port, x_mm",
+    ),
+    "robot: eye without a table": (
+        "color_sensors.left = 3",
+        "color_sensors.left: must be a table of keys and values",
+    ),
     "robot: gyro on": ("gyro = true", "gyro: must be a table of keys and values, got true"),
     "robot: escape in a key": ('"a\\u001b[31m" = 1', "a\\x1b[31m: no such key (one of base, name"),
-    "robot: motor taken from a wheel": ("[motors]\noutB = false", "motors.outB: drives a wheel (it cannot be removed;"),
-    "robot: kind of motor": ("[motors]\noutA = 'huge'", "motors.outA: no such value 'huge' (one of large, medium)"),
-    "json robot: half a surrogate pair": ('{"back": "\\ud800"}', r"back: must be a number from -1000 to 0, got '\u"),
-    "json robot: null": ('{"wheeldiameter": null}', "wheeldiameter: must be a number from 1 to 500, got None"),
+    "robot: motor taken from a wheel": (
+        "[motors]\noutB = false",
+        "motors.outB: drives a wheel (it cannot be removed;",
+    ),
+    "robot: kind of motor": (
+        "[motors]\noutA = 'huge'",
+        "motors.outA: no such value 'huge' (one of large, medium)",
+    ),
+    "json robot: half a surrogate pair": (
+        '{"back": "\\ud800"}',
+        r"back: must be a number from -1000 to 0, got '\u",
+    ),
+    "json robot: null": (
+        '{"wheeldiameter": null}',
+        "wheeldiameter: must be a number from 1 to 500, got None",
+    ),
     "json robot: 1e999": ('{"back": 1e999}', "back: must be a number from -1000 to 0, got inf"),
-    "json robot: colour": ('{"pen": {"color": "reed"}}', "pen.color: no such colour 'reed' (did you mean red"),
-    "json robot: not text": ('{"sensorNoise": "3"}', "sensorNoise: must be a whole number from 0 to 128, got '3'"),
-    "robot: deep value": ("back_mm = " + "[" * 90 + "]" * 90, "back_mm: must be a number from -1000 to 0, got ["),
-    "json robot: type": ('{"sensor1": {"x": "3"}}', "sensor1.x: must be a number from -500 to 500, got '3'"),
-    "json robot: range": ('{"wheelSpacing": -1}', "wheelSpacing: must be a number from 1 to 1000, got -1"),
-    "json robot: inner range": ('{"sensor2": {"y": 999}}', "sensor2.y: must be a number from -500 to 500, got 999"),
-    "json robot: noise": ('{"wheelNoise": 501}', "wheelNoise: must be a whole number from 0 to 500, got 501"),
-    "json robot: enabled": ('{"gyro": {"enabled": 1}}', "gyro.enabled: must be true or false, got 1"),
+    "json robot: colour": (
+        '{"pen": {"color": "reed"}}',
+        "pen.color: no such colour 'reed' (did you mean red",
+    ),
+    "json robot: not text": (
+        '{"sensorNoise": "3"}',
+        "sensorNoise: must be a whole number from 0 to 128, got '3'",
+    ),
+    "robot: deep value": (
+        "back_mm = " + "[" * 90 + "]" * 90,
+        "back_mm: must be a number from -1000 to 0, got [",
+    ),
+    "json robot: type": (
+        '{"sensor1": {"x": "3"}}',
+        "sensor1.x: must be a number from -500 to 500, got '3'",
+    ),
+    "json robot: range": (
+        '{"wheelSpacing": -1}',
+        "wheelSpacing: must be a number from 1 to 1000, got -1",
+    ),
+    "json robot: inner range": (
+        '{"sensor2": {"y": 999}}',
+        "sensor2.y: must be a number from -500 to 500, got 999",
+    ),
+    "json robot: noise": (
+        '{"wheelNoise": 501}',
+        "wheelNoise: must be a whole number from 0 to 500, got 501",
+    ),
+    "json robot: enabled": (
+        '{"gyro": {"enabled": 1}}',
+        "gyro.enabled: must be true or false, got 1",
+    ),
     "json robot: twice": ('{"back": -1, "back": -2}', "back: is given twice"),
     "json robot: a list": ("[]", "must be a table of keys and values, got []"),
-    "json robot: syntax": ('{"back":\n -1,}', "is not JSON: Expecting property name enclosed in double quotes: line 2"),
+    "json robot: syntax": (
+        '{"back":\n -1,}',
+        "is not JSON: Expecting property name enclosed in double quotes: line 2",
+    ),
     "json obstacles: deep": (deep("[", "]"), "is nested too deeply"),
-    "json obstacles: NaN": ("[[0, 0, NaN, 1]]", "[1].width_mm: must be a number from -10000 to 10000, got nan"),
-    "json obstacles: three sides": ("[[0, 0, 5, 5], [1, 2, 3]]", "[2]: must be [x, y, width, height], got [1, 2, 3]"),
-    "json obstacles: no list": ('{"x": 1}', "must be a list of [x, y, width, height], got {'x': 1}"),
+    "json obstacles: NaN": (
+        "[[0, 0, NaN, 1]]",
+        "[1].width_mm: must be a number from -10000 to 10000, got nan",
+    ),
+    "json obstacles: three sides": (
+        "[[0, 0, 5, 5], [1, 2, 3]]",
+        "[2]: must be [x, y, width, height], got [1, 2, 3]",
+    ),
+    "json obstacles: no list": (
+        '{"x": 1}',
+        "must be a list of [x, y, width, height], got {'x': 1}",
+    ),
     "obstacle: key missing": (BOX, "obstacle[1].height_mm: is missing"),
     "obstacle: flat": (BOX + "height_mm = 0", "obstacle[1].height_mm: must be above 0, got 0.0"),
-    "obstacle: negative": (BOX + "height_mm = -3", "obstacle[1].height_mm: must be above 0, got -3.0"),
-    "obstacle: 1e9": (BOX + "height_mm = 1e9", "obstacle[1].height_mm: must be a number from -10000"),
-    "obstacle: unknown key": (BOX + "hight_mm = 3", "obstacle[1].hight_mm: no such key (did you mean height_mm"),
-    "obstacle: no table": ("obstacle = [3]", "obstacle[1]: must be a table of keys and values, got 3"),
+    "obstacle: negative": (
+        BOX + "height_mm = -3",
+        "obstacle[1].height_mm: must be above 0, got -3.0",
+    ),
+    "obstacle: 1e9": (
+        BOX + "height_mm = 1e9",
+        "obstacle[1].height_mm: must be a number from -10000",
+    ),
+    "obstacle: unknown key": (
+        BOX + "hight_mm = 3",
+        "obstacle[1].hight_mm: no such key (did you mean height_mm",
+    ),
+    "obstacle: no table": (
+        "obstacle = [3]",
+        "obstacle[1]: must be a table of keys and values, got 3",
+    ),
     "json obstacles: too many": (str([[0, 0, 1, 1]] * 1001), "has 1001 obstacles (at most 1000)"),
-    "profile: name": ("name = 'ev3'", "name: 'ev3' is the name of a built-in profile (choose another"),
+    "profile: name": (
+        "name = 'ev3'",
+        "name: 'ev3' is the name of a built-in profile (choose another",
+    ),
     "profile: base": ("base = 'ev4'", f"base: no such value 'ev4' (one of {', '.join(PROFILES)})"),
     "profile: no ticks": ("tick_hz = 0", "tick_hz: must be a whole number from 1 to 1000, got 0"),
-    "profile: half ticks": ("tick_hz = 30.5", "tick_hz: must be a whole number from 1 to 1000, got 30.5"),
-    "profile: negative": ("color_read_ms = -1", "color_read_ms: must be a number from 0 to 60000, got -1"),
-    "profile: NaN": ("max_speed_dps = nan", "max_speed_dps: must be a number from 1 to 100000, got nan"),
+    "profile: half ticks": (
+        "tick_hz = 30.5",
+        "tick_hz: must be a whole number from 1 to 1000, got 30.5",
+    ),
+    "profile: negative": (
+        "color_read_ms = -1",
+        "color_read_ms: must be a number from 0 to 60000, got -1",
+    ),
+    "profile: NaN": (
+        "max_speed_dps = nan",
+        "max_speed_dps: must be a number from 1 to 100000, got nan",
+    ),
     "profile: flag": ("solid = 'no'", "solid: must be true or false, got 'no'"),
-    "profile: both": ("gyro_read_ms = 1\ngyro_read_ns = 1", "gyro_read_ms: is given together with gyro_read_ns"),
-    "world: mat": ("background = 'Grey_band'", "background: no such mat 'Grey_band' (did you mean Grey_bands"),
+    "profile: both": (
+        "gyro_read_ms = 1\ngyro_read_ns = 1",
+        "gyro_read_ms: is given together with gyro_read_ns",
+    ),
+    "world: mat": (
+        "background = 'Grey_band'",
+        "background: no such mat 'Grey_band' (did you mean Grey_bands",
+    ),
     "world: mat's type": ("background = 3", "background: must be text, got 3"),
-    "world: fit": ("background_fit = 'tile'", "background_fit: no such value 'tile' (one of stretch, fit"),
-    "world: robot": ("robot = 'Smal_Robot'", "robot: no such robot 'Smal_Robot' (did you mean Small_Robot"),
-    "world: robot inside": ("[robot.pen]\nx_mm = 900", "robot.pen.x_mm: must be a number from -500 to 500, got 900"),
-    "world: eye inside": ("[robot.color_sensors.left]\ny_mm = nan", "robot.color_sensors.left.y_mm: must be a number"),
-    "world: obstacles": ("obstacles = 'Posts'", "obstacles: no such obstacles 'Posts' (did you mean Square_posts"),
-    "world: obstacle inside": (BOX + "height_mm = 'a'", "obstacle[1].height_mm: must be a number from -10000"),
-    "world: two sets": ("obstacles = 'Wall'\nobstacle = []", "obstacle: is given together with obstacles (give"),
+    "world: fit": (
+        "background_fit = 'tile'",
+        "background_fit: no such value 'tile' (one of stretch, fit",
+    ),
+    "world: robot": (
+        "robot = 'Smal_Robot'",
+        "robot: no such robot 'Smal_Robot' (did you mean Small_Robot",
+    ),
+    "world: robot inside": (
+        "[robot.pen]\nx_mm = 900",
+        "robot.pen.x_mm: must be a number from -500 to 500, got 900",
+    ),
+    "world: eye inside": (
+        "[robot.color_sensors.left]\ny_mm = nan",
+        "robot.color_sensors.left.y_mm: must be a number",
+    ),
+    "world: obstacles": (
+        "obstacles = 'Posts'",
+        "obstacles: no such obstacles 'Posts' (did you mean Square_posts",
+    ),
+    "world: obstacle inside": (
+        BOX + "height_mm = 'a'",
+        "obstacle[1].height_mm: must be a number from -10000",
+    ),
+    "world: two sets": (
+        "obstacles = 'Wall'\nobstacle = []",
+        "obstacle: is given together with obstacles (give",
+    ),
     "world: profile": ("profile = 'ev4'", "profile: no such profile 'ev4' (did you mean ev3?"),
-    "world: profile inside": ("[profile]\ntick_hz = '30'", "profile.tick_hz: must be a whole number from 1 to 1000"),
-    "world: noise": ("[noise]\nlight = 129", "noise.light: must be a whole number from 0 to 128, got 129"),
+    "world: profile inside": (
+        "[profile]\ntick_hz = '30'",
+        "profile.tick_hz: must be a whole number from 1 to 1000",
+    ),
+    "world: noise": (
+        "[noise]\nlight = 129",
+        "noise.light: must be a whole number from 0 to 128, got 129",
+    ),
     "world: start": ("[start]\nx_mm = 1e9", "start.x_mm: must be a number from -10000 to 10000"),
-    "world: seed": ("seed = -1", "seed: must be a whole number from 0 to 9223372036854775807, got -1"),
-    "world: colour": ("[pen]\ncolor = '#12345'", "pen.color: no such colour '#12345' (any CSS colour name"),
+    "world: seed": (
+        "seed = -1",
+        "seed: must be a whole number from 0 to 9223372036854775807, got -1",
+    ),
+    "world: colour": (
+        "[pen]\ncolor = '#12345'",
+        "pen.color: no such colour '#12345' (any CSS colour name",
+    ),
     "world: walls": ("walls = 'on'", "walls: must be true or false, got 'on'"),
-    "world: panel": ("panels = ['chart', 'char']", "panels[2]: no such value 'char' (one of output"),
-    "world: robot's type": ("robot = 3", "robot: must be text or a table of keys and values, got 3"),
+    "world: panel": (
+        "panels = ['chart', 'char']",
+        "panels[2]: no such value 'char' (one of output",
+    ),
+    "world: robot's type": (
+        "robot = 3",
+        "robot: must be text or a table of keys and values, got 3",
+    ),
     "world: no text": ("robot = ''", "robot: must be one line of text, got ''"),
-    "world: argument": ("arguments = [5]", 'arguments[1]: must be text, got 5 (in quotes, such as "5")'),
+    "world: argument": (
+        "arguments = [5]",
+        'arguments[1]: must be text, got 5 (in quotes, such as "5")',
+    ),
     "world: beacon": ("[beacon]\nx_mm = 1", "beacon.y_mm: is missing"),
-    "world: channel": ("[beacon]\nx_mm = 1\ny_mm = 1\nchannel = 5", "beacon.channel: no such channel 5 (one of 1, 2"),
-    "world: no button": ("[[remote]]\nbuttons = []", "remote[1].buttons: the sensor does not report no button (one or"),
-    "world: button": ("[[remote]]\nbuttons = ['x']", "remote[1].buttons[1]: no such button 'x' (one of top_left"),
+    "world: channel": (
+        "[beacon]\nx_mm = 1\ny_mm = 1\nchannel = 5",
+        "beacon.channel: no such channel 5 (one of 1, 2",
+    ),
+    "world: no button": (
+        "[[remote]]\nbuttons = []",
+        "remote[1].buttons: the sensor does not report no button (one or",
+    ),
+    "world: button": (
+        "[[remote]]\nbuttons = ['x']",
+        "remote[1].buttons[1]: no such button 'x' (one of top_left",
+    ),
     "world: press ends": (
-        "[[remote]]\nbuttons = ['beacon']\nfrom_s = 3\nuntil_s = 1", "remote[1].until_s: ends before it begins",
+        "[[remote]]\nbuttons = ['beacon']\nfrom_s = 3\nuntil_s = 1",
+        "remote[1].until_s: ends before it begins",
     ),
     "world: endless press": (
-        "[[remote]]\nbuttons = ['beacon']\nuntil_s = inf", "remote[1].until_s: must be a number from 0 to 1e+09",
+        "[[remote]]\nbuttons = ['beacon']\nuntil_s = inf",
+        "remote[1].until_s: must be a number from 0 to 1e+09",
     ),
-    "world: presses": ("remote = [" + "{buttons = []},\n" * 10_001 + "]", "remote: has 10001 presses (at most 10000)"),
+    "world: presses": (
+        "remote = [" + "{buttons = []},\n" * 10_001 + "]",
+        "remote: has 10001 presses (at most 10000)",
+    ),
     "json profile: at all": ("{}", "is not a .toml file"),
     "json world: at all": ("{}", "is not a .toml file (a world file is TOML)"),
 }
-# fmt: on
 
 
 def put(content: Content, path: Path) -> None:
@@ -255,7 +456,9 @@ def test_a_wrong_value_is_told_with_its_key(case: str, tmp_path: Path) -> None:
 
 def test_a_missing_file_names_its_neighbour(tmp_path: Path) -> None:
     (tmp_path / "robot.toml").touch()
-    with pytest.raises(RobotError, match=r"robt\.toml: there is no such file \(did you mean robot\.toml\?\)"):
+    with pytest.raises(
+        RobotError, match=r"robt\.toml: there is no such file \(did you mean robot\.toml\?\)"
+    ):
         build("-r", tmp_path / "robt.toml")
 
 
@@ -266,7 +469,9 @@ def test_a_suffix_alone_is_no_likeness(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("key", ["robot", "obstacles", "profile"])
-def test_a_mistake_in_a_file_that_a_world_names_is_told_with_that_file(key: str, tmp_path: Path) -> None:
+def test_a_mistake_in_a_file_that_a_world_names_is_told_with_that_file(
+    key: str, tmp_path: Path
+) -> None:
     (tmp_path / "lab.toml").write_text(f"{key} = 'sub/part.toml'")
     (tmp_path / "sub").mkdir()
     (tmp_path / "sub" / "part.toml").write_text("frobnicate = 1")
@@ -276,15 +481,26 @@ def test_a_mistake_in_a_file_that_a_world_names_is_told_with_that_file(key: str,
 
 
 REAL = (
-    "robot: misspelt key", "robot: NaN", "robot: motors", "json robot: type", "json robot: syntax",
-    "json obstacles: deep", "obstacle: flat", "obstacle: 1e9", "profile: negative", "world: mat",
-    "world: robot inside", "world: noise",
-)  # fmt: skip
+    "robot: misspelt key",
+    "robot: NaN",
+    "robot: motors",
+    "json robot: type",
+    "json robot: syntax",
+    "json obstacles: deep",
+    "obstacle: flat",
+    "obstacle: 1e9",
+    "profile: negative",
+    "world: mat",
+    "world: robot inside",
+    "world: noise",
+)
 REAL_BROKEN = ("symlink loop", "100 MB", "binary", "deep", "unreadable")
 
 
 @pytest.mark.parametrize("case", [*REAL, *REAL_BROKEN])
-def test_the_command_says_it_in_one_line_and_runs_nothing(case: str, home: Path, tmp_path: Path, here: Command) -> None:
+def test_the_command_says_it_in_one_line_and_runs_nothing(
+    case: str, home: Path, tmp_path: Path, here: Command
+) -> None:
     switch, name = FILES[case.partition(":")[0] if ":" in case else "world"]
     content, said = {**BROKEN, **WRONG}[case]
     put(content, tmp_path / name)

@@ -93,9 +93,13 @@ ROBOT_FILES = {
 }
 
 
-@pytest.mark.parametrize("robot", [RobotSpec(name="new", weight=4.5), ROBOTS["Explorer"]], ids=["plain", "parts"])
+@pytest.mark.parametrize(
+    "robot", [RobotSpec(name="new", weight=4.5), ROBOTS["Explorer"]], ids=["plain", "parts"]
+)
 @pytest.mark.parametrize("old", ROBOT_FILES.values(), ids=ROBOT_FILES)
-def test_a_robot_reads_back_from_a_file_that_was_another(old: str, robot: RobotSpec, tmp_path: Path) -> None:
+def test_a_robot_reads_back_from_a_file_that_was_another(
+    old: str, robot: RobotSpec, tmp_path: Path
+) -> None:
     saved("robot", old, robot, tmp_path)
 
 
@@ -117,7 +121,12 @@ BOXES = {
 @pytest.mark.parametrize("count", [0, 1, 3])
 @pytest.mark.parametrize("old", BOXES.values(), ids=BOXES)
 def test_obstacles_read_back_from_a_file_of_others(old: str, count: int, tmp_path: Path) -> None:
-    saved("obstacles", old, tuple(Obstacle(1, 2, 3, number) for number in range(1, count + 1)), tmp_path)
+    saved(
+        "obstacles",
+        old,
+        tuple(Obstacle(1, 2, 3, number) for number in range(1, count + 1)),
+        tmp_path,
+    )
 
 
 def test_an_obstacle_keeps_its_comments(tmp_path: Path) -> None:
@@ -140,12 +149,20 @@ light = 5              # a dark room
 @pytest.mark.parametrize(
     ("changes", "expected"),
     [
-        ({"seed": 4, "robot": "Small_Robot", "noise.light": 5}, WORLD.replace("seed = 3", "seed = 4")),
-        ({"seed": 3, "robot": "Small_Robot", "noise.light": 9}, WORLD.replace("light = 5 ", "light = 9 ")),
+        (
+            {"seed": 4, "robot": "Small_Robot", "noise.light": 5},
+            WORLD.replace("seed = 3", "seed = 4"),
+        ),
+        (
+            {"seed": 3, "robot": "Small_Robot", "noise.light": 9},
+            WORLD.replace("light = 5 ", "light = 9 "),
+        ),
     ],
     ids=["seed", "noise"],
 )
-def test_a_world_keeps_what_is_not_in_a_run(changes: dict[str, Any], expected: str, tmp_path: Path) -> None:
+def test_a_world_keeps_what_is_not_in_a_run(
+    changes: dict[str, Any], expected: str, tmp_path: Path
+) -> None:
     assert in_order(expected, saved("world", WORLD, build_run_spec(Settings(changes)), tmp_path))
     asked = settings_of(load_world(tmp_path / "mine.toml").settings)
     assert (asked["rays"], asked["autorun"], asked["panels_on"]) == (True, True, ("chart",))
@@ -162,18 +179,29 @@ WORLDS = {
 
 @pytest.mark.parametrize("robot", ["Small_Robot", "other"])
 @pytest.mark.parametrize("old", WORLDS.values(), ids=WORLDS)
-def test_a_world_reads_back_from_a_file_that_was_another(old: str, robot: str, tmp_path: Path) -> None:
+def test_a_world_reads_back_from_a_file_that_was_another(
+    old: str, robot: str, tmp_path: Path
+) -> None:
     (tmp_path / "other.toml").write_text("back_mm = -80")
     word = "Small_Robot" if robot == "Small_Robot" else str(tmp_path / "other.toml")
-    saved("world", old, build_run_spec(Settings({"robot": word, "profile": "ev3", "obstacles": "Wall"})), tmp_path)
+    saved(
+        "world",
+        old,
+        build_run_spec(Settings({"robot": word, "profile": "ev3", "obstacles": "Wall"})),
+        tmp_path,
+    )
 
 
 @pytest.mark.parametrize("mats", ["own", "other"])
-def test_a_folder_of_mats_stays_unless_it_replaces_the_mat(mats: str, root: Path, tmp_path: Path) -> None:
+def test_a_folder_of_mats_stays_unless_it_replaces_the_mat(
+    mats: str, root: Path, tmp_path: Path
+) -> None:
     for folder, name in (("own", "Loop.png"), ("other", "maze.png")):
         (tmp_path / folder).mkdir()
         (tmp_path / folder / name).write_bytes((root / "backgrounds" / "Square.png").read_bytes())
-    text = saved("world", f"mats = '{mats}'", build_run_spec(Settings({"background": "Loop"})), tmp_path)
+    text = saved(
+        "world", f"mats = '{mats}'", build_run_spec(Settings({"background": "Loop"})), tmp_path
+    )
     assert ("mats" in text) == (mats == "other")
 
 
@@ -186,7 +214,12 @@ def test_a_folder_of_mats_stays_unless_it_replaces_the_mat(mats: str, root: Path
             "owner = 'Ann'\nname = 'x'",
             "owner: no such key (one of .*; correct the file",
         ),
-        (save_robot, RobotSpec(), "[pen]\ncap = 1", "pen.cap: no such key (one of .*; correct the file"),
+        (
+            save_robot,
+            RobotSpec(),
+            "[pen]\ncap = 1",
+            "pen.cap: no such key (one of .*; correct the file",
+        ),
         (save_robot, RobotSpec(), WORLD, "rays: no such key"),
         (save_obstacles, (), "back_mm = -70", "back_mm: no such key"),
         (save_world, build_run_spec(Settings()), "sed = 1", "sed: no such key (did you mean seed"),
@@ -206,14 +239,18 @@ def test_a_file_that_cannot_be_read_is_not_replaced(
     assert file.read_bytes() == old.encode("latin-1")
 
 
-def test_a_failed_write_leaves_the_old_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_failed_write_leaves_the_old_file(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     (tmp_path / "mine.toml").write_text(ROBOT_FILE)
 
     def full(*_: object, **__: object) -> Any:
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr(files, "replacing", full)
-    with pytest.raises(ConfigError, match=r"mine\.toml: cannot be written: No space left on device"):
+    with pytest.raises(
+        ConfigError, match=r"mine\.toml: cannot be written: No space left on device"
+    ):
         save_robot(RobotSpec(), tmp_path / "mine.toml")
     assert (tmp_path / "mine.toml").read_text() == ROBOT_FILE
 

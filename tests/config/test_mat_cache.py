@@ -32,7 +32,9 @@ def home(home: Path) -> Iterator[Path]:
     shutil.rmtree(home, ignore_errors=True)
 
 
-def picture(folder: Path, name: str = "mat.png", size: tuple[int, int] = (WIDTH, HEIGHT), fill: str = "gray") -> Path:
+def picture(
+    folder: Path, name: str = "mat.png", size: tuple[int, int] = (WIDTH, HEIGHT), fill: str = "gray"
+) -> Path:
     path = folder / name
     Image.new("RGB", size, fill).save(path, compress_level=1)
     return path
@@ -40,7 +42,9 @@ def picture(folder: Path, name: str = "mat.png", size: tuple[int, int] = (WIDTH,
 
 def cached(home: Path, pattern: str = "*") -> list[Path]:
     """The files of the cache, without the notes of their checksums."""
-    return sorted(path for path in (home / "cache" / "fields").glob(pattern) if path.suffix != ".check")
+    return sorted(
+        path for path in (home / "cache" / "fields").glob(pattern) if path.suffix != ".check"
+    )
 
 
 def note_of(path: Path) -> Path:
@@ -63,12 +67,24 @@ def test_sums_equal_naive_sums_everywhere(home: Path) -> None:
     field, pixels = mat_cache.open_field(files), mat_cache.mat_pixels(files)
     dice = random.Random(5)
     for diameter in (10, 20, 30):
-        corners = [(-diameter, 0), (0, -diameter), (WIDTH - 1, HEIGHT - 1), (1 - diameter, 1 - diameter), (WIDTH, 5)]
+        corners = [
+            (-diameter, 0),
+            (0, -diameter),
+            (WIDTH - 1, HEIGHT - 1),
+            (1 - diameter, 1 - diameter),
+            (WIDTH, 5),
+        ]
         edge = [(dice.randrange(-diameter, 0), dice.randrange(HEIGHT)) for _ in range(20)]
-        edge += [(dice.randrange(WIDTH), dice.randrange(HEIGHT - diameter, HEIGHT)) for _ in range(20)]
-        anywhere = [(dice.randrange(-40, WIDTH + 40), dice.randrange(-40, HEIGHT + 40)) for _ in range(150)]
+        edge += [
+            (dice.randrange(WIDTH), dice.randrange(HEIGHT - diameter, HEIGHT)) for _ in range(20)
+        ]
+        anywhere = [
+            (dice.randrange(-40, WIDTH + 40), dice.randrange(-40, HEIGHT + 40)) for _ in range(150)
+        ]
         for col, row in corners + edge + anywhere:
-            assert list(field.disc_sums(diameter, col, row)) == naive_sums(pixels, diameter, col, row)
+            assert list(field.disc_sums(diameter, col, row)) == naive_sums(
+                pixels, diameter, col, row
+            )
 
 
 @pytest.mark.quick_cases("2", "7")
@@ -84,7 +100,10 @@ def test_sums_of_unusual_diameters(diameter: int, home: Path) -> None:
 def test_white_discs_do_not_overflow(home: Path, tmp_path: Path) -> None:
     files = mat_cache.prepare(picture(tmp_path, fill="white"), [mat_cache.MAX_DIAMETER_PX])
     pixels = sum(map(sum, disc_mask(mat_cache.MAX_DIAMETER_PX)))
-    assert mat_cache.open_field(files).disc_sums(mat_cache.MAX_DIAMETER_PX, 500, 500) == (255 * pixels,) * 3
+    assert (
+        mat_cache.open_field(files).disc_sums(mat_cache.MAX_DIAMETER_PX, 500, 500)
+        == (255 * pixels,) * 3
+    )
 
 
 def test_pixels_are_those_of_the_image(home: Path) -> None:
@@ -164,7 +183,9 @@ DAMAGES: dict[str, Callable[[Path], None]] = {
 
 @pytest.mark.quick_cases("zeros")
 @pytest.mark.parametrize("damage", DAMAGES.values(), ids=DAMAGES)
-def test_a_damaged_file_is_made_again(home: Path, tmp_path: Path, damage: Callable[[Path], None]) -> None:
+def test_a_damaged_file_is_made_again(
+    home: Path, tmp_path: Path, damage: Callable[[Path], None]
+) -> None:
     image = picture(tmp_path, fill="white")
     files = mat_cache.prepare(image, [10])
     for path in (files.pixels, files.sums[0][1]):
@@ -204,9 +225,14 @@ def test_an_open_field_outlives_its_files(home: Path, tmp_path: Path) -> None:
     assert field.disc_sums(10, 50, 50) == (69 * 255,) * 3
 
 
-def test_the_cache_drops_what_was_not_used_longest(home: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_cache_drops_what_was_not_used_longest(
+    home: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setattr(mat_cache, "MAX_CACHED_FILES", 3)
-    images = [picture(tmp_path, f"{shade}.png", fill=f"#{shade}{shade}{shade}") for shade in ("00", "33", "66", "99")]
+    images = [
+        picture(tmp_path, f"{shade}.png", fill=f"#{shade}{shade}{shade}")
+        for shade in ("00", "33", "66", "99")
+    ]
     made = [mat_cache.prepare(image, ()).pixels for image in images[:3]]
     for age_s, path in zip((300, 200, 100), made, strict=True):
         used = path.stat().st_mtime - age_s
@@ -235,7 +261,9 @@ def test_a_file_that_is_used_while_others_are_dropped_is_kept(
 
 
 @pytest.mark.slow
-def test_a_mat_with_many_diameters_is_kept_whole(home: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_mat_with_many_diameters_is_kept_whole(
+    home: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setattr(mat_cache, "MAX_CACHED_FILES", 1)
     files = mat_cache.prepare(picture(tmp_path), (10, 20))
     assert mat_cache.open_field(files).sums.keys() == {10, 20}
@@ -281,7 +309,9 @@ def test_a_folder_that_cannot_be_made(tmp_path: Path, monkeypatch: pytest.Monkey
         mat_cache.prepare(picture(tmp_path), [20])
 
 
-def test_without_a_home_the_users_cache_is_used(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_without_a_home_the_users_cache_is_used(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
     monkeypatch.delenv("TUISIM_HOME")
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     assert folders.cache_folder() == tmp_path / "tuisim"

@@ -44,10 +44,17 @@ def png(width: int, height: int, *, depth: int = 8, color: int = 2, data: bytes 
     """A PNG file whose header says whatever it is told."""
 
     def chunk(name: bytes, body: bytes) -> bytes:
-        return struct.pack(">I", len(body)) + name + body + struct.pack(">I", zlib.crc32(name + body))
+        return (
+            struct.pack(">I", len(body)) + name + body + struct.pack(">I", zlib.crc32(name + body))
+        )
 
     header = struct.pack(">IIBBBBB", width, height, depth, color, 0, 0, 0)
-    return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", zlib.compress(data)) + chunk(b"IEND", b"")
+    return (
+        b"\x89PNG\r\n\x1a\n"
+        + chunk(b"IHDR", header)
+        + chunk(b"IDAT", zlib.compress(data))
+        + chunk(b"IEND", b"")
+    )
 
 
 def a_folder(path: Path) -> None:
@@ -78,14 +85,24 @@ BAD = [
     pytest.param(holding(b""), "is empty", id="empty"),
     pytest.param(holding(b"hello"), "is not a readable image", id="text"),
     pytest.param(holding(bytes(range(256)) * 40), "is not a readable image", id="binary rubbish"),
-    pytest.param(holding(b"\x89PNG\r\n\x1a\n" + bytes(40)), "is not a readable image", id="broken header"),
-    pytest.param(holding(WHOLE[: len(WHOLE) // 2]), "is a damaged image: .*truncated", id="truncated PNG"),
+    pytest.param(
+        holding(b"\x89PNG\r\n\x1a\n" + bytes(40)), "is not a readable image", id="broken header"
+    ),
+    pytest.param(
+        holding(WHOLE[: len(WHOLE) // 2]), "is a damaged image: .*truncated", id="truncated PNG"
+    ),
     pytest.param(holding(WHOLE[:60]), "is a damaged image", id="hardly begun"),
     pytest.param(holding(PHOTO[: len(PHOTO) // 2]), "is a damaged image", id="truncated JPEG"),
     pytest.param(holding(png(0, 10)), "is not a readable image|has no pixels", id="no width"),
     pytest.param(holding(BOMB), "is too large.* 40", id="60,000 × 60,000"),
-    pytest.param(holding(png(12_000, 10_000)), "12,000 × 10,000 pixels are 120 megapixels", id="120 megapixels"),
-    pytest.param(holding(png(40_001, 1000)), "40,001 × 1,000 .* the limit is 40", id="just too large"),
+    pytest.param(
+        holding(png(12_000, 10_000)),
+        "12,000 × 10,000 pixels are 120 megapixels",
+        id="120 megapixels",
+    ),
+    pytest.param(
+        holding(png(40_001, 1000)), "40,001 × 1,000 .* the limit is 40", id="just too large"
+    ),
     pytest.param(holding(png(50, 50, depth=3)), "is not a readable image", id="impossible depth"),
 ]
 
@@ -131,7 +148,9 @@ def test_a_bomb_is_refused_quickly_and_in_little_memory(tmp_path: Path, root: Pa
         "print(int(told[1].split()[0]) // 1024, used.ru_utime)\n"
     )
     command = [sys.executable, "-c", code, str(tmp_path / "bomb.png")]
-    printed = subprocess.run(command, capture_output=True, text=True, check=True, cwd=root).stdout.splitlines()
+    printed = subprocess.run(
+        command, capture_output=True, text=True, check=True, cwd=root
+    ).stdout.splitlines()
     megabytes, cpu_s = map(float, printed[1].split())
     assert "is too large" in printed[0]
     assert megabytes < 300 and cpu_s < 2
@@ -237,7 +256,9 @@ def test_a_picture_of_the_fields_size_is_left_alone() -> None:
 def test_every_kind_of_picture(kind: str, mode: str, shade: str) -> None:
     image = Image.new("RGB", (64, 64), shade)
     image = _lab(shade) if mode == "LAB" else image.convert(mode)
-    assert middle(decoded(saved(image, kind))) == pytest.approx([255 * (shade == "white")] * 3, abs=2)
+    assert middle(decoded(saved(image, kind))) == pytest.approx(
+        [255 * (shade == "white")] * 3, abs=2
+    )
 
 
 def _lab(shade: str) -> Image.Image:
@@ -286,21 +307,32 @@ def test_a_transparent_colour_is_white() -> None:
     assert middle(decoded(saved(image, transparency=(10, 20, 30)))) == WHITE
 
 
-@pytest.mark.parametrize(("orientation", "red_at"), [(1, "left"), (3, "right"), (6, "top"), (8, "bottom")])
+@pytest.mark.parametrize(
+    ("orientation", "red_at"), [(1, "left"), (3, "right"), (6, "top"), (8, "bottom")]
+)
 def test_a_photograph_is_turned_upright(orientation: int, red_at: str) -> None:
     image = Image.new("RGB", (80, 80), "white")
     image.paste("red", (0, 0, 20, 80))
     exif = Image.Exif()
     exif[0x0112] = orientation
     field = decoded(saved(image, "PNG", exif=exif), "stretch")
-    row, column = {"left": (571, 50), "right": (571, -50), "top": (50, 1181), "bottom": (-50, 1181)}[red_at]
+    row, column = {
+        "left": (571, 50),
+        "right": (571, -50),
+        "top": (50, 1181),
+        "bottom": (-50, 1181),
+    }[red_at]
     assert field[row, column].tolist() == [255, 0, 0]
     assert field[571, 1181].tolist() == WHITE
 
 
 def test_the_first_frame_of_a_film_counts() -> None:
     frames = [Image.new("RGB", (9, 9), shade) for shade in ("red", "blue")]
-    assert middle(decoded(saved(frames[0], "GIF", save_all=True, append_images=frames[1:]))) == [255, 0, 0]
+    assert middle(decoded(saved(frames[0], "GIF", save_all=True, append_images=frames[1:]))) == [
+        255,
+        0,
+        0,
+    ]
 
 
 @pytest.mark.quick_cases("0", "1", "2", "3", "4", "5")
@@ -319,7 +351,9 @@ def test_damaged_bytes_never_escape_as_something_else(seed: int) -> None:
 
 
 @pytest.mark.parametrize(
-    ("size", "alike"), [((WIDTH, HEIGHT), True), ((300, 200), False)], ids=["the field's", "another"]
+    ("size", "alike"),
+    [((WIDTH, HEIGHT), True), ((300, 200), False)],
+    ids=["the field's", "another"],
 )
 def test_fits_share_what_is_cached_only_if_they_are_alike(
     size: tuple[int, int], alike: bool, home: Path, tmp_path: Path

@@ -87,7 +87,12 @@ def test_every_mat_is_listed_in_order() -> None:
 
 @pytest.mark.parametrize(
     ("name", "guess"),
-    [("grey_bands", "Grey_bands"), ("Gray_bands", "Grey_bands"), ("lolipop", "Lollipop"), ("EMPTY_MAP", "Empty_Map")],
+    [
+        ("grey_bands", "Grey_bands"),
+        ("Gray_bands", "Grey_bands"),
+        ("lolipop", "Lollipop"),
+        ("EMPTY_MAP", "Empty_Map"),
+    ],
 )
 def test_a_wrong_name_gets_a_guess_and_the_list(name: str, guess: str) -> None:
     with pytest.raises(BackgroundError) as caught:
@@ -147,10 +152,14 @@ def test_the_catalogue_goes_before_files(here: Path) -> None:
         pytest.param("nowhere.png", "nowhere.png: cannot be read: No such file", id="missing"),
         pytest.param("./nowhere", "nowhere: cannot be read: No such file", id="missing, no suffix"),
         pytest.param("mats/", "mats: is a folder", id="folder"),
-        pytest.param("maze.png/x.png", "x.png: cannot be read: Not a directory", id="file for a folder"),
+        pytest.param(
+            "maze.png/x.png", "x.png: cannot be read: Not a directory", id="file for a folder"
+        ),
         pytest.param("a\0b.png", "is not a file name", id="null character"),
         pytest.param("x" * 300 + ".png", "File name too long", id="long name"),
-        pytest.param("~nobody-of-that-name/x.png", "no such folder|cannot be read", id="no such home"),
+        pytest.param(
+            "~nobody-of-that-name/x.png", "no such folder|cannot be read", id="no such home"
+        ),
     ],
 )
 def test_an_image_that_is_not_there(word: str, message: str, here: Path) -> None:
@@ -171,8 +180,14 @@ def test_programs_have_titles(root: Path) -> None:
     ("text", "title"),
     [
         pytest.param('"""Turn round.\n\nTwice."""\n', "Turn round.", id="docstring"),
-        pytest.param('%%sim_magic_preloaded -b Loop\n"""Turn round."""\n', "Turn round.", id="after a magic line"),
-        pytest.param('# %%sim_magic -b Loop\n"""Turn round."""\n', "Turn round.", id="after a comment"),
+        pytest.param(
+            '%%sim_magic_preloaded -b Loop\n"""Turn round."""\n',
+            "Turn round.",
+            id="after a magic line",
+        ),
+        pytest.param(
+            '# %%sim_magic -b Loop\n"""Turn round."""\n', "Turn round.", id="after a comment"
+        ),
         pytest.param("print(1)\n", "", id="none"),
         pytest.param("print 1\n", "", id="not Python"),
         pytest.param("", "", id="empty"),
@@ -201,21 +216,32 @@ def test_a_checkout_is_found_beside_the_package(root: Path) -> None:
 
 
 def test_an_installed_copy_is_found_in_the_package(tmp_path: Path, root: Path) -> None:
-    shutil.copytree(root / "tuisim", tmp_path / "tuisim", ignore=shutil.ignore_patterns("__pycache__"))
+    shutil.copytree(
+        root / "tuisim", tmp_path / "tuisim", ignore=shutil.ignore_patterns("__pycache__")
+    )
     for name in ("backgrounds", "programs"):
         shutil.copytree(root / name, tmp_path / "tuisim" / "_assets" / name)
     # A stranger's folder beside the package must not be taken for ours.
     (tmp_path / "programs").mkdir()
     code = (
-        "from tuisim.config import folders as f, mats; print(mats.background('Loop').image); print(f.programs_folder())"
+        "from tuisim.config import folders as f, mats; "
+        "print(mats.background('Loop').image); print(f.programs_folder())"
     )
-    printed = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=tmp_path)
+    printed = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=tmp_path
+    )
     inside = tmp_path / "tuisim" / "_assets"
-    assert printed.stdout.split() == [str(inside / "backgrounds" / "Loop.png"), str(inside / "programs")]
+    assert printed.stdout.split() == [
+        str(inside / "backgrounds" / "Loop.png"),
+        str(inside / "programs"),
+    ]
 
 
 def test_obstacles_and_sensors_are_read(given: Path) -> None:
-    catalog(given, GOOD + "obstacles = [[46, 388, 150, 150], [9, 8, 7, 6]]\nsensor_x_mm = { left = -30 }\n")
+    catalog(
+        given,
+        GOOD + "obstacles = [[46, 388, 150, 150], [9, 8, 7, 6]]\nsensor_x_mm = { left = -30 }\n",
+    )
     mat = mats.background("Mine")
     assert mat.obstacles == (Obstacle(46, 388, 150, 150), Obstacle(9, 8, 7, 6))
     assert mat.sensor_x_mm == {"left": -30.0}
@@ -227,17 +253,37 @@ def test_obstacles_and_sensors_are_read(given: Path) -> None:
         pytest.param("[Mine", "is not TOML", id="not TOML"),
         pytest.param("Mine = 3", "Mine: must be a table", id="no table"),
         pytest.param("[Mine]\ntitle = 'x'\n", "Mine.start: is missing", id="no start"),
-        pytest.param(GOOD.replace("2.5", "'2.5'"), "Mine.start.y_mm: must be a number", id="text for a number"),
-        pytest.param(GOOD.replace("2.5", "true"), "Mine.start.y_mm: must be a number", id="truth for a number"),
-        pytest.param(GOOD.replace('"My own"', '""'), "Mine.title: must be one line", id="no title"),
-        pytest.param(GOOD + "titel = 3\n", "Mine.titel: no such key .did you mean title", id="unknown key"),
-        pytest.param(GOOD + "obstacles = 3\n", "Mine.obstacles: must be a list", id="no list"),
-        pytest.param(GOOD + "obstacles = [[1, 2, 3]]\n", r"Mine.obstacles\[1\]: must be .x, y", id="three sides"),
         pytest.param(
-            GOOD + "obstacles = [[1, 2, 3, 0]]\n", r"Mine.obstacles\[1\].height_mm: must be above 0", id="flat obstacle"
+            GOOD.replace("2.5", "'2.5'"),
+            "Mine.start.y_mm: must be a number",
+            id="text for a number",
         ),
-        pytest.param(GOOD + "sensor_x_mm = 3\n", "Mine.sensor_x_mm: must be a table", id="no sensor table"),
-        pytest.param(GOOD + "sensor_x_mm = { left = 'x' }\n", "Mine.sensor_x_mm.left", id="no sensor number"),
+        pytest.param(
+            GOOD.replace("2.5", "true"),
+            "Mine.start.y_mm: must be a number",
+            id="truth for a number",
+        ),
+        pytest.param(GOOD.replace('"My own"', '""'), "Mine.title: must be one line", id="no title"),
+        pytest.param(
+            GOOD + "titel = 3\n", "Mine.titel: no such key .did you mean title", id="unknown key"
+        ),
+        pytest.param(GOOD + "obstacles = 3\n", "Mine.obstacles: must be a list", id="no list"),
+        pytest.param(
+            GOOD + "obstacles = [[1, 2, 3]]\n",
+            r"Mine.obstacles\[1\]: must be .x, y",
+            id="three sides",
+        ),
+        pytest.param(
+            GOOD + "obstacles = [[1, 2, 3, 0]]\n",
+            r"Mine.obstacles\[1\].height_mm: must be above 0",
+            id="flat obstacle",
+        ),
+        pytest.param(
+            GOOD + "sensor_x_mm = 3\n", "Mine.sensor_x_mm: must be a table", id="no sensor table"
+        ),
+        pytest.param(
+            GOOD + "sensor_x_mm = { left = 'x' }\n", "Mine.sensor_x_mm.left", id="no sensor number"
+        ),
     ],
 )
 def test_a_wrong_catalogue_is_explained(text: str, message: str, given: Path) -> None:

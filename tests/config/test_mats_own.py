@@ -51,10 +51,14 @@ FOUND = {
 
 @pytest.mark.parametrize("name", FOUND)
 @pytest.mark.parametrize("named", [False, True], ids=["usual folder", "--mats"])
-def test_a_picture_of_the_users_is_found_by_the_mats_name(name: str, named: bool, own: Path, tmp_path: Path) -> None:
+def test_a_picture_of_the_users_is_found_by_the_mats_name(
+    name: str, named: bool, own: Path, tmp_path: Path
+) -> None:
     word, file, start = FOUND[name]
     picture = paint((tmp_path / "pics" if named else own) / file, size=(30, 20))
-    world = build_run_spec(Settings({"background": word, "mats": str(tmp_path / "pics") if named else None})).world
+    world = build_run_spec(
+        Settings({"background": word, "mats": str(tmp_path / "pics") if named else None})
+    ).world
     assert (world.background, world.start) == (str(picture), Pose(*map(float, start)))
 
 
@@ -76,10 +80,17 @@ def test_what_stands_on_the_mat_and_moves_sensors_stays(own: Path) -> None:
 )
 def test_how_a_picture_meets_the_field(file: str, said: str | None, fit: str, own: Path) -> None:
     paint(own / file, size=(2215, 1073))
-    assert build_run_spec(Settings({"background": "Testcard", "background_fit": said})).world.background_fit == fit
+    assert (
+        build_run_spec(
+            Settings({"background": "Testcard", "background_fit": said})
+        ).world.background_fit
+        == fit
+    )
 
 
-def test_the_named_folder_goes_before_the_usual_one_and_old_files_before_names(own: Path, tmp_path: Path) -> None:
+def test_the_named_folder_goes_before_the_usual_one_and_old_files_before_names(
+    own: Path, tmp_path: Path
+) -> None:
     paint(own / "Loop.png")
     assert find_mat("Loop").image.name == "Loop.png"
     paint(own / "_loop.png")
@@ -101,9 +112,13 @@ def test_a_world_file_keeps_names_and_names_a_folder(own: Path, tmp_path: Path) 
     assert build_run_spec(settings_of(load_world(tmp_path / "lab.toml").settings)) == spec
     maze = paint(tmp_path / "pics" / "maze.png")
     (tmp_path / "maze.toml").write_text('background = "maze"\nmats = "pics"\n')
-    assert build_run_spec(settings_of(load_world(tmp_path / "maze.toml").settings)).world.background == str(maze)
+    assert build_run_spec(
+        settings_of(load_world(tmp_path / "maze.toml").settings)
+    ).world.background == str(maze)
     (tmp_path / "maze.toml").write_text('background = "maze"\n')
-    assert load_world(tmp_path / "maze.toml", str(tmp_path / "pics")).settings["background"] == "maze"
+    assert (
+        load_world(tmp_path / "maze.toml", str(tmp_path / "pics")).settings["background"] == "maze"
+    )
 
 
 def test_a_run_on_our_mat_stays_on_it_when_the_user_brings_another(own: Path) -> None:
@@ -113,7 +128,9 @@ def test_a_run_on_our_mat_stays_on_it_when_the_user_brings_another(own: Path) ->
 
 
 @pytest.mark.slow
-def test_a_stored_run_is_repeated_on_the_mat_that_it_was_made_on(here: Command, own: Path, tmp_path: Path) -> None:
+def test_a_stored_run_is_repeated_on_the_mat_that_it_was_made_on(
+    here: Command, own: Path, tmp_path: Path
+) -> None:
     (tmp_path / "p.py").write_text(READ)
     assert here("run", "p.py", "-b", "Loop", "-x", "1000").stdout == "(255, 255, 255)\n"
     paint(own / "_loop.png", BLUE)
@@ -122,7 +139,9 @@ def test_a_stored_run_is_repeated_on_the_mat_that_it_was_made_on(here: Command, 
 
 
 @pytest.mark.slow
-def test_the_switch_works_in_a_magic_line_from_the_programs_folder(here: Command, home: Path, tmp_path: Path) -> None:
+def test_the_switch_works_in_a_magic_line_from_the_programs_folder(
+    here: Command, home: Path, tmp_path: Path
+) -> None:
     paint(tmp_path / "course" / "pics" / "maze.png")
     program = tmp_path / "course" / "p.py"
     program.write_text(READ.replace("preloaded", "preloaded --mats pics -b maze"))
@@ -133,15 +152,25 @@ def test_the_switch_works_in_a_magic_line_from_the_programs_folder(here: Command
 @pytest.mark.parametrize(
     ("words", "expected"),
     [
-        pytest.param("-b FLL_2018_Into_Orbit", "save it as FLL2018.jpg or FLL_2018_Into_Orbit.png in {own}", id="none"),
-        pytest.param("-b FLL_2018_into_orbit", "did you mean FLL_2018_Into_Orbit?", id="a wrong name"),
+        pytest.param(
+            "-b FLL_2018_Into_Orbit",
+            "save it as FLL2018.jpg or FLL_2018_Into_Orbit.png in {own}",
+            id="none",
+        ),
+        pytest.param(
+            "-b FLL_2018_into_orbit", "did you mean FLL_2018_Into_Orbit?", id="a wrong name"
+        ),
         pytest.param("-b maz --mats pics", "did you mean maze?", id="a wrong name of one's own"),
-        pytest.param("-b maze --mats nowhere", "nowhere: --mats: there is no such folder", id="no folder"),
+        pytest.param(
+            "-b maze --mats nowhere", "nowhere: --mats: there is no such folder", id="no folder"
+        ),
         pytest.param("-b maze --mats p.py", "p.py: cannot be read: Not a directory", id="a file"),
         pytest.param("-b text --mats pics", "text.png: is not a readable image", id="no picture"),
     ],
 )
-def test_what_is_not_there_is_told(words: str, expected: str, here: Command, own: Path, tmp_path: Path) -> None:
+def test_what_is_not_there_is_told(
+    words: str, expected: str, here: Command, own: Path, tmp_path: Path
+) -> None:
     paint(tmp_path / "pics" / "maze.png")
     (tmp_path / "pics" / "text.png").write_text("no picture")
     (tmp_path / "p.py").write_text(READ)
@@ -158,10 +187,23 @@ def test_originals_are_imported_and_used(here: Command, own: Path, tmp_path: Pat
     done = here("backgrounds", "--use-originals", "old")
     assert [line.split() for line in done.stdout.splitlines()[1:]] == [
         ["Loop", "_loop.png", "2362", "×", "1143"],
-        ["Testcard", "FuBK_testcard_vectorized.png", "2215", "×", "1073,", "not", "2362", "×", "1143"],
+        [
+            "Testcard",
+            "FuBK_testcard_vectorized.png",
+            "2215",
+            "×",
+            "1073,",
+            "not",
+            "2362",
+            "×",
+            "1143",
+        ],
         ["FLL_2018_Into_Orbit", "FLL2018.jpg", "2362", "×", "1143"],
     ]
-    assert f"3 images copied to {own}" in done.stderr and "skipped, not named like a mat: holiday.png" in done.stderr
+    assert (
+        f"3 images copied to {own}" in done.stderr
+        and "skipped, not named like a mat: holiday.png" in done.stderr
+    )
     assert (own / "_loop.png").read_bytes() == (tmp_path / "old" / "_loop.png").read_bytes()
     rows = {one["name"]: one["picture"] for one in json.loads(here("backgrounds", "--json").stdout)}
     assert (rows["Loop"], rows["FLL_2019_City_Shaper"]) == (str(own / "_loop.png"), None)
@@ -173,7 +215,9 @@ def test_originals_are_imported_and_used(here: Command, own: Path, tmp_path: Pat
     [
         pytest.param("nowhere", "nowhere: cannot be read: No such file", id="missing"),
         pytest.param("p.py", "p.py: cannot be read: Not a directory", id="a file"),
-        pytest.param("empty", "has no image of a mat of the catalogue (such as _loop.png", id="empty"),
+        pytest.param(
+            "empty", "has no image of a mat of the catalogue (such as _loop.png", id="empty"
+        ),
         pytest.param("broken", "_square.png: is not a readable image", id="no picture"),
     ],
 )

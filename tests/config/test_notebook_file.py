@@ -17,20 +17,28 @@ LESSON = [
     ("code", "%%sim_magic_preloaded\nprint('Colour: 1')\n"),
     ("code", "%sim_magic -b Grey_bands -x 300\n"),
     ("markdown", "## Grey\ntext"),
-    ("code", "\n%%sim_magic_preloaded -A\nprint('Colour: ' + str(colorLeft.reflected_light_intensity_pc))\n"),
+    (
+        "code",
+        "\n%%sim_magic_preloaded -A\nprint('Colour: ' + str(colorLeft.reflected_light_intensity_pc))\n",
+    ),
     ("code", "data_df = %sim_data\ndata_df.head()"),
     ("code", "%%sim_magic -b Loop\n1 / 0\n"),
 ]
 
 
 def write(path: Path, cells: list[tuple[str, str]]) -> Path:
-    rows = [{"cell_type": kind, "metadata": {}, "source": text.splitlines(keepends=True)} for kind, text in cells]
+    rows = [
+        {"cell_type": kind, "metadata": {}, "source": text.splitlines(keepends=True)}
+        for kind, text in cells
+    ]
     path.write_text(json.dumps({"nbformat": 4, "nbformat_minor": 5, "metadata": {}, "cells": rows}))
     return path
 
 
 @pytest.mark.parametrize("command", [("run",), ()], ids=["run", "open"])
-def test_a_notebook_lists_its_programs(command: tuple[str, ...], here: Command, tmp_path: Path) -> None:
+def test_a_notebook_lists_its_programs(
+    command: tuple[str, ...], here: Command, tmp_path: Path
+) -> None:
     done = here(*command, write(tmp_path / "lesson.ipynb", LESSON))
     rows = [line.split() for line in done.stdout.splitlines()[1:4]]
     assert rows == [
@@ -58,7 +66,12 @@ def test_all_cells_make_one_table(here: Command, tmp_path: Path) -> None:
     assert "line 2" in done.stderr
 
 
-BESIDE = [("code", "%%sim_magic\nimport drive_lib\nfrom pathlib import Path\nprint(drive_lib.SPEED, Path.cwd().name)")]
+BESIDE = [
+    (
+        "code",
+        "%%sim_magic\nimport drive_lib\nfrom pathlib import Path\nprint(drive_lib.SPEED, Path.cwd().name)",
+    )
+]
 """A cell that takes a module which lies beside its notebook."""
 
 
@@ -81,7 +94,10 @@ VARIABLES = [
     ("code", "x = 300"),
     ("code", "%%sim_magic_preloaded -b Grey_bands -x $_x\nprint('never')\n"),
     ("code", "for x in (1, 2):\n    %sim_magic --xpos={x + 300} -y 500\n"),
-    ("code", "%%sim_magic_preloaded\nprint('Colour: ' + str(colorLeft.reflected_light_intensity_pc))\n"),
+    (
+        "code",
+        "%%sim_magic_preloaded\nprint('Colour: ' + str(colorLeft.reflected_light_intensity_pc))\n",
+    ),
 ]
 """Cells whose magics take values from the notebook, and a program after them."""
 
@@ -91,9 +107,13 @@ def test_a_cell_with_a_variable_of_the_notebook_is_skipped(here: Command, tmp_pa
     done = here("run", lesson, "--all")
     assert done.returncode == 0
     assert done.stdout.splitlines()[0] == "Colour: 100.0"
-    assert [line.split()[:2] for line in done.stdout.splitlines()[2:]] == [["lesson.ipynb#2", "finished"]]
-    notes = ["lesson.ipynb#1 is skipped: $_x is defined only in the notebook",
-             f"{lesson}, cell 3: {{x + 300}} is defined only in the notebook, and is ignored"]  # fmt: skip
+    assert [line.split()[:2] for line in done.stdout.splitlines()[2:]] == [
+        ["lesson.ipynb#2", "finished"]
+    ]
+    notes = [
+        "lesson.ipynb#1 is skipped: $_x is defined only in the notebook",
+        f"{lesson}, cell 3: {{x + 300}} is defined only in the notebook, and is ignored",
+    ]
     assert done.stderr.splitlines()[:2] == [f"tuisim: {note}" for note in notes]
 
 
@@ -111,7 +131,9 @@ def test_a_cell_with_a_variable_of_the_notebook_is_skipped(here: Command, tmp_pa
 def test_what_only_the_notebook_knows_is_left_out(
     words: str, unknown: str, settings: dict[str, object], tmp_path: Path
 ) -> None:
-    (found,) = notebook_programs(write(tmp_path / "one.ipynb", [("code", f"%%sim_magic {words}\npass\n")]))
+    (found,) = notebook_programs(
+        write(tmp_path / "one.ipynb", [("code", f"%%sim_magic {words}\npass\n")])
+    )
     assert (found.unknown, dict(found.source.options)) == (unknown, settings)
 
 
@@ -135,11 +157,16 @@ def test_json_stands_alone_on_stdout_also_for_all_cells(here: Command, tmp_path:
 
 @pytest.mark.slow
 def test_twenty_cells_are_twenty_rows(here: Command, tmp_path: Path) -> None:
-    cells = [("code", f"%%sim_magic_preloaded -x {100 * at}\nprint('Number: {at}')\n") for at in range(20)]
+    cells = [
+        ("code", f"%%sim_magic_preloaded -x {100 * at}\nprint('Number: {at}')\n")
+        for at in range(20)
+    ]
     done = here("run", write(tmp_path / "twenty.ipynb", cells), "--all")
     table = done.stdout.splitlines()[-20:]
     assert done.returncode == 0
-    assert [line.split()[:3] for line in table] == [[f"twenty.ipynb#{at}", "finished", "1"] for at in range(1, 21)]
+    assert [line.split()[:3] for line in table] == [
+        [f"twenty.ipynb#{at}", "finished", "1"] for at in range(1, 21)
+    ]
 
 
 @pytest.mark.parametrize(
@@ -151,12 +178,34 @@ def test_twenty_cells_are_twenty_rows(here: Command, tmp_path: Path) -> None:
         pytest.param('{"cells": []}', "", "has no program cells", id="empty"),
         pytest.param(LESSON, "#4", "a number from 1 to 3", id="no such cell"),
         pytest.param(LESSON, "#x", "a number from 1 to 3", id="no number"),
-        pytest.param(VARIABLES, "#1", "$_x is defined only in the notebook (run the cell there", id="variable"),
-        pytest.param([("code", "%%sim_magic -Y\npass")], "", "cell 1: no such option", id="wrong switch"),
-        pytest.param([("code", "%%sim_magic -b Nope\npass")], "", "bad.ipynb#1: -b: no such mat", id="wrong mat"),
-        pytest.param([("code", "%%sim_magic_preload\npass")], "", "cell 1: no such magic %%sim", id="wrong magic"),
+        pytest.param(
+            VARIABLES,
+            "#1",
+            "$_x is defined only in the notebook (run the cell there",
+            id="variable",
+        ),
+        pytest.param(
+            [("code", "%%sim_magic -Y\npass")], "", "cell 1: no such option", id="wrong switch"
+        ),
+        pytest.param(
+            [("code", "%%sim_magic -b Nope\npass")],
+            "",
+            "bad.ipynb#1: -b: no such mat",
+            id="wrong mat",
+        ),
+        pytest.param(
+            [("code", "%%sim_magic_preload\npass")],
+            "",
+            "cell 1: no such magic %%sim",
+            id="wrong magic",
+        ),
         pytest.param('{"cells": ' + "[" * 100_000, "", "is not a readable notebook", id="deep"),
-        pytest.param('{"cells": [{"cell_type": "code", "source": [1]}]}', "", "not a readable notebook", id="no text"),
+        pytest.param(
+            '{"cells": [{"cell_type": "code", "source": [1]}]}',
+            "",
+            "not a readable notebook",
+            id="no text",
+        ),
     ],
 )
 def test_what_is_wrong_is_told(

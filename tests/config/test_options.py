@@ -19,7 +19,10 @@ from tuisim.errors import ConfigError
         ("", {}),
         ("-b Grey_bands", {"background": "Grey_bands"}),
         ("-bGrey_bands", {"background": "Grey_bands"}),
-        ("-x -100 -y 2.5 -a -90", {"start.x_mm": -100.0, "start.y_mm": 2.5, "start.heading_deg": -90.0}),
+        (
+            "-x -100 -y 2.5 -a -90",
+            {"start.x_mm": -100.0, "start.y_mm": 2.5, "start.heading_deg": -90.0},
+        ),
         ("-N 128 -M 500", {"noise.light": 128, "noise.motor": 500}),
         ("-OHR", {"panels_on": ("output",), "panels_off": ("controls",), "autorun": True}),
         ("-pP green", {"pen.down": True, "pen.color": "green"}),
@@ -31,7 +34,20 @@ from tuisim.errors import ConfigError
         ("--background-fit centre", {"background_fit": "centre"}),
         ("-r my.toml -o box.json", {"robot": "my.toml", "obstacles": "box.json"}),
         ("--profile own.toml", {"profile": "own.toml"}),
-        ("-AcizZXD", {"panels_on": ("arrays", "chart", "instrumentation", "noise", "settings", "positioning", "code")}),
+        (
+            "-AcizZXD",
+            {
+                "panels_on": (
+                    "arrays",
+                    "chart",
+                    "instrumentation",
+                    "noise",
+                    "settings",
+                    "positioning",
+                    "code",
+                )
+            },
+        ),
         (
             "--xpos 5 --ypos 6 --world --hide",
             {"start.x_mm": 5.0, "start.y_mm": 6.0, "panels_off": ("world", "controls")},
@@ -39,7 +55,10 @@ from tuisim.errors import ConfigError
         ("-WqCu", {"panels_off": ("world",), "quiet": True, "clear_trace": True, "rays": True}),
         ("--speed max", {"speed": 0.0}),
         ("--speed 0.25 --fps 10 --colors 16", {"speed": 0.25, "fps": 10, "colors": "16"}),
-        ("-r Small_Robot -o None --preload none", {"robot": "Small_Robot", "obstacles": "None", "preload": "none"}),
+        (
+            "-r Small_Robot -o None --preload none",
+            {"robot": "Small_Robot", "obstacles": "None", "preload": "none"},
+        ),
     ],
     ids=lambda value: value or "nothing" if isinstance(value, str) else "",
 )
@@ -57,7 +76,10 @@ def test_options(words: str, fields: dict[str, Any]) -> None:
         ("-N 999", "^-N: must be a whole number from 0 to 128, got '999'"),
         ("-N 1.5", "^-N: must be a whole number"),
         ("-M -1", "^-M: must be a whole number from 0 to 500"),
-        ("-P pinq", r"^-P: no such colour 'pinq' .did you mean .*pink.* any CSS colour name, or #rrggbb"),
+        (
+            "-P pinq",
+            r"^-P: no such colour 'pinq' .did you mean .*pink.* any CSS colour name, or #rrggbb",
+        ),
         ("-P #12345", "^-P: no such colour '#12345'"),
         ("--walls no", r"^--walls: no such value 'no' .one of on, off"),
         ("--background-fit fill", r"^--background-fit: .*stretch, fit, centre"),
@@ -84,8 +106,12 @@ def test_every_value_of_the_world_has_an_option_and_no_flag_is_used_twice() -> N
 
 
 def test_later_layers_win_and_panels_add_up() -> None:
-    settings = settings_of(parse_words(["-b", "Loop", "-x", "5", "-O"]), parse_words(["-b", "Square", "-cO"]))
-    assert settings == Settings({"background": "Square", "start.x_mm": 5.0, "panels_on": ("output", "chart")})
+    settings = settings_of(
+        parse_words(["-b", "Loop", "-x", "5", "-O"]), parse_words(["-b", "Square", "-cO"])
+    )
+    assert settings == Settings(
+        {"background": "Square", "start.x_mm": 5.0, "panels_on": ("output", "chart")}
+    )
 
 
 PLAIN = "import time\nprint(1)\n"
@@ -101,9 +127,23 @@ PLAIN = "import time\nprint(1)\n"
         ("#%%sim_magic_preloaded\n" + PLAIN, 1, "preloaded", True),
         ('"""Title."""\n# %%sim_magic_preloaded\n' + PLAIN, 2, "preloaded", True),
         ('"""Title.\n\n%%sim_magic\n"""\n\n# %%sim_magic_imports\n' + PLAIN, 6, "imports", True),
-        ("#!/usr/bin/env python3\n# -*- coding: utf-8 -*-\n\n# %%sim_magic_imports\n" + PLAIN, 4, "imports", True),
+        (
+            "#!/usr/bin/env python3\n# -*- coding: utf-8 -*-\n\n# %%sim_magic_imports\n" + PLAIN,
+            4,
+            "imports",
+            True,
+        ),
     ],
-    ids=["raw", "raw imports", "one percent", "comment", "no blank", "after a docstring", "long docstring", "shebang"],
+    ids=[
+        "raw",
+        "raw imports",
+        "one percent",
+        "comment",
+        "no blank",
+        "after a docstring",
+        "long docstring",
+        "shebang",
+    ],
 )
 def test_magic_line_is_found(text: str, line: int, prelude: str, comment: bool) -> None:
     magic = find_magic(text, "a.py")
@@ -113,7 +153,13 @@ def test_magic_line_is_found(text: str, line: int, prelude: str, comment: bool) 
 
 @pytest.mark.parametrize(
     "text",
-    [PLAIN, PLAIN + "# %%sim_magic -b Loop\n", '"""\n%%sim_magic\n"""\n', "# about %%sim_magic\n", ""],
+    [
+        PLAIN,
+        PLAIN + "# %%sim_magic -b Loop\n",
+        '"""\n%%sim_magic\n"""\n',
+        "# about %%sim_magic\n",
+        "",
+    ],
     ids=["none", "too late", "in the docstring", "in a sentence", "empty"],
 )
 def test_no_magic_line(text: str) -> None:
@@ -121,7 +167,9 @@ def test_no_magic_line(text: str) -> None:
 
 
 @pytest.mark.parametrize("end", ["\n", ""], ids=["newline", "end of file"])
-def test_raw_magic_line_becomes_a_comment_so_that_it_is_seen_and_lines_keep_their_numbers(end: str) -> None:
+def test_raw_magic_line_becomes_a_comment_so_that_it_is_seen_and_lines_keep_their_numbers(
+    end: str,
+) -> None:
     program = parse_program(f"\n%%sim_magic_preloaded -b Grey_bands -OHR{end}", "a.py")
     assert program.program.text == f"\n# %%sim_magic_preloaded -b Grey_bands -OHR{end}"
     assert program.options["background"] == "Grey_bands"

@@ -28,23 +28,38 @@ def spec_with(values: dict[str, Any], **chosen: Any) -> RunSpec:
     [
         pytest.param({"noise.motor": 20}, lambda spec: spec.world.noise.motor, 20, id="noise"),
         pytest.param({"start.x_mm": 300}, lambda spec: spec.world.start.x_mm, 300, id="start pose"),
-        pytest.param({"background": "Lollipop"}, lambda spec: spec.world.background, "Lollipop", id="mat"),
-        pytest.param({"profile": "ev3"}, lambda spec: spec.profile.name, "ev3", id="profile"),
-        pytest.param({"profile.color_read_ms": 7}, lambda spec: spec.profile.color_read_ns, 7_000_000, id="cost"),
-        pytest.param({"seed": 9}, lambda spec: spec.seed, 9, id="seed"),
-        pytest.param({"robot": "Small_Robot"}, lambda spec: spec.robot.wheel_diameter_mm, 28.0, id="robot"),
-        pytest.param({"robot.weight": "heavy"}, lambda spec: spec.robot.weight, 9.0, id="key of the robot"),
         pytest.param(
-            {"robot.color_sensors.left.diameter_mm": 30},
-            lambda spec: spec.robot.color_sensors[0].diameter_mm, 30, id="key of a sensor",
+            {"background": "Lollipop"}, lambda spec: spec.world.background, "Lollipop", id="mat"
+        ),
+        pytest.param({"profile": "ev3"}, lambda spec: spec.profile.name, "ev3", id="profile"),
+        pytest.param(
+            {"profile.color_read_ms": 7},
+            lambda spec: spec.profile.color_read_ns,
+            7_000_000,
+            id="cost",
+        ),
+        pytest.param({"seed": 9}, lambda spec: spec.seed, 9, id="seed"),
+        pytest.param(
+            {"robot": "Small_Robot"}, lambda spec: spec.robot.wheel_diameter_mm, 28.0, id="robot"
         ),
         pytest.param(
-            {"robot": "Small_Robot", "robot.weight": 3}, lambda spec: (spec.robot.wheel_diameter_mm, spec.robot.weight),
-            (28.0, 3.0), id="a robot and its key",
+            {"robot.weight": "heavy"}, lambda spec: spec.robot.weight, 9.0, id="key of the robot"
+        ),
+        pytest.param(
+            {"robot.color_sensors.left.diameter_mm": 30},
+            lambda spec: spec.robot.color_sensors[0].diameter_mm,
+            30,
+            id="key of a sensor",
+        ),
+        pytest.param(
+            {"robot": "Small_Robot", "robot.weight": 3},
+            lambda spec: (spec.robot.wheel_diameter_mm, spec.robot.weight),
+            (28.0, 3.0),
+            id="a robot and its key",
         ),
         pytest.param({"walls": False}, lambda spec: spec.world.walls, False, id="walls"),
     ],
-)  # fmt: skip
+)
 def test_a_key_changes_its_setting(values: dict[str, Any], read: Any, expected: object) -> None:
     assert read(spec_with(values)) == expected
 
@@ -58,7 +73,9 @@ def test_a_key_of_the_robot_leaves_the_rest_of_the_chosen_robot() -> None:
 def test_a_key_of_drift_leaves_the_rest_of_the_chosen_drift() -> None:
     typical = DriftSpec(0.5, 1.0, 1.0, 1.0, 3.0, 0.05, 100.0, 10.0)
     assert spec_with({"drift": "typical"}).world.drift == typical
-    assert spec_with({"drift.slip_pc": 7}, drift=typical).world.drift == replace(typical, slip_pc=7.0)
+    assert spec_with({"drift.slip_pc": 7}, drift=typical).world.drift == replace(
+        typical, slip_pc=7.0
+    )
     assert spec_with({"drift.slip_pc": 7}).world.drift == DriftSpec(slip_pc=7.0)
 
 
@@ -69,8 +86,13 @@ def test_a_key_of_the_profile_leaves_the_rest_of_the_chosen_profile() -> None:
 
 def test_sensors_stay_where_the_mat_puts_them() -> None:
     mat = "Radial_grey"
-    usual, changed = spec_with({}, background=mat).robot, spec_with({"robot.weight": 3}, background=mat).robot
-    assert [sensor.x_mm for sensor in changed.color_sensors] == [sensor.x_mm for sensor in usual.color_sensors]
+    usual, changed = (
+        spec_with({}, background=mat).robot,
+        spec_with({"robot.weight": 3}, background=mat).robot,
+    )
+    assert [sensor.x_mm for sensor in changed.color_sensors] == [
+        sensor.x_mm for sensor in usual.color_sensors
+    ]
 
 
 @pytest.mark.parametrize("value, expected", [(5, ("5",)), ("5 'two words'", ("5", "two words"))])
@@ -81,18 +103,44 @@ def test_arguments_are_split_as_in_a_shell(value: object, expected: tuple[str, .
 @pytest.mark.parametrize(
     "values, words",
     [
-        pytest.param({"noise.motr": 1}, r"^set: noise.motr: no such key .did you mean motor", id="misspelt"),
-        pytest.param({"nois.motor": 1}, r"^set: nois: no such key .did you mean noise", id="misspelt table"),
-        pytest.param({"robot.wheel_diametr_mm": 1}, r"wheel_diametr_mm: .*wheel_diameter_mm", id="robot"),
-        pytest.param({"noise.motor": 501}, r"^set: noise.motor: must be a whole number from 0 to 500", id="too large"),
-        pytest.param({"background": "Lollipo"}, r"^set: background: no such mat .*Lollipop", id="no such mat"),
-        pytest.param({"program": "x.py"}, r"^set: program: cannot be varied", id="not part of a run"),
-        pytest.param({"drift.gyro": 1}, r"^set: drift.gyro: no such key .did you mean gyro_dps", id="misspelt drift"),
-        pytest.param({"noise": 1, "noise.motor": 2}, r"noise.motor: is inside noise", id="a value and a table"),
-        pytest.param({"noise.motor": 2, "noise": 1}, r"^set: noise: is given together", id="a table and a value"),
+        pytest.param(
+            {"noise.motr": 1}, r"^set: noise.motr: no such key .did you mean motor", id="misspelt"
+        ),
+        pytest.param(
+            {"nois.motor": 1}, r"^set: nois: no such key .did you mean noise", id="misspelt table"
+        ),
+        pytest.param(
+            {"robot.wheel_diametr_mm": 1}, r"wheel_diametr_mm: .*wheel_diameter_mm", id="robot"
+        ),
+        pytest.param(
+            {"noise.motor": 501},
+            r"^set: noise.motor: must be a whole number from 0 to 500",
+            id="too large",
+        ),
+        pytest.param(
+            {"background": "Lollipo"}, r"^set: background: no such mat .*Lollipop", id="no such mat"
+        ),
+        pytest.param(
+            {"program": "x.py"}, r"^set: program: cannot be varied", id="not part of a run"
+        ),
+        pytest.param(
+            {"drift.gyro": 1},
+            r"^set: drift.gyro: no such key .did you mean gyro_dps",
+            id="misspelt drift",
+        ),
+        pytest.param(
+            {"noise": 1, "noise.motor": 2},
+            r"noise.motor: is inside noise",
+            id="a value and a table",
+        ),
+        pytest.param(
+            {"noise.motor": 2, "noise": 1},
+            r"^set: noise: is given together",
+            id="a table and a value",
+        ),
         pytest.param({"arguments": "'a"}, r"^set: arguments: cannot be split", id="an open quote"),
     ],
-)  # fmt: skip
+)
 def test_wrong_keys_are_explained(values: dict[str, Any], words: str) -> None:
     with pytest.raises(ConfigError, match=words):
         settings_of_keys(values, Settings(), HERE)
@@ -100,7 +148,13 @@ def test_wrong_keys_are_explained(values: dict[str, Any], words: str) -> None:
 
 @pytest.mark.parametrize(
     "key, value",
-    [("noise.motor", 5), ("start.x_mm", 5), ("pen.color", "red"), ("background", "Lollipop"), ("robot", "Small_Robot")],
+    [
+        ("noise.motor", 5),
+        ("start.x_mm", 5),
+        ("pen.color", "red"),
+        ("background", "Lollipop"),
+        ("robot", "Small_Robot"),
+    ],
 )
 def test_a_key_sets_what_its_option_sets(key: str, value: object) -> None:
     assert settings_of_keys({key: value}, Settings(), HERE)[key] == value

@@ -22,7 +22,9 @@ def test_what_is_kept_is_found_and_leaves_the_rest() -> None:
     assert (preference("cells"), preference("theme")) == (None, "light")
 
 
-@pytest.mark.parametrize("text", ["", "{", "[1]", "\udc80"], ids=["empty", "cut off", "a list", "no UTF-8"])
+@pytest.mark.parametrize(
+    "text", ["", "{", "[1]", "\udc80"], ids=["empty", "cut off", "a list", "no UTF-8"]
+)
 def test_a_damaged_file_is_an_empty_one(text: str) -> None:
     preferences_file().parent.mkdir()
     preferences_file().write_bytes(text.encode("utf-8", "surrogateescape"))

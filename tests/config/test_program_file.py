@@ -28,7 +28,9 @@ from tuisim.errors import ConfigError
     ],
     ids=["comment", "cell", "below a docstring"],
 )
-def test_a_magic_line_is_found_before_the_first_statement(text: str, line: int, is_comment: bool) -> None:
+def test_a_magic_line_is_found_before_the_first_statement(
+    text: str, line: int, is_comment: bool
+) -> None:
     magic = find_magic(text, "p.py")
     assert magic is not None
     assert (magic.line, magic.comment, magic.prelude) == (line, is_comment, "preloaded")
@@ -75,7 +77,9 @@ def test_a_wrong_magic_line_is_told_with_its_place(text: str, said: str) -> None
         "broken one",
     ],
 )
-def test_a_program_without_a_magic_line_has_the_prelude_that_it_uses(text: str, prelude: str) -> None:
+def test_a_program_without_a_magic_line_has_the_prelude_that_it_uses(
+    text: str, prelude: str
+) -> None:
     assert prelude_for(text) == prelude
 
 
@@ -85,7 +89,9 @@ def test_the_magic_line_of_a_cell_becomes_a_comment() -> None:
     assert source.has_magic
 
 
-def test_an_example_is_found_by_its_name_unless_a_file_has_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_example_is_found_by_its_name_unless_a_file_has_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.chdir(tmp_path)
     example = programs()[0].path
     assert find_program(example.stem) == find_program(example.name) == example
@@ -103,7 +109,9 @@ def test_an_example_is_found_by_its_name_unless_a_file_has_it(tmp_path: Path, mo
         ("bytes.py", b"x = '\xff'\n", "bytes.py"),
     ],
 )
-def test_what_is_no_program_is_told(name: str, data: bytes | None, said: str, tmp_path: Path) -> None:
+def test_what_is_no_program_is_told(
+    name: str, data: bytes | None, said: str, tmp_path: Path
+) -> None:
     path = tmp_path / name
     if data is not None:
         path.write_bytes(data)
@@ -123,7 +131,14 @@ def test_what_is_no_program_is_told(name: str, data: bytes | None, said: str, tm
         ("import ev3dev2\ntank_dr", "none"),
         ("from pybricks.hubs import (", "none"),
     ],
-    ids=["no name yet", "not Python yet", "magic", "unfinished magic", "library", "unfinished import"],
+    ids=[
+        "no name yet",
+        "not Python yet",
+        "magic",
+        "unfinished magic",
+        "library",
+        "unfinished import",
+    ],
 )
 def test_a_program_that_is_edited_has_the_names_that_it_may_use(text: str, prelude: str) -> None:
     program = parse_unfinished(text, "p.py")
@@ -131,13 +146,22 @@ def test_a_program_that_is_edited_has_the_names_that_it_may_use(text: str, prelu
 
 
 MAGIC_MATS = {
-    "replaced": ("# %%sim_magic_preloaded -OHRb Grey_bands -x 3\nx\n", "# %%sim_magic_preloaded -OHRb Loop -x 3\nx\n"),
+    "replaced": (
+        "# %%sim_magic_preloaded -OHRb Grey_bands -x 3\nx\n",
+        "# %%sim_magic_preloaded -OHRb Loop -x 3\nx\n",
+    ),
     "added": ("%%sim_magic -x 3\n", "%%sim_magic -x 3 -b Loop\n"),
-    "long option": ("# %%sim_magic --background='a b.png' -x 5\n", "# %%sim_magic --background=Loop -x 5\n"),
+    "long option": (
+        "# %%sim_magic --background='a b.png' -x 5\n",
+        "# %%sim_magic --background=Loop -x 5\n",
+    ),
     "quoted": ('# %%sim_magic -b "a b.png"\n', "# %%sim_magic -b Loop\n"),
     "without a line": ("print(1)\n", "# %%sim_magic_preloaded -b Loop\nprint(1)\n"),
     "after the docstring": ('"""A\nB"""\nx\n', '"""A\nB"""\n# %%sim_magic_preloaded -b Loop\nx\n'),
-    "after the interpreter": ("#!/usr/bin/python3\nx\n", "#!/usr/bin/python3\n# %%sim_magic_preloaded -b Loop\nx\n"),
+    "after the interpreter": (
+        "#!/usr/bin/python3\nx\n",
+        "#!/usr/bin/python3\n# %%sim_magic_preloaded -b Loop\nx\n",
+    ),
     "unfinished": ("print(\n", "# %%sim_magic_preloaded -b Loop\nprint(\n"),
 }
 

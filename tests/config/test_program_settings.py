@@ -26,64 +26,132 @@ MIDDLE = (1181.0, 571.5)
 MAT = (None, None)
 
 # The text, the arguments of `program_settings`; profile, the robot's name, and the place.
-CASES: Mapping[str, tuple[str, dict[str, Any], tuple[str, str, tuple[float | None, float | None]]]] = {
+CASES: Mapping[
+    str, tuple[str, dict[str, Any], tuple[str, str, tuple[float | None, float | None]]]
+] = {
     "a brick's program": (USUAL, {}, ("ev3", "Default_Robot", MIDDLE)),
     "with another robot": (CLAW, {}, ("ev3", "Robot of p.py", MIDDLE)),
     "-r": (CLAW, {"above": {"robot": "Explorer"}}, ("ev3", "Explorer", MIDDLE)),
     "-x": (CLAW, {"above": {"start.x_mm": 300.0}}, ("ev3", "Robot of p.py", (300, None))),
     "-a": (USUAL, {"above": {"start.heading_deg": 90.0}}, ("ev3", "Default_Robot", MIDDLE)),
     "-b": (CLAW, {"above": {"background": "Loop"}}, ("robolab", "Robot of p.py", MAT)),
-    "-b of the usual mat": (USUAL, {"above": {"background": "Empty_Map"}}, ("robolab", "Default_Robot", MAT)),
+    "-b of the usual mat": (
+        USUAL,
+        {"above": {"background": "Empty_Map"}},
+        ("robolab", "Default_Robot", MAT),
+    ),
     "--profile": (CLAW, {"above": {"profile": "robolab"}}, ("robolab", "Robot of p.py", MAT)),
     "--profile ev3": (SENSOR, {"above": {"profile": "ev3"}}, ("ev3", "Default_Robot", MIDDLE)),
     "--profile ev3 on a mat": (
-        USUAL, {"above": {"profile": "ev3", "background": "Loop"}}, ("ev3", "Default_Robot", MAT)
+        USUAL,
+        {"above": {"profile": "ev3", "background": "Loop"}},
+        ("ev3", "Default_Robot", MAT),
     ),
     "a magic line": (f"# %%sim_magic\n{CLAW}", {}, ("robolab", "Robot of p.py", MAT)),
-    "a magic line with a robot": (f"# %%sim_magic -r Explorer\n{CLAW}", {}, ("robolab", "Explorer", MAT)),
-    "a magic line with the profile": (f"# %%sim_magic --profile ev3\n{USUAL}", {}, ("ev3", "Default_Robot", MAT)),
-    "a preloaded program": (f"# %%sim_magic_preloaded\n{CLAW}", {}, ("robolab", "Default_Robot", MAT)),
+    "a magic line with a robot": (
+        f"# %%sim_magic -r Explorer\n{CLAW}",
+        {},
+        ("robolab", "Explorer", MAT),
+    ),
+    "a magic line with the profile": (
+        f"# %%sim_magic --profile ev3\n{USUAL}",
+        {},
+        ("ev3", "Default_Robot", MAT),
+    ),
+    "a preloaded program": (
+        f"# %%sim_magic_preloaded\n{CLAW}",
+        {},
+        ("robolab", "Default_Robot", MAT),
+    ),
     "--preload": (CLAW, {"above": {"preload": "preloaded"}}, ("robolab", "Default_Robot", MAT)),
     "a world": (CLAW, {"above": {}, "in_world": True}, ("robolab", "Robot of p.py", MAT)),
-    "a world with a robot": (CLAW, {"above": {"robot": "Explorer"}, "in_world": True}, ("robolab", "Explorer", MAT)),
-    "a task": (CLAW, {"above": {"seed": 1}, "in_world": True, "of_task": True}, ("robolab", "Default_Robot", MAT)),
-    "the user's profile": (CLAW, {"below": {"profile": "robolab"}}, ("robolab", "Robot of p.py", MAT)),
+    "a world with a robot": (
+        CLAW,
+        {"above": {"robot": "Explorer"}, "in_world": True},
+        ("robolab", "Explorer", MAT),
+    ),
+    "a task": (
+        CLAW,
+        {"above": {"seed": 1}, "in_world": True, "of_task": True},
+        ("robolab", "Default_Robot", MAT),
+    ),
+    "the user's profile": (
+        CLAW,
+        {"below": {"profile": "robolab"}},
+        ("robolab", "Robot of p.py", MAT),
+    ),
     "the user's robot": (CLAW, {"below": {"robot": "Explorer"}}, ("ev3", "Explorer", MIDDLE)),
     "the user's mat": (CLAW, {"below": {"background": "Loop"}}, ("ev3", "Robot of p.py", MAT)),
     "the course's percents": (
-        SENSOR.replace("intensity)", "intensity_pc)"), {}, ("robolab", "Default_Robot", MAT)
+        SENSOR.replace("intensity)", "intensity_pc)"),
+        {},
+        ("robolab", "Default_Robot", MAT),
     ),
     "a percentage of its own": (
-        f"{SENSOR}class C:\n    def reflected_light_intensity_pc(self): pass\nC().reflected_light_intensity_pc()\n", {},
+        f"{SENSOR}class C:\n    def reflected_light_intensity_pc(self): pass\nC().reflected_light_intensity_pc()\n",
+        {},
         ("ev3", "Default_Robot", MIDDLE),
     ),
-    "the course's clock": (f"{SENSOR}from ev3dev2_glue import get_clock\n", {}, ("robolab", "Default_Robot", MAT)),
+    "the course's clock": (
+        f"{SENSOR}from ev3dev2_glue import get_clock\n",
+        {},
+        ("robolab", "Default_Robot", MAT),
+    ),
     "names of the prelude": (f"{USUAL}say('hello')\n", {}, ("robolab", "Default_Robot", MAT)),
-    "such names of its own": (f"{USUAL}def say(text): pass\nsay(1)\n", {}, ("ev3", "Default_Robot", MIDDLE)),
+    "such names of its own": (
+        f"{USUAL}def say(text): pass\nsay(1)\n",
+        {},
+        ("ev3", "Default_Robot", MIDDLE),
+    ),
     "imports of everything": (
-        "from ev3dev2.motor import *\nMoveTank(OUTPUT_B, OUTPUT_C).on(SpeedPercent(5), 5)\n", {},
+        "from ev3dev2.motor import *\nMoveTank(OUTPUT_B, OUTPUT_C).on(SpeedPercent(5), 5)\n",
+        {},
         ("ev3", "Default_Robot", MIDDLE),
     ),
     "no library": ("print(1)\n", {}, ("robolab", "Default_Robot", MAT)),
     "pybricks": (PYBRICKS, {}, ("lego-micropython", "Default_Robot", MIDDLE)),
     "pybricks by the first line": (
-        "#!/usr/bin/env pybricks-micropython\n", {}, ("lego-micropython", "Default_Robot", MIDDLE)
+        "#!/usr/bin/env pybricks-micropython\n",
+        {},
+        ("lego-micropython", "Default_Robot", MIDDLE),
     ),
     "pybricks with its robot": (BASE, {}, ("lego-micropython", "Robot of p.py", MIDDLE)),
-    "pybricks on a mat": (BASE, {"above": {"background": "Loop"}}, ("lego-micropython", "Robot of p.py", MAT)),
-    "pybricks and a magic line": (f"# %%sim_magic\n{BASE}", {}, ("lego-micropython", "Robot of p.py", MAT)),
-    "pybricks in a task": (
-        BASE, {"above": {"seed": 1}, "in_world": True, "of_task": True}, ("lego-micropython", "Default_Robot", MAT)
+    "pybricks on a mat": (
+        BASE,
+        {"above": {"background": "Loop"}},
+        ("lego-micropython", "Robot of p.py", MAT),
     ),
-    "--profile pybricks4": (PYBRICKS, {"above": {"profile": "pybricks4"}}, ("pybricks4", "Default_Robot", MIDDLE)),
+    "pybricks and a magic line": (
+        f"# %%sim_magic\n{BASE}",
+        {},
+        ("lego-micropython", "Robot of p.py", MAT),
+    ),
+    "pybricks in a task": (
+        BASE,
+        {"above": {"seed": 1}, "in_world": True, "of_task": True},
+        ("lego-micropython", "Default_Robot", MAT),
+    ),
+    "--profile pybricks4": (
+        PYBRICKS,
+        {"above": {"profile": "pybricks4"}},
+        ("pybricks4", "Default_Robot", MIDDLE),
+    ),
     "pybricks and the user's profile": (
-        PYBRICKS, {"below": {"profile": "robolab"}}, ("lego-micropython", "Default_Robot", MIDDLE)
+        PYBRICKS,
+        {"below": {"profile": "robolab"}},
+        ("lego-micropython", "Default_Robot", MIDDLE),
     ),
     "pybricks and the user's fitting one": (
-        PYBRICKS, {"below": {"profile": "pybricks4"}}, ("pybricks4", "Default_Robot", MIDDLE)
+        PYBRICKS,
+        {"below": {"profile": "pybricks4"}},
+        ("pybricks4", "Default_Robot", MIDDLE),
     ),
-    "the older library": ("from ev3dev.ev3 import *\nm = LargeMotor('outB')\n", {}, ("ev3", "Default_Robot", MIDDLE)),
-}  # fmt: skip
+    "the older library": (
+        "from ev3dev.ev3 import *\nm = LargeMotor('outB')\n",
+        {},
+        ("ev3", "Default_Robot", MIDDLE),
+    ),
+}
 
 
 @pytest.mark.parametrize("case", CASES)
@@ -96,7 +164,9 @@ def test_what_is_decided(case: str) -> None:
     assert (spec.profile.name, spec.robot.name) == (profile, robot)
     assert (found.settings["start.x_mm"], found.settings["start.y_mm"]) == place
     keeps_robot = bool(found.decided.robot) and rest.get("of_task", False)
-    assert bool(found.decided.note) == (keeps_robot or bool({"robot", "profile"} & found.decided.layer.keys()))
+    assert bool(found.decided.note) == (
+        keeps_robot or bool({"robot", "profile"} & found.decided.layer.keys())
+    )
 
 
 def test_a_program_for_another_robot_than_that_of_a_task_is_told() -> None:
@@ -110,18 +180,26 @@ def test_a_program_for_another_robot_than_that_of_a_task_is_told() -> None:
 
 MISFITS: Mapping[str, tuple[str, dict[str, Any], str]] = {
     "a profile of the other library": (
-        PYBRICKS, {"profile": "ev3"}, "profile: p.py uses pybricks, and the profile ev3 is for ev3dev2"
+        PYBRICKS,
+        {"profile": "ev3"},
+        "profile: p.py uses pybricks, and the profile ev3 is for ev3dev2",
     ),
     "a profile of pybricks": (
-        USUAL, {"profile": "pybricks4"}, "profile: p.py uses ev3dev2, and the profile pybricks4 is for pybricks"
+        USUAL,
+        {"profile": "pybricks4"},
+        "profile: p.py uses ev3dev2, and the profile pybricks4 is for pybricks",
     ),
     "names of a prelude": (
-        "tank_drive.on(5, 5)\n", {"profile": "lego-micropython"}, "p.py uses ev3dev2, and the profile lego-micropython"
+        "tank_drive.on(5, 5)\n",
+        {"profile": "lego-micropython"},
+        "p.py uses ev3dev2, and the profile lego-micropython",
     ),
     "a prelude before pybricks": (
-        f"# %%sim_magic_preloaded\n{PYBRICKS}", {}, "preload: p.py uses pybricks, and the names of its prelude"
+        f"# %%sim_magic_preloaded\n{PYBRICKS}",
+        {},
+        "preload: p.py uses pybricks, and the names of its prelude",
     ),
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("case", MISFITS)
@@ -138,10 +216,16 @@ def test_a_program_with_a_profile_for_the_other_library_can_be_opened() -> None:
 
 @pytest.mark.parametrize(
     ("text", "fitting", "other"),
-    [(PYBRICKS, "pybricks4", "ev3"), (USUAL, "robolab", "pybricks4"), ("tank_drive.on(5, 5)\n", "ev3", "pybricks4")],
+    [
+        (PYBRICKS, "pybricks4", "ev3"),
+        (USUAL, "robolab", "pybricks4"),
+        ("tank_drive.on(5, 5)\n", "ev3", "pybricks4"),
+    ],
     ids=["pybricks", "ev3dev2", "a prelude"],
 )
-def test_a_profile_is_required_to_be_for_the_library_of_the_program(text: str, fitting: str, other: str) -> None:
+def test_a_profile_is_required_to_be_for_the_library_of_the_program(
+    text: str, fitting: str, other: str
+) -> None:
     program = parse_program(text, "p.py").program
     require_library(program, PROFILES[fitting])
     with pytest.raises(ProfileError, match=f"the profile {other} is for"):
@@ -158,9 +242,13 @@ def test_a_course_program_has_the_settings_that_it_had() -> None:
     assert program_settings(parse_program(text, "p.py")).settings == Settings()
 
 
-def test_a_module_of_the_program_may_import_the_library_and_define_what_a_prelude_has(tmp_path: Path) -> None:
+def test_a_module_of_the_program_may_import_the_library_and_define_what_a_prelude_has(
+    tmp_path: Path,
+) -> None:
     (tmp_path / "hardware.py").write_text(f"{BRICK}gyro = MediumMotor(OUTPUT_A)\n")
-    source = parse_program("from hardware import *\nprint(gyro.position)\n", "p.py", str(tmp_path / "p.py"))
+    source = parse_program(
+        "from hardware import *\nprint(gyro.position)\n", "p.py", str(tmp_path / "p.py")
+    )
     assert source.program.prelude == "none"
     found = program_settings(source)
     assert found.settings["profile"] == "ev3"
@@ -169,7 +257,9 @@ def test_a_module_of_the_program_may_import_the_library_and_define_what_a_prelud
 
 def test_a_course_program_may_have_a_module_that_imports_the_library(tmp_path: Path) -> None:
     (tmp_path / "hardware.py").write_text(f"{BRICK}arm = MediumMotor(OUTPUT_A)\n")
-    source = parse_program("from hardware import *\ntank_drive.on(5, 5)\n", "p.py", str(tmp_path / "p.py"))
+    source = parse_program(
+        "from hardware import *\ntank_drive.on(5, 5)\n", "p.py", str(tmp_path / "p.py")
+    )
     assert source.program.prelude == "preloaded"
     assert program_settings(source).settings == Settings()
 
@@ -183,7 +273,9 @@ def test_the_line_names_what_was_built_and_how_to_change_it() -> None:
     assert program_settings(source, {"robot": "Explorer"}).decided.note == (
         "my claw.py runs by the rules of a brick (profile ev3). --profile to change it"
     )
-    assert program_settings(replace(source, has_magic=True)).decided.hint.startswith("-r to change it")
+    assert program_settings(replace(source, has_magic=True)).decided.hint.startswith(
+        "-r to change it"
+    )
 
 
 ON_USUAL_PORTS = """\
@@ -217,7 +309,11 @@ FORMATTED = "from pybricks.tools import wait\nprint(f'{1}')\n"
     ("text", "above", "refusal"),
     [
         (FORMATTED, {}, "p.py:2: the brick's Python would refuse this line (f-string)"),
-        (f"{FORMATTED}x: int = 1\n", {}, "p.py:2: the brick's Python would refuse this line (f-string), and 1 more"),
+        (
+            f"{FORMATTED}x: int = 1\n",
+            {},
+            "p.py:2: the brick's Python would refuse this line (f-string), and 1 more",
+        ),
         (FORMATTED, {"profile": "pybricks4"}, ""),
         (FORMATTED.replace("f'", "'"), {}, ""),
         (f"{USUAL}print(f'')\n", {}, ""),

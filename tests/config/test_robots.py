@@ -20,16 +20,34 @@ def eye(x: float, y: float, diameter: int) -> dict[str, Any]:
 
 
 LARGE: dict[str, Any] = {
-    "wheeldiameter": 56, "wheelSpacing": 180, "wheelNoise": 0, "back": -120, "weight": "medium", "baseWeight": "medium",
-    "sensorNoise": 0, "width": 200, "height": 165, "pen": {"x": 0, "y": 0, "color": "red", "width": 6},
-    "sensor1": eye(-20, 30, 20), "sensor2": eye(20, 30, 20), "gyro": {"enabled": True},
+    "wheeldiameter": 56,
+    "wheelSpacing": 180,
+    "wheelNoise": 0,
+    "back": -120,
+    "weight": "medium",
+    "baseWeight": "medium",
+    "sensorNoise": 0,
+    "width": 200,
+    "height": 165,
+    "pen": {"x": 0, "y": 0, "color": "red", "width": 6},
+    "sensor1": eye(-20, 30, 20),
+    "sensor2": eye(20, 30, 20),
+    "gyro": {"enabled": True},
     "ultrasonic": {"enabled": True, "x": 0, "y": 20, "angle": 0, "noise": 0},
-}  # fmt: skip
+}
 SMALL: dict[str, Any] = {
-    **LARGE, "wheeldiameter": 28, "wheelSpacing": 90, "back": -60, "weight": "weightless", "baseWeight": "weightless",
-    "width": 110, "height": 90, "sensor1": eye(-10, 15, 10), "sensor2": eye(10, 15, 10),
+    **LARGE,
+    "wheeldiameter": 28,
+    "wheelSpacing": 90,
+    "back": -60,
+    "weight": "weightless",
+    "baseWeight": "weightless",
+    "width": 110,
+    "height": 90,
+    "sensor1": eye(-10, 15, 10),
+    "sensor2": eye(10, 15, 10),
     "ultrasonic": {**LARGE["ultrasonic"], "y": 10},
-}  # fmt: skip
+}
 PRESETS = {
     "Default_Robot": LARGE,
     "Small_Robot": SMALL,
@@ -52,7 +70,8 @@ SAVED: Mapping[str, tuple[dict[str, Any], dict[str, Any], tuple[int, int]]] = {
     # What was saved, how it differs from the preset, motor and light noise.
     "larger wheels": ({**LARGE, "wheeldiameter": 81.6}, {"wheel_diameter_mm": 81.6}, (0, 0)),
     "narrow and long": (
-        {**LARGE, "wheelSpacing": 120, "back": -200, "height": 245}, {"wheel_spacing_mm": 120.0, "back_mm": -200.0},
+        {**LARGE, "wheelSpacing": 120, "back": -200, "height": 245},
+        {"wheel_spacing_mm": 120.0, "back_mm": -200.0},
         (0, 0),
     ),
     "light": ({**LARGE, "weight": "light", "baseWeight": "light"}, {"weight": 3.0}, (0, 0)),
@@ -62,22 +81,25 @@ SAVED: Mapping[str, tuple[dict[str, Any], dict[str, Any], tuple[int, int]]] = {
     "noisy": ({**LARGE, "wheelNoise": 120, "sensorNoise": 40}, {}, (120, 40)),
     "another pen": (
         {**LARGE, "pen": {"x": 5, "y": -20, "color": "green", "width": 12}},
-        {"pen": PenSpec(5.0, -20.0, "green", 12.0)}, (0, 0),
+        {"pen": PenSpec(5.0, -20.0, "green", 12.0)},
+        (0, 0),
     ),
     "looks back": (
         {**LARGE, "ultrasonic": {"enabled": True, "x": 10, "y": -40, "angle": 180, "noise": 15}},
-        {"ultrasonic": UltrasonicSpec(x_mm=10.0, y_mm=-40.0, angle_deg=180.0, noise_mm=15.0)}, (0, 0),
+        {"ultrasonic": UltrasonicSpec(x_mm=10.0, y_mm=-40.0, angle_deg=180.0, noise_mm=15.0)},
+        (0, 0),
     ),
     "eyes of its own": (
         {**LARGE, "sensor1": eye(-42.5, 60, 14), "sensor2": eye(33, -12, 8)},
         {
             "color_sensors": (
-                ColorSensorSpec("left", "in2", -42.5, 60.0, 14), ColorSensorSpec("right", "in3", 33.0, -12.0, 8),
+                ColorSensorSpec("left", "in2", -42.5, 60.0, 14),
+                ColorSensorSpec("right", "in3", 33.0, -12.0, 8),
             )
         },
         (0, 0),
     ),
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("name", SAVED)

@@ -24,25 +24,69 @@ def _home(home: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "problem"),
     [
-        pytest.param("fps = 20", "fps: no such table (it belongs into [app]; see `tuisim guide s", id="no table"),
-        pytest.param("app = 3", "app: must be a table of keys and values, got 3", id="no table but a value"),
+        pytest.param(
+            "fps = 20",
+            "fps: no such table (it belongs into [app]; see `tuisim guide s",
+            id="no table",
+        ),
+        pytest.param(
+            "app = 3", "app: must be a table of keys and values, got 3", id="no table but a value"
+        ),
         pytest.param("[apps]", "apps: no such table (did you mean app?", id="another table"),
-        pytest.param("[app]\nthem = 'light'", "app.them: no such setting (did you mean theme?)", id="another name"),
+        pytest.param(
+            "[app]\nthem = 'light'",
+            "app.them: no such setting (did you mean theme?)",
+            id="another name",
+        ),
         pytest.param("[simulation]\nspeed = 2", "(it belongs into [app])", id="in the wrong table"),
-        pytest.param("[app]\nquiet = 1", "app.quiet: must be true or false, got 1", id="no boolean"),
-        pytest.param("[simulation]\nwalls = 'on'", "walls: must be true or false, got 'on'", id="a switch's word"),
-        pytest.param("[app]\nfps = '20'", "fps: must be a whole number from 1 to 60, got '20'", id="no number"),
+        pytest.param(
+            "[app]\nquiet = 1", "app.quiet: must be true or false, got 1", id="no boolean"
+        ),
+        pytest.param(
+            "[simulation]\nwalls = 'on'",
+            "walls: must be true or false, got 'on'",
+            id="a switch's word",
+        ),
+        pytest.param(
+            "[app]\nfps = '20'",
+            "fps: must be a whole number from 1 to 60, got '20'",
+            id="no number",
+        ),
         pytest.param("[app]\nfps = 61", "fps: must be a whole number from 1 to 60", id="too high"),
-        pytest.param("[app]\nfps = true", "fps: must be a whole number from 1 to 60, got true", id="not 1"),
+        pytest.param(
+            "[app]\nfps = true", "fps: must be a whole number from 1 to 60, got true", id="not 1"
+        ),
         pytest.param("[app]\nspeed = 'fast'", "speed: must be max, or a number", id="another word"),
-        pytest.param("[app]\ncells = 'oct'", "cells: no such value 'oct' (one of auto, half", id="none of the words"),
-        pytest.param("[simulation]\nrobot = 'Foo'", "robot: no such robot 'Foo' (one of Default", id="no robot"),
-        pytest.param("[simulation]\nbackground = 'Lop'", "no such mat 'Lop' (did you mean Loop?", id="no mat"),
+        pytest.param(
+            "[app]\ncells = 'oct'",
+            "cells: no such value 'oct' (one of auto, half",
+            id="none of the words",
+        ),
+        pytest.param(
+            "[simulation]\nrobot = 'Foo'",
+            "robot: no such robot 'Foo' (one of Default",
+            id="no robot",
+        ),
+        pytest.param(
+            "[simulation]\nbackground = 'Lop'", "no such mat 'Lop' (did you mean Loop?", id="no mat"
+        ),
         pytest.param("[simulation]\nprofile = 'p.toml'", "simulation.profile: ", id="no file"),
-        pytest.param("[simulation]\npencolor = 'gren'", "no such colour 'gren' (did you mean green", id="no colour"),
-        pytest.param("[editor]\nmotions = 'vim'", "editor: this table is no longer used: remove it (", id="removed"),
-        pytest.param("[keys]\nrun = 3", "keys.run: must be a key or a list of keys, got 3", id="no key"),
-        pytest.param("[keys]\nrun = []", "keys.run: must be a key or a list of keys, got []", id="no keys"),
+        pytest.param(
+            "[simulation]\npencolor = 'gren'",
+            "no such colour 'gren' (did you mean green",
+            id="no colour",
+        ),
+        pytest.param(
+            "[editor]\nmotions = 'vim'",
+            "editor: this table is no longer used: remove it (",
+            id="removed",
+        ),
+        pytest.param(
+            "[keys]\nrun = 3", "keys.run: must be a key or a list of keys, got 3", id="no key"
+        ),
+        pytest.param(
+            "[keys]\nrun = []", "keys.run: must be a key or a list of keys, got []", id="no keys"
+        ),
     ],
 )
 def test_what_is_wrong_is_named_and_counts_as_missing(text: str, problem: str) -> None:
@@ -57,7 +101,9 @@ def test_what_is_wrong_is_named_and_counts_as_missing(text: str, problem: str) -
 
 
 @pytest.mark.parametrize(
-    "content", [b"[app", b"\xff", b"[app]\nfps = 1\nfps = 2\n"], ids=["cut off", "no UTF-8", "twice"]
+    "content",
+    [b"[app", b"\xff", b"[app]\nfps = 1\nfps = 2\n"],
+    ids=["cut off", "no UTF-8", "twice"],
 )
 def test_a_damaged_file_is_told_and_never_overwritten(content: bytes) -> None:
     config_file().parent.mkdir(parents=True, exist_ok=True)
@@ -102,7 +148,10 @@ def test_a_setting_is_written_in_place_of_its_comment_and_removed_again(path: st
     after = config_file().read_text()
     assert dict(load_config().written) == {path: value}
     assert len(after.splitlines()) == len(before.splitlines())
-    assert sum(old != new for old, new in zip(before.splitlines(), after.splitlines(), strict=True)) == 1
+    assert (
+        sum(old != new for old, new in zip(before.splitlines(), after.splitlines(), strict=True))
+        == 1
+    )
 
     save_setting(one, None)
     assert dict(load_config().written) == {}

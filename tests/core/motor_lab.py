@@ -115,7 +115,11 @@ def rows_of(sim: Simulation) -> list[Row]:
     for record, left_dps, right_dps in zip(records, left.registers, right.registers, strict=True):
         tick, _, *pose, left_deg, right_deg, _, _, _, flags, _ = record
         # The first record is written before the program begins.
-        runs = (flags & 1, flags >> 1 & 1) if tick else (int(left.ran_first or 0), int(right.ran_first or 0))
+        runs = (
+            (flags & 1, flags >> 1 & 1)
+            if tick
+            else (int(left.ran_first or 0), int(right.ran_first or 0))
+        )
         rows.append([*pose, left_deg, left_dps, runs[0], right_deg, right_dps, runs[1]])
     return rows
 
@@ -135,7 +139,10 @@ class Lines:
 
 def carry_out(spec: RunSpec, text: str, prelude: str, files: FieldFiles) -> dict[str, Any]:
     """Run a program to its end, in this process."""
-    program, options = Program("program.py", text, prelude), RunOptions(speed=0.0, time_limit_s=60.0, stall_limit_s=0.0)
+    program, options = (
+        Program("program.py", text, prelude),
+        RunOptions(speed=0.0, time_limit_s=60.0, stall_limit_s=0.0),
+    )
     config = RunConfig(Path(), program, spec, files, options)
     sim, lines = Simulation(spec, MemorySink()), Lines()
     output = OutputRecorder()
@@ -172,11 +179,17 @@ def carry_out(spec: RunSpec, text: str, prelude: str, files: FieldFiles) -> dict
 def courses(jobs: Iterable[Job], folder: Path) -> list[Course]:
     """Run programs; returns what became of each."""
     plain = [
-        {"text": job.text, "prelude": job.prelude, "spec": to_plain(RunSpec(job.robot, job.world, NBEV3DEVSIM))}
+        {
+            "text": job.text,
+            "prelude": job.prelude,
+            "spec": to_plain(RunSpec(job.robot, job.world, NBEV3DEVSIM)),
+        }
         for job in jobs
     ]
     (folder / "jobs.json").write_text(json.dumps(plain))
-    subprocess.run([sys.executable, "-m", "tests.core.motor_lab", str(folder)], check=True, timeout=120)
+    subprocess.run(
+        [sys.executable, "-m", "tests.core.motor_lab", str(folder)], check=True, timeout=120
+    )
     found = [json.loads((folder / f"{at}.json").read_text()) for at in range(len(plain))]
     return [Course(**{**one, "lines": [tuple(line) for line in one["lines"]]}) for one in found]
 

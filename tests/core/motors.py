@@ -9,7 +9,9 @@ from tuisim.core.profile import PROFILES, Library
 from tuisim.core.servo.motor import ServoMotor
 from tuisim.core.simulation import Simulation
 
-COMMANDED = sorted(name for name, profile in PROFILES.items() if profile.motor_law.library is Library.EV3DEV2)
+COMMANDED = sorted(
+    name for name, profile in PROFILES.items() if profile.motor_law.library is Library.EV3DEV2
+)
 """The profiles whose motors a driver commands."""
 SERVO = sorted(set(PROFILES) - set(COMMANDED))
 """The profiles whose motors follow trajectories."""

@@ -14,7 +14,14 @@ from tuisim.core.spec import MotorSpec, RobotSpec, RunSpec, WorldSpec
 
 @pytest.mark.parametrize(
     ("speed", "target", "step", "after"),
-    [(0, 100, 8, 8), (96, 100, 8, 100), (50, -100, 8, 42), (-96, -100, 8, -100), (7, 7, 8, 7), (0, 100, 0, 100)],
+    [
+        (0, 100, 8, 8),
+        (96, 100, 8, 100),
+        (50, -100, 8, 42),
+        (-96, -100, 8, -100),
+        (7, 7, 8, 7),
+        (0, 100, 0, 100),
+    ],
 )
 def test_the_speed_changes_by_a_step_and_not_beyond_its_target(
     speed: float, target: float, step: float, after: float
@@ -67,6 +74,11 @@ def test_a_wheel_that_is_held_back_has_not_reached_its_goal() -> None:
     motor.stop()
     motor.position_deg = 10.0
     motor.hold_back(before, 10.0, 0.25)
-    assert (motor.mode, motor.position_deg, motor.target_dps, motor.blocked_ticks) == (POSITION, 2.5, 100.0, 0)
+    assert (motor.mode, motor.position_deg, motor.target_dps, motor.blocked_ticks) == (
+        POSITION,
+        2.5,
+        100.0,
+        0,
+    )
     motor.hold_back(motor.state(), 10.0, 0.0)
     assert motor.blocked_ticks == 1

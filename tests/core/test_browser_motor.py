@@ -20,7 +20,9 @@ from tuisim.core.spec import RobotSpec, WorldSpec
 from tuisim.errors import RobotError
 
 with gzip.open(Path(__file__).with_name("motor_records.jsonl.gz"), "rt", encoding="utf-8") as _file:
-    RECORDS: Mapping[str, dict[str, Any]] = {record["name"]: record for record in map(json.loads, _file)}
+    RECORDS: Mapping[str, dict[str, Any]] = {
+        record["name"]: record for record in map(json.loads, _file)
+    }
 
 START = (1000.0, 500.0, 0.0)
 
@@ -36,11 +38,17 @@ def lab(tmp_path_factory: pytest.TempPathFactory) -> Mapping[str, Course]:
     """What becomes of every program, recorded or not: one process for all of them is quick."""
     jobs = {
         name: Job(
-            one["program"], WorldSpec(start=Pose(*map(float, one["start"]))), _robot(one["robot"]), one["preload"]
+            one["program"],
+            WorldSpec(start=Pose(*map(float, one["start"]))),
+            _robot(one["robot"]),
+            one["preload"],
         )
         for name, one in RECORDS.items()
     }
-    jobs |= {name: Job(text, WorldSpec(start=Pose(*START)), RobotSpec()) for name, text in PROGRAMS.items()}
+    jobs |= {
+        name: Job(text, WorldSpec(start=Pose(*START)), RobotSpec())
+        for name, text in PROGRAMS.items()
+    }
     return dict(zip(jobs, courses(jobs.values(), tmp_path_factory.mktemp("lab")), strict=True))
 
 
@@ -50,7 +58,11 @@ def test_a_recorded_program(name: str, lab: Mapping[str, Course]) -> None:
     record, done = RECORDS[name], lab[name]
     assert done.rows == [row[2:] for row in record["rows"]]
     assert done.lines == [tuple(line) for line in record["lines"]]
-    assert (done.end, done.end_tick, done.end_ms) == (record["status"], record["end_tick"], record["end_ms"])
+    assert (done.end, done.end_tick, done.end_ms) == (
+        record["status"],
+        record["end_tick"],
+        record["end_ms"],
+    )
 
 
 def _model(name: str) -> Any:

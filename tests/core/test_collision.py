@@ -17,12 +17,22 @@ from tuisim.core.geometry import Pose, world_point
 from tuisim.core.outline import outline_of
 from tuisim.core.profile import PROFILES
 from tuisim.core.simulation import Simulation
-from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, NoiseSpec, Obstacle, RobotSpec, RunSpec, WorldSpec
+from tuisim.core.spec import (
+    FIELD_HEIGHT_MM,
+    FIELD_WIDTH_MM,
+    NoiseSpec,
+    Obstacle,
+    RobotSpec,
+    RunSpec,
+    WorldSpec,
+)
 
 ALLOWED_MM = 0.01
 
 
-def simulation(world: WorldSpec, robot: RobotSpec | None = None, profile: str = "robolab") -> Simulation:
+def simulation(
+    world: WorldSpec, robot: RobotSpec | None = None, profile: str = "robolab"
+) -> Simulation:
     return Simulation(RunSpec(robot or RobotSpec(), world, PROFILES[profile]), MemorySink())
 
 
@@ -30,10 +40,16 @@ def overlap_mm(sim: Simulation) -> float:
     """How deep the outline is in anything solid, by projecting on every edge's normal (independent of the code)."""
     corners = [world_point(sim.pose, x, y) for x, y in outline_of(sim.spec.robot).corners_mm]
     deepest = max(
-        max(-x, x - FIELD_WIDTH_MM, -y, y - FIELD_HEIGHT_MM) if sim.spec.world.walls else -math.inf for x, y in corners
+        max(-x, x - FIELD_WIDTH_MM, -y, y - FIELD_HEIGHT_MM) if sim.spec.world.walls else -math.inf
+        for x, y in corners
     )
     heading = math.radians(sim.pose.heading_deg)
-    axes = [(1.0, 0.0), (0.0, 1.0), (math.cos(heading), math.sin(heading)), (-math.sin(heading), math.cos(heading))]
+    axes = [
+        (1.0, 0.0),
+        (0.0, 1.0),
+        (math.cos(heading), math.sin(heading)),
+        (-math.sin(heading), math.cos(heading)),
+    ]
     for o in sim.spec.world.obstacles:
         box = [(o.x_mm + i * o.width_mm, o.y_mm + j * o.height_mm) for i in (0, 1) for j in (0, 1)]
         depth = math.inf
@@ -57,7 +73,9 @@ def test_a_wall_stops_the_robot_where_its_front_touches(speed: float, profile: s
 
 
 def test_a_thin_post_is_not_passed_at_full_speed() -> None:
-    world = WorldSpec(start=Pose(300.0, 571.0, 0.0), obstacles=(Obstacle(1000.0, 570.0, 0.5, 0.5),), solid=True)
+    world = WorldSpec(
+        start=Pose(300.0, 571.0, 0.0), obstacles=(Obstacle(1000.0, 570.0, 0.5, 0.5),), solid=True
+    )
     sim = simulation(world, profile="nbev3devsim")
     for motor in (sim.left, sim.right):
         commanded(motor).run(1050.0)
@@ -75,7 +93,9 @@ def test_a_turn_pushes_the_robot_away_from_a_wall(left_dps: float, x_mm: float) 
 
 
 def test_without_solid_the_robot_drives_through() -> None:
-    sim = simulation(WorldSpec(start=Pose(300.0, 571.0, 0.0), obstacles=(Obstacle(1000.0, 500.0, 100.0, 100.0),)))
+    sim = simulation(
+        WorldSpec(start=Pose(300.0, 571.0, 0.0), obstacles=(Obstacle(1000.0, 500.0, 100.0, 100.0),))
+    )
     for motor in (sim.left, sim.right):
         commanded(motor).run(1050.0)
     sim.advance(1000)
@@ -95,7 +115,11 @@ def test_a_move_to_a_position_goes_on_once_the_way_is_clear() -> None:
 
 
 def test_the_robot_can_leave_what_it_was_put_into() -> None:
-    world = WorldSpec(start=Pose(1000.0, 571.0, 0.0), obstacles=(Obstacle(950.0, 500.0, 100.0, 100.0),), solid=True)
+    world = WorldSpec(
+        start=Pose(1000.0, 571.0, 0.0),
+        obstacles=(Obstacle(950.0, 500.0, 100.0, 100.0),),
+        solid=True,
+    )
     sim = simulation(world)
     for motor in (sim.left, sim.right):
         commanded(motor).run(-500.0)
@@ -106,7 +130,9 @@ def test_the_robot_can_leave_what_it_was_put_into() -> None:
 def test_grouping_of_ticks_does_not_matter_near_obstacles() -> None:
     def drive(step: int) -> bytes:
         world = WorldSpec(
-            start=Pose(300.0, 571.0, 20.0), obstacles=(Obstacle(1000.0, 500.0, 100.0, 300.0),), solid=True
+            start=Pose(300.0, 571.0, 20.0),
+            obstacles=(Obstacle(1000.0, 500.0, 100.0, 300.0),),
+            solid=True,
         )
         sim = simulation(world)
         commanded(sim.left).run(500.0)
@@ -129,7 +155,9 @@ ROBOT = st.builds(
     weight=st.sampled_from([0.0, 3.0, 6.0]),
 )
 SPEED = st.floats(-1050, 1050)
-MOVE = st.tuples(st.sampled_from(["forever", "timed", "position", "stop"]), SPEED, SPEED, st.integers(1, 150))
+MOVE = st.tuples(
+    st.sampled_from(["forever", "timed", "position", "stop"]), SPEED, SPEED, st.integers(1, 150)
+)
 CASE = {
     "robot": ROBOT,
     "obstacles": st.lists(OBSTACLE, max_size=6),
@@ -213,7 +241,9 @@ def test_the_way_said_to_be_free_is_free(straight: int) -> None:
         ways.append(way)
         heading = math.radians(pose[2]) + (0.0 if straight else 1.0 + number)
         step = way * 0.999 * (straight or 1)
-        there = Pose(pose[0] + step * math.cos(heading), pose[1] + step * math.sin(heading), pose[2])
+        there = Pose(
+            pose[0] + step * math.cos(heading), pose[1] + step * math.sin(heading), pose[2]
+        )
         sim.place(there)
         assert overlap_mm(sim) <= 1e-6
     assert max(ways) > 50

@@ -61,15 +61,21 @@ def leaves(sim: Simulation) -> bool:
 
 @pytest.mark.quick_cases("open-*")
 @pytest.mark.parametrize("motion", MOTIONS)
-@pytest.mark.parametrize("profile", ["robolab", *(slow(profile) for profile in PROFILES if profile != "robolab")])
+@pytest.mark.parametrize(
+    "profile", ["robolab", *(slow(profile) for profile in PROFILES if profile != "robolab")]
+)
 @pytest.mark.parametrize(
     ("walls", "solid"),
     [(False, False), slow(False, True), slow(True, False), (True, True)],
     ids=["open", "solid", "open with walls", "solid with walls"],
 )
-def test_a_robot_drives_on_from_the_start_of_any_mat(motion: str, profile: str, walls: bool, solid: bool) -> None:
+def test_a_robot_drives_on_from_the_start_of_any_mat(
+    motion: str, profile: str, walls: bool, solid: bool
+) -> None:
     for name, mat in mats.catalogue().items():
-        sim = simulation(WorldSpec(name, mat.obstacles, walls, solid, start=mat.start), profile=profile)
+        sim = simulation(
+            WorldSpec(name, mat.obstacles, walls, solid, start=mat.start), profile=profile
+        )
         first_mm = overlap_mm(sim)
         deepest_mm = told(sim, *MOTIONS[motion], 120)
         if solid:
@@ -79,7 +85,12 @@ def test_a_robot_drives_on_from_the_start_of_any_mat(motion: str, profile: str, 
             assert sim.left.mode == FOREVER and sim.pose != mat.start, name
 
 
-FLANK, CORNER, NOSE, TAIL = Pose(900.0, 60.0, 0.0), Pose(40.0, 30.0, 135.0), Pose(2350.0, 600.0, 20.0), Pose(5, 600, 0)
+FLANK, CORNER, NOSE, TAIL = (
+    Pose(900.0, 60.0, 0.0),
+    Pose(40.0, 30.0, 135.0),
+    Pose(2350.0, 600.0, 20.0),
+    Pose(5, 600, 0),
+)
 AROUND = Obstacle(700.0, 300.0, 900.0, 500.0)
 POST = Obstacle(1000.0, 560.0, 20.0, 20.0)
 PLACES = {
@@ -101,7 +112,9 @@ PLACES = {
     + [("forwards", 100), *(slow(motion, 100) for motion in MOTIONS if motion != "forwards")],
 )
 @pytest.mark.parametrize("place", PLACES)
-def test_a_robot_put_into_something_gets_no_deeper_and_can_leave(place: str, motion: str, noise: int) -> None:
+def test_a_robot_put_into_something_gets_no_deeper_and_can_leave(
+    place: str, motion: str, noise: int
+) -> None:
     start, boxes = PLACES[place]
     sim = simulation(WorldSpec(obstacles=boxes, solid=True, start=start, noise=NoiseSpec(0, noise)))
     first_mm = overlap_mm(sim)
@@ -147,9 +160,20 @@ def test_driving_back_beside_a_corner_ends_at_the_box() -> None:
 SPEED = st.floats(-1050, 1050)
 
 
-@settings(max_examples=300, deadline=None, phases=[Phase.generate], suppress_health_check=list(HealthCheck))
+@settings(
+    max_examples=300,
+    deadline=None,
+    phases=[Phase.generate],
+    suppress_health_check=list(HealthCheck),
+)
 @given(
-    box=st.builds(Obstacle, st.floats(320, 1600), st.floats(320, 500), st.floats(0.5, 400.0), st.floats(0.5, 300.0)),
+    box=st.builds(
+        Obstacle,
+        st.floats(320, 1600),
+        st.floats(320, 500),
+        st.floats(0.5, 400.0),
+        st.floats(0.5, 300.0),
+    ),
     x=st.floats(-50, 2400),
     y=st.floats(-50, 1200),
     heading=st.one_of(st.floats(-360, 360), st.sampled_from([0.0, 90.0, 180.0, 45.0])),
@@ -158,9 +182,16 @@ SPEED = st.floats(-1050, 1050)
 )
 @pytest.mark.slow
 def test_no_motion_leads_deeper_into_what_the_robot_was_put_into(
-    box: Obstacle, x: float, y: float, heading: float, moves: list[tuple[float, float]], profile: str
+    box: Obstacle,
+    x: float,
+    y: float,
+    heading: float,
+    moves: list[tuple[float, float]],
+    profile: str,
 ) -> None:
-    sim = simulation(WorldSpec(obstacles=(box,), solid=True, start=Pose(x, y, heading)), profile=profile)
+    sim = simulation(
+        WorldSpec(obstacles=(box,), solid=True, start=Pose(x, y, heading)), profile=profile
+    )
     first_mm = overlap_mm(sim)
     assume(first_mm > 0)
     for left, right in moves:

@@ -67,7 +67,9 @@ def test_the_name_of_a_trace_finds_an_instant(name: str, run: StoredRun) -> None
 
 
 @pytest.mark.parametrize("name", TRACES)
-def test_the_name_of_a_trace_is_a_condition_of_a_goal(name: str, run: StoredRun, tmp_path: Path) -> None:
+def test_the_name_of_a_trace_is_a_condition_of_a_goal(
+    name: str, run: StoredRun, tmp_path: Path
+) -> None:
     condition = f'when = "{name} == {value_of(run, name)!r}"'
     (judgement,) = judge(goals_of(tmp_path, f"[[goal]]\nname = 'it'\n{condition}\n"), run)
     assert judgement.state == "met"
@@ -78,17 +80,25 @@ def test_the_name_of_a_trace_is_a_breakpoint_a_watch_and_an_event(
     name: str, run: StoredRun, home_of_runs: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     words = ["run", str(home_of_runs / "a.py"), "--background", "Grey_bands", "--watch", name]
-    assert run_command([*words, "--break", f"{name} > -1", "--break", "2", "--break-then", "go"]) == 0
+    assert (
+        run_command([*words, "--break", f"{name} > -1", "--break", "2", "--break-then", "go"]) == 0
+    )
     said = capsys.readouterr().err
     assert f"{name} > -1" in said
-    values = [float(line.rpartition(" → ")[2]) for line in said.splitlines() if line.strip().startswith(f"{name} →")]
+    values = [
+        float(line.rpartition(" → ")[2])
+        for line in said.splitlines()
+        if line.strip().startswith(f"{name} →")
+    ]
     assert values[-1] == value_of(run, name)
     assert run_command(["log", "events", "1", "--when", f"{name} > -1", "--json"]) == 0
     assert capsys.readouterr().out == "[]\n"
 
 
 @pytest.mark.parametrize("name", TRACES)
-def test_the_name_of_a_trace_is_an_event_a_filter_and_a_variable_of_the_analyser(name: str, run: StoredRun) -> None:
+def test_the_name_of_a_trace_is_an_event_a_filter_and_a_variable_of_the_analyser(
+    name: str, run: StoredRun
+) -> None:
     *_, opened = opening(LogRequest(runs=("1",), telemetry=True))
     model = Model(opened)
     model.add_named_columns(f"{name} changes")
@@ -109,16 +119,31 @@ def test_the_name_of_a_trace_is_a_variable_of_every_log_command(
     assert run_command(["log", "calc", "1", "--expression", f"{name} + 1"]) == 0
     out = capsys.readouterr().out.splitlines()
     assert float(out[-1].rpartition(",")[2]) == value_of(run, name) + 1
-    assert run_command(["log", "export", "1", "--variable", name, "--out", str(tmp_path / "a.csv")]) == 0
-    assert set((tmp_path / "a.csv").read_text().splitlines()[0].split(",")) == {"time", "line", name}
+    assert (
+        run_command(["log", "export", "1", "--variable", name, "--out", str(tmp_path / "a.csv")])
+        == 0
+    )
+    assert set((tmp_path / "a.csv").read_text().splitlines()[0].split(",")) == {
+        "time",
+        "line",
+        name,
+    }
     assert name in json.loads((tmp_path / "a.csv.json").read_text())["units"]
-    assert run_command(["log", "plot", "1", "--telemetry", "--variable", "x_mm", "--against", name]) == 0
+    assert (
+        run_command(["log", "plot", "1", "--telemetry", "--variable", "x_mm", "--against", name])
+        == 0
+    )
     assert f"x_mm against {name}" in capsys.readouterr().out
 
 
-def test_a_name_that_is_nearly_a_column_is_told(run: StoredRun, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_name_that_is_nearly_a_column_is_told(
+    run: StoredRun, capsys: pytest.CaptureFixture[str]
+) -> None:
     said = []
-    for words in (["events", "1", "--when", "left_red_p < 50"], ["summary", "1", "--variable", "gyro_d"]):
+    for words in (
+        ["events", "1", "--when", "left_red_p < 50"],
+        ["summary", "1", "--variable", "gyro_d"],
+    ):
         assert run_command(["log", *words, "--telemetry"]) == 2
         said.append(capsys.readouterr().err)
     assert "did you mean 'left_red_pc'?" in said[0]
@@ -150,12 +175,16 @@ print(*Feed(Recording(run)).chart_series(open_mat(run)))
 
 @pytest.mark.slow
 def test_a_new_value_is_added_by_one_line(tmp_path: Path) -> None:
-    shutil.copytree(ROOT / "tuisim", tmp_path / "tuisim", ignore=shutil.ignore_patterns("__pycache__"))
+    shutil.copytree(
+        ROOT / "tuisim", tmp_path / "tuisim", ignore=shutil.ignore_patterns("__pycache__")
+    )
     table = tmp_path / "tuisim" / "core" / "columns.py"
     before = table.read_text()
     assert before.count(NEW.splitlines()[0]) == 1
     table.write_text(before.replace(f"{NEW.splitlines()[0]}\n", NEW))
-    (tmp_path / "a.py").write_text("tank_drive.on_for_rotations(SpeedPercent(30), SpeedPercent(30), 1)\n")
+    (tmp_path / "a.py").write_text(
+        "tank_drive.on_for_rotations(SpeedPercent(30), SpeedPercent(30), 1)\n"
+    )
     (tmp_path / "g.toml").write_text('[[goal]]\nname = "fast"\nwhen = "speed_mm_s > 100"\n')
 
     # An environment of its own: the processes of programs know no PYTHONPATH.
@@ -165,7 +194,11 @@ def test_a_new_value_is_added_by_one_line(tmp_path: Path) -> None:
     (folder / "copy.pth").write_text("\n".join((str(tmp_path), *map(str, site.getsitepackages()))))
 
     def said(*words: str, start: tuple[str, ...] = ("-m", "tuisim")) -> str:
-        environment = {**os.environ, "TUISIM_HOME": str(tmp_path / "home"), "TUISIM_ASSETS": str(ROOT)}
+        environment = {
+            **os.environ,
+            "TUISIM_HOME": str(tmp_path / "home"),
+            "TUISIM_ASSETS": str(ROOT),
+        }
         done = subprocess.run(
             [python, *start, *words],
             cwd=tmp_path,
@@ -178,7 +211,9 @@ def test_a_new_value_is_added_by_one_line(tmp_path: Path) -> None:
         assert done.returncode == 0, done.stderr
         return done.stdout + done.stderr
 
-    run = said("run", "a.py", "--break", "speed_mm_s > 100", "--break-then", "go", "--watch", "speed_mm_s")
+    run = said(
+        "run", "a.py", "--break", "speed_mm_s > 100", "--break-then", "go", "--watch", "speed_mm_s"
+    )
     assert "break speed_mm_s > 100" in run
     assert "speed_mm_s → 1" in run
     assert "speed_mm_s" in said(TRACED, start=("-c",))
@@ -194,10 +229,18 @@ def test_a_new_value_is_added_by_one_line(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "name"),
     [
-        ("left.red%", "left_red_pc"), ("left red %", "left_red_pc"), ("left sensor red %", "left_red_pc"),
-        ("left.red", "left_red"), ("right.color", "right_color"), ("gyro", "gyro_deg"), ("gyro °", "gyro_deg"),
-        ("gyro.rate", "gyro_rate_dps"), ("ultrasonic mm", "ultrasonic_mm"), ("x_mm", "x_mm"), ("gyro.x", None),
+        ("left.red%", "left_red_pc"),
+        ("left red %", "left_red_pc"),
+        ("left sensor red %", "left_red_pc"),
+        ("left.red", "left_red"),
+        ("right.color", "right_color"),
+        ("gyro", "gyro_deg"),
+        ("gyro °", "gyro_deg"),
+        ("gyro.rate", "gyro_rate_dps"),
+        ("ultrasonic mm", "ultrasonic_mm"),
+        ("x_mm", "x_mm"),
+        ("gyro.x", None),
     ],
-)  # fmt: skip
+)
 def test_names_of_before_are_understood(text: str, name: str | None) -> None:
     assert column_name(text, columns_of(RobotSpec())) == name

@@ -71,17 +71,29 @@ def by_expression(condition: str) -> list[float]:
 
 
 PLACES: Mapping[str, Callable[[str], list[float]]] = {
-    "breakpoint": by_breakpoint, "go to": by_goto, "filter": by_filter, "expression": by_expression,
-}  # fmt: skip
+    "breakpoint": by_breakpoint,
+    "go to": by_goto,
+    "filter": by_filter,
+    "expression": by_expression,
+}
 HELD = {
-    "Colour < 50": [40], "Colour<=50": [40, 50], "Colour > 5e1": [60], "Colour >= +50": [50, 60], "Colour = 50": [50],
-    "Colour=50.": [50], "Colour == 50": [50], "Colour==50": [50], "Colour != 50": [40, 60],
-}  # fmt: skip
+    "Colour < 50": [40],
+    "Colour<=50": [40, 50],
+    "Colour > 5e1": [60],
+    "Colour >= +50": [50, 60],
+    "Colour = 50": [50],
+    "Colour=50.": [50],
+    "Colour == 50": [50],
+    "Colour==50": [50],
+    "Colour != 50": [40, 60],
+}
 
 
 @pytest.mark.parametrize("place", PLACES)
 @pytest.mark.parametrize(("condition", "expected"), HELD.items(), ids=HELD)
-def test_a_comparison_means_the_same_everywhere(place: str, condition: str, expected: list[float]) -> None:
+def test_a_comparison_means_the_same_everywhere(
+    place: str, condition: str, expected: list[float]
+) -> None:
     assert PLACES[place](condition) == expected
 
 
@@ -101,8 +113,12 @@ RUN_CONDITIONS = {
     "sample Colour < 5": ValueCondition("Colour", "<", "5", ValueSource.SAMPLE),
     "sample": ValueCondition("", "is seen", "", ValueSource.SAMPLE),
     "print matches a = b": ValueCondition("", "matches", "a = b", ValueSource.PRINT),
-    "sample 1x < 3": None, "print a": None, "x ~ 3": None, "x": None, "changes": None,
-}  # fmt: skip
+    "sample 1x < 3": None,
+    "print a": None,
+    "x ~ 3": None,
+    "x": None,
+    "changes": None,
+}
 
 
 @pytest.mark.parametrize(("text", "condition"), RUN_CONDITIONS.items(), ids=RUN_CONDITIONS)
@@ -111,24 +127,41 @@ def test_conditions_on_a_run(text: str, condition: ValueCondition | None) -> Non
 
 
 EVENTS = {
-    "Colour < 50": (False,), "Colour>50": (True,), "Colour = 50": (False, True), "Colour == 50": (False, True),
-    "Colour > 50 +- 2": (True,), "Colour changes": (False, True), "Colour>50±-2e-1": None, " Colour < +5.e1 ": (False,),
-}  # fmt: skip
+    "Colour < 50": (False,),
+    "Colour>50": (True,),
+    "Colour = 50": (False, True),
+    "Colour == 50": (False, True),
+    "Colour > 50 +- 2": (True,),
+    "Colour changes": (False, True),
+    "Colour>50±-2e-1": None,
+    " Colour < +5.e1 ": (False,),
+}
 
 
 @pytest.mark.parametrize(("text", "rising"), EVENTS.items(), ids=EVENTS)
-def test_an_event_is_a_comparison_with_a_direction(text: str, rising: tuple[bool, ...] | None) -> None:
+def test_an_event_is_a_comparison_with_a_direction(
+    text: str, rising: tuple[bool, ...] | None
+) -> None:
     log = Log("test", pa.table({"Colour": [60.0, 40.0, 60.0]}), Layout(values=("Colour",)))
     (threshold,) = thresholds_of(text, log)
     if rising is None:
         # A negative width is read, and refused where it is used.
         assert threshold.hysteresis == -0.2
     else:
-        assert tuple(crossing.rising for crossing in threshold.crossings(log.series("Colour"))) == rising
+        assert (
+            tuple(crossing.rising for crossing in threshold.crossings(log.series("Colour")))
+            == rising
+        )
 
 
 @pytest.mark.parametrize(
-    ("text", "name"), [("a > 5 > 0.5", "a > 5"), ("a+-5 < 3", "a+-5"), ("a~b = 1 +- 2", "a~b"), ("t (s) < 1", "t (s)")]
+    ("text", "name"),
+    [
+        ("a > 5 > 0.5", "a > 5"),
+        ("a+-5 < 3", "a+-5"),
+        ("a~b = 1 +- 2", "a~b"),
+        ("t (s) < 1", "t (s)"),
+    ],
 )
 def test_names_of_variables_may_hold_operators(text: str, name: str) -> None:
     threshold = threshold_of(text)
@@ -137,10 +170,16 @@ def test_names_of_variables_may_hold_operators(text: str, name: str) -> None:
 
 
 OTHER_FILTERS = {
-    "word = 'a b'": [40], "word ~ A": [40], "word == > 5": [50], "word ==": [60], "Colour < inf": [40, 50, 60],
-    "Colour = 50, word ~ 5": [50], "word changes": [50, 60], "Colour changes and Colour > 50": [60],
+    "word = 'a b'": [40],
+    "word ~ A": [40],
+    "word == > 5": [50],
+    "word ==": [60],
+    "Colour < inf": [40, 50, 60],
+    "Colour = 50, word ~ 5": [50],
+    "word changes": [50, 60],
+    "Colour changes and Colour > 50": [60],
     "word != a b and Colour < 60": [50],
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize(("text", "expected"), OTHER_FILTERS.items(), ids=OTHER_FILTERS)
@@ -153,12 +192,20 @@ def by_event(condition: str) -> None:
 
 
 ALL = "< <= > >= = !="
-REFUSED = {"breakpoint": ALL, "go to": ALL, "filter": f"{ALL} ~", "expression": ALL, "event": "< > ="}
+REFUSED = {
+    "breakpoint": ALL,
+    "go to": ALL,
+    "filter": f"{ALL} ~",
+    "expression": ALL,
+    "event": "< > =",
+}
 
 
 @pytest.mark.parametrize(("place", "operators"), REFUSED.items(), ids=REFUSED)
 @pytest.mark.parametrize("condition", ["Colour ? 50", "? 50"])
-def test_what_is_no_comparison_is_answered_with_what_is_allowed(place: str, operators: str, condition: str) -> None:
+def test_what_is_no_comparison_is_answered_with_what_is_allowed(
+    place: str, operators: str, condition: str
+) -> None:
     with pytest.raises((ConfigError, LogError)) as refused:
         (PLACES.get(place) or by_event)(condition)
     assert operators in refused.value.hint

@@ -18,7 +18,15 @@ from tuisim.core.sensors.gyro import angle_deg
 from tuisim.core.sensors.ultrasonic import reading_mm
 from tuisim.core.servo.motor import ServoMotor
 from tuisim.core.simulation import Simulation
-from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, NoiseSpec, RobotSpec, RunSpec, UltrasonicSpec, WorldSpec
+from tuisim.core.spec import (
+    FIELD_HEIGHT_MM,
+    FIELD_WIDTH_MM,
+    NoiseSpec,
+    RobotSpec,
+    RunSpec,
+    UltrasonicSpec,
+    WorldSpec,
+)
 from tuisim.core.values import values_of
 
 TYPICAL: DriftSpec = values_of(WorldSpec)["drift"].from_text("typical")
@@ -28,7 +36,11 @@ MM_PER_DEG = pi * ROBOT.wheel_diameter_mm / 360
 
 
 def simulation(
-    drift: DriftSpec, seed: int = 0, profile: str = "robolab", noise: NoiseSpec = NoiseSpec(), solid: bool = False
+    drift: DriftSpec,
+    seed: int = 0,
+    profile: str = "robolab",
+    noise: NoiseSpec = NoiseSpec(),
+    solid: bool = False,
 ) -> Simulation:
     world = WorldSpec(start=Pose(500.0, 500.0, 0.0), drift=drift, noise=noise, solid=solid)
     return Simulation(RunSpec(ROBOT, world, PROFILES[profile], seed), MemorySink())
@@ -71,7 +83,15 @@ def test_encoders_do_not_notice_drift(profile: str) -> None:
                 commanded(motor).run(speed)
         sim.advance(150)
         now = sim.instant()
-        seen.append((now.left_position_deg, now.right_position_deg, now.left_speed_dps, now.right_speed_dps, now.pose))
+        seen.append(
+            (
+                now.left_position_deg,
+                now.right_position_deg,
+                now.left_speed_dps,
+                now.right_speed_dps,
+                now.pose,
+            )
+        )
     assert seen[0][:4] == seen[1][:4]
     assert seen[0][4] != seen[1][4]
 
@@ -156,11 +176,16 @@ def test_the_spread_of_squares_is_that_of_the_closed_form() -> None:
     drift = DriftSpec(wheel_pc=100 * wheel, spacing_pc=100 * spacing)
     errors = [drive_square(simulation(drift, seed)) for seed in range(runs)]
     # The heading: 4 sides of type B and 4 corners of type A.
-    sides, corners = 4 * SIDE_MM / ROBOT.wheel_spacing_mm * wheel * sqrt(2), 2 * pi * hypot(spacing, wheel / sqrt(2))
+    sides, corners = (
+        4 * SIDE_MM / ROBOT.wheel_spacing_mm * wheel * sqrt(2),
+        2 * pi * hypot(spacing, wheel / sqrt(2)),
+    )
     # The place: -2 L (alpha - beta) along x, 2 L (alpha - beta) along y.
     beta, alpha = sides / 4, corners / 4
     close = 3 / sqrt(2 * runs)
-    assert pstdev([radians(one.heading_deg) for one in errors]) == pytest.approx(hypot(sides, corners), rel=close)
+    assert pstdev([radians(one.heading_deg) for one in errors]) == pytest.approx(
+        hypot(sides, corners), rel=close
+    )
     for along in ([one.x_mm for one in errors], [one.y_mm for one in errors]):
         assert pstdev(along) == pytest.approx(2 * SIDE_MM * hypot(alpha, beta), rel=close)
 
@@ -181,19 +206,26 @@ def test_slip_loses_a_share_of_each_turn_and_spreads_as_its_root() -> None:
 def test_slip_grows_with_acceleration_and_steady_wheels_do_not_slip() -> None:
     lost_mm: dict[float, float] = {}
     for weight in (3.0, 9.0):
-        robot, world = RobotSpec(weight=weight), WorldSpec(start=Pose(0.0, 500.0, 0.0), drift=DriftSpec(slip_pc=5.0))
+        robot, world = (
+            RobotSpec(weight=weight),
+            WorldSpec(start=Pose(0.0, 500.0, 0.0), drift=DriftSpec(slip_pc=5.0)),
+        )
         found = []
         for seed in range(200):
             sim = Simulation(RunSpec(robot, world, PROFILES["robolab"], seed), MemorySink())
             commanded(sim.left).run(500)
             commanded(sim.right).run(500)
             sim.advance(20)
-            found.append((sim.left.position_deg + sim.right.position_deg) / 2 * MM_PER_DEG - sim.pose.x_mm)
+            found.append(
+                (sim.left.position_deg + sim.right.position_deg) / 2 * MM_PER_DEG - sim.pose.x_mm
+            )
             sim.advance(180)
             heading_deg, tail = sim.pose.heading_deg, sim.pose
             sim.advance(100)
             assert sim.pose.heading_deg == heading_deg
-            assert hypot(sim.pose.x_mm - tail.x_mm, sim.pose.y_mm - tail.y_mm) == pytest.approx(500 * MM_PER_DEG)
+            assert hypot(sim.pose.x_mm - tail.x_mm, sim.pose.y_mm - tail.y_mm) == pytest.approx(
+                500 * MM_PER_DEG
+            )
         lost_mm[weight] = fmean(found)
     # The share that is lost and the way in these ticks both grow with the acceleration.
     assert lost_mm[3.0] == pytest.approx(9 * lost_mm[9.0], rel=0.3)
@@ -243,7 +275,9 @@ def test_pulses_are_lost_at_flat_angles_only() -> None:
 @pytest.mark.parametrize("seed", range(4))
 def test_light_falls_from_one_side_of_the_field_to_the_other(seed: int) -> None:
     drift = DriftSpec(light_pc=20.0)
-    corners = [light_share(x, y, drift, seed) for x in (0, FIELD_WIDTH_MM) for y in (0, FIELD_HEIGHT_MM)]
+    corners = [
+        light_share(x, y, drift, seed) for x in (0, FIELD_WIDTH_MM) for y in (0, FIELD_HEIGHT_MM)
+    ]
     assert max(corners) == pytest.approx(1.0)
     assert min(corners) == pytest.approx(0.8)
     across, up = bright_side(drift, seed)

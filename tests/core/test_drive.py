@@ -15,12 +15,16 @@ from tuisim.core.simulation import Simulation
 from tuisim.core.spec import NoiseSpec, RobotSpec, RunSpec, WorldSpec
 from tuisim.core.tick_record import TICK_FIELDS
 
-MOTOR_FIELDS = [f"{side}_{what}" for side in ("left", "right") for what in ("position_deg", "speed_dps")]
+MOTOR_FIELDS = [
+    f"{side}_{what}" for side in ("left", "right") for what in ("position_deg", "speed_dps")
+]
 WORLD = WorldSpec(start=Pose(2150.0, 571.0, 20.0), solid=True)
 """Near a wall, which the robot meets and is pushed aside from."""
 
 
-def driven(profile: str, robot: RobotSpec, left: float, right: float, step: int = 400) -> Simulation:
+def driven(
+    profile: str, robot: RobotSpec, left: float, right: float, step: int = 400
+) -> Simulation:
     """Drive along an arc, then straight on, by motors at these speeds."""
     sim = Simulation(RunSpec(robot, WORLD, PROFILES[profile]), MemorySink())
     for left_dps, right_dps in ((left, right), (left, left * (1 if left * right > 0 else -1))):
@@ -38,7 +42,9 @@ def records(sim: Simulation) -> np.ndarray:
 
 
 @pytest.mark.parametrize("step", [1, 8, 400])
-@pytest.mark.parametrize("sides", [("left",), ("right",), ("left", "right")], ids=["left", "right", "both"])
+@pytest.mark.parametrize(
+    "sides", [("left",), ("right",), ("left", "right")], ids=["left", "right", "both"]
+)
 @pytest.mark.parametrize("profile", ["ev3", "robolab"])
 def test_a_reversed_motor_that_runs_backwards_drives_as_a_usual_one_forwards(
     profile: str, sides: tuple[str, ...], step: int
@@ -56,7 +62,10 @@ def test_a_reversed_motor_that_runs_backwards_drives_as_a_usual_one_forwards(
 
 def test_reversed_motors_turn_the_wheels_backwards_in_the_browser_simulator_too() -> None:
     sim = Simulation(
-        RunSpec(RobotSpec(left_reversed=True, right_reversed=True), WorldSpec(), PROFILES["nbev3devsim"]), MemorySink()
+        RunSpec(
+            RobotSpec(left_reversed=True, right_reversed=True), WorldSpec(), PROFILES["nbev3devsim"]
+        ),
+        MemorySink(),
     )
     commanded(sim.left).run(300.0)
     commanded(sim.right).run(300.0)
@@ -77,5 +86,13 @@ def test_a_gear_divides_the_turns_of_the_motor(profile: str, gear_ratio: float) 
             commanded(motor).run(dps * factor)
         sim.advance(100)
         counts = sim.left.position_deg / factor, sim.right.position_deg / factor
-        ends.append((*counts, sim.pose.x_mm, sim.pose.y_mm, sim.pose.heading_deg, sim.instant().turn_rate_dps))
+        ends.append(
+            (
+                *counts,
+                sim.pose.x_mm,
+                sim.pose.y_mm,
+                sim.pose.heading_deg,
+                sim.instant().turn_rate_dps,
+            )
+        )
     assert ends[1] == pytest.approx(ends[0])

@@ -15,7 +15,9 @@ from tuisim.core.simulation import Simulation, simulation_of
 from tuisim.core.spec import MotorSpec, RobotSpec, RunSpec, WorldSpec
 from tuisim.core.tick_record import END_FLAGS, TICK_RECORD
 
-ROBOT = RobotSpec(extra_motors=(MotorSpec("outD"), MotorSpec("outA", low_deg=-90.0, high_deg=180.0)), weight=0.0)
+ROBOT = RobotSpec(
+    extra_motors=(MotorSpec("outD"), MotorSpec("outA", low_deg=-90.0, high_deg=180.0)), weight=0.0
+)
 LOW, HIGH = (end_flag(ROBOT, "outA", end) for end in ("low", "high"))
 
 
@@ -24,14 +26,16 @@ def arm_of(robot: RobotSpec = ROBOT, profile: str = "ev3") -> Simulation:
 
 
 @pytest.mark.parametrize("profile", COMMANDED)
-@pytest.mark.parametrize(("dps", "end_deg", "flag"), [(-200.0, -90.0, LOW), (500.0, 180.0, HIGH)], ids=["low", "high"])
+@pytest.mark.parametrize(
+    ("dps", "end_deg", "flag"), [(-200.0, -90.0, LOW), (500.0, 180.0, HIGH)], ids=["low", "high"]
+)
 def test_a_motor_stops_at_its_end(profile: str, dps: float, end_deg: float, flag: int) -> None:
     sim = arm_of(profile=profile)
     arm = sim.others[1]
     # The browser simulator has no negative speeds.
-    commanded(arm).run_to(dps * 10, abs(dps), backwards=dps < 0) if profile == "nbev3devsim" else commanded(arm).run(
-        dps
-    )
+    commanded(arm).run_to(
+        dps * 10, abs(dps), backwards=dps < 0
+    ) if profile == "nbev3devsim" else commanded(arm).run(dps)
     sim.advance(sim.spec.profile.tick_hz * 2)
     counted_deg = end_deg * (2 if profile == "nbev3devsim" else 1)
     assert arm.position_deg == pytest.approx(counted_deg, abs=1e-9)
@@ -53,7 +57,9 @@ def test_it_is_stalled_after_a_tenth_of_a_second() -> None:
     assert arm.moving_dps == 0.0
 
 
-def test_a_move_that_the_stop_cuts_short_goes_on_for_ever_and_ends_if_its_goal_is_the_stop() -> None:
+def test_a_move_that_the_stop_cuts_short_goes_on_for_ever_and_ends_if_its_goal_is_the_stop() -> (
+    None
+):
     sim = arm_of()
     arm = sim.others[1]
     commanded(arm).run_to(200.0, 300.0, backwards=False)

@@ -35,18 +35,27 @@ def drawn(disc: bytes, level: int, count: int) -> Iterator[tuple[float, ...]]:
     """Mean channels as they are read."""
     sums = sum(disc[0::3]), sum(disc[1::3]), sum(disc[2::3])
     for tick in range(count):
-        yield tuple(one / COUNT for one in noisy_sums(lambda: disc, COUNT, sums, level, reading_noise(7, tick, "left")))
+        yield tuple(
+            one / COUNT
+            for one in noisy_sums(lambda: disc, COUNT, sums, level, reading_noise(7, tick, "left"))
+        )
 
 
 def of_pixels(disc: bytes, level: int, count: int) -> Iterator[tuple[float, ...]]:
     """Mean channels of pixels that each have their own error, from Python's own random numbers."""
     chance = random.Random(11)
     errors = [round(level * (2 * byte / 255 - 1)) for byte in range(256)]
-    tables = {value: bytes(min(max(value + error, 0), 255) for error in errors) for value in set(disc)}
+    tables = {
+        value: bytes(min(max(value + error, 0), 255) for error in errors) for value in set(disc)
+    }
     counts = {value: disc[0::3].count(value) for value in set(disc)}
     for _ in range(count):
         yield tuple(
-            sum(sum(chance.randbytes(number).translate(tables[value])) for value, number in counts.items()) / COUNT
+            sum(
+                sum(chance.randbytes(number).translate(tables[value]))
+                for value, number in counts.items()
+            )
+            / COUNT
             for _ in range(3)
         )
 
@@ -71,8 +80,14 @@ def compare(disc: bytes, level: int, count: int) -> None:
 
 def correlation(one: tuple[float, ...], other: tuple[float, ...]) -> float:
     pairs = list(zip(one, other, strict=False))
-    (mean, variance), (usual, usual_variance) = (moments([pair[at] for pair in pairs]) for at in (0, 1))
-    return sum((a - mean) * (b - usual) for a, b in pairs) / len(pairs) / sqrt(variance * usual_variance)
+    (mean, variance), (usual, usual_variance) = (
+        moments([pair[at] for pair in pairs]) for at in (0, 1)
+    )
+    return (
+        sum((a - mean) * (b - usual) for a, b in pairs)
+        / len(pairs)
+        / sqrt(variance * usual_variance)
+    )
 
 
 @pytest.mark.parametrize("kind", DISCS)
@@ -91,7 +106,9 @@ def test_clamping_moves_a_value_as_its_errors_do(level: int) -> None:
     law, errors = clamping(level), [round(level * (2 * byte / 255 - 1)) for byte in range(256)]
     for value in range(256):
         mean, variance = moments([float(min(max(value + error, 0), 255)) for error in errors])
-        assert (value + law.shift[value], law.variance[value]) == pytest.approx((mean, variance), abs=1e-6)
+        assert (value + law.shift[value], law.variance[value]) == pytest.approx(
+            (mean, variance), abs=1e-6
+        )
 
 
 @pytest.mark.parametrize("kind", DISCS)
@@ -103,7 +120,9 @@ def test_pixels_have_the_mean_that_is_read(kind: str) -> None:
         total = noisy_sums(lambda: disc, COUNT, sums, level, reading_noise(3, tick, "right"))[0]
         pixels = noisy_channel(channel, total, level, stream(3, tick, "right", COUNT))
         assert sum(pixels) == total
-        assert all(abs(pixel - clear) <= level for pixel, clear in zip(pixels, channel, strict=True))
+        assert all(
+            abs(pixel - clear) <= level for pixel, clear in zip(pixels, channel, strict=True)
+        )
 
 
 @pytest.mark.parametrize("other", [(2, 5, "left"), (1, 6, "left"), (1, 5, "right")])

@@ -56,7 +56,11 @@ def test_sensors_see_the_line_and_arrays_agree(white: Field) -> None:
     over = Instant(0, Pose(550.0, 480.0, 0.0))
     seen = reading(sensor, over, marks.field)
     box = pixel_array(sensor, over, marks.field)
-    inside = [pixel for pixel in zip(box[::3], box[1::3], box[2::3], strict=True) if pixel != (245, 226, 225)]
+    inside = [
+        pixel
+        for pixel in zip(box[::3], box[1::3], box[2::3], strict=True)
+        if pixel != (245, 226, 225)
+    ]
     assert seen.red == sum(pixel[0] for pixel in inside) / 305
     assert seen.red < 200
     assert reading(sensor, over, white).red == 255

@@ -24,7 +24,9 @@ def timed_mm(speed_dps: float, seconds: float) -> float:
     ramp_ticks = round(abs(speed_dps) * 6 / 5000 * 100)
     ticks = round(seconds * 100)
     ramp = sum(k * 5000 / 6 / 100 for k in range(1, ramp_ticks + 1))
-    return math.copysign((ramp + (ticks - ramp_ticks) * abs(speed_dps)) / 100 * MM_PER_DEG, speed_dps)
+    return math.copysign(
+        (ramp + (ticks - ramp_ticks) * abs(speed_dps)) / 100 * MM_PER_DEG, speed_dps
+    )
 
 
 @dataclass(frozen=True)
@@ -40,10 +42,16 @@ TURN = 1.6 * math.pi * 56 * 2 / 180 * 180 / math.pi
 
 MOVES = {
     "2 s at 50 %": Move(
-        "tank_drive.on_for_seconds(50, 50, 2)", (428.63, 0, 877.1), (timed_mm(525, 2), 0, timed_mm(525, 2) / MM_PER_DEG)
+        "tank_drive.on_for_seconds(50, 50, 2)",
+        (428.63, 0, 877.1),
+        (timed_mm(525, 2), 0, timed_mm(525, 2) / MM_PER_DEG),
     ),
-    "2 s at 100 %": Move("tank_drive.on_for_seconds(100, 100, 2)", (696.94, 0, None), (timed_mm(1050, 2), 0, None)),
-    "2 s at -50 %": Move("tank_drive.on_for_seconds(-50, -50, 2)", (-428.01, 0, None), (timed_mm(-525, 2), 0, None)),
+    "2 s at 100 %": Move(
+        "tank_drive.on_for_seconds(100, 100, 2)", (696.94, 0, None), (timed_mm(1050, 2), 0, None)
+    ),
+    "2 s at -50 %": Move(
+        "tank_drive.on_for_seconds(-50, -50, 2)", (-428.01, 0, None), (timed_mm(-525, 2), 0, None)
+    ),
     "1.51 s is 45 old ticks": Move(
         "tank_drive.on_for_seconds(50, 50, 1.51)",
         ((28 * 171 + 27 * 525) / 30 * MM_PER_DEG, 0, 632.1),
@@ -52,17 +60,27 @@ MOVES = {
     "1 rotation at 50 %": Move(
         "tank_drive.on_for_rotations(50, 50, 1)", (86.55, 0, 424.2), (TURN_MM, 0, 360.0)
     ),
-    "2 rotations at 40 %": Move("tank_drive.on_for_rotations(40, 40, 2)", (177.88, 0, None), (2 * TURN_MM, 0, 720)),
-    "1 rotation at 20 %": Move("tank_drive.on_for_rotations(20, 20, 1)", (88.03, 0, None), (TURN_MM, 0, 360)),
-    "5 rotations at 50 %": Move("tank_drive.on_for_rotations(50, 50, 5)", (437.18, 0, None), (5 * TURN_MM, 0, 1800)),
-    "turn on the spot": Move("tank_turn.on_for_rotations(-100, 40, 1.6)", (0, 91.47, None), (0, TURN, -576)),
+    "2 rotations at 40 %": Move(
+        "tank_drive.on_for_rotations(40, 40, 2)", (177.88, 0, None), (2 * TURN_MM, 0, 720)
+    ),
+    "1 rotation at 20 %": Move(
+        "tank_drive.on_for_rotations(20, 20, 1)", (88.03, 0, None), (TURN_MM, 0, 360)
+    ),
+    "5 rotations at 50 %": Move(
+        "tank_drive.on_for_rotations(50, 50, 5)", (437.18, 0, None), (5 * TURN_MM, 0, 1800)
+    ),
+    "turn on the spot": Move(
+        "tank_turn.on_for_rotations(-100, 40, 1.6)", (0, 91.47, None), (0, TURN, -576)
+    ),
     "encoder runs on after a move": Move(
         "import time\ntank_drive.on_for_rotations(50, 50, 2, block=False)\ntime.sleep(3)",
         ((28 * 171 + 11 * 525) / 30 * MM_PER_DEG, 0, 1771.7),
         (TURN_MM * 2, 0, 720),
     ),
     "from 500 to 100": Move(
-        "m = tank_drive.left_motor\nm.position = 500\nm.on_to_position(20, 100)", (0, 0, 500.93), (-79.629, 62.22, 100)
+        "m = tank_drive.left_motor\nm.position = 500\nm.on_to_position(20, 100)",
+        (0, 0, 500.93),
+        (-79.629, 62.22, 100),
     ),
     "brake and coast": Move(
         "import time\ntank_drive.on(50, 50)\ntime.sleep(1)\ntank_drive.off(brake=False)\ntime.sleep(1)",
@@ -76,10 +94,11 @@ MOVES = {
         (0, 0, None),
     ),
     "the end freezes the robot": Move(
-        "import time\ntank_drive.on(50, 50)\ntime.sleep(1)", ((28 * 171 + 12 * 525) / 30 * MM_PER_DEG, 0, None),
+        "import time\ntank_drive.on(50, 50)\ntime.sleep(1)",
+        ((28 * 171 + 12 * 525) / 30 * MM_PER_DEG, 0, None),
         (timed_mm(525, 1), 0, None),
     ),
-}  # fmt: skip
+}
 
 
 @pytest.mark.quick_cases("*-ev3")
@@ -120,7 +139,9 @@ def test_cost_of_a_call(run: Run, text: str, old_s: float, true_s: float, profil
 
 @pytest.mark.quick_cases("*-ev3-*")
 @pytest.mark.parametrize(("profile", "seconds"), [(OLD, 0.02), ("robolab", 0.02), ("ev3", 0.01)])
-@pytest.mark.parametrize("call", ["colorLeft.color", "colorLeft.color_name", "gyro.angle", "gyro.rate"])
+@pytest.mark.parametrize(
+    "call", ["colorLeft.color", "colorLeft.color_name", "gyro.angle", "gyro.rate"]
+)
 def test_calls_that_cost_twice_as_much(run: Run, profile: str, seconds: float, call: str) -> None:
     assert run(call, profile=profile).ended.time_ns / 1e9 == seconds
 
@@ -144,7 +165,9 @@ STANDS = {
 @pytest.mark.quick_cases("*-robolab")
 @pytest.mark.parametrize("profile", [OLD, *TRUE])
 @pytest.mark.parametrize(("text", "old", "true"), STANDS.values(), ids=STANDS)
-def test_stopping(run: Run, text: str, old: tuple[int, int], true: tuple[int, int], profile: str) -> None:
+def test_stopping(
+    run: Run, text: str, old: tuple[int, int], true: tuple[int, int], profile: str
+) -> None:
     low, high = old if profile == OLD else true
     assert low <= float(run(text, profile=profile, background="Empty_Map").lines[0]) <= high
 
@@ -167,7 +190,9 @@ CREEPS = "import time\ntank_drive.on(0, 0)\ntime.sleep(5)\ntank_drive.off()"
 
 
 @pytest.mark.parametrize(("profile", "creeps"), [(OLD, True), ("robolab", False), ("ev3", False)])
-def test_motor_noise_on_a_robot_that_was_told_to_stand(run: Run, profile: str, creeps: bool) -> None:
+def test_motor_noise_on_a_robot_that_was_told_to_stand(
+    run: Run, profile: str, creeps: bool
+) -> None:
     done = run(CREEPS, profile=profile, noise=(0, 100), pose=(1000.0, 500.0, 0.0))
     last = done.run.telemetry.last()
     assert last is not None
@@ -193,7 +218,9 @@ def test_driving_off_the_field(run: Run, profile: str, beyond: bool) -> None:
     world = WorldSpec(background="Empty_Map", solid=PROFILES[profile].solid)
     spec = RunSpec(RobotSpec(), replace(world), PROFILES[profile])
     handle = start_run(
-        Program("p.py", "import time\ntank_drive.on(100, 100)\ntime.sleep(8)", "preloaded"), spec, RunOptions()
+        Program("p.py", "import time\ntank_drive.on(100, 100)\ntime.sleep(8)", "preloaded"),
+        spec,
+        RunOptions(),
     )
     try:
         assert handle.wait(PATIENCE_S) is not None
@@ -230,7 +257,12 @@ def test_old_ultrasonic_measures_every_third_tick(run: Run) -> None:
         "for i in range(12):\n    time.sleep(1 / 30 - 0.01)\n    print(ultrasonic.distance_centimeters)"
     )
     old, true = (
-        [float(line) for line in run(text, profile=name, pose=(1000.0, 500.0, 0.0), background="Empty_Map").lines]
+        [
+            float(line)
+            for line in run(
+                text, profile=name, pose=(1000.0, 500.0, 0.0), background="Empty_Map"
+            ).lines
+        ]
         for name in (OLD, "robolab")
     )
     assert len(set(true)) == 12

@@ -82,7 +82,11 @@ def test_a_run_remembers_it(mount: Mount) -> None:
 @each_mount
 def test_a_robots_file_says_all_of_it_and_may_leave_it_out(mount: Mount, tmp_path: Path) -> None:
     sensor = sensor_of(mount)
-    moved = {field.name: getattr(sensor, field.name) + 1.0 for field in fields(sensor) if field.type == "float"}
+    moved = {
+        field.name: getattr(sensor, field.name) + 1.0
+        for field in fields(sensor)
+        if field.type == "float"
+    }
     robot = robot_with(mount, replace(sensor, **moved))
     save_robot(robot, tmp_path / "robot.toml")
     assert load_robot(str(tmp_path / "robot.toml")) == robot
@@ -113,7 +117,11 @@ def read_out(kind: SensorKind) -> StoredRun:
     sensor = sensor_of(mount)
     spec = run_of(robot_with(mount, sensor))
     met = f"{kind.names(sensor)[0]} > -1000"
-    handle = start_run(Program("reads.py", READS_ALL, "none"), spec, RunOptions(live=True, speed=0.0, breaks=(met,)))
+    handle = start_run(
+        Program("reads.py", READS_ALL, "none"),
+        spec,
+        RunOptions(live=True, speed=0.0, breaks=(met,)),
+    )
     try:
         driver = Driver(handle)
         assert driver.paused().detail == met
@@ -141,7 +149,9 @@ def test_it_is_in_the_telemetry_as_measured(kind: SensorKind) -> None:
     assert all(name.startswith(f"{sensor.name}_") for name in names)
     last = run.telemetry.last()
     assert last is not None
-    measured = kind.measure(sensor, instant_of(last, run.spec, run.spec.world.noise), run.spec, open_mat(run))
+    measured = kind.measure(
+        sensor, instant_of(last, run.spec, run.spec.world.noise), run.spec, open_mat(run)
+    )
     assert frame.iloc[-1][list(names)].tolist() == list(measured)
 
 
@@ -152,9 +162,15 @@ def test_the_panels_show_it(kind: SensorKind) -> None:
     assert last is not None
     instant, field = instant_of(last, run.spec, run.spec.world.noise), open_mat(run)
     (sensor,) = run.spec.robot.sensors
-    now = Snapshot(RunPhase.ENDED, None, run.spec, field, instant, line=0, speed=1.0, pen_down=False)
+    now = Snapshot(
+        RunPhase.ENDED, None, run.spec, field, instant, line=0, speed=1.0, pen_down=False
+    )
     if mount_of(kind).standard:
-        shown: dict[str, object] = {"color": now.colors, "ultrasonic": now.ultrasonic_mm, "gyro": now.spec.robot.gyro}
+        shown: dict[str, object] = {
+            "color": now.colors,
+            "ultrasonic": now.ultrasonic_mm,
+            "gyro": now.spec.robot.gyro,
+        }
         assert shown[next(name for name, one in SENSORS.items() if one is kind)]
     else:
         assert set(now.further) == set(kind.names(sensor))

@@ -80,7 +80,9 @@ def test_tight_loops_agree_with_the_full_tick() -> None:
                 self.tick_once()
 
     spec = simulation(ROBOLAB).spec
-    assert script(Slow(spec, MemorySink()), 10_000) == script(Simulation(spec, MemorySink()), 10_000)
+    assert script(Slow(spec, MemorySink()), 10_000) == script(
+        Simulation(spec, MemorySink()), 10_000
+    )
 
 
 @pytest.mark.parametrize("profile", [ROBOLAB, NBEV3DEVSIM], ids=lambda profile: profile.name)

@@ -40,7 +40,10 @@ ROBOT = RobotSpec(
     touch_sensors=(TouchSpec(port="in3"),),
     infrared=InfraredSpec(port="in4"),
 )
-WORLD = WorldSpec(beacon=BeaconSpec(900.0, 500.0, 3), remote=(RemotePress(("top_left", "top_right"), 1.0, 2.0, 2),))
+WORLD = WorldSpec(
+    beacon=BeaconSpec(900.0, 500.0, 3),
+    remote=(RemotePress(("top_left", "top_right"), 1.0, 2.0, 2),),
+)
 RUN = RunSpec(ROBOT, WORLD, PROFILES["ev3"])
 
 MISTAKES: dict[str, Callable[[], Any]] = {
@@ -52,11 +55,15 @@ MISTAKES: dict[str, Callable[[], Any]] = {
     "high end below the start": lambda: MotorSpec("outA", high_deg=-1.0),
     "no room between the ends": lambda: MotorSpec("outA", low_deg=0.0, high_deg=0.0),
     "gear without teeth": lambda: RobotSpec(gear_ratio=0.0),
-    "pressed by a wheel": lambda: replace(ROBOT, touch_sensors=(TouchSpec(port="in3", pressed_by="outB"),)),
+    "pressed by a wheel": lambda: replace(
+        ROBOT, touch_sensors=(TouchSpec(port="in3", pressed_by="outB"),)
+    ),
     "pressed by no motor": lambda: RobotSpec(
         ultrasonic=None, touch_sensors=(TouchSpec(pressed_by="outA", pressed_at="high"),)
     ),
-    "pressed at no end": lambda: replace(ROBOT, touch_sensors=(TouchSpec(port="in3", pressed_by="outA"),)),
+    "pressed at no end": lambda: replace(
+        ROBOT, touch_sensors=(TouchSpec(port="in3", pressed_by="outA"),)
+    ),
     "pressed on no port": lambda: TouchSpec(pressed_by="in2"),
     "pressed in the middle": lambda: TouchSpec(pressed_at="middle"),
     "two sensors on a port": lambda: RobotSpec(touch_sensors=(TouchSpec(port="in2"),)),
@@ -97,8 +104,9 @@ def test_what_is_as_usual_is_not_written_down() -> None:
     robot = to_plain(RUN)["robot"]
     assert not {"left_reversed", "right_reversed", "gear_ratio"} & robot.keys()
     assert (robot["extra_motors"][0], list(robot["touch_sensors"][0])) == (
-        {"port": "outA", "kind": "medium"}, ["name", "port", "x_mm", "y_mm", "width_mm"]
-    )  # fmt: skip
+        {"port": "outA", "kind": "medium"},
+        ["name", "port", "x_mm", "y_mm", "width_mm"],
+    )
 
 
 def test_a_run_written_before_there_were_such_parts_can_be_read() -> None:
@@ -172,7 +180,9 @@ def test_a_beacon_behind_an_obstacle_is_not_found() -> None:
 
 
 def test_proximity_is_the_nearest_surface_in_percent_of_70_cm() -> None:
-    values = [infrared.proximity(Pose(x_mm, 500.0, 0.0), InfraredSpec(), BOX) for x_mm in (510.0, 230.0)]
+    values = [
+        infrared.proximity(Pose(x_mm, 500.0, 0.0), InfraredSpec(), BOX) for x_mm in (510.0, 230.0)
+    ]
     assert values == [10, 50]
     assert infrared.proximity(Pose(1000.0, 500.0, 0.0), InfraredSpec(), BOX) == 100
 

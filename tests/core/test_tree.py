@@ -50,7 +50,9 @@ def test_there_is_nothing_at_other_paths(path: str) -> None:
 
 
 def test_another_value_leaves_the_rest() -> None:
-    changed = tree.put_all(RUN, {"world.noise.light": 5, "world.start.x_mm": 7.0, "robot.color_sensors.left.y_mm": 1.0})
+    changed = tree.put_all(
+        RUN, {"world.noise.light": 5, "world.start.x_mm": 7.0, "robot.color_sensors.left.y_mm": 1.0}
+    )
     assert (changed.world.noise.light, changed.world.start) == (5, Pose(7.0, 800.0, 0.0))
     assert [sensor.y_mm for sensor in changed.robot.color_sensors] == [1.0, 30.0]
     assert tree.put(tree.put(changed, "world", RUN.world), "robot", RUN.robot) == RUN
@@ -59,15 +61,37 @@ def test_another_value_leaves_the_rest() -> None:
 @pytest.mark.parametrize(
     ("path", "value", "error", "said"),
     [
-        ("world.noise.light", 129, RobotError, "noise.light: must be a whole number from 0 to 128, got 129"),
+        (
+            "world.noise.light",
+            129,
+            RobotError,
+            "noise.light: must be a whole number from 0 to 128, got 129",
+        ),
         ("world.walls", 1, RobotError, "walls: must be true or false, got 1"),
-        ("robot.color_sensors.left.port", "in9", RobotError, "left.port: no such port 'in9' (one of in1, in2"),
+        (
+            "robot.color_sensors.left.port",
+            "in9",
+            RobotError,
+            "left.port: no such port 'in9' (one of in1, in2",
+        ),
         ("robot.color_sensors.left.port", "in3", RobotError, "right.port: two sensors are on in3"),
-        ("world.obstacles", (1,), RobotError, "obstacles: must be a table of keys and values, got (1,)"),
-        ("robot.weight", "heavy", RobotError, "weight: must be weightless, light, medium, heavy, or a number"),
+        (
+            "world.obstacles",
+            (1,),
+            RobotError,
+            "obstacles: must be a table of keys and values, got (1,)",
+        ),
+        (
+            "robot.weight",
+            "heavy",
+            RobotError,
+            "weight: must be weightless, light, medium, heavy, or a number",
+        ),
     ],
 )
-def test_a_value_of_python_is_checked(path: str, value: object, error: type[ConfigError], said: str) -> None:
+def test_a_value_of_python_is_checked(
+    path: str, value: object, error: type[ConfigError], said: str
+) -> None:
     with pytest.raises(error) as caught:
         tree.put(RUN, path, value)
     assert str(caught.value).startswith(said)
@@ -89,7 +113,17 @@ def test_plain_data_of_a_run_are_that_run() -> None:
 
 @pytest.mark.parametrize("damage", ["x", [], None, True])
 @pytest.mark.parametrize(
-    "path", ["", "robot", "world", "profile", "world.noise", "world.start", "world.start.x_mm", "robot.pen"]
+    "path",
+    [
+        "",
+        "robot",
+        "world",
+        "profile",
+        "world.noise",
+        "world.start",
+        "world.start.x_mm",
+        "robot.pen",
+    ],
 )
 def test_data_of_another_kind_are_told(path: str, damage: object) -> None:
     plain: dict[str, object] = json.loads(json.dumps(tree.to_plain(RUN)))
@@ -117,7 +151,9 @@ NEW = """\
 @pytest.fixture
 def with_friction(tmp_path: Path) -> Said:
     """Return what runs a command of a copy of the package whose world has one more value."""
-    shutil.copytree(ROOT / "tuisim", tmp_path / "tuisim", ignore=shutil.ignore_patterns("__pycache__"))
+    shutil.copytree(
+        ROOT / "tuisim", tmp_path / "tuisim", ignore=shutil.ignore_patterns("__pycache__")
+    )
     table = tmp_path / "tuisim" / "core" / "spec.py"
     before = table.read_text()
     assert before.count(AFTER) == 1
@@ -168,7 +204,9 @@ save_world(build_run_spec(Settings({"friction": 0.25})), "saved.toml")
 @pytest.mark.slow
 def test_one_more_value_of_the_world_is_one_line(with_friction: Said, tmp_path: Path) -> None:
     def friction() -> float:
-        return float(json.loads(with_friction("runs", "show", "last", "--json"))["values"]["friction"])
+        return float(
+            json.loads(with_friction("runs", "show", "last", "--json"))["values"]["friction"]
+        )
 
     (tmp_path / "a.py").write_text("print('A: 1')\n")
     (tmp_path / "b.py").write_text("# %%sim_magic --friction 0.125\nprint('A: 1')\n")
@@ -199,7 +237,7 @@ def test_one_more_value_of_the_world_is_one_line(with_friction: Said, tmp_path: 
     assert "friction" in with_friction("guide", "settings")
     completed = with_friction(
         _TUISIM_COMPLETE="bash_complete", COMP_WORDS="tuisim run --fric", COMP_CWORD="2"
-    )  # fmt: skip
+    )
     assert "--friction" in completed
 
 

@@ -116,11 +116,18 @@ def test_one_of_several_is_told_by_its_place() -> None:
         ("color", "Red", "red", "red"),
         ("part", "none", DriftSpec(), "none"),
         ("part", "typical", TYPICAL, "typical"),
-        ("part", "none, gyro_dps=2 slip_pc=typical", DriftSpec(slip_pc=1.0, gyro_dps=2.0), "slip_pc=1 gyro_dps=2"),
+        (
+            "part",
+            "none, gyro_dps=2 slip_pc=typical",
+            DriftSpec(slip_pc=1.0, gyro_dps=2.0),
+            "slip_pc=1 gyro_dps=2",
+        ),
         ("part", "typical gyro_dps=0", replace(TYPICAL, gyro_dps=0.0), "typical gyro_dps=0"),
     ],
 )
-def test_an_option_or_a_form_gives_it_and_shows_it(kind: str, text: str, found: object, again: str) -> None:
+def test_an_option_or_a_form_gives_it_and_shows_it(
+    kind: str, text: str, found: object, again: str
+) -> None:
     value = parse(KINDS[kind], text, "-v")
     assert value == found
     assert KINDS[kind].to_text(value) == again
@@ -136,7 +143,11 @@ def test_an_option_or_a_form_gives_it_and_shows_it(kind: str, text: str, found: 
         ("numbers", "1 up", "-v: must be 1 to 2 numbers from -9 to 9, got '1 up'"),
         ("choice", "c", "-v: no such letter 'c' (one of 1, b)"),
         ("color", "reed", "-v: no such colour 'reed' (did you mean red"),
-        ("part", "much", "-v: no such value 'much' (none or typical, then values such as wheel_pc=1)"),
+        (
+            "part",
+            "much",
+            "-v: no such value 'much' (none or typical, then values such as wheel_pc=1)",
+        ),
         ("part", "slip_pc=1 typical", "-v: no such value 'typical' (none or typical, then"),
         ("part", "gyro=1", "-v gyro: no such key (did you mean gyro_dps?)"),
         ("part", "gyro_dps=x", "-v gyro_dps: must be typical, or a number from 0 to 20, got 'x'"),
@@ -155,6 +166,11 @@ def test_a_stored_run_may_have_a_seed_that_no_option_gives() -> None:
 
 
 def test_numbers_and_long_texts_are_shown_short() -> None:
-    assert [number_text(value) for value in (0.1 + 0.2, -0.0, 1e9, 2.50)] == ["0.3", "0", "1e+09", "2.5"]
+    assert [number_text(value) for value in (0.1 + 0.2, -0.0, 1e9, 2.50)] == [
+        "0.3",
+        "0",
+        "1e+09",
+        "2.5",
+    ]
     assert len(shown("a" * 999)) < 70
     assert shown(False) == "false"

@@ -19,7 +19,13 @@ Speed = type("Speed", (types.SimpleNamespace,), {})
 class Wheel:
     def __init__(self, lab):
         self.lab, self.v, self.p, self.target, self.end = lab, 0.0, 0.0, 0.0, 0.0
-        self.speed_sp, self.position_sp, self.cmd, self.state, self.polarity = 0, 0, "", "", "normal"
+        self.speed_sp, self.position_sp, self.cmd, self.state, self.polarity = (
+            0,
+            0,
+            "",
+            "",
+            "normal",
+        )
 
     def __setattr__(self, name, value):
         super().__setattr__(name, int(value) if name in ("speed_sp", "position_sp") else value)
@@ -31,7 +37,11 @@ class Wheel:
             self.v = min(whole(self.v), 1050)
 
     def roll(self, tick):
-        d, sign, back = self.v * (1 / 30), -1 if self.polarity == "inversed" else 1, self.position_sp < 0
+        d, sign, back = (
+            self.v * (1 / 30),
+            -1 if self.polarity == "inversed" else 1,
+            self.position_sp < 0,
+        )
         if self.cmd == "position":
             d = -d if back else d
             self.p += d
@@ -106,7 +116,9 @@ class Wheel:
         return wanted and (self.wait_until("running", 100), self.wait_while())
 
     wait_until_not_moving = partialmethod(wait_while, "running")
-    position = property(lambda self: plain(self.p), lambda self, value: setattr(self, "p", float(int(value))))
+    position = property(
+        lambda self: plain(self.p), lambda self, value: setattr(self, "p", float(int(value)))
+    )
     speed = property(lambda self: plain(self.v))
 
 
@@ -184,17 +196,31 @@ class Lab(Clock):
 
     def names(self):
         def part(**reads):
-            costs = {name: property(lambda _, read=read: self.sleep_ms(*read)) for name, read in reads.items()}
+            costs = {
+                name: property(lambda _, read=read: self.sleep_ms(*read))
+                for name, read in reads.items()
+            }
             return type("Part", (), costs)()
 
-        tank, steer = (lambda left, right, kind=kind: kind(self, left, right) for kind in (Tank, Steering))
+        tank, steer = (
+            lambda left, right, kind=kind: kind(self, left, right) for kind in (Tank, Steering)
+        )
         eye = part(reflected_light_intensity=(10, lambda: 255), color=(20, lambda: 6))
         native = {"RPS": 525, "RPM": 525 / 60, "DPS": 525 / 360, "NativeUnits": 1, "Percent": 10.5}
-        found = {f"Speed{name}": lambda number, dps=dps: Speed(dps=number * dps) for name, dps in native.items()}
+        found = {
+            f"Speed{name}": lambda number, dps=dps: Speed(dps=number * dps)
+            for name, dps in native.items()
+        }
         return found | {
-            "MoveTank": tank, "MoveSteering": steer, "OUTPUT_B": "outB", "OUTPUT_C": "outC", "colorLeft": eye,
-            "tank_drive": tank("outB", "outC"), "tank_turn": steer("outB", "outC"), "Motor": self.ports.get,
+            "MoveTank": tank,
+            "MoveSteering": steer,
+            "OUTPUT_B": "outB",
+            "OUTPUT_C": "outC",
+            "colorLeft": eye,
+            "tank_drive": tank("outB", "outC"),
+            "tank_turn": steer("outB", "outC"),
+            "Motor": self.ports.get,
             "LargeMotor": self.ports.get,
             "ultrasonic": part(distance_centimeters=(10, lambda: 255.0)),
             "gyro": part(angle=(20, lambda: round(-math.degrees(self.turned)))),
-        }  # fmt: skip
+        }

@@ -20,10 +20,14 @@ class Clock:
             "Thread": lambda **given: Thread(self, **given),
             "get_clock": lambda: plain(self.tick / 30),
             "sleep": lambda seconds: self.sleep_ms(1000 * seconds),
-            "print": lambda *parts: self.lines.append((self.tick, self.ms, " ".join(map(str, parts)))),
+            "print": lambda *parts: self.lines.append(
+                (self.tick, self.ms, " ".join(map(str, parts)))
+            ),
         }
         module = types.SimpleNamespace(**found)
-        exec(program, {**found, "__builtins__": {**vars(builtins), "__import__": lambda *_: module}})
+        exec(
+            program, {**found, "__builtins__": {**vars(builtins), "__import__": lambda *_: module}}
+        )
         for thread in self.threads:
             thread.join()
 
@@ -48,7 +52,9 @@ class Clock:
 class Thread:
     def __init__(self, lab, target, args=()):
         self.lab, self.done, self.joiners = lab, False, []
-        self.thread = threading.Thread(target=lambda gate: (gate.acquire(), target(*args), self.finish()), daemon=True)
+        self.thread = threading.Thread(
+            target=lambda gate: (gate.acquire(), target(*args), self.finish()), daemon=True
+        )
 
     def start(self):
         self.thread._args = (self.lab.wake_at(self.lab.ms),)

@@ -37,7 +37,11 @@ def ahead(mm: float, line: int = 0) -> Step:
 def turn(degrees: float, line: int = 0) -> Step:
     """Turn on the spot, counter-clockwise, with 90 degrees per second."""
     dps = 90 * 180 / 56
-    return drive(-dps, dps, degrees / 90, line) if degrees > 0 else drive(dps, -dps, -degrees / 90, line)
+    return (
+        drive(-dps, dps, degrees / 90, line)
+        if degrees > 0
+        else drive(dps, -dps, -degrees / 90, line)
+    )
 
 
 def wait(seconds: float, line: int = 0) -> Step:
@@ -56,12 +60,16 @@ def is_told(text: str, line: int = 0) -> Step:
 class Run:
     """A run that is being recorded."""
 
-    def __init__(self, store: RunStore, world: WorldSpec, text: str, prelude: str = "preloaded") -> None:
+    def __init__(
+        self, store: RunStore, world: WorldSpec, text: str, prelude: str = "preloaded"
+    ) -> None:
         spec = RunSpec(RobotSpec(weight=0.0, pen=PenSpec(down=True)), world, ROBOLAB)
         self.new: NewRun = store.new_run(Program("task.py", text, prelude), spec)
         telemetry = TelemetryWriter(self.new.folder)
         simulation = Simulation(spec, telemetry)
-        self.recorder = Recorder(store, self.new, spec, telemetry, OutputWriter(self.new.folder), simulation)
+        self.recorder = Recorder(
+            store, self.new, spec, telemetry, OutputWriter(self.new.folder), simulation
+        )
 
     def do(self, steps: Sequence[Step]) -> None:
         for step in steps:
@@ -78,5 +86,7 @@ def goals_of(folder: Path, text: str) -> tuple[Goal, ...]:
     return load_goals(path).goals
 
 
-def world(x_mm: float = 500.0, y_mm: float = 500.0, heading_deg: float = 0.0, **more: object) -> WorldSpec:
+def world(
+    x_mm: float = 500.0, y_mm: float = 500.0, heading_deg: float = 0.0, **more: object
+) -> WorldSpec:
     return WorldSpec(start=Pose(x_mm, y_mm, heading_deg), **more)  # type: ignore[arg-type]

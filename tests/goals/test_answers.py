@@ -11,7 +11,16 @@ from tests.goals.recorded import goals_of
 from tuisim.goals.answers import ASK, answer_lines, line_like
 
 PATTERNS = [
-    *("house", "^done$", "(?i)black", r"\d+ mm", r"[A-Z]\w+: [^x]", "(?:yes|no) .*", r"^(\w+) \1$", r"a{3,}\."),
+    *(
+        "house",
+        "^done$",
+        "(?i)black",
+        r"\d+ mm",
+        r"[A-Z]\w+: [^x]",
+        "(?:yes|no) .*",
+        r"^(\w+) \1$",
+        r"a{3,}\.",
+    ),
     *(r"\bgrey\b", r"^\s*[^\s\d]+\S$", "(?!x).", "[^a-zA-Z1 .:]"),
 ]
 

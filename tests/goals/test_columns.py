@@ -21,7 +21,9 @@ def brick(stream: Stream, text: str) -> Step:
 
 
 BEEP = brick(Stream.SPEECH, "[beep]")
-RED = brick(Stream.LED, led_row({"left red": 255, "left green": 0, "right red": 0, "right green": 0}))
+RED = brick(
+    Stream.LED, led_row({"left red": 255, "left green": 0, "right red": 0, "right green": 0})
+)
 SCREEN = brick(Stream.CONSOLE, console_row(TextScreen(22, 12, ("", "Hello 5"))))
 OK = says("ok")
 
@@ -30,7 +32,19 @@ def _presses(recorder: Recorder) -> None:
     recorder.act("set_buttons", pressed=["enter"])
 
 
-WAY = (ahead(100, 1), says("Grey: 5"), says("Grey: 12"), BEEP, _presses, wait(1), RED, OK, SCREEN, OK, wait(0.5))
+WAY = (
+    ahead(100, 1),
+    says("Grey: 5"),
+    says("Grey: 12"),
+    BEEP,
+    _presses,
+    wait(1),
+    RED,
+    OK,
+    SCREEN,
+    OK,
+    wait(0.5),
+)
 """Ahead from x = 500 to 600 mm in 0.57 s."""
 
 GOALS = {
@@ -50,8 +64,14 @@ GOALS = {
         "The robot was not 300 to 360 mm from the nearest obstacle or wall at 0.00 s.",
     ),
     "counted lines": ("count = { of = 'print matches ^ok', at_least = 2, at_most = 2 }", ""),
-    "too many lines": ("count = { of = 'print matches ^ok', at_most = 1 }", "came 2 times, at most 1 are asked for."),
-    "too few samples": ("count = { of = 'sample Grey', at_least = 3 }", "came 2 times, at least 3 are asked for."),
+    "too many lines": (
+        "count = { of = 'print matches ^ok', at_most = 1 }",
+        "came 2 times, at most 1 are asked for.",
+    ),
+    "too few samples": (
+        "count = { of = 'sample Grey', at_least = 3 }",
+        "came 2 times, at least 3 are asked for.",
+    ),
     "a column": ("count = { of = 'x_mm > 550', at_least = 1, at_most = 1 }", ""),
     "a sound": ("when = 'sound matches beep'", ""),
     "another sound": ("when = 'sound matches song'", "sound matches song never became true."),
@@ -75,7 +95,10 @@ GOALS = {
     "none, but one was met": ("none = ['never', 'there']", "“there” was met."),
 }
 GOALS |= {
-    "printed at a place": ("print = { lines = 'ok', x_mm = [[590, 610]], y_mm = [[490, 510]] }", ""),
+    "printed at a place": (
+        "print = { lines = 'ok', x_mm = [[590, 610]], y_mm = [[490, 510]] }",
+        "",
+    ),
     "printed too low": (
         "print = { lines = 'ok', x_mm = [[590, 610]], y_mm = [[600, 700]] }",
         "the robot was at x = 600 mm and y = 500 mm; it must be at x from 590 to 610 mm and y from 600 to 700 mm.",
@@ -102,4 +125,6 @@ def test_a_goal_on_what_happened(lines: str, reason: str, tmp_path: Path, home: 
     run = Run(RunStore(), world(obstacles=(Obstacle(1000, 0, 50, 1143),)), "")
     run.do(WAY)
     found = judge(goals, run.end())[0]
-    assert (found.state, reason in found.reason) == ("missed" if reason else "met", True), found.reason
+    assert (found.state, reason in found.reason) == ("missed" if reason else "met", True), (
+        found.reason
+    )

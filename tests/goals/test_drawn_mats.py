@@ -31,7 +31,9 @@ def test_bands_are_where_and_as_grey_as_is_said() -> None:
         mat = drawn_mat("bands", seed)
         row = mat.pixels[FIELD_HEIGHT_MM - 500, :, 0].astype(int)
         edges = np.flatnonzero(np.diff(row)) + 1
-        assert edges.tolist() == [edge for left_mm, right_mm, _ in mat.bands for edge in (left_mm, right_mm)]
+        assert edges.tolist() == [
+            edge for left_mm, right_mm, _ in mat.bands for edge in (left_mm, right_mm)
+        ]
         assert [level for *_, level in mat.bands] == [
             round(100 * row[int(left_mm)] / 255, 1) for left_mm, *_ in mat.bands
         ]
@@ -46,7 +48,10 @@ def test_a_line_begins_at_the_robot_and_stays_on_the_mat() -> None:
         black = mat.pixels[:, :, 0] == 0
         rows = [np.flatnonzero(black[:, column]) for column in range(160, 2190)]
         assert all(len(found) and np.diff(found).max() == 1 for found in rows)
-        assert min(found[0] for found in rows) > 100 and max(found[-1] for found in rows) < FIELD_HEIGHT_MM - 100
+        assert (
+            min(found[0] for found in rows) > 100
+            and max(found[-1] for found in rows) < FIELD_HEIGHT_MM - 100
+        )
         # No bend is a corner.
         middles = [found.mean() for found in rows]
         assert max(abs(after - before) for before, after in pairwise(middles)) < 3
@@ -60,6 +65,10 @@ def test_the_lines_are_a_world_of_a_task(kind: str) -> None:
     (found,) = tomllib.loads("\n".join(lines))["also"]
     assert (found["background"], found["hidden"]) == ("m.png", True)
     # The goal of the bands is a remark: its name is the author's.
-    remarks = [line.removeprefix("# ") for line in lines if line.startswith("# ") and "band from" not in line]
+    remarks = [
+        line.removeprefix("# ")
+        for line in lines
+        if line.startswith("# ") and "band from" not in line
+    ]
     goals = tomllib.loads("\n".join([*lines, *remarks]))["also"][0].get("goal", [])
     assert [goal["log"]["levels"][-1] for goal in goals] == ([0] if kind == "bands" else [])

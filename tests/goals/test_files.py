@@ -29,12 +29,24 @@ BAD = {
         "line 1: goal: there are no goals (begin each with a line [[goal]]; see `tuisim guide goal-files`)",
     ),
     "goals are no tables": ("goal = 'a'", "line 1: goal: must be a list, got 'a'"),
-    "goal is no table": ("seed = 1\ngoal = ['a']", "line 2: goal[1]: must be a table of keys and values, got 'a'"),
+    "goal is no table": (
+        "seed = 1\ngoal = ['a']",
+        "line 2: goal[1]: must be a table of keys and values, got 'a'",
+    ),
     "no name": ("\n[[goal]]\nfinish = true", "line 2: goal[1].name: is missing"),
-    "name is no text": ("[[goal]]\nname = 5\nfinish = true", "line 2: goal[1].name: must be text, got 5"),
-    "long name": (f"[[goal]]\nname = '{'n' * 61}'", "line 2: goal[1].name: is too long, 61 characters (at most 60)"),
+    "name is no text": (
+        "[[goal]]\nname = 5\nfinish = true",
+        "line 2: goal[1].name: must be text, got 5",
+    ),
+    "long name": (
+        f"[[goal]]\nname = '{'n' * 61}'",
+        "line 2: goal[1].name: is too long, 61 characters (at most 60)",
+    ),
     "no condition": (goal(), "line 5: goal[2]: has no condition (one of reach, pass,"),
-    "unknown key": (goal("finsh = true"), "line 7: goal[2].finsh: no such key (did you mean finish or "),
+    "unknown key": (
+        goal("finsh = true"),
+        "line 7: goal[2].finsh: no such key (did you mean finish or ",
+    ),
     "unknown key of a condition": (
         goal("reach = { x_m = 5 }"),
         "line 7: goal[2].reach.x_m: no such key (did you mean x_mm or y_mm?)",
@@ -46,8 +58,14 @@ BAD = {
     ),
     "unknown mat": (f"\nbackground = 'Lop'\n{GOOD}", "line 2: background: no such mat"),
     "false": (goal("finish = false"), "line 7: goal[2].finish: cannot be false (leave it out)"),
-    "condition is no table": (goal("reach = 5"), "line 7: goal[2].reach: must be a table of keys and values, got 5"),
-    "table needed": (goal("reach = true"), "line 7: goal[2].reach: names no place and no heading (give x_mm,"),
+    "condition is no table": (
+        goal("reach = 5"),
+        "line 7: goal[2].reach: must be a table of keys and values, got 5",
+    ),
+    "table needed": (
+        goal("reach = true"),
+        "line 7: goal[2].reach: names no place and no heading (give x_mm,",
+    ),
     "beyond the field": (
         goal("reach = { x_mm = 2400 }"),
         "line 7: goal[2].reach.x_mm: must be a number from 0 to 2362, got 2400",
@@ -73,7 +91,10 @@ BAD = {
         goal("outside = { x_mm = 0, y_mm = 0, width_mm = 2362, height_mm = 1143 }"),
         "covers the whole field",
     ),
-    "area without size": (goal("inside = { x_mm = 0, y_mm = 0 }"), "goal[2].inside: has no size (give width_mm"),
+    "area without size": (
+        goal("inside = { x_mm = 0, y_mm = 0 }"),
+        "goal[2].inside: has no size (give width_mm",
+    ),
     "area of two shapes": (
         goal("inside = { x_mm = 0, y_mm = 0, radius_mm = 5, width_mm = 5 }"),
         "goal[2].inside.radius_mm: is given together",
@@ -82,25 +103,55 @@ BAD = {
         goal("inside = { x_mm = 0, y_mm = 0, radius_mm = 5, part = 'head' }"),
         "goal[2].inside.part: no such value 'head' (one of centre, body)",
     ),
-    "not a number": (goal("reach = { x_mm = '5' }"), "goal[2].reach.x_mm: must be a number from 0 to 2362, got '5'"),
-    "infinite": (goal("reach = { x_mm = inf }"), "goal[2].reach.x_mm: must be a number from 0 to 2362, got inf"),
-    "invalid regex": (goal("print = ['ok', '(']"), "line 7: goal[2].print.lines[2]: '(' is no regular expression: mis"),
+    "not a number": (
+        goal("reach = { x_mm = '5' }"),
+        "goal[2].reach.x_mm: must be a number from 0 to 2362, got '5'",
+    ),
+    "infinite": (
+        goal("reach = { x_mm = inf }"),
+        "goal[2].reach.x_mm: must be a number from 0 to 2362, got inf",
+    ),
+    "invalid regex": (
+        goal("print = ['ok', '(']"),
+        "line 7: goal[2].print.lines[2]: '(' is no regular expression: mis",
+    ),
     "invalid regex of a dialogue": (
         goal("dialogue = [{ answer = '5', reply = '*' }]"),
         "goal[2].dialogue.turns[1].reply: '*' is no regular",
     ),
-    "turn without answer": (goal("dialogue = [{ reply = '5' }]"), "goal[2].dialogue.turns[1].answer: is missing"),
+    "turn without answer": (
+        goal("dialogue = [{ reply = '5' }]"),
+        "goal[2].dialogue.turns[1].answer: is missing",
+    ),
     "no levels": (goal("log = { name = 'a' }"), "line 7: goal[2].log.levels: is missing"),
-    "name of no sample": (goal("log = { name = 'a b', levels = [1] }"), "goal[2].log.name: 'a b' cannot be the name"),
-    "a keyword": (goal("use = ['tank_drive.on', 'for']"), "goal[2].use.calls[2]: 'for' is a keyword, which no program"),
-    "a definition": (goal("avoid = 'def'"), "goal[2].avoid.calls[1]: 'def' is a keyword, which no program can call"),
-    "name of no call": (goal("use = ['f(x)']"), "goal[2].use.calls[1]: 'f(x)' is not the name of a call"),
-    "no line described": (goal("follow = 'left'"), "goal[2].follow: does not describe the line (give darker_than"),
+    "name of no sample": (
+        goal("log = { name = 'a b', levels = [1] }"),
+        "goal[2].log.name: 'a b' cannot be the name",
+    ),
+    "a keyword": (
+        goal("use = ['tank_drive.on', 'for']"),
+        "goal[2].use.calls[2]: 'for' is a keyword, which no program",
+    ),
+    "a definition": (
+        goal("avoid = 'def'"),
+        "goal[2].avoid.calls[1]: 'def' is a keyword, which no program can call",
+    ),
+    "name of no call": (
+        goal("use = ['f(x)']"),
+        "goal[2].use.calls[1]: 'f(x)' is not the name of a call",
+    ),
+    "no line described": (
+        goal("follow = 'left'"),
+        "goal[2].follow: does not describe the line (give darker_than",
+    ),
     "nothing that follows": (
         goal("follow = { darker_than = 5 }"),
         "goal[2].follow: does not say what follows the line",
     ),
-    "no picture": (goal("draw = { share = 0.5 }"), "goal[2].draw: needs a picture (give image or lines_mm, not both)"),
+    "no picture": (
+        goal("draw = { share = 0.5 }"),
+        "goal[2].draw: needs a picture (give image or lines_mm, not both)",
+    ),
     "picture missing": (
         goal("draw = { image = 'none.png' }"),
         "line 7: goal[2].draw.image: {folder}/none.png: cannot be read: No such",
@@ -109,12 +160,18 @@ BAD = {
         goal("draw = { image = 'it.toml' }"),
         "draw.image: {folder}/it.toml: is not a readable image",
     ),
-    "picture is white": (goal("draw = { image = 'white.png' }"), "draw.image: {folder}/white.png: has no dark pixels"),
+    "picture is white": (
+        goal("draw = { image = 'white.png' }"),
+        "draw.image: {folder}/white.png: has no dark pixels",
+    ),
     "line of one point": (
         goal("draw = { lines_mm = [[[1, 1]]] }"),
         "draw.lines_mm[1]: must have 2 to 1000 points, has 1",
     ),
-    "unknown fit": (goal("draw = { image = 'white.png', fit = 'x' }"), "draw.fit: no such value 'x' (one of stretch,"),
+    "unknown fit": (
+        goal("draw = { image = 'white.png', fit = 'x' }"),
+        "draw.fit: no such value 'x' (one of stretch,",
+    ),
     "two of a name": (
         f"{GOOD}[[goal]]\nname = 'a'\nfinish = true\n",
         "line 6: goal[2].name: there are two goals 'a' (give each its own",
@@ -135,12 +192,18 @@ BAD = {
         goal("log = { name = 'x', levels = [1], reading = 'motor', as_read = true }"),
         "log.as_read: is only for readings of colour sensors",
     ),
-    "all of what is not there": (goal("all = ['a', 'c']"), "line 7: goal[2].all: there is no goal 'c' (one of a, b)"),
+    "all of what is not there": (
+        goal("all = ['a', 'c']"),
+        "line 7: goal[2].all: there is no goal 'c' (one of a, b)",
+    ),
     "before what is not there": (
         goal("print = 'x'", "before = 'aa'"),
         "line 8: goal[2].before: there is no goal 'aa' (did you mean a?)",
     ),
-    "circle of one": (goal("any = ['b']"), "line 7: goal[2].any: the goals need each other: 'b' needs 'b'"),
+    "circle of one": (
+        goal("any = ['b']"),
+        "line 7: goal[2].any: the goals need each other: 'b' needs 'b'",
+    ),
     "circle of two": (
         goal("print = 'x'", "after = 'c'", "[[goal]]", "name = 'c'", "all = ['a', 'b']"),
         "line 8: goal[2].after: the goals need each other: 'b' needs 'c' needs 'b'",
@@ -161,15 +224,27 @@ BAD = {
         goal("finish = true", "before = true"),
         "goal[2].before: must be the name of a goal, or a time in seconds, got true",
     ),
-    "negative time": (goal("finish = true", "before = -1"), "goal[2].before: must be a number from 0 to 1e+06, got -1"),
-    "huge time": (goal("finish = true", f"before = 1{'0' * 400}"), "goal[2].before: must be a number from 0 to 1e+06"),
+    "negative time": (
+        goal("finish = true", "before = -1"),
+        "goal[2].before: must be a number from 0 to 1e+06, got -1",
+    ),
+    "huge time": (
+        goal("finish = true", f"before = 1{'0' * 400}"),
+        "goal[2].before: must be a number from 0 to 1e+06",
+    ),
     "times in the wrong order": (
         goal("print = 'x'", "after = 5", "before = 4"),
         "line 8: goal[2].after: must be less than before, 4, got 5",
     ),
     "title is no text": (f"title = 5\n{GOOD}", "line 1: title: must be text, got 5"),
-    "world missing": (f"\nworld = 'none.toml'\n{GOOD}", "line 2: world: there is no such file: {folder}/none.toml"),
-    "world is itself": (f"world = 'it.toml'\n{GOOD}", "line 1: world: {folder}/it.toml is based on itself"),
+    "world missing": (
+        f"\nworld = 'none.toml'\n{GOOD}",
+        "line 2: world: there is no such file: {folder}/none.toml",
+    ),
+    "world is itself": (
+        f"world = 'it.toml'\n{GOOD}",
+        "line 1: world: {folder}/it.toml is based on itself",
+    ),
     "syntax": ("[[goal]]\nname = \n", "is not TOML: Invalid value (at line 2"),
     "unknown reading": (
         "[[goal]]\nname = 'a'\nlog = { name = 'a', levels = [1], reading = 'colour' }\n",
@@ -196,8 +271,14 @@ BAD = {
         "[[also.goal]]\nname = 'b'\ncount = { of = 'gyr_deg > 5', at_least = 1 }\n",
         "also[1].goal[1].count: the robot has no column 'gyr_deg' (did you mean gyro_deg",
     ),
-    "another world without words": (f"{GOOD}[[also]]\nstart = {{ x_mm = 5 }}", "line 5: also[1].where: is missing"),
-    "another world that is the same": (f"{GOOD}[[also]]\nwhere = 'x'", "line 5: also[1]: is the same world"),
+    "another world without words": (
+        f"{GOOD}[[also]]\nstart = {{ x_mm = 5 }}",
+        "line 5: also[1].where: is missing",
+    ),
+    "another world that is the same": (
+        f"{GOOD}[[also]]\nwhere = 'x'",
+        "line 5: also[1]: is the same world",
+    ),
     "another world's goal that there is not": (
         f"{GOOD}[[also]]\nwhere = 'x'\nseed = 1\n",
         "line 7: also[1].seed: no such key",
@@ -210,11 +291,26 @@ BAD = {
         f"{GOOD}[[also]]\nwhere = 'x'\nstart = {{ x_mm = 5 }}\n[[also.goal]]\nname = 'c'\nfinish = true\nafter = 'b'",
         "line 11: also[1].goal[1].after: there is no goal 'b'",
     ),
-    "a comparison that is none": (goal("keep = 'x_mm'"), "line 7: goal[2].keep.comparisons[1]: no comparison: 'x_mm'"),
-    "an instant that is kept": (goal("keep = 'sample Grey'"), "goal[2].keep.comparisons[1]: is only true at instants"),
-    "nothing that is kept": (goal("keep = { share = 0.5 }"), "line 7: goal[2].keep: does not say what is kept"),
-    "a gap from large to small": (goal("keep = { gap_mm = [5, 2] }"), "keep.gap_mm: must be from small to large"),
-    "a count of nothing": (goal("count = { of = 'sample Grey' }"), "line 7: goal[2].count: does not say how often"),
+    "a comparison that is none": (
+        goal("keep = 'x_mm'"),
+        "line 7: goal[2].keep.comparisons[1]: no comparison: 'x_mm'",
+    ),
+    "an instant that is kept": (
+        goal("keep = 'sample Grey'"),
+        "goal[2].keep.comparisons[1]: is only true at instants",
+    ),
+    "nothing that is kept": (
+        goal("keep = { share = 0.5 }"),
+        "line 7: goal[2].keep: does not say what is kept",
+    ),
+    "a gap from large to small": (
+        goal("keep = { gap_mm = [5, 2] }"),
+        "keep.gap_mm: must be from small to large",
+    ),
+    "a count of nothing": (
+        goal("count = { of = 'sample Grey' }"),
+        "line 7: goal[2].count: does not say how often",
+    ),
     "a count that cannot be": (
         goal("count = { of = 'sample Grey', at_least = 3, at_most = 2 }"),
         "line 7: goal[2].count.at_most: must be 3 or more, got 2",
@@ -227,10 +323,22 @@ BAD = {
         goal("structure = 'lops >= 1'"),
         "line 7: goal[2].structure.comparisons[1]: nothing is counted as 'lops' (did you mean loops",
     ),
-    "a structure without a number": (goal("structure = 'loops >= x'"), "structure.comparisons[1]: no comparison"),
-    "a time within which a text is": (goal("use = 'print'", "within_s = 5"), "line 8: goal[2].within_s: does not fit"),
-    "too many points off": (goal("finish = true", "points = -1001"), "goal[2].points: must be a number from -1000 to"),
-    "a button that there is not": (f"press = ['entr@2']\n{GOOD}", "line 1: press[1]: the brick has no button 'entr'"),
+    "a structure without a number": (
+        goal("structure = 'loops >= x'"),
+        "structure.comparisons[1]: no comparison",
+    ),
+    "a time within which a text is": (
+        goal("use = 'print'", "within_s = 5"),
+        "line 8: goal[2].within_s: does not fit",
+    ),
+    "too many points off": (
+        goal("finish = true", "points = -1001"),
+        "goal[2].points: must be a number from -1000 to",
+    ),
+    "a button that there is not": (
+        f"press = ['entr@2']\n{GOOD}",
+        "line 1: press[1]: the brick has no button 'entr'",
+    ),
     "another world's press without a time": (
         f"{GOOD}[[also]]\nwhere = 'x'\npress = ['enter']",
         "line 7: also[1].press[1]: must be BUTTON@FROM or BUTTON@FROM-UNTIL",
@@ -244,7 +352,10 @@ BAD = {
         "line 7: goal[2].print.y_mm[1]: must be from below to above, got 5 to 2",
     ),
     "inputs that are none": (f"inputs = [5]\n{GOOD}", "line 1: inputs[1]: must be text, got 5"),
-    "hidden by a word": (goal("finish = true", "hidden = 'yes'"), "line 8: goal[2].hidden: must be true or false"),
+    "hidden by a word": (
+        goal("finish = true", "hidden = 'yes'"),
+        "line 8: goal[2].hidden: must be true or false",
+    ),
 }
 
 
@@ -300,7 +411,9 @@ def test_a_long_list_is_not_parsed_for_each_of_its_lines(monkeypatch: pytest.Mon
 
 
 def test_world_of_another_file_is_overridden(tmp_path: Path) -> None:
-    (tmp_path / "base.toml").write_text("program = 'follow.py'\nbackground = 'Loop'\nseed = 3\n[start]\nx_mm = 5\n")
+    (tmp_path / "base.toml").write_text(
+        "program = 'follow.py'\nbackground = 'Loop'\nseed = 3\n[start]\nx_mm = 5\n"
+    )
     (tmp_path / "goals.toml").write_text(f"title = 'T'\nworld = 'base.toml'\nseed = 4\n{GOOD}")
     file = load_goals(tmp_path / "goals.toml")
     assert (file.title, file.program) == ("T", str(tmp_path / "follow.py"))
@@ -311,22 +424,34 @@ def test_goals_of_another_file_are_added_to_and_replaced(tmp_path: Path) -> None
     base = "title = 'T'\nbackground = 'Loop'\n" + goal('print = "x"')
     (tmp_path / "base.toml").write_text(base)
     own = "[[goal]]\nname = 'b'\nprint = 'y'\nafter = 'a'\n[[also]]\nwhere = 'x'\nhidden = true\nstart = { x_mm = 5 }\n"
-    (tmp_path / "goals.toml").write_text(f"world = 'base.toml'\n{own}[[also.goal]]\nname = 'c'\nfinish = true\n")
+    (tmp_path / "goals.toml").write_text(
+        f"world = 'base.toml'\n{own}[[also.goal]]\nname = 'c'\nfinish = true\n"
+    )
     file = load_goals(tmp_path / "goals.toml")
     assert (file.title, [goal.name for goal in file.goals]) == ("T", ["a", "b"])
     assert (file.goals[1].condition, file.goals[1].after) == (PrintCondition(("y",)), "a")
     own_world, other = file.worlds
-    assert (own_world.where, own_world.settings, own_world.goals) == ("", {"background": "Loop"}, ("a", "b"))
+    assert (own_world.where, own_world.settings, own_world.goals) == (
+        "",
+        {"background": "Loop"},
+        ("a", "b"),
+    )
     assert (other.hidden, other.settings, other.goals) == (
         True,
         {"background": "Loop", "start.x_mm": 5},
         ("a", "b", "c"),
     )
-    assert [(goal.name, goal.hidden) for goal in file.every_goal] == [("a", False), ("b", False), ("c", True)]
+    assert [(goal.name, goal.hidden) for goal in file.every_goal] == [
+        ("a", False),
+        ("b", False),
+        ("c", True),
+    ]
 
 
 def test_short_forms(tmp_path: Path) -> None:
-    (tmp_path / "goals.toml").write_text(goal("print = 'x'", "all = 'a'", "dialogue = [{ answer = '5' }]"))
+    (tmp_path / "goals.toml").write_text(
+        goal("print = 'x'", "all = 'a'", "dialogue = [{ answer = '5' }]")
+    )
     file = load_goals(tmp_path / "goals.toml")
     assert file.goals[0].condition == FinishCondition()
     together = file.goals[1].condition

@@ -17,7 +17,14 @@ from tuisim.protocol import End
 from tuisim.runs.run_folder import read_run
 from tuisim.runs.store import RunStore, compact_run
 
-STEPS: tuple[Step, ...] = (ahead(200, 1), says("one", 2), says("two", 2), wait(0.5, 3), ahead(200, 4), says("three", 5))
+STEPS: tuple[Step, ...] = (
+    ahead(200, 1),
+    says("one", 2),
+    says("two", 2),
+    wait(0.5, 3),
+    ahead(200, 4),
+    says("three", 5),
+)
 """Past x 700 at 1.14 s, prints, past x 800 at 2.21 s, to x 900 at 2.78 s, prints."""
 
 GOALS = """
@@ -48,14 +55,34 @@ CASES = {
     "all before": ("all = ['a', 'b']\nbefore = 2.2", "met", 2.15, ""),
     "all too late": ("all = ['a', 'b']\nbefore = 2", "missed", 2.0, "not met before 2 s"),
     "before a goal": ("print = 'one'\nbefore = 'b'", "met", 1.14, ""),
-    "not before a goal": ("print = 'three'\nbefore = 'b'", "missed", 2.15, "Not before “b”: no printed line"),
+    "not before a goal": (
+        "print = 'three'\nbefore = 'b'",
+        "missed",
+        2.15,
+        "Not before “b”: no printed line",
+    ),
     "before a goal that is never met": ("print = 'three'\nbefore = 'never'", "met", 2.78, ""),
     "lines of one instant in order": ("print = 'one'\nbefore = 'two'", "met", 1.14, ""),
-    "lines of one instant out of order": ("print = 'two'\nbefore = 'one'", "missed", 1.14, "Not before “one”"),
+    "lines of one instant out of order": (
+        "print = 'two'\nbefore = 'one'",
+        "missed",
+        1.14,
+        "Not before “one”",
+    ),
     "line after another of the same instant": ("print = 'two'\nafter = 'one'", "met", 1.14, ""),
-    "line not after another of the same instant": ("print = 'one'\nafter = 'two'", "missed", 2.78, "No printed line"),
+    "line not after another of the same instant": (
+        "print = 'one'\nafter = 'two'",
+        "missed",
+        2.78,
+        "No printed line",
+    ),
     "after a goal": ("reach = { x_mm = 700 }\nafter = 'a'", "met", 1.09, ""),
-    "after a goal that is never met": ("print = 'one'\nafter = 'never'", "missed", 2.78, "“never” was not met."),
+    "after a goal that is never met": (
+        "print = 'one'\nafter = 'never'",
+        "missed",
+        2.78,
+        "“never” was not met.",
+    ),
     "after a time beyond the run": ("print = 'one'\nafter = 5", "missed", 2.78, "ended before 5 s"),
     "held until a goal": (
         "outside = { x_mm = 790, y_mm = 400, width_mm = 200, height_mm = 200 }\nuntil = 'b'",
@@ -83,9 +110,19 @@ CASES = {
         "",
     ),
     "together": ("touch_nothing = true\nreach = { x_mm = 800 }\nfinish = true", "met", 2.78, ""),
-    "together with a missed one": ("reach = { x_mm = 950 }\nfinish = true", "missed", 2.78, "At its nearest"),
+    "together with a missed one": (
+        "reach = { x_mm = 950 }\nfinish = true",
+        "missed",
+        2.78,
+        "At its nearest",
+    ),
     "used": ("use = 'time.sleep'", "met", 0.0, ""),
-    "not used": ("use = ['time.sleep', 'tank_drive.on']", "missed", 0.0, "The program does not call tank_drive.on."),
+    "not used": (
+        "use = ['time.sleep', 'tank_drive.on']",
+        "missed",
+        0.0,
+        "The program does not call tank_drive.on.",
+    ),
     "avoided": ("avoid = 'tank_drive.on'", "met", 0.0, ""),
     "not avoided": ("avoid = 'time.sleep'", "missed", 0.0, "The program calls time.sleep."),
 }
@@ -102,7 +139,9 @@ def judged(run: Run, folder: Path, text: str) -> dict[str, Judgement]:
 
 
 @pytest.mark.parametrize(("condition", "state", "time_s", "reason"), CASES.values(), ids=CASES)
-def test_combination(condition: str, state: str, time_s: float, reason: str, home: Path, tmp_path: Path) -> None:
+def test_combination(
+    condition: str, state: str, time_s: float, reason: str, home: Path, tmp_path: Path
+) -> None:
     found = judged(finished(home), tmp_path, f"{GOALS}[[goal]]\nname = 'it'\n{condition}\n")["it"]
     assert found.state == state, found
     assert reason in found.reason
@@ -157,7 +196,10 @@ RUNNING = {
 @pytest.mark.parametrize(("condition", "state"), RUNNING.values(), ids=RUNNING)
 def test_state_while_it_runs(condition: str, state: str, home: Path, tmp_path: Path) -> None:
     run = finished(home)
-    goals = goals_of(tmp_path, f"[[goal]]\nname = 'it'\n{condition}\n[[goal]]\nname = 'open'\nreach = {{ y_mm = 1 }}\n")
+    goals = goals_of(
+        tmp_path,
+        f"[[goal]]\nname = 'it'\n{condition}\n[[goal]]\nname = 'open'\nreach = {{ y_mm = 1 }}\n",
+    )
     (found, _) = judge(goals, read_run(run.new.folder))
     assert found.state == state, found
     assert bool(found.changes) == (state != "open")
@@ -165,14 +207,18 @@ def test_state_while_it_runs(condition: str, state: str, home: Path, tmp_path: P
 
 def test_states_as_of_then_are_those_that_were_shown_then(home: Path, tmp_path: Path) -> None:
     conditions = [condition for condition, *_ in (*CASES.values(), *RUNNING.values())]
-    text = "".join(f"[[goal]]\nname = '{number}'\n{each}\n" for number, each in enumerate(conditions))
+    text = "".join(
+        f"[[goal]]\nname = '{number}'\n{each}\n" for number, each in enumerate(conditions)
+    )
     goals = goals_of(tmp_path, f"{GOALS}[[goal]]\nname = 'open'\nreach = {{ y_mm = 1 }}\n{text}")
     run = Run(RunStore(), world(), "import time\ntime.sleep(1)\n")
     shown = {}
     for number in range(30):
         # Everything of one instant has happened when time passes on.
         run.do((ahead(20), *((says("one"), says("two")) if number == 9 else ())))
-        shown[run.recorder.simulation.tick] = [each.state for each in judge(goals, read_run(run.new.folder))]
+        shown[run.recorder.simulation.tick] = [
+            each.state for each in judge(goals, read_run(run.new.folder))
+        ]
     run.do((wait(0.1), says("three")))
     final = judge(goals, run.end())
     assert {tick: [each.at(tick) for each in final] for tick in shown} == shown
@@ -196,13 +242,17 @@ ENDS = {end.value: end for end in End if end is not End.FINISHED}
 def test_no_other_end_is_a_finish(end: End, home: Path, tmp_path: Path) -> None:
     run = Run(RunStore(), world(), "")
     run.do((drive(10, 10, 0.1),))
-    (found,) = judge(goals_of(tmp_path, "[[goal]]\nname = 'it'\nfinish = true\n"), run.end(end, "what happened"))
+    (found,) = judge(
+        goals_of(tmp_path, "[[goal]]\nname = 'it'\nfinish = true\n"), run.end(end, "what happened")
+    )
     assert found.state == "missed"
     assert "what happened" in found.reason
 
 
 def test_a_run_is_judged_as_it_was_when_it_ran(run: RunProgram, tmp_path: Path) -> None:
-    text = "print('n', input('n? '))\ntank_drive.on_for_rotations(50, 50, 1)\nprint(input('m? 1'))\n"
+    text = (
+        "print('n', input('n? '))\ntank_drive.on_for_rotations(50, 50, 1)\nprint(input('m? 1'))\n"
+    )
     done = run(text, answers=("x", "5"))
     goals = goals_of(
         tmp_path,

@@ -56,9 +56,15 @@ PLACES = {
         "At its nearest, at 1.71 s, the robot was 50 mm from (800, 550).",
         3,
     ),
-    "reach heading": Case("reach = { heading_deg = -90 }", (turn(-90, line=2),), "met", 0.95, line=2),
-    "reach heading after turns": Case("reach = { heading_deg = 0 }\nafter = 1", (turn(450),), "met", 3.95),
-    "reach other heading": Case("reach = { heading_deg = 180 }", (turn(90),), "missed", 1.0, "turned 90.0° off"),
+    "reach heading": Case(
+        "reach = { heading_deg = -90 }", (turn(-90, line=2),), "met", 0.95, line=2
+    ),
+    "reach heading after turns": Case(
+        "reach = { heading_deg = 0 }\nafter = 1", (turn(450),), "met", 3.95
+    ),
+    "reach other heading": Case(
+        "reach = { heading_deg = 180 }", (turn(90),), "missed", 1.0, "turned 90.0° off"
+    ),
     "reach and pass by at the end": Case(
         "reach = { x_mm = 800, at_end = true }",
         ALONG,
@@ -74,21 +80,38 @@ PLACES = {
         "reach = { x_mm = 800 }", (wait(1, 2), says("a: 1", 3)), "missed", 1.0, "300 mm left", 0
     ),
     "reach away from the start": Case(
-        "reach = { x_mm = 400 }", (wait(1, 2), ahead(200, line=3)), "missed", reason="At its nearest, at 0.00 s", line=3
+        "reach = { x_mm = 400 }",
+        (wait(1, 2), ahead(200, line=3)),
+        "missed",
+        reason="At its nearest, at 0.00 s",
+        line=3,
     ),
-    "pass without a move": Case("pass = [[800, 500]]", (wait(1, 2),), "missed", 1.0, "no nearer than 300 mm", 0),
+    "pass without a move": Case(
+        "pass = [[800, 500]]", (wait(1, 2),), "missed", 1.0, "no nearer than 300 mm", 0
+    ),
     "inside not from the start": Case(
-        "inside = { x_mm = 0, y_mm = 0, width_mm = 50, height_mm = 50 }", ALONG, "missed", 0.0, "was not in the area", 0
+        "inside = { x_mm = 0, y_mm = 0, width_mm = 50, height_mm = 50 }",
+        ALONG,
+        "missed",
+        0.0,
+        "was not in the area",
+        0,
     ),
     "reach at the end": Case("reach = { x_mm = 900, at_end = true }", ALONG, "met", 2.77, line=4),
     "reach at the end after the last tick": Case(
         "reach = { x_mm = 900, at_end = true }\nafter = 'last'", ALONG, "met", 2.77, more=LAST_TICK
     ),
     "reach not at the end after the last tick": Case(
-        "reach = { x_mm = 800, at_end = true }\nafter = 'last'", ALONG, "missed", reason="99 mm right", more=LAST_TICK
+        "reach = { x_mm = 800, at_end = true }\nafter = 'last'",
+        ALONG,
+        "missed",
+        reason="99 mm right",
+        more=LAST_TICK,
     ),
     "reach and stay": Case("reach = { x_mm = 900, for_s = 0.3 }", ALONG, "met", 2.46, line=4),
-    "reach and not stay": Case("reach = { x_mm = 700, for_s = 0.3 }", ALONG, "missed", 2.77, "at most 0.22 s", 3),
+    "reach and not stay": Case(
+        "reach = { x_mm = 700, for_s = 0.3 }", ALONG, "missed", 2.77, "at most 0.22 s", 3
+    ),
     "pass": Case("pass = [[600, 500], [800, 500]]", ALONG, "met", 1.60, line=3),
     "pass in another order": Case(
         "pass = [[800, 500], [600, 500]]",
@@ -99,12 +122,25 @@ PLACES = {
         3,
     ),
     "pass in any order": Case(
-        "pass = { places_mm = [[800, 500], [600, 500]], in_order = false }", ALONG, "met", 1.60, line=3
+        "pass = { places_mm = [[800, 500], [600, 500]], in_order = false }",
+        ALONG,
+        "met",
+        1.60,
+        line=3,
     ),
     "pass between ticks": Case(
-        "pass = { places_mm = [[537, 500]], within_mm = 1 }", (drive(3000, 3000, 0.05),), "met", 0.03
+        "pass = { places_mm = [[537, 500]], within_mm = 1 }",
+        (drive(3000, 3000, 0.05),),
+        "met",
+        0.03,
     ),
-    "inside": Case("inside = { x_mm = 400, y_mm = 400, width_mm = 600, height_mm = 200 }", ALONG, "met", 2.77, line=4),
+    "inside": Case(
+        "inside = { x_mm = 400, y_mm = 400, width_mm = 600, height_mm = 200 }",
+        ALONG,
+        "met",
+        2.77,
+        line=4,
+    ),
     "inside left": Case(
         "inside = { x_mm = 400, y_mm = 400, width_mm = 300, height_mm = 200 }",
         ALONG,
@@ -114,7 +150,12 @@ PLACES = {
         3,
     ),
     "inside circle left": Case(
-        "inside = { x_mm = 500, y_mm = 500, radius_mm = 200 }", ALONG, "missed", 1.14, "left the area", 3
+        "inside = { x_mm = 500, y_mm = 500, radius_mm = 200 }",
+        ALONG,
+        "missed",
+        1.14,
+        "left the area",
+        3,
     ),
     "inside with the body": Case(
         "inside = { x_mm = 300, y_mm = 300, width_mm = 500, height_mm = 400, part = 'body' }",
@@ -132,13 +173,26 @@ PLACES = {
         "was not in the area from the start",
     ),
     "inside until": Case(
-        "inside = { x_mm = 400, y_mm = 400, width_mm = 300, height_mm = 200 }\nuntil = 1", ALONG, "met", 1.0, line=3
+        "inside = { x_mm = 400, y_mm = 400, width_mm = 300, height_mm = 200 }\nuntil = 1",
+        ALONG,
+        "met",
+        1.0,
+        line=3,
     ),
     "outside": Case(
-        "outside = { x_mm = 400, y_mm = 600, width_mm = 900, height_mm = 200 }", ALONG, "met", 2.77, line=4
+        "outside = { x_mm = 400, y_mm = 600, width_mm = 900, height_mm = 200 }",
+        ALONG,
+        "met",
+        2.77,
+        line=4,
     ),
     "outside entered": Case(
-        "outside = { x_mm = 700, y_mm = 400, width_mm = 50, height_mm = 200 }", ALONG, "missed", 1.14, "entered", 3
+        "outside = { x_mm = 700, y_mm = 400, width_mm = 50, height_mm = 200 }",
+        ALONG,
+        "missed",
+        1.14,
+        "entered",
+        3,
     ),
     "outside with the body": Case(
         "outside = { x_mm = 700, y_mm = 590, width_mm = 50, height_mm = 200, part = 'body' }",
@@ -167,18 +221,37 @@ PLACES = {
         world(obstacles=(BOX,)),
     ),
     "touch a solid obstacle": Case(
-        "touch_nothing = true", ALONG, "missed", 1.45, "touched the obstacle", 3, world(obstacles=(BOX,), solid=True)
+        "touch_nothing = true",
+        ALONG,
+        "missed",
+        1.45,
+        "touched the obstacle",
+        3,
+        world(obstacles=(BOX,), solid=True),
     ),
     "touch an obstacle that does not count": Case(
-        "touch_nothing = { obstacles = false }", ALONG, "met", 2.77, line=4, world=world(obstacles=(BOX,))
+        "touch_nothing = { obstacles = false }",
+        ALONG,
+        "met",
+        2.77,
+        line=4,
+        world=world(obstacles=(BOX,)),
     ),
     "touch a wall": Case(
-        "touch_nothing = true", ALONG, "missed", 0.32, "touched the right wall", 3, world(2362 - 45 - 55)
+        "touch_nothing = true",
+        ALONG,
+        "missed",
+        0.32,
+        "touched the right wall",
+        3,
+        world(2362 - 45 - 55),
     ),
     "touch a wall that is not there": Case(
         "touch_nothing = true", ALONG, "met", 2.77, line=4, world=world(2362 - 45 - 55, walls=False)
     ),
-    "touch at the start": Case("touch_nothing = true", ALONG, "met", 2.77, line=4, world=world(100)),
+    "touch at the start": Case(
+        "touch_nothing = true", ALONG, "met", 2.77, line=4, world=world(100)
+    ),
     "touch at the start and again": Case(
         "touch_nothing = true",
         (ahead(100), drive(-360, -360, 1, line=7)),
@@ -199,12 +272,23 @@ PLACES = {
     ),
 }
 
-PRINTED = (says("start", 1), wait(1, 2), says("a: 100.0", 3), wait(1, 4), says("a: 86.27", 5), says("done", 6))
+PRINTED = (
+    says("start", 1),
+    wait(1, 2),
+    says("a: 100.0", 3),
+    wait(1, 4),
+    says("a: 86.27", 5),
+    says("done", 6),
+)
 
 OUTPUT = {
     "print": Case("print = 'do.e'", PRINTED, "met", 2.0, line=6),
-    "print nothing": Case("print = 'x'", (wait(1, 2),), "missed", 1.0, "The program printed nothing.", 0),
-    "print another line": Case("print = '^one$'", PRINTED, "missed", 2.0, "the last of the 4 is 'done'", 6),
+    "print nothing": Case(
+        "print = 'x'", (wait(1, 2),), "missed", 1.0, "The program printed nothing.", 0
+    ),
+    "print another line": Case(
+        "print = '^one$'", PRINTED, "missed", 2.0, "the last of the 4 is 'done'", 6
+    ),
     "print what is told in words": Case(
         "print = '(?i)^(?!.*not).*THREE$'",
         PRINTED,
@@ -222,7 +306,12 @@ OUTPUT = {
     ),
     "print before": Case("print = 'start'\nbefore = 0.5", PRINTED, "met", 0.0, line=1),
     "print too late": Case(
-        "print = 'done'\nbefore = 1.5", PRINTED, "missed", 1.5, "Not before 1.5 s: no printed line matches 'done'", 3
+        "print = 'done'\nbefore = 1.5",
+        PRINTED,
+        "missed",
+        1.5,
+        "Not before 1.5 s: no printed line matches 'done'",
+        3,
     ),
     "print after": Case("print = 'a: '\nafter = 1.5", PRINTED, "met", 2.0, line=5),
     "log": Case("log = { name = 'a', levels = [100, 86.3] }", PRINTED, "met", 2.0, line=5),
@@ -258,7 +347,9 @@ OUTPUT = {
         "a did not come near 1: no sample was logged in that time.",
         0,
     ),
-    "log in any order": Case("log = { name = 'a', levels = [86.3, 100], in_order = false }", PRINTED, "met", line=5),
+    "log in any order": Case(
+        "log = { name = 'a', levels = [86.3, 100], in_order = false }", PRINTED, "met", line=5
+    ),
     "log not near enough": Case(
         "log = { name = 'a', levels = [100, 86.3], within = 0.01 }",
         PRINTED,
@@ -275,12 +366,21 @@ OUTPUT = {
         "a did not come near 50: the nearest was 86.27 at 2.00 s",
         5,
     ),
-    "log at the tolerance": Case("log = { name = 'a', levels = [86.3], within = 0.03 }", PRINTED, "met", line=5),
+    "log at the tolerance": Case(
+        "log = { name = 'a', levels = [86.3], within = 0.03 }", PRINTED, "met", line=5
+    ),
     "log another name": Case(
-        "log = { name = 'b', levels = [1] }", PRINTED, "missed", 2.0, "logged no sample b. It logged a.", 0
+        "log = { name = 'b', levels = [1] }",
+        PRINTED,
+        "missed",
+        2.0,
+        "logged no sample b. It logged a.",
+        0,
     ),
     "finish": Case("finish = true", (wait(1, 9),), "met", 1.0, line=9),
-    "finish with an error": Case("finish = true", (wait(1),), "missed", 1.0, "did not finish: raised", end=End.RAISED),
+    "finish with an error": Case(
+        "finish = true", (wait(1),), "missed", 1.0, "did not finish: raised", end=End.RAISED
+    ),
     "finish in time": Case("finish = true\nbefore = 1", (wait(1, 9),), "met", 1.0, line=9),
     "finish too late": Case(
         "finish = true\nbefore = 0.5",
@@ -305,7 +405,10 @@ OUTPUT = {
         1,
     ),
     "dialogue of two turns": Case(
-        "dialogue = [{ answer = '5' }, { answer = '6' }]", (is_told("5"), says("5"), is_told("6", 4)), "met", line=4
+        "dialogue = [{ answer = '5' }, { answer = '6' }]",
+        (is_told("5"), says("5"), is_told("6", 4)),
+        "met",
+        line=4,
     ),
     "dialogue that ends early": Case(
         "dialogue = [{ answer = '5' }, { answer = '6' }]",
@@ -316,7 +419,11 @@ OUTPUT = {
         2,
     ),
     "dialogue with an answer that ends alike": Case(
-        "dialogue = [{ answer = '5' }]", (is_told("15", 2),), "missed", 0.0, "no question got answer 1, '5'"
+        "dialogue = [{ answer = '5' }]",
+        (is_told("15", 2),),
+        "missed",
+        0.0,
+        "no question got answer 1, '5'",
     ),
     "dialogue without a question": Case(
         "dialogue = [{ answer = '5' }]", PRINTED, "missed", 2.0, "did not ask for input", 0
@@ -339,8 +446,12 @@ MEASURED = "log = { name = 'Grey', levels = [50.2], reading = 'color', as_read =
 COUNTED = (says("a: 1"), says("a: 1"), says("n: 2", 4))
 
 READINGS = {
-    "log as read": Case(f"{MEASURED} }}", (*ON_GREY, says("Grey: 50.196", 2)), "met", line=2, world=GREY, text=LOOKS),
-    "log as read, rounded": Case(f"{MEASURED} }}", (*ON_GREY, says("Grey: 50", 2)), "met", world=GREY, text=LOOKS),
+    "log as read": Case(
+        f"{MEASURED} }}", (*ON_GREY, says("Grey: 50.196", 2)), "met", line=2, world=GREY, text=LOOKS
+    ),
+    "log as read, rounded": Case(
+        f"{MEASURED} }}", (*ON_GREY, says("Grey: 50", 2)), "met", world=GREY, text=LOOKS
+    ),
     "log as read, cut": Case(
         MEASURED.replace("as_read", "within = 1, as_read") + " }",
         (*ON_GREY, says("Grey: 49.3", 2)),
@@ -411,7 +522,9 @@ READINGS = {
     ),
     "log once": Case("log = { name = 'n', levels = [2], once = true }", (*COUNTED, wait(1)), "met"),
     "log often": Case(
-        "log = { name = 'a', levels = [1, 2], apart_mm = 120 }", (says("a: 1"), ahead(100), says("a: 2")), "met"
+        "log = { name = 'a', levels = [1, 2], apart_mm = 120 }",
+        (says("a: 1"), ahead(100), says("a: 2")),
+        "met",
     ),
     "log too rarely": Case(
         "log = { name = 'a', levels = [1, 2], apart_mm = 80 }",
@@ -432,7 +545,9 @@ READINGS = {
         "missed",
         reason="n: 2 was printed at 0.00 s, but the program had printed 1 sample a.",
     ),
-    "print there": Case("print = { lines = 'x', x_mm = [[690, 710]] }", (ahead(200), says("x", 5)), "met", line=5),
+    "print there": Case(
+        "print = { lines = 'x', x_mm = [[690, 710]] }", (ahead(200), says("x", 5)), "met", line=5
+    ),
     "print elsewhere": Case(
         "print = { lines = 'x', x_mm = [[690, 710]] }",
         (says("x", 5), ahead(200)),
@@ -441,10 +556,16 @@ READINGS = {
         line=5,
     ),
     "print elsewhere, then there": Case(
-        "print = { lines = 'x', x_mm = [[690, 710]] }", (says("x", 5), ahead(200), says("x", 6)), "met", line=6
+        "print = { lines = 'x', x_mm = [[690, 710]] }",
+        (says("x", 5), ahead(200), says("x", 6)),
+        "met",
+        line=6,
     ),
     "print what a reading decides": Case(
-        "print = { lines = 'Grey', reading = 'color' }", (*ON_GREY, says("Grey: 1", 2)), "met", text=LOOKS
+        "print = { lines = 'Grey', reading = 'color' }",
+        (*ON_GREY, says("Grey: 1", 2)),
+        "met",
+        text=LOOKS,
     ),
     "print in any case": Case(
         "print = { lines = 'Grey', reading = 'color' }",
@@ -455,7 +576,14 @@ READINGS = {
     ),
     "print without a new reading": Case(
         "print = { lines = ['1', '2'], reading = 'color' }",
-        (*ON_GREY, says("Grey: 1", 2), wait(1, 1), says("Grey: 1", 2), ahead(50, 1), says("Grey: 2", 2)),
+        (
+            *ON_GREY,
+            says("Grey: 1", 2),
+            wait(1, 1),
+            says("Grey: 1", 2),
+            ahead(50, 1),
+            says("Grey: 2", 2),
+        ),
         "met",
         text=LOOKS,
     ),
@@ -472,9 +600,14 @@ READINGS = {
         reason="the robot still moved, by 176 mm/s: it must have stopped.",
     ),
     "print where it stops": Case(
-        "print = { lines = ['a'], still = true }", (ahead(100), says("a"), wait(1), ahead(100)), "met", 0.57
+        "print = { lines = ['a'], still = true }",
+        (ahead(100), says("a"), wait(1), ahead(100)),
+        "met",
+        0.57,
     ),
-    "print once": Case("print = { lines = ['a', 'b'], once = true }", (says("a"), says("b"), wait(1)), "met", 1.0),
+    "print once": Case(
+        "print = { lines = ['a', 'b'], once = true }", (says("a"), says("b"), wait(1)), "met", 1.0
+    ),
     "print twice": Case(
         "print = { lines = ['a', 'b'], once = true }",
         (says("a"), says("b"), says("b", 3), wait(1)),
@@ -486,7 +619,10 @@ READINGS = {
     "when by a name of before": Case("when = 'gyro < 1'", (ahead(200, 1),), "met", 0.0),
     "when several": Case("when = ['x_mm > 600', 'x_mm < 650']", (ahead(200, 1),), "met", 0.57),
     "when not together": Case(
-        "when = ['x_mm > 600', 'x_mm < 550']", (ahead(200, 1),), "missed", reason="not true at the same time."
+        "when = ['x_mm > 600', 'x_mm < 550']",
+        (ahead(200, 1),),
+        "missed",
+        reason="not true at the same time.",
     ),
     "when never": Case(
         "when = 'left_red_pc < 10'",
@@ -495,19 +631,36 @@ READINGS = {
         reason="left_red_pc < 10 never became true: the nearest was 100 at 0.00 s.",
     ),
     "when not at all": Case(
-        "when = 'left_red_p < 10'", (wait(1),), "missed", reason="no column left_red_p (did you mean left_red_pc or"
+        "when = 'left_red_p < 10'",
+        (wait(1),),
+        "missed",
+        reason="no column left_red_p (did you mean left_red_pc or",
     ),
     "when changes": Case("when = 'x_mm changes'", (wait(0.1), ahead(200, 1)), "met", 0.11, line=1),
     "when never changes": Case(
-        "when = 'left_color changes'", (wait(1),), "missed", reason="left_color changes never became true."
+        "when = 'left_color changes'",
+        (wait(1),),
+        "missed",
+        reason="left_color changes never became true.",
     ),
-    "when a sample": Case("when = 'sample a > 1'", (says("a: 1"), wait(0.1), says("a: 2"), wait(1)), "met", 0.1),
-    "when printed": Case("when = ['print matches ^b', 'x_mm > 600']", (says("b"), ahead(200, 1), says("b")), "met"),
+    "when a sample": Case(
+        "when = 'sample a > 1'", (says("a: 1"), wait(0.1), says("a: 2"), wait(1)), "met", 0.1
+    ),
+    "when printed": Case(
+        "when = ['print matches ^b', 'x_mm > 600']", (says("b"), ahead(200, 1), says("b")), "met"
+    ),
     "when printed elsewhere": Case(
-        "when = ['print matches ^b', 'x_mm > 600']", (says("b"), ahead(200, 1)), "missed", reason="at the same time."
+        "when = ['print matches ^b', 'x_mm > 600']",
+        (says("b"), ahead(200, 1)),
+        "missed",
+        reason="at the same time.",
     ),
-    "when no number": Case("when = 'x_mm < far'", (wait(1),), "missed", reason="x_mm < far: 'far' is not a number"),
-    "read": Case("read = { reading = 'color', times = 2 }", (wait(0.05, 2),), "met", 0.02, line=2, text=LOOKS),
+    "when no number": Case(
+        "when = 'x_mm < far'", (wait(1),), "missed", reason="x_mm < far: 'far' is not a number"
+    ),
+    "read": Case(
+        "read = { reading = 'color', times = 2 }", (wait(0.05, 2),), "met", 0.02, line=2, text=LOOKS
+    ),
     "read in a line that also pauses": Case(
         "read = { reading = 'color', times = 2 }",
         (wait(0.05, 2),),
@@ -536,7 +689,13 @@ READINGS = {
         reason="read the colour sensor 0 times at x from 600 to 700 mm; 1 are needed.",
         text=LOOKS,
     ),
-    "read nothing": Case("read = { reading = 'gyro' }", ON_GREY, "missed", reason="did not read the gyro.", text=LOOKS),
+    "read nothing": Case(
+        "read = { reading = 'gyro' }",
+        ON_GREY,
+        "missed",
+        reason="did not read the gyro.",
+        text=LOOKS,
+    ),
     "use by a reading": Case(
         "use = { calls = 'off', reading = 'gyro' }",
         ON_GREY,

@@ -13,7 +13,9 @@ from tuisim.config.program_file import programs
 from tuisim.goals.files import load_goals
 
 PROGRAMS = ROOT / "programs"
-EXAMPLES = {path.name.removesuffix("_goals.toml"): path for path in sorted(PROGRAMS.glob("*_goals.toml"))}
+EXAMPLES = {
+    path.name.removesuffix("_goals.toml"): path for path in sorted(PROGRAMS.glob("*_goals.toml"))
+}
 
 CASES: dict[str, tuple[str, tuple[object, ...]]] = {
     **{name: (name, ()) for name in EXAMPLES},
@@ -114,12 +116,20 @@ WRONG: dict[str, tuple[str, dict[str, str], dict[str, str]]] = {
     "square, wrong corners": (
         "square",
         {"SPACING_MM = 180": "SPACING_MM = 172"},
-        {"corners": "came no nearer than", "closed": "At the end the robot was", "sides": "of the drawing is"},
+        {
+            "corners": "came no nearer than",
+            "closed": "At the end the robot was",
+            "sides": "of the drawing is",
+        },
     ),
     "square, three sides": (
         "square",
         {"range(4)": "range(3)"},
-        {"corners": "to place 4 of 4 (300, 800) after place 3", "closed": "At the end", "sides": "of the picture is"},
+        {
+            "corners": "to place 4 of 4 (300, 800) after place 3",
+            "closed": "At the end",
+            "sides": "of the picture is",
+        },
     ),
     "square, an error": (
         "square",
@@ -135,9 +145,18 @@ WRONG: dict[str, tuple[str, dict[str, str], dict[str, str]]] = {
     "draw_house, no roof": (
         "draw_house",
         {"roof_mm = 200 * 2**0.5": "roof_mm = 0.1"},
-        {"house": "of the picture is drawn", "roof": "to place 2 of 2", "said": "“roof” was", "finish": "“roof” was"},
+        {
+            "house": "of the picture is drawn",
+            "roof": "to place 2 of 2",
+            "said": "“roof” was",
+            "finish": "“roof” was",
+        },
     ),
-    "draw_house, says nothing": ("draw_house", {"print": "str"}, {"said": "The program printed nothing."}),
+    "draw_house, says nothing": (
+        "draw_house",
+        {"print": "str"},
+        {"said": "The program printed nothing."},
+    ),
 }
 
 
@@ -158,6 +177,8 @@ def test_wrong_program_misses_goals(
         text = text.replace(old, new)
     (tmp_path / "mine.py").write_text(text, encoding="utf-8")
     here("run", EXAMPLES[name], "mine.py", "--timeout", 60)
-    found = {goal["name"]: goal["reason"] for goal in checked(here, name) if goal["state"] == "missed"}
+    found = {
+        goal["name"]: goal["reason"] for goal in checked(here, name) if goal["state"] == "missed"
+    }
     assert list(found) == list(missed), found
     assert all(words in found[goal] for goal, words in missed.items()), found

@@ -22,12 +22,16 @@ from tuisim.core.tick_record import TICK_FIELDS
 from tuisim.goals.motion import impossible_motion
 from tuisim.protocol import SetButtons, SetPose, UserAction
 
-BOXES = tuple(Obstacle(200.0 + 310 * number, 100.0 + 170 * (number % 5), 120, 90) for number in range(7))
+BOXES = tuple(
+    Obstacle(200.0 + 310 * number, 100.0 + 170 * (number % 5), 120, 90) for number in range(7)
+)
 DRIFT = DriftSpec(wheel_pc=2, spacing_pc=2, slip_pc=10, turn_slip_pc=10, backlash_deg=10)
 WORLDS = {
     "free": WorldSpec(start=Pose(900, 600, -30)),
     "on an obstacle": WorldSpec(start=Pose(250, 150, 20), obstacles=BOXES),
-    "noise and drift": WorldSpec(start=Pose(900, 600, 700), obstacles=BOXES, noise=NoiseSpec(0, 100), drift=DRIFT),
+    "noise and drift": WorldSpec(
+        start=Pose(900, 600, 700), obstacles=BOXES, noise=NoiseSpec(0, 100), drift=DRIFT
+    ),
 }
 
 
@@ -70,7 +74,10 @@ def test_a_robot_that_is_elsewhere_without_its_wheels_is_seen(case: str) -> None
     spec = RunSpec(RobotSpec(), WORLDS["on an obstacle"], PROFILES["robolab"], 1)
     records = _driven(spec, random.Random(1))
     _moved(records, *CHANGES[case])
-    assert impossible_motion(records, spec, ()) == "the robot moved as no wheels can move it, at 2.00 s"
+    assert (
+        impossible_motion(records, spec, ())
+        == "the robot moved as no wheels can move it, at 2.00 s"
+    )
     pressed = UserAction(3, SetButtons(("enter",)))
     assert impossible_motion(records, spec, (pressed,)) != ""
     assert impossible_motion(records, spec, (UserAction(200, SetPose(500, 500, 0)),)) == ""
@@ -110,7 +117,9 @@ def test_a_program_that_moves_the_robot_itself_earns_nothing(tmp_path: Path, her
     (tmp_path / "class").mkdir()
     (tmp_path / "class" / "eve.py").write_text(TELEPORT)
     goals = "[[goal]]\nname = 'far'\nreach = { x_mm = 1500, at_end = true }\n[[goal]]\nname = 'said'\nprint = 'there'\n"
-    (tmp_path / "task.toml").write_text(f"background = 'Empty_Map'\nstart = {{ x_mm = 500, y_mm = 500 }}\n{goals}")
+    (tmp_path / "task.toml").write_text(
+        f"background = 'Empty_Map'\nstart = {{ x_mm = 500, y_mm = 500 }}\n{goals}"
+    )
     done = here("mark", "task.toml", "class", "--seeds", "0", "--jobs", "1", "--no-isolate")
     row = next(line for line in done.stdout.splitlines() if line.startswith("eve"))
     assert row.split(maxsplit=5)[1:5] == ["0", "0%", "0", "0"]

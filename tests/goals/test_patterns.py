@@ -41,7 +41,9 @@ ELSEWHERE = {
 def test_what_ends_in_time_is_searched_here(pattern: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delattr(patterns, "_searched")
     search = search_in(pattern, HERE[pattern])
-    assert [search(text) for text in HERE[pattern]] == [bool(re.search(pattern, text)) for text in HERE[pattern]]
+    assert [search(text) for text in HERE[pattern]] == [
+        bool(re.search(pattern, text)) for text in HERE[pattern]
+    ]
 
 
 @pytest.mark.parametrize("pattern", ELSEWHERE)
@@ -55,13 +57,20 @@ def test_a_process_of_its_own_finds_the_same(pattern: str, monkeypatch: pytest.M
 
 @pytest.mark.parametrize(
     ("pattern", "text"),
-    [(r"\d+x", "1" * 1_000_000), (r"(?:a?){30}a{30}", "a" * 30), (CARELESS, ENDLESS), ("a*a*a*b", "a" * 2000)],
+    [
+        (r"\d+x", "1" * 1_000_000),
+        (r"(?:a?){30}a{30}", "a" * 30),
+        (CARELESS, ENDLESS),
+        ("a*a*a*b", "a" * 2000),
+    ],
 )
 def test_what_may_take_long_is_not_searched_here(pattern: str, text: str) -> None:
     assert patterns._steps(pattern, [text]) > patterns._MOST_STEPS
 
 
-def test_the_rest_of_a_class_of_goals_is_judged(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_rest_of_a_class_of_goals_is_judged(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setattr(patterns, "LIMIT_S", 0)
     goals = goals_of(
         tmp_path,

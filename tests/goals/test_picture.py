@@ -19,7 +19,11 @@ TO_BLACK = (ahead(1400, line=3), wait(2, line=4))
 
 FOLLOWED = {
     "sensor": ("sensors = 'left', darker_than = 50, share = 0.2", "met", ""),
-    "too short": ("sensors = 'left', darker_than = 50, share = 0.5", "missed", "left was on the line for 24"),
+    "too short": (
+        "sensors = 'left', darker_than = 50, share = 0.5",
+        "missed",
+        "left was on the line for 24",
+    ),
     "bright": ("sensors = 'left', brighter_than = 99, share = 0.3", "met", ""),
     "between": ("sensors = 'left', darker_than = 60, brighter_than = 40, share = 0.1", "met", ""),
     "any of two": ("sensors = ['left', 'right'], darker_than = 50, share = 0.2", "met", ""),
@@ -29,7 +33,11 @@ FOLLOWED = {
         "missed",
         "The robot was on the line for 24",
     ),
-    "no such sensor": ("sensors = 'front', darker_than = 50", "missed", "no colour sensor front; it has: left, right"),
+    "no such sensor": (
+        "sensors = 'front', darker_than = 50",
+        "missed",
+        "no colour sensor front; it has: left, right",
+    ),
 }
 
 
@@ -72,14 +80,21 @@ DRAWN: dict[str, tuple[str, tuple[Step, ...], str, str]] = {
     "small share": (f"{SQUARE}, within_mm = 10, share = 0.7", SIDES[:5], "met", ""),
     "nothing": (f"{SQUARE}, within_mm = 10", (), "missed", "of the picture is drawn"),
     "image": ("image = 'square.png', within_mm = 10", SIDES, "met", ""),
-    "image of a part": ("image = 'part.png', within_mm = 10", SIDES, "missed", "of the drawing is on the picture"),
+    "image of a part": (
+        "image = 'part.png', within_mm = 10",
+        SIDES,
+        "missed",
+        "of the drawing is on the picture",
+    ),
     "wide tolerance": (f"{SQUARE}, within_mm = 400", SIDES[:1], "met", ""),
 }
 
 
 @pytest.mark.slow_cases("image*")
 @pytest.mark.parametrize(("keys", "steps", "state", "reason"), DRAWN.values(), ids=DRAWN)
-def test_draw(keys: str, steps: tuple[Step, ...], state: str, reason: str, home: Path, tmp_path: Path) -> None:
+def test_draw(
+    keys: str, steps: tuple[Step, ...], state: str, reason: str, home: Path, tmp_path: Path
+) -> None:
     for name, corners in (("square", (500, 443, 700, 643)), ("part", (500, 443, 600, 643))):
         picture = Image.new("L", (2362, 1143), 255)
         ImageDraw.Draw(picture).rectangle(corners, outline=0, width=3)

@@ -22,7 +22,9 @@ FAULTS = {
 
 
 @pytest.mark.parametrize(("text", "fault"), FAULTS.values(), ids=FAULTS)
-def test_a_program_that_does_not_compile_has_a_fault(text: str, fault: tuple[str, int] | None) -> None:
+def test_a_program_that_does_not_compile_has_a_fault(
+    text: str, fault: tuple[str, int] | None
+) -> None:
     assert fault_in(text) == fault
 
 

@@ -32,20 +32,40 @@ LINES = {
         2,
         VALUE,
     ),
-    "chosen": ("if colorLeft.color == 5:\n    name = 'Red'\nelse:\n    name = ''\nprint(name)", 5, VALUE),
+    "chosen": (
+        "if colorLeft.color == 5:\n    name = 'Red'\nelse:\n    name = ''\nprint(name)",
+        5,
+        VALUE,
+    ),
     "chosen in an expression": ("print('Red' if colorLeft.color == 5 else '')", 1, VALUE),
     "under an if": ("if colorLeft.color == 5:\n    print('Red')", 2, DECIDED),
     "under another if": ("colorLeft.color\nif 1 < 2:\n    print('Red')", 3, FREE),
-    "after a loop that a reading ends": ("while colorLeft.color != 5:\n    pass\nprint('Red')", 3, DECIDED),
+    "after a loop that a reading ends": (
+        "while colorLeft.color != 5:\n    pass\nprint('Red')",
+        3,
+        DECIDED,
+    ),
     "before that loop": ("print('Red')\nwhile colorLeft.color != 5:\n    pass", 1, FREE),
-    "after a break": ("while True:\n    if colorLeft.color == 5:\n        break\nprint('Red')", 4, DECIDED),
-    "after a loop of the clock": ("while get_clock() < 5:\n    colorLeft.color\nprint('Red')", 3, FREE),
+    "after a break": (
+        "while True:\n    if colorLeft.color == 5:\n        break\nprint('Red')",
+        4,
+        DECIDED,
+    ),
+    "after a loop of the clock": (
+        "while get_clock() < 5:\n    colorLeft.color\nprint('Red')",
+        3,
+        FREE,
+    ),
     "counted": ("n = 0\nwhile colorLeft.color != 5:\n    n = n + 1\nprint(n)", 4, VALUE),
     "counted otherwise": ("n = 0\nwhile colorLeft.color != 5:\n    n += 1\nprint(n)", 4, VALUE),
     "set in that loop": ("while colorLeft.color != 5:\n    n = get_clock()\nprint(n)", 3, DECIDED),
     "match": ("match colorLeft.color:\n    case 5:\n        print('Red')", 3, DECIDED),
     "walrus": ("while (c := colorLeft.color) != 5:\n    print(c)", 2, VALUE),
-    "method": ("class R:\n    def see(self):\n        return colorLeft.color\nprint(R().see())", 4, VALUE),
+    "method": (
+        "class R:\n    def see(self):\n        return colorLeft.color\nprint(R().see())",
+        4,
+        VALUE,
+    ),
     "thread": (
         "def f():\n    print('Red')\nwhile colorLeft.color != 5:\n    pass\nThread(target=f).start()",
         2,
@@ -142,7 +162,12 @@ USES = {
     "of another function": ("x = helper.twice(colorLeft)\nprint(x)", 2, VALUE, {1}),
     "imported": ("from helper import light\nx = light(colorLeft)\nprint(x)", 3, VALUE, {2}),
     "generator": ("for x in helper.greys(colorLeft):\n    print(x)", 2, VALUE, {1}),
-    "kept generator": ("g = helper.greys(colorLeft)\nx = next(g)\nfor y in g:\n    print(y)", 4, VALUE, {1, 2, 3}),
+    "kept generator": (
+        "g = helper.greys(colorLeft)\nx = next(g)\nfor y in g:\n    print(y)",
+        4,
+        VALUE,
+        {1, 2, 3},
+    ),
     "property": ("print(eye.level)", 1, VALUE, {1}),
     "printed there": ("helper.show(colorLeft)", 1, VALUE, {1}),
     "decided there": ("helper.tell(colorLeft)", 1, DECIDED, {1}),
@@ -152,6 +177,8 @@ USES = {
 
 
 @pytest.mark.parametrize(("text", "line", "depends", "lines"), USES.values(), ids=USES)
-def test_what_a_module_reads(text: str, line: int, depends: tuple[bool, bool], lines: set[int]) -> None:
+def test_what_a_module_reads(
+    text: str, line: int, depends: tuple[bool, bool], lines: set[int]
+) -> None:
     found = Provenance(text, Reading.COLOR, [MODULE, "def broken("])
     assert (found.gives(line), found.decides(line), set(found.lines())) == (*depends, lines)

@@ -56,4 +56,6 @@ def commands_in_text(name: str) -> list[str]:
 
 def program(name: str, where: Path) -> None:
     """Copy an example."""
-    (where / name).write_text((ROOT / "programs" / name).read_text(encoding="utf-8"), encoding="utf-8")
+    (where / name).write_text(
+        (ROOT / "programs" / name).read_text(encoding="utf-8"), encoding="utf-8"
+    )

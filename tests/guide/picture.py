@@ -35,7 +35,9 @@ async def drawn() -> str:
     async with LabApp(started).run_test(size=SIZE) as pilot:
         app = await ready(pilot)
         await pilot.press("R")
-        await until(pilot, lambda: app.situation().has_run and app.situation().state is RunPhase.ENDED)
+        await until(
+            pilot, lambda: app.situation().has_run and app.situation().state is RunPhase.ENDED
+        )
         # During the run it has scrolled to those lines only that were drawn just then: from its top, it shows the same
         # rows each time.
         app.query_one(CodeArea).scroll_to(y=0, animate=False, force=True)

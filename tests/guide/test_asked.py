@@ -28,5 +28,7 @@ def test_each_question_finds_its_answer_among_the_first_two(name: str) -> None:
 
 
 def test_no_question_has_two_answers() -> None:
-    asks = [ask for answers in asked_questions().values() for asks in answers.values() for ask in asks]
+    asks = [
+        ask for answers in asked_questions().values() for asks in answers.values() for ask in asks
+    ]
     assert len(asks) == len({*asks})

@@ -51,7 +51,11 @@ def test_a_table_has_a_cell_for_each_column(name: str) -> None:
 @pytest.mark.parametrize("name", WORDS_OF)
 def test_a_table_says_what_the_code_says(name: str) -> None:
     text = table(name).markdown()
-    missing = [word for word in WORDS_OF[name] if not re.search(rf"`{re.escape(word).replace('|', '.+')}[` ]", text)]
+    missing = [
+        word
+        for word in WORDS_OF[name]
+        if not re.search(rf"`{re.escape(word).replace('|', '.+')}[` ]", text)
+    ]
     assert missing == []
 
 
@@ -62,10 +66,16 @@ def test_a_table_says_what_the_code_says(name: str) -> None:
         pytest.param(["run", "magic.py"], "writing-programs", id="a magic line"),
         pytest.param(["goals", "check", "empty.toml"], "goal-files", id="goals"),
         pytest.param(["batch", "log_greys", "--set", "noise"], "experiments", id="a parameter"),
-        pytest.param(["mark", str(ROOT / "programs" / "log_greys_goals.toml"), "nobody"], "marking", id="a class"),
+        pytest.param(
+            ["mark", str(ROOT / "programs" / "log_greys_goals.toml"), "nobody"],
+            "marking",
+            id="a class",
+        ),
     ],
 )
-def test_an_error_names_the_page_that_helps(words: list[str], topic: str, tmp_path: Path, here: Command) -> None:
+def test_an_error_names_the_page_that_helps(
+    words: list[str], topic: str, tmp_path: Path, here: Command
+) -> None:
     (tmp_path / "magic.py").write_text("# %%sim_magic_preload\nprint(1)\n")
     (tmp_path / "empty.toml").write_text('title = "none"\n')
     (tmp_path / "nobody").mkdir()
@@ -75,7 +85,9 @@ def test_an_error_names_the_page_that_helps(words: list[str], topic: str, tmp_pa
 
 def test_the_pages_that_errors_name_exist() -> None:
     sources = "".join(path.read_text(encoding="utf-8") for path in (ROOT / "tuisim").rglob("*.py"))
-    named = set(re.findall(r"see_page\(['\"]([\w-]+)", sources)) | set(re.findall(r"`tuisim guide ([a-z-]+)`", sources))
+    named = set(re.findall(r"see_page\(['\"]([\w-]+)", sources)) | set(
+        re.findall(r"`tuisim guide ([a-z-]+)`", sources)
+    )
     assert len(named) > 4
     assert named <= set(pages())
 
@@ -91,7 +103,11 @@ class _Links(HTMLParser):
     def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
         """Keep the addresses of a tag."""
         for name, value in attrs:
-            if name in ("src", "data", "srcset", "action") or (name == "href" and tag == "link") or tag == "script":
+            if (
+                name in ("src", "data", "srcset", "action")
+                or (name == "href" and tag == "link")
+                or tag == "script"
+            ):
                 self.loads.append(str(value))
             elif name == "href":
                 self.leads.append(str(value))
@@ -129,13 +145,22 @@ def test_the_shell_lists_the_contents_and_searches(here: Command) -> None:
 @pytest.mark.parametrize(
     ("words", "code", "said"),
     [
-        pytest.param(["keyz"], 2, "guide: no such page 'keyz' (did you mean keys? See `tuisim guide`)", id="no page"),
+        pytest.param(
+            ["keyz"],
+            2,
+            "guide: no such page 'keyz' (did you mean keys? See `tuisim guide`)",
+            id="no page",
+        ),
         pytest.param(["keys", "--search", "x"], 2, "exclude each other", id="two at once"),
         pytest.param(["--html", "a_file"], 2, "cannot write a_file", id="a file for a folder"),
-        pytest.param(["--search", "xyzzy"], 1, "No page has these words: xyzzy", id="nothing found"),
+        pytest.param(
+            ["--search", "xyzzy"], 1, "No page has these words: xyzzy", id="nothing found"
+        ),
     ],
 )
-def test_what_cannot_be_shown_is_told(words: list[str], code: int, said: str, tmp_path: Path, here: Command) -> None:
+def test_what_cannot_be_shown_is_told(
+    words: list[str], code: int, said: str, tmp_path: Path, here: Command
+) -> None:
     (tmp_path / "a_file").write_text("")
     done = here("guide", *words)
     assert done.returncode == code

@@ -29,7 +29,18 @@ from tuisim.lessons.spec import Lesson
 LESSONS = {name: load_lesson(path) for name, path in shipped_paths().items()}
 TEXTS = {"README": DOCUMENTS["README"]} | {name: page.source for name, page in pages().items()}
 """README and the pages as they are written: tables made from the code are true by their making."""
-KEYS = {"says", "program", "files", "commands", "after", "prints", "exit_codes", "tested_by", "because", "slow"}
+KEYS = {
+    "says",
+    "program",
+    "files",
+    "commands",
+    "after",
+    "prints",
+    "exit_codes",
+    "tested_by",
+    "because",
+    "slow",
+}
 _FENCE = re.compile(r"^```.*?^```$", re.MULTILINE | re.DOTALL)
 _QUOTED = re.compile(r"`[^`]*`|\]\([^)]*\)|“[^”]*”")
 _NUMBER = re.compile(r"(?<![\w.-])\d|[½¼]")
@@ -40,7 +51,8 @@ _ORDINAL = re.compile(r"^(#+ )?\d+\. ")
 def _claims() -> dict[str, list[dict[str, Any]]]:
     folder = Path(__file__).parent / "claims"
     return {
-        path.stem: tomllib.loads(path.read_text(encoding="utf-8"))["claim"] for path in sorted(folder.glob("*.toml"))
+        path.stem: tomllib.loads(path.read_text(encoding="utf-8"))["claim"]
+        for path in sorted(folder.glob("*.toml"))
     }
 
 
@@ -86,7 +98,9 @@ def _says(claim: dict[str, Any]) -> list[str]:
 @pytest.mark.parametrize("name", [*TEXTS, *LESSONS])
 def test_each_sentence_with_a_number_is_held(name: str) -> None:
     said = [one for claim in CLAIMS.get(name, []) for one in _says(claim)]
-    assert [sentence for sentence in _sentences(name) if not any(one in sentence for one in said)] == []
+    assert [
+        sentence for sentence in _sentences(name) if not any(one in sentence for one in said)
+    ] == []
 
 
 @pytest.mark.parametrize("name", CLAIMS)
@@ -97,7 +111,9 @@ def test_each_claim_is_in_its_page(name: str) -> None:
         assert [one for one in _says(claim) if one not in text] == []
         assert sum(key in claim for key in ("prints", "tested_by", "because")) == 1, claim["says"]
         file, _, test = claim.get("tested_by", "").partition("::")
-        assert f"def {test}(" in (ROOT / file).read_text(encoding="utf-8") if file else True, claim["tested_by"]
+        assert f"def {test}(" in (ROOT / file).read_text(encoding="utf-8") if file else True, claim[
+            "tested_by"
+        ]
 
 
 def _cases() -> Iterator[Any]:
@@ -118,7 +134,9 @@ def _lay_out(name: str, where: Path) -> None:
         if told := re.search(r'^tells = "(.+)"$', front, re.MULTILINE):
             front = (lesson.path.parent / told[1]).read_text(encoding="utf-8").split("+++")[1]
         world = front.partition("[[step]]")[0]
-        (where / "world.toml").write_text(re.sub(r"^(why|minutes) = .*$", "", world, flags=re.MULTILINE))
+        (where / "world.toml").write_text(
+            re.sub(r"^(why|minutes) = .*$", "", world, flags=re.MULTILINE)
+        )
         (where / "program.py").write_text(lesson.program)
         for step in lesson.steps:
             (where / f"{step.name}.py").write_text(step.answer)
@@ -130,13 +148,20 @@ def _lay_out(name: str, where: Path) -> None:
 
 @pytest.mark.parametrize(("name", "claim"), [*_cases()])
 def test_a_claim_is_so(
-    name: str, claim: dict[str, Any], tmp_path: Path, here: Command, home: Path, capsys: pytest.CaptureFixture[str]
+    name: str,
+    claim: dict[str, Any],
+    tmp_path: Path,
+    here: Command,
+    home: Path,
+    capsys: pytest.CaptureFixture[str],
 ) -> None:
     _lay_out(name, tmp_path)
     for file, text in {**claim.get("files", {}), "claim.py": claim.get("program", "")}.items():
         (tmp_path / file).parent.mkdir(exist_ok=True)
         (tmp_path / file).write_text(text)
-    commands = claim.get("commands", ["run world.toml claim.py" if name in LESSONS else "run claim.py"])
+    commands = claim.get(
+        "commands", ["run world.toml claim.py" if name in LESSONS else "run claim.py"]
+    )
     done = [here(*shlex.split(command)) for command in commands]
     exec(claim.get("after", ""), {})
     output = "\n".join([*(one.stdout + one.stderr for one in done), capsys.readouterr().out])

@@ -23,7 +23,9 @@ from tuisim.guide.command_tables import command_names
 def _class(where: Path) -> None:
     (where / "class").mkdir()
     program("log_greys.py", where / "class")
-    (where / "goals.toml").write_text((ROOT / "programs" / "log_greys_goals.toml").read_text(encoding="utf-8"))
+    (where / "goals.toml").write_text(
+        (ROOT / "programs" / "log_greys_goals.toml").read_text(encoding="utf-8")
+    )
 
 
 PREPARED: dict[str, Callable[[Path], None]] = {
@@ -40,7 +42,11 @@ RUN_ELSEWHERE = {
     "toml": "tests/config/test_files.py",
 }
 """Where blocks are run that need a fresh environment, several processes, a notebook or the other files of the guide."""
-WITH_BLOCKS = [name for name in DOCUMENTS if any(one.kind in ("sh", "sh app", "python") for one in blocks(name))]
+WITH_BLOCKS = [
+    name
+    for name in DOCUMENTS
+    if any(one.kind in ("sh", "sh app", "python") for one in blocks(name))
+]
 
 
 @pytest.fixture
@@ -59,7 +65,9 @@ def opened(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
 
 @pytest.mark.slow_cases("README", "experiments", "marking", "measuring-bands", "motion-and-drift")
 @pytest.mark.parametrize("name", WITH_BLOCKS)
-def test_each_block_runs(name: str, tmp_path: Path, here: Command, home: Path, opened: list[Any]) -> None:
+def test_each_block_runs(
+    name: str, tmp_path: Path, here: Command, home: Path, opened: list[Any]
+) -> None:
     if prepare := PREPARED.get(name):
         prepare(tmp_path)
     names: dict[str, Any] = {}
@@ -82,7 +90,12 @@ def _run_commands(block: Block, here: Command) -> None:
 
 
 def test_blocks_that_are_not_run_here_are_run_elsewhere() -> None:
-    kinds = {block.kind for name in DOCUMENTS for block in blocks(name)} - {"", "sh", "sh app", "python"}
+    kinds = {block.kind for name in DOCUMENTS for block in blocks(name)} - {
+        "",
+        "sh",
+        "sh app",
+        "python",
+    }
     assert kinds == set(RUN_ELSEWHERE)
     assert [path for path in RUN_ELSEWHERE.values() if not (ROOT / path).exists()] == []
 
@@ -100,17 +113,32 @@ def _faults(span: str) -> list[str]:
         return [span]
     known = command_names()
     name = next((found for count in (2, 1) if (found := " ".join(words[:count])) in known), "")
-    if not name and words and re.fullmatch(r"[a-z]+", words[0]) and not (ROOT / "programs" / f"{words[0]}.py").exists():
+    if (
+        not name
+        and words
+        and re.fullmatch(r"[a-z]+", words[0])
+        and not (ROOT / "programs" / f"{words[0]}.py").exists()
+    ):
         return [span]
     command = known[name or "open"]
-    flags = {flag for param in command.params for flag in (param.opts if isinstance(param, click.Option) else ())}
+    flags = {
+        flag
+        for param in command.params
+        for flag in (param.opts if isinstance(param, click.Option) else ())
+    }
     if isinstance(command, click.Group):
         return []
     ours = words[: words.index("--")] if "--" in words else words
     unknown = [
-        word for word in ours if word.startswith("-") and word != "-" and word not in flags | {"--help", "--version"}
+        word
+        for word in ours
+        if word.startswith("-") and word != "-" and word not in flags | {"--help", "--version"}
     ]
-    return [span for word in unknown if word.startswith("--") or not {f"-{letter}" for letter in word[1:]} <= flags]
+    return [
+        span
+        for word in unknown
+        if word.startswith("--") or not {f"-{letter}" for letter in word[1:]} <= flags
+    ]
 
 
 @pytest.mark.parametrize("name", DOCUMENTS)

@@ -53,5 +53,10 @@ def programs(tmp_path: Path) -> None:
 def test_each_column_runs_to_its_end_on_one_robot(here: Command) -> None:
     assert len(rows()) > 30
     assert here("robots", "--from", "ev3dev2_calls.py", "--out", "robot.toml").returncode == 0
-    done = {name: here("run", f"{name}_calls.py", "-r", "robot.toml", "--timeout", 100) for name in IMPORTS}
-    assert {name: (one.returncode, one.stdout) for name, one in done.items()} == dict.fromkeys(IMPORTS, (0, "last\n"))
+    done = {
+        name: here("run", f"{name}_calls.py", "-r", "robot.toml", "--timeout", 100)
+        for name in IMPORTS
+    }
+    assert {name: (one.returncode, one.stdout) for name, one in done.items()} == dict.fromkeys(
+        IMPORTS, (0, "last\n")
+    )

@@ -20,7 +20,9 @@ def test_readme_is_short() -> None:
 
 
 def test_readme_has_the_two_commands_for_a_clone() -> None:
-    marked = {block.kind: block.code for block in blocks("README") if block.kind in ("sh run", "sh test")}
+    marked = {
+        block.kind: block.code for block in blocks("README") if block.kind in ("sh run", "sh test")
+    }
     assert marked == {
         "sh run": f"{START} . && .venv/bin/tuisim programs/log_greys.py\n",
         "sh test": f"{START} '.[test]' && .venv/bin/python -m pytest -q\n",
@@ -39,7 +41,9 @@ def test_the_picture_is_a_drawing_that_loads_nothing() -> None:
     assert [value for value in values if "://" in value or "url(" in value] == []
     words = "".join("".join(node.itertext()) for node in root.iter(f"{SVG}text")).replace(" ", "")
     assert [
-        panel for panel in ("World", "Instrumentation", "Chart", "log_greys.py", "past3.41s") if panel not in words
+        panel
+        for panel in ("World", "Instrumentation", "Chart", "log_greys.py", "past3.41s")
+        if panel not in words
     ] == []
 
 

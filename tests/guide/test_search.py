@@ -23,7 +23,9 @@ def names(question: str) -> list[str]:
     return [one.name for one in search(question)[:2]]
 
 
-def shown_of(one: SearchResult, width: int, most: int, asked: re.Pattern[str] | None = None) -> list[str]:
+def shown_of(
+    one: SearchResult, width: int, most: int, asked: re.Pattern[str] | None = None
+) -> list[str]:
     """What is shown of an answer."""
     return ["".join(text for text, _ in line) for line in excerpt_of(one, width, most, asked)]
 
@@ -69,7 +71,11 @@ def test_words_need_not_be_exact(question: str, page: str) -> None:
         ("How do I stop at the wall", "how-sensors-see", "Ultrasonic: stop at a wall"),
         ("stop in front of an obstacle", "how-sensors-see", "Ultrasonic: stop at a wall"),
         ("wrong sign line follower", "going-back", "Find where a program goes wrong"),
-        ("robot drives through the wall", "when-it-goes-wrong", "The robot drives through the wall"),
+        (
+            "robot drives through the wall",
+            "when-it-goes-wrong",
+            "The robot drives through the wall",
+        ),
     ],
 )
 def test_the_answer_comes_first(question: str, page: str, section: str) -> None:
@@ -89,11 +95,15 @@ def test_the_answer_comes_first(question: str, page: str, section: str) -> None:
         ("change the threshold", "how-sensors-see", "If the program compares the reading"),
     ],
 )
-def test_the_passage_has_the_rare_words_of_the_question(question: str, page: str, begins: str) -> None:
+def test_the_passage_has_the_rare_words_of_the_question(
+    question: str, page: str, begins: str
+) -> None:
     assert passage_in(page, question).startswith(begins)
 
 
-@pytest.mark.parametrize("question", ["wrong order", "reading with noise", "wall", "key", "sensor value"])
+@pytest.mark.parametrize(
+    "question", ["wrong order", "reading with noise", "wall", "key", "sensor value"]
+)
 def test_a_passage_is_neither_a_fence_nor_a_rule(question: str) -> None:
     assert not [one for one in search(question) if one.passage.startswith(("```", "| ---"))]
 
@@ -116,7 +126,9 @@ def test_nothing_is_found_where_nothing_is_asked(question: str) -> None:
 
 @pytest.mark.parametrize(("width", "begins"), [(36, "gyro"), (76, "gyro"), (118, " gyro  ")])
 def test_a_row_of_a_table_is_found_in_each_width(width: int, begins: str) -> None:
-    found = next(one for one in search("gyro angle INPUT_4 Port.S4") if one.name == "ev3dev2-and-pybricks")
+    found = next(
+        one for one in search("gyro angle INPUT_4 Port.S4") if one.name == "ev3dev2-and-pybricks"
+    )
     lines = page_lines(pages()[found.name], width)
     _, row = rows_of(lines, found.heading, found.passage)
     assert "".join(part for part, _ in lines[row]).startswith(begins)
@@ -130,21 +142,29 @@ def test_a_passage_ends_where_the_next_one_begins(question: str, width: int) -> 
     _, row = rows_of(lines, first.heading, first.passage)
     end = end_of_passage(lines, row, first.passage)
     shown = "".join("".join(part for part, _ in line) for line in lines[row:end])
-    assert sorted(re.findall(r"\w", shown)) == sorted(re.findall(r"\w", passage_text(first.passage)))
+    assert sorted(re.findall(r"\w", shown)) == sorted(
+        re.findall(r"\w", passage_text(first.passage))
+    )
 
 
 def test_the_beginning_of_an_answer_has_its_code_in_lines_of_their_own() -> None:
-    one = SearchResult("writing-programs", "", "- **To wait**, write:\n\n      for n in x:\n          wait()\n")
+    one = SearchResult(
+        "writing-programs", "", "- **To wait**, write:\n\n      for n in x:\n          wait()\n"
+    )
     assert shown_of(one, 40, 9) == ["To wait, write:", "for n in x:", "    wait()"]
     assert shown_of(one, 40, 2) == ["To wait, write:", "for n in x:"]
     assert shown_of(one, 9, 1) == ["To wait, …"]
 
 
 def test_a_longer_answer_begins_at_the_sentence_that_has_the_words_of_the_question() -> None:
-    one = SearchResult("writing-programs", "", "First of all, it drives. The wheels turn. Then the robot beeps.")
+    one = SearchResult(
+        "writing-programs", "", "First of all, it drives. The wheels turn. Then the robot beeps."
+    )
     asked = re.compile("beep|robot")
     assert shown_of(one, 30, 1, asked) == ["… Then the robot beeps."]
-    assert shown_of(one, 80, 1, asked) == ["First of all, it drives. The wheels turn. Then the robot beeps."]
+    assert shown_of(one, 80, 1, asked) == [
+        "First of all, it drives. The wheels turn. Then the robot beeps."
+    ]
 
 
 def test_what_introduces_a_list_shows_its_items() -> None:
@@ -182,7 +202,10 @@ def test_code_alone_keeps_its_lines() -> None:
 @pytest.mark.parametrize(
     ("question", "pages_first"),
     [
-        ("how do I zoom the world, and how do I measure the grey bands", {"keys", "measuring-bands"}),
+        (
+            "how do I zoom the world, and how do I measure the grey bands",
+            {"keys", "measuring-bands"},
+        ),
         ("robot does not move? how do I mark 500 programs", {"when-it-goes-wrong", "marking"}),
     ],
 )
@@ -195,7 +218,11 @@ def test_what_is_far_behind_the_best_answer_is_left_out() -> None:
 
 
 def test_a_row_of_a_table_says_what_its_columns_are() -> None:
-    row = next(one for one in search("which formats can I export, csv or arrow") if "`.csv`" in one.passage[:9])
+    row = next(
+        one
+        for one in search("which formats can I export, csv or arrow")
+        if "`.csv`" in one.passage[:9]
+    )
     assert shown_of(row, 80, 1)[0].startswith(".csv · keeps: text · units, seed")
     key = next(one for one in search("zoom the world") if one.passage.startswith("| `v` |"))
     assert shown_of(key, 80, 1) == ["v · Zoom the world"]

@@ -41,7 +41,10 @@ CHOICE = QuestionCheck("Q", "the light", choices=("the tick", "the light"))
 
 def runs(*seeds: int, met: str = "a b", from_start: bool = True) -> list[Event]:
     """Runs that have met goals."""
-    return [JudgedRun(f"r{at}", seed, frozenset(met.split()), from_start) for at, seed in enumerate(seeds)]
+    return [
+        JudgedRun(f"r{at}", seed, frozenset(met.split()), from_start)
+        for at, seed in enumerate(seeds)
+    ]
 
 
 BACK = "from farther back"
@@ -54,13 +57,29 @@ RAN = QuestionCheck("Q", 50.2, within=0.5, run=True, printed="Error")
 CASES: dict[str, tuple[Check, Sequence[Event], bool]] = {
     "run": (RunCheck(("a", "b")), runs(0), True),
     "run, one goal missed": (RunCheck(("a", "c")), runs(0), False),
-    "run, goals met by different runs": (RunCheck(("a", "b")), [*runs(0, met="a"), *runs(0, 0, met="b")[1:]], False),
+    "run, goals met by different runs": (
+        RunCheck(("a", "b")),
+        [*runs(0, met="a"), *runs(0, 0, met="b")[1:]],
+        False,
+    ),
     "run elsewhere": (RunCheck(("a",)), runs(0, from_start=False), False),
     "run anywhere": (RunCheck(("a",), anywhere=True), runs(0, from_start=False), True),
-    "run whose program passes elsewhere": (FARTHER, [*runs(0), TriedElsewhere("r0", BACK, frozenset("a"))], True),
+    "run whose program passes elsewhere": (
+        FARTHER,
+        [*runs(0), TriedElsewhere("r0", BACK, frozenset("a"))],
+        True,
+    ),
     "run whose program is not tried elsewhere": (FARTHER, runs(0), False),
-    "run whose program fails elsewhere": (FARTHER, [*runs(0), TriedElsewhere("r0", BACK, frozenset())], False),
-    "run of another program than that tried": (FARTHER, [*runs(0), TriedElsewhere("r9", BACK, frozenset("a"))], False),
+    "run whose program fails elsewhere": (
+        FARTHER,
+        [*runs(0), TriedElsewhere("r0", BACK, frozenset())],
+        False,
+    ),
+    "run of another program than that tried": (
+        FARTHER,
+        [*runs(0), TriedElsewhere("r9", BACK, frozenset("a"))],
+        False,
+    ),
     "several runs": (RunCheck(("a",), times=2), runs(0, 0), True),
     "the same run twice": (RunCheck(("a",), times=2), runs(0) * 2, False),
     "several seeds": (RunCheck(("a",), times=2, seeds=True), runs(0, 1), True),
@@ -77,7 +96,11 @@ CASES: dict[str, tuple[Check, Sequence[Event], bool]] = {
     "number, none": (NUMBER, [Typed("")], False),
     "a wrong answer, then the right one": (NUMBER, [Typed("1"), Typed("50")], True),
     "text": (QuestionCheck("Q", "time.sleep(0.1)"), [Typed("Time.sleep( 0.1 )")], True),
-    "one of several texts": (QuestionCheck("Q", ("left", "the left one")), [Typed("the left one.")], True),
+    "one of several texts": (
+        QuestionCheck("Q", ("left", "the left one")),
+        [Typed("the left one.")],
+        True,
+    ),
     "text in quotes": (QuestionCheck("Q", "White"), [Typed("'white'")], True),
     "text in other quotes": (QuestionCheck("Q", "White"), [Typed("“White.”")], True),
     "another text": (QuestionCheck("Q", "left"), [Typed("right")], False),
@@ -104,7 +127,11 @@ CASES: dict[str, tuple[Check, Sequence[Event], bool]] = {
     "visit": (VisitCheck(1, 2), [Visited(1.5)], True),
     "visit of another instant": (VisitCheck(1, 2), [Visited(2.1)], False),
     "panel": (ShowCheck("chart"), [Shown("world"), Shown("chart")], True),
-    "panel of a paused program": (ShowCheck("debug", paused=True), [Shown("debug", paused=True)], True),
+    "panel of a paused program": (
+        ShowCheck("debug", paused=True),
+        [Shown("debug", paused=True)],
+        True,
+    ),
     "panel while it runs": (ShowCheck("debug", paused=True), [Shown("debug", paused=False)], False),
     "nothing": (ShowCheck("chart"), [], False),
 }
@@ -116,10 +143,26 @@ def test_check(check: Check, events: Sequence[Event], passes: bool) -> None:
 
 
 UNREADY = {
-    "elsewhere": (HERE, Typed("1", x_mm=1120.4), "The robot is at x = 1120 mm. The question is about the band: m."),
-    "not looked": (SEEN, Typed("1", seen=frozenset()), "Look first: Instrumentation or Chart shows it."),
-    "no run": (RAN, Typed("1", has_run=False), "Run the program first: the question is about its run."),
-    "another run": (RAN, Typed("1", printed=("x",)), "The run in view has not printed that: do what the step says"),
+    "elsewhere": (
+        HERE,
+        Typed("1", x_mm=1120.4),
+        "The robot is at x = 1120 mm. The question is about the band: m.",
+    ),
+    "not looked": (
+        SEEN,
+        Typed("1", seen=frozenset()),
+        "Look first: Instrumentation or Chart shows it.",
+    ),
+    "no run": (
+        RAN,
+        Typed("1", has_run=False),
+        "Run the program first: the question is about its run.",
+    ),
+    "another run": (
+        RAN,
+        Typed("1", printed=("x",)),
+        "The run in view has not printed that: do what the step says",
+    ),
     "ready": (HERE, Typed("1", x_mm=300.0), ""),
 }
 

@@ -24,7 +24,9 @@ def test_a_cell_breaks_between_words() -> None:
     assert max(map(len, texts)) <= 66
     words = " ".join(texts).split()
     assert {"GyroSensor(INPUT_4);", "gyro.angle", "GyroSensor(Port.S4)"} <= {*words}
-    assert any(text.split()[:3] == ["ask", "the", "gyro"] and len(text.split()) > 3 for text in texts)
+    assert any(
+        text.split()[:3] == ["ask", "the", "gyro"] and len(text.split()) > 3 for text in texts
+    )
 
 
 def test_rows_are_lists_where_the_longest_words_have_no_room_beside_each_other() -> None:

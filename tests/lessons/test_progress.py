@@ -62,7 +62,9 @@ def test_progress_on_each_lesson_is_kept(home: Path) -> None:
     assert last_opened({"one": one}) == ""
 
 
-@pytest.mark.parametrize("text", ["{", "[]", '{"one": 3}', '{"one": {"steps": {"a": {"state": "flown"}}}}'])
+@pytest.mark.parametrize(
+    "text", ["{", "[]", '{"one": 3}', '{"one": {"steps": {"a": {"state": "flown"}}}}']
+)
 def test_damaged_progress_is_told_and_stays(text: str, home: Path) -> None:
     file = folder() / "progress.json"
     file.parent.mkdir(parents=True)
@@ -72,7 +74,9 @@ def test_damaged_progress_is_told_and_stays(text: str, home: Path) -> None:
     assert file.read_text() == text
 
 
-def test_the_program_of_the_student_is_begun_once_and_kept_when_begun_anew(lesson: Lesson, home: Path) -> None:
+def test_the_program_of_the_student_is_begun_once_and_kept_when_begun_anew(
+    lesson: Lesson, home: Path
+) -> None:
     path = prepare_program(lesson)
     assert path.read_text() == lesson.program
     path.write_text("mine")

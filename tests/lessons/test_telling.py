@@ -17,22 +17,40 @@ ANSWER = "## One\n```python answer\nprint(1)\n```\n"
 
 def told(folder: Path, front: str) -> Lesson:
     """A telling with these keys."""
-    (folder / "it.md").write_text(lesson(f"{HEAD}minutes = 3\nseed = 5\n{GOAL}{RUN}hints = ['a']\n", ANSWER))
-    (folder / "it-other.md").write_text(lesson(front, ANSWER.replace("One", "Other").replace("1", "2")))
+    (folder / "it.md").write_text(
+        lesson(f"{HEAD}minutes = 3\nseed = 5\n{GOAL}{RUN}hints = ['a']\n", ANSWER)
+    )
+    (folder / "it-other.md").write_text(
+        lesson(front, ANSWER.replace("One", "Other").replace("1", "2"))
+    )
     return load_lesson(folder / "it-other.md")
 
 
 def test_what_a_telling_does_not_say_is_that_of_the_lesson(tmp_path: Path) -> None:
     found = told(tmp_path, "tells = 'it.md'\ntitle = 'U'\n[[step]]\nname = 'a'\nhints = ['b']\n")
-    assert (found.name, found.title, found.why, found.minutes, found.settings) == ("it-other", "U", "W", 3, {"seed": 5})
+    assert (found.name, found.title, found.why, found.minutes, found.settings) == (
+        "it-other",
+        "U",
+        "W",
+        3,
+        {"seed": 5},
+    )
     (step,) = found.steps
-    assert (step.title, step.hints, step.check, step.answer) == ("Other", ("b",), RunCheck(("end",)), "print(2)\n")
+    assert (step.title, step.hints, step.check, step.answer) == (
+        "Other",
+        ("b",),
+        RunCheck(("end",)),
+        "print(2)\n",
+    )
 
 
 BAD = {
     "no file": ("tells = 'none.md'\n", "none.md: there is no such lesson"),
     "no name": ("tells = 5\n", "it-other.md, line 2: tells: must be text, got 5"),
-    "a telling": ("tells = 'it-other.md'\n", "line 2: tells: it-other.md is a telling, too (name the lesson that it"),
+    "a telling": (
+        "tells = 'it-other.md'\n",
+        "line 2: tells: it-other.md is a telling, too (name the lesson that it",
+    ),
     "a step more": (
         "tells = 'it.md'\n[[step]]\nname = 'b'\nrun = 'end'\n",
         "there are 2 steps [[step]], but 1 sections",
@@ -55,7 +73,11 @@ MERGED = {
         [{"name": "d"}, {"name": "a", "b": 2}],
         [{"name": "a", "b": 2}, {"name": "c"}, {"name": "d"}],
     ),
-    "tables by where": ([{"where": "a", "b": 1}], [{"where": "a", "c": 2}], [{"where": "a", "b": 1, "c": 2}]),
+    "tables by where": (
+        [{"where": "a", "b": 1}],
+        [{"where": "a", "c": 2}],
+        [{"where": "a", "b": 1, "c": 2}],
+    ),
 }
 
 

@@ -32,7 +32,9 @@ def test_lesson_is_complete(name: str) -> None:
     lesson = LESSONS[name]
     assert lesson.path.name.isascii()
     assert 20 < len(lesson.why) <= 300
-    assert re.fullmatch(r"[^.?!]+[^.?!]*[.?!]( [^.?!]+[.?!]){0,2}", lesson.why), "one to three sentences"
+    assert re.fullmatch(r"[^.?!]+[^.?!]*[.?!]( [^.?!]+[.?!]){0,2}", lesson.why), (
+        "one to three sentences"
+    )
     assert warnings(lesson) == []
     for step in lesson.steps:
         assert step.hints, f"{step.name}: no hint"
@@ -43,10 +45,14 @@ def test_lesson_is_complete(name: str) -> None:
 def test_names_that_a_goal_needs_are_in_the_task(name: str) -> None:
     lesson, needed = LESSONS[name], {goal.name: goal.condition for goal in LESSONS[name].goals}
     for step in lesson.steps:
-        conditions = [needed[goal] for goal in step.check.goals] if isinstance(step.check, RunCheck) else []
+        conditions = (
+            [needed[goal] for goal in step.check.goals] if isinstance(step.check, RunCheck) else []
+        )
         for condition in conditions:
             if isinstance(condition, LogCondition):
-                assert condition.name in f"{step.text} {lesson.program}", f"{step.name}: does not say {condition.name}"
+                assert condition.name in f"{step.text} {lesson.program}", (
+                    f"{step.name}: does not say {condition.name}"
+                )
 
 
 def _end(lesson: Lesson, text: str, field: str, seed: int = 0) -> float:
@@ -58,15 +64,22 @@ def _end(lesson: Lesson, text: str, field: str, seed: int = 0) -> float:
 MEASURED: dict[str, Callable[[Lesson], float]] = {
     "first-run where": lambda lesson: _end(lesson, lesson.program, "x_mm"),
     "sensor-eyes percent": lambda lesson: _read(lesson, LIGHT),
-    "log-period period": lambda lesson: _end(lesson, lesson.program, "time_s") / (_rows(lesson) - 1),
+    "log-period period": lambda lesson: (
+        _end(lesson, lesson.program, "time_s") / (_rows(lesson) - 1)
+    ),
     "log-period distance": lambda lesson: 0.11 * 0.5 * 1050 / 360 * 3.14159 * 56,
     "exact-moves rotation": lambda lesson: _end(lesson, lesson.program, "x_mm") - 500,
     "exact-moves quarter": lambda lesson: 180 / 4 / 56,
-    "noise white": lambda lesson: _read(lesson, f"tank_drive.on_for_rotations(-30, -30, 160 / 175.93)\n{LIGHT}"),
+    "noise white": lambda lesson: _read(
+        lesson, f"tank_drive.on_for_rotations(-30, -30, 160 / 175.93)\n{LIGHT}"
+    ),
     "export rows": lambda lesson: _rows(lesson),
     "dead-reckoning true-y": lambda lesson: _end(lesson, lesson.program, "y_mm", seed=1),
     "pid-line error": lambda lesson: _read(
-        lesson, lesson.steps[0].answer.replace("    turn = KP", "    print(f'Light: {error + TARGET}')\n    turn = KP")
+        lesson,
+        lesson.steps[0].answer.replace(
+            "    turn = KP", "    print(f'Light: {error + TARGET}')\n    turn = KP"
+        ),
     ),
 }
 LIGHT = "print('Light: ' + str(colorLeft.reflected_light_intensity_pc))\n"
@@ -88,12 +101,18 @@ def test_answer_is_what_a_student_measures(name: str) -> None:
     (step,) = [step for step in LESSONS[lesson].steps if step.name == step_name]
     assert isinstance(step.check, QuestionCheck)
     assert isinstance(step.check.answer, int | float)
-    assert MEASURED[name](LESSONS[lesson]) == pytest.approx(step.check.answer, abs=step.check.within)
+    assert MEASURED[name](LESSONS[lesson]) == pytest.approx(
+        step.check.answer, abs=step.check.within
+    )
 
 
 def test_question_about_the_end_of_a_run_leads_back_to_its_start() -> None:
     checks = [step.check for lesson in LESSONS.values() for step in lesson.steps]
-    words = [check.where for check in checks if isinstance(check, QuestionCheck) and check.run and check.at_x_mm]
+    words = [
+        check.where
+        for check in checks
+        if isinstance(check, QuestionCheck) and check.run and check.at_x_mm
+    ]
     # A robot that was moved by hand begins its next run where it stands, and would end elsewhere once more.
     assert words and all("m and R" in each for each in words)
 

@@ -515,5 +515,12 @@ def _missed(lesson: Lesson, check: RunCheck, other: TrialWorld | None, text: str
     """The reasons of the goals that a program misses in a world."""
     (result,) = run_many([task_of(lesson, text, seed=1, other=other)], jobs=1)
     wanted = other.goals if other else check.goals
-    missed = [each for each in result.judgements if each.goal.name in wanted and each.state is not GoalState.MET]
-    return [f"{other.where if other else 'in the lesson'}: {each.goal.name}: {each.reason}" for each in missed]
+    missed = [
+        each
+        for each in result.judgements
+        if each.goal.name in wanted and each.state is not GoalState.MET
+    ]
+    return [
+        f"{other.where if other else 'in the lesson'}: {each.goal.name}: {each.reason}"
+        for each in missed
+    ]

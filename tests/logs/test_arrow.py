@@ -122,4 +122,10 @@ def test_a_cell_as_text(cell: pa.Scalar, text: str) -> None:
 
 
 def test_columns_of_one_name_get_numbers() -> None:
-    assert unique_names(["a", "a", "", "a", "a (2)"]) == ["a", "a (2)", "column 3", "a (3)", "a (2) (2)"]
+    assert unique_names(["a", "a", "", "a", "a (2)"]) == [
+        "a",
+        "a (2)",
+        "column 3",
+        "a (3)",
+        "a (2) (2)",
+    ]

@@ -77,7 +77,9 @@ def test_score_on_held_logs(capsys: pytest.CaptureFixture[str]) -> None:
         right += hits(made, found)
         extra += max(0, len(found) - len(made.spans))
     with capsys.disabled():
-        print(f"\nplateaus found in {len(HELD_SEEDS)} logs: {right} of {true} ({right / true:.2%}), {extra} too many")
+        print(
+            f"\nplateaus found in {len(HELD_SEEDS)} logs: {right} of {true} ({right / true:.2%}), {extra} too many"
+        )
     assert right >= 0.98 * (true + extra)
 
 
@@ -90,9 +92,18 @@ CLEAN = {
     "short last level": ([100.0] * 7 + [6.3, 0.0, 0.0], [(0, 7, 100.0), (8, 10, 0.0)]),
     "stray": ([3.0] * 6 + [50.0] + [3.0] * 6, [(0, 13, 3.0)]),
     "rising all the time": (list(np.arange(0.0, 90.0, 3.0)), []),
-    "levels of two samples": ([1.0, 1.0, 5.0, 5.0, 9.0, 9.0], [(0, 2, 1.0), (2, 4, 5.0), (4, 6, 9.0)]),
-    "stripes of two samples": ([1.0, 1.0, 9.0, 9.0] * 2, [(0, 2, 1.0), (2, 4, 9.0), (4, 6, 1.0), (6, 8, 9.0)]),
-    "levels of three and two": ([1.0] * 3 + [5.0] * 2 + [9.0] * 3, [(0, 3, 1.0), (3, 5, 5.0), (5, 8, 9.0)]),
+    "levels of two samples": (
+        [1.0, 1.0, 5.0, 5.0, 9.0, 9.0],
+        [(0, 2, 1.0), (2, 4, 5.0), (4, 6, 9.0)],
+    ),
+    "stripes of two samples": (
+        [1.0, 1.0, 9.0, 9.0] * 2,
+        [(0, 2, 1.0), (2, 4, 9.0), (4, 6, 1.0), (6, 8, 9.0)],
+    ),
+    "levels of three and two": (
+        [1.0] * 3 + [5.0] * 2 + [9.0] * 3,
+        [(0, 3, 1.0), (3, 5, 5.0), (5, 8, 9.0)],
+    ),
     "not a number": ([2.0] * 4 + [float("nan")] + [2.0] * 4, [(0, 9, 2.0)]),
 }
 
@@ -133,7 +144,9 @@ def test_short_levels_with_noise(samples: int) -> None:
 
 def test_level_of_equal_samples_is_exact() -> None:
     grey = 86.27450980392157
-    assert [plateau.level for plateau in plateaus(np.array([100.0] * 4 + [grey] * 7 + [100.0] * 4))] == [
+    assert [
+        plateau.level for plateau in plateaus(np.array([100.0] * 4 + [grey] * 7 + [100.0] * 4))
+    ] == [
         100.0,
         grey,
         100.0,

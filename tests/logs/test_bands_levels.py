@@ -17,7 +17,9 @@ from tuisim.logs.log import Log
 @pytest.mark.parametrize("noise", [5, 20, 128])
 def test_clamping_is_undone(value: int, noise: int) -> None:
     mean_percent = np.array([(value + clamping(noise).shift[value]) / 2.55])
-    assert without_clamping(mean_percent, noise) == pytest.approx(value / 2.55, abs=0.8 if noise < 128 else 4.0)
+    assert without_clamping(mean_percent, noise) == pytest.approx(
+        value / 2.55, abs=0.8 if noise < 128 else 4.0
+    )
 
 
 def test_greys_have_names() -> None:
@@ -35,7 +37,13 @@ def test_greys_have_names() -> None:
 
 @pytest.mark.parametrize(
     ("values", "expected"),
-    [([0.0, 100.0], 1.0), ([0.0, 255.0], 100 / 255), ([0.0, 2550.0], 0.0), ([-3.0, 5.0], 0.0), ([], 0.0)],
+    [
+        ([0.0, 100.0], 1.0),
+        ([0.0, 255.0], 100 / 255),
+        ([0.0, 2550.0], 0.0),
+        ([-3.0, 5.0], 0.0),
+        ([], 0.0),
+    ],
     ids=["percent", "bytes", "distance", "angle", "nothing"],
 )
 def test_scale_of_light(values: list[float], expected: float) -> None:
@@ -55,7 +63,11 @@ def test_places_and_widths() -> None:
     )
     report = band_report(Log("log", table, guess_columns(table)), "Light")
     middle = report.bands[1]
-    assert [(band.level, band.grey) for band in report.bands] == [(100, "white"), (50, "grey"), (100, "white")]
+    assert [(band.level, band.grey) for band in report.bands] == [
+        (100, "white"),
+        (50, "grey"),
+        (100, "white"),
+    ]
     assert (middle.start_s, middle.stop_s, middle.samples) == (0.6, 1.5, 10)
     assert (middle.start_mm, middle.stop_mm, middle.width_mm) == (60.0, 150.0, 100.0)
     assert (middle.first_row, middle.last_row) == (6, 15)
@@ -64,7 +76,13 @@ def test_places_and_widths() -> None:
 
 @pytest.mark.parametrize(
     "metadata",
-    [{}, {"runs": []}, {"runs": [{"world": {}}]}, {"runs": ["x"]}, {"runs": [{"world": {"noise": {"light": "?"}}}]}],
+    [
+        {},
+        {"runs": []},
+        {"runs": [{"world": {}}]},
+        {"runs": ["x"]},
+        {"runs": [{"world": {"noise": {"light": "?"}}}]},
+    ],
 )
 def test_log_that_does_not_know_its_noise(metadata: dict[str, object]) -> None:
     assert light_noise(metadata, 0) == 0
@@ -88,8 +106,12 @@ def test_empty_cells_belong_to_no_band() -> None:
     ],
     ids=["at the end", "at the start", "after an edge", "none", "a ramp"],
 )
-def test_one_sample_at_an_end_is_a_level(light: list[float], levels: list[tuple[float, int]]) -> None:
+def test_one_sample_at_an_end_is_a_level(
+    light: list[float], levels: list[tuple[float, int]]
+) -> None:
     table = pa.table({"time": np.arange(len(light)) / 10, "Light": light})
     report = band_report(Log("log", table, guess_columns(table)), "Light")
     assert [(band.level, band.samples) for band in report.bands] == levels
-    assert ("0.00 black (one sample)" in in_words(report)) is any(samples == 1 for _, samples in levels)
+    assert ("0.00 black (one sample)" in in_words(report)) is any(
+        samples == 1 for _, samples in levels
+    )

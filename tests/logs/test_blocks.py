@@ -15,7 +15,10 @@ LONG = BLOCK_BYTES // 16
 
 TEXTS = {
     # Of the last block, too short to tell whether texts repeat, the column is the same as of those before.
-    "names that repeat": (lambda at: ("Colour", "Left")[at % 2], "dictionary<values=string, indices=int32, ordered=0>"),
+    "names that repeat": (
+        lambda at: ("Colour", "Left")[at % 2],
+        "dictionary<values=string, indices=int32, ordered=0>",
+    ),
     "texts that are all different": ("{:07}x".format, "string"),
 }
 

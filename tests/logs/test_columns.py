@@ -43,7 +43,9 @@ def savetxt() -> bytes:
 def arrow_stream(is_old: bool = False) -> bytes:
     sink = io.BytesIO()
     table = pa.table({"time": [0.0, 1.0], "red": [1.0, 2.0]})
-    with pa.ipc.new_stream(sink, table.schema, options=pa.ipc.IpcWriteOptions(use_legacy_format=is_old)) as writer:
+    with pa.ipc.new_stream(
+        sink, table.schema, options=pa.ipc.IpcWriteOptions(use_legacy_format=is_old)
+    ) as writer:
         writer.write_table(table)
     return sink.getvalue()
 
@@ -76,17 +78,29 @@ CASES: dict[str, Case] = {
     "unit at the end": ("a.csv", b"timestamp_ms,red\n0,1\n1000,2\n", TWO),
     "unit as the name": ("a.csv", b"millis,red\n0,1\n1000,2\n", TWO),
     "a word of the name": ("a.csv", b"Time Stamp,red\n0,1\n1,2\n", TWO),
-    "a number of frames": ("a.csv", b"Framenumber,red\n5,1\n9,2\n", Read(2, ("Framenumber", "red"))),
+    "a number of frames": (
+        "a.csv",
+        b"Framenumber,red\n5,1\n9,2\n",
+        Read(2, ("Framenumber", "red")),
+    ),
     "a position": ("a.csv", b"position,red\n5,1\n9,2\n", Read(2, ("position", "red"))),
     "x beside others": ("a.csv", b"x,red\n5,1\n9,2\n", Read(2, ("x", "red"))),
-    "x alone": ("a.csv", b"x\n5\n9\n", Read(2, ("x",), check=lambda log: times(log, "x") == [0, 1])),
+    "x alone": (
+        "a.csv",
+        b"x\n5\n9\n",
+        Read(2, ("x",), check=lambda log: times(log, "x") == [0, 1]),
+    ),
     "a time that is a value": ("a.csv", b"lap_time,red\n5,1\n4,2\n", Read(2, ("lap_time", "red"))),
     "comments above the heading": ("a.csv", b"# made by hand\n# twice\n" + CSV, TWO),
     "the heading is a comment": ("a.csv", b"# a log\n# time,red\n0,1\n1,2\n", TWO),
     "the heading begins with the sign": ("a.csv", b"#" + CSV, TWO),
     "as numpy saves it": ("a.txt", savetxt, TWO),
     "as Zeek writes it": ("conn.log", ZEEK.encode(), "is a Zeek log with a heading of its own"),
-    "a heading that is called fields": ("a.csv", b"# log\n#fields,red\n0,1\n1,2\n", Read(2, ("fields", "red"))),
+    "a heading that is called fields": (
+        "a.csv",
+        b"# log\n#fields,red\n0,1\n1,2\n",
+        Read(2, ("fields", "red")),
+    ),
     "colours are no comments": (
         "a.csv",
         b"time,colour,red\n0,#ff0000,1\n1,#00ff00,2\n",
@@ -123,7 +137,11 @@ CASES: dict[str, Case] = {
     "dates of 64 bits": ("a.arrow", arrow_date64, "column 'date' is of Arrow's type date64"),
     "bzip2": ("a.csv.bz2", bz2.compress(CSV), TWO),
     "two bzip2 files in one": ("a.csv.bz2", bz2.compress(CSV[:15]) + bz2.compress(CSV[15:]), TWO),
-    "bzip2 cut off": ("a.csv.bz2", bz2.compress(CSV)[:-20], "no rows: the compressed file is truncated"),
+    "bzip2 cut off": (
+        "a.csv.bz2",
+        bz2.compress(CSV)[:-20],
+        "no rows: the compressed file is truncated",
+    ),
     "xz": ("a.csv.xz", lzma.compress(CSV), "is an xz file, which cannot be read"),
     "zstd": ("a.csv.zst", pa.compress(CSV, "zstd", asbytes=True), TWO),
     "zstd cut off": (
@@ -138,19 +156,26 @@ CASES: dict[str, Case] = {
 
 
 @pytest.mark.parametrize(("name", "content", "expected"), CASES.values(), ids=CASES)
-def test_input(tmp_path: Path, name: str, content: bytes | Callable[[], bytes], expected: Read | str) -> None:
+def test_input(
+    tmp_path: Path, name: str, content: bytes | Callable[[], bytes], expected: Read | str
+) -> None:
     check_input(tmp_path / name, content, expected)
 
 
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        ("t_ms,red\n0,1\n9,2\n", "time is the column 't_ms', in milliseconds (--time COLUMN selects another"),
+        (
+            "t_ms,red\n0,1\n9,2\n",
+            "time is the column 't_ms', in milliseconds (--time COLUMN selects another",
+        ),
         ("boot,red\n0,1\n9,2\n", "no time column: row numbers are used (--time COLUMN"),
         ("row,red\n1,1\n2,2\n", "no time column: row numbers are used (--time COLUMN"),
     ],
     ids=["a name", "none", "numbers of rows"],
 )
-def test_the_shell_says_which_column_is_the_time(here: Command, tmp_path: Path, text: str, said: str) -> None:
+def test_the_shell_says_which_column_is_the_time(
+    here: Command, tmp_path: Path, text: str, said: str
+) -> None:
     (tmp_path / "a.csv").write_text(text)
     assert said in here("log", "summary", "a.csv").stderr

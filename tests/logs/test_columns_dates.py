@@ -27,16 +27,21 @@ TEXTS: dict[str, tuple[list[str | None], list[float]]] = {
 
 @pytest.mark.parametrize(("texts", "expected"), TEXTS.values(), ids=TEXTS)
 def test_texts(texts: list[str | None], expected: list[float]) -> None:
-    assert_allclose(seconds_of(pa.chunked_array([pa.array(texts, pa.string())]), 1.0), expected, atol=1e-9)
+    assert_allclose(
+        seconds_of(pa.chunked_array([pa.array(texts, pa.string())]), 1.0), expected, atol=1e-9
+    )
 
 
 KINDS: dict[str, tuple[pa.Array, list[float]]] = {
     "times of 32 bits": (pa.array([dt.time(1, 0, 1), None], pa.time32("ms")), [3601, NAN]),
     "times of 64 bits": (pa.array([dt.time(1, 0, 1), None], pa.time64("ns")), [3601, NAN]),
     "dates": (pa.array([dt.date(2024, 2, 28), dt.date(2024, 3, 1)]), [0, 172800]),
-    "nanoseconds": (pa.array([None, 17 * 10**17 + 1, 17 * 10**17 + 4], "timestamp[ns]"), [NAN, 0, 3e-9]),
+    "nanoseconds": (
+        pa.array([None, 17 * 10**17 + 1, 17 * 10**17 + 4], "timestamp[ns]"),
+        [NAN, 0, 3e-9],
+    ),
     "spans": (pa.array([dt.timedelta(seconds=5)]), [5]),
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize(("column", "expected"), KINDS.values(), ids=KINDS)
@@ -62,5 +67,13 @@ def test_columns_of_any_kind_are_exported(tmp_path: Path, suffix: str) -> None:
 def test_decimal_numbers_and_short_texts_of_parquet(tmp_path: Path) -> None:
     path = tmp_path / "a.parquet"
     names = pa.array(["red", "blue"], pa.string_view())
-    pq.write_table(pa.table({"time": [0.0, 1.0], "variable": names, "value": [Decimal("1.5"), Decimal("2.5")]}), path)
-    assert [open_log(path).series(name).values.tolist() for name in ("red", "blue")] == [[1.5], [2.5]]
+    pq.write_table(
+        pa.table(
+            {"time": [0.0, 1.0], "variable": names, "value": [Decimal("1.5"), Decimal("2.5")]}
+        ),
+        path,
+    )
+    assert [open_log(path).series(name).values.tolist() for name in ("red", "blue")] == [
+        [1.5],
+        [2.5],
+    ]

@@ -42,7 +42,9 @@ def test_other_texts_and_numbers_stay_as_they_are(text: str) -> None:
 
 def test_no_cell_of_a_file_is_a_formula_and_reading_gives_back_the_texts(tmp_path: Path) -> None:
     texts = [*FORMULAS, *PLAIN]
-    frame = pd.DataFrame({"=name": texts, "value": [-1.5] * len(texts), "count": range(-3, len(texts) - 3)})
+    frame = pd.DataFrame(
+        {"=name": texts, "value": [-1.5] * len(texts), "count": range(-3, len(texts) - 3)}
+    )
     export_frame(frame, tmp_path / "out.csv", {})
     with (tmp_path / "out.csv").open(newline="", encoding="utf-8") as handle:
         heading, *rows = csv.reader(handle)

@@ -19,7 +19,15 @@ from tuisim.core.spec import RobotSpec
 from tuisim.errors import LogError
 from tuisim.logs.bands import distance_mm
 from tuisim.logs.columns import guess_columns
-from tuisim.logs.derived import NEEDED, dead_reckoning, definition_of, derived, error_mm, reckoned_series, spec_in
+from tuisim.logs.derived import (
+    NEEDED,
+    dead_reckoning,
+    definition_of,
+    derived,
+    error_mm,
+    reckoned_series,
+    spec_in,
+)
 from tuisim.logs.log import Log
 
 FALLING = 90.0 - 10.0 * np.arange(10)
@@ -60,7 +68,9 @@ REFUSED = {
 
 
 def test_wheels_without_numbers_cannot_be_reckoned() -> None:
-    table = pa.table({"time": [0.0, 1.0], "value": [1.0, 2.0], **{name: ["a", "b"] for name in NEEDED}})
+    table = pa.table(
+        {"time": [0.0, 1.0], "value": [1.0, 2.0], **{name: ["a", "b"] for name in NEEDED}}
+    )
     with pytest.raises(LogError, match="no column 'left_position_deg' with numbers"):
         reckoned_series(Log("test", table, guess_columns(table)))
 
@@ -80,7 +90,18 @@ def test_each_run_has_its_own() -> None:
     assert (first.name, second.name) == ("slope(Colour) #1", "slope(Colour) #2")
     assert (first.values[0], second.values[0]) == (-10.0, -5.0)
     (apart,) = derived(log, definition_of("`Colour #1` - `Colour #2`"), "Left #1")
-    assert apart.values.tolist() == [0.0, -10.0, -10.0, -20.0, -20.0, -30.0, -30.0, -40.0, -40.0, -50.0]
+    assert apart.values.tolist() == [
+        0.0,
+        -10.0,
+        -10.0,
+        -20.0,
+        -20.0,
+        -30.0,
+        -30.0,
+        -40.0,
+        -40.0,
+        -50.0,
+    ]
 
 
 def test_it_is_a_variable_like_any_other() -> None:
@@ -107,7 +128,10 @@ def test_it_is_replaced_taken_away_and_kept_when_the_log_grows() -> None:
     assert [trace.name for trace in other.traces] == ["Colour", "Left"]
     model.rows.view = model.rows.sorted("v", True)
     derive(model, "v =")
-    assert [trace.name for trace in model.traces] == ["wave"] and model.rows.columns == ["time", "wave"]
+    assert [trace.name for trace in model.traces] == ["wave"] and model.rows.columns == [
+        "time",
+        "wave",
+    ]
     assert model.selected == "wave" and len(model.rows) == 100
 
 
@@ -135,7 +159,10 @@ class TestReckoning:
         left, right = column(0, 100, 130), column(0, 120, 160)
         expected = dead_reckoning(left, right, Pose(0, 0, 0), usual)
         got = dead_reckoning(left * -0.5, right * 0.5, Pose(0, 0, 0), geared)
-        assert_allclose([got.x_mm, got.y_mm, got.heading_deg], [expected.x_mm, expected.y_mm, expected.heading_deg])
+        assert_allclose(
+            [got.x_mm, got.y_mm, got.heading_deg],
+            [expected.x_mm, expected.y_mm, expected.heading_deg],
+        )
 
     def test_an_arc_is_round(self) -> None:
         robot = RobotSpec()
@@ -154,7 +181,15 @@ class TestReckoning:
 
 @pytest.mark.parametrize(
     "metadata",
-    [{}, {"runs": []}, {"runs": 3}, {"runs": [[]]}, {"runs": ["x"]}, {"runs": [{}]}, {"runs": [{"robot": {}}]}],
+    [
+        {},
+        {"runs": []},
+        {"runs": 3},
+        {"runs": [[]]},
+        {"runs": ["x"]},
+        {"runs": [{}]},
+        {"runs": [{"robot": {}}]},
+    ],
     ids=str,
 )
 def test_damaged_metadata_describe_no_run(metadata: dict[str, Any]) -> None:

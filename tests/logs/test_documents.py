@@ -31,14 +31,22 @@ CASES: dict[str, Case] = {
     "rows on many lines": ("a.json", text(ROWS, 4), TWO),
     "rows on many lines under another name": ("a.log", text(ROWS, 4), TWO),
     "rows behind each other": ("a.json", b"\n".join(text(row, 2) for row in ROWS), TWO),
-    "one row on many lines": ("a.json", text(ROWS[1], 2), Read(1, check=lambda log: values(log) == [2])),
+    "one row on many lines": (
+        "a.json",
+        text(ROWS[1], 2),
+        Read(1, check=lambda log: values(log) == [2]),
+    ),
     "lists with names": ("a.json", text([["time", "red"], [0, 1], [0.5, 2]]), TWO),
     "lists": (
         "a.json",
         b"[0, 1]\n[0.5, 2]\n",
         Read(2, ("column 2",), check=lambda log: times(log, "column 2") == [0, 0.5]),
     ),
-    "numbers": ("a.txt", b"[5, 6, 7]", Read(3, ("column 1",), note="a list of single values is read as one column")),
+    "numbers": (
+        "a.txt",
+        b"[5, 6, 7]",
+        Read(3, ("column 1",), note="a list of single values is read as one column"),
+    ),
     "columns with labels, as pandas writes them": (
         "a.json",
         text({"time": {"0": 0, "1": 0.5}, "red": {"0": 1, "1": 2}}),
@@ -87,7 +95,11 @@ CASES: dict[str, Case] = {
     ),
     "two tables": ("a.json", text({"a": ROWS, "b": ROWS}), "has several tables: 'a', 'b'"),
     "a single number": ("a.json", b"5", "is a single JSON value, 5, not a table"),
-    "a truncated document": ("a.json", text(ROWS, 2)[:-8], r"no rows: not complete JSON \(line 9\)"),
+    "a truncated document": (
+        "a.json",
+        text(ROWS, 2)[:-8],
+        r"no rows: not complete JSON \(line 9\)",
+    ),
     "a truncated document with a row on a line": (
         "a.json",
         b'{"data": [\n{"time": 0, "red": 1},\n{"tim',
@@ -108,8 +120,14 @@ def test_input(tmp_path: Path, name: str, content: bytes, expected: Read | str) 
 @pytest.mark.parametrize("orient", ["records", "columns", "split", "list"])
 def test_as_pandas_reads_the_same(tmp_path: Path, orient: Any) -> None:
     frame = pd.DataFrame({"time": [0.0, 0.25, 0.5], "red": [98.5, 12.0, 0.125], "blue": [1, 2, 3]})
-    written = text(frame.to_dict("list"), 2) if orient == "list" else frame.to_json(orient=orient, indent=2).encode()
-    read = pd.read_json(StringIO(written.decode()), orient="columns" if orient == "list" else orient)
+    written = (
+        text(frame.to_dict("list"), 2)
+        if orient == "list"
+        else frame.to_json(orient=orient, indent=2).encode()
+    )
+    read = pd.read_json(
+        StringIO(written.decode()), orient="columns" if orient == "list" else orient
+    )
     (tmp_path / "a.json").write_bytes(written)
     log = open_log(tmp_path / "a.json")
     assert_array_equal(log.table.select(["time", "red", "blue"]).to_pandas(), read)

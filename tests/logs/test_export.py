@@ -72,14 +72,18 @@ def test_telemetry_comes_back_to_the_last_bit(
 def test_values_that_are_hard_to_write(tmp_path: Path, suffix: str) -> None:
     values = [0.1 + 0.2, 5e-324, 1.7976931348623157e308, -0.0, np.nan, 1e22, 100.0, 2 / 3]
     nanoseconds = [0, 1, 10**18 + 1, 999, 1_000_000, 86_400_000_000_000, 33_333_334, 5]
-    frame = pd.DataFrame({
-        "index": np.array(nanoseconds, "m8[ns]"),
-        "variable": pd.Series(["NA", "nan", "None", "null", "true", "Größe", "x", "inf"], dtype="str"),
-        "value": values,
-        "time": [np.nan] * len(values),
-        "run": np.arange(1, len(values) + 1),
-        "line": np.full(len(values), 2**40),
-    })  # fmt: skip
+    frame = pd.DataFrame(
+        {
+            "index": np.array(nanoseconds, "m8[ns]"),
+            "variable": pd.Series(
+                ["NA", "nan", "None", "null", "true", "Größe", "x", "inf"], dtype="str"
+            ),
+            "value": values,
+            "time": [np.nan] * len(values),
+            "run": np.arange(1, len(values) + 1),
+            "line": np.full(len(values), 2**40),
+        }
+    )
     export_frame(frame, tmp_path / f"x{suffix}", {})
     found = read_log(tmp_path / f"x{suffix}")
     pd.testing.assert_frame_equal(found, frame, check_exact=True)
@@ -88,36 +92,52 @@ def test_values_that_are_hard_to_write(tmp_path: Path, suffix: str) -> None:
 
 N = np.nan
 OTHER_FRAMES: dict[str, tuple[dict[str, object], str]] = {
-    "whole numbers": ({"a": [1, -2, 3], "b": [1.0, N, 3.0], "c": [2**53 + 1, 2**62, -(2**63)]}, "int64 float64 int64"),
+    "whole numbers": (
+        {"a": [1, -2, 3], "b": [1.0, N, 3.0], "c": [2**53 + 1, 2**62, -(2**63)]},
+        "int64 float64 int64",
+    ),
     "whole at first": ({"a": [1.0, 2.0, 2.5], "b": [N, N, N]}, "float64 float64"),
     "infinite": ({"a": [np.inf, -np.inf, -0.0]}, "float64"),
-    "separators": ({"a": ["b,c", 'd"e', "f\ng"], "b": ["a;b", "\tc", "e\r\nf"], "c": ["# 1", " x ", "'"]},
-                   "str str str"),
+    "separators": (
+        {"a": ["b,c", 'd"e', "f\ng"], "b": ["a;b", "\tc", "e\r\nf"], "c": ["# 1", " x ", "'"]},
+        "str str str",
+    ),
     "texts like values": ({"a": ["NA", "1", "null"], "b": ["True", "False", "x"]}, "str str"),
     "truths": ({"a": [True, False], "b": [1, 0]}, "bool int64"),
     "truths with a gap": ({"a": [True, None, False]}, "object; .csv str; .jsonl float64"),
     "one column": ({"a;b": [1.5, N, 2.5]}, "float64"),
     "one column of texts": ({"word": ["a b", "", "c"]}, "str"),
     "numbers as names": ({"1": [1.5, 2.0], "2": [3, 4]}, "float64 int64"),
-    "dates": ({"when": pd.to_datetime(["2024-01-01 00:00:00.5"])}, "datetime64[us]; .csv str; .jsonl str"),
-    "small types": ({"a": np.array([1, 255], "uint8"), "b": np.array([0.1, 0.2], "float32")},
-                    "uint8 float32; .csv int64 float64; .jsonl int64 float64"),
+    "dates": (
+        {"when": pd.to_datetime(["2024-01-01 00:00:00.5"])},
+        "datetime64[us]; .csv str; .jsonl str",
+    ),
+    "small types": (
+        {"a": np.array([1, 255], "uint8"), "b": np.array([0.1, 0.2], "float32")},
+        "uint8 float32; .csv int64 float64; .jsonl int64 float64",
+    ),
     "categories": ({"a": pd.Categorical(["x", "y", "x"])}, "category; .csv str; .jsonl str"),
-    "no rows": ({"a": pd.Series([], dtype="str"), "line": np.array([], "int64")},
-                "str int64; .csv float64 int64; .jsonl float64 int64"),
-}  # fmt: skip
+    "no rows": (
+        {"a": pd.Series([], dtype="str"), "line": np.array([], "int64")},
+        "str int64; .csv float64 int64; .jsonl float64 int64",
+    ),
+}
 """Columns, and the types with which they come back, after `;` those of a format that has no such types."""
 
 
 @pytest.mark.quick_cases("*-.csv", "*-.parquet")
 @each_format
 @pytest.mark.parametrize(("columns", "types"), OTHER_FRAMES.values(), ids=OTHER_FRAMES)
-def test_other_frames_come_back(tmp_path: Path, suffix: str, columns: dict[str, object], types: str) -> None:
+def test_other_frames_come_back(
+    tmp_path: Path, suffix: str, columns: dict[str, object], types: str
+) -> None:
     frame = pd.DataFrame(columns)
     export_frame(frame, tmp_path / f"x{suffix}", {"columns": list(frame.columns)})
     found = read_log(tmp_path / f"x{suffix}")
     common, *others = types.split("; ")
-    wanted = next((other.split()[1:] for other in others if other.startswith(suffix)), common.split())
+    wanted = next(
+        (other.split()[1:] for other in others if other.startswith(suffix)), common.split()
+    )
     assert (list(found), [str(kind) for kind in found.dtypes]) == (list(frame), wanted)
     kept = [name for name in frame if found[name].dtype == frame[name].dtype]
     pd.testing.assert_frame_equal(found[kept], frame[kept], check_exact=True)
@@ -136,7 +156,12 @@ def test_frame_without_rows_comes_back_with_its_types(
 @each_format
 @pytest.mark.parametrize("table", ["samples", "telemetry"])
 def test_identical_runs_give_identical_files(
-    record: Callable[..., Recorder], noisy_spec: RunSpec, field: Field, tmp_path: Path, suffix: str, table: str
+    record: Callable[..., Recorder],
+    noisy_spec: RunSpec,
+    field: Field,
+    tmp_path: Path,
+    suffix: str,
+    table: str,
 ) -> None:
     written = []
     for name in ("one", "two"):
@@ -157,15 +182,23 @@ def test_what_travels_with_a_log(logged: StoredRun, tmp_path: Path, suffix: str)
     export_samples([logged], tmp_path / f"x{suffix}")
     found = open_log(tmp_path / f"x{suffix}").metadata
     (run,) = found["runs"]
-    assert (found["table"], found["units"]["x_mm"], found["units"]["time"]) == ("samples", "mm", "s, simulated")
+    assert (found["table"], found["units"]["x_mm"], found["units"]["time"]) == (
+        "samples",
+        "mm",
+        "s, simulated",
+    )
     assert (run["program"]["sha256"], run["seed"]) == (logged.program.sha256, 3)
     assert (run["world"]["background"], run["profile"]["name"]) == ("Empty_Map", "robolab")
     text = json.dumps(found)
-    assert not any(secret in text for secret in (logged.id, logged.created, logged.program.path, str(tmp_path)))
+    assert not any(
+        secret in text for secret in (logged.id, logged.created, logged.program.path, str(tmp_path))
+    )
 
 
 @each_format
-def test_existing_file_is_replaced_with_common_rights(logged: StoredRun, tmp_path: Path, suffix: str) -> None:
+def test_existing_file_is_replaced_with_common_rights(
+    logged: StoredRun, tmp_path: Path, suffix: str
+) -> None:
     target = tmp_path / f"x{suffix}"
     target.write_text("old")
     export_samples([logged], target)
@@ -176,7 +209,9 @@ def test_existing_file_is_replaced_with_common_rights(logged: StoredRun, tmp_pat
 
 
 @each_format
-def test_failure_leaves_what_was_there(tmp_path: Path, suffix: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_failure_leaves_what_was_there(
+    tmp_path: Path, suffix: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
     target = tmp_path / f"x{suffix}"
     target.write_text("old")
 
@@ -191,7 +226,9 @@ def test_failure_leaves_what_was_there(tmp_path: Path, suffix: str, monkeypatch:
 
 
 @each_format
-def test_suffix_in_capitals_is_the_same_format(logged: StoredRun, tmp_path: Path, suffix: str) -> None:
+def test_suffix_in_capitals_is_the_same_format(
+    logged: StoredRun, tmp_path: Path, suffix: str
+) -> None:
     export_samples([logged], tmp_path / f"X{suffix.upper()}")
     assert len(read_log(tmp_path / f"X{suffix.upper()}")) == 4
 
@@ -254,7 +291,10 @@ def test_good_target_is_checked_without_a_trace(tmp_path: Path) -> None:
 
 
 BAD_TARGETS = {
-    "unknown suffix": ("x.xlsx", re.escape(f"unknown format '.xlsx' (a file ends in {', '.join(EXPORTERS)})")),
+    "unknown suffix": (
+        "x.xlsx",
+        re.escape(f"unknown format '.xlsx' (a file ends in {', '.join(EXPORTERS)})"),
+    ),
     "no suffix": ("x", r"unknown format ''"),
     "only a suffix": (".csv", r"unknown format ''"),
     "no such folder": ("gone/x.csv", r"there is no folder .*gone"),
@@ -266,7 +306,9 @@ BAD_TARGETS = {
 
 
 @pytest.mark.parametrize(("name", "message"), BAD_TARGETS.values(), ids=BAD_TARGETS)
-def test_bad_target_is_refused_before_anything_is_done(tmp_path: Path, name: str, message: str) -> None:
+def test_bad_target_is_refused_before_anything_is_done(
+    tmp_path: Path, name: str, message: str
+) -> None:
     (tmp_path / "folder.csv").mkdir()
     (tmp_path / "y.csv.json").mkdir()
     (tmp_path / "file").write_text("")
@@ -281,7 +323,10 @@ def test_folder_that_cannot_be_written_is_refused() -> None:
         check_target("/proc/self/x.csv")
 
 
-READ_ERRORS = {"no such file": ("gone.csv", "no such file"), "unknown format": ("x.txt", r"a log ends in \.csv")}
+READ_ERRORS = {
+    "no such file": ("gone.csv", "no such file"),
+    "unknown format": ("x.txt", r"a log ends in \.csv"),
+}
 
 
 @pytest.mark.parametrize(("name", "message"), READ_ERRORS.values(), ids=READ_ERRORS)
@@ -295,7 +340,8 @@ def test_log_that_cannot_be_read(tmp_path: Path, name: str, message: str) -> Non
 
 @pytest.mark.quick_cases("logs.export", "runs.store")
 @pytest.mark.parametrize(
-    "module", ["runs.records", "runs.samples", "runs.side_files", "runs.views", "runs.store", "logs.export"]
+    "module",
+    ["runs.records", "runs.samples", "runs.side_files", "runs.views", "runs.store", "logs.export"],
 )
 def test_importing_is_light(module: str) -> None:
     code = (
@@ -307,7 +353,9 @@ def test_importing_is_light(module: str) -> None:
     assert (done.returncode, done.stderr) == (0, "")
 
 
-def test_the_log_of_a_run_is_read_without_pandas(record: Callable[..., Recorder], noisy_spec: RunSpec) -> None:
+def test_the_log_of_a_run_is_read_without_pandas(
+    record: Callable[..., Recorder], noisy_spec: RunSpec
+) -> None:
     run = noisy_run(record, noisy_spec)
     code = (
         "import sys; from tuisim import load_run; from tuisim.logs.reader import log_of_runs\n"

@@ -19,16 +19,27 @@ def log_of(**columns: object) -> Log:
     return Log("test", table, guess_columns(table))
 
 
-SMALL = pa.array(["B", None, "A", "B"]).dictionary_encode().cast(pa.dictionary(pa.int8(), pa.string()))
+SMALL = (
+    pa.array(["B", None, "A", "B"]).dictionary_encode().cast(pa.dictionary(pa.int8(), pa.string()))
+)
 TWICE = pa.DictionaryArray.from_arrays(pa.array([0, 1, 2, 1]), pa.array(["A", "B", "A"]))
 ROWS = {
-    "each in its order": (log_of(variable=["B", "A", "B"], value=[1.0, 2.0, 3.0]), {"B": [0, 2], "A": [1]}),
+    "each in its order": (
+        log_of(variable=["B", "A", "B"], value=[1.0, 2.0, 3.0]),
+        {"B": [0, 2], "A": [1]},
+    ),
     "coded names": (
         log_of(variable=pa.array(["B", "A", "B"]).dictionary_encode(), value=[1.0, 2.0, 3.0]),
         {"B": [0, 2], "A": [1]},
     ),
-    "a name that is coded twice": (log_of(variable=TWICE, value=[1.0] * 4), {"A": [0, 2], "B": [1, 3]}),
-    "codes of one byte": (log_of(variable=SMALL, value=[1.0] * 4), {"B": [0, 3], "None": [], "A": [2]}),
+    "a name that is coded twice": (
+        log_of(variable=TWICE, value=[1.0] * 4),
+        {"A": [0, 2], "B": [1, 3]},
+    ),
+    "codes of one byte": (
+        log_of(variable=SMALL, value=[1.0] * 4),
+        {"B": [0, 3], "None": [], "A": [2]},
+    ),
     "no name": (log_of(variable=["A", None, "A"], value=[1.0] * 3), {"A": [0, 2], "None": []}),
     "a variable called None": (log_of(variable=[None, "None"], value=[1.0] * 2), {"None": [1]}),
     "runs": (
@@ -68,7 +79,11 @@ def test_a_column_that_stays_empty_holds_numbers(tmp_path: Path) -> None:
 
 def test_a_column_without_a_type_is_no_variable(tmp_path: Path) -> None:
     path = tmp_path / "a.parquet"
-    pq.write_table(pa.table({"time": [0.0, 1.0], "red": [5.0, 6.0], "none": pa.nulls(2)}), path, row_group_size=1)
+    pq.write_table(
+        pa.table({"time": [0.0, 1.0], "red": [5.0, 6.0], "none": pa.nulls(2)}),
+        path,
+        row_group_size=1,
+    )
     assert open_log(path).names == ("red",)
 
 

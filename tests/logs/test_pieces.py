@@ -20,7 +20,9 @@ def test_steps_between_pieces_are_those_of_least_squares(seed: int) -> None:
     lines = [pieces._lines(values, span, 1.0) for span in (before, after)]
     step, spread = pieces._steps_between(lines[0], lines[1], before[:, 1])
 
-    kept = [~strays(values[None, start:end], 1.0)[0] for start, end in ((0, edge), (edge + gap, stop))]
+    kept = [
+        ~strays(values[None, start:end], 1.0)[0] for start, end in ((0, edge), (edge + gap, stop))
+    ]
     at = np.concatenate((np.flatnonzero(kept[0]), edge + gap + np.flatnonzero(kept[1])))
     model = np.stack((np.ones(len(at)), at - edge, at >= edge), axis=1).astype(np.float64)
     inverse = np.linalg.pinv(model)

@@ -43,12 +43,18 @@ def test_ends_when_nobody_waits_for_it() -> None:
 
 
 def test_it_imports_the_package_of_this_process() -> None:
-    assert plateaus_module.__file__ == str(plateaus_module._PACKAGE_FOLDER / "tuisim" / "logs" / "plateaus.py")
+    assert plateaus_module.__file__ == str(
+        plateaus_module._PACKAGE_FOLDER / "tuisim" / "logs" / "plateaus.py"
+    )
 
 
 @pytest.mark.parametrize(
     ("module", "name", "number"),
-    [(plateaus_module, "_FEW_STARTS", 0), (plateaus_module, "_FEW_STARTS", 10**6), (pieces_module, "_AT_ONCE", 1)],
+    [
+        (plateaus_module, "_FEW_STARTS", 0),
+        (plateaus_module, "_FEW_STARTS", 10**6),
+        (pieces_module, "_AT_ONCE", 1),
+    ],
 )
 def test_how_much_is_looked_at_together_changes_nothing(
     module: ModuleType, name: str, number: int, monkeypatch: pytest.MonkeyPatch

@@ -61,18 +61,32 @@ CASES: dict[str, Case] = {
     "utf-16 without a mark": ("a.csv", CSV.encode("utf-16-le"), Read(40, note="UTF-16")),
     "utf-16 the other way round": ("a.csv", CSV.encode("utf-16-be"), Read(40, note="UTF-16")),
     "semicolons": ("a.csv", CSV.replace(",", ";").encode(), SOUND),
-    "semicolons and decimal commas": ("a.csv", CSV.replace(",", ";").replace(".", ",").encode(), SOUND),
+    "semicolons and decimal commas": (
+        "a.csv",
+        CSV.replace(",", ";").replace(".", ",").encode(),
+        SOUND,
+    ),
     "tabs": ("a.tsv", CSV.replace(",", "\t").encode(), SOUND),
     "bars": ("a.csv", CSV.replace(",", "|").encode(), SOUND),
     "blanks around cells": ("a.csv", CSV.replace(",", " , ").encode(), SOUND),
     "quoted cells": (
         "a.csv",
-        ('"time","red"\n' + ROWS.replace(",", '","').replace("\n", '"\n"')[:-1]).replace('\n0.0"', '\n"0.0"').encode(),
+        ('"time","red"\n' + ROWS.replace(",", '","').replace("\n", '"\n"')[:-1])
+        .replace('\n0.0"', '\n"0.0"')
+        .encode(),
         SOUND,
     ),
-    "mixed separators": ("a.csv", (CSV + "9.9;5\n4.0,80\n").encode(), Read(42, left_out=2, note="too few cells")),
+    "mixed separators": (
+        "a.csv",
+        (CSV + "9.9;5\n4.0,80\n").encode(),
+        Read(42, left_out=2, note="too few cells"),
+    ),
     "short rows": ("a.csv", (CSV + "4.0\n4.1,82\n").encode(), Read(42, left_out=1, note="row 42")),
-    "long rows": ("a.csv", (CSV + "4.0,80,1,2\n4.1,82\n").encode(), Read(42, left_out=1, note="1 row has too")),
+    "long rows": (
+        "a.csv",
+        (CSV + "4.0,80,1,2\n4.1,82\n").encode(),
+        Read(42, left_out=1, note="1 row has too"),
+    ),
     "words among numbers": (
         "a.csv",
         CSV.replace(",20\n", ",oops\n").encode(),
@@ -149,7 +163,11 @@ CASES: dict[str, Case] = {
         (CSV + "4.0,123456789012345678901234567890\n").encode(),
         Read(41, check=lambda log: values(log)[-1] > 1e29),
     ),
-    "times that go back": ("a.csv", (CSV + "1.0,5\n").encode(), Read(41, check=lambda log: times(log)[-1] == 1.0)),
+    "times that go back": (
+        "a.csv",
+        (CSV + "1.0,5\n").encode(),
+        Read(41, check=lambda log: times(log)[-1] == 1.0),
+    ),
     "dates": (
         "a.csv",
         b"time,red\n2026-01-01T10:00:00.25,1\n2026-01-01T10:00:01.75,2\n",
@@ -160,7 +178,11 @@ CASES: dict[str, Case] = {
         b"time,red\n0 days 00:00:01.5,1\n1 days 00:00:00,2\n",
         Read(2, check=lambda log: times(log) == [1.5, 86400]),
     ),
-    "milliseconds": ("a.csv", b"t_ms,red\n100,1\n250,2\n", Read(2, check=lambda log: times(log) == [0.1, 0.25])),
+    "milliseconds": (
+        "a.csv",
+        b"t_ms,red\n100,1\n250,2\n",
+        Read(2, check=lambda log: times(log) == [0.1, 0.25]),
+    ),
     "one column": ("a.csv", b"red\n5\n6\n7\n", Read(3, check=lambda log: times(log) == [0, 1, 2])),
     "only words": ("a.csv", b"name,colour\nana,red\nbo,blue\n", Read(2, ())),
     "nothing": ("a.csv", b"", "no rows"),
@@ -193,9 +215,18 @@ CASES: dict[str, Case] = {
     "parquet with two columns of one name": (
         "a.parquet",
         lambda: parquet(make=twice),
-        Read(1000, ("red", "red (2)"), note="two columns", check=lambda log: values(log, "red (2)")[2] == 2),
+        Read(
+            1000,
+            ("red", "red (2)"),
+            note="two columns",
+            check=lambda log: values(log, "red (2)")[2] == 2,
+        ),
     ),
-    "arrow with two columns of one name": ("a.arrow", lambda: arrow(make=twice), Read(1000, ("red", "red (2)"))),
+    "arrow with two columns of one name": (
+        "a.arrow",
+        lambda: arrow(make=twice),
+        Read(1000, ("red", "red (2)")),
+    ),
     "arrow": ("a.arrow", arrow, Read(1000, check=lambda log: values(log)[999] == 1998)),
     "arrow cut off": ("a.arrow", lambda: arrow()[: len(arrow()) // 2], Read(-1, note="truncated")),
     "arrow, only its magic": ("a.arrow", b"ARROW1\0\0", "Arrow"),
@@ -230,7 +261,10 @@ CASES: dict[str, Case] = {
         b'time,said,red\n0,"two\n\nlines, ""so""",3\n1,x,4\n2,"y\n",5\n',
         Read(
             3,
-            check=lambda log: values(log) == [3, 4, 5] and log.table.column("said")[0].as_py() == 'two\n\nlines, "so"',
+            check=lambda log: (
+                values(log) == [3, 4, 5]
+                and log.table.column("said")[0].as_py() == 'two\n\nlines, "so"'
+            ),
         ),
     ),
     "quotes that are inches": (
@@ -257,10 +291,24 @@ CASES: dict[str, Case] = {
     "truths": (
         "a.csv",
         b"time,on\n0,True\n1,false\n2,\n" + b"4,TRUE\n" * 50_000 + b"5,maybe\n",
-        Read(50_004, ("on",), 1, "1 cell of 'on' is not true", lambda log: values(log, "on")[:2] == [1, 0]),
+        Read(
+            50_004,
+            ("on",),
+            1,
+            "1 cell of 'on' is not true",
+            lambda log: values(log, "on")[:2] == [1, 0],
+        ),
     ),
-    "times that cannot be read": ("a.csv", b"time,red\nnoon,1\none,2\n", Read(2, note="'time' cannot be read")),
-    "json nested without end": ("a.jsonl", b"[" * 100_000 + b'\n{"time": 0, "red": 1}\n', Read(1, left_out=1)),
+    "times that cannot be read": (
+        "a.csv",
+        b"time,red\nnoon,1\none,2\n",
+        Read(2, note="'time' cannot be read"),
+    ),
+    "json nested without end": (
+        "a.jsonl",
+        b"[" * 100_000 + b'\n{"time": 0, "red": 1}\n',
+        Read(1, left_out=1),
+    ),
     "printed lines": (
         "a.txt",
         b"Colour: 98.8\nhello\nColour: 45\nUltrasonic: 3\n",
@@ -291,7 +339,9 @@ CASES: dict[str, Case] = {
 
 @pytest.mark.slow_cases("a line of 100 MB", "nothing but a line of 100 MB")
 @pytest.mark.parametrize(("name", "content", "expected"), CASES.values(), ids=CASES)
-def test_input(tmp_path: Path, name: str, content: bytes | Callable[[], bytes], expected: Read | str) -> None:
+def test_input(
+    tmp_path: Path, name: str, content: bytes | Callable[[], bytes], expected: Read | str
+) -> None:
     check_input(tmp_path / name, content, expected)
 
 
@@ -329,10 +379,16 @@ def test_a_pipe_that_ends(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(
     ("time", "columns", "expected"),
-    [("tme", (), "did you mean 'time'"), (None, ("blue",), "no column 'blue'"), (None, ("word",), "not numeric")],
+    [
+        ("tme", (), "did you mean 'time'"),
+        (None, ("blue",), "no column 'blue'"),
+        (None, ("word",), "not numeric"),
+    ],
     ids=["time", "value", "words"],
 )
-def test_columns_that_are_not_there(tmp_path: Path, time: str | None, columns: tuple[str, ...], expected: str) -> None:
+def test_columns_that_are_not_there(
+    tmp_path: Path, time: str | None, columns: tuple[str, ...], expected: str
+) -> None:
     path = tmp_path / "a.csv"
     path.write_text("time,red,word\n0,1,a\n1,2,b\n")
     with pytest.raises(LogError, match=expected):
@@ -347,7 +403,9 @@ def test_named_columns(tmp_path: Path) -> None:
     assert times(log, "blue") == [0.1, 0.2]
 
 
-@pytest.mark.parametrize("content", [parquet(), arrow(), gzip.compress(CSV.encode())], ids=["parquet", "arrow", "gzip"])
+@pytest.mark.parametrize(
+    "content", [parquet(), arrow(), gzip.compress(CSV.encode())], ids=["parquet", "arrow", "gzip"]
+)
 def test_a_pipe_brings_text_only(content: bytes, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("sys.stdin", io.TextIOWrapper(io.BytesIO(content)))
     with pytest.raises(LogError, match="only text can be read from a pipe"):

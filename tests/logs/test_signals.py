@@ -53,11 +53,15 @@ class TestSignals:
         assert_allclose(derivative(column(0, 1, 1, 2), column(0, 2, 9, 4)), [2, 2, 2, 2])
 
     @pytest.mark.parametrize("values", [column(), column(3.0)], ids=["none", "one"])
-    def test_derivative_of_too_little(self, values: np.ndarray[tuple[int], np.dtype[np.float64]]) -> None:
+    def test_derivative_of_too_little(
+        self, values: np.ndarray[tuple[int], np.dtype[np.float64]]
+    ) -> None:
         assert np.isnan(derivative(values, values)).all()
 
     @pytest.mark.parametrize(
-        ("between", "expected"), [(Between.LINEAR, [0, 1.5, 6.5]), (Between.HOLD, [0, 1, 5])], ids=["linear", "hold"]
+        ("between", "expected"),
+        [(Between.LINEAR, [0, 1.5, 6.5]), (Between.HOLD, [0, 1, 5])],
+        ids=["linear", "hold"],
     )
     def test_integral(self, between: Between, expected: list[float]) -> None:
         assert_allclose(integral(column(0, 1, 3), column(1, 2, 3), between), expected)
@@ -67,7 +71,9 @@ class TestSignals:
 
     def test_moving_average_keeps_digits(self) -> None:
         values = 1e9 + np.tile(column(0, 1), 500)
-        assert_allclose(moving_average(values, 3)[1:-1] - 1e9, np.tile(column(1 / 3, 2 / 3), 499), atol=1e-6)
+        assert_allclose(
+            moving_average(values, 3)[1:-1] - 1e9, np.tile(column(1 / 3, 2 / 3), 499), atol=1e-6
+        )
 
     def test_moving_average_is_of_its_window_only(self) -> None:
         values = np.full(40, 50.0)

@@ -20,7 +20,9 @@ def two(first_s: float, second_s: float, names: tuple[str, ...] = (VALUE,), note
         2,
         names,
         note=note,
-        check=lambda log: (times(log, names[0]), values(log, names[0])) == ([first_s, second_s], [5, 6]),
+        check=lambda log: (
+            (times(log, names[0]), values(log, names[0])) == ([first_s, second_s], [5, 6])
+        ),
     )
 
 
@@ -30,7 +32,11 @@ CASES: dict[str, Case] = {
         b"[07-04-2023 / 16:02:52] : 5\n[07-04-2023 / 16:03:00] : 6\n",
         two(0, 8, note="no header"),
     ),
-    "under another name": ("a.csv", b"[07-04-2023 / 16:02:52] : 5\n[07-04-2023 / 16:03:00] : 6\n", two(0, 8)),
+    "under another name": (
+        "a.csv",
+        b"[07-04-2023 / 16:02:52] : 5\n[07-04-2023 / 16:03:00] : 6\n",
+        two(0, 8),
+    ),
     "one line": (
         "a.txt",
         b"[07-04-2023 / 16:02:52] : 5\n",
@@ -39,7 +45,13 @@ CASES: dict[str, Case] = {
     "a title above": (
         "a.txt",
         b"EV3 log\n[07-04-2023 / 16:02:52] : 5\n[07-04-2023 / 16:03:00] : 6\n",
-        Read(2, (VALUE,), 1, "1 line is not a time with a value (row 1)", lambda log: values(log, VALUE) == [5, 6]),
+        Read(
+            2,
+            (VALUE,),
+            1,
+            "1 line is not a time with a value (row 1)",
+            lambda log: values(log, VALUE) == [5, 6],
+        ),
     ),
     "a heading above": (
         "a.txt",
@@ -51,10 +63,22 @@ CASES: dict[str, Case] = {
         b"[07-04-2023 / 16:02:52] Colour: 5\n[07-04-2023 / 16:02:54] Colour : 6\nbye\n",
         Read(2, ("Colour",), 1, check=lambda log: times(log, "Colour") == [0, 2]),
     ),
-    "seconds in brackets before names": ("a.txt", b"[0.5] Colour: 5\n[1.0] Colour: 6\n", two(0.5, 1, ("Colour",))),
+    "seconds in brackets before names": (
+        "a.txt",
+        b"[0.5] Colour: 5\n[1.0] Colour: 6\n",
+        two(0.5, 1, ("Colour",)),
+    ),
     "seconds and a colon": ("a.txt", b"0.5: 5\n1.0: 6\n", two(0.5, 1)),
-    "year first and a colon": ("a.txt", b"2023-04-07 16:02:52: 5\n2023-04-07 16:02:53.5: 6\n", two(0, 1.5)),
-    "year first and blanks": ("a.txt", b"2023/04/07 16:02:52 5\n2023/04/08 16:02:52 6\n", two(0, 86400)),
+    "year first and a colon": (
+        "a.txt",
+        b"2023-04-07 16:02:52: 5\n2023-04-07 16:02:53.5: 6\n",
+        two(0, 1.5),
+    ),
+    "year first and blanks": (
+        "a.txt",
+        b"2023/04/07 16:02:52 5\n2023/04/08 16:02:52 6\n",
+        two(0, 86400),
+    ),
     "time of day": ("a.txt", b"16:02:52 5\n16:02:53 6\n", two(57772, 57773)),
     "time of day in brackets": ("a.txt", b"[16:02:52]5\n[16:02:53]6\n", two(57772, 57773)),
     "dots": ("a.txt", b"7.4.2023 9:02:52 - 5\n13.4.2023 9:02:52 - 6\n", two(0, 6 * 86400)),
@@ -74,10 +98,16 @@ CASES: dict[str, Case] = {
         Read(
             2,
             (VALUE,),
-            check=lambda log: times(log, VALUE) == [0, 8] and not any("month" in said for said in log.notes),
+            check=lambda log: (
+                times(log, VALUE) == [0, 8] and not any("month" in said for said in log.notes)
+            ),
         ),
     ),
-    "as ctime writes it": ("a.txt", b"Fri Apr  7 16:02:52 2023: 5\nSat Apr  8 16:02:52 2023: 6\n", two(0, 86400)),
+    "as ctime writes it": (
+        "a.txt",
+        b"Fri Apr  7 16:02:52 2023: 5\nSat Apr  8 16:02:52 2023: 6\n",
+        two(0, 86400),
+    ),
     "as logging writes it": (
         "a.log",
         b"2023-04-07 16:02:52,250 INFO root: Colour: 5\n2023-04-07 16:02:53,500  INFO: Colour: 6\n",
@@ -93,8 +123,16 @@ CASES: dict[str, Case] = {
         b"date time red\n2023-04-07 16:02:52 5\n2023-04-07 16:02:53 6\n",
         two(57772, 57773, ("red",)),
     ),
-    "a table of commas": ("a.csv", b"16:02:52,5\n16:02:53,6\n", two(57772, 57773, note="no header")),
-    "a table of dates without a heading": ("a.csv", b"07-04-2023 16:02:52,5\n07-04-2023 16:02:53,6\n", two(0, 1)),
+    "a table of commas": (
+        "a.csv",
+        b"16:02:52,5\n16:02:53,6\n",
+        two(57772, 57773, note="no header"),
+    ),
+    "a table of dates without a heading": (
+        "a.csv",
+        b"07-04-2023 16:02:52,5\n07-04-2023 16:02:53,6\n",
+        two(0, 1),
+    ),
     "a table of dates and times": (
         "a.csv",
         b"2023-04-07,16:02:52,5\n2023-04-07,16:02:53,6\n",
@@ -106,10 +144,16 @@ CASES: dict[str, Case] = {
         Read(
             2,
             (VALUE,),
-            check=lambda log: times(log, VALUE) == [57772, 57773] and log.table.column_names[2] == "column 3",
+            check=lambda log: (
+                times(log, VALUE) == [57772, 57773] and log.table.column_names[2] == "column 3"
+            ),
         ),
     ),
-    "a column of dates, day first": ("a.csv", b"time,red\n7/4/2023 9:02,5\n7/4/2023 9:03,6\n", two(0, 60, ("red",))),
+    "a column of dates, day first": (
+        "a.csv",
+        b"time,red\n7/4/2023 9:02,5\n7/4/2023 9:03,6\n",
+        two(0, 60, ("red",)),
+    ),
     "dates as names of columns": (
         "a.csv",
         b"name,2023-04-07,2023-04-08\na,5,1\nb,6,2\n",
@@ -128,7 +172,10 @@ def test_as_pandas_reads_the_same(tmp_path: Path) -> None:
     levels = np.arange(90) % 7 * 14.5
     path = tmp_path / "a.txt"
     path.write_text(
-        "".join(f"[{at:%d-%m-%Y / %H:%M:%S}] : {level}\n" for at, level in zip(moments, levels, strict=True))
+        "".join(
+            f"[{at:%d-%m-%Y / %H:%M:%S}] : {level}\n"
+            for at, level in zip(moments, levels, strict=True)
+        )
     )
     frame = pd.read_csv(path, sep=r" : ", engine="python", header=None, names=["time", "value"])
     seconds = pd.to_datetime(frame["time"], format="[%d-%m-%Y / %H:%M:%S]")

@@ -16,7 +16,12 @@ BOTH = ("column 1", "column 2")
 
 
 def row(*cells: float) -> Read:
-    return Read(1, BOTH, note="no header", check=lambda log: tuple(values(log, name)[0] for name in BOTH) == cells)
+    return Read(
+        1,
+        BOTH,
+        note="no header",
+        check=lambda log: tuple(values(log, name)[0] for name in BOTH) == cells,
+    )
 
 
 def column(*cells: float) -> Read:
@@ -29,7 +34,11 @@ def column(*cells: float) -> Read:
 
 
 CASES: dict[str, Case] = {
-    "one row with a heading": ("a.csv", b"time,red\n0.5,5\n", Read(1, check=lambda log: times(log) == [0.5])),
+    "one row with a heading": (
+        "a.csv",
+        b"time,red\n0.5,5\n",
+        Read(1, check=lambda log: times(log) == [0.5]),
+    ),
     "one row of blanks with a heading": ("a.txt", b"time red\n0.5 5\n", Read(1)),
     "one row without a heading": ("a.csv", b"0,5\n", row(0, 5)),
     "one row of blanks": ("a.txt", b"0 5", row(0, 5)),
@@ -39,7 +48,11 @@ CASES: dict[str, Case] = {
         b"0;5,5\n1;6,5\n",
         Read(2, BOTH[1:], check=lambda log: values(log, BOTH[1]) == [5.5, 6.5]),
     ),
-    "one row with a word": ("a.csv", b"a,5\n", Read(1, BOTH[1:], check=lambda log: values(log, BOTH[1]) == [5])),
+    "one row with a word": (
+        "a.csv",
+        b"a,5\n",
+        Read(1, BOTH[1:], check=lambda log: values(log, BOTH[1]) == [5]),
+    ),
     "one number": ("a.txt", b"5\n", Read(1, BOTH[:1])),
     "one sample": ("a.txt", b"Colour: 5\n", Read(1, ("Colour",))),
     "only a heading": ("a.txt", b"time red\n", "no rows"),

@@ -80,10 +80,14 @@ if b'tuisim' in open(f'/proc/{parent}/cmdline', 'rb').read():
 """
 PARENTS: Mapping[str, str] = {
     name: _TO_PARENT.replace("NUMBER", number)
-    for name, number in {"SIGSTOP to the parent": "SIGSTOP", "SIGKILL to the parent": "SIGKILL"}.items()
+    for name, number in {
+        "SIGSTOP to the parent": "SIGSTOP",
+        "SIGKILL to the parent": "SIGKILL",
+    }.items()
 }
 PROCESSES: Mapping[str, str] = {
-    "a fork bomb": OWN_RUN + "while libc.fork() >= 0: libc.usleep(1000)\nlibc._exit(ctypes.get_errno())",
+    "a fork bomb": OWN_RUN
+    + "while libc.fork() >= 0: libc.usleep(1000)\nlibc._exit(ctypes.get_errno())",
     "a fork bomb of vfork": OWN_RUN + "while libc.syscall(58) >= 0: libc.usleep(1000)",
     "a bomb of threads": OWN_RUN
     + """
@@ -149,7 +153,8 @@ assert False, '3 GiB'
 }
 """Ways to more memory; what is beyond the limit fails by an AssertionError."""
 DISK: Mapping[str, str] = {
-    "a large file": OWN_RUN + "with open('a', 'wb', buffering=0) as file:\n    for _ in range(130): file.write(block)",
+    "a large file": OWN_RUN
+    + "with open('a', 'wb', buffering=0) as file:\n    for _ in range(130): file.write(block)",
     "many files": "for number in range(30000): open(str(number), 'w').close()\nwhile True: pass",
     "files without a name": OWN_RUN
     + """
@@ -170,7 +175,8 @@ for _ in range(1500):
 while True:
     libc.usleep(1000)
 """,
-    "the memory of tmp": OWN_RUN + "with open('/tmp/a', 'wb', buffering=0) as file:\n    while True: file.write(block)",
+    "the memory of tmp": OWN_RUN
+    + "with open('/tmp/a', 'wb', buffering=0) as file:\n    while True: file.write(block)",
 }
 """Ways to more space. Tried under isolation only."""
 RUN_FOLDER: Mapping[str, str] = {
@@ -181,7 +187,8 @@ RUN_FOLDER: Mapping[str, str] = {
     "a pipe as its lock": OWN_RUN + "os.unlink(run + '/lock')\nos.mkfifo(run + '/lock')",
     "deep folders in its recording": OWN_RUN
     + "os.chdir(run)\nfor _ in range(1100):\n    os.mkdir('d' * 20)\n    os.chdir('d' * 20)",
-    "another recording": OWN_RUN + "with open(run + '/telemetry.bin', 'r+b') as file: file.write(bytes(range(200)))",
+    "another recording": OWN_RUN
+    + "with open(run + '/telemetry.bin', 'r+b') as file: file.write(bytes(range(200)))",
     "no recording": OWN_RUN + "for name in os.listdir(run): os.unlink(run + '/' + name)",
 }
 FORGED: Mapping[str, str] = {
@@ -189,7 +196,9 @@ FORGED: Mapping[str, str] = {
     "a marks table": "open('marks.csv', 'w').write('student,points\\nada,0\\n')",
 }
 PROC: Mapping[str, str] = {
-    "memory of others": OWN_RUN + _OTHERS + "for pid in others: open(f'/proc/{pid}/mem', 'r+b').close()\nassert others",
+    "memory of others": OWN_RUN
+    + _OTHERS
+    + "for pid in others: open(f'/proc/{pid}/mem', 'r+b').close()\nassert others",
     "descriptors of others": OWN_RUN
     + _OTHERS
     + """

@@ -91,31 +91,93 @@ tank_drive.on_for_rotations(30, 30, 120 / 175.929)
 )
 
 NEAR_MISSES = (
-    single("yann", HOPS.replace("intensity_pc", "intensity"), "logs 220, 211, 128, 0 instead of percent", ("levels",)),
-    single("zora", HOPS.replace("colorLeft", "int(colorLeft").replace("_pc)", "_pc))"),
-           "cuts 82.7 down to 82, which is 0.7 off", ("levels",)),
-    single("anton", HOPS.replace("Colour:", "Color:"), "logs a variable of another name", ("levels",)),
-    single("bella", HOPS.replace('"Colour:", ', ""), "prints numbers without a name: no samples", ("levels",)),
+    single(
+        "yann",
+        HOPS.replace("intensity_pc", "intensity"),
+        "logs 220, 211, 128, 0 instead of percent",
+        ("levels",),
+    ),
+    single(
+        "zora",
+        HOPS.replace("colorLeft", "int(colorLeft").replace("_pc)", "_pc))"),
+        "cuts 82.7 down to 82, which is 0.7 off",
+        ("levels",),
+    ),
+    single(
+        "anton", HOPS.replace("Colour:", "Color:"), "logs a variable of another name", ("levels",)
+    ),
+    single(
+        "bella",
+        HOPS.replace('"Colour:", ', ""),
+        "prints numbers without a name: no samples",
+        ("levels",),
+    ),
     single("carlo", _FIRST_THREE, "counts to 3: black is missing", ("levels",)),
     single("dina", _SKIPS_GREY, "leaves out the third band", ("levels",)),
-    single("edgar", HOPS.replace("(170, ", "(150 - 100, "),
-           "begins 120 mm short: reads white at x 200, 600, 1000 and 1400, and ends at x 1630", EVERY),
-    single("gustav", HOPS.replace("230 /", "275 /"), "stops 45 mm late, more than 30, less than 100", ("place",)),
-    single("ines", HOPS.replace("175.929", "176.8"),
-           "rounds the rotation to 176.8 mm: 0.5 % of 1600 is 8 mm short, within 30"),
-    single("jonas", HOPS.replace("230 /", "630 /"),
-           "does not stop at the place: x 2150, through the wall, which is not solid",
-           ARRIVAL),
-    single("kira", _TOUCHES, "drives on to x 1920, where its front touches the wall, and comes back", ("wall",)),
-    single("lars", _TURNS, "turns at the end: 32° of the wheel are 15.6 mm at 90 mm, 10° to the right", ("heading",)),
-    single("mona", _CURVE,
-           "the right wheel drives 207 mm while the left drives 230: 23 / 180 rad are 7° to the right; ends about "
-           "11 mm short and 14 mm aside, within 30",
-           ("heading",)),
-    single("nils", HOPS.replace("50, 50", "15, 15"), "at speed 15, 77 mm/s: 1600 mm take more than 20 s", ("done",)),
-    single("olga", HOPS + "import time\ntime.sleep(15)\n", "arrives in time, but ends after more than 20 s", ("done",)),
-    single("pavel", _STOPS_AT_BLACK, "logs all four levels and stops on the last band, x 1430", ARRIVAL),
-    single("rita", _NEVER_STOPS, "never stops: passes the place and the wall until the limit", ARRIVAL, line=4),
+    single(
+        "edgar",
+        HOPS.replace("(170, ", "(150 - 100, "),
+        "begins 120 mm short: reads white at x 200, 600, 1000 and 1400, and ends at x 1630",
+        EVERY,
+    ),
+    single(
+        "gustav",
+        HOPS.replace("230 /", "275 /"),
+        "stops 45 mm late, more than 30, less than 100",
+        ("place",),
+    ),
+    single(
+        "ines",
+        HOPS.replace("175.929", "176.8"),
+        "rounds the rotation to 176.8 mm: 0.5 % of 1600 is 8 mm short, within 30",
+    ),
+    single(
+        "jonas",
+        HOPS.replace("230 /", "630 /"),
+        "does not stop at the place: x 2150, through the wall, which is not solid",
+        ARRIVAL,
+    ),
+    single(
+        "kira",
+        _TOUCHES,
+        "drives on to x 1920, where its front touches the wall, and comes back",
+        ("wall",),
+    ),
+    single(
+        "lars",
+        _TURNS,
+        "turns at the end: 32° of the wheel are 15.6 mm at 90 mm, 10° to the right",
+        ("heading",),
+    ),
+    single(
+        "mona",
+        _CURVE,
+        "the right wheel drives 207 mm while the left drives 230: 23 / 180 rad are 7° to the right; ends about "
+        "11 mm short and 14 mm aside, within 30",
+        ("heading",),
+    ),
+    single(
+        "nils",
+        HOPS.replace("50, 50", "15, 15"),
+        "at speed 15, 77 mm/s: 1600 mm take more than 20 s",
+        ("done",),
+    ),
+    single(
+        "olga",
+        HOPS + "import time\ntime.sleep(15)\n",
+        "arrives in time, but ends after more than 20 s",
+        ("done",),
+    ),
+    single(
+        "pavel", _STOPS_AT_BLACK, "logs all four levels and stops on the last band, x 1430", ARRIVAL
+    ),
+    single(
+        "rita",
+        _NEVER_STOPS,
+        "never stops: passes the place and the wall until the limit",
+        ARRIVAL,
+        line=4,
+    ),
     single("stefan", _CRASHES_LAST, "does all, then divides by zero in line 7", ("done",), line=7),
     single("uwe", _COUNTS_WHITE, "off by one: stops behind the third band", EVERY),
     Student(
@@ -125,4 +187,4 @@ NEAR_MISSES = (
         "imports a module of another name than its own: ModuleNotFoundError in line 1",
         line=1,
     ),
-)  # fmt: skip
+)

@@ -347,19 +347,43 @@ robot.drive(tank_drive, LAST)
 
 RIGHT = (
     single("ada", HOPS, "drives to the middle of each band and reads there"),
-    single("ben", _POLL, "polls while driving; leaves black at about x 1623, and 127 mm on is 1750 within 10 mm"),
-    single("cleo", _SLEEPS, "at 205 mm/s a reading each 0.11 s is one each 23 mm: several on each band of 200 mm"),
+    single(
+        "ben",
+        _POLL,
+        "polls while driving; leaves black at about x 1623, and 127 mm on is 1750 within 10 mm",
+    ),
+    single(
+        "cleo",
+        _SLEEPS,
+        "at 205 mm/s a reading each 0.11 s is one each 23 mm: several on each band of 200 mm",
+    ),
     single("dora", _IMPORTS, "as ada, but imports everything itself"),
-    single("emil", _SIM_MAGIC_IMPORTS, "as ada, with a magic line that is not Python, and the right sensor"),
+    single(
+        "emil",
+        _SIM_MAGIC_IMPORTS,
+        "as ada, with a magic line that is not Python, and the right sensor",
+    ),
     single("fatma", _FUNCTIONS, "functions; prints one decimal: 86.3, 82.7, 50.2, 0.0"),
-    single("gregor", _CLASS, "a class; prints the levels only when it has arrived, which the task allows"),
+    single(
+        "gregor",
+        _CLASS,
+        "a class; prints the levels only when it has arrived, which the task allows",
+    ),
     single("hana", _THREAD, "a thread logs while the main one drives; it is joined"),
     single("igor", _DAEMON, "a daemon thread logs; it ends with the program"),
     single("jana", _NOT_BLOCKING, "drives in the background and logs until the motors stop"),
     single("karl", _STEERING, "steers straight on instead of driving two motors"),
     single("lena", _DEGREES, "degrees instead of rotations"),
-    single("milo", _ENCODER, "stops by the encoder: at 154 mm/s a reading each 20 ms overshoots at most 4 mm"),
-    single("nora", _STATE_MACHINE, "counts bands; leaves the last fully at about x 1631, and 120 mm on is 1751"),
+    single(
+        "milo",
+        _ENCODER,
+        "stops by the encoder: at 154 mm/s a reading each 20 ms overshoots at most 4 mm",
+    ),
+    single(
+        "nora",
+        _STATE_MACHINE,
+        "counts bands; leaves the last fully at about x 1631, and 120 mm on is 1751",
+    ),
     single("otto", _ROUNDED, "rounds: 86, 83, 50, 0 are within 0.5 of 86.3, 82.7, 50.2, 0"),
     single("pia", _FROM_255, "computes percent from the scale of 255: 220 / 2.55 = 86.3"),
     single("quentin", _CHATTY, "prints much else, speaks, and logs another variable"),
@@ -367,7 +391,12 @@ RIGHT = (
     single("sven", _CRAWL, "at speed 20, 103 mm/s: about 16 s plus the stops, less than 20 s"),
     single("tara", _HANDLED, "handles an exception of its own; it is no error of the program"),
     single("ulla", _GENERATOR, "a generator; prints all levels at once"),
-    Student("viktor", {"main.py": _WITH_MODULE, "helpers.py": _HELPERS}, (), "a folder with its own module"),
+    Student(
+        "viktor",
+        {"main.py": _WITH_MODULE, "helpers.py": _HELPERS},
+        (),
+        "a folder with its own module",
+    ),
     Student(
         "wanda",
         {"robot.py": _WITH_DATA, "hops.csv": "170\n400\n400\n400\n230\n"},

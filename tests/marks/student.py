@@ -69,6 +69,8 @@ class Student:
             path.write_bytes(content if isinstance(content, bytes) else content.encode())
 
 
-def single(name: str, text: str | bytes, why: str, missed: tuple[str, ...] = (), line: int = 0) -> Student:
+def single(
+    name: str, text: str | bytes, why: str, missed: tuple[str, ...] = (), line: int = 0
+) -> Student:
     """Return a student who hands in one file."""
     return Student(f"{name}.py", {f"{name}.py": text}, missed, why, line)

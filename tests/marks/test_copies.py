@@ -51,7 +51,13 @@ def test_other_names_numbers_and_comments_are_the_same_program() -> None:
 
 
 def test_a_copy_with_a_new_beginning_is_a_pair() -> None:
-    found = similar({"ada": LINE, "ben": "x = [1, 2, 3]\nfor one in x:\n    print(one, x)\n" + RENAMED, "cleo": OTHER})
+    found = similar(
+        {
+            "ada": LINE,
+            "ben": "x = [1, 2, 3]\nfor one in x:\n    print(one, x)\n" + RENAMED,
+            "cleo": OTHER,
+        }
+    )
     (pair,) = found.pairs
     assert pair.names == ("ada", "ben") and pair.share > 0.9 and pair.lines >= 8
 
@@ -74,4 +80,6 @@ def test_short_and_broken_programs_are_not_compared() -> None:
 def test_the_result_does_not_depend_on_the_order() -> None:
     texts = {one.row: text for one in CLASS for text in one.files.values() if isinstance(text, str)}
     backwards = similar(dict(reversed(texts.items())))
-    assert {one.names for one in similar(texts).pairs} == {tuple(sorted(one.names)) for one in backwards.pairs}
+    assert {one.names for one in similar(texts).pairs} == {
+        tuple(sorted(one.names)) for one in backwards.pairs
+    }

@@ -28,16 +28,22 @@ def _roster(tmp_path: Path, text: str) -> Roster:
 
 
 def test_moodle_finds_students_by_user_name_number_and_address(tmp_path: Path) -> None:
-    roster = _roster(tmp_path, "submission,username,ID number,Email address\nben,b1,0042,ben@x.org\n")
+    roster = _roster(
+        tmp_path, "submission,username,ID number,Email address\nben,b1,0042,ben@x.org\n"
+    )
     write_gradebook(tmp_path / "m.csv", GradebookKind.MOODLE, SHEET, SOURCES, roster, goals=False)
     heads, ada, ben, *_ = _rows(tmp_path / "m.csv")
     assert heads == ["Username", "ID number", "Email address", "Grey bands", "Feedback"]
     assert ada[:4] == ["ada", "", "", "10"]
-    assert ben[:4] == ["b1", "0042", "ben@x.org", "8.25"] and ben[4].startswith("ben: 8.25 of 10 points")
+    assert ben[:4] == ["b1", "0042", "ben@x.org", "8.25"] and ben[4].startswith(
+        "ben: 8.25 of 10 points"
+    )
 
 
 def test_canvas_gets_points_possible_and_a_column_a_goal(tmp_path: Path) -> None:
-    roster = _roster(tmp_path, "\ufeffStudent;ID;SIS User ID;SIS Login ID;Section\nBen B.;7;s7;ben;A\n")
+    roster = _roster(
+        tmp_path, "\ufeffStudent;ID;SIS User ID;SIS Login ID;Section\nBen B.;7;s7;ben;A\n"
+    )
     write_gradebook(tmp_path / "c.csv", GradebookKind.CANVAS, SHEET, SOURCES, roster, goals=True)
     heads, possible, ada, ben, *_ = _rows(tmp_path / "c.csv")
     names = ["Grey bands", "Grey bands: place", "Grey bands: wall"]
@@ -50,7 +56,9 @@ def test_canvas_gets_points_possible_and_a_column_a_goal(tmp_path: Path) -> None
 def test_hidden_goals_and_points_taken_off_are_only_in_the_total(tmp_path: Path) -> None:
     place, wall = SHEET.columns
     sheet = replace(SHEET, columns=(replace(place, hidden=True), replace(wall, points=-3.0)))
-    write_gradebook(tmp_path / "m.csv", GradebookKind.CANVAS, sheet, SOURCES, Roster({}), goals=True)
+    write_gradebook(
+        tmp_path / "m.csv", GradebookKind.CANVAS, sheet, SOURCES, Roster({}), goals=True
+    )
     assert _rows(tmp_path / "m.csv")[0][-2:] == ["Section", "Grey bands"]
 
 
@@ -78,7 +86,9 @@ def test_who_is_missing_and_who_is_absent(tmp_path: Path) -> None:
         ("submission\nb\xe9n\n".encode("latin-1"), "is no CSV in UTF-8"),
     ],
 )
-def test_a_wrong_class_list_says_what_is_wrong(tmp_path: Path, text: str | bytes, what: str) -> None:
+def test_a_wrong_class_list_says_what_is_wrong(
+    tmp_path: Path, text: str | bytes, what: str
+) -> None:
     path = tmp_path / "roster.csv"
     path.write_bytes(text if isinstance(text, bytes) else text.encode())
     with pytest.raises(ConfigError, match=re.escape(what)):

@@ -53,7 +53,9 @@ def report(tmp_path: Path, here: Command) -> str:
     (tmp_path / "class").mkdir()
     (tmp_path / "class" / "ada.py").write_text(PROGRAM)
     (tmp_path / "goals.toml").write_text(GOALS)
-    done = here("mark", "goals.toml", "class", "--seeds", "0", "--jobs", "1", "--export", "marks.html")
+    done = here(
+        "mark", "goals.toml", "class", "--seeds", "0", "--jobs", "1", "--export", "marks.html"
+    )
     assert done.returncode == 0, done.stderr
     return (tmp_path / "marks-runs" / "ada-seed-0.html").read_text()
 
@@ -62,7 +64,8 @@ def test_goals_are_told_with_result_place_reason_and_points(report: str) -> None
     (section,) = re.findall("<h2>Goals</h2>.*?</section>", report, re.DOTALL)
     rows = [re.findall("<td[^>]*>(.*?)</td>", row) for row in section.split("</tr>")[1:-1]]
     words = [
-        (number, said, result.partition(" at ")[0], why[:22], points) for number, said, result, why, points in rows
+        (number, said, result.partition(" at ")[0], why[:22], points)
+        for number, said, result, why, points in rows
     ]
     assert words == [
         ("1", "Come to x = 400.", "met", "", "2 of 2"),
@@ -70,7 +73,9 @@ def test_goals_are_told_with_result_place_reason_and_points(report: str) -> None
         ("3", "Stop at x = 550.", "missed", "At the end the robot w", "0 of 3"),
         ("4", "Call &lt;b&gt;time.sleep&lt;/b&gt;.", "missed", "The program does not c", "0 of 1"),
     ]
-    there, touched, end = (int(re.findall(r"x (\d+), y 500 mm", result)[0]) for _, _, result, *_ in rows[:3])
+    there, touched, end = (
+        int(re.findall(r"x (\d+), y 500 mm", result)[0]) for _, _, result, *_ in rows[:3]
+    )
     # From x 200 on by three rotations of 175.93 mm; the obstacle is at x 700, the front some 50 mm before the axle.
     assert 390 <= there <= 400 and 640 <= touched <= 660 and end == 728
     assert "(line 2)" in rows[2][3] and "line" not in rows[3][3]
@@ -85,13 +90,19 @@ def test_goals_are_marked_on_the_mat(report: str) -> None:
 
 
 @pytest.mark.slow
-def test_a_movie_of_a_run_that_missed_a_goal_has_the_goals_on_it(report: str, tmp_path: Path, here: Command) -> None:
+def test_a_movie_of_a_run_that_missed_a_goal_has_the_goals_on_it(
+    report: str, tmp_path: Path, here: Command
+) -> None:
     (tmp_path / "class" / "right.py").write_text("tank_drive.on_for_rotations(50, 50, 1)\n")
     goals = GOALS.partition('[[goal]]\nname = "free"')[0].replace("x_mm = 400", "x_mm = 550")
-    (tmp_path / "goals.toml").write_text(goals.replace("x_mm = 550, within_mm = 10", "x_mm = 375.9, at_end = true"))
+    (tmp_path / "goals.toml").write_text(
+        goals.replace("x_mm = 550, within_mm = 10", "x_mm = 375.9, at_end = true")
+    )
     words = ("--seeds", "0", "--jobs", "1", "--keep", "all", "--export", "marks.html", "--movies")
     assert here("mark", "goals.toml", "class", *words).returncode == 0
-    missed, right = ((tmp_path / "marks-runs" / f"{name}-seed-0.html").read_text() for name in ("ada", "right"))
+    missed, right = (
+        (tmp_path / "marks-runs" / f"{name}-seed-0.html").read_text() for name in ("ada", "right")
+    )
     assert '<details class="movie">' not in report + right
     movie = missed.partition('<details class="movie">')[2].partition("</details>")[0]
     assert "data:image/webp" in movie and movie.count("✗1") == 1

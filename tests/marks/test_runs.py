@@ -69,7 +69,9 @@ CLASS = {
     "tells": "first = colorLeft.reflected_light_intensity_pc\n"
     + LOOK
     + "if 300 < tank_drive.left_motor.position < 400:\n    raise ValueError('secret 4711')\n",
-    "hangs": LOOK.replace("off()", "off()\nwhile 300 < tank_drive.left_motor.position < 400:\n    x = 1"),
+    "hangs": LOOK.replace(
+        "off()", "off()\nwhile 300 < tank_drive.left_motor.position < 400:\n    x = 1"
+    ),
 }
 
 
@@ -79,7 +81,18 @@ def _mark(folder: Path, here: Command, *names: str) -> tuple[pd.DataFrame, dict[
     for name in names:
         (folder / "class" / f"{name}.py").write_text(CLASS[name])
     (folder / "task.toml").write_text(TASK)
-    words = ("--seeds", "0,1", "--jobs", "1", "--export", "marks.csv", "--export", "marks.html", "--feedback", "told")
+    words = (
+        "--seeds",
+        "0,1",
+        "--jobs",
+        "1",
+        "--export",
+        "marks.csv",
+        "--export",
+        "marks.html",
+        "--feedback",
+        "told",
+    )
     done = here("mark", "task.toml", "class", *words)
     assert done.returncode == 0, done.stderr
     marks = pd.read_csv(folder / "marks.csv").set_index("student")
@@ -95,22 +108,35 @@ def test_what_fits_one_world_only_is_found_by_the_others(tmp_path: Path, here: C
     assert marks["reason"]["learnt"].startswith("from farther on: At the end the robot was")
     assert marks["reason"]["tells"] == "in the other direction: ValueError: secret 4711 (line 8)"
     reports = sorted(path.name for path in (tmp_path / "marks-runs").iterdir())
-    assert reports == ["learnt-world-2-seed-0.html", "learnt-world-3-seed-0.html", "tells-world-3-seed-0.html"]
+    assert reports == [
+        "learnt-world-2-seed-0.html",
+        "learnt-world-3-seed-0.html",
+        "tells-world-3-seed-0.html",
+    ]
 
 
 def test_feedback_gives_nothing_hidden_away(tmp_path: Path, here: Command) -> None:
     _, told = _mark(tmp_path, here, "right", "tells")
-    assert "Hidden goals: 2 of 2 points" in told["right"] and "Hidden goals: 0 of 2 points" in told["tells"]
+    assert (
+        "Hidden goals: 2 of 2 points" in told["right"]
+        and "Hidden goals: 0 of 2 points" in told["tells"]
+    )
     said = " ".join(told["tells"].split())
     assert "did not run to its end in each of the other worlds in which it was tried." in said
-    assert not [word for word in ("4711", "ValueError", "quick", "direction", "Line 8") if word in said]
+    assert not [
+        word for word in ("4711", "ValueError", "quick", "direction", "Line 8") if word in said
+    ]
 
 
 @pytest.mark.slow
-def test_a_program_that_does_not_end_in_another_world_loses_what_counts_there(tmp_path: Path, here: Command) -> None:
+def test_a_program_that_does_not_end_in_another_world_loses_what_counts_there(
+    tmp_path: Path, here: Command
+) -> None:
     marks, told = _mark(tmp_path, here, "hangs")
     assert marks["points"]["hangs"] == 3
-    assert marks["reason"]["hangs"].startswith("in the other direction: stopped at the limit of 120 s")
+    assert marks["reason"]["hangs"].startswith(
+        "in the other direction: stopped at the limit of 120 s"
+    )
     assert not [word for word in ("stopped", "direction", "120") if word in told["hangs"]]
 
 
@@ -145,13 +171,20 @@ print("Far:", 95 + far_mm)
 """
 
 
-def test_a_task_presses_buttons_and_gives_inputs_in_each_world(tmp_path: Path, here: Command) -> None:
+def test_a_task_presses_buttons_and_gives_inputs_in_each_world(
+    tmp_path: Path, here: Command
+) -> None:
     (tmp_path / "class").mkdir()
     (tmp_path / "class" / "asks.py").write_text(ASKS)
-    (tmp_path / "class" / "learnt.py").write_text(ASKS.replace("while not enter.enter", "for _ in range(2000)"))
+    (tmp_path / "class" / "learnt.py").write_text(
+        ASKS.replace("while not enter.enter", "for _ in range(2000)")
+    )
     (tmp_path / "task.toml").write_text(PRESSED)
     done = here("mark", "task.toml", "class", "--seeds", "0", "--jobs", "1", "--keep", "none")
-    assert [line.split()[:2] for line in done.stdout.splitlines()[1:3]] == [["asks", "2"], ["learnt", "1"]], done.stdout
+    assert [line.split()[:2] for line in done.stdout.splitlines()[1:3]] == [
+        ["asks", "2"],
+        ["learnt", "1"],
+    ], done.stdout
     assert here("run", "task.toml", "class/asks.py").returncode == 0
     checked = here("goals", "check", "task.toml")
     assert (checked.returncode, checked.stderr) == (0, ""), checked.stdout

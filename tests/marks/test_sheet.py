@@ -55,13 +55,19 @@ OUTCOMES = {
     # Not in the order of the seeds: workers finish as they please.
     "ben": [_outcome(2, True), _outcome(3, True), _outcome(1, False), _outcome(0, True)],
     "cleo": [_outcome(0, False, False, end="stalled", failure="stuck in line 1", line=1)],
-    EVIL: [_outcome(seed, False, end="raised", failure=printable(EVIL), line=2, error=EVIL) for seed in range(4)],
+    EVIL: [
+        _outcome(seed, False, end="raised", failure=printable(EVIL), line=2, error=EVIL)
+        for seed in range(4)
+    ],
 }
 SHEET = sheet_of("Grey bands", COLUMNS, range(4), STUDENTS, OUTCOMES)
 
 
 def test_a_row_has_mean_points_robustness_and_the_first_failure() -> None:
-    found = {row.name: (row.points, row.robustness, row.reason, row.line, row.seed, row.runs) for row in SHEET.rows}
+    found = {
+        row.name: (row.points, row.robustness, row.reason, row.line, row.seed, row.runs)
+        for row in SHEET.rows
+    }
     assert found == {
         "ada": (10.0, 1.0, "", 0, 0, 4),
         "ben": (8.25, 0.75, "it stopped 40 mm away", 2, 1, 4),
@@ -70,22 +76,37 @@ def test_a_row_has_mean_points_robustness_and_the_first_failure() -> None:
         "empty": (0.0, 0.0, "there is no Python file (main.py)", 0, 0, 0),
     }
     assert [(cell.points, cell.met) for cell in SHEET.rows[1].cells] == [(5.25, 3), (3.0, 4)]
-    assert (SHEET.rows[1].source_line, SHEET.rows[2].stopped_early) == ("stop()  # <b>too late</b>", True)
+    assert (SHEET.rows[1].source_line, SHEET.rows[2].stopped_early) == (
+        "stop()  # <b>too late</b>",
+        True,
+    )
 
 
 def test_in_a_task_without_points_a_run_is_complete_if_it_meets_every_goal() -> None:
     columns = [replace(column, points=0.0) for column in COLUMNS]
     sheet = sheet_of("", columns, range(4), STUDENTS[:2], OUTCOMES)
 
-    assert [(row.robustness, row.reason) for row in sheet.rows] == [(1.0, ""), (0.75, "it stopped 40 mm away")]
+    assert [(row.robustness, row.reason) for row in sheet.rows] == [
+        (1.0, ""),
+        (0.75, "it stopped 40 mm away"),
+    ]
     assert 'class="number part">0<' in page_of(sheet)
 
 
-@pytest.mark.parametrize(("place", "hit", "points"), [(True, False, 7), (True, True, 5), (False, True, 0)])
-def test_points_that_are_taken_off_never_leave_less_than_none(place: bool, hit: bool, points: float) -> None:
+@pytest.mark.parametrize(
+    ("place", "hit", "points"), [(True, False, 7), (True, True, 5), (False, True, 0)]
+)
+def test_points_that_are_taken_off_never_leave_less_than_none(
+    place: bool, hit: bool, points: float
+) -> None:
     columns = (COLUMNS[0], Goal("hit", FinishCondition(), "Hit the wall.", -2.0))
-    goals = (GoalOutcome("place", place, "" if place else "too far"), GoalOutcome("hit", hit, is_penalty=True))
-    sheet = sheet_of("", columns, (0,), STUDENTS[:1], {"ada": [Outcome(0, "finished", goals=goals)]})
+    goals = (
+        GoalOutcome("place", place, "" if place else "too far"),
+        GoalOutcome("hit", hit, is_penalty=True),
+    )
+    sheet = sheet_of(
+        "", columns, (0,), STUDENTS[:1], {"ada": [Outcome(0, "finished", goals=goals)]}
+    )
     (row,) = sheet.rows
     assert (sheet.most_points, row.points, row.robustness) == (7, points, float(place and not hit))
     assert row.reason == ("too far" if not place else "Hit the wall." if hit else "")
@@ -102,11 +123,16 @@ def test_a_table_has_a_column_a_goal_and_names_the_line() -> None:
         ["ben", "8.25", "75%", "5.25", "3", "line 2: it stopped 40 mm away"],
         ["cleo", "0", "0%", "0", "0", "stuck in line 1"],
     ]
-    assert summary_of(SHEET) == "5 students, 4 seeds: mean 4.25 of 10 points; 1 with all points for every seed"
+    assert (
+        summary_of(SHEET)
+        == "5 students, 4 seeds: mean 4.25 of 10 points; 1 with all points for every seed"
+    )
 
 
 LONG = "n" * 95 + "-" + "m" * 94
-LONG_SHEET = sheet_of("", [*COLUMNS, replace(COLUMNS[0], name="g" * 60)], range(4), [_student(LONG)], {})
+LONG_SHEET = sheet_of(
+    "", [*COLUMNS, replace(COLUMNS[0], name="g" * 60)], range(4), [_student(LONG)], {}
+)
 
 
 def test_a_long_name_pushes_no_mark_off_the_table() -> None:
@@ -125,18 +151,54 @@ document.title = edge <= innerWidth ? "all in view" : "marks end at " + edge;
 @needs_chromium
 @pytest.mark.parametrize("width", [800, 1400])
 def test_a_long_name_pushes_no_mark_off_the_page(tmp_path: Path, width: int) -> None:
-    (tmp_path / "marks.html").write_text(page_of(LONG_SHEET).replace("</body>", f"{GEOMETRY}</body>"))
-    command = ["chromium", "--headless", "--no-sandbox", "--disable-gpu", f"--user-data-dir={tmp_path}/browser"]
+    (tmp_path / "marks.html").write_text(
+        page_of(LONG_SHEET).replace("</body>", f"{GEOMETRY}</body>")
+    )
+    command = [
+        "chromium",
+        "--headless",
+        "--no-sandbox",
+        "--disable-gpu",
+        f"--user-data-dir={tmp_path}/browser",
+    ]
     words = [f"--window-size={width},800", "--dump-dom", str(tmp_path / "marks.html")]
-    done = subprocess.run([*command, *words], capture_output=True, text=True, check=True, timeout=PATIENCE_S)
+    done = subprocess.run(
+        [*command, *words], capture_output=True, text=True, check=True, timeout=PATIENCE_S
+    )
     assert "<title>all in view</title>" in done.stdout
 
 
 TAGS = {
-    "html", "head", "meta", "title", "style", "body", "header", "h1", "h2", "p", "section", "div", "table", "thead",
-    "tbody", "tr", "th", "td", "br", "a", "code", "details", "summary", "pre",
-    "ul", "li", "meter", "i", "script",
-}  # fmt: skip
+    "html",
+    "head",
+    "meta",
+    "title",
+    "style",
+    "body",
+    "header",
+    "h1",
+    "h2",
+    "p",
+    "section",
+    "div",
+    "table",
+    "thead",
+    "tbody",
+    "tr",
+    "th",
+    "td",
+    "br",
+    "a",
+    "code",
+    "details",
+    "summary",
+    "pre",
+    "ul",
+    "li",
+    "meter",
+    "i",
+    "script",
+}
 
 
 class _Elements(HTMLParser):
@@ -158,7 +220,9 @@ def test_nothing_of_a_student_becomes_html() -> None:
     tags = {tag for tag, _ in elements}
     assert tags <= TAGS and [tag for tag, _ in elements].count("script") == 1
     assert not [name for _, attributes in elements for name in attributes if name.startswith("on")]
-    assert [attributes["href"] for tag, attributes in elements if tag == "a"] == ["class-runs/%22%3E%3Cscript%3E.html"]
+    assert [attributes["href"] for tag, attributes in elements if tag == "a"] == [
+        "class-runs/%22%3E%3Cscript%3E.html"
+    ]
     # Its text is there, without what controls a terminal.
     assert "&lt;script&gt;alert(1)" in page and not re.search(r"[\x00-\x08\x0b-\x1f\x7f]", page)
 
@@ -171,7 +235,10 @@ def test_the_page_shows_each_student_and_the_line() -> None:
 
 
 def test_seeds_with_equal_recordings_share_a_link() -> None:
-    links = {("ben", "", seed): f"runs/{'first' if seed in (0, 1, 3) else 'other'}.html" for seed in range(4)}
+    links = {
+        ("ben", "", seed): f"runs/{'first' if seed in (0, 1, 3) else 'other'}.html"
+        for seed in range(4)
+    }
     page = page_of(SHEET, links)
     assert '<a href="runs/first.html">0–1, 3</a>, <a href="runs/other.html">2</a>' in page
 
@@ -204,16 +271,26 @@ def test_feedback_of_a_program_that_could_not_be_run_says_so() -> None:
 
 def test_feedback_names_an_error_without_control_characters() -> None:
     text = feedback_of(SHEET, SHEET.rows[3], TEXT)
-    assert "did not run to its end: \ufffd[2J" in text and not re.search(r"[\x00-\x08\x0b-\x1f\x7f]", text)
+    assert "did not run to its end: \ufffd[2J" in text and not re.search(
+        r"[\x00-\x08\x0b-\x1f\x7f]", text
+    )
 
 
 def test_each_student_has_a_feedback_file_of_a_plain_name(tmp_path: Path) -> None:
     write_feedback(tmp_path / "feedback", SHEET, [TEXT] * len(STUDENTS))
     names = sorted(path.name for path in (tmp_path / "feedback").iterdir())
-    assert len(names) == len(STUDENTS) and {"ada.txt", "ben.txt", "cleo.txt", "empty.txt"} < set(names)
+    assert len(names) == len(STUDENTS) and {"ada.txt", "ben.txt", "cleo.txt", "empty.txt"} < set(
+        names
+    )
     assert file_stems(["ada", "ada.py", "Ada", "a/b", "\x1b[2J", "..", ""]) == [
-        "ada", "ada.py", "Ada-2", "a_b", "_[2J", "student", "student-2",
-    ]  # fmt: skip
+        "ada",
+        "ada.py",
+        "Ada-2",
+        "a_b",
+        "_[2J",
+        "student",
+        "student-2",
+    ]
 
 
 def test_files_of_the_longest_name_can_be_written(tmp_path: Path) -> None:
@@ -236,23 +313,47 @@ def test_exports_of_equal_sheets_are_equal(tmp_path: Path, suffix: str) -> None:
 def test_a_frame_has_a_row_a_student_and_a_column_a_goal() -> None:
     frame = frame_of(SHEET)
     assert list(frame.columns) == [
-        "student", "program", "points", "robustness", "runs", "goal_place", "goal_wall", "reason", "line",
-        "source_line", "seed", "earned", "comment",
-    ]  # fmt: skip
+        "student",
+        "program",
+        "points",
+        "robustness",
+        "runs",
+        "goal_place",
+        "goal_wall",
+        "reason",
+        "line",
+        "source_line",
+        "seed",
+        "earned",
+        "comment",
+    ]
     assert frame.loc[1, ["student", "points", "goal_place"]].tolist() == ["ben", 8.25, 5.25]
 
 
 def test_a_class_that_was_interrupted_has_rows_without_runs() -> None:
     sheet: Sheet = sheet_of("", COLUMNS, range(4), STUDENTS[:2], {"ada": OUTCOMES["ada"][:2]})
-    assert [(row.points, row.runs, row.reason) for row in sheet.rows] == [(10.0, 2, ""), (0.0, 0, "not run")]
+    assert [(row.points, row.runs, row.reason) for row in sheet.rows] == [
+        (10.0, 2, ""),
+        (0.0, 0, "not run"),
+    ]
 
 
 def test_a_run_that_this_machine_could_not_make_says_nothing_about_the_student() -> None:
-    outcomes = {"ada": [*OUTCOMES["ada"], Outcome(4, "", "too many open files")], "ben": [Outcome(0, "disk_full")]}
+    outcomes = {
+        "ada": [*OUTCOMES["ada"], Outcome(4, "", "too many open files")],
+        "ben": [Outcome(0, "disk_full")],
+    }
     sheet: Sheet = sheet_of("", COLUMNS, range(5), STUDENTS[:2], outcomes)
-    assert [(row.points, row.runs, row.reason) for row in sheet.rows] == [(10.0, 4, ""), (0.0, 0, "not run")]
+    assert [(row.points, row.runs, row.reason) for row in sheet.rows] == [
+        (10.0, 4, ""),
+        (0.0, 0, "not run"),
+    ]
 
 
 def test_a_run_of_which_nothing_is_recorded_has_no_points_and_says_why() -> None:
-    sheet: Sheet = sheet_of("", COLUMNS, range(1), STUDENTS[:1], {"ada": [Outcome(0, "crashed", "it is damaged")]})
-    assert [(row.points, row.runs, row.cells[0].reason) for row in sheet.rows] == [(0.0, 1, "it is damaged")]
+    sheet: Sheet = sheet_of(
+        "", COLUMNS, range(1), STUDENTS[:1], {"ada": [Outcome(0, "crashed", "it is damaged")]}
+    )
+    assert [(row.points, row.runs, row.cells[0].reason) for row in sheet.rows] == [
+        (0.0, 1, "it is damaged")
+    ]

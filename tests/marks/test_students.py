@@ -46,10 +46,20 @@ CASES = {
     "the only program": (("ada/robot.py", "ada/notes.txt"), "", "robot.py", ""),
     "the one in the goals": (("ada/main.py", "ada/follow.py"), "follow.py", "follow.py", ""),
     "not the one in the goals": (("ada/main.py",), "follow.py", "main.py", ""),
-    "which one": (("ada/a.py", "ada/b.py"), "", "", "which of a.py, b.py is the main program? (main.py)"),
+    "which one": (
+        ("ada/a.py", "ada/b.py"),
+        "",
+        "",
+        "which of a.py, b.py is the main program? (main.py)",
+    ),
     "none": (("ada/notes.txt",), "", "", "there is no Python file (main.py)"),
     "an archive": (("ada/robot.ZIP",), "", "", "robot.ZIP: it is an archive; unpack it (main.py)"),
-    "text": (("ada/main.py.txt",), "", "", "main.py.txt: its name ends in .txt; rename it to end in .py (main.py)"),
+    "text": (
+        ("ada/main.py.txt",),
+        "",
+        "",
+        "main.py.txt: its name ends in .txt; rename it to end in .py (main.py)",
+    ),
 }
 
 
@@ -62,16 +72,23 @@ def test_main_program_of_a_folder(
 
 
 def test_archives_and_texts_among_the_files_are_students_without_points(tmp_path: Path) -> None:
-    found = find_students([str(_folder(tmp_path, "ada.zip", "ben.py.txt", "cleo.tar.gz", "dora.py", "list.txt"))])
+    found = find_students(
+        [str(_folder(tmp_path, "ada.zip", "ben.py.txt", "cleo.tar.gz", "dora.py", "list.txt"))]
+    )
     assert [(one.name, one.problem.partition(":")[0]) for one in found.students] == [
-        ("ada", "ada.zip"), ("ben", "ben.py.txt"), ("cleo", "cleo.tar.gz"), ("dora", ""),
-    ]  # fmt: skip
+        ("ada", "ada.zip"),
+        ("ben", "ben.py.txt"),
+        ("cleo", "cleo.tar.gz"),
+        ("dora", ""),
+    ]
     assert found.ignored == ("list.txt",)
 
 
 def _notebook(path: Path, *cells: str) -> Path:
     path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(json.dumps({"cells": [{"cell_type": "code", "source": cell} for cell in cells]}))
+    path.write_text(
+        json.dumps({"cells": [{"cell_type": "code", "source": cell} for cell in cells]})
+    )
     return path
 
 
@@ -102,20 +119,28 @@ def test_students_of_equal_names_have_the_name_of_their_folder(tmp_path: Path) -
     group = _folder(tmp_path / "z", "ben.py").rename(tmp_path / "group")
     (group / "ada.py").write_text("")
     assert [one.name for one in find_students([*folders, str(group)]).students] == [
-        "class/ada", "class/ada (2)", "group/ada", "ben",
-    ]  # fmt: skip
+        "class/ada",
+        "class/ada (2)",
+        "group/ada",
+        "ben",
+    ]
 
 
 def test_a_file_keeps_its_ending_where_a_neighbour_has_its_name(tmp_path: Path) -> None:
     folder = _folder(tmp_path, "ada.py", "ada/main.py", "ben.PY", "cleo.v2.py")
     found = find_students([str(folder)]).students
     assert [(one.name, one.main) for one in found] == [
-        ("ada", "main.py"), ("ada.py", "ada.py"), ("ben", "ben.PY"), ("cleo.v2", "cleo.v2.py"),
-    ]  # fmt: skip
+        ("ada", "main.py"),
+        ("ada.py", "ada.py"),
+        ("ben", "ben.PY"),
+        ("cleo.v2", "cleo.v2.py"),
+    ]
 
 
 def test_hidden_files_and_results_are_no_students(tmp_path: Path) -> None:
-    folder = _folder(tmp_path, "ada.py", ".hidden.py", "__pycache__/x.py", "feedback/ada.txt", "slides.odp")
+    folder = _folder(
+        tmp_path, "ada.py", ".hidden.py", "__pycache__/x.py", "feedback/ada.txt", "slides.odp"
+    )
     found = find_students([str(folder)], excluded=frozenset({(folder / "feedback").resolve()}))
     assert ([one.name for one in found.students], found.ignored) == (["ada"], ("slides.odp",))
 
@@ -141,7 +166,9 @@ def test_folders_without_programs_are_refused(tmp_path: Path, word: str) -> None
 
 
 def test_a_program_sees_a_copy_of_its_own_files_only(tmp_path: Path) -> None:
-    folder = _folder(tmp_path, "ada/main.py", "ada/data/hops.csv", "ada/__pycache__/main.pyc", "ben.py")
+    folder = _folder(
+        tmp_path, "ada/main.py", "ada/data/hops.csv", "ada/__pycache__/main.pyc", "ben.py"
+    )
     os.mkfifo(folder / "ada" / "pipe")
     (folder / "ada" / "link").symlink_to("data/hops.csv")
     ada, ben = find_students([str(folder)]).students
@@ -162,7 +189,15 @@ def test_a_digest_changes_with_every_file(tmp_path: Path) -> None:
     assert digest_of(ada) != before
 
 
-OUTCOME = Outcome(3, "raised", "ValueError: \ud800", 2, "Traceback …", 1.5, (GoalOutcome("place", False, "why", 2),))
+OUTCOME = Outcome(
+    3,
+    "raised",
+    "ValueError: \ud800",
+    2,
+    "Traceback …",
+    1.5,
+    (GoalOutcome("place", False, "why", 2),),
+)
 
 
 def test_a_journal_knows_what_an_interrupted_marking_has_done(tmp_path: Path) -> None:
@@ -191,10 +226,22 @@ LINKS = {
     "the file": ("eve.py", "../secret.py", "it is a link; hand in the files themselves"),
     "the folder": ("eve", "../elsewhere", "it is a link; hand in the files themselves"),
     "another's": ("eve.py", "ada.py", "it is a link; hand in the files themselves"),
-    "the main program": ("eve/main.py", "../../secret.py", "main.py is a link that leads out of the folder"),
-    "a module": ("eve/lib/helper.py", "../../../secret.py", "lib/helper.py is a link that leads out of the folder"),
+    "the main program": (
+        "eve/main.py",
+        "../../secret.py",
+        "main.py is a link that leads out of the folder",
+    ),
+    "a module": (
+        "eve/lib/helper.py",
+        "../../../secret.py",
+        "lib/helper.py is a link that leads out of the folder",
+    ),
     "a folder inside": ("eve/lib", "../..", "lib is a link that leads out of the folder"),
-    "an absolute one": ("eve/main.py", "/etc/hostname", "main.py is a link that leads out of the folder"),
+    "an absolute one": (
+        "eve/main.py",
+        "/etc/hostname",
+        "main.py is a link that leads out of the folder",
+    ),
 }
 
 
@@ -289,11 +336,15 @@ def test_a_magic_line_of_a_file_may_not_name_what_is_another_students(
 
 def test_a_program_that_is_a_file_gets_nothing_from_the_programs_beside_it(tmp_path: Path) -> None:
     folder = _folder(tmp_path, "ada.py", "ben.py")
-    (folder / "ada.py").write_text("try:\n    from ben import *\nexcept ImportError:\n    pass\nprint(1)\n")
+    (folder / "ada.py").write_text(
+        "try:\n    from ben import *\nexcept ImportError:\n    pass\nprint(1)\n"
+    )
     before = find_students([str(folder)]).students[0].source
     assert before
     settings = program_settings(before)
-    (folder / "ben.py").write_text("from ev3dev2.motor import *\ntank_drive = MoveTank(OUTPUT_A, OUTPUT_D)\n")
+    (folder / "ben.py").write_text(
+        "from ev3dev2.motor import *\ntank_drive = MoveTank(OUTPUT_A, OUTPUT_D)\n"
+    )
     after = find_students([str(folder)]).students[0].source
     assert after and after.program.prelude == before.program.prelude
     assert program_settings(after) == settings

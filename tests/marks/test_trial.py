@@ -52,7 +52,9 @@ def test_what_is_earned_for_nothing_is_named(tmp_path: Path, here: Command) -> N
         *("PROGRAM", "empty program", "stands still", "prints the answers", "model.py (model)"),
         *("back.py (wrong example)", "broken.py (wrong example)", "same.py (wrong example)"),
     ]
-    assert [[part.strip() for part in line.split("  ")[-2:]] for line in done.stdout.splitlines()[1:8]] == [
+    assert [
+        [part.strip() for part in line.split("  ")[-2:]] for line in done.stdout.splitlines()[1:8]
+    ] == [
         *(["2 of 5", "free, end"],) * 2,
         ["3 of 5", "said, free, end"],
         ["5 of 5", "all"],
@@ -61,8 +63,14 @@ def test_what_is_earned_for_nothing_is_named(tmp_path: Path, here: Command) -> N
         ["5 of 5", "all"],
     ]
     said = " ".join(done.stdout.splitlines()[8:])
-    assert "printing the answers meets “said” (1 of 5 points): give it `after`, `x_mm` or `reading`" in said
-    assert "an empty program and standing still and printing the answers meets “free” (1 of 5 points)" in said
+    assert (
+        "printing the answers meets “said” (1 of 5 points): give it `after`, `x_mm` or `reading`"
+        in said
+    )
+    assert (
+        "an empty program and standing still and printing the answers meets “free” (1 of 5 points)"
+        in said
+    )
     assert "task.toml: the wrong example same.py gets all points" in said
 
 

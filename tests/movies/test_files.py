@@ -23,16 +23,23 @@ def clip(recorded: Recorded) -> Clip:
 
 
 @pytest.mark.parametrize(("suffix", "magic"), [(".gif", b"GIF8"), (".WEBP", b"RIFF")])
-def test_the_suffix_chooses_the_format(suffix: str, magic: bytes, clip: Clip, tmp_path: Path) -> None:
+def test_the_suffix_chooses_the_format(
+    suffix: str, magic: bytes, clip: Clip, tmp_path: Path
+) -> None:
     drawn: list[tuple[int, int]] = []
     path = tmp_path / f"a{suffix}"
-    assert save_movie(clip, path, lambda done, total: drawn.append((done, total))) == path.stat().st_size
+    assert (
+        save_movie(clip, path, lambda done, total: drawn.append((done, total)))
+        == path.stat().st_size
+    )
     assert path.read_bytes().startswith(magic)
     assert drawn[0] == (0, 3) and drawn[-1] == (2, 3)
 
 
 @pytest.mark.parametrize(("suffix", "magic"), [(".png", b"\x89PNG"), (".svg", b"<svg ")])
-def test_a_picture_is_of_pixels_or_of_shapes(suffix: str, magic: bytes, recorded: Recorded, tmp_path: Path) -> None:
+def test_a_picture_is_of_pixels_or_of_shapes(
+    suffix: str, magic: bytes, recorded: Recorded, tmp_path: Path
+) -> None:
     path = tmp_path / f"a{suffix}"
     save_picture(recorded, (ClipPanel.WORLD,), 0.2, path, (160, 160))
     assert magic in path.read_bytes()[:200]
@@ -61,20 +68,31 @@ def test_too_many_frames_in_memory_name_the_format_that_keeps_none(
     assert "FILE.webp" not in str(again.value)
 
 
-def test_the_view_of_a_clip_lies_on_the_world_in_its_frames(recorded: Recorded, tmp_path: Path) -> None:
+def test_the_view_of_a_clip_lies_on_the_world_in_its_frames(
+    recorded: Recorded, tmp_path: Path
+) -> None:
     clip = Clip(recorded, (ClipPanel.WORLD,), recorded.span_s(None, None), size=(400, 500))
     save_picture(recorded, clip.panels, 0.0, tmp_path / "a.png", clip.size)
     picture = Image.open(tmp_path / "a.png").convert("RGB")
     assert (clip.view.width_px, clip.view.height_px) == picture.size
     x, y = FIELD_WIDTH_MM / 2, FIELD_HEIGHT_MM / 2
-    edges = {(0.0, y): (1, 0), (FIELD_WIDTH_MM, y): (-1, 0), (x, 0.0): (0, -1), (x, FIELD_HEIGHT_MM): (0, 1)}
+    edges = {
+        (0.0, y): (1, 0),
+        (FIELD_WIDTH_MM, y): (-1, 0),
+        (x, 0.0): (0, -1),
+        (x, FIELD_HEIGHT_MM): (0, 1),
+    }
     for place, (right, down) in edges.items():
         column, row = clip.view.to_px(*place)
-        outside, inside = (picture.getpixel((int(column + way * right), int(row + way * down))) for way in (-5, 5))
+        outside, inside = (
+            picture.getpixel((int(column + way * right), int(row + way * down))) for way in (-5, 5)
+        )
         assert (outside == RIM_RGB, inside == RIM_RGB) == (True, False), place
 
 
-def test_a_small_movie_is_none_where_it_would_be_large(recorded: Recorded, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_small_movie_is_none_where_it_would_be_large(
+    recorded: Recorded, monkeypatch: pytest.MonkeyPatch
+) -> None:
     made = small_movie(recorded)
     assert made is not None and made[1].startswith(b"RIFF")
     monkeypatch.setattr(files, "SMALL_BYTES", 100)

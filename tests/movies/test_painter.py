@@ -27,7 +27,9 @@ def overlap(one: PictureBox, other: PictureBox) -> bool:
 
 @pytest.mark.parametrize("size", [(320, 400), (600, 500), (1920, 1080)], ids=str)
 @pytest.mark.parametrize("panels", SETS, ids=" ".join)
-def test_panels_lie_inside_the_picture_without_overlap(panels: tuple[ClipPanel, ...], size: tuple[int, int]) -> None:
+def test_panels_lie_inside_the_picture_without_overlap(
+    panels: tuple[ClipPanel, ...], size: tuple[int, int]
+) -> None:
     boxes = _boxes(panels, size, 2)
     assert boxes.keys() == set(panels)
     assert not any(overlap(one, other) for one, other in combinations(boxes.values(), 2))
@@ -43,7 +45,10 @@ def test_a_size_without_room_for_a_panel_is_refused() -> None:
 
 def test_a_chosen_size_is_that_of_the_image_and_else_it_fits_the_panels(recorded: Recorded) -> None:
     moment = recorded.moment(0.1)
-    assert FramePainter(recorded, (ClipPanel.WORLD,), (0, 0.5), (320, 240)).image(moment).size == (320, 240)
+    assert FramePainter(recorded, (ClipPanel.WORLD,), (0, 0.5), (320, 240)).image(moment).size == (
+        320,
+        240,
+    )
     world = FramePainter(recorded, (ClipPanel.WORLD,), (0, 0.5))
     both = FramePainter(recorded, (ClipPanel.WORLD, ClipPanel.CHART), (0, 0.5))
     assert world.size[0] == both.size[0] == WIDTH_PX
@@ -53,7 +58,11 @@ def test_a_chosen_size_is_that_of_the_image_and_else_it_fits_the_panels(recorded
 def test_the_caption_has_as_many_values_as_fit(recorded: Recorded) -> None:
     def words(size: tuple[int, int]) -> list[str]:
         painter = FramePainter(recorded, (ClipPanel.WORLD,), (0, 0.5), size)
-        return [shape.text for shape in painter.drawing(recorded.moment(0.3)).shapes if isinstance(shape, Words)]
+        return [
+            shape.text
+            for shape in painter.drawing(recorded.moment(0.3)).shapes
+            if isinstance(shape, Words)
+        ]
 
     assert words((320, 240)) == ["0.30 s", "Colour: 50"]
     assert words((90, 240)) == ["0.30 s"]

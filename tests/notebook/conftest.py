@@ -60,7 +60,9 @@ def cell(shell: InteractiveShell, monkeypatch: pytest.MonkeyPatch) -> Cell:
     fresh = lab.Lab()
     monkeypatch.setattr(lab, "roboSim", fresh)
     monkeypatch.setattr(magics, "roboSim", fresh)
-    for name in [name for name in shell.user_ns if name not in NEW_NAMES and not name.startswith("_")]:
+    for name in [
+        name for name in shell.user_ns if name not in NEW_NAMES and not name.startswith("_")
+    ]:
         del shell.user_ns[name]
     # As %load_ext does for the first time.
     tuisim.load_ipython_extension(shell)
@@ -69,7 +71,10 @@ def cell(shell: InteractiveShell, monkeypatch: pytest.MonkeyPatch) -> Cell:
         with capture_output() as captured:
             done = shell.run_cell(text)
         # One that is drawn anew stands in its old place; how often depends on the machine.
-        stays = {(output.transient or {}).get("display_id", at): output for at, output in enumerate(captured.outputs)}
+        stays = {
+            (output.transient or {}).get("display_id", at): output
+            for at, output in enumerate(captured.outputs)
+        }
         bundles = tuple(output.data for output in stays.values())
         done.raise_error()
         return Shown(captured.stdout, captured.stderr, bundles, done.result)

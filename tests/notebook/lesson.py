@@ -40,8 +40,15 @@ GREYS = {150: 255, 360: 220, 760: 211, 1160: 128, 1560: 0}
 """By place, the grey of the band below the sensors."""
 
 COLOURS = {
-    100: "White", 300: "Red", 500: "Green", 700: "Blue", 900: "Blue", 1100: "Red", 1300: "Yellow", 1500: "Black",
-}  # fmt: skip
+    100: "White",
+    300: "Red",
+    500: "Green",
+    700: "Blue",
+    900: "Blue",
+    1100: "Red",
+    1300: "Yellow",
+    1500: "Black",
+}
 """By place on Rainbow_bands, the name; the sensor takes cyan for blue and magenta for red."""
 
 LOAD = "from nbev3devsim.load_nbev3devwidget import roboSim, eds\n\n%load_ext nbev3devsim\n"
@@ -52,7 +59,8 @@ CELLS = {
     "instruments": "%%sim_magic_preloaded -b Rainbow_bands -iHR\n"
     "tank_drive.on_for_seconds(SpeedPercent(40), SpeedPercent(40), 2)\n",
     "arrays": "%sim_magic -b Testcard -A -H",
-    "until black": "%%sim_magic_preloaded -b Grey_bands -R --profile nbev3devsim\n" + UNTIL_BLACK.format(pause=""),
+    "until black": "%%sim_magic_preloaded -b Grey_bands -R --profile nbev3devsim\n"
+    + UNTIL_BLACK.format(pause=""),
     **{f"grey {x}": f"%%sim_magic_preloaded -x {x} -RH\n{EVERYTHING}" for x in GREYS},
     **{
         f"colour {x}": f"%%sim_magic_preloaded -b Rainbow_bands -x {x} -RHW\nprint(colorLeft.color_name)"
@@ -83,37 +91,57 @@ CELLS = {
 
 def execute(cells: Mapping[str, str], kernel: str = "python3") -> dict[str, NotebookNode]:
     """Return the executed cells by name."""
-    notebook = nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell(text) for text in cells.values()])
+    notebook = nbformat.v4.new_notebook(
+        cells=[nbformat.v4.new_code_cell(text) for text in cells.values()]
+    )
     place = {"metadata": {"path": str(ROOT)}}
     # How a kernel cuts what is printed into messages depends on the machine.
-    client = NotebookClient(notebook, timeout=120, kernel_name=kernel, resources=place, coalesce_streams=True)
+    client = NotebookClient(
+        notebook, timeout=120, kernel_name=kernel, resources=place, coalesce_streams=True
+    )
     client.execute()
     return dict(zip(cells, notebook.cells, strict=True))
 
 
 def stream(cell: NotebookNode, name: str = "stdout") -> str:
     """Return what a cell printed, with what of it is folded."""
-    text = "".join(output.text for output in cell.outputs if output.output_type == "stream" and output.name == name)
+    text = "".join(
+        output.text
+        for output in cell.outputs
+        if output.output_type == "stream" and output.name == name
+    )
     pages = [output.data.get("text/html", "") for output in cell.outputs if "data" in output]
-    folded = [html.unescape(part) for page in pages for part in re.findall('<pre style="margin: 0[^>]*>([^<]*)', page)]
+    folded = [
+        html.unescape(part)
+        for page in pages
+        for part in re.findall('<pre style="margin: 0[^>]*>([^<]*)', page)
+    ]
     return text + "".join(f"{part}\n" for part in folded) if name == "stdout" else text
 
 
 def result(cell: NotebookNode) -> str:
     """Return the text of a cell's value."""
-    (found,) = (output.data["text/plain"] for output in cell.outputs if output.output_type == "execute_result")
+    (found,) = (
+        output.data["text/plain"]
+        for output in cell.outputs
+        if output.output_type == "execute_result"
+    )
     return str(found)
 
 
 def texts(cell: NotebookNode) -> list[str]:
     """Return the texts of a cell's displays, without what is folded of its output."""
-    found = [output.data["text/plain"] for output in cell.outputs if output.output_type == "display_data"]
+    found = [
+        output.data["text/plain"] for output in cell.outputs if output.output_type == "display_data"
+    ]
     return [text for text in found if not text.startswith("… ")]
 
 
 def pictures(cell: NotebookNode) -> list[Image.Image]:
     """Return the pictures of a cell's displays."""
-    found = [output.data["image/png"] for output in cell.outputs if "image/png" in output.get("data", {})]
+    found = [
+        output.data["image/png"] for output in cell.outputs if "image/png" in output.get("data", {})
+    ]
     return [Image.open(io.BytesIO(base64.b64decode(png))).convert("RGB") for png in found]
 
 

@@ -30,12 +30,16 @@ def test_only_the_server_that_has_started_the_kernel_may_show_the_app(
     server_file(tmp_path, pid=8, url="http://localhost:9999/", port=9999)
     (tmp_path / "jpserver-9.json").write_text("no JSON")
     assert notebook_origins({"JPY_PARENT_PID": "7"}) == (
-        "http://localhost:8888", "http://127.0.0.1:8888", "http://lab.local:8888",
-    )  # fmt: skip
+        "http://localhost:8888",
+        "http://127.0.0.1:8888",
+        "http://lab.local:8888",
+    )
     assert notebook_origins({"JPY_PARENT_PID": "1"}) == notebook_origins({}) == ()
 
 
-def test_without_the_extra_a_line_says_so_and_the_picture_is_shown(cell: Cell, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_without_the_extra_a_line_says_so_and_the_picture_is_shown(
+    cell: Cell, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setitem(sys.modules, "tuisim.notebook.app_view", None)
     shown = cell("%sim_app -b Grey_bands")
     hint = "pip install -e '.[web]' in the clone of tuisim"
@@ -81,7 +85,9 @@ print('Colour: ' + str(colorLeft.reflected_light_intensity_pc))
 
 
 @pytest.mark.slow
-def test_cells_run_their_programs_in_the_app_and_its_runs_are_in_the_log(cell: Cell, view: AppView) -> None:
+def test_cells_run_their_programs_in_the_app_and_its_runs_are_in_the_log(
+    cell: Cell, view: AppView
+) -> None:
     shown = cell(RUN)
     assert (shown.out, shown.bundles) == ("Colour: 100.0\n", ())
     data = cell("%sim_data").result
@@ -118,9 +124,13 @@ def test_the_log_follows_a_run_that_the_user_has_started(cell: Cell, view: AppVi
 @pytest.mark.usefixtures("view")
 def test_a_program_that_is_answered_runs_in_the_cell(cell: Cell) -> None:
     cell("roboSim.responder = lambda text: text * 2")
-    shown = cell("%%sim_magic -RL\nfrom ev3dev2_glue import pyState\nprint('PY::a')\nprint(pyState())\n")
+    shown = cell(
+        "%%sim_magic -RL\nfrom ev3dev2_glue import pyState\nprint('PY::a')\nprint(pyState())\n"
+    )
     assert "{'messages': ['aa']}" in shown.out
-    assert shown.err == "tuisim: note: a program that is answered runs here; the app shows its run\n"
+    assert (
+        shown.err == "tuisim: note: a program that is answered runs here; the app shows its run\n"
+    )
 
 
 @pytest.mark.slow
@@ -143,14 +153,19 @@ def test_without_the_app_cells_show_pictures_again(cell: Cell) -> None:
 
 
 @pytest.mark.slow
-async def test_only_the_newest_cell_and_only_the_notebook_show_the_app(cell: Cell, view: AppView) -> None:
+async def test_only_the_newest_cell_and_only_the_notebook_show_the_app(
+    cell: Cell, view: AppView
+) -> None:
     old, new = (address(cell("%sim_app --origin http://lab:8888")) for _ in range(2))
     assert old != new
     origin = new.rpartition("/")[0]
     async with ClientSession() as client:
         async with client.get(f"{new}/") as answer:
             policy = answer.headers["Content-Security-Policy"]
-            assert (answer.status, "frame-ancestors 'self' http://lab:8888" in policy) == (200, True)
+            assert (answer.status, "frame-ancestors 'self' http://lab:8888" in policy) == (
+                200,
+                True,
+            )
         refused = {
             "a token of an older cell": (f"{old}/", {}),
             "no token": (f"{origin}/", {}),
@@ -163,7 +178,9 @@ async def test_only_the_newest_cell_and_only_the_notebook_show_the_app(cell: Cel
                 assert answer.status == 403, name
         # As jupyter-server-proxy passes it on.
         through = {"Host": "lab:8888", "Origin": "http://lab:8888"}
-        async with client.ws_connect(f"{new}/ws?session={view._visit.id}", headers=through) as socket:
+        async with client.ws_connect(
+            f"{new}/ws?session={view._visit.id}", headers=through
+        ) as socket:
             assert (await socket.receive(PATIENCE_S)).type is WSMsgType.TEXT
 
 

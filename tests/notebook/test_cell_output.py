@@ -9,11 +9,19 @@ import pytest
 from IPython.core.interactiveshell import InteractiveShell
 
 from tests.notebook.conftest import Cell, Shown
-from tuisim.notebook.cell_output import FEWEST_FOLDED, FIRST_LINES, LAST_LINES, MOST_FOLDED_LINES, folded
+from tuisim.notebook.cell_output import (
+    FEWEST_FOLDED,
+    FIRST_LINES,
+    LAST_LINES,
+    MOST_FOLDED_LINES,
+    folded,
+)
 
 
 @pytest.fixture
-def kernel_cell(cell: Cell, shell: InteractiveShell, monkeypatch: pytest.MonkeyPatch) -> Iterator[Cell]:
+def kernel_cell(
+    cell: Cell, shell: InteractiveShell, monkeypatch: pytest.MonkeyPatch
+) -> Iterator[Cell]:
     """`cell` in a shell whose displays can be updated."""
     monkeypatch.setattr(shell, "kernel", None, raising=False)
     yield cell
@@ -32,7 +40,9 @@ def test_a_long_output_shows_its_ends_and_the_rest_on_a_click(kernel_cell: Cell)
     assert shown.out == lines(0, FIRST_LINES)
     (bundle,) = shown.bundles
     hidden = 530 - FIRST_LINES - LAST_LINES
-    assert bundle["text/plain"] == f"… {hidden} more lines\n{lines(530 - LAST_LINES, 530)}".rstrip("\n")
+    assert bundle["text/plain"] == f"… {hidden} more lines\n{lines(530 - LAST_LINES, 530)}".rstrip(
+        "\n"
+    )
     page = str(bundle["text/html"])
     assert page.count("<details>") == page.count(f"<summary>… {hidden} more lines</summary>") == 1
     assert "".join(re.findall(r"&lt; (\d+)", page)) == "".join(map(str, range(FIRST_LINES, 530)))
@@ -50,7 +60,10 @@ def test_a_few_more_lines_are_not_folded(kernel_cell: Cell) -> None:
     assert "<details>" not in str(bundle["text/html"])
     assert bundle["text/plain"] == lines(FIRST_LINES, count).rstrip("\n")
     assert (
-        "… 15 more lines" in folded(["a line"] * (FEWEST_FOLDED + LAST_LINES), FEWEST_FOLDED + LAST_LINES)["text/plain"]
+        "… 15 more lines"
+        in folded(["a line"] * (FEWEST_FOLDED + LAST_LINES), FEWEST_FOLDED + LAST_LINES)[
+            "text/plain"
+        ]
     )
 
 
@@ -70,5 +83,7 @@ def test_an_error_is_never_folded(kernel_cell: Cell) -> None:
 
 
 def test_an_endless_output_keeps_its_newest_lines() -> None:
-    page = folded([f"line {at}" for at in range(MOST_FOLDED_LINES)], MOST_FOLDED_LINES + 7)["text/html"]
+    page = folded([f"line {at}" for at in range(MOST_FOLDED_LINES)], MOST_FOLDED_LINES + 7)[
+        "text/html"
+    ]
     assert "The first 7 lines of these are in the log only." in page

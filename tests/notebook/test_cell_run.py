@@ -68,22 +68,28 @@ def test_an_interrupt_stops_the_program(
 
 def test_an_interrupt_reaches_the_responder(cell: Cell) -> None:
     cell("%sim_magic -b Grey_bands -x 700 -W")
-    cell("import signal, time\nwent_on = False\ndef strike(text):\n    global went_on\n"
-         "    signal.raise_signal(signal.SIGINT)\n    time.sleep(60)\n    went_on = True\n"
-         "roboSim.responder = strike")  # fmt: skip
+    cell(
+        "import signal, time\nwent_on = False\ndef strike(text):\n    global went_on\n"
+        "    signal.raise_signal(signal.SIGINT)\n    time.sleep(60)\n    went_on = True\n"
+        "roboSim.responder = strike"
+    )
     shown = cell(ENDLESS.replace("-RW", "-RWL").replace("while", "print('PY::now')\nwhile"))
     assert cell("went_on").result is False
     assert "stopped" in shown.plain
     check_that_all_is_well(cell)
 
 
-def test_an_interrupt_before_the_run_leaves_everything_as_it_was(cell: Cell, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_interrupt_before_the_run_leaves_everything_as_it_was(
+    cell: Cell, monkeypatch: pytest.MonkeyPatch
+) -> None:
     import tuisim.runs.run_folder
 
     cell("%sim_magic -b Grey_bands -x 700 -W")
     cell("%%sim_magic -RW\nprint('Colour: 1')\n")
     with monkeypatch.context() as patch:
-        patch.setattr(tuisim.runs.run_folder, "field_files", striking(tuisim.runs.run_folder.field_files))
+        patch.setattr(
+            tuisim.runs.run_folder, "field_files", striking(tuisim.runs.run_folder.field_files)
+        )
         shown = cell("%%sim_magic -RW -x 900\nprint('never')\n")
     assert (shown.out, shown.err) == ("", "tuisim: interrupted; no program was running\n")
     check_that_all_is_well(cell)
@@ -96,13 +102,17 @@ def test_an_interrupt_before_the_run_leaves_everything_as_it_was(cell: Cell, mon
         pytest.param(ENDLESS, id="in real time"),
         pytest.param(ENDLESS.replace(" --speed 1", ""), id="at full speed"),
         pytest.param(ENDLESS.replace("-RW", "-RAciXpF 0.02"), id="while everything is drawn"),
-        pytest.param(ENDLESS.replace("    pass", "    print('Flood: 1')").replace(" --speed 1", ""), id="in a flood"),
+        pytest.param(
+            ENDLESS.replace("    pass", "    print('Flood: 1')").replace(" --speed 1", ""),
+            id="in a flood",
+        ),
         pytest.param(
             ENDLESS.replace("    pass", "    print('Flood: 1')").replace("-RW --speed 1", "-RcO"),
             id="in a charted flood",
         ),
         pytest.param(
-            ENDLESS.replace("    pass", "    try:\n        pass\n    except BaseException: pass"), id="stubborn"
+            ENDLESS.replace("    pass", "    try:\n        pass\n    except BaseException: pass"),
+            id="stubborn",
         ),
     ],
 )

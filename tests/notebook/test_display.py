@@ -23,15 +23,24 @@ chart_of = partial(sample_chart, columns=CHART_SIZE[0])
 
 
 def samples(count: int, peak: float) -> list[Sample]:
-    return [Sample("Grey", peak if at == count // 3 else at % 7, at / count, at, at, 1) for at in range(count)]
+    return [
+        Sample("Grey", peak if at == count // 3 else at % 7, at / count, at, at, 1)
+        for at in range(count)
+    ]
 
 
 def drawn(chart: ChartData, kind: type[Kind]) -> list[Kind]:
-    return [shape for shape in laid_out(chart, *CHART_SIZE, titled=False).shapes if isinstance(shape, kind)]
+    return [
+        shape
+        for shape in laid_out(chart, *CHART_SIZE, titled=False).shapes
+        if isinstance(shape, kind)
+    ]
 
 
 def test_a_single_peak_among_many_samples_is_seen() -> None:
-    few, many = (drawn(chart_of(samples(count, 100.0)), Stroke)[-1].points[:, 1] for count in (900, 50_000))
+    few, many = (
+        drawn(chart_of(samples(count, 100.0)), Stroke)[-1].points[:, 1] for count in (900, 50_000)
+    )
     assert [many.min(), many.max()] == [few.min(), few.max()]
     assert many.max() - many.min() > CHART_SIZE[1] / 2
 

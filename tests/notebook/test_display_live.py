@@ -8,8 +8,10 @@ import pytest
 
 from tests.notebook.conftest import Kernel
 
-DRIVE = "%%sim_magic_preloaded -b Grey_bands -x 100 -RXF 0.05 --speed 0.5\n" \
-    "tank_drive.on_for_seconds(SpeedPercent(50), SpeedPercent(50), 2)\n"  # fmt: skip
+DRIVE = (
+    "%%sim_magic_preloaded -b Grey_bands -x 100 -RXF 0.05 --speed 0.5\n"
+    "tank_drive.on_for_seconds(SpeedPercent(50), SpeedPercent(50), 2)\n"
+)
 
 
 @pytest.mark.slow
@@ -23,7 +25,9 @@ def test_displays_are_drawn_anew_in_their_places_until_the_end(kernel: Kernel) -
         content = message["content"]
         if "display_data" in message["msg_type"]:
             kinds.append(message["msg_type"])
-            drawn.setdefault(content["transient"]["display_id"], []).append(content["data"]["text/plain"])
+            drawn.setdefault(content["transient"]["display_id"], []).append(
+                content["data"]["text/plain"]
+            )
             pictures += [content["data"]["image/png"]] if "image/png" in content["data"] else []
         if content.get("execution_state") == "idle":
             break

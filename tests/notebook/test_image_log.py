@@ -79,22 +79,31 @@ def test_a_true_answer_of_a_handler_is_an_answer(cell: Cell) -> None:
 
 def test_a_handler_must_be_a_function(cell: Cell) -> None:
     cell("roboSim.live_image_handler = 3")
-    assert cell(program(LOGGER)).err == "tuisim: roboSim.live_image_handler: must be a function, got 3\n"
+    assert (
+        cell(program(LOGGER)).err
+        == "tuisim: roboSim.live_image_handler: must be a function, got 3\n"
+    )
 
 
 def test_a_log_may_be_cleared_while_it_grows(cell: Cell) -> None:
-    cell("seen = []\ndef handle(count):\n    seen.append(count)\n    if count == 3:\n        roboSim.clear_datalog()\n"
-         "roboSim.live_image_handler = handle")  # fmt: skip
+    cell(
+        "seen = []\ndef handle(count):\n    seen.append(count)\n    if count == 3:\n        roboSim.clear_datalog()\n"
+        "roboSim.live_image_handler = handle"
+    )
     cell(program(LOGGER))
     assert cell("seen").result == [1, 2, 3, 0]
     assert cell(SIDES).result == ["right"]
 
 
-def test_what_an_interrupt_leaves_unheard_is_in_the_log(cell: Cell, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_an_interrupt_leaves_unheard_is_in_the_log(
+    cell: Cell, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setattr("tuisim.notebook.cell_run.ROWS_AT_ONCE", 2)
     monkeypatch.setattr("tuisim.notebook.cell_run.ROWS_AFTER_INTERRUPT", 0)
 
-    cell("import signal\nroboSim.live_image_handler = lambda count: signal.raise_signal(signal.SIGINT)")
+    cell(
+        "import signal\nroboSim.live_image_handler = lambda count: signal.raise_signal(signal.SIGINT)"
+    )
     shown = cell(program("for i in range(400):\n    print('image_data left')"))
     assert "… and more lines" in shown.err
     # The interrupt may have stopped the program before its last line.

@@ -21,8 +21,12 @@ OLD_MODULES = {
 @pytest.fixture(autouse=True)
 def _old_simulator(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Let the old simulator be installed, too."""
-    (tmp_path / "nbev3devsim.py").write_text("def load_ipython_extension(shell):\n    print('the old one')\n")
-    monkeypatch.setenv("PYTHONPATH", os.pathsep.join(filter(None, (str(tmp_path), os.environ.get("PYTHONPATH")))))
+    (tmp_path / "nbev3devsim.py").write_text(
+        "def load_ipython_extension(shell):\n    print('the old one')\n"
+    )
+    monkeypatch.setenv(
+        "PYTHONPATH", os.pathsep.join(filter(None, (str(tmp_path), os.environ.get("PYTHONPATH"))))
+    )
 
 
 @pytest.mark.slow

@@ -12,7 +12,17 @@ from nbformat.notebooknode import NotebookNode
 from PIL import Image
 
 from tests.conftest import ROOT
-from tests.notebook.lesson import CELLS, COLOURS, GREYS, execute, kinds, pictures, result, stream, texts
+from tests.notebook.lesson import (
+    CELLS,
+    COLOURS,
+    GREYS,
+    execute,
+    kinds,
+    pictures,
+    result,
+    stream,
+    texts,
+)
 from tuisim.scene.robot import COLORED
 
 pytestmark = pytest.mark.slow
@@ -80,7 +90,11 @@ def test_arrays_show_what_the_sensors_see(done: Done) -> None:
     assert len(colours_of(world)) > 100
     # Middle of the left array, the gap, middle of the right one: black, paper, white.
     places = ((70, 80), (140, 80), (210, 80))
-    assert [arrays.getpixel(place) for place in places] == [(0, 0, 0), (255, 255, 255), (254, 254, 254)]
+    assert [arrays.getpixel(place) for place in places] == [
+        (0, 0, 0),
+        (255, 255, 255),
+        (254, 254, 254),
+    ]
 
 
 def test_the_loop_reads_until_black(done: Done) -> None:
@@ -98,7 +112,10 @@ def test_every_property_tells_the_grey(x: int, done: Done) -> None:
     grey = GREYS[x]
     name = "1 Black" if grey == 0 else "6 White"
     percent = dict(zip(GREYS.values(), PLATEAUS, strict=True))[grey]
-    assert stream(done[f"grey {x}"]) == f"{grey} {percent}\n{percent} {name} ({grey}, {grey}, {grey})\n"
+    assert (
+        stream(done[f"grey {x}"])
+        == f"{grey} {percent}\n{percent} {name} ({grey}, {grey}, {grey})\n"
+    )
     assert texts(done[f"grey {x}"]) == [WORLD]
 
 
@@ -114,14 +131,29 @@ def test_loggers_with_and_without_set_up_log_the_same(done: Done) -> None:
         assert levels(done[name])[0::50] == [100.0, 0.0]
         assert texts(done[name]) == ["finished · 5.610 s · 51 samples"]
     # Both runs are in the frame; the robot stands where the figures of the old simulator have it.
-    assert ast.literal_eval(result(done["both"]).replace("np.float64", "")) == (True, 51, 102, 1435.16)
+    assert ast.literal_eval(result(done["both"]).replace("np.float64", "")) == (
+        True,
+        51,
+        102,
+        1435.16,
+    )
 
 
 def test_a_cleared_log_has_the_last_run_only(done: Done) -> None:
     assert texts(done["the last"]) == []
     assert stream(done["frame"]) == "51 [1]\n"
     frame = ast.literal_eval(result(done["columns"]))
-    assert list(frame) == ["index", "variable", "value", "time", "run", "x_mm", "y_mm", "heading_deg", "line"]
+    assert list(frame) == [
+        "index",
+        "variable",
+        "value",
+        "time",
+        "run",
+        "x_mm",
+        "y_mm",
+        "heading_deg",
+        "line",
+    ]
     assert (frame["index"], frame["value"], frame["run"]) == ("timedelta64[ns]", "float64", "int64")
 
 
@@ -138,9 +170,16 @@ def test_the_head_is_the_first_five_rows(done: Done) -> None:
     rows = [line.split() for line in result(done["head"]).splitlines()[1:6]]
     assert [row[:6] for row in rows] == [
         [str(at), "0", "days", time, "Colour", "100.0"]
-        for at, time in enumerate(("00:00:00.000000", "00:00:00.110000", "00:00:00.220000", "00:00:00.330000",
-                                   "00:00:00.440000"))
-    ]  # fmt: skip
+        for at, time in enumerate(
+            (
+                "00:00:00.000000",
+                "00:00:00.110000",
+                "00:00:00.220000",
+                "00:00:00.330000",
+                "00:00:00.440000",
+            )
+        )
+    ]
     assert kinds(done["head"]) == ["text/html"]
 
 
@@ -164,7 +203,9 @@ def test_a_lesson_that_is_repeated_comes_out_the_same(done: Done) -> None:
     assert noisy and not set(noisy) & set(PLATEAUS)
     # In any other kernel one cell says what the course's own says in that of tuisim.
     again = execute({**CELLS, "load": "%load_ext tuisim\n%matplotlib inline"})
-    assert {name: cell.outputs for name, cell in again.items()} == {name: cell.outputs for name, cell in done.items()}
+    assert {name: cell.outputs for name, cell in again.items()} == {
+        name: cell.outputs for name, cell in done.items()
+    }
 
 
 def test_the_example_notebook_shows_chart_and_bands() -> None:

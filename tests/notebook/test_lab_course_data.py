@@ -128,7 +128,9 @@ def value(cell: NotebookNode) -> Any:
 
 
 def test_no_cell_complains(done: Mapping[str, NotebookNode]) -> None:
-    assert {name: stream(cell, "stderr") for name, cell in done.items() if stream(cell, "stderr")} == {}
+    assert {
+        name: stream(cell, "stderr") for name, cell in done.items() if stream(cell, "stderr")
+    } == {}
 
 
 def test_records_are_texts_with_the_old_clock(done: Mapping[str, NotebookNode]) -> None:
@@ -136,8 +138,12 @@ def test_records_are_texts_with_the_old_clock(done: Mapping[str, NotebookNode]) 
         f"{side} image data logged..." for side in ("left", "both", "both", "right")
     ]
     sides, clocks = ["left", *["left", "right"] * 2, "right"], ["0", "15", "15", "30", "30", "30"]
-    assert value(done["raw"]) == [(side, 1600, clock) for side, clock in zip(sides, clocks, strict=True)]
-    assert stream(done["frame"]).strip() == f"{['side', 'vals', 'clock']} {sides} {clocks} {{'str'}}"
+    assert value(done["raw"]) == [
+        (side, 1600, clock) for side, clock in zip(sides, clocks, strict=True)
+    ]
+    assert (
+        stream(done["frame"]).strip() == f"{['side', 'vals', 'clock']} {sides} {clocks} {{'str'}}"
+    )
     assert value(done["modes"]) == [1200, 400, 400, 400]
     assert value(done["same"]) is True
     assert value(done["processed"]) == (True, ["1", "1", "1"])
@@ -148,7 +154,11 @@ def test_the_state_has_the_old_units(done: Mapping[str, NotebookNode]) -> None:
     assert (state["_x"], state["_y"], state["_angle"]) == (590, 1143 - 500, 0)
     # 30 ticks up to 525 °/s, 28 °/s more in each.
     assert state["leftWheel"] == state["rightWheel"]
-    assert state["leftWheel"] == state["leftWheel"] | {"speed_sp": 525, "command": "run-forever", "state": "running"}
+    assert state["leftWheel"] == state["leftWheel"] | {
+        "speed_sp": 525,
+        "command": "run-forever",
+        "state": "running",
+    }
     way_mm = state["leftWheel"]["pos"] / 360 * math.pi * 56
     assert state["x"] - state["_x"] == pytest.approx(way_mm)
     assert (state["penDown"], state["_sensorNoise"], state["_wheelNoise"]) == (True, 2, 0)
@@ -167,8 +177,13 @@ def test_pictures_are_of_the_sensors_disc(done: Mapping[str, NotebookNode], tmp_
         (picture,) = pictures(done[name])
         picture.save(tmp_path / f"{name}.png")
         sizes[name] = picture.size
-    assert sizes == dict(zip(shown, [(200, 200), (200, 200), (140, 140), (310, 174), (140, 140), (200, 200)],
-                             strict=True))  # fmt: skip
+    assert sizes == dict(
+        zip(
+            shown,
+            [(200, 200), (200, 200), (140, 140), (310, 174), (140, 140), (200, 200)],
+            strict=True,
+        )
+    )
     corner, middle = (np.asarray(pictures(done["picture"])[0])[at, at] for at in (2, 100))
     assert corner.tolist() == [245, 226, 225]
     assert np.ptp(middle) <= 8
@@ -176,15 +191,25 @@ def test_pictures_are_of_the_sensors_disc(done: Mapping[str, NotebookNode], tmp_
 
 def test_answers_reach_the_program_as_json_only(done: Mapping[str, NotebookNode]) -> None:
     assert stream(done["talk"]).splitlines() == [
-        "PY::hello", "PY RESPONSE", "PY::hello", "PY::0", "PY RESPONSE", "PY::0",
-        "IMG_DATA", "PY RESPONSE", 'JSON::{"left": 305, "right": 305}', "got {'left': 305, 'right': 305}",
-    ]  # fmt: skip
+        "PY::hello",
+        "PY RESPONSE",
+        "PY::hello",
+        "PY::0",
+        "PY RESPONSE",
+        "PY::0",
+        "IMG_DATA",
+        "PY RESPONSE",
+        'JSON::{"left": 305, "right": 305}',
+        "got {'left': 305, 'right': 305}",
+    ]
     assert value(done["heard"]) == ["PY::hello", "PY::0", 'IMG_DATA::{"l']
     assert value(done["clear"]) == ([], 0)
     assert stream(done["scan"]).splitlines() == [
-        "both image data logged...", "PY RESPONSE", 'JSON::{"count": 2, "rows": 2}',
+        "both image data logged...",
+        "PY RESPONSE",
+        'JSON::{"count": 2, "rows": 2}',
         "{'messages': [{'count': 2, 'rows': 2}]}",
-    ]  # fmt: skip
+    ]
 
 
 def test_the_bar_counts_all(done: Mapping[str, NotebookNode]) -> None:

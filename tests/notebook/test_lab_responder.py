@@ -34,12 +34,19 @@ def test_a_responder_hears_what_is_meant_for_it(cell: Cell) -> None:
 def test_the_program_gets_what_the_responder_returned(cell: Cell) -> None:
     cell("roboSim.responder = lambda text: {'half': int(text) / 2}")
     first = cell(TALK).out.splitlines()
-    assert first == ["PY::220", "Answers: 1", "PY::211", "Answers: 2",
-                     "{'messages': [{'half': 110.0}, {'half': 105.5}]} 0.2"]  # fmt: skip
+    assert first == [
+        "PY::220",
+        "Answers: 1",
+        "PY::211",
+        "Answers: 2",
+        "{'messages': [{'half': 110.0}, {'half': 105.5}]} 0.2",
+    ]
     slow = "import time\ndef slow(text):\n    time.sleep(0.1)\n    return {'half': int(text) / 2}\n"
     cell(slow + "roboSim.responder = slow")
     assert cell(TALK).out.splitlines() == first
-    bits = [(run.folder / "telemetry.bin").read_bytes() for run in cell("roboSim.results_log").result]
+    bits = [
+        (run.folder / "telemetry.bin").read_bytes() for run in cell("roboSim.results_log").result
+    ]
     assert bits[0] == bits[1]
 
 
@@ -77,9 +84,15 @@ OLD_ANSWERS = [
 """What a `pyresponder` returns, what the cell shows of it, and what the program gets."""
 
 
-@pytest.mark.parametrize(("answer", "shown", "got"), OLD_ANSWERS, ids=[answer for answer, _, _ in OLD_ANSWERS])
-def test_under_its_old_name_a_responder_talks_in_texts(answer: str, shown: str, got: list[object], cell: Cell) -> None:
-    cell(f"heard = []\ndef respond(text):\n    heard.append(text)\n    return {answer}\nroboSim.pyresponder = respond")
+@pytest.mark.parametrize(
+    ("answer", "shown", "got"), OLD_ANSWERS, ids=[answer for answer, _, _ in OLD_ANSWERS]
+)
+def test_under_its_old_name_a_responder_talks_in_texts(
+    answer: str, shown: str, got: list[object], cell: Cell
+) -> None:
+    cell(
+        f"heard = []\ndef respond(text):\n    heard.append(text)\n    return {answer}\nroboSim.pyresponder = respond"
+    )
     text = "from ev3dev2_glue import pyState\nprint('PY::0')\nprint('other')\nprint(pyState()['messages'])"
     assert cell(f"%%sim_magic -RW --collab\n{text}").out == f"PY::0\n{shown}other\n{got}\n"
     assert cell("heard").result == ["PY::0"]
@@ -99,16 +112,23 @@ def test_under_its_old_name_a_responder_gets_the_pixels_as_text(cell: Cell) -> N
 
 @pytest.mark.parametrize("names", [("responder", "pyresponder"), ("pyresponder", "responder")])
 def test_the_responder_that_was_set_last_answers(names: tuple[str, str], cell: Cell) -> None:
-    cell("first, second = [], []\n"
-         f"roboSim.{names[0]} = first.append\nroboSim.{names[1]} = second.append")  # fmt: skip
+    cell(
+        "first, second = [], []\n"
+        f"roboSim.{names[0]} = first.append\nroboSim.{names[1]} = second.append"
+    )
     cell("%%sim_magic -RWL\nprint('PY::hello')")
-    assert cell("first, second").result == ([], ["PY::hello" if names[1] == "pyresponder" else "hello"])
+    assert cell("first, second").result == (
+        [],
+        ["PY::hello" if names[1] == "pyresponder" else "hello"],
+    )
     assert cell(f"roboSim.{names[0]}").result is None
 
 
 def test_a_responder_sees_the_pixels_that_are_sent_to_it(cell: Cell) -> None:
-    cell("def dark(line):\n    frame = roboSim.images()\n    assert list(frame.side) == ['left'], line\n"
-         "    return int(eds.bw_image_data(frame).to_numpy().sum())\nroboSim.responder = dark")  # fmt: skip
+    cell(
+        "def dark(line):\n    frame = roboSim.images()\n    assert list(frame.side) == ['left'], line\n"
+        "    return int(eds.bw_image_data(frame).to_numpy().sum())\nroboSim.responder = dark"
+    )
     text = "from ev3dev2_glue import pyState\nprint('IMG_DATA left')\nprint(pyState()['messages'])"
     out = cell(f"%%sim_magic_preloaded -b Grey_bands -x 1520 -RWL\n{text}").out
     # The disc lies on the black band.
@@ -117,33 +137,54 @@ def test_a_responder_sees_the_pixels_that_are_sent_to_it(cell: Cell) -> None:
 
 def test_the_guides_example_does_as_it_says(cell: Cell) -> None:
     blocks = find_page("notebooks").source.split("```python notebook\n")[1:]
-    responder, program = (text for block in blocks if "responder =" in (text := block.partition("```")[0])
-                          or "pyState" in text)  # fmt: skip
+    responder, program = (
+        text
+        for block in blocks
+        if "responder =" in (text := block.partition("```")[0]) or "pyState" in text
+    )
     cell(responder)
     assert cell(program).out.splitlines()[-1] == program.partition("# ")[2].strip()
 
 
 @pytest.mark.slow
 def test_a_responder_may_run_programs_itself(cell: Cell) -> None:
-    cell("def measure(text):\n    get_ipython().run_cell_magic('sim_magic', '-RWH', \"print('Inner: 1')\")\n"
-         "roboSim.responder = measure")  # fmt: skip
-    cell("%%sim_magic -RWL\nprint('PY::?')\nfrom ev3dev2_glue import pyState\npyState()\nprint('Outer: 2')")
+    cell(
+        "def measure(text):\n    get_ipython().run_cell_magic('sim_magic', '-RWH', \"print('Inner: 1')\")\n"
+        "roboSim.responder = measure"
+    )
+    cell(
+        "%%sim_magic -RWL\nprint('PY::?')\nfrom ev3dev2_glue import pyState\npyState()\nprint('Outer: 2')"
+    )
     frame = cell("%sim_data").result
     assert list(zip(frame.run, frame.variable, strict=True)) == [(1, "Outer"), (2, "Inner")]
 
 
 MISTAKES = [
-    pytest.param("lambda text: object()", "roboSim.responder: the program cannot get a object", id="an object"),
+    pytest.param(
+        "lambda text: object()",
+        "roboSim.responder: the program cannot get a object",
+        id="an object",
+    ),
     pytest.param(
         "lambda text: {1j: 2}",
         "roboSim.responder: the program cannot get keys must be str",
         id="a key",
     ),
-    pytest.param("'no function'", "roboSim.responder: must be a function, got 'no function'", id="no function"),
+    pytest.param(
+        "'no function'",
+        "roboSim.responder: must be a function, got 'no function'",
+        id="no function",
+    ),
 ]
 OLD_MISTAKES = [
-    pytest.param("'no function'", "roboSim.pyresponder: must be a function, got 'no function'", id="no function"),
-    pytest.param("lambda text: 'JSON::{'", "roboSim.pyresponder: the answer is no JSON: ", id="no JSON"),
+    pytest.param(
+        "'no function'",
+        "roboSim.pyresponder: must be a function, got 'no function'",
+        id="no function",
+    ),
+    pytest.param(
+        "lambda text: 'JSON::{'", "roboSim.pyresponder: the answer is no JSON: ", id="no JSON"
+    ),
 ]
 
 
@@ -160,7 +201,9 @@ def test_a_wrong_responder_is_one_line(responder: str, told: str, cell: Cell) ->
 
 
 @pytest.mark.parametrize(("responder", "told"), OLD_MISTAKES)
-def test_a_wrong_responder_of_the_old_name_is_one_line(responder: str, told: str, cell: Cell) -> None:
+def test_a_wrong_responder_of_the_old_name_is_one_line(
+    responder: str, told: str, cell: Cell
+) -> None:
     cell(f"roboSim.pyresponder = {responder}")
     shown = cell("%%sim_magic -RWL --speed 1\nprint('PY::?')\nwhile True:\n    pass\n")
     assert shown.err.startswith(f"tuisim: {told}")
@@ -203,7 +246,9 @@ def test_where_nobody_can_answer_it_is_said(
 ) -> None:
     monkeypatch.setattr("builtins.input", failing(error))
     shown = cell(ASKS)
-    assert shown.err.startswith("tuisim: the program waits for input(), which is not supported here\n")
+    assert shown.err.startswith(
+        "tuisim: the program waits for input(), which is not supported here\n"
+    )
     assert "EOFError: there is no further answer to input()" in shown.err
 
 

@@ -17,7 +17,9 @@ from tests.notebook.conftest import Cell, Shown
 from tuisim.config.magic_line import _command
 
 DRIVE = "tank_drive.on_for_rotations(SpeedPercent(50), SpeedPercent(50), 2)"
-PROGRAM = f"%%sim_magic_preloaded -b Grey_bands -WH\nprint('ran')\nsay('spoken', show=False)\n{DRIVE}\n"
+PROGRAM = (
+    f"%%sim_magic_preloaded -b Grey_bands -WH\nprint('ran')\nsay('spoken', show=False)\n{DRIVE}\n"
+)
 
 Probe = Callable[[Cell, str], Any]
 
@@ -50,7 +52,9 @@ def ink(color: tuple[int, int, int], before: str = "", more: str = "") -> Probe:
         if before:
             cell(f"%sim_magic {before}")
         shown = cell(f"%sim_magic {more} {words}")
-        (world,) = (bundle["image/png"] for bundle in shown.bundles if "<world" in bundle["text/plain"])
+        (world,) = (
+            bundle["image/png"] for bundle in shown.bundles if "<world" in bundle["text/plain"]
+        )
         pixels = np.asarray(Image.open(io.BytesIO(world)).convert("RGB")).reshape(-1, 3)
         return bool((pixels == color).all(axis=1).any())
 
@@ -89,7 +93,9 @@ def paced(cell: Cell, words: str) -> bool:
 
 
 def names(cell: Cell, words: str) -> str:
-    return cell(f"%%sim_magic_preloaded -RW {words}\nprint('gyro' in dir(), 'get_clock' in dir())").out
+    return cell(
+        f"%%sim_magic_preloaded -RW {words}\nprint('gyro' in dir(), 'get_clock' in dir())"
+    ).out
 
 
 def given_ready(cell: Cell, words: str) -> bool:
@@ -101,7 +107,9 @@ def own_mat(cell: Cell, words: str) -> str:
     folder = Path(os.environ["TUISIM_HOME"], "pics")
     folder.mkdir(exist_ok=True)
     Image.new("RGB", (30, 20)).save(folder / "_loop.png")
-    done = cell(f"%sim_magic -W -b Loop {words.replace('pics', str(folder))}\nroboSim.spec.world.background")
+    done = cell(
+        f"%sim_magic -W -b Loop {words.replace('pics', str(folder))}\nroboSim.spec.world.background"
+    )
     return Path(done.result).name
 
 
@@ -127,7 +135,12 @@ CASES = [
     Case(("--walls",), "off", spec("world.walls"), False),
     Case(("--drift",), "gyro_dps=2", spec("world.drift.gyro_dps"), 2.0),
     Case(("--solid",), "", spec("world.solid"), True),
-    Case(("--no-solid",), "--profile ev3", spec("world.solid, roboSim.spec.profile.name"), (False, "ev3")),
+    Case(
+        ("--no-solid",),
+        "--profile ev3",
+        spec("world.solid, roboSim.spec.profile.name"),
+        (False, "ev3"),
+    ),
     Case(("-x", "--x", "--xpos"), "77", spec("world.start.x_mm"), 77),
     Case(("-y", "--y", "--ypos"), "77", spec("world.start.y_mm"), 77),
     Case(("-a", "--angle"), "-90", spec("world.start.heading_deg"), -90),
@@ -169,7 +182,10 @@ OF_TERMINALS = {"--fps", "--colors", "--cells", "--pixels"}
 
 
 def with_slow(cases: Sequence[Any], quick: Callable[[Any], bool]) -> list[Any]:
-    return [pytest.param(*case, id=case[0], marks=() if quick(case) else pytest.mark.slow) for case in cases]
+    return [
+        pytest.param(*case, id=case[0], marks=() if quick(case) else pytest.mark.slow)
+        for case in cases
+    ]
 
 
 FLAGS = [(flag, case) for case in CASES for flag in case.flags]
@@ -218,4 +234,7 @@ def test_switches_may_be_put_together(together: str, apart: str, cell: Cell) -> 
 
 def test_a_program_that_has_not_run_is_ready_whatever_became_of_the_one_before(cell: Cell) -> None:
     assert "NameError" in str(cell("%%sim_magic_preloaded -R\nprnt('x')").bundles[-1])
-    assert cell("%%sim_magic_preloaded\nprint('x')").bundles[-1]["text/plain"] == "ready: -R runs the program"
+    assert (
+        cell("%%sim_magic_preloaded\nprint('x')").bundles[-1]["text/plain"]
+        == "ready: -R runs the program"
+    )

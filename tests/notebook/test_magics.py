@@ -71,7 +71,10 @@ def test_each_magic_gives_its_names(magic: str, text: str, out: str, cell: Cell)
     assert cell(f"%%{magic} -R\n{text}\n").out == out
 
 
-READY = {"sim_magic_imports": "OUTPUT_B", "sim_magic_preloaded": "tank_drive = MoveTank(OUTPUT_B, OUTPUT_C)"}
+READY = {
+    "sim_magic_imports": "OUTPUT_B",
+    "sim_magic_preloaded": "tank_drive = MoveTank(OUTPUT_B, OUTPUT_C)",
+}
 """By magic, a part of what it gives a program."""
 
 
@@ -169,10 +172,15 @@ def test_an_error_of_the_program_shows_its_own_line(cell: Cell) -> None:
 
 def test_pixel_arrays_are_frames_and_pictures(cell: Cell) -> None:
     cell(program("-b Grey_bands -x 1520 -RW", "print('image_data both')\nprint('image_data left')"))
-    frame = cell("from tuisim.notebook import eds\nfrom tuisim.notebook.magics import roboSim\nroboSim.images()")
+    frame = cell(
+        "from tuisim.notebook import eds\nfrom tuisim.notebook.magics import roboSim\nroboSim.images()"
+    )
     assert list(frame.result.side) == ["left", "right", "left"]
     assert {len(vals) for vals in frame.result.vals} == {1600}
-    assert cell("[picture.size for picture in eds.image_pair(roboSim.images(), 0)]").result == [(20, 20)] * 2
+    assert (
+        cell("[picture.size for picture in eds.image_pair(roboSim.images(), 0)]").result
+        == [(20, 20)] * 2
+    )
     dark = cell("eds.bw_image_data(roboSim.images(), 0)").result
     # The disc lies on the black band: its 305 pixels are dark, the corners are not.
     assert (dark.shape, int(dark.to_numpy().sum())) == ((20, 20), 305)
@@ -198,7 +206,9 @@ def test_the_old_switches_of_a_log_are_there(line: str, size: object, cell: Cell
     assert getattr(shown.result, "size", None) == size
 
 
-@pytest.mark.parametrize("magic", ["sim_data", "sim_robot_state", "sim_image_pair", "sim_bw_image_data"])
+@pytest.mark.parametrize(
+    "magic", ["sim_data", "sim_robot_state", "sim_image_pair", "sim_bw_image_data"]
+)
 def test_a_magic_of_a_log_has_a_help(magic: str, cell: Cell) -> None:
     assert cell(f"%{magic} -h").out.startswith(f"Usage: %{magic} ")
 
@@ -207,8 +217,10 @@ def test_a_program_is_shown_as_it_is_also_where_a_browser_shows_it(cell: Cell) -
     (code,) = cell(program("-WHD", "if 1 < 2:\n    print('<b>')")).bundles
     rows = re.findall(r"<tr><th>(\d+)</th><td[^>]*><pre>(.*?)</pre></td></tr>", code["text/html"])
     assert [(number, html.unescape(line)) for number, line in rows] == [
-        ("1", ""), ("2", "if 1 < 2:"), ("3", "    print('<b>')")
-    ]  # fmt: skip
+        ("1", ""),
+        ("2", "if 1 < 2:"),
+        ("3", "    print('<b>')"),
+    ]
     assert "<b>" not in code["text/html"]
 
 
@@ -216,7 +228,9 @@ def test_one_sample_is_told_as_one(cell: Cell) -> None:
     assert cell(program("-RW", "print('Colour: 1')")).plain == "finished · 0.000 s · 1 sample"
 
 
-def test_what_a_robots_file_has_that_means_nothing_here_is_said_once(cell: Cell, tmp_path: Path) -> None:
+def test_what_a_robots_file_has_that_means_nothing_here_is_said_once(
+    cell: Cell, tmp_path: Path
+) -> None:
     (tmp_path / "mine.json").write_text('{"owner": "Ann"}')
     noted = cell(f"%sim_magic -W -r {tmp_path / 'mine.json'}")
     assert noted.err.count("ignored unknown keys: owner") == 1
@@ -238,9 +252,17 @@ EV3DEV2 = "from ev3dev2.motor import MoveTank\nMoveTank('outB', 'outC').on_for_s
 def test_the_imports_of_a_cell_choose_its_profile(cell: Cell) -> None:
     shown = cell(f"%%sim_magic -RW\n{PYBRICKS}")
     assert shown.out == "Distance: 100\n"
-    assert "both wheel motors the other way round; by the rules of a brick (profile lego-micropython)" in shown.err
+    assert (
+        "both wheel motors the other way round; by the rules of a brick (profile lego-micropython)"
+        in shown.err
+    )
     (sample,) = cell("%sim_data").result.to_dict("records")
-    assert (sample["variable"], sample["value"], sample["line"], round(sample["x_mm"])) == ("Distance", 100, 8, 236)
+    assert (sample["variable"], sample["value"], sample["line"], round(sample["x_mm"])) == (
+        "Distance",
+        100,
+        8,
+        236,
+    )
     assert cell(f"%%sim_magic -RW\n{EV3DEV2}").out == "Done: 1\n"
     assert cell(program("-RW", "print('Kept:', len([gyro]))")).out == "Kept: 1\n"
     assert cell(f"%%sim_magic -RW\n{PYBRICKS}").out == "Distance: 100\n"
@@ -258,17 +280,23 @@ def test_a_chosen_profile_of_the_same_library_wins(cell: Cell) -> None:
 
 def test_the_names_of_a_prelude_are_not_for_pybricks(cell: Cell) -> None:
     told = cell(f"%%sim_magic_preloaded -RW\n{PYBRICKS}").err
-    assert told.startswith("tuisim: preload: cell uses pybricks, and the names of its prelude are of ev3dev2")
+    assert told.startswith(
+        "tuisim: preload: cell uses pybricks, and the names of its prelude are of ev3dev2"
+    )
 
 
-def test_a_cell_gets_the_robot_that_its_program_talks_about_under_the_course_s_rules(cell: Cell) -> None:
+def test_a_cell_gets_the_robot_that_its_program_talks_about_under_the_course_s_rules(
+    cell: Cell,
+) -> None:
     text = (
         "from ev3dev2.motor import MediumMotor\nfrom ev3dev2.sensor.lego import ColorSensor\n"
         "claw = MediumMotor('outA')\nprint(claw.address, ColorSensor('in2').reflected_light_intensity)\n"
     )
     shown = cell(f"%%sim_magic -RHW\n{text}")
     assert shown.out == "ev3-ports:outA 255\n"
-    assert "cell runs on a robot built from it: medium motor on outA. -r to change it\n" in shown.err
+    assert (
+        "cell runs on a robot built from it: medium motor on outA. -r to change it\n" in shown.err
+    )
     assert "is not connected" in cell(f"%%sim_magic -RHW -r Small_Robot\n{text}").err
     # A chosen robot lasts until another cell changes it.
     assert "is not connected" in cell(f"%%sim_magic -RHW\n{text}").err

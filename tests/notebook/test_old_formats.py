@@ -13,7 +13,13 @@ from PIL import Image
 from tests.notebook.conftest import Cell
 from tuisim.errors import ConfigError, LogError
 from tuisim.notebook.image_log import LoggedArray
-from tuisim.notebook.old_formats import bw_picture, image_frame, image_pair, process_raw_image_data, record_text
+from tuisim.notebook.old_formats import (
+    bw_picture,
+    image_frame,
+    image_pair,
+    process_raw_image_data,
+    record_text,
+)
 
 PIXELS = "220,1,2,255,3,4,5,255,4,0,9,255"
 PARTS = [
@@ -41,7 +47,9 @@ def test_an_unknown_mode_is_named() -> None:
 
 def array(side: str, time_ns: int = 0, grey: int = 128) -> LoggedArray:
     """A sensor's pixels: all of one grey, but for a black corner."""
-    return LoggedArray(side, bytes((0, 0, 0, 255)) * 5 + bytes((grey, grey, grey, 255)) * 395, time_ns, False)
+    return LoggedArray(
+        side, bytes((0, 0, 0, 255)) * 5 + bytes((grey, grey, grey, 255)) * 395, time_ns, False
+    )
 
 
 @pytest.mark.parametrize(
@@ -54,7 +62,9 @@ def test_a_clock_counts_the_old_ticks(time_ns: int, clock: str) -> None:
 
 
 def test_a_frame_holds_texts() -> None:
-    frame = image_frame([record_text(array("left")), record_text(array("right", 10**9))], mode="greyscale")
+    frame = image_frame(
+        [record_text(array("left")), record_text(array("right", 10**9))], mode="greyscale"
+    )
     assert list(frame.columns) == ["side", "vals", "clock"]
     assert list(frame.side) == ["left", "right"]
     assert list(frame.clock) == ["0", "30"]
@@ -63,9 +73,17 @@ def test_a_frame_holds_texts() -> None:
 
 
 def test_pairs_are_what_was_logged_of_both_at_one_time() -> None:
-    first = [array("left", 0, 10), array("left", 5, 20), array("right", 5, 30), array("right", 9, 40)]
+    first = [
+        array("left", 0, 10),
+        array("left", 5, 20),
+        array("right", 5, 30),
+        array("right", 9, 40),
+    ]
     second = [array("left", 5, 50), array("right", 5, 60)]
-    greys = [[picture.getpixel((9, 9)) for picture in image_pair([first, second], index)] for index in (0, 1, -1, -2)]
+    greys = [
+        [picture.getpixel((9, 9)) for picture in image_pair([first, second], index)]
+        for index in (0, 1, -1, -2)
+    ]
     assert greys == [[20, 30], [50, 60], [50, 60], [20, 30]]
     assert {(picture.mode, picture.size) for picture in image_pair([first])} == {("L", (14, 14))}
     with pytest.raises(LogError, match=r"no pixel arrays 2 \(0 … 1 are logged"):
@@ -99,15 +117,42 @@ def test_a_pair_is_shown_as_a_picture(cell: Cell) -> None:
 
 TALL = 1143
 KEYS = {
-    "x", "y", "_x", "_y", "angle", "_angle", "penDown", "_wheelNoise", "_sensorNoise", "leftWheel", "rightWheel",
-    "sensor1", "sensor2", "sensor1dataArray", "sensor2dataArray", "gyro", "ultrasonic", "left_light_raw",
-    "right_light_raw", "left_light", "right_light", "left_light_pc", "right_light_pc", "left_light_full",
+    "x",
+    "y",
+    "_x",
+    "_y",
+    "angle",
+    "_angle",
+    "penDown",
+    "_wheelNoise",
+    "_sensorNoise",
+    "leftWheel",
+    "rightWheel",
+    "sensor1",
+    "sensor2",
+    "sensor1dataArray",
+    "sensor2dataArray",
+    "gyro",
+    "ultrasonic",
+    "left_light_raw",
+    "right_light_raw",
+    "left_light",
+    "right_light",
+    "left_light_pc",
+    "right_light_pc",
+    "left_light_full",
     "right_light_full",
-}  # fmt: skip
+}
 AT_REST = {
-    "polarity": "normal", "pos": 0, "time_sp": 0, "position_sp": 0, "speed_sp": 0, "speed": 0, "command": "",
+    "polarity": "normal",
+    "pos": 0,
+    "time_sp": 0,
+    "position_sp": 0,
+    "speed_sp": 0,
+    "speed": 0,
+    "command": "",
     "state": "",
-}  # fmt: skip
+}
 
 
 def state(cell: Cell) -> dict[str, Any]:
@@ -126,35 +171,61 @@ def test_before_a_run_a_robot_stands_at_its_start(cell: Cell) -> None:
 
 
 def test_what_a_program_has_done_is_in_the_state(cell: Cell) -> None:
-    cell("%%sim_magic_preloaded -b Grey_bands -x 700 -pRWH --profile nbev3devsim\n"
-         "tank_drive.on_for_seconds(SpeedPercent(50), SpeedPercent(50), 1)")  # fmt: skip
+    cell(
+        "%%sim_magic_preloaded -b Grey_bands -x 700 -pRWH --profile nbev3devsim\n"
+        "tank_drive.on_for_seconds(SpeedPercent(50), SpeedPercent(50), 1)"
+    )
     found, ours = state(cell), cell("roboSim.state").result
     assert (found["x"], found["_x"], found["penDown"]) == (ours["x_mm"], 700, True)
     assert found["leftWheel"] == AT_REST | {
-        "pos": ours["left_position_deg"], "speed": 525, "speed_sp": 525, "time_sp": 1, "command": "run-timed",
-    }  # fmt: skip
+        "pos": ours["left_position_deg"],
+        "speed": 525,
+        "speed_sp": 525,
+        "time_sp": 1,
+        "command": "run-timed",
+    }
 
 
 MOVES = [
-    ("robolab", "tank_drive.on(SpeedPercent(50), SpeedPercent(-20))\nimport time\ntime.sleep(1)",
-     {"speed_sp": -210, "speed": -210, "command": "run-forever", "state": "running"}),
-    ("robolab", "tank_drive.on_for_degrees(SpeedPercent(50), SpeedPercent(50), 90)",
-     {"speed_sp": 525, "position_sp": 90, "command": "run-to-rel-pos"}),
-    ("ev3", "tank_drive.on_for_seconds(SpeedPercent(50), SpeedPercent(50), 0.5)", {"time_sp": 0.5, "speed": 0}),
+    (
+        "robolab",
+        "tank_drive.on(SpeedPercent(50), SpeedPercent(-20))\nimport time\ntime.sleep(1)",
+        {"speed_sp": -210, "speed": -210, "command": "run-forever", "state": "running"},
+    ),
+    (
+        "robolab",
+        "tank_drive.on_for_degrees(SpeedPercent(50), SpeedPercent(50), 90)",
+        {"speed_sp": 525, "position_sp": 90, "command": "run-to-rel-pos"},
+    ),
+    (
+        "ev3",
+        "tank_drive.on_for_seconds(SpeedPercent(50), SpeedPercent(50), 0.5)",
+        {"time_sp": 0.5, "speed": 0},
+    ),
     ("ev3", "tank_drive.on(5, 5)\ntank_drive.off()", {"command": ""}),
-    ("nbev3devsim", "tank_drive.right_motor.polarity = 'inversed'", {"polarity": "inversed", "command": "reset"}),
-]  # fmt: skip
+    (
+        "nbev3devsim",
+        "tank_drive.right_motor.polarity = 'inversed'",
+        {"polarity": "inversed", "command": "reset"},
+    ),
+]
 
 
-@pytest.mark.parametrize(("profile", "move", "parts"), MOVES, ids=[f"{move[0]}-{at}" for at, move in enumerate(MOVES)])
-def test_a_wheel_holds_what_was_written_to_it(profile: str, move: str, parts: dict[str, Any], cell: Cell) -> None:
+@pytest.mark.parametrize(
+    ("profile", "move", "parts"), MOVES, ids=[f"{move[0]}-{at}" for at, move in enumerate(MOVES)]
+)
+def test_a_wheel_holds_what_was_written_to_it(
+    profile: str, move: str, parts: dict[str, Any], cell: Cell
+) -> None:
     cell(f"%%sim_magic_preloaded -b Empty_Map -x 1000 -RWH --profile {profile}\n{move}")
     wheel = state(cell)["rightWheel"]
     assert wheel == wheel | parts
 
 
 def test_sensors_are_means_and_texts(cell: Cell) -> None:
-    cell("%%sim_magic_preloaded -b Rainbow_bands -x 500 -RWH\nprint(colorLeft.rgb, ultrasonic.distance_centimeters)")
+    cell(
+        "%%sim_magic_preloaded -b Rainbow_bands -x 500 -RWH\nprint(colorLeft.rgb, ultrasonic.distance_centimeters)"
+    )
     found, ours = state(cell), cell("roboSim.images()").result
     assert not len(ours)
     for side, sensor in (("left", "sensor1"), ("right", "sensor2")):
@@ -170,8 +241,10 @@ def test_sensors_are_means_and_texts(cell: Cell) -> None:
 
 
 def test_a_full_turn_takes_360_degrees_off(cell: Cell) -> None:
-    cell("%%sim_magic_preloaded -b Empty_Map -x 1000 -a 350 -RWH\n"
-         "tank_turn.on_for_rotations(-100, SpeedPercent(40), 0.4)\n")  # fmt: skip
+    cell(
+        "%%sim_magic_preloaded -b Empty_Map -x 1000 -a 350 -RWH\n"
+        "tank_turn.on_for_rotations(-100, SpeedPercent(40), 0.4)\n"
+    )
     heading_deg = cell("roboSim.state").result["heading_deg"]
     assert 360 < heading_deg < 450
     assert state(cell)["angle"] == math.radians(heading_deg - 360)
@@ -189,6 +262,10 @@ def test_a_state_is_of_its_time_until_it_is_updated(cell: Cell) -> None:
 def test_a_sensor_that_the_robot_has_not_got_is_nought(cell: Cell) -> None:
     cell("%sim_magic -b Empty_Map -x 300 -W -r Explorer")
     found = state(cell)
-    assert (found["sensor1"], found["sensor2"], found["sensor2dataArray"]) == ([255, 255, 255], [0, 0, 0], "")
+    assert (found["sensor1"], found["sensor2"], found["sensor2dataArray"]) == (
+        [255, 255, 255],
+        [0, 0, 0],
+        "",
+    )
     assert (found["gyro"][0], found["ultrasonic"]) == (0, 0)
     assert found.keys() == KEYS

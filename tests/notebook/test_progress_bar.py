@@ -28,7 +28,11 @@ CELLS = {
 @pytest.mark.slow
 def test_a_bar_counts_and_sounds_once_at_its_end(course_kernel: str) -> None:
     done = execute(CELLS, course_kernel)
-    assert (stream(done["kind"]), stream(done["bar"]), stream(done["hidden"])) == ("True\n", "6\n", "6\n")
+    assert (stream(done["kind"]), stream(done["bar"]), stream(done["hidden"])) == (
+        "True\n",
+        "6\n",
+        "6\n",
+    )
     bundles = [output.data for output in done["bar"].outputs if "data" in output]
     assert ["<audio" in bundle.get("text/html", "") for bundle in bundles] == [False, True]
     assert "application/vnd.jupyter.widget-view+json" in bundles[0]

@@ -13,12 +13,16 @@ import seaborn as sns  # type: ignore[import-untyped]
 
 from tuisim.notebook.seconds_axis import use_seconds
 
-FRAME = pd.DataFrame({"index": pd.to_timedelta([0, 0.5, 1.2], unit="s"), "variable": "a", "value": [1.0, 2.0, 3.0]})
+FRAME = pd.DataFrame(
+    {"index": pd.to_timedelta([0, 0.5, 1.2], unit="s"), "variable": "a", "value": [1.0, 2.0, 3.0]}
+)
 
 CHARTS: dict[str, Callable[[], Any]] = {
     "seaborn's lines": lambda: sns.lineplot(x="index", y="value", hue="variable", data=FRAME),
     "seaborn's points": lambda: sns.scatterplot(x="index", y="value", data=FRAME),
-    "a grid": lambda: sns.FacetGrid(FRAME, row="variable").map(plt.plot, "index", "value").axes[0, 0],
+    "a grid": lambda: (
+        sns.FacetGrid(FRAME, row="variable").map(plt.plot, "index", "value").axes[0, 0]
+    ),
     "matplotlib's lines": lambda: plt.plot(FRAME["index"], FRAME["value"])[0].axes,
 }
 

@@ -28,11 +28,21 @@ def main(words: Sequence[str]) -> int:
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument("kinds", nargs="*", metavar="KIND", help="some of them; otherwise all")
-    parser.add_argument("--minutes", type=float, default=3.0, metavar="N", help="in total (default: 3)")
-    parser.add_argument("--seed", type=int, metavar="N", help="of the cases that are drawn (default: a fresh one)")
-    parser.add_argument("--jobs", type=int, default=min(os.cpu_count() or 1, 4), metavar="N", help="kinds at a time")
-    parser.add_argument("--case", metavar="NAME", help="only this case of one KIND, as printed with a fault")
-    parser.add_argument("--list", type=int, metavar="N", help="print the first N names of cases of each kind")
+    parser.add_argument(
+        "--minutes", type=float, default=3.0, metavar="N", help="in total (default: 3)"
+    )
+    parser.add_argument(
+        "--seed", type=int, metavar="N", help="of the cases that are drawn (default: a fresh one)"
+    )
+    parser.add_argument(
+        "--jobs", type=int, default=min(os.cpu_count() or 1, 4), metavar="N", help="kinds at a time"
+    )
+    parser.add_argument(
+        "--case", metavar="NAME", help="only this case of one KIND, as printed with a fault"
+    )
+    parser.add_argument(
+        "--list", type=int, metavar="N", help="print the first N names of cases of each kind"
+    )
     arguments = parser.parse_args(words)
     if unknown := [name for name in arguments.kinds if name not in KINDS]:
         parser.error(f"no such kind: {', '.join(unknown)}; one of {', '.join(KINDS)}")
@@ -53,8 +63,15 @@ def main(words: Sequence[str]) -> int:
     print(row("kind", "cases", "wall s", "faults"))
     for found in results:
         print(row(found.kind, found.cases, f"{found.elapsed_s:.1f}", len(found.faults)))
-    cases, faults = sum(found.cases for found in results), sum(len(found.faults) for found in results)
-    print(f"{faults} faults in {cases} cases (seed {seed})" if faults else f"no fault in {cases} cases (seed {seed})")
+    cases, faults = (
+        sum(found.cases for found in results),
+        sum(len(found.faults) for found in results),
+    )
+    print(
+        f"{faults} faults in {cases} cases (seed {seed})"
+        if faults
+        else f"no fault in {cases} cases (seed {seed})"
+    )
     return int(bool(faults))
 
 

@@ -23,17 +23,45 @@ from tuisim.protocol import Unended
 from tuisim.runs.store import compact_run
 
 KEYS: Mapping[str, Sequence[str]] = {
-    "run": ("R", "y"), "run from the start": ("R", "r"), "stop": ("S",), "pause": ("space",), "resume": ("space",),
-    "step": (".",), "ten steps": (":",), "back": (",",), "second back": ("<",), "second on": (">",), "home": ("home",),
-    "now": ("end",), "line": ("n",), "into": ("s",), "line back": ("N",), "branch": ("y", "y"), "move": ("left", "a"),
-    "pen": ("p",), "edit": ("d", "ctrl+end", "enter", "x", "=", "1", "escape"), "break": ("t",), "clear": ("x",),
-    "watch": ("w", "x", "enter", "escape"), "save": ("ctrl+s", "enter"), "export": ("e", "enter"), "faster": ("]",),
-    "sample": ("(",), "panels": ("G", "c"),
-}  # fmt: skip
+    "run": ("R", "y"),
+    "run from the start": ("R", "r"),
+    "stop": ("S",),
+    "pause": ("space",),
+    "resume": ("space",),
+    "step": (".",),
+    "ten steps": (":",),
+    "back": (",",),
+    "second back": ("<",),
+    "second on": (">",),
+    "home": ("home",),
+    "now": ("end",),
+    "line": ("n",),
+    "into": ("s",),
+    "line back": ("N",),
+    "branch": ("y", "y"),
+    "move": ("left", "a"),
+    "pen": ("p",),
+    "edit": ("d", "ctrl+end", "enter", "x", "=", "1", "escape"),
+    "break": ("t",),
+    "clear": ("x",),
+    "watch": ("w", "x", "enter", "escape"),
+    "save": ("ctrl+s", "enter"),
+    "export": ("e", "enter"),
+    "faster": ("]",),
+    "sample": ("(",),
+    "panels": ("G", "c"),
+}
 """What is pressed for each step; what stays open is closed after it."""
 OUTSIDE = ("reload", "compact", "remove", "rename", "rerun")
 """Steps of another process on the same home."""
-NAMED = ("untitled.toml", "world.toml", "program.csv", "program.csv.json", "prog.csv", "prog.csv.json")
+NAMED = (
+    "untitled.toml",
+    "world.toml",
+    "program.csv",
+    "program.csv.json",
+    "prog.csv",
+    "prog.csv.json",
+)
 """Files that the app names when it saves a world or a log, and nobody types another name."""
 
 Shown = dict[tuple[str, int], object]
@@ -104,10 +132,19 @@ class AppSteps:
             return
         # The line is the one that was run, until the debugger knows which one comes next.
         view = controller.snapshot()
-        now = (view.instant, view.time_s, view.colors, view.ultrasonic_mm, view.gyro_deg, view.pen_down)
+        now = (
+            view.instant,
+            view.time_s,
+            view.colors,
+            view.ultrasonic_mm,
+            view.gyro_deg,
+            view.pen_down,
+        )
         before = self._shown.setdefault((controller.run_id, tick), now)
         if before != now:
-            raise FaultError(f"tick {tick} of {controller.run_id} was shown as {before}, then as {now}")
+            raise FaultError(
+                f"tick {tick} of {controller.run_id} was shown as {before}, then as {now}"
+            )
 
 
 async def _in_app(model: RunModel, steps: Sequence[int], seed: str) -> None:
@@ -117,7 +154,9 @@ async def _in_app(model: RunModel, steps: Sequence[int], seed: str) -> None:
     Path("prog.py").write_text(text)
     # At full speed the recording of an endless program takes gigabytes, and the model compares it after each step.
     speeds = (1.0, 4.0) if text == ENDLESS else (1.0, 4.0, 0.0)
-    settings = AppSettings(spec=spec, program=program(text), autorun=True, speed=random.choice(speeds))
+    settings = AppSettings(
+        spec=spec, program=program(text), autorun=True, speed=random.choice(speeds)
+    )
     own, names = set(model.seen), done_in(seed, [*KEYS, *OUTSIDE])
     async with LabApp(settings).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)

@@ -22,17 +22,44 @@ SOUND: Mapping[str, str] = {
     "batch": "program.py --seeds 0..1 --jobs 1",
     "mark": "goals.toml class --seeds 0 --jobs 1",
     "goals check": "goals.toml 1",
-    "learn list": "", "learn status": "", "learn check": "lesson.md", "learn new": "new.md",
-    "runs list": "", "runs show": "1", "runs export": "1 new.csv", "runs picture": "1 --out new.png",
-    "runs movie": "1 --out new.svg --to 0.2", "runs rerun": "1", "runs compact": "1", "runs rm": "1",
-    "log summary": "1", "log bands": "log.csv", "log events": "log.csv --at 50", "log derive": "1",
-    "log integrate": "log.csv", "log average": "1 --width 3", "log resample": "1 --period 0.1",
-    "log calc": "1 --expression Colour*2", "log reckon": "1", "log diff": "1 2",
-    "log export": "log.csv --out new.csv", "log plot": "1 --out new.svg", "log report": "1 --out new.html",
-    "guide": "keys", "backgrounds": "", "robots": "Explorer", "obstacles": "Wall", "programs": "",
-    "profiles": "ev3 program.py", "kernel list": "--prefix home", "kernel install": "--prefix home",
-    "kernel remove": "--prefix home", "config": "", "doctor": "", "completion": "bash",
-}  # fmt: skip
+    "learn list": "",
+    "learn status": "",
+    "learn check": "lesson.md",
+    "learn new": "new.md",
+    "runs list": "",
+    "runs show": "1",
+    "runs export": "1 new.csv",
+    "runs picture": "1 --out new.png",
+    "runs movie": "1 --out new.svg --to 0.2",
+    "runs rerun": "1",
+    "runs compact": "1",
+    "runs rm": "1",
+    "log summary": "1",
+    "log bands": "log.csv",
+    "log events": "log.csv --at 50",
+    "log derive": "1",
+    "log integrate": "log.csv",
+    "log average": "1 --width 3",
+    "log resample": "1 --period 0.1",
+    "log calc": "1 --expression Colour*2",
+    "log reckon": "1",
+    "log diff": "1 2",
+    "log export": "log.csv --out new.csv",
+    "log plot": "1 --out new.svg",
+    "log report": "1 --out new.html",
+    "guide": "keys",
+    "backgrounds": "",
+    "robots": "Explorer",
+    "obstacles": "Wall",
+    "programs": "",
+    "profiles": "ev3 program.py",
+    "kernel list": "--prefix home",
+    "kernel install": "--prefix home",
+    "kernel remove": "--prefix home",
+    "config": "",
+    "doctor": "",
+    "completion": "bash",
+}
 """Words after each command that ends by itself, in the folder of a case; what it then does is allowed."""
 SLOW = ("run", "batch", "mark", "runs movie", "runs rerun", "doctor")
 """Commands of seconds."""
@@ -105,4 +132,6 @@ def _names(random: Random) -> Iterator[str]:
                 yield f"{command}:{random.getrandbits(32)}"
 
 
-ARGUMENTS = Kind("odd words after every command, and odd values of its options", _names, _check, limit_s=20.0)
+ARGUMENTS = Kind(
+    "odd words after every command, and odd values of its options", _names, _check, limit_s=20.0
+)

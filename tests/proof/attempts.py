@@ -47,7 +47,11 @@ def attempt(kind: str, seed: int, most_s: float) -> Result:
         print(f"FAULT  {kind}: it has no case", flush=True)
     elapsed_s = time.monotonic() - start_s
     # The table comes when all are done.
-    print(f"{kind}: {count} cases in {elapsed_s:.0f} s, {len(faults)} faults", file=sys.stderr, flush=True)
+    print(
+        f"{kind}: {count} cases in {elapsed_s:.0f} s, {len(faults)} faults",
+        file=sys.stderr,
+        flush=True,
+    )
     return Result(kind, count, elapsed_s, tuple(faults))
 
 

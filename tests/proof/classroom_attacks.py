@@ -37,7 +37,9 @@ _ORIGINS = ("http://evil.example", "null", "", "http://127.0.0.1:1", "file://")
 class Target:
     """A class of two under attack: Ada works, Bob attacks."""
 
-    def __init__(self, client: ClientSession, port: int, folder: Path, tokens: Mapping[str, str]) -> None:
+    def __init__(
+        self, client: ClientSession, port: int, folder: Path, tokens: Mapping[str, str]
+    ) -> None:
         self.client, self.port, self.folder, self.tokens = client, port, folder, tokens
         self.origin = f"http://127.0.0.1:{port}"
         self.ada: ClientWebSocketResponse
@@ -69,7 +71,9 @@ class Target:
             raise FaultError(f"her folder has {found}")
 
     async def socket(self, url: str, origin: str | None = None) -> ClientWebSocketResponse:
-        return await self.client.ws_connect(url, headers={"Origin": self.origin if origin is None else origin})
+        return await self.client.ws_connect(
+            url, headers={"Origin": self.origin if origin is None else origin}
+        )
 
     async def no_socket(self, url: str, origin: str | None = None) -> None:
         """Check that a socket is refused."""
@@ -84,7 +88,9 @@ class Target:
 
     async def refused(self, method: str, url: str, **headers: str) -> tuple[int, str]:
         """Check that a request is refused; return status and text."""
-        async with self.client.request(method, url, headers=headers, allow_redirects=False) as found:
+        async with self.client.request(
+            method, url, headers=headers, allow_redirects=False
+        ) as found:
             if found.status not in (400, 403, 404, 405):
                 raise FaultError(f"{method} {url} {headers}: {found.status}")
             return found.status, await found.text()
@@ -93,12 +99,22 @@ class Target:
 async def _wrong_secrets(target: Target) -> None:
     """Secrets that are almost those of somebody, or in another place."""
     for token in target.tokens.values():
-        for wrong in (token[:-1], f"{token}x", token.swapcase(), "", "%00", f"{token}%00", f"..%2f{token}"):
+        for wrong in (
+            token[:-1],
+            f"{token}x",
+            token.swapcase(),
+            "",
+            "%00",
+            f"{token}%00",
+            f"..%2f{token}",
+        ):
             for path in PATHS:
                 await target.refused("GET", f"{target.origin}/{wrong}/{path}")
             await target.no_socket(f"{target.origin}/{wrong}/ws")
         await target.refused("GET", f"{target.origin}/?token={token}")
-        await target.refused("GET", f"{target.origin}/x/", Authorization=f"Bearer {token}", Cookie=f"token={token}")
+        await target.refused(
+            "GET", f"{target.origin}/x/", Authorization=f"Bearer {token}", Cookie=f"token={token}"
+        )
 
 
 async def _stolen_elsewhere(target: Target) -> None:
@@ -108,7 +124,9 @@ async def _stolen_elsewhere(target: Target) -> None:
             await target.no_socket(target.of(who, "ws"), origin)
         await target.no_socket(target.of("tutor", "view/Ada/ws"), origin)
         for what in ("end", "file?name=x.py"):
-            await target.refused("POST", target.of("Ada", f"sessions/{target.session}/{what}"), Origin=origin)
+            await target.refused(
+                "POST", target.of("Ada", f"sessions/{target.session}/{what}"), Origin=origin
+            )
         for what in ("end", "link"):
             await target.refused("POST", target.of("tutor", f"students/Ada/{what}"), Origin=origin)
     for path in PATHS:
@@ -118,7 +136,14 @@ async def _stolen_elsewhere(target: Target) -> None:
 
 async def _tutors_page(target: Target) -> None:
     """A student asks for what is the tutor's, and is told no more than a stranger."""
-    for path in ("students", "view/Ada/", "view/Ada", "view/Bob/", "view/Ada/page/view.js", "view/Eve/"):
+    for path in (
+        "students",
+        "view/Ada/",
+        "view/Ada",
+        "view/Bob/",
+        "view/Ada/page/view.js",
+        "view/Eve/",
+    ):
         stranger = await target.refused("GET", f"{target.origin}/wrong/{path}")
         if await target.refused("GET", target.of("Bob", path)) != stranger:
             raise FaultError(f"{path}: a student is told more than a stranger")
@@ -126,14 +151,18 @@ async def _tutors_page(target: Target) -> None:
         await target.no_socket(target.of("Bob", path))
     for who in ("Ada", "Bob"):
         for what in ("end", "link"):
-            await target.refused("POST", target.of(who, f"students/Bob/{what}"), Origin=target.origin)
+            await target.refused(
+                "POST", target.of(who, f"students/Bob/{what}"), Origin=target.origin
+            )
 
 
 async def _another_session(target: Target) -> None:
     """A student who has learned the number of another's session."""
     for what in ("end", "file?name=x.py"):
         for who in ("Bob", "tutor"):
-            await target.refused("POST", target.of(who, f"sessions/{target.session}/{what}"), Origin=target.origin)
+            await target.refused(
+                "POST", target.of(who, f"sessions/{target.session}/{what}"), Origin=target.origin
+            )
     socket = await target.socket(target.of("Bob", f"ws?session={target.session}"))
     message = await socket.receive(PATIENCE_S)
     if message.type is not WSMsgType.CLOSE:
@@ -155,10 +184,23 @@ async def _another_download(target: Target) -> None:
 
 async def _paths(target: Target) -> None:
     """Paths that lead out of what a page loads, or to the folders of the class."""
-    for path in ("../../etc/passwd", "..%2f..%2fetc/passwd", "page/%2e%2e/classroom.py", "page/..%2f..%2fclassroom.py",
-                 "static//etc/passwd", "view/..%2f..%2f.links.json/", "view/Ada/page/%2e%2e/%2e%2e/classroom.py",
-                 "view/%2e%2e/", "view/%2fetc%2fpasswd/", "view/.links.json/", "view/.homes/", "view/%00/",
-                 "view/Ada/../../.links.json", "view/Ada%2f..%2fBob/", "page/.links.json"):  # fmt: skip
+    for path in (
+        "../../etc/passwd",
+        "..%2f..%2fetc/passwd",
+        "page/%2e%2e/classroom.py",
+        "page/..%2f..%2fclassroom.py",
+        "static//etc/passwd",
+        "view/..%2f..%2f.links.json/",
+        "view/Ada/page/%2e%2e/%2e%2e/classroom.py",
+        "view/%2e%2e/",
+        "view/%2fetc%2fpasswd/",
+        "view/.links.json/",
+        "view/.homes/",
+        "view/%00/",
+        "view/Ada/../../.links.json",
+        "view/Ada%2f..%2fBob/",
+        "page/.links.json",
+    ):
         for who in ("Bob", "tutor"):
             rest = f"HTTP/1.1\r\nHost: 127.0.0.1:{target.port}\r\nConnection: close\r\n\r\n"
             reader, writer = await asyncio.open_connection("127.0.0.1", target.port)
@@ -195,8 +237,20 @@ async def _who_looks_on(target: Target) -> None:
     """Who may only look on sends keys, the mouse, sizes, actions and nonsense."""
     view = await target.socket(target.of("tutor", "view/Ada/ws"))
     sent: object
-    for sent in (["stdin", "rm"], ["stdin", "\x1b[<0;5;5M"], ["resize", {"width": 3, "height": 3}], ["act", "run"],
-                 ["focus"], ["blur"], ["ping", "1"], ["session", "x"], [], {}, "stdin", 5):  # fmt: skip
+    for sent in (
+        ["stdin", "rm"],
+        ["stdin", "\x1b[<0;5;5M"],
+        ["resize", {"width": 3, "height": 3}],
+        ["act", "run"],
+        ["focus"],
+        ["blur"],
+        ["ping", "1"],
+        ["session", "x"],
+        [],
+        {},
+        "stdin",
+        5,
+    ):
         await view.send_json(sent)
     for text in ("", "[", "\x00", "[" * 10_000):
         await view.send_str(text)
@@ -220,7 +274,10 @@ async def _framing(target: Target) -> None:
         async with target.client.get(target.of(who, path)) as found:
             if "frame-ancestors 'none'" not in found.headers["Content-Security-Policy"]:
                 raise FaultError(f"{path} may be framed")
-            if "Access-Control-Allow-Origin" in found.headers or found.headers["Cache-Control"] != "no-store":
+            if (
+                "Access-Control-Allow-Origin" in found.headers
+                or found.headers["Cache-Control"] != "no-store"
+            ):
                 raise FaultError(f"{path} may be read or kept: {found.headers}")
             text = await found.text()
             if any(token in text for name, token in target.tokens.items() if name != who):
@@ -250,11 +307,17 @@ async def _attack(name: str) -> None:
         stack.callback(os.close, links.lock_fd)
         limits = ServerLimits(2, VisitLimits(PATIENCE_S, PATIENCE_S))
         classroom = Classroom(
-            links, "127.0.0.1", lambda one: (stand_in(), Place(one.folder, {})), limits, reports.append
+            links,
+            "127.0.0.1",
+            lambda one: (stand_in(), Place(one.folder, {})),
+            limits,
+            reports.append,
         )
         port = await stack.enter_async_context(listening(classroom, "127.0.0.1", 0))
         client = await stack.enter_async_context(ClientSession())
-        tokens = {"tutor": links.tutor} | {student.name: student.token for student in links.students}
+        tokens = {"tutor": links.tutor} | {
+            student.name: student.token for student in links.students
+        }
         target = Target(client, port, folder, tokens)
         await target.begin()
         await ATTACKS[name](target)

@@ -60,8 +60,14 @@ class Client:
     def app(self) -> None:
         """Run a program as the app does, pause and step it, look at it while it runs, and read what is stored."""
         random = self._random
-        options = RunOptions(live=True, speed=random.choice([0.0, 1.0, 4.0]), start_paused=random.random() < 0.3)
-        run = start_run(Program("app.py", PROGRAM), build_run_spec(Settings({"seed": random.randrange(9)})), options)
+        options = RunOptions(
+            live=True, speed=random.choice([0.0, 1.0, 4.0]), start_paused=random.random() < 0.3
+        )
+        run = start_run(
+            Program("app.py", PROGRAM),
+            build_run_spec(Settings({"seed": random.randrange(9)})),
+            options,
+        )
         try:
             note(MADE, run.run_id, run.number)
             was_held = False
@@ -88,7 +94,18 @@ class Client:
         """Run a program with several seeds, and keep the runs."""
         out = f"batch-{self._random.getrandbits(32)}.csv"
         Path("batch.py").write_text(PROGRAM)
-        words = ["batch", "batch.py", "--seeds", "0..2", "--jobs", "1", "--keep", "all", "--out", out]
+        words = [
+            "batch",
+            "batch.py",
+            "--seeds",
+            "0..2",
+            "--jobs",
+            "1",
+            "--keep",
+            "all",
+            "--out",
+            out,
+        ]
         check_said(words, codes=(0,))
         if len(Path(out).read_text().splitlines()) != 4:
             raise FaultError(f"a batch wrote {Path(out).read_text()!r}")
@@ -98,7 +115,9 @@ class Client:
         found = listed()
         for row in self._random.sample(found, min(3, len(found))):
             check_recording(row["id"])
-            words = self._random.choice(["runs show", "runs show --json", "log summary", "log bands", "log export"])
+            words = self._random.choice(
+                ["runs show", "runs show --json", "log summary", "log bands", "log export"]
+            )
             more = ["--out", "x.csv"] if words == "log export" else []
             # A run without samples has nothing to analyse.
             if words.startswith("log ") and not row["samples"]:
@@ -125,7 +144,9 @@ class Client:
         if done.code:
             is_wrong = row["end"] != Unended.RUNNING or "is still running" not in done.err
             if "cannot be removed" in done.err or (is_wrong and was_there and is_complete(run_id)):
-                raise FaultError(f"tuisim runs {command} {run_id}, listed as {row['end']}: {done.err}")
+                raise FaultError(
+                    f"tuisim runs {command} {run_id}, listed as {row['end']}: {done.err}"
+                )
         elif command == "compact":
             check_recording(run_id)
         elif folder_of(run_id).exists():
@@ -153,7 +174,16 @@ class Client:
 
     def killer(self) -> None:
         """Kill an app with its run, which must end, and must not be taken for a running one for ever."""
-        words = [sys.executable, "-m", __spec__.name, _VICTIM, "", "1", "inf", str(self._patience_s)]
+        words = [
+            sys.executable,
+            "-m",
+            __spec__.name,
+            _VICTIM,
+            "",
+            "1",
+            "inf",
+            str(self._patience_s),
+        ]
         with subprocess.Popen(words, stdout=subprocess.PIPE, text=True) as victim:
             assert victim.stdout is not None
             run_id = victim.stdout.readline().strip()
@@ -170,7 +200,9 @@ class Client:
 
     def victim(self) -> None:
         """Start a run, print its id as soon as its program runs, and wait to be killed."""
-        run: RunHandle = start_run(Program("victim.py", _LONG), build_run_spec(Settings()), RunOptions(live=True))
+        run: RunHandle = start_run(
+            Program("victim.py", _LONG), build_run_spec(Settings()), RunOptions(live=True)
+        )
         while not run.output.new_rows():
             run.wait_for_event(0.05)
             if [event for event in run.pump() if run.ended is not None]:

@@ -39,8 +39,21 @@ class Scale:
 
 
 SCALES: Mapping[str, Scale] = {
-    "some": Scale({"app": 2, "batch": 1, "analyser": 1, "remover": 1, "rerunner": 1, "tagger": 1, "killer": 1}, 4),
-    "full": Scale({"app": 20, "batch": 5, "analyser": 5, "remover": 1, "tagger": 1}, 1 << 30, 600.0),
+    "some": Scale(
+        {
+            "app": 2,
+            "batch": 1,
+            "analyser": 1,
+            "remover": 1,
+            "rerunner": 1,
+            "tagger": 1,
+            "killer": 1,
+        },
+        4,
+    ),
+    "full": Scale(
+        {"app": 20, "batch": 5, "analyser": 5, "remover": 1, "tagger": 1}, 1 << 30, 600.0
+    ),
 }
 """`full` runs only by its name."""
 
@@ -62,7 +75,12 @@ def _start(role: str, place: Path, home: Path, *words: object) -> _Started:
     environment = {**os.environ, "PYTHONPATH": str(ROOT), "TUISIM_HOME": str(home)}
     log = (place / "log").open("w+")
     command = [sys.executable, "-m", "tests.proof.client", role, *map(str, words)]
-    return _Started(role, place, log, subprocess.Popen(command, cwd=place, env=environment, stdout=log, stderr=log))
+    return _Started(
+        role,
+        place,
+        log,
+        subprocess.Popen(command, cwd=place, env=environment, stdout=log, stderr=log),
+    )
 
 
 @cache
@@ -70,7 +88,9 @@ def _alone_s() -> float:
     """Return the seconds that an app takes alone to start, and to run one program."""
     with tempfile.TemporaryDirectory(prefix="tuisim-proof-alone-") as folder:
         start_s = time.monotonic()
-        client = _start("app", Path(folder, "app"), Path(folder, "home"), "alone", 1, math.inf, PATIENCE_S)
+        client = _start(
+            "app", Path(folder, "app"), Path(folder, "home"), "alone", 1, math.inf, PATIENCE_S
+        )
         with client.log, client.process:
             if client.process.wait(PATIENCE_S):
                 raise FaultError(f"one app alone: {client.said()}")
@@ -92,11 +112,15 @@ def _check_ends(clients: Sequence[_Started], patience_s: float) -> None:
         if (now_done := _rounds(clients) if busy else done) > done:
             done, give_up = now_done, time.monotonic() + patience_s
         if time.monotonic() > give_up:
-            raise FaultError(f"no client has finished a round for {patience_s:.0f} s: {[one.role for one in left]}")
+            raise FaultError(
+                f"no client has finished a round for {patience_s:.0f} s: {[one.role for one in left]}"
+            )
         for client in [one for one in left if one.process.poll() is not None]:
             left.remove(client)
             if client.process.returncode or client.said():
-                raise FaultError(f"{client.role}: exit code {client.process.returncode}: {client.said()}")
+                raise FaultError(
+                    f"{client.role}: exit code {client.process.returncode}: {client.said()}"
+                )
         time.sleep(0.02)
 
 

@@ -41,7 +41,9 @@ def said(words: Sequence[str], on_terminal: bool = False) -> Said:
     return Said(code, out.getvalue(), err.getvalue())
 
 
-def check_said(words: Sequence[str], codes: Sequence[int] = (0, 1, 2), on_terminal: bool = False) -> Said:
+def check_said(
+    words: Sequence[str], codes: Sequence[int] = (0, 1, 2), on_terminal: bool = False
+) -> Said:
     """Run a command; a fault is a mistake of ours, an error without a clear line, or an escape to the terminal."""
     found = said(words, on_terminal)
     call = f"tuisim {' '.join(words)}"
@@ -53,7 +55,9 @@ def check_said(words: Sequence[str], codes: Sequence[int] = (0, 1, 2), on_termin
     if found.code == 2 and not lines:
         raise FaultError(f"{call}: exit code 2 without a word")
     if max(map(len, lines), default=0) > 2000 or len(lines) > 40:
-        raise FaultError(f"{call}: an error of {len(lines)} lines, {len(found.err)} characters: {found.err[:500]!r}")
+        raise FaultError(
+            f"{call}: an error of {len(lines)} lines, {len(found.err)} characters: {found.err[:500]!r}"
+        )
     for name, text in (("stdout", found.out), ("stderr", found.err)):
         if on_terminal:
             text = _COLORS.sub("", text)

@@ -120,12 +120,19 @@ def samples() -> Path:
         run.rename(run.with_name("packed" if (run / "telemetry.bin.packed").exists() else "plain"))
     for kind, name in (("robots", "Explorer"), ("obstacles", "Square_posts")):
         (folder / f"{kind}.toml").write_text(_done([kind, name]))
-    (folder / "profile.toml").write_text("\n".join(profile_lines(replace(PROFILES["ev3"], name="own"))))
+    (folder / "profile.toml").write_text(
+        "\n".join(profile_lines(replace(PROFILES["ev3"], name="own")))
+    )
     save_world(
-        build_run_spec(Settings({"background": "Grey_bands", "obstacles": "Wall", "pen.width_mm": 3})),
+        build_run_spec(
+            Settings({"background": "Grey_bands", "obstacles": "Wall", "pen.width_mm": 3})
+        ),
         folder / "world.toml",
     )
-    for source, name in ((examples()[0], "goals.toml"), (shipped_paths()["band-values"], "lesson.md")):
+    for source, name in (
+        (examples()[0], "goals.toml"),
+        (shipped_paths()["band-values"], "lesson.md"),
+    ):
         shutil.copy(source, folder / name)
     for name, text in _TEXTS.items():
         (folder / name).write_text(text)
@@ -221,8 +228,19 @@ class Format:
 
 
 _LOG = _tells("log summary FILE", "log bands FILE --json", "log export FILE --out out.csv")
-_SHOWN = ("runs show RUN", "log summary RUN", "log export RUN --telemetry --out out.csv", "runs list")
-_USED = ("log report RUN", "log plot RUN", "runs rerun RUN", "runs picture RUN --out out.png", "runs compact RUN")
+_SHOWN = (
+    "runs show RUN",
+    "log summary RUN",
+    "log export RUN --telemetry --out out.csv",
+    "runs list",
+)
+_USED = (
+    "log report RUN",
+    "log plot RUN",
+    "runs rerun RUN",
+    "runs picture RUN --out out.png",
+    "runs compact RUN",
+)
 FORMATS: Mapping[str, Format] = {
     "csv": Format("log.csv", _LOG, Syntax.CSV, is_slow=True),
     "jsonl": Format("log.jsonl", _LOG, Syntax.ROWS, is_slow=True),
@@ -236,24 +254,49 @@ FORMATS: Mapping[str, Format] = {
     "goals": Format("goals.toml", _reads(lambda path: load_task(Path(path)))),
     "config": Format("config.toml", _home(load_config, config_file)),
     "lesson": Format("lesson.md", _reads(load_lesson), Syntax.FRONT),
-    "notebook": Format("notebook.ipynb", _reads(lambda path: notebook_programs(Path(path))), Syntax.JSON),
-    "progress": Format(
-        "progress.json", _home(load_progress, lambda: home_folder() / "lessons/progress.json"), Syntax.JSON
+    "notebook": Format(
+        "notebook.ipynb", _reads(lambda path: notebook_programs(Path(path))), Syntax.JSON
     ),
-    "preferences": Format("preferences.json", _home(lambda: preference("theme"), preferences_file), Syntax.JSON),
+    "progress": Format(
+        "progress.json",
+        _home(load_progress, lambda: home_folder() / "lessons/progress.json"),
+        Syntax.JSON,
+    ),
+    "preferences": Format(
+        "preferences.json", _home(lambda: preference("theme"), preferences_file), Syntax.JSON
+    ),
     "layout": Format("preferences.json", _home(_layout, preferences_file), Syntax.JSON),
-    "breaks": Format("breaks.json", _home(lambda: debugger.load_kept("program.py"), _breaks), Syntax.JSON),
-    "draft": Format("draft.json", _home(lambda: text_file.find_draft("program.py"), _draft), Syntax.JSON),
+    "breaks": Format(
+        "breaks.json", _home(lambda: debugger.load_kept("program.py"), _breaks), Syntax.JSON
+    ),
+    "draft": Format(
+        "draft.json", _home(lambda: text_file.find_draft("program.py"), _draft), Syntax.JSON
+    ),
     "notes": Format("notes.jsonl", _reads(lambda path: read_notes(Path(path))), Syntax.ROWS),
     "marks": Format("marks.jsonl", _reads(_journal), Syntax.ROWS),
-    "actions": Format(ACTIONS_FILE, _reads(lambda path: read_actions(Path(path).parent)), Syntax.ROWS),
-    "modules": Format(MODULES_FILE, _reads(lambda path: read_modules(Path(path).parent)), Syntax.ROWS),
+    "actions": Format(
+        ACTIONS_FILE, _reads(lambda path: read_actions(Path(path).parent)), Syntax.ROWS
+    ),
+    "modules": Format(
+        MODULES_FILE, _reads(lambda path: read_modules(Path(path).parent)), Syntax.ROWS
+    ),
     "reads": Format(READS_FILE, _reads(lambda path: read_reads(Path(path).parent)), Syntax.ROWS),
     "stop": Format(STOP_FILE, _reads(lambda path: read_stop_tick(Path(path).parent)), Syntax.JSON),
-    "telemetry": Format("home/runs/plain/telemetry.bin", _run("plain", *_SHOWN), Syntax.FIELDS, is_slow=True),
-    "output": Format("home/runs/plain/output.bin", _run("plain", *_SHOWN), Syntax.FIELDS, is_slow=True),
-    "run": Format("home/runs/plain/run.json", _run("plain", *_SHOWN, *_USED), Syntax.JSON, is_slow=True),
-    "packed": Format("home/runs/packed/telemetry.bin.packed", _run("packed", *_SHOWN), Syntax.FIELDS, is_slow=True),
+    "telemetry": Format(
+        "home/runs/plain/telemetry.bin", _run("plain", *_SHOWN), Syntax.FIELDS, is_slow=True
+    ),
+    "output": Format(
+        "home/runs/plain/output.bin", _run("plain", *_SHOWN), Syntax.FIELDS, is_slow=True
+    ),
+    "run": Format(
+        "home/runs/plain/run.json", _run("plain", *_SHOWN, *_USED), Syntax.JSON, is_slow=True
+    ),
+    "packed": Format(
+        "home/runs/packed/telemetry.bin.packed",
+        _run("packed", *_SHOWN),
+        Syntax.FIELDS,
+        is_slow=True,
+    ),
     "catalogue": Format("home/runs.db", _catalogue, Syntax.SQLITE, is_slow=True),
 }
 _TURNS = 5
@@ -297,5 +340,8 @@ def _check(name: str, folder: Path) -> None:
 
 
 DAMAGE = Kind(
-    "files of every format with changed bits, pieces, tokens, types of values and texts", _names, _check, limit_s=20.0
+    "files of every format with changed bits, pieces, tokens, types of values and texts",
+    _names,
+    _check,
+    limit_s=20.0,
 )

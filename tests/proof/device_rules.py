@@ -65,8 +65,13 @@ READINGS: Mapping[str, Reading] = {
     "sonar.other_sensor_present": Reading("US-LISTEN", 0, 1),
 }
 COLORS: Mapping[str, tuple[float, float]] = {
-    "BLACK": (0, 0), "RED": (1, 0), "GREEN": (0, 1), "AMBER": (1, 1), "ORANGE": (1, 0.5), "YELLOW": (0.1, 1),
-}  # fmt: skip
+    "BLACK": (0, 0),
+    "RED": (1, 0),
+    "GREEN": (0, 1),
+    "AMBER": (1, 1),
+    "ORANGE": (1, 0.5),
+    "YELLOW": (0.1, 1),
+}
 
 
 def _sensor(random: Random) -> list[Ask]:
@@ -74,7 +79,10 @@ def _sensor(random: Random) -> list[Ask]:
     name = text.partition(".")[0]
     return [
         Ask(text, (reading.low, reading.high)),
-        Ask(f"[{name}.mode, {name}.num_values, {name}.decimals]", [reading.mode, reading.values, reading.decimals]),
+        Ask(
+            f"[{name}.mode, {name}.num_values, {name}.decimals]",
+            [reading.mode, reading.values, reading.decimals],
+        ),
         Ask(f"{name}.mode in {name}.modes", True),
         # What is read is the raw number, scaled.
         Ask(f"abs({text} - {name}.value(0) / 10 ** {name}.decimals) <= 1", True),
@@ -111,8 +119,14 @@ def _lights(random: Random) -> list[Ask]:
                 [],
                 [Ask("leds.all_off()"), Ask("lit('LEFT') + lit('RIGHT')", [0, 0, 0, 0])],
                 [Ask("leds.reset()"), Ask("lit('LEFT') + lit('RIGHT')", [0, 255, 0, 255])],
-                [Ask(f"leds.set_color({group!r}, 'PINK')", error="AssertionError"), Ask(f"lit({group!r})", lit)],
-                [Ask("leds.set_color('TOP', 'RED')", error="AssertionError"), Ask(f"lit({group!r})", lit)],
+                [
+                    Ask(f"leds.set_color({group!r}, 'PINK')", error="AssertionError"),
+                    Ask(f"lit({group!r})", lit),
+                ],
+                [
+                    Ask("leds.set_color('TOP', 'RED')", error="AssertionError"),
+                    Ask(f"lit({group!r})", lit),
+                ],
             ]
         ),
     ]
@@ -148,7 +162,16 @@ def _power(_random: Random) -> list[Ask]:
     ]
 
 
-_CHOICES: tuple[Callable[[Random], list[Ask]], ...] = (_sensor, _sensor, _mode, _gyro, _lights, _lights, _sound, _power)
+_CHOICES: tuple[Callable[[Random], list[Ask]], ...] = (
+    _sensor,
+    _sensor,
+    _mode,
+    _gyro,
+    _lights,
+    _lights,
+    _sound,
+    _power,
+)
 
 
 def check_devices(random: Random, printed: Callable[[str], list[str]]) -> None:
@@ -157,6 +180,10 @@ def check_devices(random: Random, printed: Callable[[str], list[str]]) -> None:
     lines = printed(_SETUP.format(texts=[ask.text for ask in asked]))
     for ask, line in zip(asked, lines, strict=True):
         error, value = json.loads(line)
-        is_right = ask.value[0] <= value <= ask.value[1] if isinstance(ask.value, tuple) else value == ask.value
+        is_right = (
+            ask.value[0] <= value <= ask.value[1]
+            if isinstance(ask.value, tuple)
+            else value == ask.value
+        )
         if error != ask.error or (not error and not is_right):
             raise FaultError(f"{ask.text}: {error or value}, not {ask.error or ask.value}")

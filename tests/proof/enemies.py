@@ -43,22 +43,55 @@ for link in links:
         try: os.write(int(os.path.basename(link)), SENT)
         except OSError: pass
 """
-_FILES = ("telemetry.bin", "output.bin", "run.json", "lock", "telemetry.bin.packed", "output.bin.packed", *SIDE_FILES)
+_FILES = (
+    "telemetry.bin",
+    "output.bin",
+    "run.json",
+    "lock",
+    "telemetry.bin.packed",
+    "output.bin.packed",
+    *SIDE_FILES,
+)
 _READ = ("telemetry.bin", "output.bin", ACTIONS_FILE, STOP_FILE)
 """What the host reads of each run at its end."""
 _PLACED = (
-    "os.mkfifo(name)", "os.mkdir(name)", "os.symlink('/dev/zero', name)", "os.symlink('/dev/null', name)",
-    "os.symlink(name, name)", "os.symlink('/nowhere', name)", "os.symlink('run.json', name)",
+    "os.mkfifo(name)",
+    "os.mkdir(name)",
+    "os.symlink('/dev/zero', name)",
+    "os.symlink('/dev/null', name)",
+    "os.symlink(name, name)",
+    "os.symlink('/nowhere', name)",
+    "os.symlink('run.json', name)",
     "os.symlink('FIELD/secret.txt', name)",
-    "open(name, 'wb').truncate(1 << 36)", "open(name, 'wb').write(os.urandom(999))", "open(name, 'w').write('null')",
-    "__import__('socket').socket(1).bind(name)", "os.link(run + '/output.bin', name)", "pass",
-)  # fmt: skip
+    "open(name, 'wb').truncate(1 << 36)",
+    "open(name, 'wb').write(os.urandom(999))",
+    "open(name, 'w').write('null')",
+    "__import__('socket').socket(1).bind(name)",
+    "os.link(run + '/output.bin', name)",
+    "pass",
+)
 """What comes in place of a file."""
 _DAY = len("20260102")
 _TICK_NS = 10_000_000
 """Of the profile that `hosted` uses."""
 _LARGE, _FAR = 1 << 24, 1e9
-_NUMBERS: tuple[Any, ...] = (0, -1, 1, 10**9, -(10**9), 1 << 52, 1 << 63, 10**40, 0.5, 1e300, None, "x", True, [], {})
+_NUMBERS: tuple[Any, ...] = (
+    0,
+    -1,
+    1,
+    10**9,
+    -(10**9),
+    1 << 52,
+    1 << 63,
+    10**40,
+    0.5,
+    1e300,
+    None,
+    "x",
+    True,
+    [],
+    {},
+)
 
 
 def _event(random: Random) -> str:
@@ -67,14 +100,22 @@ def _event(random: Random) -> str:
     fields: dict[str, Any] = {name: random.choice(_NUMBERS) for name in kind.__dataclass_fields__}
     if "end" in fields:
         fields |= {"end": random.choice(list(End)).value, "tick": random.choice((0, 0, *_NUMBERS))}
-        fields |= {"time_ns": random.choice((0, 0, *_NUMBERS)), "summary": "x" * random.choice((0, 9, 10**5))}
-        fields = {name: value for name, value in fields.items() if name in ("end", "tick", "time_ns") or
-                  random.random() < 0.4}  # fmt: skip
+        fields |= {
+            "time_ns": random.choice((0, 0, *_NUMBERS)),
+            "summary": "x" * random.choice((0, 9, 10**5)),
+        }
+        fields = {
+            name: value
+            for name, value in fields.items()
+            if name in ("end", "tick", "time_ns") or random.random() < 0.4
+        }
     return json.dumps({"kind": kind.kind, **fields})
 
 
 def _bytes(random: Random) -> str:
-    sent = random.choice((b"hello\n", b"\n" * 9, b"{}\n", b"\xff\0", b"x" * 70_000, random.randbytes(300)))
+    sent = random.choice(
+        (b"hello\n", b"\n" * 9, b"{}\n", b"\xff\0", b"x" * 70_000, random.randbytes(300))
+    )
     return _PIPES.replace("SENT", repr(sent))
 
 
@@ -91,16 +132,29 @@ def _ends(random: Random) -> str:
     for name in random.sample(("exit_code", "error_line", "summary"), random.choice((0, 1))):
         fields[name] = "x" if name == "summary" else random.choice((0, 1, 1 << 63, -(10**20)))
     sent = _PIPES.replace("SENT", repr(f"{json.dumps(fields)}\n".encode()))
-    return "\n".join((random.choice(("", _DRIVE)), sent, random.choice(("libc._exit(0)", "os.kill(os.getpid(), 9)"))))
+    return "\n".join(
+        (
+            random.choice(("", _DRIVE)),
+            sent,
+            random.choice(("libc._exit(0)", "os.kill(os.getpid(), 9)")),
+        )
+    )
 
 
 def _recording(random: Random) -> str:
     """Write somewhere into the recordings, or truncate them."""
     lines = [f"data = {random.choice((random.randbytes(64), bytes(64), b'%c' % 255 * 16))!r}"]
     for _ in range(random.randint(1, 4)):
-        name, at = random.choice(_FILES[:2]), random.choice((0, 8, 16, 24, 64, 72, 128, random.randrange(4000)))
+        name, at = (
+            random.choice(_FILES[:2]),
+            random.choice((0, 8, 16, 24, 64, 72, 128, random.randrange(4000))),
+        )
         do = random.choice(
-            ("f.seek(AT); f.write(data)", "f.seek(16); f.write(struct.pack('<Q', AT))", "f.truncate(AT)")
+            (
+                "f.seek(AT); f.write(data)",
+                "f.seek(16); f.write(struct.pack('<Q', AT))",
+                "f.truncate(AT)",
+            )
         )
         lines.append(f"with open(run + '/{name}', 'r+b') as f: {do.replace('AT', str(at))}")
     return "\n".join(lines)
@@ -109,7 +163,11 @@ def _recording(random: Random) -> str:
 def _places(random: Random) -> str:
     lines = []
     for name in random.sample(_FILES, random.randint(1, 4)):
-        lines += [f"name = run + '/{name}'", "if os.path.lexists(name): os.unlink(name)", random.choice(_PLACED)]
+        lines += [
+            f"name = run + '/{name}'",
+            "if os.path.lexists(name): os.unlink(name)",
+            random.choice(_PLACED),
+        ]
     return "\n".join(lines)
 
 
@@ -118,7 +176,12 @@ def _folder(random: Random) -> str:
     deep = "os.chdir(run)\nfor _ in range(1100):\n    os.mkdir('d' * 20)\n    os.chdir('d' * 20)"
     beside = f"name = run + '/x'\n{random.choice(_PLACED)}"
     return random.choice(
-        (whole, deep, beside, f"os.rename(run, run + '.moved'){random.choice(('', chr(10) + 'os.mkdir(run)'))}")
+        (
+            whole,
+            deep,
+            beside,
+            f"os.rename(run, run + '.moved'){random.choice(('', chr(10) + 'os.mkdir(run)'))}",
+        )
     )
 
 
@@ -126,9 +189,18 @@ def _caches(random: Random) -> str:
     """Overwrite the prepared mat, which is mapped, with something of its size; or replace it."""
     lines = ["mapped = {line.split()[-1] for line in open('/proc/self/maps')}"]
     lines += ["mats = [name for name in mapped if name.endswith(('.sums', '.rgb'))]", "assert mats"]
-    do = random.choice(("f.write(bytes(size))", "f.seek(size // 2); f.write(bytes(64))", "f.truncate(size // 2)"))
-    return "\n".join((*lines, "for name in mats:", "    size = os.path.getsize(name)",
-                      "    os.chmod(name, 0o600)", f"    with open(name, 'r+b') as f: {do}"))  # fmt: skip
+    do = random.choice(
+        ("f.write(bytes(size))", "f.seek(size // 2); f.write(bytes(64))", "f.truncate(size // 2)")
+    )
+    return "\n".join(
+        (
+            *lines,
+            "for name in mats:",
+            "    size = os.path.getsize(name)",
+            "    os.chmod(name, 0o600)",
+            f"    with open(name, 'r+b') as f: {do}",
+        )
+    )
 
 
 def _forged(random: Random) -> str:
@@ -271,7 +343,11 @@ def _check_secret(folder: Path) -> None:
         for path in (os.path.join(place, name) for name in names):
             # False of a path that is too long, as of any other that nobody can read.
             is_plain = os.path.isfile(path) and not os.path.islink(path)
-            if is_plain and os.path.getsize(path) < _LARGE and SECRET.encode() in Path(path).read_bytes():
+            if (
+                is_plain
+                and os.path.getsize(path) < _LARGE
+                and SECRET.encode() in Path(path).read_bytes()
+            ):
                 raise FaultError(f"what a link leads to was copied into {path}")
 
 
@@ -322,11 +398,18 @@ def _is_regular(path: Path) -> bool:
 
 def _check_recording(run: StoredRun) -> None:
     """Check that a run that is not falsified has what only the simulation writes."""
-    odd = [path.name for path in map(run.folder.joinpath, _READ) if os.path.lexists(path) and not _is_regular(path)]
+    odd = [
+        path.name
+        for path in map(run.folder.joinpath, _READ)
+        if os.path.lexists(path) and not _is_regular(path)
+    ]
     if odd:
         raise FaultError(f"a run that is {run.state} has something else in place of {odd}")
     records = run.telemetry.array()
-    sizes = [np.abs(records[name]).max(initial=0.0) for name in ("x_mm", "y_mm", "heading_deg", "left_position_deg")]
+    sizes = [
+        np.abs(records[name]).max(initial=0.0)
+        for name in ("x_mm", "y_mm", "heading_deg", "left_position_deg")
+    ]
     if records["tick"].tolist() != list(range(len(records))) or not max(sizes) < _FAR:
         raise FaultError(f"a run that is {run.state} holds other records: {records[:3]}")
     if run.state == End.FINISHED and run.end is not None and run.end.tick != len(records) - 1:

@@ -40,8 +40,14 @@ def _cases_of(operation: str) -> Iterator[str]:
     found = calls_in(operation, ",".join(ERRORS))
     for call, errors in ERRORS.items():
         same = [one for one in found if one.name == call]
-        numbers = [number for number, one in enumerate(same, 1) if one.is_in_folder or call not in _OF_PYTHON]
-        yield from (f"{operation}:{call}:{error}:{number}" for number in numbers for error in errors)
+        numbers = [
+            number
+            for number, one in enumerate(same, 1)
+            if one.is_in_folder or call not in _OF_PYTHON
+        ]
+        yield from (
+            f"{operation}:{call}:{error}:{number}" for number in numbers for error in errors
+        )
 
 
 def _check(case: str, folder: Path) -> None:
@@ -50,7 +56,9 @@ def _check(case: str, folder: Path) -> None:
     place = prepared(folder, "place")
     # The processes of a batch write to pipes only, which have room and no errors; a lost message is waited for.
     in_children = not (call == "write" and OPERATIONS[name].again)
-    ended = failing_at(OPERATIONS[name].words, place, call, error, int(number), in_children=in_children)
+    ended = failing_at(
+        OPERATIONS[name].words, place, call, error, int(number), in_children=in_children
+    )
     if "ImportError" in ended.err or "ModuleNotFoundError" in ended.err:
         # The call that failed was one of Python's own, which may come in another order.
         return
@@ -60,10 +68,18 @@ def _check(case: str, folder: Path) -> None:
     if ended.code < 0:
         raise FaultError(f"ended by signal {-ended.code}: {ended.err}")
     # Only where the call was one that writes to the terminal, or to the pipe of a run, which has no errors.
-    if call != "write" and any(sign in ended.err + ended.out for sign in ("tuisim: cannot write:", "lost sys.")):
-        raise FaultError(f"an error that nobody handled, and that names no file: {ended.err}{ended.out}")
+    if call != "write" and any(
+        sign in ended.err + ended.out for sign in ("tuisim: cannot write:", "lost sys.")
+    ):
+        raise FaultError(
+            f"an error that nobody handled, and that names no file: {ended.err}{ended.out}"
+        )
     # A batch prints why runs have failed as a result.
-    if ended.code and not (ended.err + ended.out).strip() and not (call == "write" and error != "EINTR"):
+    if (
+        ended.code
+        and not (ended.err + ended.out).strip()
+        and not (call == "write" and error != "EINTR")
+    ):
         raise FaultError(f"exit code {ended.code} without a word")
     check_after(name, place, ended)
 

@@ -25,7 +25,17 @@ from tests.proof.kind import FaultError, Kind, home, in_time
 _HONEST = ("ada", "zoe")
 _WORDS = "mark goals.toml class --seeds 0 --jobs 1 --no-isolate --export marks.csv --export marks.html --feedback told"
 _SPARSE_BYTES = 1 << 36
-_FORMULAS = ("=1+1", "+A1", "-A1", "@SUM(1)", "\t=1", "\uff1d1", "'=1", "<img src=x onerror=probe()>", "\x1b]0;x\x07")
+_FORMULAS = (
+    "=1+1",
+    "+A1",
+    "-A1",
+    "@SUM(1)",
+    "\t=1",
+    "\uff1d1",
+    "'=1",
+    "<img src=x onerror=probe()>",
+    "\x1b]0;x\x07",
+)
 _FORMULA = re.compile("[ \\f\\v]*[=+@\uff1d\uff0b\uff0d\uff20-](?!\\d*[.]?\\d+$)|[\\t\\r]")
 """How a cell begins that a spreadsheet computes, and that is no number."""
 Rows = Mapping[str, Mapping[str, str]]
@@ -33,7 +43,16 @@ Rows = Mapping[str, Mapping[str, str]]
 
 def _links(random: Random, place: Path) -> None:
     """Hand in a link that leads out of the student's folder."""
-    targets = ("../ada.py", "../zoe", "..", "../../secret.txt", "/proc/self/environ", "/dev/zero", "/etc", "/nowhere")
+    targets = (
+        "../ada.py",
+        "../zoe",
+        "..",
+        "../../secret.txt",
+        "/proc/self/environ",
+        "/dev/zero",
+        "/etc",
+        "/nowhere",
+    )
     form = random.choice(("main", "file", "folder", "inside"))
     target = random.choice(targets)
     if form == "file":
@@ -75,11 +94,17 @@ def _names(random: Random, place: Path) -> None:
     inside = place.with_name(random.choice((name, f"eve{name}", *_FORMULAS)).replace("/", ""))
     inside.mkdir()
     text = random.choice(_FORMULAS)
-    line = random.choice((f"raise ValueError({text!r})", f"print({text!r})", f"raise SystemExit({text!r})", "1 / 0"))
+    line = random.choice(
+        (f"raise ValueError({text!r})", f"print({text!r})", f"raise SystemExit({text!r})", "1 / 0")
+    )
     (inside / "main.py").write_text(_program(line))
 
 
-SORTS: Mapping[str, Callable[[Random, Path], None]] = {"links": _links, "devices": _devices, "names": _names}
+SORTS: Mapping[str, Callable[[Random, Path], None]] = {
+    "links": _links,
+    "devices": _devices,
+    "names": _names,
+}
 REFUSED = ("links", "devices")
 """Sorts that are refused, in the student's row."""
 
@@ -108,7 +133,11 @@ def _marked() -> tuple[Rows, str]:
 @cache
 def _wanted() -> Rows:
     """Return the rows of the honest ones alone."""
-    with TemporaryDirectory(prefix="tuisim-proof-") as folder, chdir(folder), home(Path(folder, "home")):
+    with (
+        TemporaryDirectory(prefix="tuisim-proof-") as folder,
+        chdir(folder),
+        home(Path(folder, "home")),
+    ):
         _class(Path(folder))
         return _marked()[0]
 
@@ -119,7 +148,9 @@ class _Elements(HTMLParser):
     def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
         """Check an element."""
         # The page's own pictures, such as the map of misses, are in it.
-        is_fetched = tag == "img" and not (dict(attrs).get("src") or "").startswith("data:image/png;base64,")
+        is_fetched = tag == "img" and not (dict(attrs).get("src") or "").startswith(
+            "data:image/png;base64,"
+        )
         if is_fetched or any(name.startswith("on") for name, _ in attrs):
             raise FaultError(f"a page has the element {self.get_starttag_text()}")
 
@@ -128,7 +159,11 @@ def _written(folder: Path) -> Iterator[Path]:
     """Yield the files that a marking has written."""
     yield from (folder / "marks.csv", folder / "marks.html")
     for name in ("home", "told"):
-        yield from (path for path in (folder / name).rglob("*") if path.is_file() and path.suffix not in _LARGE)
+        yield from (
+            path
+            for path in (folder / name).rglob("*")
+            if path.is_file() and path.suffix not in _LARGE
+        )
 
 
 _LARGE = (".sums", ".rgb")

@@ -37,12 +37,24 @@ def run(words: Sequence[str], folder: Path, strace: Sequence[str] = ()) -> Ended
     command = [sys.executable, *words]
     if strace:
         command = [*_STRACE, *strace, *command]
-    environment = {**os.environ, "PYTHONPATH": str(ROOT), "PYTHONDONTWRITEBYTECODE": "1", "PYTHONHASHSEED": "0"}
+    environment = {
+        **os.environ,
+        "PYTHONPATH": str(ROOT),
+        "PYTHONDONTWRITEBYTECODE": "1",
+        "PYTHONHASHSEED": "0",
+    }
     try:
         done = subprocess.run(
-            command, cwd=folder, env=environment, stdin=subprocess.DEVNULL, capture_output=True, text=True,
-            errors="replace", timeout=PATIENCE_S, check=False,
-        )  # fmt: skip
+            command,
+            cwd=folder,
+            env=environment,
+            stdin=subprocess.DEVNULL,
+            capture_output=True,
+            text=True,
+            errors="replace",
+            timeout=PATIENCE_S,
+            check=False,
+        )
     except subprocess.TimeoutExpired as hung:
         raise FaultError(f"hangs: {hung.stderr!r}") from None
     return Ended(done.returncode, done.stdout, done.stderr)
@@ -60,10 +72,16 @@ class Call:
 def calls_of(words: Sequence[str], folder: Path, names: str) -> list[Call]:
     """Return the calls of the command's first process with these names, which are separated by commas, in order."""
     log = folder / "strace.log"
-    ended = run(words, folder, [*_AND_CHILDREN, "-e", f"trace={names}", "-e", "signal=none", "-o", str(log)])
+    ended = run(
+        words, folder, [*_AND_CHILDREN, "-e", f"trace={names}", "-e", "signal=none", "-o", str(log)]
+    )
     if ended.code:
         raise FaultError(f"the calls of {' '.join(words)} cannot be counted: {ended.err}")
-    found = [match for line in log.read_text(errors="replace").splitlines() if (match := _CALL.match(line))]
+    found = [
+        match
+        for line in log.read_text(errors="replace").splitlines()
+        if (match := _CALL.match(line))
+    ]
     log.unlink()
     return [
         Call(match["call"], str(folder) in _without_working_directory(match["rest"]))
@@ -87,12 +105,20 @@ def killed_at(words: Sequence[str], folder: Path, call: str, number: int) -> End
 
 
 def failing_at(
-    words: Sequence[str], folder: Path, call: str, error: str, number: int, *, in_children: bool = True
+    words: Sequence[str],
+    folder: Path,
+    call: str,
+    error: str,
+    number: int,
+    *,
+    in_children: bool = True,
 ) -> Ended:
     """Run a command of which a call fails: in each process, or in the first one only, the one of this number."""
     which = ["-e", f"trace={call}", "-e", f"inject={call}:error={error}:when={number}"]
     with tempfile.NamedTemporaryFile("r", errors="replace") as log:
-        ended = run(words, folder, [*(_AND_CHILDREN if in_children else ()), *which, "-o", log.name])
+        ended = run(
+            words, folder, [*(_AND_CHILDREN if in_children else ()), *which, "-o", log.name]
+        )
         failed = [line for line in log if line.rstrip().endswith("(INJECTED)")]
     # A call that waits, as only one on a pipe does, stands on two lines, and the second does not name it.
     of_pipes = (" EIO " in line and ("<pipe:[" in line or " resumed>" in line) for line in failed)

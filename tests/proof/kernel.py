@@ -56,7 +56,9 @@ _LOOK = Step("time.sleep(1)", lambda *_: "")
 Steps = Callable[[Random, TachoMotor], list[Step]]
 
 
-def _nothing(action: Callable[[TachoMotor], None]) -> Callable[[TachoMotor, Mapping[str, Any]], str]:
+def _nothing(
+    action: Callable[[TachoMotor], None],
+) -> Callable[[TachoMotor, Mapping[str, Any]], str]:
     def does(model: TachoMotor, _seen: Mapping[str, Any]) -> str:
         action(model)
         return ""
@@ -75,7 +77,9 @@ def _value(random: Random, name: str, model: TachoMotor) -> Any:
     low, high = RANGES.get(name, (-model.max_speed, model.max_speed))
     if random.random() < 0.2:
         return random.choice([low, high, low - 1, high + 1])
-    return random.choice([random.randint(max(low, -900), min(high, 900)), random.uniform(max(low, -99), 99)])
+    return random.choice(
+        [random.randint(max(low, -900), min(high, 900)), random.uniform(max(low, -99), 99)]
+    )
 
 
 def _any_setting(random: Random, model: TachoMotor) -> list[Step]:
@@ -145,17 +149,24 @@ def _ended(model: TachoMotor, seen: Mapping[str, Any]) -> str:
 
 def _meanwhile(random: Random, model: TachoMotor) -> list[Step]:
     """Return settings that must not change a move that goes on."""
-    names = random.sample(["speed_sp", "position_sp", "time_sp", "stop_action"], random.randint(0, 3))
+    names = random.sample(
+        ["speed_sp", "position_sp", "time_sp", "stop_action"], random.randint(0, 3)
+    )
     return [_setting(name, _value(random, name, model)) for name in names]
 
 
 def _to_position(random: Random, model: TachoMotor) -> list[Step]:
     relative = random.random() < 0.6
     chosen, words = _settings(random)
-    number = random.choice([0, 1, -1]) * relative or random.choice([-1, 1]) * random.randint(300, 900)
+    number = random.choice([0, 1, -1]) * relative or random.choice([-1, 1]) * random.randint(
+        300, 900
+    )
     chosen["position_sp"] = number
     call = "run_to_rel_pos" if relative else "run_to_abs_pos"
-    started = Step(f"m.{call}({words}, position_sp={number})", _commanded(chosen, lambda model: model.run_to(relative)))
+    started = Step(
+        f"m.{call}({words}, position_sp={number})",
+        _commanded(chosen, lambda model: model.run_to(relative)),
+    )
     if abs(number) < 2 or not relative:
         # It may end before it is looked at.
         text = f"{started.text}; time.sleep(300)"
@@ -202,9 +213,15 @@ def _direct(random: Random, _: TachoMotor) -> list[Step]:
     duties = [random.choice([-1, 1]) * random.randint(20, 100) for _ in range(2)]
     first = {"duty_cycle_sp": duties[0]}
     return [
-        Step(f"m.run_direct(duty_cycle_sp={duties[0]}); time.sleep(8)", _commanded(first, TachoMotor.run_direct)),
+        Step(
+            f"m.run_direct(duty_cycle_sp={duties[0]}); time.sleep(8)",
+            _commanded(first, TachoMotor.run_direct),
+        ),
         _LOOK,
-        Step(f"m.duty_cycle_sp = {duties[1]}; time.sleep(8)", lambda model, _: model.set("duty_cycle_sp", duties[1])),
+        Step(
+            f"m.duty_cycle_sp = {duties[1]}; time.sleep(8)",
+            lambda model, _: model.set("duty_cycle_sp", duties[1]),
+        ),
         _LOOK,
     ]
 
@@ -222,7 +239,9 @@ def _library_move(random: Random, model: TachoMotor) -> list[Step]:
     }
 
     def does(model: TachoMotor, seen: Mapping[str, Any]) -> str:
-        return _commanded(chosen, lambda model: model.run_to(relative))(model, seen) or _ended(model, seen)
+        return _commanded(chosen, lambda model: model.run_to(relative))(model, seen) or _ended(
+            model, seen
+        )
 
     return [Step(f"m.{call}({percent}, {degrees}, brake={brake})", does)]
 
@@ -246,11 +265,21 @@ def _library_error(random: Random, _: TachoMotor) -> list[Step]:
 
 
 CHOICES: tuple[Steps, ...] = (
-    _any_setting, _any_setting, _polarity, _position, _stop, _reset, _to_position, _to_position, _one_after_another,
+    _any_setting,
+    _any_setting,
+    _polarity,
+    _position,
+    _stop,
+    _reset,
+    _to_position,
+    _to_position,
+    _one_after_another,
     _timed,
     _forever,
-    _direct, _library_move, _library_error,
-)  # fmt: skip
+    _direct,
+    _library_move,
+    _library_error,
+)
 
 
 _BLOCKED = """\
@@ -285,7 +314,10 @@ def _check_blocked(random: Random) -> None:
         ramps = {name: random.choice([0, 0, 500]) for name in ("ramp_up_sp", "ramp_down_sp")}
         action = random.choice(WORDS["stop_action"])
         # The way back is free; the same command again begins anew, and meets the wall.
-        commands += [(command, {**settings, **ramps}, random.uniform(0.6, 1.0)), (command, {}, _ACROSS_S)]
+        commands += [
+            (command, {**settings, **ramps}, random.uniform(0.6, 1.0)),
+            (command, {}, _ACROSS_S),
+        ]
         commands += [("stop", {"stop_action": action}, 1.0)]
         wanted += [gone, there, ("holding",) if action == "hold" else ()]
     lines = printed(_BLOCKED.format(commands=json.dumps(commands)), solid=True)
@@ -293,8 +325,13 @@ def _check_blocked(random: Random) -> None:
         for state, position, speed in json.loads(line):
             # Of a ramp nothing is known here.
             if {*state} - {"ramping"} != {*words} or (words is not gone and speed):
-                told = [f"{name}({given}), {seconds:.1f} s" for name, given, seconds in commands[: number + 1][-4:]]
-                raise FaultError("\n".join([*told, f"state {state}, not {words}; {position=}, {speed=}"]))
+                told = [
+                    f"{name}({given}), {seconds:.1f} s"
+                    for name, given, seconds in commands[: number + 1][-4:]
+                ]
+                raise FaultError(
+                    "\n".join([*told, f"state {state}, not {words}; {position=}, {speed=}"])
+                )
 
 
 def _names(random: Random) -> Iterator[str]:
@@ -305,7 +342,10 @@ def _names(random: Random) -> Iterator[str]:
 def printed(text: str, solid: bool = False) -> list[str]:
     """Run a program under the profile of the brick, with walls that stop the robot or not; return what it printed."""
     robot = RobotSpec(extra_motors=(MotorSpec("outA", "medium"), MotorSpec("outD", "large")))
-    spec = replace(build_run_spec(Settings({"background": "Empty_Map", "profile": "ev3", "solid": solid})), robot=robot)
+    spec = replace(
+        build_run_spec(Settings({"background": "Empty_Map", "profile": "ev3", "solid": solid})),
+        robot=robot,
+    )
     process.warm_up()
     run = start_run(Program("program.py", text), spec, RunOptions(time_limit_s=1e6))
     try:
@@ -337,14 +377,21 @@ def _check(case: str, folder: Path) -> None:
 
 
 def _check_step(
-    model: TachoMotor, step: Step, error: str, seen: Mapping[str, Any], before: int, texts: list[str]
+    model: TachoMotor,
+    step: Step,
+    error: str,
+    seen: Mapping[str, Any],
+    before: int,
+    texts: list[str],
 ) -> None:
     def fault(what: str) -> FaultError:
         return FaultError("\n".join([*texts[-8:], what]))
 
     if (wanted := step.does(model, seen)) != error:
         raise fault(f"raises {error or 'nothing'}, not {wanted or 'nothing'}")
-    wrong = {name: (seen[name], value) for name, value in model.expected().items() if value != seen[name]}
+    wrong = {
+        name: (seen[name], value) for name, value in model.expected().items() if value != seen[name]
+    }
     if wrong:
         raise fault(f"(is, must be): {wrong}")
     if step is _LOOK and (seen["position"] - before) * model.rising <= 0:
@@ -355,4 +402,6 @@ def _check_step(
         model.near = 1.0 if "holding" in model.state.there else min(model.near, NEAR)
 
 
-KERNEL = Kind("the genuine library on our devices against models of the kernel's drivers", _names, _check)
+KERNEL = Kind(
+    "the genuine library on our devices against models of the kernel's drivers", _names, _check
+)

@@ -98,7 +98,9 @@ class _Watch:
         if is_large:
             error = TooLargeError(f"has grown by more than {MOST_GROWTH_MB} MB")
         if not self.found:
-            stacks = ("".join(traceback.format_stack(one)) for one in sys._current_frames().values())
+            stacks = (
+                "".join(traceback.format_stack(one)) for one in sys._current_frames().values()
+            )
             self.found = "\n".join((str(error), *stacks))
         raise error
 

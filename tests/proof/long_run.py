@@ -86,17 +86,29 @@ def _sample(start_s: float, app: int, program: int, run: RunInfo) -> Sample:
     folder = RunStore().folder(run.id)
     ticks = published_ticks(folder)
     return Sample(
-        time.monotonic() - start_s, ticks / TICK_HZ / 3600, _memory_mb(app), _descriptors(app), _memory_mb(program),
-        _descriptors(program), bytes_in(folder) / MB,
-    )  # fmt: skip
+        time.monotonic() - start_s,
+        ticks / TICK_HZ / 3600,
+        _memory_mb(app),
+        _descriptors(app),
+        _memory_mb(program),
+        _descriptors(program),
+        bytes_in(folder) / MB,
+    )
 
 
 def samples(hours: float, minutes: float) -> Iterator[Sample]:
     """Run the program in an app until the simulated hours or the minutes are over; yield samples."""
     with TemporaryDirectory(prefix="tuisim-proof-long-") as place, home(Path(place, "home")):
         Path(place, "drives.py").write_text(PROGRAM)
-        inherited = {name: value for name, value in os.environ.items() if name not in ("COLUMNS", "LINES")}
-        environment = {**inherited, "TERM": "xterm-256color", "LANG": "C.UTF-8", "PYTHONPATH": str(ROOT)}
+        inherited = {
+            name: value for name, value in os.environ.items() if name not in ("COLUMNS", "LINES")
+        }
+        environment = {
+            **inherited,
+            "TERM": "xterm-256color",
+            "LANG": "C.UTF-8",
+            "PYTHONPATH": str(ROOT),
+        }
         words = ["drives.py", "-b", "Grey_bands", "-R", "-c", "-D", "--speed", "max"]
         terminal = Terminal(words, Path(place), environment)
         try:
@@ -137,9 +149,19 @@ def grown(found: Sequence[Sample]) -> list[str]:
 def main(words: Sequence[str]) -> int:
     """Print and draw the samples; return 1 if something grows that must be flat."""
     parser = argparse.ArgumentParser(prog="python -m tests.proof.long_run", description=__doc__)
-    parser.add_argument("--hours", type=float, default=24.0, metavar="N", help="simulated (default: 24)")
-    parser.add_argument("--minutes", type=float, default=10.0, metavar="N", help="at most (default: 10)")
-    parser.add_argument("--out", type=Path, default=Path(), metavar="FOLDER", help="for long_run.csv and long_run.svg")
+    parser.add_argument(
+        "--hours", type=float, default=24.0, metavar="N", help="simulated (default: 24)"
+    )
+    parser.add_argument(
+        "--minutes", type=float, default=10.0, metavar="N", help="at most (default: 10)"
+    )
+    parser.add_argument(
+        "--out",
+        type=Path,
+        default=Path(),
+        metavar="FOLDER",
+        help="for long_run.csv and long_run.svg",
+    )
     arguments = parser.parse_args(words)
     names = [field.name for field in fields(Sample)]
     print(*(f"{name:>19}" for name in names))
@@ -154,10 +176,15 @@ def main(words: Sequence[str]) -> int:
             handle.flush()
             print(*(f"{value:19.2f}" for value in asdict(one).values()), flush=True)
     variables = [word for name in names[1:] for word in ("--variable", name)]
-    run_command(["log", "plot", str(table), "--facets", *variables, "--out", str(table.with_suffix(".svg"))])
+    run_command(
+        ["log", "plot", str(table), "--facets", *variables, "--out", str(table.with_suffix(".svg"))]
+    )
     wrong = grown(found)
     last = found[-1]
-    print("; ".join(wrong) or f"flat after {SETTLED:.0%} of {last.simulated_h:.1f} simulated hours, {last.time:.1f} s")
+    print(
+        "; ".join(wrong)
+        or f"flat after {SETTLED:.0%} of {last.simulated_h:.1f} simulated hours, {last.time:.1f} s"
+    )
     return int(bool(wrong))
 
 

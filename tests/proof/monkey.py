@@ -25,7 +25,20 @@ from tuisim.app.analyser.actions.keys import ACTIONS as LOG_ACTIONS
 from tuisim.lessons.catalogue import shipped_paths
 
 ROOT = Path(__file__).resolve().parent.parent.parent
-ARROWS = [*"ABCDHF", "1;2A", "1;2B", "1;2C", "1;2D", "1;5C", "1;5D", "1;3A", "1;3B", "1;5H", "1;5F", "Z"]
+ARROWS = [
+    *"ABCDHF",
+    "1;2A",
+    "1;2B",
+    "1;2C",
+    "1;2D",
+    "1;5C",
+    "1;5D",
+    "1;3A",
+    "1;3B",
+    "1;5H",
+    "1;5F",
+    "Z",
+]
 OTHERS = [2, 3, 5, 6, *range(11, 16), *range(17, 22), 23, 24]
 """Numbers of insert, delete, page up and down, f1 to f12."""
 NAMED = [
@@ -35,7 +48,13 @@ NAMED = [
     *(bytes([code]) for code in [*range(0x20), 0x7F] if code not in (0x11, 0x1A, 0x1B)),
 ]
 """What a terminal sends for keys without a character; ctrl+q and ctrl+z are pressed less often."""
-PRINTED = [chr(code) for code in range(33, 127) if chr(code) not in "q/"] + ["ä", "€", "漢", "é", "🤖"]
+PRINTED = [chr(code) for code in range(33, 127) if chr(code) not in "q/"] + [
+    "ä",
+    "€",
+    "漢",
+    "é",
+    "🤖",
+]
 """Without `q`, which ends the app, and without `/`: nobody types the names of other folders."""
 OFTEN = [
     b"\r",
@@ -56,11 +75,30 @@ OFTEN = [
     b"n",
     b"a",
 ]
-PASTES = ["12", "a\nb\tc\n", "x" * 3000, "program.py", "Colour", "\x00\x1b[31m", "print('A: 1')\n" * 200, "\udcff", ""]
+PASTES = [
+    "12",
+    "a\nb\tc\n",
+    "x" * 3000,
+    "program.py",
+    "Colour",
+    "\x00\x1b[31m",
+    "print('A: 1')\n" * 200,
+    "\udcff",
+    "",
+]
 ANSWERS = [
-    b"\x1b[?62;4c", b"\x1b[6;20;10t", b"\x1b_Gi=31;OK\x1b\\", b"\x1bP>|kitty(0.38)\x1b\\", b"\x1b[4;800;1200t",
-    b"\x1b[?2026;2$y", b"\x1b[I", b"\x1b[O", b"\x1b[?1u", b"\x1b]11;rgb:0000/0000/0000\x1b\\", b"\x1b[12;40R",
-]  # fmt: skip
+    b"\x1b[?62;4c",
+    b"\x1b[6;20;10t",
+    b"\x1b_Gi=31;OK\x1b\\",
+    b"\x1bP>|kitty(0.38)\x1b\\",
+    b"\x1b[4;800;1200t",
+    b"\x1b[?2026;2$y",
+    b"\x1b[I",
+    b"\x1b[O",
+    b"\x1b[?1u",
+    b"\x1b]11;rgb:0000/0000/0000\x1b\\",
+    b"\x1b[12;40R",
+]
 """What terminals send without a key."""
 THEN = [b"\x1b[3~", b"\x7f", b"\r", b" ", b"\x1b[A", b"\x1b[B", b"e", b"\t", b"\x1b[3~\x1b[3~"]
 """Keys that do something with what a key before has opened: in a list they remove, choose, mark, or edit."""
@@ -79,7 +117,9 @@ QUIET_S = 0.3
 
 
 def _app(random: Random) -> Sequence[str]:
-    opened = random.choice(([], ["program.py"], ["log_greys"], ["--run", "1"], *([name] for name in PROGRAMS)))
+    opened = random.choice(
+        ([], ["program.py"], ["log_greys"], ["--run", "1"], *([name] for name in PROGRAMS))
+    )
     speed = random.choice(([], ["--speed", "max"], ["--speed", "0.5"]))
     more = random.choice(([], ["-R"], ["-R"], ["-c", "-X"], ["-i", "-z", "-D"], ["-A", "-Z"]))
     # A stored run is not run again.
@@ -87,14 +127,21 @@ def _app(random: Random) -> Sequence[str]:
 
 
 def _analyser(random: Random) -> Sequence[str]:
-    return ["analyse", *random.choice((["1"], ["1", "2"], ["log.txt"], ["last", "--telemetry"], ["log.csv"]))]
+    return [
+        "analyse",
+        *random.choice((["1"], ["1", "2"], ["log.txt"], ["last", "--telemetry"], ["log.csv"])),
+    ]
 
 
 def _lesson(random: Random) -> Sequence[str]:
     return ["learn", random.choice(sorted(shipped_paths()))]
 
 
-SCREENS: Mapping[str, Callable[[Random], Sequence[str]]] = {"app": _app, "analyser": _analyser, "lesson": _lesson}
+SCREENS: Mapping[str, Callable[[Random], Sequence[str]]] = {
+    "app": _app,
+    "analyser": _analyser,
+    "lesson": _lesson,
+}
 
 
 def _keys_of(actions: Mapping[str, Action[Any, Any]]) -> list[bytes]:
@@ -103,7 +150,11 @@ def _keys_of(actions: Mapping[str, Action[Any, Any]]) -> list[bytes]:
     return [key.encode() for key in shown if key in PRINTED]
 
 
-OWN_KEYS = {"app": _keys_of(LAB_ACTIONS), "analyser": _keys_of(LOG_ACTIONS), "lesson": _keys_of(LAB_ACTIONS)}
+OWN_KEYS = {
+    "app": _keys_of(LAB_ACTIONS),
+    "analyser": _keys_of(LOG_ACTIONS),
+    "lesson": _keys_of(LAB_ACTIONS),
+}
 """The keys of each of `SCREENS`."""
 
 
@@ -117,14 +168,29 @@ class Monkey:
         suspends: Whether it suspends and stops the app.
     """
 
-    def __init__(self, terminal: Terminal, random: Random, own_keys: Sequence[bytes], suspends: bool) -> None:
-        self._terminal, self._random, self._own_keys, self._suspends = terminal, random, own_keys, suspends
+    def __init__(
+        self, terminal: Terminal, random: Random, own_keys: Sequence[bytes], suspends: bool
+    ) -> None:
+        self._terminal, self._random, self._own_keys, self._suspends = (
+            terminal,
+            random,
+            own_keys,
+            suspends,
+        )
         self.done: list[str] = []
 
     def act(self) -> None:
         """Do one thing."""
         weights = (50, 40, 12, 4, 2, 2, 10 * self._suspends)
-        acts = (self._type, self._use, self._point, self._resize, self._paste, self._answer, self._suspend)
+        acts = (
+            self._type,
+            self._use,
+            self._point,
+            self._resize,
+            self._paste,
+            self._answer,
+            self._suspend,
+        )
         what = self._random.choices(acts, weights)[0]()
         self.done.append(what)
         self._terminal.take(self._random.choice((0, 0, 0.005, 0.02, 0.05)))
@@ -162,7 +228,9 @@ class Monkey:
         some = b"\x1b[<35;%d;%dM" % (x, y)
         way = random.choice(("click", "click", "twice", "drag", "wheel", "half"))
         if way == "wheel":
-            return self._write(some + b"\x1b[<%d;%d;%dM" % (random.choice((64, 65, 68, 69, 80)), x, y) * 3)
+            return self._write(
+                some + b"\x1b[<%d;%d;%dM" % (random.choice((64, 65, 68, 69, 80)), x, y) * 3
+            )
         button = random.choice((0, 0, 0, 1, 2, 16))
         for _ in range(2 if way == "twice" else 1):
             some += b"\x1b[<%d;%d;%dM" % (button, x, y)
@@ -232,7 +300,9 @@ def _left_over(home: Path) -> dict[int, str]:
     for entry in Path("/proc").iterdir():
         try:
             if entry.name.isdigit() and mark in (entry / "environ").read_bytes():
-                found[int(entry.name)] = (entry / "cmdline").read_bytes().replace(b"\0", b" ").decode()
+                found[int(entry.name)] = (
+                    (entry / "cmdline").read_bytes().replace(b"\0", b" ").decode()
+                )
         except OSError:
             continue
     return found
@@ -267,14 +337,25 @@ def _started(screen: str, random: Random, folder: Path) -> tuple[Terminal, Path]
     place = prepared(folder, "place")
     for name, text in PROGRAMS.items():
         (place / name).write_text(text)
-    (place / "log.txt").write_text("".join(f"Colour: {100 - at}\nLeft: {at}\n" for at in range(100)))
+    (place / "log.txt").write_text(
+        "".join(f"Colour: {100 - at}\nLeft: {at}\n" for at in range(100))
+    )
     (place / "log.csv").write_text("time,red\n0,5\n1,6\n")
     for name in ("user", "tmp"):
         (folder / name).mkdir()
-    own = {"HOME": str(folder / "user"), "TMPDIR": str(folder / "tmp"), "TERM": "xterm-256color", "LANG": "C.UTF-8"}
-    inherited = {name: value for name, value in os.environ.items() if name not in ("COLUMNS", "LINES")}
+    own = {
+        "HOME": str(folder / "user"),
+        "TMPDIR": str(folder / "tmp"),
+        "TERM": "xterm-256color",
+        "LANG": "C.UTF-8",
+    }
+    inherited = {
+        name: value for name, value in os.environ.items() if name not in ("COLUMNS", "LINES")
+    }
     environment = {**inherited, **own, "PYTHONPATH": str(ROOT)}
-    return Terminal(SCREENS[screen](random), place, environment, forwards=random.random() < 0.7), place
+    return Terminal(
+        SCREENS[screen](random), place, environment, forwards=random.random() < 0.7
+    ), place
 
 
 def _lose(terminal: Terminal, suspended: bool) -> None:
@@ -295,10 +376,14 @@ def _lose(terminal: Terminal, suspended: bool) -> None:
 def _check_end(terminal: Terminal, loses: bool, is_left_by_escape: bool = False) -> None:
     codes = {129, -signal.SIGHUP} if loses else {0}
     # A key from before may be ending it: this mode is what it switches off first.
-    if is_left_by_escape or terminal.written.rfind(b"\x1b[?2004l") > terminal.written.rfind(b"\x1b[?2004h"):
+    if is_left_by_escape or terminal.written.rfind(b"\x1b[?2004l") > terminal.written.rfind(
+        b"\x1b[?2004h"
+    ):
         codes |= {0}
     if terminal.code not in codes:
-        raise FaultError(f"exit code {terminal.code}, not {codes}; the last was {terminal.written[-3000:].decode()!r}")
+        raise FaultError(
+            f"exit code {terminal.code}, not {codes}; the last was {terminal.written[-3000:].decode()!r}"
+        )
     if not loses:
         last = terminal.written.rpartition(b"\x1b[?1049l")[2]
         if any(word in last for word in (b"Traceback", b"Error", b"internal error")):
@@ -341,4 +426,6 @@ def _names(random: Random) -> Iterator[str]:
         yield f"{screen}:{random.getrandbits(32)}"
 
 
-MONKEY = Kind("keys, mouse, sizes, pastes, stops and hang-ups at random in a real terminal", _names, _check)
+MONKEY = Kind(
+    "keys, mouse, sizes, pastes, stops and hang-ups at random in a real terminal", _names, _check
+)

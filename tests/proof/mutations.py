@@ -7,13 +7,56 @@ from collections.abc import Callable, Sequence
 from random import Random
 
 ODD_BYTES = (
-    b"\0", b"\xff\xfe", b"\xef\xbb\xbf", b"\x1b[2J\x1b]0;x\x07", b"\n" * 50, b"\r", b"\x80", b'"', b"'", b"[" * 100_000,
-    b"{" * 300, b"9" * 500, b"1e999", b"nan", b"-inf", b"\xe2\x80\xae", b"../" * 9, b"<script>", b"\xed\xa0\x80",
-)  # fmt: skip
+    b"\0",
+    b"\xff\xfe",
+    b"\xef\xbb\xbf",
+    b"\x1b[2J\x1b]0;x\x07",
+    b"\n" * 50,
+    b"\r",
+    b"\x80",
+    b'"',
+    b"'",
+    b"[" * 100_000,
+    b"{" * 300,
+    b"9" * 500,
+    b"1e999",
+    b"nan",
+    b"-inf",
+    b"\xe2\x80\xae",
+    b"../" * 9,
+    b"<script>",
+    b"\xed\xa0\x80",
+)
 ODD_TOKENS = (
-    "", "0", "-0", "-1", "1e308", "-1e308", "nan", "inf", "9" * 30, "0x7fffffff", "true", "[]", "{}", '""', "null",
-    "[[[]]]", "'''", "2026-11-22", "\x00", "\x1b[31m", "/etc/passwd", "../../x", "a.b.c", "=", "[[x]]", "# ", "π", "💥",
-)  # fmt: skip
+    "",
+    "0",
+    "-0",
+    "-1",
+    "1e308",
+    "-1e308",
+    "nan",
+    "inf",
+    "9" * 30,
+    "0x7fffffff",
+    "true",
+    "[]",
+    "{}",
+    '""',
+    "null",
+    "[[[]]]",
+    "'''",
+    "2026-11-22",
+    "\x00",
+    "\x1b[31m",
+    "/etc/passwd",
+    "../../x",
+    "a.b.c",
+    "=",
+    "[[x]]",
+    "# ",
+    "π",
+    "💥",
+)
 _TOKEN = re.compile(r'"[^"\n]*"|[\w.+-]+|[^\w\s]')
 
 
@@ -52,7 +95,11 @@ def repeat(data: bytes, random: Random) -> bytes:
 def fill(data: bytes, random: Random) -> bytes:
     """Overwrite a piece with one byte."""
     piece = _slice(data, random)
-    return data[: piece.start] + random.choice((b"\0", b"\xff", b" ")) * len(data[piece]) + data[piece.stop :]
+    return (
+        data[: piece.start]
+        + random.choice((b"\0", b"\xff", b" ")) * len(data[piece])
+        + data[piece.stop :]
+    )
 
 
 def insert(data: bytes, random: Random) -> bytes:

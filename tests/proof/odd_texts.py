@@ -17,11 +17,25 @@ SORTS: tuple[tuple[str, ...], ...] = (
     ("home", "home/runs", "class", "program.py", "goals.toml", "world.toml", "log.csv"),
     ("last", "1", "2", "99", "0..3", "0", "00", "-0", "-1", "+1", " 1", "1_000", "0x10"),
     (
-        "nan", "inf", "-inf", "1e999", "1e-320", "9" * 30, "9" * 5000, "1e3", ".5", "5.", "1/2", "1,5", "1;2", "²",
-        "１２", "١",
+        "nan",
+        "inf",
+        "-inf",
+        "1e999",
+        "1e-320",
+        "9" * 30,
+        "9" * 5000,
+        "1e3",
+        ".5",
+        "5.",
+        "1/2",
+        "1,5",
+        "1;2",
+        "²",
+        "１２",
+        "١",
     ),
     ("true", "None", "null", "[]", "{}"),
-)  # fmt: skip
+)
 """Texts of which those of one sort break the same things."""
 
 

@@ -26,10 +26,50 @@ from tests.proof.odd_texts import odd_text
 _DEEP = "nested deeply"
 """Stands for a value that is nested more deeply than data structures of Python can be."""
 _VALUES: tuple[Any, ...] = (
-    None, True, False, 0, -1, 1.5, 10**30, 1e308, float("nan"), float("-inf"), "", "x", "0", "../x", [], {}, [[]], [{}],
-    [None], [1, "x"], ["x"], [0, 0], {"": {}}, {"x": None}, {"x": [1]}, _DEEP, _DEEP, _DEEP,
-)  # fmt: skip
-_CELLS = ("", "x", "nan", "-inf", "1e999", "0", "-1", "true", "1,5", "[]", "9" * 30, "2026-11-22", "0 days 00:00:01")
+    None,
+    True,
+    False,
+    0,
+    -1,
+    1.5,
+    10**30,
+    1e308,
+    float("nan"),
+    float("-inf"),
+    "",
+    "x",
+    "0",
+    "../x",
+    [],
+    {},
+    [[]],
+    [{}],
+    [None],
+    [1, "x"],
+    ["x"],
+    [0, 0],
+    {"": {}},
+    {"x": None},
+    {"x": [1]},
+    _DEEP,
+    _DEEP,
+    _DEEP,
+)
+_CELLS = (
+    "",
+    "x",
+    "nan",
+    "-inf",
+    "1e999",
+    "0",
+    "-1",
+    "true",
+    "1,5",
+    "[]",
+    "9" * 30,
+    "2026-11-22",
+    "0 days 00:00:01",
+)
 _FIELDS = tuple(
     [struct.pack("<I", number) for number in (0, 1, 0x7FFFFFFF, 0x80000000, 0xFFFFFFFF)]
     + [struct.pack("<d", number) for number in (0.0, -1.0, 1e308, float("nan"), float("inf"))]
@@ -83,7 +123,13 @@ _TOML_DEEP = ((b"[\n", b"]\n"),)
 
 def _places(data: Any, depth: int = 0) -> Iterator[tuple[int, Any, Any]]:
     """Yield depth, container and key of each value."""
-    pairs = data.items() if isinstance(data, dict) else enumerate(data) if isinstance(data, list) else ()
+    pairs = (
+        data.items()
+        if isinstance(data, dict)
+        else enumerate(data)
+        if isinstance(data, list)
+        else ()
+    )
     for key, value in pairs:
         yield depth, data, key
         yield from _places(value, depth + 1)
@@ -112,7 +158,9 @@ def _changed(data: Any, random: Random) -> Any:
 def _with_other_text(data: Any, random: Random) -> Any:
     """Return the data with another text, or the same if it has none."""
     root = [data]
-    if places := [(inside, key) for _, inside, key in _places(root) if isinstance(inside[key], str)]:
+    if places := [
+        (inside, key) for _, inside, key in _places(root) if isinstance(inside[key], str)
+    ]:
         inside, key = random.choice(places)
         inside[key] = odd_text(random)
     return root[0]
@@ -141,7 +189,9 @@ def _of_toml(value: Any) -> Any:
 
 def _toml(data: bytes, random: Random, change: _Change = _changed) -> bytes:
     found = _of_toml(change(tomllib.loads(data.decode()), random))
-    text = tomlkit.dumps(found if isinstance(found, dict) else {"x": "" if found is None else found})
+    text = tomlkit.dumps(
+        found if isinstance(found, dict) else {"x": "" if found is None else found}
+    )
     return text.encode(errors="surrogateescape")
 
 
@@ -165,13 +215,23 @@ def _csv(data: bytes, random: Random) -> bytes:
 def _odd_column(count: int, random: Random) -> pa.Array:
     value, kind = random.choice(
         (
-            (None, pa.null()), ("x", pa.string()), ("1.5", pa.large_string()), (True, pa.bool_()),
-            (b"\xff", pa.binary()), ([1, 2], pa.list_(pa.int8())), ({"x": 1}, pa.struct({"x": pa.int8()})),
-            (1, pa.timestamp("s", "UTC")), (1, pa.duration("ns")), (1, pa.date32()), (-(2**63), pa.int64()),
+            (None, pa.null()),
+            ("x", pa.string()),
+            ("1.5", pa.large_string()),
+            (True, pa.bool_()),
+            (b"\xff", pa.binary()),
+            ([1, 2], pa.list_(pa.int8())),
+            ({"x": 1}, pa.struct({"x": pa.int8()})),
+            (1, pa.timestamp("s", "UTC")),
+            (1, pa.duration("ns")),
+            (1, pa.date32()),
+            (-(2**63), pa.int64()),
             (2**64 - 1, pa.uint64()),
-            (float("nan"), pa.float16()), ("x", pa.dictionary(pa.int8(), pa.string())), (1, pa.time64("ns")),
+            (float("nan"), pa.float16()),
+            ("x", pa.dictionary(pa.int8(), pa.string())),
+            (1, pa.time64("ns")),
         )
-    )  # fmt: skip
+    )
     return pa.array([random.choice((value, value, None)) for _ in range(count)], kind)
 
 
@@ -184,18 +244,28 @@ def _changed_table(table: pa.Table, random: Random) -> pa.Table:
     at = random.randrange(table.num_columns)
     name = table.column_names[at]
     if random.random() < 0.2:
-        return table.remove_column(at) if random.random() < 0.5 else table.append_column(name, table.column(at))
-    return table.set_column(at, name, _odd_column(table.num_rows, random)).replace_schema_metadata(metadata)
+        return (
+            table.remove_column(at)
+            if random.random() < 0.5
+            else table.append_column(name, table.column(at))
+        )
+    return table.set_column(at, name, _odd_column(table.num_rows, random)).replace_schema_metadata(
+        metadata
+    )
 
 
 def _metadata(text: bytes, random: Random) -> bytes:
     # What a change before has nested deeply, Python cannot read either.
-    return text if _TOO_DEEP in text else _json(text, random).replace(f'"{_DEEP}"'.encode(), _TOO_DEEP)
+    return (
+        text if _TOO_DEEP in text else _json(text, random).replace(f'"{_DEEP}"'.encode(), _TOO_DEEP)
+    )
 
 
 def _parquet(data: bytes, random: Random) -> bytes:
     out = io.BytesIO()
-    pa.parquet.write_table(_changed_table(pa.parquet.ParquetFile(io.BytesIO(data)).read(), random), out)
+    pa.parquet.write_table(
+        _changed_table(pa.parquet.ParquetFile(io.BytesIO(data)).read(), random), out
+    )
     return out.getvalue()
 
 
@@ -213,11 +283,15 @@ def _sqlite(data: bytes, random: Random) -> bytes:
         place.write_bytes(data)
         connection = sqlite3.connect(place)
         names = [row[1] for row in connection.execute("PRAGMA table_info(runs)")]
-        value = random.choice((None, -1, 2**62, 1.5, float("inf"), "", "x", "1.5", "[]", "a,b", b"", b"\xff"))
+        value = random.choice(
+            (None, -1, 2**62, 1.5, float("inf"), "", "x", "1.5", "[]", "a,b", b"", b"\xff")
+        )
         every = random.choice(("", " WHERE number = (SELECT max(number) FROM runs)"))
         # Some values are refused in some columns.
         with suppress(sqlite3.IntegrityError):
-            connection.execute(f'UPDATE OR IGNORE runs SET "{random.choice(names)}" = ?{every}', (value,))
+            connection.execute(
+                f'UPDATE OR IGNORE runs SET "{random.choice(names)}" = ?{every}', (value,)
+            )
         connection.commit()
         connection.close()
         return place.read_bytes()

@@ -68,13 +68,23 @@ class Operation:
 OPERATIONS: Mapping[str, Operation] = {
     "run": Operation((*_COMMAND, "run", "program.py", "-b", "Grey_bands"), is_slow=True),
     "run-export": Operation(
-        (*_COMMAND, "run", "program.py", "-b", "Grey_bands", "--telemetry", "out.csv"), ("out.csv", "out.csv.json"),
-        exports_last=True, is_slow=True,
+        (*_COMMAND, "run", "program.py", "-b", "Grey_bands", "--telemetry", "out.csv"),
+        ("out.csv", "out.csv.json"),
+        exports_last=True,
+        is_slow=True,
     ),
-    "csv": Operation((*_COMMAND, "runs", "export", "1", "out.csv"), ("out.csv", "out.csv.json"), is_slow=True),
-    "parquet": Operation((*_COMMAND, "log", "export", "1", "--out", "out.parquet"), ("out.parquet",), is_slow=True),
-    "plot": Operation((*_COMMAND, "log", "plot", "1", "--out", "out.svg"), ("out.svg",), is_slow=True),
-    "picture": Operation((*_COMMAND, "runs", "picture", "1", "--out", "out.png"), ("out.png",), is_slow=True),
+    "csv": Operation(
+        (*_COMMAND, "runs", "export", "1", "out.csv"), ("out.csv", "out.csv.json"), is_slow=True
+    ),
+    "parquet": Operation(
+        (*_COMMAND, "log", "export", "1", "--out", "out.parquet"), ("out.parquet",), is_slow=True
+    ),
+    "plot": Operation(
+        (*_COMMAND, "log", "plot", "1", "--out", "out.svg"), ("out.svg",), is_slow=True
+    ),
+    "picture": Operation(
+        (*_COMMAND, "runs", "picture", "1", "--out", "out.png"), ("out.png",), is_slow=True
+    ),
     "compact": Operation((*_COMMAND, "runs", "compact", "1")),
     "remove": Operation((*_COMMAND, "runs", "rm", "1"), removes=True),
     "rerun": Operation((*_COMMAND, "runs", "rerun", "1")),
@@ -85,14 +95,19 @@ OPERATIONS: Mapping[str, Operation] = {
         ),
         is_list=True,
     ),
-    "guide": Operation((*_COMMAND, "guide", "--html", "out"), ("out/index.html", "out/keys.html"), is_slow=True),
+    "guide": Operation(
+        (*_COMMAND, "guide", "--html", "out"), ("out/index.html", "out/keys.html"), is_slow=True
+    ),
     "lesson": Operation((*_COMMAND, "learn", "new", "out.md"), ("out.md",)),
     "robot": Operation(
-        _call("from tuisim.config import robots; robots.save_robot(robots.load_robot('Small_Robot'), 'out.toml')"),
+        _call(
+            "from tuisim.config import robots; robots.save_robot(robots.load_robot('Small_Robot'), 'out.toml')"
+        ),
         ("out.toml",),
     ),
     "preference": Operation(
-        _call("from tuisim.config.preferences import keep; keep('theme', 'dark')"), ("home/preferences.json",)
+        _call("from tuisim.config.preferences import keep; keep('theme', 'dark')"),
+        ("home/preferences.json",),
     ),
     "setting": Operation(
         _call(
@@ -101,7 +116,9 @@ OPERATIONS: Mapping[str, Operation] = {
         ),
         ("home/config.toml",),
     ),
-    "draft": Operation(_call("from tuisim.app.editor.text_file import keep_draft; keep_draft('/x.py', 'print()')")),
+    "draft": Operation(
+        _call("from tuisim.app.editor.text_file import keep_draft; keep_draft('/x.py', 'print()')")
+    ),
     "notes": Operation(
         _call(
             "from tuisim.analysis import source; from pathlib import Path; "
@@ -117,18 +134,31 @@ OPERATIONS: Mapping[str, Operation] = {
         ("home/lessons/progress.json",),
     ),
     "batch": Operation(
-        (*_COMMAND, "batch", "program.py", "--seeds", "0..2", "--jobs", "1", "--out", "out.csv"), ("out.csv",),
-        again=("--resume",), is_slow=True,
+        (*_COMMAND, "batch", "program.py", "--seeds", "0..2", "--jobs", "1", "--out", "out.csv"),
+        ("out.csv",),
+        again=("--resume",),
+        is_slow=True,
     ),
     "mark": Operation(
         # A bubblewrap that is killed instead of tuisim leaves a process that waits for ever.
         (
-            *_COMMAND, "mark", "goals.toml", "class", "--seeds", "0..1", "--jobs", "1", "--export", "out.csv",
+            *_COMMAND,
+            "mark",
+            "goals.toml",
+            "class",
+            "--seeds",
+            "0..1",
+            "--jobs",
+            "1",
+            "--export",
+            "out.csv",
             "--no-isolate",
         ),
-        ("out.csv",), again=("--resume",), is_slow=True,
+        ("out.csv",),
+        again=("--resume",),
+        is_slow=True,
     ),
-}  # fmt: skip
+}
 """Every operation by name."""
 
 
@@ -140,7 +170,10 @@ def _sample() -> Path:
     (folder / "program.py").write_text(_PROGRAM)
     (folder / "class").mkdir()
     (folder / "class" / "anna.py").write_text(_PROGRAM)
-    shutil.copy(next(path for path in examples() if path.name.startswith("log_greys")), folder / "goals.toml")
+    shutil.copy(
+        next(path for path in examples() if path.name.startswith("log_greys")),
+        folder / "goals.toml",
+    )
     with home(folder / "home"):
         for _ in range(2):
             if (done := said(["run", str(folder / "program.py"), "-b", "Grey_bands"])).code:
@@ -183,8 +216,16 @@ def calls_in(name: str, names: str) -> list[Call]:
 def spread(cases_of: Callable[[str], Iterator[str]], random: Random) -> Iterator[str]:
     """Yield the cases of all operations in turns, those that are quick three times as often, and rare calls first."""
     names, used = random.sample(list(OPERATIONS), len(OPERATIONS)), Counter[str]()
-    quick = _in_turns([_rare_first(cases_of(name), used, random) for name in names if not OPERATIONS[name].is_slow])
-    slow = _in_turns([_rare_first(cases_of(name), used, random) for name in names if OPERATIONS[name].is_slow])
+    quick = _in_turns(
+        [
+            _rare_first(cases_of(name), used, random)
+            for name in names
+            if not OPERATIONS[name].is_slow
+        ]
+    )
+    slow = _in_turns(
+        [_rare_first(cases_of(name), used, random) for name in names if OPERATIONS[name].is_slow]
+    )
     return _in_turns([quick, quick, quick, slow])
 
 
@@ -256,8 +297,12 @@ def _effect(place: Path, out: str) -> dict[str, list[str]]:
     files = [str(path.relative_to(place)) for path in place.rglob("*") if path.is_file()]
     return {
         "stdout": out.splitlines(),
-        "files": sorted(_ID.sub("id", name.replace(first, "first")) for name in files if "/cache/" not in name),
-        "runs": sorted(f"{run['end']} {run['ticks']} {run['samples']}" for run in json.loads(listed.out)),
+        "files": sorted(
+            _ID.sub("id", name.replace(first, "first")) for name in files if "/cache/" not in name
+        ),
+        "runs": sorted(
+            f"{run['end']} {run['ticks']} {run['samples']}" for run in json.loads(listed.out)
+        ),
     }
 
 
@@ -265,7 +310,9 @@ def _telemetry(place: Path) -> bytes:
     """Return that of run 1, named by its folder: a run whose file cannot be read for a while gets another number."""
     with tempfile.TemporaryDirectory(dir=place) as folder:
         out = Path(folder, "telemetry.jsonl")
-        done = said(["runs", "export", str(place / "home" / "runs" / _first_run()), "--telemetry", str(out)])
+        done = said(
+            ["runs", "export", str(place / "home" / "runs" / _first_run()), "--telemetry", str(out)]
+        )
         if done.code:
             raise FaultError(f"run 1 cannot be exported: {done.err}")
         return out.read_bytes()
@@ -289,15 +336,24 @@ def check_after(name: str, place: Path, ended: Ended) -> None:
     found = contents(operation, place)
     # What could not be run is a row, too, until one goes on.
     for path, content in found.items() if not operation.again else ():
-        if content not in (sound.before[path], sound.after[path]) and content != _of_last_run(operation, path, place):
-            raise FaultError(f"{path} has neither the content before nor the one after: {(content or b'')[:200]!r}")
+        if content not in (sound.before[path], sound.after[path]) and content != _of_last_run(
+            operation, path, place
+        ):
+            raise FaultError(
+                f"{path} has neither the content before nor the one after: {(content or b'')[:200]!r}"
+            )
         if ended.code == 0 and content != sound.after[path]:
             raise FaultError(f"{path} was not written, but the exit code is 0: {ended.err}")
     for what, value in effect.items() if ended.code == 0 else ():
-        less, more = Counter(sound.effect[what]) - Counter(value), Counter(value) - Counter(sound.effect[what])
+        less, more = (
+            Counter(sound.effect[what]) - Counter(value),
+            Counter(value) - Counter(sound.effect[what]),
+        )
         # A temporary file that could not be removed may be left.
         if (less or (more and what != "files")) and (what == "files" or not operation.is_list):
-            raise FaultError(f"exit code 0, but {what} without {[*less]} and with {[*more]}: {ended.err}")
+            raise FaultError(
+                f"exit code 0, but {what} without {[*less]} and with {[*more]}: {ended.err}"
+            )
     is_gone = operation.removes and not (place / "home" / "runs" / _first_run()).exists()
     if not is_gone and _telemetry(place) != sound.telemetry:
         raise FaultError("the telemetry of run 1 has changed")

@@ -46,83 +46,141 @@ class Planted:
 
 PLANTED: tuple[Planted, ...] = (
     Planted(
-        "the end of a run is written through a link in place of run.json", "runs/run_folder.py",
+        "the end of a run is written through a link in place of run.json",
+        "runs/run_folder.py",
         "replacing(path, owner_only=True, follow_links=False)",
         "replacing(path, owner_only=True)",
-        "enemies", ("run:places:324",), "symbolic links",
+        "enemies",
+        ("run:places:324",),
+        "symbolic links",
     ),
     Planted(
-        "a file of a run may be a link to any other", "regular_file.py",
-        "0 if follow_links else os.O_NOFOLLOW", "0",
-        "enemies", ("run:places:366",), "was copied into",
+        "a file of a run may be a link to any other",
+        "regular_file.py",
+        "0 if follow_links else os.O_NOFOLLOW",
+        "0",
+        "enemies",
+        ("run:places:366",),
+        "was copied into",
     ),
     Planted(
-        "a pipe or a device is read as a file", "regular_file.py",
-        "if not stat.S_ISREG(os.fstat(descriptor).st_mode):", "if stat.S_ISDIR(os.fstat(descriptor).st_mode):",
-        "enemies", ("run:places:4050",), "something else in place of",
+        "a pipe or a device is read as a file",
+        "regular_file.py",
+        "if not stat.S_ISREG(os.fstat(descriptor).st_mode):",
+        "if stat.S_ISDIR(os.fstat(descriptor).st_mode):",
+        "enemies",
+        ("run:places:4050",),
+        "something else in place of",
     ),
     Planted(
-        "a program that is a link is marked", "marks/students.py",
-        "    if path.is_symlink():\n        return Student", "    if False:\n        return Student",
-        "class", ("links:0",), "not refused",
+        "a program that is a link is marked",
+        "marks/students.py",
+        "    if path.is_symlink():\n        return Student",
+        "    if False:\n        return Student",
+        "class",
+        ("links:0",),
+        "not refused",
     ),
     Planted(
-        "a link that leads out of a student's folder is no reason to refuse it", "marks/students.py",
-        "if not _real(path).is_relative_to(own):", "if False:",
-        "class", ("links:1",), "not refused",
+        "a link that leads out of a student's folder is no reason to refuse it",
+        "marks/students.py",
+        "if not _real(path).is_relative_to(own):",
+        "if False:",
+        "class",
+        ("links:1",),
+        "not refused",
     ),
     Planted(
-        "a formula in the sheet is written as it is", "logs/csv_cells.py",
-        "return f\"'{text}\" if _is_risky(text) and not _is_number(text) else text", "return text",
-        "class", ("names:12",), "formulas in the sheet",
+        "a formula in the sheet is written as it is",
+        "logs/csv_cells.py",
+        'return f"\'{text}" if _is_risky(text) and not _is_number(text) else text',
+        "return text",
+        "class",
+        ("names:12",),
+        "formulas in the sheet",
     ),
     Planted(
-        "what is no event ends the host", "runs/child/events.py",
-        "            self.falsified = str(error)\n            return None", "            raise",
-        "enemies", ("run:bytes:0", "batch:bytes:0", "mark:bytes:0"), "the others end with",
+        "what is no event ends the host",
+        "runs/child/events.py",
+        "            self.falsified = str(error)\n            return None",
+        "            raise",
+        "enemies",
+        ("run:bytes:0", "batch:bytes:0", "mark:bytes:0"),
+        "the others end with",
     ),
     Planted(
-        "an event may have any number", "runs/child/events.py",
-        "if not _is_sound(asdict(event)):", "if False:",
-        "enemies", ("run:ends:91",), "error_line is",
+        "an event may have any number",
+        "runs/child/events.py",
+        "if not _is_sound(asdict(event)):",
+        "if False:",
+        "enemies",
+        ("run:ends:91",),
+        "error_line is",
     ),
     Planted(
-        "an end is believed that the recording does not have", "runs/handle.py",
-        "if is_whole and end is not None and end.tick != ticks - 1:", "if False:",
-        "enemies", ("batch:ends:35",), "ticks ends at",
+        "an end is believed that the recording does not have",
+        "runs/handle.py",
+        "if is_whole and end is not None and end.tick != ticks - 1:",
+        "if False:",
+        "enemies",
+        ("batch:ends:35",),
+        "ticks ends at",
     ),
     Planted(
-        "records are not checked", "runs/views.py",
-        "        if are_all(part, begin, end):\n            return end", "        return end",
-        "enemies", ("mark:recording:3",), "other records",
+        "records are not checked",
+        "runs/views.py",
+        "        if are_all(part, begin, end):\n            return end",
+        "        return end",
+        "enemies",
+        ("mark:recording:3",),
+        "other records",
     ),
     Planted(
-        "run.json is taken from the run folder, not from what was started", "runs/store.py",
-        "write_run_file(run.folder, {**run.data, ", "write_run_file(run.folder, {**read_run_file(run.folder), ",
-        "enemies", ("notebook:forged:0",), "is not what was started",
+        "run.json is taken from the run folder, not from what was started",
+        "runs/store.py",
+        "write_run_file(run.folder, {**run.data, ",
+        "write_run_file(run.folder, {**read_run_file(run.folder), ",
+        "enemies",
+        ("notebook:forged:0",),
+        "is not what was started",
     ),
     Planted(
-        "a program inherits the host's end of a pipe", "runs/child/process.py",
+        "a program inherits the host's end of a pipe",
+        "runs/child/process.py",
         "inherited = (command_read, event_write, lifeline_read, lock_fd)",
         "inherited = (command_read, event_write, lifeline_read, lock_fd, command_fd)",
-        "enemies", ("app:descriptors:0",), "descriptors of others",
+        "enemies",
+        ("app:descriptors:0",),
+        "descriptors of others",
     ),
     Planted(
-        "a mat in the cache is trusted although it was written to", "config/mat_cache.py",
-        "if _checksum(stream.fileno()) != checksum:", "if False:",
-        "enemies", ("run:caches:4",), "the others end with",
+        "a mat in the cache is trusted although it was written to",
+        "config/mat_cache.py",
+        "if _checksum(stream.fileno()) != checksum:",
+        "if False:",
+        "enemies",
+        ("run:caches:4",),
+        "the others end with",
     ),
     Planted(
-        "an isolated program may write to what it reads", "runs/child/isolation.py",
-        '"--ro-bind-try"', '"--bind-try"',
-        "enemies", ("isolated:its mat:0",), "no limit has ended it",
+        "an isolated program may write to what it reads",
+        "runs/child/isolation.py",
+        '"--ro-bind-try"',
+        '"--bind-try"',
+        "enemies",
+        ("isolated:its mat:0",),
+        "no limit has ended it",
     ),
     Planted(
-        "an isolated program may have any number of files", "runs/handle.py",
-        "        if self._quota is not None and not self._exceeded:", "        if False:",
-        "enemies", ("isolated:many files, and an end:0",), "no limit has ended it",
+        "an isolated program may have any number of files",
+        "runs/handle.py",
+        "        if self._quota is not None and not self._exceeded:",
+        "        if False:",
+        "enemies",
+        ("isolated:many files, and an end:0",),
+        "no limit has ended it",
     ),
-)  # fmt: skip
+)
 _FAULTS = """\
 import json, sys
 from tests.proof.kind import fault_of
@@ -145,8 +203,13 @@ def faults(kind: str, cases: Sequence[str], root: Path = ROOT) -> list[str]:
     """Return what cases show of the package in a folder, empty for each that shows nothing."""
     done = subprocess.run(
         [sys.executable, "-c", _FAULTS, kind, *cases],
-        cwd=root, stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=PATIENCE_S * len(cases), check=True,
-    )  # fmt: skip
+        cwd=root,
+        stdin=subprocess.DEVNULL,
+        capture_output=True,
+        text=True,
+        timeout=PATIENCE_S * len(cases),
+        check=True,
+    )
     return list(json.loads(done.stdout.splitlines()[-1]))
 
 
@@ -156,7 +219,11 @@ def missed(fault: Planted) -> list[str]:
         plant(fault, Path(folder))
         texts = faults(fault.kind, fault.cases, Path(folder))
     pairs = zip(fault.cases, texts, strict=True)
-    return [f"{fault.kind} --case {case}: {text[-500:]}" for case, text in pairs if fault.shows not in text]
+    return [
+        f"{fault.kind} --case {case}: {text[-500:]}"
+        for case, text in pairs
+        if fault.shows not in text
+    ]
 
 
 def main() -> int:
@@ -171,7 +238,12 @@ def main() -> int:
         left = missed(fault)
         wrong += left
         took_s = time.monotonic() - start_s
-        print(f"{fault.about:<72} {fault.kind:<8} {len(fault.cases):>5} {took_s:>7.1f}", *left, sep="\n  ", flush=True)
+        print(
+            f"{fault.about:<72} {fault.kind:<8} {len(fault.cases):>5} {took_s:>7.1f}",
+            *left,
+            sep="\n  ",
+            flush=True,
+        )
     print(f"{len(PLANTED)} faults, {len(wrong)} cases show none", *wrong, sep="\n")
     return int(bool(wrong))
 

@@ -62,7 +62,9 @@ class Seen:
                 f"{name}: {len(self.ticks)} bytes of ticks that were seen are not those of {len(now.ticks)}"
             )
         if now.rows[: len(self.rows)] != self.rows:
-            raise FaultError(f"{name}: rows that were seen have changed: {self.rows[-3:]} of {len(self.rows)}")
+            raise FaultError(
+                f"{name}: rows that were seen have changed: {self.rows[-3:]} of {len(self.rows)}"
+            )
 
 
 class RunModel:
@@ -126,7 +128,9 @@ class RunModel:
         events: list[Message] = []
         while not ready() and run.ended is None:
             if time.monotonic() > give_up:
-                raise FaultError(f"run {run.number}: what was waited for never came, only {events[-3:]}")
+                raise FaultError(
+                    f"run {run.number}: what was waited for never came, only {events[-3:]}"
+                )
             run.wait_for_event(0.01)
             events += run.pump()
         return events
@@ -173,7 +177,9 @@ class RunModel:
             other.wait(PATIENCE_S)
             found = same(run, other.stored())
         if not found.same:
-            raise FaultError(f"run {run.number} ({run.state}) and its rerun differ: {found.tick or found.output}")
+            raise FaultError(
+                f"run {run.number} ({run.state}) and its rerun differ: {found.tick or found.output}"
+            )
 
     def end(self) -> None:
         """Stop all runs, and run them again."""

@@ -90,7 +90,16 @@ print(input('again? '))
 )
 """Each does the same each time."""
 SUFFIXES = (".csv", ".jsonl", ".parquet", ".arrow")
-BREAKS = ("5", "3", "9 if x > 500", "x_mm > 1100", "time 0.5", "sample A < 50", "print matches 1", "left_color changes")
+BREAKS = (
+    "5",
+    "3",
+    "9 if x > 500",
+    "x_mm > 1100",
+    "time 0.5",
+    "sample A < 50",
+    "print matches 1",
+    "left_color changes",
+)
 MOST_LIVE, MOST_TICKS = 2, 3000
 
 
@@ -114,12 +123,21 @@ def _run(model: RunModel, random: Random) -> None:
         model.live[min(model.live)].stop()
         model.pump(model.live[min(model.live)], lambda: False)
         model.check_all()
-    program = Program("program.py", random.choice(PROGRAMS), prelude="preloaded", working_directory=str(model.folder))
+    program = Program(
+        "program.py",
+        random.choice(PROGRAMS),
+        prelude="preloaded",
+        working_directory=str(model.folder),
+    )
     options = RunOptions(
-        live=True, speed=random.choice((0.0, 1.0, 8.0)), start_paused=random.random() < 0.5, time_limit_s=20.0,
-        answers=random.choice(((), ("Ada",), ("Ada", "Bo"))), asks_user=random.random() < 0.5,
+        live=True,
+        speed=random.choice((0.0, 1.0, 8.0)),
+        start_paused=random.random() < 0.5,
+        time_limit_s=20.0,
+        answers=random.choice(((), ("Ada",), ("Ada", "Bo"))),
+        asks_user=random.random() < 0.5,
         breaks=tuple(random.sample(BREAKS, random.choice((0, 0, 1)))),
-    )  # fmt: skip
+    )
     model.start(program, spec_of(random), options)
 
 
@@ -142,7 +160,9 @@ def _step(model: RunModel, random: Random) -> None:
     run.send(StepTicks(ticks))
     model.pump(run, lambda: run.paused or run.waiting_for_input is not None)
     if run.paused and run.telemetry.count > before + ticks:
-        raise FaultError(f"run {run.number}: {run.telemetry.count - before} ticks were stepped, not {ticks}")
+        raise FaultError(
+            f"run {run.number}: {run.telemetry.count - before} ticks were stepped, not {ticks}"
+        )
 
 
 def _step_line(model: RunModel, random: Random) -> None:
@@ -186,7 +206,9 @@ def _break(model: RunModel, random: Random) -> None:
 
 def _shown(model: RunModel, run: RunHandle) -> tuple[object, ...]:
     found = [
-        one for one in model.ask(run, Inspected, Inspect(("x", "1 / 0", "len(dir())"))) if isinstance(one, Inspected)
+        one
+        for one in model.ask(run, Inspected, Inspect(("x", "1 / 0", "len(dir())")))
+        if isinstance(one, Inspected)
     ]
     if not found:
         raise FaultError(f"run {run.number}: nothing was shown of the variables: {run.ended}")
@@ -196,7 +218,9 @@ def _shown(model: RunModel, run: RunHandle) -> tuple[object, ...]:
 
 
 def _watch(model: RunModel, random: Random) -> None:
-    if (run := model.one_paused(random)) and (first := _shown(model, run)) != (second := _shown(model, run)):
+    if (run := model.one_paused(random)) and (first := _shown(model, run)) != (
+        second := _shown(model, run)
+    ):
         raise FaultError(f"run {run.number}: an instant was shown as {first}, then as {second}")
 
 
@@ -211,7 +235,9 @@ def _back(model: RunModel, random: Random) -> None:
         with again(run, live=True, speed=0.0, hold_at=(tick, BEFORE_NEXT_TICK)) as other:
             model.pump(other, lambda: other.paused)
             shown.append(_shown(model, other) if other.paused else other.ended)
-            Seen(Seen.of(other).ticks, []).check_grown(Seen.of(run), f"rerun of {run.number} up to {tick}")
+            Seen(Seen.of(other).ticks, []).check_grown(
+                Seen.of(run), f"rerun of {run.number} up to {tick}"
+            )
     if shown[0] != shown[1]:
         raise FaultError(f"run {run.number} at {tick}: shown as {shown[0]}, then as {shown[1]}")
 
@@ -228,18 +254,29 @@ def _branch(model: RunModel, random: Random) -> None:
         program = replace(program, text=program.text + "print('more')\n")
     # What the user did at the very tick belongs to the branch.
     acted = [action.tick for action in of.actions() if action.tick < min(ticks, MOST_TICKS)]
-    tick = random.choice(acted) if acted and random.random() < 0.5 else random.randrange(min(ticks, MOST_TICKS))
+    tick = (
+        random.choice(acted)
+        if acted and random.random() < 0.5
+        else random.randrange(min(ticks, MOST_TICKS))
+    )
     branch = Branch(of, tick, program, None, False)
     options = RunOptions(
-        live=True, speed=1.0, time_limit_s=20.0, asks_user=True, answers=of.answers, actions=branch.script(),
+        live=True,
+        speed=1.0,
+        time_limit_s=20.0,
+        asks_user=True,
+        answers=of.answers,
+        actions=branch.script(),
         hold_at=(branch.tick, BEFORE_NEXT_TICK),
-    )  # fmt: skip
+    )
     run = model.follow(start_run(branch.runs, of.spec, options))
     model.store.tag(run.run_id, branch.tags)
     model.pump(run, lambda: run.paused or run.waiting_for_input is not None)
     differs = first_difference(of, Recording(run, of.answers), branch.tick)
     if differs is not None and not (edited and differs > 0) and run.paused:
-        raise FaultError(f"run {run.number}, a branch of {of.name} at {branch.tick}, differs at {differs}")
+        raise FaultError(
+            f"run {run.number}, a branch of {of.name} at {branch.tick}, differs at {differs}"
+        )
 
 
 def _reload(model: RunModel, random: Random) -> None:
@@ -298,15 +335,35 @@ def _stop(model: RunModel, random: Random) -> None:
 
 
 OPERATIONS: Mapping[str, Callable[[RunModel, Random], None]] = {
-    "run": _run, "run again": _run, "pause": _pause, "resume": _resume, "step": _step, "step a line": _step_line,
-    "run to": _run_to, "move": _user, "noise": _user, "answer": _answer, "break": _break, "watch": _watch,
-    "back": _back, "branch": _branch, "edit": _branch, "reload": _reload, "rename": _tag, "export": _export,
-    "remove": _remove, "compact": _compact, "rerun": _rerun, "stop": _stop,
-}  # fmt: skip
+    "run": _run,
+    "run again": _run,
+    "pause": _pause,
+    "resume": _resume,
+    "step": _step,
+    "step a line": _step_line,
+    "run to": _run_to,
+    "move": _user,
+    "noise": _user,
+    "answer": _answer,
+    "break": _break,
+    "watch": _watch,
+    "back": _back,
+    "branch": _branch,
+    "edit": _branch,
+    "reload": _reload,
+    "rename": _tag,
+    "export": _export,
+    "remove": _remove,
+    "compact": _compact,
+    "rerun": _rerun,
+    "stop": _stop,
+}
 """What users do, by name."""
 
 
 def done_in(case: str, every: Iterable[str], always: Sequence[str] = ()) -> list[str]:
     """Return what is done in a case: all there is, or a few things only, which then meet each other more often."""
     names, random = list(every), Random(f"{case} names")
-    return names if random.random() < 0.3 else [*always, *random.sample(names, random.randint(3, 7))]
+    return (
+        names if random.random() < 0.3 else [*always, *random.sample(names, random.randint(3, 7))]
+    )

@@ -28,16 +28,51 @@ from tuisim.errors import TuisimError
 
 _RUNS = "__import__('os').mkdir('owned')"
 TEXTS = (
-    "\x1b[2J\x1b[7777m", "\x1b]52;c;b3duZWQ=\x07", "\x1b]0;owned\x1b\\", "\x1bP+q544e\x1b\\", "\x9b2J", "\x9d0;x\x9c",
-    "\u202eevil\u202c", "\x08\x08\x7f", "\r\x1b[A", "\x0e\x0f", "\x1b[?1049h", "\x1b_Gi=1\x1b\\",
-    "<xss-probe>", "</script><xss-probe>", "</style><xss-probe>", "</title><xss-probe>", "--><xss-probe>",
-    "'><xss-probe a='", "\"><xss-probe a=\"", "</textarea></pre><xss-probe>", "]]><xss-probe>", "&lt;xss-probe>",
-    "<img src=x onerror=probe()>", "javascript:probe()", "[a](javascript:probe())", "\" onload=\"probe()",
+    "\x1b[2J\x1b[7777m",
+    "\x1b]52;c;b3duZWQ=\x07",
+    "\x1b]0;owned\x1b\\",
+    "\x1bP+q544e\x1b\\",
+    "\x9b2J",
+    "\x9d0;x\x9c",
+    "\u202eevil\u202c",
+    "\x08\x08\x7f",
+    "\r\x1b[A",
+    "\x0e\x0f",
+    "\x1b[?1049h",
+    "\x1b_Gi=1\x1b\\",
+    "<xss-probe>",
+    "</script><xss-probe>",
+    "</style><xss-probe>",
+    "</title><xss-probe>",
+    "--><xss-probe>",
+    "'><xss-probe a='",
+    '"><xss-probe a="',
+    "</textarea></pre><xss-probe>",
+    "]]><xss-probe>",
+    "&lt;xss-probe>",
+    "<img src=x onerror=probe()>",
+    "javascript:probe()",
+    "[a](javascript:probe())",
+    '" onload="probe()',
     "<svg/onload=probe()>",
-    _RUNS, "{0.__class__}", "%s%n", "$(touch owned)", "`touch owned`", "; touch owned", "=cmd|'/c x'!A1",
+    _RUNS,
+    "{0.__class__}",
+    "%s%n",
+    "$(touch owned)",
+    "`touch owned`",
+    "; touch owned",
+    "=cmd|'/c x'!A1",
     "!!python/object/apply:os.mkdir [owned]",
-    "../../outside", "/outside", "~/outside", "..\\outside", "a/../../outside", "\0", "\ud800", "\u2028", "\U000e0041",
-)  # fmt: skip
+    "../../outside",
+    "/outside",
+    "~/outside",
+    "..\\outside",
+    "a/../../outside",
+    "\0",
+    "\ud800",
+    "\u2028",
+    "\U000e0041",
+)
 """Pieces of which hostile text is made."""
 
 
@@ -78,7 +113,9 @@ class _Watch:
             cls.faults.append(f"{event} {args}")
         elif event == "open" and isinstance(args[0], str | bytes) and _writes(args[1], args[2]):
             path = os.path.realpath(os.fsdecode(args[0]))
-            if "__pycache__" not in path and not path.startswith((cls.folder, "/dev/", "/proc/", _MARKED_IN)):
+            if "__pycache__" not in path and not path.startswith(
+                (cls.folder, "/dev/", "/proc/", _MARKED_IN)
+            ):
                 cls.faults.append(f"writes to {path!r}")
 
 
@@ -93,7 +130,9 @@ def hostile(random: Random, most: int = 3, file_name: bool = False) -> str:
     text = "".join(random.choice(TEXTS) for _ in range(random.randint(1, most)))
     if not file_name:
         return text
-    return "".join(letter for letter in text if (letter != "/" and letter.isprintable()) or letter == "\x1b")[:60]
+    return "".join(
+        letter for letter in text if (letter != "/" and letter.isprintable()) or letter == "\x1b"
+    )[:60]
 
 
 def _printable(text: str) -> str:
@@ -111,7 +150,14 @@ def _say(*words: str) -> None:
 
 
 def _look_at_runs() -> None:
-    for words in ("runs", "runs --json", "runs show last", "log summary last", "log bands last", "log plot last"):
+    for words in (
+        "runs",
+        "runs --json",
+        "runs show last",
+        "log summary last",
+        "log bands last",
+        "log plot last",
+    ):
         _say(*words.split())
     _say("log", "report", "last", "--out", "report.html")
     _say("log", "plot", "last", "--out", "plot.svg")
@@ -134,7 +180,9 @@ def _text(random: Random) -> str:
         "        say(text)",
         "    except Exception as error: print(error)",
     ]
-    lines += random.choice([[], [f"raise ValueError({hostile(random)!r})"], [f"raise SystemExit({hostile(random)!r})"]])
+    lines += random.choice(
+        [[], [f"raise ValueError({hostile(random)!r})"], [f"raise SystemExit({hostile(random)!r})"]]
+    )
     lines += [f"# {hostile(random, 1, file_name=True)}"]
     return "\n".join(lines) + "\n"
 
@@ -161,7 +209,15 @@ def _log(random: Random) -> None:
         rows.writerow([column.replace("\0", "") for column in columns])
         for number in range(30):
             rows.writerow([number / 10, number, hostile(random).replace("\0", ""), number % 3])
-    for words in ("summary", "bands", "plot", "events --at 5", "derive", "export --out x.jsonl", "plot --out x.svg"):
+    for words in (
+        "summary",
+        "bands",
+        "plot",
+        "events --at 5",
+        "derive",
+        "export --out x.jsonl",
+        "plot --out x.svg",
+    ):
         command, *options = words.split()
         _say("log", command, name, *options)
     _say("log", "report", name, "--out", "report.html")
@@ -169,7 +225,17 @@ def _log(random: Random) -> None:
         _say("log", "calc", name, "--expression", random.choice(_EXPRESSIONS).format(text))
 
 
-_EXPRESSIONS = ("{}", "{}", "abs({})", "1 + {}", "1 < {}", "not {}", "where(1, {}, 0)", "2 if {} else 1", "`{}`")
+_EXPRESSIONS = (
+    "{}",
+    "{}",
+    "abs({})",
+    "1 + {}",
+    "1 < {}",
+    "not {}",
+    "where(1, {}, 0)",
+    "2 if {} else 1",
+    "`{}`",
+)
 
 
 def _mark(random: Random) -> None:
@@ -181,10 +247,12 @@ def _mark(random: Random) -> None:
         (place / "main.py").write_text(text, errors="replace")
     goals = [
         f"title = {_literal(_printable(hostile(random)) or 'title')}",
-        'background = "Empty_Map"', "[[goal]]", 'name = "done"',
+        'background = "Empty_Map"',
+        "[[goal]]",
+        'name = "done"',
         "finish = true",
         *(f"{key} = {_literal(_printable(hostile(random)) or key)}" for key in ("say", "hint")),
-    ]  # fmt: skip
+    ]
     Path("goals.toml").write_text("\n".join(goals))
     words = "mark goals.toml class --seeds 0 --jobs 1 --export marks.html --export marks.csv --feedback feedback"
     _say(*words.split())
@@ -205,9 +273,18 @@ def _files(random: Random) -> None:
     _say("run", "p.py", "--profile", "profile.toml")
     _say("batch", "batch.toml")
     _say("goals", "check", "goals.toml", "last")
-    Path("lesson.md").write_text(f"+++\nname = {_literal(hostile(random))}\ntitle = {_literal(hostile(random))}\n+++\n")
+    Path("lesson.md").write_text(
+        f"+++\nname = {_literal(hostile(random))}\ntitle = {_literal(hostile(random))}\n+++\n"
+    )
     _say("learn", "check", "lesson.md")
-    for words in (["guide"], ["guide", "--search"], ["run"], ["runs", "show"], ["run", "p.py", "-b"], ["robots"]):
+    for words in (
+        ["guide"],
+        ["guide", "--search"],
+        ["run"],
+        ["runs", "show"],
+        ["run", "p.py", "-b"],
+        ["robots"],
+    ):
         _say(*words, hostile(random).replace("\0", ""))
 
 
@@ -234,11 +311,18 @@ def _notebook(random: Random) -> None:
     if random.random() < 0.5:
         sources.pop()
     cells = [
-        {"cell_type": "code", "source": random.choice([source, source.splitlines(True)]), "metadata": {}, "outputs": []}
+        {
+            "cell_type": "code",
+            "source": random.choice([source, source.splitlines(True)]),
+            "metadata": {},
+            "outputs": [],
+        }
         for source in sources
     ]
     name = f"n{hostile(random, 1, file_name=True)}.ipynb"
-    text = json.dumps({"cells": cells, "metadata": {hostile(random): 1}, "nbformat": 4, "nbformat_minor": 5})
+    text = json.dumps(
+        {"cells": cells, "metadata": {hostile(random): 1}, "nbformat": 4, "nbformat_minor": 5}
+    )
     Path(name).write_text(text)
     with suppress(TuisimError):
         notebook_programs(Path(name))
@@ -256,7 +340,13 @@ def _disguised(random: Random) -> None:
     Path("p.py").write_text("print('A: 1')\n")
     for suffix in ("py", "csv", "parquet", "jsonl", "arrow", "toml", "ipynb", "png"):
         Path(f"x.{suffix}").write_bytes(data)
-    for words in ("run x.py", "run x.toml p.py", "run p.py -b x.png", "run p.py -r x.toml", "run x.ipynb#1"):
+    for words in (
+        "run x.py",
+        "run x.toml p.py",
+        "run p.py -b x.png",
+        "run p.py -r x.toml",
+        "run x.ipynb#1",
+    ):
         _say(*words.split())
     for suffix in ("csv", "parquet", "jsonl", "arrow"):
         _say("log", "summary", f"x.{suffix}")
@@ -318,7 +408,9 @@ def _check_private(home: Path) -> None:
         with suppress(FileNotFoundError):
             mode = path.lstat().st_mode
             if not stat.S_ISLNK(mode) and mode & 0o077:
-                raise FaultError(f"{path.relative_to(home.parent)} has the permissions {mode & 0o777:o}")
+                raise FaultError(
+                    f"{path.relative_to(home.parent)} has the permissions {mode & 0o777:o}"
+                )
 
 
 def _check(case: str, folder: Path) -> None:

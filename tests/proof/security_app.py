@@ -19,7 +19,9 @@ KEYS = ("c", "G", "l", "escape", "f1", "o", "escape", "question_mark", "escape")
 
 def _check_screen(app: LabApp, where: str) -> None:
     text = screen_text(app)
-    bad = {letter for letter in text if letter != "\n" and (letter < " " or "\x7f" <= letter < "\xa0")}
+    bad = {
+        letter for letter in text if letter != "\n" and (letter < " " or "\x7f" <= letter < "\xa0")
+    }
     if bad or "\u202e" in text:
         raise FaultError(f"{where}: the screen holds {bad or 'a change of direction'}")
 

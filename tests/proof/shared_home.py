@@ -33,7 +33,11 @@ def note(file: str, *words: object) -> None:
 
 
 def _noted(folder: Path, file: str) -> list[list[str]]:
-    return [line.split() for path in folder.glob(f"*/{file}") for line in path.read_text("utf-8").splitlines()]
+    return [
+        line.split()
+        for path in folder.glob(f"*/{file}")
+        for line in path.read_text("utf-8").splitlines()
+    ]
 
 
 def folder_of(run_id: str) -> Path:
@@ -50,7 +54,9 @@ def listed() -> list[dict[str, Any]]:
     """Return all runs of the list, of which no two may have one number or one id."""
     found: list[dict[str, Any]] = json.loads(check_said(["runs", "list", "--json"], codes=(0,)).out)
     for column in ("number", "id"):
-        if twice := [one for one, count in Counter(row[column] for row in found).items() if count > 1]:
+        if twice := [
+            one for one, count in Counter(row[column] for row in found).items() if count > 1
+        ]:
             raise FaultError(f"several runs have the {column} {twice}")
     return found
 
@@ -90,9 +96,13 @@ def check_recording(run_id: str) -> None:
 def _check_row(row: Mapping[str, Any], tag: str) -> None:
     run = read_run(folder_of(row["id"]))
     if row["end"] in (Unended.RUNNING, Unended.DAMAGED) or row["end"] != run.state:
-        raise FaultError(f"run {row['id']} is {run.state}, and listed as {row['end']}: {row['summary']}")
+        raise FaultError(
+            f"run {row['id']} is {run.state}, and listed as {row['end']}: {row['summary']}"
+        )
     if run.end is not None and row["ticks"] != run.end.tick:
-        raise FaultError(f"run {row['id']} ended {run.end}, and is listed with {row['ticks']} ticks")
+        raise FaultError(
+            f"run {row['id']} ended {run.end}, and is listed with {row['ticks']} ticks"
+        )
     if run.end is not None and run.end.end is End.FINISHED and row["samples"] != len(LINES):
         raise FaultError(f"run {row['id']} is listed with {row['samples']} samples")
     if (found := (" ".join(run.tags), row["tags"])) != (tag, tag):
@@ -110,7 +120,9 @@ def check_home(folder: Path) -> None:
     for run_id, number in _noted(folder, MADE):
         if (run_id in removed) == (run_id in ids):
             raise FaultError(f"run {run_id} is {'there, but removed' if run_id in ids else 'lost'}")
-        if run_id in ids and [row["number"] for row in rows if row["id"] == run_id] != [int(number)]:
+        if run_id in ids and [row["number"] for row in rows if row["id"] == run_id] != [
+            int(number)
+        ]:
             raise FaultError(f"run {run_id} had the number {number}, and has another one")
     for row in rows:
         check_recording(row["id"])

@@ -58,7 +58,9 @@ def _shorter(steps: Sequence[int]) -> Iterator[list[int]]:
         yield [step for at, step in enumerate(steps) if at != left_out]
 
 
-def _fewest(seed: str, steps: Sequence[int], is_wrong: Callable[[Sequence[int]], bool]) -> Sequence[int]:
+def _fewest(
+    seed: str, steps: Sequence[int], is_wrong: Callable[[Sequence[int]], bool]
+) -> Sequence[int]:
     """Return fewer steps that show a fault, too, as far as so many attempts get."""
     left = TRIES
     found = True
@@ -79,7 +81,10 @@ def _check(name: str, folder: Path) -> None:
     steps = [int(step) for step in chosen[0].split(",")] if chosen else list(range(STEPS))
 
     def wrong(of: Sequence[int]) -> str:
-        with TemporaryDirectory(dir=folder, ignore_cleanup_errors=True) as inner, home(Path(inner, "place", "home")):
+        with (
+            TemporaryDirectory(dir=folder, ignore_cleanup_errors=True) as inner,
+            home(Path(inner, "place", "home")),
+        ):
             return _wrong(SURROUNDINGS[surroundings], seed, of, Path(inner))
 
     if not (fault := wrong(steps)):
@@ -96,4 +101,8 @@ def _names(random: Random) -> Iterator[str]:
         yield f"{random.choice(('headless', 'headless', 'app'))}:{random.getrandbits(32)}"
 
 
-STATEFUL = Kind("random sequences of run, pause, step, back, branch, move, edit, export, compact …", _names, _check)
+STATEFUL = Kind(
+    "random sequences of run, pause, step, back, branch, move, edit, export, compact …",
+    _names,
+    _check,
+)

@@ -58,8 +58,17 @@ class Flags:
 
 
 def _defaults(hold_p: int) -> dict[str, Any]:
-    zeros = dict.fromkeys(("position_sp", "speed_sp", "duty_cycle_sp", "time_sp", "ramp_up_sp", "ramp_down_sp"), 0)
-    regulation = {"speed_p": 1000, "speed_i": 60, "speed_d": 0, "position_p": hold_p, "position_i": 0, "position_d": 0}
+    zeros = dict.fromkeys(
+        ("position_sp", "speed_sp", "duty_cycle_sp", "time_sp", "ramp_up_sp", "ramp_down_sp"), 0
+    )
+    regulation = {
+        "speed_p": 1000,
+        "speed_i": 60,
+        "speed_d": 0,
+        "position_p": hold_p,
+        "position_i": 0,
+        "position_d": 0,
+    }
     return {**zeros, **regulation, "stop_action": "coast", "polarity": "normal"}
 
 
@@ -169,7 +178,10 @@ class TachoMotor:
 
     def run_to(self, relative: bool) -> None:
         """Do run-to-rel-pos or run-to-abs-pos."""
-        base, near = self.relative_to or (self.position, float("inf") if self.is_running else self.near)
+        base, near = self.relative_to or (
+            self.position,
+            float("inf") if self.is_running else self.near,
+        )
         target = float(self.settings["position_sp"])
         if relative and not target:
             self.stop()

@@ -76,7 +76,9 @@ _USUALLY_ON = {b"7", b"25"}
 def modes_left(written: bytes) -> list[str]:
     """Return the modes of a terminal that what was written leaves other than they were."""
     last = {mode: found[2] for found in _MODE.finditer(written) for mode in found[1].split(b";")}
-    wrong = [f"?{mode.decode()}" for mode, at in last.items() if (at == b"h") != (mode in _USUALLY_ON)]
+    wrong = [
+        f"?{mode.decode()}" for mode, at in last.items() if (at == b"h") != (mode in _USUALLY_ON)
+    ]
     keyboard = len(re.findall(rb"\x1b\[>\d*u", written)) - len(re.findall(rb"\x1b\[<\d*u", written))
     return sorted(wrong) + ["keyboard protocol"] * (keyboard != 0)
 
@@ -91,7 +93,9 @@ class Terminal:
         forwards: Whether its shell tells it that the terminal is lost.
     """
 
-    def __init__(self, words: Sequence[str], folder: Path, environment: dict[str, str], forwards: bool = True) -> None:
+    def __init__(
+        self, words: Sequence[str], folder: Path, environment: dict[str, str], forwards: bool = True
+    ) -> None:
         self.outer, inner = pty.openpty()
         os.set_blocking(self.outer, False)
         self.before = termios.tcgetattr(inner)
@@ -101,9 +105,15 @@ class Terminal:
         command = [*shell, "-P", "-m", "tuisim", *words]
         self.resize(120, 40)
         self._shell = subprocess.Popen(
-            command, stdin=inner, stdout=inner, stderr=inner, cwd=folder, env=environment, start_new_session=True,
+            command,
+            stdin=inner,
+            stdout=inner,
+            stderr=inner,
+            cwd=folder,
+            env=environment,
+            start_new_session=True,
             pass_fds=(said, heard),
-        )  # fmt: skip
+        )
         for fd in (inner, said, heard):
             os.close(fd)
         self.written = b""

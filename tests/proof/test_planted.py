@@ -18,7 +18,10 @@ def test_a_fault_can_be_planted(fault: Planted) -> None:
 @pytest.mark.proof
 @pytest.mark.parametrize(
     "fault",
-    [pytest.param(fault, id=fault.about, marks=[needs_isolation] * fault.is_isolated) for fault in PLANTED],
+    [
+        pytest.param(fault, id=fault.about, marks=[needs_isolation] * fault.is_isolated)
+        for fault in PLANTED
+    ],
 )
 def test_a_planted_fault_is_found(fault: Planted) -> None:
     assert missed(fault) == []
@@ -27,6 +30,8 @@ def test_a_planted_fault_is_found(fault: Planted) -> None:
 @pytest.mark.proof
 @pytest.mark.parametrize("kind", sorted({fault.kind for fault in PLANTED}))
 def test_nothing_is_found_without_a_planted_fault(kind: str) -> None:
-    here = [fault for fault in PLANTED if fault.kind == kind and not (fault.is_isolated and refusal())]
+    here = [
+        fault for fault in PLANTED if fault.kind == kind and not (fault.is_isolated and refusal())
+    ]
     cases = {case for fault in here for case in fault.cases}
     assert [text for text in faults(kind, sorted(cases)) if text] == []

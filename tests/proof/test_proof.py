@@ -36,7 +36,9 @@ def test_a_little_of_each_kind_shows_no_fault(name: str) -> None:
     seed = int(os.environ.get("PROOF_SEED") or int.from_bytes(os.urandom(4)))
     cases = KINDS[name].names(Random(f"{seed} {name}"))
     for _, case in zip(range(FEWER.get(name, CASES)), cases, strict=False):
-        assert kind.fault_of(KINDS[name], case) == "", f"python -m tests.proof {name} --case {case} (seed {seed})"
+        assert kind.fault_of(KINDS[name], case) == "", (
+            f"python -m tests.proof {name} --case {case} (seed {seed})"
+        )
 
 
 @pytest.mark.proof
@@ -80,20 +82,27 @@ def test_faults_are_counted_and_printed_with_their_names(
     assert (found.cases, found.faults) == (6, ("bad", "odd", "endless", "caught", "large"))
     printed = capsys.readouterr().out
     wanted = (
-        "stand-in --case bad\nit broke", "ValueError: not expected", "TooLongError: has not ended after 0.05 s of CPU",
-        "stand-in --case caught\nhas not ended after 0.05 s of CPU\n", 'while name == "caught":',
+        "stand-in --case bad\nit broke",
+        "ValueError: not expected",
+        "TooLongError: has not ended after 0.05 s of CPU",
+        "stand-in --case caught\nhas not ended after 0.05 s of CPU\n",
+        'while name == "caught":',
         "TooLargeError: has grown by more than 4 MB",
-    )  # fmt: skip
+    )
     assert [words for words in wanted if words not in printed] == []
 
 
 def test_a_process_of_the_proof_searches_for_garbage() -> None:
     words = "import gc, tests.proof.clients; print(gc.isenabled())"
-    done = subprocess.run([sys.executable, "-c", words], cwd=ROOT, capture_output=True, text=True, timeout=PATIENCE_S)
+    done = subprocess.run(
+        [sys.executable, "-c", words], cwd=ROOT, capture_output=True, text=True, timeout=PATIENCE_S
+    )
     assert done.stdout == "True\n", done.stderr
 
 
 @pytest.mark.parametrize(("case", "code"), [("good", 0), ("bad", 1)])
-def test_a_case_is_repeated_by_its_name(monkeypatch: pytest.MonkeyPatch, case: str, code: int) -> None:
+def test_a_case_is_repeated_by_its_name(
+    monkeypatch: pytest.MonkeyPatch, case: str, code: int
+) -> None:
     monkeypatch.setitem(KINDS, "stand-in", STAND_IN)
     assert __main__.main(["stand-in", "--case", case]) == code

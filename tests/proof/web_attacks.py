@@ -61,8 +61,16 @@ class Target:
 
 
 async def _paths(target: Target) -> None:
-    for path in ("../../etc/passwd", "..%2f..%2fetc/passwd", "page/%2e%2e/%2e%2e/server.py", "static//etc/passwd",
-                 "static/..%5c..%5cx", "download/../../x", "download/%00", "fonts/..%2f..%2f..%2fcli.py"):  # fmt: skip
+    for path in (
+        "../../etc/passwd",
+        "..%2f..%2fetc/passwd",
+        "page/%2e%2e/%2e%2e/server.py",
+        "static//etc/passwd",
+        "static/..%5c..%5cx",
+        "download/../../x",
+        "download/%00",
+        "fonts/..%2f..%2f..%2fcli.py",
+    ):
         head = await target.answer(
             f"GET /{TOKEN}/{path} HTTP/1.1\r\nHost: 127.0.0.1:{target.port}\r\nConnection: close\r\n\r\n".encode()
         )
@@ -77,17 +85,36 @@ async def _methods(target: Target) -> None:
 
 
 async def _tokens(target: Target) -> None:
-    for token in ("", "the-toke", "the-tokens", "THE-TOKEN", "the%2Dtokem", "%00", "the-token%00", "*", "null"):
+    for token in (
+        "",
+        "the-toke",
+        "the-tokens",
+        "THE-TOKEN",
+        "the%2Dtokem",
+        "%00",
+        "the-token%00",
+        "*",
+        "null",
+    ):
         await target.refused("GET", f"/{token}/")
     await target.refused("GET", f"/?token={TOKEN}")
     await target.refused("GET", "/x/", Authorization=f"Bearer {TOKEN}", Cookie=f"token={TOKEN}")
 
 
 async def _origins(target: Target) -> None:
-    for origin in ("http://evil.example", "null", "", f"http://127.0.0.1.evil.example:{target.port}",
-                   f"{target.origin}.evil.example", f"{target.origin}@evil.example", "file://"):  # fmt: skip
+    for origin in (
+        "http://evil.example",
+        "null",
+        "",
+        f"http://127.0.0.1.evil.example:{target.port}",
+        f"{target.origin}.evil.example",
+        f"{target.origin}@evil.example",
+        "file://",
+    ):
         try:
-            socket = await target.client.ws_connect(f"{target.origin}/{TOKEN}/ws", headers={"Origin": origin})
+            socket = await target.client.ws_connect(
+                f"{target.origin}/{TOKEN}/ws", headers={"Origin": origin}
+            )
         except WSServerHandshakeError:
             continue
         await socket.close()
@@ -106,7 +133,9 @@ async def _actions(target: Target) -> None:
             await target.refused("POST", path, Origin="http://evil.example")
             await target.refused("POST", path.replace(TOKEN, "other"), Origin=target.origin)
         for name in ("", "..", "../x.py", "%2e%2e%2fx.py", "/etc/x", ".x", "a%00b", "a" * 999):
-            await target.refused("POST", f"/{TOKEN}/sessions/{session}/file?name={name}", Origin=target.origin)
+            await target.refused(
+                "POST", f"/{TOKEN}/sessions/{session}/file?name={name}", Origin=target.origin
+            )
         for other in ("", "x", "%2e%2e", session[:-1], session.upper() + "0"):
             await target.refused("POST", f"/{TOKEN}/sessions/{other}/end", Origin=target.origin)
         await socket.send_str('["ping", "1"]')
@@ -116,23 +145,45 @@ async def _actions(target: Target) -> None:
 
 
 async def _hosts(target: Target) -> None:
-    for host in ("evil.example", "127.0.0.1.evil.example", "", "127.0.0.1:1@evil.example", "[::1", "a b"):
+    for host in (
+        "evil.example",
+        "127.0.0.1.evil.example",
+        "",
+        "127.0.0.1:1@evil.example",
+        "[::1",
+        "a b",
+    ):
         await target.refused("GET", f"/{TOKEN}/", Host=host)
 
 
 async def _headers(target: Target) -> None:
     """What a browser is allowed, whatever is asked for; and who has no token is not told it."""
-    for path in (f"/{TOKEN}/", f"/{TOKEN}", f"/{TOKEN}/page/none", f"/{TOKEN}/download/none", "/x/", "/"):
+    for path in (
+        f"/{TOKEN}/",
+        f"/{TOKEN}",
+        f"/{TOKEN}/page/none",
+        f"/{TOKEN}/download/none",
+        "/x/",
+        "/",
+    ):
         async with target.client.get(target.origin + path, allow_redirects=False) as found:
-            if wrong := [f"{name}: {found.headers.get(name)}" for name, words in _ALLOWED.items()
-                         if not all(word in found.headers.get(name, "") for word in words)]:  # fmt: skip
+            if wrong := [
+                f"{name}: {found.headers.get(name)}"
+                for name, words in _ALLOWED.items()
+                if not all(word in found.headers.get(name, "") for word in words)
+            ]:
                 raise FaultError(f"{path}: {wrong}")
             if TOKEN not in path and TOKEN in f"{found.headers} {await found.text()}":
                 raise FaultError(f"{path}: it tells the token")
 
 
 _ALLOWED: Mapping[str, Sequence[str]] = {
-    "Content-Security-Policy": ("default-src 'self'", "frame-ancestors 'none'", "base-uri 'none'", "object-src 'none'"),
+    "Content-Security-Policy": (
+        "default-src 'self'",
+        "frame-ancestors 'none'",
+        "base-uri 'none'",
+        "object-src 'none'",
+    ),
     "Cross-Origin-Opener-Policy": ("same-origin",),
     "Cross-Origin-Resource-Policy": ("same-origin",),
     "Referrer-Policy": ("no-referrer",),
@@ -151,12 +202,17 @@ async def _connections(target: Target) -> None:
 
 
 async def _heads(target: Target) -> None:
-    for request in (b"\0" * 5000, b"GET\r\n\r\n", b"GET / HTTP/9.9\r\n\r\n", b"A" * 100_000 + b"\r\n\r\n",
-                    b"GET / HTTP/1.1\r\nHost: x\r\n" + b"X: y\r\n" * 20_000 + b"\r\n",
-                    b"POST /the-token/ HTTP/1.1\r\nHost: x\r\nContent-Length: -1\r\n\r\n",
-                    b"POST /the-token/ HTTP/1.1\r\nHost: x\r\nTransfer-Encoding: chunked\r\n"
-                    b"Content-Length: 3\r\n\r\nFFFFFFFFF\r\n",
-                    b"GET /\x1b[2J\xff HTTP/1.1\r\nHost: \x1b]0;x\x07\r\n\r\n"):  # fmt: skip
+    for request in (
+        b"\0" * 5000,
+        b"GET\r\n\r\n",
+        b"GET / HTTP/9.9\r\n\r\n",
+        b"A" * 100_000 + b"\r\n\r\n",
+        b"GET / HTTP/1.1\r\nHost: x\r\n" + b"X: y\r\n" * 20_000 + b"\r\n",
+        b"POST /the-token/ HTTP/1.1\r\nHost: x\r\nContent-Length: -1\r\n\r\n",
+        b"POST /the-token/ HTTP/1.1\r\nHost: x\r\nTransfer-Encoding: chunked\r\n"
+        b"Content-Length: 3\r\n\r\nFFFFFFFFF\r\n",
+        b"GET /\x1b[2J\xff HTTP/1.1\r\nHost: \x1b]0;x\x07\r\n\r\n",
+    ):
         head = await target.answer(request)
         if head and b" 4" not in head.split(b"\r\n")[0]:
             raise FaultError(f"{request[:60]!r}: {head[:100]!r}")

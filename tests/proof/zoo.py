@@ -55,7 +55,12 @@ _SUBREAPER = 36
 
 
 def _names(random: Random) -> Iterator[str]:
-    own = [(f"{family}.{name}", way) for family, pieces in FAMILIES.items() for name in pieces for way in WAYS]
+    own = [
+        (f"{family}.{name}", way)
+        for family, pieces in FAMILIES.items()
+        for name in pieces
+        for way in WAYS
+    ]
     drawn = [f"{name}+{random.choice(list(ENDINGS))}+{way}" for name, way in own]
     drawn += [
         f"{family}.{name}+{ending}+like-python"
@@ -181,7 +186,9 @@ def _until_it_prints(run: RunHandle) -> None:
 
 def _check_stopped(piece: Piece, ending: Ending, folder: Path, way: str) -> None:
     for _ in range(TRIES):
-        run = _start(piece, ending, folder, _options(piece, live=True, paused=way == "stopped-paused"))
+        run = _start(
+            piece, ending, folder, _options(piece, live=True, paused=way == "stopped-paused")
+        )
         try:
             if way == "stopped":
                 _until_it_prints(run)
@@ -258,15 +265,24 @@ def _check_like_python(piece: Piece, ending: Ending, folder: Path) -> None:
         ended = _over(run)
     finally:
         run.close()
-    rows = {stream: [row.text for row in run.output.all_rows() if row.stream == stream] for stream in Stream}
+    rows = {
+        stream: [row.text for row in run.output.all_rows() if row.stream == stream]
+        for stream in Stream
+    }
     shutil.rmtree(folder)
     folder.mkdir()
     python = as_python(_text(piece, ending), folder)
     wanted = python.stdout.split("\n"), sorted(_errors(python.stderr)), python.exit_code
-    found = rows[Stream.STDOUT], sorted(_errors("\n".join(rows[Stream.STDERR]))), ended.exit_code & 0xFF
+    found = (
+        rows[Stream.STDOUT],
+        sorted(_errors("\n".join(rows[Stream.STDERR]))),
+        ended.exit_code & 0xFF,
+    )
     for what, one, other in zip(("stdout", "errors", "exit code"), found, wanted, strict=True):
         if one != other:
-            raise FaultError(f"{what}: {str(one)[-300:]}, of Python itself: {str(other)[-300:]}; {ended}")
+            raise FaultError(
+                f"{what}: {str(one)[-300:]}, of Python itself: {str(other)[-300:]}; {ended}"
+            )
 
 
 def _descendants() -> dict[int, int]:
@@ -274,7 +290,11 @@ def _descendants() -> dict[int, int]:
     parents: dict[int, tuple[int, int]] = {}
     for name in os.listdir("/proc"):
         try:
-            words = Path("/proc", name, "stat").read_text().rpartition(")")[2].split() if name.isdigit() else []
+            words = (
+                Path("/proc", name, "stat").read_text().rpartition(")")[2].split()
+                if name.isdigit()
+                else []
+            )
         except OSError:
             continue
         if words and words[0] not in "ZX":
@@ -296,7 +316,12 @@ def _check_left(before: dict[int, int]) -> None:
 
 def _command(pid: int) -> str:
     try:
-        return Path(f"/proc/{pid}/cmdline").read_bytes().replace(b"\0", b" ").decode("utf-8", "replace")[:200]
+        return (
+            Path(f"/proc/{pid}/cmdline")
+            .read_bytes()
+            .replace(b"\0", b" ")
+            .decode("utf-8", "replace")[:200]
+        )
     except OSError:
         return "over"
 

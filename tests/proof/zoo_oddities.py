@@ -8,22 +8,36 @@ from tests.proof.zoo_programs import Piece
 from tuisim.protocol import End
 
 TIME: Mapping[str, Piece] = {
-    "patched": Piece("import time\ntime.sleep = lambda s: None\ntime.monotonic = time.perf_counter = lambda: 0.0"),
+    "patched": Piece(
+        "import time\ntime.sleep = lambda s: None\ntime.monotonic = time.perf_counter = lambda: 0.0"
+    ),
     "odd-sleeps": Piece(
         "import time\nfor s in (0, 0.0, 1e-12, True, -0.0): time.sleep(s)\n"
         "for s in (-1, float('nan'), 'x', None, 1e300):\n"
         "    try: time.sleep(s)\n    except (ValueError, TypeError, OverflowError) as e: print(type(e).__name__)"
     ),
-    "c-clock": Piece("import time\nprint(time.clock_gettime(time.CLOCK_MONOTONIC), time.perf_counter_ns())"),
-    "process-clock": Piece("import time\nx = time.process_time(), time.thread_time()\nprint(type(x))"),
+    "c-clock": Piece(
+        "import time\nprint(time.clock_gettime(time.CLOCK_MONOTONIC), time.perf_counter_ns())"
+    ),
+    "process-clock": Piece(
+        "import time\nx = time.process_time(), time.thread_time()\nprint(type(x))"
+    ),
     "event": Piece("import threading\nprint(threading.Event().wait(0.2))"),
-    "queue": Piece("import queue\ntry: queue.Queue().get(timeout=0.2)\nexcept queue.Empty: print('empty')"),
-    "sched": Piece("import sched\ns = sched.scheduler()\ns.enter(0.1, 1, print, ('now',))\ns.run()"),
-    "zone": Piece("import os, time\nos.environ['TZ'] = 'Asia/Tokyo'\ntime.tzset()\nprint(time.localtime().tm_hour)"),
+    "queue": Piece(
+        "import queue\ntry: queue.Queue().get(timeout=0.2)\nexcept queue.Empty: print('empty')"
+    ),
+    "sched": Piece(
+        "import sched\ns = sched.scheduler()\ns.enter(0.1, 1, print, ('now',))\ns.run()"
+    ),
+    "zone": Piece(
+        "import os, time\nos.environ['TZ'] = 'Asia/Tokyo'\ntime.tzset()\nprint(time.localtime().tm_hour)"
+    ),
     "random": Piece(
         "import random, secrets, uuid, os\nprint(random.random(), secrets.token_hex(), uuid.uuid4(), os.urandom(4))"
     ),
-    "reseeded": Piece("import random\nrandom.seed()\nprint(random.random(), random.SystemRandom().random())"),
+    "reseeded": Piece(
+        "import random\nrandom.seed()\nprint(random.random(), random.SystemRandom().random())"
+    ),
     "hashes": Piece("print(hash('a'), {'a', 'b', 'c'}, hash((1, 'x')))"),
 }
 IMPORTS: Mapping[str, Piece] = {
@@ -42,7 +56,10 @@ IMPORTS: Mapping[str, Piece] = {
         " 'type', 'dict'):\n"
         "    setattr(builtins, n, None)",
     ),
-    "print": Piece("import builtins\nold = print\nbuiltins.print = lambda *a, **k: old('<', *a, '>', **k)", loses=True),
+    "print": Piece(
+        "import builtins\nold = print\nbuiltins.print = lambda *a, **k: old('<', *a, '>', **k)",
+        loses=True,
+    ),
     "import": Piece(
         "import builtins\ndef no(*a, **k): raise ImportError('no')\nwas = builtins.__import__\n"
         "builtins.__import__ = no\n"
@@ -57,10 +74,15 @@ IMPORTS: Mapping[str, Piece] = {
         "except BaseException as e: print(type(e).__name__)",
         breaks=True,
     ),
-    "patches-os": Piece("import os\nos.write = os.read = os.getpid = os.close = os.kill = None", breaks=True),
-    "patches-signal": Piece("import signal\nsignal.signal = signal.setitimer = signal.alarm = None"),
+    "patches-os": Piece(
+        "import os\nos.write = os.read = os.getpid = os.close = os.kill = None", breaks=True
+    ),
+    "patches-signal": Piece(
+        "import signal\nsignal.signal = signal.setitimer = signal.alarm = None"
+    ),
     "patches-json": Piece(
-        "import json, struct, io\njson.dumps = json.loads = struct.pack = io.BytesIO = None", breaks=True
+        "import json, struct, io\njson.dumps = json.loads = struct.pack = io.BytesIO = None",
+        breaks=True,
     ),
     "patches-threading": Piece(
         "import threading, _thread\nthreading.Thread = threading.Lock = _thread.allocate_lock = None"
@@ -91,8 +113,12 @@ TRACES: Mapping[str, Piece] = {
         "import sys\ndef f(name, a):\n    if name == 'open': raise RuntimeError('no')\nsys.addaudithook(f)\n"
         "try: open('x')\nexcept RuntimeError: print('no')"
     ),
-    "hooks": Piece("import sys\nsys.excepthook = sys.unraisablehook = sys.displayhook = lambda *a: 1 / 0"),
-    "frames": Piece("import sys\nf = sys._getframe()\nwhile f:\n    f.f_trace = lambda *a: None\n    f = f.f_back"),
+    "hooks": Piece(
+        "import sys\nsys.excepthook = sys.unraisablehook = sys.displayhook = lambda *a: 1 / 0"
+    ),
+    "frames": Piece(
+        "import sys\nf = sys._getframe()\nwhile f:\n    f.f_trace = lambda *a: None\n    f = f.f_back"
+    ),
     "clears-frames": Piece(
         "import sys\ntry:\n    def f(): 1 / 0\n    f()\n"
         "except ZeroDivisionError as e: e.__traceback__.tb_next.tb_frame.clear()"
@@ -102,19 +128,29 @@ TRACES: Mapping[str, Piece] = {
         "print(tracemalloc.get_traced_memory()[0] > 0)\ntracemalloc.stop()"
     ),
     "pdb": Piece("breakpoint()", End.RAISED),
-    "cprofile": Piece("import cProfile\np = cProfile.Profile()\np.enable()\nsum(range(9))\np.disable()"),
+    "cprofile": Piece(
+        "import cProfile\np = cProfile.Profile()\np.enable()\nsum(range(9))\np.disable()"
+    ),
     "subinterpreter": Piece(
         "try:\n    import _xxsubinterpreters as s\n    i = s.create()\n    s.run_string(i, 'x = 1')\n    s.destroy(i)\n"
         "except BaseException as e: print(type(e).__name__)",
         exact=False,
     ),
-    "gc-objects": Piece("import gc\nprint(len(gc.get_objects()) > 0, len(gc.get_referrers(print)) > 0)", exact=False),
-    "code-swapped": Piece("def f(): return 1\ndef g(): return 2\nf.__code__ = g.__code__\nprint(f())"),
-    "asyncgen": Piece("import sys\nsys.set_asyncgen_hooks(firstiter=lambda g: None, finalizer=lambda g: None)"),
+    "gc-objects": Piece(
+        "import gc\nprint(len(gc.get_objects()) > 0, len(gc.get_referrers(print)) > 0)", exact=False
+    ),
+    "code-swapped": Piece(
+        "def f(): return 1\ndef g(): return 2\nf.__code__ = g.__code__\nprint(f())"
+    ),
+    "asyncgen": Piece(
+        "import sys\nsys.set_asyncgen_hooks(firstiter=lambda g: None, finalizer=lambda g: None)"
+    ),
 }
 PLACES: Mapping[str, Piece] = {
     "chdir": Piece("import os\nos.chdir('/')"),
-    "cwd-deleted": Piece("import os, tempfile\nos.chdir(tempfile.mkdtemp())\nos.rmdir(os.getcwd())"),
+    "cwd-deleted": Piece(
+        "import os, tempfile\nos.chdir(tempfile.mkdtemp())\nos.rmdir(os.getcwd())"
+    ),
     "no-environment": Piece("import os\nos.environ.clear()"),
     "odd-environment": Piece(
         "import os\nfor n in ('PATH', 'HOME', 'LANG', 'TMPDIR', 'TUISIM_HOME', 'PYTHONPATH', 'TERM'):"
@@ -130,13 +166,19 @@ PLACES: Mapping[str, Piece] = {
         "import os\nfor n in (b'\\xff\\xfe', b'a\\nb', b'-rf', b'\\x1b[2J'):\n    open(n, 'w').close()\n"
         "    os.unlink(n)"
     ),
-    "fifo": Piece("import os\nos.mkfifo('fifo')\nfd = os.open('fifo', os.O_RDONLY | os.O_NONBLOCK)\nos.close(fd)"),
-    "pyc": Piece("import py_compile\nopen('m.py', 'w').write('x = 1')\npy_compile.compile('m.py')\nimport m"),
+    "fifo": Piece(
+        "import os\nos.mkfifo('fifo')\nfd = os.open('fifo', os.O_RDONLY | os.O_NONBLOCK)\nos.close(fd)"
+    ),
+    "pyc": Piece(
+        "import py_compile\nopen('m.py', 'w').write('x = 1')\npy_compile.compile('m.py')\nimport m"
+    ),
     "own-pipes": Piece(
         "import os\nfor fd in os.listdir('/proc/self/fd'):\n    try: os.set_blocking(int(fd), False)\n"
         "    except OSError: pass"
     ),
-    "truncates-pipes": Piece("import os\nfor fd in range(3, 30):\n    try: os.fsync(fd)\n    except OSError: pass"),
+    "truncates-pipes": Piece(
+        "import os\nfor fd in range(3, 30):\n    try: os.fsync(fd)\n    except OSError: pass"
+    ),
     "wrong-input": Piece("try: input('?')\nexcept EOFError: print('nobody')"),
 }
 ENCODINGS: Mapping[str, Piece] = {
@@ -183,9 +225,15 @@ LIBRARY: Mapping[str, Piece] = {
     "left-running": Piece(
         "from ev3dev2.motor import MoveTank, OUTPUT_B, OUTPUT_C\nMoveTank(OUTPUT_B, OUTPUT_C).on(100, -100)"
     ),
-    "leds": Piece("from ev3dev2.led import Leds\nfor _ in range(200): Leds().set_color('LEFT', 'RED')"),
-    "sounds": Piece("from ev3dev2.sound import Sound\nfor n in range(20): Sound().tone(440, 10, play_type=1)"),
-    "display": Piece("from ev3dev2.display import Display\nd = Display()\nfor _ in range(20): d.update()"),
+    "leds": Piece(
+        "from ev3dev2.led import Leds\nfor _ in range(200): Leds().set_color('LEFT', 'RED')"
+    ),
+    "sounds": Piece(
+        "from ev3dev2.sound import Sound\nfor n in range(20): Sound().tone(440, 10, play_type=1)"
+    ),
+    "display": Piece(
+        "from ev3dev2.display import Display\nd = Display()\nfor _ in range(20): d.update()"
+    ),
     "buttons": Piece("from ev3dev2.button import Button\nfor _ in range(20): Button().process()"),
     "many-sensors": Piece(
         "from ev3dev2.sensor.lego import ColorSensor\nfrom ev3dev2.sensor import INPUT_2\n"

@@ -35,7 +35,12 @@ def spec() -> RunSpec:
 @pytest.fixture
 def noisy_spec(spec: RunSpec) -> RunSpec:
     """The same with noise on light and motors."""
-    return RunSpec(spec.robot, WorldSpec(start=spec.world.start, noise=NoiseSpec(20, 50)), spec.profile, spec.seed)
+    return RunSpec(
+        spec.robot,
+        WorldSpec(start=spec.world.start, noise=NoiseSpec(20, 50)),
+        spec.profile,
+        spec.seed,
+    )
 
 
 @pytest.fixture
@@ -71,5 +76,8 @@ def field() -> Field:
             if inside:
                 sums += around[row : row + len(sums), col : col + sums.shape[1]]
     return Field(
-        MAT_WIDTH_PX, MAT_HEIGHT_PX, memoryview(pixels.tobytes()), {diameter: memoryview(sums.tobytes()).cast("I")}
+        MAT_WIDTH_PX,
+        MAT_HEIGHT_PX,
+        memoryview(pixels.tobytes()),
+        {diameter: memoryview(sums.tobytes()).cast("I")},
     )

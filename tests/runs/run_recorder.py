@@ -71,4 +71,6 @@ def begun(store: RunStore, spec: RunSpec, **options: Any) -> Recorder:
     """Begin a run in a store."""
     run = store.new_run(PROGRAM, spec, **options)
     telemetry = TelemetryWriter(run.folder)
-    return Recorder(store, run, spec, telemetry, OutputWriter(run.folder), Simulation(spec, telemetry))
+    return Recorder(
+        store, run, spec, telemetry, OutputWriter(run.folder), Simulation(spec, telemetry)
+    )

@@ -46,7 +46,10 @@ def test_each_stream_comes_back() -> None:
 
 def test_newest_screen_is_shown() -> None:
     screen = TextScreen(14, 5, ("",) * 5)
-    face = face_after(BrickState(), [row(console_row(screen), Stream.CONSOLE), row(display_row(BLANK), Stream.DISPLAY)])
+    face = face_after(
+        BrickState(),
+        [row(console_row(screen), Stream.CONSOLE), row(display_row(BLANK), Stream.DISPLAY)],
+    )
     assert face.text == screen
     assert not face.shows_text
 
@@ -54,7 +57,12 @@ def test_newest_screen_is_shown() -> None:
 def test_the_last_sound_is_kept() -> None:
     assert (
         face_after(
-            BrickState(), [row("[beep]", Stream.SPEECH), row("hello", Stream.SPEECH), row("Colour: 3", Stream.STDOUT)]
+            BrickState(),
+            [
+                row("[beep]", Stream.SPEECH),
+                row("hello", Stream.SPEECH),
+                row("Colour: 3", Stream.STDOUT),
+            ],
         ).sound
         == "hello"
     )

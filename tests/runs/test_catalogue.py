@@ -134,7 +134,9 @@ def test_harm_to_the_catalogue_does_not_stop_a_run(
     assert [(info.number, info.end) for info in store.runs()] == [(1, "finished")]
 
 
-def test_seed_may_be_larger_than_the_integers_of_the_catalogue(store: RunStore, spec: RunSpec) -> None:
+def test_seed_may_be_larger_than_the_integers_of_the_catalogue(
+    store: RunStore, spec: RunSpec
+) -> None:
     store.new_run(PROGRAM, replace(spec, seed=1 << 80))
     assert store.runs()[0].seed == 1 << 80
 
@@ -183,13 +185,16 @@ def test_two_processes_start_runs_at_once(tmp_path: Path) -> None:
     assert [child.returncode for child in children] == [0, 0]
     assert sorted(numbers) == list(range(1, 25))
     infos = RunStore(tmp_path / "home").runs()
-    assert [(info.number, info.end) for info in infos] == [(number, "finished") for number in range(1, 25)]
+    assert [(info.number, info.end) for info in infos] == [
+        (number, "finished") for number in range(1, 25)
+    ]
 
 
 def test_a_full_disk_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / CATALOGUE_FILE).mkdir()
     monkeypatch.setattr("shutil.disk_usage", lambda _: SimpleNamespace(free=0))
     with pytest.raises(
-        LogError, match=r"no space left on device \(free some space, or TUISIM_HOME may name another folder\)"
+        LogError,
+        match=r"no space left on device \(free some space, or TUISIM_HOME may name another folder\)",
     ):
         Catalogue(tmp_path, lambda: ()).remove(["r"])

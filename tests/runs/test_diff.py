@@ -19,12 +19,19 @@ def test_the_difference_of_two_runs_is_told() -> None:
     assert "mm apart" in recording["poses"]
     assert setup["settings, seed"] == "1 | 2"
     assert "--- prog.py" in [line for label, line in setup_in_words(found) if not label]
-    assert list(recording_in_words(diff_runs(one, one))) == [("bit-identical", "recording, output, settings")]
+    assert list(recording_in_words(diff_runs(one, one))) == [
+        ("bit-identical", "recording, output, settings")
+    ]
 
 
 @pytest.mark.parametrize(
     ("field", "step", "at_s"),
-    [("x_mm", 0.3, 0.4), ("heading_deg", -0.3, 0.4), ("heading_deg", 36.0, 0.1), ("y_mm", 0.01, None)],
+    [
+        ("x_mm", 0.3, 0.4),
+        ("heading_deg", -0.3, 0.4),
+        ("heading_deg", 36.0, 0.1),
+        ("y_mm", 0.01, None),
+    ],
 )
 def test_robots_part_by_distance_or_heading(field: str, step: float, at_s: float | None) -> None:
     one = np.zeros(11, np.dtype(list(TICK_FIELDS)))

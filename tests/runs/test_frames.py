@@ -31,11 +31,36 @@ from tuisim.runs.sensor_arrays import quiet_color_columns
 from tuisim.runs.views import instant_of
 
 TELEMETRY_COLUMNS = [
-    "time", "x_mm", "y_mm", "heading_deg", "left_position_deg", "right_position_deg", "left_speed_dps",
-    "right_speed_dps", "left_red", "left_green", "left_blue", "right_red", "right_green", "right_blue",
-    "ultrasonic_mm", "gyro_deg", "gyro_rate_dps", "line",
-]  # fmt: skip
-SAMPLE_TYPES = ["timedelta64[ns]", "str", "float64", "float64", "int64", "float64", "float64", "float64", "int64"]
+    "time",
+    "x_mm",
+    "y_mm",
+    "heading_deg",
+    "left_position_deg",
+    "right_position_deg",
+    "left_speed_dps",
+    "right_speed_dps",
+    "left_red",
+    "left_green",
+    "left_blue",
+    "right_red",
+    "right_green",
+    "right_blue",
+    "ultrasonic_mm",
+    "gyro_deg",
+    "gyro_rate_dps",
+    "line",
+]
+SAMPLE_TYPES = [
+    "timedelta64[ns]",
+    "str",
+    "float64",
+    "float64",
+    "int64",
+    "float64",
+    "float64",
+    "float64",
+    "int64",
+]
 
 
 def test_samples_say_what_when_where_and_from_which_line(logged: StoredRun) -> None:
@@ -54,7 +79,9 @@ def test_samples_say_what_when_where_and_from_which_line(logged: StoredRun) -> N
     assert frame["heading_deg"].tolist() == [pose.heading_deg for pose in poses]
 
 
-def test_runs_are_counted_in_the_order_given(record: Callable[..., Recorder], spec: RunSpec) -> None:
+def test_runs_are_counted_in_the_order_given(
+    record: Callable[..., Recorder], spec: RunSpec
+) -> None:
     runs = []
     for ticks in (3, 5):
         recorder = record(spec)
@@ -69,7 +96,9 @@ def test_runs_are_counted_in_the_order_given(record: Callable[..., Recorder], sp
 
 
 @pytest.mark.parametrize("count", [0, 1], ids=["no run", "run without samples"])
-def test_frame_without_samples_has_the_same_types(record: Callable[..., Recorder], spec: RunSpec, count: int) -> None:
+def test_frame_without_samples_has_the_same_types(
+    record: Callable[..., Recorder], spec: RunSpec, count: int
+) -> None:
     frame = samples_frame([record(spec).end() for _ in range(count)])
     assert (len(frame), [str(kind) for kind in frame.dtypes]) == (0, SAMPLE_TYPES)
 
@@ -90,10 +119,17 @@ def test_telemetry_has_every_tick(logged: StoredRun, field: Field) -> None:
     assert (frame["x_mm"][0], frame["heading_deg"][0], frame["gyro_deg"][0]) == (5.0, -7.0, 0.0)
 
 
-def test_time_is_when_the_tick_falls_due(record: Callable[..., Recorder], spec: RunSpec, field: Field) -> None:
+def test_time_is_when_the_tick_falls_due(
+    record: Callable[..., Recorder], spec: RunSpec, field: Field
+) -> None:
     recorder = record(replace(spec, profile=replace(spec.profile, tick_hz=30)))
     recorder.drive(1, 1, 3)
-    assert telemetry_frame(recorder.end(), field)["time"].tolist() == [0.0, 0.033333334, 0.066666667, 0.1]
+    assert telemetry_frame(recorder.end(), field)["time"].tolist() == [
+        0.0,
+        0.033333334,
+        0.066666667,
+        0.1,
+    ]
 
 
 def sensors_one_by_one(run: StoredRun, field: Field) -> pd.DataFrame:
@@ -106,11 +142,15 @@ def sensors_one_by_one(run: StoredRun, field: Field) -> pd.DataFrame:
     return pd.DataFrame(rows)
 
 
-@pytest.mark.parametrize("drift", [NO_DRIFT, DriftSpec(wheel_pc=1, gyro_dps=1, echo_loss_pc=90, light_pc=30)])
+@pytest.mark.parametrize(
+    "drift", [NO_DRIFT, DriftSpec(wheel_pc=1, gyro_dps=1, echo_loss_pc=90, light_pc=30)]
+)
 def test_sensors_are_those_of_the_core_to_the_last_bit(
     record: Callable[..., Recorder], spec: RunSpec, field: Field, drift: DriftSpec
 ) -> None:
-    world = replace(spec.world, obstacles=(Obstacle(300, 900, 50, 300),), noise=NoiseSpec(0, 80), drift=drift)
+    world = replace(
+        spec.world, obstacles=(Obstacle(300, 900, 50, 300),), noise=NoiseSpec(0, 80), drift=drift
+    )
     recorder = record(replace(spec, world=world))
     recorder.drive(400, 310, 60)
     recorder.drive(-200, 300, 60)
@@ -125,7 +165,9 @@ def test_a_frame_of_more_ticks_takes_no_more_calls(
     record: Callable[..., Recorder], spec: RunSpec, field: Field
 ) -> None:
     def calls(ticks: int) -> int:
-        recorder = record(replace(spec, world=replace(spec.world, obstacles=(Obstacle(300, 900, 50, 300),))))
+        recorder = record(
+            replace(spec, world=replace(spec.world, obstacles=(Obstacle(300, 900, 50, 300),)))
+        )
         recorder.drive(400, 310, ticks)
         run, counted = recorder.end(), 0
 
@@ -157,7 +199,9 @@ def test_noise_that_the_user_changes_is_in_the_sensors(
     expected = sensors_one_by_one(run, field)
     frame = telemetry_frame(run, field)
     pd.testing.assert_frame_equal(frame[expected.columns], expected, check_exact=True)
-    quiet = pd.DataFrame(quiet_color_columns(run.telemetry.array(), run.spec.robot.color_sensors[0], run.spec, field))
+    quiet = pd.DataFrame(
+        quiet_color_columns(run.telemetry.array(), run.spec.robot.color_sensors[0], run.spec, field)
+    )
     differs = (quiet != frame[quiet.columns]).any(axis=1)
     assert differs.tolist() == [False] * 5 + [True] * 5 + [False] * 6
 
@@ -165,9 +209,15 @@ def test_noise_that_the_user_changes_is_in_the_sensors(
 def test_colour_at_any_place_is_that_of_the_core(spec: RunSpec, field: Field) -> None:
     random = np.random.default_rng(11)
     places = [
-        (x, y, heading) for x, y, heading in random.uniform((-60, 1040, -400), (150, 1180, 400), (1500, 3)).tolist()
+        (x, y, heading)
+        for x, y, heading in random.uniform((-60, 1040, -400), (150, 1180, 400), (1500, 3)).tolist()
     ]
-    places += [(x, y, h) for x in (-20.0, 0.0, 30.0) for y in (1143.0, 1113.0) for h in (0.0, 90.0, -180.0, 270.0)]
+    places += [
+        (x, y, h)
+        for x in (-20.0, 0.0, 30.0)
+        for y in (1143.0, 1113.0)
+        for h in (0.0, 90.0, -180.0, 270.0)
+    ]
     places += [(1e300, 0.0, 0.0), (-1e19, 1e19, 3.0)]
     records = np.zeros(len(places), np.dtype(list(TICK_FIELDS)))
     records["x_mm"], records["y_mm"], records["heading_deg"] = np.array(places).T
@@ -175,13 +225,26 @@ def test_colour_at_any_place_is_that_of_the_core(spec: RunSpec, field: Field) ->
         found = quiet_color_columns(records, sensor, spec, field)
         for at, record in enumerate(TICK_RECORD.iter_unpack(records.tobytes())):
             expected = reading(sensor, Instant(0, Pose(*record[2:5])), field)
-            assert [column[at] for column in found.values()] == [expected.red, expected.green, expected.blue]
+            assert [column[at] for column in found.values()] == [
+                expected.red,
+                expected.green,
+                expected.blue,
+            ]
 
 
-def test_robot_without_some_sensors(record: Callable[..., Recorder], spec: RunSpec, field: Field) -> None:
-    robot = replace(spec.robot, ultrasonic=None, gyro=None, color_sensors=spec.robot.color_sensors[1:])
+def test_robot_without_some_sensors(
+    record: Callable[..., Recorder], spec: RunSpec, field: Field
+) -> None:
+    robot = replace(
+        spec.robot, ultrasonic=None, gyro=None, color_sensors=spec.robot.color_sensors[1:]
+    )
     run = record(replace(spec, robot=robot)).end()
-    assert list(telemetry_frame(run, field).columns[8:]) == ["right_red", "right_green", "right_blue", "line"]
+    assert list(telemetry_frame(run, field).columns[8:]) == [
+        "right_red",
+        "right_green",
+        "right_blue",
+        "line",
+    ]
 
 
 def test_run_without_telemetry_gives_an_empty_frame(logged: StoredRun, field: Field) -> None:
@@ -205,7 +268,10 @@ def grey() -> FieldFiles:
 
 
 def test_mat_is_opened_where_the_host_left_it(
-    record: Callable[..., Recorder], spec: RunSpec, grey: FieldFiles, monkeypatch: pytest.MonkeyPatch
+    record: Callable[..., Recorder],
+    spec: RunSpec,
+    grey: FieldFiles,
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     run = record(mat_spec(spec), field=grey.to_plain()).end()
     monkeypatch.setenv("TUISIM_ASSETS", "/nowhere")
@@ -220,7 +286,9 @@ def reading_at(run: StoredRun, files: FieldFiles) -> float:
 
 @pytest.mark.quick_cases("never said")
 @pytest.mark.parametrize("known", [True, False], ids=["dropped from the cache", "never said"])
-def test_mat_is_prepared_again(record: Callable[..., Recorder], spec: RunSpec, grey: FieldFiles, known: bool) -> None:
+def test_mat_is_prepared_again(
+    record: Callable[..., Recorder], spec: RunSpec, grey: FieldFiles, known: bool
+) -> None:
     lost = replace(grey, pixels=grey.pixels.parent.parent / "gone" / grey.pixels.name)
     run = record(mat_spec(spec), field=lost.to_plain() if known else None).end()
     assert telemetry_frame(run)["left_red"][0] == reading_at(run, grey)

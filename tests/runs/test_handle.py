@@ -35,4 +35,7 @@ def test_who_follows_a_run_sees_all_of_it_however_short_it_is(start: Start) -> N
         view.holds = True
     ended = handle.wait(PATIENCE_S)
     assert ended is not None
-    assert ([row.text for row in handle.output.all_rows()], handle.telemetry.count) == (["bye"], ended.tick + 1)
+    assert ([row.text for row in handle.output.all_rows()], handle.telemetry.count) == (
+        ["bye"],
+        ended.tick + 1,
+    )

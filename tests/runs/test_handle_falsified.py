@@ -58,7 +58,9 @@ FALSIFIES = {
     "an event of a program that asks": TO_PIPES.format(WANTED) + "sum(range(10**12))",
     "an end of its own": TO_PIPES.format(FINISHED) + "os._exit(0)",
     **{
-        f"an end with {name}": TO_PIPES.format(b'{"kind":"ended","end":"finished","tick":0,' + more + b"}\n")
+        f"an end with {name}": TO_PIPES.format(
+            b'{"kind":"ended","end":"finished","tick":0,' + more + b"}\n"
+        )
         + "import ctypes; ctypes.CDLL(None)._exit(0)"
         for name, more in {
             "another time": b'"time_ns":20000000',
@@ -74,7 +76,8 @@ FALSIFIES = {
     "random telemetry": FILES + "open(telemetry, 'r+b').write(bytes(range(200)))",
     "another position": FILES
     + "with open(telemetry, 'r+b') as f: f.seek(72); f.write(struct.pack('<d', float('nan')))",
-    "a record too many": FILES + "with open(telemetry, 'r+b') as f: f.seek(16); f.write(struct.pack('<Q', 5))",
+    "a record too many": FILES
+    + "with open(telemetry, 'r+b') as f: f.seek(16); f.write(struct.pack('<Q', 5))",
     "endless": FILES
     + """
 block = b''.join(struct.pack('<I', tick) + data[4:] for data in [open(telemetry, 'rb').read()[64:128]]
@@ -83,12 +86,15 @@ with open(telemetry, 'r+b') as f:
     f.seek(64); f.write(block); f.flush(); f.seek(16); f.write(struct.pack('<Q', 100000))
 sum(range(10**12))
 """,
-    "a row too long": "print('A: 1')\n" + FILES + "with open(output, 'r+b') as f: f.seek(64); f.write(b'xxxx')",
+    "a row too long": "print('A: 1')\n"
+    + FILES
+    + "with open(output, 'r+b') as f: f.seek(64); f.write(b'xxxx')",
     "pipes in place of recordings": FILES + REPLACED.format(ALL, "os.mkfifo(name)"),
     "pipes in place of small files": FILES + REPLACED.format(ALL[3:], "os.mkfifo(name)"),
     "links": FILES + REPLACED.format(ALL, "os.symlink('/dev/zero', name)"),
     "deleted": FILES + REPLACED.format(ALL[:2], "pass"),
-    "folders as if packed": FILES + "for name in (telemetry, output): os.makedirs(name + '.packed/deep')",
+    "folders as if packed": FILES
+    + "for name in (telemetry, output): os.makedirs(name + '.packed/deep')",
     "as if packed": FILES + "for name in (telemetry, output): os.link(name, name + '.packed')",
 }
 
@@ -127,14 +133,18 @@ def test_what_is_stored_of_a_run_is_what_was_started(start: Start) -> None:
 def test_a_link_in_place_of_the_run_file_leads_nowhere(start: Start, tmp_path: Path) -> None:
     other = tmp_path / "other.json"
     other.write_text("mine")
-    handle = start(FILES + f"os.unlink(folder + '/run.json')\nos.symlink({str(other)!r}, folder + '/run.json')")
+    handle = start(
+        FILES + f"os.unlink(folder + '/run.json')\nos.symlink({str(other)!r}, folder + '/run.json')"
+    )
     assert handle.wait(PATIENCE_S) is not None
     assert other.read_text() == "mine"
     assert json.loads((handle.folder / "run.json").read_text())["end"]["end"] == "finished"
 
 
 def test_a_folder_in_place_of_the_run_file_is_replaced(start: Start) -> None:
-    handle = start(FILES + "os.unlink(folder + '/run.json')\nos.makedirs(folder + '/run.json/deep')")
+    handle = start(
+        FILES + "os.unlink(folder + '/run.json')\nos.makedirs(folder + '/run.json/deep')"
+    )
     assert handle.wait(PATIENCE_S) is not None
     assert (handle.unstored, handle.stored().state) == ("", End.FINISHED)
 
@@ -149,7 +159,9 @@ def test_a_live_run_is_falsified_while_it_goes_on(start: Start) -> None:
 
 @pytest.mark.usefixtures("home")
 def test_nobody_packs_a_run_before_its_end_is_stored() -> None:
-    handle = start_run(Program("a.py", "print(1)", "none"), build_run_spec(Settings()), RunOptions())
+    handle = start_run(
+        Program("a.py", "print(1)", "none"), build_run_spec(Settings()), RunOptions()
+    )
     store = RunStore()
     # Its process is gone, but what it left has not been looked at.
     handle._process.wait()

@@ -16,4 +16,7 @@ def test_every_bit_comes_back_of_what_no_motion_makes() -> None:
     special = np.zeros(8, TICK)
     special["x_mm"] = [0.0, -0.0, np.nan, np.inf, -np.inf, 5e-324, 1.7e308, -1.7e308]
     special["left_speed_dps"] = [0.0, -0.0, np.nan, np.inf, -np.inf, 1e-45, 3e38, -3e38]
-    assert packed_codec.unfold_ticks(packed_codec.fold_ticks(special.tobytes()), 8) == special.tobytes()
+    assert (
+        packed_codec.unfold_ticks(packed_codec.fold_ticks(special.tobytes()), 8)
+        == special.tobytes()
+    )

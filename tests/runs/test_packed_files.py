@@ -87,12 +87,20 @@ def _followed(sim: Simulation) -> None:
             if turn % 3:
                 run(sim, motor, chance.uniform(-800, 800))
             else:
-                motor.control.move_to(now_us, motor.measured, chance.randrange(-900, 900), 1000, 3200, relative=True)
+                motor.control.move_to(
+                    now_us, motor.measured, chance.randrange(-900, 900), 1000, 3200, relative=True
+                )
                 motor.follow(ending=Ending(turn % 2))
         sim.advance(chance.choice((1, 7, 150)))
 
 
-WAYS = {"straight": _straight, "curves": _curves, "steered": _steered, "moves": _moves, "by hand": _moved_by_hand}
+WAYS = {
+    "straight": _straight,
+    "curves": _curves,
+    "steered": _steered,
+    "moves": _moves,
+    "by hand": _moved_by_hand,
+}
 SERVO_WAYS = {"followed": _followed}
 MOST_BYTES = {"straight": 3.0, "curves": 15.0, "steered": 25.0, "moves": 15.0, "by hand": 15.0}
 """A tick, without noise; short recordings, in which the first of everything weighs more."""
@@ -106,7 +114,13 @@ def _recorded(folder: Path, way: str, profile: str = "robolab", noise: int = 0) 
     writer.close()
     output = OutputWriter(folder)
     for row in range(300):
-        output.write(f"Größe: {row % 7}".encode() * (row % 3), row // 2, row * 7_000_000, row % 5, Stream.STDOUT)
+        output.write(
+            f"Größe: {row % 7}".encode() * (row % 3),
+            row // 2,
+            row * 7_000_000,
+            row % 5,
+            Stream.STDOUT,
+        )
     output.close()
 
 
@@ -163,7 +177,9 @@ class Killed(BaseException):
 
 
 @pytest.mark.parametrize("step", range(1, 9))
-def test_packing_may_be_cut_off_anywhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, step: int) -> None:
+def test_packing_may_be_cut_off_anywhere(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, step: int
+) -> None:
     folder = tmp_path / "run"
     _recorded(folder, "curves")
     telemetry, output = TelemetryView(folder).array().tobytes(), OutputView(folder).all_rows()
@@ -227,7 +243,9 @@ def test_damage_is_told_and_loses_nothing_else(tmp_path: Path, name: str, damage
     with pytest.raises(LogError, match=rf"{name}\.packed: .*{told}"):
         TelemetryView(folder).array()
         OutputView(folder).all_rows()
-    other = OutputView(folder).length if name == TELEMETRY_FILE else len(TelemetryView(folder).array())
+    other = (
+        OutputView(folder).length if name == TELEMETRY_FILE else len(TelemetryView(folder).array())
+    )
     assert other > 300
 
 
@@ -269,7 +287,9 @@ def test_left_over_files_go_when_they_are_old(tmp_path: Path) -> None:
     assert not old.exists() and new.exists()
 
 
-def test_what_would_not_come_back_is_not_packed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_would_not_come_back_is_not_packed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     folder = tmp_path / "run"
     _recorded(folder, "curves")
     kept = tmp_path / "kept"

@@ -63,8 +63,15 @@ def test_rows_are_found_by_tick(tmp_path: Path) -> None:
 def test_new_levels_and_errors_stand_out_once(tmp_path: Path) -> None:
     values = [100, 100, 99, 50, 50, 51, 100]
     rows = [(10 * at, Stream.STDOUT, f"Colour: {value}") for at, value in enumerate(values)]
-    index = index_of(tmp_path, [*rows, (90, Stream.STDERR, "Traceback"), (90, Stream.STDERR, "NameError")])
-    assert index.marks == [(20, Mark.SAMPLE), (30, Mark.SAMPLE), (60, Mark.SAMPLE), (90, Mark.ERROR)]
+    index = index_of(
+        tmp_path, [*rows, (90, Stream.STDERR, "Traceback"), (90, Stream.STDERR, "NameError")]
+    )
+    assert index.marks == [
+        (20, Mark.SAMPLE),
+        (30, Mark.SAMPLE),
+        (60, Mark.SAMPLE),
+        (90, Mark.ERROR),
+    ]
 
 
 @pytest.mark.slow
@@ -81,7 +88,9 @@ def stored(text: str, choices: Mapping[str, Any] | None = None) -> StoredRun:
 
 
 @pytest.mark.quick_cases("near")
-@pytest.mark.parametrize("ticks", [(0, 20, 59), (59, 20, 0), (30, 30, 31)], ids=["forward", "back", "near"])
+@pytest.mark.parametrize(
+    "ticks", [(0, 20, 59), (59, 20, 0), (30, 30, 31)], ids=["forward", "back", "near"]
+)
 def test_sensors_see_what_the_pen_had_drawn_by_then(ticks: tuple[int, ...]) -> None:
     run = stored("tank_drive.on_for_seconds(50, 50, 0.6)\n", {"pen.down": True, "pen_marks": True})
     mat, recording = open_mat(run), Recording(run)

@@ -22,7 +22,7 @@ from tuisim.runs.records import (
     output_rows,
     published_length,
     raw_rows,
-)  # fmt: skip
+)
 from tuisim.runs.views import TelemetryView
 
 
@@ -34,7 +34,9 @@ def _say_full(_: OSError) -> Exception:
     return _Full()
 
 
-def test_writers_ask_for_less_and_lose_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_writers_ask_for_less_and_lose_nothing(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     real, free = os.posix_fallocate, 1_500_000
 
     def reserve(fd: int, start: int, size: int) -> None:
@@ -58,7 +60,9 @@ def test_writers_ask_for_less_and_lose_nothing(tmp_path: Path, monkeypatch: pyte
     assert TelemetryView(tmp_path).array()["tick"].tolist() == list(range(writer.count))
 
 
-def test_room_is_reserved_where_there_is_no_call_for_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_room_is_reserved_where_there_is_no_call_for_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.delattr(os, "posix_fallocate")
     writer = OutputWriter(tmp_path)
     found = (tmp_path / OUTPUT_FILE).stat()
@@ -81,15 +85,21 @@ def test_a_header_says_what_a_file_is() -> None:
 
 def test_rows_that_are_not_complete_are_left_out(tmp_path: Path) -> None:
     writer = OutputWriter(tmp_path)
-    for text, stream in ((b"one", Stream.STDOUT), (b"", Stream.STDERR), ("é\xff".encode("latin-1"), Stream.SPEECH)):
+    for text, stream in (
+        (b"one", Stream.STDOUT),
+        (b"", Stream.STDERR),
+        ("é\xff".encode("latin-1"), Stream.SPEECH),
+    ):
         writer.write(text, 5, 50, 2, stream)
     writer.close()
     data = (tmp_path / OUTPUT_FILE).read_bytes()
     end = len(data) - HEADER_BYTES
     rows = [row for row, _ in output_rows(data, 0, end)]
     assert [(row.text, row.stream) for row in rows] == [
-        ("one", Stream.STDOUT), ("", Stream.STDERR), ("\ufffd\ufffd", Stream.SPEECH)
-    ]  # fmt: skip
+        ("one", Stream.STDOUT),
+        ("", Stream.STDERR),
+        ("\ufffd\ufffd", Stream.SPEECH),
+    ]
     assert [row.text for row, _ in output_rows(data, 0, end - 1)] == ["one", ""]
     assert [text for _, text in raw_rows(data, end - 1)] == [b"one", b""]
     (_, after_first), *_ = output_rows(data, 0, end)

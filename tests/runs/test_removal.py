@@ -54,7 +54,9 @@ def test_a_deep_folder_is_deleted_and_what_links_lead_to_is_not(
     remove_tree(folder)
 
 
-def test_what_cannot_be_deleted_is_left_or_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_cannot_be_deleted_is_left_or_told(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     def refuse(*_: object, **__: object) -> None:
         raise PermissionError("no")
 

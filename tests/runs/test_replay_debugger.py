@@ -38,7 +38,14 @@ print('over')
 
 
 def test_places_in_one_tick_are_in_the_order_of_its_lines() -> None:
-    places = [Position(4), Position(5, AFTER_TICK), Position(5, 1), Position(5, 9), Position(5), Position(6, 1)]
+    places = [
+        Position(4),
+        Position(5, AFTER_TICK),
+        Position(5, 1),
+        Position(5, 9),
+        Position(5),
+        Position(6, 1),
+    ]
     assert Position(5).ordinal == BEFORE_NEXT_TICK
     assert all(one.is_before(other) and not other.is_before(one) for one, other in pairwise(places))
 
@@ -101,7 +108,9 @@ def test_a_step_from_an_instant(recording: Recording, looker: Looker) -> None:
     assert (paused.line, paused.tick) == (2, 110)
 
 
-def test_beyond_the_end_it_is_held_at_the_end_and_may_go_on_over_it(recording: Recording, looker: Looker) -> None:
+def test_beyond_the_end_it_is_held_at_the_end_and_may_go_on_over_it(
+    recording: Recording, looker: Looker
+) -> None:
     looker.debugger.go(recording, Position(10_000), Inspect())
     paused, names = looker.answer()
     assert (paused.reason, paused.tick, names["n"]) == (PauseReason.END, 300, "29")

@@ -63,7 +63,9 @@ WAYS = ("headless", "live", "stopped", "limited")
 def _action(chance: random.Random) -> Message:
     return chance.choice(
         (
-            SetPose(chance.uniform(100, 2000), chance.uniform(100, 1000), chance.uniform(-180, 180)),
+            SetPose(
+                chance.uniform(100, 2000), chance.uniform(100, 1000), chance.uniform(-180, 180)
+            ),
             SetNoise(chance.randint(0, 128), chance.randint(0, 500)),
             SetPen(chance.random() < 0.5),
             SetButtons(("enter", "up") if chance.random() < 0.5 else ()),
@@ -74,7 +76,9 @@ def _action(chance: random.Random) -> Message:
 def _check(number: int, start: Start, scratch: Path) -> None:
     chance = random.Random(number)
     way = WAYS[number % len(WAYS)]
-    text = PROGRAMS[number % len(PROGRAMS)].format(turns=chance.randint(20, 40), speed=chance.randint(20, 60))
+    text = PROGRAMS[number % len(PROGRAMS)].format(
+        turns=chance.randint(20, 40), speed=chance.randint(20, 60)
+    )
     live = way in ("live", "stopped")
     answers = () if live else ("Ada",) * 2
     handle = start(
@@ -132,7 +136,10 @@ def test_a_difference_is_found(start: Start) -> None:
     assert not found.same
     assert found.setup == (("seed", "1", "2"),)
     assert found.tick is not None and "x_mm" in found.tick.fields
-    assert found.divergence is not None and found.divergence.table[0][1] == 0.0 < found.divergence.max_mm
+    assert (
+        found.divergence is not None
+        and found.divergence.table[0][1] == 0.0 < found.divergence.max_mm
+    )
     assert diff_runs(one, one).same
 
 
@@ -145,7 +152,11 @@ def test_commands(capsys: pytest.CaptureFixture[str]) -> None:
     one, two = (str(info.number) for info in RunStore().runs()[-2:])
     assert run_command(["log", "diff", one, two]) == 1
     said = capsys.readouterr().out
-    assert "settings, seed: 0 | 4" in said and "first differing tick: tick 1," in said and "over 1 mm: from" in said
+    assert (
+        "settings, seed: 0 | 4" in said
+        and "first differing tick: tick 1," in said
+        and "over 1 mm: from" in said
+    )
     assert run_command(["log", "diff", one]) == 2
 
 
@@ -188,7 +199,12 @@ def test_a_stop_is_given_again_at_its_tick(start: Start, tmp_path: Path, live: b
 def test_a_run_that_is_stopped_before_its_first_tick_is_run_again_also_where_ticks_are_not_whole_nanoseconds(
     start: Start, tmp_path: Path
 ) -> None:
-    handle = start("tank_drive.on(20, 20)\nwhile True: pass", live=True, profile="nbev3devsim", start_paused=True)
+    handle = start(
+        "tank_drive.on(20, 20)\nwhile True: pass",
+        live=True,
+        profile="nbev3devsim",
+        start_paused=True,
+    )
     until(handle, lambda: handle.paused)
     handle.send(SetPen(True))
     until(handle, lambda: handle.telemetry.record(0).actions == 1)
@@ -243,7 +259,9 @@ def test_a_motor_that_does_not_drive_is_recorded_alike_live_and_headless(home: P
 def test_a_differing_line_is_numbered_as_people_see_it(home: Path) -> None:
     spec, runs = build_run_spec(Settings({"robot": "Explorer"})), []
     for word in ("one", "two"):
-        handle = start_run(Program("arm.py", f"print('first'){ARM}print('{word}')\n"), spec, RunOptions())
+        handle = start_run(
+            Program("arm.py", f"print('first'){ARM}print('{word}')\n"), spec, RunOptions()
+        )
         over(handle)
         runs.append(RunStore().load_run(handle.run_id))
     found = diff_runs(*runs).output

@@ -36,13 +36,17 @@ def earlier(run: Run) -> Earlier:
     [
         (
             "nbev3devsim",
-            ("recorded with an earlier motor law of the profile nbev3devsim: a rerun may give another result",),
+            (
+                "recorded with an earlier motor law of the profile nbev3devsim: a rerun may give another result",
+            ),
         ),
         ("robolab", ()),
         ("ev3", ()),
     ],
 )
-def test_an_earlier_run_opens_with_its_motor_law(profile: str, notes: tuple[str, ...], earlier: Earlier) -> None:
+def test_an_earlier_run_opens_with_its_motor_law(
+    profile: str, notes: tuple[str, ...], earlier: Earlier
+) -> None:
     stored = earlier(profile)
     assert stored.spec.profile == PROFILES[profile]
     assert stored.telemetry.count > 1

@@ -22,9 +22,14 @@ ACTIONS = (
     [
         pytest.param(RunOptions(), id="default"),
         pytest.param(RunOptions(live=True, speed=0.25, start_paused=True), id="live"),
-        pytest.param(RunOptions(answers=("yes", ""), asks_user=True, time_waits=True, replies=True), id="answers"),
+        pytest.param(
+            RunOptions(answers=("yes", ""), asks_user=True, time_waits=True, replies=True),
+            id="answers",
+        ),
         pytest.param(RunOptions(actions=ACTIONS), id="actions"),
-        pytest.param(RunOptions(breaks=("12 if x > 3",), trace_from_tick=7, hold_at=(7, 2)), id="debugged"),
+        pytest.param(
+            RunOptions(breaks=("12 if x > 3",), trace_from_tick=7, hold_at=(7, 2)), id="debugged"
+        ),
     ],
 )
 def test_options_are_the_same_after_a_file(options: RunOptions) -> None:

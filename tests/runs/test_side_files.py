@@ -32,7 +32,9 @@ def test_state_of_a_file(tmp_path: Path) -> None:
     path.write_bytes(b"123456789")
     os.utime(path, ns=(5, 5))
     # The check value of CRC-32.
-    assert state_of(str(path)) == FileRead(str(path), there=True, bytes=9, mtime_ns=5, crc32=0xCBF43926)
+    assert state_of(str(path)) == FileRead(
+        str(path), there=True, bytes=9, mtime_ns=5, crc32=0xCBF43926
+    )
 
 
 def test_pipes_in_place_of_lists_and_locks_do_not_block(tmp_path: Path) -> None:
@@ -51,7 +53,9 @@ def test_a_large_file_is_not_read(tmp_path: Path) -> None:
     assert (found.bytes, found.crc32) == (MOST_SUMMED_BYTES + 1, -1)
 
 
-@pytest.mark.parametrize("path", ["/", os.devnull, "a\0b", "x" * 5000], ids=["folder", "device", "null", "long"])
+@pytest.mark.parametrize(
+    "path", ["/", os.devnull, "a\0b", "x" * 5000], ids=["folder", "device", "null", "long"]
+)
 def test_other_things_have_no_state(path: str) -> None:
     assert state_of(path) is None
 
@@ -92,7 +96,9 @@ def test_a_longer_list_is_cut(tmp_path: Path) -> None:
     assert (len(found.files), found.left_out) == (MOST_READS, 3)
 
 
-@pytest.mark.parametrize("row", ["3", "[]", '{"path": "a"}', '{"left_out": null}', "\\", '{"left_out": 1e999}'])
+@pytest.mark.parametrize(
+    "row", ["3", "[]", '{"path": "a"}', '{"left_out": null}', "\\", '{"left_out": 1e999}']
+)
 def test_a_damaged_list_is_named(row: str, tmp_path: Path) -> None:
     (tmp_path / READS_FILE).write_text(f"{row}\n")
     with pytest.raises(LogError, match=READS_FILE):

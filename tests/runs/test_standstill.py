@@ -48,29 +48,38 @@ SAID: dict[str, tuple[RunSpec, Moves, str]] = {
     "to the end": (SPEC, [(ON, 200)], PUSHED),
     "motors stop there": (SPEC, [(ON, 200), (STOP, 99)], PUSHED),
     "drives away": (
-        SPEC, [(ON, 200), (STOP, 50), (BACK, 50)],
+        SPEC,
+        [(ON, 200), (STOP, 50), (BACK, 50)],
         "stood at the wall from 1.03 s to 2.50 s, its wheels pushed for 1.0 s",
     ),
     "pushes again where it is": (
-        SPEC, [(ON, 200), (STOP, 50), (ON, 100)], "stood at the wall from 1.03 s on, its wheels pushed for 2.0 s"
+        SPEC,
+        [(ON, 200), (STOP, 50), (ON, 100)],
+        "stood at the wall from 1.03 s on, its wheels pushed for 2.0 s",
     ),
     "comes again": (
-        SPEC, [(ON, 200), (BACK, 50), (ON, 150)],
+        SPEC,
+        [(ON, 200), (BACK, 50), (ON, 150)],
         "stood at the wall 2 times, first at 1.03 s, its wheels pushed for 2.0 s in all",
     ),
     "an obstacle": (
-        replace(SPEC, world=BOX), [(ON, 200)], "stood at an obstacle from 1.03 s on, its wheels pushed for 1.0 s"
+        replace(SPEC, world=BOX),
+        [(ON, 200)],
+        "stood at an obstacle from 1.03 s on, its wheels pushed for 1.0 s",
     ),
     "an obstacle without walls": (
-        replace(SPEC, world=replace(BOX, walls=False)), [(ON, 200)],
+        replace(SPEC, world=replace(BOX, walls=False)),
+        [(ON, 200)],
         "stood at an obstacle from 1.03 s on, its wheels pushed for 1.0 s",
     ),
     "in the browser simulator": (
-        replace(SPEC, profile=PROFILES["nbev3devsim"]), [(ON, 60)],
+        replace(SPEC, profile=PROFILES["nbev3devsim"]),
+        [(ON, 60)],
         PUSHED,
     ),
     "reversed": (
-        replace(SPEC, robot=replace(ROBOT, left_reversed=True)), [((-400.0, 400.0), 200)],
+        replace(SPEC, robot=replace(ROBOT, left_reversed=True)),
+        [((-400.0, 400.0), 200)],
         PUSHED,
     ),
     "too short to stall": (SPEC, [(ON, 110), (STOP, 50)], ""),
@@ -78,7 +87,7 @@ SAID: dict[str, tuple[RunSpec, Moves, str]] = {
     "speed 0 in the open": (SPEC, [((0.0, 0.0), 100)], ""),
     "nothing is solid": (replace(SPEC, world=replace(WALL, solid=False)), [(ON, 200)], ""),
     "no tick": (SPEC, [], ""),
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize(("spec", "moves", "said"), SAID.values(), ids=SAID)
@@ -86,7 +95,9 @@ def test_what_is_said_of_a_run(record: Record, spec: RunSpec, moves: Moves, said
     assert words(record, spec, moves) == said
 
 
-def test_noise_that_lets_the_wheels_turn_a_little_does_not_hide_that_they_push(record: Record) -> None:
+def test_noise_that_lets_the_wheels_turn_a_little_does_not_hide_that_they_push(
+    record: Record,
+) -> None:
     recorder = record(replace(SPEC, world=replace(WALL, noise=NoiseSpec(0, 50))))
     recorder.drive(*ON, 400)
     run = recorder.end()

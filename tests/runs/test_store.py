@@ -51,21 +51,46 @@ def test_run_is_stored_whole(record: Callable[..., Recorder], noisy_spec: RunSpe
 def test_catalogue_says_how_it_went(logged: StoredRun, store: RunStore) -> None:
     (info,) = store.runs()
     assert info == RunInfo(
-        1, logged.id, logged.created, "log.py", "Empty_Map", "robolab", 3, End.FINISHED, 17, 0.17, 4, "", ""
+        1,
+        logged.id,
+        logged.created,
+        "log.py",
+        "Empty_Map",
+        "robolab",
+        3,
+        End.FINISHED,
+        17,
+        0.17,
+        4,
+        "",
+        "",
     )
 
 
 def test_run_file_is_what_others_may_read(logged: StoredRun) -> None:
     data = json.loads((logged.folder / RUN_FILE).read_bytes())
     assert list(data) == [
-        "format", "id", "number", "created", "live", "program", "spec", "light_law", "field", "options", "tags", "end",
-    ]  # fmt: skip
+        "format",
+        "id",
+        "number",
+        "created",
+        "live",
+        "program",
+        "spec",
+        "light_law",
+        "field",
+        "options",
+        "tags",
+        "end",
+    ]
     assert data["program"]["sha256"] == PROGRAM.sha256
     assert data["end"]["end"] == "finished"
     assert not list(logged.folder.glob("*.tmp")) + list(logged.folder.glob(".*"))
 
 
-@pytest.mark.parametrize("how", ["id", "start of the id", "number", "last", "folder", "folder as text"])
+@pytest.mark.parametrize(
+    "how", ["id", "start of the id", "number", "last", "folder", "folder as text"]
+)
 def test_run_is_found(logged: StoredRun, store: RunStore, how: str) -> None:
     names: dict[str, str | Path] = {
         "id": logged.id,
@@ -85,7 +110,9 @@ def test_number_goes_before_the_start_of_an_id(store: RunStore, spec: RunSpec) -
 
 
 @pytest.mark.parametrize("text", ["", "7", "nothing", "..", "lastly"])
-def test_unknown_run_is_an_error_that_says_what_there_is(logged: StoredRun, store: RunStore, text: str) -> None:
+def test_unknown_run_is_an_error_that_says_what_there_is(
+    logged: StoredRun, store: RunStore, text: str
+) -> None:
     with pytest.raises(LogError, match=r"no run .*a number from 1 to 1, an id, or last"):
         store.load_run(text)
 
@@ -109,7 +136,9 @@ def test_home_comes_from_the_environment(home: Path, spec: RunSpec) -> None:
     assert load_run("last").id == run.id
 
 
-def test_home_is_the_user_data_folder_by_default(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_home_is_the_user_data_folder_by_default(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
     monkeypatch.delenv("TUISIM_HOME")
     monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path))
     assert home_folder().name == "tuisim"
@@ -132,7 +161,9 @@ def test_run_that_could_not_be_listed_leaves_no_folder(tmp_path: Path, spec: Run
 # Runs without an end
 
 
-def test_run_of_a_living_process_is_running(record: Callable[..., Recorder], spec: RunSpec, store: RunStore) -> None:
+def test_run_of_a_living_process_is_running(
+    record: Callable[..., Recorder], spec: RunSpec, store: RunStore
+) -> None:
     recorder = record(spec)
     lock = hold(recorder.run.folder)
     recorder.drive(50, 50, 3)
@@ -145,14 +176,18 @@ def test_run_of_a_living_process_is_running(record: Callable[..., Recorder], spe
     assert store.load_run("last").state == Unended.INTERRUPTED
 
 
-def test_a_lock_is_held_before_others_can_find_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_lock_is_held_before_others_can_find_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     found = []
 
     def lock(descriptor: int, operation: int) -> None:
         found.append((tmp_path / LOCK_FILE).exists())
         flock(descriptor, operation)
 
-    monkeypatch.setattr(side_files, "fcntl", SimpleNamespace(flock=lock, LOCK_EX=LOCK_EX, LOCK_NB=LOCK_NB))
+    monkeypatch.setattr(
+        side_files, "fcntl", SimpleNamespace(flock=lock, LOCK_EX=LOCK_EX, LOCK_NB=LOCK_NB)
+    )
     os.close(hold(tmp_path))
     assert found == [False]
 
@@ -189,7 +224,9 @@ def test_run_that_never_started_is_interrupted(store: RunStore, spec: RunSpec) -
     assert store.runs()[0].end == Unended.INTERRUPTED
 
 
-def test_killed_run_keeps_its_rows(record: Callable[..., Recorder], spec: RunSpec, store: RunStore) -> None:
+def test_killed_run_keeps_its_rows(
+    record: Callable[..., Recorder], spec: RunSpec, store: RunStore
+) -> None:
     recorder = record(spec)
     os.close(hold(recorder.run.folder))
     recorder.drive(50, 50, 3)
@@ -199,12 +236,19 @@ def test_killed_run_keeps_its_rows(record: Callable[..., Recorder], spec: RunSpe
     assert (info.end, info.ticks, info.samples) == (Unended.INTERRUPTED, 3, 2)
     assert store.runs() == [info]
     run = store.load_run("1")
-    assert (run.end, run.state, len(run.output.all_rows()), run.telemetry.count) == (None, Unended.INTERRUPTED, 2, 4)
+    assert (run.end, run.state, len(run.output.all_rows()), run.telemetry.count) == (
+        None,
+        Unended.INTERRUPTED,
+        2,
+        4,
+    )
     assert run.time_s == info.time_s
     assert run.time_s > 0
 
 
-def test_end_that_comes_late_counts(record: Callable[..., Recorder], spec: RunSpec, store: RunStore) -> None:
+def test_end_that_comes_late_counts(
+    record: Callable[..., Recorder], spec: RunSpec, store: RunStore
+) -> None:
     recorder = record(spec)
     os.close(hold(recorder.run.folder))
     assert store.runs()[0].end == Unended.INTERRUPTED
@@ -212,8 +256,12 @@ def test_end_that_comes_late_counts(record: Callable[..., Recorder], spec: RunSp
     assert store.runs()[0].end == "killed"
 
 
-@pytest.mark.parametrize("listed", ["", Unended.INTERRUPTED], ids=["not listed", "listed as interrupted"])
-def test_end_that_never_reached_the_catalogue_counts(logged: StoredRun, store: RunStore, listed: str) -> None:
+@pytest.mark.parametrize(
+    "listed", ["", Unended.INTERRUPTED], ids=["not listed", "listed as interrupted"]
+)
+def test_end_that_never_reached_the_catalogue_counts(
+    logged: StoredRun, store: RunStore, listed: str
+) -> None:
     (before,) = store.runs()
     _change_catalogue(store, f"UPDATE runs SET end = '{listed}', ticks = NULL, samples = NULL")
     assert store.runs() == [before]
@@ -237,7 +285,9 @@ def test_long_output_is_counted_when_the_run_is_listed(
     assert _change_catalogue(store, "SELECT samples FROM runs") == [(1,)]
 
 
-def test_torn_run_says_what_is_lost(record: Callable[..., Recorder], spec: RunSpec, store: RunStore) -> None:
+def test_torn_run_says_what_is_lost(
+    record: Callable[..., Recorder], spec: RunSpec, store: RunStore
+) -> None:
     recorder = record(spec)
     recorder.print("a: 1")
     recorder.print("a: 2")
@@ -287,7 +337,9 @@ def test_damaged_action_is_named_by_its_row(logged: StoredRun) -> None:
 # Changing the store
 
 
-def test_removed_run_is_gone_and_its_number_is_not_used_again(store: RunStore, spec: RunSpec) -> None:
+def test_removed_run_is_gone_and_its_number_is_not_used_again(
+    store: RunStore, spec: RunSpec
+) -> None:
     runs = [store.new_run(PROGRAM, spec) for _ in range(3)]
     for run in runs:
         store.finish(run, FINISHED)
@@ -311,7 +363,9 @@ def test_what_a_killed_removal_has_left_goes_with_the_next_one(
     assert [path.name for path in (store.home / "runs").iterdir()] == [runs[2].id]
 
 
-def test_what_a_program_has_put_into_its_folder_is_not_copied_into_the_store(logged: StoredRun, tmp_path: Path) -> None:
+def test_what_a_program_has_put_into_its_folder_is_not_copied_into_the_store(
+    logged: StoredRun, tmp_path: Path
+) -> None:
     mine = tmp_path / "mine"
     mine.write_text("mine")
     os.mkfifo(logged.folder / "pipe")
@@ -320,7 +374,12 @@ def test_what_a_program_has_put_into_its_folder_is_not_copied_into_the_store(log
     (logged.folder / "reads.jsonl").symlink_to(mine)
     (logged.folder / "nowhere").symlink_to(tmp_path / "nothing")
     adopted = RunStore(tmp_path / "other").adopt(logged.folder)
-    assert {path.name for path in adopted.folder.iterdir()} == {"run.json", "telemetry.bin", "output.bin", "lock"}
+    assert {path.name for path in adopted.folder.iterdir()} == {
+        "run.json",
+        "telemetry.bin",
+        "output.bin",
+        "lock",
+    }
 
 
 def test_a_run_cannot_be_removed_while_it_is_copied_into_the_store(
@@ -354,7 +413,9 @@ def test_run_that_is_not_there_cannot_be_changed(store: RunStore, change: str) -
         changes[change]()
 
 
-def test_tags_stay_when_the_run_ends_and_the_catalogue_is_lost(store: RunStore, spec: RunSpec) -> None:
+def test_tags_stay_when_the_run_ends_and_the_catalogue_is_lost(
+    store: RunStore, spec: RunSpec
+) -> None:
     run = store.new_run(PROGRAM, spec)
     store.tag(run.id, ["good", "fast"])
     store.finish(run, FINISHED)
@@ -365,11 +426,16 @@ def test_tags_stay_when_the_run_ends_and_the_catalogue_is_lost(store: RunStore, 
         store.tag(run.id, ["two words"])
 
 
-def test_folder_deleted_or_copied_by_hand_is_noticed(logged: StoredRun, store: RunStore, spec: RunSpec) -> None:
+def test_folder_deleted_or_copied_by_hand_is_noticed(
+    logged: StoredRun, store: RunStore, spec: RunSpec
+) -> None:
     shutil.copytree(logged.folder, store.folder("copy"))
     gone = store.new_run(PROGRAM, spec)
     shutil.rmtree(gone.folder)
-    assert [(info.number, info.id, info.samples) for info in store.runs()] == [(1, logged.id, 4), (3, "copy", 4)]
+    assert [(info.number, info.id, info.samples) for info in store.runs()] == [
+        (1, logged.id, 4),
+        (3, "copy", 4),
+    ]
 
 
 # Noise

@@ -45,7 +45,9 @@ def test_a_long_run_is_packed_when_it_is_over(start: Start) -> None:
     assert handle.telemetry.count == 6102
     stored = RunStore().load_run(handle.run_id)
     assert stored.telemetry.array().tobytes() == handle.telemetry.array().tobytes()
-    assert [row.text for row in stored.output.rows()] == [row.text for row in handle.output.all_rows()]
+    assert [row.text for row in stored.output.rows()] == [
+        row.text for row in handle.output.all_rows()
+    ]
     assert run_command(["runs", "rerun", handle.run_id]) == 0
 
 
@@ -96,14 +98,27 @@ def killed(start: Start) -> RunHandle:
 def test_what_an_earlier_tuisim_packed_is_made_again(
     start: Start, is_killed: bool, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    handle = killed(start) if is_killed else start(SHORT + "print('Far:', ultrasonic.distance_centimeters)\n")
+    handle = (
+        killed(start)
+        if is_killed
+        else start(SHORT + "print('Far:', ultrasonic.distance_centimeters)\n")
+    )
     over(handle)
     settle()
     telemetry = pack_as_earlier(handle.folder)
     stored = RunStore().load_run(handle.run_id)
-    assert (stored.program.text, stored.spec, stored.telemetry.count) == (handle.program.text, handle.spec, 0)
+    assert (stored.program.text, stored.spec, stored.telemetry.count) == (
+        handle.program.text,
+        handle.spec,
+        0,
+    )
     assert run_command(["runs", "show", handle.run_id]) == 0
-    assert capsys.readouterr().out.count("packed by an earlier tuisim and cannot be read: `tuisim runs rerun RUN`") == 1
+    assert (
+        capsys.readouterr().out.count(
+            "packed by an earlier tuisim and cannot be read: `tuisim runs rerun RUN`"
+        )
+        == 1
+    )
     assert run_command(["log", "summary", handle.run_id]) == 2
     assert "packed by an earlier tuisim" in capsys.readouterr().err
     assert run_command(["runs", "rerun", handle.run_id]) == 0
@@ -114,7 +129,9 @@ def test_what_an_earlier_tuisim_packed_is_made_again(
     assert packed(handle.folder)
 
 
-def test_a_rerun_that_differs_replaces_no_recording(start: Start, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_rerun_that_differs_replaces_no_recording(
+    start: Start, capsys: pytest.CaptureFixture[str]
+) -> None:
     handle = start(SHORT)
     over(handle)
     pack_as_earlier(handle.folder, checksum_off=1)

@@ -35,15 +35,21 @@ def remove_before_reading(folder: Path) -> dict[str, Any]:
     return READ(folder)
 
 
-@pytest.mark.parametrize("is_made_again", [False, True], ids=["a list", "a list that is made again"])
-def test_it_is_not_listed(home: Path, run: NewRun, monkeypatch: pytest.MonkeyPatch, is_made_again: bool) -> None:
+@pytest.mark.parametrize(
+    "is_made_again", [False, True], ids=["a list", "a list that is made again"]
+)
+def test_it_is_not_listed(
+    home: Path, run: NewRun, monkeypatch: pytest.MonkeyPatch, is_made_again: bool
+) -> None:
     if is_made_again:
         (home / CATALOGUE_FILE).unlink()
     monkeypatch.setattr(store_module, "read_run_file", remove_before_reading)
     assert RunStore().runs() == []
 
 
-def test_it_does_not_exist_for_who_has_just_found_it(run: NewRun, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_it_does_not_exist_for_who_has_just_found_it(
+    run: NewRun, monkeypatch: pytest.MonkeyPatch
+) -> None:
     def find(store: RunStore, _: str) -> RunInfo:
         shutil.rmtree(run.folder)
         return store._catalogue.rows()[0]

@@ -162,7 +162,9 @@ print(array["tick"].sum(), telemetry.record(19_999).tick, telemetry.count, sum(1
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("size", [0, 10, HEADER_BYTES, 5000], ids=["empty", "half a header", "header", "some"])
+@pytest.mark.parametrize(
+    "size", [0, 10, HEADER_BYTES, 5000], ids=["empty", "half a header", "header", "some"]
+)
 def test_recording_that_shrinks_under_its_reader_stays_read(tmp_path: Path, size: int) -> None:
     telemetry, output = TelemetryWriter(tmp_path), OutputWriter(tmp_path)
     put(telemetry, 20_000)
@@ -170,7 +172,9 @@ def test_recording_that_shrinks_under_its_reader_stays_read(tmp_path: Path, size
         output.write(b"x" * 100, number, 0, 0, Stream.STDOUT)
     command = [sys.executable, "-c", SHRUNK, str(tmp_path), str(size)]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
-    assert (done.stdout.split(), done.returncode) == (["199990000", "19999", "20000", "1999"], 0), done.stderr
+    assert (done.stdout.split(), done.returncode) == (["199990000", "19999", "20000", "1999"], 0), (
+        done.stderr
+    )
 
 
 @pytest.mark.parametrize("index", [-1, 2, 5000])
@@ -226,7 +230,9 @@ def test_row_that_was_never_published_is_not_read(tmp_path: Path) -> None:
     writer.close()
 
 
-@pytest.mark.parametrize("content", [b"x" * 200, b"TUISIMTL" + b"\x09\0\0\0" + bytes(80)], ids=["foreign", "version"])
+@pytest.mark.parametrize(
+    "content", [b"x" * 200, b"TUISIMTL" + b"\x09\0\0\0" + bytes(80)], ids=["foreign", "version"]
+)
 def test_of_another_file_nothing_is_read(tmp_path: Path, content: bytes) -> None:
     (tmp_path / TELEMETRY_FILE).write_bytes(content)
     view = TelemetryView(tmp_path)
@@ -267,24 +273,38 @@ def test_nothing_is_lost_when_the_writer_is_killed(tmp_path: Path) -> None:
 def test_instant_has_what_the_sensors_need(spec: RunSpec) -> None:
     record = TickRecord(12, 3, 1.0, 2.0, 30.0, 4.0, 5.0, 100.0, 200.0, 8.0, 0, 0)
     instant = instant_of(record, spec, NoiseSpec(5, 6))
-    assert (instant.tick, instant.pose, instant.seed, instant.noise) == (12, record.pose, 3, NoiseSpec(5, 6))
+    assert (instant.tick, instant.pose, instant.seed, instant.noise) == (
+        12,
+        record.pose,
+        3,
+        NoiseSpec(5, 6),
+    )
     assert instant.turn_rate_dps == 100.0 * 56 / (2 * 180)
 
 
-def test_runs_that_are_over_keep_no_files_open(record: Callable[..., Recorder], spec: RunSpec) -> None:
+def test_runs_that_are_over_keep_no_files_open(
+    record: Callable[..., Recorder], spec: RunSpec
+) -> None:
     recorder = record(spec)
     recorder.drive(50, 50, 3)
     recorder.print("a: 1")
     recorder.end()
     before = len(os.listdir("/proc/self/fd"))
-    views = [(TelemetryView(recorder.run.folder), OutputView(recorder.run.folder)) for _ in range(5)]
+    views = [
+        (TelemetryView(recorder.run.folder), OutputView(recorder.run.folder)) for _ in range(5)
+    ]
     assert {(ticks.array().size, len(output.all_rows())) for ticks, output in views} == {(4, 1)}
     assert len(os.listdir("/proc/self/fd")) == before
 
 
 @pytest.mark.parametrize(("name", "rows", "ticks"), [(TELEMETRY_FILE, 1, 0), (OUTPUT_FILE, 0, 11)])
 def test_of_a_run_with_a_damaged_recording_the_other_one_is_read(
-    name: str, rows: int, ticks: int, store: RunStore, spec: RunSpec, record: Callable[[RunSpec], Recorder]
+    name: str,
+    rows: int,
+    ticks: int,
+    store: RunStore,
+    spec: RunSpec,
+    record: Callable[[RunSpec], Recorder],
 ) -> None:
     recorder = record(spec)
     recorder.print("A: 1")
@@ -340,12 +360,15 @@ def test_a_stream_of_another_version_is_read_as_unknown(tmp_path: Path) -> None:
     data[HEADER_BYTES + OUTPUT_ROW.size - 4] = 99
     path.write_bytes(data)
     assert [(row.text, row.stream) for row in OutputView(tmp_path).rows()] == [
-        ("a", Stream.UNKNOWN), ("b", Stream.STDOUT)
-    ]  # fmt: skip
+        ("a", Stream.UNKNOWN),
+        ("b", Stream.STDOUT),
+    ]
 
 
 def test_a_long_recording_takes_nothing_from_the_memory_of_the_program(tmp_path: Path) -> None:
-    done = subprocess.run([sys.executable, "-c", LIMITED, str(tmp_path)], capture_output=True, text=True, check=False)
+    done = subprocess.run(
+        [sys.executable, "-c", LIMITED, str(tmp_path)], capture_output=True, text=True, check=False
+    )
     assert (done.stdout, done.stderr) == ("limited\n", "")
 
 
@@ -359,7 +382,9 @@ def drive_for(folder: Path, ticks: int) -> TelemetryWriter:
 def extend(writer: TelemetryWriter, ticks: int) -> None:
     for tick in range(writer.count, writer.count + ticks):
         at = HEADER_BYTES + TICK_RECORD.size * tick
-        writer.room(1)[at : at + TICK_RECORD.size] = TICK_RECORD.pack(tick, 1, float(tick), *[0.0] * 4, 0, 0, 0, 0, 0)
+        writer.room(1)[at : at + TICK_RECORD.size] = TICK_RECORD.pack(
+            tick, 1, float(tick), *[0.0] * 4, 0, 0, 0, 0, 0
+        )
         writer.publish(tick + 1)
 
 
@@ -379,9 +404,16 @@ def followed(folder: Path) -> TelemetryView:
 def test_a_long_run_takes_little_memory_and_is_read_again_from_its_file(tmp_path: Path) -> None:
     view = followed(tmp_path)
     assert len(view._copy) < 8 << 20 < LONG * TICK_RECORD.size * 2
-    assert [view.record(tick).x_mm for tick in (0, 1, LONG // 2, LONG)] == [0.0, 1.0, LONG / 2, LONG]
+    assert [view.record(tick).x_mm for tick in (0, 1, LONG // 2, LONG)] == [
+        0.0,
+        1.0,
+        LONG / 2,
+        LONG,
+    ]
     for first in (0, 5, LONG, LONG + 10, LONG + 50):
-        assert view.array(first)["x_mm"].tolist() == [float(tick) for tick in range(first, LONG + 10)]
+        assert view.array(first)["x_mm"].tolist() == [
+            float(tick) for tick in range(first, LONG + 10)
+        ]
     assert view.damage == ""
 
 
@@ -414,7 +446,11 @@ def printed(folder: Path) -> OutputView:
     writer, view = OutputWriter(folder), OutputView(folder, is_checked=True)
     for number in range(LINES):
         writer.write(
-            b"x" * 100_000 if number == 100 else (b"line %d" % number).ljust(100), number, number, 1, Stream.STDOUT
+            b"x" * 100_000 if number == 100 else (b"line %d" % number).ljust(100),
+            number,
+            number,
+            1,
+            Stream.STDOUT,
         )
         if number % 1000 == 0:
             view.new_rows()

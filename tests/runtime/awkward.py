@@ -299,6 +299,14 @@ ENDLESS = frozenset({"spin", "empty spin"})
 ENDS = {"an error": "raised", "syntax error": "raised"}
 """Ends other than finished."""
 QUICK = (
-    "generators", "threads", "metaclass", "repr that raises", "repr with effects", "own trace function", "async",
-    "exit", "empty spin", "hostile namespace",
-)  # fmt: skip
+    "generators",
+    "threads",
+    "metaclass",
+    "repr that raises",
+    "repr with effects",
+    "own trace function",
+    "async",
+    "exit",
+    "empty spin",
+    "hostile namespace",
+)

@@ -44,7 +44,14 @@ def started(text: str, isolated: bool = False, **options: object) -> RunHandle:
     """Start a program."""
     spec = build_run_spec(Settings({"background": "Empty_Map"}))
     made = RunOptions(**options)  # type: ignore[arg-type]
-    return RunHandle(Program("program.py", text, "none"), spec, field_files(spec), made, RunStore(), isolated=isolated)
+    return RunHandle(
+        Program("program.py", text, "none"),
+        spec,
+        field_files(spec),
+        made,
+        RunStore(),
+        isolated=isolated,
+    )
 
 
 @pytest.fixture(scope="module")
@@ -75,8 +82,14 @@ def test_an_isolated_child_prints_the_same(forked: bytes) -> None:
 TOLD = {
     "two that exist": ("a, b = object(), object()\nprint(a, b, a)", "{0} {1} {0}"),
     "one after another": ("for _ in range(3): print(object())", "{0}\n{1}\n{2}"),
-    "nested": ("class B:\n    def __init__(self): self.o = object()\nb = B()\nfor _ in 'ab': print(b.o)", "{0}\n{0}"),
-    "of the prelude's kind": ("import sys\nx = sys.stdin, object()\nfor _ in 'ab': print(x[1])", "{0}\n{0}"),
+    "nested": (
+        "class B:\n    def __init__(self): self.o = object()\nb = B()\nfor _ in 'ab': print(b.o)",
+        "{0}\n{0}",
+    ),
+    "of the prelude's kind": (
+        "import sys\nx = sys.stdin, object()\nfor _ in 'ab': print(x[1])",
+        "{0}\n{0}",
+    ),
 }
 
 
@@ -98,7 +111,14 @@ def test_what_is_looked_at_keeps_nothing_alive(run: Run) -> None:
     assert run(text, prelude="none").lines[1:] == ["gone", "end"]
 
 
-NO_ADDRESSES = ("a sensor at 0x70", "at 0x0001f", f"at {2**30:x}", "0x7f1234567890", ", started 99", "look at 0xyz")
+NO_ADDRESSES = (
+    "a sensor at 0x70",
+    "at 0x0001f",
+    f"at {2**30:x}",
+    "0x7f1234567890",
+    ", started 99",
+    "look at 0xyz",
+)
 
 
 @pytest.mark.parametrize("text", NO_ADDRESSES)

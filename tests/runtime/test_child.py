@@ -20,7 +20,9 @@ from tuisim.runs.child.events import decode_event
 
 
 def test_a_run_whose_folder_cannot_be_used_says_why(tmp_path: Path) -> None:
-    (commands, _), (events, event_fd), (lifeline, _), (lock, _) = pipes = [os.pipe() for _ in range(4)]
+    (commands, _), (events, event_fd), (lifeline, _), (lock, _) = pipes = [
+        os.pipe() for _ in range(4)
+    ]
     fds = (commands, event_fd, lifeline, lock)
     try:
         words = [sys.executable, "-m", "tuisim.runtime", str(tmp_path / "gone"), *map(str, fds)]
@@ -46,7 +48,9 @@ def test_a_run_whose_folder_cannot_be_used_says_why(tmp_path: Path) -> None:
 ROOT = Path(__file__).resolve().parents[2]
 
 
-def test_commands_before_the_first_line_wait_for_it(start: Start, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_commands_before_the_first_line_wait_for_it(
+    start: Start, monkeypatch: pytest.MonkeyPatch
+) -> None:
     make, written = process._pipe, list[int]()
 
     def pipe(reader: ExitStack, writer: ExitStack) -> tuple[int, int]:
@@ -64,7 +68,9 @@ def test_commands_before_the_first_line_wait_for_it(start: Start, monkeypatch: p
 
 
 def test_a_child_that_is_killed_leaves_every_row(start: Start) -> None:
-    run = start("import time\nfor i in range(10**6):\n    print('A:', i)\n    time.sleep(0.01)", live=True)
+    run = start(
+        "import time\nfor i in range(10**6):\n    print('A:', i)\n    time.sleep(0.01)", live=True
+    )
     until(run, lambda: len(run.output.all_rows()) > 5)
     os.kill(run._process.pid, signal.SIGKILL)
     ended = run.wait(PATIENCE_S)

@@ -23,14 +23,21 @@ def test_stop_before_the_first_line(start: Start) -> None:
 
 
 @pytest.mark.parametrize("speeds", [(0.0,), (20.0, 0.0), (0.5, 1000.0)], ids=str)
-def test_the_speed_may_change_while_a_program_sleeps(start: Start, speeds: tuple[float, ...]) -> None:
-    run = start("import time\nprint('A: 1')\ntime.sleep(500)\nprint('A: 2')", live=True, time_limit_s=1000.0)
+def test_the_speed_may_change_while_a_program_sleeps(
+    start: Start, speeds: tuple[float, ...]
+) -> None:
+    run = start(
+        "import time\nprint('A: 1')\ntime.sleep(500)\nprint('A: 2')", live=True, time_limit_s=1000.0
+    )
     until(run, lambda: run.telemetry.count > 1)
     for speed in speeds:
         run.send(SetSpeed(speed))
     ended = run.wait(PATIENCE_S)
     assert ended is not None
-    assert (ended.end, [row.text for row in run.output.all_rows()]) == ("finished", ["A: 1", "A: 2"])
+    assert (ended.end, [row.text for row in run.output.all_rows()]) == (
+        "finished",
+        ["A: 1", "A: 2"],
+    )
 
 
 def test_a_program_whose_turn_does_not_come_is_not_taken_for_stuck(

@@ -30,7 +30,12 @@ def test_a_stop_in_what_python_calls_at_the_end_is_one(start: Start, text: str) 
     until(handle, lambda: handle.telemetry.count > 2)
     handle.stop()
     done = over(handle)
-    assert (done.ended.end, done.ended.summary, done.lines, done.errors) == ("stopped", "stopped", [], [])
+    assert (done.ended.end, done.ended.summary, done.lines, done.errors) == (
+        "stopped",
+        "stopped",
+        [],
+        [],
+    )
 
 
 ASKS = "import itertools\ndef ask(_):\n    try: input('? ')\n    except EOFError: pass\nall(ask(i) is None for i in {})"
@@ -40,7 +45,9 @@ ASKS = "import itertools\ndef ask(_):\n    try: input('? ')\n    except EOFError
     "options", [{}, {"live": True, "speed": 0.0}, {"live": True}], ids=["headless", "fast", "live"]
 )
 def test_asking_without_end_can_be_stopped(start: Start, options: dict[str, object]) -> None:
-    handle = start(ASKS.format("map(int, itertools.count())"), prelude="none", time_limit_s=0.0, **options)
+    handle = start(
+        ASKS.format("map(int, itertools.count())"), prelude="none", time_limit_s=0.0, **options
+    )
     until(handle, lambda: handle.started and len(handle.output.new_rows()) > 0)
     handle.stop()
     assert over(handle).ended.summary == "stopped"
@@ -92,7 +99,10 @@ def test_stop_always_works_and_keeps_what_was_printed(start: Start, text: str) -
 
 
 def test_cleaning_up_runs_after_a_stop(start: Start) -> None:
-    run = start("import time\ntry:\n    print('A: 1')\n    time.sleep(100)\nfinally:\n    print('clean')", live=True)
+    run = start(
+        "import time\ntry:\n    print('A: 1')\n    time.sleep(100)\nfinally:\n    print('clean')",
+        live=True,
+    )
     until(run, lambda: run.output.length > 0)
     run.stop()
     run.wait(PATIENCE_S)

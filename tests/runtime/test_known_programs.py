@@ -16,7 +16,13 @@ from tuisim.source import Program
 
 @pytest.mark.parametrize(
     "text",
-    ["x = = 1", "x is 1\nif x is 1: pass", "'\\d'", "x = " + "-" * 5000 + "1", "#" * (MOST_CHARACTERS + 1)],
+    [
+        "x = = 1",
+        "x is 1\nif x is 1: pass",
+        "'\\d'",
+        "x = " + "-" * 5000 + "1",
+        "#" * (MOST_CHARACTERS + 1),
+    ],
     ids=["wrong", "with a warning", "with an ignored warning", "too deep", "too long"],
 )
 def test_a_program_with_anything_to_tell_is_compiled_by_its_own_process(text: str) -> None:
@@ -27,7 +33,10 @@ def test_a_program_with_anything_to_tell_is_compiled_by_its_own_process(text: st
 
 
 def test_a_program_is_compiled_when_it_is_run_again(monkeypatch: pytest.MonkeyPatch) -> None:
-    known, program = KnownPrograms(), Program("p.py", "for i in (1, 2): print(i)", path="/folder/p.py")
+    known, program = (
+        KnownPrograms(),
+        Program("p.py", "for i in (1, 2): print(i)", path="/folder/p.py"),
+    )
     compiled = []
 
     def compile_noted(text: str, file: str) -> types.CodeType:

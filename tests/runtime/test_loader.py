@@ -30,7 +30,9 @@ def test_an_error_in_a_module_beside_the_program_shows_its_place(tmp_path: Path)
 
 
 @pytest.mark.usefixtures("home")
-def test_a_program_whose_name_is_not_utf_8_runs_and_is_listed(here: Command, tmp_path: Path) -> None:
+def test_a_program_whose_name_is_not_utf_8_runs_and_is_listed(
+    here: Command, tmp_path: Path
+) -> None:
     program = tmp_path / os.fsdecode(b"caf\xe9.py")
     program.write_text("print('A: 1')\n")
     assert here("run", program).stdout == "A: 1\n"

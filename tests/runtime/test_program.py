@@ -18,13 +18,29 @@ ENDS = {
     "null byte": ("print('A: 1')\0", "raised", 1),
     "endless recursion": ("print('A: 1')\ndef f(): f()\nf()", "raised", 1),
     "2 GiB at once": ("print('A: 1')\nx = [0] * (2 * 1024**3 // 8)", "raised", 1),
-    "memory bit by bit": ("print('A: 1')\nx = []\nwhile True: x.append(bytearray(10_000_000))", "raised", 1),
+    "memory bit by bit": (
+        "print('A: 1')\nx = []\nwhile True: x.append(bytearray(10_000_000))",
+        "raised",
+        1,
+    ),
     "other process": ("print('A: 1')\nimport os\nos.fork()", "raised", 1),
-    "multiprocessing": ("print('A: 1')\nimport multiprocessing\nmultiprocessing.Queue()", "raised", 1),
-    "deadlock": ("import threading\nprint('A: 1')\na = threading.Lock()\na.acquire()\na.acquire()", "deadlock", 1),
+    "multiprocessing": (
+        "print('A: 1')\nimport multiprocessing\nmultiprocessing.Queue()",
+        "raised",
+        1,
+    ),
+    "deadlock": (
+        "import threading\nprint('A: 1')\na = threading.Lock()\na.acquire()\na.acquire()",
+        "deadlock",
+        1,
+    ),
     "spin": ("while True: pass", "time_limit", 0),
     "spin on a reading": ("while True: colorLeft.color", "time_limit", 0),
-    "spin on a motor": ("tank_drive.on(10, 10)\nwhile tank_drive.is_running: pass", "time_limit", 0),
+    "spin on a motor": (
+        "tank_drive.on(10, 10)\nwhile tank_drive.is_running: pass",
+        "time_limit",
+        0,
+    ),
     "spin on the clock": ("import time\nwhile time.time() > 0: pass", "time_limit", 0),
     "spin on commands": ("while True: tank_drive.on(50, 50)", "time_limit", 0),
     "a line without an end": (
@@ -33,8 +49,16 @@ ENDS = {
         0,
     ),
     "swallows everything": ("while True:\n    try: x = 1\n    except: pass", "time_limit", 0),
-    "a long cleanup": ("import time\ntry: time.sleep(100)\nfinally: time.sleep(50)", "time_limit", 0),
-    "endless cleaning up": ("try:\n    while True: pass\nfinally:\n    while True: pass", "time_limit", 0),
+    "a long cleanup": (
+        "import time\ntry: time.sleep(100)\nfinally: time.sleep(50)",
+        "time_limit",
+        0,
+    ),
+    "endless cleaning up": (
+        "try:\n    while True: pass\nfinally:\n    while True: pass",
+        "time_limit",
+        0,
+    ),
 }
 
 
@@ -67,7 +91,9 @@ HINTS = {
 
 
 @pytest.mark.parametrize(("name", "how"), HINTS.items(), ids=HINTS)
-def test_a_name_of_the_prelude_that_is_missing_names_the_prelude(run: Run, name: str, how: str) -> None:
+def test_a_name_of_the_prelude_that_is_missing_names_the_prelude(
+    run: Run, name: str, how: str
+) -> None:
     done = run(f"import ev3dev2\nprint('A: 1')\n{name}\n", prelude="none")
     told = done.errors[-1]
     if name == "sensor_val":
@@ -149,7 +175,9 @@ def test_answers_to_input(run: Run) -> None:
 def test_speech_is_shown(run: Run) -> None:
     done = run('say("it\'s black", wait=True)\nprint(get_clock() > 0.5)')
     assert done.lines == ["it's black", "True"]
-    assert [row.text for row in done.run.output.all_rows() if row.stream == 3] == ["it\u2019s black"]
+    assert [row.text for row in done.run.output.all_rows() if row.stream == 3] == [
+        "it\u2019s black"
+    ]
 
 
 def test_the_end_of_a_program_closes_what_it_left_open(run: Run, tmp_path: Path) -> None:
@@ -174,8 +202,14 @@ SUMMARIES = {
         "SyntaxError: Non-UTF-8 code starting with '\\xfc', but no encoding declared; save it as UTF-8 (line 2)",
     ),
     "null": ("x = 1\n\0", "SyntaxError: source code cannot contain null bytes (line 2)"),
-    "unknown encoding": ("# coding: klingon\nx = 1", "SyntaxError: encoding problem: klingon (line 1)"),
-    "no encoding of text": ("\n# -*- coding: rot13 -*-\nx = 1", "SyntaxError: encoding problem: rot13 (line 2)"),
+    "unknown encoding": (
+        "# coding: klingon\nx = 1",
+        "SyntaxError: encoding problem: klingon (line 1)",
+    ),
+    "no encoding of text": (
+        "\n# -*- coding: rot13 -*-\nx = 1",
+        "SyntaxError: encoding problem: rot13 (line 2)",
+    ),
     "an encoding": ("# -*- coding: latin-1 -*-\nx = 'grün'", ""),
     "no declaration": ("x = 1\n# coding: klingon", ""),
     "no message": ("raise ValueError", "ValueError (line 1)"),
@@ -214,6 +248,8 @@ print('end')
 
 
 @pytest.mark.parametrize(("profile", "ticks"), [("ev3", 3), ("lego-micropython", 1)])
-def test_a_program_of_micropython_ends_with_its_main_thread(run: Run, profile: str, ticks: int) -> None:
+def test_a_program_of_micropython_ends_with_its_main_thread(
+    run: Run, profile: str, ticks: int
+) -> None:
     done = run(BEHIND, profile=profile, prelude="none")
     assert (done.lines.count("tick"), done.ended.end) == (ticks, "finished"), done.errors

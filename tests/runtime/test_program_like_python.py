@@ -17,9 +17,15 @@ from tuisim.runs.handle import RunOptions, start_run
 from tuisim.source import Program
 
 PROGRAMS = {
-    **errors.SUGGESTIONS, **errors.CHAINS, **errors.SYNTAX,
-    **ends.INTERRUPTS, **ends.THREADS, **ends.HOOKS, **patches.PATCHES, **patches.OUTPUT,
-}  # fmt: skip
+    **errors.SUGGESTIONS,
+    **errors.CHAINS,
+    **errors.SYNTAX,
+    **ends.INTERRUPTS,
+    **ends.THREADS,
+    **ends.HOOKS,
+    **patches.PATCHES,
+    **patches.OUTPUT,
+}
 
 _ADDRESS = re.compile(r"0x[0-9a-f]{6,}")
 _LIBRARY_FRAME = re.compile(
@@ -37,10 +43,32 @@ def same_for_all(text: str, folder: Path) -> str:
 
 
 @pytest.mark.quick_cases(
-    "name-*", "attr", "attr-s*", "self-missing", "group", "group-200", "note-name", "syntax-indent", "sigint*", "kbd",
-    "thread-exit", "thread-raises", "thread-bare", "excepthook*", "gc-callbacks*", "settrace-left*", "faulthandler*",
-    "patch-*", "os-write*", "fdopen", "ctypes-*", "redirect-fd", "stderr-to-stdout", "print-objects*", "print-hexes",
-)  # fmt: skip
+    "name-*",
+    "attr",
+    "attr-s*",
+    "self-missing",
+    "group",
+    "group-200",
+    "note-name",
+    "syntax-indent",
+    "sigint*",
+    "kbd",
+    "thread-exit",
+    "thread-raises",
+    "thread-bare",
+    "excepthook*",
+    "gc-callbacks*",
+    "settrace-left*",
+    "faulthandler*",
+    "patch-*",
+    "os-write*",
+    "fdopen",
+    "ctypes-*",
+    "redirect-fd",
+    "stderr-to-stdout",
+    "print-objects*",
+    "print-hexes",
+)
 @pytest.mark.parametrize("text", PROGRAMS.values(), ids=PROGRAMS)
 def test_a_program_prints_and_ends_as_with_python_itself(text: str, tmp_path: Path) -> None:
     theirs, ours = tmp_path / "theirs", tmp_path / "ours"

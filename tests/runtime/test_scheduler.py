@@ -6,8 +6,9 @@ import pytest
 
 from tests.running import Run
 
-THREADS = "import threading, time\ns = [threading.Thread(target=time.sleep, args=(1,)) for _ in range({})]\n" + (
-    "for t in s: t.start()\nfor t in s: t.join()\nprint(threading.active_count())"
+THREADS = (
+    "import threading, time\ns = [threading.Thread(target=time.sleep, args=(1,)) for _ in range({})]\n"
+    + ("for t in s: t.start()\nfor t in s: t.join()\nprint(threading.active_count())")
 )
 
 
@@ -18,10 +19,14 @@ def test_500_threads_run(run: Run) -> None:
 
 def test_the_limit_of_threads_is_named(run: Run) -> None:
     summary = run(THREADS.format(1001), prelude="none").ended.summary
-    assert summary == "RuntimeError: can't start new thread: a program may have 1000 at once (line 3)"
+    assert (
+        summary == "RuntimeError: can't start new thread: a program may have 1000 at once (line 3)"
+    )
 
 
-@pytest.mark.parametrize(("last", "end", "exit_code"), [("sys.exit(3)", "finished", 3), ("1 / 0", "raised", 1)])
+@pytest.mark.parametrize(
+    ("last", "end", "exit_code"), [("sys.exit(3)", "finished", 3), ("1 / 0", "raised", 1)]
+)
 def test_other_threads_go_on_after_an_error_or_exit_of_the_main_thread(
     run: Run, last: str, end: str, exit_code: int
 ) -> None:

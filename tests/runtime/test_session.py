@@ -8,7 +8,16 @@ from typing import Any
 import pytest
 
 from tests.running import Run, Start, over, until_tick
-from tuisim.protocol import Answer, Message, SetButtons, SetNoise, SetPen, SetPose, SetSpeed, UserAction
+from tuisim.protocol import (
+    Answer,
+    Message,
+    SetButtons,
+    SetNoise,
+    SetPen,
+    SetPose,
+    SetSpeed,
+    UserAction,
+)
 
 LOGGER = """
 import time
@@ -66,15 +75,23 @@ def test_only_actions_may_be_scripted() -> None:
 
 
 SCRIPTS: dict[str, tuple[str, tuple[Message, ...]]] = {
-    "drive": (LOGGER, (SetPose(900.0, 500.0, 45.0), SetNoise(20, 50), SetPen(True), SetNoise(0, 0))),
-    "threads": (THREADS, (SetNoise(0, 80), SetPose(900.0, 500.0, 45.0), SetButtons(("up", "enter")))),
+    "drive": (
+        LOGGER,
+        (SetPose(900.0, 500.0, 45.0), SetNoise(20, 50), SetPen(True), SetNoise(0, 0)),
+    ),
+    "threads": (
+        THREADS,
+        (SetNoise(0, 80), SetPose(900.0, 500.0, 45.0), SetButtons(("up", "enter"))),
+    ),
     "answers": (ASKS, (Answer("Ada"), SetPose(900.0, 500.0, 45.0), Answer("bye"))),
 }
 
 
 @pytest.mark.quick_cases("drive")
 @pytest.mark.parametrize(("text", "actions"), SCRIPTS.values(), ids=SCRIPTS)
-def test_what_a_user_did_can_be_done_again(start: Start, run: Run, text: str, actions: tuple[Message, ...]) -> None:
+def test_what_a_user_did_can_be_done_again(
+    start: Start, run: Run, text: str, actions: tuple[Message, ...]
+) -> None:
     live = start(text, live=True, speed=4.0, asks_user=True, noise=(5, 5))
     for number, action in enumerate(actions, 1):
         until_tick(live, 8 * number)

@@ -52,7 +52,10 @@ def test_the_program_gets_every_message_in_no_time(start: Start) -> None:
     done = talked(start(text, replies=True))
     assert done.lines[0] == "{'messages': []}"
     assert done.lines[2] == "{'messages': ['one', {'two': [1, 2.5, None]}, 'three']}"
-    assert done.lines[5:] == ["{'messages': ['one', {'two': [1, 2.5, None]}, 'three', True]}", "0.0"]
+    assert done.lines[5:] == [
+        "{'messages': ['one', {'two': [1, 2.5, None]}, 'three', True]}",
+        "0.0",
+    ]
 
 
 def test_a_run_with_messages_can_be_repeated(start: Start, tmp_path: Path) -> None:
@@ -81,7 +84,9 @@ def test_a_reply_may_be_larger_than_the_pipe(start: Start) -> None:
     ("text", "options"),
     [
         pytest.param(GLUE + "pyState()\nprint('never')", {"replies": True}, id="message"),
-        pytest.param("input()\nprint('never')", {"asks_user": True, "time_waits": True}, id="input"),
+        pytest.param(
+            "input()\nprint('never')", {"asks_user": True, "time_waits": True}, id="input"
+        ),
         pytest.param(
             f"{GLUE}import threading\nthread = threading.Thread(target=pyState)\nthread.start()\nthread.join()\n",
             {"replies": True},
@@ -100,7 +105,9 @@ def test_a_stop_ends_the_waiting(text: str, options: dict[str, Any], start: Star
 def test_an_answer_to_input_takes_no_time_and_comes_again(start: Start, tmp_path: Path) -> None:
     text = f"{GLUE}import time\ntime.sleep(0.105)\nname = input('who? ')\nprint(name, get_clock())\ntime.sleep(0.1)"
     handle = start(text, asks_user=True, time_waits=True)
-    done = talk(handle, lambda: Answer("Ada", at_once=True), lambda: handle.waiting_for_input is not None)
+    done = talk(
+        handle, lambda: Answer("Ada", at_once=True), lambda: handle.waiting_for_input is not None
+    )
     assert done.lines == ["Ada 0.1"]
     (row,) = map(json.loads, (handle.folder / "actions.jsonl").read_text().splitlines())
     assert UserAction.from_plain(row) == UserAction(10, Answer("Ada", at_once=True))

@@ -11,10 +11,17 @@ OWN_STACK = {
         "traceback.print_stack()",
         ['  File "program.py", line 2, in f', "    def f(): traceback.print_stack()"],
     ),
-    "walk_stack": ("[print(f.f_code.co_name) for f, _ in traceback.walk_stack(None)]", ["<listcomp>", "f", "<module>"]),
+    "walk_stack": (
+        "[print(f.f_code.co_name) for f, _ in traceback.walk_stack(None)]",
+        ["<listcomp>", "f", "<module>"],
+    ),
     "print_exc": (
         "\n    try: time.sleep(-1)\n    except ValueError: traceback.print_exc()",
-        ["    try: time.sleep(-1)", "         ^^^^^^^^^^^^^^", "ValueError: sleep length must be non-negative"],
+        [
+            "    try: time.sleep(-1)",
+            "         ^^^^^^^^^^^^^^",
+            "ValueError: sleep length must be non-negative",
+        ],
     ),
     "inspect": ("print([info.function for info in inspect.stack()])", ["['f', '<module>']"]),
     "faulthandler": ("faulthandler.dump_traceback()", ['  File "program.py", line 2 in f']),
@@ -25,7 +32,9 @@ OWN_STACK = {
 
 @pytest.mark.parametrize(("text", "told"), OWN_STACK.values(), ids=OWN_STACK)
 def test_a_program_sees_its_own_frames_only(run: Run, text: str, told: list[str]) -> None:
-    done = run(f"import faulthandler, inspect, time, traceback\ndef f(): {text}\nf()", prelude="none")
+    done = run(
+        f"import faulthandler, inspect, time, traceback\ndef f(): {text}\nf()", prelude="none"
+    )
     assert done.ended.end == "finished"
     seen = [row.text for row in done.run.output.all_rows()]
     assert set(told) <= set(seen)

@@ -50,7 +50,11 @@ def test_of_a_long_chain_the_first_and_the_last_errors_are_told(run: Run) -> Non
 
 
 EXITS = {
-    "no text": ("class A:\n    def __str__(self): 1 / 0\nraise SystemExit(A())", 1, ["<A, whose str() failed>"]),
+    "no text": (
+        "class A:\n    def __str__(self): 1 / 0\nraise SystemExit(A())",
+        1,
+        ["<A, whose str() failed>"],
+    ),
     "lone surrogate": (f"raise SystemExit({CAFE})", 1, ["caf\\udce9"]),
     "no exit status": ("raise SystemExit(10**30)", -1, []),
     "in a thread": (
@@ -64,7 +68,12 @@ EXITS = {
 @pytest.mark.parametrize(("text", "code", "errors"), EXITS.values(), ids=EXITS)
 def test_a_program_that_ends_itself(run: Run, text: str, code: int, errors: list[str]) -> None:
     done = run(text, prelude="none")
-    assert (done.ended.end, done.ended.exit_code, done.errors, done.lines) == ("finished", code, errors, [])
+    assert (done.ended.end, done.ended.exit_code, done.errors, done.lines) == (
+        "finished",
+        code,
+        errors,
+        [],
+    )
 
 
 def test_lone_surrogates_lose_neither_output_nor_export(here: Command, tmp_path: Path) -> None:
@@ -79,7 +88,10 @@ def test_lone_surrogates_lose_neither_output_nor_export(here: Command, tmp_path:
 
 
 def test_an_error_that_python_cannot_raise_shows_the_programs_lines_only(run: Run) -> None:
-    done = run("import time\nclass A:\n    def __del__(self): time.sleep(-1)\nA()\nprint('on')", prelude="none")
+    done = run(
+        "import time\nclass A:\n    def __del__(self): time.sleep(-1)\nA()\nprint('on')",
+        prelude="none",
+    )
     assert done.errors == [
         "Exception ignored in: <function A.__del__ at 0x7f0000000010>",
         "Traceback (most recent call last):",
@@ -93,7 +105,8 @@ def test_an_error_that_python_cannot_raise_shows_the_programs_lines_only(run: Ru
 
 def test_what_goes_at_the_end_still_finds_its_names(run: Run) -> None:
     text = (
-        "class A:\n    def __del__(self): print('gone', seen)\nseen = [1]\na = A()\nseen.append(a.__class__.__name__)"
+        "class A:\n    def __del__(self): print('gone', seen)\n"
+        "seen = [1]\na = A()\nseen.append(a.__class__.__name__)"
     )
     assert run(text, prelude="none").lines == ["gone [1, 'A']"]
 
@@ -106,7 +119,9 @@ CRASHES = {
 
 
 @pytest.mark.parametrize(("signal", "text"), CRASHES.items(), ids=CRASHES)
-@pytest.mark.parametrize("before", ["", "import faulthandler; faulthandler.enable(); "], ids=["plain", "enabled"])
+@pytest.mark.parametrize(
+    "before", ["", "import faulthandler; faulthandler.enable(); "], ids=["plain", "enabled"]
+)
 def test_a_crash_names_the_line(run: Run, signal: str, text: str, before: str) -> None:
     done = run(before + text, prelude="none")
     assert (done.ended.end, done.ended.error_line, done.lines) == ("crashed", 3, ["A: 1"])

@@ -36,7 +36,9 @@ IMPORTS = "import datetime, gc, os, random, resource, signal, sys, threading, ti
 @pytest.mark.quick_cases("modules-preloaded", "environment-preloaded", "random-preloaded")
 @pytest.mark.parametrize("prelude", ["none", "preloaded"])
 @pytest.mark.parametrize("name", SURROUNDINGS)
-def test_a_program_cannot_tell_how_it_was_started(name: str, prelude: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_program_cannot_tell_how_it_was_started(
+    name: str, prelude: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
     # The kept one may be older than a limit of this process.
     process.cool_down()
     text = (IMPORTS if name != "modules" else "import os, sys\n") + SURROUNDINGS[name]
@@ -49,8 +51,14 @@ def test_a_program_cannot_tell_how_it_was_started(name: str, prelude: str, monke
 
 def test_a_template_runs_each_program_as_it_is() -> None:
     process.cool_down()
-    texts = ["import __main__; print(1, __main__.__file__)", "def f(): 1 / 0\nprint(2)", "print(input)"] * 3
-    assert [printed(text, True)[:1] for text in texts] == [printed(text, False)[:1] for text in texts]
+    texts = [
+        "import __main__; print(1, __main__.__file__)",
+        "def f(): 1 / 0\nprint(2)",
+        "print(input)",
+    ] * 3
+    assert [printed(text, True)[:1] for text in texts] == [
+        printed(text, False)[:1] for text in texts
+    ]
 
 
 def test_a_template_is_told_what_is_different_in_a_run() -> None:
@@ -66,7 +74,10 @@ def test_a_template_is_told_what_is_different_in_a_run() -> None:
     ):
         spec = build_run_spec(Settings({"seed": seed, "start.x_mm": x_mm}))
         program = Program(
-            "p.py", f"import random, sys, time\ntime.sleep(0.1)\n{text}", "preloaded", arguments=arguments
+            "p.py",
+            f"import random, sys, time\ntime.sleep(0.1)\n{text}",
+            "preloaded",
+            arguments=arguments,
         )
         handle = RunHandle(program, spec, field_files(spec), RunOptions(), RunStore(), of_many=True)
         over(handle)
@@ -103,13 +114,17 @@ def test_a_program_cannot_change_what_a_template_is_prepared_for() -> None:
 
     def end_of(template: bool) -> tuple[object, ...]:
         program = Program("p.py", text, "preloaded")
-        handle = RunHandle(program, spec, field_files(spec), RunOptions(), RunStore(), of_many=template)
+        handle = RunHandle(
+            program, spec, field_files(spec), RunOptions(), RunStore(), of_many=template
+        )
         over(handle)
         last = handle.telemetry.last()
         return last, [row.text for row in handle.output.all_rows()], handle.ended
 
     expected = end_of(False)
-    harmful = RunHandle(Program("p.py", REWRITES, "preloaded"), spec, field_files(spec), RunOptions(), RunStore())
+    harmful = RunHandle(
+        Program("p.py", REWRITES, "preloaded"), spec, field_files(spec), RunOptions(), RunStore()
+    )
     over(harmful)
     assert harmful.ended is not None
     assert harmful.ended.end == "finished", harmful.ended.error

@@ -12,7 +12,9 @@ from tuisim.core.sensors.color import ColorReading, LightRead
 from tuisim.scene.discs import RIM_RGB, RINGS, DiscFace, draw_disc
 
 GROUND = (1, 2, 3)
-FACE = DiscFace("left", bytes([128]) * 1200, ColorReading(211.0, 211.0, 211.0), LightRead.PERCENT, 255)
+FACE = DiscFace(
+    "left", bytes([128]) * 1200, ColorReading(211.0, 211.0, 211.0), LightRead.PERCENT, 255
+)
 
 
 @pytest.mark.parametrize(
@@ -26,7 +28,9 @@ FACE = DiscFace("left", bytes([128]) * 1200, ColorReading(211.0, 211.0, 211.0), 
     ],
 )
 @pytest.mark.parametrize("grey", [255, 128, 0])
-def test_a_disc_is_whole_and_round_at_every_size(width: int, height: int, tall: float, grey: int) -> None:
+def test_a_disc_is_whole_and_round_at_every_size(
+    width: int, height: int, tall: float, grey: int
+) -> None:
     picture = draw_disc(bytes([grey]) * 1200, width, height, GROUND, RIM_RGB, tall)
 
     is_disc = (picture == grey).all(axis=2)
@@ -44,7 +48,9 @@ def test_there_may_be_hardly_any_room() -> None:
 
 @pytest.mark.parametrize("paper", [(255, 255, 255), (16, 21, 28)], ids=["paper", "screen"])
 @pytest.mark.parametrize("grey", [255, 220, 211, 128, 16, 0])
-def test_the_outline_of_a_disc_is_seen_whatever_its_colour(paper: tuple[int, int, int], grey: int) -> None:
+def test_the_outline_of_a_disc_is_seen_whatever_its_colour(
+    paper: tuple[int, int, int], grey: int
+) -> None:
     picture = draw_disc(bytes([grey]) * 1200, 120, 120, paper, RIM_RGB).astype(int)
 
     column = picture[:60, 60]
@@ -100,7 +106,10 @@ def test_thresholds_say_what_they_give_now() -> None:
     assert face.limit_words(99) == (
         "line 15 asks > 90: no; line 16 asks == White: yes; line 17: aim 50; line 18 asks < 300: yes"
     )
-    assert face.limit_words(80) == "line 15 > 90: no; line 16 == White: yes; line 17 aim 50; line 18 < 300: yes"
+    assert (
+        face.limit_words(80)
+        == "line 15 > 90: no; line 16 == White: yes; line 17 aim 50; line 18 < 300: yes"
+    )
     assert face.limit_words(50) == "> 90: no; == White: yes; aim 50; < 300: yes"
     assert face.limit_words(19) == "line 15 > 90: no"
     assert face.limit_words(13) == "> 90: no"

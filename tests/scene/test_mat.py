@@ -34,16 +34,23 @@ def test_a_plain_mat_stays_plain_and_what_is_off_it_is_outside() -> None:
 @pytest.mark.parametrize("size", [(51, 12), (75, 20), (76, 27), (120, 33)], ids=str)
 def test_a_mat_of_dots_or_signs_ends_where_a_cell_ends(size: tuple[int, int]) -> None:
     cols, rows = size
-    picture = shrink(mat(), whole_field(2 * cols, 4 * rows, CellPoints(2, 4)), OUTSIDE, whole_cells=True)
+    picture = shrink(
+        mat(), whole_field(2 * cols, 4 * rows, CellPoints(2, 4)), OUTSIDE, whole_cells=True
+    )
 
     cells = picture.reshape(rows, 4, cols, 2, 3)
     assert (cells == cells[:, :1, :, :1]).all(), "a cell of two colours"
     inside = np.argwhere((cells[:, 0, :, 0] == 255).all(axis=2))
-    assert np.ptp(inside[:, 1]) + 1 in (cols - 1, cols) or np.ptp(inside[:, 0]) + 1 in (rows - 1, rows)
+    assert np.ptp(inside[:, 1]) + 1 in (cols - 1, cols) or np.ptp(inside[:, 0]) + 1 in (
+        rows - 1,
+        rows,
+    )
 
 
 @pytest.mark.parametrize("width_mm", [4, 10, 20])
-@pytest.mark.parametrize(("ground", "ink"), [(255, 0), (0, 255), (211, 80)], ids=["black on white", "white", "grey"])
+@pytest.mark.parametrize(
+    ("ground", "ink"), [(255, 0), (0, 255), (211, 80)], ids=["black on white", "white", "grey"]
+)
 def test_a_thin_line_is_kept(width_mm: int, ground: int, ink: int) -> None:
     pixels = mat(ground)
     pixels[:, 1000 : 1000 + width_mm] = ink
@@ -56,8 +63,12 @@ def test_a_thin_line_is_kept(width_mm: int, ground: int, ink: int) -> None:
 
 @pytest.mark.parametrize("cells", list(CellSet))
 @pytest.mark.parametrize("size", [(50, 12), (74, 20), (120, 36)], ids=str)
-@pytest.mark.parametrize("across_per_down", [0.0, 0.37, 1.0, 3.1], ids=["upright", "steep", "even", "flat"])
-def test_a_thin_line_has_no_gaps(cells: CellSet, size: tuple[int, int], across_per_down: float) -> None:
+@pytest.mark.parametrize(
+    "across_per_down", [0.0, 0.37, 1.0, 3.1], ids=["upright", "steep", "even", "flat"]
+)
+def test_a_thin_line_has_no_gaps(
+    cells: CellSet, size: tuple[int, int], across_per_down: float
+) -> None:
     """Each point of the line is seen in the picture at its place or beside it."""
     pixels, down = mat(), np.arange(100, 1000)
     middle = (600 + across_per_down * (down - 100)).astype(int)
@@ -67,12 +78,24 @@ def test_a_thin_line_has_no_gaps(cells: CellSet, size: tuple[int, int], across_p
         pixels[row, round(col - thick / 2) : round(col + thick / 2)] = 0
 
     glyphs = glyph_set(cells)
-    view = whole_field(size[0] * glyphs.cols, size[1] * glyphs.rows, CellPoints(glyphs.cols, glyphs.rows))
+    view = whole_field(
+        size[0] * glyphs.cols, size[1] * glyphs.rows, CellPoints(glyphs.cols, glyphs.rows)
+    )
     picture = shrink(pixels, view, OUTSIDE)[..., 0].astype(int)
 
     around = np.pad(picture, 1, constant_values=255)
-    near = np.min([around[r : r + len(picture), c : c + picture.shape[1]] for r in range(3) for c in range(3)], axis=0)
-    at = [view.to_px(float(col), float(FIELD_HEIGHT_MM - row)) for row, col in zip(rows, middle, strict=False)]
+    near = np.min(
+        [
+            around[r : r + len(picture), c : c + picture.shape[1]]
+            for r in range(3)
+            for c in range(3)
+        ],
+        axis=0,
+    )
+    at = [
+        view.to_px(float(col), float(FIELD_HEIGHT_MM - row))
+        for row, col in zip(rows, middle, strict=False)
+    ]
     seen = [255 - near[int(row), int(col)] for col, row in at]
     assert min(seen) > 60
     assert min(seen) > 0.5 * max(seen)

@@ -30,7 +30,12 @@ def test_whole_field_is_inside(width: int, height: int) -> None:
     assert right - left == pytest.approx((bottom - top) * FIELD_WIDTH_MM / FIELD_HEIGHT_MM)
 
 
-@given(st.floats(0, FIELD_WIDTH_MM), st.floats(0, FIELD_HEIGHT_MM), st.integers(1, 200), st.integers(1, 80))
+@given(
+    st.floats(0, FIELD_WIDTH_MM),
+    st.floats(0, FIELD_HEIGHT_MM),
+    st.integers(1, 200),
+    st.integers(1, 80),
+)
 def test_to_px_and_back(x_mm: float, y_mm: float, width: int, rows: int) -> None:
     view = whole_field(width, 2 * rows)
 

@@ -40,14 +40,22 @@ def test_the_robot_and_its_heading_are_seen(cells: CellSet, ground: int) -> None
 
     def drawn(heading_deg: float) -> list[str]:
         scene = SceneState(RobotSpec(), Pose(1181, 571, heading_deg))
-        return lines(ScenePainter(mat, (255, 255, 255), PenTrace(), mono=True).paint(view, scene), cells)
+        return lines(
+            ScenePainter(mat, (255, 255, 255), PenTrace(), mono=True).paint(view, scene), cells
+        )
 
     pictures = [drawn(heading) for heading in range(0, 360, 45)]
-    empty = lines(ScenePainter(mat, (255,) * 3, PenTrace(), mono=True).paint(
-        view, SceneState(RobotSpec(), Pose(9000, 9000, 0))), cells)  # fmt: skip
+    empty = lines(
+        ScenePainter(mat, (255,) * 3, PenTrace(), mono=True).paint(
+            view, SceneState(RobotSpec(), Pose(9000, 9000, 0))
+        ),
+        cells,
+    )
     for at, picture in enumerate(pictures):
-        differs = [sum(a != b for a, b in zip("".join(picture), "".join(other), strict=True))
-                   for other in [*pictures[:at], *pictures[at + 1 :], empty]]  # fmt: skip
+        differs = [
+            sum(a != b for a, b in zip("".join(picture), "".join(other), strict=True))
+            for other in [*pictures[:at], *pictures[at + 1 :], empty]
+        ]
         assert min(differs) >= 5
 
 
@@ -71,7 +79,9 @@ def _reached(white: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool_]:
 def test_the_robot_in_dots_is_a_shape_and_no_pattern(ground: int) -> None:
     """Within a white rim it has a closed black edge, so that it is no accident of the dots around it."""
     view = whole_field(2 * COLS, 4 * ROWS, CellPoints(2, 4))
-    painter = ScenePainter(np.full((1143, 2362, 3), ground, np.uint8), (255,) * 3, PenTrace(), mono=True)
+    painter = ScenePainter(
+        np.full((1143, 2362, 3), ground, np.uint8), (255,) * 3, PenTrace(), mono=True
+    )
     robot = RobotSpec()
     for heading in range(0, 360, 15):
         pose = Pose(1181, 571, heading)
@@ -80,7 +90,9 @@ def test_the_robot_in_dots_is_a_shape_and_no_pattern(ground: int) -> None:
         changed = picture != empty
         assert set(np.unique(picture[changed]).tolist()) <= {0, 255}
         rows, cols = np.nonzero(changed)
-        part = np.pad(picture, 1, constant_values=255)[rows.min() : rows.max() + 3, cols.min() : cols.max() + 3]
+        part = np.pad(picture, 1, constant_values=255)[
+            rows.min() : rows.max() + 3, cols.min() : cols.max() + 3
+        ]
         white = part == 255
         if ground not in (0, 255):
             white |= part == ground
@@ -101,7 +113,9 @@ def test_the_robot_in_signs_has_a_sign_of_its_own(heading: int) -> None:
 
 
 @pytest.mark.parametrize("grey", [False, True], ids=["colours", "greys"])
-@pytest.mark.parametrize("ground", [(255, 0, 0), (255, 255, 255), (0, 0, 0), (128, 128, 128), (200, 30, 30)], ids=str)
+@pytest.mark.parametrize(
+    "ground", [(255, 0, 0), (255, 255, 255), (0, 0, 0), (128, 128, 128), (200, 30, 30)], ids=str
+)
 def test_a_line_shows_on_any_ground(ground: tuple[int, int, int], grey: bool) -> None:
     below = np.array([ground], np.uint8)
 
@@ -132,7 +146,10 @@ def test_a_pointer_of_signs_shows_the_heading(heading: float, shown: list[str]) 
     top, left = (min(at[axis] for at in signs) for axis in (0, 1))
     bottom, right = (max(at[axis] for at in signs) for axis in (0, 1))
     rows = [
-        "".join(GLYPHS[signs[row, col] >> 48] if (row, col) in signs else " " for col in range(left, right + 1))
+        "".join(
+            GLYPHS[signs[row, col] >> 48] if (row, col) in signs else " "
+            for col in range(left, right + 1)
+        )
         for row in range(top, bottom + 1)
     ]
     assert [row.rstrip() for row in rows] == shown

@@ -34,7 +34,9 @@ def test_the_side_is_told_in_a_narrow_panel_too(pose: Pose, width: int, words: s
     assert off_field_words(pose, width) == words
 
 
-@pytest.mark.parametrize("pose", [Pose(-2000.0, 500.0, 0.0), Pose(500.0, 9000.0, 0.0), Pose(9000.0, -9000.0, 0.0)])
+@pytest.mark.parametrize(
+    "pose", [Pose(-2000.0, 500.0, 0.0), Pose(500.0, 9000.0, 0.0), Pose(9000.0, -9000.0, 0.0)]
+)
 def test_the_arrow_is_at_the_edge_towards_the_robot(pose: Pose) -> None:
     view = whole_field(80, 40)
     picture = np.zeros((40, 80, 3), np.uint8)

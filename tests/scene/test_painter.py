@@ -20,7 +20,9 @@ HERE = Pose(1000.0, 500.0, 0.0)
 def test_the_obstacle_at_hand_has_another_edge() -> None:
     boxes = (Obstacle(300, 200, 200, 300), Obstacle(900, 200, 200, 300))
     plain = painter().paint(VIEW, SceneState(ROBOT, Pose(2000, 1000, 0), obstacles=boxes))
-    marked = painter().paint(VIEW, SceneState(ROBOT, Pose(2000, 1000, 0), obstacles=boxes, marked=1))
+    marked = painter().paint(
+        VIEW, SceneState(ROBOT, Pose(2000, 1000, 0), obstacles=boxes, marked=1)
+    )
 
     assert at(plain, 305, 350) == at(marked, 305, 350) != (255, 255, 255)
     assert at(plain, 905, 350) != at(marked, 905, 350)
@@ -34,7 +36,11 @@ def test_rays_end_at_their_length_and_at_the_field() -> None:
 
     assert at(picture, 1500, 500) != (255, 255, 255)
     assert at(picture, 1700, 500) == (255, 255, 255)
-    assert {tuple(pixel) for pixel in picture[0].tolist()} <= {(9, 9, 9), (255, 255, 255), at(picture, 1020, 1130)}
+    assert {tuple(pixel) for pixel in picture[0].tolist()} <= {
+        (9, 9, 9),
+        (255, 255, 255),
+        at(picture, 1020, 1130),
+    }
 
 
 @pytest.mark.parametrize("width_mm", [200.0, 1.0], ids=["a box", "thinner than a pixel"])
@@ -67,7 +73,9 @@ def test_an_infrared_sensor_is_drawn_where_it_is() -> None:
     assert at(painter().paint(CLOSE, SceneState(TOUCHES, HERE)), 1030, 450, CLOSE) == COLORED.spot
 
 
-@pytest.mark.parametrize("view", [whole_field(38, 19), VIEW, CLOSE], ids=["small", "middle", "close"])
+@pytest.mark.parametrize(
+    "view", [whole_field(38, 19), VIEW, CLOSE], ids=["small", "middle", "close"]
+)
 def test_a_beacon_is_drawn_also_at_the_edge(view: Viewport) -> None:
     scene = SceneState(ROBOT, Pose(2000, 1000, 0), beacon=BeaconSpec(1000.0, 500.0))
     picture = painter().paint(view, scene)
@@ -78,18 +86,27 @@ def test_a_beacon_is_drawn_also_at_the_edge(view: Viewport) -> None:
 
 def test_the_ghost_is_drawn_below_the_robot() -> None:
     alone = painter().paint(VIEW, SceneState(ROBOT, HERE))
-    both = painter().paint(VIEW, SceneState(ROBOT, HERE, faint=((Faint.NOW, replace(HERE, x_mm=500.0)),)))
+    both = painter().paint(
+        VIEW, SceneState(ROBOT, HERE, faint=((Faint.NOW, replace(HERE, x_mm=500.0)),))
+    )
 
     assert at(both, 500, 500) != (255, 255, 255)
     assert at(both, 1000, 500) == at(alone, 1000, 500)
 
 
 def test_an_earlier_robot_is_drawn_below_all_others() -> None:
-    alone = painter().paint(VIEW, SceneState(ROBOT, HERE, faint=((Faint.NOW, replace(HERE, x_mm=1500.0)),)))
+    alone = painter().paint(
+        VIEW, SceneState(ROBOT, HERE, faint=((Faint.NOW, replace(HERE, x_mm=1500.0)),))
+    )
     scene = SceneState(
-        ROBOT, HERE, faint=((Faint.BESIDE, replace(HERE, x_mm=500.0)), (Faint.NOW, replace(HERE, x_mm=1500.0)))
+        ROBOT,
+        HERE,
+        faint=((Faint.BESIDE, replace(HERE, x_mm=500.0)), (Faint.NOW, replace(HERE, x_mm=1500.0))),
     )
     both = painter().paint(VIEW, scene)
 
     assert at(both, 500, 500) != (255, 255, 255)
-    assert (at(both, 1000, 500), at(both, 1500, 500)) == (at(alone, 1000, 500), at(alone, 1500, 500))
+    assert (at(both, 1000, 500), at(both, 1500, 500)) == (
+        at(alone, 1000, 500),
+        at(alone, 1500, 500),
+    )

@@ -42,7 +42,11 @@ def test_each_stretch_keeps_its_pen_and_a_wiped_trace_is_gone() -> None:
     made, scene = painter(), SceneState(ROBOT, Pose(2000, 1000, 0))
     made.trace.add(Piece.of(np.array([200.0, 300.0]), np.array([300.0, 300.0]), ROBOT.pen))
     made.trace.add(
-        Piece.of(np.array([np.nan, 200.0, 300.0]), np.array([np.nan, 600.0, 600.0]), PenSpec(color="teal", width_mm=90))
+        Piece.of(
+            np.array([np.nan, 200.0, 300.0]),
+            np.array([np.nan, 600.0, 600.0]),
+            PenSpec(color="teal", width_mm=90),
+        )
     )
 
     drawn = made.paint(VIEW, scene)
@@ -61,7 +65,8 @@ def test_each_stretch_keeps_its_pen_and_a_wiped_trace_is_gone() -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "rgb"), [("orange", (255, 165, 0)), ("#0a0b0c", (10, 11, 12)), ("#zzzzzz", (255, 0, 0))]
+    ("name", "rgb"),
+    [("orange", (255, 165, 0)), ("#0a0b0c", (10, 11, 12)), ("#zzzzzz", (255, 0, 0))],
 )
 def test_pen_colours(name: str, rgb: tuple[int, int, int]) -> None:
     assert pen_rgb(name) == rgb
@@ -81,7 +86,10 @@ def test_a_trace_is_as_long_as_the_pen_is_down(run: Run) -> None:
 
 
 def test_the_pen_is_where_the_simulation_has_it() -> None:
-    robot, poses = RobotSpec(pen=PenSpec(x_mm=15.0, y_mm=-70.0)), [(100.0, 200.0, 0.0), (900.5, 300.25, -400.0)]
+    robot, poses = (
+        RobotSpec(pen=PenSpec(x_mm=15.0, y_mm=-70.0)),
+        [(100.0, 200.0, 0.0), (900.5, 300.25, -400.0)],
+    )
     records = np.array(poses, dtype=[("x_mm", float), ("y_mm", float), ("heading_deg", float)])
     expected = [world_point(Pose(*pose), 15.0, -70.0) for pose in poses]
     assert np.transpose(pen_points_mm(robot, records)) == pytest.approx(np.array(expected))

@@ -42,8 +42,15 @@ from tuisim.terminal.pixels import Pixels
 WHITE: Pixels = np.full((FIELD_HEIGHT_MM, FIELD_WIDTH_MM, 3), 255, np.uint8)
 HERE = Pose(900, 480, 25)
 SPEC = RunSpec(
-    RobotSpec(pen=PenSpec(color="teal", width_mm=9.0), gyro=None, touch_sensors=(TouchSpec(port="in4", y_mm=90.0),)),
-    WorldSpec(obstacles=(Obstacle(400, 300, 200, 150), Obstacle(985, 480, 60, 100)), beacon=BeaconSpec(1700, 800)),
+    RobotSpec(
+        pen=PenSpec(color="teal", width_mm=9.0),
+        gyro=None,
+        touch_sensors=(TouchSpec(port="in4", y_mm=90.0),),
+    ),
+    WorldSpec(
+        obstacles=(Obstacle(400, 300, 200, 150), Obstacle(985, 480, 60, 100)),
+        beacon=BeaconSpec(1700, 800),
+    ),
     ROBOLAB,
 )
 TRACE = Piece.of(np.array([700.0, 900.0]), np.array([900.0, 700.0]), SPEC.robot.pen)
@@ -67,7 +74,15 @@ def test_everything_on_the_field_is_seen() -> None:
     picture = np.asarray(world_picture(SPEC, WHITE, HERE, (TRACE,), rays=True))
 
     seen = set(map(tuple, np.unique(picture.reshape(-1, 3), axis=0).tolist()))
-    assert {RAY_RGB, OBSTACLE_RGB, BEACON_RGB, COLORED.body, COLORED.pressed, (0, 128, 128), RIM_RGB} <= seen
+    assert {
+        RAY_RGB,
+        OBSTACLE_RGB,
+        BEACON_RGB,
+        COLORED.body,
+        COLORED.pressed,
+        (0, 128, 128),
+        RIM_RGB,
+    } <= seen
 
 
 def test_runs_whose_pens_have_not_touched_are_not_joined() -> None:
@@ -88,7 +103,11 @@ def test_a_white_mat_has_a_frame(corner: tuple[float, float]) -> None:
     picture, (x_mm, y_mm) = world_picture(spec, WHITE, MIDDLE), corner
     inward, outward = (-3, 3) if x_mm else (3, -3)
     edge = pixel(picture, spec.robot, (x_mm + outward / 2, 570))
-    assert pixel(picture, spec.robot, (x_mm + inward, y_mm + (-3 if y_mm else 3))) == (255, 255, 255)
+    assert pixel(picture, spec.robot, (x_mm + inward, y_mm + (-3 if y_mm else 3))) == (
+        255,
+        255,
+        255,
+    )
     assert max(edge) < 100
     assert pixel(picture, spec.robot, (x_mm + 6 * outward, y_mm)) not in ((255, 255, 255), edge)
 
@@ -105,7 +124,9 @@ def test_a_robot_on_the_edge_is_not_cut_off(robot: str) -> None:
 
 
 def test_the_way_of_a_run_is_drawn_small(run: Run) -> None:
-    done = run("tank_drive.on_for_seconds(50, 50, 2)\n", background="Empty_Map", pose=(500.0, 500.0, 0.0))
+    done = run(
+        "tank_drive.on_for_seconds(50, 50, 2)\n", background="Empty_Map", pose=(500.0, 500.0, 0.0)
+    )
     picture = path_picture(done.run.stored(), whole_field(50, 26), (0, 0, 0))
     reddish = (picture[..., 0] > 200) & (picture[..., 1] < 150)
     rows, columns = np.nonzero(reddish)

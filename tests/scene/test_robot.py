@@ -60,9 +60,14 @@ def test_the_nose_of_a_small_robot_fills_a_third_of_a_cell(rows: int, heading: i
     picture = painter().paint(view, SceneState(ROBOT, Pose(1181.0, 571.0, heading)))
 
     row, col = np.indices(picture.shape[:2]) + 0.5
-    east, north = view.left_mm + col * view.mm_per_px - 1181, view.top_mm - row * view.mm_per_row - 571
+    east, north = (
+        view.left_mm + col * view.mm_per_px - 1181,
+        view.top_mm - row * view.mm_per_row - 571,
+    )
     angle, outline = math.radians(heading), outline_of(ROBOT)
-    ahead = (east * math.cos(angle) + north * math.sin(angle)) / drawn_scale(outline, view) > outline.front_mm
+    ahead = (east * math.cos(angle) + north * math.sin(angle)) / drawn_scale(
+        outline, view
+    ) > outline.front_mm
     yellow = (255 - picture[..., 2].astype(float))[ahead & (picture[..., 0] > 180)] / 255
     assert yellow.sum() >= 2 * rows / 3
 
@@ -70,10 +75,14 @@ def test_the_nose_of_a_small_robot_fills_a_third_of_a_cell(rows: int, heading: i
 @pytest.mark.parametrize("coarse", [False, True])
 def test_a_robot_without_details_has_no_sensors_on_its_marker(coarse: bool) -> None:
     view = whole_field(100, 80, CellPoints(2, 4))
-    picture = ScenePainter(WHITE, (9, 9, 9), PenTrace(), coarse=coarse).paint(view, SceneState(ROBOT, HERE))
+    picture = ScenePainter(WHITE, (9, 9, 9), PenTrace(), coarse=coarse).paint(
+        view, SceneState(ROBOT, HERE)
+    )
 
     red, green, blue = picture.reshape(-1, 3).astype(int).T
-    assert coarse is not bool(((red > 220) & (green < 190) & (abs(green - blue) < 90) & (blue > 30)).any())
+    assert coarse is not bool(
+        ((red > 220) & (green < 190) & (abs(green - blue) < 90) & (blue > 30)).any()
+    )
 
 
 @pytest.mark.parametrize("robot", ROBOTS)
@@ -82,7 +91,9 @@ def test_a_robot_is_filled_and_has_all_its_parts(robot: str) -> None:
     outline, picture = outline_of(spec.robot), world_picture(spec, WHITE, MIDDLE)
     wheel_mm = outline.half_width_mm - outline.wheel_width_mm / 2
     parts = {
-        COLORED.body: [(side * 0.7 * (wheel_mm - outline.wheel_width_mm / 2), 0.0) for side in (-1, 1)],
+        COLORED.body: [
+            (side * 0.7 * (wheel_mm - outline.wheel_width_mm / 2), 0.0) for side in (-1, 1)
+        ],
         COLORED.wheel: [(-wheel_mm, 0.0), (wheel_mm, 0.0)],
         COLORED.marker: [(0.0, outline.back_mm / 3), (0.0, outline.back_mm / 9)],
         # Another sensor in the same place lies on top of an eye.
@@ -104,12 +115,17 @@ def test_a_robot_without_wheels_is_drawn_without_them() -> None:
     outline = outline_of(spec.robot)
     place = world_point(MIDDLE, outline.half_width_mm - outline.wheel_width_mm / 2, 0.0)
     drawn = [pixel(world_picture(one, WHITE, MIDDLE), one.robot, place) for one in (spec, standing)]
-    assert [bool(np.abs(np.subtract(color, COLORED.wheel)).max() < 60) for color in drawn] == [True, False]
+    assert [bool(np.abs(np.subtract(color, COLORED.wheel)).max() < 60) for color in drawn] == [
+        True,
+        False,
+    ]
 
 
 @pytest.mark.quick_cases("0-Small_Robot")
 @pytest.mark.parametrize("robot", ROBOTS)
-@pytest.mark.parametrize("heading", [0, *(pytest.param(turned, marks=pytest.mark.slow) for turned in (90, 180, -90))])
+@pytest.mark.parametrize(
+    "heading", [0, *(pytest.param(turned, marks=pytest.mark.slow) for turned in (90, 180, -90))]
+)
 def test_the_robot_is_drawn_as_large_as_what_collides(robot: str, heading: int) -> None:
     # Bumpers are pressed before anything collides.
     outline = outline_of(replace(spec_of(robot).robot, touch_sensors=()))

@@ -38,7 +38,9 @@ def test_a_band_has_no_notches_and_no_mixed_edges(size: tuple[int, int], by_mm: 
 
 
 @pytest.mark.parametrize("size", SIZES, ids=str)
-def test_bands_beside_each_other_have_no_spikes_where_three_colours_meet(size: tuple[int, int]) -> None:
+def test_bands_beside_each_other_have_no_spikes_where_three_colours_meet(
+    size: tuple[int, int],
+) -> None:
     mat = field()
     colors = {(255, 0, 0), (0, 255, 0), (0, 0, 255)}
     for at, color in enumerate(sorted(colors)):

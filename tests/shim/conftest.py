@@ -53,7 +53,10 @@ PAIRS = RobotSpec(
     ultrasonic=UltrasonicSpec(y_mm=60.0),
     gyro=None,
     extra_ultrasonics=(UltrasonicSpec("behind", "in2", y_mm=0.0, angle_deg=180.0),),
-    touch_sensors=(TouchSpec("touch_left", "in3", x_mm=-40.0), TouchSpec("touch_right", "in4", x_mm=40.0)),
+    touch_sensors=(
+        TouchSpec("touch_left", "in3", x_mm=-40.0),
+        TouchSpec("touch_right", "in4", x_mm=40.0),
+    ),
 )
 
 ARM = RobotSpec(
@@ -100,9 +103,15 @@ REMOTE = WorldSpec(
 """Somebody holds every set of buttons for a second, on all channels at once."""
 
 ROBOTS = {
-    "square": SQUARE, "plain": PLAIN, "eyes": EYES, "pairs": PAIRS, "default": RobotSpec(), "arm": ARM,
-    "reversed": RobotSpec(left_reversed=True, right_reversed=True), "geared": RobotSpec(gear_ratio=0.5),
-}  # fmt: skip
+    "square": SQUARE,
+    "plain": PLAIN,
+    "eyes": EYES,
+    "pairs": PAIRS,
+    "default": RobotSpec(),
+    "arm": ARM,
+    "reversed": RobotSpec(left_reversed=True, right_reversed=True),
+    "geared": RobotSpec(gear_ratio=0.5),
+}
 WORLDS = {
     "empty": FAR_WALL,
     "furnished": FURNISHED,
@@ -131,7 +140,11 @@ def run_on() -> Iterator[RunOn]:
         presses: tuple[str, ...] = (),
         speed: float = 0.0,
     ) -> Done:
-        place = WORLDS[world] if start is None else WorldSpec(background=WORLDS[world].background, start=start)
+        place = (
+            WORLDS[world]
+            if start is None
+            else WorldSpec(background=WORLDS[world].background, start=start)
+        )
         spec = RunSpec(ROBOTS[robot], place, PROFILES[profile])
         actions = press_actions([parse_press(press) for press in presses], spec.profile.tick_hz)
         options = RunOptions(live=live, speed=speed, time_limit_s=time_limit_s, actions=actions)

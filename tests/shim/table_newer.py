@@ -44,7 +44,9 @@ def drive(call, *words, **more):
             "(None, True, True, 300)",
         ),
         Check("m.off(brake=False), m.stop_action, m.state", "(None, 'coast', [])"),
-        Check("m.on_to_position(SpeedDPM(18000), 90), m.position, m.is_holding", "(None, 90, True)"),
+        Check(
+            "m.on_to_position(SpeedDPM(18000), 90), m.position, m.is_holding", "(None, 90, True)"
+        ),
         Check(
             "m.on_for_degrees(30, 360, block=False), seconds(m.wait_while, 'running')[0], m.position",
             "(None, True, 450)",
@@ -86,20 +88,32 @@ tank = MoveTank(OUTPUT_B, OUTPUT_C)
 tank.gyro = gy
 """,
     (
-        Check("us.distance_centimeters, us.distance_inches, us.distance_centimeters_ping", "(38.0, 15.0, 38.0)"),
+        Check(
+            "us.distance_centimeters, us.distance_inches, us.distance_centimeters_ping",
+            "(38.0, 15.0, 38.0)",
+        ),
         Check("seconds(lambda: us.distance_centimeters)", "(38.0, 0.01)"),
         Check(
             "us.other_sensor_present, us.modes, us.mode",
             "(False, ['US-DIST-CM', 'US-DIST-IN', 'US-LISTEN', 'US-SI-CM', 'US-SI-IN'], 'US-LISTEN')",
         ),
         Check("us.mode = 'US-DIST-CM'", "None"),
-        Check("us.value(0), us.bin_data('<h'), us.num_values, us.decimals, us.units", "(380, (380,), 1, 1, 'cm')"),
+        Check(
+            "us.value(0), us.bin_data('<h'), us.num_values, us.decimals, us.units",
+            "(380, (380,), 1, 1, 'cm')",
+        ),
         Check(
             "ts.is_pressed, ts.wait_for_pressed(timeout_ms=100), ts.wait_for_released(timeout_ms=10)",
             "(0, False, True)",
         ),
-        Check("ir.proximity, ir.heading_and_distance(channel=2) == (ir.heading(2), ir.distance(2))", "(54, True)"),
-        Check("ir.top_left(channel=4), ir.beacon(4), ir.buttons_pressed(4)", "(True, False, ['top_left'])"),
+        Check(
+            "ir.proximity, ir.heading_and_distance(channel=2) == (ir.heading(2), ir.distance(2))",
+            "(54, True)",
+        ),
+        Check(
+            "ir.top_left(channel=4), ir.beacon(4), ir.buttons_pressed(4)",
+            "(True, False, ['top_left'])",
+        ),
         Check("tank.gyro.calibrate(), gy.angle, gy.rate", "(None, 0, 0)"),
         Check("tank.turn_left(SpeedPercent(10), 45), abs(gy.angle + 45) <= 3", "(None, True)"),
         Check("gy.reset(), gy.angle, gy.mode", "(None, 0, 'GYRO-ANG')"),
@@ -112,7 +126,10 @@ tank.gyro = gy
             "ColorSensor()",
             "DeviceNotFound: ColorSensor is not connected.",
         ),
-        Check("us.mode = 'NONE'", "ValueError: One or more arguments were out of range or invalid, value NONE"),
+        Check(
+            "us.mode = 'NONE'",
+            "ValueError: One or more arguments were out of range or invalid, value NONE",
+        ),
     ),
 )
 
@@ -132,8 +149,13 @@ cl = ColorSensor(INPUT_2)
 """,
     (
         Check("leds.set_color('LEFT', 'AMBER'), leds.leds['red_left'].brightness", "(None, 255)"),
-        Check("leds.set('LEFT', brightness_pct=0.5, trigger='timer'), leds.leds['red_left'].delay_on", "(None, 500)"),
-        Check("leds.all_off(), [one.brightness for one in leds.leds.values()]", "(None, [0, 0, 0, 0])"),
+        Check(
+            "leds.set('LEFT', brightness_pct=0.5, trigger='timer'), leds.leds['red_left'].delay_on",
+            "(None, 500)",
+        ),
+        Check(
+            "leds.all_off(), [one.brightness for one in leds.leds.values()]", "(None, [0, 0, 0, 0])"
+        ),
         Check("leds.animate_flash('RED', sleeptime=0.75, duration=2, block=True)", "None"),
         Check("seconds(spkr.play_tone, 440, 0.5)", "(None, 0.5)"),
         Check("seconds(spkr.tone, [(392, 350, 100), (392, 350, 100)])", "(None, 0.9)"),
@@ -143,16 +165,26 @@ cl = ColorSensor(INPUT_2)
             "screen.draw.rectangle((10, 10, 60, 20), fill='black'), screen.update(), screen.mmap[1::4].count(0)",
             "(None, None, 561)",
         ),
-        Check("screen.text_pixels('Hi', x=5, y=60, font=fonts.load('luBS14')), screen.update()", "(None, None)"),
+        Check(
+            "screen.text_pixels('Hi', x=5, y=60, font=fonts.load('luBS14')), screen.update()",
+            "(None, None)",
+        ),
         Check("btn.any(), btn.buttons_pressed, btn.check_buttons([])", "(False, [], True)"),
-        Check("btn.wait_for_bump('left', timeout_ms=3000), round(time.time() % 100, 1)", "(True, 7.2)"),
-        Check("7 < PowerSupply().measured_volts < 8.2, PowerSupply().technology", "(True, 'Li-ion')"),
+        Check(
+            "btn.wait_for_bump('left', timeout_ms=3000), round(time.time() % 100, 1)", "(True, 7.2)"
+        ),
+        Check(
+            "7 < PowerSupply().measured_volts < 8.2, PowerSupply().technology", "(True, 'Li-ion')"
+        ),
         Check(
             "LegoPort(OUTPUT_B).status, LegoPort(INPUT_2).mode, LegoPort(INPUT_2).driver_name",
             "('tacho-motor', 'auto', 'ev3-input-port')",
         ),
         Check("cl.color_name, cl.rgb, cl.raw", "('Red', (160, 36, 36), (189, 43, 43))"),
-        Check("cl.reflected_light_intensity, cl.ambient_light_intensity, cl.mode", "(62, 3, 'COL-AMBIENT')"),
+        Check(
+            "cl.reflected_light_intensity, cl.ambient_light_intensity, cl.mode",
+            "(62, 3, 'COL-AMBIENT')",
+        ),
     ),
     presses=("left@7-7.2",),
 )

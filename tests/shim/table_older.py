@@ -49,9 +49,18 @@ def ended(word='running', timeout=None):
             "LargeMotor('outA').run_forever(speed_sp=300)",
             "Exception: LargeMotor(outA) is not connected.",
         ),
-        Check("[one.address[-4:] for one in list_motors(driver_name='lego-ev3-l-motor')]", "['outB', 'outC', 'outD']"),
-        Check("[one.driver_name for one in list_sensors(address=['in1', 'in3'])]", "['lego-ev3-us', 'lego-ev3-ir']"),
-        Check("[d.device_index for d in list_devices('lego-port', 'port*', address='in')]", "[0, 1, 2, 3]"),
+        Check(
+            "[one.address[-4:] for one in list_motors(driver_name='lego-ev3-l-motor')]",
+            "['outB', 'outC', 'outD']",
+        ),
+        Check(
+            "[one.driver_name for one in list_sensors(address=['in1', 'in3'])]",
+            "['lego-ev3-us', 'lego-ev3-ir']",
+        ),
+        Check(
+            "[d.device_index for d in list_devices('lego-port', 'port*', address='in')]",
+            "[0, 1, 2, 3]",
+        ),
         Check(
             "[Device(*w, **k).connected for w, k in ((['tacho-motor'], {'address': 'outC'}),"
             " (['lego-sensor'], {'driver_name': ['lego-ev3-us', 'lego-nxt-us']}))]",
@@ -66,25 +75,40 @@ def ended(word='running', timeout=None):
             "m.run_to_rel_pos(position_sp=90, speed_sp=900, stop_action='hold'), ended(), m.position, m.state",
             "(None, True, 90, ['holding'])",
         ),
-        Check("m.run_to_abs_pos(position_sp=-90), m.wait_until('holding'), m.position", "(None, True, -90)"),
+        Check(
+            "m.run_to_abs_pos(position_sp=-90), m.wait_until('holding'), m.position",
+            "(None, True, -90)",
+        ),
         Check(
             "m.position = 720; m.run_to_abs_pos(position_sp=360, speed_sp=-500, stop_action=Motor.STOP_ACTION_COAST)",
             "None",
         ),
         Check("ended(), m.position, m.is_running, m.is_holding", "(True, 360, False, False)"),
-        Check("m.run_timed(time_sp=3000, speed_sp=500), seconds(m.wait_while, 'running')", "(None, (True, 3.0))"),
+        Check(
+            "m.run_timed(time_sp=3000, speed_sp=500), seconds(m.wait_while, 'running')",
+            "(None, (True, 3.0))",
+        ),
         Check("m.run_forever(speed_sp=450); time.sleep(1)", "None"),
-        Check("m.speed, m.duty_cycle, m.is_running, m.is_ramping, m.is_stalled", "(450, 43, True, False, False)"),
+        Check(
+            "m.speed, m.duty_cycle, m.is_running, m.is_ramping, m.is_stalled",
+            "(450, 43, True, False, False)",
+        ),
         Check("m.stop(stop_action='brake'), m.speed_sp, m.state", "(None, 450, [])"),
         Check("m.run_direct(duty_cycle_sp=50); time.sleep(1)", "None"),
-        Check("m.duty_cycle_sp, m.speed, seconds(m.wait_while, 'running', timeout=300)", "(50, 525, (False, 0.3))"),
+        Check(
+            "m.duty_cycle_sp, m.speed, seconds(m.wait_while, 'running', timeout=300)",
+            "(50, 525, (False, 0.3))",
+        ),
         Check("m.polarity = 'inversed'; m.reset()", "None"),
         Check("m.position, m.polarity, m.stop_action, m.time_sp", "(0, 'normal', 'coast', 0)"),
         Check("m.speed_sp = 2000", "OSError: [Errno 22] Invalid argument"),
         Check("m.ramp_up_sp = 1000; m.run_forever(speed_sp=1050); time.sleep(0.5)", "None"),
         Check("m.is_ramping, 400 < m.speed < 650, m.ramp_down_sp", "(True, True, 0)"),
         Check("m.stop(), m.position_p, m.speed_p, m.speed_i", "(None, 80000, 1000, 60)"),
-        Check("m.run_timed(time_sp=200, speed_sp=100), seconds(m.wait_until_not_moving)", "(None, (True, 0.2))"),
+        Check(
+            "m.run_timed(time_sp=200, speed_sp=100), seconds(m.wait_until_not_moving)",
+            "(None, (True, 0.2))",
+        ),
         Check("m.command", "Exception: command is a write-only property!"),
     ),
 )
@@ -132,12 +156,17 @@ start = time.time()
             "Leds.set(Leds.LEFT, brightness_pct=0.5, trigger='timer'), Leds.red_left.delay_on, Leds.red_left.triggers",
             "(None, 500, ['none', 'timer', 'default-on'])",
         ),
-        Check("Leds.all_off(), Leds.green_left.brightness, Leds.green_left.max_brightness", "(None, 0, 255)"),
+        Check(
+            "Leds.all_off(), Leds.green_left.brightness, Leds.green_left.max_brightness",
+            "(None, 0, 255)",
+        ),
         Check(
             "Leds.red_right.delay_on",
             "FileNotFoundError: [Errno 2] No such file or directory: '/sys/class/leds/led1:red:brick-status/delay_on'",
         ),
-        Check("seconds(lambda: Sound.speak('Welcome to the E V 3 dev project!').wait())", "(0, 3.69)"),
+        Check(
+            "seconds(lambda: Sound.speak('Welcome to the E V 3 dev project!').wait())", "(0, 3.69)"
+        ),
         Check(
             "seconds(lambda: Sound.beep().wait()), seconds(lambda: Sound.tone(1500, 2000).wait())",
             "((0, 0.2), (0, 2.0))",
@@ -145,8 +174,13 @@ start = time.time()
         Check("seconds(lambda: Sound.tone([(392, 350, 100), (311.1, 250)]).wait())", "(0, 0.7)"),
         Check("seconds(Sound.play_song, (('D4', 'e3'), ('G4', 'h')))[1]", "0.0"),
         Check("Sound.set_volume(40), Sound.get_volume()", "(None, 40)"),
-        Check("lcd.shape, lcd.xres, lcd.yres, lcd.image.size", "((178, 128), 178, 128, (178, 128))"),
-        Check("lcd.draw.rectangle((10, 10, 60, 20), fill='black'), lcd.update(), ink()", "(None, None, 561)"),
+        Check(
+            "lcd.shape, lcd.xres, lcd.yres, lcd.image.size", "((178, 128), 178, 128, (178, 128))"
+        ),
+        Check(
+            "lcd.draw.rectangle((10, 10, 60, 20), fill='black'), lcd.update(), ink()",
+            "(None, None, 561)",
+        ),
         Check(
             "lcd.draw.text((10, 40), 'Hello', font=fonts.load('luBS14')), lcd.update(), ink() > 561",
             "(None, None, True)",
@@ -174,18 +208,27 @@ SENSORS = Table(
 us, gy, ts, ir = UltrasonicSensor(), GyroSensor(), TouchSensor('in2'), InfraredSensor()
 """,
     (
-        Check("us.distance_centimeters, us.units, us.decimals, us.num_values", "(38.0, 'cm', 1, 1)"),
+        Check(
+            "us.distance_centimeters, us.units, us.decimals, us.num_values", "(38.0, 'cm', 1, 1)"
+        ),
         Check("us.mode = 'US-DIST-IN'; us.auto_mode = False", "None"),
-        Check("us.value(), us.value(0), us.bin_data('<h'), us.bin_data_format", "(150, 150, (150,), 's16')"),
+        Check(
+            "us.value(), us.value(0), us.bin_data('<h'), us.bin_data_format",
+            "(150, 150, (150,), 's16')",
+        ),
         Check("us.distance_inches, us.other_sensor_present", "(15.0, 150)"),
         Check("us.mode = 'NONE'", "OSError: [Errno 22] Invalid argument"),
-        Check("gy.angle, gy.rate, gy.rate_and_angle, gy.modes[:2]", "(0, 0, (0, 0), ['GYRO-ANG', 'GYRO-RATE'])"),
+        Check(
+            "gy.angle, gy.rate, gy.rate_and_angle, gy.modes[:2]",
+            "(0, 0, (0, 0), ['GYRO-ANG', 'GYRO-RATE'])",
+        ),
         Check("seconds(lambda: gy.angle)", "(0, 0.01)"),
         Check("ts.is_pressed, ts.value(), ts.modes", "(0, 0, ['TOUCH'])"),
         Check("ir.proximity, ir.mode, ir.value(5)", "OSError: [Errno 22] Invalid argument"),
         Check("remote = RemoteControl(sensor=ir, channel=4)", "None"),
         Check(
-            "remote.connected, remote.buttons_pressed, remote.red_up, remote.any()", "(True, ['red_up'], True, True)"
+            "remote.connected, remote.buttons_pressed, remote.red_up, remote.any()",
+            "(True, ['red_up'], True, True)",
         ),
         Check("seeker = BeaconSeeker(channel=2)", "None"),
         Check("seeker.heading_and_distance == (seeker.heading, seeker.distance)", "True"),
@@ -199,9 +242,15 @@ COLOR = Table(
         Check("cl.color, cl.COLORS[cl.color], ColorSensor.COLOR_RED", "(5, 'Red', 5)"),
         Check("cl.reflected_light_intensity, cl.mode, cl.units", "(62, 'COL-REFLECT', 'pct')"),
         Check("cl.ambient_light_intensity, cl.mode", "(3, 'COL-AMBIENT')"),
-        Check("cl.raw, (cl.red, cl.green, cl.blue), cl.num_values", "((189, 43, 43), (189, 43, 43), 3)"),
+        Check(
+            "cl.raw, (cl.red, cl.green, cl.blue), cl.num_values",
+            "((189, 43, 43), (189, 43, 43), 3)",
+        ),
         Check("seconds(lambda: cl.reflected_light_intensity)", "(62, 0.01)"),
-        Check("cl.bin_data(), cl.driver_name, cl.address", "(bytearray(b'>'), 'lego-ev3-color', 'ev3-ports:in2')"),
+        Check(
+            "cl.bin_data(), cl.driver_name, cl.address",
+            "(bytearray(b'>'), 'lego-ev3-color', 'ev3-ports:in2')",
+        ),
         Check("cl.value(3)", "OSError: [Errno 22] Invalid argument"),
     ),
 )

@@ -31,7 +31,10 @@ for name in ('outA', 'in2'):
 
 
 def test_an_empty_port_and_one_with_a_sensor(run_on: RunOn) -> None:
-    assert run_on(PORTS, "default").lines == ["ev3-output-port auto no-motor", "ev3-input-port auto ev3-uart"]
+    assert run_on(PORTS, "default").lines == [
+        "ev3-output-port auto no-motor",
+        "ev3-input-port auto ev3-uart",
+    ]
 
 
 def test_a_look_for_what_is_not_there_names_what_is(run_on: RunOn) -> None:

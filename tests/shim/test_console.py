@@ -10,21 +10,30 @@ CONSOLE = Table(
     "from ev3dev2.console import Console\nc = Console()\n"
     "def size(font):\n    c.set_font(font)\n    return c.columns, c.rows",
     (
-        Check("c.columns, c.rows", "(14, 5)", "Console Console.__init__ Console.columns Console.rows"),
+        Check(
+            "c.columns, c.rows", "(14, 5)", "Console Console.__init__ Console.columns Console.rows"
+        ),
         Check("(lambda c: (c.columns, c.rows))(Console('Lat15-Terminus16'))", "(22, 8)"),
         Check("c.echo, c.cursor", "(False, False)"),
         Check("c.echo = c.cursor = True"),
         Check("c.echo, c.cursor", "(True, True)", "Console.echo Console.cursor"),
-        Check("size('Lat15-TomThumb4x6'), size('Lat15-Terminus12x6'), size('Lat15-TerminusBold32x16')",
-              "((44, 21), (29, 10), (11, 4))", "Console.set_font"),
-        Check("size('Lat15-VGA8'), size('Lat15-Fixed14'), size('Lat7-TerminusBoldVGA16')",
-              "((22, 16), (22, 9), (22, 8))"),
-        Check("size('nonsense'), size('Lat16'), size('Lat15-Huge500x400'), size('Lat15-None0x0'), size(None)",
-              "((22, 8), (22, 8), (22, 8), (22, 8), (22, 8))"),
+        Check(
+            "size('Lat15-TomThumb4x6'), size('Lat15-Terminus12x6'), size('Lat15-TerminusBold32x16')",
+            "((44, 21), (29, 10), (11, 4))",
+            "Console.set_font",
+        ),
+        Check(
+            "size('Lat15-VGA8'), size('Lat15-Fixed14'), size('Lat7-TerminusBoldVGA16')",
+            "((22, 16), (22, 9), (22, 8))",
+        ),
+        Check(
+            "size('nonsense'), size('Lat16'), size('Lat15-Huge500x400'), size('Lat15-None0x0'), size(None)",
+            "((22, 8), (22, 8), (22, 8), (22, 8), (22, 8))",
+        ),
         Check("size('Lat15-Terminus20x10.psf.gz')", "(17, 6)"),
         Check("c.text_at('x', alignment='Q')"),
     ),
-)  # fmt: skip
+)
 
 Shown = tuple[str, tuple[tuple[int, int, int], ...]]
 
@@ -32,7 +41,10 @@ SCREENS: dict[str, Shown] = {
     "c.text_at('Hello')": ("Hello||||", ()),
     "c.text_at('mid', column=8, row=3, alignment='C')": ("Hello||      mid||", ()),
     "c.text_at('right', 14, 5, alignment='R')": ("Hello||      mid||         right", ()),
-    "c.text_at('dark', 3, 2, inverse=True)": ("Hello|  dark|      mid||         right", ((1, 2, 6),)),
+    "c.text_at('dark', 3, 2, inverse=True)": (
+        "Hello|  dark|      mid||         right",
+        ((1, 2, 6),),
+    ),
     "c.text_at('plain', 8, 2)": ("Hello|  dark plain|      mid||         right", ((1, 2, 6),)),
     "c.clear_to_eol(10, 3)": ("Hello|  dark plain|      mid||         right", ((1, 2, 6),)),
     "c.clear_to_eol(8, 3)": ("Hello|  dark plain|      m||         right", ((1, 2, 6),)),
@@ -43,7 +55,10 @@ SCREENS: dict[str, Shown] = {
     "c.text_at('wraps at the right edge', 10, 2)": ("|         wraps| at the right|edge|", ()),
     "c.text_at('abcdefghijklmn', 1, 5)": ("|         wraps| at the right|edge|abcdefghijklmn", ()),
     "c.text_at('o!', 14, 5)": ("         wraps| at the right|edge|abcdefghijklmo|!", ()),
-    "c.text_at('too far left', 3, 1, alignment='R')": ("too far leftps| at the right|edge|abcdefghijklmo|!", ()),
+    "c.text_at('too far left', 3, 1, alignment='R')": (
+        "too far leftps| at the right|edge|abcdefghijklmo|!",
+        (),
+    ),
     "c.text_at('outside', 99, 99)": (" at the right|edge|abcdefghijklmo|!            o|utside", ()),
     "c.text_at('1\\n2\\n3', 1, 1, reset_console=True)": ("1|2|3||", ()),
     "c.text_at('a\\tb\\b\\rc', 1, 4)": ("1|2|3|c       b|", ()),

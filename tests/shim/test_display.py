@@ -36,7 +36,9 @@ print('done')
 
 def shown(done: Done) -> list[OutputRow]:
     """Return the rows about the screen."""
-    return [row for row in done.run.output.all_rows() if row.stream in (Stream.DISPLAY, Stream.CONSOLE)]
+    return [
+        row for row in done.run.output.all_rows() if row.stream in (Stream.DISPLAY, Stream.CONSOLE)
+    ]
 
 
 def dark(row: OutputRow) -> set[tuple[int, int]]:
@@ -109,8 +111,12 @@ def test_no_loop_of_calls_stands_still(run_on: RunOn, text: str, profile: str) -
 
 
 def test_pillow_is_imported_for_the_display_only(run_on: RunOn) -> None:
-    text = "import sys\nfrom ev3dev2 import motor, sound, console\nfrom ev3dev2.sensor import lego\n"
-    done = run_on(text + "print('PIL' in sys.modules)\nimport ev3dev2.display\nprint('PIL' in sys.modules)")
+    text = (
+        "import sys\nfrom ev3dev2 import motor, sound, console\nfrom ev3dev2.sensor import lego\n"
+    )
+    done = run_on(
+        text + "print('PIL' in sys.modules)\nimport ev3dev2.display\nprint('PIL' in sys.modules)"
+    )
     assert done.lines == ["False", "True"]
 
 

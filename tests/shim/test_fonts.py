@@ -29,7 +29,14 @@ def test_every_letter_of_a_font_leaves_ink(name: str) -> None:
 
 @pytest.mark.parametrize(
     ("name", "width"),
-    [("courB08", 5), ("courR14", 9), ("courB18", 11), ("courBO24", 15), ("lutRS19", 11), ("term14", 8)],
+    [
+        ("courB08", 5),
+        ("courR14", 9),
+        ("courB18", 11),
+        ("courBO24", 15),
+        ("lutRS19", 11),
+        ("term14", 8),
+    ],
 )
 def test_letters_of_one_width(name: str, width: int) -> None:
     font = drawn(FACES[name])
@@ -47,14 +54,18 @@ def test_bold_letters_have_more_ink(lighter: str, bolder: str) -> None:
 @pytest.mark.quick_cases("helvR")
 @pytest.mark.parametrize("family", ["charI", "helvR", "ncenB"])
 def test_letters_are_as_high_as_the_name_says(family: str) -> None:
-    heights = [drawn(FACES[f"{family}{size:02}"]).getmask("H").getbbox() for size in (8, 12, 18, 24)]
+    heights = [
+        drawn(FACES[f"{family}{size:02}"]).getmask("H").getbbox() for size in (8, 12, 18, 24)
+    ]
     assert [bottom - top for _, top, _, bottom in heights] == pytest.approx([6, 9, 13, 17], abs=1)
 
 
 def test_slanted_letters_lean_to_the_right() -> None:
     def middles(name: str) -> tuple[float, float]:
         mask = drawn(FACES[name]).getmask("l")
-        columns = [[x for x in range(mask.size[0]) if mask.getpixel((x, y))] for y in range(mask.size[1])]
+        columns = [
+            [x for x in range(mask.size[0]) if mask.getpixel((x, y))] for y in range(mask.size[1])
+        ]
         inked = [sum(row) / len(row) for row in columns if row]
         return inked[0], inked[-1]
 
@@ -78,7 +89,9 @@ def test_fonts_that_are_drawn_are_told_once(run_on: RunOn, profile: str) -> None
     ]
 
 
-def test_what_later_versions_of_pillow_remove_is_no_news_to_a_program_for_the_brick(run: Run) -> None:
+def test_what_later_versions_of_pillow_remove_is_no_news_to_a_program_for_the_brick(
+    run: Run,
+) -> None:
     warn = "warnings.warn('x is deprecated and will be removed in Pillow 14 (2027-10-15).', DeprecationWarning)"
     assert not run(f"import warnings\nfrom PIL import Image\n{warn}", prelude="none").errors
 

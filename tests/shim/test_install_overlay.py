@@ -44,7 +44,9 @@ def same(text: str, shows: str, robot: str = "default", setup: str = "") -> Row:
 
 
 ROWS: dict[str, Row] = {
-    "`reflected_light_intensity` on white": Row("ColorSensor().reflected_light_intensity", "255", "100"),
+    "`reflected_light_intensity` on white": Row(
+        "ColorSensor().reflected_light_intensity", "255", "100"
+    ),
     "`red`, `green`, `blue` on white": Row(
         "(lambda c: (c.red, c.green, c.blue))(ColorSensor())", "(255, 255, 255)", "(300, 300, 300)"
     ),
@@ -53,12 +55,18 @@ ROWS: dict[str, Row] = {
         "(100.0, 100.0)",
     ),
     "`ev3dev2_glue.get_clock()`": same(
-        "get_clock() - now > 1", "True", setup="from ev3dev2_glue import get_clock\nnow = get_clock()\ntime.sleep(1.5)"
+        "get_clock() - now > 1",
+        "True",
+        setup="from ev3dev2_glue import get_clock\nnow = get_clock()\ntime.sleep(1.5)",
     ),
     "`Sound.get_volume()`": Row(
-        "Sound().set_volume(40), Sound().get_volume()", "(None, 40)", "TypeError: invalid cmd type (<class 'list'>"
+        "Sound().set_volume(40), Sound().get_volume()",
+        "(None, 40)",
+        "TypeError: invalid cmd type (<class 'list'>",
     ),
-    "`Sound.speak()` with `'` in the text": Row('Sound().speak("It\'s")', "None", "ValueError: No closing quotation"),
+    "`Sound.speak()` with `'` in the text": Row(
+        'Sound().speak("It\'s")', "None", "ValueError: No closing quotation"
+    ),
     "a missing part": same(
         "LargeMotor(OUTPUT_A)",
         "DeviceNotFound: LargeMotor(ev3-ports:outA) is not connected. This robot has: outB lego-ev3-l-motor",
@@ -84,11 +92,19 @@ ROWS: dict[str, Row] = {
     ),
     "`==`, `<` of two speeds": same("SpeedPercent(50) == SpeedPercent(50)", "TypeError"),
     "`ColorSensor.lab`, `hls`": same(
-        "[round(value) for value in (*c.lab, *c.hls)]", "[9342, 0, 0, 0, 255, 0]", setup="c = ColorSensor()"
+        "[round(value) for value in (*c.lab, *c.hls)]",
+        "[9342, 0, 0, 0, 255, 0]",
+        setup="c = ColorSensor()",
     ),
-    "`play_song()` with `/`": same("ms(lambda: Sound().play_song([('C4', 'q/2')], delay=0))", "1000"),
-    "`play_note()` with a lower-case note": same("Sound().play_note('a4', 1)", "ValueError: invalid note (a4)"),
-    "`GyroSensor.circle_angle()`": same("g.circle_angle()", "360", setup="g = GyroSensor(); g._init_angle = 270"),
+    "`play_song()` with `/`": same(
+        "ms(lambda: Sound().play_song([('C4', 'q/2')], delay=0))", "1000"
+    ),
+    "`play_note()` with a lower-case note": same(
+        "Sound().play_note('a4', 1)", "ValueError: invalid note (a4)"
+    ),
+    "`GyroSensor.circle_angle()`": same(
+        "g.circle_angle()", "360", setup="g = GyroSensor(); g._init_angle = 270"
+    ),
     "`MotorSet.run_to_rel_pos()` and similar methods": same(
         "t.run_to_rel_pos(position_sp=90, speed_sp=200), t.wait_while('running'), t.left_motor.position",
         "(None, None, 180)",
@@ -96,7 +112,9 @@ ROWS: dict[str, Row] = {
         "t = MoveTank(OUTPUT_B, OUTPUT_C)",
     ),
     "`follow_for_ms` after an exception": same(
-        "follow_for_ms(t, 1000), time.sleep(1.5), follow_for_ms(t, 1000)", "(True, None, False)", setup="t = Tank()"
+        "follow_for_ms(t, 1000), time.sleep(1.5), follow_for_ms(t, 1000)",
+        "(True, None, False)",
+        setup="t = Tank()",
     ),
     "`odometry_start()` after driving": same(
         "d.odometry_start(), time.sleep(0.1), d.odometry_stop(), round(d.y_pos_mm)",
@@ -110,7 +128,11 @@ ROWS: dict[str, Row] = {
 }
 """By the item's text in the guide."""
 
-EXERCISED = {"ev3dev2.sound:Sound.set_volume", "ev3dev2.sound:Sound.get_volume", "ev3dev2.sound:Sound.channel"}
+EXERCISED = {
+    "ev3dev2.sound:Sound.set_volume",
+    "ev3dev2.sound:Sound.get_volume",
+    "ev3dev2.sound:Sound.channel",
+}
 """Items that only these tests exercise."""
 
 
@@ -118,7 +140,11 @@ EXERCISED = {"ev3dev2.sound:Sound.set_volume", "ev3dev2.sound:Sound.get_volume",
 @pytest.mark.parametrize(
     ("profile", "robot"),
     [
-        *((profile, robot) for profile in ("robolab", "ev3") for robot in ("default", "plain", "eyes")),
+        *(
+            (profile, robot)
+            for profile in ("robolab", "ev3")
+            for robot in ("default", "plain", "eyes")
+        ),
         # Moves, which only the plain robot makes, are its own in this profile.
         *(("nbev3devsim", robot) for robot in ("default", "eyes")),
     ],
@@ -127,7 +153,10 @@ def test_each_row(run_on: RunOn, profile: str, robot: str) -> None:
     checks = []
     for row in ROWS.values():
         if row.robot == robot:
-            checks += [Check(row.setup or "pass"), Check(row.text, row.ev3 if profile == "ev3" else row.robolab)]
+            checks += [
+                Check(row.setup or "pass"),
+                Check(row.text, row.ev3 if profile == "ev3" else row.robolab),
+            ]
     table = Table("ev3dev2", SETUP, tuple(checks))
     done = run_on(table.program, robot, profile=profile)
     assert "\n".join(differences(table, done.lines)) == ""
@@ -136,7 +165,9 @@ def test_each_row(run_on: RunOn, profile: str, robot: str) -> None:
 
 def test_the_table_has_these_rows() -> None:
     section = find_page("library-differences").source.partition("## What is not simulated")[0]
-    rows = [line.split(" | ")[0].removeprefix("| ") for line in section.splitlines() if " | " in line]
+    rows = [
+        line.split(" | ")[0].removeprefix("| ") for line in section.splitlines() if " | " in line
+    ]
     assert rows[2:] == list(ROWS)
 
 

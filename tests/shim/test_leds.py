@@ -44,10 +44,18 @@ def lights(row: OutputRow) -> tuple[int, ...]:
 
 def test_each_change_is_written_down_once_with_its_line(run_on: RunOn) -> None:
     done = run_on(STEPS)
-    assert [(row.line, lights(row)) for row in rows(done)] == [(5, (255, 255, 0, 255)), (8, (255, 255, 0, 0))]
+    assert [(row.line, lights(row)) for row in rows(done)] == [
+        (5, (255, 255, 0, 255)),
+        (8, (255, 255, 0, 0)),
+    ]
     first, last = rows(done)
     assert last.time_ns - first.time_ns == 1_000_000_000
-    assert list(face_after(BrickState(), [first]).leds) == ["left red", "left green", "right red", "right green"]
+    assert list(face_after(BrickState(), [first]).leds) == [
+        "left red",
+        "left green",
+        "right red",
+        "right green",
+    ]
 
 
 def test_a_blinking_light_is_written_down_each_time(run_on: RunOn) -> None:

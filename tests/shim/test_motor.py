@@ -20,7 +20,9 @@ print(tank.left_motor.position, tank.right_motor.position)
 """
 
 
-def test_motors_mounted_the_other_way_round_drive_forwards_when_they_run_backwards(run_on: RunOn) -> None:
+def test_motors_mounted_the_other_way_round_drive_forwards_when_they_run_backwards(
+    run_on: RunOn,
+) -> None:
     done = run_on(BACKWARDS, "reversed")
     assert done.lines == ["-720 -720"]
     assert done.pose == pytest.approx((START.x_mm + 2 * 175.929, START.y_mm, 0.0), abs=0.01)
@@ -80,8 +82,15 @@ def test_an_arm_homes_at_its_end_stop_and_every_wait_ends_there(run_on: RunOn) -
 
 
 def test_an_arm_of_the_browser_simulator_stops_but_never_stalls(run_on: RunOn) -> None:
-    waits = HOMES.partition("arm.off()")[0].replace("-20", "20").replace("sleep(0.01)", "print(arm.state); sleep(9)")
-    assert run_on(waits, "arm", profile="nbev3devsim", time_limit_s=15.0).lines == ["running", "running"]
+    waits = (
+        HOMES.partition("arm.off()")[0]
+        .replace("-20", "20")
+        .replace("sleep(0.01)", "print(arm.state); sleep(9)")
+    )
+    assert run_on(waits, "arm", profile="nbev3devsim", time_limit_s=15.0).lines == [
+        "running",
+        "running",
+    ]
 
 
 PRESSED = """
@@ -106,7 +115,11 @@ def test_an_arm_presses_a_sensor_at_its_end_in_every_view_of_the_run(run_on: Run
     run = done.run.stored()
     frame = telemetry_frame(run)
     pressed = frame["end_pressed"]
-    told = [(row.tick, float(row.text.rpartition(" ")[2])) for row in run.output.rows() if row.stream == 1]
+    told = [
+        (row.tick, float(row.text.rpartition(" ")[2]))
+        for row in run.output.rows()
+        if row.stream == 1
+    ]
     assert [value for _, value in told] == [0.0, 1.0, 0.0]
     assert [pressed[tick] for tick, _ in told] == [0.0, 1.0, 0.0]
     # One stretch, that ends with the move away from the stop.

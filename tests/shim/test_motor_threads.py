@@ -76,7 +76,15 @@ def summary(done: Done) -> str:
 @pytest.mark.slow
 def test_three_threads_give_the_same_log_in_20_runs(run_on: RunOn) -> None:
     runs = [
-        run_on(PROGRAM, "default", "lollipop", "robolab", live=speed is not None, presses=PRESSES, speed=speed or 0.0)
+        run_on(
+            PROGRAM,
+            "default",
+            "lollipop",
+            "robolab",
+            live=speed is not None,
+            presses=PRESSES,
+            speed=speed or 0.0,
+        )
         for speed in SPEEDS
     ]
     assert len({summary(done) for done in runs}) == 1

@@ -35,7 +35,9 @@ def test_sounds_overlap(run_on: RunOn) -> None:
         "from ev3dev2.sound import Sound\nimport time\ns = Sound()\n"
         "p = s.tone(440, 2000, play_type=1)\ns.tone(880, 500)\nprint(p.poll(), p.wait(), round(time.time() % 60, 2))"
     )
-    rows = [(row.text, row.time_ns) for row in done.run.output.all_rows() if row.stream == Stream.SPEECH]
+    rows = [
+        (row.text, row.time_ns) for row in done.run.output.all_rows() if row.stream == Stream.SPEECH
+    ]
     assert rows == [("[tone 440 Hz 2 s]", 0), ("[tone 880 Hz 0.5 s]", 0)]
     assert done.lines == ["None 0 2.0"]
 
@@ -50,9 +52,17 @@ def test_a_song_is_heard_up_to_its_wrong_note(run_on: RunOn) -> None:
 
 
 def test_for_ever_is_until_the_run_is_stopped(run_on: RunOn) -> None:
-    done = run_on("from ev3dev2.sound import Sound\nSound().tone(440, 400, play_type=2)", time_limit_s=1.9)
+    done = run_on(
+        "from ev3dev2.sound import Sound\nSound().tone(440, 400, play_type=2)", time_limit_s=1.9
+    )
     assert done.ended.end == "time_limit"
-    assert [row.time_ns // 1_000_000 for row in done.run.output.all_rows()] == [0, 400, 800, 1200, 1600]
+    assert [row.time_ns // 1_000_000 for row in done.run.output.all_rows()] == [
+        0,
+        400,
+        800,
+        1200,
+        1600,
+    ]
 
 
 def test_a_program_that_imports_everything_keeps_its_own_names(run_on: RunOn) -> None:

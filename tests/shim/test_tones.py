@@ -24,7 +24,20 @@ def test_beep_takes(words: str, tones: list[Tone]) -> None:
 
 
 @pytest.mark.parametrize(
-    "words", ["-f", "-f x", "-f 20001", "-f -1", "-l -1", "-l inf", "-D nan", "-r 1e9", "-r -1", "-x", "loud"]
+    "words",
+    [
+        "-f",
+        "-f x",
+        "-f 20001",
+        "-f -1",
+        "-l -1",
+        "-l inf",
+        "-D nan",
+        "-r 1e9",
+        "-r -1",
+        "-x",
+        "loud",
+    ],
 )
 def test_beep_refuses(words: str) -> None:
     with pytest.raises(ValueError):

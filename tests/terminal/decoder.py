@@ -94,7 +94,9 @@ class PixelTerminal:
         for row in range(top, top - -height_px // height):
             for col in range(left, left - -width_px // width):
                 self.texts.pop((row, col), None)
-        return slice(top * height, top * height + height_px), slice(left * width, left * width + width_px)
+        return slice(top * height, top * height + height_px), slice(
+            left * width, left * width + width_px
+        )
 
     def _paste(self, pixels: Pixels) -> None:
         height_px, width_px = pixels.shape[:2]
@@ -106,7 +108,10 @@ class PixelTerminal:
         values = dict(key.split("=") for key in keys.split(";"))
         data = b64decode(content)
         assert int(values["size"]) == len(data)
-        width_px, height_px = int(values["width"]) * self._cell_px[0], int(values["height"]) * self._cell_px[1]
+        width_px, height_px = (
+            int(values["width"]) * self._cell_px[0],
+            int(values["height"]) * self._cell_px[1],
+        )
         image = Image.open(BytesIO(data)).convert("RGB")
         self._paste(np.asarray(image.resize((width_px, height_px), Image.Resampling.NEAREST)))
 
@@ -117,7 +122,9 @@ class PixelTerminal:
                 del self.images[int(values["i"])]
             elif values["d"] == "R":
                 gone = range(int(values["x"]), int(values["y"]) + 1)
-                self.images = {number: one for number, one in self.images.items() if number not in gone}
+                self.images = {
+                    number: one for number, one in self.images.items() if number not in gone
+                }
             # Images at placeholders are not placed on the screen, so `d=A` does not concern them.
             return
         self._keys, self._data = self._keys or values, self._data + data
@@ -136,10 +143,14 @@ class PixelTerminal:
         colors: dict[int, tuple[int, ...]] = {}
         top = at = 0
         color: tuple[int, ...] = (0, 0, 0)
-        for match in re.finditer(r"#(\d+)(?:;2;(\d+);(\d+);(\d+))?|!(\d+)(.)|([?-~])|([$-])", "#" + data):
+        for match in re.finditer(
+            r"#(\d+)(?:;2;(\d+);(\d+);(\d+))?|!(\d+)(.)|([?-~])|([$-])", "#" + data
+        ):
             number, red, green, blue, count, repeated, single, move = match.groups()
             if number and red:
-                colors[int(number)] = tuple(round(int(channel) * 255 / 100) for channel in (red, green, blue))
+                colors[int(number)] = tuple(
+                    round(int(channel) * 255 / 100) for channel in (red, green, blue)
+                )
             elif number:
                 color = colors[int(number)]
             elif move:
@@ -160,7 +171,11 @@ class PixelTerminal:
             if number not in self.images:
                 continue
             image, cols, rows = self.images[number]
-            scaled = np.asarray(Image.fromarray(image).resize((cols * width, rows * height), Image.Resampling.NEAREST))
+            scaled = np.asarray(
+                Image.fromarray(image).resize(
+                    (cols * width, rows * height), Image.Resampling.NEAREST
+                )
+            )
             part = scaled[down * height : (down + 1) * height, right * width : (right + 1) * width]
             shown[row * height : (row + 1) * height, col * width : (col + 1) * width] = part
         for row, col in self.texts:

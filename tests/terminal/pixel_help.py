@@ -37,7 +37,11 @@ def part_of(terminal: PixelTerminal, view: PixelView | PlotView) -> np.ndarray[A
 def drawn_by(view: PixelView | PlotView, protocol: Protocol) -> np.ndarray[Any, Any]:
     assert view._tiles is not None
     points = view._tiles._points
-    return np.rint(np.rint(points * (100 / 255)) * 255 / 100).astype(np.uint8) if protocol == "sixel" else points
+    return (
+        np.rint(np.rint(points * (100 / 255)) * 255 / 100).astype(np.uint8)
+        if protocol == "sixel"
+        else points
+    )
 
 
 async def sharp(pilot: Pilot[Any], view: PixelView) -> None:
@@ -55,5 +59,8 @@ async def answered(pilot: Pilot[Any], answers: str) -> None:
 
 def on_canvas(view: PlotView, points: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
     """Return what an image of the view shows where it has a chart."""
-    rows = [points[y * 16 : y * 16 + 16, 8 * left : 8 * right] for y, (left, right) in view._spans.items()]
+    rows = [
+        points[y * 16 : y * 16 + 16, 8 * left : 8 * right]
+        for y, (left, right) in view._spans.items()
+    ]
     return np.concatenate(rows)

@@ -87,5 +87,10 @@ def test_controls_are_left_out_and_nothing_moves() -> None:
     bold = Style(bold=True)
     before = [Segment("Größe 😀", bold), Segment("a\x1b[31m\x9bb\x07\n")]
     after = Sanitize().apply(before, Color(0, 0, 0))
-    assert [(segment.text, segment.style) for segment in after] == [("Größe 😀", bold), ("a[31mb", None)]
-    assert [cell_len(segment.text) for segment in after] == [cell_len(segment.text) for segment in before]
+    assert [(segment.text, segment.style) for segment in after] == [
+        ("Größe 😀", bold),
+        ("a[31mb", None),
+    ]
+    assert [cell_len(segment.text) for segment in after] == [
+        cell_len(segment.text) for segment in before
+    ]

@@ -46,7 +46,9 @@ def driver() -> BrowserDriver:
     return made
 
 
-def test_an_interrupted_write_is_continued(driver: BrowserDriver, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_interrupted_write_is_continued(
+    driver: BrowserDriver, monkeypatch: pytest.MonkeyPatch
+) -> None:
     written = b""
 
     def write(_: int, data: bytes) -> int:
@@ -108,7 +110,9 @@ def test_the_page_tells_where_the_mouse_is_between_two_cells(
     monkeypatch.setattr(WebDriver, "process_message", lambda _, message: seen.append(message))
     for message in AnswerParser().feed("\x1b[48;40;100;800;1000t\x1b[<0;26;51M"):
         driver.process_message(message)
-    assert [(type(one), one.pointer_x, one.pointer_y) for one in seen if isinstance(one, events.MouseEvent)] == [
-        (events.MouseDown, 2.5, 2.5)
-    ]
+    assert [
+        (type(one), one.pointer_x, one.pointer_y)
+        for one in seen
+        if isinstance(one, events.MouseEvent)
+    ] == [(events.MouseDown, 2.5, 2.5)]
     assert not [one for one in seen if isinstance(one, events.Resize)]

@@ -60,10 +60,19 @@ def test_blocks_fill_their_part(name: str) -> None:
 
 # Lines that leave a cell through its left, right, upper and lower edge.
 LINES = {
-    "horizontal": ("─", "LR"), "vertical": ("│", "UD"), "corner": ("┌", "RD"), "arc": ("╯", "LU"), "tee": ("┤", "LUD"),
-    "cross": ("┼", "LRUD"), "heavy": ("━", "LR"), "mixed": ("┮", "LRD"), "double": ("╚", "RU"), "half": ("╷", "D"),
-    "rising": ("╱", ""), "dashes": ("┆", "U"),
-}  # fmt: skip
+    "horizontal": ("─", "LR"),
+    "vertical": ("│", "UD"),
+    "corner": ("┌", "RD"),
+    "arc": ("╯", "LU"),
+    "tee": ("┤", "LUD"),
+    "cross": ("┼", "LRUD"),
+    "heavy": ("━", "LR"),
+    "mixed": ("┮", "LRD"),
+    "double": ("╚", "RU"),
+    "half": ("╷", "D"),
+    "rising": ("╱", ""),
+    "dashes": ("┆", "U"),
+}
 
 
 @pytest.mark.parametrize("name", LINES)
@@ -71,7 +80,10 @@ def test_lines_reach_the_edges(name: str) -> None:
     char, edges = LINES[name]
     light = pixels([cells(char)])[..., 0] > 128
     width, height = CELL_PX
-    rows, columns = light[height // 2 - 4 : height // 2 + 4], light[:, width // 2 - 3 : width // 2 + 3]
+    rows, columns = (
+        light[height // 2 - 4 : height // 2 + 4],
+        light[:, width // 2 - 3 : width // 2 + 3],
+    )
     ends = {"L": rows[:, 0], "R": rows[:, -1], "U": columns[0], "D": columns[-1]}
     assert {side for side, found in ends.items() if found.any()} == set(edges)
     assert light.any()
@@ -87,28 +99,39 @@ def test_braille_has_its_dots(char: str, count: int) -> None:
 
 
 def test_colours_are_those_of_the_cells() -> None:
-    top, bottom = pixels([[("▀", Look(RED, BLUE)), (" ", Look(RED, WHITE))]]).reshape(2, CELL_PX[1] // 2, -1, 3)
+    top, bottom = pixels([[("▀", Look(RED, BLUE)), (" ", Look(RED, WHITE))]]).reshape(
+        2, CELL_PX[1] // 2, -1, 3
+    )
     assert (top[:, : CELL_PX[0]] == RED).all() and (bottom[:, : CELL_PX[0]] == BLUE).all()
     assert (top[:, CELL_PX[0] :] == WHITE).all()
 
 
-@pytest.mark.parametrize("look", [LOOK, Look(WHITE, BLACK, bold=True), Look(WHITE, BLACK, italic=True)],
-                         ids=["plain", "bold", "italic"])  # fmt: skip
+@pytest.mark.parametrize(
+    "look",
+    [LOOK, Look(WHITE, BLACK, bold=True), Look(WHITE, BLACK, italic=True)],
+    ids=["plain", "bold", "italic"],
+)
 def test_letters_are_drawn_within_their_cell(look: Look) -> None:
     shown = pixels([cells(" g ", look)])[..., 0]
     (left, middle, right) = np.split(shown, 3, axis=1)
     assert (middle > 128).sum() > 20
     # What leans out of a cell is cut off, as in a terminal.
     assert not left.any() and not right.any()
-    assert {char: (pixels([cells(char, look)]) > 128).sum() > 10 for char in "äЖλ→●✗"} == dict.fromkeys("äЖλ→●✗", True)
+    assert {
+        char: (pixels([cells(char, look)]) > 128).sum() > 10 for char in "äЖλ→●✗"
+    } == dict.fromkeys("äЖλ→●✗", True)
 
 
 def test_bold_is_bolder_and_lines_are_drawn() -> None:
     plain, bold, under, strike = (
         pixels([cells("m", look)])[..., 0].astype(int)
-        for look in (LOOK, Look(WHITE, BLACK, bold=True), Look(WHITE, BLACK, underline=True),
-                     Look(WHITE, BLACK, strike=True))
-    )  # fmt: skip
+        for look in (
+            LOOK,
+            Look(WHITE, BLACK, bold=True),
+            Look(WHITE, BLACK, underline=True),
+            Look(WHITE, BLACK, strike=True),
+        )
+    )
     assert bold.sum() > plain.sum()
     assert [(shown == 255).all(axis=1).sum() for shown in (plain, under, strike)] == [0, 1, 1]
 
@@ -122,7 +145,12 @@ def texts_of(svg: str) -> list[str]:
     return ["".join(node.itertext()) for node in ElementTree.fromstring(svg).iter(f"{SVG}text")]
 
 
-ROWS: Sequence[tuple[str, list[str]]] = [("a b", ["ab"]), ("<&>", ["<&>"]), ("│▀⣿", []), ("   ", [])]
+ROWS: Sequence[tuple[str, list[str]]] = [
+    ("a b", ["ab"]),
+    ("<&>", ["<&>"]),
+    ("│▀⣿", []),
+    ("   ", []),
+]
 
 
 @pytest.mark.parametrize(("row", "texts"), ROWS)
@@ -135,5 +163,7 @@ def test_svg_holds_text_as_text(row: str, texts: list[str]) -> None:
 
 def test_svg_places_each_letter_in_its_cell() -> None:
     root = ElementTree.fromstring(svg_of_cells([cells("x  y"), cells("  z ")], ""))
-    places = [(node.attrib["x"], int(node.attrib["y"]) // CELL_PX[1]) for node in root.iter(f"{SVG}text")]
+    places = [
+        (node.attrib["x"], int(node.attrib["y"]) // CELL_PX[1]) for node in root.iter(f"{SVG}text")
+    ]
     assert places == [("0 30", 0), ("20", 1)]

@@ -31,7 +31,10 @@ async def test_what_the_terminal_shows_is_what_was_drawn(protocol: Protocol) -> 
         await answered(pilot, ANSWERS[protocol])
         for key in ("right", "a", "a", "up"):
             await pilot.press(key)
-        for view in (pilot.app.query_one(WorldView), pilot.app.query_one(Arrays).query_one(PixelView)):
+        for view in (
+            pilot.app.query_one(WorldView),
+            pilot.app.query_one(Arrays).query_one(PixelView),
+        ):
             await sharp(pilot, view)
             assert np.array_equal(part_of(seen_on(pilot), view), drawn_by(view, protocol))
 

@@ -32,7 +32,9 @@ def glyph(cell: int) -> str:
 def test_a_cell_holds_upper_and_lower_colour() -> None:
     picture = np.array([[[1, 2, 3]], [[4, 5, 6]]], np.uint8)
 
-    assert fit_cells(picture, glyph_set(CellSet.HALF), all_cells(1, 1)).tolist() == [0x010203_040506]
+    assert fit_cells(picture, glyph_set(CellSet.HALF), all_cells(1, 1)).tolist() == [
+        0x010203_040506
+    ]
 
 
 @pytest.mark.parametrize("cells", FINE)

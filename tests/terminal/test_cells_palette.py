@@ -6,7 +6,14 @@ import numpy as np
 import pytest
 
 from tuisim.scene.robot import COLORED, GREY
-from tuisim.terminal.cells import PALETTE_8, PALETTE_16, PALETTE_256, ColorMode, reduce_pixels, sgr_index
+from tuisim.terminal.cells import (
+    PALETTE_8,
+    PALETTE_16,
+    PALETTE_256,
+    ColorMode,
+    reduce_pixels,
+    sgr_index,
+)
 from tuisim.terminal.pixels import Pixels
 
 MODES = [
@@ -49,7 +56,9 @@ def test_the_robot_stands_out(mode: ColorMode, ground: int) -> None:
     colors = GREY if mode.grey else COLORED
     below = area((ground,) * 3, mode).astype(int)
 
-    contrast = [abs(area(part, mode).astype(int) - below).mean() for part in (colors.body, colors.marker)]
+    contrast = [
+        abs(area(part, mode).astype(int) - below).mean() for part in (colors.body, colors.marker)
+    ]
 
     assert max(contrast) > 50
 

@@ -15,7 +15,9 @@ def test_it_is_waited_for_and_an_interrupt_is_the_programs_alone(tmp_path: Path)
     before = signal.getsignal(signal.SIGINT)
     program = "import os, signal, sys; os.kill(os.getppid(), signal.SIGINT); open(sys.argv[1], 'w').close()"
     # Also where it starts so late that this process already ignores the signal.
-    run_in_foreground([sys.executable, "-c", f"import time; time.sleep(0.2); {program}", str(tmp_path / "done")])
+    run_in_foreground(
+        [sys.executable, "-c", f"import time; time.sleep(0.2); {program}", str(tmp_path / "done")]
+    )
     assert (tmp_path / "done").exists()
     assert signal.getsignal(signal.SIGINT) is before
 

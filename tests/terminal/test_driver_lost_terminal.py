@@ -75,12 +75,16 @@ def wait(condition: Callable[[], bool]) -> None:
 
 
 def children(process: int) -> list[int]:
-    listed = subprocess.run(["ps", "-o", "pid=", "--ppid", str(process)], capture_output=True, text=True, check=False)
+    listed = subprocess.run(
+        ["ps", "-o", "pid=", "--ppid", str(process)], capture_output=True, text=True, check=False
+    )
     return [int(pid) for pid in listed.stdout.split()]
 
 
 def alive(process: int) -> bool:
-    return subprocess.run(["ps", "-p", str(process)], capture_output=True, check=False).returncode == 0
+    return (
+        subprocess.run(["ps", "-p", str(process)], capture_output=True, check=False).returncode == 0
+    )
 
 
 class Broken(io.StringIO):
@@ -107,16 +111,29 @@ def test_more_than_the_queue_holds_is_written_to_a_terminal_that_is_gone() -> No
 
 
 @contextmanager
-def lab(folder: Path, root: Path, *words: str, by: str = ENTER) -> Iterator[tuple[subprocess.Popen[bytes], int]]:
+def lab(
+    folder: Path, root: Path, *words: str, by: str = ENTER
+) -> Iterator[tuple[subprocess.Popen[bytes], int]]:
     """Run the app in a terminal of its own; yield it, or what started it, and the terminal's other end."""
     outer, inner = pty.openpty()
-    environment = {**os.environ, "TERM": "xterm-256color", "PYTHONPATH": str(root), "COLUMNS": "120", "LINES": "40"}
+    environment = {
+        **os.environ,
+        "TERM": "xterm-256color",
+        "PYTHONPATH": str(root),
+        "COLUMNS": "120",
+        "LINES": "40",
+    }
     # What is written is held back in a buffer for most users.
     environment.pop("PYTHONUNBUFFERED", None)
     app = subprocess.Popen(
         [sys.executable, "-c", by, sys.executable, "-m", "tuisim", *words],
-        stdin=inner, stdout=inner, stderr=inner, cwd=folder, env=environment, start_new_session=True,
-    )  # fmt: skip
+        stdin=inner,
+        stdout=inner,
+        stderr=inner,
+        cwd=folder,
+        env=environment,
+        start_new_session=True,
+    )
     os.close(inner)
     try:
         yield app, outer
@@ -173,7 +190,9 @@ def test_a_lost_terminal_ends_the_app_and_its_program(tmp_path: Path, root: Path
 
 
 @pytest.mark.slow
-def test_a_lost_terminal_ends_the_app_also_if_no_signal_tells_it(tmp_path: Path, root: Path) -> None:
+def test_a_lost_terminal_ends_the_app_also_if_no_signal_tells_it(
+    tmp_path: Path, root: Path
+) -> None:
     (tmp_path / "empty.py").touch()
     with lab(tmp_path, root, "empty.py", by=DEAF) as (shell, outer):
         Screen(outer).wait(b"quit")
@@ -228,7 +247,9 @@ async def test_a_stop_from_outside_while_the_app_suspends_leaves_the_terminal_to
     assert done == ["leaves the terminal", "stops", "takes it"]
 
 
-async def test_an_app_whose_terminal_is_lost_while_it_is_suspended_ends(monkeypatch: pytest.MonkeyPatch) -> None:
+async def test_an_app_whose_terminal_is_lost_while_it_is_suspended_ends(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     monkeypatch.setattr(signal, "signal", lambda *_: None)
     app = LabApp(settings())
     driver = TerminalDriver(cast(App[object], app))
@@ -254,7 +275,9 @@ async def test_the_terminal_is_taken_again_by_the_event_loop_and_not_where_the_s
 
 
 @pytest.mark.slow
-def test_ctrl_z_stops_the_app_and_it_goes_on_with_the_run_paused(tmp_path: Path, root: Path) -> None:
+def test_ctrl_z_stops_the_app_and_it_goes_on_with_the_run_paused(
+    tmp_path: Path, root: Path
+) -> None:
     (tmp_path / "spin.py").write_text("tank_drive.on(20, 30)\nwhile True:\n    pass\n")
     with lab(tmp_path, root, "spin.py", "-R", by=SHELL) as (shell, outer):
         screen = Screen(outer)
@@ -277,7 +300,10 @@ def test_ctrl_z_stops_the_app_and_it_goes_on_with_the_run_paused(tmp_path: Path,
 @pytest.mark.parametrize(
     ("places", "suspends"),
     [(((), ("b",), ("escape", "ctrl+p"), ("escape", "d", "escape")), True), ((("d", "x"),), False)],
-    ids=["world, dialog, palette and a program where nothing is typed", "a program while it is edited"],
+    ids=[
+        "world, dialog, palette and a program where nothing is typed",
+        "a program while it is edited",
+    ],
 )
 async def test_where_ctrl_z_suspends(
     places: tuple[tuple[str, ...], ...], suspends: bool, monkeypatch: pytest.MonkeyPatch
@@ -295,7 +321,9 @@ async def test_where_ctrl_z_suspends(
 
 
 @pytest.mark.parametrize(
-    "opened", [lambda: SavedPoses(Pose(0, 0, 0)), lambda: Palette((), None)], ids=["dialog", "palette"]
+    "opened",
+    [lambda: SavedPoses(Pose(0, 0, 0)), lambda: Palette((), None)],
+    ids=["dialog", "palette"],
 )
 async def test_a_screen_that_is_being_opened_when_the_app_ends_does_no_harm(
     opened: Callable[[], ModalScreen[object]],
@@ -314,7 +342,11 @@ def _find_no_screen(area: PanelArea) -> None:
 
 @pytest.mark.parametrize(
     "change",
-    [lambda area: area.ensure("debug"), lambda area: area.move_child(Static(), after=-1), _find_no_screen],
+    [
+        lambda area: area.ensure("debug"),
+        lambda area: area.move_child(Static(), after=-1),
+        _find_no_screen,
+    ],
     ids=["a panel is added", "what was not added is moved", "there is no screen any more"],
 )
 async def test_a_change_when_the_app_ends_does_no_harm(change: Callable[[PanelArea], None]) -> None:

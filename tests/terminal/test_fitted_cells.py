@@ -13,7 +13,9 @@ from tuisim.terminal.picture_options import CellSet
 
 def test_cells_of_one_color_are_flat() -> None:
     glyphs = glyph_set(CellSet.OCTANT)
-    picture = np.concatenate([picture_of(CellSet.OCTANT, pattern) for pattern in (0x00, 0x0F, 0xFF)], axis=1)
+    picture = np.concatenate(
+        [picture_of(CellSet.OCTANT, pattern) for pattern in (0x00, 0x0F, 0xFF)], axis=1
+    )
     assert is_flat(picture, glyphs, all_cells(1, 3)).tolist() == [True, False, True]
 
 

@@ -64,9 +64,12 @@ def shown(screen: pyte.Screen) -> list[list[tuple[object, ...]]]:
     cells: list[list[tuple[object, ...]]] = []
     for y in range(screen.lines):
         line = [screen.buffer[y][x] for x in range(screen.columns)]
-        cells.append([
-            (char.bg,) if char.data == " " and not (char.underscore or char.reverse) else char for char in line
-        ])  # fmt: skip
+        cells.append(
+            [
+                (char.bg,) if char.data == " " and not (char.underscore or char.reverse) else char
+                for char in line
+            ]
+        )
     return cells
 
 
@@ -92,15 +95,29 @@ def test_only_what_differs_is_sent(before: str, after: str, codes: str) -> None:
 @pytest.mark.parametrize(
     ("strip", "mode", "codes"),
     [
-        pytest.param(CellStrip([0xFF0000_FF0000] * 3), FULL, "\x1b[48;2;255;0;0m   \x1b[0m", id="even cells"),
         pytest.param(
-            CellStrip([0xFF0000_0000FF] * 2), FULL, "\x1b[38;2;255;0;0;48;2;0;0;255m▀▀\x1b[0m", id="half blocks"
+            CellStrip([0xFF0000_FF0000] * 3), FULL, "\x1b[48;2;255;0;0m   \x1b[0m", id="even cells"
         ),
-        pytest.param(CellStrip([0xFF0000_0000FF]), MODE_256, "\x1b[38;5;196;48;5;21m▀\x1b[0m", id="256 colours"),
+        pytest.param(
+            CellStrip([0xFF0000_0000FF] * 2),
+            FULL,
+            "\x1b[38;2;255;0;0;48;2;0;0;255m▀▀\x1b[0m",
+            id="half blocks",
+        ),
+        pytest.param(
+            CellStrip([0xFF0000_0000FF]),
+            MODE_256,
+            "\x1b[38;5;196;48;5;21m▀\x1b[0m",
+            id="256 colours",
+        ),
         pytest.param(CellStrip([0xFF0000_0000FF]), MODE_16, "\x1b[31;44m▀\x1b[0m", id="16 colours"),
-        pytest.param(CellStrip([0xFF4646_C80000]), MODE_16, "\x1b[91;41m▀\x1b[0m", id="two reds of 16"),
+        pytest.param(
+            CellStrip([0xFF4646_C80000]), MODE_16, "\x1b[91;41m▀\x1b[0m", id="two reds of 16"
+        ),
         pytest.param(CellStrip([0xFF4646_0000FF]), MODE_8, "\x1b[31;44m▀\x1b[0m", id="8 colours"),
-        pytest.param(CellStrip([100 << 48 | 0xFFFFFF << 24]), PLAIN, f"{GLYPHS[100]}", id="no colours"),
+        pytest.param(
+            CellStrip([100 << 48 | 0xFFFFFF << 24]), PLAIN, f"{GLYPHS[100]}", id="no colours"
+        ),
         pytest.param(
             Strip([Segment("a", Style(color="#44505e", bgcolor="#10151c"))]),
             MODE_8,
@@ -108,7 +125,12 @@ def test_only_what_differs_is_sent(before: str, after: str, codes: str) -> None:
             id="dim of 8",
         ),
         pytest.param(
-            Strip([Segment("a", Style(color="#ffffff", bgcolor="#2f4a63")), Segment("b", Style(bgcolor="#10151c"))]),
+            Strip(
+                [
+                    Segment("a", Style(color="#ffffff", bgcolor="#2f4a63")),
+                    Segment("b", Style(bgcolor="#10151c")),
+                ]
+            ),
             PLAIN,
             "\x1b[7ma\x1b[0mb",
             id="a highlight without colours",
@@ -121,7 +143,10 @@ def test_only_what_differs_is_sent(before: str, after: str, codes: str) -> None:
             id="blanks are alike",
         ),
         pytest.param(
-            Strip([Segment("a", Style(bold=True)), Segment("b")]), MODE_256, "\x1b[1ma\x1b[0mb", id="an attribute ends"
+            Strip([Segment("a", Style(bold=True)), Segment("b")]),
+            MODE_256,
+            "\x1b[1ma\x1b[0mb",
+            id="an attribute ends",
         ),
     ],
 )
@@ -138,7 +163,12 @@ def test_a_link_ends_where_its_text_ends() -> None:
 @pytest.mark.parametrize("mode", [FULL, MODE_256])
 def test_a_picture_below_a_dialog_is_the_picture(mode: TextMode) -> None:
     """Textual makes plain segments of what lies under a dialog; that must not be sent again."""
-    cells = CellStrip([grey << 40 | grey << 32 | grey << 24 | grey << 16 | grey << 8 | grey for grey in range(8, 248)])
+    cells = CellStrip(
+        [
+            grey << 40 | grey << 32 | grey << 24 | grey << 16 | grey << 8 | grey
+            for grey in range(8, 248)
+        ]
+    )
     frame_buffer = FrameBuffer()
     sent(frame_buffer, rows([cells]), mode)
 
@@ -187,7 +217,9 @@ def test_the_terminal_shows_what_textual_itself_would_have_sent(seed: int) -> No
     rng = random.Random(seed)
     mine, own = pyte.Screen(30, 4), pyte.Screen(30, 4)
     my_stream, own_stream = pyte.Stream(mine), pyte.Stream(own)
-    own_console = Console(file=StringIO(), force_terminal=True, color_system="truecolor", _environ={})
+    own_console = Console(
+        file=StringIO(), force_terminal=True, color_system="truecolor", _environ={}
+    )
     frame_buffer = FrameBuffer()
     lines = [random_row(rng) for _ in range(4)]
     for _ in range(8):
@@ -203,7 +235,9 @@ def test_the_terminal_shows_what_textual_itself_would_have_sent(seed: int) -> No
 def test_part_of_a_row_is_sent_in_its_place() -> None:
     frame_buffer = FrameBuffer()
     sent(frame_buffer, rows([text("left"), text("right")], [text("left"), text("right")]))
-    part = ChopsUpdate([{0: None, 4: None}, {0: None, 4: text("night")}], [(1, 4, 6)], [[4, 9], [4, 9]])
+    part = ChopsUpdate(
+        [{0: None, 4: None}, {0: None, 4: text("night")}], [(1, 4, 6)], [[4, 9], [4, 9]]
+    )
 
     assert sent(frame_buffer, part) == "\x1b[2;5Hn"
 

@@ -25,10 +25,17 @@ def painted(shapes: tuple[GlyphShape, ...] | None) -> set[tuple[int, int]]:
     """Pixels that areas cover."""
     areas = [shape for shape in shapes or () if isinstance(shape, Area)]
     edges = [tuple(map(int, (at.left, at.top, at.right, at.bottom))) for at in areas]
-    return {(x, y) for left, top, right, bottom in edges for x in range(left, right) for y in range(top, bottom)}
+    return {
+        (x, y)
+        for left, top, right, bottom in edges
+        for x in range(left, right)
+        for y in range(top, bottom)
+    }
 
 
-@pytest.mark.parametrize(("char", "shapes"), SHAPES.items(), ids=[hex(ord(char[0])) + char for char in SHAPES])
+@pytest.mark.parametrize(
+    ("char", "shapes"), SHAPES.items(), ids=[hex(ord(char[0])) + char for char in SHAPES]
+)
 def test_shapes_of_a_character(char: str, shapes: tuple[GlyphShape, ...] | None) -> None:
     found = shapes_of(char, 8, 16)
     if painted(shapes):

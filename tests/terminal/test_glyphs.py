@@ -30,8 +30,15 @@ def shown(cells: CellSet) -> dict[str, str]:
         # The names of octants are in The Unicode Standard 16.0, Symbols for Legacy Computing Supplement.
         pytest.param(CellSet.OCTANT, "\U0001cd02", "###.....", id="octants 123"),
         pytest.param(CellSet.OCTANT, "\U0001cde4", "#.######", id="octants 1345678"),
-        pytest.param(CellSet.OCTANT, "\U0001cea8", "#.......", id="octant 1, left half upper one quarter block"),
-        pytest.param(CellSet.OCTANT, "\U0001fb82", "##......", id="octants 12, upper one quarter block"),
+        pytest.param(
+            CellSet.OCTANT,
+            "\U0001cea8",
+            "#.......",
+            id="octant 1, left half upper one quarter block",
+        ),
+        pytest.param(
+            CellSet.OCTANT, "\U0001fb82", "##......", id="octants 12, upper one quarter block"
+        ),
         pytest.param(CellSet.OCTANT, "▙", "#.#.####", id="a quadrant"),
         pytest.param(CellSet.BRAILLE, "\N{BRAILLE PATTERN DOTS-1}", "#.......", id="dot 1"),
         pytest.param(CellSet.BRAILLE, "\N{BRAILLE PATTERN DOTS-478}", ".#....##", id="dots 478"),

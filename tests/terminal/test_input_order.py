@@ -20,7 +20,10 @@ from tuisim.terminal.input_order import InputOrder, Turn
 class _App(App[None]):
     """A field within several parents, all of which a key passes on its way to the app."""
 
-    BINDINGS: ClassVar[list[BindingType]] = [Binding("f5", "later", "Later"), Binding("f6", "never", "Never")]
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("f5", "later", "Later"),
+        Binding("f6", "never", "Never"),
+    ]
 
     def __init__(self) -> None:
         super().__init__()
@@ -82,7 +85,9 @@ async def test_a_key_waits_for_what_is_to_hear_it_and_those_behind_wait_with_it(
         assert app.typed == "b"
 
 
-async def test_a_turn_whose_end_never_comes_does_not_hold_the_keys_for_ever(monkeypatch: pytest.MonkeyPatch) -> None:
+async def test_a_turn_whose_end_never_comes_does_not_hold_the_keys_for_ever(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     monkeypatch.setattr(input_order, "_PATIENCE_S", 0.01)
     app = _App()
     async with app.run_test() as pilot:

@@ -29,7 +29,9 @@ class Line:
         round_trip_s: There and back.
     """
 
-    def __init__(self, bytes_s: float = inf, round_trip_s: float = 0.002, most_queued_s: float | None = None) -> None:
+    def __init__(
+        self, bytes_s: float = inf, round_trip_s: float = 0.002, most_queued_s: float | None = None
+    ) -> None:
         self.clock = Clock()
         self.pacer = Pacer(20, clock=self.clock, most_queued_s=most_queued_s)
         self.bytes_s, self.round_trip_s = bytes_s, round_trip_s

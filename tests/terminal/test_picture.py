@@ -25,13 +25,22 @@ def _disc(x_px: int, y_px: int, width: int = COLS * 6, height: int = ROWS * 13) 
     picture = np.full((height, width, 3), (240, 250, 230), np.uint8)
     picture[:, ::40] = 10, 20, 200
     distance = np.hypot(rows - y_px, cols - x_px)
-    picture[distance < 20] = np.stack([np.rint(distance * 10)] * 3, -1)[distance < 20].astype(np.uint8)
+    picture[distance < 20] = np.stack([np.rint(distance * 10)] * 3, -1)[distance < 20].astype(
+        np.uint8
+    )
     return picture
 
 
-def _draw(terminal: PixelTerminal, picture: TilePicture, runs: list[tuple[int, int, int]], shown: bool = True) -> int:
+def _draw(
+    terminal: PixelTerminal,
+    picture: TilePicture,
+    runs: list[tuple[int, int, int]],
+    shown: bool = True,
+) -> int:
     cells = [
-        (row + 1, col + 2, picture.row(row)[col]) for row, first, count in runs for col in range(first, first + count)
+        (row + 1, col + 2, picture.row(row)[col])
+        for row, first, count in runs
+        for col in range(first, first + count)
     ]
     codes = picture.draw(cells, lambda row, col: shown)
     terminal.feed(codes)
@@ -40,7 +49,11 @@ def _draw(terminal: PixelTerminal, picture: TilePicture, runs: list[tuple[int, i
 
 def _seen(points: Pixels, protocol: Protocol) -> Pixels:
     """Return what a terminal shows of a picture: channels of sixel are percentages."""
-    return np.rint(np.rint(points * (100 / 255)) * 255 / 100).astype(np.uint8) if protocol is Protocol.SIXEL else points
+    return (
+        np.rint(np.rint(points * (100 / 255)) * 255 / 100).astype(np.uint8)
+        if protocol is Protocol.SIXEL
+        else points
+    )
 
 
 @pytest.mark.slow_cases("sixel-tmux", "kitty-tmux")
@@ -68,7 +81,9 @@ def test_a_picture_of_another_size_is_sent_whole(protocol: Protocol) -> None:
     _draw(terminal, picture, picture.put(_disc(30, 30)))
     points = _disc(30, 30, 6 * 9, 13 * 5)
     _draw(terminal, picture, picture.put(points))
-    assert np.array_equal(terminal.pixels[13 : 13 + len(points), 12 : 12 + points.shape[1]], _seen(points, protocol))
+    assert np.array_equal(
+        terminal.pixels[13 : 13 + len(points), 12 : 12 + points.shape[1]], _seen(points, protocol)
+    )
 
 
 @pytest.mark.parametrize("protocol", Protocol)
@@ -164,7 +179,9 @@ def test_pictures_with_many_colors_are_sent_in_the_nearest() -> None:
     ],
     ids=["nothing", "block", "far apart", "nearly a block"],
 )
-def test_changed_cells_are_joined_to_rectangles(rows: list[str], expected: list[tuple[int, ...]]) -> None:
+def test_changed_cells_are_joined_to_rectangles(
+    rows: list[str], expected: list[tuple[int, ...]]
+) -> None:
     changed = np.array([[mark == "#" for mark in row] for row in rows])
     assert rectangles(changed, lambda _: True) == [Rectangle(*one) for one in expected]
 

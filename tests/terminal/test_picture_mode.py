@@ -21,7 +21,9 @@ from tuisim.terminal.picture_mode import PictureMode, color_depth, picture_mode_
 from tuisim.terminal.picture_options import CellSet
 from tuisim.terminal.probe import colors_without_asking
 
-SOURCES = [path for path in Path(tuisim.__file__).parent.rglob("*") if path.suffix in (".py", ".tcss")]
+SOURCES = [
+    path for path in Path(tuisim.__file__).parent.rglob("*") if path.suffix in (".py", ".tcss")
+]
 
 
 def test_every_sign_of_the_app_has_one_in_ascii() -> None:
@@ -48,7 +50,14 @@ def test_each_sign_keeps_its_width(text: str, plain: str) -> None:
 
 @pytest.mark.parametrize(
     ("terminal", "colors"),
-    [("dumb", "none"), ("", "none"), ("vt100", "none"), ("vt220", "none"), ("linux", "8"), ("xterm-256color", "auto")],
+    [
+        ("dumb", "none"),
+        ("", "none"),
+        ("vt100", "none"),
+        ("vt220", "none"),
+        ("linux", "8"),
+        ("xterm-256color", "auto"),
+    ],
 )
 def test_colours_of_a_kind_of_terminal(terminal: str, colors: str) -> None:
     assert colors_without_asking({"TERM": terminal, "COLORTERM": "truecolor"}) == colors
@@ -68,7 +77,9 @@ def test_terminfo_knows_which_terminals_have_no_colours(terminal: str) -> None:
     [
         pytest.param({"TERM": "vt220", "LANG": "C.UTF-8"}, CellSet.BRAILLE, id="utf-8"),
         pytest.param({"TERM": "vt220", "LANG": "C"}, CellSet.ASCII, id="ascii"),
-        pytest.param({"TERM": "linux", "LANG": "C.UTF-8"}, CellSet.ASCII, id="no braille in its font"),
+        pytest.param(
+            {"TERM": "linux", "LANG": "C.UTF-8"}, CellSet.ASCII, id="no braille in its font"
+        ),
     ],
 )
 def test_without_colours_no_blocks_are_taken(
@@ -83,7 +94,11 @@ def test_without_colours_no_blocks_are_taken(
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    ("cells", "most"), [pytest.param(CellSet.ASCII, 0x7F, id="ascii"), pytest.param(CellSet.BRAILLE, 0x28FF, id="dots")]
+    ("cells", "most"),
+    [
+        pytest.param(CellSet.ASCII, 0x7F, id="ascii"),
+        pytest.param(CellSet.BRAILLE, 0x28FF, id="dots"),
+    ],
 )
 async def test_without_colours_nothing_but_text_is_sent(
     cells: CellSet, most: int, monkeypatch: pytest.MonkeyPatch
@@ -114,7 +129,10 @@ def _screen(sent: str) -> pyte.Screen:
 def _reversed_on(sent: str) -> list[str]:
     """Return the texts in reverse video, by row."""
     screen = _screen(sent)
-    rows = ("".join(screen.buffer[y][x].data for x in range(120) if screen.buffer[y][x].reverse) for y in range(40))
+    rows = (
+        "".join(screen.buffer[y][x].data for x in range(120) if screen.buffer[y][x].reverse)
+        for y in range(40)
+    )
     return [row.strip() for row in rows]
 
 
@@ -142,7 +160,9 @@ async def test_without_colours_what_is_selected_is_seen(
     assert any(row.startswith(lit) for row in shown)
 
 
-async def test_in_ascii_without_colours_signs_point_where_the_robot_is_heading(monkeypatch: pytest.MonkeyPatch) -> None:
+async def test_in_ascii_without_colours_signs_point_where_the_robot_is_heading(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     monkeypatch.setenv("NO_COLOR", "1")
     async with on_wire(LabApp(settings(LOGS), PictureMode(CellSet.ASCII))) as pilot:
         await ready(pilot)

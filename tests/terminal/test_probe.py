@@ -30,14 +30,18 @@ ATTRIBUTES = b"\x1b[?62;4c"
         pytest.param("WezTerm 20200101-1", 1, CellSet.QUADRANT, id="a very old WezTerm"),
         pytest.param("VTE(7000)", 1, CellSet.SEXTANT, id="VTE"),
         pytest.param("XTerm(379)", 1, CellSet.QUADRANT, id="xterm draws with its font"),
-        pytest.param("tmux 3.5a", 1, CellSet.QUADRANT, id="tmux that does not tell what is around it"),
+        pytest.param(
+            "tmux 3.5a", 1, CellSet.QUADRANT, id="tmux that does not tell what is around it"
+        ),
         pytest.param("kitty(0.42.1)", 0, CellSet.QUADRANT, id="octants are dropped on the way"),
         pytest.param("kitty(0.42.1)", None, CellSet.QUADRANT, id="no position"),
         pytest.param("kitty", 1, CellSet.QUADRANT, id="no version"),
         pytest.param("", 1, CellSet.QUADRANT, id="no name"),
     ],
 )
-def test_fine_glyphs_are_for_terminals_that_draw_them(name: str, octant_cols: int | None, cells: CellSet) -> None:
+def test_fine_glyphs_are_for_terminals_that_draw_them(
+    name: str, octant_cols: int | None, cells: CellSet
+) -> None:
     assert cells_of(name, octant_cols) is cells
 
 
@@ -49,13 +53,17 @@ def test_fine_glyphs_are_for_terminals_that_draw_them(name: str, octant_cols: in
         pytest.param({"TERM": "xterm", "LANG": "C"}, CellSet.ASCII, id="C"),
         pytest.param({"TERM": "xterm", "LANG": "POSIX"}, CellSet.ASCII, id="POSIX"),
         pytest.param({"TERM": "xterm", "LANG": "de_DE.ISO-8859-1"}, CellSet.ASCII, id="Latin 1"),
-        pytest.param({"TERM": "xterm", "LANG": "de_DE.UTF-8", "LC_ALL": "C"}, CellSet.ASCII, id="LC_ALL wins"),
+        pytest.param(
+            {"TERM": "xterm", "LANG": "de_DE.UTF-8", "LC_ALL": "C"}, CellSet.ASCII, id="LC_ALL wins"
+        ),
         pytest.param({"TERM": "linux", "LANG": "C.UTF-8"}, CellSet.HALF, id="the Linux console"),
         pytest.param({"TERM": "xterm", "LANG": "C.utf8"}, None, id="UTF-8"),
         pytest.param({"TERM": "xterm"}, None, id="no locale, as in a container"),
     ],
 )
-def test_what_the_environment_decides(environment: Mapping[str, str], cells: CellSet | None) -> None:
+def test_what_the_environment_decides(
+    environment: Mapping[str, str], cells: CellSet | None
+) -> None:
     assert cells_without_asking(environment) is cells
 
 
@@ -89,9 +97,14 @@ class Answers:
     ("answers", "cells", "asks_name"),
     [
         pytest.param(
-            {b"[6n": b"\x1b[9;2R", b"[c": b"\x1bP>|kitty(0.42.1)\x1b\\" + ATTRIBUTES}, CellSet.OCTANT, True, id="kitty"
+            {b"[6n": b"\x1b[9;2R", b"[c": b"\x1bP>|kitty(0.42.1)\x1b\\" + ATTRIBUTES},
+            CellSet.OCTANT,
+            True,
+            id="kitty",
         ),
-        pytest.param({b"[6n": b"\x1b[9;2R", b"[c": ATTRIBUTES}, CellSet.QUADRANT, True, id="no name"),
+        pytest.param(
+            {b"[6n": b"\x1b[9;2R", b"[c": ATTRIBUTES}, CellSet.QUADRANT, True, id="no name"
+        ),
         pytest.param({b"[6n": b"\x1b[9;1R"}, CellSet.QUADRANT, False, id="tmux 3.3a drops it"),
         pytest.param({}, CellSet.QUADRANT, False, id="no answer at all"),
     ],

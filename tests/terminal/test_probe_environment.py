@@ -31,18 +31,32 @@ def tmux(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     ("environment", "features", "colors"),
     [
         pytest.param({"TERM": "screen"}, "RGB", "256", id="screen"),
-        pytest.param({"TERM": "screen-256color", "STY": "1.pts"}, "RGB", "256", id="screen with 256 colours"),
-        pytest.param({"TERM": "screen.xterm-256color", "STY": "1.pts"}, "RGB", "256", id="screen in xterm"),
-        pytest.param({"TERM": "screen.linux", "STY": "1.pts"}, "", "8", id="screen on the Linux console"),
-        pytest.param({"TERM": "screen.vt220"}, "", "none", id="screen on a terminal without colours"),
-        pytest.param({"TERM": "screen", **TMUX}, "256,RGB,title", "truecolor", id="tmux that says so"),
+        pytest.param(
+            {"TERM": "screen-256color", "STY": "1.pts"}, "RGB", "256", id="screen with 256 colours"
+        ),
+        pytest.param(
+            {"TERM": "screen.xterm-256color", "STY": "1.pts"}, "RGB", "256", id="screen in xterm"
+        ),
+        pytest.param(
+            {"TERM": "screen.linux", "STY": "1.pts"}, "", "8", id="screen on the Linux console"
+        ),
+        pytest.param(
+            {"TERM": "screen.vt220"}, "", "none", id="screen on a terminal without colours"
+        ),
+        pytest.param(
+            {"TERM": "screen", **TMUX}, "256,RGB,title", "truecolor", id="tmux that says so"
+        ),
         pytest.param({"TERM": "screen", **TMUX}, "256,title", "256", id="tmux that does not"),
         pytest.param({"TERM": "screen", **TMUX}, "", "256", id="tmux that says nothing"),
         pytest.param({"TERM": "screen", "STY": "1.pts", **TMUX}, "RGB", "256", id="screen in tmux"),
-        pytest.param({"TERM": "tmux-256color", **TMUX}, "256", "auto", id="tmux reduces colours itself"),
+        pytest.param(
+            {"TERM": "tmux-256color", **TMUX}, "256", "auto", id="tmux reduces colours itself"
+        ),
     ],
 )
-def test_the_colours_in_a_multiplexer(tmux: Path, environment: Mapping[str, str], features: str, colors: str) -> None:
+def test_the_colours_in_a_multiplexer(
+    tmux: Path, environment: Mapping[str, str], features: str, colors: str
+) -> None:
     tmux.write_text(f"{features}\n")
     assert colors_without_asking({**AROUND, **environment}) == colors
 
@@ -53,7 +67,9 @@ def test_the_colours_in_a_multiplexer(tmux: Path, environment: Mapping[str, str]
         pytest.param("tmux 3.5a", TMUX, "kitty(0.42.1)", "kitty(0.42.1)", id="kitty around tmux"),
         pytest.param("tmux 3.5a", TMUX, "", "tmux 3.5a", id="unknown"),
         pytest.param("tmux 3.5a", {}, "kitty(0.42.1)", "tmux 3.5a", id="over SSH"),
-        pytest.param("tmux 3.5a", {"STY": "1.pts", **TMUX}, "kitty(0.42.1)", "tmux 3.5a", id="screen in tmux"),
+        pytest.param(
+            "tmux 3.5a", {"STY": "1.pts", **TMUX}, "kitty(0.42.1)", "tmux 3.5a", id="screen in tmux"
+        ),
         pytest.param("foot(1.22.0)", TMUX, "kitty(0.42.1)", "foot(1.22.0)", id="no tmux"),
     ],
 )

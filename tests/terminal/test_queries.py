@@ -71,21 +71,34 @@ CHOICES = {
     "kitty that could show the next picture": (KITTY + KITTY_YES + KITTY_ERROR + KITTY_YES, None),
     "kitty after it was resized": (KITTY + KITTY_YES + KITTY, Graphics(Protocol.KITTY, (10, 20))),
     "a page": (PAGE + KITTY_YES, Graphics(Protocol.KITTY, (19, 42), most_points=32)),
-    "a page that is asked twice": (PAGE + PAGE + KITTY_YES, Graphics(Protocol.KITTY, (19, 42), most_points=32)),
-    "a page that changes": (PAGE + PLAIN + KITTY_YES, Graphics(Protocol.KITTY, (19, 42), most_points=32)),
+    "a page that is asked twice": (
+        PAGE + PAGE + KITTY_YES,
+        Graphics(Protocol.KITTY, (19, 42), most_points=32),
+    ),
+    "a page that changes": (
+        PAGE + PLAIN + KITTY_YES,
+        Graphics(Protocol.KITTY, (19, 42), most_points=32),
+    ),
     "a page that was resized before it answered": (
-        PAGE + PLAIN + KITTY_YES + PLAIN, Graphics(Protocol.KITTY, (19, 42), most_points=32)
+        PAGE + PLAIN + KITTY_YES + PLAIN,
+        Graphics(Protocol.KITTY, (19, 42), most_points=32),
     ),
     "no graphics": (GHOSTTY_NO, None),
     "iTerm2": (ITERM, Graphics(Protocol.ITERM, (8, 17))),
     "WezTerm": (WEZTERM, Graphics(Protocol.ITERM, (8, 16))),
     "tmux does not know its terminal": (TMUX, None),
     "no pictures": (PLAIN, None),
-    "only the kernel knows the size": ("\x1bP>|XTerm(379)\x1b\\\x1b[?63;4c", Graphics(Protocol.SIXEL, (9, 18))),
+    "only the kernel knows the size": (
+        "\x1bP>|XTerm(379)\x1b\\\x1b[?63;4c",
+        Graphics(Protocol.SIXEL, (9, 18)),
+    ),
     "no answer": ("", None),
-    "size of a cell as small as a pixel": ("\x1b[6;1;1t\x1b[?63;4c", Graphics(Protocol.SIXEL, (9, 18))),
+    "size of a cell as small as a pixel": (
+        "\x1b[6;1;1t\x1b[?63;4c",
+        Graphics(Protocol.SIXEL, (9, 18)),
+    ),
     "size that cannot be": ("\x1b[6;0;7t\x1b[?63;4c", Graphics(Protocol.SIXEL, (9, 18))),
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize(("answers", "expected"), CHOICES.values(), ids=CHOICES)
@@ -95,12 +108,16 @@ def test_the_answers_decide_how_pixels_are_drawn(answers: str, expected: Graphic
 
 def test_the_user_may_know_better() -> None:
     assert graphics_of(TerminalFacts(), Protocol.SIXEL, None) == Graphics(Protocol.SIXEL, (8, 16))
-    assert graphics_of(_facts(TMUX), Protocol.SIXEL, (9, 18)) == Graphics(Protocol.SIXEL, (9, 18), in_tmux=True)
+    assert graphics_of(_facts(TMUX), Protocol.SIXEL, (9, 18)) == Graphics(
+        Protocol.SIXEL, (9, 18), in_tmux=True
+    )
     assert graphics_of(_facts(XTERM), NO_PIXELS, None) is None
     assert graphics_of(_facts(KITTY), Protocol.KITTY, None) == Graphics(Protocol.KITTY, (10, 20))
 
 
-@pytest.mark.parametrize("answers", [OLD_KITTY + OLD_KITTY_AGAIN, KITTY + KITTY_YES + KITTY_ERROR], ids=["no", "error"])
+@pytest.mark.parametrize(
+    "answers", [OLD_KITTY + OLD_KITTY_AGAIN, KITTY + KITTY_YES + KITTY_ERROR], ids=["no", "error"]
+)
 def test_the_user_does_not_know_better_than_an_answer(answers: str) -> None:
     assert graphics_of(_facts(answers), Protocol.KITTY, None) is None
 
@@ -122,7 +139,9 @@ def test_another_page_is_asked_for_kitty_again() -> None:
     [((960, 640), (8, 16)), ((120, 40), None), ((0, 0), None), ((65535, 65535), None)],
     ids=["pixels", "cells", "nothing", "too large"],
 )
-def test_the_kernel_may_tell_nonsense(size_px: tuple[int, int], expected: tuple[int, int] | None) -> None:
+def test_the_kernel_may_tell_nonsense(
+    size_px: tuple[int, int], expected: tuple[int, int] | None
+) -> None:
     main, other = os.openpty()
     try:
         fcntl.ioctl(other, termios.TIOCSWINSZ, struct.pack("HHHH", 40, 120, *size_px))
@@ -137,7 +156,9 @@ def test_sixel_needs_the_size_of_a_cell() -> None:
 
 
 @pytest.mark.parametrize(
-    "answers", [XTERM, KITTY + KITTY_YES, KITTY + KITTY_ERROR, TMUX], ids=["xterm", "kitty", "kitty's error", "tmux"]
+    "answers",
+    [XTERM, KITTY + KITTY_YES, KITTY + KITTY_ERROR, TMUX],
+    ids=["xterm", "kitty", "kitty's error", "tmux"],
 )
 @pytest.mark.parametrize("size", [1, 2, 7, 1000])
 def test_answers_are_no_keys_however_they_arrive(answers: str, size: int) -> None:

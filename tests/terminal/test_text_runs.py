@@ -35,6 +35,8 @@ def test_a_line_is_cut(texts: list[str], shown: list[str]) -> None:
     assert [text for text, _ in cut_line(line, 6)] == shown
 
 
-@pytest.mark.parametrize("text", ["a[b]", "[bold]x[/]", "[ ]", "\\[a]", "[@click=app.quit]", '["=[(\\', "@=\\", "[/a"])
+@pytest.mark.parametrize(
+    "text", ["a[b]", "[bold]x[/]", "[ ]", "\\[a]", "[@click=app.quit]", '["=[(\\', "@=\\", "[/a"]
+)
 def test_markup_shows_the_text(text: str) -> None:
     assert Content.from_markup(as_markup(text)).plain == text

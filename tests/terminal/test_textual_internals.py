@@ -58,13 +58,21 @@ def told(monkeypatch: pytest.MonkeyPatch) -> dict[Widget, Size]:
     [((80, 24), "instrumentation"), ((120, 40), "code"), ((200, 60), "chart")],
     ids=["80x24", "120x40", "200x60"],
 )
-async def test_every_widget_is_told_its_size(size: tuple[int, int], last: str, told: dict[Widget, Size]) -> None:
+async def test_every_widget_is_told_its_size(
+    size: tuple[int, int], last: str, told: dict[Widget, Size]
+) -> None:
     async with LabApp(settings(LOGS)).run_test(size=size) as pilot:
         app = await ready(pilot)
-        await until(pilot, lambda: app.panel_area.shown(last) and app.panel_area.panels[last].is_mounted)
+        await until(
+            pilot, lambda: app.panel_area.shown(last) and app.panel_area.panels[last].is_mounted
+        )
         await pilot.pause()
         laid_out = app.screen._compositor.full_map
-        widgets = [widget for panel in app.panel_area.panels.values() for widget in panel.walk_children(with_self=True)]
+        widgets = [
+            widget
+            for panel in app.panel_area.panels.values()
+            for widget in panel.walk_children(with_self=True)
+        ]
         shown = {widget: laid_out[widget].region.size for widget in widgets if widget in laid_out}
         assert len(shown) > 5
         assert {widget: told.get(widget) for widget in shown} == shown
@@ -167,7 +175,9 @@ def _uses(module: ModuleType) -> list[str]:
             theirs = _names_of(kind, "textual")
             overridden = theirs & {name for name, one in vars(kind).items() if callable(one)}
             used = (theirs & _used(kind)) - _names_of(kind, "tuisim")
-            found += [f"{module.__name__}.{kind.__name__}.{name}" for name in sorted(overridden | used)]
+            found += [
+                f"{module.__name__}.{kind.__name__}.{name}" for name in sorted(overridden | used)
+            ]
     return found
 
 
@@ -177,7 +187,9 @@ def test_a_name_that_textual_lacks_is_found(monkeypatch: pytest.MonkeyPatch) -> 
     assert textual_internals.missing_names() == ["OptionList._move_page"]
 
 
-def test_a_character_is_its_own_key_where_textual_has_no_name_for_it(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_character_is_its_own_key_where_textual_has_no_name_for_it(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     assert textual_internals.key_of_character("?") == "question_mark"
     monkeypatch.delattr("textual.keys._character_to_key")
     assert textual_internals.key_of_character("?") == "?"

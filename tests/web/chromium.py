@@ -52,7 +52,9 @@ class Chromium:
 
     async def js(self, expression: str) -> Any:
         """Return the value of an expression of the page."""
-        done = await self.do("Runtime.evaluate", expression=expression, awaitPromise=True, returnByValue=True)
+        done = await self.do(
+            "Runtime.evaluate", expression=expression, awaitPromise=True, returnByValue=True
+        )
         assert "exceptionDetails" not in done, done
         return done["result"].get("value")
 
@@ -73,7 +75,9 @@ class Chromium:
 
 
 @asynccontextmanager
-async def chromium(folder: Path, width: int, height: int, scale: float, *, fingers: bool) -> AsyncIterator[Chromium]:
+async def chromium(
+    folder: Path, width: int, height: int, scale: float, *, fingers: bool
+) -> AsyncIterator[Chromium]:
     """Open a browser.
 
     Args:
@@ -85,7 +89,11 @@ async def chromium(folder: Path, width: int, height: int, scale: float, *, finge
     """
     process = await asyncio.create_subprocess_exec(
         *("chromium", "--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage"),
-        *(f"--force-device-scale-factor={scale}", f"--user-data-dir={folder}", "--remote-debugging-port=0"),
+        *(
+            f"--force-device-scale-factor={scale}",
+            f"--user-data-dir={folder}",
+            "--remote-debugging-port=0",
+        ),
         "about:blank",
         stderr=asyncio.subprocess.DEVNULL,
     )
@@ -97,7 +105,11 @@ async def chromium(folder: Path, width: int, height: int, scale: float, *, finge
         port = port_file.read_text().split()[0]
         async with ClientSession() as client:
             async with client.get(f"http://127.0.0.1:{port}/json") as answer:
-                url = next(one["webSocketDebuggerUrl"] for one in await answer.json() if one["type"] == "page")
+                url = next(
+                    one["webSocketDebuggerUrl"]
+                    for one in await answer.json()
+                    if one["type"] == "page"
+                )
             async with client.ws_connect(url, max_msg_size=0) as socket:
                 page = Chromium(socket)
                 for part in ("Page", "Runtime", "Log"):

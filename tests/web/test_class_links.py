@@ -39,7 +39,9 @@ def test_links_are_valid_at_the_next_start(tmp_path: Path) -> None:
 def test_nobody_else_can_read_what_the_class_has(tmp_path: Path) -> None:
     (one,) = opened(tmp_path / "class", "Ada").students
     assert mode(tmp_path / "class" / LINKS_FILE) == 0o600
-    assert {mode(folder) for folder in (tmp_path / "class", one.folder, one.home, one.home.parent)} == {0o700}
+    assert {
+        mode(folder) for folder in (tmp_path / "class", one.folder, one.home, one.home.parent)
+    } == {0o700}
     # A file that others could read is one that they cannot after the next start.
     (tmp_path / "class" / LINKS_FILE).chmod(0o644)
     opened(tmp_path / "class", "Ada")

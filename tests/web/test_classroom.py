@@ -31,7 +31,12 @@ class Class:
     """A server of a class, and a client for each link."""
 
     def __init__(
-        self, client: ClientSession, port: int, folder: Path, classroom: Classroom, tokens: Mapping[str, str]
+        self,
+        client: ClientSession,
+        port: int,
+        folder: Path,
+        classroom: Classroom,
+        tokens: Mapping[str, str],
     ) -> None:
         self.client, self.folder, self.classroom, self.tokens = client, folder, classroom, tokens
         self.visitors = {name: Visitor(client, port) for name in tokens}
@@ -55,7 +60,9 @@ class Class:
     async def looks_on(self, name: str) -> ClientWebSocketResponse:
         """Let the tutor look on."""
         tutor = self["tutor"]
-        socket = await self.client.ws_connect(f"{tutor.top}view/{name}/ws", headers={"Origin": tutor.origin})
+        socket = await self.client.ws_connect(
+            f"{tutor.top}view/{name}/ws", headers={"Origin": tutor.origin}
+        )
         tutor._sockets.append(socket)
         return socket
 
@@ -73,11 +80,17 @@ async def opened(tmp_path: Path) -> AsyncIterator[Opened]:
             stack.callback(os.close, links.lock_fd)
             limits = ServerLimits(most, VisitLimits(PATIENCE_S, keep_s))
             made = Classroom(
-                links, "127.0.0.1", lambda one: (stand_in(*words), Place(one.folder, {})), limits, lambda _: None
+                links,
+                "127.0.0.1",
+                lambda one: (stand_in(*words), Place(one.folder, {})),
+                limits,
+                lambda _: None,
             )
             port = await stack.enter_async_context(listening(made, "127.0.0.1", 0))
             client = await stack.enter_async_context(ClientSession())
-            tokens = {"tutor": links.tutor} | {student.name: student.token for student in links.students}
+            tokens = {"tutor": links.tutor} | {
+                student.name: student.token for student in links.students
+            }
             found = Class(client, port, tmp_path / "class", made, tokens)
             for visitor in found.visitors.values():
                 stack.push_async_callback(visitor.leave)
@@ -140,13 +153,17 @@ async def test_the_tutor_ends_an_app_and_hands_a_link_out_again(opened: Opened) 
     assert await heard(socket) == "Your tutor has ended this app; what it has saved is still there."
     await gone(pid)
     tutor = found["tutor"]
-    async with found.client.post(f"{tutor.top}students/Bob/link", headers={"Origin": tutor.origin}) as answer:
+    async with found.client.post(
+        f"{tutor.top}students/Bob/link", headers={"Origin": tutor.origin}
+    ) as answer:
         assert await answer.json() == {"token": found.tokens["Bob"]}
     assert await tutor.post("students/Eve/link") == 404
     await found["Bob"].started()
 
 
-async def test_who_comes_back_at_once_gets_the_place_of_the_app_that_is_ending(opened: Opened) -> None:
+async def test_who_comes_back_at_once_gets_the_place_of_the_app_that_is_ending(
+    opened: Opened,
+) -> None:
     found = await opened()
     socket, before = await found["Bob"].started()
     assert await found["tutor"].post("students/Bob/end") == 204
@@ -164,7 +181,13 @@ async def test_the_tutor_looks_on_and_nothing_that_is_sent_reaches_the_app(opene
     assert await heard(socket) == '["watched", 1]'
     shows = '{"type": "show", "width": 120, "height": 40}'
     assert (await heard(view), await heard(socket)) == (shows, shows)
-    for sent in (["stdin", "typed"], ["resize", {"width": 9, "height": 9}], ["act", "run"], ["blur"], ["focus"]):
+    for sent in (
+        ["stdin", "typed"],
+        ["resize", {"width": 9, "height": 9}],
+        ["act", "run"],
+        ["blur"],
+        ["focus"],
+    ):
         await view.send_json(sent)
     await view.send_bytes(b"\x03")
     await view.send_str("no JSON")
@@ -196,8 +219,13 @@ async def test_an_app_that_no_tab_shows_can_be_looked_on_at(opened: Opened) -> N
     socket, _ = await found["Ada"].started()
     await socket.close()
     view = await found.looks_on("Ada")
-    assert [await heard(view), (await heard(view))[:16]] == ['["size", [120, 40]]', '{"type": "show",']
-    again = await found["Ada"].socket(f"?session={(await found['Ada'].sessions())['sessions'][0]['id']}")
+    assert [await heard(view), (await heard(view))[:16]] == [
+        '["size", [120, 40]]',
+        '{"type": "show",',
+    ]
+    again = await found["Ada"].socket(
+        f"?session={(await found['Ada'].sessions())['sessions'][0]['id']}"
+    )
     assert ['"watched", 1' in await heard(again) for _ in range(2)] == [False, True]
 
 
@@ -224,7 +252,9 @@ PLACES_OF_OTHERS = {
 
 
 @pytest.mark.parametrize(("who", "path"), PLACES_OF_OTHERS.values(), ids=PLACES_OF_OTHERS)
-async def test_nobody_does_anything_in_the_session_of_another(who: str, path: str, opened: Opened) -> None:
+async def test_nobody_does_anything_in_the_session_of_another(
+    who: str, path: str, opened: Opened
+) -> None:
     found = await opened()
     socket, pid = await found["Ada"].started()
     (mine,) = (await found["Ada"].sessions())["sessions"]
@@ -241,7 +271,9 @@ TUTORS = ["students", "view/Ada/", "view/Ada/page/view.js", "view/Ada", "view/Ad
 
 
 @pytest.mark.parametrize("path", TUTORS)
-async def test_a_student_gets_the_answer_to_a_wrong_secret_for_what_is_the_tutors(path: str, opened: Opened) -> None:
+async def test_a_student_gets_the_answer_to_a_wrong_secret_for_what_is_the_tutors(
+    path: str, opened: Opened
+) -> None:
     found = await opened()
     await found["Ada"].started()
     async with found.client.get(f"{found['Ada'].origin}/wrong/{path}") as answer:
@@ -264,7 +296,10 @@ async def test_a_file_is_brought_to_the_folder_of_the_student(opened: Opened) ->
     found = await opened()
     await found["Ümit Çelik"].started()
     (mine,) = (await found["Ümit Çelik"].sessions())["sessions"]
-    assert await found["Ümit Çelik"].post(f"sessions/{mine['id']}/file?name=lab.py", b"print(1)\n") == 200
+    assert (
+        await found["Ümit Çelik"].post(f"sessions/{mine['id']}/file?name=lab.py", b"print(1)\n")
+        == 200
+    )
     assert (found.folder / "Ümit Çelik" / "lab.py").read_bytes() == b"print(1)\n"
     assert [*(found.folder / "Ada").iterdir()] == []
 
@@ -288,7 +323,9 @@ async def test_the_tutors_pages_are_there(opened: Opened) -> None:
     assert (await found.get("tutor", "ws"))[0] == 403
 
 
-async def test_an_app_that_takes_too_much_ends_and_no_other(opened: Opened, monkeypatch: pytest.MonkeyPatch) -> None:
+async def test_an_app_that_takes_too_much_ends_and_no_other(
+    opened: Opened, monkeypatch: pytest.MonkeyPatch
+) -> None:
     found = await opened()
     socket, pid = await found["Ada"].started()
     _, other = await found["Bob"].started()
@@ -304,7 +341,9 @@ async def test_an_app_that_takes_too_much_ends_and_no_other(opened: Opened, monk
     assert is_there(other)
 
 
-async def test_the_limits_are_looked_at_by_themselves(opened: Opened, monkeypatch: pytest.MonkeyPatch) -> None:
+async def test_the_limits_are_looked_at_by_themselves(
+    opened: Opened, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setattr(classroom, "LOOK_EVERY_S", 0.01)
     monkeypatch.setattr(usage, "MOST_MEMORY_BYTES", 1)
     found = await opened()

@@ -13,7 +13,9 @@ from tests.web.test_server import heard
 __all__ = ["opened"]
 pytestmark = [pytest.mark.slow, needs_chromium]
 
-KEEPS_TERMINAL = "addEventListener('DOMContentLoaded', () => terminalUsers.push((it) => (window.shown = it)))"
+KEEPS_TERMINAL = (
+    "addEventListener('DOMContentLoaded', () => terminalUsers.push((it) => (window.shown = it)))"
+)
 TEXT = "shown.buffer.active.getLine(0).translateToString(true)"
 
 
@@ -31,8 +33,13 @@ async def test_the_tutor_finds_a_student_and_looks_on(opened: Opened, tmp_path: 
         assert await page.js("document.documentElement.scrollWidth") <= 390
         await page.do("Page.addScriptToEvaluateOnNewDocument", source=KEEPS_TERMINAL)
         await page.js("document.querySelector('tr.runs a').click()")
-        await page.until(f"window.shown?.cols === 120 && shown.rows === 40 && {TEXT}.includes('show')")
-        assert await page.js("document.querySelector('.xterm-screen').getBoundingClientRect().width") <= 390
+        await page.until(
+            f"window.shown?.cols === 120 && shown.rows === 40 && {TEXT}.includes('show')"
+        )
+        assert (
+            await page.js("document.querySelector('.xterm-screen').getBoundingClientRect().width")
+            <= 390
+        )
         await page.do("Input.insertText", text="typed")
         await page.js("shown.input('typed')")
         await socket.send_json(["resize", {"width": 60, "height": 20}])

@@ -44,7 +44,9 @@ class Visitor:
 
     async def socket(self, query: str = "?width=120&height=40") -> ClientWebSocketResponse:
         """Connect with an app."""
-        socket = await self.client.ws_connect(f"{self.top}ws{query}", headers={"Origin": self.origin})
+        socket = await self.client.ws_connect(
+            f"{self.top}ws{query}", headers={"Origin": self.origin}
+        )
         self._sockets.append(socket)
         return socket
 
@@ -135,7 +137,9 @@ STRANGERS: dict[str, tuple[str, Mapping[str, str]]] = {
 @pytest.mark.quick_cases("*-script")
 @pytest.mark.parametrize("place", PLACES.values(), ids=PLACES)
 @pytest.mark.parametrize(("path", "headers"), STRANGERS.values(), ids=STRANGERS)
-async def test_a_stranger_gets_nothing(path: str, headers: Mapping[str, str], place: str, visited: Visited) -> None:
+async def test_a_stranger_gets_nothing(
+    path: str, headers: Mapping[str, str], place: str, visited: Visited
+) -> None:
     visitor = await visited()
     socket, _ = await visitor.started()
     await socket.send_json(["stdin", "offer"])
@@ -173,7 +177,9 @@ async def test_a_wrong_request_leaves_no_trace_in_the_terminal(
     request_bytes: bytes, visited: Visited, caplog: pytest.LogCaptureFixture
 ) -> None:
     visitor = await visited()
-    reader, writer = await asyncio.open_connection("127.0.0.1", int(visitor.origin.rpartition(":")[2]))
+    reader, writer = await asyncio.open_connection(
+        "127.0.0.1", int(visitor.origin.rpartition(":")[2])
+    )
     writer.write(request_bytes)
     assert b" 400 " in await reader.readline()
     writer.close()
@@ -219,14 +225,18 @@ async def test_what_an_app_offers_can_be_downloaded_once(visited: Visited) -> No
     found = []
     for _ in range(2):
         async with visitor.client.get(visitor.top + "download/key") as answer:
-            found.append((answer.status, await answer.text(), answer.headers.get("Content-Disposition")))
+            found.append(
+                (answer.status, await answer.text(), answer.headers.get("Content-Disposition"))
+            )
     assert found == [
         (200, "a file", "attachment; filename*=UTF-8''run.csv"),
         (404, "There is no such download.\n", None),
     ]
 
 
-async def test_a_download_that_breaks_off_is_no_file(visited: Visited, monkeypatch: pytest.MonkeyPatch) -> None:
+async def test_a_download_that_breaks_off_is_no_file(
+    visited: Visited, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setattr(download_manager, "DOWNLOAD_TIMEOUT", 0.05)
     visitor = await visited(stand_in("slow"))
     socket, _ = await visitor.started()
@@ -276,9 +286,15 @@ async def test_a_packet_that_makes_no_sense_ends_its_app_only(sent: str, visited
 MESSAGES: dict[str, tuple[str, str]] = {
     "keys": ('["stdin", "é"]', "é"),
     "half a pair": ('["stdin", "\\ud83da"]', "a"),
-    "a size": ('["resize", {"width": 90, "height": 30}]', '{"type": "resize", "width": 90, "height": 30}'),
+    "a size": (
+        '["resize", {"width": 90, "height": 30}]',
+        '{"type": "resize", "width": 90, "height": 30}',
+    ),
     "an impossible size": ('["resize", {"width": -5, "height": 1e9}]', '{"type": "blur"}'),
-    "an enormous size": ('["resize", {"width": 0, "height": 99999}]', '{"type": "resize", "width": 1, "height": 1000}'),
+    "an enormous size": (
+        '["resize", {"width": 0, "height": 99999}]',
+        '{"type": "resize", "width": 1, "height": 1000}',
+    ),
     "focus": ('["focus"]', '{"type": "focus"}'),
     "no focus": ('["blur"]', '{"type": "blur"}'),
     "a button": ('["act", "run"]', '{"type": "act", "name": "run"}'),
@@ -307,7 +323,9 @@ SIZES = {
 
 
 @pytest.mark.parametrize(("query", "size"), SIZES.values(), ids=SIZES)
-async def test_the_app_starts_in_the_size_of_the_page(query: str, size: str, visited: Visited) -> None:
+async def test_the_app_starts_in_the_size_of_the_page(
+    query: str, size: str, visited: Visited
+) -> None:
     socket = await (await visited()).socket(query)
     assert (await drawn(socket)).endswith(f" of {size}")
 
@@ -320,7 +338,9 @@ async def test_the_app_does_not_take_the_servers_terminal_for_its_own(
     monkeypatch.setenv("LC_ALL", "C")
     monkeypatch.setenv("MINE", "kept")
     seen = tmp_path / "environment"
-    socket = await (await visited(["sh", "-c", f"echo $TMUX $TERM $LC_ALL $LC_CTYPE $MINE > {seen}"])).socket()
+    socket = await (
+        await visited(["sh", "-c", f"echo $TMUX $TERM $LC_ALL $LC_CTYPE $MINE > {seen}"])
+    ).socket()
     await drawn(socket)
     assert seen.read_text() == "xterm-256color C.UTF-8 kept\n"
 
@@ -331,7 +351,11 @@ ENDS = {
     "what to open is gone": (f"2 note: x\n{GONE}\n", GONE, [f"note: x\n{GONE}"]),
     "a long reason": ("2 tuisim: " + "é" * 300, "tuisim: " + "é" * 57, ["tuisim: " + "é" * 300]),
     "somebody ends it": ("143 ", "The app has been ended.", []),
-    "a failure": ("1 Traceback", "The app has failed; the server's terminal tells more.", ["Traceback"]),
+    "a failure": (
+        "1 Traceback",
+        "The app has failed; the server's terminal tells more.",
+        ["Traceback"],
+    ),
 }
 
 

@@ -45,7 +45,9 @@ def is_whole(seen: Pixels) -> bool:
 def robot_at(seen: Pixels) -> tuple[float, float]:
     """Return where the robot is in the pictures, as x and y in pixels of the screen; 0 if it has not been drawn."""
     red, green, blue = (seen[..., channel].astype(int) for channel in range(3))
-    rows, cols = np.nonzero((red < 40) & (green > 60) & (green < 130) & (blue > 180) & (seen[..., 3] == 255))
+    rows, cols = np.nonzero(
+        (red < 40) & (green > 60) & (green < 130) & (blue > 180) & (seen[..., 3] == 255)
+    )
     return (float(np.median(cols)), float(np.median(rows))) if len(cols) else (0.0, 0.0)
 
 
@@ -74,7 +76,9 @@ async def opened(
 
 
 @pytest.mark.parametrize("scale", [1, 1.25, 2, 3])
-async def test_each_pixel_of_a_picture_is_one_of_the_screen(scale: float, serve: Serve, tmp_path: Path) -> None:
+async def test_each_pixel_of_a_picture_is_one_of_the_screen(
+    scale: float, serve: Serve, tmp_path: Path
+) -> None:
     async with opened(serve, tmp_path, (1000, 700), scale) as page:
         drawn, shown = await until_seen(page, is_whole), await page.shown()
         drawn = drawn[: len(shown), : shown.shape[1]]
@@ -96,11 +100,19 @@ async def test_fingers_drag_the_robot_and_press_buttons(serve: Serve, tmp_path: 
         for step in range(1, 11):
             await page.finger("touchMove", (x + 15 * step, y + 3 * step))
         await page.finger("touchEnd")
-        dragged = robot_at(await until_seen(page, lambda seen: is_whole(seen) and robot_at(seen)[0] > before[0] + 200))
+        dragged = robot_at(
+            await until_seen(
+                page, lambda seen: is_whole(seen) and robot_at(seen)[0] > before[0] + 200
+            )
+        )
         assert dragged == pytest.approx((before[0] + 300, before[1] + 60), abs=3)
         tapped = "document.querySelector('[data-act=run]').click()"
         await page.js(tapped)
-        driven = robot_at(await until_seen(page, lambda seen: is_whole(seen) and robot_at(seen)[0] > dragged[0] + 20))
+        driven = robot_at(
+            await until_seen(
+                page, lambda seen: is_whole(seen) and robot_at(seen)[0] > dragged[0] + 20
+            )
+        )
         assert driven[1] == pytest.approx(dragged[1], abs=3)
 
 

@@ -37,5 +37,7 @@ async def test_the_page_unpacks_what_zlib_has_packed(tmp_path: Path) -> None:
     packed = [(zlib.compress(data, level), data) for data in kinds for level in (0, 1, 6, 9)]
     given = json.dumps([(b64encode(short).decode(), len(data)) for short, data in packed])
     async with chromium(tmp_path, 400, 300, 1, fingers=False) as page:
-        unpacked = json.loads(await page.js(_UNPACKS % ((PAGE / "inflate.js").read_text("utf-8"), given)))
+        unpacked = json.loads(
+            await page.js(_UNPACKS % ((PAGE / "inflate.js").read_text("utf-8"), given))
+        )
     assert [b64decode(one) for one in unpacked] == [data for _, data in packed]

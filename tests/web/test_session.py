@@ -106,7 +106,9 @@ class Serving:
         self.process, self.address = process, address
 
     @asynccontextmanager
-    async def tab(self, columns: int = 120, rows: int = 40, session: str = "") -> AsyncIterator[Tab]:
+    async def tab(
+        self, columns: int = 120, rows: int = 40, session: str = ""
+    ) -> AsyncIterator[Tab]:
         """Open the app in a tab, and close the tab."""
         query = f"ws?width={columns}&height={rows}{f'&session={session}' if session else ''}"
         origin = self.address.rsplit("/", 2)[0]
@@ -153,7 +155,9 @@ async def _end(process: Process) -> None:
 
 def children(pid: int) -> set[int]:
     """Return the processes that a process has started."""
-    listed = subprocess.run(["ps", "-o", "pid=", "--ppid", str(pid)], capture_output=True, text=True, check=False)
+    listed = subprocess.run(
+        ["ps", "-o", "pid=", "--ppid", str(pid)], capture_output=True, text=True, check=False
+    )
     return {int(word) for word in listed.stdout.split()}
 
 
@@ -180,11 +184,18 @@ def cells_of_robot(tab: Tab) -> list[tuple[int, int]]:
     """Return the cells that are blue in the left of the world, its border left out."""
     cells = {(x, y): tab._screen.buffer[y][x] for x, y in product(range(2, 30), range(2, 18))}
     # A blank shows only its background.
-    return [at for at, cell in cells.items() if is_blue(cell.bg) or (cell.data != " " and is_blue(cell.fg))]
+    return [
+        at
+        for at, cell in cells.items()
+        if is_blue(cell.bg) or (cell.data != " " and is_blue(cell.fg))
+    ]
 
 
 def is_blue(color: str) -> bool:
-    return re.fullmatch("[0-9a-f]{6}", color) is not None and int(color[4:], 16) - int(color[:2], 16) > 100
+    return (
+        re.fullmatch("[0-9a-f]{6}", color) is not None
+        and int(color[4:], 16) - int(color[:2], 16) > 100
+    )
 
 
 async def test_a_program_runs_and_is_charted_at_the_pace_of_the_page(serve: Serve) -> None:
@@ -196,7 +207,9 @@ async def test_a_program_runs_and_is_charted_at_the_pace_of_the_page(serve: Serv
 async def test_the_mouse_drags_the_robot(serve: Serve) -> None:
     async with (await serve(DRIVES)).tab() as tab:
         await tab.until(lambda: "150.0" in place(tab) and len(cells_of_robot(tab)) > 9)
-        column, row = (sum(values) // len(values) for values in zip(*cells_of_robot(tab), strict=True))
+        column, row = (
+            sum(values) // len(values) for values in zip(*cells_of_robot(tab), strict=True)
+        )
         for code, right, end in ((0, 0, "M"), (32, 20, "M"), (32, 30, "M"), (0, 30, "m")):
             await tab.press(f"\x1b[<{code};{column + 1 + right};{row + 1}{end}")
         await tab.until(lambda: place(tab) and "150.0" not in place(tab))
@@ -226,7 +239,9 @@ async def test_a_screenshot_can_be_downloaded(serve: Serve, tmp_path: Path) -> N
         await tab.press("I")
         await tab.until(lambda: len(tab.offered) == 2)
         files = [await tab.download(server.address, key) for key in tab.offered]
-        assert files == [(tmp_path / name).read_bytes() for name in ("tuisim-1.svg", "tuisim-1.png")]
+        assert files == [
+            (tmp_path / name).read_bytes() for name in ("tuisim-1.svg", "tuisim-1.png")
+        ]
 
 
 async def test_ctrl_z_says_that_there_is_nothing_to_go_back_to(serve: Serve) -> None:
@@ -303,11 +318,17 @@ async def test_a_server_that_is_killed_leaves_no_app_that_no_tab_shows(serve: Se
     await gone(started)
 
 
-ENDS = {"ctrl+c": (signal.SIGINT, 0), "termination": (signal.SIGTERM, 143), "no chance": (signal.SIGKILL, -9)}
+ENDS = {
+    "ctrl+c": (signal.SIGINT, 0),
+    "termination": (signal.SIGTERM, 143),
+    "no chance": (signal.SIGKILL, -9),
+}
 
 
 @pytest.mark.parametrize(("number", "code"), ENDS.values(), ids=ENDS)
-async def test_the_end_of_the_server_ends_apps_and_programs(number: signal.Signals, code: int, serve: Serve) -> None:
+async def test_the_end_of_the_server_ends_apps_and_programs(
+    number: signal.Signals, code: int, serve: Serve
+) -> None:
     server = await serve(RUNS_ON, "-R")
     async with server.tab() as tab:
         await tab.until(lambda: "running" in tab.text)

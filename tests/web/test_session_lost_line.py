@@ -77,7 +77,9 @@ async def shown(serve: Serve, folder: Path) -> AsyncIterator[tuple[Chromium, Lin
         line.cut()
 
 
-async def test_the_page_shows_the_same_app_after_its_line_was_lost(serve: Serve, tmp_path: Path) -> None:
+async def test_the_page_shows_the_same_app_after_its_line_was_lost(
+    serve: Serve, tmp_path: Path
+) -> None:
     async with shown(serve, tmp_path) as (page, line):
         session = await page.js("window.before = sessionStorage.getItem('session')")
         for lose in (line.cut, line.cut, line.mute):
@@ -89,4 +91,7 @@ async def test_the_page_shows_the_same_app_after_its_line_was_lost(serve: Serve,
                     await page.js(LATER)
                     await asyncio.sleep(0.5)
             # It is the same app, and the page was not loaded again.
-            assert await page.js("[sessionStorage.getItem('session'), window.before]") == [session, session]
+            assert await page.js("[sessionStorage.getItem('session'), window.before]") == [
+                session,
+                session,
+            ]

@@ -41,7 +41,12 @@ HANDED = {
     "a cell of a notebook": ("two.ipynb#2", "two.ipynb#2", ["two.ipynb"], []),
     "a world": ("w.toml", "{here}/w.toml", [], ["w.toml"]),
     "an image": ("lab.py -b mat.png", "lab.py -b {here}/mat.png", ["lab.py"], ["mat.png"]),
-    "an image after a sign": ("--background=mat.png", "--background={here}/mat.png", [], ["mat.png"]),
+    "an image after a sign": (
+        "--background=mat.png",
+        "--background={here}/mat.png",
+        [],
+        ["mat.png"],
+    ),
     "an example and a mat": ("line_follower -b Loop", "line_follower -b Loop", [], []),
     "arguments of the program": ("lab.py -- w.toml", "lab.py -- w.toml", ["lab.py"], []),
 }
@@ -75,12 +80,17 @@ def test_a_copy_does_not_follow_a_link(ada: StudentLink, tmp_path: Path) -> None
     assert not (tmp_path / "elsewhere").exists()
 
 
-def test_what_the_tutors_environment_says_is_not_passed_on(ada: StudentLink, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_the_tutors_environment_says_is_not_passed_on(
+    ada: StudentLink, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setenv("API_KEY", "secret")
     _, place = app_of(ada, Handed((), (), ()), isolated=False)
     assert place.variables is not None
     assert "API_KEY" not in place.variables
-    assert (place.variables["TUISIM_HOME"], place.variables["HOME"]) == (str(ada.home), str(ada.folder))
+    assert (place.variables["TUISIM_HOME"], place.variables["HOME"]) == (
+        str(ada.home),
+        str(ada.folder),
+    )
 
 
 KERNELS = {"6.18.44-x": True, "5.14.0": True, "5.13.9": False, "4.20": False, "unknown": False}
@@ -91,7 +101,10 @@ def test_processes_are_limited_where_each_app_is_counted_by_itself(
     release: str, limited: bool, ada: StudentLink, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("platform.release", lambda: release)
-    commands = [" ".join(app_of(ada, Handed((), (), ()), isolated=isolated)[0]) for isolated in (True, False)]
+    commands = [
+        " ".join(app_of(ada, Handed((), (), ()), isolated=isolated)[0])
+        for isolated in (True, False)
+    ]
     assert ["RLIMIT_NPROC" in command for command in commands] == [limited, False]
 
 
@@ -112,7 +125,9 @@ ATTACKS = {
 
 
 @needs_isolation
-def test_an_isolated_app_reaches_nothing_of_others(tutor: Path, ada: StudentLink, tmp_path: Path) -> None:
+def test_an_isolated_app_reaches_nothing_of_others(
+    tutor: Path, ada: StudentLink, tmp_path: Path
+) -> None:
     import socket
 
     bob = student(tmp_path, "Bob")
@@ -120,12 +135,26 @@ def test_an_isolated_app_reaches_nothing_of_others(tutor: Path, ada: StudentLink
         path.write_text("secret")
     command, place = app_of(ada, handed_out(["-b", "mat.png"]), isolated=True)
     with socket.create_server(("127.0.0.1", 0)) as server:
-        told = {"bob": bob.folder, "bobs_home": bob.home, "folder": bob.folder.parent, "tutor": tutor,
-                "pid": os.getpid(), "port": server.getsockname()[1]}  # fmt: skip
+        told = {
+            "bob": bob.folder,
+            "bobs_home": bob.home,
+            "folder": bob.folder.parent,
+            "tutor": tutor,
+            "pid": os.getpid(),
+            "port": server.getsockname()[1],
+        }
         lines = ["import os, socket"]
         for name, attack in ATTACKS.items():
-            lines += ["try:", f"    {attack.format(**told)}", f"    print({name!r})", "except BaseException: pass"]
-        lines += ["open('own', 'w').write('x')", "open(os.environ['TUISIM_HOME'] + '/own', 'w').write('x')"]
+            lines += [
+                "try:",
+                f"    {attack.format(**told)}",
+                f"    print({name!r})",
+                "except BaseException: pass",
+            ]
+        lines += [
+            "open('own', 'w').write('x')",
+            "open(os.environ['TUISIM_HOME'] + '/own', 'w').write('x')",
+        ]
         lines += [f"print(open('{tutor}/mat.png').read())", "print('done')"]
         # The same start, with an attack in the place of the app.
         at = command.index("-c") + 1
@@ -133,7 +162,12 @@ def test_an_isolated_app_reaches_nothing_of_others(tutor: Path, ada: StudentLink
         assert "resource.RLIMIT_AS" in start
         code = start + "\n".join(lines)
         done = subprocess.run(
-            [*command[:at], code], env=place.variables, cwd=place.folder, capture_output=True, text=True, check=False
+            [*command[:at], code],
+            env=place.variables,
+            cwd=place.folder,
+            capture_output=True,
+            text=True,
+            check=False,
         )
     assert (done.stdout, done.stderr) == ("mat.png\ndone\n", "")
     assert (ada.folder / "own").exists() and (ada.home / "own").exists()

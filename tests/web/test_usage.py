@@ -26,7 +26,9 @@ sys.stdin.read()
 
 
 def test_a_process_is_counted_with_what_it_has_started() -> None:
-    with subprocess.Popen([sys.executable, "-IS", "-c", PARENT], stdin=subprocess.PIPE, stdout=subprocess.PIPE) as one:
+    with subprocess.Popen(
+        [sys.executable, "-IS", "-c", PARENT], stdin=subprocess.PIPE, stdout=subprocess.PIPE
+    ) as one:
         assert one.stdout is not None and one.stdin is not None
         one.stdout.readline()
         found = usages([one.pid, os.getpid()])
@@ -46,7 +48,10 @@ def test_a_process_that_has_ended_uses_nothing() -> None:
 EXCEEDED = {
     "nothing": (Usage(), ""),
     "at the limits": (Usage(usage.MOST_MEMORY_BYTES, usage.MOST_PROCESSES, usage.MOST_THREADS), ""),
-    "memory": (Usage(memory_bytes=usage.MOST_MEMORY_BYTES + 1), "The session has ended: it took more than 1 GiB of"),
+    "memory": (
+        Usage(memory_bytes=usage.MOST_MEMORY_BYTES + 1),
+        "The session has ended: it took more than 1 GiB of",
+    ),
     "processes": (Usage(processes=25), "The session has ended: it had more than 24 processes."),
     "threads": (Usage(threads=1_001), "The session has ended: it had more than 1,000 threads."),
 }

@@ -41,7 +41,10 @@ async def test_a_page_is_told_its_session_and_finds_the_same_app_again(visited: 
         await socket.close()
         await unshown(visitor)
         socket = await visitor.socket(f"?width=90&height=30&session={session}")
-        assert [await heard(socket), await heard(socket)] == [json.dumps(["session", session]), SHOWN]
+        assert [await heard(socket), await heard(socket)] == [
+            json.dumps(["session", session]),
+            SHOWN,
+        ]
     assert is_there(pid)
 
 
@@ -49,7 +52,10 @@ async def test_a_second_tab_takes_a_session_over(visited: Visited) -> None:
     visitor = await visited()
     first, pid = await visitor.started()
     second = await visitor.socket(f"?width=90&height=30&session={await the_session(visitor)}")
-    assert (await heard(first), first.close_code) == ("Another tab has taken this session over.", TAKEN_OVER)
+    assert (await heard(first), first.close_code) == (
+        "Another tab has taken this session over.",
+        TAKEN_OVER,
+    )
     assert await drawn(second) == SHOWN
     await second.send_json(["stdin", "typed in the second"])
     assert await drawn(second) == "typed in the second"
@@ -100,7 +106,11 @@ STRANGERS: Mapping[str, Mapping[str, str]] = {
 @pytest.mark.parametrize("headers", STRANGERS.values(), ids=STRANGERS)
 @pytest.mark.parametrize("what", ["end", "file?name=a.py"])
 async def test_only_pages_of_the_server_end_a_session_or_bring_a_file(
-    what: str, headers: Mapping[str, str], visited: Visited, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+    what: str,
+    headers: Mapping[str, str],
+    visited: Visited,
+    monkeypatch: pytest.MonkeyPatch,
+    tmp_path: Path,
 ) -> None:
     monkeypatch.chdir(tmp_path)
     visitor = await visited()
@@ -117,12 +127,30 @@ async def test_a_file_that_is_dropped_is_kept_and_opened(
     monkeypatch.chdir(tmp_path)
     visitor = await visited()
     socket, _ = await visitor.started()
-    assert await visitor.post(f"sessions/{await the_session(visitor)}/file?name=lab.py", b"print(1)\n") == 200
-    assert json.loads(await drawn(socket)) == {"type": "ask", "what": "open", "path": str(tmp_path / "lab.py")}
+    assert (
+        await visitor.post(f"sessions/{await the_session(visitor)}/file?name=lab.py", b"print(1)\n")
+        == 200
+    )
+    assert json.loads(await drawn(socket)) == {
+        "type": "ask",
+        "what": "open",
+        "path": str(tmp_path / "lab.py"),
+    }
     assert (tmp_path / "lab.py").read_bytes() == b"print(1)\n"
 
 
-BAD_NAMES = ["", "..", ".bashrc", "a/b.py", "../a.py", "/etc/passwd", "a\\b.py", "a\x00.py", "a\nb.py", "a" * 300]
+BAD_NAMES = [
+    "",
+    "..",
+    ".bashrc",
+    "a/b.py",
+    "../a.py",
+    "/etc/passwd",
+    "a\\b.py",
+    "a\x00.py",
+    "a\nb.py",
+    "a" * 300,
+]
 
 
 @pytest.mark.parametrize("name", BAD_NAMES)
@@ -134,7 +162,9 @@ async def test_a_file_is_kept_in_the_folder_only(
     await visitor.started()
     url = f"{visitor.top}sessions/{await the_session(visitor)}/file"
     headers = {"Origin": visitor.origin}
-    async with visitor.client.post(url, params={"name": name}, data=b"x", headers=headers) as answer:
+    async with visitor.client.post(
+        url, params={"name": name}, data=b"x", headers=headers
+    ) as answer:
         assert (answer.status, "no name for a file" in await answer.text()) == (400, True)
     assert list(tmp_path.iterdir()) == []
 
@@ -145,6 +175,9 @@ def test_no_file_is_replaced(tmp_path: Path) -> None:
     (tmp_path / "link.py").symlink_to(tmp_path / "lab.py")
     kept = keep_file(tmp_path, "link.py", b"three")
     assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == {
-        "lab.py": b"one", "lab-2.py": b"two", "link.py": b"one", "link-2.py": b"three",
-    }  # fmt: skip
+        "lab.py": b"one",
+        "lab-2.py": b"two",
+        "link.py": b"one",
+        "link-2.py": b"three",
+    }
     assert kept.name == "link-2.py"

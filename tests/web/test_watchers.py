@@ -42,7 +42,9 @@ def as_socket(browser: Browser) -> web.WebSocketResponse:
     return cast("web.WebSocketResponse", browser)
 
 
-async def test_one_that_does_not_read_is_sent_away_and_others_are_shown_all(monkeypatch: pytest.MonkeyPatch) -> None:
+async def test_one_that_does_not_read_is_sent_away_and_others_are_shown_all(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     monkeypatch.setattr(watchers, "_MOST_BEHIND_BYTES", 100)
     stalled, reads, every = Browser(reads=False), Browser(reads=True), Watchers()
     with every.one(as_socket(stalled), (80, 24)), every.one(as_socket(reads), (80, 24)):

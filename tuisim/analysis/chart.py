@@ -90,16 +90,23 @@ def _path(model: Model, names: tuple[str, str], marks: bool, columns: int, rows:
             good &= (places >= model.limits[0]) & (places <= model.limits[1])
     if not good.any():
         raise LogError(f"no sample has both {names[0]} and {names[1]}", file=model.log.title)
-    limits = [value_limits(float(values[good].min()), float(values[good].max())) for values in (xs, ys)]
+    limits = [
+        value_limits(float(values[good].min()), float(values[good].max())) for values in (xs, ys)
+    ]
     cells = max(columns // DOTS_X, 1), max(rows // DOTS_Y, 1)
     xs, ys = seen_points(xs[good], ys[good], limits, *cells)
     title, x_label = printable(model.log.title), with_unit(names[0])
-    return ChartData(title, (Line(names[1], xs, ys, 0),), limits[0], x_label, marks=marks, path=True)
+    return ChartData(
+        title, (Line(names[1], xs, ys, 0),), limits[0], x_label, marks=marks, path=True
+    )
 
 
 def spans_of_bands(bands: Iterable[Band]) -> tuple[Span, ...]:
     """Return bands as spans of a chart over time."""
-    return tuple(band_span(band.variable, band.start_s, band.stop_s, band.true_level, band.grey) for band in bands)
+    return tuple(
+        band_span(band.variable, band.start_s, band.stop_s, band.true_level, band.grey)
+        for band in bands
+    )
 
 
 def event_marks(model: Model, limits: Limits, columns: int) -> str:
@@ -107,7 +114,9 @@ def event_marks(model: Model, limits: Limits, columns: int) -> str:
     line = [" "] * columns
     for event in model.events.found(model.log):
         trace, crossing = model.traces.named(event.variable), event.crossing
-        place = crossing.time_s + float(trace.places[crossing.at] - trace.series.time_s[crossing.at])
+        place = crossing.time_s + float(
+            trace.places[crossing.at] - trace.series.time_s[crossing.at]
+        )
         if limits[0] <= place <= limits[1]:
             column = min(max(column_of(place, limits, columns), 0), columns - 1)
             mark = "▲" if crossing.rising else "▼"

@@ -31,7 +31,9 @@ class Crossing:
     rising: bool
 
 
-def crossings(time_s: FloatArray, values: FloatArray, threshold: float, hysteresis: float = 0.0) -> list[Crossing]:
+def crossings(
+    time_s: FloatArray, values: FloatArray, threshold: float, hysteresis: float = 0.0
+) -> list[Crossing]:
     """Return where a signal crosses a threshold, in order of time.
 
     A value on the threshold counts as beyond it when the signal comes from below, so
@@ -51,7 +53,9 @@ def crossings(time_s: FloatArray, values: FloatArray, threshold: float, hysteres
     signal = values[known]
     above = signal >= threshold
     # The side of the threshold; 0 within the hysteresis.
-    side = np.where(signal >= threshold + hysteresis, 1, np.where(signal < threshold - hysteresis, -1, 0))
+    side = np.where(
+        signal >= threshold + hysteresis, 1, np.where(signal < threshold - hysteresis, -1, 0)
+    )
     decided = np.flatnonzero(side)
     turns = side[decided[1:]] != side[decided[:-1]]
     before, changes = decided[:-1][turns], decided[1:][turns]
@@ -62,7 +66,11 @@ def crossings(time_s: FloatArray, values: FloatArray, threshold: float, hysteres
         # The last crossing, not the sample beyond the hysteresis.
         at = start + 1 + (0 if beyond.all() else int(np.flatnonzero(~beyond)[-1]) + 1)
         first, last = int(known[at - 1]), int(known[at])
-        found.append(Crossing(last, _meets(time_s, values, first, last, threshold), float(values[last]), rising))
+        found.append(
+            Crossing(
+                last, _meets(time_s, values, first, last, threshold), float(values[last]), rising
+            )
+        )
     return found
 
 
@@ -71,10 +79,15 @@ def _changes(time_s: FloatArray, values: FloatArray) -> list[Crossing]:
     known = np.arange(len(values))[known_in_order(time_s, values)]
     turns = np.flatnonzero(np.diff(values[known]))
     pairs = zip(known[turns].tolist(), known[turns + 1].tolist(), strict=True)
-    return [Crossing(at, float(time_s[at]), float(values[at]), bool(values[at] > values[was])) for was, at in pairs]
+    return [
+        Crossing(at, float(time_s[at]), float(values[at]), bool(values[at] > values[was]))
+        for was, at in pairs
+    ]
 
 
-def _meets(time_s: FloatArray, values: FloatArray, first: int, last: int, threshold: float) -> float:
+def _meets(
+    time_s: FloatArray, values: FloatArray, first: int, last: int, threshold: float
+) -> float:
     # Halved, so that the difference is finite.
     start, stop = float(values[first]) / 2.0, float(values[last]) / 2.0
     part = (threshold / 2.0 - start) / (stop - start) if stop != start else 1.0
@@ -112,7 +125,9 @@ class Threshold(ValueCondition):
         if self.operator is Operator.CHANGES:
             return _changes(series.time_s, series.values)
         found = crossings(series.time_s, series.values, float(self.value), self.hysteresis)
-        ways = {Operator.GREATER: (True,), Operator.LESS: (False,)}.get(self.operator, (True, False))
+        ways = {Operator.GREATER: (True,), Operator.LESS: (False,)}.get(
+            self.operator, (True, False)
+        )
         return [one for one in found if one.rising in ways]
 
 
@@ -153,7 +168,9 @@ def thresholds_of(text: str, log: Log) -> tuple[Threshold, ...]:
             raise LogError(f"no threshold: {part.strip()!r}", FORM)
         names = dict.fromkeys(name.partition(" #")[0] for name in log.names)
         if threshold.name not in log.names and threshold.name not in names:
-            raise LogError(f"no variable {threshold.name!r}", among(threshold.name, names), file=log.title)
+            raise LogError(
+                f"no variable {threshold.name!r}", among(threshold.name, names), file=log.title
+            )
         found.append(threshold)
     return tuple(found)
 

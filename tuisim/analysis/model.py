@@ -19,7 +19,13 @@ from tuisim.charts.axes import Limits
 from tuisim.errors import LogError, among
 from tuisim.logs.bands import Band, BandReport, band_report, in_words
 from tuisim.logs.columns import numeric_columns
-from tuisim.logs.derived import RECKONED_COLUMNS, definition_of, derived, named_columns, reckoned_series
+from tuisim.logs.derived import (
+    RECKONED_COLUMNS,
+    definition_of,
+    derived,
+    named_columns,
+    reckoned_series,
+)
 from tuisim.logs.plateaus import Search, plateaus
 from tuisim.logs.signals import Summary, known_at, summary_of
 from tuisim.runs.arrays import FloatArray
@@ -86,7 +92,10 @@ class Model:
             name = self.selected.partition(" #")[0] if layout.run else self.selected
         else:
             name = str(table.column(layout.variable)[row].as_py())
-        if layout.run and (key := f"{name} #{table.column(layout.run)[row].as_py()}") in self.traces:
+        if (
+            layout.run
+            and (key := f"{name} #{table.column(layout.run)[row].as_py()}") in self.traces
+        ):
             name = key
         # A row may have no name or no run.
         return self.traces.named(name if name in self.traces else self.selected)
@@ -156,7 +165,11 @@ class Model:
         rows = self.trace.series.rows
         if len(rows):
             # The row may be one of another variable, between two samples.
-            at = int(np.searchsorted(rows, self.row, "right" if samples > 0 else "left")) + samples - (samples > 0)
+            at = (
+                int(np.searchsorted(rows, self.row, "right" if samples > 0 else "left"))
+                + samples
+                - (samples > 0)
+            )
             self.row = int(rows[min(max(at, 0), len(rows) - 1)])
 
     def restore(self, other: Model) -> None:
@@ -274,11 +287,19 @@ class Model:
         """Search variables for bands. Slow for a long log: call it in a thread, with a search in another process."""
         for name in names:
             report = band_report(self.log, name, search)
-            self._words[name], self._bands[name], self._reports[name] = in_words(report), report.bands, report
+            self._words[name], self._bands[name], self._reports[name] = (
+                in_words(report),
+                report.bands,
+                report,
+            )
 
     def reports(self) -> list[BandReport]:
         """Return the band reports of the visible variables."""
-        return [self._reports[trace.name] for trace in self.traces.ticked() if trace.name in self._reports]
+        return [
+            self._reports[trace.name]
+            for trace in self.traces.ticked()
+            if trace.name in self._reports
+        ]
 
     def bands_in_words(self) -> list[str]:
         """Return the band reports of the visible variables in words, one sentence each."""
@@ -288,7 +309,10 @@ class Model:
         """Return the bands of the visible variables that have been searched."""
         reports = self.reports()
         if reports != self._reported[0]:
-            self._reported = reports, [band for report in reports for band in self._bands[report.variable]]
+            self._reported = (
+                reports,
+                [band for report in reports for band in self._bands[report.variable]],
+            )
         return self._reported[1]
 
     def measured(self) -> Limits | None:
@@ -352,7 +376,9 @@ class Model:
 
     def _place(self, run: int) -> Path:
         if run >= len(self._places):
-            raise LogError("notes cannot be kept", "only with a file or a run, not what comes from a pipe")
+            raise LogError(
+                "notes cannot be kept", "only with a file or a run, not what comes from a pipe"
+            )
         return self._places[run]
 
 
@@ -377,7 +403,9 @@ def apply_definition(model: Model, text: str, log: Log) -> None:
         model.definitions[name] = text
     model.set_log(log)
     shown = RECKONED_COLUMNS[-1] if name == RECKONING else name
-    model.selected = next((one for one in log.derived if one.partition(" #")[0] == shown), model.selected)
+    model.selected = next(
+        (one for one in log.derived if one.partition(" #")[0] == shown), model.selected
+    )
 
 
 def with_definition(model: Model, text: str) -> tuple[str, Log]:
@@ -400,5 +428,7 @@ def with_definition(model: Model, text: str) -> tuple[str, Log]:
         return text, bare.with_derived(definition.name, derived(bare, definition, model.selected))
     if bare is log:
         made = dict.fromkeys(name.partition(" #")[0] for name in log.derived)
-        raise LogError(f"no derived variable {definition.name!r}", f"there are {', '.join(made) or 'none'}")
+        raise LogError(
+            f"no derived variable {definition.name!r}", f"there are {', '.join(made) or 'none'}"
+        )
     return text, bare

@@ -51,7 +51,10 @@ def svg_of_pins(pins: Sequence[Pin], view: Viewport) -> str:
     rings: list[tuple[float, float, list[Pin]]] = []
     for pin in pins:
         x, y = view.to_px(pin.x_mm, pin.y_mm)
-        near = next((ring for ring in rings if abs(ring[0] - x) < _NEAR_PX and abs(ring[1] - y) < _NEAR_PX), None)
+        near = next(
+            (ring for ring in rings if abs(ring[0] - x) < _NEAR_PX and abs(ring[1] - y) < _NEAR_PX),
+            None,
+        )
         if near is None:
             rings.append((x, y, [pin]))
         else:
@@ -61,7 +64,9 @@ def svg_of_pins(pins: Sequence[Pin], view: Viewport) -> str:
     for x, y, at_ring in rings:
         boxes = [_label_box(x, y + side * _RING_PX, at_ring, view.width_px) for side in (-1, 2.5)]
         # Above its ring, unless another label is there.
-        box = next((one for one in boxes if not any(_overlap(one, other) for other in taken)), boxes[0])
+        box = next(
+            (one for one in boxes if not any(_overlap(one, other) for other in taken)), boxes[0]
+        )
         taken.append(box)
         drawn += _ring(x, y, at_ring, box)
     return f'<svg class="pins" viewBox="0 0 {view.width_px} {view.height_px}" aria-hidden="true">{drawn}</svg>'
@@ -75,7 +80,11 @@ def _label_box(x: float, baseline: float, pins: Sequence[Pin], width: int) -> _B
 
 
 def _overlap(one: _Box, other: _Box) -> bool:
-    return one.left < other.right and other.left < one.right and abs(one.baseline - other.baseline) < _TEXT_PX
+    return (
+        one.left < other.right
+        and other.left < one.right
+        and abs(one.baseline - other.baseline) < _TEXT_PX
+    )
 
 
 def _ring(x: float, y: float, pins: Sequence[Pin], label: _Box) -> str:

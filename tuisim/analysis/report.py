@@ -58,11 +58,15 @@ def check_report(path: Path) -> None:
         ExportError: it cannot, or the suffix is another one.
     """
     if path.suffix.lower() not in SUFFIXES:
-        raise ExportError(f"cannot write {path}: unknown format {path.suffix!r}", "a report ends in .html")
+        raise ExportError(
+            f"cannot write {path}: unknown format {path.suffix!r}", "a report ends in .html"
+        )
     check_place(path)
 
 
-def write_report(opened: OpenedLog, path: Path, names: Sequence[str] = (), search: Search = plateaus) -> None:
+def write_report(
+    opened: OpenedLog, path: Path, names: Sequence[str] = (), search: Search = plateaus
+) -> None:
     """Write the report of a log, replacing an existing file.
 
     Args:
@@ -120,7 +124,11 @@ def report_of(
         section("Chart", *_chart(model)),
         section("Bands", *_bands(model)),
         section("Statistics", _statistics(model)),
-        section("Notes", _notes(model), *(paragraph(f"Reading: {note}", soft=True) for note in log.notes)),
+        section(
+            "Notes",
+            _notes(model),
+            *(paragraph(f"Reading: {note}", soft=True) for note in log.notes),
+        ),
         *_programs(runs),
     ]
     return page(f"{log.title}: report", [part for part in body if part])
@@ -150,11 +158,17 @@ def _world(run: StoredRun, pins: Sequence[Pin], *, many: bool) -> str:
         why = str(error).replace(run.spec.world.background, mat)
         return paragraph(f"No picture: {why}", soft=True)
     said = f"run {run.number}: " if many else ""
-    text = clean(f"{said}the mat {mat} and the robot at its end pose; its path in orange, from the ring")
+    text = clean(
+        f"{said}the mat {mat} and the robot at its end pose; its path in orange, from the ring"
+    )
     text += "; numbers: where goals were met (✓) or missed (✗)" if pins else ""
     size = f'width="{picture.width}" height="{picture.height}"'
     image = f'<img src="{picture_source(picture)}" {size} alt="{text}">'
-    shown = f'<div class="map">{image}{svg_of_pins(pins, world_view(run.spec.robot))}</div>' if pins else image
+    shown = (
+        f'<div class="map">{image}{svg_of_pins(pins, world_view(run.spec.robot))}</div>'
+        if pins
+        else image
+    )
     return f"<figure>{shown}<figcaption>{text}</figcaption></figure>"
 
 
@@ -170,7 +184,10 @@ def _way_picture(run: StoredRun) -> Image:
     picture = world_at_end(run)
     records = run.telemetry.array()
     view = world_view(run.spec.robot)
-    way = [view.to_px(x, y) for x, y in zip(records["x_mm"].tolist(), records["y_mm"].tolist(), strict=True)]
+    way = [
+        view.to_px(x, y)
+        for x, y in zip(records["x_mm"].tolist(), records["y_mm"].tolist(), strict=True)
+    ]
     draw = ImageDraw.Draw(picture)
     drawn = bool((records["flags"] & FLAG_PEN_DOWN).any())
     # The halo makes the path visible on bright and dark mats, but would cover a pen trace along it.
@@ -208,7 +225,9 @@ def _movie(run: StoredRun, pins: Sequence[Pin]) -> str:
         return ""
     clip, content = made
     speed = f"{clip.speed:g} times real time" if clip.speed > 1 else "real time"
-    text = clean(f"Movie of the run: {clip.recorded.end_s:.1f} s in {speed}, {len(content) / 1000:.0f} kB")
+    text = clean(
+        f"Movie of the run: {clip.recorded.end_s:.1f} s in {speed}, {len(content) / 1000:.0f} kB"
+    )
     image = f'<img src="{_data("webp", content)}" alt="{text}">'
     shown = f'<div class="map">{image}{svg_of_pins(pins, clip.view)}</div>' if pins else image
     return f'<details class="movie"><summary>{text}</summary>{shown}</details>'
@@ -218,7 +237,9 @@ def _chart(model: Model) -> list[str]:
     lines = len(model.traces.ticked())
     height = 2 * FACET_PX if lines < 2 else 80 + FACET_PX * lines
     chart = chart_of(model, View(facets=True), _WIDTH_PX, height)
-    spans = tuple(span for report in model.reports() for span in spans_of_bands(report.bands[:MOST_BANDS]))
+    spans = tuple(
+        span for report in model.reports() for span in spans_of_bands(report.bands[:MOST_BANDS])
+    )
     chart = replace(chart, spans=spans)
     hidden = [trace.name for trace in model.traces if not trace.on]
     return [
@@ -239,8 +260,19 @@ def _bands(model: Model) -> list[str]:
     bands = model.bands()
     rows = [
         [
-            *(band.variable, band.grey, str(band.number), f"{band.start_s:.2f}", f"{band.stop_s:.2f}"),
-            *(str(band.samples), f"{band.level:.2f}", f"{band.spread:.2f}", _number(band.width_mm, ".0f")),
+            *(
+                band.variable,
+                band.grey,
+                str(band.number),
+                f"{band.start_s:.2f}",
+                f"{band.stop_s:.2f}",
+            ),
+            *(
+                str(band.samples),
+                f"{band.level:.2f}",
+                f"{band.spread:.2f}",
+                _number(band.width_mm, ".0f"),
+            ),
         ]
         for band in bands[:MOST_BANDS]
     ]
@@ -249,23 +281,39 @@ def _bands(model: Model) -> list[str]:
         for row, band in zip(rows, bands[:MOST_BANDS], strict=True):
             row.append(f"{band.true_level:.2f}")
     more = len(bands) - len(rows)
-    return [*parts, table(heads, rows, numbers=2), paragraph(f"and {more:,} more", soft=True) if more else ""]
+    return [
+        *parts,
+        table(heads, rows, numbers=2),
+        paragraph(f"and {more:,} more", soft=True) if more else "",
+    ]
 
 
 def _statistics(model: Model) -> str:
-    heads = ["variable", "count", "min", "mean", "max", "std", *(f"{100 * part:g} %" for part in QUANTILES)]
+    heads = [
+        "variable",
+        "count",
+        "min",
+        "mean",
+        "max",
+        "std",
+        *(f"{100 * part:g} %" for part in QUANTILES),
+    ]
     rows = []
     for trace in model.traces:
         found = model.summary(trace.name)
         figures = (found.min, found.mean, found.max, found.std, *found.quantiles)
-        rows.append((trace.name, f"{found.count:,}", *(_number(figure, ".5g") for figure in figures)))
+        rows.append(
+            (trace.name, f"{found.count:,}", *(_number(figure, ".5g") for figure in figures))
+        )
     return table(heads, rows, numbers=1)
 
 
 def _notes(model: Model) -> str:
     rows = []
     for run, note in model.notes:
-        span = f"{note.start_s:.2f}" + (f" to {note.stop_s:.2f}" if note.stop_s > note.start_s else "")
+        span = f"{note.start_s:.2f}" + (
+            f" to {note.stop_s:.2f}" if note.stop_s > note.start_s else ""
+        )
         rows.append((str(run + 1), span, note.variable, note.text))
     many = len(model.opened.runs) > 1
     heads = ("run", "s", "variable", "note")
@@ -275,7 +323,10 @@ def _notes(model: Model) -> str:
 def _programs(runs: Sequence[StoredRun]) -> list[str]:
     """Each program once."""
     programs = {run.program.sha256: run.program for run in runs}
-    return [section(f"Program {program.name}", code(source_lines(program.text))) for program in programs.values()]
+    return [
+        section(f"Program {program.name}", code(source_lines(program.text)))
+        for program in programs.values()
+    ]
 
 
 Fact = tuple[str, ...]
@@ -292,12 +343,20 @@ def log_facts(log: Log) -> list[Fact]:
     """Return the facts of a log file, and of its runs if it is an export."""
     rows: list[Fact] = [
         ("file", log.title),
-        ("rows", f"{log.rows:,}" + (f", and {log.left_out:,} that could not be read" if log.left_out else "")),
+        (
+            "rows",
+            f"{log.rows:,}"
+            + (f", and {log.left_out:,} that could not be read" if log.left_out else ""),
+        ),
         ("columns", ", ".join(log.table.column_names)),
         ("variables", ", ".join(log.names)),
     ]
     entries = log.metadata.get("runs")
-    runs = [entry for entry in entries if isinstance(entry, Mapping)] if isinstance(entries, list) else []
+    runs = (
+        [entry for entry in entries if isinstance(entry, Mapping)]
+        if isinstance(entries, list)
+        else []
+    )
     for name, path in _TRAVELLED.items():
         found = [_at(run, path) for run in runs]
         if any(found):
@@ -341,7 +400,9 @@ def _time_s(run: StoredRun) -> str:
 def _noise(run: StoredRun) -> str:
     noise = run.spec.world.noise
     changed = any(isinstance(action.command, SetNoise) for action in run.actions)
-    return f"light {noise.light}, motor {noise.motor}" + (", changed during the run" if changed else "")
+    return f"light {noise.light}, motor {noise.motor}" + (
+        ", changed during the run" if changed else ""
+    )
 
 
 _FACTS: Mapping[str, Callable[[StoredRun], str]] = {
@@ -406,19 +467,23 @@ pre { padding: .5rem; white-space: pre-wrap; }
 
 def page(title: str, body: Sequence[str]) -> str:
     """Return a complete page; `body` is HTML, the title is text."""
-    return "\n".join((
-        '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">',
-        '<meta name="viewport" content="width=device-width, initial-scale=1">',
-        f"<title>{clean(title)}</title>\n<style>\n{palette.PAGE}{_STYLE}</style>\n</head>\n<body>",
-        *body,
-        "</body>\n</html>\n",
-    ))  # fmt: skip
+    return "\n".join(
+        (
+            '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">',
+            '<meta name="viewport" content="width=device-width, initial-scale=1">',
+            f"<title>{clean(title)}</title>\n<style>\n{palette.PAGE}{_STYLE}</style>\n</head>\n<body>",
+            *body,
+            "</body>\n</html>\n",
+        )
+    )
 
 
 def section(title: str, *parts: str) -> str:
     """Return a section of a page without its empty parts; empty if all are."""
     filled = [part for part in parts if part]
-    return "\n".join((f"<section>\n<h2>{clean(title)}</h2>", *filled, "</section>")) if filled else ""
+    return (
+        "\n".join((f"<section>\n<h2>{clean(title)}</h2>", *filled, "</section>")) if filled else ""
+    )
 
 
 def paragraph(text: str, *, soft: bool = False) -> str:
@@ -436,27 +501,37 @@ def table(heads: Sequence[str], rows: Sequence[Sequence[str]], numbers: int) -> 
         return ""
 
     def line(kind: str, cells: Sequence[str]) -> str:
-        classes = ("number" if at >= numbers else "name" if kind == "th" else "" for at in range(len(cells)))
+        classes = (
+            "number" if at >= numbers else "name" if kind == "th" else ""
+            for at in range(len(cells))
+        )
         parts = zip(cells, classes, strict=True)
         return "".join(f"<{kind}{_class(name)}>{clean(cell)}</{kind}>" for cell, name in parts)
 
     lines = [f"<tr>{line('td', row)}</tr>" for row in rows]
     head = f"<thead><tr>{line('th', heads)}</tr></thead>"
-    return "\n".join((f'<div class="wide"><table>\n{head}\n<tbody>', *lines, "</tbody></table></div>"))
+    return "\n".join(
+        (f'<div class="wide"><table>\n{head}\n<tbody>', *lines, "</tbody></table></div>")
+    )
 
 
 def facts(rows: Sequence[Sequence[str]]) -> str:
     """Return a table whose first column holds the names of the rows."""
     lines = ("".join(f"<td>{clean(cell)}</td>" for cell in cells) for _, *cells in rows)
     heads = (f'<th class="name" scope="row">{clean(row[0])}</th>' for row in rows)
-    return "\n".join((
-        '<div class="wide"><table><tbody>',
-        *(f"<tr>{head}{cells}</tr>" for head, cells in zip(heads, lines, strict=True)),
-        "</tbody></table></div>",
-    ))  # fmt: skip
+    return "\n".join(
+        (
+            '<div class="wide"><table><tbody>',
+            *(f"<tr>{head}{cells}</tr>" for head, cells in zip(heads, lines, strict=True)),
+            "</tbody></table></div>",
+        )
+    )
 
 
 def code(lines: Sequence[str]) -> str:
     """Return the lines of a program with their numbers."""
-    rows = (f'<tr><td class="number">{at}</td><td>{clean(line) or " "}</td></tr>' for at, line in enumerate(lines, 1))
+    rows = (
+        f'<tr><td class="number">{at}</td><td>{clean(line) or " "}</td></tr>'
+        for at, line in enumerate(lines, 1)
+    )
     return "\n".join(('<table class="code"><tbody>', *rows, "</tbody></table>"))

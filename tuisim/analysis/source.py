@@ -67,7 +67,10 @@ class OpenedLog:
     def stamp(self) -> object:
         """Return a token that changes when the source grows."""
         if self.runs:
-            return tuple((run.telemetry.count if self.request.telemetry else run.output.length) for run in self.runs)
+            return tuple(
+                (run.telemetry.count if self.request.telemetry else run.output.length)
+                for run in self.runs
+            )
         try:
             return Path(self.request.file).stat().st_size
         except OSError:
@@ -148,7 +151,9 @@ def read_notes(place: Path) -> tuple[Note, ...]:
         try:
             fields = json.loads(line)
             start_s, stop_s = float(fields["start_s"]), float(fields["stop_s"])
-            found.append(Note(str(fields["text"]), start_s, stop_s, str(fields.get("variable", ""))))
+            found.append(
+                Note(str(fields["text"]), start_s, stop_s, str(fields.get("variable", "")))
+            )
         except (ValueError, TypeError, KeyError, AttributeError, RecursionError) as error:
             raise LogError("not a note", file=str(place), row=row) from error
     return tuple(found)
@@ -165,7 +170,9 @@ def write_notes(place: Path, notes: Sequence[Note]) -> None:
         with replacing(place, owner_only=True) as handle:
             for note in notes:
                 # Halves of characters become escapes of JSON.
-                text = json.dumps(asdict(note), ensure_ascii=False).encode(errors="backslashreplace")
+                text = json.dumps(asdict(note), ensure_ascii=False).encode(
+                    errors="backslashreplace"
+                )
                 handle.write(text + b"\n")
     except OSError as error:
         raise LogError(f"cannot write: {error.strerror or error}", file=str(place)) from error

@@ -122,7 +122,9 @@ class Rows:
         Raises:
             LogError: a value does not fit its column.
         """
-        masks = [mask_of(self._log.table.column(condition.name), condition) for condition in conditions]
+        masks = [
+            mask_of(self._log.table.column(condition.name), condition) for condition in conditions
+        ]
         fulfilled = np.flatnonzero(np.logical_and.reduce(masks)) if masks else None
         return self._arrangement(conditions, fulfilled, self.view.sorted_by, self.view.descending)
 
@@ -131,7 +133,11 @@ class Rows:
         return self._arrangement(self.view.conditions, self.view.fulfilled, column, descending)
 
     def _arrangement(
-        self, conditions: tuple[ValueCondition, ...], fulfilled: IntArray | None, sorted_by: str, descending: bool
+        self,
+        conditions: tuple[ValueCondition, ...],
+        fulfilled: IntArray | None,
+        sorted_by: str,
+        descending: bool,
     ) -> TableView:
         order = fulfilled
         if sorted_by:
@@ -188,12 +194,16 @@ class Rows:
     def restore(self, other: Rows) -> None:
         """Show the same columns and conditions as another table of the same log."""
         self.columns, self.frozen, self.column = other.columns, other.frozen, other.column
-        self.view = replace(self.view, sorted_by=other.view.sorted_by, descending=other.view.descending)
+        self.view = replace(
+            self.view, sorted_by=other.view.sorted_by, descending=other.view.descending
+        )
         self.view = self.filtered(other.view.conditions)
 
     # Search
 
-    def find(self, text: str, from_place: int, step: int, task: TableTask | None = None) -> int | None:
+    def find(
+        self, text: str, from_place: int, step: int, task: TableTask | None = None
+    ) -> int | None:
         """Return the next position whose row contains a text in a shown column, wrapping around; None if none does.
 
         The case of letters does not count. Slow for a long log without a match.
@@ -218,7 +228,11 @@ class Rows:
     def _places_with(self, text: str, first: int, last: int) -> IntArray:
         """Return the positions from `first` to before `last` whose rows contain a text."""
         table = self._log.table.select(self.columns)
-        part = table.slice(first, last - first) if self.view.order is None else table.take(self.view.order[first:last])
+        part = (
+            table.slice(first, last - first)
+            if self.view.order is None
+            else table.take(self.view.order[first:last])
+        )
         found = np.zeros(last - first, bool)
         for column in part.columns:
             found |= contains(column, text)

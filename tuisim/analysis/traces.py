@@ -68,7 +68,10 @@ class LogTrace(Trace):
         """Return whether its values are legible on the common scale, which others use."""
         own = self._least_and_greatest()
         left = [other._least_and_greatest() for other in others if not other.scale]
-        low, high = min((at[0] for at in left), default=0.0), max((at[1] for at in left), default=0.0)
+        low, high = (
+            min((at[0] for at in left), default=0.0),
+            max((at[1] for at in left), default=0.0),
+        )
         least, greatest = min(low, own[0]), max(high, own[1])
         return min(high - low, own[1] - own[0]) * _SEEN >= greatest - least
 
@@ -116,13 +119,19 @@ class LogTraces(Traces):
     def __init__(self, log: Log) -> None:
         super().__init__()
         # If a row has no variable, there is a name without samples.
-        names = (name for name in log.names if not log.layout.variable or len(log.series(name).rows))
+        names = (
+            name for name in log.names if not log.layout.variable or len(log.series(name).rows)
+        )
         self._by_log_name = {name: LogTrace(log, name, number) for number, name in enumerate(names)}
         self._show_light_columns()
 
     def set_log(self, log: Log) -> None:
         """Switch to the same log with other derived variables; new ones become visible."""
-        kept = [trace for trace in self if trace.name in log.names and not trace.is_derived_otherwise(log)]
+        kept = [
+            trace
+            for trace in self
+            if trace.name in log.names and not trace.is_derived_otherwise(log)
+        ]
         known = {trace.name for trace in kept}
         number = max((trace.number for trace in kept), default=-1)
         added = [name for name in log.derived if name not in known]
@@ -163,7 +172,9 @@ class LogTraces(Traces):
 
     def span_s(self) -> Limits:
         """Return the first and the last time of the visible traces, widened if they are equal."""
-        ends = [trace.pyramid.times_s[[0, -1]] for trace in self.ticked() if len(trace.pyramid.times_s)]
+        ends = [
+            trace.pyramid.times_s[[0, -1]] for trace in self.ticked() if len(trace.pyramid.times_s)
+        ]
         if not ends:
             return 0.0, 1.0
         low, high = float(min(end[0] for end in ends)), float(max(end[1] for end in ends))
@@ -195,7 +206,9 @@ def aligned(log: Log, series: Sequence[Series], way: str) -> list[FloatArray | N
     event = threshold_of(way)
     if event is None:
         raise LogError(f"cannot align by {way!r}", FORM)
-    found = {one.run: there[0].time_s for one in event.among(series) if (there := event.crossings(one))}
+    found = {
+        one.run: there[0].time_s for one in event.among(series) if (there := event.crossings(one))
+    }
     if not found:
         raise LogError(f"no run comes to {way}", FORM)
     # A run without the event is aligned like the earliest one.

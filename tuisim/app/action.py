@@ -98,7 +98,9 @@ _LABELS = {
     "pageup": "page up",
     "pagedown": "page down",
 }
-_WORDS = frozenset({"space", "home", "end", "escape", "enter", "tab", "delete", "backspace", "insert"})
+_WORDS = frozenset(
+    {"space", "home", "end", "escape", "enter", "tab", "delete", "backspace", "insert"}
+)
 """Keys whose names are their display names."""
 
 
@@ -114,7 +116,8 @@ def label_of_key(key: str) -> str:
 def key_bindings(actions: Iterable[Action[Any, Any]]) -> list[BindingType]:
     """Return the bindings of an `ActionHost`."""
     return [
-        Binding(action.key, _call(action), action.title, show=False, priority=action.comes_first) for action in actions
+        Binding(action.key, _call(action), action.title, show=False, priority=action.comes_first)
+        for action in actions
     ]
 
 
@@ -144,7 +147,9 @@ class ActionHost(DOMNode):
 
     def take_keys(self, actions: Mapping[str, Action[Any, Any]]) -> None:
         """Use a table with other keys of the same actions."""
-        changed = [action for name, action in actions.items() if action.key != self.ACTIONS[name].key]
+        changed = [
+            action for name, action in actions.items() if action.key != self.ACTIONS[name].key
+        ]
         calls = {_call(action) for action in changed}
         bindings = bindings_of(self).key_to_bindings
         for key, bound in [*bindings.items()]:
@@ -154,7 +159,9 @@ class ActionHost(DOMNode):
                 del bindings[key]
         for action in changed:
             for key in action.key.split(","):
-                bindings_of(self).bind(key, _call(action), action.title, show=False, priority=action.comes_first)
+                bindings_of(self).bind(
+                    key, _call(action), action.title, show=False, priority=action.comes_first
+                )
         self.ACTIONS = actions
 
     def situation(self) -> Any:
@@ -182,11 +189,18 @@ class ActionHost(DOMNode):
 
     def say(self, text: str) -> None:
         """Show a short notice, as long as it takes to read."""
-        self.app.notify(self.with_keys(text), timeout=max(3, len(text) / CHARACTERS_A_SECOND), markup=False)
+        self.app.notify(
+            self.with_keys(text), timeout=max(3, len(text) / CHARACTERS_A_SECOND), markup=False
+        )
 
     def with_keys(self, text: str) -> str:
         """Return a text with the key of each action in place of its id in braces, such as `{run}`."""
-        return _ID.sub(lambda found: self.ACTIONS[found[1]].key_label if found[1] in self.ACTIONS else found[0], text)
+        return _ID.sub(
+            lambda found: (
+                self.ACTIONS[found[1]].key_label if found[1] in self.ACTIONS else found[0]
+            ),
+            text,
+        )
 
     def complain(self, error: TuisimError) -> None:
         """Show an error."""
@@ -198,9 +212,17 @@ _ALWAYS = ("palette", "help", "quit", "leave")
 FIELD_KEYS: tuple[KeyWord, ...] = (("enter", "apply"), ("esc", "leave"), ("tab", "next"))
 """Keys of a text field, where letters are not keys."""
 TYPING_KEYS: tuple[KeyWord, ...] = (
-    ("esc", "done"), ("^s", "save"), ("^r", "run"), ("^f", "find"), ("tab", "complete"), ("^g", "line"),
-    ("^z", "undo"), ("^p", "all"), ("^y", "redo"), ("^/", "comment"),
-)  # fmt: skip
+    ("esc", "done"),
+    ("^s", "save"),
+    ("^r", "run"),
+    ("^f", "find"),
+    ("tab", "complete"),
+    ("^g", "line"),
+    ("^z", "undo"),
+    ("^p", "all"),
+    ("^y", "redo"),
+    ("^/", "comment"),
+)
 """Keys while the user types in the program."""
 
 
@@ -232,7 +254,11 @@ def fitting(actions: Sequence[Action[Any, Any]], width: int, most: int) -> list[
     left = width - sum(map(_cells, always))
     groups: dict[str, list[Action[Any, Any]]] = {}
     for action in actions:
-        if not action.footer or action in always or len(always) + sum(map(len, groups.values())) >= most:
+        if (
+            not action.footer
+            or action in always
+            or len(always) + sum(map(len, groups.values())) >= most
+        ):
             continue
         cells = _cells(action) + (0 if action.group in groups else len(BETWEEN_GROUPS))
         if cells <= left:

@@ -39,7 +39,15 @@ from tuisim.app.panel_messages import PanelMessages, looks_at_buttons
 from tuisim.app.run_controller import ROWS_A_POLL, RunController, RunUpdate
 from tuisim.app.setup import next_run as plans
 from tuisim.app.setup.mat import PATIENCE_S
-from tuisim.app.snapshot import AT_REST, GOOD_ENDS, AppState, RunPhase, Situation, busy_loop_words, end_words
+from tuisim.app.snapshot import (
+    AT_REST,
+    GOOD_ENDS,
+    AppState,
+    RunPhase,
+    Situation,
+    busy_loop_words,
+    end_words,
+)
 from tuisim.app.speech import Voice
 from tuisim.app.terminal_app import picture_mode_at_start
 from tuisim.config.options import DEFAULT_FPS, Settings
@@ -148,12 +156,17 @@ class LabApp(PanelMessages):
         self.settings = settings
         self._config_problems = self._take_config(load_config())
         self.pixels = settings.pixels
-        first = plans.first_plan(settings.spec, settings.settings, settings.decided, settings.program)
+        first = plans.first_plan(
+            settings.spec, settings.settings, settings.decided, settings.program
+        )
         self.run_controller = RunController(settings.program, first, settings.speed)
         self.panel_area = PanelArea(settings.panels_on, settings.panels_off)
         self.key_footer = KeyFooter()
         self.pacer = Pacer(settings.fps, most_queued_s=PAGE_QUEUED_S if in_browser() else None)
-        self.picture_mode.is_slow, self.picture_mode.is_idle = lambda: self.pacer.is_slow, lambda: self.pacer.is_idle
+        self.picture_mode.is_slow, self.picture_mode.is_idle = (
+            lambda: self.pacer.is_slow,
+            lambda: self.pacer.is_idle,
+        )
         self.voice = Voice(settings.quiet)
         self.feed = PanelFeed(self.panel_area, self.run_controller)
         self._drawn: tuple[Any, ...] = ((None,),)
@@ -166,7 +179,9 @@ class LabApp(PanelMessages):
         self.debugger = DebugController(self, runs, panels, self.document.lines)
         of_lesson = self.goals, self.loader, self.debugger, settings.lesson, settings.lessons_folder
         self.lesson = LessonController(self, runs, panels, *of_lesson)
-        self.context = ActionContext(self, runs, panels, self.document, self.loader, self.debugger, self.lesson)
+        self.context = ActionContext(
+            self, runs, panels, self.document, self.loader, self.debugger, self.lesson
+        )
         self.run_controller.propose = partial(time_travel.propose_branch, self.context)
         self._run_when_ready = settings.autorun and settings.replay is None
         self._frame_timer: Timer | None = None
@@ -251,7 +266,9 @@ class LabApp(PanelMessages):
 
     def _waits(self, event: events.Event) -> bool:
         """Let the keys of a run wait also for the mat, without which none can start."""
-        is_of_run = isinstance(event, events.Key) and event.key in RUN_KEYS and len(self.screen_stack) == 1
+        is_of_run = (
+            isinstance(event, events.Key) and event.key in RUN_KEYS and len(self.screen_stack) == 1
+        )
         waits = is_of_run and self.loader.is_preparing
         return super()._waits(event) or (waits and not self.is_typed_into)
 
@@ -332,7 +349,11 @@ class LabApp(PanelMessages):
             self._process(news)
             if self.run_controller.timeline.playing:
                 time_travel.advance_playback(self.context)
-            if self.debugger.view is not None or self.debugger.replay.run is not None or self._looks_back:
+            if (
+                self.debugger.view is not None
+                or self.debugger.replay.run is not None
+                or self._looks_back
+            ):
                 self.debugger.poll()
             if self.goals.file is not None:
                 self.goals.update()
@@ -396,7 +417,9 @@ class LabApp(PanelMessages):
             self.debugger.handle(event)
         if news.rows:
             self.feed.add_rows(news.rows)
-        if not self.has_hinted and any(row.stream in (Stream.DISPLAY, Stream.CONSOLE) for row in news.rows):
+        if not self.has_hinted and any(
+            row.stream in (Stream.DISPLAY, Stream.CONSOLE) for row in news.rows
+        ):
             self.hint_at_brick("uses the brick's display")
         if output := self.panel_area.output:
             if news.busy_loop:
@@ -475,7 +498,10 @@ class LabApp(PanelMessages):
         """Update the footer; together with the world once it stands still, or it would be said to before it does."""
         self._wake()
         state = self.state()
-        has_stopped = state.run.state in AT_REST and self._drawn[0][0] not in (None, state.run.state)
+        has_stopped = state.run.state in AT_REST and self._drawn[0][0] not in (
+            None,
+            state.run.state,
+        )
         if not has_stopped or not self.draw():
             self._show_footer(state)
 
@@ -484,10 +510,19 @@ class LabApp(PanelMessages):
         return self._situation(self.run_controller.state)
 
     def _situation(self, phase: RunPhase) -> Situation:
-        runs, timeline, code = self.run_controller, self.run_controller.timeline, self.panel_area.code
+        runs, timeline, code = (
+            self.run_controller,
+            self.run_controller.timeline,
+            self.panel_area.code,
+        )
         facts = runs.program is not None, timeline.recording is not None, timeline.at is not None
-        is_away, reads_code = self._looks_back or self.debugger.replay.busy, code is not None and code.is_read
-        return Situation(phase, *facts, is_away, reads_code, self.has_pixels, runs.earlier is not None)
+        is_away, reads_code = (
+            self._looks_back or self.debugger.replay.busy,
+            code is not None and code.is_read,
+        )
+        return Situation(
+            phase, *facts, is_away, reads_code, self.has_pixels, runs.earlier is not None
+        )
 
     @property
     def _looks_back(self) -> bool:
@@ -511,7 +546,9 @@ class LabApp(PanelMessages):
         actions = footer_actions(self.ACTIONS, names, state.situation, state.playing)
         if (keys := self._field_keys()) in (FIELD_KEYS, TYPING_KEYS):
             field = self.focused
-            actions = [one for one in actions if isinstance(field, NumberInput) and field.leaves(one.key)]
+            actions = [
+                one for one in actions if isinstance(field, NumberInput) and field.leaves(one.key)
+            ]
         self.key_footer.show(actions, state.status, keys, state.failed)
 
     def _field_keys(self) -> tuple[KeyWord, ...]:
@@ -521,7 +558,9 @@ class LabApp(PanelMessages):
         if isinstance(focused, Input):
             return FIELD_KEYS
         code = self.panel_area.code
-        typing = code is not None and code.typing and focused is not None and code in focused.ancestors
+        typing = (
+            code is not None and code.typing and focused is not None and code in focused.ancestors
+        )
         return TYPING_KEYS if typing else panel_keys(focused)
 
     # Panels
@@ -588,7 +627,14 @@ class LabApp(PanelMessages):
 def _footed(state: AppState) -> tuple[Any, ...]:
     """Return what of a state the footer tells."""
     run = state.run
-    return state.situation, state.playing, state.looks_back and run.time_s, state.looks_back, run.speed, run.end
+    return (
+        state.situation,
+        state.playing,
+        state.looks_back and run.time_s,
+        state.looks_back,
+        run.speed,
+        run.end,
+    )
 
 
 def run_app(settings: AppSettings) -> int:

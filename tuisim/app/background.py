@@ -116,7 +116,10 @@ def leave(code: int) -> int:
     while any(thread.is_alive() for thread in _threads):
         if not unfinished() or time.monotonic() > give_up:
             for path in drop_unfinished():
-                print(f"tuisim: {path} was not written: the app was left before it was complete", file=sys.stderr)
+                print(
+                    f"tuisim: {path} was not written: the app was left before it was complete",
+                    file=sys.stderr,
+                )
             for stream in (sys.stdout, sys.stderr):
                 with suppress(OSError, ValueError):
                     stream.flush()
@@ -143,7 +146,9 @@ def _in_thread(
     call(app, then, made)
 
 
-def call(app: App[Any], function: Callable[Given, None], *args: Given.args, **kwargs: Given.kwargs) -> None:
+def call(
+    app: App[Any], function: Callable[Given, None], *args: Given.args, **kwargs: Given.kwargs
+) -> None:
     """Call a function in the app's thread, from a thread; without effect while the app shuts down.
 
     Blocks until the function has returned.

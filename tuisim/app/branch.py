@@ -23,9 +23,17 @@ BRANCH_TAG = "branch-of-"
 """Prefix of the tag that names the run from which another one branched off."""
 
 _WORLD_FIELDS = (
-    "x_mm", "y_mm", "heading_deg", "left_position_deg", "right_position_deg", "left_speed_dps", "right_speed_dps",
-    "gyro_zero_deg", "flags", "actions",
-)  # fmt: skip
+    "x_mm",
+    "y_mm",
+    "heading_deg",
+    "left_position_deg",
+    "right_position_deg",
+    "left_speed_dps",
+    "right_speed_dps",
+    "gyro_zero_deg",
+    "flags",
+    "actions",
+)
 """Fields of a tick record that stay the same when lines are inserted into the program."""
 
 
@@ -49,7 +57,10 @@ class Branch:
     @property
     def edited(self) -> bool:
         """Whether the program differs from that of the former run."""
-        return (self.program.text, self.program.prelude) != (self.of.program.text, self.of.program.prelude)
+        return (self.program.text, self.program.prelude) != (
+            self.of.program.text,
+            self.of.program.prelude,
+        )
 
     @property
     def title(self) -> str:
@@ -75,7 +86,12 @@ class Branch:
     @property
     def runs(self) -> Program:
         """The program with the arguments of the former run. Its answers are the same, too, edited or not."""
-        return replace(self.of.program, name=self.program.name, text=self.program.text, prelude=self.program.prelude)
+        return replace(
+            self.of.program,
+            name=self.program.name,
+            text=self.program.text,
+            prelude=self.program.prelude,
+        )
 
 
 def first_difference(before: Recording, now: Recording, tick: int) -> int | None:

@@ -61,11 +61,17 @@ def keep(program: str, kept: Kept) -> None:
         ConfigError: they cannot be written.
     """
     file = file_of_program(FOLDER, program)
-    data = {"program": program, "breaks": [one.written() for one in kept.breaks], "watches": list(kept.watches)}
+    data = {
+        "program": program,
+        "breaks": [one.written() for one in kept.breaks],
+        "watches": list(kept.watches),
+    }
     try:
         write_json(file, data)
     except OSError as error:
-        raise ConfigError(f"breakpoints cannot be saved: {error.strerror or error}", file=str(file)) from None
+        raise ConfigError(
+            f"breakpoints cannot be saved: {error.strerror or error}", file=str(file)
+        ) from None
 
 
 def following(breaks: tuple[Breakpoint, ...], before: str, now: str) -> tuple[Breakpoint, ...]:
@@ -209,7 +215,9 @@ class DebugController:
             self.set_breaks((*self.breaks, parse_break(str(at))))
             self._app.say(f"Breakpoint on {name}")
         elif there.disabled:
-            self.set_breaks(tuple(replace(one, disabled=False) if one is there else one for one in self.breaks))
+            self.set_breaks(
+                tuple(replace(one, disabled=False) if one is there else one for one in self.breaks)
+            )
             self._app.say(f"Breakpoint enabled on {name}")
         else:
             self.set_breaks(tuple(one for one in self.breaks if one is not there))
@@ -219,7 +227,11 @@ class DebugController:
     def current_line(self) -> int:
         """The line shown as current, in the edited text; 0 if there is none."""
         snapshot = self._run_controller.snapshot()
-        return self._lines().to_shown(snapshot.line) if self._run_controller.in_run or snapshot.past else 0
+        return (
+            self._lines().to_shown(snapshot.line)
+            if self._run_controller.in_run or snapshot.past
+            else 0
+        )
 
     # What comes from the run
 
@@ -313,7 +325,11 @@ class DebugController:
         """Select the next thread."""
         if self.view and (threads := self.view.inspected.threads):
             names = [thread.name for thread in threads]
-            at = names.index(self.view.inspected.thread) if self.view.inspected.thread in names else -1
+            at = (
+                names.index(self.view.inspected.thread)
+                if self.view.inspected.thread in names
+                else -1
+            )
             self._thread, self._frame = names[(at + 1) % len(names)], 0
             self._inspect_again()
 
@@ -362,7 +378,12 @@ class DebugController:
 
     def _follow(self, position: Position) -> None:
         timeline = self._run_controller.timeline
-        if timeline.recording is None or timeline.playing or self.replay.busy or position == self._wanted:
+        if (
+            timeline.recording is None
+            or timeline.playing
+            or self.replay.busy
+            or position == self._wanted
+        ):
             return
         self._wanted = position
         self.replay.go(timeline.recording, position, self.inspect_request)

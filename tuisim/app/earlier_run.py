@@ -33,7 +33,9 @@ def stored_before(later: Recording) -> Recording | None:
     if not path:
         return None
     listed = takewhile(lambda info: info.id != later.run_id, store.runs())
-    for info in reversed([info for info in listed if info.program == later.program.name and info.ticks]):
+    for info in reversed(
+        [info for info in listed if info.program == later.program.name and info.ticks]
+    ):
         # One that cannot be read is no reason to find none.
         with suppress(LogError):
             run = Recording(store.load_run(info.id))

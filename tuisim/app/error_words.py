@@ -66,4 +66,8 @@ def in_a_list(error: TuisimError) -> str:
     guess, asked, _ = error.hint.partition("?")
     if asked and guess.startswith("did you mean"):
         return f"{error.message} ({guess}?)"
-    return error.message if "`tuisim " in error.hint or error.hint.startswith("one of ") else str(error)
+    return (
+        error.message
+        if "`tuisim " in error.hint or error.hint.startswith("one of ")
+        else str(error)
+    )

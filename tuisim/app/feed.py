@@ -73,10 +73,17 @@ class Feed:
         end = min(count, self._charted + stride * POINTS_A_FEED)
         if end == self._charted:
             return {}
-        records = run.telemetry.array(self._charted)[_thinned(0, end - self._charted, POINTS_A_FEED)]
+        records = run.telemetry.array(self._charted)[
+            _thinned(0, end - self._charted, POINTS_A_FEED)
+        ]
         names = [column.name for column in columns_of(run.spec.robot) if column.is_traced]
         values = column_values(
-            names, records, run.spec, run.actions(), mat, lambda record: run.field_at(int(record[0]), mat)
+            names,
+            records,
+            run.spec,
+            run.actions(),
+            mat,
+            lambda record: run.field_at(int(record[0]), mat),
         )
         times_s = (records["tick"] / run.spec.profile.tick_hz).tolist()
         self._charted = end
@@ -115,15 +122,21 @@ def trace_until(run: Recording, tick: int) -> Points:
     return _with_gaps(xs[kept], ys[kept], jumps[kept])
 
 
-def _jumps(records: np.ndarray[Any, Any], before_mm: tuple[float, float] | None) -> npt.NDArray[np.int64]:
+def _jumps(
+    records: np.ndarray[Any, Any], before_mm: tuple[float, float] | None
+) -> npt.NDArray[np.int64]:
     """Count the placements of the robot up to each record."""
     before_x, before_y = before_mm or (np.nan, np.nan)
-    way = np.hypot(np.diff(records["x_mm"], prepend=before_x), np.diff(records["y_mm"], prepend=before_y))
+    way = np.hypot(
+        np.diff(records["x_mm"], prepend=before_x), np.diff(records["y_mm"], prepend=before_y)
+    )
     # NaN, before the first record, counts as a jump, so that the traces of two runs are not joined.
     return np.cumsum(~(way < _JUMP_MM))
 
 
-def _with_gaps(xs: npt.NDArray[np.float64], ys: npt.NDArray[np.float64], jumps: npt.NDArray[np.int64]) -> Points:
+def _with_gaps(
+    xs: npt.NDArray[np.float64], ys: npt.NDArray[np.float64], jumps: npt.NDArray[np.int64]
+) -> Points:
     gaps = np.flatnonzero(np.diff(jumps, prepend=0))
     return np.insert(xs, gaps, np.nan).tolist(), np.insert(ys, gaps, np.nan).tolist()
 
@@ -185,7 +198,11 @@ class PanelFeed:
     @property
     def is_behind(self) -> bool:
         """Whether the chart is on the screen and has not got the whole run yet."""
-        return self._feed is not None and self._feed.is_behind and self._charted_mat(self._feed) is not None
+        return (
+            self._feed is not None
+            and self._feed.is_behind
+            and self._charted_mat(self._feed) is not None
+        )
 
     def _charted_mat(self, feed: Feed) -> Field | None:
         """Return the mat that the chart's readings are taken from; None if no chart or no mat."""
@@ -222,7 +239,11 @@ class PanelFeed:
                 else:
                     world.show_past_trace(trace_until(recording, tick), recording.spec.robot.pen)
         if output := self._panel_area.output:
-            count = None if tick is None or recording is None else (recording, recording.rows.until(tick), output)
+            count = (
+                None
+                if tick is None or recording is None
+                else (recording, recording.rows.until(tick), output)
+            )
             if count != self._printed:
                 self._printed = count
                 if tick is None or recording is None:

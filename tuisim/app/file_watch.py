@@ -30,7 +30,9 @@ class FileWatch:
 
     def follow(self, paths: Iterable[Path]) -> None:
         """Watch these files and no others; files already watched keep their state."""
-        self._known = {path: self._known[path] if path in self._known else _stamp(path) for path in paths}
+        self._known = {
+            path: self._known[path] if path in self._known else _stamp(path) for path in paths
+        }
 
     def note(self, path: Path) -> None:
         """Accept the current version of a file: the app itself changed it."""

@@ -147,7 +147,9 @@ class Row(Vertical):
         super().__init__()
         self.field = field
         self._label = label
-        self.entry: Choice | Input = Choice() if chosen else Input(compact=True, select_on_focus=True)
+        self.entry: Choice | Input = (
+            Choice() if chosen else Input(compact=True, select_on_focus=True)
+        )
         self._shown = ""
 
     def compose(self) -> ComposeResult:
@@ -202,10 +204,21 @@ class Row(Vertical):
         self.post_message(self.Entered(self, self.entry.value, event.by))
 
 
-_SIGNS = frozenset({
-    "asterisk", "colon", "equals_sign", "left_parenthesis", "left_square_bracket", "less_than_sign",
-    "greater_than_sign", "question_mark", "right_parenthesis", "right_square_bracket", "space",
-})  # fmt: skip
+_SIGNS = frozenset(
+    {
+        "asterisk",
+        "colon",
+        "equals_sign",
+        "left_parenthesis",
+        "left_square_bracket",
+        "less_than_sign",
+        "greater_than_sign",
+        "question_mark",
+        "right_parenthesis",
+        "right_square_bracket",
+        "space",
+    }
+)
 """Keys of punctuation that cannot be part of a number."""
 
 
@@ -218,7 +231,9 @@ class NumberInput(Input):
         for action in self.app.ACTIONS.values() if isinstance(self.app, ActionHost) else ():
             for key in action.key.split(","):
                 if self.leaves(key):
-                    bindings_of(self).bind(key, f"app.act('{action.id}')", action.title, show=False, priority=True)
+                    bindings_of(self).bind(
+                        key, f"app.act('{action.id}')", action.title, show=False, priority=True
+                    )
 
     @staticmethod
     def leaves(key: str) -> bool:
@@ -336,8 +351,11 @@ class Slider(_Control):
     def render(self) -> Text:
         knob, width = self._knob(), self.size.width
         filled, empty, knob_style = (
-            self.get_component_rich_style(f"slider--{part}", partial=True) for part in ("filled", "empty", "knob")
+            self.get_component_rich_style(f"slider--{part}", partial=True)
+            for part in ("filled", "empty", "knob")
         )
         # A different glyph shows the focus, so that it is visible without colours too.
         mark = Text("◆" if self.has_focus else "●", knob_style + Style(bold=True))
-        return Text.assemble(("━" * knob, filled), mark, ("─" * (width - knob - 1), empty), no_wrap=True, end="")
+        return Text.assemble(
+            ("━" * knob, filled), mark, ("─" * (width - knob - 1), empty), no_wrap=True, end=""
+        )

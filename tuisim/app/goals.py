@@ -44,7 +44,11 @@ class GoalsController:
     """
 
     def __init__(
-        self, app: LabHost, run_controller: RunController, panel_area: PanelArea, file: GoalsFile | None
+        self,
+        app: LabHost,
+        run_controller: RunController,
+        panel_area: PanelArea,
+        file: GoalsFile | None,
     ) -> None:
         self._app, self._run_controller, self._panel_area = app, run_controller, panel_area
         self.file = file
@@ -112,7 +116,9 @@ class GoalsController:
         hint = ""
         if self._recording is None:
             hint = self._app.with_keys(
-                "{run} runs the program" if self._run_controller.program else "{open} opens a program"
+                "{run} runs the program"
+                if self._run_controller.program
+                else "{open} opens a program"
             )
         panel.show_goals(GoalsView(self.file.title, self.file.goals, self._judgements, hint))
 

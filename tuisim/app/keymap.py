@@ -28,9 +28,17 @@ _TAKEN = {
     "ctrl+q": "quits",
 }
 """Keys that are no lines of the table, and what they do."""
-_SAME = {"ctrl+i": "tab", "ctrl+m": "enter", "ctrl+left_square_bracket": "escape", "esc": "escape", "return": "enter"}
+_SAME = {
+    "ctrl+i": "tab",
+    "ctrl+m": "enter",
+    "ctrl+left_square_bracket": "escape",
+    "esc": "escape",
+    "return": "enter",
+}
 """Keys that a terminal sends as another one, and other names of them."""
-_NAMED = frozenset(key.value.rpartition("+")[2] for key in Keys if key.value.isprintable() and key.value[0] != "<")
+_NAMED = frozenset(
+    key.value.rpartition("+")[2] for key in Keys if key.value.isprintable() and key.value[0] != "<"
+)
 _MODIFIERS = re.compile(r"(?:(?:ctrl|alt|shift)\+)*")
 _HOW = "a character such as x or ?, or a name such as f5, ctrl+x, shift+f5, pageup, space"
 
@@ -62,7 +70,7 @@ def key_of(text: str, at: Location) -> str:
 
 def with_keys(
     actions: Mapping[str, Action[Host, Now]], config: UserConfig
-) -> dict[str, Action[Host, Now]]:  # fmt: skip
+) -> dict[str, Action[Host, Now]]:
     """Return a table of keys with the user's own.
 
     Raises:
@@ -73,14 +81,18 @@ def with_keys(
     for name, keys in config.keys.items():
         here = at.at(name)
         if name not in found:
-            raise here.wrong("no such action", f"{nearest(name, found)}; `tuisim guide keys` lists the ids")
+            raise here.wrong(
+                "no such action", f"{nearest(name, found)}; `tuisim guide keys` lists the ids"
+            )
         written = ",".join(dict.fromkeys(key_of(key, here) for key in keys))
         found[name] = replace(found[name], key=written, shown_key="", footer_key="")
     _check_clashes(found, config, at)
     return found
 
 
-def _check_clashes(actions: Mapping[str, Action[Any, Any]], config: UserConfig, at: Location) -> None:
+def _check_clashes(
+    actions: Mapping[str, Action[Any, Any]], config: UserConfig, at: Location
+) -> None:
     owners: dict[str, str] = {}
     for name, action in actions.items():
         for key in action.key.split(","):
@@ -91,7 +103,8 @@ def _check_clashes(actions: Mapping[str, Action[Any, Any]], config: UserConfig, 
             blamed, has = (name, other) if name in config.keys else (other, name)
             title = actions[has].title
             raise at.at(blamed).wrong(
-                f"{label_of_key(key)} is also the key of {has} ({title})", f"give {blamed} or {has} another key"
+                f"{label_of_key(key)} is also the key of {has} ({title})",
+                f"give {blamed} or {has} another key",
             )
 
 

@@ -212,7 +212,11 @@ class LessonController:
     @property
     def step(self) -> LessonStep | None:
         """The step to do; None if no lesson is open, or all of its steps are done or skipped."""
-        return self.lesson.steps[self._at] if self.lesson is not None and self._at is not None else None
+        return (
+            self.lesson.steps[self._at]
+            if self.lesson is not None and self._at is not None
+            else None
+        )
 
     def lessons(self) -> list[Lesson]:
         """Return all lessons that can be read, in their order."""
@@ -234,7 +238,11 @@ class LessonController:
 
     def _next_title(self) -> str:
         try:
-            return load_lesson(find_lesson(self.next_name, self.folder)).title if self.next_name else ""
+            return (
+                load_lesson(find_lesson(self.next_name, self.folder)).title
+                if self.next_name
+                else ""
+            )
         except ConfigError:
             # The menu reports it.
             return ""
@@ -260,10 +268,14 @@ class LessonController:
         if first := unready(check, typed):
             raise TuisimError(first)
         if not self._take(typed):
-            self._keep(self.progress.with_step(step.name, tries=self.progress.of(step.name).tries + 1))
+            self._keep(
+                self.progress.with_step(step.name, tries=self.progress.of(step.name).tries + 1)
+            )
             self.show()
             left = len(step.hints) - self.progress.of(step.name).hints
-            raise TuisimError(f"{text} is not right. Try again{': escape, then Y shows a hint' if left > 0 else ''}")
+            raise TuisimError(
+                f"{text} is not right. Try again{': escape, then Y shows a hint' if left > 0 else ''}"
+            )
 
     def _typed(self, check: QuestionCheck, text: str) -> Typed:
         """Return an answer with what has happened before it."""
@@ -273,7 +285,13 @@ class LessonController:
         printed: tuple[str, ...] = ()
         if recording is not None and check.printed:
             printed = tuple(row.text for row in load_run(recording.folder).output.all_rows())
-        return Typed(text, self._run_controller.pose.x_mm, frozenset(self._seen), printed, recording is not None)
+        return Typed(
+            text,
+            self._run_controller.pose.x_mm,
+            frozenset(self._seen),
+            printed,
+            recording is not None,
+        )
 
     def _look(self) -> None:
         """Note what is on the screen."""
@@ -288,7 +306,9 @@ class LessonController:
             return
         shown = self.progress.of(step.name).hints
         if shown >= len(step.hints):
-            self._app.say("There are no more hints. M skips the step" if shown else "This step has no hints")
+            self._app.say(
+                "There are no more hints. M skips the step" if shown else "This step has no hints"
+            )
             return
         self._keep(self.progress.with_step(step.name, hints=shown + 1))
         self.show()
@@ -356,7 +376,9 @@ class LessonController:
             case WatchCheck():
                 if self._debugger.view is not None:
                     watches = self._debugger.view.inspected.watches
-                    yield from (ExpressionWatched(watch.text) for watch in watches if not watch.error)
+                    yield from (
+                        ExpressionWatched(watch.text) for watch in watches if not watch.error
+                    )
             case BreakCheck():
                 view = self._debugger.view
                 if view is not None and not view.past and view.paused.reason is PauseReason.BREAK:
@@ -393,9 +415,18 @@ class LessonController:
     def _error(self) -> str:
         """Return how the run has failed that the goals were judged on; empty if it has not."""
         run, (recording, _) = self._run_controller.run, self._goals.judged
-        if not self._judgements or run is None or recording is None or run.run_id != recording.run_id:
+        if (
+            not self._judgements
+            or run is None
+            or recording is None
+            or run.run_id != recording.run_id
+        ):
             return ""
-        return run.ended.summary.rstrip(".") if run.ended is not None and run.ended.end is End.RAISED else ""
+        return (
+            run.ended.summary.rstrip(".")
+            if run.ended is not None and run.ended.end is End.RAISED
+            else ""
+        )
 
     def _try_elsewhere(self, check: Check, recording: Recording) -> None:
         """Try the program of a good run in the other worlds of the step, in the background."""
@@ -405,7 +436,10 @@ class LessonController:
         is_over = self._run_controller.state is RunPhase.ENDED
         if lesson is None or not (is_good and is_over and check.also) or self._tried == run_id:
             return
-        self._tried, self._remark = run_id, f"Your program is now also tried {check.also[0].where} …"
+        self._tried, self._remark = (
+            run_id,
+            f"Your program is now also tried {check.also[0].where} …",
+        )
 
         def work() -> list[tuple[TrialWorld, tuple[Judgement, ...]]]:
             from tuisim.lessons.trial import tried_elsewhere
@@ -427,21 +461,29 @@ class LessonController:
             met = frozenset(each.goal.name for each in judgements if each.state is GoalState.MET)
             if self._take(TriedElsewhere(run_id, other.where, met)):
                 return
-            missed = [each for each in judgements if each.goal.name in other.goals and each.goal.name not in met]
+            missed = [
+                each
+                for each in judgements
+                if each.goal.name in other.goals and each.goal.name not in met
+            ]
             if missed and not remark:
                 remark = f"Also tried {other.where}, it does not work{_at_start(other)}: {_why_elsewhere(missed[0])}"
         if is_newest:
             self._remark = remark
         self.show()
 
-    def _count_try(self, step: LessonStep, recording: Recording, judgements: tuple[Judgement, ...]) -> None:
+    def _count_try(
+        self, step: LessonStep, recording: Recording, judgements: tuple[Judgement, ...]
+    ) -> None:
         """Count a run that has ended without passing as a try."""
         assert isinstance(step.check, RunCheck)
         states = [each.state for each in judgements if each.goal.name in step.check.goals]
         is_over = self._run_controller.state is RunPhase.ENDED and GoalState.OPEN not in states
         if is_over and GoalState.MISSED in states and self._counted != recording.run_id:
             self._counted = recording.run_id
-            self._keep(self.progress.with_step(step.name, tries=self.progress.of(step.name).tries + 1))
+            self._keep(
+                self.progress.with_step(step.name, tries=self.progress.of(step.name).tries + 1)
+            )
 
     def _wanted_spec(self) -> RunSpec:
         assert self.lesson is not None
@@ -469,7 +511,9 @@ class LessonController:
         self._next_look_s = time.monotonic() + NOTES_PERIOD_S
         notes = list(noted(recording.folder))
         yield from notes
-        remark = note_fault(check, notes[-1]) if notes and self.step and self.step.check is check else ""
+        remark = (
+            note_fault(check, notes[-1]) if notes and self.step and self.step.check is check else ""
+        )
         if remark != self._remark:
             self._remark = remark
             self.show()
@@ -534,7 +578,9 @@ class LessonController:
         if self.lesson is None:
             return LessonView()
         step = self.step
-        good = good_runs(step.check, self._events) if step and isinstance(step.check, RunCheck) else 0
+        good = (
+            good_runs(step.check, self._events) if step and isinstance(step.check, RunCheck) else 0
+        )
         return LessonView(
             lesson=self.lesson,
             states=tuple(self.progress.of(each.name).state for each in self.lesson.steps),

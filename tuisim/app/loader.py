@@ -118,7 +118,11 @@ class Loader:
         self.is_preparing = False
         self._app.complain(error)
         run_controller = self._run_controller
-        if self._good and mat_key(run_controller.next_run.spec) == mat_key(spec) and not run_controller.in_run:
+        if (
+            self._good
+            and mat_key(run_controller.next_run.spec) == mat_key(spec)
+            and not run_controller.in_run
+        ):
             plan, run_controller.mat = self._good
             self._load(plan, run_controller.program)
 
@@ -126,7 +130,9 @@ class Loader:
         self.is_preparing = False
         run_controller = self._run_controller
         if mat.key == mat_key(run_controller.next_run.spec):
-            same_picture = run_controller.mat is not None and run_controller.mat.key[:2] == mat.key[:2]
+            same_picture = (
+                run_controller.mat is not None and run_controller.mat.key[:2] == mat.key[:2]
+            )
             run_controller.mat = mat
             self._good = run_controller.next_run, mat
             self._app.mat_ready(None if same_picture else mat.pixels)
@@ -171,7 +177,9 @@ class Loader:
     def change_mat(self, name: str) -> None:
         """Change the mat; the robot goes to its start."""
         try:
-            self._load(plans.with_mat(self._run_controller.next_run, name), self._run_controller.program)
+            self._load(
+                plans.with_mat(self._run_controller.next_run, name), self._run_controller.program
+            )
         except TuisimError as error:
             self._app.complain(error)
 
@@ -199,7 +207,10 @@ class Loader:
         """Open a program with what its magic line asks for; return what its source decides."""
         program, said = _parts(source)
         source = without_wrong_mat(source, self._run_controller.next_run.settings["mats"])
-        plan, before = plans.with_choices(self._run_controller.next_run, source.options), self._run_controller.program
+        plan, before = (
+            plans.with_choices(self._run_controller.next_run, source.options),
+            self._run_controller.program,
+        )
         plan, decided = plans.following(plan, source)
         if before is not None and before.path != program.path:
             plan = plans.with_arguments(plan, ())
@@ -224,7 +235,9 @@ class Loader:
             named, goals = self._read_world(Path(path))
             source = _read_program(named) if named else None
             program, magic = _parts(source) if source else (self._run_controller.program, {})
-            plan, decided = _in_world(source, magic, self._world_settings, is_task=goals is not None)
+            plan, decided = _in_world(
+                source, magic, self._world_settings, is_task=goals is not None
+            )
         except TuisimError:
             self.world_file, self._world_settings, self._world_refers = before
             raise
@@ -256,7 +269,11 @@ class Loader:
         from tuisim.goals.files import load_task
 
         world, goals = load_task(path, self._run_controller.next_run.settings["mats"])
-        self.world_file, self._world_settings, self._world_refers = world.path, world.settings, world.files
+        self.world_file, self._world_settings, self._world_refers = (
+            world.path,
+            world.settings,
+            world.files,
+        )
         return _program_path(world.program) if world.program is not None else None, goals
 
     def _load(self, plan: NextRun, program: Program | None) -> None:
@@ -283,7 +300,9 @@ class Loader:
             return
         work = partial(_prepare_run, run)
         self.is_preparing = False
-        background.run(self._panel_area, work, self._show_run, self._app.complain, group="mat", exclusive=True)
+        background.run(
+            self._panel_area, work, self._show_run, self._app.complain, group="mat", exclusive=True
+        )
 
     def _show_run(self, loaded: tuple[StoredRun, Mat, TuisimError | None]) -> None:
         run, mat, mat_error = loaded
@@ -296,7 +315,10 @@ class Loader:
         self.lay_out(plan, program_of(run), mat)
         self._run_controller.replay(run)
         end_s = max(0, run.telemetry.count - 1) / run.spec.profile.tick_hz
-        end = f"— {end_label(run.state)} at {end_s:.2f} s", standstill_words(run.telemetry, run.spec)
+        end = (
+            f"— {end_label(run.state)} at {end_s:.2f} s",
+            standstill_words(run.telemetry, run.spec),
+        )
         words = f"{', '.join(filter(None, end))} · {_title(run)}"
         self._app.run_changed(words, run.end.error_line if run.end else 0)
         for note in run.notes:
@@ -310,7 +332,11 @@ class Loader:
 
     def _follow(self) -> None:
         run_controller, words = self._run_controller, self._run_controller.next_run.words
-        paths = [Path(run_controller.program.path)] if run_controller.program and run_controller.program.path else []
+        paths = (
+            [Path(run_controller.program.path)]
+            if run_controller.program and run_controller.program.path
+            else []
+        )
         paths += [self.world_file, *self._world_refers] if self.world_file else []
         paths += [self._goals.path] if self._goals.path else []
         paths += [user_path(word) for word in words.values() if means_file(word)]
@@ -377,7 +403,11 @@ class Loader:
 
             self._goals.change(load_goals(path))
             return True
-        fields = [field for field, word in plan.words.items() if means_file(word) and user_path(word) == path]
+        fields = [
+            field
+            for field, word in plan.words.items()
+            if means_file(word) and user_path(word) == path
+        ]
         for field in fields:
             self.set_next_run(plans.with_choices(plan, {field: plan.words[field]}))
         if path in self._world_refers and str(path) == plan.spec.world.background:
@@ -412,7 +442,9 @@ class Loader:
             TuisimError: a setting is wrong.
         """
         if source is None:
-            self._apply_changed(_differences(self._magic_settings, settings), self._run_controller.program)
+            self._apply_changed(
+                _differences(self._magic_settings, settings), self._run_controller.program
+            )
             self._apply_app_settings(self._magic_settings, settings)
             self._magic_settings = settings
         else:
@@ -433,19 +465,25 @@ class Loader:
         """Apply another text of the open program, with the changes in its magic line, and in the robot it needs."""
         new, said = _parts(source)
         program = self._run_controller.program
-        as_said = new.prelude if new.prelude != self._file_prelude or program is None else program.prelude
+        as_said = (
+            new.prelude if new.prelude != self._file_prelude or program is None else program.prelude
+        )
         folder = program.module_folder if program and not new.path else ""
         before = self._magic_settings
         applied = replace(new, prelude=as_said, module_folder=folder)
         gone = before.keys() - said.keys()
-        self._apply_changed(_differences(before, said), applied, replace(source, program=applied), gone)
+        self._apply_changed(
+            _differences(before, said), applied, replace(source, program=applied), gone
+        )
         self._note_program(new, said)
         self._apply_app_settings(before, said)
 
     def _apply_app_settings(self, before: Mapping[str, Any], now: Mapping[str, Any]) -> None:
         """Apply the changes in a magic line that concern the app: panels, rays and speed."""
         panels = _panels_in(now)
-        self._panel_area.request({panel: panels.get(panel) for panel, _ in _panels_in(before).items() ^ panels.items()})
+        self._panel_area.request(
+            {panel: panels.get(panel) for panel, _ in _panels_in(before).items() ^ panels.items()}
+        )
         if now.get("rays") and not before.get("rays") and self._panel_area.world:
             self._panel_area.world.show_rays = True
         if now.get("speed") is not None and now["speed"] != before.get("speed"):
@@ -489,11 +527,17 @@ def _parts(source: ProgramSource) -> tuple[Program, Mapping[str, Any]]:
 
 
 def _in_world(
-    source: ProgramSource | None, magic: Mapping[str, Any], world: Mapping[str, Any], *, is_task: bool
+    source: ProgramSource | None,
+    magic: Mapping[str, Any],
+    world: Mapping[str, Any],
+    *,
+    is_task: bool,
 ) -> tuple[NextRun, Decided]:
     """Return the plan of a program in a world, which replaces all earlier choices, and what the program decides."""
     of_task = is_task and bool(world)
-    free = free_paths((magic, world), (world,), in_world=bool(world) or not is_task, of_task=of_task)
+    free = free_paths(
+        (magic, world), (world,), in_world=bool(world) or not is_task, of_task=of_task
+    )
     plan = plans.with_choices(plans.with_choices(plans.plan_of(Settings(), free), magic), world)
     return plans.following(plan, source) if source else (plan, Decided())
 
@@ -516,19 +560,28 @@ def _program_path(word: str) -> str:
     from tuisim.config.program_file import programs
 
     examples = {name: path for name, path, _ in programs()}
-    return word if os.path.exists(word) else str(examples.get(word) or examples.get(f"{word}.py") or word)
+    return (
+        word
+        if os.path.exists(word)
+        else str(examples.get(word) or examples.get(f"{word}.py") or word)
+    )
 
 
 def _panels_in(said: Mapping[str, Any]) -> dict[str, bool]:
     """Return the panels that a magic line shows (True) and hides (False)."""
-    return {**dict.fromkeys(said.get("panels_on", ()), True), **dict.fromkeys(said.get("panels_off", ()), False)}
+    return {
+        **dict.fromkeys(said.get("panels_on", ()), True),
+        **dict.fromkeys(said.get("panels_off", ()), False),
+    }
 
 
 def _differences(before: Mapping[str, Any], now: Mapping[str, Any]) -> dict[str, Any]:
     """Return the settings of a file that have changed; removed ones get their default."""
     bare = Settings()
     removed = {path: bare[path] for path in before.keys() - now.keys() if path in plans.WORLD_PATHS}
-    return removed | {path: value for path, value in now.items() if path not in before or before[path] != value}
+    return removed | {
+        path: value for path, value in now.items() if path not in before or before[path] != value
+    }
 
 
 def program_of(run: StoredRun) -> Program:
@@ -549,7 +602,10 @@ def _prepare_run(word: str | StoredRun) -> tuple[StoredRun, Mat, TuisimError | N
     """Return a run with its mat, or with a blank one and the reason for that. Reads both."""
     run = RunStore().load_run(word) if isinstance(word, str) else word
     if not run.telemetry.count:
-        raise LogError(run.telemetry.note or "has no recording: it ended before its first tick", file=str(run.folder))
+        raise LogError(
+            run.telemetry.note or "has no recording: it ended before its first tick",
+            file=str(run.folder),
+        )
     # Packed recordings are unpacked here, which may be slow and may fail.
     run.telemetry.record(0)
     next(run.output.rows(), None)

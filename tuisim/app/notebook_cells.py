@@ -30,7 +30,13 @@ def do_asked(context: ActionContext, asked: Mapping[str, Any]) -> None:
     match asked:
         case {"what": "open", "path": str(path)}:
             open_brought(context, Path(path))
-        case {"what": "cell", "settings": dict(settings), "program": program, "home": bool(home), "runs": bool(runs)}:
+        case {
+            "what": "cell",
+            "settings": dict(settings),
+            "program": program,
+            "home": bool(home),
+            "runs": bool(runs),
+        }:
             _take_cell(context, settings, program, home=home, runs=runs)
         case {"what": "stop"}:
             context.runs.stop()
@@ -39,15 +45,25 @@ def do_asked(context: ActionContext, asked: Mapping[str, Any]) -> None:
 
 
 def _take_cell(
-    context: ActionContext, settings: Mapping[str, Any], program: Mapping[str, Any] | None, *, home: bool, runs: bool
+    context: ActionContext,
+    settings: Mapping[str, Any],
+    program: Mapping[str, Any] | None,
+    *,
+    home: bool,
+    runs: bool,
 ) -> None:
     if context.runs.in_run:
         context.app.tell_server("problem", text=BUSY)
         return
     try:
         # JSON has no tuples.
-        said = {path: tuple(value) if isinstance(value, list) else value for path, value in settings.items()}
-        context.loader.take_cell(ProgramSource(Program(**program), said, has_magic=True) if program else None, said)
+        said = {
+            path: tuple(value) if isinstance(value, list) else value
+            for path, value in settings.items()
+        }
+        context.loader.take_cell(
+            ProgramSource(Program(**program), said, has_magic=True) if program else None, said
+        )
     except TuisimError as error:
         context.app.complain(error)
         return

@@ -65,7 +65,9 @@ class _Mounted(Generic[PanelWidget]):
         self._panel = panel
 
     def __get__(self, area: PanelArea | None, owner: type[PanelArea]) -> PanelWidget | None:
-        return cast("PanelWidget | None", area.panels.get(self._panel) if area is not None else None)
+        return cast(
+            "PanelWidget | None", area.panels.get(self._panel) if area is not None else None
+        )
 
 
 class PanelArea(Container):
@@ -188,11 +190,19 @@ class PanelArea(Container):
             self.lay_out()
             return self.front
         panels = [panel for panel in self.arrangement.boxes if self._can_focus(panel)]
-        at = panels.index(focused) if (focused := self.focused_panel()) in panels else -1 if by > 0 else 0
+        at = (
+            panels.index(focused)
+            if (focused := self.focused_panel()) in panels
+            else -1
+            if by > 0
+            else 0
+        )
         return panels[(at + by) % len(panels)] if panels else ""
 
     def _can_focus(self, panel: str) -> bool:
-        return any(child.focusable for child in self.panels[panel].walk_children(Widget, with_self=True))
+        return any(
+            child.focusable for child in self.panels[panel].walk_children(Widget, with_self=True)
+        )
 
     def focused_panel(self) -> str:
         """Return the panel that has the focus, or an empty text."""
@@ -214,7 +224,11 @@ class PanelArea(Container):
         unchanged = self.preset == preset and self._asked in ({}, self._given)
         self.preset = Preset.STANDARD if unchanged else preset
         self._asked, self._chosen = dict(self._given) if self.preset == Preset.STANDARD else {}, {}
-        self.alone, self._roomy, self.front = "", None, (*core_panels(self.preset, *self.size), "world")[0]
+        self.alone, self._roomy, self.front = (
+            "",
+            None,
+            (*core_panels(self.preset, *self.size), "world")[0],
+        )
         self.lay_out()
         return self.preset
 
@@ -247,7 +261,10 @@ class PanelArea(Container):
         kept = load_layout(self._size_class())
         self.preset = self._kept_preset = kept.preset
         self._chosen = kept.asked
-        self._asked = {**{panel: on for panel, on in kept.asked.items() if panel not in self._given}, **self._given}
+        self._asked = {
+            **{panel: on for panel, on in kept.asked.items() if panel not in self._given},
+            **self._given,
+        }
 
     def request(self, wanted: Mapping[str, bool | None]) -> None:
         """Show and hide panels. Later requests get room first; None leaves a panel to the size of the terminal."""
@@ -260,7 +277,9 @@ class PanelArea(Container):
         asked = [panel for panel, show in wanted.items() if show and not self.alone]
         for panel in asked:
             if not self.shown(panel):
-                self.app.notify(f"{PANELS[panel].title} does not fit here: hide another panel or enlarge the terminal")
+                self.app.notify(
+                    f"{PANELS[panel].title} does not fit here: hide another panel or enlarge the terminal"
+                )
         gone = [PANELS[panel] for panel in before if panel not in wanted and not self.shown(panel)]
         came = " and ".join(PANELS[panel].title for panel in asked if self.shown(panel))
         if gone and came:
@@ -371,7 +390,9 @@ class PanelArea(Container):
         elif hasattr(widget, "begin"):
             widget.begin()
         else:
-            inside = (child for child in widget.walk_children(Widget, with_self=True) if child.focusable)
+            inside = (
+                child for child in widget.walk_children(Widget, with_self=True) if child.focusable
+            )
             if first := next(inside, None):
                 first.focus()
 

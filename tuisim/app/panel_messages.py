@@ -31,7 +31,9 @@ _LESSON_COLUMNS = 74
 """Columns that are enough while the text of a lesson is beside the code."""
 
 
-_BUTTONS = re.compile(r"^[^#\n]*(\bev3dev2(\.|\s+import\s.*\b)button\b|\.buttons(\.pressed)?\()", re.MULTILINE)
+_BUTTONS = re.compile(
+    r"^[^#\n]*(\bev3dev2(\.|\s+import\s.*\b)button\b|\.buttons(\.pressed)?\()", re.MULTILINE
+)
 """An import of ev3dev2's buttons, or a look at those of Pybricks' brick."""
 
 
@@ -74,7 +76,13 @@ class PanelMessages(LabHost):
     def _end_former_text(self) -> None:
         """End a run of the text before the edit: the user wants the new one to run."""
         controller, code = self.context.runs, self.context.panels.code
-        if code and code.differs and controller.in_run and not controller.in_past and self.context.document.apply():
+        if (
+            code
+            and code.differs
+            and controller.in_run
+            and not controller.in_past
+            and self.context.document.apply()
+        ):
             controller.close()
             self.context.app.run_changed()
 
@@ -139,7 +147,9 @@ class PanelMessages(LabHost):
             message.row.refuse(error)
 
     def on_obstacles_edited(self, message: Obstacles.Edited) -> None:
-        self.context.loader.attempt(lambda plan: with_obstacles(plan, message.change(plan.spec.world.obstacles)))
+        self.context.loader.attempt(
+            lambda plan: with_obstacles(plan, message.change(plan.spec.world.obstacles))
+        )
 
     def on_obstacles_marked(self) -> None:
         self.mark_box()
@@ -153,7 +163,10 @@ class PanelMessages(LabHost):
 
     def on_world_boxes_dragged(self, message: World.BoxesDragged) -> None:
         panel = self.context.panels.obstacles
-        if self.context.loader.attempt(lambda plan: with_obstacles(plan, message.obstacles)) and panel:
+        if (
+            self.context.loader.attempt(lambda plan: with_obstacles(plan, message.obstacles))
+            and panel
+        ):
             panel.mark(message.index)
 
     def on_code_breakpoint_toggled(self, message: Code.BreakpointToggled) -> None:

@@ -94,11 +94,19 @@ class PlotView(LinesView):
             self._show(lines, pictures, graphics)
         else:
             self.set_lines(lines)
-            self._sharpness.changed(is_coarse=picture_mode_of(self.app).graphics is not None and not self.app.no_color)
+            self._sharpness.changed(
+                is_coarse=picture_mode_of(self.app).graphics is not None and not self.app.no_color
+            )
 
-    def _show(self, lines: Lines, pictures: Sequence[tuple[int, ChartPicture]], graphics: Graphics) -> None:
+    def _show(
+        self, lines: Lines, pictures: Sequence[tuple[int, ChartPicture]], graphics: Graphics
+    ) -> None:
         plots = [(first + one.top, one.left - 1, one.plot) for first, one in pictures if one.plot]
-        spans = {top + row: (left, left + plot.size[1]) for top, left, plot in plots for row in range(plot.size[0])}
+        spans = {
+            top + row: (left, left + plot.size[1])
+            for top, left, plot in plots
+            for row in range(plot.size[0])
+        }
         if self._tiles is None or self._tiles.graphics != graphics:
             self._tiles, self._spans = TilePicture(graphics), {}
         runs = self._tiles.put(self._image(plots, graphics.cell_points))
@@ -117,7 +125,9 @@ class PlotView(LinesView):
         (width, height), size = cell, self.size
         image: Pixels = np.zeros((size.height * height, size.width * width, 3), np.uint8)
         theme = picture_mode_of(self.app).theme
-        shades = tuple(theme.rgb(rgb) if theme else rgb for shade in SHADES if (rgb := rgb_of(shade.bgcolor)))
+        shades = tuple(
+            theme.rgb(rgb) if theme else rgb for shade in SHADES if (rgb := rgb_of(shade.bgcolor))
+        )
         inks = PlotInks(self.ground_rgb, self._ink(rgb_of(AXIS.color)), self._ink(_CURSOR), shades)
         for top, left, plot in plots:
             rows, cols = plot.size

@@ -80,7 +80,9 @@ class Pending:
             return instant, pen_down
         pose = self._pose or instant.pose
         zero_deg = instant.gyro_zero_deg + pose.heading_deg - instant.pose.heading_deg
-        instant = replace(instant, pose=pose, noise=self._noise or instant.noise, gyro_zero_deg=zero_deg)
+        instant = replace(
+            instant, pose=pose, noise=self._noise or instant.noise, gyro_zero_deg=zero_deg
+        )
         return instant, pen_down if self._pen_down is None else self._pen_down
 
 
@@ -188,7 +190,11 @@ class RunController:
         state, face = self.state, timeline.face(now_tick if timeline.at is None else timeline.at)
         # After the robot was placed following the run, all its motors are reset.
         has_turned = record is not None and face.turns
-        turns = face.turns_at(instant.tick / spec.profile.tick_hz, spec.profile.tick_hz) if has_turned else ()
+        turns = (
+            face.turns_at(instant.tick / spec.profile.tick_hz, spec.profile.tick_hz)
+            if has_turned
+            else ()
+        )
         turns = turns or ((0.0, 0.0),) * len(spec.robot.extra_motors)
         if state is RunPhase.ENDED and not past:
             # The last record is of the tick before the program's last commands; after its end, nothing turns.
@@ -203,7 +209,9 @@ class RunController:
             line=line,
             speed=self.speed,
             pen_down=pen_down,
-            stalled=recording.stalled(record) if record and recording and self._is_of_run else (False, False),
+            stalled=recording.stalled(record)
+            if record and recording and self._is_of_run
+            else (False, False),
             next_spec=self.next_run.spec,
             face=face,
             turns=turns,
@@ -227,7 +235,15 @@ class RunController:
         flags = flags_at_start(spec.robot)
         noise, drift = spec.world.noise, spec.world.drift
         zero_deg = pose.heading_deg
-        return Instant(0, pose, gyro_zero_deg=zero_deg, end_flags=flags, noise=noise, drift=drift, seed=spec.seed)
+        return Instant(
+            0,
+            pose,
+            gyro_zero_deg=zero_deg,
+            end_flags=flags,
+            noise=noise,
+            drift=drift,
+            seed=spec.seed,
+        )
 
     @property
     def _is_of_run(self) -> bool:
@@ -248,7 +264,11 @@ class RunController:
             return self._still, 0, self.next_run.spec.robot.pen.down
         noise = recording.noise_at(record) if self._is_of_run else self.next_run.spec.world.noise
         # Before a run, the pen is where the next run will have it.
-        down = bool(record.flags & FLAG_PEN_DOWN) if self._is_of_run else self.next_run.spec.robot.pen.down
+        down = (
+            bool(record.flags & FLAG_PEN_DOWN)
+            if self._is_of_run
+            else self.next_run.spec.robot.pen.down
+        )
         exact = dict(known for known in (self.paused_line, self.printed_line) if known)
         instant, line = instant_of(record, self.spec, noise), exact.get(record.tick, record.line)
         if self.in_run and not self.in_past:
@@ -265,7 +285,11 @@ class RunController:
     def _field(self, record: TickRecord | None) -> Field | None:
         """Return the mat as the sensors saw it then, None until it is prepared for them."""
         mat, recording = self.mat_for(self.spec), self.timeline.recording
-        return mat if mat is None or record is None or recording is None else recording.field_at(record.tick, mat)
+        return (
+            mat
+            if mat is None or record is None or recording is None
+            else recording.field_at(record.tick, mat)
+        )
 
     def mat_for(self, spec: RunSpec) -> Field | None:
         """Return the mat if it is that of a run, prepared for its sensors; else None."""
@@ -303,7 +327,9 @@ class RunController:
 
     @property
     def _options(self) -> RunOptions:
-        return RunOptions(live=True, speed=self.speed, time_limit_s=0.0, stall_limit_s=0.0, asks_user=True)
+        return RunOptions(
+            live=True, speed=self.speed, time_limit_s=0.0, stall_limit_s=0.0, asks_user=True
+        )
 
     def branch(self, branch: Branch) -> None:
         """Repeat a run as fast as possible up to an instant of it, and continue from there. Ends the current run.
@@ -313,7 +339,9 @@ class RunController:
         """
         noise = branch.noise
         hold_at = branch.tick, protocol.BEFORE_NEXT_TICK
-        options = replace(self._options, answers=branch.of.answers, actions=branch.script(), hold_at=hold_at)
+        options = replace(
+            self._options, answers=branch.of.answers, actions=branch.script(), hold_at=hold_at
+        )
         run = start_run(branch.runs, branch.of.spec, options)
         RunStore().tag(run.run_id, branch.tags)
         self._show_run(run, branch.of.answers)
@@ -458,7 +486,9 @@ class RunController:
         self.timeline.go(None)
         self.next_run = plan
         world = plan.spec.world
-        self._still = replace(self._still, noise=world.noise, drift=world.drift, seed=plan.spec.seed)
+        self._still = replace(
+            self._still, noise=world.noise, drift=world.drift, seed=plan.spec.seed
+        )
 
     def close(self) -> None:
         """Release the run; a child process that still runs is killed."""
@@ -512,7 +542,10 @@ class RunController:
                     pauses.append(event)
                 case protocol.Paused() | protocol.Resumed() | protocol.Inspected():
                     pauses.append(event)
-                    if isinstance(event, protocol.Paused) and event.reason is protocol.PauseReason.BREAK:
+                    if (
+                        isinstance(event, protocol.Paused)
+                        and event.reason is protocol.PauseReason.BREAK
+                    ):
                         self.timeline.breaks.append(event.tick)
                 case protocol.Spoke() if self._branch is None:
                     spoken.append(event)
@@ -521,7 +554,9 @@ class RunController:
         stood = standstill_words(recording.telemetry, recording.spec) if ended else ""
         rows = recording.rows.take(ROWS_A_POLL)
         prompt = self.run.waiting_for_input if self.run and self.in_run else None
-        return RunUpdate(rows, ended, stood, tuple(spoken), prompt, branched, tuple(pauses), busy_loop)
+        return RunUpdate(
+            rows, ended, stood, tuple(spoken), prompt, branched, tuple(pauses), busy_loop
+        )
 
 
 @dataclass(frozen=True, slots=True)
@@ -546,4 +581,6 @@ class RunUpdate:
 
     def __bool__(self) -> bool:
         """Return whether anything has arrived; a prompt that is still open does not count."""
-        return bool(self.rows or self.ended or self.spoken or self.branched or self.pauses or self.busy_loop)
+        return bool(
+            self.rows or self.ended or self.spoken or self.branched or self.pauses or self.busy_loop
+        )

@@ -18,7 +18,10 @@ from tuisim.terminal.textual_internals import screen_strips
 def screen_cells(app: App[Any]) -> CellGrid:
     """Return the cells of an app's screen, with its dialogs and notices."""
     width = app.screen.size.width
-    runs = ([(text, style) for text, style, control in strip if not control] for strip in screen_strips(app))
+    runs = (
+        [(text, style) for text, style, control in strip if not control]
+        for strip in screen_strips(app)
+    )
     return [row_of_cells(row, width) for row in runs]
 
 
@@ -28,7 +31,9 @@ def save_screenshot(grid: CellGrid, folder: Path) -> tuple[Path, Path]:
     Raises:
         ExportError: they cannot be written.
     """
-    names = ((folder / f"tuisim-{number}.svg", folder / f"tuisim-{number}.png") for number in count(1))
+    names = (
+        (folder / f"tuisim-{number}.svg", folder / f"tuisim-{number}.png") for number in count(1)
+    )
     svg, png = next(pair for pair in names if not any(path.exists() for path in pair))
     for path in (svg, png):
         check_place(path)

@@ -97,7 +97,10 @@ class Snapshot:
         """By sensor name, such as `left`."""
         if self.field is None:
             return {}
-        return {s.name: color.reading(s, self.instant, self.field) for s in self.spec.robot.color_sensors}
+        return {
+            s.name: color.reading(s, self.instant, self.field)
+            for s in self.spec.robot.color_sensors
+        }
 
     @cached_property
     def ultrasonic_mm(self) -> int | None:
@@ -109,7 +112,9 @@ class Snapshot:
     def rays(self) -> tuple[tuple[float, float], ...]:
         """Ultrasonic rays as (world angle in degrees, length in mm)."""
         sensor = self.spec.robot.ultrasonic
-        return tuple(ultrasonic.rays_mm(self.instant.pose, sensor, self.spec.world)) if sensor else ()
+        return (
+            tuple(ultrasonic.rays_mm(self.instant.pose, sensor, self.spec.world)) if sensor else ()
+        )
 
     @cached_property
     def gyro_deg(self) -> int:
@@ -135,7 +140,12 @@ class Snapshot:
     @property
     def failed(self) -> bool:
         """Whether the end of a failed run is in view."""
-        return not self.past and self.state == RunPhase.ENDED and self.end is not None and self.end not in GOOD_ENDS
+        return (
+            not self.past
+            and self.state == RunPhase.ENDED
+            and self.end is not None
+            and self.end not in GOOD_ENDS
+        )
 
     @property
     def planned(self) -> RunSpec:
@@ -192,7 +202,11 @@ class AppState:
         status = end_label(run.end) if run.state is RunPhase.ENDED else run.state.value
         if self.looks_back:
             status = "playing" if self.playing else f"past {run.time_s:.2f} s"
-        return f"{status} {speed_label(run.speed)}" if run.state in IN_RUN or run.speed != 1 else status
+        return (
+            f"{status} {speed_label(run.speed)}"
+            if run.state in IN_RUN or run.speed != 1
+            else status
+        )
 
     @property
     def failed(self) -> bool:

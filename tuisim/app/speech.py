@@ -73,7 +73,9 @@ class Voice:
         mute = quiet or remote
         self._speaks = None if mute else shutil.which(SPEAKS)
         found = ((shutil.which(name), arguments) for name, arguments in PLAYS)
-        self._plays = None if mute else next(([path, *arguments] for path, arguments in found if path), None)
+        self._plays = (
+            None if mute else next(([path, *arguments] for path, arguments in found if path), None)
+        )
         self._sounding: subprocess.Popen[bytes] | None = None
 
     def play(self, sound: Spoke) -> None:
@@ -109,7 +111,9 @@ def _fed(command: Sequence[str], data: bytes) -> subprocess.Popen[bytes] | None:
     """Start a program with data on its standard input, without waiting for it; None if it cannot be started."""
     read, write = os.pipe()
     try:
-        process = subprocess.Popen(command, stdin=read, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        process = subprocess.Popen(
+            command, stdin=read, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
+        )
     except OSError:
         os.close(write)
         return None

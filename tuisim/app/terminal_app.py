@@ -19,7 +19,14 @@ from tuisim import palette
 from tuisim.app import background
 from tuisim.app.action import ActionHost, KeyFooter, with_keys_of
 from tuisim.app.dialogs.dialog import ClosesOnce, Dialog
-from tuisim.app.themes import HIGH_CONTRAST, LIGHT, OWN_THEME, UNUSED_THEMES, ThemeColors, theme_names
+from tuisim.app.themes import (
+    HIGH_CONTRAST,
+    LIGHT,
+    OWN_THEME,
+    UNUSED_THEMES,
+    ThemeColors,
+    theme_names,
+)
 from tuisim.charts.traces import TRACE_COLORS
 from tuisim.config.files import Scalar
 from tuisim.config.user_config import CELL_SET, SETTINGS, THEME, load_config
@@ -95,7 +102,10 @@ class TerminalApp(BufferedApp):
 
     def get_theme_variable_defaults(self) -> dict[str, str]:
         """Return the names of the palette's colours in style sheets, such as `$tuisim-ink`."""
-        return {f"tuisim-{name.lower().replace('_', '-')}": color for name, color in palette.COLORS.items()}
+        return {
+            f"tuisim-{name.lower().replace('_', '-')}": color
+            for name, color in palette.COLORS.items()
+        }
 
     def on_mount(self) -> None:
         self.theme_changed_signal.subscribe(self, self._theme_changed)
@@ -103,7 +113,9 @@ class TerminalApp(BufferedApp):
 
     def _take_theme(self) -> None:
         is_own = self.theme == OWN_THEME
-        self.picture_mode.theme = theme = None if is_own else ThemeColors(self.current_theme, TRACE_COLORS)
+        self.picture_mode.theme = theme = (
+            None if is_own else ThemeColors(self.current_theme, TRACE_COLORS)
+        )
         filters = [one for one in self.line_filters if not isinstance(one, ThemeColors)]
         # Before the filter for terminals without colours, which leaves no colour to be replaced.
         self.line_filters = [theme, *filters] if theme else filters
@@ -199,7 +211,11 @@ class TerminalApp(BufferedApp):
         try:
             save_setting(SETTINGS[path], value)
         except ConfigError as error:
-            self.notify(f"The choice applies to this session only: {error}", severity="warning", markup=False)
+            self.notify(
+                f"The choice applies to this session only: {error}",
+                severity="warning",
+                markup=False,
+            )
 
     def action_switch_pixels(self) -> None:
         """Draw pictures with characters in place of pixels, or again with pixels; for this session."""
@@ -225,7 +241,9 @@ class TerminalApp(BufferedApp):
             offer(self, svg, png)
 
         work = partial(save_screenshot, screen_cells(self), Path.cwd())
-        background.run(self, work, saved, lambda error: self.notify(str(error), severity="error", markup=False))
+        background.run(
+            self, work, saved, lambda error: self.notify(str(error), severity="error", markup=False)
+        )
 
     def run_in_terminal(self, command: Sequence[str]) -> None:
         """Give the terminal to another program until it ends.
@@ -238,7 +256,9 @@ class TerminalApp(BufferedApp):
         except OSError as error:
             raise TuisimError(f"{command[0]} cannot start: {error.strerror or error}") from None
         if not is_lent:
-            raise TuisimError(f"{command[0]} needs a terminal, and here is none to give it, as in a browser")
+            raise TuisimError(
+                f"{command[0]} needs a terminal, and here is none to give it, as in a browser"
+            )
 
     @on(ActionAsked)
     def act_as_asked(self, event: ActionAsked) -> None:
@@ -283,4 +303,6 @@ def picture_mode_at_start(cells: str | None, colors: str) -> PictureMode:
         colors: The colour depth of the terminal; `AUTO` asks the terminal.
     """
     most_colors = choose_colors(colors)
-    return replace(picture_mode_for(cells, str(load_config().value(CELL_SET))), most_colors=most_colors)
+    return replace(
+        picture_mode_for(cells, str(load_config().value(CELL_SET))), most_colors=most_colors
+    )

@@ -28,21 +28,50 @@ UNUSED_THEMES = ("ansi-dark", "ansi-light")
 """They have no colours of their own to compute with."""
 
 HIGH_CONTRAST = Theme(
-    "high-contrast", primary="#00d7ff", secondary="#00d7ff", accent="#ffff00", warning="#ffff00", error="#ff8080",
-    success="#80ff80", foreground="#ffffff", background="#000000", surface="#000000", panel="#000000", dark=True,
-)  # fmt: skip
+    "high-contrast",
+    primary="#00d7ff",
+    secondary="#00d7ff",
+    accent="#ffff00",
+    warning="#ffff00",
+    error="#ff8080",
+    success="#80ff80",
+    foreground="#ffffff",
+    background="#000000",
+    surface="#000000",
+    panel="#000000",
+    dark=True,
+)
 LIGHT = Theme(
-    "light", primary="#0050a0", secondary="#0050a0", accent="#8a5a00", warning="#8a5a00", error="#b00020",
-    success="#006a3a", foreground="#101418", background="#d6dce2", surface="#ccd3da", panel="#c2cad2", dark=False,
-)  # fmt: skip
+    "light",
+    primary="#0050a0",
+    secondary="#0050a0",
+    accent="#8a5a00",
+    warning="#8a5a00",
+    error="#b00020",
+    success="#006a3a",
+    foreground="#101418",
+    background="#d6dce2",
+    surface="#ccd3da",
+    panel="#c2cad2",
+    dark=False,
+)
 
 
 def theme_names() -> list[str]:
     """Return the names of the themes that can be chosen."""
-    return [*(name for name in BUILTIN_THEMES if name not in UNUSED_THEMES), HIGH_CONTRAST.name, LIGHT.name]
+    return [
+        *(name for name in BUILTIN_THEMES if name not in UNUSED_THEMES),
+        HIGH_CONTRAST.name,
+        LIGHT.name,
+    ]
 
 
-_ROLES = {palette.BLUE: "primary", palette.YELLOW: "warning", palette.RED: "error", palette.GREEN: "success"}
+_ROLES = {
+    palette.BLUE: "primary",
+    palette.YELLOW: "warning",
+    palette.RED: "error",
+    palette.GREEN: "success",
+}
 _DARKEST = 0.086
 """Lightness of the dark design's background."""
 _LEAST_CONTRAST, _HIGH_CONTRAST = 4.5, 7.0
@@ -67,7 +96,9 @@ class ThemeColors(LineFilter):
         roles = {own: getattr(theme, role) or own for own, role in _ROLES.items()}
         own = {Color.parse(name).rgb for name in palette.COLORS.values()} | set(traces)
         self._replaced = {rgb: self._replacement(rgb) for rgb in own}
-        self._replaced |= {Color.parse(name).rgb: Color.parse(color).rgb for name, color in roles.items()}
+        self._replaced |= {
+            Color.parse(name).rgb: Color.parse(color).rgb for name, color in roles.items()
+        }
         self._style = lru_cache(maxsize=4096)(self._themed)
 
     def rgb(self, own: Rgb) -> Rgb:
@@ -77,12 +108,18 @@ class ThemeColors(LineFilter):
     def text_rgb(self, own: Rgb) -> Rgb:
         """Return the colour of text or lines in one of the app's own colours: it can be read on the background."""
         new = self.rgb(own)
-        return self._legible(new, self._background.rgb, is_line=own == _LINE) if own in self._replaced else new
+        return (
+            self._legible(new, self._background.rgb, is_line=own == _LINE)
+            if own in self._replaced
+            else new
+        )
 
     def apply(self, segments: list[Segment], background: Color) -> list[Segment]:
         """Return the segments in the theme's colours."""
         return [
-            segment if segment.style is None or segment.control else Segment(segment.text, self._style(segment.style))
+            segment
+            if segment.style is None or segment.control
+            else Segment(segment.text, self._style(segment.style))
             for segment in segments
         ]
 
@@ -91,16 +128,23 @@ class ThemeColors(LineFilter):
         step = min(max((lightness - _DARKEST) / (1 - _DARKEST), 0.0), 1.0)
         if max(rgb) - min(rgb) < _GREYISH:
             return self._background.blend(self._foreground, step).rgb
-        dark, light = (colorsys.rgb_to_hls(*end.normalized)[1] for end in (self._background, self._foreground))
+        dark, light = (
+            colorsys.rgb_to_hls(*end.normalized)[1] for end in (self._background, self._foreground)
+        )
         red, green, blue = colorsys.hls_to_rgb(hue, dark + step * (light - dark), saturation)
         return round(255 * red), round(255 * green), round(255 * blue)
 
     def _themed(self, style: Style) -> Style:
         fore, back = rgb_of(style.color), rgb_of(style.bgcolor)
         # No own background is white: a white one shows what a sensor sees.
-        new_fore, new_back = fore and self.rgb(fore), back and (back if back == _WHITE else self.rgb(back))
+        new_fore, new_back = (
+            fore and self.rgb(fore),
+            back and (back if back == _WHITE else self.rgb(back)),
+        )
         if new_fore and fore in self._replaced:
-            new_fore = self._legible(new_fore, new_back or self._background.rgb, is_line=fore == _LINE)
+            new_fore = self._legible(
+                new_fore, new_back or self._background.rgb, is_line=fore == _LINE
+            )
         if (new_fore, new_back) == (fore, back):
             return style
         changed = Style(
@@ -128,7 +172,9 @@ _LINE = Color.parse(palette.LINE).rgb
 
 def _light_of(color: Color) -> float:
     """Return the relative luminance of a colour."""
-    channels = (c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in color.normalized)
+    channels = (
+        c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in color.normalized
+    )
     red, green, blue = channels
     return 0.2126 * red + 0.7152 * green + 0.0722 * blue
 

@@ -10,7 +10,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from tuisim.core.conditions import Operator, ValueCondition, ValueSource, comparison_form, run_condition_in, spelled
+from tuisim.core.conditions import (
+    Operator,
+    ValueCondition,
+    ValueSource,
+    comparison_form,
+    run_condition_in,
+    spelled,
+)
 from tuisim.core.field import Field
 from tuisim.core.sensors import mounted, named_column
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, ColorSensorSpec
@@ -97,7 +104,9 @@ class Timeline:
         numbers = self.recording.rows.face_numbers(tick)
         if numbers != self._face_numbers:
             self._face_numbers = numbers
-            self._face = face_after(BrickState(), [self.recording.rows.row(number) for number in numbers])
+            self._face = face_after(
+                BrickState(), [self.recording.rows.row(number) for number in numbers]
+            )
         return self._face
 
     def marks(self) -> list[tuple[int, Mark]]:
@@ -152,7 +161,10 @@ _FORMS = (
     ("line 12", "{which} time that line 12 runs"),
     ("sample Colour", "{which} sample with this name; `sample` alone: with any name"),
     ("sample Colour < 90", f"{{which}} sample that matches; operators: {spelled()}"),
-    ("left_red_pc < 50", "{which} tick at which a column becomes so; also left_color changes, gyro_deg > 90, x_mm …"),
+    (
+        "left_red_pc < 50",
+        "{which} tick at which a column becomes so; also left_color changes, gyro_deg > 90, x_mm …",
+    ),
     ("print REGEX", "{which} printed line that matches the regular expression"),
     ("start, end", "the first and the latest instant"),
     ("… back, … first", "any of these but times: searched backwards, or from the start of the run"),
@@ -178,7 +190,9 @@ def proposal(timeline: Timeline, mat: Field | None) -> str:
     if timeline.searched or mat is None or recording is None or recording.newest < 0:
         return timeline.searched
     sensors = {
-        f"{one.name}_red_pc": one for _, one in mounted(recording.spec.robot) if isinstance(one, ColorSensorSpec)
+        f"{one.name}_red_pc": one
+        for _, one in mounted(recording.spec.robot)
+        if isinstance(one, ColorSensorSpec)
     }
     records = recording.telemetry.array()[: timeline.tick + 1]
     values = column_values(tuple(sensors), records, recording.spec, recording.actions(), mat)
@@ -191,10 +205,16 @@ def proposal(timeline: Timeline, mat: Field | None) -> str:
         return ""
     comparison, became = _left(values[name], is_on, last)
     tick = int(became[became <= last + 1][-1])
-    return f"{name} {comparison} back" if tick == became[-1] < timeline.tick else f"{tick / timeline.tick_hz:.2f}"
+    return (
+        f"{name} {comparison} back"
+        if tick == became[-1] < timeline.tick
+        else f"{tick / timeline.tick_hz:.2f}"
+    )
 
 
-def _left(values: npt.NDArray[Any], is_on: npt.NDArray[np.bool_], last: int) -> tuple[str, npt.NDArray[np.intp]]:
+def _left(
+    values: npt.NDArray[Any], is_on: npt.NDArray[np.bool_], last: int
+) -> tuple[str, npt.NDArray[np.intp]]:
     """Return the comparison that tells what a reading has become from what it was before, and where it became true.
 
     Args:
@@ -242,13 +262,20 @@ class _Search:
 
     @property
     def words(self) -> str:
-        time_s, side = self.at / self.recording.spec.profile.tick_hz, "before" if self.back else "after"
+        time_s, side = (
+            self.at / self.recording.spec.profile.tick_hz,
+            "before" if self.back else "after",
+        )
         return "in this run" if self.at < 0 else f"{side} {time_s:.2f} s"
 
     def texts(self) -> Iterator[OutputRow]:
         """Yield the printed rows that come next, at another tick than the current one."""
         rows = self.recording.rows
-        found = rows.rows(rows.until(self.at - 1) - 1, -1) if self.back else rows.rows(rows.until(self.at))
+        found = (
+            rows.rows(rows.until(self.at - 1) - 1, -1)
+            if self.back
+            else rows.rows(rows.until(self.at))
+        )
         return (row for row in found if row.stream in TEXT_STREAMS)
 
     def tick_of(self, condition: ValueCondition) -> int | None:
@@ -264,7 +291,9 @@ class _Search:
         return ticks[where] if 0 <= where < len(ticks) else None
 
 
-def find(text: str, timeline: Timeline, mat: Field | None = None, *, first_at_end: bool = False) -> int:
+def find(
+    text: str, timeline: Timeline, mat: Field | None = None, *, first_at_end: bool = False
+) -> int:
     """Return the tick that an expression means, relative to the instant in view.
 
     Args:
@@ -301,7 +330,9 @@ def find(text: str, timeline: Timeline, mat: Field | None = None, *, first_at_en
     if word == "line" and rest.isdecimal():
         return _line(search, int(rest))
     if (condition := _condition(word, rest, text)) is None:
-        raise ConfigError(f"{text.strip()!r} is not an instant" if text.strip() else "no instant given", _HINT)
+        raise ConfigError(
+            f"{text.strip()!r} is not an instant" if text.strip() else "no instant given", _HINT
+        )
     try:
         match condition.source:
             case ValueSource.PRINT:
@@ -317,16 +348,22 @@ def find(text: str, timeline: Timeline, mat: Field | None = None, *, first_at_en
 def _condition(word: str, rest: str, text: str) -> ValueCondition | None:
     """Return the condition in the words of an instant; `word` is the first one, `rest` is without the direction."""
     if word == ValueSource.PRINT and rest:
-        return run_condition_in(f"{word} {rest}") or ValueCondition("", Operator.MATCHES, rest, ValueSource.PRINT)
+        return run_condition_in(f"{word} {rest}") or ValueCondition(
+            "", Operator.MATCHES, rest, ValueSource.PRINT
+        )
     is_sample = word == ValueSource.SAMPLE
-    return run_condition_in(f"{word} {rest}" if is_sample else re.sub(r"\s+(?:back|first)$", "", text.strip()))
+    return run_condition_in(
+        f"{word} {rest}" if is_sample else re.sub(r"\s+(?:back|first)$", "", text.strip())
+    )
 
 
 def _within(tick: int, recording: Recording) -> int:
     hz = recording.spec.profile.tick_hz
     if tick > recording.newest:
         newest = recording.newest
-        raise ConfigError(f"the run has reached {newest / hz:.2f} s, tick {newest}, so far", "an earlier instant")
+        raise ConfigError(
+            f"the run has reached {newest / hz:.2f} s, tick {newest}, so far", "an earlier instant"
+        )
     return tick
 
 
@@ -348,7 +385,11 @@ def _sample(search: _Search, condition: ValueCondition) -> int:
     tick = search.tick_of(condition)
     if tick is None:
         seen = {sample[0] for row in search.texts() if (sample := parse_sample(row.text))}
-        hint = f"there are {', '.join(sorted(seen))}" if seen and condition.name and condition.name not in seen else ""
+        hint = (
+            f"there are {', '.join(sorted(seen))}"
+            if seen and condition.name and condition.name not in seen
+            else ""
+        )
         raise ConfigError(f"no {condition} {search.words}", hint)
     return tick
 
@@ -360,7 +401,9 @@ def _becomes(search: _Search, condition: ValueCondition, mat: Field | None) -> i
     if mat is None:
         raise ConfigError("the mat is still being opened", "a moment later")
     condition = condition.of_column(name)
-    values = column_values((name,), recording.telemetry.array(), recording.spec, recording.actions(), mat)
+    values = column_values(
+        (name,), recording.telemetry.array(), recording.spec, recording.actions(), mat
+    )
     tick = search.nearest(begins(condition, held(condition, values[name])).tolist())
     if tick is None:
         becomes = "" if condition.is_momentary else " becomes true"

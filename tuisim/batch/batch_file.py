@@ -88,12 +88,20 @@ def load_batch(path: Path, mats: str | None = None) -> BatchFile:
     world = None
     if table.world is not UNSET:
         if data:
-            raise at.at("world").wrong(f"is given together with {', '.join(data)}", "a world file, or its keys")
+            raise at.at("world").wrong(
+                f"is given together with {', '.join(data)}", "a world file, or its keys"
+            )
         with files.errors_at(at.file, at.at("world").key):
             world = load_world(folder / table.world, mats)
     elif data:
         world = world_from_table(data, path, mats)
-    programs = [] if table.program is UNSET else [table.program] if isinstance(table.program, str) else table.program
+    programs = (
+        []
+        if table.program is UNSET
+        else [table.program]
+        if isinstance(table.program, str)
+        else table.program
+    )
     if len(programs) > MAX_PROGRAMS:
         raise at.at("program").wrong(f"has {len(programs)} programs", f"at most {MAX_PROGRAMS}")
     return BatchFile(
@@ -105,7 +113,9 @@ def load_batch(path: Path, mats: str | None = None) -> BatchFile:
         out=None if table.out is UNSET else str(folder / table.out),
         goals=None if table.goals is UNSET else str(folder / table.goals),
         keep=None if table.keep is UNSET else table.keep,
-        expressions={} if table.expressions is UNSET else _expressions(table.expressions, at.at("expressions")),
+        expressions={}
+        if table.expressions is UNSET
+        else _expressions(table.expressions, at.at("expressions")),
     )
 
 
@@ -113,11 +123,17 @@ def _beside(folder: Path, word: str) -> str:
     """Return the path of a program beside the file; a name without such a file may be that of an example."""
     path, _, cell = word.partition("#")
     found = folder / user_path(path)
-    return f"{found}{'#' * bool(cell)}{cell}" if os.path.exists(found) or Path(path).parent != Path() else word
+    return (
+        f"{found}{'#' * bool(cell)}{cell}"
+        if os.path.exists(found) or Path(path).parent != Path()
+        else word
+    )
 
 
 def _expressions(data: object, at: Location) -> dict[str, str]:
-    return {name: files.convert(text, str, at.at(name)) for name, text in files.table(data, at).items()}
+    return {
+        name: files.convert(text, str, at.at(name)) for name, text in files.table(data, at).items()
+    }
 
 
 def _choices(table: _BatchTable, at: Location) -> dict[str, Choice]:
@@ -132,7 +148,11 @@ def _choices(table: _BatchTable, at: Location) -> dict[str, Choice]:
             raise place.wrong(f"is given together with set.{SEED}", "give only one of them")
         listed = table.seeds if isinstance(table.seeds, list) else [table.seeds]
         try:
-            found[SEED] = parse_seeds(table.seeds, "") if isinstance(table.seeds, str) else checked_seeds(listed, "")
+            found[SEED] = (
+                parse_seeds(table.seeds, "")
+                if isinstance(table.seeds, str)
+                else checked_seeds(listed, "")
+            )
         except ConfigError as error:
             raise place.wrong(error.message, error.hint) from None
     return found
@@ -142,7 +162,11 @@ def _flat(table: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:
     """Return nested tables with dots in the keys."""
     found: dict[str, Any] = {}
     for key, value in table.items():
-        found |= _flat(value, f"{prefix}{key}.") if isinstance(value, dict) else {f"{prefix}{key}": value}
+        found |= (
+            _flat(value, f"{prefix}{key}.")
+            if isinstance(value, dict)
+            else {f"{prefix}{key}": value}
+        )
     return found
 
 
@@ -156,7 +180,9 @@ def _choice(values: object, at: Location) -> Choice:
     listed = values if isinstance(values, list) else [values]
     if not listed:
         raise at.wrong("has no values")
-    return tuple(_scalar(value, at.at(f"[{number}]")) for number, value in enumerate(listed, start=1))
+    return tuple(
+        _scalar(value, at.at(f"[{number}]")) for number, value in enumerate(listed, start=1)
+    )
 
 
 def _scalar(value: object, at: Location) -> Value:

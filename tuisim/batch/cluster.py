@@ -38,7 +38,9 @@ _folders: dict[str, Path] = {}
 """Folder for recordings in this process, if it is a worker."""
 
 
-def run_on_cluster(tasks: Iterable[Task], scheduler: str = "", workers: int = 0) -> Generator[Result]:
+def run_on_cluster(
+    tasks: Iterable[Task], scheduler: str = "", workers: int = 0
+) -> Generator[Result]:
     """Execute tasks on a Dask cluster, and yield their results in the order in which they arrive. Each `next` blocks.
 
     A result does not depend on the worker. Tasks of a worker that has died are executed on another one.
@@ -114,9 +116,13 @@ def _no_scheduler(scheduler: str, error: Exception) -> ConfigError:
         why = "what listens there is none"
     if scheduler:
         return ConfigError(
-            f"no scheduler answers at {scheduler}: {why}", "start one with `dask scheduler`", key="--scheduler"
+            f"no scheduler answers at {scheduler}: {why}",
+            "start one with `dask scheduler`",
+            key="--scheduler",
         )
-    return ConfigError(f"no cluster can be started on this machine: {why}", "--jobs needs no Dask", key="--workers")
+    return ConfigError(
+        f"no cluster can be started on this machine: {why}", "--jobs needs no Dask", key="--workers"
+    )
 
 
 def _close(client: Any) -> None:
@@ -153,7 +159,9 @@ def _results(client: Any, watch: ClusterWatch, tasks: Iterator[Task]) -> Iterato
             # A lost scheduler cancels what is pending: then this tells it.
             watch.explain()
             why = str(error).partition("\n")[0]
-            raise HostError(f"{watch.name}: a worker failed: {type(error).__name__}: {why}") from None
+            raise HostError(
+                f"{watch.name}: a worker failed: {type(error).__name__}: {why}"
+            ) from None
         pending -= 1
         yield from found
 

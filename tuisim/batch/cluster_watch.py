@@ -135,6 +135,10 @@ class ClusterWatch:
         found = within(PATIENCE_S, run, eval, _VERSION, workers=workers, on_error="return")
         wrong = {worker: version for worker, version in found.items() if version != self._version}
         for worker, version in sorted(wrong.items()):
-            has = f"tuisim {version}, not {self._version}" if isinstance(version, str) else f"no tuisim: {version}"
+            has = (
+                f"tuisim {version}, not {self._version}"
+                if isinstance(version, str)
+                else f"no tuisim: {version}"
+            )
             more = f" (and {counted(len(wrong) - 1, 'other worker')})" if len(wrong) > 1 else ""
             raise HostError(f"the worker {worker} has {has}{more}", "all need the same version")

@@ -71,7 +71,11 @@ def execute(task: Task, folder: Path) -> Result:
             return nothing_known_of(task, End.FALSIFIED, why)
         finally:
             handle.close()
-        return replace(result, run_id=_keep(temporary, ended)) if _is_kept(task, run, ended, judgements) else result
+        return (
+            replace(result, run_id=_keep(temporary, ended))
+            if _is_kept(task, run, ended, judgements)
+            else result
+        )
 
 
 def _to_the_end(handle: RunHandle, limit_s: float) -> Ended:
@@ -130,12 +134,16 @@ def _keep(temporary: TemporaryRun, ended: Ended) -> str:
 
 def _not_started(task: Task, error: TuisimError) -> Result:
     text = str(error)
-    return Result(task.index, task.parameters, "", 2, text, text, 0, 0, 0.0, math.nan, math.nan, math.nan)
+    return Result(
+        task.index, task.parameters, "", 2, text, text, 0, 0, 0.0, math.nan, math.nan, math.nan
+    )
 
 
 def nothing_known_of(task: Task, end: End, why: str) -> Result:
     """Return the result of a run of which nothing is recorded, by the program's own doing."""
-    return Result(task.index, task.parameters, end.value, 1, why, why, 0, 0, 0.0, math.nan, math.nan, math.nan)
+    return Result(
+        task.index, task.parameters, end.value, 1, why, why, 0, 0, 0.0, math.nan, math.nan, math.nan
+    )
 
 
 def _result(task: Task, run: StoredRun, ended: Ended, judgements: tuple[Judgement, ...]) -> Result:

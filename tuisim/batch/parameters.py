@@ -70,11 +70,15 @@ class SampleValues:
         if self.draw is RandomDraw.LATIN:
             # Sorting by random numbers gives a permutation that no version of Python changes.
             order = sorted((random.random(), part) for part in range(self.count))
-            shares = [(part + share) / self.count for (_, part), share in zip(order, shares, strict=True)]
+            shares = [
+                (part + share) / self.count for (_, part), share in zip(order, shares, strict=True)
+            ]
         if whole:
             low, high = math.ceil(self.low), math.floor(self.high)
             if low > high:
-                raise ConfigError(f"there is no whole number from {self.low:g} to {self.high:g}", key=name)
+                raise ConfigError(
+                    f"there is no whole number from {self.low:g} to {self.high:g}", key=name
+                )
             return tuple(min(low + math.floor(share * (high - low + 1)), high) for share in shares)
         return tuple(self.low + share * (self.high - self.low) for share in shares)
 
@@ -118,7 +122,9 @@ class Grid:
         return dict(found)
 
 
-def grid_of(choices: Mapping[str, Choice], is_whole: Callable[[str, float], bool] = lambda *_: False) -> Grid:
+def grid_of(
+    choices: Mapping[str, Choice], is_whole: Callable[[str, float], bool] = lambda *_: False
+) -> Grid:
     """Return the grid of some parameters, in their order.
 
     Args:
@@ -132,14 +138,18 @@ def grid_of(choices: Mapping[str, Choice], is_whole: Callable[[str, float], bool
     drawn = {name: choice for name, choice in choices.items() if _is_latin(choice)}
     for name, choice in choices.items():
         if name not in drawn:
-            axes.append(ParameterAxis((name,), tuple((value,) for value in _values(name, choice, is_whole))))
+            axes.append(
+                ParameterAxis((name,), tuple((value,) for value in _values(name, choice, is_whole)))
+            )
         elif name == next(iter(drawn)):
             _check_together(drawn)
             columns = [_values(one, other, is_whole) for one, other in drawn.items()]
             axes.append(ParameterAxis(tuple(drawn), tuple(zip(*columns, strict=True))))
     grid = Grid(tuple(axes))
     if len(grid) > MAX_VALUES:
-        raise ConfigError(f"{len(grid):,} combinations of {', '.join(grid.names)}", f"at most {MAX_VALUES:,}")
+        raise ConfigError(
+            f"{len(grid):,} combinations of {', '.join(grid.names)}", f"at most {MAX_VALUES:,}"
+        )
     return grid
 
 
@@ -161,7 +171,9 @@ def _values(name: str, choice: Choice, is_whole: Callable[[str, float], bool]) -
         return choice
     # The middle of two whole numbers, inside the interval.
     inside = math.floor(choice.low) + 0.5
-    return choice.values(name, is_whole(name, inside if inside < choice.high else (choice.low + choice.high) / 2))
+    return choice.values(
+        name, is_whole(name, inside if inside < choice.high else (choice.low + choice.high) / 2)
+    )
 
 
 def parse_set(text: str, key: str = "--set") -> tuple[str, Choice]:
@@ -195,7 +207,9 @@ def parse_values(text: str, key: str) -> Choice:
             raise ConfigError(f"{piece} stands alone, without further values", ALLOWED, key=key)
         found += _expanded(piece, key)
         if len(found) > MAX_VALUES:
-            raise ConfigError(f"more than {MAX_VALUES:,} values", f"at most {MAX_VALUES:,}", key=key)
+            raise ConfigError(
+                f"more than {MAX_VALUES:,} values", f"at most {MAX_VALUES:,}", key=key
+            )
     return tuple(found)
 
 
@@ -220,9 +234,13 @@ def checked_seeds(values: Sequence[object], key: str) -> tuple[int, ...]:
     seeds: dict[int, None] = {}
     for value in values:
         if isinstance(value, bool) or not isinstance(value, int) or not 0 <= value <= MAX_SEED:
-            raise ConfigError(f"a seed must be a whole number from 0, got {value!r}", "such as 0..199", key=key)
+            raise ConfigError(
+                f"a seed must be a whole number from 0, got {value!r}", "such as 0..199", key=key
+            )
         if value in seeds:
-            raise ConfigError(f"the seed {value} occurs twice", "the same run again gives the same bits", key=key)
+            raise ConfigError(
+                f"the seed {value} occurs twice", "the same run again gives the same bits", key=key
+            )
         seeds[value] = None
     return tuple(seeds)
 
@@ -258,7 +276,9 @@ def _expanded(piece: str, key: str) -> Sequence[Value]:
 def _range(low: Decimal, high: Decimal, step: Decimal, piece: str, key: str) -> Sequence[Value]:
     """Return the values from `low` to `high`; in decimal, so that none is off by a rounding error."""
     if step == 0 or (high - low) / step < 0:
-        raise ConfigError(f"{piece} has no values: a step of {step} does not lead from {low} to {high}", key=key)
+        raise ConfigError(
+            f"{piece} has no values: a step of {step} does not lead from {low} to {high}", key=key
+        )
     steps = (high - low) / step
     if steps >= MAX_VALUES:
         raise ConfigError(f"{piece} has too many values", f"at most {MAX_VALUES:,}", key=key)
@@ -267,7 +287,9 @@ def _range(low: Decimal, high: Decimal, step: Decimal, piece: str, key: str) -> 
         last = low + count * step
         hint = f"{low}:{last}:{step} ends at a whole number of steps, as does {low}:{last + step}:{step}"
         raise ConfigError(f"{piece} does not reach {high}", hint, key=key)
-    whole = all(number == number.to_integral_value() for number in (low, step)) and "." not in piece.replace("..", "")
+    whole = all(
+        number == number.to_integral_value() for number in (low, step)
+    ) and "." not in piece.replace("..", "")
     values = (low + at * step for at in range(count + 1))
     return [int(value) if whole else float(value) for value in values]
 
@@ -286,7 +308,9 @@ def _sample(name: str, inside: str, key: str) -> SampleValues:
         raise ConfigError(f"cannot read {name}({inside})", usage, key=key)
     low, high = float(words[0]), float(words[1])
     if not (words[2].isdecimal() and len(words[2]) < 10 and 1 <= int(words[2]) <= MAX_VALUES):
-        raise ConfigError(f"cannot draw {words[2]!r} values", f"a whole number from 1 to {MAX_VALUES:,}", key=key)
+        raise ConfigError(
+            f"cannot draw {words[2]!r} values", f"a whole number from 1 to {MAX_VALUES:,}", key=key
+        )
     if not low < high:
         raise ConfigError(f"{words[0]} is not less than {words[1]}", usage, key=key)
     return SampleValues(RandomDraw(name), low, high, int(words[2]), seed)

@@ -99,7 +99,9 @@ class PartialTable:
             raise ExportError(f"cannot remove {self._path}: {error.strerror or error}") from error
 
 
-def rows_of_table(path: Path, identity: Mapping[str, Any], columns: Iterable[str]) -> dict[int, Row]:
+def rows_of_table(
+    path: Path, identity: Mapping[str, Any], columns: Iterable[str]
+) -> dict[int, Row]:
     """Return the rows of the whole table of a batch by the index of their task; empty if the file is another one.
 
     Args:
@@ -119,7 +121,11 @@ def rows_of_table(path: Path, identity: Mapping[str, Any], columns: Iterable[str
     kept = frame[[name for name in frame.columns if name in usual or is_statistic(name)]]
     rows: list[Row] = [
         # A run has no statistics of what it has not printed; of the other columns some texts are empty.
-        {str(name): _read(str(name), value) for name, value in row.items() if value == value or name in usual}
+        {
+            str(name): _read(str(name), value)
+            for name, value in row.items()
+            if value == value or name in usual
+        }
         for row in kept.to_dict("records")
     ]
     return _started(rows)

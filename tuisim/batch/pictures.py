@@ -70,8 +70,13 @@ def end_poses(frame: pd.DataFrame, plan: Plan) -> EndPoses:
     by = next((name for name in names if 1 < known[name].nunique() <= MOST_GROUPS), "")
     parts: Iterable[tuple[str, Any]] = [("", known)]
     if by:
-        parts = [(printable(f"{by} {value}"), part) for value, part in known.groupby(by, sort=False)]
-    groups = [PoseGroup(label, *(part[name].to_numpy(np.float64) for name in POSE)) for label, part in parts]
+        parts = [
+            (printable(f"{by} {value}"), part) for value, part in known.groupby(by, sort=False)
+        ]
+    groups = [
+        PoseGroup(label, *(part[name].to_numpy(np.float64) for name in POSE))
+        for label, part in parts
+    ]
     mat = mat_pixels(field_files(plan.task(0).spec))
     return EndPoses(_title(frame, plan), mat, tuple(groups))
 

@@ -64,7 +64,9 @@ class Plan:
 
     def __post_init__(self) -> None:
         # A worker may be in another folder, or on another machine.
-        subjects = tuple(replace(one, program=in_surroundings(one.program)) for one in self.subjects)
+        subjects = tuple(
+            replace(one, program=in_surroundings(one.program)) for one in self.subjects
+        )
         object.__setattr__(self, "subjects", subjects)
         first = self.subjects[0]
 
@@ -108,7 +110,9 @@ class Plan:
 
     def seed_at(self, index: int) -> int:
         """Return the seed of a run."""
-        seed = self.grid.at(index % len(self.grid)).get(SEED, self.subject_at(index).settings["seed"])
+        seed = self.grid.at(index % len(self.grid)).get(
+            SEED, self.subject_at(index).settings["seed"]
+        )
         assert isinstance(seed, int)
         return seed
 
@@ -128,7 +132,11 @@ class Plan:
     def _settings(self, subject: Subject, values: Mapping[str, Value]) -> Settings:
         changes = settings_of_keys(values, subject.settings, self.path)
         # A mat comes with its own start pose, unless it was chosen for all runs.
-        kept = {key: value for key, value in changes.items() if value is not None or key not in subject.given}
+        kept = {
+            key: value
+            for key, value in changes.items()
+            if value is not None or key not in subject.given
+        }
         return subject.settings.changed(kept)
 
     def tasks(self, done: Collection[int] = ()) -> Iterator[Task]:
@@ -145,8 +153,14 @@ class Plan:
         if "arguments" in values:
             program = replace(program, arguments=self._settings(subject, values)["arguments"])
         return Task(
-            index, program, spec, self.options_of(spec), goals=self.goals, parameters=values, keep=self.keep
-        )  # fmt: skip
+            index,
+            program,
+            spec,
+            self.options_of(spec),
+            goals=self.goals,
+            parameters=values,
+            keep=self.keep,
+        )
 
     def identity(self) -> dict[str, Any]:
         """Return what identifies the batch, ready for JSON: equal for batches with equal rows.
@@ -154,10 +168,14 @@ class Plan:
         Goals belong to it, expressions do not: they are computed from the rows.
         """
         programs = [
-            {"name": one.label, "sha256": one.program.sha256, "prelude": one.program.prelude,
-             "arguments": list(one.program.arguments)}
+            {
+                "name": one.label,
+                "sha256": one.program.sha256,
+                "prelude": one.program.prelude,
+                "arguments": list(one.program.arguments),
+            }
             for one in self.subjects
-        ]  # fmt: skip
+        ]
         whole = hashlib.sha256()
         own = Grid(tuple(axis for axis in self.grid.axes if axis.names != (SEED,)))
         for subject in self.subjects:
@@ -166,4 +184,9 @@ class Plan:
                 plain = [to_plain(spec), self.options_of(spec).to_plain()]
                 whole.update(json.dumps(plain, sort_keys=True).encode())
         whole.update(repr((programs, self.grid.axes, self.goals, str(self.keep))).encode())
-        return {"programs": programs, "parameters": list(self.names), "runs": len(self), "sha256": whole.hexdigest()}
+        return {
+            "programs": programs,
+            "parameters": list(self.names),
+            "runs": len(self),
+            "sha256": whole.hexdigest(),
+        }

@@ -89,7 +89,9 @@ class _Pool:
     def results(self, tasks: Iterator[Task]) -> Iterator[Result]:
         """Yield the results of tasks as they finish."""
         while True:
-            while len(self._pending) < self._jobs * CHUNKS_AHEAD and (chunk := list(islice(tasks, CHUNK))):
+            while len(self._pending) < self._jobs * CHUNKS_AHEAD and (
+                chunk := list(islice(tasks, CHUNK))
+            ):
                 self._submit(chunk)
             if not self._pending:
                 return
@@ -107,8 +109,15 @@ class _Pool:
 
     def _start_again(self) -> Iterator[Result]:
         """Replace all workers, and submit what was not done; yield results for tasks that end every worker."""
-        unfinished = [task for future, chunk in self._pending.items() if not _is_done(future) for task in chunk]
-        finished = [result for future in self._pending if _is_done(future) for result in future.result()]
+        unfinished = [
+            task
+            for future, chunk in self._pending.items()
+            if not _is_done(future)
+            for task in chunk
+        ]
+        finished = [
+            result for future in self._pending if _is_done(future) for result in future.result()
+        ]
         self.stop()
         self._pending.clear()
         self._start()

@@ -100,7 +100,9 @@ def _column(values: Sequence[Any]) -> Any:
     if kinds == {bool}:
         return np.array(values, np.bool_)
     if kinds == {int}:
-        return np.array(values, np.int64 if all(-(2**63) <= value < 2**63 for value in values) else np.float64)
+        return np.array(
+            values, np.int64 if all(-(2**63) <= value < 2**63 for value in values) else np.float64
+        )
     if kinds <= {bool, int, float, type(None)}:
         return np.array([np.nan if value is None else value for value in values], np.float64)
     return pd.Series(["" if value is None else str(value) for value in values], dtype="str")
@@ -116,7 +118,11 @@ def evaluated(text: str, columns: Mapping[str, Any], length: int) -> Any:
     """
     import numpy as np
 
-    numbers = {name: np.asarray(column, np.float64) for name, column in columns.items() if _is_numeric(column)}
+    numbers = {
+        name: np.asarray(column, np.float64)
+        for name, column in columns.items()
+        if _is_numeric(column)
+    }
     written = quoted(text, numbers)
     for name in names_in(written):
         if name not in numbers and (is_statistic(name) or name.startswith(GOAL) or name == POINTS):
@@ -142,11 +148,21 @@ def quoted(text: str, columns: Iterable[str]) -> str:
 def usual_columns(parameters: Iterable[str], goals: Iterable[str]) -> list[str]:
     """Return the columns of a table that are known before the first run: all but those of sample variables."""
     goal_columns = [f"{GOAL}{name}" for name in goals]
-    names = (RUN, PROGRAM, *parameters, SEED, *ENDS, *goal_columns, *([POINTS] if goal_columns else []))
+    names = (
+        RUN,
+        PROGRAM,
+        *parameters,
+        SEED,
+        *ENDS,
+        *goal_columns,
+        *([POINTS] if goal_columns else []),
+    )
     return list(dict.fromkeys(names))
 
 
-def check_expressions(expressions: Mapping[str, str], parameters: Iterable[str], goals: Iterable[str]) -> None:
+def check_expressions(
+    expressions: Mapping[str, str], parameters: Iterable[str], goals: Iterable[str]
+) -> None:
     """Check expressions before anything is run.
 
     Args:
@@ -171,7 +187,9 @@ def check_expressions(expressions: Mapping[str, str], parameters: Iterable[str],
             raise ConfigError(error.message, error.hint, key=key) from None
         for column in used:
             if column not in known and not is_statistic(column):
-                hint = f"{nearest(column, known)}; the last value of a printed variable is NAME_last"
+                hint = (
+                    f"{nearest(column, known)}; the last value of a printed variable is NAME_last"
+                )
                 raise ConfigError(f"there will be no column {column!r}", hint, key=key)
         known.append(name)
 
@@ -186,7 +204,9 @@ class ColumnSummary:
     statistics: Summary
 
 
-def summaries(frame: pd.DataFrame, parameters: Sequence[str], columns: Sequence[str]) -> list[ColumnSummary]:
+def summaries(
+    frame: pd.DataFrame, parameters: Sequence[str], columns: Sequence[str]
+) -> list[ColumnSummary]:
     """Return statistics and quantiles of some columns, for each combination of parameters unless these are many.
 
     Args:
@@ -197,7 +217,10 @@ def summaries(frame: pd.DataFrame, parameters: Sequence[str], columns: Sequence[
     by = [name for name in parameters if name != SEED and frame[name].nunique() > 1]
     groups: list[tuple[dict[str, Value], pd.DataFrame]] = [({}, frame)]
     if by and len(frame[by].drop_duplicates()) <= MOST_GROUPS:
-        groups = [(dict(zip(by, values, strict=True)), part) for values, part in frame.groupby(by, sort=False)]
+        groups = [
+            (dict(zip(by, values, strict=True)), part)
+            for values, part in frame.groupby(by, sort=False)
+        ]
     return [
         ColumnSummary(group, column, summary_of(part[column].to_numpy("float64")))
         for column in columns
@@ -214,7 +237,11 @@ def result_columns(frame: pd.DataFrame, expressions: Iterable[str]) -> list[str]
 
 def metadata_of(frame: pd.DataFrame, batch: Mapping[str, Any]) -> dict[str, Any]:
     """Return what is stored with a table: its columns, their units, and what identifies the batch."""
-    units = {name: unit.words for name in frame.columns if (unit := unit_of(_without_statistic(name))).words}
+    units = {
+        name: unit.words
+        for name in frame.columns
+        if (unit := unit_of(_without_statistic(name))).words
+    }
     return {**table_metadata("batch", frame), "units": units, "batch": dict(batch)}
 
 

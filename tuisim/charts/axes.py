@@ -48,7 +48,11 @@ _MOST_DIGITS = 300
 def label(value: float, step: float) -> str:
     """Return a tick's label with no more digits than the distance between ticks needs."""
     # The distance may come from two positions far from 0.
-    exact = (count for count in range(_MOST_DIGITS) if math.isclose(round(step, count), step, rel_tol=1e-3))
+    exact = (
+        count
+        for count in range(_MOST_DIGITS)
+        if math.isclose(round(step, count), step, rel_tol=1e-3)
+    )
     digits = next(exact, _MOST_DIGITS)
     text = f"{value:.{digits}f}"
     return "0" if float(text) == 0 else text
@@ -117,7 +121,13 @@ def on_rows(limits: Limits, rows: int) -> Limits:
         parts = math.ceil((high - first) / step - 1e-9)
         if cells := max((rows - 1) // parts, 0):
             end = first + step * (rows - 1) / cells
-            found.append(((end - first) / (high - low) + _SPARSE.get(parts, 0.0) + (cells < _LEAST_CELLS), first, end))
+            found.append(
+                (
+                    (end - first) / (high - low) + _SPARSE.get(parts, 0.0) + (cells < _LEAST_CELLS),
+                    first,
+                    end,
+                )
+            )
     _, *extended = min(found)
     return extended[0], extended[1]
 
@@ -130,7 +140,11 @@ def row_ticks(limits: Limits, rows: int) -> list[float]:
     for cells in range(_LEAST_CELLS, (rows - 1) // 2 + 1):
         distance, parts = (high - low) / (rows - 1) * cells, (rows - 1) // cells
         step = nice_step(distance, 1)
-        if parts <= _MOST_PARTS and math.isclose(step, distance) and abs(low / step - round(low / step)) < _NEAR:
+        if (
+            parts <= _MOST_PARTS
+            and math.isclose(step, distance)
+            and abs(low / step - round(low / step)) < _NEAR
+        ):
             return [(round(low / step) + at) * step for at in range(parts + 1)]
     return ticks(limits, min(_MOST_PARTS, (rows - 1) // 2))
 

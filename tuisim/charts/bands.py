@@ -48,7 +48,9 @@ def spans_of(trace: Trace, noise: int) -> tuple[Span, ...]:
     ends = trace.times_s[found.start].tolist(), trace.times_s[found.stop - 1].tolist()
     names = [grey.name if grey and not trace.scale else "" for grey in found.greys]
     rows = zip(*ends, found.true_level.tolist(), names, strict=True)
-    return tuple(band_span(trace.name, start_s, stop_s, level, name) for start_s, stop_s, level, name in rows)
+    return tuple(
+        band_span(trace.name, start_s, stop_s, level, name) for start_s, stop_s, level, name in rows
+    )
 
 
 def columns_of(span: Span, x_limits: Limits, columns: int) -> range:
@@ -79,11 +81,16 @@ def placed_names(
     for place, name in zip(places, names_of(spans, letters, _OVERHANG), strict=True):
         middle = min(max(place.start + (len(place) - len(name) + 1) // 2, 0), columns - len(name))
         near = (middle + by for by in _SHIFTS if 0 <= middle + by <= columns - len(name))
-        first = next((at for at in near if not any(at <= column < at + len(name) for column in avoided)), middle)
+        first = next(
+            (at for at in near if not any(at <= column < at + len(name) for column in avoided)),
+            middle,
+        )
         stop = first + len(name)
         for row in reversed(range(rows)) if name else ():
             beside = (at for at in found if at[0] == row)
-            if is_free(row, first, stop) and not any(at <= stop and first <= at + len(text) for _, at, text in beside):
+            if is_free(row, first, stop) and not any(
+                at <= stop and first <= at + len(text) for _, at, text in beside
+            ):
                 found.append((row, first, name))
                 break
     return found
@@ -111,9 +118,18 @@ def shaded(
     places = [columns_of(span, x_limits, columns) for span in spans]
     made = list(rows)
     for at, first, name in placed_names(
-        spans, places, len(rows), columns, lambda at, first, stop: not texts[at][first:stop].strip(FREE), cursors
+        spans,
+        places,
+        len(rows),
+        columns,
+        lambda at, first, stop: not texts[at][first:stop].strip(FREE),
+        cursors,
     ):
-        made[at] = [*_cut(made[at], 0, first), (name, style), *_cut(made[at], first + len(name), columns)]
+        made[at] = [
+            *_cut(made[at], 0, first),
+            (name, style),
+            *_cut(made[at], first + len(name), columns),
+        ]
     return [_shaded(row, places, columns) for row in made]
 
 
@@ -135,7 +151,8 @@ def _shaded(row: list[Run], places: Sequence[range], columns: int) -> list[Run]:
         start = max(place.start, done)
         made += _cut(row, done, start)
         made += [
-            (text, style + SHADES[number % len(SHADES)]) for text, style in _cut(row, start, max(place.stop, start))
+            (text, style + SHADES[number % len(SHADES)])
+            for text, style in _cut(row, start, max(place.stop, start))
         ]
         done = max(place.stop, start)
     return made + _cut(row, done, columns)

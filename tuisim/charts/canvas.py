@@ -67,7 +67,9 @@ def _plotext() -> Any:
     return plotext
 
 
-def canvas(curves: Sequence[Curve], columns: int, rows: int, x_limits: Limits, y_limits: Limits) -> list[list[TextRun]]:
+def canvas(
+    curves: Sequence[Curve], columns: int, rows: int, x_limits: Limits, y_limits: Limits
+) -> list[list[TextRun]]:
     """Return curves as rows of text, without axes.
 
     Where several lines share cells, these have the colours of the lines in turns, so that none is hidden. Of
@@ -80,7 +82,10 @@ def canvas(curves: Sequence[Curve], columns: int, rows: int, x_limits: Limits, y
         x_limits: Times at the left and right edge.
         y_limits: Values in the middle of the lowest and the highest row.
     """
-    signs, dots = np.full((len(curves), rows, columns), _BLANK, np.uint32), np.zeros((rows, columns), np.uint32)
+    signs, dots = (
+        np.full((len(curves), rows, columns), _BLANK, np.uint32),
+        np.zeros((rows, columns), np.uint32),
+    )
     inked = np.zeros(signs.shape, np.bool_)
     for number, curve in enumerate(curves):
         if not len(curve.times_s):
@@ -90,14 +95,20 @@ def canvas(curves: Sequence[Curve], columns: int, rows: int, x_limits: Limits, y
             inked[number] = cells > 0
             dots |= cells
         else:
-            across, down = _inside(*_points(curve, columns, rows, x_limits, y_limits), columns, rows)
+            across, down = _inside(
+                *_points(curve, columns, rows, x_limits, y_limits), columns, rows
+            )
             inked[number, down, across] = True
             signs[number] = ord(curve.marker)
     shown = in_turns(inked, _TURN if all(curve.joined for curve in curves) else columns)
     for number, curve in enumerate(curves):
         if curve.marker == BRAILLE:
             signs[number] = _NO_DOTS + dots
-    owners = np.where(shown.any(axis=0), shown.argmax(axis=0), -1) if len(curves) else np.full((rows, columns), -1)
+    owners = (
+        np.where(shown.any(axis=0), shown.argmax(axis=0), -1)
+        if len(curves)
+        else np.full((rows, columns), -1)
+    )
     drawn = np.where(shown, signs, 0).max(axis=0, initial=0)
     drawn[owners < 0] = _BLANK
     colors = [*(curve.rgb for curve in curves), None]
@@ -118,8 +129,14 @@ def in_turns(covered: npt.NDArray[np.bool_], width: int) -> npt.NDArray[np.bool_
     return seen
 
 
-def _points(curve: Curve, columns: int, rows: int, x_limits: Limits, y_limits: Limits, parts: tuple[int, int] = (1, 1)
-            ) -> tuple[FloatArray, FloatArray]:  # fmt: skip
+def _points(
+    curve: Curve,
+    columns: int,
+    rows: int,
+    x_limits: Limits,
+    y_limits: Limits,
+    parts: tuple[int, int] = (1, 1),
+) -> tuple[FloatArray, FloatArray]:
     """Return the places of the points of a curve from the left and the top, in parts of cells."""
     times_s, values = curve.times_s, curve.values
     if curve.rising:
@@ -132,20 +149,27 @@ def _points(curve: Curve, columns: int, rows: int, x_limits: Limits, y_limits: L
     return across.clip(-columns, 4 * columns), down.clip(-4 * rows, 8 * rows)
 
 
-def _inside(across: FloatArray, down: FloatArray, columns: int, rows: int) -> tuple[IntArray, IntArray]:
+def _inside(
+    across: FloatArray, down: FloatArray, columns: int, rows: int
+) -> tuple[IntArray, IntArray]:
     """Return places as whole numbers; those outside a canvas of so many are left out."""
     at = np.floor(across).astype(np.int64), np.floor(down).astype(np.int64)
     good = (at[0] >= 0) & (at[0] < columns) & (at[1] >= 0) & (at[1] < rows)
     return at[0][good], at[1][good]
 
 
-def _braille(curve: Curve, columns: int, rows: int, x_limits: Limits, y_limits: Limits) -> npt.NDArray[np.uint32]:
+def _braille(
+    curve: Curve, columns: int, rows: int, x_limits: Limits, y_limits: Limits
+) -> npt.NDArray[np.uint32]:
     """Return the dots of a curve, shape (rows, columns): as bits of a braille character."""
     across, down = _points(curve, columns, rows, x_limits, y_limits, (DOTS_X, DOTS_Y))
     is_thick = curve.joined and curve.rising
     # A line over time is two dots thick: those above and below its place.
     # A margin of one character: plotext places limits in the middle of the outermost ones.
-    across, down = np.floor(across) + DOTS_X, (np.rint(down) - 1 if is_thick else np.floor(down)) + DOTS_Y
+    across, down = (
+        np.floor(across) + DOTS_X,
+        (np.rint(down) - 1 if is_thick else np.floor(down)) + DOTS_Y,
+    )
     width, height = (columns + 2) * DOTS_X, (rows + 2) * DOTS_Y
     if curve.joined:
         # What lies outside is at the edge of the margin: lines lead there.
@@ -160,11 +184,15 @@ def _braille(curve: Curve, columns: int, rows: int, x_limits: Limits, y_limits: 
         dots[:, 1:] |= dots[:, :-1].copy()
         dots[1:] |= dots[:-1].copy()
     inner = dots[DOTS_Y:-DOTS_Y, DOTS_X:-DOTS_X].astype(np.uint32)
-    cells: npt.NDArray[np.uint32] = np.einsum("ryck,yk->rc", inner.reshape(rows, DOTS_Y, columns, DOTS_X), _BITS)
+    cells: npt.NDArray[np.uint32] = np.einsum(
+        "ryck,yk->rc", inner.reshape(rows, DOTS_Y, columns, DOTS_X), _BITS
+    )
     return cells
 
 
-def _plotted(across: FloatArray, down: FloatArray, columns: int, rows: int, joined: bool) -> npt.NDArray[np.uint32]:
+def _plotted(
+    across: FloatArray, down: FloatArray, columns: int, rows: int, joined: bool
+) -> npt.NDArray[np.uint32]:
     """Return the braille characters that plotext draws, shape (rows, columns): as bits.
 
     plotext has one figure a process: call this from one thread only.
@@ -186,7 +214,9 @@ def _plotted(across: FloatArray, down: FloatArray, columns: int, rows: int, join
     figure.plot_size(columns, rows)
     # In characters, whose middles are whole numbers; upwards.
     xs, ys = (across + 0.5) / DOTS_X - 0.5, rows - 0.5 - (down + 0.5) / DOTS_Y
-    figure.draw(figure.signal(xs.tolist(), ys.tolist(), marker=plotext.marker(BRAILLE)).lines(joined))
+    figure.draw(
+        figure.signal(xs.tolist(), ys.tolist(), marker=plotext.marker(BRAILLE)).lines(joined)
+    )
     bits = np.zeros((rows, columns), np.uint32)
     for row, line in enumerate(figure.build().string().split("\n")[:rows]):
         signs = np.array([*map(ord, Text.from_ansi(line).plain[:columns])], np.uint32)
@@ -194,7 +224,9 @@ def _plotted(across: FloatArray, down: FloatArray, columns: int, rows: int, join
     return bits
 
 
-def _runs(text: npt.NDArray[np.uint32], owners: npt.NDArray[np.int64], colors: Sequence[Rgb | None]) -> list[TextRun]:
+def _runs(
+    text: npt.NDArray[np.uint32], owners: npt.NDArray[np.int64], colors: Sequence[Rgb | None]
+) -> list[TextRun]:
     """Return a row as pieces of one colour: that of the owner of each cell, the last one for nobody's."""
     starts = np.flatnonzero(np.diff(owners, prepend=-2)).tolist()
     ends = [*starts[1:], len(text)]
@@ -257,7 +289,9 @@ def xy_lines(
     title: list[Run] = [(f"{names[1]} against {names[0]}", PLAIN)]
     if not good.any():
         return [title, [("no sample has both", AXIS)]]
-    x_limits, y_limits = (axes.value_limits(float(a[good].min()), float(a[good].max())) for a in (xs, ys))
+    x_limits, y_limits = (
+        axes.value_limits(float(a[good].min()), float(a[good].max())) for a in (xs, ys)
+    )
     rows = max(height - 3, 1)
     y_limits = axes.on_rows(y_limits, rows)
     labels = axes.row_labels(y_limits, rows)
@@ -285,6 +319,10 @@ def _put(line: list[Run], column: int) -> None:
     for number, (text, style) in enumerate(line):
         if at <= column < at + len(text):
             inside = column - at
-            line[number : number + 1] = [(text[:inside], style), ("●", _HERE), (text[inside + 1 :], style)]
+            line[number : number + 1] = [
+                (text[:inside], style),
+                ("●", _HERE),
+                (text[inside + 1 :], style),
+            ]
             return
         at += len(text)

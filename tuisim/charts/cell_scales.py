@@ -53,7 +53,9 @@ class CellScales:
     ) -> CellScales:
         """Return the scales of traces for a chart of a width, whose canvas has so many rows."""
         scales = Scales.of([(trace.name, trace.values, trace.scale) for trace in drawn], zoomed)
-        scales = Scales(_on_rows(scales.left, rows), tuple(_on_rows(scale, rows) for scale in scales.right))
+        scales = Scales(
+            _on_rows(scales.left, rows), tuple(_on_rows(scale, rows) for scale in scales.right)
+        )
         labels = [_labels(scales.left, rows)]
         left = width - _width_of(labels[0])
         for scale in scales.right:
@@ -66,7 +68,9 @@ class CellScales:
         if width < _LEAST_WIDTH or left - ends_width < _LEAST_COLUMNS:
             ends, ends_width = {}, 0
         colors = {trace.name: styled(trace.rgb) for trace in drawn}
-        is_one_of_several = [bool(scales.right) and len(scale.names) == 1 for scale in (scales.left, *scales.right)]
+        is_one_of_several = [
+            bool(scales.right) and len(scale.names) == 1 for scale in (scales.left, *scales.right)
+        ]
         shown = zip((scales.left, *scales.right), is_one_of_several, labels, strict=False)
         styles = tuple(colors[scale.names[0]] if is_one else AXIS for scale, is_one, _ in shown)
         return cls(scales, tuple(labels), styles, ends, ends_width, margins)
@@ -98,7 +102,11 @@ class CellScales:
     def framed(self, row: int, inside: list[Run]) -> list[Run]:
         """Return a row of the canvas with what stands beside it."""
         text = self.labels[0].get(row, "")
-        line = [(text.rjust(self.left_width - 1), self.styles[0]), ("┤" if text else "│", AXIS), *inside]
+        line = [
+            (text.rjust(self.left_width - 1), self.styles[0]),
+            ("┤" if text else "│", AXIS),
+            *inside,
+        ]
         if self.ends_width:
             text, style = self.ends.get(row, ("", AXIS))
             line.append((text.ljust(self.ends_width), style))
@@ -125,7 +133,9 @@ def _width_of(labels: dict[int, str]) -> int:
     return max(map(len, labels.values())) + 1
 
 
-def _ends(drawn: Sequence[Trace], scales: Scales, rows: int, x_limits: Limits) -> tuple[dict[int, Run], int]:
+def _ends(
+    drawn: Sequence[Trace], scales: Scales, rows: int, x_limits: Limits
+) -> tuple[dict[int, Run], int]:
     """Return the last values in view, each in the row where its line ends or next to it, and the columns for them."""
     found: list[tuple[int, Run]] = []
     width = 0
@@ -141,7 +151,9 @@ def _ends(drawn: Sequence[Trace], scales: Scales, rows: int, x_limits: Limits) -
             (
                 row,
                 (
-                    texts[0].rstrip("0").rstrip(".") + scale.unit if "." in texts[0] else texts[0] + scale.unit,
+                    texts[0].rstrip("0").rstrip(".") + scale.unit
+                    if "." in texts[0]
+                    else texts[0] + scale.unit,
                     styled(trace.rgb),
                 ),
             )
@@ -163,7 +175,10 @@ def _apart(found: Sequence[tuple[int, Run]], rows: int) -> dict[int, Run]:
     wanted: dict[int, int] = {}
     for row, run in found:
         near = [at for at in (row, row + 1, row - 1) if 0 <= at < rows]
-        same = next((at for at in near if at in taken and wanted[at] == row and taken[at][0] == run[0]), None)
+        same = next(
+            (at for at in near if at in taken and wanted[at] == row and taken[at][0] == run[0]),
+            None,
+        )
         if same is not None:
             taken[same] = run[0], AXIS
         elif (free := next((at for at in near if at not in taken), None)) is not None:

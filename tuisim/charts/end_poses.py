@@ -104,7 +104,12 @@ class EndPoses:
         """Return how many poses are not on the field."""
         return sum(
             int(
-                ((each.x_mm < 0) | (each.x_mm > FIELD_WIDTH_MM) | (each.y_mm < 0) | (each.y_mm > FIELD_HEIGHT_MM)).sum()
+                (
+                    (each.x_mm < 0)
+                    | (each.x_mm > FIELD_WIDTH_MM)
+                    | (each.y_mm < 0)
+                    | (each.y_mm > FIELD_HEIGHT_MM)
+                ).sum()
             )
             for each in self.groups
         )
@@ -135,15 +140,21 @@ def _color(number: int) -> Rgb:
 
 def drawing_of_poses(poses: EndPoses, width: int, height: int) -> Drawing:
     """Return a drawing of end poses over the mat, in a size in pixels; equal scales on both axes."""
-    shapes: list[Shape] = [Words(PAD, PAD + LINE_PX / 2, shortened(poses.title, width - 2 * PAD), strong=True)]
+    shapes: list[Shape] = [
+        Words(PAD, PAD + LINE_PX / 2, shortened(poses.title, width - 2 * PAD), strong=True)
+    ]
     top = PAD + LINE_PX + 4.0
     for number, group in enumerate(poses.groups):
-        text = shortened(f"{group.in_words()} ({counted(len(group.x_mm), 'run')})", width - 2 * PAD - 16)
+        text = shortened(
+            f"{group.in_words()} ({counted(len(group.x_mm), 'run')})", width - 2 * PAD - 16
+        )
         shapes.append(Stroke(np.array([[PAD + 5.0, top + LINE_PX / 2]]), _color(number), dots=True))
         shapes.append(Words(PAD + 16, top + LINE_PX / 2, text))
         top += LINE_PX
     ellipses = f"ellipses: {_ELLIPSE:g} standard deviations"
-    shapes.append(Words(PAD + 16, top + LINE_PX / 2, "; ".join(filter(None, (ellipses, poses.note())))))
+    shapes.append(
+        Words(PAD + 16, top + LINE_PX / 2, "; ".join(filter(None, (ellipses, poses.note()))))
+    )
     top += LINE_PX
     if poses.is_enlarged():
         top = max(top, PAD + _INSET_PX[1])
@@ -156,7 +167,9 @@ def drawing_of_poses(poses: EndPoses, width: int, height: int) -> Drawing:
         shapes += _marks(group, frame, _color(number))
     if poses.is_enlarged():
         shapes += _inset(poses.mat, frame, width - PAD - _INSET_PX[0])
-    shapes.append(Words((frame.left + frame.right) / 2, frame.bottom + 1.7 * LINE_PX, "x_mm, y_mm", "middle"))
+    shapes.append(
+        Words((frame.left + frame.right) / 2, frame.bottom + 1.7 * LINE_PX, "x_mm, y_mm", "middle")
+    )
     return Drawing(poses.title, width, height, tuple(shapes))
 
 
@@ -166,22 +179,38 @@ def _fitted(area: tuple[float, float, float, float], limits: tuple[Limits, Limit
     right, bottom = max(right, left + 10), max(bottom, top + 10)
     (low_x, high_x), (low_y, high_y) = limits
     if (high_x - low_x) < FIELD_WIDTH_MM:
-        return Frame(left, top, right, bottom, *_proportioned(limits, (right - left) / (bottom - top)))
+        return Frame(
+            left, top, right, bottom, *_proportioned(limits, (right - left) / (bottom - top))
+        )
     px_per_mm = min((right - left) / (high_x - low_x), (bottom - top) / (high_y - low_y))
-    return Frame(left, top, left + px_per_mm * (high_x - low_x), top + px_per_mm * (high_y - low_y), *limits)
+    return Frame(
+        left, top, left + px_per_mm * (high_x - low_x), top + px_per_mm * (high_y - low_y), *limits
+    )
 
 
 def _mat(mat: Pixels, frame: Frame) -> Raster:
     """Return the part of the mat in a frame, one pixel for each pixel or mm; grey beside the field."""
     columns = max(round(frame.right - frame.left), 1)
     rows = max(round(frame.bottom - frame.top), 1)
-    return Raster(frame.left, frame.top, frame.right - frame.left, frame.bottom - frame.top,
-                  mat_cells(mat, frame.x, frame.y, columns, rows))  # fmt: skip
+    return Raster(
+        frame.left,
+        frame.top,
+        frame.right - frame.left,
+        frame.bottom - frame.top,
+        mat_cells(mat, frame.x, frame.y, columns, rows),
+    )
 
 
 def _inset(mat: Pixels, frame: Frame, left: float) -> list[Shape]:
     """Return the whole mat in small, with a rectangle around the part that is drawn."""
-    small = Frame(left, PAD, left + _INSET_PX[0], PAD + _INSET_PX[1], (0, FIELD_WIDTH_MM), (0, FIELD_HEIGHT_MM))
+    small = Frame(
+        left,
+        PAD,
+        left + _INSET_PX[0],
+        PAD + _INSET_PX[1],
+        (0, FIELD_WIDTH_MM),
+        (0, FIELD_HEIGHT_MM),
+    )
     field = (0.0, float(FIELD_WIDTH_MM)), (0.0, float(FIELD_HEIGHT_MM))
     pixels = mat_cells(mat, *field, *(2 * side for side in _INSET_PX))
     shapes: list[Shape] = [Raster(small.left, small.top, *_INSET_PX, pixels)]
@@ -206,9 +235,13 @@ def mat_cells(mat: Pixels, x: Limits, y: Limits, columns: int, rows: int) -> Pix
         Shape (rows, columns, 3), rows from the top.
     """
     at_x = np.floor(x[0] + (np.arange(columns) + 0.5) / columns * (x[1] - x[0])).astype(int)
-    at_y = np.floor(FIELD_HEIGHT_MM - y[1] + (np.arange(rows) + 0.5) / rows * (y[1] - y[0])).astype(int)
+    at_y = np.floor(FIELD_HEIGHT_MM - y[1] + (np.arange(rows) + 0.5) / rows * (y[1] - y[0])).astype(
+        int
+    )
     inside_x, inside_y = (at_x >= 0) & (at_x < mat.shape[1]), (at_y >= 0) & (at_y < mat.shape[0])
-    found = mat[np.clip(at_y, 0, mat.shape[0] - 1)][:, np.clip(at_x, 0, mat.shape[1] - 1)].astype(float)
+    found = mat[np.clip(at_y, 0, mat.shape[0] - 1)][:, np.clip(at_x, 0, mat.shape[1] - 1)].astype(
+        float
+    )
     found = 255 - (255 - found) * _STRENGTH
     found[~(inside_y[:, None] & inside_x[None, :])] = 160
     return np.asarray(np.rint(found), np.uint8)
@@ -238,7 +271,9 @@ def _ellipse(group: PoseGroup) -> FloatArray:
     angle = np.linspace(0.0, 2 * math.pi, _POINTS + 1)
     circle = np.vstack((np.cos(angle), np.sin(angle)))
     middle = np.array([[group.x_mm.mean()], [group.y_mm.mean()]])
-    return np.asarray(middle + vectors @ (np.sqrt(np.maximum(values, 0.0))[:, None] * circle) * _ELLIPSE)
+    return np.asarray(
+        middle + vectors @ (np.sqrt(np.maximum(values, 0.0))[:, None] * circle) * _ELLIPSE
+    )
 
 
 def text_of_poses(poses: EndPoses, width: int, height: int, *, colors: bool) -> Text:
@@ -275,17 +310,31 @@ def text_of_poses(poses: EndPoses, width: int, height: int, *, colors: bool) -> 
 
 
 def _framed(
-    poses: EndPoses, limits: tuple[Limits, Limits], columns: int, rows: int, labels: dict[int, str], left: int,
+    poses: EndPoses,
+    limits: tuple[Limits, Limits],
+    columns: int,
+    rows: int,
+    labels: dict[int, str],
+    left: int,
     colors: bool,
-) -> list[Text]:  # fmt: skip
+) -> list[Text]:
     several = len(poses.groups) > 1 and not colors
     curves = [
-        Curve(group.x_mm[on], group.y_mm[on], _color(number), MARKS[number % len(MARKS)], rising=False, joined=False)
+        Curve(
+            group.x_mm[on],
+            group.y_mm[on],
+            _color(number),
+            MARKS[number % len(MARKS)],
+            rising=False,
+            joined=False,
+        )
         for number, group in enumerate(poses.groups)
         if (on := _visible(group, limits)).any()
     ]
     if not several:
-        curves = [Curve(one.times_s, one.values, one.rgb, rising=False, joined=False) for one in curves]
+        curves = [
+            Curve(one.times_s, one.values, one.rgb, rising=False, joined=False) for one in curves
+        ]
     # What is drawn last is on top: the first group.
     drawn = canvas(curves[::-1], columns, rows, *limits)
     halves = mat_cells(poses.mat, *limits, columns, 2 * rows).tolist() if colors else None
@@ -301,10 +350,17 @@ def _framed(
                 else:
                     upper, lower = halves[2 * row][column], halves[2 * row + 1][column]
                     if rgb is None or letter == " ":
-                        line.append("▀", Style(color=Color.from_rgb(*upper), bgcolor=Color.from_rgb(*lower)))
+                        line.append(
+                            "▀", Style(color=Color.from_rgb(*upper), bgcolor=Color.from_rgb(*lower))
+                        )
                     else:
-                        ground = ((one + other) // 2 for one, other in zip(upper, lower, strict=True))
-                        line.append(letter, Style(color=Color.from_rgb(*rgb), bgcolor=Color.from_rgb(*ground)))
+                        ground = (
+                            (one + other) // 2 for one, other in zip(upper, lower, strict=True)
+                        )
+                        line.append(
+                            letter,
+                            Style(color=Color.from_rgb(*rgb), bgcolor=Color.from_rgb(*ground)),
+                        )
                 column += 1
         lines.append(line)
     axis, below = axes.time_axis(limits[0], columns, "mm")
@@ -314,5 +370,8 @@ def _framed(
 def _visible(group: PoseGroup, limits: tuple[Limits, Limits]) -> FloatArray:
     (low_x, high_x), (low_y, high_y) = limits
     return np.asarray(
-        (group.x_mm >= low_x) & (group.x_mm <= high_x) & (group.y_mm >= low_y) & (group.y_mm <= high_y)
-    )  # fmt: skip
+        (group.x_mm >= low_x)
+        & (group.x_mm <= high_x)
+        & (group.y_mm >= low_y)
+        & (group.y_mm <= high_y)
+    )

@@ -121,11 +121,15 @@ def check_format(path: Path, what: str, formats: Collection[str]) -> None:
     """
     if path.suffix.lower() not in formats:
         allowed = ", ".join(formats)
-        raise ExportError(f"cannot write {path}: unknown format {path.suffix!r}", f"a {what} ends in {allowed}")
+        raise ExportError(
+            f"cannot write {path}: unknown format {path.suffix!r}", f"a {what} ends in {allowed}"
+        )
     check_place(path)
 
 
-def save_chart(chart_of: Callable[[int, int], ChartData], path: Path, size: Size | None = None) -> None:
+def save_chart(
+    chart_of: Callable[[int, int], ChartData], path: Path, size: Size | None = None
+) -> None:
     """Write a chart to a file, replacing an existing one.
 
     Args:
@@ -190,7 +194,9 @@ def _hex(rgb: Rgb) -> str:
 def _svg_shape(shape: Shape) -> str:
     match shape:
         case Rule():
-            ends = f'x1="{shape.x1:.1f}" y1="{shape.y1:.1f}" x2="{shape.x2:.1f}" y2="{shape.y2:.1f}"'
+            ends = (
+                f'x1="{shape.x1:.1f}" y1="{shape.y1:.1f}" x2="{shape.x2:.1f}" y2="{shape.y2:.1f}"'
+            )
             faint = ' stroke-opacity="0.15"' if shape.faint else ""
             return f'<line {ends} stroke="currentColor"{faint}/>'
         case Words():
@@ -215,7 +221,9 @@ def _svg_shape(shape: Shape) -> str:
 
 
 def _place(shape: Shade | Raster) -> str:
-    return f'x="{shape.x:.1f}" y="{shape.y:.1f}" width="{shape.width:.1f}" height="{shape.height:.1f}"'
+    return (
+        f'x="{shape.x:.1f}" y="{shape.y:.1f}" width="{shape.width:.1f}" height="{shape.height:.1f}"'
+    )
 
 
 def _image(shape: Raster) -> Image:
@@ -240,13 +248,17 @@ def image_of(drawing: Drawing) -> Image:
     for shape in drawing.shapes:
         if isinstance(shape, Raster):
             sides = round(shape.width * _FINE), round(shape.height * _FINE)
-            image.paste(_image(shape).resize(sides), (round(shape.x * _FINE), round(shape.y * _FINE)))
+            image.paste(
+                _image(shape).resize(sides), (round(shape.x * _FINE), round(shape.y * _FINE))
+            )
         else:
             _paint(draw, shape, font)
     return image.resize((drawing.width, drawing.height), Image.Resampling.LANCZOS)
 
 
-def _paint(draw: ImageDraw, shape: Rule | Words | Shade | Stroke, font: FreeTypeFont | BitmapFont) -> None:
+def _paint(
+    draw: ImageDraw, shape: Rule | Words | Shade | Stroke, font: FreeTypeFont | BitmapFont
+) -> None:
     match shape:
         case Rule():
             ends = [end * _FINE for end in (shape.x1, shape.y1, shape.x2, shape.y2)]
@@ -255,7 +267,13 @@ def _paint(draw: ImageDraw, shape: Rule | Words | Shade | Stroke, font: FreeType
             x, y = shape.x * _FINE, shape.y * _FINE
             # The font has one weight: bold text is drawn twice, half a pixel apart.
             for place in ((x, y), (x + 1, y))[: 1 + shape.strong]:
-                draw.text(place, shape.text, fill=shape.rgb or _INK, font=font, anchor=_ANCHORS[shape.anchor])
+                draw.text(
+                    place,
+                    shape.text,
+                    fill=shape.rgb or _INK,
+                    font=font,
+                    anchor=_ANCHORS[shape.anchor],
+                )
         case Shade():
             corners = (shape.x, shape.y, shape.x + shape.width, shape.y + shape.height)
             draw.rectangle([corner * _FINE for corner in corners], fill=_SHADE)

@@ -17,9 +17,17 @@ from tuisim.logs import units
 from tuisim.runs.arrays import FloatArray
 
 COLORS: tuple[Rgb, ...] = (
-    (31, 119, 180), (217, 95, 2), (27, 158, 119), (201, 60, 140), (117, 112, 199), (166, 118, 29), (214, 39, 40),
-    (80, 150, 30), (23, 160, 190), (120, 120, 120),
-)  # fmt: skip
+    (31, 119, 180),
+    (217, 95, 2),
+    (27, 158, 119),
+    (201, 60, 140),
+    (117, 112, 199),
+    (166, 118, 29),
+    (214, 39, 40),
+    (80, 150, 30),
+    (23, 160, 190),
+    (120, 120, 120),
+)
 """Line colours, distinguishable on white and on black."""
 
 FONT_PX = 13
@@ -180,13 +188,17 @@ class Frame:
 
     def xs(self, values: FloatArray | float) -> FloatArray:
         """Return the pixel columns of values."""
-        return np.asarray(self.left + (np.asarray(values) - self.x[0]) / (self.x[1] - self.x[0])
-                          * (self.right - self.left))  # fmt: skip
+        return np.asarray(
+            self.left
+            + (np.asarray(values) - self.x[0]) / (self.x[1] - self.x[0]) * (self.right - self.left)
+        )
 
     def ys(self, values: FloatArray | float) -> FloatArray:
         """Return the pixel rows of values."""
-        return np.asarray(self.bottom - (np.asarray(values) - self.y[0]) / (self.y[1] - self.y[0])
-                          * (self.bottom - self.top))  # fmt: skip
+        return np.asarray(
+            self.bottom
+            - (np.asarray(values) - self.y[0]) / (self.y[1] - self.y[0]) * (self.bottom - self.top)
+        )
 
     def with_y(self, limits: Limits) -> Frame:
         """Return the frame with other limits of y."""
@@ -198,7 +210,9 @@ def laid_out(chart: ChartData, width: int, height: int, *, titled: bool = True) 
     shapes: list[Shape] = []
     top: float = PAD
     if titled:
-        shapes.append(Words(PAD, top + LINE_PX / 2, shortened(chart.title, width - 2 * PAD), strong=True))
+        shapes.append(
+            Words(PAD, top + LINE_PX / 2, shortened(chart.title, width - 2 * PAD), strong=True)
+        )
         top += LINE_PX + 4
     groups = [(line,) for line in chart.lines] if chart.facets else [chart.lines]
     scales = [_scales_of(group, chart.zoomed or chart.path) for group in groups]
@@ -215,7 +229,11 @@ def laid_out(chart: ChartData, width: int, height: int, *, titled: bool = True) 
     for at, (group, scale) in enumerate(zip(groups, scales, strict=True)):
         upper, lower = top + at * each, top + (at + 1) * each
         if chart.facets:
-            shapes.append(Words(left, upper + LINE_PX / 2, group[0].label, rgb=color_of(group[0]), strong=True))
+            shapes.append(
+                Words(
+                    left, upper + LINE_PX / 2, group[0].label, rgb=color_of(group[0]), strong=True
+                )
+            )
             upper += LINE_PX + 4
         last = at == len(groups) - 1
         lower = max(lower if last else lower - _FACET_GAP_PX, upper + 1)
@@ -264,7 +282,12 @@ def moved(drawing: Drawing, right_px: float, down_px: float) -> list[Shape]:
             case Stroke():
                 shapes.append(replace(shape, points=shape.points + np.array([right_px, down_px])))
             case Rule():
-                ends = shape.x1 + right_px, shape.y1 + down_px, shape.x2 + right_px, shape.y2 + down_px
+                ends = (
+                    shape.x1 + right_px,
+                    shape.y1 + down_px,
+                    shape.x2 + right_px,
+                    shape.y2 + down_px,
+                )
                 shapes.append(Rule(*ends, shape.faint))
             case _:
                 shapes.append(replace(shape, x=shape.x + right_px, y=shape.y + down_px))
@@ -286,7 +309,9 @@ def _width_on_right(scales: Scales) -> float:
     return sum(_widest(scale.limits) + _SCALE_GAP_PX for scale in scales.right)
 
 
-def _legend(lines: Sequence[Line], scales: Scales, width: int, top: float) -> tuple[list[Shape], int]:
+def _legend(
+    lines: Sequence[Line], scales: Scales, width: int, top: float
+) -> tuple[list[Shape], int]:
     """Return the legend and its number of text lines: a stroke and a name per line, and which use a right scale."""
     shapes: list[Shape] = []
     x, row = float(PAD), 0
@@ -337,7 +362,9 @@ class Scales:
             name, values, scale = variable
             own = not scale and common is not None and _is_flat(values, common)
             groups.setdefault(name if own else scale, []).append(variable)
-        made = {scale: _scale(group, zoomed) for scale, group in groups.items()} or {"": _scale([], zoomed)}
+        made = {scale: _scale(group, zoomed) for scale, group in groups.items()} or {
+            "": _scale([], zoomed)
+        }
         left = made.pop("" if "" in made else next(iter(made)))
         return cls(left, tuple(made.values()))
 
@@ -371,7 +398,11 @@ def _scales_of(lines: Sequence[Line], zoomed: bool) -> Scales:
 
 
 def _limits(variables: Sequence[Variable], zoomed: bool) -> Limits:
-    ends = [(name, float(values.min()), float(values.max())) for name, values, _ in variables if len(values)]
+    ends = [
+        (name, float(values.min()), float(values.max()))
+        for name, values, _ in variables
+        if len(values)
+    ]
     if not ends:
         return 0.0, 1.0
     from_zero = not zoomed and any(units.begins_at_zero(*one) for one in ends)
@@ -412,7 +443,10 @@ def grid_of(frame: Frame, *, with_x: bool = True) -> list[Shape]:
     shapes: list[Shape] = []
     for value, text in labelled(frame.y, _labels_above(frame)):
         y = float(frame.ys(value))
-        shapes += [Rule(frame.left, y, frame.right, y, faint=True), Words(frame.left - 6, y, text, "end")]
+        shapes += [
+            Rule(frame.left, y, frame.right, y, faint=True),
+            Words(frame.left - 6, y, text, "end"),
+        ]
     for value, text in labelled(frame.x, max(int((frame.right - frame.left) / 90), 2)):
         x = float(frame.xs(value))
         shapes.append(Rule(x, frame.top, x, frame.bottom, faint=True))
@@ -438,7 +472,11 @@ def _axes(frame: Frame, scales: Scales, lines: Sequence[Line], *, with_x: bool) 
     x = frame.right
     for scale in scales.right:
         other = frame.with_y(scale.limits)
-        rgb = next(color_of(line) for line in lines if line.name == scale.names[0]) if len(scale.names) == 1 else None
+        rgb = (
+            next(color_of(line) for line in lines if line.name == scale.names[0])
+            if len(scale.names) == 1
+            else None
+        )
         for value, text in labelled(scale.limits, _labels_above(frame)):
             y = float(other.ys(value))
             shapes += [Rule(x, y, x + 4, y), Words(x + 7, y, text, rgb=rgb)]
@@ -456,17 +494,28 @@ def _strokes(chart: ChartData, lines: Sequence[Line], scales: Scales, frame: Fra
             shapes.append(Stroke(points, color_of(line), dots=chart.marks or len(points) == 1))
     if not shapes:
         shapes.append(
-            Words((frame.left + frame.right) / 2, (frame.top + frame.bottom) / 2, "no samples here", "middle")
+            Words(
+                (frame.left + frame.right) / 2,
+                (frame.top + frame.bottom) / 2,
+                "no samples here",
+                "middle",
+            )
         )
     return shapes
 
 
 def _spans(chart: ChartData, lines: Sequence[Line], frame: Frame) -> list[Shape]:
     names = {line.name for line in lines}
-    seen = [span for span in chart.spans if span.name in names and frame.x[0] <= span.stop and span.start <= frame.x[1]]
+    seen = [
+        span
+        for span in chart.spans
+        if span.name in names and frame.x[0] <= span.stop and span.start <= frame.x[1]
+    ]
     shades: list[Shade] = []
     for span in seen:
-        x1, x2 = (float(frame.xs(min(max(x, frame.x[0]), frame.x[1]))) for x in (span.start, span.stop))
+        x1, x2 = (
+            float(frame.xs(min(max(x, frame.x[0]), frame.x[1]))) for x in (span.start, span.stop)
+        )
         shades.append(Shade(x1, frame.top, x2 - x1, frame.bottom - frame.top))
     texts = names_of(seen, [shade.width / LETTER_PX for shade in shades])
     words = (
@@ -491,5 +540,11 @@ def names_of(spans: Sequence[Span], letters: Sequence[float], overhang: int = 0)
     """
     rooms = list(zip(spans, letters, strict=True))
     is_long = all(len(span.texts[0]) < room for span, room in rooms if room >= _NARROW)
-    names = [span.texts[0] if is_long and len(span.texts[0]) < room else span.texts[-1] for span, room in rooms]
-    return [name if room and len(name) <= room + overhang else "" for name, room in zip(names, letters, strict=True)]
+    names = [
+        span.texts[0] if is_long and len(span.texts[0]) < room else span.texts[-1]
+        for span, room in rooms
+    ]
+    return [
+        name if room and len(name) <= room + overhang else ""
+        for name, room in zip(names, letters, strict=True)
+    ]

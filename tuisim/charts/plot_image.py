@@ -117,12 +117,18 @@ def plot_image(plot: Plot, cell: tuple[int, int], inks: PlotInks) -> Pixels:
 
 def _cells_of(span: Span, plot: Plot, width: int) -> tuple[int, int]:
     """Return the first column of points of a span, and the one behind it."""
-    start, stop = np.clip(plot.across(np.array([span.start, span.stop]), width), 0, plot.columns * width).astype(int)
+    start, stop = np.clip(
+        plot.across(np.array([span.start, span.stop]), width), 0, plot.columns * width
+    ).astype(int)
     return int(start), int(stop) + 1
 
 
 def _draw_names(
-    inside: Pixels, covered: list[npt.NDArray[np.uint8]], plot: Plot, cell: tuple[int, int], inks: PlotInks
+    inside: Pixels,
+    covered: list[npt.NDArray[np.uint8]],
+    plot: Plot,
+    cell: tuple[int, int],
+    inks: PlotInks,
 ) -> None:
     """Write the names of spans, each in the lowest row of cells where there is no curve."""
     # Imported on demand: few terminals need it.
@@ -132,13 +138,20 @@ def _draw_names(
     places = [columns_of(span, plot.x_limits, plot.columns) for span in plot.spans]
 
     def is_free(row: int, first: int, stop: int) -> bool:
-        return not any(one[row * height : (row + 1) * height, first * width : stop * width].any() for one in covered)
+        return not any(
+            one[row * height : (row + 1) * height, first * width : stop * width].any()
+            for one in covered
+        )
 
     cursors = [axes.column_of(x, plot.x_limits, plot.columns) for x in plot.cursors]
-    for row, first, text in placed_names(plot.spans, places, plot.rows, plot.columns, is_free, cursors):
+    for row, first, text in placed_names(
+        plot.spans, places, plot.rows, plot.columns, is_free, cursors
+    ):
         mask = Image.new("L", (len(text) * width, height))
         ImageDraw.Draw(mask).text((0, height // 2), text, 255, _font(width), anchor="lm")
-        place = inside[row * height : (row + 1) * height, first * width : (first + len(text)) * width]
+        place = inside[
+            row * height : (row + 1) * height, first * width : (first + len(text)) * width
+        ]
         _lay(place, np.asarray(mask) // (256 // (_LEVELS + 1)), inks.axis)
 
 
@@ -151,7 +164,9 @@ def _font(width: int) -> FreeTypeFont:
     return ImageFont.truetype(BytesIO(content), width / _LETTER)
 
 
-def _draw_axes(image: Pixels, inside: Pixels, plot: Plot, cell: tuple[int, int], inks: PlotInks) -> None:
+def _draw_axes(
+    image: Pixels, inside: Pixels, plot: Plot, cell: tuple[int, int], inks: PlotInks
+) -> None:
     width, height = cell
     grid = _mixed(inks.ground, inks.axis, _GRID_SHARE)
     across = _places(plot.across(np.array(plot.x_ticks), width), inside.shape[1])
@@ -173,7 +188,9 @@ def _places(points: _Points, length: int) -> npt.NDArray[np.intp]:
 
 
 def _mixed(ground: Rgb, rgb: Rgb, share: float) -> Rgb:
-    red, green, blue = (round(below + (above - below) * share) for below, above in zip(ground, rgb, strict=True))
+    red, green, blue = (
+        round(below + (above - below) * share) for below, above in zip(ground, rgb, strict=True)
+    )
     return red, green, blue
 
 
@@ -186,15 +203,21 @@ def _coverage(plot: Plot, curve: Curve, cell: tuple[int, int]) -> npt.NDArray[np
     size = plot.columns * width, plot.rows * height
     mask = Image.new("L", (size[0] * _FINE, size[1] * _FINE))
     draw = ImageDraw.Draw(mask)
-    times_s, values = within(*min_max(curve.times_s, curve.values, plot.x_limits, size[0]), plot.x_limits)
+    times_s, values = within(
+        *min_max(curve.times_s, curve.values, plot.x_limits, size[0]), plot.x_limits
+    )
     points = np.stack((plot.across(times_s, width), plot.down(values, height)), axis=1) * _FINE
     if curve.marker != BRAILLE or len(points) == 1:
         radius = max(height * _MARK_SHARE, 1.5) * _FINE
         for x, y in points.tolist():
             draw.ellipse((x - radius, y - radius, x + radius, y + radius), fill=255)
     else:
-        draw.line(points.ravel().tolist(), fill=255, width=max(round(height * _LINE_SHARE * _FINE), _FINE))
-    covered: npt.NDArray[np.uint8] = (np.asarray(mask.reduce(_FINE)) // (256 // (_LEVELS + 1))).clip(max=_LEVELS)
+        draw.line(
+            points.ravel().tolist(), fill=255, width=max(round(height * _LINE_SHARE * _FINE), _FINE)
+        )
+    covered: npt.NDArray[np.uint8] = (
+        np.asarray(mask.reduce(_FINE)) // (256 // (_LEVELS + 1))
+    ).clip(max=_LEVELS)
     return covered
 
 

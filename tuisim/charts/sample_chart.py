@@ -12,7 +12,9 @@ from tuisim.charts.traces import Pyramid, min_max, scale_of
 from tuisim.runs.samples import Sample
 
 
-def sample_chart(samples: Iterable[Sample], columns: int, limits: Limits | None = None) -> ChartData:
+def sample_chart(
+    samples: Iterable[Sample], columns: int, limits: Limits | None = None
+) -> ChartData:
     """Return the samples over simulated time as `tuisim log plot` draws them, one line per name.
 
     Args:
@@ -25,7 +27,9 @@ def sample_chart(samples: Iterable[Sample], columns: int, limits: Limits | None 
     series = {name: Pyramid(*np.array(rows).T) for name, rows in points.items()}
     ends = [found.times_s[[0, -1]] for found in series.values() if len(found.times_s)]
     low, high = (min(end[0] for end in ends), max(end[1] for end in ends)) if ends else (0.0, 1.0)
-    limits = limits or ((float(low), float(high)) if high > low else (float(low) - 0.5, float(low) + 0.5))
+    limits = limits or (
+        (float(low), float(high)) if high > low else (float(low) - 0.5, float(low) + 0.5)
+    )
     lines = tuple(
         Line(name, *min_max(found.times_s, found.values, limits, columns), number, scale_of(name))
         for number, (name, found) in enumerate(series.items())

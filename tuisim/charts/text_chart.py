@@ -116,7 +116,9 @@ class ChartPainter:
         by_mark = state.grey and (len(drawn) > 1 or state.is_ascii)
         lines, boxes = _tick_boxes(traces, state.selected, by_mark, width, height)
         if not drawn:
-            return ChartPicture((lines + _empty(traces, width, height - len(lines), state.selected))[:height], boxes)
+            return ChartPicture(
+                (lines + _empty(traces, width, height - len(lines), state.selected))[:height], boxes
+            )
         with_line = height >= _LINE_ROWS
         rows = max(height - len(lines) - 1 - with_line, 1)
         x_limits = state.x_limits or _time_limits(traces.end_s(), state.grows)
@@ -125,23 +127,40 @@ class ChartPainter:
         left, top = scales.left_width, len(lines)
         cursors = [time_s for time_s in (state.cursor_s, state.other_s) if time_s is not None]
         curves = tuple(scales.curve(trace, by_mark or state.marks) for trace in drawn)
-        has_room = len(lines) + rows + with_line <= height and left + columns + scales.right_width <= width
+        has_room = (
+            len(lines) + rows + with_line <= height and left + columns + scales.right_width <= width
+        )
         plot = None
         if has_room:
-            ticks = tuple(axes.time_ticks(x_limits, columns)), tuple(axes.row_ticks(scales.y_limits, rows))
+            ticks = (
+                tuple(axes.time_ticks(x_limits, columns)),
+                tuple(axes.row_ticks(scales.y_limits, rows)),
+            )
             plot = Plot(
-                curves, columns, rows, x_limits, scales.y_limits, *ticks, with_line, tuple(cursors), state.spans
+                curves,
+                columns,
+                rows,
+                x_limits,
+                scales.y_limits,
+                *ticks,
+                with_line,
+                tuple(cursors),
+                state.spans,
             )
         line, below = axes.time_axis(x_limits, columns, state.unit)
         if is_blank and plot:
-            lines += [scales.framed(row, [(" " * columns, AXIS)]) for row in range(rows)] + [[]] * with_line
+            lines += [scales.framed(row, [(" " * columns, AXIS)]) for row in range(rows)] + [
+                []
+            ] * with_line
         else:
             self._draw(drawn, scales, columns, rows, x_limits, curves)
             at = sorted({axes.column_of(time_s, x_limits, columns) for time_s in cursors})
             on_grid = scales.labels[0] if state.grid and not state.is_ascii else {}
             inside = [_styled(self._canvas[row], is_on_grid=row in on_grid) for row in range(rows)]
             if state.spans:
-                inside = shaded(inside, state.spans, x_limits, columns, at, _style_of_names(drawn, state.spans))
+                inside = shaded(
+                    inside, state.spans, x_limits, columns, at, _style_of_names(drawn, state.spans)
+                )
             lines += [scales.framed(row, _with_cursors(inside[row], at)) for row in range(rows)]
             if with_line:
                 lines.append([(" " * (left - 1) + "└" + line, AXIS)])
@@ -175,7 +194,10 @@ def _styled(runs: list[TextRun], is_on_grid: bool) -> list[Run]:
     """Return a row of the canvas, with the line of the grid where nothing is drawn."""
     if not is_on_grid:
         return [(text, styled(rgb)) for text, rgb in runs]
-    return [(text.replace(" ", _GRID), _FAINT) if rgb is None else (text, styled(rgb)) for text, rgb in runs]
+    return [
+        (text.replace(" ", _GRID), _FAINT) if rgb is None else (text, styled(rgb))
+        for text, rgb in runs
+    ]
 
 
 def _style_of_names(drawn: Sequence[Trace], spans: Sequence[Span]) -> Style:
@@ -216,7 +238,9 @@ def _tick_boxes(
             used = 0
         used += len(text) + (2 if used else 0)
         lines[-1].append((text, trace))
-    chosen = next((at for at, line in enumerate(lines) for _, trace in line if trace.name == selected), 0)
+    chosen = next(
+        (at for at, line in enumerate(lines) for _, trace in line if trace.name == selected), 0
+    )
     first, most_lines = _lines_in_sight(lines, chosen, most_lines, height)
     shown = lines[first : first + most_lines]
     made, boxes = [], []
@@ -243,7 +267,9 @@ def _lines_in_sight(
     lines: Sequence[Sequence[tuple[str, Trace]]], chosen: int, most_lines: int, height: int
 ) -> tuple[int, int]:
     """Return the first line of tick boxes that is shown, and how many: the chosen one, and what is drawn if it fits."""
-    wanted = [at for at, line in enumerate(lines) if at == chosen or any(trace.on for _, trace in line)]
+    wanted = [
+        at for at, line in enumerate(lines) if at == chosen or any(trace.on for _, trace in line)
+    ]
     span = wanted[-1] - wanted[0] + 1
     if span == most_lines + 1 and height > _ROWS_A_LEGEND_LINE:
         # One row less for the curves is less of a loss than a curve without a name.
@@ -261,13 +287,17 @@ def _box_runs(text: str, trace: Trace, selected: bool, by_mark: bool) -> list[Ru
     return [(text, color + Style(reverse=True) if selected else color)]
 
 
-def margins_of(parts: Sequence[Traces], state: ChartState, width: int, rows: int) -> tuple[int, int]:
+def margins_of(
+    parts: Sequence[Traces], state: ChartState, width: int, rows: int
+) -> tuple[int, int]:
     """Return the columns beside the canvases of charts below each other, of so many rows, that are in line."""
     drawn = [part.drawn() for part in parts if part.drawn()]
     limits = state.x_limits or (0.0, 1.0)
     rows = max(rows - 2 - (rows >= _LINE_ROWS), 1)
     scales = [CellScales.of(traces, width, rows, limits, state.zoomed) for traces in drawn]
-    return max((one.left_width for one in scales), default=0), max((one.right_width for one in scales), default=0)
+    return max((one.left_width for one in scales), default=0), max(
+        (one.right_width for one in scales), default=0
+    )
 
 
 def values_at(drawn: Sequence[Trace], cursor_s: float, unit: str, width: int) -> str:
@@ -275,7 +305,11 @@ def values_at(drawn: Sequence[Trace], cursor_s: float, unit: str, width: int) ->
     line = f"{cursor_s:.2f} {unit}"
     for at, trace in enumerate(drawn):
         value = trace.at(cursor_s)
-        read = f"  {trace.name} {value:.5g}{unit_of(trace.name)}" if value is not None else f"  {trace.name} –"
+        read = (
+            f"  {trace.name} {value:.5g}{unit_of(trace.name)}"
+            if value is not None
+            else f"  {trace.name} –"
+        )
         more = len(drawn) - at - 1
         if len(line) + len(read) + (4 if more else 0) > width:
             return f"{line} +{more + 1}"[:width]
@@ -299,7 +333,9 @@ def _empty(traces: Traces, width: int, height: int, selected: str | None) -> lis
     widest = max(map(len, words))
     margin = " " * max((width - widest) // 2, 0)
     lines: list[list[Run]] = [[] for _ in range(above)]
-    return lines + [[(margin + text, _STRONG if "print" in text or "str(" in text else PLAIN)] for text in words]
+    return lines + [
+        [(margin + text, _STRONG if "print" in text or "str(" in text else PLAIN)] for text in words
+    ]
 
 
 LEAST_ROWS = 8
@@ -326,12 +362,19 @@ def text_of(chart: ChartData, width: int, height: int, *, colors: bool = False) 
         parts = [Traces({line.name: _trace(line) for line in group}) for group in groups]
         grey = not colors and not chart.facets and len(chart.lines) > 1
         state = ChartState(
-            x_limits=chart.x_limits, grey=grey, marks=chart.marks, unit=_unit(chart), zoomed=chart.zoomed
+            x_limits=chart.x_limits,
+            grey=grey,
+            marks=chart.marks,
+            unit=_unit(chart),
+            zoomed=chart.zoomed,
         )
         state = replace(state, margins=margins_of(parts, state, width, rows))
         for part in parts:
             shown += ChartPainter().paint(part, state, width, rows).lines
-    lines = [Text(chart.title, "bold"), *(Text.assemble(*map(_on_any_ground, line)) for line in shown)]
+    lines = [
+        Text(chart.title, "bold"),
+        *(Text.assemble(*map(_on_any_ground, line)) for line in shown),
+    ]
     for at in lines:
         at.rstrip()
         at.truncate(width)

@@ -13,9 +13,15 @@ from tuisim.logs.units import unit_of
 from tuisim.runs.arrays import FloatArray
 
 TRACE_COLORS: tuple[Rgb, ...] = (
-    (240, 228, 66), (86, 180, 233), (213, 94, 0), (0, 158, 115), (204, 121, 167), (255, 255, 255), (230, 159, 0),
+    (240, 228, 66),
+    (86, 180, 233),
+    (213, 94, 0),
+    (0, 158, 115),
+    (204, 121, 167),
+    (255, 255, 255),
+    (230, 159, 0),
     (60, 110, 220),
-)  # fmt: skip
+)
 """Those of Okabe and Ito, with a lighter blue and white for a dark ground: they stay apart for people who see fewer
 colours. Source: https://jfly.uni-koeln.de/color/."""
 MARKS = "o+x*#%=~&@"
@@ -93,7 +99,12 @@ class Trace:
         """Keep two of every four points: the least and the greatest, in their order."""
         whole = self._count // _THINNED * _THINNED
         values = self._values[:whole].reshape(-1, _THINNED)
-        kept = np.sort(np.stack((values.argmin(axis=1), _THINNED - 1 - values[:, ::-1].argmax(axis=1)), axis=1), axis=1)
+        kept = np.sort(
+            np.stack(
+                (values.argmin(axis=1), _THINNED - 1 - values[:, ::-1].argmax(axis=1)), axis=1
+            ),
+            axis=1,
+        )
         at = (kept + np.arange(0, whole, _THINNED)[:, np.newaxis]).ravel()
         at = np.concatenate((at, np.arange(whole, self._count)))
         self._times_s, self._values, self._count = self._times_s[at], self._values[at], len(at)
@@ -130,7 +141,9 @@ class Traces:
     def __len__(self) -> int:
         return len(self._by_name)
 
-    def append(self, name: str, times_s: Sequence[float], values: Sequence[float], logged: bool = True) -> None:
+    def append(
+        self, name: str, times_s: Sequence[float], values: Sequence[float], logged: bool = True
+    ) -> None:
         """Add points to a trace, which is made if it is new.
 
         Where a program logs a variable with the name of a column of telemetry, the trace is the program's.
@@ -141,7 +154,10 @@ class Traces:
             return
         if trace is None or trace.logged != logged:
             # Logged traces use colours from the front of the list, telemetry from the back.
-            alike = sum(known.logged == logged for known in (*self._by_name.values(), *self._cleared.values()))
+            alike = sum(
+                known.logged == logged
+                for known in (*self._by_name.values(), *self._cleared.values())
+            )
             trace = Trace(name, alike if logged else -1 - alike, logged)
         self._by_name[name] = trace
         trace.add(times_s, values)
@@ -186,10 +202,14 @@ def min_max(
     starts = starts[starts < len(times_s)]
     ends = np.concatenate((starts[1:], [len(times_s)])) - 1
     least, greatest = np.minimum.reduceat(values, starts), np.maximum.reduceat(values, starts)
-    return _in_pairs(times_s[starts], times_s[ends]), _extremes(values[starts] <= values[ends], least, greatest)
+    return _in_pairs(times_s[starts], times_s[ends]), _extremes(
+        values[starts] <= values[ends], least, greatest
+    )
 
 
-def within(times_s: FloatArray, values: FloatArray, x_limits: tuple[float, float]) -> tuple[FloatArray, FloatArray]:
+def within(
+    times_s: FloatArray, values: FloatArray, x_limits: tuple[float, float]
+) -> tuple[FloatArray, FloatArray]:
     """Return points whose first and last one are at most at the limits, where their lines cross these."""
     if len(times_s) < 2:
         return times_s, values
@@ -270,12 +290,16 @@ class Pyramid:
     def _add_level(self) -> None:
         least, greatest = self._levels[-1] if self._levels else (self.values, self.values)
         starts = np.arange(0, len(least), _BLOCK)
-        self._levels.append((np.minimum.reduceat(least, starts), np.maximum.reduceat(greatest, starts)))
+        self._levels.append(
+            (np.minimum.reduceat(least, starts), np.maximum.reduceat(greatest, starts))
+        )
 
     def nearest(self, time_s: float) -> int:
         """Return the index of the input point nearest to a time; there must be a finite one."""
         at = int(np.searchsorted(self.times_s, time_s))
-        if at == len(self.times_s) or (at and time_s - self.times_s[at - 1] <= self.times_s[at] - time_s):
+        if at == len(self.times_s) or (
+            at and time_s - self.times_s[at - 1] <= self.times_s[at] - time_s
+        ):
             at -= 1
         return at if self._index is None else int(self._index[at])
 
@@ -285,7 +309,10 @@ class Pyramid:
         return self.times_s[first:last], self.values[first:last]
 
     def _span(self, start_s: float, stop_s: float) -> tuple[int, int]:
-        first, last = np.searchsorted(self.times_s, start_s, "left"), np.searchsorted(self.times_s, stop_s, "right")
+        first, last = (
+            np.searchsorted(self.times_s, start_s, "left"),
+            np.searchsorted(self.times_s, stop_s, "right"),
+        )
         return int(first), int(last)
 
     def figures(self, start_s: float, stop_s: float) -> Summary:
@@ -295,7 +322,9 @@ class Pyramid:
             return summary_of(self.values[first:last], quantiles=())
         # Whole blocks are cached; only the partial blocks at both ends are computed.
         begin, end = -(-first // _BLOCK), last // _BLOCK
-        ends = np.concatenate((self.values[first : begin * _BLOCK], self.values[end * _BLOCK : last]))
+        ends = np.concatenate(
+            (self.values[first : begin * _BLOCK], self.values[end * _BLOCK : last])
+        )
         means, squares = (part[begin:end] for part in self._moments())
         least, greatest = (part[begin:end] for part in self._levels[0])
         low = float(np.minimum.reduce(ends, initial=float(least.min())))
@@ -303,7 +332,9 @@ class Pyramid:
         count = last - first
         mean = low if low == high else float(means.sum() * _BLOCK + ends.sum()) / count
         off = squares.sum() + _BLOCK * np.square(means - mean).sum() + np.square(ends - mean).sum()
-        return Summary(count, 0, low, mean, high, float(np.sqrt(off / (count - 1))) if low != high else 0.0, ())
+        return Summary(
+            count, 0, low, mean, high, float(np.sqrt(off / (count - 1))) if low != high else 0.0, ()
+        )
 
     def _moments(self) -> tuple[FloatArray, FloatArray]:
         """Mean and sum of squared deviations of each whole block; cached."""

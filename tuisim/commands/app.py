@@ -76,8 +76,15 @@ def read_opened(arguments: Arguments) -> Opened | None:
         replay, prepared = prepare_replay(arguments.run, arguments.words, arguments, config)
         return Opened(prepared, goals, replay)
     prepared = prepare_app(_words(arguments, goals), arguments, config)
-    is_empty = not arguments.words and not arguments.world and goals is None and _WORLD.isdisjoint(arguments.settings)
-    return Opened(prepared, goals or _goals_in(prepared.world, prepared.settings["mats"]), None, is_empty)
+    is_empty = (
+        not arguments.words
+        and not arguments.world
+        and goals is None
+        and _WORLD.isdisjoint(arguments.settings)
+    )
+    return Opened(
+        prepared, goals or _goals_in(prepared.world, prepared.settings["mats"]), None, is_empty
+    )
 
 
 @click.version_option(__version__, prog_name="tuisim", message=VERSION, hidden=True)
@@ -162,7 +169,9 @@ def open_lesson_in_app(lesson: Lesson, folder: str | None) -> int:
 
     source = read_program(prepare_program(lesson))
     of_user, of_lesson = load_config().layer(Section.APP), bool(lesson.settings)
-    found = program_settings(source, lesson.settings, below=of_user, in_world=of_lesson, of_task=of_lesson)
+    found = program_settings(
+        source, lesson.settings, below=of_user, in_world=of_lesson, of_task=of_lesson
+    )
     settings = found.settings
     app_settings = AppSettings(
         spec=build_run_spec(settings),
@@ -252,7 +261,9 @@ def _keys_from_terminal() -> None:
     try:
         terminal = os.open("/dev/tty", os.O_RDWR)
     except OSError as error:
-        raise ConfigError("there is no terminal to read keys from", "name a file instead of -") from error
+        raise ConfigError(
+            "there is no terminal to read keys from", "name a file instead of -"
+        ) from error
     sys.stdin = os.fdopen(os.dup(0))
     os.dup2(terminal, 0)
     os.close(terminal)

@@ -56,7 +56,9 @@ from tuisim.protocol import End
 if TYPE_CHECKING:
     import pandas as pd
 
-_SHARED = [one for one in shared_options(hidden=(APP, PANEL), names=names_of) if one.name != "speed"]
+_SHARED = [
+    one for one in shared_options(hidden=(APP, PANEL), names=names_of) if one.name != "speed"
+]
 """A batch runs as fast as possible."""
 MOST_LINES = 100
 """A summary has at most this many lines."""
@@ -118,7 +120,13 @@ class _Batch:
         with Progress(counted(len(plan), "run"), len(plan), in_lines=True):
             try:
                 with signals_raise():
-                    run_plan(plan, self.rows, workers=self.request.workers, partial=partly, on_row=self._rate())
+                    run_plan(
+                        plan,
+                        self.rows,
+                        workers=self.request.workers,
+                        partial=partly,
+                        on_row=self._rate(),
+                    )
             except Interrupted as interrupted:
                 code = interrupted.exit_code
             finally:
@@ -174,14 +182,22 @@ class _Batch:
 
     def _print_summary(self, frame: pd.DataFrame) -> None:
         plan = self.request.plan
-        ends = Counter(str(row["end"]).replace("_", " ") or "not started" for row in self.rows.values())
-        echo(f"{counted(len(frame), 'run')}: {', '.join(f'{count:,} {end}' for end, count in ends.most_common())}")
-        reasons = Counter(str(row["summary"]) for row in self.rows.values() if _exit_code(row) and row["summary"])
+        ends = Counter(
+            str(row["end"]).replace("_", " ") or "not started" for row in self.rows.values()
+        )
+        echo(
+            f"{counted(len(frame), 'run')}: {', '.join(f'{count:,} {end}' for end, count in ends.most_common())}"
+        )
+        reasons = Counter(
+            str(row["summary"]) for row in self.rows.values() if _exit_code(row) and row["summary"]
+        )
         for reason, count in reasons.most_common(_MOST_REASONS):
             echo(f"  {count:,} × {reason}")
         for name in [name for name in frame.columns if name.startswith(GOAL)]:
             met = int(frame[name].fillna(0).sum())
-            echo(f"{name.removeprefix(GOAL)}: met in {met:,} of {len(frame):,} ({100 * met / len(frame):.0f} %)")
+            echo(
+                f"{name.removeprefix(GOAL)}: met in {met:,} of {len(frame):,} ({100 * met / len(frame):.0f} %)"
+            )
         lines = summaries(
             frame,
             [*([PROGRAM] if PROGRAM in frame.columns else []), *plan.names],
@@ -204,22 +220,34 @@ class _Batch:
         if not self.request.draws_poses or self.as_json:
             return
         terminal = shutil.get_terminal_size()
-        width, height = max(terminal.columns, _LEAST_COLUMNS), min(max(terminal.lines - 1, _ROWS[0]), _ROWS[1])
+        width, height = (
+            max(terminal.columns, _LEAST_COLUMNS),
+            min(max(terminal.lines - 1, _ROWS[0]), _ROWS[1]),
+        )
         echo()
         echo_drawn(partial(text_of, frame, plan, width, height), width)
 
     def _tell_interrupted(self) -> None:
         out = self.request.out
         kept = f"; {out} has these rows, and --resume goes on" if out and self.rows else ""
-        echo_error(f"tuisim: interrupted after {len(self.rows):,} of {counted(len(self.request.plan), 'run')}{kept}")
+        echo_error(
+            f"tuisim: interrupted after {len(self.rows):,} of {counted(len(self.request.plan), 'run')}{kept}"
+        )
 
 
 def _summary_table(lines: Sequence[ColumnSummary], width: int) -> str:
     """Return a summary as text; without the outer quantiles if it is wider than the terminal."""
     found = ""
     for quantiles in (QUANTILES, QUANTILES[1:-1], ()):
-        heads = ["COLUMN", *(lines[0].group if lines else ()), "MEAN", "STD", "MIN",
-                 *(f"Q{100 * part:g}" for part in quantiles), "MAX"]  # fmt: skip
+        heads = [
+            "COLUMN",
+            *(lines[0].group if lines else ()),
+            "MEAN",
+            "STD",
+            "MIN",
+            *(f"Q{100 * part:g}" for part in quantiles),
+            "MAX",
+        ]
         cells = []
         for line in lines:
             of = line.statistics

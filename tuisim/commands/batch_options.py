@@ -15,7 +15,12 @@ _WORKERS = Whole(1, MAX_JOBS)
 def workers_option(flag: str, text: str, **how: Any) -> GroupedOption:
     """Return an option for a number of workers; 0 if it is not given."""
     return option(
-        flag, default=0, metavar="N", type=WordType(lambda word: parse(_WORKERS, word, flag)), help=text, **how
+        flag,
+        default=0,
+        metavar="N",
+        type=WordType(lambda word: parse(_WORKERS, word, flag)),
+        help=text,
+        **how,
     )
 
 
@@ -26,4 +31,9 @@ def jobs_option(**how: Any) -> GroupedOption:
 
 def keep_option(usual: Keep, group: str) -> GroupedOption:
     """Return `--keep all|failed|none`; None if it is not given, which means `usual`."""
-    return choice("--keep", [one.value for one in Keep], group=group, help=f"Which runs to store ({usual.value}).")
+    return choice(
+        "--keep",
+        [one.value for one in Keep],
+        group=group,
+        help=f"Which runs to store ({usual.value}).",
+    )

@@ -38,29 +38,81 @@ OPTIONS = (
     argument("programs", "PROGRAM…|SPEC.toml", lambda: names_of("programs"), nargs=-1),
     WORLD,
     jobs_option(),
-    option("--scheduler", metavar="ADDRESS", help="Use the Dask cluster of a scheduler, such as tcp://host:8786."),
+    option(
+        "--scheduler",
+        metavar="ADDRESS",
+        help="Use the Dask cluster of a scheduler, such as tcp://host:8786.",
+    ),
     workers_option("--workers", "Use a Dask cluster of this many workers on this machine."),
-    option("--seeds", metavar="SEEDS", group=_GRID, help="One run for each seed: 0..199, or 1,5,9."),
-    option("--set", "sets", multiple=True, metavar="NAME=VALUES", group=_GRID,
-           help="Vary a key of a world or robot file: noise.motor=0,20,50, robot.wheel_diameter_mm=54:58:0.5, "
-           "start.x_mm=random(100, 300, 20), latin(…); may be repeated, for all combinations."),
-    option("--out", metavar="FILE", type=WordType(), group=_RESULTS, help=f"Write the table: {LISTED}."),
-    option("--expr", "expressions", multiple=True, metavar="NAME=EXPR", group=_RESULTS,
-           help="Add a column, such as 'error_mm=hypot(x_mm - 750, y_mm - 850)'; may be repeated."),
-    option("--goals", metavar="FILE", type=WordType(), group=_RESULTS,
-           help="Judge the goals in a file, one column each."),
+    option(
+        "--seeds", metavar="SEEDS", group=_GRID, help="One run for each seed: 0..199, or 1,5,9."
+    ),
+    option(
+        "--set",
+        "sets",
+        multiple=True,
+        metavar="NAME=VALUES",
+        group=_GRID,
+        help="Vary a key of a world or robot file: noise.motor=0,20,50, robot.wheel_diameter_mm=54:58:0.5, "
+        "start.x_mm=random(100, 300, 20), latin(…); may be repeated, for all combinations.",
+    ),
+    option(
+        "--out", metavar="FILE", type=WordType(), group=_RESULTS, help=f"Write the table: {LISTED}."
+    ),
+    option(
+        "--expr",
+        "expressions",
+        multiple=True,
+        metavar="NAME=EXPR",
+        group=_RESULTS,
+        help="Add a column, such as 'error_mm=hypot(x_mm - 750, y_mm - 850)'; may be repeated.",
+    ),
+    option(
+        "--goals",
+        metavar="FILE",
+        type=WordType(),
+        group=_RESULTS,
+        help="Judge the goals in a file, one column each.",
+    ),
     keep_option(Keep.NONE, _RESULTS),
-    option("--picture-of", metavar="WHAT", type=WordType(parse_picture, lambda: (POSES,)), group=_RESULTS,
-           help=f"Draw {POSES}: the end poses over the mat."),
-    option("--picture", metavar="FILE", type=WordType(), group=_RESULTS,
-           help="Write the end poses as a picture (.svg or .png) instead of drawing them as text."),
-    option("--resume", is_flag=True, group=_RESULTS, help="Go on with an interrupted batch that wrote the same --out."),
-    option("--json", "as_json", is_flag=True, group=_RESULTS, help="Print one JSON object per run, not the summary."),
+    option(
+        "--picture-of",
+        metavar="WHAT",
+        type=WordType(parse_picture, lambda: (POSES,)),
+        group=_RESULTS,
+        help=f"Draw {POSES}: the end poses over the mat.",
+    ),
+    option(
+        "--picture",
+        metavar="FILE",
+        type=WordType(),
+        group=_RESULTS,
+        help="Write the end poses as a picture (.svg or .png) instead of drawing them as text.",
+    ),
+    option(
+        "--resume",
+        is_flag=True,
+        group=_RESULTS,
+        help="Go on with an interrupted batch that wrote the same --out.",
+    ),
+    option(
+        "--json",
+        "as_json",
+        is_flag=True,
+        group=_RESULTS,
+        help="Print one JSON object per run, not the summary.",
+    ),
     timeout_option(_LIMITS),
     input_option(_LIMITS),
-    option("--press", multiple=True, metavar="BUTTON@S", type=WordType(parse_press), group=_LIMITS,
-           help="Press a button of the brick, as in `tuisim run`; may be repeated."),
-)  # fmt: skip
+    option(
+        "--press",
+        multiple=True,
+        metavar="BUTTON@S",
+        type=WordType(parse_press),
+        group=_LIMITS,
+        help="Press a button of the brick, as in `tuisim run`; may be repeated.",
+    ),
+)
 """The options of `tuisim batch` besides the shared ones."""
 
 
@@ -116,11 +168,17 @@ def read_request(arguments: Arguments) -> Request:
         raise ConfigError("needs the table to go on with", "--out FILE", key="--resume")
     target = check_target(out) if out is not None else None
     draws_poses = bool(arguments.picture_of) and picture is None
-    return Request(plan, expressions, target, _workers(arguments, file), arguments.resume, draws_poses, picture)
+    return Request(
+        plan, expressions, target, _workers(arguments, file), arguments.resume, draws_poses, picture
+    )
 
 
 def _workers(arguments: Arguments, file: BatchFile) -> Workers:
-    given = {"--jobs": arguments.jobs, "--scheduler": arguments.scheduler, "--workers": arguments.workers}
+    given = {
+        "--jobs": arguments.jobs,
+        "--scheduler": arguments.scheduler,
+        "--workers": arguments.workers,
+    }
     named = [name for name, value in given.items() if value]
     if len(named) > 1:
         raise ConfigError(f"is given together with {named[0]}", "give one of them", key=named[1])
@@ -152,7 +210,9 @@ def _batch_file(arguments: Arguments) -> BatchFile:
     return file
 
 
-def _subjects(arguments: Arguments, file: BatchFile, goals: GoalsFile | None) -> tuple[Subject, ...]:
+def _subjects(
+    arguments: Arguments, file: BatchFile, goals: GoalsFile | None
+) -> tuple[Subject, ...]:
     """Return the programs; without a world of its own, a batch takes place in that of its goals."""
     check_arguments(arguments.programs, arguments)
     world = file.world
@@ -165,7 +225,9 @@ def _subjects(arguments: Arguments, file: BatchFile, goals: GoalsFile | None) ->
     found, refusals = [], []
     for one in prepare_runs(arguments.programs, arguments, world, "batch"):
         if isinstance(one, NotRun):
-            raise ConfigError(one.error.message, one.error.hint, file="" if one.error.file else one.label)
+            raise ConfigError(
+                one.error.message, one.error.hint, file="" if one.error.file else one.label
+            )
         assert one.program is not None
         found.append(Subject(one.program, one.settings, frozenset(arguments.settings), one.label))
         refusals += [one.decided.refusal] if one.decided.refusal else []
@@ -179,11 +241,15 @@ def _typed_choices(arguments: Arguments) -> dict[str, Choice]:
     for text in arguments.sets:
         name, values = parse_set(text)
         if name in found:
-            raise ConfigError(f"{name} is given twice", "name all of its values at once", key="--set")
+            raise ConfigError(
+                f"{name} is given twice", "name all of its values at once", key="--set"
+            )
         found[name] = values
     if arguments.seeds is not None:
         if SEED in found:
-            raise ConfigError("is given together with --set seed", "give one of them", key="--seeds")
+            raise ConfigError(
+                "is given together with --set seed", "give one of them", key="--seeds"
+            )
         found[SEED] = parse_seeds(arguments.seeds)
     return found
 
@@ -191,7 +257,9 @@ def _typed_choices(arguments: Arguments) -> dict[str, Choice]:
 def _expression(text: str) -> tuple[str, str]:
     name, equals, expression = text.partition("=")
     if not equals or not name.strip() or not expression.strip():
-        raise ConfigError(f"must be NAME=EXPR, got {text!r}", "such as 'far_mm=hypot(x_mm, y_mm)'", key="--expr")
+        raise ConfigError(
+            f"must be NAME=EXPR, got {text!r}", "such as 'far_mm=hypot(x_mm, y_mm)'", key="--expr"
+        )
     return name.strip(), expression.strip()
 
 
@@ -199,5 +267,7 @@ def _run_options(spec: RunSpec, arguments: Arguments, goals: GoalsFile | None) -
     return RunOptions(
         time_limit_s=arguments.timeout,
         answers=arguments.input or (goals.answers if goals else ()),
-        actions=press_actions(arguments.press or (goals.presses if goals else ()), spec.profile.tick_hz),
+        actions=press_actions(
+            arguments.press or (goals.presses if goals else ()), spec.profile.tick_hz
+        ),
     )

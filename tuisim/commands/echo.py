@@ -82,7 +82,8 @@ def _stream_json(items: Iterable[Any]) -> None:
 def finite(row: Mapping[Any, Any]) -> dict[Any, Any]:
     """Return a row for JSON, which has no infinite numbers: they, and those that are missing, become None."""
     return {
-        name: None if isinstance(value, float) and not math.isfinite(value) else value for name, value in row.items()
+        name: None if isinstance(value, float) and not math.isfinite(value) else value
+        for name, value in row.items()
     }
 
 
@@ -138,7 +139,9 @@ class CsvOut:
     def write(self, text: str) -> None:
         """Write text."""
         with progress_hidden(sys.stdout):
-            sys.stdout.write("\n".join(map(printable, text.split("\n"))) if sys.stdout.isatty() else text)
+            sys.stdout.write(
+                "\n".join(map(printable, text.split("\n"))) if sys.stdout.isatty() else text
+            )
 
 
 class Figure(float):
@@ -164,16 +167,22 @@ _GOOD_CELLS, _LEAST_CELLS = 20, 8
 def table(heads: Sequence[str], rows: Sequence[Sequence[object]]) -> str:
     """Return rows of text under their heads, as `table_lines` has them; columns of numbers are right-aligned."""
     columns = list(zip(*rows, strict=True)) if rows else [()] * len(heads)
-    right = [bool(rows) and all(isinstance(cell, int | float) for cell in column) for column in columns]
+    right = [
+        bool(rows) and all(isinstance(cell, int | float) for cell in column) for column in columns
+    ]
     return "\n".join(table_lines(heads, [list(map(str, column)) for column in columns], right))
 
 
-def echo_table(heads: Sequence[str], columns: Sequence[Sequence[str]], right: Sequence[bool]) -> None:
+def echo_table(
+    heads: Sequence[str], columns: Sequence[Sequence[str]], right: Sequence[bool]
+) -> None:
     """Write the lines of a table to stdout; the arguments are those of `table_lines`."""
     _print(table_lines(heads, columns, right), sys.stdout)
 
 
-def table_lines(heads: Sequence[str], columns: Sequence[Sequence[str]], right: Sequence[bool]) -> Iterator[str]:
+def table_lines(
+    heads: Sequence[str], columns: Sequence[Sequence[str]], right: Sequence[bool]
+) -> Iterator[str]:
     """Yield columns of text under their heads, aligned.
 
     In a terminal that is too narrow for it, the longest texts are broken between words; if that is not enough, heads of
@@ -185,25 +194,45 @@ def table_lines(heads: Sequence[str], columns: Sequence[Sequence[str]], right: S
         columns: Texts, the same number in each column.
         right: Which columns are right-aligned.
     """
-    body = [column if "".join(column).isprintable() else list(map(printable, column)) for column in columns]
+    body = [
+        column if "".join(column).isprintable() else list(map(printable, column))
+        for column in columns
+    ]
     room = _columns() if sys.stdout.isatty() else None
     above = _stacked(heads)
-    for lines, gap, least in (([[*heads]], "  ", _GOOD_CELLS), (above, "  ", _GOOD_CELLS), (above, " ", _LEAST_CELLS)):
-        cells = [[*head, *column] for head, column in zip(zip(*lines, strict=True), body, strict=True)]
+    for lines, gap, least in (
+        ([[*heads]], "  ", _GOOD_CELLS),
+        (above, "  ", _GOOD_CELLS),
+        (above, " ", _LEAST_CELLS),
+    ):
+        cells = [
+            [*head, *column] for head, column in zip(zip(*lines, strict=True), body, strict=True)
+        ]
         widths = [max(map(len, column)) for column in cells]
         if room is None or _total(widths, gap) <= room:
             break
         figures = [all(cell.strip()[:1].isdecimal() for cell in column if cell) for column in body]
-        longest = [max((len(word) for cell in column for word in cell.split()), default=0) for column in body]
+        longest = [
+            max((len(word) for cell in column for word in cell.split()), default=0)
+            for column in body
+        ]
         widths = _cut_to(room, widths, figures, gap, [max(least, length) for length in longest])
         if least == _LEAST_CELLS:
             widths = _cut_to(room, widths, figures, gap, [least] * len(heads))
         rows = zip(*cells, strict=True)
-        cells = [[*column] for column in zip(*(line for row in rows for line in _wrapped(row, widths)), strict=True)]
+        cells = [
+            [*column]
+            for column in zip(
+                *(line for row in rows for line in _wrapped(row, widths)), strict=True
+            )
+        ]
         if _total(widths, gap) <= room:
             break
     pads = [str.rjust if at_right else str.ljust for at_right in right]
-    padded = [map(pad, column, repeat(width)) for pad, column, width in zip(pads, cells, widths, strict=True)]
+    padded = [
+        map(pad, column, repeat(width))
+        for pad, column, width in zip(pads, cells, widths, strict=True)
+    ]
     return (line.rstrip() for line in map(gap.join, zip(*padded, strict=True)))
 
 
@@ -232,11 +261,15 @@ def _wrapped(row: Sequence[str], widths: Sequence[int]) -> Iterator[tuple[str, .
     yield from zip_longest(*texts, fillvalue="")
 
 
-def _cut_to(room: int, widths: Sequence[int], figures: Sequence[bool], gap: str, least: Sequence[int]) -> list[int]:
+def _cut_to(
+    room: int, widths: Sequence[int], figures: Sequence[bool], gap: str, least: Sequence[int]
+) -> list[int]:
     """Return the widths of columns with the widest texts made narrower until they fit, as far as they can be."""
     widths = [*widths]
     while _total(widths, gap) > room:
-        texts = [at for at, is_figure in enumerate(figures) if not is_figure and widths[at] > least[at]]
+        texts = [
+            at for at, is_figure in enumerate(figures) if not is_figure and widths[at] > least[at]
+        ]
         if not texts:
             break
         widths[max(texts, key=widths.__getitem__)] -= 1
@@ -339,7 +372,11 @@ class Progress:
         while not self._wait(LINE_EVERY_S):
             minutes += LINE_EVERY_S / 60
             with self._lock:
-                print(f"tuisim: after {minutes:g} min: {printable(self._what)}", file=sys.stderr, flush=True)
+                print(
+                    f"tuisim: after {minutes:g} min: {printable(self._what)}",
+                    file=sys.stderr,
+                    flush=True,
+                )
 
     def _draw(self) -> None:
         try:
@@ -359,7 +396,11 @@ class Progress:
             self._bar.tasks[0].start_time = self._bar.get_time() - (time.monotonic() - self._begun)
             self._bar.start()
         task = self._bar.tasks[0]
-        task.description, task.completed, task.total = printable(self._what), self._done, self._total
+        task.description, task.completed, task.total = (
+            printable(self._what),
+            self._done,
+            self._total,
+        )
         self._bar.refresh()
 
     def _hide(self) -> None:
@@ -372,11 +413,21 @@ def _bar() -> Bar:
     from rich.console import Console
     from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeElapsedColumn
 
-    columns = (TextColumn("{task.description}", markup=False), BarColumn(), TaskProgressColumn(), TimeElapsedColumn())
+    columns = (
+        TextColumn("{task.description}", markup=False),
+        BarColumn(),
+        TaskProgressColumn(),
+        TimeElapsedColumn(),
+    )
     # stdout and stderr are not redirected: only the bar goes through rich.
     console = Console(stderr=True)
     return Progress(
-        *columns, console=console, auto_refresh=False, transient=True, redirect_stdout=False, redirect_stderr=False
+        *columns,
+        console=console,
+        auto_refresh=False,
+        transient=True,
+        redirect_stdout=False,
+        redirect_stderr=False,
     )
 
 

@@ -43,7 +43,9 @@ def describe(run: StoredRun, most_bytes: int | None = None) -> dict[str, Any]:
     last, end = run.telemetry.last(), run.end
     pose = last.pose if last else run.spec.world.start
     stood = standstill_of(run.telemetry, run.spec)
-    counts = counts_of(run.output) if most_bytes is None or run.output.length <= most_bytes else None
+    counts = (
+        counts_of(run.output) if most_bytes is None or run.output.length <= most_bytes else None
+    )
     return {
         "run": run.number,
         "id": run.id,
@@ -90,7 +92,9 @@ def report(run: StoredRun, exit_code: int, *, as_json: bool) -> None:
     if facts["error"] and not any(row.stream == Stream.STDERR for row in run.output.rows()):
         echo_error_lines(facts["error"].rstrip("\n"))
     if facts["error"].rstrip("\n").endswith(NO_ANSWER):
-        echo_error("`tuisim run` is not interactive: give each answer with --input TEXT, or use the app.")
+        echo_error(
+            "`tuisim run` is not interactive: give each answer with --input TEXT, or use the app."
+        )
     if as_json:
         echo_json({**facts, "exit_code": exit_code}, flush=True)
     else:

@@ -11,7 +11,16 @@ from typing import Any
 from tuisim.batch.parameters import parse_seeds
 from tuisim.batch.task import Keep
 from tuisim.commands.batch_options import jobs_option
-from tuisim.commands.echo import Progress, echo, echo_error, echo_json, echo_lines, echo_wrapped, table, tell
+from tuisim.commands.echo import (
+    Progress,
+    echo,
+    echo_error,
+    echo_json,
+    echo_lines,
+    echo_wrapped,
+    table,
+    tell,
+)
 from tuisim.commands.run_options import timeout_option
 from tuisim.config.build import build_run_spec, settings_from
 from tuisim.config.command_line import AS_JSON, Group, WordType, argument, command, option
@@ -158,7 +167,11 @@ def _show(file: GoalsFile, run: StoredRun, judgements: Sequence[Judgement]) -> N
 def _mark_of(judgement: Judgement) -> str:
     """Return the mark before a goal; one that takes points off is at its best if it is missed."""
     is_penalty = judgement.goal.points < 0 and judgement.state is not GoalState.OPEN
-    return _MARKS[GoalState.MET if judgement.is_good else GoalState.MISSED] if is_penalty else _MARKS[judgement.state]
+    return (
+        _MARKS[GoalState.MET if judgement.is_good else GoalState.MISSED]
+        if is_penalty
+        else _MARKS[judgement.state]
+    )
 
 
 def _details(judgement: Judgement) -> Iterator[str]:
@@ -167,7 +180,9 @@ def _details(judgement: Judgement) -> Iterator[str]:
         return
     line = f", line {judgement.line}" if judgement.line else ""
     if (event := judgement.event) is not None:
-        where = f"{event.state} at {event.time_s:.2f} s, x {event.x_mm:.0f} mm, y {event.y_mm:.0f} mm"
+        where = (
+            f"{event.state} at {event.time_s:.2f} s, x {event.x_mm:.0f} mm, y {event.y_mm:.0f} mm"
+        )
         yield f"{where}{'' if judgement.reason else line}"
     if judgement.reason:
         reason = judgement.reason
@@ -179,8 +194,13 @@ def _details(judgement: Judgement) -> Iterator[str]:
 @command(
     argument("goals_path", "TASK", example_names),
     argument("wrong", "[PROGRAM…]", nargs=-1),
-    option("--seeds", default=TRIAL_SEEDS, metavar="SEEDS", group=_RUNS,
-           help=f"Run each program with these seeds: 0..4, or 1,2,5 ({TRIAL_SEEDS})."),
+    option(
+        "--seeds",
+        default=TRIAL_SEEDS,
+        metavar="SEEDS",
+        group=_RUNS,
+        help=f"Run each program with these seeds: 0..4, or 1,2,5 ({TRIAL_SEEDS}).",
+    ),
     timeout_option(_RUNS, TIME_LIMIT_S),
     jobs_option(group=_RUNS),
     name="try",
@@ -191,7 +211,7 @@ def _details(judgement: Judgement) -> Iterator[str]:
 
     Exit code: 0 if only the model gets points, and wrong examples not all; 1 if not; 2 if a file is wrong.
     """,
-)  # fmt: skip
+)
 def try_task(goals_path: str, wrong: Sequence[str], seeds: str, timeout: float, jobs: int) -> int:
     """Try a task out."""
     from tuisim.marks.trial import trial_of
@@ -208,7 +228,10 @@ def try_task(goals_path: str, wrong: Sequence[str], seeds: str, timeout: float, 
     with Progress("goals try"):
         trial = trial_of(task, plan, wrong, {})
     echo_lines(
-        table(("PROGRAM", "POINTS", "MEETS"), [(row.name, *_earned(trial.sheet, row)) for row in trial.sheet.rows])
+        table(
+            ("PROGRAM", "POINTS", "MEETS"),
+            [(row.name, *_earned(trial.sheet, row)) for row in trial.sheet.rows],
+        )
     )
     for fault in trial.faults:
         echo_wrapped(f"{task.path.name}: {fault}")
@@ -222,8 +245,10 @@ def try_task(goals_path: str, wrong: Sequence[str], seeds: str, timeout: float, 
 def _earned(sheet: Sheet, row: SheetRow) -> tuple[str, str]:
     """Return the points of a program, and which goals it meets."""
     met = [column.name for column, cell in zip(sheet.columns, row.cells, strict=True) if cell.met]
-    good = all((cell.met == row.runs) is (column.points >= 0)
-               for column, cell in zip(sheet.columns, row.cells, strict=True))  # fmt: skip
+    good = all(
+        (cell.met == row.runs) is (column.points >= 0)
+        for column, cell in zip(sheet.columns, row.cells, strict=True)
+    )
     names = "all" if good and row.runs else ", ".join(met) or "-"
     return f"{in_words(row.points)} of {in_words(sheet.most_points)}", names
 
@@ -244,7 +269,9 @@ def draw_mat(kind: str, seed: int, out: str | None) -> int:
     from tuisim.charts.files import check_format, write_whole
 
     if kind not in DRAWN_MATS:
-        raise ConfigError(f"no such kind of mat {kind!r}", nearest(kind, tuple(DRAWN_MATS)), key="KIND")
+        raise ConfigError(
+            f"no such kind of mat {kind!r}", nearest(kind, tuple(DRAWN_MATS)), key="KIND"
+        )
     if not 0 <= seed <= MAX_SEED:
         raise ConfigError(f"must be from 0 to {MAX_SEED:,}, got {seed:,}", key="--seed")
     path = Path(out or f"{kind}-{seed}.png")

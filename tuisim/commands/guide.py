@@ -32,7 +32,11 @@ def _names() -> Sequence[str]:
 @command(
     argument("topic", "[TOPIC]", _names, required=False),
     option(
-        "--search", "words", metavar="WORDS", type=WordType(), help="List the pages that answer words or a question."
+        "--search",
+        "words",
+        metavar="WORDS",
+        type=WordType(),
+        help="List the pages that answer words or a question.",
     ),
     option("--html", metavar="FOLDER", type=WordType(), help="Write all pages as HTML files."),
 )
@@ -45,7 +49,9 @@ def guide(topic: str | None, words: str | None, html: str | None) -> int:
     from tuisim.guide.text import contents_lines, page_lines
 
     if sum(one is not None for one in (topic, words, html)) > 1:
-        raise ConfigError("TOPIC, --search and --html exclude each other", "give one of them", key="guide")
+        raise ConfigError(
+            "TOPIC, --search and --html exclude each other", "give one of them", key="guide"
+        )
     if html is not None:
         return _write(user_path(html))
     if words is not None:
@@ -56,7 +62,11 @@ def guide(topic: str | None, words: str | None, html: str | None) -> int:
 
 
 def _width() -> int:
-    return min(_MOST_COLUMNS, shutil.get_terminal_size().columns) if sys.stdout.isatty() else _MOST_COLUMNS
+    return (
+        min(_MOST_COLUMNS, shutil.get_terminal_size().columns)
+        if sys.stdout.isatty()
+        else _MOST_COLUMNS
+    )
 
 
 def _show(lines: list[Line]) -> None:

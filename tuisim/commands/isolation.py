@@ -20,7 +20,9 @@ def isolates(arguments: Arguments, danger: str, page: str) -> bool:
         ConfigError: they cannot be isolated, and must be; or the options contradict each other.
     """
     if arguments.isolate and arguments.no_isolate:
-        raise ConfigError("is given together with --no-isolate", "give only one of them", key="--isolate")
+        raise ConfigError(
+            "is given together with --no-isolate", "give only one of them", key="--isolate"
+        )
     if arguments.no_isolate:
         return False
     try:

@@ -95,11 +95,17 @@ def _place(
     if len(places) > 1:
         raise ConfigError(f"name one of {' and '.join(places)}", key="kernel")
     if name is not None and not _VALID_NAME.fullmatch(name):
-        raise ConfigError(f"may contain only lower-case letters, digits and . _ -, got {name!r}", key="--name")
+        raise ConfigError(
+            f"may contain only lower-case letters, digits and . _ -, got {name!r}", key="--name"
+        )
     manager = _manager()
     where = sys.prefix if sys_prefix else prefix
     if where is not None:
-        return manager, str(Path(os.path.abspath(user_path(where)), "share", "jupyter", "kernels")), name
+        return (
+            manager,
+            str(Path(os.path.abspath(user_path(where)), "share", "jupyter", "kernels")),
+            name,
+        )
     return manager, str(manager.user_kernel_dir) if user else None, name
 
 
@@ -119,7 +125,9 @@ def _kernels(folders: Sequence[str]) -> Iterator[InstalledKernel]:
         for file in map(Path, sorted(glob(f"{escape(folder)}/*/{_SPEC_FILE}"))):
             spec = _read(file)
             if spec is not None:
-                yield InstalledKernel(file.parent.name, spec["display_name"], spec["argv"][0], str(file.parent))
+                yield InstalledKernel(
+                    file.parent.name, spec["display_name"], spec["argv"][0], str(file.parent)
+                )
 
 
 def _read(file: Path) -> dict[str, Any] | None:
@@ -140,7 +148,12 @@ def _list(kernels: Sequence[InstalledKernel], *, as_json: bool) -> None:
         echo("no tuisim kernel is installed; `tuisim kernel install` adds one")
     else:
         rows = [
-            (k.name, k.display_name, k.python + ("" if os.path.exists(k.python) else " (missing)"), k.folder)
+            (
+                k.name,
+                k.display_name,
+                k.python + ("" if os.path.exists(k.python) else " (missing)"),
+                k.folder,
+            )
             for k in kernels
         ]
         echo_lines(table(("NAME", "KERNEL", "PYTHON", "FOLDER"), rows))
@@ -152,9 +165,15 @@ def _install(manager: KernelSpecManager, place: Path, name: str) -> None:
     folder = place / name
     file = folder / _SPEC_FILE
     if os.path.exists(file) and _read(file) is None:
-        raise ConfigError(f"{name!r} already names another kernel, in {folder}", "choose another name", key="--name")
+        raise ConfigError(
+            f"{name!r} already names another kernel, in {folder}",
+            "choose another name",
+            key="--name",
+        )
     # As in ipykernel's own spec: the debugger cannot step into frozen modules.
-    spec = get_kernel_dict(extra_arguments=["--ext", EXTENSION], python_arguments=["-Xfrozen_modules=off"])
+    spec = get_kernel_dict(
+        extra_arguments=["--ext", EXTENSION], python_arguments=["-Xfrozen_modules=off"]
+    )
     spec["display_name"] = DISPLAY_NAME
     try:
         folder.mkdir(parents=True, exist_ok=True)
@@ -164,7 +183,9 @@ def _install(manager: KernelSpecManager, place: Path, name: str) -> None:
         raise ConfigError(f"cannot be written: {error.strerror or error}", file=str(file)) from None
     echo(f"kernel {DISPLAY_NAME!r} installed in {folder}")
     if str(place) not in manager.kernel_dirs:
-        echo(f"Jupyter finds it there with JUPYTER_PATH={place.parent}, or if installed below {place.parents[2]}")
+        echo(
+            f"Jupyter finds it there with JUPYTER_PATH={place.parent}, or if installed below {place.parents[2]}"
+        )
 
 
 def _remove(places: Sequence[str], name: str) -> None:
@@ -177,5 +198,7 @@ def _remove(places: Sequence[str], name: str) -> None:
     try:
         folder.unlink() if folder.is_symlink() else shutil.rmtree(folder)
     except OSError as error:
-        raise ConfigError(f"cannot be removed: {error.strerror or error}", file=str(folder)) from None
+        raise ConfigError(
+            f"cannot be removed: {error.strerror or error}", file=str(folder)
+        ) from None
     echo(f"kernel {name!r} removed from {folder}")

@@ -20,7 +20,9 @@ from tuisim.lessons.spec import Lesson, LessonStep, QuestionCheck
 
 _COLUMNS = 80
 _MARKS = {StepState.OPEN: "·", StepState.DONE: "✓", StepState.SKIPPED: "–"}
-FOLDER = option("--folder", metavar="FOLDER", type=WordType(), help="Add the lessons in a folder of your own.")
+FOLDER = option(
+    "--folder", metavar="FOLDER", type=WordType(), help="Add the lessons in a folder of your own."
+)
 
 
 def _names() -> Sequence[str]:
@@ -116,11 +118,28 @@ def list_lessons(folder: str | None, as_json: bool) -> int:
 def _list(folder: str | None, *, as_json: bool) -> int:
     lessons, progress = load_all(folder), load_progress()
     if as_json:
-        echo_json([{"name": one.name, "title": one.title, "minutes": one.minutes, "why": one.why,
-                    "steps": len(one.steps), "path": str(one.path)} for one in lessons])  # fmt: skip
+        echo_json(
+            [
+                {
+                    "name": one.name,
+                    "title": one.title,
+                    "minutes": one.minutes,
+                    "why": one.why,
+                    "steps": len(one.steps),
+                    "path": str(one.path),
+                }
+                for one in lessons
+            ]
+        )
         return 0
     rows = [
-        (number, one.name, one.title, f"{one.minutes} min", progress.get(one.name, LessonProgress()).words(one))
+        (
+            number,
+            one.name,
+            one.title,
+            f"{one.minutes} min",
+            progress.get(one.name, LessonProgress()).words(one),
+        )
         for number, one in enumerate(lessons, start=1)
     ]
     echo_lines(table(("", "LESSON", "ABOUT", "TIME", "PROGRESS"), rows))
@@ -158,16 +177,38 @@ def _plain(lesson: Lesson, progress: LessonProgress) -> dict[str, Any]:
     steps = []
     for step in lesson.steps:
         one = progress.of(step.name)
-        steps.append({"name": step.name, "title": step.title, "state": one.state, "at": one.at or None,
-                      "tries": one.tries, "hints": one.hints})  # fmt: skip
-    return {"lesson": lesson.name, "title": lesson.title, "done": progress.done(lesson), "of": len(lesson.steps),
-            "opened_at": progress.opened_at or None, "steps": steps}  # fmt: skip
+        steps.append(
+            {
+                "name": step.name,
+                "title": step.title,
+                "state": one.state,
+                "at": one.at or None,
+                "tries": one.tries,
+                "hints": one.hints,
+            }
+        )
+    return {
+        "lesson": lesson.name,
+        "title": lesson.title,
+        "done": progress.done(lesson),
+        "of": len(lesson.steps),
+        "opened_at": progress.opened_at or None,
+        "steps": steps,
+    }
 
 
 @command(
     argument("paths", "[FILE…]", nargs=-1),
-    option("--no-runs", is_flag=True, help="Check only the file; do not run model answers and wrong programs."),
-    option("--strict", is_flag=True, help="Exit code 1 also for warnings, such as a wrong way that is not tried."),
+    option(
+        "--no-runs",
+        is_flag=True,
+        help="Check only the file; do not run model answers and wrong programs.",
+    ),
+    option(
+        "--strict",
+        is_flag=True,
+        help="Exit code 1 also for warnings, such as a wrong way that is not tried.",
+    ),
 )
 def check(paths: Sequence[str], no_runs: bool, strict: bool) -> int:
     """Check lessons, for their authors: the file, its model answers, and the wrong ways that must not pass.
@@ -189,16 +230,22 @@ def check(paths: Sequence[str], no_runs: bool, strict: bool) -> int:
             for line in (*wrong, *(f"warning: {one}" for one in warned)):
                 echo(line)
             if not wrong:
-                contents = f"{counted(len(lesson.steps), 'step')}, {counted(len(lesson.goals), 'goal')}"
+                contents = (
+                    f"{counted(len(lesson.steps), 'step')}, {counted(len(lesson.goals), 'goal')}"
+                )
                 words = counted(len(warned), "warning") if warned else "all is well"
-                echo(f"{lesson.path if paths else lesson.name}: {contents}, {_ways(lesson)}: {words}")
+                echo(
+                    f"{lesson.path if paths else lesson.name}: {contents}, {_ways(lesson)}: {words}"
+                )
             is_bad |= bool(wrong or (strict and warned))
     return int(is_bad)
 
 
 def _ways(lesson: Lesson) -> str:
     """Return in words how many wrong ways are tried."""
-    return counted(sum(len(step.wrong_programs) + len(step.wrong) for step in lesson.steps), "wrong way")
+    return counted(
+        sum(len(step.wrong_programs) + len(step.wrong) for step in lesson.steps), "wrong way"
+    )
 
 
 @command(argument("path", "FILE"))
@@ -208,7 +255,9 @@ def new(path: str) -> int:
 
     target = user_path(path)
     write_skeleton(target)
-    echo(f"{target} is written; `tuisim learn {target}` opens it, `tuisim learn check {target}` checks it.")
+    echo(
+        f"{target} is written; `tuisim learn {target}` opens it, `tuisim learn check {target}` checks it."
+    )
     return 0
 
 

@@ -55,7 +55,12 @@ def names_of(field: str) -> Iterable[str]:
 
 COLUMN = WordType(names=lambda: names_of("columns"))
 """The value of an option in which the columns of a recording can be named."""
-WORLD = option("--world", metavar="FILE", type=WordType(), help="Use a world file; it may also precede the program.")
+WORLD = option(
+    "--world",
+    metavar="FILE",
+    type=WordType(),
+    help="Use a world file; it may also precede the program.",
+)
 """The option of the commands that run or open programs."""
 
 
@@ -64,7 +69,11 @@ WORLD = option("--world", metavar="FILE", type=WordType(), help="Use a world fil
 
 @command(
     option("--mats", "folder", metavar="FOLDER", help="List another folder of your own mats."),
-    option("--use-originals", metavar="FOLDER", help="Import the browser simulator's mat images from this folder."),
+    option(
+        "--use-originals",
+        metavar="FOLDER",
+        help="Import the browser simulator's mat images from this folder.",
+    ),
     AS_JSON,
 )
 def backgrounds(folder: str | None, use_originals: str | None, as_json: bool) -> int:
@@ -80,7 +89,9 @@ def backgrounds(folder: str | None, use_originals: str | None, as_json: bool) ->
     if as_json:
         echo_json([_plain(mat) for mat in found])
     else:
-        starts = [f"{mat.start.x_mm:g}, {mat.start.y_mm:g}, {mat.start.heading_deg:g}°" for mat in found]
+        starts = [
+            f"{mat.start.x_mm:g}, {mat.start.y_mm:g}, {mat.start.heading_deg:g}°" for mat in found
+        ]
         rows = [(mat.name, start, _shows(mat)) for mat, start in zip(found, starts, strict=True)]
         echo_lines(table(("NAME", "START x, y, heading", "SHOWS"), rows))
         if any(map(_is_missing, found)):
@@ -101,14 +112,22 @@ def _shows(mat: Background) -> str:
 
 def _plain(mat: Background) -> dict[str, object]:
     return {
-        "name": mat.name, "title": mat.title, "x_mm": mat.start.x_mm, "y_mm": mat.start.y_mm,
-        "heading_deg": mat.start.heading_deg, "picture": None if _is_missing(mat) else str(mat.image),
-    }  # fmt: skip
+        "name": mat.name,
+        "title": mat.title,
+        "x_mm": mat.start.x_mm,
+        "y_mm": mat.start.y_mm,
+        "heading_deg": mat.start.heading_deg,
+        "picture": None if _is_missing(mat) else str(mat.image),
+    }
 
 
-def _show_taken(taken: Sequence[Taken], left: Sequence[str], folder: Path, *, as_json: bool) -> None:
+def _show_taken(
+    taken: Sequence[Taken], left: Sequence[str], folder: Path, *, as_json: bool
+) -> None:
     if as_json:
-        echo_json([{"name": one.name, "file": one.file, "size_px": list(one.size_px)} for one in taken])
+        echo_json(
+            [{"name": one.name, "file": one.file, "size_px": list(one.size_px)} for one in taken]
+        )
     else:
         rows = [(one.name, one.file, _size(one)) for one in taken]
         echo_lines(table(("MAT", "PICTURE", "PIXELS"), rows))
@@ -119,7 +138,11 @@ def _show_taken(taken: Sequence[Taken], left: Sequence[str], folder: Path, *, as
 
 def _size(one: Taken) -> str:
     width, height = one.size_px
-    other = "" if one.size_px == (FIELD_WIDTH_MM, FIELD_HEIGHT_MM) else f", not {FIELD_WIDTH_MM} × {FIELD_HEIGHT_MM}"
+    other = (
+        ""
+        if one.size_px == (FIELD_WIDTH_MM, FIELD_HEIGHT_MM)
+        else f", not {FIELD_WIDTH_MM} × {FIELD_HEIGHT_MM}"
+    )
     return f"{width} × {height}{other}"
 
 
@@ -128,11 +151,18 @@ def _size(one: Taken) -> str:
 
 @command(
     argument("robot", "[NAME|FILE]", lambda: names_of("robot"), required=False),
-    option("--from", "program", metavar="PROGRAM", type=WordType(names=lambda: names_of("programs")),
-           help="Print the robot that a program for a real brick talks about, with the lines that say so."),
-    option("--out", metavar="FILE", type=WordType(), help="Write it to a robot file for -r instead."),
+    option(
+        "--from",
+        "program",
+        metavar="PROGRAM",
+        type=WordType(names=lambda: names_of("programs")),
+        help="Print the robot that a program for a real brick talks about, with the lines that say so.",
+    ),
+    option(
+        "--out", metavar="FILE", type=WordType(), help="Write it to a robot file for -r instead."
+    ),
     AS_JSON,
-)  # fmt: skip
+)
 def robots(robot: str | None, program: str | None, out: str | None, as_json: bool) -> int:
     """List the robots; print one, or the one that a program talks about, in TOML as a starting point for your own.
 
@@ -192,12 +222,21 @@ def obstacles(word: str | None, as_json: bool) -> int:
 
     chosen = OBSTACLES if word is None else {word: load_obstacles(word)}
     if as_json:
-        echo_json([{"name": name, "obstacles": [asdict(box) for box in boxes]} for name, boxes in chosen.items()])
+        echo_json(
+            [
+                {"name": name, "obstacles": [asdict(box) for box in boxes]}
+                for name, boxes in chosen.items()
+            ]
+        )
     elif word is not None:
         echo_lines("\n".join(obstacle_file(chosen[word])))
     else:
         rows = [
-            (name, "; ".join(f"{b.x_mm:g}, {b.y_mm:g}, {b.width_mm:g}, {b.height_mm:g}" for b in boxes) or "nothing")
+            (
+                name,
+                "; ".join(f"{b.x_mm:g}, {b.y_mm:g}, {b.width_mm:g}, {b.height_mm:g}" for b in boxes)
+                or "nothing",
+            )
             for name, boxes in chosen.items()
         ]
         echo_lines(table(("NAME", "BOXES x, y, width, height in mm"), rows))
@@ -218,7 +257,9 @@ def programs(as_json: bool) -> int:
         echo_json([{"name": one.name, "title": one.title, "path": str(one.path)} for one in found])
     else:
         echo_lines(table(("NAME", "DOES"), [(one.name, one.title) for one in found]))
-        echo(f"They are in {programs_folder()}; `tuisim NAME` opens one, `tuisim run NAME` runs it.")
+        echo(
+            f"They are in {programs_folder()}; `tuisim NAME` opens one, `tuisim run NAME` runs it."
+        )
     return 0
 
 
@@ -227,14 +268,22 @@ def profiles(words: Sequence[str], as_json: bool) -> int:
     """List the profiles: the simulated time of each call, and the source of each number."""
     from tuisim.config.profiles import load_profile
 
-    shown = [asdict(profile) for profile in [load_profile(word) for word in words] or PROFILES.values()]
+    shown = [
+        asdict(profile) for profile in [load_profile(word) for word in words] or PROFILES.values()
+    ]
     if as_json:
         echo_json(shown)
         return 0
-    echo_lines(table(("PROFILE", "FOR"), [(profile["name"], profile["title"]) for profile in shown]) + "\n")
+    echo_lines(
+        table(("PROFILE", "FOR"), [(profile["name"], profile["title"]) for profile in shown]) + "\n"
+    )
     rules = values_of(ProfileSpec)
     rows = [
-        [key.removesuffix("_ns"), *(_cost(key, profile[key]) for profile in shown), rules[key].source]
+        [
+            key.removesuffix("_ns"),
+            *(_cost(key, profile[key]) for profile in shown),
+            rules[key].source,
+        ]
         for key in shown[0]
         if key not in ("name", "title")
     ]

@@ -11,49 +11,111 @@ from typing import cast
 
 from tuisim.commands.echo import Progress
 from tuisim.commands.listings import COLUMN
-from tuisim.config.command_line import Arguments, Command, Group, GroupedOption, WordType, argument, choice, option
+from tuisim.config.command_line import (
+    Arguments,
+    Command,
+    Group,
+    GroupedOption,
+    WordType,
+    argument,
+    choice,
+    option,
+)
 from tuisim.data_class import dataclass
 from tuisim.logs.export import LISTED
 from tuisim.logs.units import SECONDS
 
-TELEMETRY = option("--telemetry", is_flag=True, help="Use the telemetry of a run instead of its samples.")
+TELEMETRY = option(
+    "--telemetry", is_flag=True, help="Use the telemetry of a run instead of its samples."
+)
 COLUMNS = (
     option("--time", metavar="COLUMN", group="Columns", help="Time column; '' uses row numbers."),
-    choice("--unit", tuple(SECONDS), group="Columns", callback=lambda _, __, unit: unit or "",
-           help="Unit of the time column, if its name has none."),
-    option("--value", multiple=True, metavar="COLUMN", group="Columns", help="Value column; may be repeated."),
-)  # fmt: skip
+    choice(
+        "--unit",
+        tuple(SECONDS),
+        group="Columns",
+        callback=lambda _, __, unit: unit or "",
+        help="Unit of the time column, if its name has none.",
+    ),
+    option(
+        "--value",
+        multiple=True,
+        metavar="COLUMN",
+        group="Columns",
+        help="Value column; may be repeated.",
+    ),
+)
 """Options that name the columns of a file."""
 
 OPTIONS: Mapping[str, GroupedOption] = {
     "at": option("--at", type=float, metavar="VALUE", help="Threshold."),
     "when": option(
-        "--when", type=COLUMN, default="", metavar="TEXT", help="Variable, operator, threshold: 'Colour < 50 +- 2'."
+        "--when",
+        type=COLUMN,
+        default="",
+        metavar="TEXT",
+        help="Variable, operator, threshold: 'Colour < 50 +- 2'.",
     ),
     "hysteresis": option(
-        "--hysteresis", type=float, default=0.0, metavar="VALUE", help="Margin around the threshold (0)."
+        "--hysteresis",
+        type=float,
+        default=0.0,
+        metavar="VALUE",
+        help="Margin around the threshold (0).",
     ),
-    "between": choice("--between", ("hold", "linear"), default="hold", help="Interpolation between samples (hold)."),
-    "width": option("--width", type=int, default=5, metavar="N", help="Window in samples, odd (5)."),
+    "between": choice(
+        "--between",
+        ("hold", "linear"),
+        default="hold",
+        help="Interpolation between samples (hold).",
+    ),
+    "width": option(
+        "--width", type=int, default=5, metavar="N", help="Window in samples, odd (5)."
+    ),
     "period": option("--period", type=float, metavar="S", help="Seconds between rows."),
     "expression": option(
-        "--expression", type=COLUMN, default="", metavar="TEXT", help="Expression, such as '(left + right) / 2'."
+        "--expression",
+        type=COLUMN,
+        default="",
+        metavar="TEXT",
+        help="Expression, such as '(left + right) / 2'.",
     ),
     "facets": option("--facets", is_flag=True, help="Draw one chart per variable."),
     "marks": option("--marks", is_flag=True, help="Draw points instead of lines."),
     "from": option("--from", type=float, metavar="S", help="Start of the time range, in seconds."),
     "to": option("--to", type=float, metavar="S", help="End of the time range, in seconds."),
-    "against": option("--against", type=COLUMN, default="", metavar="NAME",
-                      help="Variable or column for the x axis, instead of time."),
-    "size": option("--size", default="", metavar="WxH", help="Size in pixels; in characters for text."),
-    "variable": option("--variable", type=COLUMN, multiple=True, metavar="NAME",
-                       help="Only this variable; may be repeated."),
+    "against": option(
+        "--against",
+        type=COLUMN,
+        default="",
+        metavar="NAME",
+        help="Variable or column for the x axis, instead of time.",
+    ),
+    "size": option(
+        "--size", default="", metavar="WxH", help="Size in pixels; in characters for text."
+    ),
+    "variable": option(
+        "--variable",
+        type=COLUMN,
+        multiple=True,
+        metavar="NAME",
+        help="Only this variable; may be repeated.",
+    ),
     "telemetry": TELEMETRY,
     "json": option("--json", is_flag=True, help="Print JSON."),
-    "out": option("--out", metavar="FILE", type=WordType(), help=f"Write the result to a file: {LISTED}."),
-    "chart": option("--out", metavar="FILE", type=WordType(), help="Write the chart to a file: .svg, .png, .txt."),
-    "page": option("--out", metavar="FILE", type=WordType(), help="Write the page to this .html file."),
-}  # fmt: skip
+    "out": option(
+        "--out", metavar="FILE", type=WordType(), help=f"Write the result to a file: {LISTED}."
+    ),
+    "chart": option(
+        "--out",
+        metavar="FILE",
+        type=WordType(),
+        help="Write the chart to a file: .svg, .png, .txt.",
+    ),
+    "page": option(
+        "--out", metavar="FILE", type=WordType(), help="Write the page to this .html file."
+    ),
+}
 """The options of the subcommands besides `COLUMNS`; three are called `--out`."""
 
 _TABLE = ("variable", "telemetry", "json", "out")
@@ -76,31 +138,52 @@ class Subcommand:
     def load(self) -> Callable[[Arguments], int]:
         """Import the function."""
         module, _, function = self.path.partition(":")
-        return cast("Callable[[Arguments], int]", getattr(import_module(f"tuisim.commands.logs.{module}"), function))
+        return cast(
+            "Callable[[Arguments], int]",
+            getattr(import_module(f"tuisim.commands.logs.{module}"), function),
+        )
 
 
 SUBCOMMANDS: Mapping[str, Subcommand] = {
-    "summary": Subcommand("Print count, min, max, mean, std and quantiles of each variable", "tables:summary"),
+    "summary": Subcommand(
+        "Print count, min, max, mean, std and quantiles of each variable", "tables:summary"
+    ),
     "bands": Subcommand("Find plateaus: level, name, times, width", "tables:bands"),
     "events": Subcommand(
-        "Find where a variable crosses --at, or --when", "tables:events", ("at", "when", "hysteresis", *_TABLE)
+        "Find where a variable crosses --at, or --when",
+        "tables:events",
+        ("at", "when", "hysteresis", *_TABLE),
     ),
     "derive": Subcommand("Compute the derivative, in units per second", "tables:derive"),
-    "integrate": Subcommand("Compute the integral, in units times seconds", "tables:integrate", ("between", *_TABLE)),
-    "average": Subcommand("Compute a centred rolling mean of --width samples", "tables:average", ("width", *_TABLE)),
-    "resample": Subcommand(
-        "Resample each variable every --period seconds", "tables:even", ("period", "between", *_TABLE)
+    "integrate": Subcommand(
+        "Compute the integral, in units times seconds", "tables:integrate", ("between", *_TABLE)
     ),
-    "calc": Subcommand("Evaluate --expression over the columns", "tables:calculate", ("expression", *_FRAME)),
+    "average": Subcommand(
+        "Compute a centred rolling mean of --width samples", "tables:average", ("width", *_TABLE)
+    ),
+    "resample": Subcommand(
+        "Resample each variable every --period seconds",
+        "tables:even",
+        ("period", "between", *_TABLE),
+    ),
+    "calc": Subcommand(
+        "Evaluate --expression over the columns", "tables:calculate", ("expression", *_FRAME)
+    ),
     "reckon": Subcommand(
         "Compare the pose by dead reckoning with the real one; --json or --out FILE for every tick",
         "tables:reckon",
         _FRAME,
     ),
-    "diff": Subcommand("Show where two runs differ; exit code 1 if they do", "tables:diff", ("json",), "RUN RUN"),
-    "export": Subcommand("Write the log in another format", "tables:export", ("variable", "telemetry", "out")),
+    "diff": Subcommand(
+        "Show where two runs differ; exit code 1 if they do", "tables:diff", ("json",), "RUN RUN"
+    ),
+    "export": Subcommand(
+        "Write the log in another format", "tables:export", ("variable", "telemetry", "out")
+    ),
     "plot": Subcommand("Draw the chart, as text, SVG or PNG", "documents:plot", _CHART),
-    "report": Subcommand("Write a one-page report: program, world, chart, bands", "documents:report", _PAGE),
+    "report": Subcommand(
+        "Write a one-page report: program, world, chart, bands", "documents:report", _PAGE
+    ),
 }
 """The subcommands of `tuisim log`, by name."""
 

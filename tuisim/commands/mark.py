@@ -50,40 +50,102 @@ _RUNS, _RESULTS = "Runs", "Results"
 _OPTIONS = (
     argument("goals", "GOALS"),
     argument("folders", "FOLDER…", nargs=-1),
-    option("--seeds", default=DEFAULT_SEEDS, metavar="SEEDS", group=_RUNS,
-           help=f"Run each program with these seeds: 0..19, or 1,2,5 ({DEFAULT_SEEDS})."),
+    option(
+        "--seeds",
+        default=DEFAULT_SEEDS,
+        metavar="SEEDS",
+        group=_RUNS,
+        help=f"Run each program with these seeds: 0..19, or 1,2,5 ({DEFAULT_SEEDS}).",
+    ),
     timeout_option(_RUNS, TIME_LIMIT_S),
     input_option(_RUNS),
     jobs_option(group=_RUNS),
-    option("--isolate", is_flag=True, group=_RUNS,
-           help="Refuse to mark where programs cannot be isolated: without network, your files, and much memory."),
-    option("--no-isolate", "no_isolate", is_flag=True, group=_RUNS,
-           help="Do not isolate programs; otherwise each runs through bubblewrap, where that starts."),
-    option("--resume", is_flag=True, group=_RUNS,
-           help="Go on where an earlier marking with these goals ended; run only what is new or has changed."),
+    option(
+        "--isolate",
+        is_flag=True,
+        group=_RUNS,
+        help="Refuse to mark where programs cannot be isolated: without network, your files, and much memory.",
+    ),
+    option(
+        "--no-isolate",
+        "no_isolate",
+        is_flag=True,
+        group=_RUNS,
+        help="Do not isolate programs; otherwise each runs through bubblewrap, where that starts.",
+    ),
+    option(
+        "--resume",
+        is_flag=True,
+        group=_RUNS,
+        help="Go on where an earlier marking with these goals ended; run only what is new or has changed.",
+    ),
     keep_option(USUAL_KEEP, _RUNS),
-    option("--export", multiple=True, metavar="FILE", type=WordType(), group=_RESULTS,
-           help=f"Write the marks: .html is a page with a report of each stored run, else {ALLOWED}; may be repeated."),
-    option("--moodle", metavar="FILE", type=WordType(), group=_RESULTS,
-           help="Write a CSV file for Moodle's gradebook."),
-    option("--canvas", metavar="FILE", type=WordType(), group=_RESULTS,
-           help="Write a CSV file for Canvas's gradebook."),
-    option("--roster", metavar="FILE", type=WordType(), group=_RESULTS,
-           help="A CSV file that names the student of each submission, with the gradebook's columns."),
-    option("--goal-columns", "goal_columns", is_flag=True, group=_RESULTS,
-           help="Give each goal a column of its own in the gradebook's file."),
-    option("--overrides", metavar="FILE", type=WordType(), group=_RESULTS,
-           help="A TOML file with your own points and comments by student, which take precedence."),
-    option("--movies", is_flag=True, group=_RESULTS,
-           help="Give the page's report of each run that missed a goal a movie with the goals on it."),
-    option("--feedback", metavar="FOLDER", type=WordType(), group=_RESULTS,
-           help="Write a text file for each student: what was met, what was missed, and why."),
-)  # fmt: skip
+    option(
+        "--export",
+        multiple=True,
+        metavar="FILE",
+        type=WordType(),
+        group=_RESULTS,
+        help=f"Write the marks: .html is a page with a report of each stored run, else {ALLOWED}; may be repeated.",
+    ),
+    option(
+        "--moodle",
+        metavar="FILE",
+        type=WordType(),
+        group=_RESULTS,
+        help="Write a CSV file for Moodle's gradebook.",
+    ),
+    option(
+        "--canvas",
+        metavar="FILE",
+        type=WordType(),
+        group=_RESULTS,
+        help="Write a CSV file for Canvas's gradebook.",
+    ),
+    option(
+        "--roster",
+        metavar="FILE",
+        type=WordType(),
+        group=_RESULTS,
+        help="A CSV file that names the student of each submission, with the gradebook's columns.",
+    ),
+    option(
+        "--goal-columns",
+        "goal_columns",
+        is_flag=True,
+        group=_RESULTS,
+        help="Give each goal a column of its own in the gradebook's file.",
+    ),
+    option(
+        "--overrides",
+        metavar="FILE",
+        type=WordType(),
+        group=_RESULTS,
+        help="A TOML file with your own points and comments by student, which take precedence.",
+    ),
+    option(
+        "--movies",
+        is_flag=True,
+        group=_RESULTS,
+        help="Give the page's report of each run that missed a goal a movie with the goals on it.",
+    ),
+    option(
+        "--feedback",
+        metavar="FOLDER",
+        type=WordType(),
+        group=_RESULTS,
+        help="Write a text file for each student: what was met, what was missed, and why.",
+    ),
+)
 
 
 @command(
     *_OPTIONS,
-    *(one for one in shared_options(hidden=(APP, PANEL), names=names_of) if one.name not in _LEFT_OUT),
+    *(
+        one
+        for one in shared_options(hidden=(APP, PANEL), names=names_of)
+        if one.name not in _LEFT_OUT
+    ),
     help="""Mark the programs of a class.
 
     GOALS is a file with the goals of the task and its world. A FOLDER contains a file NAME.py or a folder for each
@@ -109,14 +171,18 @@ def mark(**given: Any) -> int:
     seeds = parse_seeds(arguments.seeds, "--seeds")
     _check(arguments, task)
     found = find_students(
-        arguments.folders, Path(task.program).name if task.program else "", _excluded(arguments, task)
+        arguments.folders,
+        Path(task.program).name if task.program else "",
+        _excluded(arguments, task),
     )
     roster, overrides = _tutor_files(found, task, arguments)
     entries, students = entries_of(found.students, task, arguments.settings)
     plan = MarkPlan(
         worlds=task.worlds,
         seeds=seeds,
-        options=RunOptions(time_limit_s=arguments.timeout, stall_limit_s=STALL_LIMIT_S, answers=arguments.input),
+        options=RunOptions(
+            time_limit_s=arguments.timeout, stall_limit_s=STALL_LIMIT_S, answers=arguments.input
+        ),
         keep=Keep(arguments.keep or USUAL_KEEP),
         jobs=arguments.jobs,
         isolate=isolates(arguments, "programs can read and change your files", "security"),
@@ -140,7 +206,9 @@ def mark(**given: Any) -> int:
     return max(_tell_unread(students), _tell_missing(outcomes), _tell_unknown(outcomes))
 
 
-def _tutor_files(found: StudentsFound, task: GoalsFile, arguments: Arguments) -> tuple[Roster, Mapping[str, Override]]:
+def _tutor_files(
+    found: StudentsFound, task: GoalsFile, arguments: Arguments
+) -> tuple[Roster, Mapping[str, Override]]:
     """Return the class list and the tutor's overrides; say which submissions are not in the list, and who is absent.
 
     Raises:
@@ -148,7 +216,9 @@ def _tutor_files(found: StudentsFound, task: GoalsFile, arguments: Arguments) ->
     """
     names = [student.name for student in found.students]
     overrides = (
-        read_overrides(Path(arguments.overrides), columns_of(task.every_goal), names) if arguments.overrides else {}
+        read_overrides(Path(arguments.overrides), columns_of(task.every_goal), names)
+        if arguments.overrides
+        else {}
     )
     if not arguments.roster:
         return Roster({}), overrides
@@ -156,28 +226,39 @@ def _tutor_files(found: StudentsFound, task: GoalsFile, arguments: Arguments) ->
     if missing := roster.missing(names):
         echo_error(f"note: not in {arguments.roster}: {listed(map(printable, missing))}")
     if absent := roster.absent(names):
-        echo_error(f"note: in {arguments.roster}, but without a submission: {listed(map(printable, absent))}")
+        echo_error(
+            f"note: in {arguments.roster}, but without a submission: {listed(map(printable, absent))}"
+        )
     return roster, overrides
 
 
 def _tell_so_far(
-    task: GoalsFile, plan: MarkPlan, students: Sequence[Student], outcomes: Mapping[str, Sequence[Outcome]]
+    task: GoalsFile,
+    plan: MarkPlan,
+    students: Sequence[Student],
+    outcomes: Mapping[str, Sequence[Outcome]],
 ) -> None:
     """Print the marks of the students whose programs have had all their runs, and what is kept of the others."""
     done = [
         student
         for student in students
-        if not student.source or len(outcomes[student.name]) == runs_of(outcomes[student.name], plan)
+        if not student.source
+        or len(outcomes[student.name]) == runs_of(outcomes[student.name], plan)
     ]
     if done:
         _print(_sheet(task, plan, done, outcomes), ())
-    echo_error(f"tuisim: interrupted with {len(done)} of {counted(len(students), 'student')} marked, nothing exported;")
+    echo_error(
+        f"tuisim: interrupted with {len(done)} of {counted(len(students), 'student')} marked, nothing exported;"
+    )
     kept = counted(sum(map(len, outcomes.values())), "run")
     echo_error(f"tuisim: {kept} kept: the same command with --resume goes on")
 
 
 def _sheet(
-    task: GoalsFile, plan: MarkPlan, students: Sequence[Student], outcomes: Mapping[str, Sequence[Outcome]]
+    task: GoalsFile,
+    plan: MarkPlan,
+    students: Sequence[Student],
+    outcomes: Mapping[str, Sequence[Outcome]],
 ) -> Sheet:
     worlds = [world.where for world in plan.worlds]
     return sheet_of(task.title, columns_of(task.every_goal), plan.seeds, students, outcomes, worlds)
@@ -204,8 +285,12 @@ def _tell_missing(outcomes: Mapping[str, Sequence[Outcome]]) -> int:
     if not missing:
         return 0
     names = listed([f"{printable(name)} with seed {one.seed}" for name, one in missing])
-    echo_error(f"tuisim: this machine could not make {counted(len(missing), 'run')}; the marks are without: {names}")
-    echo_error(f"tuisim: {missing[0][1].failure}; the same command with --resume runs what is missing")
+    echo_error(
+        f"tuisim: this machine could not make {counted(len(missing), 'run')}; the marks are without: {names}"
+    )
+    echo_error(
+        f"tuisim: {missing[0][1].failure}; the same command with --resume runs what is missing"
+    )
     return 1
 
 
@@ -215,7 +300,9 @@ def _tell_unknown(outcomes: Mapping[str, Sequence[Outcome]]) -> int:
     found = {goal: reason for unknown in by_student.values() for goal, reason in unknown.items()}
     for goal in sorted(found):
         by = [name for name, unknown in by_student.items() if goal in unknown]
-        echo_error(f"tuisim: “{goal}” cannot be judged and counts as missed, for {listed(map(printable, by))}:")
+        echo_error(
+            f"tuisim: “{goal}” cannot be judged and counts as missed, for {listed(map(printable, by))}:"
+        )
         echo_error(f"tuisim: {found[goal]}")
     return 1 if found else 0
 
@@ -244,11 +331,17 @@ def _check(arguments: Arguments, task: GoalsFile) -> None:
     for name in ("roster", "goal_columns"):
         if vars(arguments)[name] and not gradebooks:
             raise ConfigError(
-                "is for a gradebook", "give --moodle FILE or --canvas FILE", key=f"--{name.replace('_', '-')}"
+                "is for a gradebook",
+                "give --moodle FILE or --canvas FILE",
+                key=f"--{name.replace('_', '-')}",
             )
     if arguments.movies and not any(target.suffix.lower() in PAGE_SUFFIXES for target in targets):
         raise ConfigError("is for the page of a class", "give --export FILE.html", key="--movies")
-    if arguments.feedback and os.path.exists(arguments.feedback) and not os.path.isdir(arguments.feedback):
+    if (
+        arguments.feedback
+        and os.path.exists(arguments.feedback)
+        and not os.path.isdir(arguments.feedback)
+    ):
         raise ConfigError(f"{arguments.feedback} is no folder", "name a folder", key="--feedback")
 
 
@@ -265,11 +358,19 @@ def _excluded(arguments: Arguments, task: GoalsFile) -> frozenset[Path]:
 
 
 def _collect(
-    entries: Sequence[RunEntry], plan: MarkPlan, journal: Path, outcomes: dict[str, list[Outcome]], *, resumes: bool
+    entries: Sequence[RunEntry],
+    plan: MarkPlan,
+    journal: Path,
+    outcomes: dict[str, list[Outcome]],
+    *,
+    resumes: bool,
 ) -> None:
     """Run what is to be run; add the outcomes by name of student as they become known."""
     wanted = {entry.student.name: runs_of((), plan) for entry in entries}
-    with Journal(journal, resumes=resumes) as known, closing(outcomes_of(entries, plan, known)) as found:
+    with (
+        Journal(journal, resumes=resumes) as known,
+        closing(outcomes_of(entries, plan, known)) as found,
+    ):
         for done, (name, outcome) in enumerate(found, start=1):
             outcomes[name].append(outcome)
             wanted[name] = runs_of(outcomes[name], plan)
@@ -318,12 +419,16 @@ def _write_page(
     write_whole(target, page_of(sheet, links, ignored, alike, class_maps(misses)).encode())
 
 
-def _write_gradebooks(sheet: Sheet, students: Sequence[Student], roster: Roster, arguments: Arguments) -> None:
+def _write_gradebooks(
+    sheet: Sheet, students: Sequence[Student], roster: Roster, arguments: Arguments
+) -> None:
     for kind in GradebookKind:
         if target := vars(arguments)[kind]:
             tell(f"writing {target}")
             sources = [student.text for student in students]
-            write_gradebook(Path(target), kind, sheet, sources, roster, goals=arguments.goal_columns)
+            write_gradebook(
+                Path(target), kind, sheet, sources, roster, goals=arguments.goal_columns
+            )
 
 
 _NARROWER = ((40, 60), (24, 20), (16, 10), (12, 6))

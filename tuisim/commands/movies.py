@@ -24,17 +24,29 @@ _FAST_S = 60
 
 _run = argument("word", "RUN", lambda: ("last",))
 _panels = option(
-    "--panels", metavar="NAMES", help=f"What is shown: some of {_PANELS} (world, and chart if there are samples)."
+    "--panels",
+    metavar="NAMES",
+    help=f"What is shown: some of {_PANELS} (world, and chart if there are samples).",
 )
 _size = option("--size", default="", metavar="WxH", help="Width and height in pixels (600 wide).")
 
 
 @command(
     _run,
-    option("--out", metavar="FILE", type=WordType(), help="The file: .gif or .webp (PROGRAM-movie.gif)."),
+    option(
+        "--out",
+        metavar="FILE",
+        type=WordType(),
+        help="The file: .gif or .webp (PROGRAM-movie.gif).",
+    ),
     option("--from", "start_s", type=float, metavar="S", help="Start, in simulated seconds."),
     option("--to", "stop_s", type=float, metavar="S", help="End, in simulated seconds."),
-    option("--speed", type=float, metavar="N", help="Multiple of real time (1; more for more than a minute)."),
+    option(
+        "--speed",
+        type=float,
+        metavar="N",
+        help="Multiple of real time (1; more for more than a minute).",
+    ),
     option("--fps", type=float, default=20.0, metavar="N", help="Frames per second, 1 to 50 (20)."),
     _panels,
     _size,
@@ -74,7 +86,12 @@ def movie(
 
 @command(
     _run,
-    option("--out", metavar="FILE", type=WordType(), help="The file: .png or .svg (PROGRAM-picture.png)."),
+    option(
+        "--out",
+        metavar="FILE",
+        type=WordType(),
+        help="The file: .png or .svg (PROGRAM-picture.png).",
+    ),
     option("--at", "time_s", type=float, metavar="S", help="Simulated time in seconds (the end)."),
     _panels,
     _size,

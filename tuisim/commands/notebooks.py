@@ -26,10 +26,15 @@ def to_list(words: Sequence[str], *, run_all: bool = False) -> list[NotebookProg
 
 def print_list(word: str, programs: Sequence[NotebookProgram]) -> None:
     """Print the programs of a notebook, and how to run one."""
-    rows = [(p.number, _titled(p), p.source.options.get("background", ""), p.source.program.prelude) for p in programs]
+    rows = [
+        (p.number, _titled(p), p.source.options.get("background", ""), p.source.program.prelude)
+        for p in programs
+    ]
     echo_lines(table(("cell", "title", "mat", "names"), rows))
     echo()
-    echo(f"tuisim '{word}#1' opens the first; tuisim run '{word}#1' runs it, tuisim run {word} --all runs all")
+    echo(
+        f"tuisim '{word}#1' opens the first; tuisim run '{word}#1' runs it, tuisim run {word} --all runs all"
+    )
 
 
 def _titled(program: NotebookProgram) -> str:
@@ -45,7 +50,9 @@ def known_programs(word: str) -> list[NotebookProgram]:
     """
     known = without_unknown(chosen_programs(word))
     if not known:
-        raise ConfigError("has no program that runs outside the notebook", "run its cells in Jupyter", file=word)
+        raise ConfigError(
+            "has no program that runs outside the notebook", "run its cells in Jupyter", file=word
+        )
     return known
 
 
@@ -90,7 +97,11 @@ def check_folder(word: str, *, run_all: bool) -> list[Path]:
     found = notebooks_in(Path(word))
     if not found:
         main = os.path.join(word, "main.py")
-        named = f"its program {main}" if os.path.isfile(main) else "a program, or a folder with notebooks"
+        named = (
+            f"its program {main}"
+            if os.path.isfile(main)
+            else "a program, or a folder with notebooks"
+        )
         raise ConfigError("is a folder without notebooks", f"name {named}", file=word)
     if not run_all:
         hint = f"tuisim run {word} --all runs them all"

@@ -63,15 +63,25 @@ def check_arguments(words: Sequence[str], arguments: Arguments) -> None:
         return
     programs = [word for word in words if not means_world(word)]
     if getattr(arguments, "run", None) is not None:
-        raise ConfigError("a stored run has its own arguments", "leave them out", key=ARGUMENTS_FOLLOW)
+        raise ConfigError(
+            "a stored run has its own arguments", "leave them out", key=ARGUMENTS_FOLLOW
+        )
     if len(programs) > 1:
-        raise ConfigError("arguments go to one program", f"got {len(programs)}", key=ARGUMENTS_FOLLOW)
+        raise ConfigError(
+            "arguments go to one program", f"got {len(programs)}", key=ARGUMENTS_FOLLOW
+        )
     if not programs and not any(map(means_world, words)) and not arguments.world:
-        raise ConfigError("arguments need a program", "tuisim PROGRAM -- ARGUMENTS", key=ARGUMENTS_FOLLOW)
+        raise ConfigError(
+            "arguments need a program", "tuisim PROGRAM -- ARGUMENTS", key=ARGUMENTS_FOLLOW
+        )
     if programs and os.path.isdir(programs[0]):
-        raise ConfigError(f"{programs[0]} is a folder; notebooks take no arguments", key=ARGUMENTS_FOLLOW)
+        raise ConfigError(
+            f"{programs[0]} is a folder; notebooks take no arguments", key=ARGUMENTS_FOLLOW
+        )
     if programs and is_notebook(programs[0]):
-        raise ConfigError(f"{programs[0]} is a notebook; its cells take no arguments", key=ARGUMENTS_FOLLOW)
+        raise ConfigError(
+            f"{programs[0]} is a notebook; its cells take no arguments", key=ARGUMENTS_FOLLOW
+        )
 
 
 def _world(words: Sequence[str], arguments: Arguments) -> WorldFile | None:
@@ -83,12 +93,16 @@ def _world(words: Sequence[str], arguments: Arguments) -> WorldFile | None:
     return load_world(find_program(named[0]), arguments.settings.get("mats")) if named else None
 
 
-def _prepared(word: str | None, world: WorldFile | None, arguments: Arguments, config: UserConfig) -> Prepared:
+def _prepared(
+    word: str | None, world: WorldFile | None, arguments: Arguments, config: UserConfig
+) -> Prepared:
     in_world = world.settings if world else {}
     if word is None:
         if "arguments" in arguments.settings:
             named = world.path if world else arguments.world
-            raise ConfigError(f"{named} names no program to pass arguments to", key=ARGUMENTS_FOLLOW)
+            raise ConfigError(
+                f"{named} names no program to pass arguments to", key=ARGUMENTS_FOLLOW
+            )
         above = (in_world, arguments.settings)
         layers = (_defaults(world, config), *above)
         settings = settings_of(*layers)
@@ -115,9 +129,13 @@ def _from_config(
         return said
 
 
-def _of_source(file: ProgramSource, world: WorldFile | None, arguments: Arguments, config: UserConfig) -> Prepared:
+def _of_source(
+    file: ProgramSource, world: WorldFile | None, arguments: Arguments, config: UserConfig
+) -> Prepared:
     layers = [*([world.settings] if world else []), arguments.settings]
-    said = partial(program_settings, file, *layers, in_world=world is not None, of_task=_decides_robot(world))
+    said = partial(
+        program_settings, file, *layers, in_world=world is not None, of_task=_decides_robot(world)
+    )
     found = said(below=_defaults(world, config))
     try:
         program, spec = found.applied_to(file.program), _spec(found.settings)
@@ -125,8 +143,12 @@ def _of_source(file: ProgramSource, world: WorldFile | None, arguments: Argument
         wrong = wrong_mat(file.program.text, file.program.name, found.settings["mats"])
         is_it = wrong is not None and found.settings["background"] == file.options["background"]
         raise (wrong.error if wrong and is_it and not error.file else error) from None
-    changed = _from_config(spec, world, config, said().decided.layer, file.options, arguments.settings)
-    return Prepared(program, found.settings, spec, world, from_config=changed, decided=found.decided)
+    changed = _from_config(
+        spec, world, config, said().decided.layer, file.options, arguments.settings
+    )
+    return Prepared(
+        program, found.settings, spec, world, from_config=changed, decided=found.decided
+    )
 
 
 def _decides_robot(world: WorldFile | None) -> bool:
@@ -136,18 +158,26 @@ def _decides_robot(world: WorldFile | None) -> bool:
 
 def _spec(settings: Settings) -> RunSpec:
     """Return the run specification; print warnings about the robot file on stderr."""
-    robot = settings["robot"] if isinstance(settings["robot"], RobotChoice) else choose_robot(settings["robot"], "-r")
+    robot = (
+        settings["robot"]
+        if isinstance(settings["robot"], RobotChoice)
+        else choose_robot(settings["robot"], "-r")
+    )
     for note in robot.notes:
         echo_error(f"note: {note}")
     return build_run_spec(settings.changed({"robot": robot}) if robot.notes else settings)
 
 
-def _of_cell(file: ProgramSource, world: WorldFile | None, arguments: Arguments, config: UserConfig) -> Prepared:
+def _of_cell(
+    file: ProgramSource, world: WorldFile | None, arguments: Arguments, config: UserConfig
+) -> Prepared:
     try:
         return _of_source(file, world, arguments, config)
     except ConfigError as error:
         # An error about a mat or robot must also name the cell.
-        raise ConfigError(error.message, error.hint, file="" if error.file else file.program.name) from None
+        raise ConfigError(
+            error.message, error.hint, file="" if error.file else file.program.name
+        ) from None
 
 
 def prepare_app(words: Sequence[str], arguments: Arguments, config: UserConfig) -> Prepared:
@@ -159,7 +189,9 @@ def prepare_app(words: Sequence[str], arguments: Arguments, config: UserConfig) 
     world = _world(words, arguments)
     programs = [word for word in words if not means_world(word)]
     if len(programs) > 1:
-        raise ConfigError(f"two programs: {programs[0]} and {programs[1]}", "the app opens only one")
+        raise ConfigError(
+            f"two programs: {programs[0]} and {programs[1]}", "the app opens only one"
+        )
     word = programs[0] if programs else world.program if world else None
     if word is not None and is_notebook(word):
         return _of_cell(known_programs(word)[0].source, world, arguments, config)
@@ -187,7 +219,9 @@ def prepare_replay(
     chosen = arguments.settings
     if words or arguments.world or (wrong := sorted(chosen.keys() - OF_THE_APP)):
         what = words[0] if words else arguments.world or wrong[0].replace("_", " ")
-        raise ConfigError(f"a stored run has its own program and world: remove {what}", "name one", key="--run")
+        raise ConfigError(
+            f"a stored run has its own program and world: remove {what}", "name one", key="--run"
+        )
     stored = RunStore().load_run(run)
     opened = replace(stored.program, python_path=(), working_directory="")
     return stored, Prepared(opened, settings_of(config.layer(Section.APP), chosen), stored.spec)
@@ -225,14 +259,17 @@ def prepare_runs(
             prepared += _of_folder(word, world, arguments, config)
         elif is_notebook(word):
             prepared += [
-                _checked(_of_cell(program.source, world, arguments, config)) for program in known_programs(word)
+                _checked(_of_cell(program.source, world, arguments, config))
+                for program in known_programs(word)
             ]
         else:
             prepared.append(_checked(_prepared(word, world, arguments, config)))
     return prepared
 
 
-def _of_folder(word: str, world: WorldFile | None, arguments: Arguments, config: UserConfig) -> list[Prepared | NotRun]:
+def _of_folder(
+    word: str, world: WorldFile | None, arguments: Arguments, config: UserConfig
+) -> list[Prepared | NotRun]:
     # Errors of the command line are raised once, not for each cell.
     build_run_spec(settings_of(world.settings if world else {}, arguments.settings))
     found: list[Prepared | NotRun] = []
@@ -246,11 +283,17 @@ def _of_folder(word: str, world: WorldFile | None, arguments: Arguments, config:
         for program in programs:
             cell = f"{label}#{program.number}"
             try:
-                found.append(replace(_checked(_of_source(program.source, world, arguments, config)), label=cell))
+                found.append(
+                    replace(
+                        _checked(_of_source(program.source, world, arguments, config)), label=cell
+                    )
+                )
             except ConfigError as error:
                 found.append(NotRun(cell, error))
     if not found:
-        raise ConfigError("has no notebook with a program", "program cells begin with %%sim_magic", file=word)
+        raise ConfigError(
+            "has no notebook with a program", "program cells begin with %%sim_magic", file=word
+        )
     return found
 
 

@@ -22,7 +22,15 @@ from tuisim.config.shared_options import shared_options
 from tuisim.config.user_config import FILE, Section, load_config
 from tuisim.core.geometry import pose_in_words
 from tuisim.core.profile import NS_PER_S
-from tuisim.errors import SIGNALLED, ConfigError, ExportError, LogError, TuisimError, counted, shortened
+from tuisim.errors import (
+    SIGNALLED,
+    ConfigError,
+    ExportError,
+    LogError,
+    TuisimError,
+    counted,
+    shortened,
+)
 from tuisim.logs.export import EXPORTERS, check_targets, export_samples, export_telemetry
 from tuisim.protocol import Inspect, Inspected, Message, Paused, Resume
 from tuisim.runs.handle import RunHandle, RunOptions, start_run
@@ -38,28 +46,76 @@ _REPORTS, _BREAKPOINTS = "Data and limits", "Breakpoints"
 _OPTIONS = (
     argument("programs", "PROGRAM…", lambda: names_of("programs"), nargs=-1),
     WORLD,
-    option("--export", multiple=True, metavar="FILE", type=WordType(), group=_REPORTS,
-           help=f"Write the samples of all programs ({', '.join(EXPORTERS)}); may be repeated."),
-    option("--telemetry", metavar="FILE", type=WordType(), group=_REPORTS,
-           help="Write the telemetry of a single program, one row per tick."),
+    option(
+        "--export",
+        multiple=True,
+        metavar="FILE",
+        type=WordType(),
+        group=_REPORTS,
+        help=f"Write the samples of all programs ({', '.join(EXPORTERS)}); may be repeated.",
+    ),
+    option(
+        "--telemetry",
+        metavar="FILE",
+        type=WordType(),
+        group=_REPORTS,
+        help="Write the telemetry of a single program, one row per tick.",
+    ),
     timeout_option(_REPORTS),
     input_option(_REPORTS),
-    option("--press", multiple=True, metavar="BUTTON@S", type=WordType(parse_press), group=_REPORTS,
-           help="Press a button of the brick: enter@1.0-1.5, or enter@1 for 0.1 s; may be repeated."),
-    option("--all", is_flag=True, group=_REPORTS,
-           help="Run all program cells of a notebook, or of a folder's notebooks; print a table."),
-    option("--json", is_flag=True, group=_REPORTS,
-           help="Print one JSON object per program; program output goes to stderr."),
-    option("--strict", is_flag=True, group=_REPORTS,
-           help="Run nothing if a program for LEGO's MicroPython has a line that the brick's Python would refuse."),
-    option("--break", "breaks", multiple=True, metavar="TEXT", type=COLUMN, group=_BREAKPOINTS,
-           help="Set a breakpoint, reported on stderr: 12, 12 if x > 3, left_red_pc < 10, left_color changes, "
-           "ultrasonic < 200, sample Colour < 50, print matches REGEX, time 3.5, stall; may be repeated."),
-    option("--watch", "watches", multiple=True, metavar="EXPR", type=COLUMN, group=_BREAKPOINTS,
-           help="Evaluate an expression at each breakpoint; may be repeated."),
-    choice("--break-then", (GO, STOP), default=GO, group=_BREAKPOINTS,
-           help="What to do after a breakpoint (go); stop ends the run with exit code 3."),
-)  # fmt: skip
+    option(
+        "--press",
+        multiple=True,
+        metavar="BUTTON@S",
+        type=WordType(parse_press),
+        group=_REPORTS,
+        help="Press a button of the brick: enter@1.0-1.5, or enter@1 for 0.1 s; may be repeated.",
+    ),
+    option(
+        "--all",
+        is_flag=True,
+        group=_REPORTS,
+        help="Run all program cells of a notebook, or of a folder's notebooks; print a table.",
+    ),
+    option(
+        "--json",
+        is_flag=True,
+        group=_REPORTS,
+        help="Print one JSON object per program; program output goes to stderr.",
+    ),
+    option(
+        "--strict",
+        is_flag=True,
+        group=_REPORTS,
+        help="Run nothing if a program for LEGO's MicroPython has a line that the brick's Python would refuse.",
+    ),
+    option(
+        "--break",
+        "breaks",
+        multiple=True,
+        metavar="TEXT",
+        type=COLUMN,
+        group=_BREAKPOINTS,
+        help="Set a breakpoint, reported on stderr: 12, 12 if x > 3, left_red_pc < 10, left_color changes, "
+        "ultrasonic < 200, sample Colour < 50, print matches REGEX, time 3.5, stall; may be repeated.",
+    ),
+    option(
+        "--watch",
+        "watches",
+        multiple=True,
+        metavar="EXPR",
+        type=COLUMN,
+        group=_BREAKPOINTS,
+        help="Evaluate an expression at each breakpoint; may be repeated.",
+    ),
+    choice(
+        "--break-then",
+        (GO, STOP),
+        default=GO,
+        group=_BREAKPOINTS,
+        help="What to do after a breakpoint (go); stop ends the run with exit code 3.",
+    ),
+)
 
 
 @command(
@@ -93,8 +149,12 @@ def run(**given: Any) -> int:
         print_list(arguments.programs[0], listed)
         return 0
     # All input is checked before the first program runs.
-    prepared = prepare_runs(arguments.programs, arguments, config=load_config().checked().only(Section.SIMULATION))
-    for said in dict.fromkeys(one.from_config for one in prepared if isinstance(one, Prepared) and one.from_config):
+    prepared = prepare_runs(
+        arguments.programs, arguments, config=load_config().checked().only(Section.SIMULATION)
+    )
+    for said in dict.fromkeys(
+        one.from_config for one in prepared if isinstance(one, Prepared) and one.from_config
+    ):
         echo_error(f"note: from {FILE}: {', '.join(said)}")
     to_run = [one for one in prepared if isinstance(one, Prepared)]
     _tell_notes(to_run, strict=arguments.strict)
@@ -126,7 +186,9 @@ def _tell_notes(prepared: Sequence[Prepared], *, strict: bool) -> None:
         echo_error(f"note: {note}")
 
 
-def check_breaks(texts: Sequence[str], watches: Sequence[str], prepared: Iterable[Prepared]) -> None:
+def check_breaks(
+    texts: Sequence[str], watches: Sequence[str], prepared: Iterable[Prepared]
+) -> None:
     """Check breakpoints and watches before anything is run.
 
     Raises:
@@ -138,7 +200,9 @@ def check_breaks(texts: Sequence[str], watches: Sequence[str], prepared: Iterabl
     for watch in watches:
         parse_watch(watch)
     if watches and not texts:
-        raise ConfigError("needs a breakpoint", "add one with --break, such as --break 'time 1'", key="watch")
+        raise ConfigError(
+            "needs a breakpoint", "add one with --break, such as --break 'time 1'", key="watch"
+        )
 
 
 class BreakpointReporter:
@@ -209,7 +273,9 @@ def _export(done: Sequence[StoredRun], arguments: Arguments) -> None:
             errors.append(error)
         except KeyboardInterrupt:
             option = "--telemetry " if target == arguments.telemetry else ""
-            again = f"tuisim runs export {' '.join(str(run.number) for run in done)} {option}{target}"
+            again = (
+                f"tuisim runs export {' '.join(str(run.number) for run in done)} {option}{target}"
+            )
             echo_error(f"tuisim: {target} was not written; the log is stored ({again})")
             raise
     for other in errors[1:]:
@@ -222,11 +288,16 @@ def _check_only_listed(arguments: Arguments, count: int) -> None:
     """Raise ConfigError if an export or JSON is asked for where a notebook is only listed."""
     if arguments.json or arguments.export or arguments.telemetry is not None:
         (word,) = arguments.programs
-        raise ConfigError(f"has {counted(count, 'program cell')}; name one", f"--all, or {word}#1", file=word)
+        raise ConfigError(
+            f"has {counted(count, 'program cell')}; name one", f"--all, or {word}#1", file=word
+        )
 
 
 def _run_all(
-    prepared: Sequence[Prepared | NotRun], arguments: Arguments, store: RunStore, interrupts: RelayInterrupts
+    prepared: Sequence[Prepared | NotRun],
+    arguments: Arguments,
+    store: RunStore,
+    interrupts: RelayInterrupts,
 ) -> tuple[int, list[tuple[str, StoredRun | None]]]:
     """Run the programs in turn until done or interrupted; return the worst exit code, and (label, run) pairs."""
     results: list[tuple[str, StoredRun | None]] = []
@@ -242,7 +313,9 @@ def _run_all(
         try:
             run = handle.stored()
         except LogError:
-            echo_error(f"tuisim: {handle.program.name}: run {handle.number} was not stored: {handle.unstored}")
+            echo_error(
+                f"tuisim: {handle.program.name}: run {handle.number} was not stored: {handle.unstored}"
+            )
             exit_code = exit_status.of_unstored(exit_code)
         else:
             results.append((one.label or run.program.name, run))
@@ -260,7 +333,11 @@ def _how_far(number: int, count: int) -> Callable[[RunHandle], None]:
         ticks = handle.telemetry.count
         what = f"{handle.program.name}: {ticks / handle.spec.profile.tick_hz:.1f} s simulated"
         # The length of a program is unknown; only their number is known.
-        tell(f"{number + 1} of {count}, {what}" if count > 1 else what, number, count if count > 1 else None)
+        tell(
+            f"{number + 1} of {count}, {what}" if count > 1 else what,
+            number,
+            count if count > 1 else None,
+        )
 
     return tell_run if is_watched() else lambda _: None
 
@@ -279,7 +356,9 @@ def _run_one(
         speed=speed,
         time_limit_s=arguments.timeout,
         answers=arguments.input or (one.world.inputs if one.world else ()),
-        actions=press_actions(arguments.press or (one.world.presses if one.world else ()), one.spec.profile.tick_hz),
+        actions=press_actions(
+            arguments.press or (one.world.presses if one.world else ()), one.spec.profile.tick_hz
+        ),
         breaks=arguments.breaks,
     )
     handle = start_run(one.program, one.spec, options, store)

@@ -15,15 +15,21 @@ _LIMIT = Number(0.001, MAX_TIME_LIMIT_S)
 def timeout_option(group: str, default_s: float = DEFAULT_TIME_LIMIT_S) -> GroupedOption:
     """Return `--timeout S`, in simulated seconds."""
     return option(
-        "--timeout", default=default_s, metavar="S", group=group,
+        "--timeout",
+        default=default_s,
+        metavar="S",
+        group=group,
         type=WordType(lambda text: parse(_LIMIT, text, "--timeout")),
         help=f"Stop a run after this simulated time in seconds ({default_s:g}).",
-    )  # fmt: skip
+    )
 
 
 def input_option(group: str) -> GroupedOption:
     """Return `--input TEXT`: the answers of each run, in order."""
     return option(
-        "--input", multiple=True, metavar="TEXT", group=group,
+        "--input",
+        multiple=True,
+        metavar="TEXT",
+        group=group,
         help="Answer an input() of each program; may be repeated.",
-    )  # fmt: skip
+    )

@@ -55,7 +55,12 @@ QUICK_BYTES = 8 << 20
 _AGE = re.compile(r"(\d{1,6}(?:\.\d{1,6})?)([hdw])")
 _HOURS = {"h": 1, "d": 24, "w": 168}
 
-STREAMS = {Stream.STDOUT: "stdout", Stream.STDERR: "stderr", Stream.SPEECH: "speech", Stream.INPUT: "input"}
+STREAMS = {
+    Stream.STDOUT: "stdout",
+    Stream.STDERR: "stderr",
+    Stream.SPEECH: "speech",
+    Stream.INPUT: "input",
+}
 MAX_SUMMARY = 40
 """Maximum characters of a summary in the list."""
 
@@ -90,8 +95,19 @@ def list_runs(as_json: bool) -> int:
     else:
         rows: list[tuple[object, ...]] = [
             (
-                *(run.number, run.created[:19].replace("T", " "), run.program, run.background, run.profile, run.seed),
-                *(run.end, f"{run.time_s or 0:.2f}", "" if run.samples is None else str(run.samples)),
+                *(
+                    run.number,
+                    run.created[:19].replace("T", " "),
+                    run.program,
+                    run.background,
+                    run.profile,
+                    run.seed,
+                ),
+                *(
+                    run.end,
+                    f"{run.time_s or 0:.2f}",
+                    "" if run.samples is None else str(run.samples),
+                ),
                 *(f"{size(bytes_in(store.folder(run.id))):>8}", _cut(run.summary), run.tags),
             )
             for run in runs
@@ -111,7 +127,10 @@ def list_runs(as_json: bool) -> int:
             "",
         )
         if sys.stdout.isatty() and shutil.get_terminal_size().columns < _ALL_COLUMNS:
-            heads, rows = tuple(heads[at] for at in _FEWER), [tuple(row[at] for at in _FEWER) for row in rows]
+            heads, rows = (
+                tuple(heads[at] for at in _FEWER),
+                [tuple(row[at] for at in _FEWER) for row in rows],
+            )
             # The year and the seconds are left out, too.
             rows = [(number, str(created)[5:16], *rest) for number, created, *rest in rows]
         echo_lines(table(heads, rows))
@@ -131,12 +150,20 @@ def show(words: Sequence[str], as_json: bool) -> int:
 
 
 def _plain(row: OutputRow) -> dict[str, object]:
-    return {"time_s": row.time_ns / 1e9, "line": row.line, "stream": STREAMS[row.stream], "text": row.text}
+    return {
+        "time_s": row.time_ns / 1e9,
+        "line": row.line,
+        "stream": STREAMS[row.stream],
+        "text": row.text,
+    }
 
 
 def _values(run: StoredRun) -> dict[str, Any]:
     """Return the values of a run that options and world files set, by path."""
-    return {path: toml_form(one.value, tree.at(run.spec, one.spec_path)) for path, one in RUN_VALUES.items()}
+    return {
+        path: toml_form(one.value, tree.at(run.spec, one.spec_path))
+        for path, one in RUN_VALUES.items()
+    }
 
 
 def _files_read(run: StoredRun) -> tuple[FilesRead, tuple[str, ...]]:
@@ -152,7 +179,9 @@ def _drawn_words(spec: RunSpec) -> str:
     drawn = drawn_errors(spec.world.drift, spec.seed)
     sizes = {"left wheel": drawn.left, "right wheel": drawn.right, "spacing": drawn.spacing}
     parts = [f"{name} {100 * (times - 1):+.2f} %" for name, times in sizes.items()]
-    return ", ".join((*parts, f"gyro {drawn.gyro_dps:+.3f} °/s", f"light from {degrees(drawn.bright_rad):.0f}°"))
+    return ", ".join(
+        (*parts, f"gyro {drawn.gyro_dps:+.3f} °/s", f"light from {degrees(drawn.bright_rad):.0f}°")
+    )
 
 
 def _show(run: StoredRun, *, as_json: bool) -> None:
@@ -161,15 +190,24 @@ def _show(run: StoredRun, *, as_json: bool) -> None:
     if as_json:
         # The counts are known only after all rows have been read.
         read, _ = _files_read(run)
-        files = {"files_read": [asdict(file) for file in read.files], "files_left_out": read.left_out}
-        echo_json_head("output", map(_plain, rows), describe(run) | {"values": _values(run)} | files)
+        files = {
+            "files_read": [asdict(file) for file in read.files],
+            "files_left_out": read.left_out,
+        }
+        echo_json_head(
+            "output", map(_plain, rows), describe(run) | {"values": _values(run)} | files
+        )
         return
     facts = describe(run, QUICK_BYTES)
-    echo(f"{facts['id']} · {facts['created']} · {facts['background']} · {facts['robot']} · {facts['profile']} · "
-          f"seed {facts['seed']}")  # fmt: skip
+    echo(
+        f"{facts['id']} · {facts['created']} · {facts['background']} · {facts['robot']} · {facts['profile']} · "
+        f"seed {facts['seed']}"
+    )
     echo(last_state(facts))
     if chosen := [
-        f"{path} {shown(value)}" for path, value in _values(run).items() if value != RUN_VALUES[path].default
+        f"{path} {shown(value)}"
+        for path, value in _values(run).items()
+        if value != RUN_VALUES[path].default
     ]:
         echo(f"values: {', '.join(chosen)}")
     if not run.spec.world.drift.is_none:
@@ -180,17 +218,26 @@ def _show(run: StoredRun, *, as_json: bool) -> None:
     for note in (*facts["notes"], *damage):
         echo(f"note: {note}")
     for file in read.files:
-        what = f"read ({counted(file.bytes, 'byte')})" if file.there else "looked for, and not there"
+        what = (
+            f"read ({counted(file.bytes, 'byte')})" if file.there else "looked for, and not there"
+        )
         echo(f"file {what}: {shortened(file.path, MOST_PATH)}")
     if read.left_out:
         echo(f"and {counted(read.left_out, 'more file')}")
     for row in rows:
-        echo(f"{row.time_ns / 1e9:10.3f} s  {'! ' if row.stream == Stream.STDERR else ''}{line_of(row)}")
+        echo(
+            f"{row.time_ns / 1e9:10.3f} s  {'! ' if row.stream == Stream.STDERR else ''}{line_of(row)}"
+        )
     if facts["error"]:
         echo_lines(facts["error"].rstrip("\n"))
 
 
-@command(_runs, option("--older-than", metavar="AGE", help="Remove finished runs older than this: 12h, 30d, 8w."))
+@command(
+    _runs,
+    option(
+        "--older-than", metavar="AGE", help="Remove finished runs older than this: 12h, 30d, 8w."
+    ),
+)
 def rm(words: Sequence[str], older_than: str | None) -> int:
     """Remove runs."""
     store, freed = RunStore(), 0
@@ -220,10 +267,16 @@ def _older(store: RunStore, words: Sequence[str], age: str) -> list[str]:
     match = _AGE.fullmatch(age)
     if match is None:
         raise ConfigError(
-            f"cannot be read: {age!r}", "hours, days or weeks, such as 12h, 30d or 8w", key="--older-than"
+            f"cannot be read: {age!r}",
+            "hours, days or weeks, such as 12h, 30d or 8w",
+            key="--older-than",
         )
     before = datetime.now(UTC) - timedelta(hours=float(match[1]) * _HOURS[match[2]])
-    return [run.id for run in store.runs() if run.end is not Unended.RUNNING and _created_before(run.created, before)]
+    return [
+        run.id
+        for run in store.runs()
+        if run.end is not Unended.RUNNING and _created_before(run.created, before)
+    ]
 
 
 def _created_before(created: str, moment: datetime) -> bool:
@@ -241,7 +294,9 @@ def rerun_runs(words: Sequence[str], as_json: bool) -> int:
     Exit code: 0 if all are bit-identical, else 1.
     """
     with Progress("rerun"):
-        return max(_rerun(run, as_json=as_json) for run in _load(RunStore(), _needed(words, "rerun")))
+        return max(
+            _rerun(run, as_json=as_json) for run in _load(RunStore(), _needed(words, "rerun"))
+        )
 
 
 def _rerun(run: StoredRun, *, as_json: bool) -> int:
@@ -308,7 +363,9 @@ def compact(words: Sequence[str], every: bool, as_json: bool) -> int:
                 continue
             before, after, ticks = before + sizes[0], after + sizes[1], ticks + run.telemetry.count
     if as_json:
-        echo_json({"runs": len(names), "ticks": ticks, "bytes_before": before, "bytes_after": after})
+        echo_json(
+            {"runs": len(names), "ticks": ticks, "bytes_before": before, "bytes_after": after}
+        )
     else:
         each = f", {after / ticks:.2f} bytes per tick" if ticks else ""
         echo(f"{counted(len(names), 'run')}: {before:,} → {after:,} bytes{each}")
@@ -318,7 +375,10 @@ def compact(words: Sequence[str], every: bool, as_json: bool) -> int:
 @command(
     argument("words", "RUN… FILE…", lambda: ("last",), nargs=-1),
     option(
-        "--telemetry", metavar="FILE", type=WordType(), help="Export the telemetry of a single run, one row per tick."
+        "--telemetry",
+        metavar="FILE",
+        type=WordType(),
+        help="Export the telemetry of a single run, one row per tick.",
     ),
     help=f"Export samples of runs, or the telemetry of one run.\n\nA FILE ends in {LISTED}.",
 )

@@ -23,50 +23,82 @@ _GROUP, _CLASS = "Server", "Class"
 _PORT, _VISITORS, _MINUTES = Whole(0, 65535), Whole(1, 1000), Number(0.001, 100_000)
 _SERVER = (
     option(
-        "--port", default=DEFAULT_PORT, metavar="N", group=_GROUP,
+        "--port",
+        default=DEFAULT_PORT,
+        metavar="N",
+        group=_GROUP,
         type=WordType(lambda text: parse(_PORT, text, "--port")),
         help=f"Port; 0 for any free one ({DEFAULT_PORT}).",
     ),
     option(
-        "--max-visitors", default=None, metavar="N", group=_GROUP,
+        "--max-visitors",
+        default=None,
+        metavar="N",
+        group=_GROUP,
         type=WordType(lambda text: parse(_VISITORS, text, "--max-visitors")),
         help=f"Most apps at the same time ({DEFAULT_VISITORS}, or one a student), with those that no tab shows now.",
     ),
     option(
-        "--keep", default=DEFAULT_KEEP_MIN, metavar="MIN", group=_GROUP,
+        "--keep",
+        default=DEFAULT_KEEP_MIN,
+        metavar="MIN",
+        group=_GROUP,
         type=WordType(lambda text: parse(_MINUTES, text, "--keep")),
         help=f"End an app that no tab has shown for so many minutes ({DEFAULT_KEEP_MIN:g}).",
     ),
     option(
-        "--idle", default=None, metavar="MIN", group=_GROUP,
+        "--idle",
+        default=None,
+        metavar="MIN",
+        group=_GROUP,
         type=WordType(lambda text: parse(_MINUTES, text, "--idle")),
         help="End the app of a visitor after so many minutes without input (never).",
     ),
     option(
-        "--host", default="127.0.0.1", metavar="ADDRESS", group=_GROUP,
+        "--host",
+        default="127.0.0.1",
+        metavar="ADDRESS",
+        group=_GROUP,
         help="Listen on another address than 127.0.0.1, which only this machine reaches; nothing is encrypted.",
     ),
     option(
-        "--students", default=None, metavar="FILE", type=WordType(), group=_CLASS,
+        "--students",
+        default=None,
+        metavar="FILE",
+        type=WordType(),
+        group=_CLASS,
         help="Give each student of a list a link of its own: a text or CSV file with a name a line.",
     ),
     option(
-        "--homes", default=None, metavar="FOLDER", type=WordType(), group=_CLASS,
+        "--homes",
+        default=None,
+        metavar="FOLDER",
+        type=WordType(),
+        group=_CLASS,
         help=f"Folder of the students' folders, which stay for the next time ({DEFAULT_HOMES}).",
     ),
     option(
-        "--links", default=None, metavar="FILE", type=WordType(), group=_CLASS,
+        "--links",
+        default=None,
+        metavar="FILE",
+        type=WordType(),
+        group=_CLASS,
         help="Write names and links as CSV, which only you can read.",
     ),
     option(
-        "--isolate", is_flag=True, group=_CLASS,
+        "--isolate",
+        is_flag=True,
+        group=_CLASS,
         help="Refuse to serve where the students' apps cannot be isolated from each other and from your files.",
     ),
     option(
-        "--no-isolate", "no_isolate", is_flag=True, group=_CLASS,
+        "--no-isolate",
+        "no_isolate",
+        is_flag=True,
+        group=_CLASS,
         help="Do not isolate them; otherwise each runs through bubblewrap, where that starts.",
     ),
-)  # fmt: skip
+)
 
 
 @command(
@@ -109,11 +141,15 @@ def serve(**given: Any) -> int:
     idle_s = float("inf") if arguments.idle is None else 60 * arguments.idle
     limits, words = VisitLimits(idle_s, 60 * arguments.keep), words_without(_SERVER)
     if arguments.students is not None:
-        return serve_class(arguments, opened, words, limits, echo_error_lines, partial(_address, arguments.host))
+        return serve_class(
+            arguments, opened, words, limits, echo_error_lines, partial(_address, arguments.host)
+        )
     gate = Gate(arguments.host)
     most = server.ServerLimits(arguments.max_visitors or DEFAULT_VISITORS, limits)
     visitors = server.Server(app_command(words), gate, most, echo_error_lines)
-    return server.serve(visitors, arguments.host, arguments.port, lambda port: _announce(gate, port))
+    return server.serve(
+        visitors, arguments.host, arguments.port, lambda port: _announce(gate, port)
+    )
 
 
 def _address(listens_on: str, port: int, token: str) -> str:

@@ -71,7 +71,10 @@ def serve_class(
     links = open_class(Path(arguments.homes or DEFAULT_HOMES), names)
 
     def announce(port: int) -> None:
-        rows = [("tutor", links.tutor), *((student.name, student.token) for student in links.students)]
+        rows = [
+            ("tutor", links.tutor),
+            *((student.name, student.token) for student in links.students),
+        ]
         rows = [(name, address_of(port, token)) for name, token in rows]
         _print_links(rows)
         if arguments.links:
@@ -82,7 +85,9 @@ def serve_class(
     try:
         handed = handed_out(words, [background(opened.prepared.spec.world.background).image])
         start = partial(app_of, handed=handed, isolated=isolated)
-        classroom = Classroom(links, arguments.host, start, limits_of(links, arguments.max_visitors, limits), report)
+        classroom = Classroom(
+            links, arguments.host, start, limits_of(links, arguments.max_visitors, limits), report
+        )
         return server.serve(classroom, arguments.host, arguments.port, announce)
     finally:
         os.close(links.lock_fd)
@@ -94,4 +99,6 @@ def _print_links(rows: Sequence[tuple[str, str]]) -> None:
     echo(f"{'name':{width}}  link")
     for name, link in rows:
         echo(f"{name:{width}}  {link}")
-    echo("Give each student the link of the name only, and keep the first to yourself; ctrl+c ends the server.")
+    echo(
+        "Give each student the link of the name only, and keep the first to yourself; ctrl+c ends the server."
+    )

@@ -34,7 +34,8 @@ def robot_on_mat(choice: RobotChoice, mat: Background) -> RobotSpec:
     if choice.own_places:
         return choice.spec
     moved = tuple(
-        replace(sensor, x_mm=mat.sensor_x_mm.get(sensor.name, sensor.x_mm)) for sensor in choice.spec.color_sensors
+        replace(sensor, x_mm=mat.sensor_x_mm.get(sensor.name, sensor.x_mm))
+        for sensor in choice.spec.color_sensors
     )
     return replace(choice.spec, color_sensors=moved)
 
@@ -92,10 +93,16 @@ def build_run_spec(settings: Settings) -> RunSpec:
         beacon=settings["beacon"],
         remote=settings["remote"],
     )
-    given = {one.spec_path: value for path, one in RUN_VALUES.items() if (value := settings[path]) is not None}
+    given = {
+        one.spec_path: value
+        for path, one in RUN_VALUES.items()
+        if (value := settings[path]) is not None
+    }
     spec = tree.put_all(RunSpec(robot_on_mat(choice, mat), world, profile), given)
     world = spec.world
-    return tree.put(spec, "world.start", _start(settings, mat, spec.robot, walled=world.solid and world.walls))
+    return tree.put(
+        spec, "world.start", _start(settings, mat, spec.robot, walled=world.solid and world.walls)
+    )
 
 
 def settings_from(spec: RunSpec) -> dict[str, Any]:
@@ -112,9 +119,13 @@ def settings_from(spec: RunSpec) -> dict[str, Any]:
     return found | {
         "background": word,
         "robot": _robot(spec.robot, mat),
-        "obstacles": next((name for name, boxes in OBSTACLES.items() if boxes == world.obstacles), world.obstacles),
+        "obstacles": next(
+            (name for name, boxes in OBSTACLES.items() if boxes == world.obstacles), world.obstacles
+        ),
         "solid": None if world.solid == spec.profile.solid else world.solid,
-        "profile": spec.profile.name if PROFILES.get(spec.profile.name) == spec.profile else spec.profile,
+        "profile": spec.profile.name
+        if PROFILES.get(spec.profile.name) == spec.profile
+        else spec.profile,
         "beacon": world.beacon,
         "remote": world.remote,
     }

@@ -43,25 +43,37 @@ class WordType(click.ParamType):  # type: ignore[type-arg]
 
     name = "value"
 
-    def __init__(self, convert: Callable[[str], Any] = str, names: Callable[[], Iterable[str]] | None = None) -> None:
+    def __init__(
+        self, convert: Callable[[str], Any] = str, names: Callable[[], Iterable[str]] | None = None
+    ) -> None:
         self._convert, self._names = convert, names
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
         """Convert a text; a default is returned as it is."""
         return self._convert(value) if isinstance(value, str) else value
 
-    def shell_complete(self, ctx: click.Context, param: click.Parameter, incomplete: str) -> list[CompletionItem]:
+    def shell_complete(
+        self, ctx: click.Context, param: click.Parameter, incomplete: str
+    ) -> list[CompletionItem]:
         """Return the matching names and files."""
         names = self._names() if self._names else ()
         found = [CompletionItem(name) for name in names if name.startswith(incomplete)]
-        return _with_files(found, incomplete) if param.metavar in _FILES or param.nargs == -1 else found
+        return (
+            _with_files(found, incomplete)
+            if param.metavar in _FILES or param.nargs == -1
+            else found
+        )
 
 
 def _with_files(found: list[CompletionItem], incomplete: str) -> list[CompletionItem]:
     """Add the matching files; if there is nothing else, leave them to the shell, which quotes them."""
     if not found:
         return [CompletionItem(incomplete, type="file")]
-    return found + [CompletionItem(path) for path in sorted(glob(escape(incomplete) + "*"))] if incomplete else found
+    return (
+        found + [CompletionItem(path) for path in sorted(glob(escape(incomplete) + "*"))]
+        if incomplete
+        else found
+    )
 
 
 class GroupedOption(click.Option):
@@ -72,7 +84,9 @@ class GroupedOption(click.Option):
         adds: The word that it adds to that setting, instead of its value.
     """
 
-    def __init__(self, flags: Sequence[str], group: str = GENERAL, sets: str = "", adds: str = "", **how: Any) -> None:
+    def __init__(
+        self, flags: Sequence[str], group: str = GENERAL, sets: str = "", adds: str = "", **how: Any
+    ) -> None:
         super().__init__(flags, **how)
         self.group, self.sets, self.adds = group, sets, adds
         self.needs_value = not self.is_flag and "flag_value" not in how
@@ -80,7 +94,11 @@ class GroupedOption(click.Option):
     def get_help_record(self, ctx: click.Context) -> tuple[str, str] | None:
         """Return the names with the value, and the help."""
         names = ", ".join(self.opts[:2])
-        return None if self.hidden else (f"{names} {self.metavar}" if self.metavar else names, self.help or "")
+        return (
+            None
+            if self.hidden
+            else (f"{names} {self.metavar}" if self.metavar else names, self.help or "")
+        )
 
 
 def option(*flags: str, **how: Any) -> GroupedOption:
@@ -96,7 +114,9 @@ def choice(flag: str, allowed: Sequence[str], **how: Any) -> GroupedOption:
 AS_JSON = option("--json", "as_json", is_flag=True, help="Print JSON.")
 
 
-def argument(name: str, metavar: str, names: Callable[[], Iterable[str]] | None = None, **how: Any) -> click.Argument:
+def argument(
+    name: str, metavar: str, names: Callable[[], Iterable[str]] | None = None, **how: Any
+) -> click.Argument:
     """Return an argument that completion offers names for, besides files."""
     return click.Argument([name], metavar=metavar, type=WordType(names=names), **how)
 
@@ -135,7 +155,9 @@ def _close_names(typed: str, names: Iterable[str]) -> list[str]:
     ends = {name[-len(typed) :] for name in known}
     close = [name for end in closest(typed, ends, 2, 0.75) for name in known if name.endswith(end)]
     like = [*close, *closest(typed, known, 2)]
-    same = [name for words in _SYNONYMS if typed.lower() in words for name in known if name in words]
+    same = [
+        name for words in _SYNONYMS if typed.lower() in words for name in known if name in words
+    ]
     return list(dict.fromkeys(same or like))[:2]
 
 
@@ -164,7 +186,9 @@ class Command(click.Command):
     def __init__(self, name: str, *, passes_arguments: bool = False, **how: Any) -> None:
         super().__init__(name, context_settings={"help_option_names": ["-h", "--help"]}, **how)
         self._passes_arguments = passes_arguments
-        self._shared = {one.name: one for one in self.params if isinstance(one, GroupedOption) and one.sets}
+        self._shared = {
+            one.name: one for one in self.params if isinstance(one, GroupedOption) and one.sets
+        }
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
         """Parse words as Click does, but also `-x=5`; refuse the name of an option as the value of another."""
@@ -181,7 +205,9 @@ class Command(click.Command):
         except click.UsageError as error:
             raise _wrong_use(error, ctx) from None
         if self._shared:
-            ctx.params["settings"] = self._settings(ctx) | ({} if program is None else {"arguments": program})
+            ctx.params["settings"] = self._settings(ctx) | (
+                {} if program is None else {"arguments": program}
+            )
         return rest
 
     def _settings(self, ctx: click.Context) -> dict[str, Any]:
@@ -194,7 +220,12 @@ class Command(click.Command):
         return found
 
     def _check_values(self, ctx: click.Context, words: Sequence[str]) -> None:
-        known = {flag: param for param in self.get_params(ctx) for flag in param.opts if flag.startswith("-")}
+        known = {
+            flag: param
+            for param in self.get_params(ctx)
+            for flag in param.opts
+            if flag.startswith("-")
+        }
         for word, value in pairwise(words):
             if value in known and getattr(known.get(word), "needs_value", False):
                 raise click.BadOptionUsage(word, f"Option '{word}' requires an argument.", ctx)
@@ -230,11 +261,18 @@ class Group(click.Group):
     """
 
     def __init__(
-        self, name: str, listing: Mapping[str, str], load: Callable[[str], click.Command], default: str = "", **how: Any
+        self,
+        name: str,
+        listing: Mapping[str, str],
+        load: Callable[[str], click.Command],
+        default: str = "",
+        **how: Any,
     ) -> None:
         settings = {"help_option_names": ["-h", "--help"]}
         how.setdefault("subcommand_metavar", "[COMMAND] …" if default else "COMMAND …")
-        super().__init__(name, context_settings=settings, no_args_is_help=False, options_metavar="", **how)
+        super().__init__(
+            name, context_settings=settings, no_args_is_help=False, options_metavar="", **how
+        )
         self.listing, self.load, self.default = listing, load, default
 
     @classmethod
@@ -271,9 +309,16 @@ class Group(click.Group):
         """Return the words with the name of the subcommand first."""
         if args and (not args[0].startswith("-") or args[0] in ctx.help_option_names):
             return args
-        every = [param for name in self.listing for param in self.load(name).params if isinstance(param, click.Option)]
+        every = [
+            param
+            for name in self.listing
+            for param in self.load(name).params
+            if isinstance(param, click.Option)
+        ]
         unique: list[click.Parameter] = list({param.opts[0]: param for param in every}.values())
-        reader = click.Command(None, params=unique, context_settings={"allow_interspersed_args": False})
+        reader = click.Command(
+            None, params=unique, context_settings={"allow_interspersed_args": False}
+        )
         with reader.make_context("", list(args), resilient_parsing=True) as found:
             rest = found.args
         if rest:
@@ -290,7 +335,9 @@ class Group(click.Group):
         """
         if args[0] in self.listing or ctx.resilient_parsing:
             return super().resolve_command(ctx, args)
-        raise ConfigError(f"no such command {args[0]!r}", nearest(args[0], self.listing), key=self.name or "")
+        raise ConfigError(
+            f"no such command {args[0]!r}", nearest(args[0], self.listing), key=self.name or ""
+        )
 
     def invoke(self, ctx: click.Context) -> Any:
         """Run the subcommand.
@@ -301,18 +348,28 @@ class Group(click.Group):
         try:
             return super().invoke(ctx)
         except click.UsageError:
-            raise ConfigError("no command given", f"one of {', '.join(self.listing)}", key=self.name or "") from None
+            raise ConfigError(
+                "no command given", f"one of {', '.join(self.listing)}", key=self.name or ""
+            ) from None
 
     def shell_complete(self, ctx: click.Context, incomplete: str) -> list[CompletionItem]:
         """Return the matching subcommands, and what else the default subcommand may begin with."""
-        found = [CompletionItem(name, help=text) for name, text in self.listing.items() if name.startswith(incomplete)]
+        found = [
+            CompletionItem(name, help=text)
+            for name, text in self.listing.items()
+            if name.startswith(incomplete)
+        ]
         if not (self.default and incomplete):
             return found
         default = self.load(self.default)
         if incomplete.startswith("-"):
             return default.shell_complete(ctx, incomplete)
-        more = [item for param in default.params if isinstance(param, click.Argument)
-                for item in param.shell_complete(ctx, incomplete)]  # fmt: skip
+        more = [
+            item
+            for param in default.params
+            if isinstance(param, click.Argument)
+            for item in param.shell_complete(ctx, incomplete)
+        ]
         plain = [item for item in more if item.type == "plain"]
         return found + plain if plain else _with_files(found, incomplete) if more else found
 

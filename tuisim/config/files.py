@@ -66,7 +66,12 @@ def means_file(word: str) -> bool:
 
 
 def read_named(
-    word: str, what: str, known: Iterable[str], error: type[ConfigError], key: str, kinds: Sequence[str] = FILE_SUFFIXES
+    word: str,
+    what: str,
+    known: Iterable[str],
+    error: type[ConfigError],
+    key: str,
+    kinds: Sequence[str] = FILE_SUFFIXES,
 ) -> tuple[Any, str, Location]:
     """Read the file that a word names; return its data, the default name of the object in it, and its location.
 
@@ -85,7 +90,10 @@ def read_named(
 
 def name_of(path: Path) -> str:
     """Return the default name of the object in a file, from the file name."""
-    return "".join(letter if letter.isprintable() else "_" for letter in path.stem)[:MAX_NAME] or "unnamed"
+    return (
+        "".join(letter if letter.isprintable() else "_" for letter in path.stem)[:MAX_NAME]
+        or "unnamed"
+    )
 
 
 def with_location(error: ConfigError, file: str, key: str) -> ConfigError:
@@ -116,7 +124,9 @@ def read_file(path: Path, error: type[ConfigError]) -> Any:
     shown_path = str(path)
     suffix = path.suffix.lower()
     if suffix not in FILE_SUFFIXES:
-        raise error("is neither a .toml nor a .json file", "the suffix selects the format", file=shown_path)
+        raise error(
+            "is neither a .toml nor a .json file", "the suffix selects the format", file=shown_path
+        )
     text = _text(path, error)
     if not text.strip():
         raise error("is empty", file=shown_path)
@@ -157,14 +167,18 @@ def read_bytes(
     except (FileNotFoundError, NotADirectoryError):
         raise error(missing, neighbours(path), file=file) from None
     except (OSError, ValueError) as reason:
-        raise error(f"cannot be read: {getattr(reason, 'strerror', None) or reason}", file=file) from reason
+        raise error(
+            f"cannot be read: {getattr(reason, 'strerror', None) or reason}", file=file
+        ) from reason
 
 
 def _text(path: Path, error: type[ConfigError]) -> str:
     file = str(path)
     data = read_bytes(path, MAX_FILE_BYTES, error, neighbours=_neighbours)
     if len(data) > MAX_FILE_BYTES:
-        raise error("is too large", f"at most {MAX_FILE_BYTES:,} bytes".replace(",", " "), file=file)
+        raise error(
+            "is too large", f"at most {MAX_FILE_BYTES:,} bytes".replace(",", " "), file=file
+        )
     try:
         return data.decode("utf-8-sig")
     except UnicodeDecodeError as reason:
@@ -179,7 +193,9 @@ def _neighbours(path: Path) -> str:
 def close_beside(path: Path, suffixes: Collection[str]) -> list[str]:
     """Return the names of files beside a missing one that are like its name; the suffixes do not count."""
     try:
-        beside = sorted(other for other in path.parent.iterdir() if other.suffix.lower() in suffixes)
+        beside = sorted(
+            other for other in path.parent.iterdir() if other.suffix.lower() in suffixes
+        )
     except (OSError, ValueError):
         return []
     close = closest(path.stem, [other.stem for other in beside])
@@ -222,7 +238,9 @@ def _json(text: str, file: str, error: type[ConfigError]) -> Any:
         raise error(f"is not JSON: {reason}", file=file) from None
 
 
-def table(data: object, at: Location, keys: Iterable[str] | None = None, unlisted: Collection[str] = ()) -> Any:
+def table(
+    data: object, at: Location, keys: Iterable[str] | None = None, unlisted: Collection[str] = ()
+) -> Any:
     """Return data that is a table, as a dict.
 
     Args:
@@ -301,8 +319,13 @@ def read_part(data: object, base: _Spec | type[_Spec], at: Location, **given: ob
         ConfigError: a key is unknown or missing, or a value is wrong.
     """
     kind = base if isinstance(base, type) else type(base)
-    values = {key: value for key, value in values_of(kind).items() if key not in given and key != "name"}
-    found = {key: read_value(one, values[key], at.at(key)) for key, one in table(data, at, values).items()}
+    values = {
+        key: value for key, value in values_of(kind).items() if key not in given and key != "name"
+    }
+    found = {
+        key: read_value(one, values[key], at.at(key))
+        for key, one in table(data, at, values).items()
+    }
     if isinstance(base, type):
         for key in values:
             if kind.__dataclass_fields__[key].default is MISSING:
@@ -345,7 +368,9 @@ def convert(data: object, kind: type[_Kind], at: Location) -> _Kind:
         raise inner.wrong(error.message.removeprefix(f"{error.key}: "), error.hint) from None
     except msgspec.ValidationError as error:
         message, _, path = str(error).partition(" - at `$")
-        path = re.sub(r"(?<=\[)\d+", lambda index: str(int(index[0]) + 1), path.rstrip("`").lstrip("."))
+        path = re.sub(
+            r"(?<=\[)\d+", lambda index: str(int(index[0]) + 1), path.rstrip("`").lstrip(".")
+        )
         where = at.at(path) if path else at
         if missing := re.fullmatch(r"Object missing required field `(\w+)`", message):
             raise where.at(missing[1]).wrong("is missing") from None
@@ -360,7 +385,9 @@ def _type_info(kind: Any) -> types.Type:
     return inspect.type_info(kind)
 
 
-def _walk(data: object, info: types.Type, at: Location) -> Iterator[tuple[str, tuple[object, types.Type]]]:
+def _walk(
+    data: object, info: types.Type, at: Location
+) -> Iterator[tuple[str, tuple[object, types.Type]]]:
     """Yield the key, value and type of everything in a file; raise for what types do not express."""
     from msgspec import inspect as types
 
@@ -382,7 +409,9 @@ def _walk(data: object, info: types.Type, at: Location) -> Iterator[tuple[str, t
         case types.ListType(item_type=item) | types.VarTupleType(item_type=item), list() | tuple():
             for number, entry in enumerate(data, start=1):
                 yield from _walk(entry, item, at.at(f"[{number}]"))
-        case types.StrType(), str() if not data.strip() or len(data) > MAX_LINE or not data.isprintable():
+        case types.StrType(), str() if (
+            not data.strip() or len(data) > MAX_LINE or not data.isprintable()
+        ):
             raise at.wrong(f"must be one line of text, got {shown(data)}")
         case types.FloatType(), float() if not math.isfinite(data):
             raise _mismatch(data, info, at)
@@ -401,7 +430,9 @@ def _mismatch(value: object, info: types.Type, at: Location) -> ConfigError:
         kinds = [member for member in info.types if not isinstance(member, types.NoneType)]
         info = kinds[0] if len(kinds) == 1 else info
     if isinstance(info, types.EnumType):
-        return at.wrong(f"no such value {shown(value)}", f"one of {', '.join(each.value for each in info.cls)}")
+        return at.wrong(
+            f"no such value {shown(value)}", f"one of {', '.join(each.value for each in info.cls)}"
+        )
     return at.wrong(f"must be {_expected(info)}, got {shown(value)}")
 
 
@@ -427,7 +458,9 @@ def _expected(info: types.Type) -> str:
             return "a list"
         case types.UnionType(types=members):
             # TOML has no null: None stands for a missing key.
-            return " or ".join(_expected(member) for member in members if not isinstance(member, types.NoneType))
+            return " or ".join(
+                _expected(member) for member in members if not isinstance(member, types.NoneType)
+            )
         case _:
             return _TABLE
 
@@ -456,9 +489,14 @@ def toml_value(value: Scalar) -> str:
             return repr(value)
 
 
-def toml_lines(values: Mapping[str, Scalar], comments: Mapping[str, str] = MappingProxyType({})) -> list[str]:
+def toml_lines(
+    values: Mapping[str, Scalar], comments: Mapping[str, str] = MappingProxyType({})
+) -> list[str]:
     """Return the lines of one table, with their comments, aligned."""
-    pairs = [(f"{toml_key(key)} = {toml_value(value)}", comments.get(key, "")) for key, value in values.items()]
+    pairs = [
+        (f"{toml_key(key)} = {toml_value(value)}", comments.get(key, ""))
+        for key, value in values.items()
+    ]
     width = max((len(pair) for pair, comment in pairs if comment and len(pair) <= 36), default=0)
     return [f"{pair:<{width}}  # {comment}" if comment else pair for pair, comment in pairs]
 
@@ -467,7 +505,9 @@ def value_lines(part: Spec, keys: Iterable[str]) -> list[str]:
     """Return the lines of some values of a spec, with their help as comments."""
     values = values_of(type(part))
     found = {key: getattr(part, key) for key in keys}
-    shown_values = {key: toml_form(values[key], one) for key, one in found.items() if one is not None}
+    shown_values = {
+        key: toml_form(values[key], one) for key, one in found.items() if one is not None
+    }
     return toml_lines(shown_values, {key: values[key].help for key in found})
 
 
@@ -515,7 +555,9 @@ def save_toml(
         try:
             (check or read)(parse_toml(old, at.file, at.error))
         except ConfigError as error:
-            hint = "; ".join(filter(None, (error.hint, "correct the file, or save under another name")))
+            hint = "; ".join(
+                filter(None, (error.hint, "correct the file, or save under another name"))
+            )
             raise type(error)(error.message, hint) from None
         for whole in (False, True):
             # The order of sensors may matter, so tables may have to be replaced as a whole.
@@ -529,7 +571,9 @@ def save_toml(
         with replacing(path, owner_only=owner_only) as stream:
             stream.write(text.encode())
     except (OSError, ValueError) as reason:
-        raise at.wrong(f"cannot be written: {getattr(reason, 'strerror', None) or reason}") from None
+        raise at.wrong(
+            f"cannot be written: {getattr(reason, 'strerror', None) or reason}"
+        ) from None
 
 
 def _updated_text(old: str, new: str, kept: Collection[str], whole: bool) -> str:
@@ -564,7 +608,9 @@ def _update(old: Any, new: Any, kept: Collection[str] = (), whole: bool = False)
             del before[len(value) :]
             for other in value[len(before) :]:
                 before.append(other)
-        elif before is None or isinstance(before, Mapping | AoT) or isinstance(value, Mapping | AoT):
+        elif (
+            before is None or isinstance(before, Mapping | AoT) or isinstance(value, Mapping | AoT)
+        ):
             old.pop(key, None)
             # There is no room for the comment of a value in an inline table.
             old[key] = _plain(value) if isinstance(old, InlineTable) else value

@@ -7,7 +7,15 @@ import shlex
 from collections.abc import Mapping
 from typing import Any
 
-from tuisim.config.command_line import Arguments, Command, GroupedOption, WordType, help_of, option, parse
+from tuisim.config.command_line import (
+    Arguments,
+    Command,
+    GroupedOption,
+    WordType,
+    help_of,
+    option,
+    parse,
+)
 from tuisim.config.options import RUN_VALUES, START
 from tuisim.config.options import parse as parse_value
 from tuisim.config.shared_options import shared_options
@@ -19,7 +27,9 @@ MAX_INDEX = 1_000_000
 MIN_REFRESH_S, MAX_REFRESH_S = 0.02, 60.0
 DEFAULT_REFRESH_S = 0.2
 
-PERSISTENT = frozenset({"background", "mats", "robot", "obstacles", "profile", *RUN_VALUES}) - {"pen.down"}
+PERSISTENT = frozenset({"background", "mats", "robot", "obstacles", "profile", *RUN_VALUES}) - {
+    "pen.down"
+}
 """Paths of settings that persist until another cell changes them; all others apply to their cell only."""
 
 OF_THE_MAT = (*START, "obstacles")
@@ -28,7 +38,13 @@ OF_THE_MAT = (*START, "obstacles")
 
 def _of_every_magic(**how: str) -> list[GroupedOption]:
     return [
-        option("-s", "--sim", metavar="NAME", help="Variable that holds the simulator (roboSim).", **how),
+        option(
+            "-s",
+            "--sim",
+            metavar="NAME",
+            help="Variable that holds the simulator (roboSim).",
+            **how,
+        ),
         option("-h", "--help", is_flag=True, help="Show this help.", **how),
     ]
 
@@ -39,22 +55,80 @@ def _command(magic: str) -> Command:
     params = [
         *shared_options(magic=True),
         *_of_every_magic(group=group),
-        option("-v", "--preview", is_flag=True, group=group, help="Show the program and its predefined names."),
-        option("--previewcode", "preview_code", is_flag=True, group=group, help="Only return the text of the prelude."),
-        option("-S", "--stop", is_flag=True, group=group, help="Has no effect: a program ends with its cell."),
-        option("-m", "--move", "move_back", is_flag=True, group=group, help="Move the robot back to its start."),
-        option("-F", "--refresh", "refresh_s", is_flag=False, flag_value=DEFAULT_REFRESH_S, default=DEFAULT_REFRESH_S,
-               metavar="S", type=_type(refresh, "-F"), group=group,
-               help="Seconds between two redraws."),
-        option("--app", is_flag=True, group=group, help="Show the app in this cell, live, as %sim_app does."),
-        option("--height", "height_px", default=DEFAULT_HEIGHT_PX, metavar="PX", group=group,
-               type=_type(Whole(MIN_HEIGHT_PX, MAX_HEIGHT_PX), "--height"),
-               help=f"Height of the app in its cell ({DEFAULT_HEIGHT_PX})."),
-        option("--origin", "origins", multiple=True, metavar="URL", type=WordType(_origin), group=group,
-               help="Another address under which this notebook is read, such as http://lab:8888."),
-        option("-L", "--collab", "collaborative", is_flag=True, group=group,
-               help="`roboSim.pyresponder` or `.responder` answers the program."),
-    ]  # fmt: skip
+        option(
+            "-v",
+            "--preview",
+            is_flag=True,
+            group=group,
+            help="Show the program and its predefined names.",
+        ),
+        option(
+            "--previewcode",
+            "preview_code",
+            is_flag=True,
+            group=group,
+            help="Only return the text of the prelude.",
+        ),
+        option(
+            "-S",
+            "--stop",
+            is_flag=True,
+            group=group,
+            help="Has no effect: a program ends with its cell.",
+        ),
+        option(
+            "-m",
+            "--move",
+            "move_back",
+            is_flag=True,
+            group=group,
+            help="Move the robot back to its start.",
+        ),
+        option(
+            "-F",
+            "--refresh",
+            "refresh_s",
+            is_flag=False,
+            flag_value=DEFAULT_REFRESH_S,
+            default=DEFAULT_REFRESH_S,
+            metavar="S",
+            type=_type(refresh, "-F"),
+            group=group,
+            help="Seconds between two redraws.",
+        ),
+        option(
+            "--app",
+            is_flag=True,
+            group=group,
+            help="Show the app in this cell, live, as %sim_app does.",
+        ),
+        option(
+            "--height",
+            "height_px",
+            default=DEFAULT_HEIGHT_PX,
+            metavar="PX",
+            group=group,
+            type=_type(Whole(MIN_HEIGHT_PX, MAX_HEIGHT_PX), "--height"),
+            help=f"Height of the app in its cell ({DEFAULT_HEIGHT_PX}).",
+        ),
+        option(
+            "--origin",
+            "origins",
+            multiple=True,
+            metavar="URL",
+            type=WordType(_origin),
+            group=group,
+            help="Another address under which this notebook is read, such as http://lab:8888.",
+        ),
+        option(
+            "-L",
+            "--collab",
+            "collaborative",
+            is_flag=True,
+            group=group,
+            help="`roboSim.pyresponder` or `.responder` answers the program.",
+        ),
+    ]
     return Command(f"%{magic}", params=params, add_help_option=False)
 
 
@@ -69,7 +143,9 @@ def parse_line(line: str, magic: str) -> Arguments:
     try:
         found = parse(command, words)
     except ConfigError as error:
-        raise ConfigError(error.message, f"see %{magic} -h" if not error.hint else error.hint) from None
+        raise ConfigError(
+            error.message, f"see %{magic} -h" if not error.hint else error.hint
+        ) from None
     found.help = help_of(command) if found.help else ""
     return found
 
@@ -91,7 +167,9 @@ _ORIGIN = re.compile(r"https?://(?:[\w.-]+|\[[\da-fA-F:.]+\])(?::\d+)?|vscode-we
 
 def _origin(text: str) -> str:
     if not _ORIGIN.fullmatch(origin := text.rstrip("/")):
-        raise ConfigError(f"must be the beginning of an address, got {text!r}", "http://lab:8888", key="--origin")
+        raise ConfigError(
+            f"must be the beginning of an address, got {text!r}", "http://lab:8888", key="--origin"
+        )
     return origin
 
 
@@ -116,13 +194,26 @@ def _log_command(magic: str) -> Command:
         params += [
             option("-i", "--index", **index, help="Which image, from 0; -1 is the last."),
             option("-r", "--random", is_flag=True, help="Any image."),
-            option("-t", "--threshold", type=_type(Whole(0, 255), "--threshold"), default=127, metavar="N",
-                   help="The lightest grey that becomes black (127)."),
-            option("-c", "--crop", type=WordType(_corners), metavar="L,T,R,B",
-                   help="Part of the image, in pixels (3,3,17,17)."),
-            option("-n", "--nocrop", is_flag=True, help="The whole image (unless --crop is given)."),
+            option(
+                "-t",
+                "--threshold",
+                type=_type(Whole(0, 255), "--threshold"),
+                default=127,
+                metavar="N",
+                help="The lightest grey that becomes black (127).",
+            ),
+            option(
+                "-c",
+                "--crop",
+                type=WordType(_corners),
+                metavar="L,T,R,B",
+                help="Part of the image, in pixels (3,3,17,17).",
+            ),
+            option(
+                "-n", "--nocrop", is_flag=True, help="The whole image (unless --crop is given)."
+            ),
             option("-d", "--digitclass", is_flag=True, hidden=True),
-        ]  # fmt: skip
+        ]
     return Command(f"%{magic}", params=params, add_help_option=False)
 
 

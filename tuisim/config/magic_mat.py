@@ -37,11 +37,19 @@ def wrong_mat(text: str, name: str, folder: str | None) -> WrongMat | None:
     try:
         magic = find_magic(text, name)
         options: Mapping[str, str] = magic.options if magic else {}
-        if magic and "background" in options and "mats" not in options and not names_file(options["background"]):
+        if (
+            magic
+            and "background" in options
+            and "mats" not in options
+            and not names_file(options["background"])
+        ):
             find_mat(options["background"], folder)
     except BackgroundError as error:
         assert magic is not None
-        return WrongMat(magic.line, BackgroundError(error.message, error.hint, file=f"{name}, line {magic.line}"))
+        return WrongMat(
+            magic.line,
+            BackgroundError(error.message, error.hint, file=f"{name}, line {magic.line}"),
+        )
     except ConfigError:
         pass
     return None
@@ -51,4 +59,7 @@ def without_wrong_mat(source: ProgramSource, folder: str | None) -> ProgramSourc
     """Return a program without the mat of its magic line if that is wrong, so that it can be opened and mended."""
     if wrong_mat(source.program.text, source.program.name, folder) is None:
         return source
-    return replace(source, options={path: value for path, value in source.options.items() if path != "background"})
+    return replace(
+        source,
+        options={path: value for path, value in source.options.items() if path != "background"},
+    )

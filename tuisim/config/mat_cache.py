@@ -67,7 +67,9 @@ class FieldFiles:
     def is_for(self, diameters: Collection[int]) -> bool:
         """Return whether these are the files of a whole field with sums of these diameters."""
         size = self.width_px, self.height_px
-        return size == (FIELD_WIDTH_MM, FIELD_HEIGHT_MM) and {diameter for diameter, _ in self.sums} >= set(diameters)
+        return size == (FIELD_WIDTH_MM, FIELD_HEIGHT_MM) and {
+            diameter for diameter, _ in self.sums
+        } >= set(diameters)
 
     def identities(self) -> tuple[tuple[int, ...], ...]:
         """Return what changes when a file is written to, or made again; a missing file has none."""
@@ -82,7 +84,9 @@ class FieldFiles:
         """Whether the cache still has all files, undamaged; if so, they are marked as used now."""
         width, height = self.width_px, self.height_px
         wanted = [(self.pixels, 3 * width * height)]
-        wanted += [(path, 12 * (width + diameter) * (height + diameter)) for diameter, path in self.sums]
+        wanted += [
+            (path, 12 * (width + diameter) * (height + diameter)) for diameter, path in self.sums
+        ]
         return all(_in_use(path, size) for path, size in wanted)
 
     def to_plain(self) -> dict[str, Any]:
@@ -129,7 +133,9 @@ def prepare(image: Path, diameters: Iterable[int], fit: str = "stretch") -> Fiel
     wanted = sorted(set(diameters))
     for diameter in wanted:
         if not 1 <= diameter <= MAX_DIAMETER_PX:
-            raise BackgroundError(f"disc diameter must be from 1 to {MAX_DIAMETER_PX} pixels, got {diameter}")
+            raise BackgroundError(
+                f"disc diameter must be from 1 to {MAX_DIAMETER_PX} pixels, got {diameter}"
+            )
     check_fit(fit)
     content = read_file(image)
     folder = cache_folder() / "fields"
@@ -137,7 +143,9 @@ def prepare(image: Path, diameters: Iterable[int], fit: str = "stretch") -> Fiel
     stem = f"{hashlib.sha256(content).hexdigest()[:24]}-{how}{_LAYOUT}"
     sums = tuple((diameter, folder / f"{stem}-{diameter}.sums") for diameter in wanted)
     files = FieldFiles(FIELD_WIDTH_MM, FIELD_HEIGHT_MM, folder / f"{stem}.rgb", sums)
-    missing = [(diameter, path) for diameter, path in sums if not _in_use(path, _sums_size(diameter))]
+    missing = [
+        (diameter, path) for diameter, path in sums if not _in_use(path, _sums_size(diameter))
+    ]
     if not _in_use(files.pixels, 3 * FIELD_WIDTH_MM * FIELD_HEIGHT_MM) or missing:
         _make(files, missing, decode(content, image, fit))
     return files
@@ -277,7 +285,9 @@ def _mapped(path: Path, size: int) -> memoryview:
                 raise BackgroundError(what, "remove it to recreate it", file=str(path))
             noted = _noted(path)
             # The note is that of another file if that has just been made again by another process.
-            if noted is None or (noted[1] != _identity(found) and noted[0] != _checksum(stream.fileno())):
+            if noted is None or (
+                noted[1] != _identity(found) and noted[0] != _checksum(stream.fileno())
+            ):
                 raise BackgroundError("is damaged", "the next run makes it again", file=str(path))
             return memoryview(mmap.mmap(stream.fileno(), size, access=mmap.ACCESS_READ))
     except OSError as error:

@@ -63,7 +63,9 @@ def check_file(path: Path) -> None:
     if not found.st_size:
         raise _error("is empty, not an image", path)
     if found.st_size > MAX_FILE_MB * 1_000_000:
-        raise _error(f"is too large: {found.st_size / 1e6:,.0f} MB, the limit is {MAX_FILE_MB} MB", path)
+        raise _error(
+            f"is too large: {found.st_size / 1e6:,.0f} MB, the limit is {MAX_FILE_MB} MB", path
+        )
 
 
 def read_file(path: Path) -> bytes:
@@ -86,7 +88,9 @@ def check_fit(fit: str) -> None:
         BackgroundError: it is not.
     """
     if fit not in BACKGROUND_FITS:
-        raise BackgroundError(f"no such fit {fit!r}", f"one of {', '.join(BACKGROUND_FITS)}", key="background_fit")
+        raise BackgroundError(
+            f"no such fit {fit!r}", f"one of {', '.join(BACKGROUND_FITS)}", key="background_fit"
+        )
 
 
 def fits_as_it_is(content: bytes) -> bool:
@@ -128,7 +132,9 @@ def decode(content: bytes, path: Path, fit: str) -> NDArray[np.uint8]:
         try:
             picture = Image.open(io.BytesIO(content))
         except Image.DecompressionBombError as error:
-            raise _error(f"is too large: far more than {MAX_MEGAPIXELS} megapixels", path) from error
+            raise _error(
+                f"is too large: far more than {MAX_MEGAPIXELS} megapixels", path
+            ) from error
         # Pillow may raise any exception on a damaged file, also undocumented ones.
         except Exception as error:
             raise _error("is not a readable image", path) from error
@@ -199,6 +205,8 @@ def _placed(picture: Image, fit: str) -> Image:
         picture = picture.resize((width, height), Image.Resampling.LANCZOS)
     field = Image.new("RGB", _FIELD, "white")
     corner = fit == "corner"
-    left, top = (0 if corner else (side - own) // 2 for side, own in zip(_FIELD, picture.size, strict=True))
+    left, top = (
+        0 if corner else (side - own) // 2 for side, own in zip(_FIELD, picture.size, strict=True)
+    )
     field.paste(picture, (left, top))
     return field

@@ -76,7 +76,8 @@ def _background(name: str, data: object, file: Path) -> Background:
         image=file.parent / f"{name}.png",
         obstacles=obstacles_from_sides(entry.obstacles, at.at("obstacles")),
         sensor_x_mm={
-            sensor: convert(x_mm, float, at.at(f"sensor_x_mm.{sensor}")) for sensor, x_mm in entry.sensor_x_mm.items()
+            sensor: convert(x_mm, float, at.at(f"sensor_x_mm.{sensor}"))
+            for sensor, x_mm in entry.sensor_x_mm.items()
         },
         original=entry.original,
         shipped=entry.shipped,
@@ -94,7 +95,9 @@ def catalogue() -> Mapping[str, Background]:
     try:
         status = file.stat()
     except OSError as error:
-        raise BackgroundError(f"cannot be read: {error.strerror or error}", file=str(file)) from error
+        raise BackgroundError(
+            f"cannot be read: {error.strerror or error}", file=str(file)
+        ) from error
     return _read_catalogue(file, status.st_mtime_ns, status.st_size)
 
 
@@ -102,7 +105,9 @@ def catalogue() -> Mapping[str, Background]:
 def _read_catalogue(file: Path, _mtime_ns: int, _size: int) -> Mapping[str, Background]:
     # Choosing a mat needs the catalogue several times; an edited file has another time or size.
     entries = table(read_file(file, BackgroundError), Location(str(file), BackgroundError))
-    return MappingProxyType({name: _background(name, entry, file) for name, entry in entries.items()})
+    return MappingProxyType(
+        {name: _background(name, entry, file) for name, entry in entries.items()}
+    )
 
 
 def background(name: str) -> Background:
@@ -264,7 +269,9 @@ def import_originals(source: Path) -> tuple[list[Taken], list[str]]:
             with replacing(target / one.file, owner_only=True) as file:
                 file.write(contents[one.name])
     except OSError as error:
-        raise BackgroundError(f"cannot be written: {error.strerror or error}", file=str(target)) from error
+        raise BackgroundError(
+            f"cannot be written: {error.strerror or error}", file=str(target)
+        ) from error
     return taken, [file.name for file in files if file not in found.values()]
 
 
@@ -278,7 +285,9 @@ def _places(folder: str | None) -> list[Path]:
 def _named(folder: str) -> Path:
     path = Path(os.path.abspath(user_path(folder)))
     if not os.path.exists(path):
-        raise BackgroundError("there is no such folder", "name a folder of mat images", file=str(path), key="--mats")
+        raise BackgroundError(
+            "there is no such folder", "name a folder of mat images", file=str(path), key="--mats"
+        )
     return path
 
 
@@ -291,7 +300,9 @@ def _pictures(folder: Path) -> list[Path]:
         )
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or error
-        raise BackgroundError(f"cannot be read: {reason}", "name a folder of mat images", file=str(folder)) from error
+        raise BackgroundError(
+            f"cannot be read: {reason}", "name a folder of mat images", file=str(folder)
+        ) from error
 
 
 def _in_folder(folder: Path, known: Mapping[str, Background]) -> dict[str, Background]:
@@ -306,7 +317,10 @@ def _in_folder(folder: Path, known: Mapping[str, Background]) -> dict[str, Backg
         elif (mat := by_name.get(file.stem.lower())) is not None:
             found.setdefault(mat.name, replace(mat, image=file, fit=None, is_own=True))
         else:
-            found.setdefault(file.stem, Background(file.stem, f"The image {file.name}", OWN_START, file, is_own=True))
+            found.setdefault(
+                file.stem,
+                Background(file.stem, f"The image {file.name}", OWN_START, file, is_own=True),
+            )
     return found | originals
 
 

@@ -64,13 +64,20 @@ def notebooks_in(folder: Path) -> list[Path]:
     found: list[Path] = []
     for place, folders, files in os.walk(folder):
         folders[:] = [name for name in folders if not name.startswith(".")]
-        found += [Path(place, name) for name in files if name.endswith(SUFFIX) and not name.startswith(".")]
+        found += [
+            Path(place, name)
+            for name in files
+            if name.endswith(SUFFIX) and not name.startswith(".")
+        ]
     return sorted(found, key=lambda path: [_natural(part) for part in path.parts])
 
 
 def _natural(name: str) -> list[tuple[int, str]]:
     """Return a sort key for natural order."""
-    return [(int(digits), "") if digits else (-1, text.lower()) for digits, text in _NUMBERS.findall(name)]
+    return [
+        (int(digits), "") if digits else (-1, text.lower())
+        for digits, text in _NUMBERS.findall(name)
+    ]
 
 
 def _cells(path: Path) -> Iterator[tuple[str, str]]:
@@ -84,7 +91,9 @@ def _cells(path: Path) -> Iterator[tuple[str, str]]:
             source = cell["source"]
             yield str(cell["cell_type"]), source if isinstance(source, str) else "".join(source)
     except (ValueError, KeyError, TypeError, RecursionError):
-        raise ConfigError("is not a readable notebook", "one of format 4, as Jupyter saves it", file=shown) from None
+        raise ConfigError(
+            "is not a readable notebook", "one of format 4, as Jupyter saves it", file=shown
+        ) from None
 
 
 def notebook_programs(path: Path) -> list[NotebookProgram]:
@@ -118,7 +127,9 @@ def notebook_programs(path: Path) -> list[NotebookProgram]:
                 found.append(NotebookProgram(number, title, source, words.unknown, tuple(notes)))
                 notes.clear()
             elif words.unknown:
-                notes.append(f"{where}: {words.unknown} is defined only in the notebook, and is ignored")
+                notes.append(
+                    f"{where}: {words.unknown} is defined only in the notebook, and is ignored"
+                )
     return found
 
 
@@ -134,7 +145,9 @@ def _magics(text: str, where: str) -> Iterator[_Words]:
             continue
         if match["name"] not in PRELUDES:
             known = nearest(match["name"], PRELUDES)
-            raise ConfigError(f"no such magic %{match['cell'] or ''}{match['name']}", known, file=where)
+            raise ConfigError(
+                f"no such magic %{match['cell'] or ''}{match['name']}", known, file=where
+            )
         line_words, unknown = _without_variables(match["words"])
         try:
             yield _Words(match, parse_line(line_words, match["name"]).settings, unknown)

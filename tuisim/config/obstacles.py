@@ -19,7 +19,9 @@ NO_OBSTACLES = "None"
 OBSTACLES: Mapping[str, tuple[Obstacle, ...]] = {
     NO_OBSTACLES: (),
     "Central_post": (Obstacle(900, 500, 200, 200),),
-    "Square_posts": tuple(Obstacle(x_mm, y_mm, 100, 100) for x_mm in (500, 1500) for y_mm in (200, 700)),
+    "Square_posts": tuple(
+        Obstacle(x_mm, y_mm, 100, 100) for x_mm in (500, 1500) for y_mm in (200, 700)
+    ),
     "Wall": (Obstacle(1500, 200, 200, 800),),
 }
 """Every set of obstacles by name."""
@@ -43,7 +45,9 @@ def load_obstacles(word: str, key: str = "") -> tuple[Obstacle, ...]:
 
 
 def _from_table(data: object, at: Location) -> tuple[Obstacle, ...]:
-    return obstacles_from_list(files.required(files.table(data, at, ("obstacle",)), "obstacle", at), at.at("obstacle"))
+    return obstacles_from_list(
+        files.required(files.table(data, at, ("obstacle",)), "obstacle", at), at.at("obstacle")
+    )
 
 
 def obstacles_from_sides(data: object, at: Location) -> tuple[Obstacle, ...]:
@@ -67,7 +71,8 @@ def obstacles_from_list(data: object, at: Location) -> tuple[Obstacle, ...]:
         ObstacleError: a key or a value is wrong, or there are too many.
     """
     return tuple(
-        files.read_part(box, Obstacle, place) for box, place in files.entries(data, at, MAX_OBSTACLES, "obstacles")
+        files.read_part(box, Obstacle, place)
+        for box, place in files.entries(data, at, MAX_OBSTACLES, "obstacles")
     )
 
 
@@ -78,9 +83,17 @@ def save_obstacles(obstacles: Sequence[Obstacle], path: Path | str) -> None:
         ObstacleError: the file cannot be written, or there are too many.
     """
     if len(obstacles) > MAX_OBSTACLES:
-        raise ObstacleError(f"cannot hold {len(obstacles)} obstacles", f"at most {MAX_OBSTACLES}", file=str(path))
+        raise ObstacleError(
+            f"cannot hold {len(obstacles)} obstacles", f"at most {MAX_OBSTACLES}", file=str(path)
+        )
     at = Location(str(path), ObstacleError)
-    files.save_toml(Path(path), obstacle_file(obstacles), at, lambda data: _from_table(data, at), tuple(obstacles))
+    files.save_toml(
+        Path(path),
+        obstacle_file(obstacles),
+        at,
+        lambda data: _from_table(data, at),
+        tuple(obstacles),
+    )
 
 
 def obstacle_file(obstacles: Sequence[Obstacle]) -> list[str]:

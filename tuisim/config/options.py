@@ -92,7 +92,9 @@ def _run_values() -> Iterator[tuple[str, RunValue]]:
     values = dict(leaves(RunSpec))
     for table in ("world.", "robot.", "seed"):
         for path, value in values.items():
-            if path.startswith(table) and (value.flags or (table == "world." and path != "world.background")):
+            if path.startswith(table) and (
+                value.flags or (table == "world." and path != "world.background")
+            ):
                 inside = path.removeprefix("world.").removeprefix("robot.")
                 yield inside, RunValue(path, value, _default(path))
 
@@ -170,8 +172,16 @@ class Option:
 WORLD, RUN, APP, PANEL = "World", "Run", "App", "Panels of the app"
 
 
-def _word(path: str, flags: tuple[str, ...], metavar: str, allowed: str, about: str, default: str = "") -> Option:
-    return Option(RUN if path == "profile" else WORLD, path, Name(allowed, metavar, help=about), default, flags)
+def _word(
+    path: str, flags: tuple[str, ...], metavar: str, allowed: str, about: str, default: str = ""
+) -> Option:
+    return Option(
+        RUN if path == "profile" else WORLD,
+        path,
+        Name(allowed, metavar, help=about),
+        default,
+        flags,
+    )
 
 
 def _of_values(*tables: str) -> Iterator[Option]:
@@ -180,8 +190,12 @@ def _of_values(*tables: str) -> Iterator[Option]:
         if value.flags and spec_path.startswith(tables):
             takes_no_value = isinstance(value, Flag) and not default
             group = RUN if path == spec_path else WORLD
-            decided = "" if path in (*OF_THE_MAT, *OF_THE_PROFILE) or path.startswith("pen.") else default
-            yield Option(group, path, value, decided, value.flags, constant=True if takes_no_value else None)
+            decided = (
+                "" if path in (*OF_THE_MAT, *OF_THE_PROFILE) or path.startswith("pen.") else default
+            )
+            yield Option(
+                group, path, value, decided, value.flags, constant=True if takes_no_value else None
+            )
             if isinstance(value, Flag) and value.off_flag:
                 yield Option(group, path, value, decided, (value.off_flag,), constant=False)
 
@@ -192,44 +206,114 @@ def _of_app(path: str, value: Value, default: Any, **about: Any) -> Option:
 
 
 def _panel(panel: str, *flags: str, hide: bool = False, magic: tuple[str, ...] = ()) -> Option:
-    words = {"noise": "the noise controls", "arrays": "the sensor arrays", "positioning": "the positioning controls",
-             "controls": "the simulator controls"}  # fmt: skip
+    words = {
+        "noise": "the noise controls",
+        "arrays": "the sensor arrays",
+        "positioning": "the positioning controls",
+        "controls": "the simulator controls",
+    }
     about = f"{'hide' if hide else 'show'} {words.get(panel, f'the {panel}')}"
     path = "panels_off" if hide else "panels_on"
-    return Option(PANEL, path, Flag(help=about, in_config=False), (), flags, panel=panel, magic_flags=magic)
+    return Option(
+        PANEL, path, Flag(help=about, in_config=False), (), flags, panel=panel, magic_flags=magic
+    )
 
 
 _SPEED = NamedNumber(
-    MIN_SPEED, MAX_SPEED, {MAX_SPEED_WORD: 0.0}, flags=("--speed",), help="a multiple of real time, or max"
+    MIN_SPEED,
+    MAX_SPEED,
+    {MAX_SPEED_WORD: 0.0},
+    flags=("--speed",),
+    help="a multiple of real time, or max",
 )
 
 OPTIONS: tuple[Option, ...] = (
-    _word("background", ("-b", "--background"), "MAT", "the name of a mat, or an image file",
-          "a mat from `tuisim backgrounds`, or an image file", "Empty_Map"),
+    _word(
+        "background",
+        ("-b", "--background"),
+        "MAT",
+        "the name of a mat, or an image file",
+        "a mat from `tuisim backgrounds`, or an image file",
+        "Empty_Map",
+    ),
     _word("mats", ("--mats",), "FOLDER", "a folder", "folder of images that `-b` finds by name"),
-    _word("robot", ("-r", "--robot", "--robotSetup"), "ROBOT", "the name of a robot, or a file",
-          "a robot from `tuisim robots`, or a file", "Default_Robot"),
-    _word("obstacles", ("-o", "--obstacles"), "NAME", "the name of a set, or a file",
-          "a set from `tuisim obstacles`, or a file"),
+    _word(
+        "robot",
+        ("-r", "--robot", "--robotSetup"),
+        "ROBOT",
+        "the name of a robot, or a file",
+        "a robot from `tuisim robots`, or a file",
+        "Default_Robot",
+    ),
+    _word(
+        "obstacles",
+        ("-o", "--obstacles"),
+        "NAME",
+        "the name of a set, or a file",
+        "a set from `tuisim obstacles`, or a file",
+    ),
     *_of_values("world.", "robot."),
-    _word("profile", ("--profile",), "NAME", "the name of a profile, or a file",
-          "a profile from `tuisim profiles`, or a file", "robolab"),
+    _word(
+        "profile",
+        ("--profile",),
+        "NAME",
+        "the name of a profile, or a file",
+        "a profile from `tuisim profiles`, or a file",
+        "robolab",
+    ),
     *_of_values("seed"),
     Option(RUN, "speed", _SPEED, 1, _SPEED.flags),
-    Option(RUN, "preload", Choice(tuple(PRELUDE_TEXTS), help="names predefined for the program", in_config=False),
-           flags=("--preload",)),
+    Option(
+        RUN,
+        "preload",
+        Choice(tuple(PRELUDE_TEXTS), help="names predefined for the program", in_config=False),
+        flags=("--preload",),
+    ),
     _of_app("autorun", Flag(flags=("-R", "--autorun"), help="run at once", in_config=False), False),
-    _of_app("clear_trace", Flag(flags=("-C", "--clear"), help="clear the trace at the start", in_config=False), False),
+    _of_app(
+        "clear_trace",
+        Flag(flags=("-C", "--clear"), help="clear the trace at the start", in_config=False),
+        False,
+    ),
     _of_app("rays", Flag(flags=("-u", "--ultrasound"), help="show the ultrasonic rays"), False),
     _of_app("quiet", Flag(flags=("-q", "--quiet"), help="make no sound"), False, is_live=False),
-    _of_app("fps", Whole(1, 60, flags=("--fps",), help="maximum frames per second, 1 … 60"), DEFAULT_FPS,
-            is_live=False),
-    _of_app("colors", Choice(COLOR_DEPTHS, flags=("--colors",), metavar="DEPTH",
-                             help=f"colours: {', '.join(COLOR_DEPTHS)}"), AUTO, is_live=False),
-    _of_app("cells", Choice(CELLS, flags=("--cells",), metavar="SET",
-                            help=f"glyphs of the world: {', '.join(CELLS)}"), AUTO),
-    _of_app("pixels", Choice(PIXELS, flags=("--pixels",), metavar="HOW",
-                             help=f"draw real pixels: {', '.join(PIXELS)}"), AUTO),
+    _of_app(
+        "fps",
+        Whole(1, 60, flags=("--fps",), help="maximum frames per second, 1 … 60"),
+        DEFAULT_FPS,
+        is_live=False,
+    ),
+    _of_app(
+        "colors",
+        Choice(
+            COLOR_DEPTHS,
+            flags=("--colors",),
+            metavar="DEPTH",
+            help=f"colours: {', '.join(COLOR_DEPTHS)}",
+        ),
+        AUTO,
+        is_live=False,
+    ),
+    _of_app(
+        "cells",
+        Choice(
+            CELLS,
+            flags=("--cells",),
+            metavar="SET",
+            help=f"glyphs of the world: {', '.join(CELLS)}",
+        ),
+        AUTO,
+    ),
+    _of_app(
+        "pixels",
+        Choice(
+            PIXELS,
+            flags=("--pixels",),
+            metavar="HOW",
+            help=f"draw real pixels: {', '.join(PIXELS)}",
+        ),
+        AUTO,
+    ),
     _panel("output", "-O", "--output"),
     _panel("arrays", "-A", "--array"),
     _panel("chart", "-c", "--chart"),
@@ -240,10 +324,12 @@ OPTIONS: tuple[Option, ...] = (
     _panel("code", "-D", "--code"),
     _panel("world", "-W", "--hideworld", hide=True, magic=("--world",)),
     _panel("controls", "-H", "--hidecontrols", "--hide", hide=True),
-)  # fmt: skip
+)
 """Every shared option, in the order of the help."""
 
-OF_THE_APP = frozenset({"speed", *(option.path for option in OPTIONS if option.group in (APP, PANEL))}) - {
+OF_THE_APP = frozenset(
+    {"speed", *(option.path for option in OPTIONS if option.group in (APP, PANEL))}
+) - {
     "autorun",
     "clear_trace",
 }
@@ -255,7 +341,11 @@ OPTION_PANELS = tuple(option.panel for option in OPTIONS if option.panel)
 _PANEL_LISTS = ("panels_on", "panels_off")
 
 _DEFAULTS: Mapping[str, Any] = {
-    **{option.path: option.default for option in OPTIONS if option.path not in RUN_VALUES and option.default != ""},
+    **{
+        option.path: option.default
+        for option in OPTIONS
+        if option.path not in RUN_VALUES and option.default != ""
+    },
     # The app has a memory of its own for these.
     **dict.fromkeys(("speed", "cells")),
     "seed": 0,
@@ -292,7 +382,9 @@ def settings_of(*layers: Mapping[str, Any]) -> Settings:
     found: dict[str, Any] = {}
     for layer in layers:
         panels = {
-            path: tuple(dict.fromkeys((*found.get(path, ()), *layer[path]))) for path in _PANEL_LISTS if path in layer
+            path: tuple(dict.fromkeys((*found.get(path, ()), *layer[path])))
+            for path in _PANEL_LISTS
+            if path in layer
         }
         found |= {**layer, **panels}
     return Settings(found)

@@ -17,7 +17,18 @@ from tuisim.core.profile import ProfileSpec
 from tuisim.core.values import NamedPart
 from tuisim.errors import ProfileError, RobotError
 
-_NOT_VARIED = ("world", "title", "goal", "program", "autorun", "rays", "panels", "hidden_panels", "obstacle", "remote")
+_NOT_VARIED = (
+    "world",
+    "title",
+    "goal",
+    "program",
+    "autorun",
+    "rays",
+    "panels",
+    "hidden_panels",
+    "obstacle",
+    "remote",
+)
 """Keys of a world file that do not affect a run, or that have no single value."""
 _PARTS = {path: one.default for path, one in RUN_VALUES.items() if isinstance(one.value, NamedPart)}
 """The default of each value that has others inside it: a key of one leaves the others as they are."""
@@ -41,9 +52,13 @@ def settings_of_keys(values: Mapping[str, Any], chosen: Settings, path: Path) ->
             raise at.at(key).wrong("cannot be varied", "any other key of a world file can")
     if "arguments" in table:
         table["arguments"] = _words(table["arguments"], at.at("arguments"))
-    changed = {key: table.pop(key) for key in ("robot", "profile") if isinstance(table.get(key), dict)}
+    changed = {
+        key: table.pop(key) for key in ("robot", "profile") if isinstance(table.get(key), dict)
+    }
     named = {key: table.pop(f"{key}=") for key in ("robot", "profile") if f"{key}=" in table}
-    parts = {key: table.pop(key) for key, base in _PARTS.items() if isinstance(table.get(key), dict)}
+    parts = {
+        key: table.pop(key) for key, base in _PARTS.items() if isinstance(table.get(key), dict)
+    }
     found = dict(world_from_table(table | named, path, chosen["mats"]).settings)
     for key, inside in parts.items():
         found[key] = read_part(inside, chosen[key] or _PARTS[key], at.at(key))
@@ -52,7 +67,9 @@ def settings_of_keys(values: Mapping[str, Any], chosen: Settings, path: Path) ->
         found["robot"] = _changed_robot(changed["robot"], word, at.at("robot", RobotError))
     if "profile" in changed:
         word = found.get("profile", chosen["profile"])
-        found["profile"] = _changed_profile(changed["profile"], word, at.at("profile", ProfileError))
+        found["profile"] = _changed_profile(
+            changed["profile"], word, at.at("profile", ProfileError)
+        )
     return found
 
 

@@ -31,7 +31,9 @@ def parse_press(text: str, key: str = PRESS) -> ButtonPress:
     """
     name, at, times = text.partition("@")
     if not at:
-        raise ConfigError(f"must be BUTTON@FROM or BUTTON@FROM-UNTIL, got {text!r}", "such as enter@1.5", key=key)
+        raise ConfigError(
+            f"must be BUTTON@FROM or BUTTON@FROM-UNTIL, got {text!r}", "such as enter@1.5", key=key
+        )
     if name not in BUTTONS:
         raise ConfigError(f"the brick has no button {name!r}", nearest(name, BUTTONS), key=key)
     seconds = Number(0.0, MAX_PRESS_S)
@@ -40,5 +42,7 @@ def parse_press(text: str, key: str = PRESS) -> ButtonPress:
     from_s = parse(seconds, begin, key)
     until_s = parse(seconds, end, key) if to else from_s + DEFAULT_PRESS_S
     if until_s <= from_s:
-        raise ConfigError(f"{text!r} ends before it begins", "BUTTON@FROM-UNTIL, in simulated seconds", key=key)
+        raise ConfigError(
+            f"{text!r} ends before it begins", "BUTTON@FROM-UNTIL, in simulated seconds", key=key
+        )
     return ButtonPress(name, from_s, until_s)

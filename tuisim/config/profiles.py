@@ -4,7 +4,16 @@ from __future__ import annotations
 
 from typing import Any
 
-from tuisim.config.files import Location, convert, one_of, read_named, read_value, table, toml_lines, with_values
+from tuisim.config.files import (
+    Location,
+    convert,
+    one_of,
+    read_named,
+    read_value,
+    table,
+    toml_lines,
+    with_values,
+)
 from tuisim.core.profile import EARLIER_KEYS, MAX_COST_MS, MS, PROFILES, ProfileSpec, law_of_earlier
 from tuisim.core.values import Number, values_of
 from tuisim.errors import ProfileError
@@ -26,7 +35,9 @@ def load_profile(word: str, key: str = "") -> ProfileSpec:
     return profile_from_table(*read_named(word, "profile", PROFILES, ProfileError, key, (".toml",)))
 
 
-def profile_from_table(data: object, name: str, at: Location, changes_to: ProfileSpec | None = None) -> ProfileSpec:
+def profile_from_table(
+    data: object, name: str, at: Location, changes_to: ProfileSpec | None = None
+) -> ProfileSpec:
     """Return the profile in a table, called `name` unless the table says otherwise; costs are in ms or ns.
 
     Args:
@@ -49,12 +60,16 @@ def profile_from_table(data: object, name: str, at: Location, changes_to: Profil
     for key, value in given.items():
         if key in in_ms:
             if in_ms[key] in given:
-                raise at.at(key).wrong(f"is given together with {in_ms[key]}", "give only one of them")
+                raise at.at(key).wrong(
+                    f"is given together with {in_ms[key]}", "give only one of them"
+                )
             found[in_ms[key]] = round(read_value(value, _COST_MS, at.at(key)) * MS)
         elif key in values:
             found[key] = read_value(value, values[key], at.at(key))
     if found["name"] in PROFILES:
-        raise at.at("name").wrong(f"{found['name']!r} is the name of a built-in profile", "choose another name")
+        raise at.at("name").wrong(
+            f"{found['name']!r} is the name of a built-in profile", "choose another name"
+        )
     return with_values(base, found, at)
 
 

@@ -86,7 +86,10 @@ def programs() -> list[ProgramFile]:
     Raises:
         ConfigError: there is no folder of programs.
     """
-    return [ProgramFile(path.name, path, _title_of(path)) for path in sorted(programs_folder().glob("*.py"))]
+    return [
+        ProgramFile(path.name, path, _title_of(path))
+        for path in sorted(programs_folder().glob("*.py"))
+    ]
 
 
 def _head(lines: list[str]) -> Iterator[tuple[int, str]]:
@@ -140,7 +143,9 @@ def find_magic(text: str, name: str) -> Magic | None:
         except ConfigError as error:
             raise ConfigError(error.message, error.hint, file=where) from None
         except ValueError as error:
-            raise ConfigError(f"the magic line cannot be split into words: {error}", file=where) from None
+            raise ConfigError(
+                f"the magic line cannot be split into words: {error}", file=where
+            ) from None
         return Magic(number, PRELUDES[match["name"]], options, match["comment"] is not None)
     return None
 
@@ -160,13 +165,18 @@ def with_mat(text: str, name: str, mat: str) -> str:
     lines = text.split("\n")
     if magic is None:
         at = _after_docstring(lines)
-        return "\n".join([*lines[:at], f"# %%sim_magic_preloaded -b {shlex.quote(mat)}", *lines[at:]])
+        return "\n".join(
+            [*lines[:at], f"# %%sim_magic_preloaded -b {shlex.quote(mat)}", *lines[at:]]
+        )
     line = lines[magic.line - 1].rstrip()
     wanted = {**magic.options, "background": mat}
     before, quoted = str(magic.options.get("background", "\n")), shlex.quote(mat)
     # Of several the last one counts.
     named = (line.rpartition(word) for word in (f'"{before}"', shlex.quote(before), before))
-    for changed in (*(f"{one[0]}{quoted}{one[2]}" for one in named if one[1]), f"{line} -b {quoted}"):
+    for changed in (
+        *(f"{one[0]}{quoted}{one[2]}" for one in named if one[1]),
+        f"{line} -b {quoted}",
+    ):
         lines[magic.line - 1] = changed
         with suppress(ConfigError):
             found = find_magic("\n".join(lines), name)
@@ -185,7 +195,9 @@ def _after_docstring(lines: list[str]) -> int:
     match first:
         case [ast.Expr(value=ast.Constant(value=str()), end_lineno=int(last))]:
             return last
-    return next((at for at, line in enumerate(lines[:2]) if not line.startswith(("#!", "# -*-"))), 0)
+    return next(
+        (at for at, line in enumerate(lines[:2]) if not line.startswith(("#!", "# -*-"))), 0
+    )
 
 
 def prelude_for(text: str, path: str = "") -> str:
@@ -220,7 +232,9 @@ def imports_library(text: str) -> bool:
         return _IMPORT.search(text) is not None
     for node in ast.walk(tree):
         match node:
-            case ast.Import(names=names) if any(alias.name.split(".")[0] in LIBRARIES for alias in names):
+            case ast.Import(names=names) if any(
+                alias.name.split(".")[0] in LIBRARIES for alias in names
+            ):
                 return True
             case ast.ImportFrom(module=str(module), level=0) if module.split(".")[0] in LIBRARIES:
                 return True
@@ -288,7 +302,9 @@ def read_program(path: Path, *, as_python: bool = False, alone: bool = False) ->
     return program_of_text(_decode(data, shown, as_python), path, path.name, alone=alone)
 
 
-def program_of_text(text: str, path: Path | None, name: str, *, alone: bool = False) -> ProgramSource:
+def program_of_text(
+    text: str, path: Path | None, name: str, *, alone: bool = False
+) -> ProgramSource:
     """Like `read_program`, from a text; files in its magic line are looked up beside `path`.
 
     Args:
@@ -310,7 +326,9 @@ def _decode(data: bytes, shown: str, as_python: bool) -> str:
     try:
         text, _ = decode_source(data, shown)
         if "\0" in text:
-            raise ConfigError("is not Python text: it contains null characters", "name a Python file", file=shown)
+            raise ConfigError(
+                "is not Python text: it contains null characters", "name a Python file", file=shown
+            )
     except ConfigError:
         if not as_python:
             raise

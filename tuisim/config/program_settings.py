@@ -30,7 +30,10 @@ if TYPE_CHECKING:
 
 BRICK_PROFILE = "ev3"
 """The profile of programs that are for a real brick."""
-PROFILE_OF: Mapping[Library, str] = {Library.EV3DEV2: BRICK_PROFILE, Library.PYBRICKS: "lego-micropython"}
+PROFILE_OF: Mapping[Library, str] = {
+    Library.EV3DEV2: BRICK_PROFILE,
+    Library.PYBRICKS: "lego-micropython",
+}
 """The profile with the rules of a real brick, by the library of the program."""
 OF_BRICKS = (*PROFILE_OF.values(), PYBRICKS_4.name)
 """All profiles with the rules of a real brick."""
@@ -173,7 +176,11 @@ def program_settings(
 
 
 def free_paths(
-    layers: Iterable[Mapping[str, Any]], above: Iterable[Mapping[str, Any]], *, in_world: bool, of_task: bool
+    layers: Iterable[Mapping[str, Any]],
+    above: Iterable[Mapping[str, Any]],
+    *,
+    in_world: bool,
+    of_task: bool,
 ) -> frozenset[str]:
     """Return which of `PROGRAM_PATHS` nobody has chosen, for the arguments of `program_settings`."""
     said = {key for layer in layers for key, value in layer.items() if value is not None}
@@ -187,7 +194,9 @@ def free_paths(
     return frozenset(free)
 
 
-def decide(source: ProgramSource, settings: Settings, free: Collection[str], *, insists: bool = True) -> Decided:
+def decide(
+    source: ProgramSource, settings: Settings, free: Collection[str], *, insists: bool = True
+) -> Decided:
     """Return what the source of a program decides.
 
     Args:
@@ -210,7 +219,9 @@ def decide(source: ProgramSource, settings: Settings, free: Collection[str], *, 
     elif facts.library and not _fits(settings, facts.library):
         if insists and settings.given.get("profile") is not None:
             raise _misfit(source.program.name, facts.library, _profile(settings["profile"]))
-        layer["profile"] = DEFAULT_PROFILE if for_course or facts.of_course else PROFILE_OF[facts.library]
+        layer["profile"] = (
+            DEFAULT_PROFILE if for_course or facts.of_course else PROFILE_OF[facts.library]
+        )
     profile = layer.get("profile", settings["profile"])
     by_rules = profile in OF_BRICKS or profile in [PROFILES[name] for name in OF_BRICKS]
     if by_rules and not source.has_magic and {*_PLACE} <= {*free}:
@@ -281,10 +292,14 @@ def _facts_in_run(source: ProgramSource, free: Collection[str]) -> SourceFacts:
 
 
 def _by_brick_rules(source: ProgramSource, facts: SourceFacts, free: Collection[str]) -> bool:
-    return bool(facts.library) and not facts.of_course and not source.has_magic and "profile" in free
+    return (
+        bool(facts.library) and not facts.of_course and not source.has_magic and "profile" in free
+    )
 
 
-def _in_words(program: Program, facts: SourceFacts, layer: Mapping[str, Any], *, keeps_robot: bool) -> tuple[str, str]:
+def _in_words(
+    program: Program, facts: SourceFacts, layer: Mapping[str, Any], *, keeps_robot: bool
+) -> tuple[str, str]:
     """Return what the source of a program decided, and how to change it; both empty for nothing.
 
     Args:
@@ -300,6 +315,10 @@ def _in_words(program: Program, facts: SourceFacts, layer: Mapping[str, Any], *,
         else:
             parts = [f"{program.name} runs on a robot built from it: {words}", *facts.robot.doubts]
         options = "-r or --profile" if rules else "-r"
-        shown = f"; `tuisim robots --from {shlex.quote(program.path)}` shows the robot" if program.path else ""
+        shown = (
+            f"; `tuisim robots --from {shlex.quote(program.path)}` shows the robot"
+            if program.path
+            else ""
+        )
         return "; ".join(filter(None, [*parts, rules])), f"{options} to change it{shown}"
     return (f"{program.name} runs {rules}", "--profile to change it") if rules else ("", "")

@@ -75,7 +75,9 @@ ROBOTS: Mapping[str, RobotSpec] = {
     for robot in (
         RobotSpec(),
         _SMALL,
-        replace(_SMALL, name="Small_Robot_Wide_Eyes", color_sensors=_sensor_pair(30.0, 15.0, 10, 10)),
+        replace(
+            _SMALL, name="Small_Robot_Wide_Eyes", color_sensors=_sensor_pair(30.0, 15.0, 10, 10)
+        ),
         RobotSpec(name="Sensor_Diameter_Config", color_sensors=_sensor_pair(20.0, 30.0, 30, 10)),
         RobotSpec(
             name="Explorer",
@@ -92,7 +94,9 @@ ROBOTS: Mapping[str, RobotSpec] = {
 DEFAULT_ROBOT = "Default_Robot"
 _VALUES = values_of(RobotSpec)
 _BODY_KEYS = tuple(
-    key for key, value in _VALUES.items() if not isinstance(value, Part) and key not in ("left_motor", "right_motor")
+    key
+    for key, value in _VALUES.items()
+    if not isinstance(value, Part) and key not in ("left_motor", "right_motor")
 )
 """Keys whose values are those of the fields; the kinds of motors stand in the table `motors`."""
 _MOTOR_KEYS = ("kind", "low_deg", "high_deg")
@@ -100,8 +104,11 @@ _PEN_KEYS = ("x_mm", "y_mm", "color", "width_mm", "down")
 _TOP_KEYS = ("base", *_BODY_KEYS, "motors", *(mount.key for mount in MOUNTS), "pen")
 
 _TABLES: Mapping[str, type] = {
-    "": RobotSpec, "motors": MotorSpec, "pen": PenSpec, **{mount.key: mount.spec for mount in MOUNTS},
-}  # fmt: skip
+    "": RobotSpec,
+    "motors": MotorSpec,
+    "pen": PenSpec,
+    **{mount.key: mount.spec for mount in MOUNTS},
+}
 
 
 def values_in(table: str) -> Mapping[str, Value]:
@@ -136,7 +143,9 @@ def choose_robot(word: str, key: str = "") -> RobotChoice:
     return (robot_from_json if word.lower().endswith(".json") else robot_from_table)(data, name, at)
 
 
-def robot_from_table(data: object, name: str, at: Location, changes_to: RobotSpec | None = None) -> RobotChoice:
+def robot_from_table(
+    data: object, name: str, at: Location, changes_to: RobotSpec | None = None
+) -> RobotChoice:
     """Return the robot in a table, called `name` unless the table says otherwise.
 
     Args:
@@ -149,7 +158,11 @@ def robot_from_table(data: object, name: str, at: Location, changes_to: RobotSpe
     named = ROBOTS[files.one_of(found.get("base", DEFAULT_ROBOT), at.at("base"), ROBOTS)]
     base = named if changes_to is None or "base" in found else changes_to
     changes: dict[str, Any] = {"name": name}
-    changes |= {key: files.read_value(found[key], _VALUES[key], at.at(key)) for key in _BODY_KEYS if key in found}
+    changes |= {
+        key: files.read_value(found[key], _VALUES[key], at.at(key))
+        for key in _BODY_KEYS
+        if key in found
+    }
     if "pen" in found:
         changes["pen"] = files.read_part(found["pen"], base.pen, at.at("pen"))
     if "motors" in found:
@@ -172,12 +185,16 @@ def _motors(robot: Mapping[str, Any], base: RobotSpec, at: Location) -> dict[str
     for port, data in files.table(robot["motors"], at, OUTPUT_PORTS).items():
         wheel = wheels.get(port)
         if wheel and data is False:
-            raise at.at(port).wrong("drives a wheel", f"it cannot be removed; {wheel} sets its port")
+            raise at.at(port).wrong(
+                "drives a wheel", f"it cannot be removed; {wheel} sets its port"
+            )
         if wheel:
             key = wheel.replace("port", "motor")
             motor = _motor(data, MotorSpec(port, getattr(base, key)), at.at(port))
             if (motor.low_deg, motor.high_deg) != (None, None):
-                raise at.at(port).wrong("drives a wheel, which has no end stops", "only its kind can be set here")
+                raise at.at(port).wrong(
+                    "drives a wheel, which has no end stops", "only its kind can be set here"
+                )
             found[key] = motor.kind
         elif data is False:
             motors.pop(port, None)
@@ -195,7 +212,11 @@ def _motor(data: object, base: MotorSpec, at: Location) -> MotorSpec:
 
 def _single(data: object, mount: Mount, base: RobotSpec, at: Location) -> SensorSpec | None:
     """Return the only sensor of its kind; None for `false`, which removes it."""
-    return None if data is False else files.read_part(data, getattr(base, mount.field) or mount.spec(), at)
+    return (
+        None
+        if data is False
+        else files.read_part(data, getattr(base, mount.field) or mount.spec(), at)
+    )
 
 
 def _named(data: object, mount: Mount, base: RobotSpec, at: Location) -> tuple[SensorSpec, ...]:
@@ -208,13 +229,17 @@ def _named(data: object, mount: Mount, base: RobotSpec, at: Location) -> tuple[S
             found.pop(name, None)
         elif not SENSOR_NAME.fullmatch(name):
             wrong = at.at(shown(name)[1:-1]).wrong
-            raise wrong("is not a valid sensor name", "letters, digits and _, a letter first, at most 31")
+            raise wrong(
+                "is not a valid sensor name", "letters, digits and _, a letter first, at most 31"
+            )
         elif name in found:
             found[name] = files.read_part(sensor, found[name], place)
         else:
             if isinstance(sensor, dict):
                 # No port is free by itself.
-                files.required(files.table(sensor, place, [*values_of(mount.spec)][1:]), "port", place)
+                files.required(
+                    files.table(sensor, place, [*values_of(mount.spec)][1:]), "port", place
+                )
             found[name] = files.read_part(sensor, mount.spec, place, name=name)
     # A file that names all of them also sets their order.
     order = [name for name in names if name in found]
@@ -226,7 +251,10 @@ _JSON_PARTS: Mapping[str, tuple[str, Mapping[str, str]]] = {
     "pen": ("pen", {"x": "x_mm", "y": "y_mm", "color": "color", "width": "width_mm"}),
     "sensor1": ("color_sensors.left", _COLOR_SENSOR),
     "sensor2": ("color_sensors.right", _COLOR_SENSOR),
-    "ultrasonic": ("ultrasonic", {"x": "x_mm", "y": "y_mm", "angle": "angle_deg", "noise": "noise_mm"}),
+    "ultrasonic": (
+        "ultrasonic",
+        {"x": "x_mm", "y": "y_mm", "angle": "angle_deg", "noise": "noise_mm"},
+    ),
     "gyro": ("gyro", {}),
 }
 """The key of each part in a robot's TOML table, and the names of its keys there."""
@@ -270,7 +298,9 @@ def robot_from_json(data: object, name: str, at: Location) -> RobotChoice:
             theirs[_JSON_KEYS[key]] = key
         elif key in _JSON_PARTS:
             place, keys = _JSON_PARTS[key]
-            theirs |= {place: key, f"{place}.port": key} | {f"{place}.{to}": f"{key}.{of}" for of, to in keys.items()}
+            theirs |= {place: key, f"{place}.port": key} | {
+                f"{place}.{to}": f"{key}.{of}" for of, to in keys.items()
+            }
             outer, _, inner = place.rpartition(".")
             part = files.table(value, at.at(key))
             (ours[outer] if outer else ours)[inner] = _json_part(part, keys, at.at(key))
@@ -284,15 +314,24 @@ def robot_from_json(data: object, name: str, at: Location) -> RobotChoice:
     except ConfigError as error:
         raise files.with_location(error, at.file, theirs.get(error.key, error.key)) from None
     notes = (f"{at.file}: ignored unknown keys: {shown_keys(unknown)}",) if unknown else ()
-    return replace(choice, motor_noise=_DEFAULT_NOISE if motor is None else motor, light_noise=light, notes=notes)
+    return replace(
+        choice,
+        motor_noise=_DEFAULT_NOISE if motor is None else motor,
+        light_noise=light,
+        notes=notes,
+    )
 
 
 def _json_noise(robot: Mapping[str, object], key: str, kind: str, at: Location) -> int | None:
     value = robot.get(key)
-    return None if value is None else files.read_value(value, values_of(NoiseSpec)[kind], at.at(key))
+    return (
+        None if value is None else files.read_value(value, values_of(NoiseSpec)[kind], at.at(key))
+    )
 
 
-def _json_part(part: Mapping[str, object], keys: Mapping[str, str], at: Location) -> dict[str, object] | bool:
+def _json_part(
+    part: Mapping[str, object], keys: Mapping[str, str], at: Location
+) -> dict[str, object] | bool:
     """Return a sensor or the pen with the keys of a TOML table; False if it is not enabled."""
     if at.key != "pen" and not files.convert(part.get("enabled", True), bool, at.at("enabled")):
         return False
@@ -305,7 +344,9 @@ def _json_part(part: Mapping[str, object], keys: Mapping[str, str], at: Location
 def shown_keys(keys: Sequence[str]) -> str:
     """Return a short list of keys for a message, whatever their number and length."""
     names = [shown(key)[1:-1] for key in keys[:_KEYS_SHOWN]]
-    return ", ".join(names) + (f" and {len(keys) - _KEYS_SHOWN} more" if len(keys) > _KEYS_SHOWN else "")
+    return ", ".join(names) + (
+        f" and {len(keys) - _KEYS_SHOWN} more" if len(keys) > _KEYS_SHOWN else ""
+    )
 
 
 def ports_of(robot: RobotSpec) -> list[tuple[str, str]]:
@@ -328,7 +369,13 @@ def save_robot(spec: RobotSpec, path: Path | str) -> None:
     """
     path = Path(path)
     at = Location(str(path), RobotError)
-    files.save_toml(path, robot_file(spec), at, lambda data: robot_from_table(data, files.name_of(path), at).spec, spec)
+    files.save_toml(
+        path,
+        robot_file(spec),
+        at,
+        lambda data: robot_from_table(data, files.name_of(path), at).spec,
+        spec,
+    )
 
 
 def robot_file(spec: RobotSpec) -> list[str]:
@@ -336,14 +383,22 @@ def robot_file(spec: RobotSpec) -> list[str]:
     return [*_HEAD, "", *robot_lines(spec)]
 
 
-def robot_lines(spec: RobotSpec, parent: str = "", pen_keys: Iterable[str] = _PEN_KEYS) -> list[str]:
+def robot_lines(
+    spec: RobotSpec, parent: str = "", pen_keys: Iterable[str] = _PEN_KEYS
+) -> list[str]:
     """Return a robot as TOML lines, with every value: the table `parent`, or a file of its own."""
     under = f"{parent}." if parent else ""
     lines = [f"[{parent}]"] if parent else []
     lines += files.value_lines(spec, [key for key in _BODY_KEYS if not _is_left_out(spec, key)])
     names = [sensor.name for sensor in spec.color_sensors]
-    if gone := [sensor.name for sensor in ROBOTS[DEFAULT_ROBOT].color_sensors if sensor.name not in names]:
-        lines += ["", f"[{under}color_sensors]", *(f"{files.toml_key(name)} = false" for name in gone)]
+    if gone := [
+        sensor.name for sensor in ROBOTS[DEFAULT_ROBOT].color_sensors if sensor.name not in names
+    ]:
+        lines += [
+            "",
+            f"[{under}color_sensors]",
+            *(f"{files.toml_key(name)} = false" for name in gone),
+        ]
     for mount in MOUNTS:
         if mount.standard and not mount.many and not spec.sensors_in(mount):
             # Keys of the robot itself must precede its first table.
@@ -351,7 +406,11 @@ def robot_lines(spec: RobotSpec, parent: str = "", pen_keys: Iterable[str] = _PE
     for mount in MOUNTS:
         for sensor in spec.sensors_in(mount):
             place = f"{mount.key}.{files.toml_key(sensor.name)}" if mount.many else mount.key
-            keys = [key for key in values_of(mount.spec) if key != "name" and not _is_no_presser(sensor, key)]
+            keys = [
+                key
+                for key in values_of(mount.spec)
+                if key != "name" and not _is_no_presser(sensor, key)
+            ]
             lines += ["", f"[{under}{place}]", *files.value_lines(sensor, keys)]
     lines += _motor_lines(spec, f"{under}motors")
     return [*lines, "", f"[{under}pen]", *files.value_lines(spec.pen, pen_keys)]

@@ -16,10 +16,17 @@ Names = Callable[[str], Iterable[str]]
 
 def _parameter(shared: Option, *, magic: bool, hidden: bool, names: Names) -> GroupedOption:
     flags = [*shared.flags, *(shared.magic_flags if magic else ())]
-    how: dict[str, Any] = {"group": shared.group, "sets": shared.path, "help": shared.help, "hidden": hidden}
+    how: dict[str, Any] = {
+        "group": shared.group,
+        "sets": shared.path,
+        "help": shared.help,
+        "hidden": hidden,
+    }
     name = shared.path.replace(".", "_")
     if shared.panel:
-        return GroupedOption([*flags, f"panel_{shared.panel}"], is_flag=True, adds=shared.panel, **how)
+        return GroupedOption(
+            [*flags, f"panel_{shared.panel}"], is_flag=True, adds=shared.panel, **how
+        )
     if shared.constant is not None:
         return GroupedOption([*flags, name], flag_value=shared.constant, default=None, **how)
     kind = WordType(
@@ -39,7 +46,9 @@ def shared_options(
         hidden: Groups that are accepted but not listed in the help.
         names: Return the names that completion offers for a path.
     """
-    return [_parameter(one, magic=magic, hidden=one.group in hidden, names=names) for one in OPTIONS]
+    return [
+        _parameter(one, magic=magic, hidden=one.group in hidden, names=names) for one in OPTIONS
+    ]
 
 
 def parse_words(words: Sequence[str]) -> dict[str, Any]:
@@ -48,4 +57,8 @@ def parse_words(words: Sequence[str]) -> dict[str, Any]:
     Raises:
         ConfigError: a word is no option, or a value is wrong.
     """
-    return dict(parse(Command("tuisim", params=shared_options(magic=True), add_help_option=False), words).settings)
+    return dict(
+        parse(
+            Command("tuisim", params=shared_options(magic=True), add_help_option=False), words
+        ).settings
+    )

@@ -13,7 +13,15 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
-from tuisim.config.files import Location, Scalar, means_file, parse_toml, read_value, table, toml_form
+from tuisim.config.files import (
+    Location,
+    Scalar,
+    means_file,
+    parse_toml,
+    read_value,
+    table,
+    toml_form,
+)
 from tuisim.config.folders import config_folder, user_path
 from tuisim.config.options import OF_THE_APP, OPTIONS, Name, Settings
 from tuisim.core.values import Value, shown
@@ -86,9 +94,13 @@ THEME, CELL_SET = f"{Section.APP}.theme", f"{Section.APP}.cells"
 """Paths of settings that are read by themselves."""
 _THEME = Name("the name of a theme", "THEME", help="colours of the app; F10 lists the themes")
 _EVERY = (*_of_options(), Setting(Section.APP, "theme", _THEME, "textual-dark"))
-REMOVED = {"editor": "there are no keys of vim and Emacs; ctrl+e in the app opens the program in $EDITOR"}
+REMOVED = {
+    "editor": "there are no keys of vim and Emacs; ctrl+e in the app opens the program in $EDITOR"
+}
 """What to do without a table that files of before may have."""
-SETTINGS: Mapping[str, Setting] = {one.path: one for section in Section for one in _EVERY if one.section is section}
+SETTINGS: Mapping[str, Setting] = {
+    one.path: one for section in Section for one in _EVERY if one.section is section
+}
 """Every setting by its path, in the order of the file."""
 
 
@@ -132,8 +144,16 @@ class UserConfig:
         """Return it without the settings of other tables."""
         return replace(
             self,
-            written={path: value for path, value in self.written.items() if SETTINGS[path].section is section},
-            values={path: value for path, value in self.values.items() if SETTINGS[path].section is section},
+            written={
+                path: value
+                for path, value in self.written.items()
+                if SETTINGS[path].section is section
+            },
+            values={
+                path: value
+                for path, value in self.values.items()
+                if SETTINGS[path].section is section
+            },
         )
 
     def in_effect(self, *above: Mapping[str, Any]) -> list[str]:
@@ -205,7 +225,10 @@ def config_of_text(text: str, path: Path) -> UserConfig:
                 keys[name] = _keys(value, here)
             else:
                 one = SETTINGS[here.key]
-                written[here.key], values[here.key] = value, _resolved(one, read_value(value, one.value, here), path)
+                written[here.key], values[here.key] = (
+                    value,
+                    _resolved(one, read_value(value, one.value, here), path),
+                )
         except ConfigError as error:
             problems.append(error)
     if Section.SIMULATION in data:
@@ -213,9 +236,14 @@ def config_of_text(text: str, path: Path) -> UserConfig:
     return UserConfig(path, written, values, keys, tuple(problems))
 
 
-def _entries(data: Any, at: Location, problems: list[ConfigError]) -> Iterator[tuple[str, Any, Location]]:
+def _entries(
+    data: Any, at: Location, problems: list[ConfigError]
+) -> Iterator[tuple[str, Any, Location]]:
     """Yield name, value and location of the entries that exist; add an error for each of the others."""
-    names = {section: [one.name for one in SETTINGS.values() if one.section is section] for section in Section}
+    names = {
+        section: [one.name for one in SETTINGS.values() if one.section is section]
+        for section in Section
+    }
     for section, content in data.items():
         here = at.at(section)
         try:
@@ -242,8 +270,15 @@ def _hint(name: str, known: Any) -> str:
 
 def _keys(value: object, at: Location) -> tuple[str, ...]:
     listed = value if isinstance(value, list) else [value]
-    if not listed or len(listed) > MAX_KEYS or not all(isinstance(key, str) and key for key in listed):
-        raise at.wrong(f"must be a key or a list of keys, got {shown(value)}", 'such as "x" or ["ctrl+x", "f5"]')
+    if (
+        not listed
+        or len(listed) > MAX_KEYS
+        or not all(isinstance(key, str) and key for key in listed)
+    ):
+        raise at.wrong(
+            f"must be a key or a list of keys, got {shown(value)}",
+            'such as "x" or ["ctrl+x", "f5"]',
+        )
     return tuple(listed)
 
 
@@ -256,11 +291,15 @@ def _resolved(one: Setting, value: Any, path: Path) -> Any:
     if one.name not in _NAMES:
         return value
     word = user_path(value)
-    is_path = one.name == "mats" or means_file(value) or (one.name == "background" and bool(word.suffix))
+    is_path = (
+        one.name == "mats" or means_file(value) or (one.name == "background" and bool(word.suffix))
+    )
     return str(path.parent / word) if is_path else value
 
 
-def _without_wrong_names(written: dict[str, Scalar], values: dict[str, Any], at: Location) -> Iterator[ConfigError]:
+def _without_wrong_names(
+    written: dict[str, Scalar], values: dict[str, Any], at: Location
+) -> Iterator[ConfigError]:
     """Remove names of mats, robots, obstacles and profiles that do not exist; yield an error for each."""
     from tuisim.config.build import build_run_spec
 
@@ -269,7 +308,9 @@ def _without_wrong_names(written: dict[str, Scalar], values: dict[str, Any], at:
         if path not in values:
             continue
         try:
-            build_run_spec(Settings({"mats": values.get(f"{Section.SIMULATION}.mats"), name: values[path]}))
+            build_run_spec(
+                Settings({"mats": values.get(f"{Section.SIMULATION}.mats"), name: values[path]})
+            )
         except ConfigError as error:
             del written[path], values[path]
             where = "" if error.file else f"{error.key}: "

@@ -28,7 +28,9 @@ _KEYS = ('run = ["x", "f5"]', 'theme = "ctrl+y"')
 
 def template() -> str:
     """Return a file with every setting as it is without the file, in comments."""
-    lines = [f"# Your defaults for tuisim: {see_page(PAGE)}. Remove a # to make a setting your own."]
+    lines = [
+        f"# Your defaults for tuisim: {see_page(PAGE)}. Remove a # to make a setting your own."
+    ]
     for section in Section:
         lines += ["", *_comment(ABOUT[section]), f"[{section}]"]
         for one in SETTINGS.values():
@@ -52,7 +54,9 @@ def write_template() -> Path:
     """
     path = config_file()
     if path.exists() or path.is_symlink():
-        raise ConfigError("exists already", "it is left as it is; delete it first to begin anew", file=str(path))
+        raise ConfigError(
+            "exists already", "it is left as it is; delete it first to begin anew", file=str(path)
+        )
     _write(path, template())
     return path
 

@@ -69,7 +69,11 @@ _TABLES: Mapping[str, tuple[str, ...]] = {
 }
 """The keys of each table with values of a run; none for a value that is in no table."""
 
-_DEFAULTS = {path: files.toml_form(one.value, one.default) for path, one in RUN_VALUES.items() if one.value.later}
+_DEFAULTS = {
+    path: files.toml_form(one.value, one.default)
+    for path, one in RUN_VALUES.items()
+    if one.value.later
+}
 _OF_TASKS = ("title", "press", "inputs", "goal", "also")
 _NOT_IN_A_RUN = ("world", "mats", "rays", "autorun", "panels", "hidden_panels", *_OF_TASKS)
 """Keys that stay as they are when a run is saved into a file that has them."""
@@ -122,7 +126,9 @@ def _load_world(path: Path, mats: str | None, above: tuple[Path, ...]) -> WorldF
     return world_from_table(data, path, mats, above)
 
 
-def world_from_table(data: object, path: Path, mats: str | None = None, above: tuple[Path, ...] = ()) -> WorldFile:
+def world_from_table(
+    data: object, path: Path, mats: str | None = None, above: tuple[Path, ...] = ()
+) -> WorldFile:
     """Return the world in a table; keys of goals files are left to `tuisim.goals`.
 
     Args:
@@ -137,7 +143,9 @@ def world_from_table(data: object, path: Path, mats: str | None = None, above: t
     found, world = _parted(data, at)
     referred: list[Path] = []
     resolve = partial(_resolved, path.parent, referred)
-    found |= {key: world[key] for key in ("rays", "autorun") if key in world} | _mat(world, at, resolve, mats)
+    found |= {key: world[key] for key in ("rays", "autorun") if key in world} | _mat(
+        world, at, resolve, mats
+    )
     for key, load, read, error in (
         ("robot", load_robot, robot_from_table, RobotError),
         ("obstacles", load_obstacles, None, ObstacleError),
@@ -150,16 +158,24 @@ def world_from_table(data: object, path: Path, mats: str | None = None, above: t
                 found[key] = read(inside, files.name_of(path), at.at(key, error))
     if "obstacle" in world:
         if "obstacles" in world:
-            raise at.at("obstacle").wrong("is given together with obstacles", "give only one of them")
-        found["obstacles"] = obstacles_from_list(world["obstacle"], at.at("obstacle", ObstacleError))
+            raise at.at("obstacle").wrong(
+                "is given together with obstacles", "give only one of them"
+            )
+        found["obstacles"] = obstacles_from_list(
+            world["obstacle"], at.at("obstacle", ObstacleError)
+        )
     found |= _infrared(world, at)
     for key, field in _PANEL_FIELDS.items():
         if key in world:
             listed = files.entries(world[key], at.at(key), len(OPTION_PANELS), "panels")
-            found[field] = tuple(files.one_of(panel, place, OPTION_PANELS) for panel, place in listed)
+            found[field] = tuple(
+                files.one_of(panel, place, OPTION_PANELS) for panel, place in listed
+            )
     if "arguments" in world:
         words = enumerate(world["arguments"], start=1)
-        found["arguments"] = tuple(_argument(word, at.at(f"arguments[{number}]")) for number, word in words)
+        found["arguments"] = tuple(
+            _argument(word, at.at(f"arguments[{number}]")) for number, word in words
+        )
     program = _program(world["program"], path.parent, resolve) if "program" in world else None
     is_task = "goal" in world
     presses = tuple(_press(text, place) for text, place in _texts(world, "press", at))
@@ -168,8 +184,15 @@ def world_from_table(data: object, path: Path, mats: str | None = None, above: t
         return WorldFile(path, found, program, (path, *referred), is_task, presses, inputs)
     base = _base(world["world"], at.at("world"), resolve, mats, (*above, path))
     every = (path, *referred, *base.files)
-    return WorldFile(path, {**base.settings, **found}, program or base.program, every, is_task or base.is_task,
-                     presses or base.presses, inputs or base.inputs)  # fmt: skip
+    return WorldFile(
+        path,
+        {**base.settings, **found},
+        program or base.program,
+        every,
+        is_task or base.is_task,
+        presses or base.presses,
+        inputs or base.inputs,
+    )
 
 
 def _texts(world: Mapping[str, Any], key: str, at: Location) -> list[tuple[str, Location]]:
@@ -183,7 +206,9 @@ def _press(text: str, at: Location) -> ButtonPress:
         return parse_press(text, "")
 
 
-def _base(word: str, at: Location, resolve: Resolver, mats: str | None, above: tuple[Path, ...]) -> WorldFile:
+def _base(
+    word: str, at: Location, resolve: Resolver, mats: str | None, above: tuple[Path, ...]
+) -> WorldFile:
     """Load the world that another one is based on."""
     path = Path(resolve(word))
     if any(os.path.normpath(path) == os.path.normpath(other) for other in above):
@@ -197,7 +222,9 @@ def _base(word: str, at: Location, resolve: Resolver, mats: str | None, above: t
 def _parted(data: object, at: Location) -> tuple[dict[str, Any], dict[str, Any]]:
     """Return the values of a run in a world file, by path, and its other keys."""
     world = files.table(data, at, (*_World.__struct_fields__, *_TABLES))
-    others = files.convert({key: value for key, value in world.items() if key not in _TABLES}, _World, at)
+    others = files.convert(
+        {key: value for key, value in world.items() if key not in _TABLES}, _World, at
+    )
     found: dict[str, Any] = {}
     for name, value in world.items():
         if keys := _TABLES.get(name):
@@ -205,8 +232,13 @@ def _parted(data: object, at: Location) -> tuple[dict[str, Any], dict[str, Any]]
             found |= {f"{name}.{key}": inside[key] for key in inside}
         elif name in _TABLES:
             found[name] = value
-    found = {path: files.read_value(value, RUN_VALUES[path].value, at.at(path)) for path, value in found.items()}
-    return found, {key: value for key, value in structs.asdict(others).items() if value is not UNSET}
+    found = {
+        path: files.read_value(value, RUN_VALUES[path].value, at.at(path))
+        for path, value in found.items()
+    }
+    return found, {
+        key: value for key, value in structs.asdict(others).items() if value is not UNSET
+    }
 
 
 def pose_from_table(data: object, at: Location) -> Pose:
@@ -216,7 +248,9 @@ def pose_from_table(data: object, at: Location) -> Pose:
         ConfigError: a key is missing or unknown, or a value is wrong.
     """
     given = files.table(data, at, START_VALUES)
-    found = {key: files.read_value(value, START_VALUES[key], at.at(key)) for key, value in given.items()}
+    found = {
+        key: files.read_value(value, START_VALUES[key], at.at(key)) for key, value in given.items()
+    }
     for key in START_VALUES:
         files.required(found, key, at)
     return Pose(**found)
@@ -245,7 +279,9 @@ def _resolved(folder: Path, referred: list[Path], word: str) -> str:
     return str(found)
 
 
-def _mat(world: Mapping[str, Any], at: Location, resolve: Resolver, mats: str | None) -> dict[str, Any]:
+def _mat(
+    world: Mapping[str, Any], at: Location, resolve: Resolver, mats: str | None
+) -> dict[str, Any]:
     """Return mat and folder of mats; the mat's start pose applies to what neither this nor another layer sets."""
     found: dict[str, Any] = {}
     if "mats" in world:
@@ -277,10 +313,16 @@ def _infrared(world: Mapping[str, Any], at: Location) -> dict[str, Any]:
     """Return beacon and remote control."""
     found: dict[str, Any] = {}
     if "beacon" in world:
-        found["beacon"] = files.read_part(world["beacon"], BeaconSpec, at.at("beacon", ObstacleError))
+        found["beacon"] = files.read_part(
+            world["beacon"], BeaconSpec, at.at("beacon", ObstacleError)
+        )
     if "remote" in world:
-        presses = files.entries(world["remote"], at.at("remote", ObstacleError), MAX_PRESSES, "presses")
-        found["remote"] = tuple(files.read_part(press, RemotePress, place) for press, place in presses)
+        presses = files.entries(
+            world["remote"], at.at("remote", ObstacleError), MAX_PRESSES, "presses"
+        )
+        found["remote"] = tuple(
+            files.read_part(press, RemotePress, place) for press, place in presses
+        )
     return found
 
 
@@ -292,7 +334,9 @@ _COMMENTS = {
 }
 
 
-def save_world(spec: RunSpec, path: Path | str, program: str | None = None, arguments: Sequence[str] = ()) -> None:
+def save_world(
+    spec: RunSpec, path: Path | str, program: str | None = None, arguments: Sequence[str] = ()
+) -> None:
     """Write a run atomically to a world file from which an equal run is built. Comments in the file stay.
 
     Args:
@@ -312,7 +356,9 @@ def save_world(spec: RunSpec, path: Path | str, program: str | None = None, argu
         _, world = _parted(data, at)
         if "mats" in world:
             # A folder with an image of the same name would replace the mat.
-            found = find_mat(settings_from(spec)["background"], str(path.parent / user_path(world["mats"])))
+            found = find_mat(
+                settings_from(spec)["background"], str(path.parent / user_path(world["mats"]))
+            )
             if spec_name(found) != spec.world.background:
                 kept.remove("mats")
 
@@ -321,7 +367,9 @@ def save_world(spec: RunSpec, path: Path | str, program: str | None = None, argu
     files.save_toml(path, lines, at, read, spec, check=check, kept=kept)
 
 
-def world_lines(spec: RunSpec, folder: Path, program: str | None = None, arguments: Sequence[str] = ()) -> list[str]:
+def world_lines(
+    spec: RunSpec, folder: Path, program: str | None = None, arguments: Sequence[str] = ()
+) -> list[str]:
     """Return a run as TOML lines.
 
     Args:
@@ -336,18 +384,35 @@ def world_lines(spec: RunSpec, folder: Path, program: str | None = None, argumen
         top["arguments"] = list(arguments)
     mat = settings["background"]
     top["background"] = _relative(mat, folder) if os.sep in mat else mat
-    values = {path: files.toml_form(one.value, tree.at(spec, one.spec_path)) for path, one in RUN_VALUES.items()}
+    values = {
+        path: files.toml_form(one.value, tree.at(spec, one.spec_path))
+        for path, one in RUN_VALUES.items()
+    }
     # What came later is left out at its default, so that files do not change.
-    left_out = {path for path, one in RUN_VALUES.items() if one.value.later and values[path] == _DEFAULTS[path]}
-    of_world = {name: values[name] for name, keys in _TABLES.items() if not keys and name not in left_out}
-    presets = {key: settings[key] for key in ("robot", "obstacles", "profile") if isinstance(settings[key], str)}
+    left_out = {
+        path
+        for path, one in RUN_VALUES.items()
+        if one.value.later and values[path] == _DEFAULTS[path]
+    }
+    of_world = {
+        name: values[name] for name, keys in _TABLES.items() if not keys and name not in left_out
+    }
+    presets = {
+        key: settings[key]
+        for key in ("robot", "obstacles", "profile")
+        if isinstance(settings[key], str)
+    }
     top |= of_world | presets
     comments = {**_COMMENTS, **{path: one.value.help for path, one in RUN_VALUES.items()}}
     lines = [_HEAD, "", *files.toml_lines(top, comments)]
     for name, keys in _TABLES.items():
         if keys:
             help_of = {key: comments[f"{name}.{key}"] for key in keys}
-            lines += ["", f"[{name}]", *files.toml_lines({key: values[f"{name}.{key}"] for key in keys}, help_of)]
+            lines += [
+                "",
+                f"[{name}]",
+                *files.toml_lines({key: values[f"{name}.{key}"] for key in keys}, help_of),
+            ]
     if isinstance(settings["robot"], RobotChoice):
         lines += ["", *robot_lines(spec.robot, "robot", ("x_mm", "y_mm"))]
     if isinstance(settings["profile"], ProfileSpec):

@@ -14,7 +14,15 @@ from itertools import accumulate, repeat
 from operator import neg
 
 from tuisim.core.drive import EvenGlide, Glide
-from tuisim.core.motors import ENDLESS, FOREVER, POSITION, STANDSTILL_DEG, STOPPED, TIMED, MotorState
+from tuisim.core.motors import (
+    ENDLESS,
+    FOREVER,
+    POSITION,
+    STANDSTILL_DEG,
+    STOPPED,
+    TIMED,
+    MotorState,
+)
 
 
 def ramped(speed: float, target: float, step: float) -> float:
@@ -42,9 +50,20 @@ class BrickMotor:
     """
 
     __slots__ = (
-        "_limit_dps", "_tick_s", "_weight_step", "approach_dps2", "blocked_ticks", "end_tick", "goal_deg", "mode",
-        "position_deg", "sign", "slowest_ramp_dps2", "speed_dps", "target_dps",
-    )  # fmt: skip
+        "_limit_dps",
+        "_tick_s",
+        "_weight_step",
+        "approach_dps2",
+        "blocked_ticks",
+        "end_tick",
+        "goal_deg",
+        "mode",
+        "position_deg",
+        "sign",
+        "slowest_ramp_dps2",
+        "speed_dps",
+        "target_dps",
+    )
 
     def __init__(self, tick_hz: int, weight_step: float, limit_dps: float) -> None:
         self._tick_s, self._weight_step, self._limit_dps = 1.0 / tick_hz, weight_step, limit_dps
@@ -110,7 +129,9 @@ class BrickMotor:
             self.mode, self.sign, self.target_dps = before.mode, before.sign, before.target_dps
         self.position_deg = before.position_deg + (self.position_deg - before.position_deg) * part
         self.speed_dps *= part
-        self.blocked_ticks = self.blocked_ticks + 1 if abs(turned_deg * part) < STANDSTILL_DEG else 0
+        self.blocked_ticks = (
+            self.blocked_ticks + 1 if abs(turned_deg * part) < STANDSTILL_DEG else 0
+        )
 
     @property
     def moving_dps(self) -> float:
@@ -153,7 +174,9 @@ class BrickMotor:
         if self.mode == STOPPED:
             return EvenGlide(0.0, repeat(self.position_deg, ticks))
         turned = self.speed_dps * self.sign * self._tick_s
-        return EvenGlide(turned, accumulate(repeat(turned, ticks - 1), initial=self.position_deg + turned))
+        return EvenGlide(
+            turned, accumulate(repeat(turned, ticks - 1), initial=self.position_deg + turned)
+        )
 
     def glide(self, ticks: int) -> Glide:
         """Run quiet ticks; see `Motor.glide`."""
@@ -172,7 +195,9 @@ class BrickMotor:
         sign, tick_s, limit, steady = self.sign, self._tick_s, self._limit_dps, self.speed_dps
         # The products of `step` and `_disturbed`, without a call per tick.
         if steady == self.target_dps:
-            noisy: Sequence[float] = [round(steady + noise) for noise in noise_dps] if steady else [0] * ticks
+            noisy: Sequence[float] = (
+                [round(steady + noise) for noise in noise_dps] if steady else [0] * ticks
+            )
         else:
             speeds = zip(self._speeds_ahead(ticks), noise_dps, strict=True)
             noisy = [round(speed + noise) if speed else 0 for speed, noise in speeds]
@@ -192,7 +217,9 @@ class BrickMotor:
             # Same sums as `ramped`, without a call per tick; values beyond the target are clamped to it.
             change = step if speed < target else -step
             speeds = list(accumulate(repeat(change, ticks - 1), initial=speed + change))
-            short = bisect_left(speeds, target) if change > 0 else bisect_left(speeds, -target, key=neg)
+            short = (
+                bisect_left(speeds, target) if change > 0 else bisect_left(speeds, -target, key=neg)
+            )
             speeds[short:] = repeat(target, ticks - short)
         self.speed_dps = speeds[-1]
         return speeds

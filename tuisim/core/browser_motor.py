@@ -13,7 +13,15 @@ from collections.abc import Iterator
 from itertools import accumulate, islice, repeat
 
 from tuisim.core.drive import EvenGlide, Glide
-from tuisim.core.motors import ENDLESS, FOREVER, POSITION, STANDSTILL_DEG, STOPPED, TIMED, MotorState
+from tuisim.core.motors import (
+    ENDLESS,
+    FOREVER,
+    POSITION,
+    STANDSTILL_DEG,
+    STOPPED,
+    TIMED,
+    MotorState,
+)
 
 
 class BrowserMotor:
@@ -26,9 +34,20 @@ class BrowserMotor:
     """
 
     __slots__ = (
-        "_command", "_limit_dps", "_ramp_step", "_tick_s", "backwards", "blocked_ticks", "end_tick", "goal_deg", "mode",
-        "position_deg", "roll_sign", "speed_dps", "speed_sp",
-    )  # fmt: skip
+        "_command",
+        "_limit_dps",
+        "_ramp_step",
+        "_tick_s",
+        "backwards",
+        "blocked_ticks",
+        "end_tick",
+        "goal_deg",
+        "mode",
+        "position_deg",
+        "roll_sign",
+        "speed_dps",
+        "speed_sp",
+    )
 
     def __init__(self, tick_hz: int, ramp_step: float, limit_dps: float) -> None:
         self._tick_s, self._limit_dps = 1.0 / tick_hz, limit_dps
@@ -120,7 +139,11 @@ class BrowserMotor:
         return noisy if noisy <= self._limit_dps else self._limit_dps
 
     def _beyond(self) -> bool:
-        return self.position_deg < self.goal_deg if self.backwards else self.position_deg > self.goal_deg
+        return (
+            self.position_deg < self.goal_deg
+            if self.backwards
+            else self.position_deg > self.goal_deg
+        )
 
     @property
     def _aim(self) -> float:
@@ -164,7 +187,9 @@ class BrowserMotor:
 
     def glide_evenly(self, ticks: int) -> EvenGlide:
         """Run quiet ticks at a steady speed; see `Motor.glide_evenly`."""
-        turned = self.speed_dps * (-self._tick_s if self._command == POSITION and self.backwards else self._tick_s)
+        turned = self.speed_dps * (
+            -self._tick_s if self._command == POSITION and self.backwards else self._tick_s
+        )
         start = self.position_deg
         counts: Iterator[float]
         if self.mode == STOPPED and not self._ended:
@@ -211,7 +236,9 @@ class BrowserMotor:
 
     @property
     def _direction(self) -> float:
-        return self.roll_sign if self._command != POSITION or not self.backwards else -self.roll_sign
+        return (
+            self.roll_sign if self._command != POSITION or not self.backwards else -self.roll_sign
+        )
 
     @property
     def moving_dps(self) -> float:
@@ -233,7 +260,11 @@ class BrowserMotor:
     @property
     def resting(self) -> bool:
         """Whether ticks leave this motor unchanged until its next command."""
-        return self.mode == STOPPED and self.speed_dps == self._aim and (self.speed_dps == 0.0 or not self._ended)
+        return (
+            self.mode == STOPPED
+            and self.speed_dps == self._aim
+            and (self.speed_dps == 0.0 or not self._ended)
+        )
 
     # Collisions
 
@@ -247,4 +278,6 @@ class BrowserMotor:
             return
         self.position_deg = before.position_deg + (self.position_deg - before.position_deg) * part
         self.speed_dps *= part
-        self.blocked_ticks = self.blocked_ticks + 1 if abs(turned_deg * part) < STANDSTILL_DEG else 0
+        self.blocked_ticks = (
+            self.blocked_ticks + 1 if abs(turned_deg * part) < STANDSTILL_DEG else 0
+        )

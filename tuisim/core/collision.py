@@ -85,7 +85,9 @@ class Solids:
     def __init__(self, world: WorldSpec, robot: RobotSpec, early: float = 0.0) -> None:
         self._early = early
         self._walls = world.walls
-        self._boxes: list[Box] = [(o.x_mm, o.y_mm, o.x_mm + o.width_mm, o.y_mm + o.height_mm) for o in world.obstacles]
+        self._boxes: list[Box] = [
+            (o.x_mm, o.y_mm, o.x_mm + o.width_mm, o.y_mm + o.height_mm) for o in world.obstacles
+        ]
         outline = outline_of(robot)
         self._half_width, front, back = outline.half_width_mm, outline.front_mm, outline.back_mm
         self._middle, self._half_length = (front + back) / 2, (front - back) / 2
@@ -128,7 +130,10 @@ class Solids:
         asked = (*pose, forward_mm, turn_deg)
         # A robot that pushes against an obstacle asks the same in every tick.
         if asked != self._last_asked:
-            self._last_asked, self._last_leeway = asked, self._leeway(pose, forward_mm, turn_deg, way)
+            self._last_asked, self._last_leeway = (
+                asked,
+                self._leeway(pose, forward_mm, turn_deg, way),
+            )
         return self._last_leeway
 
     def _leeway(self, pose: PoseTuple, forward_mm: float, turn_deg: float, way_mm: float) -> Leeway:
@@ -153,7 +158,10 @@ class Solids:
             return self._pushed_aside(moved(1.0), boxes, floors)
 
         def meets(part: float) -> bool:
-            return any(gap < floor for gap, floor in zip(self._gaps(moved(part), boxes), floors, strict=True))
+            return any(
+                gap < floor
+                for gap, floor in zip(self._gaps(moved(part), boxes), floors, strict=True)
+            )
 
         part = _free_part(meets, way_mm)
         if part < 1.0 and abs(forward_mm) <= abs(math.radians(turn_deg)) * self._turns_mm:
@@ -248,9 +256,15 @@ class Solids:
         fx, fy = math.cos(turn), math.sin(turn)
         length, width = self._half_length, self._half_width
         return (
-            x_mm + fx * self._middle, y_mm + fy * self._middle, fx, fy, length, width,
-            abs(fx) * length + abs(fy) * width, abs(fy) * length + abs(fx) * width,
-        )  # fmt: skip
+            x_mm + fx * self._middle,
+            y_mm + fy * self._middle,
+            fx,
+            fy,
+            length,
+            width,
+            abs(fx) * length + abs(fy) * width,
+            abs(fy) * length + abs(fx) * width,
+        )
 
 
 _AWAY_FROM_WALLS = ((1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0))
@@ -267,7 +281,10 @@ def _way_to_wall(body: Body, direction: int) -> float:
     """Return how far the body can move along its heading (direction 1) or against it (-1) before it meets a wall."""
     cx, cy, fx, fy, _, _, wide, high = body
     way = math.inf
-    for centre, half, end, step in ((cx, wide, FIELD_WIDTH_MM, fx), (cy, high, FIELD_HEIGHT_MM, fy)):
+    for centre, half, end, step in (
+        (cx, wide, FIELD_WIDTH_MM, fx),
+        (cy, high, FIELD_HEIGHT_MM, fy),
+    ):
         step *= direction
         if abs(step) > 1e-12:
             way = min(way, ((end - half - centre) if step > 0 else (centre - half)) / abs(step))
@@ -317,7 +334,9 @@ def _free_part(meets: Callable[[float], bool], way_mm: float) -> float:
     steps = max(1, math.ceil(way_mm / STEP_MM))
     for step in range(1, steps + 1):
         if meets(step / steps):
-            return max(0.0, _last_clear(meets, (step - 1) / steps, step / steps) - BACK_OFF_MM / way_mm)
+            return max(
+                0.0, _last_clear(meets, (step - 1) / steps, step / steps) - BACK_OFF_MM / way_mm
+            )
     return 1.0
 
 

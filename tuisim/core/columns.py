@@ -57,9 +57,14 @@ def motion_of(instant: Instant, run: RunSpec, field: Field) -> tuple[float, ...]
     """Return what is measured of `MOTION`, in that order."""
     pose = instant.pose
     return (
-        pose.x_mm, pose.y_mm, pose.heading_deg, instant.left_position_deg, instant.right_position_deg,
-        instant.left_speed_dps, instant.right_speed_dps,
-    )  # fmt: skip
+        pose.x_mm,
+        pose.y_mm,
+        pose.heading_deg,
+        instant.left_position_deg,
+        instant.right_position_deg,
+        instant.left_speed_dps,
+        instant.right_speed_dps,
+    )
 
 
 def column_name(text: str, columns: Iterable[Column]) -> str | None:

@@ -52,7 +52,9 @@ COMPARE: Mapping[str, Callable[[Any, Any], Any]] = {
 
 _SPELLINGS: Mapping[str, Operator] = {"=": Operator.EQUAL}
 """Other spellings."""
-_SIGNS = "|".join(map(re.escape, sorted((*COMPARE, Operator.CONTAINS, *_SPELLINGS), key=len, reverse=True)))
+_SIGNS = "|".join(
+    map(re.escape, sorted((*COMPARE, Operator.CONTAINS, *_SPELLINGS), key=len, reverse=True))
+)
 
 NUMBER = r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
 """Regular expression of a number; a text of a million digits fits it in one way only."""
@@ -158,7 +160,9 @@ def condition_in(text: str, name: str = r".+?", value: str = r"\S+") -> ValueCon
     if last == Operator.CHANGES and subject:
         return ValueCondition(subject.strip(), Operator.CHANGES)
     # Of several operators the first one counts after which everything is a value.
-    found = re.fullmatch(rf"\s*(?P<name>{name})(?<![<>=!~])\s*(?P<sign>{_SIGNS})\s*(?P<value>{value})\s*", text)
+    found = re.fullmatch(
+        rf"\s*(?P<name>{name})(?<![<>=!~])\s*(?P<sign>{_SIGNS})\s*(?P<value>{value})\s*", text
+    )
     return ValueCondition(found["name"], found["sign"], found["value"]) if found else None
 
 
@@ -173,7 +177,11 @@ def run_condition_in(text: str) -> ValueCondition | None:
     if word == ValueSource.PRINT:
         verb, _, pattern = rest.partition(" ")
         is_whole = verb == Operator.MATCHES and pattern.strip()
-        return ValueCondition("", Operator.MATCHES, pattern.strip(), ValueSource.PRINT) if is_whole else None
+        return (
+            ValueCondition("", Operator.MATCHES, pattern.strip(), ValueSource.PRINT)
+            if is_whole
+            else None
+        )
     if word == ValueSource.SAMPLE:
         found = condition_in(rest, name=r"\w*") or ValueCondition(rest, Operator.SEEN)
         is_one = not found.name or found.name.isidentifier()

@@ -151,7 +151,11 @@ class SlippingWheels:
     )
 
     def __init__(self, spec: RunSpec) -> None:
-        drift, hz, drawn = spec.world.drift, spec.profile.tick_hz, drawn_errors(spec.world.drift, spec.seed)
+        drift, hz, drawn = (
+            spec.world.drift,
+            spec.profile.tick_hz,
+            drawn_errors(spec.world.drift, spec.seed),
+        )
         self._seed = spec.seed
         self._left_mm, self._right_mm = mm_per_degree(spec.robot)
         self._left, self._right = (

@@ -9,7 +9,9 @@ from tuisim.core.spec_fields import Spec, named_number, spec
 
 def _drift(high: float, typical: float, unit: str, about: str, source: str) -> Any:
     names = {"typical": typical}
-    return named_number(0, high, names, default=0.0, later=True, unit=unit, help=about, source=source)
+    return named_number(
+        0, high, names, default=0.0, later=True, unit=unit, help=about, source=source
+    )
 
 
 @spec
@@ -19,42 +21,66 @@ class DriftSpec(Spec):
     KEY = "drift"
 
     wheel_pc: float = _drift(
-        10, 0.5, "%", "standard deviation of each wheel's diameter from the robot's, drawn once a run",
+        10,
+        0.5,
+        "%",
+        "standard deviation of each wheel's diameter from the robot's, drawn once a run",
         "the manual of LEGO's MicroPython takes 55.5 mm for a tyre that is sold as 56 mm: 0.9 % less",
-    )  # fmt: skip
+    )
     spacing_pc: float = _drift(
-        10, 1.0, "%", "standard deviation of the distance of the wheels from the robot's, drawn once a run",
+        10,
+        1.0,
+        "%",
+        "standard deviation of the distance of the wheels from the robot's, drawn once a run",
         "Borenstein & Feng, Measurement and Correction of Systematic Odometry Errors in Mobile Robots (1996): tyres "
         "touch the floor in an area, which leaves the effective distance uncertain by about 1 %",
-    )  # fmt: skip
+    )
     slip_pc: float = _drift(
-        50, 1.0, "%", "mean slip of a wheel that accelerates by 1 m/s²; in proportion at other accelerations",
+        50,
+        1.0,
+        "%",
+        "mean slip of a wheel that accelerates by 1 m/s²; in proportion at other accelerations",
         "a rubber tyre slips by its force / (10 to 30 × its load) as long as it grips (Pacejka, Tyre and Vehicle "
         "Dynamics): a tenth of the load, at 1 m/s², is 1 % of a soft tyre",
-    )  # fmt: skip
+    )
     turn_slip_pc: float = _drift(
-        50, 1.0, "%", "mean slip of the part of a wheel's way that turns the robot",
+        50,
+        1.0,
+        "%",
+        "mean slip of the part of a wheel's way that turns the robot",
         "the same law: a castor with a third of the weight and a friction of 0.2 holds each wheel back with about "
         "a tenth of its load",
-    )  # fmt: skip
+    )
     backlash_deg: float = _drift(
-        90, 3.0, "°", "play between a motor and its wheel: it turns so far after a reversal before the wheel does",
+        90,
+        3.0,
+        "°",
+        "play between a motor and its wheel: it turns so far after a reversal before the wheel does",
         "an estimate, as LEGO publishes none: about three counts of the encoder",
-    )  # fmt: skip
+    )
     gyro_dps: float = _drift(
-        20, 0.05, "°/s", "standard deviation of the gyro's rate while the robot stands, drawn once a run",
+        20,
+        0.05,
+        "°/s",
+        "standard deviation of the gyro's rate while the robot stands, drawn once a run",
         "LEGO states an accuracy of ±3° for the EV3 gyro: this is 3° in a minute",
-    )  # fmt: skip
+    )
     echo_loss_pc: float = _drift(
-        100, 100.0, "%", "share of the ultrasonic pulses without echo at the flattest angle of 50° off the normal of a "
+        100,
+        100.0,
+        "%",
+        "share of the ultrasonic pulses without echo at the flattest angle of 50° off the normal of a "
         "surface; none up to 15°, in proportion between",
         "data sheet of the HC-SR04: effective up to 15°; the simulator's own limit is 50°",
-    )  # fmt: skip
+    )
     light_pc: float = _drift(
-        90, 10.0, "%", "how much darker the field is at one side than at the opposite one, whose direction is drawn",
+        90,
+        10.0,
+        "%",
+        "how much darker the field is at one side than at the opposite one, whose direction is drawn",
         "EN 12464-1 lets the darkest place of a classroom have 60 % of the mean light; the sensor's own lamp, close "
         "to the mat, outshines most of that: a quarter of 40 %",
-    )  # fmt: skip
+    )
 
     @property
     def is_none(self) -> bool:

@@ -47,7 +47,12 @@ def turn_rate_dps(left_dps: float, right_dps: float, robot: RobotSpec) -> float:
         -left_dps if robot.left_reversed else left_dps,
         -right_dps if robot.right_reversed else right_dps,
     )
-    return (right_dps - left_dps) * robot.wheel_diameter_mm / (2.0 * robot.wheel_spacing_mm) / robot.gear_ratio
+    return (
+        (right_dps - left_dps)
+        * robot.wheel_diameter_mm
+        / (2.0 * robot.wheel_spacing_mm)
+        / robot.gear_ratio
+    )
 
 
 class Records(NamedTuple):
@@ -105,7 +110,9 @@ class Drive(Protocol):
 
     def glide(self, records: Records, left: Glide, right: Glide) -> None: ...
 
-    def glide_evenly(self, records: Records, left: EvenGlide, right: EvenGlide) -> tuple[float, float]: ...
+    def glide_evenly(
+        self, records: Records, left: EvenGlide, right: EvenGlide
+    ) -> tuple[float, float]: ...
 
 
 def _glide_straight(
@@ -117,7 +124,9 @@ def _glide_straight(
     x, y, heading, pack_into = drive.x_mm, drive.y_mm, drive.heading_deg, POSITION_FIELDS.pack_into
     across, up = forward_mm * cos(way), forward_mm * sin(way)
     left_at = right_at = 0.0
-    for at, tick, left_at, right_at in zip(offsets, ticks, left.counts_deg, right.counts_deg, strict=True):
+    for at, tick, left_at, right_at in zip(
+        offsets, ticks, left.counts_deg, right.counts_deg, strict=True
+    ):
         x += across
         y += up
         pack_into(buffer, at, tick, line, x, y, heading, left_at, right_at)
@@ -132,9 +141,15 @@ class BrickDrive:
     """
 
     __slots__ = (
-        "_early", "_left_mm_per_deg", "_right_mm_per_deg", "_spacing_mm", "gyro_zero_deg", "heading_deg", "x_mm",
+        "_early",
+        "_left_mm_per_deg",
+        "_right_mm_per_deg",
+        "_spacing_mm",
+        "gyro_zero_deg",
+        "heading_deg",
+        "x_mm",
         "y_mm",
-    )  # fmt: skip
+    )
 
     def __init__(self, robot: RobotSpec, start: Pose, early: float) -> None:
         self._left_mm_per_deg, self._right_mm_per_deg = mm_per_degree(robot)
@@ -162,7 +177,9 @@ class BrickDrive:
         left_per_deg, right_per_deg = self._left_mm_per_deg, self._right_mm_per_deg
         spacing, early, zero = self._spacing_mm, self._early, self.gyro_zero_deg
         x, y, heading, pack_into = self.x_mm, self.y_mm, self.heading_deg, TICK_RECORD.pack_into
-        for at, tick, left_deg, left_at, right_deg, right_at in zip(offsets, ticks, *left, *right, strict=True):
+        for at, tick, left_deg, left_at, right_deg, right_at in zip(
+            offsets, ticks, *left, *right, strict=True
+        ):
             left_mm, right_mm = left_deg * left_per_deg, right_deg * right_per_deg
             turned, forward = degrees((right_mm - left_mm) / spacing), (left_mm + right_mm) / 2
             way = radians(heading + turned * early)
@@ -170,14 +187,31 @@ class BrickDrive:
             y += forward * sin(way)
             heading += turned
             pack_into(
-                buffer, at, tick, line, x, y, heading, left_at, right_at, left_deg * hz, right_deg * hz,
-                zero, flags, actions,
-            )  # fmt: skip
+                buffer,
+                at,
+                tick,
+                line,
+                x,
+                y,
+                heading,
+                left_at,
+                right_at,
+                left_deg * hz,
+                right_deg * hz,
+                zero,
+                flags,
+                actions,
+            )
         self.x_mm, self.y_mm, self.heading_deg = x, y, heading
 
-    def glide_evenly(self, records: Records, left: EvenGlide, right: EvenGlide) -> tuple[float, float]:
+    def glide_evenly(
+        self, records: Records, left: EvenGlide, right: EvenGlide
+    ) -> tuple[float, float]:
         """As `glide`, with the same rotation in each tick; returns the final encoder positions."""
-        left_mm, right_mm = left.roll_deg * self._left_mm_per_deg, right.roll_deg * self._right_mm_per_deg
+        left_mm, right_mm = (
+            left.roll_deg * self._left_mm_per_deg,
+            right.roll_deg * self._right_mm_per_deg,
+        )
         turned, forward = degrees((right_mm - left_mm) / self._spacing_mm), (left_mm + right_mm) / 2
         if not turned:
             return _glide_straight(self, forward, radians(self.heading_deg), records, left, right)
@@ -186,7 +220,9 @@ class BrickDrive:
         x, y, heading, pack_into = self.x_mm, self.y_mm, self.heading_deg, POSITION_FIELDS.pack_into
         early = turned * self._early
         left_at = right_at = 0.0
-        for at, tick, left_at, right_at in zip(offsets, ticks, left.counts_deg, right.counts_deg, strict=True):
+        for at, tick, left_at, right_at in zip(
+            offsets, ticks, left.counts_deg, right.counts_deg, strict=True
+        ):
             way = radians(heading + early)
             x += forward * cos(way)
             y += forward * sin(way)
@@ -203,12 +239,25 @@ class BrowserDrive:
     """
 
     __slots__ = (
-        "_early", "_forward_mm", "_heading", "_left_deg", "_left_rim_mm", "_right_deg", "_right_rim_mm", "_spacing_mm",
-        "_turn", "gyro_zero_deg", "heading_deg", "x_mm", "y_mm",
-    )  # fmt: skip
+        "_early",
+        "_forward_mm",
+        "_heading",
+        "_left_deg",
+        "_left_rim_mm",
+        "_right_deg",
+        "_right_rim_mm",
+        "_spacing_mm",
+        "_turn",
+        "gyro_zero_deg",
+        "heading_deg",
+        "x_mm",
+        "y_mm",
+    )
 
     def __init__(self, robot: RobotSpec, start: Pose, early: float) -> None:
-        self._left_rim_mm, self._right_rim_mm = _signed(math.pi * robot.wheel_diameter_mm / robot.gear_ratio, robot)
+        self._left_rim_mm, self._right_rim_mm = _signed(
+            math.pi * robot.wheel_diameter_mm / robot.gear_ratio, robot
+        )
         """How far each wheel rolls per turn of its motor."""
         self._spacing_mm, self._early = robot.wheel_spacing_mm, early
         self._left_deg = self._right_deg = self._forward_mm = self._turn = 0.0
@@ -240,7 +289,10 @@ class BrowserDrive:
 
     def _step(self, left_deg: float, right_deg: float) -> tuple[float, float]:
         """Return the step in mm and the turn in radians for a rotation of the wheels' motors."""
-        left_mm, right_mm = left_deg / 360.0 * self._left_rim_mm, right_deg / 360.0 * self._right_rim_mm
+        left_mm, right_mm = (
+            left_deg / 360.0 * self._left_rim_mm,
+            right_deg / 360.0 * self._right_rim_mm,
+        )
         return (left_mm + right_mm) / 2, (right_mm - left_mm) / self._spacing_mm
 
     def glide(self, records: Records, left: Glide, right: Glide) -> None:
@@ -248,9 +300,17 @@ class BrowserDrive:
         buffer, offsets, ticks, line, flags, actions, hz = records
         left_rim, right_rim = self._left_rim_mm, self._right_rim_mm
         spacing, early, zero = self._spacing_mm, self._early, self.gyro_zero_deg
-        x, y, heading, shown, pack_into = self.x_mm, self.y_mm, self._heading, self.heading_deg, TICK_RECORD.pack_into
+        x, y, heading, shown, pack_into = (
+            self.x_mm,
+            self.y_mm,
+            self._heading,
+            self.heading_deg,
+            TICK_RECORD.pack_into,
+        )
         whole, pi = _WHOLE_TURN, math.pi
-        for at, tick, left_deg, left_at, right_deg, right_at in zip(offsets, ticks, *left, *right, strict=True):
+        for at, tick, left_deg, left_at, right_deg, right_at in zip(
+            offsets, ticks, *left, *right, strict=True
+        ):
             left_mm, right_mm = left_deg / 360.0 * left_rim, right_deg / 360.0 * right_rim
             turned, forward = (right_mm - left_mm) / spacing, (left_mm + right_mm) / 2
             way = heading + turned * early
@@ -262,12 +322,32 @@ class BrowserDrive:
                     heading, zero = heading - whole, float32(zero - 360)
                 shown = heading * 180.0 / pi
             pack_into(
-                buffer, at, tick, line, x, y, shown, left_at, right_at, left_deg * hz, right_deg * hz,
-                zero, flags, actions,
-            )  # fmt: skip
-        self.x_mm, self.y_mm, self._heading, self.heading_deg, self.gyro_zero_deg = x, y, heading, shown, zero
+                buffer,
+                at,
+                tick,
+                line,
+                x,
+                y,
+                shown,
+                left_at,
+                right_at,
+                left_deg * hz,
+                right_deg * hz,
+                zero,
+                flags,
+                actions,
+            )
+        self.x_mm, self.y_mm, self._heading, self.heading_deg, self.gyro_zero_deg = (
+            x,
+            y,
+            heading,
+            shown,
+            zero,
+        )
 
-    def glide_evenly(self, records: Records, left: EvenGlide, right: EvenGlide) -> tuple[float, float]:
+    def glide_evenly(
+        self, records: Records, left: EvenGlide, right: EvenGlide
+    ) -> tuple[float, float]:
         """As `glide`, with the same rotation in each tick; returns the final encoder positions."""
         forward, turned = self._step(left.roll_deg, right.roll_deg)
         if not turned:
@@ -277,7 +357,9 @@ class BrowserDrive:
         x, y, heading, pack_into = self.x_mm, self.y_mm, self._heading, POSITION_FIELDS.pack_into
         whole, pi, early = _WHOLE_TURN, math.pi, turned * self._early
         left_at = right_at = 0.0
-        for at, tick, left_at, right_at in zip(offsets, ticks, left.counts_deg, right.counts_deg, strict=True):
+        for at, tick, left_at, right_at in zip(
+            offsets, ticks, left.counts_deg, right.counts_deg, strict=True
+        ):
             way = heading + early
             x += forward * cos(way)
             y += forward * sin(way)

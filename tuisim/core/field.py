@@ -21,7 +21,8 @@ def disc_mask(diameter: int) -> list[list[bool]]:
     """Return which pixels of a box belong to its disc, as rows of `diameter` booleans."""
     radius = diameter / 2
     return [
-        [(row - radius) ** 2 + (col - radius) ** 2 < radius**2 for col in range(diameter)] for row in range(diameter)
+        [(row - radius) ** 2 + (col - radius) ** 2 < radius**2 for col in range(diameter)]
+        for row in range(diameter)
     ]
 
 
@@ -34,7 +35,11 @@ def disc_pixels(diameter: int) -> int:
 def disc_spans(diameter: int) -> tuple[tuple[int, int, int], ...]:
     """Return the rows of a disc: the row in its box, and the first and the end column."""
     rows = enumerate(disc_mask(diameter))
-    return tuple((row, inside.index(True), diameter - inside[::-1].index(True)) for row, inside in rows if any(inside))
+    return tuple(
+        (row, inside.index(True), diameter - inside[::-1].index(True))
+        for row, inside in rows
+        if any(inside)
+    )
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,15 +92,18 @@ class Field:
             return in_disc(Field.box(self, diameter, col, row), diameter)
         pixels, line, corner = self.pixels, 3 * self.width_px, 3 * (row * self.width_px + col)
         return b"".join(
-            [pixels[corner + down * line + 3 * first : corner + down * line + 3 * end]
-             for down, first, end in disc_spans(diameter)]
-        )  # fmt: skip
+            [
+                pixels[corner + down * line + 3 * first : corner + down * line + 3 * end]
+                for down, first, end in disc_spans(diameter)
+            ]
+        )
 
 
 def in_disc(box: bytes, diameter: int) -> bytes:
     """Return the pixels of the disc in a box, row by row, three bytes per pixel."""
     return b"".join(
-        box[3 * (down * diameter + first) : 3 * (down * diameter + end)] for down, first, end in disc_spans(diameter)
+        box[3 * (down * diameter + first) : 3 * (down * diameter + end)]
+        for down, first, end in disc_spans(diameter)
     )
 
 
@@ -135,5 +143,7 @@ def weighted_mean(box: bytes, diameter: int, strategy: str) -> tuple[float, floa
     """Return the weighted mean red, green and blue of a box of RGB pixels."""
     weights = disc_weights(diameter, strategy)
     total = sum(weights)
-    red, green, blue = (sum(map(int.__mul__, box[channel::3], weights)) / total for channel in range(3))
+    red, green, blue = (
+        sum(map(int.__mul__, box[channel::3], weights)) / total for channel in range(3)
+    )
     return red, green, blue

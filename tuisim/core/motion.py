@@ -20,7 +20,14 @@ from tuisim.core.motors import POSITION, Motor, MotorState, top_speed_dps
 from tuisim.core.noise import wheel_noise, wheel_noises
 from tuisim.core.profile import MotorLaw
 from tuisim.core.servo.motor import ServoMotor
-from tuisim.core.tick_record import FLAG_LEFT_RUNNING, FLAG_PEN_DOWN, FLAG_RIGHT_RUNNING, TICK_RECORD, Buffer, TickSink
+from tuisim.core.tick_record import (
+    FLAG_LEFT_RUNNING,
+    FLAG_PEN_DOWN,
+    FLAG_RIGHT_RUNNING,
+    TICK_RECORD,
+    Buffer,
+    TickSink,
+)
 
 if TYPE_CHECKING:
     from tuisim.core.spec import RunSpec
@@ -87,10 +94,33 @@ class Motion:
     """
 
     __slots__ = (
-        "_buffer", "_early", "_hz", "_left_dps", "_left_mm_per_deg", "_longest_mm", "_right_dps", "_right_mm_per_deg",
-        "_room_end", "_sink", "_slipping", "_solids", "_spacing_mm", "_tick_s", "actions", "changed", "drive",
-        "end_flags", "left", "line", "noise", "pen_down", "right", "spec", "stall_ticks", "tick",
-    )  # fmt: skip
+        "_buffer",
+        "_early",
+        "_hz",
+        "_left_dps",
+        "_left_mm_per_deg",
+        "_longest_mm",
+        "_right_dps",
+        "_right_mm_per_deg",
+        "_room_end",
+        "_sink",
+        "_slipping",
+        "_solids",
+        "_spacing_mm",
+        "_tick_s",
+        "actions",
+        "changed",
+        "drive",
+        "end_flags",
+        "left",
+        "line",
+        "noise",
+        "pen_down",
+        "right",
+        "spec",
+        "stall_ticks",
+        "tick",
+    )
 
     def __init__(self, spec: RunSpec, sink: TickSink) -> None:
         self._hz = spec.profile.tick_hz
@@ -103,7 +133,9 @@ class Motion:
         self._solids = Solids(spec.world, spec.robot, self._early) if spec.world.solid else None
         if self._solids is not None:
             # One wheel at full speed forwards, the other backwards.
-            fastest = max(top_speed_dps(motor.kind, spec.profile) for motor in spec.robot.wheel_motors)
+            fastest = max(
+                top_speed_dps(motor.kind, spec.profile) for motor in spec.robot.wheel_motors
+            )
             farthest = fastest * self._tick_s * abs(self._left_mm_per_deg)
             farthest *= 1 if spec.world.drift.is_none else MOST_TIMES
             self._longest_mm = farthest * (1 + 2 * self._solids.reach_mm / self._spacing_mm)
@@ -203,10 +235,21 @@ class Motion:
         flags = (left.mode and FLAG_LEFT_RUNNING) | (right.mode and FLAG_RIGHT_RUNNING)
         flags |= (self.pen_down and FLAG_PEN_DOWN) | self.end_flags
         TICK_RECORD.pack_into(
-            buffer, 64 + 64 * count,
-            tick, self.line, drive.x_mm, drive.y_mm, drive.heading_deg, left.position_deg, right.position_deg,
-            self._left_dps, self._right_dps, drive.gyro_zero_deg, flags, self.actions & 0xFFFF,
-        )  # fmt: skip
+            buffer,
+            64 + 64 * count,
+            tick,
+            self.line,
+            drive.x_mm,
+            drive.y_mm,
+            drive.heading_deg,
+            left.position_deg,
+            right.position_deg,
+            self._left_dps,
+            self._right_dps,
+            drive.gyro_zero_deg,
+            flags,
+            self.actions & 0xFFFF,
+        )
         self._sink.publish(count + 1)
 
     def _clear_ticks(self, most: int) -> int:
@@ -222,7 +265,11 @@ class Motion:
         if left_ends == right_ends and left_ends[0] * left_ends[1] >= 0:
             straight = 1 if sum(left_ends) > 0 else -1
         else:
-            turn = max(max(right_ends) - min(left_ends), max(left_ends) - min(right_ends)) * per_dps / self._spacing_mm
+            turn = (
+                max(max(right_ends) - min(left_ends), max(left_ends) - min(right_ends))
+                * per_dps
+                / self._spacing_mm
+            )
         fastest = max(map(abs, (*left_ends, *right_ends))) * per_dps
         way = fastest + turn * self._solids.reach_mm
         if way == 0.0:
@@ -232,7 +279,9 @@ class Motion:
         # Without any obstacle it is infinite.
         return most if free >= way * most else int(free / way)
 
-    def _wheel_ends(self, left: Motor, right: Motor) -> tuple[tuple[float, float], tuple[float, float]]:
+    def _wheel_ends(
+        self, left: Motor, right: Motor
+    ) -> tuple[tuple[float, float], tuple[float, float]]:
         """Return the current and the target speed that each wheel's motor gives it, positive forwards."""
         left_ends, right_ends = (left.moving_dps, left.aim_dps), (right.moving_dps, right.aim_dps)
         return (
@@ -261,7 +310,9 @@ class Motion:
         if part == 1.0:
             self.left.blocked_ticks = self.right.blocked_ticks = 0
             return part, aside_mm
-        for motor, state, turned_deg in zip((self.left, self.right), before, (left_deg, right_deg), strict=True):
+        for motor, state, turned_deg in zip(
+            (self.left, self.right), before, (left_deg, right_deg), strict=True
+        ):
             motor.hold_back(state, turned_deg, part)
             if motor.blocked_ticks == self.stall_ticks:
                 self.changed = True
@@ -270,10 +321,17 @@ class Motion:
     def _fields(self) -> tuple[float, ...]:
         """Return the record of the current tick."""
         return (
-            self.tick, self.line, *self._pose(),
-            self.left.position_deg, self.right.position_deg, self._left_dps, self._right_dps,
-            self.drive.gyro_zero_deg, self._flags(), self.actions & 0xFFFF,
-        )  # fmt: skip
+            self.tick,
+            self.line,
+            *self._pose(),
+            self.left.position_deg,
+            self.right.position_deg,
+            self._left_dps,
+            self._right_dps,
+            self.drive.gyro_zero_deg,
+            self._flags(),
+            self.actions & 0xFFFF,
+        )
 
     def _flags(self) -> int:
         return (
@@ -294,7 +352,11 @@ class Motion:
         """Run ticks in which only ramps and motion happen."""
         while ticks:
             noise = self.noise.motor
-            ramping = ticks if noise else min(ticks, max(self.left.ramping_ticks, self.right.ramping_ticks))
+            ramping = (
+                ticks
+                if noise
+                else min(ticks, max(self.left.ramping_ticks, self.right.ramping_ticks))
+            )
             part = ramping or ticks
             if part <= FEW_TICKS:
                 for _ in range(part):
@@ -305,10 +367,15 @@ class Motion:
             buffer = self._make_room(part)
             sink, hz = self._sink, self._hz
             at, flags, actions = 64 + 64 * sink.count, self._flags(), self.actions & 0xFFFF
-            offsets, ticks_ahead = range(at, at + 64 * part, 64), range(self.tick + 1, self.tick + 1 + part)
+            offsets, ticks_ahead = (
+                range(at, at + 64 * part, 64),
+                range(self.tick + 1, self.tick + 1 + part),
+            )
             records = Records(buffer, offsets, ticks_ahead, self.line, flags, actions, hz)
             if ramping:
-                left, right = self._glides(part) if noise else (self.left.glide(part), self.right.glide(part))
+                left, right = (
+                    self._glides(part) if noise else (self.left.glide(part), self.right.glide(part))
+                )
                 self.drive.glide(records, left, right)
                 left_deg, right_deg = left.rolls_deg[-1], right.rolls_deg[-1]
             else:

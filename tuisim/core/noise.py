@@ -84,7 +84,9 @@ def clamping(level: int) -> Clamping:
             above -= 1
         under, over = below, count - above
         total = first[above] - first[below] - under * value + over * (_PIXEL_MAX - value)
-        squares = second[above] - second[below] + under * value**2 + over * (_PIXEL_MAX - value) ** 2
+        squares = (
+            second[above] - second[below] + under * value**2 + over * (_PIXEL_MAX - value) ** 2
+        )
         shift.append(total / count)
         variance.append(squares / count - (total / count) ** 2)
     even = bytes(value for value in range(_PIXEL_MAX + 1) if level <= value <= _PIXEL_MAX - level)
@@ -92,7 +94,11 @@ def clamping(level: int) -> Clamping:
 
 
 def noisy_sums(
-    disc: Callable[[], bytes], count: int, sums: tuple[int, int, int], level: int, normals: tuple[float, ...]
+    disc: Callable[[], bytes],
+    count: int,
+    sums: tuple[int, int, int],
+    level: int,
+    normals: tuple[float, ...],
 ) -> tuple[int, int, int]:
     """Return the sums of red, green and blue of some pixels after the light noise.
 
@@ -153,11 +159,17 @@ def drawn_numbers(seed: int, tick: int, channel: str, count: int) -> list[float]
 def reading_noise(seed: int, tick: int, channel: str) -> tuple[float, float, float]:
     """Return three normally distributed numbers for what a sensor reads in one tick."""
     block, offset = divmod(tick, _BLOCK_TICKS)
-    numbers = _FOUR_NUMBERS.unpack_from(_reading_block(seed, block, channel), offset * _READING_BYTES)
+    numbers = _FOUR_NUMBERS.unpack_from(
+        _reading_block(seed, block, channel), offset * _READING_BYTES
+    )
     at, turn, other, further = numbers
     # By Box and Muller: two numbers from one place on a disc, the third from another.
     far, angle = sqrt(-2 * log((at + 1) / _NUMBERS)), turn * _TURN
-    return far * cos(angle), far * sin(angle), sqrt(-2 * log((other + 1) / _NUMBERS)) * cos(further * _TURN)
+    return (
+        far * cos(angle),
+        far * sin(angle),
+        sqrt(-2 * log((other + 1) / _NUMBERS)) * cos(further * _TURN),
+    )
 
 
 def noisy_channel(pixels: bytes, total: int, level: int, random: bytes) -> bytes:
@@ -170,7 +182,10 @@ def noisy_channel(pixels: bytes, total: int, level: int, random: bytes) -> bytes
         random: As many random bytes as there are pixels.
     """
     errors = _errors(level)
-    found = [min(max(pixel + errors[byte], 0), _PIXEL_MAX) for pixel, byte in zip(pixels, random, strict=True)]
+    found = [
+        min(max(pixel + errors[byte], 0), _PIXEL_MAX)
+        for pixel, byte in zip(pixels, random, strict=True)
+    ]
     missing = total - sum(found)
     step = 1 if missing > 0 else -1
     # Small steps everywhere, beginning where the stream says, leave the errors as they are distributed.
@@ -178,7 +193,11 @@ def noisy_channel(pixels: bytes, total: int, level: int, random: bytes) -> bytes
     while missing:
         before = missing
         for at in order:
-            if missing and 0 <= found[at] + step <= _PIXEL_MAX and abs(found[at] + step - pixels[at]) <= level:
+            if (
+                missing
+                and 0 <= found[at] + step <= _PIXEL_MAX
+                and abs(found[at] + step - pixels[at]) <= level
+            ):
                 found[at] += step
                 missing -= step
         if missing == before:
@@ -187,13 +206,17 @@ def noisy_channel(pixels: bytes, total: int, level: int, random: bytes) -> bytes
 
 
 @lru_cache(maxsize=8)
-def _wheel_block(seed: int, block: int, most: float, channel: str = "wheels") -> tuple[list[float], list[float]]:
+def _wheel_block(
+    seed: int, block: int, most: float, channel: str = "wheels"
+) -> tuple[list[float], list[float]]:
     numbers = _WHEEL_NUMBERS.unpack(stream(seed, block, channel, _WHEEL_NUMBERS.size))
     noises = [(number / 2147483647.5 - 1.0) * most for number in numbers]
     return noises[0::2], noises[1::2]
 
 
-def wheel_noises(seed: int, tick: int, count: int, most_dps: int) -> tuple[list[float], list[float]]:
+def wheel_noises(
+    seed: int, tick: int, count: int, most_dps: int
+) -> tuple[list[float], list[float]]:
     """Return the noise of the left and the right wheel in several ticks: uniform, up to ±`most_dps`."""
     block, offset = divmod(tick, _BLOCK_TICKS)
     left, right = _wheel_block(seed, block, most_dps)

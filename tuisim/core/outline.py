@@ -50,7 +50,12 @@ class RobotOutline:
     def corners_mm(self) -> tuple[Point, Point, Point, Point]:
         """The corners of the body, counter-clockwise from the left rear."""
         side = self.half_width_mm
-        return (-side, self.back_mm), (side, self.back_mm), (side, self.front_mm), (-side, self.front_mm)
+        return (
+            (-side, self.back_mm),
+            (side, self.back_mm),
+            (side, self.front_mm),
+            (-side, self.front_mm),
+        )
 
 
 def outline_of(robot: RobotSpec) -> RobotOutline:
@@ -64,13 +69,21 @@ def outline_of(robot: RobotSpec) -> RobotOutline:
         wheel_radius_mm=robot.wheel_diameter_mm / 2,
         has_wheels=robot.has_wheels,
         pen_mm=(robot.pen.x_mm, robot.pen.y_mm),
-        color_sensors_mm=tuple((sensor.x_mm, sensor.y_mm, sensor.diameter_mm / 2) for sensor in robot.color_sensors),
-        bumpers_mm=tuple((touch.x_mm, touch.y_mm, touch.width_mm / 2) for touch in robot.touch_sensors),
+        color_sensors_mm=tuple(
+            (sensor.x_mm, sensor.y_mm, sensor.diameter_mm / 2) for sensor in robot.color_sensors
+        ),
+        bumpers_mm=tuple(
+            (touch.x_mm, touch.y_mm, touch.width_mm / 2) for touch in robot.touch_sensors
+        ),
         other_sensors_mm=tuple(_other_sensors(robot)),
     )
 
 
 def _other_sensors(robot: RobotSpec) -> Iterator[Point]:
     for sensor in robot.further_sensors:
-        if not isinstance(sensor, TouchSpec | UltrasonicSpec) and hasattr(sensor, "x_mm") and hasattr(sensor, "y_mm"):
+        if (
+            not isinstance(sensor, TouchSpec | UltrasonicSpec)
+            and hasattr(sensor, "x_mm")
+            and hasattr(sensor, "y_mm")
+        ):
             yield sensor.x_mm, sensor.y_mm

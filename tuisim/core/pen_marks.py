@@ -32,7 +32,9 @@ class MarkedField(Field):
     def _touched(self, diameter: int, col: int, row: int) -> bool:
         rows = range(row // _BLOCK_PX, (row + diameter) // _BLOCK_PX + 1)
         cols = range(col // _BLOCK_PX, (col + diameter) // _BLOCK_PX + 1)
-        return any((block_col, block_row) in self.blocks for block_row in rows for block_col in cols)
+        return any(
+            (block_col, block_row) in self.blocks for block_row in rows for block_col in cols
+        )
 
     def disc_sums(self, diameter: int, col: int, row: int) -> tuple[int, int, int]:
         """As `Field.disc_sums`, including marks."""
@@ -81,7 +83,9 @@ class PenMarks:
     def __init__(self, field: Field, spec: RunSpec) -> None:
         self._pen = spec.robot.pen
         self._rgb = css_rgb(self._pen.color) or (0, 0, 0)
-        self.field = MarkedField(field.width_px, field.height_px, field.pixels, field.sums, {}, set())
+        self.field = MarkedField(
+            field.width_px, field.height_px, field.pixels, field.sums, {}, set()
+        )
         """The mat with everything drawn up to now."""
         self.records = 0
         """Number of tick records processed."""
@@ -115,8 +119,13 @@ class PenMarks:
         dx, dy = x1 - x0, y1 - y0
         squared = dx * dx + dy * dy
         field = self.field
-        for row in range(max(0, int(min(y0, y1) - radius)), min(field.height_px, int(max(y0, y1) + radius) + 1)):
-            for col in range(max(0, int(min(x0, x1) - radius)), min(field.width_px, int(max(x0, x1) + radius) + 1)):
+        for row in range(
+            max(0, int(min(y0, y1) - radius)), min(field.height_px, int(max(y0, y1) + radius) + 1)
+        ):
+            for col in range(
+                max(0, int(min(x0, x1) - radius)),
+                min(field.width_px, int(max(x0, x1) + radius) + 1),
+            ):
                 # A pixel is drawn if its centre is no farther from the line than half the pen's width.
                 px, py = col + 0.5 - x0, row + 0.5 - y0
                 along = max(0.0, min(1.0, (px * dx + py * dy) / squared)) if squared else 0.0

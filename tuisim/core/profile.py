@@ -57,7 +57,11 @@ class MotorLaw(StrEnum):
     @property
     def library(self) -> Library:
         """The library whose programs can drive such motors."""
-        return Library.PYBRICKS if self in (MotorLaw.PYBRICKS, MotorLaw.PYBRICKS_4) else Library.EV3DEV2
+        return (
+            Library.PYBRICKS
+            if self in (MotorLaw.PYBRICKS, MotorLaw.PYBRICKS_4)
+            else Library.EV3DEV2
+        )
 
 
 _OLD = "measured on the old simulator"
@@ -81,14 +85,26 @@ class ProfileSpec(Spec):
     tick_hz: int = whole(1, 1000, source=f"{_NEW}: 100; {_OLD}: 30")
     """Ticks per second; see `due_ns`."""
 
-    color_read_ns: int = _cost(default=10 * MS, source=f"{_OLD}: it waits before it takes the value")
-    color_code_read_ns: int = _cost(default=20 * MS, source=f"{_OLD}: it waits twice; ev3: a reading like any other")
+    color_read_ns: int = _cost(
+        default=10 * MS, source=f"{_OLD}: it waits before it takes the value"
+    )
+    color_code_read_ns: int = _cost(
+        default=20 * MS, source=f"{_OLD}: it waits twice; ev3: a reading like any other"
+    )
     """`color` and `color_name`."""
-    ultrasonic_read_ns: int = _cost(default=10 * MS, source=f"{_OLD}: it waits before it takes the value")
-    gyro_read_ns: int = _cost(default=20 * MS, source=f"{_OLD}: it waits twice; ev3: a reading like any other")
-    attribute_read_ns: int = _cost(default=1 * MS, source=f"{_NEW}, so that polling takes time; {_OLD}: nothing")
+    ultrasonic_read_ns: int = _cost(
+        default=10 * MS, source=f"{_OLD}: it waits before it takes the value"
+    )
+    gyro_read_ns: int = _cost(
+        default=20 * MS, source=f"{_OLD}: it waits twice; ev3: a reading like any other"
+    )
+    attribute_read_ns: int = _cost(
+        default=1 * MS, source=f"{_NEW}, so that polling takes time; {_OLD}: nothing"
+    )
     """Any other device attribute."""
-    clock_read_ns: int = _cost(default=20_000, source=f"{_NEW}, so that loops on the clock end; {_OLD}: nothing")
+    clock_read_ns: int = _cost(
+        default=20_000, source=f"{_NEW}, so that loops on the clock end; {_OLD}: nothing"
+    )
     display_update_ns: int = _cost(
         default=10 * MS,
         source=f"{_NEW}, an estimate: 130 steps per pixel at the brick's 300 MHz; the old simulator has none; "
@@ -116,7 +132,10 @@ class ProfileSpec(Spec):
     )
     """Value of `reflected_light_intensity` on white."""
     ambient_percent: int = whole(
-        0, 1_000_000, default=0, source=f"{_NEW}: a sensor close to the mat is in its own shadow; {_OLD}: always 0"
+        0,
+        1_000_000,
+        default=0,
+        source=f"{_NEW}: a sensor close to the mat is in its own shadow; {_OLD}: always 0",
     )
     """Value of `ambient_light_intensity` on white: the light that reaches a sensor close to the mat."""
     halfway_heading: bool = flag(
@@ -125,10 +144,13 @@ class ProfileSpec(Spec):
     """Whether a tick moves the robot along its heading halfway through the tick's turn, not at its start."""
     ultrasonic_period_ticks: int = whole(1, 1000, default=1, source=_OLD)
     """The ultrasonic sensor measures once in this number of ticks."""
-    solid: bool = flag(default=False, source="obstacles are solid on a real field, but not in the old simulator")
+    solid: bool = flag(
+        default=False, source="obstacles are solid on a real field, but not in the old simulator"
+    )
     """Whether obstacles and walls stop the robot, unless the world overrides it."""
     mend_library: bool = flag(
-        default=True, source=f"{_NEW}: see `tuisim guide library-differences`; ev3: the library as it is"
+        default=True,
+        source=f"{_NEW}: see `tuisim guide library-differences`; ev3: the library as it is",
     )
     """Whether defects of the library that affect course programs are fixed."""
     starts_in_own_folder: bool = flag(
@@ -138,10 +160,14 @@ class ProfileSpec(Spec):
     )
     """Whether a program starts in its own folder, not in the user's working directory."""
     mode_switch_ns: int = _cost(
-        default=0, later=True, source="Pybricks 2.0, `pbdevice.c`: 30 ms; ev3dev2: none, the driver answers at once"
+        default=0,
+        later=True,
+        source="Pybricks 2.0, `pbdevice.c`: 30 ms; ev3dev2: none, the driver answers at once",
     )
     """Time that a sensor needs for the first reading in another mode than before."""
-    infrared_switch_ns: int = _cost(default=0, later=True, source="Pybricks 2.0, `pbdevice.c`: 1100 ms")
+    infrared_switch_ns: int = _cost(
+        default=0, later=True, source="Pybricks 2.0, `pbdevice.c`: 1100 ms"
+    )
     """Likewise, of the infrared sensor."""
 
 
@@ -202,13 +228,18 @@ PROFILES: Mapping[str, ProfileSpec] = {
 
 _EARLIER_BRICK: Mapping[str, Mapping[str, bool | int]] = {
     "halfway_heading": {
-        "round_forward_speeds": False, "halve_position_moves": False, "keep_speed_when_stopped": False,
-        "timed_stop_skips_tick": False, "direction_from_set_point": False, "motor_ramps": True,
-        "chain_relative_moves": True, "pair_tail_ns": 0,
+        "round_forward_speeds": False,
+        "halve_position_moves": False,
+        "keep_speed_when_stopped": False,
+        "timed_stop_skips_tick": False,
+        "direction_from_set_point": False,
+        "motor_ramps": True,
+        "chain_relative_moves": True,
+        "pair_tail_ns": 0,
     },
     "ultrasonic_period_ticks": {"forward_noise_only": False},
     "mend_library": {"plain_state": False},
-}  # fmt: skip
+}
 """Defaults of a brick's motors in profiles stored before `motor_law` existed, by the key that followed them."""
 
 EARLIER_KEYS = frozenset(key for keys in _EARLIER_BRICK.values() for key in keys)
@@ -224,7 +255,11 @@ def profile_to_plain(profile: ProfileSpec) -> dict[str, Any]:
     if profile.motor_law != MotorLaw.BRICK:
         return plain
     del plain["motor_law"]
-    return {name: value for key in plain for name, value in (*_EARLIER_BRICK.get(key, {}).items(), (key, plain[key]))}
+    return {
+        name: value
+        for key in plain
+        for name, value in (*_EARLIER_BRICK.get(key, {}).items(), (key, plain[key]))
+    }
 
 
 def law_of_earlier(keys: Mapping[str, Any]) -> MotorLaw | None:
@@ -240,5 +275,9 @@ def profile_from_plain(data: Mapping[str, Any]) -> ProfileSpec:
         TypeError, ValueError: keys are missing or unknown, or the motor law is unknown.
     """
     known = {key: value for key, value in data.items() if key not in EARLIER_KEYS}
-    known["motor_law"] = MotorLaw(data["motor_law"]) if "motor_law" in data else law_of_earlier(data) or MotorLaw.BRICK
+    known["motor_law"] = (
+        MotorLaw(data["motor_law"])
+        if "motor_law" in data
+        else law_of_earlier(data) or MotorLaw.BRICK
+    )
     return ProfileSpec(**known)

@@ -109,7 +109,9 @@ class FurtherMotors(Simulation):
 
     def __init__(self, spec: RunSpec, sink: TickSink) -> None:
         super().__init__(spec, sink)
-        self.others: tuple[Motor, ...] = tuple(motor_of(spec, motor.kind) for motor in spec.robot.extra_motors)
+        self.others: tuple[Motor, ...] = tuple(
+            motor_of(spec, motor.kind) for motor in spec.robot.extra_motors
+        )
         self._stops = tuple(EndStops(spec.robot, motor) for motor in spec.robot.extra_motors)
         self.on_turns: Callable[[tuple[Turn, ...]], None] = lambda _: None
         """Called when a motor deviates from its last report; until then each motor turns at the reported speed."""

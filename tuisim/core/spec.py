@@ -81,7 +81,14 @@ _MAX_OBSTACLE_MM = 10_000.0
 
 
 def _x(default: float) -> Any:
-    return number(-500, 500, default=default, unit="mm", label="x mm", help="to the right of the robot's centre")
+    return number(
+        -500,
+        500,
+        default=default,
+        unit="mm",
+        label="x mm",
+        help="to the right of the robot's centre",
+    )
 
 
 def _y(default: float) -> Any:
@@ -98,7 +105,9 @@ def _input_port(default: str) -> Any:
 
 
 def _output_port(default: str, label: str) -> Any:
-    return choice((*OUTPUT_PORTS, NO_PORT), what="port", default=default, label=label, help="outA … outD")
+    return choice(
+        (*OUTPUT_PORTS, NO_PORT), what="port", default=default, label=label, help="outA … outD"
+    )
 
 
 def _sensor_name(default: str) -> Any:
@@ -119,18 +128,30 @@ class MotorSpec(Spec):
     port: str = choice((*OUTPUT_PORTS, NO_PORT), what="port")
     kind: str = choice(MOTOR_KINDS, what="kind of motor", default="medium", help="large or medium")
     low_deg: float | None = number(
-        -_MAX_RANGE_DEG, 0, default=None, later=True, unit="°",
+        -_MAX_RANGE_DEG,
+        0,
+        default=None,
+        later=True,
+        unit="°",
         help="end stop backwards, from the position at the start",
-    )  # fmt: skip
+    )
     """The motor turns no further backwards than here; 0 or below."""
     high_deg: float | None = number(
-        0, _MAX_RANGE_DEG, default=None, later=True, unit="°",
+        0,
+        _MAX_RANGE_DEG,
+        default=None,
+        later=True,
+        unit="°",
         help="end stop forwards, from the position at the start",
-    )  # fmt: skip
+    )
     """The motor turns no further forwards than here; 0 or above."""
 
     def check(self) -> None:
-        if self.low_deg is not None and self.high_deg is not None and self.high_deg - self.low_deg < MIN_RANGE_DEG:
+        if (
+            self.low_deg is not None
+            and self.high_deg is not None
+            and self.high_deg - self.low_deg < MIN_RANGE_DEG
+        ):
             raise RobotError(f"must be at least {MIN_RANGE_DEG:g} above low_deg", key="high_deg")
 
 
@@ -154,15 +175,24 @@ class TouchSpec(SensorSpec):
     port: str = _input_port("in1")
     x_mm: float = _x(0.0)
     y_mm: float = _y(45.0)
-    width_mm: float = number(1, 500, default=20.0, unit="mm", label="width mm", help="of the bumper, across the robot")
+    width_mm: float = number(
+        1, 500, default=20.0, unit="mm", label="width mm", help="of the bumper, across the robot"
+    )
     """Width of the bumper, across the robot."""
     pressed_by: str = choice(
-        (*OUTPUT_PORTS, ""), what="port", default="", later=True,
+        (*OUTPUT_PORTS, ""),
+        what="port",
+        default="",
+        later=True,
         help="port of the motor that presses it, in place of obstacles and walls",
-    )  # fmt: skip
+    )
     """Port of the motor that presses it at an end stop, in place of obstacles and walls; empty for a bumper."""
     pressed_at: str = choice(
-        MOTOR_ENDS, what="end", default="low", later=True, help="low or high: the motor's end stop where it does"
+        MOTOR_ENDS,
+        what="end",
+        default="low",
+        later=True,
+        help="low or high: the motor's end stop where it does",
     )
     """The end stop at which that motor presses it, one of `MOTOR_ENDS`."""
 
@@ -185,14 +215,21 @@ class ColorSensorSpec(SensorSpec):
 
     name: str = text(what="sensor name", pattern=SENSOR_NAME)
     port: str = choice(INPUT_PORTS, what="port", label="Port", help="in1 … in4")
-    x_mm: float = number(-500, 500, unit="mm", label="x mm", help="to the right of the robot's centre")
+    x_mm: float = number(
+        -500, 500, unit="mm", label="x mm", help="to the right of the robot's centre"
+    )
     y_mm: float = number(-500, 500, unit="mm", label="y mm", help="forward of the axle")
     # A disc of 1 pixel has no pixel strictly inside it.
-    diameter_mm: int = whole(2, 100, default=20, unit="mm", label="⌀ mm", help="of the visible disc, whole mm")
+    diameter_mm: int = whole(
+        2, 100, default=20, unit="mm", label="⌀ mm", help="of the visible disc, whole mm"
+    )
     strategy: str = choice(
-        STRATEGIES, what="strategy", default="mean", label="Weighing",
+        STRATEGIES,
+        what="strategy",
+        default="mean",
+        label="Weighing",
         help="weights of the disc's pixels: mean, gaussian or centre",
-    )  # fmt: skip
+    )
     """How the pixels of the disc are weighted, one of `STRATEGIES`."""
 
 
@@ -210,11 +247,21 @@ class UltrasonicSpec(SensorSpec):
     )
     """Reading when no echo returns (EV3 sensor data sheet)."""
     ray_angles_deg: tuple[float, ...] = numbers(
-        -360, 360, 100, default=(-21.0, -14.0, -7.0, 0.0, 7.0, 14.0, 21.0), unit="°", label="Rays °",
+        -360,
+        360,
+        100,
+        default=(-21.0, -14.0, -7.0, 0.0, 7.0, 14.0, 21.0),
+        unit="°",
+        label="Rays °",
         help="directions of the rays; the nearest echo counts",
-    )  # fmt: skip
+    )
     noise_mm: float = number(
-        0, 1000, default=0.0, unit="mm", label="Noise ± mm", help="uniform, plus or minus this value"
+        0,
+        1000,
+        default=0.0,
+        unit="mm",
+        label="Noise ± mm",
+        help="uniform, plus or minus this value",
     )
     """Uniform ±noise_mm on every distance."""
 
@@ -247,7 +294,9 @@ class RemotePress(Spec):
     KEY = "remote"
 
     buttons: tuple[str, ...] = some(
-        REMOTE_BUTTONS, what="button", help=f"one or two of {', '.join(REMOTE_BUTTONS[:4])}, or beacon"
+        REMOTE_BUTTONS,
+        what="button",
+        help=f"one or two of {', '.join(REMOTE_BUTTONS[:4])}, or beacon",
     )
     """One or two of `REMOTE_BUTTONS`; `beacon` only alone, since the sensor cannot distinguish other combinations."""
     from_s: float = number(0, 1e9, default=0.0, unit="s", help="simulated seconds")
@@ -269,13 +318,21 @@ REMOTE_CODES = {
     frozenset(buttons.split("+")): code
     for code, buttons in enumerate(
         (
-            "top_left", "bottom_left", "top_right", "bottom_right", "top_left+top_right", "top_left+bottom_right",
-            "bottom_left+top_right", "bottom_left+bottom_right", "beacon", "top_left+bottom_left",
+            "top_left",
+            "bottom_left",
+            "top_right",
+            "bottom_right",
+            "top_left+top_right",
+            "top_left+bottom_right",
+            "bottom_left+top_right",
+            "bottom_left+bottom_right",
+            "beacon",
+            "top_left+bottom_left",
             "top_right+bottom_right",
         ),
         start=1,
     )
-}  # fmt: skip
+}
 """Value of the sensor for each set of buttons; 0 is none."""
 
 
@@ -288,15 +345,28 @@ class PenSpec(Spec):
     x_mm: float = _x(0.0)
     y_mm: float = _y(0.0)
     color: str = color(
-        default="red", label="Colour", flags=("-P", "--pencolor"), help="colour of the pen: a CSS name, or #rrggbb"
+        default="red",
+        label="Colour",
+        flags=("-P", "--pencolor"),
+        help="colour of the pen: a CSS name, or #rrggbb",
     )
     """Any CSS colour name, or #rrggbb."""
     width_mm: float = number(
-        0.1, 200, default=6.0, unit="mm", label="Width mm", flags=("--pen-width",), in_config=False,
+        0.1,
+        200,
+        default=6.0,
+        unit="mm",
+        label="Width mm",
+        flags=("--pen-width",),
+        in_config=False,
         help="width of the trace",
-    )  # fmt: skip
+    )
     down: bool = flag(
-        default=False, label="Down", flags=("-p", "--pendown"), in_config=False, help="start with the pen down"
+        default=False,
+        label="Down",
+        flags=("-p", "--pendown"),
+        in_config=False,
+        help="start with the pen down",
     )
 
 
@@ -307,48 +377,78 @@ class RobotSpec(Spec):
     name: str = text(what="name", default="Default_Robot", label="Name", most=100)
     wheel_diameter_mm: float = number(1, 500, default=56.0, unit="mm", label="Wheel ⌀ mm")
     wheel_spacing_mm: float = number(
-        1, 1000, default=180.0, unit="mm", label="Spacing mm", help="between the centres of the wheels"
+        1,
+        1000,
+        default=180.0,
+        unit="mm",
+        label="Spacing mm",
+        help="between the centres of the wheels",
     )
     wheel_width_mm: float = number(1, 200, default=20.0, unit="mm", label="Width mm")
     back_mm: float = number(
-        -1000, 0, default=-120.0, unit="mm", label="Back mm",
+        -1000,
+        0,
+        default=-120.0,
+        unit="mm",
+        label="Back mm",
         help="how far the body reaches behind the axle, as a negative y",
-    )  # fmt: skip
+    )
     """How far the body extends behind the axle, as a negative y."""
     weight: float = named_number(
-        0, 1000, ROBOT_WEIGHTS, default=ROBOT_WEIGHTS["medium"], label="Weight",
+        0,
+        1000,
+        ROBOT_WEIGHTS,
+        default=ROBOT_WEIGHTS["medium"],
+        label="Weight",
         help=f"{', '.join(ROBOT_WEIGHTS)}, or a number",
-    )  # fmt: skip
+    )
     """0 changes speed at once; otherwise the acceleration is 5000 / weight degrees per second each second."""
     left_port: str = _output_port("outB", "Left motor")
     """Port of the motor of the left wheel; `NO_PORT`, as `right_port`, on a robot without wheels."""
     right_port: str = _output_port("outC", "Right motor")
     color_sensors: tuple[ColorSensorSpec, ...] = parts(
         ColorSensorSpec,
-        default=(ColorSensorSpec("left", "in2", -20.0, 30.0), ColorSensorSpec("right", "in3", 20.0, 30.0)),
+        default=(
+            ColorSensorSpec("left", "in2", -20.0, 30.0),
+            ColorSensorSpec("right", "in3", 20.0, 30.0),
+        ),
         standard=True,
     )
-    ultrasonic: UltrasonicSpec | None = part(UltrasonicSpec, default=UltrasonicSpec(), optional=True, standard=True)
+    ultrasonic: UltrasonicSpec | None = part(
+        UltrasonicSpec, default=UltrasonicSpec(), optional=True, standard=True
+    )
     gyro: GyroSpec | None = part(GyroSpec, default=GyroSpec(), optional=True, standard=True)
     pen: PenSpec = part(PenSpec, default=PenSpec())
     extra_motors: tuple[MotorSpec, ...] = parts(MotorSpec, default=())
     """Motors that do not drive a wheel."""
-    extra_ultrasonics: tuple[UltrasonicSpec, ...] = parts(UltrasonicSpec, default=(), key="ultrasonics")
+    extra_ultrasonics: tuple[UltrasonicSpec, ...] = parts(
+        UltrasonicSpec, default=(), key="ultrasonics"
+    )
     touch_sensors: tuple[TouchSpec, ...] = parts(TouchSpec, default=())
     infrared: InfraredSpec | None = part(InfraredSpec, default=None)
-    extra_infrareds: tuple[InfraredSpec, ...] = parts(InfraredSpec, default=(), key="infrareds", later=True)
-    left_motor: str = choice(MOTOR_KINDS, what="kind of motor", default="large", later=True, label="Left kind")
+    extra_infrareds: tuple[InfraredSpec, ...] = parts(
+        InfraredSpec, default=(), key="infrareds", later=True
+    )
+    left_motor: str = choice(
+        MOTOR_KINDS, what="kind of motor", default="large", later=True, label="Left kind"
+    )
     """Kind of the motor of the left wheel, one of `MOTOR_KINDS`."""
-    right_motor: str = choice(MOTOR_KINDS, what="kind of motor", default="large", later=True, label="Right kind")
+    right_motor: str = choice(
+        MOTOR_KINDS, what="kind of motor", default="large", later=True, label="Right kind"
+    )
     left_reversed: bool = flag(
-        default=False, later=True, label="Left rev.",
+        default=False,
+        later=True,
+        label="Left rev.",
         help="mounted the other way round: positive speeds turn the wheel backwards",
-    )  # fmt: skip
+    )
     """Whether the motor of the left wheel is mounted the other way round: positive speeds turn the wheel backwards."""
     right_reversed: bool = flag(
-        default=False, later=True, label="Right rev.",
+        default=False,
+        later=True,
+        label="Right rev.",
         help="mounted the other way round: positive speeds turn the wheel backwards",
-    )  # fmt: skip
+    )
     gear_ratio: float = number(
         0.01, 100, default=1.0, later=True, label="Gear ratio", help="motor turns per wheel turn"
     )
@@ -362,7 +462,9 @@ class RobotSpec(Spec):
     @property
     def wheel_motors(self) -> tuple[MotorSpec, MotorSpec]:
         """The motors of the left and the right wheel, of a robot with wheels."""
-        return MotorSpec(self.left_port, self.left_motor), MotorSpec(self.right_port, self.right_motor)
+        return MotorSpec(self.left_port, self.left_motor), MotorSpec(
+            self.right_port, self.right_motor
+        )
 
     @property
     def motors(self) -> tuple[MotorSpec, ...]:
@@ -377,7 +479,9 @@ class RobotSpec(Spec):
     @property
     def further_sensors(self) -> tuple[SensorSpec, ...]:
         """Sensors that are not standard equipment, in the same order."""
-        return tuple(sensor for mount in MOUNTS if not mount.standard for sensor in self.sensors_in(mount))
+        return tuple(
+            sensor for mount in MOUNTS if not mount.standard for sensor in self.sensors_in(mount)
+        )
 
     def sensors_in(self, mount: Mount) -> tuple[SensorSpec, ...]:
         """Return the sensors of one mount."""
@@ -391,7 +495,9 @@ class RobotSpec(Spec):
         for motor in self.extra_motors:
             require_one_of(motor.port, "port", OUTPUT_PORTS, "motors")
             if motor.port in used:
-                raise RobotError(f"two motors are on {motor.port}", "give each its own port", key="motors")
+                raise RobotError(
+                    f"two motors are on {motor.port}", "give each its own port", key="motors"
+                )
             used.add(motor.port)
         for sensor in self.sensors:
             if sensor.port in used:
@@ -412,13 +518,17 @@ class RobotSpec(Spec):
         for key in ("left_port", "right_port"):
             require_one_of(getattr(self, key), "port", OUTPUT_PORTS, key)
         if self.left_port == self.right_port:
-            raise RobotError(f"both motors are on {self.left_port}", "give each its own port", key="right_port")
+            raise RobotError(
+                f"both motors are on {self.left_port}", "give each its own port", key="right_port"
+            )
         return {self.left_port, self.right_port}
 
     def _check_names(self) -> None:
         names = [sensor.name for sensor in self.color_sensors]
         if len(set(names)) < len(names):
-            raise RobotError("two colour sensors have the same name", "give each its own", key="color_sensors")
+            raise RobotError(
+                "two colour sensors have the same name", "give each its own", key="color_sensors"
+            )
         if len({sensor.name for sensor in self.sensors}) < len(self.sensors):
             raise RobotError("two sensors have the same name", "give each its own", key="sensors")
 
@@ -427,10 +537,14 @@ class RobotSpec(Spec):
         motors = {motor.port: motor for motor in self.extra_motors}
         if port and port not in motors:
             what = "drives a wheel" if port in (self.left_port, self.right_port) else "has no motor"
-            raise RobotError(f"{port} {what}", "the port of another motor", key=f"{touch.name}.pressed_by")
+            raise RobotError(
+                f"{port} {what}", "the port of another motor", key=f"{touch.name}.pressed_by"
+            )
         if port and getattr(motors[port], end) is None:
             raise RobotError(
-                f"the motor on {port} has no such end stop", f"give it {end}", key=f"{touch.name}.pressed_at"
+                f"the motor on {port} has no such end stop",
+                f"give it {end}",
+                key=f"{touch.name}.pressed_at",
             )
 
 
@@ -480,28 +594,51 @@ class NoiseSpec(Spec):
 
     KEY = "noise"
 
-    light: int = whole(0, 128, default=0, label="Light", flags=("-N", "--sensornoise"), help="light noise, 0 … 128")
+    light: int = whole(
+        0, 128, default=0, label="Light", flags=("-N", "--sensornoise"), help="light noise, 0 … 128"
+    )
     """0 … 128: uniform ±light on every pixel and channel that a colour sensor sees."""
     motor: int = whole(
-        0, 500, default=0, unit="°/s", label="Motor", flags=("-M", "--motornoise"), help="motor noise, 0 … 500"
+        0,
+        500,
+        default=0,
+        unit="°/s",
+        label="Motor",
+        flags=("-M", "--motornoise"),
+        help="motor noise, 0 … 500",
     )
     """0 … 500: uniform ±motor degrees per second on the wheel speed, every tick."""
 
 
 START_VALUES = {
     "x_mm": Number(
-        -_MAX_POSITION_MM, _MAX_POSITION_MM, unit="mm", flags=("-x", "--x", "--xpos"), in_config=False,
-        label="X", help="start x in mm",
+        -_MAX_POSITION_MM,
+        _MAX_POSITION_MM,
+        unit="mm",
+        flags=("-x", "--x", "--xpos"),
+        in_config=False,
+        label="X",
+        help="start x in mm",
     ),
     "y_mm": Number(
-        -_MAX_POSITION_MM, _MAX_POSITION_MM, unit="mm", flags=("-y", "--y", "--ypos"), in_config=False,
-        label="Y", help="start y in mm",
+        -_MAX_POSITION_MM,
+        _MAX_POSITION_MM,
+        unit="mm",
+        flags=("-y", "--y", "--ypos"),
+        in_config=False,
+        label="Y",
+        help="start y in mm",
     ),
     "heading_deg": Number(
-        -36_000, 36_000, unit="°", flags=("-a", "--angle"), in_config=False,
-        label="Angle", help="start heading, counter-clockwise from +x",
+        -36_000,
+        36_000,
+        unit="°",
+        flags=("-a", "--angle"),
+        in_config=False,
+        label="Angle",
+        help="start heading, counter-clockwise from +x",
     ),
-}  # fmt: skip
+}
 """The values of a start pose; a run may go on from any other pose."""
 
 
@@ -511,29 +648,47 @@ class WorldSpec(Spec):
 
     background: str = text(what="name of a mat", default="Empty_Map")
     obstacles: tuple[Obstacle, ...] = parts(Obstacle, default=())
-    walls: bool = flag(default=True, label="Walls", flags=("--walls",), help="walls on the edges of the field")
+    walls: bool = flag(
+        default=True, label="Walls", flags=("--walls",), help="walls on the edges of the field"
+    )
     """Whether the field has walls on its four edges: they echo, and stop the robot if `solid`."""
     solid: bool = flag(
-        default=False, label="Solid", flags=("--solid",), off_flag="--no-solid", in_config=False,
-        help="obstacles and walls stop the robot", off_help="the robot drives through obstacles and walls",
-    )  # fmt: skip
+        default=False,
+        label="Solid",
+        flags=("--solid",),
+        off_flag="--no-solid",
+        in_config=False,
+        help="obstacles and walls stop the robot",
+        off_help="the robot drives through obstacles and walls",
+    )
     """Whether obstacles and walls stop the robot."""
     background_fit: str = choice(
-        BACKGROUND_FITS, default=BACKGROUND_FITS[0], label="Image fit", flags=("--background-fit",), in_config=False,
+        BACKGROUND_FITS,
+        default=BACKGROUND_FITS[0],
+        label="Image fit",
+        flags=("--background-fit",),
+        in_config=False,
         help="how an image is placed on the field",
-    )  # fmt: skip
+    )
     """One of `BACKGROUND_FITS`, for the user's image."""
     pen_marks: bool = flag(
-        default=False, label="Marks mat", flags=("--pen-marks",), in_config=False,
+        default=False,
+        label="Marks mat",
+        flags=("--pen-marks",),
+        in_config=False,
         help="the sensors see what the pen draws",
-    )  # fmt: skip
+    )
     """Whether the pen marks the mat that the sensors see."""
     start: Pose = part(Pose, values=START_VALUES, default=Pose(100.0, 800.0, 0.0))
     noise: NoiseSpec = part(NoiseSpec, default=NoiseSpec())
     drift: DriftSpec = named_part(
-        DriftSpec, default=NO_DRIFT, later=True, label="Drift", flags=("--drift",),
+        DriftSpec,
+        default=NO_DRIFT,
+        later=True,
+        label="Drift",
+        flags=("--drift",),
         help="errors of wheels and sensors: none, typical, or values",
-    )  # fmt: skip
+    )
     """Errors of wheels and sensors that a program does not know of."""
     beacon: BeaconSpec | None = part(BeaconSpec, default=None)
     """An infrared beacon."""
@@ -548,4 +703,10 @@ class RunSpec(Spec):
     robot: RobotSpec = part(RobotSpec)
     world: WorldSpec = part(WorldSpec)
     profile: ProfileSpec = part(ProfileSpec)
-    seed: int = seed(default=0, label="Seed", flags=("--seed",), in_config=False, help="seed for noise and `random`")
+    seed: int = seed(
+        default=0,
+        label="Seed",
+        flags=("--seed",),
+        in_config=False,
+        help="seed for noise and `random`",
+    )

@@ -54,7 +54,9 @@ def seed(*, default: Any = MISSING, **about: Any) -> Any:
     return _field(Seed(0, MAX_SEED, **about), default)
 
 
-def named_number(low: float, high: float, names: Mapping[str, float], *, default: Any = MISSING, **about: Any) -> Any:
+def named_number(
+    low: float, high: float, names: Mapping[str, float], *, default: Any = MISSING, **about: Any
+) -> Any:
     """Return a field for a `NamedNumber`."""
     return _field(NamedNumber(low, high, names, **about), default)
 
@@ -142,7 +144,9 @@ class Spec:
             try:
                 value.check(found)
             except WrongValue as error:
-                raise self.ERROR(error.message, error.hint, key=self.key_of(name) + error.part) from None
+                raise self.ERROR(
+                    error.message, error.hint, key=self.key_of(name) + error.part
+                ) from None
 
     def check(self) -> None:
         """Check the rules across values.

@@ -7,10 +7,19 @@ from struct import Struct
 from typing import Protocol, TypeAlias
 
 TICK_FIELDS = (
-    ("tick", "<I"), ("line", "<I"), ("x_mm", "<d"), ("y_mm", "<d"), ("heading_deg", "<d"),
-    ("left_position_deg", "<d"), ("right_position_deg", "<d"), ("left_speed_dps", "<f"), ("right_speed_dps", "<f"),
-    ("gyro_zero_deg", "<f"), ("flags", "<H"), ("actions", "<H"),
-)  # fmt: skip
+    ("tick", "<I"),
+    ("line", "<I"),
+    ("x_mm", "<d"),
+    ("y_mm", "<d"),
+    ("heading_deg", "<d"),
+    ("left_position_deg", "<d"),
+    ("right_position_deg", "<d"),
+    ("left_speed_dps", "<f"),
+    ("right_speed_dps", "<f"),
+    ("gyro_zero_deg", "<f"),
+    ("flags", "<H"),
+    ("actions", "<H"),
+)
 """Name and type of each field of a record, the type as `struct` and numpy write it.
 
 `line` is the program's own line that spent the time (0: none). `gyro_deg` is

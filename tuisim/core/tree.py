@@ -75,7 +75,10 @@ def put_all(node: _Node, values: Mapping[str, object]) -> _Node:
     for path, value in values.items():
         name, _, rest = path.partition(".")
         inside.setdefault(name, {})[rest] = value
-    found = {name: rest[""] if "" in rest else put_all(_inside(node, name), rest) for name, rest in inside.items()}
+    found = {
+        name: rest[""] if "" in rest else put_all(_inside(node, name), rest)
+        for name, rest in inside.items()
+    }
     if isinstance(node, tuple):
         return tuple(found.get(_name_of(one), one) for one in node)  # type: ignore[return-value]  # of the same parts
     return replace(node, **found) if found else node  # type: ignore[type-var]  # a data class
@@ -96,7 +99,11 @@ def _plain(spec: Any) -> Any:
         return asdict(spec) if hasattr(spec, "__dataclass_fields__") else spec
     fields = spec.__dataclass_fields__
     found = ((name, value, getattr(spec, name)) for name, value in values_of(type(spec)).items())
-    return {name: _plain(one) for name, value, one in found if not (value.later and one == fields[name].default)}
+    return {
+        name: _plain(one)
+        for name, value, one in found
+        if not (value.later and one == fields[name].default)
+    }
 
 
 def from_plain(data: Mapping[str, Any]) -> RunSpec:

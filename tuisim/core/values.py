@@ -190,7 +190,11 @@ class Number(Value):
         self._check(value, int | float)
 
     def _check(self, value: Any, kind: Any) -> None:
-        if isinstance(value, bool) or not isinstance(value, kind) or not self.low <= value <= self.high:
+        if (
+            isinstance(value, bool)
+            or not isinstance(value, kind)
+            or not self.low <= value <= self.high
+        ):
             raise self.wrong(value)
 
     def from_data(self, data: object) -> float:
@@ -334,7 +338,13 @@ class Text(Value):
 
     __slots__ = ("most", "pattern", "what")
 
-    def __init__(self, what: str = "text", most: int = 1000, pattern: Pattern[str] | None = None, **about: Any) -> None:
+    def __init__(
+        self,
+        what: str = "text",
+        most: int = 1000,
+        pattern: Pattern[str] | None = None,
+        **about: Any,
+    ) -> None:
         super().__init__(**about)
         self.what, self.most, self.pattern = what, most, pattern
 
@@ -371,7 +381,9 @@ class Choice(Value):
 
     __slots__ = ("_choices", "_metavar", "what")
 
-    def __init__(self, choices: Iterable[Any], what: str = "value", metavar: str = "", **about: Any) -> None:
+    def __init__(
+        self, choices: Iterable[Any], what: str = "value", metavar: str = "", **about: Any
+    ) -> None:
         super().__init__(**about)
         self._choices, self.what = tuple(choices), what
         self._metavar = metavar
@@ -446,7 +458,9 @@ class Color(Value):
         word = str(data)
         if css_rgb(word) is None:
             guess = did_you_mean(closest(word, css_names()))
-            raise WrongValue(f"no such colour {shown(word)}", f"{guess} any CSS colour name, or #rrggbb".lstrip())
+            raise WrongValue(
+                f"no such colour {shown(word)}", f"{guess} any CSS colour name, or #rrggbb".lstrip()
+            )
         return word.lower()
 
 
@@ -509,7 +523,9 @@ class NamedPart(Part):
     def _sizes(self) -> dict[str, dict[str, float]]:
         numbers = {name: one for name, one in self.values.items() if isinstance(one, NamedNumber)}
         words = dict.fromkeys(word for one in numbers.values() for word in one.names)
-        return {"none": {}} | {word: {name: one.names[word] for name, one in numbers.items()} for word in words}
+        return {"none": {}} | {
+            word: {name: one.names[word] for name, one in numbers.items()} for word in words
+        }
 
     @property
     def metavar(self) -> str:
@@ -556,7 +572,10 @@ class NamedPart(Part):
     def to_text(self, value: Any) -> str:
         usual = [(word, self.from_data(word)) for word in self._sizes]
         (word, near), *_ = sorted(usual, key=lambda one: len(self._apart(value, one[1])))
-        apart = [f"{name}={getattr(value, name)!r}".removesuffix(".0") for name in self._apart(value, near)]
+        apart = [
+            f"{name}={getattr(value, name)!r}".removesuffix(".0")
+            for name in self._apart(value, near)
+        ]
         return " ".join(apart if apart and near == self.of() else (word, *apart))
 
     def _apart(self, value: Any, other: Any) -> list[str]:

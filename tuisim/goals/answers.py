@@ -66,7 +66,10 @@ def _line_for(condition: ValueCondition) -> str:
         return f"{name}: 1" if condition.operator is Operator.SEEN else f"{name}: 1\n{name}: 2"
     with suppress(ValueError):
         number = condition.number
-        found = next((value for value in (number, number - 1, number + 1) if condition.test()(value, value)), number)
+        found = next(
+            (value for value in (number, number - 1, number + 1) if condition.test()(value, value)),
+            number,
+        )
         return f"{name}: {found:.12g}"
     return ""
 
@@ -115,8 +118,11 @@ def _one_of(members: Any) -> str:
     """Return a character of a class."""
     inside = [(kind, value) for kind, value in members if kind is not op.NEGATE]
     is_negated = len(inside) < len(members)
-    candidates = [chr(value if kind is op.LITERAL else value[0]) for kind, value in inside
-                  if kind in (op.LITERAL, op.RANGE)]  # fmt: skip
+    candidates = [
+        chr(value if kind is op.LITERAL else value[0])
+        for kind, value in inside
+        if kind in (op.LITERAL, op.RANGE)
+    ]
     one: str
     for one in (*candidates, *_LETTERS):
         if any(_is_in(ord(one), kind, value) for kind, value in inside) is not is_negated:
@@ -131,7 +137,13 @@ def _is_in(code: int, kind: object, value: Any) -> bool:
         case op.RANGE:
             return bool(value[0] <= code <= value[1])
         case op.CATEGORY:
-            letter = {op.CATEGORY_DIGIT: r"\d", op.CATEGORY_NOT_DIGIT: r"\D", op.CATEGORY_SPACE: r"\s",
-                      op.CATEGORY_NOT_SPACE: r"\S", op.CATEGORY_WORD: r"\w", op.CATEGORY_NOT_WORD: r"\W"}  # fmt: skip
+            letter = {
+                op.CATEGORY_DIGIT: r"\d",
+                op.CATEGORY_NOT_DIGIT: r"\D",
+                op.CATEGORY_SPACE: r"\s",
+                op.CATEGORY_NOT_SPACE: r"\S",
+                op.CATEGORY_WORD: r"\w",
+                op.CATEGORY_NOT_WORD: r"\W",
+            }
             return re.match(letter[value], chr(code)) is not None
     return False

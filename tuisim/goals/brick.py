@@ -38,7 +38,11 @@ def with_column(wanted: ValueCondition, robot: RobotSpec) -> ValueCondition:
     Raises:
         ConfigError: the robot has no such column.
     """
-    if wanted.source is not ValueSource.COLUMN or wanted.is_momentary or wanted.name in (*BRICK_COLUMNS, *BRICK_TEXTS):
+    if (
+        wanted.source is not ValueSource.COLUMN
+        or wanted.is_momentary
+        or wanted.name in (*BRICK_COLUMNS, *BRICK_TEXTS)
+    ):
         return wanted
     return replace(wanted, name=named_column(wanted.name, robot))
 
@@ -69,14 +73,22 @@ def text_ticks(condition: ValueCondition, rows: Iterable[OutputRow]) -> list[int
 
 
 def _texts(row: OutputRow) -> list[str]:
-    return [str(line) for line in json.loads(row.text)[2]] if row.stream is Stream.CONSOLE else [row.text]
+    return (
+        [str(line) for line in json.loads(row.text)[2]]
+        if row.stream is Stream.CONSOLE
+        else [row.text]
+    )
 
 
-def brick_column(name: str, ticks: int, rows: Iterable[OutputRow], actions: Iterable[UserAction]) -> Array:
+def brick_column(
+    name: str, ticks: int, rows: Iterable[OutputRow], actions: Iterable[UserAction]
+) -> Array:
     """Return one of `BRICK_COLUMNS` at every tick, shape (ticks,)."""
     import numpy as np
 
-    values = np.full(ticks, float(_GREEN) if name.startswith("led_") and name.endswith("green") else 0.0)
+    values = np.full(
+        ticks, float(_GREEN) if name.startswith("led_") and name.endswith("green") else 0.0
+    )
     if name in _BUTTONS:
         for action in actions:
             if isinstance(action.command, SetButtons):

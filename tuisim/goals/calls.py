@@ -65,12 +65,15 @@ class _Names:
         # Assignments in the order of the text: one may use another.
         for node in ast.walk(tree):
             match node:
-                case ast.Assign(targets=targets, value=ast.Name() | ast.Attribute() | ast.Call() as value):
+                case ast.Assign(
+                    targets=targets, value=ast.Name() | ast.Attribute() | ast.Call() as value
+                ):
                     meaning = self.of(value)
                     for target in targets:
                         self._assign(target, meaning)
                 case (
-                    ast.NamedExpr(target=target, value=value) | ast.AnnAssign(target=target, value=ast.expr() as value)
+                    ast.NamedExpr(target=target, value=value)
+                    | ast.AnnAssign(target=target, value=ast.expr() as value)
                 ):
                     self._assign(target, self.of(value))
 
@@ -119,8 +122,13 @@ def lines_of_calls(text: str, prelude: str, wanted: str) -> list[int]:
     head, _, rest = wanted.partition(".")
     # `sleep` alone is any function or method of that name.
     if not rest:
-        return sorted({line for meaning, said, line in _calls(tree, names)
-                       if wanted in (said.rpartition(".")[2], meaning.rpartition(".")[2])})  # fmt: skip
+        return sorted(
+            {
+                line
+                for meaning, said, line in _calls(tree, names)
+                if wanted in (said.rpartition(".")[2], meaning.rpartition(".")[2])
+            }
+        )
     meant = _prelude_names(_DEFAULT_PRELUDE).meanings.get(head, head)
     whole = {wanted, f"{meant}.{rest}"}
     # `MoveTank.on` is also a method of an object of the class.
@@ -131,13 +139,19 @@ def lines_of_calls(text: str, prelude: str, wanted: str) -> list[int]:
     if own.partition(".")[0] == PYBRICKS:
         whole |= {f"{own}.{rest}", f"{own}().{rest}"}
     calls = _calls(tree, names)
-    return sorted({line for meaning, said, line in calls if names.may_be(meaning, whole) or said == wanted})
+    return sorted(
+        {line for meaning, said, line in calls if names.may_be(meaning, whole) or said == wanted}
+    )
 
 
-def _found(condition: UseCondition | AvoidCondition, evidence: Evidence) -> dict[str, list[int]] | Occurrence:
+def _found(
+    condition: UseCondition | AvoidCondition, evidence: Evidence
+) -> dict[str, list[int]] | Occurrence:
     program = evidence.program
     try:
-        return {call: lines_of_calls(program.text, program.prelude, call) for call in condition.calls}
+        return {
+            call: lines_of_calls(program.text, program.prelude, call) for call in condition.calls
+        }
     except RecursionError as error:
         return Occurrence(None, f"The program cannot be read: {error}.")
 
@@ -150,12 +164,20 @@ def find_used(condition: UseCondition, evidence: Evidence, span: EvidenceSpan) -
     missing = [call for call, lines in found.items() if not lines]
     if missing:
         return Occurrence(None, f"The program does not call {' and '.join(missing)}.")
-    known = provenance_of(evidence.program.text, condition.reading, evidence.modules) if condition.reading else None
+    known = (
+        provenance_of(evidence.program.text, condition.reading, evidence.modules)
+        if condition.reading
+        else None
+    )
     if condition.reading is not None and known is not None:
         for call, lines in found.items():
             if not any(map(known.decides, lines)):
                 noun = NOUNS[condition.reading]
-                return Occurrence(None, f"Nothing that the {noun} read decides how the program calls {call}.", lines[0])
+                return Occurrence(
+                    None,
+                    f"Nothing that the {noun} read decides how the program calls {call}.",
+                    lines[0],
+                )
     return Occurrence(START, line=min(lines[0] for lines in found.values()))
 
 

@@ -41,7 +41,9 @@ def find_when(condition: WhenCondition, evidence: Evidence, span: EvidenceSpan) 
     found = np.flatnonzero(met)
     if len(found):
         return Occurrence(EvidencePoint(span.first_tick + int(found[0])))
-    return Occurrence(None, f"{'; '.join(never)}." if never else "They were not true at the same time.")
+    return Occurrence(
+        None, f"{'; '.join(never)}." if never else "They were not true at the same time."
+    )
 
 
 def _unfit(text: str, wanted: ValueCondition, error: ConfigError | ValueError) -> Occurrence:
@@ -78,7 +80,9 @@ def find_lapse(condition: KeepCondition, evidence: Evidence, span: EvidenceSpan)
                 counts &= seen[span.ticks]
             parts.append((true[span.ticks], f"{named} was not so"))
         except (ConfigError, ValueError) as error:
-            return replace(_unfit(text, wanted, error), moment=EvidencePoint(max(0, span.first_tick)), line=0)
+            return replace(
+                _unfit(text, wanted, error), moment=EvidencePoint(max(0, span.first_tick)), line=0
+            )
     if condition.gap_mm is not None:
         (least, most), gaps = condition.gap_mm, _gaps_mm(records, evidence)
         what = f"The robot was not {least:g} to {most:g} mm from the nearest obstacle or wall"
@@ -104,7 +108,9 @@ def _of_samples(named: ValueCondition, evidence: Evidence) -> tuple[Array, Array
     seen = evidence.rows_held(replace(named, sign=Operator.SEEN, value=""))
     wrong = set(seen).difference(evidence.rows_held(named))
     ticks = np.arange(len(evidence.records))
-    true, found = (np.isin(ticks, [evidence.rows[number].tick for number in rows]) for rows in (wrong, seen))
+    true, found = (
+        np.isin(ticks, [evidence.rows[number].tick for number in rows]) for rows in (wrong, seen)
+    )
     return ~true, found
 
 
@@ -138,7 +144,9 @@ def find_miscount(condition: CountCondition, evidence: Evidence, span: EvidenceS
         return Occurrence()
     decided = span.stop or (evidence.last if span.over else None)
     line = evidence.line(moments[-1]) if moments else 0
-    return Occurrence(decided, f"{named} came {times}, at least {condition.at_least:,} are asked for.", line)
+    return Occurrence(
+        decided, f"{named} came {times}, at least {condition.at_least:,} are asked for.", line
+    )
 
 
 def _moments(named: ValueCondition, evidence: Evidence, span: EvidenceSpan) -> list[EvidencePoint]:
@@ -146,8 +154,11 @@ def _moments(named: ValueCondition, evidence: Evidence, span: EvidenceSpan) -> l
     import numpy as np
 
     if named.source is not ValueSource.COLUMN:
-        return [EvidencePoint(evidence.rows[number].tick, number) for number in evidence.rows_held(named)
-                if span.first_row <= number < span.end_row]  # fmt: skip
+        return [
+            EvidencePoint(evidence.rows[number].tick, number)
+            for number in evidence.rows_held(named)
+            if span.first_row <= number < span.end_row
+        ]
     true = evidence.held(named)[span.ticks]
     begins = true if named.is_momentary else true & ~np.concatenate(([False], true[:-1]))
     return [EvidencePoint(span.first_tick + int(at)) for at in np.flatnonzero(begins)]

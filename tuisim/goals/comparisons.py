@@ -42,7 +42,9 @@ def _comparison(text: str, key: str) -> ValueCondition:
     """
     found = goal_condition_in(text)
     if found is None:
-        raise ConfigError(f"no comparison: {text!r}", f"{comparison_form()}, such as left_red_pc < 10", key=key)
+        raise ConfigError(
+            f"no comparison: {text!r}", f"{comparison_form()}, such as left_red_pc < 10", key=key
+        )
     if found.operator is Operator.MATCHES:
         require_regex(found.value, key)
     return found
@@ -66,7 +68,8 @@ class KeepCondition(Condition):
             raise ConfigError("does not say what is kept", "give comparisons or gap_mm")
         if self.gap_mm is not None and self.gap_mm[0] >= self.gap_mm[1]:
             raise ConfigError(
-                f"must be from small to large, got {self.gap_mm[0]:g} to {self.gap_mm[1]:g}", key="gap_mm"
+                f"must be from small to large, got {self.gap_mm[0]:g} to {self.gap_mm[1]:g}",
+                key="gap_mm",
             )
         for number, text in enumerate(self.comparisons, start=1):
             key = f"comparisons[{number}]"
@@ -118,9 +121,15 @@ class StructureCondition(Condition):
         for number, text in enumerate(self.comparisons, start=1):
             key, found = f"comparisons[{number}]", condition_in(text)
             if found is None or found.operator not in COMPARE or not found.value.isdecimal():
-                raise ConfigError(f"no comparison: {text!r}", f"{comparison_form()}, such as loops >= 1", key=key)
+                raise ConfigError(
+                    f"no comparison: {text!r}", f"{comparison_form()}, such as loops >= 1", key=key
+                )
             if found.name not in STRUCTURES:
-                raise ConfigError(f"nothing is counted as {found.name!r}", nearest(found.name, STRUCTURES), key=key)
+                raise ConfigError(
+                    f"nothing is counted as {found.name!r}",
+                    nearest(found.name, STRUCTURES),
+                    key=key,
+                )
 
     @property
     def conditions(self) -> tuple[ValueCondition, ...]:

@@ -69,7 +69,10 @@ def _bands(chance: Random) -> DrawnMat:
         width_mm = int(room_mm * (0.35 + 0.25 * chance.random()))
         # A sensor finds white between two bands.
         left_mm = int(_FIRST_MM + room_mm * number + (room_mm * 0.85 - width_mm) * chance.random())
-        pixels[FIELD_HEIGHT_MM - _BAND_TOP_MM : FIELD_HEIGHT_MM - _BAND_BOTTOM_MM, left_mm : left_mm + width_mm] = grey
+        pixels[
+            FIELD_HEIGHT_MM - _BAND_TOP_MM : FIELD_HEIGHT_MM - _BAND_BOTTOM_MM,
+            left_mm : left_mm + width_mm,
+        ] = grey
         bands.append((left_mm, left_mm + width_mm, round(100 * grey / 255, 1)))
     return DrawnMat(pixels, (150.0, 500.0, 0.0), tuple(bands))
 
@@ -79,13 +82,21 @@ def _line(chance: Random) -> DrawnMat:
     import numpy as np
 
     pixels = _white()
-    waves = [(length, height * (0.5 + chance.random() / 2), math.tau * chance.random()) for length, height in _WAVES]
+    waves = [
+        (length, height * (0.5 + chance.random() / 2), math.tau * chance.random())
+        for length, height in _WAVES
+    ]
 
     def at(x_mm: Any) -> tuple[Any, Any]:
         """Return the height of the line and its slope."""
-        turns = [(height, math.tau / length, math.tau * x_mm / length + begin) for length, height, begin in waves]
+        turns = [
+            (height, math.tau / length, math.tau * x_mm / length + begin)
+            for length, height, begin in waves
+        ]
         height_mm = sum(height * np.sin(turn) for height, _, turn in turns)
-        return FIELD_HEIGHT_MM / 2 + height_mm, sum(height * rate * np.cos(turn) for height, rate, turn in turns)
+        return FIELD_HEIGHT_MM / 2 + height_mm, sum(
+            height * rate * np.cos(turn) for height, rate, turn in turns
+        )
 
     x_mm = np.arange(FIELD_WIDTH_MM) + 0.5
     y_mm, slope = at(x_mm)
@@ -94,7 +105,9 @@ def _line(chance: Random) -> DrawnMat:
     pixels[on_line & (x_mm >= _LINE_START_MM) & (x_mm <= _LINE_END_MM)] = 0
     y_start_mm, first_slope = at(_LINE_START_MM + 50)
     heading_deg = math.degrees(math.atan(first_slope))
-    return DrawnMat(pixels, (_LINE_START_MM + 50, round(float(y_start_mm), 1), round(heading_deg, 1)))
+    return DrawnMat(
+        pixels, (_LINE_START_MM + 50, round(float(y_start_mm), 1), round(heading_deg, 1))
+    )
 
 
 DRAWN_MATS: Mapping[str, Callable[[Random], DrawnMat]] = {"bands": _bands, "line": _line}
@@ -121,7 +134,10 @@ def world_lines(mat: DrawnMat, image: str) -> list[str]:
         f'background = "{image}"',
         f"start = {{ x_mm = {x_mm:g}, y_mm = {y_mm:g}, heading_deg = {heading_deg:g} }}",
     ]
-    lines += [f"# a band from x {left_mm:g} to {right_mm:g} mm: {level:g} %" for left_mm, right_mm, level in mat.bands]
+    lines += [
+        f"# a band from x {left_mm:g} to {right_mm:g} mm: {level:g} %"
+        for left_mm, right_mm, level in mat.bands
+    ]
     if mat.bands:
         levels = ", ".join(f"{level:g}" for *_, level in mat.bands)
         lines += [

@@ -117,7 +117,9 @@ class Evidence:
     def rows(self) -> list[OutputRow]:
         """The rows that the program printed or read, in order, up to `MAX_ROWS`."""
         kept = (Stream.STDOUT, Stream.STDERR, Stream.INPUT, Stream.DATA)
-        return list(islice((row for row in self._run.output.rows() if row.stream in kept), MAX_ROWS))
+        return list(
+            islice((row for row in self._run.output.rows() if row.stream in kept), MAX_ROWS)
+        )
 
     @cached_property
     def modules(self) -> tuple[str, ...]:
@@ -131,7 +133,9 @@ class Evidence:
     @cached_property
     def samples(self) -> list[tuple[int, Sample]]:
         """The samples, each with the index of its row."""
-        return [(number, sample) for number, row in enumerate(self.rows) for sample in samples_of([row])]
+        return [
+            (number, sample) for number, row in enumerate(self.rows) for sample in samples_of([row])
+        ]
 
     def search(self, pattern: str) -> Search:
         """Return the search for a regular expression in the lines that the program printed.
@@ -141,14 +145,20 @@ class Evidence:
         """
         key = f"search {pattern}"
         if key not in self.memo:
-            self.memo[key] = search_in(pattern, (row.text for row in self.rows if row.stream in SAMPLE_STREAMS))
+            self.memo[key] = search_in(
+                pattern, (row.text for row in self.rows if row.stream in SAMPLE_STREAMS)
+            )
         found: Search = self.memo[key]
         return found
 
     @cached_property
     def brick_rows(self) -> list[OutputRow]:
         """The rows of what the brick showed and played, in order, up to `MAX_ROWS`."""
-        return list(islice((row for row in self._run.output.rows() if row.stream in BRICK_STREAMS), MAX_ROWS))
+        return list(
+            islice(
+                (row for row in self._run.output.rows() if row.stream in BRICK_STREAMS), MAX_ROWS
+            )
+        )
 
     def column(self, name: str) -> Array:
         """Return a column of `columns_of` the robot, or one of `BRICK_COLUMNS`, at every tick.
@@ -179,7 +189,10 @@ class Evidence:
             return np.isin(np.arange(len(self.records)), text_ticks(condition, self.brick_rows))
         if condition.source is ValueSource.COLUMN:
             return held(condition, self.column(condition.name))
-        return np.isin(np.arange(len(self.records)), [self.rows[number].tick for number in self.rows_held(condition)])
+        return np.isin(
+            np.arange(len(self.records)),
+            [self.rows[number].tick for number in self.rows_held(condition)],
+        )
 
     def rows_held(self, condition: ValueCondition) -> list[int]:
         """Return the indices of the rows of which a condition on printed lines is true.
@@ -190,8 +203,11 @@ class Evidence:
         """
         if condition.source is ValueSource.PRINT:
             search = self.search(condition.value)
-            return [number for number, row in enumerate(self.rows)
-                    if row.stream in SAMPLE_STREAMS and search(row.text)]  # fmt: skip
+            return [
+                number
+                for number, row in enumerate(self.rows)
+                if row.stream in SAMPLE_STREAMS and search(row.text)
+            ]
         printed = [row for row in self.rows if row.stream in SAMPLE_STREAMS]
         found = set(map(id, rows_when(condition, printed)))
         return [number for number, row in enumerate(self.rows) if id(row) in found]
@@ -205,7 +221,9 @@ class Evidence:
         """
         if self._field is not None:
             return self._field
-        return open_mat(self._run) if isinstance(self._run, StoredRun) else open_field(self._run.field)
+        return (
+            open_mat(self._run) if isinstance(self._run, StoredRun) else open_field(self._run.field)
+        )
 
     @cached_property
     def end_s(self) -> float:
@@ -231,7 +249,9 @@ class Evidence:
         if time_s > self.end_s:
             return None
         tick = bisect_left(self.times_s, time_s) - 1
-        return EvidencePoint(tick, bisect_left(self.rows, time_s * NS_PER_S, key=lambda row: row.time_ns) - 1)
+        return EvidencePoint(
+            tick, bisect_left(self.rows, time_s * NS_PER_S, key=lambda row: row.time_ns) - 1
+        )
 
     def span(self, start: EvidencePoint, stop: EvidencePoint | None) -> EvidenceSpan:
         """Return the part of the run between two moments, both exclusive; None: as far as the recording goes."""
@@ -246,7 +266,9 @@ class Evidence:
         )
 
     def _row_after(self, moment: EvidencePoint) -> int:
-        return bisect_left(self.rows, moment.tick, key=lambda row: row.tick) if moment.tick > 0 else 0
+        return (
+            bisect_left(self.rows, moment.tick, key=lambda row: row.tick) if moment.tick > 0 else 0
+        )
 
     def time_s(self, moment: EvidencePoint) -> float:
         """Return the simulated time of a moment."""

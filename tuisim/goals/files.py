@@ -123,7 +123,9 @@ def line_in_errors(path: Path, text: str | None = None) -> Iterator[None]:
     except ConfigError as error:
         if error.file != str(path) or not error.key:
             raise
-        line = line_of_key(path.read_text("utf-8-sig", "replace") if text is None else text, error.key)
+        line = line_of_key(
+            path.read_text("utf-8-sig", "replace") if text is None else text, error.key
+        )
         raise files.with_location(error, f"{path}, line {line}", error.key) from None
 
 
@@ -170,13 +172,32 @@ def _goals_file(data: Any, path: Path, world: WorldFile) -> GoalsFile | None:
     if base is None and "goal" not in data:
         return None
     inherited = base.goals if base else ()
-    own = goals_from_list(data["goal"], at.at("goal"), path.parent, inherited) if "goal" in data else ()
+    own = (
+        goals_from_list(data["goal"], at.at("goal"), path.parent, inherited)
+        if "goal" in data
+        else ()
+    )
     names = {goal.name for goal in own}
     goals = (*(goal for goal in inherited if goal.name not in names), *own)
-    title = files.convert(data["title"], str, at.at("title")) if "title" in data else base.title if base else ""
+    title = (
+        files.convert(data["title"], str, at.at("title"))
+        if "title" in data
+        else base.title
+        if base
+        else ""
+    )
     others = _others(data["also"], goals, at.at("also"), path) if "also" in data else ()
     known = base.others if base else ()
-    task = GoalsFile(path, title, goals, world.settings, world.program, (*known, *others), world.presses, world.inputs)
+    task = GoalsFile(
+        path,
+        title,
+        goals,
+        world.settings,
+        world.program,
+        (*known, *others),
+        world.presses,
+        world.inputs,
+    )
     # Without a world, programs choose the robot.
     if world.settings:
         robots = robots_of(task.worlds)
@@ -186,15 +207,21 @@ def _goals_file(data: Any, path: Path, world: WorldFile) -> GoalsFile | None:
     return task
 
 
-def _others(data: object, goals: tuple[Goal, ...], at: Location, path: Path) -> tuple[TrialWorld, ...]:
+def _others(
+    data: object, goals: tuple[Goal, ...], at: Location, path: Path
+) -> tuple[TrialWorld, ...]:
     names = tuple(goal.name for goal in goals)
     others = others_of(data, names, at, path, partial(goals_from_list, beside=goals), of_task=True)
     for number, other in enumerate(others, start=1):
-        check_names(other.goals, {*names, *(goal.name for goal in other.own_goals)}, at.at(f"[{number}]"))
+        check_names(
+            other.goals, {*names, *(goal.name for goal in other.own_goals)}, at.at(f"[{number}]")
+        )
     return others
 
 
-def goals_from_list(data: object, at: Location, folder: Path, beside: Sequence[Goal] = ()) -> tuple[Goal, ...]:
+def goals_from_list(
+    data: object, at: Location, folder: Path, beside: Sequence[Goal] = ()
+) -> tuple[Goal, ...]:
     """Return the goals in a list of tables; the files that they name are in a folder.
 
     Args:
@@ -213,15 +240,23 @@ def goals_from_list(data: object, at: Location, folder: Path, beside: Sequence[G
 
 def _goal(data: object, at: Location, folder: Path) -> Goal:
     found = files.table(data, at, (*_TEXTS, "points", "hidden", "within_s", *CONDITIONS, *_LIMITS))
-    values: dict[str, Any] = {key: files.convert(found[key], str, at.at(key)) for key in _TEXTS if key in found}
+    values: dict[str, Any] = {
+        key: files.convert(found[key], str, at.at(key)) for key in _TEXTS if key in found
+    }
     files.required(found, "name", at)
     if len(values["name"]) > MAX_NAME:
-        raise at.at("name").wrong(f"is too long, {len(values['name'])} characters", f"at most {MAX_NAME}")
+        raise at.at("name").wrong(
+            f"is too long, {len(values['name'])} characters", f"at most {MAX_NAME}"
+        )
     conditions = tuple(
-        _condition(kind, found[key], at.at(key), folder) for key, kind in CONDITIONS.items() if key in found
+        _condition(kind, found[key], at.at(key), folder)
+        for key, kind in CONDITIONS.items()
+        if key in found
     )
     if not conditions:
-        raise at.wrong("has no condition", f"one of {', '.join(CONDITIONS)}; {see_page('goal-files')}")
+        raise at.wrong(
+            "has no condition", f"one of {', '.join(CONDITIONS)}; {see_page('goal-files')}"
+        )
     condition = conditions[0] if len(conditions) == 1 else Together(conditions)
     if "points" in found:
         values["points"] = files.convert(found["points"], Points, at.at("points"))
@@ -263,8 +298,12 @@ def _check_lists(kind: type[Condition], data: object, at: Location) -> None:
             continue
         if key == kind.SHORT and field.type == "tuple[str, ...]" and not isinstance(value, list):
             raise at.at(key).wrong(f"must be text, or a list of texts, got {shown(value)}")
-        if field.type == "tuple[Range, ...]" and not (isinstance(value, list) and all(map(_is_list, value))):
-            raise at.at(key).wrong(f"must be [[from, to]], or one such pair for each, got {shown(value)}")
+        if field.type == "tuple[Range, ...]" and not (
+            isinstance(value, list) and all(map(_is_list, value))
+        ):
+            raise at.at(key).wrong(
+                f"must be [[from, to]], or one such pair for each, got {shown(value)}"
+            )
 
 
 def _is_list(value: object) -> bool:
@@ -297,7 +336,12 @@ def _check_limits(goal: Goal, at: Location) -> None:
         if getattr(goal, limit) is not None and limit not in fitting:
             raise at.at(limit).wrong("does not fit this condition", _UNFIT[kinds[0]])
         end = getattr(goal, limit)
-        if limit != "after" and isinstance(end, float) and isinstance(goal.after, float) and goal.after >= end:
+        if (
+            limit != "after"
+            and isinstance(end, float)
+            and isinstance(goal.after, float)
+            and goal.after >= end
+        ):
             raise at.at("after").wrong(f"must be less than {limit}, {end:g}, got {goal.after:g}")
 
 
@@ -306,12 +350,16 @@ def _check_names(goals: Sequence[Goal], places: Sequence[Location]) -> None:
     by_name: dict[str, Goal] = {}
     for goal, at in zip(goals, places, strict=True):
         if goal.name in by_name:
-            raise at.at("name").wrong(f"there are two goals {goal.name!r}", "give each its own name")
+            raise at.at("name").wrong(
+                f"there are two goals {goal.name!r}", "give each its own name"
+            )
         by_name[goal.name] = goal
     for goal, at in zip(goals, places, strict=True):
         for name in goal.needs:
             if name not in by_name:
-                raise _reference(goal, name, at).wrong(f"there is no goal {name!r}", nearest(name, by_name))
+                raise _reference(goal, name, at).wrong(
+                    f"there is no goal {name!r}", nearest(name, by_name)
+                )
     checked: set[str] = set()
     for goal, at in zip(goals, places, strict=True):
         circle = _circle(goal.name, by_name, (), checked)
@@ -333,7 +381,9 @@ def _reference(goal: Goal, name: str, at: Location) -> Location:
     return at.at(key) if key else at
 
 
-def _circle(name: str, goals: Mapping[str, Goal], above: tuple[str, ...], checked: set[str]) -> tuple[str, ...]:
+def _circle(
+    name: str, goals: Mapping[str, Goal], above: tuple[str, ...], checked: set[str]
+) -> tuple[str, ...]:
     """Return the names on a circle that begins with a goal or one that it needs; empty if there is none."""
     if name in above:
         return (*above[above.index(name) :], name)

@@ -10,7 +10,12 @@ from tuisim.core.field import Field
 from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError
 from tuisim.goals import calls, columns, output, pen_trace, places, program_text, readings
-from tuisim.goals.comparisons import CountCondition, KeepCondition, StructureCondition, WhenCondition
+from tuisim.goals.comparisons import (
+    CountCondition,
+    KeepCondition,
+    StructureCondition,
+    WhenCondition,
+)
 from tuisim.goals.condition import WINDOWED, Condition, ConditionKind
 from tuisim.goals.evidence import START, Evidence, EvidencePoint, EvidenceSpan, JudgedRun
 from tuisim.goals.found import Occurrence
@@ -76,7 +81,9 @@ class _Outcome:
     """Whether it counts as missed because a regular expression of the task takes too long."""
 
 
-def judge(goals: Sequence[Goal], run: JudgedRun, field: Field | None = None) -> tuple[Judgement, ...]:
+def judge(
+    goals: Sequence[Goal], run: JudgedRun, field: Field | None = None
+) -> tuple[Judgement, ...]:
     """Judge goals on the recording of a run. Blocks while it is read, and unpacked if it is packed.
 
     Args:
@@ -110,7 +117,12 @@ class _Judge:
         if outcome.state is GoalState.OPEN:
             return Judgement(goal, (), outcome.reason, self._line(outcome))
         if outcome.is_unknown:
-            return Judgement(goal, (self._change(outcome.moment, outcome.state),), outcome.reason, is_unknown=True)
+            return Judgement(
+                goal,
+                (self._change(outcome.moment, outcome.state),),
+                outcome.reason,
+                is_unknown=True,
+            )
         changes = (self._change(outcome.moment, outcome.state),)
         happened = self._change(outcome.happened, outcome.state) if outcome.happened else None
         return Judgement(goal, changes, outcome.reason, self._line(outcome), happened)
@@ -129,14 +141,22 @@ class _Judge:
         if name not in self._outcomes:
             self._outcomes[name] = self._judged(self._goals[name])
         outcome = self._outcomes[name]
-        return replace(outcome, reason=if_missed) if if_missed and outcome.state is GoalState.MISSED else outcome
+        return (
+            replace(outcome, reason=if_missed)
+            if if_missed and outcome.state is GoalState.MISSED
+            else outcome
+        )
 
     def _judged(self, goal: Goal) -> _Outcome:
         if self._evidence.falsified:
             # What is recorded may not have happened.
-            return _Outcome(GoalState.MISSED, reason=f"It does not count: {self._evidence.falsified}.")
+            return _Outcome(
+                GoalState.MISSED, reason=f"It does not count: {self._evidence.falsified}."
+            )
         if fault := program_text.fault_in(self._evidence.program.text):
-            return _Outcome(GoalState.MISSED, reason=f"The program does not compile: {fault[0]}.", line=fault[1])
+            return _Outcome(
+                GoalState.MISSED, reason=f"The program does not compile: {fault[0]}.", line=fault[1]
+            )
         start = START
         match goal.after:
             case str(name):
@@ -144,7 +164,9 @@ class _Judge:
                 if first.state is GoalState.OPEN:
                     return _Outcome(GoalState.OPEN, reason=f"“{name}” is not met yet.")
                 if first.state is GoalState.MISSED:
-                    return _Outcome(GoalState.MISSED, first.moment, f"“{name}” was not met.", first.line)
+                    return _Outcome(
+                        GoalState.MISSED, first.moment, f"“{name}” was not met.", first.line
+                    )
                 start = first.moment
             case float() | int() as time_s:
                 moment = self._evidence.before_time(time_s)
@@ -177,7 +199,9 @@ class _Judge:
             case _:
                 assert_never(condition.KIND)
 
-    def _stop(self, goal: Goal, kind: ConditionKind, start: EvidencePoint = START) -> EvidencePoint | None:
+    def _stop(
+        self, goal: Goal, kind: ConditionKind, start: EvidencePoint = START
+    ) -> EvidencePoint | None:
         """Return the moment that limits a goal's conditions of a kind, if it has come; `start` begins them."""
         stops = []
         for limit in (getattr(goal, limit) for limit in goal.limits(kind) if limit != "after"):
@@ -238,7 +262,9 @@ def _inverted(name: str, outcome: _Outcome) -> _Outcome:
         return replace(outcome, reason=f"Whether “{name}” was met is not known.")
     match outcome.state:
         case GoalState.MET:
-            return replace(outcome, state=GoalState.MISSED, reason=f"“{name}” was met.", happened=None)
+            return replace(
+                outcome, state=GoalState.MISSED, reason=f"“{name}” was met.", happened=None
+            )
         case GoalState.MISSED:
             return replace(outcome, state=GoalState.MET, reason="")
         case GoalState.OPEN:
@@ -261,6 +287,14 @@ def _too_late(goal: Goal, reason: str) -> str:
     """Return the reason of a goal that was not met before its limit."""
     if goal.before is None:
         limit = f"within {goal.within_s:g} s"
-        return f"Not {limit}: {reason[:1].lower()}{reason[1:]}" if reason else f"It was not met {limit}."
+        return (
+            f"Not {limit}: {reason[:1].lower()}{reason[1:]}"
+            if reason
+            else f"It was not met {limit}."
+        )
     limit = f"{goal.before:g} s" if isinstance(goal.before, float | int) else f"“{goal.before}”"
-    return f"Not before {limit}: {reason[:1].lower()}{reason[1:]}" if reason else f"It was not met before {limit}."
+    return (
+        f"Not before {limit}: {reason[:1].lower()}{reason[1:]}"
+        if reason
+        else f"It was not met before {limit}."
+    )

@@ -43,9 +43,13 @@ def impossible_motion(records: Array, spec: RunSpec, actions: Iterable[UserActio
     if not len(records) or any(isinstance(action.command, SetPose) for action in actions):
         return ""
     start = spec.world.start
-    poses = zip(("x_mm", "y_mm", "heading_deg"), (start.x_mm, start.y_mm, start.heading_deg), strict=True)
+    poses = zip(
+        ("x_mm", "y_mm", "heading_deg"), (start.x_mm, start.y_mm, start.heading_deg), strict=True
+    )
     x_mm, y_mm, heading_deg = (np.diff(records[name], prepend=at_start) for name, at_start in poses)
-    wheels = np.abs(np.stack([records[f"{side}_speed_dps"] for side in ("left", "right")]).astype(np.float64))
+    wheels = np.abs(
+        np.stack([records[f"{side}_speed_dps"] for side in ("left", "right")]).astype(np.float64)
+    )
     way_mm = wheels.sum(axis=0) / spec.profile.tick_hz * max(map(abs, mm_per_degree(spec.robot)))
     if not spec.world.drift.is_none:
         # Of each wheel, by the faster one.

@@ -40,7 +40,11 @@ def _asked(pattern: str) -> str:
     if words == re.escape(words).replace("\\ ", " "):
         return f"matches {_shown(words)}"
     # What a line must not say is told by the goal's own words, and no student reads it from the pattern.
-    return "says what is asked for" if re.search(r"\(\?<?[=!]", pattern) else f"matches {_shown(pattern)}"
+    return (
+        "says what is asked for"
+        if re.search(r"\(\?<?[=!]", pattern)
+        else f"matches {_shown(pattern)}"
+    )
 
 
 def _shown(text: str) -> str:
@@ -50,7 +54,11 @@ def _shown(text: str) -> str:
 def _printed(evidence: Evidence, span: EvidenceSpan) -> list[tuple[int, OutputRow]]:
     """Return the printed lines of a span, each with its index."""
     rows = evidence.rows[span.first_row : span.end_row]
-    return [(at, row) for at, row in enumerate(rows, start=span.first_row) if row.stream == Stream.STDOUT]
+    return [
+        (at, row)
+        for at, row in enumerate(rows, start=span.first_row)
+        if row.stream == Stream.STDOUT
+    ]
 
 
 def find_printed(condition: PrintCondition, evidence: Evidence, span: EvidenceSpan) -> Occurrence:
@@ -75,7 +83,9 @@ def find_printed(condition: PrintCondition, evidence: Evidence, span: EvidenceSp
             about = rows[-1][1].line if rows and line is None else line
             if fault.reason:
                 return fault
-            return Occurrence(None, _no_line(condition, pattern, rows, line is not None, evidence), about)
+            return Occurrence(
+                None, _no_line(condition, pattern, rows, line is not None, evidence), about
+            )
         at, line, since = place + 1, row.line, row.tick
         last = max(last, place)
     if condition.once and (open_or_missed := _not_once(condition, rows, span, evidence)):
@@ -85,13 +95,18 @@ def find_printed(condition: PrintCondition, evidence: Evidence, span: EvidenceSp
 
 
 def _not_once(
-    condition: PrintCondition, rows: list[tuple[int, OutputRow]], span: EvidenceSpan, evidence: Evidence
+    condition: PrintCondition,
+    rows: list[tuple[int, OutputRow]],
+    span: EvidenceSpan,
+    evidence: Evidence,
 ) -> Occurrence | None:
     """Return what is missing of a condition whose lines come only once; None if nothing is."""
     searches = list(map(evidence.search, condition.lines))
     fits = [(row, sum(search(row.text) for search in searches)) for _, row in rows]
     if several := [row for row, count in fits if count > 1]:
-        return Occurrence(None, f"{_shown(several[0].text)} says several of the lines at once.", several[0].line)
+        return Occurrence(
+            None, f"{_shown(several[0].text)} says several of the lines at once.", several[0].line
+        )
     fitting = [row for row, count in fits if count]
     if len(fitting) > len(condition.lines):
         return _again(condition, fitting, evidence)
@@ -109,11 +124,15 @@ def _again(condition: PrintCondition, rows: list[OutputRow], evidence: Evidence)
     x_mm = evidence.place_mm(row.tick)[0]
     reason = f"{_shown(row.text)} was printed again at {row.time_ns / NS_PER_S:.2f} s, at x = {x_mm:.0f} mm"
     return Occurrence(
-        None, f"{reason}: {counted(len(rows), 'such line')} in all, and each is asked for once.", row.line
+        None,
+        f"{reason}: {counted(len(rows), 'such line')} in all, and each is asked for once.",
+        row.line,
     )
 
 
-def _fault(condition: PrintCondition, count: int, row: OutputRow, since: int, evidence: Evidence) -> str:
+def _fault(
+    condition: PrintCondition, count: int, row: OutputRow, since: int, evidence: Evidence
+) -> str:
     """Return why a line that matches does not count, in a sentence; empty if it does.
 
     Args:
@@ -124,7 +143,9 @@ def _fault(condition: PrintCondition, count: int, row: OutputRow, since: int, ev
     if fault := _elsewhere(condition, count, row.tick, evidence):
         return f"{when}, when {fault}"
     if condition.still and (speed_mm_s := _speed_mm_s(row.tick, evidence)) > _STILL_MM_S:
-        return f"{when}, when the robot still moved, by {speed_mm_s:.0f} mm/s: it must have stopped."
+        return (
+            f"{when}, when the robot still moved, by {speed_mm_s:.0f} mm/s: it must have stopped."
+        )
     if condition.reading is None:
         return ""
     noun = NOUNS[condition.reading]
@@ -140,7 +161,9 @@ def _fault(condition: PrintCondition, count: int, row: OutputRow, since: int, ev
 def _speed_mm_s(tick: int, evidence: Evidence) -> float:
     """Return how fast the robot moves when it is slowest, from a tick on as long as a stop may take."""
     ticks = range(max(0, tick), min(tick + _STOP_TICKS, len(evidence.records)))
-    return min((_between_mm_s(first, then, evidence) for first, then in pairwise(ticks)), default=0.0)
+    return min(
+        (_between_mm_s(first, then, evidence) for first, then in pairwise(ticks)), default=0.0
+    )
 
 
 def _between_mm_s(first: int, then: int, evidence: Evidence) -> float:
@@ -148,7 +171,9 @@ def _between_mm_s(first: int, then: int, evidence: Evidence) -> float:
     return way_mm / float(evidence.times_s[then] - evidence.times_s[first])
 
 
-def _elsewhere(condition: PrintCondition | LogCondition, count: int, tick: int, evidence: Evidence) -> str:
+def _elsewhere(
+    condition: PrintCondition | LogCondition, count: int, tick: int, evidence: Evidence
+) -> str:
     """Return where the robot was at a tick if that was wrong, as the end of a sentence; empty if it was right."""
     place = place_of(condition, count)
     x_mm, y_mm = evidence.place_mm(tick)
@@ -168,7 +193,11 @@ def _read_between(reading: Reading, first_tick: int, end_tick: int, evidence: Ev
 
 
 def _no_line(
-    condition: PrintCondition, pattern: str, rows: list[tuple[int, OutputRow]], some: bool, evidence: Evidence
+    condition: PrintCondition,
+    pattern: str,
+    rows: list[tuple[int, OutputRow]],
+    some: bool,
+    evidence: Evidence,
 ) -> str:
     if not rows:
         return "The program printed nothing."
@@ -190,7 +219,11 @@ def find_levels(condition: LogCondition, evidence: Evidence, span: EvidenceSpan)
     for count, level in enumerate(condition.levels):
         start = at if condition.in_order else 0
         fault = Occurrence()
-        near = (place for place in range(start, len(samples)) if _near(samples[place][1], level, condition))
+        near = (
+            place
+            for place in range(start, len(samples))
+            if _near(samples[place][1], level, condition)
+        )
         for place in islice(near, _MOST_TRIED):
             sample = samples[place][1]
             found = _not_measured(condition, count, sample, evidence)
@@ -198,7 +231,11 @@ def find_levels(condition: LogCondition, evidence: Evidence, span: EvidenceSpan)
                 break
             fault = fault if fault.reason else Occurrence(None, found, sample.line)
         else:
-            return fault if fault.reason else _missing_level(condition, count, samples, start, last, evidence)
+            return (
+                fault
+                if fault.reason
+                else _missing_level(condition, count, samples, start, last, evidence)
+            )
         at = place + 1
         last = max(last, place)
     number, sample = samples[last]
@@ -215,7 +252,11 @@ def find_levels(condition: LogCondition, evidence: Evidence, span: EvidenceSpan)
 
 def _printed_at(moment: EvidencePoint, line: int, once: bool, evidence: Evidence) -> Occurrence:
     """Return that what was asked for was printed; that it came only once, the end of the run decides."""
-    return Occurrence(evidence.last, line=line, happened=moment) if once else Occurrence(moment, line=line)
+    return (
+        Occurrence(evidence.last, line=line, happened=moment)
+        if once
+        else Occurrence(moment, line=line)
+    )
 
 
 def _gap(condition: LogCondition, samples: list[Sample], evidence: Evidence) -> Occurrence | None:
@@ -225,16 +266,22 @@ def _gap(condition: LogCondition, samples: list[Sample], evidence: Evidence) -> 
         if way_mm > condition.apart_mm:
             when = f"Between {before.time_ns / NS_PER_S:.2f} s and {after.time_ns / NS_PER_S:.2f} s"
             reason = f"{when} the robot went {way_mm:.0f} mm without a sample {condition.name}"
-            return Occurrence(None, f"{reason}; at most {condition.apart_mm:g} mm are asked for.", after.line)
+            return Occurrence(
+                None, f"{reason}; at most {condition.apart_mm:g} mm are asked for.", after.line
+            )
     return None
 
 
 def _not_measured(condition: LogCondition, count: int, sample: Sample, evidence: Evidence) -> str:
     """Return why a sample near its level does not count, in a sentence; empty if it does."""
     value = f"{sample.name}: {sample.value:.6g} was printed at {sample.time_ns / NS_PER_S:.2f} s"
-    printed = sum(one.name == condition.counts and one.tick <= sample.tick for _, one in evidence.samples)
+    printed = sum(
+        one.name == condition.counts and one.tick <= sample.tick for _, one in evidence.samples
+    )
     if condition.counts and printed != sample.value:
-        return f"{value}, but the program had printed {counted(printed, 'sample')} {condition.counts}."
+        return (
+            f"{value}, but the program had printed {counted(printed, 'sample')} {condition.counts}."
+        )
     reading, place = condition.reading, place_of(condition, count)
     known = provenance_of(evidence.program.text, reading, evidence.modules) if reading else None
     if reading is not None and known is not None and not known.gives(sample.line, sample.name):
@@ -256,7 +303,12 @@ def _not_measured(condition: LogCondition, count: int, sample: Sample, evidence:
 
 
 def _missing_level(
-    condition: LogCondition, count: int, samples: list[tuple[int, Sample]], start: int, last: int, evidence: Evidence
+    condition: LogCondition,
+    count: int,
+    samples: list[tuple[int, Sample]],
+    start: int,
+    last: int,
+    evidence: Evidence,
 ) -> Occurrence:
     """Return which level is missing, the one after the first `count`, and why.
 
@@ -266,9 +318,13 @@ def _missing_level(
         last: The last of the levels that were found; -1 for none.
     """
     rest = [sample for _, sample in samples[start:]]
-    nearest = min(rest, key=lambda sample: abs(sample.value - condition.levels[count]), default=None)
+    nearest = min(
+        rest, key=lambda sample: abs(sample.value - condition.levels[count]), default=None
+    )
     about = nearest or (samples[last][1] if last >= 0 else None)
-    return Occurrence(None, _no_level(condition, count, nearest, evidence), about.line if about else 0)
+    return Occurrence(
+        None, _no_level(condition, count, nearest, evidence), about.line if about else 0
+    )
 
 
 def _near(sample: Sample, level: float, condition: LogCondition) -> bool:
@@ -276,14 +332,19 @@ def _near(sample: Sample, level: float, condition: LogCondition) -> bool:
     return abs(sample.value - level) <= condition.within + 1e-9 * max(1.0, abs(level))
 
 
-def _no_level(condition: LogCondition, count: int, nearest: Sample | None, evidence: Evidence) -> str:
+def _no_level(
+    condition: LogCondition, count: int, nearest: Sample | None, evidence: Evidence
+) -> str:
     """Return why a level is missing, the one after the first `count`; `nearest` is the sample that came nearest."""
     name, levels = condition.name, condition.levels
     if not any(sample.name == name for _, sample in evidence.samples):
         others = sorted({sample.name for _, sample in evidence.samples})
         logged = f" It logged {', '.join(others[:5])}." if others else ""
         return f"The program logged no sample {name}.{logged}{_form_fault(name, evidence)}"
-    level, after = f"{levels[count]:g}", f" after {levels[count - 1]:g}" if count and condition.in_order else ""
+    level, after = (
+        f"{levels[count]:g}",
+        f" after {levels[count - 1]:g}" if count and condition.in_order else "",
+    )
     if nearest is not None:
         near = f"the nearest{after} was {nearest.value:.6g} at {nearest.time_ns / 1e9:.2f} s"
     else:
@@ -297,14 +358,18 @@ def _no_level(condition: LogCondition, count: int, nearest: Sample | None, evide
 def _form_fault(name: str, evidence: Evidence) -> str:
     """Return why a line with the name and a number is no sample, as a further sentence; empty if there is none."""
     like = re.compile(rf"(?:.*\W)?{re.escape(name)}\s*(?:[:=]\s*)?[+-]?\.?\d").match
-    row = next((row for row in evidence.rows if row.stream == Stream.STDOUT and like(row.text)), None)
+    row = next(
+        (row for row in evidence.rows if row.stream == Stream.STDOUT and like(row.text)), None
+    )
     if row is None:
         return ""
     form = f"a sample is the name, a colon, and the number, and nothing else: {name}: 1.5."
     return f" Line {row.line} printed {_shown(row.text)}: {form}"
 
 
-def find_dialogue(condition: DialogueCondition, evidence: Evidence, span: EvidenceSpan) -> Occurrence:
+def find_dialogue(
+    condition: DialogueCondition, evidence: Evidence, span: EvidenceSpan
+) -> Occurrence:
     """Find when the last of the turns was complete."""
     rows = evidence.rows[: span.end_row]
     questions = [at for at, row in enumerate(rows) if row.stream == Stream.INPUT]
@@ -316,7 +381,9 @@ def find_dialogue(condition: DialogueCondition, evidence: Evidence, span: Eviden
         reason = ""
         while at < len(asked) and reply is None:
             end = asked[at + 1] if at + 1 < len(asked) else len(rows)
-            if (prompt := _prompt(rows[asked[at]].text, turn.answer, known.get(asked[at]))) is not None:
+            if (
+                prompt := _prompt(rows[asked[at]].text, turn.answer, known.get(asked[at]))
+            ) is not None:
                 reply, reason = _turn(turn, prompt, rows, range(asked[at], end), evidence)
                 line = rows[asked[at]].line
             at += 1
@@ -350,15 +417,25 @@ def _turn(
         asked: The rows of the turn, from the question to the next one.
     """
     if turn.prompt and not search_in(turn.prompt, [prompt])(prompt):
-        return None, f"The question for {_shown(turn.answer)} was {_shown(prompt)}, not one like {_shown(turn.prompt)}."
+        return (
+            None,
+            f"The question for {_shown(turn.answer)} was {_shown(prompt)}, not one like {_shown(turn.prompt)}.",
+        )
     if not turn.reply:
         return asked.start, ""
     printed = [at for at in asked if rows[at].stream == Stream.STDOUT]
     found = next((at for at in printed if evidence.search(turn.reply)(rows[at].text)), None)
     if found is not None:
         return found, ""
-    said = f"the program printed {_shown(rows[printed[0]].text)}" if printed else "the program printed nothing"
-    return None, f"After the answer {_shown(turn.answer)} {said}, and no line like {_shown(turn.reply)}."
+    said = (
+        f"the program printed {_shown(rows[printed[0]].text)}"
+        if printed
+        else "the program printed nothing"
+    )
+    return (
+        None,
+        f"After the answer {_shown(turn.answer)} {said}, and no line like {_shown(turn.reply)}.",
+    )
 
 
 def _not_asked(number: int, turn: DialogueTurn, asked: int) -> str:
@@ -371,7 +448,9 @@ def _not_asked(number: int, turn: DialogueTurn, asked: int) -> str:
 def find_finish(condition: FinishCondition, evidence: Evidence, span: EvidenceSpan) -> Occurrence:
     """Find when the program finished without an error."""
     if not span.over:
-        return Occurrence(None, "The program was still running.", evidence.line(span.stop or evidence.last))
+        return Occurrence(
+            None, "The program was still running.", evidence.line(span.stop or evidence.last)
+        )
     end = evidence.end
     if end is None:
         return Occurrence(None, "The run was interrupted.", evidence.line(evidence.last))
@@ -379,4 +458,6 @@ def find_finish(condition: FinishCondition, evidence: Evidence, span: EvidenceSp
         return Occurrence(evidence.last)
     what = f"exit code {end.exit_code}" if end.end is End.FINISHED else end.end.replace("_", " ")
     summary = end.summary.removesuffix(f" (line {end.error_line})").rstrip(".")
-    return Occurrence(None, f"The program did not finish: {summary or what}.", evidence.line(evidence.last))
+    return Occurrence(
+        None, f"The program did not finish: {summary or what}.", evidence.line(evidence.last)
+    )

@@ -91,7 +91,9 @@ def _searched(pattern: str, texts: list[str]) -> dict[str, bool]:
     given = json.dumps([pattern, texts, LIMIT_S]).encode()
     command = [sys.executable, "-I", "-S", "-c", _SEARCHES]
     try:
-        done = subprocess.run(command, input=given, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, check=False)
+        done = subprocess.run(
+            command, input=given, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, check=False
+        )
     except OSError as error:
         raise _of_the_machine(error.strerror or str(error)) from OSError(errno.ENOMEM, str(error))
     if done.returncode not in (0, -signal.SIGXCPU):
@@ -110,7 +112,9 @@ def _steps(pattern: str, texts: list[str]) -> float:
     with suppress(re.error, RecursionError, OverflowError):
         parsed = _parser.parse(pattern)
         lengths = Counter(map(len, texts))
-        return sum(count * (length + 1) * _ways(parsed, length) for length, count in lengths.items())
+        return sum(
+            count * (length + 1) * _ways(parsed, length) for length, count in lengths.items()
+        )
     return math.inf
 
 

@@ -32,7 +32,9 @@ def find_drawn(condition: DrawCondition, evidence: Evidence, span: EvidenceSpan)
     line = 0
     if drawn < condition.share:
         x_mm, y_mm = picture.centres_mm(wanted[~covered][:1], condition.within_mm)[0]
-        reasons.append(f"{share_words(drawn)} of the picture is drawn, not the part at x {x_mm:.0f}, y {y_mm:.0f} mm")
+        reasons.append(
+            f"{share_words(drawn)} of the picture is drawn, not the part at x {x_mm:.0f}, y {y_mm:.0f} mm"
+        )
     if on_picture < condition.share:
         off = int(np.argmin(near))
         tick = span.first_tick + int(ticks[off])
@@ -42,7 +44,9 @@ def find_drawn(condition: DrawCondition, evidence: Evidence, span: EvidenceSpan)
             f"y {y_mm:.0f} mm at {evidence.time_words(tick)}"
         )
     if reasons:
-        return Occurrence(None, f"{' and '.join(reasons)}; {share_words(condition.share)} are needed.", line)
+        return Occurrence(
+            None, f"{' and '.join(reasons)}; {share_words(condition.share)} are needed.", line
+        )
     return Occurrence(evidence.last if span.over else span.stop)
 
 

@@ -50,10 +50,15 @@ class PictureTable:
         if bool(self.image) == bool(self.lines_mm):
             raise ConfigError("needs a picture", "give image or lines_mm, not both")
         if self.fit not in BACKGROUND_FITS:
-            raise ConfigError(f"no such value {self.fit!r}", f"one of {', '.join(BACKGROUND_FITS)}", key="fit")
+            raise ConfigError(
+                f"no such value {self.fit!r}", f"one of {', '.join(BACKGROUND_FITS)}", key="fit"
+            )
         for number, line in enumerate(self.lines_mm, start=1):
             if not 2 <= len(line) <= MAX_PLACES:
-                raise ConfigError(f"must have 2 to {MAX_PLACES} points, has {len(line)}", key=f"lines_mm[{number}]")
+                raise ConfigError(
+                    f"must have 2 to {MAX_PLACES} points, has {len(line)}",
+                    key=f"lines_mm[{number}]",
+                )
 
 
 def draw_from_table(table: PictureTable, folder: Path) -> DrawCondition:
@@ -90,7 +95,9 @@ def _points_of_lines(lines: Sequence[Sequence[tuple[float, float]]], step_mm: fl
     for line in lines:
         for (x0, y0), (x1, y1) in pairwise(line):
             count = max(1, math.ceil(math.hypot(x1 - x0, y1 - y0) / step_mm))
-            parts.append(np.column_stack((np.linspace(x0, x1, count + 1), np.linspace(y0, y1, count + 1))))
+            parts.append(
+                np.column_stack((np.linspace(x0, x1, count + 1), np.linspace(y0, y1, count + 1)))
+            )
     return np.concatenate(parts)
 
 

@@ -47,9 +47,13 @@ def find_reach(condition: ReachCondition, evidence: Evidence, span: EvidenceSpan
             return Occurrence(evidence.last)
         words = _off_words(condition, records[-1], away_mm[-1], turned_deg[-1])
         text = f"At the end the robot was {words}." if span.over else f"The robot is {words}."
-        return Occurrence(None, "" if there[-1] else text, line_of_motion(records, len(records) - 1))
+        return Occurrence(
+            None, "" if there[-1] else text, line_of_motion(records, len(records) - 1)
+        )
     if not there.any():
-        nearest = int(np.argmin(np.maximum(away_mm / condition.within_mm, turned_deg / condition.within_deg)))
+        nearest = int(
+            np.argmin(np.maximum(away_mm / condition.within_mm, turned_deg / condition.within_deg))
+        )
         words = _off_words(condition, records[nearest], away_mm[nearest], turned_deg[nearest])
         text = f"At its nearest, at {evidence.time_words(first + nearest)}, the robot was {words}."
         return Occurrence(None, text, line_of_motion(records, nearest))
@@ -110,7 +114,9 @@ def _turned_deg(condition: ReachCondition, records: Array) -> Array:
 def _off_words(condition: ReachCondition, record: Any, away_mm: float, turned_deg: float) -> str:
     words = []
     if condition.x_mm is not None or condition.y_mm is not None:
-        words.append(f"{distance_words(away_mm)} {_side_words(condition, record)} {_place_words(condition)}")
+        words.append(
+            f"{distance_words(away_mm)} {_side_words(condition, record)} {_place_words(condition)}"
+        )
     if condition.heading_deg is not None:
         words.append(f"turned {turned_deg:.1f}° off")
     return " and ".join(words)
@@ -194,7 +200,9 @@ def find_entered(condition: OutsideCondition, evidence: Evidence, span: Evidence
         within = _circle_gap_mm(condition, records, evidence.spec.robot) < condition.radius_mm
     else:
         left, lower, right, upper = condition.box_mm
-        world = WorldSpec(walls=False, obstacles=(Obstacle(left, lower, right - left, upper - lower),))
+        world = WorldSpec(
+            walls=False, obstacles=(Obstacle(left, lower, right - left, upper - lower),)
+        )
         found = _first_contact(records, Solids(world, evidence.spec.robot), 0.0, forgiven=False)
         within = np.zeros(len(records), np.bool_)
         if found is not None:
@@ -202,7 +210,9 @@ def find_entered(condition: OutsideCondition, evidence: Evidence, span: Evidence
     return _first(within, "entered the area", "was in the area from the start", evidence, span)
 
 
-def _first(wrong: Array, text: str, at_start: str, evidence: Evidence, span: EvidenceSpan) -> Occurrence:
+def _first(
+    wrong: Array, text: str, at_start: str, evidence: Evidence, span: EvidenceSpan
+) -> Occurrence:
     if not wrong.any():
         return Occurrence()
     tick = span.first_tick + int(wrong.argmax())
@@ -210,7 +220,9 @@ def _first(wrong: Array, text: str, at_start: str, evidence: Evidence, span: Evi
     what = f"{text} at {evidence.time_words(tick)}" if tick else at_start
     # No line of the program has put it where it is at the start.
     return Occurrence(
-        EvidencePoint(tick), f"The robot {what}, at x {x_mm:.0f} mm, y {y_mm:.0f} mm.", None if tick else 0
+        EvidencePoint(tick),
+        f"The robot {what}, at x {x_mm:.0f} mm, y {y_mm:.0f} mm.",
+        None if tick else 0,
     )
 
 
@@ -224,7 +236,10 @@ def _points(part: BodyPart, records: Array, robot: RobotSpec) -> list[tuple[Arra
     turn = np.radians(records["heading_deg"])
     cos, sin = np.cos(turn), np.sin(turn)
     corners = outline_of(robot).corners_mm
-    return [(x_mm + ahead * cos + aside * sin, y_mm + ahead * sin - aside * cos) for aside, ahead in corners]
+    return [
+        (x_mm + ahead * cos + aside * sin, y_mm + ahead * sin - aside * cos)
+        for aside, ahead in corners
+    ]
 
 
 def _in_area(area: AreaCondition, x_mm: Array, y_mm: Array) -> Array:
@@ -252,25 +267,37 @@ def _circle_gap_mm(area: AreaCondition, records: Array, robot: RobotSpec) -> Arr
     return gap
 
 
-def find_touch(condition: TouchNothingCondition, evidence: Evidence, span: EvidenceSpan) -> Occurrence:
+def find_touch(
+    condition: TouchNothingCondition, evidence: Evidence, span: EvidenceSpan
+) -> Occurrence:
     """Find when the robot touched an obstacle or a wall, or came too near to one."""
     world, robot = evidence.spec.world, evidence.spec.robot
     walls = world.walls and condition.walls
     obstacles = world.obstacles if condition.obstacles else ()
     solids = Solids(WorldSpec(walls=walls, obstacles=obstacles), robot)
-    found = _first_contact(evidence.records[span.ticks], solids, max(condition.gap_mm, CONTACT_MM), forgiven=True)
+    found = _first_contact(
+        evidence.records[span.ticks], solids, max(condition.gap_mm, CONTACT_MM), forgiven=True
+    )
     if found is None:
         return Occurrence()
     at, number = found
     tick = span.first_tick + at
-    names = [*(_WALLS if walls else ()), *(f"the obstacle at x {o.x_mm:g}, y {o.y_mm:g}" for o in obstacles)]
+    names = [
+        *(_WALLS if walls else ()),
+        *(f"the obstacle at x {o.x_mm:g}, y {o.y_mm:g}" for o in obstacles),
+    ]
     did = "came too near to" if condition.gap_mm > CONTACT_MM else "touched"
     x_mm, y_mm = evidence.place_mm(tick)
     place = f"at x {x_mm:.0f} mm, y {y_mm:.0f} mm"
-    return Occurrence(EvidencePoint(tick), f"The robot {did} {names[number]} at {evidence.time_words(tick)}, {place}.")
+    return Occurrence(
+        EvidencePoint(tick),
+        f"The robot {did} {names[number]} at {evidence.time_words(tick)}, {place}.",
+    )
 
 
-def _first_contact(records: Array, solids: Solids, gap_mm: float, *, forgiven: bool) -> tuple[int, int] | None:
+def _first_contact(
+    records: Array, solids: Solids, gap_mm: float, *, forgiven: bool
+) -> tuple[int, int] | None:
     """Return the first index at which a gap is below `gap_mm`, and the number of the gap; None if there is none.
 
     Ticks during which the robot cannot have got so near are skipped.
@@ -283,11 +310,15 @@ def _first_contact(records: Array, solids: Solids, gap_mm: float, *, forgiven: b
     if not len(records):
         return None
     turned = np.abs(np.diff(np.radians(records["heading_deg"])))
-    steps_mm = np.hypot(np.diff(records["x_mm"]), np.diff(records["y_mm"])) + turned * solids.reach_mm
+    steps_mm = (
+        np.hypot(np.diff(records["x_mm"]), np.diff(records["y_mm"])) + turned * solids.reach_mm
+    )
     way_mm = np.concatenate(([0.0], np.cumsum(steps_mm)))
     at, near_from_start = 0, None
     while at < len(records):
-        x_mm, y_mm, heading_deg = (float(records[name][at]) for name in ("x_mm", "y_mm", "heading_deg"))
+        x_mm, y_mm, heading_deg = (
+            float(records[name][at]) for name in ("x_mm", "y_mm", "heading_deg")
+        )
         gaps = solids.gaps_mm((x_mm, y_mm, heading_deg))
         near = {number for number, gap in enumerate(gaps) if gap < gap_mm}
         if near_from_start is None:

@@ -37,10 +37,16 @@ def _nodes(tree: ast.Module, *kinds: type[ast.AST]) -> list[ast.AST]:
 
 def _is_dead(node: ast.AST) -> bool:
     """Return whether a loop or a branch does nothing: its body is empty, or its condition is never true."""
-    if isinstance(node, ast.While | ast.If) and isinstance(node.test, ast.Constant) and not node.test.value:
+    if (
+        isinstance(node, ast.While | ast.If)
+        and isinstance(node.test, ast.Constant)
+        and not node.test.value
+    ):
         return True
     # A `while` that does nothing waits.
-    return isinstance(node, ast.For | ast.If | _Function) and all(_is_idle(one) for one in node.body)
+    return isinstance(node, ast.For | ast.If | _Function) and all(
+        _is_idle(one) for one in node.body
+    )
 
 
 def _is_idle(statement: ast.stmt) -> bool:
@@ -55,9 +61,14 @@ def _count(*kinds: type[ast.AST]) -> Callable[[ast.Module], int]:
 def _functions(tree: ast.Module) -> int:
     """Return how many functions the program defines and names elsewhere."""
     defined = _nodes(tree, _Function)  # type: ignore[arg-type]
-    named = [node.id if isinstance(node, ast.Name) else node.attr for node in ast.walk(tree)
-             if isinstance(node, ast.Name | ast.Attribute)]  # fmt: skip
-    return len({node.name for node in defined if isinstance(node, _Function) and node.name in named})
+    named = [
+        node.id if isinstance(node, ast.Name) else node.attr
+        for node in ast.walk(tree)
+        if isinstance(node, ast.Name | ast.Attribute)
+    ]
+    return len(
+        {node.name for node in defined if isinstance(node, _Function) and node.name in named}
+    )
 
 
 def _lines(tree: ast.Module) -> int:
@@ -69,7 +80,9 @@ def _lines(tree: ast.Module) -> int:
 def _span(statement: ast.stmt) -> Iterator[int]:
     """Yield the lines of a statement, of a block only its first."""
     is_block = isinstance(statement, _BLOCKS)
-    yield from range(statement.lineno, statement.lineno + 1 if is_block else (statement.end_lineno or 0) + 1)
+    yield from range(
+        statement.lineno, statement.lineno + 1 if is_block else (statement.end_lineno or 0) + 1
+    )
 
 
 def _depth(node: ast.AST) -> int:
@@ -92,7 +105,9 @@ _COUNTS = (
 _COUNT: Mapping[str, Callable[[ast.Module], int]] = dict(zip(STRUCTURES, _COUNTS, strict=True))
 
 
-def find_structure(condition: StructureCondition, evidence: Evidence, span: EvidenceSpan) -> Occurrence:
+def find_structure(
+    condition: StructureCondition, evidence: Evidence, span: EvidenceSpan
+) -> Occurrence:
     """Find out whether a program is made as it should be."""
     try:
         tree = ast.parse(evidence.program.text)

@@ -24,14 +24,28 @@ _NAMES: Mapping[Reading, str] = {
     Reading.GYRO: f"angle rate angle_and_rate circle_angle speed {_ANY_SENSOR}",
     Reading.MOTOR: "position rotations degrees speed angle distance state run_until_stalled",
 }
-READING_NAMES: Mapping[Reading, frozenset[str]] = {kind: frozenset(names.split()) for kind, names in _NAMES.items()}
+READING_NAMES: Mapping[Reading, frozenset[str]] = {
+    kind: frozenset(names.split()) for kind, names in _NAMES.items()
+}
 """The attributes and methods that give a reading, whatever the object is called."""
 
 _PRINTS = frozenset({"print", "say", "write"})
-_KEEPS = frozenset({"append", "appendleft", "extend", "insert", "add", "update", "put", "setdefault"})
+_KEEPS = frozenset(
+    {"append", "appendleft", "extend", "insert", "add", "update", "put", "setdefault"}
+)
 """Methods that put their arguments into the object."""
 _PAUSES = (
-    *("sleep", "wait", "on_for", "run_to", "run_time", "run_angle", "run_target", "run_until", "drive_time"),
+    *(
+        "sleep",
+        "wait",
+        "on_for",
+        "run_to",
+        "run_time",
+        "run_angle",
+        "run_target",
+        "run_until",
+        "drive_time",
+    ),
     *("play", "speak", "beep"),
 )
 """How the names begin of functions and methods that let time pass."""
@@ -66,9 +80,15 @@ class Provenance:
         self._wanted = READING_NAMES[reading]
         self._tree = ast.parse(text)
         self._modules = [tree for module in modules if (tree := _parsed(module))]
-        functions = [node for tree in (*self._modules, self._tree) for node in ast.walk(tree)
-                     if isinstance(node, _Function)]  # fmt: skip
-        self._functions = {node.name: [one for one in functions if one.name == node.name] for node in functions}
+        functions = [
+            node
+            for tree in (*self._modules, self._tree)
+            for node in ast.walk(tree)
+            if isinstance(node, _Function)
+        ]
+        self._functions = {
+            node.name: [one for one in functions if one.name == node.name] for node in functions
+        }
         self._derived: set[str] = set()
         """Variables, attributes and functions whose value depends on a reading."""
         self._decided: set[str] = set()
@@ -90,7 +110,11 @@ class Provenance:
 
     def _note_prints(self, module: ast.Module) -> None:
         """Let the calls of a module's functions that print stand for what these print."""
-        inside = [(one, set(map(id, ast.walk(one)))) for one in ast.walk(module) if isinstance(one, _Function)]
+        inside = [
+            (one, set(map(id, ast.walk(one))))
+            for one in ast.walk(module)
+            if isinstance(one, _Function)
+        ]
         for node, value, decided in self._found:
             called = {_called(call) for call in _calls(node)}
             names = {one.name for one, nodes in inside if id(node) in nodes}
@@ -110,7 +134,10 @@ class Provenance:
                 case ast.Call() if _called(node) in takers:
                     nodes.append(node)
                 # A generator goes on when its next value is asked for.
-                case ast.For(iter=ast.Name() as part) | ast.Call(func=ast.Name(id="next"), args=[part, *_]):
+                case (
+                    ast.For(iter=ast.Name() as part)
+                    | ast.Call(func=ast.Name(id="next"), args=[part, *_])
+                ):
                     if takers and self._is_derived(part):
                         nodes.append(part)
         return frozenset(line for node in nodes for line in _lines(node))
@@ -118,7 +145,12 @@ class Provenance:
     def _takers(self) -> frozenset[str]:
         """Return the names of the functions of modules that take such a reading."""
         inside = []
-        for one in (node for module in self._modules for node in ast.walk(module) if isinstance(node, _Function)):
+        for one in (
+            node
+            for module in self._modules
+            for node in ast.walk(module)
+            if isinstance(node, _Function)
+        ):
             attributes = {part.attr for part in ast.walk(one) if isinstance(part, ast.Attribute)}
             inside.append((one.name, attributes & self._wanted, attributes | _names(one)))
         found: frozenset[str] = frozenset()
@@ -153,12 +185,18 @@ class Provenance:
         return all(value or decided for value, decided in self._printed_at(line))
 
     def _printed_at(self, line: int, name: str = "") -> list[tuple[bool, bool]]:
-        found = [each for each in self._found if each[0].lineno <= line <= (each[0].end_lineno or 0)]  # type: ignore[attr-defined]
+        found = [
+            each for each in self._found if each[0].lineno <= line <= (each[0].end_lineno or 0)
+        ]  # type: ignore[attr-defined]
         prints = [each for each in found if _PRINTS & {_called(call) for call in _calls(each[0])}]
         groups = _printed_together(prints)
-        named = [group for group in groups if name and any(_says(node, name) for node, _, _ in group)]
-        return [(any(value for _, value, _ in group), any(decided for *_, decided in group))
-                for group in named or groups or [[each] for each in found]]  # fmt: skip
+        named = [
+            group for group in groups if name and any(_says(node, name) for node, _, _ in group)
+        ]
+        return [
+            (any(value for _, value, _ in group), any(decided for *_, decided in group))
+            for group in named or groups or [[each] for each in found]
+        ]
 
     # Walking
 
@@ -189,19 +227,28 @@ class Provenance:
                     self._take(item.context_expr, by)
                 return self._block(node.body, by)
             case ast.Try() | ast.TryStar():
-                blocks = [node.body, *(handler.body for handler in node.handlers), node.orelse, node.finalbody]
+                blocks = [
+                    node.body,
+                    *(handler.body for handler in node.handlers),
+                    node.orelse,
+                    node.finalbody,
+                ]
                 return max(self._block(block, by) for block in blocks)
             case _:
                 self._simple(node, by)
         return by
 
-    def _branch(self, test: ast.expr, blocks: Iterable[Sequence[ast.stmt]], by: _By, *, loops: bool = False) -> _By:
+    def _branch(
+        self, test: ast.expr, blocks: Iterable[Sequence[ast.stmt]], by: _By, *, loops: bool = False
+    ) -> _By:
         depends = self._take(test, by)
         within = max(by, _By.LOOP if loops else _By.BRANCH) if depends else by
         after = [self._block(block, within) for block in blocks]
         if not depends:
             return max(after)
-        leaves = any(isinstance(node, _LEAVES) for block in blocks for one in block for node in ast.walk(one))
+        leaves = any(
+            isinstance(node, _LEAVES) for block in blocks for one in block for node in ast.walk(one)
+        )
         return max(by, _By.LOOP) if loops or leaves else by
 
     def _simple(self, node: ast.stmt, by: _By) -> None:
@@ -234,13 +281,20 @@ class Provenance:
 
     def _call(self, call: ast.Call, by: _By) -> None:
         given = [*call.args, *(keyword.value for keyword in call.keywords)]
-        derived = by is _By.BRANCH or any(self._is_derived(part) for one in given for part in ast.walk(one))
+        derived = by is _By.BRANCH or any(
+            self._is_derived(part) for one in given for part in ast.walk(one)
+        )
         name = _called(call)
         if by is not _By.NOTHING:
-            self._decided |= ({name} | {one.id for one in given if isinstance(one, ast.Name)}) & set(self._functions)
+            self._decided |= (
+                {name} | {one.id for one in given if isinstance(one, ast.Name)}
+            ) & set(self._functions)
         if derived and name in self._functions:
             for arguments in (one.args for one in self._functions[name]):
-                self._derived |= {one.arg for one in (*arguments.posonlyargs, *arguments.args, *arguments.kwonlyargs)}
+                self._derived |= {
+                    one.arg
+                    for one in (*arguments.posonlyargs, *arguments.args, *arguments.kwonlyargs)
+                }
         if derived and name in _KEEPS and isinstance(call.func, ast.Attribute):
             self._assign(call.func.value)
 

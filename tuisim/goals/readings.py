@@ -35,7 +35,9 @@ _NOISE_SHARE = 0.1
 
 def range_words(place: Mapping[str, Range]) -> str:
     """Return ranges of `place_of` for a sentence."""
-    return " and ".join(f"{key[0]} from {least:g} to {most:g} mm" for key, (least, most) in place.items())
+    return " and ".join(
+        f"{key[0]} from {least:g} to {most:g} mm" for key, (least, most) in place.items()
+    )
 
 
 def read_ticks(reading: Reading, evidence: Evidence) -> Array:
@@ -63,7 +65,11 @@ def _reads(known: Provenance, evidence: Evidence) -> Array:
     since = ticks - np.maximum.accumulate(np.where(came, ticks, 0))
     for line, pause_s in known.pauses_s().items():
         # A loop in one line does not show when it comes again.
-        step = max(1, math.ceil(pause_s * evidence.spec.profile.tick_hz)) if pause_s <= _SHORT_S else len(ticks)
+        step = (
+            max(1, math.ceil(pause_s * evidence.spec.profile.tick_hz))
+            if pause_s <= _SHORT_S
+            else len(ticks)
+        )
         found &= (lines != line) | (since % step == 0)
     return found
 

@@ -16,7 +16,12 @@ from msgspec import Meta
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
 from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError, require_regex
-from tuisim.goals.comparisons import CountCondition, KeepCondition, StructureCondition, WhenCondition
+from tuisim.goals.comparisons import (
+    CountCondition,
+    KeepCondition,
+    StructureCondition,
+    WhenCondition,
+)
 from tuisim.goals.condition import (
     LIMITS,
     Condition,
@@ -63,12 +68,16 @@ def _check_ranges(condition: PrintCondition | LogCondition | ReadCondition, want
         found: tuple[Range, ...] = getattr(condition, key)
         for number, (least, most) in enumerate(found, start=1):
             if least >= most:
-                raise ConfigError(f"must be from {way}, got {least:g} to {most:g}", key=f"{key}[{number}]")
+                raise ConfigError(
+                    f"must be from {way}, got {least:g} to {most:g}", key=f"{key}[{number}]"
+                )
         if len(found) not in (0, 1, wanted):
             raise ConfigError(f"must have one entry, or {wanted}, has {len(found)}", key=key)
 
 
-def place_of(condition: PrintCondition | LogCondition | ReadCondition, count: int = 0) -> dict[str, Range]:
+def place_of(
+    condition: PrintCondition | LogCondition | ReadCondition, count: int = 0
+) -> dict[str, Range]:
     """Return where the robot must be for one of the lines or levels: ranges by `x_mm` and `y_mm`, as far as given."""
     found = {key: getattr(condition, key) for key in ("x_mm", "y_mm")}
     return {key: ranges[count if len(ranges) > 1 else 0] for key, ranges in found.items() if ranges}
@@ -112,12 +121,16 @@ class AreaCondition(Condition):
 
     def __post_init__(self) -> None:
         if self.radius_mm is not None and (self.width_mm is not None or self.height_mm is not None):
-            raise ConfigError("is given together with width_mm or height_mm", "give only one", key="radius_mm")
+            raise ConfigError(
+                "is given together with width_mm or height_mm", "give only one", key="radius_mm"
+            )
         if self.radius_mm is None and (self.width_mm is None or self.height_mm is None):
             raise ConfigError("has no size", "give width_mm and height_mm, or radius_mm")
         left, lower, right, upper = self.box_mm
         if left >= FIELD_WIDTH_MM or right <= 0 or lower >= FIELD_HEIGHT_MM or upper <= 0:
-            raise ConfigError("is not on the field", f"the field is {FIELD_WIDTH_MM} × {FIELD_HEIGHT_MM} mm")
+            raise ConfigError(
+                "is not on the field", f"the field is {FIELD_WIDTH_MM} × {FIELD_HEIGHT_MM} mm"
+            )
 
     @property
     def box_mm(self) -> tuple[float, float, float, float]:
@@ -196,9 +209,13 @@ class FollowCondition(Condition):
 
     def __post_init__(self) -> None:
         if bool(self.sensors) == (self.point_mm is not None):
-            raise ConfigError("does not say what follows the line", "give sensors or point_mm, not both")
+            raise ConfigError(
+                "does not say what follows the line", "give sensors or point_mm, not both"
+            )
         if self.darker_than is None and self.brighter_than is None:
-            raise ConfigError("does not describe the line", "give darker_than or brighter_than, in percent")
+            raise ConfigError(
+                "does not describe the line", "give darker_than or brighter_than, in percent"
+            )
 
 
 @dataclass(frozen=True, slots=True)
@@ -263,11 +280,15 @@ class LogCondition(Condition):
 
     def __post_init__(self) -> None:
         if self.as_read and self.reading is not Reading.COLOR:
-            raise ConfigError("is only for readings of colour sensors", 'give reading = "color"', key="as_read")
+            raise ConfigError(
+                "is only for readings of colour sensors", 'give reading = "color"', key="as_read"
+            )
         check_count(self.levels, "levels")
         _check_ranges(self, len(self.levels))
         if not self.name.isidentifier():
-            raise ConfigError(f"{self.name!r} cannot be the name of a sample", "such as Colour", key="name")
+            raise ConfigError(
+                f"{self.name!r} cannot be the name of a sample", "such as Colour", key="name"
+            )
 
 
 @dataclass(frozen=True, slots=True)
@@ -304,10 +325,16 @@ class CallsCondition(Condition):
         for number, call in enumerate(self.calls, start=1):
             if not all(word.isidentifier() for word in call.removesuffix("()").split(".")):
                 hint = "a name such as tank_drive.on_for_rotations"
-                raise ConfigError(f"{call!r} is not the name of a call", hint, key=f"calls[{number}]")
+                raise ConfigError(
+                    f"{call!r} is not the name of a call", hint, key=f"calls[{number}]"
+                )
             if wrong := next(filter(iskeyword, call.removesuffix("()").split(".")), ""):
                 hint = "a function or method such as tank_drive.on_for_rotations; loops and definitions are no calls"
-                raise ConfigError(f"{wrong!r} is a keyword, which no program can call", hint, key=f"calls[{number}]")
+                raise ConfigError(
+                    f"{wrong!r} is a keyword, which no program can call",
+                    hint,
+                    key=f"calls[{number}]",
+                )
 
 
 @dataclass(frozen=True, slots=True)
@@ -444,7 +471,9 @@ class Goal:
     @property
     def parts(self) -> tuple[Condition, ...]:
         """The conditions, usually one."""
-        return self.condition.conditions if isinstance(self.condition, Together) else (self.condition,)
+        return (
+            self.condition.conditions if isinstance(self.condition, Together) else (self.condition,)
+        )
 
     def limits(self, kind: ConditionKind) -> tuple[str, ...]:
         """Return which of `before`, `after` and `until` apply to its conditions of a kind."""

@@ -16,7 +16,18 @@ from tuisim.errors import ConfigError
 from tuisim.goals.spec import DialogueCondition, Goal
 
 _OWN_KEYS = ("where", "goals", "goal")
-_WORLD_KEYS = ("background", "mats", "start", "robot", "noise", "drift", "obstacles", "obstacle", "press", "inputs")
+_WORLD_KEYS = (
+    "background",
+    "mats",
+    "start",
+    "robot",
+    "noise",
+    "drift",
+    "obstacles",
+    "obstacle",
+    "press",
+    "inputs",
+)
 _HIDDEN = "hidden"
 
 MAX_LESSON_WORLDS, MAX_TASK_WORLDS = 3, 20
@@ -47,8 +58,15 @@ class TrialWorld:
     @property
     def answers(self) -> tuple[str, ...]:
         """The answers to `input()`: those of the dialogues among its own goals, in their order, else its inputs."""
-        dialogues = (part for goal in self.own_goals for part in goal.parts if isinstance(part, DialogueCondition))
-        return tuple(turn.answer for dialogue in dialogues for turn in dialogue.turns) or self.inputs
+        dialogues = (
+            part
+            for goal in self.own_goals
+            for part in goal.parts
+            if isinstance(part, DialogueCondition)
+        )
+        return (
+            tuple(turn.answer for dialogue in dialogues for turn in dialogue.turns) or self.inputs
+        )
 
     def goals_among(self, goals: Sequence[Goal]) -> tuple[Goal, ...]:
         """Return the goals that are judged there: those of the first world, which its own of the same name replace."""
@@ -67,7 +85,13 @@ class TrialWorld:
 
 
 def others_of(
-    data: object, goals: tuple[str, ...], at: Location, path: Path, read_goals: GoalReader, *, of_task: bool = False
+    data: object,
+    goals: tuple[str, ...],
+    at: Location,
+    path: Path,
+    read_goals: GoalReader,
+    *,
+    of_task: bool = False,
 ) -> tuple[TrialWorld, ...]:
     """Return the other worlds in a list of tables.
 
@@ -83,8 +107,12 @@ def others_of(
         ConfigError: one is wrong; the error names its key.
     """
     others: list[TrialWorld] = []
-    for entry, place in files.entries(data, at, MAX_TASK_WORLDS if of_task else MAX_LESSON_WORLDS, "other worlds"):
-        found = files.table(entry, place, (*_OWN_KEYS, *((_HIDDEN,) if of_task else ()), *_WORLD_KEYS))
+    for entry, place in files.entries(
+        data, at, MAX_TASK_WORLDS if of_task else MAX_LESSON_WORLDS, "other worlds"
+    ):
+        found = files.table(
+            entry, place, (*_OWN_KEYS, *((_HIDDEN,) if of_task else ()), *_WORLD_KEYS)
+        )
         where = files.convert(files.required(found, "where", place), str, place.at("where"))
         if any(where == one.where for one in others):
             raise place.at("where").wrong(f"there are two {where!r}", "say what is other in each")
@@ -94,7 +122,9 @@ def others_of(
         usual = goals if of_task else () if own else goals
         wanted = tuple(dict.fromkeys((*(named or usual), *own_names)))
         try:
-            world = world_from_table({key: value for key, value in found.items() if key in _WORLD_KEYS}, path)
+            world = world_from_table(
+                {key: value for key, value in found.items() if key in _WORLD_KEYS}, path
+            )
         except ConfigError as error:
             # It names the key in the table, or another file.
             if error.file != place.file:
@@ -103,7 +133,9 @@ def others_of(
         if not (world.settings or world.presses or world.inputs):
             raise place.wrong("is the same world", f"one of {', '.join(_WORLD_KEYS)}")
         is_hidden = files.convert(found.get(_HIDDEN, False), bool, place.at(_HIDDEN))
-        others.append(TrialWorld(where, world.settings, wanted, own, world.presses, world.inputs, is_hidden))
+        others.append(
+            TrialWorld(where, world.settings, wanted, own, world.presses, world.inputs, is_hidden)
+        )
     return tuple(others)
 
 
@@ -115,4 +147,6 @@ def check_names(names: Sequence[str], known: Collection[str], at: Location) -> N
     """
     for number, name in enumerate(names, start=1):
         if name not in known:
-            raise at.at(f"goals[{number}]").wrong(f"there is no goal {name!r}", f"one of {', '.join(sorted(known))}")
+            raise at.at(f"goals[{number}]").wrong(
+                f"there is no goal {name!r}", f"one of {', '.join(sorted(known))}"
+            )

@@ -15,4 +15,7 @@ from pathlib import Path
 def asked_questions() -> Mapping[str, Mapping[str, tuple[str, ...]]]:
     """Return by page the questions that it answers, by a text that is in the passage which answers them."""
     text = (Path(__file__).parent / "questions.toml").read_text(encoding="utf-8")
-    return {page: {key: tuple(asks) for key, asks in of.items()} for page, of in tomllib.loads(text).items()}
+    return {
+        page: {key: tuple(asks) for key, asks in of.items()}
+        for page, of in tomllib.loads(text).items()
+    }

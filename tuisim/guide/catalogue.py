@@ -17,7 +17,9 @@ from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError, nearest
 
 _PAGES = Path(__file__).resolve().parent / "pages"
-_PARTS = re.compile(r"\A\+\+\+\n(?P<head>.*?)\n\+\+\+\n\n# (?P<title>[^\n]+)\n(?P<text>.*)\Z", re.DOTALL)
+_PARTS = re.compile(
+    r"\A\+\+\+\n(?P<head>.*?)\n\+\+\+\n\n# (?P<title>[^\n]+)\n(?P<text>.*)\Z", re.DOTALL
+)
 LINK = re.compile(r"\[([^\[\]]+)\]\(([\w-]+)\.md\)")
 """In Markdown, a link to another page: its text, and the name of the page."""
 
@@ -35,17 +37,46 @@ class GuidePart(StrEnum):
 CONTENTS: Mapping[GuidePart, tuple[str, ...]] = {
     GuidePart.TUTORIAL: ("first-steps", "measuring-bands"),
     GuidePart.HOW_TO: (
-        "writing-programs", "real-programs", "pybricks", "lessons", "stepping", "going-back", "analysing-logs",
-        "exporting-data", "pictures-and-movies", "notebooks", "in-a-browser", "working-over-ssh", "own-mats", "marking",
-        "experiments", "when-it-goes-wrong",
+        "writing-programs",
+        "real-programs",
+        "pybricks",
+        "lessons",
+        "stepping",
+        "going-back",
+        "analysing-logs",
+        "exporting-data",
+        "pictures-and-movies",
+        "notebooks",
+        "in-a-browser",
+        "working-over-ssh",
+        "own-mats",
+        "marking",
+        "experiments",
+        "when-it-goes-wrong",
     ),
     GuidePart.REFERENCE: (
-        "keys", "commands", "options", "settings", "breakpoints", "profile-rules", "data-columns", "world-files",
-        "goal-files", "the-brick", "device-files", "library-differences", "ev3dev2-and-pybricks",
+        "keys",
+        "commands",
+        "options",
+        "settings",
+        "breakpoints",
+        "profile-rules",
+        "data-columns",
+        "world-files",
+        "goal-files",
+        "the-brick",
+        "device-files",
+        "library-differences",
+        "ev3dev2-and-pybricks",
     ),
-    GuidePart.EXPLANATION: ("virtual-time", "how-sensors-see", "motion-and-drift", "the-real-robot"),
+    GuidePart.EXPLANATION: (
+        "virtual-time",
+        "how-sensors-see",
+        "motion-and-drift",
+        "the-real-robot",
+    ),
     GuidePart.PROJECT: ("contributing", "architecture", "security", "licences"),
-}  # fmt: skip
+}
 """The names of all pages, by part."""
 
 
@@ -85,5 +116,7 @@ def find_page(name: str) -> Page:
     """
     known = pages()
     if name not in known:
-        raise ConfigError(f"no such page {name!r}", f"{nearest(name, known)} See `tuisim guide`", key="guide")
+        raise ConfigError(
+            f"no such page {name!r}", f"{nearest(name, known)} See `tuisim guide`", key="guide"
+        )
     return known[name]

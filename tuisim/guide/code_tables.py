@@ -35,7 +35,9 @@ _MEANINGS = {
     "line": "the source line that printed the sample, or that spent the time of the tick",
 }
 _COLOR = {
-    **dict.fromkeys(("red", "green", "blue"), "{part} light that the {sensor} colour sensor sees, 0 to 255"),
+    **dict.fromkeys(
+        ("red", "green", "blue"), "{part} light that the {sensor} colour sensor sees, 0 to 255"
+    ),
     "red_pc": "red light that the {sensor} colour sensor sees: `reflected_light_intensity_pc`",
     "mean_pc": "mean of red, green and blue that the {sensor} colour sensor sees",
     "color": "colour that the {sensor} colour sensor sees, in breakpoints by its name, such as Blue",
@@ -50,7 +52,10 @@ def _meaning(name: str) -> str:
 
 
 def _columns(names: tuple[str, ...]) -> Table:
-    rows = [(code(name), _meaning(name), "s" if name == "time" else unit_of(name).words) for name in names]
+    rows = [
+        (code(name), _meaning(name), "s" if name == "time" else unit_of(name).words)
+        for name in names
+    ]
     return Table(("column", "contents", "unit"), rows)
 
 
@@ -68,7 +73,11 @@ def telemetry() -> Table:
 def formats() -> Table:
     """Return the formats of exported data."""
     rows = [
-        (code(suffix), one.contents, "in the file" if not one.companion else f"in `NAME{suffix}.json` beside the file")
+        (
+            code(suffix),
+            one.contents,
+            "in the file" if not one.companion else f"in `NAME{suffix}.json` beside the file",
+        )
         for suffix, one in EXPORTERS.items()
     ]
     return Table(("suffix", "keeps", "units, seed, program and world"), rows)
@@ -77,7 +86,12 @@ def formats() -> Table:
 def options() -> Table:
     """Return the shared options."""
     rows = [
-        (" ".join(code(flag) for flag in one.flags), code(one.metavar), one.help.rstrip("."), one.group)
+        (
+            " ".join(code(flag) for flag in one.flags),
+            code(one.metavar),
+            one.help.rstrip("."),
+            one.group,
+        )
         for one in OPTIONS
     ]
     return Table(("option", "value", "sets", "group"), rows)
@@ -101,7 +115,11 @@ def settings() -> Table:
 def profile_rules() -> Table:
     """Return every rule of a profile, its value in each profile, and its source."""
     rows = [
-        (code(key.removesuffix("_ns")), *(_value(key, profile) for profile in PROFILES.values()), rule.source)
+        (
+            code(key.removesuffix("_ns")),
+            *(_value(key, profile) for profile in PROFILES.values()),
+            rule.source,
+        )
         for key, rule in values_of(ProfileSpec).items()
         if rule.source
     ]
@@ -110,8 +128,13 @@ def profile_rules() -> Table:
 
 def drift() -> Table:
     """Return the sizes of drift, each with its typical size and its source."""
-    numbers = [(key, one) for key, one in values_of(DriftSpec).items() if isinstance(one, NamedNumber)]
-    rows = [(code(key), f"{one.names['typical']:g} {one.unit}", one.help, one.source) for key, one in numbers]
+    numbers = [
+        (key, one) for key, one in values_of(DriftSpec).items() if isinstance(one, NamedNumber)
+    ]
+    rows = [
+        (code(key), f"{one.names['typical']:g} {one.unit}", one.help, one.source)
+        for key, one in numbers
+    ]
     return Table(("size", "typical", "is", "source of the typical size"), rows)
 
 

@@ -31,7 +31,10 @@ def _usage(words: str, found: click.Command) -> str:
 
 def commands() -> Table:
     """Return every command and what it does."""
-    return Table(("command", "does"), [(code(_usage(words, found)), does) for words, found, does in _commands()])
+    return Table(
+        ("command", "does"),
+        [(code(_usage(words, found)), does) for words, found, does in _commands()],
+    )
 
 
 def command_options() -> Table:
@@ -39,7 +42,9 @@ def command_options() -> Table:
     rows = []
     for words, found, _ in _commands():
         for param in found.params:
-            if isinstance(param, click.Option) and not (isinstance(param, GroupedOption) and param.sets):
+            if isinstance(param, click.Option) and not (
+                isinstance(param, GroupedOption) and param.sets
+            ):
                 rows.append((code(words), code(_names(param)), (param.help or "").rstrip(".")))
     return Table(("command", "option", "does"), rows)
 

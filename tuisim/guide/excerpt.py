@@ -32,7 +32,9 @@ _LEAST = 3
 """Lines that make sense by themselves, of a text as of code."""
 
 
-def excerpt_of(one: SearchResult, width: int, most: int, asked: re.Pattern[str] | None = None) -> list[Line]:
+def excerpt_of(
+    one: SearchResult, width: int, most: int, asked: re.Pattern[str] | None = None
+) -> list[Line]:
     """Return what is shown of a passage that was found: its beginning, or what the question is about.
 
     Args:
@@ -42,8 +44,12 @@ def excerpt_of(one: SearchResult, width: int, most: int, asked: re.Pattern[str] 
         asked: Finds the words of the question. A longer passage begins where most of them follow: at a sentence,
             and its code at a line.
     """
-    words, *set_in = ("", one.passage) if one.passage.startswith(SET_IN) else _CODE_BELOW.split(one.passage)
-    code = [part for line in dedent("\n".join(set_in)).split("\n") for part in _wrapped(line, width)]
+    words, *set_in = (
+        ("", one.passage) if one.passage.startswith(SET_IN) else _CODE_BELOW.split(one.passage)
+    )
+    code = [
+        part for line in dedent("\n".join(set_in)).split("\n") for part in _wrapped(line, width)
+    ]
     markdown = _as_sentences(_with_head(words, one.head))
     most_of_text = min(most, max(most - len(code) - len(one.below), most - _LEAST, _LEAST))
     if asked and len(_drawn(markdown, width)) > most_of_text:
@@ -92,7 +98,9 @@ def _drawn(markdown: str, width: int) -> list[Line]:
 def _item_lines(item: str, width: int) -> list[Line]:
     """Return an item of a list, or a row of a table, as lines."""
     lines = _drawn(_as_sentences(item), width - len(_BULLET))
-    return [[(" " * len(_BULLET) if row else _BULLET, PLAIN), *line] for row, line in enumerate(lines)]
+    return [
+        [(" " * len(_BULLET) if row else _BULLET, PLAIN), *line] for row, line in enumerate(lines)
+    ]
 
 
 def _from_sentence(text: str, letters: int, asked: re.Pattern[str]) -> str:
@@ -117,8 +125,14 @@ def _with_head(passage: str, head: str) -> str:
     cells, heads = cells_of(passage), cells_of(head)
     if not head or len(cells) <= _CLEAR_COLUMNS or len(heads) != len(cells):
         return passage
-    said = [(name, cell) for name, cell in zip(heads[1:], cells[1:], strict=True) if cell and name not in _FOR_SCRIPTS]
-    named = [f"{name}: {cell}" for name, cell in said] if len(said) > 1 else [cell for _, cell in said]
+    said = [
+        (name, cell)
+        for name, cell in zip(heads[1:], cells[1:], strict=True)
+        if cell and name not in _FOR_SCRIPTS
+    ]
+    named = (
+        [f"{name}: {cell}" for name, cell in said] if len(said) > 1 else [cell for _, cell in said]
+    )
     return "| " + " | ".join([cells[0], *named]) + " |"
 
 
@@ -136,4 +150,8 @@ def _as_sentences(markdown: str) -> str:
 
 def cells_of(markdown: str) -> list[str]:
     """Return the cells of a passage that is a row of a table, else the passage."""
-    return [cell.strip() for cell in markdown.strip("|").split(" | ")] if markdown.startswith("|") else [markdown]
+    return (
+        [cell.strip() for cell in markdown.strip("|").split(" | ")]
+        if markdown.startswith("|")
+        else [markdown]
+    )

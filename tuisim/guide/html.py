@@ -42,7 +42,10 @@ def write_html(folder: Path, version: str) -> list[Path]:
         ExportError: a file cannot be written.
     """
     texts = {INDEX: _document("The guide of tuisim", _index_body(), "", version)}
-    texts |= {f"{name}.html": _document(page.title, _body(page), name, version) for name, page in pages().items()}
+    texts |= {
+        f"{name}.html": _document(page.title, _body(page), name, version)
+        for name, page in pages().items()
+    }
     written = []
     try:
         folder.mkdir(parents=True, exist_ok=True)
@@ -51,19 +54,27 @@ def write_html(folder: Path, version: str) -> list[Path]:
                 file.write(text.encode())
             written.append(folder / name)
     except OSError as error:
-        raise ExportError(f"cannot write {folder}: {error.strerror or error}", "name another folder") from error
+        raise ExportError(
+            f"cannot write {folder}: {error.strerror or error}", "name another folder"
+        ) from error
     return written
 
 
 def _body(page: Page) -> str:
-    rendered: str = MarkdownIt("commonmark", {"html": False}).enable("table").render(markdown_of(page, for_others=True))
+    rendered: str = (
+        MarkdownIt("commonmark", {"html": False})
+        .enable("table")
+        .render(markdown_of(page, for_others=True))
+    )
     return _PAGE_LINK.sub(r'href="\1.html"', rendered)
 
 
 def _index_body() -> str:
     parts = ["<h1>The guide of tuisim</h1>"]
     for part, names in CONTENTS.items():
-        rows = "".join(f"<li>{_link(pages()[name])}: {_inline(pages()[name].about)}</li>\n" for name in names)
+        rows = "".join(
+            f"<li>{_link(pages()[name])}: {_inline(pages()[name].about)}</li>\n" for name in names
+        )
         parts.append(f"<h2>{part}</h2>\n<ul>\n{rows}</ul>")
     return "\n".join(parts)
 

@@ -17,7 +17,9 @@ _MOTOR_ROWS: tuple[tuple[str, Callable[[ControlSettings], str]], ...] = (
     ("acceleration and deceleration", lambda one: f"{one.units(one.acceleration)} deg/s²"),
     (
         "a move is done within",
-        lambda one: f"{one.units(one.position_tolerance)} deg, below {one.units(one.speed_tolerance)} deg/s",
+        lambda one: (
+            f"{one.units(one.position_tolerance)} deg, below {one.units(one.speed_tolerance)} deg/s"
+        ),
     ),
     ("stalled", lambda one: f"below {one.units(one.stall_speed)} deg/s for {one.stall_time_ms} ms"),
 )
@@ -33,12 +35,21 @@ def motors() -> Table:
 
 def drive_bases() -> Table:
     """Return how a new drive base of usual sizes moves, under each profile of Pybricks."""
-    columns = ("`wheel_diameter`, `axle_track`", *(f"`settings()`, {code(profile.name)}" for profile in _PROFILES))
+    columns = (
+        "`wheel_diameter`, `axle_track`",
+        *(f"`settings()`, {code(profile.name)}" for profile in _PROFILES),
+    )
     rows = []
     for diameter_mm, track_mm in _WHEELS:
         usual = []
         for profile in _PROFILES:
             motor = motor_settings(profile.motor_law, "large")
-            usual.append(str(usual_settings(profile.motor_law, *base_settings(motor, motor, diameter_mm, track_mm))))
+            usual.append(
+                str(
+                    usual_settings(
+                        profile.motor_law, *base_settings(motor, motor, diameter_mm, track_mm)
+                    )
+                )
+            )
         rows.append((f"{diameter_mm:g} mm, {track_mm:g} mm", *usual))
     return Table(columns, rows)

@@ -103,8 +103,17 @@ class _Index:
 
     def __init__(self) -> None:
         self.passages = list(_passages())
-        row_of = {(name, key): self._row(name, key) for name, of in asked_questions().items() for key in of}
-        asks = [(row, ask) for (name, key), row in row_of.items() if row >= 0 for ask in asked_questions()[name][key]]
+        row_of = {
+            (name, key): self._row(name, key)
+            for name, of in asked_questions().items()
+            for key in of
+        }
+        asks = [
+            (row, ask)
+            for (name, key), row in row_of.items()
+            if row >= 0
+            for ask in asked_questions()[name][key]
+        ]
         self.row_of_ask = [row for row, _ in asks]
         texts = stems_of(one.passage for one in self.passages)
         asked = stems_of(ask for _, ask in asks)
@@ -125,7 +134,14 @@ class _Index:
 
     def _row(self, name: str, key: str) -> int:
         """Return the passage of a page that has a text; -1 if none has: keys that a user has changed may be in none."""
-        return next((row for row, one in enumerate(self.passages) if one.name == name and key in one.passage), -1)
+        return next(
+            (
+                row
+                for row, one in enumerate(self.passages)
+                if one.name == name and key in one.passage
+            ),
+            -1,
+        )
 
     def _rows_of_pages(self) -> Mapping[str, Sequence[int]]:
         rows: defaultdict[str, list[int]] = defaultdict(list)
@@ -151,7 +167,9 @@ class _Index:
     def known(self, typed: _Stems) -> _Stems:
         """Return the stems of a question; one that is nowhere stands for all that begin like it."""
         begun = tuple(stem for stem in typed - self.stems if len(stem) >= _SHORTEST)
-        return (typed & self.stems).union(stem for stem in self.stems if begun and stem.startswith(begun))
+        return (typed & self.stems).union(
+            stem for stem in self.stems if begun and stem.startswith(begun)
+        )
 
 
 def _counts(texts: Sequence[_Stems], asked: Iterable[tuple[int, _Stems]]) -> Counter[str]:
@@ -166,10 +184,16 @@ def _passages() -> Iterator[SearchResult]:
     for name, page in pages().items():
         parts = ["", *_HEADING.split(_FENCED.sub(_set_in, markdown_of(page)))]
         for heading, text in zip(parts[::2], parts[1::2], strict=True):
-            found = list(_with_heads([*(part.strip("\n") for part in _PASSAGE_END.split(text)), ""]))
+            found = list(
+                _with_heads([*(part.strip("\n") for part in _PASSAGE_END.split(text)), ""])
+            )
             for at, (passage, head) in enumerate(found):
                 if not _NO_ANSWER.fullmatch(passage):
-                    below = takewhile(_ITEM.match, (one for one, _ in found[at + 1 :])) if passage.endswith(":") else ()
+                    below = (
+                        takewhile(_ITEM.match, (one for one, _ in found[at + 1 :]))
+                        if passage.endswith(":")
+                        else ()
+                    )
                     yield SearchResult(name, heading, passage, head, tuple(below))
 
 
@@ -219,8 +243,14 @@ def _scores(index: _Index, typed: _Stems) -> Mapping[int, float]:
     for row, cosine in alike.items():
         scores[row] += _MOST_ALIKE * cosine + _SAME * cosine**3
     whole = sum(weights.values())
-    on_page = {name: sum(weights[stem] for stem in typed & of) / whole for name, of in index.stems_of_page.items()}
-    return {row: score + _WHOLE_PAGE * on_page[index.passages[row].name] for row, score in scores.items()}
+    on_page = {
+        name: sum(weights[stem] for stem in typed & of) / whole
+        for name, of in index.stems_of_page.items()
+    }
+    return {
+        row: score + _WHOLE_PAGE * on_page[index.passages[row].name]
+        for row, score in scores.items()
+    }
 
 
 def _best(index: _Index, question: str) -> list[int]:
@@ -230,12 +260,18 @@ def _best(index: _Index, question: str) -> list[int]:
         return []
     scores = _scores(index, typed)
     rows = sorted(scores, key=lambda row: -scores[row])[:_MOST]
-    return [row for place, row in enumerate(rows) if place < _FIRST or scores[row] >= _LEAST_SHARE * scores[rows[0]]]
+    return [
+        row
+        for place, row in enumerate(rows)
+        if place < _FIRST or scores[row] >= _LEAST_SHARE * scores[rows[0]]
+    ]
 
 
 def _parts(question: str) -> list[str]:
     """Return the parts of a question that asks for several things; none if it asks for one."""
-    parts = [part for part in _JOINT.split(question) if len(list(words_of(part))) >= _WORDS_OF_A_PART]
+    parts = [
+        part for part in _JOINT.split(question) if len(list(words_of(part))) >= _WORDS_OF_A_PART
+    ]
     return parts if len(parts) > 1 else []
 
 

@@ -46,7 +46,10 @@ def _named(link: re.Match[str]) -> str:
 
 def contents_lines(width: int) -> list[Line]:
     """Return the contents: the pages by part."""
-    text = ["# The guide", "`tuisim guide TOPIC` shows a page, `tuisim guide --search WORDS` finds one."]
+    text = [
+        "# The guide",
+        "`tuisim guide TOPIC` shows a page, `tuisim guide --search WORDS` finds one.",
+    ]
     for part, names in CONTENTS.items():
         text += [f"## {part}", "\n".join(f"- `{name}` {pages()[name].title}" for name in names)]
     return markdown_lines("\n\n".join(text), width)
@@ -74,9 +77,13 @@ def rows_of(lines: list[Line], heading: str, passage: str) -> tuple[int, int]:
     top = next((row for row, text in enumerate(texts) if heading and text.strip() == heading), 0)
     # Lines break elsewhere than in the source, and a table puts cells side by side or names each.
     letters = [_LETTERS.sub("", text) for text in texts[top:]]
-    wanted = [_LETTERS.sub("", text) for text in (passage_text(passage), max(cells_of(passage), key=len))]
+    wanted = [
+        _LETTERS.sub("", text) for text in (passage_text(passage), max(cells_of(passage), key=len))
+    ]
     tried = [wanted[0][:count] for count in _MANY_LETTERS]
-    tried += [text[:count] for text in wanted[::-1] for count in (*_MANY_LETTERS[1:], *_FEW_LETTERS)]
+    tried += [
+        text[:count] for text in wanted[::-1] for count in (*_MANY_LETTERS[1:], *_FEW_LETTERS)
+    ]
     starts = ("".join(letters).find(text) for text in tried if text)
     at = next((start for start in starts if start >= 0), 0)
     ends = accumulate(map(len, letters))
@@ -101,6 +108,10 @@ def written(lines: list[Line], *, styled: bool) -> str:
     def one(text: str, style: Style) -> str:
         # No colours: the terminal may have any background.
         bold = style.bold or style.color != PLAIN.color
-        return Style(bold=bold, italic=style.italic, underline=style.underline).render(text) if styled else text
+        return (
+            Style(bold=bold, italic=style.italic, underline=style.underline).render(text)
+            if styled
+            else text
+        )
 
     return "\n".join("".join(one(*run) for run in line) for line in lines) + "\n"

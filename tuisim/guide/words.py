@@ -57,7 +57,9 @@ def _stems(texts: Iterable[str]) -> list[frozenset[str]]:
 @cache
 def _meanings() -> Mapping[str, frozenset[str]]:
     """Return what stems mean, as `=chart`: the groups of `synonyms.toml` that they are in, each by its first word."""
-    groups = tomllib.loads((Path(__file__).parent / "synonyms.toml").read_text(encoding="utf-8"))["groups"]
+    groups = tomllib.loads((Path(__file__).parent / "synonyms.toml").read_text(encoding="utf-8"))[
+        "groups"
+    ]
     found: defaultdict[str, set[str]] = defaultdict(set)
     for group, stems in zip(groups, _stems(groups), strict=True):
         for stem in stems:

@@ -43,12 +43,18 @@ def lesson_paths(folder: Path | str | None = None) -> dict[str, Path]:
         raise ConfigError(f"there is no folder {own}", "name a folder of lessons", key=key)
     lessons = _in_folder(own)
     if not lessons:
-        raise ConfigError(f"no lessons in {own}", f"they are {SUFFIX} files, see `tuisim learn new`", key=key)
+        raise ConfigError(
+            f"no lessons in {own}", f"they are {SUFFIX} files, see `tuisim learn new`", key=key
+        )
     return found | lessons
 
 
 def _in_folder(folder: Path) -> dict[str, Path]:
-    return {name_of(path): path for path in sorted(folder.glob(f"*{SUFFIX}")) if path.name.lower() != "readme.md"}
+    return {
+        name_of(path): path
+        for path in sorted(folder.glob(f"*{SUFFIX}"))
+        if path.name.lower() != "readme.md"
+    }
 
 
 def find_lesson(word: str, folder: Path | str | None = None, others: Iterable[str] = ()) -> Path:
@@ -70,9 +76,14 @@ def find_lesson(word: str, folder: Path | str | None = None, others: Iterable[st
     if word not in found and word.lstrip("0") in numbered:
         return numbered[word.lstrip("0")]
     if word not in found and word.isdecimal():
-        raise ConfigError(f"there is no lesson {word}", f"1 to {len(found)}. See `tuisim learn list`")
+        raise ConfigError(
+            f"there is no lesson {word}", f"1 to {len(found)}. See `tuisim learn list`"
+        )
     if word not in found:
-        raise ConfigError(f"no such lesson {word!r}", f"{nearest(word, [*found, *others])} See `tuisim learn list`")
+        raise ConfigError(
+            f"no such lesson {word!r}",
+            f"{nearest(word, [*found, *others])} See `tuisim learn list`",
+        )
     return found[word]
 
 
@@ -86,8 +97,16 @@ def telling_of(lesson: Path, library: Library, folder: Path | str | None = None)
     if library is Library.EV3DEV2 or name.endswith(told_name("", library)):
         return lesson
     if told_name(name, library) not in found:
-        told = [one.removesuffix(told_name("", library)) for one in found if one.endswith(told_name("", library))]
-        raise ConfigError(f"the lesson {name} is not told for {library}", f"one of {', '.join(told)}", key="--library")
+        told = [
+            one.removesuffix(told_name("", library))
+            for one in found
+            if one.endswith(told_name("", library))
+        ]
+        raise ConfigError(
+            f"the lesson {name} is not told for {library}",
+            f"one of {', '.join(told)}",
+            key="--library",
+        )
     return found[told_name(name, library)]
 
 

@@ -106,7 +106,15 @@ class Shown:
 
 
 Event: TypeAlias = (
-    JudgedRun | TriedElsewhere | Typed | ExpressionWatched | BreakMet | Exported | Noted | Visited | Shown
+    JudgedRun
+    | TriedElsewhere
+    | Typed
+    | ExpressionWatched
+    | BreakMet
+    | Exported
+    | Noted
+    | Visited
+    | Shown
 )
 
 _NUMBER = re.compile(rf"(?:[^\d.,+-]*[^\w.,+-])?({NUMBER})\s*(?P<unit>[^\d.,]*)$")
@@ -123,15 +131,24 @@ def is_met(check: Check, events: Sequence[Event]) -> bool:
             typed = [event for event in events if isinstance(event, Typed)]
             return any(is_right(check, event.text) and not unready(check, event) for event in typed)
         case WatchCheck(expression):
-            return any(isinstance(event, ExpressionWatched) and _same(event.expression, expression) for event in events)
+            return any(
+                isinstance(event, ExpressionWatched) and _same(event.expression, expression)
+                for event in events
+            )
         case BreakCheck(matches):
-            return any(isinstance(event, BreakMet) and re.search(matches, event.text) for event in events)
+            return any(
+                isinstance(event, BreakMet) and re.search(matches, event.text) for event in events
+            )
         case ExportCheck(suffix):
-            return any(isinstance(event, Exported) and event.name.endswith(suffix) for event in events)
+            return any(
+                isinstance(event, Exported) and event.name.endswith(suffix) for event in events
+            )
         case NoteCheck():
             return any(isinstance(event, Noted) and _is_noted(check, event) for event in events)
         case VisitCheck(from_s, to_s):
-            return any(isinstance(event, Visited) and from_s <= event.time_s <= to_s for event in events)
+            return any(
+                isinstance(event, Visited) and from_s <= event.time_s <= to_s for event in events
+            )
         case ShowCheck(panel, paused):
             shown = (event for event in events if isinstance(event, Shown) and event.panel == panel)
             return any(event.paused or not paused for event in shown)
@@ -145,16 +162,24 @@ def good_runs(check: RunCheck, events: Sequence[Event]) -> int:
         (event.run_id, other.where)
         for event in events
         for other in check.also
-        if isinstance(event, TriedElsewhere) and event.where == other.where and set(other.goals) <= event.met
+        if isinstance(event, TriedElsewhere)
+        and event.where == other.where
+        and set(other.goals) <= event.met
     }
-    good = [run for run in met_by(check, events) if all((run.run_id, other.where) in passed for other in check.also)]
+    good = [
+        run
+        for run in met_by(check, events)
+        if all((run.run_id, other.where) in passed for other in check.also)
+    ]
     return len({run.seed for run in good} if check.seeds else {run.run_id for run in good})
 
 
 def met_by(check: RunCheck, events: Sequence[Event]) -> list[JudgedRun]:
     """Return the runs that have met the goals of a check, whatever their programs do in other worlds."""
     runs = [event for event in events if isinstance(event, JudgedRun)]
-    return [run for run in runs if set(check.goals) <= run.met and (run.from_start or check.anywhere)]
+    return [
+        run for run in runs if set(check.goals) <= run.met and (run.from_start or check.anywhere)
+    ]
 
 
 def is_right(question: QuestionCheck, text: str) -> bool:
@@ -173,7 +198,9 @@ def unready(question: QuestionCheck, event: Typed) -> str:
     """Return in a sentence what must happen before an answer counts; empty if that has happened."""
     if question.run and not event.has_run:
         return "Run the program first: the question is about its run."
-    if event.printed is not None and not any(re.search(question.printed, line) for line in ("", *event.printed)):
+    if event.printed is not None and not any(
+        re.search(question.printed, line) for line in ("", *event.printed)
+    ):
         return "The run in view has not printed that: do what the step says, and run again."
     if event.seen is not None and question.seen and not event.seen & set(question.seen):
         return f"Look first: {' or '.join(view.capitalize() for view in question.seen)} shows it."
@@ -189,9 +216,13 @@ def wanted_form(question: QuestionCheck, text: str) -> str:
         found = _NUMBER.match(text.replace(",", "."))
         if found is None:
             return "a number, such as 12.5"
-        is_other_length = found["unit"].strip() in _OTHER_LENGTHS and re.search(r"\bmm\b", question.ask)
+        is_other_length = found["unit"].strip() in _OTHER_LENGTHS and re.search(
+            r"\bmm\b", question.ask
+        )
         return "the number in mm" if is_other_length else ""
-    if question.choices and not any(_same(_chosen(question, text), choice) for choice in question.choices):
+    if question.choices and not any(
+        _same(_chosen(question, text), choice) for choice in question.choices
+    ):
         return f"the number of a choice, 1 to {len(question.choices)}"
     return ""
 
@@ -219,7 +250,9 @@ def _plain(text: str) -> str:
 
 
 def _is_noted(check: NoteCheck, event: Noted) -> bool:
-    if check.level is not None and (event.level is None or abs(event.level - check.level) > check.within):
+    if check.level is not None and (
+        event.level is None or abs(event.level - check.level) > check.within
+    ):
         return False
     return re.search(check.matches, event.text, re.IGNORECASE) is not None
 
@@ -231,7 +264,11 @@ def note_fault(check: NoteCheck, event: Noted) -> str:
     note = f"Your note “{event.text}” is on"
     if check.level is not None and event.level is None:
         return f"{note} no samples: select a band first."
-    if check.level is not None and event.level is not None and abs(event.level - check.level) > check.within:
+    if (
+        check.level is not None
+        and event.level is not None
+        and abs(event.level - check.level) > check.within
+    ):
         return f"{note} samples with a mean of {event.level:.1f}; this step is about those with {check.level:g}."
     return f"{note} the right samples, but its text is not what the step asks for."
 

@@ -110,7 +110,9 @@ def _read(path: Path) -> str:
         return data.decode("utf-8-sig").replace("\r\n", "\n").replace("\r", "\n")
     except UnicodeDecodeError as reason:
         line = data.count(b"\n", 0, reason.start) + 1
-        raise ConfigError("is not UTF-8 text", "save it as UTF-8", file=f"{path}, line {line}") from None
+        raise ConfigError(
+            "is not UTF-8 text", "save it as UTF-8", file=f"{path}, line {line}"
+        ) from None
 
 
 def parse_lesson(text: str, path: Path) -> Lesson:
@@ -149,11 +151,17 @@ def _with_told(data: Any, path: Path) -> Any:
 def _end_of_front(lines: Sequence[str], path: Path) -> int:
     """Return the index of the line that ends the TOML."""
     if not lines or lines[0].strip() != FENCE:
-        raise ConfigError(f"does not begin with {FENCE}", f"TOML between two lines {FENCE}", file=f"{path}, line 1")
+        raise ConfigError(
+            f"does not begin with {FENCE}",
+            f"TOML between two lines {FENCE}",
+            file=f"{path}, line 1",
+        )
     for index, line in enumerate(lines[1:], start=1):
         if line.strip() == FENCE:
             return index
-    raise ConfigError(f"there is no second line {FENCE}", "it ends the TOML", file=f"{path}, line {len(lines)}")
+    raise ConfigError(
+        f"there is no second line {FENCE}", "it ends the TOML", file=f"{path}, line {len(lines)}"
+    )
 
 
 def _sections(lines: Sequence[str], start: int, path: Path) -> list[_Section]:
@@ -185,7 +193,9 @@ def _end_of_block(lines: Sequence[str], start: int, fence: str, path: Path) -> i
     for index in range(start, len(lines)):
         if lines[index].strip() == fence:
             return index + 1
-    raise ConfigError("the block of code does not end", f"close it with {fence}", file=f"{path}, line {start}")
+    raise ConfigError(
+        "the block of code does not end", f"close it with {fence}", file=f"{path}, line {start}"
+    )
 
 
 def _role(info: str, at: Location) -> Role | None:
@@ -209,7 +219,10 @@ def _way(word: str, role: Role, at: Location) -> Way | None:
 
 def _lesson(data: Any, sections: Sequence[_Section], path: Path) -> Lesson:
     at = Location(str(path))
-    texts = {key: files.convert(files.required(data, key, at), str, at.at(key)) for key in ("title", "why")}
+    texts = {
+        key: files.convert(files.required(data, key, at), str, at.at(key))
+        for key in ("title", "why")
+    }
     minutes = files.convert(data.get("minutes", 10), int, at.at("minutes"))
     if not 1 <= minutes <= MAX_MINUTES:
         raise at.at("minutes").wrong(f"must be from 1 to {MAX_MINUTES}, got {minutes}")
@@ -218,11 +231,24 @@ def _lesson(data: Any, sections: Sequence[_Section], path: Path) -> Lesson:
     steps = _steps(data, sections[1:], {goal.name for goal in goals}, at)
     programs = [block for section in sections for block in section.of(Role.PROGRAM)]
     if len(programs) > 1:
-        raise Location(f"{path}, line {programs[1].line}").wrong("there are two programs to complete", "give one")
+        raise Location(f"{path}, line {programs[1].line}").wrong(
+            "there are two programs to complete", "give one"
+        )
     program = programs[0].text if programs else ""
     intro = sections[0].text
     name = name_of(path)
-    return Lesson(name, path, texts["title"], texts["why"], intro, steps, program, goals, minutes, world.settings)
+    return Lesson(
+        name,
+        path,
+        texts["title"],
+        texts["why"],
+        intro,
+        steps,
+        program,
+        goals,
+        minutes,
+        world.settings,
+    )
 
 
 def _world(data: dict[str, Any], path: Path) -> WorldFile:
@@ -232,21 +258,29 @@ def _world(data: dict[str, Any], path: Path) -> WorldFile:
         if key in data:
             hint = "put it into a block ```python program" if key == "program" else "leave it out"
             raise at.at(key).wrong("is not a key of a lesson", hint)
-    return world_from_table({key: value for key, value in data.items() if key not in _LESSON_KEYS}, path)
+    return world_from_table(
+        {key: value for key, value in data.items() if key not in _LESSON_KEYS}, path
+    )
 
 
-def _steps(data: Any, sections: Sequence[_Section], goals: set[str], at: Location) -> tuple[LessonStep, ...]:
+def _steps(
+    data: Any, sections: Sequence[_Section], goals: set[str], at: Location
+) -> tuple[LessonStep, ...]:
     if not data.get("step"):
         raise at.at("step").wrong("there are no steps", "begin each with a line [[step]]")
     listed = files.entries(data["step"], at.at("step"), MAX_STEPS, "steps")
     if len(listed) != len(sections):
         where = Location(f"{at.file}, line {sections[-1].line}") if sections else at
-        raise where.wrong(f"there are {len(listed)} steps [[step]], but {len(sections)} sections ## in the text")
+        raise where.wrong(
+            f"there are {len(listed)} steps [[step]], but {len(sections)} sections ## in the text"
+        )
     steps: list[LessonStep] = []
     for (entry, place), section in zip(listed, sections, strict=True):
         step = _step(entry, section, place, at.file)
         if any(step.name == other.name for other in steps):
-            raise place.at("name").wrong(f"there are two steps {step.name!r}", "give each its own name")
+            raise place.at("name").wrong(
+                f"there are two steps {step.name!r}", "give each its own name"
+            )
         _check_goals(step.check, goals, place)
         steps.append(step)
     return _with_answers(steps, at)
@@ -272,13 +306,19 @@ def _step(data: object, section: _Section, at: Location, file: str) -> LessonSte
         hints=_texts(found, "hints", at, MAX_HINTS),
         why=files.convert(found["why"], str, at.at("why")) if "why" in found else "",
         answer=answers[-1].text if answers else "",
-        model=files.convert(found.get("model", ""), str, at.at("model")) if "model" in found else "",
+        model=files.convert(found.get("model", ""), str, at.at("model"))
+        if "model" in found
+        else "",
         wrong=_texts(found, "wrong", at, MAX_WRONG),
-        wrong_programs=tuple(WrongProgram(block.text, block.line, block.way) for block in section.of(Role.WRONG)),
+        wrong_programs=tuple(
+            WrongProgram(block.text, block.line, block.way) for block in section.of(Role.WRONG)
+        ),
         excludes=_excludes(found.get("excludes", {}), at.at("excludes")),
     )
     if step.wrong_programs and not isinstance(check, RunCheck):
-        raise Location(f"{file}, line {step.wrong_programs[0].line}").wrong("this step does not run a program")
+        raise Location(f"{file}, line {step.wrong_programs[0].line}").wrong(
+            "this step does not run a program"
+        )
     _check_models(step, at)
     return step
 
@@ -299,7 +339,9 @@ def _check(kind: type[Check], data: object, at: Location, path: Path) -> Check:
     if kind is not RunCheck or not isinstance(data, dict) or "also" not in data:
         return files.convert(data, kind, at)
     run = files.convert({key: value for key, value in data.items() if key != "also"}, RunCheck, at)
-    return replace(run, also=others_of(data["also"], run.goals, at.at("also"), path, goals_from_list))
+    return replace(
+        run, also=others_of(data["also"], run.goals, at.at("also"), path, goals_from_list)
+    )
 
 
 def _check_goals(check: Check, goals: set[str], at: Location) -> None:
@@ -308,7 +350,9 @@ def _check_goals(check: Check, goals: set[str], at: Location) -> None:
         for number, other in enumerate(check.also, start=1):
             place, own = at.at(f"run.also[{number}]"), {goal.name for goal in other.own_goals}
             if twice := sorted(own & goals):
-                raise place.wrong(f"{twice[0]!r} is a goal of the lesson, too", "give it another name")
+                raise place.wrong(
+                    f"{twice[0]!r} is a goal of the lesson, too", "give it another name"
+                )
             check_names(other.goals, goals | own, place)
 
 
@@ -317,17 +361,24 @@ def _check_models(step: LessonStep, at: Location) -> None:
     if isinstance(step.check, RunCheck):
         for key in ("model", "wrong"):
             if getattr(step, key):
-                raise at.at(key).wrong("is not for a step that runs a program", f"a block ```python {key}")
+                raise at.at(key).wrong(
+                    "is not for a step that runs a program", f"a block ```python {key}"
+                )
         return
     if not step.model and isinstance(step.check, BreakCheck | NoteCheck):
         raise at.at("model").wrong("is missing", "give what a student would type")
-    for key, text in (("model", step.model), *((f"wrong[{at_}]", one) for at_, one in enumerate(step.wrong, 1))):
+    for key, text in (
+        ("model", step.model),
+        *((f"wrong[{at_}]", one) for at_, one in enumerate(step.wrong, 1)),
+    ):
         try:
             event = model_event(step.check, text) if key == "model" else event_of(step.check, text)
         except ValueError:
             raise at.at(key).wrong(f"must be a number, got {shown(text)}") from None
         if is_met(step.check, [event]) is not (key == "model"):
-            raise at.at(key).wrong(f"{shown(text)} {'does not pass' if key == 'model' else 'passes'}")
+            raise at.at(key).wrong(
+                f"{shown(text)} {'does not pass' if key == 'model' else 'passes'}"
+            )
 
 
 def _with_answers(steps: Sequence[LessonStep], at: Location) -> tuple[LessonStep, ...]:
@@ -337,6 +388,10 @@ def _with_answers(steps: Sequence[LessonStep], at: Location) -> tuple[LessonStep
         answer = step.answer or answer
         if isinstance(step.check, RunCheck) and not answer:
             where = Location(f"{at.file}, line {step.line}")
-            raise where.wrong(f"the step {step.name!r} has no model answer", "a block ```python answer")
-        found.append(replace(step, answer=answer if isinstance(step.check, RunCheck) else step.answer))
+            raise where.wrong(
+                f"the step {step.name!r} has no model answer", "a block ```python answer"
+            )
+        found.append(
+            replace(step, answer=answer if isinstance(step.check, RunCheck) else step.answer)
+        )
     return tuple(reversed(found))

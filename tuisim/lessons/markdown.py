@@ -32,7 +32,10 @@ PLAIN = Style(color=palette.INK)
 
 
 class _Markdown(Markdown):
-    elements: ClassVar[dict[str, type[MarkdownElement]]] = {**Markdown.elements, "table_open": WholeTable}
+    elements: ClassVar[dict[str, type[MarkdownElement]]] = {
+        **Markdown.elements,
+        "table_open": WholeTable,
+    }
 
 
 def markdown_lines(text: str, width: int) -> list[Line]:
@@ -41,17 +44,28 @@ def markdown_lines(text: str, width: int) -> list[Line]:
     Of several empty lines, as above and below code, there is one.
     """
     console = Console(
-        file=io.StringIO(), width=max(10, width), theme=_THEME, force_terminal=True, color_system="truecolor"
+        file=io.StringIO(),
+        width=max(10, width),
+        theme=_THEME,
+        force_terminal=True,
+        color_system="truecolor",
     )
     drawn = _Markdown(text, code_theme="ansi_dark", justify="left")
     lines = console.render_lines(drawn, console.options.update(width=max(10, width)), pad=False)
-    found = [_stripped([_run(segment.text, segment.style) for segment in line if segment.text]) for line in lines]
+    found = [
+        _stripped([_run(segment.text, segment.style) for segment in line if segment.text])
+        for line in lines
+    ]
     return [line for line, above in zip(found, [[], *found], strict=False) if line or above]
 
 
 def _run(text: str, style: Style | None) -> Run:
     # Without background colours, which differ from those of the panel.
-    shown = (style or Style()) + Style(bgcolor="default") if style and style.bgcolor else style or Style()
+    shown = (
+        (style or Style()) + Style(bgcolor="default")
+        if style and style.bgcolor
+        else style or Style()
+    )
     return text, PLAIN + shown
 
 

@@ -25,11 +25,17 @@ class WholeTable(TableElement):
     """
 
     def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
-        headings = [cell.content.copy() for cell in self.header.row.cells] if self.header and self.header.row else []
+        headings = (
+            [cell.content.copy() for cell in self.header.row.cells]
+            if self.header and self.header.row
+            else []
+        )
         rows = [[cell.content for cell in row.cells] for row in self.body.rows] if self.body else []
         for heading in headings:
             heading.stylize("markdown.table.header")
-        columns = [_measured(console, options, column) for column in zip(headings, *rows, strict=False)]
+        columns = [
+            _measured(console, options, column) for column in zip(headings, *rows, strict=False)
+        ]
         widths = _widths(columns, options.max_width - _GAP * len(columns))
         yield _as_list(headings, rows) if widths is None else _as_table(headings, rows, widths)
 
@@ -50,8 +56,16 @@ def _widths(columns: Sequence[Measurement], room: int) -> list[int] | None:
     return [one.minimum + (one.span * more // wanted if wanted else 0) for one in columns]
 
 
-def _as_table(headings: Sequence[Text], rows: Sequence[Sequence[Text]], widths: Sequence[int]) -> Table:
-    made = Table(box=box.SIMPLE, pad_edge=False, style="markdown.table.border", show_edge=True, collapse_padding=True)
+def _as_table(
+    headings: Sequence[Text], rows: Sequence[Sequence[Text]], widths: Sequence[int]
+) -> Table:
+    made = Table(
+        box=box.SIMPLE,
+        pad_edge=False,
+        style="markdown.table.border",
+        show_edge=True,
+        collapse_padding=True,
+    )
     for heading, width in zip(headings, widths, strict=True):
         made.add_column(heading, width=width, overflow="fold")
     for row in rows:

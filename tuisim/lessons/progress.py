@@ -63,7 +63,9 @@ class LessonProgress:
 
     def current(self, lesson: Lesson) -> int | None:
         """Return the index of the first open step of a lesson; None if there is none."""
-        open_steps = (at for at, step in enumerate(lesson.steps) if self.of(step.name).state is StepState.OPEN)
+        open_steps = (
+            at for at, step in enumerate(lesson.steps) if self.of(step.name).state is StepState.OPEN
+        )
         return next(open_steps, None)
 
     def done(self, lesson: Lesson) -> int:
@@ -107,7 +109,9 @@ def load_progress() -> dict[str, LessonProgress]:
     try:
         return {name: _lesson(entry) for name, entry in json.loads(text).items()}
     except (ValueError, TypeError, KeyError, AttributeError, OverflowError, RecursionError):
-        raise ConfigError("is damaged", "delete it to begin all lessons anew", file=str(path)) from None
+        raise ConfigError(
+            "is damaged", "delete it to begin all lessons anew", file=str(path)
+        ) from None
 
 
 def _lesson(data: Mapping[str, Any]) -> LessonProgress:
@@ -116,7 +120,9 @@ def _lesson(data: Mapping[str, Any]) -> LessonProgress:
 
 
 def _step(data: Mapping[str, Any]) -> StepProgress:
-    return StepProgress(StepState(data["state"]), str(data["at"]), int(data["tries"]), int(data["hints"]))
+    return StepProgress(
+        StepState(data["state"]), str(data["at"]), int(data["tries"]), int(data["hints"])
+    )
 
 
 def save_progress(lesson: str, progress: LessonProgress) -> None:
@@ -127,13 +133,17 @@ def save_progress(lesson: str, progress: LessonProgress) -> None:
     """
     every = {**load_progress(), lesson: progress}
     path = folder() / _FILE
-    text = json.dumps({name: asdict(one) for name, one in every.items()}, indent=1, ensure_ascii=False)
+    text = json.dumps(
+        {name: asdict(one) for name, one in every.items()}, indent=1, ensure_ascii=False
+    )
     try:
         make_private_folder(path.parent)
         with replacing(path, owner_only=True) as file:
             file.write(text.encode() + b"\n")
     except OSError as error:
-        raise ConfigError(f"progress cannot be saved: {error.strerror or error}", file=str(path)) from None
+        raise ConfigError(
+            f"progress cannot be saved: {error.strerror or error}", file=str(path)
+        ) from None
 
 
 def last_opened(progress: Mapping[str, LessonProgress]) -> str:

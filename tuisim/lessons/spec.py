@@ -107,9 +107,14 @@ class QuestionCheck:
             raise ConfigError(f"{self.answer!r} is none of the choices", key="answer")
         for number, (left, right) in enumerate(self.at_x_mm, start=1):
             if left >= right:
-                raise ConfigError(f"must be from left to right, got {left:g} to {right:g}", key=f"at_x_mm[{number}]")
+                raise ConfigError(
+                    f"must be from left to right, got {left:g} to {right:g}",
+                    key=f"at_x_mm[{number}]",
+                )
         if bool(self.at_x_mm) is not bool(self.where):
-            raise ConfigError("goes with at_x_mm", "the place in words, and how to get there", key="where")
+            raise ConfigError(
+                "goes with at_x_mm", "the place in words, and how to get there", key="where"
+            )
         require_regex(self.printed, "printed")
         for number, panel in enumerate(self.seen, start=1):
             _check_panel(panel, f"seen[{number}]", SEEABLE)
@@ -202,7 +207,9 @@ class VisitCheck:
 
     def __post_init__(self) -> None:
         if self.from_s >= self.to_s:
-            raise ConfigError(f"must be less than to_s, {self.to_s:g}, got {self.from_s:g}", key="from_s")
+            raise ConfigError(
+                f"must be less than to_s, {self.to_s:g}, got {self.from_s:g}", key="from_s"
+            )
 
 
 @dataclass(frozen=True, slots=True)
@@ -225,7 +232,16 @@ class ShowCheck:
         _check_panel(self.panel, "panel")
 
 
-Check: TypeAlias = RunCheck | QuestionCheck | WatchCheck | BreakCheck | ExportCheck | NoteCheck | VisitCheck | ShowCheck
+Check: TypeAlias = (
+    RunCheck
+    | QuestionCheck
+    | WatchCheck
+    | BreakCheck
+    | ExportCheck
+    | NoteCheck
+    | VisitCheck
+    | ShowCheck
+)
 
 CHECKS: Mapping[str, type[Check]] = {
     "run": RunCheck,

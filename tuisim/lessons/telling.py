@@ -21,7 +21,10 @@ def merged(other: Any, own: Any) -> Any:
     """Return values of TOML where those of the telling take precedence over those of the other lesson."""
     match other, own:
         case dict(), dict():
-            return {**other, **{key: merged(other.get(key), value) for key, value in own.items() if key != KEY}}
+            return {
+                **other,
+                **{key: merged(other.get(key), value) for key, value in own.items() if key != KEY},
+            }
         case [dict(), *_], [dict(), *_]:
             named = {_name(table): table for table in own}
             known = {_name(table) for table in other}

@@ -48,12 +48,19 @@ def trials(lesson: Lesson) -> list[Trial]:
     seed = build_run_spec(settings_of(lesson.settings)).seed
     for step in lesson.steps:
         if isinstance(step.check, RunCheck):
-            found += [Trial(step, step.answer, 0, True, seed + more) for more in range(step.check.times)]
-            found += [Trial(step, wrong.text, wrong.line, False, seed, wrong.way) for wrong in step.wrong_programs]
+            found += [
+                Trial(step, step.answer, 0, True, seed + more) for more in range(step.check.times)
+            ]
+            found += [
+                Trial(step, wrong.text, wrong.line, False, seed, wrong.way)
+                for wrong in step.wrong_programs
+            ]
     return found
 
 
-def task_of(lesson: Lesson, text: str, seed: int, index: int = 0, other: TrialWorld | None = None) -> Task:
+def task_of(
+    lesson: Lesson, text: str, seed: int, index: int = 0, other: TrialWorld | None = None
+) -> Task:
     """Return the run of a program in the world of a lesson, or in another world of a step, with a seed.
 
     Raises:
@@ -63,11 +70,16 @@ def task_of(lesson: Lesson, text: str, seed: int, index: int = 0, other: TrialWo
     of_lesson = bool(lesson.settings)
     given = {**lesson.settings, **(other.settings if other else {})}
     found = program_settings(source, given, {"seed": seed}, in_world=of_lesson, of_task=of_lesson)
-    spec, goals = build_run_spec(found.settings), (*lesson.goals, *(other.own_goals if other else ()))
+    spec, goals = (
+        build_run_spec(found.settings),
+        (*lesson.goals, *(other.own_goals if other else ())),
+    )
     return Task(index, source.program, spec, RunOptions(time_limit_s=TIME_LIMIT_S), goals)
 
 
-def tried_elsewhere(lesson: Lesson, check: RunCheck, run: StoredRun) -> list[tuple[TrialWorld, tuple[Judgement, ...]]]:
+def tried_elsewhere(
+    lesson: Lesson, check: RunCheck, run: StoredRun
+) -> list[tuple[TrialWorld, tuple[Judgement, ...]]]:
     """Try the program of a run in the other worlds of a check, and judge that; blocks meanwhile.
 
     Raises:
@@ -121,7 +133,10 @@ def _worlds(trial: Trial) -> list[tuple[_Key, TrialWorld | None]]:
     """Return the worlds in which a trial runs, each with its key; None for that of the lesson."""
     check = trial.step.check
     assert isinstance(check, RunCheck)
-    found = [((trial.text, trial.seed, f"{trial.step.name} {other.where}"), other) for other in check.also]
+    found = [
+        ((trial.text, trial.seed, f"{trial.step.name} {other.where}"), other)
+        for other in check.also
+    ]
     return [((trial.text, trial.seed, ""), None), *found]
 
 
@@ -130,7 +145,10 @@ def warnings(lesson: Lesson) -> list[str]:
     found = []
     for step in lesson.steps:
         at = f"{lesson.path}, line {step.line}"
-        found += [f"{at}: no wrong way “{way}” is tried on “{step.title}”, nor excluded" for way in step.missing_ways()]
+        found += [
+            f"{at}: no wrong way “{way}” is tried on “{step.title}”, nor excluded"
+            for way in step.missing_ways()
+        ]
         if isinstance(step.check, QuestionCheck | RunCheck) and not step.why:
             found.append(f"{at}: no `why` says why what passes “{step.title}” is right")
     return found
@@ -141,10 +159,17 @@ def _faults_of(lesson: Lesson, trial: Trial, results: Mapping[_Key, Result]) -> 
     check = trial.step.check
     assert isinstance(check, RunCheck)
     tried = [(results[key], other) for key, other in _worlds(trial)]
-    missed = [(result, _missed(other.goals if other else check.goals, result), other) for result, other in tried]
+    missed = [
+        (result, _missed(other.goals if other else check.goals, result), other)
+        for result, other in tried
+    ]
     result, reasons, other = next((one for one in missed if one[1]), missed[0])
     if trial.passes and reasons:
-        error = f"; it ended with: {source_lines(result.error.strip())[-1]}" if result.error.strip() else ""
+        error = (
+            f"; it ended with: {source_lines(result.error.strip())[-1]}"
+            if result.error.strip()
+            else ""
+        )
         where = f" {other.where}" if other else ""
         yield (
             f"{lesson.path}, line {trial.step.line}: the model answer does not pass “{trial.step.title}”{where}: "
@@ -158,4 +183,8 @@ def _faults_of(lesson: Lesson, trial: Trial, results: Mapping[_Key, Result]) -> 
 def _missed(goals: Sequence[str], result: Result) -> list[str]:
     """Return which of some goals a run has missed, each with the reason."""
     by_name = {each.goal.name: each for each in result.judgements}
-    return [f"{name}: {by_name[name].reason}" for name in goals if by_name[name].state is not GoalState.MET]
+    return [
+        f"{name}: {by_name[name].reason}"
+        for name in goals
+        if by_name[name].state is not GoalState.MET
+    ]

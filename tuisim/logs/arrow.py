@@ -31,7 +31,9 @@ def texts_array(texts: Sequence[str]) -> pa.Array:
     """Return texts as an Arrow string array."""
     encoded = [text.encode("utf-8", "replace") for text in texts]
     ends = np.cumsum([0, *map(len, encoded)], dtype=np.int32)
-    return pa.StringArray.from_buffers(len(texts), pa.py_buffer(ends), pa.py_buffer(b"".join(encoded)))
+    return pa.StringArray.from_buffers(
+        len(texts), pa.py_buffer(ends), pa.py_buffer(b"".join(encoded))
+    )
 
 
 def table_of(columns: Mapping[str, Any]) -> pa.Table:
@@ -47,7 +49,9 @@ def _column(cells: Any) -> pa.Array:
     known = None
     if numbers.dtype.kind == "f" and np.isnan(numbers).any():
         known = pa.py_buffer(np.packbits(~np.isnan(numbers), bitorder="little"))
-    return pa.Array.from_buffers(pa.from_numpy_dtype(numbers.dtype), len(numbers), [known, pa.py_buffer(numbers)])
+    return pa.Array.from_buffers(
+        pa.from_numpy_dtype(numbers.dtype), len(numbers), [known, pa.py_buffer(numbers)]
+    )
 
 
 def numbers_of(column: pa.ChunkedArray) -> FloatArray:
@@ -83,7 +87,9 @@ def whole_numbers_of(chunk: pa.Array) -> np.ndarray[Any, np.dtype[np.int32]]:
 
 def whole_numbers(numbers: np.ndarray[Any, np.dtype[np.int64]]) -> pa.ChunkedArray:
     """Return 64-bit integers, shape (n,), as a column, not copied."""
-    return pa.chunked_array([pa.Array.from_buffers(pa.int64(), len(numbers), [None, pa.py_buffer(numbers)])])
+    return pa.chunked_array(
+        [pa.Array.from_buffers(pa.int64(), len(numbers), [None, pa.py_buffer(numbers)])]
+    )
 
 
 BoolArray = np.ndarray[Any, np.dtype[np.bool_]]
@@ -112,7 +118,9 @@ def mask_of(column: pa.ChunkedArray, condition: ValueCondition) -> BoolArray:
     if condition.operator is Operator.CONTAINS:
         return contains(column, condition.value)
     if condition.operator is Operator.CHANGES:
-        turns = _mask(pc.not_equal(column[1:], column[:-1])) if len(column) > 1 else np.zeros(0, bool)
+        turns = (
+            _mask(pc.not_equal(column[1:], column[:-1])) if len(column) > 1 else np.zeros(0, bool)
+        )
         return np.concatenate((np.zeros(min(1, len(column)), bool), turns))
     compare: Callable[[Any, Any], Any] = getattr(pc, condition.operator.name.lower())
     kind = column.type
@@ -207,7 +215,9 @@ def parquet_parts(path: Path, notes: Notes) -> Iterator[tuple[float, pa.Table]]:
         _check_columns(file.schema_arrow)
     except (pa.ArrowException, OSError, ValueError) as error:
         hint = "a truncated Parquet file cannot be read: its index is at its end"
-        raise LogError(f"not a readable Parquet file: {_short(error)}", hint, file=str(path)) from error
+        raise LogError(
+            f"not a readable Parquet file: {_short(error)}", hint, file=str(path)
+        ) from error
     with file:
         count = file.metadata.num_row_groups
         if not count:
@@ -218,7 +228,12 @@ def parquet_parts(path: Path, notes: Notes) -> Iterator[tuple[float, pa.Table]]:
             try:
                 part = file.read_row_group(at)
             except (pa.ArrowException, OSError, ValueError):
-                notes.add("row is damaged and was skipped", "rows are damaged and were skipped", [first], rows)
+                notes.add(
+                    "row is damaged and was skipped",
+                    "rows are damaged and were skipped",
+                    [first],
+                    rows,
+                )
             else:
                 yield (at + 1) / count, _named(part, notes)
             first += rows
@@ -242,7 +257,9 @@ def arrow_parts(path: Path, notes: Notes) -> Iterator[tuple[float, pa.Table]]:
                         part = _whole(reader.get_batch(at))
                     except (pa.ArrowException, OSError, ValueError):
                         damaged = "batch of rows is damaged", "batches of rows are damaged"
-                        notes.add(f"{damaged[0]} and was skipped", f"{damaged[1]} and were skipped", [], 1)
+                        notes.add(
+                            f"{damaged[0]} and was skipped", f"{damaged[1]} and were skipped", [], 1
+                        )
                     else:
                         yield (at + 1) / count, _named(part, notes)
                 return
@@ -262,7 +279,9 @@ def arrow_stream_parts(path: Path, notes: Notes) -> Iterator[tuple[float, pa.Tab
         yield from _stream_parts(path, source, 0, notes)
 
 
-def _stream_parts(path: Path, source: Any, start: int, notes: Notes) -> Iterator[tuple[float, pa.Table]]:
+def _stream_parts(
+    path: Path, source: Any, start: int, notes: Notes
+) -> Iterator[tuple[float, pa.Table]]:
     size = max(path.stat().st_size, 1)
     source.seek(start)
     try:
@@ -340,7 +359,9 @@ def frame_of(table: pa.Table) -> pd.DataFrame:
         hash(tuple(frame.columns))
         return frame
     except (pa.ArrowException, ValueError, KeyError, TypeError, AttributeError, RecursionError):
-        metadata = {key: text for key, text in (table.schema.metadata or {}).items() if key != _PANDAS_KEY}
+        metadata = {
+            key: text for key, text in (table.schema.metadata or {}).items() if key != _PANDAS_KEY
+        }
         return table.replace_schema_metadata(metadata).to_pandas()
 
 

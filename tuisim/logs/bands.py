@@ -132,7 +132,11 @@ def _places(driven: FloatArray | None, first: IntArray, last: IntArray) -> dict[
 def light_noise(metadata: Mapping[str, Any], run: int) -> int:
     """Return the light noise of a run (0: the first) from the metadata of its log; 0 if they do not say."""
     try:
-        found = [entry for entry in metadata["runs"] if isinstance(entry, Mapping) and run in (0, entry.get("run"))]
+        found = [
+            entry
+            for entry in metadata["runs"]
+            if isinstance(entry, Mapping) and run in (0, entry.get("run"))
+        ]
         return int(found[0]["world"]["noise"]["light"])
     except (IndexError, KeyError, TypeError, ValueError, OverflowError):
         return 0
@@ -158,13 +162,17 @@ def distance_mm(x_mm: FloatArray, y_mm: FloatArray) -> FloatArray:
 def in_words(report: BandReport) -> str:
     """Return the levels of a report in words, for people."""
     levels: dict[str, list[tuple[str, float, int]]] = {}
-    for band in zip(*(items_of(report.columns[name]) for name in ("grey", "true_level", "samples")), strict=True):
+    for band in zip(
+        *(items_of(report.columns[name]) for name in ("grey", "true_level", "samples")), strict=True
+    ):
         levels.setdefault(band[0] or f"{band[1]:.4g}", []).append(band)
     said = []
     for bands in levels.values():
         samples = sum(count for *_, count in bands)
         level = sum(true_level * count for _, true_level, count in bands) / samples
-        times = f" ({len(bands)}x)" if len(bands) > 1 else f" ({ONE_SAMPLE})" if samples == 1 else ""
+        times = (
+            f" ({len(bands)}x)" if len(bands) > 1 else f" ({ONE_SAMPLE})" if samples == 1 else ""
+        )
         grey = bands[0][0]
         said.append(f"{level:.2f}{' ' * bool(grey)}{grey}{times}")
     known = f"{counted(len(levels), 'level')}{': ' * bool(said)}{', '.join(said)}"

@@ -24,7 +24,11 @@ MAX_LINE_BYTES = 1 << 20
 MAX_DOCUMENT_BYTES = 64 << 20
 """Larger JSON documents, which may be a single line, are not read as a whole."""
 
-_BOMS = ((codecs.BOM_UTF8, "utf-8"), (codecs.BOM_UTF16_LE, "utf-16-le"), (codecs.BOM_UTF16_BE, "utf-16-be"))
+_BOMS = (
+    (codecs.BOM_UTF8, "utf-8"),
+    (codecs.BOM_UTF16_LE, "utf-16-le"),
+    (codecs.BOM_UTF16_BE, "utf-16-be"),
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,7 +85,11 @@ class LineCutter:
             # A carriage return alone ends a line, too; the line feed of one at the very end may still follow.
             carried_cr = data.endswith(b"\r")
             data = data.replace(b"\r\n", b"\n")
-            data = data[:-1].replace(b"\r", b"\n") + b"\r" if carried_cr and data else data.replace(b"\r", b"\n")
+            data = (
+                data[:-1].replace(b"\r", b"\n") + b"\r"
+                if carried_cr and data
+                else data.replace(b"\r", b"\n")
+            )
         if self._rest.endswith(b"\r") and data:
             self._rest = self._rest[:-1] + (b"" if data.startswith(b"\n") else b"\n")
         end = data.rfind(b"\n") + 1
@@ -159,7 +167,9 @@ _ERRORS = (zlib.error, OSError, EOFError, pa.ArrowException)
 _FORMATS: Mapping[bytes, Callable[[Any], Any]] = {
     b"\x1f\x8b": lambda handle: GzipFile(fileobj=handle),
     b"BZh": bz2.BZ2File,
-    b"\x28\xb5\x2f\xfd": lambda handle: pa.CompressedInputStream(pa.PythonFile(handle, "r"), "zstd"),
+    b"\x28\xb5\x2f\xfd": lambda handle: pa.CompressedInputStream(
+        pa.PythonFile(handle, "r"), "zstd"
+    ),
     b"\x04\x22\x4d\x18": lambda handle: pa.CompressedInputStream(pa.PythonFile(handle, "r"), "lz4"),
 }
 """Compressed formats by their first bytes: what opens a file in them."""
@@ -191,7 +201,11 @@ def unpacked(title: str, head: bytes, handle: Any, notes: Notes) -> Readable | N
     """
     refused = next((what for magic, what in _REFUSED.items() if head.startswith(magic)), "")
     if refused:
-        raise LogError(f"is {refused}, which cannot be read", "a log is CSV, Parquet, JSONL, Arrow or text", file=title)
+        raise LogError(
+            f"is {refused}, which cannot be read",
+            "a log is CSV, Parquet, JSONL, Arrow or text",
+            file=title,
+        )
     open_file = next((one for magic, one in _FORMATS.items() if head.startswith(magic)), None)
     return None if open_file is None else _Unpacked(open_file(handle), notes)
 

@@ -19,10 +19,35 @@ from tuisim.logs.units import SECONDS
 from tuisim.runs.arrays import FloatArray
 
 NAMES = (
-    "time", "t", "seconds", "secs", "sec", "elapsed", "timestamp", "datetime", "date", "ts", "clock", "epoch",
-    "zeit", "temps", "tiempo", "tempo", "minutes", "millis", "milliseconds", "ms", "micros", "microseconds", "us",
-    "nanos", "nanoseconds", "ns", "index", "row",
-)  # fmt: skip
+    "time",
+    "t",
+    "seconds",
+    "secs",
+    "sec",
+    "elapsed",
+    "timestamp",
+    "datetime",
+    "date",
+    "ts",
+    "clock",
+    "epoch",
+    "zeit",
+    "temps",
+    "tiempo",
+    "tempo",
+    "minutes",
+    "millis",
+    "milliseconds",
+    "ms",
+    "micros",
+    "microseconds",
+    "us",
+    "nanos",
+    "nanoseconds",
+    "ns",
+    "index",
+    "row",
+)
 """Names of time columns, the most certain first."""
 _WORDS = frozenset({"time", "timestamp", "datetime", "elapsed", "stamp"})
 """A rising column with one of these words in its name is a time, too: `sim_time`, `Time Stamp`."""
@@ -84,7 +109,9 @@ def unit_since_1970_s(column: pa.ChunkedArray, unit_s: float | None) -> float | 
     """
     first = _first(column)
     units: tuple[float, ...] = (1.0, 1e-3, 1e-6, 1e-9) if unit_s is None else (unit_s,)
-    return next((unit for unit in units if _SINCE_1970_S[0] <= first * unit <= _SINCE_1970_S[1]), None)
+    return next(
+        (unit for unit in units if _SINCE_1970_S[0] <= first * unit <= _SINCE_1970_S[1]), None
+    )
 
 
 def _first(column: pa.ChunkedArray) -> float:
@@ -116,7 +143,11 @@ def seconds_of(column: pa.ChunkedArray, unit_s: float, since_first: bool = False
         column, kind = column.cast(pa.timestamp("s")), pa.timestamp("s")
     if pa.types.is_temporal(kind):
         # Arrow casts 32-bit times only to integers of the same size.
-        wide: Any = column.cast(pa.int32()).cast(pa.int64()) if pa.types.is_time32(kind) else column.cast(pa.int64())
+        wide: Any = (
+            column.cast(pa.int32()).cast(pa.int64())
+            if pa.types.is_time32(kind)
+            else column.cast(pa.int64())
+        )
         if pa.types.is_timestamp(kind):
             # Subtracted as integers: floats have no digits left for nanoseconds since 1970.
             wide = pc.subtract(wide, pc.first(wide))
@@ -145,16 +176,24 @@ def seconds_of_texts(column: pa.ChunkedArray) -> FloatArray:
     spans: Any = pc.extract_regex(texts, _SPAN)
     if spans.null_count == len(spans):
         return _seconds_of_dates(texts)
-    days, hours, minutes, seconds = (_filled(pc.struct_field(spans, name)) for name in ("days", "h", "m", "s"))
+    days, hours, minutes, seconds = (
+        _filled(pc.struct_field(spans, name)) for name in ("days", "h", "m", "s")
+    )
     total = _signed(86400.0 * days + 3600.0 * hours + 60.0 * minutes + seconds, spans)
     return np.where(spans.is_valid().to_numpy(), total, np.nan)
 
 
 def _seconds_of_dates(texts: Any) -> FloatArray:
     texts = pc.replace_substring_regex(texts, r"^(\d{4}-\d{2}-\d{2})$", r"\1 00:00")
-    texts = pc.replace_substring_regex(texts, r"^(\d{4}-\d{2}-\d{2}[T ]\d{2}:\d{2})($|[^:\d])", r"\1:00\2")
-    dates = pc.strptime(pc.utf8_slice_codeunits(pc.replace_substring(texts, "T", " "), 0, 19),
-                        format="%Y-%m-%d %H:%M:%S", unit="s", error_is_null=True)  # fmt: skip
+    texts = pc.replace_substring_regex(
+        texts, r"^(\d{4}-\d{2}-\d{2}[T ]\d{2}:\d{2})($|[^:\d])", r"\1:00\2"
+    )
+    dates = pc.strptime(
+        pc.utf8_slice_codeunits(pc.replace_substring(texts, "T", " "), 0, 19),
+        format="%Y-%m-%d %H:%M:%S",
+        unit="s",
+        error_is_null=True,
+    )
     if dates.null_count == len(dates):
         return np.full(len(texts), np.nan)
     # The text after the seconds, such as .250+02:00.
@@ -174,7 +213,9 @@ def _signed(seconds: FloatArray, parts: Any) -> FloatArray:
 
 def _filled(texts: Any) -> FloatArray:
     """Return texts as numbers, 0 for empty ones."""
-    return np.array(pc.cast(pc.if_else(pc.equal(texts, ""), "0", texts).fill_null("0"), pa.float64()).to_numpy())
+    return np.array(
+        pc.cast(pc.if_else(pc.equal(texts, ""), "0", texts).fill_null("0"), pa.float64()).to_numpy()
+    )
 
 
 ROW = ""
@@ -210,7 +251,9 @@ class Layout:
 
 def is_numeric(kind: pa.DataType) -> bool:
     """Return whether a type is numeric."""
-    return bool(pa.types.is_integer(kind) or pa.types.is_floating(kind) or pa.types.is_boolean(kind))
+    return bool(
+        pa.types.is_integer(kind) or pa.types.is_floating(kind) or pa.types.is_boolean(kind)
+    )
 
 
 def numeric_columns(schema: pa.Schema) -> list[str]:
@@ -234,8 +277,12 @@ def guess_columns(table: pa.Table) -> Layout:
     named = _named_time(table)
     time = named or _rising(table)
     run = "run" if "run" in names and is_numeric(table.schema.field("run").type) else ""
-    variable = next((n for n in _VARIABLE_NAMES if n in names and is_text(table.schema.field(n).type)), "")
-    value = next((n for n in _VALUE_NAMES if n in names and is_numeric(table.schema.field(n).type)), "")
+    variable = next(
+        (n for n in _VARIABLE_NAMES if n in names and is_text(table.schema.field(n).type)), ""
+    )
+    value = next(
+        (n for n in _VALUE_NAMES if n in names and is_numeric(table.schema.field(n).type)), ""
+    )
     numeric = [n for n in names if is_numeric(table.schema.field(n).type) and n not in (time, run)]
     if variable and value and value != time:
         sure = bool(named) or not set(numeric) - {value, *_NO_VALUES}
@@ -267,13 +314,19 @@ def _named_time(table: pa.Table) -> str:
     bases: dict[str, list[str]] = {}
     for name in table.column_names:
         bases.setdefault(time_name(name).base, []).append(name)
-    found = next((n for wanted in NAMES for n in bases.get(wanted, ()) if _is_usable(table, n)), ROW)
+    found = next(
+        (n for wanted in NAMES for n in bases.get(wanted, ()) if _is_usable(table, n)), ROW
+    )
     if found:
         return found
     compound = (
-        n for n in table.column_names if has_time_word(n) and _is_usable(table, n) and _is_rising_time(table, n)
+        n
+        for n in table.column_names
+        if has_time_word(n) and _is_usable(table, n) and _is_rising_time(table, n)
     )
-    return next(compound, next((n for n in table.column_names if is_time(table.schema.field(n).type)), ROW))
+    return next(
+        compound, next((n for n in table.column_names if is_time(table.schema.field(n).type)), ROW)
+    )
 
 
 def _is_rising_time(table: pa.Table, name: str) -> bool:
@@ -308,13 +361,19 @@ def _rising(table: pa.Table) -> str:
     names = table.column_names
     nameless = all(name == f"column {at}" for at, name in enumerate(names, 1))
     first = names[0] if nameless and len(names) > 1 else ROW
-    return first if first and is_numeric(table.schema.field(first).type) and _rises(table, first) else ROW
+    return (
+        first
+        if first and is_numeric(table.schema.field(first).type) and _rises(table, first)
+        else ROW
+    )
 
 
 def _is_usable(table: pa.Table, name: str) -> bool:
     """Return whether a column has at least one time or number."""
     column = table.column(name)
-    return column.null_count < table.num_rows and (is_numeric(column.type) or _is_moment(table, name))
+    return column.null_count < table.num_rows and (
+        is_numeric(column.type) or _is_moment(table, name)
+    )
 
 
 def is_text(kind: pa.DataType) -> bool:
@@ -343,7 +402,9 @@ def _rises(table: pa.Table, name: str) -> bool:
     return bool((numbers[1:] > numbers[:-1]).all())
 
 
-def choose_columns(table: pa.Table, time: str | None, values: Sequence[str], unit: str = "") -> Layout:
+def choose_columns(
+    table: pa.Table, time: str | None, values: Sequence[str], unit: str = ""
+) -> Layout:
     """Return the roles of the columns; the user may name some of them.
 
     Args:

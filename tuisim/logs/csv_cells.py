@@ -48,7 +48,11 @@ def write_csv(frame: pd.DataFrame, handle: Any) -> None:
             # Not quoted by itself, although a carriage return ends a row.
             quoting = csv.QUOTE_NONNUMERIC
         if changed := {text: safe for text in texts if (safe := harmless(text)) != text}:
-            found.isetitem(at, [changed.get(cell, cell) if isinstance(cell, str) else cell for cell in cells])
+            found.isetitem(
+                at, [changed.get(cell, cell) if isinstance(cell, str) else cell for cell in cells]
+            )
     heading = [harmless(str(name)) for name in frame.columns]
     # Floats are written as their shortest exact text, time spans as pandas prints them.
-    found.to_csv(handle, header=heading, index=False, quoting=quoting, lineterminator="\n", encoding="utf-8")
+    found.to_csv(
+        handle, header=heading, index=False, quoting=quoting, lineterminator="\n", encoding="utf-8"
+    )

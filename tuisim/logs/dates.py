@@ -18,10 +18,13 @@ _GAP = r"(?:T| *[/,_] *| +(?:- +)?)"
 _PART = r"(?:[.,]\d+)"
 """Fraction of a second."""
 _ZONE = r"(?:Z| ?UTC| ?[+-]\d{2}:\d{2}|[+-]\d{4})"
-_C_TIME = rf"[A-Z][a-z]{{2}} (?:{'|'.join(_MONTHS)}) {{1,2}}\d{{1,2}} \d{{2}}:\d{{2}}:\d{{2}} \d{{4}}"
+_C_TIME = (
+    rf"[A-Z][a-z]{{2}} (?:{'|'.join(_MONTHS)}) {{1,2}}\d{{1,2}} \d{{2}}:\d{{2}}:\d{{2}} \d{{4}}"
+)
 """As `time.ctime` writes it."""
 MOMENT = (
-    rf"(?:{_DATE}(?:{_GAP}\d{{1,2}}:\d{{2}}(?::\d{{2}}{_PART}?)?{_ZONE}?)?|\d{{1,2}}:\d{{2}}:\d{{2}}{_PART}?|{_C_TIME})"
+    rf"(?:{_DATE}(?:{_GAP}\d{{1,2}}:\d{{2}}(?::\d{{2}}{_PART}?)?{_ZONE}?)?"
+    rf"|\d{{1,2}}:\d{{2}}:\d{{2}}{_PART}?|{_C_TIME})"
 )
 """Regular expression of a date, a time of day with seconds, or both."""
 _MOMENT_CELL = re.compile(rf"\s*[\[(<]?\s*{MOMENT}\s*[\])>]?\s*")
@@ -81,7 +84,9 @@ def order_is_guessed(texts: Any) -> bool:
     first, second = _largest_parts(texts)
     if not 0 < max(first, second) <= _LAST_MONTH:
         return False
-    return int(pc.count_distinct(_replaced(texts, ((_YEAR_AT_END + ".*", r"\1-\2-\3"),))).as_py()) > 1
+    return (
+        int(pc.count_distinct(_replaced(texts, ((_YEAR_AT_END + ".*", r"\1-\2-\3"),))).as_py()) > 1
+    )
 
 
 def _replaced(texts: Any, changes: Sequence[tuple[str, str]]) -> Any:

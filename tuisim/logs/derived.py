@@ -22,7 +22,14 @@ from tuisim.errors import ConfigError, LogError, among
 from tuisim.logs.columns import is_numeric, numeric_columns
 from tuisim.logs.expressions import FUNCTIONS, Functions, evaluate, names_in
 from tuisim.logs.log import Log, Series
-from tuisim.logs.signals import derivative, integral, known_at, known_in_order, moving_average, resample
+from tuisim.logs.signals import (
+    derivative,
+    integral,
+    known_at,
+    known_in_order,
+    moving_average,
+    resample,
+)
 from tuisim.logs.units import unit_of
 from tuisim.runs.arrays import FloatArray
 from tuisim.runs.frames import computed
@@ -38,7 +45,9 @@ SIGNALS = {
 """Functions besides `FUNCTIONS`, with their descriptions."""
 
 _NAMED = re.compile(r"\s*(?P<name>[^\W\d]\w*)\s*=(?!=)(?P<expression>.*)", re.DOTALL)
-_EVEN = re.compile(rf"\s*resample\s*\((?P<expression>.*),\s*(?P<period_s>{NUMBER})\s*s?\s*\)\s*", re.DOTALL)
+_EVEN = re.compile(
+    rf"\s*resample\s*\((?P<expression>.*),\s*(?P<period_s>{NUMBER})\s*s?\s*\)\s*", re.DOTALL
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,7 +88,10 @@ def derived(log: Log, definition: Definition, otherwise: str) -> list[Series]:
         LogError: the expression is invalid, or names an unknown variable.
     """
     if definition.name in log.table.column_names or definition.name in log.names:
-        raise LogError(f"there is a column {definition.name!r} already", f"such as other = {definition.expression}")
+        raise LogError(
+            f"there is a column {definition.name!r} already",
+            f"such as other = {definition.expression}",
+        )
     names = names_in(definition.expression)
     known = {name.partition(" #")[0] for name in log.names} | set(log.names)
     first = next((name for name in names if name in known), otherwise.partition(" #")[0])
@@ -94,7 +106,10 @@ def derived(log: Log, definition: Definition, otherwise: str) -> list[Series]:
 
 
 def _computed(log: Log, definition: Definition, names: Sequence[str], base: Series) -> Series:
-    columns = {TIME: base.time_s, **{name: _column(log, name, base) for name in names if name != TIME}}
+    columns = {
+        TIME: base.time_s,
+        **{name: _column(log, name, base) for name in names if name != TIME},
+    }
     functions: Functions = {
         **FUNCTIONS,
         "slope": (1, partial(_of_signal, base, derivative), SIGNALS["slope"]),
@@ -140,12 +155,16 @@ def computed_columns(log: Log) -> dict[str, Callable[[], FloatArray]]:
         column.name: partial(_computed_column, column.of, columns, log, robot)
         for columns, _ in owners(robot)
         for column in columns
-        if column.of is not None and column.name not in there and there.issuperset(measured_names(columns))
+        if column.of is not None
+        and column.name not in there
+        and there.issuperset(measured_names(columns))
     }
 
 
 def _computed_column(of: Any, columns: Sequence[Column], log: Log, robot: RobotSpec) -> FloatArray:
-    return computed(of, columns, {name: log.numbers(name) for name in measured_names(columns)}, robot)
+    return computed(
+        of, columns, {name: log.numbers(name) for name in measured_names(columns)}, robot
+    )
 
 
 def robot_of(log: Log) -> RobotSpec | None:
@@ -165,7 +184,9 @@ def with_named_columns(log: Log, text: str) -> Log:
         log = log.with_derived(name, derived(log, Definition(name, name), log.names[0]))
         # A damaged file may have something else as its units.
         if isinstance(units := log.metadata.get("units"), dict):
-            log = replace(log, metadata={**log.metadata, "units": {**units, name: unit_of(name).words}})
+            log = replace(
+                log, metadata={**log.metadata, "units": {**units, name: unit_of(name).words}}
+            )
     return log
 
 
@@ -177,7 +198,9 @@ def spec_in(metadata: Mapping[str, Any], run: int = 0) -> RunSpec | None:
     """
     try:
         entry = metadata["runs"][run]
-        return from_plain({key: value for key, value in entry.items() if key not in ("run", "program")})
+        return from_plain(
+            {key: value for key, value in entry.items() if key not in ("run", "program")}
+        )
     except (KeyError, IndexError, TypeError, ValueError, AttributeError, ConfigError):
         return None
 
@@ -194,7 +217,9 @@ def _average(values: Any, width: Any) -> FloatArray:
 
 
 def _resampled_within(values: Any, period_s: Any) -> FloatArray:
-    raise LogError("resample must be the outermost function", "such as resample(slope(Colour), 0.1)")
+    raise LogError(
+        "resample must be the outermost function", "such as resample(slope(Colour), 0.1)"
+    )
 
 
 @dataclass(frozen=True, slots=True)
@@ -253,7 +278,9 @@ def reckoned_series(log: Log) -> list[Series]:
     missing = [name for name in NEEDED if name not in numbers]
     if missing:
         raise LogError(
-            f"no column {missing[0]!r} with numbers", "a stored run, or its telemetry exported", file=log.title
+            f"no column {missing[0]!r} with numbers",
+            "a stored run, or its telemetry exported",
+            file=log.title,
         )
     spec = spec_in(log.metadata)
     if spec is None:
@@ -262,7 +289,12 @@ def reckoned_series(log: Log) -> list[Series]:
     left, right, x_mm, y_mm, _ = (log.numbers(name) for name in NEEDED)
     found = dead_reckoning(left, right, spec.world.start, spec.robot)
     columns = (found.x_mm, found.y_mm, found.heading_deg, error_mm(found, x_mm, y_mm))
-    base = next((log.series(name) for name in log.names if len(log.series(name).rows) == log.rows), None)
+    base = next(
+        (log.series(name) for name in log.names if len(log.series(name).rows) == log.rows), None
+    )
     time_s = base.time_s if base else np.arange(log.rows, dtype=np.float64)
     rows = base.rows if base else np.arange(log.rows)
-    return [Series(name, time_s, values, rows) for name, values in zip(RECKONED_COLUMNS, columns, strict=True)]
+    return [
+        Series(name, time_s, values, rows)
+        for name, values in zip(RECKONED_COLUMNS, columns, strict=True)
+    ]

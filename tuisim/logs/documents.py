@@ -104,7 +104,9 @@ def _table_of(value: Any, notes: Notes) -> pa.Table | None:
     if isinstance(value, list):
         return _table_of_rows(value, notes)
     if not isinstance(value, dict):
-        raise LogError(f"is a single JSON value, {shortened(json.dumps(value), 40)}, not a table", _ALLOWED)
+        raise LogError(
+            f"is a single JSON value, {shortened(json.dumps(value), 40)}, not a table", _ALLOWED
+        )
     if isinstance(value.get("columns"), list) and isinstance(value.get("data"), list):
         # As pandas writes a frame that is split.
         return _table_of_rows(value["data"], notes, [str(name) for name in value["columns"]])
@@ -117,7 +119,9 @@ def _table_of(value: Any, notes: Notes) -> pa.Table | None:
     if value and all(isinstance(cells, dict) for cells in value.values()):
         # As pandas writes a frame: an object of cells for each column.
         labels = dict.fromkeys(label for cells in value.values() for label in cells)
-        return _table_of_rows([{name: cells.get(label) for name, cells in value.items()} for label in labels], notes)
+        return _table_of_rows(
+            [{name: cells.get(label) for name, cells in value.items()} for label in labels], notes
+        )
     return _table_of_rows([value], notes) if _is_record(value) else _table_of_columns(value, notes)
 
 
@@ -145,7 +149,9 @@ def _is_record(cells: Mapping[str, Any]) -> bool:
 def _table_of_columns(value: Mapping[str, Any], notes: Notes) -> pa.Table | None:
     columns = {name: cells for name, cells in value.items() if isinstance(cells, list)}
     if len({len(cells) for cells in columns.values()}) > 1:
-        lengths = listed(f"{name!r} has {counted(len(cells), 'value')}" for name, cells in columns.items())
+        lengths = listed(
+            f"{name!r} has {counted(len(cells), 'value')}" for name, cells in columns.items()
+        )
         raise LogError(f"columns of different lengths: {lengths}", _ALLOWED)
     others = [repr(name) for name in value if name not in columns]
     if others:
@@ -159,7 +165,9 @@ def _table_of_rows(rows: Sequence[Any], notes: Notes, names: Sequence[str] = ())
     if rows and not any(isinstance(row, list | dict) for row in rows):
         notes.say("a list of single values is read as one column")
         rows = [[row] for row in rows]
-    if any(isinstance(row, list) for row in rows) and not any(isinstance(row, dict) for row in rows):
+    if any(isinstance(row, list) for row in rows) and not any(
+        isinstance(row, dict) for row in rows
+    ):
         rows = _objects_of(rows, names)
     found = [(at, row) for at, row in enumerate(rows, 1) if isinstance(row, dict)]
     notes.add(

@@ -42,7 +42,9 @@ def check_target(path: str | Path) -> Path:
     target = Path(path)
     exporter = EXPORTERS.get(target.suffix.lower())
     if exporter is None:
-        raise ExportError(f"cannot write {target}: unknown format {target.suffix!r}", f"a file ends in {ALLOWED}")
+        raise ExportError(
+            f"cannot write {target}: unknown format {target.suffix!r}", f"a file ends in {ALLOWED}"
+        )
     for place in (target, companion_of(target)) if exporter.companion else (target,):
         check_place(place)
     return target
@@ -60,7 +62,9 @@ def check_targets(targets: Iterable[str | Path]) -> None:
         check_target(target)
         real = os.path.realpath(target)
         if real in seen:
-            raise ConfigError(f"{real} is named twice", "give each export its own file", key="--export")
+            raise ConfigError(
+                f"{real} is named twice", "give each export its own file", key="--export"
+            )
         seen.add(real)
 
 
@@ -153,7 +157,9 @@ def export_log(log: Log, table: LogTable, path: str | Path) -> None:
     metadata: dict[str, Any] = {**of_frame, **log.metadata, "columns": of_frame["columns"]}
     units = metadata.get("units")
     if isinstance(units, dict):
-        metadata["units"] = {name: unit for name, unit in units.items() if name in metadata["columns"]}
+        metadata["units"] = {
+            name: unit for name, unit in units.items() if name in metadata["columns"]
+        }
     export_frame(frame, path, metadata)
 
 
@@ -177,7 +183,11 @@ def typed_frame(table: LogTable) -> pd.DataFrame:
             frame[name] = column if spans.isna().any() else spans.astype("timedelta64[ns]")
         elif name in WHOLE and pd.api.types.is_float_dtype(column.dtype):
             numbers = column.to_numpy()
-            if (np.isfinite(numbers) & (np.abs(numbers) < _MOST_WHOLE) & (numbers == np.rint(numbers))).all():
+            if (
+                np.isfinite(numbers)
+                & (np.abs(numbers) < _MOST_WHOLE)
+                & (numbers == np.rint(numbers))
+            ).all():
                 frame[name] = column.astype("int64")
     return frame
 
@@ -227,7 +237,11 @@ Metadata = Mapping[str, Any]
 def files_in_words(target: Path) -> str:
     """Return what an export has written: the file, and the one beside it if there is one."""
     exporter = EXPORTERS.get(target.suffix.lower())
-    beside = f"; what it is and its units: {companion_of(target).name}" if exporter and exporter.companion else ""
+    beside = (
+        f"; what it is and its units: {companion_of(target).name}"
+        if exporter and exporter.companion
+        else ""
+    )
     return f"{target}{beside}"
 
 
@@ -259,11 +273,16 @@ def _write_csv(frame: pd.DataFrame, metadata: Metadata, handle: BinaryIO) -> Non
 
 def _write_jsonl(frame: pd.DataFrame, metadata: Metadata, handle: BinaryIO) -> None:
     names = [str(name) for name in frame.columns]
-    columns = [frame[name].astype("str") if name in TIMEDELTA else frame[name] for name in frame.columns]
+    columns = [
+        frame[name].astype("str") if name in TIMEDELTA else frame[name] for name in frame.columns
+    ]
     for values in zip(*(column.tolist() for column in columns), strict=True):
         row = {name: _plain(value) for name, value in zip(names, values, strict=True)}
         # Dates and the like are written as text.
-        handle.write(json.dumps(row, ensure_ascii=False, default=str).encode(errors="backslashreplace") + b"\n")
+        handle.write(
+            json.dumps(row, ensure_ascii=False, default=str).encode(errors="backslashreplace")
+            + b"\n"
+        )
 
 
 def _plain(value: Any) -> Any:

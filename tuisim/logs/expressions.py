@@ -82,7 +82,9 @@ FUNCTIONS: Functions = {
 CONSTANTS: Mapping[str, float] = {"pi": np.pi}
 
 
-def evaluate(text: str, columns: Mapping[str, FloatArray], functions: Functions = FUNCTIONS) -> FloatArray:
+def evaluate(
+    text: str, columns: Mapping[str, FloatArray], functions: Functions = FUNCTIONS
+) -> FloatArray:
     """Return the value of an expression in each row.
 
     Args:
@@ -111,7 +113,9 @@ def names_in(text: str) -> list[str]:
     """
     parsed, names = _read(text)
     called = {id(node.func) for node in ast.walk(parsed) if isinstance(node, ast.Call)}
-    found = [node for node in ast.walk(parsed) if isinstance(node, ast.Name) and id(node) not in called]
+    found = [
+        node for node in ast.walk(parsed) if isinstance(node, ast.Name) and id(node) not in called
+    ]
     found.sort(key=lambda node: (node.lineno, node.col_offset))
     named = dict.fromkeys(names.get(node.id, node.id) for node in found)
     return [name for name in named if name not in CONSTANTS]
@@ -141,7 +145,9 @@ def _parse(source: str, text: str) -> ast.Expression:
         return ast.parse(_SINGLE_EQUAL.sub("==", source.strip()), mode="eval")
     except SyntaxError as error:
         at = error.offset or 0
-        where = f" at character {at - len(_SINGLE_EQUAL.findall(source.strip()[:at]))}" if at else ""
+        where = (
+            f" at character {at - len(_SINGLE_EQUAL.findall(source.strip()[:at]))}" if at else ""
+        )
         message = f"cannot read the expression {text!r}{where}: {error.msg}"
         raise LogError(message, f"allowed are {ALLOWED}") from error
     # ValueError: a null character; the others: too deeply nested for the parser.
@@ -153,7 +159,11 @@ class _Evaluation:
     """The evaluation of one expression; `names` are those in backticks by their placeholders."""
 
     def __init__(
-        self, columns: Mapping[str, FloatArray], names: Mapping[str, str], text: str, functions: Functions
+        self,
+        columns: Mapping[str, FloatArray],
+        names: Mapping[str, str],
+        text: str,
+        functions: Functions,
     ) -> None:
         self._columns, self._names, self._text, self._functions = columns, names, text, functions
 
@@ -176,17 +186,24 @@ class _Evaluation:
             case ast.BoolOp(op=op, values=parts):
                 join = np.logical_and if isinstance(op, ast.And) else np.logical_or
                 return reduce(join, map(self.value, parts))
-            case ast.Compare(left=left, ops=ops, comparators=others) if all(type(op) in _OPERATORS for op in ops):
+            case ast.Compare(left=left, ops=ops, comparators=others) if all(
+                type(op) in _OPERATORS for op in ops
+            ):
                 return self._compared([left, *others], ops)
             case ast.IfExp(test=test, body=body, orelse=other):
                 return np.where(self.value(test), self.value(body), self.value(other))
             case ast.Call(func=ast.Name(id=name), args=arguments, keywords=[]):
                 return self._called(name, arguments)
-        raise LogError(f"{ast.unparse(node)!r} is not allowed in {self._text!r}", f"allowed are {ALLOWED}")
+        raise LogError(
+            f"{ast.unparse(node)!r} is not allowed in {self._text!r}", f"allowed are {ALLOWED}"
+        )
 
     def _compared(self, parts: list[ast.expr], ops: list[ast.cmpop]) -> Any:
         values = [self.value(part) for part in parts]
-        truths = (COMPARE[_OPERATORS[type(op)]](*pair) for op, pair in zip(ops, pairwise(values), strict=True))
+        truths = (
+            COMPARE[_OPERATORS[type(op)]](*pair)
+            for op, pair in zip(ops, pairwise(values), strict=True)
+        )
         return reduce(np.logical_and, truths, True)
 
     def _named(self, name: str) -> Any:
@@ -201,5 +218,7 @@ class _Evaluation:
             raise LogError(f"no function {name!r}", among(name, self._functions))
         count, function, _ = self._functions[name]
         if len(arguments) != count:
-            raise LogError(f"{name} takes {count} {'value' if count == 1 else 'values'}, got {len(arguments)}")
+            raise LogError(
+                f"{name} takes {count} {'value' if count == 1 else 'values'}, got {len(arguments)}"
+            )
         return function(*(self.value(argument) for argument in arguments))

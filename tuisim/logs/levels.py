@@ -118,4 +118,12 @@ def levels_of(values: FloatArray, noise: int, search: Search = plateaus) -> Leve
         percents = without_clamping(level * scale, noise)
         true_level = percents / scale if noise else level
         greys_near = nearest_greys(percents)
-    return Levels(found["start"], found["stop"], level, true_level, found["spread"], found["strays"], tuple(greys_near))
+    return Levels(
+        found["start"],
+        found["stop"],
+        level,
+        true_level,
+        found["spread"],
+        found["strays"],
+        tuple(greys_near),
+    )

@@ -41,7 +41,9 @@ def members(table: pa.Table, layout: Layout) -> list[Member]:
     runs, run_codes = _encoded(table.column(layout.run)) if layout.run else ([0], None)
     several = len(runs) > 1
     if not layout.variable:
-        rows_of = _rows_by_code(run_codes, len(runs)) if several and run_codes is not None else [None]
+        rows_of = (
+            _rows_by_code(run_codes, len(runs)) if several and run_codes is not None else [None]
+        )
         found = [(name, at) for at in range(len(runs)) for name in layout.values]
         return [_member(name, runs[at], rows_of[at], several) for name, at in found]
     names, codes = _encoded(table.column(layout.variable))
@@ -53,7 +55,9 @@ def members(table: pa.Table, layout: Layout) -> list[Member]:
     pairs, pair_codes = _encoded(whole_numbers(codes.astype(np.int64) * len(runs) + run_codes))
     rows_of = _rows_by_code(pair_codes, len(pairs))
     found = [(names[pair // len(runs)], runs[pair % len(runs)]) for pair in pairs]
-    return [_member(name, run, rows, True) for (name, run), rows in zip(found, rows_of, strict=True)]
+    return [
+        _member(name, run, rows, True) for (name, run), rows in zip(found, rows_of, strict=True)
+    ]
 
 
 def _member(name: object, run: Any, rows: IntArray | None, several: bool) -> Member:
@@ -81,7 +85,9 @@ def _encoded(column: pa.ChunkedArray) -> tuple[list[Any], IntArray]:
     place_of = np.zeros(len(values) + 1, np.int32)
     place_of[appeared] = np.arange(len(appeared))
     codes = [place_of[whole_numbers_of(chunk)] for chunk in indices]
-    return [[*values, None][at] for at in appeared], np.concatenate(codes) if codes else np.empty(0, np.int32)
+    return [[*values, None][at] for at in appeared], np.concatenate(codes) if codes else np.empty(
+        0, np.int32
+    )
 
 
 def _rows_by_code(codes: IntArray, count: int) -> list[IntArray]:
@@ -221,7 +227,9 @@ class Log:
 
     def numbers_at(self, column: str, rows: IntArray) -> FloatArray:
         """Return the numbers of a column in some rows, as `numbers`, but without keeping those of the others."""
-        return numbers_of(self.table.column(column).take(whole_numbers(np.ascontiguousarray(rows, np.int64))))
+        return numbers_of(
+            self.table.column(column).take(whole_numbers(np.ascontiguousarray(rows, np.int64)))
+        )
 
     def with_layout(self, layout: Layout) -> Log:
         """Return the same log with another layout."""
@@ -253,9 +261,16 @@ class Log:
 
     def without_derived(self, column: str) -> Log:
         """Return the same log without the derived series of this name."""
-        derived = {name: one for name, one in self.derived.items() if name.partition(" #")[0] != column}
+        derived = {
+            name: one for name, one in self.derived.items() if name.partition(" #")[0] != column
+        }
         if len(derived) == len(self.derived):
             return self
-        table = self.table.drop_columns([column]) if column in self.table.column_names else self.table
-        kept = replace(self._kept, numbers={name: at for name, at in self._kept.numbers.items() if name != column})
+        table = (
+            self.table.drop_columns([column]) if column in self.table.column_names else self.table
+        )
+        kept = replace(
+            self._kept,
+            numbers={name: at for name, at in self._kept.numbers.items() if name != column},
+        )
         return replace(self, table=table, derived=derived, _kept=kept)

@@ -59,17 +59,26 @@ def without_strays(values: FloatArray, pieces: Pieces, least_step: float, sigma:
     at = np.arange(1, len(pieces))
     at = at[(at < after[at]) & (after[at] < len(pieces))]
     # At least two on either side: an edge is no stray.
-    return _joined_at(values, pieces, np.stack((at, after[at]), axis=1), MIN_SAMPLES, least_step, sigma)
+    return _joined_at(
+        values, pieces, np.stack((at, after[at]), axis=1), MIN_SAMPLES, least_step, sigma
+    )
 
 
 def joined(values: FloatArray, pieces: Pieces, least_step: float, sigma: float) -> Pieces:
     """Join neighbours that drift into each other, with at most a stray between them."""
     at = 1 + np.flatnonzero(pieces[1:, 0] - pieces[:-1, 1] <= STRAY_SAMPLES)
-    return _joined_at(values, pieces, np.stack((at, at), axis=1), STRAY_SAMPLES + 1, least_step, sigma)
+    return _joined_at(
+        values, pieces, np.stack((at, at), axis=1), STRAY_SAMPLES + 1, least_step, sigma
+    )
 
 
 def _joined_at(
-    values: FloatArray, pieces: Pieces, seams: IntArray, least_samples: int, least_step: float, sigma: float
+    values: FloatArray,
+    pieces: Pieces,
+    seams: IntArray,
+    least_samples: int,
+    least_step: float,
+    sigma: float,
 ) -> Pieces:
     """Join pieces at the seams across which the log goes on, the first ones first.
 
@@ -86,7 +95,9 @@ def _joined_at(
     goes_on, unsure = np.zeros(len(seams), bool), np.ones(len(seams), bool)
     # If what is before a seam was itself joined to what is before it, more samples tell how it goes on.
     while unsure.any():
-        goes_on[unsure] = _go_on(values, left[unsure], right[unsure], least_samples, least_step, sigma)
+        goes_on[unsure] = _go_on(
+            values, left[unsure], right[unsure], least_samples, least_step, sigma
+        )
         firsts = _firsts(len(pieces), seams[goes_on])
         nearest = left[:, 1] - NEAR_SAMPLES
         starts = pieces[firsts[seams[:, 0] - 1], 0]
@@ -106,20 +117,29 @@ def _firsts(count: int, seams: IntArray) -> IntArray:
             taken.append((at, after + 1))
             reached = after
     starts, stops = np.array(taken, np.int64).reshape(-1, 2).T
-    joined = np.cumsum(np.bincount(starts, minlength=count + 1) - np.bincount(stops, minlength=count + 1))[:count]
+    joined = np.cumsum(
+        np.bincount(starts, minlength=count + 1) - np.bincount(stops, minlength=count + 1)
+    )[:count]
     firsts: IntArray = np.maximum.accumulate(np.where(joined, 0, np.arange(count)))
     return firsts
 
 
 def _go_on(
-    values: FloatArray, left: Pieces, right: Pieces, least_samples: int, least_step: float, sigma: float
+    values: FloatArray,
+    left: Pieces,
+    right: Pieces,
+    least_samples: int,
+    least_step: float,
+    sigma: float,
 ) -> BoolArray:
     """Return which pieces continue those on their left: a common drift explains the step between them."""
     goes_on = np.minimum(lengths_of(left), lengths_of(right)) >= least_samples
     before, after = left[goes_on], right[goes_on]
     before[:, 0] = np.maximum(before[:, 0], before[:, 1] - NEAR_SAMPLES)
     after[:, 1] = np.minimum(after[:, 1], after[:, 0] + NEAR_SAMPLES)
-    step, spread = _steps_between(_lines(values, before, sigma), _lines(values, after, sigma), before[:, 1])
+    step, spread = _steps_between(
+        _lines(values, before, sigma), _lines(values, after, sigma), before[:, 1]
+    )
     goes_on[goes_on] = np.abs(step) <= np.maximum(least_step, CERTAINTY * sigma * spread)
     return goes_on
 
@@ -147,7 +167,11 @@ def _lines(values: FloatArray, pieces: Pieces, sigma: float) -> _Lines:
         place = kept @ at / samples
         level = _row_sums(kept, part) / samples
         apart = kept * (at - place[:, None])
-        lines.samples[some], lines.place[some], lines.level[some] = samples, pieces[some, 0] + place, level
+        lines.samples[some], lines.place[some], lines.level[some] = (
+            samples,
+            pieces[some, 0] + place,
+            level,
+        )
         lines.width[some] = _row_sums(apart, apart)
         lines.rise[some] = _row_sums(apart, part - level[:, None])
     return lines
@@ -204,4 +228,8 @@ def medians(part: FloatArray) -> FloatArray:
     """Return the median of each row; numpy's own takes ten times longer for short rows."""
     ordered = np.sort(part, axis=1)
     middle = part.shape[1] // 2
-    return ordered[:, middle] if part.shape[1] % 2 else (ordered[:, middle - 1] + ordered[:, middle]) / 2.0
+    return (
+        ordered[:, middle]
+        if part.shape[1] % 2
+        else (ordered[:, middle - 1] + ordered[:, middle]) / 2.0
+    )

@@ -91,7 +91,14 @@ Search = Callable[[FloatArray], list[Plateau]]
 _Found = NDArray[np.void]
 """Plateaus as an array of `FIELDS`, shape (n,)."""
 FIELDS = np.dtype(
-    [("start", "i8"), ("stop", "i8"), ("level", "f8"), ("spread", "f8"), ("drift", "f8"), ("strays", "i8")]
+    [
+        ("start", "i8"),
+        ("stop", "i8"),
+        ("level", "f8"),
+        ("spread", "f8"),
+        ("drift", "f8"),
+        ("strays", "i8"),
+    ]
 )
 
 
@@ -119,7 +126,9 @@ def _steps(differences: FloatArray) -> BoolArray:
     """
     calm = np.minimum(differences[1:], differences[:-1]).max(initial=0.0)
     steps: BoolArray = differences > FAR * calm
-    return steps if steps.sum() > _FEW_STEPS * len(differences) else np.zeros(len(differences), bool)
+    return (
+        steps if steps.sum() > _FEW_STEPS * len(differences) else np.zeros(len(differences), bool)
+    )
 
 
 @np.errstate(over="ignore", invalid="ignore")
@@ -162,7 +171,9 @@ def plateaus(values: FloatArray) -> list[Plateau]:
         return []
     # After growing, two may be separated by no more than a stray.
     spans = joined(clean, _grown(clean, _spans(found), sigma), least_step, sigma)
-    found = _with_ends(clean, _measured_again(clean, spans, found, sigma), max(least_step, FAR * sigma))
+    found = _with_ends(
+        clean, _measured_again(clean, spans, found, sigma), max(least_step, FAR * sigma)
+    )
     found["start"], found["stop"] = finite[found["start"]], finite[found["stop"] - 1] + 1
     return list(map(Plateau._make, found.tolist()))
 
@@ -225,7 +236,10 @@ def _partition(scaled: FloatArray, places: IntArray) -> Pieces:
         # A start with higher costs can never become the best one again.
         if len(alive) <= _FEW_STARTS:
             costs = [
-                best[start] + square - squares[start] - (rise := total - sums[start]) * rise / (end - ends[start])
+                best[start]
+                + square
+                - squares[start]
+                - (rise := total - sums[start]) * rise / (end - ends[start])
                 for start in alive
             ]
             least = min(costs)
@@ -236,7 +250,12 @@ def _partition(scaled: FloatArray, places: IntArray) -> Pieces:
         else:
             starts = np.asarray(alive)
             rises = total - all_sums[starts]
-            all_costs = all_best[starts] + square - all_squares[starts] - rises * rises / (end - places[starts])
+            all_costs = (
+                all_best[starts]
+                + square
+                - all_squares[starts]
+                - rises * rises / (end - places[starts])
+            )
             cheapest = int(np.argmin(all_costs))
             before.append(int(starts[cheapest]))
             highest = float(all_costs[cheapest]) + price
@@ -336,7 +355,10 @@ def _with_ends(values: FloatArray, found: _Found, least_step: float) -> _Found:
     """
     first, last = 0, len(values) - 1
     before, after = found[0], found[-1]
-    ends = ((first, before["start"] - first, before["level"]), (last, last + 1 - after["stop"], after["level"]))
+    ends = (
+        (first, before["start"] - first, before["level"]),
+        (last, last + 1 - after["stop"], after["level"]),
+    )
     single = [
         (at, at + 1, values[at], 0.0, 0.0, 0)
         for at, apart, level in ends
@@ -359,7 +381,12 @@ def _grown(values: FloatArray, pieces: Pieces, sigma: float) -> Pieces:
             if abs(values[ahead] - medians(values[None, start : start + NEAR_SAMPLES])[0]) <= near:
                 start = ahead
         for ahead in range(stop, min(last, stop + 1 + STRAY_SAMPLES)):
-            if abs(values[ahead] - medians(values[None, max(start, stop - NEAR_SAMPLES) : stop])[0]) <= near:
+            if (
+                abs(
+                    values[ahead] - medians(values[None, max(start, stop - NEAR_SAMPLES) : stop])[0]
+                )
+                <= near
+            ):
                 stop = ahead + 1
         grown[at] = start, stop
     return grown
@@ -417,7 +444,8 @@ def plateaus_in_subprocess(values: FloatArray, stopped: Callable[[], bool]) -> l
             found = np.fromfile(answer, FIELDS).tolist()
     except OSError as error:
         raise LogError(
-            f"cannot search for bands: {error.strerror or error}", "it needs space for temporary files"
+            f"cannot search for bands: {error.strerror or error}",
+            "it needs space for temporary files",
         ) from error
     return list(map(Plateau._make, found))
 

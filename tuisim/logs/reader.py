@@ -29,12 +29,24 @@ from tuisim.logs.blocks import (
     Readable,
     unpacked,
 )
-from tuisim.logs.columns import UNIT_NAMES, choose_columns, guess_columns, guessed_order, unread_time
+from tuisim.logs.columns import (
+    UNIT_NAMES,
+    choose_columns,
+    guess_columns,
+    guessed_order,
+    unread_time,
+)
 from tuisim.logs.documents import DocumentReader, begins_as_json, is_document
 from tuisim.logs.export import ALLOWED, EXPORTERS, companion_of, log_metadata, typed_frame
 from tuisim.logs.log import Log
 from tuisim.logs.stamped import StampedReader, looks_stamped, reader_of_stamped
-from tuisim.logs.text_tables import CsvReader, JsonReader, PrintedReader, exported_csv, looks_printed
+from tuisim.logs.text_tables import (
+    CsvReader,
+    JsonReader,
+    PrintedReader,
+    exported_csv,
+    looks_printed,
+)
 from tuisim.logs.units import TEXT, TIMEDELTA
 from tuisim.logs.warnings import Notes
 from tuisim.regular_file import read_regular
@@ -66,7 +78,9 @@ class Loaded:
     done: bool = False
 
 
-def open_log(source: str | Path, time: str | None = None, values: Sequence[str] = (), unit: str = "") -> Log:
+def open_log(
+    source: str | Path, time: str | None = None, values: Sequence[str] = (), unit: str = ""
+) -> Log:
     """Return the whole log in a file.
 
     Args:
@@ -93,7 +107,9 @@ def read_log(path: str | Path) -> pd.DataFrame:
     """
     source = Path(path)
     if source.suffix.lower() not in EXPORTERS:
-        raise LogError(f"unknown format {source.suffix!r}", f"a log ends in {ALLOWED}", file=str(source))
+        raise LogError(
+            f"unknown format {source.suffix!r}", f"a log ends in {ALLOWED}", file=str(source)
+        )
     if not os.path.isfile(source):
         raise LogError("no such file", file=str(source))
     notes, binary = Notes(), not EXPORTERS[source.suffix.lower()].companion
@@ -117,7 +133,9 @@ def _exported(source: Path, notes: Notes) -> pa.Table:
         table = JsonReader(notes, exact=True).read(Block(1, source.read_bytes()))
         # Without a row, only the companion file names the columns.
         names = () if table is not None else _metadata_beside(source).get("columns", ())
-        kinds = {name: pa.string() if name in (*TIMEDELTA, *TEXT) else pa.float64() for name in names}
+        kinds = {
+            name: pa.string() if name in (*TIMEDELTA, *TEXT) else pa.float64() for name in names
+        }
         return pa.schema(kinds).empty_table() if table is None else table
     parts = arrow.parquet_parts if suffix == ".parquet" else arrow.arrow_parts
     return joined([table for _, table in parts(source, notes)])
@@ -145,13 +163,20 @@ def read_pieces(
     if not sum(part.num_rows for part in parts):
         said = "; ".join(notes.texts())
         raise LogError(
-            "no rows" + (f": {said}" if said else ""), "a log has a header and one row per sample", file=title
+            "no rows" + (f": {said}" if said else ""),
+            "a log has a header and one row per sample",
+            file=title,
         )
     log = _log(title, parts, notes, (time, values, unit))
     yield Loaded(1.0, log, done=True)
 
 
-def _log(title: str, parts: Sequence[pa.Table], notes: Notes, named: tuple[str | None, Sequence[str], str]) -> Log:
+def _log(
+    title: str,
+    parts: Sequence[pa.Table],
+    notes: Notes,
+    named: tuple[str | None, Sequence[str], str],
+) -> Log:
     table = joined(parts)
     try:
         layout = choose_columns(table, *named)
@@ -159,7 +184,9 @@ def _log(title: str, parts: Sequence[pa.Table], notes: Notes, named: tuple[str |
         raise LogError(str(error), file=title) from error
     if layout.since_first:
         unit = UNIT_NAMES[layout.unit_s]
-        notes.say(f"the times in {layout.time!r} are {unit} since 1970: shown from the first one on")
+        notes.say(
+            f"the times in {layout.time!r} are {unit} since 1970: shown from the first one on"
+        )
     if named[0] is None and (unread := unread_time(table, layout)):
         notes.say(f"the times in {unread!r} cannot be read: row numbers are used")
     if guessed_order(table, layout):
@@ -171,7 +198,9 @@ def _log(title: str, parts: Sequence[pa.Table], notes: Notes, named: tuple[str |
 def _metadata_beside(path: Path) -> Mapping[str, Any]:
     """Return the metadata in the companion file of an export; empty if there is none."""
     try:
-        found = json.loads(read_regular(companion_of(path), _MOST_COMPANION_BYTES, follow_links=True))
+        found = json.loads(
+            read_regular(companion_of(path), _MOST_COMPANION_BYTES, follow_links=True)
+        )
     except (OSError, ValueError, RecursionError):
         return {}
     return found if isinstance(found, dict) else {}
@@ -183,8 +212,12 @@ def joined(parts: Sequence[pa.Table]) -> pa.Table:
         table = pa.concat_tables(parts, promote_options="permissive")
     except (pa.ArrowTypeError, pa.ArrowInvalid):
         # A column that was empty at first, and typed as numbers, may turn out to be text.
-        kinds = pa.unify_schemas([_filled(part).schema for part in parts], promote_options="permissive")
-        table = pa.concat_tables([_with_kinds(part, kinds) for part in parts], promote_options="permissive")
+        kinds = pa.unify_schemas(
+            [_filled(part).schema for part in parts], promote_options="permissive"
+        )
+        table = pa.concat_tables(
+            [_with_kinds(part, kinds) for part in parts], promote_options="permissive"
+        )
     return table.unify_dictionaries()
 
 
@@ -231,7 +264,9 @@ def _source_parts(source: str | Path, notes: Notes) -> Iterator[tuple[float, pa.
         regular = stat.S_ISREG(mode)
         with path.open("rb", buffering=0 if not regular else -1) as handle:
             head = handle.read(MAGIC_BYTES) if regular else b""
-            binary = next((parts for magic, parts in arrow.FORMATS.items() if head.startswith(magic)), None)
+            binary = next(
+                (parts for magic, parts in arrow.FORMATS.items() if head.startswith(magic)), None
+            )
             if binary is not None:
                 yield from binary(path, notes)
                 return
@@ -240,14 +275,18 @@ def _source_parts(source: str | Path, notes: Notes) -> Iterator[tuple[float, pa.
             if (inner := unpacked(str(path), head, handle, notes)) is not None:
                 yield from text_parts(inner, 0, path.with_suffix("").suffix.lower(), notes)
             else:
-                yield from text_parts(handle, path.stat().st_size if regular else 0, path.suffix.lower(), notes)
+                yield from text_parts(
+                    handle, path.stat().st_size if regular else 0, path.suffix.lower(), notes
+                )
     except FileNotFoundError as error:
         raise LogError("no such file", file=str(path)) from error
     except OSError as error:
         raise LogError(f"cannot be read: {error.strerror or error}", file=str(path)) from error
 
 
-def text_parts(handle: Readable, size: int, suffix: str, notes: Notes) -> Iterator[tuple[float, pa.Table | None]]:
+def text_parts(
+    handle: Readable, size: int, suffix: str, notes: Notes
+) -> Iterator[tuple[float, pa.Table | None]]:
     """Yield the rows of a text, with the fraction of it that has been read.
 
     Args:
@@ -268,7 +307,12 @@ def text_parts(handle: Readable, size: int, suffix: str, notes: Notes) -> Iterat
             read = _after_hole(cast("BinaryIO", handle), read)
         block = cutter.feed(data) if data else cutter.finish()
         block, held = (block if held is None else held.followed_by(block)), None
-        if reader is None and block is not None and data and len(list(islice(block.lines(), 2))) < 2:
+        if (
+            reader is None
+            and block is not None
+            and data
+            and len(list(islice(block.lines(), 2))) < 2
+        ):
             # What a single line is depends on whether another one follows.
             block, held = None, block
         part = min(1.0, read / size) if size else float("nan")
@@ -302,14 +346,18 @@ def _refuse_binary(data: bytes) -> None:
     if arrow.is_old_stream(data):
         raise LogError(arrow.OLD_STREAM, arrow.OLD_STREAM_HINT)
     if data.startswith((*arrow.FORMATS, *MAGICS)):
-        raise LogError("only text can be read from a pipe or inside a compressed file", "name the file itself")
+        raise LogError(
+            "only text can be read from a pipe or inside a compressed file", "name the file itself"
+        )
 
 
 def _reader_for(
     block: Block, suffix: str, notes: Notes
 ) -> CsvReader | JsonReader | DocumentReader | PrintedReader | StampedReader:
     lines = [line for _, line in islice(block.lines(), 30)]
-    if suffix in (".jsonl", ".ndjson", ".json") or (suffix not in _TABLES and begins_as_json(lines)):
+    if suffix in (".jsonl", ".ndjson", ".json") or (
+        suffix not in _TABLES and begins_as_json(lines)
+    ):
         return DocumentReader(notes) if lines and is_document(lines) else JsonReader(notes)
     if looks_stamped(lines):
         return reader_of_stamped(lines, notes)
@@ -342,4 +390,6 @@ def _log_of_columns(kind: str, runs: Sequence[StoredRun], columns: Mapping[str, 
     found = [note for run in runs for note in run.notes]
     if kind == "telemetry":
         found += filter(None, map(damage_note, runs))
-    return Log(title, table, guess_columns(table), tuple(found), 0, log_metadata(kind, columns, runs))
+    return Log(
+        title, table, guess_columns(table), tuple(found), 0, log_metadata(kind, columns, runs)
+    )

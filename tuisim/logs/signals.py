@@ -59,7 +59,9 @@ def derivative(time_s: FloatArray, values: FloatArray) -> FloatArray:
     return slopes
 
 
-def integral(time_s: FloatArray, values: FloatArray, between: Between = Between.LINEAR) -> FloatArray:
+def integral(
+    time_s: FloatArray, values: FloatArray, between: Between = Between.LINEAR
+) -> FloatArray:
     """Return the integral from the first sample to each, in units times seconds, shape (n,).
 
     Args:
@@ -90,7 +92,9 @@ def moving_average(values: FloatArray, width: int) -> FloatArray:
         LogError: the width is not odd or not positive.
     """
     if width < 1 or width % 2 == 0:
-        raise LogError(f"a moving average needs an odd number of samples, got {width}", "such as 3, 5 or 7")
+        raise LogError(
+            f"a moving average needs an odd number of samples, got {width}", "such as 3, 5 or 7"
+        )
     known = np.isfinite(values)
     # Wider windows give the same result.
     width = min(width, 2 * len(values) + 1)
@@ -150,7 +154,9 @@ def even_moments(start_s: float, stop_s: float, period_s: float) -> FloatArray:
     # A small margin, so that rounding does not drop the last time.
     count = (stop_s - start_s) / period_s * (1.0 + 1e-12) + 1e-9 + 1
     if count > MAX_RESAMPLED:
-        raise LogError(f"a period of {period_s:g} s gives {count:.0f} rows", f"at most {MAX_RESAMPLED}")
+        raise LogError(
+            f"a period of {period_s:g} s gives {count:.0f} rows", f"at most {MAX_RESAMPLED}"
+        )
     moments: FloatArray = start_s + np.arange(int(count), dtype=np.float64) * period_s
     return moments
 
@@ -228,6 +234,8 @@ def summary_of(values: FloatArray, quantiles: Sequence[float] = QUANTILES) -> Su
     with np.errstate(over="ignore", invalid="ignore"):
         # The mean of equal values may be off by rounding.
         mean = low if low == high else float(finite.mean(dtype=np.float64))
-        std = float(finite.std(ddof=1, dtype=np.float64)) if len(finite) > 1 and low != high else 0.0
+        std = (
+            float(finite.std(ddof=1, dtype=np.float64)) if len(finite) > 1 and low != high else 0.0
+        )
         found = tuple(float(value) for value in np.quantile(finite, quantiles)) if quantiles else ()
     return Summary(len(finite), left_out, low, mean, high, std, found)

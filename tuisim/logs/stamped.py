@@ -20,7 +20,9 @@ _STAMPED = re.compile(
     rf"\s*(?:(?P<open>[\[(<])\s*)?(?P<stamp>(?>{MOMENT})|(?>{_NUMBER}))(?:\s*(?P<close>[\])>]))?"
     r"(?P<between>\s*(?::|->|=>|=|-(?= ))\s*| +|(?<=[\])>]))(?P<rest>\S.*?)\s*"
 )
-_LEVEL = re.compile(r"\[?(?:DEBUG|INFO|WARN(?:ING)?|ERROR|CRITICAL)\]?\s*:?\s*(?:[\w.]+:\s*(?=\w+:))?")
+_LEVEL = re.compile(
+    r"\[?(?:DEBUG|INFO|WARN(?:ING)?|ERROR|CRITICAL)\]?\s*:?\s*(?:[\w.]+:\s*(?=\w+:))?"
+)
 """Level of Python's `logging`, and the name of the logger."""
 _NAME = re.compile(r"([^\W\d]\w*)\s*[:=]\s*")
 _VALUES = re.compile(rf"{_NUMBER}(?:(?:\s*[,;]\s*|\s+){_NUMBER})*")
@@ -48,13 +50,17 @@ def parse_stamped(line: str) -> Stamped | None:
     rest = _LEVEL.sub("", found["rest"], 1)
     rest = _NAME.sub(r"\1: ", rest, 1) if _NAME.match(rest) else rest
     is_sample = parse_sample(rest) is not None
-    return Stamped(found["stamp"], rest, is_sample) if is_sample or _VALUES.fullmatch(rest) else None
+    return (
+        Stamped(found["stamp"], rest, is_sample) if is_sample or _VALUES.fullmatch(rest) else None
+    )
 
 
 def looks_stamped(lines: Sequence[str]) -> bool:
     """Return whether more than half of the lines begin with a time, and are not a table with a heading."""
     stamped = [parse_stamped(line) is not None for line in lines]
-    with_heading = len(lines) > 1 and not stamped[0] and len(lines[0].split()) == len(lines[1].split())
+    with_heading = (
+        len(lines) > 1 and not stamped[0] and len(lines[0].split()) == len(lines[1].split())
+    )
     return 2 * sum(stamped) > len(lines) and not with_heading
 
 
@@ -80,7 +86,10 @@ def _stamped_sample(line: str) -> tuple[str, float, str | None] | None:
 
 def _numbered_sample(line: str) -> tuple[str, float, float | None] | None:
     sample = _stamped_sample(line)
-    return sample and (*sample[:2], float(sample[2]) if sample[2] is not None and _is_number(sample[2]) else None)
+    return sample and (
+        *sample[:2],
+        float(sample[2]) if sample[2] is not None and _is_number(sample[2]) else None,
+    )
 
 
 class StampedReader:
@@ -91,10 +100,14 @@ class StampedReader:
     """
 
     def __init__(self, lines: Sequence[str], notes: Notes) -> None:
-        at, first = next((at, one) for at, line in enumerate(lines) if (one := parse_stamped(line)) is not None)
+        at, first = next(
+            (at, one) for at, line in enumerate(lines) if (one := parse_stamped(line)) is not None
+        )
         width = 1 + len(_SEPARATOR.split(first.rest))
         words = _WORDS.split(lines[at - 1].strip()) if at else []
-        self._heading = lines[at - 1] if len(words) == width and time_name(words[0]).base in NAMES else ""
+        self._heading = (
+            lines[at - 1] if len(words) == width and time_name(words[0]).base in NAMES else ""
+        )
         if not self._heading:
             # A number may be a time or not, which the column then shows.
             words = ["column 1" if _is_number(first.time) else "time"]
@@ -113,5 +126,7 @@ class StampedReader:
             rows.append("")
             if line.strip() and line.rstrip("\r") != self._heading and not line.startswith("#"):
                 others.append(row)
-        self._notes.add("line is not a time with a value", "lines are not times with values", others)
+        self._notes.add(
+            "line is not a time with a value", "lines are not times with values", others
+        )
         return self._table.read(Block(block.first_row, "\n".join(rows).encode(), block.newline))

@@ -37,7 +37,9 @@ _FEWEST_CELLS = 100
 
 def text_kind(cells: pa.Array) -> pa.DataType:
     """Return the type for a text column, from its first cells."""
-    often = len(cells) > _FEWEST_CELLS and _LEAST_REPEATED * pc.count_distinct(cells).as_py() <= len(cells)
+    often = len(cells) > _FEWEST_CELLS and _LEAST_REPEATED * pc.count_distinct(
+        cells
+    ).as_py() <= len(cells)
     return CODED if often else pa.string()
 
 
@@ -75,7 +77,10 @@ def parsed_booleans(cells: pa.Array) -> tuple[pa.Array, pa.Array]:
     """Parse cells such as `true` or `False`, with nulls for others; also return a mask of the invalid cells."""
     texts: Any = pc.utf8_lower(pc.utf8_trim_whitespace(cells))
     known = pc.is_in(texts, value_set=texts_array(("true", "false")))
-    empty = pc.or_(pc.is_null(cells), pc.is_in(pc.utf8_trim_whitespace(cells), value_set=texts_array(EMPTY_CELLS)))
+    empty = pc.or_(
+        pc.is_null(cells),
+        pc.is_in(pc.utf8_trim_whitespace(cells), value_set=texts_array(EMPTY_CELLS)),
+    )
     values = pc.if_else(known, pc.equal(texts, "true"), pa.nulls(len(texts), pa.bool_()))
     return values, pc.invert(pc.or_(known, empty))
 
@@ -127,7 +132,9 @@ def find_heading(lines: Sequence[tuple[int, str]], notes: Notes) -> Heading:
     """
     comments = [text for _, text in takewhile(lambda line: line[1].startswith(COMMENT), lines)]
     if comments and _ZEEK.match(comments[0]):
-        raise LogError("is a Zeek log with a heading of its own, which cannot be read", "let Zeek write JSON")
+        raise LogError(
+            "is a Zeek log with a heading of its own, which cannot be read", "let Zeek write JSON"
+        )
     body = lines[len(comments) :]
     if not body:
         return Heading(has_comments=bool(comments))
@@ -143,7 +150,9 @@ def find_heading(lines: Sequence[tuple[int, str]], notes: Notes) -> Heading:
     else:
         notes.say("no header: the columns are numbered")
         names, follow = _names_without_heading(rows[0]), body[0][0]
-    return Heading(tuple(unique_names(names, notes)), separator, decimal_comma, bool(comments), follow)
+    return Heading(
+        tuple(unique_names(names, notes)), separator, decimal_comma, bool(comments), follow
+    )
 
 
 def _names_without_heading(cells: Sequence[str]) -> list[str]:
@@ -220,7 +229,11 @@ def _is_heading(rows: Sequence[list[str]], decimal_comma: bool) -> bool:
         return False
     first = _are_numeric(rows[0], decimal_comma)
     numbers = [int(cell) for cell in rows[0][1:] if re.fullmatch(r"\s*\d+\s*", cell)]
-    if first[0] is False and len(numbers) == len(first) - 1 > 0 and all(a < b for a, b in pairwise(numbers)):
+    if (
+        first[0] is False
+        and len(numbers) == len(first) - 1 > 0
+        and all(a < b for a, b in pairwise(numbers))
+    ):
         below = {_are_numeric(row[:1], decimal_comma)[0] for row in rows[1:]}
         if (True in below and False not in below) or all(number in _YEARS for number in numbers):
             return True
@@ -230,8 +243,12 @@ def _is_heading(rows: Sequence[list[str]], decimal_comma: bool) -> bool:
 
 def _has_decimal_comma(lines: Sequence[str]) -> bool:
     cells = [cell.strip() for line in lines for cell in line.split(";")]
-    with_comma = sum(cell.count(",") == 1 and cell.replace(",", "").lstrip("+-").isdigit() for cell in cells)
-    return with_comma > 0 and not any(cell.count(".") == 1 and cell.replace(".", "").isdigit() for cell in cells)
+    with_comma = sum(
+        cell.count(",") == 1 and cell.replace(",", "").lstrip("+-").isdigit() for cell in cells
+    )
+    return with_comma > 0 and not any(
+        cell.count(".") == 1 and cell.replace(".", "").isdigit() for cell in cells
+    )
 
 
 _LEAST_VALUES = 3
@@ -250,7 +267,9 @@ def _one_column(lines: Sequence[tuple[int, str]], notes: Notes) -> bytes:
     if len(cells) < _LEAST_VALUES or not _are_all_numbers(cells, decimal_comma):
         return b""
     notes.say(f"the only line has {len(cells)} numbers: they are read as one column")
-    return "".join(f"{cell.replace(',', '.') if decimal_comma else cell}\n" for cell in cells).encode()
+    return "".join(
+        f"{cell.replace(',', '.') if decimal_comma else cell}\n" for cell in cells
+    ).encode()
 
 
 _SNIFFED_LINES = 30
@@ -294,7 +313,10 @@ class CsvReader:
         if not len(columns[0]):
             return None
         names = list(self._heading.names)
-        typed = [self._typed(name, cells, block, rows) for name, cells in zip(names, columns, strict=True)]
+        typed = [
+            self._typed(name, cells, block, rows)
+            for name, cells in zip(names, columns, strict=True)
+        ]
         return pa.Table.from_arrays(typed, names)
 
     # The heading
@@ -302,7 +324,9 @@ class CsvReader:
     def _begin(self, block: Block) -> Block:
         # There may be many comments above a table: read all of them, and some lines of the table.
         lines = list(takewhile(lambda line: line[1].startswith(COMMENT), block.lines()))
-        lines += islice((line for line in block.lines() if not line[1].startswith(COMMENT)), _SNIFFED_LINES)
+        lines += islice(
+            (line for line in block.lines() if not line[1].startswith(COMMENT)), _SNIFFED_LINES
+        )
         if not lines:
             return block
         if one_column := _one_column(lines, self._notes):
@@ -327,12 +351,19 @@ class CsvReader:
         if block.text.isspace() or not block.text:
             return [pa.nulls(0, pa.string()) for _ in self._heading.names]
         types = {name: kinds.get(name, pa.string()) for name in self._heading.names}
-        options = {"null_values": EMPTY_CELLS, "decimal_point": "," if self._heading.decimal_comma else "."}
+        options = {
+            "null_values": EMPTY_CELLS,
+            "decimal_point": "," if self._heading.decimal_comma else ".",
+        }
         try:
-            table = _parsed_csv(block.text, types, pa_csv.ParseOptions(delimiter=self._separator), **options)
+            table = _parsed_csv(
+                block.text, types, pa_csv.ParseOptions(delimiter=self._separator), **options
+            )
         except pa.ArrowInvalid:
             return None
-        if b'"' in block.text and table.num_rows != sum(1 for line in block.text.split(b"\n") if line.strip()):
+        if b'"' in block.text and table.num_rows != sum(
+            1 for line in block.text.split(b"\n") if line.strip()
+        ):
             return None
         return [c.chunk(0) if c.num_chunks == 1 else c.combine_chunks() for c in table.columns]
 
@@ -351,7 +382,9 @@ class CsvReader:
         few, many = "too few cells: the rest is empty", "too many cells: the rest is skipped"
         self._notes.add(f"row has {few}", f"rows have {few}", short)
         self._notes.add(f"row has {many}", f"rows have {many}", long)
-        return [pa.array([cells[at] for cells in rows], pa.string()) for at in range(width)], numbers
+        return [
+            pa.array([cells[at] for cells in rows], pa.string()) for at in range(width)
+        ], numbers
 
     def _records(self, block: Block) -> Iterator[tuple[int, list[str]]]:
         """Yield each non-blank row with its cells; a quoted cell may span lines."""
@@ -361,18 +394,27 @@ class CsvReader:
             if at < after or not line or line.isspace():
                 continue
             cells, after = self._joined(lines, at, block.newline) if '"' in line else (None, at + 1)
-            yield block.first_row + at, cells_of(line.rstrip("\r"), self._separator) if cells is None else cells
+            yield (
+                block.first_row + at,
+                cells_of(line.rstrip("\r"), self._separator) if cells is None else cells,
+            )
 
     def _joined(self, lines: Sequence[str], at: int, newline: str) -> tuple[list[str] | None, int]:
         """Return the cells of a row of several lines, or None for a single line, and the index of the next row."""
         ahead = [line + newline for line in lines[at : at + _MOST_LINES]]
-        reader = csv.reader(ahead if self._joins_left else ahead[:1], delimiter=self._separator, strict=True)
+        reader = csv.reader(
+            ahead if self._joins_left else ahead[:1], delimiter=self._separator, strict=True
+        )
         try:
             cells = next(reader)
         except csv.Error:
             cells = []
         further = lines[at + 1 : at + reader.line_num]
-        if further and len(cells) == len(self._heading.names) and not any(map(self._is_row, further)):
+        if (
+            further
+            and len(cells) == len(self._heading.names)
+            and not any(map(self._is_row, further))
+        ):
             return cells, at + reader.line_num
         if further:
             # An unclosed quote is an ordinary character; searching for its end from every line would be too slow.
@@ -384,7 +426,9 @@ class CsvReader:
         cells = line.split(self._separator)
         if len(cells) != len(self._heading.names):
             return False
-        return '"' not in line or bool(are_numbers(texts_array(cells[:1]), self._heading.decimal_comma))
+        return '"' not in line or bool(
+            are_numbers(texts_array(cells[:1]), self._heading.decimal_comma)
+        )
 
     def _typed(self, name: str, cells: pa.Array, block: Block, rows: list[int] | None) -> pa.Array:
         if name not in self._kinds:
@@ -392,19 +436,25 @@ class CsvReader:
             if numeric is None:
                 return pa.nulls(len(cells), pa.float64())
             truths = not numeric and are_booleans(cells)
-            self._kinds[name] = pa.float64() if numeric else pa.bool_() if truths else text_kind(cells)
+            self._kinds[name] = (
+                pa.float64() if numeric else pa.bool_() if truths else text_kind(cells)
+            )
         kind = self._kinds[name]
         if cells.type == kind:
             return cells
         if kind == CODED:
             return cells.dictionary_encode()
         truths = kind == pa.bool_()
-        numbers, wrong = parsed_booleans(cells) if truths else parsed_numbers(cells, self._heading.decimal_comma)
+        numbers, wrong = (
+            parsed_booleans(cells) if truths else parsed_numbers(cells, self._heading.decimal_comma)
+        )
         if (count := wrong.true_count) > 0:
             at = [index for index, bad in enumerate(wrong.to_pylist()) if bad][:5]
             where = [rows[index] for index in at] if rows else _rows_at(block, at)
             one, many = ("true or false",) * 2 if truths else ("a number", "numbers")
-            self._notes.add(f"cell of {name!r} is not {one}", f"cells of {name!r} are not {many}", where, count)
+            self._notes.add(
+                f"cell of {name!r} is not {one}", f"cells of {name!r} are not {many}", where, count
+            )
         return numbers
 
 
@@ -414,7 +464,9 @@ def _rows_at(block: Block, positions: Sequence[int]) -> list[int]:
     return [rows[at] for at in positions]
 
 
-def _parsed_csv(text: bytes, kinds: Mapping[str, pa.DataType], parse: pa_csv.ParseOptions, **convert: Any) -> pa.Table:
+def _parsed_csv(
+    text: bytes, kinds: Mapping[str, pa.DataType], parse: pa_csv.ParseOptions, **convert: Any
+) -> pa.Table:
     """Parse rows without a header; the columns are the keys of `kinds`. Raises ArrowInvalid if a cell does not fit."""
     return pa_csv.read_csv(
         pa.BufferReader(text),
@@ -431,9 +483,17 @@ def exported_csv(text: bytes) -> pa.Table:
         ValueError: the text is not UTF-8, or its rows do not fit its header.
     """
     names = next(csv.reader(io.StringIO(text.decode("utf-8"), newline="")), [])
-    texts = _parsed_csv(text, dict.fromkeys(names, pa.string()), pa_csv.ParseOptions(newlines_in_values=True)).slice(1)
-    columns = [texts.column(name) if name in (*TIMEDELTA, *TEXT) else _exact(texts.column(name)) for name in names]
-    columns = [pc.replace_substring_regex(one, WRITTEN, r"\1") if one.type == pa.string() else one for one in columns]
+    texts = _parsed_csv(
+        text, dict.fromkeys(names, pa.string()), pa_csv.ParseOptions(newlines_in_values=True)
+    ).slice(1)
+    columns = [
+        texts.column(name) if name in (*TIMEDELTA, *TEXT) else _exact(texts.column(name))
+        for name in names
+    ]
+    columns = [
+        pc.replace_substring_regex(one, WRITTEN, r"\1") if one.type == pa.string() else one
+        for one in columns
+    ]
     return pa.Table.from_arrays(columns, list(map(restored, names)))
 
 
@@ -481,7 +541,10 @@ class JsonReader:
                 found += [(row, one) for one in objects]
             else:
                 broken.append(row)
-        skipped = "line is not a JSON object and was skipped", "lines are not JSON objects and were skipped"
+        skipped = (
+            "line is not a JSON object and was skipped",
+            "lines are not JSON objects and were skipped",
+        )
         self._notes.add(*skipped, broken)
         return self.table_of(found) if found else None
 
@@ -495,7 +558,9 @@ class JsonReader:
         if self._exact:
             column = pa.array(cells)
             # Of numbers and truth values, a missing one is not a number.
-            whole = column.null_count and (pa.types.is_null(column.type) or pa.types.is_boolean(column.type))
+            whole = column.null_count and (
+                pa.types.is_null(column.type) or pa.types.is_boolean(column.type)
+            )
             return column.cast(pa.float64()) if whole else column
         if name not in self._kinds:
             kinds = [_is_number(cell) for cell in cells if cell is not None]
@@ -504,9 +569,17 @@ class JsonReader:
             self._kinds[name] = 2 * sum(kinds) >= len(kinds)
         if not self._kinds[name]:
             return pa.array([None if cell is None else _text(cell) for cell in cells], pa.string())
-        wrong = [row for (row, _), cell in zip(found, cells, strict=True) if cell is not None and not _is_number(cell)]
-        self._notes.add(f"cell of {name!r} is not a number", f"cells of {name!r} are not numbers", wrong)
-        return pa.array([_float(cell) if _is_number(cell) else None for cell in cells], pa.float64())
+        wrong = [
+            row
+            for (row, _), cell in zip(found, cells, strict=True)
+            if cell is not None and not _is_number(cell)
+        ]
+        self._notes.add(
+            f"cell of {name!r} is not a number", f"cells of {name!r} are not numbers", wrong
+        )
+        return pa.array(
+            [_float(cell) if _is_number(cell) else None for cell in cells], pa.float64()
+        )
 
 
 def _is_number(cell: object) -> TypeGuard[float]:
@@ -546,7 +619,10 @@ class PrintedReader:
     """
 
     def __init__(
-        self, notes: Notes, parse: Callable[[str], Any] = parse_sample, time_kind: pa.DataType = _SECONDS
+        self,
+        notes: Notes,
+        parse: Callable[[str], Any] = parse_sample,
+        time_kind: pa.DataType = _SECONDS,
     ) -> None:
         self._notes, self._parse, self._time_kind = notes, parse, time_kind
 
@@ -561,7 +637,12 @@ class PrintedReader:
         self._notes.add("line is not a sample", "lines are not samples", others)
         if not found:
             return None
-        kinds = {"row": pa.float64(), "variable": pa.string(), "value": pa.float64(), "time": self._time_kind}
+        kinds = {
+            "row": pa.float64(),
+            "variable": pa.string(),
+            "value": pa.float64(),
+            "time": self._time_kind,
+        }
         cells = zip(*found, strict=True)
         return pa.table({name: pa.array(next(cells), kind) for name, kind in kinds.items()})
 

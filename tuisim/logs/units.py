@@ -46,7 +46,8 @@ MAX_LEVEL = 255.0
 """Maximum of a light reading, in percent or on the scale 0 to 255."""
 
 _LIGHT = re.compile(
-    r"colou?r|light|reflect|ambient|bright|intensity|(?:^|[\W_])(?:red|green|blue|gr[ae]y)", re.IGNORECASE
+    r"colou?r|light|reflect|ambient|bright|intensity|(?:^|[\W_])(?:red|green|blue|gr[ae]y)",
+    re.IGNORECASE,
 )
 _PERCENT = re.compile(r"(?:%|_pc|percent|_proximity)$", re.IGNORECASE)
 

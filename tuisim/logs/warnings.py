@@ -54,7 +54,11 @@ class Notes:
         texts = []
         for text, count in self._counts.items():
             rows = self._rows[text]
-            where = f" ({'row' if len(rows) == 1 == count else 'rows'} {', '.join(map(str, rows))}" if rows else ""
+            where = (
+                f" ({'row' if len(rows) == 1 == count else 'rows'} {', '.join(map(str, rows))}"
+                if rows
+                else ""
+            )
             where += f"{', …' if count > len(rows) else ''})" if rows else ""
             texts.append(f"{counted(count, *text)}{where}")
         said = [shortened(text, MOST_CHARACTERS) for text in self._general]

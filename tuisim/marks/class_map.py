@@ -49,7 +49,11 @@ def class_maps(found: Sequence[MissesOfRun]) -> list[str]:
     count = Counter[str]()
     for one in found:
         count[one.mat] += len(one.misses)
-    return [_figure([one for one in found if one.mat == mat]) for mat, number in count.most_common() if number]
+    return [
+        _figure([one for one in found if one.mat == mat])
+        for mat, number in count.most_common()
+        if number
+    ]
 
 
 def _figure(found: Sequence[MissesOfRun]) -> str:

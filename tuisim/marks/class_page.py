@@ -65,7 +65,9 @@ def points_section(sheet: Sheet) -> str:
         f'<i style="height: {100 * count / most:.0f}%"></i>{in_words(low)}–{in_words(high)}</div>'
         for low, high, count in parts
     )
-    return section("Points", f'<div class="bars">{bars}</div>', paragraph("Students by points.", soft=True))
+    return section(
+        "Points", f'<div class="bars">{bars}</div>', paragraph("Students by points.", soft=True)
+    )
 
 
 def similar_section(found: Similar | None) -> str:
@@ -85,7 +87,11 @@ def similar_section(found: Similar | None) -> str:
     pairs = [[*pair.names, f"{pair.share:.0%}", str(pair.lines)] for pair in found.pairs]
     parts.append(table(("program", "and", "passages in common", "lines"), pairs, numbers=2))
     if not groups and not pairs:
-        parts.append(paragraph(f"None, of {found.compared} programs with at least {LEAST_TOKENS} words and signs."))
+        parts.append(
+            paragraph(
+                f"None, of {found.compared} programs with at least {LEAST_TOKENS} words and signs."
+            )
+        )
     return section("Similar programs", *parts)
 
 

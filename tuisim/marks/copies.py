@@ -32,12 +32,22 @@ LEAST_LINES = 5
 """Nor those with fewer lines in common."""
 MOST_PAIRS = 60
 
-_SKIPPED = frozenset({
-    tokenize.COMMENT, tokenize.NL, tokenize.ENCODING, tokenize.ENDMARKER, tokenize.TYPE_COMMENT,
-})  # fmt: skip
+_SKIPPED = frozenset(
+    {
+        tokenize.COMMENT,
+        tokenize.NL,
+        tokenize.ENCODING,
+        tokenize.ENDMARKER,
+        tokenize.TYPE_COMMENT,
+    }
+)
 _ONE_TOKEN: Mapping[int, str] = {
-    tokenize.NUMBER: "0", tokenize.STRING: '""', tokenize.NEWLINE: "\n", tokenize.INDENT: ">", tokenize.DEDENT: "<",
-}  # fmt: skip
+    tokenize.NUMBER: "0",
+    tokenize.STRING: '""',
+    tokenize.NEWLINE: "\n",
+    tokenize.INDENT: ">",
+    tokenize.DEDENT: "<",
+}
 _BLANK = frozenset({tokenize.NEWLINE, tokenize.INDENT, tokenize.DEDENT})
 
 
@@ -107,8 +117,10 @@ def _tokens(text: str) -> list[_Token]:
 def _prints(tokens: Sequence[_Token]) -> _Prints:
     """Return the fingerprints of a program: of each window the least hash, the rightmost of equal ones."""
     kinds = [token.kind for token in tokens]
-    hashes = [zlib.crc32("\0".join(kinds[at : at + TOKENS]).encode("utf-8", "surrogatepass"))
-              for at in range(len(kinds) - TOKENS + 1)]  # fmt: skip
+    hashes = [
+        zlib.crc32("\0".join(kinds[at : at + TOKENS]).encode("utf-8", "surrogatepass"))
+        for at in range(len(kinds) - TOKENS + 1)
+    ]
     chosen = {
         min(range(at, at + WINDOW), key=lambda place: (hashes[place], -place))
         for at in range(max(len(hashes) - WINDOW + 1, 0))
@@ -126,11 +138,18 @@ def similar(programs: Mapping[str, str], given: Collection[str] = ()) -> Similar
         programs: The texts by the student's name.
         given: Texts that everybody was given, such as a skeleton: what is in them is left out.
     """
-    tokens = {name: found for name, text in programs.items() if len(found := _tokens(text)) >= LEAST_TOKENS}
+    tokens = {
+        name: found
+        for name, text in programs.items()
+        if len(found := _tokens(text)) >= LEAST_TOKENS
+    }
     alike = _groups({name: tuple(token.kind for token in found) for name, found in tokens.items()})
     words = {name: tuple(token.text for token in found) for name, found in tokens.items()}
     groups = tuple(
-        SimilarGroup(names, tuple(same for same in _groups({name: words[name] for name in names}) if len(same) > 1))
+        SimilarGroup(
+            names,
+            tuple(same for same in _groups({name: words[name] for name in names}) if len(same) > 1),
+        )
         for names in alike
         if len(names) > 1
     )
@@ -169,4 +188,6 @@ def _pairs(prints: Mapping[str, _Prints], common: Collection[int]) -> tuple[Simi
         lines = frozenset[int]().union(*(prints[first][key] for key in own[first] & own[second]))
         if len(lines) >= LEAST_LINES:
             found.append(SimilarPair((first, second), share, len(lines)))
-    return tuple(sorted(found, key=lambda pair: (-pair.share, -pair.lines, pair.names))[:MOST_PAIRS])
+    return tuple(
+        sorted(found, key=lambda pair: (-pair.share, -pair.lines, pair.names))[:MOST_PAIRS]
+    )

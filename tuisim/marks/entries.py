@@ -51,7 +51,9 @@ def entries_of(
                 misfits += [error] if isinstance(error, ProfileError) and names_profile else []
                 cause = error.__cause__
                 is_unread = isinstance(cause, OSError) and of_the_machine(cause)
-                student = replace(student, source=None, problem=_told(error, student), is_unread=is_unread)
+                student = replace(
+                    student, source=None, problem=_told(error, student), is_unread=is_unread
+                )
         if student.source:
             entries.append(RunEntry(student, specs))
         students.append(student)

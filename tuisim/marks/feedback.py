@@ -48,7 +48,9 @@ def feedback_of(sheet: Sheet, row: SheetRow, source: str = "") -> str:
         source: The text of the main program, whose lines are quoted.
     """
     head = f"{row.name}: {in_words(row.points)} of {in_words(sheet.most_points)} points"
-    parts = [head, "=" * min(len(head), WIDTH), "", sheet.title, ""] if sheet.title else [head, "", ""]
+    parts = (
+        [head, "=" * min(len(head), WIDTH), "", sheet.title, ""] if sheet.title else [head, "", ""]
+    )
     if row.comment:
         parts += [_wrapped(f"Comment: {row.comment}"), ""]
     parts += _how_often(row)
@@ -75,8 +77,13 @@ def _how_often(row: SheetRow) -> list[str]:
     if row.runs < 2:
         return []
     full = round(row.robustness * row.runs)
-    return [_wrapped(f"Your program was run {row.runs} times, with other random numbers each time: "
-                     f"{full} of {row.runs} runs met every goal."), ""]  # fmt: skip
+    return [
+        _wrapped(
+            f"Your program was run {row.runs} times, with other random numbers each time: "
+            f"{full} of {row.runs} runs met every goal."
+        ),
+        "",
+    ]
 
 
 def _hidden(cells: Sequence[tuple[Goal, Cell]]) -> list[str]:
@@ -90,16 +97,30 @@ def _goal(column: Goal, cell: Cell, runs: int, lines: Sequence[str]) -> list[str
     if column.points < 0 and not cell.met:
         return [_wrapped(f"[did not happen] {column.say}")]
     is_met = bool(runs) and cell.met == runs
-    mark = "happened" if column.points < 0 else "met" if is_met else "missed" if not cell.met else "met in part"
+    mark = (
+        "happened"
+        if column.points < 0
+        else "met"
+        if is_met
+        else "missed"
+        if not cell.met
+        else "met in part"
+    )
     of = f" of {in_words(column.points)}" if column.points > 0 else ""
     points = f" ({in_words(cell.points)}{of})" if column.points else ""
     found = [_wrapped(f"[{mark}] {column.say}{points}")]
     if is_met and column.points >= 0:
         return found
     if cell.hidden:
-        found.append(_wrapped(f"Why: it is as asked for in the task's own world, but not {_ELSEWHERE}.", "    "))
+        found.append(
+            _wrapped(
+                f"Why: it is as asked for in the task's own world, but not {_ELSEWHERE}.", "    "
+            )
+        )
     elif cell.met:
-        found.append(_wrapped(f"Met in {cell.met} of {runs} runs; missed with seed {cell.seed}.", "    "))
+        found.append(
+            _wrapped(f"Met in {cell.met} of {runs} runs; missed with seed {cell.seed}.", "    ")
+        )
     if cell.reason and not cell.hidden:
         found.append(_wrapped(f"Why: {cell.reason}", "    "))
     if 0 < cell.line <= len(lines) and not cell.hidden:
@@ -110,7 +131,9 @@ def _goal(column: Goal, cell: Cell, runs: int, lines: Sequence[str]) -> list[str
 
 
 def _wrapped(text: str, indent: str = "") -> str:
-    return fill(text, WIDTH, initial_indent=indent, subsequent_indent=indent, break_on_hyphens=False)
+    return fill(
+        text, WIDTH, initial_indent=indent, subsequent_indent=indent, break_on_hyphens=False
+    )
 
 
 def write_feedback(folder: Path, sheet: Sheet, sources: Sequence[str]) -> None:

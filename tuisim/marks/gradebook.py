@@ -40,7 +40,10 @@ _IDENTITY: Mapping[GradebookKind, Sequence[str]] = {
     GradebookKind.CANVAS: ("Student", "ID", "SIS User ID", "SIS Login ID", "Section"),
 }
 """Columns that say who a student is."""
-_BY_NAME: Mapping[GradebookKind, str] = {GradebookKind.MOODLE: "Username", GradebookKind.CANVAS: "SIS Login ID"}
+_BY_NAME: Mapping[GradebookKind, str] = {
+    GradebookKind.MOODLE: "Username",
+    GradebookKind.CANVAS: "SIS Login ID",
+}
 """The column that is the name of the submission, unless a roster says more."""
 
 
@@ -70,7 +73,9 @@ def read_roster(path: Path) -> Roster:
         ConfigError: it cannot be read, has no such column, or names a submission twice.
     """
     shown = str(path)
-    data = read_bytes(path, MOST_BYTES, ConfigError, "there is no such file", "is a folder", "name a CSV file")
+    data = read_bytes(
+        path, MOST_BYTES, ConfigError, "there is no such file", "is a folder", "name a CSV file"
+    )
     try:
         text = data.decode("utf-8-sig")
         heading = text.partition("\n")[0]
@@ -102,7 +107,13 @@ def read_roster(path: Path) -> Roster:
 
 
 def write_gradebook(
-    path: Path, kind: GradebookKind, sheet: Sheet, sources: Sequence[str], roster: Roster, *, goals: bool
+    path: Path,
+    kind: GradebookKind,
+    sheet: Sheet,
+    sources: Sequence[str],
+    roster: Roster,
+    *,
+    goals: bool,
 ) -> None:
     """Write the marks for a gradebook; an existing file is replaced.
 
@@ -115,24 +126,38 @@ def write_gradebook(
     """
     item = sheet.title or ITEM
     # Students see them: what is hidden, and what takes points off, is only in the total.
-    shown = [at for at, column in enumerate(sheet.columns) if goals and not column.hidden and column.points >= 0]
+    shown = [
+        at
+        for at, column in enumerate(sheet.columns)
+        if goals and not column.hidden and column.points >= 0
+    ]
     names = [item, *(f"{item}: {sheet.columns[at].name}" for at in shown)]
     heads = [*_IDENTITY[kind], *names]
     table = []
     if kind is GradebookKind.CANVAS:
-        most = [in_words(points) for points in (sheet.most_points, *(sheet.columns[at].points for at in shown))]
+        most = [
+            in_words(points)
+            for points in (sheet.most_points, *(sheet.columns[at].points for at in shown))
+        ]
         table.append(["Points Possible", *[""] * (len(_IDENTITY[kind]) - 1), *most])
     else:
         heads.append("Feedback")
     for row, source in zip(sheet.rows, sources, strict=True):
         points = [row.points, *(row.cells[at].points for at in shown)]
         cells = [*_identity(row, kind, roster), *map(in_words, points)]
-        table.append(cells if kind is GradebookKind.CANVAS else [*cells, feedback_of(sheet, row, source)])
+        table.append(
+            cells if kind is GradebookKind.CANVAS else [*cells, feedback_of(sheet, row, source)]
+        )
     text = io.StringIO()
-    csv.writer(text, lineterminator="\n").writerows([*map(harmless, row)] for row in [heads, *table])
+    csv.writer(text, lineterminator="\n").writerows(
+        [*map(harmless, row)] for row in [heads, *table]
+    )
     write_whole(path, text.getvalue().encode("utf-8", "backslashreplace"))
 
 
 def _identity(row: SheetRow, kind: GradebookKind, roster: Roster) -> list[str]:
     person = {_BY_NAME[kind].casefold(): row.name, **roster.people.get(row.name, {})}
-    return [person.get(head.casefold(), "") or (row.name if head == "Student" else "") for head in _IDENTITY[kind]]
+    return [
+        person.get(head.casefold(), "") or (row.name if head == "Student" else "")
+        for head in _IDENTITY[kind]
+    ]

@@ -28,7 +28,15 @@ MOST_CHARACTERS = 300
 _ERROR_HEAD, _ERROR_TAIL = 1000, 3000
 """Characters of a long traceback that are kept, at its beginning and its end."""
 _GIVEN_UP = frozenset(
-    {End.STALLED, End.OUTPUT_LIMIT, End.CRASHED, End.KILLED, End.FALSIFIED, End.STOPPED, End.DISK_FULL}
+    {
+        End.STALLED,
+        End.OUTPUT_LIMIT,
+        End.CRASHED,
+        End.KILLED,
+        End.FALSIFIED,
+        End.STOPPED,
+        End.DISK_FULL,
+    }
 )
 """Ends that cost as much with every further seed."""
 
@@ -134,7 +142,9 @@ def outcome_of(result: Result, seed: int, folder: Path, world: TrialWorld | None
     )
 
 
-def merged(outcomes: Sequence[Outcome], seeds: Sequence[int], worlds: Sequence[str] = ("",)) -> list[Outcome]:
+def merged(
+    outcomes: Sequence[Outcome], seeds: Sequence[int], worlds: Sequence[str] = ("",)
+) -> list[Outcome]:
     """Return for each seed what came out of it: a goal is met if it is met in every world where it counts.
 
     One that takes points off is met if it is in any. Seeds are left out for which a run is missing, or does not count.
@@ -169,12 +179,18 @@ def _merged(seed: int, parts: Sequence[Outcome]) -> Outcome:
     for part in parts:
         for goal in part.goals if is_known else ():
             if goal.name not in goals or goals[goal.name].is_good:
-                reason = f"{part.world}: {goal.reason}" if part.world and goal.reason else goal.reason
-                goals[goal.name] = replace(goal, reason=reason, hidden=part.hidden and not goal.is_good)
+                reason = (
+                    f"{part.world}: {goal.reason}" if part.world and goal.reason else goal.reason
+                )
+                goals[goal.name] = replace(
+                    goal, reason=reason, hidden=part.hidden and not goal.is_good
+                )
     failed = next((part for part in parts if part.failure), None)
     if failed is None or not failed.world:
         return replace(failed or parts[0], seed=seed, goals=tuple(goals.values()))
-    return replace(failed, seed=seed, goals=tuple(goals.values()), failure=f"{failed.world}: {failed.failure}")
+    return replace(
+        failed, seed=seed, goals=tuple(goals.values()), failure=f"{failed.world}: {failed.failure}"
+    )
 
 
 def unknown_goals(outcomes: Iterable[Outcome]) -> dict[str, str]:
@@ -188,7 +204,11 @@ def portable(text: str, folder: Path | str) -> str:
     Of files in the folder in which the program ran, in those of modules, and of Python, the path in the folder is left.
     """
     if "/" in text:
-        modules = {*map(os.path.abspath, (*sys.path, *user_python_path())), sys.prefix, sys.base_prefix} - {"/"}
+        modules = {
+            *map(os.path.abspath, (*sys.path, *user_python_path())),
+            sys.prefix,
+            sys.base_prefix,
+        } - {"/"}
         # Inner folders first.
         places = "|".join(map(re.escape, (str(folder), *sorted(modules, reverse=True))))
         text = re.sub(rf"(?<![\w/.~-])(?:{places})/", "", text)
@@ -212,7 +232,9 @@ def _failure(result: Result) -> str:
         # Who has noticed it, the program's process or its host, depends on the machine.
         return "stuck: no simulated time passed"
     lines = source_lines(result.error.rstrip("\n"))
-    return result.summary or (lines[-1] if lines else result.end.replace("_", " ")) or "did not finish"
+    return (
+        result.summary or (lines[-1] if lines else result.end.replace("_", " ")) or "did not finish"
+    )
 
 
 def _head_and_tail(text: str) -> str:

@@ -37,7 +37,9 @@ class Override:
     """Points by the name of the goal."""
 
 
-def read_overrides(path: Path, goals: Sequence[Goal], students: Sequence[str]) -> Mapping[str, Override]:
+def read_overrides(
+    path: Path, goals: Sequence[Goal], students: Sequence[str]
+) -> Mapping[str, Override]:
     """Read the overrides of a class, by student.
 
     Args:
@@ -51,19 +53,26 @@ def read_overrides(path: Path, goals: Sequence[Goal], students: Sequence[str]) -
     found: dict[str, Override] = {}
     for student, entry in files.table(files.read_file(path, ConfigError), at, students).items():
         found[student] = files.convert(entry, Override, at.at(student))
-        files.table(dict(found[student].goals), at.at(student).at("goals"), [goal.name for goal in goals])
+        files.table(
+            dict(found[student].goals), at.at(student).at("goals"), [goal.name for goal in goals]
+        )
     return found
 
 
 def overridden(sheet: Sheet, overrides: Mapping[str, Override]) -> Sheet:
     """Return the sheet with what the tutor says; what the runs have earned is kept in `earned`."""
-    rows = tuple(_row(row, sheet.columns, overrides[row.name]) if row.name in overrides else row for row in sheet.rows)
+    rows = tuple(
+        _row(row, sheet.columns, overrides[row.name]) if row.name in overrides else row
+        for row in sheet.rows
+    )
     return replace(sheet, rows=rows)
 
 
 def _row(row: SheetRow, columns: Sequence[Goal], override: Override) -> SheetRow:
     cells = tuple(
-        replace(cell, points=override.goals[column.name], reason=BY_TUTOR) if column.name in override.goals else cell
+        replace(cell, points=override.goals[column.name], reason=BY_TUTOR)
+        if column.name in override.goals
+        else cell
         for column, cell in zip(columns, row.cells, strict=True)
     )
     points = override.points

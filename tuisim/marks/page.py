@@ -67,7 +67,9 @@ def page_of(
         maps: Pictures of where goals were missed, as HTML.
     """
     title = f"Marks: {sheet.title}" if sheet.title else "Marks"
-    notes = paragraph(f"Not marked, because they are no Python programs: {', '.join(ignored)}", soft=True)
+    notes = paragraph(
+        f"Not marked, because they are no Python programs: {', '.join(ignored)}", soft=True
+    )
     body = [
         f"<style>\n{_VERDICTS}{_STYLE}{STYLE}</style>\n<header>\n<h1>{clean(title)}</h1>\n{paragraph(summary_of(sheet))}\n</header>",
         points_section(sheet),
@@ -81,20 +83,32 @@ def page_of(
 
 
 def _students(sheet: Sheet, links: Links) -> str:
-    heads = ("student", "points", "robustness", *(column.name for column in sheet.columns), "reason")
+    heads = (
+        "student",
+        "points",
+        "robustness",
+        *(column.name for column in sheet.columns),
+        "reason",
+    )
     numbers = range(1, len(heads) - 1)
-    head = "".join(f'<th class="{"number head" if at in numbers else ""}">{clean(text)}</th>'
-                   for at, text in enumerate(heads))  # fmt: skip
+    head = "".join(
+        f'<th class="{"number head" if at in numbers else ""}">{clean(text)}</th>'
+        for at, text in enumerate(heads)
+    )
     rows = [_row(row, sheet, links) for row in sheet.rows]
-    return "\n".join((
-        f'<div class="wide sheet"><table class="students">\n<thead><tr>{head}</tr></thead>\n<tbody>',
-        *rows,
-        "</tbody></table></div>",
-    ))  # fmt: skip
+    return "\n".join(
+        (
+            f'<div class="wide sheet"><table class="students">\n<thead><tr>{head}</tr></thead>\n<tbody>',
+            *rows,
+            "</tbody></table></div>",
+        )
+    )
 
 
 def _row(row: SheetRow, sheet: Sheet, links: Links) -> str:
-    level = _level(row.points, sheet.most_points) if sheet.most_points else _level(row.robustness, 1.0)
+    level = (
+        _level(row.points, sheet.most_points) if sheet.most_points else _level(row.robustness, 1.0)
+    )
     earned = "" if row.earned is None else f' title="the runs have earned {in_words(row.earned)}"'
     cells = (
         f'<th class="student" scope="row">{clean(row.name)}</th>',
@@ -123,7 +137,9 @@ def _cell(cell: Cell, column: Goal, row: SheetRow) -> str:
 def _reason(row: SheetRow, links: Links) -> str:
     found = [f'<div class="comment">{clean(row.comment)}</div>'] if row.comment else []
     if row.earned is not None:
-        found.append(f'<div class="soft">set by the tutor; the runs have earned {in_words(row.earned)}</div>')
+        found.append(
+            f'<div class="soft">set by the tutor; the runs have earned {in_words(row.earned)}</div>'
+        )
     found += [clean(row.reason)] if row.reason else []
     if row.line:
         found.append(f"<br>line {row.line}: <code>{clean(row.source_line)}</code>")
@@ -133,7 +149,9 @@ def _reason(row: SheetRow, links: Links) -> str:
             if path := links.get((row.name, world, seed)):
                 reports.setdefault(path, []).append(seed)
         if reports:
-            shown = ", ".join(f'<a href="{quote(path)}">{_ranges(seeds)}</a>' for path, seeds in reports.items())
+            shown = ", ".join(
+                f'<a href="{quote(path)}">{_ranges(seeds)}</a>' for path, seeds in reports.items()
+            )
             where = f" {clean(world)}" if world else ""
             found.append(f'<div class="soft">reports of runs{where} by seed: {shown}</div>')
     if row.stopped_early:

@@ -47,7 +47,9 @@ class Report:
     """Where it missed goals; none if another run with the same record has said so."""
 
 
-def write_reports(sheet: Sheet, worlds: Sequence[TrialWorld], page: Path, *, movies: bool = False) -> Iterator[Report]:
+def write_reports(
+    sheet: Sheet, worlds: Sequence[TrialWorld], page: Path, *, movies: bool = False
+) -> Iterator[Report]:
     """Write the reports of kept runs; yield each once it is written.
 
     Runs of a student that recorded the same have one report. Runs that were removed from the store are left out.
@@ -68,7 +70,9 @@ def write_reports(sheet: Sheet, worlds: Sequence[TrialWorld], page: Path, *, mov
             run = _stored(store, outcome.run_id) if outcome.run_id else None
             if run is None:
                 continue
-            number, world = next((at, one) for at, one in enumerate(worlds) if one.where == outcome.world)
+            number, world = next(
+                (at, one) for at, one in enumerate(worlds) if one.where == outcome.world
+            )
             recorded, misses = (outcome.world, _digest(run)), tuple[Miss, ...]()
             if recorded not in written:
                 name = f"{stem}{f'-world-{number + 1}' if number else ''}-seed-{outcome.seed}.html"
@@ -81,10 +85,14 @@ def write_reports(sheet: Sheet, worlds: Sequence[TrialWorld], page: Path, *, mov
                 title = ", ".join(filter(None, (row.name, outcome.world, f"seed {outcome.seed}")))
                 _write(
                     folder / name,
-                    report_of(opened, title=title, movie=movies and bool(misses), pins=pins, parts=[shown]),
+                    report_of(
+                        opened, title=title, movie=movies and bool(misses), pins=pins, parts=[shown]
+                    ),
                 )
                 written[recorded] = f"{folder.name}/{name}"
-            yield Report(row.name, outcome.world, outcome.seed, written[recorded], MissesOfRun(run, misses))
+            yield Report(
+                row.name, outcome.world, outcome.seed, written[recorded], MissesOfRun(run, misses)
+            )
 
 
 def _write(path: Path, content: str) -> None:
@@ -109,7 +117,9 @@ def _portable(run: StoredRun) -> StoredRun:
     if run.end is None:
         return run
     folder = run.program.working_directory
-    end = replace(run.end, error=portable(run.end.error, folder), summary=portable(run.end.summary, folder))
+    end = replace(
+        run.end, error=portable(run.end.error, folder), summary=portable(run.end.summary, folder)
+    )
     return replace(run, end=end)
 
 
@@ -124,7 +134,11 @@ def _digest(run: StoredRun) -> str:
 
 
 def _misses(
-    student: str, columns: Sequence[Goal], judged: Mapping[str, Change], outcome: Outcome, run: StoredRun
+    student: str,
+    columns: Sequence[Goal],
+    judged: Mapping[str, Change],
+    outcome: Outcome,
+    run: StoredRun,
 ) -> tuple[Miss, ...]:
     """Return where a run missed goals: those that were decided nowhere, at the robot's last place."""
     last = run.telemetry.last()
@@ -133,11 +147,15 @@ def _misses(
     for column in columns:
         place = judged.get(column.name) or last
         if column.name in missed and place is not None:
-            found.append(Miss(student, column.name, place.x_mm, place.y_mm, missed[column.name].reason))
+            found.append(
+                Miss(student, column.name, place.x_mm, place.y_mm, missed[column.name].reason)
+            )
     return tuple(found)
 
 
-def _verdicts(columns: Sequence[Goal], judged: Mapping[str, Change], outcome: Outcome) -> tuple[str, list[Pin]]:
+def _verdicts(
+    columns: Sequence[Goal], judged: Mapping[str, Change], outcome: Outcome
+) -> tuple[str, list[Pin]]:
     """Return the section with the goals of a run, and a pin for each goal that was decided at a place.
 
     Args:
@@ -151,11 +169,21 @@ def _verdicts(columns: Sequence[Goal], judged: Mapping[str, Change], outcome: Ou
         goal = found.get(column.name, GoalOutcome(column.name, False, outcome.failure))
         result = "met" if goal.met else "missed"
         why = f"{goal.reason} (line {goal.line})" if goal.line else goal.reason
-        points = f"{in_words(column.points if goal.met else 0)} of {in_words(max(0, column.points))}"
+        points = (
+            f"{in_words(column.points if goal.met else 0)} of {in_words(max(0, column.points))}"
+        )
         if (event := judged.get(column.name)) is not None:
             result += f" at {event.time_s:.2f} s, x {event.x_mm:.0f}, y {event.y_mm:.0f} mm"
             said = f"{number}. {column.say} {result}"
-            pins.append(Pin(str(number), event.x_mm, event.y_mm, goal.is_good, f"{said}: {why}" if why else said))
+            pins.append(
+                Pin(
+                    str(number),
+                    event.x_mm,
+                    event.y_mm,
+                    goal.is_good,
+                    f"{said}: {why}" if why else said,
+                )
+            )
         rows.append([str(number), column.say, result, why, points])
     return section("Goals", table(_HEADS, rows, numbers=len(_HEADS) - 1)), pins
 
@@ -172,7 +200,11 @@ def _judged(goals: Sequence[Goal], outcome: Outcome, run: StoredRun) -> dict[str
     except LogError:
         # What is known of the run is in its outcome.
         return {}
-    return {one.goal.name: one.event for one in judgements if one.event and not _is_of_the_text(one.goal)}
+    return {
+        one.goal.name: one.event
+        for one in judgements
+        if one.event and not _is_of_the_text(one.goal)
+    }
 
 
 def _is_of_the_text(goal: Goal) -> bool:

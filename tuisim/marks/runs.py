@@ -70,7 +70,9 @@ class _Turn:
     key: str
 
 
-def outcomes_of(entries: Sequence[RunEntry], plan: MarkPlan, journal: Journal) -> Generator[tuple[str, Outcome]]:
+def outcomes_of(
+    entries: Sequence[RunEntry], plan: MarkPlan, journal: Journal
+) -> Generator[tuple[str, Outcome]]:
     """Run every student's program with every seed; yield names of students and outcomes as they become known.
 
     A program that hangs, floods or dies with the first seed is not run with the others; if it does so in the first
@@ -131,7 +133,9 @@ def _turns(entry: RunEntry, plan: MarkPlan) -> list[_Turn]:
         for seed in plan.seeds:
             spec = replace(of_world, seed=seed)
             own = [repr(world), options.to_plain(), to_plain(spec)]
-            text = json.dumps([*basis, *own], sort_keys=True, default=str).encode("utf-8", "surrogatepass")
+            text = json.dumps([*basis, *own], sort_keys=True, default=str).encode(
+                "utf-8", "surrogatepass"
+            )
             turns.append(_Turn(entry, seed, world, spec, options, hashlib.sha256(text).hexdigest()))
     return turns
 
@@ -161,7 +165,9 @@ def _tasks(turns: Sequence[_Turn], plan: MarkPlan, workspace: Path) -> Iterator[
     for index, turn in enumerate(turns):
         student = turn.entry.student
         folder = copy_of(student, workspace / str(index))
-        program = program_in(student, folder, arguments=plan.arguments, python_path=user_python_path())
+        program = program_in(
+            student, folder, arguments=plan.arguments, python_path=user_python_path()
+        )
         yield Task(
             index=index,
             program=program,

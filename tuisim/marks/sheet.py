@@ -123,7 +123,10 @@ def sheet_of(
         outcomes: The outcomes of the runs so far, by the name of the student, in any order.
         worlds: The worlds of the task, see `TrialWorld.where`, the first one first.
     """
-    rows = tuple(row_of(student, columns, outcomes.get(student.name, ()), seeds, worlds) for student in students)
+    rows = tuple(
+        row_of(student, columns, outcomes.get(student.name, ()), seeds, worlds)
+        for student in students
+    )
     return Sheet(title, tuple(columns), rows, tuple(seeds))
 
 
@@ -137,10 +140,19 @@ def row_of(
     """Return the row of a student."""
     if not student.source:
         cells = tuple(Cell(0.0, 0, student.problem) for _ in columns)
-        return SheetRow(student.name, student.main, 0.0, 0.0, cells, student.problem, failure=student.problem)
+        return SheetRow(
+            student.name, student.main, 0.0, 0.0, cells, student.problem, failure=student.problem
+        )
     ordered = merged(outcomes, seeds, worlds)
     if not ordered:
-        return SheetRow(student.name, student.main, 0.0, 0.0, tuple(Cell(0.0, 0, NOT_RUN) for _ in columns), NOT_RUN)
+        return SheetRow(
+            student.name,
+            student.main,
+            0.0,
+            0.0,
+            tuple(Cell(0.0, 0, NOT_RUN) for _ in columns),
+            NOT_RUN,
+        )
     totals = [_points(columns, one) for one in ordered]
     # In a task without points, every goal counts.
     counted_goals = [column for column in columns if column.points] or columns
@@ -165,7 +177,10 @@ def row_of(
         stopped_early=len(ordered) < len(seeds) and ordered[0].gave_up,
         refusal=student.refusal,
         outcomes=tuple(
-            sorted((one for one in outcomes if one.counts), key=lambda one: (worlds.index(one.world), one.seed))
+            sorted(
+                (one for one in outcomes if one.counts),
+                key=lambda one: (worlds.index(one.world), one.seed),
+            )
         ),
     )
 
@@ -177,7 +192,10 @@ def _points(columns: Sequence[Goal], outcome: Outcome) -> float:
 
 
 def _cell(column: Goal, outcomes: Sequence[Outcome]) -> Cell:
-    goals = [(one, next((goal for goal in one.goals if goal.name == column.name), None)) for one in outcomes]
+    goals = [
+        (one, next((goal for goal in one.goals if goal.name == column.name), None))
+        for one in outcomes
+    ]
     met = sum(goal is not None and goal.met for _, goal in goals)
     points = rounded(column.points * met / len(goals))
     for outcome, goal in goals:
@@ -216,7 +234,9 @@ def in_words(points: float) -> str:
     return f"{points:.2f}".rstrip("0").rstrip(".")
 
 
-def lines_of(sheet: Sheet, most_name: int = 40, most_goal: int = 60) -> tuple[list[str], list[list[str]]]:
+def lines_of(
+    sheet: Sheet, most_name: int = 40, most_goal: int = 60
+) -> tuple[list[str], list[list[str]]]:
     """Return heads and rows of the text table; the reason comes last.
 
     Args:
@@ -226,7 +246,11 @@ def lines_of(sheet: Sheet, most_name: int = 40, most_goal: int = 60) -> tuple[li
     heads = ["student", "points", "robustness", *goals, "reason"]
     rows = []
     for row in sheet.rows:
-        points = (in_words(row.points), f"{row.robustness:.0%}", *(in_words(cell.points) for cell in row.cells))
+        points = (
+            in_words(row.points),
+            f"{row.robustness:.0%}",
+            *(in_words(cell.points) for cell in row.cells),
+        )
         where = f"line {row.line}: " if row.line and f"line {row.line}" not in row.reason else ""
         rows.append([_without_middle(row.name, most_name), *points, f"{where}{row.reason}"])
     return heads, rows
@@ -244,7 +268,9 @@ def summary_of(sheet: Sheet) -> str:
     mean = math.fsum(row.points for row in sheet.rows) / len(sheet.rows) if sheet.rows else 0.0
     size = f"{counted(len(sheet.rows), 'student')}, {counted(len(sheet.seeds), 'seed')}"
     points = f"mean {in_words(mean)} of {in_words(sheet.most_points)} points"
-    return f"{size}: {points}; {full} with all points" + (" for every seed" if len(sheet.seeds) > 1 else "")
+    return f"{size}: {points}; {full} with all points" + (
+        " for every seed" if len(sheet.seeds) > 1 else ""
+    )
 
 
 def frame_of(sheet: Sheet) -> pd.DataFrame:
@@ -278,7 +304,9 @@ def metadata_of(sheet: Sheet) -> dict[str, Any]:
         "format": MARKS_FORMAT,
         "table": "marks",
         "title": sheet.title,
-        "goals": [{"name": one.name, "say": one.say, "points": one.points} for one in sheet.columns],
+        "goals": [
+            {"name": one.name, "say": one.say, "points": one.points} for one in sheet.columns
+        ],
         "points": sheet.most_points,
         "seeds": list(sheet.seeds),
     }

@@ -50,4 +50,6 @@ def distribution(sheet: Sheet) -> tuple[tuple[float, float, int], ...]:
     if not most:
         return ()
     counts = Counter(min(max(int(row.points / most * BINS), 0), BINS - 1) for row in sheet.rows)
-    return tuple((most * part / BINS, most * (part + 1) / BINS, counts[part]) for part in range(BINS))
+    return tuple(
+        (most * part / BINS, most * (part + 1) / BINS, counts[part]) for part in range(BINS)
+    )

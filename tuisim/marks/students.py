@@ -20,7 +20,9 @@ MAIN = "main.py"
 SUFFIX = ".py"
 _NO_PROGRAM = {
     ".py.txt": "its name ends in .txt; rename it to end in .py",
-    **dict.fromkeys((".zip", ".tar", ".tgz", ".tar.gz", ".tar.xz", ".7z", ".rar"), "it is an archive; unpack it"),
+    **dict.fromkeys(
+        (".zip", ".tar", ".tgz", ".tar.gz", ".tar.xz", ".7z", ".rar"), "it is an archive; unpack it"
+    ),
 }
 """What students hand in instead of a program, by the end of its name, and what to do."""
 LEFT_OUT = shutil.ignore_patterns("__pycache__", ".git", ".venv", "venv", "node_modules")
@@ -63,7 +65,9 @@ class StudentsFound:
     """Names of files that are no programs."""
 
 
-def find_students(words: Sequence[str], program: str = "", excluded: Collection[Path] = ()) -> StudentsFound:
+def find_students(
+    words: Sequence[str], program: str = "", excluded: Collection[Path] = ()
+) -> StudentsFound:
     """Return the students in folders; a folder that contains a main program, or a file, is one student.
 
     Args:
@@ -81,7 +85,9 @@ def find_students(words: Sequence[str], program: str = "", excluded: Collection[
         path = Path(word)
         if os.path.isdir(path) and not os.path.isfile(path / MAIN):
             for entry in _entries(path, excluded):
-                is_program = entry.suffix.lower() in (SUFFIX, NOTEBOOK_SUFFIX) or _why_no_program(entry.name)
+                is_program = entry.suffix.lower() in (SUFFIX, NOTEBOOK_SUFFIX) or _why_no_program(
+                    entry.name
+                )
                 if entry.is_symlink() or entry.is_dir() or is_program:
                     students.append((path, _student(entry, program)))
                 else:
@@ -89,7 +95,9 @@ def find_students(words: Sequence[str], program: str = "", excluded: Collection[
         elif os.path.exists(path):
             students.append((_real(path).parent, _student(path, program)))
         else:
-            raise ConfigError("there is no such file or folder", "name a folder of students' programs", file=word)
+            raise ConfigError(
+                "there is no such file or folder", "name a folder of students' programs", file=word
+            )
     if not students:
         hint = f"a file NAME.py or a folder for each student; {see_page('marking')}"
         raise ConfigError("has no programs", hint, file=listed(words))
@@ -108,7 +116,11 @@ def _entries(folder: Path, excluded: Collection[Path]) -> Iterator[Path]:
     except OSError as error:
         raise ConfigError(f"cannot be read: {error.strerror or error}", file=str(folder)) from error
     hidden = (".", "__pycache__")
-    return (folder / name for name in names if not name.startswith(hidden) and _real(folder / name) not in excluded)
+    return (
+        folder / name
+        for name in names
+        if not name.startswith(hidden) and _real(folder / name) not in excluded
+    )
 
 
 def _named(students: Iterable[tuple[Path, Student]]) -> Iterator[Student]:
@@ -119,10 +131,14 @@ def _named(students: Iterable[tuple[Path, Student]]) -> Iterator[Student]:
     """
     every = [(_real(folder), student) for folder, student in students]
     beside = Counter((folder, student.name) for folder, student in every)
-    names = [_own_name(one.path) if beside[folder, one.name] > 1 else one.name for folder, one in every]
+    names = [
+        _own_name(one.path) if beside[folder, one.name] > 1 else one.name for folder, one in every
+    ]
     counts = Counter(names)
-    full = [f"{folder.name}/{name}" if counts[name] > 1 else name
-            for (folder, _), name in zip(every, names, strict=True)]  # fmt: skip
+    full = [
+        f"{folder.name}/{name}" if counts[name] > 1 else name
+        for (folder, _), name in zip(every, names, strict=True)
+    ]
     seen: Counter[str] = Counter()
     for name, (_, student) in zip(full, every, strict=True):
         seen[name] += 1
@@ -199,7 +215,9 @@ def file_outside(student: Student) -> str:
         word = str(student.source.options[field])
         if field == "mats" or names_file(word):
             place = _real(Path(word))
-            if is_file and (place.parent != own or place.is_dir() or place.suffix.lower() == SUFFIX):
+            if is_file and (
+                place.parent != own or place.is_dir() or place.suffix.lower() == SUFFIX
+            ):
                 return field
             if not place.is_relative_to(own):
                 return field
@@ -221,7 +239,9 @@ def _read(student: Student, path: Path, cell: str) -> Student:
         if path.suffix.lower() == NOTEBOOK_SUFFIX:
             return replace(student, source=_program_cell(path, cell))
         source = read_program(path, as_python=True, alone=path == student.path)
-        return replace(student, source=replace(source, program=replace(source.program, name=_shown(path.name))))
+        return replace(
+            student, source=replace(source, program=replace(source.program, name=_shown(path.name)))
+        )
     except ConfigError as error:
         problem = printable(str(error).replace(str(path), path.name))
         return replace(student, problem=problem, is_unread=isinstance(error.__cause__, OSError))
@@ -238,9 +258,13 @@ def _program_cell(path: Path, cell: str) -> ProgramSource:
         cells = chosen_programs(f"{path}#{cell}")
     if len(cells) > 1:
         hint = f'in the goals file: program = "{path.name}#{len(cells)}"'
-        raise ConfigError(f"which of its {len(cells)} program cells is the program?", hint, file=path.name)
+        raise ConfigError(
+            f"which of its {len(cells)} program cells is the program?", hint, file=path.name
+        )
     if unknown := cells[0].unknown:
-        raise ConfigError(f"{unknown} in its magic line is defined only in the notebook", file=path.name)
+        raise ConfigError(
+            f"{unknown} in its magic line is defined only in the notebook", file=path.name
+        )
     return cells[0].source
 
 

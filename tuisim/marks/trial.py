@@ -65,7 +65,9 @@ class TaskTrial:
     """What is wrong with the task, each as a line."""
 
 
-def trial_of(task: GoalsFile, plan: MarkPlan, wrong: Sequence[str], given: Mapping[str, Any]) -> TaskTrial:
+def trial_of(
+    task: GoalsFile, plan: MarkPlan, wrong: Sequence[str], given: Mapping[str, Any]
+) -> TaskTrial:
     """Try a task out; blocks while the programs run.
 
     Args:
@@ -89,7 +91,9 @@ def trial_of(task: GoalsFile, plan: MarkPlan, wrong: Sequence[str], given: Mappi
             for name, outcome in found:
                 outcomes[name].append(outcome)
     worlds = [world.where for world in plan.worlds]
-    sheet = sheet_of(task.title, columns_of(task.every_goal), plan.seeds, students, outcomes, worlds)
+    sheet = sheet_of(
+        task.title, columns_of(task.every_goal), plan.seeds, students, outcomes, worlds
+    )
     roles = tuple(role for role, _ in tried)
     return TaskTrial(sheet, roles, tuple(_faults(sheet, roles)))
 
@@ -99,7 +103,9 @@ def _fakes(task: GoalsFile, folder: Path) -> Iterator[tuple[TrialRole, Student]]
     still = f"import time\n\ntime.sleep({STILL_S:g})\n"
     texts = {TrialRole.EMPTY: "", TrialRole.STILL: still}
     if lines := answer_lines(task.goals):
-        said = [f"print({line!r})\ntime.sleep(0.1)" if line is not ASK else "input()" for line in lines]
+        said = [
+            f"print({line!r})\ntime.sleep(0.1)" if line is not ASK else "input()" for line in lines
+        ]
         texts[TrialRole.PRINTS] = "\n".join(["import time", "", *said, ""])
     for role, text in texts.items():
         path = folder / f"{role}.py"
@@ -125,8 +131,16 @@ def _faults(sheet: Sheet, roles: Sequence[TrialRole]) -> Iterator[str]:
     """Yield what is wrong with a task."""
     rows = list(zip(sheet.rows, roles, strict=True))
     for at, goal in enumerate(sheet.columns):
-        if by := [_DOES[role] for row, role in rows if role in _DOES and row.cells[at].met and goal.points >= 0]:
-            points = f" ({in_words(goal.points)} of {in_words(sheet.most_points)} points)" if goal.points else ""
+        if by := [
+            _DOES[role]
+            for row, role in rows
+            if role in _DOES and row.cells[at].met and goal.points >= 0
+        ]:
+            points = (
+                f" ({in_words(goal.points)} of {in_words(sheet.most_points)} points)"
+                if goal.points
+                else ""
+            )
             yield f"{' and '.join(by)} meets “{goal.name}”{points}: {_remedy(goal)}"
     for name, reason in unknown_goals(one for row in sheet.rows for one in row.outcomes).items():
         yield f"“{name}” cannot be judged: {reason}"
@@ -145,11 +159,15 @@ def _remedy(goal: Goal) -> str:
             case FinishCondition():
                 return "every program ends: give it `after`, a goal that the robot must have met"
             case PrintCondition() | LogCondition() | DialogueCondition():
-                return "give it `after`, `x_mm` or `reading`, for what the robot must have done before"
+                return (
+                    "give it `after`, `x_mm` or `reading`, for what the robot must have done before"
+                )
             case AvoidCondition() | UseCondition():
                 return "give it a second condition, one that the robot must meet"
     if goal.until is not None:
-        return "it holds without doing anything: join it by `all` with a goal that the robot must meet"
+        return (
+            "it holds without doing anything: join it by `all` with a goal that the robot must meet"
+        )
     if any(part.KIND is ConditionKind.HELD for part in goal.parts):
         return "a robot that stands still keeps to it: give it `until`, a goal that the robot must meet"
     return "give it `after`, a goal that the robot must have met"

@@ -60,7 +60,9 @@ def program_in(student: Student, folder: Path, **changes: Any) -> Program:
     if program.module_folder:
         # A cell of a notebook is no file.
         return replace(program, module_folder=str(folder), working_directory=str(folder), **changes)
-    return replace(program, path=str(folder / student.main), working_directory=str(folder), **changes)
+    return replace(
+        program, path=str(folder / student.main), working_directory=str(folder), **changes
+    )
 
 
 def digest_of(student: Student) -> str:

@@ -6,7 +6,17 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from tuisim.charts.layout import LETTER_PX, LINE_PX, PAD, Drawing, Raster, Shape, Words, moved, shortened
+from tuisim.charts.layout import (
+    LETTER_PX,
+    LINE_PX,
+    PAD,
+    Drawing,
+    Raster,
+    Shape,
+    Words,
+    moved,
+    shortened,
+)
 from tuisim.core.css_colors import Rgb
 from tuisim.scene.discs import RIM_RGB, DiscFace, draw_disc
 
@@ -34,8 +44,11 @@ def face_drawing(face: DiscFace, width: int, height: int, *, has_limits: bool) -
         has_limits: Whether there is a line for thresholds, those of any sensor.
     """
     limits = face.limit_words(int(width / LETTER_PX))
-    below = [f"{face.value_words}, {face.seen.name}", *([limits] if has_limits else []),
-             f"rings {' '.join(face.ring_words)} %"]  # fmt: skip
+    below = [
+        f"{face.value_words}, {face.seen.name}",
+        *([limits] if has_limits else []),
+        f"rings {' '.join(face.ring_words)} %",
+    ]
     lines = max(min(len(below), (height - _LEAST_DISC_PX - _SCALE_PX) // LINE_PX - 1), 0)
     side = max(min(width - PAD, height - _SCALE_PX - (1 + lines) * LINE_PX), 1)
     disc = draw_disc(face.box, side, side, _PAPER_RGB, RIM_RGB)
@@ -49,7 +62,11 @@ def face_drawing(face: DiscFace, width: int, height: int, *, has_limits: bool) -
     y += _SCALE_PX
     for at, text in enumerate(below[:lines]):
         rgb = _LIMIT_RGB if has_limits and at == 1 else None
-        shapes.append(Words(width / 2, y + (at + 0.5) * LINE_PX, shortened(text, width), "middle", rgb, not at))
+        shapes.append(
+            Words(
+                width / 2, y + (at + 0.5) * LINE_PX, shortened(text, width), "middle", rgb, not at
+            )
+        )
     return Drawing(face.name, width, height, tuple(shapes))
 
 

@@ -53,7 +53,9 @@ def shots_of(start_s: float, stop_s: float, speed: float, fps: float) -> tuple[S
     begins_ms = [round(at * 1000 / fps / _STEP_MS) * _STEP_MS for at in range(count + 1)]
     begins_ms[-1] += END_MS
     times_s = [min(start_s + at * speed / fps, stop_s) for at in range(count - 1)] + [stop_s]
-    return tuple(Shot(time_s, begins_ms[at + 1] - begins_ms[at]) for at, time_s in enumerate(times_s))
+    return tuple(
+        Shot(time_s, begins_ms[at + 1] - begins_ms[at]) for at, time_s in enumerate(times_s)
+    )
 
 
 def shot_count(start_s: float, stop_s: float, speed: float, fps: float) -> int:
@@ -84,14 +86,21 @@ class Recorded:
 
     def __init__(self, run: StoredRun) -> None:
         if run.state is Unended.RUNNING:
-            raise LogError(f"run {run.number} is still running", "wait until it ends, or stop it", file=str(run.folder))
+            raise LogError(
+                f"run {run.number} is still running",
+                "wait until it ends, or stop it",
+                file=str(run.folder),
+            )
         if not run.telemetry.count:
             why = "; ".join(run.notes)
             raise LogError(f"run {run.number} has no recorded tick", why, file=str(run.folder))
         self.run = run
         self.telemetry = run.telemetry.array()
         self._hz = run.spec.profile.tick_hz
-        self.samples = [replace(sample, time_s=sample.time_ns / NS_PER_S) for sample in samples_of(run.output.rows())]
+        self.samples = [
+            replace(sample, time_s=sample.time_ns / NS_PER_S)
+            for sample in samples_of(run.output.rows())
+        ]
         """What was printed, at the simulated times of the prints."""
         self._values: dict[str, tuple[list[int], list[float]]] = {}
         for sample in self.samples:
@@ -116,7 +125,9 @@ class Recorded:
         # Also true for NaN.
         if not 0 <= low <= high or (low == high and (start_s, stop_s) != (None, None)):
             asked = low, self.end_s if stop_s is None else stop_s
-            raise ConfigError(f"nothing to show from {asked[0]:g} s to {asked[1]:g} s", known, key="--from, --to")
+            raise ConfigError(
+                f"nothing to show from {asked[0]:g} s to {asked[1]:g} s", known, key="--from, --to"
+            )
         return low, high
 
     def moment(self, time_s: float) -> ClipMoment:

@@ -76,7 +76,9 @@ class _Frames:
         self.durations_ms = [shot.duration_ms for shot in self._shots]
 
     def painter(self) -> FramePainter:
-        return FramePainter(self._clip.recorded, self._clip.panels, self._clip.span_s, self._clip.size)
+        return FramePainter(
+            self._clip.recorded, self._clip.panels, self._clip.span_s, self._clip.size
+        )
 
     def draw(self, at: int) -> Image:
         """Return the next frame."""
@@ -87,12 +89,17 @@ class _Frames:
         """Return some frames, evenly spread from the first to the last."""
         painter, last = self.painter(), len(self._shots) - 1
         numbers = sorted({round(at * last / (count - 1)) for at in range(count)})
-        return [painter.image(self._clip.recorded.moment(self._shots[number].time_s)) for number in numbers]
+        return [
+            painter.image(self._clip.recorded.moment(self._shots[number].time_s))
+            for number in numbers
+        ]
 
 
 def _gif(clip: Clip, watch: Watch) -> bytes:
     frames = _Frames(clip, watch)
-    return image_files.gif(frames.draw, frames.some(image_files.PALETTE_FRAMES), frames.durations_ms)
+    return image_files.gif(
+        frames.draw, frames.some(image_files.PALETTE_FRAMES), frames.durations_ms
+    )
 
 
 def _webp(clip: Clip, watch: Watch) -> bytes:
@@ -100,7 +107,10 @@ def _webp(clip: Clip, watch: Watch) -> bytes:
     return image_files.webp(frames.draw, frames.durations_ms)
 
 
-MOVIE_FORMATS: Mapping[str, MovieFormat] = {".gif": MovieFormat(_gif, 1), ".webp": MovieFormat(_webp, 0)}
+MOVIE_FORMATS: Mapping[str, MovieFormat] = {
+    ".gif": MovieFormat(_gif, 1),
+    ".webp": MovieFormat(_webp, 0),
+}
 """Every format of a movie by the suffix of its files. To add one: write its function and a line here."""
 
 
@@ -112,7 +122,10 @@ def _svg(painter: FramePainter, recorded: Recorded, time_s: float) -> bytes:
     return svg_of(painter.drawing(recorded.moment(time_s))).encode()
 
 
-PICTURE_FORMATS: Mapping[str, Callable[[FramePainter, Recorded, float], bytes]] = {".png": _png, ".svg": _svg}
+PICTURE_FORMATS: Mapping[str, Callable[[FramePainter, Recorded, float], bytes]] = {
+    ".png": _png,
+    ".svg": _svg,
+}
 """Every format of a picture by the suffix of its files. To add one: write its function and a line here."""
 
 
@@ -134,7 +147,11 @@ def save_movie(clip: Clip, path: Path, watch: Watch = lambda done, total: None) 
 
 def _check_size(clip: Clip, kind: MovieFormat) -> None:
     width, height = FramePainter(clip.recorded, clip.panels, clip.span_s, clip.size).size
-    most = min(MOST_BYTES // (kind.frame_bytes * width * height), MOST_FRAMES) if kind.frame_bytes else MOST_FRAMES
+    most = (
+        min(MOST_BYTES // (kind.frame_bytes * width * height), MOST_FRAMES)
+        if kind.frame_bytes
+        else MOST_FRAMES
+    )
     count = shot_count(*clip.span_s, clip.speed, clip.fps)
     if count > most:
         other = "--out FILE.webp, " if most < count <= MOST_FRAMES else ""
@@ -173,7 +190,11 @@ def small_movie(recorded: Recorded) -> tuple[Clip, bytes] | None:
 
 
 def save_picture(
-    recorded: Recorded, panels: Sequence[ClipPanel], time_s: float, path: Path, size: Size | None = None
+    recorded: Recorded,
+    panels: Sequence[ClipPanel],
+    time_s: float,
+    path: Path,
+    size: Size | None = None,
 ) -> None:
     """Write the picture of a run at an instant, replacing an existing file.
 

@@ -30,7 +30,9 @@ def gif(draw: Draw, palette_of: Sequence[Image], durations_ms: Sequence[int]) ->
     """
     palette = _Palette(palette_of)
     frames = (palette.reduced(draw(at)) for at in range(len(durations_ms)))
-    return _saved(next(frames), frames, "GIF", duration=list(durations_ms), disposal=1, optimize=True)
+    return _saved(
+        next(frames), frames, "GIF", duration=list(durations_ms), disposal=1, optimize=True
+    )
 
 
 class _Palette:
@@ -60,7 +62,9 @@ class _Palette:
         # Pillow takes colours that differ little for the same, also where one of them is in the palette.
         packed = _packed(np.asarray(frame))
         nearest = np.minimum(np.searchsorted(self._frequent, packed), len(self._frequent) - 1)
-        numbers = np.where(self._frequent[nearest] == packed, nearest, np.asarray(reduced)).astype(np.uint8)
+        numbers = np.where(self._frequent[nearest] == packed, nearest, np.asarray(reduced)).astype(
+            np.uint8
+        )
         exact = fromarray(numbers)
         exact.putpalette(reduced.getpalette() or ())
         return exact
@@ -96,7 +100,9 @@ def webp(draw: Draw, durations_ms: Sequence[int], *, lossless: bool = True) -> b
     # Without loss, the quality is the effort. More of it takes several times as long and saves a tenth.
     how = {"lossless": True, "quality": 20} if lossless else {"lossless": False, "quality": 40}
     reel = _Reel(draw, len(durations_ms))
-    return _saved(reel, (), "WEBP", duration=list(durations_ms), method=2, minimize_size=True, **how)
+    return _saved(
+        reel, (), "WEBP", duration=list(durations_ms), method=2, minimize_size=True, **how
+    )
 
 
 def _saved(first: Image, others: Iterable[Image], kind: str, **how: Any) -> bytes:

@@ -72,7 +72,9 @@ def _fitting_size(panels: Sequence[ClipPanel], robot: RobotSpec) -> Size:
     return WIDTH_PX, height_px + PAD
 
 
-def view_of_frame(robot: RobotSpec, panels: Sequence[ClipPanel], size: Size | None = None) -> Viewport:
+def view_of_frame(
+    robot: RobotSpec, panels: Sequence[ClipPanel], size: Size | None = None
+) -> Viewport:
     """Return which part of the field a whole frame would show if its world, which it has, filled it.
 
     What is drawn over a frame in this view lies on the frame's world.
@@ -105,7 +107,11 @@ class FramePainter:
     """
 
     def __init__(
-        self, recorded: Recorded, panels: Sequence[ClipPanel], span_s: tuple[float, float], size: Size | None = None
+        self,
+        recorded: Recorded,
+        panels: Sequence[ClipPanel],
+        span_s: tuple[float, float],
+        size: Size | None = None,
     ) -> None:
         run = recorded.run
         self._recorded, self._panels = recorded, panels
@@ -116,7 +122,9 @@ class FramePainter:
             self._world = MovingWorld(recorded, fitting_view(run.spec.robot, box.width, box.height))
         if ClipPanel.CHART in boxes:
             box = boxes[ClipPanel.CHART]
-            self._chart = laid_out(_chart(recorded, box.width, span_s), box.width, box.height, titled=False)
+            self._chart = laid_out(
+                _chart(recorded, box.width, span_s), box.width, box.height, titled=False
+            )
         if ClipPanel.ARRAYS in boxes:
             self._arrays = SensorArrays(recorded)
 
@@ -164,7 +172,10 @@ def _boxes(panels: Sequence[ClipPanel], size: Size, sensors: int) -> dict[ClipPa
     if below:
         strip = height
         if ClipPanel.WORLD in panels:
-            strip = min(max(round(size[1] * _STRIP_SHARE), 100), max(_STRIP_PX, round(size[1] * _STRIP_SHARE)))
+            strip = min(
+                max(round(size[1] * _STRIP_SHARE), 100),
+                max(_STRIP_PX, round(size[1] * _STRIP_SHARE)),
+            )
     boxes: dict[ClipPanel, PictureBox] = {}
     if ClipPanel.WORLD in panels:
         boxes[ClipPanel.WORLD] = PictureBox(PAD, _CAPTION_PX, width, height - strip)
@@ -178,12 +189,16 @@ def _boxes(panels: Sequence[ClipPanel], size: Size, sensors: int) -> dict[ClipPa
         boxes[ClipPanel.CHART] = PictureBox(left, top, width, strip)
     for panel, box in boxes.items():
         if box.width < 60 or box.height < 50:
-            raise ConfigError(f"{size[0]}x{size[1]} is too small", f"no room for the panel {panel}", key="--size")
+            raise ConfigError(
+                f"{size[0]}x{size[1]} is too small", f"no room for the panel {panel}", key="--size"
+            )
     return boxes
 
 
 def _centred(box: PictureBox, size: Size) -> PictureBox:
-    return PictureBox(box.left + (box.width - size[0]) // 2, box.top + (box.height - size[1]) // 2, *size)
+    return PictureBox(
+        box.left + (box.width - size[0]) // 2, box.top + (box.height - size[1]) // 2, *size
+    )
 
 
 def _chart(recorded: Recorded, columns: int, span_s: tuple[float, float]) -> ChartData:
@@ -196,7 +211,9 @@ def _caption(moment: ClipMoment, box: PictureBox) -> Drawing:
     """Return a line with the time and as many values as fit."""
     words: list[Shape] = []
     x = float(PAD)
-    for at, text in enumerate([f"{moment.time_s:.2f} s", *(f"{name}: {value:.5g}" for name, value in moment.values)]):
+    for at, text in enumerate(
+        [f"{moment.time_s:.2f} s", *(f"{name}: {value:.5g}" for name, value in moment.values)]
+    ):
         text = printable(text)
         if at and x + len(text) * LETTER_PX > box.width - PAD:
             break

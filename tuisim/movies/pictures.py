@@ -39,9 +39,13 @@ class MovingWorld:
         """Return the picture. The instants of successive calls must not decrease."""
         from PIL import Image
 
-        self._painter.trace.add(pen_trace(self._spec, self._recorded.telemetry[self._traced : moment.tick + 1]))
+        self._painter.trace.add(
+            pen_trace(self._spec, self._recorded.telemetry[self._traced : moment.tick + 1])
+        )
         self._traced = moment.tick + 1
-        return Image.fromarray(self._painter.paint(self._view, scene_of(self._spec, sound_pose(moment.record))))
+        return Image.fromarray(
+            self._painter.paint(self._view, scene_of(self._spec, sound_pose(moment.record)))
+        )
 
 
 class SensorArrays:
@@ -64,4 +68,6 @@ class SensorArrays:
             return []
         run = self._run
         instant = instant_of(moment.record, run.spec, run.noise_at(moment.record))
-        return disc_faces(run.spec, instant, self._recording.field_at(moment.tick, self._mat), run.program)
+        return disc_faces(
+            run.spec, instant, self._recording.field_at(moment.tick, self._mat), run.program
+        )

@@ -49,7 +49,11 @@ class AppRun:
 
     def _told(self, timeout_s: float) -> Mapping[str, Any]:
         try:
-            return self._view.told.get(timeout=timeout_s) if timeout_s else self._view.told.get_nowait()
+            return (
+                self._view.told.get(timeout=timeout_s)
+                if timeout_s
+                else self._view.told.get_nowait()
+            )
         except Empty:
             return {}
 
@@ -57,7 +61,9 @@ class AppRun:
         """Wait until the run has ended, or the time is over."""
         if self.ended is None:
             told = self._told(timeout_s)
-            if (told.get("what") == "ended" and told.get("id") == self.run_id) or not self._view.is_alive:
+            if (
+                told.get("what") == "ended" and told.get("id") == self.run_id
+            ) or not self._view.is_alive:
                 self.ended = self.stored().end
 
     def pump(self) -> list[Message]:

@@ -77,12 +77,15 @@ class AppView:
         server = self._server.server
         frames = dict.fromkeys((*server.gate.frames, *origins))
         server.gate = replace(server.gate, token=new_token(), frames=tuple(frames))
-        text, values = _FRAME.read_text("utf-8"), {
-            "ID": f"tuisim-{secrets.token_hex(8)}",
-            "HEIGHT": str(height_px),
-            "PORT": str(self._server.port),
-            "TOKEN": server.gate.token,
-        }  # fmt: skip
+        text, values = (
+            _FRAME.read_text("utf-8"),
+            {
+                "ID": f"tuisim-{secrets.token_hex(8)}",
+                "HEIGHT": str(height_px),
+                "PORT": str(self._server.port),
+                "TOKEN": server.gate.token,
+            },
+        )
         for name, value in values.items():
             text = text.replace(name, value)
         display({"text/html": text, "text/plain": "<tuisim in this cell>"}, raw=True)
@@ -102,7 +105,9 @@ class AppView:
             raise HostError("the app in the cell has not started", "%sim_app starts it again")
         self._server.call(self._visit.ask({"what": what, **details}))
 
-    def take_cell(self, settings: Mapping[str, Any], program: Program | None, *, home: bool, runs: bool) -> None:
+    def take_cell(
+        self, settings: Mapping[str, Any], program: Program | None, *, home: bool, runs: bool
+    ) -> None:
         """Let the app have the world and the program of a cell.
 
         Args:

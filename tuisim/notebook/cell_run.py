@@ -102,7 +102,10 @@ class CellRun:
 
 
 def run_cell(
-    cell: CellRun, stage: Stage, begun: Callable[[StoredRun, Wheels], None], view: AppView | None = None
+    cell: CellRun,
+    stage: Stage,
+    begun: Callable[[StoredRun, Wheels], None],
+    view: AppView | None = None,
 ) -> StoredRun:
     """Run a program and show it; block until it ends or the kernel is interrupted.
 
@@ -115,11 +118,17 @@ def run_cell(
     store = RunStore()
     paced = cell.speed > 0
     options = RunOptions(
-        live=paced, speed=cell.speed, asks_user=True, time_waits=not paced, replies=cell.listener.answers
+        live=paced,
+        speed=cell.speed,
+        asks_user=True,
+        time_waits=not paced,
+        replies=cell.listener.answers,
     )
     with (
         Interruption() as interruption,
-        closing(AppRun(view) if view else start_run(cell.program, cell.spec, options, store)) as handle,
+        closing(
+            AppRun(view) if view else start_run(cell.program, cell.spec, options, store)
+        ) as handle,
     ):
         run = store.load_run(handle.run_id)
         begun(run, handle.wheels)
@@ -195,9 +204,19 @@ class Interruption:
 
 class _Follower:
     def __init__(
-        self, cell: CellRun, handle: RunHandle | AppRun, screen: _Screen, interruption: Interruption, run: StoredRun
+        self,
+        cell: CellRun,
+        handle: RunHandle | AppRun,
+        screen: _Screen,
+        interruption: Interruption,
+        run: StoredRun,
     ) -> None:
-        self._cell, self._handle, self._screen, self._interruption = cell, handle, screen, interruption
+        self._cell, self._handle, self._screen, self._interruption = (
+            cell,
+            handle,
+            screen,
+            interruption,
+        )
         self._run, self._arrays = run, ArrayReader(run)
         # What the notebook's functions print stands among the lines that they hear.
         folds = screen.redraws and not cell.listener.answers
@@ -253,7 +272,9 @@ class _Follower:
         for array in self._arrays.arrays(row):
             self._cell.images.add(self._run, array)
             if handler is not None and not array.sent:
-                self._take_text("roboSim.live_image_handler", self._interruption.call(handler) or None)
+                self._take_text(
+                    "roboSim.live_image_handler", self._interruption.call(handler) or None
+                )
 
     def _hear(self, row: OutputRow) -> None:
         listener, call = self._cell.listener, self._interruption.call
@@ -293,7 +314,11 @@ class _Follower:
             self._cell.images.incomplete(self._run)
             print("… and more lines, which are in the log", file=sys.stderr)
         ended = self._handle.ended
-        if ended and ended.error and not any(row.stream == Stream.STDERR for row in self._handle.output.rows()):
+        if (
+            ended
+            and ended.error
+            and not any(row.stream == Stream.STDERR for row in self._handle.output.rows())
+        ):
             print(ended.error.rstrip("\n"), file=sys.stderr)
 
 
@@ -327,7 +352,9 @@ class _Screen:
                 self._position = after
         last = run.telemetry.last() or start_record(cell.spec)
         traces = (*cell.traces, pen_trace(cell.spec, run.telemetry.array()))
-        self._stage.show(Scene(cell.spec, cell.files, cell.program, last, traces, self._samples), status)
+        self._stage.show(
+            Scene(cell.spec, cell.files, cell.program, last, traces, self._samples), status
+        )
 
 
 def _plain(value: Any) -> Any:
@@ -341,7 +368,9 @@ def _parsed(who: str, text: str) -> Any:
     try:
         return json.loads(text)
     except (ValueError, RecursionError) as error:
-        raise ConfigError(f"the answer is no JSON: {error}", f'{JSON_PREFIX}{{"key": 1}} is one', key=who) from None
+        raise ConfigError(
+            f"the answer is no JSON: {error}", f'{JSON_PREFIX}{{"key": 1}} is one', key=who
+        ) from None
 
 
 def _message(who: str, answer: object) -> Any:

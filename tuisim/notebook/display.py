@@ -40,7 +40,10 @@ Row = tuple[str, str]
 
 def picture_bundle(picture: Any, name: str) -> dict[str, Any]:
     """Return a Pillow image as a displayable object."""
-    return {"image/png": png_of(picture), "text/plain": f"<{name}, {picture.width} × {picture.height} pixels>"}
+    return {
+        "image/png": png_of(picture),
+        "text/plain": f"<{name}, {picture.width} × {picture.height} pixels>",
+    }
 
 
 def table_bundle(title: str, rows: Sequence[Row], *, keep_blanks: bool = False) -> dict[str, Any]:
@@ -48,18 +51,28 @@ def table_bundle(title: str, rows: Sequence[Row], *, keep_blanks: bool = False) 
 
     Blanks in the values, as in a program, are preserved only on request; a browser collapses them.
     """
-    begin, end = ('<td style="text-align: left"><pre>', "</pre></td>") if keep_blanks else ("<td>", "</td>")
+    begin, end = (
+        ('<td style="text-align: left"><pre>', "</pre></td>") if keep_blanks else ("<td>", "</td>")
+    )
     wide = max((len(name) for name, _ in rows), default=0)
     plain = "\n".join([title, *(f"  {name:<{wide}}  {value}" for name, value in rows)])
-    cells = "".join(f"<tr><th>{html.escape(name)}</th>{begin}{html.escape(value)}{end}</tr>" for name, value in rows)
-    return {"text/plain": plain, "text/html": f"<table><caption>{html.escape(title)}</caption>{cells}</table>"}
+    cells = "".join(
+        f"<tr><th>{html.escape(name)}</th>{begin}{html.escape(value)}{end}</tr>"
+        for name, value in rows
+    )
+    return {
+        "text/plain": plain,
+        "text/html": f"<table><caption>{html.escape(title)}</caption>{cells}</table>",
+    }
 
 
 def _reading(name: str, values: dict[str, float]) -> str:
     if f"{name}_red" in values:
         seen = ColorReading(*(values[f"{name}_{channel}"] for channel in ("red", "green", "blue")))
         return f"red {seen.red_percent:.1f} %, mean {seen.mean_percent:.1f} %, rgb {seen.rgb}, {seen.name}"
-    return ", ".join(f"{value:g}{_unit(column)}" for column, value in values.items() if column.startswith(name))
+    return ", ".join(
+        f"{value:g}{_unit(column)}" for column, value in values.items() if column.startswith(name)
+    )
 
 
 def _unit(column: str) -> str:
@@ -87,7 +100,9 @@ def start_record(spec: RunSpec) -> TickRecord:
     """Return the state before any run."""
     start = spec.world.start
     flags = flags_at_start(spec.robot)
-    return TickRecord(0, 0, start.x_mm, start.y_mm, start.heading_deg, 0.0, 0.0, 0.0, 0.0, 0.0, flags, 0)
+    return TickRecord(
+        0, 0, start.x_mm, start.y_mm, start.heading_deg, 0.0, 0.0, 0.0, 0.0, 0.0, flags, 0
+    )
 
 
 def instrumentation(scene: Scene) -> list[Row]:
@@ -101,7 +116,11 @@ def instrumentation(scene: Scene) -> list[Row]:
     for sensor in spec.robot.sensors:
         values = readings([sensor], instant, spec, field)
         name = getattr(sensor, "name", "gyro")
-        shown = f"Sensor{_LEFT_RIGHT.index(name) + 1} ({name})" if name in _LEFT_RIGHT else name.capitalize()
+        shown = (
+            f"Sensor{_LEFT_RIGHT.index(name) + 1} ({name})"
+            if name in _LEFT_RIGHT
+            else name.capitalize()
+        )
         rows.append((shown, _reading(name, values)))
     return [*rows, ("Clock", f"{record.tick / spec.profile.tick_hz:.2f} s")]
 
@@ -119,16 +138,23 @@ def _settings(scene: Scene) -> list[Row]:
     spec = scene.spec
     world, names = spec.world, (spec.robot.name, spec.profile.name)
     what = ("robot", "profile", "mat", "obstacles", "seed")
-    return list(zip(what, (*names, world.background, str(len(world.obstacles)), str(spec.seed)), strict=True))
+    return list(
+        zip(
+            what, (*names, world.background, str(len(world.obstacles)), str(spec.seed)), strict=True
+        )
+    )
 
 
 _TABLES: Mapping[str, Callable[[Scene], list[Row]]] = {
     "instrumentation": instrumentation,
     "positioning": _positioning,
-    "noise": lambda scene: [(name, str(level)) for name, level in asdict(scene.spec.world.noise).items()],
+    "noise": lambda scene: [
+        (name, str(level)) for name, level in asdict(scene.spec.world.noise).items()
+    ],
     "settings": _settings,
     "code": lambda scene: [
-        (str(number), line) for number, line in enumerate(source_lines(scene.program.text if scene.program else ""), 1)
+        (str(number), line)
+        for number, line in enumerate(source_lines(scene.program.text if scene.program else ""), 1)
     ],
 }
 """The rows of each panel's table."""
@@ -176,12 +202,17 @@ class Stage:
             drawing = arrays_drawing(faces, FACE_PX[0] * max(len(faces), 1), FACE_PX[1])
             self._put("arrays", picture_bundle(image_of(drawing), "sensor arrays"))
         if "chart" in on:
-            drawing = laid_out(sample_chart(scene.samples, CHART_SIZE[0]), *CHART_SIZE, titled=False)
+            drawing = laid_out(
+                sample_chart(scene.samples, CHART_SIZE[0]), *CHART_SIZE, titled=False
+            )
             self._put("chart", picture_bundle(image_of(drawing), "chart"))
         if "output" in on and scene.printed is not None:
             self._put("output", {"text/plain": "\n".join(scene.printed) or "nothing was printed"})
         for panel, rows in _TABLES.items():
             if panel in on:
-                self._put(panel, table_bundle(panel.capitalize(), rows(scene), keep_blanks=panel == "code"))
+                self._put(
+                    panel,
+                    table_bundle(panel.capitalize(), rows(scene), keep_blanks=panel == "code"),
+                )
         if "controls" not in off:
             self._put("controls", {"text/plain": status})

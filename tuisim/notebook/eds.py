@@ -79,7 +79,9 @@ def check_logged(index: int, count: int) -> None:
         LogError: there are not so many.
     """
     if not count:
-        raise LogError("no pixel arrays are logged", "print('image_data both') in the program logs some")
+        raise LogError(
+            "no pixel arrays are logged", "print('image_data both') in the program logs some"
+        )
     if not -count <= index < count:
         raise LogError(f"no pixel arrays {index}", f"0 … {count - 1} are logged; -1 means the last")
 

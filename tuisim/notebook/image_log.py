@@ -46,7 +46,9 @@ def asked_side(row: OutputRow) -> str:
     return found[2] or ("both" if found[1] == SENT_DATA else "")
 
 
-def arrays_at(spec: RunSpec, record: TickRecord, noise: NoiseSpec, field: Field) -> list[tuple[ColorSensorSpec, bytes]]:
+def arrays_at(
+    spec: RunSpec, record: TickRecord, noise: NoiseSpec, field: Field
+) -> list[tuple[ColorSensorSpec, bytes]]:
     """Return the pixels under the colour sensors at a tick: RGB bytes, row by row."""
     from tuisim.core.sensors.color import pixel_array
     from tuisim.runs.views import instant_of

@@ -125,16 +125,23 @@ class Lab:
 
     def logged_arrays(self) -> list[list[LoggedArray]]:
         """Return the pixel arrays that `raw_image_data` has, run by run."""
-        return [[array for array in of_run if not array.sent] for of_run in self._images.of(self.results_log)]
+        return [
+            [array for array in of_run if not array.sent]
+            for of_run in self._images.of(self.results_log)
+        ]
 
     # The log under the old simulator's names
 
     @property
     def raw_image_data(self) -> list[str]:
         """Each logged pixel array as `SIDE r,g,b,a,… CLOCK`, with the clock in 1/30 s."""
-        return [old_formats.record_text(array) for of_run in self.logged_arrays() for array in of_run]
+        return [
+            old_formats.record_text(array) for of_run in self.logged_arrays() for array in of_run
+        ]
 
-    def image_data(self, datatype: str = "dataframe", mode: str = "rgb") -> pd.DataFrame | list[str]:
+    def image_data(
+        self, datatype: str = "dataframe", mode: str = "rgb"
+    ) -> pd.DataFrame | list[str]:
         """Return the logged pixel arrays as a frame of texts, or as `raw_image_data`.
 
         Args:
@@ -146,7 +153,11 @@ class Lab:
         """
         if datatype not in ("dataframe", "raw"):
             raise ConfigError(f"no such type {datatype!r}", "dataframe, raw", key="datatype")
-        return self.raw_image_data if datatype == "raw" else old_formats.image_frame(self.raw_image_data, mode)
+        return (
+            self.raw_image_data
+            if datatype == "raw"
+            else old_formats.image_frame(self.raw_image_data, mode)
+        )
 
     process_raw_image_data = staticmethod(old_formats.process_raw_image_data)
 
@@ -164,11 +175,11 @@ class Lab:
             field, highest_deg = open_field(field_files(spec)), spec.world.start.heading_deg
             return old_formats.robot_state(
                 spec, start_record(spec), spec.world.noise, field, highest_deg, self._wheels
-            )  # fmt: skip
+            )
         highest_deg = float(run.telemetry.array()["heading_deg"].max())
         return old_formats.robot_state(
             run.spec, record, run.noise_at(record), open_mat(run), highest_deg, self._wheels
-        )  # fmt: skip
+        )
 
     # The world
 
@@ -221,13 +232,19 @@ class Lab:
         plan = self._checked(words, text, prelude)
         runs = plan.settings["autorun"] or (self.autorun and text is not None)
         if runs and plan.program is None:
-            raise ConfigError("there is no program to run", "write one in a cell below %%sim_magic_preloaded", key="-R")
+            raise ConfigError(
+                "there is no program to run",
+                "write one in a cell below %%sim_magic_preloaded",
+                key="-R",
+            )
         listener = self._listener(words.collaborative)
         if plan.spec != self._spec or words.move_back:
             self._last, self._wheels = None, Wheels()
         before = self._spec.world if self._spec else plan.spec.world
         same_mat = (before.background, before.background_fit) == (
-            plan.spec.world.background, plan.spec.world.background_fit)  # fmt: skip
+            plan.spec.world.background,
+            plan.spec.world.background_fit,
+        )
         self._traces = self._traces if same_mat and not plan.settings["clear_trace"] else ()
         self._persistent, self._program, self._spec = plan.persistent, plan.program, plan.spec
         view = self._view_for(words, plan)
@@ -235,7 +252,10 @@ class Lab:
             if not listener.answers:
                 self._run_in_app(view, plan, words, runs)
                 return
-            print("tuisim: note: a program that is answered runs here; the app shows its run", file=sys.stderr)
+            print(
+                "tuisim: note: a program that is answered runs here; the app shows its run",
+                file=sys.stderr,
+            )
         stage = Stage(plan.settings)
         if runs:
             self._run(plan, stage, words, listener)
@@ -316,10 +336,15 @@ class Lab:
         said = settings_of(plan.persistent, words.settings).given
         program = plan.program
         view.take_cell(
-            {path: value for path, value in said.items() if path != "autorun"}, program, home=words.move_back, runs=runs
+            {path: value for path, value in said.items() if path != "autorun"},
+            program,
+            home=words.move_back,
+            runs=runs,
         )
         if runs:
-            stage = Stage(plan.settings.changed({"panels_on": (), "panels_off": ("world", "controls")}))
+            stage = Stage(
+                plan.settings.changed({"panels_on": (), "panels_off": ("world", "controls")})
+            )
             self._run(plan, stage, words, Listener(), view)
 
     def _catch_up(self) -> None:
@@ -340,16 +365,28 @@ class Lab:
                     self._followed.remove(run.id)
 
     def _run(
-        self, plan: _CellPlan, stage: Stage, words: Arguments, listener: Listener, view: AppView | None = None
+        self,
+        plan: _CellPlan,
+        stage: Stage,
+        words: Arguments,
+        listener: Listener,
+        view: AppView | None = None,
     ) -> None:
         from tuisim.notebook.cell_run import CellRun, run_cell
         from tuisim.scene.pen import pen_trace
 
         assert plan.program is not None
         cell = CellRun(
-            plan.program, plan.spec, plan.files, plan.settings["speed"] or 0.0, words.refresh_s, self._traces, listener,
-            self._images, plan.settings["quiet"],
-        )  # fmt: skip
+            plan.program,
+            plan.spec,
+            plan.files,
+            plan.settings["speed"] or 0.0,
+            words.refresh_s,
+            self._traces,
+            listener,
+            self._images,
+            plan.settings["quiet"],
+        )
 
         def note(run: StoredRun, wheels: Wheels) -> None:
             self._wheels = wheels
@@ -365,7 +402,10 @@ class Lab:
         finally:
             # Also after a responder's error has ended the run.
             if self._last is not None:
-                self._traces = (*self._traces, pen_trace(self._last.spec, self._last.telemetry.array()))
+                self._traces = (
+                    *self._traces,
+                    pen_trace(self._last.spec, self._last.telemetry.array()),
+                )
 
     def _scene(self, plan: _CellPlan) -> tuple[Scene, str]:
         """Return the scene while nothing runs, and its status line."""

@@ -124,5 +124,7 @@ def install(shell: InteractiveShell) -> None:
         shell.magics_manager.register_function(_guarded(_sim_magic(shell, name)), "line_cell", name)
     shell.magics_manager.register_function(_guarded(_sim_app(shell)), "line", "sim_app")
     for name, read in LOG_MAGICS.items():
-        shell.magics_manager.register_function(_guarded(_log_magic(shell, name, read)), "line", name)
+        shell.magics_manager.register_function(
+            _guarded(_log_magic(shell, name, read)), "line", name
+        )
     shell.push({"roboSim": roboSim, "eds": eds})

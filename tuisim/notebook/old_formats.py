@@ -119,11 +119,15 @@ class ImagePair(NamedTuple):
 
         scale = 10
         width, height = self.left.width * scale, self.left.height * scale
-        both = Image.new("L", (2 * width + 3 * _FRAME_PX, height + _TITLE_PX + _FRAME_PX), _FRAME_GREY)
+        both = Image.new(
+            "L", (2 * width + 3 * _FRAME_PX, height + _TITLE_PX + _FRAME_PX), _FRAME_GREY
+        )
         for number, (side, picture) in enumerate(zip(SIDES, self, strict=True)):
             x = _FRAME_PX + number * (width + _FRAME_PX)
             both.paste(picture.resize((width, height), 0), (x, _TITLE_PX))
-            ImageDraw.Draw(both).text((x, _TITLE_PX // 2), side, fill="white", anchor="lm", font_size=_TITLE_PX - 8)
+            ImageDraw.Draw(both).text(
+                (x, _TITLE_PX // 2), side, fill="white", anchor="lm", font_size=_TITLE_PX - 8
+            )
         return png_of(both)
 
 
@@ -142,14 +146,19 @@ def image_pair(arrays: Iterable[Sequence[LoggedArray]], index: int = -1) -> Imag
         moments: dict[int, dict[str, LoggedArray]] = {}
         for array in of_run:
             moments.setdefault(array.time_ns, {}).setdefault(array.side, array)
-        pairs += [(seen["left"], seen["right"]) for seen in moments.values() if seen.keys() >= set(SIDES)]
+        pairs += [
+            (seen["left"], seen["right"]) for seen in moments.values() if seen.keys() >= set(SIDES)
+        ]
     check_logged(index, len(pairs))
     left, right = (picture_of(array.rgba).convert("L").crop(FOCUS_PX) for array in pairs[index])
     return ImagePair(left, right)
 
 
 def bw_picture(
-    arrays: Sequence[LoggedArray], index: int = -1, threshold: int = 127, crop: tuple[int, int, int, int] | None = None
+    arrays: Sequence[LoggedArray],
+    index: int = -1,
+    threshold: int = 127,
+    crop: tuple[int, int, int, int] | None = None,
 ) -> Image:
     """Return one logged picture in black and white.
 
@@ -166,7 +175,10 @@ def bw_picture(
     picture = picture_of(arrays[index].rgba).convert("L")
     if crop is not None:
         if crop[2] > picture.width or crop[3] > picture.height:
-            raise LogError(f"the part ends outside the picture: {crop}", f"{picture.width} × {picture.height} pixels")
+            raise LogError(
+                f"the part ends outside the picture: {crop}",
+                f"{picture.width} × {picture.height} pixels",
+            )
         picture = picture.crop(crop)
     return picture.point([255 if grey > threshold else 0 for grey in range(256)], "1")
 
@@ -175,7 +187,12 @@ def bw_picture(
 
 
 def robot_state(
-    spec: RunSpec, record: TickRecord, noise: NoiseSpec, field: Field, highest_deg: float, wheels: Wheels
+    spec: RunSpec,
+    record: TickRecord,
+    noise: NoiseSpec,
+    field: Field,
+    highest_deg: float,
+    wheels: Wheels,
 ) -> dict[str, Any]:
     """Return the old simulator's dictionary of a robot's state.
 
@@ -194,7 +211,10 @@ def robot_state(
 
     start, pose, instant = spec.world.start, record.pose, instant_of(record, spec, noise)
     measured = readings(spec.robot.sensors, instant, spec, field)
-    seen = {sensor.name: values_text(with_alpha(rgb)) for sensor, rgb in arrays_at(spec, record, noise, field)}
+    seen = {
+        sensor.name: values_text(with_alpha(rgb))
+        for sensor, rgb in arrays_at(spec, record, noise, field)
+    }
     state: dict[str, Any] = {
         **_place("", pose.x_mm, pose.y_mm, _wrapped(pose.heading_deg, highest_deg)),
         **_place("_", start.x_mm, start.y_mm, start.heading_deg),
@@ -202,14 +222,22 @@ def robot_state(
         "_wheelNoise": noise.motor,
         "_sensorNoise": noise.light,
         "leftWheel": _wheel(
-            wheels.left, record.left_position_deg, record.left_speed_dps, record.flags & FLAG_LEFT_RUNNING
+            wheels.left,
+            record.left_position_deg,
+            record.left_speed_dps,
+            record.flags & FLAG_LEFT_RUNNING,
         ),
         "rightWheel": _wheel(
-            wheels.right, record.right_position_deg, record.right_speed_dps, record.flags & FLAG_RIGHT_RUNNING
+            wheels.right,
+            record.right_position_deg,
+            record.right_speed_dps,
+            record.flags & FLAG_RIGHT_RUNNING,
         ),
     }
     for at, side in enumerate(SIDES, 1):
-        state[f"sensor{at}"] = [measured.get(f"{side}_{channel}", 0) for channel in ("red", "green", "blue")]
+        state[f"sensor{at}"] = [
+            measured.get(f"{side}_{channel}", 0) for channel in ("red", "green", "blue")
+        ]
         state[f"sensor{at}dataArray"] = seen.get(side, "")
     state["gyro"] = [measured.get("gyro_deg", 0), measured.get("gyro_rate_dps", 0)]
     state["ultrasonic"] = measured.get("ultrasonic_mm", 0)
@@ -226,10 +254,16 @@ def _wrapped(heading_deg: float, highest_deg: float) -> float:
 def _place(prefix: str, x_mm: float, y_mm: float, heading_deg: float) -> dict[str, float]:
     from tuisim.core.spec import FIELD_HEIGHT_MM
 
-    return {f"{prefix}x": x_mm, f"{prefix}y": FIELD_HEIGHT_MM - y_mm, f"{prefix}angle": math.radians(heading_deg)}
+    return {
+        f"{prefix}x": x_mm,
+        f"{prefix}y": FIELD_HEIGHT_MM - y_mm,
+        f"{prefix}angle": math.radians(heading_deg),
+    }
 
 
-def _wheel(registers: MotorRegisters, position_deg: float, speed_dps: float, runs: int) -> dict[str, Any]:
+def _wheel(
+    registers: MotorRegisters, position_deg: float, speed_dps: float, runs: int
+) -> dict[str, Any]:
     return {
         "polarity": registers.polarity,
         "pos": position_deg,
@@ -271,5 +305,10 @@ class RobotState:
         from tuisim.notebook.display import table_bundle
 
         rows = ((name, str(value)) for name, value in self.state.items())
-        return table_bundle("Robot", [(name, text if len(text) <= _LONG_TEXT else text[:_LONG_TEXT] + "…")
-                                      for name, text in rows])  # fmt: skip
+        return table_bundle(
+            "Robot",
+            [
+                (name, text if len(text) <= _LONG_TEXT else text[:_LONG_TEXT] + "…")
+                for name, text in rows
+            ],
+        )

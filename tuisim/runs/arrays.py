@@ -15,7 +15,9 @@ IntArray = NDArray[np.int64]
 """Row numbers, shape (n,)."""
 
 
-def world_points_mm(records: NDArray[Any], x_mm: float, y_mm: float) -> tuple[NDArray[Any], NDArray[Any]]:
+def world_points_mm(
+    records: NDArray[Any], x_mm: float, y_mm: float
+) -> tuple[NDArray[Any], NDArray[Any]]:
     """Return x and y in the world of a point of the robot at every tick, as `core.geometry.world_point`; shape (n,).
 
     Args:

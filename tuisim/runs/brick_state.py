@@ -111,7 +111,9 @@ def is_sound(stream: Stream, text: bytes) -> bool:
 
 
 def _is_number(value: object) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool) and abs(value) < _MOST_NUMBER
+    return (
+        isinstance(value, int | float) and not isinstance(value, bool) and abs(value) < _MOST_NUMBER
+    )
 
 
 def _is_screen(screen: TextScreen) -> bool:
@@ -139,13 +141,22 @@ def face_after(face: BrickState, rows: Iterable[OutputRow]) -> BrickState:
             case Stream.CONSOLE:
                 columns, count, lines, inverse = json.loads(row.text)
                 spans = tuple((line, start, end) for line, start, end in inverse)
-                face = replace(face, text=TextScreen(columns, count, tuple(lines), spans), shows_text=True)
+                face = replace(
+                    face, text=TextScreen(columns, count, tuple(lines), spans), shows_text=True
+                )
             case Stream.SPEECH:
                 face = replace(face, sound=row.text)
             case Stream.MOTORS:
                 turns = tuple((position_deg, dps) for position_deg, dps in json.loads(row.text))
                 face = replace(face, turns=turns, turns_tick=row.tick)
-            case Stream.STDOUT | Stream.STDERR | Stream.INPUT | Stream.NOTE | Stream.DATA | Stream.UNKNOWN:
+            case (
+                Stream.STDOUT
+                | Stream.STDERR
+                | Stream.INPUT
+                | Stream.NOTE
+                | Stream.DATA
+                | Stream.UNKNOWN
+            ):
                 pass
             case _:
                 assert_never(row.stream)

@@ -121,7 +121,9 @@ class Catalogue:
         """
         self.update_all([(run_id, values)])
 
-    def update_all(self, changes: Sequence[tuple[str, Mapping[str, str | int | float | None]]]) -> None:
+    def update_all(
+        self, changes: Sequence[tuple[str, Mapping[str, str | int | float | None]]]
+    ) -> None:
         """Change columns of many runs as `update` does, in one transaction."""
         unknown = {name for _, values in changes for name in values} - set(_NAMES)
         if unknown:
@@ -130,7 +132,9 @@ class Catalogue:
         def change(connection: sqlite3.Connection) -> None:
             for run_id, values in changes:
                 assignments = ", ".join(f'"{name}" = ?' for name in values)
-                connection.execute(f"UPDATE runs SET {assignments} WHERE id = ?", (*values.values(), run_id))
+                connection.execute(
+                    f"UPDATE runs SET {assignments} WHERE id = ?", (*values.values(), run_id)
+                )
 
         self._write(change)
 
@@ -169,8 +173,14 @@ class Catalogue:
                 return operation(connection)
         except (sqlite3.Error, OSError) as error:
             # SQLite says "disk I/O error" where a file beside its own has no room.
-            reason, hint = (_FULL, "free some space, or " + HOME_HINT) if _is_full(self._home) else (error, HOME_HINT)
-            raise LogError(f"the list of runs cannot be used: {reason}", hint, file=str(self._path)) from error
+            reason, hint = (
+                (_FULL, "free some space, or " + HOME_HINT)
+                if _is_full(self._home)
+                else (error, HOME_HINT)
+            )
+            raise LogError(
+                f"the list of runs cannot be used: {reason}", hint, file=str(self._path)
+            ) from error
 
     def _make_again(self) -> None:
         """Replace an invalid catalogue by a new one, filled from the run folders."""
@@ -198,7 +208,9 @@ class Catalogue:
         with _transaction(connection):
             connection.execute(_CREATE)
             # Runs with a stored number come first, so that none of the others takes it.
-            for info in sorted(self._scan(), key=lambda info: (not info.number, info.number, info.created)):
+            for info in sorted(
+                self._scan(), key=lambda info: (not info.number, info.number, info.created)
+            ):
                 _insert(connection, info)
             connection.execute(f"PRAGMA user_version = {_SCHEMA_VERSION}")
 
@@ -224,12 +236,16 @@ def locked(home: Path) -> Iterator[None]:
         make_private_folder(home)
         descriptor = private(str(file), os.O_RDWR | os.O_CREAT | os.O_CLOEXEC)
     except OSError as error:
-        raise LogError(f"cannot be opened: {error.strerror or error}", HOME_HINT, file=str(file)) from error
+        raise LogError(
+            f"cannot be opened: {error.strerror or error}", HOME_HINT, file=str(file)
+        ) from error
     try:
         try:
             fcntl.flock(descriptor, fcntl.LOCK_EX)
         except OSError as error:
-            raise LogError(f"cannot be locked: {error.strerror or error}", HOME_HINT, file=str(file)) from error
+            raise LogError(
+                f"cannot be locked: {error.strerror or error}", HOME_HINT, file=str(file)
+            ) from error
         yield
     finally:
         os.close(descriptor)
@@ -245,7 +261,9 @@ def _transaction(connection: sqlite3.Connection) -> Iterator[None]:
 
 def _open(path: Path) -> sqlite3.Connection:
     # Read-write without create: a missing file is created under the lock and filled from the folders.
-    connection = sqlite3.connect(f"{path.absolute().as_uri()}?mode=rw", uri=True, timeout=_BUSY_S, isolation_level=None)
+    connection = sqlite3.connect(
+        f"{path.absolute().as_uri()}?mode=rw", uri=True, timeout=_BUSY_S, isolation_level=None
+    )
     try:
         # Waiting for the disk would delay the end of every run; damage by a power failure is repaired.
         connection.execute("PRAGMA synchronous = OFF")
@@ -268,7 +286,12 @@ def _must_be_made_again(error: sqlite3.DatabaseError) -> bool:
         return True
     code = getattr(error, "sqlite_errorcode", sqlite3.SQLITE_OK) & 0xFF
     # A plain error comes from a missing table or column: the SQL is constant, so there is no other reason.
-    return code in (sqlite3.SQLITE_CANTOPEN, sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_NOTADB, sqlite3.SQLITE_ERROR)
+    return code in (
+        sqlite3.SQLITE_CANTOPEN,
+        sqlite3.SQLITE_CORRUPT,
+        sqlite3.SQLITE_NOTADB,
+        sqlite3.SQLITE_ERROR,
+    )
 
 
 def _is_sound(path: Path) -> bool:
@@ -290,7 +313,10 @@ def _insert(connection: sqlite3.Connection, info: RunInfo) -> int:
     if listed is not None:
         return int(listed[0])
     is_sound = 0 < info.number <= _MOST_RUNS
-    taken = is_sound and connection.execute("SELECT 1 FROM runs WHERE number = ?", (info.number,)).fetchone()
+    taken = (
+        is_sound
+        and connection.execute("SELECT 1 FROM runs WHERE number = ?", (info.number,)).fetchone()
+    )
     number = info.number if is_sound and not taken else None
     # A seed may exceed the integers of SQLite.
     changed = {"number": number, "seed": str(info.seed), "end": info.end or ""}
@@ -319,10 +345,27 @@ def _info(row: tuple[Any, ...]) -> RunInfo:
             raise ValueError(f"{count!r} is not a number")
     words = (text.decode() for text in (*texts, end, summary, tags))
     run_id, created, program, background, profile, end, summary, tags = words
-    if not run_id or run_id.startswith(".") or {os.sep, "\0"} & set(run_id) or len(os.fsencode(run_id)) > _MOST_ID:
+    if (
+        not run_id
+        or run_id.startswith(".")
+        or {os.sep, "\0"} & set(run_id)
+        or len(os.fsencode(run_id)) > _MOST_ID
+    ):
         # It must name a folder beside the others: the user may have it removed.
         raise ValueError(f"{shortened(run_id)} is not an id")
     state = RUN_STATES[end] if end else None
     return RunInfo(
-        number, run_id, created, program, background, profile, int(seed), state, ticks, time_s, samples, summary, tags
+        number,
+        run_id,
+        created,
+        program,
+        background,
+        profile,
+        int(seed),
+        state,
+        ticks,
+        time_s,
+        samples,
+        summary,
+        tags,
     )

@@ -93,7 +93,9 @@ class RunDiff:
         return {"same": self.same, **asdict(self)}
 
 
-def diff_runs(first: StoredRun, second: StoredRun, *, prefix: bool = False, until: int | None = None) -> RunDiff:
+def diff_runs(
+    first: StoredRun, second: StoredRun, *, prefix: bool = False, until: int | None = None
+) -> RunDiff:
     """Compare two runs.
 
     Args:
@@ -111,7 +113,9 @@ def diff_runs(first: StoredRun, second: StoredRun, *, prefix: bool = False, unti
     if prefix:
         two = two[: len(one)]
     old, new = source_lines(first.program.text), source_lines(second.program.text)
-    unified = difflib.unified_diff(old, new, first.program.name, second.program.name, n=1, lineterm="")
+    unified = difflib.unified_diff(
+        old, new, first.program.name, second.program.name, n=1, lineterm=""
+    )
     return RunDiff(
         setup=tuple(_setup(first, second)),
         program=tuple(line for line, _ in zip(unified, range(DIFF_LINES), strict=False)),
@@ -124,24 +128,33 @@ def diff_runs(first: StoredRun, second: StoredRun, *, prefix: bool = False, unti
     )
 
 
-def first_tick(one: np.ndarray[Any, Any], two: np.ndarray[Any, Any], tick_hz: int) -> TickDifference | None:
+def first_tick(
+    one: np.ndarray[Any, Any], two: np.ndarray[Any, Any], tick_hz: int
+) -> TickDifference | None:
     """Return the first tick at which two `TelemetryView.array` of one tick rate differ; None if they are equal."""
     import numpy as np
 
     count = min(len(one), len(two))
     # Compare bytes, not numbers: NaN equals itself, and 0.0 differs from -0.0.
     size = one.dtype.itemsize
-    raw = [np.ascontiguousarray(records[:count]).view(np.uint8).reshape(count, size) for records in (one, two)]
+    raw = [
+        np.ascontiguousarray(records[:count]).view(np.uint8).reshape(count, size)
+        for records in (one, two)
+    ]
     differ = np.flatnonzero((raw[0] != raw[1]).any(axis=1))
     if len(differ):
         tick = int(differ[0])
         names = one.dtype.names or ()
-        fields = tuple(name for name in names if one[name][tick].tobytes() != two[name][tick].tobytes())
+        fields = tuple(
+            name for name in names if one[name][tick].tobytes() != two[name][tick].tobytes()
+        )
         return TickDifference(tick, tick / tick_hz, fields)
     return None if len(one) == len(two) else TickDifference(count, count / tick_hz, ())
 
 
-def divergence(one: np.ndarray[Any, Any], two: np.ndarray[Any, Any], tick_hz: tuple[int, int]) -> Divergence:
+def divergence(
+    one: np.ndarray[Any, Any], two: np.ndarray[Any, Any], tick_hz: tuple[int, int]
+) -> Divergence:
     """Return the distance between two robots at the ticks of the first run that both runs cover.
 
     Args:
@@ -160,11 +173,18 @@ def divergence(one: np.ndarray[Any, Any], two: np.ndarray[Any, Any], tick_hz: tu
     rows = np.unique(np.linspace(0, len(times) - 1, TABLE_ROWS).round().astype(int))
     table = tuple((float(times[row]), float(distance[row]), float(turned[row])) for row in rows)
     return Divergence(
-        float(distance[top]), float(times[top]), float(distance[-1]), float(times[-1]), tuple(exceeded), table
+        float(distance[top]),
+        float(times[top]),
+        float(distance[-1]),
+        float(times[-1]),
+        tuple(exceeded),
+        table,
     )
 
 
-def parted_at_s(one: np.ndarray[Any, Any], two: np.ndarray[Any, Any], tick_hz: tuple[int, int]) -> float | None:
+def parted_at_s(
+    one: np.ndarray[Any, Any], two: np.ndarray[Any, Any], tick_hz: tuple[int, int]
+) -> float | None:
     """Return the time at which the robots were first over 1 mm or 1 degree apart; arguments as of `divergence`.
 
     None if they never were: one run may still have ended before the other.
@@ -174,7 +194,9 @@ def parted_at_s(one: np.ndarray[Any, Any], two: np.ndarray[Any, Any], tick_hz: t
     return float(times[is_apart.argmax()]) if is_apart.any() else None
 
 
-def _apart(one: np.ndarray[Any, Any], two: np.ndarray[Any, Any], tick_hz: tuple[int, int]) -> tuple[_Series, ...]:
+def _apart(
+    one: np.ndarray[Any, Any], two: np.ndarray[Any, Any], tick_hz: tuple[int, int]
+) -> tuple[_Series, ...]:
     """Return times in s, distances in mm and differences of heading in degrees; arguments as of `divergence`."""
     import numpy as np
 
@@ -183,15 +205,23 @@ def _apart(one: np.ndarray[Any, Any], two: np.ndarray[Any, Any], tick_hz: tuple[
     theirs = np.arange(len(two)) / tick_hz[1]
     apart = []
     for name in ("x_mm", "y_mm", "heading_deg"):
-        other = two[name][: len(times)] if tick_hz[0] == tick_hz[1] else np.interp(times, theirs, two[name])
+        other = (
+            two[name][: len(times)]
+            if tick_hz[0] == tick_hz[1]
+            else np.interp(times, theirs, two[name])
+        )
         apart.append(other - one[name][: len(times)])
     return times, np.hypot(apart[0], apart[1]), (apart[2] + 180.0) % 360.0 - 180.0
 
 
-def _first_line(one: np.ndarray[Any, Any], two: np.ndarray[Any, Any], tick_hz: int) -> TickDifference | None:
+def _first_line(
+    one: np.ndarray[Any, Any], two: np.ndarray[Any, Any], tick_hz: int
+) -> TickDifference | None:
     count = min(len(one), len(two))
     differ = (one["line"][:count] != two["line"][:count]).nonzero()[0]
-    return TickDifference(int(differ[0]), int(differ[0]) / tick_hz, ("line",)) if len(differ) else None
+    return (
+        TickDifference(int(differ[0]), int(differ[0]) / tick_hz, ("line",)) if len(differ) else None
+    )
 
 
 _Row = tuple[Any, str, float]
@@ -206,7 +236,9 @@ def _written(run: StoredRun, until: int | None) -> Iterator[OutputRow]:
 def _shown(row: OutputRow) -> str:
     """Return a row as text, also one of the brick's state."""
     match row.stream:
-        case Stream.STDOUT | Stream.STDERR | Stream.SPEECH | Stream.INPUT | Stream.NOTE | Stream.DATA:
+        case (
+            Stream.STDOUT | Stream.STDERR | Stream.SPEECH | Stream.INPUT | Stream.NOTE | Stream.DATA
+        ):
             return line_of(row)
         case Stream.LED:
             return "[lights]"
@@ -225,7 +257,11 @@ def _rows(run: StoredRun, until: int | None) -> Iterator[_Row]:
 
 def _samples(run: StoredRun, until: int | None) -> Iterator[_Row]:
     for sample in samples_of(_written(run, until)):
-        yield (sample.name, sample.value, sample.time_s), f"{sample.name}: {sample.value:g}", sample.time_ns / 1e9
+        yield (
+            (sample.name, sample.value, sample.time_s),
+            f"{sample.name}: {sample.value:g}",
+            sample.time_ns / 1e9,
+        )
 
 
 def _first_row(one: Iterator[_Row], two: Iterator[_Row], prefix: bool) -> RowDifference | None:
@@ -255,7 +291,11 @@ def _setup(first: StoredRun, second: StoredRun) -> Iterator[tuple[str, str, str]
         if left != right:
             yield f"program {name}", left, right
     if first.program.arguments != second.program.arguments:
-        yield "program arguments", shlex.join(first.program.arguments), shlex.join(second.program.arguments)
+        yield (
+            "program arguments",
+            shlex.join(first.program.arguments),
+            shlex.join(second.program.arguments),
+        )
     if first.actions != second.actions:
         yield "user actions", str(len(first.actions)), str(len(second.actions))
 
@@ -294,7 +334,9 @@ def recording_in_words(found: RunDiff) -> Iterator[tuple[str, str]]:
     for what, row in (("output row", found.output), ("sample", found.sample)):
         if row:
             sides = zip((row.first, row.second), row.times_s, strict=True)
-            left, right = ("no more" if text is None else f"{text!r} at {at_s:.3f} s" for text, at_s in sides)
+            left, right = (
+                "no more" if text is None else f"{text!r} at {at_s:.3f} s" for text, at_s in sides
+            )
             yield f"first differing {what}", f"{row.row}: {left} | {right}"
     if found.divergence:
         apart = found.divergence

@@ -75,8 +75,14 @@ def sample_columns(runs: Iterable[StoredRun]) -> dict[str, Any]:
         if name == "variable":
             joined[name] = [text for part in parts for text in part[name]]
         else:
-            empty = {"index": np.empty(0, "m8[ns]"), "run": np.empty(0, np.int64), "line": np.empty(0, np.int64)}
-            joined[name] = np.concatenate([empty.get(name, np.empty(0)), *(part[name] for part in parts)])
+            empty = {
+                "index": np.empty(0, "m8[ns]"),
+                "run": np.empty(0, np.int64),
+                "line": np.empty(0, np.int64),
+            }
+            joined[name] = np.concatenate(
+                [empty.get(name, np.empty(0)), *(part[name] for part in parts)]
+            )
     return joined
 
 
@@ -152,11 +158,17 @@ def column_values(
         field_at: Returns the mat as the sensors saw it in a tick; needed if the records do not begin with tick 0, or
             some are left out. None: the pen's marks are drawn on it as the records say.
     """
-    sensors = [one for one in mounted(spec.robot) if any(column.name in names for column in one[0].columns(one[1]))]
+    sensors = [
+        one
+        for one in mounted(spec.robot)
+        if any(column.name in names for column in one[0].columns(one[1]))
+    ]
     measured = {name: records[name].astype("f8") for name in MOTION_COLUMNS}
     measured |= _measured(records, sensors, _noises(records, spec, actions), spec, field, field_at)
     return {
-        column.name: measured[column.name] if column.of is None else computed(column.of, columns, measured, spec.robot)
+        column.name: measured[column.name]
+        if column.of is None
+        else computed(column.of, columns, measured, spec.robot)
         for columns in (MOTION, *(kind.columns(sensor) for kind, sensor in sensors))
         for column in columns
         if column.name in names
@@ -230,7 +242,9 @@ def tick_times_s(records: Array, spec: RunSpec) -> Array:
     return times
 
 
-def _noises(records: Array, spec: RunSpec, actions: Sequence[UserAction]) -> list[tuple[NoiseSpec, int]]:
+def _noises(
+    records: Array, spec: RunSpec, actions: Sequence[UserAction]
+) -> list[tuple[NoiseSpec, int]]:
     """Return the noises in order of time, each with its number of ticks."""
     import numpy as np
 
@@ -274,9 +288,13 @@ def _measured(
     field_at = field_at or _field_with_marks(field, spec)
     every = chain.from_iterable(repeat(noise, count) for noise, count in noises)
     # One by one: all at once, as objects, the records of a long run take much memory.
-    for at, (record, noise) in enumerate(zip(TICK_RECORD.iter_unpack(records.data), every, strict=True)):
+    for at, (record, noise) in enumerate(
+        zip(TICK_RECORD.iter_unpack(records.data), every, strict=True)
+    ):
         instant, seen = instant_of(TickRecord(*record), spec, noise), field_at(record)
-        rows[at] = [value for kind, sensor in slow for value in kind.measure(sensor, instant, spec, seen)]
+        rows[at] = [
+            value for kind, sensor in slow for value in kind.measure(sensor, instant, spec, seen)
+        ]
     return {**found, **{name: rows[:, at] for at, name in enumerate(names)}}
 
 

@@ -59,7 +59,14 @@ from tuisim.runs.removal import remove_tree
 from tuisim.runs.run_folder import RUN_FILE, StoredRun, field_files
 from tuisim.runs.run_options import DEFAULT_TIME_LIMIT_S as DEFAULT_TIME_LIMIT_S
 from tuisim.runs.run_options import RunOptions as RunOptions
-from tuisim.runs.side_files import LOG_FILE, MOST_BYTES, STACK_FILE, copy_modules, read_actions, read_stop_tick
+from tuisim.runs.side_files import (
+    LOG_FILE,
+    MOST_BYTES,
+    STACK_FILE,
+    copy_modules,
+    read_actions,
+    read_stop_tick,
+)
 from tuisim.runs.store import NewRun, RunStore
 from tuisim.runs.views import TelemetryView, views_of
 from tuisim.source import Program
@@ -130,7 +137,9 @@ class RunHandle:
     ) -> None:
         self.program, self.spec, self.field = program, spec, field
         self._options, self._store = options, store
-        self._run = run = store.new_run(program, spec, field.to_plain(), options.to_plain(), options.live)
+        self._run = run = store.new_run(
+            program, spec, field.to_plain(), options.to_plain(), options.live
+        )
         self.run_id, self.number, self.folder = run.id, run.number, run.folder
         self._copy_modules()
         self.ended: Ended | None = None
@@ -169,7 +178,8 @@ class RunHandle:
             os.close(self._lock_fd)
             self._store.forget(run.id)
             raise HostError(
-                f"the program's process cannot be started: {error.strerror or error}", str(run.folder)
+                f"the program's process cannot be started: {error.strerror or error}",
+                str(run.folder),
             ) from error
         self._mark = mark(self._process.pid)
         self._clock = FairClock(self._process.pid)
@@ -253,7 +263,9 @@ class RunHandle:
         if not self._falsified and self.folder.is_dir():
             damages = self.telemetry.read_on(), self.output.read_on()
             self._falsified = (
-                self._events.falsified or next(filter(None, damages), "") or self._too_much(self.telemetry)
+                self._events.falsified
+                or next(filter(None, damages), "")
+                or self._too_much(self.telemetry)
             )
             if self._falsified:
                 end_group(self._process.pid)
@@ -276,7 +288,11 @@ class RunHandle:
         return ""
 
     def _final_event(self, exited: bool) -> Ended | None:
-        if self._announced is not None and not exited and time.monotonic() - self._announced_at > ENDED_CHILD_S:
+        if (
+            self._announced is not None
+            and not exited
+            and time.monotonic() - self._announced_at > ENDED_CHILD_S
+        ):
             end_group(self._process.pid)
         if not exited:
             return None
@@ -286,7 +302,13 @@ class RunHandle:
         tick = max(0, self.telemetry.count - 1)
         time_ns = due_ns(tick, self.spec.profile.tick_hz)
         if falsified:
-            return Ended(End.FALSIFIED, tick, time_ns, 1, f"the program has falsified its recording: {falsified}")
+            return Ended(
+                End.FALSIFIED,
+                tick,
+                time_ns,
+                1,
+                f"the program has falsified its recording: {falsified}",
+            )
         if self._exceeded:
             return Ended(End.OUTPUT_LIMIT, tick, time_ns, 1, self._exceeded)
         line = stuck_line(self.folder, self.program.file)
@@ -294,10 +316,16 @@ class RunHandle:
             where = f" in line {line}, where it was stuck" if line else ""
             return Ended(End.STOPPED, tick, time_ns, summary=f"stopped{where}", error_line=line)
         if self._stack_asked:
-            summary = f"stuck in line {line}: no simulated time passed" if line else "stuck: no simulated time passed"
+            summary = (
+                f"stuck in line {line}: no simulated time passed"
+                if line
+                else "stuck: no simulated time passed"
+            )
             return Ended(End.STALLED, tick, time_ns, 1, summary, error_line=line)
         status = self._process.wait()
-        return Ended(End.CRASHED, tick, time_ns, 1, what_ended(status, self.folder, line), error_line=line)
+        return Ended(
+            End.CRASHED, tick, time_ns, 1, what_ended(status, self.folder, line), error_line=line
+        )
 
     def _what_is_falsified(self) -> str:
         """Return what the run has left that the simulation does not leave; empty if there is nothing."""
@@ -316,9 +344,15 @@ class RunHandle:
                 return view.note or "a part of it was deleted"
         ticks = telemetry.count
         if is_whole and end is not None and end.tick != ticks - 1:
-            return f"it ends at tick {end.tick}, and {counted(ticks, 'tick is', 'ticks are')} recorded"
+            return (
+                f"it ends at tick {end.tick}, and {counted(ticks, 'tick is', 'ticks are')} recorded"
+            )
         hz = self.spec.profile.tick_hz
-        if is_whole and end is not None and not due_ns(end.tick, hz) <= end.time_ns <= due_ns(end.tick + 1, hz):
+        if (
+            is_whole
+            and end is not None
+            and not due_ns(end.tick, hz) <= end.time_ns <= due_ns(end.tick + 1, hz)
+        ):
             return f"its end at tick {end.tick} has another time"
         if any(path.exists() for path in self._packed_files()):
             return "it was packed while the program ran"
@@ -375,7 +409,11 @@ class RunHandle:
 
     def _what_is_wrong(self, error: LogError) -> str:
         # A folder that is being deleted loses its files one by one.
-        return str(error) if (self.folder / RUN_FILE).exists() else "its folder was deleted while it ran"
+        return (
+            str(error)
+            if (self.folder / RUN_FILE).exists()
+            else "its folder was deleted while it ran"
+        )
 
     def wait(self, timeout_s: float | None = None) -> Ended | None:
         """Block until the run is over.
@@ -389,7 +427,10 @@ class RunHandle:
             rest = ASK_AGAIN_S if until is None else min(ASK_AGAIN_S, until - now)
             if rest <= 0:
                 break
-            if self._stop_at is not None and (left := self._stop_at + STUCK_AFTER_S - self._clock.now_s()) > 0:
+            if (
+                self._stop_at is not None
+                and (left := self._stop_at + STUCK_AFTER_S - self._clock.now_s()) > 0
+            ):
                 # A stuck child is killed on time.
                 rest = min(rest, left)
             self.wait_for_event(rest)
@@ -449,7 +490,9 @@ class RunHandle:
 
     def prepare_next(self) -> None:
         """Prepare a process for later runs of this robot and world, which then start sooner. Does not block."""
-        prepare_template(_template_key(self.program, self.spec, self.field), self.folder, self._run.data)
+        prepare_template(
+            _template_key(self.program, self.spec, self.field), self.folder, self._run.data
+        )
 
     def close(self) -> None:
         """Make sure that the child is gone and the end of the run is recorded."""
@@ -475,10 +518,19 @@ class RunHandle:
 
     def _look_for_stall(self) -> None:
         """Kill a child that has made no progress for too long."""
-        if self._announced is not None or self._stop_at is not None or not self._options.stall_limit_s or self.paused:
+        if (
+            self._announced is not None
+            or self._stop_at is not None
+            or not self._options.stall_limit_s
+            or self.paused
+        ):
             return
         tick, now = self.telemetry.count, self._clock.now_s()
-        if tick != self._progress[0] or self.waiting_for_reply or self.waiting_for_input is not None:
+        if (
+            tick != self._progress[0]
+            or self.waiting_for_reply
+            or self.waiting_for_input is not None
+        ):
             self._progress = (tick, now)
         elif now - self._progress[1] > STALL_FACTOR * self._options.stall_limit_s:
             self._read_stack_and_kill()
@@ -522,7 +574,9 @@ def in_surroundings(program: Program) -> Program:
     return replace(program, python_path=user_python_path(), working_directory=_here())
 
 
-def start_run(program: Program, spec: RunSpec, options: RunOptions, store: RunStore | None = None) -> RunHandle:
+def start_run(
+    program: Program, spec: RunSpec, options: RunOptions, store: RunStore | None = None
+) -> RunHandle:
     """Start a program, by default in the user's store. Does not block.
 
     Raises:
@@ -530,4 +584,6 @@ def start_run(program: Program, spec: RunSpec, options: RunOptions, store: RunSt
         LogError: the run cannot be stored.
     """
     parse_breakpoints(options.breaks, spec.robot)
-    return RunHandle(in_surroundings(program), spec, field_files(spec), options, store or RunStore())
+    return RunHandle(
+        in_surroundings(program), spec, field_files(spec), options, store or RunStore()
+    )

@@ -22,7 +22,14 @@ TICK = np.dtype(list(TICK_FIELDS))
 LEVEL = 6
 """Compression level of zlib; higher ones take twice as long and gain 1 %."""
 
-HEAD_FIELDS = (("size", "<u4"), ("tick", "<u4"), ("time_ns", "<u8"), ("line", "<u4"), ("stream", "u1"), ("spare", "V3"))
+HEAD_FIELDS = (
+    ("size", "<u4"),
+    ("tick", "<u4"),
+    ("time_ns", "<u8"),
+    ("line", "<u4"),
+    ("stream", "u1"),
+    ("spare", "V3"),
+)
 """Name and numpy type of each field of `records.OUTPUT_ROW`."""
 HEAD_COLUMNS = tuple(name for name, kind in HEAD_FIELDS if not kind.startswith("V"))
 ROWS_AT_ONCE = 1 << 16
@@ -57,7 +64,9 @@ class Source:
 
     def column(self, count: int, kind: np.dtype[Any]) -> Column:
         """Read a column written by the function `folded`, shape (count,)."""
-        raw = np.frombuffer(self._bytes(count * kind.itemsize), np.uint8).reshape(kind.itemsize, count)
+        raw = np.frombuffer(self._bytes(count * kind.itemsize), np.uint8).reshape(
+            kind.itemsize, count
+        )
         changes = np.ascontiguousarray(raw.T).reshape(-1).view(f"<u{kind.itemsize}")
         return np.add.accumulate(changes, dtype=changes.dtype).view(kind)
 

@@ -73,9 +73,13 @@ class Packed:
         # A header may claim more than memory holds.
         except (OSError, ValueError, MemoryError) as error:
             what = str(error) or "it claims to be too large"
-            raise LogError(f"the packed recording is damaged: {what}", file=str(self.path)) from error
+            raise LogError(
+                f"the packed recording is damaged: {what}", file=str(self.path)
+            ) from error
         if zlib.crc32(content) != self.checksum:
-            raise LogError("the packed recording is damaged: its checksum is wrong", file=str(self.path))
+            raise LogError(
+                "the packed recording is damaged: its checksum is wrong", file=str(self.path)
+            )
         return header(*_form(self.name), self.length) + content
 
     @property
@@ -114,7 +118,9 @@ def find_packed(path: Path) -> Packed | None:
     if magic != PACKED_MAGIC[path.name]:
         raise LogError("not a packed recording", file=str(packed))
     if version not in (PACKED_VERSION, _EARLIER_VERSION):
-        raise LogError(f"format version {version}, this tuisim reads {PACKED_VERSION}", file=str(packed))
+        raise LogError(
+            f"format version {version}, this tuisim reads {PACKED_VERSION}", file=str(packed)
+        )
     if check != zlib.crc32(head[: _HEADER.size]):
         raise LogError("the packed recording is damaged: its header is corrupt", file=str(packed))
     return Packed(packed, version == _EARLIER_VERSION, checksum, length, size, last)
@@ -141,11 +147,16 @@ def renew(folder: Path, again: Path) -> None:
         LogError: the re-run has other recordings, or they cannot be read or written.
     """
     try:
-        contents = {packed.name: _same_recording(packed, again / packed.name) for packed in earlier_forms(folder)}
+        contents = {
+            packed.name: _same_recording(packed, again / packed.name)
+            for packed in earlier_forms(folder)
+        }
         for name, data in contents.items():
             _write(folder / name, data)
     except OSError as error:
-        raise LogError(f"cannot be packed again: {error.strerror or error}", file=str(folder)) from error
+        raise LogError(
+            f"cannot be packed again: {error.strerror or error}", file=str(folder)
+        ) from error
 
 
 def _same_recording(packed: Packed, path: Path) -> bytes:
@@ -156,7 +167,11 @@ def _same_recording(packed: Packed, path: Path) -> bytes:
     content = data[HEADER_BYTES : HEADER_BYTES + packed.length * max(1, record_bytes)]
     if zlib.crc32(content) != packed.checksum:
         message = "a re-run has another recording than this one, which an earlier tuisim packed and which stays"
-        raise LogError(message, "the program, a file that it reads, or the mat may have changed", file=str(packed.path))
+        raise LogError(
+            message,
+            "the program, a file that it reads, or the mat may have changed",
+            file=str(packed.path),
+        )
     return header(magic, record_bytes, packed.length) + content
 
 
@@ -172,7 +187,9 @@ def compact(folder: Path) -> None:
             _compact_file(path)
             sweep(folder, name + PACKED_SUFFIX)
         except OSError as error:
-            raise LogError(f"cannot be packed: {error.strerror or error}", file=str(path)) from error
+            raise LogError(
+                f"cannot be packed: {error.strerror or error}", file=str(path)
+            ) from error
 
 
 def _compact_file(path: Path) -> None:
@@ -191,7 +208,9 @@ def _compact_file(path: Path) -> None:
 def _write(path: Path, data: bytes) -> None:
     """Write the packed form of the recording that is, or was, at a path."""
     packed = _packed(path, data)
-    with replacing(path.with_name(path.name + PACKED_SUFFIX), owner_only=True, follow_links=False) as handle:
+    with replacing(
+        path.with_name(path.name + PACKED_SUFFIX), owner_only=True, follow_links=False
+    ) as handle:
         handle.write(packed)
 
 
@@ -227,7 +246,9 @@ def _packed(path: Path, data: bytes) -> bytes:
         back = packed_codec.unfold_rows(folded)
     if back != content:
         raise LogError("cannot be packed without loss", file=str(path))
-    head = _HEADER.pack(PACKED_MAGIC[path.name], PACKED_VERSION, zlib.crc32(content), length, len(folded), last)
+    head = _HEADER.pack(
+        PACKED_MAGIC[path.name], PACKED_VERSION, zlib.crc32(content), length, len(folded), last
+    )
     return head + _CHECK.pack(zlib.crc32(head)) + folded
 
 

@@ -39,7 +39,9 @@ class Recording:
         name: Display name; by default the number, or the id if it has none.
     """
 
-    def __init__(self, source: RunHandle | StoredRun, answers: tuple[str, ...] = (), name: str = "") -> None:
+    def __init__(
+        self, source: RunHandle | StoredRun, answers: tuple[str, ...] = (), name: str = ""
+    ) -> None:
         self.run_id = source.id if isinstance(source, StoredRun) else source.run_id
         self.number: int = source.number
         """Number in the catalogue; 0 if it is not listed."""
@@ -51,11 +53,15 @@ class Recording:
         self._output = source.output
         self.rows = RowIndex(source.output)
         self.program = program_again(source.program, source.folder)
-        self.known_actions: tuple[UserAction, ...] = source.actions if isinstance(source, StoredRun) else ()
+        self.known_actions: tuple[UserAction, ...] = (
+            source.actions if isinstance(source, StoredRun) else ()
+        )
         """The user's actions, as far as `actions` has last found them."""
         self._stall_ticks = stall_ticks(self.spec.profile.tick_hz)
         self._marks: _TimedMarks | None = None
-        self.answers = tuple(source.options.get("answers", ())) if isinstance(source, StoredRun) else answers
+        self.answers = (
+            tuple(source.options.get("answers", ())) if isinstance(source, StoredRun) else answers
+        )
         """Scripted answers to `input()`."""
 
     def hold(self) -> None:
@@ -131,7 +137,9 @@ class _TimedMarks:
         marks = self._drawn.field.marks
         if tick >= len(self._counts):
             # One by one: all at once, as objects, the records of a long run take much memory.
-            for record in TICK_RECORD.iter_unpack(self._run.telemetry.array(len(self._counts)).data):
+            for record in TICK_RECORD.iter_unpack(
+                self._run.telemetry.array(len(self._counts)).data
+            ):
                 self._drawn.take_in([record])
                 self._counts.append(len(marks))
         count = self._counts[min(tick, len(self._counts) - 1)] if self._counts else 0
@@ -231,7 +239,11 @@ class RowIndex:
     def face_numbers(self, tick: int) -> list[int]:
         """Return the indices of the rows that define the brick's state at the end of a tick, in order."""
         count = self.until(tick)
-        return sorted(numbers[at - 1] for numbers in self._faces.values() if (at := bisect_right(numbers, count - 1)))
+        return sorted(
+            numbers[at - 1]
+            for numbers in self._faces.values()
+            if (at := bisect_right(numbers, count - 1))
+        )
 
     def row(self, number: int) -> OutputRow:
         """Return one row by its index, from 0."""
@@ -257,4 +269,6 @@ class RowIndex:
 
     def ticks_of_line(self, line: int) -> list[int]:
         """Return the ticks at which a line of the program printed."""
-        return [tick for tick, number in zip(self._ticks, self._lines, strict=True) if number == line]
+        return [
+            tick for tick, number in zip(self._ticks, self._lines, strict=True) if number == line
+        ]

@@ -125,7 +125,11 @@ def _reserve(fd: int, start: int, size: int) -> None:
         os.posix_fallocate(fd, start, size)
     # macOS has no such call, and some file systems refuse it.
     except (AttributeError, OSError) as error:
-        if isinstance(error, OSError) and error.errno not in (errno.EINVAL, errno.EOPNOTSUPP, errno.ENOSYS):
+        if isinstance(error, OSError) and error.errno not in (
+            errno.EINVAL,
+            errno.EOPNOTSUPP,
+            errno.ENOSYS,
+        ):
             raise
         nothing, end = bytes(min(size, _ZEROS)), start + size
         while start < end:
@@ -196,7 +200,9 @@ class TelemetryWriter(_Writer):
     """Appends tick records. The hot loop packs into the map of `room` directly, then calls `publish`."""
 
     def __init__(self, folder: Path) -> None:
-        super().__init__(f"{folder}{os.sep}{TELEMETRY_FILE}", TELEMETRY_MAGIC, TICK_RECORD.size, TELEMETRY_CHUNK)
+        super().__init__(
+            f"{folder}{os.sep}{TELEMETRY_FILE}", TELEMETRY_MAGIC, TICK_RECORD.size, TELEMETRY_CHUNK
+        )
         self.count = 0
 
     def room(self, records: int) -> mmap.mmap:
@@ -239,7 +245,9 @@ class OutputWriter(_Writer):
             return
         self._rows += 1
         if self._rows > MAX_OUTPUT_ROWS + time_ns // _NS_PER_ROW:
-            raise LogError(f"the program printed more than {MAX_OUTPUT_ROWS:,} lines and {MAX_ROWS_PER_S:,} a second")
+            raise LogError(
+                f"the program printed more than {MAX_OUTPUT_ROWS:,} lines and {MAX_ROWS_PER_S:,} a second"
+            )
         at = HEADER_BYTES + self.length
         end = at + OUTPUT_ROW.size + len(text)
         if end > self._capacity:
@@ -321,5 +329,7 @@ def output_rows(data: bytes | memoryview, start: int, end: int) -> Iterator[tupl
         start += OUTPUT_ROW.size + size
         if start > end:
             return
-        text = bytes(data[at + OUTPUT_ROW.size : at + OUTPUT_ROW.size + size]).decode("utf-8", "replace")
+        text = bytes(data[at + OUTPUT_ROW.size : at + OUTPUT_ROW.size + size]).decode(
+            "utf-8", "replace"
+        )
         yield OutputRow(text, tick, time_ns, line, _STREAMS.get(stream, Stream.UNKNOWN)), start

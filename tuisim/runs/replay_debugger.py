@@ -91,7 +91,9 @@ class ReplayDebugger:
             self.busy = True
             self.run.send(look)
 
-    def go_on(self, recording: Recording, at: Position, command: protocol.Message, look: protocol.Inspect) -> None:
+    def go_on(
+        self, recording: Recording, at: Position, command: protocol.Message, look: protocol.Inspect
+    ) -> None:
         """Pause at an instant, resume with a command, and inspect where that ends."""
         self._request, self._back, self._resumes = look, 0, True
         here = self._paused and Position(self._paused.tick, self._paused.ordinal)
@@ -102,7 +104,9 @@ class ReplayDebugger:
             self._next_command = command
             self._go(recording, at, -1)
 
-    def lines_back(self, recording: Recording, at: Position, count: int, look: protocol.Inspect) -> None:
+    def lines_back(
+        self, recording: Recording, at: Position, count: int, look: protocol.Inspect
+    ) -> None:
         """Pause `count` lines before an instant."""
         self._request, self._back, self._next_command, self._resumes = look, count, None, False
         self._go(recording, at, max(0, at.tick - FIRST_WINDOW_TICKS))
@@ -124,11 +128,21 @@ class ReplayDebugger:
                 return
         self.close()
         self.busy = True
-        self._of, self._actions, self._traced_from, self._aim = recording, len(actions), traced_from, at
+        self._of, self._actions, self._traced_from, self._aim = (
+            recording,
+            len(actions),
+            traced_from,
+            at,
+        )
         options = RunOptions(
-            time_limit_s=0.0, stall_limit_s=0.0, answers=recording.answers, asks_user=True, actions=actions,
-            hold_at=(at.tick, at.ordinal), trace_from_tick=traced_from if traced_from >= 0 else None,
-        )  # fmt: skip
+            time_limit_s=0.0,
+            stall_limit_s=0.0,
+            answers=recording.answers,
+            asks_user=True,
+            actions=actions,
+            hold_at=(at.tick, at.ordinal),
+            trace_from_tick=traced_from if traced_from >= 0 else None,
+        )
         try:
             self._folder = owned_folder()
             self.run = start_run(recording.program, recording.spec, options, _scratch(self._folder))

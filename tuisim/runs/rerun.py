@@ -21,7 +21,15 @@ if TYPE_CHECKING:
     from tuisim.runs.store import RunStore
 
 CUT_OFF: frozenset[RunState] = frozenset(
-    {End.STOPPED, End.KILLED, End.CRASHED, Unended.INTERRUPTED, Unended.RUNNING, End.STALLED, End.DISK_FULL}
+    {
+        End.STOPPED,
+        End.KILLED,
+        End.CRASHED,
+        Unended.INTERRUPTED,
+        Unended.RUNNING,
+        End.STALLED,
+        End.DISK_FULL,
+    }
 )
 """Ends that do not result from the program and its limits: such a run is a prefix of its re-run."""
 
@@ -38,7 +46,9 @@ def rerun(run: StoredRun, store: RunStore, **options: Any) -> RunHandle:
         BackgroundError: the mat no longer exists.
         LogError: the run has no recording, or its options are invalid.
     """
-    return start_run(program_again(run.program, run.folder), run.spec, replace(_options(run), **options), store)
+    return start_run(
+        program_again(run.program, run.folder), run.spec, replace(_options(run), **options), store
+    )
 
 
 def same(run: StoredRun, again: StoredRun) -> RunDiff:
@@ -52,7 +62,11 @@ def same(run: StoredRun, again: StoredRun) -> RunDiff:
         return diff_runs(run, again, prefix=run.state in CUT_OFF)
     whole = diff_runs(run, again)
     # How far threads get during cleanup depends on the real clock.
-    return whole if whole.same else diff_runs(run, again, prefix=True, until=read_stop_tick(run.folder))
+    return (
+        whole
+        if whole.same
+        else diff_runs(run, again, prefix=True, until=read_stop_tick(run.folder))
+    )
 
 
 def changed_files(run: StoredRun) -> tuple[str, ...]:
@@ -77,15 +91,24 @@ def changed_files(run: StoredRun) -> tuple[str, ...]:
 def _stopped_by_itself(run: StoredRun) -> bool:
     """Return whether the program obeyed a stop that can be repeated at the same position."""
     # The summary of a run that had to be killed says more than that.
-    return run.end is not None and run.end.summary == "stopped" and read_stop_tick(run.folder) is not None
+    return (
+        run.end is not None
+        and run.end.summary == "stopped"
+        and read_stop_tick(run.folder) is not None
+    )
 
 
 def _options(run: StoredRun) -> RunOptions:
     last = run.telemetry.last()
     if last is None and not run.folder.is_dir():
-        raise LogError(f"no run {str(run.number or run.id)!r}: it has been removed", file=str(run.folder))
+        raise LogError(
+            f"no run {str(run.number or run.id)!r}: it has been removed", file=str(run.folder)
+        )
     if last is None:
-        raise LogError(run.telemetry.note or "has no recording: it ended before its first tick", file=str(run.folder))
+        raise LogError(
+            run.telemetry.note or "has no recording: it ended before its first tick",
+            file=str(run.folder),
+        )
     # A run that was stopped might never end by itself; any other ends before the tick after its last. The stop comes
     # right before that tick, which has to be reached, whichever way times are rounded.
     enough_s = (last.tick + 1.5) / run.spec.profile.tick_hz

@@ -29,8 +29,16 @@ from tuisim.source import Program
 RUN_FILE = "run.json"
 RUN_FORMAT = 1
 _PROGRAM_KEYS = (
-    "name", "path", "text", "sha256", "prelude", "arguments", "python_path", "working_directory", "module_folder",
-)  # fmt: skip
+    "name",
+    "path",
+    "text",
+    "sha256",
+    "prelude",
+    "arguments",
+    "python_path",
+    "working_directory",
+    "module_folder",
+)
 """What `run.json` holds of the program, in this order."""
 
 _ACTION_COUNTS = 1 << 16
@@ -181,7 +189,9 @@ def read_run_file(folder: Path) -> dict[str, Any]:
     if not isinstance(data, dict) or "format" not in data:
         raise LogError("not a run", file=str(path))
     if data["format"] != RUN_FORMAT:
-        raise LogError(f"format version {data['format']}, this tuisim reads {RUN_FORMAT}", file=str(path))
+        raise LogError(
+            f"format version {data['format']}, this tuisim reads {RUN_FORMAT}", file=str(path)
+        )
     return data
 
 
@@ -220,7 +230,9 @@ def _options_of(data: Mapping[str, Any]) -> dict[str, Any]:
 def _end_of(data: Mapping[str, Any]) -> Ended:
     kinds = {field.name: type(getattr(_ANY_END, field.name)) for field in fields(Ended)}
     known = {**data, "end": End(data["end"])}
-    return Ended(**{name: _typed(value, kinds.get(name, object), name) for name, value in known.items()})
+    return Ended(
+        **{name: _typed(value, kinds.get(name, object), name) for name, value in known.items()}
+    )
 
 
 def read_run(folder: Path, document: str | None = None, known: RunSpec | None = None) -> StoredRun:
@@ -244,11 +256,14 @@ def read_run(folder: Path, document: str | None = None, known: RunSpec | None = 
         actions, cut = (), f"{error.message}: the user's actions are ignored"
     try:
         program: dict[str, Any] = {
-            key: _typed(data["program"][key], str, key) for key in ("name", "path", "text", "prelude")
+            key: _typed(data["program"][key], str, key)
+            for key in ("name", "path", "text", "prelude")
         }
         # Older runs do not have these keys.
         for key in ("arguments", "python_path"):
-            program[key] = tuple(_typed(word, str, key) for word in _typed(data["program"].get(key, []), list, key))
+            program[key] = tuple(
+                _typed(word, str, key) for word in _typed(data["program"].get(key, []), list, key)
+            )
         for key in ("working_directory", "module_folder"):
             program[key] = _typed(data["program"].get(key, ""), str, key)
         spec = from_plain(data["spec"]) if known is None else known
@@ -269,7 +284,9 @@ def read_run(folder: Path, document: str | None = None, known: RunSpec | None = 
             end=end,
             actions=actions,
             # Both recordings may have the same note.
-            notes=tuple(filter(None, dict.fromkeys((*lost, cut, *_law_notes(data, spec, actions))))),
+            notes=tuple(
+                filter(None, dict.fromkeys((*lost, cut, *_law_notes(data, spec, actions))))
+            ),
             telemetry=telemetry,
             output=output,
         )
@@ -291,7 +308,9 @@ def _lost_of(view: TelemetryView | OutputView, end: Ended | None) -> str:
     return ""
 
 
-def _law_notes(data: Mapping[str, Any], spec: RunSpec, actions: Sequence[UserAction]) -> Iterator[str]:
+def _law_notes(
+    data: Mapping[str, Any], spec: RunSpec, actions: Sequence[UserAction]
+) -> Iterator[str]:
     """Yield notes for a run recorded with laws that are not those of this version."""
     yield _model_note(data["spec"]["profile"])
     changes = [action.command for action in actions if isinstance(action.command, SetNoise)]
@@ -314,7 +333,9 @@ def field_files(spec: RunSpec) -> FieldFiles:
         BackgroundError: the mat does not exist, or its image cannot be read.
     """
     image = background(spec.world.background).image
-    return prepare(image, {s.diameter_mm for s in spec.robot.color_sensors}, fit=spec.world.background_fit)
+    return prepare(
+        image, {s.diameter_mm for s in spec.robot.color_sensors}, fit=spec.world.background_fit
+    )
 
 
 def open_mat(run: StoredRun) -> Field:
@@ -345,7 +366,9 @@ def mat_files(run: StoredRun) -> FieldFiles:
         # The file names are derived from the contents of the image.
         if made_on is not None and found.pixels.name != made_on.pixels.name:
             name = run.spec.world.background
-            raise LogError(f"the mat {name} has changed since the run", file=str(background(name).image))
+            raise LogError(
+                f"the mat {name} has changed since the run", file=str(background(name).image)
+            )
     except ConfigError as error:
         raise _no_mat(run, error) from error
     # The system refuses some names that come from damaged files.

@@ -22,7 +22,9 @@ _STDOUT = Stream.STDOUT
 """Runs may print millions of rows, and an attribute of an enumeration is slow to reach."""
 
 _SAMPLE = re.compile(rf"(?:\^log[ \t]+)?([^\W\d]\w*):[ \t]*({NUMBER})(?:[ \t]+({NUMBER}))?\s*")
-_PLAIN_SAMPLE = re.compile(rb"(?:\^log[ \t]+)?[A-Za-z_]\w*:[ \t]*[+-]?[0-9]{1,18}(?:\.[0-9]{0,18})?[ \t]*")
+_PLAIN_SAMPLE = re.compile(
+    rb"(?:\^log[ \t]+)?[A-Za-z_]\w*:[ \t]*[+-]?[0-9]{1,18}(?:\.[0-9]{0,18})?[ \t]*"
+)
 """Matches most samples in the bytes of the recording; a line that it does not match may still be a sample."""
 
 
@@ -50,7 +52,11 @@ def parse_sample(text: str) -> tuple[str, float, float | None] | None:
         return None
     name, value, time = found[1], float(found[2]), None if found[3] is None else float(found[3])
     # Extremely long numbers are parsed as infinity; such lines are not samples.
-    if not name.isidentifier() or not math.isfinite(value) or (time is not None and not math.isfinite(time)):
+    if (
+        not name.isidentifier()
+        or not math.isfinite(value)
+        or (time is not None and not math.isfinite(time))
+    ):
         return None
     return name, value, time
 
@@ -70,7 +76,8 @@ def counts_of(output: OutputView) -> Counts:
         if stream in SAMPLE_STREAMS:
             lines += stream == _STDOUT
             if b":" in text and (
-                _PLAIN_SAMPLE.fullmatch(text) or parse_sample(str(text, "utf-8", "replace")) is not None
+                _PLAIN_SAMPLE.fullmatch(text)
+                or parse_sample(str(text, "utf-8", "replace")) is not None
             ):
                 samples += 1
     return Counts(lines, samples)

@@ -18,7 +18,14 @@ from tuisim.core.noise import stream
 from tuisim.core.sensors import SENSORS
 from tuisim.core.sensors.color import disc_pixels_of
 from tuisim.core.sensors.ultrasonic import MAX_ECHO_DEG, MIN_ECHO_DEG, Edge, surfaces
-from tuisim.core.spec import FIELD_HEIGHT_MM, ColorSensorSpec, GyroSpec, RunSpec, SensorSpec, UltrasonicSpec
+from tuisim.core.spec import (
+    FIELD_HEIGHT_MM,
+    ColorSensorSpec,
+    GyroSpec,
+    RunSpec,
+    SensorSpec,
+    UltrasonicSpec,
+)
 from tuisim.runs.arrays import cos_and_sin, world_points_mm
 
 Array = NDArray[Any]
@@ -35,7 +42,9 @@ def measured_at_once(
         field: The mat.
         has_light_noise: Whether there is light noise at any of the ticks.
     """
-    if isinstance(sensor, ColorSensorSpec) and (has_light_noise or sensor.strategy != "mean" or run.world.pen_marks):
+    if isinstance(sensor, ColorSensorSpec) and (
+        has_light_noise or sensor.strategy != "mean" or run.world.pen_marks
+    ):
         return None
     if isinstance(sensor, UltrasonicSpec) and run.world.drift.echo_loss_pc:
         return None
@@ -47,7 +56,9 @@ def measured_at_once(
         return measure(sensor, records, run, field)
 
 
-def quiet_color_columns(records: Array, sensor: ColorSensorSpec, run: RunSpec, field: Field) -> dict[str, Array]:
+def quiet_color_columns(
+    records: Array, sensor: ColorSensorSpec, run: RunSpec, field: Field
+) -> dict[str, Array]:
     """Return red, green and blue of a colour sensor at every tick without light noise, by column.
 
     Args:
@@ -72,7 +83,9 @@ def quiet_color_columns(records: Array, sensor: ColorSensorSpec, run: RunSpec, f
     return {name: means[:, channel] for channel, name in enumerate(SENSORS["color"].names(sensor))}
 
 
-def _color(sensor: ColorSensorSpec, records: Array, run: RunSpec, field: Field) -> tuple[Array, ...]:
+def _color(
+    sensor: ColorSensorSpec, records: Array, run: RunSpec, field: Field
+) -> tuple[Array, ...]:
     return tuple(quiet_color_columns(records, sensor, run, field).values())
 
 
@@ -84,15 +97,21 @@ def _gyro(sensor: GyroSpec, records: Array, run: RunSpec, field: Field) -> tuple
     return _rounded(angle_deg), _rounded(rate_dps)
 
 
-def _ultrasonic(sensor: UltrasonicSpec, records: Array, run: RunSpec, field: Field) -> tuple[Array, ...]:
+def _ultrasonic(
+    sensor: UltrasonicSpec, records: Array, run: RunSpec, field: Field
+) -> tuple[Array, ...]:
     start = world_points_mm(records, sensor.x_mm, sensor.y_mm)
     facing_deg = records["heading_deg"] + sensor.angle_deg
     found = surfaces(run.world)
     nearest_mm = np.full(len(records), sensor.max_range_mm)
     for ray_deg in sensor.ray_angles_deg:
         cos, sin = cos_and_sin(facing_deg + ray_deg)
-        nearest_mm = _cut_off(nearest_mm, found.upright, start, (cos, sin), _echoes(90.0, facing_deg))
-        nearest_mm = _cut_off(nearest_mm, found.level, start[::-1], (sin, cos), _echoes(0.0, facing_deg))
+        nearest_mm = _cut_off(
+            nearest_mm, found.upright, start, (cos, sin), _echoes(90.0, facing_deg)
+        )
+        nearest_mm = _cut_off(
+            nearest_mm, found.level, start[::-1], (sin, cos), _echoes(0.0, facing_deg)
+        )
     distance_mm = _rounded(nearest_mm)
     if not sensor.noise_mm:
         return (distance_mm,)
@@ -103,7 +122,11 @@ def _ultrasonic(sensor: UltrasonicSpec, records: Array, run: RunSpec, field: Fie
 
 
 def _cut_off(
-    nearest_mm: Array, edges: tuple[Edge, ...], start: tuple[Array, Array], step: tuple[Array, Array], echoes: Array
+    nearest_mm: Array,
+    edges: tuple[Edge, ...],
+    start: tuple[Array, Array],
+    step: tuple[Array, Array],
+    echoes: Array,
 ) -> Array:
     """Return the lengths of rays that end at the first of some edges, as `core.sensors.ultrasonic.first_hit_mm`.
 

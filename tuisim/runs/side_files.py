@@ -126,9 +126,19 @@ def read_actions(folder: Path) -> tuple[tuple[UserAction, ...], str]:
             if isinstance(action.command, SetNoise):
                 NoiseSpec(int(action.command.light), int(action.command.motor))
             actions.append(action)
-        except (ValueError, TypeError, KeyError, AttributeError, OverflowError, RecursionError, TuisimError) as error:
+        except (
+            ValueError,
+            TypeError,
+            KeyError,
+            AttributeError,
+            OverflowError,
+            RecursionError,
+            TuisimError,
+        ) as error:
             raise LogError("not a user action", file=str(path), row=row) from error
-    return tuple(actions), f"{ACTIONS_FILE}: the last line is incomplete and is ignored" if rest else ""
+    return tuple(
+        actions
+    ), f"{ACTIONS_FILE}: the last line is incomplete and is ignored" if rest else ""
 
 
 @contextmanager
@@ -208,7 +218,9 @@ def note_module(run_folder: Path, module: OwnModule) -> None:
     try:
         _append(run_folder / MODULES_FILE, asdict(module))
     except OSError as error:
-        raise LogError(f"cannot be written: {error.strerror or error}", file=str(run_folder / MODULES_FILE)) from error
+        raise LogError(
+            f"cannot be written: {error.strerror or error}", file=str(run_folder / MODULES_FILE)
+        ) from error
 
 
 def read_modules(run_folder: Path) -> list[OwnModule]:
@@ -225,7 +237,12 @@ def read_modules(run_folder: Path) -> list[OwnModule]:
         except FileNotFoundError:
             return []
         return [
-            OwnModule(row["name"], row["file"], None if row["folders"] is None else tuple(row["folders"]), row["text"])
+            OwnModule(
+                row["name"],
+                row["file"],
+                None if row["folders"] is None else tuple(row["folders"]),
+                row["text"],
+            )
             for row in _rows(path)
         ]
 
@@ -240,7 +257,9 @@ def copy_modules(source: Path, target: Path) -> None:
         with suppress(FileNotFoundError):
             (target / MODULES_FILE).write_bytes(read_regular(source / MODULES_FILE, MOST_BYTES))
     except OSError as error:
-        raise LogError(f"cannot be copied: {error.strerror or error}", file=str(source / MODULES_FILE)) from error
+        raise LogError(
+            f"cannot be copied: {error.strerror or error}", file=str(source / MODULES_FILE)
+        ) from error
 
 
 @dataclass(frozen=True, slots=True)
@@ -344,6 +363,13 @@ def read_reads(run_folder: Path) -> FilesRead:
                 continue
             name = str(row["path"])
             found.setdefault(
-                name, FileRead(name, bool(row["there"]), int(row["bytes"]), int(row["mtime_ns"]), int(row["crc32"]))
+                name,
+                FileRead(
+                    name,
+                    bool(row["there"]),
+                    int(row["bytes"]),
+                    int(row["mtime_ns"]),
+                    int(row["crc32"]),
+                ),
             )
     return FilesRead(tuple(found.values())[:MOST_READS], left_out + max(0, len(found) - MOST_READS))

@@ -126,7 +126,9 @@ class RunStore:
         now = datetime.now(UTC)
         created = now.isoformat(timespec="milliseconds")
         run_id, folder, lock_fd = self._new_folder(now)
-        info = RunInfo(0, run_id, created, program.name, spec.world.background, spec.profile.name, spec.seed)
+        info = RunInfo(
+            0, run_id, created, program.name, spec.world.background, spec.profile.name, spec.seed
+        )
         try:
             number = self._catalogue.add(info)
             data = new_run_data(run_id, number, created, program, spec, field, options, live)
@@ -153,7 +155,9 @@ class RunStore:
             write_run_file(place, {**data, "id": run_id, "number": number})
         except OSError as error:
             remove_tree(place)
-            raise LogError(f"cannot be stored: {error.strerror or error}", HOME_HINT, file=str(place)) from error
+            raise LogError(
+                f"cannot be stored: {error.strerror or error}", HOME_HINT, file=str(place)
+            ) from error
         # Interrupted: a half of it must not be listed.
         except BaseException:
             remove_tree(place)
@@ -175,7 +179,9 @@ class RunStore:
         if not os.path.isdir(run.folder):
             raise LogError(f"no run {run_id!r}", file=str(self._runs))
         with locked(self.home):
-            write_run_file(run.folder, {**run.data, "tags": _tags_in(run.folder), "end": asdict(end)})
+            write_run_file(
+                run.folder, {**run.data, "tags": _tags_in(run.folder), "end": asdict(end)}
+            )
         output = OutputView(run.folder, end.end is End.FALSIFIED)
         samples = counts_of(output).samples if output.length <= _COUNT_AT_ONCE_BYTES else None
         # If the catalogue cannot be written now, it will be updated later.
@@ -189,7 +195,11 @@ class RunStore:
                 summary=end.summary,
             )
         # One that is falsified stays as it is, for whoever wants to look.
-        if self._lasting and end.end is not End.FALSIFIED and (end.tick >= COMPACT_TICKS or samples is None):
+        if (
+            self._lasting
+            and end.end is not End.FALSIFIED
+            and (end.tick >= COMPACT_TICKS or samples is None)
+        ):
             pack_later(self.folder(run_id))
 
     def count_samples(self, run_id: str) -> None:
@@ -236,7 +246,9 @@ class RunStore:
             # Another process has been faster.
             raise LogError(f"no run {run_id!r}", file=str(self._runs)) from error
         except OSError as error:
-            raise LogError(f"cannot be removed: {error.strerror or error}", file=str(folder)) from error
+            raise LogError(
+                f"cannot be removed: {error.strerror or error}", file=str(folder)
+            ) from error
         # The run is gone. If the catalogue cannot be written now, it will be updated later.
         with suppress(LogError):
             self._catalogue.remove([run_id])
@@ -273,11 +285,15 @@ class RunStore:
         except FileNotFoundError:
             return []
         except OSError as error:
-            raise LogError(f"cannot be read: {error.strerror or error}", HOME_HINT, file=str(self._runs)) from error
+            raise LogError(
+                f"cannot be read: {error.strerror or error}", HOME_HINT, file=str(self._runs)
+            ) from error
         rows = self._catalogue.rows()
         listed = {row.id for row in rows}
         gone = {row.id for row in rows if row.id not in there and not self.folder(row.id).is_dir()}
-        strangers = (self.folder(name) for name in sorted(there - listed) if not name.startswith("."))
+        strangers = (
+            self.folder(name) for name in sorted(there - listed) if not name.startswith(".")
+        )
         found = list(filter(None, map(self._info_in, strangers)))
         if gone or found:
             try:
@@ -340,7 +356,9 @@ class RunStore:
             except OSError as error:
                 remove_tree(folder)
                 what = error.strerror or str(error)
-                raise LogError(f"runs cannot be stored here: {what}", HOME_HINT, file=str(self.home)) from error
+                raise LogError(
+                    f"runs cannot be stored here: {what}", HOME_HINT, file=str(self.home)
+                ) from error
             return run_id, folder, lock_fd
 
     def _edit(self, run_id: str, **changes: Any) -> None:
@@ -409,7 +427,9 @@ class RunStore:
             return replace(known, summary=known.summary or str(error)), {}, counted
         # Where the lock cannot be asked for, it may be running.
         unlocked = is_held(folder) is False
-        if known.end in (Unended.RUNNING, Unended.DAMAGED) or (known.end is Unended.INTERRUPTED and not unlocked):
+        if known.end in (Unended.RUNNING, Unended.DAMAGED) or (
+            known.end is Unended.INTERRUPTED and not unlocked
+        ):
             return known, {}, counted
         names = ["end", "ticks", "time_s", "samples", "summary"]
         if info.end is Unended.DAMAGED:
@@ -473,15 +493,23 @@ def _match(text: str, rows: Sequence[RunInfo]) -> RunInfo:
     """Return the run among `rows` that a text matches; see `RunStore.find`."""
     if text == LAST:
         return rows[-1]
-    tests = (lambda row: row.id == text, lambda row: str(row.number) == text, lambda row: row.id.startswith(text))
+    tests = (
+        lambda row: row.id == text,
+        lambda row: str(row.number) == text,
+        lambda row: row.id.startswith(text),
+    )
     for matches in tests:
         found = [row for row in rows if text and matches(row)]
         if len(found) == 1:
             return found[0]
         if found:
             some = ", ".join(row.id for row in found[:3])
-            raise LogError(f"{text!r} is the start of {len(found)} runs: {some}{' …' if len(found) > 3 else ''}")
-    raise LogError(f"no run {text!r}", f"a number from {rows[0].number} to {rows[-1].number}, an id, or {LAST}")
+            raise LogError(
+                f"{text!r} is the start of {len(found)} runs: {some}{' …' if len(found) > 3 else ''}"
+            )
+    raise LogError(
+        f"no run {text!r}", f"a number from {rows[0].number} to {rows[-1].number}, an id, or {LAST}"
+    )
 
 
 def _info_from(run_id: str, data: Mapping[str, Any]) -> RunInfo:
@@ -502,7 +530,9 @@ def _info_from(run_id: str, data: Mapping[str, Any]) -> RunInfo:
     ticks, time_s = int(end["tick"]), int(end["time_ns"]) / NS_PER_S
     if ticks > MOST_INTEGER:
         raise ValueError(f"tick is {ticks}")
-    return replace(info, end=RUN_STATES[end["end"]], ticks=ticks, time_s=time_s, summary=str(end["summary"]))
+    return replace(
+        info, end=RUN_STATES[end["end"]], ticks=ticks, time_s=time_s, summary=str(end["summary"])
+    )
 
 
 def _copy_files(folder: Path, place: Path) -> None:
@@ -547,7 +577,11 @@ def _tags_in(folder: Path) -> list[str]:
         tags = read_run_file(folder).get("tags", ())
     except LogError:
         return []
-    return [tag for tag in tags if isinstance(tag, str) and tag.split() == [tag]] if isinstance(tags, list) else []
+    return (
+        [tag for tag in tags if isinstance(tag, str) and tag.split() == [tag]]
+        if isinstance(tags, list)
+        else []
+    )
 
 
 def _has_end(folder: Path) -> bool:

@@ -94,7 +94,9 @@ def _new_folder(parent: Path, prefix: str = "") -> Path:
         return Path(tempfile.mkdtemp(prefix=prefix, dir=parent))
     except OSError as error:
         reason = error.strerror or error
-        raise LogError(f"no folder for temporary runs can be created: {reason}", file=str(parent)) from error
+        raise LogError(
+            f"no folder for temporary runs can be created: {reason}", file=str(parent)
+        ) from error
 
 
 def _parent() -> Path:
@@ -129,7 +131,10 @@ class TemporaryRun:
         return self
 
     def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
     ) -> None:
         remove_tree(self.folder)
 
@@ -155,7 +160,9 @@ class TemporaryRun:
             file.write_text(self._document, "utf-8")
             return NewRun(run_id, 0, self.folder, hold(self.folder), data)
         except OSError as error:
-            raise LogError(f"cannot be written: {error.strerror or error}", file=str(file)) from error
+            raise LogError(
+                f"cannot be written: {error.strerror or error}", file=str(file)
+            ) from error
 
     def finish(self, _run: NewRun, _end: Ended) -> None:
         """Do nothing: the handle of the run keeps its end."""

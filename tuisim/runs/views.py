@@ -186,7 +186,11 @@ class _View(ABC):
         """Return the recording, and the length that exists."""
         there = self._extent()
         if self._packed is not None:
-            self._copy, self._packed, self._unpacked = bytearray(self._packed.recording()), None, True
+            self._copy, self._packed, self._unpacked = (
+                bytearray(self._packed.recording()),
+                None,
+                True,
+            )
         return memoryview(self._copy).toreadonly(), there
 
     def _extent(self) -> int:
@@ -268,14 +272,18 @@ class _View(ABC):
 
     def _read_chunk(self, fd: int, head: bytes, kept: int, wanted: int) -> int:
         """Read and check the records between two positions; return the position up to which there are sound ones."""
-        begin, end = (HEADER_BYTES + self._record_bytes * (count - self._dropped) for count in (kept, wanted))
+        begin, end = (
+            HEADER_BYTES + self._record_bytes * (count - self._dropped) for count in (kept, wanted)
+        )
         if end > len(self._copy):
             begin, end = self._make_room(fd, head, begin, end)
         at = HEADER_BYTES + self._record_bytes * kept
         got = _read_into(fd, memoryview(self._copy)[begin:end], at) // self._record_bytes
         if self._is_checked:
             sound = self._sound(memoryview(self._copy).toreadonly(), kept, kept + got)
-        elif got * self._record_bytes == _CHUNK_BYTES and is_hole(memoryview(self._copy)[begin:end]):
+        elif got * self._record_bytes == _CHUNK_BYTES and is_hole(
+            memoryview(self._copy)[begin:end]
+        ):
             sound = kept
         else:
             sound = kept + got
@@ -286,7 +294,10 @@ class _View(ABC):
         """Make the copy large enough; return where in it the next records begin and end."""
         drops = 0
         if self._is_checked and self._kept is not None:
-            drops = min((begin - HEADER_BYTES) // self._record_bytes - self._kept, self._done - self._dropped)
+            drops = min(
+                (begin - HEADER_BYTES) // self._record_bytes - self._kept,
+                self._done - self._dropped,
+            )
             drops = max(0, drops)
         if drops and self._source is None:
             self._source = os.dup(fd)
@@ -309,7 +320,9 @@ def _are_few_sound(part: memoryview, begin: int, end: int) -> bool:
     columns += [floats[at :: TICK_RECORD.size // 4] for at in range(12, 15)]
     ticks = part.cast("I")[:: TICK_RECORD.size // 4].tolist()
     # No number is larger than the root of the sum of all squares; NaN is not below anything, nor is a sum with it.
-    return ticks == list(range(begin, end)) and all(hypot(*column.tolist()) <= _MOST_NUMBER for column in columns)
+    return ticks == list(range(begin, end)) and all(
+        hypot(*column.tolist()) <= _MOST_NUMBER for column in columns
+    )
 
 
 def _are_all_sound(part: memoryview, begin: int, end: int) -> bool:
@@ -359,7 +372,9 @@ class TelemetryView(_View):
         return f"the last {count} of {self._published} records {'is' if count == 1 else 'are'} lost"
 
     def _sound(self, data: memoryview, begin: int, end: int) -> int:
-        first, after = (HEADER_BYTES + TICK_RECORD.size * (tick - self._dropped) for tick in (begin, end))
+        first, after = (
+            HEADER_BYTES + TICK_RECORD.size * (tick - self._dropped) for tick in (begin, end)
+        )
         return self._sound_ticks(data[first:after], begin)
 
     def _sound_ticks(self, part: memoryview, begin: int) -> int:
@@ -415,7 +430,11 @@ class TelemetryView(_View):
                 raise IndexError(f"no telemetry record {index}, there are {count}")
         if index < self._dropped:
             return TickRecord(*TICK_RECORD.unpack(self._read_again(index, index + 1)))
-        return TickRecord(*TICK_RECORD.unpack_from(data, HEADER_BYTES + (index - self._dropped) * TICK_RECORD.size))
+        return TickRecord(
+            *TICK_RECORD.unpack_from(
+                data, HEADER_BYTES + (index - self._dropped) * TICK_RECORD.size
+            )
+        )
 
     def array(self, first: int = 0) -> np.ndarray[Any, Any]:
         """Return all records from one on as a structured array of `TICK_FIELDS`, read-only; later ones need a new call.
@@ -463,8 +482,12 @@ class OutputView(_View):
                 # The rest of the row has not been read yet, or is lost.
                 break
             body = slice(shift + after - size, shift + after)
-            if after > end or (stream in DRAWN_STREAMS and not is_sound(Stream(stream), bytes(data[body]))):
-                self._damage = f"the row at byte {at} of {self._path.name} is not one that the brick writes"
+            if after > end or (
+                stream in DRAWN_STREAMS and not is_sound(Stream(stream), bytes(data[body]))
+            ):
+                self._damage = (
+                    f"the row at byte {at} of {self._path.name} is not one that the brick writes"
+                )
                 return at
             at = after
         self._checked = at
@@ -514,7 +537,10 @@ class OutputView(_View):
             if position == begin:
                 # A row longer than that; or one that was changed meanwhile, and seems to be.
                 if got < size or size > MAX_OUTPUT_BYTES:
-                    self._damage = self._damage or f"the row at byte {position} of {self._path.name} was changed"
+                    self._damage = (
+                        self._damage
+                        or f"the row at byte {position} of {self._path.name} was changed"
+                    )
                     return
                 size *= 4
 

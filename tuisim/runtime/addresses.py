@@ -117,14 +117,21 @@ class Addresses:
         level = [one for one in self._names().values() if not isinstance(one, left_out)]
         found = level
         for _ in range(_STEPS):
-            level = [one for one in gc.get_referents(*level[:_MOST_REACHED]) if not isinstance(one, left_out)]
+            level = [
+                one
+                for one in gc.get_referents(*level[:_MOST_REACHED])
+                if not isinstance(one, left_out)
+            ]
             found = found + level
         return found
 
     @cached_property
     def _heap(self) -> range:
         """The addresses of the heap, which begins where the system likes; empty where that is unknown."""
-        with suppress(OSError, ValueError), open("/proc/self/maps", encoding="utf-8", errors="replace") as maps:
+        with (
+            suppress(OSError, ValueError),
+            open("/proc/self/maps", encoding="utf-8", errors="replace") as maps,
+        ):
             for row in maps:
                 if row.rstrip().endswith("[heap]"):
                     start, end = (int(part, 16) for part in row.split()[0].split("-"))

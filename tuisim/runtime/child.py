@@ -16,7 +16,14 @@ from tuisim.core.profile import NS_PER_S
 from tuisim.core.simulation import FurtherMotors, Turn, simulation_of
 from tuisim.core.tick_record import NoRecording
 from tuisim.runs.brick_state import motors_row
-from tuisim.runs.records import OUTPUT_FILE, TELEMETRY_FILE, OutputWriter, Stream, TelemetryWriter, is_full
+from tuisim.runs.records import (
+    OUTPUT_FILE,
+    TELEMETRY_FILE,
+    OutputWriter,
+    Stream,
+    TelemetryWriter,
+    is_full,
+)
 from tuisim.runtime.channel import Channel
 from tuisim.runtime.control import ATTENTION, STOPPING, RunControl
 from tuisim.runtime.interrupts import Interrupts, die_with_host
@@ -150,7 +157,9 @@ class Child:
 
         def leave(outcome: ProgramOutcome) -> NoReturn:
             interrupts.remove()
-            self._end(outcome.end, outcome.exit_code, outcome.summary, outcome.error, outcome.error_line)
+            self._end(
+                outcome.end, outcome.exit_code, outcome.summary, outcome.error, outcome.error_line
+            )
 
         self._leave = leave
         self._runner = ProgramRunner(session, self._output, scheduler, turn, leave)
@@ -169,16 +178,26 @@ class Child:
         options = config.options
         self._pid = wallclock.getpid()
         session = self._session
-        self._telemetry, self._output.writer = TelemetryWriter(config.folder), OutputWriter(config.folder)
+        self._telemetry, self._output.writer = (
+            TelemetryWriter(config.folder),
+            OutputWriter(config.folder),
+        )
         self._sim.restart(config.spec, self._telemetry)
         steering = RunControl(
-            channel, config.folder, options.live, options.speed, options.start_paused, options.actions
+            channel,
+            config.folder,
+            options.live,
+            options.speed,
+            options.start_paused,
+            options.actions,
         )
         limits = RunLimits(int(options.time_limit_s * NS_PER_S), options.stall_limit_s)
         session.connect(channel, steering, limits, config.program.file)
         session.replies = options.replies
         for writer in (self._telemetry, self._output.writer):
-            writer.full = lambda error: session.request_stop(protocol.End.DISK_FULL, _no_room(error))
+            writer.full = lambda error: session.request_stop(
+                protocol.End.DISK_FULL, _no_room(error)
+            )
         self._output.place = lambda: (self._sim.tick, session.now, session.program_line())
         self._output.after_write = self._after_write
         if isinstance(self._sim, FurtherMotors):
@@ -192,7 +211,9 @@ class Child:
     def _write_turns(self, turns: tuple[Turn, ...]) -> None:
         sim = self._sim
         # Not at the session's time: in a paced run it advances in smaller steps.
-        self._output.row_at(motors_row(turns), Stream.MOTORS, sim.tick, sim.due_ns(sim.tick), sim.line)
+        self._output.row_at(
+            motors_row(turns), Stream.MOTORS, sim.tick, sim.due_ns(sim.tick), sim.line
+        )
 
     def _after_write(self) -> None:
         if self._session.flags & (ATTENTION | STOPPING):
@@ -204,7 +225,9 @@ class Child:
         self._channel.send(protocol.Started(protocol.PROTOCOL_VERSION, os.getpid()))
         self._leave(self._runner.run())
 
-    def _end(self, end: protocol.End, exit_code: int, summary: str, error: str, error_line: int) -> NoReturn:
+    def _end(
+        self, end: protocol.End, exit_code: int, summary: str, error: str, error_line: int
+    ) -> NoReturn:
         if wallclock.getpid() != self._pid:
             # A copy that the program has forked at a lower level: only the original records and reports.
             wallclock.exit_process(0)
@@ -213,7 +236,9 @@ class Child:
         self._channel.send(protocol.Wheels(*(read() for read in self._session.wheel_registers)))
         self._reads.end()
         self._channel.send(
-            protocol.Ended(end, self._sim.tick, self._session.now, exit_code, summary, error, error_line)
+            protocol.Ended(
+                end, self._sim.tick, self._session.now, exit_code, summary, error, error_line
+            )
         )
         wallclock.exit_process(0)
 

@@ -19,7 +19,16 @@ from tuisim import protocol
 from tuisim.atomic import private
 from tuisim.core.geometry import Pose
 from tuisim.core.spec import NoiseSpec
-from tuisim.protocol import AFTER_TICK, BEFORE_NEXT_TICK, Answer, End, Message, PauseReason, Reply, UserAction
+from tuisim.protocol import (
+    AFTER_TICK,
+    BEFORE_NEXT_TICK,
+    Answer,
+    End,
+    Message,
+    PauseReason,
+    Reply,
+    UserAction,
+)
 from tuisim.runs.side_files import ACTIONS_FILE, write_stop_tick
 from tuisim.runtime import wallclock
 from tuisim.runtime.channel import Channel
@@ -71,7 +80,13 @@ class RunControl:
     """
 
     def __init__(
-        self, channel: Channel, folder: Path, live: bool, speed: float, paused: bool, script: Iterable[UserAction]
+        self,
+        channel: Channel,
+        folder: Path,
+        live: bool,
+        speed: float,
+        paused: bool,
+        script: Iterable[UserAction],
     ) -> None:
         self.live = live
         self._channel, self._folder = channel, folder
@@ -143,7 +158,9 @@ class RunControl:
     def grace_is_over(self) -> bool:
         """Whether the time for the program's cleanup is over."""
         most_s = STOP_GRACE_S if self.live else STOP_GRACE_CPU_S
-        return self._stop_asked_at is not None and self._grace_clock() - self._stop_asked_at > most_s
+        return (
+            self._stop_asked_at is not None and self._grace_clock() - self._stop_asked_at > most_s
+        )
 
     def _grace_clock(self) -> float:
         # A user waits in real time; what a program of a batch does must not depend on what else the machine does.
@@ -240,7 +257,9 @@ class RunControl:
         self.apply(session, action)
         return True
 
-    def wait_for_reply(self, session: Session, kind: type[Answer | Reply], question: Message) -> None:
+    def wait_for_reply(
+        self, session: Session, kind: type[Answer | Reply], question: Message
+    ) -> None:
         """Ask the host, and block until its answer is applied. No simulated time passes.
 
         Args:
@@ -254,7 +273,10 @@ class RunControl:
         # Commands are processed here, not in the handler of the signal that announces them.
         self.holding = True
         self._channel.send(question)
-        while not (here := [one for one in self._waiting if isinstance(one, kind)]) and session.stop_reason is None:
+        while (
+            not (here := [one for one in self._waiting if isinstance(one, kind)])
+            and session.stop_reason is None
+        ):
             self._channel.wait(1.0)
             self.receive(session)
         self.holding = session.stop_reason is not None
@@ -327,7 +349,9 @@ class RunControl:
             self._write_down(sim.tick, action)
         except OSError as error:
             # Without this record the run could not be repeated.
-            session.ask_stop(End.DISK_FULL, f"what was done cannot be written down: {error.strerror}")
+            session.ask_stop(
+                End.DISK_FULL, f"what was done cannot be written down: {error.strerror}"
+            )
 
     def write_down_stop(self, tick: int) -> None:
         """Record that the stop reaches the program right before the tick after `tick`."""

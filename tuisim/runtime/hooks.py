@@ -38,7 +38,13 @@ class ErrorHooks:
         source: Returns the program's text.
     """
 
-    def __init__(self, session: Session, output: OutputRecorder, stderr: LineStream, source: Callable[[], str]) -> None:
+    def __init__(
+        self,
+        session: Session,
+        output: OutputRecorder,
+        stderr: LineStream,
+        source: Callable[[], str],
+    ) -> None:
         self._session, self._output, self._stderr, self._source = session, output, stderr, source
 
     def install(self) -> None:
@@ -84,7 +90,9 @@ class ErrorHooks:
             except BaseException as further:  # as in Python, both are shown
                 further.__context__ = None
                 told = self.report(further).text
-                self.write(f"Error in sys.excepthook:\n{told}\nOriginal exception was:\n{report.text}")
+                self.write(
+                    f"Error in sys.excepthook:\n{told}\nOriginal exception was:\n{report.text}"
+                )
         return report
 
     def show(self, error: BaseException | None) -> None:
@@ -110,12 +118,18 @@ class ErrorHooks:
         text = "" if error is None else self.report(error, alone=True).text
         self.write(f"{ignored.err_msg or 'Exception ignored in'}{what}\n{text}")
 
-    def show_end_of_bare_thread(self, function: Callable[..., object], error: BaseException) -> None:
+    def show_end_of_bare_thread(
+        self, function: Callable[..., object], error: BaseException
+    ) -> None:
         """Show the error that ended a thread of `_thread`."""
         hook = vars(sys).get("unraisablehook")
         message = "Exception ignored in thread started by"
         ignored = types.SimpleNamespace(
-            exc_type=type(error), exc_value=error, exc_traceback=error.__traceback__, err_msg=message, object=function
+            exc_type=type(error),
+            exc_value=error,
+            exc_traceback=error.__traceback__,
+            err_msg=message,
+            object=function,
         )
         (hook if callable(hook) else self._show_ignored)(ignored)
 

@@ -18,10 +18,27 @@ STACKS_KEPT = 8
 """Number of stacks of finished threads that may still be allocated."""
 
 _PROCESS_CALLS = (
-    "fork", "forkpty", "posix_spawn", "posix_spawnp",
-    "execv", "execve", "execvp", "execvpe", "execl", "execle", "execlp", "execlpe",
-    "spawnv", "spawnve", "spawnvp", "spawnvpe", "spawnl", "spawnle", "spawnlp", "spawnlpe",
-)  # fmt: skip
+    "fork",
+    "forkpty",
+    "posix_spawn",
+    "posix_spawnp",
+    "execv",
+    "execve",
+    "execvp",
+    "execvpe",
+    "execl",
+    "execle",
+    "execlp",
+    "execlpe",
+    "spawnv",
+    "spawnve",
+    "spawnvp",
+    "spawnvpe",
+    "spawnl",
+    "spawnle",
+    "spawnlp",
+    "spawnlpe",
+)
 
 
 def limit_memory(threads: int = 0) -> None:
@@ -39,7 +56,9 @@ def limit_memory(threads: int = 0) -> None:
 
 def _refusal(name: str) -> Any:
     def refuse(*_args: object, **_kwargs: object) -> NoReturn:
-        raise PermissionError(f"a program on the simulated brick cannot start other processes: {name}")
+        raise PermissionError(
+            f"a program on the simulated brick cannot start other processes: {name}"
+        )
 
     return refuse
 

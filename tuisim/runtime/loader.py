@@ -72,7 +72,9 @@ def _check_encoding(text: str, file: str) -> None:
     for number, line in enumerate(text.split("\n"), start=1):
         if wrong := next((one for one in line if _FIRST_BYTE <= one <= _LAST_BYTE), ""):
             byte = f"\\x{ord(wrong) & 0xFF:02x}"
-            what = f"Non-UTF-8 code starting with '{byte}', but no encoding declared; save it as UTF-8"
+            what = (
+                f"Non-UTF-8 code starting with '{byte}', but no encoding declared; save it as UTF-8"
+            )
             raise SyntaxError(what, (file, number, None, None))
         if "\0" in line:
             raise SyntaxError("source code cannot contain null bytes", (file, number, None, None))
@@ -138,7 +140,9 @@ def point_at_prelude(error: BaseException) -> None:
             how = f", or make it: `{ast.unparse(statement)}`"
         case _:
             how = ""
-    error.add_note(f"`{error.name}` is a name of the prelude, which this program has not asked for: {magic}{how}.")
+    error.add_note(
+        f"`{error.name}` is a name of the prelude, which this program has not asked for: {magic}{how}."
+    )
 
 
 def _statement_of(name: str) -> ast.stmt | None:

@@ -69,7 +69,10 @@ class OwnModules(PathFinder):
             self._known.setdefault(module.name, []).append(module)
 
     def find_spec(  # type: ignore[override]
-        self, fullname: str, path: Sequence[str] | None = None, target: types.ModuleType | None = None
+        self,
+        fullname: str,
+        path: Sequence[str] | None = None,
+        target: types.ModuleType | None = None,
     ) -> ModuleSpec | None:
         """Return how to load a module; None if it does not exist."""
         if known := self._known.get(fullname):
@@ -98,7 +101,9 @@ def find_modules_for(run_folder: Path) -> None:
 
 def _own_module(name: str, spec: ModuleSpec) -> OwnModule | None:
     """Return the module to store; None if it is not the user's or is compiled: those are loaded from their place."""
-    folders = None if spec.submodule_search_locations is None else tuple(spec.submodule_search_locations)
+    folders = (
+        None if spec.submodule_search_locations is None else tuple(spec.submodule_search_locations)
+    )
     if spec.origin is None:
         return OwnModule(name, folders=folders) if folders and all(map(is_own, folders)) else None
     if not spec.origin.endswith(".py") or not is_own(spec.origin):

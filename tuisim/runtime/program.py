@@ -52,21 +52,29 @@ _INTERRUPTED = 128 + signal.SIGINT
 
 def _has_finalizer(value: object) -> bool:
     """Return whether code of the program runs when a value is deleted."""
-    words = hasattr(type(value), "__del__") or isinstance(value, types.GeneratorType | types.CoroutineType)
+    words = hasattr(type(value), "__del__") or isinstance(
+        value, types.GeneratorType | types.CoroutineType
+    )
     return words and not isinstance(value, io.IOBase)
 
 
 def _is_data(value: object) -> bool:
     """Return whether a value is neither code nor an open file."""
-    return not isinstance(value, types.ModuleType | types.FunctionType | types.BuiltinFunctionType | type | io.IOBase)
+    return not isinstance(
+        value, types.ModuleType | types.FunctionType | types.BuiltinFunctionType | type | io.IOBase
+    )
 
 
 def _with_caught(outcome: ProgramOutcome) -> ProgramOutcome:
     """Add to the summary what the program used that is not simulated, if it caught the error about it."""
     if not NotSimulated.first or outcome.end not in (End.FINISHED, End.TIME_LIMIT):
         return outcome
-    summary = "; ".join(filter(None, (outcome.summary, f"caught NotSimulated: {NotSimulated.first}")))
-    return ProgramOutcome(outcome.end, outcome.exit_code, summary, outcome.error, outcome.error_line)
+    summary = "; ".join(
+        filter(None, (outcome.summary, f"caught NotSimulated: {NotSimulated.first}"))
+    )
+    return ProgramOutcome(
+        outcome.end, outcome.exit_code, summary, outcome.error, outcome.error_line
+    )
 
 
 class ProgramRunner:
@@ -115,7 +123,9 @@ class ProgramRunner:
         self._session.free += 1
         try:
             self._run_prelude(prelude)
-        except BaseException as error:  # it is an error of the program, and is raised when that begins
+        except (
+            BaseException
+        ) as error:  # it is an error of the program, and is raised when that begins
             self._prelude_error = error
         self._session.free -= 1
         keep_modules()
@@ -150,7 +160,11 @@ class ProgramRunner:
     def _run(self) -> ProgramOutcome:
         outcome = self._outcome(self._execute)
         joins = self._config.spec.profile.motor_law.library.joins_threads
-        if joins and self._session.stop_reason is None and outcome.end in (End.FINISHED, End.RAISED):
+        if (
+            joins
+            and self._session.stop_reason is None
+            and outcome.end in (End.FINISHED, End.RAISED)
+        ):
             # As in Python, also after an error or an exit of the main thread.
             later = self._outcome(self._scheduler.join_all)
             outcome = outcome if later.end is End.FINISHED else later
@@ -201,7 +215,11 @@ class ProgramRunner:
         stop_traces()
         gc.callbacks.clear()
         for removable in (_has_finalizer, _is_data):
-            for name in [name for name, value in self.names.items() if removable(value) and not name.startswith("__")]:
+            for name in [
+                name
+                for name, value in self.names.items()
+                if removable(value) and not name.startswith("__")
+            ]:
                 self.names.pop(name, None)
             gc.collect()
         self.names.clear()
@@ -264,7 +282,9 @@ class ProgramRunner:
                 line = line_in(error.__traceback__, self._session.program_file)
                 return ProgramOutcome(End.OUTPUT_LIMIT, 0, error.message, error_line=line)
             case MemoryError():
-                return self._raised(MemoryError("the program used up the memory it may have"), error.__traceback__)
+                return self._raised(
+                    MemoryError("the program used up the memory it may have"), error.__traceback__
+                )
         return self._raised(error, error.__traceback__)
 
     def _raised(self, error: BaseException, trace: types.TracebackType | None) -> ProgramOutcome:
@@ -288,7 +308,9 @@ class ProgramRunner:
             self.hooks.write(safe_text(str, code) + "\n")
             number = 1
         return ProgramOutcome(
-            End.FINISHED, number, f"the program ended itself with exit code {number}" if number else ""
+            End.FINISHED,
+            number,
+            f"the program ended itself with exit code {number}" if number else "",
         )
 
     def _exit_now(self, status: int) -> NoReturn:

@@ -45,7 +45,9 @@ class RawFile:
         made = os.memfd_create(f"output {fd}", os.MFD_CLOEXEC | os.MFD_ALLOW_SEALING)
         try:
             os.ftruncate(made, CAPACITY_BYTES)
-            fcntl.fcntl(made, fcntl.F_ADD_SEALS, fcntl.F_SEAL_GROW | fcntl.F_SEAL_SHRINK | fcntl.F_SEAL_SEAL)
+            fcntl.fcntl(
+                made, fcntl.F_ADD_SEALS, fcntl.F_SEAL_GROW | fcntl.F_SEAL_SHRINK | fcntl.F_SEAL_SEAL
+            )
             self._fd = fcntl.fcntl(made, fcntl.F_DUPFD_CLOEXEC, _LEAST_FD)
             os.dup2(made, fd)
         finally:
@@ -79,7 +81,9 @@ class RawOutput:
         stderr: Receives what was written to descriptor 2.
     """
 
-    def __init__(self, stdout: Callable[[bytes], object], stderr: Callable[[bytes], object]) -> None:
+    def __init__(
+        self, stdout: Callable[[bytes], object], stderr: Callable[[bytes], object]
+    ) -> None:
         self._takers = {1: stdout, 2: stderr}
         self._files: list[RawFile] = []
         self._firsts: list[mmap.mmap] = []

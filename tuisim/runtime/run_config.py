@@ -42,7 +42,9 @@ class RunConfig:
     def starts_in_own_folder(self) -> bool:
         """Whether the program starts in its own folder. What an example writes is for the user."""
         program = self.program
-        if not self.spec.profile.starts_in_own_folder or not (program.path or program.module_folder):
+        if not self.spec.profile.starts_in_own_folder or not (
+            program.path or program.module_folder
+        ):
             return False
         try:
             return Path(self.own_folder) != programs_folder()
@@ -54,7 +56,11 @@ class RunConfig:
     def debugged(self) -> bool:
         """Whether the debugger is needed from the first line on."""
         options = self.options
-        return bool(options.breaks) or options.trace_from_tick is not None or options.hold_at is not None
+        return (
+            bool(options.breaks)
+            or options.trace_from_tick is not None
+            or options.hold_at is not None
+        )
 
 
 def read_config(folder: Path) -> RunConfig:

@@ -29,9 +29,20 @@ class ScheduledThread:
     """One thread of the program."""
 
     __slots__ = (
-        "daemon", "done", "free", "gate", "ident", "interrupt", "joiners", "on_change", "order", "pending",
-        "struck", "wake_ns", "woken",
-    )  # fmt: skip
+        "daemon",
+        "done",
+        "free",
+        "gate",
+        "ident",
+        "interrupt",
+        "joiners",
+        "on_change",
+        "order",
+        "pending",
+        "struck",
+        "wake_ns",
+        "woken",
+    )
 
     def __init__(self, daemon: bool) -> None:
         self.ident = 0
@@ -208,9 +219,13 @@ class Scheduler:
             if not self._timed:
                 return self._deadlocked()
             until, _, task = self._timed[0]
-            self._on_change = [waiting for waiting in self._on_change if waiting.on_change and waiting.order]
+            self._on_change = [
+                waiting for waiting in self._on_change if waiting.on_change and waiting.order
+            ]
             try:
-                changed = self._session.advance(max(until, self._session.now), bool(self._on_change))
+                changed = self._session.advance(
+                    max(until, self._session.now), bool(self._on_change)
+                )
             except StopProgram as stop:
                 return self._send_to_main(stop)
             if changed:
@@ -222,7 +237,9 @@ class Scheduler:
             return task
 
     def _deadlocked(self) -> ScheduledThread:
-        return self._send_to_main(Deadlock("every thread of the program is waiting for another one"))
+        return self._send_to_main(
+            Deadlock("every thread of the program is waiting for another one")
+        )
 
     def _send_to_main(self, error: BaseException) -> ScheduledThread:
         self.main.pending = error

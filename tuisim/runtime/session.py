@@ -159,9 +159,16 @@ class Session:
         self.spawn_daemon: Callable[[Callable[[], None]], None]
         """Set by the scheduler: runs a function in the background while the program continues."""
 
-    def connect(self, channel: Channel, steering: RunControl, limits: RunLimits, program_file: str) -> None:
+    def connect(
+        self, channel: Channel, steering: RunControl, limits: RunLimits, program_file: str
+    ) -> None:
         """Connect it with the run that is about to begin; arguments as the attributes."""
-        self.channel, self.steering, self.limits, self.program_file = channel, steering, limits, program_file
+        self.channel, self.steering, self.limits, self.program_file = (
+            channel,
+            steering,
+            limits,
+            program_file,
+        )
         self._limit_ns = self._quick_ns = limits.time_ns or 1 << 62
         self.flags |= LIVE if steering.wanted else 0
         if self.sim.spec.world.pen_marks:
@@ -193,7 +200,11 @@ class Session:
             sim.line = self.program_line()
             # Most readings make exactly one tick due, and whole tick lengths can be added up.
             # Same value as `sim.due_ns(sim.tick + 2)`.
-            following = self._due + self._tick_ns if self._tick_ns else -(-(sim.tick + 2) * NS_PER_S // self._hz)
+            following = (
+                self._due + self._tick_ns
+                if self._tick_ns
+                else -(-(sim.tick + 2) * NS_PER_S // self._hz)
+            )
             if until < following:
                 sim.tick_once()
                 self.now, self._due = until, following
@@ -287,8 +298,12 @@ class Session:
                 self.now = self._limit_ns
                 limit_s = self._limit_ns / NS_PER_S
                 limit = f"stopped at the limit of {limit_s:g} s simulated time"
-                raise self.request_stop(End.TIME_LIMIT, "; ".join(filter(None, (limit, self.held_up))))
-        elif self._stop_raised_at is not None and until > (last := self._stop_raised_at + CLEANUP_S * NS_PER_S):
+                raise self.request_stop(
+                    End.TIME_LIMIT, "; ".join(filter(None, (limit, self.held_up)))
+                )
+        elif self._stop_raised_at is not None and until > (
+            last := self._stop_raised_at + CLEANUP_S * NS_PER_S
+        ):
             changed = self._run_ticks(last, on_change)
             if not changed:
                 self.now = max(self.now, last)

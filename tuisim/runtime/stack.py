@@ -57,17 +57,25 @@ def finish_traceback(module: types.ModuleType) -> None:
 
     changed.walk_stack = wraps(changed.walk_stack)(walk_stack)
     for name in ("walk_tb", "_walk_tb_with_full_positions"):
-        setattr(changed, name, _filtered(getattr(changed, name), lambda row: row[0].f_code.co_filename))
+        setattr(
+            changed, name, _filtered(getattr(changed, name), lambda row: row[0].f_code.co_filename)
+        )
 
 
 def finish_inspect(module: types.ModuleType) -> None:
     """Restrict `inspect` to the frames that a program may see."""
     changed: Any = module
     for name in ("getouterframes", "getinnerframes"):
-        setattr(changed, name, _listed(_filtered(getattr(changed, name), lambda info: str(info.filename))))
+        setattr(
+            changed,
+            name,
+            _listed(_filtered(getattr(changed, name), lambda info: str(info.filename))),
+        )
 
 
-def _filtered(walk: Callable[..., Iterable[Any]], file_of: Callable[[Any], str]) -> Callable[..., Iterator[Any]]:
+def _filtered(
+    walk: Callable[..., Iterable[Any]], file_of: Callable[[Any], str]
+) -> Callable[..., Iterator[Any]]:
     @wraps(walk)
     def filtered(*args: Any, **kwargs: Any) -> Iterator[Any]:
         return _seen(walk(*args, **kwargs), file_of)
@@ -114,7 +122,9 @@ def _patch_registration() -> None:
     """Write the stack on a signal that the runtime does not use itself."""
     before: dict[int, Any] = {}
 
-    def register(signum: int, file: Any = None, all_threads: bool = True, chain: bool = False) -> None:
+    def register(
+        signum: int, file: Any = None, all_threads: bool = True, chain: bool = False
+    ) -> None:
         if signum in _CRASHES:
             raise RuntimeError(f"signal {signum} cannot be registered, use enable() instead")
         out = sys.stderr if file is None else file
@@ -154,7 +164,10 @@ def _stacks_text(frame: types.FrameType, all_threads: bool) -> str:
 
 def _stack_text(heading: str, frame: types.FrameType) -> str:
     seen = _seen(_frames_from(frame), lambda frame: frame.f_code.co_filename)
-    lines = [f'  File "{one.f_code.co_filename}", line {one.f_lineno} in {one.f_code.co_name}\n' for one in seen]
+    lines = [
+        f'  File "{one.f_code.co_filename}", line {one.f_lineno} in {one.f_code.co_name}\n'
+        for one in seen
+    ]
     return f"{heading} (most recent call first):\n{''.join(lines)}"
 
 

@@ -63,9 +63,15 @@ def report_error(error: BaseException, file: str, source: str, alone: bool = Fal
             _add_suggestions(trace, error)
         chain = _keep_program_frames(trace, own_files(file))
         text, summary = _text_of(chain), _summary(trace)
-    except Exception as problem:  # an error may be anything, and nested too deeply: it is reported nevertheless
+    except (
+        Exception
+    ) as problem:  # an error may be anything, and nested too deeply: it is reported nevertheless
         stack = _traceback.StackSummary.from_list(
-            [frame for frame in _traceback.extract_tb(error.__traceback__) if own_files(file)(frame.filename)]
+            [
+                frame
+                for frame in _traceback.extract_tb(error.__traceback__)
+                if own_files(file)(frame.filename)
+            ]
         )
         summary = f"{_kind_of(error)}: <cannot be shown: {type(problem).__name__}>"
         text = _HEADING + "".join(stack.format()) + summary + "\n"
@@ -81,7 +87,9 @@ def _add_text(error: BaseException, file: str, source: str) -> None:
         lines, line = source_lines(source), _line_of(error)
         if error.filename == file and 0 < line <= len(lines):
             # Bytes that are no text cannot be shown.
-            error.text = lines[line - 1].encode("utf-8", "surrogateescape").decode("utf-8", "replace") + "\n"
+            error.text = (
+                lines[line - 1].encode("utf-8", "surrogateescape").decode("utf-8", "replace") + "\n"
+            )
 
 
 def line_in(trace: Any, file: str) -> int:
@@ -123,7 +131,16 @@ def _suggestion(error: Any) -> str:
 def _show_as_python(trace: Trace, error: SyntaxError) -> None:
     """Let a syntax error be formatted by Python itself, whose carets differ."""
     bare: Any = type(error)()
-    for name in ("msg", "filename", "lineno", "offset", "text", "end_lineno", "end_offset", "print_file_and_line"):
+    for name in (
+        "msg",
+        "filename",
+        "lineno",
+        "offset",
+        "text",
+        "end_lineno",
+        "end_offset",
+        "print_file_and_line",
+    ):
         setattr(bare, name, getattr(error, name, None))
     shown = _shown(bare)
 
@@ -196,7 +213,9 @@ def point_at_namesake(error: BaseException, file: str) -> None:
         return
     own = own_files(file)
     for name, module in list(sys.modules.items()):
-        if name in sys.stdlib_module_names and own(str(getattr(module, "__file__", None) or "<builtin>")):
+        if name in sys.stdlib_module_names and own(
+            str(getattr(module, "__file__", None) or "<builtin>")
+        ):
             error.add_note(f"{name}.py beside the program shadows Python's own {name}: rename it.")
 
 

@@ -31,9 +31,12 @@ LENGTH_BYTES = 4
 MOST_FILES = 8
 _READ_BYTES = 1 << 16
 _NEEDED_LATER = (
-    "tuisim.runtime.patches.alarm", "tuisim.runtime.patches.threads", "tuisim.runtime.program",
-    "tuisim.runtime.scheduler", "tuisim.shim.install",
-)  # fmt: skip
+    "tuisim.runtime.patches.alarm",
+    "tuisim.runtime.patches.threads",
+    "tuisim.runtime.program",
+    "tuisim.runtime.scheduler",
+    "tuisim.shim.install",
+)
 """What a child imports after it has begun."""
 _ONLY_HERE = ("_socket", "hashlib", "_hashlib", "_blake2", "_sha3", "tuisim.runtime.warm")
 """Modules that other children have not imported."""

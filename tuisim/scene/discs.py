@@ -64,12 +64,18 @@ class DiscFace:
     @property
     def share(self) -> float:
         """What the program gets, as a share of what it gets on white."""
-        return self.read.measured(self.seen, self.reflected_max) / self.read.most(self.reflected_max)
+        return self.read.measured(self.seen, self.reflected_max) / self.read.most(
+            self.reflected_max
+        )
 
     @property
     def limit_shares(self) -> tuple[float, ...]:
         """The thresholds on the same scale, those on it."""
-        shares = [one.value / one.read.most(self.reflected_max) for one in self.thresholds if not one.read.is_color]
+        shares = [
+            one.value / one.read.most(self.reflected_max)
+            for one in self.thresholds
+            if not one.read.is_color
+        ]
         return tuple(share for share in dict.fromkeys(shares) if 0 <= share <= 1)
 
     def limit_words(self, width: int) -> str:
@@ -86,7 +92,9 @@ class DiscFace:
             f"line {one.line}{':' if one.sign == AIM else ' asks'} {words}"
             for words, one in zip(said, self.thresholds, strict=True)
         )
-        short = [f"line {one.line} {words}" for words, one in zip(said, self.thresholds, strict=True)]
+        short = [
+            f"line {one.line} {words}" for words, one in zip(said, self.thresholds, strict=True)
+        ]
         variants = ("; ".join(asking), "; ".join(short), "; ".join(said), *short[:1], *said[:1])
         return next((words for words in variants if len(words) <= width), variants[-1])
 
@@ -107,7 +115,9 @@ class DiscFace:
         return ["–" if math.isnan(value) else f"{value:.0f}" for value in self.rings]
 
 
-def disc_faces(spec: RunSpec, instant: Instant, field: Field, program: Program | None) -> list[DiscFace]:
+def disc_faces(
+    spec: RunSpec, instant: Instant, field: Field, program: Program | None
+) -> list[DiscFace]:
     """Return what is shown of each colour sensor of a run at an instant.
 
     Args:
@@ -126,7 +136,9 @@ def disc_faces(spec: RunSpec, instant: Instant, field: Field, program: Program |
     return faces
 
 
-def draw_disc(box: bytes, width_px: int, height_px: int, ground_rgb: Rgb, rim_rgb: Rgb, tall: float = 1.0) -> Pixels:
+def draw_disc(
+    box: bytes, width_px: int, height_px: int, ground_rgb: Rgb, rim_rgb: Rgb, tall: float = 1.0
+) -> Pixels:
     """Return the picture of a disc, as large as it fits, in the middle.
 
     Args:
@@ -170,7 +182,9 @@ def draw_disc(box: bytes, width_px: int, height_px: int, ground_rgb: Rgb, rim_rg
 def _means(samples: npt.NDArray[np.generic], fine: int) -> npt.NDArray[np.float64]:
     """Return the mean of each block of `fine` × `fine` samples, shape (rows, columns, channels)."""
     rows, cols, channels = samples.shape
-    means: npt.NDArray[np.float64] = samples.reshape(rows // fine, fine, cols // fine, fine, channels).mean(axis=(1, 3))
+    means: npt.NDArray[np.float64] = samples.reshape(
+        rows // fine, fine, cols // fine, fine, channels
+    ).mean(axis=(1, 3))
     return means
 
 
@@ -192,6 +206,8 @@ def shrunk(pixels: npt.NDArray[np.uint8], rows: int, columns: int) -> npt.NDArra
     """
     down = np.arange(rows + 1) * pixels.shape[0] // rows
     across = np.arange(columns + 1) * pixels.shape[1] // columns
-    sums = np.add.reduceat(np.add.reduceat(pixels, down[:-1], axis=0, dtype=np.float64), across[:-1], axis=1)
+    sums = np.add.reduceat(
+        np.add.reduceat(pixels, down[:-1], axis=0, dtype=np.float64), across[:-1], axis=1
+    )
     means: npt.NDArray[np.float64] = sums / (np.diff(down)[:, None] * np.diff(across)[None, :])
     return means

@@ -27,7 +27,11 @@ _FINE_COLS = 2
 
 
 def shrink(
-    mat: Pixels, view: Viewport, outside_rgb: tuple[int, int, int], whole_cells: bool = False, exact: bool = False
+    mat: Pixels,
+    view: Viewport,
+    outside_rgb: tuple[int, int, int],
+    whole_cells: bool = False,
+    exact: bool = False,
 ) -> Pixels:
     """Return what a viewport shows of a mat.
 
@@ -54,14 +58,18 @@ def shrink(
     rows, row_edges = _edges(height_mm - view.top_mm, view.mm_per_row, view.height_px, height_mm)
     if len(col_edges) < 2 or len(row_edges) < 2:
         return picture
-    picture[rows, cols] = _reduced(mat, row_edges, col_edges, keep_detail=view.cell.cols <= _FINE_COLS and not exact)
+    picture[rows, cols] = _reduced(
+        mat, row_edges, col_edges, keep_detail=view.cell.cols <= _FINE_COLS and not exact
+    )
     if whole_cells:
         _end_with_a_cell(picture, rows, view.cell.rows, outside_rgb)
         _end_with_a_cell(picture.swapaxes(0, 1), cols, view.cell.cols, outside_rgb)
     return picture
 
 
-def _end_with_a_cell(lines: Pixels, inside: slice, step: int, outside_rgb: tuple[int, int, int]) -> None:
+def _end_with_a_cell(
+    lines: Pixels, inside: slice, step: int, outside_rgb: tuple[int, int, int]
+) -> None:
     """Move both ends of the lines inside the mat to the nearest ends of cells of `step` lines; modified in place."""
     first, end = (step * math.floor(at / step + 0.5) for at in (inside.start, inside.stop))
     lines[first : inside.start] = lines[inside.start]
@@ -70,7 +78,9 @@ def _end_with_a_cell(lines: Pixels, inside: slice, step: int, outside_rgb: tuple
     lines[end : inside.stop] = outside_rgb
 
 
-def _edges(start_mm: float, mm_per_px: float, count: int, size_mm: int) -> tuple[slice, npt.NDArray[np.intp]]:
+def _edges(
+    start_mm: float, mm_per_px: float, count: int, size_mm: int
+) -> tuple[slice, npt.NDArray[np.intp]]:
     """Return which picture pixels have their middle on the mat, and the mat edges between them, in mm."""
     middles = start_mm + (np.arange(count) + 0.5) * mm_per_px
     inside = np.flatnonzero((middles >= 0) & (middles < size_mm))
@@ -93,16 +103,28 @@ def _reduced(
     # The sum over the rows of a pixel stays below 2^16 as long as it covers at most 257 mm.
     narrow = np.uint16 if int(np.diff(row_edges).max()) <= 257 else np.uint32
     sums = np.add.reduceat(_reduced_rows(np.add, part, rows, narrow), cols, axis=1, dtype=np.uint32)
-    areas = np.maximum(np.diff(row_edges), 1)[:, None, None] * np.maximum(np.diff(col_edges), 1)[None, :, None]
+    areas = (
+        np.maximum(np.diff(row_edges), 1)[:, None, None]
+        * np.maximum(np.diff(col_edges), 1)[None, :, None]
+    )
     mean = (sums / areas).astype(np.float32)
     if not keep_detail:
         plain: Pixels = np.rint(mean).astype(np.uint8)
         return plain
-    low = np.minimum.reduceat(_reduced_rows(np.minimum, part, rows, np.uint8), cols, axis=1).astype(np.float32)
-    high = np.maximum.reduceat(_reduced_rows(np.maximum, part, rows, np.uint8), cols, axis=1).astype(np.float32)
+    low = np.minimum.reduceat(_reduced_rows(np.minimum, part, rows, np.uint8), cols, axis=1).astype(
+        np.float32
+    )
+    high = np.maximum.reduceat(
+        _reduced_rows(np.maximum, part, rows, np.uint8), cols, axis=1
+    ).astype(np.float32)
     picture = _keep_detail(mean, low, high)
     rows_mm, cols_mm = (max(int(np.median(np.diff(edges))), 1) for edges in (row_edges, col_edges))
-    sharpen_edges(picture, mean, high - low, (max(-(-_AREA_MM // rows_mm), 2), max(-(-_AREA_MM // cols_mm), 2)))
+    sharpen_edges(
+        picture,
+        mean,
+        high - low,
+        (max(-(-_AREA_MM // rows_mm), 2), max(-(-_AREA_MM // cols_mm), 2)),
+    )
     return picture
 
 
@@ -116,7 +138,9 @@ def _reduced_rows(
     return reduced
 
 
-def _keep_detail(mean: npt.NDArray[np.float32], low: npt.NDArray[np.float32], high: npt.NDArray[np.float32]) -> Pixels:
+def _keep_detail(
+    mean: npt.NDArray[np.float32], low: npt.NDArray[np.float32], high: npt.NDArray[np.float32]
+) -> Pixels:
     """Move each mean toward whichever of low and high is further from the mean of the pixels around it.
 
     Plain areas and gradients are hardly touched: low and high are nearly the same there. Nor are the edges of areas: a
@@ -147,7 +171,11 @@ class MatPictures:
     """
 
     def __init__(
-        self, mat: Pixels, outside_rgb: tuple[int, int, int], whole_cells: bool = False, exact: bool = False
+        self,
+        mat: Pixels,
+        outside_rgb: tuple[int, int, int],
+        whole_cells: bool = False,
+        exact: bool = False,
     ) -> None:
         @lru_cache(maxsize=_REMEMBERED)
         def picture(view: Viewport) -> Pixels:

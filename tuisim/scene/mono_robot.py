@@ -22,7 +22,9 @@ def body(view: Viewport, pose: Pose, outline: RobotOutline) -> dict[tuple[int, i
     empty = np.zeros((view.height_px, view.width_px, 3), np.uint8)
     draw_robot(empty, view, pose, outline, CLEARED)
     rows, cols = view.height_px // view.cell.rows, view.width_px // view.cell.cols
-    covered = empty[..., 0].reshape(rows, view.cell.rows, cols, view.cell.cols).mean(axis=(1, 3)) >= 128
+    covered = (
+        empty[..., 0].reshape(rows, view.cell.rows, cols, view.cell.cols).mean(axis=(1, 3)) >= 128
+    )
     found = np.argwhere(covered).tolist()
     return {(row, col): sign_cell(_BODY) for row, col in found}
 
@@ -51,8 +53,13 @@ def pointer(view: Viewport, pose: Pose, reach_mm: float, pivot: str) -> dict[tup
     direction = round(math.degrees(heading) / 45) % 8
     steps = (step / _STEPS_PER_CELL for step in range(1, math.ceil(length * _STEPS_PER_CELL) + 1))
     down = width_mm / height_mm
-    path = [(math.floor(row - step * math.sin(heading) * down), math.floor(col + step * math.cos(heading)))
-            for step in steps]  # fmt: skip
+    path = [
+        (
+            math.floor(row - step * math.sin(heading) * down),
+            math.floor(col + step * math.cos(heading)),
+        )
+        for step in steps
+    ]
     signs = dict.fromkeys(path, _LINES[direction % 4])
     signs[path[-1]] = _TIPS.get(direction, _LINES[direction % 4])
     signs[math.floor(row), math.floor(col)] = pivot

@@ -24,14 +24,21 @@ def off_field_words(pose: Pose, width: int = 80) -> str:
         width: Letters that there is room for.
     """
     sides = (
-        (-pose.x_mm, "to the left"), (pose.x_mm - FIELD_WIDTH_MM, "to the right"),
-        (pose.y_mm - FIELD_HEIGHT_MM, "above"), (-pose.y_mm, "below"),
-    )  # fmt: skip
+        (-pose.x_mm, "to the left"),
+        (pose.x_mm - FIELD_WIDTH_MM, "to the right"),
+        (pose.y_mm - FIELD_HEIGHT_MM, "above"),
+        (-pose.y_mm, "below"),
+    )
     words = ", ".join(f"{away_mm:.0f} mm {side}" for away_mm, side in sides if away_mm > 0)
     if not words:
         return ""
     brief = words.replace("to the ", "")
-    tellings = (f"robot off the mat: {words}", f"robot off the mat: {brief}", f"off the mat: {brief}", brief)
+    tellings = (
+        f"robot off the mat: {words}",
+        f"robot off the mat: {brief}",
+        f"off the mat: {brief}",
+        brief,
+    )
     return next((telling for telling in tellings if len(telling) <= width), brief)
 
 

@@ -120,7 +120,9 @@ class ScenePainter:
         outline = self._outline
         if scene.rays and scene.robot.ultrasonic is not None:
             ultrasonic = scene.robot.ultrasonic
-            x_mm, y_mm = world_point(scene.rays_from or scene.pose, ultrasonic.x_mm, ultrasonic.y_mm)
+            x_mm, y_mm = world_point(
+                scene.rays_from or scene.pose, ultrasonic.x_mm, ultrasonic.y_mm
+            )
             draw_rays(picture, view, x_mm, y_mm, scene.rays, self._grey, is_solid=self._is_for_file)
         for kind, pose in scene.faint:
             colors, opacity = self._faint[kind]
@@ -128,11 +130,22 @@ class ScenePainter:
         draw = draw_mono_robot if self._mono else draw_robot
         if scene.has_robot:
             draw(
-                picture, view, scene.pose, outline, self._robot_colors, pressed=scene.pressed,
+                picture,
+                view,
+                scene.pose,
+                outline,
+                self._robot_colors,
+                pressed=scene.pressed,
                 detail_cols=self._detail_cols,
-            )  # fmt: skip
+            )
             reach_px = drawn_reach_mm(outline) * drawn_scale(outline, view) / view.mm_per_px
-            draw_arrow_to(picture, view, scene.pose, reach_px, (0, 0, 0) if self._mono else self._robot_colors.body)
+            draw_arrow_to(
+                picture,
+                view,
+                scene.pose,
+                reach_px,
+                (0, 0, 0) if self._mono else self._robot_colors.body,
+            )
         return picture
 
     def _ground_picture(self, view: Viewport, scene: SceneState) -> Pixels:
@@ -152,7 +165,9 @@ class ScenePainter:
             self.trace.join()
         for piece in self.trace.pieces(self._pieces_drawn):
             rows, cols = trace_pixels(view, piece.xs_mm, piece.ys_mm, piece.width_mm)
-            self._ground[rows, cols] = visible_on(self._ground_below(view)[rows, cols], piece.rgb, self._grey)
+            self._ground[rows, cols] = visible_on(
+                self._ground_below(view)[rows, cols], piece.rgb, self._grey
+            )
         self._pieces_drawn = len(self.trace)
         return self._ground
 
@@ -180,11 +195,16 @@ _SOFT_FRAME_RGB = (168, 172, 178)
 """In the cells of a screen, where a dark line of one cell looks like a wall."""
 
 
-def draw_frame(picture: Pixels, view: Viewport, width_px: int = FRAME_PX, rgb: Rgb = _FRAME_RGB) -> None:
+def draw_frame(
+    picture: Pixels, view: Viewport, width_px: int = FRAME_PX, rgb: Rgb = _FRAME_RGB
+) -> None:
     """Paint a frame around the field."""
     left, top = (max(round(edge), 0) for edge in view.to_px(0.0, FIELD_HEIGHT_MM))
     right, low = (max(int(edge), 0) for edge in view.to_px(FIELD_WIDTH_MM, 0.0))
-    rows, cols = slice(max(top - width_px, 0), low + width_px), slice(max(left - width_px, 0), right + width_px)
+    rows, cols = (
+        slice(max(top - width_px, 0), low + width_px),
+        slice(max(left - width_px, 0), right + width_px),
+    )
     inside = picture[top:low, left:right].copy()
     picture[rows, cols] = rgb
     picture[top:low, left:right] = inside
@@ -216,7 +236,10 @@ def draw_rays(
     high_col, high_row = (round(edge) for edge in view.to_px(FIELD_WIDTH_MM, 0.0))
     low_col, low_row = max(low_col, 0), max(low_row, 0)
     high_col, high_row = min(high_col, view.width_px), min(high_row, view.height_px)
-    angles, lengths_mm = np.radians([angle for angle, _ in rays]), np.array([length for _, length in rays])
+    angles, lengths_mm = (
+        np.radians([angle for angle, _ in rays]),
+        np.array([length for _, length in rays]),
+    )
     across, down = np.cos(angles) / view.mm_per_px, np.sin(angles) / view.mm_per_row
     # One sample for each step along the longer axis: an even line without doubled pixels.
     step_mm = 1 / np.maximum(np.abs(across), np.abs(down))
@@ -235,7 +258,9 @@ def draw_rays(
     pixels[covered_at] = np.rint(mixed).astype(np.uint8)
 
 
-def draw_obstacles(picture: Pixels, view: Viewport, obstacles: Sequence[Obstacle], marked: int | None = None) -> None:
+def draw_obstacles(
+    picture: Pixels, view: Viewport, obstacles: Sequence[Obstacle], marked: int | None = None
+) -> None:
     """Paint the obstacles, each at least one pixel wide and high.
 
     Args:
@@ -272,7 +297,9 @@ def draw_beacon(picture: Pixels, view: Viewport, x_mm: float, y_mm: float) -> No
     light = away[rows, cols] <= radius / 3
     rows, cols = rows + row - radius, cols + col - radius
     inside = (rows >= 0) & (rows < view.height_px) & (cols >= 0) & (cols < view.width_px)
-    shades = np.where(light[:, None], np.array(BEACON_CORE_RGB, np.uint8), np.array(BEACON_RGB, np.uint8))
+    shades = np.where(
+        light[:, None], np.array(BEACON_CORE_RGB, np.uint8), np.array(BEACON_RGB, np.uint8)
+    )
     picture[rows[inside], cols[inside]] = shades[inside]
 
 

@@ -47,7 +47,9 @@ _LONGEST_STEP_MM = 250.0
 """Two trace points further apart are not joined: the robot was placed elsewhere."""
 
 
-def trace_pixels(view: Viewport, xs_mm: FloatArray, ys_mm: FloatArray, width_mm: float) -> tuple[FloatArray, ...]:
+def trace_pixels(
+    view: Viewport, xs_mm: FloatArray, ys_mm: FloatArray, width_mm: float
+) -> tuple[FloatArray, ...]:
     """Return the picture pixels that a trace covers.
 
     Args:
@@ -121,7 +123,9 @@ class Piece:
 
     def apart(self) -> Piece:
         """Return the same after the pen was lifted."""
-        return replace(self, xs_mm=np.insert(self.xs_mm, 0, np.nan), ys_mm=np.insert(self.ys_mm, 0, np.nan))
+        return replace(
+            self, xs_mm=np.insert(self.xs_mm, 0, np.nan), ys_mm=np.insert(self.ys_mm, 0, np.nan)
+        )
 
     @property
     def pen(self) -> tuple[Rgb, float]:
@@ -147,7 +151,9 @@ class PenTrace:
         if self._pieces and self._pieces[-1].pen == piece.pen:
             last = self._pieces[-1]
             xs_mm = np.concatenate((last.xs_mm[-1:], piece.xs_mm))
-            piece = replace(piece, xs_mm=xs_mm, ys_mm=np.concatenate((last.ys_mm[-1:], piece.ys_mm)))
+            piece = replace(
+                piece, xs_mm=xs_mm, ys_mm=np.concatenate((last.ys_mm[-1:], piece.ys_mm))
+            )
         self._pieces.append(piece)
 
     def clear(self) -> None:
@@ -167,7 +173,10 @@ class PenTrace:
         joined = []
         for (rgb, width_mm), alike in groupby(self._pieces, key=lambda piece: piece.pen):
             pieces = list(alike)
-            xs_mm, ys_mm = (np.concatenate(parts) for parts in zip(*((p.xs_mm, p.ys_mm) for p in pieces), strict=True))
+            xs_mm, ys_mm = (
+                np.concatenate(parts)
+                for parts in zip(*((p.xs_mm, p.ys_mm) for p in pieces), strict=True)
+            )
             joined.append(Piece(xs_mm, ys_mm, rgb, width_mm))
         self._pieces = joined
 

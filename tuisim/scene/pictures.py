@@ -36,7 +36,9 @@ def world_view(robot: RobotSpec, mm_per_px: float = MM_PER_PX) -> Viewport:
     width_px, height_px = _field_px(mm_per_px)
     rim_px = math.ceil(drawn_reach_mm(outline_of(robot)) / mm_per_px) + FRAME_PX
     rim_mm = rim_px * mm_per_px
-    return Viewport(width_px + 2 * rim_px, height_px + 2 * rim_px, mm_per_px, -rim_mm, FIELD_HEIGHT_MM + rim_mm)
+    return Viewport(
+        width_px + 2 * rim_px, height_px + 2 * rim_px, mm_per_px, -rim_mm, FIELD_HEIGHT_MM + rim_mm
+    )
 
 
 def _field_px(mm_per_px: float) -> tuple[int, int]:
@@ -49,7 +51,10 @@ def fitting_view(robot: RobotSpec, width_px: int, height_px: int) -> Viewport:
     reach_mm = drawn_reach_mm(outline_of(robot))
     # The rim is rounded up to whole pixels on both sides.
     sides = ((FIELD_WIDTH_MM, width_px), (FIELD_HEIGHT_MM, height_px))
-    mm_per_px = max((side_mm + 2 * reach_mm) / max(side_px - 2 * (FRAME_PX + 1), 1) for side_mm, side_px in sides)
+    mm_per_px = max(
+        (side_mm + 2 * reach_mm) / max(side_px - 2 * (FRAME_PX + 1), 1)
+        for side_mm, side_px in sides
+    )
     return world_view(robot, mm_per_px)
 
 
@@ -67,7 +72,9 @@ def scene_of(spec: RunSpec, pose: Pose | None, *, rays: bool = False) -> SceneSt
         at,
         world.obstacles,
         tuple(rays_mm(at, sensor, world)) if sensor else (),
-        pressed=tuple(not touch.pressed_by and pressed(at, touch, world) for touch in robot.touch_sensors),
+        pressed=tuple(
+            not touch.pressed_by and pressed(at, touch, world) for touch in robot.touch_sensors
+        ),
         beacon=world.beacon,
         has_robot=pose is not None,
     )
@@ -82,9 +89,13 @@ def world_painter(mat: Pixels, traces: Sequence[Piece] = ()) -> ScenePainter:
 
 
 def world_picture(
-    spec: RunSpec, mat: Pixels, pose: Pose | None = None, traces: Sequence[Piece] = (), *,
+    spec: RunSpec,
+    mat: Pixels,
+    pose: Pose | None = None,
+    traces: Sequence[Piece] = (),
+    *,
     rays: bool = False,
-) -> Image:  # fmt: skip
+) -> Image:
     """Return mat, obstacles, pen traces and robot.
 
     Args:

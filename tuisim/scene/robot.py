@@ -70,24 +70,43 @@ class RobotColors:
 
 COLORED = RobotColors()
 GREY = RobotColors(
-    body=(48, 48, 48), wheel=(0, 0, 0), sensor=(188, 188, 188), marker=(255, 255, 255),
-    bumper=(108, 108, 108), pressed=(0, 0, 0), spot=(128, 128, 128), has_small_edge=True,
-)  # fmt: skip
+    body=(48, 48, 48),
+    wheel=(0, 0, 0),
+    sensor=(188, 188, 188),
+    marker=(255, 255, 255),
+    bumper=(108, 108, 108),
+    pressed=(0, 0, 0),
+    spot=(128, 128, 128),
+    has_small_edge=True,
+)
 """For a terminal without colours: dark body, white edge and marker, to stand out on any grey."""
 MONO = RobotColors(
-    edge=(0, 0, 0), body=(255, 255, 255), wheel=(0, 0, 0), sensor=(0, 0, 0), marker=(0, 0, 0), edge_cells=0.6,
-    edge_mm=100.0, has_small_edge=True,
-)  # fmt: skip
+    edge=(0, 0, 0),
+    body=(255, 255, 255),
+    wheel=(0, 0, 0),
+    sensor=(0, 0, 0),
+    marker=(0, 0, 0),
+    edge_cells=0.6,
+    edge_mm=100.0,
+    has_small_edge=True,
+)
 """For a terminal of two colours: a black arrow on white within a black edge."""
 CLEARED = RobotColors((255,) * 3, (255,) * 3, (255,) * 3, (255,) * 3, has_marker=False)
 """For a terminal of two colours and of signs only: a white place for the signs of the robot."""
 GHOST = RobotColors(
-    edge=(175, 0, 175), marker=(175, 0, 175), edge_cells=0.5, edge_mm=30.0, has_small_edge=True, is_outline=True
+    edge=(175, 0, 175),
+    marker=(175, 0, 175),
+    edge_cells=0.5,
+    edge_mm=30.0,
+    has_small_edge=True,
+    is_outline=True,
 )
 """For the robot now, while an earlier instant is in view."""
 GREY_GHOST = replace(GHOST, edge=(88, 88, 88), marker=(88, 88, 88))
 
-EARLIER = RobotColors(body=(108, 108, 108), wheel=(68, 68, 68), sensor=(148, 148, 148), marker=(218, 218, 218))
+EARLIER = RobotColors(
+    body=(108, 108, 108), wheel=(68, 68, 68), sensor=(148, 148, 148), marker=(218, 218, 218)
+)
 """For the robot of an earlier run."""
 
 
@@ -134,7 +153,9 @@ def draw_robot(
     top, bottom = _around(row, reach_mm / row_mm + 2, view.height_px)
     if left >= right or top >= bottom:
         return
-    across, down = (-(-samples // points) for samples, points in zip(_SAMPLES, view.cell[:2], strict=True))
+    across, down = (
+        -(-samples // points) for samples, points in zip(_SAMPLES, view.cell[:2], strict=True)
+    )
     east = (_sampled(left, right, across) - col)[None, :] * step_mm
     north = (row - _sampled(top, bottom, down))[:, None] * row_mm
     heading = math.radians(pose.heading_deg)
@@ -145,13 +166,17 @@ def draw_robot(
     edge_mm = min(colors.edge_cells * detail_cols * detail_mm, colors.edge_mm)
     if is_crisp and not colors.has_small_edge:
         edge_mm = 0.0
-    parts = _parts(outline, side, ahead, detail_mm, detail_cols, edge_mm, has_marker=colors.has_marker)
+    parts = _parts(
+        outline, side, ahead, detail_mm, detail_cols, edge_mm, has_marker=colors.has_marker
+    )
     if colors.is_outline:
         parts[(parts != _EDGE) & (parts != _MARKER)] = _NONE
     else:
         _mount(parts, outline, side, ahead, detail_mm, pressed)
     blocks = parts.reshape(bottom - top, down, right - left, across)
-    _blend(picture[top:bottom, left:right], _strongest(blocks) if is_crisp else blocks, colors, opacity)
+    _blend(
+        picture[top:bottom, left:right], _strongest(blocks) if is_crisp else blocks, colors, opacity
+    )
 
 
 def _around(middle_px: float, reach_px: float, size_px: int) -> tuple[int, int]:
@@ -177,7 +202,9 @@ def _parts(
     across = np.abs(side)
     parts = np.zeros(side.shape, np.intp)
     front_mm, back_mm = outline.front_mm, outline.back_mm
-    inside_mm = np.minimum(outline.half_width_mm - across, np.minimum(ahead - back_mm, front_mm - ahead))
+    inside_mm = np.minimum(
+        outline.half_width_mm - across, np.minimum(ahead - back_mm, front_mm - ahead)
+    )
     parts[inside_mm >= 0] = _EDGE
     parts[inside_mm >= edge_mm] = _BODY
     wheel_mm = max(outline.wheel_width_mm, 1.2 * px_mm)
@@ -223,20 +250,28 @@ def _mount(
 
 def _strongest(blocks: npt.NDArray[np.intp]) -> npt.NDArray[np.intp]:
     """Return the part that weighs most in each pixel, as blocks of one sample."""
-    weights = np.stack([(blocks == part).sum(axis=(1, 3)) * weight for part, weight in enumerate(_WEIGHTS)])
+    weights = np.stack(
+        [(blocks == part).sum(axis=(1, 3)) * weight for part, weight in enumerate(_WEIGHTS)]
+    )
     strongest: npt.NDArray[np.intp] = weights.argmax(axis=0)[:, None, :, None]
     return strongest
 
 
-def _blend(target: Pixels, blocks: npt.NDArray[np.intp], colors: RobotColors, opacity: float) -> None:
+def _blend(
+    target: Pixels, blocks: npt.NDArray[np.intp], colors: RobotColors, opacity: float
+) -> None:
     drawn = (colors.edge, colors.body, colors.wheel, colors.sensor, colors.marker)
     table = np.array([(0, 0, 0), *drawn, colors.bumper, colors.pressed, colors.spot], np.int64)
     # The sums of the three channels and the number of covered samples are added up together, in 16 bits each.
-    packed = table[:, 0] | table[:, 1] << 16 | table[:, 2] << 32 | (np.arange(len(table)) != _NONE) << 48
+    packed = (
+        table[:, 0] | table[:, 1] << 16 | table[:, 2] << 32 | (np.arange(len(table)) != _NONE) << 48
+    )
     _, down, _, across = blocks.shape
     samples = packed[blocks]
     total = sum(samples[:, row, :, col] for row in range(down) for col in range(across))
     red, green, blue, covered = (np.right_shift(total, 16 * field) & 0xFFFF for field in range(4))
     share = opacity / (down * across)
-    mixed = target * (1 - share * covered)[..., None] + share * np.stack((red, green, blue), axis=-1)
+    mixed = target * (1 - share * covered)[..., None] + share * np.stack(
+        (red, green, blue), axis=-1
+    )
     target[:] = np.rint(mixed).astype(np.uint8)

@@ -44,12 +44,12 @@ def sharpen_edges(picture: Pixels, mean: _Numbers, span: _Numbers, area: tuple[i
     near = np.array([one[at] for one in light])
     around = np.array([[one[at] for one in _nine(channel)] for channel in np.moveaxis(mean, 2, 0)])
     here = np.arange(len(at[0]))
-    dark, bright = (
-        around[:, find(near, axis=0), here].T for find in (np.nanargmin, np.nanargmax)
-    )  # fmt: skip
+    dark, bright = (around[:, find(near, axis=0), here].T for find in (np.nanargmin, np.nanargmax))
     way = bright - dark
     share = ((mean[at] - dark) * way).sum(axis=1) / np.maximum(np.square(way).sum(axis=1), 1)
-    is_mixed = (np.abs(dark + share[:, None] * way - mean[at]) <= _EVEN).all(axis=1) & (np.abs(way) > _EVEN).any(axis=1)
+    is_mixed = (np.abs(dark + share[:, None] * way - mean[at]) <= _EVEN).all(axis=1) & (
+        np.abs(way) > _EVEN
+    ).any(axis=1)
     shares = np.full(is_area.shape, np.nan, np.float32)
     shares[at] = np.where(is_mixed, share, np.nan)
     is_bright, is_dark = _sides(shares)
@@ -82,9 +82,13 @@ def _areas(mean: _Numbers, span: _Numbers, area: tuple[int, int]) -> _Flags:
         return np.zeros(mean.shape[:2], bool)
     is_even = span.max(axis=2) <= _EVEN
     as_below, as_beside = (np.abs(np.diff(mean, axis=axis)).max(axis=2) <= _EVEN for axis in (0, 1))
-    upright = _along(np.logical_and, is_even, 0, rows) & _along(np.logical_and, as_below, 0, rows - 1)
+    upright = _along(np.logical_and, is_even, 0, rows) & _along(
+        np.logical_and, as_below, 0, rows - 1
+    )
     beside = _along(np.logical_and, as_beside, 0, rows)
-    found: _Flags = _along(np.logical_and, upright, 1, cols) & _along(np.logical_and, beside, 1, cols - 1)
+    found: _Flags = _along(np.logical_and, upright, 1, cols) & _along(
+        np.logical_and, beside, 1, cols - 1
+    )
     for axis, size in enumerate(area):
         found = _spread(found, axis, size)
     return found
@@ -99,7 +103,10 @@ def _sides(shares: _Numbers) -> tuple[_Flags, _Flags]:
     upright, level = (np.where(_runs(shares, axis), shares, np.nan) for axis in (0, 1))
     is_bright = (upright >= 0.5) | (level >= 0.5)
     is_dark = (upright < 0.5) | (level < 0.5)
-    (_, up, _, _, _, _, _, down, _), (_, _, _, left, _, right, _, _, _) = _nine(upright), _nine(level)
+    (_, up, _, _, _, _, _, down, _), (_, _, _, left, _, right, _, _, _) = (
+        _nine(upright),
+        _nine(level),
+    )
     for first in (up, down):
         for second in (left, right):
             both, none = (first >= 0.5) & (second >= 0.5), (first < 0.5) & (second < 0.5)
@@ -111,7 +118,10 @@ def _sides(shares: _Numbers) -> tuple[_Flags, _Flags]:
     for _ in range(_ENDS):
         is_bright, is_dark = (
             so | (mixed & (np.any(_nine(so)[1::2], axis=0)))
-            for so, mixed in ((is_bright, (shares >= 0.5) & ~is_dark), (is_dark, (shares < 0.5) & ~is_bright))
+            for so, mixed in (
+                (is_bright, (shares >= 0.5) & ~is_dark),
+                (is_dark, (shares < 0.5) & ~is_bright),
+            )
         )
     return is_bright & ~np.isnan(shares), is_dark & ~np.isnan(shares)
 
@@ -128,7 +138,9 @@ def _along(operation: np.ufunc, values: npt.NDArray[Any], axis: int, size: int) 
     """Return an operation on so many values that follow each other along an axis, for each of their places."""
     lines = values.swapaxes(0, axis)
     count = len(lines) - size + 1
-    made: npt.NDArray[Any] = operation.reduce([lines[first : first + count] for first in range(size)])
+    made: npt.NDArray[Any] = operation.reduce(
+        [lines[first : first + count] for first in range(size)]
+    )
     return made.swapaxes(0, axis)
 
 

@@ -90,7 +90,9 @@ def _fit_mm_per_px(width_px: int, height_px: int, cell: CellPoints) -> float:
     return max(FIELD_WIDTH_MM / width_px, FIELD_HEIGHT_MM / (height_px * cell.tall))
 
 
-def _around(width_px: int, height_px: int, mm_per_px: float, x_mm: float, y_mm: float, cell: CellPoints) -> Viewport:
+def _around(
+    width_px: int, height_px: int, mm_per_px: float, x_mm: float, y_mm: float, cell: CellPoints
+) -> Viewport:
     # Whole-pixel margins: a field edge that falls between pixels would be a blurred line.
     mm_per_row = mm_per_px * cell.tall
     left_px = round(width_px / 2 - x_mm / mm_per_px)
@@ -111,7 +113,12 @@ def _well_inside(view: Viewport, pose: Pose) -> bool:
     margin_col, margin_row = view.width_px * _KEEP_INSIDE, view.height_px * _KEEP_INSIDE
     # At the edge of the field there is nothing more to show.
     left = view.left_mm <= 0 or col >= margin_col
-    right = view.left_mm + view.width_px * view.mm_per_px >= FIELD_WIDTH_MM or col <= view.width_px - margin_col
+    right = (
+        view.left_mm + view.width_px * view.mm_per_px >= FIELD_WIDTH_MM
+        or col <= view.width_px - margin_col
+    )
     top = view.top_mm >= FIELD_HEIGHT_MM or row >= margin_row
-    bottom = view.top_mm - view.height_px * view.mm_per_row <= 0 or row <= view.height_px - margin_row
+    bottom = (
+        view.top_mm - view.height_px * view.mm_per_row <= 0 or row <= view.height_px - margin_row
+    )
     return left and right and top and bottom

@@ -36,8 +36,15 @@ BOARD_CLASS, BOARD = "board-info", "board0"
 BOARD_INFO = {"model": "LEGO MINDSTORMS EV3", "type": "main", "hw_rev": "7", "rom_rev": "6"}
 """What the brick's board tells of itself."""
 CLASSES = (
-    BOARD_CLASS, "dc-motor", LED_CLASS, PORT_CLASS, SENSOR_CLASS, POWER_CLASS, "servo-motor", MOTOR_CLASS,
-)  # fmt: skip
+    BOARD_CLASS,
+    "dc-motor",
+    LED_CLASS,
+    PORT_CLASS,
+    SENSOR_CLASS,
+    POWER_CLASS,
+    "servo-motor",
+    MOTOR_CLASS,
+)
 """All classes of devices; of some the simulated brick never has one."""
 AUTO = "auto"
 """The mode in which a port detects the connected device by itself."""
@@ -55,7 +62,17 @@ class PortKind:
 
 INPUT = PortKind(
     "ev3-input-port",
-    (AUTO, "nxt-analog", "nxt-color", "nxt-i2c", "other-i2c", "ev3-analog", "ev3-uart", "other-uart", "raw"),
+    (
+        AUTO,
+        "nxt-analog",
+        "nxt-color",
+        "nxt-i2c",
+        "other-i2c",
+        "ev3-analog",
+        "ev3-uart",
+        "other-uart",
+        "raw",
+    ),
     "no-sensor",
 )
 OUTPUT = PortKind("ev3-output-port", (AUTO, "tacho-motor", "dc-motor", "led", "raw"), "no-motor")
@@ -136,7 +153,10 @@ class LegoPort:
 def all_ports(session: DeviceSession) -> list[SimDevice]:
     """Return the brick's ports, inputs first."""
     plugged = plugged_in(session.sim.spec.robot)
-    return [LegoPort(session, port, plugged.get(port)).device() for port in (*INPUT_PORTS, *OUTPUT_PORTS)]
+    return [
+        LegoPort(session, port, plugged.get(port)).device()
+        for port in (*INPUT_PORTS, *OUTPUT_PORTS)
+    ]
 
 
 def ports_hint(session: DeviceSession, class_name: str) -> str:
@@ -171,7 +191,9 @@ def build_brick(session: DeviceSession) -> BuiltBrick:
     motors = [*zip(robot.motors, (sim.left, sim.right, *sim.others), strict=True)]
     tachos: dict[str, Tacho] = {}
     # Sorted by port, so that a class without an address finds the first port.
-    on_ports = sorted((found for found in motors if found[0].port != NO_PORT), key=lambda found: found[0].port)
+    on_ports = sorted(
+        (found for found in motors if found[0].port != NO_PORT), key=lambda found: found[0].port
+    )
     for at, (motor, simulated) in enumerate(on_ports):
         tachos[motor.port] = tacho_of(session, simulated, motor.port, motor.kind)
         brick.add(MOTOR_CLASS, f"motor{at}", tachos[motor.port].device())
@@ -195,14 +217,23 @@ def build_brick(session: DeviceSession) -> BuiltBrick:
         brick.add(LED_CLASS, led_name(name), light.device())
     brick.add(POWER_CLASS, BATTERY, battery.device())
     brick.add(BOARD_CLASS, BOARD, board(session))
-    return BuiltBrick(brick, colors, sensors, {spec.port: motor for spec, motor in on_ports}, lights, battery)
+    return BuiltBrick(
+        brick, colors, sensors, {spec.port: motor for spec, motor in on_ports}, lights, battery
+    )
 
 
 def board(session: DeviceSession) -> SimDevice:
     """Return the device that tells what kind of brick this is; asking it costs nothing."""
     told = dict(BOARD_INFO)
-    told["uevent"] = "\n".join(f"BOARD_INFO_{name.upper()}={value}" for name, value in BOARD_INFO.items())
-    return SimDevice(session, {name: partial(str, value) for name, value in told.items()}, {}, dict.fromkeys(told, 0))
+    told["uevent"] = "\n".join(
+        f"BOARD_INFO_{name.upper()}={value}" for name, value in BOARD_INFO.items()
+    )
+    return SimDevice(
+        session,
+        {name: partial(str, value) for name, value in told.items()},
+        {},
+        dict.fromkeys(told, 0),
+    )
 
 
 def tacho_of(session: DeviceSession, motor: Motor, port: str, kind: str) -> Tacho:

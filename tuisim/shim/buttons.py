@@ -99,7 +99,9 @@ class ButtonsFile(DeviceFile):
         if now is not before:
             assert isinstance(before, frozenset)
             for event in changes(before, now, self._session.now):
-                opened.data += EVENT.pack(event.sec, event.usec, event.type, event.code, event.value)
+                opened.data += EVENT.pack(
+                    event.sec, event.usec, event.type, event.code, event.value
+                )
                 opened.data += EVENT.pack(event.sec, event.usec, 0, 0, 0)
             opened.seen = now
         return select.POLLIN if opened.data else 0
@@ -110,7 +112,9 @@ class ButtonsFile(DeviceFile):
         match request & 0xFFFF:
             case 0x4518:
                 pressed = read_pressed(self._session)
-                return sum(1 << KEY_CODES[name] for name in pressed).to_bytes(max(size, KEY_BYTES), "little")[:size]
+                return sum(1 << KEY_CODES[name] for name in pressed).to_bytes(
+                    max(size, KEY_BYTES), "little"
+                )[:size]
             case 0x4506:
                 return DEVICE_NAME.encode().ljust(size, b"\0")[:size]
         raise refuse_ioctl(self.path, request, "EVIOCGKEY tells which buttons are pressed")
@@ -133,7 +137,9 @@ def _polling_wait(session: DeviceSession) -> Callable[..., bool]:
     between_ns = max(0, POLL_NS - session.sim.spec.profile.attribute_read_ns)
 
     @waits_for(Wait.BUTTONS)
-    def wait(self: Any, to_press: str | list[str], to_release: str | list[str], timeout_ms: float | None) -> bool:
+    def wait(
+        self: Any, to_press: str | list[str], to_release: str | list[str], timeout_ms: float | None
+    ) -> bool:
         """Block until all of `to_press` are pressed and none of `to_release` is; return False after a timeout."""
         wanted = {to_press} if isinstance(to_press, str) else set(to_press)
         unwanted = {to_release} if isinstance(to_release, str) else set(to_release)

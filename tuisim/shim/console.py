@@ -40,7 +40,13 @@ class TextGrid:
         for part in _PARTS.finditer(text):
             numbers, code, letter = part.groups()
             if code:
-                self._obey(code, [int(number) if number.lstrip("-").isdigit() else 0 for number in numbers.split(";")])
+                self._obey(
+                    code,
+                    [
+                        int(number) if number.lstrip("-").isdigit() else 0
+                        for number in numbers.split(";")
+                    ],
+                )
             elif letter:
                 self._put(letter)
 

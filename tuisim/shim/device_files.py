@@ -35,7 +35,9 @@ class _Writers(dict[str, Writer]):
 class _NumberWriters(dict[str, NumberWriter]):
     """The same for integers; an attribute that accepts only text gets the number as text."""
 
-    def __init__(self, number_writers: Mapping[str, NumberWriter], writers: Mapping[str, Writer]) -> None:
+    def __init__(
+        self, number_writers: Mapping[str, NumberWriter], writers: Mapping[str, Writer]
+    ) -> None:
         super().__init__(number_writers)
         self._writers = writers
 

@@ -134,7 +134,11 @@ class DisplayFile(DeviceFile):
                 return VARIABLE_INFO
             case 0x4602:
                 return FIXED_INFO
-        raise refuse_ioctl(self.path, request, "a program may ask for the screen's size and format, and write pixels")
+        raise refuse_ioctl(
+            self.path,
+            request,
+            "a program may ask for the screen's size and format, and write pixels",
+        )
 
     def mapping(self, length: int) -> Any:
         """Return the memory."""

@@ -165,7 +165,9 @@ def drawn(face: Face) -> ImageFont:
     )
     head = b"PILfont\n;;;;;;%d;\nDATA\n" % file.ysize
     font = ImageFont.ImageFont()
-    font._load_pilfont_data(io.BytesIO(head + struct.pack(">2560h", *numbers)), file.bitmap.convert("L"))
+    font._load_pilfont_data(
+        io.BytesIO(head + struct.pack(">2560h", *numbers)), file.bitmap.convert("L")
+    )
     return font
 
 
@@ -187,21 +189,35 @@ def _letter(large: FreeTypeFont, letter: str, face: Face) -> tuple[Picture, int,
     if known:
         stroke = round(base * _BOLDER) if face.bold else 0
         pen = ImageDraw.Draw(image)
-        pen.text((margin_px * _FINE, base), letter, 255, large, anchor="ls", stroke_width=stroke, stroke_fill=255)
+        pen.text(
+            (margin_px * _FINE, base),
+            letter,
+            255,
+            large,
+            anchor="ls",
+            stroke_width=stroke,
+            stroke_fill=255,
+        )
     else:
         plain = _plain_letter(letter, times * _FINE)
         image.paste(plain, (margin_px * _FINE, base - round(_PLAIN_BASE_PX * times * _FINE)))
     if face.slanted:
         # About half the height of a capital, so that the slant overhangs little on either side.
         still = base * (1 - _CAPITAL / 2)
-        image = image.transform(image.size, Image.Transform.AFFINE, (1, _SLANT, -_SLANT * still, 0, 1, 0))
+        image = image.transform(
+            image.size, Image.Transform.AFFINE, (1, _SLANT, -_SLANT * still, 0, 1, 0)
+        )
         own_px += round(_SLANT * _CAPITAL * face.size_px / 2)
     width_px = face.cell_px or own_px + (1 if face.bold else 0)
     squeezed = min(1.0, width_px / own_px)
     wide_px = max(1, round(image.width / _FINE * squeezed))
     small = image.resize((wide_px, high_px), Image.Resampling.BOX)
-    left_px = round((width_px - (image.width / _FINE - 2 * margin_px) * squeezed) / 2 - margin_px * squeezed)
-    dark_from = _DARK_FROM.get(face.size_px, _DARK_FROM_USUALLY) + (_BOLD_DARKER if face.bold else 0)
+    left_px = round(
+        (width_px - (image.width / _FINE - 2 * margin_px) * squeezed) / 2 - margin_px * squeezed
+    )
+    dark_from = _DARK_FROM.get(face.size_px, _DARK_FROM_USUALLY) + (
+        _BOLD_DARKER if face.bold else 0
+    )
     return small.point([255 * (grey >= dark_from) for grey in range(256)], "1"), left_px, width_px
 
 

@@ -42,7 +42,10 @@ class FinishingFinder:
     """
 
     def __init__(
-        self, finishers: Mapping[str, Finish], is_own: Callable[[str], bool], around: Mapping[str, Around]
+        self,
+        finishers: Mapping[str, Finish],
+        is_own: Callable[[str], bool],
+        around: Mapping[str, Around],
     ) -> None:
         self._finishers, self._is_own, self._around = finishers, is_own, around
 
@@ -68,7 +71,9 @@ class FinishingFinder:
 
 
 def finish_imports(
-    finishers: Mapping[str, Finish], is_own: Callable[[str], bool], around: Mapping[str, Around] = MappingProxyType({})
+    finishers: Mapping[str, Finish],
+    is_own: Callable[[str], bool],
+    around: Mapping[str, Around] = MappingProxyType({}),
 ) -> None:
     """Call functions on modules, by name, right after their import; at once if already imported.
 
@@ -128,5 +133,7 @@ def install(
     else:
         from tuisim.shim.ev3dev import modules as ev3dev
 
-        finish_imports(ev3dev.finishers(session, built, terminal, mixer) | finishers, is_own, ev3dev.AROUND)
+        finish_imports(
+            ev3dev.finishers(session, built, terminal, mixer) | finishers, is_own, ev3dev.AROUND
+        )
         ev3dev.install(session, built)

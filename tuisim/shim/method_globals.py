@@ -18,7 +18,9 @@ def rebind(changed: type[Any], **names: object) -> None:
             case types.FunctionType():
                 setattr(changed, name, _rebound(part, names))
             case property():
-                get, put, delete = (_rebound(function, names) for function in (part.fget, part.fset, part.fdel))
+                get, put, delete = (
+                    _rebound(function, names) for function in (part.fget, part.fset, part.fdel)
+                )
                 setattr(changed, name, property(get, put, delete, part.__doc__))
 
 

@@ -17,7 +17,15 @@ from tuisim.protocol import MotorRegisters
 from tuisim.shim.device_files import NumberWriter, Reader, SimDevice, Writer, plain, refuse
 from tuisim.shim.session import DeviceSession
 
-COMMANDS = ("run-forever", "run-to-abs-pos", "run-to-rel-pos", "run-timed", "run-direct", "stop", "reset")
+COMMANDS = (
+    "run-forever",
+    "run-to-abs-pos",
+    "run-to-rel-pos",
+    "run-timed",
+    "run-direct",
+    "stop",
+    "reset",
+)
 STOP_ACTIONS = ("coast", "brake", "hold")
 POLARITIES = ("normal", "inversed")
 RAMPS = ("ramp_up_sp", "ramp_down_sp")
@@ -59,7 +67,10 @@ class Tacho(ABC):
         """Return the device that the library reads and writes."""
 
     def _device(
-        self, readers: dict[str, Reader], writers: dict[str, Writer], numbers: dict[str, NumberWriter]
+        self,
+        readers: dict[str, Reader],
+        writers: dict[str, Writer],
+        numbers: dict[str, NumberWriter],
     ) -> SimDevice:
         """Return the device with these attributes and those that all motors have."""
         common: dict[str, Reader] = {
@@ -72,8 +83,14 @@ class Tacho(ABC):
             "stop_action": lambda: self._stop_action,
             "polarity": lambda: self._polarity,
         }
-        writers |= {"stop_action": self._set_stop_action, "polarity": self._set_polarity, "command": self._take_command}
-        return SimDevice(self._session, common | readers, writers, None, numbers, notifying=("state",))
+        writers |= {
+            "stop_action": self._set_stop_action,
+            "polarity": self._set_polarity,
+            "command": self._take_command,
+        }
+        return SimDevice(
+            self._session, common | readers, writers, None, numbers, notifying=("state",)
+        )
 
     def _take_command(self, text: str) -> None:
         self._command(text)
@@ -96,7 +113,9 @@ class Tacho(ABC):
 class TachoMotor(Tacho):
     """One motor as the kernel driver exposes it."""
 
-    def __init__(self, session: DeviceSession, motor: BrickMotor, port: str, kind: str = "large") -> None:
+    def __init__(
+        self, session: DeviceSession, motor: BrickMotor, port: str, kind: str = "large"
+    ) -> None:
         super().__init__(session, port, kind)
         self._motor = motor
         self._numbers: dict[str, int] = {}
@@ -107,10 +126,19 @@ class TachoMotor(Tacho):
 
     def _set_defaults(self) -> None:
         self._numbers |= {
-            "speed_sp": 0, "position_sp": 0, "time_sp": 0, "duty_cycle_sp": 0, "ramp_up_sp": 0, "ramp_down_sp": 0,
-            "speed_pid/Kp": 1000, "speed_pid/Ki": 60, "speed_pid/Kd": 0,
-            "hold_pid/Kp": self._kind.hold_kp, "hold_pid/Ki": 0, "hold_pid/Kd": 0,
-        }  # fmt: skip
+            "speed_sp": 0,
+            "position_sp": 0,
+            "time_sp": 0,
+            "duty_cycle_sp": 0,
+            "ramp_up_sp": 0,
+            "ramp_down_sp": 0,
+            "speed_pid/Kp": 1000,
+            "speed_pid/Ki": 60,
+            "speed_pid/Kd": 0,
+            "hold_pid/Kp": self._kind.hold_kp,
+            "hold_pid/Ki": 0,
+            "hold_pid/Kd": 0,
+        }
         self._stop_action = "coast"
         self._polarity, self._sign = "normal", 1
         self._last_goal: float | None = None
@@ -120,7 +148,9 @@ class TachoMotor(Tacho):
 
     def device(self) -> SimDevice:
         """Return the device that the library reads and writes."""
-        readers: dict[str, Reader] = {name: partial(self._numbers.__getitem__, name) for name in self._numbers}
+        readers: dict[str, Reader] = {
+            name: partial(self._numbers.__getitem__, name) for name in self._numbers
+        }
         readers |= {
             "position": lambda: round(self._motor.position_deg) * self._sign,
             "speed": self._speed,
@@ -141,8 +171,12 @@ class TachoMotor(Tacho):
 
     def registers(self) -> MotorRegisters:
         """Return what the program has written to the motor, and its speed."""
-        speed, position, time_ms = (self._numbers[name] for name in ("speed_sp", "position_sp", "time_sp"))
-        return MotorRegisters(self._last_command, self._polarity, speed, position, time_ms / 1000, self._speed())
+        speed, position, time_ms = (
+            self._numbers[name] for name in ("speed_sp", "position_sp", "time_sp")
+        )
+        return MotorRegisters(
+            self._last_command, self._polarity, speed, position, time_ms / 1000, self._speed()
+        )
 
     def _number_writer(self, name: str, low: int, high: int) -> NumberWriter:
         numbers = self._numbers
@@ -176,7 +210,11 @@ class TachoMotor(Tacho):
             return "running overloaded stalled"
         if motor.target_dps == 0.0 and sim.tick >= self._standstill_tick + sim.stall_ticks:
             return "running stalled"
-        return "running ramping" if motor.speed_dps != motor.target_dps and not self._direct else "running"
+        return (
+            "running ramping"
+            if motor.speed_dps != motor.target_dps and not self._direct
+            else "running"
+        )
 
     def _set_position(self, value: int) -> None:
         self._motor.position_deg = float(value * self._sign)
@@ -199,7 +237,9 @@ class TachoMotor(Tacho):
             motor.run(float(speed))
         elif text == "run-timed":
             sim = self._session.sim
-            motor.run_until(float(speed), sim.ticks_at(self._session.now + self._numbers["time_sp"] * MS))
+            motor.run_until(
+                float(speed), sim.ticks_at(self._session.now + self._numbers["time_sp"] * MS)
+            )
         elif text == "run-to-rel-pos":
             self._run_relative(float(speed))
             return
@@ -222,7 +262,9 @@ class TachoMotor(Tacho):
         motor = self._motor
         if motor.target_dps == 0.0:
             step = motor.ramp_step
-            self._standstill_tick = self._session.sim.tick + (math.ceil(abs(motor.speed_dps) / step) if step else 0)
+            self._standstill_tick = self._session.sim.tick + (
+                math.ceil(abs(motor.speed_dps) / step) if step else 0
+            )
 
     def _stop(self) -> None:
         """Stop, decelerating first if a ramp is set."""
@@ -240,7 +282,9 @@ class TachoMotor(Tacho):
         motor.slowest_ramp_dps2 = down
 
     def _run_direct(self) -> None:
-        self._motor.run(self._kind.max_speed_dps * self._numbers["duty_cycle_sp"] / 100 * self._sign)
+        self._motor.run(
+            self._kind.max_speed_dps * self._numbers["duty_cycle_sp"] / 100 * self._sign
+        )
         self._begun()
 
     def _run_relative(self, speed: float) -> None:
@@ -279,16 +323,25 @@ class TachoMotor(Tacho):
 
 
 WITHOUT_EFFECT = (
-    "duty_cycle_sp", "ramp_up_sp", "ramp_down_sp", "speed_pid/Kp", "speed_pid/Ki", "speed_pid/Kd", "hold_pid/Kp",
-    "hold_pid/Ki", "hold_pid/Kd",
-)  # fmt: skip
+    "duty_cycle_sp",
+    "ramp_up_sp",
+    "ramp_down_sp",
+    "speed_pid/Kp",
+    "speed_pid/Ki",
+    "speed_pid/Kd",
+    "hold_pid/Kp",
+    "hold_pid/Ki",
+    "hold_pid/Kd",
+)
 """Attributes that are stored without effect."""
 
 
 class BrowserTacho(Tacho):
     """One motor of the browser simulator: set points take effect at once, commands bypass the driver."""
 
-    def __init__(self, session: DeviceSession, motor: BrowserMotor, port: str, kind: str = "large") -> None:
+    def __init__(
+        self, session: DeviceSession, motor: BrowserMotor, port: str, kind: str = "large"
+    ) -> None:
         super().__init__(session, port, kind)
         self._motor = motor
         self._numbers = dict.fromkeys(WITHOUT_EFFECT, 0)
@@ -308,7 +361,9 @@ class BrowserTacho(Tacho):
             "time_sp": lambda: int(motor.speed_sp),
         }
         readers |= {name: partial(self._numbers.__getitem__, name) for name in WITHOUT_EFFECT}
-        numbers: dict[str, NumberWriter] = {name: partial(self._numbers.__setitem__, name) for name in WITHOUT_EFFECT}
+        numbers: dict[str, NumberWriter] = {
+            name: partial(self._numbers.__setitem__, name) for name in WITHOUT_EFFECT
+        }
         numbers |= {
             "speed_sp": lambda value: setattr(motor, "speed_sp", float(value)),
             "position_sp": self._set_position_sp,
@@ -320,7 +375,12 @@ class BrowserTacho(Tacho):
         """Return what the program has written to the motor, and its speed."""
         motor = self._motor
         return MotorRegisters(
-            self._last_command, self._polarity, motor.speed_sp, self._position_sp, self._time_sp_s, motor.speed_dps
+            self._last_command,
+            self._polarity,
+            motor.speed_sp,
+            self._position_sp,
+            self._time_sp_s,
+            motor.speed_dps,
         )
 
     def _command(self, text: str) -> None:
@@ -331,9 +391,13 @@ class BrowserTacho(Tacho):
             case "run-timed":
                 sim = self._session.sim
                 # Counted from the last completed tick: the fraction of a tick since then is ignored.
-                motor.run_until(motor.speed_sp, sim.tick + self._time_sp_s * sim.spec.profile.tick_hz)
+                motor.run_until(
+                    motor.speed_sp, sim.tick + self._time_sp_s * sim.spec.profile.tick_hz
+                )
             case "run-to-rel-pos":
-                motor.run_to(motor.position_deg + self._position_sp, motor.speed_sp, self._position_sp < 0)
+                motor.run_to(
+                    motor.position_deg + self._position_sp, motor.speed_sp, self._position_sp < 0
+                )
             case "run-to-abs-pos":
                 motor.run_to(float(self._position_sp), motor.speed_sp, self._position_sp < 0)
             case "run-direct":
@@ -361,7 +425,9 @@ class BrowserTacho(Tacho):
 class ServoTacho(Tacho):
     """One motor that the Pybricks firmware moves: the driver shows it, and takes no commands."""
 
-    def __init__(self, session: DeviceSession, motor: ServoMotor, port: str, kind: str = "large") -> None:
+    def __init__(
+        self, session: DeviceSession, motor: ServoMotor, port: str, kind: str = "large"
+    ) -> None:
         super().__init__(session, port, kind)
         self._motor = motor
 
@@ -380,7 +446,9 @@ class ServoTacho(Tacho):
         """Return the state of the motor."""
         motor = self._motor
         command = "run-direct" if motor.mode else ""
-        return MotorRegisters(command, "normal", motor.aim_dps, round(motor.goal_deg), 0.0, motor.speed_dps)
+        return MotorRegisters(
+            command, "normal", motor.aim_dps, round(motor.goal_deg), 0.0, motor.speed_dps
+        )
 
     def _command(self, text: str) -> None:
         raise NotSimulated(

@@ -50,7 +50,12 @@ class LegoSensor:
     """
 
     def __init__(
-        self, session: DeviceSession, port: str, driver_name: str, modes: Mapping[str, Mode], default_mode: str
+        self,
+        session: DeviceSession,
+        port: str,
+        driver_name: str,
+        modes: Mapping[str, Mode],
+        default_mode: str,
     ) -> None:
         self._session = session
         self._port, self.driver_name = port, driver_name
@@ -126,7 +131,11 @@ class ColorDevice(LegoSensor):
         def raw() -> tuple[int, int, int]:
             # The library computes int(raw * 255 / 300): rounding up here restores the channel exactly.
             red, green, blue = self.channels()
-            return -(-red * RAW_WHITE // 255), -(-green * RAW_WHITE // 255), -(-blue * RAW_WHITE // 255)
+            return (
+                -(-red * RAW_WHITE // 255),
+                -(-green * RAW_WHITE // 255),
+                -(-blue * RAW_WHITE // 255),
+            )
 
         def ambient() -> tuple[int]:
             return (sum(self.channels()) * profile.ambient_percent // (3 * color.WHITE),)
@@ -134,7 +143,11 @@ class ColorDevice(LegoSensor):
         modes = {
             "COL-REFLECT": Mode(reflected, read, units="pct"),
             "COL-AMBIENT": Mode(ambient, read, units="pct"),
-            "COL-COLOR": Mode(lambda: (color.color_code(*self.channels()),), profile.color_code_read_ns, units="col"),
+            "COL-COLOR": Mode(
+                lambda: (color.color_code(*self.channels()),),
+                profile.color_code_read_ns,
+                units="col",
+            ),
             "REF-RAW": Mode(lambda: (raw()[0], 0), read, form="s16"),
             "RGB-RAW": Mode(raw, read, form="s16"),
             "COL-CAL": Mode(lambda: (*raw(), 0), read, form="s16"),
@@ -172,7 +185,9 @@ class ColorDevice(LegoSensor):
         return self.channels()
 
 
-def ultrasonic_sensor(session: DeviceSession, spec: UltrasonicSpec, others: Sequence[LegoSensor]) -> LegoSensor:
+def ultrasonic_sensor(
+    session: DeviceSession, spec: UltrasonicSpec, others: Sequence[LegoSensor]
+) -> LegoSensor:
     """Return an ultrasonic sensor.
 
     It hears those of the robot's sensors that ping; they include this one, and more may be added later.
@@ -192,7 +207,9 @@ def ultrasonic_sensor(session: DeviceSession, spec: UltrasonicSpec, others: Sequ
         return (min(MAX_TENTHS_INCH, round(distance_mm() / 2.54)),)
 
     def heard() -> tuple[int]:
-        return (int(any(other is not sensor and other.mode.startswith("US-DIST") for other in others)),)
+        return (
+            int(any(other is not sensor and other.mode.startswith("US-DIST") for other in others)),
+        )
 
     modes = {
         "US-DIST-CM": Mode(lambda: (distance_mm(),), read, 1, "cm", "s16"),

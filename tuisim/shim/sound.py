@@ -57,7 +57,11 @@ class PlayedSound:
                 raise TimeoutExpired(self.args, timeout or 0.0)
         return self.poll() or 0
 
-    def communicate(self, input: bytes | None = None, timeout: float | None = None) -> tuple[bytes, bytes]:  # noqa: A002
+    def communicate(
+        self,
+        input: bytes | None = None,  # noqa: A002
+        timeout: float | None = None,
+    ) -> tuple[bytes, bytes]:
         """Block until the sound ends; there is no output."""
         self.wait(timeout)
         return b"", b""
@@ -95,7 +99,9 @@ class Mixer:
             ValueError: other arguments.
         """
         match words:
-            case ["set" | "sset", *channel, level] if (percent := level.rstrip("%")).lstrip("-").isdigit():
+            case ["set" | "sset", *channel, level] if (
+                (percent := level.rstrip("%")).lstrip("-").isdigit()
+            ):
                 self._volumes[" ".join(channel)] = min(max(int(percent), 0), LOUDEST)
                 return self._control_text(" ".join(channel))
             case ["get" | "sget", *channel] if channel:
@@ -104,12 +110,13 @@ class Mixer:
                 return f"Simple mixer control '{CHANNEL}',0\n"
             case []:
                 return self._control_text(CHANNEL)
-        raise ValueError(f"{' '.join(words)!r} is not simulated: set CHANNEL VOLUME%, get CHANNEL or scontrols")
+        raise ValueError(
+            f"{' '.join(words)!r} is not simulated: set CHANNEL VOLUME%, get CHANNEL or scontrols"
+        )
 
     def _control_text(self, channel: str) -> str:
-        return (
-            f"Simple mixer control '{channel}',0\n  Mono: Playback {self.volume(channel)} [{self.volume(channel)}%]\n"
-        )
+        volume = self.volume(channel)
+        return f"Simple mixer control '{channel}',0\n  Mono: Playback {volume} [{volume}%]\n"
 
 
 class Loudspeaker:

@@ -62,7 +62,10 @@ class Heard:
     @property
     def tones_row(self) -> str:
         """The tones in the format of `protocol.Spoke`."""
-        rows = [[plain(tone.frequency_hz), plain(tone.length_ms), plain(tone.pause_ms)] for tone in self.tones]
+        rows = [
+            [plain(tone.frequency_hz), plain(tone.length_ms), plain(tone.pause_ms)]
+            for tone in self.tones
+        ]
         return json.dumps(rows) if rows else ""
 
 
@@ -86,7 +89,11 @@ def song_of(tones: Sequence[Tone]) -> Heard:
     """Return the sound of a whole song; silent tones are rests."""
     count = sum(tone.frequency_hz > 0 for tone in tones)
     length_ns = _total_ns(tones)
-    return Heard(f"[♪ song of {counted(count, 'note')}, {length_ns / MS / 1000:.1f} s]", length_ns, tuple(tones))
+    return Heard(
+        f"[♪ song of {counted(count, 'note')}, {length_ns / MS / 1000:.1f} s]",
+        length_ns,
+        tuple(tones),
+    )
 
 
 def parse_beep(words: Sequence[str]) -> list[Tone]:
@@ -128,7 +135,10 @@ def _number(text: str) -> float:
 def _repeated(note: dict[str, float]) -> list[Tone]:
     frequency_hz, length_ms = note.get("-f", BEEP_HZ), note.get("-l", BEEP_MS)
     pause_ms, times = note.get("-D", note.get("-d", REPEAT_PAUSE_MS)), int(note.get("-r", 1))
-    if not (0 <= frequency_hz <= HIGHEST_HZ and 0 <= times <= MOST_REPETITIONS) or min(length_ms, pause_ms) < 0:
+    if (
+        not (0 <= frequency_hz <= HIGHEST_HZ and 0 <= times <= MOST_REPETITIONS)
+        or min(length_ms, pause_ms) < 0
+    ):
         raise ValueError("out of range")
     last_pause_ms = pause_ms if "-D" in note else 0.0
     every = [Tone(frequency_hz, length_ms, pause_ms)] * times
@@ -141,7 +151,9 @@ def beep_heard(words: Sequence[str]) -> Heard:
         tones = parse_beep(words)
     except ValueError as error:
         # The real program prints its usage to a stream that nobody reads, and makes no sound.
-        return Heard(f"[beep refuses {' '.join(words)}: {error}]", 0, (Tone(0.0, 0.0),), refused=True)
+        return Heard(
+            f"[beep refuses {' '.join(words)}: {error}]", 0, (Tone(0.0, 0.0),), refused=True
+        )
     return tones_heard(tones) if words else Heard("[beep]", _total_ns(tones), tuple(tones))
 
 
@@ -167,9 +179,16 @@ def file_heard(path: str, folder: str = "") -> Heard:
             seconds = file.getnframes() / file.getframerate()
     except (wave.Error, EOFError, OSError, ZeroDivisionError) as error:
         # As above: the error message of the real player is not visible.
-        return Heard(f"[cannot play {path}: {str(error) or 'it is cut off'}]", 0, (Tone(0.0, 0.0),), refused=True)
+        return Heard(
+            f"[cannot play {path}: {str(error) or 'it is cut off'}]",
+            0,
+            (Tone(0.0, 0.0),),
+            refused=True,
+        )
     tones = (Tone(0.0, seconds * 1000),)
-    return Heard(f"[plays {path}, {seconds:.1f} s]", _total_ns(tones), tones, os.path.abspath(place))
+    return Heard(
+        f"[plays {path}, {seconds:.1f} s]", _total_ns(tones), tones, os.path.abspath(place)
+    )
 
 
 def speech_heard(text: str, words_a_minute: str = "") -> Heard:

@@ -41,7 +41,14 @@ from tuisim.terminal.queries import (
     cell_size_px,
 )
 from tuisim.terminal.server_asks import ServerAsks as ServerAsks
-from tuisim.terminal.textual_internals import SUPPORTED, Codes, CompositorUpdate, HookedApp, is_leaving, mend
+from tuisim.terminal.textual_internals import (
+    SUPPORTED,
+    Codes,
+    CompositorUpdate,
+    HookedApp,
+    is_leaving,
+    mend,
+)
 
 _CONTROLS = re.compile("[\x00-\x1f\x7f-\x9f]")
 
@@ -54,7 +61,9 @@ class Sanitize(LineFilter):
         if all(segment.text.isprintable() or segment.control for segment in segments):
             return segments
         return [
-            segment if segment.control else Segment(_CONTROLS.sub(_blank, segment.text), segment.style)
+            segment
+            if segment.control
+            else Segment(_CONTROLS.sub(_blank, segment.text), segment.style)
             for segment in segments
         ]
 
@@ -100,7 +109,9 @@ class BufferedApp(HookedApp):
         """Give out what the user does in the order of its arrival."""
         if isinstance(event, (events.InputEvent, events.Paste)):
             if not self._ignores(event):
-                await (self._input.take if SUPPORTED and not event.is_forwarded else self._give)(event)
+                await (self._input.take if SUPPORTED and not event.is_forwarded else self._give)(
+                    event
+                )
             return
         await super().on_event(event)
 
@@ -125,7 +136,11 @@ class BufferedApp(HookedApp):
     def show_update(self, screen: Screen[Any], update: object) -> None:
         """Send what has changed; nothing is displayed where nothing has."""
         codes: str | None = None
-        if isinstance(update, CompositorUpdate) and not isinstance(update, Codes) and self.is_writing:
+        if (
+            isinstance(update, CompositorUpdate)
+            and not isinstance(update, Codes)
+            and self.is_writing
+        ):
             codes = self.frame_buffer.codes(update, self.text_mode)
             if codes is not None:
                 update = Codes(codes) if codes else None
@@ -194,11 +209,16 @@ class BufferedApp(HookedApp):
         if event.facts.kitty_error and drew is not None and self.picture_mode.graphics is None:
             self.notify(
                 f"The terminal cannot show a picture ({event.facts.kitty_error}): drawn with characters instead",
-                severity="warning", markup=False,
-            )  # fmt: skip
+                severity="warning",
+                markup=False,
+            )
 
     def _choose_graphics(self) -> None:
-        size_px = cell_size_px(self.own_driver.fileno) if isinstance(self.own_driver, TerminalDriver) else None
+        size_px = (
+            cell_size_px(self.own_driver.fileno)
+            if isinstance(self.own_driver, TerminalDriver)
+            else None
+        )
         # Who has chosen glyphs wants to see them; pixels have colours.
         is_without = self.picture_mode.chosen != AUTO or self.no_color
         wanted = NO_PIXELS if self.pixels == AUTO and is_without else self.pixels
@@ -227,7 +247,9 @@ class BufferedApp(HookedApp):
         if isinstance(self.own_driver, TerminalDriver):
             self.suspending()
             if not self.own_driver.stop_as_job():
-                self.notify(f"{self.TITLE} cannot be suspended: no shell could resume it", markup=False)
+                self.notify(
+                    f"{self.TITLE} cannot be suspended: no shell could resume it", markup=False
+                )
         elif in_browser():
             self.notify(f"{self.TITLE} cannot be suspended in a browser", markup=False)
         else:

@@ -83,9 +83,13 @@ def _look(style: Style) -> Look:
     if style.reverse:
         ink, ground = ground, ink
     if style.dim:
-        red, green, blue = (round(_DIM * one + (1 - _DIM) * other) for one, other in zip(ink, ground, strict=True))
+        red, green, blue = (
+            round(_DIM * one + (1 - _DIM) * other) for one, other in zip(ink, ground, strict=True)
+        )
         ink = red, green, blue
-    return Look(ink, ground, bool(style.bold), bool(style.italic), bool(style.underline), bool(style.strike))
+    return Look(
+        ink, ground, bool(style.bold), bool(style.italic), bool(style.underline), bool(style.strike)
+    )
 
 
 def _rgb(color: Color | None, default: Rgb) -> Rgb:
@@ -154,7 +158,12 @@ def _drawn(shapes: Sequence[GlyphShape]) -> Mask:
     for shape in shapes:
         match shape:
             case Area():
-                corners = shape.left * _FINE, shape.top * _FINE, shape.right * _FINE - 1, shape.bottom * _FINE - 1
+                corners = (
+                    shape.left * _FINE,
+                    shape.top * _FINE,
+                    shape.right * _FINE - 1,
+                    shape.bottom * _FINE - 1,
+                )
                 draw.rectangle(corners, round(255 * shape.opacity))
             case Dot():
                 x, y, radius = shape.x * _FINE, shape.y * _FINE, shape.radius * _FINE
@@ -185,7 +194,9 @@ def _written(text: str, bold: bool, italic: bool) -> Mask:
             draw.text((more * 0.6, _BASELINE), text, 255, _font(), "ls")
         if italic:
             slant = (1, _ITALIC, -_ITALIC * _BASELINE, 0, 1, 0)
-            image = image.transform(image.size, Image.Transform.AFFINE, slant, Image.Resampling.BILINEAR)
+            image = image.transform(
+                image.size, Image.Transform.AFFINE, slant, Image.Resampling.BILINEAR
+            )
     return np.asarray(image)
 
 
@@ -195,15 +206,17 @@ def svg_of_cells(grid: CellGrid, title: str) -> str:
     width, height = columns * CELL_PX[0], rows * CELL_PX[1]
     size = f'viewBox="0 0 {width} {height}" width="{width}" height="{height}"'
     font = f'font-family="\'DejaVu Sans Mono\', monospace" font-size="{_FONT_PX:.2f}"'
-    return "\n".join((
-        f'<svg xmlns="http://www.w3.org/2000/svg" {size} {font} role="img" shape-rendering="crispEdges">',
-        f"<title>{escape(title)}</title>",
-        *_svg_grounds(grid),
-        *_svg_shapes(grid),
-        *_svg_texts(grid),
-        "</svg>",
-        "",
-    ))  # fmt: skip
+    return "\n".join(
+        (
+            f'<svg xmlns="http://www.w3.org/2000/svg" {size} {font} role="img" shape-rendering="crispEdges">',
+            f"<title>{escape(title)}</title>",
+            *_svg_grounds(grid),
+            *_svg_shapes(grid),
+            *_svg_texts(grid),
+            "</svg>",
+            "",
+        )
+    )
 
 
 def _hex(rgb: Rgb) -> str:
@@ -237,12 +250,18 @@ def _svg_shapes(grid: CellGrid) -> Iterator[str]:
             for shape in shapes_of(text, *CELL_PX) or ():
                 match shape:
                     case Area():
-                        paths.setdefault((look.ink, shape.opacity), []).append(_svg_area(shape, left, top))
+                        paths.setdefault((look.ink, shape.opacity), []).append(
+                            _svg_area(shape, left, top)
+                        )
                     case Dot():
-                        place = f'cx="{left + shape.x:g}" cy="{top + shape.y:g}" r="{shape.radius:.2f}"'
+                        place = (
+                            f'cx="{left + shape.x:g}" cy="{top + shape.y:g}" r="{shape.radius:.2f}"'
+                        )
                         yield f'<circle {place} fill="{_hex(look.ink)}" shape-rendering="auto"/>'
                     case Bend():
-                        points = " ".join(f"{left + at_x:.1f},{top + at_y:.1f}" for at_x, at_y in shape.points)
+                        points = " ".join(
+                            f"{left + at_x:.1f},{top + at_y:.1f}" for at_x, at_y in shape.points
+                        )
                         line = f'stroke="{_hex(look.ink)}" stroke-width="{shape.width:g}" shape-rendering="auto"'
                         yield f'<polyline points="{points}" fill="none" {line}/>'
     for (color, opacity), parts in paths.items():

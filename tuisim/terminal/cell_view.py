@@ -32,7 +32,13 @@ from tuisim.terminal.cells import (
 from tuisim.terminal.fitted_cells import CellIndex, Cells, all_cells, fit_cells, is_flat
 from tuisim.terminal.glyphs import GLYPHS, GlyphSet, glyph_set, half_block_of
 from tuisim.terminal.picture import Graphics, PictureCell, TilePicture
-from tuisim.terminal.picture_mode import BLOCKS, PictureMode, Sharpness, color_depth, picture_mode_of
+from tuisim.terminal.picture_mode import (
+    BLOCKS,
+    PictureMode,
+    Sharpness,
+    color_depth,
+    picture_mode_of,
+)
 from tuisim.terminal.picture_options import CellSet
 from tuisim.terminal.pixels import CellPoints, Pixels, channels_of
 from tuisim.terminal.text_runs import Run, cut_line
@@ -64,7 +70,9 @@ class RowsView(Widget):
 
     def render_lines(self, crop: Region) -> list[Strip]:
         """Return the rows of a region, bypassing Textual's cache, which would rebuild whole rows."""
-        return _cut([self.render_line(y) for y in crop.line_range], crop, self.size.width, self.rich_style)
+        return _cut(
+            [self.render_line(y) for y in crop.line_range], crop, self.size.width, self.rich_style
+        )
 
 
 REFINED_CELLS = 100
@@ -114,7 +122,9 @@ class PixelView(RowsView):
         glyphs = glyph_set(self.cell_set)
         return CellPoints(glyphs.cols, glyphs.rows)
 
-    def set_fine_picture(self, picture: Pixels, graphics: Graphics | None = None, *, stands: bool = False) -> None:
+    def set_fine_picture(
+        self, picture: Pixels, graphics: Graphics | None = None, *, stands: bool = False
+    ) -> None:
         """Show an image with the points of `cell_for(graphics)`; only cells that differ are repainted.
 
         Args:
@@ -255,7 +265,9 @@ class PixelView(RowsView):
             return self._blank()
         strip = self._strips[y]
         if strip is None:
-            strip = CellStrip(self._row(y)) if self._tiles is None else PictureStrip(self._tiles.row(y))
+            strip = (
+                CellStrip(self._row(y)) if self._tiles is None else PictureStrip(self._tiles.row(y))
+            )
             self._strips[y] = strip
         return strip
 
@@ -271,7 +283,9 @@ class PixelView(RowsView):
         rows, cols = self._cells.shape
         changed = {at for at, _ in self._signs.items() ^ signs.items()}
         self._signs = signs
-        self._refresh_runs((row, col, 1) for row, col in changed if 0 <= row < rows and 0 <= col < cols)
+        self._refresh_runs(
+            (row, col, 1) for row, col in changed if 0 <= row < rows and 0 <= col < cols
+        )
 
     def _blank(self) -> Strip:
         # A strip without a style would break Textual's filter for terminals without colours.
@@ -362,7 +376,10 @@ class LinesPanel(Widget):
 def _cut(strips: list[Strip], crop: Region, width: int, style: Style) -> list[Strip]:
     first, last = crop.column_span
     if first == 0 and last == width:
-        return [strip if strip.cell_length == width else strip.adjust_cell_length(width, style) for strip in strips]
+        return [
+            strip if strip.cell_length == width else strip.adjust_cell_length(width, style)
+            for strip in strips
+        ]
     return [strip.crop_extend(first, last, style) for strip in strips]
 
 
@@ -426,11 +443,19 @@ class LazyStrip(MadeOnDemand):
 
     def adjust_cell_length(self, cell_length: int, style: Style | None = None) -> Strip:
         """Return the strip cropped or padded to a length."""
-        return self if cell_length == self.cell_length else self._plain().adjust_cell_length(cell_length, style)
+        return (
+            self
+            if cell_length == self.cell_length
+            else self._plain().adjust_cell_length(cell_length, style)
+        )
 
     def crop_extend(self, start: int, end: int, style: Style | None) -> Strip:
         """Return the strip between two columns, padded where it is too short."""
-        return self.crop(start, end) if end <= self.cell_length else self._plain().crop_extend(start, end, style)
+        return (
+            self.crop(start, end)
+            if end <= self.cell_length
+            else self._plain().crop_extend(start, end, style)
+        )
 
     def apply_filter(self, filter: LineFilter, background: TextualColor) -> Strip:  # noqa: A002  # the base class's name
         """Return the strip with a filter of Textual applied."""

@@ -60,7 +60,12 @@ def runs_of(changed: npt.NDArray[np.bool_], gap: int = 1) -> list[CellRun]:
     firsts = np.concatenate(([0], breaks + 1))
     lasts = np.concatenate((breaks, [len(rows) - 1]))
     return list(
-        zip(rows[firsts].tolist(), cols[firsts].tolist(), (cols[lasts] - cols[firsts] + 1).tolist(), strict=True)
+        zip(
+            rows[firsts].tolist(),
+            cols[firsts].tolist(),
+            (cols[lasts] - cols[firsts] + 1).tolist(),
+            strict=True,
+        )
     )
 
 
@@ -107,7 +112,9 @@ def reduce_cells(cells: Cells, mode: ColorMode) -> Cells:
         return cells
     colors = np.stack((cells >> 24, cells), axis=-1)[..., None] >> np.array([16, 8, 0]) & 255
     flat = colors.reshape(-1, 3).astype(np.uint8)
-    reduced = packed_rgb(_nearest(_greyed(flat, mode), mode.depth).astype(np.int64).T).reshape(*cells.shape, 2)
+    reduced = packed_rgb(_nearest(_greyed(flat, mode), mode.depth).astype(np.int64).T).reshape(
+        *cells.shape, 2
+    )
     return cells >> 48 << 48 | reduced[..., 0] << 24 | reduced[..., 1]
 
 
@@ -126,7 +133,9 @@ def _nearest(pixels: Pixels, depth: int) -> Pixels:
     return _STANDARD[_nearest_16(pixels.astype(np.int32), depth)].astype(np.uint8)
 
 
-def reduce_pixels(pixels: Pixels, rows: npt.NDArray[np.intp], cols: npt.NDArray[np.intp], mode: ColorMode) -> Pixels:
+def reduce_pixels(
+    pixels: Pixels, rows: npt.NDArray[np.intp], cols: npt.NDArray[np.intp], mode: ColorMode
+) -> Pixels:
     """Return pixels in colours that the terminal supports.
 
     With 16 colours, shades between them are dithered, so that a pale band on white does not vanish.
@@ -156,11 +165,15 @@ _SHARES_8 = ((40, 128, 211, 220, 255), (0.0, 0.5, 0.75, 0.875, 1.0))
 panel, gets no dots."""
 
 
-def _dithered_8(pixels: Pixels, thresholds: npt.NDArray[np.float64], paleness: npt.NDArray[np.float32]) -> Pixels:
+def _dithered_8(
+    pixels: Pixels, thresholds: npt.NDArray[np.float64], paleness: npt.NDArray[np.float32]
+) -> Pixels:
     """Return pale pixels as black and white, each in a share that tells it from other greys; others as the nearest."""
     white = np.interp(pixels @ _LUMA, *_SHARES_8) > thresholds
     dithered = np.where(white[:, None], _STANDARD[7], _STANDARD[0])
-    return np.where((paleness > 0.75)[:, None], dithered, _nearest(pixels, PALETTE_8)).astype(np.uint8)
+    return np.where((paleness > 0.75)[:, None], dithered, _nearest(pixels, PALETTE_8)).astype(
+        np.uint8
+    )
 
 
 @lru_cache(maxsize=8192)

@@ -19,7 +19,12 @@ from tuisim.terminal.picture_mode import picture_mode_of
 from tuisim.terminal.picture_options import Protocol
 from tuisim.terminal.probe import SILENT, take_typed
 from tuisim.terminal.queries import QUESTIONS, AnswerParser
-from tuisim.terminal.textual_internals import HookedLinuxDriver, app_of, is_leaving, parse_input_with
+from tuisim.terminal.textual_internals import (
+    HookedLinuxDriver,
+    app_of,
+    is_leaving,
+    parse_input_with,
+)
 
 SIGNALLED = 128
 """A shell adds the number of a signal to it, for the exit code of a program that the signal has ended."""
@@ -96,7 +101,9 @@ def run_in_foreground(command: Sequence[str]) -> None:
     """
     program = subprocess.Popen(command)
     # What is typed to interrupt the program also reaches this process.
-    handlers = {number: signal.signal(number, signal.SIG_IGN) for number in (signal.SIGINT, signal.SIGQUIT)}
+    handlers = {
+        number: signal.signal(number, signal.SIG_IGN) for number in (signal.SIGINT, signal.SIGQUIT)
+    }
     try:
         program.wait()
     finally:
@@ -108,7 +115,12 @@ class TerminalDriver(HookedLinuxDriver):
     """Textual's driver with an output that survives the loss of its terminal, and asks what the terminal can do."""
 
     def __init__(
-        self, app: App[object], *, debug: bool = False, mouse: bool = True, size: tuple[int, int] | None = None
+        self,
+        app: App[object],
+        *,
+        debug: bool = False,
+        mouse: bool = True,
+        size: tuple[int, int] | None = None,
     ) -> None:
         super().__init__(app, debug=debug, mouse=mouse, size=size)
         self.wrap_output(ResilientOutput)
@@ -138,7 +150,9 @@ class TerminalDriver(HookedLinuxDriver):
         """Leave the terminal, and nothing in its memory."""
         graphics = picture_mode_of(app_of(self)).graphics
         if graphics is not None and graphics.protocol is Protocol.KITTY:
-            self.write(kitty.through_tmux(kitty.DELETE_ALL) if graphics.in_tmux else kitty.DELETE_ALL)
+            self.write(
+                kitty.through_tmux(kitty.DELETE_ALL) if graphics.in_tmux else kitty.DELETE_ALL
+            )
         super().stop_application_mode()
 
     @contextmanager

@@ -106,7 +106,9 @@ def _half_blocks(points: npt.NDArray[np.uint8], glyphs: GlyphSet) -> Cells:
     return cells
 
 
-def _typical(lab: npt.NDArray[np.float32], covered: npt.NDArray[np.float32]) -> list[npt.NDArray[np.intp]]:
+def _typical(
+    lab: npt.NDArray[np.float32], covered: npt.NDArray[np.float32]
+) -> list[npt.NDArray[np.intp]]:
     """Return the point of each cell's two groups that is nearest to the mean of its group.
 
     It is a colour of the picture; the mean of three colours is often none, and looks blurred.
@@ -137,12 +139,14 @@ def _best_glyphs(lab: npt.NDArray[np.float32], glyphs: GlyphSet) -> npt.NDArray[
 def _linear() -> npt.NDArray[np.float32]:
     """Return the light of each sRGB value."""
     value = np.arange(256) / 255
-    return np.where(value <= 0.04045, value / 12.92, ((value + 0.055) / 1.055) ** 2.4).astype(np.float32)
+    return np.where(value <= 0.04045, value / 12.92, ((value + 0.055) / 1.055) ** 2.4).astype(
+        np.float32
+    )
 
 
-_XYZ = np.array([[0.4124, 0.3576, 0.1805], [0.2126, 0.7152, 0.0722], [0.0193, 0.1192, 0.9505]], np.float32) / np.array(
-    [[0.9505], [1.0], [1.089]], np.float32
-)
+_XYZ = np.array(
+    [[0.4124, 0.3576, 0.1805], [0.2126, 0.7152, 0.0722], [0.0193, 0.1192, 0.9505]], np.float32
+) / np.array([[0.9505], [1.0], [1.089]], np.float32)
 """From linear sRGB to XYZ, relative to white (D65)."""
 _FROM_ROOTS = np.array([[0, 116, 0], [500, -500, 0], [0, 200, -200]], np.float32)
 """From the cube roots of XYZ to L*a*b*, but for the 16 that is subtracted from every L*."""

@@ -22,7 +22,15 @@ from textual.geometry import Size
 from textual.strip import SGR_STYLES, Strip
 
 from tuisim.terminal.cell_view import CellStrip, JoinedStrip, PictureStrip
-from tuisim.terminal.cells import MONO, PALETTE_8, PALETTE_16, PALETTE_256, TRUECOLOR, color_codes, sgr_index
+from tuisim.terminal.cells import (
+    MONO,
+    PALETTE_8,
+    PALETTE_16,
+    PALETTE_256,
+    TRUECOLOR,
+    color_codes,
+    sgr_index,
+)
 from tuisim.terminal.glyphs import GLYPHS
 from tuisim.terminal.picture import PictureCell, TilePicture
 from tuisim.terminal.textual_internals import ChopsUpdate, LayoutUpdate
@@ -35,9 +43,11 @@ _REWRITTEN = 4
 
 
 _SYSTEMS = {
-    TRUECOLOR: ColorSystem.TRUECOLOR, PALETTE_256: ColorSystem.EIGHT_BIT, PALETTE_16: ColorSystem.STANDARD,
+    TRUECOLOR: ColorSystem.TRUECOLOR,
+    PALETTE_256: ColorSystem.EIGHT_BIT,
+    PALETTE_16: ColorSystem.STANDARD,
     PALETTE_8: ColorSystem.STANDARD,
-}  # fmt: skip
+}
 
 
 class TextMode(NamedTuple):
@@ -116,7 +126,9 @@ class FrameBuffer:
             if picture not in self._pictures:
                 self._pictures.add(picture)
                 finalize(picture, self._gone.append, picture.images()).atexit = False
-        drawn = "".join(picture.draw(some, partial(self._shows, picture)) for picture, some in places.items())
+        drawn = "".join(
+            picture.draw(some, partial(self._shows, picture)) for picture, some in places.items()
+        )
         return pen.finish() + drawn + self._deleted()
 
     def _deleted(self) -> str:
@@ -129,7 +141,9 @@ class FrameBuffer:
         cell = row[x] if x < len(row) else None
         return cell is not None and isinstance(cell[1], PictureCell) and cell[1].picture is picture
 
-    def _put(self, pen: _Pen, y: int, first: int, cells: Sequence[Cell]) -> Iterator[tuple[int, PictureCell]]:
+    def _put(
+        self, pen: _Pen, y: int, first: int, cells: Sequence[Cell]
+    ) -> Iterator[tuple[int, PictureCell]]:
         """Write cells that differ; yield the column and the cell of those that are a part of a picture."""
         row = self._rows.setdefault(y, [])
         if (lacking := first + len(cells) - len(row)) > 0:
@@ -172,11 +186,17 @@ def _cells(strip: Strip, mode: TextMode) -> Sequence[Cell]:
         return [cell for part in strip.parts for cell in _cells(part, mode)]
     if isinstance(strip, PictureStrip):
         return [
-            ("", cell) if cell.half_block is None else _image_cell(cell.half_block, mode.depth) for cell in strip.parts
+            ("", cell) if cell.half_block is None else _image_cell(cell.half_block, mode.depth)
+            for cell in strip.parts
         ]
     if isinstance(strip, CellStrip):
         return [_image_cell(cell, mode.depth) for cell in strip.cells]
-    return [cell for text, style, control in strip if not control for cell in _written(text, style, mode)]
+    return [
+        cell
+        for text, style, control in strip
+        if not control
+        for cell in _written(text, style, mode)
+    ]
 
 
 @lru_cache(maxsize=16384)
@@ -184,8 +204,15 @@ def _image_cell(cell: int, depth: int) -> Cell:
     if depth == MONO:
         glyph = GLYPHS[cell >> 48]
         return glyph, CellLook((), "" if glyph == " " else "39")
-    fore, back = color_codes(cell >> 24 & 0xFFFFFF, depth)[0], color_codes(cell & 0xFFFFFF, depth)[1]
-    return (" ", CellLook((), "", back)) if _is_same(fore, back) else (GLYPHS[cell >> 48], CellLook((), fore, back))
+    fore, back = (
+        color_codes(cell >> 24 & 0xFFFFFF, depth)[0],
+        color_codes(cell & 0xFFFFFF, depth)[1],
+    )
+    return (
+        (" ", CellLook((), "", back))
+        if _is_same(fore, back)
+        else (GLYPHS[cell >> 48], CellLook((), fore, back))
+    )
 
 
 def _is_same(fore: str, back: str) -> bool:
@@ -227,7 +254,10 @@ def _look(style: Style | None, depth: int) -> CellLook:
     link = f"id={style._link_id};{style.link}" if style.link else ""
     if depth == MONO:
         return CellLook(_without_colors(attributes, style), link=link)
-    foreground, background = _color_codes(style.color, depth)[0], _color_codes(style.bgcolor, depth)[1]
+    foreground, background = (
+        _color_codes(style.color, depth)[0],
+        _color_codes(style.bgcolor, depth)[1],
+    )
     return CellLook(attributes, foreground, background, link)
 
 
@@ -274,7 +304,9 @@ class _Run:
 
     __slots__ = ("cells", "look", "row", "x", "y")
 
-    def __init__(self, x: int, y: int, look: CellLook, cells: list[tuple[str, CellLook]], row: _Row) -> None:
+    def __init__(
+        self, x: int, y: int, look: CellLook, cells: list[tuple[str, CellLook]], row: _Row
+    ) -> None:
         self.x, self.y, self.look, self.cells, self.row = x, y, look, cells, row
 
 
@@ -308,7 +340,11 @@ class _Pen:
             self._write_runs()
             self._first_row = y
         last = self._runs[-1] if self._runs else None
-        if last is None or (last.y, last.x + len(last.cells)) != (y, x) or (joined := _joined(last.look, look)) is None:
+        if (
+            last is None
+            or (last.y, last.x + len(last.cells)) != (y, x)
+            or (joined := _joined(last.look, look)) is None
+        ):
             self._runs.append(_Run(x, y, look, [(text, look)], row))
         else:
             last.cells.append((text, look))
@@ -382,7 +418,9 @@ class _Pen:
         attributes, foreground = look.attributes, look.foreground
         if not foreground:
             begun = changes[:1] == ["0"]
-            attributes, foreground = ((), "39") if begun else (self._look.attributes, self._look.foreground)
+            attributes, foreground = (
+                ((), "39") if begun else (self._look.attributes, self._look.foreground)
+            )
         self._look = CellLook(attributes, foreground, look.background, look.link)
 
     def finish(self) -> str:
@@ -396,13 +434,63 @@ class _Pen:
 
 
 _SIGNS = {
-    "·": ".", "•": "*", "…": "~", "×": "x", "°": " ", "±": "~", "–": "-", "—": "-", "−": "-", "⌀": "D", "Δ": "d",
-    "←": "<", "↑": "^", "→": ">", "↓": "v", "◀": "<", "▲": "^", "△": "^", "▶": ">", "▸": ">", "▼": "v", "▽": "v",
-    "●": "*", "○": "o", "◆": "*", "◇": "o", "■": "#", "□": "o", "▮": "#", "█": "#", "✓": "v", "✗": "x", "♪": "~",
-    "⏎": "E", "↵": "E", "⇧": "S", "⌫": "B", "‘": "'", "’": "'", "“": '"', "”": '"', "░": ".", "▒": ":", "▓": "%",
-    "▀": '"', "↕": "|", "‹": "<", "›": ">",
-    "▄": "_", "▌": "[", "▐": "]", "▁": "_", "▔": "~", "▏": "|", "▕": "|", "⌷": "#",
-}  # fmt: skip
+    "·": ".",
+    "•": "*",
+    "…": "~",
+    "×": "x",
+    "°": " ",
+    "±": "~",
+    "–": "-",
+    "—": "-",
+    "−": "-",
+    "⌀": "D",
+    "Δ": "d",
+    "←": "<",
+    "↑": "^",
+    "→": ">",
+    "↓": "v",
+    "◀": "<",
+    "▲": "^",
+    "△": "^",
+    "▶": ">",
+    "▸": ">",
+    "▼": "v",
+    "▽": "v",
+    "●": "*",
+    "○": "o",
+    "◆": "*",
+    "◇": "o",
+    "■": "#",
+    "□": "o",
+    "▮": "#",
+    "█": "#",
+    "✓": "v",
+    "✗": "x",
+    "♪": "~",
+    "⏎": "E",
+    "↵": "E",
+    "⇧": "S",
+    "⌫": "B",
+    "‘": "'",
+    "’": "'",
+    "“": '"',
+    "”": '"',
+    "░": ".",
+    "▒": ":",
+    "▓": "%",
+    "▀": '"',
+    "↕": "|",
+    "‹": "<",
+    "›": ">",
+    "▄": "_",
+    "▌": "[",
+    "▐": "]",
+    "▁": "_",
+    "▔": "~",
+    "▏": "|",
+    "▕": "|",
+    "⌷": "#",
+}
 _ELLIPSIS = re.compile(r" … |…  |[A-Za-z0-9]{2}…")
 """An ellipsis with the blanks beside it, or the end of a word that was cut, which three dots replace."""
 _BY_DOTS = " .':;+*#@"

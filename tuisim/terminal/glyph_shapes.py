@@ -75,13 +75,17 @@ def shapes_of(char: str, width: int, height: int) -> tuple[GlyphShape, ...] | No
     if char in block_patterns():
         rows, bits = block_patterns()[char]
         parts = [(at % 2, at // 2) for at in range(2 * rows) if bits >> at & 1]
-        return tuple(_area(x / 2, y / rows, (x + 1) / 2, (y + 1) / rows, width, height) for x, y in parts)
+        return tuple(
+            _area(x / 2, y / rows, (x + 1) / 2, (y + 1) / rows, width, height) for x, y in parts
+        )
     if ord(char) in _BRAILLE:
         dots = [place for bit, place in enumerate(_BRAILLE_PLACES) if ord(char) >> bit & 1]
         radius = min(width / 4, height / 8) * 0.7
         return tuple(Dot((x + 0.5) * width / 2, (y + 0.5) * height / 4, radius) for x, y in dots)
     if ord(char) in _BOX:
-        return tuple(_box_shapes(unicodedata.name(char).removeprefix("BOX DRAWINGS ").split(), width, height))
+        return tuple(
+            _box_shapes(unicodedata.name(char).removeprefix("BOX DRAWINGS ").split(), width, height)
+        )
     return None
 
 
@@ -97,8 +101,14 @@ def _area(left: float, top: float, right: float, bottom: float, width: int, heig
     return Area(x[0], y[0], x[1], y[1])
 
 
-_SIDES = {"UP": ("UP",), "DOWN": ("DOWN",), "LEFT": ("LEFT",), "RIGHT": ("RIGHT",),
-          "VERTICAL": ("UP", "DOWN"), "HORIZONTAL": ("LEFT", "RIGHT")}  # fmt: skip
+_SIDES = {
+    "UP": ("UP",),
+    "DOWN": ("DOWN",),
+    "LEFT": ("LEFT",),
+    "RIGHT": ("RIGHT",),
+    "VERTICAL": ("UP", "DOWN"),
+    "HORIZONTAL": ("LEFT", "RIGHT"),
+}
 _LIGHT, _HEAVY, _DOUBLE = "LIGHT", "HEAVY", "DOUBLE"
 _WEIGHTS = {"LIGHT": _LIGHT, "SINGLE": _LIGHT, "HEAVY": _HEAVY, "DOUBLE": _DOUBLE}
 _DASHES = {"DOUBLE": 2, "TRIPLE": 3, "QUADRUPLE": 4}
@@ -122,8 +132,13 @@ def _box_shapes(words: list[str], width: int, height: int) -> Iterator[GlyphShap
     elif "ARC" in words:
         yield _arc("RIGHT" in words, "DOWN" in words, width, height, thick)
     elif "DASH" in words:
-        yield from _dashes(_DASHES[words[1]], "VERTICAL" in words, thick * (2 if words[0] == _HEAVY else 1),
-                           width, height)  # fmt: skip
+        yield from _dashes(
+            _DASHES[words[1]],
+            "VERTICAL" in words,
+            thick * (2 if words[0] == _HEAVY else 1),
+            width,
+            height,
+        )
     else:
         yield from _arms(_arms_of(words), width, height, thick)
 
@@ -144,23 +159,39 @@ def _arms(arms: Mapping[str, str], width: int, height: int, thick: int) -> Itera
     """Yield the arms of lines that meet in the middle of the cell."""
     middle = {"x": (width - thick) // 2, "y": (height - thick) // 2}
     # A double line is two light ones, the width of one apart.
-    strips = {_LIGHT: ((0, thick),), _HEAVY: ((-thick // 2, 2 * thick),), _DOUBLE: ((-thick, thick), (thick, thick))}
+    strips = {
+        _LIGHT: ((0, thick),),
+        _HEAVY: ((-thick // 2, 2 * thick),),
+        _DOUBLE: ((-thick, thick), (thick, thick)),
+    }
 
     def edges(sides: tuple[str, str], axis: str) -> tuple[int, int]:
         """Where the lines of two opposite arms begin and end across."""
-        found = [strip for side in sides if side in arms for strip in strips[arms[side]]] or [(0, thick)]
-        return middle[axis] + min(at for at, _ in found), middle[axis] + max(at + size for at, size in found)
+        found = [strip for side in sides if side in arms for strip in strips[arms[side]]] or [
+            (0, thick)
+        ]
+        return middle[axis] + min(at for at, _ in found), middle[axis] + max(
+            at + size for at, size in found
+        )
 
     columns, rows = edges(("UP", "DOWN"), "x"), edges(("LEFT", "RIGHT"), "y")
     for side, weight in arms.items():
         for at, size in strips[weight]:
             if side in ("UP", "DOWN"):
                 left = middle["x"] + at
-                yield Area(left, 0 if side == "UP" else rows[0], left + size, rows[1] if side == "UP" else height)
+                yield Area(
+                    left,
+                    0 if side == "UP" else rows[0],
+                    left + size,
+                    rows[1] if side == "UP" else height,
+                )
             else:
                 top = middle["y"] + at
                 yield Area(
-                    0 if side == "LEFT" else columns[0], top, columns[1] if side == "LEFT" else width, top + size
+                    0 if side == "LEFT" else columns[0],
+                    top,
+                    columns[1] if side == "LEFT" else width,
+                    top + size,
                 )
 
 
@@ -170,7 +201,9 @@ def _arc(right: bool, down: bool, width: int, height: int, thick: int) -> Bend:
     radius = min(abs(end_x - x), abs(end_y - y))
     across, along = math.copysign(radius, end_x - x), math.copysign(radius, end_y - y)
     turns = [at * math.pi / 2 / (_ARC_POINTS - 1) for at in range(_ARC_POINTS)]
-    curve = [(x + across * (1 - math.cos(turn)), y + along * (1 - math.sin(turn))) for turn in turns]
+    curve = [
+        (x + across * (1 - math.cos(turn)), y + along * (1 - math.sin(turn))) for turn in turns
+    ]
     return Bend(((x, end_y), *curve, (end_x, y)), thick)
 
 
@@ -179,4 +212,8 @@ def _dashes(count: int, upright: bool, thick: int, width: int, height: int) -> I
     start = (across - thick) // 2
     for at in range(count):
         first, last = round(at * length / count), round((at + 0.6) * length / count)
-        yield Area(start, first, start + thick, last) if upright else Area(first, start, last, start + thick)
+        yield (
+            Area(start, first, start + thick, last)
+            if upright
+            else Area(first, start, last, start + thick)
+        )

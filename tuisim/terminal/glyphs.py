@@ -44,7 +44,10 @@ def _sextants() -> list[str]:
 
 def _braille() -> list[str]:
     return [
-        chr(0x2800 + sum(1 << bit for point, bit in enumerate(_BRAILLE_BITS) if pattern >> point & 1))
+        chr(
+            0x2800
+            + sum(1 << bit for point, bit in enumerate(_BRAILLE_BITS) if pattern >> point & 1)
+        )
         for pattern in range(256)
     ]
 
@@ -139,10 +142,14 @@ def glyph_set(cells: CellSet) -> GlyphSet:
         patterns = list(range(1, 255, 2))
         return GlyphSet(2, 4, _bits(patterns, 8), np.array(patterns))
     if cells in (CellSet.BRAILLE, CellSet.ASCII):
-        patterns = [at for at in range(1, 255) if at.bit_count() < 4 or (at.bit_count() == 4 and at & 1)]
+        patterns = [
+            at for at in range(1, 255) if at.bit_count() < 4 or (at.bit_count() == 4 and at & 1)
+        ]
         covered = _bits(patterns, 8)
         numbers = (
-            np.array(patterns) + BRAILLE_FROM if cells is CellSet.BRAILLE else nearest_signs(covered, letters=False)
+            np.array(patterns) + BRAILLE_FROM
+            if cells is CellSet.BRAILLE
+            else nearest_signs(covered, letters=False)
         )
         return GlyphSet(2, 4, covered, numbers)
     return GlyphSet(1, 2, _bits([1], 2), np.array([0]))

@@ -27,7 +27,15 @@ from textual.message_pump import MessagePump
 from textual.widget import Widget
 from textual.widgets import Input
 
-from tuisim.terminal.textual_internals import CALL_LATER, CALL_NEXT, DISPATCH, END, POST, invoke, route_messages
+from tuisim.terminal.textual_internals import (
+    CALL_LATER,
+    CALL_NEXT,
+    DISPATCH,
+    END,
+    POST,
+    invoke,
+    route_messages,
+)
 
 _PATIENCE_S = 1.0
 """A turn in which nothing has happened for so long is over: what it still waits for may never come."""
@@ -132,7 +140,9 @@ def dispatch_message(pump: MessagePump, message: Message) -> Awaitable[None]:
     """Handle a message, within the turn that it belongs to."""
     turn: Turn | None = getattr(message, _TURN, None)
     # Nobody posts the events of a new widget: they belong to the turn in which it was made.
-    if turn is None and (_current.get() is None or isinstance(message, (events.Compose, events.Mount))):
+    if turn is None and (
+        _current.get() is None or isinstance(message, (events.Compose, events.Mount))
+    ):
         return DISPATCH(pump, message)
     return _dispatch_in(turn, pump, message)
 
@@ -166,7 +176,9 @@ def call_next(pump: MessagePump, callback: Callable[..., Any], *args: Any, **kwa
         CALL_NEXT(pump, callback, *args, **kwargs)
 
 
-def call_after_refresh(pump: MessagePump, callback: Callable[..., Any], *args: Any, **kwargs: Any) -> bool:
+def call_after_refresh(
+    pump: MessagePump, callback: Callable[..., Any], *args: Any, **kwargs: Any
+) -> bool:
     """Call something after the next refresh, within the turn; Textual's own callbacks only scroll, and may lag."""
     turn = _turn()
     if turn is None or _module(callback).startswith("textual."):
@@ -226,7 +238,11 @@ class InputOrder:
 
     async def take(self, event: events.Event) -> None:
         """Give out an event, or hold it until those before it have had their turn."""
-        if self._held and isinstance(event, events.MouseMove) and isinstance(self._held[-1], events.MouseMove):
+        if (
+            self._held
+            and isinstance(event, events.MouseMove)
+            and isinstance(self._held[-1], events.MouseMove)
+        ):
             self._held.pop()
         self._held.append(event)
         await self.go_on()
@@ -266,7 +282,9 @@ class InputOrder:
             self._watch(turn)
 
     def _watch(self, turn: Turn) -> None:
-        self._timer = asyncio.get_running_loop().call_later(_PATIENCE_S, self._check, turn, turn.steps)
+        self._timer = asyncio.get_running_loop().call_later(
+            _PATIENCE_S, self._check, turn, turn.steps
+        )
 
     def _check(self, turn: Turn, steps: int) -> None:
         if not turn.is_over:

@@ -44,7 +44,9 @@ _PAGE_COMMAND = 7766
 _PLACEHOLDERS = re.compile(f"(?:{PLACEHOLDER}..)+")
 
 
-def encode(picture: Pixels, image: int, cols: int, rows: int, *, answers_errors: bool = True) -> str:
+def encode(
+    picture: Pixels, image: int, cols: int, rows: int, *, answers_errors: bool = True
+) -> str:
     """Return the codes that make a picture known; it is seen at its placeholders.
 
     Args:
@@ -85,7 +87,9 @@ def for_page(codes: str) -> str:
 
     Its terminal, xterm.js, ignores commands of this kind, and would draw a placeholder as a character.
     """
-    return _PLACEHOLDERS.sub("\x1b[8m\\g<0>\x1b[28m", codes.replace("\x1b_G", f"\x1b]{_PAGE_COMMAND};G"))
+    return _PLACEHOLDERS.sub(
+        "\x1b[8m\\g<0>\x1b[28m", codes.replace("\x1b_G", f"\x1b]{_PAGE_COMMAND};G")
+    )
 
 
 def through_tmux(codes: str) -> str:

@@ -141,7 +141,9 @@ class Pacer:
         if not self._asked:
             return True
         if not self.answers:
-            return now - self._last_s >= UNPROVEN_GAP_S or (self._proof_s is not None and now >= self._proof_s)
+            return now - self._last_s >= UNPROVEN_GAP_S or (
+                self._proof_s is not None and now >= self._proof_s
+            )
         way_bytes = sum(size for _, size in self._asked)
         if now - self._heard_s >= PATIENCE_S + way_bytes / SLOWEST_BYTES_S:
             # A terminal that has answered before has lost a query: do not wait for all of them.
@@ -192,7 +194,9 @@ class Pacer:
             self._allowed = 1
         else:
             # At least two, or an answer that arrives just after a frame timer would cost the next frame.
-            self._allowed = min(self._allowed + 1, MAX_ON_THE_WAY, 2 + int(self._round_trip_s / self._gap_s))
+            self._allowed = min(
+                self._allowed + 1, MAX_ON_THE_WAY, 2 + int(self._round_trip_s / self._gap_s)
+            )
 
     def _has_queued(self, now: float) -> None:
         rested_s = inf if self._queued_s is None else now - self._queued_s

@@ -76,9 +76,11 @@ class Rectangle(NamedTuple):
     def joined(self, other: Rectangle) -> Rectangle:
         """Return the smallest rectangle around both."""
         return Rectangle(
-            min(self.top, other.top), min(self.left, other.left),
-            max(self.bottom, other.bottom), max(self.right, other.right),
-        )  # fmt: skip
+            min(self.top, other.top),
+            min(self.left, other.left),
+            max(self.bottom, other.bottom),
+            max(self.right, other.right),
+        )
 
 
 class TilePicture:
@@ -153,7 +155,10 @@ class TilePicture:
         """Return the cells of a row as half blocks (see `terminal.fitted_cells.Cells`), for what cannot show pixels."""
         width, height = self.graphics.cell_points
         points = self._points[row * height : (row + 1) * height].astype(np.float32)
-        upper, lower = (half.reshape(len(half), -1, width, 3).mean(axis=(0, 2)) for half in np.array_split(points, 2))
+        upper, lower = (
+            half.reshape(len(half), -1, width, 3).mean(axis=(0, 2))
+            for half in np.array_split(points, 2)
+        )
         packed = [packed_rgb(np.rint(half).astype(np.int64).T) for half in (upper, lower)]
         cells: list[int] = (packed[0] << 24 | packed[1]).tolist()
         return cells
@@ -176,7 +181,9 @@ class TilePicture:
             for col, (version, is_coarse) in enumerate(zip(versions, coarse.tolist(), strict=True))
         ]
 
-    def draw(self, places: Sequence[tuple[int, int, PictureCell]], is_shown: Callable[[int, int], bool]) -> str:
+    def draw(
+        self, places: Sequence[tuple[int, int, PictureCell]], is_shown: Callable[[int, int], bool]
+    ) -> str:
         """Return the codes that draw some cells.
 
         Args:
@@ -188,11 +195,16 @@ class TilePicture:
             key=lambda at: (at[0] - at[2].row, at[1] - at[2].col),
         )
         return "".join(
-            self._draw_at(down, right, [cell for _, _, cell in some], is_shown) for (down, right), some in by_offset
+            self._draw_at(down, right, [cell for _, _, cell in some], is_shown)
+            for (down, right), some in by_offset
         )
 
     def _draw_at(
-        self, down: int, right: int, cells: Sequence[PictureCell], is_shown: Callable[[int, int], bool]
+        self,
+        down: int,
+        right: int,
+        cells: Sequence[PictureCell],
+        is_shown: Callable[[int, int], bool],
     ) -> str:
         if self.graphics.protocol is Protocol.KITTY:
             return self._placeholders(down, right, cells)
@@ -215,20 +227,27 @@ class TilePicture:
 
     def _part(self, some: Rectangle) -> Pixels:
         width, height = self.graphics.cell_points
-        return self._points[some.top * height : some.bottom * height, some.left * width : some.right * width]
+        return self._points[
+            some.top * height : some.bottom * height, some.left * width : some.right * width
+        ]
 
     def _encoded(self, some: Rectangle) -> str:
         points = self._part(some)
         if self.graphics.protocol is Protocol.ITERM:
             return _inline_image(points, some.right - some.left, some.bottom - some.top)
         scale = self.graphics.cell_px[0] // self.graphics.cell_points[0]
-        return sixel.encode(points.repeat(scale, axis=0).repeat(scale, axis=1) if scale > 1 else points)
+        return sixel.encode(
+            points.repeat(scale, axis=0).repeat(scale, axis=1) if scale > 1 else points
+        )
 
     # Kitty
 
     def _placeholders(self, down: int, right: int, cells: Sequence[PictureCell]) -> str:
         """Return the codes that send the tiles of some cells, and draw the placeholders of those that changed."""
-        tiles = {(cell.row // _TILE_ROWS * _TILE_ROWS, cell.col // _TILE_COLS * _TILE_COLS) for cell in cells}
+        tiles = {
+            (cell.row // _TILE_ROWS * _TILE_ROWS, cell.col // _TILE_COLS * _TILE_COLS)
+            for cell in cells
+        }
         parts, stale = [], []
         for tile in sorted(tiles):
             codes, old = self._send(tile)
@@ -251,7 +270,9 @@ class TilePicture:
     def _send(self, tile: tuple[int, int]) -> tuple[str, list[int]]:
         """Return the codes that send a tile if the terminal does not have it, and images that are no longer needed."""
         top, left = tile
-        some = Rectangle(top, left, min(top + _TILE_ROWS, self.size[0]), min(left + _TILE_COLS, self.size[1]))
+        some = Rectangle(
+            top, left, min(top + _TILE_ROWS, self.size[0]), min(left + _TILE_COLS, self.size[1])
+        )
         version = int(self._versions[some.top : some.bottom, some.left : some.right].max())
         had = self._tiles.get(tile)
         if had is not None and had[0] == version:
@@ -262,13 +283,17 @@ class TilePicture:
         self._tiles[tile] = version, image
         cols, rows = some.right - some.left, some.bottom - some.top
         # What comes back through tmux would be taken for keys.
-        codes = kitty.encode(self._part(some), image, cols, rows, answers_errors=not self.graphics.in_tmux)
+        codes = kitty.encode(
+            self._part(some), image, cols, rows, answers_errors=not self.graphics.in_tmux
+        )
         return self._passed_on(codes), [had[1]] if had is not None else []
 
     def _drop_tiles(self) -> str:
         """Return the codes that delete the tiles beyond its size."""
         rows, cols = self.size
-        beyond = {tile: kept for tile, kept in self._tiles.items() if tile[0] >= rows or tile[1] >= cols}
+        beyond = {
+            tile: kept for tile, kept in self._tiles.items() if tile[0] >= rows or tile[1] >= cols
+        }
         for tile in beyond:
             del self._tiles[tile]
         return _deleted(self.graphics, beyond)
@@ -323,7 +348,9 @@ def _whole_tiles(changed: Mask) -> Mask:
     """Return all cells of the tiles in which a cell has changed: another image has another number."""
     rows, cols = changed.shape
     filled = np.pad(changed, ((0, -rows % _TILE_ROWS), (0, -cols % _TILE_COLS)))
-    tiles = filled.reshape(filled.shape[0] // _TILE_ROWS, _TILE_ROWS, -1, _TILE_COLS).any(axis=(1, 3))
+    tiles = filled.reshape(filled.shape[0] // _TILE_ROWS, _TILE_ROWS, -1, _TILE_COLS).any(
+        axis=(1, 3)
+    )
     whole: Mask = tiles.repeat(_TILE_ROWS, axis=0).repeat(_TILE_COLS, axis=1)[:rows, :cols]
     return whole
 
@@ -340,7 +367,11 @@ def rectangles(changed: Mask, may_draw: Callable[[Rectangle], bool]) -> list[Rec
         run = Rectangle(row, col, row + 1, col + length)
         for at, other in enumerate(found):
             both = run.joined(other)
-            if other.bottom >= run.top and both.area <= run.area + other.area + _JOIN_CELLS and may_draw(both):
+            if (
+                other.bottom >= run.top
+                and both.area <= run.area + other.area + _JOIN_CELLS
+                and may_draw(both)
+            ):
                 found[at] = both
                 break
         else:

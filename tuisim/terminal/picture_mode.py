@@ -136,7 +136,9 @@ DEFAULT_CELL_PX = (8, 16)
 """Size of a cell if neither the terminal nor the kernel tells."""
 
 
-def graphics_of(facts: TerminalFacts, wanted: str, cell_px: tuple[int, int] | None) -> Graphics | None:
+def graphics_of(
+    facts: TerminalFacts, wanted: str, cell_px: tuple[int, int] | None
+) -> Graphics | None:
     """Return how a terminal is drawn with pixels; None if it cannot, does not tell, or should not.
 
     Args:
@@ -184,7 +186,9 @@ class Sharpness:
         still_s: A picture that has not changed for this long stands still.
     """
 
-    def __init__(self, widget: Widget, refine: Callable[[], bool], still_s: float = _STILL_S) -> None:
+    def __init__(
+        self, widget: Widget, refine: Callable[[], bool], still_s: float = _STILL_S
+    ) -> None:
         self._widget = widget
         self._refine = refine
         self._still_s = still_s

@@ -85,7 +85,9 @@ def cells_of(name: str, octant_cols: int | None) -> CellSet:
     return CellSet.SEXTANT if version >= known.sextants else CellSet.QUADRANT
 
 
-def cells_without_asking(environment: Mapping[str, str], *, has_colors: bool = True) -> CellSet | None:
+def cells_without_asking(
+    environment: Mapping[str, str], *, has_colors: bool = True
+) -> CellSet | None:
     """Return the set that the environment decides; None if the terminal has to be asked.
 
     Args:
@@ -172,7 +174,12 @@ def _told_by_tmux(what: str, environment: Mapping[str, str]) -> str:
     command = ["tmux", "display-message", "-p", f"#{{{what}}}"]
     try:
         done = subprocess.run(
-            command, stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=_TMUX_ANSWER_S, check=False
+            command,
+            stdin=subprocess.DEVNULL,
+            capture_output=True,
+            text=True,
+            timeout=_TMUX_ANSWER_S,
+            check=False,
         )
     except (OSError, subprocess.TimeoutExpired):
         return ""
@@ -190,7 +197,9 @@ def in_browser() -> bool:
 
 def _may_be_utf8(environment: Mapping[str, str]) -> bool:
     """Return whether the locale is UTF-8, or not set at all, as in many containers."""
-    locale = next((value for name in ("LC_ALL", "LC_CTYPE", "LANG") if (value := environment.get(name))), "")
+    locale = next(
+        (value for name in ("LC_ALL", "LC_CTYPE", "LANG") if (value := environment.get(name))), ""
+    )
     return not locale or "utf-8" in locale.lower() or "utf8" in locale.lower()
 
 
@@ -264,7 +273,9 @@ def _latency_s(fd: int) -> float | None:
     found = []
     for _ in range(_ROUND_TRIPS):
         begun = time.monotonic()
-        if not facts_in(_ask(fd, ATTRIBUTES_QUERY, _has_attributes, fd).decode("latin-1")).attributes:
+        if not facts_in(
+            _ask(fd, ATTRIBUTES_QUERY, _has_attributes, fd).decode("latin-1")
+        ).attributes:
             break
         found.append(time.monotonic() - begun)
     return min(found, default=None)
@@ -325,7 +336,9 @@ def _without_answers(data: bytes) -> bytes:
     return ANSWER.sub("", text).encode("latin-1")
 
 
-def _ask(fd: int, query: str, is_answered: Callable[[bytes], object], output: int | None = None) -> bytes:
+def _ask(
+    fd: int, query: str, is_answered: Callable[[bytes], object], output: int | None = None
+) -> bytes:
     _write(query, output)
     answer, give_up = b"", time.monotonic() + ANSWER_S
     while not is_answered(answer) and (left := give_up - time.monotonic()) > 0:
@@ -342,7 +355,9 @@ def _write(text: str, output: int | None = None) -> None:
         os.write(sys.stdout.fileno() if output is None else output, text.encode())
 
 
-_OFF = "".join(f"\x1b[?{mode}l" for mode in (1000, 1002, 1003, 1015, 1006, 1016, 1004, 2004, 2026, 2048))
+_OFF = "".join(
+    f"\x1b[?{mode}l" for mode in (1000, 1002, 1003, 1015, 1006, 1016, 1004, 2004, 2026, 2048)
+)
 """Mouse, focus, bracketed paste, synchronized output and reports of the size."""
 RESTORING = f"\x1b[<u{_OFF}\x1b[?1049l\x1b[?7h\x1b[?25h\x1b[0m\x1b(B\x0f\r"
 """Ends the keyboard protocol of kitty on the screen of the app, then that screen; lines wrap, the cursor is visible."""
@@ -368,7 +383,9 @@ def restore_terminal(fd: int, term: str) -> None:
 
 def _sane(iflag: int, oflag: int, cflag: int, lflag: int) -> list[int]:
     """Return the modes of a terminal with what `stty sane` switches on, as far as apps change it."""
-    iflag = (iflag | termios.BRKINT | termios.ICRNL | termios.IXON | termios.IMAXBEL) & ~(termios.INLCR | termios.IGNCR)
+    iflag = (iflag | termios.BRKINT | termios.ICRNL | termios.IXON | termios.IMAXBEL) & ~(
+        termios.INLCR | termios.IGNCR
+    )
     oflag |= termios.OPOST | termios.ONLCR
     lflag |= termios.ISIG | termios.ICANON | termios.IEXTEN
     lflag |= termios.ECHO | termios.ECHOE | termios.ECHOK | termios.ECHOCTL | termios.ECHOKE

@@ -70,7 +70,11 @@ class TerminalFacts:
     @property
     def without_refusal(self) -> TerminalFacts:
         """The facts, as if a question for kitty's protocol without an answer had not been asked."""
-        return self if self.has_kitty_graphics or self.kitty_error else replace(self, has_kitty_graphics=None)
+        return (
+            self
+            if self.has_kitty_graphics or self.kitty_error
+            else replace(self, has_kitty_graphics=None)
+        )
 
     @property
     def has_sixel(self) -> bool:
@@ -97,7 +101,10 @@ class TerminalFacts:
 
 
 def _is_possible(cell_px: tuple[int, int]) -> bool:
-    return all(least <= px <= most for least, px, most in zip(_LEAST_CELL_PX, cell_px, _MOST_CELL_PX, strict=True))
+    return all(
+        least <= px <= most
+        for least, px, most in zip(_LEAST_CELL_PX, cell_px, _MOST_CELL_PX, strict=True)
+    )
 
 
 def facts_in(text: str) -> TerminalFacts:
@@ -111,7 +118,9 @@ def facts_in(text: str) -> TerminalFacts:
 def cell_size_px(fd: int) -> tuple[int, int] | None:
     """Return width and height of a cell as the kernel knows them, also over SSH; None if it does not."""
     try:
-        rows, cols, width, height = struct.unpack("HHHH", fcntl.ioctl(fd, termios.TIOCGWINSZ, bytes(8)))
+        rows, cols, width, height = struct.unpack(
+            "HHHH", fcntl.ioctl(fd, termios.TIOCGWINSZ, bytes(8))
+        )
     except OSError:
         return None
     cell_px = (width // cols, height // rows) if rows and cols else (0, 0)
@@ -174,7 +183,9 @@ class AnswerParser(XTermParser):
 
     def _begun_at_end(self, text: str) -> str:
         found = _BEGUN.search(text)
-        if found is None and (self.is_asked or not self._facts.attributes or self._facts.asks_for_kitty):
+        if found is None and (
+            self.is_asked or not self._facts.attributes or self._facts.asks_for_kitty
+        ):
             found = _MAYBE_BEGUN.search(text)
         return found[0] if found else ""
 

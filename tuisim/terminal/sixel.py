@@ -33,7 +33,10 @@ def encode(picture: Pixels) -> str:
     colors, numbers = _palette(picture)
     parts = [f'{_BEGIN}"1;1;{width_px};{height_px}']
     parts += [_definition(number, color) for number, color in enumerate(colors)]
-    parts += ["-".join(_band(numbers[top : top + BAND_PX]) for top in range(0, height_px, BAND_PX)), _END]
+    parts += [
+        "-".join(_band(numbers[top : top + BAND_PX]) for top in range(0, height_px, BAND_PX)),
+        _END,
+    ]
     return "".join(parts)
 
 

@@ -40,7 +40,10 @@ def cut(text: str, width: int) -> str:
 
 def cut_line(line: Sequence[Run], width: int) -> Sequence[Run]:
     """Shorten a line to a maximum width; it ends in an ellipsis if more than blanks is cut."""
-    if sum(len(text) for text, _ in line) <= width or not "".join(text for text, _ in line)[width:].strip():
+    if (
+        sum(len(text) for text, _ in line) <= width
+        or not "".join(text for text, _ in line)[width:].strip()
+    ):
         return line
     kept: list[Run] = []
     left = width

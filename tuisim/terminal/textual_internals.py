@@ -49,7 +49,13 @@ if TYPE_CHECKING:
 else:
     try:
         from textual._callback import invoke
-        from textual._compositor import ChopsUpdate, Compositor, CompositorUpdate, LayoutUpdate, ReflowResult
+        from textual._compositor import (
+            ChopsUpdate,
+            Compositor,
+            CompositorUpdate,
+            LayoutUpdate,
+            ReflowResult,
+        )
         from textual._context import visible_screen_stack
         from textual._styles_cache import StylesCache
         from textual._xterm_parser import XTermParser
@@ -68,13 +74,27 @@ _METADATA = re.compile(r"textual-([\d.]+)\.dist-info")
 
 _USED: Mapping[type, tuple[str, ...]] = {
     App: (
-        "_background_screens", "_batch_count", "_closed", "_display", "_driver", "_exit", "_filters",
-        "_handle_exception", "_running", "_shutdown",
+        "_background_screens",
+        "_batch_count",
+        "_closed",
+        "_display",
+        "_driver",
+        "_exit",
+        "_filters",
+        "_handle_exception",
+        "_running",
+        "_shutdown",
     ),
     Compositor: ("_dirty_regions", "_full_map", "_render_chops", "reflow", "render_strips"),
     DOMNode: ("_bindings",),
     LinuxDriver: (
-        "_app", "_auto_restart", "_file", "_loop", "_must_signal_resume", "_sigcont_application", "_writer_thread",
+        "_app",
+        "_auto_restart",
+        "_file",
+        "_loop",
+        "_must_signal_resume",
+        "_sigcont_application",
+        "_writer_thread",
     ),
     MessagePump: ("_dispatch_message", "_on_message"),
     OptionList: ("_move_page", "_on_click"),
@@ -85,19 +105,30 @@ _USED: Mapping[type, tuple[str, ...]] = {
     Widget: ("_component_styles", "_message_loop_exit"),
     WrappedDocument: ("_offset_to_line_info",),
     XTermParser: ("feed", "tick"),
-}  # fmt: skip
+}
 """The names by class: methods, and attributes that its `__init__` sets."""
 _GLOBALS: Sequence[tuple[ModuleType, str]] = (
-    (linux_driver, "XTermParser"), (linux_driver, "getincrementaldecoder"), (textual_keys, "_character_to_key"),
-)  # fmt: skip
+    (linux_driver, "XTermParser"),
+    (linux_driver, "getincrementaldecoder"),
+    (textual_keys, "_character_to_key"),
+)
 """Names in modules."""
 
 
 def missing_names() -> list[str]:
     """Return which names the Textual that is installed does not have, such as `App._display`."""
-    found = [f"{owner.__name__}.{name}" for owner, names in _USED.items() for name in names if not _has(owner, name)]
+    found = [
+        f"{owner.__name__}.{name}"
+        for owner, names in _USED.items()
+        for name in names
+        if not _has(owner, name)
+    ]
     # Modules are named without the packages that they are in.
-    lacking = [f"{module.__name__.rpartition('.')[2]}.{name}" for module, name in _GLOBALS if not hasattr(module, name)]
+    lacking = [
+        f"{module.__name__.rpartition('.')[2]}.{name}"
+        for module, name in _GLOBALS
+        if not hasattr(module, name)
+    ]
     return [*found, *lacking]
 
 
@@ -111,7 +142,9 @@ def textual_version() -> tuple[int, ...]:
 
     It is read from the name of its metadata: `importlib.metadata` would take a tenth of the time that Textual takes.
     """
-    found = [_METADATA.fullmatch(entry.name) for entry in os.scandir(Path(textual.__file__).parents[1])]
+    found = [
+        _METADATA.fullmatch(entry.name) for entry in os.scandir(Path(textual.__file__).parents[1])
+    ]
     return next((tuple(map(int, match[1].split("."))) for match in found if match), ())
 
 
@@ -131,7 +164,9 @@ class HookedApp(App[None]):
         """Draw an update of a screen; a subclass may draw another one in its place."""
         super()._display(screen, cast(ConsoleRenderable | RichCast | str | None, update))
 
-    def _display(self, screen: Screen[Any], renderable: ConsoleRenderable | RichCast | str | None) -> None:
+    def _display(
+        self, screen: Screen[Any], renderable: ConsoleRenderable | RichCast | str | None
+    ) -> None:
         self.show_update(screen, renderable)
 
     def is_harmless(self, error: Exception) -> bool:
@@ -157,7 +192,9 @@ class HookedApp(App[None]):
         """Whether what is drawn now is written to the terminal, as Textual decides it."""
         if not SUPPORTED:
             return False
-        return self._running and not (self._closed or self._batch_count or self.is_headless or self._driver is None)
+        return self._running and not (
+            self._closed or self._batch_count or self.is_headless or self._driver is None
+        )
 
     @property
     def line_filters(self) -> list[LineFilter]:
@@ -293,7 +330,9 @@ class ThoroughCompositor(Compositor):
                 if self._told[widget].region.size != told[widget].region.size
             }
             changes = (geometry for _, geometry in self._told.items() ^ told.items())
-            self._dirty_regions.update(filter(None, (one.clip.intersection(one.region) for one in changes)))
+            self._dirty_regions.update(
+                filter(None, (one.clip.intersection(one.region) for one in changes))
+            )
         return ReflowResult(hidden, shown, resized)
 
 
@@ -328,7 +367,9 @@ def screen_strips(app: App[Any]) -> list[Strip]:
 def text_selection(widget: Widget) -> Selection | None:
     """Return what is selected of a widget; nothing in a screen without styles: it is not drawn yet, or is gone."""
     screen = widget.screen
-    return screen.selections.get(widget) if "screen--selection" in screen._component_styles else None
+    return (
+        screen.selections.get(widget) if "screen--selection" in screen._component_styles else None
+    )
 
 
 def key_of_character(character: str) -> str:
@@ -362,11 +403,15 @@ POST: Post = MessagePump.post_message
 DISPATCH: Dispatch = MessagePump._dispatch_message if SUPPORTED else cast(Dispatch, None)
 CALL_NEXT: CallNext = MessagePump.call_next
 CALL_LATER: CallLater = MessagePump.call_after_refresh
-END: Callable[[Widget], Awaitable[None]] = Widget._message_loop_exit if SUPPORTED else cast(Any, None)
+END: Callable[[Widget], Awaitable[None]] = (
+    Widget._message_loop_exit if SUPPORTED else cast(Any, None)
+)
 """Textual's own functions for messages; two of them only if it is supported."""
 
 
-def route_messages(post: Post, dispatch: Dispatch, call_next: CallNext, call_later: CallLater) -> None:
+def route_messages(
+    post: Post, dispatch: Dispatch, call_next: CallNext, call_later: CallLater
+) -> None:
     """Let Textual call these functions for all its messages."""
     MessagePump.post_message = post  # type: ignore[method-assign, assignment]
     MessagePump._dispatch_message = dispatch  # type: ignore[method-assign, assignment]

@@ -45,9 +45,16 @@ def application_of(find: Callable[[], Sequence[Owner]]) -> web.Application:
 
     def owner_of(request: web.Request) -> Owner | None:
         # What does something is sent by a page of ours only.
-        acts, origin = request.path.endswith("/ws") or request.method == "POST", request.headers.get("Origin")
+        acts, origin = (
+            request.path.endswith("/ws") or request.method == "POST",
+            request.headers.get("Origin"),
+        )
         # All are asked, so that the time does not tell which one it was.
-        found = [one for one in find() if one.gate.admits(request.path, request.host, origin, from_a_page=acts)]
+        found = [
+            one
+            for one in find()
+            if one.gate.admits(request.path, request.host, origin, from_a_page=acts)
+        ]
         return found[0] if found else None
 
     def refusal(request: web.Request) -> web.HTTPForbidden:

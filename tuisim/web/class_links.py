@@ -72,7 +72,9 @@ def open_class(folder: Path, names: Sequence[str]) -> ClassLinks:
             os.close(lock_fd)
             raise
     except OSError as error:
-        raise ConfigError(f"cannot be used: {error.strerror or error}", file=str(error.filename or folder)) from error
+        raise ConfigError(
+            f"cannot be used: {error.strerror or error}", file=str(error.filename or folder)
+        ) from error
 
 
 def _opened(folder: Path, names: Sequence[str], lock_fd: int) -> ClassLinks:
@@ -82,8 +84,12 @@ def _opened(folder: Path, names: Sequence[str], lock_fd: int) -> ClassLinks:
     for name in names:
         tokens.setdefault(name, new_token())
     with replacing(file, owner_only=True, follow_links=False) as handle:
-        handle.write(json.dumps({"tutor": tutor, "students": tokens}, ensure_ascii=False, indent=1).encode())
-    students = [StudentLink(name, tokens[name], folder / name, folder / _HOMES / name) for name in names]
+        handle.write(
+            json.dumps({"tutor": tutor, "students": tokens}, ensure_ascii=False, indent=1).encode()
+        )
+    students = [
+        StudentLink(name, tokens[name], folder / name, folder / _HOMES / name) for name in names
+    ]
     for each in (path for student in students for path in (student.folder, student.home)):
         make_private_folder(each)
         if each.is_symlink():
@@ -92,13 +98,17 @@ def _opened(folder: Path, names: Sequence[str], lock_fd: int) -> ClassLinks:
 
 
 def _locked(folder: Path) -> int:
-    descriptor = os.open(folder / _LOCK_FILE, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC | os.O_NOFOLLOW, 0o600)
+    descriptor = os.open(
+        folder / _LOCK_FILE, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC | os.O_NOFOLLOW, 0o600
+    )
     try:
         fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except BlockingIOError:
         os.close(descriptor)
         hint = "end that one, or name another folder with --homes"
-        raise ConfigError("another server serves the class of this folder", hint, file=str(folder)) from None
+        raise ConfigError(
+            "another server serves the class of this folder", hint, file=str(folder)
+        ) from None
     return descriptor
 
 
@@ -110,18 +120,24 @@ def _read(file: Path) -> Mapping[str, Any]:
         return {}
     try:
         match json.loads(data):
-            case {"tutor": str(tutor), "students": dict(students)} if _are_tokens([tutor, *students.values()]):
+            case {"tutor": str(tutor), "students": dict(students)} if _are_tokens(
+                [tutor, *students.values()]
+            ):
                 return {"tutor": tutor, "students": students}
     except (ValueError, RecursionError):
         pass
     raise ConfigError(
-        "is no file of links, or a damaged one", "delete it: everybody then gets a new link", file=str(file)
+        "is no file of links, or a damaged one",
+        "delete it: everybody then gets a new link",
+        file=str(file),
     )
 
 
 def _are_tokens(found: Sequence[object]) -> bool:
     """Return whether these are secrets, each of them another one."""
-    return all(isinstance(one, str) and _TOKEN.fullmatch(one) for one in found) and len({*found}) == len(found)
+    return all(isinstance(one, str) and _TOKEN.fullmatch(one) for one in found) and len(
+        {*found}
+    ) == len(found)
 
 
 def write_links(path: Path, rows: Sequence[tuple[str, str]]) -> None:

@@ -36,10 +36,17 @@ def read_class(path: Path) -> tuple[str, ...]:
         name = unicodedata.normalize("NFC", text)
         line = f"line {number}"
         if problem := _problem(name):
-            raise ConfigError(problem, "letters, digits, blanks and signs, such as Ada Lovelace", file=shown, key=line)
+            raise ConfigError(
+                problem,
+                "letters, digits, blanks and signs, such as Ada Lovelace",
+                file=shown,
+                key=line,
+            )
         _, before = names.setdefault(name.casefold(), (name, number))
         if before != number:
-            raise ConfigError(f"{name!r} is in line {before}, too", "each name once", file=shown, key=line)
+            raise ConfigError(
+                f"{name!r} is in line {before}, too", "each name once", file=shown, key=line
+            )
         if len(names) > MOST_STUDENTS:
             raise ConfigError(f"has more than {MOST_STUDENTS} names", file=shown, key=line)
     if not names:
@@ -56,9 +63,15 @@ def _cells(path: Path) -> Iterator[tuple[int, str]]:
         lines = source_lines(data.decode("utf-8-sig"))
     except UnicodeDecodeError as error:
         number = 1 + data.count(b"\n", 0, error.start)
-        raise ConfigError("is not in UTF-8", "save it as UTF-8", file=str(path), key=f"line {number}") from None
+        raise ConfigError(
+            "is not in UTF-8", "save it as UTF-8", file=str(path), key=f"line {number}"
+        ) from None
     is_csv = path.suffix.lower() == _CSV
-    written = [(number, line.strip()) for number, line in enumerate(lines, 1) if line.strip()[:1] not in ("", _COMMENT)]
+    written = [
+        (number, line.strip())
+        for number, line in enumerate(lines, 1)
+        if line.strip()[:1] not in ("", _COMMENT)
+    ]
     separator = max(",;\t", key=written[0][1].count) if is_csv and written else ","
     for number, line in written:
         name = _first_cell(line, separator, path, number) if is_csv else line

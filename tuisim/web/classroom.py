@@ -44,7 +44,9 @@ class Tutor:
         used: What each app uses, by its process.
     """
 
-    def __init__(self, gate: Gate, servers: Mapping[str, Server], used: Mapping[int, Usage]) -> None:
+    def __init__(
+        self, gate: Gate, servers: Mapping[str, Server], used: Mapping[int, Usage]
+    ) -> None:
         self.gate, self._servers, self._used = gate, servers, used
 
     @property
@@ -63,7 +65,10 @@ class Tutor:
         if visit is None:
             return {"name": name, "app": None}
         memory_bytes = self._used.get(visit.pid, Usage()).memory_bytes
-        return {"name": name, "app": {**visit.to_plain(), **visit.doing.to_plain(), "memory_mb": memory_bytes >> 20}}
+        return {
+            "name": name,
+            "app": {**visit.to_plain(), **visit.doing.to_plain(), "memory_mb": memory_bytes >> 20},
+        }
 
     def _visit(self, name: str) -> Visit | None:
         server = self._servers.get(name)
@@ -125,7 +130,12 @@ class Classroom:
     """
 
     def __init__(
-        self, links: ClassLinks, host: str, app_of: AppOf, limits: ServerLimits, report: Callable[[str], None]
+        self,
+        links: ClassLinks,
+        host: str,
+        app_of: AppOf,
+        limits: ServerLimits,
+        report: Callable[[str], None],
     ) -> None:
         among = Places(limits.visitors)
         self._folders: dict[str, Sequence[Any]] = {}
@@ -134,7 +144,9 @@ class Classroom:
             command, place = app_of(student)
             gate = Gate(host, student.token)
             one = ServerLimits(1, limits.visit)
-            self._servers[student.name] = Server(command, gate, one, _naming(report, student.name), place, among)
+            self._servers[student.name] = Server(
+                command, gate, one, _naming(report, student.name), place, among
+            )
             self._folders[student.name] = (student.folder, student.home)
         self._used: dict[int, Usage] = {}
         self._tutor = Tutor(Gate(host, links.tutor), self._servers, self._used)
@@ -172,7 +184,9 @@ class Classroom:
             files: Whether to look at the students' files, too, which takes longer.
         """
         visits = {name: visit for name, server in self._servers.items() for visit in server.visits}
-        used = await asyncio.to_thread(usages, [visit.pid for visit in visits.values() if visit.pid])
+        used = await asyncio.to_thread(
+            usages, [visit.pid for visit in visits.values() if visit.pid]
+        )
         self._used.clear()
         self._used.update(used)
         for name, visit in visits.items():

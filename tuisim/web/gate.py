@@ -50,11 +50,15 @@ class Gate:
             from_a_page: Whether only a page can send the request, so that it must have an origin.
         """
         # Compared in the same time whatever they have in common.
-        if not secrets.compare_digest(path.partition("/")[2].partition("/")[0].encode(), self.token.encode()):
+        if not secrets.compare_digest(
+            path.partition("/")[2].partition("/")[0].encode(), self.token.encode()
+        ):
             return False
         if not self._is_ours(host):
             return False
-        return not from_a_page if origin is None else origin in (f"http://{host}", f"https://{host}")
+        return (
+            not from_a_page if origin is None else origin in (f"http://{host}", f"https://{host}")
+        )
 
     @property
     def framed_by(self) -> str:
@@ -67,4 +71,6 @@ class Gate:
             return False
         if host in {urlsplit(origin).netloc for origin in self.frames}:
             return True
-        return is_any_address(self.listens_on) or urlsplit(f"//{host}").hostname in _LOCAL | {self.listens_on.lower()}
+        return is_any_address(self.listens_on) or urlsplit(f"//{host}").hostname in _LOCAL | {
+            self.listens_on.lower()
+        }

@@ -118,8 +118,12 @@ class Server:
         return web.FileResponse(PAGE / "index.html")
 
     async def _list(self, request: web.Request) -> web.StreamResponse:
-        sessions = [{**visit.to_plain(), **visit.doing.to_plain()} for visit in self._visits.values()]
-        return web.json_response({"sessions": sessions, "free": self._free, "most": self._limits.visitors})
+        sessions = [
+            {**visit.to_plain(), **visit.doing.to_plain()} for visit in self._visits.values()
+        ]
+        return web.json_response(
+            {"sessions": sessions, "free": self._free, "most": self._limits.visitors}
+        )
 
     @property
     def _free(self) -> int:
@@ -140,7 +144,9 @@ class Server:
             await close(socket, "The session has ended.")
         return socket
 
-    async def begin(self, width: int, height: int, socket: web.WebSocketResponse | None = None) -> Visit | None:
+    async def begin(
+        self, width: int, height: int, socket: web.WebSocketResponse | None = None
+    ) -> Visit | None:
         """Start an app for a visitor, if need be once one that is ending has gone; return None if all live.
 
         Args:
@@ -206,7 +212,9 @@ class Server:
             raise web.HTTPNotFound(text="There is no such download.\n") from None
         response = web.StreamResponse()
         response.content_type = download.mime_type or "application/octet-stream"
-        response.headers["Content-Disposition"] = f"attachment; filename*=UTF-8''{quote(download.file_name)}"
+        response.headers["Content-Disposition"] = (
+            f"attachment; filename*=UTF-8''{quote(download.file_name)}"
+        )
         await response.prepare(request)
         try:
             async for chunk in self._downloads.download(key):
@@ -304,7 +312,9 @@ async def listening(server: Answering, host: str, port: int) -> AsyncIterator[in
     """
     logger = logging.getLogger(__name__)
     logger.addFilter(_is_no_wrong_request)
-    runner = web.AppRunner(server.application(), access_log=None, logger=logger, shutdown_timeout=2 * END_WITHIN_S)
+    runner = web.AppRunner(
+        server.application(), access_log=None, logger=logger, shutdown_timeout=2 * END_WITHIN_S
+    )
     await runner.setup()
     try:
         try:
@@ -328,7 +338,13 @@ def _note(ended_by: asyncio.Future[signal.Signals], number: signal.Signals) -> N
 
 def _cannot_listen(host: str, port: int, error: OSError) -> ConfigError:
     if error.errno == errno.EADDRINUSE:
-        return ConfigError(f"port {port} is in use", "name another one, or 0 for any free one", key="--port")
+        return ConfigError(
+            f"port {port} is in use", "name another one, or 0 for any free one", key="--port"
+        )
     if error.errno == errno.EACCES:
         return ConfigError(f"you may not use port {port}", "name one from 1024 on", key="--port")
-    return ConfigError(f"cannot listen on {host}: {error.strerror or error}", "127.0.0.1 always works", key="--host")
+    return ConfigError(
+        f"cannot listen on {host}: {error.strerror or error}",
+        "127.0.0.1 always works",
+        key="--host",
+    )

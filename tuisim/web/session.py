@@ -25,11 +25,26 @@ _HEAD = b"__GANGLION__\n"
 _MOST_ERROR_BYTES = 4096
 _MOST_PACKET_BYTES = 32 << 20
 _OF_A_TERMINAL = (
-    "LC_ALL", "TMUX", "STY", "LC_TERMINAL", "LC_TERMINAL_VERSION", "ITERM_SESSION_ID", "KITTY_WINDOW_ID",
-    "WEZTERM_PANE", "KONSOLE_VERSION", "VTE_VERSION", "WT_SESSION", "TERMINAL_EMULATOR",
-)  # fmt: skip
+    "LC_ALL",
+    "TMUX",
+    "STY",
+    "LC_TERMINAL",
+    "LC_TERMINAL_VERSION",
+    "ITERM_SESSION_ID",
+    "KITTY_WINDOW_ID",
+    "WEZTERM_PANE",
+    "KONSOLE_VERSION",
+    "VTE_VERSION",
+    "WT_SESSION",
+    "TERMINAL_EMULATOR",
+)
 """Variables that tell what the terminal shows that the server was started in; the app is not in that one."""
-_OF_A_BROWSER = {"TERM": "xterm-256color", "COLORTERM": "truecolor", "LC_CTYPE": "C.UTF-8", "PYTHONUTF8": "1"}
+_OF_A_BROWSER = {
+    "TERM": "xterm-256color",
+    "COLORTERM": "truecolor",
+    "LC_CTYPE": "C.UTF-8",
+    "PYTHONUTF8": "1",
+}
 _OF_THE_PROTOCOL = ("TEXTUAL", "TERM_PROGRAM", "COLUMNS", "ROWS")
 """Beginnings of the variables that tell an app how it is shown."""
 
@@ -58,7 +73,9 @@ class WebSession(AppService):
         place: Where it runs.
     """
 
-    def __init__(self, command: Sequence[str], link: Link, downloads: DownloadManager, place: Place) -> None:
+    def __init__(
+        self, command: Sequence[str], link: Link, downloads: DownloadManager, place: Place
+    ) -> None:
         super().__init__(
             " ".join(command),
             write_bytes=link.send_bytes,
@@ -75,7 +92,11 @@ class WebSession(AppService):
     def _build_environment(self, width: int = 80, height: int = 24) -> dict[str, str]:
         environment, given = super()._build_environment(width, height), self._place.variables
         if given is not None:
-            shown = {name: value for name, value in environment.items() if name.startswith(_OF_THE_PROTOCOL)}
+            shown = {
+                name: value
+                for name, value in environment.items()
+                if name.startswith(_OF_THE_PROTOCOL)
+            }
             environment = {**given, **shown}
         kept = {name: value for name, value in environment.items() if name not in _OF_A_TERMINAL}
         return kept | _OF_A_BROWSER
@@ -104,7 +125,11 @@ class WebSession(AppService):
 
     async def run(self) -> None:
         """Pass on what the app writes until it ends."""
-        assert self._process is not None and self._process.stdout is not None and self._process.stderr is not None
+        assert (
+            self._process is not None
+            and self._process.stdout is not None
+            and self._process.stderr is not None
+        )
         errors = asyncio.create_task(_last_bytes(self._process.stderr))
         with suppress(asyncio.IncompleteReadError):
             await self._pass_on(self._process.stdout)
@@ -115,7 +140,10 @@ class WebSession(AppService):
         await output.readuntil(_HEAD)
         handlers = {b"D": self.on_data, b"M": self.on_meta, b"P": self.on_packed}
         while True:
-            kind, size = await output.readexactly(1), int.from_bytes(await output.readexactly(4), "big")
+            kind, size = (
+                await output.readexactly(1),
+                int.from_bytes(await output.readexactly(4), "big"),
+            )
             # What follows cannot be understood either. A program can reach the app that runs it: it is not trusted.
             if kind not in handlers or size > _MOST_PACKET_BYTES:
                 self._kill()
@@ -161,7 +189,11 @@ class WebSession(AppService):
         last = self.errors.rpartition("\n")[2]
         if last.startswith("tuisim: "):
             return last
-        return "The app has failed; the server's terminal tells more." if last else "The app has been ended."
+        return (
+            "The app has failed; the server's terminal tells more."
+            if last
+            else "The app has been ended."
+        )
 
     async def stop(self) -> None:
         """End the app and everything it has started, at once if it does not end by itself."""

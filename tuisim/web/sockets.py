@@ -18,7 +18,9 @@ async def close(socket: web.WebSocketResponse, reason: str, code: int = WSCloseC
     await socket.close(code=code, message=text.encode())
 
 
-async def sent(socket: web.WebSocketResponse, send: Callable[[_Data], Awaitable[None]], data: _Data) -> bool:
+async def sent(
+    socket: web.WebSocketResponse, send: Callable[[_Data], Awaitable[None]], data: _Data
+) -> bool:
     """Send to a browser that may have gone. Return whether it was there."""
     if socket.closed:
         return False

@@ -86,10 +86,16 @@ def app_of(student: StudentLink, handed: Handed, *, isolated: bool) -> tuple[lis
     """
     for file in handed.copied:
         _give(file, student.folder / file.name)
-    command = app_command(handed.words, LIMITS + (_MOST_TASKS if isolated and _counts_alone() else "") + _NICE)
+    command = app_command(
+        handed.words, LIMITS + (_MOST_TASKS if isolated and _counts_alone() else "") + _NICE
+    )
     if isolated:
         readable = [backgrounds_folder(), programs_folder(), *handed.read]
-        command = [*confined(student.folder, [student.home, student.folder], readable), "--", *command]
+        command = [
+            *confined(student.folder, [student.home, student.folder], readable),
+            "--",
+            *command,
+        ]
     passed_on = {name: os.environ[name] for name in _PASSED_ON if name in os.environ}
     own = {"HOME": str(student.folder), "TUISIM_HOME": str(student.home)}
     return command, Place(student.folder, passed_on | own)

@@ -19,8 +19,17 @@ def keep_file(folder: Path, name: str, data: bytes) -> Path:
         ConfigError: the name is no plain one, or the file cannot be written.
     """
     # Hidden files are settings of other programs.
-    if not name.isprintable() or set("/\\") & set(name) or name.startswith(".") or not 0 < len(name) <= _LONGEST_NAME:
-        raise ConfigError(f"no name for a file: {name!r}", "letters, digits and a suffix, such as lab.py", key="name")
+    if (
+        not name.isprintable()
+        or set("/\\") & set(name)
+        or name.startswith(".")
+        or not 0 < len(name) <= _LONGEST_NAME
+    ):
+        raise ConfigError(
+            f"no name for a file: {name!r}",
+            "letters, digits and a suffix, such as lab.py",
+            key="name",
+        )
     stem, suffix = Path(name).stem, Path(name).suffix
     for number in count(1):
         path = folder / (name if number == 1 else f"{stem}-{number}{suffix}")
@@ -32,5 +41,7 @@ def keep_file(folder: Path, name: str, data: bytes) -> Path:
             if path.is_file() and not path.is_symlink() and path.read_bytes() == data:
                 return path
         except OSError as error:
-            raise ConfigError(f"cannot be written: {error.strerror or error}", file=str(path)) from error
+            raise ConfigError(
+                f"cannot be written: {error.strerror or error}", file=str(path)
+            ) from error
     raise AssertionError

@@ -33,7 +33,9 @@ class Usage:
     def exceeded(self) -> str:
         """Which limit is exceeded, as a sentence; empty if none is."""
         if self.memory_bytes > MOST_MEMORY_BYTES:
-            return f"The session has ended: it took more than {MOST_MEMORY_BYTES >> 30} GiB of memory."
+            return (
+                f"The session has ended: it took more than {MOST_MEMORY_BYTES >> 30} GiB of memory."
+            )
         if self.processes > MOST_PROCESSES:
             return f"The session has ended: it had more than {MOST_PROCESSES} processes."
         if self.threads > MOST_THREADS:
@@ -83,7 +85,10 @@ def files_exceeded(folders: Iterable[Path]) -> str:
                 for entry in entries:
                     # Programs write there: what is gone takes no space.
                     with suppress(FileNotFoundError):
-                        files, size = files + 1, size + _BLOCK_BYTES * entry.stat(follow_symlinks=False).st_blocks
+                        files, size = (
+                            files + 1,
+                            size + _BLOCK_BYTES * entry.stat(follow_symlinks=False).st_blocks,
+                        )
                     if entry.is_dir(follow_symlinks=False):
                         left.append(entry.path)
         except OSError as error:

@@ -25,7 +25,9 @@ _LONGEST_S = 86400.0
 _LARGEST_SIZE = 1000
 _MOST_PANELS, _LONGEST_NAME = 50, 50
 """What an app tells of its panels is not trusted."""
-_ANSWER = re.compile(r"\x1b(\[[\d;]*[cnRt]|\[[?>=][\d;:]*\$?[A-Za-z]|[P_\]^][^\x07\x1b]*(\x07|\x1b\\))")
+_ANSWER = re.compile(
+    r"\x1b(\[[\d;]*[cnRt]|\[[?>=][\d;:]*\$?[A-Za-z]|[P_\]^][^\x07\x1b]*(\x07|\x1b\\))"
+)
 """What a terminal sends by itself: reports of its cursor, size, modes, colours and name."""
 
 
@@ -142,7 +144,9 @@ class Visit:
     async def take(self, socket: web.WebSocketResponse) -> None:
         """Let a browser show the app from now on, which has not begun yet or is asked to draw everything."""
         self._is_watched()
-        await self._link.take(socket, json.dumps(["session", self.id]), "Another tab has taken this session over.")
+        await self._link.take(
+            socket, json.dumps(["session", self.id]), "Another tab has taken this session over."
+        )
         if self._link.watchers:
             await self._tell_watched()
         if self._panels:
@@ -207,7 +211,9 @@ class Visit:
         finally:
             if self._link.leave(socket):
                 self._left = asyncio.get_running_loop().call_later(
-                    min(self._limits.keep_s, _LONGEST_S), self.end, "No tab has shown this session for too long."
+                    min(self._limits.keep_s, _LONGEST_S),
+                    self.end,
+                    "No tab has shown this session for too long.",
                 )
 
     async def open_file(self, path: Path) -> None:
@@ -257,7 +263,9 @@ class Visit:
         while (left_s := self._limits.idle_s - self._activity.idle_s) > 0:
             await asyncio.sleep(min(left_s, _LONGEST_S))
         minutes = f"{self._limits.idle_s / 60:g}"
-        return f"The session has ended after {minutes} minute{'s' * (minutes != '1')} without input."
+        return (
+            f"The session has ended after {minutes} minute{'s' * (minutes != '1')} without input."
+        )
 
     async def _take(self, data: str) -> None:
         """Handle one message of the page; what no page sends is ignored."""

@@ -39,11 +39,16 @@ async def test_every_panels_key_shows_and_hides_it() -> None:
 @pytest.mark.slow
 async def test_a_panel_that_its_key_opens_takes_the_focus_and_gives_it_back() -> None:
     panels = PANELS.keys() - {"world", "output"}
-    async with LabApp(settings(LOGS, panels_off=frozenset(panels))).run_test(size=(120, 40)) as pilot:
+    async with LabApp(settings(LOGS, panels_off=frozenset(panels))).run_test(
+        size=(120, 40)
+    ) as pilot:
         app = await ready(pilot)
 
         def has_focus(panel: str) -> bool:
-            return app.focused is not None and app.panel_area.panels[panel] in app.focused.ancestors_with_self
+            return (
+                app.focused is not None
+                and app.panel_area.panels[panel] in app.focused.ancestors_with_self
+            )
 
         for panel in panels:
             await pilot.press(PANELS[panel].key)
@@ -75,7 +80,10 @@ async def test_help_has_as_many_columns_as_there_is_room_for() -> None:
 
         def top() -> str:
             """The row in which each column begins with the name of a group."""
-            return next((row for row in screen_text(app).split("\n") if re.search(r" {3}Program  ", row)), "")
+            return next(
+                (row for row in screen_text(app).split("\n") if re.search(r" {3}Program  ", row)),
+                "",
+            )
 
         def has_columns(count: int) -> bool:
             return sum(f" {group}  " in top() for group in groups) == count
@@ -92,18 +100,25 @@ async def test_a_panel_without_room_takes_the_place_of_another() -> None:
     async with LabApp(settings(LOGS)).run_test(size=(80, 24)) as pilot:
         app = await ready(pilot)
         await pilot.press("X", "H")
-        assert all(app.panel_area.shown(panel) for panel in ("instrumentation", "output", "positioning", "controls"))
+        assert all(
+            app.panel_area.shown(panel)
+            for panel in ("instrumentation", "output", "positioning", "controls")
+        )
         await pilot.press("c")
         assert app.panel_area.shown("chart")
         assert not app.panel_area.shown("instrumentation")
-        assert "Chart replaces Instrumentation (i), Output (O), Simulator controls (H)" in notices(app)
+        assert "Chart replaces Instrumentation (i), Output (O), Simulator controls (H)" in notices(
+            app
+        )
         await pilot.press("c")
         assert app.panel_area.shown("instrumentation")
 
 
 @pytest.mark.slow
 async def test_switched_off_stays_off_in_every_size() -> None:
-    off = settings(LOGS, panels_off=frozenset({"world"}), panels_on=frozenset({"arrays", "no such panel"}))
+    off = settings(
+        LOGS, panels_off=frozenset({"world"}), panels_on=frozenset({"arrays", "no such panel"})
+    )
     async with LabApp(off).run_test(size=(80, 24)) as pilot:
         app = await ready(pilot)
         assert app.panel_area.shown("arrays")

@@ -31,7 +31,11 @@ with open(sys.argv[1], "a") as file:
     ("environment", "command"),
     [
         pytest.param({"EDITOR": "nano"}, ["nano"], id="EDITOR"),
-        pytest.param({"EDITOR": "nano", "VISUAL": "code --wait"}, ["code", "--wait"], id="VISUAL counts first"),
+        pytest.param(
+            {"EDITOR": "nano", "VISUAL": "code --wait"},
+            ["code", "--wait"],
+            id="VISUAL counts first",
+        ),
         pytest.param({"EDITOR": "nano", "VISUAL": " "}, ["nano"], id="an empty one does not count"),
         pytest.param({"EDITOR": "'my editor' -n"}, ["my editor", "-n"], id="quoted"),
     ],
@@ -41,25 +45,34 @@ def test_the_environment_names_the_editor(environment: dict[str, str], command: 
 
 
 @pytest.mark.parametrize(
-    ("environment", "problem"), [({}, "VISUAL and EDITOR are not set"), ({"EDITOR": "'nano"}, "EDITOR='nano: ")]
+    ("environment", "problem"),
+    [({}, "VISUAL and EDITOR are not set"), ({"EDITOR": "'nano"}, "EDITOR='nano: ")],
 )
 def test_without_an_editor_that_is_said(environment: dict[str, str], problem: str) -> None:
     with pytest.raises(TuisimError, match=problem):
         own_editor(environment)
 
 
-async def test_without_a_terminal_to_give_that_is_said(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+async def test_without_a_terminal_to_give_that_is_said(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setenv("VISUAL", "nano")
     async with LabApp(own(tmp_path / "prog.py", "a = 1\n")).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)
         await pilot.press("ctrl+e")
-        await until(pilot, lambda: any(one.startswith("nano needs a terminal") for one in notices(app)))
+        await until(
+            pilot, lambda: any(one.startswith("nano needs a terminal") for one in notices(app))
+        )
 
 
-async def test_unsaved_changes_are_saved_before(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+async def test_unsaved_changes_are_saved_before(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     path, opened = tmp_path / "prog.py", list[str]()
     monkeypatch.setenv("VISUAL", "nano")
-    monkeypatch.setattr(LabApp, "run_in_terminal", lambda app, command: opened.append(" ".join(command)))
+    monkeypatch.setattr(
+        LabApp, "run_in_terminal", lambda app, command: opened.append(" ".join(command))
+    )
     async with LabApp(own(path, "a = 1\n")).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)
         await pilot.press("d", "b", "escape", "ctrl+e")
@@ -71,7 +84,9 @@ async def test_unsaved_changes_are_saved_before(tmp_path: Path, monkeypatch: pyt
 async def test_of_an_example_a_copy_is_saved_first(monkeypatch: pytest.MonkeyPatch) -> None:
     opened = list[str]()
     monkeypatch.setenv("VISUAL", "nano")
-    monkeypatch.setattr(LabApp, "run_in_terminal", lambda app, command: opened.append(" ".join(command)))
+    monkeypatch.setattr(
+        LabApp, "run_in_terminal", lambda app, command: opened.append(" ".join(command))
+    )
     async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)
         await pilot.press("ctrl+e")

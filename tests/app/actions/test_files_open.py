@@ -23,7 +23,10 @@ async def test_opening_a_program_by_its_path(tmp_path: Path) -> None:
         entry.focus()
         entry.value = str(path)
         await pilot.press("enter")
-        await until(pilot, lambda: app.run_controller.mat is not None and app.run_controller.mat.name == "Square")
+        await until(
+            pilot,
+            lambda: app.run_controller.mat is not None and app.run_controller.mat.name == "Square",
+        )
         assert app.run_controller.program is not None
         assert app.run_controller.program.name == "mine.py"
         assert app.run_controller.pose.x_mm == 500

@@ -27,7 +27,12 @@ SIZES = [(80, 24), (120, 40), (200, 60)]
 async def test_first_picture(size: tuple[int, int]) -> None:
     async with LabApp(settings(LOGS)).run_test(size=size) as pilot:
         app = await ready(pilot)
-        await until(pilot, lambda: all(words in screen_text(app) for words in ("World", "Instrumentation", "R run")))
+        await until(
+            pilot,
+            lambda: all(
+                words in screen_text(app) for words in ("World", "Instrumentation", "R run")
+            ),
+        )
         assert screen_text(app).count("\n") == size[1] - 1
 
 
@@ -35,9 +40,14 @@ async def test_first_picture(size: tuple[int, int]) -> None:
 async def test_a_key_clears_the_log_as_shown_and_the_run_keeps_it() -> None:
     app = LabApp(settings(LOGS, panels_on=frozenset({"chart", "output"}), autorun=True, speed=0.0))
     async with app.run_test(size=(120, 40)) as pilot:
-        await until(pilot, lambda: "— finished" in screen_text(app) and "[x] Colour" in screen_text(app))
+        await until(
+            pilot, lambda: "— finished" in screen_text(app) and "[x] Colour" in screen_text(app)
+        )
         await pilot.press("x")
-        await until(pilot, lambda: "— finished" not in screen_text(app) and "Nothing logged" in screen_text(app))
+        await until(
+            pilot,
+            lambda: "— finished" not in screen_text(app) and "Nothing logged" in screen_text(app),
+        )
         recording = app.run_controller.timeline.recording
         assert "[x] Colour" not in screen_text(app)
         assert recording is not None
@@ -48,7 +58,10 @@ async def test_a_key_clears_the_log_as_shown_and_the_run_keeps_it() -> None:
 async def test_resize_there_and_back() -> None:
     async with LabApp(settings(LOGS)).run_test(size=(80, 24)) as pilot:
         app = await ready(pilot)
-        await until(pilot, lambda: all(words in screen_text(app) for words in ("White", "World: Grey_bands")))
+        await until(
+            pilot,
+            lambda: all(words in screen_text(app) for words in ("White", "World: Grey_bands")),
+        )
         before = screen_text(app)
         await pilot.resize_terminal(200, 60)
         await until(pilot, lambda: app.panel_area.shown("positioning"))
@@ -148,7 +161,12 @@ async def test_choosing_a_mat_lays_it_out_with_its_start() -> None:
         mats = app.screen.query_one(OptionList)
         mats.highlighted = mats.get_option_index("Lollipop")
         await pilot.press("enter")
-        await until(pilot, lambda: app.run_controller.mat is not None and app.run_controller.mat.name == "Lollipop")
+        await until(
+            pilot,
+            lambda: (
+                app.run_controller.mat is not None and app.run_controller.mat.name == "Lollipop"
+            ),
+        )
         assert app.run_controller.pose.heading_deg == -180
         assert app.run_controller.program is not None
 
@@ -160,7 +178,10 @@ def test_footer_fits_and_always_shows_help_palette_and_quit(width: int, state: R
     shown = fitting([action for action in ACTIONS.values() if not action.why_not(now)], width, 9)
     assert [action.id for action in shown[-3:]] == ["help", "palette", "quit"]
     groups = len({action.group for action in shown})
-    assert sum(len(f" {a.footer_key or a.key_label} {a.footer}") for a in shown) + 2 * (groups - 1) <= width
+    assert (
+        sum(len(f" {a.footer_key or a.key_label} {a.footer}") for a in shown) + 2 * (groups - 1)
+        <= width
+    )
 
 
 def test_each_line_of_the_table_is_an_action() -> None:
@@ -174,9 +195,16 @@ def test_each_line_of_the_table_is_an_action() -> None:
 
 @pytest.mark.parametrize("table", [ACTIONS, ANALYSER_ACTIONS], ids=["app", "analyser"])
 def test_each_group_is_in_one_file_that_names_it(table: Mapping[str, Action[Any, Any]]) -> None:
-    functions = {(action.group, getattr(action.do, "func", action.do).__module__) for action in table.values()}
+    functions = {
+        (action.group, getattr(action.do, "func", action.do).__module__)
+        for action in table.values()
+    }
     # Methods of a screen, and the few functions in the table's file, are in no group's file.
-    pairs = {(group, name) for group, name in functions if ".actions." in name and not name.endswith(".keys")}
+    pairs = {
+        (group, name)
+        for group, name in functions
+        if ".actions." in name and not name.endswith(".keys")
+    }
     assert len({group for group, _ in pairs}) == len(pairs)
     assert [pair for pair in pairs if pair[0] not in (sys.modules[pair[1]].__doc__ or "")] == []
 
@@ -188,7 +216,14 @@ def test_keys_differ() -> None:
 
 def test_in_the_past_the_footer_begins_with_the_ways_out() -> None:
     shown = fitting(
-        [ACTIONS[one] for one in working(Situation(RunPhase.PAUSED, True, True, in_past=True, looks_back=True))], 80, 9
+        [
+            ACTIONS[one]
+            for one in working(
+                Situation(RunPhase.PAUSED, True, True, in_past=True, looks_back=True)
+            )
+        ],
+        80,
+        9,
     )
     assert [action.id for action in shown[:2]] == ["now", "branch"]
 

@@ -26,10 +26,16 @@ pytestmark = pytest.mark.usefixtures("home")
 
 
 @pytest.mark.parametrize("width", [80, 100, 120])
-@pytest.mark.parametrize(("reads_code", "keys"), [(False, {"R", "l", "e", "c"}), (True, {"R", "l", "c", "d"})])
-def test_after_a_run_the_next_steps_of_a_student_come_first(width: int, reads_code: bool, keys: set[str]) -> None:
+@pytest.mark.parametrize(
+    ("reads_code", "keys"), [(False, {"R", "l", "e", "c"}), (True, {"R", "l", "c", "d"})]
+)
+def test_after_a_run_the_next_steps_of_a_student_come_first(
+    width: int, reads_code: bool, keys: set[str]
+) -> None:
     status = " time limit max "
-    names = working(Situation(RunPhase.ENDED, has_program=True, has_run=True, reads_code=reads_code))
+    names = working(
+        Situation(RunPhase.ENDED, has_program=True, has_run=True, reads_code=reads_code)
+    )
     shown = fitting([ACTIONS[name] for name in names], width - len(status), 9)
     assert shown[0].key == "R"
     assert keys < {action.key for action in shown}
@@ -37,7 +43,9 @@ def test_after_a_run_the_next_steps_of_a_student_come_first(width: int, reads_co
 
 @pytest.mark.slow
 async def test_the_footer_of_the_analyser_offers_what_works_and_a_click_runs_it() -> None:
-    run = start_run(program("print('no sample')\n"), build_run_spec(Settings()), RunOptions(speed=0.0))
+    run = start_run(
+        program("print('no sample')\n"), build_run_spec(Settings()), RunOptions(speed=0.0)
+    )
     run.wait()
     async with AnalyserApp(LogRequest(runs=(run.run_id,))).run_test(size=(120, 40)) as pilot:
         # Such a run opens as telemetry, whose rows take notes; its log has none.
@@ -60,7 +68,9 @@ async def test_the_state_of_a_run_that_failed_is_a_warning() -> None:
 
         def said() -> list[object]:
             pieces = (piece for row in app.screen._compositor.render_strips() for piece in row)
-            return [one.style.color for one in pieces if one.style and one.text.split()[:1] == ["error"]]
+            return [
+                one.style.color for one in pieces if one.style and one.text.split()[:1] == ["error"]
+            ]
 
         # In the footer, the instrumentation and the simulator controls.
         await until(pilot, lambda: len(said()) == 3)
@@ -73,7 +83,9 @@ def last_line(pilot: Pilot[Any]) -> str:
 
 @pytest.mark.slow
 async def test_letters_that_are_typed_are_not_offered_as_keys() -> None:
-    async with LabApp(settings(LOGS, panels_on=frozenset({"code"}))).run_test(size=(120, 40)) as pilot:
+    async with LabApp(settings(LOGS, panels_on=frozenset({"code"}))).run_test(
+        size=(120, 40)
+    ) as pilot:
         await ready(pilot)
         await until(pilot, lambda: "R run" in last_line(pilot))
         await pilot.press("d")
@@ -103,7 +115,9 @@ PAUSE_WORDS = {
 
 @pytest.mark.parametrize(("now", "playing", "word"), PAUSE_WORDS.values(), ids=PAUSE_WORDS)
 def test_the_pause_key_says_what_it_does_now(now: Situation, playing: bool, word: str) -> None:
-    (pause,) = [one for one in footer_actions(ACTIONS, working(now), now, playing) if one.id == "pause"]
+    (pause,) = [
+        one for one in footer_actions(ACTIONS, working(now), now, playing) if one.id == "pause"
+    ]
     assert pause.footer == word
 
 
@@ -116,7 +130,9 @@ async def test_a_field_for_numbers_names_the_letters_that_are_keys() -> None:
         assert last_line(pilot).rstrip().split("q quit")[0].endswith("? help ")
 
 
-@pytest.mark.parametrize(("key", "own"), [("c", "← → cursor 1…9 traces"), ("Z", "↑ ↓ fields ← → choices")])
+@pytest.mark.parametrize(
+    ("key", "own"), [("c", "← → cursor 1…9 traces"), ("Z", "↑ ↓ fields ← → choices")]
+)
 async def test_the_keys_of_the_panel_with_the_focus_come_first(key: str, own: str) -> None:
     async with LabApp(settings("x = 1\n")).run_test(size=(80, 24)) as pilot:
         await ready(pilot)
@@ -143,8 +159,12 @@ async def test_under_a_dialog_the_footer_names_only_keys_that_work_in_it(key: st
 async def test_the_footer_names_the_answers_to_a_question() -> None:
     async with LabApp(settings("x = 1\n")).run_test(size=(80, 24)) as pilot:
         app = await ready(pilot)
-        await app.push_screen(Question("Unsaved changes", "", (("s", "Save them"), ("d", "Discard them"))))
-        await until(pilot, lambda: last_line(pilot).startswith(" s save them d discard them esc close "))
+        await app.push_screen(
+            Question("Unsaved changes", "", (("s", "Save them"), ("d", "Discard them")))
+        )
+        await until(
+            pilot, lambda: last_line(pilot).startswith(" s save them d discard them esc close ")
+        )
 
 
 async def test_letters_are_no_keys_of_a_dialog_while_its_field_has_the_focus() -> None:

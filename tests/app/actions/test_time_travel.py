@@ -73,7 +73,9 @@ async def test_the_robot_stays_where_it_is_put_while_a_line_holds_the_run() -> N
         assert (now.instant.noise, now.pen_down, now.gyro_deg) == (NoiseSpec(20, 0), True, 0)
         # Another line, and still the same tick: nothing has been done yet.
         await pilot.press("n")
-        await until(pilot, lambda: app.debugger.view is not None and app.debugger.view.paused.line == 5)
+        await until(
+            pilot, lambda: app.debugger.view is not None and app.debugger.view.paused.line == 5
+        )
         assert app.run_controller.timeline.newest == tick
         assert app.run_controller.pose.y_mm == start.y_mm + 20
         await pilot.press("full_stop")
@@ -81,7 +83,9 @@ async def test_the_robot_stays_where_it_is_put_while_a_line_holds_the_run() -> N
         recording = app.run_controller.timeline.recording
         assert recording is not None
         kinds = ["set_noise", *["set_pose"] * 3, *["set_pen"] * 3]
-        assert [(one.tick, one.command.kind) for one in recording.actions()] == [(tick, kind) for kind in kinds]
+        assert [(one.tick, one.command.kind) for one in recording.actions()] == [
+            (tick, kind) for kind in kinds
+        ]
         assert app.run_controller.pose == Pose(start.x_mm + 10, start.y_mm + 20, start.heading_deg)
         await pilot.press("S")
         await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED)
@@ -100,7 +104,10 @@ async def noisy_past(pilot: Pilot[Any]) -> LabApp:
     app.run_controller.set_noise(NoiseSpec(10, 0))
     await until(
         pilot,
-        lambda: app.run_controller.snapshot().instant.noise.light == 10 and app.run_controller.timeline.newest > 60,
+        lambda: (
+            app.run_controller.snapshot().instant.noise.light == 10
+            and app.run_controller.timeline.newest > 60
+        ),
     )
     to_tick(app.context, 10)
     await until(pilot, lambda: light(app) == 0)
@@ -121,7 +128,9 @@ def noises(app: LabApp) -> list[int]:
 @pytest.mark.slow
 async def test_noise_of_the_past_is_asked_about_once_and_set_once() -> None:
     shown = frozenset({"noise"})
-    async with LabApp(settings(STEPS, autorun=True, speed=8.0, panels_on=shown)).run_test(size=(120, 40)) as pilot:
+    async with LabApp(settings(STEPS, autorun=True, speed=8.0, panels_on=shown)).run_test(
+        size=(120, 40)
+    ) as pilot:
         app = await noisy_past(pilot)
         await pilot.mouse_down("#light", offset=(0, 0))
         await pilot.hover("#light", offset=(4, 0))
@@ -151,7 +160,10 @@ async def test_noise_of_the_past_is_asked_about_once_and_set_once() -> None:
         await pilot.press("y")
         await until(
             pilot,
-            lambda: len(app.screen_stack) == 1 and app.run_controller.state in (RunPhase.RUNNING, RunPhase.PAUSED),
+            lambda: (
+                len(app.screen_stack) == 1
+                and app.run_controller.state in (RunPhase.RUNNING, RunPhase.PAUSED)
+            ),
         )
         await until(pilot, lambda: noises(app) == [30])
         field.focus()
@@ -186,7 +198,9 @@ async def test_lines_back_add_up_and_the_end_key_comes_back_from_a_line_of_the_s
             await pilot.press("n")
             await until(pilot, partial(at_line, app, line))
             # The panels are there from the first line on.
-            await until(pilot, lambda: app.panel_area.shown("code") and app.panel_area.shown("debug"))
+            await until(
+                pilot, lambda: app.panel_area.shown("code") and app.panel_area.shown("debug")
+            )
         await pilot.press("N", "N", "n")
         await until(pilot, lambda: at_line(app, 2) and not app.debugger.busy)
         await until(pilot, lambda: "past 0.00 s" in screen_text(app))
@@ -207,7 +221,9 @@ def at_line(app: LabApp, line: int) -> bool:
 
 
 async def test_what_is_changed_for_the_next_run_is_seen_also_from_the_past() -> None:
-    async with LabApp(settings(LINES + "tank_drive.on_for_seconds(50, 50, 1)\n", speed=0.0)).run_test() as pilot:
+    async with LabApp(
+        settings(LINES + "tank_drive.on_for_seconds(50, 50, 1)\n", speed=0.0)
+    ).run_test() as pilot:
         app = await ready(pilot)
         await pilot.press("R")
         await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED)
@@ -229,16 +245,22 @@ async def test_a_sample_clicked_in_the_chart_is_found_in_the_code() -> None:
         await until(pilot, lambda: app.run_controller.in_past)
         clicked = app.run_controller.snapshot()
         await pilot.press("comma")
-        await until(pilot, lambda: app.run_controller.snapshot().instant.tick < clicked.instant.tick)
+        await until(
+            pilot, lambda: app.run_controller.snapshot().instant.tick < clicked.instant.tick
+        )
 
         assert clicked.line == 5
         assert app.run_controller.snapshot().line == 4
 
 
-async def test_a_line_of_a_module_beside_the_program_is_shown(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+async def test_a_line_of_a_module_beside_the_program_is_shown(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.chdir(tmp_path)
     Path("helper.py").write_text("def turn(by):\n    return by + 1\n")
-    async with LabApp(settings("from helper import turn\nturn(1)\n")).run_test(size=(120, 40)) as pilot:
+    async with LabApp(settings("from helper import turn\nturn(1)\n")).run_test(
+        size=(120, 40)
+    ) as pilot:
         app = await ready(pilot)
         for line in (1, 2):
             await pilot.press("n")
@@ -282,7 +304,10 @@ async def test_go_to_proposes_no_change_at_the_edge_of_the_mat(home: object) -> 
     program = "# %%sim_magic_preloaded -b Grey_bands\ntank_drive.on_for_seconds(100, 100, 6)\n"
     async with run_over_bands(program) as (pilot, app):
         recording = app.run_controller.timeline.recording
-        assert recording is not None and recording.telemetry.record(recording.newest).x_mm > FIELD_WIDTH_MM
+        assert (
+            recording is not None
+            and recording.telemetry.record(recording.newest).x_mm > FIELD_WIDTH_MM
+        )
         await pilot.press("g", "enter")
         at = app.run_controller.timeline.at
         assert at is not None and recording.telemetry.record(at).x_mm < FIELD_WIDTH_MM - 200

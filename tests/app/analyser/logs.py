@@ -13,7 +13,14 @@ from tuisim.logs.log import Log
 
 def long_log(runs: int = 1) -> Log:
     """Two variables, ten samples each, of every run; the value of `Colour` falls from 90 to 0, `Left` rises."""
-    rows: dict[str, list[object]] = {"variable": [], "value": [], "time": [], "run": [], "x_mm": [], "y_mm": []}
+    rows: dict[str, list[object]] = {
+        "variable": [],
+        "value": [],
+        "time": [],
+        "run": [],
+        "x_mm": [],
+        "y_mm": [],
+    }
     for run in range(1, runs + 1):
         for at in range(10):
             for name, value in (("Colour", 90.0 - 10 * at), ("Left", float(at))):

@@ -20,7 +20,13 @@ def test_from_a_run_to_the_bands_to_a_note(terminal: Terminal, home: Path) -> No
     terminal.keys("l")
     terminal.until(lambda text: "[x] Colour" in text and "b bands" in text.splitlines()[-1])
     terminal.keys("b")
-    levels = ("100.00  white", "86.27  pale grey", "82.75  light grey", "50.20  grey", "0.00  black")
+    levels = (
+        "100.00  white",
+        "86.27  pale grey",
+        "82.75  light grey",
+        "50.20  grey",
+        "0.00  black",
+    )
     terminal.until(lambda text: all(words in text for words in ("5 levels", *levels)))
     terminal.keys("Down", "m")
     terminal.until(lambda text: "Note on Colour" in text)

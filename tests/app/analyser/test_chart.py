@@ -22,13 +22,19 @@ from tuisim.terminal.queries import TerminalAnswered, facts_in
 @pytest.mark.quick_cases("kitty-one chart")
 @pytest.mark.parametrize("facets", [False, True], ids=["one chart", "facets"])
 @pytest.mark.parametrize("protocol", Protocol)
-async def test_the_charts_of_the_analyser_are_what_was_drawn(protocol: Protocol, facets: bool, tmp_path: Path) -> None:
+async def test_the_charts_of_the_analyser_are_what_was_drawn(
+    protocol: Protocol, facets: bool, tmp_path: Path
+) -> None:
     file = tmp_path / "waves.csv"
     file.write_text(
-        "time,Sine,Steps\n" + "".join(f"{at},{np.sin(at / 9):.4f},{at // 20}\n" for at in range(200)), "utf-8"
+        "time,Sine,Steps\n"
+        + "".join(f"{at},{np.sin(at / 9):.4f},{at // 20}\n" for at in range(200)),
+        "utf-8",
     )
     async with on_wire(AnalyserApp(LogRequest(str(file))), "truecolor") as pilot:
-        await until(pilot, lambda: isinstance(pilot.app.screen, Analyser) and pilot.app.screen.is_open)
+        await until(
+            pilot, lambda: isinstance(pilot.app.screen, Analyser) and pilot.app.screen.is_open
+        )
         chart = pilot.app.screen.query_one(LogChart)
         chart.options.facets = facets
         pilot.app.post_message(TerminalAnswered(facts_in(ANSWERS[protocol])))
@@ -40,4 +46,6 @@ async def test_the_charts_of_the_analyser_are_what_was_drawn(protocol: Protocol,
         assert len(chart._pictures) == 1 + facets
         for rgb in TRACE_COLORS[:2]:
             # Channels of sixel are percentages.
-            assert (np.abs(on_canvas(view, drawn).astype(int) - rgb) < 3).all(axis=2).sum() > 100, rgb
+            assert (np.abs(on_canvas(view, drawn).astype(int) - rgb) < 3).all(axis=2).sum() > 100, (
+                rgb
+            )

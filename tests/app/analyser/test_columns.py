@@ -19,7 +19,9 @@ from tuisim.logs.reader import open_log
 def foreign(tmp_path: Path) -> Path:
     """A table whose names do not tell what is time."""
     path = tmp_path / "foreign.csv"
-    path.write_text("boot;id;light;far\n" + "".join(f"{20 * n};7;{n % 5};{300 + n}\n" for n in range(50)))
+    path.write_text(
+        "boot;id;light;far\n" + "".join(f"{20 * n};7;{n % 5};{300 + n}\n" for n in range(50))
+    )
     return path
 
 
@@ -58,7 +60,11 @@ async def test_a_doubtful_table_is_asked_about_and_drawn_as_told(foreign: Path) 
         await pilot.press("t", "u", "down", "space", "enter")
         await until(pilot, lambda: pilot.app.screen is screen)
         log = screen.model.log
-        assert (log.layout.time, log.layout.values, log.layout.unit_s) == ("boot", ("light", "far"), 1e-3)
+        assert (log.layout.time, log.layout.values, log.layout.unit_s) == (
+            "boot",
+            ("light", "far"),
+            1e-3,
+        )
         assert log.series("far").time_s[-1] == pytest.approx(0.98)
         # Where no robot was, the log has all the room.
         assert not screen.world.display
@@ -84,7 +90,9 @@ async def test_the_guess_may_stay(leave: str, foreign: Path) -> None:
 async def test_what_was_named_in_the_shell_is_not_asked_about(foreign: Path) -> None:
     wanted = LogRequest(str(foreign), time="boot", values=("light",), unit="ms")
     async with AnalyserApp(wanted).run_test(size=(80, 24)) as pilot:
-        await until(pilot, lambda: isinstance(pilot.app.screen, Analyser) and pilot.app.screen.is_open)
+        await until(
+            pilot, lambda: isinstance(pilot.app.screen, Analyser) and pilot.app.screen.is_open
+        )
         screen = pilot.app.screen
         assert isinstance(screen, Analyser)
         assert screen.model.log.series("light").time_s[1] == pytest.approx(0.02)

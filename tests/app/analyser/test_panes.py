@@ -32,8 +32,13 @@ def test_of_many_bands_those_around_the_chosen_one_are_shown() -> None:
 
 
 def test_few_bands_are_all_in_sight_with_their_statistics_in_a_small_terminal() -> None:
-    table = pa.table({**dict(zip(("time", "Colour"), stepped(80, 10).columns, strict=True)), "x_mm": np.arange(80.0),
-                      "y_mm": np.zeros(80)})  # fmt: skip
+    table = pa.table(
+        {
+            **dict(zip(("time", "Colour"), stepped(80, 10).columns, strict=True)),
+            "x_mm": np.arange(80.0),
+            "y_mm": np.zeros(80),
+        }
+    )
     model = model_of(Log("test", table, guess_columns(table)))
     for trace in model.traces:
         trace.on = trace.name == "Colour"
@@ -54,7 +59,9 @@ def test_few_bands_are_all_in_sight_with_their_statistics_in_a_small_terminal() 
         ((100, 9), ["variable count min mean max std 5 % 25 % 50 % 75 % 95 %"]),
     ],
 )
-def test_figures_that_do_not_fit_beside_the_others_are_below_them(size: tuple[int, int], heads: list[str]) -> None:
+def test_figures_that_do_not_fit_beside_the_others_are_below_them(
+    size: tuple[int, int], heads: list[str]
+) -> None:
     table = stepped(80, 10)
     model = model_of(Log("test", table, guess_columns(table)))
     lines = text_of(model, "statistics", *size).splitlines()
@@ -77,7 +84,9 @@ def text_of(model: Model, pane: str = "table", width: int = 100, height: int = 3
 
 
 def test_a_row_without_the_name_of_its_variable_is_shown_all_the_same() -> None:
-    table = pa.table({"variable": ["A", None, "A"], "value": [1.0, 2.0, 3.0], "time": [0.0, 1.0, 2.0]})
+    table = pa.table(
+        {"variable": ["A", None, "A"], "value": [1.0, 2.0, 3.0], "time": [0.0, 1.0, 2.0]}
+    )
     model = model_of(Log("test", table, guess_columns(table)))
     model.go_to_row(1)
     assert (model.trace_of_row(1).name, model.cursor_s) == ("A", 2.0)

@@ -53,7 +53,10 @@ async def opened(pilot: Pilot[Any]) -> tuple[Analyser, Model]:
 
 
 def text_of(pilot: Pilot[Any]) -> str:
-    return "\n".join("".join(part.text for part in strip) for strip in pilot.app.screen._compositor.render_strips())
+    return "\n".join(
+        "".join(part.text for part in strip)
+        for strip in pilot.app.screen._compositor.render_strips()
+    )
 
 
 @pytest.mark.slow_cases("(200, 60)")
@@ -63,7 +66,10 @@ async def test_everything_is_on_the_first_screen(run: StoredRun, size: tuple[int
         await opened(pilot)
         await until(pilot, lambda: "print('Colour" in text_of(pilot))
         text = text_of(pilot)
-        assert all(word in text for word in ("Chart", "[x] Colour", "[Table]", "World", "variable", "? help"))
+        assert all(
+            word in text
+            for word in ("Chart", "[x] Colour", "[Table]", "World", "variable", "? help")
+        )
         assert ("Sensor arrays" in text) is (size[1] > 30)
 
 
@@ -148,7 +154,9 @@ async def test_the_bands_as_shown_are_exported(run: StoredRun, tmp_path: Path) -
         assert frame["variable"].unique().tolist() == ["Colour"]
 
 
-@pytest.mark.parametrize(("size", "words"), [((80, 20), "row 2 of 8"), ((80, 24), "")], ids=["too many", "all fit"])
+@pytest.mark.parametrize(
+    ("size", "words"), [((80, 20), "row 2 of 8"), ((80, 24), "")], ids=["too many", "all fit"]
+)
 async def test_a_pane_tells_which_row_is_selected_where_not_all_fit(
     run: StoredRun, size: tuple[int, int], words: str
 ) -> None:
@@ -164,7 +172,9 @@ async def test_a_pane_tells_which_row_is_selected_where_not_all_fit(
 
 @pytest.mark.slow
 async def test_runs_to_open_are_listed_and_several_may_be_marked(run: StoredRun) -> None:
-    handle = start_run(program("print('Colour: 7')\n"), build_run_spec(Settings()), RunOptions(speed=0.0))
+    handle = start_run(
+        program("print('Colour: 7')\n"), build_run_spec(Settings()), RunOptions(speed=0.0)
+    )
     handle.wait()
     async with AnalyserApp(LogRequest(runs=(run.id,))).run_test(size=(80, 24)) as pilot:
         screen, _ = await opened(pilot)
@@ -182,7 +192,9 @@ async def test_runs_to_open_are_listed_and_several_may_be_marked(run: StoredRun)
 
 
 async def test_the_source_shows_a_magic_line_that_is_no_comment() -> None:
-    text = parse_program("%%sim_magic_preloaded -b Grey_bands\nprint('Colour: 7')\n", "prog.py").program.text
+    text = parse_program(
+        "%%sim_magic_preloaded -b Grey_bands\nprint('Colour: 7')\n", "prog.py"
+    ).program.text
     handle = start_run(program(text), build_run_spec(Settings()), RunOptions(speed=0.0))
     handle.wait()
     async with AnalyserApp(LogRequest(runs=(handle.run_id,))).run_test(size=(120, 40)) as pilot:
@@ -227,12 +239,29 @@ STEPS: list[tuple[list[str], Callable[[Analyser, Model], bool]]] = [
     (["F", "=value<90", "enter"], lambda _, model: filtered(model)),
     (["U"], lambda _, model: len(model.rows) == model.log.rows),
     (["F", "=x", "enter", "escape"], lambda _, model: len(model.rows) == model.log.rows),
-    ([">", "o", "o"], lambda _, model: (model.rows.view.sorted_by, model.rows.view.descending) == ("variable", True)),
-    (["U", "slash", "=82.7", "enter"], lambda _, model: model.rows.text(model.row, "value").startswith("82.7")),
+    (
+        [">", "o", "o"],
+        lambda _, model: (
+            (model.rows.view.sorted_by, model.rows.view.descending) == ("variable", True)
+        ),
+    ),
+    (
+        ["U", "slash", "=82.7", "enter"],
+        lambda _, model: model.rows.text(model.row, "value").startswith("82.7"),
+    ),
     (["space"], lambda _, model: not model.traces.ticked()),
-    (["space", "x", "X", "H"], lambda screen, _: screen.chart.options.facets and screen.chart.options.hold),
-    (["k", "=y_mm against x_mm", "enter"], lambda screen, _: screen.chart.options.against == ("x_mm", "y_mm")),
-    (["k", "=q", "enter", "escape"], lambda screen, _: screen.chart.options.against == ("x_mm", "y_mm")),
+    (
+        ["space", "x", "X", "H"],
+        lambda screen, _: screen.chart.options.facets and screen.chart.options.hold,
+    ),
+    (
+        ["k", "=y_mm against x_mm", "enter"],
+        lambda screen, _: screen.chart.options.against == ("x_mm", "y_mm"),
+    ),
+    (
+        ["k", "=q", "enter", "escape"],
+        lambda screen, _: screen.chart.options.against == ("x_mm", "y_mm"),
+    ),
     (["k", "=", "enter"], lambda screen, _: screen.chart.options.against is None),
     (["A", "=distance", "enter"], lambda _, model: model.alignment == "distance"),
     (["home", ">", ">", "y"], lambda screen, _: screen.app.clipboard == "100"),
@@ -254,7 +283,9 @@ async def test_what_the_keys_do(run: StoredRun) -> None:
 
 
 @pytest.mark.slow
-async def test_every_action_does_no_harm_to_an_empty_log(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+async def test_every_action_does_no_harm_to_an_empty_log(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     # A screenshot is saved where one is.
     monkeypatch.chdir(tmp_path)
     spec = build_run_spec(Settings())
@@ -305,7 +336,10 @@ async def test_how_a_file_was_read_is_said_once(tmp_path: Path) -> None:
         await until(pilot, lambda: screen.model.opened.done)
         await pilot.pause()
         said = [str(notice.message) for notice in pilot.app._notifications]
-        assert said == [*screen.model.log.notes] and "3 numbers: they are read as one column" in said[0]
+        assert (
+            said == [*screen.model.log.notes]
+            and "3 numbers: they are read as one column" in said[0]
+        )
 
 
 async def test_what_cannot_be_opened_ends_the_app_with_the_reason(tmp_path: Path) -> None:
@@ -318,7 +352,9 @@ async def test_what_cannot_be_opened_ends_the_app_with_the_reason(tmp_path: Path
 @pytest.mark.slow
 async def test_the_lab_below_hears_no_key(run: StoredRun) -> None:
     spec = build_run_spec(Settings({"background": "Grey_bands"}))
-    async with LabApp(AppSettings(spec=spec, program=program(LOGS))).run_test(size=(120, 40)) as pilot:
+    async with LabApp(AppSettings(spec=spec, program=program(LOGS))).run_test(
+        size=(120, 40)
+    ) as pilot:
         lab = await ready(pilot)
         below, pose = lab.screen, lab.run_controller.snapshot().instant.pose
         analyser = Analyser(LogRequest(runs=(run.id,)))

@@ -20,13 +20,19 @@ from tuisim.runs.run_folder import StoredRun
 from tuisim.runs.store import RunStore
 
 SPEC = RunSpec(RobotSpec(), WorldSpec(start=Pose(300, 500, 0)), ROBOLAB)
-POSES: dict[str, list[float | None]] = {"x_mm": [1.0, 2.0], "y_mm": [3.0, 4.0], "heading_deg": [5.0, None]}
+POSES: dict[str, list[float | None]] = {
+    "x_mm": [1.0, 2.0],
+    "y_mm": [3.0, 4.0],
+    "heading_deg": [5.0, None],
+}
 
 
 def opened(metadata: dict[str, object], **columns: list[float | None]) -> OpenedLog:
     """A file with metadata."""
     table = pa.table({"time": [0.0, 1.0], "light": [1.0, 2.0], **columns})
-    return OpenedLog(LogRequest(file="a.csv"), Log("a.csv", table, guess_columns(table), metadata=metadata))
+    return OpenedLog(
+        LogRequest(file="a.csv"), Log("a.csv", table, guess_columns(table), metadata=metadata)
+    )
 
 
 @pytest.fixture
@@ -57,12 +63,17 @@ def test_a_file_has_a_world_if_it_says_which(log: OpenedLog, has: bool) -> None:
 def test_the_pose_of_a_file_is_that_of_its_row(home: Path) -> None:
     world = world_at(opened({"runs": [to_plain(SPEC)]}, **POSES), 0)
     assert world is not None
-    assert [world.at(float(row), row).instant.pose for row in (0, 1)] == [Pose(1, 3, 5), Pose(2, 4, 0)]
+    assert [world.at(float(row), row).instant.pose for row in (0, 1)] == [
+        Pose(1, 3, 5),
+        Pose(2, 4, 0),
+    ]
 
 
 def test_of_a_stored_run_every_instant_is_known(run: StoredRun) -> None:
     table = pa.table({"time": [0.0], "light": [1.0]})
-    log = OpenedLog(LogRequest(runs=(run.id,)), Log("run", table, guess_columns(table)), runs=(run,))
+    log = OpenedLog(
+        LogRequest(runs=(run.id,)), Log("run", table, guess_columns(table)), runs=(run,)
+    )
     world = world_at(log, 0)
     assert world is not None and has_poses(log)
     assert [world.at(time_s, 0).line for time_s in (0.1, 0.4)] == [3, 4]

@@ -43,11 +43,15 @@ async def test_a_set_is_chosen_by_eye_and_kept(size: tuple[int, int]) -> None:
         listed = app.screen.query_one(OptionList)
         card = app.screen.query_one(PixelView)
         listed.highlighted = listed.get_option_index("octant")
-        await until(pilot, lambda: any("\U0001cd00" <= glyph <= "\U0001cde5" for glyph in glyphs(card)))
+        await until(
+            pilot, lambda: any("\U0001cd00" <= glyph <= "\U0001cde5" for glyph in glyphs(card))
+        )
         assert app.screen.query_one(".dialog").region.contains_region(card.region)
         await pilot.press("enter")
         world = app.panel_area.screen.query_one("WorldView", PixelView)
-        await until(pilot, lambda: any("\U0001cd00" <= glyph <= "\U0001cde5" for glyph in glyphs(world)))
+        await until(
+            pilot, lambda: any("\U0001cd00" <= glyph <= "\U0001cde5" for glyph in glyphs(world))
+        )
 
     assert started(None).cells is CellSet.OCTANT
     assert started("half").cells is CellSet.HALF
@@ -55,7 +59,9 @@ async def test_a_set_is_chosen_by_eye_and_kept(size: tuple[int, int]) -> None:
 
 
 @pytest.mark.slow
-async def test_on_a_slow_link_cells_are_coarse_while_something_moves(monkeypatch: pytest.MonkeyPatch) -> None:
+async def test_on_a_slow_link_cells_are_coarse_while_something_moves(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     slow, still = True, False
     # Whether something has moved a moment ago, however fast the machine is.
     monkeypatch.setattr(Sharpness, "is_still", property(lambda sharpness: still))

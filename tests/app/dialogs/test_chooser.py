@@ -14,13 +14,18 @@ from tuisim.errors import ConfigError
 
 GROUPS = [
     ChoiceGroup("Here", [("/x/mine.py", "mine.py", "")]),
-    ChoiceGroup("Examples", [("/e/data_log.py", "data_log.py", "second"), ("/e/log.py", "log.py", "a log of greys")]),
+    ChoiceGroup(
+        "Examples",
+        [("/e/data_log.py", "data_log.py", "second"), ("/e/log.py", "log.py", "a log of greys")],
+    ),
 ]
 
 
 def no_file(word: str) -> None:
     if not word.startswith("/"):
-        raise ConfigError("there is no such program", "see `tuisim programs` for examples", file=word)
+        raise ConfigError(
+            "there is no such program", "see `tuisim programs` for examples", file=word
+        )
 
 
 @pytest.mark.parametrize(
@@ -33,7 +38,9 @@ def no_file(word: str) -> None:
     ],
     ids=["name", "words", "path", "nothing"],
 )
-async def test_what_is_typed_searches_the_list_or_is_a_path(typed: str, listed: list[str], result: str | None) -> None:
+async def test_what_is_typed_searches_the_list_or_is_a_path(
+    typed: str, listed: list[str], result: str | None
+) -> None:
     chosen: list[str | None] = []
     app: App[None] = App()
     async with app.run_test() as pilot:
@@ -53,7 +60,10 @@ async def test_what_is_typed_searches_the_list_or_is_a_path(typed: str, listed: 
         if not result:
             assert app.screen is dialog
             assert dialog.query_one(Input).value == typed
-            assert str(dialog.query_one("#message", Static).content) == f"{typed}: there is no such program"
+            assert (
+                str(dialog.query_one("#message", Static).content)
+                == f"{typed}: there is no such program"
+            )
 
 
 async def test_tab_completes_a_path_and_enter_looks_into_a_folder(tmp_path: Path) -> None:
@@ -62,7 +72,9 @@ async def test_tab_completes_a_path_and_enter_looks_into_a_folder(tmp_path: Path
     chosen: list[str | None] = []
     app: App[None] = App()
     async with app.run_test() as pilot:
-        app.push_screen(Chooser("Open", GROUPS, path_hint="path", read=no_file, suffixes=[".py"]), chosen.append)
+        app.push_screen(
+            Chooser("Open", GROUPS, path_hint="path", read=no_file, suffixes=[".py"]), chosen.append
+        )
         await pilot.pause()
         await pilot.press("/")
         field, listed = app.screen.query_one(Input), app.screen.query_one(OptionList)
@@ -124,7 +136,8 @@ async def test_enter_without_typing_takes_the_list() -> None:
     app: App[None] = App()
     async with app.run_test() as pilot:
         app.push_screen(
-            Chooser("Open", [ChoiceGroup("", [("a.py", "a.py", "first")])], path_hint="path"), chosen.append
+            Chooser("Open", [ChoiceGroup("", [("a.py", "a.py", "first")])], path_hint="path"),
+            chosen.append,
         )
         await pilot.pause()
         assert not app.screen.query_one(Input).has_focus
@@ -133,7 +146,9 @@ async def test_enter_without_typing_takes_the_list() -> None:
     assert chosen == ["a.py"]
 
 
-def test_the_second_file_of_an_export_is_not_listed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_second_file_of_an_export_is_not_listed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.chdir(tmp_path)
     for name in ("robot.json", "log.csv", "log.csv.json", "my.robot.json"):
         Path(name).touch()

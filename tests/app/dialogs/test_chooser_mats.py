@@ -23,12 +23,19 @@ async def test_the_mat_at_hand_is_shown(size: tuple[int, int]) -> None:
         await pilot.press("b")
         view = app.screen.query_one(PixelView)
         # The view gets its height after the dialog; before, a picture may have another shape.
-        await until(pilot, lambda: view._cells.shape[0] == view.size.height == getattr(view.styles.height, "value", 0))
+        await until(
+            pilot,
+            lambda: (
+                view._cells.shape[0] == view.size.height == getattr(view.styles.height, "value", 0)
+            ),
+        )
         bands = view._cells.copy()
         assert view.region.bottom < size[1]
         mats = app.screen.query_one(OptionList)
         mats.highlighted = mats.get_option_index("Rainbow_bands")
-        await until(pilot, lambda: view._cells.shape == bands.shape and bool((view._cells != bands).any()))
+        await until(
+            pilot, lambda: view._cells.shape == bands.shape and bool((view._cells != bands).any())
+        )
         assert "Seven coloured bands" in str(app.screen.query_one("#title", Static).render())
         # All of the dialog can be seen: the field is its last row.
         field = app.screen.query_one(Input)
@@ -53,7 +60,11 @@ async def test_an_image_is_laid_out_by_its_path(tmp_path: Path) -> None:
         await pilot.pause()
         await enter_path(pilot, path)
         await until(
-            pilot, lambda: app.run_controller.next_run.spec.world.background == str(path) and app.loader.mat_is_ready
+            pilot,
+            lambda: (
+                app.run_controller.next_run.spec.world.background == str(path)
+                and app.loader.mat_is_ready
+            ),
         )
         assert app.run_controller.snapshot().colors["left"].rgb == (200, 0, 0)
 
@@ -70,7 +81,9 @@ async def test_what_is_no_image_changes_nothing(content: str | None, tmp_path: P
         await pilot.press("b")
         await pilot.pause()
         await enter_path(pilot, path)
-        await until(pilot, lambda: any("none.png" in told for told in (*notices(app), message_of(app))))
+        await until(
+            pilot, lambda: any("none.png" in told for told in (*notices(app), message_of(app)))
+        )
         await until(pilot, lambda: app.run_controller.next_run == before)
         assert app.loader.mat_is_ready
         assert app.run_controller.snapshot().colors["left"].rgb == (255, 255, 255)
@@ -78,7 +91,10 @@ async def test_what_is_no_image_changes_nothing(content: str | None, tmp_path: P
 
 def with_mats(folder: Path | None) -> AppSettings:
     return settings(
-        LOGS, settings=Settings({"background": "Grey_bands", "mats": None if folder is None else str(folder)})
+        LOGS,
+        settings=Settings(
+            {"background": "Grey_bands", "mats": None if folder is None else str(folder)}
+        ),
     )
 
 
@@ -103,7 +119,11 @@ async def test_mats_of_ones_own_are_listed_by_name(named: bool, home: Path, tmp_
         await choose(pilot, "FLL_2018_Into_Orbit")
         picture = str(folder / "FLL2018.jpg")
         await until(
-            pilot, lambda: app.run_controller.next_run.spec.world.background == picture and app.loader.mat_is_ready
+            pilot,
+            lambda: (
+                app.run_controller.next_run.spec.world.background == picture
+                and app.loader.mat_is_ready
+            ),
         )
         assert app.run_controller.next_run.spec.world.start.x_mm == 150
 
@@ -114,7 +134,9 @@ async def test_a_mat_without_a_picture_says_which_file_to_bring(home: Path) -> N
         app = await ready(pilot)
         before = app.run_controller.next_run
         await choose(pilot, "FLL_2018_Into_Orbit")
-        await until(pilot, lambda: any("save it as FLL2018.jpg" in notice for notice in notices(app)))
+        await until(
+            pilot, lambda: any("save it as FLL2018.jpg" in notice for notice in notices(app))
+        )
         assert app.run_controller.next_run == before
 
 
@@ -125,7 +147,9 @@ async def test_a_folder_of_mats_that_is_gone_is_told(tmp_path: Path) -> None:
         app = await ready(pilot)
         folder.rmdir()
         await pilot.press("b")
-        await until(pilot, lambda: any("there is no such folder" in notice for notice in notices(app)))
+        await until(
+            pilot, lambda: any("there is no such folder" in notice for notice in notices(app))
+        )
 
 
 async def test_a_path_to_nothing_has_no_preview() -> None:

@@ -94,7 +94,9 @@ async def test_a_closed_screen_draws_nothing(monkeypatch: pytest.MonkeyPatch) ->
         await app.push_screen(dialog)
         await pilot.press("escape")
         await until(pilot, lambda: dialog.is_closed)
-        monkeypatch.setattr(App, "_display", lambda app, screen, renderable: drawn.append(renderable))
+        monkeypatch.setattr(
+            App, "_display", lambda app, screen, renderable: drawn.append(renderable)
+        )
         app._display(dialog, "help")
         monkeypatch.undo()
     assert [what for what in drawn if what is not None] == []
@@ -152,7 +154,9 @@ async def test_a_click_on_what_has_just_been_removed_does_nothing() -> None:
         with app.batch_update():
             # No layout comes in between.
             await text.remove()
-            await app.on_event(events.MouseDown(None, x, y, 0, 0, 1, False, False, False, screen_x=x, screen_y=y))
+            await app.on_event(
+                events.MouseDown(None, x, y, 0, 0, 1, False, False, False, screen_x=x, screen_y=y)
+            )
         await pilot.press("escape")
         await until(pilot, lambda: len(app.screen_stack) == 1)
 
@@ -168,7 +172,9 @@ async def test_a_screen_that_is_not_drawn_yet_does_not_hear_the_mouse(
         await until(pilot, lambda: guide.is_ready)
         guide.is_ready = is_ready
         monkeypatch.setattr(guide, "_forward_event", heard.append)
-        click = events.MouseDown(None, 20, 10, 0, 0, 1, False, False, False, screen_x=20, screen_y=10)
+        click = events.MouseDown(
+            None, 20, 10, 0, 0, 1, False, False, False, screen_x=20, screen_y=10
+        )
         await app.on_event(click)
         assert heard == [click] * is_ready
 
@@ -187,7 +193,9 @@ async def test_no_palette_opens_above_a_dialog() -> None:
             await until(pilot, lambda: len(app.screen_stack) == 1, key)
 
 
-async def test_a_dialog_is_drawn_above_a_screen_that_is_not_laid_out_for_a_larger_terminal_yet() -> None:
+async def test_a_dialog_is_drawn_above_a_screen_that_is_not_laid_out_for_a_larger_terminal_yet() -> (
+    None
+):
     async with LabApp(settings()).run_test(size=(80, 24)) as pilot:
         app = await ready(pilot)
         await pilot.press("o")
@@ -201,14 +209,18 @@ async def test_a_click_on_the_palette_where_the_terminal_was_does_no_harm() -> N
         app = await ready(pilot)
         await pilot.press("ctrl+p")
         await until(pilot, lambda: isinstance(app.screen, Palette) and app.screen.is_ready)
-        event = events.Click(app.screen, 0, 50, 0, 0, 1, False, False, False, screen_x=0, screen_y=50)
+        event = events.Click(
+            app.screen, 0, 50, 0, 0, 1, False, False, False, screen_x=0, screen_y=50
+        )
         app.screen.post_message(event)
         await pilot.pause()
         assert isinstance(app.screen, Palette)
 
 
 @pytest.mark.parametrize(
-    "above", [lambda: GuideScreen(KeyPage("Help", "", {}), Topic()), lambda: Palette((), None)], ids=["help", "palette"]
+    "above",
+    [lambda: GuideScreen(KeyPage("Help", "", {}), Topic()), lambda: Palette((), None)],
+    ids=["help", "palette"],
 )
 async def test_a_dialog_that_is_closed_before_it_is_built_takes_along_what_is_above(
     above: Callable[[], Screen[None]],
@@ -228,7 +240,11 @@ async def test_a_dialog_that_is_closed_before_it_is_built_takes_along_what_is_ab
 def _screens() -> Iterator[type[Screen[object]]]:
     for module in pkgutil.walk_packages(tuisim.app.__path__, "tuisim.app."):
         for found in vars(importlib.import_module(module.name)).values():
-            if isinstance(found, type) and issubclass(found, Screen) and found.__module__ == module.name:
+            if (
+                isinstance(found, type)
+                and issubclass(found, Screen)
+                and found.__module__ == module.name
+            ):
                 yield found
 
 

@@ -14,7 +14,9 @@ from tuisim.app.dialogs.save import SaveDialog
 from tuisim.source import Program
 
 
-async def test_a_click_on_a_word_of_the_footer_presses_its_key(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+async def test_a_click_on_a_word_of_the_footer_presses_its_key(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.chdir(tmp_path)
     async with LabApp(settings()).run_test(size=(64, 60)) as pilot:
         app = await ready(pilot)

@@ -16,13 +16,18 @@ from tuisim.app.panels.world import WorldView
 
 @pytest.mark.slow
 async def test_no_drag_outlives_a_dialog() -> None:
-    async with LabApp(settings(LOGS, panels_on=frozenset({"noise", "brick"}))).run_test(size=(120, 50)) as pilot:
+    async with LabApp(settings(LOGS, panels_on=frozenset({"noise", "brick"}))).run_test(
+        size=(120, 50)
+    ) as pilot:
         app = await ready(pilot)
         view, slider = app.query_one(WorldView), app.query_one("#light", Slider)
         chart, brick = app.query_one(Chart), app.query_one(Brick)
         assert view._port is not None
         col, row = view._port.to_px(app.run_controller.pose.x_mm, app.run_controller.pose.y_mm)
-        grips: list[tuple[Widget, tuple[int, int]]] = [(view, (int(col), int(row / 2))), (slider, (0, 0))]
+        grips: list[tuple[Widget, tuple[int, int]]] = [
+            (view, (int(col), int(row / 2))),
+            (slider, (0, 0)),
+        ]
         for widget, at in grips:
             await pilot.mouse_down(widget, offset=at)
             dialog: Dialog[None] = Dialog()
@@ -36,4 +41,9 @@ async def test_no_drag_outlives_a_dialog() -> None:
         app.capture_mouse(chart)
         app.capture_mouse(None)
         await pilot.pause()
-        assert (view._grip, slider.dragging, brick.held, chart._dragging) == (None, False, frozenset(), False)
+        assert (view._grip, slider.dragging, brick.held, chart._dragging) == (
+            None,
+            False,
+            frozenset(),
+            False,
+        )

@@ -13,7 +13,9 @@ pytestmark = pytest.mark.usefixtures("home")
 
 
 @pytest.mark.parametrize("kind", [BreaksDialog, WatchesDialog])
-async def test_tab_completes_the_name_of_a_column(kind: type[BreaksDialog] | type[WatchesDialog]) -> None:
+async def test_tab_completes_the_name_of_a_column(
+    kind: type[BreaksDialog] | type[WatchesDialog],
+) -> None:
     app: App[None] = App()
     async with app.run_test(size=(100, 40)) as pilot:
         app.push_screen(kind((), RobotSpec(), lambda _: None))

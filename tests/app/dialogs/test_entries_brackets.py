@@ -28,14 +28,22 @@ def _poses() -> Screen[Any]:
 def _differences() -> Screen[Any]:
     row = RowDifference(1, "[/x]", "[beep]", (0.0, 0.1))
     return Differences(
-        "Run 1", "run 2", RunDiff((("[a]", "[b]", "1"),), ("-a[i]",), False, None, None, row, None, None)
+        "Run 1",
+        "run 2",
+        RunDiff((("[a]", "[b]", "1"),), ("-a[i]",), False, None, None, row, None, None),
     )
 
 
 DIALOGS: dict[str, tuple[Callable[[], Screen[Any]], tuple[str, ...]]] = {
     "poses": (_poses, ("door [/x]",)),
-    "breaks": (lambda: BreaksDialog((parse_break("print matches [/b]"),), RobotSpec(), lambda _: None), ("[/b]",)),
-    "watches": (lambda: WatchesDialog(("table[row]",), RobotSpec(), lambda _: None), ("table[row]",)),
+    "breaks": (
+        lambda: BreaksDialog((parse_break("print matches [/b]"),), RobotSpec(), lambda _: None),
+        ("[/b]",),
+    ),
+    "watches": (
+        lambda: WatchesDialog(("table[row]",), RobotSpec(), lambda _: None),
+        ("table[row]",),
+    ),
     "differences": (_differences, ("'[/x]' at 0.000 s | '[beep]' at 0.100 s", "[b] | 1", "-a[i]")),
 }
 

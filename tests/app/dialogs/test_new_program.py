@@ -23,13 +23,18 @@ CHOSEN = {
     "as it is": ([], ("Grey_bands", "colorLeft", Skeleton.LOG)),
     "letters": ([*"grey_b", "right", *"gy", "right", "u"], ("Grey_bands", "gyro", Skeleton.UNTIL)),
     "letters in their order": ([*"gb"], ("Grey_bands", "colorLeft", Skeleton.LOG)),
-    "arrows": (["up", "tab", "down", "shift+tab", *["down"] * 2], ("Grey_and_black", "colorRight", Skeleton.LOG)),
+    "arrows": (
+        ["up", "tab", "down", "shift+tab", *["down"] * 2],
+        ("Grey_and_black", "colorRight", Skeleton.LOG),
+    ),
 }
 
 
 @pytest.mark.quick_cases("letters")
 @pytest.mark.parametrize(("keys", "wanted"), CHOSEN.values(), ids=CHOSEN)
-async def test_a_new_program_is_chosen_by_keys(keys: list[str], wanted: tuple[str, str, Skeleton]) -> None:
+async def test_a_new_program_is_chosen_by_keys(
+    keys: list[str], wanted: tuple[str, str, Skeleton]
+) -> None:
     plain = AppSettings(spec=build_run_spec(Settings()), settings=Settings())
     async with LabApp(plain).run_test(size=(80, 24)) as pilot:
         app = await ready(pilot)
@@ -42,12 +47,16 @@ async def test_a_new_program_is_chosen_by_keys(keys: list[str], wanted: tuple[st
 
 
 @pytest.mark.parametrize("answer", ["w", "escape"])
-async def test_another_mat_is_written_into_the_file_if_one_agrees(answer: str, tmp_path: Path) -> None:
+async def test_another_mat_is_written_into_the_file_if_one_agrees(
+    answer: str, tmp_path: Path
+) -> None:
     path = tmp_path / "mine.py"
     path.write_text(before := program_text("Grey_bands", "colorLeft", Skeleton.LOG))
     source = read_program(path)
     settings = Settings({"background": "Grey_bands"})
-    async with LabApp(AppSettings(build_run_spec(settings), settings, program=source.program)).run_test() as pilot:
+    async with LabApp(
+        AppSettings(build_run_spec(settings), settings, program=source.program)
+    ).run_test() as pilot:
         app = await ready(pilot)
         await pilot.press("b")
         await until(pilot, lambda: isinstance(app.screen, MatPicker) and app.screen.is_ready)

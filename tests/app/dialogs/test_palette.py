@@ -13,7 +13,9 @@ from tuisim.app.guide.screen import GuideScreen
 
 pytestmark = pytest.mark.usefixtures("home")
 
-ENTRIES = [Entry(one.id, one.title, one.group, one.key_label, one.words) for one in ACTIONS.values()]
+ENTRIES = [
+    Entry(one.id, one.title, one.group, one.key_label, one.words) for one in ACTIONS.values()
+]
 
 
 @pytest.mark.parametrize(
@@ -63,7 +65,10 @@ async def test_words_of_no_command_are_a_question_to_the_guide() -> None:
         await until(pilot, lambda: bool(pilot.app.screen.query(".dialog")))
         pilot.app.screen.query_one(Input).value = "what turns the robot by ninety degrees"
         await pilot.press("enter")
-        await until(pilot, lambda: isinstance(pilot.app.screen, GuideScreen) and bool(pilot.app.screen.answers))
+        await until(
+            pilot,
+            lambda: isinstance(pilot.app.screen, GuideScreen) and bool(pilot.app.screen.answers),
+        )
         await until(pilot, lambda: "To turn on the spot" in screen_text(lab(pilot)))
 
 

@@ -43,7 +43,9 @@ def test_a_folder_of_this_one_is_found(folder: Path, monkeypatch: pytest.MonkeyP
     assert values(".") == ["./"]
 
 
-@pytest.mark.parametrize("typed", ["/no/such/folder/", "~nobody_of_that_name/x", "/dev/null/x", "a\0/b"])
+@pytest.mark.parametrize(
+    "typed", ["/no/such/folder/", "~nobody_of_that_name/x", "/dev/null/x", "a\0/b"]
+)
 def test_nothing_is_in_what_is_no_folder(typed: str) -> None:
     assert values(typed) == []
 

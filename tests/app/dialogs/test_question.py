@@ -10,12 +10,20 @@ from tuisim.app.dialogs.question import LinePrompt, completed
 
 def test_the_word_that_is_typed_is_ended() -> None:
     words = ("Colour", "Left", "slope(", "`a b`")
-    lines = {"slope(Co": "slope(Colour", "2 * sl": "2 * slope(", "`a": "`a b`", "2 + 3": None, "Colour": None}
+    lines = {
+        "slope(Co": "slope(Colour",
+        "2 * sl": "2 * slope(",
+        "`a": "`a b`",
+        "2 + 3": None,
+        "Colour": None,
+    }
     assert {line: completed(line, words) for line in lines} == lines
 
 
 @pytest.mark.parametrize(("rows", "is_brief"), [(24, True), (40, False)], ids=["low", "high"])
-async def test_a_prompt_is_brief_where_the_screen_below_should_stay_in_sight(rows: int, is_brief: bool) -> None:
+async def test_a_prompt_is_brief_where_the_screen_below_should_stay_in_sight(
+    rows: int, is_brief: bool
+) -> None:
     forms = [("3.5", "a time"), *((f"line {number}", "that line") for number in range(8))]
     async with App[None]().run_test(size=(80, rows)) as pilot:
         prompt = LinePrompt("Go to", print, forms=forms, sees_below=True)

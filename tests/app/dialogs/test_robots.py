@@ -54,7 +54,9 @@ async def test_the_chosen_robot_is_drawn_with_its_parts(size: tuple[int, int]) -
         before = view._cells.copy()
         robots = app.screen.query_one(OptionList)
         robots.highlighted = robots.get_option_index("Explorer")
-        await until(pilot, lambda: view._cells.shape != before.shape or bool((view._cells != before).any()))
+        await until(
+            pilot, lambda: view._cells.shape != before.shape or bool((view._cells != before).any())
+        )
         parts = app.screen.query_one(RobotParts)
         assert parts.size.height == len(words_of(ROBOTS["Explorer"]))
         assert app.screen.query_one(".dialog").region.contains_region(parts.region)

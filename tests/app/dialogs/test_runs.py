@@ -35,7 +35,9 @@ pytestmark = pytest.mark.usefixtures("home")
 def stored(text: str = LOGS, **choices: Any) -> str:
     """Carry a program out and return the run's id."""
     spec = build_run_spec(Settings({"background": "Grey_bands", "seed": 5, **choices}))
-    options = RunOptions(actions=(UserAction(100, SetNoise(20, 0)), UserAction(200, SetNoise(0, 0))))
+    options = RunOptions(
+        actions=(UserAction(100, SetNoise(20, 0)), UserAction(200, SetNoise(0, 0)))
+    )
     run = start_run(program(text), spec, options)
     assert run.wait(PATIENCE_S)
     return run.run_id
@@ -50,7 +52,12 @@ async def test_a_stored_run_is_shown_as_it_was_and_run_anew_alike() -> None:
     run_id = stored()
     async with LabApp(replaying(run_id)).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)
-        await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED and "finished at" in screen_text(app))
+        await until(
+            pilot,
+            lambda: (
+                app.run_controller.state == RunPhase.ENDED and "finished at" in screen_text(app)
+            ),
+        )
         assert "Colour: " in screen_text(app)
         assert app.run_controller.run_id == run_id
         assert app.run_controller.next_run.spec == RunStore().load_run(run_id).spec
@@ -64,7 +71,12 @@ async def test_a_stored_run_is_shown_as_it_was_and_run_anew_alike() -> None:
         assert app.run_controller.snapshot().instant.noise.light == 0
         app.run_controller.set_speed(0.0)
         await pilot.press("R", "r")
-        await until(pilot, lambda: app.run_controller.run_id != run_id and app.run_controller.state == RunPhase.ENDED)
+        await until(
+            pilot,
+            lambda: (
+                app.run_controller.run_id != run_id and app.run_controller.state == RunPhase.ENDED
+            ),
+        )
         again, first = RunStore().load_run(app.run_controller.run_id), RunStore().load_run(run_id)
         assert again.program.text == first.program.text
         assert again.telemetry.array()[:100].tobytes() == first.telemetry.array()[:100].tobytes()
@@ -72,12 +84,17 @@ async def test_a_stored_run_is_shown_as_it_was_and_run_anew_alike() -> None:
 
 @pytest.mark.slow
 async def test_a_run_is_searched_for_and_chosen() -> None:
-    ids = [stored("print('A: 1')\n"), stored("tank_drive.on_for_seconds(50, 50, 1)\n", background="Lollipop")]
+    ids = [
+        stored("print('A: 1')\n"),
+        stored("tank_drive.on_for_seconds(50, 50, 1)\n", background="Lollipop"),
+    ]
     async with LabApp(settings()).run_test(size=(80, 24)) as pilot:
         app = await ready(pilot)
         await pilot.press("h")
         await until(pilot, lambda: "2 of 2 runs" in screen_text(app))
-        assert re.search(r" samples +│.* Grey_bands finished +0\.\d+ +1 ", screen_text(app), re.DOTALL)
+        assert re.search(
+            r" samples +│.* Grey_bands finished +0\.\d+ +1 ", screen_text(app), re.DOTALL
+        )
         await pilot.press(*"grey_b")
         await until(pilot, lambda: "1 of 2 runs" in screen_text(app))
         assert isinstance(app.screen, RunChooser)
@@ -86,7 +103,12 @@ async def test_a_run_is_searched_for_and_chosen() -> None:
         await until(pilot, lambda: way._strips != [])
         await pilot.press(*["backspace"] * 6, *"LOLLI", "enter")
         await until(pilot, lambda: app.run_controller.run_id == ids[1])
-        await until(pilot, lambda: app.run_controller.mat is not None and app.run_controller.mat.name == "Lollipop")
+        await until(
+            pilot,
+            lambda: (
+                app.run_controller.mat is not None and app.run_controller.mat.name == "Lollipop"
+            ),
+        )
         await pilot.press("comma")
         assert app.run_controller.snapshot().past
 
@@ -179,7 +201,16 @@ def test_the_command_refuses(tuisim: Command, words: list[str], said: str) -> No
 
 
 def info(number: int, **facts: Any) -> RunInfo:
-    base = RunInfo(number, f"id{number}", "2026-01-02T03:04:05+00:00", "line.py", "Loop", "robolab", 0, End.FINISHED)
+    base = RunInfo(
+        number,
+        f"id{number}",
+        "2026-01-02T03:04:05+00:00",
+        "line.py",
+        "Loop",
+        "robolab",
+        0,
+        End.FINISHED,
+    )
     return replace(base, **facts)
 
 
@@ -194,13 +225,22 @@ def info(number: int, **facts: Any) -> RunInfo:
     ],
     ids=["the end only", "the limit", "an error", "no room", "tags"],
 )
-def test_the_note_of_a_run_does_not_repeat_its_end(facts: dict[str, Any], noted: bool, end: str) -> None:
+def test_the_note_of_a_run_does_not_repeat_its_end(
+    facts: dict[str, Any], noted: bool, end: str
+) -> None:
     assert run_line(info(1, **facts), noted=noted).plain.partition("0.00       ")[2] == end
 
 
 @pytest.mark.parametrize(
     ("search", "numbers"),
-    [("", [3, 2, 1]), ("line", [3, 1]), ("loop error", [2]), ("best", [3]), ("2026-01", [3, 2, 1]), ("none", [])],
+    [
+        ("", [3, 2, 1]),
+        ("line", [3, 1]),
+        ("loop error", [2]),
+        ("best", [3]),
+        ("2026-01", [3, 2, 1]),
+        ("none", []),
+    ],
 )
 def test_a_search_is_for_words_anywhere(search: str, numbers: list[int]) -> None:
     runs = [info(1), info(2, program="maze.py", end=End.RAISED), info(3, tags="best branch")]
@@ -211,7 +251,9 @@ def test_the_namespace_of_the_command_has_the_run() -> None:
     from tuisim.commands.resolve import NO_CONFIG, prepare_replay
 
     run_id = stored("print('A: 1')\n")
-    run, prepared = prepare_replay(run_id, [], Arguments(world=None, settings={"rays": True}), NO_CONFIG)
+    run, prepared = prepare_replay(
+        run_id, [], Arguments(world=None, settings={"rays": True}), NO_CONFIG
+    )
     assert (run.id, prepared.settings["rays"]) == (run_id, True)
     assert prepared.program is not None
     assert prepared.program.text == "print('A: 1')\n"

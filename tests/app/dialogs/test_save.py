@@ -8,7 +8,11 @@ from textual.widgets import Input
 from tests.app.app_help import ready, screen_text, settings, until
 from tuisim.app.app import LabApp
 
-NO_NAMES = {"too long": "x" * 300 + ".toml", "of nobody's home": "~no-such-user/lab.toml", "with a zero": "a\0b.toml"}
+NO_NAMES = {
+    "too long": "x" * 300 + ".toml",
+    "of nobody's home": "~no-such-user/lab.toml",
+    "with a zero": "a\0b.toml",
+}
 
 
 @pytest.mark.quick_cases("ctrl+s")

@@ -17,12 +17,24 @@ from tuisim.config.user_config import SETTINGS, load_config
 from tuisim.terminal.picture_options import CellSet
 
 APPLIED: dict[str, tuple[list[str], object, Callable[[LabApp], bool]]] = {
-    "app.ultrasound": (["enter"], True, lambda app: any(world.show_rays for world in app.query(World))),
+    "app.ultrasound": (
+        ["enter"],
+        True,
+        lambda app: any(world.show_rays for world in app.query(World)),
+    ),
     "app.theme": (["enter", "wait", *"light", "enter"], "light", lambda app: app.theme == "light"),
-    "app.cells": (["enter", "wait", "end", "enter"], "ascii", lambda app: app.picture_mode.cells is CellSet.ASCII),
+    "app.cells": (
+        ["enter", "wait", "end", "enter"],
+        "ascii",
+        lambda app: app.picture_mode.cells is CellSet.ASCII,
+    ),
     "app.pixels": (["enter", "wait", "end", "enter"], "none", lambda app: app.pixels == "none"),
     "app.speed": (["enter", "wait", "5", "enter"], 5, lambda app: app.run_controller.speed == 5.0),
-    "simulation.motornoise": (["enter", "wait", "7", "enter"], 7, lambda app: "next start" in screen_text(app)),
+    "simulation.motornoise": (
+        ["enter", "wait", "7", "enter"],
+        7,
+        lambda app: "next start" in screen_text(app),
+    ),
 }
 
 
@@ -38,7 +50,10 @@ async def test_a_change_is_written_and_applies(path: str) -> None:
         listed.highlighted = listed.get_option_index(path)
         for key in keys:
             if key == "wait":
-                await until(pilot, lambda: app.screen is not screen and getattr(app.screen, "is_ready", False))
+                await until(
+                    pilot,
+                    lambda: app.screen is not screen and getattr(app.screen, "is_ready", False),
+                )
             else:
                 await pilot.press(key)
         await until(pilot, lambda: load_config().written.get(path) == value)
@@ -61,7 +76,10 @@ async def test_a_wrong_value_is_told_and_can_be_corrected() -> None:
         await pilot.press("enter")
         await until(pilot, lambda: bool(app.screen.query(Input)))
         await pilot.press(*"99", "enter")
-        await until(pilot, lambda: "must be a whole number from 1 to 60" in " ".join(screen_text(app).split()))
+        await until(
+            pilot,
+            lambda: "must be a whole number from 1 to 60" in " ".join(screen_text(app).split()),
+        )
         assert not load_config().path.exists()
         await pilot.press("9", "enter")
         await until(pilot, lambda: load_config().written == {"app.fps": 9})

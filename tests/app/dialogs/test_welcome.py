@@ -45,14 +45,20 @@ async def test_the_welcome_appears_once(size: tuple[int, int], home: Path) -> No
 CHOICES: dict[str, tuple[list[str], Any]] = {
     "new": (["1"], lambda app: isinstance(app.screen, NewProgramDialog)),
     "example by number": (["2"], lambda app: app.run_controller.state in {*IN_RUN, RunPhase.ENDED}),
-    "example by enter": (["down", "enter"], lambda app: app.run_controller.state in {*IN_RUN, RunPhase.ENDED}),
+    "example by enter": (
+        ["down", "enter"],
+        lambda app: app.run_controller.state in {*IN_RUN, RunPhase.ENDED},
+    ),
     "learn": (
         ["down", "down", "enter"],
         lambda app: isinstance(app.screen, Chooser) and "Lessons" in app.screen.TITLE_TEXT,
     ),
     "help by its key": (["question_mark"], lambda app: "Search: words" in screen_text(app)),
     "quit by its key": (["q"], lambda app: not app.is_running or app._exit),
-    "open": (["4"], lambda app: isinstance(app.screen, Chooser) and "Lessons" not in app.screen.TITLE_TEXT),
+    "open": (
+        ["4"],
+        lambda app: isinstance(app.screen, Chooser) and "Lessons" not in app.screen.TITLE_TEXT,
+    ),
 }
 
 
@@ -73,7 +79,9 @@ DRAFTS: dict[str, tuple[str, str]] = {
 
 @pytest.mark.slow_cases("of a file")
 @pytest.mark.parametrize(("name", "text"), DRAFTS.values(), ids=DRAFTS)
-async def test_a_later_start_offers_unsaved_text_to_go_on_with(name: str, text: str, tmp_path: Path) -> None:
+async def test_a_later_start_offers_unsaved_text_to_go_on_with(
+    name: str, text: str, tmp_path: Path
+) -> None:
     path = str(tmp_path / name) if name else ""
     if path:
         Path(path).write_text("print('before')\n")

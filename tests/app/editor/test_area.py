@@ -32,14 +32,31 @@ Keys = list[str]
         (["down", "enter", "ctrl+a", "x"], "x"),
         (["enter", "ctrl+end", "x"], TEXT + "x"),
         (["down", "enter", "end", "ctrl+home", "x"], "x" + TEXT),
-        (["enter", "shift+end", "ctrl+x", "down", "ctrl+v"], "\nprint('A: 1')" + TEXT.split("\n", 1)[1]),
+        (
+            ["enter", "shift+end", "ctrl+x", "down", "ctrl+v"],
+            "\nprint('A: 1')" + TEXT.split("\n", 1)[1],
+        ),
     ],
     ids=[
-        "letters are no text", "typing", "escape ends it", "undo", "redo", "tab", "indent", "outdent",
-        "comment", "indented line", "after a colon", "backspace in an indent", "backspace in code", "select all",
-        "end of the text", "start of the text", "cut and paste",
+        "letters are no text",
+        "typing",
+        "escape ends it",
+        "undo",
+        "redo",
+        "tab",
+        "indent",
+        "outdent",
+        "comment",
+        "indented line",
+        "after a colon",
+        "backspace in an indent",
+        "backspace in code",
+        "select all",
+        "end of the text",
+        "start of the text",
+        "cut and paste",
     ],
-)  # fmt: skip
+)
 async def test_keys_change_the_text(keys: Keys, after: str) -> None:
     async with CodeApp().run_test(size=(60, 12)) as pilot:
         _, area = await alone(pilot)

@@ -110,7 +110,9 @@ async def test_the_list_shows_names_signatures_and_help(home: Path) -> None:
         assert " on_for_degrees(left_speed, right_speed, degrees, brake=True, block=True)" in rows
 
 
-async def test_what_is_typed_during_a_lookup_goes_on_with_the_name(home: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+async def test_what_is_typed_during_a_lookup_goes_on_with_the_name(
+    home: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     answers = Event()
     found = Candidate("tank_drive"), Candidate("tank_turn")
 
@@ -155,7 +157,9 @@ async def test_tab_after_a_name_that_nothing_begins_with_says_so(home: Path) -> 
     async with CodeApp().run_test(size=SIZE) as pilot:
         code, area = await typed(pilot, "nothing_like_it")
         await pilot.press("tab")
-        await until(pilot, lambda: "no name begins with nothing_like_it" in str(code.border_subtitle))
+        await until(
+            pilot, lambda: "no name begins with nothing_like_it" in str(code.border_subtitle)
+        )
         assert area.program_text == "nothing_like_it"
         await pilot.press("backspace")
         await until(pilot, lambda: "no name begins" not in str(code.border_subtitle))

@@ -17,7 +17,10 @@ from tuisim.app.editor.completion import members
         ("é = tank_drive.offf", ["`tank_drive` has no `offf`: did you mean `off`?"]),
         ("import time\ntime.slep(1)", ["`time` has no `slep`: did you mean `sleep`?"]),
         ("colorLeft.reflected_light_intensity_pc\ngyro.angle", []),
-        ("from ev3dev2.sensor.lego import ColorSensor\nc = ColorSensor()\nc.reflected_light_intensity_pc", []),
+        (
+            "from ev3dev2.sensor.lego import ColorSensor\nc = ColorSensor()\nc.reflected_light_intensity_pc",
+            [],
+        ),
         ("tank_drive.mine = 1\nprint(tank_drive.mine)", []),
         ("tank_drive = 1\ntank_drive = gyro\ntank_drive.onn", []),
         ("def f(gyro):\n    gyro.onn", []),
@@ -27,10 +30,20 @@ from tuisim.app.editor.completion import members
         ("tank_drive.onn(", []),
     ],
     ids=[
-        "prelude", "not ASCII", "module", "known", "of the course", "own attribute", "several objects", "parameter",
-        "own class", "asks first", "Pybricks", "unfinished line",
+        "prelude",
+        "not ASCII",
+        "module",
+        "known",
+        "of the course",
+        "own attribute",
+        "several objects",
+        "parameter",
+        "own class",
+        "asks first",
+        "Pybricks",
+        "unfinished line",
     ],
-)  # fmt: skip
+)
 def test_unknown_attributes(home: Path, text: str, messages: list[str]) -> None:
     found = AttributeCheck(members).unknown_attributes(text, "prog.py")
     assert [one.message for one in found] == messages

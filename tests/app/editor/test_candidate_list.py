@@ -9,7 +9,9 @@ from tuisim.app.editor.candidate_list import list_lines, list_place, list_width,
 from tuisim.app.editor.completion import Candidate, Signature
 
 MANY = tuple(Candidate(f"name_{n:02}", "(speed, seconds)", help=f"Help for {n}") for n in range(20))
-SIGNATURE = Signature("on_for_seconds", ("left_speed", "right_speed", "seconds", "brake=True", "block=True"), 2)
+SIGNATURE = Signature(
+    "on_for_seconds", ("left_speed", "right_speed", "seconds", "brake=True", "block=True"), 2
+)
 
 
 def rows(chosen: int, width: int = 40) -> list[str]:
@@ -18,7 +20,9 @@ def rows(chosen: int, width: int = 40) -> list[str]:
 
 def test_eight_names_around_the_chosen_one_and_its_help() -> None:
     lines = rows(10)
-    assert [line[:8] for line in lines[:-1]] == [f"{'▸' if n == 10 else ' '}name_{n:02}"[:8] for n in range(6, 14)]
+    assert [line[:8] for line in lines[:-1]] == [
+        f"{'▸' if n == 10 else ' '}name_{n:02}"[:8] for n in range(6, 14)
+    ]
     assert lines[-1] == " Help for 10                      11/20 "
     assert {len(line) for line in lines} == {40}
 
@@ -33,7 +37,8 @@ def test_the_last_name_of_a_long_list_is_reached() -> None:
 
 
 @pytest.mark.parametrize(
-    ("longest", "room", "width"), [("on", 78, 24), ("n" * 40, 78, 59), ("n" * 200, 118, 76), ("n" * 200, 58, 58)]
+    ("longest", "room", "width"),
+    [("on", 78, 24), ("n" * 40, 78, 59), ("n" * 200, 118, 76), ("n" * 200, 58, 58)],
 )
 def test_width_of_a_list(longest: str, room: int, width: int) -> None:
     assert list_width([Candidate("a"), Candidate(longest, "(speed, seconds)")], room) == width

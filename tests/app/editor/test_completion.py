@@ -30,7 +30,11 @@ ev3 = EV3Brick()
 motor = Motor(Port.A)
 """
 MEMBERS = json.loads((ROOT / "tests/shim/pybricks/api.json").read_text())["calls"]
-CLASSES = ("pybricks.ev3devices:Motor", "pybricks.ev3devices:GyroSensor", "pybricks.robotics:DriveBase")
+CLASSES = (
+    "pybricks.ev3devices:Motor",
+    "pybricks.ev3devices:GyroSensor",
+    "pybricks.robotics:DriveBase",
+)
 
 
 def at_end(text: str, path: str = "prog.py") -> tuple[Candidate, ...]:
@@ -49,13 +53,25 @@ def names(text: str) -> list[str]:
 @pytest.mark.parametrize(
     ("text", "first"),
     [
-        ("tank_drive.", ["on", "off", "on_for_degrees", "on_for_rotations", "on_for_seconds", "follow_gyro_angle"]),
+        (
+            "tank_drive.",
+            [
+                "on",
+                "off",
+                "on_for_degrees",
+                "on_for_rotations",
+                "on_for_seconds",
+                "follow_gyro_angle",
+            ],
+        ),
         ("colorLeft.", ["reflected_light_intensity", "reflected_light_intensity_pc", "color"]),
         ("ultrasonic.", ["distance_centimeters"]),
         ("import time\ntime.", ["sleep"]),
     ],
 )
-def test_what_programs_use_comes_first_and_what_is_inherited_or_internal_last(text: str, first: list[str]) -> None:
+def test_what_programs_use_comes_first_and_what_is_inherited_or_internal_last(
+    text: str, first: list[str]
+) -> None:
     found = names(text)
     assert found[: len(first)] == first
     if text == "tank_drive.":
@@ -82,10 +98,23 @@ def test_what_programs_use_comes_first_and_what_is_inherited_or_internal_last(te
         ("x = (1,\nif tank_drive.of", ["off"]),
     ],
     ids=[
-        "method", "prelude in any case", "clock", "of the course", "other prelude", "unfinished magic", "ev3dev2",
-        "no prelude", "Pybricks", "no inner names", "module", "from a module", "own function", "import", "broken text",
+        "method",
+        "prelude in any case",
+        "clock",
+        "of the course",
+        "other prelude",
+        "unfinished magic",
+        "ev3dev2",
+        "no prelude",
+        "Pybricks",
+        "no inner names",
+        "module",
+        "from a module",
+        "own function",
+        "import",
+        "broken text",
     ],
-)  # fmt: skip
+)
 def test_names_that_may_follow(home: Path, text: str, found: list[str]) -> None:
     assert names(text) == found
 
@@ -113,7 +142,9 @@ def test_a_candidate_has_a_signature_and_help(home: Path) -> None:
         "(left_speed, right_speed)",
         help="Start rotating the motors according to `left_speed` and `right_speed` forever",
     )
-    assert at_end(PYBRICKS + "motor.run_t")[-1].signature == "(speed, time, then=Stop.HOLD, wait=True)"
+    assert (
+        at_end(PYBRICKS + "motor.run_t")[-1].signature == "(speed, time, then=Stop.HOLD, wait=True)"
+    )
     assert [one.kind for one in at_end("colorLeft.reflected_light_intensity_p")] == ["property"]
 
 
@@ -134,7 +165,10 @@ def test_a_module_beside_the_program_is_read_and_not_run(home: Path, tmp_path: P
 
 def test_it_is_not_imported_before_it_is_asked() -> None:
     code = "import sys, tuisim.app.app, tuisim.app.panels.code; print('jedi' in sys.modules)"
-    assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True).stdout == "False\n"
+    assert (
+        subprocess.run([sys.executable, "-c", code], capture_output=True, text=True).stdout
+        == "False\n"
+    )
 
 
 @pytest.mark.parametrize(
@@ -143,7 +177,10 @@ def test_it_is_not_imported_before_it_is_asked() -> None:
         ("tank_drive.on(", Signature("on", ("left_speed", "right_speed"), 0)),
         ("tank_drive.on(SpeedPercent(5), ", Signature("on", ("left_speed", "right_speed"), 1)),
         ("tank_drive.on(SpeedPercent(", Signature("SpeedPercent", ("percent", "desc=None"), 0)),
-        ("def add(a: int, b: int = 2) -> int:\n    return a\n\nadd(b=", Signature("add", ("a", "b=2"), 1)),
+        (
+            "def add(a: int, b: int = 2) -> int:\n    return a\n\nadd(b=",
+            Signature("add", ("a", "b=2"), 1),
+        ),
         ("nothing(", None),
     ],
     ids=["method", "second", "inner", "own function", "unknown"],
@@ -155,11 +192,22 @@ def test_signature_of_a_call(home: Path, text: str, found: Signature | None) -> 
 @pytest.mark.parametrize(
     ("line", "column", "word"),
     [
-        ("tank", 4, "tank"), ("tank", 2, "ta"), ("a.b", 3, "b"), ("a.", 2, ""), ("f().", 4, ""), ("x[1].", 5, ""),
-        ("'a'.", 4, ""), ("x = ", 4, None), ("    ", 4, None), ("# tank", 6, None), ("'tank", 5, None), ("1.", 2, None),
-        ("x12.", 4, ""), ("a..", 3, None),
+        ("tank", 4, "tank"),
+        ("tank", 2, "ta"),
+        ("a.b", 3, "b"),
+        ("a.", 2, ""),
+        ("f().", 4, ""),
+        ("x[1].", 5, ""),
+        ("'a'.", 4, ""),
+        ("x = ", 4, None),
+        ("    ", 4, None),
+        ("# tank", 6, None),
+        ("'tank", 5, None),
+        ("1.", 2, None),
+        ("x12.", 4, ""),
+        ("a..", 3, None),
     ],
-)  # fmt: skip
+)
 def test_the_word_that_is_typed(line: str, column: int, word: str | None) -> None:
     assert word_before(line, column) == word
 
@@ -167,10 +215,18 @@ def test_the_word_that_is_typed(line: str, column: int, word: str | None) -> Non
 @pytest.mark.parametrize(
     ("lines", "is_in"),
     [
-        (["f("], True), (["f(1, [2], "], True), (["f(", "  1,"], True), (["f()"], False), (["(1, "], False),
-        (["x = [1, "], False), (["f([1, "], True), (["print('(')"], False), (["# f("], False), (["f(g(1)"], True),
+        (["f("], True),
+        (["f(1, [2], "], True),
+        (["f(", "  1,"], True),
+        (["f()"], False),
+        (["(1, "], False),
+        (["x = [1, "], False),
+        (["f([1, "], True),
+        (["print('(')"], False),
+        (["# f("], False),
+        (["f(g(1)"], True),
     ],
-)  # fmt: skip
+)
 def test_whether_a_place_is_in_a_call(lines: Sequence[str], is_in: bool) -> None:
     assert in_call(lines, len(lines) - 1, len(lines[-1])) == is_in
 

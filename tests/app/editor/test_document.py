@@ -91,7 +91,9 @@ async def test_a_mistake_is_saved_and_marked(tmp_path: Path) -> None:
 @pytest.mark.slow
 async def test_text_with_a_mistake_does_not_run_and_leaves_the_world_alone(tmp_path: Path) -> None:
     path = tmp_path / "prog.py"
-    async with LabApp(own(path, "# %%sim_magic_preloaded -x 300\n" + TEXT)).run_test(size=(120, 40)) as pilot:
+    async with LabApp(own(path, "# %%sim_magic_preloaded -x 300\n" + TEXT)).run_test(
+        size=(120, 40)
+    ) as pilot:
         app, code = await begun(pilot)
         start = app.run_controller.next_run.spec.world.start
         await typed(pilot, code, "i", "f", "enter", "ctrl+r")
@@ -105,14 +107,18 @@ async def test_text_with_a_mistake_does_not_run_and_leaves_the_world_alone(tmp_p
         await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED)
 
 
-async def test_a_program_opened_without_its_mat_runs_only_on_one_that_is_chosen(tmp_path: Path) -> None:
+async def test_a_program_opened_without_its_mat_runs_only_on_one_that_is_chosen(
+    tmp_path: Path,
+) -> None:
     wrong = "# %%sim_magic_preloaded -b Grey_bnds\n" + TEXT
     async with LabApp(own(tmp_path / "prog.py", wrong)).run_test(size=(120, 40)) as pilot:
         app, code = await begun(pilot)
         await until(pilot, lambda: code.error_line == 1)
         told = "prog.py cannot run: line 1: no such mat 'Grey_bnds', did you mean Grey_bands?"
         assert "prog.py cannot run" in screen_text(app)
-        assert str(code.border_subtitle) == "line 1: no such mat 'Grey_bnds', did you mean Grey_bands?"
+        assert (
+            str(code.border_subtitle) == "line 1: no such mat 'Grey_bnds', did you mean Grey_bands?"
+        )
         assert not app.document.apply()
         await pilot.pause()
         assert told in notices(app)
@@ -121,19 +127,25 @@ async def test_a_program_opened_without_its_mat_runs_only_on_one_that_is_chosen(
         assert app.document.apply()
 
 
-async def test_a_small_panel_keeps_the_whole_place_where_the_text_cannot_run(tmp_path: Path) -> None:
+async def test_a_small_panel_keeps_the_whole_place_where_the_text_cannot_run(
+    tmp_path: Path,
+) -> None:
     async with LabApp(own(tmp_path / "prog.py")).run_test(size=(80, 24)) as pilot:
         app = await ready(pilot)
         await pilot.press("d")
         await until(pilot, lambda: app.panel_area.alone == "code")
         await pilot.press("i", "f", "enter", "ctrl+r")
-        await until(pilot, lambda: app.panel_area.code is not None and app.panel_area.code.error_line == 1)
+        await until(
+            pilot, lambda: app.panel_area.code is not None and app.panel_area.code.error_line == 1
+        )
         await pilot.pause()
         assert app.panel_area.alone == "code"
 
 
 @pytest.mark.slow
-async def test_an_example_is_saved_to_another_place(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+async def test_an_example_is_saved_to_another_place(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.chdir(tmp_path)
     example = programs()[0]
     before = example.path.read_bytes()
@@ -154,13 +166,18 @@ async def test_a_small_panel_has_the_whole_place_while_one_types(tmp_path: Path)
     async with LabApp(own(tmp_path / "prog.py")).run_test(size=(80, 24)) as pilot:
         app = await ready(pilot)
         await pilot.press("d")
-        await until(pilot, lambda: app.panel_area.code is not None and app.panel_area.code.size.height > 20)
+        await until(
+            pilot, lambda: app.panel_area.code is not None and app.panel_area.code.size.height > 20
+        )
         assert not app.panel_area.shown("world")
         await pilot.press("x", "escape")
         await until(pilot, lambda: app.panel_area.shown("world"))
         assert app.panel_area.shown("code")
         await pilot.press("d", "ctrl+r")
-        await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED and app.panel_area.shown("world"))
+        await until(
+            pilot,
+            lambda: app.run_controller.state == RunPhase.ENDED and app.panel_area.shown("world"),
+        )
         assert app.document.dirty
 
 
@@ -169,7 +186,11 @@ async def test_a_small_panel_has_the_whole_place_while_one_types(tmp_path: Path)
 async def test_editing_gets_the_room(size: tuple[int, int], tmp_path: Path) -> None:
     async with LabApp(own(tmp_path / "prog.py")).run_test(size=size) as pilot:
         app = await ready(pilot)
-        before = app.panel_area.code.size if app.panel_area.shown("code") and app.panel_area.code else None
+        before = (
+            app.panel_area.code.size
+            if app.panel_area.shown("code") and app.panel_area.code
+            else None
+        )
         await pilot.press("d")
         await until(pilot, lambda: app.panel_area.code is not None and app.panel_area.code.typing)
         await pilot.pause()
@@ -183,7 +204,8 @@ async def test_editing_gets_the_room(size: tuple[int, int], tmp_path: Path) -> N
         await until(
             pilot,
             lambda: (
-                app.panel_area.shown("world") and before in (None, app.panel_area.code and app.panel_area.code.size)
+                app.panel_area.shown("world")
+                and before in (None, app.panel_area.code and app.panel_area.code.size)
             ),
         )
         await until(pilot, lambda: app.query_one(CodeArea).scroll_offset.x == 0)
@@ -194,7 +216,9 @@ WRONG = "print('A: 1')\nfor n in range(3):\n    n.x\n"
 
 @pytest.mark.slow_cases("panel shown")
 @pytest.mark.parametrize("size", [(80, 24), (120, 40)], ids=["panel hidden", "panel shown"])
-async def test_after_an_error_typing_begins_on_its_line(size: tuple[int, int], tmp_path: Path) -> None:
+async def test_after_an_error_typing_begins_on_its_line(
+    size: tuple[int, int], tmp_path: Path
+) -> None:
     async with LabApp(own(tmp_path / "prog.py", WRONG)).run_test(size=size) as pilot:
         app = await ready(pilot)
         await pilot.press("R")
@@ -202,11 +226,15 @@ async def test_after_an_error_typing_begins_on_its_line(size: tuple[int, int], t
         await pilot.press("d")
         await until(pilot, lambda: app.panel_area.code is not None and app.panel_area.code.typing)
         assert app.panel_area.code is not None
-        await until(pilot, lambda: app.panel_area.code is not None and app.panel_area.code.error_line == 3)
+        await until(
+            pilot, lambda: app.panel_area.code is not None and app.panel_area.code.error_line == 3
+        )
         assert app.query_one(CodeArea).cursor_location == (2, 4)
 
 
-async def test_no_line_is_marked_any_more_once_the_file_was_mended_elsewhere(tmp_path: Path) -> None:
+async def test_no_line_is_marked_any_more_once_the_file_was_mended_elsewhere(
+    tmp_path: Path,
+) -> None:
     path = tmp_path / "prog.py"
     async with LabApp(own(path, WRONG)).run_test(size=(120, 40)) as pilot:
         app, code = await begun(pilot)
@@ -228,7 +256,9 @@ async def test_ctrl_s_saves_the_world_outside_the_editor(tmp_path: Path) -> None
 
 
 @pytest.mark.quick_cases("save")
-@pytest.mark.parametrize(("answer", "in_file"), [("s", "x" + TEXT), ("d", TEXT)], ids=["save", "discard"])
+@pytest.mark.parametrize(
+    ("answer", "in_file"), [("s", "x" + TEXT), ("d", TEXT)], ids=["save", "discard"]
+)
 async def test_leaving_with_unsaved_changes_asks(answer: str, in_file: str, tmp_path: Path) -> None:
     path = tmp_path / "prog.py"
     async with LabApp(own(path)).run_test(size=(120, 40)) as pilot:
@@ -293,8 +323,12 @@ async def test_unsaved_text_is_kept_soon_and_forgotten_when_undone(tmp_path: Pat
 
 
 @pytest.mark.quick_cases("mine")
-@pytest.mark.parametrize(("answer", "shown"), [("k", "x" + TEXT), ("t", "other = 1\n")], ids=["mine", "file"])
-async def test_a_file_that_changes_under_unsaved_edits(answer: str, shown: str, tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    ("answer", "shown"), [("k", "x" + TEXT), ("t", "other = 1\n")], ids=["mine", "file"]
+)
+async def test_a_file_that_changes_under_unsaved_edits(
+    answer: str, shown: str, tmp_path: Path
+) -> None:
     path = tmp_path / "prog.py"
     async with LabApp(own(path)).run_test(size=(120, 40)) as pilot:
         app, code = await begun(pilot)
@@ -319,7 +353,9 @@ async def test_a_change_of_the_plan_leaves_edits_alone(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-async def test_a_new_program_runs_and_asks_for_its_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+async def test_a_new_program_runs_and_asks_for_its_file(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.chdir(tmp_path)
     async with LabApp(settings(speed=0.0)).run_test(size=(120, 40)) as pilot:
         app, code = await begun(pilot)
@@ -354,7 +390,9 @@ async def test_an_edited_magic_line_changes_the_world_when_it_runs(tmp_path: Pat
 @pytest.mark.slow
 async def test_the_text_may_be_edited_and_saved_during_a_run(tmp_path: Path) -> None:
     path = tmp_path / "prog.py"
-    async with LabApp(own(path, "# %%sim_magic_preloaded\n" + ENDLESS)).run_test(size=(120, 40)) as pilot:
+    async with LabApp(own(path, "# %%sim_magic_preloaded\n" + ENDLESS)).run_test(
+        size=(120, 40)
+    ) as pilot:
         app, code = await begun(pilot)
         await pilot.press("R")
         await until(pilot, lambda: app.run_controller.state == RunPhase.RUNNING)

@@ -20,7 +20,9 @@ pytestmark = [pytest.mark.tmux, pytest.mark.slow, pytest.mark.usefixtures("home"
 def kill_the_app(terminal: Terminal) -> None:
     """Kill the one child of the terminal's shell without a warning."""
     shell = terminal.shell_id()
-    children = subprocess.run(["ps", "-o", "pid=", "--ppid", str(shell)], capture_output=True, text=True, check=True)
+    children = subprocess.run(
+        ["ps", "-o", "pid=", "--ppid", str(shell)], capture_output=True, text=True, check=True
+    )
     os.kill(int(children.stdout.split()[0]), signal.SIGKILL)
 
 

@@ -31,13 +31,22 @@ def inspected(
     outer: dict[str, str] | None = None,
     file: str = "",
 ) -> Inspected:
-    frames = tuple(FrameState(function, line, file if at == 0 else "") for at, (function, line) in enumerate(stack))
-    known = [tuple(Variable(name, "int", value, False) for name, value in d.items()) for d in (variables, outer or {})]
+    frames = tuple(
+        FrameState(function, line, file if at == 0 else "")
+        for at, (function, line) in enumerate(stack)
+    )
+    known = [
+        tuple(Variable(name, "int", value, False) for name, value in d.items())
+        for d in (variables, outer or {})
+    ]
     return Inspected(0, 0, "MainThread", 0, "", (), frames, known[0], known[1], ())
 
 
 def shown(text: str, state: Inspected) -> dict[int, list[str]]:
-    return {line: [f"{one.name}={one.value}" for one in found] for line, found in line_values(text, state).items()}
+    return {
+        line: [f"{one.name}={one.value}" for one in found]
+        for line, found in line_values(text, state).items()
+    }
 
 
 @pytest.mark.parametrize(
@@ -46,16 +55,26 @@ def shown(text: str, state: Inspected) -> dict[int, list[str]]:
         (5, {"total": "0"}, {1: ["total=0"], 6: ["total=0"]}),
         (6, {"total": "3", "n": "2"}, {5: ["n=2"], 6: ["total=3"]}),
         (11, {"n": "2", "done": "True", "speed": "1"}, {5: ["n=2"], 10: ["done=True"]}),
-        (0, {"done": "False", "a": "1", "b": "2", "rest": "[3]"}, {11: ["done=False"], 12: ["a=1", "b=2", "rest=[3]"]}),
+        (
+            0,
+            {"done": "False", "a": "1", "b": "2", "rest": "[3]"},
+            {11: ["done=False"], 12: ["a=1", "b=2", "rest=[3]"]},
+        ),
     ],
     ids=["loop", "constant of before", "not yet", "at the end"],
 )
-def test_globals_beside_lines(line: int, variables: dict[str, str], beside: dict[int, list[str]]) -> None:
+def test_globals_beside_lines(
+    line: int, variables: dict[str, str], beside: dict[int, list[str]]
+) -> None:
     assert shown(TEXT, inspected([(MODULE, line)], variables)) == beside
 
 
 def test_locals_and_globals_in_a_function() -> None:
-    state = inspected([("add", 4), (MODULE, 7)], {"a": "1", "b": "1", "c": "2", "d": "9"}, {"n": "1", "total": "1"})
+    state = inspected(
+        [("add", 4), (MODULE, 7)],
+        {"a": "1", "b": "1", "c": "2", "d": "9"},
+        {"n": "1", "total": "1"},
+    )
     assert shown(TEXT, state) == {2: ["a=1", "b=1"], 3: ["c=2"], 5: ["n=1"], 6: ["total=1"]}
 
 

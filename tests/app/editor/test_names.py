@@ -28,19 +28,36 @@ def found(text: str) -> list[tuple[int, int, int, str]] | None:
         ("slept = 1\nsleep(1)", [(1, 0, 5, "did you mean `time.sleep`? `import time`")]),
         ("randint(1, 6)", [(0, 0, 7, "did you mean `random.randint`? `import random`")]),
         ("sqrt(2)", [(0, 0, 4, "did you mean `math.sqrt`? `import math`")]),
-        ("# %%sim_magic\nSpeedPercent(1)", [(1, 0, 12, "`from ev3dev2.motor import SpeedPercent`")]),
+        (
+            "# %%sim_magic\nSpeedPercent(1)",
+            [(1, 0, 12, "`from ev3dev2.motor import SpeedPercent`")],
+        ),
         ("# %%sim_magic\ntank_drive", [(1, 0, 10, "put `# %%sim_magic_preloaded` into line 1")]),
-        ("from ev3dev2.motor import MoveTank\ntank_drive", [(1, 0, 10, "put `# %%sim_magic_preloaded` into line 1")]),
+        (
+            "from ev3dev2.motor import MoveTank\ntank_drive",
+            [(1, 0, 10, "put `# %%sim_magic_preloaded` into line 1")],
+        ),
         ("class A:\n    v = 1\n    def m(self):\n        return v", [(3, 15, 16, "")]),
         ("tank_drive.\nfoo", [(1, 0, 3, "")]),
         ("for n in rnge(\n    print(n, foo)", [(1, 13, 16, "")]),
     ],
     ids=[
-        "prelude", "builtin and case", "not ASCII", "local elsewhere", "import", "function of time",
-        "of random", "of math", "other prelude", "no prelude",
-        "library", "class", "unfinished line", "unfinished head",
+        "prelude",
+        "builtin and case",
+        "not ASCII",
+        "local elsewhere",
+        "import",
+        "function of time",
+        "of random",
+        "of math",
+        "other prelude",
+        "no prelude",
+        "library",
+        "class",
+        "unfinished line",
+        "unfinished head",
     ],
-)  # fmt: skip
+)
 def test_unknown_names(text: str, unknown: list[tuple[int, int, int, str]]) -> None:
     assert found(text) == unknown
 
@@ -64,7 +81,9 @@ def test_no_name_is_unknown(text: str) -> None:
     assert found(text) == []
 
 
-@pytest.mark.parametrize("text", ["from helper import *\nfoo", "exec('foo = 1')\nfoo", "globals()['foo'] = 1\nfoo"])
+@pytest.mark.parametrize(
+    "text", ["from helper import *\nfoo", "exec('foo = 1')\nfoo", "globals()['foo'] = 1\nfoo"]
+)
 def test_nothing_is_told_where_names_may_come_from_elsewhere(text: str) -> None:
     assert found(text) is None
 

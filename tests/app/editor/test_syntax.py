@@ -15,7 +15,12 @@ from tuisim.config.program_file import programs
     [
         ("while x:  # go", "", [("while", "keyword"), ("# go", "comment")], ""),
         ("def run(a):", "", [("def", "keyword"), ("run", "name")], ""),
-        ("print(x1, 0x1F, 2.5e-3)", "", [("print", "name"), ("0x1F", "number"), ("2.5e-3", "number")], ""),
+        (
+            "print(x1, 0x1F, 2.5e-3)",
+            "",
+            [("print", "name"), ("0x1F", "number"), ("2.5e-3", "number")],
+            "",
+        ),
         ("x = rb'a\\'b' + \"#\"", "", [("rb'a\\'b'", "string"), ('"#"', "string")], ""),
         ("x = '''a # b", "", [("'''a # b", "string")], "'''"),
         ("c''' + 1", "'''", [("c'''", "string"), ("1", "number")], ""),
@@ -24,7 +29,18 @@ from tuisim.config.program_file import programs
         ("x = 'open", "", [("'open", "string")], ""),
         ("", '"""', [], '"""'),
     ],
-    ids=["keyword", "def", "numbers", "strings", "opens", "closes", "other quotes", "twice", "unclosed", "empty"],
+    ids=[
+        "keyword",
+        "def",
+        "numbers",
+        "strings",
+        "opens",
+        "closes",
+        "other quotes",
+        "twice",
+        "unclosed",
+        "empty",
+    ],
 )
 def test_parts_of_a_line_and_the_state_after_it(
     line: str, before: str, parts: list[tuple[str, str]], after: str
@@ -48,7 +64,11 @@ def test_every_example_is_coloured_in_order_and_without_overlap(path: Path) -> N
     lines = path.read_text(encoding="utf-8").split("\n")
     colouring = Colouring()
     for at, line in enumerate(lines):
-        ends = [0, *(edge for start, end, _ in colouring.of(lines, at) for edge in (start, end)), len(line)]
+        ends = [
+            0,
+            *(edge for start, end, _ in colouring.of(lines, at) for edge in (start, end)),
+            len(line),
+        ]
         assert ends == sorted(ends)
 
 

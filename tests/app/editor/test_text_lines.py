@@ -11,7 +11,9 @@ from tuisim.app.editor.text_lines import MOST_COMPARED, LineMap, code_line
 
 
 @pytest.mark.parametrize(
-    ("line", "code"), [(1, 4), (2, 4), (3, 4), (4, 4), (5, 0)], ids=["magic", "comment", "blank", "code", "end"]
+    ("line", "code"),
+    [(1, 4), (2, 4), (3, 4), (4, 4), (5, 0)],
+    ids=["magic", "comment", "blank", "code", "end"],
 )
 def test_a_breakpoint_is_on_the_next_line_of_code(line: int, code: int) -> None:
     assert code_line(["%%sim_magic", "  # words", "", "x = 1  # more", "# the end"], line) == code
@@ -29,7 +31,16 @@ def test_a_breakpoint_is_on_the_next_line_of_code(line: int, code: int) -> None:
         ("abc", "", [0, 0, 0]),
         ("", "abc", []),
     ],
-    ids=["same", "one before", "one changed", "two changed", "out and in", "alike", "all gone", "all new"],
+    ids=[
+        "same",
+        "one before",
+        "one changed",
+        "two changed",
+        "out and in",
+        "alike",
+        "all gone",
+        "all new",
+    ],
 )
 def test_lines_in_common(run: str, shown: str, to_shown: list[int]) -> None:
     lines = LineMap(run, shown)
@@ -66,7 +77,11 @@ def test_the_indentation_after_a_line(line: str, indent: str) -> None:
     ("change", "before", "after"),
     [
         (text_lines.indented, ["a", "", "  b"], ["    a", "", "      b"]),
-        (text_lines.outdented, ["    a", "  b", "      c", "\td", "e"], ["a", "b", "    c", "d", "e"]),
+        (
+            text_lines.outdented,
+            ["    a", "  b", "      c", "\td", "e"],
+            ["a", "b", "    c", "d", "e"],
+        ),
         (text_lines.comment_toggled, ["  a", "", "    b"], ["  # a", "", "  #   b"]),
         (text_lines.comment_toggled, ["  # a", "", "  #   b", "#c"], ["  a", "", "    b", "c"]),
         (text_lines.comment_toggled, ["# a", "b"], ["# # a", "# b"]),
@@ -74,7 +89,9 @@ def test_the_indentation_after_a_line(line: str, indent: str) -> None:
     ],
     ids=["in", "out", "comment", "code", "mixed", "empty"],
 )
-def test_lines_are_changed(change: Callable[[list[str]], list[str]], before: list[str], after: list[str]) -> None:
+def test_lines_are_changed(
+    change: Callable[[list[str]], list[str]], before: list[str], after: list[str]
+) -> None:
     assert change(before) == after
 
 

@@ -99,7 +99,9 @@ async def test_a_long_page_scrolls_and_starts_at_its_top_again() -> None:
         pytest.param("Z", "options", ("Options",), id="settings"),
     ],
 )
-async def test_the_page_of_the_panel_with_the_focus(panel: str, place: str, words: tuple[str, ...]) -> None:
+async def test_the_page_of_the_panel_with_the_focus(
+    panel: str, place: str, words: tuple[str, ...]
+) -> None:
     async with LabApp(settings("print(1)")).run_test(size=MEDIUM) as pilot:
         screen = await opened(pilot, panel)
         assert screen.place == (place, "")
@@ -111,7 +113,12 @@ async def test_the_scroll_bar_covers_no_letter() -> None:
     async with LabApp(settings()).run_test(size=SMALL) as pilot:
         screen = await opened(pilot, "G")
         page = screen._page
-        await until(pilot, lambda: page.max_scroll_y > 0 and page.scrollable_content_region.width == page.drawn_columns)
+        await until(
+            pilot,
+            lambda: (
+                page.max_scroll_y > 0 and page.scrollable_content_region.width == page.drawn_columns
+            ),
+        )
 
 
 async def test_a_page_is_drawn_again_when_only_its_own_width_changes() -> None:
@@ -121,7 +128,9 @@ async def test_a_page_is_drawn_again_when_only_its_own_width_changes() -> None:
         await until(pilot, lambda: page.scrollable_content_region.width == page.drawn_columns > 0)
         before = page.drawn_columns
         screen._contents.styles.width = 30
-        await until(pilot, lambda: before < page.scrollable_content_region.width == page.drawn_columns)
+        await until(
+            pilot, lambda: before < page.scrollable_content_region.width == page.drawn_columns
+        )
 
 
 @pytest.mark.quick_cases("take a screenshot")
@@ -130,7 +139,9 @@ async def test_a_question_is_answered_by_its_page(question: str) -> None:
     async with LabApp(settings()).run_test(size=SMALL) as pilot:
         screen = await opened(pilot)
         answers = await asked(pilot, question)
-        await pilot.press(*["down"] * [one.name for one in answers].index(QUESTIONS[question]), "enter")
+        await pilot.press(
+            *["down"] * [one.name for one in answers].index(QUESTIONS[question]), "enter"
+        )
         await until(pilot, lambda: screen.focused is not None and screen.focused.id == "page")
         assert screen.place[0] == QUESTIONS[question]
 
@@ -178,7 +189,11 @@ async def test_a_section_is_gone_to() -> None:
         second = headings_in(pages()["first-steps"])[1]
         await until(pilot, lambda: screen.place == ("first-steps", second))
         await until(
-            pilot, lambda: screen_text(lab(pilot)).find(second) < screen_text(lab(pilot)).find("The world is in")
+            pilot,
+            lambda: (
+                screen_text(lab(pilot)).find(second)
+                < screen_text(lab(pilot)).find("The world is in")
+            ),
         )
         await until(pilot, lambda: "This page takes you" not in screen_text(lab(pilot)))
 
@@ -194,7 +209,9 @@ async def test_no_title_is_cut_off(size: tuple[int, int]) -> None:
         tree = screen.query_one(Tree)
         await until(pilot, lambda: tree.has_focus and tree.size.width > 0)
         titles = [*(page.title for page in pages().values()), "All keys"]
-        assert [title for title in titles if len(title) + 4 > tree.scrollable_content_region.width] == []
+        assert [
+            title for title in titles if len(title) + 4 > tree.scrollable_content_region.width
+        ] == []
 
 
 @pytest.mark.slow_cases("brick")
@@ -233,7 +250,9 @@ async def test_the_best_answers_are_in_sight_below_each_other(size: tuple[int, i
         pytest.param("colours look wrong in my terminal", "does not announce", id="first"),
     ],
 )
-async def test_the_passage_of_an_answer_is_in_sight_on_its_page(question: str, passage: str) -> None:
+async def test_the_passage_of_an_answer_is_in_sight_on_its_page(
+    question: str, passage: str
+) -> None:
     async with LabApp(settings()).run_test(size=SMALL) as pilot:
         await opened(pilot)
         answers = await asked(pilot, question)
@@ -273,7 +292,11 @@ async def test_words_of_the_question_stand_out_and_a_section_is_named_once() -> 
         listed = guide(pilot).query_one(AnswerList)
         first, second = (listed.get_option_at_index(at).prompt for at in range(2))
         assert isinstance(first, Text) and isinstance(second, Text)
-        bold = {str(first)[one.start : one.end].lower() for one in first.spans if one.style == STANDS_OUT}
+        bold = {
+            str(first)[one.start : one.end].lower()
+            for one in first.spans
+            if one.style == STANDS_OUT
+        }
         assert bold <= {"colour", "color", "colours", "sensor", "sensors"} and bold
         same = (answers[0].name, answers[0].heading) == (answers[1].name, answers[1].heading)
         assert str(second).startswith("• ") == same

@@ -22,7 +22,12 @@ def defaults(width: int, height: int) -> list[str]:
 def assert_fills(boxes: dict[str, PanelBox], width: int, height: int) -> None:
     covered = np.zeros((height, width), dtype=int)
     for box in boxes.values():
-        assert 0 <= box.x and box.x + box.width <= width and 0 <= box.y and box.y + box.height <= height
+        assert (
+            0 <= box.x
+            and box.x + box.width <= width
+            and 0 <= box.y
+            and box.y + box.height <= height
+        )
         covered[box.y : box.y + box.height, box.x : box.x + box.width] += 1
     assert (covered == 1).all()
 
@@ -86,7 +91,9 @@ def test_the_world_has_the_whole_width_of_a_low_terminal(width: int, height: int
 
 @LOW_SIZES
 @pytest.mark.parametrize(("panel", "rows"), [("chart", 14), ("code", 11)])
-def test_a_roomy_panel_replaces_nothing_in_a_low_terminal(panel: str, rows: int, width: int, height: int) -> None:
+def test_a_roomy_panel_replaces_nothing_in_a_low_terminal(
+    panel: str, rows: int, width: int, height: int
+) -> None:
     placed = arrange(["world", panel, "instrumentation", "output"], width, height)
     assert not placed.left_out
     assert placed.boxes[panel].width == width and placed.boxes[panel].height >= rows
@@ -105,7 +112,10 @@ def test_a_chart_finds_room_in_a_very_low_terminal(height: int) -> None:
 
 def test_the_settings_leave_room_for_all_readings_in_a_small_terminal() -> None:
     boxes = arrange(["settings", "world", "instrumentation", "output"], 80, 23).boxes
-    assert boxes["instrumentation"].height >= 8 and boxes["settings"].height >= PANELS["settings"].fair_rows
+    assert (
+        boxes["instrumentation"].height >= 8
+        and boxes["settings"].height >= PANELS["settings"].fair_rows
+    )
 
 
 def test_no_panels_no_boxes() -> None:

@@ -35,9 +35,12 @@ async def test_the_next_start_finds_an_arrangement_that_was_kept_for_its_size() 
 
 
 @pytest.mark.parametrize(
-    "former", [{"borders": {"wide": {"world|output": 0.5}}}, {"medium": {"preset": "teach", "panels": []}}]
+    "former",
+    [{"borders": {"wide": {"world|output": 0.5}}}, {"medium": {"preset": "teach", "panels": []}}],
 )
-async def test_what_no_layout_has_any_more_is_dropped_with_one_notice(former: dict[str, object]) -> None:
+async def test_what_no_layout_has_any_more_is_dropped_with_one_notice(
+    former: dict[str, object],
+) -> None:
     keep("layout", {"small": SMALL, **former})
     for told in (1, 0):
         async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:

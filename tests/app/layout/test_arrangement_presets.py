@@ -14,7 +14,9 @@ from tuisim.app.snapshot import RunPhase
 SIZES = [(80, 24), (100, 30), (120, 40), (160, 48), (200, 60), (300, 100), (60, 80)]
 KEYS = {Preset.DRIVE: "f6", Preset.DEBUG: "f7", Preset.ANALYSE: "f8"}
 
-in_each_size = pytest.mark.parametrize("size", SIZES, ids=[f"{width}x{height}" for width, height in SIZES])
+in_each_size = pytest.mark.parametrize(
+    "size", SIZES, ids=[f"{width}x{height}" for width, height in SIZES]
+)
 for_each_preset = pytest.mark.parametrize("preset", Preset)
 
 
@@ -63,7 +65,10 @@ def test_lines_of_code_are_whole_in_a_medium_terminal() -> None:
 @in_each_size
 def test_the_output_leaves_its_rows_to_the_code_when_debugging(size: tuple[int, int]) -> None:
     boxes = layout_of(Preset.DEBUG, *size).boxes
-    assert "output" not in boxes or boxes["output"].height <= PANELS["output"].good_rows < boxes["code"].height
+    assert (
+        "output" not in boxes
+        or boxes["output"].height <= PANELS["output"].good_rows < boxes["code"].height
+    )
 
 
 @pytest.mark.quick_cases("analyse")
@@ -75,7 +80,9 @@ async def test_a_key_shows_a_preset_and_again_the_standard_layout(preset: Preset
         await pilot.press(key)
         core = core_panels(preset, 80, 23)
         assert set(core) == set(app.panel_area.arrangement.boxes)
-        await until(pilot, lambda: all(f" {PANELS[panel].title}" in screen_text(app) for panel in core))
+        await until(
+            pilot, lambda: all(f" {PANELS[panel].title}" in screen_text(app) for panel in core)
+        )
         await pilot.press(key)
         assert set(app.panel_area.arrangement.boxes) == standard
 
@@ -83,10 +90,15 @@ async def test_a_key_shows_a_preset_and_again_the_standard_layout(preset: Preset
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("size", "round_"),
-    [((80, 24), ["debug", "analyse", "standard"]), ((120, 40), ["drive", "debug", "analyse", "standard"])],
+    [
+        ((80, 24), ["debug", "analyse", "standard"]),
+        ((120, 40), ["drive", "debug", "analyse", "standard"]),
+    ],
     ids=["80x24", "120x40"],
 )
-async def test_one_key_goes_round_the_presets_that_differ(size: tuple[int, int], round_: list[str]) -> None:
+async def test_one_key_goes_round_the_presets_that_differ(
+    size: tuple[int, int], round_: list[str]
+) -> None:
     async with LabApp(settings(LOGS)).run_test(size=size) as pilot:
         app = await ready(pilot)
         shown = []

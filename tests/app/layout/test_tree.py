@@ -36,13 +36,19 @@ def test_parts_side_by_side_get_shares_by_their_weights() -> None:
 
 def test_what_a_node_needs_is_added_along_its_axis() -> None:
     assert panels_of(ABOVE) == ("world", "chart", "output")
-    assert least_columns(ABOVE) == least_columns(BESIDE) == PANELS["chart"].min_cols + PANELS["output"].min_cols
+    assert (
+        least_columns(ABOVE)
+        == least_columns(BESIDE)
+        == PANELS["chart"].min_cols + PANELS["output"].min_cols
+    )
     deepest = max(PANELS["chart"].min_rows, PANELS["output"].min_rows)
     assert least_rows(ABOVE) == PANELS["world"].min_rows + deepest
 
 
 def test_the_world_is_shown_well_in_the_shape_of_the_mat() -> None:
-    assert fair_rows(ABOVE, 80) == ideal_rows(80) + max(PANELS["chart"].fair_rows, PANELS["output"].fair_rows)
+    assert fair_rows(ABOVE, 80) == ideal_rows(80) + max(
+        PANELS["chart"].fair_rows, PANELS["output"].fair_rows
+    )
 
 
 @pytest.mark.parametrize("size", [(60, 18), (80, 24), (200, 60)], ids=str)

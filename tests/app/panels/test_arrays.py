@@ -19,7 +19,9 @@ from tuisim.terminal.picture_mode import PictureMode
 from tuisim.terminal.picture_options import CellSet
 
 FIELD = replace(small_field(), sums={20: memoryview(array("I", [305 * 128]) * (320 * 420 * 3))})
-PROGRAM = Program("test.py", "while colorLeft.reflected_light_intensity_pc > 5:\n    pass\n", "preloaded")
+PROGRAM = Program(
+    "test.py", "while colorLeft.reflected_light_intensity_pc > 5:\n    pass\n", "preloaded"
+)
 POSE = Pose(100.0, 1000.0, 90.0)
 
 
@@ -30,7 +32,9 @@ async def shown(size: tuple[int, int], program: Program | None = None) -> tuple[
         app.panel.show(moment(POSE, field=FIELD, program=program))
         await pilot.pause()
         await pilot.pause()
-        assert all(app.panel.region.contains_region(view.region) for view in app.panel.query(PixelView))
+        assert all(
+            app.panel.region.contains_region(view.region) for view in app.panel.query(PixelView)
+        )
         return [view.region for view in app.panel.query(PixelView)], "\n".join(screen_text(app))
 
 
@@ -46,7 +50,9 @@ async def shown(size: tuple[int, int], program: Program | None = None) -> tuple[
         pytest.param((20, 6), True, id="small"),
     ],
 )
-async def test_both_discs_are_whole_with_what_the_program_gets(size: tuple[int, int], across: bool) -> None:
+async def test_both_discs_are_whole_with_what_the_program_gets(
+    size: tuple[int, int], across: bool
+) -> None:
     (left, right), text = await shown(size)
 
     assert (left.y == right.y) is across
@@ -62,10 +68,18 @@ async def test_the_means_of_the_rings_are_called_the_same_everywhere(size: tuple
 async def test_a_threshold_is_on_the_scale_and_in_words() -> None:
     _, text = await shown((60, 14), PROGRAM)
 
-    assert "50.2 %" in text and "> 5: yes" in text and "┃" in text and "line 1 asks" in text and "in→out" in text
+    assert (
+        "50.2 %" in text
+        and "> 5: yes" in text
+        and "┃" in text
+        and "line 1 asks" in text
+        and "in→out" in text
+    )
 
 
-@pytest.mark.parametrize("cells", [CellSet.HALF, CellSet.SEXTANT, CellSet.OCTANT, CellSet.BRAILLE, CellSet.ASCII])
+@pytest.mark.parametrize(
+    "cells", [CellSet.HALF, CellSet.SEXTANT, CellSet.OCTANT, CellSet.BRAILLE, CellSet.ASCII]
+)
 async def test_discs_use_the_cells_of_the_app(cells: CellSet) -> None:
     app = PanelApp(Arrays())
     app.picture_mode = PictureMode(cells)  # type: ignore[attr-defined]
@@ -90,7 +104,10 @@ async def test_with_few_colours_what_is_around_a_disc_is_plain_and_darker(
         picture = app.panel.query(PixelView).first()._shown @ np.array([0.299, 0.587, 0.114])
     high, wide = picture.shape
     # In the middle is the edge between red and white, the left half lies on the former.
-    disc, corner = picture[high // 2 - 2 : high // 2 + 2, wide // 2 + 1 : wide // 2 + 3], picture[:1, :1]
+    disc, corner = (
+        picture[high // 2 - 2 : high // 2 + 2, wide // 2 + 1 : wide // 2 + 3],
+        picture[:1, :1],
+    )
     assert np.ptp(corner) == 0
     assert corner.max() < disc.mean()
 

@@ -42,13 +42,19 @@ def printed(app: LabApp) -> list[str]:
 def drawn(app: LabApp) -> str:
     """What the panel shows, as lines of text."""
     assert app.panel_area.brick is not None
-    return "\n".join("".join(text for text, _ in line) for line in app.panel_area.brick._picture.lines)
+    return "\n".join(
+        "".join(text for text, _ in line) for line in app.panel_area.brick._picture.lines
+    )
 
 
 def actions(app: LabApp) -> list[list[str]]:
     assert app.run_controller.run is not None
     path = app.run_controller.run.folder / "actions.jsonl"
-    return [json.loads(line)["pressed"] for line in path.read_text().splitlines()] if path.exists() else []
+    return (
+        [json.loads(line)["pressed"] for line in path.read_text().splitlines()]
+        if path.exists()
+        else []
+    )
 
 
 async def test_keys_press_buttons_while_the_panel_has_the_focus() -> None:
@@ -140,7 +146,9 @@ async def test_plus_gives_the_panel_the_whole_desk_and_back() -> None:
         await ready(pilot)
         await pilot.press("K", "plus")
         await pilot.pause()
-        assert [panel for panel in app.panel_area.panels if app.panel_area.shown(panel)] == ["brick"]
+        assert [panel for panel in app.panel_area.panels if app.panel_area.shown(panel)] == [
+            "brick"
+        ]
         assert app.panel_area.panels["brick"].size.width > 110
         await pilot.press("plus")
         await pilot.pause()
@@ -170,6 +178,9 @@ async def test_buttons_are_of_now_and_a_branch_begins_with_none_held() -> None:
         await pilot.press("y", "y")
         await until(
             pilot,
-            lambda: app.run_controller.state in (RunPhase.RUNNING, RunPhase.PAUSED) and actions(app) == [["up"], []],
+            lambda: (
+                app.run_controller.state in (RunPhase.RUNNING, RunPhase.PAUSED)
+                and actions(app) == [["up"], []]
+            ),
         )
         assert (app.run_controller.pressed, app.panel_area.brick.held) == (frozenset(), frozenset())

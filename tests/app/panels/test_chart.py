@@ -205,7 +205,8 @@ async def test_bands_are_shown_while_the_run_stands_still() -> None:
 
 
 @pytest.mark.parametrize(
-    ("column", "sample"), [pytest.param(30, "Colour", id="in a band"), pytest.param(70, "", id="beside all samples")]
+    ("column", "sample"),
+    [pytest.param(30, "Colour", id="in a band"), pytest.param(70, "", id="beside all samples")],
 )
 async def test_a_click_goes_to_the_sample_there(column: int, sample: str) -> None:
     app = PanelApp(Chart())

@@ -64,10 +64,14 @@ async def test_the_line_that_runs_stays_in_sight_when_the_panel_shrinks() -> Non
         code, area = await alone(pilot, "\n".join(f"x{n} = {n}" for n in range(200)))
         code.show_line(20)
         await pilot.resize_terminal(60, 10)
-        await until(pilot, lambda: area.scroll_offset.y <= 19 < area.scroll_offset.y + area.size.height)
+        await until(
+            pilot, lambda: area.scroll_offset.y <= 19 < area.scroll_offset.y + area.size.height
+        )
 
 
-@pytest.mark.parametrize("text", ["", "\n", "a\n\n", "x = '\x0c\u2028\x85'\n", "\x1b[31m", "漢字 = 1\n", "\ta\n"])
+@pytest.mark.parametrize(
+    "text", ["", "\n", "a\n\n", "x = '\x0c\u2028\x85'\n", "\x1b[31m", "漢字 = 1\n", "\ta\n"]
+)
 async def test_no_text_is_changed_by_being_shown(text: str) -> None:
     async with CodeApp().run_test(size=(40, 8)) as pilot:
         _, area = await alone(pilot, text)
@@ -79,7 +83,9 @@ LOOP = "total = 0\nfor n in range(9):\n    total = total + n * 100000000000\n   
 
 def pause(*variables: Variable) -> PauseView:
     stack = (FrameState("<module>", 4, ""),)
-    return PauseView(Paused(321, 0, 4), Inspected(321, 0, "", 0, "", (), stack, variables, (), ()), False)
+    return PauseView(
+        Paused(321, 0, 4), Inspected(321, 0, "", 0, "", (), stack, variables, (), ()), False
+    )
 
 
 def pause_at_print(code: Code) -> None:
@@ -95,8 +101,22 @@ PAUSE = pause(Variable("total", "int", "100000000000", True), Variable("n", "int
 @pytest.mark.parametrize(
     ("width", "rows"),
     [
-        (70, ["total = 0", "for n in range(9):  n = 1", "total = total + n * 100000000000  total = 100000000000"]),
-        (60, ["total = 0", "for n in range(9):  n = 1", "total = total + n * 100000000000  → 100000000000"]),
+        (
+            70,
+            [
+                "total = 0",
+                "for n in range(9):  n = 1",
+                "total = total + n * 100000000000  total = 100000000000",
+            ],
+        ),
+        (
+            60,
+            [
+                "total = 0",
+                "for n in range(9):  n = 1",
+                "total = total + n * 100000000000  → 100000000000",
+            ],
+        ),
         (44, ["total = 0", "for n in range(9):  n = 1", "total = total + n *… → 100000000000"]),
     ],
     ids=["fits", "without the name", "instead of the end of the line"],
@@ -123,7 +143,13 @@ async def test_values_of_another_instant_are_not_shown(then: str) -> None:
             case "go on":
                 code.show_pause(None)
             case "another instant":
-                code.show(moment(state=RunPhase.PAUSED, line=4, instant=Instant(322, Pose(0, 0, 0), 0, 0, 0, 0)))
+                code.show(
+                    moment(
+                        state=RunPhase.PAUSED,
+                        line=4,
+                        instant=Instant(322, Pose(0, 0, 0), 0, 0, 0, 0),
+                    )
+                )
             case _:
                 code.set_running(None)
         assert "n = 1" not in area.render_line(1).text

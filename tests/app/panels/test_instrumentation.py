@@ -25,9 +25,15 @@ EXTREME = moment(
     end=End.OUTPUT_LIMIT,
     speed=0.25,
 )
-BARE = moment(spec=replace(SPEC, robot=replace(SPEC.robot, gyro=None, ultrasonic=None)), ultrasonic_mm=None, colors={})
+BARE = moment(
+    spec=replace(SPEC, robot=replace(SPEC.robot, gyro=None, ultrasonic=None)),
+    ultrasonic_mm=None,
+    colors={},
+)
 
-ARMED = replace(SPEC, robot=replace(SPEC.robot, extra_motors=(MotorSpec("outA"), MotorSpec("outD"))))
+ARMED = replace(
+    SPEC, robot=replace(SPEC.robot, extra_motors=(MotorSpec("outA"), MotorSpec("outD")))
+)
 FURTHER = moment(
     spec=ARMED,
     turns=((-2517.4, -312.2), (0.0, 0.0)),
@@ -41,9 +47,17 @@ def text(now: Snapshot, width: int, height: int) -> list[str]:
 
 @pytest.mark.parametrize(
     ("heading_deg", "shown"),
-    [(-399.3, "-39.3°"), (0.0, "0.0°"), (-90.0, "-90.0°"), (270.0, "-90.0°"), (180.0, "180.0°"), (-180.0, "-180.0°"),
-     (540.0, "180.0°"), (725.5, "5.5°")],
-)  # fmt: skip
+    [
+        (-399.3, "-39.3°"),
+        (0.0, "0.0°"),
+        (-90.0, "-90.0°"),
+        (270.0, "-90.0°"),
+        (180.0, "180.0°"),
+        (-180.0, "-180.0°"),
+        (540.0, "180.0°"),
+        (725.5, "5.5°"),
+    ],
+)
 def test_a_heading_is_shown_within_half_a_turn(heading_deg: float, shown: str) -> None:
     now = moment(Pose(1.0, 2.0, heading_deg))
     assert text(now, 44, 11)[-3].split()[-1] == shown
@@ -76,7 +90,9 @@ def test_a_narrow_panel_names_the_pen() -> None:
     assert "pen down" in text(moment(), 34, 11)[-1]
 
 
-@pytest.mark.parametrize("now", [moment(), BARE, FURTHER], ids=["usual", "no sensors", "further parts"])
+@pytest.mark.parametrize(
+    "now", [moment(), BARE, FURTHER], ids=["usual", "no sensors", "further parts"]
+)
 def test_it_fits(now: Snapshot) -> None:
     for width, height in product((18, 20, 24, 26, 32, 40, 44, 80), (4, 6, 8, 9, 11, 13, 14, 30)):
         rows = text(now, width, height)
@@ -91,7 +107,9 @@ def test_extreme_values_fit() -> None:
 
 
 def test_a_word_and_its_value_have_a_space_between_them() -> None:
-    on_white = moment(colors={"left": ColorReading(255.0, 255.0, 255.0), "right": ColorReading(0.0, 0.0, 255.0)})
+    on_white = moment(
+        colors={"left": ColorReading(255.0, 255.0, 255.0), "right": ColorReading(0.0, 0.0, 255.0)}
+    )
     assert [row for row in text(on_white, 26, 14) if "red" in row] == [
         "Sensor1 red  100 mean  100",
         "Sensor2 red  0.0 mean 33.3",
@@ -132,7 +150,9 @@ def test_the_heading_is_named() -> None:
 
 @pytest.mark.parametrize("height", [4, 11])
 def test_a_past_instant_is_not_called_finished(height: int) -> None:
-    rows = text(moment(state=RunPhase.ENDED, end=End.FINISHED, past=True), 78 if height == 4 else 40, height)
+    rows = text(
+        moment(state=RunPhase.ENDED, end=End.FINISHED, past=True), 78 if height == 4 else 40, height
+    )
     assert not any("finished" in row for row in rows)
     assert height == 4 or "past" in rows[-1]
 
@@ -168,7 +188,9 @@ async def test_what_is_left_of_last_time_is_wiped() -> None:
         app.panel.show(BARE)
         await pilot.pause()
 
-        assert [row.rstrip() for row in screen_text(app)] == [row.rstrip() for row in text(BARE, 40, 11)]
+        assert [row.rstrip() for row in screen_text(app)] == [
+            row.rstrip() for row in text(BARE, 40, 11)
+        ]
 
 
 def test_further_parts() -> None:
@@ -181,12 +203,19 @@ def test_further_parts() -> None:
         "Back 1234 mm",
     ]
     starts = ("Motor", "Bum", "Inf", "Bac")
-    assert text(FURTHER, 26, 11)[6:11] == [row for row in text(FURTHER, 26, 30) if row.startswith(starts)]
+    assert text(FURTHER, 26, 11)[6:11] == [
+        row for row in text(FURTHER, 26, 30) if row.startswith(starts)
+    ]
 
 
 @pytest.mark.parametrize(
     ("width", "height", "shown"),
-    [(78, 2, "L R S1 S2 US Gyro x y"), (46, 3, "L R S1 S2 US Gyro x y h"), (30, 2, "L R S1 S2"), (78, 1, "L R S1 S2")],
+    [
+        (78, 2, "L R S1 S2 US Gyro x y"),
+        (46, 3, "L R S1 S2 US Gyro x y h"),
+        (30, 2, "L R S1 S2"),
+        (78, 1, "L R S1 S2"),
+    ],
 )
 def test_in_few_lines_the_readings_stand_side_by_side(width: int, height: int, shown: str) -> None:
     text = lines(moment(), width, height)
@@ -198,7 +227,10 @@ def test_in_few_lines_the_readings_stand_side_by_side(width: int, height: int, s
 
 def test_readings_side_by_side_do_not_move_with_their_values() -> None:
     low, high = (
-        [[len(part) for part, _ in line] for line in lines(moment(ultrasonic_mm=far, gyro_deg=angle), 78, 2)]
+        [
+            [len(part) for part, _ in line]
+            for line in lines(moment(ultrasonic_mm=far, gyro_deg=angle), 78, 2)
+        ]
         for far, angle in ((90, 5), (2550, -180))
     )
     assert low == high

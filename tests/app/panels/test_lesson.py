@@ -12,7 +12,17 @@ from textual.pilot import Pilot
 from textual.widgets import Input, OptionList, Static
 
 from tests.app.app_help import notices, ready, until
-from tests.app.lesson_help import LARGE, PROGRAM, SMALL, opened, run_over, shown, states, type_answer, with_lines
+from tests.app.lesson_help import (
+    LARGE,
+    PROGRAM,
+    SMALL,
+    opened,
+    run_over,
+    shown,
+    states,
+    type_answer,
+    with_lines,
+)
 from tuisim.analysis.source import NOTES_FILE, Note, write_notes
 from tuisim.app.app import LabApp
 from tuisim.app.dialogs.chooser import Chooser
@@ -218,7 +228,9 @@ DONE: dict[str, tuple[str, Callable[[Pilot[Any], LabApp], Awaitable[None]]]] = {
 @pytest.mark.quick_cases("show", "breakpoint")
 @pytest.mark.usefixtures("home")
 @pytest.mark.parametrize("name", DONE)
-async def test_step_is_done_by_doing_it(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+async def test_step_is_done_by_doing_it(
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.chdir(tmp_path)
     check, do = DONE[name]
     async with LabApp(opened(tmp_path, check)).run_test(size=SMALL) as pilot:
@@ -251,7 +263,9 @@ async def test_typing_ends_when_the_program_is_run_from_the_editor(tmp_path: Pat
         await pilot.press("d")
         await until(pilot, lambda: app.panel_area.code is not None and app.panel_area.code.typing)
         await pilot.press("ctrl+r")
-        await until(pilot, lambda: app.panel_area.code is not None and not app.panel_area.code.typing)
+        await until(
+            pilot, lambda: app.panel_area.code is not None and not app.panel_area.code.typing
+        )
         assert app.panel_area.shown("lesson")
 
 
@@ -273,7 +287,12 @@ async def test_program_is_saved_when_it_runs(tmp_path: Path) -> None:
 async def test_other_panels_do_not_replace_the_lesson(tmp_path: Path) -> None:
     async with LabApp(opened(tmp_path)).run_test(size=SMALL) as pilot:
         app = await ready(pilot)
-        for key, panel in (("i", "instrumentation"), ("A", "arrays"), ("G", "debug"), ("X", "positioning")):
+        for key, panel in (
+            ("i", "instrumentation"),
+            ("A", "arrays"),
+            ("G", "debug"),
+            ("X", "positioning"),
+        ):
             await pilot.press(key)
             await until(pilot, lambda panel=panel: app.panel_area.shown(panel))  # type: ignore[misc]
             assert app.panel_area.shown("lesson"), panel
@@ -303,7 +322,9 @@ async def test_page_keys_scroll_the_text_beside_every_panel(panel: str, tmp_path
         await until(pilot, lambda: app.panel_area.shown(panel) and "Line 0" in shown(app))
         lesson = app.panel_area.lesson
         assert lesson is not None
-        for widget in [one for one in app.screen.focus_chain if lesson not in one.ancestors_with_self]:
+        for widget in [
+            one for one in app.screen.focus_chain if lesson not in one.ancestors_with_self
+        ]:
             app.set_focus(widget)
             await pilot.pause()
             assert lesson.border_subtitle == "page down reads on"
@@ -344,11 +365,17 @@ async def test_menu_shows_the_step_before_again(tmp_path: Path) -> None:
 
 @pytest.mark.quick_cases("80")
 @pytest.mark.usefixtures("home")
-@pytest.mark.parametrize(("size", "columns"), [(SMALL, 40), (LARGE, 45), ((200, 60), 58)], ids=["80", "120", "200"])
-async def test_lesson_stands_beside_world_and_code(size: tuple[int, int], columns: int, tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    ("size", "columns"), [(SMALL, 40), (LARGE, 45), ((200, 60), 58)], ids=["80", "120", "200"]
+)
+async def test_lesson_stands_beside_world_and_code(
+    size: tuple[int, int], columns: int, tmp_path: Path
+) -> None:
     async with LabApp(opened(tmp_path)).run_test(size=size) as pilot:
         app = await ready(pilot)
-        await until(pilot, lambda: all(map(app.panel_area.shown, ("lesson", "world", "code", "output"))))
+        await until(
+            pilot, lambda: all(map(app.panel_area.shown, ("lesson", "world", "code", "output")))
+        )
         assert app.panel_area.lesson is not None
         assert app.panel_area.lesson.styles.width is not None
         assert app.panel_area.lesson.styles.width.value == columns
@@ -360,7 +387,9 @@ async def test_damaged_progress_is_reported_and_kept(home: Path, tmp_path: Path)
     (home / "lessons" / "progress.json").write_text("[1]")
     async with LabApp(opened(tmp_path)).run_test(size=SMALL) as pilot:
         app = await ready(pilot)
-        await until(pilot, lambda: any("progress.json: is damaged" in text for text in notices(app)))
+        await until(
+            pilot, lambda: any("progress.json: is damaged" in text for text in notices(app))
+        )
     assert json.loads((home / "lessons" / "progress.json").read_text()) == [1]
 
 
@@ -386,7 +415,9 @@ async def test_page_keys_scroll_the_text_after_a_run_from_the_editor(tmp_path: P
     ],
     ids=["wrong", "no number"],
 )
-async def test_answer_that_is_not_right_says_what_to_do(text: str, words: str, tmp_path: Path) -> None:
+async def test_answer_that_is_not_right_says_what_to_do(
+    text: str, words: str, tmp_path: Path
+) -> None:
     async with LabApp(opened(tmp_path)).run_test(size=SMALL) as pilot:
         app = await ready(pilot)
         await type_answer(pilot, app, text)
@@ -431,7 +462,10 @@ async def test_output_is_back_when_another_lesson_is_opened(
             await pilot.press("c")
         await until(pilot, lambda: app.panel_area.shown("chart"))
         app.lesson.open("first-run")
-        await until(pilot, lambda: app.panel_area.shown("output") and app.panel_area.shown("chart") is is_shown)
+        await until(
+            pilot,
+            lambda: app.panel_area.shown("output") and app.panel_area.shown("chart") is is_shown,
+        )
 
 
 @pytest.mark.usefixtures("home")

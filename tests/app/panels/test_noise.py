@@ -60,7 +60,9 @@ async def test_a_wrong_number_is_refused_beside_it(field: str, typed: str, said:
 
 @pytest.mark.slow
 async def test_typed_numbers_and_the_seed_are_for_the_next_run_too() -> None:
-    async with LabApp(settings("print('A: 1')\n", panels_on=SHOWN, speed=0.0)).run_test(size=(80, 24)) as pilot:
+    async with LabApp(settings("print('A: 1')\n", panels_on=SHOWN, speed=0.0)).run_test(
+        size=(80, 24)
+    ) as pilot:
         app = await ready(pilot)
         for field, typed in (("motor-number", "50"), ("seed", "7")):
             entry = app.query_one(f"#{field}", Input)
@@ -77,11 +79,16 @@ async def test_typed_numbers_and_the_seed_are_for_the_next_run_too() -> None:
 
 @pytest.mark.slow
 async def test_noise_set_during_a_run_is_recorded_and_shown_from_its_tick_on() -> None:
-    async with LabApp(settings(ENDLESS, autorun=True, panels_on=SHOWN)).run_test(size=(120, 40)) as pilot:
+    async with LabApp(settings(ENDLESS, autorun=True, panels_on=SHOWN)).run_test(
+        size=(120, 40)
+    ) as pilot:
         app = await ready(pilot)
         await until(
             pilot,
-            lambda: app.run_controller.state == RunPhase.RUNNING and app.run_controller.snapshot().instant.tick > 0,
+            lambda: (
+                app.run_controller.state == RunPhase.RUNNING
+                and app.run_controller.snapshot().instant.tick > 0
+            ),
         )
         app.query_one("#light", Slider).focus()
         await pilot.press("pageup")
@@ -94,7 +101,10 @@ async def test_noise_set_during_a_run_is_recorded_and_shown_from_its_tick_on() -
         assert recording.noise_at(run.telemetry.record(0)) == NoiseSpec(0, 0)
         await until(pilot, lambda: "light ±10" in screen_text(app))
         # The run itself began without: what it was made of does not change.
-        assert json.loads((run.folder / "run.json").read_text())["spec"]["world"]["noise"]["light"] == 0
+        assert (
+            json.loads((run.folder / "run.json").read_text())["spec"]["world"]["noise"]["light"]
+            == 0
+        )
         await pilot.press("escape", "S")
         await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED)
         assert app.run_controller.snapshot().instant.noise.light == 10

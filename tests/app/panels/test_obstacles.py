@@ -142,7 +142,9 @@ async def test_one_is_drawn_and_moved_with_the_mouse() -> None:
 async def test_a_click_chooses_and_the_mouse_draws_only_while_the_panel_is_shown() -> None:
     async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
         app = await opened(pilot)
-        app.loader.set_next_run(with_obstacles(app.run_controller.next_run, OBSTACLES["Square_posts"]))
+        app.loader.set_next_run(
+            with_obstacles(app.run_controller.next_run, OBSTACLES["Square_posts"])
+        )
         await pilot.pause()
         await pilot.click(WorldView, offset=cell(app, 550, 250))
         await until(pilot, lambda: app.query_one(Obstacles).at == 0)
@@ -186,7 +188,9 @@ async def test_a_set_is_chosen_and_saved(tmp_path: Path, monkeypatch: pytest.Mon
 
 @pytest.mark.slow
 async def test_obstacles_are_not_changed_during_a_run() -> None:
-    async with LabApp(settings(ENDLESS, autorun=True, panels_on=SHOWN)).run_test(size=(120, 40)) as pilot:
+    async with LabApp(settings(ENDLESS, autorun=True, panels_on=SHOWN)).run_test(
+        size=(120, 40)
+    ) as pilot:
         app = await ready(pilot)
         await until(pilot, lambda: app.run_controller.state == RunPhase.RUNNING)
         await drag(pilot, cell(app, 1000, 900), cell(app, 1300, 600))
@@ -197,13 +201,17 @@ async def test_obstacles_are_not_changed_during_a_run() -> None:
 @pytest.mark.slow
 async def test_a_blocked_motor_is_shown_as_stalled() -> None:
     wall = "tank_drive.on(SpeedPercent(50), SpeedPercent(50))\nimport time\ntime.sleep(60)\n"
-    async with LabApp(settings(wall, background="Empty_Map", autorun=False)).run_test(size=(120, 40)) as pilot:
+    async with LabApp(settings(wall, background="Empty_Map", autorun=False)).run_test(
+        size=(120, 40)
+    ) as pilot:
         app = await ready(pilot)
         from tuisim.app.setup.next_run import with_values
 
         plan = with_values(app.run_controller.next_run, {"solid": True})
         start = app.run_controller.pose
-        app.loader.set_next_run(with_obstacles(plan, (Obstacle(start.x_mm + 60, start.y_mm - 100, 50, 200),)))
+        app.loader.set_next_run(
+            with_obstacles(plan, (Obstacle(start.x_mm + 60, start.y_mm - 100, 50, 200),))
+        )
         await pilot.press("R")
         await until(pilot, lambda: app.run_controller.snapshot().stalled == (True, True))
         await until(pilot, lambda: screen_text(app).count("stalled") == 2)
@@ -234,7 +242,9 @@ def test_which_box_is_under_the_mouse(point: tuple[float, float], index: int | N
     ],
     ids=["up", "down", "only on the field", "too thin"],
 )
-def test_what_a_drag_draws(start: tuple[float, float], end: tuple[float, float], drawn: Obstacle | None) -> None:
+def test_what_a_drag_draws(
+    start: tuple[float, float], end: tuple[float, float], drawn: Obstacle | None
+) -> None:
     made = BoxGrip((), None, *start).dragged_to(*end)
     assert made == (None if drawn is None else ((drawn,), 0))
 

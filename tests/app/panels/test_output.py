@@ -40,7 +40,12 @@ def lines(app: App[None]) -> list[str]:
         ('File "programs/typo.py", line', Stream.STDERR, 20, ['File "programs/', 'typo.py", line']),
         ("you mean reflected_light?", Stream.NOTE, 20, ["you mean ", "reflected_light?"]),
         ("— error at 0.00 s", Stream.NOTE, 12, ["— error at ", "0.00 s"]),
-        ("print(colorLeft.reflected_light)", Stream.STDERR, 20, ["print(colorLeft.", "reflected_light)"]),
+        (
+            "print(colorLeft.reflected_light)",
+            Stream.STDERR,
+            20,
+            ["print(colorLeft.", "reflected_light)"],
+        ),
         ("hi", Stream.SPEECH, 20, ["says: hi"]),
         ("[beep]", Stream.SPEECH, 20, ["[beep]"]),
         ("42", Stream.INPUT, 20, ["> 42"]),
@@ -68,7 +73,9 @@ def test_a_row_as_lines(text: str, stream: Stream, width: int, expected: list[st
 
 
 def test_an_endless_line_is_cut_and_says_so() -> None:
-    assert "".join(shown_lines(row("y" * (MAX_LINE_CHARS + 7)), 80)).endswith("… (7 more characters)")
+    assert "".join(shown_lines(row("y" * (MAX_LINE_CHARS + 7)), 80)).endswith(
+        "… (7 more characters)"
+    )
 
 
 async def test_the_newest_line_is_followed_until_scrolled_up() -> None:
@@ -105,7 +112,9 @@ async def test_carets_are_left_out_where_they_would_point_elsewhere() -> None:
 async def test_carets_whose_line_is_out_of_view_are_left_out() -> None:
     async with Frame(Log()).run_test(size=(30, 4)) as pilot:
         log = pilot.app.query_one(Log)
-        log.add([row(text, Stream.STDERR) for text in ("    x = y", "        ^", "SyntaxError: no", "")])
+        log.add(
+            [row(text, Stream.STDERR) for text in ("    x = y", "        ^", "SyntaxError: no", "")]
+        )
         await pilot.pause()
         height = log.size.height
         assert lines(pilot.app)[0] == "    x = y"

@@ -15,7 +15,9 @@ def test_numbers_that_may_be_typed(text: str) -> None:
     assert parse_field("x", text) == float(text.replace(",", "."))
 
 
-async def test_what_is_typed_replaces_a_number_that_is_shown_after_its_field_got_the_focus() -> None:
+async def test_what_is_typed_replaces_a_number_that_is_shown_after_its_field_got_the_focus() -> (
+    None
+):
     panel = Positioning()
     async with PanelApp(panel).run_test(size=(40, 12)) as pilot:
         field = panel.query_one("#x", Input)

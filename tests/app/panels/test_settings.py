@@ -9,7 +9,16 @@ import pytest
 from textual.pilot import Pilot
 from textual.widgets import Input, OptionList
 
-from tests.app.app_help import ENDLESS, LOGS, message_of, notices, ready, screen_text, settings, until
+from tests.app.app_help import (
+    ENDLESS,
+    LOGS,
+    message_of,
+    notices,
+    ready,
+    screen_text,
+    settings,
+    until,
+)
 from tuisim.app.app import LabApp
 from tuisim.app.form import Choice, Row
 from tuisim.app.setup.next_run import with_robot
@@ -40,16 +49,20 @@ async def enter(pilot: Pilot[Any], field: str, text: str) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("size", [(80, 24), (120, 40), (200, 60)], ids=["80x24", "120x40", "200x60"])
+@pytest.mark.parametrize(
+    "size", [(80, 24), (120, 40), (200, 60)], ids=["80x24", "120x40", "200x60"]
+)
 async def test_it_opens_with_the_robots_values(size: tuple[int, int]) -> None:
     async with LabApp(settings(LOGS)).run_test(size=size) as pilot:
         app = await opened(pilot)
         assert "‹ Default_Robot ›" in screen_text(app)
         assert row(app, "wheel_spacing_mm").entry.value == "180"
         assert row(app, "left.port").entry.value == "in2"
-        assert [panel for panel in app.panel_area.panels if app.panel_area.panels[panel].has_class("-focused")] == [
-            "settings"
-        ]
+        assert [
+            panel
+            for panel in app.panel_area.panels
+            if app.panel_area.panels[panel].has_class("-focused")
+        ] == ["settings"]
         # Letters are still keys of the app.
         await pilot.press("Z")
         assert not app.panel_area.shown("settings")
@@ -71,7 +84,9 @@ async def test_a_value_is_taken_at_once() -> None:
 
 
 @pytest.mark.slow
-async def test_values_are_checked_and_entered_also_where_a_field_is_left_or_a_choice_stepped_quickly() -> None:
+async def test_values_are_checked_and_entered_also_where_a_field_is_left_or_a_choice_stepped_quickly() -> (
+    None
+):
     async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
         app = await opened(pilot)
         before = app.run_controller.next_run
@@ -107,7 +122,9 @@ async def test_choices_are_stepped_through_with_the_arrows() -> None:
         await pilot.press("right")
         await until(pilot, lambda: app.run_controller.next_run.spec.robot.name == "Small_Robot")
         await pilot.press("left", "left", "left")
-        await until(pilot, lambda: app.run_controller.next_run.spec.robot.name == "Sensor_Diameter_Config")
+        await until(
+            pilot, lambda: app.run_controller.next_run.spec.robot.name == "Sensor_Diameter_Config"
+        )
         # New diameters have to be prepared; until then nothing starts.
         await until(pilot, lambda: app.loader.mat_is_ready)
         assert app.run_controller.mat is not None
@@ -130,7 +147,9 @@ async def test_settings_are_not_changed_during_a_run() -> None:
 
 
 @pytest.mark.slow
-async def test_a_robot_is_saved_edited_and_loaded_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+async def test_a_robot_is_saved_edited_and_loaded_again(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.chdir(tmp_path)
     async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
         app = await opened(pilot)
@@ -153,7 +172,9 @@ async def test_a_robot_is_saved_edited_and_loaded_again(tmp_path: Path, monkeypa
         assert row(app, "preset").entry.value == "mine.toml"
 
 
-async def test_a_wrong_robot_file_changes_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+async def test_a_wrong_robot_file_changes_nothing(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     (tmp_path / "bad.toml").write_text("wheels = 3\n")
     monkeypatch.chdir(tmp_path)
     async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
@@ -203,7 +224,10 @@ async def test_what_a_robots_file_has_that_means_nothing_here_is_said(tmp_path: 
     async with LabApp(settings()).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)
         app.loader.attempt(lambda plan: with_robot(plan, str(tmp_path / "mine.json")))
-        await until(pilot, lambda: sum("ignored unknown keys: owner" in notice for notice in notices(app)) == 1)
+        await until(
+            pilot,
+            lambda: sum("ignored unknown keys: owner" in notice for notice in notices(app)) == 1,
+        )
 
 
 async def test_a_long_value_is_seen_from_its_beginning_and_escape_closes_the_panel() -> None:

@@ -100,7 +100,9 @@ async def test_a_moment_like_the_last_one_costs_nothing(monkeypatch: pytest.Monk
         app.panel.set_mat(white_mat())
         app.panel.show(moment())
         painted: list[object] = []
-        monkeypatch.setattr(view(app.panel), "set_fine_picture", lambda picture, _, **__: painted.append(picture))
+        monkeypatch.setattr(
+            view(app.panel), "set_fine_picture", lambda picture, _, **__: painted.append(picture)
+        )
 
         app.panel.show(moment(time_s=9.0))
         assert not painted
@@ -114,7 +116,9 @@ async def test_only_cells_about_the_robot_are_repainted(monkeypatch: pytest.Monk
         app.panel.set_mat(white_mat())
         app.panel.show(moment())
         regions: list[Region] = []
-        monkeypatch.setattr(view(app.panel), "refresh", lambda *changed, **_: regions.extend(changed))
+        monkeypatch.setattr(
+            view(app.panel), "refresh", lambda *changed, **_: regions.extend(changed)
+        )
 
         app.panel.show(moment(Pose(1040.0, 500.0, 0.0)))
 
@@ -250,9 +254,12 @@ async def test_ctrl_and_the_wheel_zoom_the_world_as_two_fingers_do() -> None:
 
 
 @pytest.mark.parametrize(
-    ("kind", "turn"), [(events.MouseScrollUp, TURN_STEP_DEG), (events.MouseScrollDown, -TURN_STEP_DEG)]
+    ("kind", "turn"),
+    [(events.MouseScrollUp, TURN_STEP_DEG), (events.MouseScrollDown, -TURN_STEP_DEG)],
 )
-async def test_the_wheel_turns_the_robot_that_it_is_over(kind: type[events.MouseEvent], turn: float) -> None:
+async def test_the_wheel_turns_the_robot_that_it_is_over(
+    kind: type[events.MouseEvent], turn: float
+) -> None:
     app = PanelApp(World())
     async with app.run_test(size=(120, 30)) as pilot:
         app.panel.set_mat(white_mat())
@@ -280,7 +287,9 @@ async def test_a_file_would_show_what_the_panel_shows() -> None:
         view, recording = app.query_one(WorldView), app.run_controller.timeline.recording
         assert recording is not None
         last = recording.telemetry.last()
-        await until(pilot, lambda: view._scene is not None and view._scene.pose == (last and last.pose))
+        await until(
+            pilot, lambda: view._scene is not None and view._scene.pose == (last and last.pose)
+        )
         assert last is not None and view._scene is not None
 
         shown = replace(view._scene, rays=(), rays_from=None)

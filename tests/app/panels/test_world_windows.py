@@ -31,11 +31,16 @@ def _is_world(picture: Pixels) -> bool:
 
 
 def _where_installed(name: str, *further: str) -> pytest.MarkDecorator:
-    missing = [*WINDOWS[name].missing, *(program for program in further if shutil.which(program) is None)]
+    missing = [
+        *WINDOWS[name].missing,
+        *(program for program in further if shutil.which(program) is None),
+    ]
     return pytest.mark.skipif(bool(missing), reason=f"{name}: not installed: {', '.join(missing)}")
 
 
-@pytest.mark.parametrize("name", [pytest.param(name, marks=_where_installed(name)) for name in WINDOWS])
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=_where_installed(name)) for name in WINDOWS]
+)
 def test_the_world_is_seen(name: str, tmp_path: Path) -> None:
     with shown_in(WINDOWS[name], ["log_greys"], tmp_path) as display:
         display.until(_is_world)
@@ -53,6 +58,8 @@ def test_one_key_switches_from_sixel_to_characters_and_back(tmp_path: Path) -> N
         display.until(_is_world)
         display.press("numbersign")
         # Characters have 16 colours there, and no grey of the mat.
-        display.until(lambda picture: _share(picture, (255, 255, 255)) > 0.15 and not _is_world(picture))
+        display.until(
+            lambda picture: _share(picture, (255, 255, 255)) > 0.15 and not _is_world(picture)
+        )
         display.press("numbersign")
         display.until(_is_world)

@@ -29,7 +29,9 @@ def text_of(face: BrickState, width: int, height: int) -> list[str]:
 
 @pytest.mark.parametrize(("width", "height"), SIZES)
 def test_nothing_is_wider_or_higher_than_the_panel(width: int, height: int) -> None:
-    face = BrickState(picture=picture((slice(0, 60), slice(0, 90))), text=TextScreen(14, 5, ("x" * 14,) * 5))
+    face = BrickState(
+        picture=picture((slice(0, 60), slice(0, 90))), text=TextScreen(14, 5, ("x" * 14,) * 5)
+    )
     for shown in (face, BrickState(text=face.text, shows_text=True), BrickState()):
         drawn = draw_brick(replace(shown, sound="la la la" * 20), {"enter"}, width, height)
         lines = ["".join(text for text, _ in line) for line in drawn.lines]
@@ -39,7 +41,9 @@ def test_nothing_is_wider_or_higher_than_the_panel(width: int, height: int) -> N
 
 
 def test_half_blocks_show_every_pixel_where_there_is_room() -> None:
-    lines = draw_brick(BrickState(picture=picture((slice(10, 11), slice(20, 30)))), (), 178, 70).lines
+    lines = draw_brick(
+        BrickState(picture=picture((slice(10, 11), slice(20, 30)))), (), 178, 70
+    ).lines
     cells = [[(char, style) for text, style in line for char in text] for line in lines]
     dark = [column for row in cells for column, (char, _) in enumerate(row) if char == "▀"]
     assert dark == list(range(20, 30))
@@ -73,7 +77,10 @@ def test_shrinking_averages() -> None:
 def test_text_screen_is_text() -> None:
     screen = TextScreen(14, 5, ("Mission 1", "", "go", "", ""), ((0, 0, 7),))
     lines = text_of(BrickState(text=screen, shows_text=True), 40, 14)
-    assert [line.strip() for line in lines if line.strip() in ("Mission 1", "go")] == ["Mission 1", "go"]
+    assert [line.strip() for line in lines if line.strip() in ("Mission 1", "go")] == [
+        "Mission 1",
+        "go",
+    ]
 
 
 @pytest.mark.parametrize(("width", "height"), [(60, 20), (44, 6)], ids=["pad", "row"])
@@ -91,7 +98,10 @@ def test_a_pressed_button_stands_out() -> None:
         text.strip()
         for line in draw_brick(BrickState(), {"enter"}, 60, 20).lines
         for text, style in line
-        if style.bgcolor and style.bgcolor.triplet and style.bgcolor.triplet.red == 255 and text.strip() in "▲●◀▶▼⌫"
+        if style.bgcolor
+        and style.bgcolor.triplet
+        and style.bgcolor.triplet.red == 255
+        and text.strip() in "▲●◀▶▼⌫"
     }
     assert "●" in lit
     assert "▲" not in lit
@@ -99,7 +109,14 @@ def test_a_pressed_button_stands_out() -> None:
 
 @pytest.mark.parametrize(
     ("red", "green", "name"),
-    [(0, 0, "off"), (255, 0, "red"), (0, 255, "green"), (255, 255, "amber"), (255, 127, "orange"), (25, 255, "yellow")],
+    [
+        (0, 0, "off"),
+        (255, 0, "red"),
+        (0, 255, "green"),
+        (255, 255, "amber"),
+        (255, 127, "orange"),
+        (25, 255, "yellow"),
+    ],
 )
 def test_lamps_have_names(red: int, green: int, name: str) -> None:
     assert led_name(red, green) == name
@@ -113,7 +130,12 @@ def test_untouched_lamps_are_green() -> None:
 
 @pytest.mark.parametrize(
     ("sound", "shown"),
-    [("[♪ song of 3 notes, 1.5 s]", "♪ song of 3 notes, 1.5 s"), ("[beep]", "♪ beep"), ("hello", "♪ hello"), ("", "")],
+    [
+        ("[♪ song of 3 notes, 1.5 s]", "♪ song of 3 notes, 1.5 s"),
+        ("[beep]", "♪ beep"),
+        ("hello", "♪ hello"),
+        ("", ""),
+    ],
 )
 def test_the_last_sound_stands_below(sound: str, shown: str) -> None:
     assert text_of(BrickState(sound=sound), 60, 20)[-1].strip() == shown

@@ -16,9 +16,18 @@ PROGRAMS = {
         "tank_drive.on_for_rotations(SpeedPercent(30), SpeedPercent(30), 5.7)\n",
         ["tank_drive.on_for_rotations(", "  SpeedPercent(30),", "  SpeedPercent(30), 5.7)"],
     ),
-    "comment": ("WHEEL_MM = 3.14159 * 56  # one rotation of it\n", ["# one rotation of it", "WHEEL_MM = 3.14159 * 56"]),
-    "long comment": ("    # one two three four five six\n", ["    # one two three four five", "    # six"]),
-    "no brackets": ("if first_one and second_one or third:\n", ["if first_one and second_one \\", "  or third:"]),
+    "comment": (
+        "WHEEL_MM = 3.14159 * 56  # one rotation of it\n",
+        ["# one rotation of it", "WHEEL_MM = 3.14159 * 56"],
+    ),
+    "long comment": (
+        "    # one two three four five six\n",
+        ["    # one two three four five", "    # six"],
+    ),
+    "no brackets": (
+        "if first_one and second_one or third:\n",
+        ["if first_one and second_one \\", "  or third:"],
+    ),
     "no other place than a dot": (
         "light = colorLeft.reflected_light_in_pc\n",
         ["light = \\", "  colorLeft \\", "  .reflected_light_in_pc"],
@@ -27,8 +36,14 @@ PROGRAMS = {
         "a_name_that_is_longer_than_the_column = 1\n",
         ["a_name_that_is_longer_than_the_column \\", "  = 1"],
     ),
-    "in a text": ('x = f"one two three {four} five six"\n', ["x = \\", '  f"one two three {four} five six"']),
-    "not Python": ("print('one two three four five six seven\n", ["print('one two three four five six seven"]),
+    "in a text": (
+        'x = f"one two three {four} five six"\n',
+        ["x = \\", '  f"one two three {four} five six"'],
+    ),
+    "not Python": (
+        "print('one two three four five six seven\n",
+        ["print('one two three four five six seven"],
+    ),
 }
 
 

@@ -14,7 +14,9 @@ def text(view: DebugView, width: int) -> list[str]:
 
 
 @pytest.mark.parametrize("width", [26, 38])
-@pytest.mark.parametrize("state", [RunPhase.IDLE, RunPhase.RUNNING, RunPhase.WAITING, RunPhase.ENDED])
+@pytest.mark.parametrize(
+    "state", [RunPhase.IDLE, RunPhase.RUNNING, RunPhase.WAITING, RunPhase.ENDED]
+)
 def test_all_keys_are_told_in_a_narrow_panel_too(state: RunPhase, width: int) -> None:
     narrow, wide = text(DebugView(state), width), text(DebugView(state), 80)
     assert max(map(len, narrow)) <= width
@@ -32,8 +34,16 @@ def test_a_module_beside_the_program_is_named() -> None:
 
 
 def test_what_is_known_of_another_instant_has_the_time_that_is_looked_at() -> None:
-    looked = Inspected(469, 4_690_000_000, "main", 0, "", (), (FrameState("<module>", 13, ""),), (), (), ())
-    view = DebugView(RunPhase.ENDED, Paused(469, 4_690_000_000, 13, PauseReason.INSTANT), looked, True, now=(120, 1.2))
+    looked = Inspected(
+        469, 4_690_000_000, "main", 0, "", (), (FrameState("<module>", 13, ""),), (), (), ()
+    )
+    view = DebugView(
+        RunPhase.ENDED,
+        Paused(469, 4_690_000_000, 13, PauseReason.INSTANT),
+        looked,
+        True,
+        now=(120, 1.2),
+    )
     rows = text(view, 40)
     assert rows[0] == "1.20 s · tick 120 …"
     assert not any("4.69" in row or "line 13" in row for row in rows)
@@ -41,7 +51,9 @@ def test_what_is_known_of_another_instant_has_the_time_that_is_looked_at() -> No
 
 def test_why_a_condition_holds_is_told_whole() -> None:
     why = "cannot be evaluated: TypeError: '>' not supported between instances of 'str' and 'int'"
-    looked = Inspected(5, 50_000_000, "main", 0, "", (), (FrameState("<module>", 3, ""),), (), (), ())
+    looked = Inspected(
+        5, 50_000_000, "main", 0, "", (), (FrameState("<module>", 3, ""),), (), (), ()
+    )
     paused = Paused(5, 50_000_000, 3, PauseReason.BREAK, "3 if name > 3", value=why)
     rows = text(DebugView(RunPhase.PAUSED, paused, looked), 30)
     assert f"break 3 if name > 3: {why}" in " ".join(rows)
@@ -52,7 +64,9 @@ def test_why_a_condition_holds_is_told_whole() -> None:
 def test_variables_keep_their_places_and_names_of_constants_are_the_last(changed: str) -> None:
     names = ("SPEED", "GAIN", "left", "right", "steering")
     variables = tuple(Variable(name, "int", "1", name == changed) for name in names)
-    looked = Inspected(5, 50_000_000, "main", 0, "", (), (FrameState("<module>", 3, ""),), variables, (), ())
+    looked = Inspected(
+        5, 50_000_000, "main", 0, "", (), (FrameState("<module>", 3, ""),), variables, (), ()
+    )
     rows = text(DebugView(RunPhase.PAUSED, Paused(5, 50_000_000, 3, PauseReason.STEP), looked), 30)
     shown = [row[2:].split()[0] for row in rows[rows.index("Variables") + 1 :]]
     assert shown == ["left", "right", "steering", "SPEED", "GAIN"]
@@ -69,6 +83,10 @@ def test_variables_keep_their_places_and_names_of_constants_are_the_last(changed
     ids=["narrow", "enough", "narrow past", "wide past"],
 )
 def test_the_tick_is_told_whole_or_not_at_all(width: int, past: bool, head: str) -> None:
-    looked = Inspected(469, 4_690_000_000, "main", 0, "", (), (FrameState("<module>", 13, ""),), (), (), ())
-    view = DebugView(RunPhase.PAUSED, Paused(469, 4_690_000_000, 13, PauseReason.STEP), looked, past)
+    looked = Inspected(
+        469, 4_690_000_000, "main", 0, "", (), (FrameState("<module>", 13, ""),), (), (), ()
+    )
+    view = DebugView(
+        RunPhase.PAUSED, Paused(469, 4_690_000_000, 13, PauseReason.STEP), looked, past
+    )
     assert text(view, width)[0] == head

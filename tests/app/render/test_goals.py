@@ -13,8 +13,10 @@ from tuisim.goals.spec import AllOf, FinishCondition, Goal, UseCondition
 from tuisim.terminal.text_runs import Line
 
 MET = Judgement(
-    Goal("there", FinishCondition(), "Drive to it.", 2), (Change(100, 1.0, GoalState.MET, 299.6, 80.2),), line=7
-)  # fmt: skip
+    Goal("there", FinishCondition(), "Drive to it.", 2),
+    (Change(100, 1.0, GoalState.MET, 299.6, 80.2),),
+    line=7,
+)
 
 
 MISSED = Judgement(
@@ -25,17 +27,25 @@ MISSED = Judgement(
 )
 
 
-BY_TEXT = Judgement(Goal("part", UseCondition(("f",)), points=0), (Change(0, 0.0, GoalState.MET, 1.0, 2.0),), line=3)
+BY_TEXT = Judgement(
+    Goal("part", UseCondition(("f",)), points=0), (Change(0, 0.0, GoalState.MET, 1.0, 2.0),), line=3
+)
 
 
-OPEN = Judgement(Goal("both", AllOf(("there",)), "First the one, then the other."), (), "5 mm to go.")
+OPEN = Judgement(
+    Goal("both", AllOf(("there",)), "First the one, then the other."), (), "5 mm to go."
+)
 
 
 KEPT = replace(MISSED, goal=replace(MISSED.goal, name="hit", say="Hit the wall.", points=-2))
 LOST = replace(MET, goal=replace(MET.goal, name="hit", say="Hit the wall.", points=-2))
 
 TEXTS = {
-    "no points taken off": (KEPT, "✓ kept   hit                  0", ["It did not happen: Hit the", "wall."]),
+    "no points taken off": (
+        KEPT,
+        "✓ kept   hit                  0",
+        ["It did not happen: Hit the", "wall."],
+    ),
     "points taken off": (
         LOST,
         "✗ lost   hit                 -2",
@@ -51,7 +61,11 @@ TEXTS = {
         "✗ missed closed           0/1.5",
         ["missed at 2.00 s, x 1, y 2 mm,", "line 9", "It was 30 mm off.", "Hint: Turn by 90."],
     ),
-    "by the text, without points": (BY_TEXT, "✓ met    part", ["met by the program's text, line", "3"]),
+    "by the text, without points": (
+        BY_TEXT,
+        "✓ met    part",
+        ["met by the program's text, line", "3"],
+    ),
     "open": (OPEN, "· open   both               0/1", ["First the one, then the other."]),
 }
 
@@ -87,7 +101,10 @@ def test_a_long_list_shows_the_chosen_goal_and_its_detail(height: int, chosen: i
     picture = draw_goals(view, view.states(None), chosen, 0, 40, height)
     assert chosen in picture.rows
     assert len(picture.lines) <= height
-    assert any(line.startswith("── goal") and line.endswith(f" {chosen + 1} of 20 ─") for line in texts(picture.lines))
+    assert any(
+        line.startswith("── goal") and line.endswith(f" {chosen + 1} of 20 ─")
+        for line in texts(picture.lines)
+    )
     assert "missed at 2.00 s, x 1, y 2 mm, line 9" in texts(picture.lines)
     end = draw_goals(view, view.states(None), chosen, 99, 40, height)
     assert end.below == 0

@@ -25,14 +25,23 @@ def _lesson_view(tmp_path: Path, **changes: Any) -> LessonView:
 @pytest.mark.usefixtures("home")
 def test_pages_of_a_lesson(tmp_path: Path) -> None:
     view = _lesson_view(tmp_path, states=(StepState.DONE, StepState.SKIPPED, StepState.OPEN), at=2)
-    view = replace(view, story="Your run: so.", done=replace(view.lesson.steps[1], why="Far enough."))  # type: ignore[union-attr]
-    missed = Judgement(view.lesson.goals[0], (Change(1, 0.1, GoalState.MISSED, 1, 2),), "Too short.")  # type: ignore[union-attr]
+    view = replace(
+        view, story="Your run: so.", done=replace(view.lesson.steps[1], why="Far enough.")
+    )  # type: ignore[union-attr]
+    missed = Judgement(
+        view.lesson.goals[0], (Change(1, 0.1, GoalState.MISSED, 1, 2),), "Too short."
+    )  # type: ignore[union-attr]
 
     def page(number: int, **changes: Any) -> Sequence[str]:
         lines = draw_lesson(replace(view, **changes), number, 0, 40, 30).lines
         return ["".join(text for text, _ in line).rstrip() for line in lines]
 
-    assert page(2)[:4] == ["Try it                               ✓–●", "✓ Drive", "Your run: so.", "Far enough."]
+    assert page(2)[:4] == [
+        "Try it                               ✓–●",
+        "✓ Drive",
+        "Your run: so.",
+        "Far enough.",
+    ]
     assert page(2)[4:7] == ["M shows the steps before again.", "", "3. Do it"]
     assert "skipped" in page(1)
     assert {"✗ Drive.", "  Too short."} <= set(page(1, at=1, judgements=(missed,)))
@@ -48,7 +57,12 @@ def test_pages_of_a_lesson(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(
     ("at", "text"),
-    [(0, "Q types"), (0, "Y shows hint"), (1, "d edits the program, R runs it"), (1, "M shows the steps")],
+    [
+        (0, "Q types"),
+        (0, "Y shows hint"),
+        (1, "d edits the program, R runs it"),
+        (1, "M shows the steps"),
+    ],
 )
 def test_keys_that_need_escape_first_are_called_so(at: int, text: str, tmp_path: Path) -> None:
     lesson = opened(tmp_path).lesson

@@ -75,7 +75,9 @@ WAYS: dict[str, tuple[list[Callable[[NextRun], NextRun]], list[float]]] = {
 
 
 @pytest.mark.parametrize(("steps", "expected"), WAYS.values(), ids=WAYS)
-def test_sensor_places_never_leak(steps: list[Callable[[NextRun], NextRun]], expected: list[float]) -> None:
+def test_sensor_places_never_leak(
+    steps: list[Callable[[NextRun], NextRun]], expected: list[float]
+) -> None:
     plan = plan_of(Settings({"background": "Grey_bands"}))
     for step in steps:
         plan = step(plan)
@@ -92,7 +94,9 @@ def test_a_preset_leaves_nothing_behind(name: str) -> None:
 def test_a_mat_brings_its_own_obstacles_start_and_fit() -> None:
     plan = plans.with_obstacles(plan_of(Settings({"background_fit": "fit"})), BOX)
     plan = plans.at_pose(plan, Pose(7, 8, 9))
-    assert plans.with_mat(plan, "Obstacles_Test").spec == build_run_spec(Settings({"background": "Obstacles_Test"}))
+    assert plans.with_mat(plan, "Obstacles_Test").spec == build_run_spec(
+        Settings({"background": "Obstacles_Test"})
+    )
 
 
 def test_a_profile_decides_again_what_is_solid() -> None:
@@ -112,7 +116,9 @@ def test_a_profile_decides_again_what_is_solid() -> None:
     ],
     ids=["pose", "noise", "seed", "pen", "obstacles"],
 )
-def test_what_is_changed_quickly_is_what_would_be_built(change: Callable[[NextRun], NextRun]) -> None:
+def test_what_is_changed_quickly_is_what_would_be_built(
+    change: Callable[[NextRun], NextRun],
+) -> None:
     plan = change(plan_of(Settings({"background": "Radial_grey", "noise.light": 1})))
     assert plan.spec == build_run_spec(plan.settings)
 
@@ -143,7 +149,9 @@ def test_a_saved_robot_is_not_as_the_mat_has_changed_it(tmp_path: Path) -> None:
 
 
 def test_a_plan_of_a_run_of_which_nothing_else_is_known() -> None:
-    spec = build_run_spec(Settings({"background": "Radial_grey", "start.x_mm": 5, "noise.light": 3}))
+    spec = build_run_spec(
+        Settings({"background": "Radial_grey", "start.x_mm": 5, "noise.light": 3})
+    )
     plan = plan_of_spec(spec)
     assert plan.spec == spec
     assert sensor_xs_mm(plans.with_mat(plan, "Loop")) == [-20, 20]
@@ -155,7 +163,11 @@ WRONG = [
     ("wheel_diameter_mm", "", "must be a number from 1 to 500, got ''"),
     ("wheel_spacing_mm", "1e9", "must be a number from 1 to 1000, got '1e9'"),
     ("back_mm", "5", "must be a number from -1000 to 0, got '5'"),
-    ("weight", "fat", "must be weightless, light, medium, heavy, or a number from 0 to 1000, got 'fat'"),
+    (
+        "weight",
+        "fat",
+        "must be weightless, light, medium, heavy, or a number from 0 to 1000, got 'fat'",
+    ),
     ("weight", "nan", "must be weightless, light, medium, heavy, or a number from 0 to 1000"),
     ("name", "  ", "must be one line of 1 to 100 characters"),
     ("left.diameter_mm", "7.5", "must be a whole number from 2 to 100, got '7.5'"),
@@ -192,14 +204,34 @@ RIGHT: list[tuple[str, str, Callable[[NextRun], object], object]] = [
     ("back_mm", "-60", lambda p: p.spec.robot.back_mm, -60),
     ("weight", "Heavy", lambda p: p.spec.robot.weight, 9),
     ("weight", "2.5", lambda p: p.spec.robot.weight, 2.5),
-    ("left_port", "outD", lambda p: (p.spec.robot.left_port, p.spec.robot.right_port), ("outD", "outC")),
-    ("left_port", "outC", lambda p: (p.spec.robot.left_port, p.spec.robot.right_port), ("outC", "outB")),
-    ("left.port", "in4", lambda p: [s.port for s in p.spec.robot.sensors], ["in4", "in3", "in1", "in2"]),
+    (
+        "left_port",
+        "outD",
+        lambda p: (p.spec.robot.left_port, p.spec.robot.right_port),
+        ("outD", "outC"),
+    ),
+    (
+        "left_port",
+        "outC",
+        lambda p: (p.spec.robot.left_port, p.spec.robot.right_port),
+        ("outC", "outB"),
+    ),
+    (
+        "left.port",
+        "in4",
+        lambda p: [s.port for s in p.spec.robot.sensors],
+        ["in4", "in3", "in1", "in2"],
+    ),
     ("left.diameter_mm", "30", lambda p: p.spec.robot.color_sensors[0].diameter_mm, 30),
     ("right.strategy", "centre", lambda p: p.spec.robot.color_sensors[1].strategy, "centre"),
     ("left.used", "off", lambda p: [s.name for s in p.spec.robot.color_sensors], ["right"]),
     ("ultrasonic.used", "off", lambda p: p.spec.robot.ultrasonic, None),
-    ("ultrasonic.angle_deg", "90", lambda p: p.spec.robot.ultrasonic and p.spec.robot.ultrasonic.angle_deg, 90),
+    (
+        "ultrasonic.angle_deg",
+        "90",
+        lambda p: p.spec.robot.ultrasonic and p.spec.robot.ultrasonic.angle_deg,
+        90,
+    ),
     (
         "ultrasonic.ray_angles_deg",
         "-5, 0 5",
@@ -220,9 +252,13 @@ RIGHT: list[tuple[str, str, Callable[[NextRun], object], object]] = [
 
 
 @pytest.mark.parametrize(
-    ("field", "entered", "look", "expected"), RIGHT, ids=[f"{field} {entered}" for field, entered, _, _ in RIGHT]
+    ("field", "entered", "look", "expected"),
+    RIGHT,
+    ids=[f"{field} {entered}" for field, entered, _, _ in RIGHT],
 )
-def test_a_right_value_is_taken(field: str, entered: str, look: Callable[[NextRun], object], expected: object) -> None:
+def test_a_right_value_is_taken(
+    field: str, entered: str, look: Callable[[NextRun], object], expected: object
+) -> None:
     plan = edited(plan_of(Settings()), field, entered)
     assert look(plan) == expected
     again = find(plan, field)

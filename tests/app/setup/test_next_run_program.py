@@ -53,38 +53,56 @@ WAYS: Mapping[str, tuple[list[Step], tuple[list[str], str, str]]] = {
     "one with a magic line": ([USUAL, MAGIC], (["outA"], "Robot of p.py", "robolab")),
     "a robot chosen before": ([robot("Explorer"), CLAW], (["outA"], "Explorer", "ev3")),
     "a robot chosen after": ([CLAW, robot("Explorer"), LIFT], (["outA"], "Explorer", "ev3")),
-    "and the program's again": ([CLAW, robot("Explorer"), plans.with_program_robot, LIFT],
-                                (["outD"], "Robot of p.py", "ev3")),
-    "a profile chosen": ([CLAW, lambda plan: plans.with_profile(plan, "robolab"), LIFT],
-                         (["outD"], "Robot of p.py", "robolab")),
+    "and the program's again": (
+        [CLAW, robot("Explorer"), plans.with_program_robot, LIFT],
+        (["outD"], "Robot of p.py", "ev3"),
+    ),
+    "a profile chosen": (
+        [CLAW, lambda plan: plans.with_profile(plan, "robolab"), LIFT],
+        (["outD"], "Robot of p.py", "robolab"),
+    ),
     "a mat chosen before": ([mat("Loop"), CLAW], (["outA"], "Robot of p.py", "robolab")),
     "a mat chosen after": ([CLAW, mat("Loop"), LIFT], (["outD"], "Robot of p.py", "ev3")),
-    "an edited robot": ([CLAW, lambda plan: plans.with_robot_edited(plan, plan.robot.spec), LIFT],
-                        (["outD"], "Robot of p.py", "ev3")),
+    "an edited robot": (
+        [CLAW, lambda plan: plans.with_robot_edited(plan, plan.robot.spec), LIFT],
+        (["outD"], "Robot of p.py", "ev3"),
+    ),
     "one of the other library": ([CLAW, PYBRICKS], (["outA"], "Robot of p.py", "lego-micropython")),
     "and back": ([PYBRICKS, LIFT], (["outD"], "Robot of p.py", "ev3")),
     "and one of the course": ([PYBRICKS, COURSE], ([], "Default_Robot", "robolab")),
-    "a fitting profile chosen": ([PYBRICKS, lambda plan: plans.with_profile(plan, "pybricks4"), PYBRICKS],
-                                 (["outA"], "Robot of p.py", "pybricks4")),
+    "a fitting profile chosen": (
+        [PYBRICKS, lambda plan: plans.with_profile(plan, "pybricks4"), PYBRICKS],
+        (["outA"], "Robot of p.py", "pybricks4"),
+    ),
     "a profile chosen that does not fit the next one": (
         [CLAW, lambda plan: plans.with_profile(plan, "robolab"), PYBRICKS],
         (["outA"], "Robot of p.py", "lego-micropython"),
     ),
-    "the other library on a mat": ([mat("Loop"), PYBRICKS], (["outA"], "Robot of p.py", "lego-micropython")),
-}  # fmt: skip
+    "the other library on a mat": (
+        [mat("Loop"), PYBRICKS],
+        (["outA"], "Robot of p.py", "lego-micropython"),
+    ),
+}
 
 
 @pytest.mark.parametrize("way", WAYS)
 def test_robot_and_profile_follow_the_program_unless_somebody_chose_them(way: str) -> None:
     steps, expected = WAYS[way]
     spec = done(steps).spec
-    assert ([motor.port for motor in spec.robot.extra_motors], spec.robot.name, spec.profile.name) == expected
+    assert (
+        [motor.port for motor in spec.robot.extra_motors],
+        spec.robot.name,
+        spec.profile.name,
+    ) == expected
 
 
 PLACES: Mapping[str, tuple[list[Step], tuple[float, float]]] = {
     "a brick's program": ([CLAW], (1181, 571.5)),
     "then one of the course": ([CLAW, COURSE], (100, 800)),
-    "a robot that was moved": ([CLAW, lambda plan: plans.at_pose(plan, Pose(300, 400, 0)), LIFT], (300, 400)),
+    "a robot that was moved": (
+        [CLAW, lambda plan: plans.at_pose(plan, Pose(300, 400, 0)), LIFT],
+        (300, 400),
+    ),
     "a mat": ([CLAW, mat("Loop"), LIFT], (500, 500)),
 }
 
@@ -98,7 +116,11 @@ def test_the_place_follows_until_the_robot_is_moved_or_a_mat_says_it(way: str) -
 
 def test_nothing_follows_where_everything_was_chosen() -> None:
     spec = done([CLAW], free=()).spec
-    assert (spec.robot.name, spec.profile.name, spec.world.start.x_mm) == ("Default_Robot", "robolab", 100)
+    assert (spec.robot.name, spec.profile.name, spec.world.start.x_mm) == (
+        "Default_Robot",
+        "robolab",
+        100,
+    )
 
 
 def test_what_is_decided_is_told_only_if_it_is_new() -> None:

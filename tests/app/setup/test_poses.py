@@ -39,7 +39,9 @@ POSTS = tuple(Obstacle(x, y, 150, 150) for x in range(200, 2300, 500) for y in (
         (Pose(1000, 500, 45), (Obstacle(830, 560, 120, 50),), True, False),
     ],
 )
-def test_where_the_outline_fits(pose: Pose, obstacles: tuple[Obstacle, ...], solid: bool, fit: bool) -> None:
+def test_where_the_outline_fits(
+    pose: Pose, obstacles: tuple[Obstacle, ...], solid: bool, fit: bool
+) -> None:
     spec = replace(SPEC, world=replace(SPEC.world, obstacles=obstacles, solid=solid))
     assert fits(spec, pose) is fit
 
@@ -53,7 +55,9 @@ def test_a_random_place_is_a_free_one(seed: int) -> None:
 
 
 def test_no_free_place_is_told() -> None:
-    spec = replace(SPEC, world=replace(SPEC.world, obstacles=(Obstacle(0, 0, 2362, 1143),), solid=True))
+    spec = replace(
+        SPEC, world=replace(SPEC.world, obstacles=(Obstacle(0, 0, 2362, 1143),), solid=True)
+    )
     assert random_pose(spec, random.Random(1)) is None
 
 
@@ -81,7 +85,9 @@ def test_poses_are_kept_replaced_and_deleted() -> None:
 
 def test_saving_a_pose_keeps_the_users_comments(home: Path) -> None:
     home.mkdir()
-    poses_file().write_text("# My poses\n[poses.a]  # the door\nx_mm = 1\ny_mm = 2\nheading_deg = 0\n")
+    poses_file().write_text(
+        "# My poses\n[poses.a]  # the door\nx_mm = 1\ny_mm = 2\nheading_deg = 0\n"
+    )
     save_pose("b", Pose(1, 2, 3))
     assert poses_file().read_text().startswith("# My poses\n[poses.a]  # the door\nx_mm = 1\n")
     delete_pose("a")
@@ -89,7 +95,9 @@ def test_saving_a_pose_keeps_the_users_comments(home: Path) -> None:
     assert (load_poses(), poses_file().read_text()[:10]) == ({}, "# My poses")
 
 
-@pytest.mark.parametrize("name", ["", "  ", "x" * 41, "two\nlines"], ids=["empty", "blank", "long", "lines"])
+@pytest.mark.parametrize(
+    "name", ["", "  ", "x" * 41, "two\nlines"], ids=["empty", "blank", "long", "lines"]
+)
 @pytest.mark.usefixtures("home")
 def test_a_pose_needs_a_name(name: str) -> None:
     with pytest.raises(ConfigError, match="a pose needs a name"):
@@ -123,7 +131,9 @@ async def test_saved_poses_in_the_app() -> None:
         await until(pilot, lambda: isinstance(app.focused, Input))
         assert "None yet" in screen_text(app)
         await pilot.press(*"corner", "enter")
-        await until(pilot, lambda: "x 700, y 300, 45°" in screen_text(app).partition("Save where")[0])
+        await until(
+            pilot, lambda: "x 700, y 300, 45°" in screen_text(app).partition("Save where")[0]
+        )
         await pilot.press("escape", "m", "P")
         await until(pilot, lambda: isinstance(app.focused, OptionList))
         await pilot.press("down", "enter")
@@ -158,7 +168,12 @@ async def test_the_cursor_of_the_chart_shows_where_the_robot_was() -> None:
         assert chart is not None
         assert world is not None
         await until(
-            pilot, lambda: chart._picture is not None and chart._picture.columns > 0 and chart._traces.end_s() > 5
+            pilot,
+            lambda: (
+                chart._picture is not None
+                and chart._picture.columns > 0
+                and chart._traces.end_s() > 5
+            ),
         )
         chart.focus()
         now = app.run_controller.pose
@@ -170,7 +185,10 @@ async def test_the_cursor_of_the_chart_shows_where_the_robot_was() -> None:
         assert 150 < snapshot.instant.pose.x_mm < now.x_mm
         assert snapshot.now_pose == now
         assert world._view._scene is not None
-        assert (world._view._scene.pose, world._view._scene.faint) == (snapshot.instant.pose, ((Faint.NOW, now),))
+        assert (world._view._scene.pose, world._view._scene.faint) == (
+            snapshot.instant.pose,
+            ((Faint.NOW, now),),
+        )
         await pilot.press("escape")
         await until(pilot, lambda: not app.run_controller.snapshot().past)
         assert chart._state.cursor_s is None

@@ -44,7 +44,11 @@ def test_there_are_as_many_as_have_a_number_and_the_last_run_is_among_them(tmp_p
         path = tmp_path / f"{number}.py"
         path.write_text("import time\ntime.sleep(0.1)\n")
         over(
-            start_run(Program(path.name, path.read_text(), "none", str(path)), build_run_spec(Settings()), RunOptions())
+            start_run(
+                Program(path.name, path.read_text(), "none", str(path)),
+                build_run_spec(Settings()),
+                RunOptions(),
+            )
         )
     assert [name for _, name in kinds()] == ["3.py", "2.py", "1.py", "Run 4", "Run 3"]
     keep_draft("", "x")

@@ -29,7 +29,9 @@ def texts_of(path: Path) -> list[str]:
 
 
 @pytest.mark.parametrize("columns", [80, 120])
-def test_text_fits_the_terminal(here: Command, log: Path, monkeypatch: pytest.MonkeyPatch, columns: int) -> None:
+def test_text_fits_the_terminal(
+    here: Command, log: Path, monkeypatch: pytest.MonkeyPatch, columns: int
+) -> None:
     monkeypatch.setenv("COLUMNS", str(columns))
     lines = here("log", "plot", str(log), "--variable", "left").stdout.splitlines()
     assert columns - 6 < max(map(len, lines)) <= columns
@@ -40,7 +42,9 @@ def test_text_fits_the_terminal(here: Command, log: Path, monkeypatch: pytest.Mo
 
 
 def test_text_without_colours_tells_lines_apart_by_marks(here: Command, log: Path) -> None:
-    said = here("log", "plot", str(log), "--variable", "left", "--variable", "right", "--size", "60x15").stdout
+    said = here(
+        "log", "plot", str(log), "--variable", "left", "--variable", "right", "--size", "60x15"
+    ).stdout
     legend = said.splitlines()[1]
     assert legend.split() == ["[o]", "left", "[+]", "right"]
     assert said.count("o") > 10 and said.count("+") > 10
@@ -72,7 +76,9 @@ def test_svg_is_well_formed_and_says_what_is_what(here: Command, log: Path, tmp_
 
 
 @pytest.mark.parametrize("name", ["chart.png", "chart.PNG"])
-def test_png_has_its_size_and_is_not_blank(here: Command, log: Path, tmp_path: Path, name: str) -> None:
+def test_png_has_its_size_and_is_not_blank(
+    here: Command, log: Path, tmp_path: Path, name: str
+) -> None:
     here("log", "plot", str(log), "--out", name, "--size", "640x300")
     with Image.open(tmp_path / name) as picture:
         assert (picture.format, picture.size) == ("PNG", (640, 300))
@@ -80,12 +86,16 @@ def test_png_has_its_size_and_is_not_blank(here: Command, log: Path, tmp_path: P
 
 
 def test_a_path_is_drawn_to_one_scale(here: Command, tmp_path: Path) -> None:
-    (tmp_path / "way.csv").write_text("time,x_mm,y_mm\n0,0,0\n1,1000,0\n2,1000,500\n3,0,500\n4,0,0\n")
+    (tmp_path / "way.csv").write_text(
+        "time,x_mm,y_mm\n0,0,0\n1,1000,0\n2,1000,500\n3,0,500\n4,0,0\n"
+    )
     here("log", "plot", "way.csv", "--variable", "y_mm", "--against", "x_mm", "--out", "way.svg")
     path = list(ElementTree.parse(tmp_path / "way.svg").iter(f"{SVG}path"))[-1].attrib["d"]
     xs, ys = zip(*(map(float, point.split()) for point in path[1:].split("L")), strict=True)
     assert max(xs) - min(xs) == pytest.approx(2 * (max(ys) - min(ys)), abs=0.3)
-    said = here("log", "plot", "way.csv", "--variable", "y_mm", "--against", "x_mm", "--size", "60x12").stdout
+    said = here(
+        "log", "plot", "way.csv", "--variable", "y_mm", "--against", "x_mm", "--size", "60x12"
+    ).stdout
     assert "y_mm against x_mm" in said
 
 
@@ -100,7 +110,10 @@ BAD = {
     "no such folder": (("--out", "gone/x.svg"), "there is no folder gone"),
     "no such variable": (("--variable", "up"), "no variable 'up'"),
     "against nothing": (("--against", "up"), "no variable 'up'"),
-    "two against one": (("--variable", "left", "--variable", "right", "--against", "x_mm"), "got 2"),
+    "two against one": (
+        ("--variable", "left", "--variable", "right", "--against", "x_mm"),
+        "got 2",
+    ),
     "a size": (("--size", "big"), "width and height, 20x8 to 1000x500"),
     "a size of no picture": (("--size", "10x10", "--out", "x.png"), "200x150 to 6000x6000"),
     "time that runs back": (("--from", "5", "--to", "1"), "--from must be less than --to"),
@@ -112,7 +125,9 @@ BAD = {
 
 
 @pytest.mark.parametrize(("words", "expected"), BAD.values(), ids=BAD)
-def test_bad_input(here: Command, log: Path, tmp_path: Path, words: tuple[str, ...], expected: str) -> None:
+def test_bad_input(
+    here: Command, log: Path, tmp_path: Path, words: tuple[str, ...], expected: str
+) -> None:
     done = here("log", "plot", str(log), *words)
     assert (done.returncode, done.stdout) == (2, "")
     assert expected in done.stderr
@@ -120,10 +135,14 @@ def test_bad_input(here: Command, log: Path, tmp_path: Path, words: tuple[str, .
     assert list(tmp_path.iterdir()) == [log]
 
 
-@pytest.mark.parametrize("times", ["1e20 100000000000000016384", "1e20 1e20", "0 5e-324"], ids=["two", "one", "tiny"])
+@pytest.mark.parametrize(
+    "times", ["1e20 100000000000000016384", "1e20 1e20", "0 5e-324"], ids=["two", "one", "tiny"]
+)
 def test_times_that_lie_too_near(here: Command, tmp_path: Path, times: str) -> None:
     path = tmp_path / "a.csv"
-    path.write_text("time,red\n" + "".join(f"{time},{at}\n" for at, time in enumerate(times.split())))
+    path.write_text(
+        "time,red\n" + "".join(f"{time},{at}\n" for at, time in enumerate(times.split()))
+    )
     for words in (("plot", "--size", "60x12"), ("plot", "--out", str(tmp_path / "a.svg"))):
         done = here("log", words[0], str(path), *words[1:])
         assert (done.returncode, told(done)) == (0, [])

@@ -35,7 +35,9 @@ def test_reckoning_without_noise_is_exact(here: Command) -> None:
 
 def test_reckoning_is_wrong_where_the_robot_drifts(here: Command) -> None:
     here("run", "square", "--drift", "typical")
-    rows = [json.loads(line) for line in here("log", "reckon", "last", "--json").stdout.splitlines()]
+    rows = [
+        json.loads(line) for line in here("log", "reckon", "last", "--json").stdout.splitlines()
+    ]
     assert len(rows) > 500 and rows[-1]["error_mm"] > 1
     head, real, reckoned, error, summary = here("log", "reckon", "last").stdout.splitlines()
     assert head.split() == ["AT", "THE", "END", "X", "MM", "Y", "MM", "HEADING", "DEG"]
@@ -43,12 +45,16 @@ def test_reckoning_is_wrong_where_the_robot_drifts(here: Command) -> None:
         assert real.split()[line] == f"{rows[-1][name]:.2f}"
         assert reckoned.split()[line] == f"{rows[-1][f'reckoned_{name}']:.2f}"
         assert error.split()[line] == f"{rows[-1][f'reckoned_{name}'] - rows[-1][name]:.2f}"
-    assert summary.startswith(f"reckoned place: {rows[-1]['error_mm']:.2f} mm off at the end, at most ")
+    assert summary.startswith(
+        f"reckoned place: {rows[-1]['error_mm']:.2f} mm off at the end, at most "
+    )
 
 
 def test_json_has_every_digit(here: Command, tmp_path: Path) -> None:
     path = tmp_path / "a.csv"
     path.write_text("time,v\n0,0.30000000000000004\n300000,1.3\n300000,inf\n")
-    rows = [json.loads(line) for line in here("log", "derive", str(path), "--json").stdout.splitlines()]
+    rows = [
+        json.loads(line) for line in here("log", "derive", str(path), "--json").stdout.splitlines()
+    ]
     assert [row["value"] for row in rows] == [0.1 + 0.2, 1.3, None]
     assert rows[0]["derivative"] == (1.3 - (0.1 + 0.2)) / 3e5

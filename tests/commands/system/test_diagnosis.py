@@ -13,16 +13,36 @@ TEXTUALS = (8, 2, 5), (8, 2, 8)
 
 
 JUDGED: dict[str, tuple[Finding, State, str]] = {
-    "terminal without a kind": (diagnosis.terminal_finding("", "dumb", is_remote=False), ADVICE, "export TERM="),
+    "terminal without a kind": (
+        diagnosis.terminal_finding("", "dumb", is_remote=False),
+        ADVICE,
+        "export TERM=",
+    ),
     "terminal": (diagnosis.terminal_finding("kitty(0.40)", "xterm-kitty", is_remote=True), OK, ""),
     "no terminal": (diagnosis.no_terminal_finding(), ADVICE, "tuisim run"),
     "16 colours": (diagnosis.colors_finding("16", is_remote=False), ADVICE, "COLORTERM=truecolor"),
-    "256 colours over ssh": (diagnosis.colors_finding("256", is_remote=True), ADVICE, "SSH does not send"),
-    "8 colours by TERM": (diagnosis.colors_finding("8", is_remote=True, is_fixed=True), ADVICE, "--colors"),
+    "256 colours over ssh": (
+        diagnosis.colors_finding("256", is_remote=True),
+        ADVICE,
+        "SSH does not send",
+    ),
+    "8 colours by TERM": (
+        diagnosis.colors_finding("8", is_remote=True, is_fixed=True),
+        ADVICE,
+        "--colors",
+    ),
     "truecolor": (diagnosis.colors_finding("truecolor", is_remote=False), OK, ""),
     "ascii": (diagnosis.cells_finding(CellSet.ASCII), ADVICE, "LANG=C.UTF-8"),
-    "ascii by LC_ALL": (diagnosis.cells_finding(CellSet.ASCII, "", "LC_ALL=C"), ADVICE, "export LC_ALL=C.UTF-8"),
-    "ascii by TERM": (diagnosis.cells_finding(CellSet.ASCII, "dumb", "LANG=C.UTF-8"), ADVICE, "TERM=dumb"),
+    "ascii by LC_ALL": (
+        diagnosis.cells_finding(CellSet.ASCII, "", "LC_ALL=C"),
+        ADVICE,
+        "export LC_ALL=C.UTF-8",
+    ),
+    "ascii by TERM": (
+        diagnosis.cells_finding(CellSet.ASCII, "dumb", "LANG=C.UTF-8"),
+        ADVICE,
+        "TERM=dumb",
+    ),
     "quadrants": (diagnosis.cells_finding(CellSet.QUADRANT), OK, "Press V"),
     "octants": (diagnosis.cells_finding(CellSet.OCTANT), OK, ""),
     "too small": (diagnosis.size_finding(59, 40), ADVICE, "60 × 18"),
@@ -40,11 +60,27 @@ JUDGED: dict[str, tuple[Finding, State, str]] = {
     "large store": (diagnosis.store_finding(9, 3 * 10**9, 10**12), ADVICE, "runs rm"),
     "full disk": (diagnosis.store_finding(0, 0, 10**6), ADVICE, "almost full"),
     "no mats": (diagnosis.assets_finding("no folder"), PROBLEM, "TUISIM_ASSETS"),
-    "untried Textual": (diagnosis.textual_finding((8, 3, 0), TEXTUALS, []), ADVICE, "textual>=8.2.5,<=8.2.8"),
+    "untried Textual": (
+        diagnosis.textual_finding((8, 3, 0), TEXTUALS, []),
+        ADVICE,
+        "textual>=8.2.5,<=8.2.8",
+    ),
     "tried Textual": (diagnosis.textual_finding((8, 2, 6), TEXTUALS, []), OK, ""),
-    "Textual without a name": (diagnosis.textual_finding((8, 2, 6), TEXTUALS, ["App._exit"]), ADVICE, "pip"),
-    "package missing": (diagnosis.dependency_findings([("numpy", "", "")])[1], PROBLEM, "Install tuisim again"),
-    "package of another version": (diagnosis.dependency_findings([("a", "1.0", "2.0")])[1], PROBLEM, "a==1.0"),
+    "Textual without a name": (
+        diagnosis.textual_finding((8, 2, 6), TEXTUALS, ["App._exit"]),
+        ADVICE,
+        "pip",
+    ),
+    "package missing": (
+        diagnosis.dependency_findings([("numpy", "", "")])[1],
+        PROBLEM,
+        "Install tuisim again",
+    ),
+    "package of another version": (
+        diagnosis.dependency_findings([("a", "1.0", "2.0")])[1],
+        PROBLEM,
+        "a==1.0",
+    ),
 }
 
 

@@ -58,7 +58,9 @@ ANSWERS = {
 """What a terminal with octants and sixels says to each question."""
 
 
-def in_terminal(words: list[str], environment: dict[str, str], answers: dict[bytes, bytes]) -> tuple[bytes, int, int]:
+def in_terminal(
+    words: list[str], environment: dict[str, str], answers: dict[bytes, bytes]
+) -> tuple[bytes, int, int]:
     """Run a command in a terminal; return what it has shown, the exit code, and the local modes that it leaves."""
     ours, theirs = pty.openpty()
     modes = termios.tcgetattr(theirs)
@@ -81,9 +83,15 @@ def in_terminal(words: list[str], environment: dict[str, str], answers: dict[byt
     command = [sys.executable, "-c", code + "sys.exit(main())", *words]
     inherited = {name: value for name, value in os.environ.items() if name != "NO_COLOR"}
     child = subprocess.run(
-        command, stdin=theirs, stdout=theirs, stderr=theirs, cwd=ROOT, start_new_session=True, check=False,
+        command,
+        stdin=theirs,
+        stdout=theirs,
+        stderr=theirs,
+        cwd=ROOT,
+        start_new_session=True,
+        check=False,
         env={**inherited, "LC_ALL": "C.UTF-8", **environment},
-    )  # fmt: skip
+    )
     left = termios.tcgetattr(theirs)[3]
     os.close(theirs)
     reader.join()
@@ -93,14 +101,19 @@ def in_terminal(words: list[str], environment: dict[str, str], answers: dict[byt
 
 ASKED = {
     "colours": ({}, ("foot(1.21.0)", "truecolor", "octant", "sixel", " ms")),
-    "NO_COLOR": ({"NO_COLOR": "1"}, ("none, as TERM or NO_COLOR says", "braille", "says: the world is drawn")),
+    "NO_COLOR": (
+        {"NO_COLOR": "1"},
+        ("none, as TERM or NO_COLOR says", "braille", "says: the world is drawn"),
+    ),
     "NO_COLOR without a value": ({"NO_COLOR": ""}, ("is drawn with glyphs",)),
 }
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize(("environment", "expected"), ASKED.values(), ids=ASKED)
-def test_asks_the_terminal(environment: dict[str, str], expected: tuple[str, ...], home: Path) -> None:
+def test_asks_the_terminal(
+    environment: dict[str, str], expected: tuple[str, ...], home: Path
+) -> None:
     where = {"TERM": "xterm-256color", "COLORTERM": "truecolor", **environment}
     shown, code, _ = in_terminal(["doctor"], where, ANSWERS)
     text = " ".join(shown.decode().split())
@@ -120,7 +133,14 @@ def test_a_terminal_that_shows_questions_as_text_is_not_asked(home: Path) -> Non
 def test_reset_restores_what_a_killed_app_has_left(home: Path) -> None:
     shown, code, modes = in_terminal(["doctor", "--reset"], {"TERM": "xterm-256color"}, {})
     assert code == 0
-    for left_on in (b"\x1b[?1049l", b"\x1b[?25h", b"\x1b[?1003l", b"\x1b[?2004l", b"\x1b[?7h", b"\x1b[<u"):
+    for left_on in (
+        b"\x1b[?1049l",
+        b"\x1b[?25h",
+        b"\x1b[?1003l",
+        b"\x1b[?2004l",
+        b"\x1b[?7h",
+        b"\x1b[<u",
+    ):
         assert left_on in shown
     wanted = termios.ECHO | termios.ICANON | termios.ISIG
     assert modes & wanted == wanted

@@ -66,7 +66,9 @@ LEFT: dict[str, Callable[[Path], Path]] = {
     "a folder with a lone lock": lone_lock,
     "an empty folder": empty_folder,
     "a lock without its name": lock_without_its_name,
-    "a removed run": lambda home: file_at(home / "runs" / f".{RUN}.0a0b.removed" / "output.bin").parent,
+    "a removed run": lambda home: (
+        file_at(home / "runs" / f".{RUN}.0a0b.removed" / "output.bin").parent
+    ),
     "a half-written list": lambda home: file_at(home / ".runs.db.0a0b0c0d.tmp"),
     "a journal of a half-written list": lambda home: file_at(home / ".runs.db.0a0b0c0d.tmp-wal"),
     "half-written preferences": lambda home: file_at(home / ".preferences.json.0a0b0c0d.tmp"),
@@ -79,7 +81,9 @@ LEFT: dict[str, Callable[[Path], Path]] = {
 @pytest.fixture(autouse=True)
 def _own_temporary_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "temporary").mkdir()
-    monkeypatch.setattr("tuisim.commands.system.left_over.places", lambda: (tmp_path / "temporary",))
+    monkeypatch.setattr(
+        "tuisim.commands.system.left_over.places", lambda: (tmp_path / "temporary",)
+    )
 
 
 @pytest.mark.parametrize("leave", LEFT.values(), ids=LEFT)
@@ -137,9 +141,12 @@ def of_another(home: Path) -> Iterator[Path]:
 
 
 USED = {
-    "a run that begins": held, "an open file": being_written, "a new file": written_just_now, "a new folder": just_made,
+    "a run that begins": held,
+    "an open file": being_written,
+    "a new file": written_just_now,
+    "a new folder": just_made,
     "a folder of the user": of_another,
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("use", USED.values(), ids=USED)
@@ -151,12 +158,19 @@ def test_what_may_be_in_use_stays(
         assert path.exists()
 
 
-def test_temporary_runs_are_left_over_when_their_process_has_ended(home: Path, tmp_path: Path) -> None:
+def test_temporary_runs_are_left_over_when_their_process_has_ended(
+    home: Path, tmp_path: Path
+) -> None:
     place = tmp_path / "temporary"
     living = owned_folder(parent=place)
     (place / "tuisim-of-something-else").mkdir()
     code = "import os, tuisim.runs.temporary as t; t.owned_folder('tuisim-batch-'); os.kill(os.getpid(), 9)"
-    subprocess.run([sys.executable, "-c", code], cwd=ROOT, env={**os.environ, "TMPDIR": str(place)}, check=False)
+    subprocess.run(
+        [sys.executable, "-c", code],
+        cwd=ROOT,
+        env={**os.environ, "TMPDIR": str(place)},
+        check=False,
+    )
     (dead,) = place.glob("tuisim-batch-*")
     assert [found.path for found in left_over(home)] == [dead]
     assert living.exists()

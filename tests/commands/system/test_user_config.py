@@ -49,17 +49,43 @@ def test_the_file_is_written_once(config: Path, here: Command) -> None:
 @pytest.mark.parametrize(
     ("text", "problem"),
     [
-        pytest.param("[app]\nfps = 0", "app.fps: must be a whole number from 1 to 60", id="a value"),
-        pytest.param("[app]\ntheme = 'lite'", "app.theme: no such theme 'lite' (did you mean light?)", id="a theme"),
-        pytest.param("[keys]\nrnu = 'x'", "keys.rnu: no such action (did you mean run", id="an action"),
-        pytest.param("[keys]\nrun = 'hyper+x'", "keys.run: no such key 'hyper+x' (a character", id="a key"),
-        pytest.param("[keys]\nrun = 'esc'", "keys.run: esc leaves a field and cannot", id="a key that stays"),
-        pytest.param("[keys]\nrun = 'ctrl+i'", "keys.run: ctrl+i goes to the next", id="the same in a terminal"),
-        pytest.param("[keys]\nrun = 'S'", "keys.run: S is also the key of stop (Stop the program)", id="taken"),
-        pytest.param("[keys]\nrun = 'f5'\nstop = ['S', 'f5']", "keys.stop: F5 is also the key of run", id="both new"),
+        pytest.param(
+            "[app]\nfps = 0", "app.fps: must be a whole number from 1 to 60", id="a value"
+        ),
+        pytest.param(
+            "[app]\ntheme = 'lite'",
+            "app.theme: no such theme 'lite' (did you mean light?)",
+            id="a theme",
+        ),
+        pytest.param(
+            "[keys]\nrnu = 'x'", "keys.rnu: no such action (did you mean run", id="an action"
+        ),
+        pytest.param(
+            "[keys]\nrun = 'hyper+x'", "keys.run: no such key 'hyper+x' (a character", id="a key"
+        ),
+        pytest.param(
+            "[keys]\nrun = 'esc'", "keys.run: esc leaves a field and cannot", id="a key that stays"
+        ),
+        pytest.param(
+            "[keys]\nrun = 'ctrl+i'",
+            "keys.run: ctrl+i goes to the next",
+            id="the same in a terminal",
+        ),
+        pytest.param(
+            "[keys]\nrun = 'S'",
+            "keys.run: S is also the key of stop (Stop the program)",
+            id="taken",
+        ),
+        pytest.param(
+            "[keys]\nrun = 'f5'\nstop = ['S', 'f5']",
+            "keys.stop: F5 is also the key of run",
+            id="both new",
+        ),
     ],
 )
-def test_what_is_wrong_ends_the_command(text: str, problem: str, config: Path, here: Command) -> None:
+def test_what_is_wrong_ends_the_command(
+    text: str, problem: str, config: Path, here: Command
+) -> None:
     config.write_text(text)
 
     done = here("config")
@@ -92,7 +118,9 @@ def test_run_tells_what_the_settings_change(
     assert RunStore().load_run("last").spec.world.noise.motor == noise
 
 
-def test_settings_without_an_effect_are_not_told(config: Path, tmp_path: Path, here: Command) -> None:
+def test_settings_without_an_effect_are_not_told(
+    config: Path, tmp_path: Path, here: Command
+) -> None:
     config.write_text("[simulation]\nmotornoise = 0\nprofile = 'robolab'\n")
     (tmp_path / "p.py").write_text(PROGRAM)
 
@@ -126,7 +154,12 @@ def test_a_batch_gives_everybody_the_same(config: Path, tmp_path: Path, here: Co
     ],
 )
 def test_the_app_opens_with_the_settings(
-    words: list[str], noise: int, config: Path, tmp_path: Path, here: Command, monkeypatch: pytest.MonkeyPatch
+    words: list[str],
+    noise: int,
+    config: Path,
+    tmp_path: Path,
+    here: Command,
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     config.write_text("[simulation]\nmotornoise = 7\n[app]\nspeed = 2\nfps = 5\nwrong = 1\n")
     (tmp_path / "p.py").write_text(PROGRAM)

@@ -81,8 +81,21 @@ CLOSE = 0.001
 
 def _values(ends: tuple[float, float]) -> list[Any]:
     low, high = ends
-    return [low, high, float(low), float(high), low - 1, high + 1, low - CLOSE, high + CLOSE, True, "12", float("nan"),
-            [low], {"value": low}]  # fmt: skip
+    return [
+        low,
+        high,
+        float(low),
+        float(high),
+        low - 1,
+        high + 1,
+        low - CLOSE,
+        high + CLOSE,
+        True,
+        "12",
+        float("nan"),
+        [low],
+        {"value": low},
+    ]
 
 
 def nested(path: str, value: Any) -> Table:
@@ -118,7 +131,13 @@ def border_cases() -> Iterator[Case]:
         for number, value in enumerate(_values(ends)):
             box = {"x_mm": 1, "y_mm": 2, "width_mm": 3, "height_mm": 4, key: value}
             text = toml({"obstacle": [box]})
-            yield Case(f"border box {key} {number}", ("run", "p.py", "-o", "t.toml"), {**files, "t.toml": text})
+            yield Case(
+                f"border box {key} {number}",
+                ("run", "p.py", "-o", "t.toml"),
+                {**files, "t.toml": text},
+            )
     for path, ends in DEFAULTS.items():
         for number, value in enumerate(_values(ends)):
-            yield Case(f"border default {path} {number}", ("run", "p.py"), files, toml(nested(path, value)))
+            yield Case(
+                f"border default {path} {number}", ("run", "p.py"), files, toml(nested(path, value))
+            )

@@ -19,13 +19,60 @@ Place = tuple[Any, Any]
 """A table or list, and the key or index of a value in it."""
 
 ODD: tuple[Any, ...] = (
-    True, False, 0, -1, 1, 3.5, -0.001, 1e9, 1e30, -1e9, float("nan"), float("inf"), 2**63, 10**30, "", " ", "far",
-    "12", "red", "true", "a\nb", "ü" * 1200, [], [1], ["x"], [[1, 2]], {}, {"x": 1}, {"x_mm": "a"}, "in5", "outE",
-    "in1", "outB", "none", 50.5, 129, 501,
-)  # fmt: skip
+    True,
+    False,
+    0,
+    -1,
+    1,
+    3.5,
+    -0.001,
+    1e9,
+    1e30,
+    -1e9,
+    float("nan"),
+    float("inf"),
+    2**63,
+    10**30,
+    "",
+    " ",
+    "far",
+    "12",
+    "red",
+    "true",
+    "a\nb",
+    "ü" * 1200,
+    [],
+    [1],
+    ["x"],
+    [[1, 2]],
+    {},
+    {"x": 1},
+    {"x_mm": "a"},
+    "in5",
+    "outE",
+    "in1",
+    "outB",
+    "none",
+    50.5,
+    129,
+    501,
+)
 """Values that fit few keys."""
-KEYS = ("", "x", "robot", "name", "weel_diameter_mm", "backgruond", "start.x", "in1", "outA", "Ü", "a b", "é\n",
-        "k" * 200)  # fmt: skip
+KEYS = (
+    "",
+    "x",
+    "robot",
+    "name",
+    "weel_diameter_mm",
+    "backgruond",
+    "start.x",
+    "in1",
+    "outA",
+    "Ü",
+    "a b",
+    "é\n",
+    "k" * 200,
+)
 TOO_MANY: Mapping[str, Any] = {
     "obstacle": [{"x_mm": 1, "y_mm": 1, "width_mm": 1, "height_mm": 1}] * 1001,
     "ray_angles_deg": [0.5] * 101,
@@ -91,7 +138,9 @@ def _misspelt(r: Random, key: str) -> str:
         case 3:
             return key.upper()
         case _:
-            return r.choice([key.removesuffix("_mm"), f"{key}s", key.replace("_", "-"), r.choice(KEYS)])
+            return r.choice(
+                [key.removesuffix("_mm"), f"{key}s", key.replace("_", "-"), r.choice(KEYS)]
+            )
 
 
 def spoilt(r: Random, table: Table) -> Table:
@@ -107,7 +156,9 @@ def spoilt(r: Random, table: Table) -> Table:
             case 2 | 3 | 4:
                 data[key] = copy.deepcopy(r.choice(ODD))
             case 5 | 6 if isinstance(value, int | float) and not isinstance(value, bool):
-                data[key] = r.choice([value + 20_000, -value - 20_000, value * 1000 + 0.5, str(value)])
+                data[key] = r.choice(
+                    [value + 20_000, -value - 20_000, value * 1000 + 0.5, str(value)]
+                )
             case 5 | 6 if isinstance(value, str):
                 data[key] = _misspelt(r, value)
             case 7:
@@ -125,7 +176,14 @@ def spoilt(r: Random, table: Table) -> Table:
 
 
 NOT_TOML = ("= 3", "[a", "x = ", "a b = 1", "x = [1,", "'", "x == 2")
-OTHER_TEXTS = ("", "  \n", "x = " + "[" * 300 + "]" * 300, "# only this\n", "x = '" + "y" * 1100 + "'", "[]")
+OTHER_TEXTS = (
+    "",
+    "  \n",
+    "x = " + "[" * 300 + "]" * 300,
+    "# only this\n",
+    "x = '" + "y" * 1100 + "'",
+    "[]",
+)
 
 
 def garbled(r: Random, text: str) -> str | bytes:
@@ -165,8 +223,13 @@ ACROSS: tuple[Table, ...] = (
     {"robot": {"ultrasonic": False, "touch_sensors": {"left": {"port": "in1"}}}},
     {"robot": {"ultrasonic": False, "touch_sensors": {"b": {"port": "in1", "pressed_by": "outA"}}}},
     {"robot": {"ultrasonic": False, "touch_sensors": {"b": {"port": "in1", "pressed_by": "outB"}}}},
-    {"robot": {"ultrasonic": False, "motors": {"outA": {"high_deg": 90}},
-               "touch_sensors": {"b": {"port": "in1", "pressed_by": "outA"}}}},
+    {
+        "robot": {
+            "ultrasonic": False,
+            "motors": {"outA": {"high_deg": 90}},
+            "touch_sensors": {"b": {"port": "in1", "pressed_by": "outA"}},
+        }
+    },
     {"robot": {"color_sensors": {"2nd": {"port": "in1", "x_mm": 0, "y_mm": 0}}}},
     {"robot": {"color_sensors": {"eye": {"x_mm": 0, "y_mm": 0}}}},
     {"obstacles": "Wall", "obstacle": []},
@@ -194,7 +257,7 @@ ACROSS: tuple[Table, ...] = (
     {"title": 3, "goal": []},
     {"arguments": ["a\0b"]},
     {"panels": ["graph"]},
-)  # fmt: skip
+)
 """Tables that break rules across values, or name what is not there."""
 BATCHES: tuple[Table, ...] = (
     {"program": "p.py", "seeds": "0..3", "set": {"seed": [1]}},
@@ -226,27 +289,79 @@ BATCHES: tuple[Table, ...] = (
     {"seeds": 1},
 )
 WORDS: tuple[tuple[str, ...], ...] = (
-    ("--solidd",), ("-x",), ("-x", "abc"), ("-x", "1e9"), ("-x", "nan"), ("-N", "129"), ("-N", "3.5"), ("-M", "-1"),
-    ("-P", "gren"), ("-P", "#12"), ("--walls", "yes"), ("--background-fit", "tile"), ("-b", "Grey"), ("-b", ""),
-    ("-b", "no.png"), ("-r", "Explorr"), ("-r", "no.toml"), ("-r", "p.py"), ("-o", "Wal"), ("-o", "no.json"),
-    ("--profile", "ev4"), ("--profile", "no.toml"), ("--profile", "no.json"), ("--seed", "-1"), ("--seed", "1.5"),
-    ("--speed", "0"), ("--speed", "fast"), ("--preload", "all"), ("--fps", "0"), ("--colors", "9"), ("--cells", "x"),
-    ("--pixels", "x"), ("-x", "-y", "3"), ("--pen-width", "0"), ("--mats", "nowhere", "-b", "x"),
-    ("--world", "no.toml"), ("-r",), ("--robotsetup", "x"), ("--x=",), ("--timeout", "0"), ("--press", "ok@1"),
+    ("--solidd",),
+    ("-x",),
+    ("-x", "abc"),
+    ("-x", "1e9"),
+    ("-x", "nan"),
+    ("-N", "129"),
+    ("-N", "3.5"),
+    ("-M", "-1"),
+    ("-P", "gren"),
+    ("-P", "#12"),
+    ("--walls", "yes"),
+    ("--background-fit", "tile"),
+    ("-b", "Grey"),
+    ("-b", ""),
+    ("-b", "no.png"),
+    ("-r", "Explorr"),
+    ("-r", "no.toml"),
+    ("-r", "p.py"),
+    ("-o", "Wal"),
+    ("-o", "no.json"),
+    ("--profile", "ev4"),
+    ("--profile", "no.toml"),
+    ("--profile", "no.json"),
+    ("--seed", "-1"),
+    ("--seed", "1.5"),
+    ("--speed", "0"),
+    ("--speed", "fast"),
+    ("--preload", "all"),
+    ("--fps", "0"),
+    ("--colors", "9"),
+    ("--cells", "x"),
+    ("--pixels", "x"),
+    ("-x", "-y", "3"),
+    ("--pen-width", "0"),
+    ("--mats", "nowhere", "-b", "x"),
+    ("--world", "no.toml"),
+    ("-r",),
+    ("--robotsetup", "x"),
+    ("--x=",),
+    ("--timeout", "0"),
+    ("--press", "ok@1"),
     ("--break", "line x"),
-)  # fmt: skip
-SPOILT_ROBOTS = (made.robot, lambda r: {"color_sensors": {"left": {"x_mm": 3, "diameter_mm": 9}}, "weight": "light"})
+)
+SPOILT_ROBOTS = (
+    made.robot,
+    lambda r: {"color_sensors": {"left": {"x_mm": 3, "diameter_mm": 9}}, "weight": "light"},
+)
 
 
 def _table_case(r: Random, name: str) -> Case:
-    kind = r.choice(["world", "world", "world", "robot", "robot", "profile", "obstacles", "batch", "defaults", "goals"])
+    kind = r.choice(
+        [
+            "world",
+            "world",
+            "world",
+            "robot",
+            "robot",
+            "profile",
+            "obstacles",
+            "batch",
+            "defaults",
+            "goals",
+        ]
+    )
     files: dict[str, str | bytes] = {"p.py": PROGRAM}
     if kind == "goals":
         return _goals(r, name)
     if kind == "defaults":
         table = made.defaults(r, 0.5) or {"simulation": {"robot": "Explorer"}}
         text = toml(spoilt(r, table))
-        return Case(name, r.choice([("config", "--json"), ("run", "p.py"), ("open", "p.py")]), files, text)
+        return Case(
+            name, r.choice([("config", "--json"), ("run", "p.py"), ("open", "p.py")]), files, text
+        )
     make: Callable[[], Table] = {
         "world": lambda: made.world(r, 0.3),
         "robot": lambda: r.choice(SPOILT_ROBOTS)(r),
@@ -271,7 +386,11 @@ def _goals(r: Random, name: str) -> Case:
 
     table = tomllib.loads(GOALS)
     text = garbled(r, GOALS) if r.random() < 0.2 else toml(spoilt(r, table))
-    return Case(name, ("batch", "--goals", "t.toml", "p.py", "--seeds", "0"), {"p.py": PROGRAM, "t.toml": text})
+    return Case(
+        name,
+        ("batch", "--goals", "t.toml", "p.py", "--seeds", "0"),
+        {"p.py": PROGRAM, "t.toml": text},
+    )
 
 
 def _json_case(r: Random, name: str) -> Case:
@@ -311,12 +430,22 @@ def _listed() -> Iterator[Case]:
         yield Case(f"broken words of a batch {index}", ("batch", "p.py", *words), files)
         yield Case(f"broken cell {index}", (" ".join(words),), how="cells")
     for index, table in enumerate(ACROSS):
-        yield Case(f"broken rule {index}", ("run", "w.toml", "p.py"), {**files, "w.toml": toml(table)})
+        yield Case(
+            f"broken rule {index}", ("run", "w.toml", "p.py"), {**files, "w.toml": toml(table)}
+        )
         if isinstance(table.get("robot"), dict):
             robot = {**files, "r.toml": toml(table["robot"])}
             yield Case(f"broken rule of a robot {index}", ("run", "p.py", "-r", "r.toml"), robot)
     for index, table in enumerate(BATCHES):
-        yield Case(f"broken batch {index}", ("batch", "b.toml"), {**files, "b.toml": toml({"batch": table})})
+        yield Case(
+            f"broken batch {index}",
+            ("batch", "b.toml"),
+            {**files, "b.toml": toml({"batch": table})},
+        )
         for key, values in table.get("set", {}).items():
             text = ",".join(map(str, values)) if isinstance(values, list) else str(values)
-            yield Case(f"broken parameter {index} {key}", ("batch", "p.py", "--set", f"{key}={text}"), files)
+            yield Case(
+                f"broken parameter {index} {key}",
+                ("batch", "p.py", "--set", f"{key}={text}"),
+                files,
+            )

@@ -68,7 +68,9 @@ FLAGS: Mapping[str, Callable[[Random], list[str]]] = {
     "seed": lambda r: ["--seed", _text(whole(r, 0, 99))],
     "speed": lambda r: ["--speed", r.choice(["max", "1", "0.01", "1000", "2.5", "1e2"])],
     "preload": lambda r: ["--preload", r.choice(["none", "imports", "preloaded"])],
-    "app": lambda r: [r.choice(["-C", "-u", "-q", "-O", "-A", "-c", "-i", "-z", "-Z", "-X", "-D", "-W", "-H"])],
+    "app": lambda r: [
+        r.choice(["-C", "-u", "-q", "-O", "-A", "-c", "-i", "-z", "-Z", "-X", "-D", "-W", "-H"])
+    ],
 }
 """Options by what they set."""
 LONG: Mapping[str, Callable[[Random], Any]] = {
@@ -151,7 +153,9 @@ def _magic(r: Random, name: str) -> Case:
 
 
 def _cells(r: Random, name: str) -> Case:
-    return Case(name, tuple(shlex.join(option_words(r, 4)) for _ in range(r.randint(1, 3))), how="cells")
+    return Case(
+        name, tuple(shlex.join(option_words(r, 4)) for _ in range(r.randint(1, 3))), how="cells"
+    )
 
 
 def _choices(r: Random, name: str) -> Case:
@@ -169,17 +173,27 @@ def _experiment(r: Random, name: str) -> Case:
         varied[key] = VARIED[key](r) if truth(r) else _listed(VARIED[key](r))
     chosen = {key: LONG[key](r) for key in r.sample(sorted(LONG), r.randint(0, 2))}
     chosen |= some(r, 0.4, seeds=lambda: r.choice(["0..2", [4, 5], range(3)]), goals="square")
-    return Case(name, ("p.py",), {"p.py": _program(r, 1)}, how="choices", choices=chosen | {"parameters": varied})
+    return Case(
+        name,
+        ("p.py",),
+        {"p.py": _program(r, 1)},
+        how="choices",
+        choices=chosen | {"parameters": varied},
+    )
 
 
 def _own_places(r: Random, name: str) -> Case:
     """A mat moves the sensors of a robot, unless they have places of their own; in cells, one mat follows another."""
     robot = made.some(r, 0.5, base=r.choice(made.ROBOTS), weight="light")
     robot["color_sensors"] = {
-        side: made.some(r, 0.5, x_mm=lambda: r.randint(-50, 50), diameter_mm=lambda: r.randint(5, 30))
+        side: made.some(
+            r, 0.5, x_mm=lambda: r.randint(-50, 50), diameter_mm=lambda: r.randint(5, 30)
+        )
         for side in r.sample(["left", "right"], r.randint(1, 2))
     }
-    mats = r.sample(["Radial_grey", "Obstacles_Test", "Sensor_Diameter_Test", "Line_Following_Test", "Loop"], 2)
+    mats = r.sample(
+        ["Radial_grey", "Obstacles_Test", "Sensor_Diameter_Test", "Line_Following_Test", "Loop"], 2
+    )
     words = ["-x", "7"] if truth(r) else ["-o", "Wall"]
     files: dict[str, str | bytes] = {"p.py": PROGRAM, "r.toml": toml(robot)}
     match r.randrange(3):
@@ -189,7 +203,12 @@ def _own_places(r: Random, name: str) -> Case:
             files["w.toml"] = toml({"background": mats[0], "robot": robot})
             return Case(name, ("run", "w.toml", "p.py", "-p", *words), files)
         case _:
-            lines = [["-b", mats[0], "-r", "r.toml", *words], ["-N", "3", *option_words(r, 1)], ["-b", mats[1]], ["-p"]]
+            lines = [
+                ["-b", mats[0], "-r", "r.toml", *words],
+                ["-N", "3", *option_words(r, 1)],
+                ["-b", mats[1]],
+                ["-p"],
+            ]
             return Case(name, tuple(map(shlex.join, lines[: r.randint(2, 4)])), files, how="cells")
 
 
@@ -202,7 +221,11 @@ def _world(r: Random, name: str) -> Case:
     for key, make in (("robot", made.robot), ("profile", made.profile)):
         if r.random() < 0.05:
             files[f"{key}.toml"] = toml(make(r))
-            table = {key: value for key, value in table.items() if key != key} | table | {key: f"./{key}.toml"}
+            table = (
+                {key: value for key, value in table.items() if key != key}
+                | table
+                | {key: f"./{key}.toml"}
+            )
     if "robot" not in table and r.random() < 0.03:
         files["saved.json"] = json.dumps(made.json_robot(r))
         table["robot"] = "saved.json"
@@ -218,7 +241,11 @@ def _robot(r: Random, name: str) -> Case:
     files = {"p.py": PROGRAM, "r.toml": toml(made.robot(r))}
     if r.random() < 0.25:
         return Case(name, ("robots", "r.toml"), files)
-    words = [word for key in r.sample(["background", "light", "color", "down"], 1) for word in FLAGS[key](r)]
+    words = [
+        word
+        for key in r.sample(["background", "light", "color", "down"], 1)
+        for word in FLAGS[key](r)
+    ]
     return Case(name, ("run", "p.py", "-r", "r.toml", *words), files)
 
 
@@ -234,12 +261,18 @@ def _obstacles(r: Random, name: str) -> Case:
         files = {"p.py": PROGRAM, "o.json": json.dumps([list(box.values()) for box in found])}
         return Case(name, ("run", "p.py", "-o", "o.json"), files)
     files = {"p.py": PROGRAM, "o.toml": toml({"obstacle": found})}
-    return Case(name, ("obstacles", "o.toml") if truth(r) else ("run", "p.py", "-o", "o.toml"), files)
+    return Case(
+        name, ("obstacles", "o.toml") if truth(r) else ("run", "p.py", "-o", "o.toml"), files
+    )
 
 
 def _profile(r: Random, name: str) -> Case:
     files = {"p.py": PROGRAM, "f.toml": toml(made.profile(r))}
-    words = ("profiles", "f.toml", "--json") if r.random() < 0.2 else ("run", "p.py", "--profile", "f.toml")
+    words = (
+        ("profiles", "f.toml", "--json")
+        if r.random() < 0.2
+        else ("run", "p.py", "--profile", "f.toml")
+    )
     return Case(name, words, files)
 
 
@@ -256,11 +289,19 @@ def _layers(r: Random, name: str) -> Case:
     table = made.world(r, 0.4, tables=False) if truth(r) else {}
     files: dict[str, str | bytes] = {"r.toml": toml(made.robot(r)), "f.toml": toml(made.profile(r))}
     files["p.py"] = magic_line(r, 8) + PROGRAM
-    words = [*(["-r", "r.toml"] if truth(r) else []), *(["--profile", "f.toml"] if r.random() < 0.3 else [])]
+    words = [
+        *(["-r", "r.toml"] if truth(r) else []),
+        *(["--profile", "f.toml"] if r.random() < 0.3 else []),
+    ]
     if table:
         files["w.toml"] = toml(table)
     named = (["w.toml"] if table else []) + ["p.py"]
-    return Case(name, (r.choice(["run", "open"]), *named, *words, *option_words(r, 3)), files, toml(made.defaults(r)))
+    return Case(
+        name,
+        (r.choice(["run", "open"]), *named, *words, *option_words(r, 3)),
+        files,
+        toml(made.defaults(r)),
+    )
 
 
 def batch_table(r: Random) -> Table:
@@ -271,8 +312,14 @@ def batch_table(r: Random) -> Table:
         varied[key] = VARIED[key](r) if r.random() < 0.7 else _listed(VARIED[key](r))
     table["set"] = varied
     seeds: Table = {} if "seed" in varied else {"seeds": lambda: r.choice(["0..3", [1, 2], 7])}
-    return table | some(r, 0.4, **seeds, jobs=lambda: whole(r, 1, 8), expressions={"far": "hypot(x_mm, y_mm)"},
-                        keep=lambda: r.choice(["all", "failed", "none"]))  # fmt: skip
+    return table | some(
+        r,
+        0.4,
+        **seeds,
+        jobs=lambda: whole(r, 1, 8),
+        expressions={"far": "hypot(x_mm, y_mm)"},
+        keep=lambda: r.choice(["all", "failed", "none"]),
+    )
 
 
 def _listed(text: str) -> Any:
@@ -293,7 +340,11 @@ def _batch(r: Random, name: str) -> Case:
             table |= made.world(r, 0.15)
         files["b.toml"] = toml(table)
         return Case(name, ("batch", "b.toml", *option_words(r, 1)), files)
-    words = [word for key in r.sample(sorted(VARIED), r.randint(1, 3)) for word in ("--set", f"{key}={VARIED[key](r)}")]
+    words = [
+        word
+        for key in r.sample(sorted(VARIED), r.randint(1, 3))
+        for word in ("--set", f"{key}={VARIED[key](r)}")
+    ]
     if r.random() < 0.3:
         files["w.toml"] = toml(made.world(r, 0.15))
         words = ["--world", "w.toml", *words]
@@ -310,12 +361,16 @@ robot = "Small_Robot"  # a small one
 light = 5              # a dark room
 """
 ROBOT_BEFORE = "# Ours.\nname = 'x'\nback_mm = -70 # so\n[pen]\ncolor='blue'\n[color_sensors.left]\ny_mm = 45 # ahead\n"
-BOX_BEFORE = "# Posts.\n[[obstacle]]  # left\nx_mm = 1\ny_mm = 2\nwidth_mm = 3  # thin\nheight_mm = 4\n"
+BOX_BEFORE = (
+    "# Posts.\n[[obstacle]]  # left\nx_mm = 1\ny_mm = 2\nwidth_mm = 3  # thin\nheight_mm = 4\n"
+)
 
 
 def _saved(r: Random, name: str) -> Case:
     """A run is saved as a file, often into one that exists and has comments."""
-    what, before = r.choice([("world", WORLD_BEFORE)] * 3 + [("robot", ROBOT_BEFORE), ("obstacles", BOX_BEFORE)])
+    what, before = r.choice(
+        [("world", WORLD_BEFORE)] * 3 + [("robot", ROBOT_BEFORE), ("obstacles", BOX_BEFORE)]
+    )
     files = {"p.py": PROGRAM, "w.toml": toml(made.world(r))}
     if r.random() < 0.6:
         files["saved.toml"] = before
@@ -325,7 +380,11 @@ def _saved(r: Random, name: str) -> Case:
 def _own_mat(r: Random, name: str) -> Case:
     """The mat is the user's own image, named in one place or another."""
     folder = r.choice(["mats", "backgrounds"])
-    files: dict[str, str | bytes] = {f"{folder}/Loop.png": IMAGE, f"{folder}/ours.png": IMAGE, "p.py": _program(r, 1)}
+    files: dict[str, str | bytes] = {
+        f"{folder}/Loop.png": IMAGE,
+        f"{folder}/ours.png": IMAGE,
+        "p.py": _program(r, 1),
+    }
     mat = r.choice(["Loop", "ours", f"./{folder}/ours.png"])
     fit = ["--background-fit", r.choice(made.FITS)] if truth(r) else []
     match r.choice(["words", "magic", "world", "defaults"]):
@@ -386,9 +445,23 @@ def built_in_cases() -> Iterator[Case]:
         yield Case(f"built in {name} as a file", ("obstacles", name))
     for profile in made.PROFILES:
         for name in made.SETS:
-            yield Case(f"built in {name} by {profile}", ("run", "p.py", "--profile", profile, "-o", name), files)
-    for program in ("bumper", "draw_house", "draw_light", "follow_line", "log_greys", "name_colour", "read_once",
-                    "square", "stop_at_wall", "until_black"):  # fmt: skip
+            yield Case(
+                f"built in {name} by {profile}",
+                ("run", "p.py", "--profile", profile, "-o", name),
+                files,
+            )
+    for program in (
+        "bumper",
+        "draw_house",
+        "draw_light",
+        "follow_line",
+        "log_greys",
+        "name_colour",
+        "read_once",
+        "square",
+        "stop_at_wall",
+        "until_black",
+    ):
         for command in ("run", "open"):
             yield Case(f"built in {program} by {command}", (command, program))
     for task in ("follow_line", "log_greys", "square", "stop_at_wall"):
@@ -396,6 +469,10 @@ def built_in_cases() -> Iterator[Case]:
         yield Case(f"built in world of {task}", ("run", f"{task}_goals.toml"))
     for at, program in enumerate(BRICK_PROGRAMS):
         for more in ((), ("--json",), ("--out", "r.toml")):
-            yield Case(f"built in {at} of a brick {more}", ("robots", "--from", "p.py", *more), {"p.py": program})
+            yield Case(
+                f"built in {at} of a brick {more}",
+                ("robots", "--from", "p.py", *more),
+                {"p.py": program},
+            )
     for lesson in range(1, 17):
         yield Case(f"built in lesson {lesson}", ("learn", "open", str(lesson)))

@@ -11,19 +11,68 @@ from typing import Any
 Table = dict[str, Any]
 
 MATS = (
-    "Empty_Map", "Grey_bands", "Grey_and_black", "Coloured_bands", "Rainbow_bands", "Linear_grey", "Radial_grey",
-    "Radial_red", "Loop", "Square", "Two_shapes", "Lollipop", "Testcard", "Noisy_Lollipop", "Line_Following_Test",
-    "Junction_Handling_Test", "Obstacles_Test", "Thruxton_Circuit", "Simple_Shapes", "Sensor_Diameter_Test",
-    "Topo_map", "MNIST_Digits", "MNIST_Digits_Black", "Harvest_Trail", "Space_Port", "WRO_2018_Regular_Junior",
-    "WRO_2019_Regular_Junior", "FLL_2018_Into_Orbit", "FLL_2019_City_Shaper",
-)  # fmt: skip
-ROBOTS = ("Default_Robot", "Small_Robot", "Small_Robot_Wide_Eyes", "Sensor_Diameter_Config", "Explorer")
+    "Empty_Map",
+    "Grey_bands",
+    "Grey_and_black",
+    "Coloured_bands",
+    "Rainbow_bands",
+    "Linear_grey",
+    "Radial_grey",
+    "Radial_red",
+    "Loop",
+    "Square",
+    "Two_shapes",
+    "Lollipop",
+    "Testcard",
+    "Noisy_Lollipop",
+    "Line_Following_Test",
+    "Junction_Handling_Test",
+    "Obstacles_Test",
+    "Thruxton_Circuit",
+    "Simple_Shapes",
+    "Sensor_Diameter_Test",
+    "Topo_map",
+    "MNIST_Digits",
+    "MNIST_Digits_Black",
+    "Harvest_Trail",
+    "Space_Port",
+    "WRO_2018_Regular_Junior",
+    "WRO_2019_Regular_Junior",
+    "FLL_2018_Into_Orbit",
+    "FLL_2019_City_Shaper",
+)
+ROBOTS = (
+    "Default_Robot",
+    "Small_Robot",
+    "Small_Robot_Wide_Eyes",
+    "Sensor_Diameter_Config",
+    "Explorer",
+)
 SETS = ("None", "Central_post", "Square_posts", "Wall")
 PROFILES = ("robolab", "nbev3devsim", "ev3")
 FITS = ("stretch", "fit", "centre", "corner")
-COLORS = ("red", "BLUE", "navy", "#0a1b2c", "#FFF000", "rebeccapurple", "lightgrey", "darkslategray")
-PANELS = ("output", "arrays", "chart", "instrumentation", "noise", "settings", "positioning", "code", "world",
-          "controls")  # fmt: skip
+COLORS = (
+    "red",
+    "BLUE",
+    "navy",
+    "#0a1b2c",
+    "#FFF000",
+    "rebeccapurple",
+    "lightgrey",
+    "darkslategray",
+)
+PANELS = (
+    "output",
+    "arrays",
+    "chart",
+    "instrumentation",
+    "noise",
+    "settings",
+    "positioning",
+    "code",
+    "world",
+    "controls",
+)
 """As all these lists: not to be extended, for the cases of a golden file of former code are drawn from them."""
 BUTTONS = ("top_left", "bottom_left", "top_right", "bottom_right")
 INPUTS = ("in1", "in2", "in3", "in4")
@@ -57,8 +106,10 @@ def whole(r: Random, low: int, high: int) -> int:
 def some(r: Random, share: float, **parts: Any) -> Table:
     """Return each part with a probability; a part is a value, or a function that makes one."""
     return {
-        key: value() if callable(value) else value for key, value in parts.items() if r.random() < share
-    }  # fmt: skip
+        key: value() if callable(value) else value
+        for key, value in parts.items()
+        if r.random() < share
+    }
 
 
 def truth(r: Random) -> bool:
@@ -71,7 +122,10 @@ def place(r: Random) -> Table:
 
 def color_sensor(r: Random, share: float = 0.5) -> Table:
     return place(r) | some(
-        r, share, diameter_mm=lambda: whole(r, 2, 100), strategy=lambda: r.choice(["mean", "gaussian", "centre"])
+        r,
+        share,
+        diameter_mm=lambda: whole(r, 2, 100),
+        strategy=lambda: r.choice(["mean", "gaussian", "centre"]),
     )
 
 
@@ -89,7 +143,11 @@ def ultrasonic(r: Random) -> Table:
 def pen(r: Random, placed: bool) -> Table:
     where = place(r) if placed else {}
     return where | some(
-        r, 0.6, color=lambda: r.choice(COLORS), width_mm=lambda: number(r, 0.1, 200), down=lambda: truth(r)
+        r,
+        0.6,
+        color=lambda: r.choice(COLORS),
+        width_mm=lambda: number(r, 0.1, 200),
+        down=lambda: truth(r),
     )
 
 
@@ -123,7 +181,9 @@ def _motors(r: Random, table: Table) -> None:
         free = ["outA", "outD"]
     motors: Table = {}
     for port in free[: r.randint(0, 2)]:
-        ends = some(r, 0.5, low_deg=lambda: number(r, -1000, -5), high_deg=lambda: number(r, 0, 1000))
+        ends = some(
+            r, 0.5, low_deg=lambda: number(r, -1000, -5), high_deg=lambda: number(r, 0, 1000)
+        )
         motors[port] = r.choice(["medium", "large", {"kind": "large"} | ends, ends])
         if "touch_sensors" in table and "low_deg" in ends and isinstance(motors[port], dict):
             next(iter(table["touch_sensors"].values())).update(pressed_by=port, pressed_at="low")
@@ -168,8 +228,14 @@ def json_robot(r: Random) -> Table:
     """Return the object that the browser simulator saves."""
 
     def eye() -> Table:
-        return some(r, 0.6, x=lambda: number(r, -500, 500), y=lambda: number(r, -500, 500),
-                    diameter=lambda: whole(r, 2, 100), enabled=lambda: r.random() < 0.8)  # fmt: skip
+        return some(
+            r,
+            0.6,
+            x=lambda: number(r, -500, 500),
+            y=lambda: number(r, -500, 500),
+            diameter=lambda: whole(r, 2, 100),
+            enabled=lambda: r.random() < 0.8,
+        )
 
     return some(
         r,
@@ -178,10 +244,14 @@ def json_robot(r: Random) -> Table:
         wheelSpacing=lambda: number(r, 1, 1000),
         back=lambda: number(r, -1000, 0),
         weight=lambda: r.choice([*WEIGHTS, "", None, number(r, 0, 1000)]),
-        pen=lambda: some(r, 0.5, x=lambda: number(r, -500, 500), y=3, color=lambda: r.choice(COLORS), width=5),
+        pen=lambda: some(
+            r, 0.5, x=lambda: number(r, -500, 500), y=3, color=lambda: r.choice(COLORS), width=5
+        ),
         sensor1=eye,
         sensor2=eye,
-        ultrasonic=lambda: some(r, 0.5, x=1, y=2.5, angle=lambda: number(r, -360, 360), noise=4, enabled=truth(r)),
+        ultrasonic=lambda: some(
+            r, 0.5, x=1, y=2.5, angle=lambda: number(r, -360, 360), noise=4, enabled=truth(r)
+        ),
         gyro=lambda: {"enabled": truth(r)},
         wheelNoise=lambda: r.choice([None, whole(r, 0, 500)]),
         sensorNoise=lambda: r.choice([None, whole(r, 0, 128)]),
@@ -205,8 +275,15 @@ def boxes(r: Random) -> list[Table]:
 
 def profile(r: Random) -> Table:
     """Return the table of a profile file."""
-    costs = ("color_read", "color_code_read", "ultrasonic_read", "gyro_read", "attribute_read", "clock_read",
-             "display_update")  # fmt: skip
+    costs = (
+        "color_read",
+        "color_code_read",
+        "ultrasonic_read",
+        "gyro_read",
+        "attribute_read",
+        "clock_read",
+        "display_update",
+    )
     table = some(
         r,
         0.3,
@@ -220,12 +297,20 @@ def profile(r: Random) -> Table:
         ambient_percent=lambda: whole(r, 0, 100),
         ultrasonic_period_ticks=lambda: whole(r, 1, 1000),
     )
-    flags = ("halfway_heading", "solid", "mend_library", "starts_in_own_folder", "halve_position_moves")
+    flags = (
+        "halfway_heading",
+        "solid",
+        "mend_library",
+        "starts_in_own_folder",
+        "halve_position_moves",
+    )
     table |= {key: truth(r) for key in flags if r.random() < 0.15}
     for cost in costs:
         if r.random() < 0.2:
             in_ms = truth(r)
-            table[f"{cost}_{'ms' if in_ms else 'ns'}"] = number(r, 0, 60) if in_ms else whole(r, 0, 10**8)
+            table[f"{cost}_{'ms' if in_ms else 'ns'}"] = (
+                number(r, 0, 60) if in_ms else whole(r, 0, 10**8)
+            )
     return table or {"title": "plain"}
 
 
@@ -245,14 +330,21 @@ def world(r: Random, share: float = 0.25, tables: bool = True) -> Table:
         panels=lambda: r.sample(PANELS, r.randint(0, 3)),
         hidden_panels=lambda: r.sample(PANELS, 1),
         arguments=lambda: r.choice([[], ["5"], ["a b", "-x", "ü"]]),
-        start=lambda: some(r, 0.6, x_mm=lambda: number(r, -10_000, 10_000), y_mm=lambda: number(r, 0, 1143),
-                           heading_deg=lambda: number(r, -36_000, 36_000)),
+        start=lambda: some(
+            r,
+            0.6,
+            x_mm=lambda: number(r, -10_000, 10_000),
+            y_mm=lambda: number(r, 0, 1143),
+            heading_deg=lambda: number(r, -36_000, 36_000),
+        ),
         noise=lambda: some(r, 0.6, light=lambda: whole(r, 0, 128), motor=lambda: whole(r, 0, 500)),
         pen=lambda: pen(r, placed=False),
-        beacon=lambda: {"x_mm": number(r, -10_000, 10_000), "y_mm": number(r, 0, 1143)}
-        | some(r, 0.5, channel=lambda: whole(r, 1, 4)),
+        beacon=lambda: (
+            {"x_mm": number(r, -10_000, 10_000), "y_mm": number(r, 0, 1143)}
+            | some(r, 0.5, channel=lambda: whole(r, 1, 4))
+        ),
         remote=lambda: [remote(r) for _ in range(r.randint(1, 2))],
-    )  # fmt: skip
+    )
     table |= some(
         r,
         share,
@@ -288,7 +380,9 @@ _APP: Mapping[str, Callable[[Random], Any]] = {
     "quiet": lambda r: truth(r),
     "fps": lambda r: whole(r, 1, 60),
     "colors": lambda r: r.choice(["auto", "truecolor", "256", "16", "8", "none"]),
-    "cells": lambda r: r.choice(["auto", "half", "quadrant", "sextant", "octant", "braille", "ascii"]),
+    "cells": lambda r: r.choice(
+        ["auto", "half", "quadrant", "sextant", "octant", "braille", "ascii"]
+    ),
     "pixels": lambda r: r.choice(["auto", "kitty", "iterm", "sixel", "none"]),
     "theme": lambda r: r.choice(["textual-dark", "nord"]),
 }
@@ -315,7 +409,13 @@ def toml_value(value: Any) -> str:
         case list() | tuple():
             return f"[{', '.join(map(toml_value, value))}]"
         case dict():
-            return "{" + ", ".join(f"{key_text(key)} = {toml_value(inner)}" for key, inner in value.items()) + "}"
+            return (
+                "{"
+                + ", ".join(
+                    f"{key_text(key)} = {toml_value(inner)}" for key, inner in value.items()
+                )
+                + "}"
+            )
         case None:
             return '"null"'
         case _:

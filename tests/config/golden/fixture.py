@@ -36,7 +36,13 @@ Recorded = dict[str, Any]
 
 def flat(data: Any, path: str = "") -> dict[str, Any]:
     """Return nested data as values by path; an empty list or table is a value."""
-    inner = data.items() if isinstance(data, dict) else enumerate(data) if isinstance(data, list | tuple) else ()
+    inner = (
+        data.items()
+        if isinstance(data, dict)
+        else enumerate(data)
+        if isinstance(data, list | tuple)
+        else ()
+    )
     found: dict[str, Any] = {}
     for key, value in inner:
         found |= flat(value, f"{path}.{key}" if path else str(key))
@@ -56,7 +62,9 @@ def of_run(run: Mapping[str, Any], plain: Mapping[str, Any]) -> Recorded:
     if json.dumps(outside.read_back(json.loads(text))) != text:
         rest["is read back as another one"] = True
     values = flat(json.loads(text))
-    changed = {path: value for path, value in values.items() if not same(value, plain.get(path, ...))}
+    changed = {
+        path: value for path, value in values.items() if not same(value, plain.get(path, ...))
+    }
     gone = [path for path in plain if path not in values]
     return {"sum": checksum(text), "set": changed, **({"gone": gone} if gone else {}), **rest}
 
@@ -101,7 +109,12 @@ def recorded(case: Case, folder: Path, plain: Mapping[str, Any]) -> Recorded:
     with in_folder(folder, case):
         home = os.environ["TUISIM_HOME"]
         done = _done(case)
-    places = {home: "HOME", str(folder): "FOLDER", os.path.realpath(folder): "FOLDER", **outside.fixed_places()}
+    places = {
+        home: "HOME",
+        str(folder): "FOLDER",
+        os.path.realpath(folder): "FOLDER",
+        **outside.fixed_places(),
+    }
     found: Recorded = {"code": done.code}
     found |= {key: text for key, text in (("out", done.out), ("err", done.err)) if text}
     if done.runs:
@@ -132,12 +145,17 @@ class Golden:
         """Read it."""
         head, *lines = lzma.decompress(GOLDEN.read_bytes()).decode().split("\n")
         of_head = json.loads(head)
-        return Golden(of_head["plain"], of_head["inputs"], dict(json.loads(line) for line in lines if line))
+        return Golden(
+            of_head["plain"], of_head["inputs"], dict(json.loads(line) for line in lines if line)
+        )
 
     def write(self) -> None:
         """Write it."""
         lines = [json.dumps({"plain": self.plain, "inputs": self.inputs})]
-        lines += [json.dumps([name, outcome], ensure_ascii=False) for name, outcome in self.outcomes.items()]
+        lines += [
+            json.dumps([name, outcome], ensure_ascii=False)
+            for name, outcome in self.outcomes.items()
+        ]
         GOLDEN.write_bytes(lzma.compress("\n".join(lines).encode(), preset=9 | lzma.PRESET_EXTREME))
 
 
@@ -145,7 +163,11 @@ def checksum_of(cases: Iterable[Case]) -> str:
     """Return a checksum of what cases do."""
     whole = hashlib.sha256()
     for case in cases:
-        whole.update(repr((case.name, case.words, case.files, case.defaults, case.how, case.choices)).encode())
+        whole.update(
+            repr(
+                (case.name, case.words, case.files, case.defaults, case.how, case.choices)
+            ).encode()
+        )
     return whole.hexdigest()
 
 
@@ -163,7 +185,11 @@ class Difference:
 
     def applied(self, text: str) -> str:
         """Return a text of before as it is said now."""
-        return re.sub(self.before, self.now, text) if self.pattern else text.replace(self.before, self.now)
+        return (
+            re.sub(self.before, self.now, text)
+            if self.pattern
+            else text.replace(self.before, self.now)
+        )
 
 
 @cache
@@ -181,10 +207,16 @@ def listed(name: str) -> frozenset[str]:
 
 def without_other_goals(outcome: Recorded, case: Case) -> Recorded:
     """Return an outcome without the goals of its first run if they come with the examples and were changed."""
-    if listed("other_goals").isdisjoint((*case.words, case.choices.get("goals"))) or "runs" not in outcome:
+    if (
+        listed("other_goals").isdisjoint((*case.words, case.choices.get("goals")))
+        or "runs" not in outcome
+    ):
         return outcome
     first, *others = outcome["runs"]
-    return {**outcome, "runs": [{key: value for key, value in first.items() if key != "goals"}, *others]}
+    return {
+        **outcome,
+        "runs": [{key: value for key, value in first.items() if key != "goals"}, *others],
+    }
 
 
 def in_words_of_now(before: Recorded) -> Recorded:
@@ -204,7 +236,9 @@ def _in_other_words(recorded: Recorded, listed: Iterable[Difference]) -> Recorde
     found = dict(recorded)
     if "out" in found:
         # The order of the keys of a table is that of the specification.
-        found["out"] = KEYS.sub(lambda keys: "".join(sorted(keys[0].splitlines(keepends=True))), found["out"])
+        found["out"] = KEYS.sub(
+            lambda keys: "".join(sorted(keys[0].splitlines(keepends=True))), found["out"]
+        )
     for difference in listed:
         found |= {key: difference.applied(found[key]) for key in ("out", "err") if key in found}
     return found
@@ -231,7 +265,10 @@ def _told(first: Mapping[str, Any], second: Mapping[str, Any], path: str) -> str
     one, other = _shown(first, path), _shown(second, path)
     if min(len(one), len(other)) > LONG:
         # Only from where they part, and with what is before.
-        parted = next((at for at, pair in enumerate(zip(one, other, strict=False)) if len(set(pair)) > 1), len(one))
+        parted = next(
+            (at for at, pair in enumerate(zip(one, other, strict=False)) if len(set(pair)) > 1),
+            len(one),
+        )
         start = max(parted - LONG // 4, 0)
         one, other = (f"…{text[start : start + LONG]}…" for text in (one, other))
     return f"{one} → {other}"

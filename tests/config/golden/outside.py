@@ -69,8 +69,14 @@ def _hold_run(program: Any, spec: RunSpec, options: Any, _store: object = None) 
 
 def _hold_plan(plan: Any, *_: object, **__: object) -> NoReturn:
     tasks = list(islice(plan.tasks(), MOST_TASKS))
-    more = [{"values": task.parameters, "arguments": list(task.program.arguments)} for task in tasks]
-    more[0] |= {"runs": len(plan), "names": list(plan.names), "goals": [_goal(goal) for goal in plan.goals]}
+    more = [
+        {"values": task.parameters, "arguments": list(task.program.arguments)} for task in tasks
+    ]
+    more[0] |= {
+        "runs": len(plan),
+        "names": list(plan.names),
+        "goals": [_goal(goal) for goal in plan.goals],
+    }
     raise _Held([task.spec for task in tasks], more)
 
 
@@ -100,8 +106,11 @@ def nothing_starts() -> Iterator[None]:
             (resolve, "field_files", lambda _: None),
             (run_folder, "field_files", lambda _: None),
         ):
-            stack.enter_context(patch(f"{place}.{name}", held) if isinstance(place, str) else
-                                patch.object(place, name, held))  # fmt: skip
+            stack.enter_context(
+                patch(f"{place}.{name}", held)
+                if isinstance(place, str)
+                else patch.object(place, name, held)
+            )
         yield
 
 
@@ -114,7 +123,9 @@ def _said() -> Iterator[tuple[io.StringIO, io.StringIO]]:
 
 def _of_held(held: _Held, out: str, err: str) -> Outcome:
     # A batch says nothing about most of its values twice: the specifications are those of `run.json`.
-    runs = tuple({"spec": to_plain(spec), **more} for spec, more in zip(held.specs, held.more, strict=True))
+    runs = tuple(
+        {"spec": to_plain(spec), **more} for spec, more in zip(held.specs, held.more, strict=True)
+    )
     return Outcome(0, out, err, runs, held.specs)
 
 

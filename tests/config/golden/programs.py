@@ -128,13 +128,25 @@ y_mm = 70
 port = "in4"
 """
 SAVED = json.dumps(
-    {"wheeldiameter": 43, "sensor1": {"x": -30, "y": 40, "diameter": 30}, "gyro": {"enabled": False}, "wheelNoise": 6}
+    {
+        "wheeldiameter": 43,
+        "sensor1": {"x": -30, "y": 40, "diameter": 30},
+        "gyro": {"enabled": False},
+        "wheelNoise": 6,
+    }
 )
 
 
 def _notebook(*cells: str) -> str:
     listed: list[dict[str, Any]] = [
-        {"cell_type": "code", "execution_count": None, "id": f"c{at}", "metadata": {}, "outputs": [], "source": text}
+        {
+            "cell_type": "code",
+            "execution_count": None,
+            "id": f"c{at}",
+            "metadata": {},
+            "outputs": [],
+            "source": text,
+        }
         for at, text in enumerate(cells)
     ]
     return json.dumps({"cells": listed, "metadata": {}, "nbformat": 4, "nbformat_minor": 5})
@@ -152,8 +164,18 @@ NOISE = ("-N", "20", "-M", "50")
 PROGRAMS: Mapping[str, GoldenProgram] = {
     **{
         name: GoldenProgram((name,))
-        for name in ("bumper", "draw_house", "draw_light", "follow_line", "log_greys", "name_colour", "read_once",
-                     "square", "stop_at_wall", "until_black")
+        for name in (
+            "bumper",
+            "draw_house",
+            "draw_light",
+            "follow_line",
+            "log_greys",
+            "name_colour",
+            "read_once",
+            "square",
+            "stop_at_wall",
+            "until_black",
+        )
     },
     **{
         f"{name} by {profile}": GoldenProgram((name, "--profile", profile))
@@ -162,26 +184,50 @@ PROGRAMS: Mapping[str, GoldenProgram] = {
     },
     "log_greys with noise": GoldenProgram(("log_greys", *NOISE, "--seed", "3")),
     "follow_line with noise": GoldenProgram(("follow_line", *NOISE)),
-    "square with noise by nbev3devsim": GoldenProgram(("square", *NOISE, "--seed", "7", "--profile", "nbev3devsim")),
-    "stop_at_wall with noise by ev3": GoldenProgram(("stop_at_wall", *NOISE, "--profile", "ev3", "--solid")),
+    "square with noise by nbev3devsim": GoldenProgram(
+        ("square", *NOISE, "--seed", "7", "--profile", "nbev3devsim")
+    ),
+    "stop_at_wall with noise by ev3": GoldenProgram(
+        ("stop_at_wall", *NOISE, "--profile", "ev3", "--solid")
+    ),
     "square in the world of its goals": GoldenProgram(
-        ("square_goals.toml", "-r", "Small_Robot"), then=(("goals", "check", "square"), ("runs", "show", "last"))
+        ("square_goals.toml", "-r", "Small_Robot"),
+        then=(("goals", "check", "square"), ("runs", "show", "last")),
     ),
     "square elsewhere": GoldenProgram(
         ("square", "-x", "400", "-b", "Loop"),
-        then=(("goals", "check", "square"), ("goals", "check", "log_greys"), ("runs", "rerun", "last")),
+        then=(
+            ("goals", "check", "square"),
+            ("goals", "check", "log_greys"),
+            ("runs", "rerun", "last"),
+        ),
     ),
     "two setups": GoldenProgram(
         ("read_once", "-N", "5", "-r", "Small_Robot", "-p", "-P", "navy"),
         then=(
-            ("run", "read_once", "--profile", "ev3", "-o", "Wall", "--walls", "off", "--seed", "3", "-a", "45"),
+            (
+                "run",
+                "read_once",
+                "--profile",
+                "ev3",
+                "-o",
+                "Wall",
+                "--walls",
+                "off",
+                "--seed",
+                "3",
+                "-a",
+                "45",
+            ),
             ("log", "diff", "1", "2"),
             ("log", "diff", "1", "2", "--json"),
             ("runs", "show", "1", "--json"),
         ),
     ),
     "threads": GoldenProgram(("threads.py",), {"threads.py": THREADS}),
-    "threads by nbev3devsim": GoldenProgram(("threads.py", "--profile", "nbev3devsim"), {"threads.py": THREADS}),
+    "threads by nbev3devsim": GoldenProgram(
+        ("threads.py", "--profile", "nbev3devsim"), {"threads.py": THREADS}
+    ),
     "threads by ev3": GoldenProgram(("threads.py", "--profile", "ev3"), {"threads.py": THREADS}),
     "a cell of a notebook": GoldenProgram(("book.ipynb#1",), {"book.ipynb": NOTEBOOK}),
     "a cell with noise": GoldenProgram(("book.ipynb#2",), {"book.ipynb": NOTEBOOK}),
@@ -190,7 +236,7 @@ PROGRAMS: Mapping[str, GoldenProgram] = {
     "a robot of the browser simulator": GoldenProgram(
         ("log_greys", "-r", "saved.json", "--pen-marks", "-p"), {"saved.json": SAVED}
     ),
-}  # fmt: skip
+}
 
 
 def run_golden(program: GoldenProgram, folder: Path) -> Recorded:
@@ -198,8 +244,13 @@ def run_golden(program: GoldenProgram, folder: Path) -> Recorded:
     for name, text in program.files.items():
         (folder / name).write_text(text, encoding="utf-8")
     targets = [word for name in SAMPLES for word in ("--export", name)]
-    done = outside.of_command(("run", *program.words, "--json", *targets, "--telemetry", TELEMETRY[0]))
-    more = [outside.of_command(("runs", "export", "last", "--telemetry", name)) for name in TELEMETRY[1:]]
+    done = outside.of_command(
+        ("run", *program.words, "--json", *targets, "--telemetry", TELEMETRY[0])
+    )
+    more = [
+        outside.of_command(("runs", "export", "last", "--telemetry", name))
+        for name in TELEMETRY[1:]
+    ]
     facts = json.loads(done.out)
     then = [outside.of_command(words) for words in program.then]
     return {
@@ -218,7 +269,11 @@ LATER = re.compile(r'"values": \{[^}]*\}, |^values: [^\n]*\n', re.MULTILINE)
 
 def _anywhere(text: str, folder: Path) -> str:
     """Return what is said without what is other each time."""
-    for place, word in {str(folder): "FOLDER", os.path.realpath(folder): "FOLDER", **outside.fixed_places()}.items():
+    for place, word in {
+        str(folder): "FOLDER",
+        os.path.realpath(folder): "FOLDER",
+        **outside.fixed_places(),
+    }.items():
         text = text.replace(place, word)
     return _STAMPS.sub("WHEN", text)
 
@@ -229,7 +284,10 @@ def _sum(data: bytes) -> str:
 
 def _columns(names: Sequence[str], rows: Sequence[Sequence[object]]) -> Recorded:
     columns = zip(*rows, strict=True) if rows else [()] * len(names)
-    return {name: _sum(repr(list(column)).encode())[:16] for name, column in zip(names, columns, strict=True)}
+    return {
+        name: _sum(repr(list(column)).encode())[:16]
+        for name, column in zip(names, columns, strict=True)
+    }
 
 
 def _of_file(path: Path) -> Recorded:
@@ -241,14 +299,24 @@ def _of_file(path: Path) -> Recorded:
     if path.suffix == ".jsonl":
         listed = [json.loads(line) for line in data.decode().split("\n") if line]
         names = list(listed[0]) if listed else []
-        return {"sum": _sum(data), "rows": len(listed), "columns": _columns(names, [[*row.values()] for row in listed])}
+        return {
+            "sum": _sum(data),
+            "rows": len(listed),
+            "columns": _columns(names, [[*row.values()] for row in listed]),
+        }
     from pyarrow import parquet
 
     table = parquet.read_table(path)
-    columns = {name: _sum(repr(table[name].to_pylist()).encode())[:16] for name in table.column_names}
+    columns = {
+        name: _sum(repr(table[name].to_pylist()).encode())[:16] for name in table.column_names
+    }
     types = {name: str(table.schema.field(name).type) for name in table.column_names}
     # What pandas adds names its own version.
-    about = {key.decode(): text.decode() for key, text in table.schema.metadata.items() if key != b"pandas"}
+    about = {
+        key.decode(): text.decode()
+        for key, text in table.schema.metadata.items()
+        if key != b"pandas"
+    }
     return {"rows": table.num_rows, "columns": columns, "types": types, "about": about}
 
 

@@ -12,7 +12,9 @@ from tests.config.golden.programs import PROGRAMS, read_runs, run_golden
 
 @pytest.mark.quick_cases("read_once", "a cell of a notebook", "everything in a world")
 @pytest.mark.parametrize("name", PROGRAMS)
-def test_a_program_gives_what_it_gave(name: str, tmp_path: Path, home: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_program_gives_what_it_gave(
+    name: str, tmp_path: Path, home: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     folder = tmp_path / "here"
     folder.mkdir()
     monkeypatch.chdir(folder)
@@ -26,7 +28,11 @@ def test_the_programs_are_those_of_the_golden_file() -> None:
     recorded = read_runs()
     assert list(recorded) == list(PROGRAMS)
     assert len(recorded) >= 30
-    assert {run["json"]["profile"] for run in recorded.values()} == {"robolab", "nbev3devsim", "ev3"}
+    assert {run["json"]["profile"] for run in recorded.values()} == {
+        "robolab",
+        "nbev3devsim",
+        "ev3",
+    }
     # Files without rows would tell nothing.
     assert all(run["files"]["t.csv"]["rows"] for run in recorded.values())
     assert sum(bool(run["files"]["s.csv"]["rows"]) for run in recorded.values()) >= 12

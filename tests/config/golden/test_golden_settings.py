@@ -45,10 +45,16 @@ def _nothing_starts(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
 
 def told(case: Case, changes: list[str]) -> str:
     """Return what a user does and what is other than before."""
-    texts = [f"--- {name}\n{str(text)[:MOST_CHARACTERS]}" for name, text in case.files.items() if text != PROGRAM]
+    texts = [
+        f"--- {name}\n{str(text)[:MOST_CHARACTERS]}"
+        for name, text in case.files.items()
+        if text != PROGRAM
+    ]
     if case.defaults:
         texts.append(f"--- config.toml\n{case.defaults}")
-    return "\n".join([f"== {case.name}: {' '.join(case.words)} {case.choices or ''}", *texts, *changes])
+    return "\n".join(
+        [f"== {case.name}: {' '.join(case.words)} {case.choices or ''}", *texts, *changes]
+    )
 
 
 @pytest.mark.quick_cases("0")
@@ -72,8 +78,12 @@ def test_settings_give_what_they_gave(share: int, tmp_path: Path) -> None:
             wrong.append(told(case, changes))
     if wrong:
         shown = "\n".join(wrong[:MOST_SHOWN])
-        meant = "If that is meant, say why in a [[difference]] of tests/config/golden/differences.toml."
-        pytest.fail(f"{len(wrong)} cases give something else than before:\n{shown}\n{meant}", pytrace=False)
+        meant = (
+            "If that is meant, say why in a [[difference]] of tests/config/golden/differences.toml."
+        )
+        pytest.fail(
+            f"{len(wrong)} cases give something else than before:\n{shown}\n{meant}", pytrace=False
+        )
 
 
 def test_the_cases_are_those_of_the_golden_file() -> None:
@@ -85,12 +95,29 @@ def test_the_cases_are_those_of_the_golden_file() -> None:
 
 def test_there_are_as_many_specifications_and_errors_as_promised() -> None:
     outcomes = Golden.read().outcomes
-    assert sum("runs" in outcome for name, outcome in outcomes.items() if not name.startswith("broken")) >= 9000
-    assert sum(bool(outcome.get("err")) for name, outcome in outcomes.items() if name.startswith("broken")) >= 2000
+    assert (
+        sum(
+            "runs" in outcome for name, outcome in outcomes.items() if not name.startswith("broken")
+        )
+        >= 9000
+    )
+    assert (
+        sum(
+            bool(outcome.get("err"))
+            for name, outcome in outcomes.items()
+            if name.startswith("broken")
+        )
+        >= 2000
+    )
 
 
 def test_every_difference_in_wording_is_needed() -> None:
-    texts = [outcome[key] for outcome in Golden.read().outcomes.values() for key in ("out", "err") if key in outcome]
+    texts = [
+        outcome[key]
+        for outcome in Golden.read().outcomes.values()
+        for key in ("out", "err")
+        if key in outcome
+    ]
     unused = []
     for one in accepted():
         # As they are after the differences above it.
@@ -103,7 +130,9 @@ def test_every_difference_in_wording_is_needed() -> None:
 def test_a_changed_value_is_shown_with_what_it_was(tmp_path: Path) -> None:
     golden = Golden.read()
     now = recorded(Case("x", ("run", "p.py", "-N", "7"), {"p.py": PROGRAM}), tmp_path, golden.plain)
-    before = recorded(Case("x", ("run", "p.py", "-M", "7"), {"p.py": PROGRAM}), tmp_path, golden.plain)
+    before = recorded(
+        Case("x", ("run", "p.py", "-M", "7"), {"p.py": PROGRAM}), tmp_path, golden.plain
+    )
     assert differences(before, before) == []
     assert sorted(line for line in differences(before, now) if "sum" not in line) == [
         "runs.0.set.world.noise.light: 0, as usual → 7",
@@ -126,7 +155,9 @@ def test_the_order_of_keys_and_the_form_of_numbers_count(monkeypatch: pytest.Mon
     assert of_run(spec(light=0), plain)["gone"] == ["world.noise.motor"]
 
 
-def test_a_specification_that_is_read_back_as_another_one_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_specification_that_is_read_back_as_another_one_is_told(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     monkeypatch.setattr(outside, "read_back", lambda plain: {**plain, "seed": 1})
     assert of_run({"spec": {"seed": 0}}, {"seed": 0})["is read back as another one"]
 

@@ -10,13 +10,22 @@ from tests.config.program_robot.reading import built
 @pytest.mark.parametrize(
     ("text", "doubt"),
     [
-        ("[LargeMotor(p) for p in (OUTPUT_A, OUTPUT_B, OUTPUT_C)]", "those on outB and outC are taken for the wheels"),
-        ("MoveTank(OUTPUT_A, OUTPUT_D)\nMoveTank(OUTPUT_B, OUTPUT_C)", "MoveTank on outB and outC is taken"),
-        ("ColorSensor('in1')\nTouchSensor('in1')\nTouchSensor('in1')", "in1 is taken for a touch sensor"),
+        (
+            "[LargeMotor(p) for p in (OUTPUT_A, OUTPUT_B, OUTPUT_C)]",
+            "those on outB and outC are taken for the wheels",
+        ),
+        (
+            "MoveTank(OUTPUT_A, OUTPUT_D)\nMoveTank(OUTPUT_B, OUTPUT_C)",
+            "MoveTank on outB and outC is taken",
+        ),
+        (
+            "ColorSensor('in1')\nTouchSensor('in1')\nTouchSensor('in1')",
+            "in1 is taken for a touch sensor",
+        ),
         ("GyroSensor('in1')\nGyroSensor('in2')", "a robot has one gyro"),
     ],
     ids=["wheels", "pairs", "kinds", "gyros"],
-)  # fmt: skip
+)
 def test_another_reading_is_told(text: str, doubt: str) -> None:
     found = built(text)
     assert found is not None
@@ -25,7 +34,13 @@ def test_another_reading_is_told(text: str, doubt: str) -> None:
 
 @pytest.mark.parametrize(
     "text",
-    ["def f(:", "x = " + "(" * 3000, "x = " + "-" * 5000 + "1", "a.b" + ".c" * 5000 + "()", "import ev3dev2\0"],
+    [
+        "def f(:",
+        "x = " + "(" * 3000,
+        "x = " + "-" * 5000 + "1",
+        "a.b" + ".c" * 5000 + "()",
+        "import ev3dev2\0",
+    ],
     ids=["syntax", "brackets", "signs", "attributes", "null"],
 )
 def test_a_program_that_cannot_be_read_has_no_robot(text: str) -> None:

@@ -54,7 +54,10 @@ def test_what_the_brick_takes_is_not_refused(text: str) -> None:
 
 
 def test_the_lines_are_told_in_order_with_their_file() -> None:
-    modules = [Module("", "p.py", ast.parse("x = f''\n\ny: int = f''")), Module("m", "m.py", ast.parse("f''"))]
+    modules = [
+        Module("", "p.py", ast.parse("x = f''\n\ny: int = f''")),
+        Module("m", "m.py", ast.parse("f''")),
+    ]
     assert [str(one) for one in refused_lines(modules)] == [
         "p.py:1: the brick's Python would refuse this line (f-string)",
         "p.py:3: the brick's Python would refuse this line (annotation of a variable)",

@@ -17,7 +17,15 @@ from tuisim.config.program_robot.library import (
 
 @pytest.mark.parametrize(
     ("text", "port"),
-    [("outA", "outA"), (" ev3-ports:in4\n", "in4"), ("outE", ""), ("in1 ", "in1"), ("xoutA", ""), (1, ""), (None, "")],
+    [
+        ("outA", "outA"),
+        (" ev3-ports:in4\n", "in4"),
+        ("outE", ""),
+        ("in1 ", "in1"),
+        ("xoutA", ""),
+        (1, ""),
+        (None, ""),
+    ],
     ids=str,
 )
 def test_the_port_in_a_text(text: object, port: str) -> None:
@@ -28,8 +36,11 @@ def test_kinds_by_driver_and_by_mode() -> None:
     assert kind_of_driver("lego-ev3-m-motor") is DeviceKind.MEDIUM
     assert [kind_of_driver(text) for text in ("lego-nxt-us", "lego-ev3", 3)] == [None] * 3
     assert [kind_of_mode(text) for text in ("GYRO-ANG", "COL-REFLECT", "REF-RAW", "US-SI-CM")] == [
-        DeviceKind.GYRO, DeviceKind.COLOR, DeviceKind.COLOR, DeviceKind.ULTRASONIC
-    ]  # fmt: skip
+        DeviceKind.GYRO,
+        DeviceKind.COLOR,
+        DeviceKind.COLOR,
+        DeviceKind.ULTRASONIC,
+    ]
     assert [kind_of_mode(text) for text in ("GYRO", "", 3)] == [None] * 3
 
 

@@ -9,7 +9,9 @@ from tuisim.source import Program
 
 
 def mentions(text: str) -> Mentions:
-    program = Program("p.py", f"from ev3dev2.motor import *\nfrom ev3dev2.sensor.lego import *\n{text}")
+    program = Program(
+        "p.py", f"from ev3dev2.motor import *\nfrom ev3dev2.sensor.lego import *\n{text}"
+    )
     return mentions_in(read_modules(program), data_files(program))
 
 
@@ -21,16 +23,22 @@ def test_a_device_has_its_line_and_its_names() -> None:
 
 def test_what_nothing_refers_to_makes_no_device() -> None:
     assert mentions("def unused():\n    MediumMotor(OUTPUT_A)").devices == ()
-    assert [one.port for one in mentions("def used():\n    MediumMotor(OUTPUT_A)\nused()").devices] == ["outA"]
+    assert [
+        one.port for one in mentions("def used():\n    MediumMotor(OUTPUT_A)\nused()").devices
+    ] == ["outA"]
 
 
 def test_each_call_of_a_function_makes_its_own_device() -> None:
-    found = mentions("def motor(port):\n    return LargeMotor(port)\na, b = motor(OUTPUT_A), motor(OUTPUT_D)").devices
+    found = mentions(
+        "def motor(port):\n    return LargeMotor(port)\na, b = motor(OUTPUT_A), motor(OUTPUT_D)"
+    ).devices
     assert sorted(one.port for one in found) == ["outA", "outD"]
 
 
 def test_a_device_of_a_class_knows_its_owner() -> None:
-    (found,) = mentions("class Arm:\n    def __init__(self):\n        self.m = LargeMotor(OUTPUT_A)\nArm()").devices
+    (found,) = mentions(
+        "class Arm:\n    def __init__(self):\n        self.m = LargeMotor(OUTPUT_A)\nArm()"
+    ).devices
     assert found.owner is not None
     assert getattr(found.owner.node, "name", "") == "Arm"
 

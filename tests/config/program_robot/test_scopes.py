@@ -31,13 +31,20 @@ def test_a_name_may_be_bound_more_than_once() -> None:
 
 def test_names_that_are_unpacked_have_their_place() -> None:
     names = scope("a, (b, c) = 1, (2, 3)").names
-    assert [one.path for name in "abc" for one in names[name] if isinstance(one, Bound)] == [(0,), (1, 0), (1, 1)]
+    assert [one.path for name in "abc" for one in names[name] if isinstance(one, Bound)] == [
+        (0,),
+        (1, 0),
+        (1, 1),
+    ]
 
 
 def test_parameters_belong_to_the_function() -> None:
     top = scope("def f(p, *, q=1):\n    r = p\n")
     function = inner(top, "f")
-    assert {name for name, (one, *_) in function.names.items() if isinstance(one, Parameter)} == {"p", "q"}
+    assert {name for name, (one, *_) in function.names.items() if isinstance(one, Parameter)} == {
+        "p",
+        "q",
+    }
     assert "r" in function.names and "r" not in top.names
     assert function.top is top and function.owner is None
 

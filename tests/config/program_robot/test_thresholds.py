@@ -9,13 +9,21 @@ from tuisim.core.sensors.color import LightRead
 from tuisim.core.spec import RobotSpec
 from tuisim.source import Program
 
-EV3DEV2 = "from ev3dev2.sensor.lego import ColorSensor\nfrom ev3dev2.sensor import INPUT_2, INPUT_3\n"
-PYBRICKS = "from pybricks.ev3devices import ColorSensor\nfrom pybricks.parameters import Port, Color\n"
+EV3DEV2 = (
+    "from ev3dev2.sensor.lego import ColorSensor\nfrom ev3dev2.sensor import INPUT_2, INPUT_3\n"
+)
+PYBRICKS = (
+    "from pybricks.ev3devices import ColorSensor\nfrom pybricks.parameters import Port, Color\n"
+)
 
 
 def found(text: str, prelude: str = "none") -> dict[str, list[str]]:
     thresholds = thresholds_in(Program("test.py", text, prelude), RobotSpec())
-    return {name: [f"{one.read} {one.words} {one.line}" for one in some] for name, some in thresholds.items() if some}
+    return {
+        name: [f"{one.read} {one.words} {one.line}" for one in some]
+        for name, some in thresholds.items()
+        if some
+    }
 
 
 @pytest.mark.parametrize(
@@ -42,15 +50,25 @@ def found(text: str, prelude: str = "none") -> dict[str, list[str]]:
             {"left": ["full_reflected_light_intensity aim 50 1"]},
             id="an aim",
         ),
-        pytest.param("if 20 < colorLeft.reflected_light_intensity <= 60:\n  pass\n",
-                     {"left": ["reflected_light_intensity > 20 1", "reflected_light_intensity <= 60 1"]}, id="between"),
-        pytest.param("if colorLeft.reflected_light_intensity > colorRight.reflected_light_intensity: pass\n", {},
-                     id="no number"),
+        pytest.param(
+            "if 20 < colorLeft.reflected_light_intensity <= 60:\n  pass\n",
+            {"left": ["reflected_light_intensity > 20 1", "reflected_light_intensity <= 60 1"]},
+            id="between",
+        ),
+        pytest.param(
+            "if colorLeft.reflected_light_intensity > colorRight.reflected_light_intensity: pass\n",
+            {},
+            id="no number",
+        ),
         pytest.param("if gyro.angle > 90: pass\nif len([]) > 3: pass\n", {}, id="others"),
         pytest.param("if (:\n", {}, id="no Python"),
-        pytest.param(f"if colorLeft.reflected_light_intensity < {'+'.join(['1'] * 5000)}: pass\n", {}, id="too deep"),
+        pytest.param(
+            f"if colorLeft.reflected_light_intensity < {'+'.join(['1'] * 5000)}: pass\n",
+            {},
+            id="too deep",
+        ),
     ],
-)  # fmt: skip
+)
 def test_of_a_program_with_the_prelude(text: str, expected: dict[str, list[str]]) -> None:
     assert found(text, "preloaded") == expected
 
@@ -66,7 +84,8 @@ def test_of_ports_in_a_class() -> None:
 
 def test_of_pybricks() -> None:
     text = (
-        PYBRICKS + "eye = ColorSensor(Port.S2)\nwhile eye.color() != Color.BLACK and eye.reflection() > 9:\n    pass\n"
+        PYBRICKS
+        + "eye = ColorSensor(Port.S2)\nwhile eye.color() != Color.BLACK and eye.reflection() > 9:\n    pass\n"
     )
     assert found(text) == {"left": ["color != Black 4", "reflection > 9 4"]}
 

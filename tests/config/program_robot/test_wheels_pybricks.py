@@ -14,8 +14,10 @@ from tuisim.source import Program
 
 # A program; the ports of the left and the right wheel, their diameter and their distance.
 DRIVE_BASES: Mapping[str, tuple[str, tuple[str, str, float, float]]] = {
-    "names": ("left = Motor(Port.A)\nright = Motor(Port.D)\nrobot = DriveBase(left, right, 56, 114)",
-              ("outA", "outD", 56, 114)),
+    "names": (
+        "left = Motor(Port.A)\nright = Motor(Port.D)\nrobot = DriveBase(left, right, 56, 114)",
+        ("outA", "outD", 56, 114),
+    ),
     "ports that others have the other way round": (
         "l = Motor(Port.C)\nr = Motor(Port.B)\nDriveBase(l, r, wheel_diameter=55.5, axle_track=104)",
         ("outC", "outB", 55.5, 104),
@@ -38,14 +40,23 @@ DRIVE_BASES: Mapping[str, tuple[str, tuple[str, str, float, float]]] = {
         "DriveBase(right_motor=Motor(port=Port.A), left_motor=Motor(Port.D), axle_track=120, wheel_diameter=43.2)",
         ("outD", "outA", 43.2, 120),
     ),
-    "constants": ("WHEEL_MM = 62.4\nTRACK_CM = 12\nL, R = Port.B, Port.C\nDriveBase(Motor(L), Motor(R), WHEEL_MM, "
-                  "TRACK_CM * 10)", ("outB", "outC", 62.4, 120)),
-    "a list": ("motors = [Motor(port) for port in (Port.A, Port.D)]\nDriveBase(motors[0], motors[1], 56, 100)",
-               ("outA", "outD", 56, 100)),
-    "a tuple": ("a, b = (Motor(port) for port in (Port.A, Port.D))\nDriveBase(a, b, 56, 100)",
-                ("outA", "outD", 56, 100)),
-    "a dictionary": ("m = {'a': Motor(Port.A), 'd': Motor(Port.D)}\nDriveBase(m['d'], m['a'], 56, 100)",
-                     ("outD", "outA", 56, 100)),
+    "constants": (
+        "WHEEL_MM = 62.4\nTRACK_CM = 12\nL, R = Port.B, Port.C\nDriveBase(Motor(L), Motor(R), WHEEL_MM, "
+        "TRACK_CM * 10)",
+        ("outB", "outC", 62.4, 120),
+    ),
+    "a list": (
+        "motors = [Motor(port) for port in (Port.A, Port.D)]\nDriveBase(motors[0], motors[1], 56, 100)",
+        ("outA", "outD", 56, 100),
+    ),
+    "a tuple": (
+        "a, b = (Motor(port) for port in (Port.A, Port.D))\nDriveBase(a, b, 56, 100)",
+        ("outA", "outD", 56, 100),
+    ),
+    "a dictionary": (
+        "m = {'a': Motor(Port.A), 'd': Motor(Port.D)}\nDriveBase(m['d'], m['a'], 56, 100)",
+        ("outD", "outA", 56, 100),
+    ),
     "ports that only data tells": (
         "ports = {'B': Port.B, 'C': Port.C}\nd = {}\n"
         "DriveBase(Motor(ports[d['left']]), Motor(ports[d['right']]), 56, 100)",
@@ -79,10 +90,15 @@ DRIVE_BASES: Mapping[str, tuple[str, tuple[str, str, float, float]]] = {
         "left = Motor(Port.A)\nright = Motor(Port.D)\nDriveBase(Motor(Port.B), Motor(Port.C), 56, 100)",
         ("outB", "outC", 56, 100),
     ),
-    "no drive base": ("left_motor = Motor(Port.D)\nright_motor = Motor(Port.A)\nleft_motor.run(300)",
-                      ("outD", "outA", 56, 180)),
-    "sizes that are impossible": ("DriveBase(Motor(Port.A), Motor(Port.D), 0, 100)", ("outB", "outC", 56, 180)),
-}  # fmt: skip
+    "no drive base": (
+        "left_motor = Motor(Port.D)\nright_motor = Motor(Port.A)\nleft_motor.run(300)",
+        ("outD", "outA", 56, 180),
+    ),
+    "sizes that are impossible": (
+        "DriveBase(Motor(Port.A), Motor(Port.D), 0, 100)",
+        ("outB", "outC", 56, 180),
+    ),
+}
 
 
 def robot_of(text: str) -> RobotSpec:
@@ -94,24 +110,38 @@ def robot_of(text: str) -> RobotSpec:
 def test_wheels(case: str) -> None:
     text, expected = DRIVE_BASES[case]
     robot = robot_of(text)
-    assert (robot.left_port, robot.right_port, robot.wheel_diameter_mm, robot.wheel_spacing_mm) == expected
+    assert (
+        robot.left_port,
+        robot.right_port,
+        robot.wheel_diameter_mm,
+        robot.wheel_spacing_mm,
+    ) == expected
 
 
 def test_a_drive_base_in_a_module_of_the_program(tmp_path: Path) -> None:
     (tmp_path / "hardware.py").write_text(
-        PYBRICKS_HEAD + "left = Motor(Port.A)\nright = Motor(Port.D)\nrobot = DriveBase(left, right, 43.2, 110)\n"
+        PYBRICKS_HEAD
+        + "left = Motor(Port.A)\nright = Motor(Port.D)\nrobot = DriveBase(left, right, 43.2, 110)\n"
     )
     path = str(tmp_path / "main.py")
-    found = facts_of(Program("main.py", "from hardware import robot\nrobot.straight(100)\n", path=path)).robot
+    found = facts_of(
+        Program("main.py", "from hardware import robot\nrobot.straight(100)\n", path=path)
+    ).robot
     assert found is not None
     robot = found.choice.spec
     assert (robot.left_port, robot.right_port, robot.wheel_diameter_mm) == ("outA", "outD", 43.2)
-    assert str(next(part.where for part in found.parts if part.path == "left_port")) == "hardware.py, line 10"
+    assert (
+        str(next(part.where for part in found.parts if part.path == "left_port"))
+        == "hardware.py, line 10"
+    )
 
 
 GEARS: Mapping[str, tuple[str, float]] = {
     "none": ("Motor(Port.B)\nb = Motor(Port.C)", 1),
-    "one train": ("Motor(Port.B, Direction.CLOCKWISE, [12, 36])\nb = Motor(Port.C, gears=[12, 36])", 3),
+    "one train": (
+        "Motor(Port.B, Direction.CLOCKWISE, [12, 36])\nb = Motor(Port.C, gears=[12, 36])",
+        3,
+    ),
     "trains": ("Motor(Port.B, gears=G)\nb = Motor(Port.C, gears=G)", 6),
     "on one side": ("Motor(Port.B, gears=[12, 36])\nb = Motor(Port.C)", 1),
 }
@@ -120,7 +150,10 @@ GEARS: Mapping[str, tuple[str, float]] = {
 @pytest.mark.parametrize("case", GEARS)
 def test_gears_of_both_wheels_are_those_of_the_robot(case: str) -> None:
     motors, ratio = GEARS[case]
-    assert robot_of(f"G = [[12, 36], (20, 16, 40)]\na = {motors}\nDriveBase(a, b, 56, 114)").gear_ratio == ratio
+    assert (
+        robot_of(f"G = [[12, 36], (20, 16, 40)]\na = {motors}\nDriveBase(a, b, 56, 114)").gear_ratio
+        == ratio
+    )
 
 
 def test_different_gears_are_told() -> None:
@@ -135,7 +168,8 @@ def test_a_pair_without_its_second_motor_is_no_pair() -> None:
 
 def test_motors_that_run_until_they_stall_drive_no_wheels() -> None:
     found = built(
-        "feed, belt = Motor(Port.A), Motor(Port.D)\nfeed.run_until_stalled(120)\nbelt.run(50)\n", PYBRICKS_HEAD
+        "feed, belt = Motor(Port.A), Motor(Port.D)\nfeed.run_until_stalled(120)\nbelt.run(50)\n",
+        PYBRICKS_HEAD,
     )
     assert found is not None
     robot = found.choice.spec

@@ -31,14 +31,24 @@ def mat(tmp_path_factory: pytest.TempPathFactory) -> Iterator[OpenMat]:
 
         @cache
         def opened(name: str) -> Field:
-            return mat_cache.open_field(mat_cache.prepare(mats.background(name).image, (10, 20, 30)))
+            return mat_cache.open_field(
+                mat_cache.prepare(mats.background(name).image, (10, 20, 30))
+            )
 
         yield opened
     # A hundred megabytes a mat.
     shutil.rmtree(home)
 
 
-def at(x_mm: float, y_mm: float, heading_deg: float = 0.0, *, light: int = 0, seed: int = 0, tick: int = 0) -> Instant:
+def at(
+    x_mm: float,
+    y_mm: float,
+    heading_deg: float = 0.0,
+    *,
+    light: int = 0,
+    seed: int = 0,
+    tick: int = 0,
+) -> Instant:
     return Instant(tick, Pose(x_mm, y_mm, heading_deg), noise=NoiseSpec(light=light), seed=seed)
 
 
@@ -128,10 +138,16 @@ def glow(inner: int, outer: int, col: int, row: int) -> int:
         ("Radial_red", lambda col, row: glow(255, 80, col, row)),
     ],
 )
-@pytest.mark.parametrize("pose", [(1181, 541.5, 90), (200, 50, 90), (300.7, 900.2, 37), (2000, 300, -90)], ids=str)
+@pytest.mark.parametrize(
+    "pose", [(1181, 541.5, 90), (200, 50, 90), (300.7, 900.2, 37), (2000, 300, -90)], ids=str
+)
 @pytest.mark.parametrize("diameter", [10, 20, 30])
 def test_gradients_follow_their_formula(
-    name: str, red_at: Callable[[int, int], int], pose: tuple[float, float, float], diameter: int, mat: OpenMat
+    name: str,
+    red_at: Callable[[int, int], int],
+    pose: tuple[float, float, float],
+    diameter: int,
+    mat: OpenMat,
 ) -> None:
     sensor = ColorSensorSpec("left", "in2", -60, 30, diameter)
     instant = at(*pose)
@@ -194,25 +210,37 @@ def test_color_code(rgb: tuple[int, int, int], code: int) -> None:
 
 def test_reading_does_not_change_what_is_read_next(mat: OpenMat) -> None:
     instant, field = at(1100, 500), mat("Rainbow_bands")
-    assert [color.reading(LEFT, instant, field) for _ in range(3)] == [color.reading(LEFT, instant, field)] * 3
+    assert [color.reading(LEFT, instant, field) for _ in range(3)] == [
+        color.reading(LEFT, instant, field)
+    ] * 3
 
 
-@pytest.mark.parametrize("sensor", [ColorSensorSpec("left", "in2", -20, 30, d) for d in (10, 20, 30)], ids=str)
+@pytest.mark.parametrize(
+    "sensor", [ColorSensorSpec("left", "in2", -20, 30, d) for d in (10, 20, 30)], ids=str
+)
 @pytest.mark.parametrize("light", [0, 20], ids=["clear", "noisy"])
-def test_pixel_array_is_what_the_reading_is_made_of(sensor: ColorSensorSpec, light: int, mat: OpenMat) -> None:
+def test_pixel_array_is_what_the_reading_is_made_of(
+    sensor: ColorSensorSpec, light: int, mat: OpenMat
+) -> None:
     instant, field = at(1010, 500, 33, light=light), mat("Rainbow_bands")
     array = color.pixel_array(sensor, instant, field)
     pixels = [tuple(array[at : at + 3]) for at in range(0, len(array), 3)]
     inside = [is_inside for row in disc_mask(sensor.diameter_mm) for is_inside in row]
     assert len(pixels) == sensor.diameter_mm**2
-    assert {pixel for pixel, is_inside in zip(pixels, inside, strict=True) if not is_inside} == {OUTSIDE_DISC_RGB}
+    assert {pixel for pixel, is_inside in zip(pixels, inside, strict=True) if not is_inside} == {
+        OUTSIDE_DISC_RGB
+    }
     reds = [pixel[0] for pixel, is_inside in zip(pixels, inside, strict=True) if is_inside]
     assert color.reading(sensor, instant, field).red == sum(reds) / len(reds)
 
 
-def noisy(mat: OpenMat, *, light: int = 20, seed: int = 1, tick: int = 7, sensor: ColorSensorSpec = LEFT) -> bytes:
+def noisy(
+    mat: OpenMat, *, light: int = 20, seed: int = 1, tick: int = 7, sensor: ColorSensorSpec = LEFT
+) -> bytes:
     """The pixels of the disc on the mid grey band."""
-    return color.pixel_array(sensor, at(1125, 500, light=light, seed=seed, tick=tick), mat("Grey_bands"))
+    return color.pixel_array(
+        sensor, at(1125, 500, light=light, seed=seed, tick=tick), mat("Grey_bands")
+    )
 
 
 def test_noise_is_the_same_when_read_twice(mat: OpenMat) -> None:
@@ -235,12 +263,16 @@ def test_noise_differs_by(other: dict[str, Any], mat: OpenMat) -> None:
 @pytest.mark.parametrize("light", [1, 20, 127, 128])
 def test_noise_stays_within_its_level_and_reaches_it(light: int, mat: OpenMat) -> None:
     inside = [is_inside for row in disc_mask(20) for is_inside in row for _ in range(3)]
-    seen = [byte for tick in range(20) for byte in compress(noisy(mat, light=light, tick=tick), inside)]
+    seen = [
+        byte for tick in range(20) for byte in compress(noisy(mat, light=light, tick=tick), inside)
+    ]
     assert (min(seen), max(seen)) == (max(0, 128 - light), min(255, 128 + light))
     assert sum(seen) / len(seen) == pytest.approx(128, abs=0.05 * light)
 
 
-@pytest.mark.parametrize(("x_mm", "low", "high"), [(1525, 0, 20), (125, 235, 255)], ids=["black", "white"])
+@pytest.mark.parametrize(
+    ("x_mm", "low", "high"), [(1525, 0, 20), (125, 235, 255)], ids=["black", "white"]
+)
 def test_noise_is_clamped(x_mm: float, low: int, high: int, mat: OpenMat) -> None:
     seen = color.reading(LEFT, at(x_mm, 500, light=20), mat("Grey_bands"))
     assert low < seen.red < high

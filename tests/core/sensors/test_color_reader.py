@@ -31,7 +31,9 @@ FIELD = random_field()
 
 
 @given(st.floats(-80, 120), st.floats(-80, 1200), st.floats(-720, 720))
-def test_whole_channels_are_those_of_a_reading(x_mm: float, y_mm: float, heading_deg: float) -> None:
+def test_whole_channels_are_those_of_a_reading(
+    x_mm: float, y_mm: float, heading_deg: float
+) -> None:
     for sensor in (LEFT, RIGHT):
         seen = clear_reading(sensor, Pose(x_mm, y_mm, heading_deg), FIELD)
         assert rgb_reader(sensor, FIELD)(x_mm, y_mm, heading_deg) == seen.rgb

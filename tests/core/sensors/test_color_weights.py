@@ -46,7 +46,9 @@ def test_readings_across_an_edge(grey_bands: Field, x_mm: int, reds: tuple[float
 
 
 @pytest.mark.parametrize("strategy", ["gaussian", "centre"])
-def test_weighted_sensors_see_a_steeper_edge_of_the_same_band(grey_bands: Field, strategy: str) -> None:
+def test_weighted_sensors_see_a_steeper_edge_of_the_same_band(
+    grey_bands: Field, strategy: str
+) -> None:
     """Away from the edge's middle a weighted reading is closer to what lies under the middle of the disc."""
     for x_mm in (1412, 1415):
         assert seen(grey_bands, x_mm, strategy) > seen(grey_bands, x_mm, "mean")

@@ -15,7 +15,15 @@ POST = WorldSpec(obstacles=(Obstacle(900, 500, 200, 200),))
 
 @pytest.mark.parametrize(
     ("heading_deg", "expected_mm"),
-    [(0.0, 1342), (40.0, 1424), (40.1, 720), (139.9, 720), (140.1, 1041), (360.0, 1342), (-719.9 + 40.0, 720)],
+    [
+        (0.0, 1342),
+        (40.0, 1424),
+        (40.1, 720),
+        (139.9, 720),
+        (140.1, 1041),
+        (360.0, 1342),
+        (-719.9 + 40.0, 720),
+    ],
 )
 def test_walls_from_the_middle(heading_deg: float, expected_mm: int) -> None:
     assert distance_mm(Pose(1000, 500, heading_deg), SENSOR, WALLS) == expected_mm
@@ -31,7 +39,12 @@ def test_walls_from_the_middle(heading_deg: float, expected_mm: int) -> None:
         pytest.param(Pose(500, 1000, 0), POST, 1842, id="past the post"),
         pytest.param(Pose(500, 600, 180), POST, 480, id="post behind"),
         pytest.param(Pose(500, 500, 0), WorldSpec(walls=False), 2550, id="no echo"),
-        pytest.param(Pose(500, 500, 0), WorldSpec(walls=False, obstacles=POST.obstacles), 380, id="post, no walls"),
+        pytest.param(
+            Pose(500, 500, 0),
+            WorldSpec(walls=False, obstacles=POST.obstacles),
+            380,
+            id="post, no walls",
+        ),
         pytest.param(Pose(3000, 500, 0), WALLS, 2550, id="outside, facing away"),
     ],
 )
@@ -50,5 +63,7 @@ def test_a_sensor_mounted_backwards_looks_back() -> None:
 def test_every_ray_is_given_and_the_nearest_counts() -> None:
     rays = rays_mm(Pose(1000, 500, 30), SENSOR, WALLS)
     assert [angle for angle, _ in rays] == [9, 16, 23, 30, 37, 44, 51]
-    assert round(min(length for _, length in rays)) == distance_mm(Pose(1000, 500, 30), SENSOR, WALLS)
+    assert round(min(length for _, length in rays)) == distance_mm(
+        Pose(1000, 500, 30), SENSOR, WALLS
+    )
     assert all(0 < length <= 2550 for _, length in rays)

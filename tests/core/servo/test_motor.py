@@ -127,7 +127,9 @@ def test_a_motion_for_a_time_ends_at_a_wall(ending: Ending) -> None:
 @pytest.mark.parametrize("profile", SERVO)
 @pytest.mark.parametrize("blocking", ["run", "move"])
 @pytest.mark.parametrize("freeing", ["run", "move"])
-def test_motors_that_a_wall_has_blocked_drive_back(profile: str, blocking: str, freeing: str) -> None:
+def test_motors_that_a_wall_has_blocked_drive_back(
+    profile: str, blocking: str, freeing: str
+) -> None:
     robot = Robot(WALLED, PROFILES[profile])
 
     def command(way: str, counts: int) -> None:

@@ -60,15 +60,24 @@ def marked(tmp_path: Path, here: Command, port: int) -> dict[str, list[str]]:
         assert (done.returncode, done.stdout, done.stderr) == (2, "", f"tuisim: {refusal()}\n")
         return {}
     assert done.returncode == 0, done.stderr
-    return {line.partition(".py ")[0]: line.split() for line in done.stdout.splitlines() if ".py " in line}
+    return {
+        line.partition(".py ")[0]: line.split()
+        for line in done.stdout.splitlines()
+        if ".py " in line
+    }
 
 
 @pytest.mark.slow
-def test_an_isolated_program_sees_its_own_folder_and_no_network(marked: dict[str, list[str]]) -> None:
+def test_an_isolated_program_sees_its_own_folder_and_no_network(
+    marked: dict[str, list[str]],
+) -> None:
     if marked:
         assert {name for name, row in marked.items() if row[1] == "1"} == {"drives", "own_files"}
-        reasons = {name: next(word for word in row if word.endswith("Error:")) for name, row in marked.items()
-                   if name not in ("drives", "own_files", "stuck")}  # fmt: skip
+        reasons = {
+            name: next(word for word in row if word.endswith("Error:"))
+            for name, row in marked.items()
+            if name not in ("drives", "own_files", "stuck")
+        }
         assert reasons == {
             "reads_beside": "FileNotFoundError:",
             "reads_users": "FileNotFoundError:",
@@ -82,8 +91,12 @@ def test_an_isolated_program_sees_its_own_folder_and_no_network(marked: dict[str
 
 
 @needs_isolation
-def test_what_an_isolated_program_writes_below_python_is_its_output(tmp_path: Path, spec: RunSpec) -> None:
-    program = Program("below.py", "import os\nos.write(1, b'below\\n')", working_directory=str(tmp_path))
+def test_what_an_isolated_program_writes_below_python_is_its_output(
+    tmp_path: Path, spec: RunSpec
+) -> None:
+    program = Program(
+        "below.py", "import os\nos.write(1, b'below\\n')", working_directory=str(tmp_path)
+    )
     assert execute(Task(0, program, spec, isolate=True), tmp_path).output == "below"
 
 
@@ -95,7 +108,10 @@ def test_isolation_without_bubblewrap_is_refused(
     monkeypatch.setenv("PATH", str(tmp_path))
     done = here("mark", "goals.toml", "ada.py", "--isolate")
     assert (done.returncode, done.stdout) == (2, "")
-    assert done.stderr == "tuisim: --isolate: bwrap is not installed (install bubblewrap; --no-isolate goes without)\n"
+    assert (
+        done.stderr
+        == "tuisim: --isolate: bwrap is not installed (install bubblewrap; --no-isolate goes without)\n"
+    )
 
 
 def test_isolation_is_refused_with_the_reason_of_bubblewrap(
@@ -104,7 +120,9 @@ def test_isolation_is_refused_with_the_reason_of_bubblewrap(
     (tmp_path / "goals.toml").write_text(GOALS)
     (tmp_path / "ada.py").write_text("")
     bwrap = tmp_path / "bwrap"
-    bwrap.write_text("#!/bin/sh\necho 'bwrap: No permissions to create a new namespace' >&2\nexit 1\n")
+    bwrap.write_text(
+        "#!/bin/sh\necho 'bwrap: No permissions to create a new namespace' >&2\nexit 1\n"
+    )
     bwrap.chmod(0o755)
     monkeypatch.setenv("PATH", f"{tmp_path}{os.pathsep}{os.environ['PATH']}")
     done = here("mark", "goals.toml", "ada.py", "--isolate")
@@ -123,4 +141,8 @@ def test_the_guide_names_the_limits_that_are_set() -> None:
         "one file": f"{isolation.MOST_BYTES >> 30} GiB",
         "open files": f"{isolation._OPEN_FILES}",
     }
-    assert [f"| {what} | {most} |" for what, most in limits.items() if f"| {what} | {most} |" not in page] == []
+    assert [
+        f"| {what} | {most} |"
+        for what, most in limits.items()
+        if f"| {what} | {most} |" not in page
+    ] == []

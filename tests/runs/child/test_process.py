@@ -32,7 +32,9 @@ def test_runs_of_many_threads_share_one_warm_process(monkeypatch: pytest.MonkeyP
     monkeypatch.setattr(WarmProcess, "__init__", counted)
 
     def end(_: int) -> str:
-        handle = start_run(Program("p.py", "print('A: 1')"), build_run_spec(Settings()), RunOptions())
+        handle = start_run(
+            Program("p.py", "print('A: 1')"), build_run_spec(Settings()), RunOptions()
+        )
         over(handle)
         assert handle.ended is not None
         return handle.ended.end

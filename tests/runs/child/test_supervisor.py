@@ -40,11 +40,15 @@ def test_stopped_processes_go_on_at_the_second_look() -> None:
             assert len(every) == 2
             for pid in every:
                 os.kill(pid, signal.SIGSTOP)
-            _until(lambda: {supervisor.processes()[pid][1] for pid in every} == {supervisor.STOPPED})
+            _until(
+                lambda: {supervisor.processes()[pid][1] for pid in every} == {supervisor.STOPPED}
+            )
             first = supervisor.continue_stopped(parent.pid, set())
             assert first == every
             supervisor.continue_stopped(parent.pid, first)
-            _until(lambda: supervisor.STOPPED not in {supervisor.processes()[pid][1] for pid in every})
+            _until(
+                lambda: supervisor.STOPPED not in {supervisor.processes()[pid][1] for pid in every}
+            )
         finally:
             os.killpg(parent.pid, signal.SIGKILL)
 
@@ -59,7 +63,9 @@ with supervised():
 
 
 def test_a_command_that_was_stopped_goes_on_and_leaves_no_supervisor() -> None:
-    done = subprocess.run([sys.executable, "-c", SUPERVISED], capture_output=True, text=True, timeout=PATIENCE_S)
+    done = subprocess.run(
+        [sys.executable, "-c", SUPERVISED], capture_output=True, text=True, timeout=PATIENCE_S
+    )
     assert (done.stdout, done.stderr, done.returncode) == ("goes on\n", "", 0)
 
 
@@ -74,7 +80,9 @@ with supervised():
 
 
 def test_a_command_that_the_user_suspends_stays_so() -> None:
-    with subprocess.Popen([sys.executable, "-c", SUSPENDED], stdout=subprocess.PIPE, start_new_session=True) as process:
+    with subprocess.Popen(
+        [sys.executable, "-c", SUSPENDED], stdout=subprocess.PIPE, start_new_session=True
+    ) as process:
         try:
             assert process.stdout is not None
             assert process.stdout.readline() == b"ready\n"
@@ -88,10 +96,15 @@ def test_a_command_that_the_user_suspends_stays_so() -> None:
             os.killpg(process.pid, signal.SIGKILL)
 
 
-def test_a_machine_that_can_start_no_more_processes_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_machine_that_can_start_no_more_processes_is_told(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     def refuse(*words: object, **more: object) -> None:
         raise OSError(errno.EMFILE, os.strerror(errno.EMFILE))
 
     monkeypatch.setattr(subprocess, "Popen", refuse)
-    with pytest.raises(HostError, match="cannot be started: Too many open files"), supervisor.supervised():
+    with (
+        pytest.raises(HostError, match="cannot be started: Too many open files"),
+        supervisor.supervised(),
+    ):
         pass

@@ -94,7 +94,9 @@ def test_nothing_is_left_after_the_end(start: Start, file: Path, name: str, live
 @pytest.mark.parametrize("name", LEFT)
 def test_nothing_is_left_after_a_stop(start: Start, file: Path, name: str, how: str) -> None:
     seen: list[Ended] = []
-    handle = start(program(LEFT[name], file, "while True: time.sleep(1)"), prelude="none", live=True)
+    handle = start(
+        program(LEFT[name], file, "while True: time.sleep(1)"), prelude="none", live=True
+    )
     until(handle, lambda: any(row.text == "A: 1" for row in handle.output.all_rows()))
     if how == "stop":
         handle.stop()
@@ -108,7 +110,9 @@ def test_nothing_is_left_after_a_stop(start: Start, file: Path, name: str, how: 
 def test_what_shares_the_session_ends_with_the_host(file: Path, tmp_path: Path) -> None:
     (tmp_path / "p.py").write_text(program(LEFT["fork"], file, "while True: time.sleep(1)"))
     words = [sys.executable, "-m", "tuisim", "run", "p.py", "--speed", "1"]
-    host = subprocess.Popen(words, cwd=tmp_path, env={**os.environ, "PYTHONPATH": str(ROOT)}, stdout=subprocess.PIPE)
+    host = subprocess.Popen(
+        words, cwd=tmp_path, env={**os.environ, "PYTHONPATH": str(ROOT)}, stdout=subprocess.PIPE
+    )
     assert host.stdout is not None
     assert host.stdout.readline() == b"A: 1\n"
     host.kill()

@@ -33,7 +33,9 @@ def printed(text: str, of_many: bool = False, prelude: str = "none") -> list[str
 
 
 def _start(text: str = "import time\ntime.sleep(1e6)\n") -> RunHandle:
-    return start_run(Program("p.py", text), build_run_spec(Settings()), RunOptions(live=True, speed=1.0))
+    return start_run(
+        Program("p.py", text), build_run_spec(Settings()), RunOptions(live=True, speed=1.0)
+    )
 
 
 @pytest.fixture
@@ -67,7 +69,9 @@ def _parent(handle: RunHandle) -> int:
     return int(Path(f"/proc/{handle._process.pid}/stat").read_text().rpartition(")")[2].split()[1])
 
 
-def test_a_run_is_forked_from_the_process_that_an_earlier_one_has_prepared(warm: WarmProcess) -> None:
+def test_a_run_is_forked_from_the_process_that_an_earlier_one_has_prepared(
+    warm: WarmProcess,
+) -> None:
     with closing(_start()) as first:
         first.prepare_next()
         until_tick(first, 1)
@@ -82,7 +86,9 @@ SLOW = "import os, time; lead = os.setsid; os.setsid = lambda: (time.sleep(0.2),
 
 
 @pytest.mark.usefixtures("warm")
-def test_a_child_that_was_just_forked_can_be_killed_with_its_group(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_child_that_was_just_forked_can_be_killed_with_its_group(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     process.cool_down()
     monkeypatch.setattr(process, "BOOT", SLOW + process.BOOT)
     process.warm_up()
@@ -94,7 +100,9 @@ def test_a_child_that_was_just_forked_can_be_killed_with_its_group(monkeypatch: 
 
 
 @pytest.mark.slow
-def test_a_process_that_was_forked_does_not_use_the_warm_process_of_the_other(warm: WarmProcess) -> None:
+def test_a_process_that_was_forked_does_not_use_the_warm_process_of_the_other(
+    warm: WarmProcess,
+) -> None:
     pid = os.fork()
     if not pid:
         os._exit(7 if warm.is_usable else 0)
@@ -124,7 +132,9 @@ def test_a_program_that_harms_its_parent_does_not_keep_the_next_one_from_running
     assert over(start("print('A: 1')")).lines == ["A: 1"]
 
 
-@pytest.mark.parametrize("text", ["print(1)", "1 / 0", "import os; os._exit(3)", "while True: pass"])
+@pytest.mark.parametrize(
+    "text", ["print(1)", "1 / 0", "import os; os._exit(3)", "while True: pass"]
+)
 def test_runs_that_are_over_leave_no_descriptor_open(text: str) -> None:
     def one_run() -> None:
         handle = _start(text)

@@ -97,8 +97,16 @@ def test_steps_show_the_lines_of_the_program_only(
 def test_out_of_a_function_holds_in_its_caller(debug: Callable[..., Driver]) -> None:
     driver = debug(CALLS, breaks=("3 if a == 1",))
     held = driver.paused()
-    assert (held.line, held.reason, held.detail, held.value) == (3, "break", "3 if a == 1", "is true")
-    assert [(frame.function, frame.line) for frame in driver.look().stack] == [("add", 3), ("<module>", 8)]
+    assert (held.line, held.reason, held.detail, held.value) == (
+        3,
+        "break",
+        "3 if a == 1",
+        "is true",
+    )
+    assert [(frame.function, frame.line) for frame in driver.look().stack] == [
+        ("add", 3),
+        ("<module>", 8),
+    ]
     assert driver.do(StepLine(LineStep.OUT)).line == 9
     assert driver.values() == {"total": "3", "i": "1"}
 
@@ -130,7 +138,11 @@ DRIVE = "import time\ntank_drive.on(60, 40)\nfor n in range(200):\n    time.slee
 
 @pytest.mark.parametrize("text", BREAKS)
 def test_events_hold_the_run_where_they_are_met(debug: Callable[..., Driver], text: str) -> None:
-    driver = debug(DRIVE, breaks=(text, "# 3"), pose=(700.0, 500.0, 0.0) if "color" in text else (150.0, 500.0, 0.0))
+    driver = debug(
+        DRIVE,
+        breaks=(text, "# 3"),
+        pose=(700.0, 500.0, 0.0) if "color" in text else (150.0, 500.0, 0.0),
+    )
     held = driver.paused()
     assert (held.reason, held.detail) == ("break", text)
     assert BREAKS[text] in held.value or held.value.replace(".", "").isdigit()
@@ -169,7 +181,11 @@ def test_conditions_are_evaluated_without_moving_anything(
     event = driver.wait_for(Paused, Ended)
     if i is None:
         assert isinstance(event, Ended)
-        assert [row.text for row in driver.run.output.all_rows()] == ["Total: 1", "Total: 3", "Total: 6"]
+        assert [row.text for row in driver.run.output.all_rows()] == [
+            "Total: 1",
+            "Total: 3",
+            "Total: 6",
+        ]
         return
     assert isinstance(event, Paused)
     assert event.value.startswith(value)
@@ -188,7 +204,14 @@ def test_every_instant_of_a_run_can_be_held_again(debug: Callable[..., Driver]) 
 
 
 def _at_instant(held: Paused) -> Paused:
-    return Paused(held.tick, held.time_ns, held.line, PauseReason.INSTANT, ordinal=held.ordinal, thread=held.thread)
+    return Paused(
+        held.tick,
+        held.time_ns,
+        held.line,
+        PauseReason.INSTANT,
+        ordinal=held.ordinal,
+        thread=held.thread,
+    )
 
 
 BLANKS = """\
@@ -212,7 +235,9 @@ for i in range(2):
     [(2, 4), (3, 4), (5, 7), (8, 9), (10, 11)],
     ids=["blank", "comment", "doc", "between", "in a loop"],
 )
-def test_a_line_without_code_holds_at_the_next_one_that_has(debug: Callable[..., Driver], line: int, held: int) -> None:
+def test_a_line_without_code_holds_at_the_next_one_that_has(
+    debug: Callable[..., Driver], line: int, held: int
+) -> None:
     assert debug(BLANKS, breaks=(str(line),)).paused().line == held
     driver = debug(BLANKS, hold_at=FIRST_LINE)
     driver.paused()
@@ -229,7 +254,9 @@ def test_history_leads_back(debug: Callable[..., Driver]) -> None:
     assert (back.paused().line, back.values()) == (5, {"a": "1", "b": "2"})
 
 
-def test_ticks_are_instants_too_and_what_never_comes_holds_at_the_end(debug: Callable[..., Driver]) -> None:
+def test_ticks_are_instants_too_and_what_never_comes_holds_at_the_end(
+    debug: Callable[..., Driver],
+) -> None:
     driver = debug(CALLS, live=False, hold_at=(3, AFTER_TICK))
     assert driver.paused().tick == 3
     assert driver.do(RunToInstant(12)).ordinal == BEFORE_NEXT_TICK
@@ -256,7 +283,9 @@ def test_a_break_in_any_thread_holds_all(debug: Callable[..., Driver]) -> None:
 
 def test_stepping_breaks_and_looking_change_nothing(debug: Callable[..., Driver], run: Run) -> None:
     plain = run(THREADS, noise=(20, 30), seed=4)
-    driver = debug(THREADS, hold_at=FIRST_LINE, breaks=("14", "sample main"), noise=(20, 30), seed=4)
+    driver = debug(
+        THREADS, hold_at=FIRST_LINE, breaks=("14", "sample main"), noise=(20, 30), seed=4
+    )
     event: Paused | Ended = driver.paused()
     steps = iter([LineStep.OVER, LineStep.INTO, LineStep.INTO, LineStep.OUT, LineStep.OVER] * 40)
     while isinstance(event, Paused):
@@ -276,7 +305,10 @@ def test_a_user_action_at_a_line_waits_for_the_next_tick(debug: Callable[..., Dr
 
 WAITS = {
     "sleep": ("import time\ntime.sleep(3)", "sleeps until 3.00 s"),
-    "position": ("tank_drive.left_motor.on_for_rotations(20, 2)", "waits for motor outB to reach 720°"),
+    "position": (
+        "tank_drive.left_motor.on_for_rotations(20, 2)",
+        "waits for motor outB to reach 720°",
+    ),
     "time": ("tank_drive.on_for_seconds(20, 20, 2)", "to stop at 2.00 s"),
     "input": ("input('Name? ')", "waits in input()"),
     "lock": (
@@ -289,8 +321,14 @@ WAITS = {
         "import threading, time\nt = threading.Thread(target=lambda: time.sleep(2), name='T')\nt.start()\nt.join()",
         "waits for the thread T",
     ),
-    "button": ("from ev3dev2.button import Button\nButton().wait_for_pressed(['enter'])", "waits for the button enter"),
-    "files": ("import select\nselect.select([], [], [], 2)", "waits for timers and files until 2.00 s"),
+    "button": (
+        "from ev3dev2.button import Button\nButton().wait_for_pressed(['enter'])",
+        "waits for the button enter",
+    ),
+    "files": (
+        "import select\nselect.select([], [], [], 2)",
+        "waits for timers and files until 2.00 s",
+    ),
     "speech": ("say('hello there, how are you', True)", "sounds until"),
 }
 
@@ -302,7 +340,9 @@ def test_what_is_waited_for_is_said(debug: Callable[..., Driver], text: str, not
     assert note in driver.look(thread="MainThread").waiting
 
 
-def test_a_wait_for_a_motor_is_said_where_the_library_waits_in_another_way(debug: Callable[..., Driver]) -> None:
+def test_a_wait_for_a_motor_is_said_where_the_library_waits_in_another_way(
+    debug: Callable[..., Driver],
+) -> None:
     text = "tank_drive.left_motor.on_for_rotations(20, 2)"
     driver = debug(text, hold_at=(30, BEFORE_NEXT_TICK), profile="nbev3devsim")
     driver.paused()
@@ -324,7 +364,9 @@ HELD_THEN_STOPPED = {
 
 @pytest.mark.slow_cases("with a loop around")
 @pytest.mark.parametrize(("text", "how"), HELD_THEN_STOPPED.values(), ids=HELD_THEN_STOPPED)
-def test_stop_works_wherever_it_holds(debug: Callable[..., Driver], text: str, how: dict[str, object]) -> None:
+def test_stop_works_wherever_it_holds(
+    debug: Callable[..., Driver], text: str, how: dict[str, object]
+) -> None:
     driver = debug(text, **how)
     held = driver.paused()
     driver.run.stop()
@@ -342,7 +384,9 @@ BUSY = [
 
 @pytest.mark.slow_cases("with a call")
 @pytest.mark.parametrize("text", BUSY)
-def test_a_break_in_a_busy_loop_leaves_the_run_in_hand(debug: Callable[..., Driver], text: str) -> None:
+def test_a_break_in_a_busy_loop_leaves_the_run_in_hand(
+    debug: Callable[..., Driver], text: str
+) -> None:
     driver = debug("n = 0\nwhile True:\n    n += 1\n", breaks=(text,), speed=1.0)
     held = driver.do(Pause())
     assert (held.reason, held.line) == ("asked", 3)

@@ -24,7 +24,9 @@ LOOKS: dict[str, tuple[str, str | tuple[str, ...]]] = {
 
 @pytest.mark.slow_cases("repr that loops", "repr of 20 MB")
 @pytest.mark.parametrize(("name", "shown"), LOOKS.items(), ids=LOOKS)
-def test_hostile_values_are_cut_safely(start: Start, name: str, shown: tuple[str, str | tuple[str, ...]]) -> None:
+def test_hostile_values_are_cut_safely(
+    start: Start, name: str, shown: tuple[str, str | tuple[str, ...]]
+) -> None:
     text = PROGRAMS[name]
     driver = Driver(start(text, live=True, speed=0.0, breaks=(str(text.count("\n")),)))
     driver.paused()
@@ -37,7 +39,9 @@ def test_hostile_values_are_cut_safely(start: Start, name: str, shown: tuple[str
 
 
 @pytest.mark.quick_cases("repr that ends the program")
-@pytest.mark.parametrize("name", ["repr that cannot be stopped", "repr stuck in C", "repr that ends the program"])
+@pytest.mark.parametrize(
+    "name", ["repr that cannot be stopped", "repr stuck in C", "repr that ends the program"]
+)
 def test_values_that_never_come_do_not_hold_up_the_rest(start: Start, name: str) -> None:
     text = PROGRAMS[name]
     driver = Driver(start(text, live=True, speed=0.0, breaks=(str(text.count("\n")),)))
@@ -45,5 +49,7 @@ def test_values_that_never_come_do_not_hold_up_the_rest(start: Start, name: str)
     looked = driver.look("1 + 1")
     assert looked.stack
     assert looked.note.endswith("take too long")
-    assert ("r", "<R, not shown: values take too long>") in [(v.name, v.value) for v in looked.variables]
+    assert ("r", "<R, not shown: values take too long>") in [
+        (v.name, v.value) for v in looked.variables
+    ]
     assert driver.finish(StepLine(LineStep.OUT)).end == "finished"

@@ -89,7 +89,12 @@ def test_an_expression_has_a_value_or_an_error(text: str, found: tuple[str, str]
 
 @pytest.mark.parametrize(
     ("text", "answer"),
-    [("a > 2", ".is true"), ("a > 3", "."), ("b", "."), ("a.b", ".cannot be evaluated: AttributeError: ")],
+    [
+        ("a > 2", ".is true"),
+        ("a > 3", "."),
+        ("b", "."),
+        ("a.b", ".cannot be evaluated: AttributeError: "),
+    ],
 )
 def test_a_condition_with_a_name_that_is_not_there_yet_is_not_true(text: str, answer: str) -> None:
     names: dict[str, Any] = {"a": 3}

@@ -17,14 +17,19 @@ left, right = Motor(Port.B), Motor(Port.C)
 """
 PYBRICKS_WAITS = {
     "one of two that move": (
-        "left.run(100)\nright.run_angle(50, 500)", "waits for motor outC to reach 500°"
+        "left.run(100)\nright.run_angle(50, 500)",
+        "waits for motor outC to reach 500°",
     ),
-    "until it stalls": ("left.run(100)\nright.run_until_stalled(100)", "waits for motor outC to stop"),
+    "until it stalls": (
+        "left.run(100)\nright.run_until_stalled(100)",
+        "waits for motor outC to stop",
+    ),
     "a drive base": (
-        "DriveBase(left, right, 56, 114).turn(90)", "waits for motor outB to reach 183° and motor outC to reach -183°"
+        "DriveBase(left, right, 56, 114).turn(90)",
+        "waits for motor outB to reach 183° and motor outC to reach -183°",
     ),
     "sleep": ("left.run(100)\nwait(3000)", "sleeps until 3.00 s"),
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("case", PYBRICKS_WAITS)

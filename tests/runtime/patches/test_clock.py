@@ -15,7 +15,10 @@ PROGRAMS = {
         "import time\nt = time.time()\nwhile time.time() < t + 1: pass\nprint(round(time.time() - t, 2))",
         ["1.0"],
     ),
-    "date": ("import datetime\nprint(datetime.datetime.now().year, datetime.date.today())", ["2020 2020-01-01"]),
+    "date": (
+        "import datetime\nprint(datetime.datetime.now().year, datetime.date.today())",
+        ["2020 2020-01-01"],
+    ),
     "clock imported anew": (
         "import importlib, sys, time\ndel sys.modules['time']\nimport time\nprint(round(time.time()))\n"
         "importlib.reload(time)\nprint(round(time.time()))",
@@ -43,7 +46,10 @@ PROGRAMS = {
     ),
     "what a lock looks like": (
         "import threading\nlock = threading.Lock()\nwith lock: print(lock, type(lock).__name__)\nprint(lock)",
-        ["<locked _thread.lock object at 0x7f0000000010> lock", "<unlocked _thread.lock object at 0x7f0000000010>"],
+        [
+            "<locked _thread.lock object at 0x7f0000000010> lock",
+            "<unlocked _thread.lock object at 0x7f0000000010>",
+        ],
     ),
     "event": (
         "import threading, time\ne = threading.Event()\nthreading.Timer(0.5, e.set).start()\n"
@@ -85,7 +91,9 @@ PROGRAMS = {
 }
 
 
-@pytest.mark.quick_cases("sleep", "spinning threads", "error in a thread", "event", "queue", "clock loop")
+@pytest.mark.quick_cases(
+    "sleep", "spinning threads", "error in a thread", "event", "queue", "clock loop"
+)
 @pytest.mark.parametrize(("text", "lines"), PROGRAMS.values(), ids=PROGRAMS)
 def test_time_and_threads(run: Run, text: str, lines: list[str] | None) -> None:
     first = run(text)
@@ -141,7 +149,10 @@ def test_lines_of_the_program_are_recorded(run: Run) -> None:
 @pytest.mark.parametrize(
     ("text", "told"),
     [
-        ("import time\ntime.sleep(1)\nx = 0\nwhile True:\n    x += 1\n", [BusyLoop(5, 1_000_000_000)]),
+        (
+            "import time\ntime.sleep(1)\nx = 0\nwhile True:\n    x += 1\n",
+            [BusyLoop(5, 1_000_000_000)],
+        ),
         ("while True:\n    x = colorLeft.reflected_light_intensity_pc\n", []),
     ],
     ids=["computes", "reads"],

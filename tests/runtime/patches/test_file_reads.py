@@ -67,7 +67,9 @@ def test_what_the_run_has_made_itself_is_not_noted(run: Run, folder: Path, text:
 
 def test_a_file_that_is_not_there_is_noted(run: Run, folder: Path) -> None:
     done = run("try:\n    open('calibration.json')\nexcept OSError:\n    pass", prelude="none")
-    assert read_reads(done.run.folder).files == (FileRead(str(folder / "calibration.json"), there=False),)
+    assert read_reads(done.run.folder).files == (
+        FileRead(str(folder / "calibration.json"), there=False),
+    )
 
 
 def test_further_files_are_counted(run: Run, folder: Path) -> None:
@@ -99,5 +101,8 @@ def test_what_no_path_is_raises_the_errors_of_python(run: Run, folder: Path) -> 
 
 
 def test_a_name_that_is_no_text_is_noted(run: Run, folder: Path) -> None:
-    done = run("import os\nopen(os.fsencode('a\\x1b') + b'\\xff', 'w').close()\nopen('b\\udcfe') ", prelude="none")
+    done = run(
+        "import os\nopen(os.fsencode('a\\x1b') + b'\\xff', 'w').close()\nopen('b\\udcfe') ",
+        prelude="none",
+    )
     assert [file.path for file in read_reads(done.run.folder).files] == [f"{folder}/b\udcfe"]

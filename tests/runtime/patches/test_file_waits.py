@@ -8,7 +8,10 @@ from tests.running import Run
 
 NOW = "import time\ndef now(): return round(time.monotonic(), 1)\n"
 PROGRAMS = {
-    "getrandom": ("import os\nprint(os.getrandom(8).hex(), len(os.getrandom(3, os.GRND_NONBLOCK)))", None),
+    "getrandom": (
+        "import os\nprint(os.getrandom(8).hex(), len(os.getrandom(3, os.GRND_NONBLOCK)))",
+        None,
+    ),
     "uuid1": ("import uuid\nprint(uuid.uuid1(), hex(uuid.getnode()))", None),
     "process times": (
         NOW + "import os, resource\ntime.sleep(1.5)\nused = os.times()\n"
@@ -27,12 +30,14 @@ PROGRAMS = {
         ["([], [], []) 2.5", "True 2.5"],
     ),
     "poll": (
-        NOW + "import os, select\nr, w = os.pipe()\np = select.poll()\np.register(r, select.POLLIN)\n"
+        NOW
+        + "import os, select\nr, w = os.pipe()\np = select.poll()\np.register(r, select.POLLIN)\n"
         "print(p.poll(1500), now())\nos.write(w, b'x')\nprint(p.poll() == [(r, select.POLLIN)], now())",
         ["[] 1.5", "True 1.5"],
     ),
     "epoll": (
-        NOW + "import os, select\nr, w = os.pipe()\nwith select.epoll() as p:\n    p.register(r, select.EPOLLIN)\n"
+        NOW
+        + "import os, select\nr, w = os.pipe()\nwith select.epoll() as p:\n    p.register(r, select.EPOLLIN)\n"
         "    print(p.poll(1.5), now())\n    os.write(w, b'x')\n"
         "    print(p.poll() == [(r, select.EPOLLIN)], now(), p.closed)",
         ["[] 1.5", "True 1.5 False"],

@@ -9,7 +9,19 @@ import pytest
 
 from tests.running import Run
 
-MODULES = ("time", "os", "posix", "_thread", "threading", "builtins", "faulthandler", "select", "signal", "sys", "gc")
+MODULES = (
+    "time",
+    "os",
+    "posix",
+    "_thread",
+    "threading",
+    "builtins",
+    "faulthandler",
+    "select",
+    "signal",
+    "sys",
+    "gc",
+)
 """Where there are builtins that the runtime could replace."""
 
 CHECKS = {
@@ -64,7 +76,13 @@ FUNCTIONS = {
     "_thread.start_new_thread": ("", "1, ()", "print, []", "print, (), 1"),
     "_thread.allocate_lock": ("1",),
     "threading.Lock": ("1",),
-    "threading.Lock().acquire": ("timeout=1e300", "timeout='x'", "timeout=-2", "timeout=float('nan')", "False, 1"),
+    "threading.Lock().acquire": (
+        "timeout=1e300",
+        "timeout='x'",
+        "timeout=-2",
+        "timeout=float('nan')",
+        "False, 1",
+    ),
 }
 CALLS = [f"{function}({arguments})" for function, every in FUNCTIONS.items() for arguments in every]
 
@@ -95,7 +113,9 @@ VALUES = {
     ),
     "dates as text": (
         "import datetime\nprint(repr(datetime.datetime.now()), [datetime.date.today()], datetime.datetime)\n",
-        ["datetime.datetime(2020, 1, 1, 0, 0, 0, 20) [datetime.date(2020, 1, 1)] <class 'datetime.datetime'>"],
+        [
+            "datetime.datetime(2020, 1, 1, 0, 0, 0, 20) [datetime.date(2020, 1, 1)] <class 'datetime.datetime'>"
+        ],
         [],
     ),
     "dates pickled": (
@@ -130,6 +150,8 @@ VALUES = {
 
 
 @pytest.mark.parametrize(("text", "lines", "errors"), VALUES.values(), ids=VALUES)
-def test_what_they_give_passes_for_the_real_thing(run: Run, text: str, lines: list[str], errors: list[str]) -> None:
+def test_what_they_give_passes_for_the_real_thing(
+    run: Run, text: str, lines: list[str], errors: list[str]
+) -> None:
     done = run(text, prelude="none")
     assert (done.lines, done.errors) == (lines, errors)

@@ -133,7 +133,9 @@ def test_almost_every_item_is_exercised(capsys: pytest.CaptureFixture[str]) -> N
     for module in OWN:
         some, every = counts[module]
         assert some >= 0.95 * every, module
-    assert sum(counts[module][0] for module in OWN) >= 0.98 * sum(counts[module][1] for module in OWN)
+    assert sum(counts[module][0] for module in OWN) >= 0.98 * sum(
+        counts[module][1] for module in OWN
+    )
 
 
 OWN = (

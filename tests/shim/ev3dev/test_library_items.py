@@ -34,8 +34,16 @@ TABLES: Tables = {
     "several of a kind": (table_reference.SEVERAL, "pairs", "furnished"),
 }
 BESIDE = (
-    test_buttons, test_console, test_display, test_fonts, test_leds, test_motor, test_power, test_sensors, test_sound
-)  # fmt: skip
+    test_buttons,
+    test_console,
+    test_display,
+    test_fonts,
+    test_leds,
+    test_motor,
+    test_power,
+    test_sensors,
+    test_sound,
+)
 """Further tests with tables."""
 
 
@@ -49,7 +57,9 @@ def test_registry_lists_what_the_tables_exercise() -> None:
     for table, _, _ in chain(TABLES.values(), *(module.TABLES.values() for module in BESIDE)):
         for item in table.ids:
             ids[item.split(":")[0]].add(item)
-    for item in test_motor_driving.EXERCISED | test_install_overlay.EXERCISED | test_display.EXERCISED:
+    for item in (
+        test_motor_driving.EXERCISED | test_install_overlay.EXERCISED | test_display.EXERCISED
+    ):
         ids[item.split(":")[0]].add(item)
     for module, found in ids.items():
         file = Path(__file__).parent / "exercised" / f"{module}.txt"

@@ -61,15 +61,21 @@ attempt(ev3dev.webserver.RobotWebServer)
 
 def test_what_is_not_simulated_says_so_by_name(run_on: RunOn) -> None:
     names = (
-        "brickpi", "brickpi3", "pistorms", "GyroBalancer.GyroBalancer", "virtualterminal.VirtualTerminal",
+        "brickpi",
+        "brickpi3",
+        "pistorms",
+        "GyroBalancer.GyroBalancer",
+        "virtualterminal.VirtualTerminal",
         "webserver.RobotWebServer",
-    )  # fmt: skip
+    )
     assert run_on(REFUSED).lines == [f"NotSimulated ev3dev.{name}" for name in names]
 
 
 def test_without_the_library_its_import_says_how_to_get_it() -> None:
     finder = MissingLibrary()
-    with pytest.raises(ModuleNotFoundError, match=r"'ev3dev': pip install 'tuisim\[ev3dev\]' installs it") as caught:
+    with pytest.raises(
+        ModuleNotFoundError, match=r"'ev3dev': pip install 'tuisim\[ev3dev\]' installs it"
+    ) as caught:
         finder.find_spec("ev3dev")
     assert caught.value.name == "ev3dev"
     assert finder.find_spec("ev3dev2") is None

@@ -14,22 +14,49 @@ CODES: Any = codes_module("evdev.ecodes")
 @pytest.mark.parametrize(
     ("name", "number"),
     [
-        ("EV_SYN", 0), ("EV_KEY", 1), ("EV_REL", 2), ("EV_ABS", 3), ("EV_FF", 21), ("SYN_DROPPED", 3),
-        ("KEY_ESC", 1), ("KEY_ENTER", 28), ("KEY_UP", 103), ("KEY_DOWN", 108), ("KEY_102ND", 86), ("KEY_F24", 194),
-        ("KEY_PLAYCD", 200), ("KEY_MICMUTE", 248), ("BTN_LEFT", 0x110), ("BTN_TRIGGER", 0x120), ("BTN_SOUTH", 0x130),
-        ("BTN_A", 0x130), ("BTN_B", 0x131), ("BTN_X", 0x133), ("BTN_TL", 0x136), ("BTN_START", 0x13B),
-        ("BTN_THUMBR", 0x13E), ("BTN_TOUCH", 0x14A), ("BTN_DPAD_UP", 0x220), ("REL_WHEEL", 8), ("ABS_RZ", 5),
-        ("ABS_HAT0X", 16), ("ABS_HAT0Y", 17), ("ABS_VOLUME", 32), ("ABS_MT_POSITION_X", 53),
+        ("EV_SYN", 0),
+        ("EV_KEY", 1),
+        ("EV_REL", 2),
+        ("EV_ABS", 3),
+        ("EV_FF", 21),
+        ("SYN_DROPPED", 3),
+        ("KEY_ESC", 1),
+        ("KEY_ENTER", 28),
+        ("KEY_UP", 103),
+        ("KEY_DOWN", 108),
+        ("KEY_102ND", 86),
+        ("KEY_F24", 194),
+        ("KEY_PLAYCD", 200),
+        ("KEY_MICMUTE", 248),
+        ("BTN_LEFT", 0x110),
+        ("BTN_TRIGGER", 0x120),
+        ("BTN_SOUTH", 0x130),
+        ("BTN_A", 0x130),
+        ("BTN_B", 0x131),
+        ("BTN_X", 0x133),
+        ("BTN_TL", 0x136),
+        ("BTN_START", 0x13B),
+        ("BTN_THUMBR", 0x13E),
+        ("BTN_TOUCH", 0x14A),
+        ("BTN_DPAD_UP", 0x220),
+        ("REL_WHEEL", 8),
+        ("ABS_RZ", 5),
+        ("ABS_HAT0X", 16),
+        ("ABS_HAT0Y", 17),
+        ("ABS_VOLUME", 32),
+        ("ABS_MT_POSITION_X", 53),
     ],
-)  # fmt: skip
+)
 def test_number(name: str, number: int) -> None:
     assert (getattr(CODES, name), CODES.ecodes[name]) == (number, number)
 
 
 def test_names_are_found_by_number() -> None:
     assert (CODES.KEY[103], CODES.bytype[CODES.EV_ABS][0], CODES.keys[CODES.BTN_B]) == (
-        "KEY_UP", "ABS_X", ["BTN_EAST", "BTN_B"]
-    )  # fmt: skip
+        "KEY_UP",
+        "ABS_X",
+        ["BTN_EAST", "BTN_B"],
+    )
 
 
 def test_a_name_without_a_number_has_the_next() -> None:

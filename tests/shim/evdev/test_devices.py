@@ -21,7 +21,9 @@ def test_every_name_can_be_imported(run: Run) -> None:
 
 
 def test_opening_a_gamepad_is_refused(run: Run) -> None:
-    done = run("from evdev import InputDevice\npad = InputDevice('/dev/input/event4')", prelude="none")
+    done = run(
+        "from evdev import InputDevice\npad = InputDevice('/dev/input/event4')", prelude="none"
+    )
     assert done.errors[-1] == (
         "NotSimulated: evdev.InputDevice('/dev/input/event4'): gamepads and keyboards are not simulated "
         "(to drive by hand, use the brick's buttons or RemoteControlledTank)"
@@ -30,7 +32,11 @@ def test_opening_a_gamepad_is_refused(run: Run) -> None:
 
 
 def test_making_a_device_is_refused(run: Run) -> None:
-    assert run("import evdev\nevdev.UInput()", prelude="none").errors[-1].startswith("NotSimulated: evdev.UInput: ")
+    assert (
+        run("import evdev\nevdev.UInput()", prelude="none")
+        .errors[-1]
+        .startswith("NotSimulated: evdev.UInput: ")
+    )
 
 
 def test_looking_for_a_gamepad_in_vain_tells_why(run: Run) -> None:
@@ -62,4 +68,6 @@ def test_events_of_the_buttons_are_read_one_after_the_other(run_on: RunOn) -> No
 
 def test_buttons_cannot_be_waited_for_as_a_file(run: Run) -> None:
     done = run(f"{LOOK}import select\nselect.select(devices, [], [])", prelude="none")
-    assert done.errors[-1].startswith("NotSimulated: evdev.InputDevice.fileno is not part of the simulated brick")
+    assert done.errors[-1].startswith(
+        "NotSimulated: evdev.InputDevice.fileno is not part of the simulated brick"
+    )

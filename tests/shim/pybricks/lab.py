@@ -36,7 +36,14 @@ class Lab:
         empty: Any = SimpleNamespace()
         self.mixer, self.sounds = Mixer(), list[tuple[str, int, str]]()
         Connected.brick = self.brick = Brick(
-            cast(Any, self), self.motors, {}, empty, empty, Screen(cast(Any, self)), self.mixer, lambda _: ""
+            cast(Any, self),
+            self.motors,
+            {},
+            empty,
+            empty,
+            Screen(cast(Any, self)),
+            self.mixer,
+            lambda _: "",
         )
 
     def spend(self, duration_ns: int) -> None:

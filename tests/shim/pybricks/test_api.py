@@ -39,9 +39,14 @@ REFUSED: Mapping[str, str] = {
 }
 """What is NotSimulated, with the reason; all other members are simulated."""
 CORE = (
-    "pybricks.hubs:", "pybricks.ev3devices:", "pybricks.robotics:", "pybricks.tools:", "pybricks.media.ev3dev:",
-    "pybricks.ev3brick:", "pybricks.experimental:",
-)  # fmt: skip
+    "pybricks.hubs:",
+    "pybricks.ev3devices:",
+    "pybricks.robotics:",
+    "pybricks.tools:",
+    "pybricks.media.ev3dev:",
+    "pybricks.ev3brick:",
+    "pybricks.experimental:",
+)
 """What most programs use."""
 MOST_REFUSED_IN_CORE = 8
 
@@ -56,7 +61,10 @@ PORTS = {
     "UltrasonicSensor": "Port.S1",
 }
 """The port of each class on the robots below; others have none."""
-ROBOTS = {"pybricks.ev3devices:ColorSensor": "default", "pybricks.ev3devices:Motor.run_until_stalled": "arm"}
+ROBOTS = {
+    "pybricks.ev3devices:ColorSensor": "default",
+    "pybricks.ev3devices:Motor.run_until_stalled": "arm",
+}
 """The robot for what the usual one has not."""
 USUAL_ROBOT = "eyes"
 
@@ -64,12 +72,16 @@ VALUES: Mapping[str, str] = {
     **dict.fromkeys(("acceleration", "straight_acceleration", "turn_acceleration"), "500"),
     **dict.fromkeys(("actuation", "duty_limit", "duty", "volume"), "50"),
     **dict.fromkeys(("angle", "rotation_angle", "target_angle", "turn_rate"), "30"),
-    **dict.fromkeys(("append", "bold", "fill", "monospace", "silent", "sub", "timestamp", "clear"), "True"),
+    **dict.fromkeys(
+        ("append", "bold", "fill", "monospace", "silent", "sub", "timestamp", "clear"), "True"
+    ),
     **dict.fromkeys(("axle_track", "wheel_diameter"), "60.5"),
     **dict.fromkeys(("color", "text_color", "background_color", "transparent"), "Color.RED"),
     **dict.fromkeys(("direction", "positive_direction"), "Direction.COUNTERCLOCKWISE"),
     **dict.fromkeys(("distance", "drive_speed", "speed", "straight_speed", "steering"), "100"),
-    **dict.fromkeys(("feed_forward", "integral_range", "integral_rate", "kp", "ki", "kd", "position"), "20"),
+    **dict.fromkeys(
+        ("feed_forward", "integral_range", "integral_rate", "kp", "ki", "kd", "position"), "20"
+    ),
     **dict.fromkeys(("x", "y", "x1", "y1", "x2", "y2", "r", "width", "height", "number"), "9"),
     **dict.fromkeys(("file", "file_name"), "SoundFile.HELLO"),
     **dict.fromkeys(("channel", "count", "duration", "index", "divisor", "length", "reg"), "1"),
@@ -188,7 +200,9 @@ def arguments(member: str, given: list[str], *, required_only: bool = False) -> 
         if required_only and (has_default or name.startswith("*")):
             continue
         value = OWN_VALUES.get(f"{member}.{name}") or (
-            PORTS.get(member.split(":")[1].split(".")[0], "Port.S1") if name == "port" else VALUES[name.rstrip("/")]
+            PORTS.get(member.split(":")[1].split(".")[0], "Port.S1")
+            if name == "port"
+            else VALUES[name.rstrip("/")]
         )
         words.append(value if name.startswith("*") or name.endswith("/") else f"{name}={value}")
     return ", ".join(words)
@@ -206,7 +220,9 @@ def target(member: str) -> str:
     maker = f"{module}:{first}.__init__"
     made = f"{module}.{first}"
     is_class = first[0].isupper()
-    return ".".join([f"{made}({arguments(maker, CALLS.get(maker, []))})" if is_class else made, *inner])
+    return ".".join(
+        [f"{made}({arguments(maker, CALLS.get(maker, []))})" if is_class else made, *inner]
+    )
 
 
 def called(member: str, words: str) -> str:
@@ -241,7 +257,11 @@ def attempts() -> Iterator[tuple[str, str]]:
 
 def outcome(member: str) -> str:
     """Return what a use of a member must come to. An object that cannot be used is there, too."""
-    return "NotSimulated" if is_refused(member) and not (member in REFUSED and member in API["attributes"]) else "done"
+    return (
+        "NotSimulated"
+        if is_refused(member) and not (member in REFUSED and member in API["attributes"])
+        else "done"
+    )
 
 
 def robot_of(member: str) -> str:
@@ -252,7 +272,11 @@ def robot_of(member: str) -> str:
 def test_every_member_takes_every_keyword(run_on: RunOn, robot: str, tmp_path: Path) -> None:
     tried = [one for one in attempts() if robot_of(one[0]) == robot]
     lines = [f"show({member!r}, {text!r})" for member, text in tried]
-    done = run_on("\n".join([HEAD, f"os.chdir({str(tmp_path)!r})", *lines]), robot=robot, profile="lego-micropython")
+    done = run_on(
+        "\n".join([HEAD, f"os.chdir({str(tmp_path)!r})", *lines]),
+        robot=robot,
+        profile="lego-micropython",
+    )
     shown = [line.split("\t") for line in done.lines if "\t" in line]
     wrong = [" ".join(found) for found in shown if found[2] != outcome(found[0])]
     assert "\n".join(wrong) == ""
@@ -279,4 +303,6 @@ def test_every_file_of_the_brick_has_its_name_and_place(kind: str) -> None:
     files = API["files"][kind]
     for module in ("pybricks.media.ev3dev", "pybricks.parameters"):
         named = vars(MODULES[module][kind])
-        assert {name: named.get(name) for name in files} == {name: f"/usr/share/{path}" for name, path in files.items()}
+        assert {name: named.get(name) for name in files} == {
+            name: f"/usr/share/{path}" for name, path in files.items()
+        }

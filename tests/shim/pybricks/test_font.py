@@ -11,8 +11,15 @@ from tuisim.shim.pybricks.font import Font, drawable
 
 def test_the_default_font_is_lucida_12() -> None:
     same = Font("Lucida", 12)
-    assert (Font.DEFAULT.family, Font.DEFAULT.style, Font.DEFAULT.height) == ("Lucida", "Regular", 15)
-    assert (same.width, same.text_width("Hello")) == (Font.DEFAULT.width, Font.DEFAULT.text_width("Hello"))
+    assert (Font.DEFAULT.family, Font.DEFAULT.style, Font.DEFAULT.height) == (
+        "Lucida",
+        "Regular",
+        15,
+    )
+    assert (same.width, same.text_width("Hello")) == (
+        Font.DEFAULT.width,
+        Font.DEFAULT.text_width("Hello"),
+    )
 
 
 def test_sizes_differ_in_height_and_width() -> None:
@@ -25,7 +32,11 @@ def test_sizes_differ_in_height_and_width() -> None:
 @pytest.mark.parametrize(("size_px", "cell_px"), [(12, 7), (24, 14), (30, 18)])
 def test_characters_of_a_monospaced_font_are_equally_wide(size_px: int, cell_px: int) -> None:
     font = Font(size=size_px, monospace=True)
-    assert [font.text_width(text) for text in ("i", "W", "iW il")] == [cell_px, cell_px, 5 * cell_px]
+    assert [font.text_width(text) for text in ("i", "W", "iW il")] == [
+        cell_px,
+        cell_px,
+        5 * cell_px,
+    ]
     assert font.width == cell_px
 
 
@@ -39,7 +50,8 @@ def test_a_font_is_no_higher_than_the_screen() -> None:
 
 
 @pytest.mark.parametrize(
-    ("given", "error"), [({"size": 0}, ValueError), ({"size": "12"}, TypeError), ({"family": 12}, TypeError)]
+    ("given", "error"),
+    [({"size": 0}, ValueError), ({"size": "12"}, TypeError), ({"family": 12}, TypeError)],
 )
 def test_a_font_must_be_possible(given: dict[str, Any], error: type[Exception]) -> None:
     with pytest.raises(error):

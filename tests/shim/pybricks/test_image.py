@@ -28,7 +28,12 @@ def lab(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Lab:
 def dark(picture: Image) -> set[tuple[int, int]]:
     """The pixels that are not white."""
     pixels = picture._pixels()
-    return {(x, y) for x in range(picture.width) for y in range(picture.height) if pixels.getpixel((x, y)) != WHITE}
+    return {
+        (x, y)
+        for x in range(picture.width)
+        for y in range(picture.height)
+        if pixels.getpixel((x, y)) != WHITE
+    }
 
 
 def test_shapes(lab: Lab) -> None:

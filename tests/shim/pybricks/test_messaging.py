@@ -30,14 +30,21 @@ PROFILE = "lego-micropython"
         (TextMailbox, "", b"\x00"),
     ],
 )
-def test_a_value_becomes_its_bytes_and_back(kind: type[Mailbox], value: Any, payload: bytes) -> None:
+def test_a_value_becomes_its_bytes_and_back(
+    kind: type[Mailbox], value: Any, payload: bytes
+) -> None:
     box = kind("box", MailboxHandlerMixIn())
     assert box.encode(value) == payload
     assert box.decode(payload) == value
 
 
 def test_functions_of_the_program_may_convert() -> None:
-    box = Mailbox("box", MailboxHandlerMixIn(), encode=lambda value: value + 1, decode=lambda payload: payload * 2)
+    box = Mailbox(
+        "box",
+        MailboxHandlerMixIn(),
+        encode=lambda value: value + 1,
+        decode=lambda payload: payload * 2,
+    )
     assert (box.encode(1), box.decode(1)) == (2, 2)
 
 

@@ -9,7 +9,13 @@ import pytest
 
 from tests.conftest import Command
 from tests.shim.conftest import RunOn
-from tuisim.shim.pybricks.micropython import BUILT_IN, OF_PYTHON, TICKS_PERIOD, ticks_add, ticks_diff
+from tuisim.shim.pybricks.micropython import (
+    BUILT_IN,
+    OF_PYTHON,
+    TICKS_PERIOD,
+    ticks_add,
+    ticks_diff,
+)
 
 PROFILE = "lego-micropython"
 
@@ -26,7 +32,10 @@ def test_every_module_can_be_imported(run_on: RunOn) -> None:
         "gc",
         "umqtt.simple",
     ]
-    done = run_on(f"import {', '.join(names)}\nfrom utime import *\nprint(utime.sleep is sleep)", profile=PROFILE)
+    done = run_on(
+        f"import {', '.join(names)}\nfrom utime import *\nprint(utime.sleep is sleep)",
+        profile=PROFILE,
+    )
     assert done.lines == ["True"], done.errors
 
 
@@ -40,7 +49,9 @@ def test_a_file_of_the_program_is_no_built_in_module(here: Command, tmp_path: Pa
 
 def test_the_interpreter_has_its_name_and_still_imports(here: Command, tmp_path: Path) -> None:
     (tmp_path / "helper.py").write_text("import usys\nprint(usys.implementation.name)\n")
-    (tmp_path / "main.py").write_text("import pybricks, sys, helper\nprint(sys.implementation.cache_tag)")
+    (tmp_path / "main.py").write_text(
+        "import pybricks, sys, helper\nprint(sys.implementation.cache_tag)"
+    )
     assert here("run", "main.py").stdout == f"micropython\n{sys.implementation.cache_tag}\n"
 
 
@@ -105,8 +116,16 @@ def test_its_own_names_work(run_on: RunOn, tmp_path: Path) -> None:
     (tmp_path / "folder").mkdir()
     (tmp_path / "file").touch()
     lines = run_on(f"FOLDER = {str(tmp_path)!r}\n{NAMES}", profile=PROFILE).lines
-    assert lines[:4] == ["scheduled", "3 8 12 True True", "(258,)", "[('file', 32768), ('folder', 16384)]"]
-    assert lines[4 :: len(lines) - 5] == ["Traceback (most recent call last):", "ZeroDivisionError: division by zero"]
+    assert lines[:4] == [
+        "scheduled",
+        "3 8 12 True True",
+        "(258,)",
+        "[('file', 32768), ('folder', 16384)]",
+    ]
+    assert lines[4 :: len(lines) - 5] == [
+        "Traceback (most recent call last):",
+        "ZeroDivisionError: division by zero",
+    ]
 
 
 @pytest.mark.parametrize(

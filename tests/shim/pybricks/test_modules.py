@@ -21,6 +21,8 @@ def test_an_editor_sees_what_a_program_can_use(module: str) -> None:
     path = SEEN / module.replace(".", "/")
     file = path / "__init__.py" if path.is_dir() else path.with_suffix(".py")
     nodes = ast.parse(file.read_text()).body
-    seen = {name.asname for node in nodes if isinstance(node, ast.ImportFrom) for name in node.names}
+    seen = {
+        name.asname for node in nodes if isinstance(node, ast.ImportFrom) for name in node.names
+    }
     usable = MODULES[module].keys() - REFUSED.get(module, set()) - BUILTINS.get(module, set())
     assert seen == usable | VERSION_4.get(module, set())

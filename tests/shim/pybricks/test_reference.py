@@ -30,25 +30,34 @@ with gzip.open(Path(__file__).with_name("reference.jsonl.gz"), "rt", encoding="u
     RECORDED = {one["id"]: one for one in map(json.loads, _file)}
 
 WITHOUT_REFERENCE = {
-    **dict.fromkeys(("L_dc_20", "M_dc_20", "M_dc_50", "L_dc_100", "M_dc_100", "M_dc_-100"), "no control is active"),
+    **dict.fromkeys(
+        ("L_dc_20", "M_dc_20", "M_dc_50", "L_dc_100", "M_dc_100", "M_dc_-100"),
+        "no control is active",
+    ),
 }
 """Recordings without a reference, with the reason."""
 OF_THE_PLANT = {
     "L_run_angle_blocked": "the trajectory pauses when the blocked motor is behind",
     **dict.fromkeys(
         (
-            "L_run_until_stalled_200_limit_None", "L_run_until_stalled_200_limit_30",
-            "L_run_until_stalled_-300_limit_30", "L_run_until_stalled_-300_limit_100",
+            "L_run_until_stalled_200_limit_None",
+            "L_run_until_stalled_200_limit_30",
+            "L_run_until_stalled_-300_limit_30",
+            "L_run_until_stalled_-300_limit_100",
         ),
         "it ends when the blocked motor stalls",
     ),
     "L_reset_angle_while_running": "the new reference is the measured angle",
     "DB_drive_then_stop_then_straight": "it begins where the coasting robot is measured to be",
-}  # fmt: skip
+}
 """Recordings whose reference depends on the simulated motor, with the reason; each has a test of its rule below."""
 PAUSED_FROM_MS = {"DB_settings_max": 1800}
 """From when on a trajectory has paused: at the highest acceleration the recorded motors fell behind."""
-PLANT_FREE = [key for key in RECORDED if not key.startswith("v4") and key not in {*WITHOUT_REFERENCE, *OF_THE_PLANT}]
+PLANT_FREE = [
+    key
+    for key in RECORDED
+    if not key.startswith("v4") and key not in {*WITHOUT_REFERENCE, *OF_THE_PLANT}
+]
 LATEST_MS = 40
 """A call returned this long after the end of its trajectory at most."""
 
@@ -68,12 +77,17 @@ class Experiment:
         robotics.DriveBase.current = None
         library = version_4 if key.startswith("v4") else VERSION_2
         direction = Direction.COUNTERCLOCKWISE if "ccw" in key else Direction.CLOCKWISE
-        gears = {"L_gears_40_8_run_angle_1000_360": [40, 8], "v4_L_gears_12_36_run_angle_200_180": [12, 36]}.get(key)
+        gears = {
+            "L_gears_40_8_run_angle_1000_360": [40, 8],
+            "v4_L_gears_12_36_run_angle_200_180": [12, 36],
+        }.get(key)
         self.motor: Motor = library.Motor(Port.A, direction, gears)
         self.controls: list[Controller] = [self.motor.simulated.control]
         self.base: DriveBase | None = None
         if self.recorded["sizes"]:
-            self.base = library.DriveBase(self.motor, library.Motor(Port.B), *self.recorded["sizes"])
+            self.base = library.DriveBase(
+                self.motor, library.Motor(Port.B), *self.recorded["sizes"]
+            )
             self.controls = [self.base._base.distance, self.base._base.heading]
             if self.recorded["settings"]:
                 self.base.settings(*self.recorded["settings"])
@@ -86,7 +100,9 @@ class Experiment:
             if control.trajectory is None:
                 found.append(None)
                 continue
-            found.append((divided(control.milli(now_ms * 1000), MILLI), control.rate(now_ms * 1000)))
+            found.append(
+                (divided(control.milli(now_ms * 1000), MILLI), control.rate(now_ms * 1000))
+            )
         self.seen.append((now_ms, found))
 
     def run(self) -> Experiment:
@@ -103,7 +119,9 @@ class Experiment:
         name, _, words = call.rstrip(")").partition("(")
         owner = self.base or self.motor
         words = words.replace("duty_limit ", "duty_limit=")
-        args, named = eval(f"given({words})", {"given": lambda *args, **named: (args, named), "Stop": Stop})
+        args, named = eval(
+            f"given({words})", {"given": lambda *args, **named: (args, named), "Stop": Stop}
+        )
         if "then" in named:
             named["then"] = version_4.Stop(named["then"])
         getattr(owner, name)(*args, **named)
@@ -133,7 +151,10 @@ def in_units(experiment: Experiment, found: list[Any]) -> list[list[int]]:
 def test_the_reference_is_that_of_the_firmware(key: str) -> None:
     experiment = Experiment(key).run()
     compared = 0
-    held_ms = min((at for call, at, _ in experiment.recorded["returned"] if call == "run_time"), default=1 << 30)
+    held_ms = min(
+        (at for call, at, _ in experiment.recorded["returned"] if call == "run_time"),
+        default=1 << 30,
+    )
     for now_ms, recorded, found in experiment.references():
         if None in found or recorded[0][0] is None:
             continue
@@ -146,14 +167,20 @@ def test_the_reference_is_that_of_the_firmware(key: str) -> None:
 
 
 RETURNING = [
-    key for key in RECORDED if RECORDED[key]["returned"] and not key.startswith("v4") and key not in OF_THE_PLANT
+    key
+    for key in RECORDED
+    if RECORDED[key]["returned"] and not key.startswith("v4") and key not in OF_THE_PLANT
 ]
 
 
 def ends_ms(key: str) -> Iterator[tuple[int, int]]:
     """Yield when each call of a recording returned, and when it returns now."""
     experiment = Experiment(key).run()
-    blocking = [at for name, at, _ in experiment.returned if name not in ("drive", "run", "stop", "brake", "dc")]
+    blocking = [
+        at
+        for name, at, _ in experiment.returned
+        if name not in ("drive", "run", "stop", "brake", "dc")
+    ]
     yield from zip([at for _, at, _ in experiment.recorded["returned"]], blocking, strict=True)
 
 
@@ -165,8 +192,11 @@ def test_a_call_returns_when_the_trajectory_has_ended(key: str) -> None:
 
 HELD = [key for key in RETURNING if not key.endswith(("COAST", "BRAKE"))]
 SETTLED_FAR = {
-    "M_run_angle_200_360": 2, "M_run_angle_500_5": 2, "M_run_time_500_1000_HOLD": 5, "L_run_time_500_100_HOLD": 2,
-}  # fmt: skip
+    "M_run_angle_200_360": 2,
+    "M_run_angle_500_5": 2,
+    "M_run_time_500_1000_HOLD": 5,
+    "L_run_time_500_100_HOLD": 2,
+}
 """The recorded medium motor came to rest this far from its target: its friction is 20 % of its power. A timed move ends
 where the motor was measured to be."""
 
@@ -196,9 +226,11 @@ def test_settings_are_those_of_the_firmware(key: str) -> None:
 
 def test_settings_of_the_sizes_in_the_handbook() -> None:
     expected = {
-        (56, 114): (130, 521, 131, 524), (55.5, 104): (129, 516, 142, 569), (43.2, 120): (100, 402, 96, 384),
+        (56, 114): (130, 521, 131, 524),
+        (55.5, 104): (129, 516, 142, 569),
+        (43.2, 120): (100, 402, 96, 384),
         (68.8, 150): (160, 640, 122, 489),
-    }  # fmt: skip
+    }
     for sizes, settings in expected.items():
         Lab(MotorLaw.PYBRICKS, {"outA": "large", "outB": "large"})
         DriveBase.current = None
@@ -224,13 +256,19 @@ def test_a_blocked_call_waits_for_ever() -> None:
     lab.until_ns = 60_000 * 1_000_000
     with pytest.raises(TimeoutError):
         Motor(Port.A).run_angle(300, 180)
-    assert lab.held_up == "the motor on outA is stalled: run_angle() waits until the way is free, as on the brick"
+    assert (
+        lab.held_up
+        == "the motor on outA is stalled: run_angle() waits until the way is free, as on the brick"
+    )
 
 
 @pytest.mark.parametrize("key", [key for key in OF_THE_PLANT if "until_stalled" in key])
 def test_it_runs_until_it_is_stalled(key: str) -> None:
     experiment = Experiment(key, stop_deg=125.0).run()
-    (_, recorded_ms, recorded), (_, now_ms, now) = experiment.recorded["returned"][0], experiment.returned[0]
+    (_, recorded_ms, recorded), (_, now_ms, now) = (
+        experiment.recorded["returned"][0],
+        experiment.returned[0],
+    )
     assert abs(now) == 125 and abs(recorded[0]) in range(122, 130)
     assert abs(now_ms - recorded_ms) <= 110
     assert experiment.motor.simulated.guide is None
@@ -245,22 +283,34 @@ def test_resetting_the_angle_ends_a_motion() -> None:
 def test_after_a_stop_a_move_begins_where_the_robot_is() -> None:
     experiment = Experiment("DB_drive_then_stop_then_straight").run()
     # The recorded robot was 2 mm behind its reference.
-    assert abs(experiment.base.state()[0] - experiment.recorded["final"][1]) <= 2 if experiment.base else False
+    assert (
+        abs(experiment.base.state()[0] - experiment.recorded["final"][1]) <= 2
+        if experiment.base
+        else False
+    )
 
 
 @pytest.mark.parametrize("key", WITHOUT_REFERENCE)
 def test_power_drives_a_motor_as_far_as_the_recorded_one(key: str) -> None:
     experiment = Experiment(key).run()
-    assert experiment.motor.simulated.position_deg == pytest.approx(experiment.recorded["final"][1], rel=0.01)
+    assert experiment.motor.simulated.position_deg == pytest.approx(
+        experiment.recorded["final"][1], rel=0.01
+    )
 
 
 @pytest.mark.parametrize(
     "key",
-    [key for key in RECORDED if key.startswith(("L_run_", "M_run_")) and "stop" in str(RECORDED[key]["commands"])],
+    [
+        key
+        for key in RECORDED
+        if key.startswith(("L_run_", "M_run_")) and "stop" in str(RECORDED[key]["commands"])
+    ],
 )
 def test_a_motor_coasts_about_as_far_as_the_recorded_one(key: str) -> None:
     experiment = Experiment(key).run()
-    assert experiment.motor.simulated.position_deg == pytest.approx(experiment.recorded["final"][1], abs=12)
+    assert experiment.motor.simulated.position_deg == pytest.approx(
+        experiment.recorded["final"][1], abs=12
+    )
 
 
 # Version 4
@@ -276,5 +326,7 @@ def test_version_4_moves_within_the_bands_of_its_own_tests(key: str) -> None:
         experiment.recorded["returned"], experiment.returned, strict=True
     ):
         assert abs(recorded_ms - now_ms) <= 60 + recorded_ms // 100
-        for recorded, now in zip(state[::2], found[::2] if experiment.base else [found], strict=True):
+        for recorded, now in zip(
+            state[::2], found[::2] if experiment.base else [found], strict=True
+        ):
             assert abs(recorded - now) <= 10

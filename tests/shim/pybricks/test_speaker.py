@@ -23,8 +23,9 @@ def test_a_beep_takes_its_time_and_one_without_an_end_none(lab: Lab) -> None:
     Speaker().beep()
     Speaker().beep(880, duration=250)
     assert [(text, at_ms) for text, at_ms, _ in lab.sounds] == [
-        ("[tone 500 Hz 0.1 s]", 0), ("[tone 880 Hz 0.25 s]", 100),
-    ]  # fmt: skip
+        ("[tone 500 Hz 0.1 s]", 0),
+        ("[tone 880 Hz 0.25 s]", 100),
+    ]
     Speaker().beep(300, -1)
     assert lab.now == 350_000_000
 
@@ -32,16 +33,21 @@ def test_a_beep_takes_its_time_and_one_without_an_end_none(lab: Lab) -> None:
 @pytest.mark.parametrize(
     ("note", "expected"),
     [
-        ("C4/4", (262, 437, 63)), ("A4/4_", (440, 500, 0)), ("F#5/8.", (740, 328, 47)), ("Bb3/2", (233, 875, 125)),
+        ("C4/4", (262, 437, 63)),
+        ("A4/4_", (440, 500, 0)),
+        ("F#5/8.", (740, 328, 47)),
+        ("Bb3/2", (233, 875, 125)),
         ("R/1", (0, 2000, 0)),
     ],
-)  # fmt: skip
+)
 def test_notes(note: str, expected: tuple[int, int, int]) -> None:
     tone = note_of(note, 2000)
     assert (tone.frequency_hz, tone.length_ms, tone.pause_ms) == expected
 
 
-@pytest.mark.parametrize("note", ["Cb4/4", "Fb4/4", "E#4/4", "B#4/4", "H4/4", "C9/4", "C4", "C4/0", "c4/4", ""])
+@pytest.mark.parametrize(
+    "note", ["Cb4/4", "Fb4/4", "E#4/4", "B#4/4", "H4/4", "C9/4", "C4", "C4/0", "c4/4", ""]
+)
 def test_what_is_no_note(note: str) -> None:
     with pytest.raises(ValueError, match="note"):
         note_of(note, 2000)

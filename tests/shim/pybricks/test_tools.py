@@ -49,7 +49,9 @@ def test_a_log_is_a_file_and_samples(lab: Lab, tmp_path: Path) -> None:
     log = DataLog("time", "light in %", name="run", timestamp=False)
     log.log(1, 50)
     log.log(2, "none", 7.5)
-    assert (tmp_path / "run.csv").read_text() == repr(log) == "time, light in %\n1, 50\n2, none, 7.5\n"
+    assert (
+        (tmp_path / "run.csv").read_text() == repr(log) == "time, light in %\n1, 50\n2, none, 7.5\n"
+    )
     log.file.close()
     assert lab.shown == [("light_in: 50", Stream.DATA), ("value3: 7.5", Stream.DATA)]
 

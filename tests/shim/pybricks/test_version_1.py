@@ -18,26 +18,38 @@ PROFILE = "lego-micropython"
 
 def test_sounds_of_version_1(run_on: RunOn) -> None:
     done = run_on(
-        HEAD + "brick.sound.beep(1000, 500)\nbrick.sound.beeps(2)\nbrick.sound.tune([(440, 200), (880, 100)])\n"
+        HEAD
+        + "brick.sound.beep(1000, 500)\nbrick.sound.beeps(2)\nbrick.sound.tune([(440, 200), (880, 100)])\n"
         "brick.sound.file(SoundFile.HELLO, 100)\nbrick.sound.speech('hi there', volume=50)",
         profile=PROFILE,
     )
-    heard = [(row.text, row.time_ns // 1_000_000) for row in done.run.output.all_rows() if row.stream == Stream.SPEECH]
+    heard = [
+        (row.text, row.time_ns // 1_000_000)
+        for row in done.run.output.all_rows()
+        if row.stream == Stream.SPEECH
+    ]
     assert heard == [
-        ("[tone 1000 Hz 0.5 s]", 0), ("[tone 500 Hz 0.1 s]", 500), ("[tone 500 Hz 0.1 s]", 700),
-        ("[tone 440 Hz 0.2 s]", 900), ("[tone 880 Hz 0.1 s]", 1100), ("[plays SoundFile.HELLO, 1.0 s]", 1200),
+        ("[tone 1000 Hz 0.5 s]", 0),
+        ("[tone 500 Hz 0.1 s]", 500),
+        ("[tone 500 Hz 0.1 s]", 700),
+        ("[tone 440 Hz 0.2 s]", 900),
+        ("[tone 880 Hz 0.1 s]", 1100),
+        ("[plays SoundFile.HELLO, 1.0 s]", 1200),
         ("hi there", 2200),
-    ]  # fmt: skip
+    ]
 
 
 def test_text_of_version_1_has_a_place_or_follows_the_last(run_on: RunOn) -> None:
     done = run_on(
-        HEAD + "brick.display.text('Hello', (60, 50))\nbrick.display.text('one')\nbrick.display.text('two')\n"
+        HEAD
+        + "brick.display.text('Hello', (60, 50))\nbrick.display.text('one')\nbrick.display.text('two')\n"
         "brick.display.clear()",
         profile=PROFILE,
     )
     placed, *_, both, cleared = (dark(row) for row in shown(done))
-    assert min(placed)[0] >= 60 and 50 <= min(y for _, y in placed) and max(y for _, y in placed) < 65
+    assert (
+        min(placed)[0] >= 60 and 50 <= min(y for _, y in placed) and max(y for _, y in placed) < 65
+    )
     assert {y // 15 for x, y in both - placed} == {0, 1}
     assert cleared == set()
 
@@ -65,7 +77,8 @@ def test_an_image_of_version_1_has_its_place(run_on: RunOn, tmp_path: Path) -> N
     file = str(tmp_path / "mark")
     calls = [f"brick.display.image(file, {place})" for place in PLACES]
     done = run_on(
-        HEAD + f"from pybricks.media.ev3dev import Image\nimage, file = Image.empty(20, 10), {file!r}\n"
+        HEAD
+        + f"from pybricks.media.ev3dev import Image\nimage, file = Image.empty(20, 10), {file!r}\n"
         "image.draw_box(0, 0, 19, 9, fill=True)\nimage.save(file)\n"
         + "\n".join([*calls, "brick.display.image(file, (100, 100), clear=False)"]),
         profile=PROFILE,

@@ -27,7 +27,9 @@ def base() -> DriveBase:
     return DriveBase(Motor(Port.A), Motor(Port.B), 56, 114)
 
 
-@pytest.mark.parametrize(("then", "active"), [(Stop.HOLD, True), (Stop.COAST, False), (Stop.BRAKE, False)])
+@pytest.mark.parametrize(
+    ("then", "active"), [(Stop.HOLD, True), (Stop.COAST, False), (Stop.BRAKE, False)]
+)
 def test_a_move_ends_as_it_is_told(base: DriveBase, then: Stop, active: bool) -> None:
     base.straight(100, then)
     wait(20)
@@ -105,7 +107,9 @@ def test_version_2_says_where_its_later_names_are() -> None:
     Lab(MotorLaw.PYBRICKS, {"outA": "large", "outB": "large"})
     robotics.DriveBase.current = None
     base = robotics.DriveBase(EarlierMotor(Port.A), EarlierMotor(Port.B), 56, 114)
-    with pytest.raises(AttributeError, match="no attribute 'curve': it is of Pybricks 4, which --profile pybricks4"):
+    with pytest.raises(
+        AttributeError, match="no attribute 'curve': it is of Pybricks 4, which --profile pybricks4"
+    ):
         base.curve(100, 90)
     with pytest.raises(AttributeError, match=r"no attribute 'fly'$"):
         base.fly()

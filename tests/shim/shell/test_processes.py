@@ -20,14 +20,23 @@ def test_a_command_that_is_not_there_has_return_code_127(run_on: RunOn, profile:
 
 
 STEPS = {
-    "it ends in its own time": ("p = Popen(['beep', '-l', '500'])\nprint(p.poll(), p.wait(), ms())", ["None 0 500"]),
+    "it ends in its own time": (
+        "p = Popen(['beep', '-l', '500'])\nprint(p.poll(), p.wait(), ms())",
+        ["None 0 500"],
+    ),
     "waiting too short": (
         "p = Popen(['beep', '-l', '500'])\ntry: p.wait(0.2)\nexcept subprocess.TimeoutExpired: print(ms(), p.poll())",
         ["200 None"],
     ),
     "killed": ("p = Popen(['beep', '-l', '500'])\np.kill()\nprint(p.wait(), ms())", ["-9 0"]),
-    "in a block": ("with Popen(['beep', '-l', '500']) as p: pass\nprint(p.returncode, ms())", ["0 500"]),
-    "output as text": ("print(Popen(['cat'], stdin=PIPE, stdout=PIPE, text=True).communicate('a\\nb')[0])", ["a", "b"]),
+    "in a block": (
+        "with Popen(['beep', '-l', '500']) as p: pass\nprint(p.returncode, ms())",
+        ["0 500"],
+    ),
+    "output as text": (
+        "print(Popen(['cat'], stdin=PIPE, stdout=PIPE, text=True).communicate('a\\nb')[0])",
+        ["a", "b"],
+    ),
 }
 
 

@@ -15,32 +15,95 @@ MOTORS = "from ev3dev2.motor import *\n"
 PORTS = "from ev3dev2.port import LegoPort\n"
 
 USES = {
-    "NXT light": (f"{SENSORS}LightSensor()", "ev3dev2.sensor.lego.LightSensor: the NXT light sensor (lego-nxt-light)"),
-    "NXT sound": (f"{SENSORS}SoundSensor(INPUT_2)", "ev3dev2.sensor.lego.SoundSensor: the NXT sound sensor"),
-    "NXT ultrasonic": (f"{SENSORS}Sensor(INPUT_1, driver_name='lego-nxt-us')", "ev3dev2.sensor.Sensor: the NXT ultra"),
-    "class of the program": (f"{SENSORS}class Eye(LightSensor): pass\nEye()", "ev3dev2.sensor.lego.LightSensor: the"),
-    "Pixy": (f"{SENSORS}Sensor(INPUT_1, driver_name='pixy-lego')", "ev3dev2.sensor.Sensor: the Pixy camera (pixy"),
-    "mode of the Pixy": (f"{SENSORS}Sensor(INPUT_1).mode = 'SIG1'", "mode SIG1 on in1, where lego-ev3-us is: the Pixy"),
-    "gyro of Microinfinity": (f"{SENSORS}Sensor(driver_name='mi-xg1300l')", "ev3dev2.sensor.Sensor: the Microinfinity"),
-    "HiTechnic": (f"{SENSORS}Sensor(driver_name='ht-nxt-compass')", "ev3dev2.sensor.Sensor: the HiTechnic compass"),
-    "mindsensors": (f"{SENSORS}Sensor(driver_name=['ms-line-leader'])", "ev3dev2.sensor.Sensor: the mindsensors line"),
-    "I2C": (f"{SENSORS}I2cSensor(INPUT_4)", "ev3dev2.sensor.I2cSensor: an I2C sensor (nxt-i2c-sensor)"),
-    "I2C address": (f"{SENSORS}Sensor('in2:i2c1')", "ev3dev2.sensor.Sensor: an I2C sensor (in2:i2c1)"),
-    "multiplexer": (f"{SENSORS}ColorSensor('ev3-ports:in1:i2c80:mux1')", "ev3dev2.sensor.lego.ColorSensor: a sensor"),
-    "motor multiplexer": (f"{MOTORS}LargeMotor('in1:i2c3:M1')", "ev3dev2.motor.LargeMotor: an I2C sensor (in1:i2c3"),
-    "BrickPi": (f"{MOTORS}LargeMotor('spi0.1:MA')", "ev3dev2.motor.LargeMotor: a port of a BrickPi or PiStorms (spi0"),
-    "another driver": (f"{SENSORS}Sensor(driver_name='mine')", "ev3dev2.sensor.Sensor: a device that tuisim does not"),
-    "DC motor": (f"{MOTORS}DcMotor(OUTPUT_A)", "ev3dev2.motor.DcMotor: a motor without a rotation sensor (dc-motor)"),
-    "servo motor": (f"{MOTORS}ServoMotor()", "ev3dev2.motor.ServoMotor: a servo motor (servo-motor)"),
-    "linear motor": (f"{MOTORS}ActuonixL1250Motor()", "ev3dev2.motor.ActuonixL1250Motor: a linear motor of Actuonix"),
-    "longer linear motor": (f"{MOTORS}ActuonixL12100Motor()", "ev3dev2.motor.ActuonixL12100Motor: a linear motor of"),
-    "port of a DC motor": (f"{PORTS}LegoPort('outA').mode = 'dc-motor'", "ev3dev2.port.LegoPort.mode: a motor without"),
-    "port of another": (f"{PORTS}LegoPort('in1').mode = 'nxt-i2c'", "ev3dev2.port.LegoPort.mode: 'nxt-i2c' would disc"),
+    "NXT light": (
+        f"{SENSORS}LightSensor()",
+        "ev3dev2.sensor.lego.LightSensor: the NXT light sensor (lego-nxt-light)",
+    ),
+    "NXT sound": (
+        f"{SENSORS}SoundSensor(INPUT_2)",
+        "ev3dev2.sensor.lego.SoundSensor: the NXT sound sensor",
+    ),
+    "NXT ultrasonic": (
+        f"{SENSORS}Sensor(INPUT_1, driver_name='lego-nxt-us')",
+        "ev3dev2.sensor.Sensor: the NXT ultra",
+    ),
+    "class of the program": (
+        f"{SENSORS}class Eye(LightSensor): pass\nEye()",
+        "ev3dev2.sensor.lego.LightSensor: the",
+    ),
+    "Pixy": (
+        f"{SENSORS}Sensor(INPUT_1, driver_name='pixy-lego')",
+        "ev3dev2.sensor.Sensor: the Pixy camera (pixy",
+    ),
+    "mode of the Pixy": (
+        f"{SENSORS}Sensor(INPUT_1).mode = 'SIG1'",
+        "mode SIG1 on in1, where lego-ev3-us is: the Pixy",
+    ),
+    "gyro of Microinfinity": (
+        f"{SENSORS}Sensor(driver_name='mi-xg1300l')",
+        "ev3dev2.sensor.Sensor: the Microinfinity",
+    ),
+    "HiTechnic": (
+        f"{SENSORS}Sensor(driver_name='ht-nxt-compass')",
+        "ev3dev2.sensor.Sensor: the HiTechnic compass",
+    ),
+    "mindsensors": (
+        f"{SENSORS}Sensor(driver_name=['ms-line-leader'])",
+        "ev3dev2.sensor.Sensor: the mindsensors line",
+    ),
+    "I2C": (
+        f"{SENSORS}I2cSensor(INPUT_4)",
+        "ev3dev2.sensor.I2cSensor: an I2C sensor (nxt-i2c-sensor)",
+    ),
+    "I2C address": (
+        f"{SENSORS}Sensor('in2:i2c1')",
+        "ev3dev2.sensor.Sensor: an I2C sensor (in2:i2c1)",
+    ),
+    "multiplexer": (
+        f"{SENSORS}ColorSensor('ev3-ports:in1:i2c80:mux1')",
+        "ev3dev2.sensor.lego.ColorSensor: a sensor",
+    ),
+    "motor multiplexer": (
+        f"{MOTORS}LargeMotor('in1:i2c3:M1')",
+        "ev3dev2.motor.LargeMotor: an I2C sensor (in1:i2c3",
+    ),
+    "BrickPi": (
+        f"{MOTORS}LargeMotor('spi0.1:MA')",
+        "ev3dev2.motor.LargeMotor: a port of a BrickPi or PiStorms (spi0",
+    ),
+    "another driver": (
+        f"{SENSORS}Sensor(driver_name='mine')",
+        "ev3dev2.sensor.Sensor: a device that tuisim does not",
+    ),
+    "DC motor": (
+        f"{MOTORS}DcMotor(OUTPUT_A)",
+        "ev3dev2.motor.DcMotor: a motor without a rotation sensor (dc-motor)",
+    ),
+    "servo motor": (
+        f"{MOTORS}ServoMotor()",
+        "ev3dev2.motor.ServoMotor: a servo motor (servo-motor)",
+    ),
+    "linear motor": (
+        f"{MOTORS}ActuonixL1250Motor()",
+        "ev3dev2.motor.ActuonixL1250Motor: a linear motor of Actuonix",
+    ),
+    "longer linear motor": (
+        f"{MOTORS}ActuonixL12100Motor()",
+        "ev3dev2.motor.ActuonixL12100Motor: a linear motor of",
+    ),
+    "port of a DC motor": (
+        f"{PORTS}LegoPort('outA').mode = 'dc-motor'",
+        "ev3dev2.port.LegoPort.mode: a motor without",
+    ),
+    "port of another": (
+        f"{PORTS}LegoPort('in1').mode = 'nxt-i2c'",
+        "ev3dev2.port.LegoPort.mode: 'nxt-i2c' would disc",
+    ),
     "device of a port": (
         f"{PORTS}p = LegoPort('outA')\np.mode = 'tacho-motor'\np.set_device = 'lego-nxt-motor'",
         "ev3dev2.port.LegoPort.set_device: the NXT motor (lego-nxt-motor) is not simulated",
     ),
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize(("text", "words"), USES.values(), ids=USES)
@@ -48,7 +111,11 @@ def test_the_program_ends_with_its_name(run: Run, text: str, words: str) -> None
     done = run(text, prelude="none")
     assert done.errors[-1].startswith(f"NotSimulated: {words}")
     assert done.errors[-1].endswith(")")
-    assert (done.ended.end, done.ended.exit_code, done.ended.error_line) == ("raised", 1, text.count("\n") + 1)
+    assert (done.ended.end, done.ended.exit_code, done.ended.error_line) == (
+        "raised",
+        1,
+        text.count("\n") + 1,
+    )
 
 
 def test_a_program_may_try_what_is_connected(run: Run) -> None:
@@ -72,13 +139,22 @@ def test_a_sensor_of_no_kind_reads_the_simulated_one(run: Run) -> None:
 
 
 def test_an_empty_port_is_not_connected(run: Run) -> None:
-    done = run("from ev3dev2.motor import *\nMotor(OUTPUT_A, driver_name='lego-ev3-l-motor')", prelude="none")
-    assert done.errors[-1].startswith("ev3dev2.DeviceNotFound: Motor(ev3-ports:outA) is not connected.")
+    done = run(
+        "from ev3dev2.motor import *\nMotor(OUTPUT_A, driver_name='lego-ev3-l-motor')",
+        prelude="none",
+    )
+    assert done.errors[-1].startswith(
+        "ev3dev2.DeviceNotFound: Motor(ev3-ports:outA) is not connected."
+    )
 
 
 def test_a_sensor_of_no_kind_may_be_one_that_is_not_simulated(run: Run) -> None:
-    done = run("from ev3dev2.sensor import *\nSensor(INPUT_1, name_pattern='sensor7')", prelude="none")
-    assert done.errors[-1].endswith("If it is none of the sensors of ev3dev2.sensor.lego, it is not simulated.")
+    done = run(
+        "from ev3dev2.sensor import *\nSensor(INPUT_1, name_pattern='sensor7')", prelude="none"
+    )
+    assert done.errors[-1].endswith(
+        "If it is none of the sensors of ev3dev2.sensor.lego, it is not simulated."
+    )
 
 
 @pytest.mark.parametrize("name", [*sorted(SIMULATED), "lego-ev3"])
@@ -89,7 +165,9 @@ def test_a_simulated_driver_is_not_refused(name: str) -> None:
 @pytest.mark.parametrize("pattern", DRIVERS)
 def test_each_kind_is_found(pattern: str) -> None:
     assert (
-        of_driver(pattern.replace("*", "-0") if pattern.endswith("*") else pattern.replace("*", "x"))
+        of_driver(
+            pattern.replace("*", "-0") if pattern.endswith("*") else pattern.replace("*", "x")
+        )
         == DRIVERS[pattern]
     )
 
@@ -97,7 +175,9 @@ def test_each_kind_is_found(pattern: str) -> None:
 def test_the_error_is_the_librarys_own_too() -> None:
     # The older library raises no class of its own.
     error = refused_device(
-        SimpleNamespace(kwargs={"address": "in1", "driver_name": "pixy-lego"}), "lego-sensor", OSError
+        SimpleNamespace(kwargs={"address": "in1", "driver_name": "pixy-lego"}),
+        "lego-sensor",
+        OSError,
     )
     assert isinstance(error, NotSimulated)
     assert isinstance(error, OSError)
@@ -115,5 +195,7 @@ def test_the_error_is_the_librarys_own_too() -> None:
     ],
     ids=["port", "no texts", "no port", "one of them", "several ports"],
 )
-def test_what_another_robot_may_have_is_not_refused(class_name: str, wanted: dict[str, object]) -> None:
+def test_what_another_robot_may_have_is_not_refused(
+    class_name: str, wanted: dict[str, object]
+) -> None:
     assert refused_device(SimpleNamespace(kwargs=wanted), class_name, OSError) is None

@@ -13,29 +13,56 @@ from tuisim.protocol import End
 from tuisim.shim.unsupported.modules import BLUETOOTH, ELSEWHERE, ON_THE_BRICK, PACKAGES
 
 USES = {
-    "pybluez": ("import bluetooth\nbluetooth.discover_devices(lookup_names=True)", "bluetooth.discover_devices: Blue"),
-    "every name": ("from bluetooth import *\nBluetoothSocket(RFCOMM)", "bluetooth.BluetoothSocket: Bluetooth is not"),
+    "pybluez": (
+        "import bluetooth\nbluetooth.discover_devices(lookup_names=True)",
+        "bluetooth.discover_devices: Blue",
+    ),
+    "every name": (
+        "from bluetooth import *\nBluetoothSocket(RFCOMM)",
+        "bluetooth.BluetoothSocket: Bluetooth is not",
+    ),
     "class of the program": (
         "import bluetooth\nclass Finder(bluetooth.DeviceDiscoverer):\n    def __init__(self): pass\nFinder()",
         "bluetooth.DeviceDiscoverer: Bluetooth is not simulated",
     ),
-    "constant": ("import bluetooth\nbluetooth.RFCOMM + 1", "bluetooth.RFCOMM: Bluetooth is not simulated"),
+    "constant": (
+        "import bluetooth\nbluetooth.RFCOMM + 1",
+        "bluetooth.RFCOMM: Bluetooth is not simulated",
+    ),
     "socket": (
         "import socket\nsocket.socket(socket.AF_BLUETOOTH, socket.SOCK_STREAM, socket.BTPROTO_RFCOMM)",
         "socket.AF_BLUETOOTH: Bluetooth is not simulated",
     ),
-    "smbus": ("from smbus import SMBus\nSMBus(3)", "smbus.SMBus: the I2C bus of the brick is not simulated"),
-    "smbus2": ("from smbus2 import SMBus, i2c_msg\nSMBus(3)", "smbus2.SMBus: the I2C bus of the brick is not"),
-    "serial": ("import serial\nserial.Serial('/dev/tty_in1', 9600)", "serial.Serial: a serial port is not simulated"),
+    "smbus": (
+        "from smbus import SMBus\nSMBus(3)",
+        "smbus.SMBus: the I2C bus of the brick is not simulated",
+    ),
+    "smbus2": (
+        "from smbus2 import SMBus, i2c_msg\nSMBus(3)",
+        "smbus2.SMBus: the I2C bus of the brick is not",
+    ),
+    "serial": (
+        "import serial\nserial.Serial('/dev/tty_in1', 9600)",
+        "serial.Serial: a serial port is not simulated",
+    ),
     "submodule": (
         "from serial.tools import list_ports\nlist_ports.comports()",
         "serial.tools.list_ports.comports: a serial port is not simulated",
     ),
-    "deeper": ("import usb.core\nusb.core.find()", "usb.core.find: the brick's USB port is not simulated"),
-    "Pixy": ("from pixycamev3.pixy2 import Pixy2\nPixy2()", "pixycamev3.pixy2.Pixy2: the Pixy camera is not"),
+    "deeper": (
+        "import usb.core\nusb.core.find()",
+        "usb.core.find: the brick's USB port is not simulated",
+    ),
+    "Pixy": (
+        "from pixycamev3.pixy2 import Pixy2\nPixy2()",
+        "pixycamev3.pixy2.Pixy2: the Pixy camera is not",
+    ),
     "GPIO": ("import RPi.GPIO as GPIO", "RPi: the Raspberry Pi is not simulated"),
-    "camera": ("from picamera import PiCamera", "picamera: the camera of the Raspberry Pi is not simulated"),
-}  # fmt: skip
+    "camera": (
+        "from picamera import PiCamera",
+        "picamera: the camera of the Raspberry Pi is not simulated",
+    ),
+}
 
 
 @pytest.mark.parametrize(("text", "words"), USES.values(), ids=USES)
@@ -47,27 +74,39 @@ def test_the_program_ends_with_its_name(run: Run, text: str, words: str) -> None
 
 
 @pytest.mark.parametrize(
-    ("profile", "own", "other"), [("ev3", "ev3dev2", "pybricks"), ("pybricks4", "pybricks", "ev3dev2")]
+    ("profile", "own", "other"),
+    [("ev3", "ev3dev2", "pybricks"), ("pybricks4", "pybricks", "ev3dev2")],
 )
-def test_hints_have_the_names_of_the_programs_library(run: Run, profile: str, own: str, other: str) -> None:
+def test_hints_have_the_names_of_the_programs_library(
+    run: Run, profile: str, own: str, other: str
+) -> None:
     text = "import socket\ntry:\n    socket.socket(socket.AF_BLUETOOTH)\nexcept Exception as error:\n    print(error)\n"
     for name in (*ON_THE_BRICK, *ELSEWHERE):
         text += f"try:\n    import {name}\n    {name}.use()\nexcept Exception as error:\n    print(error)\n"
     told = run(text, profile=profile, prelude="none").lines
     assert len(told) == 1 + len(ON_THE_BRICK) + len(ELSEWHERE)
     assert not any(other in line or "{" in line for line in told)
-    assert f"smbus.use: the I2C bus of the brick is not simulated (the sensors of {own}." in "\n".join(told)
+    assert (
+        f"smbus.use: the I2C bus of the brick is not simulated (the sensors of {own}."
+        in "\n".join(told)
+    )
 
 
 def test_every_module_of_the_brick_can_be_imported(run: Run) -> None:
     names = sorted(ON_THE_BRICK)
     stars = "".join(f"from {name} import *\n" for name in names)
-    done = run(f"import {', '.join(names)}\n{stars}print(serial, serial.Serial, sep='; ')", prelude="none")
-    assert done.lines == ["<module 'serial' (not simulated)>; <serial.Serial, which is not simulated>"]
+    done = run(
+        f"import {', '.join(names)}\n{stars}print(serial, serial.Serial, sep='; ')", prelude="none"
+    )
+    assert done.lines == [
+        "<module 'serial' (not simulated)>; <serial.Serial, which is not simulated>"
+    ]
 
 
 def test_a_program_can_do_without_what_a_brick_does_not_have(run: Run) -> None:
-    tries = "".join(f"try:\n    import {name}\nexcept ImportError:\n    print('{name}')\n" for name in ELSEWHERE)
+    tries = "".join(
+        f"try:\n    import {name}\nexcept ImportError:\n    print('{name}')\n" for name in ELSEWHERE
+    )
     done = run(tries, prelude="none")
     assert (done.lines, done.ended.summary) == (list(ELSEWHERE), "")
 
@@ -100,7 +139,9 @@ def test_errors_can_be_handled(run: Run) -> None:
     assert done.lines == ["invalid literal for int() with base 10: 'x'"]
 
 
-def test_a_module_beside_the_program_comes_first(start: Start, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_module_beside_the_program_comes_first(
+    start: Start, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     (tmp_path / "serial.py").write_text("print('own')\n")
     monkeypatch.chdir(tmp_path)
     assert over(start("import serial", prelude="none")).lines == ["own"]
@@ -127,7 +168,9 @@ def test_a_missing_package_says_how_to_install_it(run: Run, name: str, package: 
     assert f"`pip install {package}`" in done.errors[-1]
 
 
-@pytest.mark.parametrize("name", ["'ev3dev2.sensor.pixy'", "'a b'", "3"], ids=["of the library", "no name", "no text"])
+@pytest.mark.parametrize(
+    "name", ["'ev3dev2.sensor.pixy'", "'a b'", "3"], ids=["of the library", "no name", "no text"]
+)
 def test_other_import_errors_say_nothing_of_packages(run: Run, name: str) -> None:
     done = run(f"raise ModuleNotFoundError('none', name={name})", prelude="none")
     assert done.errors[-1] == "ModuleNotFoundError: none"

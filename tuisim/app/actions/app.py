@@ -60,7 +60,9 @@ def _say_layout(context: ActionContext, more: str) -> None:
 def keep_layout(context: ActionContext) -> None:
     """Keep preset and panels for the next start."""
     context.panels.keep_panels()
-    context.app.say(f"The next start in a terminal of this size shows these panels: layout {context.panels.preset}")
+    context.app.say(
+        f"The next start in a terminal of this size shows these panels: layout {context.panels.preset}"
+    )
 
 
 def next_panel(context: ActionContext, by: int) -> None:
@@ -90,7 +92,9 @@ def show_help(context: ActionContext) -> None:
     from tuisim.app.guide.key_tables import EVERYWHERE, own_keys
     from tuisim.app.guide.screen import TOPICS, GuideScreen, KeyPage, Topic
 
-    groups = key_groups(action for action in context.app.ACTIONS.values() if not action.id.startswith("nudge-"))
+    groups = key_groups(
+        action for action in context.app.ACTIONS.values() if not action.id.startswith("nudge-")
+    )
     groups["Robot"] += _NUDGES
     every: Mapping[str, Iterable[KeyWord]] = {**groups, "In the code": EDITOR_KEYS, "": EVERYWHERE}
     panel, widgets = context.panels.focused_panel(), context.panels.focused_widgets()
@@ -155,7 +159,9 @@ def open_settings(context: ActionContext) -> None:
     """Open the settings screen."""
     from tuisim.app.dialogs.settings import SettingsScreen
 
-    context.app.push_screen(SettingsScreen(partial(change_setting, context), context.app.theme_chooser))
+    context.app.push_screen(
+        SettingsScreen(partial(change_setting, context), context.app.theme_chooser)
+    )
 
 
 def choose_theme(context: ActionContext) -> None:

@@ -36,7 +36,9 @@ if TYPE_CHECKING:
 def clear_log(context: ActionContext) -> None:
     """Clear the logged data from the output and the chart; the run keeps its log."""
     context.panels.clear_log()
-    context.app.say("Output and chart cleared. The run keeps its log: {analyse} analyses it, {export} exports it")
+    context.app.say(
+        "Output and chart cleared. The run keeps its log: {analyse} analyses it, {export} exports it"
+    )
 
 
 def open_program(context: ActionContext) -> None:
@@ -67,7 +69,9 @@ _OPENED = frozenset({".py", ".toml"})
 def open_brought(context: ActionContext, path: Path) -> None:
     """Open a file that the user has brought to the page: a program, a world, goals, or a log to be analysed."""
     if path.suffix in _OPENED and context.runs.in_run:
-        context.app.say(f"{path.name} is here, and can be opened once the run has ended: {{open}} opens it")
+        context.app.say(
+            f"{path.name} is here, and can be opened once the run has ended: {{open}} opens it"
+        )
     elif path.suffix in _OPENED:
         open_path(context, str(path))
     else:
@@ -153,7 +157,12 @@ def save_robot(context: ActionContext) -> None:
 def save_obstacles(context: ActionContext) -> None:
     """Ask for a file and write the obstacles to it."""
     runs = context.runs
-    _save(context, "obstacles", "obstacles.toml", lambda path: write(runs.next_run.spec.world.obstacles, path))
+    _save(
+        context,
+        "obstacles",
+        "obstacles.toml",
+        lambda path: write(runs.next_run.spec.world.obstacles, path),
+    )
 
 
 def _save(context: ActionContext, what: str, name: str, write: Callable[[Path], None]) -> None:
@@ -176,7 +185,12 @@ def save_world(context: ActionContext) -> None:
     def save(path: Path) -> None:
         program = context.runs.program
         plan = context.runs.next_run
-        write(plan.spec, path, program.path if program and program.path else None, plan.settings["arguments"])
+        write(
+            plan.spec,
+            path,
+            program.path if program and program.path else None,
+            plan.settings["arguments"],
+        )
         context.loader.saved_world(path)
 
     context.app.push_screen(SaveDialog("world", str(context.loader.world_file or "lab.toml"), save))
@@ -239,7 +253,9 @@ def _ask_for_new(context: ActionContext) -> None:
 
     plan = context.runs.next_run
     known = mats(plan.settings["mats"])
-    current = next((name for name, mat in known.items() if spec_name(mat) == plan.spec.world.background), "")
+    current = next(
+        (name for name, mat in known.items() if spec_name(mat) == plan.spec.world.background), ""
+    )
     # A mat that is laid out from a file of its own can be kept, too.
     own = {} if current else {plan.spec.world.background: Path(plan.spec.world.background).name}
     laid = current or plan.spec.world.background
@@ -265,8 +281,13 @@ def compare(context: ActionContext) -> None:
 
     def chosen(run_id: str | None) -> None:
         if run_id:
-            work, show = partial(_diff, recording.run_id, run_id), partial(_show, context, recording)
-            background.run(context.panels, work, show, context.app.complain, group="diff", exclusive=True)
+            work, show = (
+                partial(_diff, recording.run_id, run_id),
+                partial(_show, context, recording),
+            )
+            background.run(
+                context.panels, work, show, context.app.complain, group="diff", exclusive=True
+            )
 
     context.app.push_screen(RunChooser(recording), chosen)
 
@@ -280,7 +301,9 @@ def _diff(run_id: str, other_id: str) -> tuple[Recording, RunDiff]:
     return Recording(other), diff_runs(store.load_run(run_id), other)
 
 
-def _show(context: ActionContext, recording: Recording, compared: tuple[Recording, RunDiff]) -> None:
+def _show(
+    context: ActionContext, recording: Recording, compared: tuple[Recording, RunDiff]
+) -> None:
     from tuisim.app.dialogs.runs import Differences
 
     other, diff = compared
@@ -306,7 +329,9 @@ def _analyse(context: ActionContext, **source: Any) -> None:
 
     controller = context.lesson
     request = LogRequest(**source)
-    context.app.push_screen(Analyser(request, controller.beside_log()), lambda _: controller.log_closed())
+    context.app.push_screen(
+        Analyser(request, controller.beside_log()), lambda _: controller.log_closed()
+    )
 
 
 def choose_run(context: ActionContext) -> None:
@@ -340,4 +365,7 @@ def own_editor(environment: Mapping[str, str] = os.environ) -> list[str]:
                 return command
         except ValueError as error:
             raise TuisimError(f"{variable}={named}: {error}") from None
-    raise TuisimError("No editor is chosen: VISUAL and EDITOR are not set", "export EDITOR=nano before tuisim starts")
+    raise TuisimError(
+        "No editor is chosen: VISUAL and EDITOR are not set",
+        "export EDITOR=nano before tuisim starts",
+    )

@@ -84,26 +84,45 @@ def _can_nudge(now: Situation) -> str:
 
 def _nudge(key: str, words: str, forward: tuple[float, float]) -> LabAction:
     do = partial(robot.nudge, right_mm=forward[0], up_mm=forward[1], turn_deg=0.0)
-    return Action(f"nudge-{key.replace('+', '-')}", key, f"Move the robot {words}", ROBOT, do, _can_nudge)
+    return Action(
+        f"nudge-{key.replace('+', '-')}", key, f"Move the robot {words}", ROBOT, do, _can_nudge
+    )
 
 
 def _turn(letter: str, arrow: str, words: str, turn_deg: float) -> LabAction:
     # Some terminals send ctrl and an arrow as the arrow alone.
     do = partial(robot.nudge, right_mm=0.0, up_mm=0.0, turn_deg=turn_deg)
-    return Action(f"nudge-ctrl-{arrow}", f"{letter},ctrl+{arrow}", f"Turn the robot {words}", ROBOT, do, _can_nudge)
+    return Action(
+        f"nudge-ctrl-{arrow}",
+        f"{letter},ctrl+{arrow}",
+        f"Turn the robot {words}",
+        ROBOT,
+        do,
+        _can_nudge,
+    )
 
 
 def _nudges() -> list[LabAction]:
     ways = {"left": (-1.0, 0.0), "right": (1.0, 0.0), "up": (0.0, 1.0), "down": (0.0, -1.0)}
     coarse = [_nudge(key, f"10 mm {key}", (10 * x, 10 * y)) for key, (x, y) in ways.items()]
     fine = [_nudge(f"shift+{key}", f"1 mm {key}", (x, y)) for key, (x, y) in ways.items()]
-    turns = [_turn("a", "left", "5° counter-clockwise", 5.0), _turn("f", "right", "5° clockwise", -5.0)]
+    turns = [
+        _turn("a", "left", "5° counter-clockwise", 5.0),
+        _turn("f", "right", "5° clockwise", -5.0),
+    ]
     return coarse + fine + turns
 
 
 def _toggles() -> list[LabAction]:
     return [
-        Action(f"panel-{p.id}", p.key, f"Show or hide {p.title}", PANEL, partial(app.toggle, panel=p.id), footer=p.id)
+        Action(
+            f"panel-{p.id}",
+            p.key,
+            f"Show or hide {p.title}",
+            PANEL,
+            partial(app.toggle, panel=p.id),
+            footer=p.id,
+        )
         for p in PANELS.values()
     ]
 
@@ -125,8 +144,12 @@ def _layouts() -> list[LabAction]:
             for preset, (key, title) in _PRESETS.items()
         ),
         Action("layout-next", "f9", _NEXT_LAYOUT, PANEL, app.next_preset, footer="layout"),
-        Action("layout-keep", "shift+f9", "Keep the layout for the next start", PANEL, app.keep_layout),
-        Action("panel-next", "f2", "Next panel", PANEL, partial(app.next_panel, by=1), footer="panel"),
+        Action(
+            "layout-keep", "shift+f9", "Keep the layout for the next start", PANEL, app.keep_layout
+        ),
+        Action(
+            "panel-next", "f2", "Next panel", PANEL, partial(app.next_panel, by=1), footer="panel"
+        ),
         Action("panel-before", "shift+f2", "Previous panel", PANEL, partial(app.next_panel, by=-1)),
     ]
 
@@ -147,14 +170,55 @@ def _debugs() -> list[LabAction]:
     over, into, out = LineStep.OVER, LineStep.INTO, LineStep.OUT
     line_back = "N", "Step back one line", DEBUG
     return [
-        Action("next-line", "n", "Step over: next line", DEBUG, lambda lab: lab.debugger.step(over), can, "next"),
-        Action("step-into", "s", "Step into a function call", DEBUG, lambda lab: lab.debugger.step(into), can, "into"),
-        Action("step-out", "u", "Step out of this function", DEBUG, lambda lab: lab.debugger.step(out), can, "out"),
-        Action("line-back", *line_back, lambda lab: lab.debugger.lines_back(1), _can_look_back, "line back"),
+        Action(
+            "next-line",
+            "n",
+            "Step over: next line",
+            DEBUG,
+            lambda lab: lab.debugger.step(over),
+            can,
+            "next",
+        ),
+        Action(
+            "step-into",
+            "s",
+            "Step into a function call",
+            DEBUG,
+            lambda lab: lab.debugger.step(into),
+            can,
+            "into",
+        ),
+        Action(
+            "step-out",
+            "u",
+            "Step out of this function",
+            DEBUG,
+            lambda lab: lab.debugger.step(out),
+            can,
+            "out",
+        ),
+        Action(
+            "line-back",
+            *line_back,
+            lambda lab: lab.debugger.lines_back(1),
+            _can_look_back,
+            "line back",
+        ),
         Action("break", "t", _BREAK, DEBUG, program.toggle_break, can, "break"),
-        Action("breaks", "T", "Breakpoints: add, edit, disable, delete", DEBUG, program.list_breaks, can),
-        Action("watches", "w", "Watches: expressions to evaluate", DEBUG, program.list_watches, can),
-        Action("to-cursor", "L", "Run to the cursor's line", DEBUG, program.to_cursor, can, "to cursor"),
+        Action(
+            "breaks",
+            "T",
+            "Breakpoints: add, edit, disable, delete",
+            DEBUG,
+            program.list_breaks,
+            can,
+        ),
+        Action(
+            "watches", "w", "Watches: expressions to evaluate", DEBUG, program.list_watches, can
+        ),
+        Action(
+            "to-cursor", "L", "Run to the cursor's line", DEBUG, program.to_cursor, can, "to cursor"
+        ),
     ]
 
 
@@ -166,25 +230,76 @@ def _travels() -> list[LabAction]:
     keys = "< >"
     go = time_travel
     second_back, second_on = (partial(go.by_seconds, by=by) for by in (-1, 1))
-    sample_before, next_sample = (partial(go.to_sample, words=words) for words in ("sample back", "sample"))
+    sample_before, next_sample = (
+        partial(go.to_sample, words=words) for words in ("sample back", "sample")
+    )
     return [
-        Action("ten-ticks", "colon", "Ten ticks forward, while paused", TIME, go.ten_ticks, _can_step),
-        Action("now", "end", "Return to the present (also escape)", TIME, go.to_now, _can_come_back, "now"),
-        Action("second-back", "less_than_sign", "One second back", TIME, second_back, back, "1 s", "", keys),
+        Action(
+            "ten-ticks", "colon", "Ten ticks forward, while paused", TIME, go.ten_ticks, _can_step
+        ),
+        Action(
+            "now",
+            "end",
+            "Return to the present (also escape)",
+            TIME,
+            go.to_now,
+            _can_come_back,
+            "now",
+        ),
+        Action(
+            "second-back",
+            "less_than_sign",
+            "One second back",
+            TIME,
+            second_back,
+            back,
+            "1 s",
+            "",
+            keys,
+        ),
         Action("second-on", "greater_than_sign", "One second forward", TIME, second_on, on),
         Action("sample-before", "left_parenthesis", "Previous sample", TIME, sample_before, back),
         Action("next-sample", "right_parenthesis", "Next sample", TIME, next_sample, on),
-        Action("go-to", "g", "Go to a time, tick, line, sample or print", TIME, go.ask_where, back, "go to"),
-        Action("branch", "y", "Branch from this instant", TIME, go.propose_branch, _can_branch, "branch"),
         Action(
-            "parting", "exclamation_mark", "Where this run left the earlier one", TIME, go.to_parting, back, "parting"
+            "go-to",
+            "g",
+            "Go to a time, tick, line, sample or print",
+            TIME,
+            go.ask_where,
+            back,
+            "go to",
+        ),
+        Action(
+            "branch",
+            "y",
+            "Branch from this instant",
+            TIME,
+            go.propose_branch,
+            _can_branch,
+            "branch",
+        ),
+        Action(
+            "parting",
+            "exclamation_mark",
+            "Where this run left the earlier one",
+            TIME,
+            go.to_parting,
+            back,
+            "parting",
         ),
         Action("start-of-run", "home", "Start of the run", TIME, partial(go.to_tick, tick=0), back),
     ]
 
 
 def _scroll(name: str, key: str, where: str, by: int) -> LabAction:
-    return Action(name, key, f"Text of the lesson, {where}", LESSON, partial(lesson.scroll, by=by), comes_first=True)
+    return Action(
+        name,
+        key,
+        f"Text of the lesson, {where}",
+        LESSON,
+        partial(lesson.scroll, by=by),
+        comes_first=True,
+    )
 
 
 _SCREENSHOT = "Save a screenshot: SVG and PNG (also F12)"
@@ -259,45 +374,180 @@ ACTIONS: Mapping[str, LabAction] = {
     action.id: replace(action, words=_WORDS.get(action.id, ""))
     for action in (
         Action("run", "R", "Run the program", PROGRAM, program.run, _can_run, "run"),
-        Action("stop", "S", "Stop the program", PROGRAM, lambda lab: lab.runs.stop(), _can_stop, "stop"),
-        Action("pause", "space", "Pause or resume; play back the past", PROGRAM, program.pause, _can_pause, "pause"),
-        Action("tick", "full_stop", "One tick forward, while paused", TIME, time_travel.tick_on, _can_step, "tick"),
+        Action(
+            "stop", "S", "Stop the program", PROGRAM, lambda lab: lab.runs.stop(), _can_stop, "stop"
+        ),
+        Action(
+            "pause",
+            "space",
+            "Pause or resume; play back the past",
+            PROGRAM,
+            program.pause,
+            _can_pause,
+            "pause",
+        ),
+        Action(
+            "tick",
+            "full_stop",
+            "One tick forward, while paused",
+            TIME,
+            time_travel.tick_on,
+            _can_step,
+            "tick",
+        ),
         Action("back", "comma", "One tick back", TIME, _TICK_BACK, _can_look_back, "back"),
         *_debugs(),
         *_travels(),
-        Action("open", "o", "Open a program, a world or goals", FILES, files.open_program, _can_change_world, "open"),
-        Action("begin", "f4", "Begin: a new program, or go on with one", FILES, files.welcome, _can_change_world),
+        Action(
+            "open",
+            "o",
+            "Open a program, a world or goals",
+            FILES,
+            files.open_program,
+            _can_change_world,
+            "open",
+        ),
+        Action(
+            "begin",
+            "f4",
+            "Begin: a new program, or go on with one",
+            FILES,
+            files.welcome,
+            _can_change_world,
+        ),
         Action("edit", "d", "Edit the program", FILES, files.edit, footer="edit"),
-        Action("save-program", "f3", "Save the program (in the code also ctrl+s)", FILES, files.save_program),
-        Action("own-editor", "ctrl+e", "Edit the program in $EDITOR", FILES, files.edit_in_own_editor),
-        Action("new", "ctrl+t", "New program: mat, sensor, text", FILES, files.new_program, _can_change_world, "new"),
+        Action(
+            "save-program",
+            "f3",
+            "Save the program (in the code also ctrl+s)",
+            FILES,
+            files.save_program,
+        ),
+        Action(
+            "own-editor", "ctrl+e", "Edit the program in $EDITOR", FILES, files.edit_in_own_editor
+        ),
+        Action(
+            "new",
+            "ctrl+t",
+            "New program: mat, sensor, text",
+            FILES,
+            files.new_program,
+            _can_change_world,
+            "new",
+        ),
         Action("mats", "b", "Choose a mat", ROBOT, robot.choose_mat, _can_change_world, "mats"),
         Action("home", "m", "Move the robot to its start pose", ROBOT, robot.home, footer="start"),
         Action("random", "j", "Move the robot to a random pose", ROBOT, robot.random_place),
         Action("poses", "P", "Saved poses: go to, save, delete", ROBOT, robot.saved_poses),
-        Action("robot", "r", "Choose a robot", ROBOT, partial(robot.choose, what="robot"), _can_change_world, "robot"),
-        Action("reset-robot", "ctrl+n", "Undo changes to the robot", ROBOT, robot.reset_robot, _can_change_world),
-        Action("obstacles", "k", "Choose obstacles", ROBOT, partial(robot.choose, what="obstacles"), _can_change_world),
-        Action("profile", "F", "Choose a profile", ROBOT, partial(robot.choose, what="profile"), _can_change_world),
+        Action(
+            "robot",
+            "r",
+            "Choose a robot",
+            ROBOT,
+            partial(robot.choose, what="robot"),
+            _can_change_world,
+            "robot",
+        ),
+        Action(
+            "reset-robot",
+            "ctrl+n",
+            "Undo changes to the robot",
+            ROBOT,
+            robot.reset_robot,
+            _can_change_world,
+        ),
+        Action(
+            "obstacles",
+            "k",
+            "Choose obstacles",
+            ROBOT,
+            partial(robot.choose, what="obstacles"),
+            _can_change_world,
+        ),
+        Action(
+            "profile",
+            "F",
+            "Choose a profile",
+            ROBOT,
+            partial(robot.choose, what="profile"),
+            _can_change_world,
+        ),
         Action("pen", "p", "Pen up or down", ROBOT, robot.pen, footer="pen"),
-        Action("slower", "left_square_bracket", "Slower", PROGRAM, _SLOWER, footer="speed", footer_key="[ ]"),
+        Action(
+            "slower",
+            "left_square_bracket",
+            "Slower",
+            PROGRAM,
+            _SLOWER,
+            footer="speed",
+            footer_key="[ ]",
+        ),
         Action("faster", "right_square_bracket", "Faster", PROGRAM, _FASTER),
-        Action("compare", "equals_sign", "Compare this run with another", FILES, files.compare, _can_look_back),
-        Action("runs", "h", "Open a stored run", FILES, files.choose_run, _can_change_world, "runs"),
-        Action("analyse", "l", "Analyse the log: table, chart, bands, notes", FILES, analyse, _can_export, "analyse"),
-        Action("export", "e", "Export the log to a file", FILES, files.export, _can_export, "export"),
-        Action("save-world", "ctrl+s", "Save the world to a file", FILES, files.save_world, footer="save"),
+        Action(
+            "compare",
+            "equals_sign",
+            "Compare this run with another",
+            FILES,
+            files.compare,
+            _can_look_back,
+        ),
+        Action(
+            "runs", "h", "Open a stored run", FILES, files.choose_run, _can_change_world, "runs"
+        ),
+        Action(
+            "analyse",
+            "l",
+            "Analyse the log: table, chart, bands, notes",
+            FILES,
+            analyse,
+            _can_export,
+            "analyse",
+        ),
+        Action(
+            "export", "e", "Export the log to a file", FILES, files.export, _can_export, "export"
+        ),
+        Action(
+            "save-world",
+            "ctrl+s",
+            "Save the world to a file",
+            FILES,
+            files.save_world,
+            footer="save",
+        ),
         Action("save-robot", "ctrl+r", "Save the robot to a file", FILES, files.save_robot),
-        Action("save-obstacles", "ctrl+o", "Save the obstacles to a file", FILES, files.save_obstacles),
+        Action(
+            "save-obstacles", "ctrl+o", "Save the obstacles to a file", FILES, files.save_obstacles
+        ),
         Action("zoom", "v", "Zoom the world", ROBOT, robot.zoom, footer="zoom"),
         Action("earlier", "minus", "Show or hide the earlier run's robot", ROBOT, robot.earlier),
         Action("rays", "U", "Show or hide the ultrasonic rays", ROBOT, robot.rays, footer="rays"),
-        Action("pixels", "number_sign", "Characters or pixels", APP, app.switch_pixels, _can_draw_pixels, "cells"),
+        Action(
+            "pixels",
+            "number_sign",
+            "Characters or pixels",
+            APP,
+            app.switch_pixels,
+            _can_draw_pixels,
+            "cells",
+        ),
         Action("clear", "C", "Clear the pen trace", ROBOT, robot.clear_trace, footer="clear"),
-        Action("clear-log", "x", "Clear output and chart; the run keeps its log", FILES, files.clear_log),
+        Action(
+            "clear-log",
+            "x",
+            "Clear output and chart; the run keeps its log",
+            FILES,
+            files.clear_log,
+        ),
         *_toggles(),
         *_layouts(),
-        Action("lesson-menu", "M", "Lessons: open, go back, skip, start over", LESSON, lesson.menu, _can_change_world),
+        Action(
+            "lesson-menu",
+            "M",
+            "Lessons: open, go back, skip, start over",
+            LESSON,
+            lesson.menu,
+            _can_change_world,
+        ),
         Action("answer", "Q", "Answer the question of the lesson", LESSON, lesson.answer),
         Action("hint", "Y", "Next hint of the lesson", LESSON, lambda lab: lab.lesson.hint()),
         _scroll("lesson-up", "pageup", "or the code: up", -8),
@@ -306,9 +556,17 @@ ACTIONS: Mapping[str, LabAction] = {
         _scroll("lesson-on", "ctrl+down", "also while you type: down", 4),
         Action("enlarge", "plus", "Enlarge the focused panel, or restore it", PANEL, app.enlarge),
         *_nudges(),
-        Action("help", "question_mark", "Guide: keys, pages, search", APP, app.show_help, footer="help"),
         Action(
-            "palette", "ctrl+p", "Commands: all of them, by name", APP, app.open_palette, footer="all", footer_key="^p"
+            "help", "question_mark", "Guide: keys, pages, search", APP, app.show_help, footer="help"
+        ),
+        Action(
+            "palette",
+            "ctrl+p",
+            "Commands: all of them, by name",
+            APP,
+            app.open_palette,
+            footer="all",
+            footer_key="^p",
         ),
         Action("cells", "V", "Glyphs of the world: choose by eye", APP, app.choose_cells),
         Action("theme", "f10", "Theme: light, high contrast and others", APP, app.choose_theme),
@@ -321,7 +579,10 @@ ACTIONS: Mapping[str, LabAction] = {
 }
 """The actions by id."""
 RUN_KEYS = frozenset(
-    key for action in ACTIONS.values() if action.group in (PROGRAM, DEBUG, TIME) for key in action.key.split(",")
+    key
+    for action in ACTIONS.values()
+    if action.group in (PROGRAM, DEBUG, TIME)
+    for key in action.key.split(",")
 )
 """Keys that start a run, or need one."""
 
@@ -360,7 +621,10 @@ def footer_actions(
         word = "go on"
     # A paused program needs the room for its steps.
     steps = [name for name in names if name != "run" or now.state != RunPhase.PAUSED or now.in_past]
-    return [replace(table[name], footer=word) if word and name == "pause" else table[name] for name in steps]
+    return [
+        replace(table[name], footer=word) if word and name == "pause" else table[name]
+        for name in steps
+    ]
 
 
 @lru_cache(maxsize=16)

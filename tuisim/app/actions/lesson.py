@@ -29,7 +29,9 @@ def answer(context: ActionContext) -> None:
             if lesson.lesson
             else "No lesson is open: {lesson-menu} opens one"
         )
-        context.app.say("This step has no question: the lesson panel says what it waits for" if step else words)
+        context.app.say(
+            "This step has no question: the lesson panel says what it waits for" if step else words
+        )
         return
     forms = [(f"{number}", choice) for number, choice in enumerate(step.check.choices, start=1)]
     place = "The number of your choice" if forms else "Your answer"
@@ -58,7 +60,12 @@ def takes_pages(area: PanelArea) -> bool:
 
 def reads_on(area: PanelArea) -> bool:
     """Return whether the lesson is in sight, with more of its text above or below."""
-    return area.screen.is_current and area.lesson is not None and area.shown("lesson") and area.lesson.reads_on
+    return (
+        area.screen.is_current
+        and area.lesson is not None
+        and area.shown("lesson")
+        and area.lesson.reads_on
+    )
 
 
 def menu(context: ActionContext) -> None:
@@ -79,7 +86,11 @@ def menu(context: ActionContext) -> None:
         here.append((_OVER, "Start over", f"All steps again: {lesson.lesson.title}"))
     progress = load_progress()
     lessons = [
-        (f"{_OPEN}{one.name}", f"{number:2} {one.title}", progress.get(one.name, LessonProgress()).words(one))
+        (
+            f"{_OPEN}{one.name}",
+            f"{number:2} {one.title}",
+            progress.get(one.name, LessonProgress()).words(one),
+        )
         for number, one in enumerate(lesson.lessons(), start=1)
     ]
     current = f"{_OPEN}{_wanted(context)}"

@@ -47,10 +47,16 @@ def pause(context: ActionContext) -> None:
 def change_speed(context: ActionContext, by: int) -> None:
     """Go to a higher or lower speed, by a number of steps."""
     speed = context.runs.speed
-    at = SPEEDS.index(speed) if speed in SPEEDS else min(range(6), key=lambda i: abs(SPEEDS[i] - speed))
+    at = (
+        SPEEDS.index(speed)
+        if speed in SPEEDS
+        else min(range(6), key=lambda i: abs(SPEEDS[i] - speed))
+    )
     to = at + by
     if not 0 <= to < len(SPEEDS):
-        context.app.say(f"The speed is already {speed_label(speed)}, the {'slowest' if by < 0 else 'fastest'}")
+        context.app.say(
+            f"The speed is already {speed_label(speed)}, the {'slowest' if by < 0 else 'fastest'}"
+        )
         return
     context.runs.set_speed(SPEEDS[to])
     context.app.situation_changed()
@@ -96,7 +102,9 @@ def list_breaks(context: ActionContext) -> None:
     """Show the dialog of the breakpoints."""
     from tuisim.app.dialogs.entries import BreaksDialog
 
-    context.app.push_screen(BreaksDialog(context.debugger.breaks, context.runs.spec.robot, context.debugger.set_breaks))
+    context.app.push_screen(
+        BreaksDialog(context.debugger.breaks, context.runs.spec.robot, context.debugger.set_breaks)
+    )
 
 
 def list_watches(context: ActionContext) -> None:
@@ -104,5 +112,7 @@ def list_watches(context: ActionContext) -> None:
     from tuisim.app.dialogs.entries import WatchesDialog
 
     context.app.push_screen(
-        WatchesDialog(context.debugger.watches, context.runs.spec.robot, context.debugger.set_watches)
+        WatchesDialog(
+            context.debugger.watches, context.runs.spec.robot, context.debugger.set_watches
+        )
     )

@@ -22,7 +22,9 @@ def pen(context: ActionContext) -> None:
     runs.set_pen(not runs.pen_down)
     if not runs.in_past:
         kind = runs.spec.robot.pen
-        context.app.say(f"Pen down: {kind.color}, {kind.width_mm:g} mm" if runs.pen_down else "Pen up")
+        context.app.say(
+            f"Pen down: {kind.color}, {kind.width_mm:g} mm" if runs.pen_down else "Pen up"
+        )
 
 
 def home(context: ActionContext) -> None:
@@ -51,7 +53,9 @@ def random_place(context: ActionContext) -> None:
     if pose := random_pose(context.runs.spec, Random()):
         context.runs.place(pose)
     else:
-        context.app.say("No free position found: there are too many obstacles, or the robot is too large")
+        context.app.say(
+            "No free position found: there are too many obstacles, or the robot is too large"
+        )
 
 
 def saved_poses(context: ActionContext) -> None:
@@ -98,7 +102,9 @@ def _propose_to_write(context: ActionContext, mat: str) -> None:
 
     text = f"{document.name} begins with {f'the mat {named}' if named else 'a magic line without a mat'}."
     answers = (("w", f"Write {mat} there"),)
-    context.app.push_screen(Question("The program's mat", text, answers, "keeps the program as it is"), answered)
+    context.app.push_screen(
+        Question("The program's mat", text, answers, "keeps the program as it is"), answered
+    )
 
 
 def choose(context: ActionContext, what: str) -> None:
@@ -149,7 +155,11 @@ def earlier(context: ActionContext) -> None:
     runs = context.runs
     runs.shows_earlier = not runs.shows_earlier
     if runs.earlier is None:
-        when = "From the next run on, the run before is" if runs.shows_earlier else "Earlier runs are not"
+        when = (
+            "From the next run on, the run before is"
+            if runs.shows_earlier
+            else "Earlier runs are not"
+        )
         context.app.say(f"{when} drawn beside a run")
     context.app.draw(force=True)
 

@@ -43,7 +43,9 @@ def _is_laid_out(context: ActionContext, recording: Recording) -> bool:
     mat = context.runs.mat
     if mat is not None and mat.key[:2] == mat_key(recording.spec)[:2]:
         return True
-    context.app.say(f"The mat has changed since this run: {{runs}} opens {recording.name} with its mat")
+    context.app.say(
+        f"The mat has changed since this run: {{runs}} opens {recording.name} with its mat"
+    )
     return False
 
 
@@ -57,7 +59,12 @@ def to_time(context: ActionContext, time_s: float | None, sample: str = "") -> N
     """Go to a time of the run, None for now; and to the line that printed the sample of that name then."""
     tick = None if time_s is None else round(time_s * context.runs.timeline.tick_hz)
     recording = context.runs.timeline.recording
-    if sample and tick is not None and recording is not None and (line := recording.rows.line_of(sample, tick)):
+    if (
+        sample
+        and tick is not None
+        and recording is not None
+        and (line := recording.rows.line_of(sample, tick))
+    ):
         context.runs.printed_line = tick, line
         if not context.panels.shown("code"):
             context.app.say(f"Line {line} has printed this: {{panel-code}} shows it")
@@ -136,11 +143,15 @@ def ask_where(context: ActionContext) -> None:
         if text != proposed:
             timeline.searched = text
 
-    goes_on = context.runs.state in (RunPhase.STARTING, RunPhase.RUNNING) and not context.runs.in_past
+    goes_on = (
+        context.runs.state in (RunPhase.STARTING, RunPhase.RUNNING) and not context.runs.in_past
+    )
     title = "Go to · pauses the program" if goes_on else f"Go to · now at {timeline.time_s:.2f} s"
     words = column_names(context.runs.spec.robot)
     proposed = proposal(timeline, field)
-    context.app.push_screen(LinePrompt(title, go, proposed, forms=forms(timeline), words=words, sees_below=True))
+    context.app.push_screen(
+        LinePrompt(title, go, proposed, forms=forms(timeline), words=words, sees_below=True)
+    )
 
 
 def to_sample(context: ActionContext, words: str) -> None:
@@ -184,7 +195,9 @@ def to_parting(context: ActionContext) -> None:
     background.run(context.panels, compared, go, context.app.complain, group="diff", exclusive=True)
 
 
-def propose_branch(context: ActionContext, then: protocol.Message | None = None, restart: bool = False) -> None:
+def propose_branch(
+    context: ActionContext, then: protocol.Message | None = None, restart: bool = False
+) -> None:
     """Ask whether to branch from the instant in view.
 
     Args:

@@ -101,10 +101,14 @@ class LogChart(LinesPanel):
         self._text.draw(partial(self._paint, model))
         self._read(self._pointed_s)
 
-    def _paint(self, model: Model, is_blank: bool) -> tuple[list[list[Run]], list[tuple[int, ChartPicture]]]:
+    def _paint(
+        self, model: Model, is_blank: bool
+    ) -> tuple[list[list[Run]], list[tuple[int, ChartPicture]]]:
         width, height = self._text.size
         for trace in model.traces.ticked():
-            trace.prepare(model.x_limits(), width * (MOST_POINTS if is_blank else 1), self.options.hold)
+            trace.prepare(
+                model.x_limits(), width * (MOST_POINTS if is_blank else 1), self.options.hold
+            )
         unit = "mm" if model.alignment == DISTANCE else "s"
         measured = _measured(model, unit, width)
         marked = 1 if model.events.thresholds and model.log.rows else 0
@@ -113,10 +117,17 @@ class LogChart(LinesPanel):
         facets = ticked if self.options.facets and len(ticked) > 1 and height >= FACETS_ROWS else []
         facets = _around_selected(facets, model.selected, height // _LEAST_FACET_ROWS)
         state = ChartState(
-            model.selected, model.cursor_s if model.log.rows else None, model.x_limits(), bool(self.app.no_color),
-            shows_ascii(self.app), model.mark_s, unit, self.options.marks, grid=True,
+            model.selected,
+            model.cursor_s if model.log.rows else None,
+            model.x_limits(),
+            bool(self.app.no_color),
+            shows_ascii(self.app),
+            model.mark_s,
+            unit,
+            self.options.marks,
+            grid=True,
             zoomed=model.limits is not None,
-        )  # fmt: skip
+        )
         spans = {
             report.variable: spans_of_bands(report.bands)
             for report in model.reports()
@@ -130,7 +141,9 @@ class LogChart(LinesPanel):
         for at, part in enumerate(parts):
             rows = height // len(parts) + (at < height % len(parts))
             painter = self._painters.setdefault(facets[at].name if facets else "", ChartPainter())
-            shown = replace(state, spans=spans.get(facets[at].name if facets else model.selected, ()))
+            shown = replace(
+                state, spans=spans.get(facets[at].name if facets else model.selected, ())
+            )
             picture = painter.paint(part, shown, width, rows, is_blank=is_blank)
             self._pictures.append((len(lines), picture))
             lines += [*picture.lines, *[[] for _ in range(rows - len(picture.lines))]]
@@ -141,12 +154,20 @@ class LogChart(LinesPanel):
         _, picture = self._pictures[-1]
         if not picture.columns:
             return [[]]
-        return [[(" " * picture.left + event_marks(model, picture.x_limits, picture.columns), _EVENTS)]]
+        return [
+            [(" " * picture.left + event_marks(model, picture.x_limits, picture.columns), _EVENTS)]
+        ]
 
-    def _against(self, model: Model, names: tuple[str, str], width: int, height: int) -> list[list[Run]]:
+    def _against(
+        self, model: Model, names: tuple[str, str], width: int, height: int
+    ) -> list[list[Run]]:
         trace = model.trace
         xs, ys = (model.along(name) for name in names)
-        marker = trace.mark if (self.app.no_color and shows_ascii(self.app)) or self.options.marks else BRAILLE
+        marker = (
+            trace.mark
+            if (self.app.no_color and shows_ascii(self.app)) or self.options.marks
+            else BRAILLE
+        )
         return xy_lines(xs, ys, model.sample, names, trace.rgb, marker, width, height)
 
     def columns(self) -> int:
@@ -184,7 +205,11 @@ class LogChart(LinesPanel):
     def _read(self, time_s: float | None) -> None:
         """Show the values below the pointer, or without it those at the cursor."""
         self._pointed_s, model = time_s, self._model
-        drawn = model.traces.drawn() if model is not None and model.log.rows and not self.options.against else []
+        drawn = (
+            model.traces.drawn()
+            if model is not None and model.log.rows and not self.options.against
+            else []
+        )
         said = ""
         if model is not None and drawn:
             unit = "mm" if model.alignment == DISTANCE else "s"
@@ -221,8 +246,13 @@ def _measured(model: Model, unit: str, width: int) -> list[list[Run]]:
             slope = (after - before) / (model.cursor_s - model.mark_s)
             line += [("  slope ", plain), (f"{slope:.4g}/{unit}", strong)]
     figures = trace.pyramid.figures(start_s, stop_s)
-    for word, value in (("n", figures.count), ("mean", figures.mean), ("std", figures.std), ("min", figures.min),
-                        ("max", figures.max)):  # fmt: skip
+    for word, value in (
+        ("n", figures.count),
+        ("mean", figures.mean),
+        ("std", figures.std),
+        ("min", figures.min),
+        ("max", figures.max),
+    ):
         text = f"{value:.5g}"
         if sum(len(part) for part, _ in line) + len(word) + len(text) + 3 > width:
             break

@@ -53,7 +53,9 @@ class ColumnsDialog(Dialog["LogRequest"]):
         super().__init__()
         self._log = log
         self._names = candidates(log.table)
-        unit = next((unit for unit, seconds in SECONDS.items() if seconds == log.layout.unit_s), "s")
+        unit = next(
+            (unit for unit, seconds in SECONDS.items() if seconds == log.layout.unit_s), "s"
+        )
         self._chosen = replace(request, time=log.layout.time, values=log.layout.values, unit=unit)
 
     def content(self) -> ComposeResult:
@@ -85,12 +87,19 @@ class ColumnsDialog(Dialog["LogRequest"]):
 
     def _role(self, name: str) -> str:
         if name == self._chosen.time:
-            return f"time, {self._chosen.unit}" if is_numeric(self._log.table.schema.field(name).type) else "time"
+            return (
+                f"time, {self._chosen.unit}"
+                if is_numeric(self._log.table.schema.field(name).type)
+                else "time"
+            )
         return "[x]" if name in self._chosen.values else "[ ]"
 
     def _beginning(self, name: str) -> str:
         first = self._log.table.column(name).slice(0, _SHOWN_VALUES).to_pylist()
-        texts = (f"{value:.6g}" if isinstance(value, float) else "" if value is None else str(value) for value in first)
+        texts = (
+            f"{value:.6g}" if isinstance(value, float) else "" if value is None else str(value)
+            for value in first
+        )
         return ", ".join(text[:_VALUE_CELLS] for text in texts) + " …"
 
     @property
@@ -107,24 +116,36 @@ class ColumnsDialog(Dialog["LogRequest"]):
         if name == chosen.time:
             self._choose(replace(chosen, time=ROW))
         else:
-            self._choose(replace(chosen, time=name, values=tuple(value for value in chosen.values if value != name)))
+            self._choose(
+                replace(
+                    chosen,
+                    time=name,
+                    values=tuple(value for value in chosen.values if value != name),
+                )
+            )
 
     def action_value(self) -> None:
         name, chosen = self._names[self._at], self._chosen
         values = {*chosen.values} ^ {name}
         time = ROW if name == chosen.time else chosen.time
-        self._choose(replace(chosen, time=time, values=tuple(n for n in self._names if n in values)))
+        self._choose(
+            replace(chosen, time=time, values=tuple(n for n in self._names if n in values))
+        )
 
     def action_unit(self) -> None:
         units = list(SECONDS)
-        self._choose(replace(self._chosen, unit=units[(units.index(self._chosen.unit) + 1) % len(units)]))
+        self._choose(
+            replace(self._chosen, unit=units[(units.index(self._chosen.unit) + 1) % len(units)])
+        )
 
     @on(OptionList.OptionSelected)
     def _apply(self) -> None:
         try:
             if not self._chosen.values:
                 raise TuisimError("Nothing to draw: space selects a column")
-            choose_columns(self._log.table, self._chosen.time, self._chosen.values, self._chosen.unit)
+            choose_columns(
+                self._log.table, self._chosen.time, self._chosen.values, self._chosen.unit
+            )
         except TuisimError as error:
             self.say(str(error), wrong=True)
         else:

@@ -92,22 +92,38 @@ class _LazyRows(Sequence[Cells], Generic[Item]):
     @overload
     def __getitem__(self, at: slice) -> Sequence[Cells]: ...
     def __getitem__(self, at: int | slice) -> Cells | Sequence[Cells]:
-        return _LazyRows(self._items[at], self._row) if isinstance(at, slice) else self._row(self._items[at])
+        return (
+            _LazyRows(self._items[at], self._row)
+            if isinstance(at, slice)
+            else self._row(self._items[at])
+        )
 
 
 def _band(band: Band) -> Cells:
     return (
-        band.variable, str(band.number), f"{band.true_level:.2f}", band.grey or "–", f"{band.start_s:.2f}",
-        f"{band.stop_s:.2f}", str(band.samples), _figure(band.width_mm, ".0f"), f"{band.spread:.2f}",
-    )  # fmt: skip
+        band.variable,
+        str(band.number),
+        f"{band.true_level:.2f}",
+        band.grey or "–",
+        f"{band.start_s:.2f}",
+        f"{band.stop_s:.2f}",
+        str(band.samples),
+        _figure(band.width_mm, ".0f"),
+        f"{band.spread:.2f}",
+    )
 
 
 def _event(event: Event) -> Cells:
     crossing = event.crossing
     return (
-        event.variable, "above" if crossing.rising else "below", f"{crossing.time_s:.3f}",
-        _figure(event.since_s, ".3f"), _figure(crossing.value), f"{event.row + 1:,}", event.threshold.level,
-    )  # fmt: skip
+        event.variable,
+        "above" if crossing.rising else "below",
+        f"{crossing.time_s:.3f}",
+        _figure(event.since_s, ".3f"),
+        _figure(crossing.value),
+        f"{event.row + 1:,}",
+        event.threshold.level,
+    )
 
 
 def _statistics(model: Model) -> list[Cells]:
@@ -119,7 +135,13 @@ def _statistics(model: Model) -> list[Cells]:
             rows.append((trace.name, "…", *[""] * (4 + len(QUANTILES))))
             continue
         found = model.summary(trace.name)
-        figures = (found.min, found.mean, found.max, found.std, *(found.quantiles or (nan,) * len(QUANTILES)))
+        figures = (
+            found.min,
+            found.mean,
+            found.max,
+            found.std,
+            *(found.quantiles or (nan,) * len(QUANTILES)),
+        )
         rows.append((trace.name, f"{found.count:,}", *map(_figure, figures)))
     return rows
 
@@ -128,7 +150,9 @@ def _between(model: Model) -> list[str]:
     span = model.measured()
     if span is None:
         return []
-    return [f"Between {span[0]:.3f} and {span[1]:.3f}, from A to the cursor; a removes A and uses all rows again"]
+    return [
+        f"Between {span[0]:.3f} and {span[1]:.3f}, from A to the cursor; a removes A and uses all rows again"
+    ]
 
 
 def _notes(model: Model) -> list[Cells]:
@@ -148,40 +172,62 @@ def _runs(model: Model) -> list[Cells]:
     return [
         (
             f"#{at}" if len(model.opened.runs) > 1 else "",
-            str(run.number or run.id), run.program.name, run.spec.world.background, end_label(run.state),
-            f"{max(0, run.telemetry.count - 1) / run.spec.profile.tick_hz:.2f}", run.spec.profile.name,
+            str(run.number or run.id),
+            run.program.name,
+            run.spec.world.background,
+            end_label(run.state),
+            f"{max(0, run.telemetry.count - 1) / run.spec.profile.tick_hz:.2f}",
+            run.spec.profile.name,
             str(run.spec.seed),
         )
         for at, run in enumerate(model.opened.runs, 1)
-    ]  # fmt: skip
+    ]
 
 
 PANES: Mapping[str, Pane] = {
     "table": Pane("Table", lambda _: (), ()),
     "bands": Pane(
-        "Bands", lambda model: _LazyRows(model.bands(), _band),
+        "Bands",
+        lambda model: _LazyRows(model.bands(), _band),
         ("variable", "#", "level", "name", "from s", "to s", "n", "mm", "std"),
-        Model.bands_in_words, "No bands: no variable shown stays at a level",
+        Model.bands_in_words,
+        "No bands: no variable shown stays at a level",
     ),
     "statistics": Pane(
-        "Statistics", _statistics,
-        ("variable", "count", "min", "mean", "max", "std", *(f"{100 * part:g} %" for part in QUANTILES)),
-        _between, empty="No variable is shown: v selects one, space shows it",
+        "Statistics",
+        _statistics,
+        (
+            "variable",
+            "count",
+            "min",
+            "mean",
+            "max",
+            "std",
+            *(f"{100 * part:g} %" for part in QUANTILES),
+        ),
+        _between,
+        empty="No variable is shown: v selects one, space shows it",
     ),
     "events": Pane(
-        "Events", lambda model: _LazyRows(model.events.found(model.log), _event),
+        "Events",
+        lambda model: _LazyRows(model.events.found(model.log), _event),
         ("variable", "comes", "at s", "after s", "value", "row", "threshold"),
         empty="No events: c asks for a threshold, such as Colour < 50",
     ),
     "notes": Pane(
-        "Notes", _notes, ("from s", "to s", "variable", "run", "note"),
-        empty="No notes yet: m writes one about the sample at the cursor, or about a band", wraps=True,
+        "Notes",
+        _notes,
+        ("from s", "to s", "variable", "run", "note"),
+        empty="No notes yet: m writes one about the sample at the cursor, or about a band",
+        wraps=True,
     ),
     "runs": Pane(
-        "Runs", _runs, ("", "run", "program", "mat", "end", "s", "profile", "seed"),
+        "Runs",
+        _runs,
+        ("", "run", "program", "mat", "end", "s", "profile", "seed"),
         empty="This log is a file. R opens stored runs instead; several share one chart",
     ),
-}  # fmt: skip
+}
 """The panes by name."""
 
 
@@ -192,7 +238,9 @@ def pane_frame(name: str, model: Model) -> pd.DataFrame:
     if name == "bands":
         return pd.DataFrame([asdict(band) for band in model.bands()])
     pane = PANES[name]
-    frame = pd.DataFrame([list(row) for row in pane.rows(model)], columns=[head or "#" for head in pane.heads])
+    frame = pd.DataFrame(
+        [list(row) for row in pane.rows(model)], columns=[head or "#" for head in pane.heads]
+    )
     for head in frame.columns:
         # Thousands separators are for display only.
         numbers = pd.to_numeric(frame[head].str.replace(",", ""), errors="coerce")
@@ -227,7 +275,11 @@ def pane_lines(name: str, model: Model, chosen: int, width: int, height: int) ->
     used, gap = _columns_of(measured, widths, width)
     head = _row([pane.heads[at] for at in used], [widths[at] for at in used], gap, HEAD)
     over = [at for at in range(used[-1] + 1, len(widths)) if any(row[at] for row in measured)]
-    more = _continued(pane.heads, rows, over, widths, width, height - 1 - len(rows) - len(below)) if over else []
+    more = (
+        _continued(pane.heads, rows, over, widths, width, height - 1 - len(rows) - len(below))
+        if over
+        else []
+    )
     if over and not more:
         head = [(f"{cut(head[0][0], width - 2):{width - 1}}…", HEAD)]
     lines: list[Line] = [head]
@@ -236,7 +288,11 @@ def pane_lines(name: str, model: Model, chosen: int, width: int, height: int) ->
     for number, row in enumerate(rows[first : first + room], first):
         style = HERE if number == chosen else PLAIN
         texts, wide = [row[at] for at in used], [widths[at] for at in used]
-        made = _rows_of(texts, wide, gap, style, width) if pane.wraps else [_row(texts, wide, gap, style)]
+        made = (
+            _rows_of(texts, wide, gap, style, width)
+            if pane.wraps
+            else [_row(texts, wide, gap, style)]
+        )
         if number == chosen:
             chosen_at = range(len(shown), len(shown) + len(made))
             made = [[*line, (" " * width, HERE)] for line in made]
@@ -247,14 +303,22 @@ def pane_lines(name: str, model: Model, chosen: int, width: int, height: int) ->
 
 
 def _continued(
-    heads: Cells, rows: Sequence[Cells], columns: Sequence[int], widths: Sequence[int], width: int, height: int
+    heads: Cells,
+    rows: Sequence[Cells],
+    columns: Sequence[int],
+    widths: Sequence[int],
+    width: int,
+    height: int,
 ) -> list[Line]:
     """Return the columns that do not fit as a table below the others, with the first one; none without room for all."""
     shown = [0, *columns]
     wide = [widths[at] for at in shown]
     if height < 1 + len(rows) or sum(wide) + _GAP * (len(wide) - 1) > width:
         return []
-    return [_row([row[at] for at in shown], wide, _GAP, HEAD if row is heads else PLAIN) for row in (heads, *rows)]
+    return [
+        _row([row[at] for at in shown], wide, _GAP, HEAD if row is heads else PLAIN)
+        for row in (heads, *rows)
+    ]
 
 
 def _wanted_rows(name: str, model: Model, width: int) -> int:
@@ -262,7 +326,11 @@ def _wanted_rows(name: str, model: Model, width: int) -> int:
     if name == "table":
         return 1 + len(model.rows)
     rows, below = PANES[name].rows(model), PANES[name].below(model)
-    return 1 + len(rows) + len(_wrapped(below, width, _MOST_BELOW)) if not PANES[name].wraps else _MEASURED
+    return (
+        1 + len(rows) + len(_wrapped(below, width, _MOST_BELOW))
+        if not PANES[name].wraps
+        else _MEASURED
+    )
 
 
 def _below(pane: Pane, model: Model, width: int, height: int) -> tuple[list[str], int]:
@@ -299,13 +367,18 @@ def _columns_of(rows: Sequence[Cells], widths: Sequence[int], width: int) -> tup
     return _fitting_whole(filled, widths, width), _GAP
 
 
-def _rows_of(texts: Sequence[str], widths: Sequence[int], gap: int, style: Style, width: int) -> list[Line]:
+def _rows_of(
+    texts: Sequence[str], widths: Sequence[int], gap: int, style: Style, width: int
+) -> list[Line]:
     """Return a row as lines: one, or as many as the last text needs in that width."""
     margin = sum(widths[:-1]) + gap * (len(widths) - 1)
     if margin + len(texts[-1]) <= width:
         return [_row(texts, widths, gap, style)]
     first, *rest = wrap(texts[-1], max(width - margin, 10)) or [""]
-    return [_row([*texts[:-1], first], widths, gap, style), *([(" " * margin + text, style)] for text in rest)]
+    return [
+        _row([*texts[:-1], first], widths, gap, style),
+        *([(" " * margin + text, style)] for text in rest),
+    ]
 
 
 def _fitting_whole(columns: Sequence[int], widths: Sequence[int], width: int) -> list[int]:
@@ -355,7 +428,10 @@ def table_lines(model: Model, width: int, height: int) -> list[Line]:
     for column, wide in zip(columns, widths, strict=True):
         arrow = ("↓" if rows.view.descending else "↑") if column == rows.view.sorted_by else ""
         text = cut(column + arrow, wide).ljust(wide)
-        head += [(text, CHOSEN + Style(underline=True) if column == rows.chosen else HEAD), ("  ", HEAD)]
+        head += [
+            (text, CHOSEN + Style(underline=True) if column == rows.chosen else HEAD),
+            ("  ", HEAD),
+        ]
     lines = [head]
     for row in shown:
         style = HERE if row == model.row else PLAIN
@@ -363,7 +439,12 @@ def table_lines(model: Model, width: int, height: int) -> list[Line]:
         for column, wide in zip(columns, widths, strict=True):
             text = rows.text(row, column).replace("\n", "↵").replace("\t", " ")
             shown_text = cut(text, wide)
-            line.append(((shown_text.rjust(wide) if _is_number(text) else shown_text.ljust(wide)) + "  ", style))
+            line.append(
+                (
+                    (shown_text.rjust(wide) if _is_number(text) else shown_text.ljust(wide)) + "  ",
+                    style,
+                )
+            )
         if row == model.row:
             line.append((" " * width, HERE))
         lines.append(line)
@@ -438,7 +519,10 @@ class PaneView(LinesPanel):
         self._model = model
         self._compute(model, self.name_shown)
         # Brackets mark the current pane even without colours.
-        titles = (f"\\[{pane.title}]" if name == self.name_shown else pane.title for name, pane in PANES.items())
+        titles = (
+            f"\\[{pane.title}]" if name == self.name_shown else pane.title
+            for name, pane in PANES.items()
+        )
         self.border_title = " ".join(titles)
         is_table = self.name_shown == "table"
         self.border_subtitle = _summary(model) if is_table else ""
@@ -447,7 +531,9 @@ class PaneView(LinesPanel):
             if not is_table:
                 self.border_subtitle = place_in(self.name_shown, model, self.chosen, width, height)
             self._text.set_lines(pane_lines(self.name_shown, model, self.chosen, width, height))
-            self.styles.max_height = max(_wanted_rows(self.name_shown, model, width), _LEAST_ROWS) + 2
+            self.styles.max_height = (
+                max(_wanted_rows(self.name_shown, model, width), _LEAST_ROWS) + 2
+            )
 
     def _compute(self, model: Model, pane: str) -> None:
         """Compute the missing content of a pane, once at a time; that of a small log at once."""
@@ -460,7 +546,14 @@ class PaneView(LinesPanel):
             work()
         else:
             self._busy[pane] = model
-            background.run(self, work, lambda _: self._computed(pane), self._complain, group=pane, exclusive=True)
+            background.run(
+                self,
+                work,
+                lambda _: self._computed(pane),
+                self._complain,
+                group=pane,
+                exclusive=True,
+            )
 
     def _computed(self, pane: str) -> None:
         self._busy.pop(pane, None)

@@ -48,7 +48,9 @@ Made = TypeVar("Made")
 
 def expression_words(log: Log) -> Iterator[str]:
     """Yield the words allowed in an expression: variables, columns, functions."""
-    known = dict.fromkeys((*(name.partition(" #")[0] for name in log.names), *numeric_columns(log.table.schema), TIME))
+    known = dict.fromkeys(
+        (*(name.partition(" #")[0] for name in log.names), *numeric_columns(log.table.schema), TIME)
+    )
     yield from (name if name.isidentifier() else f"`{name}`" for name in known)
     yield from computed_columns(log)
     yield from (f"{name}(" for name in (*SIGNALS, *FUNCTIONS))
@@ -118,7 +120,12 @@ class LogScreen(ActionHost, ClosesOnce[None]):
 
     @property
     def _keys_of_log(self) -> set[str]:
-        return {key for action in self.ACTIONS.values() if action.why_not(None) for key in action.key.split(",")}
+        return {
+            key
+            for action in self.ACTIONS.values()
+            if action.why_not(None)
+            for key in action.key.split(",")
+        }
 
     def on_resize(self, event: Resize) -> None:
         """Put the world below the log where the screen is high and narrow, as that of a phone."""
@@ -184,7 +191,9 @@ class LogScreen(ActionHost, ClosesOnce[None]):
             return
         is_first = before is None and not opened.request.telemetry
         if is_first and not model.log.rows and any(run.telemetry.count for run in opened.runs):
-            self.say("Nothing was printed with a name: this is the telemetry. {telemetry} shows the printed samples")
+            self.say(
+                "Nothing was printed with a name: this is the telemetry. {telemetry} shows the printed samples"
+            )
             self.open(replace(opened.request, telemetry=True))
             return
         if opened.done:
@@ -213,7 +222,12 @@ class LogScreen(ActionHost, ClosesOnce[None]):
         model = self._model
         if self.job is not None:
             self._show_title(self._progress())
-        if model is None or not model.opened.done or self._reading or monotonic() < self._next_poll_s:
+        if (
+            model is None
+            or not model.opened.done
+            or self._reading
+            or monotonic() < self._next_poll_s
+        ):
             return
         if model.opened.stamp() != self._stamp:
             self.open(self.request)
@@ -234,7 +248,9 @@ class LogScreen(ActionHost, ClosesOnce[None]):
             return
         self._show_title(self._progress())
         now = self.situation()
-        self.key_footer.show([action for action in self.ACTIONS.values() if not action.why_not(now)])
+        self.key_footer.show(
+            [action for action in self.ACTIONS.values() if not action.why_not(now)]
+        )
         # The pane finds the bands, which the chart shades.
         self.pane.show(self._model)
         self.chart.show(self._model)
@@ -272,10 +288,14 @@ class LogScreen(ActionHost, ClosesOnce[None]):
         model, position = self._model, ""
         title = model.log.title if model else " ".join((self.request.file, *self.request.runs))
         if model is not None and model.log.rows:
-            position = f"row {model.row + 1:,} of {model.log.rows:,} · {model.time_of(model.row):.2f} s"
+            position = (
+                f"row {model.row + 1:,} of {model.log.rows:,} · {model.time_of(model.row):.2f} s"
+            )
         kind = " · telemetry" if self.request.telemetry else ""
         words = "   ".join(word for word in (position, progress, str(self.job or "")) if word)
-        self.title_line.set_lines([[(f" {title}{kind}", Style(bold=True)), (f"   {words}", Style())]])
+        self.title_line.set_lines(
+            [[(f" {title}{kind}", Style(bold=True)), (f"   {words}", Style())]]
+        )
 
     # Selection
 
@@ -354,7 +374,9 @@ class LogScreen(ActionHost, ClosesOnce[None]):
         elif not candidates(model.log.table):
             self.say("There is no numeric column")
         else:
-            self.app.push_screen(ColumnsDialog(model.opened.request, model.log.bare()), self._set_columns)
+            self.app.push_screen(
+                ColumnsDialog(model.opened.request, model.log.bare()), self._set_columns
+            )
 
     def _set_columns(self, request: LogRequest | None) -> None:
         if request is None:
@@ -375,7 +397,9 @@ class LogScreen(ActionHost, ClosesOnce[None]):
 
     # Background work
 
-    def work(self, word: str, rows: int, do: Callable[[TableTask], Made], then: Callable[[Made], None]) -> None:
+    def work(
+        self, word: str, rows: int, do: Callable[[TableTask], Made], then: Callable[[Made], None]
+    ) -> None:
         """Run a function and pass on its result; newer work replaces older work.
 
         Args:

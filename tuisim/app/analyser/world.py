@@ -94,8 +94,12 @@ class WorldAt:
         line = table.column("line")[row].as_py() if "line" in table.column_names else 0
         return self._snapshot(instant, self.mat.field, int(line or 0), False)
 
-    def _snapshot(self, instant: Instant, field: Field | None, line: int, pen_down: bool) -> Snapshot:
-        return Snapshot(RunPhase.ENDED, None, self.spec, field, instant, line, speed=1.0, pen_down=pen_down)
+    def _snapshot(
+        self, instant: Instant, field: Field | None, line: int, pen_down: bool
+    ) -> Snapshot:
+        return Snapshot(
+            RunPhase.ENDED, None, self.spec, field, instant, line, speed=1.0, pen_down=pen_down
+        )
 
 
 def has_poses(opened: OpenedLog) -> bool:
@@ -176,7 +180,10 @@ class WorldPane(Vertical):
         self._worlds.clear()
         self._requested.clear()
         self.display = (
-            self.is_on and bool(model.log.rows) and has_poses(model.opened) and self.screen.size.width >= _BESIDE_COLS
+            self.is_on
+            and bool(model.log.rows)
+            and has_poses(model.opened)
+            and self.screen.size.width >= _BESIDE_COLS
         )
         self.show(model)
 
@@ -220,6 +227,9 @@ class WorldPane(Vertical):
         for number, text in enumerate(texts[first : first + height], first + 1):
             here = number == line
             shown.append(
-                [(f"{number:>3} ", _HERE if here else _DIM), (printable(text).ljust(width), _HERE if here else _PLAIN)]
+                [
+                    (f"{number:>3} ", _HERE if here else _DIM),
+                    (printable(text).ljust(width), _HERE if here else _PLAIN),
+                ]
             )
         return shown

@@ -87,7 +87,9 @@ class _Card(PixelView):
         """Draw it for the current size."""
         cell = self.cell_for(None)
         if self.size.width and self.size.height:
-            self.set_fine_picture(test_card(self.size.width, self.size.height, (cell.cols, cell.rows)))
+            self.set_fine_picture(
+                test_card(self.size.width, self.size.height, (cell.cols, cell.rows))
+            )
 
 
 class CellsCard(ListDialog):
@@ -107,7 +109,10 @@ class CellsCard(ListDialog):
 
     def content(self) -> ComposeResult:
         listed = OptionList(
-            *(Option(name_and_title(name, title, _NAME_CELLS), id=name) for name, title in _SETS.items())
+            *(
+                Option(name_and_title(name, title, _NAME_CELLS), id=name)
+                for name, title in _SETS.items()
+            )
         )
         listed.highlighted = list(_SETS).index(self._current)
         with Horizontal(classes="cells"):

@@ -59,7 +59,9 @@ class ChoiceGroup:
     """For each entry: value, name, and title, which may be empty."""
 
 
-def files_here(suffixes: Iterable[str], fits: Callable[[Path], object] | None = None) -> ChoiceGroup:
+def files_here(
+    suffixes: Iterable[str], fits: Callable[[Path], object] | None = None
+) -> ChoiceGroup:
     """Return the files in the current folder but hidden ones.
 
     Args:
@@ -70,11 +72,15 @@ def files_here(suffixes: Iterable[str], fits: Callable[[Path], object] | None = 
     found = sorted(
         path
         for path in Path.cwd().iterdir()
-        if path.suffix.lower() in wanted and not (path.name.startswith(".") or is_companion(path)) and path.is_file()
+        if path.suffix.lower() in wanted
+        and not (path.name.startswith(".") or is_companion(path))
+        and path.is_file()
     )
     if fits:
         found = [path for path in found[:MAX_TRIED] if _passes(fits, path)]
-    return ChoiceGroup(f"In {Path.cwd().name or '/'}", [(str(path), path.name, "") for path in found])
+    return ChoiceGroup(
+        f"In {Path.cwd().name or '/'}", [(str(path), path.name, "") for path in found]
+    )
 
 
 def _passes(fits: Callable[[Path], object], path: Path) -> bool:
@@ -96,7 +102,12 @@ class ListDialog(Dialog[str]):
         self.query_one(OptionList).focus()
 
     def on_key(self, event: events.Key) -> None:
-        if event.character and event.is_printable and not event.character.isspace() and self.query(Input):
+        if (
+            event.character
+            and event.is_printable
+            and not event.character.isspace()
+            and self.query(Input)
+        ):
             field = self.query_one(Input)
             if not field.has_focus:
                 event.stop()
@@ -182,7 +193,9 @@ class Chooser(ListDialog):
 
     def field(self) -> Input:
         """Return the field."""
-        return Input(placeholder=f"Search, or the {self._path_hint}", compact=True, select_on_focus=False)
+        return Input(
+            placeholder=f"Search, or the {self._path_hint}", compact=True, select_on_focus=False
+        )
 
     def listed(self) -> OptionList:
         """Return the list."""
@@ -200,7 +213,10 @@ class Chooser(ListDialog):
             if group.title:
                 options.append(Option(Text(group.title, "italic"), disabled=True))
             options += [
-                Option(name_and_title(name, title, self._name_cells) if title else Text(name, "bold"), id=chosen)
+                Option(
+                    name_and_title(name, title, self._name_cells) if title else Text(name, "bold"),
+                    id=chosen,
+                )
                 for chosen, name, title in group.entries[:MAX_FILES]
             ]
             if len(group.entries) > MAX_FILES:
@@ -216,12 +232,16 @@ class Chooser(ListDialog):
         found = self._found(typed)
         listed.clear_options()
         listed.add_options(self._options(found))
-        self.say("" if found else "no such file here" if is_path(typed) else "no name has these words")
+        self.say(
+            "" if found else "no such file here" if is_path(typed) else "no name has these words"
+        )
         if not found:
             self.nothing_found()
         else:
             best = best_match(found, os.path.basename(typed)) if typed else self._current
-            listed.highlighted = next((at for at, one in enumerate(listed.options) if one.id == best), None)
+            listed.highlighted = next(
+                (at for at, one in enumerate(listed.options) if one.id == best), None
+            )
 
     def nothing_found(self) -> None:
         """Show nothing of what was chosen before."""
@@ -236,7 +256,13 @@ class Chooser(ListDialog):
         """Complete a path by tab."""
         fields = self.query(Input)
         typed = fields.first().value if fields else ""
-        if event.key == "tab" and fields and fields.first().has_focus and self._suffixes and is_path(typed):
+        if (
+            event.key == "tab"
+            and fields
+            and fields.first().has_focus
+            and self._suffixes
+            and is_path(typed)
+        ):
             event.stop()
             event.prevent_default()
             entries = paths_after(typed, self._suffixes)
@@ -286,7 +312,10 @@ def best_match(groups: Iterable[ChoiceGroup], typed: str) -> str:
     """Return the value of the entry that a text means: whose name begins with it, else has it, else the first one."""
     entries = [entry for group in groups for entry in group.entries]
     wanted = typed.lower()
-    return min(entries, key=lambda entry: (not entry[1].lower().startswith(wanted), wanted not in entry[1].lower()))[0]
+    return min(
+        entries,
+        key=lambda entry: (not entry[1].lower().startswith(wanted), wanted not in entry[1].lower()),
+    )[0]
 
 
 def program_chooser() -> Chooser:
@@ -303,12 +332,18 @@ def program_chooser() -> Chooser:
     worlds = [entry for entry in files_here([".toml"], load_world).entries if entry[0] not in known]
     groups = [
         own,
-        ChoiceGroup("Worlds and goals" if own.entries else f"{here.title}: worlds and goals", worlds),
+        ChoiceGroup(
+            "Worlds and goals" if own.entries else f"{here.title}: worlds and goals", worlds
+        ),
         ChoiceGroup("Examples", [(str(path), name, title) for name, path, title in examples]),
-        ChoiceGroup("Examples of goals", [(str(path), path.name, title_of(path)) for path in goals]),
+        ChoiceGroup(
+            "Examples of goals", [(str(path), path.name, title_of(path)) for path in goals]
+        ),
     ]
     hint = "path of a program, world or goals file"
-    return Chooser("Programs, worlds and goals", groups, path_hint=hint, read=_read_openable, suffixes=OPENABLE)
+    return Chooser(
+        "Programs, worlds and goals", groups, path_hint=hint, read=_read_openable, suffixes=OPENABLE
+    )
 
 
 def _read_openable(word: str) -> object:
@@ -328,12 +363,25 @@ def _read_openable(word: str) -> object:
 def obstacle_chooser(plan: NextRun) -> Chooser:
     """Return the dialog for sets of obstacles."""
     presets = [
-        (name, name, "; ".join(f"{b.width_mm:g}×{b.height_mm:g} at ({b.x_mm:g}, {b.y_mm:g})" for b in boxes) or "none")
+        (
+            name,
+            name,
+            "; ".join(f"{b.width_mm:g}×{b.height_mm:g} at ({b.x_mm:g}, {b.y_mm:g})" for b in boxes)
+            or "none",
+        )
         for name, boxes in OBSTACLES.items()
     ]
-    groups = [ChoiceGroup("", presets), files_here([".toml", ".json"], lambda path: load_obstacles(str(path)))]
+    groups = [
+        ChoiceGroup("", presets),
+        files_here([".toml", ".json"], lambda path: load_obstacles(str(path))),
+    ]
     return Chooser(
-        "Obstacles", groups, plan.words.get("obstacles", ""), "path of a .toml or .json file", load_obstacles, TABLES
+        "Obstacles",
+        groups,
+        plan.words.get("obstacles", ""),
+        "path of a .toml or .json file",
+        load_obstacles,
+        TABLES,
     )
 
 
@@ -345,7 +393,12 @@ def profile_chooser(plan: NextRun) -> Chooser:
     ]
     groups = [ChoiceGroup("", presets), files_here([".toml"], lambda path: load_profile(str(path)))]
     return Chooser(
-        "Profiles", groups, plan.words.get("profile", ""), "path of a profile's .toml file", load_profile, [".toml"]
+        "Profiles",
+        groups,
+        plan.words.get("profile", ""),
+        "path of a profile's .toml file",
+        load_profile,
+        [".toml"],
     )
 
 
@@ -363,7 +416,10 @@ class MatPicker(Chooser):
     """
 
     def __init__(self, current: str, known: Mapping[str, Background], folder: str | None) -> None:
-        laid = next((name for name, mat in known.items() if spec_name(mat) == current), next(iter(known), ""))
+        laid = next(
+            (name for name, mat in known.items() if spec_name(mat) == current),
+            next(iter(known), ""),
+        )
         groups = [ChoiceGroup("", [(name, name, "") for name in known])]
         find = partial(find_mat, folder=folder)
         super().__init__("Mats", groups, laid, "path of an image of your own", find, IMAGES)
@@ -412,7 +468,9 @@ class MatPicker(Chooser):
             view.clear_picture()
             self.query_one("#title", Static).update("")
             return
-        self.query_one("#title", Static).update(self._mats[name].title if name in self._mats else Path(name).name)
+        self.query_one("#title", Static).update(
+            self._mats[name].title if name in self._mats else Path(name).name
+        )
         port = field_view(view)
         if (picture := self._pictures.get((name, port))) is not None:
             view.set_fine_picture(picture, view.graphics)

@@ -51,9 +51,12 @@ def name_and_title(name: str, title: str, name_cells: int) -> Table:
 MOVE_KEYS = [
     Binding(key, f"move('{action}')", show=False)
     for key, action in (
-        ("down", "cursor_down"), ("up", "cursor_up"), ("pagedown", "page_down"), ("pageup", "page_up"),
+        ("down", "cursor_down"),
+        ("up", "cursor_up"),
+        ("pagedown", "page_down"),
+        ("pageup", "page_up"),
     )
-]  # fmt: skip
+]
 """The keys that move the selection of a list also while a field has the focus."""
 
 _TRANSPARENT = Color(0, 0, 0, 0)
@@ -110,10 +113,15 @@ class ClosesOnce(HookedScreen[Result], Generic[Result]):
 
     def is_ready_for(self, event: Event) -> bool:
         """Return whether what a key is meant for is there; those that follow wait with it."""
-        return self.is_ready and not (self._is_at_work and isinstance(event, Key) and event.key != "escape")
+        return self.is_ready and not (
+            self._is_at_work and isinstance(event, Key) and event.key != "escape"
+        )
 
     def wait_for(
-        self, work: Callable[[], Made], then: Callable[[Made], None], failed: Callable[[TuisimError], None]
+        self,
+        work: Callable[[], Made],
+        then: Callable[[Made], None],
+        failed: Callable[[TuisimError], None],
     ) -> None:
         """Run a function in a thread; keys wait for its result, except for Escape.
 
@@ -188,20 +196,35 @@ class Dialog(ClosesOnce[Result], Generic[Result]):
     @property
     def keys(self) -> tuple[KeyWord, ...]:
         """Enter, then its own keys that work where the focus is, then Escape; none if the keys of the app work."""
-        words = ((one.key.split(","), one.description.lower()) for one in self._bound() if one.description)
-        working = ((next((key for key in keys if self._gets(key)), ""), word) for keys, word in words)
+        words = (
+            (one.key.split(","), one.description.lower())
+            for one in self._bound()
+            if one.description
+        )
+        working = (
+            (next((key for key in keys if self._gets(key)), ""), word) for keys, word in words
+        )
         own = tuple((_short_label(key), word) for key, word in working if key)
         enter = _enter_does(self.HINT)
         return own if not enter or "enter" in dict(own) else (("enter", enter), *own)
 
     def _bound(self) -> list[Binding]:
         kinds = [kind for kind in type(self).__mro__ if issubclass(kind, Dialog)]
-        return [one for kind in kinds for one in kind.__dict__.get("BINDINGS", ()) if isinstance(one, Binding)]
+        return [
+            one
+            for kind in kinds
+            for one in kind.__dict__.get("BINDINGS", ())
+            if isinstance(one, Binding)
+        ]
 
     async def on_click(self, event: Click) -> None:
         """Do what the word in the row below that was clicked stands for: a phone may lack its key."""
-        keys = {_short_label(key): key for one in self._bound() for key in one.key.split(",")} | {"enter": "enter"}
-        footers = (footer for screen in self.app.screen_stack[:-1] for footer in screen.query(KeyFooter))
+        keys = {_short_label(key): key for one in self._bound() for key in one.key.split(",")} | {
+            "enter": "enter"
+        }
+        footers = (
+            footer for screen in self.app.screen_stack[:-1] for footer in screen.query(KeyFooter)
+        )
         for footer in footers:
             if footer.region.contains(event.screen_x, event.screen_y):
                 label = footer.key_of_dialog_at(event.screen_x - footer.region.x)
@@ -212,7 +235,10 @@ class Dialog(ClosesOnce[Result], Generic[Result]):
         field = self.focused
         if not isinstance(field, Input):
             return True
-        return not field.check_consume_key(key, key_to_character(key)) and key not in bindings_of(field).key_to_bindings
+        return (
+            not field.check_consume_key(key, key_to_character(key))
+            and key not in bindings_of(field).key_to_bindings
+        )
 
     def content(self) -> ComposeResult:
         """Return the widgets in the frame."""

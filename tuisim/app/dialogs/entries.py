@@ -62,7 +62,10 @@ class _TextList(_List[None], Generic[Entry]):
     PLACEHOLDER: ClassVar[str] = ""
 
     def __init__(
-        self, entries: Sequence[Entry], robot: RobotSpec, changed: Callable[[tuple[Entry, ...]], None]
+        self,
+        entries: Sequence[Entry],
+        robot: RobotSpec,
+        changed: Callable[[tuple[Entry, ...]], None],
     ) -> None:
         super().__init__()
         self.robot = robot
@@ -202,7 +205,9 @@ class SavedPoses(_List[Pose]):
 
     TITLE_TEXT: str = "Saved poses"
     HINT: str = "Enter goes there · Delete removes · Escape closes"
-    BINDINGS: ClassVar[list[BindingType]] = [Binding("delete,backspace", "remove", "Delete", show=False)]
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("delete,backspace", "remove", "Delete", show=False)
+    ]
 
     def __init__(self, here: Pose) -> None:
         super().__init__()
@@ -211,7 +216,11 @@ class SavedPoses(_List[Pose]):
 
     def content(self) -> ComposeResult:
         yield OptionList()
-        yield Static(f"Save where the robot is now, {pose_label(self._here)}, as:", classes="start", markup=False)
+        yield Static(
+            f"Save where the robot is now, {pose_label(self._here)}, as:",
+            classes="start",
+            markup=False,
+        )
         yield Input(placeholder="a name, then Enter", compact=True, max_length=MAX_NAME)
         yield Static(id="message", markup=False)
 
@@ -222,7 +231,10 @@ class SavedPoses(_List[Pose]):
         except TuisimError as error:
             self.say(str(error), wrong=True)
         wide = max(map(len, self._entries), default=0)
-        lines = {name: name_and_title(name, pose_label(pose), wide) for name, pose in self._entries.items()}
+        lines = {
+            name: name_and_title(name, pose_label(pose), wide)
+            for name, pose in self._entries.items()
+        }
         self._list([Option(line, id=name) for name, line in lines.items()], at)
 
     @on(OptionList.OptionSelected)

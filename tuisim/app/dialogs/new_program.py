@@ -36,9 +36,10 @@ class NewProgramDialog(Dialog[str]):
     def __init__(self, mats: Mapping[str, str], current: str) -> None:
         super().__init__()
         self._offers: Sequence[Mapping[str, str]] = (
-            mats, {name: reading.noun.capitalize() for name, reading in READINGS.items()},
+            mats,
+            {name: reading.noun.capitalize() for name, reading in READINGS.items()},
             {str(one): title for one, title in SKELETON_TITLES.items()},
-        )  # fmt: skip
+        )
         self._current = current
         self._typed = ""
         """Letters typed in the list with the focus, to find an entry."""
@@ -46,8 +47,14 @@ class NewProgramDialog(Dialog[str]):
     def content(self) -> ComposeResult:
         with Horizontal():
             for name, offers in zip(_LISTS, self._offers, strict=True):
-                listed = OptionList(*(Option(title, id=word) for word, title in offers.items()), id=name, markup=False)
-                listed.highlighted = [*offers].index(self._current) if self._current in offers else 0
+                listed = OptionList(
+                    *(Option(title, id=word) for word, title in offers.items()),
+                    id=name,
+                    markup=False,
+                )
+                listed.highlighted = (
+                    [*offers].index(self._current) if self._current in offers else 0
+                )
                 yield listed
         yield Static(id="text", markup=False)
 
@@ -89,7 +96,9 @@ class NewProgramDialog(Dialog[str]):
 def _found(titles: Sequence[str], typed: str) -> int | None:
     """Return the index of the first title that begins with a text, else with its letters in their order; or None."""
     for fits in (lambda title: title.startswith(typed), lambda title: _has_letters(title, typed)):
-        if (at := next((at for at, title in enumerate(titles) if fits(title.lower())), None)) is not None:
+        if (
+            at := next((at for at, title in enumerate(titles) if fits(title.lower())), None)
+        ) is not None:
             return at
     return None
 

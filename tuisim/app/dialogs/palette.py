@@ -102,7 +102,9 @@ class SearchList(Dialog[str]):
         listed.clear_options()
         listed.add_options(Option(_line(entry, cells), id=entry.id) for entry in found)
         names = [entry.id for entry in found]
-        listed.highlighted = None if not found else names.index(self._current) if self._current in names else 0
+        listed.highlighted = (
+            None if not found else names.index(self._current) if self._current in names else 0
+        )
         listed.display = bool(found)
         self.query_one("#message").display = not found
 
@@ -129,7 +131,9 @@ def _line(entry: Entry, cells: int) -> Text:
     line = Text(no_wrap=True, overflow="ellipsis")
     line.append(f"{title:<{cells - len(right)}}", "" if entry.works else palette.SUBTITLE)
     line.append(right[: len(entry.group)], palette.SUBTITLE)
-    line.append(right[len(entry.group) :], f"bold {palette.YELLOW}" if entry.works else palette.SUBTITLE)
+    line.append(
+        right[len(entry.group) :], f"bold {palette.YELLOW}" if entry.works else palette.SUBTITLE
+    )
     return line
 
 
@@ -148,7 +152,8 @@ class Palette(SearchList):
 
     def __init__(self, actions: Iterable[Action[Any, Any]], now: object) -> None:
         entries = (
-            Entry(one.id, one.title, one.group, one.key_label, one.words, not one.why_not(now)) for one in actions
+            Entry(one.id, one.title, one.group, one.key_label, one.words, not one.why_not(now))
+            for one in actions
         )
         super().__init__(sorted(entries, key=lambda entry: not entry.works))
 
@@ -170,7 +175,9 @@ class ThemeChooser(SearchList):
     TITLE_TEXT: str = "Themes"
 
     def __init__(self, names: Iterable[str], current: str, show: Callable[[str], None]) -> None:
-        super().__init__([Entry(name, name, "current" if name == current else "") for name in names], current)
+        super().__init__(
+            [Entry(name, name, "current" if name == current else "") for name in names], current
+        )
         self._show = show
 
     @on(OptionList.OptionHighlighted)

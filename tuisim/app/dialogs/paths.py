@@ -34,7 +34,9 @@ def paths_after(typed: str, suffixes: Collection[str]) -> list[tuple[str, str, s
     except (OSError, ValueError):
         return []
     for one in inside:
-        if not one.name.lower().startswith(begun.lower()) or (one.name.startswith(".") and not begun.startswith(".")):
+        if not one.name.lower().startswith(begun.lower()) or (
+            one.name.startswith(".") and not begun.startswith(".")
+        ):
             continue
         if _is_folder(one):
             found.append((f"{stem}{one.name}/", f"{one.name}/", ""))

@@ -42,7 +42,9 @@ class Question(Dialog[str]):
         escape: Text of what Escape does.
     """
 
-    def __init__(self, title: str, text: str, answers: Sequence[Answer], escape: str = "decides later") -> None:
+    def __init__(
+        self, title: str, text: str, answers: Sequence[Answer], escape: str = "decides later"
+    ) -> None:
         super().__init__()
         self.HINT = f"Escape {escape}"
         self.TITLE_TEXT = as_markup(title)
@@ -90,17 +92,29 @@ class BranchQuestion(Dialog[str]):
     def __init__(self, branch: Branch, change: str, in_run: bool, restart: bool) -> None:
         super().__init__()
         self.TITLE_TEXT = f"Branch from {branch.time_s:.2f} s?"
-        self.HINT = "y branches · r runs from the start · n stays" if restart else "y branches · n stays"
+        self.HINT = (
+            "y branches · r runs from the start · n stays" if restart else "y branches · n stays"
+        )
         self._restart = restart
         program = "The edited program" if branch.edited else "The program"
-        again = "runs from its start to this instant" if branch.edited else "runs again up to this instant"
+        again = (
+            "runs from its start to this instant"
+            if branch.edited
+            else "runs again up to this instant"
+        )
         ends = f" {branch.of.name.capitalize()} ends now and is kept." if in_run else ""
         then = "continues from here" if branch.goes_on else "pauses here"
-        self._text = f"{program} {again}, with all your actions until then, and {then}{change}.{ends}"
+        self._text = (
+            f"{program} {again}, with all your actions until then, and {then}{change}.{ends}"
+        )
 
     def content(self) -> ComposeResult:
         yield Static(self._text, markup=False)
-        answers = [("branch", "y", "Branch"), ("restart", "r", "Run from the start"), ("leave", "n", "Stay")]
+        answers = [
+            ("branch", "y", "Branch"),
+            ("restart", "r", "Run from the start"),
+            ("leave", "n", "Stay"),
+        ]
         yield from _answers_row(one for one in answers if self._restart or one[0] != "restart")
 
     @property
@@ -153,7 +167,9 @@ class LineInput(Input):
         placeholder: Text of the empty field.
     """
 
-    BINDINGS: ClassVar[list[BindingType]] = [Binding("tab", "accept", "Accept the completion", show=False)]
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("tab", "accept", "Accept the completion", show=False)
+    ]
 
     def __init__(self, value: str, words: Sequence[str], placeholder: str) -> None:
         super().__init__(value, placeholder, compact=True, select_on_focus=True)
@@ -183,7 +199,9 @@ def completed(line: str, words: Sequence[str]) -> str | None:
     if match is None:
         return None
     typed = match[0]
-    begun = (word for word in words if word.lower().startswith(typed.lower()) and len(word) > len(typed))
+    begun = (
+        word for word in words if word.lower().startswith(typed.lower()) and len(word) > len(typed)
+    )
     word = next(begun, None)
     # The typed text stays: a completion only appends to it.
     return None if word is None else line + word[len(typed) :]

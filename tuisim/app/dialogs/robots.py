@@ -55,7 +55,9 @@ def robot_chooser(plan: NextRun) -> RobotPicker:
         files,
     ]
     robots = {**ROBOTS, **({OF_PROGRAM: built.spec} if built else {})}
-    current = OF_PROGRAM if built is not None and plan.robot == built else plan.words.get("robot", "")
+    current = (
+        OF_PROGRAM if built is not None and plan.robot == built else plan.words.get("robot", "")
+    )
     return RobotPicker(groups, current, robots)
 
 
@@ -68,8 +70,12 @@ class RobotPicker(Chooser):
         robots: The robots of the list that are in no file, by value.
     """
 
-    def __init__(self, groups: Sequence[ChoiceGroup], current: str, robots: Mapping[str, RobotSpec]) -> None:
-        super().__init__("Robots", groups, current, "path of a robot's .toml or .json file", choose_robot, TABLES)
+    def __init__(
+        self, groups: Sequence[ChoiceGroup], current: str, robots: Mapping[str, RobotSpec]
+    ) -> None:
+        super().__init__(
+            "Robots", groups, current, "path of a robot's .toml or .json file", choose_robot, TABLES
+        )
         self._robots = dict(robots)
 
     def content(self) -> ComposeResult:
@@ -157,19 +163,26 @@ def view_of(robot: RobotSpec, width_px: int, height_px: int, cell: CellPoints) -
     outline = outline_of(robot)
     bumpers_mm = [y_mm + _RIM_MM for _, y_mm, _ in outline.bumpers_mm]
     front_mm, back_mm = max([outline.front_mm, *bumpers_mm]) + _RIM_MM, outline.back_mm - _RIM_MM
-    mm_per_px = max(2 * (outline.half_width_mm + _RIM_MM) / width_px, (front_mm - back_mm) / (height_px * cell.tall))
+    mm_per_px = max(
+        2 * (outline.half_width_mm + _RIM_MM) / width_px,
+        (front_mm - back_mm) / (height_px * cell.tall),
+    )
     top_mm = (front_mm + back_mm + height_px * mm_per_px * cell.tall) / 2
     return Viewport(width_px, height_px, mm_per_px, -width_px * mm_per_px / 2, top_mm, cell)
 
 
-def robot_picture(robot: RobotSpec, view: Viewport, colors: RobotColors, *, mono: bool = False) -> Pixels:
+def robot_picture(
+    robot: RobotSpec, view: Viewport, colors: RobotColors, *, mono: bool = False
+) -> Pixels:
     """Return a robot at the middle of the axes, heading up, with all sensors that have a place."""
     picture = np.empty((view.height_px, view.width_px, 3), np.uint8)
     picture[:] = (255, 255, 255) if mono else _PAPER_RGB
     outline = outline_of(robot)
     if (sonar := robot.ultrasonic) is not None:
         # The world shows its rays instead.
-        outline = replace(outline, other_sensors_mm=(*outline.other_sensors_mm, (sonar.x_mm, sonar.y_mm)))
+        outline = replace(
+            outline, other_sensors_mm=(*outline.other_sensors_mm, (sonar.x_mm, sonar.y_mm))
+        )
     (draw_mono_robot if mono else draw_robot)(picture, view, Pose(0.0, 0.0, 90.0), outline, colors)
     return picture
 
@@ -177,8 +190,11 @@ def robot_picture(robot: RobotSpec, view: Viewport, colors: RobotColors, *, mono
 def part_lines(robot: RobotSpec) -> Iterator[Line]:
     """Yield a line for the wheels, each further motor and each sensor, with its port and its place."""
     if robot.has_wheels:
-        yield _line(None, f"{robot.left_port[-1]} {robot.right_port[-1]}",
-                    f"wheels ⌀ {robot.wheel_diameter_mm:g}, {robot.wheel_spacing_mm:g} mm apart")  # fmt: skip
+        yield _line(
+            None,
+            f"{robot.left_port[-1]} {robot.right_port[-1]}",
+            f"wheels ⌀ {robot.wheel_diameter_mm:g}, {robot.wheel_spacing_mm:g} mm apart",
+        )
     for motor in robot.extra_motors:
         yield _line(None, motor.port[-1], f"{motor.kind} motor")
     for sensor in sorted(robot.sensors, key=lambda one: one.port):

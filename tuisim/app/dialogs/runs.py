@@ -46,7 +46,16 @@ def matching(runs: Iterable[RunInfo], search: str) -> list[RunInfo]:
 
 
 def _searched(run: RunInfo) -> str:
-    facts = (run.number, run.program, run.background, run.profile, run.end, end_label(run.end), run.summary, run.tags)
+    facts = (
+        run.number,
+        run.program,
+        run.background,
+        run.profile,
+        run.end,
+        end_label(run.end),
+        run.summary,
+        run.tags,
+    )
     return " ".join(map(str, (*facts, _when(run)))).lower()
 
 
@@ -74,7 +83,8 @@ def run_line(run: RunInfo, marked: bool = False, *, noted: bool = True) -> Text:
     line.append(f"{run.time_s or 0:>6.2f} {run.samples or 0:>7,}")
     # Of most runs the summary says the end, which has its own column.
     if noted and (
-        note := run.tags or ("" if run.end is End.TIME_LIMIT or run.summary == end_label(run.end) else run.summary)
+        note := run.tags
+        or ("" if run.end is End.TIME_LIMIT or run.summary == end_label(run.end) else run.summary)
     ):
         line.append(f"  {note}", palette.SOFT)
     return line
@@ -117,7 +127,11 @@ class RunChooser(ListDialog):
         """Id of the run whose way is shown."""
 
     def content(self) -> ComposeResult:
-        yield Input(placeholder="Search: number, program, mat, end, tag, date", compact=True, select_on_focus=False)
+        yield Input(
+            placeholder="Search: number, program, mat, end, tag, date",
+            compact=True,
+            select_on_focus=False,
+        )
         yield Static(f"{_HEADS}  note" if self._noted else _HEADS, markup=False, classes="heads")
         yield OptionList()
         with Horizontal(classes="way"):
@@ -271,7 +285,11 @@ class Differences(Dialog[bool]):
         super().__init__()
         self.TITLE_TEXT = f"{first} and {second}"
         self._goes = diff.tick is not None or (samples and diff.sample is not None)
-        self.HINT = "Escape closes" if not self._goes else "Enter goes to the first difference · Escape closes"
+        self.HINT = (
+            "Escape closes"
+            if not self._goes
+            else "Enter goes to the first difference · Escape closes"
+        )
         self._diff = diff
 
     def content(self) -> ComposeResult:

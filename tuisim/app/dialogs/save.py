@@ -17,7 +17,13 @@ from tuisim.app.dialogs.dialog import Dialog
 from tuisim.app.dialogs.question import Form, form_list
 from tuisim.config.folders import user_path
 from tuisim.errors import ConfigError, TuisimError, shortened
-from tuisim.logs.export import LISTED, check_target, export_samples, export_telemetry, files_in_words
+from tuisim.logs.export import (
+    LISTED,
+    check_target,
+    export_samples,
+    export_telemetry,
+    files_in_words,
+)
 from tuisim.runs.store import RunStore
 from tuisim.terminal.app import offer
 
@@ -99,7 +105,9 @@ class FileDialog(Dialog[Path]):
             target = self.checked(typed_path(typed))
             if os.path.exists(target) and self._agreed != typed:
                 self._agreed = typed
-                self.say(f"{target.name} already exists. Press Enter again to replace it.", wrong=True)
+                self.say(
+                    f"{target.name} already exists. Press Enter again to replace it.", wrong=True
+                )
                 return
             self._writing = True
             self.write(target)
@@ -141,7 +149,13 @@ class SaveDialog(FileDialog):
         notice: bool = True,
     ) -> None:
         super().__init__(proposed)
-        self._what, self._save, self._check, self._forms, self._notice = what, save, check, forms, notice
+        self._what, self._save, self._check, self._forms, self._notice = (
+            what,
+            save,
+            check,
+            forms,
+            notice,
+        )
         self.SUFFIXES = suffixes or self.SUFFIXES
         self.TITLE_TEXT = f"Save the {what}"
 
@@ -186,7 +200,9 @@ class ExportDialog(FileDialog):
     TITLE_TEXT: str = "Export the log"
     HINT: str = "Enter writes · ctrl+t switches · Escape closes"
     SUFFIXES: str = LISTED
-    BINDINGS: ClassVar[list[BindingType]] = [Binding("ctrl+t", "switch", "Samples or telemetry", show=False)]
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("ctrl+t", "switch", "Samples or telemetry", show=False)
+    ]
 
     def __init__(self, run_id: str, program: str) -> None:
         super().__init__(f"{Path(program).stem}.csv")

@@ -17,7 +17,15 @@ from tuisim.app.dialogs.chooser import ChoiceGroup, Chooser
 from tuisim.app.dialogs.dialog import Dialog, name_and_title
 from tuisim.app.dialogs.question import LinePrompt
 from tuisim.config.files import Scalar
-from tuisim.config.user_config import FILE, SETTINGS, THEME, Section, Setting, UserConfig, load_config
+from tuisim.config.user_config import (
+    FILE,
+    SETTINGS,
+    THEME,
+    Section,
+    Setting,
+    UserConfig,
+    load_config,
+)
 from tuisim.errors import TuisimError
 
 Change = Callable[[Setting, Scalar | None], None]
@@ -60,7 +68,9 @@ class SettingsScreen(Dialog[None]):
 
     TITLE_TEXT: str = "Settings"
     HINT: str = "Enter changes · Delete resets · Escape closes"
-    BINDINGS: ClassVar[list[BindingType]] = [Binding("delete,backspace", "usual", "Back to the default", show=False)]
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("delete,backspace", "usual", "Back to the default", show=False)
+    ]
 
     def __init__(self, change: Change, themes: Callable[[], Dialog[str]]) -> None:
         super().__init__()
@@ -85,7 +95,11 @@ class SettingsScreen(Dialog[None]):
     def _options(self, config: UserConfig) -> list[Option]:
         options = []
         for section in Section:
-            lines = [Option(_line(one, config), id=path) for path, one in SETTINGS.items() if one.section is section]
+            lines = [
+                Option(_line(one, config), id=path)
+                for path, one in SETTINGS.items()
+                if one.section is section
+            ]
             if lines:
                 options += [Option(Text(f"[{section}]", "italic"), disabled=True), *lines]
         return options
@@ -102,7 +116,9 @@ class SettingsScreen(Dialog[None]):
         one = self._one
         parts = [about(one)]
         if one.section is Section.SIMULATION:
-            parts.append("For the app and `tuisim run`, but not with a world file, goals or a lesson.")
+            parts.append(
+                "For the app and `tuisim run`, but not with a world file, goals or a lesson."
+            )
         if not one.is_live:
             parts.append("Applies from the next start on.")
         self.query_one("#about", Static).update(" ".join(parts))
@@ -121,7 +137,9 @@ class SettingsScreen(Dialog[None]):
             group = ChoiceGroup("", [(name, name, "") for name in map(str, names)])
             self.app.push_screen(Chooser(one.path, [group], in_words(value)), self._chosen)
             return
-        self.app.push_screen(LinePrompt(one.path, self._typed, in_words(value), text=about(one)), self._entered)
+        self.app.push_screen(
+            LinePrompt(one.path, self._typed, in_words(value), text=about(one)), self._entered
+        )
 
     def _chosen(self, name: str | None) -> None:
         if name is not None:
@@ -159,10 +177,14 @@ class SettingsScreen(Dialog[None]):
         if config.problems:
             self._complain(config.problems[0])
         else:
-            self.say(f"Written to {FILE}" + ("" if one.is_live else "; applies from the next start on"))
+            self.say(
+                f"Written to {FILE}" + ("" if one.is_live else "; applies from the next start on")
+            )
 
 
 def _line(one: Setting, config: UserConfig) -> Table:
     """Return the line of a setting: its name, its value, and whether that is the user's own."""
     value = in_words(config.value(one.path)) or "–"
-    return name_and_title(one.name, f"{value}  (yours)" if one.path in config.written else value, _NAME_CELLS)
+    return name_and_title(
+        one.name, f"{value}  (yours)" if one.path in config.written else value, _NAME_CELLS
+    )

@@ -38,7 +38,9 @@ _CHOICES = {
     Begin.LEARN: ("Learn", "Lessons, from the first run to a line follower"),
     Begin.OPEN: ("Open a file", "A program of your own, or one of the examples"),
 }
-_KEY_WORDS = "Always: {open} opens a file, {lesson-menu} the lessons, {help} shows all keys, {quit} quits."
+_KEY_WORDS = (
+    "Always: {open} opens a file, {lesson-menu} the lessons, {help} shows all keys, {quit} quits."
+)
 _NAME_CELLS = 18
 _MOST_NUMBERED = 9
 
@@ -54,7 +56,8 @@ class Welcome(Dialog[Begin | Recent]):
     TITLE_TEXT: str = "Welcome to tuisim"
     HINT: str = "A number, or ↑ ↓ and Enter · Escape closes"
     BINDINGS: ClassVar[list[BindingType]] = [
-        Binding(str(number), f"take({number})", "Begin", show=False) for number in range(1, _MOST_NUMBERED + 1)
+        Binding(str(number), f"take({number})", "Begin", show=False)
+        for number in range(1, _MOST_NUMBERED + 1)
     ]
 
     keys = ()
@@ -67,7 +70,9 @@ class Welcome(Dialog[Begin | Recent]):
     def content(self) -> ComposeResult:
         if self._is_first:
             yield Static(_TEXT, classes="start", markup=False)
-        yield OptionList(*(_option(at, *_CHOICES[what]) for at, what in enumerate(Begin, start=1)), markup=False)
+        yield OptionList(
+            *(_option(at, *_CHOICES[what]) for at, what in enumerate(Begin, start=1)), markup=False
+        )
         yield Static()
         yield Static(with_keys_of(self.app, _KEY_WORDS), markup=False)
 
@@ -75,10 +80,14 @@ class Welcome(Dialog[Begin | Recent]):
         actions = self.app.ACTIONS if isinstance(self.app, ActionHost) else {}
         # What is seen in the footer, and told above it, works.
         for name, action in actions.items():
-            for key in action.key.split(",") if action.footer or f"{{{name}}}" in _KEY_WORDS else ():
+            for key in (
+                action.key.split(",") if action.footer or f"{{{name}}}" in _KEY_WORDS else ()
+            ):
                 bindings_of(self).bind(key, f"leave_for('{name}')", name, show=False)
         self.query_one(OptionList).focus()
-        self.wait_for(self._find, self._add, lambda error: self.app.notify(str(error), markup=False))
+        self.wait_for(
+            self._find, self._add, lambda error: self.app.notify(str(error), markup=False)
+        )
 
     def _add(self, found: list[Recent]) -> None:
         """List what there is to go on with; the likeliest is chosen."""

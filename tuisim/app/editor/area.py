@@ -79,9 +79,15 @@ class CodeArea(TextArea):
     ALLOW_SELECT = False
     DEFAULT_CSS = "CodeArea { height: 1fr; border: none; padding: 0; overflow-x: hidden; &:focus { border: none; } }"
     COMPONENT_CLASSES: ClassVar[set[str]] = {
-        "code--number-column", "code--lit", "code--error", "code--break", "code--unknown", "code--value",
-        "code--changed", *(f"code--{kind}" for kind in KINDS),
-    }  # fmt: skip
+        "code--number-column",
+        "code--lit",
+        "code--error",
+        "code--break",
+        "code--unknown",
+        "code--value",
+        "code--changed",
+        *(f"code--{kind}" for kind in KINDS),
+    }
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("ctrl+f", "want('find')", "Find", show=False),
         Binding("ctrl+g", "want('line')", "Go to a line", show=False),
@@ -123,7 +129,11 @@ class CodeArea(TextArea):
         self._unknown: tuple[UnknownName, ...] = ()
         self._values: Mapping[int, Sequence[Variable]] = {}
         super().__init__(
-            read_only=True, show_line_numbers=True, compact=True, highlight_cursor_line=False, soft_wrap=False
+            read_only=True,
+            show_line_numbers=True,
+            compact=True,
+            highlight_cursor_line=False,
+            soft_wrap=False,
         )
         self.cursor_blink = False
         self.indent_type = "spaces"
@@ -144,7 +154,9 @@ class CodeArea(TextArea):
         """Show a text that was changed elsewhere: cursor and scroll position stay, and it can be undone."""
         top, (row, column) = self.scroll_offset.y, self.cursor_location
         self.history.checkpoint()
-        self.replace(text.translate(_GUARD), (0, 0), self.document.end, maintain_selection_offset=False)
+        self.replace(
+            text.translate(_GUARD), (0, 0), self.document.end, maintain_selection_offset=False
+        )
         self.move_cursor(self.clamp_visitable((row, column)))
         self.scroll_to(y=top, animate=False, force=True)
 
@@ -252,7 +264,9 @@ class CodeArea(TextArea):
     def scroll_to_line(self, line: int) -> None:
         """Scroll a line into view."""
         rows, height = self._rows_of(line), self.scrollable_content_region.height
-        if rows and not (self.scroll_offset.y <= rows.start and rows.stop <= self.scroll_offset.y + height):
+        if rows and not (
+            self.scroll_offset.y <= rows.start and rows.stop <= self.scroll_offset.y + height
+        ):
             self.scroll_to(y=max(0, rows.start - height // 3), animate=False, force=True)
 
     def move_to_code(self, line: int) -> None:
@@ -291,10 +305,15 @@ class CodeArea(TextArea):
         run_mark = {"error": "✗", "lit": "▶"}.get(lit, " ") if section == 0 else " "
         number = f"{line if section == 0 else '':>{gutter - 3}}"
         mark = self._breaks.get(line, " ") if section == 0 else " "
-        head = [Segment(mark, number_style + self._component("break")), Segment(f"{run_mark}{number} ", number_style)]
+        head = [
+            Segment(mark, number_style + self._component("break")),
+            Segment(f"{run_mark}{number} ", number_style),
+        ]
         return Strip.join([Strip(head, gutter), text])
 
-    def _with_values(self, text: Strip, values: Sequence[Variable], room: int, style: Style) -> Strip:
+    def _with_values(
+        self, text: Strip, values: Sequence[Variable], room: int, style: Style
+    ) -> Strip:
         """Return a row with the values of variables behind its text, without their names if these do not fit.
 
         The text gives way: without its value a line is of little use to who looks for an error.
@@ -306,7 +325,9 @@ class CodeArea(TextArea):
         for befores in ([f"{one.name} = " for one in values], ["→ "] + [""] * (len(values) - 1)):
             line: Line = [
                 (f"{', ' if at else ''}{before}{value}", look)
-                for at, (before, value, look) in enumerate(zip(befores, shown_values, looks, strict=True))
+                for at, (before, value, look) in enumerate(
+                    zip(befores, shown_values, looks, strict=True)
+                )
             ]
             width = sum(cell_len(piece) for piece, _ in line)
             if used + width <= room:
@@ -331,7 +352,9 @@ class CodeArea(TextArea):
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
         """Leave keys that are also the app's, such as those of its layouts, to it while the user does not type."""
-        return self.typing if action in _TYPING_ACTIONS else super().check_action(action, parameters)
+        return (
+            self.typing if action in _TYPING_ACTIONS else super().check_action(action, parameters)
+        )
 
     def action_want(self, command: str) -> None:
         self.post_message(self.Wanted(EditorCommand(command)))
@@ -362,7 +385,11 @@ class CodeArea(TextArea):
             self._done(event)
             row, column = min(self.selection)
             self.insert_text("\n" + text_lines.indent_after(self.document.get_line(row)[:column]))
-        elif event.key == "backspace" and self.selection.is_empty and (blanks := self._blanks_to_delete()):
+        elif (
+            event.key == "backspace"
+            and self.selection.is_empty
+            and (blanks := self._blanks_to_delete())
+        ):
             self._done(event)
             row, column = self.cursor_location
             self.delete((row, column - blanks), (row, column), maintain_selection_offset=False)
@@ -442,7 +469,9 @@ class CodeArea(TextArea):
         """Replace the word before the cursor with a name."""
         row, column = self.cursor_location
         word = self._word() or ""
-        self.replace(name, (row, column - len(word)), (row, column), maintain_selection_offset=False)
+        self.replace(
+            name, (row, column - len(word)), (row, column), maintain_selection_offset=False
+        )
 
     def follow_word(self) -> None:
         """Shorten the list of names to the word that is typed now, or close it."""
@@ -472,7 +501,9 @@ class CodeArea(TextArea):
         changed = change(lines)
         if changed == list(lines):
             return
-        self.replace("\n".join(changed), (top, 0), (bottom, len(lines[-1])), maintain_selection_offset=False)
+        self.replace(
+            "\n".join(changed), (top, 0), (bottom, len(lines[-1])), maintain_selection_offset=False
+        )
         if was_empty:
             self.move_cursor((top, max(0, left + len(changed[0]) - len(lines[0]))))
         else:
@@ -491,12 +522,24 @@ class CodeArea(TextArea):
 _AFTER_NAMES = frozenset(".(")
 """What is typed after the name of an object or a function."""
 
-_TYPING_ACTIONS = frozenset({
-    "undo", "redo", "cursor_page_up", "cursor_page_down", "cursor_line_start", "cursor_line_end", "select_line",
-    "select_all",
-})  # fmt: skip
+_TYPING_ACTIONS = frozenset(
+    {
+        "undo",
+        "redo",
+        "cursor_page_up",
+        "cursor_page_down",
+        "cursor_line_start",
+        "cursor_line_end",
+        "select_line",
+        "select_all",
+    }
+)
 
-_WHILE_TYPING = {"escape": EditorCommand.STOP_TYPING, "ctrl+n": EditorCommand.NEW, "ctrl+o": EditorCommand.OPEN}
+_WHILE_TYPING = {
+    "escape": EditorCommand.STOP_TYPING,
+    "ctrl+n": EditorCommand.NEW,
+    "ctrl+o": EditorCommand.OPEN,
+}
 """Usual editor keys; while the user does not type, the last two are keys of the robot and the obstacles."""
 
 _CHANGES: Mapping[str, text_lines.Change] = {
@@ -512,7 +555,10 @@ def _on(strip: Strip, base: Style, lit: Style) -> Strip:
     """Return a row with the highlight's background where the panel's own was: a cursor or a selection stays."""
     background = Style(bgcolor=lit.bgcolor)
     pieces = ((piece.text, piece.style or base) for piece in strip)
-    shown = [Segment(text, style + background if style.bgcolor == base.bgcolor else style) for text, style in pieces]
+    shown = [
+        Segment(text, style + background if style.bgcolor == base.bgcolor else style)
+        for text, style in pieces
+    ]
     return Strip(shown, strip.cell_length)
 
 

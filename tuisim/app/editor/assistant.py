@@ -45,7 +45,14 @@ class Assistant:
     def said(self, width: int) -> Text:
         """Return what there is to say at the cursor, in at most so many cells."""
         row, column = self._area.cursor_location
-        unknown = next((one for one in self._area.unknown if one.row == row and one.start <= column <= one.end), None)
+        unknown = next(
+            (
+                one
+                for one in self._area.unknown
+                if one.row == row and one.start <= column <= one.end
+            ),
+            None,
+        )
         if unknown is not None:
             whole, hint = unknown.message, unknown.hint or unknown.message
             return Text(cut(whole if len(whole) <= width else hint, width))

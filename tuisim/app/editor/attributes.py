@@ -42,7 +42,11 @@ class AttributeCheck:
         if tree is None or _ASKS_FIRST.search(text):
             return ()
         lines, definitions = program.text.split("\n"), _definitions(tree)
-        around = (path, program.prelude, *(ast.unparse(node) for node in tree.body if isinstance(node, _IMPORTS)))
+        around = (
+            path,
+            program.prelude,
+            *(ast.unparse(node) for node in tree.body if isinstance(node, _IMPORTS)),
+        )
         found = []
         for node, name in _uses(tree):
             row, at_dot = _place_after(lines, name)
@@ -86,7 +90,11 @@ def _uses(tree: ast.Module) -> Iterator[tuple[ast.Attribute, ast.Name]]:
     bound, definitions = Counter(_bound_names(tree)), _definitions(tree)
     for node in attributes:
         name = node.value
-        if isinstance(name, ast.Name) and node.attr not in made and bound[name.id] == (name.id in definitions):
+        if (
+            isinstance(name, ast.Name)
+            and node.attr not in made
+            and bound[name.id] == (name.id in definitions)
+        ):
             yield node, name
 
 
@@ -96,9 +104,17 @@ def _bound_names(tree: ast.Module) -> Iterator[str]:
         match node:
             case ast.Name(id=name, ctx=ast.Store() | ast.Del()) | ast.arg(arg=name):
                 yield name
-            case ast.FunctionDef(name=name) | ast.AsyncFunctionDef(name=name) | ast.ClassDef(name=name):
+            case (
+                ast.FunctionDef(name=name)
+                | ast.AsyncFunctionDef(name=name)
+                | ast.ClassDef(name=name)
+            ):
                 yield name
-            case ast.ExceptHandler(name=str(name)) | ast.MatchAs(name=str(name)) | ast.MatchStar(name=str(name)):
+            case (
+                ast.ExceptHandler(name=str(name))
+                | ast.MatchAs(name=str(name))
+                | ast.MatchStar(name=str(name))
+            ):
                 yield name
             case ast.MatchMapping(rest=str(name)):
                 yield name

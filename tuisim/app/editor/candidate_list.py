@@ -23,7 +23,11 @@ MOST_ROWS = 8
 MOST_WIDTH = 76
 LEAST_WIDTH = 24
 _GROUND, _CHOSEN_GROUND = Style(bgcolor=palette.FIELD), Style(bgcolor=palette.CHOSEN, bold=True)
-_NAME, _SIGNATURE, _HELP = Style(color=palette.WHITE), Style(color=palette.PALE), Style(color=palette.YELLOW)
+_NAME, _SIGNATURE, _HELP = (
+    Style(color=palette.WHITE),
+    Style(color=palette.PALE),
+    Style(color=palette.YELLOW),
+)
 _HELP_GROUND = Style(bgcolor=palette.RAISED)
 
 
@@ -35,11 +39,17 @@ def list_lines(candidates: Sequence[Candidate], chosen: int, width: int) -> list
     for at, one in enumerate(candidates[first : first + room], start=first):
         ground = _CHOSEN_GROUND if at == chosen else _GROUND
         after = one.signature or (f" {one.kind}" if one.kind else "")
-        row = cut_line([("▸" if at == chosen else " ", _NAME), (one.name, _NAME), (after, _SIGNATURE)], width - 1)
+        row = cut_line(
+            [("▸" if at == chosen else " ", _NAME), (one.name, _NAME), (after, _SIGNATURE)],
+            width - 1,
+        )
         lines.append(_padded([(text, style + ground) for text, style in row], width, ground))
     count = f" {chosen + 1}/{len(candidates)} " if len(candidates) > room else " "
     help_text = cut(candidates[chosen].help, width - 1 - len(count))
-    row = [(f" {help_text}".ljust(width - len(count)), _HELP + _HELP_GROUND), (count, _SIGNATURE + _HELP_GROUND)]
+    row = [
+        (f" {help_text}".ljust(width - len(count)), _HELP + _HELP_GROUND),
+        (count, _SIGNATURE + _HELP_GROUND),
+    ]
     return [*lines, row]
 
 
@@ -49,7 +59,9 @@ def _padded(line: Sequence[tuple[str, Style]], width: int, style: Style) -> Line
 
 def list_width(candidates: Sequence[Candidate], room: int) -> int:
     """Return the width of a list in cells, at most `room`."""
-    longest = max(max(len(one.name) + len(one.signature or one.kind), len(one.help)) for one in candidates)
+    longest = max(
+        max(len(one.name) + len(one.signature or one.kind), len(one.help)) for one in candidates
+    )
     return min(room, MOST_WIDTH, max(LEAST_WIDTH, longest + 3))
 
 
@@ -87,7 +99,9 @@ class CandidateList(Widget):
 
     ALLOW_SELECT = False
     DEFAULT_CSS = "CandidateList { overlay: screen; display: none; width: auto; height: auto; }"
-    KEYS: ClassVar[frozenset[str]] = frozenset({"up", "down", "pageup", "pagedown", "enter", "tab", "escape"})
+    KEYS: ClassVar[frozenset[str]] = frozenset(
+        {"up", "down", "pageup", "pagedown", "enter", "tab", "escape"}
+    )
 
     @dataclass
     class Chosen(Message):
@@ -110,7 +124,9 @@ class CandidateList(Widget):
         """Whether it is shown."""
         return bool(self._shown)
 
-    def open(self, candidates: tuple[Candidate, ...], begin: tuple[int, int], word: str, place: Offset) -> None:
+    def open(
+        self, candidates: tuple[Candidate, ...], begin: tuple[int, int], word: str, place: Offset
+    ) -> None:
         """Show candidates.
 
         Args:

@@ -37,7 +37,9 @@ _WORD_END = re.compile(r"[^\W\d]\w*$")
 _SENTENCE_END = re.compile(r"\.(?= [A-Z])")
 _COURSE = "from tuisim.shim.names.course import ColorSensor\n"
 _PYBRICKS = "tuisim.shim.pybricks."
-_NOT_OF_THE_BRICK = frozenset({"KIND", "ENDINGS", "SETTINGS_WHILE_ACTIVE", "brick", "device_port", "port", "sign"})
+_NOT_OF_THE_BRICK = frozenset(
+    {"KIND", "ENDINGS", "SETTINGS_WHILE_ACTIVE", "brick", "device_port", "port", "sign"}
+)
 """Names that only the simulated classes of Pybricks have."""
 _GENERAL = frozenset({"ev3dev2", "ev3dev2.sensor"})
 """Modules of the classes that all devices of `ev3dev2` share, which few programs use."""
@@ -45,9 +47,16 @@ _OF_THE_COURSE = frozenset({"reflected_light_intensity_pc", "full_reflected_ligh
 """Attributes that colour sensors have while a program runs, however they were made."""
 _LIBRARIES = ("ev3dev2", "tuisim.shim.names.course", "time")
 _USUAL = (
-    "on", "off", "on_for_.*",
-    "reflected_light_intensity.*", "color", "distance_centimeters", "angle", "is_pressed", "sleep",
-)  # fmt: skip
+    "on",
+    "off",
+    "on_for_.*",
+    "reflected_light_intensity.*",
+    "color",
+    "distance_centimeters",
+    "angle",
+    "is_pressed",
+    "sleep",
+)
 """Patterns of what most programs use of the libraries, in the order of a list."""
 _UNUSUAL = frozenset({"mro"})
 _EXTENSIONS = [path for path in sys.path if path.endswith("lib-dynload")]
@@ -82,11 +91,16 @@ class Signature:
 def word_before(line: str, column: int) -> str | None:
     """Return the word that is being typed, empty right after a dot; None if nothing can be completed there."""
     before = line[:column]
-    if any(start < column <= end and kind in ("string", "comment") for start, end, kind in spans(line)[0]):
+    if any(
+        start < column <= end and kind in ("string", "comment")
+        for start, end, kind in spans(line)[0]
+    ):
         return None
     if match := _WORD_END.search(before):
         return match.group()
-    return "" if re.search(r"[\w)\]}'\"]\.$", before) and not re.search(r"\b\d+\.$", before) else None
+    return (
+        "" if re.search(r"[\w)\]}'\"]\.$", before) and not re.search(r"\b\d+\.$", before) else None
+    )
 
 
 def in_call(lines: Sequence[str], row: int, column: int) -> bool:
@@ -94,7 +108,9 @@ def in_call(lines: Sequence[str], row: int, column: int) -> bool:
     depth = 0
     for at in range(row, max(-1, row - MOST_LINES_OF_CALL), -1):
         line = lines[at][:column] if at == row else lines[at]
-        hidden = [(start, end) for start, end, kind in spans(line)[0] if kind in ("string", "comment")]
+        hidden = [
+            (start, end) for start, end, kind in spans(line)[0] if kind in ("string", "comment")
+        ]
         for position in range(len(line) - 1, -1, -1):
             char = line[position]
             if char not in "()[]{}" or any(start <= position < end for start, end in hidden):
@@ -126,9 +142,15 @@ def candidates(text: str, path: str, row: int, column: int) -> tuple[Candidate, 
         script, first = _script(text, path)
         found: list[Completion] = _answer(lambda: script.complete(first + row + 1, column), [])
         after_dot = line[begin - 1 : begin] == "."
-        owner = _answer(lambda: _class_at(script, first + row + 1, begin - 1), "") if after_dot else ""
-        shown = sorted((one for one in found if _is_meant(one, word)), key=lambda one: _rank(one, word, owner))
-        described = (_answer(partial(_described, one), Candidate(one.name)) for one in shown[:MOST_DESCRIBED])
+        owner = (
+            _answer(lambda: _class_at(script, first + row + 1, begin - 1), "") if after_dot else ""
+        )
+        shown = sorted(
+            (one for one in found if _is_meant(one, word)), key=lambda one: _rank(one, word, owner)
+        )
+        described = (
+            _answer(partial(_described, one), Candidate(one.name)) for one in shown[:MOST_DESCRIBED]
+        )
         return *described, *(Candidate(one.name) for one in shown[MOST_DESCRIBED:])
 
 
@@ -139,7 +161,9 @@ def signature(text: str, path: str, row: int, column: int) -> Signature | None:
         found: list[Any] = _answer(lambda: script.get_signatures(first + row + 1, column), [])
         if not found:
             return None
-        return Signature(found[0].name, tuple(_parameter(one) for one in found[0].params), found[0].index)
+        return Signature(
+            found[0].name, tuple(_parameter(one) for one in found[0].params), found[0].index
+        )
 
 
 def members(text: str, path: str, row: int, column: int) -> frozenset[str] | None:
@@ -200,13 +224,21 @@ def _script(text: str, path: str) -> tuple[Script, int]:
     if prelude:
         prelude = imports + _COURSE + prelude.removeprefix(imports)
     folder = Path(path).parent
-    own = [str(_PACKAGE / "shim" / "names"), str(_PACKAGE.parent), *([str(folder.resolve())] if path else [])]
+    own = [
+        str(_PACKAGE / "shim" / "names"),
+        str(_PACKAGE.parent),
+        *([str(folder.resolve())] if path else []),
+    ]
     project = jedi.Project(folder, added_sys_path=own, smart_sys_path=False)
     environment = InterpreterEnvironment()
     # Compiled modules are imported to look into them: only those of Python and of installed packages.
-    installed = [*dict.fromkeys(map(sysconfig.get_path, ("stdlib", "platstdlib", "purelib", "platlib")))]
+    installed = [
+        *dict.fromkeys(map(sysconfig.get_path, ("stdlib", "platstdlib", "purelib", "platlib")))
+    ]
     environment.get_sys_path = lambda: [*installed, *_EXTENSIONS]
-    return jedi.Script(prelude + program.text, environment=environment, project=project), prelude.count("\n")
+    return jedi.Script(
+        prelude + program.text, environment=environment, project=project
+    ), prelude.count("\n")
 
 
 def _is_meant(one: Completion, word: str) -> bool:
@@ -243,18 +275,30 @@ def _rank(one: Completion, word: str, owner: str) -> tuple[int, ...]:
     is_private, is_general = one.name.startswith("_"), module in _GENERAL
     use = len(_USUAL)
     if module.startswith(_LIBRARIES):
-        use = next((at for at, pattern in enumerate(_USUAL) if re.fullmatch(pattern, one.name)), use)
+        use = next(
+            (at for at, pattern in enumerate(_USUAL) if re.fullmatch(pattern, one.name)), use
+        )
     is_inherited = is_internal = False
     if owner and use == len(_USUAL):
         is_inherited = not _answer(lambda: str(one.full_name), "").startswith(f"{owner}.")
         # What methods assign, and what its author has not described, is seldom meant.
         is_internal = one.type == "statement" or not _answer(partial(one.docstring, raw=True), "")
-    return not one.name.startswith(word), is_private, is_constant, is_general, use, is_internal, is_inherited
+    return (
+        not one.name.startswith(word),
+        is_private,
+        is_constant,
+        is_general,
+        use,
+        is_internal,
+        is_inherited,
+    )
 
 
 def _described(one: Completion) -> Candidate:
     signatures = one.get_signatures()
-    parameters = ", ".join(_parameter(parameter) for parameter in signatures[0].params) if signatures else ""
+    parameters = (
+        ", ".join(_parameter(parameter) for parameter in signatures[0].params) if signatures else ""
+    )
     called = f"({parameters})" if signatures and one.type in ("function", "class") else ""
     kind = "" if one.type in ("statement", "function", "instance") else one.type
     documentation = "" if one.type in ("keyword", "instance") else one.docstring(raw=True)

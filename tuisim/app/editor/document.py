@@ -47,8 +47,15 @@ class Document:
         loader: Gets the edited text.
     """
 
-    def __init__(self, app: LabHost, run_controller: RunController, panel_area: PanelArea, loader: Loader) -> None:
-        self._app, self._run_controller, self._panel_area, self._loader = app, run_controller, panel_area, loader
+    def __init__(
+        self, app: LabHost, run_controller: RunController, panel_area: PanelArea, loader: Loader
+    ) -> None:
+        self._app, self._run_controller, self._panel_area, self._loader = (
+            app,
+            run_controller,
+            panel_area,
+            loader,
+        )
         self._program: Program | None = None
         """The next program to run unless the text was edited."""
         self._name = self._path = self._text = self._saved = self._applied = ""
@@ -166,7 +173,10 @@ class Document:
             self._ran = None
         elif self._ran is None or self._ran[0] is not recording:
             as_run = recording.program.text
-            self._ran = recording, self._applied if self._runnable(self._applied) == as_run else as_run
+            self._ran = (
+                recording,
+                self._applied if self._runnable(self._applied) == as_run else as_run,
+            )
         if code is not None and self._ran is not None:
             code.set_running(self._ran[1], self._ran[0].program.name == self._name)
         elif code is not None:
@@ -225,7 +235,9 @@ class Document:
         lines = differing_lines(self._text, draft.text)
         text = f"{name} was edited on {when} and not saved: {counted(lines, 'line differs', 'lines differ')}."
         answers = (("r", "Restore the edited text"), ("d", "Discard it"))
-        self._app.push_screen(Question("Unsaved work", text, answers), lambda answer: self._offered(draft, answer))
+        self._app.push_screen(
+            Question("Unsaved work", text, answers), lambda answer: self._offered(draft, answer)
+        )
 
     def _offered(self, draft: Draft, answer: str | None) -> None:
         if answer == "d":
@@ -263,7 +275,10 @@ class Document:
 
         answers = (("s", "Save them"), ("d", "Discard them"))
         question = Question(
-            "Unsaved changes", f"{self._name} has changes that are not saved.", answers, "continues editing"
+            "Unsaved changes",
+            f"{self._name} has changes that are not saved.",
+            answers,
+            "continues editing",
         )
         self._app.push_screen(question, answered)
 
@@ -303,7 +318,10 @@ class Document:
 
     @property
     def _is_applied(self) -> bool:
-        return self._program is None or (self._text, self._path) == (self._applied, self._program.path)
+        return self._program is None or (self._text, self._path) == (
+            self._applied,
+            self._program.path,
+        )
 
     def _mistake(self) -> Mistake | None:
         """Return the mistake in the text, and mark its line."""
@@ -395,7 +413,9 @@ class Document:
             if target:
                 self._saved_to(target, then)
 
-        self._app.push_screen(ProgramDialog("program", str(Path.cwd() / self._name), self._write), saved)
+        self._app.push_screen(
+            ProgramDialog("program", str(Path.cwd() / self._name), self._write), saved
+        )
 
     def when_in_file(self, do: Callable[[Path], None]) -> None:
         """Call a function with the file of the program, which is saved before if necessary."""
@@ -427,7 +447,9 @@ class Document:
         if path.suffix != ".py":
             raise ConfigError("is not a valid program name", "it ends in .py", file=str(path))
         if is_protected(path):
-            raise ConfigError("is an example, or cannot be written", "choose another file", file=str(path))
+            raise ConfigError(
+                "is an example, or cannot be written", "choose another file", file=str(path)
+            )
         write_text(path, self._text, self._form)
 
     def _saved_to(self, path: Path, then: Callable[[], None]) -> None:
@@ -438,7 +460,9 @@ class Document:
         if not self._run_controller.in_run and not self._is_applied and (moved or not mistake):
             self._apply_text()
         if mistake:
-            self._app.complain(TuisimError(f"{self._name} is saved, but cannot run: {mistake.message}"))
+            self._app.complain(
+                TuisimError(f"{self._name} is saved, but cannot run: {mistake.message}")
+            )
         else:
             self._app.say(f"{self._name} is saved")
         then()

@@ -32,7 +32,9 @@ def line_values(text: str, inspected: Inspected) -> dict[int, tuple[Variable, ..
     frame = inspected.stack[inspected.frame] if inspected.frame < len(inspected.stack) else None
     if tree is None:
         return {}
-    outer = next((one for one in reversed(inspected.stack) if not one.file and one.function == MODULE), None)
+    outer = next(
+        (one for one in reversed(inspected.stack) if not one.file and one.function == MODULE), None
+    )
     if frame is None or (frame.function == MODULE and not frame.file):
         return _values_in(tree, frame, inspected.variables)
     found = _values_in(tree, outer, inspected.globals)
@@ -69,9 +71,13 @@ def _values_in(
     """Return the variables that each line of a scope has assigned; without a frame, the scope has been left."""
     by_name = {variable.name: variable for variable in variables}
     here = frame.line if frame else 0
-    loops = [(node.lineno, node.end_lineno or 0) for node in _nodes(scope) if isinstance(node, _LOOPS)]
+    loops = [
+        (node.lineno, node.end_lineno or 0) for node in _nodes(scope) if isinstance(node, _LOOPS)
+    ]
     # The outermost loop around the current line.
-    first, last = min(((start, end) for start, end in loops if start <= here <= end), default=(0, -1))
+    first, last = min(
+        ((start, end) for start, end in loops if start <= here <= end), default=(0, -1)
+    )
     found: dict[int, dict[str, Variable]] = {}
     for line, name, constant in _assignments(scope):
         variable = by_name.get(name)

@@ -28,7 +28,9 @@ _STORES = frozenset({"STORE_NAME", "STORE_GLOBAL"})
 _READS_ANY_NAME = frozenset({"eval", "exec", "globals", "locals", "vars"})
 """Functions that may define names that do not appear in the program."""
 _BUILTINS = frozenset(dir(builtins))
-_OF_EVERY_MODULE = frozenset({"__file__", "__builtins__", "__annotations__", "__path__", "__cached__"})
+_OF_EVERY_MODULE = frozenset(
+    {"__file__", "__builtins__", "__annotations__", "__path__", "__cached__"}
+)
 _WELL_KNOWN = ("time", "random", "math", "statistics", "threading", "datetime")
 """Modules of the standard library that programs for robots use, those first that a name is looked for in first."""
 _WORD = re.compile(r"[^\W\d]\w*")
@@ -52,7 +54,11 @@ class UnknownName:
     @property
     def message(self) -> str:
         """What is wrong, and the hint."""
-        wrong = f"`{self.owner}` has no `{self.name}`" if self.owner else f"`{self.name}` is not defined"
+        wrong = (
+            f"`{self.owner}` has no `{self.name}`"
+            if self.owner
+            else f"`{self.name}` is not defined"
+        )
         return f"{wrong}{': ' if self.hint else ''}{self.hint}"
 
 
@@ -146,8 +152,15 @@ def _search(code: types.CodeType, found: _Found, is_module: bool = True) -> None
             to.add(instruction.argval)
     for instruction in dis.get_instructions(code):
         place = instruction.positions
-        if instruction.opname in _LOADS and instruction.argval not in own and place and place.lineno is not None:
-            found.loaded[place.lineno, place.col_offset or 0, place.end_col_offset or 0] = instruction.argval
+        if (
+            instruction.opname in _LOADS
+            and instruction.argval not in own
+            and place
+            and place.lineno is not None
+        ):
+            found.loaded[place.lineno, place.col_offset or 0, place.end_col_offset or 0] = (
+                instruction.argval
+            )
     if not code.co_name.startswith("<"):
         found.within.update(dict.fromkeys(code.co_varnames, code.co_name))
     for inner in code.co_consts:
@@ -177,12 +190,21 @@ def _modules() -> Mapping[str, str]:
 def _functions() -> Mapping[str, str]:
     """Return the module of each function of the standard library that programs for robots use."""
     modules = {name: import_module(name) for name in reversed(_WELL_KNOWN)}
-    return {name: module for module, made in modules.items() for name in dir(made) if _is_function(made, name)}
+    return {
+        name: module
+        for module, made in modules.items()
+        for name in dir(made)
+        if _is_function(made, name)
+    }
 
 
 def _is_function(module: types.ModuleType, name: str) -> bool:
     value = getattr(module, name)
-    return name[0] != "_" and callable(value) and getattr(value, "__module__", None) in (module.__name__, None)
+    return (
+        name[0] != "_"
+        and callable(value)
+        and getattr(value, "__module__", None) in (module.__name__, None)
+    )
 
 
 def _hint(name: str, follows: str, own: set[str], within: Mapping[str, str]) -> str:
@@ -197,7 +219,9 @@ def _hint(name: str, follows: str, own: set[str], within: Mapping[str, str]) -> 
         return did_you_mean([f"`{close}`"])
     if module := _modules().get(name):
         return f"`from {module} import {name}`"
-    return "put `# %%sim_magic_preloaded` into line 1" if name in _prelude_names("preloaded") else ""
+    return (
+        "put `# %%sim_magic_preloaded` into line 1" if name in _prelude_names("preloaded") else ""
+    )
 
 
 def likely(name: str, names: Set[str]) -> str:

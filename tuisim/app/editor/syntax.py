@@ -50,7 +50,9 @@ def spans(line: str, before: str = "") -> tuple[list[Span], str]:
     while True:
         if state:
             closed = _CLOSING[state].match(line, at)
-            start = found.pop()[0] if found and found[-1][1] == at and found[-1][2] == "string" else at
+            start = (
+                found.pop()[0] if found and found[-1][1] == at and found[-1][2] == "string" else at
+            )
             end = closed.end() if closed else len(line)
             if end > start:
                 found.append((start, end, "string"))
@@ -66,7 +68,13 @@ def spans(line: str, before: str = "") -> tuple[list[Span], str]:
             kind = "string"
         elif kind == "word":
             word = match.group()
-            kind = "keyword" if keyword.iskeyword(word) else "name" if named or word in _BUILTINS else ""
+            kind = (
+                "keyword"
+                if keyword.iskeyword(word)
+                else "name"
+                if named or word in _BUILTINS
+                else ""
+            )
             named = word in ("def", "class")
         if kind:
             found.append((match.start(), at, kind))

@@ -48,7 +48,11 @@ def read_text(path: Path) -> tuple[str, Form]:
         raise ConfigError(f"cannot be read: {error.strerror or error}", file=str(path)) from None
     text, encoding = decode_source(data, str(path))
     ends = {end: len(re.findall(pattern, text)) for end, pattern in _ENDS.items()}
-    form = Form(encoding.removesuffix("-sig"), data.startswith(codecs.BOM_UTF8), max(ends, key=lambda end: ends[end]))
+    form = Form(
+        encoding.removesuffix("-sig"),
+        data.startswith(codecs.BOM_UTF8),
+        max(ends, key=lambda end: ends[end]),
+    )
     return text.replace("\r\n", "\n").replace("\r", "\n"), form
 
 
@@ -75,11 +79,17 @@ def write_text(path: Path, text: str, form: Form) -> None:
 def _encoded(text: str, form: Form, path: Path) -> bytes:
     try:
         # The first two lines may name another encoding by now.
-        encoding, _ = tokenize.detect_encoding(io.BytesIO(text.encode("utf-8", "surrogateescape")).readline)
-        wanted = form.encoding if encoding == "utf-8" and _is_named(form.encoding, text) else encoding
+        encoding, _ = tokenize.detect_encoding(
+            io.BytesIO(text.encode("utf-8", "surrogateescape")).readline
+        )
+        wanted = (
+            form.encoding if encoding == "utf-8" and _is_named(form.encoding, text) else encoding
+        )
         return text.replace("\n", form.newline).encode(wanted)
     except (SyntaxError, UnicodeError, LookupError) as error:
-        raise ConfigError(f"cannot be written: {error}", "change that or the coding line", file=str(path)) from None
+        raise ConfigError(
+            f"cannot be written: {error}", "change that or the coding line", file=str(path)
+        ) from None
 
 
 def _is_named(encoding: str, text: str) -> bool:
@@ -91,7 +101,9 @@ def _is_named(encoding: str, text: str) -> bool:
 def is_protected(path: Path) -> bool:
     """Return whether a program must not be overwritten: it is an example, or read-only."""
     examples = programs_folder().resolve()
-    return path.resolve().parent == examples or (os.path.exists(path) and not os.access(path, os.W_OK))
+    return path.resolve().parent == examples or (
+        os.path.exists(path) and not os.access(path, os.W_OK)
+    )
 
 
 FOLDER = "drafts"
@@ -110,7 +122,11 @@ class Draft:
 
 def file_of_program(folder: str, path: str) -> Path:
     """Return the file, in a folder of the app's data, that belongs to a program, given by its path or name."""
-    return home_folder() / folder / f"{hashlib.sha256(path.encode(errors='surrogateescape')).hexdigest()[:24]}.json"
+    return (
+        home_folder()
+        / folder
+        / f"{hashlib.sha256(path.encode(errors='surrogateescape')).hexdigest()[:24]}.json"
+    )
 
 
 def write_json(file: Path, data: object) -> None:
@@ -131,7 +147,9 @@ def keep_draft(path: str, text: str) -> None:
         write_json(file, asdict(Draft(path, text, time.time())))
     except OSError as error:
         reason = error.strerror or error
-        raise ConfigError(f"unsaved changes cannot be backed up: {reason}", "save it soon", file=str(file)) from None
+        raise ConfigError(
+            f"unsaved changes cannot be backed up: {reason}", "save it soon", file=str(file)
+        ) from None
 
 
 def find_draft(path: str) -> Draft | None:

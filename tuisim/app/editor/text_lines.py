@@ -69,20 +69,26 @@ def places(lines: Sequence[str], wanted: str) -> list[tuple[int, int]]:
         return []
     flags = re.IGNORECASE if wanted == wanted.lower() else 0
     pattern = re.compile(re.escape(wanted), flags)
-    return [(at, match.start()) for at, line in enumerate(lines) for match in pattern.finditer(line)]
+    return [
+        (at, match.start()) for at, line in enumerate(lines) for match in pattern.finditer(line)
+    ]
 
 
 def code_line(lines: Sequence[str], line: int) -> int:
     """Return a line, or the next one below it, that is more than a comment, a magic or blank; from 1, 0 if none is."""
     rest = enumerate(lines[line - 1 :], line)
-    return next((at for at, text in rest if text.strip() and not text.lstrip().startswith(("#", "%"))), 0)
+    return next(
+        (at for at, text in rest if text.strip() and not text.lstrip().startswith(("#", "%"))), 0
+    )
 
 
 def differing_lines(one: str, other: str) -> int:
     """Return how many lines differ between two texts."""
     matcher = SequenceMatcher(None, source_lines(one), source_lines(other), autojunk=False)
     changes = (op for op in matcher.get_opcodes() if op[0] != "equal")
-    return sum(max(to - start, to_other - start_other) for _, start, to, start_other, to_other in changes)
+    return sum(
+        max(to - start, to_other - start_other) for _, start, to, start_other, to_other in changes
+    )
 
 
 def same_lines(one: Sequence[str], other: Sequence[str]) -> int:

@@ -29,7 +29,11 @@ _PLAIN = ("not", "one")
 """Words of a question that say too little to stand out."""
 STANDS_OUT = Style(bold=True, color=palette.WHITE)
 """A word of the question."""
-_SECTION, _PAGE, _TEXT = Style(bold=True, color=palette.BLUE), Style(color=palette.SOFT), Style(color=palette.INK)
+_SECTION, _PAGE, _TEXT = (
+    Style(bold=True, color=palette.BLUE),
+    Style(color=palette.SOFT),
+    Style(color=palette.INK),
+)
 
 
 class AnswerList(OptionList):

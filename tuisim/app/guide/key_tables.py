@@ -77,18 +77,26 @@ def _table_of(actions: Mapping[str, Action[Any, Any]]) -> Table:
 
 def analyser_keys() -> Table:
     """Return the keys of the analyser."""
-    return Table(("key", "does", "group"), _keys(_actions("tuisim.app.analyser.actions.keys").values()))
+    return Table(
+        ("key", "does", "group"), _keys(_actions("tuisim.app.analyser.actions.keys").values())
+    )
 
 
 def editor_keys() -> Table:
     """Return the keys of the code panel."""
-    return Table(("key", "does"), [(" ".join(map(code, keys.split())), does) for keys, does in EDITOR_KEYS])
+    return Table(
+        ("key", "does"), [(" ".join(map(code, keys.split())), does) for keys, does in EDITOR_KEYS]
+    )
 
 
 def panels() -> Table:
     """Return the panels, their keys and from which size of terminal they are shown at the start."""
     rows = [
-        (code(label_of_key(one.key)), one.title, f"from a {one.sizes[0]} terminal" if one.sizes else "when you open it")
+        (
+            code(label_of_key(one.key)),
+            one.title,
+            f"from a {one.sizes[0]} terminal" if one.sizes else "when you open it",
+        )
         for one in PANELS.values()
     ]
     return Table(("key", "panel", "shown"), rows)

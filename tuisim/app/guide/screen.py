@@ -24,7 +24,14 @@ from tuisim.app.guide.answers import AnswerList, name_of
 from tuisim.data_class import dataclass
 from tuisim.guide.catalogue import CONTENTS, pages
 from tuisim.guide.search import SearchResult, search
-from tuisim.guide.text import NO_WORDS, end_of_passage, headings_in, linked_names, page_lines, rows_of
+from tuisim.guide.text import (
+    NO_WORDS,
+    end_of_passage,
+    headings_in,
+    linked_names,
+    page_lines,
+    rows_of,
+)
 from tuisim.terminal.text_runs import Line
 
 
@@ -183,15 +190,22 @@ class _Page(VerticalScroll):
             return
         name, heading = self.place
         if not name:
-            groups = {group: self._keys.groups[group] for group in (*self._topic.groups, *self._keys.groups)}
+            groups = {
+                group: self._keys.groups[group]
+                for group in (*self._topic.groups, *self._keys.groups)
+            }
             self._text.update(Text(f"{self._keys.start}\n\n").append_text(key_table(groups, width)))
             self.scroll_home(animate=False)
             return
         lines = page_lines(pages()[name], width)
         top, row = rows_of(lines, heading, self._passage)
         drawn = _text_of(lines, range(row, end_of_passage(lines, row, self._passage)))
-        groups = {group: self._keys.groups[group] for group in self._topic.groups if self._with_keys}
-        self._text.update(key_table(groups, width).append("\n").append_text(drawn) if groups else drawn)
+        groups = {
+            group: self._keys.groups[group] for group in self._topic.groups if self._with_keys
+        }
+        self._text.update(
+            key_table(groups, width).append("\n").append_text(drawn) if groups else drawn
+        )
         # The heading stays in sight where the passage does, too; the end of another passage does not.
         near = row - top < self.scrollable_content_region.height - _ROWS_OF_PASSAGE
         first = top if near else row if lines[row - 1] else row - 1
@@ -227,8 +241,15 @@ class GuideScreen(Dialog[None]):
 
     def is_ready_for(self, event: events.Event) -> bool:
         """Return whether what a key is meant for is there: the results of the search, where it leads to them."""
-        leads_there = isinstance(event, events.Key) and event.key in ("enter", "down", "tab", "shift+tab")
-        return super().is_ready_for(event) and not (leads_there and self._answered != self._question)
+        leads_there = isinstance(event, events.Key) and event.key in (
+            "enter",
+            "down",
+            "tab",
+            "shift+tab",
+        )
+        return super().is_ready_for(event) and not (
+            leads_there and self._answered != self._question
+        )
 
     def content(self) -> ComposeResult:
         yield Input(placeholder="Search: words or a question", compact=True, id="search")
@@ -310,7 +331,9 @@ class GuideScreen(Dialog[None]):
         """Return the names of an answer's page and section, the last of them if there is no room for all."""
         names = [self.TITLE_TEXT, *filter(None, reversed(name_of(one)))]
         titles = [" · ".join(names[first:]) for first in range(len(names))]
-        return next((title for title in titles if len(title) <= self._room.width - _CORNERS), titles[-1])
+        return next(
+            (title for title in titles if len(title) <= self._room.width - _CORNERS), titles[-1]
+        )
 
     @on(Tree.NodeHighlighted)
     def _preview(self, event: Tree.NodeHighlighted[Place | None]) -> None:

@@ -124,7 +124,8 @@ def _stacks(columns: Sequence[Sequence[str]], fixed: Mapping[int, int], width: i
     rest = 1 - sum(fixed.values()) / width
     weights = {at: max(PANELS[panel].weight for panel in columns[at]) for at in free}
     shares = [
-        fixed[at] / width if at in fixed else rest * weights[at] / sum(weights.values()) for at in range(len(nodes))
+        fixed[at] / width if at in fixed else rest * weights[at] / sum(weights.values())
+        for at in range(len(nodes))
     ]
     return joined(Axis.COLUMNS, nodes, shares=shares)
 
@@ -141,20 +142,28 @@ def _strip(panels: Sequence[str], width: int, height: int) -> list[Node]:
     if others != panels and others and width < columns * _CODE_COLS:
         stacked = ["code", *_strip(others, width, height)]
         if sum(fair_rows(node, width) for node in stacked) <= height:
-            return [Split(Axis.ROWS, tuple(stacked), least=(0, *(_ERROR_ROWS for _ in stacked[1:])))]
+            return [
+                Split(Axis.ROWS, tuple(stacked), least=(0, *(_ERROR_ROWS for _ in stacked[1:])))
+            ]
     count = ceil(len(panels) / columns)
-    stacks = [joined(Axis.ROWS, panels[first : first + count]) for first in range(0, len(panels), count)]
+    stacks = [
+        joined(Axis.ROWS, panels[first : first + count]) for first in range(0, len(panels), count)
+    ]
     return [joined(Axis.COLUMNS, stacks)]
 
 
 def _wide(panels: Sequence[str], width: int, height: int) -> Node:
     """The world above the bottom strip, and a column beside both."""
-    side, strip, main = (_in(panels, where) for where in (PanelPlace.SIDE, PanelPlace.BOTTOM, PanelPlace.MAIN))
+    side, strip, main = (
+        _in(panels, where) for where in (PanelPlace.SIDE, PanelPlace.BOTTOM, PanelPlace.MAIN)
+    )
     if not strip and not main:
         return joined(Axis.ROWS, side)
     beside = side_width(width, side) if side else 0
     wide = width - beside
-    left = joined(Axis.ROWS, [*main, *_strip(strip, wide, height - (ideal_rows(wide) if main else 0))])
+    left = joined(
+        Axis.ROWS, [*main, *_strip(strip, wide, height - (ideal_rows(wide) if main else 0))]
+    )
     if not side:
         return left
     shares = (1 - beside / width, beside / width)
@@ -163,7 +172,9 @@ def _wide(panels: Sequence[str], width: int, height: int) -> Node:
 
 def _under(panels: Sequence[str], width: int, height: int) -> Node:
     """The world in the whole width, and everything else in columns below it."""
-    side, strip, main = (_in(panels, where) for where in (PanelPlace.SIDE, PanelPlace.BOTTOM, PanelPlace.MAIN))
+    side, strip, main = (
+        _in(panels, where) for where in (PanelPlace.SIDE, PanelPlace.BOTTOM, PanelPlace.MAIN)
+    )
     most = max(1, width // _COLUMN_COLS)
     if most == 1 or not side + strip:
         return joined(Axis.ROWS, [*main, *side, *strip])
@@ -183,7 +194,9 @@ def _under(panels: Sequence[str], width: int, height: int) -> Node:
             columns[-2:] = [columns[-2] + columns[-1]]
     columns = growing + packed
     fixed = min(side_width(width, side), width // len(columns))
-    below = _stacks(columns, {len(growing) + at: fixed for at in range(len(packed))} if growing else {}, width)
+    below = _stacks(
+        columns, {len(growing) + at: fixed for at in range(len(packed))} if growing else {}, width
+    )
     return joined(Axis.ROWS, [*main, below])
 
 
@@ -207,7 +220,9 @@ def _low(panels: Sequence[str], width: int, height: int) -> Node:
     if not main or not beside:
         top: list[Node] = [*main] or ([joined(Axis.ROWS, beside)] if beside else [])
     else:
-        share = min(max(ideal_columns(above), PANELS["world"].min_cols), width - MIN_STRIP_COLS) / width
+        share = (
+            min(max(ideal_columns(above), PANELS["world"].min_cols), width - MIN_STRIP_COLS) / width
+        )
         top = [joined(Axis.COLUMNS, [*main, _with_pose(beside, above)], shares=(share, 1 - share))]
     below = joined(Axis.ROWS, roomy)
     if not top:
@@ -242,13 +257,22 @@ def _halves(first: Sequence[str], second: Sequence[str], share: float) -> Form:
     def form(panels: Sequence[str], width: int, height: int) -> Node:
         if is_tall(width, height) and width < 2 * _COLUMN_COLS:
             return joined(
-                Axis.ROWS, [panel for panel in dict.fromkeys(("world", *first, *second, *panels)) if panel in panels]
+                Axis.ROWS,
+                [
+                    panel
+                    for panel in dict.fromkeys(("world", *first, *second, *panels))
+                    if panel in panels
+                ],
             )
         rest = [panel for panel in panels if panel not in {*first, *second}]
         left = [panel for panel in first if panel in panels] + _in(rest, PanelPlace.BOTTOM)
         right = [panel for panel in second if panel in panels] + _in(rest, PanelPlace.SIDE)
         wide = share or 1 - side_width(width, right) / width
-        columns = [joined(Axis.ROWS, _paired(column, round((1 - wide) * width))) for column in (left, right) if column]
+        columns = [
+            joined(Axis.ROWS, _paired(column, round((1 - wide) * width)))
+            for column in (left, right)
+            if column
+        ]
         return joined(Axis.COLUMNS, columns, shares=(wide, 1 - wide)[: len(columns)])
 
     return form
@@ -259,7 +283,12 @@ def _paired(panels: Sequence[str], width: int) -> list[Node]:
     nodes: list[Node] = []
     for panel in panels:
         last = nodes[-1] if nodes else None
-        pair = isinstance(last, str) and _is_small(last) and _is_small(panel) and width >= 2 * side_width(112)
+        pair = (
+            isinstance(last, str)
+            and _is_small(last)
+            and _is_small(panel)
+            and width >= 2 * side_width(112)
+        )
         if pair and last is not None:
             nodes[-1] = joined(Axis.COLUMNS, [last, panel])
         else:
@@ -291,11 +320,18 @@ class _Plan:
 _SHOWN = tuple(info.id for info in PANELS.values() if info.sizes)
 
 _PLANS: Mapping[Preset, _Plan] = {
-    Preset.STANDARD: _Plan((), _SHOWN, (_wide, _under), ("world", "instrumentation", "output"), compact=False),
+    Preset.STANDARD: _Plan(
+        (), _SHOWN, (_wide, _under), ("world", "instrumentation", "output"), compact=False
+    ),
     Preset.DRIVE: _Plan(
         ("world", "instrumentation", "positioning"),
         ("arrays", "output", "chart", "controls"),
-        (_halves(("world", "positioning", "output"), ("instrumentation", "arrays", "controls"), 0.0), _under),
+        (
+            _halves(
+                ("world", "positioning", "output"), ("instrumentation", "arrays", "controls"), 0.0
+            ),
+            _under,
+        ),
         ("world", "instrumentation", "output"),
         beside=("arrays", "output"),
     ),
@@ -311,7 +347,7 @@ _PLANS: Mapping[Preset, _Plan] = {
         (_halves(("chart",), ("world", "arrays", "instrumentation", "output"), 0.58),),
         ("chart", "world", "instrumentation", "output"),
     ),
-}  # fmt: skip
+}
 
 
 def core_panels(preset: Preset, width: int, height: int) -> tuple[str, ...]:
@@ -320,7 +356,9 @@ def core_panels(preset: Preset, width: int, height: int) -> tuple[str, ...]:
     return plan.low if is_low(width, height) else plan.core
 
 
-def wanted_panels(preset: Preset, asked: Mapping[str, bool], width: int, height: int) -> tuple[list[str], list[str]]:
+def wanted_panels(
+    preset: Preset, asked: Mapping[str, bool], width: int, height: int
+) -> tuple[list[str], list[str]]:
     """Return the panels to show, by priority, and those for what space is left.
 
     Args:
@@ -331,7 +369,9 @@ def wanted_panels(preset: Preset, asked: Mapping[str, bool], width: int, height:
     """
     plan, size = _PLANS[preset], size_class(width, height + 1)
     columns = max(0, width // _COLUMN_COLS - len(plan.core) + 1)
-    usual = plan.core + plan.beside[:columns] or tuple(panel for panel in _SHOWN if size in PANELS[panel].sizes)
+    usual = plan.core + plan.beside[:columns] or tuple(
+        panel for panel in _SHOWN if size in PANELS[panel].sizes
+    )
     if is_low(width, height):
         usual = plan.low
     latest = [panel for panel, on in reversed(list(asked.items())) if on]
@@ -348,7 +388,9 @@ def wanted_panels(preset: Preset, asked: Mapping[str, bool], width: int, height:
     return wanted, fill
 
 
-def _kept(form: Form, panels: Sequence[str], fill: Sequence[str], width: int, height: int) -> list[str]:
+def _kept(
+    form: Form, panels: Sequence[str], fill: Sequence[str], width: int, height: int
+) -> list[str]:
     """Return the panels that fit: the wanted ones with what they need, the others where all are shown well."""
     kept: list[str] = []
     for panel in panels:
@@ -365,7 +407,12 @@ def _kept(form: Form, panels: Sequence[str], fill: Sequence[str], width: int, he
 def mat_cells(box: PanelBox) -> float:
     """Return the area of the mat in a world panel, in cells."""
     width, height = box.width - EDGES, box.height - EDGES - TIME_BAR_ROWS
-    return min(width, 2 * height * FIELD_WIDTH_MM / FIELD_HEIGHT_MM) ** 2 * FIELD_HEIGHT_MM / FIELD_WIDTH_MM / 2
+    return (
+        min(width, 2 * height * FIELD_WIDTH_MM / FIELD_HEIGHT_MM) ** 2
+        * FIELD_HEIGHT_MM
+        / FIELD_WIDTH_MM
+        / 2
+    )
 
 
 def _fills(layout: PanelLayout, share: float) -> bool:
@@ -377,7 +424,9 @@ def _fills(layout: PanelLayout, share: float) -> bool:
 def _score(layout: PanelLayout, wanted: int, crowded: bool) -> tuple[int, float]:
     box = layout.boxes.get("world")
     cells = mat_cells(box) if box else 0.0
-    return wanted, cells * (1.0 if _fills(layout, 1 - _MAX_WASTE) else _POOR) * (_POOR**2 if crowded else 1.0)
+    return wanted, cells * (1.0 if _fills(layout, 1 - _MAX_WASTE) else _POOR) * (
+        _POOR**2 if crowded else 1.0
+    )
 
 
 def arrange(
@@ -410,7 +459,9 @@ def arrange(
     if best is None:
         return PanelLayout(left_out=tuple(panels))
     shown = panels_of(best[1])
-    layout = PanelLayout(left_out=tuple(panel for panel in panels if panel not in shown), wanted=panels)
+    layout = PanelLayout(
+        left_out=tuple(panel for panel in panels if panel not in shown), wanted=panels
+    )
     place(best[1], PanelBox(0, 0, width, height), layout)
     return layout
 
@@ -441,7 +492,11 @@ def stacked(upper: str, lower: str, width: int, height: int) -> PanelLayout:
 
 
 def with_room(
-    panel: str, panels: Sequence[str], least: tuple[int, int], size: tuple[int, int], preset: Preset = Preset.STANDARD
+    panel: str,
+    panels: Sequence[str],
+    least: tuple[int, int],
+    size: tuple[int, int],
+    preset: Preset = Preset.STANDARD,
 ) -> list[str]:
     """Return the panels to show so that one has room: as they are, else without those beside it, else it alone.
 
@@ -495,7 +550,10 @@ def save_layout(size: TerminalSize, layout: KeptLayout) -> None:
     # A list: the order counts, and the file sorts the keys of tables.
     panels = [[panel, on] for panel, on in layout.asked.items()]
     with suppress(OSError):
-        keep(_NAME, {**_table(preference(_NAME)), size: {"preset": layout.preset.value, "panels": panels}})
+        keep(
+            _NAME,
+            {**_table(preference(_NAME)), size: {"preset": layout.preset.value, "panels": panels}},
+        )
 
 
 def drop_former() -> bool:
@@ -505,7 +563,11 @@ def drop_former() -> bool:
         Whether there was any.
     """
     kept = _table(preference(_NAME))
-    known = {part: of for part, of in kept.items() if part != "borders" and _table(of).get("preset") != "teach"}
+    known = {
+        part: of
+        for part, of in kept.items()
+        if part != "borders" and _table(of).get("preset") != "teach"
+    }
     if known == kept:
         return False
     with suppress(OSError):

@@ -72,7 +72,11 @@ class PanelLayout:
 
 def ideal_rows(width: int) -> int:
     """Return the rows that a world panel of this width needs, so that the mat fills it."""
-    return round((width - EDGES) * FIELD_HEIGHT_MM / FIELD_WIDTH_MM / _CELL_ASPECT) + EDGES + TIME_BAR_ROWS
+    return (
+        round((width - EDGES) * FIELD_HEIGHT_MM / FIELD_WIDTH_MM / _CELL_ASPECT)
+        + EDGES
+        + TIME_BAR_ROWS
+    )
 
 
 def ideal_columns(rows: int) -> int:
@@ -93,7 +97,11 @@ def joined(axis: Axis, parts: Sequence[Node], shares: Sequence[float] = ()) -> N
 
 def panels_of(node: Node) -> tuple[str, ...]:
     """Return the panels in a node."""
-    return (node,) if isinstance(node, str) else tuple(panel for part in node.parts for panel in panels_of(part))
+    return (
+        (node,)
+        if isinstance(node, str)
+        else tuple(panel for part in node.parts for panel in panels_of(part))
+    )
 
 
 def _weight(node: Node) -> int:

@@ -104,19 +104,64 @@ PANELS: Mapping[str, PanelInfo] = {
     for panel in (
         PanelInfo("world", "World", "W", "world:World", _MAIN, _ALL, 8, 14, 14),
         PanelInfo("lesson", "Lesson", "E", "lesson:LessonPanel", _SIDE, (), 11, 24, 40, grows=True),
-        PanelInfo("instrumentation", "Instrumentation", "i", "instrumentation:Instrumentation", _SIDE, _ALL, 4, 13, 16),
-        PanelInfo("output", "Output", "O", "output:Output", _BOTTOM, _ALL, 5, 7, 9, weight=13, grows=True, min_cols=28),
+        PanelInfo(
+            "instrumentation",
+            "Instrumentation",
+            "i",
+            "instrumentation:Instrumentation",
+            _SIDE,
+            _ALL,
+            4,
+            13,
+            16,
+        ),
+        PanelInfo(
+            "output",
+            "Output",
+            "O",
+            "output:Output",
+            _BOTTOM,
+            _ALL,
+            5,
+            7,
+            9,
+            weight=13,
+            grows=True,
+            min_cols=28,
+        ),
         PanelInfo("arrays", "Sensor arrays", "A", "arrays:Arrays", _SIDE, _MEDIUM_UP, 8, 10, 13),
-        PanelInfo("code", "Code", "D", "code:Code", _BOTTOM, _MEDIUM_UP, 5, 11, 20, weight=29, grows=True),
-        PanelInfo("chart", "Chart", "c", "chart:Chart", _BOTTOM, _LARGE, 8, 14, 16, weight=28, grows=True),
-        PanelInfo("controls", "Simulator controls", "H", "controls:Controls", _SIDE, _MEDIUM_UP, 11, 11, 12),
-        PanelInfo("positioning", "Positioning", "X", "position:Positioning", _SIDE, _LARGE, 8, 8, 8),
+        PanelInfo(
+            "code", "Code", "D", "code:Code", _BOTTOM, _MEDIUM_UP, 5, 11, 20, weight=29, grows=True
+        ),
+        PanelInfo(
+            "chart", "Chart", "c", "chart:Chart", _BOTTOM, _LARGE, 8, 14, 16, weight=28, grows=True
+        ),
+        PanelInfo(
+            "controls",
+            "Simulator controls",
+            "H",
+            "controls:Controls",
+            _SIDE,
+            _MEDIUM_UP,
+            11,
+            11,
+            12,
+        ),
+        PanelInfo(
+            "positioning", "Positioning", "X", "position:Positioning", _SIDE, _LARGE, 8, 8, 8
+        ),
         PanelInfo("noise", "Noise", "z", "noise:Noise", _SIDE, _LARGE, 6, 6, 6),
         PanelInfo("debug", "Debug", "G", "debug:Debug", _SIDE, (), 7, 10, 18, grows=True),
-        PanelInfo("brick", "Brick", "K", "brick:Brick", _BOTTOM, (), 9, 12, 20, weight=28, grows=True),
-        PanelInfo("obstacles", "Obstacles", "B", "obstacles:Obstacles", _SIDE, (), 11, 12, 16, grows=True),
+        PanelInfo(
+            "brick", "Brick", "K", "brick:Brick", _BOTTOM, (), 9, 12, 20, weight=28, grows=True
+        ),
+        PanelInfo(
+            "obstacles", "Obstacles", "B", "obstacles:Obstacles", _SIDE, (), 11, 12, 16, grows=True
+        ),
         PanelInfo("goals", "Goals", "J", "goals:Goals", _SIDE, (), 9, 20, 20, grows=True),
-        PanelInfo("settings", "Settings", "Z", "settings:Settings", _SIDE, (), 14, 15, 40, grows=True),
+        PanelInfo(
+            "settings", "Settings", "Z", "settings:Settings", _SIDE, (), 14, 15, 40, grows=True
+        ),
     )
 }
 """Every panel by id."""

@@ -37,7 +37,9 @@ class _DiscPicture(PixelView):
             cell = self.cell_for(graphics)
             rim_rgb = RIM_16_RGB if mode.dithers and not mode.grey else RIM_RGB
             width_px, height_px = cell.cols * self.size.width, cell.rows * self.size.height
-            picture = draw_disc(self._face.box, width_px, height_px, self.ground_rgb, rim_rgb, cell.tall)
+            picture = draw_disc(
+                self._face.box, width_px, height_px, self.ground_rgb, rim_rgb, cell.tall
+            )
             self.set_fine_picture(picture, graphics)
 
 
@@ -112,7 +114,12 @@ class Arrays(Widget):
             for disc in self._discs:
                 disc.show(None)
             return
-        seen = (now.instant.pose, now.instant.noise, now.instant.noise.light and now.instant.tick, now.spec.robot)
+        seen = (
+            now.instant.pose,
+            now.instant.noise,
+            now.instant.noise.light and now.instant.tick,
+            now.spec.robot,
+        )
         drawn = (seen, id(now.field), self.size, now.program)
         if drawn == self._drawn:
             return
@@ -121,7 +128,9 @@ class Arrays(Widget):
         has_limits = any(face.thresholds for face in faces)
         self._arrange(faces)
         names = [face.name for face in faces]
-        self.border_subtitle = names_in_border(names, self._where, has_limits=has_limits) if self._where else ""
+        self.border_subtitle = (
+            names_in_border(names, self._where, has_limits=has_limits) if self._where else ""
+        )
         for disc, face in zip(self._discs, faces, strict=True):
             disc.show(face, has_limits=has_limits)
 

@@ -34,9 +34,17 @@ class Brick(LinesPanel, can_focus=True):
 
     ALLOW_SELECT = False
     BINDINGS: ClassVar[list[BindingType]] = [
-        *(Binding(name, f"tap('{name}')", "Press this button of the brick", show=False) for name in BUTTONS),
         *(
-            Binding(f"shift+{name}", f"latch('{name}')", "Hold this button down, or release it", show=False)
+            Binding(name, f"tap('{name}')", "Press this button of the brick", show=False)
+            for name in BUTTONS
+        ),
+        *(
+            Binding(
+                f"shift+{name}",
+                f"latch('{name}')",
+                "Hold this button down, or release it",
+                show=False,
+            )
             for name in BUTTONS
         ),
     ]
@@ -97,7 +105,11 @@ class Brick(LinesPanel, can_focus=True):
 
     def _has_program(self, name: str) -> bool:
         """Return whether a live program is in view, for which a button can be pressed."""
-        if self._snapshot is not None and self._snapshot.state in IN_RUN and not self._snapshot.past:
+        if (
+            self._snapshot is not None
+            and self._snapshot.state in IN_RUN
+            and not self._snapshot.past
+        ):
             return True
         self.post_message(self.Pressed(frozenset({name})))
         return False
@@ -113,7 +125,9 @@ class Brick(LinesPanel, can_focus=True):
         before = self.held
         if timer := self._tapped.get(name):
             timer.stop()
-        self._tapped[name] = self.set_timer(TAP_S, partial(self._tap_over, name, self._time_s + SEEN_S))
+        self._tapped[name] = self.set_timer(
+            TAP_S, partial(self._tap_over, name, self._time_s + SEEN_S)
+        )
         self._changed(before)
 
     @property
@@ -155,7 +169,9 @@ class Brick(LinesPanel, can_focus=True):
         spot = event.get_content_offset(self._text)
         if spot is None:
             return ""
-        hit = (b.name for b in self._picture.buttons if b.row == spot.y and b.first <= spot.x < b.end)
+        hit = (
+            b.name for b in self._picture.buttons if b.row == spot.y and b.first <= spot.x < b.end
+        )
         return next(hit, "")
 
     def on_mouse_down(self, event: events.MouseDown) -> None:

@@ -39,7 +39,10 @@ class Chart(LinesPanel, can_focus=True):
         Binding("up", "select(-1)", "Previous trace"),
         Binding("down", "select(1)", "Next trace"),
         Binding("space", "tick", "Show or hide the selected trace"),
-        *(Binding(str(number), f"tick({number})", "Show or hide this trace", show=False) for number in range(1, 10)),
+        *(
+            Binding(str(number), f"tick({number})", "Show or hide this trace", show=False)
+            for number in range(1, 10)
+        ),
         Binding("left", "move_cursor(-1)", "Cursor back"),
         Binding("right", "move_cursor(1)", "Cursor forward"),
         Binding("shift+left", "move_cursor(-10)", "Cursor far back", show=False),
@@ -73,7 +76,9 @@ class Chart(LinesPanel, can_focus=True):
         """What the bands were found in."""
         self._throttle = Throttle(self, _PERIOD_S, self._draw)
 
-    def append(self, name: str, times_s: Sequence[float], values: Sequence[float], logged: bool = True) -> None:
+    def append(
+        self, name: str, times_s: Sequence[float], values: Sequence[float], logged: bool = True
+    ) -> None:
         """Add points to a trace.
 
         Args:
@@ -119,7 +124,9 @@ class Chart(LinesPanel, can_focus=True):
         if self._state.selected is None and (first := next(iter(self._traces), None)):
             self._state = replace(self._state, selected=first.name)
         self._find_bands()
-        state = replace(self._state, grid=True, grey=bool(self.app.no_color), is_ascii=shows_ascii(self.app))
+        state = replace(
+            self._state, grid=True, grey=bool(self.app.no_color), is_ascii=shows_ascii(self.app)
+        )
         if not self.has_focus:
             state = replace(state, selected=None)
         self._text.draw(partial(self._paint, state))
@@ -128,7 +135,10 @@ class Chart(LinesPanel, can_focus=True):
     def _chosen(self) -> Trace | None:
         """Return the selected trace, or the first one that is shown; None if none is."""
         drawn = self._traces.drawn()
-        return next((trace for trace in drawn if trace.name == self._state.selected), drawn[0] if drawn else None)
+        return next(
+            (trace for trace in drawn if trace.name == self._state.selected),
+            drawn[0] if drawn else None,
+        )
 
     def _find_bands(self) -> None:
         """Find the bands of the chosen trace, or of the first one that has several, while nothing is added."""
@@ -143,11 +153,17 @@ class Chart(LinesPanel, can_focus=True):
                 return
             self._spanned = key
             found = (spans_of(trace, self._noise) for trace in traces)
-            spans = next((spans for spans in found if len(spans) > 1), spans_of(chosen, self._noise))
+            spans = next(
+                (spans for spans in found if len(spans) > 1), spans_of(chosen, self._noise)
+            )
         self._state = replace(self._state, spans=spans)
 
-    def _paint(self, state: ChartState, is_blank: bool) -> tuple[list[list[Run]], list[tuple[int, ChartPicture]]]:
-        self._picture = self._painter.paint(self._traces, state, *self._text.size, is_blank=is_blank)
+    def _paint(
+        self, state: ChartState, is_blank: bool
+    ) -> tuple[list[list[Run]], list[tuple[int, ChartPicture]]]:
+        self._picture = self._painter.paint(
+            self._traces, state, *self._text.size, is_blank=is_blank
+        )
         return self._picture.lines, [(0, self._picture)]
 
     def _redraw(self) -> None:
@@ -184,8 +200,12 @@ class Chart(LinesPanel, can_focus=True):
         self._redraw()
 
     def action_freeze(self) -> None:
-        frozen = self._state.x_limits is None and self._picture is not None and self._picture.columns > 0
-        self._state = replace(self._state, x_limits=self._picture.x_limits if frozen and self._picture else None)
+        frozen = (
+            self._state.x_limits is None and self._picture is not None and self._picture.columns > 0
+        )
+        self._state = replace(
+            self._state, x_limits=self._picture.x_limits if frozen and self._picture else None
+        )
         self._read(None)
         self._redraw()
 
@@ -268,7 +288,9 @@ class Chart(LinesPanel, can_focus=True):
     def _clicked(self, time_s: float, picture: ChartPicture) -> tuple[float, str]:
         """Return the time and the name of the sample at a time, or nearest to it in its band; else the time only."""
         span = next((span for span in self._state.spans if span.start <= time_s <= span.stop), None)
-        of_span = (trace for trace in self._traces.drawn() if span is not None and trace.name == span.name)
+        of_span = (
+            trace for trace in self._traces.drawn() if span is not None and trace.name == span.name
+        )
         trace = next(of_span, self._chosen())
         if trace is None or not trace.logged:
             return time_s, ""

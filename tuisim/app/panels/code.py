@@ -175,7 +175,9 @@ class Code(Vertical):
         if self._area.is_completing:
             helped = Text("looking up …")
         elif not helped and (word := self._area.unknown_word) is not None:
-            helped = Text(f"no name begins with {word}" if word else "nothing known follows the dot")
+            helped = Text(
+                f"no name begins with {word}" if word else "nothing known follows the dot"
+            )
         self.border_subtitle = helped if helped else as_markup(told)
 
     def on_resize(self) -> None:
@@ -243,11 +245,19 @@ class Code(Vertical):
         if line == self._line:
             return
         now = time.monotonic()
-        if snapshot.state == RunPhase.RUNNING and not snapshot.past and now - self._lit_at_s < LIT_GAP_S:
+        if (
+            snapshot.state == RunPhase.RUNNING
+            and not snapshot.past
+            and now - self._lit_at_s < LIT_GAP_S
+        ):
             return
         self._lit_at_s = now
         self.show_line(line)
-        if (lit := self._line_shown(line)) and not self.typing and (snapshot.past or snapshot.state is RunPhase.PAUSED):
+        if (
+            (lit := self._line_shown(line))
+            and not self.typing
+            and (snapshot.past or snapshot.state is RunPhase.PAUSED)
+        ):
             # From here the arrow keys go on.
             self._area.move_to_code(lit)
 
@@ -278,7 +288,9 @@ class Code(Vertical):
         # Those of another instant are not shown.
         if pause is not None and self._run_lines is not None and pause.paused.tick == self._tick:
             of_run = line_values("\n".join(self._run_lines), pause.inspected)
-            values = {shown: found for line, found in of_run.items() if (shown := self._line_shown(line))}
+            values = {
+                shown: found for line, found in of_run.items() if (shown := self._line_shown(line))
+            }
         self._area.set_values(values)
 
     def page(self, by: int) -> None:

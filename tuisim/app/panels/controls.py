@@ -18,7 +18,12 @@ _LABEL_CELLS = 9
 class Controls(ActionWords, can_focus=False):
     """Run, Stop and Pause, speed, program, mat, profile, seed, pen and state."""
 
-    COMPONENT_CLASSES: ClassVar[set[str]] = {"controls--button", "controls--off", "controls--failed", "controls--label"}
+    COMPONENT_CLASSES: ClassVar[set[str]] = {
+        "controls--button",
+        "controls--off",
+        "controls--failed",
+        "controls--label",
+    }
 
     program = reactive("")
     """Name of the program; empty for none."""
@@ -48,13 +53,18 @@ class Controls(ActionWords, can_focus=False):
 
     def _line(self, label: str, *parts: str | Text) -> Text:
         line = Text()
-        line.append(f"{label:<{_LABEL_CELLS}}", self.get_component_rich_style("controls--label", partial=True))
+        line.append(
+            f"{label:<{_LABEL_CELLS}}",
+            self.get_component_rich_style("controls--label", partial=True),
+        )
         for part in parts:
             line.append(part)
         return line
 
     def _state(self, now: Snapshot) -> Text:
-        style = self.get_component_rich_style("controls--failed", partial=True) if now.failed else ""
+        style = (
+            self.get_component_rich_style("controls--failed", partial=True) if now.failed else ""
+        )
         return Text(_state_label(now), style)
 
     def render(self) -> Text:
@@ -66,7 +76,9 @@ class Controls(ActionWords, can_focus=False):
             (
                 self._button(f"{self._key('run')} Run", "run", bool(self.program) and not in_run),
                 self._button(f"{self._key('stop')} Stop", "stop", in_run),
-                self._button("Resume" if now.state == RunPhase.PAUSED else "Pause", "pause", in_run),
+                self._button(
+                    "Resume" if now.state == RunPhase.PAUSED else "Pause", "pause", in_run
+                ),
             )
         )
         spec = now.spec

@@ -79,14 +79,18 @@ class Debug(LinesPanel, can_focus=True):
             self._content = DebugView(busy=is_busy)
         else:
             source = _line_of(view.paused)
-            self._content = DebugView(self._state, view.paused, view.inspected, view.past, is_busy, source)
+            self._content = DebugView(
+                self._state, view.paused, view.inspected, view.past, is_busy, source
+            )
         self._redraw()
 
     def _redraw(self) -> None:
         size = self._text.size
         if not size:
             return
-        self._lines = debug_lines(replace(self._content, state=self._state, now=self._now), size.width)
+        self._lines = debug_lines(
+            replace(self._content, state=self._state, now=self._now), size.width
+        )
         self._top = max(0, min(self._top, len(self._lines) - size.height))
         below = len(self._lines) - self._top - size.height
         self.border_title = f"{_TITLE} ↓{below}" if below > 0 else _TITLE

@@ -72,7 +72,9 @@ class Goals(LinesPanel, can_focus=True):
     @property
     def _at(self) -> int:
         """Index of the goal that is shown in detail."""
-        return current_goal(self._content.states(self._tick)) if self._chosen is None else self._chosen
+        return (
+            current_goal(self._content.states(self._tick)) if self._chosen is None else self._chosen
+        )
 
     def _redraw(self) -> None:
         size = self._text.size
@@ -80,7 +82,9 @@ class Goals(LinesPanel, can_focus=True):
             return
         states = self._content.states(self._tick)
         self._drawn = self._content, states
-        self._picture = draw_goals(self._content, states, self._at, self._first, size.width, size.height)
+        self._picture = draw_goals(
+            self._content, states, self._at, self._first, size.width, size.height
+        )
         self.border_title = f"{_TITLE} ↓{self._picture.below}" if self._picture.below else _TITLE
         self._text.set_lines(self._picture.lines)
 

@@ -43,7 +43,9 @@ class Instrumentation(LinesPanel):
 
     def _redraw(self) -> None:
         if self._snapshot is not None and self._text.size:
-            self._text.set_lines(lines(self._snapshot, self._text.size.width, self._text.size.height))
+            self._text.set_lines(
+                lines(self._snapshot, self._text.size.width, self._text.size.height)
+            )
 
 
 def lines(now: Snapshot, width: int, height: int) -> list[Line]:
@@ -56,10 +58,19 @@ def lines(now: Snapshot, width: int, height: int) -> list[Line]:
     """
     wheels = [_wheel(now, "LeftMotor", "L", width), _wheel(now, "RightMotor", "R", width)]
     motors = wheels if now.spec.robot.has_wheels else []
-    sensors = [(f"Sensor{at}", now.colors.get(s.name)) for at, s in enumerate(now.spec.robot.color_sensors, 1)]
+    sensors = [
+        (f"Sensor{at}", now.colors.get(s.name))
+        for at, s in enumerate(now.spec.robot.color_sensors, 1)
+    ]
     further = [
         *(
-            _motor(f"Motor {motor.port[-1]}", motor.port[-1], round(position), _value(f"{round(dps):d}"), width)
+            _motor(
+                f"Motor {motor.port[-1]}",
+                motor.port[-1],
+                round(position),
+                _value(f"{round(dps):d}"),
+                width,
+            )
             for motor, (position, dps) in zip(now.spec.robot.extra_motors, now.turns, strict=False)
         ),
         *(_further(column, value, width) for column, value in now.further.items()),
@@ -91,7 +102,11 @@ def _further(column: str, value: float, width: int) -> Line:
     label = name.capitalize()
     return _fit(
         width,
-        (_label(cut(label, _COLUMN - 1)), _value(shown if what == "pressed" else f"{shown:>6}"), _unit(unit)),
+        (
+            _label(cut(label, _COLUMN - 1)),
+            _value(shown if what == "pressed" else f"{shown:>6}"),
+            _unit(unit),
+        ),
         (_label(cut(label, 8), 9), _value(shown), _unit(unit)),
     )
 
@@ -126,7 +141,11 @@ def _names_of_colors(now: Snapshot, width: int) -> Line:
     line: Line = []
     for at, sensor in enumerate(now.spec.robot.color_sensors, 1):
         seen = now.colors.get(sensor.name)
-        more = [_label(f"S{at}", 3), _value(f"{seen.name if seen else '–':<{_LONGEST_NAME}}"), _unit(" " * _GAP)]
+        more = [
+            _label(f"S{at}", 3),
+            _value(f"{seen.name if seen else '–':<{_LONGEST_NAME}}"),
+            _unit(" " * _GAP),
+        ]
         if _length(line) + _length(more) - _GAP <= width:
             line += more
     return line
@@ -141,12 +160,18 @@ def _columns(now: Snapshot, height: int, detail: int) -> tuple[list[list[Line]],
         detail: 2 with speeds and names of colours, 1 without names, 0 without both.
     """
     robot, instant = now.spec.robot, now.instant
-    wheels = [("L", instant.left_position_deg, instant.left_speed_dps, now.stalled[0]),
-              ("R", instant.right_position_deg, instant.right_speed_dps, now.stalled[1])]  # fmt: skip
+    wheels = [
+        ("L", instant.left_position_deg, instant.left_speed_dps, now.stalled[0]),
+        ("R", instant.right_position_deg, instant.right_speed_dps, now.stalled[1]),
+    ]
     turns = zip(robot.extra_motors, now.turns, strict=False)
     extra = [(motor.port[-1], position, dps, False) for motor, (position, dps) in turns]
-    motors = [_motor_cell(*motor, detail > 0) for motor in (wheels if robot.has_wheels else []) + extra]
-    colors = [(f"S{at}", now.colors.get(sensor.name)) for at, sensor in enumerate(robot.color_sensors, 1)]
+    motors = [
+        _motor_cell(*motor, detail > 0) for motor in (wheels if robot.has_wheels else []) + extra
+    ]
+    colors = [
+        (f"S{at}", now.colors.get(sensor.name)) for at, sensor in enumerate(robot.color_sensors, 1)
+    ]
     sensors = [_color_cell(name, seen, detail > 1) for name, seen in colors]
     ranging: list[Line] = []
     if now.ultrasonic_mm is not None:
@@ -156,13 +181,18 @@ def _columns(now: Snapshot, height: int, detail: int) -> tuple[list[list[Line]],
     ranging += [_further(column, value, _CELL) for column, value in now.further.items()]
     pose = now.instant.pose
     heading = [_unit("h"), *_values(f"{shown_heading_deg(pose.heading_deg):4.0f}", "°")]
-    places: list[Line] = [[_unit("x "), _value(f"{pose.x_mm:4.0f}")], [_unit("y "), _value(f"{pose.y_mm:4.0f}")]]
+    places: list[Line] = [
+        [_unit("x "), _value(f"{pose.x_mm:4.0f}")],
+        [_unit("y "), _value(f"{pose.y_mm:4.0f}")],
+    ]
     groups = [motors + ranging[:1], sensors + ranging[1:]]
     if not motors or not sensors or max(map(len, groups)) > height:
         cells = motors + sensors + ranging
         groups = [cells[at : at + height] for at in range(0, len(cells), height)]
     last = [*places, heading]
-    return [group for group in groups if group] + [last[at : at + height] for at in range(0, 3, height)], len(groups)
+    return [group for group in groups if group] + [
+        last[at : at + height] for at in range(0, 3, height)
+    ], len(groups)
 
 
 def _motor_cell(name: str, counts: float, dps: float, has_stalled: bool, with_speed: bool) -> Line:
@@ -240,7 +270,9 @@ def _sensor(name: str, seen: ColorReading | None, width: int) -> tuple[Line, Lin
         return [_label(name), _unit("–")], []
     red, mean = f"{seen.red_percent:5.1f}", f"{seen.mean_percent:5.1f}"
     # 100 without a decimal leaves a space after the word before it.
-    short_red, short_mean = (f"{value[:3]:>5}" if value == "100.0" else value for value in (red, mean))
+    short_red, short_mean = (
+        f"{value[:3]:>5}" if value == "100.0" else value for value in (red, mean)
+    )
     first = _fit(
         width,
         (_label(name), _unit("red "), _value(red), _unit(" %  mean "), _value(mean), _unit(" %")),
@@ -266,7 +298,14 @@ def _sensor_in_one(name: str, seen: ColorReading | None, width: int) -> Line:
     red = f"{seen.red_percent:5.1f}"
     return _fit(
         width,
-        (_label(name), _unit("red "), _value(red), _unit(" %  "), swatch_of(seen), _value(f" {seen.name}")),
+        (
+            _label(name),
+            _unit("red "),
+            _value(red),
+            _unit(" %  "),
+            swatch_of(seen),
+            _value(f" {seen.name}"),
+        ),
         (_label(name, 9), _value(red), _unit("% "), swatch_of(seen), _value(f" {seen.name}")),
         (_label(short, 3), _value(red), _unit("% "), swatch_of(seen), _value(f" {seen.name}")),
     )
@@ -278,8 +317,14 @@ def _ultrasonic(now: Snapshot, width: int) -> Line:
     centimetres = f"{now.ultrasonic_mm / 10:.1f}"
     return _fit(
         width,
-        (_label("Ultrasonic"), *_values(f"{centimetres:>6}", " cm", f"{now.ultrasonic_mm:8d}", " mm")),
-        (_label("Ultrasonic", 11), *_values(f"{centimetres:>5}", "cm", f"{now.ultrasonic_mm:5d}", "mm")),
+        (
+            _label("Ultrasonic"),
+            *_values(f"{centimetres:>6}", " cm", f"{now.ultrasonic_mm:8d}", " mm"),
+        ),
+        (
+            _label("Ultrasonic", 11),
+            *_values(f"{centimetres:>5}", "cm", f"{now.ultrasonic_mm:5d}", "mm"),
+        ),
         (_label("Ultrasonic", 11), _value(centimetres), _unit("cm")),
     )
 
@@ -289,7 +334,10 @@ def _gyro(now: Snapshot, width: int) -> Line:
         return [_label("Gyro"), _unit("none")]
     return _fit(
         width,
-        (_label("Gyro"), *_values(f"{now.gyro_deg:6d}", "°   rate", f"{now.gyro_rate_dps:6d}", " °/s")),
+        (
+            _label("Gyro"),
+            *_values(f"{now.gyro_deg:6d}", "°   rate", f"{now.gyro_rate_dps:6d}", " °/s"),
+        ),
         (_label("Gyro", 7), *_values(f"{now.gyro_deg}", "° rate ", f"{now.gyro_rate_dps}", "°/s")),
         (_label("Gyro", 5), *_values(f"{now.gyro_deg}", "° ", f"{now.gyro_rate_dps}", "°/s")),
     )
@@ -301,8 +349,16 @@ def _pose(now: Snapshot, width: int) -> Line:
     x, y, heading = f"{pose.x_mm:.1f}", f"{pose.y_mm:.1f}", f"{shown_deg:.1f}"
     return _fit(
         width,
-        (_label("Pose"), _unit("x"), *_values(f"{x:>7}", "  y", f"{y:>7}", "  heading", f"{heading:>7}", "°")),
-        (_label("Pose"), _unit("x"), *_values(f"{x:>7}", " y", f"{y:>7}", " h", f"{heading:>7}", "°")),
+        (
+            _label("Pose"),
+            _unit("x"),
+            *_values(f"{x:>7}", "  y", f"{y:>7}", "  heading", f"{heading:>7}", "°"),
+        ),
+        (
+            _label("Pose"),
+            _unit("x"),
+            *_values(f"{x:>7}", " y", f"{y:>7}", " h", f"{heading:>7}", "°"),
+        ),
         (_unit("x "), *_values(x, " y ", y, " ", heading, "°")),
         (*_values(f"{pose.x_mm:.0f}", ",", f"{pose.y_mm:.0f}"), *_values(f" {shown_deg:.0f}", "°")),
     )
@@ -332,10 +388,21 @@ def _state_word(now: Snapshot) -> Run:
 
 
 def _state(now: Snapshot, width: int) -> Line:
-    state, profile, pen = _state_word(now), now.spec.profile.name, "pen down" if now.pen_down else "pen up"
+    state, profile, pen = (
+        _state_word(now),
+        now.spec.profile.name,
+        "pen down" if now.pen_down else "pen up",
+    )
     return _fit(
         width,
-        (_label("State"), (f"{state[0]:<9}", state[1]), _unit(" "), _value(pen.ljust(9)), _unit(" "), _value(profile)),
+        (
+            _label("State"),
+            (f"{state[0]:<9}", state[1]),
+            _unit(" "),
+            _value(pen.ljust(9)),
+            _unit(" "),
+            _value(profile),
+        ),
         (_label("State", 6), state, _unit(" · "), _value(pen), _unit(" · "), _value(profile)),
         (_label("State"), state, _unit(" · "), _value(profile)),
         (_label("State", 6), state, _unit(" · "), _value(profile)),
@@ -360,14 +427,29 @@ def _distance_and_angle(now: Snapshot, width: int) -> Line:
 
 def _place_and_time(now: Snapshot, width: int) -> Line:
     pose = now.instant.pose
-    x, y, heading = f"{pose.x_mm:.0f}", f"{pose.y_mm:.0f}", f"{shown_heading_deg(pose.heading_deg):.0f}"
+    x, y, heading = (
+        f"{pose.x_mm:.0f}",
+        f"{pose.y_mm:.0f}",
+        f"{shown_heading_deg(pose.heading_deg):.0f}",
+    )
     at = _unit("x "), _value(x), _unit(" y "), _value(y)
-    where, named = (*at, _unit(" "), _value(heading), _unit("°")), (*at, _unit(" h "), _value(heading), _unit("°"))
+    where, named = (
+        (*at, _unit(" "), _value(heading), _unit("°")),
+        (*at, _unit(" h "), _value(heading), _unit("°")),
+    )
     return _fit(
         width,
         (*named, _value(f"  {now.time_s:.2f}"), _unit(" s  "), _state_word(now)),
         (*where, _value(f"  {now.time_s:.2f}"), _unit(" s  "), _state_word(now)),
         (*where, _value(f" {now.time_s:.2f}"), _unit("s")),
-        (_value(x), _unit(","), _value(y), _value(f" {heading}"), _unit("° "), _value(f"{now.time_s:.1f}"), _unit("s")),
+        (
+            _value(x),
+            _unit(","),
+            _value(y),
+            _value(f" {heading}"),
+            _unit("° "),
+            _value(f"{now.time_s:.1f}"),
+            _unit("s"),
+        ),
         (_value(f"{now.time_s:.2f}"), _unit(" s")),
     )

@@ -50,7 +50,9 @@ class Noise(EntryPanel):
                 yield Label(value.label, markup=False)
                 assert isinstance(value, Whole)
                 yield Slider(int(value.high), id=kind)
-                yield NumberInput("0", id=f"{kind}-number", compact=True, select_on_focus=True, max_length=3)
+                yield NumberInput(
+                    "0", id=f"{kind}-number", compact=True, select_on_focus=True, max_length=3
+                )
         with Horizontal(classes="field"):
             yield Label("Seed", markup=False)
             yield NumberInput("0", id="seed", compact=True, select_on_focus=True)
@@ -72,7 +74,10 @@ class Noise(EntryPanel):
         before, self._shown = self._shown, shown
         for kind in _KINDS:
             value = getattr(noise, kind)
-            slider, entry = self.query_one(f"#{kind}", Slider), self.query_one(f"#{kind}-number", Input)
+            slider, entry = (
+                self.query_one(f"#{kind}", Slider),
+                self.query_one(f"#{kind}-number", Input),
+            )
             if before is None or getattr(before[0], kind) != value:
                 slider.value = value
                 entry.value = str(value)

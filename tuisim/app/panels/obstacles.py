@@ -96,7 +96,9 @@ class Obstacles(EntryPanel):
     def show_next_run(self, plan: NextRun) -> None:
         """Show the obstacles of the next run."""
         boxes = plan.spec.world.obstacles
-        if not self.is_mounted or (boxes == self._boxes and self.query_one(OptionList).option_count):
+        if not self.is_mounted or (
+            boxes == self._boxes and self.query_one(OptionList).option_count
+        ):
             return
         before, self._boxes = self._boxes, boxes
         if len(boxes) > len(before) and boxes[: len(before)] == before:
@@ -119,7 +121,9 @@ class Obstacles(EntryPanel):
     def _list(self) -> None:
         listed = self.query_one(OptionList)
         listed.clear_options()
-        listed.add_options([Option(box_label(at, box), id=str(at)) for at, box in enumerate(self._boxes, start=1)])
+        listed.add_options(
+            [Option(box_label(at, box), id=str(at)) for at, box in enumerate(self._boxes, start=1)]
+        )
         if not self._boxes:
             listed.add_option(Option(_NONE, disabled=True))
         listed.highlighted = self.at
@@ -191,7 +195,10 @@ def box_at(boxes: Sequence[Obstacle], x_mm: float, y_mm: float, slack_mm: float)
     for index in reversed(range(len(boxes))):
         box = boxes[index]
         right, upper = box.x_mm + box.width_mm, box.y_mm + box.height_mm
-        if box.x_mm - slack_mm <= x_mm <= right + slack_mm and box.y_mm - slack_mm <= y_mm <= upper + slack_mm:
+        if (
+            box.x_mm - slack_mm <= x_mm <= right + slack_mm
+            and box.y_mm - slack_mm <= y_mm <= upper + slack_mm
+        ):
             return index
     return None
 
@@ -213,14 +220,22 @@ class BoxGrip:
             box = self._drawn(x_mm, y_mm)
             return None if box is None else ((*self.boxes, box), len(self.boxes))
         box = self.boxes[self.index]
-        x = min(max(_to_grid(box.x_mm + x_mm - self.x_mm), -box.width_mm / 2), FIELD_WIDTH_MM - box.width_mm / 2)
-        y = min(max(_to_grid(box.y_mm + y_mm - self.y_mm), -box.height_mm / 2), FIELD_HEIGHT_MM - box.height_mm / 2)
+        x = min(
+            max(_to_grid(box.x_mm + x_mm - self.x_mm), -box.width_mm / 2),
+            FIELD_WIDTH_MM - box.width_mm / 2,
+        )
+        y = min(
+            max(_to_grid(box.y_mm + y_mm - self.y_mm), -box.height_mm / 2),
+            FIELD_HEIGHT_MM - box.height_mm / 2,
+        )
         moved = replace(box, x_mm=x, y_mm=y)
         return (*self.boxes[: self.index], moved, *self.boxes[self.index + 1 :]), self.index
 
     def _drawn(self, x_mm: float, y_mm: float) -> Obstacle | None:
         left, right = sorted(_to_grid(min(max(x, 0.0), FIELD_WIDTH_MM)) for x in (self.x_mm, x_mm))
-        lower, upper = sorted(_to_grid(min(max(y, 0.0), FIELD_HEIGHT_MM)) for y in (self.y_mm, y_mm))
+        lower, upper = sorted(
+            _to_grid(min(max(y, 0.0), FIELD_HEIGHT_MM)) for y in (self.y_mm, y_mm)
+        )
         if right - left < LEAST_MM or upper - lower < LEAST_MM:
             return None
         return Obstacle(left, lower, right - left, upper - lower)

@@ -120,7 +120,9 @@ class Output(Vertical):
 
     def show(self, snapshot: Snapshot) -> None:
         """Say before the first run what appears here; rows arrive through `add`."""
-        self._log.say_if_empty(with_keys_of(self.app, BEFORE_A_RUN) if snapshot.state is RunPhase.IDLE else "")
+        self._log.say_if_empty(
+            with_keys_of(self.app, BEFORE_A_RUN) if snapshot.state is RunPhase.IDLE else ""
+        )
 
 
 KEPT_LINES = 2000
@@ -128,9 +130,12 @@ MAX_LINE_CHARS = 2000
 """Longest part of a line that is shown."""
 
 _STYLES = {
-    Stream.STDOUT: "", Stream.STDERR: "log--error", Stream.SPEECH: "log--speech", Stream.INPUT: "log--answer",
+    Stream.STDOUT: "",
+    Stream.STDERR: "log--error",
+    Stream.SPEECH: "log--speech",
+    Stream.INPUT: "log--answer",
     Stream.NOTE: "log--note",
-}  # fmt: skip
+}
 
 _BREAKS = " /\\", "(,._"
 """Behind which a line breaks, those that read best first."""
@@ -152,7 +157,9 @@ def shown_lines(row: OutputRow, width: int) -> list[str]:
     """Return a row as lines of at most `width` cells, at least one."""
     text = line_of(row)
     if len(text) > MAX_LINE_CHARS:
-        text = f"{text[:MAX_LINE_CHARS]} … ({counted(len(text) - MAX_LINE_CHARS, 'more character')})"
+        text = (
+            f"{text[:MAX_LINE_CHARS]} … ({counted(len(text) - MAX_LINE_CHARS, 'more character')})"
+        )
     text = plain(text)
     if cell_len(text) != len(text):
         return chop_cells(text, max(width, 2)) or [""]
@@ -169,7 +176,9 @@ def _break_in(text: str, width: int) -> int:
 
     Behind a blank or a separator, if no half of the row stays empty; else before a word that has room in one row.
     """
-    good, fair = (max(text.rfind(sign, width // 2, width) for sign in signs) + 1 for signs in _BREAKS)
+    good, fair = (
+        max(text.rfind(sign, width // 2, width) for sign in signs) + 1 for signs in _BREAKS
+    )
     blank = text.rfind(" ", 0, width) + 1
     end = text.find(" ", blank)
     fits = text[:blank].strip() and (end if end >= 0 else len(text)) - blank <= width
@@ -180,7 +189,13 @@ class Log(Widget, can_focus=True):
     """The lines; follows the newest unless scrolled up."""
 
     # A ScrollView repaints all rows for each new line; this widget does not resend unchanged rows.
-    COMPONENT_CLASSES: ClassVar[set[str]] = {"log--error", "log--speech", "log--answer", "log--note", "log--thumb"}
+    COMPONENT_CLASSES: ClassVar[set[str]] = {
+        "log--error",
+        "log--speech",
+        "log--answer",
+        "log--note",
+        "log--thumb",
+    }
     ALLOW_SELECT = False
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("up", "scroll_lines(-1)", "Scroll up", show=False),
@@ -286,7 +301,9 @@ class Log(Widget, can_focus=True):
             # It points at nothing.
             shown[0] = ("", Stream.STDERR), shown[0][1]
         if not self._all and self._empty_words:
-            words = shown_lines(OutputRow(self._empty_words, 0, 0, 0, Stream.NOTE), max(1, self.size.width - 1))
+            words = shown_lines(
+                OutputRow(self._empty_words, 0, 0, 0, Stream.NOTE), max(1, self.size.width - 1)
+            )
             shown[: len(words)] = [((text, Stream.NOTE), False) for text in words[:height]]
         before, self._shown = self._shown, shown
         if len(before) != height:

@@ -21,7 +21,11 @@ from tuisim.terminal.text_runs import Run
 MIN_BAR_COLS = 40
 """Minimum length of the bar beside the time in view and that of the run; a shorter one has the time in view alone."""
 
-_PAST, _LATER, _BEYOND = Style(color=palette.BLUE), Style(color=palette.LINE), Style(color=palette.TRACK)
+_PAST, _LATER, _BEYOND = (
+    Style(color=palette.BLUE),
+    Style(color=palette.LINE),
+    Style(color=palette.TRACK),
+)
 _CURSOR = Style(color=palette.GROUND, bgcolor=palette.YELLOW, bold=True)
 _WORDS, _STRONG = Style(color=palette.SOFT), Style(color=palette.YELLOW, bold=True)
 
@@ -100,7 +104,8 @@ def bar_cells(times: BarTimes, marks: Mapping[int, Run], columns: int) -> list[R
     """Return the cells of the bar."""
     here, now = times.column(times.tick, columns), times.column(times.newest, columns)
     cells: list[Run] = [
-        ("━", _PAST) if at <= here else ("─", _LATER) if at <= now else ("·", _BEYOND) for at in range(columns)
+        ("━", _PAST) if at <= here else ("─", _LATER) if at <= now else ("·", _BEYOND)
+        for at in range(columns)
     ]
     for at, (sign, style) in marks.items():
         cells[at] = _ON_LINE.get((sign, cells[at][0]), sign), style
@@ -138,7 +143,9 @@ class TimeBar(LinesView):
             return
         tick = snapshot.instant.tick if snapshot.past else snapshot.now_tick
         hz = snapshot.spec.profile.tick_hz
-        self._times = BarTimes(tick, snapshot.now_tick, hz, snapshot.past, snapshot.state == RunPhase.ENDED)
+        self._times = BarTimes(
+            tick, snapshot.now_tick, hz, snapshot.past, snapshot.state == RunPhase.ENDED
+        )
         self._draw()
 
     def on_resize(self) -> None:
@@ -155,7 +162,9 @@ class TimeBar(LinesView):
         if key != self._marked[0]:
             self._marked = key, mark_cells(times, marks, columns)
         style = _STRONG if times.past else _WORDS
-        self.set_lines([[*bar_cells(times, self._marked[1], columns), (" ", _WORDS), (text, style)]])
+        self.set_lines(
+            [[*bar_cells(times, self._marked[1], columns), (" ", _WORDS), (text, style)]]
+        )
 
     def _choose(self, event: events.MouseEvent) -> None:
         event.stop()

@@ -167,7 +167,9 @@ class World(Widget, can_focus=True):
         """Set the mat: shape (1143, 2362, 3), one pixel per mm. Until then the panel is blank."""
         self._view.set_mat(pixels)
 
-    def extend_trace(self, xs_mm: Sequence[float], ys_mm: Sequence[float], pen: PenSpec = _ANY_PEN) -> None:
+    def extend_trace(
+        self, xs_mm: Sequence[float], ys_mm: Sequence[float], pen: PenSpec = _ANY_PEN
+    ) -> None:
         """Add points that a pen drew, joined to the previous ones; NaN lifts the pen."""
         self._view.trace.add(Piece.of(np.array(xs_mm), np.array(ys_mm), pen))
 
@@ -199,7 +201,10 @@ class World(Widget, can_focus=True):
 
 def legend(now: Snapshot, width: int) -> str:
     """Return what the robots are that are drawn beside the one in view, in words that fit."""
-    drawn = now.now_pose is not None and not off_field_words(now.now_pose), now.earlier_pose is not None
+    drawn = (
+        now.now_pose is not None and not off_field_words(now.now_pose),
+        now.earlier_pose is not None,
+    )
     match drawn:
         case True, True:
             fits = (
@@ -302,7 +307,9 @@ class WorldView(PixelView):
             whole = graphics is None and self.cell_set not in BLOCKS
             self._has_signs = mono and self.cell_set is CellSet.ASCII
             self.set_signs({})
-            self._painter = ScenePainter(self._mat, outside_rgb, self.trace, mode.grey, mono, coarse, whole)
+            self._painter = ScenePainter(
+                self._mat, outside_rgb, self.trace, mode.grey, mono, coarse, whole
+            )
         trace = self.trace if self.past_trace is None else self.past_trace
         # What stands still is drawn finely at once, and not a moment later by itself.
         stands = self._snapshot.state in AT_REST and not self._snapshot.past and self._held is None
@@ -324,16 +331,30 @@ class WorldView(PixelView):
         spec = snapshot.spec
         pose = self._held or snapshot.instant.pose
         boxes = spec.world.obstacles if self._draft is None else self._draft
-        pressed = tuple(snapshot.further.get(f"{touch.name}_pressed", 0.0) > 0 for touch in spec.robot.touch_sensors)
+        pressed = tuple(
+            snapshot.further.get(f"{touch.name}_pressed", 0.0) > 0
+            for touch in spec.robot.touch_sensors
+        )
         others = ((Faint.BESIDE, snapshot.earlier_pose), (Faint.NOW, snapshot.now_pose))
         faint = tuple((kind, where) for kind, where in others if where is not None)
         scene = SceneState(
-            spec.robot, pose, boxes, faint=faint, marked=self._marked, pressed=pressed, beacon=spec.world.beacon,
-        )  # fmt: skip
+            spec.robot,
+            pose,
+            boxes,
+            faint=faint,
+            marked=self._marked,
+            pressed=pressed,
+            beacon=spec.world.beacon,
+        )
         if not self.show_rays or self._held is not None:
             return scene
         last = self._scene
-        if last is not None and last.rays and last.rays_from is not None and not self._rays_are_old(last, snapshot):
+        if (
+            last is not None
+            and last.rays
+            and last.rays_from is not None
+            and not self._rays_are_old(last, snapshot)
+        ):
             return replace(scene, rays=last.rays, rays_from=last.rays_from)
         return replace(scene, rays=snapshot.rays, rays_from=snapshot.instant.pose)
 
@@ -347,7 +368,10 @@ class WorldView(PixelView):
         longest_mm = max(length for _, length in snapshot.rays)
         turned_mm = math.radians(abs(now.heading_deg - cast.heading_deg)) * longest_mm
         lengthened_mm = max(abs(a[1] - b[1]) for a, b in zip(last.rays, snapshot.rays, strict=True))
-        still = moved_mm + turned_mm > 0 and snapshot.instant.left_speed_dps == snapshot.instant.right_speed_dps == 0
+        still = (
+            moved_mm + turned_mm > 0
+            and snapshot.instant.left_speed_dps == snapshot.instant.right_speed_dps == 0
+        )
         return still or max(moved_mm, turned_mm, lengthened_mm) > _RAY_LAG_PX * self._port.mm_per_px
 
     @property
@@ -370,7 +394,9 @@ class WorldView(PixelView):
         if not self._grip_robot(event) and self._edits_boxes:
             x_mm, y_mm = self._at(event)
             boxes = self._snapshot.spec.world.obstacles
-            self._box_grip = BoxGrip(boxes, box_at(boxes, x_mm, y_mm, self._cell_mm / 2), x_mm, y_mm)
+            self._box_grip = BoxGrip(
+                boxes, box_at(boxes, x_mm, y_mm, self._cell_mm / 2), x_mm, y_mm
+            )
             self.capture_mouse()
             event.stop()
 
@@ -380,7 +406,9 @@ class WorldView(PixelView):
         robot = self._snapshot.spec.robot
         half_mm = robot.wheel_spacing_mm / 2
         reach_mm = half_mm * drawn_scale(outline_of(robot), self._port) + 1.5 * self._cell_mm
-        return math.hypot(x_mm - pose.x_mm, y_mm - pose.y_mm) <= max(reach_mm, half_mm - robot.back_mm / 2)
+        return math.hypot(x_mm - pose.x_mm, y_mm - pose.y_mm) <= max(
+            reach_mm, half_mm - robot.back_mm / 2
+        )
 
     def _grip_robot(self, event: events.MouseDown) -> bool:
         assert self._snapshot is not None
@@ -458,7 +486,9 @@ class WorldView(PixelView):
         self._held = replace(pose, heading_deg=pose.heading_deg + angle_deg)
         self._held_shows = _SHOWS_UNTIL_TAKEN
         if self._grip is not None:
-            self._grip = replace(self._grip, pose=replace(self._grip.pose, heading_deg=self._held.heading_deg))
+            self._grip = replace(
+                self._grip, pose=replace(self._grip.pose, heading_deg=self._held.heading_deg)
+            )
         self.post_message(World.PoseDragged(self._held, done=self._grip is None))
         self._draw()
 

@@ -26,7 +26,11 @@ UP_WORDS = "up is up on the mat"
 _RINGS_ARE, _RING_DIGITS = "in→out", 3
 """What the means of the rings are, in their order, and the digits of the longest."""
 
-_LABEL, _VALUE, _UNIT = Style(color=palette.LABEL), Style(color=palette.WHITE, bold=True), Style(color=palette.SOFT)
+_LABEL, _VALUE, _UNIT = (
+    Style(color=palette.LABEL),
+    Style(color=palette.WHITE, bold=True),
+    Style(color=palette.SOFT),
+)
 _FILLED, _REST = Style(color=palette.BLUE), Style(color=palette.LINE)
 _LIMIT = Style(color=palette.YELLOW, bold=True)
 
@@ -60,7 +64,9 @@ def arranged(count: int, cols: int, rows: int) -> Arrangement:
         found.append(Arrangement(across, True, _disc_cols(wide, 2 * (high - lines)), wide, lines))
         text = min(max(wide - 1 - 2 * high, _LEAST_TEXT_COLS), _MOST_TEXT_COLS)
         beside = _disc_cols(wide - 1 - text, 2 * high)
-        found.append(Arrangement(across, False, beside, min(wide - 1 - beside, _MOST_TEXT_COLS), high))
+        found.append(
+            Arrangement(across, False, beside, min(wide - 1 - beside, _MOST_TEXT_COLS), high)
+        )
     return max(found, key=lambda one: (one.disc_cols, one.text_rows * one.below))
 
 
@@ -104,7 +110,9 @@ def _value_line(face: DiscFace, width: int) -> Line:
         return [(value, _VALUE), (" ", _UNIT), swatch, (f" {name}", _VALUE)]
     close = value.replace(" %", "%").replace("mean ", "")
     short = close.partition(" of ")[0]
-    fits = (text for text in (f"{close} {name}", f"{short} {name}", close, short) if len(text) <= width)
+    fits = (
+        text for text in (f"{close} {name}", f"{short} {name}", close, short) if len(text) <= width
+    )
     return [(next(fits, cut(short, width)), _VALUE)]
 
 
@@ -124,11 +132,17 @@ def _scale_line(face: DiscFace, width: int) -> Line:
 
 def _ring_lines(face: DiscFace, width: int) -> list[Line]:
     """Return the means of the rings and what they are, on two lines where one is too short for the longest numbers."""
-    values: Line = [part for word in face.ring_words for part in ((word.rjust(_RING_DIGITS), _VALUE), (" ", _UNIT))][
-        :-1
-    ]
+    values: Line = [
+        part
+        for word in face.ring_words
+        for part in ((word.rjust(_RING_DIGITS), _VALUE), (" ", _UNIT))
+    ][:-1]
     longest = len(_RINGS_ARE) + len(face.ring_words) * (1 + _RING_DIGITS)
-    return [[(_RINGS_ARE, _LABEL), (" ", _UNIT), *values]] if longest <= width else [[(_RINGS_ARE, _LABEL)], values]
+    return (
+        [[(_RINGS_ARE, _LABEL), (" ", _UNIT), *values]]
+        if longest <= width
+        else [[(_RINGS_ARE, _LABEL)], values]
+    )
 
 
 def names_in_border(names: Sequence[str], where: Arrangement, *, has_limits: bool) -> str:

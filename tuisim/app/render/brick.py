@@ -40,7 +40,14 @@ _SYMBOLS = {"backspace": "⌫", "up": "▲", "left": "◀", "enter": "●", "rig
 """In the order of the single-row layout."""
 
 _PAD_ROWS, _PAD_COLUMNS = 3, 23
-_PLACES = {"backspace": (0, 0), "up": (0, 10), "left": (1, 5), "enter": (1, 10), "right": (1, 15), "down": (2, 10)}
+_PLACES = {
+    "backspace": (0, 0),
+    "up": (0, 10),
+    "left": (1, 5),
+    "enter": (1, 10),
+    "right": (1, 15),
+    "down": (2, 10),
+}
 """Row and column of each button on the pad."""
 _BUTTON_COLUMNS = 3
 _LED_COLUMNS = 8
@@ -80,7 +87,11 @@ def draw_brick(face: BrickState, pressed: Collection[str], width: int, height: i
     rows = max(0, height - pad_rows - sound_rows)
     screen = _screen(face, width, rows) if rows else []
     pad, buttons = _pad(face, pressed, width, pad_rows, len(screen))
-    sound = face.sound.removeprefix("[").removeprefix("♪ ").removesuffix("]") if face.sound[:1] == "[" else face.sound
+    sound = (
+        face.sound.removeprefix("[").removeprefix("♪ ").removesuffix("]")
+        if face.sound[:1] == "["
+        else face.sound
+    )
     heard: list[Run] = [(f"♪ {sound}"[:width] if sound else "", _CAPTION)]
     return BrickPicture([*screen, *pad, *([heard] if sound_rows else [])], buttons)
 
@@ -116,7 +127,9 @@ def _text_screen(screen: TextScreen, width: int, rows: int) -> list[list[Run]]:
 @lru_cache(maxsize=8)
 def _display(picture: bytes, width: int, rows: int) -> list[list[Run]]:
     scale = min(width / DISPLAY_WIDTH, 2 * rows / DISPLAY_HEIGHT, 1.0)
-    ink = np.unpackbits(np.frombuffer(picture, np.uint8)).reshape(DISPLAY_HEIGHT, ROW_BYTES * 8)[:, :DISPLAY_WIDTH]
+    ink = np.unpackbits(np.frombuffer(picture, np.uint8)).reshape(DISPLAY_HEIGHT, ROW_BYTES * 8)[
+        :, :DISPLAY_WIDTH
+    ]
     dots = scale < HALF_BLOCK_SCALE
     # A dot is half as wide and half as high as a half block.
     fine = min(2 * scale, 1.0) if dots else scale
@@ -162,7 +175,9 @@ def _pair_style(upper: int, lower: int) -> Style:
 
 def _shade(step: int) -> Color:
     part = step / (_SHADES - 1)
-    return Color.from_rgb(*(round(p + (i - p) * part) for p, i in zip(_PAPER_RGB, _INK_RGB, strict=True)))
+    return Color.from_rgb(
+        *(round(p + (i - p) * part) for p, i in zip(_PAPER_RGB, _INK_RGB, strict=True))
+    )
 
 
 # Lights and buttons
@@ -173,7 +188,9 @@ def led_rgb(red: int, green: int) -> Rgb:
     if not red and not green:
         return _DARK_LED_RGB
     # A lamp that is on at all must be visible; the green ones are brighter.
-    levels = [round(48 + 207 * level / 255) if level else 30 for level in (red, round(0.75 * green))]
+    levels = [
+        round(48 + 207 * level / 255) if level else 30 for level in (red, round(0.75 * green))
+    ]
     return levels[0], levels[1], 20
 
 
@@ -190,7 +207,10 @@ def led_name(red: int, green: int) -> str:
 def _lamps(face: BrickState) -> list[tuple[int, int]]:
     if not face.leds:
         return [(0, 255), (0, 255)]
-    return [(face.leds.get(f"{side} red", 0), face.leds.get(f"{side} green", 0)) for side in ("left", "right")]
+    return [
+        (face.leds.get(f"{side} red", 0), face.leds.get(f"{side} green", 0))
+        for side in ("left", "right")
+    ]
 
 
 def _lamp(lamp: tuple[int, int], named: bool, columns: int) -> Run:

@@ -16,7 +16,9 @@ _INDENT = "  "
 _GOES_ON = " \\"
 """Ends a row that goes on, outside of brackets."""
 _OPEN, _CLOSED = frozenset("([{"), frozenset(")]}")
-_LAYOUT = frozenset({tokenize.NEWLINE, tokenize.NL, tokenize.INDENT, tokenize.DEDENT, tokenize.ENDMARKER})
+_LAYOUT = frozenset(
+    {tokenize.NEWLINE, tokenize.NL, tokenize.INDENT, tokenize.DEDENT, tokenize.ENDMARKER}
+)
 _TEXT_BEGINS, _TEXT_ENDS = (getattr(tokenize, f"FSTRING_{word}", None) for word in ("START", "END"))
 
 
@@ -78,7 +80,12 @@ def _rows(line: str, breaks: _Breaks, width: int) -> Iterator[str]:
         words, line = line[breaks.comment :].lstrip("#").strip(), line[: breaks.comment].rstrip()
         sign = f"{indent}# "
         yield from textwrap.wrap(
-            words, width, initial_indent=sign, subsequent_indent=sign, break_long_words=False, break_on_hyphens=False
+            words,
+            width,
+            initial_indent=sign,
+            subsequent_indent=sign,
+            break_long_words=False,
+            break_on_hyphens=False,
         )
     lead, start = "", len(indent)
     while line[start:]:

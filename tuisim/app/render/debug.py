@@ -125,12 +125,17 @@ def _known(view: DebugView, paused: Paused, inspected: Inspected, width: int) ->
     if not view.past and paused.reason not in (PauseReason.ASKED, PauseReason.INSTANT):
         lines += [[(text, _CHANGED)] for text in textwrap.wrap(why, width)]
     if inspected.waiting:
-        lines += [[(f" {text} ", _WAITS)] for text in textwrap.wrap(inspected.waiting, max(width - 2, 1))]
+        lines += [
+            [(f" {text} ", _WAITS)] for text in textwrap.wrap(inspected.waiting, max(width - 2, 1))
+        ]
     if inspected.watches:
         lines.append([("Watches", _HEAD)])
         for watch in inspected.watches:
             if watch.error:
-                lines += [[(f"  {text}", _ERROR)] for text in textwrap.wrap(f"{watch.text}: {watch.error}", width - 2)]
+                lines += [
+                    [(f"  {text}", _ERROR)]
+                    for text in textwrap.wrap(f"{watch.text}: {watch.error}", width - 2)
+                ]
             else:
                 lines.append(_pair(watch.text, watch.value, _NAME, _VALUE, width))
     frame = inspected.stack[inspected.frame] if inspected.frame < len(inspected.stack) else None
@@ -142,7 +147,11 @@ def _known(view: DebugView, paused: Paused, inspected: Inspected, width: int) ->
         lines.append([("Threads", _HEAD)])
         for thread in inspected.threads:
             chosen = thread.name == inspected.thread
-            text = f"{'▸' if chosen else ' '} {thread.name} line {thread.line}" if thread.line else f"  {thread.name}"
+            text = (
+                f"{'▸' if chosen else ' '} {thread.name} line {thread.line}"
+                if thread.line
+                else f"  {thread.name}"
+            )
             lines.append([(cut(f"{text} {thread.waiting}", width), _CHOSEN if chosen else _PLAIN)])
     if inspected.note:
         lines += [[(text, _PALE)] for text in textwrap.wrap(inspected.note, width)]
@@ -182,7 +191,11 @@ def _variables(title: str, variables: Sequence[Variable], width: int) -> list[Li
     # Changed variables are highlighted, each in its place; names of constants, which do not change, are the last.
     for variable in sorted(variables, key=lambda one: one.name.isupper()):
         style = _CHANGED if variable.changed else _VALUE
-        lines.append(_pair(variable.name, variable.value, _NAME, style, width, "•" if variable.changed else " "))
+        lines.append(
+            _pair(
+                variable.name, variable.value, _NAME, style, width, "•" if variable.changed else " "
+            )
+        )
     return lines
 
 
@@ -195,11 +208,15 @@ def _stack(inspected: Inspected, width: int) -> list[Line]:
         module = "module" if frame.file else "program"
         name = module if frame.function == "<module>" else f"{frame.function}()"
         style = _CHOSEN if at == inspected.frame else _PLAIN
-        lines.append([(cut(f"{'▸' if at == inspected.frame else ' '} {name} line {where}", width), style)])
+        lines.append(
+            [(cut(f"{'▸' if at == inspected.frame else ' '} {name} line {where}", width), style)]
+        )
     return lines
 
 
-def _pair(name: str, value: str, name_style: Style, style: Style, width: int, mark: str = " ") -> Line:
+def _pair(
+    name: str, value: str, name_style: Style, style: Style, width: int, mark: str = " "
+) -> Line:
     column = min(_NAME_COLUMN, max(6, width // 2 - 2), max(6, len(name)))
     shown = cut(name, column).ljust(column)
     room = width - column - 3

@@ -95,7 +95,11 @@ def draw_goals(
     """
     if not view.goals:
         return GoalsPicture(list(_wrapped(NO_GOALS, width, _PALE)))
-    reached = points_of(goal.points for goal, state in zip(view.goals, states, strict=True) if state is GoalState.MET)
+    reached = points_of(
+        goal.points
+        for goal, state in zip(view.goals, states, strict=True)
+        if state is GoalState.MET
+    )
     total = f"{reached:g} of {most_points(view.goals):g} points"
     lines = list(_wrapped(view.title, width, _NAME)) if height >= _TITLED_ROWS else []
     lines.append([(total, _HEAD)])
@@ -112,13 +116,21 @@ def draw_goals(
     rows = (*(None for _ in lines), *(at for _, at in listed))
     lines += [line for line, _ in listed]
     name = cut(view.goals[chosen].name, width - 4 - len(number))
-    lines.append([("── ", _PALE), (name, _NAME), (f" {'─' * (width - 4 - len(name) - len(number))}{number}", _PALE)])
+    lines.append(
+        [
+            ("── ", _PALE),
+            (name, _NAME),
+            (f" {'─' * (width - 4 - len(name) - len(number))}{number}", _PALE),
+        ]
+    )
     # Before a run, nothing is known about any goal.
     judgement = view.judgements[chosen] if view.judgements else Judgement(view.goals[chosen], ())
     detail = list(_detail(judgement, states[chosen], width))
     room = max(0, height - len(lines))
     first = max(0, min(first, len(detail) - room))
-    return GoalsPicture([*lines, *detail[first : first + room]], rows, first, max(0, len(detail) - first - room))
+    return GoalsPicture(
+        [*lines, *detail[first : first + room]], rows, first, max(0, len(detail) - first - room)
+    )
 
 
 def _around(listed: list[tuple[Line, int]], chosen: int, most: int) -> list[tuple[Line, int]]:
@@ -131,7 +143,11 @@ def _around(listed: list[tuple[Line, int]], chosen: int, most: int) -> list[tupl
 def _header(goal: Goal, state: GoalState, width: int) -> Iterator[Line]:
     """Yield sign, word, name and points; a long name goes on in further lines."""
     # What takes points off is at its best if it is missed.
-    good = {GoalState.MET: GoalState.MISSED, GoalState.MISSED: GoalState.MET} if goal.points < 0 else {}
+    good = (
+        {GoalState.MET: GoalState.MISSED, GoalState.MISSED: GoalState.MET}
+        if goal.points < 0
+        else {}
+    )
     sign, style = _STATES[good.get(state, state)]
     of = f"/{goal.points:g}" if goal.points > 0 else ""
     points = f" {goal.points if state is GoalState.MET else 0:g}{of}" if goal.points else ""

@@ -36,8 +36,16 @@ _GOOD = Style(color=palette.GREEN, bold=True)
 _BAD = Style(color=palette.RED)
 _HINT = Style(color=palette.YELLOW)
 _CODE = Style(color=palette.YELLOW)
-_MARKS = {StepState.OPEN: ("·", _PALE), StepState.DONE: ("✓", _GOOD), StepState.SKIPPED: ("–", _PALE)}
-_GOAL_MARKS = {GoalState.OPEN: ("· ", _PALE), GoalState.MET: ("✓ ", _GOOD), GoalState.MISSED: ("✗ ", _BAD)}
+_MARKS = {
+    StepState.OPEN: ("·", _PALE),
+    StepState.DONE: ("✓", _GOOD),
+    StepState.SKIPPED: ("–", _PALE),
+}
+_GOAL_MARKS = {
+    GoalState.OPEN: ("· ", _PALE),
+    GoalState.MET: ("✓ ", _GOOD),
+    GoalState.MISSED: ("✗ ", _BAD),
+}
 
 
 class Away(StrEnum):
@@ -117,14 +125,20 @@ def draw_lesson(
     """
     if view.lesson is None:
         return LessonPicture(list(_wrapped(NO_LESSON, width, _PALE)))
-    text = list(_end(view, width, away) if page >= view.last_page else _page(view, page, width, away))
+    text = list(
+        _end(view, width, away) if page >= view.last_page else _page(view, page, width, away)
+    )
     head = [_head(view, page, width)]
     room = max(0, height - len(head))
     if first < 0:
-        titles = (at for at, line in enumerate(text) if line and line[0][0].startswith(f"{page + 1}. "))
+        titles = (
+            at for at, line in enumerate(text) if line and line[0][0].startswith(f"{page + 1}. ")
+        )
         first = next(titles, 0)
     first = max(0, min(first, len(text) - room))
-    return LessonPicture([*head, *text[first : first + room]], first, max(0, len(text) - first - room))
+    return LessonPicture(
+        [*head, *text[first : first + room]], first, max(0, len(text) - first - room)
+    )
 
 
 def _head(view: LessonView, page: int, width: int) -> Line:
@@ -162,7 +176,9 @@ def _page(view: LessonView, page: int, width: int, away: Away) -> Iterator[Line]
         state = view.states[page]
         yield []
         words = "Not yet: a step before it is open" if state is StepState.OPEN else f"{state}"
-        yield from _wrapped(f"{words}: {step.why}" if state is StepState.DONE and step.why else words, width, _PALE)
+        yield from _wrapped(
+            f"{words}: {step.why}" if state is StepState.DONE and step.why else words, width, _PALE
+        )
         yield from _wrapped("← → turn to the other steps.", width, _PALE)
         return
     yield []
@@ -170,7 +186,9 @@ def _page(view: LessonView, page: int, width: int, away: Away) -> Iterator[Line]
         yield from _wrapped(f"Hint {number}: {hint}", width, _HINT)
     yield from _wrapped(_to_do(view, step, away), width, _PALE)
     if view.hints < len(step.hints):
-        yield from _wrapped(f"{_escape(away)}Y shows hint {view.hints + 1} of {len(step.hints)}.", width, _PALE)
+        yield from _wrapped(
+            f"{_escape(away)}Y shows hint {view.hints + 1} of {len(step.hints)}.", width, _PALE
+        )
     if page == 0 and not view.judgements and not view.hints:
         # Last: in a low terminal, the task stays in view.
         yield []
@@ -213,7 +231,9 @@ def _result(view: LessonView, step: LessonStep, width: int) -> Iterator[Line]:
         yield from _wrapped(f"The program stopped with an error: {view.error}.", width, _BAD)
     by_name = {each.goal.name: each for each in view.judgements}
     # What was missed comes first: in a low terminal, the reason is in view.
-    for name in sorted(step.check.goals, key=lambda name: by_name[name].state is not GoalState.MISSED):
+    for name in sorted(
+        step.check.goals, key=lambda name: by_name[name].state is not GoalState.MISSED
+    ):
         judgement = by_name[name]
         # After an error, what is missing says nothing: the error is what there is to mend.
         is_told = judgement.state is not GoalState.MISSED or not view.error
@@ -231,7 +251,11 @@ def _to_do(view: LessonView, step: LessonStep, away: Away) -> str:
     """Return what the step waits for, or the keys that do it."""
     match step.check:
         case RunCheck(times=times, seeds=seeds):
-            count = f" {view.good_runs} of {times} runs{' with other seeds' if seeds else ''}." if times > 1 else ""
+            count = (
+                f" {view.good_runs} of {times} runs{' with other seeds' if seeds else ''}."
+                if times > 1
+                else ""
+            )
             words = f"{_RUN_KEYS[away]}.{count}"
         case QuestionCheck(choices=choices):
             words = f"{_escape(away)}Q types {'the number of your choice' if choices else 'your answer'}."
@@ -256,9 +280,15 @@ def _end(view: LessonView, width: int, away: Away) -> Iterator[Line]:
     skipped = sum(state is StepState.SKIPPED for state in view.states)
     still_open = sum(state is StepState.OPEN for state in view.states)
     if still_open:
-        yield from _wrapped("The end of the lesson: a model answer appears here when every step is done.", width, _PALE)
+        yield from _wrapped(
+            "The end of the lesson: a model answer appears here when every step is done.",
+            width,
+            _PALE,
+        )
         return
-    yield from _wrapped("✓ The lesson is done." if not skipped else "The end of the lesson.", width, _GOOD)
+    yield from _wrapped(
+        "✓ The lesson is done." if not skipped else "The end of the lesson.", width, _GOOD
+    )
     following = (
         f"{_escape(away)}M, then enter: the next lesson, {view.next_title}."
         if view.next_title
@@ -272,13 +302,17 @@ def _end(view: LessonView, width: int, away: Away) -> Iterator[Line]:
     yield from _wrapped(f"On a real robot: {view.lesson.why}", width, _PLAIN)
     yield []
     if skipped:
-        yield from _wrapped("Steps were skipped: the model answer appears when every step is done.", width, _PALE)
+        yield from _wrapped(
+            "Steps were skipped: the model answer appears when every step is done.", width, _PALE
+        )
     elif view.lesson.model_answer:
         yield from _wrapped("A model answer:", width, _NAME)
         for row in code_rows(view.lesson.model_answer, width):
             yield [(cut(row, width), _CODE)]
 
 
-def _wrapped(text: str, width: int, style: Style, indent: str = "", first: str = "") -> Iterator[Line]:
+def _wrapped(
+    text: str, width: int, style: Style, indent: str = "", first: str = ""
+) -> Iterator[Line]:
     for row in textwrap.wrap(text, max(10, width), initial_indent=first, subsequent_indent=indent):
         yield [(row, style)]

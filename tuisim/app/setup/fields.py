@@ -12,7 +12,14 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from tuisim.app.setup.next_run import NextRun, with_arguments, with_profile, with_robot, with_robot_edited, with_values
+from tuisim.app.setup.next_run import (
+    NextRun,
+    with_arguments,
+    with_profile,
+    with_robot,
+    with_robot_edited,
+    with_values,
+)
 from tuisim.config.options import RUN_VALUES
 from tuisim.config.robots import ROBOTS
 from tuisim.core import tree
@@ -62,15 +69,22 @@ class FieldGroup:
 def sections(plan: NextRun) -> list[FieldGroup]:
     """Return every field of a plan; the fields depend on the sensors of its robot."""
     sensors = {
-        sensor.name: sensor for sensor in (*plan.robot.spec.color_sensors, *plan.robot_choice.spec.color_sensors)
+        sensor.name: sensor
+        for sensor in (*plan.robot.spec.color_sensors, *plan.robot_choice.spec.color_sensors)
     }
     return [
         FieldGroup("Program", (FormField("arguments", "Arguments", _arguments, _with_arguments),)),
         FieldGroup("Robot", _body_fields()),
-        *(FieldGroup(f"Sensor {name}", _color_sensor_fields(name, sensor, plan)) for name, sensor in sensors.items()),
+        *(
+            FieldGroup(f"Sensor {name}", _color_sensor_fields(name, sensor, plan))
+            for name, sensor in sensors.items()
+        ),
         FieldGroup("Ultrasonic", _single_fields(plan, "ultrasonic", UltrasonicSpec)),
         FieldGroup("Gyro", _single_fields(plan, "gyro", GyroSpec)),
-        *(FieldGroup(part.name.capitalize(), _sensor_fields(part)) for part in plan.robot_choice.spec.further_sensors),
+        *(
+            FieldGroup(part.name.capitalize(), _sensor_fields(part))
+            for part in plan.robot_choice.spec.further_sensors
+        ),
         FieldGroup("Pen", _pen_fields()),
         FieldGroup("World", _world_fields()),
     ]
@@ -127,7 +141,9 @@ def _motor_port_field(key: str, value: Value) -> FormField:
         swapped = getattr(robot, key) if getattr(robot, other) == port else getattr(robot, other)
         return replace(robot, **{key: port, other: swapped})
 
-    return _robot_field(key, value.label, lambda robot: str(getattr(robot, key)), change, OUTPUT_PORTS)
+    return _robot_field(
+        key, value.label, lambda robot: str(getattr(robot, key)), change, OUTPUT_PORTS
+    )
 
 
 def _robot_word(plan: NextRun) -> str:
@@ -180,9 +196,13 @@ def _sensor_fields(part: SensorSpec) -> tuple[FormField, ...]:
     def field_of(key: str, value: Value) -> FormField:
         if key == "port":
             return _sensor_port_field(part.name)
-        return _value_field(f"{part.name}.{key}", value, lambda robot: _path_of(robot, part.name, key))
+        return _value_field(
+            f"{part.name}.{key}", value, lambda robot: _path_of(robot, part.name, key)
+        )
 
-    return tuple(field_of(key, value) for key, value in values_of(type(part)).items() if value.label)
+    return tuple(
+        field_of(key, value) for key, value in values_of(type(part)).items() if value.label
+    )
 
 
 def _sensor_port_field(name: str) -> FormField:
@@ -190,14 +210,24 @@ def _sensor_port_field(name: str) -> FormField:
 
     def change(robot: RobotSpec, port: str) -> RobotSpec:
         parts = _sensors(robot)
-        swapped = [replace(part, port=parts[name].port) for part in parts.values() if part.port == port]
+        swapped = [
+            replace(part, port=parts[name].port) for part in parts.values() if part.port == port
+        ]
         return _with_sensors(robot, *swapped, replace(parts[name], port=port))
 
-    return _robot_field(f"{name}.port", "Port", lambda robot: _sensors(robot)[name].port, change, INPUT_PORTS)
+    return _robot_field(
+        f"{name}.port", "Port", lambda robot: _sensors(robot)[name].port, change, INPUT_PORTS
+    )
 
 
 def _presence_field(name: str, change: Callable[[RobotSpec, str], RobotSpec]) -> FormField:
-    return _robot_field(f"{name}.used", "Used", lambda robot: ON if name in _sensors(robot) else OFF, change, SWITCHED)
+    return _robot_field(
+        f"{name}.used",
+        "Used",
+        lambda robot: ON if name in _sensors(robot) else OFF,
+        change,
+        SWITCHED,
+    )
 
 
 def _free_port(robot: RobotSpec, wanted: str) -> str:
@@ -220,7 +250,9 @@ def _placed(plan: NextRun, text: str, name: str) -> NextRun:
     return with_robot_edited(plan, replace(robot, color_sensors=tuple(sensors)), moved=True)
 
 
-def _color_sensor_fields(name: str, sensor: ColorSensorSpec, plan: NextRun) -> tuple[FormField, ...]:
+def _color_sensor_fields(
+    name: str, sensor: ColorSensorSpec, plan: NextRun
+) -> tuple[FormField, ...]:
     def switched(robot: RobotSpec, word: str) -> RobotSpec:
         others = tuple(other for other in robot.color_sensors if other.name != name)
         if word == OFF:
@@ -229,7 +261,10 @@ def _color_sensor_fields(name: str, sensor: ColorSensorSpec, plan: NextRun) -> t
             return robot
         again = replace(sensor, port=_free_port(robot, sensor.port))
         order = [other.name for other in plan.robot.spec.color_sensors]
-        sensors = sorted((*others, again), key=lambda one: order.index(one.name) if one.name in order else len(order))
+        sensors = sorted(
+            (*others, again),
+            key=lambda one: order.index(one.name) if one.name in order else len(order),
+        )
         return replace(robot, color_sensors=tuple(sensors))
 
     used = _presence_field(name, switched)
@@ -238,7 +273,10 @@ def _color_sensor_fields(name: str, sensor: ColorSensorSpec, plan: NextRun) -> t
     fields = _sensor_fields(sensor)
     return (
         used,
-        *(replace(one, write=partial(_placed, name=name)) if one.id == f"{name}.x_mm" else one for one in fields),
+        *(
+            replace(one, write=partial(_placed, name=name)) if one.id == f"{name}.x_mm" else one
+            for one in fields
+        ),
     )
 
 
@@ -286,8 +324,14 @@ def _world_fields() -> tuple[FormField, ...]:
         return Path(plan.words.get("profile", plan.spec.profile.name)).name
 
     # Pose, noise and seed have panels of their own.
-    shown = [path for path, one in RUN_VALUES.items() if one.spec_path == f"world.{path}" and "." not in path]
-    return FormField("profile", "Profile", profile, with_profile, tuple(PROFILES)), *map(_run_field, shown)
+    shown = [
+        path
+        for path, one in RUN_VALUES.items()
+        if one.spec_path == f"world.{path}" and "." not in path
+    ]
+    return FormField("profile", "Profile", profile, with_profile, tuple(PROFILES)), *map(
+        _run_field, shown
+    )
 
 
 def _arguments(plan: NextRun) -> str:
@@ -298,12 +342,16 @@ def _with_arguments(plan: NextRun, text: str) -> NextRun:
     try:
         return with_arguments(plan, tuple(shlex.split(text)))
     except ValueError:
-        raise ConfigError("a quote is not closed", "put an argument with spaces in '…' or \"…\"") from None
+        raise ConfigError(
+            "a quote is not closed", "put an argument with spaces in '…' or \"…\""
+        ) from None
 
 
 def find(plan: NextRun, edit_id: str) -> FormField | None:
     """Return a field by its id, None if this robot has no such field."""
-    return next((edit for section in sections(plan) for edit in section.edits if edit.id == edit_id), None)
+    return next(
+        (edit for section in sections(plan) for edit in section.edits if edit.id == edit_id), None
+    )
 
 
 def step(edit: FormField, plan: NextRun, by: int) -> str:

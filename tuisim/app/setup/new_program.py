@@ -44,8 +44,12 @@ class SkeletonSensor(NamedTuple):
 
 _LIGHT = "reflected_light_intensity_pc"
 READINGS = {
-    "colorLeft": SkeletonSensor("left light sensor", "Light", _LIGHT, "ColorSensor(INPUT_2)", "> 5"),
-    "colorRight": SkeletonSensor("right light sensor", "Light", _LIGHT, "ColorSensor(INPUT_3)", "> 5"),
+    "colorLeft": SkeletonSensor(
+        "left light sensor", "Light", _LIGHT, "ColorSensor(INPUT_2)", "> 5"
+    ),
+    "colorRight": SkeletonSensor(
+        "right light sensor", "Light", _LIGHT, "ColorSensor(INPUT_3)", "> 5"
+    ),
     "ultrasonic": SkeletonSensor(
         "ultrasonic sensor", "Distance", "distance_centimeters", "UltrasonicSensor(INPUT_1)", "> 20"
     ),
@@ -96,7 +100,13 @@ def program_text(mat: str, sensor: str, skeleton: Skeleton) -> str:
     """
     reading = READINGS[sensor]
     kind, _, port = reading.made.rstrip(")").partition("(")
-    words = {**reading._asdict(), "instance": sensor, "type": kind, "port": port, "drive": "tank_drive"}
+    words = {
+        **reading._asdict(),
+        "instance": sensor,
+        "type": kind,
+        "port": port,
+        "drive": "tank_drive",
+    }
     head = f'"""{_SAYS[skeleton].format(**words)}"""\n'
     match skeleton:
         case Skeleton.EMPTY:

@@ -12,7 +12,14 @@ from typing import Any
 
 from tuisim.config.build import build_run_spec, settings_from
 from tuisim.config.obstacles import load_obstacles
-from tuisim.config.options import OF_THE_MAT, OF_THE_PROFILE, RUN_VALUES, START, Settings, settings_of
+from tuisim.config.options import (
+    OF_THE_MAT,
+    OF_THE_PROFILE,
+    RUN_VALUES,
+    START,
+    Settings,
+    settings_of,
+)
 from tuisim.config.profiles import load_profile
 from tuisim.config.program_file import ProgramSource
 from tuisim.config.program_settings import PROFILE_OF, PROGRAM_PATHS, Decided, decide
@@ -24,7 +31,9 @@ from tuisim.data_class import dataclass
 from tuisim.errors import BackgroundError
 from tuisim.source import Program
 
-WORLD_PATHS = frozenset({"background", "mats", "robot", "obstacles", "profile", "arguments", *RUN_VALUES})
+WORLD_PATHS = frozenset(
+    {"background", "mats", "robot", "obstacles", "profile", "arguments", *RUN_VALUES}
+)
 """The paths of settings that affect a run."""
 
 _ANY_MAT = "Empty_Map"
@@ -49,7 +58,9 @@ class NextRun:
     @property
     def free(self) -> frozenset[str]:
         """The fields that still follow the program: they are as it has left them."""
-        return frozenset(key for key, value in self.from_program.items() if self.settings[key] == value)
+        return frozenset(
+            key for key, value in self.from_program.items() if self.settings[key] == value
+        )
 
     @property
     def robot_is_edited(self) -> bool:
@@ -80,7 +91,9 @@ def plan_of(settings: Settings, free: Iterable[str] = ()) -> NextRun:
     return NextRun(settings, build_run_spec(settings), words, world["robot"], following)
 
 
-def first_plan(spec: RunSpec, settings: Settings | None, decided: Decided, program: Program | None) -> NextRun:
+def first_plan(
+    spec: RunSpec, settings: Settings | None, decided: Decided, program: Program | None
+) -> NextRun:
     """Return the plan with which the app begins.
 
     Args:
@@ -111,7 +124,11 @@ def plan_of_run(spec: RunSpec) -> NextRun:
 def _resolved(choices: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, str]]:
     """Return robot, obstacles and profile as objects, and the words that named them."""
     found, words = dict(choices), {}
-    for key, load in (("robot", choose_robot), ("obstacles", load_obstacles), ("profile", load_profile)):
+    for key, load in (
+        ("robot", choose_robot),
+        ("obstacles", load_obstacles),
+        ("profile", load_profile),
+    ):
         if isinstance(word := found.get(key), str):
             found[key], words[key] = load(word), word
     return found, words
@@ -145,7 +162,9 @@ def with_choices(plan: NextRun, choices: Mapping[str, Any]) -> NextRun:
     kept = {path: word for path, word in plan.words.items() if path not in said}
     following = {key: value for key, value in plan.from_program.items() if key not in choices}
     built = with_values(plan, said)
-    return replace(built, words=kept | words, robot=said.get("robot", plan.robot), from_program=following)
+    return replace(
+        built, words=kept | words, robot=said.get("robot", plan.robot), from_program=following
+    )
 
 
 def following(plan: NextRun, source: ProgramSource) -> tuple[NextRun, Decided]:
@@ -159,14 +178,20 @@ def following(plan: NextRun, source: ProgramSource) -> tuple[NextRun, Decided]:
     if on_mat:
         free -= {*START}
     # On a mat that was chosen, a program is taken to be the course's, unless it has been known not to be.
-    guessed = free if not on_mat or plan.spec.profile.name in PROFILE_OF.values() else free - {"profile"}
-    decided = decide(source, settings.changed({key: usual[key] for key in free}), guessed, insists=False)
+    guessed = (
+        free if not on_mat or plan.spec.profile.name in PROFILE_OF.values() else free - {"profile"}
+    )
+    decided = decide(
+        source, settings.changed({key: usual[key] for key in free}), guessed, insists=False
+    )
     free |= decided.layer.keys() & {"profile"}
     layer, words = _resolved({key: decided.layer.get(key, usual[key]) for key in free})
     changed = {key: value for key, value in layer.items() if settings[key] != value}
     kept = {key: word for key, word in plan.words.items() if key not in changed}
     named = {key: word for key, word in words.items() if key in changed}
-    found = replace(with_values(plan, changed) if changed else plan, words=kept | named, from_program=layer)
+    found = replace(
+        with_values(plan, changed) if changed else plan, words=kept | named, from_program=layer
+    )
     found = replace(found, robot=changed.get("robot", plan.robot), program_robot=decided.robot)
     return found, decided if changed.keys() & {"robot", "profile"} else Decided()
 
@@ -182,7 +207,9 @@ def with_program_robot(plan: NextRun) -> NextRun:
     chosen = plan.program_robot or choose_robot(DEFAULT_ROBOT)
     words = {key: word for key, word in plan.words.items() if key != "robot"}
     following = {**plan.from_program, "robot": chosen}
-    return replace(with_values(plan, {"robot": chosen}), words=words, robot=chosen, from_program=following)
+    return replace(
+        with_values(plan, {"robot": chosen}), words=words, robot=chosen, from_program=following
+    )
 
 
 def with_mat(plan: NextRun, name: str) -> NextRun:
@@ -229,7 +256,9 @@ def with_robot_edited(plan: NextRun, robot: RobotSpec, moved: bool = False) -> N
         ConfigError: the mat is missing.
     """
     choice = plan.robot_choice
-    return with_values(plan, {"robot": replace(choice, spec=robot, own_places=choice.own_places or moved)})
+    return with_values(
+        plan, {"robot": replace(choice, spec=robot, own_places=choice.own_places or moved)}
+    )
 
 
 def robot_to_save(plan: NextRun) -> RobotSpec:
@@ -260,7 +289,9 @@ def with_obstacles(plan: NextRun, obstacles: tuple[Obstacle, ...]) -> NextRun:
 def _put(plan: NextRun, values: Mapping[str, Any]) -> NextRun:
     """Return the plan with values of the run that move nothing else, by path."""
     found = {RUN_VALUES[path].spec_path: value for path, value in values.items()}
-    return replace(plan, settings=plan.settings.changed(values), spec=tree.put_all(plan.spec, found))
+    return replace(
+        plan, settings=plan.settings.changed(values), spec=tree.put_all(plan.spec, found)
+    )
 
 
 def at_pose(plan: NextRun, pose: Pose) -> NextRun:
@@ -273,7 +304,9 @@ def with_noise(plan: NextRun, noise: NoiseSpec) -> NextRun:
     # A robot file may set the noise of its motors and sensors: it applies until the user sets the noise.
     before = plan.spec.world.noise
     changed = {"noise.light": noise.light, "noise.motor": noise.motor}
-    return _put(plan, {path: value for path, value in changed.items() if tree.at(before, path[6:]) != value})
+    return _put(
+        plan, {path: value for path, value in changed.items() if tree.at(before, path[6:]) != value}
+    )
 
 
 def with_arguments(plan: NextRun, arguments: tuple[str, ...]) -> NextRun:

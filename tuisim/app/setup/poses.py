@@ -9,7 +9,15 @@ from dataclasses import asdict
 from pathlib import Path
 
 from tuisim.atomic import make_private_folder
-from tuisim.config.files import Location, read_file, required, save_toml, table, toml_key, toml_lines
+from tuisim.config.files import (
+    Location,
+    read_file,
+    required,
+    save_toml,
+    table,
+    toml_key,
+    toml_lines,
+)
 from tuisim.config.folders import home_folder
 from tuisim.config.worlds import pose_from_table
 from tuisim.core.geometry import Pose, world_point
@@ -48,17 +56,26 @@ def fits(spec: RunSpec, pose: Pose) -> bool:
     if not spec.world.solid:
         return True
     boxes = (
-        ((o.x_mm, o.y_mm), (o.x_mm + o.width_mm, o.y_mm), (o.x_mm, o.y_mm + o.height_mm),
-         (o.x_mm + o.width_mm, o.y_mm + o.height_mm))
+        (
+            (o.x_mm, o.y_mm),
+            (o.x_mm + o.width_mm, o.y_mm),
+            (o.x_mm, o.y_mm + o.height_mm),
+            (o.x_mm + o.width_mm, o.y_mm + o.height_mm),
+        )
         for o in spec.world.obstacles
-    )  # fmt: skip
+    )
     return not any(_overlap(corners, box, pose.heading_deg) for box in boxes)
 
 
 def _overlap(one: Corners, other: Corners, heading_deg: float) -> bool:
     """Return whether two rectangles overlap: no side of either separates them."""
     heading = math.radians(heading_deg)
-    axes = ((1.0, 0.0), (0.0, 1.0), (math.cos(heading), math.sin(heading)), (-math.sin(heading), math.cos(heading)))
+    axes = (
+        (1.0, 0.0),
+        (0.0, 1.0),
+        (math.cos(heading), math.sin(heading)),
+        (-math.sin(heading), math.cos(heading)),
+    )
     for across, up in axes:
         ours, theirs = ([x * across + y * up for x, y in corners] for corners in (one, other))
         if max(ours) <= min(theirs) or max(theirs) <= min(ours):
@@ -91,7 +108,10 @@ def load_poses() -> dict[str, Pose]:
 def _poses(data: object) -> dict[str, Pose]:
     at = Location(str(poses_file()))
     poses = required(table(data, at, ("poses",)), "poses", at)
-    return {name: pose_from_table(pose, at.at(f"poses.{name}")) for name, pose in table(poses, at.at("poses")).items()}
+    return {
+        name: pose_from_table(pose, at.at(f"poses.{name}"))
+        for name, pose in table(poses, at.at("poses")).items()
+    }
 
 
 def save_pose(name: str, pose: Pose) -> None:
@@ -105,7 +125,9 @@ def save_pose(name: str, pose: Pose) -> None:
         raise ConfigError(f"a pose needs a name of 1 to {MAX_NAME} characters")
     poses = {**load_poses(), name: pose}
     if len(poses) > MAX_POSES:
-        raise ConfigError(f"{MAX_POSES} poses are saved already", "delete some first", file=str(poses_file()))
+        raise ConfigError(
+            f"{MAX_POSES} poses are saved already", "delete some first", file=str(poses_file())
+        )
     _write(poses)
 
 
@@ -126,5 +148,7 @@ def _write(poses: Mapping[str, Pose]) -> None:
     try:
         make_private_folder(path.parent)
     except OSError as error:
-        raise ConfigError(f"cannot be made: {error.strerror or error}", file=str(path.parent)) from None
+        raise ConfigError(
+            f"cannot be made: {error.strerror or error}", file=str(path.parent)
+        ) from None
     save_toml(path, lines, Location(str(path)), _poses, poses, owner_only=True)

@@ -49,7 +49,12 @@ def recent(new_name: str) -> list[Recent]:
     """
     kept = [draft for draft in drafts() if not draft.path or _is_own(draft.path)][:_MOST_OF_KIND]
     unsaved = [
-        Recent(Kind.DRAFT, draft.path, Path(draft.path or new_name).name, f"Not saved, edited {_when(draft.written_s)}")
+        Recent(
+            Kind.DRAFT,
+            draft.path,
+            Path(draft.path or new_name).name,
+            f"Not saved, edited {_when(draft.written_s)}",
+        )
         for draft in kept
     ]
     try:
@@ -63,7 +68,12 @@ def recent(new_name: str) -> list[Recent]:
         if path not in known
     ]
     replays = [
-        Recent(Kind.RUN, run.id, f"Run {run.number}", f"{run.program} on {Path(run.background).name}, {_made(run)}")
+        Recent(
+            Kind.RUN,
+            run.id,
+            f"Run {run.number}",
+            f"{run.program} on {Path(run.background).name}, {_made(run)}",
+        )
         for run in runs
         if run.ticks
     ]
@@ -83,7 +93,12 @@ def _programs(runs: list[RunInfo]) -> Iterator[tuple[str, str]]:
             # It is removed, or damaged; the list of runs tells.
             continue
         path = program.get("path") if isinstance(program, dict) else None
-        if isinstance(path, str) and path not in seen and _is_own(path) and not is_protected(Path(path)):
+        if (
+            isinstance(path, str)
+            and path not in seen
+            and _is_own(path)
+            and not is_protected(Path(path))
+        ):
             seen.add(path)
             yield path, _made(run)
 

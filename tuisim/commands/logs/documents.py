@@ -11,7 +11,14 @@ from pathlib import Path
 from tuisim.analysis.chart import View, chart_of
 from tuisim.analysis.model import Model
 from tuisim.analysis.source import LogRequest, OpenedLog, opening
-from tuisim.charts.files import CHART_FORMATS, Size, format_of, limits_in_words, parse_size, save_chart
+from tuisim.charts.files import (
+    CHART_FORMATS,
+    Size,
+    format_of,
+    limits_in_words,
+    parse_size,
+    save_chart,
+)
 from tuisim.commands.echo import echo, echo_drawn, echo_error
 from tuisim.commands.logs.sources import asked, names_of, the_source
 from tuisim.config.command_line import Arguments
@@ -51,10 +58,16 @@ def plot(arguments: Arguments) -> int:
 def _check_visible(model: Model) -> None:
     ticked = model.traces.ticked()
     if not any(len(trace.pyramid.times_s) for trace in ticked):
-        raise LogError(f"no numbers in {listed(trace.name for trace in ticked)}", file=model.log.title)
+        raise LogError(
+            f"no numbers in {listed(trace.name for trace in ticked)}", file=model.log.title
+        )
     if not any(len(trace.pyramid.between(*model.x_limits())[0]) for trace in ticked):
         low, high = model.traces.span_s()
-        raise LogError("no samples in this range", f"they are between {low:g} s and {high:g} s", file=model.log.title)
+        raise LogError(
+            "no samples in this range",
+            f"they are between {low:g} s and {high:g} s",
+            file=model.log.title,
+        )
 
 
 def _size(text: str, least: Size, most: Size) -> Size:
@@ -78,7 +91,9 @@ def _model(log: Log, arguments: Arguments) -> Model:
     low, high = model.traces.span_s()
     low, high = low if start is None else start, high if stop is None else stop
     if not (math.isfinite(low) and math.isfinite(high) and low < high):
-        raise ConfigError(f"no range from {low:g} s to {high:g} s", "--from must be less than --to", key="plot")
+        raise ConfigError(
+            f"no range from {low:g} s to {high:g} s", "--from must be less than --to", key="plot"
+        )
     model.limits = low, high
     return model
 
@@ -87,7 +102,11 @@ def _against(log: Log, model: Model, arguments: Arguments) -> tuple[str, str] | 
     if not arguments.against:
         return None
     if len(arguments.variable) > 1:
-        raise ConfigError("draws one --variable against another", f"got {len(arguments.variable)}", key="--against")
+        raise ConfigError(
+            "draws one --variable against another",
+            f"got {len(arguments.variable)}",
+            key="--against",
+        )
     y = arguments.variable[0] if arguments.variable else model.selected
     if y not in log.names:
         # A column of the samples, such as y_mm; of several runs, the first one's.
@@ -101,7 +120,10 @@ def _show(model: Model, view: View, size: Size | None) -> None:
     from tuisim.charts.text_chart import text_of
 
     terminal = shutil.get_terminal_size()
-    width, height = size or (max(terminal.columns, _LEAST_COLUMNS), min(max(terminal.lines - 2, _ROWS[0]), _ROWS[1]))
+    width, height = size or (
+        max(terminal.columns, _LEAST_COLUMNS),
+        min(max(terminal.lines - 2, _ROWS[0]), _ROWS[1]),
+    )
     finer = CHART_FORMATS[".txt"].finer
     chart = chart_of(model, view, width * finer[0], height * finer[1])
     echo_drawn(lambda colors: text_of(chart, width, height, colors=colors), width)
@@ -119,14 +141,18 @@ def report(arguments: Arguments) -> int:
     from tuisim.analysis.report import check_report, default_name, write_report
 
     if not arguments.words:
-        raise ConfigError("no log given", "a file, `-`, or a stored run such as `last`", key="report")
+        raise ConfigError(
+            "no log given", "a file, `-`, or a stored run such as `last`", key="report"
+        )
     if arguments.out:
         check_report(Path(arguments.out))
     request = asked(arguments)
     if arguments.telemetry and len(request.runs) > 1:
         raise ConfigError("takes one run", f"got {len(request.runs)}", key="--telemetry")
     if request.runs and (arguments.time is not None or arguments.value):
-        raise ConfigError("are for files only", "the columns of a run are fixed", key="--time and --value")
+        raise ConfigError(
+            "are for files only", "the columns of a run are fixed", key="--time and --value"
+        )
     *_, source = opening(request)
     source = replace(source, log=with_named_columns(source.log, " ".join(arguments.variable)))
     names = names_of(source.log, arguments) if arguments.variable else ()

@@ -43,7 +43,9 @@ def asked(arguments: Arguments) -> LogRequest:
     if files and len(words) > 1:
         raise ConfigError("takes one file, or runs", f"got {' '.join(words)}", key="analyse")
     file, runs = (files[0], ()) if files else ("", tuple(words))
-    return LogRequest(file, runs, arguments.telemetry, arguments.time, tuple(arguments.value), arguments.unit)
+    return LogRequest(
+        file, runs, arguments.telemetry, arguments.time, tuple(arguments.value), arguments.unit
+    )
 
 
 def open_sources(arguments: Arguments) -> Iterator[Log]:
@@ -55,7 +57,9 @@ def open_sources(arguments: Arguments) -> Iterator[Log]:
     """
     words: Sequence[str] = arguments.words
     if not words:
-        raise ConfigError("no log given", "a file, `-`, or a stored run such as `last`", key=arguments.action)
+        raise ConfigError(
+            "no log given", "a file, `-`, or a stored run such as `last`", key=arguments.action
+        )
     runs: list[str] = []
     for word in words:
         if is_file(word):
@@ -89,7 +93,9 @@ def _open_runs(words: Sequence[str], arguments: Arguments) -> Iterator[Log]:
         if not log.rows:
             damage = "; ".join(log.notes)
             if log.metadata.get("table") == "telemetry":
-                raise LogError("no ticks: its recording is empty or truncated", damage, file=log.title)
+                raise LogError(
+                    "no ticks: its recording is empty or truncated", damage, file=log.title
+                )
             hint = "a program logs by printing lines such as `Colour: 50`; --telemetry uses every tick instead"
             raise LogError("no samples", damage or hint, file=log.title)
         layout = choose_columns(log.table, arguments.time, arguments.value, arguments.unit)
@@ -105,12 +111,15 @@ def _logs_of(runs: Sequence[StoredRun], arguments: Arguments) -> list[Log]:
     known = {name.partition(" #")[0] for name in samples.names}
     asked_for = _name_columns(arguments, known, runs)
     is_telemetry = bool(asked_for) and all(
-        asked_for.isdisjoint(known) and asked_for.issubset(column_names(run.spec.robot)) for run in runs
+        asked_for.isdisjoint(known) and asked_for.issubset(column_names(run.spec.robot))
+        for run in runs
     )
     return list(map(telemetry_log, runs)) if is_telemetry else [samples]
 
 
-def _name_columns(arguments: Arguments, known: Container[str], runs: Sequence[StoredRun]) -> set[str]:
+def _name_columns(
+    arguments: Arguments, known: Container[str], runs: Sequence[StoredRun]
+) -> set[str]:
     """Give the variables that are asked for the names of columns; return these names and those in the expression.
 
     Args:
@@ -118,7 +127,9 @@ def _name_columns(arguments: Arguments, known: Container[str], runs: Sequence[St
     """
     columns = columns_of(runs[0].spec.robot)
     words: Sequence[str] = getattr(arguments, "variable", None) or ()
-    arguments.variable = tuple(word if word in known else column_name(word, columns) or word for word in words)
+    arguments.variable = tuple(
+        word if word in known else column_name(word, columns) or word for word in words
+    )
     expression = getattr(arguments, "expression", "")
     return {*arguments.variable, *(names_in(expression) if expression else ())}
 
@@ -143,7 +154,9 @@ def _ready(log: Log, arguments: Arguments) -> Log:
     for note in log.notes:
         echo_error(f"note: {log.title}: {note}")
     words = [getattr(arguments, name, "") for name in ("expression", "against")]
-    return with_named_columns(log, " ".join((*words, *(getattr(arguments, "variable", None) or ()))))
+    return with_named_columns(
+        log, " ".join((*words, *(getattr(arguments, "variable", None) or ())))
+    )
 
 
 def names_of(log: Log, arguments: Arguments) -> tuple[str, ...]:

@@ -56,7 +56,9 @@ def summary(arguments: Arguments) -> int:
             span = {"first_s": float(times_s.min()), "last_s": float(times_s.max())}
             rows.append({"log": log.title, "variable": name, **span, **figures, **quantiles})
     number = dict.fromkeys(("min", "mean", "max", "std", *_QUANTILE_NAMES), ".4g")
-    show_rows(rows, arguments, {"variable": "", "count": "", "first_s": ".2f", "last_s": ".2f", **number})
+    show_rows(
+        rows, arguments, {"variable": "", "count": "", "first_s": ".2f", "last_s": ".2f", **number}
+    )
     return 0
 
 
@@ -68,10 +70,20 @@ def bands(arguments: Arguments) -> int:
         titles += [title] * report.count
         reports.append(report)
     formats = {
-        "variable": "", "number": "", "start_s": ".2f", "stop_s": ".2f", "samples": "", "level": ".2f",
-        "true_level": ".2f", "spread": ".2f", "grey": "", "width_mm": ".0f",
-    }  # fmt: skip
-    columns = {name: _joined([report.columns[name] for report in reports]) for name in reports[0].columns}
+        "variable": "",
+        "number": "",
+        "start_s": ".2f",
+        "stop_s": ".2f",
+        "samples": "",
+        "level": ".2f",
+        "true_level": ".2f",
+        "spread": ".2f",
+        "grey": "",
+        "width_mm": ".0f",
+    }
+    columns = {
+        name: _joined([report.columns[name] for report in reports]) for name in reports[0].columns
+    }
     show_columns({"log": titles, **columns}, arguments, formats)
     if not arguments.json and not arguments.out:
         for report in reports:
@@ -105,9 +117,21 @@ def events(arguments: Arguments) -> int:
             for found in threshold.crossings(series):
                 direction = "rises" if found.rising else "falls"
                 row = int(series.rows[found.at])
-                rows.append({"log": log.title, "variable": name, "time_s": found.time_s, "crossing": direction,
-                             "value": found.value, "row": row})  # fmt: skip
-    show_rows(rows, arguments, {"variable": "", "time_s": ".3f", "crossing": "", "value": ".4g", "row": ""})
+                rows.append(
+                    {
+                        "log": log.title,
+                        "variable": name,
+                        "time_s": found.time_s,
+                        "crossing": direction,
+                        "value": found.value,
+                        "row": row,
+                    }
+                )
+    show_rows(
+        rows,
+        arguments,
+        {"variable": "", "time_s": ".3f", "crossing": "", "value": ".4g", "row": ""},
+    )
     return 0
 
 
@@ -118,7 +142,9 @@ def _threshold_of(arguments: Arguments) -> Threshold:
         ConfigError: none is given, or two are.
     """
     if bool(arguments.when) is (arguments.at is not None):
-        raise ConfigError("takes one threshold", "such as --at 50, or --when 'Colour < 50'", key="events")
+        raise ConfigError(
+            "takes one threshold", "such as --at 50, or --when 'Colour < 50'", key="events"
+        )
     if not arguments.when:
         return Threshold("", Operator.EQUAL, repr(arguments.at), hysteresis=arguments.hysteresis)
     if arguments.variable:
@@ -137,7 +163,12 @@ def _each(arguments: Arguments, column: str, change: Callable[[Series], FloatArr
     parts = []
     for name in names_of(log, arguments):
         series = log.series(name)
-        columns = {"time": series.time_s, "variable": name, "value": series.values, column: change(series)}
+        columns = {
+            "time": series.time_s,
+            "variable": name,
+            "value": series.values,
+            column: change(series),
+        }
         parts.append(pd.DataFrame(columns))
     show_frame(pd.concat(parts, ignore_index=True), arguments)
     return 0
@@ -145,17 +176,23 @@ def _each(arguments: Arguments, column: str, change: Callable[[Series], FloatArr
 
 def derive(arguments: Arguments) -> int:
     """Output the derivative of each variable, in units per second."""
-    return _each(arguments, "derivative", lambda series: signals.derivative(series.time_s, series.values))
+    return _each(
+        arguments, "derivative", lambda series: signals.derivative(series.time_s, series.values)
+    )
 
 
 def integrate(arguments: Arguments) -> int:
     """Output the integral of each variable, in units times seconds."""
-    return _each(arguments, "integral", lambda s: signals.integral(s.time_s, s.values, arguments.between))
+    return _each(
+        arguments, "integral", lambda s: signals.integral(s.time_s, s.values, arguments.between)
+    )
 
 
 def average(arguments: Arguments) -> int:
     """Output the centred rolling mean of each variable."""
-    return _each(arguments, "average", lambda series: signals.moving_average(series.values, arguments.width))
+    return _each(
+        arguments, "average", lambda series: signals.moving_average(series.values, arguments.width)
+    )
 
 
 def even(arguments: Arguments) -> int:
@@ -171,7 +208,9 @@ def even(arguments: Arguments) -> int:
     return 0
 
 
-def _sampled_at(moments_s: FloatArray, all_series: Sequence[Series], between: Between = Between.HOLD) -> pd.DataFrame:
+def _sampled_at(
+    moments_s: FloatArray, all_series: Sequence[Series], between: Between = Between.HOLD
+) -> pd.DataFrame:
     """Return the values of each series at given times: one column each, with unique names."""
     import pandas as pd
 
@@ -183,7 +222,9 @@ def _sampled_at(moments_s: FloatArray, all_series: Sequence[Series], between: Be
 def calculate(arguments: Arguments) -> int:
     """Output the log with a column computed from an expression."""
     if not arguments.expression:
-        raise ConfigError("no expression given", "such as --expression '(left + right) / 2'", key="calc")
+        raise ConfigError(
+            "no expression given", "such as --expression '(left + right) / 2'", key="calc"
+        )
     log = the_source(arguments)
     frame = wide_frame(log)
     columns = {str(name): frame[name].to_numpy(np.float64) for name in frame.columns}
@@ -226,8 +267,10 @@ def reckon(arguments: Arguments) -> int:
     rows = [("real", *real), ("reckoned", *reckoned), ("error", *error)]
     formats = dict(zip(("at_the_end", *_POSE), ("", ".2f", ".2f", ".2f"), strict=True))
     show_rows([dict(zip(formats, row, strict=True)) for row in rows], arguments, formats)
-    echo(f"reckoned place: {end['error_mm']:.2f} mm off at the end, at most {worst['error_mm']:.2f} mm, "
-         f"at {worst['time']:.2f} s")  # fmt: skip
+    echo(
+        f"reckoned place: {end['error_mm']:.2f} mm off at the end, at most {worst['error_mm']:.2f} mm, "
+        f"at {worst['time']:.2f} s"
+    )
     return 0
 
 
@@ -252,7 +295,9 @@ def _chosen_part(log: Log, arguments: Arguments) -> LogTable:
     if log.layout.variable:
         return part
     wanted = {name.partition(" #")[0] for name in names}
-    return part.select([name for name in part.column_names if name in wanted or name not in log.layout.values])
+    return part.select(
+        [name for name in part.column_names if name in wanted or name not in log.layout.values]
+    )
 
 
 def diff(arguments: Arguments) -> int:
@@ -282,12 +327,20 @@ def diff(arguments: Arguments) -> int:
 # Output
 
 
-def show_rows(rows: Sequence[Mapping[str, Any]], arguments: Arguments, formats: Mapping[str, str]) -> None:
+def show_rows(
+    rows: Sequence[Mapping[str, Any]], arguments: Arguments, formats: Mapping[str, str]
+) -> None:
     """Print or write rows that all have the same keys; the other arguments are those of `show_columns`."""
-    show_columns({name: [row[name] for row in rows] for name in (rows[0] if rows else ())}, arguments, formats)
+    show_columns(
+        {name: [row[name] for row in rows] for name in (rows[0] if rows else ())},
+        arguments,
+        formats,
+    )
 
 
-def show_columns(columns: Mapping[str, Column], arguments: Arguments, formats: Mapping[str, str]) -> None:
+def show_columns(
+    columns: Mapping[str, Column], arguments: Arguments, formats: Mapping[str, str]
+) -> None:
     """Print or write columns of the same length.
 
     Args:

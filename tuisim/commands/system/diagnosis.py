@@ -51,7 +51,9 @@ def terminal_finding(name: str, term: str, *, is_remote: bool) -> Finding:
     """
     value = f"{name or 'no name'} (TERM={term or 'not set'}{', over SSH' if is_remote else ''})"
     if term in ("", "dumb", "unknown"):
-        return Finding("terminal", value, State.ADVICE, "The terminal is unknown: export TERM=xterm-256color")
+        return Finding(
+            "terminal", value, State.ADVICE, "The terminal is unknown: export TERM=xterm-256color"
+        )
     return Finding("terminal", value)
 
 
@@ -73,7 +75,12 @@ def colors_finding(depth: str, *, is_remote: bool, is_fixed: bool = False) -> Fi
         return Finding("colours", "truecolor (16 million)")
     value = {"none": "none", "8": "8", "16": "16", "256": "256"}[depth]
     if is_fixed:
-        return Finding("colours", f"{value}, as TERM or NO_COLOR says", State.ADVICE, "--colors chooses another number")
+        return Finding(
+            "colours",
+            f"{value}, as TERM or NO_COLOR says",
+            State.ADVICE,
+            "--colors chooses another number",
+        )
     sent = "; SSH does not send this variable by itself" if is_remote else ""
     advice = f"If the terminal shows more, as most do: export COLORTERM=truecolor{sent}"
     return Finding("colours", value, State.ADVICE, advice)
@@ -106,7 +113,9 @@ def cells_finding(cells: CellSet, term: str = "", variable: str = "") -> Finding
         )
         return Finding("cells", value, State.ADVICE, advice)
     if cells in (CellSet.HALF, CellSet.QUADRANT):
-        return Finding("cells", value, State.OK, "Press V in the app to see whether the font shows finer ones")
+        return Finding(
+            "cells", value, State.OK, "Press V in the app to see whether the font shows finer ones"
+        )
     return Finding("cells", value)
 
 
@@ -126,7 +135,9 @@ def size_finding(cols: int, rows: int) -> Finding:
     value = f"{cols} × {rows}"
     for least, word in ((SMALLEST, "at least"), (COMFORTABLE, "better")):
         if cols < least[0] or rows < least[1]:
-            return Finding("size", value, State.ADVICE, f"Enlarge the window to {word} {least[0]} × {least[1]}")
+            return Finding(
+                "size", value, State.ADVICE, f"Enlarge the window to {word} {least[0]} × {least[1]}"
+            )
     return Finding("size", value)
 
 
@@ -155,7 +166,12 @@ def latency_finding(latency_s: float | None) -> Finding:
         return Finding("latency", "no answer", State.ADVICE, advice)
     value = f"{1000 * latency_s:.0f} ms" if latency_s >= 0.01 else f"{1000 * latency_s:.1f} ms"
     if latency_s > SLOW_S:
-        return Finding("latency", value, State.ADVICE, "Slow link: --fps 5, --cells half and --pixels none send less")
+        return Finding(
+            "latency",
+            value,
+            State.ADVICE,
+            "Slow link: --fps 5, --cells half and --pixels none send less",
+        )
     return Finding("latency", value)
 
 
@@ -173,7 +189,9 @@ def system_finding(system: str, release: str) -> Finding:
     if system == "Linux":
         return Finding("system", value)
     if system == "Darwin":
-        return Finding("system", value, State.ADVICE, "macOS is untested: please report what does not work")
+        return Finding(
+            "system", value, State.ADVICE, "macOS is untested: please report what does not work"
+        )
     return Finding("system", value, State.PROBLEM, "tuisim needs Linux; on Windows use WSL")
 
 
@@ -194,7 +212,9 @@ def store_finding(count: int, size_bytes: int, free_bytes: int) -> Finding:
     """Judge the stored runs: their number, their size and what is left on the disk."""
     value = f"{count} runs, {size_bytes / 1e6:.1f} MB; {free_bytes / 1e9:.1f} GB free"
     if free_bytes < 100e6:
-        return Finding("store", value, State.ADVICE, "The disk is almost full: tuisim runs rm --older-than 30d")
+        return Finding(
+            "store", value, State.ADVICE, "The disk is almost full: tuisim runs rm --older-than 30d"
+        )
     if size_bytes > LARGE_STORE_MB * 1e6:
         return Finding("store", value, State.ADVICE, "Large: tuisim runs rm --older-than 30d")
     return Finding("store", value)
@@ -211,7 +231,9 @@ def left_over_finding(count: int, size_bytes: int) -> Finding:
 def assets_finding(why_not: str) -> Finding:
     """Judge whether the mats and the examples are there; `why_not` is empty if they are."""
     if why_not:
-        return Finding("mats", why_not, State.PROBLEM, "Install tuisim again, or correct TUISIM_ASSETS")
+        return Finding(
+            "mats", why_not, State.PROBLEM, "Install tuisim again, or correct TUISIM_ASSETS"
+        )
     return Finding("mats", "found")
 
 
@@ -224,21 +246,33 @@ def dependency_findings(requirements: Iterable[tuple[str, str, str]]) -> list[Fi
     """
     found = [_dependency(*one) for one in requirements]
     good = ", ".join(f"{one.name} {one.value}" for one in found if one.state is State.OK)
-    return [Finding("packages", good or "none"), *(one for one in found if one.state is not State.OK)]
+    return [
+        Finding("packages", good or "none"),
+        *(one for one in found if one.state is not State.OK),
+    ]
 
 
 def _dependency(name: str, pinned: str, installed: str) -> Finding:
     if not installed:
-        return Finding(name, "missing", State.PROBLEM, "Install tuisim again: pip install --force-reinstall tuisim")
+        return Finding(
+            name,
+            "missing",
+            State.PROBLEM,
+            "Install tuisim again: pip install --force-reinstall tuisim",
+        )
     if pinned and installed != pinned:
-        return Finding(name, installed, State.PROBLEM, f"Needs {pinned}: pip install {name}=={pinned}")
+        return Finding(
+            name, installed, State.PROBLEM, f"Needs {pinned}: pip install {name}=={pinned}"
+        )
     return Finding(name, installed)
 
 
 Version = tuple[int, ...]
 
 
-def textual_finding(version: Version, tested: tuple[Version, Version], missing: Sequence[str]) -> Finding:
+def textual_finding(
+    version: Version, tested: tuple[Version, Version], missing: Sequence[str]
+) -> Finding:
     """Judge how the app can draw with the installed Textual.
 
     Args:

@@ -32,7 +32,9 @@ _EXACTLY = re.compile(r"([A-Za-z0-9._-]+)\s*(?:==([^;,\s]+))?")
 
 @command(
     AS_JSON,
-    option("--clean", is_flag=True, help="Remove what killed processes have left, and no run owns."),
+    option(
+        "--clean", is_flag=True, help="Remove what killed processes have left, and no run owns."
+    ),
     option("--reset", is_flag=True, help="Restore a terminal that a killed app has left unusable."),
     help="""Check the terminal and the machine, for use and for bug reports.
 
@@ -61,7 +63,11 @@ def doctor(as_json: bool, clean: bool, reset: bool) -> int:
     findings = [*_terminal_findings(os.environ), *_machine_findings(left)]
     prevented = prevents_use(findings)
     if as_json:
-        facts = {"usable": not prevented, "findings": [asdict(one) for one in findings], "left_over": _plain(left)}
+        facts = {
+            "usable": not prevented,
+            "findings": [asdict(one) for one in findings],
+            "left_over": _plain(left),
+        }
         echo_json({"tuisim": __version__, **facts})
     else:
         _print(findings, left)
@@ -83,7 +89,9 @@ def _clean(left: list[LeftOver], *, as_json: bool) -> int:
     else:
         for one in removed:
             echo(f"removed {one.path}: {one.what}, {size(one.size_bytes)}")
-        echo(f"{counted(len(removed), 'left-over')} removed, {size(sum(one.size_bytes for one in removed))}")
+        echo(
+            f"{counted(len(removed), 'left-over')} removed, {size(sum(one.size_bytes for one in removed))}"
+        )
     return code
 
 
@@ -103,7 +111,11 @@ def _print(findings: list[Finding], left: list[LeftOver]) -> None:
         if one.name == diagnosis.LEFT_OVER:
             for each in left:
                 echo(f"{'':{widest + 8}}{each.path}: {each.what}, {size(each.size_bytes)}")
-    echo("Something prevents the use of tuisim: see FAIL." if prevents_use(findings) else "tuisim can be used.")
+    echo(
+        "Something prevents the use of tuisim: see FAIL."
+        if prevents_use(findings)
+        else "tuisim can be used."
+    )
 
 
 @contextmanager
@@ -199,7 +211,9 @@ def _colors_finding(environment: Mapping[str, str], is_remote: bool) -> Finding:
     if known != AUTO:
         return diagnosis.colors_finding(known, is_remote=is_remote, is_fixed=True)
     system = Console(force_terminal=True, _environ=environment).color_system
-    depth = {"truecolor": "truecolor", "256": "256", "standard": "16", "windows": "16"}.get(system or "", "none")
+    depth = {"truecolor": "truecolor", "256": "256", "standard": "16", "windows": "16"}.get(
+        system or "", "none"
+    )
     return diagnosis.colors_finding(depth, is_remote=is_remote)
 
 

@@ -72,12 +72,18 @@ class _Use:
             return False
         if self._open is None:
             return age_s > LEFT_OVER_S
-        return age_s > _QUIET_S and not any(one == str(path) or one.startswith(f"{path}{os.sep}") for one in self._open)
+        return age_s > _QUIET_S and not any(
+            one == str(path) or one.startswith(f"{path}{os.sep}") for one in self._open
+        )
 
     def is_unlocked(self, folder: Path) -> bool:
         """Return whether no process holds a folder by its lock; one without a lock may be about to get it."""
-        locks = [path for path in folder.glob(f"*{LOCK_FILE}*") if stat.S_ISREG(path.lstat().st_mode)]
-        return self.is_free(folder) if not locks else all(is_locked(path) is False for path in locks)
+        locks = [
+            path for path in folder.glob(f"*{LOCK_FILE}*") if stat.S_ISREG(path.lstat().st_mode)
+        ]
+        return (
+            self.is_free(folder) if not locks else all(is_locked(path) is False for path in locks)
+        )
 
     @cached_property
     def _open(self) -> frozenset[str] | None:
@@ -112,7 +118,11 @@ def _of_runs(folder: Path, use: _Use) -> Iterator[tuple[Path, str]]:
             if _is_run_id(path.name) and use.is_unlocked(path):
                 yield path, "a run that did not begin"
         elif parts := list(_parts(path)):
-            yield from ((part, "a half-written file") for part in parts if use.is_unlocked(path) and use.is_free(part))
+            yield from (
+                (part, "a half-written file")
+                for part in parts
+                if use.is_unlocked(path) and use.is_free(part)
+            )
 
 
 def _is_run_id(name: str) -> bool:
@@ -128,7 +138,11 @@ def _parts(folder: Path) -> Iterator[Path]:
 
 
 def _half_written(home: Path, use: _Use) -> Iterator[tuple[Path, str]]:
-    inside = [path for path in _entries(home) if path.name != RUNS_FOLDER and path.is_dir() and not path.is_symlink()]
+    inside = [
+        path
+        for path in _entries(home)
+        if path.name != RUNS_FOLDER and path.is_dir() and not path.is_symlink()
+    ]
     for folder in dict.fromkeys((home, *inside, *_entries(cache_folder()))):
         yield from ((part, "a half-written file") for part in _parts(folder) if use.is_free(part))
 

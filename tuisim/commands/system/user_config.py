@@ -11,7 +11,11 @@ from tuisim.errors import ConfigError
 
 @command(
     AS_JSON,
-    option("--init", is_flag=True, help=f"Write a {FILE} with every setting in comments, unless there is one."),
+    option(
+        "--init",
+        is_flag=True,
+        help=f"Write a {FILE} with every setting in comments, unless there is one.",
+    ),
     name="config",
     help=f"""Show your settings and keys, and where each comes from; check {FILE}.
 
@@ -27,19 +31,27 @@ def config(as_json: bool, init: bool) -> int:
     """
     if init:
         if as_json:
-            raise ConfigError("--init and --json exclude each other", "give one of them", key="config")
+            raise ConfigError(
+                "--init and --json exclude each other", "give one of them", key="config"
+            )
         echo(f"written: {write_template()}")
         return 0
     found = load_config().checked()
     _check_in_app(found)
-    rows = [(path, found.value(path), FILE if path in found.written else "default") for path in SETTINGS]
+    rows = [
+        (path, found.value(path), FILE if path in found.written else "default") for path in SETTINGS
+    ]
     rows += [(f"keys.{name}", ", ".join(keys), FILE) for name, keys in found.keys.items()]
     exists = found.path.exists()
     if as_json:
         listed = [{"setting": path, "value": value, "from": source} for path, value, source in rows]
         echo_json({"file": str(found.path), "exists": exists, "settings": listed})
         return 0
-    echo(str(found.path) if exists else f"{found.path} does not exist: `tuisim config --init` writes it")
+    echo(
+        str(found.path)
+        if exists
+        else f"{found.path} does not exist: `tuisim config --init` writes it"
+    )
     echo()
     cells = [(path, _shown(value), source) for path, value, source in rows]
     echo_lines(table(("setting", "value", "from"), cells))

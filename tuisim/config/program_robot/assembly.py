@@ -11,7 +11,13 @@ from tuisim.config.program_robot.kinds import with_others, with_tools
 from tuisim.config.program_robot.library import PAIRS, DeviceKind
 from tuisim.config.program_robot.mechanics import Mechanics, mechanics_in
 from tuisim.config.program_robot.mentions import Mention, Mentions, Pair, Where
-from tuisim.config.program_robot.places import Body, NewSensors, places_for, say_other_sides, with_sides
+from tuisim.config.program_robot.places import (
+    Body,
+    NewSensors,
+    places_for,
+    say_other_sides,
+    with_sides,
+)
 from tuisim.config.program_robot.sizes import Size, sizes_in
 from tuisim.config.program_robot.wheels import WheelMotors, wheels_of
 from tuisim.config.program_robot.words import side_of
@@ -95,14 +101,20 @@ def build_robot(mentions: Mentions, name: str, usual: RobotSpec) -> BuiltRobot |
     except RobotError:
         # What a program says may be impossible, such as a wheel of 0 mm: the run then says what is missing.
         return None
-    own_places = {sensor.name for sensor in spec.color_sensors} > {sensor.name for sensor in usual.color_sensors}
+    own_places = {sensor.name for sensor in spec.color_sensors} > {
+        sensor.name for sensor in usual.color_sensors
+    }
     keeps = _on_ports(spec) == _on_ports(usual)
-    return BuiltRobot(RobotChoice(spec, own_places=own_places), tuple(builder.parts), tuple(builder.doubts), keeps)
+    return BuiltRobot(
+        RobotChoice(spec, own_places=own_places), tuple(builder.parts), tuple(builder.doubts), keeps
+    )
 
 
 def _on_ports(robot: RobotSpec) -> dict[str, object]:
     """Return the kind of the part on each port."""
-    return {motor.port: motor.kind for motor in robot.motors} | {one.port: type(one) for one in robot.sensors}
+    return {motor.port: motor.kind for motor in robot.motors} | {
+        one.port: type(one) for one in robot.sensors
+    }
 
 
 @dataclass(slots=True)
@@ -119,7 +131,9 @@ class _Builder:
         """Return the fields of the robot that are about motors and wheels."""
         motors = (one for one in self.mentions.devices if one.kind.is_motor)
         kinds = with_tools(self._kinds([*self._of_pairs(), *motors]), self.mentions)
-        where = {one.port: one.where for one in (*self.mentions.devices, *self._of_pairs()) if one.port}
+        where = {
+            one.port: one.where for one in (*self.mentions.devices, *self._of_pairs()) if one.port
+        }
         wheels = wheels_of(self.mentions, kinds, self.usual, self.mechanics.driven_to_stops)
         left, right = (kinds.get(port, DeviceKind.LARGE) for port in (wheels.left, wheels.right))
         changes: dict[str, Any] = {"left_port": wheels.left, "right_port": wheels.right}
@@ -134,9 +148,17 @@ class _Builder:
         changes["extra_motors"] = tuple(extra)
         for motor in extra:
             ends = [f"{end:g}°" for end in (motor.low_deg, motor.high_deg) if end is not None]
-            stops = f" with {'end stops' if ends[1:] else 'an end stop'} at {' and '.join(ends)}" if ends else ""
+            stops = (
+                f" with {'end stops' if ends[1:] else 'an end stop'} at {' and '.join(ends)}"
+                if ends
+                else ""
+            )
             said = where.get(motor.port) or self._first(further_kinds[motor.port])
-            self.parts.append(RobotPart(f"{motor.kind} motor on {motor.port}{stops}", f"motors.{motor.port}", said))
+            self.parts.append(
+                RobotPart(
+                    f"{motor.kind} motor on {motor.port}{stops}", f"motors.{motor.port}", said
+                )
+            )
         if wheels.doubt:
             self.doubts.append(wheels.doubt)
         return changes
@@ -150,16 +172,24 @@ class _Builder:
     def _reversed(self, wheels: WheelMotors) -> dict[str, bool]:
         """Return which wheels the program says to be mounted the other way round."""
         turned = self.mechanics.reversed
-        sides = [side for side, port in (("left", wheels.left), ("right", wheels.right)) if port in turned]
+        sides = [
+            side
+            for side, port in (("left", wheels.left), ("right", wheels.right))
+            if port in turned
+        ]
         if sides:
             what = "both wheel motors" if len(sides) == 2 else f"the {sides[0]} wheel's motor"
             where = turned[wheels.left if "left" in sides else wheels.right]
-            self.parts.append(RobotPart(f"{what} the other way round", f"{sides[0]}_reversed", where))
+            self.parts.append(
+                RobotPart(f"{what} the other way round", f"{sides[0]}_reversed", where)
+            )
         return {f"{side}_reversed": True for side in sides}
 
     def _geared(self, wheels: WheelMotors) -> dict[str, float]:
         """Return the gears between the wheels and their motors; a robot has the same on both sides."""
-        motors = [motor for port in (wheels.left, wheels.right) if (motor := self.mentions.motor_on(port))]
+        motors = [
+            motor for port in (wheels.left, wheels.right) if (motor := self.mentions.motor_on(port))
+        ]
         ratios = {motor.gear_ratio for motor in motors}
         if len(motors) < 2 or ratios == {self.usual.gear_ratio}:
             return {}
@@ -167,7 +197,11 @@ class _Builder:
             self.doubts.append("the gears of the two wheels differ: none are built")
             return {}
         ratio = ratios.pop()
-        self.parts.append(RobotPart(f"gears of {ratio:g} motor turns per wheel turn", "gear_ratio", motors[0].where))
+        self.parts.append(
+            RobotPart(
+                f"gears of {ratio:g} motor turns per wheel turn", "gear_ratio", motors[0].where
+            )
+        )
         return {"gear_ratio": ratio}
 
     def with_presses(self, changes: dict[str, Any]) -> dict[str, Any]:
@@ -178,7 +212,12 @@ class _Builder:
             motor = motors.get(press.motor or next(iter(motors), ""))
             at = next((at for at, one in enumerate(touches) if press.touch in ("", one.port)), None)
             end = "high" if press.stop.forwards else "low"
-            if motor is None or getattr(motor, f"{end}_deg") is None or at is None or touches[at].pressed_by:
+            if (
+                motor is None
+                or getattr(motor, f"{end}_deg") is None
+                or at is None
+                or touches[at].pressed_by
+            ):
                 continue
             touches[at] = replace(touches[at], pressed_by=motor.port, pressed_at=end)
             what = f"{DeviceKind.TOUCH} on {touches[at].port} pressed by {motor.port}"
@@ -189,7 +228,9 @@ class _Builder:
 
     def _of_pairs(self) -> list[Mention]:
         return [
-            Mention(pair.kind, port, pair.where) for pair in self.mentions.pairs for port in (pair.left, pair.right)
+            Mention(pair.kind, port, pair.where)
+            for pair in self.mentions.pairs
+            for port in (pair.left, pair.right)
         ]
 
     def _first(self, kind: DeviceKind) -> Where | None:
@@ -198,7 +239,8 @@ class _Builder:
     def _free_motors(self, kinds: dict[str, DeviceKind], wheels: tuple[str, str]) -> None:
         """Add the motors that the program makes without saying the port, on free ports."""
         unknown = sum(
-            one.kind is DeviceKind.MEDIUM and not one.port and not one.is_any for one in self.mentions.devices
+            one.kind is DeviceKind.MEDIUM and not one.port and not one.is_any
+            for one in self.mentions.devices
         )
         has_any = any(one.kind is DeviceKind.MEDIUM and one.is_any for one in self.mentions.devices)
         medium = DeviceKind.MEDIUM in kinds.values()
@@ -221,7 +263,10 @@ class _Builder:
     def said_sizes(self, motors: Mapping[str, Any]) -> dict[str, float]:
         """Return what constants of the program say about the wheels, where their class says nothing."""
         said = self._said_sizes(motors)
-        self._tell_sizes({key: size.mm for key, size in said.items()}, {key: size.where for key, size in said.items()})
+        self._tell_sizes(
+            {key: size.mm for key, size in said.items()},
+            {key: size.where for key, size in said.items()},
+        )
         return {key: size.mm for key, size in said.items()}
 
     def _said_sizes(self, motors: Mapping[str, Any]) -> dict[str, Size]:
@@ -244,7 +289,10 @@ class _Builder:
                 yield from ["wheel_spacing_mm"] if pair.spacing_mm is not None else []
 
     def _tell_sizes(self, sizes: Mapping[str, float], where: Mapping[str, Where | None]) -> None:
-        for key, words in (("wheel_diameter_mm", "wheels of {:g} mm"), ("wheel_spacing_mm", "{:g} mm apart")):
+        for key, words in (
+            ("wheel_diameter_mm", "wheels of {:g} mm"),
+            ("wheel_spacing_mm", "{:g} mm apart"),
+        ):
             if key in sizes:
                 self.parts.append(RobotPart(words.format(sizes[key]), key, where[key]))
 
@@ -252,7 +300,11 @@ class _Builder:
         moved = (wheels.left, wheels.right) != (self.usual.left_port, self.usual.right_port)
         kinds = [changes["left_motor"], changes["right_motor"]]
         medium = " (medium motors)" if kinds == ["medium"] * 2 else ""
-        what = f"wheels on {wheels.left} (left) and {wheels.right}{medium}" if wheels.left != NO_PORT else "no wheels"
+        what = (
+            f"wheels on {wheels.left} (left) and {wheels.right}{medium}"
+            if wheels.left != NO_PORT
+            else "no wheels"
+        )
         self.parts.append(RobotPart(what, "left_port", wheels.where, moved or bool(medium)))
         self._tell_sizes(changes, dict.fromkeys(changes, wheels.where))
 
@@ -285,20 +337,28 @@ class _Builder:
         kinds = self._kinds(mentions)
         usual = {sensor.port: sensor for sensor in self.usual.sensors}
         by_port = {
-            port: next(one for one in mentions if one.port == port and one.kind is kinds[port]) for port in kinds
+            port: next(one for one in mentions if one.port == port and one.kind is kinds[port])
+            for port in kinds
         }
         by_side = say_other_sides(by_port, usual)
         placed: dict[str, SensorSpec] = {}
         for port, kind in kinds.items():
             is_there = port in usual and kind in (KINDS[type(usual[port])], DeviceKind.SENSOR)
             if is_there and not (
-                by_side and kind is DeviceKind.COLOR and side_of(by_port[port].names) != usual[port].name
+                by_side
+                and kind is DeviceKind.COLOR
+                and side_of(by_port[port].names) != usual[port].name
             ):
                 placed[port] = usual[port]
         waiting = {
-            port: one for port, one in by_port.items() if port not in placed and one.kind is not DeviceKind.SENSOR
+            port: one
+            for port, one in by_port.items()
+            if port not in placed and one.kind is not DeviceKind.SENSOR
         }
-        wanted = [*waiting.items(), *self._without_port(mentions, kinds, placed, {*placed, *waiting})]
+        wanted = [
+            *waiting.items(),
+            *self._without_port(mentions, kinds, placed, {*placed, *waiting}),
+        ]
         if by_side:
             wanted.sort(key=lambda one: not side_of(one[1].names))
         left = [sensor for sensor in self.usual.sensors if sensor not in placed.values()]
@@ -321,7 +381,8 @@ class _Builder:
     def _body(self, motors: Mapping[str, Any]) -> Body:
         said = {**{key: size.mm for key, size in self._said_sizes(motors).items()}, **motors}
         spacing_mm, width_mm = (
-            said.get(key, getattr(self.usual, key)) for key in ("wheel_spacing_mm", "wheel_width_mm")
+            said.get(key, getattr(self.usual, key))
+            for key in ("wheel_spacing_mm", "wheel_width_mm")
         )
         return Body((spacing_mm + width_mm) / 2, self.usual.back_mm)
 
@@ -334,7 +395,9 @@ class _Builder:
     ) -> list[tuple[str, Mention]]:
         """Return the sensors that a program makes without saying the port, with ports for them."""
         found: list[tuple[str, Mention]] = []
-        for kind in dict.fromkeys(one.kind for one in mentions if not one.port and one.kind is not DeviceKind.SENSOR):
+        for kind in dict.fromkeys(
+            one.kind for one in mentions if not one.port and one.kind is not DeviceKind.SENSOR
+        ):
             of_kind = [one for one in mentions if one.kind is kind and not one.port]
             unknown = [one for one in of_kind if not one.is_any]
             needed = unknown or ([] if kind in kinds.values() else of_kind[:1])
@@ -365,15 +428,26 @@ class _Builder:
                 placed[port] = _on_port(sensor, port)
 
     def _tell_sensors(
-        self, placed: Mapping[str, SensorSpec], by_port: Mapping[str, Mention], mentions: Iterable[Mention]
+        self,
+        placed: Mapping[str, SensorSpec],
+        by_port: Mapping[str, Mention],
+        mentions: Iterable[Mention],
     ) -> None:
         usual = {sensor.port: sensor for sensor in self.usual.sensors}
         first = {one.kind: one.where for one in reversed([*mentions])}
         for port, sensor in sorted(placed.items()):
             kind = KINDS[type(sensor)]
-            where = by_port[port].where if port in by_port else first.get(kind) if usual.get(port) != sensor else None
+            where = (
+                by_port[port].where
+                if port in by_port
+                else first.get(kind)
+                if usual.get(port) != sensor
+                else None
+            )
             if where or usual.get(port) != sensor:
-                self.parts.append(RobotPart(f"{kind} on {port}", _path(sensor), where, usual.get(port) != sensor))
+                self.parts.append(
+                    RobotPart(f"{kind} on {port}", _path(sensor), where, usual.get(port) != sensor)
+                )
         names = {sensor.name for sensor in placed.values()}
         for sensor in self.usual.sensors:
             if sensor.name not in names:
@@ -410,7 +484,9 @@ def _on_port(sensor: Any, port: str) -> SensorSpec:
 def _fields(placed: Mapping[str, SensorSpec], usual: RobotSpec) -> dict[str, Any]:
     """Return the sensors as fields of a robot, those of the usual robot first and in its order."""
     order = [sensor.name for sensor in usual.sensors]
-    sensors = sorted(placed.values(), key=lambda one: order.index(one.name) if one.name in order else len(order))
+    sensors = sorted(
+        placed.values(), key=lambda one: order.index(one.name) if one.name in order else len(order)
+    )
     colors = [one for one in sensors if isinstance(one, ColorSensorSpec)]
     ultrasonics = [one for one in sensors if isinstance(one, UltrasonicSpec)]
     infrareds = [one for one in sensors if isinstance(one, InfraredSpec)]

@@ -25,7 +25,9 @@ class RefusedLine:
 def refused_lines(modules: Iterable[Module]) -> tuple[RefusedLine, ...]:
     """Return the lines of a program that the brick refuses, in the order of its files and their lines."""
     return tuple(
-        RefusedLine(module.file, line, what) for module in modules for line, what in sorted({*_refused_in(module.tree)})
+        RefusedLine(module.file, line, what)
+        for module in modules
+        for line, what in sorted({*_refused_in(module.tree)})
     )
 
 
@@ -50,9 +52,15 @@ def _refused(node: ast.AST) -> str:
             return "except*"
         case ast.BinOp(op=ast.MatMult()) | ast.AugAssign(op=ast.MatMult()):
             return "operator @"
-        case ast.FunctionDef(args=arguments) | ast.AsyncFunctionDef(args=arguments) if arguments.posonlyargs:
+        case ast.FunctionDef(args=arguments) | ast.AsyncFunctionDef(args=arguments) if (
+            arguments.posonlyargs
+        ):
             return "positional-only parameters, /"
-        case ast.List(ctx=ast.Load(), elts=parts) | ast.Tuple(ctx=ast.Load(), elts=parts) | ast.Set(elts=parts):
+        case (
+            ast.List(ctx=ast.Load(), elts=parts)
+            | ast.Tuple(ctx=ast.Load(), elts=parts)
+            | ast.Set(elts=parts)
+        ):
             return "* in a list, tuple or set" if _stars(parts) else ""
         case ast.Dict(keys=keys):
             return "** in a dictionary" if None in keys else ""

@@ -35,19 +35,27 @@ def argument_node(call: Call, name: str, at: int | None) -> ast.expr | None:
         if keyword.arg == name:
             return keyword.value
     args = call.node.args
-    if at is None or at < 0 or any(isinstance(argument, ast.Starred) for argument in args[: at + 1]):
+    if (
+        at is None
+        or at < 0
+        or any(isinstance(argument, ast.Starred) for argument in args[: at + 1])
+    ):
         return None
     return args[at] if at < len(args) else None
 
 
-def argument_of(call: Call, name: str, at: int | None, evaluator: Evaluator) -> Sequence[Value] | None:
+def argument_of(
+    call: Call, name: str, at: int | None, evaluator: Evaluator
+) -> Sequence[Value] | None:
     """Return what a call gives for a parameter, also as `*…` and `**…`; None if nothing, empty if unknown."""
     if (node := argument_node(call, name, at)) is not None:
         return evaluator.values(node, call.scope)
     for keyword in call.node.keywords:
         if keyword.arg is None:
             for table in evaluator.values(keyword.value, call.scope):
-                if isinstance(table, SourceCollection) and (found := list(evaluator.looked_up(table, [name]))):
+                if isinstance(table, SourceCollection) and (
+                    found := list(evaluator.looked_up(table, [name]))
+                ):
                     return found
     for before, starred in enumerate(call.node.args):
         if isinstance(starred, ast.Starred) and at is not None and at >= before:

@@ -23,7 +23,11 @@ def uses_course_names(modules: Mapping[str, Module], text: str) -> bool:
     """
     trees = [module.tree for module in modules.values()]
     defined = {name for tree in trees for name in _defined(tree)}
-    if any(name == COURSE_MODULE or (name in _ATTRIBUTES - defined) for tree in trees for name in _used(tree)):
+    if any(
+        name == COURSE_MODULE or (name in _ATTRIBUTES - defined)
+        for tree in trees
+        for name in _used(tree)
+    ):
         return True
     _, ready = global_names(PRELUDE_TEXTS["preloaded"])
     used, known = global_names(text)
@@ -37,7 +41,11 @@ def _used(tree: ast.Module) -> Iterator[str]:
     """Yield the attributes and the modules that a module uses."""
     for node in ast.walk(tree):
         match node:
-            case ast.Attribute(attr=name) | ast.ImportFrom(module=str(name)) | ast.Import(names=[ast.alias(name=name)]):
+            case (
+                ast.Attribute(attr=name)
+                | ast.ImportFrom(module=str(name))
+                | ast.Import(names=[ast.alias(name=name)])
+            ):
                 yield name
 
 
@@ -45,7 +53,11 @@ def _defined(tree: ast.Module) -> Iterator[str]:
     """Yield the names that a module defines itself, at whatever place."""
     for node in ast.walk(tree):
         match node:
-            case ast.FunctionDef(name=name) | ast.ClassDef(name=name) | ast.Name(id=name, ctx=ast.Store()):
+            case (
+                ast.FunctionDef(name=name)
+                | ast.ClassDef(name=name)
+                | ast.Name(id=name, ctx=ast.Store())
+            ):
                 yield name
 
 

@@ -9,7 +9,15 @@ from dataclasses import field, replace
 
 from tuisim.config.program_robot import library
 from tuisim.config.program_robot.calls import Call, argument_of
-from tuisim.config.program_robot.scopes import FUNCTIONS, Bound, Defined, Function, Imported, Parameter, Scope
+from tuisim.config.program_robot.scopes import (
+    FUNCTIONS,
+    Bound,
+    Defined,
+    Function,
+    Imported,
+    Parameter,
+    Scope,
+)
 from tuisim.config.program_robot.source import DataFiles
 from tuisim.config.program_robot.values import (
     File,
@@ -32,8 +40,11 @@ MAX_DEPTH = 40
 MAX_STEPS = 200_000
 
 _OPERATORS: Mapping[type[ast.operator], Callable[[float, float], float]] = {
-    ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul, ast.Div: operator.truediv,
-}  # fmt: skip
+    ast.Add: operator.add,
+    ast.Sub: operator.sub,
+    ast.Mult: operator.mul,
+    ast.Div: operator.truediv,
+}
 _CONVERTED = {"str", "int", "float", "list", "tuple", "set", "sorted", "reversed", "iter", "const"}
 """Functions whose result is taken to be their argument."""
 _JSON = ("json", "ujson")
@@ -92,12 +103,20 @@ class Evaluation:
                 yield from (*self.values(one, scope), *self.values(other, scope))
             case ast.BoolOp(values=parts):
                 for part in parts:
-                    yield from (value for value in self.values(part, scope) if value not in (None, ""))
+                    yield from (
+                        value for value in self.values(part, scope) if value not in (None, "")
+                    )
             case ast.NamedExpr(value=value) | ast.Await(value=value) | ast.Starred(value=value):
                 yield from self.values(value, scope)
             case ast.UnaryOp(op=ast.USub(), operand=operand):
-                yield from (-value for value in self.values(operand, scope) if isinstance(value, int | float))
-            case ast.BinOp(op=ast.Div(), right=right) if any(isinstance(one, str) for one in self.values(right, scope)):
+                yield from (
+                    -value
+                    for value in self.values(operand, scope)
+                    if isinstance(value, int | float)
+                )
+            case ast.BinOp(op=ast.Div(), right=right) if any(
+                isinstance(one, str) for one in self.values(right, scope)
+            ):
                 yield from (File(name) for name in self._file_names(node, scope))
             case ast.BinOp(left=left, op=sign, right=right):
                 yield from self._computed(left, sign, right, scope)
@@ -121,7 +140,9 @@ class Evaluation:
         at: Scope | None = scope
         while at is not None:
             # The names of a class are not seen in its methods.
-            if (bindings := at.names.get(name)) and (at is scope or not isinstance(at.node, ast.ClassDef)):
+            if (bindings := at.names.get(name)) and (
+                at is scope or not isinstance(at.node, ast.ClassDef)
+            ):
                 for binding in bindings:
                     yield from self._bound(binding)
                 return
@@ -138,7 +159,9 @@ class Evaluation:
                 yield from self._in_bound(binding)
             case Defined(node=node, scope=scope):
                 inner = scope.inner[node]
-                yield OwnClass(inner) if isinstance(node, ast.ClassDef) else OwnFunction(node, inner)
+                yield (
+                    OwnClass(inner) if isinstance(node, ast.ClassDef) else OwnFunction(node, inner)
+                )
             case Imported(module=module, name=name):
                 yield from self._in_module(module, name) if name else self._module(module)
             case Parameter():
@@ -246,7 +269,9 @@ class Evaluation:
             seen.add(scope)
             for binding in scope.names.get(name, ()):
                 if isinstance(binding, Defined) and isinstance(binding.node, FUNCTIONS):
-                    return OwnFunction(binding.node, binding.scope.inner[binding.node], is_bound=True)
+                    return OwnFunction(
+                        binding.node, binding.scope.inner[binding.node], is_bound=True
+                    )
             for base in self.bases(scope):
                 if isinstance(base, LibraryClass):
                     return base
@@ -288,13 +313,19 @@ class Evaluation:
         """Yield what is in a table under one of these keys; everything if they are unknown."""
         keys = table.keys
         for key, item in zip(keys or range(len(table.items)), table.items, strict=True):
-            of_key = self.values(key, table.scope) if isinstance(key, ast.expr) else (key, _from_end(key, table))
+            of_key = (
+                self.values(key, table.scope)
+                if isinstance(key, ast.expr)
+                else (key, _from_end(key, table))
+            )
             if not wanted or not of_key or any(one in of_key for one in wanted):
                 yield from self.values(item, table.scope)
 
     # Computed values
 
-    def _computed(self, left: ast.expr, sign: ast.operator, right: ast.expr, scope: Scope) -> Iterator[Value]:
+    def _computed(
+        self, left: ast.expr, sign: ast.operator, right: ast.expr, scope: Scope
+    ) -> Iterator[Value]:
         for one in self.values(left, scope):
             for other in self.values(right, scope):
                 match one, other:
@@ -304,7 +335,9 @@ class Evaluation:
                         other or not isinstance(sign, ast.Div)
                     ):
                         yield _OPERATORS[type(sign)](one, other)
-                    case (str(), str() | int()) if isinstance(sign, ast.Mod) and one.count("%") == 1:
+                    case (str(), str() | int()) if (
+                        isinstance(sign, ast.Mod) and one.count("%") == 1
+                    ):
                         yield one.replace("%s", str(other)).replace("%d", str(other))
 
     def _joined(self, parts: Sequence[ast.expr], scope: Scope) -> Iterator[Value]:
@@ -344,19 +377,31 @@ class Evaluation:
                 case OwnFunction():
                     yield from _made_by(node, self.returned(value))
 
-    def _of_method(self, base: ast.expr, name: str, node: ast.Call, scope: Scope) -> Iterator[Value]:
+    def _of_method(
+        self, base: ast.expr, name: str, node: ast.Call, scope: Scope
+    ) -> Iterator[Value]:
         """Yield the result of a method of Python's own types."""
         if name in ("parse_args", "parse_known_args"):
             yield Options()
-        elif name in ("load", "loads") and node.args and isinstance(base, ast.Name) and base.id in _JSON:
+        elif (
+            name in ("load", "loads")
+            and node.args
+            and isinstance(base, ast.Name)
+            and base.id in _JSON
+        ):
             for file in self.values(node.args[0], scope):
-                if isinstance(file, File) and (inside := self.files.values_in(file.name)) is not None:
+                if (
+                    isinstance(file, File)
+                    and (inside := self.files.values_in(file.name)) is not None
+                ):
                     yield from self.values(inside, scope.top)
         elif name in ("read", "read_text", "open"):
             # The text of a file stands for the file.
             yield from (value for value in self.values(base, scope) if isinstance(value, File))
         elif name == "get" and node.args:
-            tables = [value for value in self.values(base, scope) if isinstance(value, SourceCollection)]
+            tables = [
+                value for value in self.values(base, scope) if isinstance(value, SourceCollection)
+            ]
             for table in tables:
                 yield from self.looked_up(table, self.values(node.args[0], scope))
             # Also of `os.environ`.
@@ -364,12 +409,18 @@ class Evaluation:
                 yield from self.values(node.args[1], scope)
         elif name in ("keys", "values", "items", "copy"):
             yield from (
-                self._view(name, value) for value in self.values(base, scope) if isinstance(value, SourceCollection)
+                self._view(name, value)
+                for value in self.values(base, scope)
+                if isinstance(value, SourceCollection)
             )
         elif name == "format" and node.args:
             for text in self.values(base, scope):
                 for value in self.values(node.args[0], scope):
-                    if isinstance(text, str) and isinstance(value, str | int) and text.count("{") == 1:
+                    if (
+                        isinstance(text, str)
+                        and isinstance(value, str | int)
+                        and text.count("{") == 1
+                    ):
                         yield text.replace("{}", str(value)).replace("{0}", str(value))
         elif name in ("strip", "lower", "upper"):
             for text in self.values(base, scope):
@@ -379,7 +430,10 @@ class Evaluation:
     def _file_names(self, node: ast.expr, scope: Scope) -> Iterator[str]:
         """Yield the names of a file that an expression can be, from the program's own folder on."""
         match node:
-            case ast.Call(func=ast.Attribute(attr="join"), args=[*_, last]) | ast.BinOp(op=ast.Div(), right=last):
+            case (
+                ast.Call(func=ast.Attribute(attr="join"), args=[*_, last])
+                | ast.BinOp(op=ast.Div(), right=last)
+            ):
                 # What comes before is most often the program's folder.
                 yield from (value for value in self.values(last, scope) if isinstance(value, str))
             case _:
@@ -395,7 +449,9 @@ class Evaluation:
             return SourceCollection(ast.List(keys), table.scope)
         if name == "values":
             return SourceCollection(ast.List(table.items), table.scope)
-        pairs: list[ast.expr] = [ast.Tuple([key, item]) for key, item in zip(keys, table.items, strict=False)]
+        pairs: list[ast.expr] = [
+            ast.Tuple([key, item]) for key, item in zip(keys, table.items, strict=False)
+        ]
         return SourceCollection(ast.List(pairs), table.scope)
 
     def returned(self, function: OwnFunction) -> Iterator[Value]:
@@ -413,7 +469,9 @@ class Evaluation:
         arguments = [*function.args.posonlyargs, *function.args.args]
         names = [argument.arg for argument in arguments]
         if name in names[:1] and owner is not None and isinstance(owner.node, ast.ClassDef):
-            return [(OwnClass(owner) if _is_class_method(function) else Instance(OwnClass(owner)), None)]
+            return [
+                (OwnClass(owner) if _is_class_method(function) else Instance(OwnClass(owner)), None)
+            ]
         key = (parameter,)
         if key in self._open:
             return []
@@ -436,7 +494,14 @@ class Evaluation:
                 found.append((SourceCollection(ast.Tuple(rest), call.scope), call))
                 continue
             if parameter.argument is parameter.function.args.kwarg:
-                found.append((SourceCollection(ast.Call(call.node.func, [], call.node.keywords), call.scope), call))
+                found.append(
+                    (
+                        SourceCollection(
+                            ast.Call(call.node.func, [], call.node.keywords), call.scope
+                        ),
+                        call,
+                    )
+                )
                 continue
             at = names.index(name) - (1 if call.is_bound else 0) if name in names else None
             given = argument_of(call, name, at, self)
@@ -450,7 +515,9 @@ class Evaluation:
 def _made_by(call: ast.Call | None, values: Iterable[Value]) -> Iterator[Value]:
     """Yield values with the call that makes them, where none nearer to them is known."""
     for value in values:
-        yield replace(value, via=call) if isinstance(value, Instance) and value.via is None else value
+        yield (
+            replace(value, via=call) if isinstance(value, Instance) and value.via is None else value
+        )
 
 
 def _from_end(index: object, table: SourceCollection) -> int:

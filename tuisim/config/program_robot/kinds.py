@@ -15,7 +15,9 @@ _MOST_MEDIUM = 2
 
 def with_tools(kinds: Mapping[str, DeviceKind], mentions: Mentions) -> dict[str, DeviceKind]:
     """Return the kinds of motors by port: also of those whose names say that they move a tool."""
-    return _with_medium(kinds, mentions, [port for port in kinds if means_tool(_names(port, mentions))])
+    return _with_medium(
+        kinds, mentions, [port for port in kinds if means_tool(_names(port, mentions))]
+    )
 
 
 def with_others(kinds: Mapping[str, DeviceKind], mentions: Mentions) -> dict[str, DeviceKind]:
@@ -23,11 +25,17 @@ def with_others(kinds: Mapping[str, DeviceKind], mentions: Mentions) -> dict[str
     return _with_medium(kinds, mentions, [*kinds])
 
 
-def _with_medium(kinds: Mapping[str, DeviceKind], mentions: Mentions, others: list[str]) -> dict[str, DeviceKind]:
+def _with_medium(
+    kinds: Mapping[str, DeviceKind], mentions: Mentions, others: list[str]
+) -> dict[str, DeviceKind]:
     """Return kinds with one or two other motors than those of the wheels as medium ones, as in LEGO's sets."""
     if mentions.library is not Library.PYBRICKS or len(others) > _MOST_MEDIUM:
         return dict(kinds)
-    unsaid = [port for port in others if kinds[port] is DeviceKind.MOTOR and not means_large(_names(port, mentions))]
+    unsaid = [
+        port
+        for port in others
+        if kinds[port] is DeviceKind.MOTOR and not means_large(_names(port, mentions))
+    ]
     return {**kinds, **dict.fromkeys(unsaid, DeviceKind.MEDIUM)}
 
 

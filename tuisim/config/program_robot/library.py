@@ -98,7 +98,9 @@ PAIRS: Mapping[str, PairClass] = {
     "MoveJoystick": PairClass(*_PORTS, rank=2),
     "WebControlledTank": PairClass(*_HELPER, rank=2),
     "RemoteControlledTank": PairClass(*_PORTS, rank=2, needs=(DeviceKind.INFRARED,), reverses=True),
-    "GyroBalancer": PairClass(*_PORTS, needs=(DeviceKind.GYRO, DeviceKind.TOUCH), usual=("outD", "outA")),
+    "GyroBalancer": PairClass(
+        *_PORTS, needs=(DeviceKind.GYRO, DeviceKind.TOUCH), usual=("outD", "outA")
+    ),
     "DriveBase": PairClass(*_HELPER, rank=3, takes_motors=True),
     "Tank": PairClass(*_HELPER, rank=2),
     "LargeMotorPair": PairClass(*_HELPER),
@@ -115,8 +117,12 @@ POLARITY = "polarity"
 """Argument of a class that turns the polarity of its motors, after the ports."""
 MOTOR_CLASS = "motor_class"
 MOTOR_CLASS_AT: Mapping[str, int] = {
-    "MoveTank": 3, "MoveSteering": 3, "MoveJoystick": 3, "MoveDifferential": 5, "WebControlledTank": 4,
-}  # fmt: skip
+    "MoveTank": 3,
+    "MoveSteering": 3,
+    "MoveJoystick": 3,
+    "MoveDifferential": 5,
+    "WebControlledTank": 4,
+}
 """Where the argument `motor_class` stands."""
 
 WHEEL = "Wheel"
@@ -140,7 +146,10 @@ CONSTANTS: Mapping[str, str] = {
 INVERSED, NORMAL = CONSTANTS["POLARITY_INVERSED"], CONSTANTS["POLARITY_NORMAL"]
 
 MEMBERS: Mapping[str, Mapping[str, str]] = {
-    "Port": {(port[-1] if port.startswith("out") else f"S{port[-1]}"): port for port in (*OUTPUT_PORTS, *INPUT_PORTS)},
+    "Port": {
+        (port[-1] if port.startswith("out") else f"S{port[-1]}"): port
+        for port in (*OUTPUT_PORTS, *INPUT_PORTS)
+    },
     "Direction": {"CLOCKWISE": NORMAL, "COUNTERCLOCKWISE": INVERSED},
 }
 """The enumerations of Pybricks that matter here, with the value of each member."""
@@ -174,8 +183,17 @@ class Moves:
 MOVES: Mapping[Library, Moves] = {
     Library.EV3DEV2: Moves(
         endless=frozenset({"on", "run_forever", "run_direct"}),
-        ending=frozenset({"on_for_degrees", "on_for_rotations", "on_for_seconds", "on_to_position", "run_to_rel_pos",
-                          "run_to_abs_pos", "run_timed"}),
+        ending=frozenset(
+            {
+                "on_for_degrees",
+                "on_for_rotations",
+                "on_for_seconds",
+                "on_to_position",
+                "run_to_rel_pos",
+                "run_to_abs_pos",
+                "run_timed",
+            }
+        ),
         unsigned=frozenset({"on_to_position", "run_to_abs_pos"}),
         speeds=("speed", "speed_sp", "duty_cycle_sp"),
         lengths=("degrees", "position", "position_sp", "rotations"),
@@ -183,7 +201,17 @@ MOVES: Mapping[Library, Moves] = {
     ),
     Library.PYBRICKS: Moves(
         endless=frozenset({"run", "dc", "drive"}),
-        ending=frozenset({"run_time", "run_angle", "run_target", "track_target", "straight", "turn", "drive_time"}),
+        ending=frozenset(
+            {
+                "run_time",
+                "run_angle",
+                "run_target",
+                "track_target",
+                "straight",
+                "turn",
+                "drive_time",
+            }
+        ),
         unsigned=frozenset({"run_target", "track_target", "turn"}),
         speeds=("speed", "duty", "drive_speed", "distance"),
         lengths=("rotation_angle", "target_angle"),
@@ -191,7 +219,7 @@ MOVES: Mapping[Library, Moves] = {
         of_both=frozenset({"drive", "straight", "drive_time"}),
         stalling=frozenset({"run_until_stalled"}),
     ),
-}  # fmt: skip
+}
 """The moves of each library."""
 
 _DRIVERS: Mapping[str, DeviceKind] = {

@@ -58,10 +58,14 @@ class Mechanics:
 
     def range_of(self, port: str) -> tuple[float | None, float | None]:
         """Return the end stops of a motor, from its position at the start; None for a side without one."""
-        stop = self.stops.get(port) or next((press.stop for press in self.presses if press.motor == port), None)
+        stop = self.stops.get(port) or next(
+            (press.stop for press in self.presses if press.motor == port), None
+        )
         if stop is None:
             return None, None
-        reach = max(_USUAL_REACH_DEG, min(self.reach_deg.get(port, 0.0), _MOST_REACH_DEG)) + _MARGIN_DEG
+        reach = (
+            max(_USUAL_REACH_DEG, min(self.reach_deg.get(port, 0.0), _MOST_REACH_DEG)) + _MARGIN_DEG
+        )
         if stop.forwards is None:
             return -reach, reach
         far = None if port in self.endless - self.closed else reach
@@ -115,7 +119,9 @@ class _MechanicsReader:
             if self.found.reversed.pop(port, None) is None:
                 self.found.reversed[port] = where
         for port, targets in self.targets.items():
-            far = max(abs(target - place) for target in targets for place in self.places.get(port, {0.0}))
+            far = max(
+                abs(target - place) for target in targets for place in self.places.get(port, {0.0})
+            )
             self.found.reach_deg[port] = max(self.found.reach_deg.get(port, 0.0), far)
         for port, reach_deg in self.found.reach_deg.items():
             if mention := self.mentions.motor_on(port):
@@ -155,7 +161,9 @@ class _MechanicsReader:
             self._note_reach(call, name, self._motors(base, scope), scope)
         elif name in self.moves.stalling:
             self.found.driven_to_stops.update(self._motors(base, scope))
-            self._stall(base, scope, call, [speed > 0 for speed in self._speeds(call, scope) if speed])
+            self._stall(
+                base, scope, call, [speed > 0 for speed in self._speeds(call, scope) if speed]
+            )
         elif name == "stalled":
             match base:
                 case ast.Attribute(value=motor, attr="control"):
@@ -189,7 +197,9 @@ class _MechanicsReader:
             if node.func.attr not in self.moves.endless | self.moves.ending - self.moves.unsigned:
                 continue
             if any(
-                length < 0 for one in self._lengths(node, node.func.attr, scope) for length in self._numbers(one, scope)
+                length < 0
+                for one in self._lengths(node, node.func.attr, scope)
+                for length in self._numbers(one, scope)
             ):
                 return
             for port in self._known_motors(node.func.value, scope):
@@ -209,7 +219,9 @@ class _MechanicsReader:
         names = (*self.moves.speeds, "left_speed", "right_speed")
         given = [keyword.value for keyword in call.keywords if keyword.arg in names]
         for node in (*given, *call.args[first:last]):
-            yield from self._numbers(node.args[0] if isinstance(node, ast.Call) and node.args else node, scope)
+            yield from self._numbers(
+                node.args[0] if isinstance(node, ast.Call) and node.args else node, scope
+            )
 
     def _lengths(self, call: ast.Call, name: str, scope: Scope) -> list[ast.expr]:
         """Return what a call of a movement gives for its length or its end."""
@@ -221,7 +233,9 @@ class _MechanicsReader:
         return given + call.args[at : at + 1]
 
     def _numbers(self, node: ast.expr, scope: Scope) -> list[float]:
-        return [value for value in self.evaluation.values(node, scope) if isinstance(value, int | float)]
+        return [
+            value for value in self.evaluation.values(node, scope) if isinstance(value, int | float)
+        ]
 
     def _turn(self, ports: Iterable[str], text: object, where: Where) -> None:
         for port in ports:
@@ -230,7 +244,9 @@ class _MechanicsReader:
             elif text == NORMAL:
                 self.normal.add(port)
 
-    def _stall(self, base: ast.expr, scope: Scope, node: ast.AST, said: Sequence[bool] = ()) -> None:
+    def _stall(
+        self, base: ast.expr, scope: Scope, node: ast.AST, said: Sequence[bool] = ()
+    ) -> None:
         """Note an end stop of a motor.
 
         Args:
@@ -269,9 +285,13 @@ class _MechanicsReader:
     def _only_moves_endlessly(self, base: ast.expr, scope: Scope) -> bool:
         """Return whether a motor, in some part of the program, moves and never by itself ends to."""
         ports = self._motors(base, scope)
-        return self._moves(scope, ports, self.moves.endless) and not self._moves(scope, ports, self.moves.ending)
+        return self._moves(scope, ports, self.moves.endless) and not self._moves(
+            scope, ports, self.moves.ending
+        )
 
-    def _directions(self, nodes: Sequence[ast.AST], ports: Iterable[str], scope: Scope) -> Iterator[bool]:
+    def _directions(
+        self, nodes: Sequence[ast.AST], ports: Iterable[str], scope: Scope
+    ) -> Iterator[bool]:
         """Yield whether the movements without an end among some nodes are forwards."""
         ports = [*ports]
         for call in self._calls(nodes, ports, self.moves.endless, scope):
@@ -297,7 +317,9 @@ class _MechanicsReader:
             self.found.endless.update(() if lengths else ports)
             for length in lengths:
                 for port in ports:
-                    self.found.reach_deg[port] = max(self.found.reach_deg.get(port, 0.0), abs(length) * turns)
+                    self.found.reach_deg[port] = max(
+                        self.found.reach_deg.get(port, 0.0), abs(length) * turns
+                    )
 
     def _note_targets(self, node: ast.expr, ports: Sequence[str], scope: Scope) -> None:
         targets = self._numbers(node, scope)
@@ -313,11 +335,14 @@ class _MechanicsReader:
         """Note a motor that runs until a touch sensor is pressed, while nothing else moves."""
         last = statements[-1]
         match last:
-            case ast.While(test=ast.UnaryOp(op=ast.Not(), operand=ast.Attribute(value=base, attr="is_pressed"))):
+            case ast.While(
+                test=ast.UnaryOp(op=ast.Not(), operand=ast.Attribute(value=base, attr="is_pressed"))
+            ):
                 pass
             case ast.While(
                 test=ast.UnaryOp(
-                    op=ast.Not(), operand=ast.Call(func=ast.Attribute(value=base, attr="value" | "pressed"))
+                    op=ast.Not(),
+                    operand=ast.Call(func=ast.Attribute(value=base, attr="value" | "pressed")),
                 )
             ):
                 pass
@@ -330,10 +355,11 @@ class _MechanicsReader:
         moved = {
             port
             for node in nodes
-            if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute)
+            if isinstance(node, ast.Call)
+            and isinstance(node.func, ast.Attribute)
             and node.func.attr in self.moves.endless | self.moves.ending
             for port in self._motors(node.func.value, scope)
-        }  # fmt: skip
+        }
         if len(moved) == 1 and touches:
             forwards = next(self._directions([*nodes, *scope.body], moved, scope), None)
             motor = moved.pop()
@@ -344,8 +370,14 @@ class _MechanicsReader:
 
     def _known_motors(self, node: ast.expr, scope: Scope) -> list[str]:
         """Return the ports of the motors that an expression can be; none if it stands for one of several in turn."""
-        calls = [value.call for value in self.evaluation.values(node, scope) if isinstance(value, Instance)]
-        in_turn = any(sum(one.call is call for one in self.mentions.devices) > 1 for call in calls if call)
+        calls = [
+            value.call
+            for value in self.evaluation.values(node, scope)
+            if isinstance(value, Instance)
+        ]
+        in_turn = any(
+            sum(one.call is call for one in self.mentions.devices) > 1 for call in calls if call
+        )
         return [] if in_turn else self._motors(node, scope)
 
     def _motors(self, node: ast.expr, scope: Scope) -> list[str]:
@@ -360,21 +392,37 @@ class _MechanicsReader:
         found = [port for pair in self._pairs(node, scope) for port in (pair.left, pair.right)]
         for value in self._values(node, scope):
             if isinstance(value, Instance):
-                found += [one.port for one in self.mentions.devices if one.kind in kinds and one.makes(value)]
+                found += [
+                    one.port
+                    for one in self.mentions.devices
+                    if one.kind in kinds and one.makes(value)
+                ]
         return list(dict.fromkeys(found))
 
     def _values(self, node: ast.expr, scope: Scope) -> Sequence[Value]:
         """Return what an expression can be at its place: by the nearest assignment above, and in its own object."""
         match node:
             case ast.Name(id=name):
-                known = [one for one in scope.names.get(name, ()) if isinstance(one, Bound) and one.scope is scope]
-                above = [one for one in known if one.node.lineno < node.lineno and not (one.path or one.is_item)]
+                known = [
+                    one
+                    for one in scope.names.get(name, ())
+                    if isinstance(one, Bound) and one.scope is scope
+                ]
+                above = [
+                    one
+                    for one in known
+                    if one.node.lineno < node.lineno and not (one.path or one.is_item)
+                ]
                 if len(known) > 1 and above:
                     return self._values(max(above, key=lambda one: one.node.lineno).node, scope)
             case ast.Attribute(value=base, attr=name):
                 of = self._values(base, scope)
                 if any(isinstance(one, Instance) for one in of):
-                    return [value for one in of for value in self._evaluation_in(one).attribute(one, name)]
+                    return [
+                        value
+                        for one in of
+                        for value in self._evaluation_in(one).attribute(one, name)
+                    ]
         return self.evaluation.values(node, scope)
 
     def _evaluation_in(self, value: Value) -> Evaluation:
@@ -403,7 +451,10 @@ def _speed_of(node: ast.expr) -> ast.expr | None:
     match node:
         case ast.Call(func=ast.Name(id="abs"), args=[inner]):
             return _speed_of(inner)
-        case ast.Attribute(value=base, attr="speed") | ast.Call(func=ast.Attribute(value=base, attr="speed")):
+        case (
+            ast.Attribute(value=base, attr="speed")
+            | ast.Call(func=ast.Attribute(value=base, attr="speed"))
+        ):
             return base
     return None
 

@@ -177,9 +177,13 @@ class _Reader:
         # What is known in one call of a function may not be in another one, such as that in itself.
         known = {one.call for one in devices if one.port}
         devices = [one for one in devices if one.port or one.is_any or one.call not in known]
-        return Mentions(tuple(dict.fromkeys(devices)), tuple(dict.fromkeys(pairs)), self.scopes, whole)
+        return Mentions(
+            tuple(dict.fromkeys(devices)), tuple(dict.fromkeys(pairs)), self.scopes, whole
+        )
 
-    def _ways(self, name: str, call: Call, whole: Evaluation) -> Iterator[tuple[Evaluation, Call | None]]:
+    def _ways(
+        self, name: str, call: Call, whole: Evaluation
+    ) -> Iterator[tuple[Evaluation, Call | None]]:
         """Yield what is known in each call of the function in which something is made, with that call."""
         function = call.scope.node
         calls = whole.calls.get(function, ()) if isinstance(function, FUNCTIONS) else ()
@@ -190,7 +194,10 @@ class _Reader:
             inside = whole.within(function, via)
             made = inside.values(call.node.func, call.scope)
             # A class that is given to the function is another one in another call.
-            if not any(isinstance(value, LibraryClass) for value in made) or LibraryClass(name) in made:
+            if (
+                not any(isinstance(value, LibraryClass) for value in made)
+                or LibraryClass(name) in made
+            ):
                 yield inside, via
 
     # Calls
@@ -221,7 +228,9 @@ class _Reader:
                     elif isinstance(base, OwnClass):
                         self._sort_class(base.scope, call, found)
             case LibraryClass() | OwnClass() if call.node.args:
-                node = ast.copy_location(ast.Call(call.node.func, call.node.args[1:], call.node.keywords), call.node)
+                node = ast.copy_location(
+                    ast.Call(call.node.func, call.node.args[1:], call.node.keywords), call.node
+                )
                 rest = Call(node, call.scope)
                 if isinstance(value, LibraryClass):
                     self.made.append((value.name, rest))
@@ -244,7 +253,8 @@ class _Reader:
                     for target in targets:
                         self._note(target, value)
                 case (
-                    ast.AnnAssign(target=target, value=ast.expr() as value) | ast.NamedExpr(target=target, value=value)
+                    ast.AnnAssign(target=target, value=ast.expr() as value)
+                    | ast.NamedExpr(target=target, value=value)
                 ):
                     self._note(target, value)
                 case ast.Dict(keys=keys, values=values):
@@ -258,13 +268,18 @@ class _Reader:
         for function, calls in self.evaluation.calls.items():
             for call in calls:
                 if call.scope is scope:
-                    names = [argument.arg for argument in function.args.args][1 if call.is_bound else 0 :]
+                    names = [argument.arg for argument in function.args.args][
+                        1 if call.is_bound else 0 :
+                    ]
                     for name, value in zip(names, call.node.args, strict=False):
                         self._hint(value, name)
 
     def _note(self, target: ast.expr, value: ast.expr) -> None:
         match target, value:
-            case (ast.Tuple(elts=targets) | ast.List(elts=targets), ast.Tuple(elts=values) | ast.List(elts=values)):
+            case (
+                ast.Tuple(elts=targets) | ast.List(elts=targets),
+                ast.Tuple(elts=values) | ast.List(elts=values),
+            ):
                 for one, inside in zip(targets, values, strict=False):
                     self._note(one, inside)
             case ((ast.Name(id=name) | ast.Attribute(attr=name)), _):
@@ -300,10 +315,23 @@ class _Reader:
             kind = self._kind_by_mode(call) or kind
         names = self._called(call)
         made = Mention(
-            kind, "", where, names, call.scope.owner, call=call.node, via=self.via.node if self.via else None
+            kind,
+            "",
+            where,
+            names,
+            call.scope.owner,
+            call=call.node,
+            via=self.via.node if self.via else None,
         )
-        word = next((one.arg for one in call.node.keywords if one.arg in library.PORT_NAMES), library.PORT_NAMES[0])
-        ports = [("", names)] if name in library.WITHOUT_PORT else list(self._ports(call, word, 0, names))
+        word = next(
+            (one.arg for one in call.node.keywords if one.arg in library.PORT_NAMES),
+            library.PORT_NAMES[0],
+        )
+        ports = (
+            [("", names)]
+            if name in library.WITHOUT_PORT
+            else list(self._ports(call, word, 0, names))
+        )
         if not ports and not any(isinstance(value, str) for value in self._given(call, word)):
             # A text that is no port of the brick names something that is not simulated.
             yield replace(made, is_any=self._takes_any(call, word))
@@ -315,13 +343,17 @@ class _Reader:
 
     def _mounted(self, motor: Mention, call: Call) -> Mention:
         """Return a motor with the direction and the gears that the call says."""
-        is_turned = library.INVERSED in (argument_of(call, library.DIRECTION, 1, self.evaluation) or ())
+        is_turned = library.INVERSED in (
+            argument_of(call, library.DIRECTION, 1, self.evaluation) or ()
+        )
         return replace(motor, is_turned=is_turned, gear_ratio=self._gear_ratio(call))
 
     def _gear_ratio(self, call: Call) -> float:
         """Return the turns of a motor per turn of what it drives: its gears are one train, or a list of trains."""
         parts = [*self._flat(argument_of(call, library.GEARS, 2, self.evaluation) or ())]
-        trains = [[*self._flat([part])] for part in parts if isinstance(part, SourceCollection)] or [parts]
+        trains = [
+            [*self._flat([part])] for part in parts if isinstance(part, SourceCollection)
+        ] or [parts]
         ratio = 1.0
         for train in trains:
             teeth = [one for one in train if isinstance(one, int | float) and one > 0]
@@ -341,7 +373,9 @@ class _Reader:
         node = argument_node(call, word, 0)
         return node is None or (isinstance(node, ast.Constant) and node.value is None)
 
-    def _ports(self, call: Call, name: str, at: int, names: tuple[str, ...]) -> Iterator[tuple[str, tuple[str, ...]]]:
+    def _ports(
+        self, call: Call, name: str, at: int, names: tuple[str, ...]
+    ) -> Iterator[tuple[str, tuple[str, ...]]]:
         """Yield the ports that an argument can be, each with what the program calls the device."""
         node = argument_node(call, name, at)
         if node is None:
@@ -349,9 +383,11 @@ class _Reader:
             yield from ((port, names) for value in given if (port := library.port_of(value)))
             return
         own = _names_in(node)
-        parameters = [
-            one for one in call.scope.names.get(node.id, ()) if isinstance(one, Parameter)
-        ] if isinstance(node, ast.Name) else []  # fmt: skip
+        parameters = (
+            [one for one in call.scope.names.get(node.id, ()) if isinstance(one, Parameter)]
+            if isinstance(node, ast.Name)
+            else []
+        )
         if parameters:
             for value, via in self.evaluation.arguments(parameters[0]):
                 if port := library.port_of(value):
@@ -384,7 +420,11 @@ class _Reader:
             for node in scope.body:
                 match node:
                     case ast.Assign(
-                        targets=[ast.Attribute(value=ast.Name(id=name) | ast.Attribute(attr=name), attr="mode")],
+                        targets=[
+                            ast.Attribute(
+                                value=ast.Name(id=name) | ast.Attribute(attr=name), attr="mode"
+                            )
+                        ],
                         value=mode,
                     ) if name in names:
                         for value in self.evaluation.values(mode, scope):
@@ -398,11 +438,22 @@ class _Reader:
             if isinstance(table, SourceCollection) and isinstance(table.node, ast.Dict):
                 for key, item in zip(table.keys, table.items, strict=True):
                     ports = self.evaluation.values(key, table.scope) if key is not None else ()
-                    kinds = [kind for one in self.evaluation.values(item, table.scope) if (kind := _motor_of(one))]
+                    kinds = [
+                        kind
+                        for one in self.evaluation.values(item, table.scope)
+                        if (kind := _motor_of(one))
+                    ]
                     for port in map(library.port_of, ports):
                         if port and kinds:
                             names = _names_in(key) if key is not None else ()
-                            yield Mention(kinds[0], port, where, (*names, *self._called(call)), owner, call=call.node)
+                            yield Mention(
+                                kinds[0],
+                                port,
+                                where,
+                                (*names, *self._called(call)),
+                                owner,
+                                call=call.node,
+                            )
 
     # Pairs
 
@@ -413,21 +464,34 @@ class _Reader:
             devices: What the program makes besides, with the motors of a class that takes motors.
         """
         known, names = library.PAIRS[name], self._called(call)
-        polarities = [str(value) for value in argument_of(call, library.POLARITY, 2, self.evaluation) or ()]
+        polarities = [
+            str(value) for value in argument_of(call, library.POLARITY, 2, self.evaluation) or ()
+        ]
         for one, other in self._ends(known, call, names, devices):
             if one != other and one.startswith("out") and other.startswith("out"):
                 yield Pair(
-                    one, other, self._motor_kind(name, known, call), known.rank, _where(call), name,
-                    *self._sizes(known, call), names, call.node,
-                    call.scope.owner, polarities[0] if polarities else "",
-                )  # fmt: skip
+                    one,
+                    other,
+                    self._motor_kind(name, known, call),
+                    known.rank,
+                    _where(call),
+                    name,
+                    *self._sizes(known, call),
+                    names,
+                    call.node,
+                    call.scope.owner,
+                    polarities[0] if polarities else "",
+                )
 
     def _ends(
         self, known: PairClass, call: Call, names: tuple[str, ...], devices: Sequence[Mention]
     ) -> Iterable[tuple[str, str]]:
         """Return the ports of the left and the right motor, for each pair that a call can make."""
         if known.takes_motors:
-            left, right = self._driven(call, known.left, 0, devices), self._driven(call, known.right, 1, devices)
+            left, right = (
+                self._driven(call, known.left, 0, devices),
+                self._driven(call, known.right, 1, devices),
+            )
             if len(left) == 2 and right in ([], left):
                 # As `motors[0]` and `motors[1]` of `motors = [Motor(port) for port in ports]`.
                 left, right = left[:1], left[1:]
@@ -444,24 +508,45 @@ class _Reader:
 
     def _driven(self, call: Call, name: str, at: int, devices: Sequence[Mention]) -> list[str]:
         """Return the ports of the motors that an argument can be."""
-        given = [one for one in argument_of(call, name, at, self.evaluation) or () if isinstance(one, Instance)]
-        made = [(one, value) for value in given for one in devices if one.kind.is_motor and one.makes(value)]
-        return list(dict.fromkeys(one.port for one, value in made if value.via is None or one.via in (None, value.via)))
+        given = [
+            one
+            for one in argument_of(call, name, at, self.evaluation) or ()
+            if isinstance(one, Instance)
+        ]
+        made = [
+            (one, value)
+            for value in given
+            for one in devices
+            if one.kind.is_motor and one.makes(value)
+        ]
+        return list(
+            dict.fromkeys(
+                one.port for one, value in made if value.via is None or one.via in (None, value.via)
+            )
+        )
 
-    def _sizes(self, known: PairClass, call: Call) -> tuple[tuple[float, float | None] | None, float | None]:
+    def _sizes(
+        self, known: PairClass, call: Call
+    ) -> tuple[tuple[float, float | None] | None, float | None]:
         """Return the size of the wheels, and their distance."""
         if known.takes_motors:
             diameter_mm = self._size(call, library.WHEEL_DIAMETER, 2)
             wheel_mm = (diameter_mm, None) if diameter_mm is not None else None
             return wheel_mm, self._size(call, library.AXLE_TRACK, 3)
-        return (self._wheel(call), self._size(call, library.DISTANCE, 3)) if known.rank == 3 else (None, None)
+        return (
+            (self._wheel(call), self._size(call, library.DISTANCE, 3))
+            if known.rank == 3
+            else (None, None)
+        )
 
     def _size(self, call: Call, name: str, at: int) -> float | None:
         given = argument_of(call, name, at, self.evaluation) or ()
         return next((float(value) for value in given if isinstance(value, int | float)), None)
 
     def _motor_kind(self, name: str, known: PairClass, call: Call) -> DeviceKind:
-        given = argument_of(call, library.MOTOR_CLASS, library.MOTOR_CLASS_AT.get(name), self.evaluation)
+        given = argument_of(
+            call, library.MOTOR_CLASS, library.MOTOR_CLASS_AT.get(name), self.evaluation
+        )
         return next((kind for value in given or () if (kind := _motor_of(value))), known.kind)
 
     def _wheel(self, call: Call) -> tuple[float, float] | None:
@@ -478,7 +563,11 @@ class _Reader:
                 for name, call in self.made:
                     if name == library.WHEEL and call.scope.owner is scope:
                         sizes = [
-                            [one for one in argument_of(call, key, at, self.evaluation) or () if _is_number(one)]
+                            [
+                                one
+                                for one in argument_of(call, key, at, self.evaluation) or ()
+                                if _is_number(one)
+                            ]
                             for at, key in enumerate(("diameter_mm", "width_mm"))
                         ]
                         if all(sizes):
@@ -506,7 +595,9 @@ def _makes(call: ast.Call | None, owner: Scope | None, value: Instance) -> bool:
     """Return whether a call in a class makes an instance."""
     if value.call is not None and value.call is call:
         return True
-    from_init = call is not None and isinstance(call.func, ast.Attribute) and call.func.attr == "__init__"
+    from_init = (
+        call is not None and isinstance(call.func, ast.Attribute) and call.func.attr == "__init__"
+    )
     return from_init and isinstance(value.of, OwnClass) and value.of.scope is owner
 
 
@@ -549,5 +640,7 @@ def _options(calls: Sequence[Call]) -> dict[str, list[tuple[ast.expr, Scope]]]:
                 if isinstance(named, ast.Constant):
                     name = str(named.value)
                 if name and default is not None:
-                    found.setdefault(name.lstrip("-").replace("-", "_"), []).append((default, call.scope))
+                    found.setdefault(name.lstrip("-").replace("-", "_"), []).append(
+                        (default, call.scope)
+                    )
     return found

@@ -9,7 +9,14 @@ from typing import Any
 from tuisim.config.program_robot.library import DeviceKind
 from tuisim.config.program_robot.mentions import Mention
 from tuisim.config.program_robot.words import Side, side_of
-from tuisim.core.spec import ColorSensorSpec, GyroSpec, InfraredSpec, SensorSpec, TouchSpec, UltrasonicSpec
+from tuisim.core.spec import (
+    ColorSensorSpec,
+    GyroSpec,
+    InfraredSpec,
+    SensorSpec,
+    TouchSpec,
+    UltrasonicSpec,
+)
 from tuisim.data_class import dataclass
 
 _BUMPER_MM = 60.0
@@ -39,7 +46,9 @@ def with_sides(mentions: Sequence[Mention]) -> list[Mention]:
     rows = [call for call in calls if call is not None and calls.count(call) == len(_ROW)]
     unsaid = [one for one in mentions if one.call in rows and side_of(one.names) is Side.NONE]
     sides = dict(zip(unsaid, _ROW, strict=True)) if len(unsaid) == len(_ROW) else {}
-    return [replace(one, names=(sides[one], *one.names)) if one in sides else one for one in mentions]
+    return [
+        replace(one, names=(sides[one], *one.names)) if one in sides else one for one in mentions
+    ]
 
 
 def say_other_sides(mentions: Mapping[str, Mention], usual: Mapping[str, SensorSpec]) -> bool:
@@ -50,9 +59,13 @@ def say_other_sides(mentions: Mapping[str, Mention], usual: Mapping[str, SensorS
         usual: The sensors of the usual robot, by port.
     """
     colors = {port: one for port, one in mentions.items() if one.kind is DeviceKind.COLOR}
-    known = {port: usual[port].name for port in colors if isinstance(usual.get(port), ColorSensorSpec)}
+    known = {
+        port: usual[port].name for port in colors if isinstance(usual.get(port), ColorSensorSpec)
+    }
     said = {port: side_of(colors[port].names) for port in known}
-    return len(known) < len(colors) and any(side and side != known[port] for port, side in said.items())
+    return len(known) < len(colors) and any(
+        side and side != known[port] for port, side in said.items()
+    )
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,7 +109,11 @@ def places_for(
             for port in list(mentions)[0 if mounted else 1 :]:
                 doubts.append(f"a robot has one gyro: that on {port} is not built")
                 del mentions[port]
-        sides = _sides(mentions, first_free=not any(isinstance(sensor, _SPECS[kind]) for sensor in known), kind=kind)
+        sides = _sides(
+            mentions,
+            first_free=not any(isinstance(sensor, _SPECS[kind]) for sensor in known),
+            kind=kind,
+        )
         for port, side in sides.items():
             sensor = make(port, side, names, body)
             names.add(sensor.name)
@@ -121,12 +138,16 @@ _ORDERS: Mapping[DeviceKind, tuple[Side, ...]] = {
 """The sides of sensors of which no name says the side, in turn."""
 
 
-def _sides(mentions: Mapping[str, Mention], *, first_free: bool, kind: DeviceKind) -> dict[str, Side]:
+def _sides(
+    mentions: Mapping[str, Mention], *, first_free: bool, kind: DeviceKind
+) -> dict[str, Side]:
     """Return the side of each sensor: that of its name, else the next one that is free."""
     found = {port: side_of(mention.names) for port, mention in mentions.items()}
     if kind is DeviceKind.TOUCH and first_free and len(found) == 1 and Side.NONE in found.values():
         return dict.fromkeys(found, Side.FRONT)
-    taken = {*found.values()} | (set() if first_free or kind in (DeviceKind.TOUCH, DeviceKind.COLOR) else {Side.FRONT})
+    taken = {*found.values()} | (
+        set() if first_free or kind in (DeviceKind.TOUCH, DeviceKind.COLOR) else {Side.FRONT}
+    )
     for port, side in found.items():
         if side is Side.NONE or [*found.values()].count(side) > 1:
             free = [one for one in _ORDERS[kind] if one not in taken]
@@ -162,7 +183,9 @@ def _touch(port: str, side: Side, names: set[str], body: Body) -> SensorSpec:
     half_mm = body.half_width_mm
     x_mm = {Side.LEFT: -half_mm / 2, Side.RIGHT: half_mm / 2}.get(side, 0.0)
     y_mm = body.back_mm - 15.0 if side is Side.BACK else _BUMPER_MM
-    return TouchSpec(_name("touch", side, names), port, x_mm, y_mm, half_mm if x_mm else 2 * half_mm)
+    return TouchSpec(
+        _name("touch", side, names), port, x_mm, y_mm, half_mm if x_mm else 2 * half_mm
+    )
 
 
 def _gyro(port: str, _side: Side, names: set[str], _body: Body) -> SensorSpec:

@@ -60,11 +60,15 @@ def _is_used(scope: Scope, names: set[str]) -> bool:
     if isinstance(node, ast.ClassDef) or owner is None or not isinstance(owner.node, ast.ClassDef):
         return False
     # Python, or a class that is not the program's, may call the others.
-    return (node.name.startswith("__") and node.name.endswith("__")) or any(map(_is_foreign, owner.node.bases))
+    return (node.name.startswith("__") and node.name.endswith("__")) or any(
+        map(_is_foreign, owner.node.bases)
+    )
 
 
 def _is_foreign(base: ast.expr) -> bool:
     match base:
         case ast.Name(id=name) | ast.Attribute(attr=name):
-            return name in ("Thread", "Process", "Timer") or (name not in CLASSES and name.endswith("Handler"))
+            return name in ("Thread", "Process", "Timer") or (
+                name not in CLASSES and name.endswith("Handler")
+            )
     return False

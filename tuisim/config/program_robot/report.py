@@ -35,12 +35,20 @@ def robot_file_of(program: str, built: BuiltRobot | None) -> list[str]:
     ]
     top = f'base = "{DEFAULT_ROBOT}"'
     if built is None:
-        return [*lines, "# It has everything on the ports that the program names.", "", top, f'name = "{USUAL.name}"']
+        return [
+            *lines,
+            "# It has everything on the ports that the program names.",
+            "",
+            top,
+            f'name = "{USUAL.name}"',
+        ]
     lines += [f"# Another reading is possible: {doubt}." for doubt in built.doubts]
     same = [part for part in built.parts if not part.changes and part.where]
     lines += [f"# As in {DEFAULT_ROBOT}: {part.what} ({part.where})." for part in same]
     changed = _difference(_table(built.choice.spec), _table(USUAL))
-    said = {part.path: f"{part.where}: {part.what}" if part.where else part.what for part in built.parts}
+    said = {
+        part.path: f"{part.where}: {part.what}" if part.where else part.what for part in built.parts
+    }
     return [*lines, "", top, *_lines(changed, "", said)]
 
 
@@ -77,7 +85,9 @@ def _lines(table: Mapping[str, Any], place: str, said: Mapping[str, str]) -> Ite
     values = {key: value for key, value in table.items() if not isinstance(value, dict)}
     under = f"{place}." if place else ""
     known = values_in(place)
-    comments = {key: said.get(f"{under}{key}", known[key].help if key in known else "") for key in values}
+    comments = {
+        key: said.get(f"{under}{key}", known[key].help if key in known else "") for key in values
+    }
     if values and place:
         yield from ("", *([f"# {said[place]}"] if place in said else []), f"[{place}]")
     yield from toml_lines(values, comments)

@@ -117,7 +117,11 @@ def _nodes(node: ast.AST) -> Iterator[ast.AST]:
     yield node
     if isinstance(node, FUNCTIONS):
         arguments = node.args
-        defaults = [default for default in (*arguments.defaults, *arguments.kw_defaults) if default is not None]
+        defaults = [
+            default
+            for default in (*arguments.defaults, *arguments.kw_defaults)
+            if default is not None
+        ]
         children: list[ast.AST] = [*node.decorator_list, *defaults]
     elif isinstance(node, ast.ClassDef):
         children = [*node.decorator_list, *node.bases, *node.keywords]
@@ -153,7 +157,10 @@ def _bind(scope: Scope, node: ast.AST) -> None:
         case ast.Assign(targets=targets, value=value):
             for target in targets:
                 _bind_target(scope, target, Bound(value, scope))
-        case ast.AnnAssign(target=target, value=ast.expr() as value) | ast.NamedExpr(target=target, value=value):
+        case (
+            ast.AnnAssign(target=target, value=ast.expr() as value)
+            | ast.NamedExpr(target=target, value=value)
+        ):
             _bind_target(scope, target, Bound(value, scope))
         case ast.AugAssign(target=target, value=value):
             _bind_target(scope, target, Bound(value, scope))
@@ -178,4 +185,6 @@ def _bind_target(scope: Scope, target: ast.expr, bound: Bound) -> None:
         case ast.Tuple(elts=parts) | ast.List(elts=parts):
             for at, part in enumerate(parts):
                 inside = part.value if isinstance(part, ast.Starred) else part
-                _bind_target(scope, inside, Bound(bound.node, scope, (*bound.path, at), bound.is_item))
+                _bind_target(
+                    scope, inside, Bound(bound.node, scope, (*bound.path, at), bound.is_item)
+                )

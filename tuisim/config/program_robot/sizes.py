@@ -36,10 +36,20 @@ def sizes_in(mentions: Mentions) -> Sizes:
     """Return the diameter of the wheels and their distance, by the names of numbers in a program."""
     named = [*_named(mentions)]
     wheels = [(name, size) for name, size in named if means_diameter(name)]
-    girths = [(name, Size(round(size.mm / math.pi, 2), size.where)) for name, size in named if means_girth(name)]
+    girths = [
+        (name, Size(round(size.mm / math.pi, 2), size.where))
+        for name, size in named
+        if means_girth(name)
+    ]
     # A track alone may be one of music.
-    spacings = [one for one in named if means_spacing(one[0]) and (one[0].lower() != "track" or wheels or girths)]
-    return Sizes(_only(wheels, _DIAMETERS_MM) or _only(girths, _DIAMETERS_MM), _only(spacings, _SPACINGS_MM))
+    spacings = [
+        one
+        for one in named
+        if means_spacing(one[0]) and (one[0].lower() != "track" or wheels or girths)
+    ]
+    return Sizes(
+        _only(wheels, _DIAMETERS_MM) or _only(girths, _DIAMETERS_MM), _only(spacings, _SPACINGS_MM)
+    )
 
 
 def _named(mentions: Mentions) -> Iterator[tuple[str, Size]]:
@@ -64,7 +74,9 @@ def _named(mentions: Mentions) -> Iterator[tuple[str, Size]]:
             if isinstance(inner, ast.Dict):
                 yield from _in_dict(inner, scope)
     for data in filter(None, evaluation.files.found.values()):
-        yield from (one for part in ast.walk(data) if isinstance(part, ast.Dict) for one in _in_dict(part))
+        yield from (
+            one for part in ast.walk(data) if isinstance(part, ast.Dict) for one in _in_dict(part)
+        )
 
 
 def _in_dict(node: ast.Dict, scope: Scope | None = None) -> Iterator[tuple[str, Size]]:
@@ -92,5 +104,13 @@ def _only(named: list[tuple[str, Size]], limits: tuple[float, float]) -> Size | 
     for name, size in named:
         # A name without a unit stands for whichever makes a robot.
         units = [unit] if (unit := unit_mm(name)) else [1.0, 10.0]
-        found += [Size(round(size.mm * unit, 1), size.where) for unit in units if low <= size.mm * unit <= high][:1]
-    return found[0] if found and all(math.isclose(one.mm, found[0].mm, rel_tol=0.02) for one in found) else None
+        found += [
+            Size(round(size.mm * unit, 1), size.where)
+            for unit in units
+            if low <= size.mm * unit <= high
+        ][:1]
+    return (
+        found[0]
+        if found and all(math.isclose(one.mm, found[0].mm, rel_tol=0.02) for one in found)
+        else None
+    )

@@ -122,7 +122,15 @@ class DataFiles:
                 return None
             return ast.parse(repr(json.loads(data)), mode="eval").body
         # What is wrong with the file is said when the program reads it.
-        except (ConfigError, OSError, RuntimeError, ValueError, SyntaxError, RecursionError, MemoryError):
+        except (
+            ConfigError,
+            OSError,
+            RuntimeError,
+            ValueError,
+            SyntaxError,
+            RecursionError,
+            MemoryError,
+        ):
             return None
 
 
@@ -137,7 +145,9 @@ def _folder(program: Program) -> Path:
 
 def library_of(modules: dict[str, Module]) -> Library | None:
     """Return the library for a brick that a program imports, in itself or in its own modules; None for none."""
-    names = {name.split(".")[0] for module in modules.values() for name in _imported(module)} & {*LIBRARIES}
+    names = {name.split(".")[0] for module in modules.values() for name in _imported(module)} & {
+        *LIBRARIES
+    }
     if PYBRICKS in names:
         return Library.PYBRICKS
     return Library.EV3DEV2 if names else None

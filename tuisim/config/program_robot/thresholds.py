@@ -20,8 +20,13 @@ from tuisim.data_class import dataclass
 from tuisim.source import PRELUDE_TEXTS, Program
 
 _SIGNS: Mapping[type[ast.cmpop], str] = {
-    ast.Lt: "<", ast.LtE: "<=", ast.Gt: ">", ast.GtE: ">=", ast.Eq: "==", ast.NotEq: "!=",
-}  # fmt: skip
+    ast.Lt: "<",
+    ast.LtE: "<=",
+    ast.Gt: ">",
+    ast.GtE: ">=",
+    ast.Eq: "==",
+    ast.NotEq: "!=",
+}
 _TURNED = {"<": ">", "<=": ">=", ">": "<", ">=": "<="}
 AIM = "-"
 """The sign of a difference: the program drives toward that value."""
@@ -157,12 +162,15 @@ def _color(node: ast.expr) -> str | None:
     return None
 
 
-def _reads(mentions: Mentions, scope: Scope, node: ast.expr, steps: int) -> Iterator[tuple[str, LightRead]]:
+def _reads(
+    mentions: Mentions, scope: Scope, node: ast.expr, steps: int
+) -> Iterator[tuple[str, LightRead]]:
     """Yield the ports and reads of colour sensors that an expression may be."""
     match node:
-        case ast.Attribute(value=base, attr=name) | ast.Call(func=ast.Attribute(value=base, attr=name)) if (
-            name in _READS
-        ):
+        case (
+            ast.Attribute(value=base, attr=name)
+            | ast.Call(func=ast.Attribute(value=base, attr=name))
+        ) if name in _READS:
             if (sensor := _sensor(mentions, scope, base)) is not None:
                 yield sensor.port, _READS[name]
         case ast.Call(func=ast.Name(id=name), args=args) if name in _KEPT:

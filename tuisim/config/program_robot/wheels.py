@@ -10,7 +10,14 @@ from tuisim.config.program_robot.words import Side, means_tool, side_of
 from tuisim.core.spec import NO_PORT, OUTPUT_PORTS, RobotSpec
 from tuisim.data_class import dataclass
 
-_USUAL = (("outB", "outC"), ("outA", "outD"), ("outA", "outB"), ("outC", "outD"), ("outA", "outC"), ("outB", "outD"))
+_USUAL = (
+    ("outB", "outC"),
+    ("outA", "outD"),
+    ("outA", "outB"),
+    ("outC", "outD"),
+    ("outA", "outC"),
+    ("outB", "outD"),
+)
 """Pairs of ports, those that robots have most often first."""
 
 
@@ -29,7 +36,10 @@ class WheelMotors:
 
 
 def wheels_of(
-    mentions: Mentions, kinds: Mapping[str, DeviceKind], usual: RobotSpec, tools: Collection[str] = ()
+    mentions: Mentions,
+    kinds: Mapping[str, DeviceKind],
+    usual: RobotSpec,
+    tools: Collection[str] = (),
 ) -> WheelMotors:
     """Return the motors that drive the wheels; none if every port is taken by a motor that does something else.
 
@@ -39,16 +49,26 @@ def wheels_of(
         tools: Ports of motors that drive no wheel, unless the program drives them as a pair.
     """
     devices = mentions.devices
-    return _of_pairs(mentions.pairs) or _of_single(devices, kinds, tools) or _left_over(devices, kinds, usual, tools)
+    return (
+        _of_pairs(mentions.pairs)
+        or _of_single(devices, kinds, tools)
+        or _left_over(devices, kinds, usual, tools)
+    )
 
 
 def _of_pairs(pairs: Sequence[Pair]) -> WheelMotors | None:
     if not pairs:
         return None
-    likely = sorted(pairs, key=lambda pair: (means_tool(pair.names), -pair.rank, pair.kind is DeviceKind.MEDIUM))
+    likely = sorted(
+        pairs, key=lambda pair: (means_tool(pair.names), -pair.rank, pair.kind is DeviceKind.MEDIUM)
+    )
     chosen = likely[0]
     others = [pair for pair in likely if {pair.left, pair.right} != {chosen.left, chosen.right}]
-    doubt = f"{others[0].class_name} on {others[0].left} and {others[0].right} is taken for no wheels" if others else ""
+    doubt = (
+        f"{others[0].class_name} on {others[0].left} and {others[0].right} is taken for no wheels"
+        if others
+        else ""
+    )
     return WheelMotors(chosen.left, chosen.right, chosen.where, chosen, doubt)
 
 
@@ -66,7 +86,11 @@ def _of_single(
         for of_class in (True, False):
             if found := _by_side(motors, of_class=of_class):
                 return found
-    owners = [[one for one in wheels if one.owner is owner] for owner in {one.owner for one in wheels} if owner]
+    owners = [
+        [one for one in wheels if one.owner is owner]
+        for owner in {one.owner for one in wheels}
+        if owner
+    ]
     for held in [*(held for held in owners if len(held) == 2), wheels]:
         if len(held) >= 2:
             return _in_order(held)
@@ -92,19 +116,34 @@ def _in_order(motors: Sequence[Mention]) -> WheelMotors:
     if sides[0] is not sides[1] and (sides[0] is Side.RIGHT or sides[1] is Side.LEFT):
         left, right = right, left
     rest = ", ".join(port for port in by_port if port not in (left, right))
-    doubt = f"of the large motors, those on {left} and {right} are taken for the wheels, not {rest}" if rest else ""
+    doubt = (
+        f"of the large motors, those on {left} and {right} are taken for the wheels, not {rest}"
+        if rest
+        else ""
+    )
     return WheelMotors(left, right, by_port[left].where, doubt=doubt)
 
 
 def _left_over(
-    devices: Sequence[Mention], kinds: Mapping[str, DeviceKind], usual: RobotSpec, other_tools: Collection[str]
+    devices: Sequence[Mention],
+    kinds: Mapping[str, DeviceKind],
+    usual: RobotSpec,
+    other_tools: Collection[str],
 ) -> WheelMotors:
     """Return the usual wheels, on other ports if the program needs theirs."""
     ports = (usual.left_port, usual.right_port)
-    if not other_tools and all(port in ports and kind is not DeviceKind.MEDIUM for port, kind in kinds.items()):
+    if not other_tools and all(
+        port in ports and kind is not DeviceKind.MEDIUM for port, kind in kinds.items()
+    ):
         return WheelMotors(*ports)
-    tools = {one.port for one in devices if one.kind.is_motor and means_tool(one.names)} | {*other_tools}
-    stay = [port for port in ports if kinds.get(port, DeviceKind.LARGE) is not DeviceKind.MEDIUM and port not in tools]
+    tools = {one.port for one in devices if one.kind.is_motor and means_tool(one.names)} | {
+        *other_tools
+    }
+    stay = [
+        port
+        for port in ports
+        if kinds.get(port, DeviceKind.LARGE) is not DeviceKind.MEDIUM and port not in tools
+    ]
     free = [*stay, *(port for port in OUTPUT_PORTS if port not in kinds and port not in stay)]
     if len(free) >= 2:
         left = usual.left_port if usual.left_port in free else _other(free, usual.right_port)
@@ -117,7 +156,9 @@ def _left_over(
         return WheelMotors(NO_PORT, NO_PORT)
     left, right = pairs[0]
     return WheelMotors(
-        left, right, doubt=f"no two ports are free for wheels: the motors on {left} and {right} drive them"
+        left,
+        right,
+        doubt=f"no two ports are free for wheels: the motors on {left} and {right} drive them",
     )
 
 

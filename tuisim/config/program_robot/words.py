@@ -53,9 +53,13 @@ _FORWARDS = _words(
     "forward forwards ahead vorwaerts vorwärts geradeaus avancer avance adelante avanzar avanti vooruit frente framat "
     "naprzod"
 )
-_BACKWARDS = _words("back backward backwards reverse zurueck zurück reculer atras atrás indietro achteruit")
+_BACKWARDS = _words(
+    "back backward backwards reverse zurueck zurück reculer atras atrás indietro achteruit"
+)
 _WHEEL = _words("wheel wheels tire tyre reifen raddurchmesser radumfang roue rueda roda ruota wiel")
-_DIAMETER = _words("diameter diam dia d durchmesser raddurchmesser diametre diamètre diametro diámetro mm cm")
+_DIAMETER = _words(
+    "diameter diam dia d durchmesser raddurchmesser diametre diamètre diametro diámetro mm cm"
+)
 _GIRTH = _words("circumference circ umfang radumfang circonference circunferencia perimeter")
 _TRACK = _words("track wheelbase spurweite achsabstand radabstand")
 _APART = _words("distance spacing separation gap base track apart")
@@ -87,7 +91,11 @@ def means_diameter(name: str) -> bool:
 def means_girth(name: str) -> bool:
     """Return whether a number of that name is the circumference of a wheel."""
     parts = {*_parts(name)}
-    return parts <= _WHEEL | _GIRTH | _UNITS_MM.keys() and bool(parts & _WHEEL) and bool(parts & _GIRTH)
+    return (
+        parts <= _WHEEL | _GIRTH | _UNITS_MM.keys()
+        and bool(parts & _WHEEL)
+        and bool(parts & _GIRTH)
+    )
 
 
 def means_spacing(name: str) -> bool:

@@ -53,9 +53,13 @@ _known = lru_cache(maxsize=64)
 """The columns of a sensor are asked for at each frame."""
 SENSORS: Mapping[str, SensorKind] = {
     "color": SensorKind("lego-ev3-color", ColorSensorSpec, _known(color.columns), color.measure),
-    "ultrasonic": SensorKind("lego-ev3-us", UltrasonicSpec, _known(ultrasonic.columns), ultrasonic.measure),
+    "ultrasonic": SensorKind(
+        "lego-ev3-us", UltrasonicSpec, _known(ultrasonic.columns), ultrasonic.measure
+    ),
     "gyro": SensorKind("lego-ev3-gyro", GyroSpec, _known(gyro.columns), gyro.measure),
-    "touch": SensorKind("lego-ev3-touch", TouchSpec, _known(touch.columns), touch.measure, "ev3-analog"),
+    "touch": SensorKind(
+        "lego-ev3-touch", TouchSpec, _known(touch.columns), touch.measure, "ev3-analog"
+    ),
     "infrared": SensorKind("lego-ev3-ir", InfraredSpec, _known(infrared.columns), infrared.measure),
 }
 """All kinds of sensors, in the order of the telemetry columns."""
@@ -67,7 +71,9 @@ Measure = Callable[[Instant, RunSpec, Field], tuple[float, ...]]
 
 def owners(robot: RobotSpec) -> list[tuple[tuple[Column, ...], Measure]]:
     """Return the columns of the robot and of each sensor, in the order of telemetry, and how they are measured."""
-    of_sensors = [(kind.columns(sensor), partial(kind.measure, sensor)) for kind, sensor in mounted(robot)]
+    of_sensors = [
+        (kind.columns(sensor), partial(kind.measure, sensor)) for kind, sensor in mounted(robot)
+    ]
     return [(MOTION, motion_of), *of_sensors]
 
 
@@ -104,18 +110,31 @@ def reader_of(name: str, robot: RobotSpec) -> Callable[[Instant, RunSpec, Field]
 
 
 def _value(
-    column: Column, names: tuple[str, ...], measure: Measure, instant: Instant, spec: RunSpec, field: Field
+    column: Column,
+    names: tuple[str, ...],
+    measure: Measure,
+    instant: Instant,
+    spec: RunSpec,
+    field: Field,
 ) -> float:
     measured = measure(instant, spec, field)
-    return measured[names.index(column.name)] if column.of is None else float(column.of(measured, spec.robot))
+    return (
+        measured[names.index(column.name)]
+        if column.of is None
+        else float(column.of(measured, spec.robot))
+    )
 
 
-def readings(sensors: Iterable[SensorSpec], instant: Instant, spec: RunSpec, field: Field) -> dict[str, float]:
+def readings(
+    sensors: Iterable[SensorSpec], instant: Instant, spec: RunSpec, field: Field
+) -> dict[str, float]:
     """Return what some sensors measure at an instant, by column."""
     return {
         name: value
         for kind, sensor in with_kinds(sensors)
-        for name, value in zip(kind.names(sensor), kind.measure(sensor, instant, spec, field), strict=True)
+        for name, value in zip(
+            kind.names(sensor), kind.measure(sensor, instant, spec, field), strict=True
+        )
     }
 
 

@@ -149,7 +149,9 @@ def clear_reading(spec: ColorSensorSpec, pose: Pose, field: Field) -> ColorReadi
     return ColorReading(red / count, green / count, blue / count)
 
 
-def rgb_reader(spec: ColorSensorSpec, field: Field) -> Callable[[float, float, float], tuple[int, int, int]]:
+def rgb_reader(
+    spec: ColorSensorSpec, field: Field
+) -> Callable[[float, float, float], tuple[int, int, int]]:
     """Return a function that gives a sensor's channels without noise, truncated to integers.
 
     It takes the robot's x and y in mm and its heading in degrees, and agrees with
@@ -157,7 +159,9 @@ def rgb_reader(spec: ColorSensorSpec, field: Field) -> Callable[[float, float, f
     that depends on the sensor is precomputed, and the steps are inlined.
     """
     if spec.strategy != "mean":
-        return lambda x_mm, y_mm, heading_deg: clear_reading(spec, Pose(x_mm, y_mm, heading_deg), field).rgb
+        return lambda x_mm, y_mm, heading_deg: (
+            clear_reading(spec, Pose(x_mm, y_mm, heading_deg), field).rgb
+        )
     diameter, right_mm, forward_mm = spec.diameter_mm, spec.x_mm, spec.y_mm
     radius, count, sums = diameter / 2, disc_pixels_of(diameter), field.sums[diameter]
     width, height = field.width_px + diameter, field.height_px + diameter
@@ -166,7 +170,9 @@ def rgb_reader(spec: ColorSensorSpec, field: Field) -> Callable[[float, float, f
         turn = radians(heading_deg - 90.0)
         across, up = cos(turn), sin(turn)
         col = int(x_mm + across * right_mm - up * forward_mm - radius) + diameter
-        row = int(FIELD_HEIGHT_MM - (y_mm + up * right_mm + across * forward_mm) - radius) + diameter
+        row = (
+            int(FIELD_HEIGHT_MM - (y_mm + up * right_mm + across * forward_mm) - radius) + diameter
+        )
         if not (0 <= col < width and 0 <= row < height):
             return 0, 0, 0
         at = (row * width + col) * 3
@@ -187,7 +193,9 @@ def noisy_rgb_reader(
     radius, count = diameter / 2, disc_pixels_of(diameter)
     disc_sums, disc = field.disc_sums, field.disc
 
-    def read(x_mm: float, y_mm: float, heading_deg: float, level: int, seed: int, tick: int) -> tuple[int, int, int]:
+    def read(
+        x_mm: float, y_mm: float, heading_deg: float, level: int, seed: int, tick: int
+    ) -> tuple[int, int, int]:
         turn = radians(heading_deg - 90.0)
         across, up = cos(turn), sin(turn)
         col = int(x_mm + across * right_mm - up * forward_mm - radius)
@@ -204,9 +212,12 @@ def _noisy_sums(spec: ColorSensorSpec, instant: Instant, field: Field) -> tuple[
     diameter, (col, row) = spec.diameter_mm, box_corner(instant.pose, spec)
     normals = reading_noise(instant.seed, instant.tick, spec.name)
     return noisy_sums(
-        lambda: field.disc(diameter, col, row), disc_pixels_of(diameter), field.disc_sums(diameter, col, row),
-        instant.noise.light, normals,
-    )  # fmt: skip
+        lambda: field.disc(diameter, col, row),
+        disc_pixels_of(diameter),
+        field.disc_sums(diameter, col, row),
+        instant.noise.light,
+        normals,
+    )
 
 
 def _seen_box(spec: ColorSensorSpec, instant: Instant, field: Field) -> bytes:
@@ -220,7 +231,11 @@ def _seen_box(spec: ColorSensorSpec, instant: Instant, field: Field) -> bytes:
     random = stream(instant.seed, instant.tick, spec.name, 3 * len(inside))
     for channel, total in enumerate(_noisy_sums(spec, instant, field)):
         clear = bytes(box[3 * at + channel] for at in inside)
-        for at, value in zip(inside, noisy_channel(clear, total, instant.noise.light, random[channel::3]), strict=True):
+        for at, value in zip(
+            inside,
+            noisy_channel(clear, total, instant.noise.light, random[channel::3]),
+            strict=True,
+        ):
             seen[3 * at + channel] = value
     return bytes(seen)
 
@@ -235,7 +250,9 @@ def reading(spec: ColorSensorSpec, instant: Instant, field: Field) -> ColorReadi
 
 
 def _light_share(spec: ColorSensorSpec, instant: Instant) -> float:
-    share: float = light_share(*world_point(instant.pose, spec.x_mm, spec.y_mm), instant.drift, instant.seed)
+    share: float = light_share(
+        *world_point(instant.pose, spec.x_mm, spec.y_mm), instant.drift, instant.seed
+    )
     return share
 
 
@@ -243,7 +260,9 @@ def _evenly_lit(spec: ColorSensorSpec, instant: Instant, field: Field) -> ColorR
     if not instant.noise.light:
         return clear_reading(spec, instant.pose, field)
     if spec.strategy != "mean":
-        return ColorReading(*weighted_mean(_seen_box(spec, instant, field), spec.diameter_mm, spec.strategy))
+        return ColorReading(
+            *weighted_mean(_seen_box(spec, instant, field), spec.diameter_mm, spec.strategy)
+        )
     red, green, blue = _noisy_sums(spec, instant, field)
     count = disc_pixels_of(spec.diameter_mm)
     return ColorReading(red / count, green / count, blue / count)
@@ -280,13 +299,24 @@ def columns(spec: ColorSensorSpec) -> tuple[Column, ...]:
         Column(f"{name}_red"),
         Column(f"{name}_green"),
         Column(f"{name}_blue"),
-        Column(f"{name}_red_pc", lambda seen, _: ColorReading(*seen).red_percent, True, (f"{name}.red%",)),
-        Column(f"{name}_mean_pc", lambda seen, _: ColorReading(*seen).mean_percent, also=(f"{name}.mean%",)),
+        Column(
+            f"{name}_red_pc",
+            lambda seen, _: ColorReading(*seen).red_percent,
+            True,
+            (f"{name}.red%",),
+        ),
+        Column(
+            f"{name}_mean_pc",
+            lambda seen, _: ColorReading(*seen).mean_percent,
+            also=(f"{name}.mean%",),
+        ),
         Column(f"{name}_color", lambda seen, _: ColorReading(*seen).code),
     )
 
 
-def measure(spec: ColorSensorSpec, instant: Instant, run: RunSpec, field: Field) -> tuple[float, ...]:
+def measure(
+    spec: ColorSensorSpec, instant: Instant, run: RunSpec, field: Field
+) -> tuple[float, ...]:
     """Return what is measured of `columns`: mean red, green and blue, 0 … 255."""
     seen = reading(spec, instant, field)
     return seen.red, seen.green, seen.blue

@@ -31,7 +31,9 @@ _REM_A_NONE = 262
 _REM_A_BUTTONS = {"top_left": 16, "bottom_left": 32, "top_right": 64, "bottom_right": 128}
 
 
-def _way_mm(place: tuple[float, float], angle_deg: float, world: WorldSpec, most_mm: float) -> float:
+def _way_mm(
+    place: tuple[float, float], angle_deg: float, world: WorldSpec, most_mm: float
+) -> float:
     """Return how far light travels before it meets a surface, at most `most_mm`."""
     found, angle = surfaces(world), math.radians(angle_deg)
     (x_mm, y_mm), cos, sin = place, math.cos(angle), math.sin(angle)
@@ -42,7 +44,9 @@ def _way_mm(place: tuple[float, float], angle_deg: float, world: WorldSpec, most
 def proximity(pose: Pose, spec: InfraredSpec, world: WorldSpec) -> int:
     """Return the distance to the nearest surface ahead, 0 … 100 % of `PROXIMITY_RANGE_MM`."""
     place, facing = world_point(pose, spec.x_mm, spec.y_mm), pose.heading_deg + spec.angle_deg
-    nearest = min(_way_mm(place, facing + ray_deg, world, PROXIMITY_RANGE_MM) for ray_deg in RAY_ANGLES_DEG)
+    nearest = min(
+        _way_mm(place, facing + ray_deg, world, PROXIMITY_RANGE_MM) for ray_deg in RAY_ANGLES_DEG
+    )
     return round(100 * nearest / PROXIMITY_RANGE_MM)
 
 
@@ -75,7 +79,9 @@ def _pressed(channel: int, time_s: float, world: WorldSpec) -> frozenset[str]:
 
 def remote(time_s: float, world: WorldSpec) -> tuple[int, int, int, int]:
     """Return the code of the pressed buttons, for channels 1 to 4; 0 is none."""
-    one, two, three, four = (REMOTE_CODES.get(_pressed(channel, time_s, world), 0) for channel in range(1, 5))
+    one, two, three, four = (
+        REMOTE_CODES.get(_pressed(channel, time_s, world), 0) for channel in range(1, 5)
+    )
     return one, two, three, four
 
 

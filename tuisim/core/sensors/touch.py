@@ -20,12 +20,17 @@ REACH_MM = 2.0
 def pressed(pose: Pose, spec: TouchSpec, world: WorldSpec) -> bool:
     """Return whether either end or the centre of a bumper touches something."""
     half = spec.width_mm / 2
-    return any(_meets(*world_point(pose, spec.x_mm + aside, spec.y_mm), world) for aside in (-half, 0.0, half))
+    return any(
+        _meets(*world_point(pose, spec.x_mm + aside, spec.y_mm), world)
+        for aside in (-half, 0.0, half)
+    )
 
 
 def _meets(x_mm: float, y_mm: float, world: WorldSpec) -> bool:
     near = REACH_MM
-    if world.walls and not (near < x_mm < FIELD_WIDTH_MM - near and near < y_mm < FIELD_HEIGHT_MM - near):
+    if world.walls and not (
+        near < x_mm < FIELD_WIDTH_MM - near and near < y_mm < FIELD_HEIGHT_MM - near
+    ):
         return True
     return any(
         box.x_mm - near <= x_mm <= box.x_mm + box.width_mm + near
@@ -42,5 +47,7 @@ def columns(spec: TouchSpec) -> tuple[Column, ...]:
 def measure(spec: TouchSpec, instant: Instant, run: RunSpec, field: Field) -> tuple[float, ...]:
     """Return the value of `columns`: 1 pressed, 0 not."""
     if spec.pressed_by:
-        return (float(instant.end_flags & end_flag(run.robot, spec.pressed_by, spec.pressed_at) != 0),)
+        return (
+            float(instant.end_flags & end_flag(run.robot, spec.pressed_by, spec.pressed_at) != 0),
+        )
     return (float(pressed(instant.pose, spec, run.world)),)

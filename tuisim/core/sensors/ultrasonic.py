@@ -53,9 +53,13 @@ def _sorted_surfaces(world: WorldSpec) -> Surfaces:
     boxes = [(o.x_mm, o.y_mm, o.x_mm + o.width_mm, o.y_mm + o.height_mm) for o in world.obstacles]
     if world.walls:
         boxes.append((0.0, 0.0, float(FIELD_WIDTH_MM), float(FIELD_HEIGHT_MM)))
-    upright = sorted((x, lower, upper) for left, lower, right, upper in boxes for x in (left, right))
+    upright = sorted(
+        (x, lower, upper) for left, lower, right, upper in boxes for x in (left, right)
+    )
     level = sorted((y, left, right) for left, lower, right, upper in boxes for y in (lower, upper))
-    return Surfaces(tuple(upright), tuple(x for x, *_ in upright), tuple(level), tuple(y for y, *_ in level))
+    return Surfaces(
+        tuple(upright), tuple(x for x, *_ in upright), tuple(level), tuple(y for y, *_ in level)
+    )
 
 
 def _echoes(edge_deg: float, heading_deg: float) -> bool:
@@ -101,10 +105,15 @@ def rays_mm(pose: Pose, spec: UltrasonicSpec, world: WorldSpec) -> list[tuple[fl
     """Return each ray as (world angle in degrees, length in mm); the length is at most the range."""
     start, facing = world_point(pose, spec.x_mm, spec.y_mm), pose.heading_deg + spec.angle_deg
     angles = [facing + ray_deg for ray_deg in spec.ray_angles_deg]
-    return [(angle, _ray_mm(start, angle, facing, surfaces(world), spec.max_range_mm)) for angle in angles]
+    return [
+        (angle, _ray_mm(start, angle, facing, surfaces(world), spec.max_range_mm))
+        for angle in angles
+    ]
 
 
-def _ray_mm(start: tuple[float, float], angle_deg: float, facing_deg: float, found: Surfaces, most: float) -> float:
+def _ray_mm(
+    start: tuple[float, float], angle_deg: float, facing_deg: float, found: Surfaces, most: float
+) -> float:
     """Return the distance at which one ray meets a surface that echoes, at most `most`."""
     x_mm, y_mm = start
     angle = math.radians(angle_deg)
@@ -116,7 +125,9 @@ def _ray_mm(start: tuple[float, float], angle_deg: float, facing_deg: float, fou
     return most
 
 
-def distance_mm(pose: Pose, spec: UltrasonicSpec, world: WorldSpec, heard: Surfaces | None = None) -> int:
+def distance_mm(
+    pose: Pose, spec: UltrasonicSpec, world: WorldSpec, heard: Surfaces | None = None
+) -> int:
     """Return the distance to the nearest echo in whole mm, `max_range_mm` if there is none, without noise.
 
     Args:
@@ -154,7 +165,10 @@ def reading_mm(spec: UltrasonicSpec, instant: Instant, world: WorldSpec) -> int:
     distance = distance_mm(instant.pose, spec, world, _heard(spec, instant, world))
     if not spec.noise_mm:
         return distance
-    share = int.from_bytes(stream(instant.seed, instant.tick, spec.name, 4), "little") / 2147483647.5 - 1
+    share = (
+        int.from_bytes(stream(instant.seed, instant.tick, spec.name, 4), "little") / 2147483647.5
+        - 1
+    )
     return max(0, min(round(spec.max_range_mm), round(distance + spec.noise_mm * share)))
 
 
@@ -163,6 +177,8 @@ def columns(spec: UltrasonicSpec) -> tuple[Column, ...]:
     return (Column(f"{spec.name}_mm", is_traced=True, also=(spec.name,)),)
 
 
-def measure(spec: UltrasonicSpec, instant: Instant, run: RunSpec, field: Field) -> tuple[float, ...]:
+def measure(
+    spec: UltrasonicSpec, instant: Instant, run: RunSpec, field: Field
+) -> tuple[float, ...]:
     """Return the value of `columns`."""
     return (float(reading_mm(spec, instant, run.world)),)

@@ -154,7 +154,10 @@ class Controller:
             ValueError: the rate is 0, or the move takes too long.
         """
         settings = self.settings
-        rate, acceleration = min(abs(rate), settings.speed), min(abs(acceleration), settings.acceleration)
+        rate, acceleration = (
+            min(abs(rate), settings.speed),
+            min(abs(acceleration), settings.acceleration),
+        )
         start, spliced = self._starts(now_us, measured)
         if relative:
             target += divided(start.milli, MILLI)
@@ -168,7 +171,14 @@ class Controller:
         if self.trajectory is not None and other.trajectory is not None:
             self.trajectory = proportional(self.trajectory, other.trajectory)
 
-    def run(self, now_us: int, measured: Measure, rate: int, acceleration: int, time_us: int | None = None) -> None:
+    def run(
+        self,
+        now_us: int,
+        measured: Measure,
+        rate: int,
+        acceleration: int,
+        time_us: int | None = None,
+    ) -> None:
         """Begin a motion at a speed.
 
         Args:
@@ -194,18 +204,33 @@ class Controller:
                 takes_us = time_us + now_us - spliced.start_us
                 found = timed_move(spliced, takes_us, rate, acceleration, settings.speed)
         # What a motion at a speed has forgotten, the next one does not catch up either.
-        behind_milli = self._behind_milli if self.timed and self.trajectory is not None and not self._slips else 0
+        behind_milli = (
+            self._behind_milli
+            if self.timed and self.trajectory is not None and not self._slips
+            else 0
+        )
         self._begin(found, timed=True)
         self._behind_milli = behind_milli
 
     def _runs_at(self, now_us: int, rate: int) -> bool:
         """Return whether a motion at a rate has reached it, so that the same command changes nothing."""
-        if not self.timed or self.trajectory is None or self._paused_us or self._behind_milli or self._stalled_us:
+        if (
+            not self.timed
+            or self.trajectory is None
+            or self._paused_us
+            or self._behind_milli
+            or self._stalled_us
+        ):
             return False
         even = self.trajectory.even
         # After whole milliseconds there is no rounding that a new trajectory would begin with.
         passed_us = now_us - even.start_us
-        return self.trajectory.endless and even.rate == rate and passed_us >= 0 and not passed_us % MS_US
+        return (
+            self.trajectory.endless
+            and even.rate == rate
+            and passed_us >= 0
+            and not passed_us % MS_US
+        )
 
     def _starts(self, now_us: int, measured: Measure) -> tuple[Segment, Segment | None]:
         """Return where a new trajectory begins, and where the running segment began, if it changes the speed."""
@@ -213,7 +238,9 @@ class Controller:
             return measured(now_us), None
         then_us = now_us - self._paused_us
         running = self.trajectory.segment(then_us)
-        start = Segment(now_us, running.milli_at(then_us), running.rate_at(then_us), running.acceleration)
+        start = Segment(
+            now_us, running.milli_at(then_us), running.rate_at(then_us), running.acceleration
+        )
         if not running.acceleration:
             return start, None
         return start, running._replace(start_us=running.start_us + self._paused_us)
@@ -239,7 +266,11 @@ class Controller:
         assert trajectory is not None
         error = self.milli(now_us) - milli
         power = settings.kp * abs(error) // MILLI
-        limit = self.actuation - settings.feed_forward + settings.kp * abs(rate) * PAUSE_MARGIN_MS // 1000
+        limit = (
+            self.actuation
+            - settings.feed_forward
+            + settings.kp * abs(rate) * PAUSE_MARGIN_MS // 1000
+        )
         moved = self.milli(now_us) - self.milli(now_us - passed_us)
         # A trajectory that leads back to the motion goes on: a blocked motor comes free when it reverses.
         leads_back = (moved if self.timed else trajectory.even.rate) * error < 0
@@ -255,7 +286,9 @@ class Controller:
     @property
     def stalled(self) -> bool:
         """Whether the motion has hardly moved at full power for the time of the settings."""
-        return self.trajectory is not None and self._stalled_us >= self.settings.stall_time_ms * MS_US
+        return (
+            self.trajectory is not None and self._stalled_us >= self.settings.stall_time_ms * MS_US
+        )
 
     def is_over(self, now_us: int) -> bool:
         """Return whether a motion for a time has come to its end."""

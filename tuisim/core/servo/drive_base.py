@@ -29,7 +29,9 @@ def base_settings(
     )
 
 
-def usual_settings(law: MotorLaw, distance: ControlSettings, heading: ControlSettings) -> tuple[int, int, int, int]:
+def usual_settings(
+    law: MotorLaw, distance: ControlSettings, heading: ControlSettings
+) -> tuple[int, int, int, int]:
     """Return speed, acceleration, rate of turn and its acceleration of a new drive base, in mm and degrees."""
     firmware = FIRMWARES[law]
 
@@ -46,7 +48,9 @@ def usual_settings(law: MotorLaw, distance: ControlSettings, heading: ControlSet
     )
 
 
-def _move_by(control: Controller, now_us: int, measured: Measure, way: float, speed: int, acceleration: int) -> None:
+def _move_by(
+    control: Controller, now_us: int, measured: Measure, way: float, speed: int, acceleration: int
+) -> None:
     counts = control.settings.counts
     target = counts(int(way)) if way == int(way) else round(way * control.settings.counts_per_unit)
     control.move_to(now_us, measured, target, counts(speed), counts(acceleration), relative=True)
@@ -60,9 +64,21 @@ class DriveBase:
         wheel_diameter_mm, axle_track_mm: The robot's sizes.
     """
 
-    __slots__ = ("_at_us", "_behind_us", "_millis", "distance", "heading", "left", "motors", "right", "usual")
+    __slots__ = (
+        "_at_us",
+        "_behind_us",
+        "_millis",
+        "distance",
+        "heading",
+        "left",
+        "motors",
+        "right",
+        "usual",
+    )
 
-    def __init__(self, left: ServoMotor, right: ServoMotor, wheel_diameter_mm: float, axle_track_mm: float) -> None:
+    def __init__(
+        self, left: ServoMotor, right: ServoMotor, wheel_diameter_mm: float, axle_track_mm: float
+    ) -> None:
         self.left, self.right, self.motors = left, right, (left, right)
         ours = left.control.settings, right.control.settings
         distance, heading = base_settings(*ours, wheel_diameter_mm, axle_track_mm)
@@ -94,7 +110,9 @@ class DriveBase:
     def done(self, now_us: int) -> bool:
         """Return whether no move is under way."""
         (total, difference), rates = self.millis_at(now_us), self.rates_at(now_us)
-        return self.distance.done(now_us, total, rates[0]) and self.heading.done(now_us, difference, rates[1])
+        return self.distance.done(now_us, total, rates[0]) and self.heading.done(
+            now_us, difference, rates[1]
+        )
 
     @property
     def stalled(self) -> bool:
@@ -103,7 +121,9 @@ class DriveBase:
 
     # Commands
 
-    def move(self, now_us: int, distance_mm: float, turn_deg: float, ending: Ending = Ending.HOLD) -> None:
+    def move(
+        self, now_us: int, distance_mm: float, turn_deg: float, ending: Ending = Ending.HOLD
+    ) -> None:
         """Begin to drive a distance and to turn by an angle; if both, along an arc.
 
         Args:
@@ -123,7 +143,9 @@ class DriveBase:
 
     def drive(self, now_us: int, speed_mm_s: int, turn_rate_dps: int) -> None:
         """Drive on at a speed and a rate of turn."""
-        runs = self.active and all(motor.mode == FOREVER and not motor.blocked_ticks for motor in self.motors)
+        runs = self.active and all(
+            motor.mode == FOREVER and not motor.blocked_ticks for motor in self.motors
+        )
         self._begin()
         distance, heading = self.distance, self.heading
         ours, other = distance.settings, heading.settings
@@ -170,7 +192,10 @@ class DriveBase:
     def halves(self, now_us: int, motor: ServoMotor) -> int:
         """Return where a motor is wanted to be."""
         if now_us != self._at_us:
-            self._at_us, self._millis = now_us, (self.distance.milli(now_us), self.heading.milli(now_us))
+            self._at_us, self._millis = (
+                now_us,
+                (self.distance.milli(now_us), self.heading.milli(now_us)),
+            )
         total, difference = self._millis
         return total + difference if motor is self.left else total - difference
 
@@ -188,7 +213,11 @@ class DriveBase:
 
     def segment_end_us(self, now_us: int) -> int | None:
         """Return when the current segment of either trajectory ends; None if neither does."""
-        ends = [end for control in (self.distance, self.heading) if (end := control.segment_end_us(now_us)) is not None]
+        ends = [
+            end
+            for control in (self.distance, self.heading)
+            if (end := control.segment_end_us(now_us)) is not None
+        ]
         return min(ends, default=None)
 
     def fall_behind(self, now_us: int, passed_us: int, _motor: ServoMotor) -> None:
@@ -196,7 +225,10 @@ class DriveBase:
         if now_us == self._behind_us:
             return
         self._behind_us, self._at_us = now_us, -1
-        millis, rates = (one.milli for one in self.motors), (one.counts_per_s for one in self.motors)
+        millis, rates = (
+            (one.milli for one in self.motors),
+            (one.counts_per_s for one in self.motors),
+        )
         (left, right), (left_rate, right_rate) = millis, rates
         self.distance.lag(now_us, passed_us, left + right, left_rate + right_rate)
         self.heading.lag(now_us, passed_us, left - right, left_rate - right_rate)

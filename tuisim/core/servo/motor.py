@@ -10,7 +10,15 @@ from itertools import pairwise, repeat
 from typing import TYPE_CHECKING, Protocol
 
 from tuisim.core.drive import EvenGlide, Glide
-from tuisim.core.motors import ENDLESS, FOREVER, POSITION, STANDSTILL_DEG, STOPPED, TIMED, MotorState
+from tuisim.core.motors import (
+    ENDLESS,
+    FOREVER,
+    POSITION,
+    STANDSTILL_DEG,
+    STOPPED,
+    TIMED,
+    MotorState,
+)
 from tuisim.core.servo.control import Controller, Ending
 from tuisim.core.servo.settings import BATTERY_V, COUNTS_PER_DEG, MODELS, motor_settings
 from tuisim.core.servo.trajectory import MILLI, Segment
@@ -55,10 +63,30 @@ class ServoMotor:
     """
 
     __slots__ = (
-        "_actuation", "_course", "_ending", "_fastest_deg", "_free_dps", "_free_us", "_guide", "_hz", "_jump_deg",
-        "_quiet", "_tick", "_tick_s", "_tick_us", "blocked_ticks", "control", "duty", "kind", "law", "mode",
-        "model", "position_deg", "sign", "speed_dps",
-    )  # fmt: skip
+        "_actuation",
+        "_course",
+        "_ending",
+        "_fastest_deg",
+        "_free_dps",
+        "_free_us",
+        "_guide",
+        "_hz",
+        "_jump_deg",
+        "_quiet",
+        "_tick",
+        "_tick_s",
+        "_tick_us",
+        "blocked_ticks",
+        "control",
+        "duty",
+        "kind",
+        "law",
+        "mode",
+        "model",
+        "position_deg",
+        "sign",
+        "speed_dps",
+    )
 
     def __init__(self, tick_hz: int, law: MotorLaw, kind: str) -> None:
         self._hz, self._tick_s, self._tick_us = tick_hz, 1.0 / tick_hz, 1_000_000 // tick_hz
@@ -117,11 +145,15 @@ class ServoMotor:
 
     def measured(self, now_us: int) -> Segment:
         """Return where a motion begins that nothing has controlled before, as the encoder shows it."""
-        return Segment(now_us, round(self.milli_at(now_us) / MILLI) * MILLI, self.counts_per_s_at(now_us), 0)
+        return Segment(
+            now_us, round(self.milli_at(now_us) / MILLI) * MILLI, self.counts_per_s_at(now_us), 0
+        )
 
     # Commands
 
-    def set_up(self, now_us: int, sign: int, gear_ratio: float, *, keeps_angle: bool = False) -> None:
+    def set_up(
+        self, now_us: int, sign: int, gear_ratio: float, *, keeps_angle: bool = False
+    ) -> None:
         """Begin anew, as a program does that makes a motor: it coasts, and its position is 0 unless it is kept."""
         self.run_freely(now_us, None)
         self.sign = sign
@@ -189,7 +221,11 @@ class ServoMotor:
         """Where the motion ends."""
         guide = self._guide
         end_us = guide.end_us if guide else None
-        return self.position_deg if guide is None or end_us is None else self._deg(guide.halves(end_us, self))
+        return (
+            self.position_deg
+            if guide is None or end_us is None
+            else self._deg(guide.halves(end_us, self))
+        )
 
     @property
     def end_tick(self) -> float:
@@ -212,7 +248,9 @@ class ServoMotor:
         self.speed_dps *= part
         self._free_dps *= part
         self._course = None
-        self.blocked_ticks = self.blocked_ticks + 1 if abs(turned_deg * part) < STANDSTILL_DEG else 0
+        self.blocked_ticks = (
+            self.blocked_ticks + 1 if abs(turned_deg * part) < STANDSTILL_DEG else 0
+        )
 
     @property
     def moving_dps(self) -> float:
@@ -327,7 +365,11 @@ class ServoMotor:
         self.mode, self.speed_dps, self.blocked_ticks = STOPPED, 0.0, 0
         if self._ending != Ending.HOLD and self._guide is not None:
             self.control.release()
-            self._guide, self._free_dps, self.duty = None, 0.0, 0 if self._ending == Ending.BRAKE else None
+            self._guide, self._free_dps, self.duty = (
+                None,
+                0.0,
+                0 if self._ending == Ending.BRAKE else None,
+            )
 
     def _run_on(self, now_us: int) -> float:
         """Run one tick without a guide."""
@@ -354,4 +396,6 @@ class ServoMotor:
             loss = -self.model.friction_dps
             steady = loss if speed > 0 else -loss
         after = speed + (steady - speed) * share
-        return 0.0 if not self.model.steady_dps(self.duty, BATTERY_V) and after * speed <= 0 else after
+        return (
+            0.0 if not self.model.steady_dps(self.duty, BATTERY_V) and after * speed <= 0 else after
+        )

@@ -89,7 +89,14 @@ class MotorModel:
     @property
     def friction_dps(self) -> float:
         """The speed that the voltage lost by friction would lead to."""
-        return self.resistance_ohm * self.friction_nm / self.torque_nm_per_a / self.back_emf_v_s * 180 / pi
+        return (
+            self.resistance_ohm
+            * self.friction_nm
+            / self.torque_nm_per_a
+            / self.back_emf_v_s
+            * 180
+            / pi
+        )
 
     @property
     def time_constant_s(self) -> float:
@@ -166,7 +173,9 @@ def motor_settings(law: MotorLaw, kind: str, gear_ratio: float = 1.0) -> Control
         speed=motor.speed * COUNTS_PER_DEG,
         acceleration=motor.acceleration * COUNTS_PER_DEG,
         actuation=FULL_ACTUATION,
-        kp=kp, ki=ki, kd=kd,
+        kp=kp,
+        ki=ki,
+        kd=kd,
         integral_range=45,
         integral_rate=10,
         feed_forward=motor.feed_forward * 100,
@@ -174,10 +183,12 @@ def motor_settings(law: MotorLaw, kind: str, gear_ratio: float = 1.0) -> Control
         speed_tolerance=50 * COUNTS_PER_DEG,
         stall_speed=firmware.stall_speed_dps * COUNTS_PER_DEG,
         stall_time_ms=200,
-    )  # fmt: skip
+    )
 
 
-def pair_settings(left: ControlSettings, right: ControlSettings, counts_per_unit: float) -> ControlSettings:
+def pair_settings(
+    left: ControlSettings, right: ControlSettings, counts_per_unit: float
+) -> ControlSettings:
     """Return the settings of one controller of a drive base, which moves the sum or the difference of two motors.
 
     Args:

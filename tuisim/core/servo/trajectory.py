@@ -49,23 +49,38 @@ class Segment(NamedTuple):
         """Return the position at a time in this segment."""
         passed_us, rate, acceleration = time_us - self.start_us, self.rate, self.acceleration
         # Each quotient rounds towards zero; each motor asks in every tick.
-        milli = self.milli + (rate * passed_us // 1000 if rate >= 0 else -(-rate * passed_us // 1000))
+        milli = self.milli + (
+            rate * passed_us // 1000 if rate >= 0 else -(-rate * passed_us // 1000)
+        )
         if acceleration > 0:
             return milli + acceleration * passed_us // 1000 * passed_us // 2_000_000
-        return milli - -acceleration * passed_us // 1000 * passed_us // 2_000_000 if acceleration else milli
+        return (
+            milli - -acceleration * passed_us // 1000 * passed_us // 2_000_000
+            if acceleration
+            else milli
+        )
 
     def rate_at(self, time_us: int) -> int:
         """Return the rate at a time in this segment."""
-        return self.rate + (rate_change(self.acceleration, time_us - self.start_us) if self.acceleration else 0)
+        return self.rate + (
+            rate_change(self.acceleration, time_us - self.start_us) if self.acceleration else 0
+        )
 
     def millis(self, times_us: range) -> list[int]:
         """Return the positions at several times in this segment, which `at` gives one by one."""
-        sign, way, steps = (1 if self.rate >= 0 else -1), abs(self.rate), [at - self.start_us for at in times_us]
+        sign, way, steps = (
+            (1 if self.rate >= 0 else -1),
+            abs(self.rate),
+            [at - self.start_us for at in times_us],
+        )
         even = [self.milli + sign * (way * at // 1000) for at in steps]
         if not self.acceleration:
             return even
         sign, change = (1 if self.acceleration >= 0 else -1), abs(self.acceleration)
-        return [milli + sign * (change * at // 1000 * at // 2_000_000) for milli, at in zip(even, steps, strict=True)]
+        return [
+            milli + sign * (change * at // 1000 * at // 2_000_000)
+            for milli, at in zip(even, steps, strict=True)
+        ]
 
 
 Measure = Callable[[int], Segment]
@@ -110,7 +125,9 @@ def standing(time_us: int, milli: int) -> Trajectory:
     return Trajectory(there, there, there, there)
 
 
-def angle_move(start: Segment, target: int, rate: int, acceleration: int, fastest: int) -> Trajectory:
+def angle_move(
+    start: Segment, target: int, rate: int, acceleration: int, fastest: int
+) -> Trajectory:
     """Return the move to a position.
 
     Args:
@@ -147,7 +164,10 @@ def angle_move(start: Segment, target: int, rate: int, acceleration: int, fastes
             w1 = isqrt(2 * acceleration * (th1 - from_rest))
     else:
         a0, w1 = -acceleration, wanted
-        th1, th2 = divided(w0 * w0 - wanted * wanted, 2 * acceleration), length - wanted * wanted // (2 * acceleration)
+        th1, th2 = (
+            divided(w0 * w0 - wanted * wanted, 2 * acceleration),
+            length - wanted * wanted // (2 * acceleration),
+        )
     t1 = start.start_us + duration_us(w1 - w0, a0)
     t2 = t1 + (duration_us(th2 - th1, w1) if th2 != th1 else 0)
     t3 = t2 + duration_us(w1, acceleration)
@@ -184,7 +204,9 @@ def endless_move(start: Segment, rate: int, acceleration: int, fastest: int) -> 
     return Trajectory(first, even, even, even, True)
 
 
-def timed_move(start: Segment, time_us: int, rate: int, acceleration: int, fastest: int) -> Trajectory:
+def timed_move(
+    start: Segment, time_us: int, rate: int, acceleration: int, fastest: int
+) -> Trajectory:
     """Return the move that takes a time, with its ramps.
 
     Args:
@@ -228,6 +250,13 @@ def proportional(trajectory: Trajectory, leader: Trajectory) -> Trajectory:
         return divided(number * whole, way) if way else 0
 
     def scaled(one: Segment) -> Segment:
-        return Segment(one.start_us, begin + part(one.milli - from_milli), part(one.rate), part(one.acceleration))
+        return Segment(
+            one.start_us,
+            begin + part(one.milli - from_milli),
+            part(one.rate),
+            part(one.acceleration),
+        )
 
-    return Trajectory(scaled(leader.first), scaled(leader.even), scaled(leader.last), scaled(leader.end))
+    return Trajectory(
+        scaled(leader.first), scaled(leader.even), scaled(leader.last), scaled(leader.end)
+    )

@@ -56,7 +56,9 @@ def decode_event(line: bytes) -> Message:
         if not _is_sound(asdict(event)):
             raise ValueError(line)
     except (msgspec.MsgspecError, ValueError, KeyError, RecursionError) as error:
-        raise HostError(f"the program's process sent an invalid message: {line[:_MOST_SHOWN]!r}") from error
+        raise HostError(
+            f"the program's process sent an invalid message: {line[:_MOST_SHOWN]!r}"
+        ) from error
     return event
 
 
@@ -131,13 +133,19 @@ class EventStream:
         is_first, is_start = self._last is None, isinstance(event, Started)
         match event:
             case Started(protocol=number) if number != PROTOCOL_VERSION:
-                self.falsified = f"the program's process speaks protocol {number}, this is {PROTOCOL_VERSION}"
+                self.falsified = (
+                    f"the program's process speaks protocol {number}, this is {PROTOCOL_VERSION}"
+                )
             case _ if not isinstance(event, self._allowed) or isinstance(self._last, Ended):
-                self.falsified = f"the program's process sent the message {event.kind}, which cannot come here"
+                self.falsified = (
+                    f"the program's process sent the message {event.kind}, which cannot come here"
+                )
             # A run that cannot begin ends without a start.
             case _ if is_start != is_first and not (is_first and isinstance(event, Ended)):
                 when = "first" if is_first else "again"
-                self.falsified = f"the program's process sent the message {event.kind}, which cannot come {when}"
+                self.falsified = (
+                    f"the program's process sent the message {event.kind}, which cannot come {when}"
+                )
         return None if self.falsified else event
 
 

@@ -24,7 +24,16 @@ from tuisim.runs.child.seccomp import filter_descriptor
 BWRAP = "bwrap"
 START_S = 10.0
 """Real seconds that bubblewrap may take to start."""
-_SYSTEM = ("/usr", "/lib", "/lib32", "/lib64", "/libx32", "/bin", "/etc/ld.so.cache", "/etc/alternatives")
+_SYSTEM = (
+    "/usr",
+    "/lib",
+    "/lib32",
+    "/lib64",
+    "/libx32",
+    "/bin",
+    "/etc/ld.so.cache",
+    "/etc/alternatives",
+)
 _SIGNALLED = 128
 """bubblewrap reports a signal N that ended the child as exit status 128 + N."""
 _PACKAGES = ("site-packages", "dist-packages")
@@ -78,7 +87,11 @@ def check_isolation() -> None:
             errors="replace",
             timeout=START_S,
         )
-        reason = done.stderr.strip().rpartition("\n")[2] or f"exit status {done.returncode}" if done.returncode else ""
+        reason = (
+            done.stderr.strip().rpartition("\n")[2] or f"exit status {done.returncode}"
+            if done.returncode
+            else ""
+        )
     except (OSError, subprocess.TimeoutExpired) as error:
         reason = str(error)
     if reason:
@@ -154,7 +167,9 @@ class Quota:
         files, size = self._more(MOST_FILES, MOST_BYTES)
         size += sum(self._without_a_name())
         if files > MOST_FILES or size > MOST_BYTES:
-            return f"the program has written more than {MOST_FILES:,} files or {MOST_BYTES >> 30} GiB"
+            return (
+                f"the program has written more than {MOST_FILES:,} files or {MOST_BYTES >> 30} GiB"
+            )
         return ""
 
     def _more(self, most_files: int, most_bytes: int) -> tuple[int, int]:
@@ -276,6 +291,13 @@ def _python() -> list[str]:
     """Return the folders that Python and its packages are in."""
     package = Path(__file__).parent.parent.parent
     packages = [folder for folder in sys.path if Path(folder).name in _PACKAGES]
-    folders = [sys.base_prefix, sys.base_exec_prefix, sys.prefix, sys.exec_prefix, *packages, str(package)]
+    folders = [
+        sys.base_prefix,
+        sys.base_exec_prefix,
+        sys.prefix,
+        sys.exec_prefix,
+        *packages,
+        str(package),
+    ]
     # A prefix such as / would show everything; what Python needs of it is part of the system.
     return [folder for folder in dict.fromkeys(map(os.path.realpath, folders)) if folder != os.sep]

@@ -132,7 +132,9 @@ def start_child(
             else:
                 command = [*_command(LIMITS), str(folder), *map(str, inherited)]
                 writable = [folder, Path(cwd)] if cwd else [folder]
-                process = spawn_isolated(command, _environment(), log, inherited, writable, isolated_with)
+                process = spawn_isolated(
+                    command, _environment(), log, inherited, writable, isolated_with
+                )
         ours.pop_all()
     os.set_blocking(event_fd, False)
     os.set_blocking(command_fd, False)
@@ -241,7 +243,9 @@ def end_left_over(pid: int, marked: int) -> None:
     """Kill all processes that an exited child has left behind; without a mark not those in sessions of their own."""
     ended = {pid}
     try:
-        while marked and (found := {one for one in _younger_than(pid) - ended if _has_mark(one, marked)}):
+        while marked and (
+            found := {one for one in _younger_than(pid) - ended if _has_mark(one, marked)}
+        ):
             ended |= found
             for one in found:
                 with suppress(ProcessLookupError, PermissionError):
@@ -272,7 +276,11 @@ def _has_mark(pid: int, marked: int) -> bool:
 
 def _environment() -> dict[str, str]:
     """Return the child's environment: isolated from the user's, with reproducible hashes."""
-    kept = {name: os.environ[name] for name in ("PATH", "HOME", "LD_LIBRARY_PATH", "TMPDIR") if name in os.environ}
+    kept = {
+        name: os.environ[name]
+        for name in ("PATH", "HOME", "LD_LIBRARY_PATH", "TMPDIR")
+        if name in os.environ
+    }
     return {
         **kept,
         "PYTHONHASHSEED": "0",
@@ -323,7 +331,9 @@ def stuck_line(folder: Path, program_file: str) -> int:
     # In the format of that file: ASCII, truncated.
     shown = program_file.encode("ascii", "backslashreplace").decode()
     for line in source_lines(stack):
-        if f'"{shown}"' in line or (len(program_file) > MOST_SHOWN and f'"{shown[:MOST_SHOWN]}' in line):
+        if f'"{shown}"' in line or (
+            len(program_file) > MOST_SHOWN and f'"{shown[:MOST_SHOWN]}' in line
+        ):
             number = line.partition(", line ")[2].partition(" ")[0]
             return int(number) if number.isdecimal() and len(number) < _DIGITS else 0
     return 0

@@ -90,7 +90,9 @@ def supervised() -> Iterator[None]:
 
     command = [sys.executable, "-I", "-S", __file__, str(os.getpid())]
     try:
-        process = subprocess.Popen(command, stdin=subprocess.PIPE, stderr=subprocess.DEVNULL, start_new_session=True)
+        process = subprocess.Popen(
+            command, stdin=subprocess.PIPE, stderr=subprocess.DEVNULL, start_new_session=True
+        )
     except OSError as error:
         from tuisim.errors import HostError
 

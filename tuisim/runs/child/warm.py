@@ -161,7 +161,9 @@ class ForkClient:
         status_fd, theirs = os.pipe()
         try:
             with open(os.devnull, "r+b", buffering=0) as null, self._lock:
-                data = json.dumps({**request, "run": run if serves else self._changes(run)}).encode()
+                data = json.dumps(
+                    {**request, "run": run if serves else self._changes(run)}
+                ).encode()
                 message = len(data).to_bytes(_LENGTH_BYTES, "little") + data
                 sent = socket.send_fds(self._socket, [message], [theirs, null.fileno(), *files])
                 self._socket.sendall(message[sent:])
@@ -177,7 +179,9 @@ class ForkClient:
         pid = int.from_bytes(answer, sys.byteorder, signed=True) if answer else 0
         if pid <= 0:
             os.close(status_fd)
-            raise OSError(-pid, os.strerror(-pid)) if pid else ConnectionError("the server has ended")
+            raise (
+                OSError(-pid, os.strerror(-pid)) if pid else ConnectionError("the server has ended")
+            )
         return ForkedChild(pid, status_fd)
 
     def _changes(self, _run: Mapping[str, Any]) -> dict[str, Any]:
@@ -213,7 +217,9 @@ class Template(ForkClient):
         run: The contents of the `run.json` of the run that it was prepared with.
     """
 
-    def __init__(self, connection: socket.socket, process: ChildProcess, run: Mapping[str, Any]) -> None:
+    def __init__(
+        self, connection: socket.socket, process: ChildProcess, run: Mapping[str, Any]
+    ) -> None:
         super().__init__(connection, process)
         self._last = _varying(run)
         """What it knows of the last run."""
@@ -278,7 +284,9 @@ class WarmProcess(ForkClient):
         try:
             with theirs, open(os.devnull, "wb") as log:
                 files = [log.fileno(), theirs.fileno()]
-                return Template(mine, self.fork(folder, "/", self._environment, files, run, serves=True), run)
+                return Template(
+                    mine, self.fork(folder, "/", self._environment, files, run, serves=True), run
+                )
         except OSError:
             mine.close()
             raise

@@ -19,10 +19,33 @@ from tuisim.runtime.session import Session
 
 _SCALARS = (bool, int, float, str, types.NoneType)
 _PLAIN_NODES = (
-    ast.Expression, ast.BoolOp, ast.And, ast.Or, ast.UnaryOp, ast.Not, ast.USub, ast.UAdd, ast.BinOp, ast.Add, ast.Sub,
-    ast.Div, ast.FloorDiv, ast.Mod, ast.Compare, ast.Eq, ast.NotEq, ast.Lt, ast.LtE, ast.Gt, ast.GtE, ast.Is, ast.IsNot,
-    ast.Name, ast.Load, ast.Constant,
-)  # fmt: skip
+    ast.Expression,
+    ast.BoolOp,
+    ast.And,
+    ast.Or,
+    ast.UnaryOp,
+    ast.Not,
+    ast.USub,
+    ast.UAdd,
+    ast.BinOp,
+    ast.Add,
+    ast.Sub,
+    ast.Div,
+    ast.FloorDiv,
+    ast.Mod,
+    ast.Compare,
+    ast.Eq,
+    ast.NotEq,
+    ast.Lt,
+    ast.LtE,
+    ast.Gt,
+    ast.GtE,
+    ast.Is,
+    ast.IsNot,
+    ast.Name,
+    ast.Load,
+    ast.Constant,
+)
 
 Apart = Callable[[Callable[[], bytes]], bytes | None]
 
@@ -54,14 +77,20 @@ class LineCondition:
         """
         names: Mapping[str, Any] = frame.f_locals
         if self._plain and type(names) is dict:
-            values = {name: names.get(name, frame.f_globals.get(name, self)) for name in self._names}
-            values = {name: value for name, value in values.items() if value is not self or name in frame.f_builtins}
+            values = {
+                name: names.get(name, frame.f_globals.get(name, self)) for name in self._names
+            }
+            values = {
+                name: value
+                for name, value in values.items()
+                if value is not self or name in frame.f_builtins
+            }
             if all(type(value) in _SCALARS for value in values.values()):
                 return self._at_once(values)
         answer = apart(
-            lambda: evaluate_truth(self._text, {**frame.f_globals, **names}, frame.f_builtins).encode(
-                "utf-8", "backslashreplace"
-            )
+            lambda: evaluate_truth(
+                self._text, {**frame.f_globals, **names}, frame.f_builtins
+            ).encode("utf-8", "backslashreplace")
         )
         return "takes too long" if answer is None else answer.decode()[1:]
 
@@ -128,11 +157,15 @@ class Watcher:
 
     # Checks
 
-    def _tick_check(self, rule: ValueCondition | TimeBreak | StallBreak) -> Callable[[], str] | None:
+    def _tick_check(
+        self, rule: ValueCondition | TimeBreak | StallBreak
+    ) -> Callable[[], str] | None:
         match rule:
             case TimeBreak(time_s=time_s):
                 value: Value | None = self._time_s
-                condition = ValueCondition("time", Operator.GREATER_EQUAL, repr(time_s - 0.5 / NS_PER_S))
+                condition = ValueCondition(
+                    "time", Operator.GREATER_EQUAL, repr(time_s - 0.5 / NS_PER_S)
+                )
             case StallBreak():
                 value, condition = self._stalled, ValueCondition("stall", Operator.GREATER, "0")
             case ValueCondition():
@@ -155,7 +188,12 @@ class Watcher:
 
     def _stalled(self) -> float:
         sim = self._session.sim
-        return float(sum(motor.blocked_ticks >= sim.stall_ticks for motor in (sim.left, sim.right, *sim.others)))
+        return float(
+            sum(
+                motor.blocked_ticks >= sim.stall_ticks
+                for motor in (sim.left, sim.right, *sim.others)
+            )
+        )
 
     def _value_of(self, column: str) -> Value | None:
         """Return a function that reads a column; None if this robot does not have it."""

@@ -84,7 +84,11 @@ class Debugger:
                 self._forget_goals()
                 # A paused run waits for commands in the thread that was paused.
                 depth = self._tracer.depth_of(_getframe())
-                self._step = step_from(how, self._scheduler.current, depth) if steering.holding else NEXT_LINE
+                self._step = (
+                    step_from(how, self._scheduler.current, depth)
+                    if steering.holding
+                    else NEXT_LINE
+                )
                 steering.resume()
             case protocol.RunToLine(line=line):
                 self._forget_goals()
@@ -148,7 +152,9 @@ class Debugger:
 
     def _set_breaks(self, breaks: Iterable[Breakpoint]) -> None:
         wanted = [one for one in breaks if not one.disabled]
-        before = {one.text: condition for found in self._by_line.values() for one, condition in found}
+        before = {
+            one.text: condition for found in self._by_line.values() for one, condition in found
+        }
         self._by_line = {}
         for one in wanted:
             if isinstance(one.rule, LineBreak):
@@ -172,7 +178,12 @@ class Debugger:
         session, goals = self._session, self._goal_ticks()
         session.steering.debugged = self._watcher.ticks or bool(goals)
         session.flags |= DEBUG
-        if goals and session.steering.only_rushes and not self._watcher.ticks and min(goals) > session.sim.tick:
+        if (
+            goals
+            and session.steering.only_rushes
+            and not self._watcher.ticks
+            and min(goals) > session.sim.tick
+        ):
             session.rush_to(min(goals))
         elif session.steering.debugged:
             session.flags |= LIVE
@@ -266,13 +277,23 @@ class Debugger:
     # Pausing
 
     def _moment(
-        self, line: int, reason: PauseReason, text: str = "", value: str = "", ordinal: int = 0, file: str = ""
+        self,
+        line: int,
+        reason: PauseReason,
+        text: str = "",
+        value: str = "",
+        ordinal: int = 0,
+        file: str = "",
     ) -> Paused:
         session = self._session
         thread = self._looker.name_of(self._scheduler.current)
-        return Paused(session.sim.tick, session.now, line, reason, text, value, ordinal, thread, file)
+        return Paused(
+            session.sim.tick, session.now, line, reason, text, value, ordinal, thread, file
+        )
 
-    def _hold_at_tick(self, reason: PauseReason, ordinal: int, text: str = "", value: str = "") -> None:
+    def _hold_at_tick(
+        self, reason: PauseReason, ordinal: int, text: str = "", value: str = ""
+    ) -> None:
         session = self._session
         session.now = max(session.now, session.sim.due_ns(session.sim.tick))
         self._hold(self._moment(session.sim.line, reason, text, value, ordinal))

@@ -32,7 +32,11 @@ class TooLong(BaseException):
 
 
 def apart(
-    session: Session, scheduler: Scheduler, work: Callable[[], bytes], limit_s: float, go_on: Callable[[], bool]
+    session: Session,
+    scheduler: Scheduler,
+    work: Callable[[], bytes],
+    limit_s: float,
+    go_on: Callable[[], bool],
 ) -> bytes | None:
     """Return the result of `work` from a copy of this process.
 
@@ -86,7 +90,11 @@ def _answer(channel: Channel, fd: int, until_s: float, go_on: Callable[[], bool]
 
 
 def _be_the_copy(
-    session: Session, scheduler: Scheduler, work: Callable[[], bytes], answer_fd: int, limit_s: float
+    session: Session,
+    scheduler: Scheduler,
+    work: Callable[[], bytes],
+    answer_fd: int,
+    limit_s: float,
 ) -> NoReturn:
     try:
         # These end the copy in any case, even inside a long C call.
@@ -125,7 +133,9 @@ def _freeze(session: Session, scheduler: Scheduler) -> None:
 
 
 def _refuse(*_args: object, **_kwargs: object) -> NoReturn:
-    raise RuntimeError("the program is paused: no time can pass and nothing can move while it is inspected")
+    raise RuntimeError(
+        "the program is paused: no time can pass and nothing can move while it is inspected"
+    )
 
 
 @contextmanager

@@ -70,7 +70,12 @@ class Inspector:
         prepared: Mapping[str, int],
     ) -> None:
         self._prepared = prepared
-        self._session, self._scheduler, self._tracer, self._module = session, scheduler, tracer, module
+        self._session, self._scheduler, self._tracer, self._module = (
+            session,
+            scheduler,
+            tracer,
+            module,
+        )
         self._seen: dict[tuple[str, str], dict[str, str]] = {}
         """Texts of the names at the last inspection, by scope."""
 
@@ -85,7 +90,9 @@ class Inspector:
         place = self._place(wanted, tops)
         shown, note = self._values(place, wanted.watches[:MOST_WATCHES], go_on)
         frame = place.frame
-        scope = (frame.f_code.co_filename, frame.f_code.co_qualname) if frame is not None else ("", "")
+        scope = (
+            (frame.f_code.co_filename, frame.f_code.co_qualname) if frame is not None else ("", "")
+        )
         variables = self._marked(("local", *scope), shown["locals"])
         found_globals = self._marked(("global", "", ""), shown["globals"])
         return Inspected(
@@ -113,19 +120,27 @@ class Inspector:
 
     def _place(self, wanted: Inspect, tops: Mapping[int, types.FrameType]) -> _Place:
         tasks = self._scheduler.tasks
-        task = next((task for task in tasks if wanted.thread and self.name_of(task) == wanted.thread), None)
+        task = next(
+            (task for task in tasks if wanted.thread and self.name_of(task) == wanted.thread), None
+        )
         task = task or self._scheduler.current
         top = tops.get(task.ident)
         frames = self._tracer.own_frames(top)
         return _Place(task, top, frames, max(0, min(wanted.frame, len(frames) - 1)))
 
-    def _thread_state(self, task: ScheduledThread, tops: Mapping[int, types.FrameType]) -> ThreadState:
+    def _thread_state(
+        self, task: ScheduledThread, tops: Mapping[int, types.FrameType]
+    ) -> ThreadState:
         top = tops.get(task.ident)
         paused = task is self._scheduler.current
         file = self._session.program_file
-        frames = [frame for frame in self._tracer.own_frames(top) if frame.f_code.co_filename == file]
+        frames = [
+            frame for frame in self._tracer.own_frames(top) if frame.f_code.co_filename == file
+        ]
         line = frames[0].f_lineno if frames else 0
-        return ThreadState(self.name_of(task), line or 0, waiting_note(self._session, task, top), paused)
+        return ThreadState(
+            self.name_of(task), line or 0, waiting_note(self._session, task, top), paused
+        )
 
     def _frame_state(self, frame: types.FrameType) -> FrameState:
         file = frame.f_code.co_filename
@@ -134,14 +149,18 @@ class Inspector:
 
     # Variables
 
-    def _values(self, place: _Place, watches: tuple[str, ...], go_on: Callable[[], bool]) -> tuple[dict[str, Any], str]:
+    def _values(
+        self, place: _Place, watches: tuple[str, ...], go_on: Callable[[], bool]
+    ) -> tuple[dict[str, Any], str]:
         frame = place.frame
         # The locals of a frame of this thread are read in the copy: read here, they would be kept alive.
         local = None if frame is None or place.task is self._scheduler.current else frame.f_locals
 
         def shown(seconds: float, expressions: tuple[str, ...]) -> dict[str, Any] | None:
             def work() -> bytes:
-                return json.dumps(self._shown(frame, local, expressions, seconds)).encode("utf-8", "replace")
+                return json.dumps(self._shown(frame, local, expressions, seconds)).encode(
+                    "utf-8", "replace"
+                )
 
             answer = apart(self._session, self._scheduler, work, LOOK_LIMIT_S, go_on)
             found: dict[str, Any] | None = None if answer is None else json.loads(answer)
@@ -155,7 +174,11 @@ class Inspector:
         return {**plain, "watches": [(text, "", "takes too long") for text in watches]}, TOO_LONG
 
     def _shown(
-        self, frame: types.FrameType | None, local: Mapping[str, Any] | None, watches: tuple[str, ...], seconds: float
+        self,
+        frame: types.FrameType | None,
+        local: Mapping[str, Any] | None,
+        watches: tuple[str, ...],
+        seconds: float,
     ) -> dict[str, Any]:
         """Return names and watches as plain data. Runs in the copy."""
         inside = self._module if frame is None else frame.f_globals
@@ -168,15 +191,23 @@ class Inspector:
         watched = {**self._columns_in(watches), **visible}
         return {
             "watches": [(text, *evaluate(renderer, text, watched, builtin)) for text in watches],
-            "locals": _texts(renderer, self._own_names(plain) if own_module else plain, whole=not own_module),
+            "locals": _texts(
+                renderer, self._own_names(plain) if own_module else plain, whole=not own_module
+            ),
             "globals": [] if own_module else _texts(renderer, self._own_names(inside), whole=False),
         }
 
     def _columns_in(self, watches: tuple[str, ...]) -> dict[str, float]:
         """Return the values of the recording's columns that watches name."""
         sim, field = self._session.sim, self._session.field
-        readers = {name: reader_of(name, sim.spec.robot) for text in watches for name in _names_in(text)}
-        return {name: read(sim.instant(), sim.spec, field) for name, read in readers.items() if read is not None}
+        readers = {
+            name: reader_of(name, sim.spec.robot) for text in watches for name in _names_in(text)
+        }
+        return {
+            name: read(sim.instant(), sim.spec, field)
+            for name, read in readers.items()
+            if read is not None
+        }
 
     def _own_names(self, names: Mapping[str, Any]) -> dict[str, Any]:
         prepared = self._prepared
@@ -188,13 +219,18 @@ class Inspector:
         if names:
             self._seen[key] = {name: text for name, _, text in names}
         return tuple(
-            Variable(name, kind, text, before is not None and before.get(name) != text) for name, kind, text in names
+            Variable(name, kind, text, before is not None and before.get(name) != text)
+            for name, kind, text in names
         )
 
 
 def _names_in(expression: str) -> set[str]:
     with suppress(SyntaxError, ValueError, RecursionError, MemoryError):
-        return {node.id for node in ast.walk(ast.parse(expression.strip(), mode="eval")) if isinstance(node, ast.Name)}
+        return {
+            node.id
+            for node in ast.walk(ast.parse(expression.strip(), mode="eval"))
+            if isinstance(node, ast.Name)
+        }
     return set()
 
 

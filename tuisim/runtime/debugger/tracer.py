@@ -153,7 +153,9 @@ class Tracer:
             frame = frame.f_back
         return found
 
-    def history(self, count: int, name_of: Callable[[ScheduledThread], str]) -> tuple[ExecutedLine, ...]:
+    def history(
+        self, count: int, name_of: Callable[[ScheduledThread], str]
+    ) -> tuple[ExecutedLine, ...]:
         """Return the last lines whose position in their tick is known."""
         met = [row for row in self._met if row[0] != self._uncounted_tick]
         return tuple(

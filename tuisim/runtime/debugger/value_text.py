@@ -21,7 +21,13 @@ MOST_DIGITS = 200
 
 _ADDRESS = re.compile(r" at 0x[0-9a-f]{6,}")
 """Meaningless to the user, and different in every run."""
-_BRACKETS = {list: ("[", "]"), tuple: ("(", ")"), set: ("{", "}"), frozenset: ("{", "}"), dict: ("{", "}")}
+_BRACKETS = {
+    list: ("[", "]"),
+    tuple: ("(", ")"),
+    set: ("{", "}"),
+    frozenset: ("{", "}"),
+    dict: ("{", "}"),
+}
 
 
 def kind_of(value: object) -> str:
@@ -125,7 +131,9 @@ def describe(error: BaseException) -> str:
     return cut(f"{kind_of(error)}: {message}" if message else kind_of(error), 200)
 
 
-def evaluate(renderer: Renderer, text: str, names: Mapping[str, Any], builtin: Any) -> tuple[str, str]:
+def evaluate(
+    renderer: Renderer, text: str, names: Mapping[str, Any], builtin: Any
+) -> tuple[str, str]:
     """Return value and error of an expression, one of them empty.
 
     Args:

@@ -41,7 +41,11 @@ def waiting_note(session: Session, task: ScheduledThread, frame: types.FrameType
 def _frames(frame: types.FrameType | None) -> Iterator[types.FrameType]:
     while frame is not None:
         file = frame.f_code.co_filename
-        if file.startswith(PACKAGE_FOLDER) or any(name in file for name in _LIBRARIES) or _is_library(file):
+        if (
+            file.startswith(PACKAGE_FOLDER)
+            or any(name in file for name in _LIBRARIES)
+            or _is_library(file)
+        ):
             yield frame
             frame = frame.f_back
             continue
@@ -64,7 +68,9 @@ def _until_ns(session: Session, task: ScheduledThread, frames: list[types.FrameT
     return None
 
 
-def _note_of(session: Session, frame: types.FrameType, outer: list[types.FrameType], until: str) -> str:
+def _note_of(
+    session: Session, frame: types.FrameType, outer: list[types.FrameType], until: str
+) -> str:
     """Return what a call of the runtime or the library waits for; empty if this frame does not show it."""
     match wait_of(frame.f_code):
         case None:
@@ -96,7 +102,9 @@ def _note_of(session: Session, frame: types.FrameType, outer: list[types.FrameTy
 
 
 def _lock_owner(outer: list[types.FrameType]) -> str:
-    names = [(os.path.basename(frame.f_code.co_filename), frame.f_code.co_qualname) for frame in outer]
+    names = [
+        (os.path.basename(frame.f_code.co_filename), frame.f_code.co_qualname) for frame in outer
+    ]
     for file, name in names:
         if file == "queue.py":
             return "a queue"
@@ -118,7 +126,10 @@ def _button_note(names: dict[str, Any]) -> str:
 def _motors(session: Session) -> list[tuple[str, Motor]]:
     sim = session.sim
     motors = zip(sim.spec.robot.motors, (sim.left, sim.right, *sim.others), strict=True)
-    return sorted(((spec.port, motor) for spec, motor in motors if spec.port != NO_PORT), key=lambda one: one[0])
+    return sorted(
+        ((spec.port, motor) for spec, motor in motors if spec.port != NO_PORT),
+        key=lambda one: one[0],
+    )
 
 
 def _motor_note(session: Session, outer: list[types.FrameType], until: str) -> str:
@@ -129,7 +140,8 @@ def _motor_note(session: Session, outer: list[types.FrameType], until: str) -> s
     named = [
         found
         for at, found in enumerate(every)
-        if any(path.endswith(f"/motor{at}") for path in waited) or any(found[1] is motor for motor in of_pybricks)
+        if any(path.endswith(f"/motor{at}") for path in waited)
+        or any(found[1] is motor for motor in of_pybricks)
     ]
     moving = [found for found in named or every if found[1].mode]
     if not moving:
@@ -142,7 +154,11 @@ def _paths(owner: object) -> list[str]:
     if isinstance(path := attributes.get("_path"), str):
         return [path]
     motors = attributes.get("motors")
-    return [path for motor in motors.values() for path in _paths(motor)] if isinstance(motors, dict) else []
+    return (
+        [path for motor in motors.values() for path in _paths(motor)]
+        if isinstance(motors, dict)
+        else []
+    )
 
 
 def _goal(session: Session, port: str, motor: Motor) -> str:

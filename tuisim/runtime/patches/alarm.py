@@ -133,7 +133,9 @@ def _patch_alarm(alarm: Alarm, scheduler: Scheduler) -> None:
     def setitimer(which: Any, seconds: Any, interval: Any = 0.0) -> tuple[float, float]:
         before = getitimer(which)
         if which != signal.ITIMER_REAL:
-            raise NotSimulated("this timer is not part of the simulated brick", "use signal.ITIMER_REAL")
+            raise NotSimulated(
+                "this timer is not part of the simulated brick", "use signal.ITIMER_REAL"
+            )
         lengths = [round(float(length) * NS_PER_S) for length in (seconds, interval)]
         if min(lengths) < 0:
             raise signal.ItimerError(errno.EINVAL, os.strerror(errno.EINVAL))
@@ -147,7 +149,11 @@ def _patch_alarm(alarm: Alarm, scheduler: Scheduler) -> None:
 
 
 def _patch_interrupt(interrupt: Interrupt) -> None:
-    real_kill, real_raise, real_interrupt = os.kill, wallclock.signals.raise_signal, _thread.interrupt_main
+    real_kill, real_raise, real_interrupt = (
+        os.kill,
+        wallclock.signals.raise_signal,
+        _thread.interrupt_main,
+    )
 
     def kill(pid: Any, number: Any) -> None:
         if number == signal.SIGINT and pid == wallclock.getpid():

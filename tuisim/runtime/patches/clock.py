@@ -73,11 +73,22 @@ def _patch_calendar(wall: Callable[[], float]) -> None:
     localtime, gmtime, ctime = time.localtime, time.gmtime, time.ctime
     strftime, asctime = time.strftime, time.asctime
 
-    replace(time, "localtime", lambda seconds=None: localtime(wall() if seconds is None else seconds), (0, 1))
-    replace(time, "gmtime", lambda seconds=None: gmtime(wall() if seconds is None else seconds), (0, 1))
-    replace(time, "ctime", lambda seconds=None: ctime(wall() if seconds is None else seconds), (0, 1))
+    replace(
+        time,
+        "localtime",
+        lambda seconds=None: localtime(wall() if seconds is None else seconds),
+        (0, 1),
+    )
+    replace(
+        time, "gmtime", lambda seconds=None: gmtime(wall() if seconds is None else seconds), (0, 1)
+    )
+    replace(
+        time, "ctime", lambda seconds=None: ctime(wall() if seconds is None else seconds), (0, 1)
+    )
     replace(time, "asctime", lambda *when: asctime(*when or (localtime(wall()),)), (0, 1))
-    replace(time, "strftime", lambda form, *when: strftime(form, *when or (localtime(wall()),)), (1, 2))
+    replace(
+        time, "strftime", lambda form, *when: strftime(form, *when or (localtime(wall()),)), (1, 2)
+    )
 
 
 def patch_datetime(session: Session, folder: Callable[[], str]) -> None:
@@ -128,10 +139,18 @@ def _simulated_datetime(session: Session, module: types.ModuleType) -> types.Mod
 
     class LikeTheReal(type):
         def __instancecheck__(cls, instance: object) -> bool:
-            return isinstance(instance, real_of[cls]) if cls in real_of else super().__instancecheck__(instance)
+            return (
+                isinstance(instance, real_of[cls])
+                if cls in real_of
+                else super().__instancecheck__(instance)
+            )
 
         def __subclasscheck__(cls, subclass: type) -> bool:
-            return issubclass(subclass, real_of[cls]) if cls in real_of else super().__subclasscheck__(subclass)
+            return (
+                issubclass(subclass, real_of[cls])
+                if cls in real_of
+                else super().__subclasscheck__(subclass)
+            )
 
     class date(real_date, metaclass=LikeTheReal):  # type: ignore[misc,valid-type]  # noqa: N801
         @classmethod
@@ -172,7 +191,11 @@ def _simulated_datetime(session: Session, module: types.ModuleType) -> types.Mod
 
 def _look_like(replacement: Any, real: Any) -> None:
     """Give a replaced class and its instances the repr and pickle form of the real one."""
-    replacement.__module__, replacement.__qualname__, replacement.__doc__ = "datetime", real.__name__, real.__doc__
+    replacement.__module__, replacement.__qualname__, replacement.__doc__ = (
+        "datetime",
+        real.__name__,
+        real.__doc__,
+    )
     for name, part in vars(replacement).items():
         if isinstance(part, classmethod):
             part.__func__.__qualname__ = f"{real.__name__}.{name}"
@@ -231,8 +254,11 @@ def finish_pandas(session: Session, module: types.ModuleType) -> None:
         return cls(now(stamp), freq=freq)
 
     for owner, name, does in (
-        (stamp, "now", now), (stamp, "today", now), (stamp, "utcnow", utcnow), (period, "now", period_now),
-    ):  # fmt: skip
+        (stamp, "now", now),
+        (stamp, "today", now),
+        (stamp, "utcnow", utcnow),
+        (period, "now", period_now),
+    ):
         does.__doc__ = getattr(owner, name).__doc__
         setattr(owner, name, classmethod(does))
     make = stamp.__new__

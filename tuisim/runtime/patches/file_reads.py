@@ -52,13 +52,17 @@ class FileReads:
 
         def open_noted(*given: Any, **named: Any) -> Any:
             if self._folder is not None:
-                self._opens(*(_given(at, name, given, named) for at, name in enumerate(("file", "mode"))))
+                self._opens(
+                    *(_given(at, name, given, named) for at, name in enumerate(("file", "mode")))
+                )
             return real_open(*given, **named)
 
         def os_open_noted(*given: Any, **named: Any) -> Any:
             # A path in a folder that is given by its descriptor is not known.
             if self._folder is not None and named.get("dir_fd") is None:
-                self._os_opens(*(_given(at, name, given, named) for at, name in enumerate(("path", "flags"))))
+                self._os_opens(
+                    *(_given(at, name, given, named) for at, name in enumerate(("path", "flags")))
+                )
             return real_os_open(*given, **named)
 
         replace(builtins, "open", open_noted)
@@ -69,7 +73,12 @@ class FileReads:
     def _moving(self, real: Any) -> Any:
         def move(*given: Any, **named: Any) -> None:
             real(*given, **named)
-            if self._folder is not None and len(given) == 2 and not named and self._absolute(given[0]) in self._made:
+            if (
+                self._folder is not None
+                and len(given) == 2
+                and not named
+                and self._absolute(given[0]) in self._made
+            ):
                 self._make(self._absolute(given[1]))
 
         return move
@@ -83,7 +92,11 @@ class FileReads:
             program_file: The program, which is no data.
         """
         self._program_file = os.path.abspath(program_file)
-        around = {place for place in (sys.prefix, sys.base_prefix) if not f"{own_folder}{os.sep}".startswith(place)}
+        around = {
+            place
+            for place in (sys.prefix, sys.base_prefix)
+            if not f"{own_folder}{os.sep}".startswith(place)
+        }
         self._run_folder = f"{folder}{os.sep}"
         self._ignored = tuple(f"{place}{os.sep}" for place in (*_SYSTEM, *sorted(around)))
         self._folder = folder
@@ -99,7 +112,9 @@ class FileReads:
         mode = "r" if mode is None else mode
         if isinstance(mode, str) and _MODES.issuperset(mode):
             makes = "w" in mode or "x" in mode
-            self._opened(file, "r" in mode or "+" in mode, makes or "a" in mode or "+" in mode, makes)
+            self._opened(
+                file, "r" in mode or "+" in mode, makes or "a" in mode or "+" in mode, makes
+            )
 
     def _os_opens(self, path: Any, flags: Any) -> None:
         if isinstance(flags, int):
@@ -142,7 +157,9 @@ class FileReads:
             return ""
 
     def _is_data(self, path: str) -> bool:
-        if path.startswith(self._run_folder) or (path.startswith(self._ignored) and not path.startswith(_SHARED)):
+        if path.startswith(self._run_folder) or (
+            path.startswith(self._ignored) and not path.startswith(_SHARED)
+        ):
             return False
         return is_own(path) and path != self._program_file and path not in OWN_FILES
 

@@ -54,7 +54,9 @@ class FileWaits:
         self._classes = {name: getattr(select, name, None) for name in _SELECTORS.values()}
 
     @waits_for(Wait.FILES)
-    def until_found(self, look: Callable[[], Found], timeout_ns: int | None, devices: bool = False) -> Found:
+    def until_found(
+        self, look: Callable[[], Found], timeout_ns: int | None, devices: bool = False
+    ) -> Found:
         """Poll until something is found or the timeout is over; return the last result.
 
         Args:
@@ -88,7 +90,9 @@ class FileWaits:
             if self.devices.by_fd and any(map(self.devices.opened, (*readers, *writers, *others))):
                 return self._select_devices(readers, writers, others, timeout)
             # The real function validates the arguments.
-            found = real(readers, writers, others, 0 if timeout is None or timeout >= 0 else timeout)
+            found = real(
+                readers, writers, others, 0 if timeout is None or timeout >= 0 else timeout
+            )
             if any(found) or timeout == 0:
                 return found
 
@@ -143,7 +147,11 @@ class FileWaits:
     def _selector_class(self, name: str) -> Any:
         """Return what a selector polls with; it waits itself."""
         real: Any = self._classes[name]
-        return staticmethod(lambda: _AtOnce(self, real(), "poll", 1)) if name in ("poll", "epoll") else real
+        return (
+            staticmethod(lambda: _AtOnce(self, real(), "poll", 1))
+            if name in ("poll", "epoll")
+            else real
+        )
 
     def _selector_select(self, look: Callable[[Any, float], Any]) -> Callable[..., Any]:
         @wraps(look)

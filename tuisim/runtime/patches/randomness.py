@@ -22,7 +22,9 @@ def patch_urandom(seed: Callable[[], int]) -> None:
     def urandom(size: Any) -> bytes:
         length = operator.index(size)
         # For negative sizes the real function raises the proper error.
-        return stream(seed(), next(draws), "urandom", length) if length >= 0 else real_urandom(length)
+        return (
+            stream(seed(), next(draws), "urandom", length) if length >= 0 else real_urandom(length)
+        )
 
     replace(os, "urandom", urandom, (1, 1))
     if hasattr(os, "getrandom"):

@@ -35,7 +35,9 @@ class _Replacement:
 
     @__class__.setter
     def __class__(self, _other: object) -> None:
-        raise TypeError("__class__ assignment only supported for mutable types or ModuleType subclasses")
+        raise TypeError(
+            "__class__ assignment only supported for mutable types or ModuleType subclasses"
+        )
 
     def __repr__(self) -> str:
         return repr(self._real)
@@ -45,7 +47,9 @@ class _Replacement:
         return str(self._real.__qualname__)
 
 
-def replacement_for(real: Any, does: Callable[..., Any], takes: tuple[int, int] | None = None) -> Any:
+def replacement_for(
+    real: Any, does: Callable[..., Any], takes: tuple[int, int] | None = None
+) -> Any:
     """Return a replacement for a builtin function.
 
     Args:
@@ -69,7 +73,10 @@ def replacement_for(real: Any, does: Callable[..., Any], takes: tuple[int, int] 
 
 
 def replace(
-    module: types.ModuleType, name: str, does: Callable[..., Any], takes: tuple[int, int] | None = None
+    module: types.ModuleType,
+    name: str,
+    does: Callable[..., Any],
+    takes: tuple[int, int] | None = None,
 ) -> None:
     """Replace a function of a module, and of the module that it comes from.
 
@@ -79,7 +86,11 @@ def replace(
         does, takes: As for `replacement_for`.
     """
     real = getattr(module, name)
-    replacement = wraps(real)(does) if isinstance(real, types.FunctionType) else replacement_for(real, does, takes)
+    replacement = (
+        wraps(real)(does)
+        if isinstance(real, types.FunctionType)
+        else replacement_for(real, does, takes)
+    )
     for place in (module, sys.modules.get(real.__module__)):
         if place is not None and getattr(place, name, None) is real:
             setattr(place, name, replacement)
@@ -90,7 +101,10 @@ class PatchedModules:
     """Finds a patched module again that the program has removed from `sys.modules`: a fresh one has the real clock."""
 
     def find_spec(
-        self, fullname: str, path: Sequence[str] | None = None, target: types.ModuleType | None = None
+        self,
+        fullname: str,
+        path: Sequence[str] | None = None,
+        target: types.ModuleType | None = None,
     ) -> ModuleSpec | None:
         """Return how to load a patched module; None for others."""
         loader: Any = self

@@ -100,7 +100,9 @@ def _patch_moves(motor: Any) -> None:
         if block:
             _block(motor, one)
 
-    def on_for_degrees(self: Any, speed: Any, degrees: float, brake: bool = True, block: bool = True) -> None:
+    def on_for_degrees(
+        self: Any, speed: Any, degrees: float, brake: bool = True, block: bool = True
+    ) -> None:
         """Rotate the motor at `speed` for `degrees`."""
         native = self._speed_native_units(speed)
         if isinstance(speed, motor.SpeedValue):
@@ -110,11 +112,15 @@ def _patch_moves(motor: Any) -> None:
         self.speed_sp = round_half_up(abs(native))
         start(self, "run_to_rel_pos", brake, block)
 
-    def on_for_rotations(self: Any, speed: Any, rotations: float, brake: bool = True, block: bool = True) -> None:
+    def on_for_rotations(
+        self: Any, speed: Any, rotations: float, brake: bool = True, block: bool = True
+    ) -> None:
         """Rotate the motor at `speed` for `rotations`."""
         self.on_for_degrees(speed, rotations * 360, brake, block)
 
-    def on_for_seconds(self: Any, speed: Any, seconds: float, brake: bool = True, block: bool = True) -> None:
+    def on_for_seconds(
+        self: Any, speed: Any, seconds: float, brake: bool = True, block: bool = True
+    ) -> None:
         """Rotate the motor at `speed` for `seconds`."""
         _refuse_negative(seconds)
         self.speed_sp, self.time_sp = round_half_up(self._speed_native_units(speed)), seconds
@@ -125,7 +131,9 @@ def _patch_moves(motor: Any) -> None:
         self.speed_sp = round_half_up(self._speed_native_units(speed))
         start(self, "run_forever", brake, block)
 
-    def on_to_position(self: Any, speed: Any, position: float, brake: bool = True, block: bool = True) -> None:
+    def on_to_position(
+        self: Any, speed: Any, position: float, brake: bool = True, block: bool = True
+    ) -> None:
         """Rotate the motor at `speed` to `position`."""
         self.speed_sp, self.position_sp = round_half_up(self._speed_native_units(speed)), position
         start(self, "run_to_abs_pos", brake, block)
@@ -147,7 +155,9 @@ def _block(motor: Any, one: Any) -> None:
 def _patch_sets(motor: Any) -> None:
     def __init__(self: Any, motor_specs: Mapping[str, Any], desc: str | None = None) -> None:  # noqa: N807
         # In the given order, which is the order of waiting.
-        self.motors = OrderedDict((port, motor_class(port)) for port, motor_class in motor_specs.items())
+        self.motors = OrderedDict(
+            (port, motor_class(port)) for port, motor_class in motor_specs.items()
+        )
         self.desc = desc
         self.reset()
 
@@ -169,19 +179,34 @@ def _patch_pairs(motor: Any) -> None:
             pair._block()
 
     def on_for_degrees(
-        self: Any, left_speed: Any, right_speed: Any, degrees: float, brake: bool = True, block: bool = True
+        self: Any,
+        left_speed: Any,
+        right_speed: Any,
+        degrees: float,
+        brake: bool = True,
+        block: bool = True,
     ) -> None:
         """Rotate the motors for `degrees`; the slower one turns proportionally less."""
-        speeds = [round_half_up(speed) for speed in self._unpack_speeds_to_native_units(left_speed, right_speed)]
+        speeds = [
+            round_half_up(speed)
+            for speed in self._unpack_speeds_to_native_units(left_speed, right_speed)
+        ]
         fastest = max(map(abs, speeds))
         for one, speed in zip(motors_of(self), speeds, strict=True):
-            part = round_half_up(degrees if abs(speed) == fastest else abs(speed / fastest) * degrees)
+            part = round_half_up(
+                degrees if abs(speed) == fastest else abs(speed / fastest) * degrees
+            )
             one.position_sp, one.speed_sp = -part if speed < 0 else part, abs(speed)
             one._set_brake(brake)
         start(self, "run_to_rel_pos", block)
 
     def on_for_seconds(
-        self: Any, left_speed: Any, right_speed: Any, seconds: float, brake: bool = True, block: bool = True
+        self: Any,
+        left_speed: Any,
+        right_speed: Any,
+        seconds: float,
+        brake: bool = True,
+        block: bool = True,
     ) -> None:
         """Rotate the motors for `seconds`."""
         _refuse_negative(seconds)

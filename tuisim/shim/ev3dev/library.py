@@ -59,8 +59,12 @@ class MotorPoll:
         timeout_ns = int((1000 if timeout_ms is None else timeout_ms) * MS)
         sim = self._session.sim
         # A running motor with target speed 0 never ends its move: repeated polling lets it count as stalled.
-        target_zero = any(motor.mode and not motor.aim_dps for motor in (sim.left, sim.right, *sim.others))
-        self._session.wait_for_motor(timeout_ns, again=self._patience.until_motors_stop > 0 and not target_zero)
+        target_zero = any(
+            motor.mode and not motor.aim_dps for motor in (sim.left, sim.right, *sim.others)
+        )
+        self._session.wait_for_motor(
+            timeout_ns, again=self._patience.until_motors_stop > 0 and not target_zero
+        )
         return []
 
 
@@ -78,10 +82,14 @@ def connect(brick: DeviceFiles, hint: Callable[[str], str]) -> None:
     _patch_look_up(ev3dev2, hint)
 
 
-def _in_place_of(original: Callable[..., Any], replacement: Callable[..., Any]) -> Callable[..., Any]:
+def _in_place_of(
+    original: Callable[..., Any], replacement: Callable[..., Any]
+) -> Callable[..., Any]:
     """Return a copy of `replacement` with the name and signature of `original`."""
     code: Any = replacement
-    copy = types.FunctionType(code.__code__, code.__globals__, original.__name__, None, code.__closure__)
+    copy = types.FunctionType(
+        code.__code__, code.__globals__, original.__name__, None, code.__closure__
+    )
     return wraps(original)(copy)
 
 
@@ -96,18 +104,27 @@ def _patch_look_up(library: Any, hint: Callable[[str], str]) -> None:
             refused = refused_device(self, class_name, library.DeviceNotFound)
             if refused is not None:
                 raise refused from None
-            error.args = (" ".join(filter(None, (str(error), hint(class_name), other_sensors_note(self, class_name)))),)
+            error.args = (
+                " ".join(
+                    filter(
+                        None, (str(error), hint(class_name), other_sensors_note(self, class_name))
+                    )
+                ),
+            )
             raise
 
     library.Device.__init__ = __init__
 
 
 def _device_lister(brick: DeviceFiles) -> Callable[..., Iterator[str]]:
-    def list_device_names(class_path: str, name_pattern: str, **wanted: str | list[str]) -> Iterator[str]:
+    def list_device_names(
+        class_path: str, name_pattern: str, **wanted: str | list[str]
+    ) -> Iterator[str]:
         for name in brick.names(class_path):
             readers = brick.by_path[f"{class_path}/{name}"].readers
             if fnmatch(name, name_pattern) and all(
-                key in readers and _matches(str(readers[key]()), pattern) for key, pattern in wanted.items()
+                key in readers and _matches(str(readers[key]()), pattern)
+                for key, pattern in wanted.items()
             ):
                 yield name
 
@@ -134,7 +151,9 @@ def _patch_device(device_class: Any, brick: DeviceFiles) -> None:
 
     def set_attribute(self: Any, attribute: Any, name: str, value: Any) -> Any:
         try:
-            devices[self._path].writers[name](value if isinstance(value, str) else value.decode("latin-1"))
+            devices[self._path].writers[name](
+                value if isinstance(value, str) else value.decode("latin-1")
+            )
         except OSError as error:
             self._raise_friendly_access_error(error, name, value)
         return attribute
@@ -170,7 +189,9 @@ def _set_directly(motor_class: Any, brick: DeviceFiles) -> None:
 
     def give_command(self: Any, text: Any) -> None:
         try:
-            devices[self._path].writers["command"](text if isinstance(text, str) else text.decode("latin-1"))
+            devices[self._path].writers["command"](
+                text if isinstance(text, str) else text.decode("latin-1")
+            )
         except OSError as error:
             self._raise_friendly_access_error(error, "command", text)
 
@@ -178,12 +199,16 @@ def _set_directly(motor_class: Any, brick: DeviceFiles) -> None:
     motor_class.command = motor_class.command.setter(give_command)
 
 
-def patch_motor_module(session: DeviceSession, module: types.ModuleType, brick: DeviceFiles) -> None:
+def patch_motor_module(
+    session: DeviceSession, module: types.ModuleType, brick: DeviceFiles
+) -> None:
     """Patch `ev3dev2.motor` after its import."""
     motor: Any = module
     _set_directly(motor.Motor, brick)
     patience = Patience()
-    motor.select = types.SimpleNamespace(poll=lambda: MotorPoll(session, patience), POLLPRI=select.POLLPRI)
+    motor.select = types.SimpleNamespace(
+        poll=lambda: MotorPoll(session, patience), POLLPRI=select.POLLPRI
+    )
     motor.Motor.wait_until_not_moving = patience.patient(motor.Motor.wait_until_not_moving)
     motor.Motor.__init__ = free_of_charge(session, motor.Motor.__init__)
     motor.Motor.wait = free_of_charge(session, motor.Motor.wait)
@@ -191,7 +216,9 @@ def patch_motor_module(session: DeviceSession, module: types.ModuleType, brick: 
         speak_as_browser(session, motor, brick)
 
 
-def patch_sensor_module(session: DeviceSession, module: types.ModuleType, brick: DeviceFiles) -> None:
+def patch_sensor_module(
+    session: DeviceSession, module: types.ModuleType, brick: DeviceFiles
+) -> None:
     """Patch `ev3dev2.sensor` after its import: reading or setting the mode costs nothing."""
     devices = brick.by_path
     sensor: Any = module

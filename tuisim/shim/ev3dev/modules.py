@@ -22,7 +22,13 @@ from tuisim.shim.leds import patch_led_module
 from tuisim.shim.session import DeviceSession
 from tuisim.shim.sound import Mixer, patch_sound_module
 from tuisim.shim.unsupported.modules import HardwareFinder, OtherLibrary
-from tuisim.shim.unsupported.parts import OTHER_BOARDS, PROCESSES, REFUSED, refuse_board, refuse_classes
+from tuisim.shim.unsupported.parts import (
+    OTHER_BOARDS,
+    PROCESSES,
+    REFUSED,
+    refuse_board,
+    refuse_classes,
+)
 from tuisim.source import PYBRICKS
 
 AROUND: Mapping[str, Callable[[], AbstractContextManager[None]]] = dict.fromkeys(

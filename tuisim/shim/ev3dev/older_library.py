@@ -25,7 +25,10 @@ class MissingLibrary:
     """Finds the library only to say how to get it; the last of the finders, so that it is not installed."""
 
     def find_spec(
-        self, fullname: str, path: Sequence[str] | None = None, target: types.ModuleType | None = None
+        self,
+        fullname: str,
+        path: Sequence[str] | None = None,
+        target: types.ModuleType | None = None,
     ) -> importlib.machinery.ModuleSpec | None:
         """Raise for the library; None for other modules."""
         if fullname == NAME:
@@ -63,7 +66,9 @@ def _resources() -> types.ModuleType:
     return module
 
 
-def finish_core(session: DeviceSession, module: types.ModuleType, hint: Callable[[str], str]) -> None:
+def finish_core(
+    session: DeviceSession, module: types.ModuleType, hint: Callable[[str], str]
+) -> None:
     """Patch `ev3dev.core` after its import: the screen's font, and what it says about a missing device.
 
     Args:
@@ -81,9 +86,13 @@ def finish_core(session: DeviceSession, module: types.ModuleType, hint: Callable
         def call(self: Any, *args: Any) -> Any:
             try:
                 return access(self, *args)
-            except Exception as error:  # the library raises this very class for a device that is not connected
+            except (
+                Exception
+            ) as error:  # the library raises this very class for a device that is not connected
                 class_name = getattr(self, "SYSTEM_CLASS_NAME", "")
-                if not self.connected and (refused := refused_device(self, class_name, type(error))):
+                if not self.connected and (
+                    refused := refused_device(self, class_name, type(error))
+                ):
                     raise refused from None
                 if not self.connected and (addition := hint(class_name)):
                     error.args = (f"{error}. {addition}",)
@@ -92,4 +101,7 @@ def finish_core(session: DeviceSession, module: types.ModuleType, hint: Callable
         return call
 
     device = core.Device
-    device._get_attribute, device._set_attribute = explained(device._get_attribute), explained(device._set_attribute)
+    device._get_attribute, device._set_attribute = (
+        explained(device._get_attribute),
+        explained(device._set_attribute),
+    )

@@ -21,7 +21,10 @@ from tuisim.shim.session import DeviceSession
 
 
 def patch_lego_module(
-    session: DeviceSession, module: types.ModuleType, brick: DeviceFiles, colors: dict[str, ColorDevice]
+    session: DeviceSession,
+    module: types.ModuleType,
+    brick: DeviceFiles,
+    colors: dict[str, ColorDevice],
 ) -> None:
     """Add the course's properties to `ev3dev2.sensor.lego`; the colour sensors are given by device path."""
     lego: Any = module
@@ -56,7 +59,11 @@ def glue_module(session: DeviceSession) -> types.ModuleType:
     def get_clock() -> float:
         """Return the simulated seconds since the program started."""
         seconds = session.sim.tick / session.sim.spec.profile.tick_hz
-        return plain(seconds) if session.sim.spec.profile.motor_law == MotorLaw.NBEV3DEVSIM else seconds
+        return (
+            plain(seconds)
+            if session.sim.spec.profile.motor_law == MotorLaw.NBEV3DEVSIM
+            else seconds
+        )
 
     def pyState() -> dict[str, list[Any]]:
         """Return all answers of a notebook's responder, oldest first; empty without a responder.

@@ -74,8 +74,12 @@ def codes_module(name: str) -> types.ModuleType:
             known = table.get(full)
             told = f"{group}_{word}"
             # Of a number with several names, evdev lists all.
-            table[full] = told if known is None else [*([known] if isinstance(known, str) else known), told]
+            table[full] = (
+                told if known is None else [*([known] if isinstance(known, str) else known), told]
+            )
     keys = {**tables["KEY"], **tables["BTN"]}
-    by_type = {codes[f"EV_{group}"]: tables[group] for group in ("SYN", "REL", "ABS")} | {codes["EV_KEY"]: keys}
+    by_type = {codes[f"EV_{group}"]: tables[group] for group in ("SYN", "REL", "ABS")} | {
+        codes["EV_KEY"]: keys
+    }
     vars(module).update(codes, **tables, ecodes=codes, keys=keys, bytype=by_type)
     return module

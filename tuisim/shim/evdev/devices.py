@@ -28,7 +28,9 @@ from tuisim.shim.session import DeviceSession
 from tuisim.shim.waits import Wait, waits_for
 
 _INSTEAD = "to drive by hand, use the brick's buttons or RemoteControlledTank"
-ONLY_BUTTONS = f"Gamepads are not simulated: evdev.list_devices() has the brick's buttons only ({_INSTEAD})."
+ONLY_BUTTONS = (
+    f"Gamepads are not simulated: evdev.list_devices() has the brick's buttons only ({_INSTEAD})."
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,7 +71,12 @@ class KeyEvent(SynEvent):
 
 
 _CODES: Any = codes_module("evdev.ecodes")
-_KINDS = {_CODES.EV_SYN: SynEvent, _CODES.EV_KEY: KeyEvent, _CODES.EV_REL: RelEvent, _CODES.EV_ABS: AbsEvent}
+_KINDS = {
+    _CODES.EV_SYN: SynEvent,
+    _CODES.EV_KEY: KeyEvent,
+    _CODES.EV_REL: RelEvent,
+    _CODES.EV_ABS: AbsEvent,
+}
 
 
 def categorize(event: InputEvent) -> SynEvent | InputEvent:
@@ -88,7 +95,9 @@ class InputDevice:
     def __init__(self, session: DeviceSession, dev: object) -> None:
         path = os.fspath(dev) if isinstance(dev, os.PathLike) else dev
         if path not in DEVICE_PATHS:
-            raise NotSimulated(f"evdev.InputDevice({path!r}): gamepads and keyboards are not simulated", _INSTEAD)
+            raise NotSimulated(
+                f"evdev.InputDevice({path!r}): gamepads and keyboards are not simulated", _INSTEAD
+            )
         self._session = session
         self._seen, self._events = session.pressed, list[InputEvent]()
         self.path = self.fn = DEVICE_PATH
@@ -156,7 +165,9 @@ class InputDevice:
         Raises:
             NotSimulated: always.
         """
-        raise NotSimulated("evdev.InputDevice.fileno is not part of the simulated brick", "use read_loop()")
+        raise NotSimulated(
+            "evdev.InputDevice.fileno is not part of the simulated brick", "use read_loop()"
+        )
 
     def grab(self) -> None:
         """Do nothing: nobody else reads the buttons."""
@@ -198,7 +209,9 @@ _looked = _Looked()
 
 def point_at_gamepads(error: BaseException) -> None:
     """Add a note to the error of a program that has looked for a gamepad and goes on as if it had one."""
-    if _looked.for_devices and isinstance(error, NameError | LookupError | AttributeError | StopIteration | TypeError):
+    if _looked.for_devices and isinstance(
+        error, NameError | LookupError | AttributeError | StopIteration | TypeError
+    ):
         error.add_note(ONLY_BUTTONS)
 
 

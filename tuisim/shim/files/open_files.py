@@ -48,7 +48,9 @@ class OpenFiles:
             raise _error(errno.EEXIST, path)
         access = flags & os.O_ACCMODE
         readable, writable = access != os.O_WRONLY, access != os.O_RDONLY
-        if (readable and not entry.mode & stat.S_IRGRP) or (writable and not entry.mode & stat.S_IWGRP):
+        if (readable and not entry.mode & stat.S_IRGRP) or (
+            writable and not entry.mode & stat.S_IWGRP
+        ):
             raise _error(errno.EACCES, path)
         opened = OpenFile(path, entry, readable, writable)
         entry.begin(opened)
@@ -95,7 +97,9 @@ class DeviceIO(_real_file):
         closefd: Whether closing this closes the descriptor.
     """
 
-    def __init__(self, files: OpenFiles, opened: OpenFile, mode: str, name: object, closefd: bool = True) -> None:
+    def __init__(
+        self, files: OpenFiles, opened: OpenFile, mode: str, name: object, closefd: bool = True
+    ) -> None:
         super().__init__(opened.fd, mode, closefd)
         self._files, self._opened = files, opened
         vars(self)["name"] = name
@@ -183,15 +187,33 @@ def _in_turn(kind: Any) -> Any:
         kind.__init__(self, *given)
 
     names = [name for name in _BUFFERED if hasattr(kind, name)]
-    return type(kind.__name__, (kind,), {"__init__": __init__, **{name: method(name) for name in names}})
+    return type(
+        kind.__name__, (kind,), {"__init__": __init__, **{name: method(name) for name in names}}
+    )
 
 
-_BUFFERED = ("read", "read1", "readinto", "readinto1", "readline", "peek", "write", "flush", "seek", "close")
+_BUFFERED = (
+    "read",
+    "read1",
+    "readinto",
+    "readinto1",
+    "readline",
+    "peek",
+    "write",
+    "flush",
+    "seek",
+    "close",
+)
 """Methods of buffered files that may reach the device."""
 
 
 def file_object(
-    raw: DeviceIO, mode: str, buffering: int, encoding: str | None, errors: str | None, newline: str | None
+    raw: DeviceIO,
+    mode: str,
+    buffering: int,
+    encoding: str | None,
+    errors: str | None,
+    newline: str | None,
 ) -> Any:
     """Return what `open` returns for a device file: it decodes and buffers as for any file."""
     if "b" in mode and buffering == 0:
@@ -199,7 +221,13 @@ def file_object(
     if buffering == 0:
         raise ValueError("can't have unbuffered text I/O")
     size = buffering if buffering > 1 else io.DEFAULT_BUFFER_SIZE
-    kind = io.BufferedRandom if "+" in mode else io.BufferedReader if "r" in mode else io.BufferedWriter
+    kind = (
+        io.BufferedRandom
+        if "+" in mode
+        else io.BufferedReader
+        if "r" in mode
+        else io.BufferedWriter
+    )
     buffer: Any = _in_turn(kind)(raw, size)
     if "b" in mode:
         return buffer

@@ -28,7 +28,11 @@ Replace = Callable[[Any, str, Callable[..., Any]], None]
 
 _MISSING: Any = object()
 
-_FLAGS = {"r": os.O_RDONLY, "w": os.O_WRONLY | os.O_CREAT, "a": os.O_WRONLY | os.O_CREAT | os.O_APPEND}
+_FLAGS = {
+    "r": os.O_RDONLY,
+    "w": os.O_WRONLY | os.O_CREAT,
+    "a": os.O_WRONLY | os.O_CREAT | os.O_APPEND,
+}
 _FLAGS["x"] = _FLAGS["w"] | os.O_EXCL
 """How each mode of `open` opens a file; with + also for the other direction."""
 
@@ -142,9 +146,15 @@ class FilePatches:
         files, tree, by_fd = self._files, self._tree, self._files.by_fd
 
         def open(  # noqa: A001 - the name that the program sees
-            file: Any = _MISSING, mode: str = "r", buffering: int = -1, encoding: Any = None, errors: Any = None,
-            newline: Any = None, closefd: bool = True, opener: Any = None,
-        ) -> Any:  # fmt: skip
+            file: Any = _MISSING,
+            mode: str = "r",
+            buffering: int = -1,
+            encoding: Any = None,
+            errors: Any = None,
+            newline: Any = None,
+            closefd: bool = True,
+            opener: Any = None,
+        ) -> Any:
             if file is _MISSING:
                 nothing: tuple[Any, ...] = ()
                 # Raises its own error.
@@ -181,7 +191,9 @@ class FilePatches:
         self._replace(os, "dup", dup)
         vars(io)["FileIO"] = _branching(io.FileIO, self._file_io)
 
-    def _file_io(self, file: Any, mode: str = "r", closefd: bool = True, opener: Any = None) -> DeviceIO | None:
+    def _file_io(
+        self, file: Any, mode: str = "r", closefd: bool = True, opener: Any = None
+    ) -> DeviceIO | None:
         return self._raw(file, mode, closefd)
 
     def _raw(self, file: Any, mode: str, closefd: bool) -> DeviceIO | None:
@@ -191,7 +203,11 @@ class FilePatches:
             return None
         if isinstance(file, int):
             held = self._files.by_fd.get(file)
-            return None if held is None else DeviceIO(self._files, held, mode.replace("b", ""), file, closefd)
+            return (
+                None
+                if held is None
+                else DeviceIO(self._files, held, mode.replace("b", ""), file, closefd)
+            )
         flags = _FLAGS[kinds[0]]
         if "+" in mode:
             flags = flags & ~os.O_ACCMODE | os.O_RDWR
@@ -228,10 +244,19 @@ class FilePatches:
 
     def _patch_positions(self) -> None:
         by_fd, replace = self._files.by_fd, self._replace
-        real_lseek, real_pread, real_pwrite, real_ftruncate = os.lseek, os.pread, os.pwrite, os.ftruncate
+        real_lseek, real_pread, real_pwrite, real_ftruncate = (
+            os.lseek,
+            os.pread,
+            os.pwrite,
+            os.ftruncate,
+        )
 
         def lseek(fd: int, position: int, whence: int, /) -> int:
-            return real_lseek(fd, position, whence) if fd not in by_fd else seek(by_fd[fd], position, whence)
+            return (
+                real_lseek(fd, position, whence)
+                if fd not in by_fd
+                else seek(by_fd[fd], position, whence)
+            )
 
         def pread(fd: int, length: int, offset: int, /) -> bytes:
             if fd not in by_fd:
@@ -260,11 +285,15 @@ class FilePatches:
 
         def guarded(name: str, real: Callable[..., Any]) -> Callable[..., Any]:
             def call(*given: Any, **named: Any) -> Any:
-                if by_fd and any(isinstance(one, int) and one in by_fd for one in (*given[:2], *named.values())):
+                if by_fd and any(
+                    isinstance(one, int) and one in by_fd for one in (*given[:2], *named.values())
+                ):
                     if name in _FALLS_BACK:
                         raise OSError(errno.EINVAL, os.strerror(errno.EINVAL))
                     hint = "use os.read, os.write and os.dup"
-                    raise NotSimulated(f"os.{name} on a device file is not part of the simulated brick", hint)
+                    raise NotSimulated(
+                        f"os.{name} on a device file is not part of the simulated brick", hint
+                    )
                 return real(*given, **named)
 
             return call
@@ -284,7 +313,11 @@ class FilePatches:
                 if path.__class__ is str and not path.startswith(MAYBE_OURS):
                     return real(path, *given, **named)
                 if isinstance(path, int):
-                    return real(path, *given, **named) if path not in by_fd else _status(by_fd[path].file)
+                    return (
+                        real(path, *given, **named)
+                        if path not in by_fd
+                        else _status(by_fd[path].file)
+                    )
                 entry = tree.find(path)
                 return real(path, *given, **named) if entry is None else _status(entry)
 
@@ -304,7 +337,9 @@ class FilePatches:
         def chdir(path: Any) -> None:
             if tree.find(path) is not None:
                 hint = "use the whole path of a file"
-                raise NotSimulated(f"os.chdir to {os.fsdecode(path)} is not part of the simulated brick", hint)
+                raise NotSimulated(
+                    f"os.chdir to {os.fsdecode(path)} is not part of the simulated brick", hint
+                )
             real_chdir(path)
 
         self._replace(os, "stat", looker(os.stat))
@@ -325,7 +360,9 @@ class FilePatches:
             if (names := _names(tree, path)) is None:
                 return real_scan(path)
             folder = os.fsdecode(path)
-            return Entries(DeviceEntry(tree, folder, name, isinstance(path, bytes)) for name in names)
+            return Entries(
+                DeviceEntry(tree, folder, name, isinstance(path, bytes)) for name in names
+            )
 
         self._replace(os, "listdir", listdir)
         self._replace(os, "scandir", scandir)
@@ -419,10 +456,16 @@ def _branching(real: type, choose: Callable[..., Any]) -> type:
             return real(*given, **named) if found is None else found
 
         def __instancecheck__(cls, instance: object) -> bool:
-            return isinstance(instance, real) if cls is made else super().__instancecheck__(instance)
+            return (
+                isinstance(instance, real) if cls is made else super().__instancecheck__(instance)
+            )
 
         def __subclasscheck__(cls, subclass: type) -> bool:
-            return issubclass(subclass, real) if cls is made else super().__subclasscheck__(subclass)
+            return (
+                issubclass(subclass, real) if cls is made else super().__subclasscheck__(subclass)
+            )
 
-    made = Branching(real.__name__, (real,), {"__module__": real.__module__, "__doc__": real.__doc__})
+    made = Branching(
+        real.__name__, (real,), {"__module__": real.__module__, "__doc__": real.__doc__}
+    )
     return made

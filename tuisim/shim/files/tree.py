@@ -55,7 +55,11 @@ class DeviceTree:
 
     def _attribute(self, path: str) -> AttributeFile | None:
         at = path.split("/", 5)
-        if len(at) < 6 or (device := self._brick.by_path.get("/".join(at[:5]))) is None or not device.has(at[5]):
+        if (
+            len(at) < 6
+            or (device := self._brick.by_path.get("/".join(at[:5]))) is None
+            or not device.has(at[5])
+        ):
             return None
         if path not in self._attributes:
             self._attributes[path] = AttributeFile(path, device, at[5])
@@ -63,12 +67,16 @@ class DeviceTree:
 
     def _folder(self, path: str) -> Folder | None:
         below = path + "/"
-        paths: list[str] = [f"{CLASSES_FOLDER}/{name}" for name in self._brick.classes] + list(self._files)
+        paths: list[str] = [f"{CLASSES_FOLDER}/{name}" for name in self._brick.classes] + list(
+            self._files
+        )
         for device_path, device in self._brick.by_path.items():
             paths.append(device_path)
             if (device_path + "/").startswith(below) or path.startswith(device_path + "/"):
                 paths += [f"{device_path}/{name}" for name in device.attributes()]
-        names = {one[len(below) :].partition("/")[0]: None for one in paths if one.startswith(below)}
+        names = {
+            one[len(below) :].partition("/")[0]: None for one in paths if one.startswith(below)
+        }
         return Folder(path, tuple(names)) if names or path in paths else None
 
     def _missing(self, path: str) -> FileNotFoundError:

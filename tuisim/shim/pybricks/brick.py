@@ -76,7 +76,9 @@ class Brick:
         self.session.command()
         return self.session.now // 1000
 
-    def until_done(self, done: Callable[[int], bool], end_us: Callable[[], int | None]) -> Waiting[None]:
+    def until_done(
+        self, done: Callable[[int], bool], end_us: Callable[[], int | None]
+    ) -> Waiting[None]:
         """Wait until a move is done.
 
         Args:
@@ -126,7 +128,20 @@ class Brick:
 
 
 ONLY_IN_4 = frozenset(
-    {"arc", "brake", "calibrate", "close", "curve", "done", "hold", "load", "model", "move_by", "stalled", "system"}
+    {
+        "arc",
+        "brake",
+        "calibrate",
+        "close",
+        "curve",
+        "done",
+        "hold",
+        "load",
+        "model",
+        "move_by",
+        "stalled",
+        "system",
+    }
 )
 """Attributes that some class has in version 4 of the library only."""
 
@@ -145,7 +160,9 @@ class Connected:
     def __getattr__(self, name: str) -> Any:
         known = name in ONLY_IN_4
         hint = ": it is of Pybricks 4, which --profile pybricks4 chooses" if known else ""
-        raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}{hint}", name=name, obj=self)
+        raise AttributeError(
+            f"{type(self).__name__!r} object has no attribute {name!r}{hint}", name=name, obj=self
+        )
 
 
 def invalid_argument() -> ValueError:

@@ -11,17 +11,37 @@ from tuisim.shim.pybricks.parameters import Button, Color, Direction, Port
 from tuisim.shim.sensors import ColorDevice, GyroDevice
 
 CODES = (
-    None, Color.BLACK, Color.BLUE, Color.GREEN, Color.YELLOW, Color.RED, Color.WHITE, Color.BROWN,
-)  # fmt: skip
+    None,
+    Color.BLACK,
+    Color.BLUE,
+    Color.GREEN,
+    Color.YELLOW,
+    Color.RED,
+    Color.WHITE,
+    Color.BROWN,
+)
 """What the colour sensor's codes stand for."""
 REMOTE_BUTTONS: tuple[tuple[Button, ...], ...] = (
-    (), (Button.LEFT_UP,), (Button.LEFT_DOWN,), (Button.RIGHT_UP,), (Button.RIGHT_DOWN,),
-    (Button.LEFT_UP, Button.RIGHT_UP), (Button.LEFT_UP, Button.RIGHT_DOWN), (Button.LEFT_DOWN, Button.RIGHT_UP),
-    (Button.LEFT_DOWN, Button.RIGHT_DOWN), (Button.BEACON,), (Button.LEFT_UP, Button.LEFT_DOWN),
+    (),
+    (Button.LEFT_UP,),
+    (Button.LEFT_DOWN,),
+    (Button.RIGHT_UP,),
+    (Button.RIGHT_DOWN,),
+    (Button.LEFT_UP, Button.RIGHT_UP),
+    (Button.LEFT_UP, Button.RIGHT_DOWN),
+    (Button.LEFT_DOWN, Button.RIGHT_UP),
+    (Button.LEFT_DOWN, Button.RIGHT_DOWN),
+    (Button.BEACON,),
+    (Button.LEFT_UP, Button.LEFT_DOWN),
     (Button.RIGHT_UP, Button.RIGHT_DOWN),
-)  # fmt: skip
+)
 """What the codes of the infrared remote stand for."""
-KEYPAD_BITS = {0x10: Button.LEFT_UP, 0x20: Button.LEFT_DOWN, 0x40: Button.RIGHT_UP, 0x80: Button.RIGHT_DOWN}
+KEYPAD_BITS = {
+    0x10: Button.LEFT_UP,
+    0x20: Button.LEFT_DOWN,
+    0x40: Button.RIGHT_UP,
+    0x80: Button.RIGHT_DOWN,
+}
 NO_BEACON = -128
 """The distance that the sensor tells without a beacon."""
 DEG_PER_HEADING = 3
@@ -52,7 +72,9 @@ class Sensor(Connected):
         """Switch the mode, and return the first measurement in it."""
         brick, profile = self.brick, self.brick.session.sim.spec.profile
         self._sensor.set_mode(mode)
-        brick.session.charge(profile.infrared_switch_ns if mode.startswith("IR") else profile.mode_switch_ns)
+        brick.session.charge(
+            profile.infrared_switch_ns if mode.startswith("IR") else profile.mode_switch_ns
+        )
         if isinstance(self._sensor, GyroDevice):
             brick.session.sim.reset_gyro()
         return self._sensor.modes[mode].measure()
@@ -148,7 +170,10 @@ class GyroSensor(Sensor):
 
     def __init__(self, port: Port, *direction: Direction, **named: Direction) -> None:
         super().__init__(port)
-        chosen = [*direction, *(named[key] for key in ("direction", "positive_direction") if key in named)]
+        chosen = [
+            *direction,
+            *(named[key] for key in ("direction", "positive_direction") if key in named),
+        ]
         if len(chosen) > 1 or len(chosen) != len(direction) + len(named):
             raise TypeError("GyroSensor takes a port and a direction")
         self._sign = (chosen[0] if chosen else Direction.CLOCKWISE).sign

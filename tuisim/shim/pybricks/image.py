@@ -126,7 +126,8 @@ def load(path: str) -> Canvas:
 def placeholder(name: str) -> Canvas:
     """Return a frame with the name of one of the brick's images, as large as the screen."""
     Connected.brick.say_once(
-        "images", f"the brick's own images are not part of tuisim: the screen shows a frame with a name, as {name}"
+        "images",
+        f"the brick's own images are not part of tuisim: the screen shows a frame with a name, as {name}",
     )
     canvas, font = Canvas(DISPLAY_WIDTH, DISPLAY_HEIGHT), Font(bold=True)
     pen = pen_on(canvas.picture)
@@ -219,7 +220,11 @@ class Image(Connected):
     def _pixels(self) -> Picture:
         """Return the pixels: those of the canvas, or a copy of a part."""
         whole_picture = self._canvas.picture
-        return whole_picture if whole_picture.size == (self.width, self.height) else whole_picture.crop(self._box)
+        return (
+            whole_picture
+            if whole_picture.size == (self.width, self.height)
+            else whole_picture.crop(self._box)
+        )
 
     @contextmanager
     def _drawing(self) -> Iterator[tuple[Picture, ImageDraw]]:
@@ -248,7 +253,13 @@ class Image(Connected):
                 pen.point((whole(x), whole(y)), paint)
 
     def draw_line(
-        self, x1: float, y1: float, x2: float, y2: float, width: float = 1, color: Color | None = Color.BLACK
+        self,
+        x1: float,
+        y1: float,
+        x2: float,
+        y2: float,
+        width: float = 1,
+        color: Color | None = Color.BLACK,
     ) -> None:
         """Draw a line of a width in pixels."""
         with self._drawing() as (_, pen):
@@ -271,27 +282,38 @@ class Image(Connected):
         radius = min(max(whole(r), 0), (right - left) // 2, (bottom - top) // 2)
         with self._drawing() as (_, pen):
             if paint := paint_of(color):
-                pen.rounded_rectangle((left, top, right, bottom), radius, paint if fill else None, paint)
+                pen.rounded_rectangle(
+                    (left, top, right, bottom), radius, paint if fill else None, paint
+                )
 
-    def draw_circle(self, x: float, y: float, r: float, fill: bool = False, color: Color | None = Color.BLACK) -> None:
+    def draw_circle(
+        self, x: float, y: float, r: float, fill: bool = False, color: Color | None = Color.BLACK
+    ) -> None:
         """Draw a circle around a point."""
         x, y, r = whole(x), whole(y), whole(r)
         with self._drawing() as (_, pen):
             if (paint := paint_of(color)) and r >= 0:
                 pen.ellipse((x - r, y - r, x + r, y + r), paint if fill else None, paint)
 
-    def draw_image(self, x: float, y: float, source: Image | str, transparent: Color | None = None) -> None:
+    def draw_image(
+        self, x: float, y: float, source: Image | str, transparent: Color | None = None
+    ) -> None:
         """Draw an image with its top left corner at a point; pixels of the colour `transparent` are left out."""
         copied, paint = pixels_of(source), paint_of(transparent)
         with self._drawing() as (picture, _):
-            picture.paste(copied, (whole(x), whole(y)), None if paint is None else mask_without(copied, paint))
+            picture.paste(
+                copied, (whole(x), whole(y)), None if paint is None else mask_without(copied, paint)
+            )
 
     def load_image(self, source: Image | str, /) -> None:
         """Clear, and draw an image in the centre."""
         centred = pixels_of(source)
         with self._drawing() as (picture, _):
             self._wipe(picture)
-            picture.paste(centred, (int((self.width - centred.width) / 2), int((self.height - centred.height) / 2)))
+            picture.paste(
+                centred,
+                (int((self.width - centred.width) / 2), int((self.height - centred.height) / 2)),
+            )
 
     # Text
 
@@ -311,10 +333,21 @@ class Image(Connected):
     ) -> None:
         """Draw a line of text with its top left corner at a point; what is no text is converted as `print` does."""
         with self._drawing() as (_, pen):
-            self._write(pen, (whole(x), whole(y)), str(text), paint_of(text_color), paint_of(background_color))
+            self._write(
+                pen,
+                (whole(x), whole(y)),
+                str(text),
+                paint_of(text_color),
+                paint_of(background_color),
+            )
 
     def _write(
-        self, pen: ImageDraw, place: tuple[int, int], text: str, paint: Paint | None, background: Paint | None
+        self,
+        pen: ImageDraw,
+        place: tuple[int, int],
+        text: str,
+        paint: Paint | None,
+        background: Paint | None,
     ) -> int:
         """Write a line, and return its width in pixels."""
         x, y = place
@@ -335,7 +368,9 @@ class Image(Connected):
                     self._print_x, self._print_y = 0, self._print_y + self._font.height
                 if line:
                     self._scroll(picture)
-                    self._print_x += self._write(pen, (self._print_x, self._print_y), line, BLACK, WHITE)
+                    self._print_x += self._write(
+                        pen, (self._print_x, self._print_y), line, BLACK, WHITE
+                    )
 
     def _scroll(self, picture: Picture) -> None:
         """Move everything up by what the next line lacks of room."""

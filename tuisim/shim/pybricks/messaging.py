@@ -11,9 +11,14 @@ from tuisim.errors import NotSimulated
 from tuisim.shim.pybricks.brick import Connected
 
 __all__ = [
-    "BluetoothMailboxClient", "BluetoothMailboxServer", "LogicMailbox", "Mailbox", "MailboxHandlerMixIn",
-    "NumericMailbox", "TextMailbox",
-]  # fmt: skip
+    "BluetoothMailboxClient",
+    "BluetoothMailboxServer",
+    "LogicMailbox",
+    "Mailbox",
+    "MailboxHandlerMixIn",
+    "NumericMailbox",
+    "TextMailbox",
+]
 
 _ALONE = "there is one brick; a server and a client in the threads of one program can talk"
 
@@ -205,7 +210,10 @@ class BluetoothMailboxServer(MailboxHandlerMixIn):
             if BluetoothMailboxClient.exists:
                 self._wait(_CONNECTION)
             elif session.now >= until_ns:
-                raise NotSimulated("BluetoothMailboxServer.wait_for_connection: no other brick is simulated", _ALONE)
+                raise NotSimulated(
+                    "BluetoothMailboxServer.wait_for_connection: no other brick is simulated",
+                    _ALONE,
+                )
             else:
                 # Another thread of the program may be about to make the client.
                 session.spend(POLL_MS * MS)
@@ -240,7 +248,9 @@ class BluetoothMailboxClient(MailboxHandlerMixIn):
         """
         server = BluetoothMailboxServer.newest
         if server is None:
-            raise NotSimulated(f"BluetoothMailboxClient.connect: {brick!r} is not simulated", _ALONE)
+            raise NotSimulated(
+                f"BluetoothMailboxClient.connect: {brick!r} is not simulated", _ALONE
+            )
         self.brick.session.spend(CONNECT_MS * MS)
         self.join(brick, server)
         server.join(brick, self)

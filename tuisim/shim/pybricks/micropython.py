@@ -27,16 +27,37 @@ FOLDER, FILE = 0x4000, 0x8000
 OF_PYTHON: Mapping[str, str] = {
     f"u{name}": name
     for name in (
-        "array", "asyncio", "binascii", "collections", "errno", "hashlib", "heapq", "io", "json", "os", "queue",
-        "random", "re", "select", "signal", "socket", "ssl", "struct", "sys", "time", "zlib",
+        "array",
+        "asyncio",
+        "binascii",
+        "collections",
+        "errno",
+        "hashlib",
+        "heapq",
+        "io",
+        "json",
+        "os",
+        "queue",
+        "random",
+        "re",
+        "select",
+        "signal",
+        "socket",
+        "ssl",
+        "struct",
+        "sys",
+        "time",
+        "zlib",
     )
-}  # fmt: skip
+}
 """Python's modules, by MicroPython's name for them."""
 
 _MACHINE = Hardware("the processor of the brick", "use the modules of pybricks")
 _MEMORY = Hardware("the memory of MicroPython", "leave it out: a program has more memory here")
 _NETWORK = Hardware("a network", "leave it out: a program has no network")
-_C_CODE = Hardware("code in C, and its data in memory", "use the modules of pybricks, and struct for bytes")
+_C_CODE = Hardware(
+    "code in C, and its data in memory", "use the modules of pybricks, and struct for bytes"
+)
 
 BUILT_IN: Mapping[str, Hardware] = {
     "btree": Hardware("the database btree", "use a file: open()"),
@@ -66,33 +87,52 @@ class MicroPythonFinder:
         self._of_python, self._refused = of_python, refused
 
     def find_spec(
-        self, fullname: str, path: Sequence[str] | None = None, target: types.ModuleType | None = None
+        self,
+        fullname: str,
+        path: Sequence[str] | None = None,
+        target: types.ModuleType | None = None,
     ) -> ModuleSpec | None:
         """Return how to load a module; None for others."""
         loader: Any = self
         is_refused = fullname.partition(".")[0] in self._refused
         known = fullname in self._of_python or is_refused
-        return ModuleSpec(fullname, loader, origin="MicroPython", is_package=is_refused) if known else None
+        return (
+            ModuleSpec(fullname, loader, origin="MicroPython", is_package=is_refused)
+            if known
+            else None
+        )
 
     def create_module(self, spec: ModuleSpec) -> types.ModuleType:
         """Return the module, still empty."""
         hardware = self._refused.get(spec.name.partition(".")[0])
-        return types.ModuleType(spec.name) if hardware is None else HardwareModule(spec.name, hardware)
+        return (
+            types.ModuleType(spec.name) if hardware is None else HardwareModule(spec.name, hardware)
+        )
 
     def exec_module(self, module: types.ModuleType) -> None:
         """Fill the module with the names of Python's own one."""
         if (source := self._of_python.get(module.__name__)) is not None:
             names = vars(import_module(source))
-            vars(module).update({name: value for name, value in names.items() if not name.startswith("__")})
+            vars(module).update(
+                {name: value for name, value in names.items() if not name.startswith("__")}
+            )
             if source == "asyncio":
                 vars(module)["sleep_ms"] = lambda time: names["sleep"](operator.index(time) / 1000)
 
 
 def install(session: DeviceSession) -> None:
     """Let a program import MicroPython's modules, and add their names to those of Python's modules that it has."""
-    for name, more in (("time", clock_names(session)), ("gc", GARBAGE), ("os", FILES), ("sys", SYSTEM)):
+    for name, more in (
+        ("time", clock_names(session)),
+        ("gc", GARBAGE),
+        ("os", FILES),
+        ("sys", SYSTEM),
+    ):
         vars(import_module(name)).update(more)
-    for name, function, fitted in (("collections", "namedtuple", _named_tuple), ("_thread", "stack_size", lambda _: 0)):
+    for name, function, fitted in (
+        ("collections", "namedtuple", _named_tuple),
+        ("_thread", "stack_size", lambda _: 0),
+    ):
         names = vars(import_module(name))
         names[function] = _lenient(names[function], fitted)
     module = sys.modules["micropython"] = HardwareModule("micropython", _MEMORY)

@@ -45,15 +45,21 @@ MODULES: Mapping[str, Mapping[str, Any]] = {
     "pybricks": {},
     "pybricks.hubs": _public(hubs, "EV3Brick"),
     "pybricks.ev3devices": _public(motor, "Motor")
-    | _public(ev3devices, "TouchSensor", "ColorSensor", "InfraredSensor", "UltrasonicSensor", "GyroSensor"),
+    | _public(
+        ev3devices, "TouchSensor", "ColorSensor", "InfraredSensor", "UltrasonicSensor", "GyroSensor"
+    ),
     "pybricks.ev3brick": _public(version_1, "sound", "display", "light", "buttons", "battery"),
     "pybricks.experimental": _public(experimental, "run_parallel"),
     "pybricks.iodevices": _public(motor, "DCMotor")
     | _public(iodevices, "Ev3devSensor")
     | refused_classes("pybricks.iodevices", IO_DEVICES),
     "pybricks.messaging": _public(messaging, *messaging.__all__),
-    "pybricks.nxtdevices": _public(motor, "Motor") | refused_classes("pybricks.nxtdevices", NXT_DEVICES),
-    "pybricks.parameters": _public(parameters, "Port", "Stop", "Direction", "Button", "Color", "Align") | FILES,
+    "pybricks.nxtdevices": _public(motor, "Motor")
+    | refused_classes("pybricks.nxtdevices", NXT_DEVICES),
+    "pybricks.parameters": _public(
+        parameters, "Port", "Stop", "Direction", "Button", "Color", "Align"
+    )
+    | FILES,
     "pybricks.robotics": _public(robotics, "DriveBase"),
     "pybricks.tools": _public(tools, "wait", "StopWatch", "DataLog") | {"print": print},
     "pybricks.media": {},
@@ -74,7 +80,9 @@ def _version_4() -> Mapping[str, Mapping[str, Any]]:
         "pybricks.robotics": _public(version_4, "DriveBase"),
         "pybricks.tools": _public(version_4, "run_task", "multitask"),
     }
-    return {name: {**MODULES.get(name, {}), **changed.get(name, {})} for name in {**MODULES, **changed}}
+    return {
+        name: {**MODULES.get(name, {}), **changed.get(name, {})} for name in {**MODULES, **changed}
+    }
 
 
 def install(session: DeviceSession, built: BuiltBrick, screen: Screen, mixer: Mixer) -> None:

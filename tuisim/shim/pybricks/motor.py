@@ -13,7 +13,14 @@ from tuisim.core.servo.motor import ServoMotor
 from tuisim.core.servo.settings import FULL_ACTUATION
 from tuisim.core.servo.trajectory import LONGEST_US, MILLI, MS_US
 from tuisim.shim.brick import MOTOR_CLASS
-from tuisim.shim.pybricks.brick import Connected, Waiting, invalid_argument, no_device, not_permitted, whole
+from tuisim.shim.pybricks.brick import (
+    Connected,
+    Waiting,
+    invalid_argument,
+    no_device,
+    not_permitted,
+    whole,
+)
 from tuisim.shim.pybricks.parameters import Direction, Port, Stop
 from tuisim.shim.pybricks.unsimulated import LOGGER
 from tuisim.shim.unsupported.modules import refused_part
@@ -64,7 +71,9 @@ class DCMotor(Connected):
     def __init__(self, port: Port, positive_direction: Direction = Direction.CLOCKWISE) -> None:
         self._set_up(port, positive_direction, 1.0)
 
-    def _set_up(self, port: Port, direction: Direction, ratio: float, *, keeps_angle: bool = False) -> None:
+    def _set_up(
+        self, port: Port, direction: Direction, ratio: float, *, keeps_angle: bool = False
+    ) -> None:
         found = self.brick.motors.get(self._port_name(port))
         if found is None:
             raise no_device(self.brick.hint(MOTOR_CLASS))
@@ -114,7 +123,9 @@ class Motor(DCMotor):
     """What it does after a move, by the library's name for it."""
     log = refused_part("Motor", "log", LOGGER)
 
-    def __init__(self, port: Port, positive_direction: Direction = Direction.CLOCKWISE, gears: Any = None) -> None:
+    def __init__(
+        self, port: Port, positive_direction: Direction = Direction.CLOCKWISE, gears: Any = None
+    ) -> None:
         self._set_up(port, positive_direction, gear_ratio(gears))
         self.control = Control(self, self._motor.control)
 
@@ -133,8 +144,13 @@ class Motor(DCMotor):
     def reset_angle(self, angle: float | None = None) -> None:
         """Make the current angle another one; a motion ends there."""
         if angle is None:
-            raise OSError(errno.EOPNOTSUPP, "EOPNOTSUPP: the EV3's motors have no absolute encoder; give an angle")
-        self._motor.set_position(self._command(), self._motor.control.settings.counts(whole(angle)) * MILLI)
+            raise OSError(
+                errno.EOPNOTSUPP,
+                "EOPNOTSUPP: the EV3's motors have no absolute encoder; give an angle",
+            )
+        self._motor.set_position(
+            self._command(), self._motor.control.settings.counts(whole(angle)) * MILLI
+        )
 
     # Motions without an end
 
@@ -148,7 +164,9 @@ class Motor(DCMotor):
         """Run at a speed in degrees per second."""
         now_us, motor = self._command(), self._motor
         settings = motor.control.settings
-        motor.control.run(now_us, motor.measured, settings.counts(whole(speed)), settings.acceleration)
+        motor.control.run(
+            now_us, motor.measured, settings.counts(whole(speed)), settings.acceleration
+        )
         motor.follow()
 
     def track_target(self, target_angle: float) -> None:
@@ -159,7 +177,9 @@ class Motor(DCMotor):
 
     # Moves
 
-    def run_time(self, speed: float, time: float, then: Stop = Stop.HOLD, wait: bool = True) -> None:
+    def run_time(
+        self, speed: float, time: float, then: Stop = Stop.HOLD, wait: bool = True
+    ) -> None:
         """Run at a speed for a time in milliseconds."""
         now_us, motor = self._command(), self._motor
         settings, time_us = motor.control.settings, whole(time) * MS_US
@@ -169,23 +189,37 @@ class Motor(DCMotor):
         motor.control.run(now_us, motor.measured, rate, settings.acceleration, time_us)
         return self._begin(then, wait, "run_time()")
 
-    def run_angle(self, speed: float, rotation_angle: float, then: Stop = Stop.HOLD, wait: bool = True) -> None:
+    def run_angle(
+        self, speed: float, rotation_angle: float, then: Stop = Stop.HOLD, wait: bool = True
+    ) -> None:
         """Turn by an angle in degrees."""
         speed, angle = whole(speed), whole(rotation_angle)
-        return self._move(speed, angle if speed >= 0 else -angle, then, wait, "run_angle()", relative=True)
+        return self._move(
+            speed, angle if speed >= 0 else -angle, then, wait, "run_angle()", relative=True
+        )
 
-    def run_target(self, speed: float, target_angle: float, then: Stop = Stop.HOLD, wait: bool = True) -> None:
+    def run_target(
+        self, speed: float, target_angle: float, then: Stop = Stop.HOLD, wait: bool = True
+    ) -> None:
         """Turn to an angle in degrees."""
-        return self._move(whole(speed), whole(target_angle), then, wait, "run_target()", relative=False)
+        return self._move(
+            whole(speed), whole(target_angle), then, wait, "run_target()", relative=False
+        )
 
-    def _move(self, speed: int, angle: int, then: Stop, wait: bool, call: str, *, relative: bool) -> None:
+    def _move(
+        self, speed: int, angle: int, then: Stop, wait: bool, call: str, *, relative: bool
+    ) -> None:
         now_us, motor = self._command(), self._motor
         settings = motor.control.settings
         try:
             motor.control.move_to(
-                now_us, motor.measured, settings.counts(angle), settings.counts(speed), settings.acceleration,
+                now_us,
+                motor.measured,
+                settings.counts(angle),
+                settings.counts(speed),
+                settings.acceleration,
                 relative=relative,
-            )  # fmt: skip
+            )
         except ValueError:
             raise invalid_argument() from None
         return self._begin(then, wait, call)
@@ -194,7 +228,9 @@ class Motor(DCMotor):
         motor = self._motor
         motor.follow(ending=ending_of(self.ENDINGS, then))
         if wait:
-            done = self.brick.until_done(lambda now_us: self._done(now_us, call), lambda: motor.control.end_us)
+            done = self.brick.until_done(
+                lambda now_us: self._done(now_us, call), lambda: motor.control.end_us
+            )
             return self.brick.finish(done)
         return None
 
@@ -209,9 +245,13 @@ class Motor(DCMotor):
 
     def move_done(self, now_us: int, control: Controller) -> bool:
         """Return whether a controller of the motor has no move under way."""
-        return control.done(now_us, self._motor.milli_at(now_us), self._motor.counts_per_s_at(now_us))
+        return control.done(
+            now_us, self._motor.milli_at(now_us), self._motor.counts_per_s_at(now_us)
+        )
 
-    def run_until_stalled(self, speed: float, then: Stop = Stop.COAST, duty_limit: float | None = None) -> int:
+    def run_until_stalled(
+        self, speed: float, then: Stop = Stop.COAST, duty_limit: float | None = None
+    ) -> int:
         """Run at a speed until something stops the motor, and return the angle."""
         limit = None if duty_limit is None else max(0, min(100, whole(duty_limit))) * PERCENT
         self.run(speed)
@@ -222,7 +262,9 @@ class Motor(DCMotor):
 
     def _until_stalled(self, then: Stop) -> Waiting[int]:
         motor = self._motor
-        yield from self.brick.until_done(lambda _: motor.guide is None or motor.control.stalled, lambda: None)
+        yield from self.brick.until_done(
+            lambda _: motor.guide is None or motor.control.stalled, lambda: None
+        )
         angle = self.angle()
         match ending_of(self.ENDINGS, then):
             case Ending.HOLD:
@@ -272,16 +314,29 @@ class Control(Connected):
         self._control.settings = replace(settings, **changes)
 
     def limits(
-        self, speed: float | None = None, acceleration: float | None = None, actuation: float | None = None
+        self,
+        speed: float | None = None,
+        acceleration: float | None = None,
+        actuation: float | None = None,
     ) -> tuple[int, int, int] | None:
         """Return the highest speed, acceleration and power, or set them."""
         settings = self._control.settings
         if speed is None and acceleration is None and actuation is None:
             units = settings.units
-            return units(settings.speed), units(settings.acceleration), settings.actuation // PERCENT
-        if any(value is not None and whole(value) < 1 for value in (speed, acceleration, actuation)):
+            return (
+                units(settings.speed),
+                units(settings.acceleration),
+                settings.actuation // PERCENT,
+            )
+        if any(
+            value is not None and whole(value) < 1 for value in (speed, acceleration, actuation)
+        ):
             raise invalid_argument()
-        self._set(("speed", speed, 0), ("acceleration", acceleration, 0), ("actuation", actuation, PERCENT))
+        self._set(
+            ("speed", speed, 0),
+            ("acceleration", acceleration, 0),
+            ("actuation", actuation, PERCENT),
+        )
         return None
 
     def pid(
@@ -298,24 +353,38 @@ class Control(Connected):
         if all(one is None for one in (kp, ki, kd, integral_range, integral_rate, feed_forward)):
             units = settings.units
             return (
-                settings.kp, settings.ki, settings.kd, units(settings.integral_range), units(settings.integral_rate),
+                settings.kp,
+                settings.ki,
+                settings.kd,
+                units(settings.integral_range),
+                units(settings.integral_rate),
                 settings.feed_forward // PERCENT,
-            )  # fmt: skip
+            )
         self._set(
-            ("kp", kp, 1), ("ki", ki, 1), ("kd", kd, 1), ("integral_range", integral_range, 0),
-            ("integral_rate", integral_rate, 0), ("feed_forward", feed_forward, PERCENT),
-        )  # fmt: skip
+            ("kp", kp, 1),
+            ("ki", ki, 1),
+            ("kd", kd, 1),
+            ("integral_range", integral_range, 0),
+            ("integral_rate", integral_rate, 0),
+            ("feed_forward", feed_forward, PERCENT),
+        )
         return None
 
-    def target_tolerances(self, speed: float | None = None, position: float | None = None) -> tuple[int, int] | None:
+    def target_tolerances(
+        self, speed: float | None = None, position: float | None = None
+    ) -> tuple[int, int] | None:
         """Return how slow and how near a move must be to be done, or set it."""
         settings = self._control.settings
         if speed is None and position is None:
-            return settings.units(settings.speed_tolerance), settings.units(settings.position_tolerance)
+            return settings.units(settings.speed_tolerance), settings.units(
+                settings.position_tolerance
+            )
         self._set(("speed_tolerance", speed, 0), ("position_tolerance", position, 0))
         return None
 
-    def stall_tolerances(self, speed: float | None = None, time: float | None = None) -> tuple[int, int] | None:
+    def stall_tolerances(
+        self, speed: float | None = None, time: float | None = None
+    ) -> tuple[int, int] | None:
         """Return how slow and for how long a stalled motor is, or set it."""
         settings = self._control.settings
         if speed is None and time is None:
@@ -332,8 +401,10 @@ class Control(Connected):
         return (
             *((part.start_us - parts[0].start_us) // MS_US for part in parts),
             *(part.milli // MILLI for part in parts),
-            parts[1].rate, parts[0].acceleration, parts[2].acceleration,
-        )  # fmt: skip
+            parts[1].rate,
+            parts[0].acceleration,
+            parts[2].acceleration,
+        )
 
     def done(self) -> bool:
         """Return whether no move is under way."""

@@ -24,7 +24,9 @@ class DriveBase(Connected):
     """The newest one: it stops the one before."""
     log = refused_part("DriveBase", "log", LOGGER)
 
-    def __init__(self, left_motor: Motor, right_motor: Motor, wheel_diameter: float, axle_track: float) -> None:
+    def __init__(
+        self, left_motor: Motor, right_motor: Motor, wheel_diameter: float, axle_track: float
+    ) -> None:
         for motor in (left_motor, right_motor):
             if not isinstance(motor, Motor):
                 raise TypeError(f"a Motor is needed, not {type(motor).__name__}")
@@ -39,7 +41,10 @@ class DriveBase(Connected):
         self._base = base = drive_base.DriveBase(
             left_motor.simulated, right_motor.simulated, float(wheel_diameter), float(axle_track)
         )
-        self.distance_control, self.heading_control = Control(self, base.distance), Control(self, base.heading)
+        self.distance_control, self.heading_control = (
+            Control(self, base.distance),
+            Control(self, base.heading),
+        )
         self._zeros = 0, 0
         self.reset()
 
@@ -54,7 +59,13 @@ class DriveBase(Connected):
         return self._move(0, whole(angle), "turn()")
 
     def _move(
-        self, distance_mm: float, angle_deg: float, call: str, ending: Ending = Ending.HOLD, *, wait: bool = True
+        self,
+        distance_mm: float,
+        angle_deg: float,
+        call: str,
+        ending: Ending = Ending.HOLD,
+        *,
+        wait: bool = True,
     ) -> None:
         base = self._base
         now_us = self._command()
@@ -73,7 +84,11 @@ class DriveBase(Connected):
         return self.brick.finish(self.brick.until_done(done, lambda: base.end_us))
 
     def drive(
-        self, speed: float | None = None, turn_rate: float | None = None, *, drive_speed: float | None = None
+        self,
+        speed: float | None = None,
+        turn_rate: float | None = None,
+        *,
+        drive_speed: float | None = None,
     ) -> None:
         """Drive on at a speed in mm/s and a rate of turn in degrees per second.
 
@@ -129,7 +144,12 @@ class DriveBase(Connected):
         """Return distance, speed, angle and rate of turn."""
         now_us, base = self.brick.read(), self._base
         (distance, angle), (speed, turn_rate) = self._position(now_us), base.rates_at(now_us)
-        return distance, base.distance.settings.units(speed), angle, base.heading.settings.units(turn_rate)
+        return (
+            distance,
+            base.distance.settings.units(speed),
+            angle,
+            base.heading.settings.units(turn_rate),
+        )
 
     def reset(self) -> None:
         """Make the current distance and angle 0."""
@@ -139,7 +159,9 @@ class DriveBase(Connected):
     def move_done(self, now_us: int, control: Controller) -> bool:
         """Return whether one of its controllers has no move under way."""
         at = 0 if control is self._base.distance else 1
-        return control.done(now_us, self._base.millis_at(now_us)[at], self._base.rates_at(now_us)[at])
+        return control.done(
+            now_us, self._base.millis_at(now_us)[at], self._base.rates_at(now_us)[at]
+        )
 
     # Settings
 
@@ -152,16 +174,23 @@ class DriveBase(Connected):
     ) -> tuple[int, ...] | None:
         """Return how it moves in `straight` and `turn`, or set it."""
         base = self._base
-        given: tuple[Any, ...] = (straight_speed, straight_acceleration, turn_rate, turn_acceleration)
+        given: tuple[Any, ...] = (
+            straight_speed,
+            straight_acceleration,
+            turn_rate,
+            turn_acceleration,
+        )
         if all(one is None for one in given):
             return base.usual
         if base.active and not self.SETTINGS_WHILE_ACTIVE:
             raise not_permitted()
         distance, heading = base.distance.settings, base.heading.settings
         limits = (
-            distance.units(distance.speed), distance.units(distance.acceleration),
-            heading.units(heading.speed), heading.units(heading.acceleration),
-        )  # fmt: skip
+            distance.units(distance.speed),
+            distance.units(distance.acceleration),
+            heading.units(heading.speed),
+            heading.units(heading.acceleration),
+        )
         chosen = [
             usual if value is None else min(abs(whole(value)), limit)
             for value, usual, limit in zip(given, base.usual, limits, strict=True)

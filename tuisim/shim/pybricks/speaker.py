@@ -53,9 +53,15 @@ def note_of(text: Any, whole_ms: int) -> Tone:
         length_ms = 3 * length_ms // 2
     if name is None:
         return Tone(0.0, length_ms)
-    semitones = FROM_A[name] + {"": 0, "#": 1, "b": -1}[accidental] + NOTES_AN_OCTAVE * (int(octave) - OCTAVE)
+    semitones = (
+        FROM_A[name]
+        + {"": 0, "#": 1, "b": -1}[accidental]
+        + NOTES_AN_OCTAVE * (int(octave) - OCTAVE)
+    )
     sounding_ms = length_ms if tied else 7 * length_ms // 8
-    return Tone(round(A4_HZ * 2 ** (semitones / NOTES_AN_OCTAVE)), sounding_ms, length_ms - sounding_ms)
+    return Tone(
+        round(A4_HZ * 2 ** (semitones / NOTES_AN_OCTAVE)), sounding_ms, length_ms - sounding_ms
+    )
 
 
 def set_volumes(mixer: Mixer, volumes: Mapping[str, int]) -> None:
@@ -82,7 +88,13 @@ class Speaker(Connected):
         if length_ms >= 0:
             self._play(tones_heard((Tone(frequency_hz, length_ms),)))
             return
-        self._play(Heard(f"[tone {frequency_hz} Hz until the next beep]", 0, (Tone(frequency_hz, UNTIL_NEXT_MS),)))
+        self._play(
+            Heard(
+                f"[tone {frequency_hz} Hz until the next beep]",
+                0,
+                (Tone(frequency_hz, UNTIL_NEXT_MS),),
+            )
+        )
         self.brick.command()
 
     def play_notes(self, notes: Iterable[str], tempo: float = 120) -> None:
@@ -169,4 +181,7 @@ class Speaker(Connected):
         if which != ALL_VOLUMES and which not in START_VOLUMES:
             raise invalid_argument()
         self.brick.command()
-        set_volumes(self.brick.mixer, dict.fromkeys(START_VOLUMES if which == ALL_VOLUMES else (which,), percent))
+        set_volumes(
+            self.brick.mixer,
+            dict.fromkeys(START_VOLUMES if which == ALL_VOLUMES else (which,), percent),
+        )

@@ -51,7 +51,11 @@ class StopWatch(Connected):
 
     def resume(self) -> None:
         """Go on counting."""
-        self._counted_ns, self._began_ns, self._runs = self._passed_ns(), self.brick.session.now, True
+        self._counted_ns, self._began_ns, self._runs = (
+            self._passed_ns(),
+            self.brick.session.now,
+            True,
+        )
 
     def reset(self) -> None:
         """Count from 0, if it is running."""
@@ -62,10 +66,17 @@ class DataLog(Connected):
     """A file with rows of values."""
 
     def __init__(
-        self, *headers: Any, name: str = "log", timestamp: bool = True, extension: str = "csv", append: bool = False
+        self,
+        *headers: Any,
+        name: str = "log",
+        timestamp: bool = True,
+        extension: str = "csv",
+        append: bool = False,
     ) -> None:
         now_us = self.brick.now_us
-        stamp = f"{clock.strftime('_%Y_%m_%d_%H_%M_%S')}_{now_us % 1_000_000:06}" if timestamp else ""
+        stamp = (
+            f"{clock.strftime('_%Y_%m_%d_%H_%M_%S')}_{now_us % 1_000_000:06}" if timestamp else ""
+        )
         self.file = open(f"{name}{stamp}.{extension}", "a+" if append else "w+")  # noqa: SIM115 - the program's
         self.file.seek(0, 2)
         self._names = [re.sub(r"\W+", "_", str(header)).strip("_") for header in headers]
@@ -77,7 +88,11 @@ class DataLog(Connected):
         self._write(values)
         for at, value in enumerate(values):
             name = self._names[at] if at < len(self._names) else f"value{at + 1}"
-            if isinstance(value, int | float) and name.isidentifier() and not name.lower().startswith("time"):
+            if (
+                isinstance(value, int | float)
+                and name.isidentifier()
+                and not name.lower().startswith("time")
+            ):
                 self.brick.session.show(f"{name}: {value}", Stream.DATA)
 
     def _write(self, values: Iterable[Any]) -> None:

@@ -7,7 +7,10 @@ from typing import Any
 
 from tuisim.shim.unsupported.modules import Hardware, refused_part
 
-LOGGER = Hardware("the log of a motor", "tuisim records every motor: see the chart, or tuisim run --telemetry FILE")
+LOGGER = Hardware(
+    "the log of a motor",
+    "tuisim records every motor: see the chart, or tuisim run --telemetry FILE",
+)
 _LEGO = "use the sensors of pybricks.ev3devices, or Ev3devSensor"
 
 IO_DEVICES: Mapping[str, Hardware] = {
@@ -20,12 +23,18 @@ IO_DEVICES: Mapping[str, Hardware] = {
 
 NXT_DEVICES: Mapping[str, Hardware] = {
     "ColorSensor": Hardware("the NXT colour sensor", "use pybricks.ev3devices.ColorSensor"),
-    "EnergyMeter": Hardware("the energy meter", "EV3Brick().battery has the voltage and the current of the battery"),
+    "EnergyMeter": Hardware(
+        "the energy meter", "EV3Brick().battery has the voltage and the current of the battery"
+    ),
     "LightSensor": Hardware("the NXT light sensor", "use pybricks.ev3devices.ColorSensor"),
-    "SoundSensor": Hardware("the NXT sound sensor", "it is silent here: start by a TouchSensor or a button"),
+    "SoundSensor": Hardware(
+        "the NXT sound sensor", "it is silent here: start by a TouchSensor or a button"
+    ),
     "TemperatureSensor": Hardware("the NXT temperature sensor", _LEGO),
     "TouchSensor": Hardware("the NXT touch sensor", "use pybricks.ev3devices.TouchSensor"),
-    "UltrasonicSensor": Hardware("the NXT ultrasonic sensor", "use pybricks.ev3devices.UltrasonicSensor"),
+    "UltrasonicSensor": Hardware(
+        "the NXT ultrasonic sensor", "use pybricks.ev3devices.UltrasonicSensor"
+    ),
     "VernierAdapter": Hardware("the adapter for Vernier sensors", _LEGO),
 }
 """Classes of `pybricks.nxtdevices`."""

@@ -22,7 +22,9 @@ battery = _brick.battery
 class Sound:
     """The speaker. Each sound sets the volume, in percent."""
 
-    def beep(self, frequency: float = 500, duration: float = 100, volume: float = START_VOLUMES["Beep"]) -> None:
+    def beep(
+        self, frequency: float = 500, duration: float = 100, volume: float = START_VOLUMES["Beep"]
+    ) -> None:
         """Play a tone, and wait for its end."""
         _brick.speaker.set_volume(volume, "Beep")
         _brick.speaker.beep(frequency, duration)
@@ -34,7 +36,9 @@ class Sound:
             wait(BEEPS_PAUSE_MS)
 
     def tune(
-        self, frequencies_and_durations: Iterable[tuple[float, float]], volume: float = START_VOLUMES["Beep"]
+        self,
+        frequencies_and_durations: Iterable[tuple[float, float]],
+        volume: float = START_VOLUMES["Beep"],
     ) -> None:
         """Play tones of a frequency in Hz and a duration in ms."""
         for frequency, duration in frequencies_and_durations:
@@ -77,7 +81,10 @@ class Display:
         if isinstance(place, Align):
             # The numbers of the alignments are those of a number pad.
             row, column = divmod(place.value - 1, 3)
-            place = (screen.width - source.width) * column // 2, (screen.height - source.height) * (2 - row) // 2
+            place = (
+                (screen.width - source.width) * column // 2,
+                (screen.height - source.height) * (2 - row) // 2,
+            )
         if clear:
             screen.clear()
         x, y = place

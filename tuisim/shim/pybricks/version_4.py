@@ -64,7 +64,12 @@ class Motor(motor.Motor):
         if ending_of(ENDINGS, then) is not Ending.NONE or trajectory is None:
             return super()._begin(then, wait, call)
         target, rate, now_us = trajectory.end.milli, trajectory.even.rate, self.brick.now_us
-        control.run(now_us, motor.measured, rate, abs(trajectory.first.acceleration) or control.settings.acceleration)
+        control.run(
+            now_us,
+            motor.measured,
+            rate,
+            abs(trajectory.first.acceleration) or control.settings.acceleration,
+        )
         motor.follow()
         if not wait:
             return None
@@ -99,7 +104,9 @@ class Motor(motor.Motor):
         control = self._motor.control
         if max_voltage is None:
             return (control.settings.actuation * NOMINAL_VOLTAGE_MV // 10_000,)
-        self.control.limits(actuation=max(1, min(100, 100 * whole(max_voltage) // NOMINAL_VOLTAGE_MV)))
+        self.control.limits(
+            actuation=max(1, min(100, 100 * whole(max_voltage) // NOMINAL_VOLTAGE_MV))
+        )
         return None
 
     def close(self) -> None:
@@ -122,7 +129,13 @@ class DriveBase(robotics.DriveBase):
     SETTINGS_WHILE_ACTIVE = True
 
     def _move(
-        self, distance_mm: float, angle_deg: float, call: str, ending: Ending = Ending.HOLD, *, wait: bool = True
+        self,
+        distance_mm: float,
+        angle_deg: float,
+        call: str,
+        ending: Ending = Ending.HOLD,
+        *,
+        wait: bool = True,
     ) -> None:
         if ending is not Ending.NONE:
             return super()._move(distance_mm, angle_deg, call, ending, wait=wait)
@@ -140,7 +153,9 @@ class DriveBase(robotics.DriveBase):
             return None
 
         def passed(now_us: int) -> bool:
-            return not base.active or abs(base.millis_at(now_us)[0 if by_way else 1] - begin) >= target
+            return (
+                not base.active or abs(base.millis_at(now_us)[0 if by_way else 1] - begin) >= target
+            )
 
         return self.brick.finish(self.brick.until_done(passed, lambda: None))
 
@@ -148,7 +163,9 @@ class DriveBase(robotics.DriveBase):
         """Drive a distance in mm."""
         return self._move(whole(distance), 0, "straight()", ending_of(ENDINGS, then), wait=wait)
 
-    def turn(self, angle: float, then: Stop = Stop.HOLD, wait: bool = True, absolute: bool = False) -> None:
+    def turn(
+        self, angle: float, then: Stop = Stop.HOLD, wait: bool = True, absolute: bool = False
+    ) -> None:
         """Turn by an angle in degrees, clockwise; `absolute`: to an angle."""
         by = whole(angle) - round(self.angle()) if absolute else whole(angle)
         return self._move(0, by, "turn()", ending_of(ENDINGS, then), wait=wait)
@@ -156,7 +173,13 @@ class DriveBase(robotics.DriveBase):
     def curve(self, radius: float, angle: float, then: Stop = Stop.HOLD, wait: bool = True) -> None:
         """Drive along an arc by an angle; a negative radius turns the other way."""
         turned = -whole(angle) if radius < 0 else whole(angle)
-        return self._move(whole(radius) * radians(whole(angle)), turned, "curve()", ending_of(ENDINGS, then), wait=wait)
+        return self._move(
+            whole(radius) * radians(whole(angle)),
+            turned,
+            "curve()",
+            ending_of(ENDINGS, then),
+            wait=wait,
+        )
 
     def arc(
         self,
@@ -175,7 +198,9 @@ class DriveBase(robotics.DriveBase):
     def angle(self) -> float:  # type: ignore[override]
         """Return the turned angle in degrees, clockwise."""
         now_us, base = self.brick.read(), self._base
-        return (base.millis_at(now_us)[1] / MILLI - self._zeros[1]) / base.heading.settings.counts_per_unit
+        return (
+            base.millis_at(now_us)[1] / MILLI - self._zeros[1]
+        ) / base.heading.settings.counts_per_unit
 
     def brake(self) -> None:
         """Stop and let the motors brake themselves."""

@@ -126,7 +126,9 @@ class Shell:
             streams.output(flow.data)
         streams.sound = flow.sound or streams.sound
         if flow.sound is not None and streams.output is own_output:
-            _write_error("espeak: --stdout is simulated only on its way to aplay", streams.errors, FAILED)
+            _write_error(
+                "espeak: --stdout is simulated only on its way to aplay", streams.errors, FAILED
+            )
         for one in heard:
             self.session.speak(one.text, 0, one.tones_row, one.file)
             yield one.length_ns
@@ -137,7 +139,8 @@ class Shell:
         if command is None:
             there = ", ".join(COMMANDS)
             return CommandResult(
-                NOT_THERE, errors=f"{name}: not found (return code 127): the simulated brick has only {there}"
+                NOT_THERE,
+                errors=f"{name}: not found (return code 127): the simulated brick has only {there}",
             )
         return command(self, use)
 
@@ -278,7 +281,17 @@ def _cat(_shell: Shell, use: CommandUse) -> CommandResult:
     return CommandResult(FAILED if errors else 0, Flow(data), "\n".join(errors))
 
 
-_ESCAPES = {"n": "\n", "t": "\t", "\\": "\\", "a": "\a", "b": "\b", "e": "\x1b", "r": "\r", "c": "\0c", "v": "\v"}
+_ESCAPES = {
+    "n": "\n",
+    "t": "\t",
+    "\\": "\\",
+    "a": "\a",
+    "b": "\b",
+    "e": "\x1b",
+    "r": "\r",
+    "c": "\0c",
+    "v": "\v",
+}
 
 
 def _unescaped(text: str) -> str:
@@ -294,14 +307,17 @@ def _espeak(_shell: Shell, use: CommandUse) -> CommandResult:
     options, words = _sorted_out("espeak", use.words)
     if "-w" in options:
         return CommandResult(
-            FAILED, errors="espeak: -w is not simulated: it says what it is given, or sends it to aplay"
+            FAILED,
+            errors="espeak: -w is not simulated: it says what it is given, or sends it to aplay",
         )
     if "-f" in options:
         try:
             with open(os.path.join(use.folder, options["-f"]), "rb") as file:
                 text = file.read().decode("utf-8", "replace")
         except OSError as error:
-            return CommandResult(FAILED, errors=f"espeak: cannot read {options['-f']}: {error.strerror}")
+            return CommandResult(
+                FAILED, errors=f"espeak: cannot read {options['-f']}: {error.strerror}"
+            )
     else:
         text = words[0] if words else use.given.data.decode("utf-8", "replace")
     if not words and not text.strip():
@@ -318,7 +334,9 @@ def _aplay(_shell: Shell, use: CommandUse) -> CommandResult:
         heard = tuple(file_heard(file, use.folder) for file in files)
         return CommandResult(FAILED if any(one.refused for one in heard) else 0, heard=heard)
     if use.given.sound is None:
-        return CommandResult(FAILED, errors="aplay: takes a WAV file, or what `espeak --stdout` sends through a pipe")
+        return CommandResult(
+            FAILED, errors="aplay: takes a WAV file, or what `espeak --stdout` sends through a pipe"
+        )
     return CommandResult(heard=(use.given.sound,))
 
 
@@ -351,7 +369,14 @@ def _reads(words: Sequence[str]) -> bool:
 
 
 COMMANDS: Mapping[str, Callable[[Shell, CommandUse], CommandResult]] = {
-    "setfont": _setfont, "clear": _clear, "beep": _beep, "echo": _echo, "espeak": _espeak, "aplay": _aplay,
-    "amixer": _amixer, "stty": _stty, "cat": _cat,
-}  # fmt: skip
+    "setfont": _setfont,
+    "clear": _clear,
+    "beep": _beep,
+    "echo": _echo,
+    "espeak": _espeak,
+    "aplay": _aplay,
+    "amixer": _amixer,
+    "stty": _stty,
+    "cat": _cat,
+}
 """The commands of the brick, by name."""

@@ -14,7 +14,16 @@ from typing import IO, Any, NoReturn
 from tuisim.core.profile import MS
 from tuisim.errors import NotSimulated
 from tuisim.shim.session import DeviceSession
-from tuisim.shim.shell.commands import Flow, Running, Shell, Sink, Steps, Streams, own_errors, own_output
+from tuisim.shim.shell.commands import (
+    Flow,
+    Running,
+    Shell,
+    Sink,
+    Steps,
+    Streams,
+    own_errors,
+    own_output,
+)
 from tuisim.shim.sound import NO_PID
 
 Replace = Callable[[types.ModuleType, str, Callable[..., Any]], None]
@@ -87,29 +96,59 @@ class Process:
     system: System
 
     def __init__(
-        self, args: Any, bufsize: int = -1, executable: Any = None, stdin: Any = None, stdout: Any = None,
-        stderr: Any = None, preexec_fn: Any = None, close_fds: bool = True, shell: bool = False, cwd: Any = None,
-        env: Any = None, universal_newlines: bool | None = None, startupinfo: Any = None, creationflags: int = 0,
-        restore_signals: bool = True, start_new_session: bool = False, pass_fds: Any = (), *, user: Any = None,
-        group: Any = None, extra_groups: Any = None, encoding: str | None = None, errors: str | None = None,
-        text: bool | None = None, umask: int = -1, pipesize: int = -1, process_group: Any = None,
-    ) -> None:  # fmt: skip
+        self,
+        args: Any,
+        bufsize: int = -1,
+        executable: Any = None,
+        stdin: Any = None,
+        stdout: Any = None,
+        stderr: Any = None,
+        preexec_fn: Any = None,
+        close_fds: bool = True,
+        shell: bool = False,
+        cwd: Any = None,
+        env: Any = None,
+        universal_newlines: bool | None = None,
+        startupinfo: Any = None,
+        creationflags: int = 0,
+        restore_signals: bool = True,
+        start_new_session: bool = False,
+        pass_fds: Any = (),
+        *,
+        user: Any = None,
+        group: Any = None,
+        extra_groups: Any = None,
+        encoding: str | None = None,
+        errors: str | None = None,
+        text: bool | None = None,
+        umask: int = -1,
+        pipesize: int = -1,
+        process_group: Any = None,
+    ) -> None:
         system, pipe = self.system, self.system.module.PIPE
         system.session.command()
         self.args, self.pid = args, next(system.pids)
         self.returncode: int | None = None
-        self.text_mode = self.universal_newlines = bool(encoding or errors or text or universal_newlines)
+        self.text_mode = self.universal_newlines = bool(
+            encoding or errors or text or universal_newlines
+        )
         self.encoding, self.errors = encoding, errors
         self.streams = Streams(given=None if stdin == pipe else _given(stdin))
-        self.streams.output, self.stdout = self._outlet() if stdout == pipe else (_sink(stdout, own_output), None)
+        self.streams.output, self.stdout = (
+            self._outlet() if stdout == pipe else (_sink(stdout, own_output), None)
+        )
         if stderr == system.module.STDOUT:
             self.streams.errors, self.stderr = self.streams.output, None
         else:
-            self.streams.errors, self.stderr = self._outlet() if stderr == pipe else (_sink(stderr, own_errors), None)
+            self.streams.errors, self.stderr = (
+                self._outlet() if stderr == pipe else (_sink(stderr, own_errors), None)
+            )
         folder = "" if cwd is None else os.path.abspath(os.fsdecode(cwd))
         steps, several = _steps(system.shell, args, shell, self.streams, folder)
         self.running = Running(system.session, steps, several)
-        self.stdin: IO[Any] | None = self._opened(io.BufferedWriter(InPipe(self))) if stdin == pipe else None
+        self.stdin: IO[Any] | None = (
+            self._opened(io.BufferedWriter(InPipe(self))) if stdin == pipe else None
+        )
         system.processes[self.pid] = self
 
     def _outlet(self) -> tuple[Sink, IO[Any] | None]:
@@ -118,7 +157,11 @@ class Process:
 
     def _opened(self, pipe: Any) -> Any:
         """Wrap a pipe for bytes or text, as the program requested."""
-        return io.TextIOWrapper(pipe, self.encoding or "utf-8", self.errors) if self.text_mode else pipe
+        return (
+            io.TextIOWrapper(pipe, self.encoding or "utf-8", self.errors)
+            if self.text_mode
+            else pipe
+        )
 
     def __class_getitem__(cls, item: Any) -> types.GenericAlias:
         """Support annotations like the real class."""
@@ -175,7 +218,10 @@ class Process:
                 self.stdin.write(input)
             self.stdin.close()
         self.wait(timeout)
-        read = [stream.read() if stream and not stream.closed else None for stream in (self.stdout, self.stderr)]
+        read = [
+            stream.read() if stream and not stream.closed else None
+            for stream in (self.stdout, self.stderr)
+        ]
         return read[0], read[1]
 
     def send_signal(self, sig: int) -> None:
@@ -235,7 +281,9 @@ class System:
     def finish_subprocess(self, module: types.ModuleType) -> None:
         """Patch `subprocess` after its import: everything in it builds on `Popen`."""
         self.module = module
-        vars(module)["Popen"] = type("Popen", (Process,), {"system": self, "__module__": "subprocess"})
+        vars(module)["Popen"] = type(
+            "Popen", (Process,), {"system": self, "__module__": "subprocess"}
+        )
 
 
 def finish_asyncio(module: types.ModuleType) -> None:
@@ -243,15 +291,22 @@ def finish_asyncio(module: types.ModuleType) -> None:
 
     async def refuse(*_args: object, **_kwargs: object) -> NoReturn:
         hint = "use subprocess.run, or os.system for commands of the brick"
-        raise NotSimulated("asyncio.create_subprocess_exec is not part of the simulated brick", hint)
+        raise NotSimulated(
+            "asyncio.create_subprocess_exec is not part of the simulated brick", hint
+        )
 
     loop = vars(module)["BaseEventLoop"]
     loop.subprocess_exec = loop.subprocess_shell = refuse
 
 
-def _steps(shell: Shell, args: Any, in_shell: bool, streams: Streams, folder: str) -> tuple[Steps, bool]:
+def _steps(
+    shell: Shell, args: Any, in_shell: bool, streams: Streams, folder: str
+) -> tuple[Steps, bool]:
     """Return what a process runs, and whether that may be several sounds."""
-    words = [os.fsdecode(word) for word in ([args] if isinstance(args, str | bytes | os.PathLike) else args)]
+    words = [
+        os.fsdecode(word)
+        for word in ([args] if isinstance(args, str | bytes | os.PathLike) else args)
+    ]
     if in_shell:
         return shell.line(words[0], streams, folder), True
     return shell.program(words, streams, folder), False

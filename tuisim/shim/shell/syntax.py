@@ -30,7 +30,9 @@ _UNKNOWN = {
     "&": "a command beside the program is not simulated: use subprocess.Popen",
     "|": f"pipes are not simulated, but for one into {PLAYER}",
     **dict.fromkeys((">", ">>"), "files are not simulated, but for those of devices"),
-    **dict.fromkeys(("1>", "2>", "1>>", "2>>"), "other streams are not simulated: use subprocess.run"),
+    **dict.fromkeys(
+        ("1>", "2>", "1>>", "2>>"), "other streams are not simulated: use subprocess.run"
+    ),
     **dict.fromkeys((";", "&&", "||", "\n"), "one line is one command: others are not simulated"),
 }
 """What of a real shell the brick's does not have."""

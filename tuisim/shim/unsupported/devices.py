@@ -12,7 +12,9 @@ from tuisim.errors import NotSimulated, shortened
 from tuisim.shim.motor import KINDS
 from tuisim.shim.unsupported.modules import CAMERA, Hardware, refused_as
 
-SIMULATED = frozenset({kind.driver_name for kind in SENSORS.values()} | {kind.driver_name for kind in KINDS.values()})
+SIMULATED = frozenset(
+    {kind.driver_name for kind in SENSORS.values()} | {kind.driver_name for kind in KINDS.values()}
+)
 """Drivers of the devices that a robot can have."""
 
 
@@ -25,12 +27,16 @@ _ALONE = "the simulated sensors are those of ev3dev2.sensor.lego for colour, dis
 
 DRIVERS: Mapping[str, Hardware] = {
     "lego-nxt-light": Hardware("the NXT light sensor", _LIGHT),
-    "lego-nxt-sound": Hardware("the NXT sound sensor", "it is silent here: start by a TouchSensor or a Button"),
+    "lego-nxt-sound": Hardware(
+        "the NXT sound sensor", "it is silent here: start by a TouchSensor or a Button"
+    ),
     "lego-nxt-touch": Hardware("the NXT touch sensor", "use the one of the EV3, lego-ev3-touch"),
     "lego-nxt-us": Hardware("the NXT ultrasonic sensor", "use the one of the EV3, lego-ev3-us"),
     "lego-nxt-motor": Hardware("the NXT motor", "use a LargeMotor, lego-ev3-l-motor"),
     "lego-nxt-*": Hardware("an NXT sensor", _ALONE),
-    "lego-power-storage": Hardware("the energy meter", "PowerSupply has the voltage and the current of the battery"),
+    "lego-power-storage": Hardware(
+        "the energy meter", "PowerSupply has the voltage and the current of the battery"
+    ),
     "ht-nxt-smux": Hardware("the HiTechnic multiplexer", _MUX),
     "ht-nxt-color*": Hardware("the HiTechnic colour sensor", _LIGHT),
     "ht-nxt-eopd": Hardware("the HiTechnic EOPD", _LIGHT),
@@ -43,9 +49,15 @@ DRIVERS: Mapping[str, Hardware] = {
     "mi-*": Hardware("the Microinfinity gyro", _TURN),
     "ms-*mux": Hardware("a mindsensors multiplexer", _MUX),
     "ms-8ch-servo": Hardware("the mindsensors servo controller", _MOTOR),
-    "ms-nxtmmx": Hardware("the mindsensors motor multiplexer", "a robot has up to four motors, outA to outD"),
-    "ms-light-array": Hardware("the mindsensors light array", "use ColorSensors: a robot can have four"),
-    "ms-line-leader": Hardware("the mindsensors line leader", "use ColorSensors: a robot can have four"),
+    "ms-nxtmmx": Hardware(
+        "the mindsensors motor multiplexer", "a robot has up to four motors, outA to outD"
+    ),
+    "ms-light-array": Hardware(
+        "the mindsensors light array", "use ColorSensors: a robot can have four"
+    ),
+    "ms-line-leader": Hardware(
+        "the mindsensors line leader", "use ColorSensors: a robot can have four"
+    ),
     "ms-absolute-imu": Hardware("the mindsensors IMU", _TURN),
     "ms-nxtcam*": Hardware("the mindsensors camera", CAMERA),
     "ms-pixy-adapter": Hardware("the Pixy camera", CAMERA),
@@ -65,11 +77,16 @@ DRIVERS: Mapping[str, Hardware] = {
 }
 """Kinds of devices, by patterns of driver names; the first that matches tells."""
 
-_OTHER = Hardware("a device that tuisim does not know", f"the simulated drivers are {', '.join(sorted(SIMULATED))}")
+_OTHER = Hardware(
+    "a device that tuisim does not know",
+    f"the simulated drivers are {', '.join(sorted(SIMULATED))}",
+)
 
 CLASSES: Mapping[str, Hardware] = {
     "dc-motor": Hardware("a motor without a rotation sensor", _MOTOR),
-    "servo-motor": Hardware("a servo motor", "use a MediumMotor: on_to_position() turns it to an angle"),
+    "servo-motor": Hardware(
+        "a servo motor", "use a MediumMotor: on_to_position() turns it to an angle"
+    ),
 }
 """Classes of devices without any that a robot can have, by their kernel names."""
 
@@ -85,7 +102,10 @@ ADDRESSES: Mapping[str, Hardware] = {
 }
 """What is behind a port, by a part of the address."""
 _BOARDS = ("spi0.1:", "serial0-0:", "ttyAMA0:", "pistorms:")
-_BOARD = Hardware("a port of a BrickPi or PiStorms", "this is an EV3: use OUTPUT_A to OUTPUT_D, INPUT_1 to INPUT_4")
+_BOARD = Hardware(
+    "a port of a BrickPi or PiStorms",
+    "this is an EV3: use OUTPUT_A to OUTPUT_D, INPUT_1 to INPUT_4",
+)
 
 FOREIGN_MODES: Mapping[str, str] = {
     **dict.fromkeys(("ALL", *(f"SIG{n}" for n in range(1, 8))), "pixy-lego"),
@@ -127,7 +147,11 @@ def foreign_mode(mode: str, port: str, plugged: str) -> NotSimulated | None:
     """Return the error for a mode that the sensor on a port does not have; None if it is known from no other one."""
     driver = FOREIGN_MODES.get(mode, "")
     kind = of_driver(driver)
-    return None if kind is None else refusal(f"mode {mode} on {port}, where {plugged} is", kind, driver)
+    return (
+        None
+        if kind is None
+        else refusal(f"mode {mode} on {port}, where {plugged} is", kind, driver)
+    )
 
 
 def refused_device(device: Any, class_name: str, missing: type[Exception]) -> Exception | None:
@@ -146,7 +170,9 @@ def refused_device(device: Any, class_name: str, missing: type[Exception]) -> Ex
     return refused_as(missing, *_told(_named(type(device)), *found))
 
 
-def _refused(class_name: str, drivers: list[str], addresses: list[str]) -> tuple[Hardware, str] | None:
+def _refused(
+    class_name: str, drivers: list[str], addresses: list[str]
+) -> tuple[Hardware, str] | None:
     if class_name in CLASSES:
         return CLASSES[class_name], class_name
     kinds = [of_driver(name) for name in drivers]
@@ -162,7 +188,11 @@ def _refused(class_name: str, drivers: list[str], addresses: list[str]) -> tuple
 
 def _texts(value: object) -> list[str]:
     """Return the texts that an attribute may match; none of what is no text."""
-    return [one for one in (value if isinstance(value, list | tuple) else [value]) if isinstance(one, str)]
+    return [
+        one
+        for one in (value if isinstance(value, list | tuple) else [value])
+        if isinstance(one, str)
+    ]
 
 
 def _named(kind: type) -> str:

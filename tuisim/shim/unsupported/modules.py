@@ -32,13 +32,21 @@ class Instead:
 
 
 INSTEAD: Mapping[Library, Instead] = {
-    Library.EV3DEV2: Instead("ev3dev2", "ev3dev2.sensor.lego", "ev3dev2.sound", "RemoteControlledTank", "queue.Queue"),
+    Library.EV3DEV2: Instead(
+        "ev3dev2", "ev3dev2.sensor.lego", "ev3dev2.sound", "RemoteControlledTank", "queue.Queue"
+    ),
     Library.PYBRICKS: Instead(
-        "pybricks", "pybricks.ev3devices", "EV3Brick().speaker", "an InfraredSensor", "mailboxes of pybricks.messaging"
+        "pybricks",
+        "pybricks.ev3devices",
+        "EV3Brick().speaker",
+        "an InfraredSensor",
+        "mailboxes of pybricks.messaging",
     ),
 }
 
-_RADIO = "to drive by hand, use the brick's buttons or {remote}; parts of a program can talk by {queue}"
+_RADIO = (
+    "to drive by hand, use the brick's buttons or {remote}; parts of a program can talk by {queue}"
+)
 _BUS = "the sensors of {sensors} are simulated"
 CAMERA = "use a ColorSensor for colours, and an UltrasonicSensor for distances"
 _GAMEPAD = "to drive by hand, use the brick's buttons or {remote}"
@@ -69,9 +77,24 @@ ON_THE_BRICK: Mapping[str, Hardware] = {
         "Bluetooth",
         _RADIO,
         (
-            "BluetoothError", "BluetoothSocket", "DeviceDiscoverer", "HCI", "L2CAP", "PORT_ANY", "RFCOMM", "SCO",
-            "SERIAL_PORT_CLASS", "SERIAL_PORT_PROFILE", "advertise_service", "discover_devices", "find_service",
-            "get_available_port", "is_valid_address", "is_valid_uuid", "lookup_name", "read_local_bdaddr",
+            "BluetoothError",
+            "BluetoothSocket",
+            "DeviceDiscoverer",
+            "HCI",
+            "L2CAP",
+            "PORT_ANY",
+            "RFCOMM",
+            "SCO",
+            "SERIAL_PORT_CLASS",
+            "SERIAL_PORT_PROFILE",
+            "advertise_service",
+            "discover_devices",
+            "find_service",
+            "get_available_port",
+            "is_valid_address",
+            "is_valid_uuid",
+            "lookup_name",
+            "read_local_bdaddr",
             "stop_advertising",
         ),
     ),
@@ -86,7 +109,7 @@ ON_THE_BRICK: Mapping[str, Hardware] = {
     "alsaaudio": _SOUND_CARD,
     "pyaudio": _SOUND_CARD,
     "sounddevice": _SOUND_CARD,
-}  # fmt: skip
+}
 """Modules that can be imported but not used, by name."""
 
 _PI = Hardware("the Raspberry Pi", "this is an EV3: use {library}")
@@ -145,9 +168,15 @@ class _Part(type):
     def _use(cls, *_: object, **__: object) -> NoReturn:
         raise NotSimulated(*_told(cls.full_name, cls.hardware))
 
-    __call__ = __getitem__ = __iter__ = __len__ = __int__ = __index__ = __float__ = __enter__ = __exit__ = _use
-    __add__ = __radd__ = __sub__ = __rsub__ = __mul__ = __rmul__ = __lt__ = __le__ = __gt__ = __ge__ = _use
-    __and__ = __rand__ = __or__ = __ror__ = __xor__ = __rxor__ = __lshift__ = __rlshift__ = __invert__ = _use
+    __call__ = __getitem__ = __iter__ = __len__ = __int__ = __index__ = __float__ = __enter__ = (
+        __exit__
+    ) = _use
+    __add__ = __radd__ = __sub__ = __rsub__ = __mul__ = __rmul__ = __lt__ = __le__ = __gt__ = (
+        __ge__
+    ) = _use
+    __and__ = __rand__ = __or__ = __ror__ = __xor__ = __rxor__ = __lshift__ = __rlshift__ = (
+        __invert__
+    ) = _use
 
     def __getattr__(cls, name: str) -> Any:
         return _kept_part(cls, cls.full_name, name, cls.hardware)
@@ -199,7 +228,10 @@ class OtherLibrary:
         self._names, self._instead = names, instead
 
     def find_spec(
-        self, fullname: str, path: Sequence[str] | None = None, target: types.ModuleType | None = None
+        self,
+        fullname: str,
+        path: Sequence[str] | None = None,
+        target: types.ModuleType | None = None,
     ) -> None:
         """Raise for a package of the library.
 
@@ -222,7 +254,10 @@ class HardwareFinder:
         self._library = library
 
     def find_spec(
-        self, fullname: str, path: Sequence[str] | None = None, target: types.ModuleType | None = None
+        self,
+        fullname: str,
+        path: Sequence[str] | None = None,
+        target: types.ModuleType | None = None,
     ) -> ModuleSpec | None:
         """Return how to load a module; None for others."""
         top = fullname.partition(".")[0]
@@ -231,7 +266,9 @@ class HardwareFinder:
         else:
             known = top in ON_THE_BRICK and isinstance(sys.modules.get(top), HardwareModule)
         loader: Any = self
-        return ModuleSpec(fullname, loader, origin="not simulated", is_package=True) if known else None
+        return (
+            ModuleSpec(fullname, loader, origin="not simulated", is_package=True) if known else None
+        )
 
     def create_module(self, spec: ModuleSpec) -> types.ModuleType:
         """Return the module.

@@ -34,9 +34,24 @@ REFUSED: Mapping[str, Mapping[str, str]] = {
 """Classes that cannot be instantiated and their alternatives, by module."""
 
 _IN_CONTEXT = (
-    "Array", "Barrier", "BoundedSemaphore", "Condition", "Event", "JoinableQueue", "Lock", "Manager", "Pipe", "Pool",
-    "Queue", "RLock", "RawArray", "RawValue", "Semaphore", "SimpleQueue", "Value",
-)  # fmt: skip
+    "Array",
+    "Barrier",
+    "BoundedSemaphore",
+    "Condition",
+    "Event",
+    "JoinableQueue",
+    "Lock",
+    "Manager",
+    "Pipe",
+    "Pool",
+    "Queue",
+    "RLock",
+    "RawArray",
+    "RawValue",
+    "Semaphore",
+    "SimpleQueue",
+    "Value",
+)
 """Members of `multiprocessing` for processes: some would start a process, the others would block forever."""
 
 
@@ -54,7 +69,9 @@ def keep_thread_pool(module: types.ModuleType) -> None:
     contexts: Any = sys.modules["multiprocessing.context"]
     pool, context = module.Pool, contexts.ThreadContext()
 
-    def __init__(self: Any, processes: Any = None, initializer: Any = None, initargs: Any = ()) -> None:  # noqa: N807
+    def __init__(
+        self: Any, processes: Any = None, initializer: Any = None, initargs: Any = ()
+    ) -> None:  # noqa: N807
         pool.__init__(self, processes, initializer, initargs, context=context)
 
     module.ThreadPool.__init__ = __init__
@@ -68,7 +85,9 @@ def refuse_process(module: types.ModuleType) -> None:
 def refuse_process_pool(module: types.ModuleType) -> None:
     """Refuse the process pool; called after the import of `concurrent.futures.process`."""
     name = "ProcessPoolExecutor"
-    getattr(module, name).__init__ = _refusal(f"concurrent.futures.{name}", f"{_THREADS}, or ThreadPoolExecutor")
+    getattr(module, name).__init__ = _refusal(
+        f"concurrent.futures.{name}", f"{_THREADS}, or ThreadPoolExecutor"
+    )
 
 
 def _hint(name: str) -> str:
@@ -79,7 +98,9 @@ def _hint(name: str) -> str:
             return f"{_THREADS}, and queue.Queue between threads"
         case "Pool":
             return f"{_THREADS}, or multiprocessing.pool.ThreadPool"
-        case "Lock" | "RLock" | "Event" | "Condition" | "Semaphore" | "BoundedSemaphore" | "Barrier":
+        case (
+            "Lock" | "RLock" | "Event" | "Condition" | "Semaphore" | "BoundedSemaphore" | "Barrier"
+        ):
             return f"{_THREADS}.{name}"
         case _:
             return f"{_THREADS}: its threads share their variables"
@@ -100,7 +121,9 @@ OTHER_BOARDS = ("ev3dev.brickpi", "ev3dev.brickpi3", "ev3dev.pistorms")
 
 def refuse_board(module: types.ModuleType) -> NoReturn:
     """Refuse a module for another board."""
-    raise NotSimulated(f"{module.__name__} is not part of the simulated brick: it is an EV3", "import ev3dev.ev3")
+    raise NotSimulated(
+        f"{module.__name__} is not part of the simulated brick: it is an EV3", "import ev3dev.ev3"
+    )
 
 
 def refuse_classes(module: types.ModuleType) -> None:

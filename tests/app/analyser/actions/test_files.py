@@ -29,7 +29,9 @@ from tuisim.runs.store import RunStore
 @pytest.fixture(scope="module")
 def run() -> StoredRun:
     """A run over the grey bands."""
-    handle = start_run(program(LOGS), build_run_spec(Settings({"background": "Grey_bands"})), RunOptions(speed=0.0))
+    handle = start_run(
+        program(LOGS), build_run_spec(Settings({"background": "Grey_bands"})), RunOptions(speed=0.0)
+    )
     handle.wait()
     return RunStore().load_run(handle.run_id)
 
@@ -78,12 +80,18 @@ async def test_everything_leaves_as_it_is_shown(run: StoredRun, tmp_path: Path) 
         assert screen.is_open and screen.model.limits is not None
         first_s = screen.model.limits[0]
         await until(pilot, lambda: page.exists() and rows.exists())
-        await until(pilot, lambda: "Report saved to" in "".join(note.message for note in pilot.app._notifications))
+        await until(
+            pilot,
+            lambda: "Report saved to" in "".join(note.message for note in pilot.app._notifications),
+        )
     frame = samples_frame([run])
     pd.testing.assert_frame_equal(read_log(rows), frame, check_exact=True)
     assert open_log(rows).metadata == json.loads(json.dumps(log_metadata("samples", frame, [run])))
-    ticks = [float(node.text or "nan") for node in ElementTree.parse(svg).iter("{http://www.w3.org/2000/svg}text")
-             if (node.text or "").replace(".", "").isdigit() and float(node.attrib["y"]) > 370]  # fmt: skip
+    ticks = [
+        float(node.text or "nan")
+        for node in ElementTree.parse(svg).iter("{http://www.w3.org/2000/svg}text")
+        if (node.text or "").replace(".", "").isdigit() and float(node.attrib["y"]) > 370
+    ]
     assert ticks and min(ticks) >= first_s > 1.0
     lines = text.read_text().splitlines()
     assert max(map(len, lines)) <= 80 and any("Colour" in line for line in lines)

@@ -29,7 +29,9 @@ STEPS: list[tuple[list[str], Callable[[Model], bool]]] = [
 
 
 @pytest.mark.slow
-async def test_long_logs_are_worked_on_beside_the_screen(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+async def test_long_logs_are_worked_on_beside_the_screen(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setattr(screen_module, "AT_ONCE", 0)
     lines = (f"{at / 10},{'ab'[at % 2]},{at // 2}" for at in range(200))
     file = tmp_path / "log.csv"
@@ -44,7 +46,9 @@ async def test_long_logs_are_worked_on_beside_the_screen(tmp_path: Path, monkeyp
             await until(pilot, lambda: screen.job is None)
             assert so(model), keys
         await typed(pilot, "slash", "=nowhere at all", "enter")
-        await until(pilot, lambda: any("was not found" in told.message for told in pilot.app._notifications))
+        await until(
+            pilot, lambda: any("was not found" in told.message for told in pilot.app._notifications)
+        )
         old, new = TableTask("older"), TableTask("newer")
         screen.begin(old)
         screen.begin(new)
@@ -60,9 +64,13 @@ async def test_long_logs_are_worked_on_beside_the_screen(tmp_path: Path, monkeyp
 @pytest.mark.slow
 async def test_a_long_log_is_searched_beside_the_screen(tmp_path: Path) -> None:
     pq.write_table(stepped(30_000, 3000), tmp_path / "long.parquet")
-    async with AnalyserApp(LogRequest(file=str(tmp_path / "long.parquet"))).run_test(size=(120, 40)) as pilot:
+    async with AnalyserApp(LogRequest(file=str(tmp_path / "long.parquet"))).run_test(
+        size=(120, 40)
+    ) as pilot:
         screen = pilot.app.screen
-        await until(pilot, lambda: isinstance(pilot.app.screen, Analyser) and pilot.app.screen.is_open)
+        await until(
+            pilot, lambda: isinstance(pilot.app.screen, Analyser) and pilot.app.screen.is_open
+        )
         screen = pilot.app.screen
         assert isinstance(screen, Analyser)
         await pilot.press("b")

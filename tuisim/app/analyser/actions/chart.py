@@ -82,7 +82,9 @@ def against(screen: LogScreen) -> None:
             options.against = None
         else:
             if len(names) > 2:
-                raise LogError(f"cannot draw {text!r}", "a name, or two with `against` between them")
+                raise LogError(
+                    f"cannot draw {text!r}", "a name, or two with `against` between them"
+                )
             y, x = names if len(names) == 2 else (model.selected, names[0])
             for name in (x, y):
                 model.along(name)

@@ -22,7 +22,11 @@ if TYPE_CHECKING:
 
 MOST_COPIED = 10_000
 """Most rows to copy: terminals drop longer texts."""
-_CHARTS = ((".svg", "vector graphics, sharp at any size"), (".png", "pixels"), (".txt", "text, as shown on the screen"))
+_CHARTS = (
+    (".svg", "vector graphics, sharp at any size"),
+    (".png", "pixels"),
+    (".txt", "text, as shown on the screen"),
+)
 _REPORT = ((".html", "program, world, chart, bands, statistics and notes on one page"),)
 
 
@@ -75,7 +79,9 @@ def export(screen: LogScreen) -> None:
         background.run(screen, work, saved, screen.complain, group="export")
 
     forms = tuple((suffix, exporter.contents) for suffix, exporter in EXPORTERS.items())
-    screen.app.push_screen(SaveDialog(f"{what} as shown", f"{what}.csv", save, LISTED, check_target, forms, False))
+    screen.app.push_screen(
+        SaveDialog(f"{what} as shown", f"{what}.csv", save, LISTED, check_target, forms, False)
+    )
 
 
 def _saved(screen: LogScreen, notice: str, target: Path, _: object) -> None:
@@ -101,14 +107,18 @@ def chart(screen: LogScreen) -> None:
 
     def save(target: Path) -> None:
         # Text gets the size of the chart on the screen, if visible; images have their own size.
-        shown = screen.chart.size if target.suffix.lower() == ".txt" and screen.chart.display else None
+        shown = (
+            screen.chart.size if target.suffix.lower() == ".txt" and screen.chart.display else None
+        )
         size = (shown.width, shown.height) if shown else None
         view = View(options.facets, options.marks, options.hold, options.against)
         save_chart(partial(chart_of, screen.model, view), target, size)
         offer(screen.app, target)
         screen.redraw_chart()
 
-    screen.app.push_screen(SaveDialog("chart", "chart.svg", save, ", ".join(CHART_FORMATS), format_of, _CHARTS))
+    screen.app.push_screen(
+        SaveDialog("chart", "chart.svg", save, ", ".join(CHART_FORMATS), format_of, _CHARTS)
+    )
 
 
 def report(screen: LogScreen) -> None:
@@ -123,7 +133,9 @@ def report(screen: LogScreen) -> None:
         saved = partial(_saved, screen, f"Report saved to {target}", target)
         background.run(screen, work, saved, screen.complain, group="report")
 
-    screen.app.push_screen(SaveDialog("report", default_name(opened), save, ".html", check_report, _REPORT, False))
+    screen.app.push_screen(
+        SaveDialog("report", default_name(opened), save, ".html", check_report, _REPORT, False)
+    )
 
 
 def _write_report(opened: OpenedLog, target: Path, names: Sequence[str]) -> None:

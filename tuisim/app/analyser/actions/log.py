@@ -59,7 +59,12 @@ def derived(screen: LogScreen) -> None:
 
     def go(text: str) -> None:
         model = screen.model
-        screen.work("computing …", model.log.rows, lambda _: (model, *with_definition(model, text)), computed)
+        screen.work(
+            "computing …",
+            model.log.rows,
+            lambda _: (model, *with_definition(model, text)),
+            computed,
+        )
 
     def computed(result: tuple[Model, str, Log]) -> None:
         of, text, log = result
@@ -91,7 +96,9 @@ def note(screen: LogScreen) -> None:
     if screen.pane.name_shown == "bands" and bands:
         band = bands[min(screen.pane.chosen, len(bands) - 1)]
         name, start_s, stop_s = band.variable, band.start_s, band.stop_s
-        value = f"band {band.number}: {band.true_level:.2f}" + (f" {band.grey}" if band.grey else "")
+        value = f"band {band.number}: {band.true_level:.2f}" + (
+            f" {band.grey}" if band.grey else ""
+        )
         title = f"Note on {name} from {start_s:.2f} s to {stop_s:.2f} s"
     elif model.mark_s is not None:
         start_s, stop_s = sorted((_mark_time_s(model), start_s))
@@ -154,7 +161,9 @@ def _compare(screen: LogScreen, first: StoredRun, second: StoredRun) -> None:
     screen.work("comparing …", ticks, lambda _: diff_runs(first, second), then)
 
 
-def _show_differences(screen: LogScreen, model: Model, first: StoredRun, second: StoredRun, diff: RunDiff) -> None:
+def _show_differences(
+    screen: LogScreen, model: Model, first: StoredRun, second: StoredRun, diff: RunDiff
+) -> None:
     from tuisim.app.dialogs.runs import Differences
 
     def answered(go: bool | None) -> None:
@@ -165,13 +174,19 @@ def _show_differences(screen: LogScreen, model: Model, first: StoredRun, second:
             _go_to(screen, model, parted_s)
 
     # Wait until the dialog that asked for the run is closed.
-    screen.call_later(screen.app.push_screen, Differences(_name(first), _name(second), diff, samples=True), answered)
+    screen.call_later(
+        screen.app.push_screen,
+        Differences(_name(first), _name(second), diff, samples=True),
+        answered,
+    )
 
 
 def _go_to(screen: LogScreen, model: Model, time_s: float) -> None:
     """Put the cursor, in the first run, where the runs begin to differ."""
     name = model.selected.partition(" #")[0]
-    selected = next((trace.name for trace in model.traces if trace.name in (name, f"{name} #1")), model.selected)
+    selected = next(
+        (trace.name for trace in model.traces if trace.name in (name, f"{name} #1")), model.selected
+    )
     if not model.log.rows:
         screen.say(f"The runs differ from {time_s:.2f} s on; no samples were printed")
         return

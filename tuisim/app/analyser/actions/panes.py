@@ -47,7 +47,12 @@ def _search(screen: LogScreen, text: str) -> None:
         screen.model.events.set(*result)
         screen.choose(0)
 
-    screen.work("searching for events …", log.rows, lambda _: (log, thresholds, events_of(log, thresholds)), found)
+    screen.work(
+        "searching for events …",
+        log.rows,
+        lambda _: (log, thresholds, events_of(log, thresholds)),
+        found,
+    )
 
 
 def larger(screen: LogScreen) -> None:
@@ -84,7 +89,9 @@ def sort(screen: LogScreen) -> None:
         order = rows.chosen, False
     else:
         order = ("", False) if rows.view.descending else (rows.chosen, True)
-    screen.work("sorting …", len(rows), lambda _: rows.sorted(*order), partial(_arrange, screen, model))
+    screen.work(
+        "sorting …", len(rows), lambda _: rows.sorted(*order), partial(_arrange, screen, model)
+    )
 
 
 def _arrange(screen: LogScreen, model: Model, arrangement: TableView) -> None:
@@ -107,7 +114,13 @@ def select(screen: LogScreen) -> None:
         then = partial(_arrange, screen, model)
         screen.work("filtering …", model.log.rows, lambda _: model.rows.filtered(conditions), then)
 
-    screen.ask("Filter", keep, " and ".join(map(str, screen.model.rows.view.conditions)), _FILTERS, completes=True)
+    screen.ask(
+        "Filter",
+        keep,
+        " and ".join(map(str, screen.model.rows.view.conditions)),
+        _FILTERS,
+        completes=True,
+    )
 
 
 def show_all(screen: LogScreen) -> None:
@@ -156,7 +169,11 @@ def find(screen: LogScreen, step: int) -> None:
 
 
 _SECONDS = re.compile(r"(-?\d+(?:\.\d+)?)\s*s")
-_PLACES = (("120", "row 120"), ("2.5s", "the sample nearest to 2.5 seconds"), ("50%", "halfway through the table"))
+_PLACES = (
+    ("120", "row 120"),
+    ("2.5s", "the sample nearest to 2.5 seconds"),
+    ("50%", "halfway through the table"),
+)
 
 
 def rows(screen: LogScreen, step: int) -> None:
@@ -206,7 +223,8 @@ def go_to(screen: LogScreen) -> None:
             model.go_to_row(int(text) - 1)
         else:
             raise LogError(
-                f"{text!r} is not a row or a time", f"a row from 1 to {model.log.rows}, or a time such as 2.5s"
+                f"{text!r} is not a row or a time",
+                f"a row from 1 to {model.log.rows}, or a time such as 2.5s",
             )
         model.follow_cursor()
 
@@ -221,7 +239,9 @@ def event(screen: LogScreen, step: int) -> None:
         screen.say("No events: c asks for a threshold, such as Colour < 50")
         return
     rows = [event.row for event in events]
-    ahead = [at for at, row in enumerate(rows) if (row > model.row if step > 0 else row < model.row)]
+    ahead = [
+        at for at, row in enumerate(rows) if (row > model.row if step > 0 else row < model.row)
+    ]
     if not ahead:
         screen.say("This is the last event" if step > 0 else "This is the first event")
         return
