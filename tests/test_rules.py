@@ -106,6 +106,21 @@ OF_NO_MODULE = {
 OTHERS_OWN = ("os", "sys", "super()")
 """What has such names and is not Textual's."""
 
+TOP_LEVEL = {
+    ".ci",
+    ".git-blame-ignore-revs",
+    ".gitignore",
+    "CHANGELOG.md",
+    "LICENSE",
+    "README.md",
+    "backgrounds",
+    "programs",
+    "pyproject.toml",
+    "tests",
+    "tuisim",
+}
+"""What git may track there: all else is somebody's own."""
+
 Function = ast.FunctionDef | ast.AsyncFunctionDef
 
 
@@ -459,6 +474,16 @@ def test_rule(rule: str) -> None:
     found = {str(path.relative_to(ROOT)): list(find(source(path))) for path in paths}
     assert paths
     assert {name: places for name, places in found.items() if places} == {}
+
+
+def test_nothing_else_is_tracked_at_the_top_level() -> None:
+    # In a copy without git, what is there was tracked.
+    if (ROOT / ".git").exists():
+        done = subprocess.run(
+            ["git", "ls-files"], cwd=ROOT, capture_output=True, text=True, check=True
+        )
+        tracked = {path.split("/")[0].strip('"') for path in done.stdout.split("\n") if path}
+        assert tracked - TOP_LEVEL == set()
 
 
 def tool(*words: str) -> str:
