@@ -265,7 +265,7 @@ def unexplained_broad_excepts(source: Source) -> Iterable[object]:
         if isinstance(handler, ast.ExceptHandler)
         and (not caught(handler) or caught(handler) & BROAD)
         and not any(
-            REASON.search(line) for line in source.lines[handler.lineno - 2 : handler.lineno]
+            REASON.search(line) for line in source.lines[handler.lineno - 2 : handler.lineno + 1]
         )
     ]
 

@@ -138,8 +138,8 @@ PLANTED: tuple[Planted, ...] = (
     Planted(
         "run.json is taken from the run folder, not from what was started",
         "runs/store.py",
-        "write_run_file(run.folder, {**run.data, ",
-        "write_run_file(run.folder, {**read_run_file(run.folder), ",
+        "run.folder, {**run.data, ",
+        "run.folder, {**read_run_file(run.folder), ",
         "enemies",
         ("notebook:forged:0",),
         "is not what was started",

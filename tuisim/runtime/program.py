@@ -123,9 +123,8 @@ class ProgramRunner:
         self._session.free += 1
         try:
             self._run_prelude(prelude)
-        except (
-            BaseException
-        ) as error:  # it is an error of the program, and is raised when that begins
+        except BaseException as error:
+            # It is an error of the program, and is raised when that begins.
             self._prelude_error = error
         self._session.free -= 1
         keep_modules()

@@ -63,9 +63,8 @@ def report_error(error: BaseException, file: str, source: str, alone: bool = Fal
             _add_suggestions(trace, error)
         chain = _keep_program_frames(trace, own_files(file))
         text, summary = _text_of(chain), _summary(trace)
-    except (
-        Exception
-    ) as problem:  # an error may be anything, and nested too deeply: it is reported nevertheless
+    except Exception as problem:
+        # An error may be anything, and nested too deeply: it is reported nevertheless.
         stack = _traceback.StackSummary.from_list(
             [
                 frame

@@ -77,9 +77,8 @@ def _starter(scheduler: Scheduler, ended_by: EndedBy) -> Callable[..., int]:
             except (SystemExit, StopProgram):
                 # As in Python: it ends the thread silently.
                 raise
-            except (
-                BaseException
-            ) as error:  # as in Python, the thread ends and the program continues
+            except BaseException as error:
+                # As in Python, the thread ends and the program continues.
                 ended_by(function, error)
 
         task = scheduler.spawn(run_bare, daemon=True)

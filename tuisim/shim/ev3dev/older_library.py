@@ -86,9 +86,8 @@ def finish_core(
         def call(self: Any, *args: Any) -> Any:
             try:
                 return access(self, *args)
-            except (
-                Exception
-            ) as error:  # the library raises this very class for a device that is not connected
+            except Exception as error:
+                # The library raises this very class for a device that is not connected.
                 class_name = getattr(self, "SYSTEM_CLASS_NAME", "")
                 if not self.connected and (
                     refused := refused_device(self, class_name, type(error))
