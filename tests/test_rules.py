@@ -3,35 +3,23 @@
 from __future__ import annotations
 
 import ast
-import io
 import re
 import subprocess
 import sys
-import tokenize
 import tomllib
 from collections.abc import Callable, Iterable, Iterator
-from functools import cache, cached_property
+from functools import cache
 from importlib import import_module
 from pathlib import Path
 
 import pytest
 import textual
 
+from tests.sources import ROOT, Function, Source, python_files, source
 from tuisim import terminal
-
-ROOT = Path(__file__).resolve().parent.parent
 
 MAX_FILE_TOKENS = 3_500
 MAX_FUNCTION_TOKENS = 350
-LAYOUT = {
-    tokenize.NL,
-    tokenize.NEWLINE,
-    tokenize.INDENT,
-    tokenize.DEDENT,
-    tokenize.COMMENT,
-    tokenize.ENDMARKER,
-    tokenize.ENCODING,
-}
 OVERSIZED: dict[str, dict[str, int]] = tomllib.loads(
     (ROOT / "tests" / "oversized.toml").read_text(encoding="utf-8")
 )
@@ -121,64 +109,8 @@ TOP_LEVEL = {
 }
 """What git may track there: all else is somebody's own."""
 
-Function = ast.FunctionDef | ast.AsyncFunctionDef
-
-
-class Source:
-    """A file of the project, read and parsed once for all rules."""
-
-    def __init__(self, path: Path) -> None:
-        self.path = path
-        self.text = path.read_text(encoding="utf-8")
-        self.lines = self.text.splitlines()
-
-    @cached_property
-    def tree(self) -> ast.Module:
-        return ast.parse(self.text)
-
-    @cached_property
-    def nodes(self) -> list[ast.AST]:
-        return list(ast.walk(self.tree))
-
-    @cached_property
-    def token_lines(self) -> list[int]:
-        """The line of each token that is no comment, docstring or layout."""
-        alone = {
-            (node.lineno, node.col_offset)
-            for node in self.nodes
-            if isinstance(node, ast.Expr)
-            and isinstance(node.value, ast.Constant)
-            and isinstance(node.value.value, str)
-        }
-        tokens = tokenize.generate_tokens(io.StringIO(self.text).readline)
-        return [
-            token.start[0]
-            for token in tokens
-            if token.type not in LAYOUT and token.start not in alone
-        ]
-
-    @property
-    def attributes(self) -> Iterator[ast.Attribute]:
-        return (node for node in self.nodes if isinstance(node, ast.Attribute))
-
-
-@cache
-def source(path: Path) -> Source:
-    return Source(path)
-
-
 WITH_COLORS = frozenset({"css_colors.py", "palette.py", "themes.py"})
 """The palette, and tables of colours of others."""
-
-PROGRAMS = frozenset({"brick_programs", "pybricks_programs", "real_programs"})
-"""Folders with programs as other people write them."""
-
-
-def python_files(folder: str) -> list[Path]:
-    return [
-        path for path in sorted((ROOT / folder).rglob("*.py")) if PROGRAMS.isdisjoint(path.parts)
-    ]
-
 
 PACKAGE = python_files("tuisim")
 TESTS = python_files("tests")
