@@ -12,10 +12,7 @@ from pathlib import Path
 import pytest
 
 from tests.conftest import Command
-from tuisim.commands import isolation
-from tuisim.errors import ConfigError
 from tuisim.web import server as web_server
-from tuisim.web.classroom import Classroom
 from tuisim.web.server import Server, ServerLimits
 from tuisim.web.visit import VisitLimits
 
@@ -123,6 +120,14 @@ REFUSED = {
     "no minutes": ("--idle 0", "--idle: must be a number from 0.001 to 100000, got '0'"),
     "no such program": ("nope.py", "nope.py: there is no such program"),
     "a wrong option of the app": ("-x abc", "-x: must be a number"),
+    "a class": (
+        "--students class.txt",
+        "no such option: --students (for a class use accounts over SSH, or JupyterHub with %sim_app: ",
+    ),
+    "isolation": (
+        "--no-isolate",
+        "no such option: --no-isolate (for a class use accounts over SSH",
+    ),
     "a host of another machine": (
         "--host 192.0.2.1 --port 0",
         "--host: cannot listen on 192.0.2.1: ",
@@ -157,99 +162,3 @@ def test_a_notebook_of_several_cells_is_listed(here: Command, tmp_path: Path) ->
     (tmp_path / "two.ipynb").write_text(writes(new_notebook(cells=cells)))
     done = here("serve", "two.ipynb")
     assert (done.returncode, done.stdout) == (0, here("open", "two.ipynb").stdout)
-
-
-@pytest.fixture
-def a_class(
-    program: None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> list[tuple[Classroom, str, int]]:
-    """A list of a class beside the program; notes what would be served."""
-    (tmp_path / "class.txt").write_text("Ada\nBob\n")
-    found: list[tuple[Classroom, str, int]] = []
-
-    def note(classroom: Classroom, host: str, port: int, announce: Callable[[int], None]) -> int:
-        announce(port)
-        found.append((classroom, host, port))
-        return 0
-
-    monkeypatch.setattr(web_server, "serve", note)
-    return found
-
-
-def test_each_student_gets_a_link_and_it_stays(
-    a_class: list[tuple[Classroom, str, int]], here: Command, tmp_path: Path
-) -> None:
-    words = "serve prog.py --students class.txt --links links.csv --port 81"
-    first, again = here(*words.split()), here(*words.split())
-    assert (first.returncode, first.stdout) == (0, again.stdout)
-    lines = first.stdout.splitlines()
-    assert re.fullmatch(r"tutor  http://127\.0\.0\.1:81/[\w-]{32}/", lines[1])
-    assert [line.split()[0] for line in lines[:4]] == ["name", "tutor", "Ada", "Bob"]
-    links = [line.split()[1] for line in lines[1:4]]
-    assert len({*links}) == 3
-    assert (tmp_path / "links.csv").read_text() == f"name,link\nAda,{links[1]}\nBob,{links[2]}\n"
-    assert (tmp_path / "links.csv").stat().st_mode & 0o777 == 0o600
-    assert (tmp_path / "students" / "Bob" / "prog.py").read_text() == "print('Light: 1')\n"
-    assert a_class[0][1:] == ("127.0.0.1", 81)
-
-
-@pytest.mark.parametrize(
-    ("words", "most"), [("", 2), ("--max-visitors 1", 1)], ids=["a student each", "fewer"]
-)
-def test_the_apps_of_a_class_are_limited(
-    words: str, most: int, a_class: list[tuple[Classroom, str, int]], here: Command, tmp_path: Path
-) -> None:
-    done = here(
-        "serve", *words.split(), "--students", "class.txt", "--homes", "elsewhere", "--no-isolate"
-    )
-    assert done.returncode == 0
-    servers = a_class[0][0]._servers
-    assert ({one._among.most for one in servers.values()}, [*servers]) == ({most}, ["Ada", "Bob"])
-    assert (tmp_path / "elsewhere" / "Ada").is_dir()
-
-
-def test_without_isolation_the_tutor_is_told(
-    a_class: list[tuple[Classroom, str, int]], here: Command, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    def refuse() -> None:
-        raise ConfigError("bwrap is not installed", "install it", key="--isolate")
-
-    monkeypatch.setattr(isolation, "check_isolation", refuse)
-    done = here("serve", "--students", "class.txt")
-    assert done.returncode == 0
-    assert done.stderr.startswith(
-        "note: bwrap is not installed: students' programs can read and change"
-    )
-    assert here("serve", "--students", "class.txt", "--isolate").returncode == 2
-    assert here("serve", "--students", "class.txt", "--no-isolate").stderr == ""
-    assert len(a_class) == 2
-
-
-NO_CLASS = {
-    "a list that is missing": ("--students nope.txt", "nope.txt: there is no such file"),
-    "no name": ("--students prog.py", "prog.py: line 1: no name of a folder"),
-    "no folder": ("--students class.txt --homes class.txt", "class.txt: cannot be used"),
-    "folders without a list": ("--homes x", "--homes: is for a class (give --students FILE, too)"),
-    "links without a list": ("--links x", "--links: is for a class"),
-    "isolation without a list": ("--no-isolate", "--no-isolate: is for a class"),
-    "both": (
-        "--students class.txt --isolate --no-isolate",
-        "--isolate: is given together with --no-isolate",
-    ),
-    "a program that is none": ("nope.py --students class.txt", "nope.py: there is no such program"),
-}
-
-
-@pytest.mark.usefixtures("a_class")
-@pytest.mark.parametrize(("words", "told"), NO_CLASS.values(), ids=NO_CLASS)
-def test_a_class_that_cannot_be_served_is_refused(words: str, told: str, here: Command) -> None:
-    done = here("serve", *words.split())
-    assert (done.returncode, done.stdout) == (2, "")
-    assert told in done.stderr
-
-
-@pytest.mark.usefixtures("a_class")
-def test_a_link_file_that_cannot_be_written_is_told(here: Command) -> None:
-    done = here("serve", "--students", "class.txt", "--links", "none/links.csv")
-    assert done.returncode != 0
-    assert "cannot write none/links.csv" in done.stderr

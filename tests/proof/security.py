@@ -17,8 +17,6 @@ from pathlib import Path
 from random import Random
 from typing import Any
 
-from tests.proof.classroom_attacks import ATTACKS as CLASSROOM_ATTACKS
-from tests.proof.classroom_attacks import check_classroom_attack
 from tests.proof.commands import check_said, said
 from tests.proof.kind import FaultError, Kind
 from tests.proof.security_app import check_shown
@@ -397,7 +395,6 @@ PLACES: Mapping[str, Callable[[Random], None]] = {
 def _names(random: Random) -> Iterator[str]:
     yield from (f"web:{name}" for name in ATTACKS)
     while True:
-        yield f"classroom:{random.choice(list(CLASSROOM_ATTACKS))}"
         yield f"{random.choice(list(PLACES))}:{random.getrandbits(32)}"
 
 
@@ -415,8 +412,8 @@ def _check_private(home: Path) -> None:
 
 def _check(case: str, folder: Path) -> None:
     place, _, which = case.partition(":")
-    if place in ("web", "classroom"):
-        (check_attack if place == "web" else check_classroom_attack)(which)
+    if place == "web":
+        check_attack(which)
         return
     (folder / "in").mkdir()
     os.chdir(folder / "in")

@@ -29,8 +29,6 @@ while True:
         send(b"P", b"ts13:deliver_chunks3:key%d:%se" % (len(chunk), chunk))
     elif data == b"nonsense":
         os.write(1, b"X" * 5)
-    elif said.get("type") == "show" and "asks" in sys.argv:
-        send(b"D", b"\x1b[6n")
     elif data.startswith(b"packet "):
         os.write(1, bytes.fromhex(data.decode().split()[1]))
     elif data == b"offer":
@@ -53,5 +51,5 @@ while True:
 
 def stand_in(*words: str) -> list[str]:
     """Return the command of the app; one that is `stubborn` does not end when it is asked to, a `slow` one
-    does not hand over its file, one that `asks` wants to know the place of the cursor when it is shown."""
+    does not hand over its file."""
     return [sys.executable, "-I", "-S", "-c", _SOURCE, *words]

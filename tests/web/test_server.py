@@ -24,9 +24,8 @@ from textual_serve.app_service import AppService
 from tests.running import PATIENCE_S
 from tests.web.stand_in import stand_in
 from tuisim.web import session
-from tuisim.web.answering import _REFUSAL
 from tuisim.web.gate import Gate
-from tuisim.web.server import Server, ServerLimits, listening
+from tuisim.web.server import _REFUSAL, Server, ServerLimits, listening
 from tuisim.web.visit import VisitLimits
 
 TOKEN = "the-token"

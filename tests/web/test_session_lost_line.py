@@ -12,11 +12,13 @@ import pytest
 
 from tests.running import PATIENCE_S
 from tests.web.chromium import Chromium, chromium, needs_chromium
-from tests.web.test_classroom_page import KEEPS_TERMINAL
 from tests.web.test_session import RUNS_ON, Serve
 
 pytestmark = [pytest.mark.slow, needs_chromium]
 
+KEEPS_TERMINAL = (
+    "addEventListener('DOMContentLoaded', () => terminalUsers.push((it) => (window.shown = it)))"
+)
 TEXT = """\
 [...Array(shown.rows).keys()].map((row) => shown.buffer.active.getLine(row).translateToString()).join("\\n")"""
 SHOWS = f"window.shown && !document.querySelector('.-closed') && {TEXT}.includes('running')"

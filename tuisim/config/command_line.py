@@ -10,7 +10,7 @@ import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from glob import escape, glob
 from itertools import pairwise
-from types import SimpleNamespace
+from types import MappingProxyType, SimpleNamespace
 from typing import Any, Self
 
 import click
@@ -167,7 +167,9 @@ def _wrong_use(error: click.UsageError, ctx: click.Context) -> ConfigError:
     if isinstance(error, click.NoSuchOption):
         names = {flag.lstrip("-"): flag for param in ctx.command.params for flag in param.opts}
         near = [names[name] for name in _close_names(error.option_name.lstrip("-"), names)]
-        return ConfigError(f"no such option: {error.option_name}", did_you_mean(near) or see)
+        instead = ctx.command.instead if isinstance(ctx.command, Command) else {}
+        hint = instead.get(error.option_name) or did_you_mean(near) or see
+        return ConfigError(f"no such option: {error.option_name}", hint)
     if isinstance(error, click.MissingParameter) and isinstance(error.param, click.Argument):
         return ConfigError(f"{error.param.make_metavar(ctx)} is missing", see)
     text = error.message.rstrip(".")
@@ -180,12 +182,19 @@ class Command(click.Command):
     """A command whose help groups its options, and whose wrong use raises ConfigError.
 
     Its callback gets the shared options as `settings`; if it `passes_arguments`, with the words after `--` as those of
-    the program.
+    the program. `instead` says what to use instead of options that it does not have.
     """
 
-    def __init__(self, name: str, *, passes_arguments: bool = False, **how: Any) -> None:
+    def __init__(
+        self,
+        name: str,
+        *,
+        passes_arguments: bool = False,
+        instead: Mapping[str, str] = MappingProxyType({}),
+        **how: Any,
+    ) -> None:
         super().__init__(name, context_settings={"help_option_names": ["-h", "--help"]}, **how)
-        self._passes_arguments = passes_arguments
+        self._passes_arguments, self.instead = passes_arguments, instead
         self._shared = {
             one.name: one for one in self.params if isinstance(one, GroupedOption) and one.sets
         }
@@ -258,6 +267,7 @@ class Group(click.Group):
         listing: The help line of each subcommand.
         load: Return a subcommand by its name.
         default: The subcommand that is meant if none is named; empty if one must be named.
+        instead: What to use instead of subcommands that there are not.
     """
 
     def __init__(
@@ -266,6 +276,7 @@ class Group(click.Group):
         listing: Mapping[str, str],
         load: Callable[[str], click.Command],
         default: str = "",
+        instead: Mapping[str, str] = MappingProxyType({}),
         **how: Any,
     ) -> None:
         settings = {"help_option_names": ["-h", "--help"]}
@@ -274,6 +285,7 @@ class Group(click.Group):
             name, context_settings=settings, no_args_is_help=False, options_metavar="", **how
         )
         self.listing, self.load, self.default = listing, load, default
+        self._instead = instead
 
     @classmethod
     def of(cls, name: str, commands: Sequence[click.Command], **how: Any) -> Self:
@@ -335,9 +347,8 @@ class Group(click.Group):
         """
         if args[0] in self.listing or ctx.resilient_parsing:
             return super().resolve_command(ctx, args)
-        raise ConfigError(
-            f"no such command {args[0]!r}", nearest(args[0], self.listing), key=self.name or ""
-        )
+        hint = self._instead.get(args[0]) or nearest(args[0], self.listing)
+        raise ConfigError(f"no such command {args[0]!r}", hint, key=self.name or "")
 
     def invoke(self, ctx: click.Context) -> Any:
         """Run the subcommand.

@@ -2,45 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Awaitable, Callable
-
 from aiohttp import web
 
 from tuisim.web.sockets import close, sent
-from tuisim.web.watchers import Watchers
 
 TAKEN_OVER = 4001
 """The code with which a socket is closed because another browser shows the app."""
 _MOST_WAITING = 20
 """The most messages that wait for a browser."""
-_QUERY, _ANSWER = b"\x1b[6n", b"\x1b[1;1R"
-"""What an app asks after each picture, and an answer: the place of the cursor."""
 
 
 class Link:
-    """Passes on what an app sends; a picture that nobody sees is dropped, an offered file waits for a browser.
+    """Passes on what an app sends; a picture that nobody sees is dropped, an offered file waits for a browser."""
 
-    Args:
-        answer: Called with what a terminal sends to the app.
-    """
-
-    def __init__(self, answer: Callable[[bytes], Awaitable[object]]) -> None:
+    def __init__(self) -> None:
         self.socket: web.WebSocketResponse | None = None
         """The connection to the browser; None while the app has none."""
-        self.watchers = Watchers()
-        """Browsers that only look on."""
-        self._answer = answer
         self._waiting: list[str] = []
 
     async def send_bytes(self, data: bytes) -> None:
         """Send what the app draws."""
-        self.watchers.show(data)
         if self.socket is not None:
             await sent(self.socket, self.socket.send_bytes, data)
-        elif self.watchers:
-            # What a browser that only looks on sends is not passed on, but the app draws no faster than it is answered.
-            for _ in range(data.count(_QUERY)):
-                await self._answer(_ANSWER)
 
     async def send_str(self, text: str) -> None:
         """Send a message, at once or to the next browser."""

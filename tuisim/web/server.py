@@ -9,26 +9,25 @@ import signal
 from collections.abc import AsyncIterator, Callable, Sequence
 from contextlib import asynccontextmanager
 from pathlib import Path
-from typing import Protocol
 from urllib.parse import quote
 
 import textual_serve
 from aiohttp import WSCloseCode, web
 from aiohttp.http import HttpProcessingError
+from aiohttp.typedefs import Handler
 from textual_serve.download_manager import DownloadManager
 
 from tuisim.data_class import dataclass
 from tuisim.errors import SIGNALLED, ConfigError, TuisimError, counted
-from tuisim.web.answering import Routes, application_of
 from tuisim.web.gate import Gate
-from tuisim.web.session import END_WITHIN_S, HERE, Place
+from tuisim.web.session import END_WITHIN_S
 from tuisim.web.sockets import close
-from tuisim.web.upload import keep_file
+from tuisim.web.upload import MOST_FILE_BYTES, keep_file
 from tuisim.web.visit import Visit, VisitLimits
 
-HEARTBEAT_S = 15.0
+_HEARTBEAT_S = 15.0
 """A browser that does not answer for about this time has gone."""
-CLOSE_WITHIN_S = 2.0
+_CLOSE_WITHIN_S = 2.0
 """Time for a browser to confirm that its socket is closed."""
 PAGE = Path(__file__).parent / "page"
 _FOLDERS = {
@@ -37,8 +36,16 @@ _FOLDERS = {
     "fonts": Path(__file__).parent.parent / "charts" / "fonts",
 }
 """Folders of files that every visitor gets, by name."""
-FILES_OF_PAGE = f"/{{folder:{'|'.join(_FOLDERS)}}}/{{name:.+}}"
-"""Where they are, as a path of aiohttp."""
+_REFUSAL = "This address leads nowhere; `tuisim serve` prints the right one.\n"
+_REFUSAL_PAGE = f"""\
+<!DOCTYPE html>
+<html lang="en">
+<meta charset="utf-8"><meta name="viewport" content="width=device-width, initial-scale=1"><title>tuisim</title>
+<style>:root {{ color-scheme: dark }} body {{ font: 18px/1.5 system-ui, sans-serif; margin: 20vh auto 0;
+max-width: 30em; padding: 0 1em }}</style>
+<p>{_REFUSAL.replace("`tuisim serve`", "<code>tuisim serve</code>").strip()}
+</html>
+"""
 _DEFAULT_SIZE = (80, 24)
 
 
@@ -52,24 +59,6 @@ class ServerLimits:
     """How long each lasts."""
 
 
-class Answering(Protocol):
-    """What answers requests."""
-
-    def application(self) -> web.Application:
-        """Return the web application."""
-
-
-class Places:
-    """Counts the apps of several servers.
-
-    Args:
-        most: So many may live at the same time.
-    """
-
-    def __init__(self, most: int) -> None:
-        self.most = self.free = most
-
-
 class Server:
     """Answers the requests of visitors.
 
@@ -78,8 +67,6 @@ class Server:
         gate: Decides which requests are answered.
         limits: What visitors may use.
         report: Called with what an app that has failed wrote to stderr.
-        place: Where the apps run.
-        among: The places that it shares with other servers, if any.
     """
 
     def __init__(
@@ -88,49 +75,78 @@ class Server:
         gate: Gate,
         limits: ServerLimits,
         report: Callable[[str], None] = lambda _: None,
-        place: Place = HERE,
-        among: Places | None = None,
     ) -> None:
-        self._command, self._limits, self._report, self._place = command, limits, report, place
-        self._among = among or Places(limits.visitors)
+        self._command, self._limits, self._report = command, limits, report
         self.gate = gate
         self._downloads = DownloadManager()
         self._visits: dict[str, Visit] = {}
         self._lives: dict[str, asyncio.Task[None]] = {}
 
-    @property
-    def routes(self) -> Routes:
-        """What it answers, after its secret part."""
-        return _ROUTES
-
     def application(self) -> web.Application:
-        """Return the web application."""
-        application = application_of(lambda: [self])
-        application.on_shutdown.append(self.send_all_away)
+        """Return the web application, in which everybody gets the same answer who may not see something, whatever it
+        is."""
+        application = web.Application(middlewares=[self._guard], client_max_size=MOST_FILE_BYTES)
+        # The gate looks at the token, which may change.
+        application.router.add_routes(
+            [
+                web.get("/{token}", _add_slash),
+                web.get("/{token}/", self._page),
+                web.get("/{token}/ws", self._socket),
+                web.get("/{token}/sessions", self._list),
+                web.post("/{token}/sessions/{id}/end", self._end),
+                web.post("/{token}/sessions/{id}/file", self._bring),
+                web.get("/{token}/download/{key}", self._download),
+                web.get(f"/{{token}}/{{folder:{'|'.join(_FOLDERS)}}}/{{name:.+}}", _file_of_page),
+            ]
+        )
+        application.on_response_prepare.append(self._protect)
+        application.on_shutdown.append(self._send_all_away)
         return application
 
-    @property
-    def visits(self) -> Sequence[Visit]:
-        """The apps of its visitors."""
-        return [*self._visits.values()]
+    @web.middleware
+    async def _guard(self, request: web.Request, handler: Handler) -> web.StreamResponse:
+        # What does something is sent by a page of ours only.
+        acts = request.path.endswith("/ws") or request.method == "POST"
+        origin = request.headers.get("Origin")
+        if self.gate.admits(request.path, request.host, origin, from_a_page=acts):
+            return await handler(request)
+        if "text/html" in request.headers.get("Accept", ""):
+            raise web.HTTPForbidden(text=_REFUSAL_PAGE, content_type="text/html")
+        raise web.HTTPForbidden(text=_REFUSAL)
 
-    async def _page(self, request: web.Request) -> web.StreamResponse:
+    async def _protect(self, request: web.Request, response: web.StreamResponse) -> None:
+        """Let the page load nothing from elsewhere, be part of other pages only as the gate says, and tell nobody its
+        address."""
+        sockets = f"ws://{request.host} wss://{request.host}" if request.host else ""
+        response.headers.update(
+            {
+                "Content-Security-Policy": "default-src 'self'; img-src 'self' data: blob:; "
+                f"style-src 'self' 'unsafe-inline'; connect-src 'self' {sockets}; form-action 'none'; "
+                f"base-uri 'none'; object-src 'none'; frame-ancestors {self.gate.framed_by}",
+                "Cross-Origin-Opener-Policy": "same-origin",
+                "Cross-Origin-Resource-Policy": "same-origin",
+                "Referrer-Policy": "no-referrer",
+                "X-Content-Type-Options": "nosniff",
+                "Cache-Control": "no-store",
+                "Server": "tuisim",
+            }
+        )
+
+    async def _page(self, _: web.Request) -> web.StreamResponse:
         return web.FileResponse(PAGE / "index.html")
 
-    async def _list(self, request: web.Request) -> web.StreamResponse:
+    async def _list(self, _: web.Request) -> web.StreamResponse:
         sessions = [
             {**visit.to_plain(), **visit.doing.to_plain()} for visit in self._visits.values()
         ]
-        return web.json_response(
-            {"sessions": sessions, "free": self._free, "most": self._limits.visitors}
-        )
+        return web.json_response({"sessions": sessions, "free": self._free})
 
     @property
     def _free(self) -> int:
-        return min(self._limits.visitors - len(self._visits), self._among.free)
+        return self._limits.visitors - len(self._visits)
 
     async def _socket(self, request: web.Request) -> web.StreamResponse:
-        socket = web.WebSocketResponse(heartbeat=HEARTBEAT_S, timeout=CLOSE_WITHIN_S)
+        socket = web.WebSocketResponse(heartbeat=_HEARTBEAT_S, timeout=_CLOSE_WITHIN_S)
         await socket.prepare(request)
         asked, size = request.query.get("session"), _size(request)
         visit = await self.begin(*size, socket) if asked is None else self._visits.get(asked)
@@ -139,7 +155,9 @@ class Server:
                 await visit.take_over(socket, *size)
             await visit.follow(socket)
         elif asked is None:
-            await close(socket, self._full, WSCloseCode.TRY_AGAIN_LATER)
+            most = counted(self._limits.visitors, "visitor")
+            reason = f"This server allows {most} at a time, and all places are taken."
+            await close(socket, reason, WSCloseCode.TRY_AGAIN_LATER)
         else:
             await close(socket, "The session has ended.")
         return socket
@@ -159,9 +177,8 @@ class Server:
             if not ending:
                 return None
             await asyncio.wait(ending, return_when=asyncio.FIRST_COMPLETED)
-        visit = Visit(self._command, self._downloads, self._limits.visit, self._report, self._place)
+        visit = Visit(self._command, self._downloads, self._limits.visit, self._report)
         self._visits[visit.id] = visit
-        self._among.free -= 1
         if socket is not None:
             await visit.take(socket)
         has_begun = asyncio.Event()
@@ -171,7 +188,6 @@ class Server:
                 await visit.live(width, height, has_begun.set)
             finally:
                 del self._visits[visit.id], self._lives[visit.id]
-                self._among.free += 1
 
         self._lives[visit.id] = asyncio.create_task(live())
         await has_begun.wait()
@@ -191,18 +207,12 @@ class Server:
         visit, data = self._visit(request), await request.read()
         try:
             path = await asyncio.to_thread(
-                keep_file, self._place.folder or Path.cwd(), request.query.get("name", ""), data
+                keep_file, Path.cwd(), request.query.get("name", ""), data
             )
         except TuisimError as error:
             raise web.HTTPBadRequest(text=f"{error}\n") from None
         await visit.open_file(path)
         return web.json_response({"name": path.name})
-
-    @property
-    def _full(self) -> str:
-        own = self._limits.visitors
-        most = own if len(self._visits) >= own else self._among.most
-        return f"This server allows {counted(most, 'visitor')} at a time, and all places are taken."
 
     async def _download(self, request: web.Request) -> web.StreamResponse:
         key = request.match_info["key"]
@@ -227,20 +237,18 @@ class Server:
         await response.write_eof()
         return response
 
-    async def send_all_away(self, _: object = None) -> None:
-        """End the apps of all visitors."""
+    async def _send_all_away(self, _: web.Application) -> None:
         for visit in self._visits.values():
             visit.end("The server has been ended.")
         await asyncio.gather(*self._lives.values())
 
 
-async def to_page(_: object, request: web.Request) -> web.StreamResponse:
-    """Send to the address of a page, which ends in a slash: what it loads is beside it."""
+async def _add_slash(request: web.Request) -> web.StreamResponse:
+    """Send to the address of the page, which ends in a slash: what it loads is beside it."""
     raise web.HTTPFound(f"{request.rel_url.raw_path}/")
 
 
-async def file_of_page(_: object, request: web.Request) -> web.StreamResponse:
-    """Answer with a file that every page may have."""
+async def _file_of_page(request: web.Request) -> web.StreamResponse:
     folder = _FOLDERS[request.match_info["folder"]].resolve()
     try:
         path = (folder / request.match_info["name"]).resolve(strict=True)
@@ -251,18 +259,6 @@ async def file_of_page(_: object, request: web.Request) -> web.StreamResponse:
     return web.FileResponse(path)
 
 
-_ROUTES: Routes = [
-    ("GET", "", to_page),
-    ("GET", "/", Server._page),
-    ("GET", "/ws", Server._socket),
-    ("GET", "/sessions", Server._list),
-    ("POST", "/sessions/{id}/end", Server._end),
-    ("POST", "/sessions/{id}/file", Server._bring),
-    ("GET", "/download/{key}", Server._download),
-    ("GET", FILES_OF_PAGE, file_of_page),
-]
-
-
 def _size(request: web.Request) -> tuple[int, int]:
     """Return the size of the visitor's terminal in cells, as its page says."""
     try:
@@ -271,7 +267,7 @@ def _size(request: web.Request) -> tuple[int, int]:
         return _DEFAULT_SIZE
 
 
-def serve(server: Answering, host: str, port: int, announce: Callable[[int], None]) -> int:
+def serve(server: Server, host: str, port: int, announce: Callable[[int], None]) -> int:
     """Serve until a signal ends it, and with it the apps of all visitors. Return the exit code.
 
     Args:
@@ -286,7 +282,7 @@ def serve(server: Answering, host: str, port: int, announce: Callable[[int], Non
     return asyncio.run(_serve(server, host, port, announce))
 
 
-async def _serve(server: Answering, host: str, port: int, announce: Callable[[int], None]) -> int:
+async def _serve(server: Server, host: str, port: int, announce: Callable[[int], None]) -> int:
     loop = asyncio.get_running_loop()
     ended_by: asyncio.Future[signal.Signals] = loop.create_future()
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
@@ -299,7 +295,7 @@ async def _serve(server: Answering, host: str, port: int, announce: Callable[[in
 
 
 @asynccontextmanager
-async def listening(server: Answering, host: str, port: int) -> AsyncIterator[int]:
+async def listening(server: Server, host: str, port: int) -> AsyncIterator[int]:
     """Answer requests in the context, which gets the port; at its end, end the apps of all visitors.
 
     Args:

@@ -9,13 +9,11 @@ import signal
 from asyncio.subprocess import PIPE, Process
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
-from pathlib import Path
 from typing import Any
 
 from textual_serve.app_service import AppService
 from textual_serve.download_manager import DownloadManager
 
-from tuisim.data_class import dataclass
 from tuisim.web.link import Link
 
 END_WITHIN_S = 5.0
@@ -45,22 +43,6 @@ _OF_A_BROWSER = {
     "LC_CTYPE": "C.UTF-8",
     "PYTHONUTF8": "1",
 }
-_OF_THE_PROTOCOL = ("TEXTUAL", "TERM_PROGRAM", "COLUMNS", "ROWS")
-"""Beginnings of the variables that tell an app how it is shown."""
-
-
-@dataclass(frozen=True, slots=True)
-class Place:
-    """Where an app runs."""
-
-    folder: Path | None = None
-    """Its working directory, into which files are brought; None for that of the server."""
-    variables: Mapping[str, str] | None = None
-    """Its environment variables; None for those of the server."""
-
-
-HERE = Place()
-"""Where the server itself runs."""
 
 
 class WebSession(AppService):
@@ -70,12 +52,9 @@ class WebSession(AppService):
         command: The command of the app, as words.
         link: The way to its browser.
         downloads: The files that apps offer.
-        place: Where it runs.
     """
 
-    def __init__(
-        self, command: Sequence[str], link: Link, downloads: DownloadManager, place: Place
-    ) -> None:
+    def __init__(self, command: Sequence[str], link: Link, downloads: DownloadManager) -> None:
         super().__init__(
             " ".join(command),
             write_bytes=link.send_bytes,
@@ -83,22 +62,15 @@ class WebSession(AppService):
             close=_nothing,
             download_manager=downloads,
         )
-        self._words, self._place = command, place
+        self._words = command
         self.told: Callable[[Mapping[str, Any]], None] = lambda _: None
         """Called with what the app tells."""
         self.errors = ""
         """The last that the app has written to stderr, once it has ended."""
 
     def _build_environment(self, width: int = 80, height: int = 24) -> dict[str, str]:
-        environment, given = super()._build_environment(width, height), self._place.variables
-        if given is not None:
-            shown = {
-                name: value
-                for name, value in environment.items()
-                if name.startswith(_OF_THE_PROTOCOL)
-            }
-            environment = {**given, **shown}
-        kept = {name: value for name, value in environment.items() if name not in _OF_A_TERMINAL}
+        environment = super()._build_environment(width, height).items()
+        kept = {name: value for name, value in environment if name not in _OF_A_TERMINAL}
         return kept | _OF_A_BROWSER
 
     async def _open_app_process(self, width: int = 80, height: int = 24) -> Process:
@@ -108,7 +80,6 @@ class WebSession(AppService):
             stdout=PIPE,
             stderr=PIPE,
             env=self._build_environment(width, height),
-            cwd=self._place.folder,
             # Otherwise ctrl+c in the server's terminal would reach the app before the server can end it.
             start_new_session=True,
         )
@@ -159,11 +130,6 @@ class WebSession(AppService):
     async def show(self, width: int, height: int) -> None:
         """Draw everything: a terminal of this size, in columns and rows, shows the app from now on."""
         await self.send_meta({"type": "show", "width": width, "height": height})
-
-    @property
-    def pid(self) -> int:
-        """The process of the app; 0 if it has none."""
-        return self._process.pid if self._process is not None else 0
 
     async def ended(self) -> None:
         """Wait until the app has ended by itself."""

@@ -17,7 +17,7 @@ from textual_serve.download_manager import DownloadManager
 from tuisim.data_class import dataclass
 from tuisim.web.doing import Doing
 from tuisim.web.link import Link
-from tuisim.web.session import Place, WebSession
+from tuisim.web.session import WebSession
 from tuisim.web.sockets import close
 
 _LONGEST_S = 86400.0
@@ -75,7 +75,6 @@ class Visit:
         downloads: The files that apps offer.
         limits: How long it lasts.
         report: Called with what an app that has failed wrote to stderr.
-        place: Where the app runs.
     """
 
     def __init__(
@@ -84,11 +83,10 @@ class Visit:
         downloads: DownloadManager,
         limits: VisitLimits,
         report: Callable[[str], None],
-        place: Place,
     ) -> None:
         self._limits, self._report = limits, report
-        self._link, self._activity = Link(self._answer), Activity()
-        self._session = WebSession(command, self._link, downloads, place)
+        self._link, self._activity = Link(), Activity()
+        self._session = WebSession(command, self._link, downloads)
         self.doing = Doing()
         """What the app does."""
         self._session.told = self._told
@@ -134,7 +132,6 @@ class Visit:
             self.end(reason)
             if self._link.socket is not None:
                 await close(self._link.socket, reason)
-            self._link.watchers.end(reason)
         finally:
             for wait in waits:
                 wait.cancel()
@@ -147,8 +144,6 @@ class Visit:
         await self._link.take(
             socket, json.dumps(["session", self.id]), "Another tab has taken this session over."
         )
-        if self._link.watchers:
-            await self._tell_watched()
         if self._panels:
             await self._tell_panels()
 
@@ -161,29 +156,8 @@ class Visit:
             height: Its rows.
         """
         await self.take(socket)
-        self._resized(width, height)
+        self._size = _within(width, height)
         await self._session.show(*self._size)
-
-    async def watch(self, socket: web.WebSocketResponse) -> None:
-        """Let a browser look on until it goes; nothing that it sends reaches the app."""
-        if self._end.done():
-            await close(socket, self._end.result())
-            return
-        watchers = self._link.watchers
-        with watchers.one(socket, self._size):
-            await self._tell_watched()
-            await self._session.show(*self._size)
-            async for _ in socket:
-                pass
-        await self._tell_watched()
-
-    async def _answer(self, data: bytes) -> None:
-        await self._session.send_bytes(data)
-
-    async def _tell_watched(self) -> None:
-        # A file that is offered waits for a browser; this is of no use to a later one, which is told when it comes.
-        if (socket := self._link.socket) is not None and not socket.closed:
-            await self._link.send_str(json.dumps(["watched", len(self._link.watchers)]))
 
     def _told(self, said: Mapping[str, Any]) -> None:
         self.doing.note(said)
@@ -192,13 +166,9 @@ class Visit:
             self._telling = asyncio.create_task(self._tell_panels())
 
     async def _tell_panels(self) -> None:
-        # Of no use to a later browser, as above.
+        # Of no use to a later browser, which is told when it comes.
         if (socket := self._link.socket) is not None and not socket.closed:
             await self._link.send_str(json.dumps(["panels", self._panels]))
-
-    def _resized(self, width: int, height: int) -> None:
-        self._size = _within(width, height)
-        self._link.watchers.resize(self._size)
 
     async def follow(self, socket: web.WebSocketResponse) -> None:
         """Do what the visitor does in the browser that shows the app, until that has gone."""
@@ -233,11 +203,6 @@ class Visit:
     def listen(self, told: Callable[[Mapping[str, Any]], None]) -> None:
         """Call a function with what the app tells from now on: a start or an end of a run, a problem."""
         self._session.told = told
-
-    @property
-    def pid(self) -> int:
-        """The process of its app; 0 if it has none."""
-        return self._session.pid
 
     @property
     def is_ending(self) -> bool:
@@ -277,7 +242,7 @@ class Visit:
                     await self._session.send_bytes(text.encode("utf-8", "ignore"))
                 case ["resize", {"width": int(width), "height": int(height)}]:
                     self._activity.note()
-                    self._resized(width, height)
+                    self._size = _within(width, height)
                     await self._session.set_terminal_size(*self._size)
                 case ["ping", str(sent)]:
                     await self._link.send_str(json.dumps(["pong", sent]))

@@ -80,7 +80,7 @@ def check_isolation() -> None:
         raise ConfigError(f"{BWRAP} is not installed", f"install bubblewrap; {hint}", key=_KEY)
     try:
         done = subprocess.run(
-            [*confined(Path("/"), (), ()), sys.executable, "-c", ""],
+            [*_confined(Path("/"), (), ()), sys.executable, "-c", ""],
             stdin=subprocess.DEVNULL,
             capture_output=True,
             text=True,
@@ -236,7 +236,7 @@ def spawn_isolated(
     try:
         process = subprocess.Popen(
             [
-                *confined(writable[-1], writable, readable),
+                *_confined(writable[-1], writable, readable),
                 "--as-pid-1",
                 *filtered,
                 "--info-fd",
@@ -265,7 +265,7 @@ def spawn_isolated(
         raise OSError(f"{BWRAP} has not started the program") from error
 
 
-def confined(cwd: Path, writable: Sequence[Path], readable: Sequence[Path]) -> list[str]:
+def _confined(cwd: Path, writable: Sequence[Path], readable: Sequence[Path]) -> list[str]:
     """Return the command of bubblewrap, up to its last options; what it starts ends when bubblewrap is ended.
 
     Args:

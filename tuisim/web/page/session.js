@@ -102,10 +102,9 @@ const session = (() => {
         });
         const last = document.createElement("p");
         if (found.free > 0) last.append(button("Start another one", () => done("")));
-        // A student has one app.
-        else if (found.most > 1) last.append("No place is free for another one.");
+        else last.append("No place is free for another one.");
         const head = document.createElement("h1");
-        head.textContent = found.most > 1 ? "Which app?" : "Your app is there already";
+        head.textContent = "Which app?";
         dialog.replaceChildren(head, ...rows, last);
         dialog.classList.add("-open");
         dialog.querySelector("button").focus();
@@ -121,7 +120,7 @@ const session = (() => {
     const mine = found.find((one) => one.id === id && (leaving || !one.shown));
     if (mine) return mine.id;
     if (framed && found.length) return found[0].id;
-    // Where there is no choice: a student has one app.
+    // Where there is no choice.
     if (found.length === 1 && !found[0].shown && free < 1) return found[0].id;
     return found.length ? ask() : "";
   };
@@ -178,7 +177,6 @@ const session = (() => {
     heard: (data) => {
       if (typeof data !== "string") return;
       const [what, told] = JSON.parse(data);
-      if (what === "watched") document.getElementById("watched").hidden = !told;
       if (what === "panels") {
         for (const button of document.querySelectorAll("[data-act^=panel-]:not([data-act=panel-next])")) {
           button.setAttribute("aria-pressed", String(told.includes(button.dataset.act.slice("panel-".length))));
@@ -187,7 +185,6 @@ const session = (() => {
       if (what !== "session") return;
       chosen = told;
       document.body.classList.remove("-closed");
-      document.getElementById("watched").hidden = true;
       kept.setItem("session", chosen);
     },
     closed: (event) => {
