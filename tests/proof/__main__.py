@@ -9,9 +9,10 @@ from collections.abc import Sequence
 from itertools import islice
 from random import Random
 
-from tests.proof.attempts import attempts
+from tests.proof.attempts import Result, attempts
 from tests.proof.kind import fault_of
 from tests.proof.kinds import KINDS
+from tests.proof.mutants import main as try_mutants
 
 
 def row(kind: str, cases: object, elapsed: str, faults: object) -> str:
@@ -19,12 +20,36 @@ def row(kind: str, cases: object, elapsed: str, faults: object) -> str:
     return f"{kind:<12} {cases:>8} {elapsed:>10} {faults:>8}"
 
 
+def describe_kinds() -> str:
+    """Return what the help says about the kinds."""
+    about = "\n".join(f"  {name:<12}{kind.about}" for name, kind in KINDS.items())
+    return f"Try to break tuisim in these ways:\n\n{about}\n\n`mutants --help`: try its tests"
+
+
+def print_results(results: Sequence[Result], seed: int) -> int:
+    """Print a table and a verdict; return 1 if there was a fault."""
+    print(row("kind", "cases", "wall s", "faults"))
+    for found in results:
+        print(row(found.kind, found.cases, f"{found.elapsed_s:.1f}", len(found.faults)))
+    cases, faults = (
+        sum(found.cases for found in results),
+        sum(len(found.faults) for found in results),
+    )
+    print(
+        f"{faults} faults in {cases} cases (seed {seed})"
+        if faults
+        else f"no fault in {cases} cases (seed {seed})"
+    )
+    return int(bool(faults))
+
+
 def main(words: Sequence[str]) -> int:
     """Try what was asked for; return 1 if there was a fault."""
-    about = "\n".join(f"  {name:<12}{kind.about}" for name, kind in KINDS.items())
+    if words[:1] == ["mutants"]:
+        return try_mutants(words[1:])
     parser = argparse.ArgumentParser(
         prog="python -m tests.proof",
-        description=f"Try to break tuisim in these ways:\n\n{about}",
+        description=describe_kinds(),
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument("kinds", nargs="*", metavar="KIND", help="some of them; otherwise all")
@@ -60,19 +85,7 @@ def main(words: Sequence[str]) -> int:
         return 0
     print(f"seed {seed}", flush=True)
     results = list(attempts(kinds, seed, arguments.minutes, arguments.jobs))
-    print(row("kind", "cases", "wall s", "faults"))
-    for found in results:
-        print(row(found.kind, found.cases, f"{found.elapsed_s:.1f}", len(found.faults)))
-    cases, faults = (
-        sum(found.cases for found in results),
-        sum(len(found.faults) for found in results),
-    )
-    print(
-        f"{faults} faults in {cases} cases (seed {seed})"
-        if faults
-        else f"no fault in {cases} cases (seed {seed})"
-    )
-    return int(bool(faults))
+    return print_results(results, seed)
 
 
 if __name__ == "__main__":

@@ -1,0 +1,58 @@
+"""Flips of comparisons and operators: which there are, where they stand, and that a test finds one in a copy."""
+
+from __future__ import annotations
+
+import ast
+
+import pytest
+
+from tests.conftest import ROOT
+from tests.proof.__main__ import main
+from tests.proof.mutants import draw_mutants, find_mutants, find_tests
+
+
+@pytest.mark.parametrize(
+    ("text", "flips"),
+    [
+        ("a < b", ["a <= b", "a >= b"]),
+        ("a == b", ["a != b"]),
+        ("a is not b", ["a is b"]),
+        ("0 <= a < b", ["0 < a < b", "0 > a < b", "0 <= a <= b", "0 <= a >= b"]),
+        ("a and b and c", ["a or b or c"]),
+        ("a + b * c", ["a - b * c", "b / c"]),
+        ("-a", ["+a"]),
+        ("f'{a < b}'", []),
+        ("a | b", []),
+    ],
+)
+def test_each_comparison_and_operator_is_flipped(text: str, flips: list[str]) -> None:
+    assert [mutant.new for mutant in find_mutants("a.py", text)] == flips
+
+
+def test_a_flip_leaves_the_rest_and_the_numbers_of_the_lines() -> None:
+    text = "x = 'ä', (1 +\n  2) * 3\ny = 4\n"
+    (product, _) = find_mutants("a.py", text)
+    assert (product.line, product.old, product.new) == (1, "(1 + 2) * 3", "(1 + 2) / 3")
+    assert ast.unparse(ast.parse(product.text)) == "x = ('ä', (1 + 2) / 3)\ny = 4"
+    assert product.text.endswith("\n)\ny = 4\n")
+
+
+def test_a_seed_draws_the_same_mutants() -> None:
+    drawn = draw_mutants(["core", "tuisim/scene"], 7, 20)
+    assert (len(drawn), {mutant.room for mutant in drawn}) == (20, {"core", "scene"})
+    assert draw_mutants(["core", "scene"], 7, 20) == drawn != draw_mutants(["core", "scene"], 8, 20)
+    place = f"{drawn[0].file}:{drawn[0].line}"
+    assert drawn[0] in draw_mutants([place], 1, 100)
+
+
+def test_a_module_has_the_tests_at_its_path() -> None:
+    tests = ["tests/core/test_spec.py", "tests/core/test_spec_fields.py"]
+    assert find_tests("core/spec.py") == tests
+
+
+@pytest.mark.proof
+def test_a_mutant_is_found_in_a_copy(capsys: pytest.CaptureFixture[str]) -> None:
+    rows = (ROOT / "tuisim/core/geometry.py").read_text().splitlines()
+    line = next(number for number, row in enumerate(rows, 1) if "return pose.x_mm" in row)
+    assert main(["mutants", f"core/geometry.py:{line}", "--count", "1", "--seed", "1"]) == 0
+    assert capsys.readouterr().out.endswith("\n1 of 1 found (seed 1)\n")
