@@ -31,7 +31,6 @@ def test_home_is_private_and_exports_are_as_the_umask_says(
     program = tmp_path / "p.py"
     program.write_text("tank_drive.on_for_seconds(20, 30, 0.1)\nprint('a: 1')\n")
     assert here("run", "p.py", "--press", "enter@0.05", "--export", "a.csv").returncode == 0
-    here("runs", "compact", "last")
     keep_draft(str(program), "x")
     keep(str(program), Kept())
     save_pose("here", Pose(1.0, 2.0, 3.0))

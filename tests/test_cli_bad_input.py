@@ -117,6 +117,7 @@ BAD = {
     ),
     "unknown run": ("runs show 99999", "99999"),
     "which run": ("runs show", "show: no run given"),
+    "compact": ("runs compact", "no such command 'compact' (recordings are plain files;"),
     "unknown action": ("runs shwo 1", "no such command 'shwo' (did you mean show?)"),
     "export needs a file": ("runs export 1", "needs a run and a file"),
     "too many words": ("backgrounds Loop", "Loop"),

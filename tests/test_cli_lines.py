@@ -15,7 +15,7 @@ import pytest
 
 from tuisim import __version__
 from tuisim.cli import run_command
-from tuisim.commands.runs import compact, export, list_runs, rerun_runs, rm, show
+from tuisim.commands.runs import export, list_runs, rerun_runs, rm, show
 from tuisim.config.magic_line import parse_line
 from tuisim.config.options import Settings
 from tuisim.errors import ConfigError
@@ -153,8 +153,8 @@ def _told(action: str, *names: str) -> Any:
 
 
 def _run_action(action: str, work: Any) -> Any:
-    def record(words: Any = (), older_than: Any = None, every: bool = False, **named: Any) -> int:
-        if not words and action not in ("list", "compact") and older_than is None:
+    def record(words: Any = (), older_than: Any = None, **named: Any) -> int:
+        if not words and action != "list" and older_than is None:
             return int(
                 work(words=words, **({"older_than": None} if action == "rm" else {}), **named)
             )
@@ -186,7 +186,7 @@ def watch(patch: pytest.MonkeyPatch) -> None:
         patch.setattr(
             importlib.import_module(f"tuisim.commands.logs.{module}"), function, _log(name)
         )
-    for command in (list_runs, show, rm, rerun_runs, compact, export):
+    for command in (list_runs, show, rm, rerun_runs, export):
         patch.setattr(command, "callback", _run_action(command.name or "", command.callback))
     patch.setattr("tuisim.commands.kernel._list", _told("list", "_kernels"))
     patch.setattr("tuisim.commands.kernel._install", _told("install", "_manager", "place", "name"))

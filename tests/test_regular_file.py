@@ -61,7 +61,6 @@ SHOWN = (
     "log summary 1",
     "log report 1",
     "runs rerun 1",
-    "runs compact 1",
     "doctor",
     "runs",
 )
@@ -74,8 +73,6 @@ FILES: dict[str, tuple[str, ...]] = {
     "RUN/modules.jsonl": SHOWN,
     "RUN/lock": SHOWN,
     "RUN/notes.jsonl": SHOWN,
-    "PACKED/telemetry.bin.packed": SHOWN,
-    "PACKED/output.bin.packed": SHOWN,
     "home/runs.db": ("runs", "runs show 1"),
     "home/runs.lock": ("runs", "runs rm 1"),
     "home/config.toml": ("config", "runs"),
@@ -124,11 +121,11 @@ def test_nothing_odd_in_the_place_of_a_file_is_waited_for(
     if (file, kind) in MAY_WAIT:
         return
     monkeypatch.chdir(tmp_path)
-    run = record(packed=file.startswith("PACKED"))
+    run = record()
     (tmp_path / "log.csv").write_text("time,red\n0.0,1\n0.1,2\n")
     shutil.copy(ROOT / "programs" / "square_goals.toml", tmp_path / "goals.toml")
     place, _, name = file.partition("/")
-    path = {"RUN": run, "PACKED": run, "home": home}[place] / name if name else tmp_path / file
+    path = {"RUN": run, "home": home}[place] / name if name else tmp_path / file
     path.parent.mkdir(exist_ok=True)
     path.unlink(missing_ok=True)
     KINDS[kind](path)

@@ -81,12 +81,6 @@ def test_a_failed_run_that_printed_much_is_not_kept(
         assert bool(execute(task("print('x' * 100)\n1 / 0", keep=keep), tmp_path).run_id) is kept
 
 
-def test_a_kept_run_of_some_size_is_packed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(execute_module, "PACKED_FROM_BYTES", 100)
-    kept = RunStore().load_run(execute(task(LOGS, 5, keep=Keep.ALL), tmp_path).run_id)
-    assert not (kept.folder / "telemetry.bin").exists() and len(kept.telemetry.array()) > 100
-
-
 OWN_FILES = """
 import os, shutil
 links = ['/proc/self/fd/' + name for name in os.listdir('/proc/self/fd')]

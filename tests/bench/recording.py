@@ -1,4 +1,4 @@
-"""What a recording costs: time while it is written, bytes when it is packed, time to open it and to do it again."""
+"""What a recording costs: time while it is written, time to open it and to do it again."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ from tempfile import TemporaryDirectory
 
 from tests.bench.figures import Figure
 from tests.bench.processes import app_environment, children_cpu_s
-from tests.bench.references import Ratio, tick_cpu_s, ticks
-from tests.bench.running import EMPTY, LINE, LOG, MOVES, unpacked_store
+from tests.bench.references import Ratio, tick_cpu_s
+from tests.bench.running import EMPTY, LINE, LOG, MOVES
 from tests.bench.sampling import Effort, in_turns, measured
 from tests.bench.speed import LOADS
 from tuisim.config.build import build_run_spec
@@ -24,7 +24,7 @@ from tuisim.core.spec import RunSpec
 from tuisim.runs.handle import RunOptions, start_run
 from tuisim.runs.rerun import rerun, same
 from tuisim.runs.run_folder import StoredRun, field_files
-from tuisim.runs.store import RunStore, compact_run
+from tuisim.runs.store import RunStore
 from tuisim.runs.views import OutputView, TelemetryView
 from tuisim.source import Program
 
@@ -47,23 +47,14 @@ DRIVES = {
     "line follower, printing": (PRINTING_LINE, "Two_shapes"),
     "moves": (MOVES, "Grey_bands"),
 }
-"""Name, program and mat of runs that are packed."""
+"""Name, program and mat of runs that are opened, and done again."""
 NOISES = {"": (0, 0), ", light noise 20": (20, 0), ", motor noise 50": (0, 50), ", both": (20, 50)}
-PACKED = {
-    "straight": (0.2, 0.2, 32, 32),
-    "log": (0.45, 0.5, 35, 35),
-    "curves": (18, 18, 36, 36),
-    "line follower": (11, 19, 32, 34),
-    "line follower, printing": (12, 20, 32, 35),
-    "moves": (3, 3, 35, 35),
-}
-"""Bytes a tick that each run may have when it is packed, with each kind of noise."""
 
 
 def recording(effort: Effort) -> Iterator[Figure]:
     """Yield all figures of recordings."""
     yield from _cost(effort)
-    yield from _packing(effort)
+    yield from _reading(effort)
 
 
 def _cost(effort: Effort) -> Iterator[Figure]:
@@ -108,21 +99,11 @@ def _child_cpu_s(text: str, spec: RunSpec, run_s: float, module: str) -> float:
     return children_cpu_s() - before
 
 
-def _packing(effort: Effort) -> Iterator[Figure]:
+def _reading(effort: Effort) -> Iterator[Figure]:
     for name, (text, mat) in DRIVES.items():
-        for (words, (light, motor)), most in zip(NOISES.items(), PACKED[name], strict=False):
-            run = _recorded(
-                text,
-                build_run_spec(
-                    Settings({"background": mat, "noise.light": light, "noise.motor": motor})
-                ),
-            )
-            start = time.process_time()
-            _, size = compact_run(run)
-            used_s = time.process_time() - start
-            yield Figure(
-                f"packed, {name}{words}", size / run.telemetry.count, "bytes a tick", most=most
-            )
+        for words, (light, motor) in NOISES.items():
+            values = {"background": mat, "noise.light": light, "noise.motor": motor}
+            run = _recorded(text, build_run_spec(Settings(values)))
             samples = in_turns(partial(_opened_cpu_s, run), tick_cpu_s, effort)
             ratio = Ratio(samples.ratio / (100 * RUN_S), "x frozen ticks")
             yield Figure(
@@ -133,19 +114,13 @@ def _packing(effort: Effort) -> Iterator[Figure]:
                 ratio=ratio,
             )
             if not light and not motor:
-                yield Figure(
-                    f"packing 10 minutes, {name}",
-                    1e3 * used_s,
-                    "ms CPU",
-                    ratio=ticks(used_s, RUN_S),
-                )
                 again_s = median(_again_s(run) for _ in range(effort.repeats))
                 yield Figure(f"re-run, {name}", RUN_S / again_s, "sim s / s")
 
 
 def _recorded(text: str, spec: RunSpec) -> StoredRun:
-    """Return a run that has not been packed yet."""
-    store = unpacked_store()
+    """Return a run of RUN_S."""
+    store = RunStore()
     handle = start_run(
         Program("bench.py", text, "preloaded"), spec, RunOptions(time_limit_s=RUN_S), store
     )

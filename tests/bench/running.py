@@ -14,7 +14,6 @@ from tuisim.config.options import Settings
 from tuisim.core.spec import RunSpec
 from tuisim.runs.child import process
 from tuisim.runs.handle import RunHandle, RunOptions, start_run
-from tuisim.runs.store import RunStore
 from tuisim.source import Program
 
 EMPTY = "pass\n"
@@ -74,11 +73,6 @@ while True:
 """Straight on, on the spot, and back for a time."""
 
 
-def unpacked_store() -> RunStore:
-    """Return the store, without packing runs when they end: that is a child process, too, and would be counted."""
-    return RunStore(RunStore().home)
-
-
 def spec_of(
     mat: str = "Grey_bands",
     profile: str = "robolab",
@@ -97,9 +91,7 @@ def begin(
     options: RunOptions,
 ) -> RunHandle:
     """Start a program, as the headless command or the app does."""
-    return start_run(
-        Program("bench.py", text, prelude), spec_of(mat, profile), options, unpacked_store()
-    )
+    return start_run(Program("bench.py", text, prelude), spec_of(mat, profile), options)
 
 
 def started_by_itself() -> AbstractContextManager[object]:
@@ -114,7 +106,7 @@ def run_cpu_s(text: str, spec: RunSpec, options: RunOptions, prelude: str = "pre
     """Run a program to its end, or to the limit of simulated time; return the CPU seconds of its process."""
     with started_by_itself():
         before = children_cpu_s()
-        handle = start_run(Program("bench.py", text, prelude), spec, options, unpacked_store())
+        handle = start_run(Program("bench.py", text, prelude), spec, options)
         ended = handle.wait()
     assert ended is not None and ended.end in ("time_limit", "finished"), ended
     return measured(children_cpu_s() - before, "CPU time of a run")

@@ -8,7 +8,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from contextlib import AbstractContextManager, ExitStack
 from dataclasses import replace
-from pathlib import Path
 
 import pytest
 
@@ -33,7 +32,6 @@ from tests.bench.references import usual
 from tests.bench.sampling import Effort
 from tuisim.config.preferences import keep
 from tuisim.runs import handle
-from tuisim.runs.packed_files import compact
 
 pytestmark = pytest.mark.bench
 
@@ -170,11 +168,6 @@ def test_slow_and_large_recordings_are_seen(monkeypatch: pytest.MonkeyPatch) -> 
     monkeypatch.setattr(recording, "NOISES", {"": (0, 0)})
     before = figures_of("recording")
 
-    def compact_badly(folder: Path) -> None:
-        compact(folder)
-        (folder / "ballast").write_bytes(bytes(100_000))
-
-    monkeypatch.setattr("tuisim.runs.store.compact", compact_badly)
     plants = (
         in_runs(SLOW.format(turns=500)),
         in_commands(RECORDED.format(turns=1000)),

@@ -206,7 +206,6 @@ COMMANDS = {
     "run": (("run", "p.py", "--export", "a.csv"), ("p.py: ", "writing a.csv")),
     "run, several": (("run", "p.py", "p.py"), ("1 of 2, p.py", "2 of 2, p.py")),
     "rerun": (("runs", "rerun", "last"), ("rerunning run 1: p.py", "comparing run 1")),
-    "compact": (("runs", "compact", "--all"), ("compacting run",)),
     "export": (
         ("runs", "export", "1", "a.csv", "--telemetry", "b.csv"),
         ("writing a.csv", "writing b.csv"),

@@ -219,16 +219,6 @@ def test_what_is_stepped_through_is_the_program_as_it_was(stored: Path) -> None:
     assert (program.working_directory, program.modules_from) == (str(stored), run.folder)
 
 
-def test_a_run_of_before_has_no_arguments(folder: Path, here: Command) -> None:
-    here("run", "p.py", "--", "A")
-    file = RunStore().load_run("last").folder / "run.json"
-    data = json.loads(file.read_text())
-    for key in ("arguments", "python_path", "working_directory"):
-        del data["program"][key]
-    file.write_text(json.dumps(data))
-    assert json.loads(here("runs", "show", "last", "--json").stdout)["arguments"] == []
-
-
 @pytest.mark.parametrize("profile", PROFILES)
 def test_on_the_brick_a_program_starts_in_its_own_folder(
     folder: Path, here: Command, profile: str

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import fcntl
 import os
 import resource
 import shutil
@@ -27,13 +26,10 @@ from tuisim.logs.export import export_samples
 from tuisim.logs.reader import read_log
 from tuisim.runs import run_folder
 from tuisim.runs import store as store_module
-from tuisim.runs.handle import RunOptions, start_run
-from tuisim.runs.packed_files import PACKED_SUFFIX
 from tuisim.runs.records import OUTPUT_FILE, TELEMETRY_CHUNK, TELEMETRY_FILE
 from tuisim.runs.run_folder import RUN_FILE, StoredRun, field_files
 from tuisim.runs.side_files import STACK_FILE
-from tuisim.runs.store import PACKER_LOCK_FILE, PACKERS, RunStore
-from tuisim.source import Program
+from tuisim.runs.store import RunStore
 
 ENDLESS = """
 import time
@@ -214,19 +210,3 @@ def test_ctrl_c_while_the_export_is_written(
     assert (cancelled in done.stderr) == (rows is None)
     written = tmp_path / "a.csv"
     assert (len(read_log(written)) if written.exists() else None) == rows
-
-
-def test_answer_does_not_wait_for_the_packing(home: Path) -> None:
-    home.mkdir()
-    with open(home / PACKER_LOCK_FILE, "wb") as lock:
-        # As long as another one packs, this run's recording is not.
-        fcntl.flock(lock, fcntl.LOCK_EX)
-        handle = start_run(
-            Program("p.py", "import time\ntime.sleep(80)"), SPEC, RunOptions(time_limit_s=0.0)
-        )
-        assert over(handle).ended.end == "finished"
-        assert handle.stored().state == "finished"
-        assert (handle.folder / TELEMETRY_FILE).exists()
-    for waiting in PACKERS:
-        waiting.join()
-    assert (handle.folder / (TELEMETRY_FILE + PACKED_SUFFIX)).exists()

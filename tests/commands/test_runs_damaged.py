@@ -21,13 +21,13 @@ from tuisim.runs.catalogue import CATALOGUE_FILE
 from tuisim.runs.records import OUTPUT_FILE, TELEMETRY_FILE, Stream
 from tuisim.runs.run_folder import RUN_FILE
 from tuisim.runs.side_files import ACTIONS_FILE, STOP_FILE
-from tuisim.runs.store import RunStore, compact_run
+from tuisim.runs.store import RunStore
 
 Damage = Callable[[Path], Any]
 """Does harm to a run folder."""
 
 
-def record(packed: bool = False) -> Path:
+def record() -> Path:
     """Store a run that drove, printed and was acted upon, and return its folder."""
     robot = RobotSpec(extra_motors=(MotorSpec("outA"),))
     recorder = begun(RunStore(), RunSpec(robot, WorldSpec(), ROBOLAB))
@@ -36,10 +36,7 @@ def record(packed: bool = False) -> Path:
         recorder.drive(100, 100, 20)
         recorder.print(f"a: {at}")
     recorder.act("set_noise", light=5, motor=0)
-    stored = recorder.end()
-    if packed:
-        compact_run(stored)
-    return stored.folder
+    return recorder.end().folder
 
 
 def at(name: str, place: int, data: bytes) -> Damage:
@@ -221,7 +218,6 @@ WORDS = (
     "log diff 2 1 --json",
     "log report 1",
     "log plot 1 --telemetry --size 60x20",
-    "runs compact 1",
     "runs rerun 1",
     "runs picture 1 --out a.png",
     f"goals check {ROOT / 'programs' / 'square_goals.toml'} 1",

@@ -20,7 +20,6 @@ from tuisim.app.app import AppSettings, LabApp
 from tuisim.config.build import build_run_spec
 from tuisim.logs.reader import read_log
 from tuisim.protocol import Unended
-from tuisim.runs.store import compact_run
 
 KEYS: Mapping[str, Sequence[str]] = {
     "run": ("R", "y"),
@@ -52,7 +51,7 @@ KEYS: Mapping[str, Sequence[str]] = {
     "panels": ("G", "c"),
 }
 """What is pressed for each step; what stays open is closed after it."""
-OUTSIDE = ("reload", "compact", "remove", "rename", "rerun")
+OUTSIDE = ("reload", "remove", "rename", "rerun")
 """Steps of another process on the same home."""
 NAMED = (
     "untitled.toml",
@@ -99,9 +98,7 @@ class AppSteps:
         if not ended:
             return
         run = model.store.load_run(random.choice(ended))
-        if name == "compact":
-            compact_run(run)
-        elif name == "rename":
+        if name == "rename":
             model.store.tag(run.id, ("red",))
         elif name == "rerun":
             model.check_replay(run)

@@ -32,7 +32,6 @@ SOUND: Mapping[str, str] = {
     "runs picture": "1 --out new.png",
     "runs movie": "1 --out new.svg --to 0.2",
     "runs rerun": "1",
-    "runs compact": "1",
     "runs rm": "1",
     "log summary": "1",
     "log bands": "log.csv",

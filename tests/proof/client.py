@@ -133,22 +133,19 @@ class Client:
         return self._random.choice(some) if some else None
 
     def remover(self) -> None:
-        """Remove or compact a run, which is refused while it runs, and only then."""
+        """Remove a run, which is refused while it runs, and only then."""
         if (row := self._chosen()) is None:
             return
         # Of those that are over most stay, for the others to read.
-        chance = 0.5 if row["end"] == Unended.RUNNING else 0.1
-        run_id, command = row["id"], "rm" if self._random.random() < chance else "compact"
+        if row["end"] != Unended.RUNNING and self._random.random() > 0.1:
+            return
+        run_id = row["id"]
         was_there = is_complete(run_id)
-        done = check_said(["runs", command, run_id])
+        done = check_said(["runs", "rm", run_id])
         if done.code:
             is_wrong = row["end"] != Unended.RUNNING or "is still running" not in done.err
             if "cannot be removed" in done.err or (is_wrong and was_there and is_complete(run_id)):
-                raise FaultError(
-                    f"tuisim runs {command} {run_id}, listed as {row['end']}: {done.err}"
-                )
-        elif command == "compact":
-            check_recording(run_id)
+                raise FaultError(f"tuisim runs rm {run_id}, listed as {row['end']}: {done.err}")
         elif folder_of(run_id).exists():
             raise FaultError(f"run {run_id} is removed, but its folder is there")
         else:
@@ -195,7 +192,6 @@ class Client:
             if time.monotonic() > give_up:
                 raise FaultError(f"run {run_id} is still running, but its app was killed")
             time.sleep(0.05)
-        check_readable(["runs", "compact", run_id], run_id)
         check_recording(run_id)
 
     def victim(self) -> None:

@@ -1,4 +1,4 @@
-"""Several clients on one home at the same time, with runs removed, compacted, tagged and killed under their hands."""
+"""Several clients on one home at the same time, with runs removed, tagged and killed under their hands."""
 
 from __future__ import annotations
 

@@ -112,12 +112,10 @@ def samples() -> Path:
     (folder / "batch.toml").write_text(_BATCH)
     with home(folder / "home"):
         _done(["run", str(program), "--background", "Grey_bands"])
-        _done(["run", str(program), "--background", "Grey_bands"])
         for suffix in ("csv", "jsonl", "parquet", "arrow"):
             _done(["log", "export", "last", "--out", str(folder / f"log.{suffix}")])
-        _done(["runs", "compact", "1"])
-    for run in list((folder / "home" / "runs").iterdir()):
-        run.rename(run.with_name("packed" if (run / "telemetry.bin.packed").exists() else "plain"))
+    (run,) = (folder / "home" / "runs").iterdir()
+    run.rename(run.with_name("plain"))
     for kind, name in (("robots", "Explorer"), ("obstacles", "Square_posts")):
         (folder / f"{kind}.toml").write_text(_done([kind, name]))
     (folder / "profile.toml").write_text(
@@ -239,7 +237,6 @@ _USED = (
     "log plot RUN",
     "runs rerun RUN",
     "runs picture RUN --out out.png",
-    "runs compact RUN",
 )
 FORMATS: Mapping[str, Format] = {
     "csv": Format("log.csv", _LOG, Syntax.CSV, is_slow=True),
@@ -290,12 +287,6 @@ FORMATS: Mapping[str, Format] = {
     ),
     "run": Format(
         "home/runs/plain/run.json", _run("plain", *_SHOWN, *_USED), Syntax.JSON, is_slow=True
-    ),
-    "packed": Format(
-        "home/runs/packed/telemetry.bin.packed",
-        _run("packed", *_SHOWN),
-        Syntax.FIELDS,
-        is_slow=True,
     ),
     "catalogue": Format("home/runs.db", _catalogue, Syntax.SQLITE, is_slow=True),
 }

@@ -48,8 +48,6 @@ _FILES = (
     "output.bin",
     "run.json",
     "lock",
-    "telemetry.bin.packed",
-    "output.bin.packed",
     *SIDE_FILES,
 )
 _READ = ("telemetry.bin", "output.bin", ACTIONS_FILE, STOP_FILE)

@@ -85,7 +85,6 @@ OPERATIONS: Mapping[str, Operation] = {
     "picture": Operation(
         (*_COMMAND, "runs", "picture", "1", "--out", "out.png"), ("out.png",), is_slow=True
     ),
-    "compact": Operation((*_COMMAND, "runs", "compact", "1")),
     "remove": Operation((*_COMMAND, "runs", "rm", "1"), removes=True),
     "rerun": Operation((*_COMMAND, "runs", "rerun", "1")),
     "catalogue": Operation(

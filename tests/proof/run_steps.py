@@ -37,7 +37,7 @@ from tuisim.protocol import (
 from tuisim.runs.frames import samples_frame, telemetry_frame
 from tuisim.runs.handle import RunHandle, RunOptions, start_run
 from tuisim.runs.recorded_run import Recording
-from tuisim.runs.store import RunStore, compact_run
+from tuisim.runs.store import RunStore
 from tuisim.source import Program
 
 ENDLESS = """\
@@ -317,11 +317,6 @@ def _remove(model: RunModel, random: Random) -> None:
         del model.seen[one.id]
 
 
-def _compact(model: RunModel, random: Random) -> None:
-    if run := model.one_stored(random):
-        compact_run(run)
-
-
 def _rerun(model: RunModel, random: Random) -> None:
     if run := model.one_stored(random):
         model.check_replay(run)
@@ -354,7 +349,6 @@ OPERATIONS: Mapping[str, Callable[[RunModel, Random], None]] = {
     "rename": _tag,
     "export": _export,
     "remove": _remove,
-    "compact": _compact,
     "rerun": _rerun,
     "stop": _stop,
 }

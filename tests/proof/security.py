@@ -372,7 +372,7 @@ def _links(random: Random) -> None:
         path.unlink()
         path.symlink_to((outside / "kept").resolve())
     (home / "runs" / "linked").symlink_to(outside.resolve())
-    for words in ("runs", "runs show 1", "runs compact 1", "runs rm 1", "runs rm linked"):
+    for words in ("runs", "runs show 1", "runs rm 1", "runs rm linked"):
         _say(*words.split())
     if [path.read_text() for path in outside.iterdir()] != ["kept"]:
         raise FaultError("a file behind a link was changed or removed")
@@ -401,7 +401,7 @@ def _names(random: Random) -> Iterator[str]:
 def _check_private(home: Path) -> None:
     """Raise a fault if others may read or write something in the home."""
     for path in (home, *home.rglob("*")):
-        # A run that is packed later loses files at any moment.
+        # What is written in another place first is gone at any moment.
         with suppress(FileNotFoundError):
             mode = path.lstat().st_mode
             if not stat.S_ISLNK(mode) and mode & 0o077:

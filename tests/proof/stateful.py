@@ -102,7 +102,7 @@ def _names(random: Random) -> Iterator[str]:
 
 
 STATEFUL = Kind(
-    "random sequences of run, pause, step, back, branch, move, edit, export, compact …",
+    "random sequences of run, pause, step, back, branch, move, edit, export …",
     _names,
     _check,
 )

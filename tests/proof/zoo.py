@@ -22,7 +22,6 @@ from tuisim.config.options import Settings
 from tuisim.protocol import End, Ended
 from tuisim.runs.child import process
 from tuisim.runs.handle import RunHandle, RunOptions, start_run
-from tuisim.runs.packed_files import find_packed
 from tuisim.runs.records import Stream
 from tuisim.runs.store import RunStore
 from tuisim.source import Program
@@ -140,12 +139,8 @@ def _check_store(run: RunHandle, ended: Ended) -> None:
 
 
 def _bits(run: RunHandle) -> tuple[bytes, ...]:
-    """Return what is recorded; a file that was compacted as one that was not."""
-    found = []
-    for name in ("telemetry.bin", "output.bin"):
-        packed = find_packed(run.folder / name)
-        found.append(packed.recording() if packed else (run.folder / name).read_bytes())
-    return tuple(found)
+    """Return what is recorded."""
+    return tuple((run.folder / name).read_bytes() for name in ("telemetry.bin", "output.bin"))
 
 
 def _waited_ns(pid: int) -> int:

@@ -13,7 +13,7 @@ from tuisim.config.options import Settings
 from tuisim.errors import LogError
 from tuisim.protocol import End
 from tuisim.runs.handle import RunOptions, start_run
-from tuisim.runs.store import RunStore, compact_run
+from tuisim.runs.store import RunStore
 from tuisim.source import Program
 
 FILES = """
@@ -93,9 +93,6 @@ sum(range(10**12))
     "pipes in place of small files": FILES + REPLACED.format(ALL[3:], "os.mkfifo(name)"),
     "links": FILES + REPLACED.format(ALL, "os.symlink('/dev/zero', name)"),
     "deleted": FILES + REPLACED.format(ALL[:2], "pass"),
-    "folders as if packed": FILES
-    + "for name in (telemetry, output): os.makedirs(name + '.packed/deep')",
-    "as if packed": FILES + "for name in (telemetry, output): os.link(name, name + '.packed')",
 }
 
 
@@ -158,7 +155,7 @@ def test_a_live_run_is_falsified_while_it_goes_on(start: Start) -> None:
 
 
 @pytest.mark.usefixtures("home")
-def test_nobody_packs_a_run_before_its_end_is_stored() -> None:
+def test_nobody_removes_a_run_before_its_end_is_stored() -> None:
     handle = start_run(
         Program("a.py", "print(1)", "none"), build_run_spec(Settings()), RunOptions()
     )
@@ -166,8 +163,8 @@ def test_nobody_packs_a_run_before_its_end_is_stored() -> None:
     # Its process is gone, but what it left has not been looked at.
     handle._process.wait()
     with pytest.raises(LogError, match="is still running"):
-        compact_run(store.load_run(handle.run_id))
+        store.remove(handle.run_id)
     while handle.ended is None:
         handle.pump()
     assert handle.ended.end is End.FINISHED
-    compact_run(store.load_run(handle.run_id))
+    store.remove(handle.run_id)

@@ -1,53 +1,70 @@
-"""Runs that were recorded before profiles named their motor law."""
+"""Runs that another version has stored are refused in one sentence; those of this version keep their profile."""
 
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
+import sqlite3
+import sys
+from contextlib import closing
 from pathlib import Path
 
 import pytest
 
+from tests.conftest import Command
 from tests.running import Run
-from tuisim.core.profile import EARLIER_KEYS, PROFILES
-from tuisim.runs.run_folder import StoredRun, read_run
+from tuisim.core.profile import PROFILES
+from tuisim.runs.catalogue import CATALOGUE_FILE
+from tuisim.runs.run_folder import read_run
+from tuisim.runs.store import RunStore
 
-Earlier = Callable[[str], StoredRun]
+REFUSED = "stored by another version of tuisim: format 1, this one reads 2 (run its program again)"
 
 
 @pytest.fixture
-def earlier(run: Run) -> Earlier:
-    """`earlier(profile)`: a stored run as it was written then."""
-
-    def store(profile: str) -> StoredRun:
-        folder: Path = run("tank_drive.on_for_seconds(50, 50, 0.1)", profile=profile).run.folder
-        file = folder / "run.json"
-        data = json.loads(file.read_text())
-        data["spec"]["profile"].pop("motor_law", None)
-        data["spec"]["profile"] |= dict.fromkeys(EARLIER_KEYS, profile == "nbev3devsim")
-        file.write_text(json.dumps(data))
-        return read_run(folder)
-
-    return store
+def earlier(run: Run) -> Path:
+    """The folder of a run in an earlier format, with a recording that had been packed."""
+    folder: Path = run("tank_drive.on_for_seconds(50, 50, 0.1)").run.folder
+    data = json.loads((folder / "run.json").read_text())
+    (folder / "run.json").write_text(json.dumps(data | {"format": 1}))
+    (folder / "telemetry.bin").rename(folder / "telemetry.bin.packed")
+    with closing(sqlite3.connect(folder.parent.parent / CATALOGUE_FILE)) as catalogue:
+        catalogue.execute("PRAGMA user_version = 1")
+    return folder
 
 
 @pytest.mark.parametrize(
-    ("profile", "notes"),
+    "words",
     [
-        (
-            "nbev3devsim",
-            (
-                "recorded with an earlier motor law of the profile nbev3devsim: a rerun may give another result",
-            ),
-        ),
-        ("robolab", ()),
-        ("ev3", ()),
+        "runs show RUN",
+        "runs export RUN a.csv",
+        "runs rerun RUN",
+        "runs picture RUN",
+        "log summary RUN",
+        "log report RUN",
+        "analyse RUN",
+        "open --run RUN",
     ],
 )
-def test_an_earlier_run_opens_with_its_motor_law(
-    profile: str, notes: tuple[str, ...], earlier: Earlier
+def test_another_format_is_one_sentence(
+    earlier: Path, here: Command, monkeypatch: pytest.MonkeyPatch, words: str
 ) -> None:
-    stored = earlier(profile)
-    assert stored.spec.profile == PROFILES[profile]
-    assert stored.telemetry.count > 1
-    assert stored.notes == notes
+    for stream in (sys.stdin, sys.stdout):
+        monkeypatch.setattr(stream, "isatty", lambda: True)
+    done = here(*words.replace("RUN", str(earlier)).split())
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr == f"tuisim: {earlier / 'run.json'}: {REFUSED}\n"
+
+
+def test_another_format_is_told_in_the_list(earlier: Path) -> None:
+    (info,) = (info for info in RunStore(earlier.parent.parent).runs() if info.id == earlier.name)
+    assert info.end == "damaged"
+    assert info.summary.endswith("stored by another version of tuisim: format 1, this one reads 2")
+
+
+@pytest.mark.parametrize("profile", PROFILES)
+def test_a_stored_run_has_its_profile(profile: str, run: Run) -> None:
+    library = PROFILES[profile].motor_law.library
+    text = "pass" if library == "pybricks" else "tank_drive.on_for_seconds(50, 50, 0.1)"
+    stored = read_run(run(text, profile=profile).run.folder)
+    assert (stored.spec.profile, stored.notes) == (PROFILES[profile], ())
+    assert type(stored.spec.profile.motor_law) is type(PROFILES[profile].motor_law)

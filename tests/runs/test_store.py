@@ -77,7 +77,6 @@ def test_run_file_is_what_others_may_read(logged: StoredRun) -> None:
         "live",
         "program",
         "spec",
-        "light_law",
         "field",
         "options",
         "tags",

@@ -606,9 +606,6 @@ def _prepare_run(word: str | StoredRun) -> tuple[StoredRun, Mat, TuisimError | N
             run.telemetry.note or "has no recording: it ended before its first tick",
             file=str(run.folder),
         )
-    # Packed recordings are unpacked here, which may be slow and may fail.
-    run.telemetry.record(0)
-    next(run.output.rows(), None)
     try:
         return run, prepare_mat_of(run), None
     except TuisimError as error:

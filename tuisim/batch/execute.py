@@ -17,18 +17,15 @@ from tuisim.goals.judgement import Judgement
 from tuisim.protocol import End, Ended
 from tuisim.regular_file import of_the_machine
 from tuisim.runs.handle import RunHandle
-from tuisim.runs.packed_files import compact
 from tuisim.runs.records import OutputRow, Stream
 from tuisim.runs.run_folder import StoredRun
 from tuisim.runs.samples import samples_of
-from tuisim.runs.store import RunStore, bytes_in
+from tuisim.runs.store import RunStore
 from tuisim.runs.temporary import TemporaryRun
 
 MATS_KEPT = 20
 MOST_OUTPUT_BYTES = 16 << 20
 """A failed run that printed more is not kept: its end says what happened, and nobody reads so much."""
-PACKED_FROM_BYTES = 1 << 18
-"""A run that is kept is packed if its files are larger."""
 
 
 def execute(task: Task, folder: Path) -> Result:
@@ -126,9 +123,6 @@ def _is_kept(task: Task, run: StoredRun, ended: Ended, judgements: Sequence[Judg
 
 def _keep(temporary: TemporaryRun, ended: Ended) -> str:
     temporary.write_end(ended)
-    # Thousands of runs are kept, and few are looked at. A short one is smaller than what packing costs.
-    if bytes_in(temporary.folder) > PACKED_FROM_BYTES:
-        compact(temporary.folder)
     return RunStore().adopt(temporary.folder).id
 
 

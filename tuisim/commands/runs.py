@@ -41,12 +41,11 @@ from tuisim.protocol import Unended
 from tuisim.runs.diff import RunDiff, recording_in_words, setup_in_words
 from tuisim.runs.frames import damage_note
 from tuisim.runs.handle import ASK_AGAIN_S
-from tuisim.runs.packed_files import earlier_forms, renew
 from tuisim.runs.records import OutputRow, Stream, line_of
 from tuisim.runs.rerun import changed_files, rerun, same
-from tuisim.runs.run_folder import StoredRun, read_run
+from tuisim.runs.run_folder import StoredRun
 from tuisim.runs.side_files import MOST_PATH, FilesRead, read_reads
-from tuisim.runs.store import COMPACT_TICKS, RunStore, bytes_in, compact_run
+from tuisim.runs.store import RunStore, bytes_in
 from tuisim.runs.temporary import temporary_home
 
 QUICK_BYTES = 8 << 20
@@ -315,11 +314,6 @@ def _rerun(run: StoredRun, *, as_json: bool) -> int:
         finally:
             handle.close()
         tell(f"comparing run {run.number}")
-        if earlier_forms(run.folder):
-            renew(run.folder, scratch.folder(handle.run_id))
-            notes = (*notes, "its recording, which an earlier tuisim packed, is made again")
-            echo_error(f"note: {notes[-1]}")
-            run = read_run(run.folder)
         found = same(run, scratch.load_run(handle.run_id))
     if as_json:
         echo_json({"run": run.number, **found.to_plain(), "notes": list(notes)})
@@ -337,39 +331,6 @@ def diff_text(found: RunDiff) -> str:
         rows = [[f"{at:.2f}", f"{mm:.3f}", f"{deg:.3f}"] for at, mm, deg in found.divergence.table]
         lines.append(table(("SECONDS", "APART MM", "HEADING °"), rows))
     return "\n".join(lines)
-
-
-@command(
-    _runs,
-    option("--all", "every", is_flag=True, help="Compact every finished run."),
-    AS_JSON,
-    help=f"Compress recordings losslessly. Runs of {COMPACT_TICKS} ticks or more are compressed when they end.",
-)
-def compact(words: Sequence[str], every: bool, as_json: bool) -> int:
-    """Compact the named runs, or all finished ones."""
-    store, code, before, after, ticks = RunStore(), 0, 0, 0, 0
-    names = words if every else _needed(words, "compact")
-    names = names or [info.id for info in store.runs() if info.end is not Unended.RUNNING]
-    with Progress("compact"):
-        for number, name in enumerate(names):
-            tell(f"compacting run {name}", number, len(names))
-            try:
-                (run,) = _load(store, [name])
-                sizes = compact_run(run)
-            except LogError as error:
-                # The other runs are not affected.
-                echo_error(f"tuisim: {error}")
-                code = error.exit_code
-                continue
-            before, after, ticks = before + sizes[0], after + sizes[1], ticks + run.telemetry.count
-    if as_json:
-        echo_json(
-            {"runs": len(names), "ticks": ticks, "bytes_before": before, "bytes_after": after}
-        )
-    else:
-        each = f", {after / ticks:.2f} bytes per tick" if ticks else ""
-        echo(f"{counted(len(names), 'run')}: {before:,} → {after:,} bytes{each}")
-    return code
 
 
 @command(
@@ -411,8 +372,11 @@ def export(words: Sequence[str], telemetry: str | None) -> int:
 
 runs = Group.of(
     "runs",
-    (list_runs, show, export, movie, picture, rerun_runs, compact, rm),
+    (list_runs, show, export, movie, picture, rerun_runs, rm),
     default="list",
+    instead={
+        "compact": "recordings are plain files; `tuisim runs rm` removes those you do not need"
+    },
     help="""List, show, export, draw or remove stored runs.
 
     A RUN is given by its number, its id or the start of its id, its folder's path, or `last`.

@@ -17,9 +17,6 @@ from math import cos, log, pi, sin, sqrt
 from struct import Struct
 from typing import Any, NamedTuple
 
-LIGHT_LAW = "drawn-mean"
-"""The name of this law of light noise, as recordings have it."""
-
 _BLOCK_TICKS = 256
 _PIXEL_MAX = 255
 _NUMBERS = 2**32

@@ -24,7 +24,7 @@ CATALOGUE_FILE = "runs.db"
 LOCK_FILE = "runs.lock"
 _SIDE_FILES = ("-wal", "-shm")
 """Ends of the names of the files that SQLite keeps beside a database."""
-_SCHEMA_VERSION = 1
+_SCHEMA_VERSION = 2
 _BUSY_S = 10.0
 
 _Result = TypeVar("_Result")

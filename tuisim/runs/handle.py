@@ -54,8 +54,6 @@ from tuisim.runs.child.process import (
     write_command,
 )
 from tuisim.runs.child.readable import is_readable
-from tuisim.runs.packed_files import PACKED_MAGIC, PACKED_SUFFIX
-from tuisim.runs.removal import remove_tree
 from tuisim.runs.run_folder import RUN_FILE, StoredRun, field_files
 from tuisim.runs.run_options import DEFAULT_TIME_LIMIT_S as DEFAULT_TIME_LIMIT_S
 from tuisim.runs.run_options import RunOptions as RunOptions
@@ -157,12 +155,12 @@ class RunHandle:
         self._asked_at = self._announced_at = 0.0
         self._look_at_s = time.monotonic() + LOOK_EVERY_S
         self._is_followed = not of_many
-        """Whether its end is read, too: it may be packed before anybody looks. Short runs of batches are not."""
+        """Whether its recording is looked at once more when the process is gone. Short runs of batches are not."""
         self._progress, self._stack_asked = (0, 0.0), False
         self._announced: Ended | None = None
         self.unstored = ""
         """Why the run or its end is not stored; empty if it is."""
-        # Held beyond the end of the process: until its end is stored, nobody else may pack the run.
+        # Held beyond the end of the process: until its end is stored, nobody else may remove the run.
         self._lock_fd = os.dup(run.lock_fd)
         try:
             self._process, self._command_fd, self._event_fd, self._lifeline_fd = start_child(
@@ -354,8 +352,6 @@ class RunHandle:
             and not due_ns(end.tick, hz) <= end.time_ns <= due_ns(end.tick + 1, hz)
         ):
             return f"its end at tick {end.tick} has another time"
-        if any(path.exists() for path in self._packed_files()):
-            return "it was packed while the program ran"
         try:
             read_actions(self.folder)
             read_stop_tick(self.folder)
@@ -363,20 +359,12 @@ class RunHandle:
             return error.message.replace(f"{self.folder}{os.sep}", "")
         return ""
 
-    def _packed_files(self) -> list[Path]:
-        return [self.folder / (name + PACKED_SUFFIX) for name in PACKED_MAGIC]
-
     def _finish(self, final: Ended) -> None:
         self.ended = final
         self.paused, self.waiting_for_input, self.waiting_for_reply = False, None, False
         for fd in (self._event_fd, self._command_fd, self._lifeline_fd):
             os.close(fd)
         end_left_over(self._process.pid, self._mark)
-        if final.end is End.FALSIFIED:
-            for path in self._packed_files():
-                # The program may have put a folder there.
-                with suppress(OSError):
-                    (remove_tree if path.is_dir() and not path.is_symlink() else os.unlink)(path)
         for name in (LOG_FILE, STACK_FILE):
             path = self.folder / name
             # The folder may be about to be deleted.

@@ -13,8 +13,7 @@ from tuisim.atomic import replacing
 from tuisim.config.mat_cache import FieldFiles, open_field, prepare
 from tuisim.config.mats import background
 from tuisim.core.field import Field
-from tuisim.core.noise import LIGHT_LAW
-from tuisim.core.profile import NS_PER_S, MotorLaw, due_ns, law_of_earlier
+from tuisim.core.profile import NS_PER_S, due_ns
 from tuisim.core.spec import NoiseSpec, RunSpec
 from tuisim.core.tree import from_plain, to_plain
 from tuisim.data_class import dataclass
@@ -27,7 +26,7 @@ from tuisim.runs.views import OutputView, TelemetryView, TickRecord, views_of
 from tuisim.source import Program
 
 RUN_FILE = "run.json"
-RUN_FORMAT = 1
+RUN_FORMAT = 2
 _PROGRAM_KEYS = (
     "name",
     "path",
@@ -143,7 +142,6 @@ def new_run_data(
         "live": live,
         "program": {name: getattr(program, name) for name in _PROGRAM_KEYS},
         "spec": to_plain(spec),
-        "light_law": LIGHT_LAW,
         "field": None if field is None else dict(field),
         "options": dict(options or {}),
         "tags": [],
@@ -189,8 +187,11 @@ def read_run_file(folder: Path) -> dict[str, Any]:
     if not isinstance(data, dict) or "format" not in data:
         raise LogError("not a run", file=str(path))
     if data["format"] != RUN_FORMAT:
+        stored_format = shortened(str(data["format"]))
         raise LogError(
-            f"format version {data['format']}, this tuisim reads {RUN_FORMAT}", file=str(path)
+            f"stored by another version of tuisim: format {stored_format}, this one reads {RUN_FORMAT}",
+            "run its program again",
+            file=str(path),
         )
     return data
 
@@ -257,15 +258,12 @@ def read_run(folder: Path, document: str | None = None, known: RunSpec | None = 
     try:
         program: dict[str, Any] = {
             key: _typed(data["program"][key], str, key)
-            for key in ("name", "path", "text", "prelude")
+            for key in ("name", "path", "text", "prelude", "working_directory", "module_folder")
         }
-        # Older runs do not have these keys.
         for key in ("arguments", "python_path"):
             program[key] = tuple(
-                _typed(word, str, key) for word in _typed(data["program"].get(key, []), list, key)
+                _typed(word, str, key) for word in _typed(data["program"][key], list, key)
             )
-        for key in ("working_directory", "module_folder"):
-            program[key] = _typed(data["program"].get(key, ""), str, key)
         spec = from_plain(data["spec"]) if known is None else known
         spec = _checked(spec, to_plain(spec) if known is None else data["spec"])
         end = None if data["end"] is None else _end_of(data["end"])
@@ -273,20 +271,17 @@ def read_run(folder: Path, document: str | None = None, known: RunSpec | None = 
         return StoredRun(
             folder=folder,
             id=_typed(data["id"], str, "id"),
-            number=int(data.get("number", 0)),
+            number=int(data["number"]),
             created=_typed(data["created"], str, "created"),
             live=bool(data["live"]),
             program=Program(**program),
             spec=spec,
             field=_typed(data["field"] or {}, dict, "field") or None,
             options=_options_of(data),
-            tags=tuple(_typed(tag, str, "a tag") for tag in data.get("tags", ())),
+            tags=tuple(_typed(tag, str, "a tag") for tag in data["tags"]),
             end=end,
             actions=actions,
-            # Both recordings may have the same note.
-            notes=tuple(
-                filter(None, dict.fromkeys((*lost, cut, *_law_notes(data, spec, actions))))
-            ),
+            notes=tuple(filter(None, (*lost, cut))),
             telemetry=telemetry,
             output=output,
         )
@@ -306,24 +301,6 @@ def _lost_of(view: TelemetryView | OutputView, end: Ended | None) -> str:
     if isinstance(view, TelemetryView) and view.count <= end.tick:
         return f"{view.name} has {view.count} of {end.tick + 1} records"
     return ""
-
-
-def _law_notes(
-    data: Mapping[str, Any], spec: RunSpec, actions: Sequence[UserAction]
-) -> Iterator[str]:
-    """Yield notes for a run recorded with laws that are not those of this version."""
-    yield _model_note(data["spec"]["profile"])
-    changes = [action.command for action in actions if isinstance(action.command, SetNoise)]
-    is_noisy = bool(spec.world.noise.light) or any(change.light for change in changes)
-    if is_noisy and data.get("light_law") != LIGHT_LAW:
-        yield "recorded with another law of the light noise, which is gone: a rerun gives other readings"
-
-
-def _model_note(profile: Mapping[str, Any]) -> str:
-    """Return a note for runs recorded with another motor law; empty for any other run."""
-    if "motor_law" in profile or law_of_earlier(profile) != MotorLaw.NBEV3DEVSIM:
-        return ""
-    return f"recorded with an earlier motor law of the profile {profile['name']}: a rerun may give another result"
 
 
 def field_files(spec: RunSpec) -> FieldFiles:

@@ -1,17 +1,9 @@
-"""The run store: one folder for each run, and the catalogue that lists them.
-
-`python -m tuisim.runs.store FOLDER` packs a finished run. Each long run is packed so, in a process of its own, when it
-is over: nothing waits for it, neither the run nor the app, whose threads it would slow down.
-"""
+"""The run store: one folder for each run, and the catalogue that lists them."""
 
 from __future__ import annotations
 
-import fcntl
 import os
 import reprlib
-import subprocess
-import sys
-import threading
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import asdict, field, replace
@@ -29,7 +21,6 @@ from tuisim.errors import LogError
 from tuisim.protocol import RUN_STATES, End, Ended, Unended
 from tuisim.regular_file import of_the_machine, open_regular
 from tuisim.runs.catalogue import HOME_HINT, Catalogue, RunInfo, locked
-from tuisim.runs.packed_files import PACKED_SUFFIX, compact
 from tuisim.runs.records import OUTPUT_FILE, TELEMETRY_FILE
 from tuisim.runs.removal import remove_tree
 from tuisim.runs.run_folder import (
@@ -59,16 +50,6 @@ _COUNT_AT_ONCE_BYTES = 1 << 20
 _COUNT_A_LISTING_BYTES = 8 << 20
 """Bytes of output in which samples are counted on each listing; the rest waits for the next listing."""
 
-COMPACT_TICKS = 6000
-"""A run of at least this many ticks is packed in a separate process as soon as it is over; others gain little."""
-
-PACKER_LOCK_FILE = "packer.lock"
-PACKERS: list[threading.Thread] = []
-"""Each waits for the end of a packer that this process has started."""
-
-_NICENESS = 10
-"""Increment of a packer's niceness."""
-
 
 @dataclass(frozen=True, slots=True)
 class NewRun:
@@ -88,11 +69,9 @@ class RunStore:
 
     Args:
         home: The folder, by default `home_folder()`. It is created with the first run.
-            Runs in another folder are temporary, and are not packed.
     """
 
     def __init__(self, home: Path | None = None) -> None:
-        self._lasting = home is None
         self.home = (home_folder() if home is None else home).absolute()
         self._runs = self.home / RUNS_FOLDER
         self._catalogue = Catalogue(self.home, self._scan)
@@ -194,21 +173,6 @@ class RunStore:
                 samples=samples,
                 summary=end.summary,
             )
-        # One that is falsified stays as it is, for whoever wants to look.
-        if (
-            self._lasting
-            and end.end is not End.FALSIFIED
-            and (end.tick >= COMPACT_TICKS or samples is None)
-        ):
-            pack_later(self.folder(run_id))
-
-    def count_samples(self, run_id: str) -> None:
-        """Count the samples of a finished run and store their number.
-
-        Raises:
-            LogError: the run is damaged, or the catalogue cannot be written.
-        """
-        self._catalogue.update(run_id, samples=counts_of(OutputView(self.folder(run_id))).samples)
 
     def forget(self, run_id: str) -> None:
         """Delete a run that could not be started."""
@@ -456,22 +420,6 @@ def load_run(run: str | Path | int) -> StoredRun:
     return RunStore().load_run(run)
 
 
-def compact_run(run: StoredRun) -> tuple[int, int]:
-    """Pack a run's recordings, unless they are packed.
-
-    Returns:
-        Total size of the run's files in bytes, before and after.
-
-    Raises:
-        LogError: the run is still running, damaged, or cannot be written; nothing is lost.
-    """
-    if run.end is None and state_without_end(run.folder) is Unended.RUNNING:
-        raise LogError(f"run {run.id} is still running", "stop it first")
-    before = bytes_in(run.folder)
-    compact(run.folder)
-    return before, bytes_in(run.folder)
-
-
 def bytes_in(folder: Path) -> int:
     """Return the total size of a run's files in bytes; files deleted during the call do not count.
 
@@ -516,14 +464,14 @@ def _info_from(run_id: str, data: Mapping[str, Any]) -> RunInfo:
     """Return the catalogue row of a run file; raises KeyError, TypeError or ValueError for invalid contents."""
     spec, end = data["spec"], data["end"]
     info = RunInfo(
-        int(data.get("number", 0)),
+        int(data["number"]),
         run_id,
         str(data["created"]),
         str(data["program"]["name"]),
         str(spec["world"]["background"]),
         str(spec["profile"]["name"]),
         int(spec["seed"]),
-        tags=" ".join(data.get("tags", ())),
+        tags=" ".join(data["tags"]),
     )
     if end is None:
         return info
@@ -542,8 +490,7 @@ def _copy_files(folder: Path, place: Path) -> None:
     """
     import shutil
 
-    recordings = (TELEMETRY_FILE, OUTPUT_FILE)
-    for name in (*recordings, *(name + PACKED_SUFFIX for name in recordings), *SIDE_FILES):
+    for name in (TELEMETRY_FILE, OUTPUT_FILE, *SIDE_FILES):
         try:
             source = open_regular(folder / name)
         except OSError as error:
@@ -600,35 +547,3 @@ def _with_last_record(info: RunInfo, folder: Path) -> RunInfo:
     except (LogError, KeyError, TypeError):
         return replace(info, ticks=last.tick)
     return replace(info, ticks=last.tick, time_s=due_ns(last.tick, tick_hz) / NS_PER_S)
-
-
-def pack_later(folder: Path) -> None:
-    """Pack the recordings of a run and count its samples in the background; errors are ignored."""
-    PACKERS[:] = [waiting for waiting in PACKERS if waiting.is_alive()]
-    with suppress(OSError):
-        packer = subprocess.Popen(
-            [sys.executable, "-s", "-P", "-m", "tuisim.runs.store", str(folder)],
-            stdin=subprocess.DEVNULL,
-            stdout=subprocess.DEVNULL,
-            stderr=subprocess.DEVNULL,
-            env={**os.environ, "PYTHONPATH": str(Path(__file__).parent.parent.parent)},
-            cwd="/",
-            start_new_session=True,
-        )
-        PACKERS.append(threading.Thread(target=packer.wait, daemon=True))
-        PACKERS[-1].start()
-
-
-def pack(folder: Path) -> None:
-    """Pack the recordings of one run, after other packers have finished."""
-    os.nice(_NICENESS)
-    home = folder.parent.parent
-    # On failure it stays unpacked; `tuisim runs compact` shows the error.
-    with suppress(LogError, OSError), open(home / PACKER_LOCK_FILE, "ab", opener=private) as lock:
-        fcntl.flock(lock, fcntl.LOCK_EX)
-        RunStore(home).count_samples(folder.name)
-        compact_run(read_run(folder))
-
-
-if __name__ == "__main__":
-    pack(Path(sys.argv[1]))

@@ -1,8 +1,7 @@
 """Readers of a run folder's two binary files, also while the program runs.
 
 A view never changes the file and never blocks. A missing file reads as empty; of a file
-that has grown the rest is read; a packed file is unpacked in memory, once, when its
-contents are needed. Data that has been read stays valid, whatever happens to the file.
+that has grown the rest is read. Data that has been read stays valid, whatever happens to the file.
 
 The program could write to these files as well. So a view of a run that is running reads only
 as far as they are what the simulation writes: ticks in order, finite numbers, whole rows.
@@ -29,7 +28,6 @@ from tuisim.data_class import dataclass
 from tuisim.errors import LogError, counted
 from tuisim.regular_file import of_the_machine, open_regular
 from tuisim.runs.brick_state import DRAWN_STREAMS, is_sound
-from tuisim.runs.packed_files import EARLIER, Packed, find_packed
 from tuisim.runs.records import (
     HEADER_BYTES,
     MAX_OUTPUT_BYTES,
@@ -104,17 +102,17 @@ def instant_of(record: TickRecord, spec: RunSpec, noise: NoiseSpec) -> Instant:
 
 
 class _View(ABC):
-    """A recording as far as it has been written, copied incrementally; or unpacked.
+    """A recording as far as it has been written, copied incrementally.
 
     It is not mapped: truncating a mapped file would kill its reader.
 
     Args:
         folder: The run folder.
         is_checked: Whether it is read only as far as it is what the simulation writes, as of a run that is running or
-            falsified. Then there is no packed form, and a file that was there stays.
+            falsified. Then a file that was there stays.
 
     Raises:
-        LogError: by every method, if this machine cannot read the file, or if its packed form is damaged.
+        LogError: by every method, if this machine cannot read the file.
     """
 
     name: ClassVar[str]
@@ -139,11 +137,7 @@ class _View(ABC):
         self._source: int | None = None
         """Descriptor of the file, from which records that were dropped are read again; open only if some were."""
         self._published = self._there = 0
-        self._has_begun = self._unpacked = False
-        self._packed: Packed | None = None
-        """The packed form, while only its header has been read."""
-        self._earlier: Packed | None = None
-        """The packed form of an earlier tuisim, of which no more than the header is read."""
+        self._has_begun = False
 
     @property
     def damage(self) -> str:
@@ -152,8 +146,8 @@ class _View(ABC):
 
     @property
     def is_missing(self) -> bool:
-        """Whether there is neither a recording, be it empty, nor a packed one."""
-        return not self._extent() and self._packed is None and not self._has_begun
+        """Whether there is no recording, not even an empty one."""
+        return not self._extent() and not self._has_begun
 
     @property
     def note(self) -> str:
@@ -185,12 +179,6 @@ class _View(ABC):
     def _look(self) -> tuple[memoryview, int]:
         """Return the recording, and the length that exists."""
         there = self._extent()
-        if self._packed is not None:
-            self._copy, self._packed, self._unpacked = (
-                bytearray(self._packed.recording()),
-                None,
-                True,
-            )
         return memoryview(self._copy).toreadonly(), there
 
     def _extent(self) -> int:
@@ -201,22 +189,21 @@ class _View(ABC):
 
     def read_on(self) -> str:
         """Look at what has been published since. Return why it is not a recording; empty as long as it is one."""
-        if self._packed is None and not self._unpacked and not self._damage:
+        if not self._damage:
             self._read_on()
         return self._damage
 
     def _known(self, count: int) -> memoryview | None:
         """Return the recording if `count` records that can no longer change have been read, else None."""
-        if self._packed is not None or (count >= self._there and not self._unpacked):
-            return None
-        return memoryview(self._copy).toreadonly() if count <= self._there else None
+        return memoryview(self._copy).toreadonly() if count < self._there else None
 
     def _read_on(self) -> None:
         try:
             with open_regular(self._path) as handle:
                 self._read_from(handle.fileno())
         except FileNotFoundError:
-            self._read_packed()
+            if self._is_checked and self._there:
+                self._damage = f"{self._path.name} was deleted"
         except OSError as error:
             reason = error.strerror or str(error)
             if of_the_machine(error) or self._is_withheld(error):
@@ -229,19 +216,6 @@ class _View(ABC):
             return isinstance(error, PermissionError) and bool(self._path.stat().st_mode & S_IRUSR)
         except OSError:
             return False
-
-    def _read_packed(self) -> None:
-        if self._is_checked:
-            if self._there:
-                self._damage = f"{self._path.name} was deleted"
-            return
-        # Searched after the file itself: a recording that is being packed is always found.
-        packed = find_packed(self._path)
-        if packed is not None and packed.is_earlier:
-            self._earlier, self._damage = packed, EARLIER
-        elif packed is not None:
-            self._packed = packed
-            self._published = self._there = packed.length
 
     def _read_from(self, fd: int) -> None:
         head = _whole_header(fd)
@@ -411,10 +385,6 @@ class TelemetryView(_View):
     def last(self) -> TickRecord | None:
         """Return the newest record; None if there is none."""
         count = self.count
-        packed = self._packed or self._earlier
-        # The packed form provides its last record without being unpacked.
-        if packed is not None and packed.length:
-            return TickRecord(*TICK_RECORD.unpack(packed.last_record))
         return self.record(count - 1) if count else None
 
     def record(self, index: int) -> TickRecord:
