@@ -12,6 +12,7 @@ from tests.bench.back import back
 from tests.bench.bands import bands
 from tests.bench.batches import batches
 from tests.bench.cells import cells
+from tests.bench.command_modules import command_modules
 from tests.bench.crowded import crowded
 from tests.bench.debugging import debugging
 from tests.bench.figures import Figure, as_json, as_line, as_table
@@ -47,6 +48,7 @@ BENCHES: Mapping[str, Callable[[Effort], Iterator[Figure]]] = {
     "debugger": debugging,
     "frames": frames,
     "frame-modules": frame_modules,
+    "command-modules": command_modules,
     "cells": cells,
     "chart": chart,
     "pictures": pictures,

@@ -45,7 +45,7 @@ def back(effort: Effort) -> Iterator[Figure]:
                 _jump(terminal, f"{at_s:.2f}")
                 for at_s in _instants(effort.repeats * JUMPS_A_REPEAT)
             ]
-            steps = [_pressed(terminal, b",") for _ in jumps]
+            steps = [press(terminal, b",") for _ in jumps]
         jump_s, step_s = (median(took_s for took_s, _ in taken) for taken in (jumps, steps))
         ratio = paints_elapsed(jump_s)
         yield Figure(
@@ -70,10 +70,10 @@ def _instants(count: int) -> list[float]:
 def _wait_until_quiet(terminal: Terminal) -> None:
     """Wait until the run is shown, with all of its rows and its chart."""
     terminal.read_until(lambda: b"time limit" in terminal.seen)
-    _settle(terminal)
+    settle(terminal)
 
 
-def _settle(terminal: Terminal) -> None:
+def settle(terminal: Terminal) -> None:
     """Wait until nothing has been drawn for a time."""
     shown = -1
     while shown != terminal.queries:
@@ -85,13 +85,13 @@ def _jump(terminal: Terminal, where: str) -> tuple[float, int]:
     """Go to an instant by the dialog; only what follows the last key counts."""
     for keys in (b"g", where.encode()):
         terminal.type(keys)
-        _settle(terminal)
-    taken = _pressed(terminal, b"\r")
-    _settle(terminal)
+        settle(terminal)
+    taken = press(terminal, b"\r")
+    settle(terminal)
     return taken
 
 
-def _pressed(terminal: Terminal, key: bytes) -> tuple[float, int]:
+def press(terminal: Terminal, key: bytes) -> tuple[float, int]:
     """Return the seconds and the bytes until the frame after a key is there."""
     frames, sent, start = terminal.queries, terminal.shown, time.monotonic()
     terminal.type(key)

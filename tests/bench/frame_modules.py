@@ -1,8 +1,7 @@
-"""How many modules the app walks through for one frame: `python -m tests.bench.frame_modules FILE [WORD…]`.
+"""How many modules the app walks through for one frame: `python -m tests.bench.frame_modules FILE FRAMES [WORD…]`.
 
 The command starts the app with the words and writes what it has counted to the file, as JSON. A frame is everything
-that the app's main thread does from drawing one to drawing the next. A module is entered by a call from another
-module of tuisim, or from outside; each such call is a change of module.
+that the app's main thread does from drawing one to drawing the next.
 """
 
 from __future__ import annotations
@@ -11,15 +10,14 @@ import json
 import sys
 import tempfile
 import time
-from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from statistics import median, quantiles
-from types import FrameType
 from unittest.mock import patch
 
 from tests.bench.figures import Figure
 from tests.bench.frames import CIRCLE
+from tests.bench.module_moves import MoveCounter
 from tests.bench.sampling import Effort
 from tests.bench.terminal import Terminal
 from tuisim.atomic import replacing
@@ -31,7 +29,6 @@ SETTLE_S = 5.0
 EACH_FRAME = 5
 """Only one of so many frames is counted: counting slows the app."""
 FRAMES_A_REPEAT = 6
-PACKAGE = "tuisim."
 PATIENCE_S = 120.0
 
 
@@ -45,14 +42,16 @@ class FrameWalks:
 
     def __init__(self, file: Path, frames: int) -> None:
         self._file, self._frames = file, frames
-        self._walks: list[Counter[str]] = []
+        self._walks: list[Mapping[str, int]] = []
+        self._counter: MoveCounter | None = None
         self._number = 0
         self._begun_s = 0.0
 
     def drawn(self) -> None:
         """A frame is drawn: the walk for the one before has ended, and another begins, unless it is left out."""
-        if sys.getprofile() is not None:
-            sys.setprofile(None)
+        if self._counter is not None:
+            self._walks.append(self._counter.stop().entered)
+            self._counter = None
             if len(self._walks) == self._frames:
                 with replacing(self._file) as file:
                     file.write(json.dumps(self._walks).encode())
@@ -60,24 +59,8 @@ class FrameWalks:
         self._begun_s = self._begun_s or time.monotonic()
         is_counted = not self._number % EACH_FRAME and time.monotonic() - self._begun_s > SETTLE_S
         if is_counted and len(self._walks) < self._frames:
-            self._walks.append(Counter())
-            sys.setprofile(self._profile)
-
-    def _profile(self, frame: FrameType, event: str, arg: object) -> None:
-        name = frame.f_globals.get("__name__", "")
-        if event == "call" and name.startswith(PACKAGE) and name != _caller(frame):
-            self._walks[-1][name] += 1
-
-
-def _caller(frame: FrameType) -> str:
-    """Return the module of tuisim that has called a function, itself or through others; empty if none has."""
-    before = frame.f_back
-    while before is not None:
-        name: str = before.f_globals.get("__name__", "")
-        if name.startswith(PACKAGE):
-            return name
-        before = before.f_back
-    return ""
+            self._counter = MoveCounter()
+            self._counter.start()
 
 
 def frame_modules(effort: Effort) -> Iterator[Figure]:
@@ -106,16 +89,21 @@ def walked(panels: Sequence[str], count: int) -> list[Mapping[str, int]]:
     return frames
 
 
+def run_app(words: Sequence[str], on_drawn: Callable[[], None]) -> int:
+    """Start the app with some words, and call a function after each frame."""
+    drawn = Pacer.drawn
+
+    def draw_and_tell(pacer: Pacer) -> None:
+        drawn(pacer)
+        on_drawn()
+
+    with patch.object(Pacer, "drawn", draw_and_tell):
+        return run_command(words)
+
+
 def main(file: str, frames: str, *words: str) -> int:
     """Start the app, and count."""
-    walks, drawn = FrameWalks(Path(file), int(frames)), Pacer.drawn
-
-    def counted(pacer: Pacer) -> None:
-        drawn(pacer)
-        walks.drawn()
-
-    with patch.object(Pacer, "drawn", counted):
-        return run_command(words)
+    return run_app(words, FrameWalks(Path(file), int(frames)).drawn)
 
 
 if __name__ == "__main__":
