@@ -186,8 +186,10 @@ class Provenance:
 
     def _printed_at(self, line: int, name: str = "") -> list[tuple[bool, bool]]:
         found = [
-            each for each in self._found if each[0].lineno <= line <= (each[0].end_lineno or 0)
-        ]  # type: ignore[attr-defined]
+            each
+            for each in self._found
+            if each[0].lineno <= line <= (each[0].end_lineno or 0)  # type: ignore[attr-defined]
+        ]
         prints = [each for each in found if _PRINTS & {_called(call) for call in _calls(each[0])}]
         groups = _printed_together(prints)
         named = [

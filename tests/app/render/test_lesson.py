@@ -25,12 +25,10 @@ def _lesson_view(tmp_path: Path, **changes: Any) -> LessonView:
 @pytest.mark.usefixtures("home")
 def test_pages_of_a_lesson(tmp_path: Path) -> None:
     view = _lesson_view(tmp_path, states=(StepState.DONE, StepState.SKIPPED, StepState.OPEN), at=2)
-    view = replace(
-        view, story="Your run: so.", done=replace(view.lesson.steps[1], why="Far enough.")
-    )  # type: ignore[union-attr]
-    missed = Judgement(
-        view.lesson.goals[0], (Change(1, 0.1, GoalState.MISSED, 1, 2),), "Too short."
-    )  # type: ignore[union-attr]
+    lesson = view.lesson
+    assert lesson is not None
+    view = replace(view, story="Your run: so.", done=replace(lesson.steps[1], why="Far enough."))
+    missed = Judgement(lesson.goals[0], (Change(1, 0.1, GoalState.MISSED, 1, 2),), "Too short.")
 
     def page(number: int, **changes: Any) -> Sequence[str]:
         lines = draw_lesson(replace(view, **changes), number, 0, 40, 30).lines
