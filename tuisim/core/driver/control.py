@@ -1,0 +1,64 @@
+"""The two controllers of the driver, in whole numbers as in C."""
+
+from __future__ import annotations
+
+MAX_DUTY = 100
+SCALE = 10_000
+"""The constants of a controller are ten-thousandths of a percent."""
+SPEED_CONSTANTS = (1000, 60, 0)
+"""Proportional, integral and derivative constant of the speed control."""
+FULL = (MAX_DUTY + 1) * SCALE
+"""From here on a controller asks for more than the full duty."""
+_WORD = 1 << 32
+
+
+def _wrap(number: int) -> int:
+    """Return a whole number as 32 bits hold it."""
+    return (number + _WORD // 2) % _WORD - _WORD // 2
+
+
+def divide(dividend: int, divisor: int) -> int:
+    """Return a quotient, cut off as in C."""
+    quotient = abs(dividend) // divisor
+    return quotient if dividend >= 0 else -quotient
+
+
+class Controller:
+    """One controller, which makes a duty of a setpoint and a value.
+
+    Args:
+        constants: Proportional, integral and derivative constant; `reset` restores them.
+    """
+
+    __slots__ = ("_constants", "_error", "_sum", "kd", "ki", "kp", "overloaded", "setpoint")
+
+    def __init__(self, constants: tuple[int, int, int]) -> None:
+        self._constants = constants
+        self.setpoint = 0
+        self.reset()
+
+    def reset(self) -> None:
+        """Restore the constants, and forget the errors."""
+        self.kp, self.ki, self.kd = self._constants
+        self.clear()
+
+    def clear(self) -> None:
+        """Forget the errors."""
+        self._error = self._sum = 0
+        self.overloaded = False
+        """Whether it asks for more than the full duty."""
+
+    def compute_duty(self, value: int) -> int:
+        """Return the duty of the next step, in percent."""
+        error = self.setpoint - value
+        change, self._error = self._error - error, error
+        self._sum += error
+        scaled = error * self.kp + self._sum * self.ki + change * self.kd
+        self.overloaded = False
+        if not -FULL < scaled < FULL:
+            scaled = _wrap(scaled)
+            if not -FULL < scaled < FULL:
+                self.overloaded = True
+                self._sum -= error
+                return MAX_DUTY if scaled > 0 else -MAX_DUTY
+        return int(scaled / SCALE)

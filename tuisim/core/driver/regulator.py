@@ -1,0 +1,211 @@
+"""The driver of one motor: every 2 ms it reads the counter and sets a duty, by one of two controllers or none."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+
+from tuisim.core.driver.control import SPEED_CONSTANTS, Controller, divide
+from tuisim.core.driver.counter import CLOCK_HZ, Counter
+from tuisim.core.driver.plant import LARGE, MEDIUM, NS_PER_S, Axle, PlantSpec
+from tuisim.data_class import dataclass
+
+TICKS_PER_NS = CLOCK_HZ / NS_PER_S
+STALL_NS = 100_000_000
+"""A running motor whose speed reads 0 for longer than this is stalled."""
+
+
+class StopAction(StrEnum):
+    """What a motor does at the end of a command."""
+
+    COAST = "coast"
+    BRAKE = "brake"
+    HOLD = "hold"
+
+
+@dataclass(frozen=True, slots=True)
+class Model:
+    """A kind of motor, as the driver knows it."""
+
+    plant: PlantSpec
+    max_speed_dps: int
+    hold_kp: int
+
+
+MODELS = {"large": Model(LARGE, 1050, 80_000), "medium": Model(MEDIUM, 1560, 160_000)}
+
+
+class MotorDriver:
+    """A motor with its driver; its axle stands at first, and nothing controls it.
+
+    Args:
+        model: The kind of motor.
+        plant: The motor with its load.
+        battery_v: The voltage of the battery, open.
+    """
+
+    __slots__ = (
+        "_arrival_action",
+        "_control",
+        "_moved_ns",
+        "_offset",
+        "_raw",
+        "_still_ns",
+        "axle",
+        "counter",
+        "duty",
+        "hold_control",
+        "is_lowering",
+        "is_running",
+        "is_stalled",
+        "model",
+        "position",
+        "ramp_down_ms",
+        "speed_control",
+        "speed_dps",
+        "target",
+    )
+
+    def __init__(self, model: Model, plant: PlantSpec, battery_v: float) -> None:
+        self.model = model
+        self.axle, self.counter = Axle(plant, battery_v), Counter()
+        self.speed_control = Controller(SPEED_CONSTANTS)
+        self.hold_control = Controller((model.hold_kp, 0, 0))
+        self._control: Controller | None = None
+        """The active controller."""
+        self._moved_ns = 0
+        """Up to when the axle has moved."""
+        self._raw = self._offset = 0
+        self.position = self.speed_dps = 0
+        """As the last step read them."""
+        self.duty = 0
+        """The duty last set; the bridge may still have an earlier one."""
+        self.target = 0
+        """Where the last move to a position ends."""
+        self._arrival_action: StopAction | None = None
+        """What happens at the target; None if no move to a position is active."""
+        self.ramp_down_ms = 0
+        self.is_running = self.is_lowering = self.is_stalled = False
+        self._still_ns: int | None = None
+        """Since when the speed of the running motor reads 0."""
+
+    @property
+    def is_holding(self) -> bool:
+        """Whether it holds its position."""
+        return self._control is self.hold_control
+
+    @property
+    def is_overloaded(self) -> bool:
+        """Whether the active controller asks for more than the full duty."""
+        return self._control is not None and self._control.overloaded
+
+    # Commands
+
+    def run_regulated(self, speed_dps: int) -> None:
+        """Keep a speed; the next step takes it up."""
+        self.speed_control.setpoint = speed_dps
+        self._start(self.speed_control)
+
+    def run_direct(self, time_ns: int, duty: int) -> None:
+        """Keep a duty."""
+        self._start(None)
+        self._set_duty(time_ns, duty)
+
+    def run_to(self, target: int, speed_dps: int, action: StopAction) -> None:
+        """Run to a position, at a speed without sign."""
+        self.speed_control.setpoint = -abs(speed_dps) if self.position > target else abs(speed_dps)
+        self._start(self.speed_control)
+        self.target, self._arrival_action = target, action
+
+    def _start(self, control: Controller | None) -> None:
+        self._control, self._arrival_action, self.is_running = control, None, True
+
+    def halt(self, time_ns: int, action: StopAction, held: int | None = None) -> None:
+        """Stop, and hold a position if the action says so: if none is given, the present one."""
+        self.speed_control.clear()
+        self.hold_control.clear()
+        self._control = self._arrival_action = self._still_ns = None
+        self.is_running = self.is_lowering = self.is_stalled = False
+        self.duty = 0
+        if action is StopAction.HOLD:
+            self._control = self.hold_control
+            self.hold_control.setpoint = self.position if held is None else held
+        else:
+            self.move_axle(time_ns)
+            self.axle.power(None if action is StopAction.COAST else 0)
+
+    def renumber(self, position: int) -> None:
+        """Make the present position another one; a target becomes it, too."""
+        self._offset = position - self._raw
+        self.position = self.target = self.hold_control.setpoint = position
+
+    # Time
+
+    def move_axle(self, time_ns: int) -> None:
+        """Let the axle turn until a time."""
+        axle, left_ns = self.axle, float(time_ns - self._moved_ns)
+        self._moved_ns = time_ns
+        while left_ns:
+            begin_ns, begin_deg, begin_dps = left_ns, axle.angle_deg, axle.speed_dps
+            left_ns = axle.advance(begin_ns)
+            if axle.angle_deg != begin_deg:
+                both_dps = begin_dps + axle.speed_dps
+                self.counter.record(
+                    (time_ns - begin_ns) * TICKS_PER_NS,
+                    (begin_ns - left_ns) * TICKS_PER_NS,
+                    begin_deg,
+                    axle.angle_deg,
+                    0.25 + 0.5 * begin_dps / both_dps if both_dps else 0.5,
+                )
+            else:
+                self.counter.record_rest(time_ns * TICKS_PER_NS)
+
+    def control(self, time_ns: int) -> None:
+        """Run one step of the control."""
+        self.move_axle(time_ns)
+        self._raw = raw = divide(self.counter.count, 2)
+        self.position = raw + self._offset
+        self.speed_dps = speed_dps = self.counter.measure_speed_dps()
+        if self.is_running:
+            self._watch_stall(time_ns)
+        control = self._control
+        if control is self.speed_control:
+            if control.setpoint:
+                self._set_duty(time_ns, control.compute_duty(speed_dps))
+            else:
+                control.clear()
+                self._set_duty(time_ns, 0)
+            if self._arrival_action is not None:
+                self._approach(time_ns, self._arrival_action)
+        elif control is not None:
+            self._set_duty(time_ns, control.compute_duty(self.position))
+
+    def _set_duty(self, time_ns: int, duty: int) -> None:
+        if duty != self.duty:
+            self.duty = duty
+            self.move_axle(time_ns)
+            self.axle.power(duty)
+
+    def _watch_stall(self, time_ns: int) -> None:
+        if self.speed_dps:
+            self._still_ns, self.is_stalled = None, False
+        elif self._still_ns is None:
+            self._still_ns = time_ns
+        elif time_ns - self._still_ns > STALL_NS:
+            self.is_stalled = True
+
+    def _approach(self, time_ns: int, action: StopAction) -> None:
+        """Slow down before the target, and stop at it."""
+        target, position, speed_dps = self.target, self.position, self.speed_dps
+        setpoint = self.speed_control.setpoint
+        ramp = divide(abs(speed_dps) * self.ramp_down_ms, 1 + self.model.max_speed_dps)
+        end = position + divide(speed_dps * ramp, 2000)
+        if (end > target and setpoint > 0) or (end < target and setpoint < 0):
+            self.speed_control.setpoint = divide(2000 * (target - position), 1 + ramp)
+            self.is_lowering = True
+        # A speed of 0 arrives only where it is already.
+        if (position >= target or setpoint < 0) and (position <= target or setpoint > 0):
+            self.arrive(time_ns, action)
+
+    def arrive(self, time_ns: int, action: StopAction) -> None:
+        """End a move to a position."""
+        self.halt(time_ns, action, held=self.target)
