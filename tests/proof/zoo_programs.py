@@ -114,10 +114,11 @@ PROCESSES: Mapping[str, Piece] = {
     "exec": Piece(
         "import os\ntry: os.execv('/bin/sh', ['sh', '-c', 'echo no'])\nexcept OSError: print('refused')\nelse: 1 / 0"
     ),
-    "system": Piece("import os\nprint(os.system('sleep 100'))"),
+    "system": Piece(
+        "import os\ntry: os.system('ls')\nexcept OSError: print('refused')\nelse: 1 / 0"
+    ),
     "subprocess": Piece(
-        "import subprocess\ntry: print(subprocess.run(['sleep', '100']).returncode)\n"
-        "except OSError as error: print(error)"
+        "import subprocess\ntry: subprocess.run(['ls'])\nexcept OSError: print('refused')\nelse: 1 / 0"
     ),
     "multiprocessing": Piece(
         "import multiprocessing\ntry: multiprocessing.Process(target=print).start()\n"

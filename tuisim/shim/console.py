@@ -149,14 +149,17 @@ class Terminal:
         self._grid.write(text + end)
         self._show()
 
-    def set_font(self, name: str) -> str:
-        """Set the font, and with it the screen size; return an error message, or an empty string."""
+    def set_font(self, name: str) -> None:
+        """Set the font, and with it the screen size.
+
+        Raises:
+            OSError: there is no such font.
+        """
         size = font_size(name)
         if size is None:
-            return f"setfont: cannot find the font {name!r}"
+            raise OSError(f"cannot find the font {name!r}")
         self._grid.resize(DISPLAY_WIDTH // size[0], DISPLAY_HEIGHT // size[1])
         self._show()
-        return ""
 
     def clear(self) -> None:
         """Clear the screen and move the cursor to its top left corner."""

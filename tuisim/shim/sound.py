@@ -110,9 +110,7 @@ class Mixer:
                 return f"Simple mixer control '{CHANNEL}',0\n"
             case []:
                 return self._control_text(CHANNEL)
-        raise ValueError(
-            f"{' '.join(words)!r} is not simulated: set CHANNEL VOLUME%, get CHANNEL or scontrols"
-        )
+        raise ValueError("set CHANNEL VOLUME%, get CHANNEL or scontrols")
 
     def _control_text(self, channel: str) -> str:
         volume = self.volume(channel)

@@ -1,68 +1,57 @@
-"""The brick's commands for text screen and sound, and the shell that runs lines of them.
+"""The brick's programs for text screen and sound, and the shell lines that start them.
 
-To add a command: its function, and a line in `COMMANDS`.
+To add a program: its function, and a row in `COMMANDS`.
 """
 
 from __future__ import annotations
 
 import os
 import re
+import shlex
 import sys
 from collections.abc import Callable, Generator, Mapping, Sequence
-from dataclasses import replace
 
+from tuisim.core.profile import NS_PER_S
 from tuisim.data_class import dataclass
+from tuisim.errors import NotSimulated
 from tuisim.shim.console import Terminal
 from tuisim.shim.session import DeviceSession
-from tuisim.shim.shell.syntax import NOT_THERE, NotUnderstood, ShellLine, read_line
 from tuisim.shim.sound import Mixer
 from tuisim.shim.tones import Heard, beep_heard, file_heard, speech_heard
-
-FAILED = 1
-NEEDS_INPUT = -1
-"""Yielded instead of a time by a line that continues when its standard input is complete."""
+from tuisim.shim.unsupported.modules import refused_as
 
 Steps = Generator[int, None, int]
-"""A running line of commands: yields the ns that each sound takes, and returns its exit status."""
+"""A running line: yields the ns that each sound or pause takes, and returns its exit status."""
 
 Sink = Callable[[bytes], None]
-"""Receives the output of a command."""
+"""Receives the output of a program."""
+
+Outcome = bytes | Heard | int
+"""What a program does: it writes, sounds, or lets as many ns pass."""
 
 PLAIN_FONT = "default8x16"
 """Default font of `setfont`."""
+DEVICE_FOLDERS = ("/sys/", "/dev/")
+OPERATORS, JOINTS = "();<>|&", (";", "&&", "|")
+SPEECH_PIPE = ("espeak", "aplay")
+SHELL_HINT = "join programs by ; or &&, use open for files and subprocess.Popen beside the program"
 
 
-@dataclass(frozen=True, slots=True)
-class Flow:
-    """The data in a pipe."""
+@dataclass(slots=True)
+class Call:
+    """One call of a program in a line."""
 
-    data: bytes = b""
-    sound: Heard | None = None
-    """Speech as sound, on its way to a player."""
+    words: list[str]
+    """The program and its arguments."""
+    joint: str = ";"
+    """What joins it to the call before: `;`, `&&`, or `|` for speech on its way to `aplay`."""
+    file: str = ""
+    """The device file that its output is written to; empty for none."""
 
-
-@dataclass(frozen=True, slots=True)
-class CommandUse:
-    """One invocation of a command."""
-
-    words: Sequence[str]
-    """The arguments."""
-    given: Flow
-    """The standard input."""
-    folder: str
-    """Base of relative paths; empty for the program's working directory."""
-    in_shell: bool
-    """Whether a shell runs it, which has built-in commands."""
-
-
-@dataclass(frozen=True, slots=True)
-class CommandResult:
-    """Outcome of a command."""
-
-    status: int = 0
-    output: Flow = Flow()
-    errors: str = ""
-    heard: tuple[Heard, ...] = ()
+    @property
+    def name(self) -> str:
+        """The program, without its folder."""
+        return os.path.basename(self.words[0])
 
 
 def own_output(data: bytes) -> None:
@@ -79,88 +68,104 @@ def own_errors(data: bytes) -> None:
 
 @dataclass(slots=True)
 class Streams:
-    """Standard streams of one process."""
+    """Standard streams of one process, and where it runs."""
 
     output: Sink = own_output
     errors: Sink = own_errors
-    given: Flow | None = Flow()
-    """The standard input; None until it is complete."""
-    sound: Heard | None = None
-    """Speech as sound that has arrived at the standard output."""
+    folder: str = ""
+    """Base of relative paths; empty for the program's working directory."""
+    speech: Heard | None = None
+    """What `espeak --stdout` has said, on its way to `aplay`."""
+
+
+def refuse(what: str, hint: str) -> Exception:
+    """Return the error about something that is not simulated; Python's own modules take it for a missing program."""
+    return refused_as(OSError, f"{what} is not part of the simulated brick", hint)
+
+
+def parse_line(text: str) -> list[Call]:
+    """Return the calls of a shell line.
+
+    Raises:
+        NotSimulated: the brick's shell does not have a part of it.
+    """
+    if odd := re.search(r"[$`\n]|\d>", text.strip()):
+        raise refuse(f"{odd[0]!r} in a shell line", SHELL_HINT)
+    lexer = shlex.shlex(text, posix=True, punctuation_chars=OPERATORS)
+    lexer.whitespace_split, lexer.commenters = True, ""
+    try:
+        tokens = iter(list(lexer))
+    except ValueError:
+        raise refuse("an open quote in a shell line", SHELL_HINT) from None
+    calls = [Call([])]
+    for token in tokens:
+        if token in JOINTS:
+            calls.append(Call([], token))
+        elif token == ">" and (file := next(tokens, "")).startswith(DEVICE_FOLDERS):
+            calls[-1].file = file
+        elif token and set(token) <= set(OPERATORS):
+            raise refuse(f"{token!r} in a shell line", SHELL_HINT)
+        else:
+            calls[-1].words.append(token)
+    if calls[-1] == Call([]):
+        calls.pop()
+    return calls
 
 
 class Shell:
-    """Runs lines of commands."""
+    """Runs the programs of the brick."""
 
     def __init__(self, session: DeviceSession, terminal: Terminal, mixer: Mixer) -> None:
         self.session, self.terminal, self.mixer = session, terminal, mixer
 
-    def line(self, text: str, streams: Streams, folder: str = "") -> Steps:
-        """Run a line as a shell does."""
-        try:
-            line = read_line(text)
-        except NotUnderstood as error:
-            _write_error(f"sh: {error}", streams.errors, error.status)
-            return error.status
-        return (yield from self._run(line, streams, folder, in_shell=True))
+    def start(self, calls: Sequence[Call], streams: Streams) -> Steps:
+        """Start the calls of a line.
 
-    def program(self, words: Sequence[str], streams: Streams, folder: str) -> Steps:
-        """Run one command without a shell."""
-        return (yield from self._run(ShellLine((tuple(words),)), streams, folder, in_shell=False))
+        Raises:
+            NotSimulated: the brick does not have one of the programs.
+        """
+        before = ""
+        for call in calls:
+            if not call.words or (call.joint == "|" and (before, call.name) != SPEECH_PIPE):
+                raise refuse(f"{call.joint!r} in a shell line", SHELL_HINT)
+            before = call.name
+            if before not in COMMANDS:
+                raise refuse(call.words[0], f"use Python, or {', '.join(COMMANDS)}")
+        return self._run(calls, streams)
 
-    def _run(self, line: ShellLine, streams: Streams, folder: str, in_shell: bool) -> Steps:
-        flow, result = Flow(), CommandResult()
-        heard: tuple[Heard, ...] = ()
-        for at, words in enumerate(line.calls):
-            if at == 0 and _reads(words):
-                while streams.given is None:
-                    yield NEEDS_INPUT
-                flow = streams.given
-            result = self._result(CommandUse(words[1:], flow, folder, in_shell), words[0])
-            if line.file and at == len(line.calls) - 1 and not result.status:
-                result = _written(result, line.file)
-            if result.errors:
-                _write_error(result.errors, streams.errors, result.status)
-            flow, heard = result.output, (*heard, *result.heard)
-        if flow.data:
-            streams.output(flow.data)
-        streams.sound = flow.sound or streams.sound
-        if flow.sound is not None and streams.output is own_output:
-            _write_error(
-                "espeak: --stdout is simulated only on its way to aplay", streams.errors, FAILED
-            )
-        for one in heard:
-            self.session.speak(one.text, 0, one.tones_row, one.file)
-            yield one.length_ns
-        return result.status
-
-    def _result(self, use: CommandUse, name: str) -> CommandResult:
-        command = COMMANDS.get(os.path.basename(name))
-        if command is None:
-            there = ", ".join(COMMANDS)
-            return CommandResult(
-                NOT_THERE,
-                errors=f"{name}: not found (return code 127): the simulated brick has only {there}",
-            )
-        return command(self, use)
+    def _run(self, calls: Sequence[Call], streams: Streams) -> Steps:
+        status = 0
+        for call in calls:
+            if call.joint != ";" and status:
+                continue
+            outcome: Outcome = 0
+            try:
+                outcome = COMMANDS[call.name](self, call.words[1:], streams)
+                status = 0
+                if isinstance(outcome, bytes):
+                    _write_output(outcome, call.file, streams)
+            except NotSimulated:
+                raise
+            except OSError as error:
+                status = 1
+                streams.errors(f"{call.name}: {error}\n".encode())
+            if isinstance(outcome, Heard):
+                self.session.speak(outcome.text, 0, outcome.tones_row, outcome.file)
+                status = int(outcome.refused)
+                yield outcome.length_ns
+            elif isinstance(outcome, int):
+                yield outcome
+        if streams.speech is not None and streams.output is own_output:
+            raise refuse("espeak --stdout alone", "use espeak --stdout TEXT | aplay")
+        return status
 
 
-def _written(result: CommandResult, file: str) -> CommandResult:
-    """Write a command's output to a device file; return what that makes of its result."""
-    try:
+def _write_output(data: bytes, file: str, streams: Streams) -> None:
+    if file:
         with open(file, "wb", 0) as device:
-            device.write(result.output.data)
-    except OSError as error:
-        return CommandResult(FAILED, errors=f"sh: cannot write {file}: {error.strerror}")
-    return replace(result, output=Flow())
-
-
-def _write_error(text: str, sink: Sink, status: int) -> None:
-    """Write error text; a message that something is not simulated is always shown."""
-    line = f"{text}\n".encode("utf-8", "surrogateescape")
-    sink(line)
-    if status == NOT_THERE and sink not in (own_errors, own_output):
-        own_errors(line)
+            device.write(data)
+    elif data:
+        streams.output(data)
 
 
 class Running:
@@ -176,8 +181,6 @@ class Running:
         """Exit status; None while they run."""
         self._due = session.now
         self._busy = False
-        self.hungry = False
-        """Whether they wait for their standard input."""
         self.go_on()
         if several and self.status is None:
             session.spawn_daemon(self._finish)
@@ -187,16 +190,11 @@ class Running:
         while self.status is None and not self._busy and self._session.now >= self._due:
             self._busy = True
             try:
-                wait_ns = next(self._steps)
+                self._due = self._session.now + next(self._steps)
             except StopIteration as end:
                 self.status = end.value
-                return
             finally:
                 self._busy = False
-            self.hungry = wait_ns == NEEDS_INPUT
-            if self.hungry:
-                return
-            self._due = self._session.now + wait_ns
 
     def wait(self, limit_ns: int | None = None) -> bool:
         """Block until the end or the limit; return whether they have ended."""
@@ -220,156 +218,95 @@ class Running:
         self.wait()
 
 
-# Commands
+# Programs: what each does with its arguments
 
 
-def _setfont(shell: Shell, use: CommandUse) -> CommandResult:
-    names = [word for word in use.words if not word.startswith("-")]
-    errors = shell.terminal.set_font(os.path.basename(names[-1]) if names else PLAIN_FONT)
-    return CommandResult(FAILED if errors else 0, errors=errors)
+def _set_font(shell: Shell, words: list[str], _streams: Streams) -> Outcome:
+    names = [word for word in words if not word.startswith("-")]
+    shell.terminal.set_font(os.path.basename(names[-1]) if names else PLAIN_FONT)
+    return b""
 
 
-def _clear(shell: Shell, _use: CommandUse) -> CommandResult:
+def _clear(shell: Shell, _words: list[str], _streams: Streams) -> Outcome:
     shell.terminal.clear()
-    return CommandResult()
+    return b""
 
 
-def _stty(shell: Shell, use: CommandUse) -> CommandResult:
-    if list(use.words) == ["size"]:
-        return CommandResult(output=Flow(shell.terminal.size.encode()))
+def _stty(shell: Shell, words: list[str], _streams: Streams) -> Outcome:
     # Settings such as echo have no effect: the brick's buttons write nothing on this screen.
-    return CommandResult()
+    return shell.terminal.size.encode() if words == ["size"] else b""
 
 
-def _amixer(shell: Shell, use: CommandUse) -> CommandResult:
-    words = [word for word in use.words if word != "-q"]
+def _amixer(shell: Shell, words: list[str], _streams: Streams) -> Outcome:
     try:
-        output = shell.mixer.do(words)
+        output = shell.mixer.do([word for word in words if word != "-q"])
     except ValueError as error:
-        return CommandResult(FAILED, errors=f"amixer: {error}")
-    return CommandResult(output=Flow(output.encode() if len(words) == len(use.words) else b""))
+        raise refuse(f"amixer {' '.join(words)}", f"use {error}") from None
+    return b"" if "-q" in words else output.encode()
 
 
-def _echo(_shell: Shell, use: CommandUse) -> CommandResult:
-    """The shell's built-in interprets escapes and knows -n; the program of that name interprets them with -e."""
-    words, end, escapes = list(use.words), "\n", use.in_shell
-    options = "n" if use.in_shell else "neE"
-    while words and len(words[0]) > 1 and words[0][0] == "-" and set(words[0][1:]) <= set(options):
-        for letter in words.pop(0)[1:]:
-            if letter == "n":
-                end = ""
-            else:
-                escapes = letter == "e"
-    text = " ".join(words)
-    if escapes:
-        text, cut, _ = _unescaped(text).partition("\0c")
-        end = "" if cut else end
-    return CommandResult(output=Flow((text + end).encode("utf-8", "surrogateescape")))
+def _echo(_shell: Shell, words: list[str], _streams: Streams) -> Outcome:
+    no_end = words[:1] == ["-n"]
+    text = " ".join(words[no_end:])
+    if "\\" in text or text.startswith("-e "):
+        raise refuse("an escape of echo", "use print")
+    return (text if no_end else f"{text}\n").encode("utf-8", "surrogateescape")
 
 
-def _cat(_shell: Shell, use: CommandUse) -> CommandResult:
-    data, errors = b"", []
-    for word in _sorted_out("cat", use.words)[1] or ["-"]:
-        if word == "-":
-            data += use.given.data
-            continue
-        try:
-            with open(os.path.join(use.folder, word), "rb") as file:
-                data += file.read()
-        except OSError as error:
-            errors.append(f"cat: {word}: {error.strerror}")
-    return CommandResult(FAILED if errors else 0, Flow(data), "\n".join(errors))
+def _cat(_shell: Shell, words: list[str], _streams: Streams) -> Outcome:
+    if len(words) != 1 or not words[0].startswith(DEVICE_FOLDERS):
+        raise refuse(f"cat {' '.join(words)}", "use open, or cat for one of the brick's files")
+    with open(words[0], "rb") as file:
+        return file.read()
 
 
-_ESCAPES = {
-    "n": "\n",
-    "t": "\t",
-    "\\": "\\",
-    "a": "\a",
-    "b": "\b",
-    "e": "\x1b",
-    "r": "\r",
-    "c": "\0c",
-    "v": "\v",
-}
+def _sleep(_shell: Shell, words: list[str], _streams: Streams) -> Outcome:
+    if len(words) != 1 or not re.fullmatch(r"\d*\.?\d+", words[0]):
+        raise refuse(f"sleep {' '.join(words)}", "use sleep and a number of seconds")
+    return round(float(words[0]) * NS_PER_S)
 
 
-def _unescaped(text: str) -> str:
-    return re.sub(r"\\([ntabcerv\\])", lambda found: _ESCAPES[found[1]], text)
+def _beep(_shell: Shell, words: list[str], _streams: Streams) -> Outcome:
+    return beep_heard(words)
 
 
-def _beep(_shell: Shell, use: CommandUse) -> CommandResult:
-    heard = beep_heard(use.words)
-    return CommandResult(FAILED if heard.refused else 0, heard=(heard,))
+def _espeak(_shell: Shell, words: list[str], streams: Streams) -> Outcome:
+    options, texts = _parse_options("espeak", words, "a:s:v:p:g:k:l:b:mz", "stdout")
+    if not texts:
+        raise refuse("espeak without a text", "use espeak TEXT")
+    heard = speech_heard(" ".join(texts[0].split("\n")).strip(), options.get("-s", ""))
+    if "--stdout" not in options:
+        return heard
+    streams.speech = heard
+    return b""
 
 
-def _espeak(_shell: Shell, use: CommandUse) -> CommandResult:
-    options, words = _sorted_out("espeak", use.words)
-    if "-w" in options:
-        return CommandResult(
-            FAILED,
-            errors="espeak: -w is not simulated: it says what it is given, or sends it to aplay",
+def _aplay(_shell: Shell, words: list[str], streams: Streams) -> Outcome:
+    files = _parse_options("aplay", words, "D:q", "quiet")[1]
+    heard, streams.speech = streams.speech, None
+    if len(files) == 1 and files != ["-"]:
+        return file_heard(files[0], streams.folder)
+    if heard is None or len(files) > 1:
+        raise refuse(
+            f"aplay {' '.join(words)}".rstrip(), "use aplay FILE, or espeak --stdout TEXT | aplay"
         )
-    if "-f" in options:
-        try:
-            with open(os.path.join(use.folder, options["-f"]), "rb") as file:
-                text = file.read().decode("utf-8", "replace")
-        except OSError as error:
-            return CommandResult(
-                FAILED, errors=f"espeak: cannot read {options['-f']}: {error.strerror}"
-            )
-    else:
-        text = words[0] if words else use.given.data.decode("utf-8", "replace")
-    if not words and not text.strip():
-        return CommandResult(FAILED, errors="espeak: there is no text to say")
-    heard = speech_heard(" ".join(text.split("\n")).strip(), options.get("-s", ""))
-    if "--stdout" in options:
-        return CommandResult(output=Flow(sound=heard))
-    return CommandResult(heard=() if "-q" in options else (heard,))
+    return heard
 
 
-def _aplay(_shell: Shell, use: CommandUse) -> CommandResult:
-    files = [word for word in _sorted_out("aplay", use.words)[1] if word != "-"]
-    if files:
-        heard = tuple(file_heard(file, use.folder) for file in files)
-        return CommandResult(FAILED if any(one.refused for one in heard) else 0, heard=heard)
-    if use.given.sound is None:
-        return CommandResult(
-            FAILED, errors="aplay: takes a WAV file, or what `espeak --stdout` sends through a pipe"
-        )
-    return CommandResult(heard=(use.given.sound,))
-
-
-_OPTIONS = {
-    "espeak": ("a:s:v:p:g:k:l:b:f:w:mqxXz", ["stdin", "stdout"]),
-    "cat": ("u", []),
-    "aplay": ("D:qt:c:f:r:d:s:MNvi", ["quiet"]),
-}
-"""Options of the commands that read standard input by default, in `getopt` format."""
-
-
-def _sorted_out(name: str, words: Sequence[str]) -> tuple[dict[str, str], list[str]]:
-    """Split words into options and arguments; an unknown option is treated as an argument."""
+def _parse_options(
+    name: str, words: list[str], short: str, long: str
+) -> tuple[dict[str, str], list[str]]:
     import getopt
 
     try:
-        options, rest = getopt.gnu_getopt(list(words), *_OPTIONS[name])
-    except getopt.GetoptError:
-        return {}, [word for word in words if not word.startswith("-")]
-    return dict(options), rest
+        options, arguments = getopt.gnu_getopt(words, short, [long])
+    except getopt.GetoptError as error:
+        raise refuse(f"the option {error.opt} of {name}", f"it has --{long} and {short}") from None
+    return dict(options), arguments
 
 
-def _reads(words: Sequence[str]) -> bool:
-    """Whether a command reads its standard input."""
-    name = os.path.basename(words[0])
-    if name not in _OPTIONS:
-        return False
-    options, rest = _sorted_out(name, words[1:])
-    return "-f" not in options if name == "espeak" and not rest else not set(rest) - {"-"}
-
-
-COMMANDS: Mapping[str, Callable[[Shell, CommandUse], CommandResult]] = {
-    "setfont": _setfont,
+COMMANDS: Mapping[str, Callable[[Shell, list[str], Streams], Outcome]] = {
+    "setfont": _set_font,
     "clear": _clear,
     "beep": _beep,
     "echo": _echo,
@@ -378,5 +315,6 @@ COMMANDS: Mapping[str, Callable[[Shell, CommandUse], CommandResult]] = {
     "amixer": _amixer,
     "stty": _stty,
     "cat": _cat,
+    "sleep": _sleep,
 }
-"""The commands of the brick, by name."""
+"""The programs of the brick, by name."""

@@ -15,16 +15,18 @@ from tuisim.core.profile import MS
 from tuisim.errors import NotSimulated
 from tuisim.shim.session import DeviceSession
 from tuisim.shim.shell.commands import (
-    Flow,
+    Call,
     Running,
     Shell,
     Sink,
-    Steps,
     Streams,
     own_errors,
     own_output,
+    parse_line,
+    refuse,
 )
 from tuisim.shim.sound import NO_PID
+from tuisim.shim.tones import Heard
 
 Replace = Callable[[types.ModuleType, str, Callable[..., Any]], None]
 """Replaces a function of a module, by its name."""
@@ -37,7 +39,6 @@ class OutPipe(io.RawIOBase):
 
     def __init__(self, process: Process) -> None:
         self.process, self._data = process, bytearray()
-        self.sound_taken = False
 
     def take(self, data: bytes) -> None:
         """Append output of the process."""
@@ -50,41 +51,17 @@ class OutPipe(io.RawIOBase):
     def readinto(self, buffer: Any) -> int:
         """Read into a buffer; 0 bytes is the end."""
         self.process.wait()
-        if self.process.streams.sound is not None and not self.sound_taken:
-            self.sound_taken = True
-            own_errors(b"espeak: --stdout is simulated only on its way to aplay\n")
+        if self.process.streams.speech is not None:
+            raise refuse("reading from espeak --stdout", "use it as the standard input of aplay")
         size = min(len(buffer), len(self._data))
         buffer[:size] = self._data[:size]
         del self._data[:size]
         return size
 
-    def flow(self) -> Flow:
-        """Read everything."""
-        self.sound_taken = True
-        return Flow(self.readall(), self.process.streams.sound)
-
-
-class InPipe(io.RawIOBase):
-    """Input of a process; it is delivered when the pipe is closed."""
-
-    def __init__(self, process: Process) -> None:
-        self._process, self._data = process, bytearray()
-
-    def writable(self) -> bool:
-        """Return True."""
-        return True
-
-    def write(self, data: Any) -> int:
-        """Append bytes."""
-        self._data += bytes(data)
-        return len(data)
-
-    def close(self) -> None:
-        """Deliver the input to the process."""
-        if not self.closed:
-            super().close()
-            self._process.streams.given = Flow(bytes(self._data))
-            self._process.running.go_on()
+    def take_speech(self) -> Heard | None:
+        """Return the speech that is on its way to a player, once."""
+        speech, self.process.streams.speech = self.process.streams.speech, None
+        return speech
 
 
 class Process:
@@ -133,7 +110,11 @@ class Process:
             encoding or errors or text or universal_newlines
         )
         self.encoding, self.errors = encoding, errors
-        self.streams = Streams(given=None if stdin == pipe else _given(stdin))
+        if stdin == pipe:
+            raise refuse("the standard input of a process", "give it arguments")
+        self.stdin = None
+        folder = "" if cwd is None else os.path.abspath(os.fsdecode(cwd))
+        self.streams = Streams(folder=folder, speech=_take_speech(stdin))
         self.streams.output, self.stdout = (
             self._outlet() if stdout == pipe else (_sink(stdout, own_output), None)
         )
@@ -143,12 +124,8 @@ class Process:
             self.streams.errors, self.stderr = (
                 self._outlet() if stderr == pipe else (_sink(stderr, own_errors), None)
             )
-        folder = "" if cwd is None else os.path.abspath(os.fsdecode(cwd))
-        steps, several = _steps(system.shell, args, shell, self.streams, folder)
-        self.running = Running(system.session, steps, several)
-        self.stdin: IO[Any] | None = (
-            self._opened(io.BufferedWriter(InPipe(self))) if stdin == pipe else None
-        )
+        steps = system.shell.start(_calls(args, shell), self.streams)
+        self.running = Running(system.session, steps, several=shell)
         system.processes[self.pid] = self
 
     def _outlet(self) -> tuple[Sink, IO[Any] | None]:
@@ -175,7 +152,7 @@ class Process:
         return self
 
     def __exit__(self, *_error: object) -> None:
-        for stream in (self.stdout, self.stderr, self.stdin):
+        for stream in (self.stdout, self.stderr):
             if stream is not None:
                 stream.close()
         self.wait()
@@ -197,10 +174,6 @@ class Process:
         Raises:
             subprocess.TimeoutExpired: it takes longer than `timeout` seconds.
         """
-        if self.streams.given is None and self.running.hungry:
-            # The real one would wait forever for input that nobody writes while the program waits.
-            assert self.stdin is not None
-            self.stdin.close()
         if not self.running.wait(None if timeout is None else max(int(timeout * 1000 * MS), 0)):
             raise self.system.module.TimeoutExpired(self.args, timeout)
         status = self._current_status()
@@ -208,15 +181,11 @@ class Process:
         return status
 
     def communicate(self, input: Any = None, timeout: float | None = None) -> tuple[Any, Any]:  # noqa: A002
-        """Send input, block until the process ends, and return its output.
+        """Block until the process ends, and return its output.
 
         Raises:
             subprocess.TimeoutExpired: it takes longer than `timeout` seconds.
         """
-        if self.stdin is not None and not self.stdin.closed:
-            if input:
-                self.stdin.write(input)
-            self.stdin.close()
         self.wait(timeout)
         read = [
             stream.read() if stream and not stream.closed else None
@@ -260,7 +229,8 @@ class System:
         def system(command: Any) -> int:
             # Returns the kernel's wait status.
             self.session.command()
-            running = Running(self.session, self.shell.line(os.fsdecode(command), Streams()))
+            steps = self.shell.start(parse_line(os.fsdecode(command)), Streams())
+            running = Running(self.session, steps)
             running.wait()
             return (running.status or 0) << EXIT_SHIFT
 
@@ -299,31 +269,19 @@ def finish_asyncio(module: types.ModuleType) -> None:
     loop.subprocess_exec = loop.subprocess_shell = refuse
 
 
-def _steps(
-    shell: Shell, args: Any, in_shell: bool, streams: Streams, folder: str
-) -> tuple[Steps, bool]:
-    """Return what a process runs, and whether that may be several sounds."""
+def _calls(args: Any, in_shell: bool) -> list[Call]:
+    """Return what a process runs."""
     words = [
         os.fsdecode(word)
         for word in ([args] if isinstance(args, str | bytes | os.PathLike) else args)
     ]
-    if in_shell:
-        return shell.line(words[0], streams, folder), True
-    return shell.program(words, streams, folder), False
+    return parse_line(words[0]) if in_shell else [Call(words)]
 
 
-def _given(source: Any) -> Flow:
-    """Return the standard input of a process: nothing, a file, or the output of another process."""
-    if source is None or (isinstance(source, int) and source < 0):
-        return Flow()
+def _take_speech(source: Any) -> Heard | None:
+    """Return the speech that comes from the output of another process."""
     raw = getattr(getattr(source, "buffer", source), "raw", source)
-    if isinstance(raw, OutPipe):
-        return raw.flow()
-    if isinstance(source, int):
-        with open(source, "rb", closefd=False) as file:
-            return Flow(file.read())
-    data = source.read()
-    return Flow(data.encode() if isinstance(data, str) else data)
+    return raw.take_speech() if isinstance(raw, OutPipe) else None
 
 
 def _sink(target: Any, own: Sink) -> Sink:
