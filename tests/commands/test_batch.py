@@ -167,7 +167,7 @@ def test_a_complete_batch_keeps_a_column_that_is_empty(batch: Batch) -> None:
 
 @pytest.mark.quick_cases("csv")
 @pytest.mark.parametrize("suffix", ["csv", "parquet", "jsonl", "arrow"])
-def test_a_complete_batch_is_not_run_again_for_another_picture(
+def test_a_complete_batch_is_not_run_again(
     batch: Batch, suffix: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     words = (
@@ -183,9 +183,8 @@ def test_a_complete_batch_is_not_run_again_for_another_picture(
     assert batch(*words, f"rows.{suffix}") == 1
     summary, whole = capsys.readouterr().out, Path(f"rows.{suffix}").read_bytes()
     monkeypatch.setattr(sweep, "run_many", lambda tasks, jobs: (1 / 0 for _ in tasks))
-    assert batch(*words, f"rows.{suffix}", "--resume", "--picture", "c.svg") == 1
+    assert batch(*words, f"rows.{suffix}", "--resume") == 1
     assert (capsys.readouterr().out, Path(f"rows.{suffix}").read_bytes()) == (summary, whole)
-    assert Path("c.svg").exists()
 
 
 @pytest.mark.parametrize(
@@ -214,30 +213,6 @@ def test_the_rows_of_an_interrupted_batch_are_not_lost(
     assert batch("mine.py", "--seeds", "0..4", "--out", "rows.csv", *words) == 2
     assert message in capsys.readouterr().err
     assert Path("rows.csv.part").read_bytes() == part
-
-
-@pytest.mark.parametrize("words", [(), ("--picture-of", "poses")], ids=["file alone", "named"])
-def test_the_end_poses_are_written_to_a_file(
-    batch: Batch, words: tuple[str, ...], capsys: pytest.CaptureFixture[str]
-) -> None:
-    plan = ("mine.py", "--seeds", "1..9", "--set", "noise.motor=0,20", "--out", "rows.csv")
-    assert batch(*plan, *words, "--picture", "poses.svg") == 0
-    assert (
-        "noise.motor 20: x 200.0 ± 51.6, y 198.3 ± 0.9 mm (9 runs)" in Path("poses.svg").read_text()
-    )
-    assert batch(*plan, "--resume", *words, "--picture", "poses.png") == 0
-    assert Path("poses.png").read_bytes().startswith(b"\x89PNG")
-    assert "End poses" not in capsys.readouterr().out
-
-
-def test_the_end_poses_are_drawn_as_text(
-    batch: Batch, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setenv("COLUMNS", "80")
-    assert batch("mine.py", "--seeds", "1..9", "-M", "20", "--picture-of", "poses") == 0
-    out = capsys.readouterr().out
-    assert "End poses: mine.py" in out
-    assert max(map(len, out.split("\n"))) <= 80
 
 
 @pytest.mark.slow

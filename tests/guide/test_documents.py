@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import shlex
+import shutil
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -28,9 +29,14 @@ def _class(where: Path) -> None:
     )
 
 
+def _experiments(where: Path) -> None:
+    program("square.py", where)
+    shutil.copy(ROOT / "backgrounds" / "Loop.png", where / "mat.png")
+
+
 PREPARED: dict[str, Callable[[Path], None]] = {
     "marking": _class,
-    "experiments": lambda where: program("square.py", where),
+    "experiments": _experiments,
     "world-files": lambda where: program("follow_line.py", where),
 }
 """What the reader of a page has already."""

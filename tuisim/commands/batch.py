@@ -9,12 +9,10 @@ import time
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import field
-from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from tuisim import __version__
 from tuisim.batch.partial import PartialTable, partial_of, rows_of_table
-from tuisim.batch.pictures import text_of, write_poses
 from tuisim.batch.sweep import run_plan
 from tuisim.batch.table import (
     GOAL,
@@ -34,7 +32,6 @@ from tuisim.commands.echo import (
     Figure,
     Progress,
     echo,
-    echo_drawn,
     echo_error,
     echo_json,
     echo_lines,
@@ -68,14 +65,16 @@ _MOST_OVERLAID = 4
 """Stored runs that an example names."""
 _ROUNDING = 1e-10
 """Poses, times and readings smaller than this are 0 but for rounding."""
-_LEAST_COLUMNS, _ROWS = 40, (12, 40)
-"""Size of a picture in the terminal: minimum width, and limits of its height."""
 
 
 @command(
     *OPTIONS,
     *_SHARED,
     passes_arguments=True,
+    instead=dict.fromkeys(
+        ("--picture", "--picture-of"),
+        "seaborn draws the table of --out, see `tuisim guide experiments`",
+    ),
     help="""Run programs with many seeds and settings; print or write one row per run.
 
     SPEC.toml is a file with a table [batch], whose keys are named like the options; options on the command line take
@@ -86,7 +85,6 @@ _LEAST_COLUMNS, _ROWS = 40, (12, 40)
     epilog="""\b
     Examples:
       tuisim batch drive.py --seeds 0..199 --set noise.motor=0,20,50
-      tuisim batch drive.py --seeds 0..199 -M 20 --picture-of poses
       tuisim batch drive.py --set robot.wheel_diameter_mm=54:58:0.5 --out d.csv
     """,
 )
@@ -139,8 +137,6 @@ class _Batch:
         if partly is not None and not code:
             partly.remove()
         self._print(frame)
-        if self.rows:
-            self._draw(frame)
         if code:
             self._tell_interrupted()
         return max([code, *map(_exit_code, self.rows.values())])
@@ -210,22 +206,6 @@ class _Batch:
         if kept:
             command = f"tuisim analyse {' '.join(kept[:_MOST_OVERLAID])}{' …' * (len(kept) > _MOST_OVERLAID)}"
             echo(f"{counted(len(kept), 'run')} stored, in column {RUN_ID} of the table: {command}")
-
-    def _draw(self, frame: pd.DataFrame) -> None:
-        """Draw the end poses if asked to: to their file, or as text unless rows are printed."""
-        plan, path = self.request.plan, self.request.picture
-        if path is not None:
-            tell(f"drawing {path}")
-            write_poses(frame, plan, path)
-        if not self.request.draws_poses or self.as_json:
-            return
-        terminal = shutil.get_terminal_size()
-        width, height = (
-            max(terminal.columns, _LEAST_COLUMNS),
-            min(max(terminal.lines - 1, _ROWS[0]), _ROWS[1]),
-        )
-        echo()
-        echo_drawn(partial(text_of, frame, plan, width, height), width)
 
     def _tell_interrupted(self) -> None:
         out = self.request.out

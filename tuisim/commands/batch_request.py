@@ -9,7 +9,6 @@ from pathlib import Path
 
 from tuisim.batch.batch_file import BatchFile, load_batch, means_batch
 from tuisim.batch.parameters import SEED, Choice, parse_seeds, parse_set
-from tuisim.batch.pictures import POSES, check_picture_file, parse_picture
 from tuisim.batch.plan import Plan, Subject
 from tuisim.batch.sweep import Workers
 from tuisim.batch.table import check_expressions
@@ -76,20 +75,6 @@ OPTIONS = (
     ),
     keep_option(Keep.NONE, _RESULTS),
     option(
-        "--picture-of",
-        metavar="WHAT",
-        type=WordType(parse_picture, lambda: (POSES,)),
-        group=_RESULTS,
-        help=f"Draw {POSES}: the end poses over the mat.",
-    ),
-    option(
-        "--picture",
-        metavar="FILE",
-        type=WordType(),
-        group=_RESULTS,
-        help="Write the end poses as a picture (.svg or .png) instead of drawing them as text.",
-    ),
-    option(
         "--resume",
         is_flag=True,
         group=_RESULTS,
@@ -126,10 +111,6 @@ class Request:
     out: Path | None
     workers: Workers
     resume: bool
-    draws_poses: bool = False
-    """Whether the end poses are drawn as text."""
-    picture: Path | None = None
-    """File for the end poses; None for none."""
 
 
 def read_request(arguments: Arguments) -> Request:
@@ -160,17 +141,11 @@ def read_request(arguments: Arguments) -> Request:
     )
     expressions = {**file.expressions, **dict(map(_expression, arguments.expressions))}
     check_expressions(expressions, plan.names, [goal.name for goal in plan.goals])
-    picture = Path(arguments.picture) if arguments.picture else None
-    if picture is not None:
-        check_picture_file(picture)
     out = arguments.out or file.out
     if arguments.resume and out is None:
         raise ConfigError("needs the table to go on with", "--out FILE", key="--resume")
     target = check_target(out) if out is not None else None
-    draws_poses = bool(arguments.picture_of) and picture is None
-    return Request(
-        plan, expressions, target, _workers(arguments, file), arguments.resume, draws_poses, picture
-    )
+    return Request(plan, expressions, target, _workers(arguments, file), arguments.resume)
 
 
 def _workers(arguments: Arguments, file: BatchFile) -> Workers:
