@@ -62,3 +62,17 @@ def test_only_old_parts_of_the_name_are_swept(tmp_path: Path) -> None:
     assert names(tmp_path) == [".log.new.tmp", ".other.old.tmp", "log.tmp"]
     sweep(tmp_path)
     assert names(tmp_path) == [".log.new.tmp", "log.tmp"]
+
+
+def test_what_a_killed_process_has_left_of_a_private_file_goes_when_it_is_written(
+    tmp_path: Path,
+) -> None:
+    for name in (".log.old.tmp", ".other.old.tmp"):
+        (tmp_path / name).touch()
+        os.utime(tmp_path / name, (0, 0))
+    # What no process can remove is left.
+    (tmp_path / ".log.folder.tmp").mkdir()
+    os.utime(tmp_path / ".log.folder.tmp", (0, 0))
+    with replacing(tmp_path / "log", owner_only=True) as handle:
+        handle.write(b"new")
+    assert names(tmp_path) == [".log.folder.tmp", ".other.old.tmp", "log"]

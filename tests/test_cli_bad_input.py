@@ -62,6 +62,11 @@ BAD = {
         "--press: the brick has no button 'entre' (did you mean enter?)",
     ),
     "pen colour": ("run prog.py -P reed", "-P: no such colour 'reed' (did you mean red"),
+    "a command that is gone": ("man", "man: no such command or program (`tuisim --help` lists"),
+    "an option that is gone": (
+        "doctor --clean",
+        "no such option: --clean (what killed processes have left is removed when tuisim runs again)",
+    ),
     "unknown option": (
         "run prog.py --zigzag",
         "no such option: --zigzag (see `tuisim run --help`)",

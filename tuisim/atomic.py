@@ -9,10 +9,10 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import BinaryIO
 
-PART_SUFFIX = ".tmp"
+_PART_SUFFIX = ".tmp"
 """Suffix of a temporary file, `.NAME.random.tmp`; a killed process leaves it behind."""
 
-LEFT_OVER_S = 3600.0
+_LEFT_OVER_S = 3600.0
 
 # Saved: in the process that runs a program it is replaced by one that notes what the program opens.
 _open = os.open
@@ -48,7 +48,8 @@ def replacing(
     Args:
         path: The file; its folder must exist.
         durable: Whether to `fsync`, so that the file survives a power cut; False is faster.
-        owner_only: Use owner-only permissions regardless of the umask, as for everything in `TUISIM_HOME`.
+        owner_only: Use owner-only permissions regardless of the umask, as for everything in `TUISIM_HOME`; what killed
+            processes have left of this file is removed.
         follow_links: Replace the target of a symbolic link, as users expect; False replaces the link itself, which a
             program may have put in its run folder.
 
@@ -58,8 +59,10 @@ def replacing(
     target = Path(os.path.realpath(path)) if follow_links else path
     # Not `tempfile`, which ignores the umask. Not `secrets`, which imports `random`: a child process imports this
     # module before it seeds `random`.
-    beside = target.with_name(f".{target.name}.{os.urandom(4).hex()}{PART_SUFFIX}")
+    beside = target.with_name(f".{target.name}.{os.urandom(4).hex()}{_PART_SUFFIX}")
     _unfinished[beside] = target
+    if owner_only:
+        sweep(target.parent, target.name)
     try:
         with open(beside, "xb", opener=private if owner_only else None) as handle:
             yield handle
@@ -101,8 +104,9 @@ def sweep(folder: Path, name: str = "*") -> None:
 
     Files younger than an hour are kept: a process may still be writing them.
     """
-    for beside in folder.glob(f".{name}.*{PART_SUFFIX}"):
-        # Another process may be sweeping too.
-        with suppress(FileNotFoundError):
-            if time.time() - beside.stat().st_mtime > LEFT_OVER_S:
+    # Beside a database, SQLite keeps files of its own.
+    for beside in folder.glob(f".{name}.*{_PART_SUFFIX}*"):
+        # Another process may be sweeping too, and a program may have put anything there.
+        with suppress(OSError):
+            if time.time() - beside.stat().st_mtime > _LEFT_OVER_S:
                 beside.unlink()

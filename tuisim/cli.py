@@ -87,7 +87,6 @@ COMMANDS: Mapping[str, CommandEntry] = {
     "completion": CommandEntry(
         "cli:completion", "Print a script that completes commands in your shell"
     ),
-    "man": CommandEntry("cli:man", "Print the page for man"),
 }
 
 _COMPLETE = "_TUISIM_COMPLETE"
@@ -97,19 +96,21 @@ LEAST_OPEN_FILES = 64
 """Open files that the app, a run and their libraries need, with some margin."""
 
 EXIT_OUR_MISTAKE = 70
+_INSTEAD = {"man": "`tuisim --help` lists the commands, `tuisim guide commands` explains them"}
+"""What to use instead of commands that there are not."""
 
 
 def _check_command(word: str) -> None:
     """Raise ConfigError if a word looks like a misspelt command and is not a program."""
-    close = closest(word, COMMANDS, 1)
-    if not close or "." in word:
+    hint = _INSTEAD.get(word) or did_you_mean(
+        [f"`tuisim {name}`" for name in closest(word, COMMANDS, 1)]
+    )
+    if not hint or "." in word:
         return
     from tuisim.config.program_file import find_program
 
     if not os.path.exists(find_program(word)):
-        raise ConfigError(
-            f"{word}: no such command or program", did_you_mean([f"`tuisim {close[0]}`"])
-        )
+        raise ConfigError(f"{word}: no such command or program", hint)
 
 
 def _check_open_files() -> None:
@@ -169,22 +170,6 @@ def completion(shell: str) -> int:
     scripts = get_completion_class(shell)
     assert scripts is not None
     print(scripts(ROOT, {}, "tuisim", _COMPLETE).source())
-    return 0
-
-
-@command(
-    help="""Print the page for `man`.
-
-    \b
-    tuisim man | man -l -
-    tuisim man > ~/.local/share/man/man1/tuisim.1
-    """,
-)
-def man() -> int:
-    """Print the page."""
-    from tuisim.commands.system.man_page import man_page
-
-    print(man_page(ROOT, __version__), end="")
     return 0
 
 

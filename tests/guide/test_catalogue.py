@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from html.parser import HTMLParser
 from pathlib import Path
 
 import pytest
@@ -92,41 +91,6 @@ def test_the_pages_that_errors_name_exist() -> None:
     assert named <= set(pages())
 
 
-class _Links(HTMLParser):
-    """What a page of HTML loads or leads to."""
-
-    def __init__(self) -> None:
-        super().__init__()
-        self.loads: list[str] = []
-        self.leads: list[str] = []
-
-    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        """Keep the addresses of a tag."""
-        for name, value in attrs:
-            if (
-                name in ("src", "data", "srcset", "action")
-                or (name == "href" and tag == "link")
-                or tag == "script"
-            ):
-                self.loads.append(str(value))
-            elif name == "href":
-                self.leads.append(str(value))
-
-
-def test_html_loads_nothing_and_is_the_same_twice(tmp_path: Path, here: Command) -> None:
-    assert here("guide", "--html", "one").returncode == 0
-    assert here("guide", "--html", "two").returncode == 0
-    written = {path.name: path.read_bytes() for path in (tmp_path / "one").iterdir()}
-    assert written == {path.name: path.read_bytes() for path in (tmp_path / "two").iterdir()}
-    assert set(written) == {"index.html", *(f"{name}.html" for name in pages())}
-    for name, content in written.items():
-        found = _Links()
-        found.feed(content.decode())
-        assert (found.loads, b"@import" in content, b"url(" in content) == ([], False, False), name
-        assert [to for to in found.leads if "://" not in to and to not in written] == [], name
-        assert b"<!-- table" not in content, name
-
-
 @pytest.mark.parametrize("name", pages())
 def test_the_shell_prints_a_page(name: str, here: Command) -> None:
     done = here("guide", name)
@@ -152,7 +116,9 @@ def test_the_shell_lists_the_contents_and_searches(here: Command) -> None:
             id="no page",
         ),
         pytest.param(["keys", "--search", "x"], 2, "exclude each other", id="two at once"),
-        pytest.param(["--html", "a_file"], 2, "cannot write a_file", id="a file for a folder"),
+        pytest.param(
+            ["--html", "a"], 2, "no such option: --html (`tuisim guide` and the key ?", id="HTML"
+        ),
         pytest.param(
             ["--search", "xyzzy"], 1, "No page has these words: xyzzy", id="nothing found"
         ),

@@ -94,9 +94,6 @@ OPERATIONS: Mapping[str, Operation] = {
         ),
         is_list=True,
     ),
-    "guide": Operation(
-        (*_COMMAND, "guide", "--html", "out"), ("out/index.html", "out/keys.html"), is_slow=True
-    ),
     "lesson": Operation((*_COMMAND, "learn", "new", "out.md"), ("out.md",)),
     "robot": Operation(
         _call(

@@ -348,20 +348,6 @@ def test_removed_run_is_gone_and_its_number_is_not_used_again(
     assert store.new_run(PROGRAM, spec).number == 4
 
 
-def test_what_a_killed_removal_has_left_goes_with_the_next_one(
-    store: RunStore, spec: RunSpec, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    runs = [store.new_run(PROGRAM, spec) for _ in range(3)]
-    for run in runs:
-        store.finish(run, FINISHED)
-    with monkeypatch.context() as killed:
-        killed.setattr("tuisim.runs.store.remove_tree", lambda *_, **__: None)
-        store.remove(runs[0].id)
-    assert len(list((store.home / "runs").iterdir())) == 3
-    store.remove(runs[1].id)
-    assert [path.name for path in (store.home / "runs").iterdir()] == [runs[2].id]
-
-
 def test_what_a_program_has_put_into_its_folder_is_not_copied_into_the_store(
     logged: StoredRun, tmp_path: Path
 ) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import subprocess
 import sys
 import tempfile
 from concurrent.futures import ThreadPoolExecutor
@@ -11,17 +12,17 @@ from threading import Barrier
 
 import pytest
 
+from tests.conftest import ROOT
 from tuisim.core.profile import ROBOLAB
 from tuisim.core.spec import RobotSpec, RunSpec, WorldSpec
 from tuisim.errors import LogError
 from tuisim.runs import temporary
 from tuisim.runs.run_folder import RUN_FILE
-from tuisim.runs.side_files import is_held
+from tuisim.runs.side_files import hold, is_held
 from tuisim.runs.temporary import TemporaryRun, batch_folder, owned_folder, temporary_home
 from tuisim.source import Program
 
 SPEC = RunSpec(RobotSpec(), WorldSpec(), ROBOLAB)
-DAY_S = 24 * 3600
 
 
 @pytest.fixture(autouse=True)
@@ -59,15 +60,23 @@ def test_threads_create_homes_at_the_same_time(place: Path) -> None:
     assert list(place.iterdir()) == []
 
 
-def test_a_batch_deletes_what_a_killed_one_left_a_day_ago(place: Path) -> None:
-    old, new = (place / f"tuisim-batch-{name}" for name in ("old", "new"))
-    for folder in (old, new):
-        folder.mkdir()
-    held = owned_folder("tuisim-batch-")
-    for folder in (old, held):
-        os.utime(folder, (0, folder.stat().st_mtime - 2 * DAY_S))
-    mine = batch_folder()
-    assert (old.exists(), new.exists(), held.exists(), mine.exists()) == (False, True, True, True)
+def test_the_first_folder_of_a_process_deletes_what_killed_ones_have_left(place: Path) -> None:
+    code = (
+        "import os, tempfile, tuisim.runs.temporary as t; tempfile.tempdir = os.getcwd(); "
+        "t.owned_folder(); os.kill(os.getpid(), 9)"
+    )
+    subprocess.run(
+        [sys.executable, "-c", code], cwd=place, env={"PYTHONPATH": str(ROOT)}, check=False
+    )
+    (dead,) = place.iterdir()
+    (place / "tuisim-of-something-else").mkdir()
+    held = place / "tuisim-held"
+    held.mkdir()
+    lock_fd = hold(held)
+    mine = owned_folder()
+    os.close(lock_fd)
+    assert not dead.exists()
+    assert {held, mine} < {*place.iterdir()} and len([*place.iterdir()]) == 3
 
 
 def test_where_no_folder_can_be_created_it_is_told(place: Path) -> None:

@@ -1,4 +1,4 @@
-"""`tuisim guide`: pages of the guide in the shell, search, and the guide as HTML."""
+"""`tuisim guide`: pages of the guide in the shell, and search."""
 
 from __future__ import annotations
 
@@ -6,15 +6,13 @@ import os
 import shutil
 import sys
 from collections.abc import Sequence
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
 from tuisim.commands.echo import echo
 from tuisim.config.command_line import WordType, argument, command, option
-from tuisim.config.folders import user_path
-from tuisim.errors import ConfigError, counted
+from tuisim.errors import ConfigError
 
 if TYPE_CHECKING:
     from tuisim.terminal.text_runs import Line
@@ -38,9 +36,9 @@ def _names() -> Sequence[str]:
         type=WordType(),
         help="List the pages that answer words or a question.",
     ),
-    option("--html", metavar="FOLDER", type=WordType(), help="Write all pages as HTML files."),
+    instead={"--html": "`tuisim guide` and the key ? of the app show all pages"},
 )
-def guide(topic: str | None, words: str | None, html: str | None) -> int:
+def guide(topic: str | None, words: str | None) -> int:
     """Read the guide: the contents, or the page on a topic.
 
     In the app, the key ? opens the same pages.
@@ -48,12 +46,8 @@ def guide(topic: str | None, words: str | None, html: str | None) -> int:
     from tuisim.guide.catalogue import find_page
     from tuisim.guide.text import contents_lines, page_lines
 
-    if sum(one is not None for one in (topic, words, html)) > 1:
-        raise ConfigError(
-            "TOPIC, --search and --html exclude each other", "give one of them", key="guide"
-        )
-    if html is not None:
-        return _write(user_path(html))
+    if topic is not None and words is not None:
+        raise ConfigError("TOPIC and --search exclude each other", "give one of them", key="guide")
     if words is not None:
         return _search(words)
     width = _width()
@@ -89,13 +83,4 @@ def _search(words: str) -> int:
         echo(f"{NO_WORDS}: {words}. `tuisim guide` lists all pages.")
         return 1
     _show(result_lines(found, _width()))
-    return 0
-
-
-def _write(folder: Path) -> int:
-    from tuisim import __version__
-    from tuisim.guide.html import INDEX, write_html
-
-    written = write_html(folder, __version__)
-    echo(f"{counted(len(written), 'file')} in {folder}; open {folder / INDEX}")
     return 0

@@ -35,8 +35,6 @@ TABLES: Mapping[str, str] = {
 }
 """MODULE:FUNCTION by name, imported on use: some load the app."""
 
-_FOR_OTHERS: Mapping[str, str] = {"keys": "app.guide.key_tables:usual_keys"}
-"""Tables without what the user has changed, in place of those of `TABLES`."""
 _MARK = re.compile(r"^<!-- table: ([\w-]+) -->$", re.MULTILINE)
 
 
@@ -61,14 +59,13 @@ def code(text: str) -> str:
 
 
 @cache
-def table(name: str, *, for_others: bool = False) -> Table:
+def table(name: str) -> Table:
     """Make a table.
 
     Args:
         name: One of `TABLES`.
-        for_others: Whether it is not for this user, so that the user's own settings do not show.
     """
-    module, _, function = ((for_others and _FOR_OTHERS.get(name)) or TABLES[name]).partition(":")
+    module, _, function = TABLES[name].partition(":")
     return cast("Callable[[], Table]", getattr(import_module(f"tuisim.{module}"), function))()
 
 
@@ -77,7 +74,7 @@ def tables_in(page: Page) -> list[str]:
     return _MARK.findall(page.source)
 
 
-def markdown_of(page: Page, *, for_others: bool = False) -> str:
-    """Return the whole page with its title and its tables, as for `table`."""
-    made = _MARK.sub(lambda found: table(found[1], for_others=for_others).markdown(), page.source)
+def markdown_of(page: Page) -> str:
+    """Return the whole page with its title and its tables."""
+    made = _MARK.sub(lambda found: table(found[1]).markdown(), page.source)
     return f"# {page.title}\n\n{made}"

@@ -15,7 +15,7 @@ from dataclasses import fields
 from pathlib import Path
 from typing import Any, TypeVar
 
-from tuisim.atomic import make_private_folder, private
+from tuisim.atomic import make_private_folder, private, sweep
 from tuisim.data_class import dataclass
 from tuisim.errors import LogError, shortened
 from tuisim.protocol import RUN_STATES, RunState
@@ -188,6 +188,7 @@ class Catalogue:
             # Another process may have done it in the meantime.
             if _is_sound(self._path):
                 return
+            sweep(self._path.parent, CATALOGUE_FILE)
             fresh = self._path.with_name(f".{CATALOGUE_FILE}.{os.urandom(4).hex()}.tmp")
             try:
                 # SQLite creates the files beside it with the same permissions.

@@ -84,14 +84,9 @@ def hold(folder: Path) -> int:
 
 def is_held(folder: Path) -> bool | None:
     """Return whether a living process holds the lock; None if it was never acquired, or cannot be asked for."""
-    return is_locked(folder / LOCK_FILE)
-
-
-def is_locked(path: Path) -> bool | None:
-    """Return whether a living process holds a lock by its file; None if there is none, or it cannot be asked for."""
     try:
         # Not blocked by a pipe in its place.
-        descriptor = os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC)
+        descriptor = os.open(folder / LOCK_FILE, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC)
     except OSError:
         return None
     try:

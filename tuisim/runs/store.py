@@ -39,7 +39,7 @@ from tuisim.runs.views import OutputView, TelemetryView
 from tuisim.source import Program
 
 RUNS_FOLDER = "runs"
-REMOVED = ".removed"
+_REMOVED = ".removed"
 """End of the name of a folder that is about to be deleted."""
 LAST = "last"
 _MAY_CHANGE = (None, Unended.INTERRUPTED, Unended.DAMAGED)
@@ -255,10 +255,10 @@ class RunStore:
         rows = self._catalogue.rows()
         listed = {row.id for row in rows}
         gone = {row.id for row in rows if row.id not in there and not self.folder(row.id).is_dir()}
-        strangers = (
-            self.folder(name) for name in sorted(there - listed) if not name.startswith(".")
-        )
+        strangers = [self.folder(name) for name in sorted(there - listed)]
         found = list(filter(None, map(self._info_in, strangers)))
+        for folder in strangers:
+            _remove_left_over(folder)
         if gone or found:
             try:
                 self._catalogue.remove(gone)
@@ -333,13 +333,13 @@ class RunStore:
             write_run_file(folder, {**read_run_file(folder), **changes})
 
     def _scan(self) -> Iterator[RunInfo]:
-        return filter(None, map(self._info_in, sorted(self._runs.glob("[!.]*"))))
+        return filter(None, map(self._info_in, sorted(self._runs.glob("*"))))
 
     def _info_in(self, folder: Path) -> RunInfo | None:
         """Return the catalogue row of a folder; None if it holds no run (yet)."""
         # The folder's name is the id: a copied run is another run.
         run_id = folder.name
-        if not os.path.lexists(folder / RUN_FILE):
+        if run_id.startswith(".") or not os.path.lexists(folder / RUN_FILE):
             return None
         try:
             return _info_from(run_id, read_run_file(folder))
@@ -507,15 +507,22 @@ def _copy_files(folder: Path, place: Path) -> None:
 def _delete(folder: Path) -> None:
     """Delete a run folder; of a symbolic link only the link."""
     # Renamed first: a partly deleted run must not look like a run.
-    removed = folder.with_name(f".{folder.name}.{os.urandom(4).hex()}{REMOVED}")
+    removed = folder.with_name(f".{folder.name}.{os.urandom(4).hex()}{_REMOVED}")
     os.replace(folder, removed)
     if removed.is_symlink():
         removed.unlink()
         return
-    # Also those that another process could not delete to the end; one that is at it deletes the rest.
-    for left in folder.parent.glob(f".*{REMOVED}"):
-        with suppress(FileNotFoundError):
-            remove_tree(left, ignore_errors=left != removed)
+    # Another process may take it for left over, and delete the rest.
+    with suppress(FileNotFoundError):
+        remove_tree(removed, ignore_errors=False)
+
+
+def _remove_left_over(folder: Path) -> None:
+    """Remove a folder in which a killed process was about to begin a run, or to delete one."""
+    is_removed = folder.name.startswith(".") and folder.name.endswith(_REMOVED)
+    is_begun = os.path.lexists(folder / RUN_FILE)
+    if not folder.is_symlink() and (is_removed or (not is_begun and is_held(folder) is False)):
+        remove_tree(folder)
 
 
 def _tags_in(folder: Path) -> list[str]:

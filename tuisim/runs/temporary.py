@@ -6,11 +6,11 @@ import json
 import os
 import tempfile
 import threading
-import time
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
 from dataclasses import asdict
 from datetime import UTC, datetime
+from functools import cache
 from pathlib import Path
 from types import TracebackType
 from typing import Any
@@ -28,38 +28,31 @@ _MEMORY = Path("/dev/shm")
 """A file system in memory, on Linux: to create and delete files on a disk takes longer than a short run."""
 _FREE_BYTES = 2 << 30
 """It is used with at least this much space: programs may print a lot."""
-PREFIX = "tuisim-"
+_PREFIX = "tuisim-"
 """Each folder that is created here begins with it."""
-_BATCH_PREFIX = "tuisim-batch-"
-_LEFT_OVER_S = 24 * 3600.0
+_BATCH_PREFIX = f"{_PREFIX}batch-"
 
 
 def batch_folder() -> Path:
-    """Create a folder for the temporary runs of a batch, and delete what killed processes have left a day ago.
+    """Create a folder for the temporary runs of a batch.
 
     Raises:
         LogError: it cannot be created.
     """
-    parent = _parent()
-    for folder in parent.glob(f"{_BATCH_PREFIX}*"):
-        with suppress(OSError):
-            if time.time() - folder.stat().st_mtime > _LEFT_OVER_S and not is_held(folder):
-                remove_tree(folder)
-    return owned_folder(_BATCH_PREFIX, parent)
+    return owned_folder(_BATCH_PREFIX, _parent())
 
 
-def places() -> tuple[Path, ...]:
-    """Return the folders in which temporary folders may be."""
-    return Path(tempfile.gettempdir()), _MEMORY
-
-
-def owned_folder(prefix: str = PREFIX, parent: Path | None = None) -> Path:
+def owned_folder(prefix: str = _PREFIX, parent: Path | None = None) -> Path:
     """Create a folder that counts as used as long as this process lives; its name begins with the prefix.
 
+    The first one in a parent also removes those that killed processes have left there.
+
     Raises:
         LogError: it cannot be created.
     """
-    folder = _new_folder(parent or Path(tempfile.gettempdir()), prefix)
+    parent = parent or Path(tempfile.gettempdir())
+    _remove_left_over(parent)
+    folder = _new_folder(parent, prefix)
     with _held_lock:
         for old in [old for old in _held if not old.exists()]:
             os.close(_held.pop(old))
@@ -75,8 +68,17 @@ _held_lock = threading.Lock()
 """Held while they are changed: threads of an app try programs at the same time."""
 
 
+@cache
+def _remove_left_over(parent: Path) -> None:
+    """Remove folders of this user whose process has ended; one without a lock is another program's."""
+    for folder in parent.glob(f"{_PREFIX}*"):
+        with suppress(OSError):
+            if folder.lstat().st_uid == os.getuid() and is_held(folder) is False:
+                remove_tree(folder)
+
+
 @contextmanager
-def temporary_home(prefix: str = PREFIX) -> Iterator[Path]:
+def temporary_home(prefix: str = _PREFIX) -> Iterator[Path]:
     """Create a home folder for temporary runs, and delete it afterwards; its name begins with the prefix.
 
     Raises:

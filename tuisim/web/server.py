@@ -100,7 +100,7 @@ class Server:
             ]
         )
         application.on_response_prepare.append(self._protect)
-        application.on_shutdown.append(self._send_all_away)
+        application.on_shutdown.append(self.send_all_away)
         return application
 
     @web.middleware
@@ -237,7 +237,8 @@ class Server:
         await response.write_eof()
         return response
 
-    async def _send_all_away(self, _: web.Application) -> None:
+    async def send_all_away(self, _: object = None) -> None:
+        """End the apps of all visitors."""
         for visit in self._visits.values():
             visit.end("The server has been ended.")
         await asyncio.gather(*self._lives.values())

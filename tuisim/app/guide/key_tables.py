@@ -61,15 +61,6 @@ def app_keys() -> Table:
     # The app and `tuisim config` tell what is wrong.
     with suppress(ConfigError):
         actions = with_keys(actions, load_config())
-    return _table_of(actions)
-
-
-def usual_keys() -> Table:
-    """Return the keys of the app as they are without the user's own."""
-    return _table_of(_actions("tuisim.app.actions.keys"))
-
-
-def _table_of(actions: Mapping[str, Action[Any, Any]]) -> Table:
     rows = [(*row, code(name)) for row, name in zip(_keys(actions.values()), actions, strict=True)]
     everywhere = [(code(key), does, "Everywhere", "") for key, does in EVERYWHERE]
     return Table(("key", "does", "group", "id"), [*rows, *everywhere])

@@ -1,1 +1,1 @@
-"""Commands about this installation: what the terminal and the machine offer, and the page for `man`."""
+"""Commands about this installation: what the terminal and the machine offer, and the user's settings."""

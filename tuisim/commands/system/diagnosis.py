@@ -15,7 +15,6 @@ SMALLEST, COMFORTABLE = (60, 18), (80, 24)
 """Columns and rows that the app needs, and those that it is designed for."""
 SLOW_S = 0.15
 """An answer of the terminal that takes longer is felt."""
-LEFT_OVER = "left over"
 LARGE_STORE_MB = 2000
 OLDEST_PYTHON = (3, 11)
 
@@ -218,14 +217,6 @@ def store_finding(count: int, size_bytes: int, free_bytes: int) -> Finding:
     if size_bytes > LARGE_STORE_MB * 1e6:
         return Finding("store", value, State.ADVICE, "Large: tuisim runs rm --older-than 30d")
     return Finding("store", value)
-
-
-def left_over_finding(count: int, size_bytes: int) -> Finding:
-    """Judge what killed processes have left behind."""
-    if not count:
-        return Finding(LEFT_OVER, "nothing")
-    value = f"{count} that no run owns, {size_bytes / 1e6:.1f} MB"
-    return Finding(LEFT_OVER, value, State.ADVICE, "tuisim doctor --clean removes them")
 
 
 def assets_finding(why_not: str) -> Finding:

@@ -16,13 +16,12 @@ from pathlib import Path
 from textwrap import wrap
 
 from tuisim import __version__
-from tuisim.commands.echo import echo, echo_error, echo_json, size
+from tuisim.commands.echo import echo, echo_json
 from tuisim.commands.system import diagnosis
 from tuisim.commands.system.diagnosis import Finding, State, prevents_use
-from tuisim.commands.system.left_over import LeftOver, left_over, remove
 from tuisim.config.command_line import AS_JSON, command, option
 from tuisim.config.folders import backgrounds_folder, home_folder, programs_folder
-from tuisim.errors import ConfigError, TuisimError, counted
+from tuisim.errors import ConfigError, TuisimError
 
 EXIT_PREVENTED = 1
 _WIDTH = 78
@@ -32,24 +31,19 @@ _EXACTLY = re.compile(r"([A-Za-z0-9._-]+)\s*(?:==([^;,\s]+))?")
 
 @command(
     AS_JSON,
-    option(
-        "--clean", is_flag=True, help="Remove what killed processes have left, and no run owns."
-    ),
     option("--reset", is_flag=True, help="Restore a terminal that a killed app has left unusable."),
+    instead={"--clean": "what killed processes have left is removed when tuisim runs again"},
     help="""Check the terminal and the machine, for use and for bug reports.
 
     Each line tells what was found and, after ->, what to do about it. The exit code is 0 unless something prevents the
     use of tuisim.
 
-    What processes that were killed have left behind is listed: folders of runs that did not begin, half-written files,
-    temporary runs. With --clean it is removed, but nothing that a living process uses.
-
     If a killed app has left the terminal without an echo or with a hidden cursor, type `tuisim doctor --reset` and
     press ctrl+j, even if you cannot see what you type.
     """,
 )
-def doctor(as_json: bool, clean: bool, reset: bool) -> int:
-    """Print the report, remove what is left over, or restore the terminal.
+def doctor(as_json: bool, reset: bool) -> int:
+    """Print the report, or restore the terminal.
 
     Raises:
         ConfigError: there is no terminal to restore.
@@ -57,49 +51,17 @@ def doctor(as_json: bool, clean: bool, reset: bool) -> int:
     if reset:
         _restore()
         return 0
-    left = left_over(home_folder())
-    if clean:
-        return _clean(left, as_json=as_json)
-    findings = [*_terminal_findings(os.environ), *_machine_findings(left)]
+    findings = [*_terminal_findings(os.environ), *_machine_findings()]
     prevented = prevents_use(findings)
     if as_json:
-        facts = {
-            "usable": not prevented,
-            "findings": [asdict(one) for one in findings],
-            "left_over": _plain(left),
-        }
+        facts = {"usable": not prevented, "findings": [asdict(one) for one in findings]}
         echo_json({"tuisim": __version__, **facts})
     else:
-        _print(findings, left)
+        _print(findings)
     return EXIT_PREVENTED if prevented else 0
 
 
-def _clean(left: list[LeftOver], *, as_json: bool) -> int:
-    """Remove what is left over and tell it; return the exit code."""
-    removed, code = [], 0
-    for one in left:
-        try:
-            remove(one)
-            removed.append(one)
-        except OSError as error:
-            echo_error(f"tuisim: {one.path}: cannot be removed: {error.strerror or error}")
-            code = ConfigError.exit_code
-    if as_json:
-        echo_json({"removed": _plain(removed)})
-    else:
-        for one in removed:
-            echo(f"removed {one.path}: {one.what}, {size(one.size_bytes)}")
-        echo(
-            f"{counted(len(removed), 'left-over')} removed, {size(sum(one.size_bytes for one in removed))}"
-        )
-    return code
-
-
-def _plain(left: list[LeftOver]) -> list[dict[str, object]]:
-    return [{"path": str(one.path), "what": one.what, "bytes": one.size_bytes} for one in left]
-
-
-def _print(findings: list[Finding], left: list[LeftOver]) -> None:
+def _print(findings: list[Finding]) -> None:
     echo(f"tuisim {__version__}")
     widest = max(len(one.name) for one in findings)
     for one in findings:
@@ -108,9 +70,6 @@ def _print(findings: list[Finding], left: list[LeftOver]) -> None:
         advice = wrap(one.advice, _WIDTH - widest - 11, break_on_hyphens=False)
         for line in (*rest, *(f"{'  ' if at else '->'} {text}" for at, text in enumerate(advice))):
             echo(f"{'':{widest + 8}}{line}")
-        if one.name == diagnosis.LEFT_OVER:
-            for each in left:
-                echo(f"{'':{widest + 8}}{each.path}: {each.what}, {size(each.size_bytes)}")
     echo(
         "Something prevents the use of tuisim: see FAIL."
         if prevents_use(findings)
@@ -227,7 +186,7 @@ def _locale_variable(environment: Mapping[str, str]) -> str:
     return next((f"{name}={environment[name]}" for name in names), "")
 
 
-def _machine_findings(left: list[LeftOver]) -> list[Finding]:
+def _machine_findings() -> list[Finding]:
     home = home_folder()
     why_not = _why_not_writable(home)
     found = [
@@ -238,7 +197,6 @@ def _machine_findings(left: list[LeftOver]) -> list[Finding]:
     ]
     if not why_not:
         found.append(diagnosis.store_finding(*_store(home)))
-        found.append(diagnosis.left_over_finding(len(left), sum(one.size_bytes for one in left)))
     return [*found, _textual_finding(), *diagnosis.dependency_findings(_requirements())]
 
 
