@@ -21,7 +21,6 @@ from tuisim.core.spec import MOUNTS
 from tuisim.guide.catalogue import pages
 from tuisim.guide.tables import markdown_of
 from tuisim.logs.export import EXPORTERS
-from tuisim.movies.files import MOVIE_FORMATS
 
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 GUIDE = "\n\n".join(markdown_of(page).replace("\\|", "|") for page in pages().values())
@@ -34,7 +33,6 @@ TABLES = {
     "subcommand of log": SUBCOMMANDS,
     "profile": PROFILES,
     "export format": EXPORTERS,
-    "movie format": MOVIE_FORMATS,
     "option": [option.flags[0] for option in OPTIONS],
     "panel's key": [label_of_key(panel.key) for panel in PANELS.values()],
     "app's key": [

@@ -105,7 +105,7 @@ def test_a_movie_of_a_run_that_missed_a_goal_has_the_goals_on_it(
     )
     assert '<details class="movie">' not in report + right
     movie = missed.partition('<details class="movie">')[2].partition("</details>")[0]
-    assert "data:image/webp" in movie and movie.count("✗1") == 1
+    assert "data:image/gif" in movie and movie.count("✗1") == 1
 
 
 def test_no_path_of_the_machine_is_told(report: str, tmp_path: Path) -> None:

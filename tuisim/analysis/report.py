@@ -228,7 +228,7 @@ def _movie(run: StoredRun, pins: Sequence[Pin]) -> str:
     text = clean(
         f"Movie of the run: {clip.recorded.end_s:.1f} s in {speed}, {len(content) / 1000:.0f} kB"
     )
-    image = f'<img src="{_data("webp", content)}" alt="{text}">'
+    image = f'<img src="{_data("gif", content)}" alt="{text}">'
     shown = f'<div class="map">{image}{svg_of_pins(pins, clip.view)}</div>' if pins else image
     return f'<details class="movie"><summary>{text}</summary>{shown}</details>'
 

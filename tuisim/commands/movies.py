@@ -37,7 +37,7 @@ _size = option("--size", default="", metavar="WxH", help="Width and height in pi
         "--out",
         metavar="FILE",
         type=WordType(),
-        help="The file: .gif or .webp (PROGRAM-movie.gif).",
+        help="The file: .gif (PROGRAM-movie.gif).",
     ),
     option("--from", "start_s", type=float, metavar="S", help="Start, in simulated seconds."),
     option("--to", "stop_s", type=float, metavar="S", help="End, in simulated seconds."),
@@ -63,11 +63,11 @@ def movie(
 ) -> int:
     """Save a run as a movie: the world, the chart, the sensor arrays, with time and values."""
     from tuisim.charts.files import check_format
-    from tuisim.movies.files import MOVIE_FORMATS, Clip, save_movie
+    from tuisim.movies.files import MOVIE_SUFFIXES, Clip, save_movie
 
     run = RunStore().load_run(word)
     path = Path(out or _default_name(run, "movie.gif"))
-    check_format(path, "movie", MOVIE_FORMATS)
+    check_format(path, "movie", MOVIE_SUFFIXES)
     if speed is not None:
         _check_number(speed, 0.01, 1000, "--speed")
     _check_number(fps, 1, 50, "--fps")

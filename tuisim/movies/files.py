@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -12,13 +12,15 @@ import numpy as np
 from tuisim.charts.files import check_format, png_of, svg_of, write_whole
 from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError
-from tuisim.movies import image_files
 from tuisim.movies.clip import ClipPanel, Recorded, Shot, shot_count, shots_of
+from tuisim.movies.image_files import PALETTE_FRAMES, encode_gif
 from tuisim.movies.painter import FramePainter, Size, view_of_frame
 from tuisim.scene.view import Viewport
 
 if TYPE_CHECKING:
     from PIL.Image import Image
+
+MOVIE_SUFFIXES = (".gif",)
 
 Watch = Callable[[int, int], None]
 """Called with the number of frames drawn and of all frames."""
@@ -53,65 +55,24 @@ class Clip:
         return view_of_frame(self.recorded.run.spec.robot, self.panels, self.size)
 
 
-@dataclass(frozen=True, slots=True)
-class MovieFormat:
-    """One line of `MOVIE_FORMATS`."""
+def _encode_gif(clip: Clip, watch: Watch) -> bytes:
+    shots = clip.shots
 
-    write: Callable[[Clip, Watch], bytes]
-    frame_bytes: int
-    """Bytes of a pixel of a frame in memory; 0 if the frames are not kept."""
+    def draw(numbers: Iterable[int]) -> Iterator[Image]:
+        painter = FramePainter(clip.recorded, clip.panels, clip.span_s, clip.size)
+        for number in numbers:
+            yield painter.image(clip.recorded.moment(shots[number].time_s))
 
+    def report_numbers() -> Iterator[int]:
+        for number in range(len(shots)):
+            watch(number, len(shots))
+            yield number
 
-class _Frames:
-    """The frames of a clip as images.
-
-    Args:
-        clip: The clip.
-        watch: Told before each frame.
-    """
-
-    def __init__(self, clip: Clip, watch: Watch) -> None:
-        self._clip, self._watch, self._shots = clip, watch, clip.shots
-        self._painter = self.painter()
-        self.durations_ms = [shot.duration_ms for shot in self._shots]
-
-    def painter(self) -> FramePainter:
-        return FramePainter(
-            self._clip.recorded, self._clip.panels, self._clip.span_s, self._clip.size
-        )
-
-    def draw(self, at: int) -> Image:
-        """Return the next frame."""
-        self._watch(at, len(self._shots))
-        return self._painter.image(self._clip.recorded.moment(self._shots[at].time_s))
-
-    def some(self, count: int) -> list[Image]:
-        """Return some frames, evenly spread from the first to the last."""
-        painter, last = self.painter(), len(self._shots) - 1
-        numbers = sorted({round(at * last / (count - 1)) for at in range(count)})
-        return [
-            painter.image(self._clip.recorded.moment(self._shots[number].time_s))
-            for number in numbers
-        ]
-
-
-def _gif(clip: Clip, watch: Watch) -> bytes:
-    frames = _Frames(clip, watch)
-    return image_files.gif(
-        frames.draw, frames.some(image_files.PALETTE_FRAMES), frames.durations_ms
+    last = len(shots) - 1
+    spread = sorted({round(part * last / (PALETTE_FRAMES - 1)) for part in range(PALETTE_FRAMES)})
+    return encode_gif(
+        draw(report_numbers()), list(draw(spread)), [shot.duration_ms for shot in shots]
     )
-
-
-def _webp(clip: Clip, watch: Watch) -> bytes:
-    frames = _Frames(clip, watch)
-    return image_files.webp(frames.draw, frames.durations_ms)
-
-
-MOVIE_FORMATS: Mapping[str, MovieFormat] = {
-    ".gif": MovieFormat(_gif, 1),
-    ".webp": MovieFormat(_webp, 0),
-}
-"""Every format of a movie by the suffix of its files. To add one: write its function and a line here."""
 
 
 def _png(painter: FramePainter, recorded: Recorded, time_s: float) -> bytes:
@@ -130,45 +91,40 @@ PICTURE_FORMATS: Mapping[str, Callable[[FramePainter, Recorded, float], bytes]] 
 
 
 def save_movie(clip: Clip, path: Path, watch: Watch = lambda done, total: None) -> int:
-    """Write a movie, replacing an existing file; return its size in bytes.
+    """Write a movie as GIF, replacing an existing file; return its size in bytes.
 
     Raises:
         ConfigError: the movie is too large, or its panels do not fit.
         ExportError: it cannot be written; an existing file is unchanged.
         LogError: the mat no longer exists.
     """
-    check_format(path, "movie", MOVIE_FORMATS)
-    kind = MOVIE_FORMATS[path.suffix.lower()]
-    _check_size(clip, kind)
-    content = kind.write(clip, watch)
+    check_format(path, "movie", MOVIE_SUFFIXES)
+    _check_size(clip)
+    content = _encode_gif(clip, watch)
     write_whole(path, content)
     return len(content)
 
 
-def _check_size(clip: Clip, kind: MovieFormat) -> None:
+def _check_size(clip: Clip) -> None:
     width, height = FramePainter(clip.recorded, clip.panels, clip.span_s, clip.size).size
-    most = (
-        min(MOST_BYTES // (kind.frame_bytes * width * height), MOST_FRAMES)
-        if kind.frame_bytes
-        else MOST_FRAMES
-    )
+    # A frame takes a byte a pixel.
+    most = min(MOST_BYTES // (width * height), MOST_FRAMES)
     count = shot_count(*clip.span_s, clip.speed, clip.fps)
     if count > most:
-        other = "--out FILE.webp, " if most < count <= MOST_FRAMES else ""
         raise ConfigError(
             f"too large: {count:,} frames of {width}x{height}, at most {most:,}",
-            f"{other}a higher --speed, a lower --fps, a smaller --size, or a shorter range between --from and --to",
+            "a higher --speed, a lower --fps, a smaller --size, or a shorter range between --from and --to",
         )
 
 
 SMALL_BYTES = 300_000
 """Maximum size of a movie in a page."""
-_SMALL_S, _SMALL_FPS = 10, 10
-"""Its longest duration, and its frames per second."""
+_SMALL_S, _SMALL_FPS = 10, (10, 5)
+"""Its longest duration, and its frames per second: fewer of them where it would be too large."""
 
 
 def small_movie(recorded: Recorded) -> tuple[Clip, bytes] | None:
-    """Return a movie of the world as WebP, small enough for a page; a long run is shown faster.
+    """Return a movie of the world as GIF, small enough for a page; a long run is shown faster.
 
     Returns:
         None if the robot does not move, and if the movie would be too large.
@@ -180,10 +136,9 @@ def small_movie(recorded: Recorded) -> tuple[Clip, bytes] | None:
     if not moves:
         return None
     speed = max(1, math.ceil(recorded.end_s / _SMALL_S))
-    clip = Clip(recorded, (ClipPanel.WORLD,), recorded.span_s(None, None), speed, _SMALL_FPS)
-    for lossless in (True, False):
-        frames = _Frames(clip, lambda done, total: None)
-        content = image_files.webp(frames.draw, frames.durations_ms, lossless=lossless)
+    for fps in _SMALL_FPS:
+        clip = Clip(recorded, (ClipPanel.WORLD,), recorded.span_s(None, None), speed, fps)
+        content = _encode_gif(clip, lambda done, total: None)
         if len(content) <= SMALL_BYTES:
             return clip, content
     return None

@@ -1,17 +1,13 @@
-"""Frames as animated images: GIF and WebP."""
+"""Frames as an animated GIF."""
 
 from __future__ import annotations
 
 import io
-from collections.abc import Callable, Iterable, Sequence
-from typing import Any
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 import numpy.typing as npt
 from PIL.Image import Dither, Image, Quantize, fromarray, new
-
-Draw = Callable[[int], Image]
-"""Returns a frame by its index; called in order."""
 
 PALETTE_FRAMES = 6
 """Frames that the palette of a GIF is derived from."""
@@ -20,19 +16,29 @@ _COLORS, _EXACT = 255, 64
 most frequent ones, unchanged."""
 
 
-def gif(draw: Draw, palette_of: Sequence[Image], durations_ms: Sequence[int]) -> bytes:
+def encode_gif(
+    frames: Iterator[Image], samples: Sequence[Image], durations_ms: Sequence[int]
+) -> bytes:
     """Return an animated GIF that repeats for ever.
 
     Args:
-        draw: Draws the frames.
-        palette_of: Frames whose colours its palette holds.
+        frames: The frames; at least one.
+        samples: Frames whose colours its palette holds.
         durations_ms: How long each frame is shown; multiples of 10.
     """
-    palette = _Palette(palette_of)
-    frames = (palette.reduced(draw(at)) for at in range(len(durations_ms)))
-    return _saved(
-        next(frames), frames, "GIF", duration=list(durations_ms), disposal=1, optimize=True
+    palette, content = _Palette(samples), io.BytesIO()
+    reduced = map(palette.reduced, frames)
+    next(reduced).save(
+        content,
+        "GIF",
+        save_all=True,
+        append_images=reduced,
+        loop=0,
+        duration=list(durations_ms),
+        disposal=1,
+        optimize=True,
     )
+    return content.getvalue()
 
 
 class _Palette:
@@ -73,39 +79,3 @@ class _Palette:
 def _packed(pixels: npt.NDArray[np.uint8]) -> npt.NDArray[np.uint32]:
     """Return each red, green and blue as one number."""
     return pixels.astype(np.uint32) @ np.array([1 << 16, 1 << 8, 1], np.uint32)
-
-
-class _Reel(Image):
-    """All frames as one image that draws a frame when it is asked for, so that they need not be in memory."""
-
-    def __init__(self, draw: Draw, count: int) -> None:
-        super().__init__()
-        self._draw, self._at = draw, -1
-        self.n_frames = count
-        self.seek(0)
-
-    def seek(self, frame: int) -> None:
-        """Go to a frame; never back."""
-        if frame > self._at:
-            drawn = self._draw(frame)
-            self.im, self._mode, self._size, self._at = drawn.im, drawn.mode, drawn.size, frame
-
-    def tell(self) -> int:
-        """Return the index of the frame."""
-        return self._at
-
-
-def webp(draw: Draw, durations_ms: Sequence[int], *, lossless: bool = True) -> bytes:
-    """Return an animated WebP that repeats for ever."""
-    # Without loss, the quality is the effort. More of it takes several times as long and saves a tenth.
-    how = {"lossless": True, "quality": 20} if lossless else {"lossless": False, "quality": 40}
-    reel = _Reel(draw, len(durations_ms))
-    return _saved(
-        reel, (), "WEBP", duration=list(durations_ms), method=2, minimize_size=True, **how
-    )
-
-
-def _saved(first: Image, others: Iterable[Image], kind: str, **how: Any) -> bytes:
-    content = io.BytesIO()
-    first.save(content, kind, save_all=True, append_images=others, loop=0, **how)
-    return content.getvalue()
