@@ -16,7 +16,7 @@ from tuisim.config.command_line import (
     option,
     parse,
 )
-from tuisim.config.options import RUN_VALUES, START
+from tuisim.config.options import OF_THE_MAT, RUN_VALUES
 from tuisim.config.options import parse as parse_value
 from tuisim.config.shared_options import shared_options
 from tuisim.core.values import Number, Whole
@@ -31,9 +31,6 @@ PERSISTENT = frozenset({"background", "mats", "robot", "obstacles", "profile", *
     "pen.down"
 }
 """Paths of settings that persist until another cell changes them; all others apply to their cell only."""
-
-OF_THE_MAT = (*START, "obstacles")
-"""Paths of settings that a new mat resets."""
 
 
 def _of_every_magic(**how: str) -> list[GroupedOption]:
