@@ -70,8 +70,7 @@ TESTED_BESIDE = {
 }
 """Long modules whose only caller is tested, with every case of theirs: by module, the test."""
 OF_NO_MODULE = {
-    "config/golden/test_golden_programs.py": "what runs gave before",
-    "config/golden/test_golden_settings.py": "what settings gave before",
+    "config/golden/test_golden.py": "what settings and programs gave before",
     "shim/pybricks/test_reference.py": "what the firmware's own code did",
     "shim/pybricks/test_api.py": "the whole library, as its firmware has it",
     "guide/test_claims.py": "what the pages claim",

@@ -1,1 +1,1 @@
-"""What a run was made of before its values were modelled as they are: cases, and what they gave."""
+"""What settings and programs gave before, and what the outside sees of them."""
