@@ -48,7 +48,7 @@ def command_modules(effort: Effort) -> Iterator[Figure]:
         place = Path(folder)
         yield from _count(
             "an export of 51 samples",
-            200,
+            160,
             walk_command(place, "log", "export", run_id, "--out", str(place / "samples.csv")),
         )
         classroom = place / "class"

@@ -105,7 +105,7 @@ def test_values_of_one_part_are_checked_together() -> None:
 
 def test_plain_data_of_a_run_are_that_run() -> None:
     plain = json.loads(json.dumps(tree.to_plain(RUN)))
-    assert tree.from_plain(plain) == RUN
+    assert tree.from_plain(plain) == tree.restore(plain) == RUN
     # What came later is left out where it is as it was.
     assert "gear_ratio" not in plain["robot"]
     assert plain["robot"]["ultrasonic"] is None
@@ -133,8 +133,19 @@ def test_data_of_another_kind_are_told(path: str, damage: object) -> None:
     for name in outer:
         inside = inside[name]
     inside[last] = damage
-    with pytest.raises((KeyError, TypeError, ValueError, ConfigError)):
-        tree.from_plain(whole[""])
+    for read in (tree.from_plain, tree.restore):
+        with pytest.raises((KeyError, TypeError, ValueError, ConfigError)):
+            read(whole[""])
+
+
+def test_only_what_comes_from_outside_is_checked() -> None:
+    plain = tree.to_plain(RUN)
+    plain["world"]["noise"]["light"] = 129
+    assert tree.restore(plain).world.noise.light == 129
+    with pytest.raises(TypeError, match="weight is 'heavy'"):
+        tree.restore({**plain, "robot": {**plain["robot"], "weight": "heavy"}})
+    with pytest.raises(ConfigError, match=r"noise\.light"):
+        tree.from_plain(plain)
 
 
 def test_every_leaf_that_an_option_sets_says_what_it_is() -> None:

@@ -636,7 +636,7 @@ def noted(folder: Path) -> Iterator[Noted]:
     notes = read_notes(folder / NOTES_FILE)
     if not notes:
         return
-    samples = list(samples_of(load_run(folder).output.all_rows()))
+    samples = samples_of(load_run(folder).output.all_rows())
     for note in notes:
         values = [
             one.value

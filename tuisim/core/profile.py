@@ -268,11 +268,11 @@ def law_of_earlier(keys: Mapping[str, Any]) -> MotorLaw | None:
     return None if halved is None else MotorLaw.NBEV3DEVSIM if halved else MotorLaw.BRICK
 
 
-def profile_from_plain(data: Mapping[str, Any]) -> ProfileSpec:
-    """Return the profile in a stored run or log.
+def profile_values(data: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the values of the profile in a stored run or log, by name.
 
     Raises:
-        TypeError, ValueError: keys are missing or unknown, or the motor law is unknown.
+        ValueError: the motor law is unknown.
     """
     known = {key: value for key, value in data.items() if key not in EARLIER_KEYS}
     known["motor_law"] = (
@@ -280,4 +280,4 @@ def profile_from_plain(data: Mapping[str, Any]) -> ProfileSpec:
         if "motor_law" in data
         else law_of_earlier(data) or MotorLaw.BRICK
     )
-    return ProfileSpec(**known)
+    return known

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import MISSING, Field, dataclass, field
-from typing import Any, ClassVar, NoReturn, TypeVar, dataclass_transform
+from typing import Any, ClassVar, NoReturn, Self, TypeVar, dataclass_transform
 
 from tuisim.core.values import (
     MAX_SEED,
@@ -111,7 +111,8 @@ class Spec:
     Its methods serve all specs, where those of an ordinary data class are compiled for each class, at each start.
     """
 
-    __slots__ = ()
+    __slots__ = ("_hash",)
+    _hash: int
     __dataclass_fields__: ClassVar[dict[str, Field[Any]]]
     ERROR: ClassVar[type[ConfigError]] = RobotError
     """What is raised about its values."""
@@ -126,15 +127,29 @@ class Spec:
             if name in given:
                 raise TypeError(f"{type(self).__name__} got {name} twice")
             given[name] = value
-        for name, one in names.items():
-            value = given.pop(name, one.default)
+        self._set_values(given)
+        self._check_values()
+        self.check()
+
+    @classmethod
+    def restore(cls, **values: Any) -> Self:
+        """Return a spec with values that were checked when they were stored.
+
+        Raises:
+            TypeError: one is missing or unknown.
+        """
+        spec = cls.__new__(cls)
+        spec._set_values(values)
+        return spec
+
+    def _set_values(self, values: Mapping[str, Any]) -> None:
+        for name, one in self.__dataclass_fields__.items():
+            value = values.get(name, one.default)
             if value is MISSING:
                 raise TypeError(f"{type(self).__name__} lacks {name}")
             object.__setattr__(self, name, value)
-        if given:
-            raise TypeError(f"{type(self).__name__} has no {', '.join(given)}")
-        self._check_values()
-        self.check()
+        if unknown := [name for name in values if name not in self.__dataclass_fields__]:
+            raise TypeError(f"{type(self).__name__} has no {', '.join(unknown)}")
 
     def _check_values(self) -> None:
         for name, value in values_of(type(self)).items():
@@ -174,7 +189,11 @@ class Spec:
         return self._contents() == other._contents()
 
     def __hash__(self) -> int:
-        return hash(self._contents())
+        try:
+            return self._hash
+        except AttributeError:
+            object.__setattr__(self, "_hash", hash(self._contents()))
+            return self._hash
 
     def __repr__(self) -> str:
         pairs = zip(self.__dataclass_fields__, self._contents(), strict=True)

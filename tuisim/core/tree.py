@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import asdict, replace
+from dataclasses import replace
 from typing import Any, TypeVar
 
-from tuisim.core.profile import ProfileSpec, profile_from_plain, profile_to_plain
+from tuisim.core.profile import ProfileSpec, profile_to_plain, profile_values
 from tuisim.core.spec import RunSpec
 from tuisim.core.spec_fields import Spec
 from tuisim.core.values import NamedPart, Part, Parts, Value, values_of
@@ -84,58 +84,70 @@ def put_all(node: _Node, values: Mapping[str, object]) -> _Node:
     return replace(node, **found) if found else node  # type: ignore[type-var]  # a data class
 
 
+_RUN = Part(RunSpec)
+
+
 def to_plain(spec: RunSpec) -> dict[str, Any]:
     """Return a run as data for JSON. What came later is left out at its default, so that exports do not change."""
-    found: dict[str, Any] = _plain(spec)
-    return found
+    return _part_to_plain(_RUN, spec)
 
 
-def _plain(spec: Any) -> Any:
-    if isinstance(spec, ProfileSpec):
-        return profile_to_plain(spec)
-    if isinstance(spec, tuple):
-        return tuple(map(_plain, spec))
-    if not isinstance(spec, Spec):
-        return asdict(spec) if hasattr(spec, "__dataclass_fields__") else spec
-    fields = spec.__dataclass_fields__
-    found = ((name, value, getattr(spec, name)) for name, value in values_of(type(spec)).items())
+def _part_to_plain(part: Part, node: Any) -> dict[str, Any]:
+    if isinstance(node, ProfileSpec):
+        return profile_to_plain(node)
+    inside = ((name, value, getattr(node, name)) for name, value in part.values.items())
     return {
-        name: _plain(one)
-        for name, value, one in found
-        if not (value.later and one == fields[name].default)
+        name: _to_plain(value, one)
+        for name, value, one in inside
+        if not (value.later and one == part.of.__dataclass_fields__[name].default)
     }
 
 
+def _to_plain(value: Value, data: Any) -> Any:
+    if isinstance(value, Parts):
+        return tuple(_part_to_plain(value, one) for one in data)
+    return _part_to_plain(value, data) if isinstance(value, Part) and data is not None else data
+
+
 def from_plain(data: Mapping[str, Any]) -> RunSpec:
-    """Return the run of which `to_plain` has returned the data.
+    """Return the run of which `to_plain` has returned the data, which may have been changed since.
 
     Raises:
         KeyError, TypeError, ValueError: `data` is not the output of `to_plain`.
         ConfigError: a value is wrong.
     """
-    return _from_plain(RunSpec, data)
+    spec: RunSpec = _part_from_plain(_RUN, data, is_checked=True)
+    return spec
 
 
-def _from_plain(kind: type[_Node], data: Any) -> _Node:
+def restore(data: Mapping[str, Any]) -> RunSpec:
+    """Return the run of which tuisim itself has stored the data: they are of the right types, and not checked again.
+
+    Raises:
+        KeyError, TypeError, ValueError: `data` is not the output of `to_plain`.
+    """
+    spec: RunSpec = _part_from_plain(_RUN, data, is_checked=False)
+    return spec
+
+
+def _part_from_plain(part: Part, data: Any, is_checked: bool) -> Any:
     if not isinstance(data, Mapping):
-        raise TypeError(f"{kind.__name__} is {data!r:.60}")
-    if kind is ProfileSpec:
-        return profile_from_plain(data)  # type: ignore[return-value]
-    if not issubclass(kind, Spec):
-        # A pose: it does not check what it is made of.
-        for name, one in data.items():
-            if isinstance(one, bool) or not isinstance(one, int | float):
-                raise TypeError(f"{name} is {one!r:.60}")
-        return kind(**data)
-    values = values_of(kind)
-    return kind(**{name: _value(values.get(name), one) for name, one in data.items()})
+        raise TypeError(f"{part.of.__name__} is {data!r:.60}")
+    if part.of is ProfileSpec:
+        data = profile_values(data)
+    make = part.of if is_checked or not issubclass(part.of, Spec) else part.of.restore
+    inside = ((name, part.values.get(name), one) for name, one in data.items())
+    return make(**{name: _from_plain(name, value, one, is_checked) for name, value, one in inside})
 
 
-def _value(value: Value | None, data: Any) -> Any:
-    match value:
-        case Parts():
-            return tuple(_from_plain(value.of, one) for one in data)
-        case Part():
-            return None if data is None else _from_plain(value.of, data)
-        case _:
-            return tuple(data) if isinstance(data, list) else data
+def _from_plain(name: str, value: Value | None, data: Any, is_checked: bool) -> Any:
+    if value is None or (data is None and value.optional):
+        return data
+    if isinstance(value, Parts):
+        return tuple(_part_from_plain(value, one, is_checked) for one in data)
+    if isinstance(value, Part):
+        return _part_from_plain(value, data, is_checked)
+    is_flag = value.stored_as is bool
+    if not isinstance(data, value.stored_as) or (isinstance(data, bool) and not is_flag):
+        raise TypeError(f"{name} is {data!r:.60}")
+    return tuple(data) if isinstance(data, list) else data

@@ -13,7 +13,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import Field, replace
 from re import Pattern
-from typing import Any
+from typing import Any, ClassVar
 
 from tuisim.errors import closest, did_you_mean, nearest
 
@@ -67,6 +67,8 @@ class Value(ABC):
     """
 
     __slots__ = ("flags", "help", "in_config", "label", "later", "optional", "source", "unit")
+    stored_as: ClassVar[Any] = str
+    """Of which types it is in a stored run."""
 
     def __init__(
         self,
@@ -142,6 +144,7 @@ class Flag(Value):
     """
 
     __slots__ = ("off_flag", "off_help")
+    stored_as = bool
 
     def __init__(self, *, off_flag: str = "", off_help: str = "", **about: Any) -> None:
         super().__init__(**about)
@@ -177,6 +180,7 @@ class Number(Value):
     """A number from `low` to `high`, which are allowed."""
 
     __slots__ = ("high", "low")
+    stored_as: ClassVar[Any] = int | float
 
     def __init__(self, low: float, high: float, **about: Any) -> None:
         super().__init__(**about)
@@ -219,6 +223,7 @@ class Whole(Number):
     """A whole number from `low` to `high`, which are allowed."""
 
     __slots__ = ()
+    stored_as = int
 
     @property
     def allowed(self) -> str:
@@ -292,6 +297,7 @@ class Numbers(Number):
     """Some numbers, at most `most`, each from `low` to `high`."""
 
     __slots__ = ("most",)
+    stored_as = (list, tuple)
 
     def __init__(self, low: float, high: float, most: int, **about: Any) -> None:
         super().__init__(low, high, **about)
@@ -380,6 +386,7 @@ class Choice(Value):
     """
 
     __slots__ = ("_choices", "_metavar", "what")
+    stored_as: ClassVar[Any] = str | int
 
     def __init__(
         self, choices: Iterable[Any], what: str = "value", metavar: str = "", **about: Any
@@ -412,6 +419,7 @@ class Choices(Choice):
     """Some of a few texts."""
 
     __slots__ = ()
+    stored_as = (list, tuple)
 
     @property
     def allowed(self) -> str:
@@ -486,7 +494,8 @@ class Part(Value):
         **about: Any,
     ) -> None:
         super().__init__(**about)
-        self.of, self.key, self.standard = of, key, standard
+        self.of: Any = of
+        self.key, self.standard = key, standard
         self.values = values_of(of) if values is None else values
 
     @property

@@ -175,6 +175,8 @@ def robot_of(log: Log) -> RobotSpec | None:
 
 def named_columns(log: Log, text: str) -> list[str]:
     """Return those of `computed_columns` that a text names."""
+    if not text.strip():
+        return []
     return [name for name in computed_columns(log) if re.search(rf"\b{name}\b", text)]
 
 

@@ -159,7 +159,7 @@ def end_text(run: StoredRun, *, hurry: bool = False) -> str:
     status = f"{run.state}{what} · {run.time_s:.3f} s"
     if hurry and run.output.length > BYTES_IN_A_HURRY:
         return status
-    samples = sum(1 for _ in samples_of(run.output.rows()))
+    samples = len(samples_of(run.output.rows()))
     return f"{status} · {counted(samples, 'sample')}"
 
 

@@ -422,7 +422,7 @@ class Lab:
         is_other = program is not None and program.text != self._last.program.text
         rows = self._last.output.all_rows()
         printed = [shown_text(row) for row in rows if row.stream in TEXT_STREAMS]
-        last, samples = self._last.telemetry.last() or start, list(samples_of(rows))
+        last, samples = self._last.telemetry.last() or start, samples_of(rows)
         status = ready if is_other else end_text(self._last)
         return Scene(plan.spec, plan.files, program, last, self._traces, samples, printed), status
 

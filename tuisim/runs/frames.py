@@ -89,7 +89,7 @@ def sample_columns(runs: Iterable[StoredRun]) -> dict[str, Any]:
 def _samples_of_run(run: StoredRun, ordinal: int) -> dict[str, Any]:
     import numpy as np
 
-    samples = list(samples_of(run.output.rows()))
+    samples = samples_of(run.output.rows())
     times_ns = np.array([sample.time_ns for sample in samples], np.int64)
     records = run.telemetry.array()
     ticks = np.array([sample.tick for sample in samples], np.int64)

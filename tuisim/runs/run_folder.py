@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from bisect import bisect_right
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any, TypeVar
@@ -15,7 +15,7 @@ from tuisim.config.mats import background
 from tuisim.core.field import Field
 from tuisim.core.profile import NS_PER_S, due_ns
 from tuisim.core.spec import NoiseSpec, RunSpec
-from tuisim.core.tree import from_plain, to_plain
+from tuisim.core.tree import restore, to_plain
 from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError, LogError, TuisimError, shortened
 from tuisim.protocol import End, Ended, RunState, SetNoise, Unended, UserAction
@@ -202,23 +202,20 @@ def _typed(value: Any, kind: type[_Kind], name: str) -> _Kind:
     return value
 
 
-def _checked(spec: RunSpec, plain: Mapping[str, Any]) -> RunSpec:
-    """Return a spec whose numbers are ones to reckon with; `plain` is the same as data."""
+def _restored(plain: Mapping[str, Any]) -> RunSpec:
+    """Return the spec in a run file, whose numbers are ones to reckon with."""
+    spec = restore(plain)
     if not 1 <= spec.profile.tick_hz <= NS_PER_S:
         raise ValueError(f"a tick rate of {spec.profile.tick_hz}")
     # A seed may be any whole number.
-    for number in _numbers_in([plain[name] for name in ("robot", "world", "profile")]):
-        if not abs(number) <= MOST_INTEGER:
-            raise ValueError(f"{number} is out of range")
+    parts = [plain[name] for name in ("robot", "world", "profile")]
+    while parts:
+        part = parts.pop()
+        if isinstance(part, dict | list):
+            parts += part.values() if isinstance(part, dict) else part
+        elif isinstance(part, int | float) and not abs(part) <= MOST_INTEGER:
+            raise ValueError(f"{part} is out of range")
     return spec
-
-
-def _numbers_in(plain: object) -> Iterator[float]:
-    if isinstance(plain, dict | list | tuple):
-        for part in plain.values() if isinstance(plain, dict) else plain:
-            yield from _numbers_in(part)
-    elif isinstance(plain, int | float):
-        yield plain
 
 
 def _options_of(data: Mapping[str, Any]) -> dict[str, Any]:
@@ -264,8 +261,7 @@ def read_run(folder: Path, document: str | None = None, known: RunSpec | None = 
             program[key] = tuple(
                 _typed(word, str, key) for word in _typed(data["program"][key], list, key)
             )
-        spec = from_plain(data["spec"]) if known is None else known
-        spec = _checked(spec, to_plain(spec) if known is None else data["spec"])
+        spec = _restored(data["spec"]) if known is None else known
         end = None if data["end"] is None else _end_of(data["end"])
         lost = [view.note or _lost_of(view, end) for view in (telemetry, output)]
         return StoredRun(

@@ -83,8 +83,9 @@ def counts_of(output: OutputView) -> Counts:
     return Counts(lines, samples)
 
 
-def samples_of(rows: Iterable[OutputRow]) -> Iterator[Sample]:
-    """Yield the samples among the rows that a program printed, in order."""
+def samples_of(rows: Iterable[OutputRow]) -> list[Sample]:
+    """Return the samples among the rows that a program printed, in order."""
+    samples: list[Sample] = []
     for row in rows:
         if row.stream not in SAMPLE_STREAMS:
             continue
@@ -92,7 +93,8 @@ def samples_of(rows: Iterable[OutputRow]) -> Iterator[Sample]:
         if parsed is not None:
             name, value, time_s = parsed
             printed_s = row.time_ns / 1e9 if time_s is None else time_s
-            yield Sample(name, value, printed_s, row.time_ns, row.tick, row.line)
+            samples.append(Sample(name, value, printed_s, row.time_ns, row.tick, row.line))
+    return samples
 
 
 def value_reader(condition: ValueCondition) -> Callable[[str], float | None]:

@@ -15,6 +15,7 @@ from collections.abc import Iterator
 from itertools import islice
 from math import hypot
 from mmap import MAP_ANONYMOUS, MAP_PRIVATE, mmap
+from operator import itemgetter
 from pathlib import Path
 from stat import S_IRUSR
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -480,9 +481,16 @@ class OutputView(_View):
         return list(self.rows())
 
     def rows_from(self, position: int) -> Iterator[tuple[OutputRow, int]]:
-        """Yield the rows from a position on, 0 or one that was yielded before, each with the position after it."""
+        """Return the rows from a position on, 0 or one that was yielded before, each with the position after it."""
         data, end = self._look()
-        dropped = self._dropped
+        if not self._dropped:
+            return output_rows(data, position, end)
+        return self._rows_of_two(data, position, end, self._dropped)
+
+    def _rows_of_two(
+        self, data: memoryview, position: int, end: int, dropped: int
+    ) -> Iterator[tuple[OutputRow, int]]:
+        """Yield the rows that were dropped from memory, then those in it."""
         for row, after in self._rows_again(position, dropped):
             yield row, after
             position = after
@@ -523,7 +531,7 @@ class OutputView(_View):
 
     def rows(self) -> Iterator[OutputRow]:
         """Yield the rows of `all_rows` one by one: a run may print a million lines."""
-        return (row for row, _ in self.rows_from(0))
+        return map(itemgetter(0), self.rows_from(0))
 
 
 def views_of(folder: Path, is_checked: bool = False) -> tuple[TelemetryView, OutputView]:

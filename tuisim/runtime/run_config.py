@@ -13,7 +13,7 @@ from tuisim.config.folders import programs_folder
 from tuisim.config.mat_cache import FieldFiles
 from tuisim.core.geometry import Pose
 from tuisim.core.spec import NoiseSpec, RunSpec
-from tuisim.core.tree import from_plain, put_all
+from tuisim.core.tree import put_all, restore
 from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError
 from tuisim.runs.run_options import RunOptions
@@ -81,7 +81,7 @@ def config_of(folder: Path, data: Mapping[str, Any]) -> RunConfig:
     return RunConfig(
         folder=folder,
         program=_program_of(data["program"]),
-        spec=from_plain(data["spec"]),
+        spec=restore(data["spec"]),
         field=FieldFiles.from_plain(data["field"]),
         options=RunOptions.from_plain(data["options"]),
     )

@@ -125,10 +125,10 @@ def _name_columns(
     Args:
         known: The names of samples, which come first.
     """
-    columns = columns_of(runs[0].spec.robot)
+    robot = runs[0].spec.robot
     words: Sequence[str] = getattr(arguments, "variable", None) or ()
     arguments.variable = tuple(
-        word if word in known else column_name(word, columns) or word for word in words
+        word if word in known else column_name(word, columns_of(robot)) or word for word in words
     )
     expression = getattr(arguments, "expression", "")
     return {*arguments.variable, *(names_in(expression) if expression else ())}
