@@ -51,11 +51,6 @@ IMPORTS: Mapping[str, Piece] = {
     ),
     "own-main": Piece("import sys, types\nsys.modules['__main__'] = types.ModuleType('__main__')"),
     "main-again": Piece("import __main__\nprint(__main__.__name__, __name__)"),
-    "builtins": Piece(
-        "import builtins\nfor n in ('len', 'isinstance', 'getattr', 'hasattr', 'range', 'open', 'str', 'int',"
-        " 'type', 'dict'):\n"
-        "    setattr(builtins, n, None)",
-    ),
     "print": Piece(
         "import builtins\nold = print\nbuiltins.print = lambda *a, **k: old('<', *a, '>', **k)",
         loses=True,
@@ -73,19 +68,6 @@ IMPORTS: Mapping[str, Piece] = {
         "try:\n    import tuisim.runtime.session as s\n    s.Session.checkpoint = None\n"
         "except BaseException as e: print(type(e).__name__)",
         breaks=True,
-    ),
-    "patches-os": Piece(
-        "import os\nos.write = os.read = os.getpid = os.close = os.kill = None", breaks=True
-    ),
-    "patches-signal": Piece(
-        "import signal\nsignal.signal = signal.setitimer = signal.alarm = None"
-    ),
-    "patches-json": Piece(
-        "import json, struct, io\njson.dumps = json.loads = struct.pack = io.BytesIO = None",
-        breaks=True,
-    ),
-    "patches-threading": Piece(
-        "import threading, _thread\nthreading.Thread = threading.Lock = _thread.allocate_lock = None"
     ),
     "future": Piece("exec('from __future__ import annotations\\ndef f(x: no) -> no: pass\\nf(1)')"),
     "encoded": Piece("exec(b'# -*- coding: latin-1 -*-\\nx = \"\\xe9\"\\nprint(ascii(x))')"),

@@ -289,41 +289,6 @@ def cb(phase, info): 1/0
 gc.callbacks.append(cb)
 print('x')
 """,
-    "settrace": """\
-import sys
-def t(f, e, a):
-    print(e, f.f_code.co_name)
-    return t
-def g():
-    return 1
-sys.settrace(t)
-g()
-print('x')
-sys.settrace(None)
-""",
-    "settrace-left": """\
-import sys
-n = []
-def t(f, e, a):
-    n.append(e)
-    return t
-def g():
-    for i in range(3): pass
-    return 1
-sys.settrace(t)
-g()
-print(len(n))
-""",
-    "settrace-left-print": """\
-import sys
-def t(f, e, a):
-    print(e, f.f_code.co_name, f.f_lineno)
-    return t
-def g():
-    return 1
-sys.settrace(t)
-g()
-""",
     "settrace-left-raise": """\
 import sys
 def t(f, e, a):
@@ -348,13 +313,6 @@ c = []
 def p(f, e, a): c.append(e)
 sys.setprofile(p)
 print('x')
-""",
-    "setprofile-left-print": """\
-import sys
-def p(f, e, a): print(e, f.f_code.co_name)
-sys.setprofile(p)
-def g(): pass
-g()
 """,
     "exit-text-own-stderr": """\
 import io, sys

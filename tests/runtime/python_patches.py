@@ -5,42 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 PATCHES: Mapping[str, str] = {
-    "patch-join": """\
-import os
-os.path.join = None
-1/0
-""",
-    "patch-join-2": """\
-import os
-def no(*a): raise KeyError('no')
-for n in ('join', 'abspath', 'normpath', 'dirname', 'basename', 'exists', 'split'):
-    setattr(os.path, n, no)
-speed = 1
-sped
-""",
-    "patch-exception": """\
-import builtins
-builtins.Exception = None
-builtins.BaseException = None
-1/0
-""",
-    "patch-isinstance": """\
-import builtins
-builtins.isinstance = builtins.len = builtins.getattr = lambda *a: 1 / 0
-print('x')
-speed = 1
-sped
-""",
-    "patch-all": """\
-import builtins
-for n in ('len', 'isinstance', 'getattr', 'hasattr', 'range', 'open', 'str', 'int', 'type', 'dict', 'list', 'set',
-          'map', 'any', 'all', 'min', 'max', 'sum', 'repr', 'iter', 'next', 'super', 'property', 'vars', 'id', 'hash',
-          'tuple', 'ImportError', 'NameError', 'AttributeError', 'OSError', 'ValueError', 'KeyError', 'TypeError',
-          'SystemExit'):
-    setattr(builtins, n, None)
-print('x')
-1/0
-""",
     "patch-print": """\
 import builtins
 old = print
@@ -66,76 +30,6 @@ helper.f()
 open('helper.py', 'w').write('import builtins\\nbuiltins.speed = 3\\n')
 import helper
 print(speed)
-""",
-    "patch-traceback": """\
-import traceback
-traceback.TracebackException = traceback.StackSummary = traceback.extract_tb = None
-1/0
-""",
-    "patch-linecache": """\
-import linecache
-linecache.getline = linecache.checkcache = linecache.lazycache = None
-linecache.cache = None
-1/0
-""",
-    "patch-sys": """\
-import sys
-sys._getframe = sys.exc_info = sys.intern = None
-import time
-time.sleep(0.1)
-print('x')
-1/0
-""",
-    "patch-os": """\
-import os
-os.write = os.read = os.getpid = os.close = os.kill = None
-import time
-time.sleep(0.1)
-1/0
-""",
-    "patch-gc": """\
-import gc
-gc.collect = gc.freeze = gc.enable = None
-1/0
-""",
-    "patch-atexit": """\
-import atexit
-atexit._run_exitfuncs = None
-atexit.register(print, 'bye')
-1/0
-""",
-    "patch-io": """\
-import io
-io.StringIO = io.TextIOBase = None
-print('x', end='')
-print('y')
-1/0
-""",
-    "patch-re": """\
-import re
-re.compile = re.sub = None
-print('x')
-1/0
-""",
-    "patch-json": """\
-import json, struct
-json.dumps = struct.pack = None
-1/0
-""",
-    "patch-signal": """\
-import signal
-signal.signal = signal.raise_signal = None
-1/0
-""",
-    "patch-threading": """\
-import threading, _thread
-threading.Thread = threading.Lock = _thread.allocate_lock = None
-1/0
-""",
-    "patch-types": """\
-import types
-types.ModuleType = types.FunctionType = types.FrameType = types.TracebackType = None
-1/0
 """,
     "modules-cleared": """\
 import sys

@@ -29,6 +29,7 @@ from tuisim.runtime.control import ATTENTION, STOPPING, RunControl
 from tuisim.runtime.interrupts import Interrupts, die_with_host
 from tuisim.runtime.known_programs import KnownPrograms
 from tuisim.runtime.limits import STACK_BYTES, limit_memory, refuse_processes
+from tuisim.runtime.modules import remember_source
 from tuisim.runtime.output import OutputRecorder
 from tuisim.runtime.patches.clock import (
     finish_pandas,
@@ -45,7 +46,7 @@ from tuisim.runtime.patches.replacement import PatchedModules, replace
 from tuisim.runtime.run_config import RunConfig, next_config, read_config
 from tuisim.runtime.session import RunLimits, Session
 from tuisim.runtime.stack import finish_inspect, finish_traceback
-from tuisim.runtime.tracebacks import own_files, remember_source
+from tuisim.runtime.tracebacks import own_files
 
 if TYPE_CHECKING:
     from tuisim.runtime.debugger.debugger import Debugger

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import linecache
 import os
 import sys
 import traceback
@@ -12,8 +13,8 @@ from pathlib import Path
 from typing import Any, NoReturn
 
 from tuisim.runs.side_files import OwnModule, note_module, read_modules
-from tuisim.runtime.own_names import PROGRAM_BUILTINS
 from tuisim.runtime.stack import PACKAGE_FOLDER
+from tuisim.source import source_lines
 
 _FOREIGN = (PACKAGE_FOLDER, os.path.dirname(traceback.__file__) + os.sep)
 _INSTALLED = ("site-packages", "dist-packages")
@@ -27,6 +28,12 @@ def is_own(path: str) -> bool:
     return not path.startswith(_FOREIGN) and not any(name in path for name in _INSTALLED)
 
 
+def remember_source(file: str, source: str) -> None:
+    """Make tracebacks show the text that runs, not the current contents of the file."""
+    lines = [line + "\n" for line in source_lines(source)]
+    linecache.cache[file] = len(source), None, lines, file
+
+
 class OwnLoader(SourceFileLoader):
     """Loads a module from the text that was read first.
 
@@ -37,11 +44,6 @@ class OwnLoader(SourceFileLoader):
     def __init__(self, module: OwnModule) -> None:
         super().__init__(module.name, module.file)
         self._data = module.text.encode("utf-8", "surrogateescape")
-
-    def exec_module(self, module: types.ModuleType) -> None:
-        """Run the module with the builtins that the program has."""
-        vars(module)["__builtins__"] = vars(PROGRAM_BUILTINS)
-        super().exec_module(module)
 
     def get_data(self, path: str) -> bytes:
         """Return the stored text, or the contents of another file."""
@@ -125,8 +127,6 @@ def _spec_of(module: OwnModule) -> ModuleSpec | None:
         spec.submodule_search_locations = list(module.folders or ())
         return spec
     from importlib.util import spec_from_file_location
-
-    from tuisim.runtime.tracebacks import remember_source
 
     OWN_FILES.add(module.file)
     remember_source(module.file, module.text)

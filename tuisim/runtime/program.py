@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import atexit
+import builtins
 import gc
 import io
 import operator
@@ -19,13 +20,12 @@ from tuisim.data_class import dataclass
 from tuisim.errors import LogError, NotSimulated
 from tuisim.protocol import NO_ANSWER, Answer, End, InputWanted
 from tuisim.runs.records import Stream
+from tuisim.runtime import wallclock
 from tuisim.runtime.hooks import ErrorHooks, flush_streams, safe_text
 from tuisim.runtime.loader import LOOP_HOOK, MissingPart, compile_prelude, compile_program
 from tuisim.runtime.modules import find_modules_for
 from tuisim.runtime.output import LineStream, OutputRecorder
-from tuisim.runtime.own_names import PROGRAM_BUILTINS, give_builtins, keep_modules
 from tuisim.runtime.patches.replacement import replace
-from tuisim.runtime.patches.traces import patch_traces, stop_traces
 from tuisim.runtime.raw_output import RawOutput
 from tuisim.runtime.run_config import RunConfig
 from tuisim.runtime.scheduler import Scheduler
@@ -114,10 +114,9 @@ class ProgramRunner:
 
     def prepare(self, prelude: str) -> None:
         """Do what comes before the program and is the same for every program: streams, and the prelude of a name."""
-        give_builtins()
-        vars(PROGRAM_BUILTINS)[LOOP_HOOK] = self._loop_hook
+        vars(builtins)[LOOP_HOOK] = self._loop_hook
         self._patch()
-        vars(self._module)["__builtins__"] = PROGRAM_BUILTINS
+        vars(self._module)["__builtins__"] = builtins
         sys.modules["__main__"] = self._module
         # The prelude is free of charge.
         self._session.free += 1
@@ -127,7 +126,6 @@ class ProgramRunner:
             # It is an error of the program, and is raised when that begins.
             self._prelude_error = error
         self._session.free -= 1
-        keep_modules()
 
     def _run_prelude(self, prelude: str) -> None:
         for part, code in compile_prelude(prelude):
@@ -211,7 +209,8 @@ class ProgramRunner:
         """Clear the program's module in such an order that finalizers still find most of its names."""
         # The program's functions that are called all the time need theirs, too.
         gc.collect()
-        stop_traces()
+        wallclock.settrace(None)
+        wallclock.setprofile(None)
         gc.callbacks.clear()
         for removable in (_has_finalizer, _is_data):
             for name in [
@@ -240,8 +239,7 @@ class ProgramRunner:
         vars(sys).update(__stdout__=self.stdout, __stderr__=self.stderr)
         self.hooks.install()
         patch_faulthandler()
-        patch_traces()
-        replace(PROGRAM_BUILTINS, "input", self._input, (0, 1))
+        replace(builtins, "input", self._input, (0, 1))
         replace(os, "write", self.raw.write, (2, 2))
         replace(os, "_exit", lambda status: self._exit_now(operator.index(status)))
 

@@ -11,6 +11,7 @@ import signal
 import sys
 import types
 from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
 from functools import wraps
 from pathlib import Path
 from typing import Any
@@ -27,9 +28,26 @@ _BOTTOM = os.path.join(PACKAGE_FOLDER, "runtime", "__main__.py")
 """File of the outermost frame of the process."""
 
 
+_shows_whole = False
+
+
+@contextmanager
+def show_whole_stacks() -> Iterator[None]:
+    """Let `traceback` and `inspect` return the frames of the runtime, too."""
+    global _shows_whole
+    _shows_whole = True
+    try:
+        yield
+    finally:
+        _shows_whole = False
+
+
 def _seen(walk: Iterable[Any], file_of: Callable[[Any], str]) -> Iterator[Any]:
     """Yield items whose frames a program may see: none of the runtime, and none below the program."""
     for one in walk:
+        if _shows_whole:
+            yield one
+            continue
         file = file_of(one)
         if file == _BOTTOM:
             return

@@ -3,30 +3,27 @@
 from __future__ import annotations
 
 import io
-import linecache
 import os
 import sys
+import traceback
 from collections.abc import Callable
 from typing import Any
 
 from tuisim.data_class import dataclass
 from tuisim.errors import counted
 from tuisim.runtime import wallclock
-from tuisim.runtime.modules import OWN_FILES, is_own
-from tuisim.runtime.own_names import own_instance
+from tuisim.runtime.modules import OWN_FILES, is_own, remember_source
+from tuisim.runtime.stack import show_whole_stacks
 from tuisim.source import source_lines
 
 _OUR_NAMES = ("tuisim.errors.", "tuisim.runtime.session.")
 MOST_LINKED = 10
 """Of a longer chain of causes, this many are shown at either end."""
 _HEADING = "Traceback (most recent call last):\n"
-_own_linecache = own_instance("linecache")
-_traceback = own_instance("traceback", linecache=_own_linecache)
-"""The program may replace the names of the other instances; it sees fewer frames there."""
 _show = sys.excepthook
 _SYNTAX_ERRORS: tuple[type[SyntaxError], ...] = (SyntaxError, IndentationError, TabError)
 Trace = Any
-"""`_traceback.TracebackException`."""
+"""`traceback.TracebackException`, some of whose attributes type checkers do not know."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,12 +48,14 @@ def report_error(error: BaseException, file: str, source: str, alone: bool = Fal
         alone: Whether to leave out suggestions, notes, and the errors that led to it, as Python does where it cannot
             raise an error.
     """
-    _own_linecache.cache[file] = _remembered(file, source)
+    remember_source(file, source)
     _add_text(error, file, source)
     try:
         # All frames: an error without any was created but never raised.
-        make = _traceback.TracebackException.from_exception
-        trace = make(error, limit=sys.maxsize, lookup_lines=False, compact=True)
+        with show_whole_stacks():
+            trace: Trace = traceback.TracebackException.from_exception(
+                error, limit=sys.maxsize, lookup_lines=False, compact=True
+            )
         if alone:
             trace.__cause__ = trace.__context__ = trace.__notes__ = None
         elif sys.version_info < (3, 12):
@@ -65,10 +64,10 @@ def report_error(error: BaseException, file: str, source: str, alone: bool = Fal
         text, summary = _text_of(chain), _summary(trace)
     except Exception as problem:
         # An error may be anything, and nested too deeply: it is reported nevertheless.
-        stack = _traceback.StackSummary.from_list(
+        stack = traceback.StackSummary.from_list(
             [
                 frame
-                for frame in _traceback.extract_tb(error.__traceback__)
+                for frame in traceback.extract_tb(error.__traceback__)
                 if own_files(file)(frame.filename)
             ]
         )
@@ -161,16 +160,6 @@ def _shown(error: BaseException) -> str:
     return shown.getvalue()
 
 
-def remember_source(file: str, source: str) -> None:
-    """Make tracebacks show the text that runs, not the current contents of the file."""
-    for cache in (_own_linecache.cache, linecache.cache):
-        cache[file] = _remembered(file, source)
-
-
-def _remembered(file: str, source: str) -> tuple[int, None, list[str], str]:
-    return len(source), None, [line + "\n" for line in source_lines(source)], file
-
-
 def _kind_of(error: BaseException) -> str:
     """Return the name of an error's class, even if its metaclass redefines it."""
     return str(type.__dict__["__name__"].__get__(type(error)))
@@ -227,7 +216,7 @@ def _keep_program_frames(trace: Trace, own: Callable[[str], bool]) -> list[Trace
         for one in chain:
             was_raised = bool(one.stack)
             kept = [frame for frame in one.stack if own(frame.filename)]
-            one.stack = _traceback.StackSummary.from_list(kept[-most:] if most else [])
+            one.stack = traceback.StackSummary.from_list(kept[-most:] if most else [])
             chains += [[inner] for inner in getattr(one, "exceptions", None) or ()]
             before = chain[-2] if one is not chain[0] else None
             # An error that never touched the program's code is a detail of the runtime or of the library.

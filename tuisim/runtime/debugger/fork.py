@@ -6,6 +6,7 @@ memory: that happens only in the copy, which is discarded.
 
 from __future__ import annotations
 
+import builtins
 import os
 import signal
 from collections.abc import Callable, Iterator
@@ -16,7 +17,6 @@ from tuisim.protocol import COMMAND_SIGNAL, STACK_SIGNAL
 from tuisim.runtime import wallclock
 from tuisim.runtime.channel import Channel
 from tuisim.runtime.loader import LOOP_HOOK
-from tuisim.runtime.own_names import PROGRAM_BUILTINS
 from tuisim.runtime.raw_output import silence_descriptors
 from tuisim.runtime.scheduler import Scheduler
 from tuisim.runtime.session import Session
@@ -124,7 +124,7 @@ def _freeze(session: Session, scheduler: Scheduler) -> None:
         setattr(frozen, name, _refuse)
     for name in ("wait", "give_way", "spawn"):
         setattr(threads, name, _refuse)
-    setattr(PROGRAM_BUILTINS, LOOP_HOOK, lambda: None)
+    setattr(builtins, LOOP_HOOK, lambda: None)
     silent: Any = session.output
     silent.row, silent.after_write, silent.drain = lambda *_: None, lambda: None, lambda: None
     silence_descriptors()
