@@ -59,12 +59,17 @@ FLIPS: Mapping[type[ast.AST], tuple[type[Any], ...]] = {
 }
 """What becomes of an operator: the bound moved by one, or the opposite."""
 
-_PROGRAMS = (
-    "tests/test_programs.py",
-    "tests/test_brick_programs.py",
-    "tests/test_pybricks_programs.py",
-    "tests/test_real_programs.py",
-)
+TESTS: Mapping[str, Sequence[str]] = {
+    **{room: (f"tests/{room}",) for room in ROOMS},
+    "programs": (
+        "tests/test_programs.py",
+        "tests/test_brick_programs.py",
+        "tests/test_pybricks_programs.py",
+        "tests/test_real_programs.py",
+    ),
+}
+"""The quick tests of each room, and those of the programs."""
+
 _SKIPPED = (".git", ".venv", "*_cache", "__pycache__", ".hypothesis")
 _PYTEST = ("-q", "-x", "-n0", "-p", "no:randomly", "-p", "no:cacheprovider", "--hypothesis-seed=0")
 _MIN_LIMIT_S = 120.0
@@ -200,18 +205,24 @@ class Copies:
             copy_checkout(copy)
             self._free.put(copy)
 
-    def measure(self, room: str) -> None:
-        """Run the tests of a room without a flip, which sets its time limit.
+    def measure(self, tests: str) -> None:
+        """Run tests without a flip, which sets their time limit.
 
-        Raises: RuntimeError if one fails.
+        Args:
+            tests: A room, or the programs.
+
+        Raises:
+            RuntimeError: one fails.
         """
         copy = self._free.get()
         start_s = time.monotonic()
-        if failure := find_failure(list_tests(room), copy, None):
-            raise RuntimeError(f"tests of {room} fail without a flip: {failure}")
+        failure = find_failure(TESTS[tests], copy, None)
         took_s = time.monotonic() - start_s
-        self._limits_s[room] = max(_MIN_LIMIT_S, _LIMIT_FACTOR * took_s)
         self._free.put(copy)
+        if failure:
+            raise RuntimeError(f"tests of {tests} fail without a flip: {failure}")
+        self._limits_s[tests] = max(_MIN_LIMIT_S, _LIMIT_FACTOR * took_s)
+        print(f"tests of {tests}: {took_s:.0f} s", flush=True)
 
     def try_mutant(self, mutant: Mutant) -> str:
         """Return what finds a mutant, or nothing if it survives."""
@@ -219,20 +230,16 @@ class Copies:
         path = copy / "tuisim" / mutant.file
         original = path.read_text()
         path.write_text(mutant.text)
-        limit_s = self._limits_s[mutant.room]
+        own, room = find_tests(mutant.file, copy), mutant.room
         try:
-            own = find_tests(mutant.file, copy)
-            return (own and find_failure(own, copy, limit_s)) or find_failure(
-                list_tests(mutant.room), copy, limit_s
+            return (
+                (own and find_failure(own, copy, self._limits_s[room]))
+                or find_failure(TESTS[room], copy, self._limits_s[room])
+                or find_failure(TESTS["programs"], copy, self._limits_s["programs"])
             )
         finally:
             path.write_text(original)
             self._free.put(copy)
-
-
-def list_tests(room: str) -> list[str]:
-    """Return the tests of a room, and those of the programs."""
-    return [f"tests/{room}", *_PROGRAMS]
 
 
 def main(words: Sequence[str]) -> int:
@@ -259,7 +266,7 @@ def main(words: Sequence[str]) -> int:
         ThreadPoolExecutor(arguments.jobs) as pool,
     ):
         copies = Copies(Path(folder), arguments.jobs)
-        list(pool.map(copies.measure, drawn))
+        list(pool.map(copies.measure, ["programs", *drawn]))
         for mutant, failure in zip(mutants, pool.map(copies.try_mutant, mutants), strict=True):
             print(f"{mutant}\n  {failure or 'SURVIVES'}", flush=True)
             if not failure:
