@@ -50,10 +50,11 @@ def test_a_line_is_as_wide_as_the_pen_and_has_its_colour(white: Field) -> None:
     assert set(marks.field.marks.values()) == {(0, 255, 0)}
 
 
-def test_sensors_see_the_line_and_arrays_agree(white: Field) -> None:
-    _, marks = drawn(white, PenSpec(color="black", width_mm=10.0, down=True))
+@pytest.mark.parametrize("x_mm", [550.0, 467.0], ids=["on the line", "on its beginning"])
+def test_sensors_see_the_line_and_arrays_agree(white: Field, x_mm: float) -> None:
+    _, marks = drawn(white, PenSpec(color="#102030", width_mm=10.0, down=True))
     sensor = RobotSpec().color_sensors[0]
-    over = Instant(0, Pose(550.0, 480.0, 0.0))
+    over = Instant(0, Pose(x_mm, 480.0, 0.0))
     seen = reading(sensor, over, marks.field)
     box = pixel_array(sensor, over, marks.field)
     inside = [
@@ -61,8 +62,9 @@ def test_sensors_see_the_line_and_arrays_agree(white: Field) -> None:
         for pixel in zip(box[::3], box[1::3], box[2::3], strict=True)
         if pixel != (245, 226, 225)
     ]
-    assert seen.red == sum(pixel[0] for pixel in inside) / 305
-    assert seen.red < 200
+    means = [sum(values) / 305 for values in zip(*inside, strict=True)]
+    assert [seen.red, seen.green, seen.blue] == means
+    assert seen.red < seen.green < seen.blue < 220
     assert reading(sensor, over, white).red == 255
 
 

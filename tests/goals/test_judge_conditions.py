@@ -548,6 +548,12 @@ READINGS = {
     "print there": Case(
         "print = { lines = 'x', x_mm = [[690, 710]] }", (ahead(200), says("x", 5)), "met", line=5
     ),
+    "print at the edge of there": Case(
+        "print = { lines = 'x', x_mm = [[500, 600]] }", (says("x", 5), ahead(200)), "met", line=5
+    ),
+    "print at the other edge": Case(
+        "print = { lines = 'x', x_mm = [[400, 500]] }", (says("x", 5), ahead(200)), "met", line=5
+    ),
     "print elsewhere": Case(
         "print = { lines = 'x', x_mm = [[690, 710]] }",
         (says("x", 5), ahead(200)),

@@ -94,6 +94,8 @@ MOTOR = Table(
             "('LargeMotor(ev3-ports:outB)', 'LargeMotor(ev3-ports:outB)', 'LargeMotor')",
             "ev3dev2:Device.__str__ ev3dev2:Device.__repr__",
         ),
+        Check("m.set_attr_string(None, 'state', 'x')", "PermissionError: [Errno 13] state"),
+        Check("m.set_attr_string(None, 'nothing', 'x')", "DeviceNotFound"),
         Check(
             "MediumMotor(OUTPUT_A).max_speed, m.max_speed",
             "(1560, 1050)",

@@ -146,3 +146,17 @@ def test_the_guide_names_the_limits_that_are_set() -> None:
         for what, most in limits.items()
         if f"| {what} | {most} |" not in page
     ] == []
+
+
+def test_what_is_open_and_has_no_name_is_counted(tmp_path: Path) -> None:
+    def sizes() -> list[int]:
+        return sorted(isolation.Quota(os.getpid(), [tmp_path])._without_a_name())
+
+    before = sizes()
+    with (tmp_path / "file").open("wb") as file:
+        file.write(bytes(1 << 20))
+        file.flush()
+        os.fsync(file.fileno())
+        assert sizes() == before
+        os.unlink(file.name)
+        assert sum(sizes()) - sum(before) == pytest.approx(1 << 20, rel=0.1)

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import os
+import time
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
+from pathlib import Path
 from threading import Barrier, BrokenBarrierError
 from typing import Any
 
@@ -15,6 +18,7 @@ from tuisim.config.options import Settings
 from tuisim.runs.child import process
 from tuisim.runs.child.warm import WarmProcess
 from tuisim.runs.handle import RunOptions, start_run
+from tuisim.runs.side_files import STACK_FILE
 from tuisim.source import Program
 
 
@@ -42,3 +46,12 @@ def test_runs_of_many_threads_share_one_warm_process(monkeypatch: pytest.MonkeyP
     with ThreadPoolExecutor(8) as pool:
         assert set(pool.map(end, range(24))) == {"finished"}
     assert len(started) == 1
+
+
+def test_a_stack_is_awaited_until_it_is_whole(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path, parts = tmp_path / STACK_FILE, iter(["", "File", "File a", "File a", "late"])
+    monkeypatch.setattr(time, "sleep", lambda _: path.write_text(next(parts)))
+    process.await_stack(tmp_path, os.getpid())
+    assert next(parts) == "late"

@@ -113,3 +113,12 @@ def test_version_2_says_where_its_later_names_are() -> None:
         base.curve(100, 90)
     with pytest.raises(AttributeError, match=r"no attribute 'fly'$"):
         base.fly()
+
+
+def test_what_is_counted_begins_again_at_a_reset(base: DriveBase) -> None:
+    base.straight(100)
+    base.turn(90)
+    base.reset(20, 30)
+    assert (base.distance(), base.angle()) == (20, pytest.approx(30, abs=0.2))
+    base.straight(-50)
+    assert base.distance() == -30
