@@ -17,13 +17,12 @@ from tuisim.charts.files import write_whole
 from tuisim.commands.batch_options import jobs_option, keep_option
 from tuisim.commands.echo import Progress, echo, echo_error, echo_lines, echo_wrapped, table, tell
 from tuisim.commands.interruption import Interrupted, signals_raise
-from tuisim.commands.isolation import isolates
 from tuisim.commands.listings import names_of
 from tuisim.commands.run_options import input_option, timeout_option
 from tuisim.config.command_line import Arguments, WordType, argument, command, option
 from tuisim.config.options import APP, PANEL, settings_of
 from tuisim.config.shared_options import shared_options
-from tuisim.errors import ConfigError, ExportError, counted, listed, printable
+from tuisim.errors import ConfigError, ExportError, counted, listed, printable, see_page
 from tuisim.goals.files import GoalsFile, load_goals
 from tuisim.goals.trial_world import TrialWorld
 from tuisim.logs.export import ALLOWED, EXPORTERS, check_place, check_target
@@ -37,6 +36,7 @@ from tuisim.marks.page import page_of, reports_folder
 from tuisim.marks.runs import STALL_LIMIT_S, TIME_LIMIT_S, MarkPlan, RunEntry, outcomes_of, runs_of
 from tuisim.marks.sheet import Sheet, columns_of, export_marks, lines_of, sheet_of, summary_of
 from tuisim.marks.students import Student, StudentsFound, find_students
+from tuisim.runs.child.isolation import check_isolation
 from tuisim.runs.child.supervisor import supervised
 from tuisim.runs.handle import RunOptions
 
@@ -456,3 +456,31 @@ def _print(sheet: Sheet, ignored: Sequence[str]) -> None:
 
 def _width(text: str) -> int:
     return max(map(len, text.split("\n")))
+
+
+def isolates(arguments: Arguments, danger: str, page: str) -> bool:
+    """Return whether programs are isolated; say so if they are not, and nobody has asked for that.
+
+    Args:
+        arguments: Those of the command, with `isolate` and `no_isolate`.
+        danger: What programs can do that are not isolated.
+        page: The page of the guide that tells more.
+
+    Raises:
+        ConfigError: they cannot be isolated, and must be; or the options contradict each other.
+    """
+    if arguments.isolate and arguments.no_isolate:
+        raise ConfigError(
+            "is given together with --no-isolate", "give only one of them", key="--isolate"
+        )
+    if arguments.no_isolate:
+        return False
+    try:
+        check_isolation()
+    except ConfigError as error:
+        if arguments.isolate:
+            raise
+        reason = error.message.removeprefix(f"{error.key}: ")
+        echo_error(f"note: {reason}: {danger} ({see_page(page)})")
+        return False
+    return True

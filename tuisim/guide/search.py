@@ -3,26 +3,38 @@
 Question and passages are compared by the cosine of the stems of their words, in which a word counts more the fewer
 passages have it, and words that mean the same count as one, too. A passage counts with its own words, with those of its
 headings and its page, and with the questions that people ask and it answers: with the one that is most alike, and with
-all of them together, since people ask for the same thing in many words.
+all of them together, since people ask for the same thing in many words. To add a question: a line in `questions.toml`.
 """
 
 from __future__ import annotations
 
 import math
 import re
+import tomllib
 from collections import Counter, defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cache
 from itertools import pairwise, takewhile
+from pathlib import Path
 from statistics import median
 from textwrap import indent
 from typing import TypeAlias
 
 from tuisim.data_class import dataclass
-from tuisim.guide.asked import asked_questions
 from tuisim.guide.catalogue import pages
 from tuisim.guide.tables import markdown_of
 from tuisim.guide.words import stems_of, words_of
+
+
+@cache
+def asked_questions() -> Mapping[str, Mapping[str, tuple[str, ...]]]:
+    """Return by page the questions that it answers, by a text that is in the passage which answers them."""
+    text = (Path(__file__).parent / "questions.toml").read_text(encoding="utf-8")
+    return {
+        page: {key: tuple(asks) for key, asks in of.items()}
+        for page, of in tomllib.loads(text).items()
+    }
+
 
 _HEADING = re.compile(r"^##+ (.+)$", re.MULTILINE)
 _FENCED = re.compile(r"^```(.*)\n((?:.*\n)*?)```$\n?", re.MULTILINE)

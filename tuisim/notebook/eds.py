@@ -6,7 +6,8 @@ The functions import what they need: a notebook loads this module even if it doe
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING
+from contextlib import suppress
+from typing import TYPE_CHECKING, Any
 
 from tuisim.errors import LogError
 
@@ -23,7 +24,7 @@ IMAGE_COLUMNS = ("side", "vals", "clock", "run")
 
 def get_dataframe_from_datalog(log: Iterable[StoredRun]) -> pd.DataFrame:
     """Return the samples of runs as one long frame, see `runs.frames.samples_frame`."""
-    from tuisim.notebook.seconds_axis import use_seconds
+    from tuisim.notebook.eds import use_seconds
     from tuisim.runs.frames import samples_frame
 
     # It may be plotted next.
@@ -126,3 +127,30 @@ def bw_image_data(
         left, top, right, bottom = crop
         grey = grey[top:bottom, left:right]
     return pd.DataFrame((grey <= threshold).astype(int))
+
+
+def use_seconds() -> None:
+    """Let matplotlib, and seaborn with it, label spans in seconds; nothing happens where it is not installed."""
+    with suppress(ImportError):
+        import numpy as np
+        from matplotlib import ticker, units
+
+        from tuisim.core.profile import NS_PER_S
+
+        class Seconds(units.ConversionInterface):
+            """Converts spans."""
+
+            @staticmethod
+            def convert(value: Any, unit: object, axis: object) -> Any:
+                """Return spans in nanoseconds, as what is plotted without this converter; numbers are that already."""
+                spans = np.asarray(value)
+                is_span = spans.dtype.kind in "mO"
+                return spans.astype("timedelta64[ns]").astype("float64") if is_span else value
+
+            @staticmethod
+            def axisinfo(unit: object, axis: object) -> units.AxisInfo:
+                """Return how an axis shows them: its numbers are nanoseconds, its labels seconds."""
+                seconds = ticker.FuncFormatter(lambda ns, _: f"{ns / NS_PER_S:g} s")
+                return units.AxisInfo(majfmt=seconds, label="time")  # type: ignore[no-untyped-call]
+
+        units.registry.setdefault(np.timedelta64, Seconds())

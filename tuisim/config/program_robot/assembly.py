@@ -7,7 +7,6 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import field, replace
 from typing import Any
 
-from tuisim.config.program_robot.kinds import with_others, with_tools
 from tuisim.config.program_robot.library import PAIRS, DeviceKind
 from tuisim.config.program_robot.mechanics import Mechanics, mechanics_in
 from tuisim.config.program_robot.mentions import Mention, Mentions, Pair, Where
@@ -18,8 +17,14 @@ from tuisim.config.program_robot.places import (
     say_other_sides,
     with_sides,
 )
-from tuisim.config.program_robot.sizes import Size, sizes_in
-from tuisim.config.program_robot.wheels import WheelMotors, wheels_of
+from tuisim.config.program_robot.wheels import (
+    Size,
+    WheelMotors,
+    sizes_in,
+    wheels_of,
+    with_others,
+    with_tools,
+)
 from tuisim.config.program_robot.words import side_of
 from tuisim.config.robots import RobotChoice
 from tuisim.core.spec import (

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from tuisim.guide.asked import asked_questions
 from tuisim.guide.catalogue import pages
-from tuisim.guide.search import search
+from tuisim.guide.search import asked_questions, search
 from tuisim.guide.tables import markdown_of
 
 

@@ -11,7 +11,7 @@ import pandas as pd
 import pytest
 import seaborn as sns  # type: ignore[import-untyped]
 
-from tuisim.notebook.seconds_axis import use_seconds
+from tuisim.notebook.eds import use_seconds
 
 FRAME = pd.DataFrame(
     {"index": pd.to_timedelta([0, 0.5, 1.2], unit="s"), "variable": "a", "value": [1.0, 2.0, 3.0]}
