@@ -19,7 +19,6 @@ from textual.color import Color
 from textual.css.query import NoMatches
 from textual.driver import Driver
 from textual.filter import LineFilter
-from textual.message import Message
 from textual.screen import Screen
 from textual.widget import WidgetError
 from textual.worker import WorkerFailed
@@ -40,6 +39,7 @@ from tuisim.terminal.queries import (
     TerminalFacts,
     cell_size_px,
 )
+from tuisim.terminal.server_asks import ActionAsked as ActionAsked
 from tuisim.terminal.server_asks import ServerAsks as ServerAsks
 from tuisim.terminal.textual_internals import (
     SUPPORTED,
@@ -77,14 +77,6 @@ def offer(app: App[Any], *files: Path) -> None:
     if app.is_web:
         for file in files:
             app.deliver_binary(file)
-
-
-class ActionAsked(Message):
-    """A button of the page that shows the app asks for an action."""
-
-    def __init__(self, name: str) -> None:
-        super().__init__()
-        self.name = name
 
 
 class BufferedApp(HookedApp):

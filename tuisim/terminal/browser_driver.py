@@ -12,9 +12,8 @@ from textual.drivers.web_driver import WebDriver
 from textual.message import Message
 
 from tuisim.terminal import kitty
-from tuisim.terminal.app import ActionAsked
 from tuisim.terminal.queries import QUESTIONS, AnswerParser
-from tuisim.terminal.server_asks import ServerAsks
+from tuisim.terminal.server_asks import ActionAsked, ServerAsks
 from tuisim.terminal.textual_internals import app_of, parse_page_input_with, write_with
 
 _MODES = "\x1b[?1049h\x1b[?25l\x1b[?1000h\x1b[?1003h\x1b[?1015h\x1b[?1006h\x1b[?2004h"
