@@ -53,7 +53,7 @@ def test_wheel_holds_every_mat_program_style_and_module(installed: Path) -> None
         assert wanted == {
             path.name for path in (installed / "tuisim" / "_assets" / folder).glob(pattern)
         }
-    for pattern in ("*.tcss", "*.py", "*.ttf", "LICENSE-*"):
+    for pattern in ("*.tcss", "*.py", "*.html", "*.css", "*.js", "*.ttf", "LICENSE-*"):
         wanted = {str(path.relative_to(ROOT)) for path in (ROOT / "tuisim").rglob(pattern)}
         found = {path.relative_to(installed) for path in (installed / "tuisim").rglob(pattern)}
         assert wanted == {str(path) for path in found if "_assets" not in path.parts}

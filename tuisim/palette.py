@@ -1,7 +1,4 @@
-"""The colours of the app, of its style sheet and of charts as text: one dark design; themes replace each of them.
-
-Below them those of pages for browsers.
-"""
+"""The colours of the app, of its style sheet and of charts as text: one dark design; themes replace each of them."""
 
 from __future__ import annotations
 
@@ -53,18 +50,3 @@ PRESSED = "#ffd866"
 
 COLORS: Mapping[str, str] = {name: color for name, color in globals().items() if name.isupper()}
 """All of them by name."""
-
-MET, PARTLY, MISSED = "#1f8a4c", "#c98a00", "#c0392b"
-"""Verdicts on a page for browsers, on a light ground and on a dark one."""
-
-PAGE = """\
-:root { color-scheme: light dark; --ink: #1d2329; --soft: #5c6670; --paper: #fff; --rule: #d5dade; --area: #f4f6f8;
-  --link: #0b57a4; }
-@media (prefers-color-scheme: dark) {
-  :root { --ink: #d8dee6; --soft: #9aa6b2; --paper: #14191f; --rule: #38424d; --area: #1c242c; --link: #7db4f0; }
-}
-@media print {
-  :root { color-scheme: light; --ink: #000; --soft: #444; --paper: #fff; --rule: #bbb; --area: #fff; --link: #000; }
-}
-"""
-"""The colours of a page for browsers, as a style sheet with variables: light, dark and on paper."""

@@ -7,9 +7,8 @@ import re
 from tests.marks.test_copies import LINE, OTHER, RENAMED
 from tests.marks.test_sheet import OUTCOMES, SHEET, STUDENTS
 from tuisim.marks.copies import similar
-from tuisim.marks.page import page_of
+from tuisim.marks.page import distribution, goal_statistics, page_of
 from tuisim.marks.sheet import sheet_of
-from tuisim.marks.statistics import distribution, goal_statistics
 
 
 def test_statistics_of_the_goals() -> None:

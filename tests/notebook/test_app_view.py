@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from aiohttp import ClientSession, WSMsgType, web
+from aiohttp import ClientSession, WSMsgType
 
 from tests.notebook.conftest import Cell, Shown
 from tests.running import PATIENCE_S
@@ -147,7 +147,7 @@ def test_a_cell_says_why_the_app_does_not_run_its_program(cell: Cell, view: AppV
 def test_without_the_app_cells_show_pictures_again(cell: Cell) -> None:
     view = lab.roboSim._view
     assert view is not None
-    view._server.call(view._server.server._send_all_away(web.Application()))
+    view._server.call(view._server.server.send_all_away())
     shown = cell(RUN)
     assert (shown.out, shown.pictures) == ("Colour: 100.0\n", 1)
 

@@ -1,30 +1,24 @@
-"""Marked places on the picture of a run in a report."""
+"""Pictures of the world on a page, and the places that are marked on them."""
 
 from __future__ import annotations
 
+import base64
+import io
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import TYPE_CHECKING
 
-from tuisim.charts.files import clean
 from tuisim.data_class import dataclass
-from tuisim.palette import MET, MISSED
 from tuisim.scene.view import Viewport
+
+if TYPE_CHECKING:
+    from PIL.Image import Image
 
 _NEAR_PX = 14.0
 """Pins nearer than this share a ring: their labels would cover each other."""
 _RING_PX, _TEXT_PX = 7.0, 15.0
+"""Radius and size of letters, as in the templates of pages."""
 _LETTER_PX = 0.62 * _TEXT_PX
 """Width of a letter, on average."""
-
-
-class _Box(NamedTuple):
-    """The place of a label."""
-
-    left: float
-    right: float
-    baseline: float
-    is_at_end: bool
-    """Whether the right edge is beside its ring."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,64 +34,114 @@ class Pin:
     """What was decided, shown while the mouse is there."""
 
 
-def svg_of_pins(pins: Sequence[Pin], view: Viewport) -> str:
-    """Return the pins as SVG that lies exactly on a picture of the world; empty without pins.
+@dataclass(frozen=True, slots=True)
+class Label:
+    """The place of the text beside a ring, in pixels of the picture."""
+
+    left_px: float
+    right_px: float
+    baseline_px: float
+    is_at_end: bool
+    """Whether the right edge is beside the ring."""
+
+    @property
+    def x_px(self) -> float:
+        """The edge beside the ring."""
+        return self.right_px if self.is_at_end else self.left_px
+
+
+@dataclass(frozen=True, slots=True)
+class Ring:
+    """Pins at about one place, in pixels of the picture."""
+
+    x_px: float
+    y_px: float
+    pins: tuple[Pin, ...]
+    label: Label
+
+    @property
+    def is_good(self) -> bool:
+        """Whether all was decided well."""
+        return all(pin.is_good for pin in self.pins)
+
+
+@dataclass(frozen=True, slots=True)
+class Dot:
+    """A place where goals were missed, in pixels of the picture."""
+
+    x_px: float
+    y_px: float
+    radius_px: float
+    goal: str
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class Picture:
+    """A picture on a page; without a source it says why there is none."""
+
+    text: str
+    source: str = ""
+    """Its content, as the `src` of an `img`."""
+    size_px: tuple[int, int] | None = None
+    view: Viewport | None = None
+    """What of the world it shows; for rings and dots only."""
+    rings: tuple[Ring, ...] = ()
+    dots: tuple[Dot, ...] = ()
+
+
+def encode_picture(picture: Image) -> str:
+    """Return a picture as the `src` of an `img`."""
+    content = io.BytesIO()
+    picture.save(content, "png", optimize=True)
+    return encode_data("png", content.getvalue())
+
+
+def encode_data(kind: str, content: bytes) -> str:
+    """Return the content of an image file of a kind, such as `png`, as the `src` of an `img`."""
+    return f"data:image/{kind};base64,{base64.b64encode(content).decode()}"
+
+
+def place_pins(pins: Sequence[Pin], view: Viewport) -> tuple[Ring, ...]:
+    """Return the rings of pins on a picture of the world.
 
     Args:
         view: What the picture shows.
     """
-    if not pins:
-        return ""
-    rings: list[tuple[float, float, list[Pin]]] = []
+    places: list[tuple[float, float, list[Pin]]] = []
     for pin in pins:
         x, y = view.to_px(pin.x_mm, pin.y_mm)
         near = next(
-            (ring for ring in rings if abs(ring[0] - x) < _NEAR_PX and abs(ring[1] - y) < _NEAR_PX),
+            (one for one in places if abs(one[0] - x) < _NEAR_PX and abs(one[1] - y) < _NEAR_PX),
             None,
         )
         if near is None:
-            rings.append((x, y, [pin]))
+            places.append((x, y, [pin]))
         else:
             near[2].append(pin)
-    taken: list[_Box] = []
-    drawn = ""
-    for x, y, at_ring in rings:
-        boxes = [_label_box(x, y + side * _RING_PX, at_ring, view.width_px) for side in (-1, 2.5)]
+    rings: list[Ring] = []
+    for x, y, pins_here in places:
+        labels = [
+            _place_label(x, y + side * _RING_PX, pins_here, view.width_px) for side in (-1, 2.5)
+        ]
         # Above its ring, unless another label is there.
-        box = next(
-            (one for one in boxes if not any(_overlap(one, other) for other in taken)), boxes[0]
-        )
-        taken.append(box)
-        drawn += _ring(x, y, at_ring, box)
-    return f'<svg class="pins" viewBox="0 0 {view.width_px} {view.height_px}" aria-hidden="true">{drawn}</svg>'
+        free = (label for label in labels if not any(_overlap(label, ring.label) for ring in rings))
+        rings.append(Ring(x, y, tuple(pins_here), next(free, labels[0])))
+    return tuple(rings)
 
 
-def _label_box(x: float, baseline: float, pins: Sequence[Pin], width: int) -> _Box:
-    """Return the place of the label of a ring at `x`: left and right edge and baseline, and whether it ends there."""
-    long = sum(len(pin.label) + 2 for pin in pins) * _LETTER_PX
-    left = x + _RING_PX + 4 if x <= 0.8 * width else x - _RING_PX - 4 - long
-    return _Box(left, left + long, baseline, x > 0.8 * width)
+def _place_label(x_px: float, baseline_px: float, pins: Sequence[Pin], width_px: int) -> Label:
+    """Return the place of the label of a ring at `x_px` on a picture of a width."""
+    length_px = sum(len(pin.label) + 2 for pin in pins) * _LETTER_PX
+    is_at_end = x_px > 0.8 * width_px
+    gap_px = _RING_PX + 4
+    left_px = x_px - gap_px - length_px if is_at_end else x_px + gap_px
+    return Label(left_px, left_px + length_px, baseline_px, is_at_end)
 
 
-def _overlap(one: _Box, other: _Box) -> bool:
+def _overlap(label: Label, other: Label) -> bool:
     return (
-        one.left < other.right
-        and other.left < one.right
-        and abs(one.baseline - other.baseline) < _TEXT_PX
-    )
-
-
-def _ring(x: float, y: float, pins: Sequence[Pin], label: _Box) -> str:
-    color = MET if all(pin.is_good for pin in pins) else MISSED
-    at, anchor = (label.right, "end") if label.is_at_end else (label.left, "start")
-    labels = " ".join(
-        f'<tspan fill="{MET if pin.is_good else MISSED}">{"✓" if pin.is_good else "✗"}{clean(pin.label)}</tspan>'
-        for pin in pins
-    )
-    said = clean("\n".join(pin.text for pin in pins))
-    return (
-        f'<g><title>{said}</title><circle cx="{x:.1f}" cy="{y:.1f}" r="{_RING_PX:g}" fill="{color}33" '
-        f'stroke="{color}" stroke-width="2.5"/><text x="{at:.1f}" '
-        f'y="{label.baseline:.1f}" text-anchor="{anchor}" font-size="{_TEXT_PX:g}" font-weight="700" '
-        f'font-family="sans-serif" stroke="white" stroke-width="4" paint-order="stroke">{labels}</text></g>'
+        label.left_px < other.right_px
+        and other.left_px < label.right_px
+        and abs(label.baseline_px - other.baseline_px) < _TEXT_PX
     )

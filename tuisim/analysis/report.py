@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import base64
-import io
 import math
 import os
 import shlex
@@ -12,18 +10,18 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from tuisim import palette
 from tuisim.analysis.chart import View, chart_of, spans_of_bands
 from tuisim.analysis.model import Model
-from tuisim.analysis.pins import Pin, svg_of_pins
+from tuisim.analysis.pins import Picture, Pin, encode_data, encode_picture, place_pins
 from tuisim.analysis.source import LogRequest, OpenedLog, opening
-from tuisim.charts.files import FACET_PX, clean, svg_of, write_whole
+from tuisim.charts.files import FACET_PX, svg_of, write_whole
 from tuisim.charts.layout import laid_out
 from tuisim.config.files import name_of
 from tuisim.core.geometry import pose_in_words
 from tuisim.core.profile import NS_PER_S
 from tuisim.core.tick_record import FLAG_PEN_DOWN
 from tuisim.errors import ExportError, LogError, listed
+from tuisim.html.render import Table, render_page
 from tuisim.logs.export import check_place
 from tuisim.logs.log import Log
 from tuisim.logs.plateaus import Search, plateaus
@@ -78,7 +76,7 @@ def write_report(
         LogError: a recording is damaged, or there is nothing to report on.
     """
     check_report(path)
-    # A program may contain lone surrogates, which `clean` has replaced.
+    # A program may contain lone surrogates, which the page has replaced.
     write_whole(path, report_of(opened, names, search, movie=len(opened.runs) == 1).encode())
 
 
@@ -90,7 +88,7 @@ def report_of(
     *,
     movie: bool = False,
     pins: Sequence[Pin] = (),
-    parts: Sequence[str] = (),
+    goals: Table | None = None,
 ) -> str:
     """Return the page that `write_report` writes; arguments and errors are the same.
 
@@ -98,40 +96,42 @@ def report_of(
         title: The title of a page that is the same for identical runs: it names no run and no date.
         movie: Whether the page has a movie of each run.
         pins: Places that are marked on the pictures.
-        parts: Sections, as HTML, that come after the facts.
+        goals: What the run has met and missed.
     """
     opened, remark = _with_rows(opened)
     if title:
         opened = replace(opened, log=replace(opened.log, title=title))
+    model = _find_bands(opened, names, search)
+    log = opened.log
+    runs = opened.runs
+    known = [row for row in run_facts(runs) if not title or row[0] not in _OF_ONE_RUN]
+    pictures = [_world(run, pins, many=len(runs) > 1) for run in runs]
+    movies = [_movie(run, pins) for run in runs if movie]
+    programs = {run.program.sha256: run.program for run in runs}.values()
+    return render_page(
+        "report.html",
+        title=log.title,
+        remark=remark,
+        facts=known if runs else log_facts(log),
+        errors=[run.end.error.rstrip() for run in runs if run.end and run.end.error],
+        goals=goals,
+        pictures=pictures,
+        movies=[one for one in movies if one is not None],
+        chart=_chart(model),
+        bands=_bands(model),
+        statistics=_statistics(model),
+        notes=_notes(model),
+        reading_notes=log.notes,
+        programs=[(program.name, source_lines(program.text)) for program in programs],
+    )
+
+
+def _find_bands(opened: OpenedLog, names: Sequence[str], search: Search) -> Model:
     model = Model(opened)
     for trace in model.traces:
         trace.on = trace.name in names if names else trace.on
     model.find_bands(model.unsearched(), search)
-    log = opened.log
-    runs = opened.runs
-    known = [row for row in run_facts(runs) if not title or row[0] not in _OF_ONE_RUN]
-    body = [
-        f"<header>\n<h1>{clean(log.title)}</h1>",
-        paragraph(remark, soft=True) if remark else "",
-        "</header>",
-        section("Facts", facts(known if runs else log_facts(log)), *map(_error, runs)),
-        *parts,
-        section(
-            "World",
-            *(_world(run, pins, many=len(runs) > 1) for run in runs),
-            *(_movie(run, pins) for run in runs if movie),
-        ),
-        section("Chart", *_chart(model)),
-        section("Bands", *_bands(model)),
-        section("Statistics", _statistics(model)),
-        section(
-            "Notes",
-            _notes(model),
-            *(paragraph(f"Reading: {note}", soft=True) for note in log.notes),
-        ),
-        *_programs(runs),
-    ]
-    return page(f"{log.title}: report", [part for part in body if part])
+    return model
 
 
 def _with_rows(opened: OpenedLog) -> tuple[OpenedLog, str]:
@@ -146,30 +146,18 @@ def _with_rows(opened: OpenedLog) -> tuple[OpenedLog, str]:
     return found, "The program printed no samples: chart, bands and statistics use the telemetry."
 
 
-def _error(run: StoredRun) -> str:
-    return f"<pre>{clean(run.end.error.rstrip())}</pre>" if run.end and run.end.error else ""
-
-
-def _world(run: StoredRun, pins: Sequence[Pin], *, many: bool) -> str:
+def _world(run: StoredRun, pins: Sequence[Pin], *, many: bool) -> Picture:
     mat = _mat(run)
     try:
         picture = _way_picture(run)
     except LogError as error:
         why = str(error).replace(run.spec.world.background, mat)
-        return paragraph(f"No picture: {why}", soft=True)
-    said = f"run {run.number}: " if many else ""
-    text = clean(
-        f"{said}the mat {mat} and the robot at its end pose; its path in orange, from the ring"
-    )
+        return Picture(f"No picture: {why}")
+    which = f"run {run.number}: " if many else ""
+    text = f"{which}the mat {mat} and the robot at its end pose; its path in orange, from the ring"
     text += "; numbers: where goals were met (✓) or missed (✗)" if pins else ""
-    size = f'width="{picture.width}" height="{picture.height}"'
-    image = f'<img src="{picture_source(picture)}" {size} alt="{text}">'
-    shown = (
-        f'<div class="map">{image}{svg_of_pins(pins, world_view(run.spec.robot))}</div>'
-        if pins
-        else image
-    )
-    return f"<figure>{shown}<figcaption>{text}</figcaption></figure>"
+    view = world_view(run.spec.robot)
+    return Picture(text, encode_picture(picture), picture.size, view, place_pins(pins, view))
 
 
 def _mat(run: StoredRun) -> str:
@@ -199,41 +187,24 @@ def _way_picture(run: StoredRun) -> Image:
     return picture
 
 
-def picture_source(picture: Image) -> str:
-    """Return a picture as the `src` of an `img`."""
-    content = io.BytesIO()
-    picture.save(content, "png", optimize=True)
-    return _data("png", content.getvalue())
-
-
-def _data(kind: str, content: bytes) -> str:
-    return f"data:image/{kind};base64,{base64.b64encode(content).decode()}"
-
-
-def _movie(run: StoredRun, pins: Sequence[Pin]) -> str:
-    """Return a small movie of a run, closed at first: a page that moves by itself distracts from its text.
-
-    Args:
-        pins: Places that are marked on it.
-    """
+def _movie(run: StoredRun, pins: Sequence[Pin]) -> Picture | None:
+    """Return a small movie of a run with places that are marked on it; None if nothing moves."""
     try:
         made = small_movie(Recorded(run))
     except LogError:
         # Where there is no picture either, it says why.
-        return ""
+        return None
     if made is None:
-        return ""
+        return None
     clip, content = made
     speed = f"{clip.speed:g} times real time" if clip.speed > 1 else "real time"
-    text = clean(
-        f"Movie of the run: {clip.recorded.end_s:.1f} s in {speed}, {len(content) / 1000:.0f} kB"
+    text = f"Movie of the run: {clip.recorded.end_s:.1f} s in {speed}, {len(content) / 1000:.0f} kB"
+    return Picture(
+        text, encode_data("gif", content), view=clip.view, rings=place_pins(pins, clip.view)
     )
-    image = f'<img src="{_data("gif", content)}" alt="{text}">'
-    shown = f'<div class="map">{image}{svg_of_pins(pins, clip.view)}</div>' if pins else image
-    return f'<details class="movie"><summary>{text}</summary>{shown}</details>'
 
 
-def _chart(model: Model) -> list[str]:
+def _chart(model: Model) -> Mapping[str, Any]:
     lines = len(model.traces.ticked())
     height = 2 * FACET_PX if lines < 2 else 80 + FACET_PX * lines
     chart = chart_of(model, View(facets=True), _WIDTH_PX, height)
@@ -242,21 +213,20 @@ def _chart(model: Model) -> list[str]:
     )
     chart = replace(chart, spans=spans)
     hidden = [trace.name for trace in model.traces if not trace.on]
-    return [
-        f"<figure>{svg_of(laid_out(chart, _WIDTH_PX, height, titled=False), inside=True)}</figure>",
-        paragraph("The bands are shaded, with their levels.", soft=True) if spans else "",
-        paragraph(f"Not drawn: {listed(hidden)}", soft=True) if hidden else "",
-    ]
+    return {
+        "svg": svg_of(laid_out(chart, _WIDTH_PX, height, titled=False), inside=True),
+        "is_shaded": bool(spans),
+        "not_drawn": listed(hidden) if hidden else "",
+    }
 
 
 def _number(value: float, how: str) -> str:
     return "" if math.isnan(value) else format(value, how)
 
 
-def _bands(model: Model) -> list[str]:
+def _bands(model: Model) -> Mapping[str, Any]:
     heads = ["variable", "name", "band", "from s", "to s", "samples", "level", "spread", "width mm"]
     pairs = zip(model.reports(), model.bands_in_words(), strict=True)
-    parts = [paragraph(words) for report, words in pairs if report.bands]
     bands = model.bands()
     rows = [
         [
@@ -280,15 +250,14 @@ def _bands(model: Model) -> list[str]:
         heads.append("without noise")
         for row, band in zip(rows, bands[:MOST_BANDS], strict=True):
             row.append(f"{band.true_level:.2f}")
-    more = len(bands) - len(rows)
-    return [
-        *parts,
-        table(heads, rows, numbers=2),
-        paragraph(f"and {more:,} more", soft=True) if more else "",
-    ]
+    return {
+        "words": [words for report, words in pairs if report.bands],
+        "table": Table(heads, rows, numbers=2),
+        "more": len(bands) - len(rows),
+    }
 
 
-def _statistics(model: Model) -> str:
+def _statistics(model: Model) -> Table:
     heads = [
         "variable",
         "count",
@@ -305,10 +274,10 @@ def _statistics(model: Model) -> str:
         rows.append(
             (trace.name, f"{found.count:,}", *(_number(figure, ".5g") for figure in figures))
         )
-    return table(heads, rows, numbers=1)
+    return Table(heads, rows, numbers=1)
 
 
-def _notes(model: Model) -> str:
+def _notes(model: Model) -> Table:
     rows = []
     for run, note in model.notes:
         span = f"{note.start_s:.2f}" + (
@@ -317,16 +286,7 @@ def _notes(model: Model) -> str:
         rows.append((str(run + 1), span, note.variable, note.text))
     many = len(model.opened.runs) > 1
     heads = ("run", "s", "variable", "note")
-    return table(heads[not many :], [row[not many :] for row in rows], numbers=len(heads))
-
-
-def _programs(runs: Sequence[StoredRun]) -> list[str]:
-    """Each program once."""
-    programs = {run.program.sha256: run.program for run in runs}
-    return [
-        section(f"Program {program.name}", code(source_lines(program.text)))
-        for program in programs.values()
-    ]
+    return Table(heads[not many :], [row[not many :] for row in rows], numbers=len(heads))
 
 
 Fact = tuple[str, ...]
@@ -428,110 +388,3 @@ _FACTS: Mapping[str, Callable[[StoredRun], str]] = {
 """To add a fact: a line here."""
 _OF_ONE_RUN = frozenset({"run", "made"})
 """Facts that differ between identical runs."""
-
-
-_STYLE = """\
-* { box-sizing: border-box; }
-body { margin: 2rem auto; padding: 0 1rem; max-width: 62rem; color: var(--ink); background: var(--paper);
-  font: 16px/1.45 system-ui, sans-serif; overflow-wrap: anywhere; }
-h1 { font-size: 1.6rem; margin: 0 0 .3rem; }
-h2 { font-size: 1.15rem; margin: 2rem 0 .5rem; border-bottom: 1px solid var(--rule); break-after: avoid; }
-h3 { font-size: 1rem; margin: 1rem 0 .3rem; break-after: avoid; }
-p { margin: .4rem 0; }
-figcaption, .soft { color: var(--soft); font-size: .9rem; }
-figure { margin: .5rem 0; break-inside: avoid; }
-img, svg { display: block; max-width: 100%; height: auto; }
-img { border: 1px solid var(--rule); }
-.map { position: relative; width: fit-content; max-width: 100%; }
-.pins { position: absolute; inset: 0; width: 100%; height: 100%; }
-summary { cursor: pointer; color: var(--soft); font-size: .9rem; }
-.wide { overflow-x: auto; }
-table { border-collapse: collapse; font-variant-numeric: tabular-nums; }
-th, td { padding: .15rem .7rem .15rem 0; text-align: left; vertical-align: top; border-bottom: 1px solid var(--rule); }
-th { font-weight: 600; color: var(--soft); }
-tr { break-inside: avoid; }
-.number { text-align: right; white-space: nowrap; overflow-wrap: normal; }
-.name { white-space: nowrap; overflow-wrap: normal; }
-pre, .code { font: .85rem/1.4 ui-monospace, monospace; background: var(--area); }
-pre { padding: .5rem; white-space: pre-wrap; }
-.code { width: 100%; }
-.code td { border: 0; padding: 0 .6rem; white-space: pre-wrap; }
-.code .number { width: 1%; color: var(--soft); border-right: 1px solid var(--rule); user-select: none; }
-@media print {
-  body { margin: 0; padding: 0; max-width: none; font-size: 10pt; }
-  .wide { overflow: visible; }
-  .movie { display: none; }
-}
-"""
-
-
-def page(title: str, body: Sequence[str]) -> str:
-    """Return a complete page; `body` is HTML, the title is text."""
-    return "\n".join(
-        (
-            '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">',
-            '<meta name="viewport" content="width=device-width, initial-scale=1">',
-            f"<title>{clean(title)}</title>\n<style>\n{palette.PAGE}{_STYLE}</style>\n</head>\n<body>",
-            *body,
-            "</body>\n</html>\n",
-        )
-    )
-
-
-def section(title: str, *parts: str) -> str:
-    """Return a section of a page without its empty parts; empty if all are."""
-    filled = [part for part in parts if part]
-    return (
-        "\n".join((f"<section>\n<h2>{clean(title)}</h2>", *filled, "</section>")) if filled else ""
-    )
-
-
-def paragraph(text: str, *, soft: bool = False) -> str:
-    """Return a text as a paragraph."""
-    return f"<p{_class('soft' if soft else '')}>{clean(text)}</p>"
-
-
-def _class(name: str) -> str:
-    return f' class="{name}"' if name else ""
-
-
-def table(heads: Sequence[str], rows: Sequence[Sequence[str]], numbers: int) -> str:
-    """Return rows of text as a table, empty if there are none; columns from index `numbers` on are right-aligned."""
-    if not rows:
-        return ""
-
-    def line(kind: str, cells: Sequence[str]) -> str:
-        classes = (
-            "number" if at >= numbers else "name" if kind == "th" else ""
-            for at in range(len(cells))
-        )
-        parts = zip(cells, classes, strict=True)
-        return "".join(f"<{kind}{_class(name)}>{clean(cell)}</{kind}>" for cell, name in parts)
-
-    lines = [f"<tr>{line('td', row)}</tr>" for row in rows]
-    head = f"<thead><tr>{line('th', heads)}</tr></thead>"
-    return "\n".join(
-        (f'<div class="wide"><table>\n{head}\n<tbody>', *lines, "</tbody></table></div>")
-    )
-
-
-def facts(rows: Sequence[Sequence[str]]) -> str:
-    """Return a table whose first column holds the names of the rows."""
-    lines = ("".join(f"<td>{clean(cell)}</td>" for cell in cells) for _, *cells in rows)
-    heads = (f'<th class="name" scope="row">{clean(row[0])}</th>' for row in rows)
-    return "\n".join(
-        (
-            '<div class="wide"><table><tbody>',
-            *(f"<tr>{head}{cells}</tr>" for head, cells in zip(heads, lines, strict=True)),
-            "</tbody></table></div>",
-        )
-    )
-
-
-def code(lines: Sequence[str]) -> str:
-    """Return the lines of a program with their numbers."""
-    rows = (
-        f'<tr><td class="number">{at}</td><td>{clean(line) or " "}</td></tr>'
-        for at, line in enumerate(lines, 1)
-    )
-    return "\n".join(('<table class="code"><tbody>', *rows, "</tbody></table>"))

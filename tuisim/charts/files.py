@@ -174,7 +174,7 @@ def svg_of(drawing: Drawing, *, inside: bool = False) -> str:
     ink = "" if inside else f' color="{_hex(_INK)}"'
     parts = [
         f'<svg xmlns="http://www.w3.org/2000/svg" {size} {look}{ink}>',
-        f"<title>{clean(drawing.title)}</title>",
+        f"<title>{_clean(drawing.title)}</title>",
     ]
     if not inside:
         parts.append('<rect width="100%" height="100%" fill="white"/>')
@@ -182,9 +182,13 @@ def svg_of(drawing: Drawing, *, inside: bool = False) -> str:
     return "\n".join([*parts, "</svg>", ""])
 
 
-def clean(text: str) -> str:
-    """Return a text escaped for XML and HTML; characters invalid in either become U+FFFD."""
-    return escape(_INVALID.sub("\ufffd", text))
+def replace_invalid(text: str) -> str:
+    """Return a text in which characters that are invalid in XML or HTML are U+FFFD."""
+    return _INVALID.sub("\ufffd", text)
+
+
+def _clean(text: str) -> str:
+    return escape(replace_invalid(text))
 
 
 def _hex(rgb: Rgb) -> str:
@@ -203,7 +207,7 @@ def _svg_shape(shape: Shape) -> str:
             place = f'x="{shape.x:.1f}" y="{shape.y:.1f}" dy="0.35em" text-anchor="{shape.anchor}"'
             color = _hex(shape.rgb) if shape.rgb else "currentColor"
             strong = ' font-weight="bold"' if shape.strong else ""
-            return f'<text {place} fill="{color}"{strong}>{clean(shape.text)}</text>'
+            return f'<text {place} fill="{color}"{strong}>{_clean(shape.text)}</text>'
         case Shade():
             return f'<rect {_place(shape)} fill="currentColor" fill-opacity="0.08"/>'
         case Stroke():

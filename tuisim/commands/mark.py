@@ -405,7 +405,7 @@ def _write_page(
     movies: bool,
 ) -> None:
     # Their charts are slow to import, and a table needs none.
-    from tuisim.marks.class_map import class_maps
+    from tuisim.marks.class_map import build_class_maps
     from tuisim.marks.copies import similar
     from tuisim.marks.reports import write_reports
 
@@ -416,7 +416,7 @@ def _write_page(
         misses.append(one.misses)
         tell(f"report {len(links)} of {kept}", len(links), kept)
     alike = similar({student.name: student.text for student in students})
-    write_whole(target, page_of(sheet, links, ignored, alike, class_maps(misses)).encode())
+    write_whole(target, page_of(sheet, links, ignored, alike, build_class_maps(misses)).encode())
 
 
 def _write_gradebooks(

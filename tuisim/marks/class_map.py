@@ -5,15 +5,13 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Sequence
 
-from tuisim.analysis.report import picture_source
-from tuisim.charts.files import clean
+from tuisim.analysis.pins import Dot, Picture, encode_picture
 from tuisim.config.mat_cache import mat_pixels
-from tuisim.core.spec import RunSpec
 from tuisim.data_class import dataclass
 from tuisim.errors import LogError, listed
-from tuisim.palette import MISSED
 from tuisim.runs.run_folder import StoredRun, mat_files
 from tuisim.scene.pictures import world_picture, world_view
+from tuisim.scene.view import Viewport
 
 _DOT_PX = 5.0
 _GRID_MM = 4.0
@@ -44,48 +42,48 @@ class MissesOfRun:
         return self.run.spec.world.background
 
 
-def class_maps(found: Sequence[MissesOfRun]) -> list[str]:
-    """Return a figure for each mat on which goals were missed, as HTML; the mat with the most misses first."""
+def build_class_maps(found: Sequence[MissesOfRun]) -> list[Picture]:
+    """Return a picture of each mat on which goals were missed; the mat with the most misses first.
+
+    A mat that can no longer be drawn is left out: the reports of its runs say why.
+    """
     count = Counter[str]()
     for one in found:
         count[one.mat] += len(one.misses)
-    return [
-        _figure([one for one in found if one.mat == mat])
+    maps = [
+        _build_map([one for one in found if one.mat == mat])
         for mat, number in count.most_common()
         if number
     ]
+    return [picture for picture in maps if picture is not None]
 
 
-def _figure(found: Sequence[MissesOfRun]) -> str:
+def _build_map(found: Sequence[MissesOfRun]) -> Picture | None:
     first, misses = found[0].run, [miss for one in found for miss in one.misses]
     try:
         picture = world_picture(first.spec, mat_pixels(mat_files(first)))
     except LogError:
-        # The reports of its runs say why there is none.
-        return ""
-    text = f"Where goals were missed: {len(misses)} places of {len({miss.student for miss in misses})} students"
-    size = f'width="{picture.width}" height="{picture.height}"'
-    image = f'<img src="{picture_source(picture)}" {size} alt="{clean(text)}">'
-    return (
-        f'<figure><div class="map">{image}{_dots(first.spec, misses)}</div>'
-        f"<figcaption>{clean(text)}; a dot tells whose it is</figcaption></figure>"
+        return None
+    students = {miss.student for miss in misses}
+    view = world_view(first.spec.robot)
+    return Picture(
+        f"Where goals were missed: {len(misses)} places of {len(students)} students; a dot tells whose it is",
+        encode_picture(picture),
+        picture.size,
+        view,
+        dots=_place_dots(view, misses),
     )
 
 
-def _dots(spec: RunSpec, misses: Sequence[Miss]) -> str:
-    view = world_view(spec.robot)
+def _place_dots(view: Viewport, misses: Sequence[Miss]) -> tuple[Dot, ...]:
     places: dict[tuple[str, int, int], list[Miss]] = {}
     for miss in misses:
         key = (miss.goal, round(miss.x_mm / _GRID_MM), round(miss.y_mm / _GRID_MM))
         places.setdefault(key, []).append(miss)
-    drawn = "".join(_dot(*view.to_px(same[0].x_mm, same[0].y_mm), same) for same in places.values())
-    return f'<svg class="pins misses" viewBox="0 0 {view.width_px} {view.height_px}">{drawn}</svg>'
-
-
-def _dot(x_px: float, y_px: float, misses: Sequence[Miss]) -> str:
-    radius = _DOT_PX * len(misses) ** 0.33
-    said = f"{misses[0].goal}: {listed([miss.student for miss in misses])}\n{misses[0].reason}"
-    return (
-        f'<circle cx="{x_px:.1f}" cy="{y_px:.1f}" r="{radius:.1f}" fill="{MISSED}66" stroke="{MISSED}" '
-        f'data-goal="{clean(misses[0].goal)}"><title>{clean(said)}</title></circle>'
-    )
+    dots = []
+    for same in places.values():
+        first = same[0]
+        x_px, y_px = view.to_px(first.x_mm, first.y_mm)
+        text = f"{first.goal}: {listed([miss.student for miss in same])}\n{first.reason}"
+        dots.append(Dot(x_px, y_px, _DOT_PX * len(same) ** 0.33, first.goal, text))
+    return tuple(dots)

@@ -10,7 +10,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from tuisim.analysis.pins import Pin
-from tuisim.analysis.report import report_of, section, table
+from tuisim.analysis.report import report_of
 from tuisim.analysis.source import LogRequest, opening
 from tuisim.charts.files import write_whole
 from tuisim.data_class import dataclass
@@ -19,6 +19,7 @@ from tuisim.goals.condition import ConditionKind
 from tuisim.goals.judgement import Change
 from tuisim.goals.spec import Goal
 from tuisim.goals.trial_world import TrialWorld
+from tuisim.html.render import Table
 from tuisim.marks.class_map import Miss, MissesOfRun
 from tuisim.marks.feedback import file_stems
 from tuisim.marks.outcome import GoalOutcome, Outcome, portable
@@ -86,7 +87,7 @@ def write_reports(
                 _write(
                     folder / name,
                     report_of(
-                        opened, title=title, movie=movies and bool(misses), pins=pins, parts=[shown]
+                        opened, title=title, movie=movies and bool(misses), pins=pins, goals=shown
                     ),
                 )
                 written[recorded] = f"{folder.name}/{name}"
@@ -155,8 +156,8 @@ def _misses(
 
 def _verdicts(
     columns: Sequence[Goal], judged: Mapping[str, Change], outcome: Outcome
-) -> tuple[str, list[Pin]]:
-    """Return the section with the goals of a run, and a pin for each goal that was decided at a place.
+) -> tuple[Table, list[Pin]]:
+    """Return the table of the goals of a run, and a pin for each goal that was decided at a place.
 
     Args:
         columns: The goals that are shown, in their order.
@@ -185,7 +186,7 @@ def _verdicts(
                 )
             )
         rows.append([str(number), column.say, result, why, points])
-    return section("Goals", table(_HEADS, rows, numbers=len(_HEADS) - 1)), pins
+    return Table(_HEADS, rows, numbers=len(_HEADS) - 1), pins
 
 
 def _judged(goals: Sequence[Goal], outcome: Outcome, run: StoredRun) -> dict[str, Change]:

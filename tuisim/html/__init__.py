@@ -1,0 +1,1 @@
+"""Pages for browsers: their templates, and their style."""
