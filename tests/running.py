@@ -52,7 +52,8 @@ class Done:
     def recording(self) -> tuple[bytes, ...]:
         """Everything the run recorded."""
         return tuple(
-            (self.run.folder / name).read_bytes() for name in ("telemetry.bin", "output.bin")
+            (self.run.folder / name).read_bytes()
+            for name in ("telemetry.bin", "output.bin", "readings.bin")
         )
 
 

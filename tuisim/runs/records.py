@@ -136,7 +136,7 @@ def _reserve(fd: int, start: int, size: int) -> None:
             start += os.pwrite(fd, nothing[: end - start], start)
 
 
-class _Writer:
+class MappedWriter:
     """A recording in a memory-mapped file that grows in ever larger steps while the disk has space.
 
     Raises:
@@ -196,7 +196,7 @@ class _Writer:
         os.close(self._fd)
 
 
-class TelemetryWriter(_Writer):
+class TelemetryWriter(MappedWriter):
     """Appends tick records. The hot loop packs into the map of `room` directly, then calls `publish`."""
 
     def __init__(self, folder: Path) -> None:
@@ -221,7 +221,7 @@ class TelemetryWriter(_Writer):
         self._close(HEADER_BYTES + self.count * TICK_RECORD.size)
 
 
-class OutputWriter(_Writer):
+class OutputWriter(MappedWriter):
     """Appends printed lines and publishes each at once; when the disk is full, later output is lost."""
 
     def __init__(self, folder: Path) -> None:

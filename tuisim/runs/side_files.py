@@ -1,4 +1,4 @@
-"""The small files of a run folder: lock, user actions, place of a stop, own modules, and files that were read.
+"""The side files of a run folder: lock, user actions, place of a stop, own modules, and files that were read.
 
 Pure Python: the child, which writes them, imports it.
 """
@@ -49,17 +49,28 @@ MOST_READS = 100
 MOST_PATH = 200
 """Characters of a path that are shown."""
 
+READINGS_FILE = "readings.bin"
+"""What sensors, encoders and buttons the program has read; see `runs.readings`."""
+
 LOG_FILE = "child.log"
 """The stderr of the child, for errors below Python; missing if there were none."""
 
 STACK_FILE = "stack.txt"
 """The stack of a child that was stuck."""
 
-SIDE_FILES = (ACTIONS_FILE, STOP_FILE, MODULES_FILE, READS_FILE, LOG_FILE, STACK_FILE)
+SIDE_FILES = (
+    ACTIONS_FILE,
+    STOP_FILE,
+    MODULES_FILE,
+    READS_FILE,
+    READINGS_FILE,
+    LOG_FILE,
+    STACK_FILE,
+)
 """All of them but the lock."""
 
 MOST_BYTES = 64 << 20
-"""More than any of these files has."""
+"""More than any of those has that are read whole."""
 
 
 def hold(folder: Path) -> int:

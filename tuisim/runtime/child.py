@@ -16,6 +16,7 @@ from tuisim.core.profile import NS_PER_S
 from tuisim.core.simulation import FurtherMotors, Turn, simulation_of
 from tuisim.core.tick_record import NoRecording
 from tuisim.runs.brick_state import motors_row
+from tuisim.runs.readings import ReadingsWriter
 from tuisim.runs.records import (
     OUTPUT_FILE,
     TELEMETRY_FILE,
@@ -24,6 +25,7 @@ from tuisim.runs.records import (
     TelemetryWriter,
     is_full,
 )
+from tuisim.runs.side_files import READINGS_FILE
 from tuisim.runtime.channel import Channel
 from tuisim.runtime.control import ATTENTION, STOPPING, RunControl
 from tuisim.runtime.interrupts import Interrupts, die_with_host
@@ -74,7 +76,7 @@ def main(arguments: list[str], prepared: Child | None = None) -> NoReturn:
         child = Child(read_config(Path(arguments[0]))) if prepared is None else prepared
         child.connect(channel)
     except OSError as error:
-        for name in (TELEMETRY_FILE, OUTPUT_FILE):
+        for name in (TELEMETRY_FILE, OUTPUT_FILE, READINGS_FILE):
             Path(arguments[0], name).unlink(missing_ok=True)
         end, summary = protocol.End.DISK_FULL, _no_room(error)
         if not is_full(error):
@@ -183,6 +185,7 @@ class Child:
             TelemetryWriter(config.folder),
             OutputWriter(config.folder),
         )
+        session.readings = ReadingsWriter(config.folder)
         self._sim.restart(config.spec, self._telemetry)
         steering = RunControl(
             channel,
@@ -195,11 +198,11 @@ class Child:
         limits = RunLimits(int(options.time_limit_s * NS_PER_S), options.stall_limit_s)
         session.connect(channel, steering, limits, config.program.file)
         session.replies = options.replies
-        for writer in (self._telemetry, self._output.writer):
+        for writer in (self._telemetry, self._output.writer, session.readings):
             writer.full = lambda error: session.request_stop(
                 protocol.End.DISK_FULL, _no_room(error)
             )
-        self._output.place = lambda: (self._sim.tick, session.now, session.program_line())
+        self._output.place = lambda: (self._sim.tick, session.now, session.program_line(3))
         self._output.after_write = self._after_write
         if isinstance(self._sim, FurtherMotors):
             self._sim.on_turns = self._write_turns
@@ -234,6 +237,7 @@ class Child:
             wallclock.exit_process(0)
         self._telemetry.close()
         self._output.close()
+        self._session.readings.close()
         self._channel.send(protocol.Wheels(*(read() for read in self._session.wheel_registers)))
         self._reads.end()
         self._channel.send(

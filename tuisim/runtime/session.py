@@ -26,6 +26,7 @@ from tuisim.shim.waits import Wait, waits_for
 
 if TYPE_CHECKING:
     from tuisim.core.pen_marks import PenMarks
+    from tuisim.runs.readings import ReadingsWriter
     from tuisim.runs.run_options import RunOptions
 
 COMMANDS_AN_INSTANT = 100
@@ -122,6 +123,8 @@ class Session:
     """Commands: pause, speed, user actions."""
     limits: RunLimits
     """Limits of the run."""
+    readings: ReadingsWriter
+    """Receives what the program reads."""
 
     def __init__(self, sim: Simulation, field: Field, output: OutputRecorder) -> None:
         self.sim, self.output = sim, output
@@ -187,8 +190,8 @@ class Session:
         self._pen.take_in(self.sim.records_since(self._pen.records))
         return self._pen.field
 
-    def spend(self, duration_ns: int) -> None:
-        """Let simulated time pass, even where calls are free."""
+    def spend(self, duration_ns: int) -> int:
+        """Let simulated time pass, even where calls are free. Return the program's line if it was looked up, else 0."""
         until = self.now + duration_ns
         if self.flags or until > self._quick_ns:
             self._pass(until, False)
@@ -197,7 +200,7 @@ class Session:
         else:
             self.output.drain()
             sim = self.sim
-            sim.line = self.program_line()
+            sim.line = line = self.program_line(3)
             # Most readings make exactly one tick due, and whole tick lengths can be added up.
             # Same value as `sim.due_ns(sim.tick + 2)`.
             following = (
@@ -208,13 +211,23 @@ class Session:
             if until < following:
                 sim.tick_once()
                 self.now, self._due = until, following
-                return
+                return line
             ticks = sim.ticks_at(until) - sim.tick
             if ticks > CHUNK_TICKS:
                 self.advance(until, False)
             else:
                 sim.advance(ticks)
                 self.now, self._due = until, sim.due_ns(sim.tick + 1)
+            return line
+        return 0
+
+    def note_reading(self, code: int, line: int = 0) -> None:
+        """Record that the program has read something; arguments as in `DeviceSession`."""
+        readings, now = self.readings, self.now
+        # While no time passes, a loop may read the same any number of times: that is written once.
+        if now == readings.newest_ns and (code == readings.newest_code or readings.has(code)):
+            return
+        readings.add(code, now, line or self.program_line(4))
 
     def charge(self, cost_ns: int) -> None:
         """Let the time of a call pass, unless calls are free."""
@@ -273,7 +286,7 @@ class Session:
             self.debug().enter()
         if until > self.now:
             self.output.drain()
-            self.sim.line = self.program_line()
+            self.sim.line = self.program_line(3)
         if self.flags & THREADS and self.sleep_threaded is not None:
             self.sleep_threaded(until, on_change)
         else:
@@ -408,9 +421,13 @@ class Session:
         """Raise the stop again at the next checkpoint: Python has dropped it, such as in a `__del__`."""
         self._stop_raised_at = None
 
-    def program_line(self) -> int:
-        """Return the line of the program that is running; 0 if there is none."""
-        frame: types.FrameType | None = _getframe(1)
+    def program_line(self, skipped: int = 1) -> int:
+        """Return the line of the program that is running; 0 if there is none.
+
+        Args:
+            skipped: How many frames need no look: this one, and those of its callers that are not the program's.
+        """
+        frame: types.FrameType | None = _getframe(skipped)
         file = self.program_file
         while frame is not None:
             if frame.f_code.co_filename == file:

@@ -14,6 +14,7 @@ from typing import Any
 from tuisim.core.profile import MS, NS_PER_S
 from tuisim.core.spec import BUTTONS
 from tuisim.data_class import dataclass
+from tuisim.runs.readings import BUTTONS_PORT, READING_CODES
 from tuisim.shim.files.entries import DeviceFile, OpenFile, refuse_ioctl
 from tuisim.shim.session import DeviceSession
 from tuisim.shim.waits import Wait, waits_for
@@ -32,6 +33,8 @@ KEY_CODES = dict(zip(BUTTONS, (103, 108, 105, 106, 28, 14), strict=True))
 """Linux key code of each button."""
 KEY_BYTES = 96
 """Bytes of the kernel's set of keys, one bit for each."""
+READING_CODE = READING_CODES[BUTTONS_PORT, "pressed"]
+"""What is recorded when the program looks at the buttons."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,7 +91,10 @@ class ButtonsFile(DeviceFile):
 
     @waits_for(Wait.BUTTON_EVENT)
     def _wait(self, opened: OpenFile) -> None:
-        while not self.ready(opened):
+        while True:
+            self._session.note_reading(READING_CODE)
+            if self.ready(opened):
+                return
             if not os.get_blocking(opened.fd):
                 raise BlockingIOError(errno.EAGAIN, os.strerror(errno.EAGAIN))
             self._session.spend(POLL_NS)
@@ -123,7 +129,9 @@ class ButtonsFile(DeviceFile):
 def read_pressed(session: DeviceSession) -> list[str]:
     """Return the names of the pressed buttons. Charges the cost of a read."""
     session.command()
-    session.charge(session.sim.spec.profile.attribute_read_ns)
+    if not session.free:
+        cost_ns = session.sim.spec.profile.attribute_read_ns
+        session.note_reading(READING_CODE, session.spend(cost_ns))
     return [name for name in BUTTONS if name in session.pressed]
 
 

@@ -57,6 +57,7 @@ class SimDevice:
         number_writers: Functions that accept a written integer, by attribute.
         notifying: Attributes that wake up who polls their files.
         temporary: Attributes whose files exist only while their readers raise no ENOENT.
+        codes: What is recorded of a read, by attribute; see `DeviceSession.note_reading`.
     """
 
     def __init__(
@@ -68,6 +69,7 @@ class SimDevice:
         number_writers: Mapping[str, NumberWriter] | None = None,
         notifying: Collection[str] = (),
         temporary: Collection[str] = (),
+        codes: Mapping[str, int] | None = None,
     ) -> None:
         self.session = session
         self.notifying, self._temporary = notifying, temporary
@@ -80,8 +82,13 @@ class SimDevice:
         """Setters from an integer, by attribute, without conversion to text."""
         for name, write_number in self.number_writers.items():
             self.writers[name] = partial(_write_whole, write_number)
-        self._costs = dict(costs or {})
-        self._common_cost = session.sim.spec.profile.attribute_read_ns
+        costs, codes = costs or {}, codes or {}
+        common_ns = session.sim.spec.profile.attribute_read_ns
+        self._reads = {
+            name: (reader, costs.get(name, common_ns), codes.get(name))
+            for name, reader in readers.items()
+        }
+        """Value, cost in ns, and code if it is recorded, of each attribute."""
 
     def attributes(self) -> list[str]:
         """Return the names of the attributes that exist at present."""
@@ -103,14 +110,15 @@ class SimDevice:
         Raises:
             OSError: ENOENT if the device has no such attribute, EACCES if it is write-only.
         """
-        reader = self.readers.get(name)
-        if reader is None:
-            raise OSError(errno.EACCES if name in self.writers else errno.ENOENT, name)
+        try:
+            reader, cost_ns, code = self._reads[name]
+        except KeyError:
+            raise OSError(errno.EACCES if name in self.writers else errno.ENOENT, name) from None
         session = self.session
         if not session.free:
-            cost = self._costs.get(name, self._common_cost)
-            if cost:
-                session.spend(cost)
+            line = session.spend(cost_ns) if cost_ns else 0
+            if code is not None:
+                session.note_reading(code, line)
         return reader()
 
     def write(self, name: str, text: str) -> None:

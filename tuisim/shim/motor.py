@@ -14,6 +14,7 @@ from tuisim.core.servo.motor import ServoMotor
 from tuisim.data_class import dataclass
 from tuisim.errors import NotSimulated
 from tuisim.protocol import MotorRegisters
+from tuisim.runs.readings import MODES_BY_KIND, READING_CODES
 from tuisim.shim.device_files import NumberWriter, Reader, SimDevice, Writer, plain, refuse
 from tuisim.shim.session import DeviceSession
 
@@ -89,7 +90,13 @@ class Tacho(ABC):
             "command": self._take_command,
         }
         return SimDevice(
-            self._session, common | readers, writers, None, numbers, notifying=("state",)
+            self._session,
+            common | readers,
+            writers,
+            None,
+            numbers,
+            notifying=("state",),
+            codes={name: READING_CODES[self._port, name] for name in MODES_BY_KIND["motor"]},
         )
 
     def _take_command(self, text: str) -> None:

@@ -11,6 +11,7 @@ from typing import Any, NoReturn
 from tuisim.core.sensors import SENSORS, color, gyro, infrared, touch, ultrasonic
 from tuisim.core.spec import ColorSensorSpec, GyroSpec, InfraredSpec, TouchSpec, UltrasonicSpec
 from tuisim.data_class import dataclass
+from tuisim.runs.readings import READING_CODES
 from tuisim.shim.device_files import SimDevice, Writer, refuse
 from tuisim.shim.session import DeviceSession
 from tuisim.shim.unsupported.devices import foreign_mode
@@ -60,6 +61,7 @@ class LegoSensor:
         self._session = session
         self._port, self.driver_name = port, driver_name
         self.modes = dict(modes)
+        self._codes = {mode: READING_CODES[port, mode] for mode in modes}
         self.mode = default_mode
         self._values: tuple[int, ...] = ()
         self._next_free = (-1, -1)
@@ -101,8 +103,15 @@ class LegoSensor:
         chosen = self.modes[mode]
         session = self._session
         if not session.free:
-            session.charge(chosen.cost_ns)
+            session.note_reading(self._codes[mode], session.spend(chosen.cost_ns))
         return chosen.measure()
+
+    def measure_switched(self, mode: str) -> tuple[int, ...]:
+        """Take the first measurement after a change of mode, which has charged its cost."""
+        session = self._session
+        if not session.free:
+            session.note_reading(self._codes[mode])
+        return self.modes[mode].measure()
 
     def _binary(self) -> bytes:
         values = self.measure(self.mode)
@@ -181,7 +190,7 @@ class ColorDevice(LegoSensor):
         self.mode = mode
         session = self._session
         if not session.free:
-            session.spend(self._read_ns)
+            session.note_reading(self._codes[mode], session.spend(self._read_ns))
         return self.channels()
 
 

@@ -27,7 +27,9 @@ class Lab:
 
     def __init__(self, law: MotorLaw, kinds: dict[str, str], stop_deg: float | None = None) -> None:
         self.motors = {port: ServoMotor(100, law, kind) for port, kind in kinds.items()}
-        self.now = self.free = self.tick = 0
+        self.now = self.tick = 0
+        self.free = 1
+        """The recordings have no costs of calls."""
         self.stop_deg, self.held_up = stop_deg, ""
         self.until_ns = 1 << 62
         self.shown: list[tuple[str, Stream]] = []
@@ -67,6 +69,9 @@ class Lab:
         if until > self.until_ns:
             raise TimeoutError
         self.now = until
+
+    def note_reading(self, code: int, line: int = 0) -> None:
+        """Record nothing."""
 
     def charge(self, _cost_ns: int) -> None:
         """Charge nothing: the recordings have no costs of calls."""

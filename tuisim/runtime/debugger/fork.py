@@ -125,6 +125,7 @@ def _freeze(session: Session, scheduler: Scheduler) -> None:
     for name in ("wait", "give_way", "spawn"):
         setattr(threads, name, _refuse)
     setattr(builtins, LOOP_HOOK, lambda: None)
+    frozen.note_reading = lambda *_: None
     silent: Any = session.output
     silent.row, silent.after_write, silent.drain = lambda *_: None, lambda: None, lambda: None
     silence_descriptors()

@@ -19,6 +19,7 @@ from tuisim.shim.buttons import (
     EV_KEY,
     KEY_CODES,
     POLL_NS,
+    READING_CODE,
     InputEvent,
     changes,
     read_pressed,
@@ -146,6 +147,7 @@ class InputDevice:
         """Yield events forever, blocking between them; buttons that are already pressed yield none."""
         self._seen = self._session.pressed
         while True:
+            self._session.note_reading(READING_CODE, self._session.program_line())
             yield from self._changes()
             self._session.spend(POLL_NS)
 
@@ -155,6 +157,7 @@ class InputDevice:
 
         self._seen = self._session.pressed
         while True:
+            self._session.note_reading(READING_CODE, self._session.program_line())
             for event in self._changes():
                 yield event
             await asyncio.sleep(POLL_NS / NS_PER_S)

@@ -10,6 +10,7 @@ from typing import Any, ClassVar, Generic, TypeVar
 
 from tuisim.core.servo.motor import ServoMotor
 from tuisim.data_class import dataclass
+from tuisim.runs.readings import READING_CODES
 from tuisim.shim.display import Screen
 from tuisim.shim.leds import Lights
 from tuisim.shim.power import Battery
@@ -65,10 +66,17 @@ class Brick:
         """The simulated time."""
         return self.session.now // 1000
 
-    def read(self) -> int:
-        """Let the time of a reading pass, and return the simulated time."""
+    def read(self, mode: str = "", *ports: str) -> int:
+        """Let the time of a reading pass, and return the simulated time.
+
+        Args:
+            mode, ports: What is recorded of it, as in `runs.readings.READING_CODES`.
+        """
         session = self.session
-        session.charge(session.sim.spec.profile.attribute_read_ns)
+        if not session.free:
+            line = session.spend(session.sim.spec.profile.attribute_read_ns)
+            for port in ports:
+                session.note_reading(READING_CODES[port, mode], line)
         return session.now // 1000
 
     def command(self) -> int:

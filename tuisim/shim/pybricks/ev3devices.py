@@ -77,7 +77,7 @@ class Sensor(Connected):
         )
         if isinstance(self._sensor, GyroDevice):
             brick.session.sim.reset_gyro()
-        return self._sensor.modes[mode].measure()
+        return self._sensor.measure_switched(mode)
 
 
 class TouchSensor(Sensor):

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from enum import Enum
 
+from tuisim.runs.readings import BUTTONS_PORT
 from tuisim.shim.leds import MAX_BRIGHTNESS
 from tuisim.shim.pybricks.brick import Connected, refused
 from tuisim.shim.pybricks.image import THE_SCREEN, Image
@@ -34,7 +35,7 @@ class Buttons(Connected):
 
     def pressed(self) -> list[Button]:
         """Return the pressed buttons."""
-        self.brick.read()
+        self.brick.read("pressed", BUTTONS_PORT)
         pressed = self.brick.session.pressed
         return [button for name, button in BUTTON_NAMES.items() if name in pressed]
 

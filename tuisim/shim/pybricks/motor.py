@@ -84,7 +84,7 @@ class DCMotor(Connected):
         name = _port(port)
         if not name.startswith("out"):
             raise ValueError("Invalid port")
-        self._name, self.port = name, port
+        self.port_names, self.port = (name,), port
         return name
 
     @property
@@ -133,12 +133,12 @@ class Motor(DCMotor):
 
     def angle(self) -> int:
         """Return the angle in degrees."""
-        now_us = self.brick.read()
+        now_us = self.brick.read("position", *self.port_names)
         return self._motor.control.settings.units(round(self._motor.milli_at(now_us) / MILLI))
 
     def speed(self) -> int:
         """Return the speed in degrees per second."""
-        now_us = self.brick.read()
+        now_us = self.brick.read("speed", *self.port_names)
         return self._motor.control.settings.units(self._motor.counts_per_s_at(now_us))
 
     def reset_angle(self, angle: float | None = None) -> None:
@@ -240,7 +240,7 @@ class Motor(DCMotor):
         if motor.guide is None:
             return True
         if motor.control.stalled and not motor.control.timed:
-            self.brick.say_stalled(f"the motor on {self._name} is", call)
+            self.brick.say_stalled(f"the motor on {self.port_names[0]} is", call)
         return self.move_done(now_us, motor.control)
 
     def move_done(self, now_us: int, control: Controller) -> bool:
@@ -408,9 +408,11 @@ class Control(Connected):
 
     def done(self) -> bool:
         """Return whether no move is under way."""
-        return bool(self._owner.move_done(self.brick.read(), self._control))
+        return bool(
+            self._owner.move_done(self.brick.read("state", *self._owner.port_names), self._control)
+        )
 
     def stalled(self) -> bool:
         """Return whether something keeps the motion from going on."""
-        self.brick.read()
+        self.brick.read("state", *self._owner.port_names)
         return self._control.stalled

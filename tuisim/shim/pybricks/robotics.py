@@ -38,6 +38,7 @@ class DriveBase(Connected):
             DriveBase.current.stop()
         DriveBase.current = self
         self.left, self.right = left_motor, right_motor
+        self.port_names = (*left_motor.port_names, *right_motor.port_names)
         self._base = base = drive_base.DriveBase(
             left_motor.simulated, right_motor.simulated, float(wheel_diameter), float(axle_track)
         )
@@ -125,13 +126,17 @@ class DriveBase(Connected):
 
     # Readings
 
+    def _read(self) -> int:
+        """Let the time of a reading of both motors pass, and return the simulated time."""
+        return self.brick.read("position", *self.port_names)
+
     def distance(self) -> int:
         """Return the driven distance in mm."""
-        return self._position(self.brick.read())[0]
+        return self._position(self._read())[0]
 
     def angle(self) -> int:
         """Return the turned angle in degrees, clockwise."""
-        return self._position(self.brick.read())[1]
+        return self._position(self._read())[1]
 
     def _position(self, now_us: int) -> tuple[int, int]:
         total, difference = self._base.millis_at(now_us)
@@ -142,7 +147,7 @@ class DriveBase(Connected):
 
     def state(self) -> tuple[int, int, int, int]:
         """Return distance, speed, angle and rate of turn."""
-        now_us, base = self.brick.read(), self._base
+        now_us, base = self._read(), self._base
         (distance, angle), (speed, turn_rate) = self._position(now_us), base.rates_at(now_us)
         return (
             distance,

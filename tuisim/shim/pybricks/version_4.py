@@ -87,11 +87,11 @@ class Motor(motor.Motor):
 
     def done(self) -> bool:
         """Return whether no move is under way."""
-        return self.move_done(self.brick.read(), self._motor.control)
+        return self.move_done(self.brick.read("state", *self.port_names), self._motor.control)
 
     def stalled(self) -> bool:
         """Return whether something keeps the motor from going on."""
-        self.brick.read()
+        self.brick.read("state", *self.port_names)
         return self._motor.control.stalled
 
     def load(self) -> int:
@@ -197,7 +197,7 @@ class DriveBase(robotics.DriveBase):
 
     def angle(self) -> float:  # type: ignore[override]
         """Return the turned angle in degrees, clockwise."""
-        now_us, base = self.brick.read(), self._base
+        now_us, base = self._read(), self._base
         return (
             base.millis_at(now_us)[1] / MILLI - self._zeros[1]
         ) / base.heading.settings.counts_per_unit
@@ -212,12 +212,12 @@ class DriveBase(robotics.DriveBase):
 
     def done(self) -> bool:
         """Return whether no move is under way."""
-        now_us = self.brick.read()
+        now_us = self.brick.read("state", *self.port_names)
         return not self._base.active or self._base.done(now_us)
 
     def stalled(self) -> bool:
         """Return whether something has blocked the robot."""
-        self.brick.read()
+        self.brick.read("state", *self.port_names)
         return self._base.stalled
 
     def reset(self, distance: float = 0, angle: float = 0) -> None:
