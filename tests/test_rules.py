@@ -67,6 +67,7 @@ TESTED_BESIDE = {
     "lessons/spec.py": "lessons/test_files.py",
     "runtime/debugger/conditions.py": "runtime/debugger/test_debugger.py",
     "shim/pybricks/motor.py": "shim/pybricks/test_reference.py",
+    "shim/pybricks/robotics.py": "shim/pybricks/test_reference.py",
 }
 """Long modules whose only caller is tested, with every case of theirs: by module, the test."""
 OF_NO_MODULE = {
