@@ -9,6 +9,8 @@ import numpy as np
 import pytest
 
 from tuisim.app.feed import PanelFeed, _thinned, _with_gaps, sample_series
+from tuisim.app.panels.chart import PERIOD_S
+from tuisim.app.snapshot import RunPhase
 from tuisim.runs.records import OutputRow, Stream
 
 
@@ -66,6 +68,36 @@ def test_a_chart_gets_nothing_of_the_run_before(panels: Panels, feed: PanelFeed)
     panels.on_screen = True
     feed.show()
     assert panels.got == []
+
+
+def test_a_chart_gets_telemetry_as_often_as_it_is_drawn(
+    panels: Panels, feed: PanelFeed, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    telemetry: Any = SimpleNamespace(
+        is_far_behind=False,
+        recording=SimpleNamespace(spec=None),
+        chart_series=lambda _: {"gyro_deg": ([0.0], [1.0])},
+    )
+    runs: Any = SimpleNamespace(
+        timeline=SimpleNamespace(recording=None, at=None),
+        state=RunPhase.RUNNING,
+        mat_for=lambda _: object(),
+    )
+    feed._feed, feed._runs, panels.on_screen = telemetry, runs, True
+    now_s = 100.0
+    monkeypatch.setattr("time.monotonic", lambda: now_s)
+    for _ in range(3):
+        feed.show()
+    assert len(panels.got) == 1
+    now_s += PERIOD_S
+    feed.show()
+    assert len(panels.got) == 2
+    telemetry.is_far_behind = True
+    feed.show()
+    assert len(panels.got) == 3
+    telemetry.is_far_behind, runs.state = False, RunPhase.PAUSED
+    feed.show()
+    assert len(panels.got) == 4
 
 
 def test_samples_are_at_the_time_that_they_carry() -> None:

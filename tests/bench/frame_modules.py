@@ -67,7 +67,7 @@ def frame_modules(effort: Effort) -> Iterator[Figure]:
     """Yield the modules that a frame enters and how often, at 120 x 40, with the panels as they are and the chart."""
     for name, panels, most_modules, most_changes in (
         ("a frame", (), 35, 120),
-        ("a frame with the chart", ("-c",), 48, 220),
+        ("a frame with the chart", ("-c",), 48, 130),
     ):
         frames = walked(("-R", *panels), FRAMES_A_REPEAT * effort.repeats)
         modules = median(len(entered) for entered in frames)

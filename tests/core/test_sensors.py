@@ -17,7 +17,7 @@ from tuisim.app.snapshot import RunPhase, Snapshot
 from tuisim.config.robots import load_robot, save_robot
 from tuisim.core.geometry import Pose
 from tuisim.core.profile import ROBOLAB
-from tuisim.core.sensors import SENSORS, SensorKind, with_kinds
+from tuisim.core.sensors import SENSORS, SensorKind, mounted_sensor
 from tuisim.core.spec import MOUNTS, Mount, RobotSpec, RunSpec, SensorSpec, WorldSpec
 from tuisim.core.tree import from_plain, to_plain
 from tuisim.protocol import Resume
@@ -178,4 +178,6 @@ def test_the_panels_show_it(kind: SensorKind) -> None:
 
 def test_kinds_are_told_apart_by_their_specs() -> None:
     sensors = [sensor_of(mount) for mount in MOUNTS]
-    assert [kind.spec for kind, _ in with_kinds(sensors)] == [mount.spec for mount in MOUNTS]
+    assert [mounted_sensor(sensor).kind.spec for sensor in sensors] == [
+        mount.spec for mount in MOUNTS
+    ]

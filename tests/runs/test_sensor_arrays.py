@@ -55,7 +55,7 @@ def test_arrays_are_the_readings_to_the_bit(
 ) -> None:
     run = replace(spec, robot=robot, world=replace(spec.world, walls=walls, obstacles=BOXES))
     records = places(400)
-    for kind, sensor in mounted(robot):
+    for kind, sensor, *_ in mounted(robot):
         found = measured_at_once(sensor, records, run, field, has_light_noise=False)
         assert found is not None
         one_by_one = [

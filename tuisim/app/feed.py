@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Iterable
 from dataclasses import field
 from typing import TYPE_CHECKING, Any
@@ -9,6 +10,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
+from tuisim.app.panels.chart import PERIOD_S
+from tuisim.app.snapshot import RunPhase
 from tuisim.core.field import Field
 from tuisim.core.sensors import columns_of
 from tuisim.core.tick_record import FLAG_PEN_DOWN
@@ -64,6 +67,11 @@ class Feed:
     def is_behind(self) -> bool:
         """Whether part of the run has not been passed to the chart yet."""
         return self._charted < self.recording.telemetry.count
+
+    @property
+    def is_far_behind(self) -> bool:
+        """Whether more than one call of `chart_series` is due."""
+        return self._charted + POINTS_A_FEED < self.recording.telemetry.count
 
     def chart_series(self, mat: Field) -> Series:
         """Return telemetry traces of the ticks since the last call; of a long stretch, only the first part."""
@@ -166,6 +174,8 @@ class PanelFeed:
         self._feed: Feed | None = None
         self._uncharted: list[OutputRow] = []
         """What has been written since the chart was last on the screen."""
+        self._charted_s = 0.0
+        """When telemetry was last passed to the chart, on the monotonic clock."""
         self._shows_past = False
         self._traced: object = None
         self._printed: object = None
@@ -208,6 +218,16 @@ class PanelFeed:
         """Return the mat that the chart's readings are taken from; None if no chart or no mat."""
         return self._runs.mat_for(feed.recording.spec) if self._panel_area.shown("chart") else None
 
+    def _chart_telemetry(self, feed: Feed) -> None:
+        """Pass on telemetry as often as the chart is drawn; at once where there is much of it, or no more to come."""
+        now_s = time.monotonic()
+        is_soon = now_s < self._charted_s + PERIOD_S and not feed.is_far_behind
+        if is_soon and self._runs.state is RunPhase.RUNNING:
+            return
+        if (mat := self._charted_mat(feed)) is not None:
+            self._charted_s = now_s
+            self._append(feed.chart_series(mat), logged=False)
+
     def name_output(self) -> None:
         """Name the program that has printed the output; before the first run, the one that is open."""
         if output := self._panel_area.output:
@@ -222,8 +242,7 @@ class PanelFeed:
                 xs, ys = self._feed.trace_points()
                 if xs:
                     world.extend_trace(xs, ys, self._feed.recording.spec.robot.pen)
-            if (mat := self._charted_mat(self._feed)) is not None:
-                self._append(self._feed.chart_series(mat), logged=False)
+            self._chart_telemetry(self._feed)
         is_past = self._runs.timeline.at is not None
         if is_past or self._shows_past:
             self._shows_past = is_past

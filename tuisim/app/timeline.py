@@ -19,7 +19,7 @@ from tuisim.core.conditions import (
     spelled,
 )
 from tuisim.core.field import Field
-from tuisim.core.sensors import mounted, named_column
+from tuisim.core.sensors import named_column
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, ColorSensorSpec
 from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError
@@ -189,11 +189,7 @@ def proposal(timeline: Timeline, mat: Field | None) -> str:
     recording = timeline.recording
     if timeline.searched or mat is None or recording is None or recording.newest < 0:
         return timeline.searched
-    sensors = {
-        f"{one.name}_red_pc": one
-        for _, one in mounted(recording.spec.robot)
-        if isinstance(one, ColorSensorSpec)
-    }
+    sensors = {f"{sensor.name}_red_pc": sensor for sensor in recording.spec.robot.color_sensors}
     records = recording.telemetry.array()[: timeline.tick + 1]
     values = column_values(tuple(sensors), records, recording.spec, recording.actions(), mat)
     found = []

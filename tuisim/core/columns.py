@@ -28,8 +28,8 @@ class Column:
 
     name: str
     """An identifier that ends in the unit, such as `left_red_pc`; see `logs.units`."""
-    of: Callable[[Sequence[float], RobotSpec], float] | None = None
-    """Computes it from what its owner measures; None: it is measured."""
+    of: Callable[[Iterable[Sequence[float]], RobotSpec], list[float]] | None = None
+    """Computes it from what its owner measures, at each of some ticks; None: it is measured."""
     is_traced: bool = False
     """Whether the chart offers it."""
     also: tuple[str, ...] = ()

@@ -66,7 +66,7 @@ def samples() -> Table:
 
 def telemetry() -> Table:
     """Return the columns of the telemetry of the default robot."""
-    sensors = [name for kind, sensor in mounted(RobotSpec()) for name in kind.names(sensor)]
+    sensors = [name for mount in mounted(RobotSpec()) for name in mount.names]
     return _columns(("time", *MOTION_COLUMNS, *sensors, "line"))
 
 

@@ -15,7 +15,7 @@ from tuisim.core.conditions import ValueCondition
 from tuisim.core.field import Field
 from tuisim.core.pen_marks import PenMarks
 from tuisim.core.profile import NS_PER_S
-from tuisim.core.sensors import SensorKind, columns_of, mounted
+from tuisim.core.sensors import MountedSensor, columns_of, mounted
 from tuisim.core.spec import NoiseSpec, RobotSpec, RunSpec
 from tuisim.core.tick_record import TICK_RECORD
 from tuisim.protocol import SetNoise, UserAction
@@ -159,9 +159,9 @@ def column_values(
             some are left out. None: the pen's marks are drawn on it as the records say.
     """
     sensors = [
-        one
-        for one in mounted(spec.robot)
-        if any(column.name in names for column in one[0].columns(one[1]))
+        mount
+        for mount in mounted(spec.robot)
+        if any(column.name in names for column in mount.columns)
     ]
     measured = {name: records[name].astype("f8") for name in MOTION_COLUMNS}
     measured |= _measured(records, sensors, _noises(records, spec, actions), spec, field, field_at)
@@ -169,14 +169,14 @@ def column_values(
         column.name: measured[column.name]
         if column.of is None
         else computed(column.of, columns, measured, spec.robot)
-        for columns in (MOTION, *(kind.columns(sensor) for kind, sensor in sensors))
+        for columns in (MOTION, *(mount.columns for mount in sensors))
         for column in columns
         if column.name in names
     }
 
 
 def computed(
-    of: Callable[[Sequence[float], RobotSpec], float],
+    of: Callable[[Iterable[Sequence[float]], RobotSpec], list[float]],
     columns: Iterable[Column],
     measured: Mapping[str, Array],
     robot: RobotSpec,
@@ -185,7 +185,7 @@ def computed(
     import numpy as np
 
     rows = zip(*(measured[name].tolist() for name in measured_names(columns)), strict=True)
-    return np.array([of(row, robot) for row in rows], np.float64)
+    return np.array(of(rows, robot), np.float64)
 
 
 def held(condition: ValueCondition, values: Array) -> Array:
@@ -261,7 +261,7 @@ def _noises(
 
 def _measured(
     records: Array,
-    sensors: Sequence[tuple[SensorKind, Any]],
+    sensors: Sequence[MountedSensor],
     noises: Sequence[tuple[NoiseSpec, int]],
     spec: RunSpec,
     field: Field,
@@ -273,17 +273,17 @@ def _measured(
     from tuisim.runs.sensor_arrays import measured_at_once
 
     found: dict[str, Array] = {}
-    slow = []
+    slow: list[MountedSensor] = []
     lit = any(noise.light for noise, _ in noises)
-    for kind, sensor in sensors:
-        values = measured_at_once(sensor, records, spec, field, lit)
+    for mount in sensors:
+        values = measured_at_once(mount.sensor, records, spec, field, lit)
         if values is None:
-            slow.append((kind, sensor))
+            slow.append(mount)
         else:
-            found.update(zip(kind.names(sensor), values, strict=True))
+            found.update(zip(mount.names, values, strict=True))
     if not slow:
         return found
-    names = [name for kind, sensor in slow for name in kind.names(sensor)]
+    names = [name for mount in slow for name in mount.names]
     rows = np.empty((len(records), len(names)))
     field_at = field_at or _field_with_marks(field, spec)
     every = chain.from_iterable(repeat(noise, count) for noise, count in noises)
@@ -293,7 +293,9 @@ def _measured(
     ):
         instant, seen = instant_of(TickRecord(*record), spec, noise), field_at(record)
         rows[at] = [
-            value for kind, sensor in slow for value in kind.measure(sensor, instant, spec, seen)
+            value
+            for mount in slow
+            for value in mount.kind.measure(mount.sensor, instant, spec, seen)
         ]
     return {**found, **{name: rows[:, at] for at, name in enumerate(names)}}
 

@@ -91,7 +91,7 @@ def plugged_in(robot: RobotSpec) -> dict[str, Plugged]:
     """Return the devices on the robot's ports, by short name such as `in1`."""
     motors = [motor for motor in robot.motors if motor.port != NO_PORT]
     found = {motor.port: Plugged(KINDS[motor.kind].driver_name, "tacho-motor") for motor in motors}
-    for kind, sensor in mounted(robot):
+    for kind, sensor, *_ in mounted(robot):
         found[sensor.port] = Plugged(kind.driver_name, kind.port_mode)
     return found
 

@@ -13,7 +13,7 @@ import io
 import json
 import os
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -35,7 +35,7 @@ SAMPLES, TELEMETRY = ("s.csv", "s.jsonl", "s.parquet"), ("t.csv", "t.jsonl", "t.
 
 def flat(data: Any, path: str = "") -> dict[str, Any]:
     """Return nested data as values by path; an empty list or table is a value."""
-    pairs = data.items() if isinstance(data, dict) else ()
+    pairs: Iterable[tuple[object, Any]] = data.items() if isinstance(data, dict) else ()
     if isinstance(data, list | tuple):
         pairs = enumerate(data)
     values: dict[str, Any] = {}

@@ -25,7 +25,7 @@ from tuisim.terminal.pacer import Throttle
 from tuisim.terminal.picture_mode import shows_ascii
 from tuisim.terminal.text_runs import Run, as_markup
 
-_PERIOD_S = 0.33
+PERIOD_S = 0.33
 """Drawing a chart takes tens of milliseconds: three times a second is enough to follow it."""
 
 
@@ -74,7 +74,7 @@ class Chart(LinesPanel, can_focus=True):
         self._noise, self._is_at_rest = 0, False
         self._spanned: object = None
         """What the bands were found in."""
-        self._throttle = Throttle(self, _PERIOD_S, self._draw)
+        self._throttle = Throttle(self, PERIOD_S, self._draw)
 
     def append(
         self, name: str, times_s: Sequence[float], values: Sequence[float], logged: bool = True

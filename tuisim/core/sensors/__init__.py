@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from functools import lru_cache, partial
-from typing import Any
+from typing import Any, NamedTuple
 
 from tuisim.core.columns import MOTION, Column, column_name, measured_names, motion_of
 from tuisim.core.field import Field
@@ -49,18 +49,12 @@ class SensorKind:
         return measured_names(self.columns(sensor))
 
 
-_known = lru_cache(maxsize=64)
-"""The columns of a sensor are asked for at each frame."""
 SENSORS: Mapping[str, SensorKind] = {
-    "color": SensorKind("lego-ev3-color", ColorSensorSpec, _known(color.columns), color.measure),
-    "ultrasonic": SensorKind(
-        "lego-ev3-us", UltrasonicSpec, _known(ultrasonic.columns), ultrasonic.measure
-    ),
-    "gyro": SensorKind("lego-ev3-gyro", GyroSpec, _known(gyro.columns), gyro.measure),
-    "touch": SensorKind(
-        "lego-ev3-touch", TouchSpec, _known(touch.columns), touch.measure, "ev3-analog"
-    ),
-    "infrared": SensorKind("lego-ev3-ir", InfraredSpec, _known(infrared.columns), infrared.measure),
+    "color": SensorKind("lego-ev3-color", ColorSensorSpec, color.columns, color.measure),
+    "ultrasonic": SensorKind("lego-ev3-us", UltrasonicSpec, ultrasonic.columns, ultrasonic.measure),
+    "gyro": SensorKind("lego-ev3-gyro", GyroSpec, gyro.columns, gyro.measure),
+    "touch": SensorKind("lego-ev3-touch", TouchSpec, touch.columns, touch.measure, "ev3-analog"),
+    "infrared": SensorKind("lego-ev3-ir", InfraredSpec, infrared.columns, infrared.measure),
 }
 """All kinds of sensors, in the order of the telemetry columns."""
 
@@ -72,7 +66,7 @@ Measure = Callable[[Instant, RunSpec, Field], tuple[float, ...]]
 def owners(robot: RobotSpec) -> list[tuple[tuple[Column, ...], Measure]]:
     """Return the columns of the robot and of each sensor, in the order of telemetry, and how they are measured."""
     of_sensors = [
-        (kind.columns(sensor), partial(kind.measure, sensor)) for kind, sensor in mounted(robot)
+        (mount.columns, partial(mount.kind.measure, mount.sensor)) for mount in mounted(robot)
     ]
     return [(MOTION, motion_of), *of_sensors]
 
@@ -121,7 +115,7 @@ def _value(
     return (
         measured[names.index(column.name)]
         if column.of is None
-        else float(column.of(measured, spec.robot))
+        else column.of([measured], spec.robot)[0]
     )
 
 
@@ -131,19 +125,37 @@ def readings(
     """Return what some sensors measure at an instant, by column."""
     return {
         name: value
-        for kind, sensor in with_kinds(sensors)
+        for mount in map(mounted_sensor, sensors)
         for name, value in zip(
-            kind.names(sensor), kind.measure(sensor, instant, spec, field), strict=True
+            mount.names,
+            mount.kind.measure(mount.sensor, instant, spec, field),
+            strict=True,
         )
     }
 
 
-def mounted(robot: RobotSpec) -> list[tuple[SensorKind, Any]]:
-    """Return the robot's sensors as (kind, spec), in the order of the telemetry columns."""
-    return with_kinds(robot.sensors)
+class MountedSensor(NamedTuple):
+    """A sensor, and what its kind says about it."""
+
+    kind: SensorKind
+    sensor: Any
+    """Its spec."""
+    columns: tuple[Column, ...]
+    names: tuple[str, ...]
+    """Those of the columns that are measured."""
 
 
-def with_kinds(sensors: Iterable[SensorSpec]) -> list[tuple[SensorKind, Any]]:
-    """Return each sensor with its kind, as (kind, spec)."""
-    kinds = {kind.spec: kind for kind in SENSORS.values()}
-    return [(kinds[type(sensor)], sensor) for sensor in sensors]
+_KINDS = {kind.spec: kind for kind in SENSORS.values()}
+
+
+@lru_cache(maxsize=64)
+def mounted_sensor(sensor: SensorSpec) -> MountedSensor:
+    """Return a sensor with what its kind says about it."""
+    kind = _KINDS[type(sensor)]
+    return MountedSensor(kind, sensor, kind.columns(sensor), kind.names(sensor))
+
+
+@lru_cache(maxsize=16)
+def mounted(robot: RobotSpec) -> tuple[MountedSensor, ...]:
+    """Return the robot's sensors, in the order of the telemetry columns."""
+    return tuple(map(mounted_sensor, robot.sensors))

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Sequence
 from enum import StrEnum
 from functools import lru_cache
 from math import cos, radians, sin
+from operator import attrgetter
 from typing import TYPE_CHECKING, assert_never
 
 from tuisim.core.columns import COLOR_NAMES, Column
@@ -17,6 +18,7 @@ from tuisim.core.spec import FIELD_HEIGHT_MM, ColorSensorSpec, RunSpec
 from tuisim.data_class import dataclass
 
 if TYPE_CHECKING:
+    from tuisim.core.spec import RobotSpec
     from tuisim.core.state import Instant
 
 WHITE = 255
@@ -292,6 +294,12 @@ def _lit_box(spec: ColorSensorSpec, instant: Instant, field: Field) -> bytes:
     return box.translate(bytes(min(WHITE, round(value * share)) for value in range(WHITE + 1)))
 
 
+def _compute(name: str) -> Callable[[Iterable[Sequence[float]], RobotSpec], list[float]]:
+    """Return a function of channels at some ticks, which returns what a reading says there."""
+    read = attrgetter(name)
+    return lambda channels, _: [float(read(ColorReading(*seen))) for seen in channels]
+
+
 def columns(spec: ColorSensorSpec) -> tuple[Column, ...]:
     """Return the columns of a sensor: the channels, and what a program reads of them."""
     name = spec.name
@@ -301,16 +309,16 @@ def columns(spec: ColorSensorSpec) -> tuple[Column, ...]:
         Column(f"{name}_blue"),
         Column(
             f"{name}_red_pc",
-            lambda seen, _: ColorReading(*seen).red_percent,
+            _compute("red_percent"),
             True,
             (f"{name}.red%",),
         ),
         Column(
             f"{name}_mean_pc",
-            lambda seen, _: ColorReading(*seen).mean_percent,
+            _compute("mean_percent"),
             also=(f"{name}.mean%",),
         ),
-        Column(f"{name}_color", lambda seen, _: ColorReading(*seen).code),
+        Column(f"{name}_color", _compute("code")),
     )
 
 
