@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import pytest
+
 from tuisim.analysis.pins import Pin, place_pins
 from tuisim.core.spec import RobotSpec
 from tuisim.scene.pictures import world_view
@@ -29,3 +31,11 @@ def test_places_that_are_one_share_a_ring() -> None:
     assert _labels(*pins) == [(False, ["1", "2"])]
     (ring,) = place_pins(pins, world_view(RobotSpec()))
     assert not ring.is_good
+
+
+@pytest.mark.parametrize(
+    ("x_mm", "at_end", "way_px"), [(900, False, 11), (2200, True, -11)], ids=["left", "right"]
+)
+def test_a_label_stands_beside_its_ring(x_mm: float, at_end: bool, way_px: float) -> None:
+    (ring,) = place_pins([Pin("1", x_mm, 500, True, "")], world_view(RobotSpec()))
+    assert (ring.label.is_at_end, ring.label.x_px - ring.x_px) == (at_end, way_px)

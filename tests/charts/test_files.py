@@ -7,13 +7,15 @@ from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from tests.app.analyser.logs import long_log, model_of
 from tuisim.analysis.chart import View, chart_of
 from tuisim.analysis.report import default_name, report_of, write_report
 from tuisim.analysis.source import LogRequest, OpenedLog
-from tuisim.charts.files import CHART_FORMATS, save_chart
+from tuisim.charts.files import CHART_FORMATS, image_of, save_chart
+from tuisim.charts.layout import Drawing, Shade, Stroke
 from tuisim.errors import ExportError, LogError
 from tuisim.logs.log import Log
 
@@ -92,3 +94,16 @@ def test_nothing_is_nothing_to_report_on() -> None:
     empty = Log("test", long_log().table.slice(0, 0), long_log().layout)
     with pytest.raises(LogError, match="no rows"):
         report_of(OpenedLog(LogRequest(), empty))
+
+
+def test_what_is_drawn_has_its_size_in_the_picture() -> None:
+    points = np.array([[10.0, 10.0], [30.0, 10.0]])
+    shapes = (
+        Stroke(points, (255, 0, 0), dots=True),
+        Stroke(points + [0, 20], (0, 0, 255)),
+        Shade(10, 45, 20, 10),
+    )
+    image = np.asarray(image_of(Drawing("", 40, 60, shapes))).astype(int)
+    is_inked = (image < 250).any(axis=2).reshape(3, 20, 40)
+    sizes = [[int(np.ptp(places)) + 1 for places in part.nonzero()] for part in is_inked]
+    assert sizes == [[7, 27], [3, 24], [11, 21]]

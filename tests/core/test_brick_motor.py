@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import pytest
 
 from tests.core.memory_sink import MemorySink
@@ -82,3 +84,28 @@ def test_a_wheel_that_is_held_back_has_not_reached_its_goal() -> None:
     )
     motor.hold_back(motor.state(), 10.0, 0.0)
     assert motor.blocked_ticks == 1
+
+
+@pytest.mark.parametrize("goal_deg", [60.0, -60.0], ids=["forwards", "backwards"])
+def test_a_motor_slows_down_evenly_before_its_goal(goal_deg: float) -> None:
+    sim, motor = arm()
+    motor.run_to(goal_deg, 200.0, backwards=goal_deg < 0)
+    motor.approach_dps2 = 400.0
+    speeds = []
+    while motor.mode == POSITION:
+        sim.advance(1)
+        speeds.append(abs(motor.moving_dps))
+    drops = [before - after for before, after in pairwise(speeds) if after < before]
+    assert motor.position_deg == goal_deg
+    assert drops[1:-1] == pytest.approx([4.0] * (len(drops) - 2))
+    assert len(drops) == pytest.approx(50, abs=1)
+
+
+def test_a_motor_slows_down_before_the_end_of_its_time() -> None:
+    sim, motor = arm()
+    motor.run_until(200.0, 100)
+    motor.approach_dps2 = 400.0
+    sim.advance(80)
+    assert motor.moving_dps == pytest.approx(80.0)
+    sim.advance(20)
+    assert motor.mode == STOPPED
