@@ -100,7 +100,7 @@ def test_what_is_drawn_has_its_size_in_the_picture() -> None:
     points = np.array([[10.0, 10.0], [30.0, 10.0]])
     shapes = (
         Stroke(points, (255, 0, 0), dots=True),
-        Stroke(points + [0, 20], (0, 0, 255)),
+        Stroke(points + np.array([0, 20]), (0, 0, 255)),
         Shade(10, 45, 20, 10),
     )
     image = np.asarray(image_of(Drawing("", 40, 60, shapes))).astype(int)

@@ -20,6 +20,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from dataclasses import dataclass
+from itertools import groupby
 from pathlib import Path
 from queue import SimpleQueue
 from random import Random
@@ -83,6 +84,8 @@ class Mutant:
     file: str
     """Relative to the folder of the package."""
     line: int
+    operator: tuple[int, int]
+    """Which one of the file: where its expression begins, and its number in it."""
     old: str
     new: str
     text: str
@@ -112,41 +115,44 @@ def find_mutants(file: str, text: str) -> Iterator[Mutant]:
         old = ast.unparse(node)
         begin = starts[node.lineno - 1] + node.col_offset
         end = starts[(node.end_lineno or 0) - 1] + (node.end_col_offset or 0)
-        for _ in _flip_operators(node):
+        for number in _flip_operators(node):
             new = ast.unparse(node)
             # The lines after it keep their numbers.
             rows = "\n" * ((node.end_lineno or 0) - node.lineno)
             source = text.encode()
             whole = source[:begin] + f"({new}{rows})".encode() + source[end:]
-            yield Mutant(file, node.lineno, old, new, whole.decode())
+            yield Mutant(file, node.lineno, (begin, number), old, new, whole.decode())
 
 
-def _flip_operators(node: ast.expr) -> Iterator[None]:
-    """Flip each operator of an expression in each way, one at a time, and put it back afterwards."""
+def _flip_operators(node: ast.expr) -> Iterator[int]:
+    """Flip each operator of an expression in each way, yield its number, and put it back afterwards."""
     if isinstance(node, ast.Compare):
         for index, comparison in enumerate(node.ops):
             for flipped in FLIPS[type(comparison)]:
                 node.ops[index] = flipped()
-                yield
+                yield index
             node.ops[index] = comparison
     elif isinstance(node, ast.BinOp | ast.BoolOp | ast.UnaryOp):
         operator = node.op
         for flipped in FLIPS.get(type(operator), ()):
             node.op = flipped()
-            yield
+            yield 0
         node.op = operator
 
 
 def draw_mutants(places: Sequence[str], seed: int, count: int) -> list[Mutant]:
-    """Draw flips in files and folders of the package; a place may end with `:LINE`."""
-    mutants = []
+    """Draw operators in files and folders of the package, and a flip of each; a place may end with `:LINE`."""
+    operators: list[list[Mutant]] = []
     for place in places:
         name, _, line = place.removeprefix("tuisim/").partition(":")
         path = ROOT / "tuisim" / name
         for file in sorted(path.rglob("*.py")) if path.is_dir() else [path]:
             found = find_mutants(file.relative_to(ROOT / "tuisim").as_posix(), file.read_text())
-            mutants += [mutant for mutant in found if line in ("", str(mutant.line))]
-    return Random(seed).sample(mutants, min(count, len(mutants)))
+            here = [mutant for mutant in found if line in ("", str(mutant.line))]
+            operators += [list(flips) for _, flips in groupby(here, lambda one: one.operator)]
+    random = Random(seed)
+    drawn = random.sample(operators, min(count, len(operators)))
+    return [random.choice(flips) for flips in drawn]
 
 
 def find_tests(file: str, root: Path = ROOT) -> list[str]:

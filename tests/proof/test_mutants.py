@@ -42,7 +42,8 @@ def test_a_seed_draws_the_same_mutants() -> None:
     assert (len(drawn), {mutant.room for mutant in drawn}) == (20, {"core", "scene"})
     assert draw_mutants(["core", "scene"], 7, 20) == drawn != draw_mutants(["core", "scene"], 8, 20)
     place = f"{drawn[0].file}:{drawn[0].line}"
-    assert drawn[0] in draw_mutants([place], 1, 100)
+    operators = {mutant.operator for mutant in draw_mutants([place], 1, 100)}
+    assert drawn[0].operator in operators
 
 
 def test_a_module_has_the_tests_at_its_path() -> None:
