@@ -2,15 +2,29 @@
 
 import math
 from dataclasses import replace
+from random import Random
 
 import pytest
 
 from tests.core.memory_sink import MemorySink
-from tests.core.motors import commanded
+from tests.core.motors import commanded, run
+from tuisim.core.field import Field
 from tuisim.core.geometry import Pose
-from tuisim.core.profile import NBEV3DEVSIM, NS_PER_S, ROBOLAB, ProfileSpec
-from tuisim.core.simulation import Simulation
-from tuisim.core.spec import NoiseSpec, RobotSpec, RunSpec, WorldSpec
+from tuisim.core.profile import NBEV3DEVSIM, NS_PER_S, PROFILES, ROBOLAB, ProfileSpec
+from tuisim.core.sensors import readings
+from tuisim.core.simulation import Simulation, simulation_of
+from tuisim.core.spec import (
+    BeaconSpec,
+    InfraredSpec,
+    MotorSpec,
+    NoiseSpec,
+    Obstacle,
+    RobotSpec,
+    RunSpec,
+    TouchSpec,
+    WorldSpec,
+)
+from tuisim.core.values import values_of
 
 
 def simulation(profile: ProfileSpec, motor_noise: int = 0, weight: float = 6.0) -> Simulation:
@@ -117,3 +131,45 @@ def test_no_gyro_change_when_the_robot_is_lifted() -> None:
     sim.place(Pose(10.0, 20.0, -90.0))
     instant = sim.instant()
     assert instant.gyro_zero_deg - instant.pose.heading_deg == 0
+
+
+FULL = WorldSpec(
+    obstacles=(Obstacle(700, 350, 200, 150), Obstacle(1500, 500, 60, 400)),
+    solid=True,
+    start=Pose(400, 600, 20),
+    noise=NoiseSpec(10, 20),
+    drift=values_of(WorldSpec)["drift"].from_text("typical"),
+    beacon=BeaconSpec(1800, 200),
+)
+EQUIPPED = RobotSpec(
+    weight=3.0,
+    extra_motors=(MotorSpec("outA", low_deg=-90, high_deg=200),),
+    touch_sensors=(TouchSpec(port="in2", y_mm=60),),
+    infrared=InfraredSpec(port="in3", y_mm=50),
+    color_sensors=(),
+)
+GIVEN = {
+    "robolab": "33979 13731 1577 1 1184 10444.06 28207.83 14305.01 19505.04 4438 2141",
+    "nbev3devsim": "36197 4905 1523 2 1614 8641.96 15716.41 4802.63 44415.61 4985.57 935",
+    "lego-micropython": "42209 14521 1607 1 837 5925.44 28207.14 15097.03 13323.64 4497.9 3425",
+    "pybricks4": "26335 14997 1623 2 808 4185.89 28084.75 15570.27 12533.77 4376.02 3243",
+}
+"""Sums of the sizes of all values after each command: readings, places, angles of motors, blocked ticks."""
+
+
+@pytest.mark.parametrize("profile", GIVEN)
+def test_a_drive_in_a_full_world_gives_what_it_gave(profile: str) -> None:
+    spec = RunSpec(EQUIPPED, FULL, PROFILES[profile], seed=4)
+    sim, dice, mat = simulation_of(spec, MemorySink()), Random(2), Field(0, 0, memoryview(b""), {})
+    rows = []
+    for _ in range(30):
+        motors = (sim.left, sim.right, *sim.others)
+        for motor in motors:
+            run(sim, motor, dice.randrange(-700, 900))
+        sim.advance(dice.randrange(2 * spec.profile.tick_hz))
+        seen = readings(EQUIPPED.sensors, sim.instant(), spec, mat)
+        places = (sim.pose.x_mm, sim.pose.y_mm, sim.pose.heading_deg)
+        blocked = motors[0].blocked_ticks + motors[2].blocked_ticks
+        rows.append((*seen.values(), *places, *(one.position_deg for one in motors[::2]), blocked))
+    sums = [sum(map(abs, values)) for values in zip(*rows, strict=True)]
+    assert sums == pytest.approx(list(map(float, GIVEN[profile].split())), abs=0.01)
