@@ -3,16 +3,27 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from zlib import crc32
 
 import numpy as np
 import pytest
 
 from tests.scene.scenes import ROBOT, VIEW, at, painter
 from tuisim.core.geometry import Pose
-from tuisim.core.spec import BeaconSpec, InfraredSpec, Obstacle, RobotSpec, TouchSpec
-from tuisim.scene.painter import BEACON_CORE_RGB, BEACON_RGB, Faint, SceneState
+from tuisim.core.spec import (
+    FIELD_HEIGHT_MM,
+    FIELD_WIDTH_MM,
+    BeaconSpec,
+    InfraredSpec,
+    Obstacle,
+    RobotSpec,
+    TouchSpec,
+)
+from tuisim.scene.painter import BEACON_CORE_RGB, BEACON_RGB, Faint, ScenePainter, SceneState
+from tuisim.scene.pen import PenTrace, Piece
 from tuisim.scene.robot import COLORED
 from tuisim.scene.view import Viewport, whole_field
+from tuisim.terminal.pixels import CellPoints, Pixels
 
 HERE = Pose(1000.0, 500.0, 0.0)
 
@@ -110,3 +121,54 @@ def test_an_earlier_robot_is_drawn_below_all_others() -> None:
         at(alone, 1000, 500),
         at(alone, 1500, 500),
     )
+
+
+def full_mat() -> Pixels:
+    """Bands, a slanted line that ends at one, and a disc."""
+    rows, cols = np.indices((FIELD_HEIGHT_MM, FIELD_WIDTH_MM))
+    mat = np.full((*rows.shape, 3), 255, np.uint8)
+    mat[203:907, 803:1205] = (200, 30, 30)
+    mat[203:500, 1205:1411] = (30, 90, 200)
+    mat[(np.abs(rows - 0.3 * cols - 200) < 12) & (cols < 803)] = 0
+    mat[(rows - 700) ** 2 + (cols - 1700) ** 2 < 95**2] = (20, 160, 20)
+    return mat
+
+
+PEN = Piece(
+    np.array([200.0, 900.0, 1000.0, 1010.0]),
+    np.array([900.0, 950.0, 300.0, 300.0]),
+    (9, 99, 9),
+    8.0,
+)
+EVERYTHING = SceneState(
+    replace(ROBOT, gyro=None, touch_sensors=(TouchSpec(port="in4", y_mm=90.0),)),
+    Pose(1003.0, 507.0, 37.0),
+    (Obstacle(300, 205, 209, 307), Obstacle(1900, 205, 207, 303)),
+    ((37.0, 300.0), (52.0, 410.0)),
+    faint=((Faint.BESIDE, Pose(507.0, 709.0, -71.0)), (Faint.NOW, Pose(1507.0, 613.0, 171.0))),
+    marked=1,
+    pressed=(True,),
+    beacon=BeaconSpec(1777.0, 903.0),
+)
+
+
+@pytest.mark.parametrize(
+    ("view", "options", "checksum"),
+    [
+        (VIEW, {}, 69861790),
+        (VIEW, {"for_file": True}, 2026224127),
+        (whole_field(240, 120, CellPoints(2, 4)), {}, 1009201567),
+        (whole_field(100, 80, CellPoints(2, 4)), {"coarse": True}, 3802317320),
+        (whole_field(38, 19), {"grey": True}, 772926774),
+        (whole_field(76, 60, CellPoints(2, 3)), {"mono": True}, 3007351795),
+        (Viewport(140, 78, 4.0, 1003 - 280.0, 507 + 156.0), {"whole_cells": True}, 3678989251),
+    ],
+    ids=["middle", "for a file", "octants", "coarse", "small and grey", "mono", "close"],
+)
+def test_a_scene_with_everything_is_drawn_as_it_was(
+    view: Viewport, options: dict[str, bool], checksum: int
+) -> None:
+    trace = PenTrace()
+    trace.add(PEN)
+    picture = ScenePainter(full_mat(), (230, 230, 230), trace, **options).paint(view, EVERYTHING)
+    assert crc32(picture.tobytes()) == checksum
