@@ -21,7 +21,7 @@ from tests.proof.odd_values import Syntax, with_odd_text, with_odd_value
 from tuisim.analysis.source import read_notes
 from tuisim.app import debugger
 from tuisim.app.editor import text_file
-from tuisim.app.layout.arrangement import drop_former, load_layout
+from tuisim.app.layout.arrangement import load_layout
 from tuisim.app.panels import TerminalSize
 from tuisim.batch.batch_file import load_batch
 from tuisim.config.build import build_run_spec
@@ -209,7 +209,7 @@ def _journal(path: str) -> None:
 
 
 def _layout() -> object:
-    return drop_former(), load_layout(TerminalSize.SMALL)
+    return load_layout(TerminalSize.SMALL)
 
 
 @dataclass(frozen=True, slots=True)

@@ -17,7 +17,6 @@ from tuisim.app.layout.arrangement import (
     Preset,
     arrange,
     core_panels,
-    drop_former,
     is_single,
     load_layout,
     save_layout,
@@ -254,10 +253,6 @@ class PanelArea(Container):
     def _load(self) -> None:
         """Take up what was kept for this size."""
         self._is_loaded = True
-        if drop_former():
-            self.app.notify(
-                "Moved borders and the layout to teach are no longer there: what was kept of them is dropped"
-            )
         kept = load_layout(self._size_class())
         self.preset = self._kept_preset = kept.preset
         self._chosen = kept.asked

@@ -4,13 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-from tests.app.app_help import LOGS, notices, ready, settings
+from tests.app.app_help import LOGS, ready, settings
 from tuisim.app.app import LabApp
-from tuisim.app.layout.arrangement import KeptLayout, Preset, drop_former, load_layout, save_layout
+from tuisim.app.layout.arrangement import KeptLayout, Preset, load_layout, save_layout
 from tuisim.app.panels import TerminalSize
-from tuisim.config.preferences import keep, preference
-
-SMALL = {"preset": "drive", "panels": [["chart", True]]}
 
 
 @pytest.mark.slow
@@ -34,23 +31,6 @@ async def test_the_next_start_finds_an_arrangement_that_was_kept_for_its_size() 
         assert (await ready(pilot)).panel_area.preset == "standard"
 
 
-@pytest.mark.parametrize(
-    "former",
-    [{"borders": {"wide": {"world|output": 0.5}}}, {"medium": {"preset": "teach", "panels": []}}],
-)
-async def test_what_no_layout_has_any_more_is_dropped_with_one_notice(
-    former: dict[str, object],
-) -> None:
-    keep("layout", {"small": SMALL, **former})
-    for told in (1, 0):
-        async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
-            app = await ready(pilot)
-            assert app.panel_area.preset == Preset.STANDARD
-            assert sum("no longer there" in notice for notice in notices(app)) == told
-    assert preference("layout") == {"small": SMALL}
-
-
 def test_what_is_known_stays() -> None:
     save_layout(TerminalSize.SMALL, KeptLayout(Preset.DRIVE, {"chart": True}))
-    assert not drop_former()
     assert load_layout(TerminalSize.SMALL) == KeptLayout(Preset.DRIVE, {"chart": True})

@@ -556,24 +556,5 @@ def save_layout(size: TerminalSize, layout: KeptLayout) -> None:
         )
 
 
-def drop_former() -> bool:
-    """Forget what earlier versions kept and no layout has any more: moved borders, and the preset to teach.
-
-    Returns:
-        Whether there was any.
-    """
-    kept = _table(preference(_NAME))
-    known = {
-        part: of
-        for part, of in kept.items()
-        if part != "borders" and _table(of).get("preset") != "teach"
-    }
-    if known == kept:
-        return False
-    with suppress(OSError):
-        keep(_NAME, known)
-    return True
-
-
 def _table(value: object) -> dict[str, Any]:
     return value if isinstance(value, dict) else {}
