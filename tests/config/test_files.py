@@ -391,9 +391,8 @@ def test_obstacle_files(name: str, text: str, found: tuple[Obstacle, ...], write
             {"name": "older", "gyro_read_ns": 0},
         ),
         ("motor_law = 'nbev3devsim'", {"motor_law": MotorLaw.NBEV3DEVSIM}),
-        ("halve_position_moves = true\npair_tail_ms = 110", {"motor_law": MotorLaw.NBEV3DEVSIM}),
     ],
-    ids=["ms", "ns", "rules", "base", "motor law", "motor law before it had a name"],
+    ids=["ms", "ns", "rules", "base", "motor law"],
 )
 def test_a_profile_file_says_only_what_differs(
     text: str, changes: dict[str, Any], write: Write

@@ -13,6 +13,7 @@ import pytest
 from tests.conftest import Command
 from tests.running import Run
 from tuisim.core.profile import PROFILES
+from tuisim.errors import LogError
 from tuisim.runs.catalogue import CATALOGUE_FILE
 from tuisim.runs.run_folder import read_run
 from tuisim.runs.store import RunStore
@@ -68,3 +69,12 @@ def test_a_stored_run_has_its_profile(profile: str, run: Run) -> None:
     stored = read_run(run(text, profile=profile).run.folder)
     assert (stored.spec.profile, stored.notes) == (PROFILES[profile], ())
     assert type(stored.spec.profile.motor_law) is type(PROFILES[profile].motor_law)
+
+
+def test_a_motor_law_that_does_not_exist_is_told(run: Run) -> None:
+    folder = run("pass").run.folder
+    data = json.loads((folder / "run.json").read_text())
+    data["spec"]["profile"]["motor_law"] = "magnetic"
+    (folder / "run.json").write_text(json.dumps(data))
+    with pytest.raises(LogError, match="damaged: 'magnetic' is not a valid MotorLaw"):
+        read_run(folder)

@@ -6,7 +6,6 @@ from typing import Any
 
 from tuisim.config.files import (
     Location,
-    convert,
     one_of,
     read_named,
     read_value,
@@ -14,7 +13,7 @@ from tuisim.config.files import (
     toml_lines,
     with_values,
 )
-from tuisim.core.profile import EARLIER_KEYS, MAX_COST_MS, MS, PROFILES, ProfileSpec, law_of_earlier
+from tuisim.core.profile import MAX_COST_MS, MS, PROFILES, ProfileSpec
 from tuisim.core.values import Number, values_of
 from tuisim.errors import ProfileError
 
@@ -48,15 +47,11 @@ def profile_from_table(
     """
     values = values_of(ProfileSpec)
     in_ms = {_in_ms(key): key for key in values if key.endswith(_NS)}
-    earlier = EARLIER_KEYS | {_in_ms(key) for key in EARLIER_KEYS if key.endswith(_NS)}
     listed = ("base", *(key for key in values if not key.endswith(_NS)), *in_ms)
-    given = table(data, at, listed, unlisted=earlier | frozenset(in_ms.values()))
+    given = table(data, at, listed, unlisted=frozenset(in_ms.values()))
     named = PROFILES[one_of(given.get("base", DEFAULT_PROFILE), at.at("base"), PROFILES)]
     base = named if changes_to is None or "base" in given else changes_to
     found: dict[str, Any] = {"name": name}
-    if "halve_position_moves" in given:
-        halved = convert(given["halve_position_moves"], bool, at.at("halve_position_moves"))
-        found["motor_law"] = law_of_earlier({"halve_position_moves": halved})
     for key, value in given.items():
         if key in in_ms:
             if in_ms[key] in given:

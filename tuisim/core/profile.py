@@ -12,12 +12,11 @@ To add a motor law: add it to `MotorLaw`; write the class of its motor and, if w
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import asdict, replace
+from dataclasses import replace
 from enum import StrEnum
 from typing import Any
 
 from tuisim.core.spec_fields import Spec, choice, flag, number, spec, text, whole
-from tuisim.core.values import values_of
 from tuisim.errors import ProfileError
 
 MS = 1_000_000
@@ -225,59 +224,3 @@ PROFILES: Mapping[str, ProfileSpec] = {
     profile.name: profile for profile in (ROBOLAB, NBEV3DEVSIM, EV3, LEGO_MICROPYTHON, PYBRICKS_4)
 }
 """All profiles, by name."""
-
-_EARLIER_BRICK: Mapping[str, Mapping[str, bool | int]] = {
-    "halfway_heading": {
-        "round_forward_speeds": False,
-        "halve_position_moves": False,
-        "keep_speed_when_stopped": False,
-        "timed_stop_skips_tick": False,
-        "direction_from_set_point": False,
-        "motor_ramps": True,
-        "chain_relative_moves": True,
-        "pair_tail_ns": 0,
-    },
-    "ultrasonic_period_ticks": {"forward_noise_only": False},
-    "mend_library": {"plain_state": False},
-}
-"""Defaults of a brick's motors in profiles stored before `motor_law` existed, by the key that followed them."""
-
-EARLIER_KEYS = frozenset(key for keys in _EARLIER_BRICK.values() for key in keys)
-"""Keys of stored profiles that `motor_law` has replaced."""
-
-
-def profile_to_plain(profile: ProfileSpec) -> dict[str, Any]:
-    """Return a profile as JSON data. The form for a brick never changes, so that its exports stay the same."""
-    plain = asdict(profile)
-    for key, value in values_of(ProfileSpec).items():
-        if value.later and plain[key] == ProfileSpec.__dataclass_fields__[key].default:
-            del plain[key]
-    if profile.motor_law != MotorLaw.BRICK:
-        return plain
-    del plain["motor_law"]
-    return {
-        name: value
-        for key in plain
-        for name, value in (*_EARLIER_BRICK.get(key, {}).items(), (key, plain[key]))
-    }
-
-
-def law_of_earlier(keys: Mapping[str, Any]) -> MotorLaw | None:
-    """Return the motor law of a profile stored before `motor_law` existed; None if its keys do not show it."""
-    halved = keys.get("halve_position_moves")
-    return None if halved is None else MotorLaw.NBEV3DEVSIM if halved else MotorLaw.BRICK
-
-
-def profile_values(data: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the values of the profile in a stored run or log, by name.
-
-    Raises:
-        ValueError: the motor law is unknown.
-    """
-    known = {key: value for key, value in data.items() if key not in EARLIER_KEYS}
-    known["motor_law"] = (
-        MotorLaw(data["motor_law"])
-        if "motor_law" in data
-        else law_of_earlier(data) or MotorLaw.BRICK
-    )
-    return known

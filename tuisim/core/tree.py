@@ -6,10 +6,9 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from typing import Any, TypeVar
 
-from tuisim.core.profile import ProfileSpec, profile_to_plain, profile_values
 from tuisim.core.spec import RunSpec
 from tuisim.core.spec_fields import Spec
-from tuisim.core.values import NamedPart, Part, Parts, Value, values_of
+from tuisim.core.values import Choice, NamedPart, Part, Parts, Value, values_of
 
 _Node = TypeVar("_Node")
 
@@ -93,8 +92,6 @@ def to_plain(spec: RunSpec) -> dict[str, Any]:
 
 
 def _part_to_plain(part: Part, node: Any) -> dict[str, Any]:
-    if isinstance(node, ProfileSpec):
-        return profile_to_plain(node)
     inside = ((name, value, getattr(node, name)) for name, value in part.values.items())
     return {
         name: _to_plain(value, one)
@@ -133,8 +130,6 @@ def restore(data: Mapping[str, Any]) -> RunSpec:
 def _part_from_plain(part: Part, data: Any, is_checked: bool) -> Any:
     if not isinstance(data, Mapping):
         raise TypeError(f"{part.of.__name__} is {data!r:.60}")
-    if part.of is ProfileSpec:
-        data = profile_values(data)
     make = part.of if is_checked or not issubclass(part.of, Spec) else part.of.restore
     inside = ((name, part.values.get(name), one) for name, one in data.items())
     return make(**{name: _from_plain(name, value, one, is_checked) for name, value, one in inside})
@@ -150,4 +145,6 @@ def _from_plain(name: str, value: Value | None, data: Any, is_checked: bool) -> 
     is_flag = value.stored_as is bool
     if not isinstance(data, value.stored_as) or (isinstance(data, bool) and not is_flag):
         raise TypeError(f"{name} is {data!r:.60}")
-    return tuple(data) if isinstance(data, list) else data
+    if isinstance(data, list):
+        return tuple(data)
+    return value.restore(data) if isinstance(value, Choice) else data

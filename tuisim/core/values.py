@@ -12,6 +12,7 @@ import reprlib
 from abc import ABC, abstractmethod
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import Field, replace
+from enum import StrEnum
 from re import Pattern
 from typing import Any, ClassVar
 
@@ -413,6 +414,15 @@ class Choice(Value):
             if each == data and not isinstance(data, bool | float):
                 return each
         raise WrongValue(f"no such {self.what} {shown(data)}", self.allowed)
+
+    def restore(self, data: Any) -> Any:
+        """Return the choice that a stored run gives as a text or number, without checking it.
+
+        Raises:
+            ValueError: there is no such member of the enumeration.
+        """
+        kind = type(self._choices[0])
+        return kind(data) if issubclass(kind, StrEnum) else data
 
 
 class Choices(Choice):
