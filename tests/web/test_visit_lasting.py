@@ -12,7 +12,7 @@ import pytest
 from tests.running import PATIENCE_S
 from tests.web.test_server import Visited, Visitor, drawn, gone, heard, is_there, visited
 from tuisim.web.link import TAKEN_OVER
-from tuisim.web.upload import keep_file
+from tuisim.web.server import keep_file
 
 __all__ = ["visited"]
 
@@ -70,6 +70,18 @@ async def test_each_page_is_told_which_panels_there_are(visited: Visited) -> Non
     assert {await heard(first), await heard(first)} == {"told", panels}
     second = await visitor.socket(f"?width=90&height=30&session={await the_session(visitor)}")
     assert panels in [await heard(second) for _ in range(2)]
+
+
+async def test_the_list_of_sessions_tells_which_program_runs(visited: Visited) -> None:
+    visitor = await visited()
+    socket, _ = await visitor.started()
+    listed = []
+    for what in ("ready", "run", "ended"):
+        await socket.send_json(["stdin", f"tell {what} a\x1b.py"])
+        assert await heard(socket) == "told"
+        (session,) = (await visitor.sessions())["sessions"]
+        listed.append((session["program"], session["runs"], session["shown"]))
+    assert listed == [("a\ufffd.py", runs, True) for runs in (False, True, False)]
 
 
 async def test_what_is_offered_while_no_tab_is_open_waits_for_the_next(visited: Visited) -> None:

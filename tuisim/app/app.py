@@ -443,7 +443,7 @@ class LabApp(PanelMessages):
             self.panel_area.output.ask(prompt)
 
     def _ended(self, ended: Ended, stood: str) -> None:
-        self.tell_server("ended", id=self.run_controller.run_id, end=ended.end)
+        self.tell_server("ended", id=self.run_controller.run_id)
         self.panel_area.release_buttons()
         good = ended.end in GOOD_ENDS
         if not good:

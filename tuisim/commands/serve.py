@@ -97,8 +97,8 @@ def serve(**given: Any) -> int:
     except ImportError as error:
         hint = "pip install -e '.[web]' in the clone of tuisim"
         raise ConfigError("needs textual-serve", hint, key="serve") from error
-    from tuisim.web.app_command import app_command
     from tuisim.web.gate import Gate
+    from tuisim.web.session import app_command
     from tuisim.web.visit import VisitLimits
 
     idle_s = float("inf") if arguments.idle is None else 60 * arguments.idle

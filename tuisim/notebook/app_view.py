@@ -21,10 +21,9 @@ from IPython.display import display
 
 from tuisim.errors import HostError
 from tuisim.source import Program
-from tuisim.web.app_command import app_command
-from tuisim.web.background import BackgroundServer
 from tuisim.web.gate import Gate, new_token
-from tuisim.web.server import Server, ServerLimits
+from tuisim.web.server import BackgroundServer, Server, ServerLimits
+from tuisim.web.session import app_command
 from tuisim.web.visit import Visit, VisitLimits
 
 DEFAULT_HEIGHT_PX = 560

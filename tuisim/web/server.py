@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import asyncio
+import atexit
 import errno
 import logging
 import signal
-from collections.abc import AsyncIterator, Callable, Sequence
+from collections.abc import AsyncIterator, Callable, Coroutine, Sequence
 from contextlib import asynccontextmanager
+from itertools import count
 from pathlib import Path
+from threading import Thread
+from typing import Any, TypeVar
 from urllib.parse import quote
 
 import textual_serve
@@ -20,15 +24,17 @@ from textual_serve.download_manager import DownloadManager
 from tuisim.data_class import dataclass
 from tuisim.errors import SIGNALLED, ConfigError, TuisimError, counted
 from tuisim.web.gate import Gate
+from tuisim.web.link import close
 from tuisim.web.session import END_WITHIN_S
-from tuisim.web.sockets import close
-from tuisim.web.upload import MOST_FILE_BYTES, keep_file
 from tuisim.web.visit import Visit, VisitLimits
 
 _HEARTBEAT_S = 15.0
 """A browser that does not answer for about this time has gone."""
 _CLOSE_WITHIN_S = 2.0
 """Time for a browser to confirm that its socket is closed."""
+_MAX_FILE_BYTES = 64 << 20
+"""The largest file that can be brought."""
+_MAX_NAME = 200
 PAGE = Path(__file__).parent / "page"
 _FOLDERS = {
     "static": Path(textual_serve.__file__).parent / "static",
@@ -47,6 +53,7 @@ max-width: 30em; padding: 0 1em }}</style>
 </html>
 """
 _DEFAULT_SIZE = (80, 24)
+_Result = TypeVar("_Result")
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,7 +92,7 @@ class Server:
     def application(self) -> web.Application:
         """Return the web application, in which everybody gets the same answer who may not see something, whatever it
         is."""
-        application = web.Application(middlewares=[self._guard], client_max_size=MOST_FILE_BYTES)
+        application = web.Application(middlewares=[self._guard], client_max_size=_MAX_FILE_BYTES)
         # The gate looks at the token, which may change.
         application.router.add_routes(
             [
@@ -136,9 +143,7 @@ class Server:
         return web.FileResponse(PAGE / "index.html")
 
     async def _list(self, _: web.Request) -> web.StreamResponse:
-        sessions = [
-            {**visit.to_plain(), **visit.doing.to_plain()} for visit in self._visits.values()
-        ]
+        sessions = [visit.to_plain() for visit in self._visits.values()]
         return web.json_response({"sessions": sessions, "free": self._free})
 
     @property
@@ -260,6 +265,41 @@ async def _file_of_page(request: web.Request) -> web.StreamResponse:
     return web.FileResponse(path)
 
 
+def keep_file(folder: Path, name: str, data: bytes) -> Path:
+    """Write a file under its own name, or with a number if another file has that; return its path.
+
+    Raises:
+        ConfigError: the name is no plain one, or the file cannot be written.
+    """
+    # Hidden files are settings of other programs.
+    if (
+        not name.isprintable()
+        or set("/\\") & set(name)
+        or name.startswith(".")
+        or not 0 < len(name) <= _MAX_NAME
+    ):
+        raise ConfigError(
+            f"no name for a file: {name!r}",
+            "letters, digits and a suffix, such as lab.py",
+            key="name",
+        )
+    stem, suffix = Path(name).stem, Path(name).suffix
+    for number in count(1):
+        path = folder / (name if number == 1 else f"{stem}-{number}{suffix}")
+        try:
+            with path.open("xb") as file:
+                file.write(data)
+            return path
+        except FileExistsError:
+            if path.is_file() and not path.is_symlink() and path.read_bytes() == data:
+                return path
+        except OSError as error:
+            raise ConfigError(
+                f"cannot be written: {error.strerror or error}", file=str(path)
+            ) from error
+    raise AssertionError
+
+
 def _size(request: web.Request) -> tuple[int, int]:
     """Return the size of the visitor's terminal in cells, as its page says."""
     try:
@@ -345,3 +385,41 @@ def _cannot_listen(host: str, port: int, error: OSError) -> ConfigError:
         "127.0.0.1 always works",
         key="--host",
     )
+
+
+class BackgroundServer:
+    """Answers requests on a port of its own, on this machine only.
+
+    Args:
+        server: Answers them.
+    """
+
+    def __init__(self, server: Server) -> None:
+        self.server = server
+        self._loop = asyncio.new_event_loop()
+        self._thread = Thread(target=self._loop.run_forever, name="tuisim-server", daemon=True)
+        self._thread.start()
+        self.port: int = self.call(self._listen())
+        # A daemon thread would leave the apps to find out that this process has ended.
+        atexit.register(self.close)
+
+    async def _listen(self) -> int:
+        self._listening = listening(self.server, "127.0.0.1", 0)
+        return await self._listening.__aenter__()
+
+    def call(self, work: Coroutine[Any, Any, _Result], timeout_s: float | None = None) -> _Result:
+        """Do something in the server's thread and wait for it.
+
+        Raises:
+            TimeoutError: it takes longer.
+        """
+        return asyncio.run_coroutine_threadsafe(work, self._loop).result(timeout_s)
+
+    def close(self) -> None:
+        """End the apps of all visitors and the server."""
+        if self._thread.is_alive():
+            self.call(self._listening.__aexit__(None, None, None))
+            self._loop.call_soon_threadsafe(self._loop.stop)
+            self._thread.join()
+            self._loop.close()
+        atexit.unregister(self.close)

@@ -6,9 +6,11 @@ import asyncio
 import json
 import os
 import signal
+import sys
 from asyncio.subprocess import PIPE, Process
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
+from pathlib import Path
 from typing import Any
 
 from textual_serve.app_service import AppService
@@ -43,6 +45,20 @@ _OF_A_BROWSER = {
     "LC_CTYPE": "C.UTF-8",
     "PYTHONUTF8": "1",
 }
+
+
+_BOOT = "import sys; sys.path.append(sys.argv.pop(1)); from tuisim.__main__ import main; sys.exit(main())"
+"""Startup code of an app: the package comes last in the path, as in the child of a run."""
+_PACKAGE_FOLDER = str(Path(__file__).parent.parent.parent)
+
+
+def app_command(words: Sequence[str]) -> list[str]:
+    """Return the command, as words, of an app.
+
+    Args:
+        words: What it opens, as words of `tuisim open`.
+    """
+    return [sys.executable, "-P", "-c", _BOOT, _PACKAGE_FOLDER, "open", *words]
 
 
 class WebSession(AppService):

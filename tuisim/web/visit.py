@@ -15,16 +15,15 @@ from aiohttp import WSMsgType, web
 from textual_serve.download_manager import DownloadManager
 
 from tuisim.data_class import dataclass
-from tuisim.web.doing import Doing
-from tuisim.web.link import Link
+from tuisim.errors import printable
+from tuisim.web.link import Link, close
 from tuisim.web.session import WebSession
-from tuisim.web.sockets import close
 
 _LONGEST_S = 86400.0
 """The longest that a timer waits at once."""
 _LARGEST_SIZE = 1000
-_MOST_PANELS, _LONGEST_NAME = 50, 50
-"""What an app tells of its panels is not trusted."""
+_MAX_PANELS, _MAX_NAME, _MAX_PROGRAM = 50, 50, 80
+"""What an app tells of its panels and its program, in characters but for the first, is not trusted."""
 _ANSWER = re.compile(
     r"\x1b(\[[\d;]*[cnRt]|\[[?>=][\d;:]*\$?[A-Za-z]|[P_\]^][^\x07\x1b]*(\x07|\x1b\\))"
 )
@@ -87,9 +86,9 @@ class Visit:
         self._limits, self._report = limits, report
         self._link, self._activity = Link(), Activity()
         self._session = WebSession(command, self._link, downloads)
-        self.doing = Doing()
-        """What the app does."""
         self._session.told = self._told
+        self._program, self._runs = "", False
+        """The program that the app has open, and whether it runs, as far as it has told."""
         self._panels: list[str] = []
         """The panels that the app shows, as far as it has told."""
         self._telling: asyncio.Task[None] | None = None
@@ -108,7 +107,8 @@ class Visit:
         """Return what a list of visits tells about it."""
         age_s = time.monotonic() - self._begun_s
         times = {"age_s": round(age_s), "idle_s": round(self._activity.idle_s)}
-        return {"id": self.id, **times, "shown": self._link.socket is not None}
+        shows = {"shown": self._link.socket is not None, "program": self._program}
+        return {"id": self.id, **times, **shows, "runs": self._runs}
 
     async def live(self, width: int, height: int, began: Callable[[], None]) -> None:
         """Run the app until it ends, or nobody uses it for too long; then end it.
@@ -160,10 +160,15 @@ class Visit:
         await self._session.show(*self._size)
 
     def _told(self, said: Mapping[str, Any]) -> None:
-        self.doing.note(said)
-        if said.get("what") == "panels" and isinstance(shown := said.get("shown"), list):
-            self._panels = [str(panel)[:_LONGEST_NAME] for panel in shown[:_MOST_PANELS]]
-            self._telling = asyncio.create_task(self._tell_panels())
+        match said:
+            case {"what": "ready" | "run" as what, **more}:
+                self._program = printable(str(more.get("program", "")))[:_MAX_PROGRAM]
+                self._runs = what == "run"
+            case {"what": "ended"}:
+                self._runs = False
+            case {"what": "panels", "shown": list(shown)}:
+                self._panels = [str(panel)[:_MAX_NAME] for panel in shown[:_MAX_PANELS]]
+                self._telling = asyncio.create_task(self._tell_panels())
 
     async def _tell_panels(self) -> None:
         # Of no use to a later browser, which is told when it comes.
