@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import gc
 import os
-import shutil
 import subprocess
 import sys
 from collections.abc import Callable, Generator, Iterator
@@ -17,12 +16,10 @@ import pytest
 from hypothesis import HealthCheck, settings
 
 from tests.running import PATIENCE_S, Done, Run, Start, over
-from tuisim.app.editor.text_file import FOLDER as DRAFTS
 from tuisim.atomic import make_private_folder
 from tuisim.cli import run_command
 from tuisim.config import mat_cache
-from tuisim.config.folders import cache_folder, home_folder
-from tuisim.config.preferences import keep
+from tuisim.config.folders import cache_folder
 from tuisim.core.geometry import Pose
 from tuisim.core.profile import PROFILES
 from tuisim.core.spec import NoiseSpec, PenSpec, RobotSpec, RunSpec, WorldSpec
@@ -100,22 +97,14 @@ Command = Callable[..., "subprocess.CompletedProcess[str]"]
 
 
 @pytest.fixture(scope="session", autouse=True)
-def _own_home(tmp_path_factory: pytest.TempPathFactory) -> object:
+def shared_home(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
     """One home for the whole session, because preparing a mat for each test would be slow."""
-    patch = pytest.MonkeyPatch()
-    patch.setenv("TUISIM_HOME", str(tmp_path_factory.mktemp("home")))
-    patch.delenv("TUISIM_ASSETS", raising=False)
-    # Only the tests of the first start begin with the welcome.
-    keep("welcomed", True)
-    yield
-    patch.undo()
-
-
-@pytest.fixture(autouse=True)
-def _no_draft_stays() -> Iterator[None]:
-    """Remove what a test left unsaved in the home of all: the next app that starts without a program would offer it."""
-    yield
-    shutil.rmtree(home_folder() / DRAFTS, ignore_errors=True)
+    folder = tmp_path_factory.mktemp("home")
+    make_private_folder(folder / "cache")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("TUISIM_HOME", str(folder))
+        patch.delenv("TUISIM_ASSETS", raising=False)
+        yield folder
 
 
 @pytest.fixture(scope="session", autouse=True)

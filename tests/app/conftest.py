@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import os
+import shutil
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -18,7 +19,7 @@ from textual.notifications import Notification
 
 from tests.app.terminals import Terminal
 from tests.running import PATIENCE_S
-from tuisim.config import preferences, user_config
+from tuisim.config import user_config
 
 
 @pytest.fixture(scope="session", autouse=True)
@@ -68,9 +69,20 @@ def _apps_are_released() -> Iterator[None]:
 
 
 @pytest.fixture(autouse=True)
-def _own_preferences(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A test finds no arrangement of panels and no settings that another one has kept."""
-    monkeypatch.setattr(preferences, "preferences_file", lambda: tmp_path / "preferences.json")
+def home(
+    tmp_path_factory: pytest.TempPathFactory, shared_home: Path, monkeypatch: pytest.MonkeyPatch
+) -> Iterator[Path]:
+    """A home with nothing but the mats of all: what an earlier test has run, chosen or not saved changes an app."""
+    folder = tmp_path_factory.mktemp("home")
+    (folder / "cache").symlink_to(shared_home / "cache")
+    monkeypatch.setenv("TUISIM_HOME", str(folder))
+    yield folder
+    shutil.rmtree(folder, ignore_errors=True)
+
+
+@pytest.fixture(autouse=True)
+def _own_settings(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Read `config.toml` where a test writes it."""
     monkeypatch.setattr(user_config, "config_folder", lambda: tmp_path)
 
 

@@ -24,7 +24,7 @@ from tuisim.app.terminal_app import TerminalApp
 PRESSES, AT_ONE_GO = 1500, 400
 """How often something is pressed for one seed, and at most before the app is left and opened anew."""
 
-pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("home")]
+pytestmark = pytest.mark.slow
 
 
 @pytest.fixture(autouse=True)

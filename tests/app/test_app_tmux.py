@@ -8,7 +8,7 @@ import pytest
 
 from tests.app.terminals import Terminal
 
-pytestmark = [pytest.mark.tmux, pytest.mark.slow, pytest.mark.usefixtures("home")]
+pytestmark = [pytest.mark.tmux, pytest.mark.slow]
 
 
 def test_a_program_runs_to_its_end_and_its_log_is_exported(

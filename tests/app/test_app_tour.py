@@ -12,7 +12,7 @@ import pytest
 from tests.app.terminals import SLOWLY, Terminal
 from tests.conftest import ROOT
 
-pytestmark = [pytest.mark.tmux, pytest.mark.slow, pytest.mark.usefixtures("home")]
+pytestmark = [pytest.mark.tmux, pytest.mark.slow]
 
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 TOUR = README.partition("## A tour")[2].partition("\n## ")[0]

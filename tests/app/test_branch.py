@@ -18,8 +18,6 @@ from tuisim.core.spec import NoiseSpec
 from tuisim.runs.catalogue import RunInfo
 from tuisim.runs.store import RunStore
 
-pytestmark = pytest.mark.usefixtures("home")
-
 DRIVES = """\
 import threading, time, random
 def says():

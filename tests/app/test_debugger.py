@@ -79,7 +79,7 @@ def drawn(app: LabApp) -> str:
     return "\n".join("".join(text for text, _ in row) for row in (panel._lines if panel else ()))
 
 
-async def test_steps_from_the_first_line(home: object) -> None:
+async def test_steps_from_the_first_line() -> None:
     app = LabApp(settings(COUNTS))
     async with app.run_test(size=(120, 40)) as pilot:
         await ready(pilot)
@@ -93,7 +93,7 @@ async def test_steps_from_the_first_line(home: object) -> None:
 
 
 @pytest.mark.slow
-async def test_one_line_back_and_on_again(home: object) -> None:
+async def test_one_line_back_and_on_again() -> None:
     app = LabApp(settings(COUNTS))
     async with app.run_test(size=(120, 40)) as pilot:
         await ready(pilot)
@@ -126,7 +126,7 @@ async def test_going_on_from_the_past_ends_at_now(home: object, key: str) -> Non
         await press(pilot, app, "n", 3)
 
 
-async def test_into_and_out_of_calls(home: object) -> None:
+async def test_into_and_out_of_calls() -> None:
     app = LabApp(settings(CALLS))
     async with app.run_test(size=(120, 40)) as pilot:
         await ready(pilot)
@@ -144,7 +144,7 @@ async def test_into_and_out_of_calls(home: object) -> None:
 
 
 @pytest.mark.slow
-async def test_a_breakpoint_holds_and_is_kept_with_the_program(home: object) -> None:
+async def test_a_breakpoint_holds_and_is_kept_with_the_program() -> None:
     async with LabApp(settings(COUNTS)).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)
         # It belongs to a line that the user sees: the first press goes to the code.
@@ -167,7 +167,7 @@ async def test_a_breakpoint_holds_and_is_kept_with_the_program(home: object) -> 
         await until(pilot, lambda: [one.text for one in app.debugger.breaks] == ["5"])
 
 
-async def test_a_breakpoint_on_the_current_line_needs_no_code_in_sight(home: object) -> None:
+async def test_a_breakpoint_on_the_current_line_needs_no_code_in_sight() -> None:
     async with LabApp(settings(COUNTS)).run_test(size=(80, 24)) as pilot:
         app = await ready(pilot)
         await pilot.press("R")
@@ -181,7 +181,7 @@ async def test_a_breakpoint_on_the_current_line_needs_no_code_in_sight(home: obj
         assert not app.panel_area.shown("code")
 
 
-async def test_the_footer_offers_what_is_needed_while_the_code_is_read(home: object) -> None:
+async def test_the_footer_offers_what_is_needed_while_the_code_is_read() -> None:
     async with LabApp(settings(COUNTS)).run_test(size=(80, 24)) as pilot:
         app = await ready(pilot)
         await press(pilot, app, "n", 1, 2)
@@ -195,7 +195,7 @@ async def test_the_footer_offers_what_is_needed_while_the_code_is_read(home: obj
 
 
 @pytest.mark.slow
-async def test_breaks_and_watches_are_listed_added_switched_and_deleted(home: object) -> None:
+async def test_breaks_and_watches_are_listed_added_switched_and_deleted() -> None:
     app = LabApp(settings(COUNTS))
     async with app.run_test(size=(120, 40)) as pilot:
         await ready(pilot)
@@ -222,7 +222,7 @@ async def test_breaks_and_watches_are_listed_added_switched_and_deleted(home: ob
 
 
 @pytest.mark.slow
-async def test_the_variables_of_any_former_instant(home: object) -> None:
+async def test_the_variables_of_any_former_instant() -> None:
     app = LabApp(settings(COUNTS, speed=0.0))
     async with app.run_test(size=(120, 40)) as pilot:
         await ready(pilot)
@@ -248,7 +248,7 @@ async def test_the_variables_of_any_former_instant(home: object) -> None:
         await until(pilot, lambda: app.debugger.view is None)
 
 
-async def test_run_to_the_cursor_starts_the_program(home: object) -> None:
+async def test_run_to_the_cursor_starts_the_program() -> None:
     app = LabApp(settings(COUNTS))
     async with app.run_test(size=(120, 40)) as pilot:
         await ready(pilot)
@@ -281,7 +281,7 @@ def test_what_is_kept_comes_back(home: object) -> None:
     assert load_kept("/else/where.py") == Kept()
 
 
-async def test_breaks_are_kept_with_a_program_that_no_panel_shows(home: object) -> None:
+async def test_breaks_are_kept_with_a_program_that_no_panel_shows() -> None:
     app = LabApp(settings(COUNTS, panels_off=("code", "controls")))
     assert app.run_controller.program is not None
     keep(app.run_controller.program.path, Kept(parse_breakpoints(("4",)), ("total",)))
@@ -296,7 +296,7 @@ async def test_breaks_are_kept_with_a_program_that_no_panel_shows(home: object) 
         assert [one.text for one in app.debugger.breaks] == ["4", "6"]
 
 
-async def test_editing_begins_where_the_program_is_paused(home: object) -> None:
+async def test_editing_begins_where_the_program_is_paused() -> None:
     app = LabApp(settings(COUNTS))
     async with app.run_test(size=(80, 24)) as pilot:
         await ready(pilot)

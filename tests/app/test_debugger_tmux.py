@@ -11,7 +11,7 @@ from tests.app.terminals import Terminal
 from tuisim.protocol import SetNoise, UserAction
 from tuisim.runs.store import RunStore
 
-pytestmark = [pytest.mark.tmux, pytest.mark.usefixtures("home")]
+pytestmark = [pytest.mark.tmux]
 
 
 def held_at(text: str) -> tuple[int, str, str]:

@@ -22,8 +22,6 @@ from tuisim.core.geometry import Pose
 from tuisim.runs.handle import RunOptions, start_run
 from tuisim.runs.recorded_run import Recording
 
-pytestmark = pytest.mark.usefixtures("home")
-
 STRAIGHT = "tank_drive.on_for_seconds(20, 20, 1)\n"
 LONGER = STRAIGHT + "tank_drive.on_for_seconds(20, 10, 1)\n"
 SIZE = (120, 40)

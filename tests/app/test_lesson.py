@@ -41,7 +41,6 @@ async def wheel_up(pilot: Pilot[Any], panel: LessonPanel) -> None:
 PLACED = "question = { ask = 'What?', answer = 5, at_x_mm = [[600, 700]], where = 'the right: → moves it' }"
 
 
-@pytest.mark.usefixtures("home")
 async def test_answer_about_another_place_is_not_wrong(tmp_path: Path) -> None:
     async with LabApp(opened(tmp_path, PLACED)).run_test(size=SMALL) as pilot:
         app = await ready(pilot)
@@ -57,7 +56,6 @@ async def test_answer_about_another_place_is_not_wrong(tmp_path: Path) -> None:
         await until(pilot, lambda: states().get("do") == "done")
 
 
-@pytest.mark.usefixtures("home")
 async def test_note_that_does_not_pass_is_told_why(tmp_path: Path) -> None:
     async with LabApp(
         opened(tmp_path, "note = { matches = 'dark', level = 86 }\nmodel = 'dark'")
@@ -75,7 +73,6 @@ async def test_note_that_does_not_pass_is_told_why(tmp_path: Path) -> None:
         await until(pilot, lambda: words in " ".join(shown(app).split()))
 
 
-@pytest.mark.usefixtures("home")
 async def test_panel_of_a_paused_program(tmp_path: Path) -> None:
     async with LabApp(opened(tmp_path, "show = { panel = 'debug', paused = true }")).run_test(
         size=SMALL
@@ -91,7 +88,6 @@ async def test_panel_of_a_paused_program(tmp_path: Path) -> None:
         await until(pilot, lambda: states().get("do") == "done")
 
 
-@pytest.mark.usefixtures("home")
 async def test_lesson_is_in_sight_while_one_types_in_a_small_terminal(tmp_path: Path) -> None:
     async with LabApp(with_lines(opened(tmp_path), 40)).run_test(size=SMALL) as pilot:
         app = await ready(pilot)
@@ -105,7 +101,6 @@ async def test_lesson_is_in_sight_while_one_types_in_a_small_terminal(tmp_path: 
         await until(pilot, lambda: app.panel_area.shown("world"))
 
 
-@pytest.mark.usefixtures("home")
 @pytest.mark.parametrize(("size", "has_world"), [(SMALL, False), (LARGE, True)], ids=["80", "120"])
 async def test_lesson_is_beside_the_log(
     size: tuple[int, int], has_world: bool, tmp_path: Path
@@ -129,7 +124,6 @@ async def test_lesson_is_beside_the_log(
 
 
 @pytest.mark.slow
-@pytest.mark.usefixtures("home")
 async def test_program_is_tried_from_another_start(tmp_path: Path) -> None:
     made = opened(tmp_path)
     text = (tmp_path / "lessons" / "try.md").read_text()
@@ -158,7 +152,6 @@ async def test_program_is_tried_from_another_start(tmp_path: Path) -> None:
         await until(pilot, lambda: states().get("drive") == "done")
 
 
-@pytest.mark.usefixtures("home")
 async def test_lesson_scrolls_while_one_types_in_a_small_terminal(tmp_path: Path) -> None:
     async with LabApp(with_lines(opened(tmp_path), 40)).run_test(size=SMALL) as pilot:
         app = await ready(pilot)
@@ -181,7 +174,6 @@ async def test_lesson_scrolls_while_one_types_in_a_small_terminal(tmp_path: Path
         assert code.cursor_line == cursor
 
 
-@pytest.mark.usefixtures("home")
 async def test_way_to_the_next_lesson_is_in_sight_in_a_small_terminal(tmp_path: Path) -> None:
     made = opened(tmp_path)
     (tmp_path / "lessons" / "zz.md").write_text(
@@ -197,7 +189,6 @@ async def test_way_to_the_next_lesson_is_in_sight_in_a_small_terminal(tmp_path: 
         )
 
 
-@pytest.mark.usefixtures("home")
 async def test_way_back_to_the_start_is_said_when_the_run_is_over(tmp_path: Path) -> None:
     made = opened(tmp_path)
     async with LabApp(made).run_test(size=SMALL) as pilot:
@@ -213,7 +204,6 @@ async def test_way_back_to_the_start_is_said_when_the_run_is_over(tmp_path: Path
 
 
 @pytest.mark.slow
-@pytest.mark.usefixtures("home")
 async def test_run_counts_although_the_next_one_is_over_before_it_was_tried(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -29,7 +29,6 @@ def test_a_program_that_looks_at_the_buttons(text: str, expected: bool) -> None:
     assert looks_at_buttons(text) == expected
 
 
-@pytest.mark.usefixtures("home")
 async def test_the_panel_is_named_once_while_it_is_hidden() -> None:
     async with LabApp(settings(DRAWS, speed=0.0)).run_test(size=(80, 24)) as pilot:
         app = await ready(pilot)

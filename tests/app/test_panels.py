@@ -37,7 +37,6 @@ async def _open_and_close(pilot: Pilot[Any], panel: str) -> None:
         await until(pilot, lambda: not app.panel_area.shown(panel), panel)
 
 
-@pytest.mark.usefixtures("home")
 @pytest.mark.parametrize("size", [(80, 24), (120, 40)], ids=["80", "120"])
 async def test_each_empty_panel_says_what_to_do(size: tuple[int, int]) -> None:
     async with LabApp(settings("x = 1\n")).run_test(size=size) as pilot:
@@ -52,7 +51,6 @@ def _has(screen: Sequence[str], words: str) -> bool:
     return all(word in text for word in words.split())
 
 
-@pytest.mark.usefixtures("home")
 async def test_output_of_a_silent_run_asks_for_no_run() -> None:
     async with LabApp(settings("x = 1\n", speed=0.0)).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)

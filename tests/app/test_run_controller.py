@@ -23,8 +23,6 @@ from tuisim.logs.reader import read_log
 from tuisim.terminal.picture_mode import PictureMode
 from tuisim.terminal.picture_options import CellSet
 
-pytestmark = pytest.mark.usefixtures("home")
-
 
 async def test_a_run_shows_its_output_and_its_end() -> None:
     async with LabApp(settings(LOGS, autorun=True, speed=0.0)).run_test(size=(120, 40)) as pilot:

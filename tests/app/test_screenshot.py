@@ -20,8 +20,6 @@ from tuisim.terminal.cell_image import CELL_PX
 GREY = (128, 128, 128)
 """A band of the mat."""
 
-pytestmark = pytest.mark.usefixtures("home")
-
 
 def words_in(path: Path) -> str:
     """The text in an SVG file, without spaces."""

@@ -73,7 +73,6 @@ async def test_what_is_not_seen_is_not_clicked_on() -> None:
 
 @pytest.mark.tmux
 @pytest.mark.slow
-@pytest.mark.usefixtures("home")
 def test_a_small_terminal_says_so_and_grows(terminal: Terminal) -> None:
     terminal.start(["log_greys"], 20, 5)
     shown = terminal.until(lambda text: "Too small" in text)

@@ -20,8 +20,6 @@ from tuisim.errors import ConfigError
 from tuisim.protocol import End
 from tuisim.runs.views import instant_of
 
-pytestmark = pytest.mark.usefixtures("home")
-
 PEN = LOGS.replace("tank_drive.on", "print('off we go')\ntank_drive.on", 1)
 
 

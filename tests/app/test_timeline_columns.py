@@ -24,7 +24,7 @@ async def entered(pilot: Pilot[Any], text: str) -> None:
 
 
 @pytest.mark.slow
-async def test_every_trace_of_the_chart_can_be_typed(home: object) -> None:
+async def test_every_trace_of_the_chart_can_be_typed() -> None:
     app = LabApp(
         settings(PROGRAM, autorun=True, speed=0.0, background="Grey_bands", panels_on=("chart",))
     )

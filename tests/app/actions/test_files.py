@@ -16,8 +16,6 @@ from tuisim.app.actions.files import own_editor
 from tuisim.app.app import LabApp
 from tuisim.errors import TuisimError
 
-pytestmark = pytest.mark.usefixtures("home")
-
 EDITOR = """\
 import sys
 print("THE EDITOR")

@@ -22,8 +22,6 @@ from tuisim.config.build import build_run_spec
 from tuisim.config.options import Settings
 from tuisim.runs.handle import RunOptions, start_run
 
-pytestmark = pytest.mark.usefixtures("home")
-
 
 @pytest.mark.parametrize("width", [80, 100, 120])
 @pytest.mark.parametrize(

@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-import pytest
-
 from tests.app.app_help import ENDLESS, ready, settings, until
 from tuisim.app.app import AppSettings, LabApp
 from tuisim.app.dialogs.question import Question
 from tuisim.app.snapshot import RunPhase
 from tuisim.config.build import build_run_spec
 from tuisim.config.options import Settings
-
-pytestmark = pytest.mark.usefixtures("home")
 
 
 async def test_a_paused_program_starts_again() -> None:

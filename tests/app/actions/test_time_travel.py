@@ -28,8 +28,6 @@ from tuisim.protocol import Answer, Resume, SetNoise
 from tuisim.runs.rerun import rerun, same
 from tuisim.runs.store import RunStore
 
-pytestmark = pytest.mark.usefixtures("home")
-
 STEPS = """\
 import time
 n = 0
@@ -281,7 +279,7 @@ async def run_over_bands(program: str) -> AsyncIterator[tuple[Pilot[Any], LabApp
 
 
 @pytest.mark.slow
-async def test_go_to_proposes_where_a_light_sensor_left_what_it_last_saw(home: object) -> None:
+async def test_go_to_proposes_where_a_light_sensor_left_what_it_last_saw() -> None:
     program = "# %%sim_magic_preloaded -b Grey_bands -x 250\ntank_drive.on_for_seconds(50, 50, 1)\n"
     async with run_over_bands(program) as (pilot, app):
         timeline = app.run_controller.timeline
@@ -300,7 +298,7 @@ async def test_go_to_proposes_where_a_light_sensor_left_what_it_last_saw(home: o
 
 
 @pytest.mark.slow
-async def test_go_to_proposes_no_change_at_the_edge_of_the_mat(home: object) -> None:
+async def test_go_to_proposes_no_change_at_the_edge_of_the_mat() -> None:
     program = "# %%sim_magic_preloaded -b Grey_bands\ntank_drive.on_for_seconds(100, 100, 6)\n"
     async with run_over_bands(program) as (pilot, app):
         recording = app.run_controller.timeline.recording

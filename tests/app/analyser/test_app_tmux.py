@@ -9,7 +9,7 @@ import pytest
 from tests.app.terminals import Terminal
 from tuisim.analysis.source import read_notes
 
-pytestmark = [pytest.mark.tmux, pytest.mark.slow, pytest.mark.usefixtures("home")]
+pytestmark = [pytest.mark.tmux, pytest.mark.slow]
 
 
 def test_from_a_run_to_the_bands_to_a_note(terminal: Terminal, home: Path) -> None:

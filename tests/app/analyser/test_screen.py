@@ -22,24 +22,12 @@ from tuisim.app.dialogs.palette import Palette
 from tuisim.config.build import build_run_spec
 from tuisim.config.options import Settings
 from tuisim.config.program_file import parse_program
-from tuisim.core.spec import NoiseSpec
 from tuisim.errors import LogError
 from tuisim.logs.reader import read_log
 from tuisim.runs.handle import RunOptions, start_run
 from tuisim.runs.run_folder import StoredRun
-from tuisim.runs.store import RunStore
 
 SIZES = [(80, 24), (120, 40), (200, 60)]
-
-
-@pytest.fixture(scope="module")
-def run() -> StoredRun:
-    """A run over the grey bands."""
-    spec = build_run_spec(Settings({"background": "Grey_bands"}))
-    assert spec.world.noise == NoiseSpec()
-    handle = start_run(program(LOGS), spec, RunOptions(speed=0.0))
-    handle.wait()
-    return RunStore().load_run(handle.run_id)
 
 
 async def opened(pilot: Pilot[Any]) -> tuple[Analyser, Model]:

@@ -9,8 +9,6 @@ from textual.widgets import Input, OptionList
 from tuisim.app.dialogs.entries import BreaksDialog, WatchesDialog
 from tuisim.core.spec import RobotSpec
 
-pytestmark = pytest.mark.usefixtures("home")
-
 
 @pytest.mark.parametrize("kind", [BreaksDialog, WatchesDialog])
 async def test_tab_completes_the_name_of_a_column(

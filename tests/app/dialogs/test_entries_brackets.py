@@ -17,8 +17,6 @@ from tuisim.core.geometry import Pose
 from tuisim.core.spec import RobotSpec
 from tuisim.runs.diff import RowDifference, RunDiff
 
-pytestmark = pytest.mark.usefixtures("home")
-
 
 def _poses() -> Screen[Any]:
     save_pose("door [/x]", Pose(1.0, 2.0, 3.0))

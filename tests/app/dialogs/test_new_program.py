@@ -17,8 +17,6 @@ from tuisim.config.build import build_run_spec
 from tuisim.config.options import Settings
 from tuisim.config.program_file import read_program
 
-pytestmark = pytest.mark.usefixtures("home")
-
 CHOSEN = {
     "as it is": ([], ("Grey_bands", "colorLeft", Skeleton.LOG)),
     "letters": ([*"grey_b", "right", *"gy", "right", "u"], ("Grey_bands", "gyro", Skeleton.UNTIL)),

@@ -11,8 +11,6 @@ from tuisim.app.app import LabApp
 from tuisim.app.dialogs.palette import Entry, ThemeChooser, matching
 from tuisim.app.guide.screen import GuideScreen
 
-pytestmark = pytest.mark.usefixtures("home")
-
 ENTRIES = [
     Entry(one.id, one.title, one.group, one.key_label, one.words) for one in ACTIONS.values()
 ]

@@ -27,8 +27,6 @@ from tuisim.runs.handle import RunOptions, start_run
 from tuisim.runs.store import RunStore
 from tuisim.terminal.cell_view import PixelView
 
-pytestmark = pytest.mark.usefixtures("home")
-
 
 def stored(text: str = LOGS, **choices: Any) -> str:
     """Carry a program out and return the run's id."""

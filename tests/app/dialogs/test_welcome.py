@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from tests.app.app_help import notices, ready, screen_text, settings, until, until_shown
+from tests.app.app_help import lab, notices, ready, screen_text, settings, until, until_shown
 from tuisim.app.app import AppSettings, LabApp
 from tuisim.app.dialogs.chooser import Chooser
 from tuisim.app.dialogs.new_program import NewProgramDialog
@@ -17,6 +17,7 @@ from tuisim.app.dialogs.welcome import Welcome
 from tuisim.app.editor.area import CodeArea
 from tuisim.app.editor.text_file import keep_draft
 from tuisim.app.snapshot import IN_RUN, RunPhase
+from tuisim.cli import run_command
 from tuisim.commands import app as command
 from tuisim.config.build import build_run_spec
 from tuisim.config.options import Settings
@@ -94,6 +95,20 @@ async def test_a_later_start_offers_unsaved_text_to_go_on_with(
         assert app.query_one(CodeArea).program_text == text
         assert app.document.dirty
         assert name or app.run_controller.next_run.spec.world.background == "Loop"
+
+
+async def test_all_that_the_first_welcome_offers_is_in_sight(tmp_path: Path) -> None:
+    folder = tmp_path / ("far/" * 9 + "away")
+    folder.mkdir(parents=True)
+    for number in range(3):
+        path = folder / f"a_program_with_a_name_{number}.py"
+        path.write_text("tank_drive.on_for_seconds(9, 9, 0.1)\n")
+        run_command(["run", str(path)])
+    async with LabApp(FIRST).run_test(size=(80, 24)) as pilot:
+        await ready(pilot)
+        await until_shown(pilot, "9 Run 2")
+        await until_shown(pilot, "? shows all keys")
+        assert "This is a robot lab." in screen_text(lab(pilot))
 
 
 NAMED: dict[str, tuple[dict[str, Any], bool]] = {

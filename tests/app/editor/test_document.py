@@ -23,8 +23,6 @@ from tuisim.config.build import build_run_spec
 from tuisim.config.options import Settings
 from tuisim.config.program_file import programs, read_program
 
-pytestmark = pytest.mark.usefixtures("home")
-
 TEXT = "print('A: 1')\nfor n in range(3):\n    print('B: ' + str(n))\n"
 
 

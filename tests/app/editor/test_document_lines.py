@@ -18,7 +18,6 @@ while True:
 
 
 @pytest.mark.slow
-@pytest.mark.usefixtures("home")
 async def test_breakpoints_and_light_stay_on_their_lines_when_a_held_program_is_edited() -> None:
     async with LabApp(settings(TURNS, speed=0.0)).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)

@@ -14,7 +14,7 @@ import pytest
 from tests.app.terminals import Terminal
 from tests.running import PATIENCE_S
 
-pytestmark = [pytest.mark.tmux, pytest.mark.slow, pytest.mark.usefixtures("home")]
+pytestmark = [pytest.mark.tmux, pytest.mark.slow]
 
 
 def kill_the_app(terminal: Terminal) -> None:

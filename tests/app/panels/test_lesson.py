@@ -34,7 +34,6 @@ from tuisim.lessons.spec import SHOWABLE
 
 
 @pytest.mark.slow
-@pytest.mark.usefixtures("home")
 async def test_a_lesson_from_its_first_step_to_its_model_answer(tmp_path: Path) -> None:
     async with LabApp(opened(tmp_path)).run_test(size=LARGE) as pilot:
         app = await ready(pilot)
@@ -53,7 +52,6 @@ async def test_a_lesson_from_its_first_step_to_its_model_answer(tmp_path: Path) 
         assert states() == dict.fromkeys(("number", "drive", "do"), "done")
 
 
-@pytest.mark.usefixtures("home")
 async def test_lesson_that_found_no_room_is_drawn_later(tmp_path: Path) -> None:
     async with LabApp(opened(tmp_path)).run_test(size=LARGE) as pilot:
         app = await ready(pilot)
@@ -65,7 +63,6 @@ async def test_lesson_that_found_no_room_is_drawn_later(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.usefixtures("home")
 async def test_leaving_and_coming_back_to_the_step(tmp_path: Path) -> None:
     async with LabApp(opened(tmp_path)).run_test(size=LARGE) as pilot:
         app = await ready(pilot)
@@ -76,7 +73,6 @@ async def test_leaving_and_coming_back_to_the_step(tmp_path: Path) -> None:
         await until(pilot, lambda: "2. Drive" in shown(again))
 
 
-@pytest.mark.usefixtures("home")
 async def test_hints_come_one_by_one_and_are_counted(tmp_path: Path) -> None:
     async with LabApp(opened(tmp_path)).run_test(size=LARGE) as pilot:
         app = await ready(pilot)
@@ -90,7 +86,6 @@ async def test_hints_come_one_by_one_and_are_counted(tmp_path: Path) -> None:
         assert "There are no more hints. M skips the step" in notices(app)
 
 
-@pytest.mark.usefixtures("home")
 async def test_skip_and_start_over(tmp_path: Path) -> None:
     async with LabApp(opened(tmp_path)).run_test(size=SMALL) as pilot:
         app = await ready(pilot)
@@ -106,7 +101,6 @@ async def test_skip_and_start_over(tmp_path: Path) -> None:
         assert program_path(app.lesson.lesson).with_suffix(".old.py").read_text() == "pass\n"  # type: ignore[arg-type]
 
 
-@pytest.mark.usefixtures("home")
 async def test_run_after_starting_over_is_judged(tmp_path: Path) -> None:
     async with LabApp(opened(tmp_path)).run_test(size=SMALL) as pilot:
         app = await ready(pilot)
@@ -117,7 +111,6 @@ async def test_run_after_starting_over_is_judged(tmp_path: Path) -> None:
         await until(pilot, lambda: "✓ Drive" in shown(app))
 
 
-@pytest.mark.usefixtures("home")
 async def test_menu_opens_another_lesson(tmp_path: Path) -> None:
     async with LabApp(opened(tmp_path)).run_test(size=SMALL) as pilot:
         app = await ready(pilot)
@@ -138,7 +131,6 @@ async def test_menu_opens_another_lesson(tmp_path: Path) -> None:
         assert app.run_controller.timeline.recording is None
 
 
-@pytest.mark.usefixtures("home")
 async def test_run_that_misses_a_goal_says_why_and_counts_as_a_try(tmp_path: Path) -> None:
     async with LabApp(opened(tmp_path)).run_test(size=LARGE) as pilot:
         app = await ready(pilot)
@@ -153,7 +145,6 @@ async def test_run_that_misses_a_goal_says_why_and_counts_as_a_try(tmp_path: Pat
 
 
 @pytest.mark.slow
-@pytest.mark.usefixtures("home")
 async def test_run_from_elsewhere_does_not_count(tmp_path: Path) -> None:
     async with LabApp(opened(tmp_path)).run_test(size=LARGE) as pilot:
         app = await ready(pilot)
@@ -168,7 +159,6 @@ async def test_run_from_elsewhere_does_not_count(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.usefixtures("home")
 async def test_run_before_the_step_does_not_count(tmp_path: Path) -> None:
     async with LabApp(opened(tmp_path)).run_test(size=LARGE) as pilot:
         app = await ready(pilot)
@@ -226,7 +216,6 @@ DONE: dict[str, tuple[str, Callable[[Pilot[Any], LabApp], Awaitable[None]]]] = {
 
 
 @pytest.mark.quick_cases("show", "breakpoint")
-@pytest.mark.usefixtures("home")
 @pytest.mark.parametrize("name", DONE)
 async def test_step_is_done_by_doing_it(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
@@ -242,7 +231,6 @@ async def test_step_is_done_by_doing_it(
         await until(pilot, lambda: states().get("do") == "done")
 
 
-@pytest.mark.usefixtures("home")
 async def test_panel_that_a_step_asks_for_is_not_open_already(tmp_path: Path) -> None:
     async with LabApp(opened(tmp_path, "show = 'instrumentation'")).run_test(size=LARGE) as pilot:
         app = await ready(pilot)
@@ -256,7 +244,6 @@ async def test_panel_that_a_step_asks_for_is_not_open_already(tmp_path: Path) ->
         await until(pilot, lambda: states().get("do") == "done")
 
 
-@pytest.mark.usefixtures("home")
 async def test_typing_ends_when_the_program_is_run_from_the_editor(tmp_path: Path) -> None:
     async with LabApp(opened(tmp_path)).run_test(size=SMALL) as pilot:
         app = await ready(pilot)
@@ -270,7 +257,6 @@ async def test_typing_ends_when_the_program_is_run_from_the_editor(tmp_path: Pat
 
 
 @pytest.mark.slow
-@pytest.mark.usefixtures("home")
 async def test_program_is_saved_when_it_runs(tmp_path: Path) -> None:
     async with LabApp(opened(tmp_path)).run_test(size=SMALL) as pilot:
         app = await ready(pilot)
@@ -283,7 +269,6 @@ async def test_program_is_saved_when_it_runs(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.usefixtures("home")
 async def test_other_panels_do_not_replace_the_lesson(tmp_path: Path) -> None:
     async with LabApp(opened(tmp_path)).run_test(size=SMALL) as pilot:
         app = await ready(pilot)
@@ -300,7 +285,6 @@ async def test_other_panels_do_not_replace_the_lesson(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.usefixtures("home")
 async def test_page_keys_scroll_the_text_while_the_world_has_the_focus(tmp_path: Path) -> None:
     async with LabApp(with_lines(opened(tmp_path), 40)).run_test(size=SMALL) as pilot:
         app = await ready(pilot)
@@ -312,7 +296,6 @@ async def test_page_keys_scroll_the_text_while_the_world_has_the_focus(tmp_path:
 
 
 @pytest.mark.quick_cases("debug", "output")
-@pytest.mark.usefixtures("home")
 # The settings are too high to stand beside a lesson in a low terminal.
 @pytest.mark.parametrize("panel", [name for name in PANELS if name not in ("lesson", "settings")])
 async def test_page_keys_scroll_the_text_beside_every_panel(panel: str, tmp_path: Path) -> None:
@@ -334,7 +317,6 @@ async def test_page_keys_scroll_the_text_beside_every_panel(panel: str, tmp_path
             await until(pilot, lambda: "Line 0\n" in shown(app))
 
 
-@pytest.mark.usefixtures("home")
 async def test_page_keys_belong_to_the_editor_while_it_is_typed_in(tmp_path: Path) -> None:
     async with LabApp(with_lines(opened(tmp_path), 60)).run_test(size=(200, 60)) as pilot:
         app = await ready(pilot)
@@ -347,7 +329,6 @@ async def test_page_keys_belong_to_the_editor_while_it_is_typed_in(tmp_path: Pat
         assert "Line 0\n" in shown(app)
 
 
-@pytest.mark.usefixtures("home")
 async def test_menu_shows_the_step_before_again(tmp_path: Path) -> None:
     async with LabApp(opened(tmp_path)).run_test(size=SMALL) as pilot:
         app = await ready(pilot)
@@ -364,7 +345,6 @@ async def test_menu_shows_the_step_before_again(tmp_path: Path) -> None:
 
 
 @pytest.mark.quick_cases("80")
-@pytest.mark.usefixtures("home")
 @pytest.mark.parametrize(
     ("size", "columns"), [(SMALL, 40), (LARGE, 45), ((200, 60), 58)], ids=["80", "120", "200"]
 )
@@ -381,7 +361,6 @@ async def test_lesson_stands_beside_world_and_code(
         assert app.panel_area.lesson.styles.width.value == columns
 
 
-@pytest.mark.usefixtures("home")
 async def test_damaged_progress_is_reported_and_kept(home: Path, tmp_path: Path) -> None:
     (home / "lessons").mkdir(parents=True)
     (home / "lessons" / "progress.json").write_text("[1]")
@@ -397,7 +376,6 @@ def test_steps_can_ask_for_every_panel() -> None:
     assert set(SHOWABLE) == set(PANELS) - {"lesson"}
 
 
-@pytest.mark.usefixtures("home")
 async def test_page_keys_scroll_the_text_after_a_run_from_the_editor(tmp_path: Path) -> None:
     async with LabApp(with_lines(opened(tmp_path), 40)).run_test(size=SMALL) as pilot:
         app = await ready(pilot)
@@ -406,7 +384,6 @@ async def test_page_keys_scroll_the_text_after_a_run_from_the_editor(tmp_path: P
         await until(pilot, lambda: "Line 0\n" not in shown(app))
 
 
-@pytest.mark.usefixtures("home")
 @pytest.mark.parametrize(
     ("text", "words"),
     [
@@ -426,7 +403,6 @@ async def test_answer_that_is_not_right_says_what_to_do(
         assert app.screen.query_one(".dialog").region.y == 0
 
 
-@pytest.mark.usefixtures("home")
 async def test_running_an_edited_text_ends_the_run_of_the_former_one(tmp_path: Path) -> None:
     async with LabApp(opened(tmp_path)).run_test(size=SMALL) as pilot:
         app = await ready(pilot)
@@ -440,7 +416,6 @@ async def test_running_an_edited_text_ends_the_run_of_the_former_one(tmp_path: P
         await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED)
 
 
-@pytest.mark.usefixtures("home")
 async def test_the_last_lesson_can_be_reached_in_a_low_terminal(tmp_path: Path) -> None:
     async with LabApp(opened(tmp_path)).run_test(size=SMALL) as pilot:
         app = await ready(pilot)
@@ -451,7 +426,6 @@ async def test_the_last_lesson_can_be_reached_in_a_low_terminal(tmp_path: Path) 
         assert listed.show_vertical_scrollbar
 
 
-@pytest.mark.usefixtures("home")
 @pytest.mark.parametrize(("size", "is_shown"), [(SMALL, False), (LARGE, True)])
 async def test_output_is_back_when_another_lesson_is_opened(
     size: tuple[int, int], is_shown: bool, tmp_path: Path
@@ -468,7 +442,6 @@ async def test_output_is_back_when_another_lesson_is_opened(
         )
 
 
-@pytest.mark.usefixtures("home")
 async def test_chart_stays_in_the_lesson_that_asks_for_it(tmp_path: Path) -> None:
     made = opened(tmp_path)
     async with LabApp(made).run_test(size=SMALL) as pilot:
@@ -482,7 +455,6 @@ async def test_chart_stays_in_the_lesson_that_asks_for_it(tmp_path: Path) -> Non
         await until(pilot, lambda: again.panel_area.shown("chart"))
 
 
-@pytest.mark.usefixtures("home")
 async def test_arrow_keys_move_the_robot_when_another_lesson_begins(tmp_path: Path) -> None:
     async with LabApp(opened(tmp_path)).run_test(size=SMALL) as pilot:
         app = await ready(pilot)

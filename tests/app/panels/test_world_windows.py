@@ -10,7 +10,7 @@ import pytest
 
 from tests.app.windows import WINDOWS, Pixels, shown_in
 
-pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("home")]
+pytestmark = pytest.mark.slow
 
 GREYS = (220, 211, 128)
 SPOTS = ((255, 0, 0), (0, 255, 0), (0, 0, 255))

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import random
 from dataclasses import replace
-from pathlib import Path
 
 import pytest
 from textual.widgets import Input, OptionList
@@ -71,7 +70,6 @@ async def test_random_and_back_to_the_start() -> None:
         assert app.run_controller.pose == Pose(150, 500, 0)
 
 
-@pytest.mark.usefixtures("home")
 def test_poses_are_kept_replaced_and_deleted() -> None:
     assert load_poses() == {}
     save_pose("by the wall", Pose(1, 2, -90))
@@ -83,8 +81,7 @@ def test_poses_are_kept_replaced_and_deleted() -> None:
     assert list(load_poses()) == ['"odd" [name] = ü']
 
 
-def test_saving_a_pose_keeps_the_users_comments(home: Path) -> None:
-    home.mkdir()
+def test_saving_a_pose_keeps_the_users_comments() -> None:
     poses_file().write_text(
         "# My poses\n[poses.a]  # the door\nx_mm = 1\ny_mm = 2\nheading_deg = 0\n"
     )
@@ -98,7 +95,6 @@ def test_saving_a_pose_keeps_the_users_comments(home: Path) -> None:
 @pytest.mark.parametrize(
     "name", ["", "  ", "x" * 41, "two\nlines"], ids=["empty", "blank", "long", "lines"]
 )
-@pytest.mark.usefixtures("home")
 def test_a_pose_needs_a_name(name: str) -> None:
     with pytest.raises(ConfigError, match="a pose needs a name"):
         save_pose(name, Pose(0, 0, 0))
@@ -114,15 +110,13 @@ def test_a_pose_needs_a_name(name: str) -> None:
         ("[[[", "is not TOML"),
     ],
 )
-def test_a_wrong_file_of_poses_is_told_and_left_alone(text: str, said: str, home: Path) -> None:
-    home.mkdir()
+def test_a_wrong_file_of_poses_is_told_and_left_alone(text: str, said: str) -> None:
     poses_file().write_text(text)
     with pytest.raises(ConfigError, match=said):
         save_pose("b", Pose(0, 0, 0))
     assert poses_file().read_text() == text
 
 
-@pytest.mark.usefixtures("home")
 async def test_saved_poses_in_the_app() -> None:
     async with LabApp(settings(LOGS)).run_test(size=(80, 24)) as pilot:
         app = await ready(pilot)

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import pytest
-
 from tests.running import over
 from tuisim.app.editor.text_file import drop_draft, keep_draft
 from tuisim.app.setup.recent import Kind, recent
@@ -13,8 +11,6 @@ from tuisim.config.build import build_run_spec
 from tuisim.config.options import Settings
 from tuisim.runs.handle import RunOptions, start_run
 from tuisim.source import Program
-
-pytestmark = pytest.mark.usefixtures("home")
 
 
 def kinds() -> list[tuple[Kind, str]]:

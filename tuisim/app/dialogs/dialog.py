@@ -38,11 +38,11 @@ _ENTER = re.compile(r"\bEnter\b(?: (\w+))?")
 _IMPERATIVES = {"applies": "apply", "goes": "go"}
 
 
-def name_and_title(name: str, title: str, name_cells: int) -> Table:
-    """Return a line of a list: a name, and a title that wraps beside it."""
+def name_and_title(name: str, title: str, name_cells: int, wraps: bool = True) -> Table:
+    """Return a line of a list: a name, and a title that wraps beside it, or is cut off."""
     table = Table.grid(padding=(0, 2), expand=True)
-    table.add_column(width=name_cells, style="bold")
-    table.add_column(ratio=1)
+    table.add_column(width=name_cells, style="bold", no_wrap=not wraps)
+    table.add_column(ratio=1, no_wrap=not wraps)
     # A user-defined name is no markup.
     table.add_row(Text(name), Text(title))
     return table

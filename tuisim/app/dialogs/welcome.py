@@ -116,4 +116,7 @@ class Welcome(Dialog[Begin | Recent]):
 
 
 def _option(number: int, name: str, title: str) -> Option:
-    return Option(name_and_title(f"{number} {name}", title, _NAME_CELLS), id=str(number))
+    # Nine lines and the keys below them are all in sight at 80x24.
+    return Option(
+        name_and_title(f"{number} {name}", title, _NAME_CELLS, wraps=False), id=str(number)
+    )

@@ -63,7 +63,7 @@ def recent(new_name: str) -> list[Recent]:
         return unsaved
     known = {draft.path for draft in kept}
     programs = [
-        Recent(Kind.PROGRAM, path, Path(path).name, f"In {_folder(Path(path))}, ran {when}")
+        Recent(Kind.PROGRAM, path, Path(path).name, f"Ran {when}, in {_folder(Path(path))}")
         for path, when in _programs(runs)
         if path not in known
     ]

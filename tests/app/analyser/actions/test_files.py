@@ -12,28 +12,14 @@ import pytest
 from textual.pilot import Pilot
 from textual.widgets import Input, Static
 
-from tests.app.app_help import LOGS, program, until
+from tests.app.app_help import until
 from tuisim.analysis.source import LogRequest
 from tuisim.app.analyser.app import Analyser, AnalyserApp
 from tuisim.app.dialogs.save import FileDialog
-from tuisim.config.build import build_run_spec
-from tuisim.config.options import Settings
 from tuisim.logs.export import log_metadata
 from tuisim.logs.reader import open_log, read_log
 from tuisim.runs.frames import samples_frame
-from tuisim.runs.handle import RunOptions, start_run
 from tuisim.runs.run_folder import StoredRun
-from tuisim.runs.store import RunStore
-
-
-@pytest.fixture(scope="module")
-def run() -> StoredRun:
-    """A run over the grey bands."""
-    handle = start_run(
-        program(LOGS), build_run_spec(Settings({"background": "Grey_bands"})), RunOptions(speed=0.0)
-    )
-    handle.wait()
-    return RunStore().load_run(handle.run_id)
 
 
 async def answered(pilot: Pilot[Any], key: str, text: object) -> str:

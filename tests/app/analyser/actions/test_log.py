@@ -11,30 +11,24 @@ from tests.app.app_help import LOGS, program, until
 from tuisim.analysis.source import LogRequest
 from tuisim.app.analyser.app import AnalyserApp
 from tuisim.app.dialogs.runs import Differences
-from tuisim.config.build import build_run_spec
-from tuisim.config.options import Settings
+from tuisim.core.spec import NoiseSpec
 from tuisim.runs.handle import RunOptions, start_run
 from tuisim.runs.run_folder import StoredRun
 from tuisim.runs.store import RunStore
 
 
-@pytest.fixture(scope="module")
-def two_runs() -> list[StoredRun]:
-    """One run and the same with noise."""
-    spec = build_run_spec(Settings({"background": "Grey_bands"}))
-    noisy = replace(spec, world=replace(spec.world, noise=replace(spec.world.noise, light=20)))
-    ids = []
-    for one in (spec, noisy):
-        handle = start_run(program(LOGS), one, RunOptions(speed=0.0))
-        handle.wait()
-        ids.append(handle.run_id)
-    return [RunStore().load_run(run_id) for run_id in ids]
+@pytest.fixture
+def noisy(run: StoredRun) -> StoredRun:
+    """The same run with noise."""
+    spec = replace(run.spec, world=replace(run.spec.world, noise=NoiseSpec(light=20)))
+    handle = start_run(program(LOGS), spec, RunOptions(speed=0.0))
+    handle.wait()
+    return RunStore().load_run(handle.run_id)
 
 
 @pytest.mark.slow
-async def test_events_and_differences_by_keys(two_runs: list[StoredRun]) -> None:
-    first, second = two_runs
-    async with AnalyserApp(LogRequest(runs=(first.id,))).run_test(size=(120, 40)) as pilot:
+async def test_events_and_differences_by_keys(run: StoredRun, noisy: StoredRun) -> None:
+    async with AnalyserApp(LogRequest(runs=(run.id,))).run_test(size=(120, 40)) as pilot:
         screen, model = await opened(pilot)
         await typed(pilot, "c", "=Colour < 60", "enter")
         events = model.events.found(model.log)
@@ -43,9 +37,9 @@ async def test_events_and_differences_by_keys(two_runs: list[StoredRun]) -> None
         assert (model.row, screen.pane.chosen) == (events[1].row, 1)
         await pilot.press("J", "J")
         assert model.row == events[0].row
-        await typed(pilot, "D", f"={first.id}", "enter")
+        await typed(pilot, "D", f"={run.id}", "enter")
         assert "that is the same run" in text_of(pilot)
-        await typed(pilot, f"={second.id}", "enter")
+        await typed(pilot, f"={noisy.id}", "enter")
         await until(pilot, lambda: isinstance(pilot.app.screen, Differences))
         await pilot.press("enter")
         await until(pilot, lambda: pilot.app.screen is screen)
