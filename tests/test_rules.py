@@ -16,6 +16,8 @@ import pytest
 import textual
 
 from tests.sources import ROOT, Function, Source, python_files, source
+from tests.words import TABLE as WORDS
+from tests.words import count_faults
 from tuisim import terminal
 
 MAX_FILE_TOKENS = 3_500
@@ -406,6 +408,15 @@ def test_rule(rule: str) -> None:
     found = {str(path.relative_to(ROOT)): list(find(source(path))) for path in paths}
     assert paths
     assert {name: places for name, places in found.items() if places} == {}
+
+
+def test_wrong_names_are_no_more_than_before() -> None:
+    names = count_faults(map(source, PACKAGE))
+    assert {
+        kind: f"{len(names[kind])} above {most}"
+        for kind, most in WORDS["most"].items()
+        if len(names[kind]) > most
+    } == {}
 
 
 def test_nothing_else_is_tracked_at_the_top_level() -> None:
