@@ -170,12 +170,10 @@ def _way_picture(run: StoredRun) -> Image:
     from PIL import ImageDraw
 
     picture = world_at_end(run)
-    records = run.telemetry.array()
+    records: Any = run.telemetry.array()
     view = world_view(run.spec.robot)
-    way = [
-        view.to_px(x, y)
-        for x, y in zip(records["x_mm"].tolist(), records["y_mm"].tolist(), strict=True)
-    ]
+    path: Any = view.to_px(records["x_mm"], records["y_mm"])
+    way = list(zip(*(places.tolist() for places in path), strict=True))
     draw = ImageDraw.Draw(picture)
     drawn = bool((records["flags"] & FLAG_PEN_DOWN).any())
     # The halo makes the path visible on bright and dark mats, but would cover a pen trace along it.

@@ -264,6 +264,8 @@ def read_run(folder: Path, document: str | None = None, known: RunSpec | None = 
         spec = _restored(data["spec"]) if known is None else known
         end = None if data["end"] is None else _end_of(data["end"])
         lost = [view.note or _lost_of(view, end) for view in (telemetry, output)]
+        # What has ended stays as it is.
+        telemetry.holds = output.holds = end is not None
         return StoredRun(
             folder=folder,
             id=_typed(data["id"], str, "id"),
