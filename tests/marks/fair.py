@@ -197,12 +197,6 @@ signal.signal(signal.SIGUSR1, lambda *_: print('got'))
 os.kill(os.getpid(), signal.SIGUSR1)
 time.sleep(0.1)
 print('on')""",
-    "alarm": """
-import signal, time
-signal.signal(signal.SIGALRM, lambda *_: print('ring'))
-signal.setitimer(signal.ITIMER_REAL, 0.1)
-time.sleep(0.5)
-print('on')""",
     "tiny_sleeps": """
 import time
 for _ in range(2000): time.sleep(0.0001)

@@ -116,7 +116,7 @@ class Child:
     def _patch_modules(self, turn: Callable[[], None]) -> None:
         """Patch what programs find, and make what runs them."""
         # Imported here: threads must be patched before anything else imports `threading`.
-        from tuisim.runtime.patches.alarm import patch_signals
+        from tuisim.runtime.patches.signals import patch_signals
         from tuisim.runtime.patches.threads import patch_threads
         from tuisim.runtime.program import ProgramOutcome, ProgramRunner
         from tuisim.runtime.scheduler import Scheduler

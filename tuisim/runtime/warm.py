@@ -31,7 +31,7 @@ LENGTH_BYTES = 4
 MOST_FILES = 8
 _READ_BYTES = 1 << 16
 _NEEDED_LATER = (
-    "tuisim.runtime.patches.alarm",
+    "tuisim.runtime.patches.signals",
     "tuisim.runtime.patches.threads",
     "tuisim.runtime.program",
     "tuisim.runtime.scheduler",

@@ -69,9 +69,7 @@ FUNCTIONS = {
     "time.asctime": ("1",),
     "os.urandom": ("", "'x'", "-1"),
     "os._exit": ("'x'",),
-    "signal.alarm": ("", "'x'", "1.5", "1, 2"),
-    "signal.setitimer": ("", "0", "0, 'x'", "0, -1", "9, 1", "0, 1, 2, 3"),
-    "signal.signal": ("", "14", "14, 3.5", "'x', 1"),
+    "signal.signal": ("", "15", "15, 3.5", "'x', 1"),
     "input": ("1, 2", "prompt='x'"),
     "_thread.start_new_thread": ("", "1, ()", "print, []", "print, (), 1"),
     "_thread.allocate_lock": ("1",),
@@ -87,7 +85,7 @@ FUNCTIONS = {
 CALLS = [f"{function}({arguments})" for function, every in FUNCTIONS.items() for arguments in every]
 
 TELL = """\
-import _thread, os, threading, time
+import _thread, os, signal, threading, time
 for call in {calls}:
     try:
         eval(call)

@@ -1,1 +1,1 @@
-"""What programs find instead of functions of Python: clocks, threads, alarms, randomness, waits for files."""
+"""What programs find instead of functions of Python: clocks, threads, signals, randomness, waits for files."""
