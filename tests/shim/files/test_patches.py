@@ -29,6 +29,6 @@ def test_the_shell_reads_and_writes_the_same_files(run_on: RunOn) -> None:
     assert lines == [
         "lego-ev3-l-motor",
         "0 100",
-        "sh: cannot write /sys/class/leds/led0:red:brick-status/max_brightness: Permission denied",
-        "cat: /sys/class/leds/led0:red:brick-status/no: No such file or directory",
+        "echo: [Errno 13] Permission denied: '/sys/class/leds/led0:red:brick-status/max_brightness'",
+        "cat: [Errno 2] No such file or directory: '/sys/class/leds/led0:red:brick-status/no'",
     ]
