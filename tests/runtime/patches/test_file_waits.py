@@ -25,26 +25,31 @@ PROGRAMS = {
         ["2020 2 2020", "2020 2020-01-01 00:00:02+00:00 2020-01-01"],
     ),
     "select": (
-        NOW + "import os, select\nr, w = os.pipe()\nprint(select.select([r], [], [], 2.5), now())\n"
-        "os.write(w, b'x')\nprint(select.select([r], [], [], 5)[0] == [r], now())",
+        NOW
+        + "import select, socket\nr, w = socket.socketpair()\nprint(select.select([r], [], [], 2.5), now())\n"
+        "w.send(b'x')\nprint(select.select([r], [], [], 5)[0] == [r], now())",
         ["([], [], []) 2.5", "True 2.5"],
+    ),
+    "select for nothing": (
+        NOW + "import select\nprint(select.select([], [], [], 2), now())",
+        ["([], [], []) 2.0"],
     ),
     "poll": (
         NOW
-        + "import os, select\nr, w = os.pipe()\np = select.poll()\np.register(r, select.POLLIN)\n"
-        "print(p.poll(1500), now())\nos.write(w, b'x')\nprint(p.poll() == [(r, select.POLLIN)], now())",
+        + "import select, socket\nr, w = socket.socketpair()\np = select.poll()\np.register(r, select.POLLIN)\n"
+        "print(p.poll(1500), now())\nw.send(b'x')\nprint(p.poll() == [(r.fileno(), select.POLLIN)], now())",
         ["[] 1.5", "True 1.5"],
     ),
-    "epoll": (
+    "selectors": (
         NOW
-        + "import os, select\nr, w = os.pipe()\nwith select.epoll() as p:\n    p.register(r, select.EPOLLIN)\n"
-        "    print(p.poll(1.5), now())\n    os.write(w, b'x')\n"
-        "    print(p.poll() == [(r, select.EPOLLIN)], now(), p.closed)",
-        ["[] 1.5", "True 1.5 False"],
+        + "import selectors, socket\nr, w = socket.socketpair()\nwith selectors.DefaultSelector() as s:\n"
+        "    s.register(r, selectors.EVENT_READ)\n    print(s.select(1.5), now())\n    w.send(b'x')\n"
+        "    print(s.select()[0][0].fileobj is r, now())",
+        ["[] 1.5", "True 1.5"],
     ),
     "a thread ends a select": (
-        NOW + "import os, select, threading\nr, w = os.pipe()\n"
-        "threading.Timer(0.5, lambda: os.write(w, b'x')).start()\nprint(select.select([r], [], [])[0] == [r], now())",
+        NOW + "import select, socket, threading\nr, w = socket.socketpair()\n"
+        "threading.Timer(0.5, lambda: w.send(b'x')).start()\nprint(select.select([r], [], [])[0] == [r], now())",
         ["True 0.5"],
     ),
     "socket timeout": (
@@ -75,3 +80,19 @@ def test_it_is_the_runs(run: Run, text: str, lines: list[str] | None) -> None:
     first = run(text, prelude="none")
     assert first.ended.end == "finished", first.errors
     assert first.lines == (run(text, prelude="none").lines if lines is None else lines)
+
+
+FILES = "waiting for a file is not part of the simulated brick (wait for sockets or the brick's files; use queue.Queue"
+REFUSED = {
+    "select.select([r], [], [], 1)": f"{FILES} between threads)",
+    "select.select([], [], [sys.stdin])": f"{FILES} between threads)",
+    "select.poll().register(r)": f"{FILES} between threads)",
+    "selectors.DefaultSelector().register(r, 1)": f"{FILES} between threads)",
+    "select.epoll().register(r, 1)": "select.epoll is not part of the simulated brick (use select.poll)",
+}
+
+
+@pytest.mark.parametrize("statement", REFUSED)
+def test_other_files_are_refused(run: Run, statement: str) -> None:
+    done = run(f"import os, select, selectors, sys\nr, w = os.pipe()\n{statement}", prelude="none")
+    assert done.errors[-1] == f"NotSimulated: {REFUSED[statement]}"

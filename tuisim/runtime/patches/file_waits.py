@@ -1,16 +1,18 @@
-"""Waiting for files, pipes and sockets in simulated time: `select`, `selectors` and `socket`."""
+"""Waiting for sockets and the brick's files in simulated time: `select`, `selectors` and `socket`."""
 
 from __future__ import annotations
 
 import errno
 import os
 import select
+import stat
 import types
 from collections.abc import Callable
 from functools import partial, wraps
-from typing import Any, TypeVar
+from typing import Any, NoReturn, TypeVar
 
 from tuisim.core.profile import NS_PER_S
+from tuisim.errors import NotSimulated
 from tuisim.runtime.control import THREADS
 from tuisim.runtime.patches.replacement import replace
 from tuisim.runtime.session import Session
@@ -41,7 +43,7 @@ _WRITES = ("send", "sendto", "sendmsg")
 
 
 class FileWaits:
-    """Polls real files without blocking, and the brick's, and waits on the simulated clock.
+    """Polls sockets without blocking, and the brick's files, and waits on the simulated clock.
 
     Args:
         session: The run.
@@ -84,47 +86,45 @@ class FileWaits:
 
     def patch_select(self) -> None:
         """Replace the blocking functions of `select`."""
-        real = self._select
 
         def simulated(readers: Any, writers: Any, others: Any, timeout: Any = None) -> Any:
-            if self.devices.by_fd and any(map(self.devices.opened, (*readers, *writers, *others))):
-                return self._select_devices(readers, writers, others, timeout)
-            # The real function validates the arguments.
-            found = real(
-                readers, writers, others, 0 if timeout is None or timeout >= 0 else timeout
-            )
-            if any(found) or timeout == 0:
-                return found
+            groups = [list(group) for group in (readers, writers, others)]
+            sockets = [[file for file in group if not self.find_device(file)] for group in groups]
 
             def look() -> tuple[Any, ...]:
-                found = real(readers, writers, others, 0)
-                return found if any(found) else ()
+                # The real function validates the arguments.
+                found = self._select(sockets[0], sockets[1], sockets[2], min(timeout or 0, 0))
+                ready = tuple(
+                    [file for file in group if file in there or self._is_ready(file, events)]
+                    for group, there, events in zip(groups, found, _SELECTED, strict=True)
+                )
+                return ready if any(ready) else ()
 
-            return self.until_found(look, _nanoseconds(timeout, NS_PER_S)) or ([], [], [])
+            devices = sockets != groups
+            if timeout == 0 and not devices:
+                return look() or ([], [], [])
+            limit = _nanoseconds(timeout, NS_PER_S)
+            return self.until_found(look, limit, devices) or ([], [], [])
 
         replace(select, "select", simulated, (3, 4))
-        module: Any = select
-        if self._classes["poll"] is not None:
-            real_poll = self._classes["poll"]
-            replace(select, "poll", lambda: _Polling(self, real_poll(), "poll", _NS_PER_MS), (0, 0))
+        if (real_poll := self._classes["poll"]) is not None:
+            replace(select, "poll", lambda: _Polling(self, real_poll()), (0, 0))
         if self._classes["epoll"] is not None:
-            module.epoll = _epoll_class(self, self._classes["epoll"])
+            vars(select)["epoll"] = _RefusedEpoll
 
-    def _select_devices(self, readers: Any, writers: Any, others: Any, timeout: Any) -> Any:
-        """Do what `select.select` does if device files are among the files."""
-        groups = [list(group) for group in (readers, writers, others)]
+    def find_device(self, file: Any) -> OpenFile | None:
+        """Return the device file behind a file; None for a socket.
 
-        def look() -> tuple[Any, ...]:
-            real = [[one for one in group if self.devices.opened(one) is None] for group in groups]
-            found = self._select(real[0], real[1], real[2], 0)
-            ready = tuple(
-                [one for one in group if one in there or self._is_ready(one, events)]
-                for group, there, events in zip(groups, found, _SELECTED, strict=True)
+        Raises:
+            NotSimulated: it is neither.
+        """
+        opened = self.devices.opened(file)
+        if opened is None and not _is_socket(file):
+            raise NotSimulated(
+                "waiting for a file is not part of the simulated brick",
+                "wait for sockets or the brick's files; use queue.Queue between threads",
             )
-            return ready if any(ready) else ()
-
-        limit = None if timeout is None else _nanoseconds(timeout, NS_PER_S)
-        return self.until_found(look, limit, devices=True) or ([], [], [])
+        return opened
 
     def _is_ready(self, file: Any, events: int) -> bool:
         opened = self.devices.opened(file)
@@ -147,11 +147,7 @@ class FileWaits:
     def _selector_class(self, name: str) -> Any:
         """Return what a selector polls with; it waits itself."""
         real: Any = self._classes[name]
-        return (
-            staticmethod(lambda: _AtOnce(self, real(), "poll", 1))
-            if name in ("poll", "epoll")
-            else real
-        )
+        return staticmethod(lambda: _AtOnce(self, real())) if name in ("poll", "epoll") else real
 
     def _selector_select(self, look: Callable[[Any, float], Any]) -> Callable[..., Any]:
         @wraps(look)
@@ -226,6 +222,27 @@ def _descriptor(file: Any) -> int:
     return file if isinstance(file, int) else int(file.fileno())
 
 
+def _is_socket(file: Any) -> bool:
+    try:
+        return stat.S_ISSOCK(os.fstat(_descriptor(file)).st_mode)
+    except (AttributeError, OSError, TypeError, ValueError):
+        # The real function raises its error.
+        return True
+
+
+class _RefusedEpoll:
+    """Replaces `select.epoll`, which `selectors` opens and closes when it is imported."""
+
+    def __init__(self, *_arguments: Any) -> None:
+        pass
+
+    def close(self) -> None:
+        """Do nothing."""
+
+    def __getattr__(self, _name: str) -> NoReturn:
+        raise NotSimulated("select.epoll is not part of the simulated brick", "use select.poll")
+
+
 def _pending_error(socket: Any) -> int:
     import socket as module
 
@@ -248,12 +265,10 @@ class _Polling:
     Args:
         waits: How to wait.
         real: The wrapped object.
-        method: Name of its blocking method.
-        per_unit: Nanoseconds per unit of its timeout.
     """
 
-    def __init__(self, waits: FileWaits, real: Any, method: str, per_unit: int) -> None:
-        self._waits, self._real, self._method, self._per_unit = waits, real, method, per_unit
+    def __init__(self, waits: FileWaits, real: Any) -> None:
+        self._waits, self._real = waits, real
         self._polled: dict[int, tuple[OpenFile, int]] = {}
         """The device files, and the events that are asked for, by descriptor."""
 
@@ -267,7 +282,7 @@ class _Polling:
 
     def register(self, file: Any, *events: int) -> None:
         """Add a file."""
-        opened = self._waits.devices.opened(file)
+        opened = self._waits.find_device(file)
         if opened is None:
             self._real.register(file, *events)
         else:
@@ -285,14 +300,15 @@ class _Polling:
         if self._polled.pop(_descriptor(file), None) is None:
             self._real.unregister(file)
 
-    def poll(self, timeout: Any = None, *more: Any) -> Any:
+    def poll(self, timeout_ms: Any = None) -> Any:
         """Return the events; blocks in simulated time."""
         # Negative means without limit, as in the real one.
-        limit = None if timeout is None or timeout < 0 else _nanoseconds(timeout, self._per_unit)
-        return self._waits.until_found(lambda: self._look(*more), limit, bool(self._polled))
+        unlimited = timeout_ms is None or timeout_ms < 0
+        limit = None if unlimited else _nanoseconds(timeout_ms, _NS_PER_MS)
+        return self._waits.until_found(self._look, limit, self.has_devices)
 
     def _look(self, *more: Any) -> Any:
-        found = getattr(self._real, self._method)(0, *more)
+        found = self._real.poll(0, *more)
         for fd, (opened, wanted) in self._polled.items():
             if ready := opened.file.ready(opened) & (wanted | select.POLLERR):
                 found.append((fd, ready))
@@ -302,7 +318,7 @@ class _Polling:
 class _AtOnce(_Polling):
     """The same without waiting."""
 
-    def poll(self, timeout: Any = None, *more: Any) -> Any:
+    def poll(self, timeout_ms: Any = None, *more: Any) -> Any:
         """Return the events that there are."""
         return self._look(*more)
 
@@ -310,30 +326,3 @@ class _AtOnce(_Polling):
 def _polls_devices(selector: Any) -> bool:
     poll = getattr(selector, "_selector", None)
     return isinstance(poll, _Polling) and poll.has_devices
-
-
-def _epoll_class(waits: FileWaits, real: Any) -> type:
-    class epoll(_Polling):  # noqa: N801 - the name that the program sees
-        def __init__(self, sizehint: int = -1, flags: int = 0) -> None:
-            super().__init__(waits, real(sizehint, flags), "poll", NS_PER_S)
-
-        @classmethod
-        def fromfd(cls, fd: int) -> epoll:
-            """Return an epoll object for a descriptor."""
-            made = cls.__new__(cls)
-            _Polling.__init__(made, waits, real.fromfd(fd), "poll", NS_PER_S)
-            return made
-
-        def poll(self, timeout: Any = None, maxevents: int = -1) -> Any:
-            """Return the events; blocks in simulated time."""
-            return super().poll(timeout, maxevents)
-
-        def __enter__(self) -> epoll:
-            self._real.__enter__()
-            return self
-
-        def __exit__(self, *error: Any) -> None:
-            self._real.__exit__(*error)
-
-    epoll.__module__, epoll.__qualname__, epoll.__doc__ = "select", "epoll", real.__doc__
-    return epoll
