@@ -16,9 +16,9 @@ from tuisim.core.spec import RunSpec
 from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError, nearest
 from tuisim.runs.handle import DEFAULT_TIME_LIMIT_S, RunOptions, start_run
-from tuisim.runs.presses import press_actions
 from tuisim.runs.records import Stream
 from tuisim.runs.run_folder import StoredRun
+from tuisim.runs.run_options import press_actions
 from tuisim.runs.store import RunStore
 from tuisim.source import Program
 

@@ -8,7 +8,7 @@ from tuisim.config.presses import ButtonPress, parse_press
 from tuisim.core.spec import BUTTONS
 from tuisim.errors import ConfigError
 from tuisim.protocol import SetButtons, UserAction
-from tuisim.runs.presses import press_actions
+from tuisim.runs.run_options import press_actions
 
 GIVEN = {
     "plain": ("enter@1", ButtonPress("enter", 1.0, 1.1)),

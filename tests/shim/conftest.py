@@ -27,7 +27,7 @@ from tuisim.core.spec import (
     WorldSpec,
 )
 from tuisim.runs.handle import RunHandle, RunOptions, start_run
-from tuisim.runs.presses import press_actions
+from tuisim.runs.run_options import press_actions
 from tuisim.source import Program
 
 START = Pose(500.0, 571.5, 0.0)

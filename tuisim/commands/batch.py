@@ -39,7 +39,7 @@ from tuisim.commands.echo import (
     table,
     tell,
 )
-from tuisim.commands.interruption import Interrupted, signals_raise
+from tuisim.commands.exit_status import Interrupted, signals_raise
 from tuisim.commands.listings import names_of
 from tuisim.config.command_line import Arguments, command
 from tuisim.config.options import APP, PANEL

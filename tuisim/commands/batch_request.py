@@ -30,7 +30,7 @@ from tuisim.errors import ConfigError
 from tuisim.goals.files import GoalsFile, load_goals
 from tuisim.logs.export import LISTED, check_target
 from tuisim.runs.handle import RunOptions
-from tuisim.runs.presses import press_actions
+from tuisim.runs.run_options import press_actions
 
 _GRID, _RESULTS, _LIMITS = "Parameters", "Results", "Input and limits"
 OPTIONS = (

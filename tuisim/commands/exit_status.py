@@ -1,8 +1,12 @@
-"""The end of a run as an exit code, a status line or a JSON object."""
+"""The end of a run as an exit code, a status line or a JSON object; the end of a command by a signal."""
 
 from __future__ import annotations
 
+import signal
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager, contextmanager
 from dataclasses import asdict
+from types import FrameType
 from typing import Any, assert_never
 
 from tuisim.commands.echo import echo_error, echo_error_lines, echo_json
@@ -99,3 +103,31 @@ def report(run: StoredRun, exit_code: int, *, as_json: bool) -> None:
         echo_json({**facts, "exit_code": exit_code}, flush=True)
     else:
         echo_error(last_state(facts))
+
+
+class Interrupted(KeyboardInterrupt):
+    """Ctrl-C or SIGTERM."""
+
+    def __init__(self, number: int) -> None:
+        super().__init__()
+        self.exit_code = SIGNALLED + number
+
+
+def signals_raise() -> AbstractContextManager[None]:
+    """Raise `Interrupted` in the block for SIGINT and SIGTERM."""
+
+    def stop(number: int, frame: FrameType | None) -> None:
+        raise Interrupted(number)
+
+    return signals_handled(stop)
+
+
+@contextmanager
+def signals_handled(handler: Callable[[int, FrameType | None], None]) -> Iterator[None]:
+    """Let a function handle SIGINT and SIGTERM in the block."""
+    before = {number: signal.signal(number, handler) for number in (signal.SIGINT, signal.SIGTERM)}
+    try:
+        yield
+    finally:
+        for number, earlier in before.items():
+            signal.signal(number, earlier)

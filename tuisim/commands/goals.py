@@ -34,8 +34,8 @@ from tuisim.goals.judgement import GoalState, Judgement, most_points, points
 from tuisim.marks.runs import STALL_LIMIT_S, TIME_LIMIT_S, MarkPlan
 from tuisim.marks.sheet import Sheet, SheetRow, in_words
 from tuisim.runs.handle import RunOptions
-from tuisim.runs.presses import press_actions
 from tuisim.runs.run_folder import StoredRun
+from tuisim.runs.run_options import press_actions
 from tuisim.runs.store import RunStore
 
 _RANGE = re.compile(r"(\d{1,9})\.\.(\d{1,9})")

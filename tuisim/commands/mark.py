@@ -16,7 +16,7 @@ from tuisim.batch.task import Keep
 from tuisim.charts.files import write_whole
 from tuisim.commands.batch_options import jobs_option, keep_option
 from tuisim.commands.echo import Progress, echo, echo_error, echo_lines, echo_wrapped, table, tell
-from tuisim.commands.interruption import Interrupted, signals_raise
+from tuisim.commands.exit_status import Interrupted, signals_raise
 from tuisim.commands.listings import names_of
 from tuisim.commands.run_options import input_option, timeout_option
 from tuisim.config.command_line import Arguments, WordType, argument, command, option

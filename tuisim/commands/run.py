@@ -9,7 +9,7 @@ from typing import Any
 from tuisim.breakpoints import parse_breakpoints, parse_watch
 from tuisim.commands import exit_status
 from tuisim.commands.echo import Progress, echo_error, echo_written, is_watched, tell
-from tuisim.commands.interruption import signals_handled
+from tuisim.commands.exit_status import signals_handled
 from tuisim.commands.listings import COLUMN, WORLD, names_of
 from tuisim.commands.notebooks import NotRun, print_list, print_results, to_list
 from tuisim.commands.relay import Follower, RelayInterrupts
@@ -34,8 +34,8 @@ from tuisim.errors import (
 from tuisim.logs.export import EXPORTERS, check_targets, export_samples, export_telemetry
 from tuisim.protocol import Inspect, Inspected, Message, Paused, Resume
 from tuisim.runs.handle import RunHandle, RunOptions, start_run
-from tuisim.runs.presses import press_actions
 from tuisim.runs.run_folder import StoredRun
+from tuisim.runs.run_options import press_actions
 from tuisim.runs.store import RunStore
 from tuisim.source import source_lines
 

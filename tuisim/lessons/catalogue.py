@@ -10,9 +10,8 @@ from tuisim.config.files import FILE_SUFFIXES
 from tuisim.config.folders import user_path
 from tuisim.core.profile import Library
 from tuisim.errors import ConfigError, nearest
-from tuisim.lessons.files import SUFFIX, load_lesson, name_of
+from tuisim.lessons.files import SUFFIX, load_lesson, name_of, told_name
 from tuisim.lessons.spec import Lesson
-from tuisim.lessons.telling import told_name
 
 VARIABLE = "TUISIM_LESSONS"
 """The environment variable that names a folder of own lessons."""

@@ -4,7 +4,9 @@ Each section `## …` of the text is a step. Blocks of code that begin with thre
 `python answer` or `python wrong` are not part of the text: the program to complete, model answers, and programs that
 must not pass. `python wrong: no sensor` also says which wrong way the program goes.
 
-With the key `tells` a file is a telling of the lesson in another file: see `tuisim.lessons.telling`.
+With the key `tells` a file is a telling of the lesson in another file, for another library. It has a text, programs and
+hints of its own. The world, the goals and the checks are those of the other lesson, except where it has the same keys
+itself. Goals and steps belong together by their `name`, other worlds by their `where`.
 """
 
 from __future__ import annotations
@@ -25,7 +27,6 @@ from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError
 from tuisim.goals.files import goals_from_list, line_in_errors
 from tuisim.goals.trial_world import check_names, others_of
-from tuisim.lessons import telling
 from tuisim.lessons.events import event_of, is_met, model_event
 from tuisim.lessons.spec import (
     CHECKS,
@@ -42,6 +43,8 @@ from tuisim.lessons.spec import (
 )
 
 SUFFIX = ".md"
+TELLS = "tells"
+"""The key that names the file of the other lesson."""
 FENCE = "+++"
 MAX_MINUTES = 600
 MAX_WRONG = 20
@@ -138,14 +141,14 @@ def _front(lines: Sequence[str], path: Path) -> tuple[str, int]:
 
 def _with_told(data: Any, path: Path) -> Any:
     """Return the TOML of a lesson; if it is a telling, together with that of the lesson that it tells."""
-    if telling.KEY not in data:
+    if TELLS not in data:
         return data
-    at = Location(str(path)).at(telling.KEY)
-    other = path.parent / files.convert(data[telling.KEY], str, at)
+    at = Location(str(path)).at(TELLS)
+    other = path.parent / files.convert(data[TELLS], str, at)
     told = files.parse_toml(_front(_read(other).split("\n"), other)[0], str(other), ConfigError)
-    if telling.KEY in told:
+    if TELLS in told:
         raise at.wrong(f"{other.name} is a telling, too", "name the lesson that it tells")
-    return telling.merged(told, data)
+    return merge_telling(told, data)
 
 
 def _end_of_front(lines: Sequence[str], path: Path) -> int:
@@ -395,3 +398,32 @@ def _with_answers(steps: Sequence[LessonStep], at: Location) -> tuple[LessonStep
             replace(step, answer=answer if isinstance(step.check, RunCheck) else step.answer)
         )
     return tuple(reversed(found))
+
+
+def told_name(lesson: str, library: str) -> str:
+    """Return the name of the telling of a lesson for a library."""
+    return f"{lesson}-{library}"
+
+
+def merge_telling(other: Any, own: Any) -> Any:
+    """Return values of TOML where those of the telling take precedence over those of the other lesson."""
+    match other, own:
+        case dict(), dict():
+            return {
+                **other,
+                **{
+                    key: merge_telling(other.get(key), value)
+                    for key, value in own.items()
+                    if key != TELLS
+                },
+            }
+        case [dict(), *_], [dict(), *_]:
+            named = {_table_name(table): table for table in own}
+            known = {_table_name(table) for table in other}
+            tables = [merge_telling(table, named.get(_table_name(table), {})) for table in other]
+            return tables + [table for table in own if _table_name(table) not in known]
+    return own
+
+
+def _table_name(table: Any) -> Any:
+    return str(table.get("name", table.get("where"))) if isinstance(table, dict) else ""

@@ -19,8 +19,8 @@ from tuisim.marks.outcome import Outcome, outcome_of
 from tuisim.marks.students import Student
 from tuisim.marks.workspace import copy_of, digest_of, program_in
 from tuisim.runs.handle import RunOptions, user_python_path
-from tuisim.runs.presses import press_actions
 from tuisim.runs.removal import remove_tree
+from tuisim.runs.run_options import press_actions
 from tuisim.runs.temporary import temporary_home
 
 STALL_LIMIT_S = 10.0

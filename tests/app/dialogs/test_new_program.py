@@ -9,10 +9,9 @@ import pytest
 from tests.app.app_help import ready, until, until_shown
 from tuisim.app.app import AppSettings, LabApp
 from tuisim.app.dialogs.chooser import MatPicker
-from tuisim.app.dialogs.new_program import NewProgramDialog
+from tuisim.app.dialogs.new_program import NewProgramDialog, Skeleton, program_text
 from tuisim.app.dialogs.question import Question
 from tuisim.app.editor.area import CodeArea
-from tuisim.app.setup.new_program import Skeleton, program_text
 from tuisim.config.build import build_run_spec
 from tuisim.config.options import Settings
 from tuisim.config.program_file import read_program

@@ -12,12 +12,12 @@ from textual.pilot import Pilot
 from tests.app.app_help import ENDLESS, notices, ready, screen_text, settings, until
 from tuisim.app.actions.files import open_path
 from tuisim.app.app import AppSettings, LabApp
+from tuisim.app.dialogs.new_program import Skeleton, program_text
 from tuisim.app.dialogs.question import Question
 from tuisim.app.dialogs.save import ProgramDialog
 from tuisim.app.editor.area import CodeArea
 from tuisim.app.editor.text_file import find_draft, keep_draft
 from tuisim.app.panels.code import Code
-from tuisim.app.setup.new_program import Skeleton, program_text
 from tuisim.app.snapshot import RunPhase
 from tuisim.config.build import build_run_spec
 from tuisim.config.options import Settings

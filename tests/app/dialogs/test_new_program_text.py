@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from tests.running import Run
-from tuisim.app.setup.new_program import READINGS, Skeleton, program_text
+from tuisim.app.dialogs.new_program import READINGS, Skeleton, program_text
 from tuisim.config.program_file import parse_program
 
 

@@ -8,9 +8,8 @@ import pytest
 
 from tests.lessons.test_files import GOAL, HEAD, RUN, lesson
 from tuisim.errors import ConfigError
-from tuisim.lessons.files import load_lesson
+from tuisim.lessons.files import load_lesson, merge_telling
 from tuisim.lessons.spec import Lesson, RunCheck
-from tuisim.lessons.telling import merged
 
 ANSWER = "## One\n```python answer\nprint(1)\n```\n"
 
@@ -83,4 +82,4 @@ MERGED = {
 
 @pytest.mark.parametrize(("other", "own", "both"), MERGED.values(), ids=MERGED)
 def test_own_values_take_precedence(other: object, own: object, both: object) -> None:
-    assert merged(other, own) == both
+    assert merge_telling(other, own) == both
