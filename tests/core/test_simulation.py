@@ -8,6 +8,7 @@ import pytest
 
 from tests.core.memory_sink import MemorySink
 from tests.core.motors import commanded, run
+from tuisim.core.drift_spec import NO_DRIFT
 from tuisim.core.field import Field
 from tuisim.core.geometry import Pose
 from tuisim.core.profile import NBEV3DEVSIM, NS_PER_S, PROFILES, ROBOLAB, ProfileSpec
@@ -173,3 +174,36 @@ def test_a_drive_in_a_full_world_gives_what_it_gave(profile: str) -> None:
         rows.append((*seen.values(), *places, *(one.position_deg for one in motors[::2]), blocked))
     sums = [sum(map(abs, values)) for values in zip(*rows, strict=True)]
     assert sums == pytest.approx(list(map(float, GIVEN[profile].split())), abs=0.01)
+
+
+STEPPED = {
+    "robolab": [0, 0, 546],
+    "nbev3devsim": [2, 720, 248],
+    "lego-micropython": [26, 2400, 524],
+    "pybricks4": [25, 2400, 538],
+}
+"""Ticks that are run one by one, of 2,400 or 720: in the open, with noise, and among solid things."""
+
+
+@pytest.mark.parametrize("profile", STEPPED)
+def test_few_ticks_are_run_one_by_one(profile: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    stepped: list[Simulation] = []
+    step = Simulation.tick_once
+
+    def count(sim: Simulation) -> None:
+        stepped.append(sim)
+        step(sim)
+
+    monkeypatch.setattr(Simulation, "tick_once", count)
+    counts = []
+    solid = replace(FULL, noise=NoiseSpec(), drift=NO_DRIFT)
+    for world in (WorldSpec(), WorldSpec(noise=NoiseSpec(0, 20)), solid):
+        sim = simulation_of(RunSpec(RobotSpec(weight=3.0), world, PROFILES[profile]), MemorySink())
+        dice = Random(2)
+        for _ in range(8):
+            for motor in (sim.left, sim.right):
+                run(sim, motor, dice.randrange(-300, 900))
+            sim.advance(3 * sim.spec.profile.tick_hz)
+        counts.append(len(stepped))
+        stepped.clear()
+    assert counts == STEPPED[profile]
