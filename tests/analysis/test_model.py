@@ -9,6 +9,7 @@ from tests.app.analyser.logs import long_log, model_of, wide_log
 from tuisim.errors import LogError
 from tuisim.logs.columns import Layout
 from tuisim.logs.log import Log
+from tuisim.logs.plateaus import Plateau
 
 
 def test_the_cursor_goes_along_the_selected_variable() -> None:
@@ -91,3 +92,12 @@ def test_a_log_without_numbers_is_refused() -> None:
 
 
 # Notes
+
+
+def test_bands_are_those_of_the_variables_in_view() -> None:
+    model = model_of(long_log())
+    assert (model.unsearched(), list(model.bands())) == (["Colour", "Left"], [])
+    model.find_bands(["Colour"], lambda _: [Plateau(0, 5, 2.0, 0.0, 0.0)])
+    (report,) = model.reports()
+    assert list(model.bands()) == list(report.bands) != []
+    assert (model.unsearched(), len(model.bands_in_words())) == (["Left"], 1)

@@ -264,3 +264,11 @@ def test_other_encodings_and_line_ends_are_read(tmp_path: Path) -> None:
     file = tmp_path / "a.py"
     file.write_bytes("# coding: latin-1\r\nx = 'ä'\r\n".encode("latin-1"))
     assert read_program(file).program.text == "# coding: latin-1\nx = 'ä'\n"
+
+
+@pytest.mark.parametrize(
+    ("name", "metavar"),
+    [("solid", ""), ("walls", "on|off"), ("seed", "N"), ("output", ""), ("background", "MAT")],
+)
+def test_the_help_says_what_stands_for_a_value(name: str, metavar: str) -> None:
+    assert next(option.metavar for option in OPTIONS if option.name == name) == metavar

@@ -164,3 +164,10 @@ def test_long_log_is_cut_as_a_short_one() -> None:
     levels = np.cumsum(rng.uniform(5.0, 20.0, 300)) % 100.0
     values = np.repeat(levels, 40) + rng.normal(0.0, 0.3, 300 * 40)
     assert abs(len(plateaus(values)) - 300) <= 6
+
+
+def test_plateaus_of_made_logs_are_where_they_were() -> None:
+    found = [plateau for seed in range(100) for plateau in plateaus(made_log(seed).values)]
+    sums = [sum(map(abs, values)) for values in zip(*found, strict=True)]
+    assert len(found) == 706
+    assert sums == pytest.approx([91169, 114753, 36064.081, 298.694, 216.12, 268], abs=0.01)

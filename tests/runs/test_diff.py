@@ -45,3 +45,15 @@ def test_a_full_turn_is_no_parting() -> None:
     two = one.copy()
     two["heading_deg"] += 360.0
     assert parted_at_s(one, two, (10, 10)) is None
+
+
+@pytest.mark.parametrize(
+    ("until", "prefix", "row"),
+    [(None, False, 2), (None, True, 2), (99, False, None), (100, False, None), (101, False, 2)],
+)
+def test_output_is_compared_up_to_a_tick(until: int | None, prefix: bool, row: int | None) -> None:
+    text = "for number in (1, 2):\n    tank_drive.on_for_seconds(20, 20, 0.5)\n    print({})\n"
+    one, two = stored(text.format("'a', number")), stored(text.format("'a', number * number"))
+    found = diff_runs(one, two, until=until, prefix=prefix)
+    assert (found.output and found.output.row) == row
+    assert (found.tick, found.same) == (None, row is None)
