@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -166,8 +167,24 @@ def test_long_log_is_cut_as_a_short_one() -> None:
     assert abs(len(plateaus(values)) - 300) <= 6
 
 
-def test_plateaus_of_made_logs_are_where_they_were() -> None:
-    found = [plateau for seed in range(100) for plateau in plateaus(made_log(seed).values)]
-    sums = [sum(map(abs, values)) for values in zip(*found, strict=True)]
-    assert len(found) == 706
-    assert sums == pytest.approx([91169, 114753, 36064.081, 298.694, 216.12, 268], abs=0.01)
+def short_log(seed: int) -> NDArray[np.float64]:
+    """Return a log whose levels have 1 to 6 samples."""
+    rng = np.random.default_rng(seed)
+    values = np.repeat(rng.integers(0, 6, 15) * 17.0, rng.integers(1, 7, 15))
+    return values + rng.normal(0.0, rng.choice([0.0, 0.4]), len(values))
+
+
+@pytest.mark.parametrize(
+    ("make", "sums"),
+    [
+        (lambda seed: made_log(seed).values, [706, 91169, 114753, 36064.081, 298.694, 216.12, 268]),
+        (short_log, [860, 21070.0, 25820.0, 37586.057, 389.459, 100.449, 134.0]),
+    ],
+    ids=["made", "short"],
+)
+def test_plateaus_are_where_they_were(
+    make: Callable[[int], NDArray[np.float64]], sums: list[float]
+) -> None:
+    found = [plateau for seed in range(100) for plateau in plateaus(make(seed))]
+    figures = [sum(map(abs, values)) for values in zip(*found, strict=True)]
+    assert [len(found), *figures] == pytest.approx(sums, abs=0.01)
