@@ -14,7 +14,7 @@ from tests.app.analyser.logs import long_log, model_of
 from tuisim.analysis.chart import View, chart_of
 from tuisim.analysis.report import default_name, report_of, write_report
 from tuisim.analysis.source import LogRequest, OpenedLog
-from tuisim.charts.files import CHART_FORMATS, image_of, save_chart
+from tuisim.charts.files import CHART_FORMATS, image_of, parse_size, save_chart
 from tuisim.charts.layout import Drawing, Shade, Stroke
 from tuisim.errors import ExportError, LogError
 from tuisim.logs.log import Log
@@ -107,3 +107,19 @@ def test_what_is_drawn_has_its_size_in_the_picture() -> None:
     is_inked = (image < 250).any(axis=2).reshape(3, 20, 40)
     sizes = [[int(np.ptp(places)) + 1 for places in part.nonzero()] for part in is_inked]
     assert sizes == [[7, 27], [3, 24], [11, 21]]
+
+
+@pytest.mark.parametrize(
+    ("text", "size"),
+    [
+        ("800x600", (800, 600)),
+        ("200×150", (200, 150)),
+        ("6000x6000", (6000, 6000)),
+        ("199x150", None),
+        ("200x149", None),
+        ("6001x150", None),
+        ("800", None),
+    ],
+)
+def test_a_size_has_limits(text: str, size: tuple[int, int] | None) -> None:
+    assert parse_size(text, (200, 150), (6000, 6000)) == size

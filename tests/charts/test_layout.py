@@ -15,7 +15,18 @@ from tuisim.analysis.chart import View, chart_of
 from tuisim.analysis.model import Model
 from tuisim.charts import axes
 from tuisim.charts.files import image_of, svg_of
-from tuisim.charts.layout import COLORS, Rule, Stroke, laid_out
+from tuisim.charts.layout import (
+    COLORS,
+    ChartData,
+    Drawing,
+    Line,
+    Rule,
+    Stroke,
+    Words,
+    drawn_until,
+    laid_out,
+    moved,
+)
 from tuisim.charts.text_chart import ChartPainter, ChartState, text_of
 from tuisim.logs.columns import guess_columns
 from tuisim.logs.log import Log
@@ -168,3 +179,46 @@ def test_only_data_have_colours_for_any_ground(view: View) -> None:
     styles = {str(span.style) for span in text.spans}
     assert {f"#{bytes(rgb).hex()}" for rgb in COLORS[: 1 if view.against else 2]} <= styles
     assert styles <= {"none", "bold", *(f"#{bytes(rgb).hex()}" for rgb in COLORS)}
+
+
+def test_a_path_on_the_field_has_equal_scales() -> None:
+    path = Line("y_mm", np.array([0.0, 1000.0]), np.array([100.0, 400.0]), 0)
+    chart = ChartData("", (path,), (0.0, 1000.0), "x_mm (mm)", path=True)
+    for width, height in ((960, 420), (400, 900)):
+        (frame,) = laid_out(chart, width, height).plots
+        mm_per_px = (frame.x[1] - frame.x[0]) / (frame.right - frame.left)
+        assert mm_per_px == pytest.approx((frame.y[1] - frame.y[0]) / (frame.bottom - frame.top))
+        assert [sum(frame.x), sum(frame.y)] == pytest.approx([1000, 500])
+        assert frame.x == pytest.approx((0, 1000)) or frame.y == pytest.approx((100, 400), abs=20)
+
+
+def two_facets() -> Drawing:
+    lines = tuple(Line(name, RAMP, RAMP * 2, at) for at, name in enumerate("ab"))
+    return laid_out(ChartData("", lines, (0.0, 49.0), "time (s)", facets=True), 400, 300)
+
+
+def test_a_chart_is_drawn_until_an_instant() -> None:
+    whole = two_facets()
+    for time_s, count in ((20.0, 21), (0.0, 1), (49.0, 50)):
+        part = drawn_until(whole, time_s)
+        strokes = [shape for shape in part.shapes if isinstance(shape, Stroke)]
+        assert [(len(stroke.points), stroke.dots) for stroke in strokes] == [
+            (count, count == 1)
+        ] * 2
+        rules = [shape for shape in part.shapes[-2:] if isinstance(shape, Rule)]
+        assert [(rule.x1, rule.y1, rule.x2, rule.y2) for rule in rules] == [
+            (x := float(plot.xs(time_s)), plot.top, x, plot.bottom) for plot in whole.plots
+        ]
+
+
+def test_a_picture_is_drawn_at_another_place() -> None:
+    whole = two_facets()
+    for before, after in zip(whole.shapes, moved(whole, 10.0, -5.0), strict=True):
+        match before, after:
+            case Stroke(), Stroke():
+                assert np.allclose(after.points - before.points, (10.0, -5.0))
+            case Rule(), Rule():
+                assert (after.x1 - before.x1, after.y1 - before.y1) == pytest.approx((10.0, -5.0))
+                assert (after.x2 - before.x2, after.y2 - before.y2) == pytest.approx((10.0, -5.0))
+            case Words(), Words():
+                assert (after.x - before.x, after.y - before.y) == pytest.approx((10.0, -5.0))

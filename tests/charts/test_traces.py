@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tuisim.charts.canvas import seen_points, xy_lines
-from tuisim.charts.traces import MOST_POINTS, Pyramid, Trace
+from tuisim.charts.traces import MOST_POINTS, TRACE_COLORS, Pyramid, Trace, Traces
 from tuisim.logs.signals import summary_of
 
 TIMES = np.arange(200_000) / 1000.0
@@ -94,3 +94,27 @@ def test_a_trace_without_end_keeps_its_extremes_in_bounded_memory() -> None:
 )
 def test_traces_with_one_unit_share_a_scale(name: str, scale: str) -> None:
     assert Trace(name, 0).scale == scale
+
+
+def test_each_trace_keeps_its_colour() -> None:
+    traces = Traces()
+    for name, is_logged in (("a", True), ("x_mm", False), ("b", True), ("y_mm", False)):
+        traces.append(name, [0.0], [1.0], is_logged)
+    colors = {trace.name: trace.rgb for trace in traces}
+    first, second, *_, last = TRACE_COLORS
+    assert colors == {"a": first, "b": second, "x_mm": last, "y_mm": TRACE_COLORS[-2]}
+    traces.append("x_mm", [1.0], [5.0], True)
+    traces.append("x_mm", [2.0], [6.0], False)
+    assert [(trace.name, len(trace.times_s)) for trace in traces][-1] == ("y_mm", 1)
+    traces.clear()
+    assert len(traces) == 0
+    for name, is_logged in (("c", True), ("b", True), ("z", False)):
+        traces.append(name, [0.0], [1.0], is_logged)
+    colors = {trace.name: trace.rgb for trace in traces}
+    assert colors == {"b": second, "c": TRACE_COLORS[3], "z": TRACE_COLORS[-2]}
+
+
+def test_a_path_is_seen_between_its_limits() -> None:
+    xs, ys = np.array([10.0, 10.1, 12.0, 14.0]), np.array([100.0, 100.1, 108.0, 100.0])
+    seen = seen_points(xs, ys, [(10.0, 14.0), (100.0, 108.0)], 2, 2)
+    assert np.array(seen).tolist() == [[10.0, 12.0, 14.0], [100.0, 108.0, 100.0]]

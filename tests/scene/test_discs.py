@@ -9,7 +9,7 @@ import pytest
 
 from tuisim.config.program_robot.thresholds import AIM, ProgramThreshold
 from tuisim.core.sensors.color import ColorReading, LightRead
-from tuisim.scene.discs import RIM_RGB, RINGS, DiscFace, draw_disc
+from tuisim.scene.discs import RIM_RGB, RINGS, DiscFace, draw_disc, shrunk
 
 GROUND = (1, 2, 3)
 FACE = DiscFace(
@@ -114,3 +114,9 @@ def test_thresholds_say_what_they_give_now() -> None:
     assert face.limit_words(19) == "line 15 > 90: no"
     assert face.limit_words(13) == "> 90: no"
     assert face.limit_shares == (0.9, 0.5)
+
+
+def test_shrinking_gives_the_mean_of_each_cell() -> None:
+    pixels = np.arange(24, dtype=np.uint8).reshape(4, 6)
+    assert shrunk(pixels, 2, 3).tolist() == [[3.5, 5.5, 7.5], [15.5, 17.5, 19.5]]
+    assert shrunk(pixels, 4, 1).tolist() == [[2.5], [8.5], [14.5], [20.5]]

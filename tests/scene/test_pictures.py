@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from math import atan2, degrees
+from math import atan2, degrees, nan
 
 import numpy as np
 import pytest
@@ -24,6 +24,7 @@ from tuisim.core.spec import (
     TouchSpec,
     WorldSpec,
 )
+from tuisim.runs.views import TickRecord
 from tuisim.scene.painter import BEACON_RGB, OBSTACLE_RGB, RAY_RGB, ScenePainter
 from tuisim.scene.pen import PenTrace, Piece
 from tuisim.scene.pictures import (
@@ -31,6 +32,7 @@ from tuisim.scene.pictures import (
     fitting_view,
     path_picture,
     scene_of,
+    sound_pose,
     world_painter,
     world_picture,
     world_view,
@@ -132,3 +134,9 @@ def test_the_way_of_a_run_is_drawn_small(run: Run) -> None:
     rows, columns = np.nonzero(reddish)
     assert len({*rows}) <= 2
     assert 5 < np.ptp(columns) < 20
+
+
+def test_a_damaged_record_has_no_pose() -> None:
+    record = TickRecord(12, 3, 1.0, 2.0, 30.0, 4.0, 5.0, 100.0, 200.0, 8.0, 0, 0)
+    poses = [sound_pose(one) for one in (None, replace(record, x_mm=nan), record)]
+    assert poses == [None, None, record.pose]

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import os
-import time
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from pathlib import Path
 from threading import Barrier, BrokenBarrierError
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -52,6 +52,8 @@ def test_a_stack_is_awaited_until_it_is_whole(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     path, parts = tmp_path / STACK_FILE, iter(["", "File", "File a", "File a", "late"])
-    monkeypatch.setattr(time, "sleep", lambda _: path.write_text(next(parts)))
+    clock = SimpleNamespace(monotonic=lambda: 8.0, sleep=lambda _: path.write_text(next(parts)))
+    monkeypatch.setattr(process, "time", clock)
+    monkeypatch.setattr(process, "waited_s", lambda _: 1.0)
     process.await_stack(tmp_path, os.getpid())
     assert next(parts) == "late"
