@@ -71,7 +71,7 @@ class Stream(IntEnum):
     DATA = 9
     """A sample that the program wrote into a log file of its library, as a line that prints it."""
     UNKNOWN = 255
-    """A stream of another version."""
+    """A number that stands for no stream, in a damaged recording."""
 
 
 TEXT_STREAMS = frozenset({Stream.STDOUT, Stream.STDERR, Stream.SPEECH, Stream.INPUT})

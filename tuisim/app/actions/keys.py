@@ -222,9 +222,6 @@ def _debugs() -> list[LabAction]:
     ]
 
 
-_PARTING = "Where this run left the earlier one"
-
-
 def _travels() -> list[LabAction]:
     back, on = _can_look_back, _can_look_on
     keys = "< >"

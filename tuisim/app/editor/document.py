@@ -399,13 +399,9 @@ class Document:
             self._app.say("No program to save: {open} opens one")
             return
         path = Path(self._path)
-        if self._path and self._is_file and not is_protected(path):
-            try:
-                self._write(path)
-            except TuisimError as error:
-                self._app.complain(error)
-                return
-            self._saved_to(path, then)
+        if self._has_own_file:
+            if self._write_or_complain(path):
+                self._saved_to(path, then)
             return
         from tuisim.app.dialogs.save import ProgramDialog
 
@@ -419,22 +415,29 @@ class Document:
 
     def when_in_file(self, do: Callable[[Path], None]) -> None:
         """Call a function with the file of the program, which is saved before if necessary."""
-        path = Path(self._path)
-        if self._path and self._is_file and not self.dirty and not is_protected(path):
-            do(path)
+        if self._has_own_file and not self.dirty:
+            do(Path(self._path))
         else:
             self.save(lambda: do(Path(self._path)))
 
     def save_own(self) -> None:
         """Save the text to its file without a question, if it is a file of the student's own."""
-        path = Path(self._path)
-        if self.dirty and self._path and self._is_file and not is_protected(path):
-            try:
-                self._write(path)
-            except TuisimError as error:
-                self._app.complain(error)
-                return
-            self._noted_saved(path)
+        if self.dirty and self._has_own_file and self._write_or_complain(Path(self._path)):
+            self._noted_saved(Path(self._path))
+
+    @property
+    def _has_own_file(self) -> bool:
+        """Whether the program is a file of the student's own."""
+        return bool(self._path) and self._is_file and not is_protected(Path(self._path))
+
+    def _write_or_complain(self, path: Path) -> bool:
+        """Write the text to a file. Return whether it could be written."""
+        try:
+            self._write(path)
+        except TuisimError as error:
+            self._app.complain(error)
+            return False
+        return True
 
     def _noted_saved(self, path: Path) -> None:
         drop_draft(self._path)
