@@ -101,3 +101,14 @@ def test_bands_are_those_of_the_variables_in_view() -> None:
     (report,) = model.reports()
     assert list(model.bands()) == list(report.bands) != []
     assert (model.unsearched(), len(model.bands_in_words())) == (["Left"], 1)
+
+
+@pytest.mark.parametrize(
+    ("time_s", "moves"), [(4.0, False), (5.0, False), (6.0, False), (1.0, True)]
+)
+def test_the_view_follows_the_cursor(time_s: float, moves: bool) -> None:
+    model = model_of(long_log())
+    model.limits = 4.0, 6.0
+    model.go_to_time(time_s)
+    model.follow_cursor()
+    assert model.limits == ((0.0, 2.0) if moves else (4.0, 6.0))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import pytest
@@ -29,9 +30,9 @@ def white() -> Field:
     return Field(FIELD_WIDTH_MM, FIELD_HEIGHT_MM, memoryview(b"\xff" * (3 * PIXELS)), {20: sums})
 
 
-def drawn(white: Field, pen: PenSpec) -> tuple[Simulation, PenMarks]:
+def drawn(white: Field, pen: PenSpec, heading_deg: float = 0.0) -> tuple[Simulation, PenMarks]:
     """Drive straight for a second with the pen."""
-    world = WorldSpec(start=Pose(500.0, 500.0, 0.0), pen_marks=True)
+    world = WorldSpec(start=Pose(500.0, 500.0, heading_deg), pen_marks=True)
     sim = Simulation(RunSpec(RobotSpec(pen=pen), world, ROBOLAB), MemorySink())
     marks = PenMarks(white, sim.spec)
     commanded(sim.left).run(500.0)
@@ -89,3 +90,17 @@ def test_taking_in_at_once_or_bit_by_bit_is_the_same(white: Field) -> None:
     again = PenMarks(white, replace(sim.spec))
     again.take_in(sim.records_since(0))
     assert again.field.marks == marks.field.marks
+
+
+@pytest.mark.parametrize("heading_deg", [30.0, -110.0])
+def test_a_slanted_line_is_as_wide_as_the_pen(white: Field, heading_deg: float) -> None:
+    pen = PenSpec(color="#00ff00", width_mm=6.0, down=True)
+    sim, marks = drawn(white, pen, heading_deg)
+    turn = math.radians(heading_deg)
+    way_mm = math.hypot(sim.pose.x_mm - 500.0, sim.pose.y_mm - 500.0)
+    aside_mm = [
+        (col + 0.5 - 500) * -math.sin(turn) + (FIELD_HEIGHT_MM - row - 0.5 - 500) * math.cos(turn)
+        for col, row in marks.field.marks
+    ]
+    assert max(map(abs, aside_mm)) == pytest.approx(3.0, abs=0.2)
+    assert len(aside_mm) == pytest.approx(6.0 * way_mm + math.pi * 9.0, rel=0.02)

@@ -160,3 +160,21 @@ def test_what_is_open_and_has_no_name_is_counted(tmp_path: Path) -> None:
         assert sizes() == before
         os.unlink(file.name)
         assert sum(sizes()) - sum(before) == pytest.approx(1 << 20, rel=0.1)
+
+
+@pytest.mark.parametrize(
+    ("files", "size", "says"), [(3, 1, ""), (4, 1, "more than 3 files"), (1, 9, "more than")]
+)
+def test_what_is_added_to_the_folders_has_limits(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, files: int, size: int, says: str
+) -> None:
+    monkeypatch.setattr(isolation, "MOST_FILES", 3)
+    monkeypatch.setattr(isolation, "MOST_BYTES", 1 << 17)
+    (tmp_path / "there").write_bytes(bytes(1 << 19))
+    quota = isolation.Quota(os.getpid(), ["", tmp_path])
+    assert quota.exceeded(5.0) == ""
+    for number in range(files):
+        (tmp_path / str(number)).write_bytes(b"x" * (size << 14))
+    assert quota.exceeded(5.0) == ""
+    assert says in quota.exceeded(1e9)
+    assert bool(quota.exceeded(2e9)) == bool(says)
