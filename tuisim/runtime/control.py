@@ -13,7 +13,7 @@ from collections.abc import Iterable
 from contextlib import suppress
 from enum import IntFlag
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 from tuisim import protocol
 from tuisim.atomic import private
@@ -34,7 +34,8 @@ from tuisim.runtime import wallclock
 from tuisim.runtime.channel import Channel
 
 if TYPE_CHECKING:
-    from tuisim.runtime.session import Session
+    from tuisim.core.simulation import Simulation
+    from tuisim.runs.run_options import RunOptions
 
 
 class SessionFlag(IntFlag):
@@ -65,6 +66,66 @@ STOP_GRACE_CPU_S = 2.0
 """Its own computing time for that in a headless run."""
 FAST_SLICE_TICKS = 64
 """Ticks between two checks for commands in a run without pacing."""
+
+
+class DebugHooks(Protocol):
+    """What session and control need of the debugger."""
+
+    def begin(self, options: RunOptions) -> None:
+        """Apply the settings that are known before the program's first line."""
+
+    def take(self, command: Message) -> None:
+        """Process a command; the caller handles pausing and resuming."""
+
+    def enter(self) -> None:
+        """Switch tracing in the current thread on or off as needed."""
+
+    def before_tick(self) -> None:
+        """Pause if the goal is reached. Called right before a tick, after user actions."""
+
+    def most_ticks(self, most: int) -> int:
+        """Return the number of ticks that may run before `after_ticks` has to be called."""
+
+    def after_ticks(self) -> None:
+        """Pause if a breakpoint matches the tick that was just run."""
+
+    def at_end(self) -> None:
+        """Pause at the end of the program if a requested instant was never reached."""
+
+    def pause(self) -> None:
+        """Pause at the next line, if it is reached before the next tick."""
+
+    def answer(self) -> None:
+        """Answer the requests received while paused."""
+
+    def forget_goals(self) -> None:
+        """Cancel steps and goals: the user has requested something else."""
+
+    def go_on(self) -> None:
+        """Prepare for resuming from a pause."""
+
+
+class ControlledRun(Protocol):
+    """What the control needs of the session; see there."""
+
+    sim: Simulation
+    now: int
+    flags: int
+    pressed: frozenset[str]
+    debugger: DebugHooks | None
+
+    @property
+    def stop_reason(self) -> BaseException | None:
+        """Why the run stops; None while it does not."""
+
+    def debug(self) -> DebugHooks:
+        """Return the debugger; it is created on first use."""
+
+    def checkpoint(self, before_tick: bool = False) -> None:
+        """Raise if the program has to stop."""
+
+    def ask_stop(self, end: End, summary: str) -> None:
+        """Record that the run has to end at the next checkpoint."""
 
 
 class RunControl:
@@ -114,7 +175,7 @@ class RunControl:
 
     # Commands
 
-    def receive(self, session: Session) -> None:
+    def receive(self, session: ControlledRun) -> None:
         """Process the commands that have arrived; user actions wait for the next tick."""
         for command in self._channel.receive():
             match command:
@@ -147,7 +208,7 @@ class RunControl:
         return self._rushing and not self._script and not self._waiting
 
     @staticmethod
-    def _forget_goals(session: Session) -> None:
+    def _forget_goals(session: ControlledRun) -> None:
         if session.debugger is not None:
             session.debugger.forget_goals()
 
@@ -173,7 +234,7 @@ class RunControl:
         """Whether it must be called before ticks: the run is live, actions are pending, or the debugger needs it."""
         return self.live or self.debugged or bool(self._script)
 
-    def before_ticks(self, session: Session, most: int) -> int:
+    def before_ticks(self, session: ControlledRun, most: int) -> int:
         """Block until ticks may run.
 
         Args:
@@ -208,7 +269,7 @@ class RunControl:
             return min(most, FAST_SLICE_TICKS)
         return self._pace(session, most)
 
-    def hold(self, session: Session, moment: protocol.Paused) -> None:
+    def hold(self, session: ControlledRun, moment: protocol.Paused) -> None:
         """Pause the run; block until it is resumed or stopped.
 
         Args:
@@ -239,14 +300,14 @@ class RunControl:
             self._channel.send(protocol.Resumed())
         self._raise_here(session, before_tick=moment.ordinal == BEFORE_NEXT_TICK)
 
-    def _raise_here(self, session: Session, before_tick: bool = False) -> None:
+    def _raise_here(self, session: ControlledRun, before_tick: bool = False) -> None:
         """Raise a stop in the thread that has waited for commands, not in the main one, which the signal reaches."""
         try:
             session.checkpoint(before_tick)
         finally:
             self.holding = False
 
-    def replay_next(self, session: Session, kind: type[Answer | Reply]) -> bool:
+    def replay_next(self, session: ControlledRun, kind: type[Answer | Reply]) -> bool:
         """Apply the next known action if it has this type and was made here, while simulated time did not pass."""
         if not self._script or self._script[0].tick > session.sim.tick:
             return False
@@ -258,7 +319,7 @@ class RunControl:
         return True
 
     def wait_for_reply(
-        self, session: Session, kind: type[Answer | Reply], question: Message
+        self, session: ControlledRun, kind: type[Answer | Reply], question: Message
     ) -> None:
         """Ask the host, and block until its answer is applied. No simulated time passes.
 
@@ -286,7 +347,7 @@ class RunControl:
             self.apply(session, here[0])
         self._raise_here(session)
 
-    def _pace(self, session: Session, most: int) -> int:
+    def _pace(self, session: ControlledRun, most: int) -> int:
         sim = session.sim
         # A command that is received meanwhile can change it, also to full speed.
         while speed := self._speed:
@@ -311,13 +372,13 @@ class RunControl:
 
     # User actions
 
-    def _apply_actions(self, session: Session) -> None:
+    def _apply_actions(self, session: ControlledRun) -> None:
         while self._script and self._script[0].tick <= session.sim.tick:
             self.apply(session, self._script.popleft().command)
         while self._waiting:
             self.apply(session, self._waiting.popleft())
 
-    def apply(self, session: Session, action: Message) -> None:
+    def apply(self, session: ControlledRun, action: Message) -> None:
         """Apply a user action now, right before the next tick, and record it.
 
         Raises:

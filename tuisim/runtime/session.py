@@ -10,24 +10,31 @@ from __future__ import annotations
 import types
 from collections.abc import Callable
 from sys import _getframe
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any
 
 from tuisim.core.field import Field
 from tuisim.core.profile import MS, NS_PER_S
 from tuisim.core.simulation import Simulation
 from tuisim.data_class import dataclass
-from tuisim.protocol import CLEANUP_S, End, Message, MotorRegisters, Reply, ReplyWanted, Spoke
+from tuisim.protocol import CLEANUP_S, End, MotorRegisters, Reply, ReplyWanted, Spoke
 from tuisim.runs.records import Stream
 from tuisim.runtime import wallclock
 from tuisim.runtime.channel import Channel
-from tuisim.runtime.control import ATTENTION, DEBUG, LIVE, STOPPING, THREADS, RunControl
+from tuisim.runtime.control import (
+    ATTENTION,
+    DEBUG,
+    LIVE,
+    STOPPING,
+    THREADS,
+    DebugHooks,
+    RunControl,
+)
 from tuisim.runtime.output import OutputRecorder
 from tuisim.shim.waits import Wait, waits_for
 
 if TYPE_CHECKING:
     from tuisim.core.pen_marks import PenMarks
     from tuisim.runs.readings import ReadingsWriter
-    from tuisim.runs.run_options import RunOptions
 
 COMMANDS_AN_INSTANT = 100
 COMMAND_BURST_NS = 10 * MS
@@ -67,43 +74,6 @@ class StopProgram(BaseException):
 
 class Deadlock(RuntimeError):
     """Every thread of the program waits for another one."""
-
-
-class DebugHooks(Protocol):
-    """What session and control need of the debugger."""
-
-    def begin(self, options: RunOptions) -> None:
-        """Apply the settings that are known before the program's first line."""
-
-    def take(self, command: Message) -> None:
-        """Process a command; the caller handles pausing and resuming."""
-
-    def enter(self) -> None:
-        """Switch tracing in the current thread on or off as needed."""
-
-    def before_tick(self) -> None:
-        """Pause if the goal is reached. Called right before a tick, after user actions."""
-
-    def most_ticks(self, most: int) -> int:
-        """Return the number of ticks that may run before `after_ticks` has to be called."""
-
-    def after_ticks(self) -> None:
-        """Pause if a breakpoint matches the tick that was just run."""
-
-    def at_end(self) -> None:
-        """Pause at the end of the program if a requested instant was never reached."""
-
-    def pause(self) -> None:
-        """Pause at the next line, if it is reached before the next tick."""
-
-    def answer(self) -> None:
-        """Answer the requests received while paused."""
-
-    def forget_goals(self) -> None:
-        """Cancel steps and goals: the user has requested something else."""
-
-    def go_on(self) -> None:
-        """Prepare for resuming from a pause."""
 
 
 class Session:

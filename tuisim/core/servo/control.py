@@ -7,7 +7,6 @@ to a position pauses, and a move at a speed forgets what it cannot catch up, as 
 from __future__ import annotations
 
 from enum import IntEnum
-from typing import TYPE_CHECKING
 
 from tuisim.core.servo.settings import PAUSE_MARGIN_MS, ControlSettings
 from tuisim.core.servo.trajectory import (
@@ -23,9 +22,6 @@ from tuisim.core.servo.trajectory import (
     standing,
     timed_move,
 )
-
-if TYPE_CHECKING:
-    from tuisim.core.servo.motor import ServoMotor
 
 
 class Ending(IntEnum):
@@ -93,15 +89,15 @@ class Controller:
         millis = self.trajectory.segment(then_us[0]).millis(then_us)
         return [milli - behind for milli in millis] if behind else millis
 
-    def halves(self, now_us: int, _motor: ServoMotor) -> int:
+    def halves(self, now_us: int, _motor: object) -> int:
         """Return where a motor is wanted to be; see `motor.Guide`."""
         return 2 * self.milli(now_us)
 
-    def many_halves(self, times_us: range, _motor: ServoMotor) -> list[int]:
+    def many_halves(self, times_us: range, _motor: object) -> list[int]:
         """Return where a motor is wanted to be at several times of one segment."""
         return [2 * milli for milli in self.millis(times_us)]
 
-    def rate(self, now_us: int, _motor: ServoMotor | None = None) -> int:
+    def rate(self, now_us: int, _motor: object = None) -> int:
         """Return the wanted rate; 0 while it is passive."""
         if self.trajectory is None:
             return 0
@@ -251,11 +247,7 @@ class Controller:
 
     # Following
 
-    def fall_behind(self, now_us: int, passed_us: int, motor: ServoMotor) -> None:
-        """Take note that a motor is not where it is wanted to be."""
-        self.lag(now_us, passed_us, motor.milli, motor.counts_per_s)
-
-    def lag(self, now_us: int, passed_us: int, milli: int, rate: int) -> None:
+    def fall_behind(self, now_us: int, passed_us: int, milli: int, rate: int) -> None:
         """Take note that the motion is not where it is wanted to be.
 
         Args:

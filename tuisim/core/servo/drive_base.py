@@ -220,7 +220,7 @@ class DriveBase:
         ]
         return min(ends, default=None)
 
-    def fall_behind(self, now_us: int, passed_us: int, _motor: ServoMotor) -> None:
+    def fall_behind(self, now_us: int, passed_us: int, _milli: int, _rate: int) -> None:
         """Take note that a motor is not where it is wanted to be; the second of two calls for a time does nothing."""
         if now_us == self._behind_us:
             return
@@ -230,5 +230,5 @@ class DriveBase:
             (one.counts_per_s for one in self.motors),
         )
         (left, right), (left_rate, right_rate) = millis, rates
-        self.distance.lag(now_us, passed_us, left + right, left_rate + right_rate)
-        self.heading.lag(now_us, passed_us, left - right, left_rate - right_rate)
+        self.distance.fall_behind(now_us, passed_us, left + right, left_rate + right_rate)
+        self.heading.fall_behind(now_us, passed_us, left - right, left_rate - right_rate)

@@ -49,7 +49,7 @@ class Guide(Protocol):
     def segment_end_us(self, now_us: int) -> int | None:
         """Return when the current segment of the motion ends; None if it does not."""
 
-    def fall_behind(self, now_us: int, passed_us: int, motor: ServoMotor) -> None:
+    def fall_behind(self, now_us: int, passed_us: int, milli: int, rate: int) -> None:
         """Take note that a motor is not where it is wanted to be, for a time since the last call."""
 
 
@@ -337,7 +337,7 @@ class ServoMotor:
                 self.control.hold(now_us, self.milli)
                 self._end()
                 return 0.0
-            guide.fall_behind(now_us - self._tick_us, self._tick_us, self)
+            guide.fall_behind(now_us - self._tick_us, self._tick_us, self.milli, self.counts_per_s)
         halves = guide.halves(now_us, self)
         if self._course is not None:
             turned = (halves - self._course) * self.sign / HALVES_PER_DEG
