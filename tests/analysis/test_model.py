@@ -6,6 +6,8 @@ import pyarrow as pa
 import pytest
 
 from tests.app.analyser.logs import long_log, model_of, wide_log
+from tuisim.analysis.chart import View, chart_of
+from tuisim.analysis.model import derive
 from tuisim.errors import LogError
 from tuisim.logs.columns import Layout
 from tuisim.logs.log import Log
@@ -112,3 +114,64 @@ def test_the_view_follows_the_cursor(time_s: float, moves: bool) -> None:
     model.go_to_time(time_s)
     model.follow_cursor()
     assert model.limits == ((0.0, 2.0) if moves else (4.0, 6.0))
+
+
+@pytest.mark.parametrize(
+    ("view", "xs", "ys"),
+    [
+        (View(), [2.5, 3, 4, 5, 6, 6.5], [65, 60, 50, 40, 30, 25]),
+        (
+            View(hold=True),
+            [2.5, 3, 3, 4, 4, 5, 5, 6, 6, 6.5],
+            [70, 70, 60, 60, 50, 50, 40, 40, 30, 30],
+        ),
+        (View(against=("x_mm", "Colour")), [300, 400, 500, 600], [60, 50, 40, 30]),
+    ],
+    ids=["lines", "steps", "a path"],
+)
+def test_a_chart_shows_what_is_in_view(view: View, xs: list[float], ys: list[float]) -> None:
+    model = model_of(long_log())
+    model.limits = 2.5, 6.5
+    chart = chart_of(model, view, 400, 100)
+    assert (chart.lines[0].xs.tolist(), chart.lines[0].ys.tolist()) == (xs, ys)
+    assert chart.path == bool(view.against) != chart.zoomed
+    model.limits = 0.2, 0.4
+    if view.against:
+        with pytest.raises(LogError, match="no sample has both x_mm and Colour"):
+            chart_of(model, view, 400, 100)
+
+
+def test_derived_variables_go_where_the_log_goes() -> None:
+    model, other = model_of(long_log()), model_of(long_log())
+    derive(model, "Twice = Colour * 2")
+    assert (model.selected, [trace.name for trace in model.traces]) == (
+        "Twice",
+        ["Colour", "Left", "Twice"],
+    )
+    assert (model.rows.columns[-1], all(trace.on for trace in model.traces)) == ("Twice", True)
+    model.row, model.mark_s, model.limits = 19, 2.0, (1.0, 7.0)
+    model.traces.named("Left").on = False
+    model.rows.view = model.rows.sorted("Twice", True)
+    other.restore(model)
+    assert (other.row, other.mark_s, other.limits) == (19, 2.0, (1.0, 7.0))
+    assert (other.definitions, other.selected) == (model.definitions, "Twice")
+    assert [trace.on for trace in other.traces] == [True, False, True]
+    assert other.rows.view.sorted_by == "Twice"
+    derive(other, "Twice =")
+    assert (other.definitions, other.selected, other.rows.view.sorted_by) == ({}, "Colour", "")
+    assert "Twice" not in other.rows.columns
+    with pytest.raises(LogError, match="no derived variable 'Twice'"):
+        derive(other, "Twice =")
+
+
+def test_figures_are_those_between_the_cursors() -> None:
+    model = model_of(long_log())
+    assert model.unsummed() == ["Colour", "Left"]
+    assert (model.summary("Colour").mean, model.unsummed()) == (45.0, ["Left"])
+    model.mark_s = 5.0
+    model.go_to_time(2.0)
+    assert (model.measured(), model.unsummed()) == ((2.0, 5.0), [])
+    figures = model.summary("Colour")
+    assert (figures.count, figures.min, figures.mean, figures.max) == (4, 40.0, 55.0, 70.0)
+    model.go_to_moment(7.4)
+    assert (model.row, model.sample, model.printed_line()) == (14, 7, 0)
