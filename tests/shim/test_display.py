@@ -140,7 +140,6 @@ TABLES: Tables = {
 }
 
 
-@pytest.mark.slow_cases("display")
 @cases(TABLES)
 def test_table(run_on: RunOn, table: Table, robot: str, world: str) -> None:
     check(run_on, table, robot, world)

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import pytest
-
 from tests.shim.checking import Check, Table, Tables, cases, check
 from tests.shim.conftest import RunOn
 
@@ -406,7 +404,6 @@ TABLES: Tables = {
 }
 
 
-@pytest.mark.slow_cases("remote control")
 @cases(TABLES)
 def test_table(run_on: RunOn, table: Table, robot: str, world: str) -> None:
     check(run_on, table, robot, world)
