@@ -347,7 +347,8 @@ class RunStore:
             if not os.path.lexists(folder / RUN_FILE):
                 # Another process has just removed it.
                 return None
-            summary = error.message
+            # The number of the run tells where it is.
+            summary = error.message.removeprefix(f"{error.file}: ")
         except (KeyError, TypeError, ValueError, OverflowError, AttributeError) as error:
             summary = f"{RUN_FILE} is damaged: {error!r}"
         return RunInfo(0, run_id, "", "", "", "", 0, Unended.DAMAGED, summary=summary)
