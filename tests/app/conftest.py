@@ -19,6 +19,7 @@ from textual.notifications import Notification
 
 from tests.app.terminals import Terminal
 from tests.running import PATIENCE_S
+from tuisim.app import background
 from tuisim.config import user_config
 
 
@@ -77,6 +78,9 @@ def home(
     (folder / "cache").symlink_to(shared_home / "cache")
     monkeypatch.setenv("TUISIM_HOME", str(folder))
     yield folder
+    # They would go on in the next test: Jedi changes the limit of recursion for a time, hypothesis minds.
+    for thread in background._threads:
+        thread.join(PATIENCE_S)
     shutil.rmtree(folder, ignore_errors=True)
 
 
