@@ -1,4 +1,4 @@
-"""`python -m tests.proof [KIND…] [--minutes N] [--seed N] [--case NAME]`: try to break tuisim, and print one table."""
+"""`python -m tests.proof --help`: try to break tuisim, and print one table."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ import os
 import sys
 from collections.abc import Sequence
 from itertools import islice
+from math import inf
 from random import Random
 
 from tests.proof.attempts import Result, attempts
@@ -26,7 +27,7 @@ def describe_kinds() -> str:
     return f"Try to break tuisim in these ways:\n\n{about}\n\n`mutants --help`: try its tests"
 
 
-def print_results(results: Sequence[Result], seed: int) -> int:
+def print_results(results: Sequence[Result], of_what: str) -> int:
     """Print a table and a verdict; return 1 if there was a fault."""
     print(row("kind", "cases", "wall s", "faults"))
     for found in results:
@@ -35,11 +36,7 @@ def print_results(results: Sequence[Result], seed: int) -> int:
         sum(found.cases for found in results),
         sum(len(found.faults) for found in results),
     )
-    print(
-        f"{faults} faults in {cases} cases (seed {seed})"
-        if faults
-        else f"no fault in {cases} cases (seed {seed})"
-    )
+    print(f"{faults or 'no'} fault{'s' * (faults > 1)} in {cases} cases ({of_what})")
     return int(bool(faults))
 
 
@@ -58,6 +55,9 @@ def main(words: Sequence[str]) -> int:
     )
     parser.add_argument(
         "--seed", type=int, metavar="N", help="of the cases that are drawn (default: a fresh one)"
+    )
+    parser.add_argument(
+        "--fixed", action="store_true", help="only the same cases each time, however long it takes"
     )
     parser.add_argument(
         "--jobs", type=int, default=min(os.cpu_count() or 1, 4), metavar="N", help="kinds at a time"
@@ -83,9 +83,11 @@ def main(words: Sequence[str]) -> int:
         for kind in kinds:
             print(kind, *islice(KINDS[kind].names(Random(f"{seed} {kind}")), arguments.list))
         return 0
+    if arguments.fixed:
+        return print_results(list(attempts(kinds, None, inf, arguments.jobs)), "fixed seeds")
     print(f"seed {seed}", flush=True)
     results = list(attempts(kinds, seed, arguments.minutes, arguments.jobs))
-    return print_results(results, seed)
+    return print_results(results, f"seed {seed}")
 
 
 if __name__ == "__main__":

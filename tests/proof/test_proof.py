@@ -7,6 +7,7 @@ import subprocess
 import sys
 from collections.abc import Iterator
 from contextlib import suppress
+from itertools import islice
 from pathlib import Path
 from random import Random
 
@@ -98,6 +99,25 @@ def test_a_process_of_the_proof_searches_for_garbage() -> None:
         [sys.executable, "-c", words], cwd=ROOT, capture_output=True, text=True, timeout=PATIENCE_S
     )
     assert done.stdout == "True\n", done.stderr
+
+
+def test_the_cases_of_fixed_seeds_are_the_same_each_time(monkeypatch: pytest.MonkeyPatch) -> None:
+    def names(random: Random) -> Iterator[str]:
+        while True:
+            yield str(random.random())
+
+    monkeypatch.setitem(KINDS, "stand-in", Kind("for tests", names, _check))
+    first, second, fresh = (
+        list(islice(attempts.case_names("stand-in", seed), 100)) for seed in (None, None, 1)
+    )
+    assert (first == second, len(first), len({*first, *fresh})) == (True, 24, 124)
+
+
+@pytest.mark.parametrize("name", ["good", "bad"])
+def test_a_fault_of_a_fixed_seed_fails(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    results = [attempts.Result("stand-in", 3, 1.0, ("bad",) * (name == "bad"))]
+    monkeypatch.setattr(__main__, "attempts", lambda *_: results)
+    assert __main__.main(["--fixed"]) == (name == "bad")
 
 
 @pytest.mark.parametrize(("case", "code"), [("good", 0), ("bad", 1)])
