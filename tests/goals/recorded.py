@@ -52,6 +52,17 @@ def says(text: str, line: int = 0) -> Step:
     return lambda recorder: recorder.print(text, line)
 
 
+def reads(line: int = 0, times: int = 1) -> Step:
+    """Read the left colour sensor, each time in 10 ms."""
+
+    def read(recorder: Recorder) -> None:
+        for _ in range(times):
+            recorder.drive(0, 0, 1, line)
+            recorder.read("in2", "COL-REFLECT", line)
+
+    return read
+
+
 def is_told(text: str, line: int = 0) -> Step:
     """Read a line with `input()`."""
     return lambda recorder: recorder.print(text, line, Stream.INPUT)

@@ -188,6 +188,10 @@ BAD = {
         goal("read = { reading = 'colour' }"),
         "read.reading: no such value 'colour' (one of color",
     ),
+    "reading that decides a call": (
+        goal("use = { calls = 'off', reading = 'color' }"),
+        "use.reading: what decides a call is not judged (use [[also]]: a world with other right answers)",
+    ),
     "as read of the wheels": (
         goal("log = { name = 'x', levels = [1], reading = 'motor', as_read = true }"),
         "log.as_read: is only for readings of colour sensors",

@@ -9,8 +9,11 @@ from typing import Any
 import pytest
 
 from tests.conftest import ROOT, Command
+from tests.constants import print_constants
 from tuisim.config.program_file import programs
 from tuisim.goals.files import load_goals
+from tuisim.runs.records import Stream
+from tuisim.runs.store import RunStore
 
 PROGRAMS = ROOT / "programs"
 EXAMPLES = {
@@ -59,6 +62,20 @@ def test_every_example_of_goals_is_complete() -> None:
         assert file.title
         assert all(goal.say.endswith(".") for goal in file.goals if goal.points)
         assert path.read_text(encoding="utf-8").isascii()
+
+
+@pytest.mark.parametrize("name", ["bumper", "log_greys", "name_colour", "until_black"])
+def test_constants_of_the_first_world_do_not_pass(name: str, here: Command, tmp_path: Path) -> None:
+    here("run", EXAMPLES[name])
+    rows = RunStore().load_run("last").output.rows()
+    lines = [row.text for row in rows if row.stream is Stream.STDOUT]
+    text = (PROGRAMS / f"{name}.py").read_text(encoding="utf-8")
+    wrong = tmp_path / "constants.py"
+    wrong.write_text(print_constants(text, lines), encoding="utf-8")
+    here("run", EXAMPLES[name], wrong)
+    assert {goal["state"] for goal in checked(here, name)} == {"met"}
+    done = here("goals", "try", name, wrong, "--seeds", "0")
+    assert done.returncode == 0, done.stdout
 
 
 WRONG: dict[str, tuple[str, dict[str, str], dict[str, str]]] = {

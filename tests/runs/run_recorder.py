@@ -12,6 +12,7 @@ from tests.core.motors import commanded
 from tuisim.core.simulation import Simulation
 from tuisim.core.spec import NoiseSpec, RunSpec
 from tuisim.protocol import End, Ended
+from tuisim.runs.readings import READING_CODES, ReadingsWriter
 from tuisim.runs.records import OutputWriter, Stream, TelemetryWriter
 from tuisim.runs.run_folder import StoredRun
 from tuisim.runs.side_files import ACTIONS_FILE
@@ -35,6 +36,7 @@ class Recorder:
     def __post_init__(self) -> None:
         # Also of a run that never ends: thousands of tests share one process.
         self._unlock = finalize(self, os.close, self.run.lock_fd)
+        self.readings = ReadingsWriter(self.run.folder)
 
     def drive(self, left_dps: float, right_dps: float, ticks: int, line: int = 0) -> None:
         """Let the wheels turn for some ticks."""
@@ -47,6 +49,11 @@ class Recorder:
         """Write a row of output at the present tick."""
         tick = self.simulation.tick
         self.output.write(text.encode(), tick, self.simulation.due_ns(tick), line, stream)
+
+    def read(self, port: str, mode: str, line: int = 0) -> None:
+        """Record that the program reads something at the present tick."""
+        time_ns = self.simulation.due_ns(self.simulation.tick)
+        self.readings.add(READING_CODES[port, mode], time_ns, line)
 
     def act(self, kind: str, **fields: Any) -> None:
         """Do and record a user action, which counts from the present tick on."""
@@ -61,6 +68,7 @@ class Recorder:
         """Close the files, record the end and return the run as stored."""
         self.telemetry.close()
         self.output.close()
+        self.readings.close()
         tick = self.simulation.tick
         self.store.finish(self.run, Ended(end, tick, self.simulation.due_ns(tick), summary=summary))
         self._unlock()

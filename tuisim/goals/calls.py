@@ -14,8 +14,6 @@ from functools import lru_cache
 from tuisim.data_class import dataclass
 from tuisim.goals.evidence import START, Evidence, EvidenceSpan
 from tuisim.goals.found import Occurrence
-from tuisim.goals.provenance import provenance_of
-from tuisim.goals.readings import NOUNS
 from tuisim.goals.spec import AvoidCondition, UseCondition
 from tuisim.source import PRELUDE_TEXTS, PYBRICKS
 
@@ -164,20 +162,6 @@ def find_used(condition: UseCondition, evidence: Evidence, span: EvidenceSpan) -
     missing = [call for call, lines in found.items() if not lines]
     if missing:
         return Occurrence(None, f"The program does not call {' and '.join(missing)}.")
-    known = (
-        provenance_of(evidence.program.text, condition.reading, evidence.modules)
-        if condition.reading
-        else None
-    )
-    if condition.reading is not None and known is not None:
-        for call, lines in found.items():
-            if not any(map(known.decides, lines)):
-                noun = NOUNS[condition.reading]
-                return Occurrence(
-                    None,
-                    f"Nothing that the {noun} read decides how the program calls {call}.",
-                    lines[0],
-                )
     return Occurrence(START, line=min(lines[0] for lines in found.values()))
 
 

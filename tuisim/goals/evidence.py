@@ -18,10 +18,11 @@ from tuisim.goals.motion import impossible_motion
 from tuisim.goals.patterns import Search, search_in
 from tuisim.protocol import End, Ended, Unended, UserAction
 from tuisim.runs.frames import column_values, held, tick_times_s
+from tuisim.runs.readings import Readings, read_readings
 from tuisim.runs.records import SAMPLE_STREAMS, OutputRow, Stream
 from tuisim.runs.run_folder import StoredRun, open_mat
 from tuisim.runs.samples import Sample, rows_when, samples_of
-from tuisim.runs.side_files import read_actions, read_modules
+from tuisim.runs.side_files import read_actions
 
 if TYPE_CHECKING:
     import numpy as np
@@ -122,13 +123,13 @@ class Evidence:
         )
 
     @cached_property
-    def modules(self) -> tuple[str, ...]:
-        """The texts of the program's own modules that it has imported.
+    def readings(self) -> Readings:
+        """What the program has read.
 
         Raises:
-            LogError: the recording is damaged.
+            LogError: the record of it is missing or damaged.
         """
-        return tuple(module.text for module in read_modules(self._run.folder) if module.text)
+        return read_readings(self._run.folder)
 
     @cached_property
     def samples(self) -> list[tuple[int, Sample]]:

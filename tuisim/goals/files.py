@@ -22,7 +22,15 @@ from tuisim.goals.condition import WINDOWED, Condition, ConditionKind, Points, S
 from tuisim.goals.key_lines import line_of_key
 from tuisim.goals.known_columns import check_columns, robots_of
 from tuisim.goals.picture import PictureTable, draw_from_table
-from tuisim.goals.spec import CONDITIONS, MAX_GOALS, Combination, DrawCondition, Goal, Together
+from tuisim.goals.spec import (
+    CONDITIONS,
+    MAX_GOALS,
+    Combination,
+    DrawCondition,
+    Goal,
+    Together,
+    UseCondition,
+)
 from tuisim.goals.trial_world import TrialWorld, check_names, others_of
 
 MAX_NAME = 60
@@ -281,6 +289,10 @@ def _condition(kind: type[Condition], data: object, at: Location, folder: Path) 
         # A single one needs no list.
         data = {**data, kind.SHORT: [data[kind.SHORT]]}
     _check_lists(kind, data, at)
+    if kind is UseCondition and isinstance(data, dict) and "reading" in data:
+        raise at.at("reading").wrong(
+            "what decides a call is not judged", "use [[also]]: a world with other right answers"
+        )
     if kind is DrawCondition:
         table = files.convert(data, PictureTable, at)
         try:

@@ -11,7 +11,6 @@ from tuisim.errors import counted
 from tuisim.goals.evidence import Evidence, EvidencePoint, EvidenceSpan
 from tuisim.goals.found import Occurrence
 from tuisim.goals.patterns import search_in
-from tuisim.goals.provenance import provenance_of
 from tuisim.goals.readings import NOUNS, is_as_read, place_words, range_words, read_ticks, within
 from tuisim.goals.spec import (
     DialogueCondition,
@@ -149,10 +148,9 @@ def _fault(
     if condition.reading is None:
         return ""
     noun = NOUNS[condition.reading]
-    known = provenance_of(evidence.program.text, condition.reading, evidence.modules)
-    if known is not None and not known.decides(row.line):
-        return f"{when}, but nothing that the {noun} read decides that: line {row.line} prints it in any case."
-    if not _read_between(condition.reading, since, row.tick, evidence):
+    ticks = read_ticks(condition.reading, evidence)
+    # A reading just before the line before may decide both.
+    if not ((ticks >= since) & (ticks <= row.tick)).any():
         ago = "since the line before it" if since >= 0 else "before that"
         return f"{when}, but the program did not read the {noun} {ago}."
     return ""
@@ -181,15 +179,6 @@ def _elsewhere(
     if all(least <= at[key] <= most for key, (least, most) in place.items()):
         return ""
     return f"the robot was at {place_words(tick, place, evidence)}; it must be at {range_words(place)}."
-
-
-def _read_between(reading: Reading, first_tick: int, end_tick: int, evidence: Evidence) -> bool:
-    """Return whether the program took a reading between two lines, or one just before the first."""
-    # Motors are read in less than a tick.
-    if reading is Reading.MOTOR:
-        return True
-    ticks = read_ticks(reading, evidence)
-    return bool(((ticks >= first_tick) & (ticks <= end_tick)).any())
 
 
 def _no_line(
@@ -283,12 +272,11 @@ def _not_measured(condition: LogCondition, count: int, sample: Sample, evidence:
             f"{value}, but the program had printed {counted(printed, 'sample')} {condition.counts}."
         )
     reading, place = condition.reading, place_of(condition, count)
-    known = provenance_of(evidence.program.text, reading, evidence.modules) if reading else None
-    if reading is not None and known is not None and not known.gives(sample.line, sample.name):
-        return f"{value}, but line {sample.line} does not compute it from what the {NOUNS[reading]} read."
-    if reading is None or reading is Reading.MOTOR:
+    # What the motors count is of the place where it is printed.
+    if reading in (None, Reading.MOTOR):
         fault = _elsewhere(condition, count, sample.tick, evidence)
-        return f"{value}, when {fault}" if fault else ""
+        if fault or reading is None:
+            return f"{value}, when {fault}" if fault else ""
     ticks = read_ticks(reading, evidence)
     ticks = ticks[ticks <= sample.tick]
     if not len(ticks):

@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
+from tuisim.core.profile import NS_PER_S
 from tuisim.core.spec import FIELD_HEIGHT_MM, ColorSensorSpec
 from tuisim.errors import counted
 from tuisim.goals.evidence import Evidence, EvidencePoint, EvidenceSpan
 from tuisim.goals.found import Occurrence, share_words
 from tuisim.goals.places import line_of_motion
-from tuisim.goals.provenance import Provenance, provenance_of
 from tuisim.goals.spec import FollowCondition, Range, ReadCondition, Reading, place_of
+from tuisim.runs.readings import MODES_BY_KIND
 
 if TYPE_CHECKING:
     import numpy as np
@@ -25,10 +25,15 @@ NOUNS: Mapping[Reading, str] = {
     Reading.GYRO: "gyro",
     Reading.MOTOR: "motors",
 }
+_MODES: Mapping[Reading, tuple[str, ...]] = {
+    Reading.COLOR: MODES_BY_KIND["color"],
+    Reading.ULTRASONIC: MODES_BY_KIND["ultrasonic"],
+    Reading.GYRO: MODES_BY_KIND["gyro"],
+    # Commands that wait for a motor read its state.
+    Reading.MOTOR: ("position", "speed"),
+}
 _ABOVE, _BELOW = 0.5, 1.0
 """How far a printed level may be off the reading: programs round it, or cut off what is behind the point."""
-_SHORT_S = 0.1
-"""A pause that hardly changes where the robot is."""
 _NOISE_SHARE = 0.1
 """The same for each percent of the light's noise."""
 
@@ -41,37 +46,22 @@ def range_words(place: Mapping[str, Range]) -> str:
 
 
 def read_ticks(reading: Reading, evidence: Evidence) -> Array:
-    """Return the ticks in which the program took such a reading, in ascending order: a reading takes time."""
-    import numpy as np
+    """Return the tick of each such reading that the program took, in ascending order."""
+    return _readings(reading, evidence)[0]
 
+
+def _readings(reading: Reading, evidence: Evidence) -> tuple[Array, Array]:
+    """Return tick and source line of each such reading that the program took, in ascending order."""
     name = f"{reading} is read"
     if name not in evidence.memo:
-        known = provenance_of(evidence.program.text, reading, evidence.modules)
-        evidence.memo[name] = np.flatnonzero(_reads(known, evidence) if known else [])
-    found: Array = evidence.memo[name]
-    return found
-
-
-def _reads(known: Provenance, evidence: Evidence) -> Array:
-    """Return whether a reading was taken in each tick.
-
-    Where a line also pauses, it was in the first of its ticks, and again after each pause, if that is short.
-    """
-    import numpy as np
-
-    lines, ticks = evidence.records["line"], np.arange(len(evidence.records))
-    found: Array = np.isin(lines, sorted(known.lines()))
-    came = np.concatenate(([True], lines[1:] != lines[:-1]))
-    since = ticks - np.maximum.accumulate(np.where(came, ticks, 0))
-    for line, pause_s in known.pauses_s().items():
-        # A loop in one line does not show when it comes again.
-        step = (
-            max(1, math.ceil(pause_s * evidence.spec.profile.tick_hz))
-            if pause_s <= _SHORT_S
-            else len(ticks)
-        )
-        found &= (lines != line) | (since % step == 0)
-    return found
+        rows = evidence.readings.find(_MODES[reading])
+        seconds, rest_ns = divmod(rows["time_ns"], NS_PER_S)
+        hz = evidence.spec.profile.tick_hz
+        ticks = seconds * hz + rest_ns * hz // NS_PER_S
+        count = int(ticks.searchsorted(len(evidence.records)))
+        evidence.memo[name] = ticks[:count], rows["line"][:count]
+    readings: tuple[Array, Array] = evidence.memo[name]
+    return readings
 
 
 def within(ticks: Array, place: Mapping[str, Range], evidence: Evidence) -> Array:
@@ -123,19 +113,19 @@ def _light(records: Array, evidence: Evidence) -> Array:
 def find_read(condition: ReadCondition, evidence: Evidence, span: EvidenceSpan) -> Occurrence:
     """Find when the program had taken enough readings."""
     noun = NOUNS[condition.reading]
-    every = read_ticks(condition.reading, evidence)
+    every, lines = _readings(condition.reading, evidence)
     ticks = every[(every >= span.first_tick) & (every < span.end_tick)]
     ticks = within(ticks, place := place_of(condition), evidence)
     if len(ticks) >= condition.times:
         tick = int(ticks[condition.times - 1])
-        return Occurrence(EvidencePoint(tick), line=int(evidence.records["line"][tick]))
+        return Occurrence(EvidencePoint(tick), line=int(lines[every.searchsorted(tick)]))
     if not len(every):
         return Occurrence(None, f"The program did not read the {noun}.")
     where = f" at {range_words(place)}" if place else ""
     when = " in that time" if span.first_tick else ""
     times = counted(len(ticks), "time")
     text = f"The program read the {noun} {times}{where}{when}; {condition.times:,} are needed."
-    return Occurrence(None, text, int(evidence.records["line"][every[0]]))
+    return Occurrence(None, text, int(lines[0]))
 
 
 def find_off_line(condition: FollowCondition, evidence: Evidence, span: EvidenceSpan) -> Occurrence:

@@ -242,7 +242,7 @@ class PrintCondition(Condition):
     y_mm: tuple[Range, ...] = ()
     """The same along y."""
     reading: Reading | None = None
-    """A kind of reading that must decide that, or what, each line says, and be taken since the line before it."""
+    """A kind of reading that must be taken since the line before."""
     once: bool = False
     """Whether the run must end without a further line that matches one of them, and no line may match several."""
     still: bool = False
@@ -268,7 +268,7 @@ class LogCondition(Condition):
     y_mm: tuple[Range, ...] = ()
     """The same along y."""
     reading: Reading | None = None
-    """The kind of reading from which the value must be computed."""
+    """A kind of reading that must be taken before the sample, where the robot must be."""
     as_read: bool = False
     """Whether the value must be one that a colour sensor gave where the program read it."""
     counts: str = ""
@@ -340,9 +340,6 @@ class CallsCondition(Condition):
 @dataclass(frozen=True, slots=True)
 class UseCondition(CallsCondition):
     """The program uses each of the calls."""
-
-    reading: Reading | None = None
-    """A kind of reading that must decide that, or how, each of them is made."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -49,7 +49,7 @@ log = { name = "X", levels = [1000], within = 5, reading = "motor", x_mm = [[995
 # Further keys: hints, a list of texts; why, a sentence that appears when the step is done and says why that is right;
 # model and wrong, texts that pass and that do not, to test the check; excludes, the wrong ways that the step does not
 # admit, each with the reason. There are four: a literal answer, no sensor, wrong order, wrong place. A goal keeps them
-# out with reading, x_mm, as_read, once, after … in log and print, and with read and use: `tuisim guide goal-files`.
+# out with reading, x_mm, as_read, once, after … in log and print, with read, use and also: `tuisim guide goal-files`.
 [[step]]
 name = "turns"
 hints = ["One rotation moves the robot by the circumference of a wheel.", "That is 56 mm times pi."]
