@@ -3,25 +3,87 @@
 from __future__ import annotations
 
 import types
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from sys import _getframe
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, assert_never
 
 from tuisim import protocol
 from tuisim.breakpoints import Breakpoint, LineBreak, parse_breakpoints
-from tuisim.protocol import AFTER_TICK, BEFORE_NEXT_TICK, Message, Paused, PauseReason
+from tuisim.data_class import dataclass
+from tuisim.protocol import AFTER_TICK, BEFORE_NEXT_TICK, LineStep, Message, Paused, PauseReason
 from tuisim.runs.records import Stream
 from tuisim.runtime.control import ATTENTION, DEBUG, LIVE
 from tuisim.runtime.debugger.conditions import LineCondition, Watcher
 from tuisim.runtime.debugger.fork import apart
 from tuisim.runtime.debugger.inspection import Inspector
-from tuisim.runtime.debugger.steps import NEXT_LINE, Step, line_with_code, step_from
 from tuisim.runtime.debugger.tracer import Tracer
-from tuisim.runtime.scheduler import Scheduler
+from tuisim.runtime.scheduler import ScheduledThread, Scheduler
 from tuisim.runtime.session import Session
 
 if TYPE_CHECKING:
     from tuisim.runs.run_options import RunOptions
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """A step in progress."""
+
+    task: ScheduledThread | None
+    """Thread that is stepped; None completes it at the next line of any thread."""
+    most_depth: int
+    """Largest number of open calls of the program's own code at which it is complete."""
+
+    def is_done(self, task: ScheduledThread, depth: int) -> bool:
+        """Return whether a line that is about to run completes the step."""
+        if self.task is None or self.task.done:
+            return True
+        return task is self.task and depth <= self.most_depth
+
+
+ENDLESS_DEPTH = 1 << 30
+"""Larger than the depth of any stack."""
+
+
+def step_from(how: LineStep, task: ScheduledThread, depth: int) -> Step:
+    """Return the step that starts at a line.
+
+    Args:
+        how: The way to step.
+        task: Thread that is paused there.
+        depth: Number of open calls of the program's own code.
+    """
+    match how:
+        case LineStep.INTO:
+            return Step(task, ENDLESS_DEPTH)
+        case LineStep.OVER:
+            return Step(task, depth)
+        case LineStep.OUT:
+            return Step(task, depth - 1)
+        case _:
+            assert_never(how)
+
+
+NEXT_LINE = Step(None, ENDLESS_DEPTH)
+"""Complete at the next line of any thread."""
+
+
+def line_with_code(program: types.CodeType | None, line: int) -> int:
+    """Return `line` or, if it has no code in the program, the next line that has: any other would never be hit.
+
+    After the last such line, and for 0, return `line`.
+    """
+    if program is None or not line:
+        return line
+    return min((one for one in _lines_of(program) if one >= line), default=line)
+
+
+def _lines_of(code: types.CodeType) -> Iterator[int]:
+    left = [code]
+    while left:
+        one = left.pop()
+        yield from (line for _, _, line in one.co_lines() if line)
+        left += [part for part in one.co_consts if isinstance(part, types.CodeType)]
+
 
 CONDITION_LIMIT_S = 0.2
 """Time limit of a condition, in real seconds."""
