@@ -10,8 +10,7 @@ from PIL import Image
 
 from tests.conftest import Command
 from tuisim.errors import ConfigError
-from tuisim.goals.files import load_goals
-from tuisim.goals.key_lines import line_of_key
+from tuisim.goals.files import line_of_key, load_goals
 from tuisim.goals.spec import AllOf, FinishCondition, PrintCondition, Together
 
 GOOD = "[[goal]]\nname = 'a'\nfinish = true\n\n"

@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import os
+import re
+import tomllib
+from bisect import bisect_left
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
@@ -14,13 +17,16 @@ from tuisim.config import files
 from tuisim.config.files import Location
 from tuisim.config.folders import programs_folder, user_path
 from tuisim.config.presses import ButtonPress
+from tuisim.config.robots import DEFAULT_ROBOT, RobotChoice, choose_robot
 from tuisim.config.worlds import WorldFile, means_world, world_from_table
+from tuisim.core.conditions import ValueCondition
+from tuisim.core.spec import RobotSpec
 from tuisim.core.values import shown
 from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError, nearest, see_page
+from tuisim.goals.brick import with_column
+from tuisim.goals.comparisons import CountCondition, KeepCondition, WhenCondition
 from tuisim.goals.condition import WINDOWED, Condition, ConditionKind, Points, Seconds
-from tuisim.goals.key_lines import line_of_key
-from tuisim.goals.known_columns import check_columns, robots_of
 from tuisim.goals.picture import PictureTable, draw_from_table
 from tuisim.goals.spec import (
     CONDITIONS,
@@ -406,3 +412,90 @@ def _circle(
             return circle
     checked.add(name)
     return ()
+
+
+_STATEMENT = re.compile(r"[ \t]*(?:[\w\"'-].*=|\[.*\][ \t]*(?:#.*)?$)")
+"""What a line looks like that begins a statement; some others look like it, too."""
+_STEP = re.compile(r"\[(\d+)\]|([^.\[\]]+)")
+
+
+def line_of_key(text: str, key: str) -> int:
+    """Return the line, from 1, at which a value of a valid TOML text begins.
+
+    Args:
+        key: Its path, such as `goal[2].reach.x_mm`, where entries count from 1. If there is no such value, the line
+            of the innermost table around it is returned; 1 if there is none.
+    """
+    lines = text.split("\n")
+    path = [int(step[1]) - 1 if step[1] else step[2] for step in _STEP.finditer(key)]
+    while path and not _has(_parsed(lines), path):
+        path.pop()
+
+    # Only where statements begin: a value on thousands of lines would be parsed as often.
+    starts = [index for index, line in enumerate(lines) if _STATEMENT.match(line)]
+    ends = [*starts, len(lines)]
+
+    def begun(count: int) -> bool:
+        """Whether the value begins in the first statements; a value that they cut off is read to its end."""
+        while (found := _parsed(lines[: ends[count]])) is None:
+            count += 1
+        return _has(found, path)
+
+    statements = bisect_left(range(len(ends)), True, key=begun)
+    return starts[statements - 1] + 1 if statements else 1
+
+
+def _parsed(lines: list[str]) -> Any:
+    try:
+        return tomllib.loads("\n".join(lines))
+    except (ValueError, RecursionError):
+        return None
+
+
+def _has(data: Any, path: list[int | str]) -> bool:
+    try:
+        for step in path:
+            data = data[step]
+    except (KeyError, IndexError, TypeError):
+        return False
+    return True
+
+
+def robots_of(worlds: Sequence[TrialWorld]) -> list[RobotSpec]:
+    """Return the robots of some worlds, each with all that it has."""
+    chosen = [world.settings.get("robot", DEFAULT_ROBOT) for world in worlds]
+    return [(one if isinstance(one, RobotChoice) else choose_robot(one)).spec for one in chosen]
+
+
+def check_columns(goals: Sequence[Goal], robots: Sequence[RobotSpec], at: Location) -> None:
+    """Check the goals in a list of tables, in its order.
+
+    Raises:
+        ConfigError: one names a column that none of the robots has.
+    """
+    for number, goal in enumerate(goals, start=1):
+        for part in goal.parts:
+            for wanted in _conditions(part):
+                key = next(key for key, kind in CONDITIONS.items() if type(part) is kind)
+                _check(wanted, robots, at.at(f"[{number}]").at(key))
+
+
+def _conditions(part: Condition) -> tuple[ValueCondition, ...]:
+    match part:
+        case WhenCondition() | KeepCondition():
+            return part.conditions
+        case CountCondition():
+            return (part.condition,)
+    return ()
+
+
+def _check(wanted: ValueCondition, robots: Sequence[RobotSpec], at: Location) -> None:
+    found: ConfigError | None = None
+    for robot in robots:
+        try:
+            with_column(wanted, robot)
+            return
+        except ConfigError as error:
+            found = error
+    if found:
+        raise at.wrong(f"the robot has no column {wanted.name!r}", found.hint)
