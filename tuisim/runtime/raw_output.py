@@ -16,6 +16,8 @@ from typing import Any
 
 CAPACITY_BYTES = 4 << 20
 """What is written beyond this between two instants is refused."""
+_NOTHING = b"\0"
+"""What a descriptor begins with to which nothing has been written."""
 _LEAST_FD = 200
 """Our own descriptors are beyond those that programs count through."""
 _LINE_BUFFERED = 1
@@ -86,7 +88,8 @@ class RawOutput:
     ) -> None:
         self._takers = {1: stdout, 2: stderr}
         self._files: list[RawFile] = []
-        self._firsts: list[mmap.mmap] = []
+        self._first_out: bytes | mmap.mmap = _NOTHING
+        self._first_err: bytes | mmap.mmap = _NOTHING
         self._busy = False
         self._flush_c: Callable[[], object] = lambda: None
         self._write = os.write
@@ -96,14 +99,14 @@ class RawOutput:
         with suppress(OSError, AttributeError):
             for fd, take in self._takers.items():
                 self._files.append(RawFile(fd, take))
-        self._firsts = [file.first for file in self._files]
+        firsts = (file.first for file in self._files)
+        self._first_out, self._first_err, *_ = *firsts, _NOTHING, _NOTHING
 
     def drain(self) -> None:
         """Pass on what was written, if it is seen at once."""
-        for first in self._firsts:
-            if first[0]:
-                self.drain_all()
-                return
+        # A loop would take longer than both looks, and this is called at each reading.
+        if self._first_out[0] or self._first_err[0]:
+            self.drain_all()
 
     def drain_all(self) -> int:
         """Pass on everything that was written; return its length."""
