@@ -363,6 +363,7 @@ def test_what_a_program_has_put_into_its_folder_is_not_copied_into_the_store(
         "run.json",
         "telemetry.bin",
         "output.bin",
+        "readings.bin",
         "lock",
     }
 
