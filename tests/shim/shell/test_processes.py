@@ -40,3 +40,11 @@ STEPS = {
 def test_a_process_takes_simulated_time(run_on: RunOn, text: str, lines: list[str]) -> None:
     done = run_on(f"{SETUP}start = time.time()\n{text}")
     assert (done.lines, done.errors) == (lines, [])
+
+
+def test_a_line_that_is_refused_on_its_way_ends(run_on: RunOn) -> None:
+    done = run_on(
+        f"{SETUP}p = Popen('sleep 1; cat a.txt; beep', shell=True)\ntime.sleep(3)\nprint(p.poll(), p.wait())"
+    )
+    assert (done.ended.end, done.lines) == ("finished", ["1 1"])
+    assert done.errors[-1].startswith("NotSimulated: cat a.txt is not part of the simulated brick")

@@ -193,6 +193,9 @@ class Running:
                 self._due = self._session.now + next(self._steps)
             except StopIteration as end:
                 self.status = end.value
+            except NotSimulated:
+                self.status = 1
+                raise
             finally:
                 self._busy = False
 

@@ -102,7 +102,7 @@ class Process:
         pipesize: int = -1,
         process_group: Any = None,
     ) -> None:
-        system, pipe = self.system, self.system.module.PIPE
+        system = self.system
         system.session.command()
         self.args, self.pid = args, next(system.pids)
         self.returncode: int | None = None
@@ -110,35 +110,29 @@ class Process:
             encoding or errors or text or universal_newlines
         )
         self.encoding, self.errors = encoding, errors
-        if stdin == pipe:
+        if stdin == system.module.PIPE:
             raise refuse("the standard input of a process", "give it arguments")
         self.stdin = None
         folder = "" if cwd is None else os.path.abspath(os.fsdecode(cwd))
         self.streams = Streams(folder=folder, speech=_take_speech(stdin))
-        self.streams.output, self.stdout = (
-            self._outlet() if stdout == pipe else (_sink(stdout, own_output), None)
-        )
+        self.streams.output, self.stdout = self._open_output(stdout, own_output)
         if stderr == system.module.STDOUT:
             self.streams.errors, self.stderr = self.streams.output, None
         else:
-            self.streams.errors, self.stderr = (
-                self._outlet() if stderr == pipe else (_sink(stderr, own_errors), None)
-            )
+            self.streams.errors, self.stderr = self._open_output(stderr, own_errors)
         steps = system.shell.start(_calls(args, shell), self.streams)
         self.running = Running(system.session, steps, several=shell)
         system.processes[self.pid] = self
 
-    def _outlet(self) -> tuple[Sink, IO[Any] | None]:
+    def _open_output(self, target: Any, own: Sink) -> tuple[Sink, IO[Any] | None]:
+        """Return where output goes, and the pipe from which the program reads it, as bytes or as text."""
+        if target != self.system.module.PIPE:
+            return _sink(target, own), None
         outlet = OutPipe(self)
-        return outlet.take, self._opened(io.BufferedReader(outlet))
-
-    def _opened(self, pipe: Any) -> Any:
-        """Wrap a pipe for bytes or text, as the program requested."""
-        return (
-            io.TextIOWrapper(pipe, self.encoding or "utf-8", self.errors)
-            if self.text_mode
-            else pipe
-        )
+        pipe: Any = io.BufferedReader(outlet)
+        if self.text_mode:
+            pipe = io.TextIOWrapper(pipe, self.encoding or "utf-8", self.errors)
+        return outlet.take, pipe
 
     def __class_getitem__(cls, item: Any) -> types.GenericAlias:
         """Support annotations like the real class."""
