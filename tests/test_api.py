@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 import tuisim
+from tests.cases import cases
 from tests.conftest import ROOT
 from tuisim.errors import ConfigError, LogError
 from tuisim.guide.catalogue import find_page
@@ -54,15 +55,15 @@ def test_an_error_of_the_program_is_in_the_run() -> None:
     assert (run.state, "ZeroDivisionError" in run.error) == ("raised", True)
 
 
-@pytest.mark.parametrize(
-    ("choices", "expected"),
-    [
-        pytest.param({"backgrond": "Loop"}, "did you mean background", id="unknown argument"),
-        pytest.param({"background": "Nope"}, "no such mat", id="unknown mat"),
-        pytest.param({"x": "far"}, "x: must be a number", id="no number"),
-        pytest.param({"pendown": 1}, "must be True or False", id="no truth value"),
-        pytest.param({"timeout_s": 0}, "must be above 0", id="no time"),
-    ],
+@cases(
+    "choices, expected",
+    {
+        "unknown argument": ({"backgrond": "Loop"}, "did you mean background"),
+        "unknown mat": ({"background": "Nope"}, "no such mat"),
+        "no number": ({"x": "far"}, "x: must be a number"),
+        "no truth value": ({"pendown": 1}, "must be True or False"),
+        "no time": ({"timeout_s": 0}, "must be above 0"),
+    },
 )
 def test_bad_choices_are_refused(choices: dict[str, Any], expected: str) -> None:
     with pytest.raises(ConfigError, match=expected):
@@ -180,21 +181,19 @@ NO_RUNS = {
 }
 
 
-@pytest.mark.parametrize(("run", "words"), NO_RUNS.values(), ids=NO_RUNS)
+@cases("run, words", NO_RUNS)
 def test_what_names_no_run_is_refused(run: Any, words: str) -> None:
     tuisim.simulate("print('A: 1')\n")
     with pytest.raises(LogError, match=re.escape(words)):
         tuisim.load_run(run)
 
 
-@pytest.mark.parametrize(
-    ("given", "words"),
-    [
-        pytest.param({"seeds": 3}, "seeds: must be several, got 3", id="one seed"),
-        pytest.param(
-            {"jobs": -1}, "jobs: must be a whole number from 0 to 1000, got -1", id="jobs"
-        ),
-    ],
+@cases(
+    "given, words",
+    {
+        "one seed": ({"seeds": 3}, "seeds: must be several, got 3"),
+        "jobs": ({"jobs": -1}, "jobs: must be a whole number from 0 to 1000, got -1"),
+    },
 )
 def test_a_wrong_experiment_is_refused(given: dict[str, Any], words: str) -> None:
     with pytest.raises(ConfigError, match=words):

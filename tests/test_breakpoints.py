@@ -67,7 +67,7 @@ RULES: dict[str, tuple[BreakRule, str]] = {
 }
 
 
-@pytest.mark.parametrize(("text", "rule", "common"), [(t, *r) for t, r in RULES.items()], ids=RULES)
+@pytest.mark.parametrize("text, rule, common", [(t, *r) for t, r in RULES.items()], ids=RULES)
 def test_a_text_is_a_rule_and_back(text: str, rule: BreakRule, common: str) -> None:
     found = parse_break(text, ROBOT)
     assert found == Breakpoint(rule, common)
@@ -98,9 +98,7 @@ WRONG = {
 }
 
 
-@pytest.mark.parametrize(
-    ("text", "why"), WRONG.items(), ids=[text[:20] or "empty" for text in WRONG]
-)
+@pytest.mark.parametrize("text, why", WRONG.items(), ids=[text[:20] or "empty" for text in WRONG])
 def test_what_is_no_break_says_why_and_what_is_allowed(text: str, why: str) -> None:
     with pytest.raises(ConfigError, match="break: ") as refused:
         parse_break(text, ROBOT)

@@ -30,7 +30,7 @@ WITH_FILE = [name for name in PROGRAMS if (FOLDER / name / "robot.toml").exists(
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    ("name", "robot"),
+    "name, robot",
     [*((name, "") for name in PROGRAMS), *((name, "robot.toml") for name in WITH_FILE)],
     ids=[*PROGRAMS, *(f"{name} with its file" for name in WITH_FILE)],
 )

@@ -13,6 +13,7 @@ import pandas as pd
 import pytest
 
 import tuisim as package
+from tests.cases import cases
 from tests.conftest import ROOT, Command
 from tests.running import PATIENCE_S
 from tuisim.cli import COMMANDS, run_command
@@ -139,7 +140,7 @@ EXITS = {
 }
 
 
-@pytest.mark.parametrize(("text", "words", "code"), EXITS.values(), ids=EXITS)
+@cases("text, words, code", EXITS)
 def test_exit_codes(
     text: str, words: list[object], code: int, tmp_path: Path, here: Command
 ) -> None:
@@ -262,7 +263,7 @@ def start(folder: Path, *words: str) -> subprocess.Popen[str]:
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    ("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)], ids=["ctrl-C", "terminate"]
+    "number, code", [(signal.SIGINT, 130), (signal.SIGTERM, 143)], ids=["ctrl-C", "terminate"]
 )
 def test_signal_stops_the_run_and_exports_its_rows(
     number: signal.Signals, code: int, tmp_path: Path

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.cases import cases
 from tests.conftest import Command
 
 # Words of the command line, and what the line on stderr must say.
@@ -151,7 +152,7 @@ def folder(tmp_path: Path) -> Path:
     return tmp_path
 
 
-@pytest.mark.parametrize(("words", "said"), BAD.values(), ids=BAD)
+@cases("words, said", BAD)
 def test_bad_input(words: str, said: str, folder: Path, home: Path, here: Command) -> None:
     before = sorted(folder.rglob("*"))
     done = here(*words.split())

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.cases import cases
 from tests.conftest import Command
 from tests.running import PATIENCE_S
 
@@ -26,7 +27,7 @@ SIBLINGS = {
 
 
 @pytest.mark.slow_cases("missing name")
-@pytest.mark.parametrize(("text", "code", "out", "told"), SIBLINGS.values(), ids=SIBLINGS)
+@cases("text, code, out, told", SIBLINGS)
 def test_a_module_called_as_one_of_pythons(
     here: Command, tmp_path: Path, text: str, code: int, out: str, told: str
 ) -> None:

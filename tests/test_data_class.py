@@ -95,7 +95,7 @@ def outcome(call: Callable[..., object], /, *args: object, **by_name: object) ->
         return type(error), str(error)
 
 
-@pytest.mark.parametrize(("frozen", "slots"), KINDS)
+@pytest.mark.parametrize("frozen, slots", KINDS)
 def test_objects_do_what_those_of_python_do(frozen: bool, slots: bool) -> None:
     def told(kinds: dict[str, type]) -> object:
         made = [
@@ -124,7 +124,7 @@ def test_objects_do_what_those_of_python_do(frozen: bool, slots: bool) -> None:
     )
 
 
-@pytest.mark.parametrize(("frozen", "slots"), KINDS)
+@pytest.mark.parametrize("frozen, slots", KINDS)
 def test_classes_look_like_those_of_python(frozen: bool, slots: bool) -> None:
     def told(kind: type) -> object:
         return (

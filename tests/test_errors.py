@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.cases import cases
 from tuisim.cli import run_command
 from tuisim.errors import MOST_LISTED, listed, printable
 
@@ -34,7 +35,7 @@ CALLS = {
 }
 
 
-@pytest.mark.parametrize("words", CALLS.values(), ids=CALLS)
+@cases("words", CALLS)
 def test_names_are_shown(
     log: str,
     words: tuple[str, ...],
@@ -56,7 +57,7 @@ def test_rows_for_a_program_are_as_they_are(log: str, capsys: pytest.CaptureFixt
 
 
 @pytest.mark.parametrize(
-    ("text", "shown"),
+    "text, shown",
     [("Größe 😀", "Größe 😀"), ("a\tb\nc", "a b c"), ("\ud800\u202e", "\ufffd\ufffd")],
     ids=["letters", "white space", "no letters"],
 )
@@ -107,7 +108,7 @@ STORED_CALLS = {
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("words", STORED_CALLS.values(), ids=STORED_CALLS)
+@cases("words", STORED_CALLS)
 def test_stored_text_is_shown(
     stored: Path,
     words: tuple[str, ...],

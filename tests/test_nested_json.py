@@ -8,6 +8,7 @@ from pathlib import Path
 import pyarrow as pa
 import pytest
 
+from tests.cases import cases
 from tuisim.analysis.source import read_notes
 from tuisim.app import debugger
 from tuisim.app.editor import text_file
@@ -77,7 +78,7 @@ def of_batch(_folder: Path) -> object:
 
 
 @pytest.mark.parametrize(
-    ("read", "nothing"),
+    "read, nothing",
     [
         (of_preferences, None),
         (of_draft, None),
@@ -94,17 +95,15 @@ def test_what_can_be_left_out_is_left_out(
     assert read(tmp_path) == nothing
 
 
-@pytest.mark.parametrize(
-    ("name", "data", "read"),
-    [
-        pytest.param(
-            "notes.jsonl", DEEP, lambda folder: read_notes(folder / "notes.jsonl"), id="notes"
-        ),
-        pytest.param(MODULES_FILE, DEEP, read_modules, id="modules"),
-        pytest.param(READS_FILE, DEEP, read_reads, id="reads"),
-        pytest.param(STOP_FILE, DEEP, read_stop_tick, id="stop"),
-        pytest.param(STOP_FILE, b'{"tick": 1e999}', read_stop_tick, id="stop-at-infinity"),
-    ],
+@cases(
+    "name, data, read",
+    {
+        "notes": ("notes.jsonl", DEEP, lambda folder: read_notes(folder / "notes.jsonl")),
+        "modules": (MODULES_FILE, DEEP, read_modules),
+        "reads": (READS_FILE, DEEP, read_reads),
+        "stop": (STOP_FILE, DEEP, read_stop_tick),
+        "stop-at-infinity": (STOP_FILE, b'{"tick": 1e999}', read_stop_tick),
+    },
 )
 def test_what_is_needed_is_an_error_that_names_the_file(
     name: str, data: bytes, read: Callable[[Path], object], tmp_path: Path

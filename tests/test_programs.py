@@ -59,7 +59,7 @@ def test_example_introduces_itself(name: str) -> None:
 
 
 @pytest.mark.quick_cases("*-robolab", "*-lego-micropython")
-@pytest.mark.parametrize(("name", "profile"), RUNS)
+@pytest.mark.parametrize("name, profile", RUNS)
 def test_example_finishes(name: str, profile: str, here: Command) -> None:
     done = here("run", name, "--json", "--profile", profile, "--timeout", 100)
     facts: dict[str, Any] = json.loads(done.stdout)
@@ -90,7 +90,7 @@ def test_square_comes_back_to_where_it_began(here: Command) -> None:
 
 @pytest.mark.quick_cases("100-White-6", "500-Green-3")
 @pytest.mark.parametrize(
-    ("x_mm", "name", "code"),
+    "x_mm, name, code",
     [
         (100, "White", 6),
         (300, "Red", 5),
@@ -110,7 +110,7 @@ def test_colour_is_named_and_said(x_mm: int, name: str, code: int, here: Command
 
 
 @pytest.mark.parametrize(
-    ("x_mm", "value"),
+    "x_mm, value",
     [(125, 255), (325, 220), (725, 211), (1125, 128), (1525, 0)],
     ids=lambda value: str(value),
 )

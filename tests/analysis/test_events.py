@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from tests.app.analyser.logs import long_log, model_of, wide_log
+from tests.cases import cases
 from tuisim.analysis.chart import event_marks
 from tuisim.analysis.events import events_of, thresholds_of
 from tuisim.app.analyser.panes import PANES, pane_lines
@@ -21,7 +22,7 @@ FOUND = {
 }
 
 
-@pytest.mark.parametrize(("text", "events"), FOUND.values(), ids=FOUND)
+@cases("text, events", FOUND)
 def test_where_variables_cross_a_value(
     text: str, events: list[tuple[str, bool, float, int]]
 ) -> None:
@@ -33,7 +34,7 @@ def test_where_variables_cross_a_value(
 
 
 @pytest.mark.parametrize(
-    ("text", "said"), [("Colour", "no threshold"), ("Color < 5", "no variable 'Color'")]
+    "text, said", [("Colour", "no threshold"), ("Color < 5", "no variable 'Color'")]
 )
 def test_what_is_no_threshold(text: str, said: str) -> None:
     with pytest.raises(LogError, match=said):

@@ -52,7 +52,7 @@ def test_zoom_keeps_the_cursor_and_pan_stays_inside() -> None:
 
 
 @pytest.mark.parametrize(
-    ("way", "place"),
+    "way, place",
     [("time", 18.0), ("distance", 900.0), ("Colour < 45", 9.0)],
     ids=["time", "distance", "event"],
 )
@@ -105,9 +105,7 @@ def test_bands_are_those_of_the_variables_in_view() -> None:
     assert (model.unsearched(), len(model.bands_in_words())) == (["Left"], 1)
 
 
-@pytest.mark.parametrize(
-    ("time_s", "moves"), [(4.0, False), (5.0, False), (6.0, False), (1.0, True)]
-)
+@pytest.mark.parametrize("time_s, moves", [(4.0, False), (5.0, False), (6.0, False), (1.0, True)])
 def test_the_view_follows_the_cursor(time_s: float, moves: bool) -> None:
     model = model_of(long_log())
     model.limits = 4.0, 6.0
@@ -117,7 +115,7 @@ def test_the_view_follows_the_cursor(time_s: float, moves: bool) -> None:
 
 
 @pytest.mark.parametrize(
-    ("view", "xs", "ys"),
+    "view, xs, ys",
     [
         (View(), [2.5, 3, 4, 5, 6, 6.5], [65, 60, 50, 40, 30, 25]),
         (

@@ -34,7 +34,7 @@ def test_places_that_are_one_share_a_ring() -> None:
 
 
 @pytest.mark.parametrize(
-    ("x_mm", "at_end", "way_px"), [(900, False, 11), (2200, True, -11)], ids=["left", "right"]
+    "x_mm, at_end, way_px", [(900, False, 11), (2200, True, -11)], ids=["left", "right"]
 )
 def test_a_label_stands_beside_its_ring(x_mm: float, at_end: bool, way_px: float) -> None:
     (ring,) = place_pins([Pin("1", x_mm, 500, True, "")], world_view(RobotSpec()))

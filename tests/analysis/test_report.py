@@ -14,6 +14,7 @@ from shutil import copytree
 import pytest
 from PIL import Image
 
+from tests.cases import cases
 from tests.conftest import Command
 from tuisim.analysis.source import NOTES_FILE, Note, notes_of_file, write_notes
 from tuisim.cli import run_command
@@ -264,7 +265,7 @@ BAD = {
 }
 
 
-@pytest.mark.parametrize(("words", "expected"), BAD.values(), ids=BAD)
+@cases("words, expected", BAD)
 def test_bad_input(
     here: Command, home: Path, tmp_path: Path, words: tuple[str, ...], expected: str
 ) -> None:

@@ -52,7 +52,7 @@ def values(model: Model) -> list[float]:
 
 
 @pytest.mark.parametrize(
-    ("text", "found"),
+    "text, found",
     [
         ("variable == Colour and value > 65", [90.0, 80.0, 70.0]),
         ("variable ~ COL, time >= 8", [10.0, 0.0]),

@@ -34,7 +34,7 @@ def test_angles_and_places_have_their_own_scales() -> None:
 
 
 @pytest.mark.parametrize(
-    ("values", "alike"), [([0.0, 90.0], True), ([0.0, 1.0], False), ([0.0, 9000.0], False)]
+    "values, alike", [([0.0, 90.0], True), ([0.0, 1.0], False), ([0.0, 9000.0], False)]
 )
 def test_what_would_be_flat_beside_the_others_is_not_like_them(
     values: list[float], alike: bool
@@ -53,7 +53,7 @@ def test_a_step_line_has_two_corners_at_each_step() -> None:
     assert list(zip(times, values, strict=True)) == [(0, 5), (1, 5), (1, 6), (2, 6), (2, 7)]
 
 
-@pytest.mark.parametrize(("times", "span"), [([3.0, 3.0], (2.5, 3.5)), ([1.0, 4.0], (1.0, 4.0))])
+@pytest.mark.parametrize("times, span", [([3.0, 3.0], (2.5, 3.5)), ([1.0, 4.0], (1.0, 4.0))])
 def test_a_single_instant_has_room_around_it(times: list[float], span: tuple[float, float]) -> None:
     table = pa.table({"time": times, "light": [1.0, 2.0]})
     assert LogTraces(Log("test", table, guess_columns(table))).span_s() == span

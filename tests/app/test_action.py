@@ -39,7 +39,7 @@ async def test_it_offers_every_key_those_that_work_now_first_and_finds_one_by_it
 FITTED = {80: 9, 120: 11, 200: 15, 300: 20}
 
 
-@pytest.mark.parametrize(("columns", "most"), FITTED.items(), ids=map(str, FITTED))
+@pytest.mark.parametrize("columns, most", FITTED.items(), ids=map(str, FITTED))
 def test_the_footer_has_few_entries_in_groups_with_the_palette_among_them(
     columns: int, most: int
 ) -> None:

@@ -58,7 +58,7 @@ def test_capital_and_small_letters_are_different_keys(terminal: Terminal) -> Non
 
 
 @pytest.mark.parametrize(
-    ("arguments", "opened"),
+    "arguments, opened",
     [
         (["log_greys"], ()),
         (["log_greys"], ("question_mark",)),

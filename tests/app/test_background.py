@@ -11,6 +11,7 @@ from threading import Event, Thread
 import pytest
 from textual.app import App
 
+from tests.cases import cases
 from tests.running import PATIENCE_S
 from tuisim.app import background
 from tuisim.atomic import replacing
@@ -44,16 +45,16 @@ def cancel(app: App[None]) -> None:
     app.workers.cancel_all()
 
 
-@pytest.mark.parametrize(
-    ("work", "before_the_end", "heard"),
-    [
-        pytest.param(succeed, nothing, ["done"], id="result"),
-        pytest.param(fail, nothing, ["failed"], id="error"),
-        pytest.param(succeed, cancel, ["done"], id="result-cancelled"),
-        pytest.param(fail, cancel, [], id="error-cancelled"),
-        pytest.param(succeed, App.exit, [], id="result-leaving"),
-        pytest.param(fail, App.exit, [], id="error-leaving"),
-    ],
+@cases(
+    "work, before_the_end, heard",
+    {
+        "result": (succeed, nothing, ["done"]),
+        "error": (fail, nothing, ["failed"]),
+        "result-cancelled": (succeed, cancel, ["done"]),
+        "error-cancelled": (fail, cancel, []),
+        "result-leaving": (succeed, App.exit, []),
+        "error-leaving": (fail, App.exit, []),
+    },
 )
 async def test_work_passes_on(
     work: Callable[[Event], str], before_the_end: Callable[[App[None]], None], heard: list[str]

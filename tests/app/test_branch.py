@@ -71,7 +71,7 @@ async def _nothing(pilot: Pilot[Any], app: LabApp) -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    ("deed", "kind"),
+    "deed, kind",
     [
         (_nudge, "set_pose"),
         (_noise, "set_noise"),
@@ -245,7 +245,7 @@ async def test_a_branch_is_compared_with_the_run_that_it_left() -> None:
 
 
 @pytest.mark.parametrize(
-    ("tags", "number"), [("branch-of-12 at-3.20s", 12), ("", None), ("best branch-of-2026x", None)]
+    "tags, number", [("branch-of-12 at-3.20s", 12), ("", None), ("best branch-of-2026x", None)]
 )
 def test_a_branch_knows_its_root(tags: str, number: int | None) -> None:
     run = RunInfo(3, "id", "2026-01-02T03:04:05+00:00", "line.py", "Loop", "robolab", 0, tags=tags)

@@ -260,7 +260,7 @@ async def test_run_to_the_cursor_starts_the_program() -> None:
 
 
 @pytest.mark.parametrize(
-    ("before", "now", "expected"),
+    "before, now, expected",
     [
         ("a\nb\nc", "a\nb\nc", ["2", "3 if x"]),
         ("a\nb\nc", "new\na\nb\nc", ["3", "4 if x"]),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from tests.cases import cases
 from tuisim.app.error_words import fitting, in_a_list, remedy
 from tuisim.errors import TuisimError
 
@@ -20,48 +21,38 @@ NAME = "NameError: name 'tank_drvie' is not defined. Did you mean: 'tank_drive'?
 MAT = "line 1: no such mat 'Grey_bnds', did you mean Grey_bands?"
 
 
-@pytest.mark.parametrize(
-    ("words", "width", "told"),
-    [
-        pytest.param(NAME, 76, NAME, id="it fits"),
-        pytest.param(NAME, 64, NAME.removeprefix("NameError: "), id="without its class"),
-        pytest.param(
-            NAME, 50, "no tank_drvie: did you mean tank_drive?", id="without its sentence"
-        ),
-        pytest.param(
+@cases(
+    "words, width, told",
+    {
+        "it fits": (NAME, 76, NAME),
+        "without its class": (NAME, 64, NAME.removeprefix("NameError: ")),
+        "without its sentence": (NAME, 50, "no tank_drvie: did you mean tank_drive?"),
+        "80x24": (
             TYPO,
             76,
             "no reflected_lihgt_intensity: did you mean reflected_light_intensity?",
-            id="80x24",
         ),
-        pytest.param(TYPO, 39, "did you mean reflected_light_intensity?", id="what is meant"),
-        pytest.param(TYPO, 28, "reflected_light_intensity?", id="only the name"),
-        pytest.param(MAT, 39, "no Grey_bnds: did you mean Grey_bands?", id="mat"),
-        pytest.param(
+        "what is meant": (TYPO, 39, "did you mean reflected_light_intensity?"),
+        "only the name": (TYPO, 28, "reflected_light_intensity?"),
+        "mat": (MAT, 39, "no Grey_bnds: did you mean Grey_bands?"),
+        "port, 80x24": (
             PORT,
             76,
             "no ColorSensor on in1; the robot has in1 us, in2 color, in4 gyro",
-            id="port, 80x24",
         ),
-        pytest.param(
-            PORT, 54, "no ColorSensor on in1: in1 us, in2 color, in4 gyro", id="port and parts"
-        ),
-        pytest.param(PORT, 39, "in1 us, in2 color, in4 gyro", id="parts"),
-        pytest.param(
-            "ZeroDivisionError: division by zero", 20, "division by zero", id="another error"
-        ),
-        pytest.param(
-            "SyntaxError: a very long sentence about it", 20, "a very long sentenc…", id="cut"
-        ),
-        pytest.param("boom", 0, "", id="no room"),
-    ],
+        "port and parts": (PORT, 54, "no ColorSensor on in1: in1 us, in2 color, in4 gyro"),
+        "parts": (PORT, 39, "in1 us, in2 color, in4 gyro"),
+        "another error": ("ZeroDivisionError: division by zero", 20, "division by zero"),
+        "cut": ("SyntaxError: a very long sentence about it", 20, "a very long sentenc…"),
+        "no room": ("boom", 0, ""),
+    },
 )
 def test_what_matters_comes_first(words: str, width: int, told: str) -> None:
     assert fitting(words, width) == told
 
 
 @pytest.mark.parametrize(
-    ("words", "told"),
+    "words, told",
     [
         (PORT, "no ColorSensor on in1: in1 us, in2 color, in4 gyro. {robot} chooses another robot"),
         (TYPO, ""),
@@ -73,7 +64,7 @@ def test_the_remedy_is_told(words: str, told: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("hint", "told"),
+    "hint, told",
     [
         (
             "did you mean Loop? one of Loop, Square, or the path of an image",

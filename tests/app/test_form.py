@@ -24,7 +24,7 @@ class Frame(App[None]):
 
 
 @pytest.mark.parametrize(
-    ("keys", "expected"),
+    "keys, expected",
     [
         (["right", "right", "left"], [1, 2, 1]),
         (["left"], []),

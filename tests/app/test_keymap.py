@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from tests.app.app_help import LOGS, ready, screen_text, settings, until
+from tests.cases import cases
 from tuisim.app.actions.keys import ACTIONS
 from tuisim.app.app import LabApp
 from tuisim.app.guide.screen import GuideScreen
@@ -15,24 +16,16 @@ from tuisim.config.user_config import UserConfig
 from tuisim.guide import tables
 
 
-@pytest.mark.parametrize(
-    ("keys", "written"),
-    [
-        pytest.param(
-            {"run": ("x",), "clear-log": ("f5",)},
-            {"run": "x", "clear-log": "f5"},
-            id="a key passed on",
-        ),
-        pytest.param(
-            {"run": ("S",), "stop": ("R",)}, {"run": "S", "stop": "R"}, id="two keys swapped"
-        ),
-        pytest.param(
-            {"help": ("?", "F1")}, {"help": "question_mark,f1"}, id="several, one as before"
-        ),
-        pytest.param({"zoom": ("Ctrl+K",)}, {"zoom": "ctrl+k"}, id="modifiers in capitals"),
-        pytest.param({"zoom": ("%",)}, {"zoom": "percent_sign"}, id="a sign"),
-        pytest.param({"zoom": ("ä",)}, {"zoom": "ä"}, id="another letter"),
-    ],
+@cases(
+    "keys, written",
+    {
+        "a key passed on": ({"run": ("x",), "clear-log": ("f5",)}, {"run": "x", "clear-log": "f5"}),
+        "two keys swapped": ({"run": ("S",), "stop": ("R",)}, {"run": "S", "stop": "R"}),
+        "several, one as before": ({"help": ("?", "F1")}, {"help": "question_mark,f1"}),
+        "modifiers in capitals": ({"zoom": ("Ctrl+K",)}, {"zoom": "ctrl+k"}),
+        "a sign": ({"zoom": ("%",)}, {"zoom": "percent_sign"}),
+        "another letter": ({"zoom": ("ä",)}, {"zoom": "ä"}),
+    },
 )
 def test_keys_are_those_of_the_user(
     keys: dict[str, tuple[str, ...]], written: dict[str, str]
@@ -63,7 +56,7 @@ async def test_the_new_key_works_and_is_shown_and_the_old_one_does_nothing(tmp_p
 
 
 @pytest.mark.quick_cases("positioning-*")
-@pytest.mark.parametrize(("panel", "shown"), [("positioning", "[ Start"), ("settings", "% Robots")])
+@pytest.mark.parametrize("panel, shown", [("positioning", "[ Start"), ("settings", "% Robots")])
 async def test_the_words_of_a_panel_follow_the_new_key(
     panel: str, shown: str, tmp_path: Path
 ) -> None:

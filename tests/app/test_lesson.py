@@ -101,7 +101,7 @@ async def test_lesson_is_in_sight_while_one_types_in_a_small_terminal(tmp_path: 
         await until(pilot, lambda: app.panel_area.shown("world"))
 
 
-@pytest.mark.parametrize(("size", "has_world"), [(SMALL, False), (LARGE, True)], ids=["80", "120"])
+@pytest.mark.parametrize("size, has_world", [(SMALL, False), (LARGE, True)], ids=["80", "120"])
 async def test_lesson_is_beside_the_log(
     size: tuple[int, int], has_world: bool, tmp_path: Path
 ) -> None:

@@ -125,7 +125,7 @@ def with_magic(words: str) -> str:
 
 @pytest.mark.quick_cases("chart")
 @pytest.mark.parametrize(
-    ("words", "panel", "shown"),
+    "words, panel, shown",
     [
         (" -c", "chart", True),
         (" -X", "positioning", True),
@@ -285,7 +285,7 @@ WRONG = [
 
 
 @pytest.mark.quick_cases("mine.toml")
-@pytest.mark.parametrize(("name", "text", "said"), WRONG, ids=[name for name, _, _ in WRONG])
+@pytest.mark.parametrize("name, text, said", WRONG, ids=[name for name, _, _ in WRONG])
 async def test_a_file_that_became_wrong_is_told_and_the_former_stays(
     name: str, text: str, said: str, folder: Path
 ) -> None:

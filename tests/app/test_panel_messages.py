@@ -13,7 +13,7 @@ DRAWS = "from ev3dev2.display import Display\nDisplay().update()\n"
 
 
 @pytest.mark.parametrize(
-    ("text", "expected"),
+    "text, expected",
     [
         ("import time\nfrom ev3dev2.button import Button\n", True),
         ("from ev3dev2 import button\n", True),

@@ -184,7 +184,7 @@ async def test_an_error_is_readable_in_a_small_terminal_until_the_next_run() -> 
 
 @pytest.mark.quick_cases("text")
 @pytest.mark.parametrize(
-    ("keys", "printed"),
+    "keys, printed",
     [(["a", "n", "n", "enter"], "got ann"), (["ctrl+d"], "nothing more")],
     ids=["text", "end of file"],
 )

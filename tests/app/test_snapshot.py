@@ -17,7 +17,7 @@ def app_state(looks_back: bool, playing: bool, **run: Any) -> AppState:
 
 
 @pytest.mark.parametrize(
-    ("looks_back", "playing", "run", "status", "failed"),
+    "looks_back, playing, run, status, failed",
     [
         (False, False, {"state": RunPhase.IDLE}, "idle", False),
         (False, False, {"state": RunPhase.RUNNING}, "running 1×", False),
@@ -44,7 +44,7 @@ def test_the_status_tells_phase_speed_and_past(
 
 
 @pytest.mark.parametrize(
-    ("text", "expected"),
+    "text, expected",
     [
         ("16.0784313725", "16.08"),
         ("100.0", "100.0"),

@@ -75,7 +75,7 @@ def test_files_are_played(players: Path, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("quiet", "environment"),
+    "quiet, environment",
     [(True, {}), (False, {"SSH_TTY": "/dev/pts/1"})],
     ids=["quiet", "remote"],
 )

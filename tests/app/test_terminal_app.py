@@ -25,7 +25,7 @@ def test_the_message_fits_in_every_size() -> None:
 
 
 @pytest.mark.parametrize(
-    ("size", "expected"),
+    "size, expected",
     [
         (Size(20, 5), "Too small: tuisim needs 40×12, this terminal has 20×5."),
         (

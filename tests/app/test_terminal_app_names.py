@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-import pytest
 from textual.app import App
 
 from tests.app.app_help import settings
+from tests.cases import cases
 from tuisim.analysis.source import LogRequest
 from tuisim.app.analyser.app import AnalyserApp
 from tuisim.app.app import LabApp
@@ -19,6 +19,6 @@ APPS: dict[str, Callable[[], App[None]]] = {
 }
 
 
-@pytest.mark.parametrize("make", APPS.values(), ids=APPS)
+@cases("make", APPS)
 async def test_all_that_is_drawn_goes_through_it(make: Callable[[], App[None]]) -> None:
     assert any(isinstance(one, Sanitize) for one in make().get_line_filters())

@@ -11,9 +11,7 @@ import pytest
 from tuisim.app.timeline import Timeline, _left, forms, proposal
 
 
-@pytest.mark.parametrize(
-    ("tick", "which"), [(3, "the next"), (10, "the first")], ids=["past", "end"]
-)
+@pytest.mark.parametrize("tick, which", [(3, "the next"), (10, "the first")], ids=["past", "end"])
 def test_they_say_in_which_direction_the_search_goes(tick: int, which: str) -> None:
     timeline: Any = SimpleNamespace(tick=tick, newest=10)
 

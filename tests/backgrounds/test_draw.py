@@ -46,7 +46,7 @@ def test_picture_is_small(name: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "column", "row", "rgb"),
+    "name, column, row, rgb",
     [
         ("Grey_bands", 249, 500, WHITE),
         ("Grey_bands", 250, 500, (220, 220, 220)),

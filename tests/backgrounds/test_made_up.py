@@ -122,7 +122,7 @@ def test_the_noise_is_of_the_measured_kind() -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    ("name", "column", "row", "color"),
+    "name, column, row, color",
     [
         ("Harvest_Trail", 650, 200, "Yellow"),
         ("Harvest_Trail", 1150, 200, "Green"),

@@ -10,6 +10,8 @@ import shapes
 import strokes
 from shapes import BLACK, Box, Shape
 
+from tests.cases import cases
+
 INK = 255.0
 """What one fully covered pixel of black on white takes away from a channel."""
 
@@ -21,21 +23,15 @@ def area(shape: Shape, *, smooth: bool = False) -> float:
     return float((INK - canvas[:, :, 0].astype(np.float64)).sum() / INK)
 
 
-@pytest.mark.parametrize(
-    ("box", "covered"),
-    [
-        pytest.param(
-            (10, 20, 13, 22),
-            {(20, 10): 1, (21, 12): 1, (22, 10): 0, (20, 13): 0},
-            id="whole pixels",
-        ),
-        pytest.param(
-            (10.25, 20, 12, 21), {(20, 10): 0.75, (20, 11): 1, (20, 9): 0}, id="left edge inside"
-        ),
-        pytest.param((10.25, 20.5, 10.5, 20.75), {(20, 10): 0.0625}, id="within one pixel"),
-        pytest.param((-5, -5, 1, 1), {(0, 0): 1, (0, 1): 0}, id="partly off the mat"),
-        pytest.param((2361, 1142, 2400, 1200), {(1142, 2361): 1, (1142, 2360): 0}, id="last pixel"),
-    ],
+@cases(
+    "box, covered",
+    {
+        "whole pixels": ((10, 20, 13, 22), {(20, 10): 1, (21, 12): 1, (22, 10): 0, (20, 13): 0}),
+        "left edge inside": ((10.25, 20, 12, 21), {(20, 10): 0.75, (20, 11): 1, (20, 9): 0}),
+        "within one pixel": ((10.25, 20.5, 10.5, 20.75), {(20, 10): 0.0625}),
+        "partly off the mat": ((-5, -5, 1, 1), {(0, 0): 1, (0, 1): 0}),
+        "last pixel": ((2361, 1142, 2400, 1200), {(1142, 2361): 1, (1142, 2360): 0}),
+    },
 )
 def test_rect_blends_by_share(box: Box, covered: dict[tuple[int, int], float]) -> None:
     canvas = shapes.blank()
@@ -52,19 +48,18 @@ def test_rect_off_the_mat_paints_nothing() -> None:
 
 
 @pytest.mark.quick_cases("hard-*")
-@pytest.mark.parametrize(
-    ("shape", "expected"),
-    [
-        pytest.param(shapes.disc((500, 500), 40), math.pi * 40**2, id="disc"),
-        pytest.param(shapes.ellipse((500, 500), 60, 30), math.pi * 60 * 30, id="ellipse"),
-        pytest.param(shapes.ring((500, 500), 50, 30), math.pi * (50**2 - 30**2), id="ring"),
-        pytest.param(
+@cases(
+    "shape, expected",
+    {
+        "disc": (shapes.disc((500, 500), 40), math.pi * 40**2),
+        "ellipse": (shapes.ellipse((500, 500), 60, 30), math.pi * 60 * 30),
+        "ring": (shapes.ring((500, 500), 50, 30), math.pi * (50**2 - 30**2)),
+        "rounded_rect": (
             shapes.rounded_rect((100, 100, 300, 200), 30),
             20_000 - (4 - math.pi) * 900,
-            id="rounded_rect",
         ),
-        pytest.param(shapes.polygon([(100, 100), (200, 100), (100, 180)]), 4000, id="triangle"),
-        pytest.param(
+        "triangle": (shapes.polygon([(100, 100), (200, 100), (100, 180)]), 4000),
+        "polygon with a hole": (
             shapes.polygon(
                 [
                     (0, 0),
@@ -80,25 +75,15 @@ def test_rect_off_the_mat_paints_nothing() -> None:
                 ]
             ),
             3200,
-            id="polygon with a hole",
         ),
-        pytest.param(strokes.stroke([(100, 100), (160, 180)], 10), 1000, id="stroke"),
-        pytest.param(
-            strokes.stroke([(100, 100), (200, 100), (200, 200)], 20, "miter"),
-            4000,
-            id="stroke, mitred",
-        ),
-        pytest.param(
+        "stroke": (strokes.stroke([(100, 100), (160, 180)], 10), 1000),
+        "stroke, mitred": (strokes.stroke([(100, 100), (200, 100), (200, 200)], 20, "miter"), 4000),
+        "mitred, other way": (
             strokes.stroke([(200, 200), (200, 100), (100, 100)], 20, "miter"),
             4000,
-            id="mitred, other way",
         ),
-        pytest.param(
-            strokes.stroke([(100, 100), (200, 100), (200, 200)], 20),
-            3900 + math.pi * 25,
-            id="rounded",
-        ),
-        pytest.param(
+        "rounded": (strokes.stroke([(100, 100), (200, 100), (200, 200)], 20), 3900 + math.pi * 25),
+        "union": (
             shapes.union(
                 [
                     shapes.rounded_rect((100, 100, 200, 150), 0),
@@ -106,20 +91,14 @@ def test_rect_off_the_mat_paints_nothing() -> None:
                 ]
             ),
             7500,
-            id="union",
         ),
-        pytest.param(
+        "closed line": (
             strokes.closed_line([(100, 100, 20), (300, 100, 20), (300, 300, 20), (100, 300, 20)]),
             16_000 - 400 + 100 * math.pi,
-            id="closed line",
         ),
-        pytest.param(
-            strokes.pen_line([(100, 100), (200, 100)], 30, 20), 2000 + 150 * math.pi, id="pen line"
-        ),
-        pytest.param(
-            strokes.pen_line([(100, 100), (100, 100)], 90, 60), 1350 * math.pi, id="pen dot"
-        ),
-    ],
+        "pen line": (strokes.pen_line([(100, 100), (200, 100)], 30, 20), 2000 + 150 * math.pi),
+        "pen dot": (strokes.pen_line([(100, 100), (100, 100)], 90, 60), 1350 * math.pi),
+    },
 )
 @pytest.mark.parametrize("smooth", [False, True], ids=["hard", "smooth"])
 def test_area(shape: Shape, expected: float, smooth: bool) -> None:

@@ -7,6 +7,7 @@ from typing import Any
 
 import pytest
 
+from tests.cases import cases
 from tuisim.batch.batch_file import load_batch, means_batch
 from tuisim.batch.parameters import RandomDraw, SampleValues
 from tuisim.config.worlds import load_world
@@ -78,49 +79,32 @@ def test_a_batch_file_has_a_table_batch(write: Any, text: str, expected: bool) -
     assert means_batch(str(write(text))) is expected
 
 
-@pytest.mark.parametrize(
+@cases(
     "text, words",
-    [
-        pytest.param(
+    {
+        "misspelt": (
             "[batch]\nprogramm = 'a.py'",
             "batch.programm: no such key .did you mean program",
-            id="misspelt",
         ),
-        pytest.param("[batch]\njobs = 0", "batch.jobs: must be a whole number from 1", id="jobs"),
-        pytest.param("[batch]\nseeds = [1, 1]", "batch.seeds: the seed 1 occurs twice", id="seeds"),
-        pytest.param("[batch]\nseeds = '3..1'", "batch.seeds: 3..1 has no values", id="seed text"),
-        pytest.param(
+        "jobs": ("[batch]\njobs = 0", "batch.jobs: must be a whole number from 1"),
+        "seeds": ("[batch]\nseeds = [1, 1]", "batch.seeds: the seed 1 occurs twice"),
+        "seed text": ("[batch]\nseeds = '3..1'", "batch.seeds: 3..1 has no values"),
+        "twice": (
             "[batch]\nseeds = 1\nset.seed = 2",
             "batch.seeds: is given together with set.seed",
-            id="twice",
         ),
-        pytest.param(
-            "[batch]\nset.noise.motor = []", "batch.set.noise.motor: has no values", id="no values"
-        ),
-        pytest.param(
-            "[batch]\nset.a = [[1]]",
-            r"batch.set.a\[1\]: must be a text, a number",
-            id="nested list",
-        ),
-        pytest.param("[batch]\nset.a = '1:2:0'", "batch.set.a: 1:2:0 has no values", id="range"),
-        pytest.param("[batch]\nkeep = 'some'", "batch.keep: no such value 'some'", id="keep"),
-        pytest.param(
-            "[batch]\nexpressions.a = 1", "batch.expressions.a: must be text", id="expression"
-        ),
-        pytest.param(
-            "[batch]\nworld = 'none.toml'", "none.toml: there is no such file", id="no world"
-        ),
-        pytest.param(
-            "walls = true\n[batch]\nworld = 'a.toml'",
-            "batch.world: is given together with",
-            id="two",
-        ),
-        pytest.param(
+        "no values": ("[batch]\nset.noise.motor = []", "batch.set.noise.motor: has no values"),
+        "nested list": ("[batch]\nset.a = [[1]]", r"batch.set.a\[1\]: must be a text, a number"),
+        "range": ("[batch]\nset.a = '1:2:0'", "batch.set.a: 1:2:0 has no values"),
+        "keep": ("[batch]\nkeep = 'some'", "batch.keep: no such value 'some'"),
+        "expression": ("[batch]\nexpressions.a = 1", "batch.expressions.a: must be text"),
+        "no world": ("[batch]\nworld = 'none.toml'", "none.toml: there is no such file"),
+        "two": ("walls = true\n[batch]\nworld = 'a.toml'", "batch.world: is given together with"),
+        "key of a world": (
             "wall = true\n[batch]",
             "spec.toml: wall: no such key .did you mean walls",
-            id="key of a world",
         ),
-    ],
+    },
 )
 def test_wrong_files_are_explained(write: Any, text: str, words: str) -> None:
     with pytest.raises(ConfigError, match=words):

@@ -15,6 +15,7 @@ from pathlib import Path
 import pytest
 
 from tests.batch.test_pool import LOGS, by_index, task
+from tests.cases import cases
 from tests.conftest import ROOT
 from tests.running import PATIENCE_S
 from tuisim.batch.cluster import run_on_cluster
@@ -135,7 +136,7 @@ UNFIT = {
 }
 
 
-@pytest.mark.parametrize(("first", "message"), UNFIT.values(), ids=UNFIT)
+@cases("first, message", UNFIT)
 def test_a_cluster_that_cannot_work_is_told_in_one_line(
     department: Department, tmp_path: Path, first: str | None, message: str
 ) -> None:
@@ -203,7 +204,7 @@ BREAKS = {
 }
 
 
-@pytest.mark.parametrize(("break_it", "message"), BREAKS.values(), ids=BREAKS)
+@cases("break_it, message", BREAKS)
 def test_a_cluster_that_breaks_is_told(
     department: Department, break_it: Callable[[Department], None], message: str
 ) -> None:

@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 
+from tests.cases import cases
 from tuisim import __version__
 from tuisim.batch import cluster_watch
 from tuisim.batch.cluster_watch import ClusterWatch, within
@@ -85,7 +86,7 @@ CANNOT_WORK = {
 }
 
 
-@pytest.mark.parametrize(("states", "message"), CANNOT_WORK.values(), ids=CANNOT_WORK)
+@cases("states, message", CANNOT_WORK)
 def test_a_cluster_that_cannot_work_is_told_within_ten_seconds(
     states: tuple[Any, ...], message: str
 ) -> None:

@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from tests.batch.test_pool import LOGS, task
+from tests.cases import cases
 from tests.running import over
 from tuisim.batch import execute as execute_module
 from tuisim.batch.execute import _prepared, execute
@@ -62,9 +63,7 @@ def test_each_end_is_a_result(end: str, tmp_path: Path) -> None:
     assert result.run_id == ""
 
 
-@pytest.mark.parametrize(
-    ("text", "kept"), [("x = 1", False), ("1 / 0", True)], ids=["met", "missed"]
-)
+@pytest.mark.parametrize("text, kept", [("x = 1", False), ("1 / 0", True)], ids=["met", "missed"])
 def test_failed_runs_are_kept(text: str, kept: bool, tmp_path: Path) -> None:
     goals = (Goal(name="end", condition=FinishCondition()),)
     result = execute(task(text, goals=goals, keep=Keep.FAILED), tmp_path)
@@ -100,7 +99,7 @@ HARM = {
 }
 
 
-@pytest.mark.parametrize(("harm", "end", "judged"), HARM.values(), ids=HARM)
+@cases("harm, end, judged", HARM)
 def test_a_program_that_damages_its_recording_gets_a_result(
     tmp_path: Path, harm: str, end: str, judged: int
 ) -> None:

@@ -6,6 +6,7 @@ from itertools import pairwise
 
 import pytest
 
+from tests.cases import cases
 from tuisim.batch.parameters import (
     RandomDraw,
     SampleValues,
@@ -17,59 +18,51 @@ from tuisim.batch.parameters import (
 from tuisim.errors import ConfigError
 
 
-@pytest.mark.parametrize(
+@cases(
     "text, expected",
-    [
-        pytest.param("0,20,50", (0, 20, 50), id="a list of numbers"),
-        pytest.param(" 0 , -2.5,1e3", (0, -2.5, 1000.0), id="blanks, signs and exponents"),
-        pytest.param(
+    {
+        "a list of numbers": ("0,20,50", (0, 20, 50)),
+        "blanks, signs and exponents": (" 0 , -2.5,1e3", (0, -2.5, 1000.0)),
+        "a range with its end": (
             "54:58:0.5",
             (54.0, 54.5, 55.0, 55.5, 56.0, 56.5, 57.0, 57.5, 58.0),
-            id="a range with its end",
         ),
-        pytest.param("0:0.3:0.1", (0.0, 0.1, 0.2, 0.3), id="a range without rounding errors"),
-        pytest.param("1:4", (1, 2, 3, 4), id="a range in steps of one"),
-        pytest.param("4:0:-2", (4, 2, 0), id="a falling range"),
-        pytest.param("7:7", (7,), id="a range of one value"),
-        pytest.param("3..6", (3, 4, 5, 6), id="a span of whole numbers"),
-        pytest.param("1,3..5,9:10:0.5", (1, 3, 4, 5, 9.0, 9.5, 10.0), id="ranges in a list"),
-        pytest.param("Grey_bands,Lollipop", ("Grey_bands", "Lollipop"), id="words"),
-        pytest.param("../maze.png", ("../maze.png",), id="the path of a file"),
-        pytest.param("'a,b.png',\"7\"", ("a,b.png", "7"), id="words in quotes"),
-        pytest.param("true,off,ON", (True, False, True), id="truth values"),
-        pytest.param(
-            "random(0, 50, 20)", SampleValues(RandomDraw.RANDOM, 0.0, 50.0, 20), id="random numbers"
-        ),
-        pytest.param(
+        "a range without rounding errors": ("0:0.3:0.1", (0.0, 0.1, 0.2, 0.3)),
+        "a range in steps of one": ("1:4", (1, 2, 3, 4)),
+        "a falling range": ("4:0:-2", (4, 2, 0)),
+        "a range of one value": ("7:7", (7,)),
+        "a span of whole numbers": ("3..6", (3, 4, 5, 6)),
+        "ranges in a list": ("1,3..5,9:10:0.5", (1, 3, 4, 5, 9.0, 9.5, 10.0)),
+        "words": ("Grey_bands,Lollipop", ("Grey_bands", "Lollipop")),
+        "the path of a file": ("../maze.png", ("../maze.png",)),
+        "words in quotes": ("'a,b.png',\"7\"", ("a,b.png", "7")),
+        "truth values": ("true,off,ON", (True, False, True)),
+        "random numbers": ("random(0, 50, 20)", SampleValues(RandomDraw.RANDOM, 0.0, 50.0, 20)),
+        "a Latin hypercube": (
             "latin(54,58.5,10, seed=3)",
             SampleValues(RandomDraw.LATIN, 54.0, 58.5, 10, 3),
-            id="a Latin hypercube",
         ),
-    ],
+    },
 )
 def test_values_are_read(text: str, expected: object) -> None:
     assert repr(parse_values(text, "x")) == repr(expected)
 
 
-@pytest.mark.parametrize(
+@cases(
     "text, words",
-    [
-        pytest.param("", "a value is missing", id="nothing"),
-        pytest.param("1,,2", "a value is missing", id="an empty value"),
-        pytest.param("54:58:0", "a step of 0 does not lead from 54 to 58", id="a step of zero"),
-        pytest.param(
-            "58:54", "a step of 1 does not lead from 58 to 54", id="a step that leads away"
-        ),
-        pytest.param("0:1:0.3", "does not reach 1 .*0:0.9:0.3", id="an end between two steps"),
-        pytest.param("0:1e9:1", "at most 1,000,000", id="too many values"),
-        pytest.param(
-            "random(0, 50)", "random.0, 50, 20.*number of values", id="no number of values"
-        ),
-        pytest.param("random(50, 0, 3)", "50 is not less than 0", id="an empty interval"),
-        pytest.param("random(0, 1, 0)", "a whole number from 1", id="no values"),
-        pytest.param("rand(0, 1, 5)", "did you mean random", id="an unknown sample"),
-        pytest.param("1,random(0, 1, 5)", "stands alone", id="a sample in a list"),
-    ],
+    {
+        "nothing": ("", "a value is missing"),
+        "an empty value": ("1,,2", "a value is missing"),
+        "a step of zero": ("54:58:0", "a step of 0 does not lead from 54 to 58"),
+        "a step that leads away": ("58:54", "a step of 1 does not lead from 58 to 54"),
+        "an end between two steps": ("0:1:0.3", "does not reach 1 .*0:0.9:0.3"),
+        "too many values": ("0:1e9:1", "at most 1,000,000"),
+        "no number of values": ("random(0, 50)", "random.0, 50, 20.*number of values"),
+        "an empty interval": ("random(50, 0, 3)", "50 is not less than 0"),
+        "no values": ("random(0, 1, 0)", "a whole number from 1"),
+        "an unknown sample": ("rand(0, 1, 5)", "did you mean random"),
+        "a sample in a list": ("1,random(0, 1, 5)", "stands alone"),
+    },
 )
 def test_wrong_values_are_explained(text: str, words: str) -> None:
     with pytest.raises(ConfigError, match=rf"^x: .*{words}"):

@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 
+from tests.cases import cases
 from tuisim.batch.parameters import RandomDraw, SampleValues
 from tuisim.batch.plan import Plan, Subject
 from tuisim.config.options import Settings
@@ -75,12 +76,12 @@ def test_arguments_of_the_program_are_a_parameter() -> None:
     assert found == [("5", "fast"), ("6",)]
 
 
-@pytest.mark.parametrize(
+@cases(
     "name, whole",
-    [
-        pytest.param("noise.motor", True, id="whole"),
-        pytest.param("robot.wheel_diameter_mm", False, id="real"),
-    ],
+    {
+        "whole": ("noise.motor", True),
+        "real": ("robot.wheel_diameter_mm", False),
+    },
 )
 def test_samples_are_whole_where_the_key_takes_whole_numbers(name: str, whole: bool) -> None:
     values = [
@@ -101,38 +102,28 @@ def test_a_mat_brings_its_start_pose_unless_one_is_chosen() -> None:
     assert [(pose.x_mm, pose.y_mm) for pose in chosen] == [(321.0, pose.y_mm) for pose in own]
 
 
-@pytest.mark.parametrize(
+@cases(
     "choices, given, words",
-    [
-        pytest.param(
+    {
+        "misspelt": (
             {"noise.motr": (1,)},
             (),
             "--set: noise.motr: no such key .did you mean motor",
-            id="misspelt",
         ),
-        pytest.param(
-            {"noise.motor": (0, 501)},
-            (),
-            "noise.motor: must be a whole number from 0",
-            id="too large",
-        ),
-        pytest.param({"seed": (-1,)}, (), "seed: .*whole number from 0", id="seed"),
-        pytest.param(
+        "too large": ({"noise.motor": (0, 501)}, (), "noise.motor: must be a whole number from 0"),
+        "seed": ({"seed": (-1,)}, (), "seed: .*whole number from 0"),
+        "option": (
             {"noise.motor": (1,)},
             ("noise.motor",),
             "noise.motor varies what an option sets",
-            id="option",
         ),
-        pytest.param(
-            {"seed": (1,)}, ("seed",), "seed varies what an option sets", id="option for the seed"
-        ),
-        pytest.param(
+        "option for the seed": ({"seed": (1,)}, ("seed",), "seed varies what an option sets"),
+        "sample": (
             {"noise.motor": SampleValues(RandomDraw.RANDOM, 600, 700, 2)},
             (),
             "noise.motor: must be",
-            id="sample",
         ),
-    ],
+    },
 )
 def test_wrong_parameters_are_found_before_anything_is_run(
     choices: Any, given: tuple[str, ...], words: str
@@ -151,26 +142,22 @@ def test_a_profile_for_another_library_is_found_before_anything_is_run() -> None
         plan({"profile": ("pybricks4", "ev3")}, known)
 
 
-@pytest.mark.parametrize(
+@cases(
     "other, same",
-    [
-        pytest.param(plan({"seed": (1, 2)}), True, id="equal"),
-        pytest.param(plan({"seed": (1, 3)}), False, id="other seeds"),
-        pytest.param(plan({"noise.motor": (0,), "seed": (1, 2)}), False, id="another parameter"),
-        pytest.param(
-            plan({"seed": (1, 2)}, subject(settings={"noise.light": 3})), False, id="other settings"
-        ),
-        pytest.param(
+    {
+        "equal": (plan({"seed": (1, 2)}), True),
+        "other seeds": (plan({"seed": (1, 3)}), False),
+        "another parameter": (plan({"noise.motor": (0,), "seed": (1, 2)}), False),
+        "other settings": (plan({"seed": (1, 2)}, subject(settings={"noise.light": 3})), False),
+        "other text": (
             plan({"seed": (1, 2)}, Subject(Program("a.py", "print()"), Settings())),
             False,
-            id="other text",
         ),
-        pytest.param(
+        "other limit": (
             plan({"seed": (1, 2)}, options_of=lambda _: RunOptions(time_limit_s=5)),
             False,
-            id="other limit",
         ),
-    ],
+    },
 )
 def test_a_batch_is_identified_by_all_that_its_rows_depend_on(other: Plan, same: bool) -> None:
     assert (plan({"seed": (1, 2)}).identity() == other.identity()) is same

@@ -9,6 +9,7 @@ import pytest
 
 from tests.batch.stand_in import result_of
 from tests.batch.test_plan import plan, subject
+from tests.cases import cases
 from tuisim.batch.table import (
     check_expressions,
     frame_of,
@@ -71,14 +72,14 @@ def test_values_of_several_types_are_written_as_text() -> None:
     assert frame["robot.weight"].tolist() == ["light", "3.5"]
 
 
-@pytest.mark.parametrize(
+@cases(
     "text, expected",
-    [
-        pytest.param("x_mm - 100", [0, 0, 0, 20, 40, 260], id="a pose"),
-        pytest.param("noise.motor / 2", [0, 0, 0, 10, 10, 10], id="a parameter with a dot"),
-        pytest.param("where(exit_code > 0, -1, seed)", [1, 2, -1, 1, 2, -1], id="the end"),
-        pytest.param("Grey_last", [math.nan] * 6, id="a variable that no run has printed"),
-    ],
+    {
+        "a pose": ("x_mm - 100", [0, 0, 0, 20, 40, 260]),
+        "a parameter with a dot": ("noise.motor / 2", [0, 0, 0, 10, 10, 10]),
+        "the end": ("where(exit_code > 0, -1, seed)", [1, 2, -1, 1, 2, -1]),
+        "a variable that no run has printed": ("Grey_last", [math.nan] * 6),
+    },
 )
 def test_an_expression_is_evaluated_in_each_row(text: str, expected: list[float]) -> None:
     found = frame_of(ROWS, {"new": text})["new"].tolist()
@@ -90,18 +91,16 @@ def test_a_later_expression_uses_an_earlier_one() -> None:
     assert frame["two"].tolist() == [4, 6, 28] * 2
 
 
-@pytest.mark.parametrize(
+@cases(
     "name, text, words",
-    [
-        pytest.param(
-            "new", "x_m + 1", "no column 'x_m'.*did you mean x_mm.*NAME_last", id="misspelt"
-        ),
-        pytest.param("new", "x_mm +", "cannot read the expression", id="syntax"),
-        pytest.param("new", "open(1)", "no function 'open'", id="function"),
-        pytest.param("x_mm", "1", "is no name for a new column", id="taken"),
-        pytest.param("a b", "1", "is no name for a new column", id="not a name"),
-        pytest.param("Colour_last", "1", "is no name for a new column", id="a variable's"),
-    ],
+    {
+        "misspelt": ("new", "x_m + 1", "no column 'x_m'.*did you mean x_mm.*NAME_last"),
+        "syntax": ("new", "x_mm +", "cannot read the expression"),
+        "function": ("new", "open(1)", "no function 'open'"),
+        "taken": ("x_mm", "1", "is no name for a new column"),
+        "not a name": ("a b", "1", "is no name for a new column"),
+        "a variable's": ("Colour_last", "1", "is no name for a new column"),
+    },
 )
 def test_wrong_expressions_are_found_before_anything_is_run(
     name: str, text: str, words: str

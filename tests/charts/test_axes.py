@@ -7,19 +7,20 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from tests.cases import cases
 from tuisim.charts import axes
 from tuisim.charts.traces import min_max
 
 
-@pytest.mark.parametrize(
-    ("low", "high", "limits"),
-    [
-        pytest.param(0.0, 100.0, (0.0, 100.0), id="percent"),
-        pytest.param(50.2, 100.0, (40.0, 100.0), id="part of it"),
-        pytest.param(5.0, 5.0, (4.0, 6.0), id="one value"),
-        pytest.param(-90.0, 3.0, (-100.0, 25.0), id="negative"),
-        pytest.param(0.0, 2550.0, (0.0, 3000.0), id="millimetres"),
-    ],
+@cases(
+    "low, high, limits",
+    {
+        "percent": (0.0, 100.0, (0.0, 100.0)),
+        "part of it": (50.2, 100.0, (40.0, 100.0)),
+        "one value": (5.0, 5.0, (4.0, 6.0)),
+        "negative": (-90.0, 3.0, (-100.0, 25.0)),
+        "millimetres": (0.0, 2550.0, (0.0, 3000.0)),
+    },
 )
 def test_value_limits(low: float, high: float, limits: tuple[float, float]) -> None:
     assert axes.value_limits(low, high) == pytest.approx(limits)
@@ -42,7 +43,7 @@ def test_one_value_of_any_size_has_limits_around_it(value: float) -> None:
 
 
 @pytest.mark.parametrize(
-    ("end_s", "upper_s"), [(0, 5), (5, 5), (5.1, 10), (45, 60), (61, 120), (600, 600), (700, 720)]
+    "end_s, upper_s", [(0, 5), (5, 5), (5.1, 10), (45, 60), (61, 120), (600, 600), (700, 720)]
 )
 def test_time_limits(end_s: float, upper_s: float) -> None:
     assert axes.time_limits(end_s) == (0, upper_s)
@@ -68,7 +69,7 @@ def test_columns_and_times_agree(columns: int) -> None:
 
 
 @pytest.mark.parametrize(
-    ("value", "step", "text"),
+    "value, step, text",
     [
         (2.5, 2.5, "2.5"),
         (10.0, 5.0, "10"),
@@ -83,19 +84,14 @@ def test_labels(value: float, step: float, text: str) -> None:
     assert axes.label(value, step) == text
 
 
-@pytest.mark.parametrize(
-    ("limits", "rows", "labels"),
-    [
-        pytest.param((40.0, 100.0), 4, {0: "100", 3: "40"}, id="few rows"),
-        pytest.param((0.0, 100.0), 1, {0: "100"}, id="one row"),
-        pytest.param(
-            (0.0, 100.0),
-            12,
-            {0: "100", 2: "80", 4: "60", 7: "40", 9: "20", 11: "0"},
-            id="many rows",
-        ),
-        pytest.param((-1.0, 1.0), 4, {0: "1.0", 3: "-1.0"}, id="fractions"),
-    ],
+@cases(
+    "limits, rows, labels",
+    {
+        "few rows": ((40.0, 100.0), 4, {0: "100", 3: "40"}),
+        "one row": ((0.0, 100.0), 1, {0: "100"}),
+        "many rows": ((0.0, 100.0), 12, {0: "100", 2: "80", 4: "60", 7: "40", 9: "20", 11: "0"}),
+        "fractions": ((-1.0, 1.0), 4, {0: "1.0", 3: "-1.0"}),
+    },
 )
 def test_row_labels(limits: tuple[float, float], rows: int, labels: dict[int, str]) -> None:
     assert axes.row_labels(limits, rows) == labels

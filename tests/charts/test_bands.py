@@ -61,7 +61,7 @@ def test_too_many_samples_are_left_to_the_analyser() -> None:
     assert not chart([1.0] * (MOST_SAMPLES + 1))[1].spans
 
 
-@pytest.mark.parametrize(("width", "name"), [(80, "100 white"), (30, "100"), (12, "")])
+@pytest.mark.parametrize("width, name", [(80, "100 white"), (30, "100"), (12, "")])
 def test_a_band_in_cells_is_shaded_and_named_where_nothing_is_drawn(width: int, name: str) -> None:
     traces, state = chart(LEVELS)
     picture = ChartPainter().paint(traces, state, width, 12)

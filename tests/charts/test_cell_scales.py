@@ -7,6 +7,7 @@ import re
 import numpy as np
 import pytest
 
+from tests.cases import cases
 from tuisim.charts.text_chart import ChartPainter, ChartPicture, ChartState
 from tuisim.charts.traces import Traces
 
@@ -30,7 +31,7 @@ def test_two_scales() -> None:
     assert any(row.startswith("100┤") and row.rstrip().endswith("├2000") for row in rows)
 
 
-@pytest.mark.parametrize(("width", "has_ends"), [(34, False), (44, True), (60, True)])
+@pytest.mark.parametrize("width, has_ends", [(34, False), (44, True), (60, True)])
 def test_a_narrow_chart_has_both_scales_before_the_last_values(width: int, has_ends: bool) -> None:
     made = traces({"Colour": [0.0, 100.0], "front_mm": [2000.0, 886.0]})
     rows = text(ChartPainter().paint(made, ChartState(), width, 16))
@@ -65,17 +66,15 @@ def test_percent_millimetres_and_degrees_have_a_scale_each() -> None:
     ]
 
 
-@pytest.mark.parametrize(
-    ("values", "last"),
-    [
-        pytest.param({"Colour": [0.0, 86.27]}, ["86.27"], id="rounded"),
-        pytest.param({"front_mm": [0.0, 1250.0]}, ["1250mm"], id="with its unit"),
-        pytest.param({"Left": [0.0, 100.0], "Right": [0.0, 100.0]}, ["100"], id="at one place"),
-        pytest.param({"Left": [9.0, 0.0], "Right": [9.0, 0.0]}, ["0"], id="at the lower edge"),
-        pytest.param(
-            {"Left": [9.0, 1.0], "Right": [9.0, 1.1]}, ["1", "1.1"], id="beside each other"
-        ),
-    ],
+@cases(
+    "values, last",
+    {
+        "rounded": ({"Colour": [0.0, 86.27]}, ["86.27"]),
+        "with its unit": ({"front_mm": [0.0, 1250.0]}, ["1250mm"]),
+        "at one place": ({"Left": [0.0, 100.0], "Right": [0.0, 100.0]}, ["100"]),
+        "at the lower edge": ({"Left": [9.0, 0.0], "Right": [9.0, 0.0]}, ["0"]),
+        "beside each other": ({"Left": [9.0, 1.0], "Right": [9.0, 1.1]}, ["1", "1.1"]),
+    },
 )
 def test_the_last_value_stands_at_the_end_of_each_line(
     values: dict[str, list[float]], last: list[str]

@@ -67,7 +67,7 @@ def test_a_failed_report_leaves_what_was_there(
 
 
 @pytest.mark.parametrize(
-    ("file", "name"),
+    "file, name",
     [("a/greys.csv", "greys-report.html"), ("-", "log-report.html"), (".csv", "csv-report.html")],
 )
 def test_a_report_is_called_after_its_log(file: str, name: str) -> None:
@@ -110,7 +110,7 @@ def test_what_is_drawn_has_its_size_in_the_picture() -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "size"),
+    "text, size",
     [
         ("800x600", (800, 600)),
         ("200×150", (200, 150)),

@@ -11,6 +11,7 @@ import pytest
 from rich.cells import cell_len
 
 from tests.app.analyser.logs import long_log, model_of
+from tests.cases import cases
 from tuisim.analysis.chart import View, chart_of
 from tuisim.analysis.model import Model
 from tuisim.charts import axes
@@ -63,8 +64,8 @@ def log_of(columns: dict[str, object]) -> Model:
 
 
 @pytest.mark.quick_cases("two scales-*", "no number-*")
-@pytest.mark.parametrize("view", VIEWS.values(), ids=VIEWS)
-@pytest.mark.parametrize("columns", COLUMNS.values(), ids=COLUMNS)
+@cases("view", VIEWS)
+@cases("columns", COLUMNS)
 def test_every_format_is_whole(columns: dict[str, object], view: View) -> None:
     model = log_of(columns)
     for width, height in ((200, 150), (960, 420)):
@@ -86,7 +87,7 @@ def test_every_format_is_whole(columns: dict[str, object], view: View) -> None:
         assert not re.search(r"[\x00-\x1f\x7f]", "".join(lines))
 
 
-@pytest.mark.parametrize("columns", COLUMNS.values(), ids=COLUMNS)
+@cases("columns", COLUMNS)
 def test_a_screen_and_a_file_have_the_same_scales(columns: dict[str, object]) -> None:
     model = log_of(columns)
     drawing = laid_out(chart_of(model, View(), 960, 420), 960, 420)

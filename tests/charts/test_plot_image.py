@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-import pytest
 
+from tests.cases import cases
 from tuisim.charts import axes
 from tuisim.charts.canvas import Curve
 from tuisim.charts.plot_image import Plot, PlotInks, plot_image
@@ -50,7 +50,7 @@ DRAWN = {
 }
 
 
-@pytest.mark.parametrize(("plot", "rgb", "expected"), DRAWN.values(), ids=DRAWN)
+@cases("plot, rgb, expected", DRAWN)
 def test_everything_is_where_it_belongs(
     plot: Plot, rgb: Rgb, expected: set[tuple[int, int]]
 ) -> None:

@@ -10,7 +10,7 @@ from tuisim.runs.samples import Sample
 
 
 @pytest.mark.parametrize(
-    ("times_s", "limits"),
+    "times_s, limits",
     [([], (0.0, 1.0)), ([2.0], (1.5, 2.5)), ([1.0, 4.0], (1.0, 4.0)), ([3.0, 3.0], (2.5, 3.5))],
 )
 def test_samples_are_seen_from_the_first_to_the_last(times_s: list[float], limits: Limits) -> None:

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from tests.cases import cases
 from tuisim.charts import axes
 from tuisim.charts.bands import band_span
 from tuisim.charts.canvas import Curve, TextRun, canvas, styled
@@ -37,7 +38,7 @@ def text(picture: ChartPicture) -> list[str]:
 SIZES = [(20, 6), (38, 8), (72, 16), (160, 20)]
 
 
-@pytest.mark.parametrize(("width", "height"), SIZES, ids=str)
+@pytest.mark.parametrize("width, height", SIZES, ids=str)
 @pytest.mark.parametrize("cursor_s", [None, 1.5], ids=["no cursor", "cursor"])
 @pytest.mark.parametrize("grey", [False, True], ids=["colours", "grey"])
 def test_it_fits(width: int, height: int, cursor_s: float | None, grey: bool) -> None:
@@ -60,7 +61,7 @@ def test_it_fits(width: int, height: int, cursor_s: float | None, grey: bool) ->
         assert rows[box.row][box.first] == "["
 
 
-@pytest.mark.parametrize(("width", "height"), SIZES, ids=str)
+@pytest.mark.parametrize("width, height", SIZES, ids=str)
 def test_an_empty_chart_says_how_to_log(width: int, height: int) -> None:
     rows = text(ChartPainter().paint(traces(), ChartState(), width, height))
 
@@ -86,7 +87,7 @@ def test_a_chart_without_a_tick_says_so() -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "values", "state", "lowest"),
+    "name, values, state, lowest",
     [
         ("Colour", [60.0, 98.8], ChartState(), "0"),
         ("Light_left", [180.0, 255.0], ChartState(), "0"),
@@ -129,13 +130,13 @@ def test_the_horizontal_axis_ends_at_the_data(end_s: float, grows: bool) -> None
     assert limits[1] == end_s if not grows else end_s <= limits[1] <= max(1.3 * end_s, 1)
 
 
-@pytest.mark.parametrize(
-    ("names", "is_ascii", "signs"),
-    [
-        pytest.param(["Colour"], False, "braille", id="one trace"),
-        pytest.param(["Colour", "Gyro"], False, "marks", id="two traces"),
-        pytest.param(["Colour"], True, "marks", id="one trace in ASCII"),
-    ],
+@cases(
+    "names, is_ascii, signs",
+    {
+        "one trace": (["Colour"], False, "braille"),
+        "two traces": (["Colour", "Gyro"], False, "marks"),
+        "one trace in ASCII": (["Colour"], True, "marks"),
+    },
 )
 def test_without_colours_marks_are_drawn_only_where_they_are_needed(
     names: list[str], is_ascii: bool, signs: str

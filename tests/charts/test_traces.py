@@ -82,7 +82,7 @@ def test_a_trace_without_end_keeps_its_extremes_in_bounded_memory() -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "scale"),
+    "name, scale",
     [
         ("front_mm", "mm"),
         ("turn_deg #2", "°"),

@@ -13,6 +13,7 @@ import pytest
 
 import tuisim
 from tests.batch.stand_in import result_of
+from tests.cases import cases
 from tests.commands.conftest import PROGRAM, SPEC, Batch
 from tuisim.batch import sweep
 from tuisim.batch.task import Result, Task
@@ -187,18 +188,12 @@ def test_a_complete_batch_is_not_run_again(
     assert (capsys.readouterr().out, Path(f"rows.{suffix}").read_bytes()) == (summary, whole)
 
 
-@pytest.mark.parametrize(
+@cases(
     "words, message",
-    [
-        pytest.param(
-            (),
-            "rows.csv.part: holds the rows of an interrupted batch (--resume goes on",
-            id="again",
-        ),
-        pytest.param(
-            ("--resume", "-M", "5"), "rows.csv.part: is of another batch", id="another batch"
-        ),
-    ],
+    {
+        "again": ((), "rows.csv.part: holds the rows of an interrupted batch (--resume goes on"),
+        "another batch": (("--resume", "-M", "5"), "rows.csv.part: is of another batch"),
+    },
 )
 def test_the_rows_of_an_interrupted_batch_are_not_lost(
     batch: Batch,

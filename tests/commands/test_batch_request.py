@@ -7,17 +7,18 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
+from tests.cases import cases
 from tests.commands.conftest import SPEC, Batch
 from tuisim.batch import sweep
 
 
-@pytest.mark.parametrize(
+@cases(
     "words, rows",
-    [
-        pytest.param(("--seeds", "7"), [[0, 7], [20, 7]], id="seeds"),
-        pytest.param(("--set", "noise.motor=5"), [[5, 0], [5, 1], [5, 2]], id="a parameter"),
-        pytest.param(("--seed", "4"), [[0, 4], [20, 4]], id="the option for the seed"),
-    ],
+    {
+        "seeds": (("--seeds", "7"), [[0, 7], [20, 7]]),
+        "a parameter": (("--set", "noise.motor=5"), [[5, 0], [5, 1], [5, 2]]),
+        "the option for the seed": (("--seed", "4"), [[0, 4], [20, 4]]),
+    },
 )
 def test_options_override_the_batch_file(
     batch: Batch, words: tuple[str, ...], rows: list[list[int]]
@@ -34,63 +35,33 @@ def test_the_option_for_a_parameter_of_the_batch_file_replaces_it(batch: Batch) 
     assert ("noise.motor" in frame.columns, frame["x_mm"].tolist()) == (False, [100, 130, 160])
 
 
-@pytest.mark.parametrize(
+@cases(
     "words, message",
-    [
-        pytest.param(
-            ("--set", "noise.motr=1"),
-            "--set: noise.motr: no such key (did you mean motor?)",
-            id="key",
-        ),
-        pytest.param(
-            ("--set", "noise.motor=1", "-M", "5"),
-            "noise.motor varies what an option sets",
-            id="option",
-        ),
-        pytest.param(
+    {
+        "key": (("--set", "noise.motr=1"), "--set: noise.motr: no such key (did you mean motor?)"),
+        "option": (("--set", "noise.motor=1", "-M", "5"), "noise.motor varies what an option sets"),
+        "port": (
             ("--scheduler", "localhost"),
             "--scheduler: is no address of a scheduler: 'localhost'",
-            id="port",
         ),
-        pytest.param(
-            ("--seeds", "1..3", "--seed", "5"), "seed varies what an option sets", id="seed option"
-        ),
-        pytest.param(
-            ("--seeds", "1..3", "--set", "seed=5"),
-            "--seeds: is given together with",
-            id="two seeds",
-        ),
-        pytest.param(
-            ("--set", "pen.down=on", "--set", "pen.down=off"), "pen.down is given twice", id="twice"
-        ),
-        pytest.param(("--expr", "x"), "--expr: must be NAME=EXPR", id="expression"),
-        pytest.param(
-            ("--expr", "a=x_m"),
-            "--expr a: there will be no column 'x_m'",
-            id="column of an expression",
-        ),
-        pytest.param(("--resume",), "--resume: needs the table", id="resume nothing"),
-        pytest.param(("--out", "rows.txt"), "unknown format '.txt'", id="format"),
-        pytest.param(
-            ("--picture", "a.svg"), "no such option: --picture (seaborn draws the table", id="file"
-        ),
-        pytest.param(
-            ("--picture-of", "poses"), "no such option: --picture-of (seaborn draws", id="picture"
-        ),
-        pytest.param(("--goals", "none.toml"), "none.toml: there is no such file", id="goals"),
-        pytest.param(("--jobs", "0"), "--jobs: must be a whole number from 1", id="jobs"),
-        pytest.param(
-            ("--jobs", "2", "--workers", "2"),
-            "--workers: is given together with --jobs",
-            id="workers",
-        ),
-        pytest.param(
+        "seed option": (("--seeds", "1..3", "--seed", "5"), "seed varies what an option sets"),
+        "two seeds": (("--seeds", "1..3", "--set", "seed=5"), "--seeds: is given together with"),
+        "twice": (("--set", "pen.down=on", "--set", "pen.down=off"), "pen.down is given twice"),
+        "expression": (("--expr", "x"), "--expr: must be NAME=EXPR"),
+        "column of an expression": (("--expr", "a=x_m"), "--expr a: there will be no column 'x_m'"),
+        "resume nothing": (("--resume",), "--resume: needs the table"),
+        "format": (("--out", "rows.txt"), "unknown format '.txt'"),
+        "file": (("--picture", "a.svg"), "no such option: --picture (seaborn draws the table"),
+        "picture": (("--picture-of", "poses"), "no such option: --picture-of (seaborn draws"),
+        "goals": (("--goals", "none.toml"), "none.toml: there is no such file"),
+        "jobs": (("--jobs", "0"), "--jobs: must be a whole number from 1"),
+        "workers": (("--jobs", "2", "--workers", "2"), "--workers: is given together with --jobs"),
+        "cluster": (
             ("--scheduler", "tcp://a:1", "--workers", "2"),
             "--workers: is given together with",
-            id="cluster",
         ),
-        pytest.param(("--speed", "1"), "no such option: --speed", id="speed"),
-    ],
+        "speed": (("--speed", "1"), "no such option: --speed"),
+    },
 )
 def test_what_is_wrong_is_said_before_anything_is_run(
     batch: Batch,

@@ -12,6 +12,7 @@ from typing import Any
 
 import pytest
 
+from tests.cases import cases
 from tests.conftest import Command
 from tests.running import PATIENCE_S
 from tuisim.commands.echo import Progress, echo, echo_error, progress_hidden, tell
@@ -104,7 +105,7 @@ NOBODY: dict[str, Callable[[pytest.MonkeyPatch, Terminal], Any]] = {
 }
 
 
-@pytest.mark.parametrize("change", NOBODY.values(), ids=NOBODY)
+@cases("change", NOBODY)
 def test_nothing_is_drawn_for(
     show: Show,
     monkeypatch: pytest.MonkeyPatch,
@@ -217,7 +218,7 @@ COMMANDS = {
 }
 
 
-@pytest.mark.parametrize(("words", "told"), COMMANDS.values(), ids=COMMANDS)
+@cases("words, told", COMMANDS)
 def test_commands_tell_how_far_they_are(
     home: object,
     here: Command,

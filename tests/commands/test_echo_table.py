@@ -66,7 +66,7 @@ def _terminal_of_80(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("sys.stdout.isatty", lambda: True)
 
 
-@pytest.mark.parametrize(("heads", "rows"), TABLES.values(), ids=list(TABLES))
+@pytest.mark.parametrize("heads, rows", TABLES.values(), ids=list(TABLES))
 def test_a_table_fits(heads: tuple[str, ...], rows: list[tuple[object, ...]]) -> None:
     assert max(map(len, table(heads, rows).split("\n"))) <= 80
 

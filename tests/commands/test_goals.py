@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 from PIL import Image
 
+from tests.cases import cases
 from tests.conftest import Command
 from tests.goals.recorded import Run, ahead, says, wait, world
 from tuisim.config.build import build_run_spec
@@ -113,7 +114,7 @@ RUNS = {
 }
 
 
-@pytest.mark.parametrize(("words", "code", "numbers"), RUNS.values(), ids=RUNS)
+@cases("words, code, numbers", RUNS)
 def test_runs_by_name(
     words: tuple[str, ...], code: int, numbers: list[int], task: Path, here: Command
 ) -> None:
@@ -134,7 +135,7 @@ BAD = {
 }
 
 
-@pytest.mark.parametrize(("words", "message"), BAD.values(), ids=BAD)
+@cases("words, message", BAD)
 def test_bad_input(words: tuple[str, ...], message: str, task: Path, here: Command) -> None:
     record().end()
     done = here("goals", "check", *(word.format(task=task) for word in words))
@@ -149,7 +150,7 @@ OWN_MATS = {
 }
 
 
-@pytest.mark.parametrize("mat", OWN_MATS.values(), ids=OWN_MATS)
+@cases("mat", OWN_MATS)
 def test_a_run_on_the_own_mat_of_its_task_is_not_noted(
     mat: str, task: Path, here: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

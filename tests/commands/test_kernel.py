@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.cases import cases
 from tests.conftest import Command
 
 FOLDER = Path("share", "jupyter", "kernels")
@@ -67,34 +68,27 @@ def foreign(prefix: Path) -> None:
     (folder / "kernel.json").write_text('{"argv": ["python"], "display_name": "Other"}')
 
 
-@pytest.mark.parametrize(
-    ("words", "told"),
-    [
-        pytest.param(
-            "instal", "kernel: no such command 'instal' (did you mean install", id="action"
-        ),
-        pytest.param("remove", "--name: no tuisim kernel 'tuisim' is installed", id="none"),
-        pytest.param(
+@cases(
+    "words, told",
+    {
+        "action": ("instal", "kernel: no such command 'instal' (did you mean install"),
+        "none": ("remove", "--name: no tuisim kernel 'tuisim' is installed"),
+        "name": (
             "install --name a/b",
             "--name: may contain only lower-case letters, digits and . _ -",
-            id="name",
         ),
-        pytest.param(
-            "install --user --sys-prefix", "name one of --user and --sys-prefix", id="two places"
-        ),
-        pytest.param("install --prefix file", "kernel.json: cannot be written: ", id="no folder"),
-        pytest.param(
+        "two places": ("install --user --sys-prefix", "name one of --user and --sys-prefix"),
+        "no folder": ("install --prefix file", "kernel.json: cannot be written: "),
+        "other's": (
             "install --prefix prefix --name other",
             "--name: 'other' already names another",
-            id="other's",
         ),
-        pytest.param(
+        "not ours": (
             "remove --prefix prefix --name other",
             "no tuisim kernel 'other' is installed",
-            id="not ours",
         ),
-        pytest.param("install --json", "no such option: --json", id="json"),
-    ],
+        "json": ("install --json", "no such option: --json"),
+    },
 )
 def test_what_is_wrong_is_told(
     words: str, told: str, here: Command, tmp_path: Path, prefix: Path

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.cases import cases
 from tests.conftest import Command
 from tuisim.app.app import AppSettings
 from tuisim.core.geometry import Pose
@@ -111,7 +112,7 @@ def test_new_lesson_is_in_order(here: Command, home: Path) -> None:
     )
 
 
-@pytest.mark.parametrize(("change", "fault"), FAULTY.values(), ids=FAULTY)
+@cases("change, fault", FAULTY)
 def test_author_is_told_what_is_wrong(
     change: tuple[str, str], fault: str, here: Command, tmp_path: Path
 ) -> None:
@@ -165,7 +166,7 @@ NEXT = {
 }
 
 
-@pytest.mark.parametrize(("progress", "name"), NEXT.values(), ids=NEXT)
+@cases("progress, name", NEXT)
 def test_without_a_name_the_next_lesson_opens(
     progress: dict[str, LessonProgress],
     name: str,
@@ -205,7 +206,7 @@ BAD = {
 }
 
 
-@pytest.mark.parametrize(("words", "message"), BAD.values(), ids=BAD)
+@cases("words, message", BAD)
 def test_bad_words(words: tuple[str, ...], message: str, here: Command, tmp_path: Path) -> None:
     (tmp_path / "none").unlink(missing_ok=True)
     if "new" in words:

@@ -10,7 +10,7 @@ from tests.conftest import Command
 
 
 @pytest.mark.parametrize(
-    ("command", "name"),
+    "command, name",
     [
         ("backgrounds", "Grey_bands"),
         ("robots", "Small_Robot"),

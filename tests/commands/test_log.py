@@ -10,6 +10,7 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
+from tests.cases import cases
 from tests.conftest import Command
 from tests.running import told
 from tuisim.cli import run_command
@@ -64,7 +65,7 @@ SIGNALS: dict[str, tuple[tuple[str, ...], Callable[[pd.DataFrame], bool]]] = {
 }
 
 
-@pytest.mark.parametrize(("action", "how"), SIGNALS.items(), ids=SIGNALS)
+@pytest.mark.parametrize("action, how", SIGNALS.items(), ids=SIGNALS)
 def test_signals(
     here: Command, log: Path, action: str, how: tuple[tuple[str, ...], Callable[..., bool]]
 ) -> None:
@@ -111,7 +112,7 @@ BAD = {
 }
 
 
-@pytest.mark.parametrize(("words", "expected"), BAD.values(), ids=BAD)
+@cases("words, expected", BAD)
 def test_bad_input(here: Command, log: Path, words: tuple[str, ...], expected: str) -> None:
     text = log.with_name("words.csv")
     text.write_text("time,said\n0,a\n1,b\n")
@@ -127,7 +128,7 @@ def test_help_lists_every_subcommand(capsys: pytest.CaptureFixture[str]) -> None
     assert all(f"  {name} " in said for name in SUBCOMMANDS)
 
 
-@pytest.mark.parametrize("entry", SUBCOMMANDS.values(), ids=SUBCOMMANDS)
+@cases("entry", SUBCOMMANDS)
 def test_a_subcommand_is_there_and_its_options_are_declared(entry: Subcommand) -> None:
     assert (entry.load().__doc__ or "").strip()
     assert set(entry.options) <= set(OPTIONS)

@@ -17,6 +17,7 @@ from typing import Any
 import pandas as pd
 import pytest
 
+from tests.cases import cases
 from tests.conftest import ROOT, Command
 from tests.marks.student import GOAL_POINTS, GOALS, Student
 from tests.marks.test_sheet import LONG_SHEET
@@ -263,7 +264,7 @@ BAD = {
 }
 
 
-@pytest.mark.parametrize(("words", "message"), BAD.values(), ids=BAD)
+@cases("words, message", BAD)
 def test_bad_input_is_refused_before_anything_is_run(
     tmp_path: Path, here: Command, words: str, message: str
 ) -> None:
@@ -345,7 +346,7 @@ FINISH = "[[goal]]\nname = 'done'\nfinish = true\n"
 
 
 @pytest.mark.parametrize(
-    ("task", "points", "told"),
+    "task, points, told",
     [
         ("title = 'No world'\n", ["1", "1"], ""),
         ("background = 'Loop'\n", ["1", "1"], ""),
@@ -386,7 +387,7 @@ def test_a_task_with_the_profile_of_another_library_than_all_programs_is_refused
 
 
 @pytest.mark.parametrize(
-    ("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)], ids=["int", "term"]
+    "number, code", [(signal.SIGINT, 130), (signal.SIGTERM, 143)], ids=["int", "term"]
 )
 def test_a_signal_ends_a_marking_in_good_order(
     tmp_path: Path,

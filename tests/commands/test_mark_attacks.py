@@ -132,7 +132,7 @@ def _check_others(field: Path, isolation: str, honest: Callable[[str], Rows]) ->
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("table", "how"), ATTACKS)
+@pytest.mark.parametrize("table, how", ATTACKS)
 def test_an_attack_changes_no_other_mark_and_reads_nothing_else(
     field: Path, honest: Callable[[str], Rows], table: str, how: str
 ) -> None:

@@ -117,7 +117,7 @@ def test_a_part_at_another_speed(here: Command, tmp_path: Path) -> None:
     assert [(frame == (255, 0, 255)).all(axis=2).any() for frame in frames] == [True] * 3
 
 
-@pytest.mark.parametrize(("at", "value"), [("0.2", "100"), ("0.7", "50")])
+@pytest.mark.parametrize("at, value", [("0.2", "100"), ("0.7", "50")])
 def test_a_picture_shows_an_instant(here: Command, tmp_path: Path, at: str, value: str) -> None:
     here("runs", "picture", "last", "--at", at, "--out", "a.svg", "--panels", "world,chart,arrays")
     here("runs", "picture", "last", "--at", at, "--out", "a.png", "--panels", "world,chart,arrays")
@@ -163,7 +163,7 @@ def test_a_small_movie_of_a_long_run_is_faster() -> None:
 
 @pytest.mark.slow_cases("too large")
 @pytest.mark.parametrize(
-    ("speed_dps", "most"), [(0, SMALL_BYTES), (100, 1000)], ids=["stands still", "too large"]
+    "speed_dps, most", [(0, SMALL_BYTES), (100, 1000)], ids=["stands still", "too large"]
 )
 def test_no_small_movie(monkeypatch: pytest.MonkeyPatch, speed_dps: float, most: int) -> None:
     monkeypatch.setattr("tuisim.movies.files.SMALL_BYTES", most)
@@ -235,7 +235,7 @@ def test_a_run_without_ticks(here: Command, run: StoredRun, tmp_path: Path) -> N
 
 @pytest.mark.quick_cases("x_mm-nan")
 @pytest.mark.parametrize(
-    ("field", "value"),
+    "field, value",
     [("x_mm", math.nan), ("y_mm", 1e30), ("heading_deg", math.inf), ("left_speed_dps", math.nan)],
 )
 def test_damaged_records_cost_only_their_frames(

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.cases import cases
 from tests.config.test_notebook_file import BESIDE, LESSON, VARIABLES, write
 from tests.conftest import Command
 
@@ -89,23 +90,17 @@ def test_the_worst_end_is_the_exit_code_and_json_tells_each(here: Command, tmp_p
     )
 
 
-@pytest.mark.parametrize(
-    ("cells", "words", "told"),
-    [
-        pytest.param([], "--all", "is a folder without notebooks", id="no notebooks"),
-        pytest.param(
-            [("markdown", "# Text")], "--all", "has no notebook with a program", id="no programs"
-        ),
-        pytest.param(
-            VARIABLES[:2], "--all", "has no notebook with a program", id="none that runs here"
-        ),
-        pytest.param(LESSON, "", "is a folder of 1 notebook (tuisim run ", id="not told to"),
-        pytest.param(LESSON, "--all -b Nope", "tuisim: -b: no such mat 'Nope'", id="wrong switch"),
-        pytest.param(LESSON, "--all -- 5", "notebooks take no arguments", id="arguments"),
-        pytest.param(
-            LESSON, "--all --telemetry t.csv", "--telemetry: takes one program", id="telemetry"
-        ),
-    ],
+@cases(
+    "cells, words, told",
+    {
+        "no notebooks": ([], "--all", "is a folder without notebooks"),
+        "no programs": ([("markdown", "# Text")], "--all", "has no notebook with a program"),
+        "none that runs here": (VARIABLES[:2], "--all", "has no notebook with a program"),
+        "not told to": (LESSON, "", "is a folder of 1 notebook (tuisim run "),
+        "wrong switch": (LESSON, "--all -b Nope", "tuisim: -b: no such mat 'Nope'"),
+        "arguments": (LESSON, "--all -- 5", "notebooks take no arguments"),
+        "telemetry": (LESSON, "--all --telemetry t.csv", "--telemetry: takes one program"),
+    },
 )
 def test_what_is_wrong_with_the_folder_is_told(
     cells: list[tuple[str, str]], words: str, told: str, here: Command, tmp_path: Path

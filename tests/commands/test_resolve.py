@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 
+from tests.cases import cases
 from tests.conftest import Command
 
 LAB = """\
@@ -56,7 +57,7 @@ RUNS: dict[str, tuple[list[object], dict[str, Any]]] = {
 }
 
 
-@pytest.mark.parametrize(("words", "facts"), RUNS.values(), ids=RUNS)
+@cases("words, facts", RUNS)
 def test_command_line_wins_over_world_and_world_over_magic(
     words: list[object], facts: dict[str, Any], folder: Path, here: Command
 ) -> None:
@@ -90,7 +91,7 @@ def test_files_of_a_magic_line_are_looked_for_beside_the_program(
 
 
 @pytest.mark.parametrize(
-    ("text", "said"),
+    "text, said",
     [
         ("seed = 3", "lab.toml names no program (tuisim run PROGRAM…)"),
         ("program = 'whre.py'", "whre.py: there is no such program"),

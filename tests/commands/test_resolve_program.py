@@ -87,7 +87,7 @@ def test_a_program_that_needs_no_other_robot_gets_the_usual_one(
 
 
 @pytest.mark.parametrize(
-    ("words", "message"),
+    "words, message",
     [
         (["--from", "none.py"], "none.py: there is no such program"),
         (["--from", "claw.py", "Explorer"], "--from: is given together with Explorer"),

@@ -49,7 +49,7 @@ def folder(tmp_path: Path) -> Path:
 
 
 @pytest.mark.parametrize(
-    ("words", "arguments"),
+    "words, arguments",
     [
         ("p.py", []),
         ("p.py --", []),
@@ -70,7 +70,7 @@ def test_the_program_finds_its_arguments(
 
 
 @pytest.mark.parametrize(
-    ("words", "message"),
+    "words, message",
     [
         ("run p.py p.py -- A", "tuisim: --: arguments go to one program (got 2)"),
         ("p.py p.py -- A", "tuisim: --: arguments go to one program (got 2)"),
@@ -92,7 +92,7 @@ def test_arguments_of_nobody_are_refused(
 
 
 @pytest.mark.parametrize(
-    ("value", "message"),
+    "value, message",
     [
         ('"A"', "arguments: must be a list, got 'A'"),
         ("[1]", 'arguments[1]: must be text, got 1 (in quotes, such as "5")'),

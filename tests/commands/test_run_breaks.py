@@ -65,7 +65,7 @@ def test_a_break_for_another_robot_is_refused(
 
 
 @pytest.mark.parametrize(
-    ("words", "said"),
+    "words, said",
     [
         (["--watch", "total"], "watch: needs a breakpoint (add one with --break"),
         (

@@ -189,7 +189,7 @@ def test_a_run_file_that_is_deleted_in_mid_run_is_written_again(
     assert RunStore().load_run("1").state == "time_limit"
 
 
-@pytest.mark.parametrize(("presses", "rows"), [(1, 3), (2, None)], ids=["once", "twice"])
+@pytest.mark.parametrize("presses, rows", [(1, 3), (2, None)], ids=["once", "twice"])
 def test_ctrl_c_while_the_export_is_written(
     short: Path,
     here: Command,

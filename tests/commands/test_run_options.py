@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from tests.cases import cases
 from tuisim.config.presses import ButtonPress, parse_press
 from tuisim.core.spec import BUTTONS
 from tuisim.errors import ConfigError
@@ -17,7 +18,7 @@ GIVEN = {
 }
 
 
-@pytest.mark.parametrize(("text", "press"), GIVEN.values(), ids=GIVEN)
+@cases("text, press", GIVEN)
 def test_a_press_is_read(text: str, press: ButtonPress) -> None:
     assert parse_press(text) == press
 
@@ -40,7 +41,7 @@ WRONG = {
 }
 
 
-@pytest.mark.parametrize(("text", "message"), WRONG.values(), ids=WRONG)
+@cases("text, message", WRONG)
 def test_a_wrong_press_says_what_is_allowed(text: str, message: str) -> None:
     with pytest.raises(ConfigError) as raised:
         parse_press(text)
@@ -61,7 +62,7 @@ HELD = {
 }
 
 
-@pytest.mark.parametrize(("texts", "changes"), HELD.values(), ids=HELD)
+@cases("texts, changes", HELD)
 def test_presses_become_changes_at_ticks(
     texts: tuple[str, ...], changes: tuple[tuple[int, tuple[str, ...]], ...]
 ) -> None:

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.cases import cases
 from tests.conftest import Command
 
 ASKS = (
@@ -65,7 +66,7 @@ def test_beacon_and_remote_of_a_world_file(here: Command, tmp_path: Path) -> Non
 
 
 @pytest.mark.parametrize(
-    ("sensor", "robot", "hint"),
+    "sensor, robot, hint",
     [
         ("TouchSensor", "Default_Robot", "in1 lego-ev3-us"),
         ("UltrasonicSensor", "Explorer", "in1 lego-ev3-touch"),
@@ -107,7 +108,7 @@ def test_prelude_misses_nothing_that_is_not_used(here: Command, tmp_path: Path, 
 
 
 @pytest.mark.parametrize(
-    ("use", "missing"),
+    "use, missing",
     [
         ("tank_drive.on(10, 10)", "LargeMotor(ev3-ports:outB)"),
         ("tank_turn.off()", "LargeMotor(ev3-ports:outB)"),
@@ -148,7 +149,7 @@ BAD = {
 }
 
 
-@pytest.mark.parametrize(("text", "expected"), BAD.values(), ids=BAD)
+@cases("text, expected", BAD)
 def test_wrong_robot_file(tmp_path: Path, text: str, expected: str) -> None:
     from tuisim.config.robots import load_robot
     from tuisim.errors import RobotError
@@ -181,7 +182,7 @@ except Exception as error:
 
 
 @pytest.mark.parametrize(
-    ("profile", "position"),
+    "profile, position",
     [("robolab", "720"), ("ev3", "720"), ("nbev3devsim", "809.6000000000001")],
 )
 def test_wheels_of_medium_motors(

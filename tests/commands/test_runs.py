@@ -13,6 +13,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.cases import cases
 from tests.conftest import Command
 from tests.runs.run_recorder import PROGRAM, begun
 from tuisim.cli import run_command
@@ -54,7 +55,7 @@ def test_list_shows_sizes(make: Make, here: Command) -> None:
 
 
 @pytest.mark.parametrize(
-    ("count", "shown"),
+    "count, shown",
     [(0, "0.0 kB"), (1234, "1.2 kB"), (29_400_000, "29.4 MB"), (5e15, "5000.0 TB")],
 )
 def test_size(count: int, shown: str) -> None:
@@ -69,7 +70,7 @@ AGES = {
 }
 
 
-@pytest.mark.parametrize(("age", "left", "said"), AGES.values(), ids=AGES)
+@cases("age, left, said", AGES)
 def test_runs_of_an_age_are_removed(
     make: Make, here: Command, age: str, left: list[int], said: str
 ) -> None:
@@ -94,7 +95,7 @@ BAD_AGES = {
 }
 
 
-@pytest.mark.parametrize(("words", "said"), BAD_AGES.values(), ids=BAD_AGES)
+@cases("words, said", BAD_AGES)
 def test_bad_age(make: Make, here: Command, words: tuple[str, ...], said: str) -> None:
     make()
     done = here("runs", *words)
@@ -154,7 +155,7 @@ def test_a_listing_counts_only_so_many_samples(make: Make, monkeypatch: pytest.M
 
 
 @pytest.mark.parametrize(
-    ("words", "said"),
+    "words, said",
     [
         (["runs", "rerun", "last"], "telemetry.bin was truncated: the last"),
         (

@@ -12,6 +12,7 @@ from typing import Any
 
 import pytest
 
+from tests.cases import cases
 from tests.conftest import ROOT, Command
 from tests.runs.run_recorder import begun
 from tuisim.cli import EXIT_OUR_MISTAKE
@@ -225,7 +226,7 @@ WORDS = (
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("damage", DAMAGES.values(), ids=DAMAGES)
+@cases("damage", DAMAGES)
 def test_damage_is_told_in_a_line(home: Path, here: Command, damage: Damage) -> None:
     folder = record()
     record()

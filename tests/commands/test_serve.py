@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.cases import cases
 from tests.conftest import Command
 from tuisim.web import server as web_server
 from tuisim.web.server import Server, ServerLimits
@@ -53,7 +54,7 @@ OPENED = {
 }
 
 
-@pytest.mark.parametrize(("words", "opened"), OPENED.values(), ids=OPENED)
+@cases("words, opened", OPENED)
 @pytest.mark.usefixtures("program")
 def test_what_to_open_is_passed_on(
     words: str, opened: str, served: list[tuple[list[str], ServerLimits, str, int]], here: Command
@@ -73,7 +74,7 @@ LIMITS = {
 }
 
 
-@pytest.mark.parametrize(("words", "limits"), LIMITS.values(), ids=LIMITS)
+@cases("words, limits", LIMITS)
 def test_the_server_is_limited(
     words: str,
     limits: tuple[ServerLimits, str, int],
@@ -91,7 +92,7 @@ HOSTS = {
 }
 
 
-@pytest.mark.parametrize(("words", "host"), HOSTS.items(), ids=HOSTS.values())
+@pytest.mark.parametrize("words, host", HOSTS.items(), ids=HOSTS.values())
 @pytest.mark.usefixtures("served")
 def test_the_first_line_names_the_address_and_warns(words: str, host: str, here: Command) -> None:
     line = (
@@ -135,7 +136,7 @@ REFUSED = {
 }
 
 
-@pytest.mark.parametrize(("words", "told"), REFUSED.values(), ids=REFUSED)
+@cases("words, told", REFUSED)
 def test_what_cannot_be_served_is_refused(words: str, told: str, here: Command) -> None:
     with a_port_in_use() as port:
         done = here("serve", *words.replace("PORT", port).split())

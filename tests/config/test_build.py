@@ -40,7 +40,7 @@ def test_default_robot_is_the_default_of_the_specification() -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "wheel_mm", "spacing_mm", "back_mm", "weight", "sensors", "ultrasonic_y_mm"),
+    "name, wheel_mm, spacing_mm, back_mm, weight, sensors, ultrasonic_y_mm",
     [
         ("Default_Robot", 56, 180, -120, 6, [(-20, 30, 20), (20, 30, 20)], 20),
         ("Small_Robot", 28, 90, -60, 0, [(-10, 15, 10), (10, 15, 10)], 10),
@@ -68,7 +68,7 @@ def test_robots(
 
 
 @pytest.mark.parametrize(
-    ("name", "boxes"),
+    "name, boxes",
     [
         ("None", set()),
         ("Central_post", {Obstacle(900, 500, 200, 200)}),
@@ -88,7 +88,7 @@ def test_obstacles(name: str, boxes: set[Obstacle]) -> None:
 
 
 @pytest.mark.parametrize(
-    ("words", "start"),
+    "words, start",
     [
         ("-b Grey_bands", Pose(150, 500, 0)),
         ("-b Grey_bands -x 100", Pose(100, 500, 0)),
@@ -126,7 +126,7 @@ def test_every_mat_makes_a_run_that_survives_its_plain_form(name: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("settings", "error", "said"),
+    "settings, error, said",
     [
         (Settings({"background": "Grey_band"}), BackgroundError, "Grey_bands"),
         (Settings({"background": "qqqq"}), BackgroundError, "Empty_Map"),

@@ -11,6 +11,7 @@ from pathlib import Path
 import click
 import pytest
 
+from tests.cases import cases
 from tests.conftest import ROOT, Command
 from tuisim.cli import COMMANDS, run_command
 from tuisim.config.command_line import Group
@@ -64,7 +65,7 @@ def offered(shell: str, said: str) -> list[str]:
 
 
 @pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
-@pytest.mark.parametrize(("typed", "words"), ASKED.values(), ids=ASKED)
+@cases("typed, words", ASKED)
 def test_words_are_offered(
     shell: str,
     typed: str,
@@ -118,7 +119,7 @@ def tree(
 EVERY = [found for name, entry in COMMANDS.items() for found in tree(entry.load(), (name,))]
 
 
-@pytest.mark.parametrize(("path", "command"), EVERY, ids=[" ".join(path) for path, _ in EVERY])
+@pytest.mark.parametrize("path, command", EVERY, ids=[" ".join(path) for path, _ in EVERY])
 def test_help_fits_a_terminal_and_lists_the_options_of_the_command(
     path: tuple[str, ...], command: click.Command, here: Command, monkeypatch: pytest.MonkeyPatch
 ) -> None:

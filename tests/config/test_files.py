@@ -124,7 +124,7 @@ EXPLORER = {
 
 
 @pytest.mark.parametrize(
-    ("text", "changes"),
+    "text, changes",
     [
         ("wheel_diameter_mm = 40", {"wheel_diameter_mm": 40.0}),
         ("weight = 'heavy'", {"weight": 9.0}),
@@ -224,7 +224,7 @@ def test_a_robot_file_may_differ_from_any_robot(write: Write) -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "sensors"),
+    "text, sensors",
     [
         ("[color_sensors.left]\ndiameter_mm = 30", [("left", 30), ("right", 20)]),
         ("[color_sensors]\nleft = false", [("right", 20)]),
@@ -280,7 +280,7 @@ SAVED_ROBOT = {
 
 
 @pytest.mark.parametrize(
-    ("changes", "found"),
+    "changes, found",
     [
         ({}, {}),
         ({"width": "?", "height": None, "baseWeight": 3}, {}),
@@ -327,7 +327,7 @@ def test_a_saved_robot_in_full(
 
 
 @pytest.mark.parametrize(
-    ("words", "noise"), [("", 50), ("-M 7", 7), ("-M 0", 0)], ids=["file", "switch", "none"]
+    "words, noise", [("", 50), ("-M 7", 7), ("-M 0", 0)], ids=["file", "switch", "none"]
 )
 def test_wheel_noise_of_the_file_is_the_runs_unless_a_switch_says_another(
     words: str, noise: int, write: Write
@@ -338,7 +338,7 @@ def test_wheel_noise_of_the_file_is_the_runs_unless_a_switch_says_another(
 
 
 @pytest.mark.parametrize(
-    ("text", "xs_mm"),
+    "text, xs_mm",
     [
         ("wheel_diameter_mm = 40", [-60.0, 60.0]),
         ("[color_sensors.left]\ndiameter_mm = 30", [-60.0, 60.0]),
@@ -356,7 +356,7 @@ def test_eyes_that_a_file_places_stay_on_a_mat_with_places_of_its_own(
 
 
 @pytest.mark.parametrize(
-    ("name", "text", "found"),
+    "name, text, found",
     [
         (
             "a.toml",
@@ -378,7 +378,7 @@ def test_obstacle_files(name: str, text: str, found: tuple[Obstacle, ...], write
 
 
 @pytest.mark.parametrize(
-    ("text", "changes"),
+    "text, changes",
     [
         ("color_read_ms = 2.5", {"color_read_ns": 2_500_000}),
         ("clock_read_ns = 7", {"clock_read_ns": 7}),
@@ -473,7 +473,7 @@ def test_layers_of_settings_are_laid_key_by_key_also_those_of_the_start(write: W
 
 
 @pytest.mark.parametrize(
-    ("words", "solid"),
+    "words, solid",
     [("", False), ("--solid", True), ("--profile ev3", True), ("--profile ev3 --no-solid", False)],
     ids=["default", "switch", "profile", "switch against the profile"],
 )
@@ -497,7 +497,7 @@ def run_like(**changes: Any) -> RunSpec:
 
 
 @pytest.mark.parametrize(
-    ("save", "thing", "error"),
+    "save, thing, error",
     [
         (save_robot, replace(RobotSpec(), name="two\nlines"), RobotError),
         (save_robot, replace(RobotSpec(), pen=PenSpec(color="reed")), RobotError),

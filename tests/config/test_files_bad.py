@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.cases import cases
 from tests.conftest import Command
 from tuisim.config.build import build_run_spec
 from tuisim.config.files import MAX_FILE_BYTES
@@ -442,7 +443,7 @@ def check(switch: str, path: Path, content: Content, said: str) -> None:
 
 
 @pytest.mark.parametrize("switch", KINDS)
-@pytest.mark.parametrize(("content", "said"), BROKEN.values(), ids=BROKEN)
+@cases("content, said", BROKEN)
 def test_a_broken_file_is_told(content: Content, said: str, switch: str, tmp_path: Path) -> None:
     check(switch, tmp_path / "broken.toml", content, said)
 

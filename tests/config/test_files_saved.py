@@ -13,6 +13,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from tests.cases import cases
 from tests.config.makers import robots
 from tuisim.config import files
 from tuisim.config.build import build_run_spec
@@ -96,7 +97,7 @@ ROBOT_FILES = {
 @pytest.mark.parametrize(
     "robot", [RobotSpec(name="new", weight=4.5), ROBOTS["Explorer"]], ids=["plain", "parts"]
 )
-@pytest.mark.parametrize("old", ROBOT_FILES.values(), ids=ROBOT_FILES)
+@cases("old", ROBOT_FILES)
 def test_a_robot_reads_back_from_a_file_that_was_another(
     old: str, robot: RobotSpec, tmp_path: Path
 ) -> None:
@@ -119,7 +120,7 @@ BOXES = {
 
 
 @pytest.mark.parametrize("count", [0, 1, 3])
-@pytest.mark.parametrize("old", BOXES.values(), ids=BOXES)
+@cases("old", BOXES)
 def test_obstacles_read_back_from_a_file_of_others(old: str, count: int, tmp_path: Path) -> None:
     saved(
         "obstacles",
@@ -147,7 +148,7 @@ light = 5              # a dark room
 
 
 @pytest.mark.parametrize(
-    ("changes", "expected"),
+    "changes, expected",
     [
         (
             {"seed": 4, "robot": "Small_Robot", "noise.light": 5},
@@ -178,7 +179,7 @@ WORLDS = {
 
 
 @pytest.mark.parametrize("robot", ["Small_Robot", "other"])
-@pytest.mark.parametrize("old", WORLDS.values(), ids=WORLDS)
+@cases("old", WORLDS)
 def test_a_world_reads_back_from_a_file_that_was_another(
     old: str, robot: str, tmp_path: Path
 ) -> None:
@@ -206,7 +207,7 @@ def test_a_folder_of_mats_stays_unless_it_replaces_the_mat(
 
 
 @pytest.mark.parametrize(
-    ("save", "thing", "old", "said"),
+    "save, thing, old, said",
     [
         (
             save_robot,

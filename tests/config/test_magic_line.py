@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-import pytest
-
+from tests.cases import cases
 from tuisim.config.magic_line import parse_line, persistent_after
 
 CELLS: dict[str, tuple[list[str], dict[str, Any]]] = {
@@ -26,7 +25,7 @@ CELLS: dict[str, tuple[list[str], dict[str, Any]]] = {
 }
 
 
-@pytest.mark.parametrize(("lines", "settings"), CELLS.values(), ids=CELLS)
+@cases("lines, settings", CELLS)
 def test_settings_persist_but_for_those_of_the_mat_before(
     lines: list[str], settings: dict[str, Any]
 ) -> None:

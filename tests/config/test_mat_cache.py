@@ -16,6 +16,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from tests.cases import cases
 from tuisim.config import folders, mat_cache, mats
 from tuisim.core.field import disc_mask
 from tuisim.errors import BackgroundError
@@ -182,7 +183,7 @@ DAMAGES: dict[str, Callable[[Path], None]] = {
 
 
 @pytest.mark.quick_cases("zeros")
-@pytest.mark.parametrize("damage", DAMAGES.values(), ids=DAMAGES)
+@cases("damage", DAMAGES)
 def test_a_damaged_file_is_made_again(
     home: Path, tmp_path: Path, damage: Callable[[Path], None]
 ) -> None:

@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from tests.cases import cases
 from tests.conftest import Command
 from tuisim.config import mat_cache, mat_image
 from tuisim.core.spec import BACKGROUND_FITS
@@ -107,7 +108,7 @@ BAD = [
 ]
 
 
-@pytest.mark.parametrize(("make", "message"), BAD)
+@pytest.mark.parametrize("make, message", BAD)
 def test_bad_files_are_explained_and_nothing_is_kept(
     make: Callable[[Path], object], message: str, home: Path, tmp_path: Path
 ) -> None:
@@ -119,7 +120,7 @@ def test_bad_files_are_explained_and_nothing_is_kept(
     assert not home.exists()
 
 
-@pytest.mark.parametrize(("make", "message"), BAD)
+@pytest.mark.parametrize("make, message", BAD)
 def test_the_command_refuses_bad_files_in_one_line(
     make: Callable[[Path], object], message: str, here: Command, home: Path, tmp_path: Path
 ) -> None:
@@ -205,13 +206,13 @@ def test_stretch_fills_the_field() -> None:
 
 
 @pytest.mark.quick_cases("square")
-@pytest.mark.parametrize(
-    ("size", "box"),
-    [
-        pytest.param((100, 100), (609, 0, 1752, 1143), id="square"),
-        pytest.param((3000, 100), (0, 532, 2362, 611), id="wide"),
-        pytest.param((50, 4000), (1174, 0, 1188, 1143), id="high"),
-    ],
+@cases(
+    "size, box",
+    {
+        "square": ((100, 100), (609, 0, 1752, 1143)),
+        "wide": ((3000, 100), (0, 532, 2362, 611)),
+        "high": ((50, 4000), (1174, 0, 1188, 1143)),
+    },
 )
 def test_fit_keeps_the_proportions(size: tuple[int, int], box: tuple[int, int, int, int]) -> None:
     field = decoded(saved(Image.new("RGB", size, "black")), "fit")
@@ -223,7 +224,7 @@ def test_fit_keeps_the_proportions(size: tuple[int, int], box: tuple[int, int, i
 
 @pytest.mark.slow_cases("size2-*")
 @pytest.mark.parametrize(
-    ("size", "dark"), [((100, 50), 5000), ((3000, 50), WIDTH * 50), ((3000, 2000), WIDTH * HEIGHT)]
+    "size, dark", [((100, 50), 5000), ((3000, 50), WIDTH * 50), ((3000, 2000), WIDTH * HEIGHT)]
 )
 def test_centre_is_pixel_for_pixel(size: tuple[int, int], dark: int) -> None:
     image = Image.new("RGB", size, "black")
@@ -243,7 +244,7 @@ def test_a_picture_of_the_fields_size_is_left_alone() -> None:
 
 @pytest.mark.quick_cases("black-*", "white-PNG-*")
 @pytest.mark.parametrize(
-    ("kind", "mode"),
+    "kind, mode",
     [
         *(("PNG", mode) for mode in ("1", "L", "LA", "P", "RGB", "RGBA")),
         *(("TIFF", mode) for mode in ("1", "L", "P", "RGB", "RGBA", "CMYK", "YCbCr", "LAB")),
@@ -265,20 +266,20 @@ def _lab(shade: str) -> Image.Image:
     return Image.new("LAB", (64, 64), (255 * (shade == "white"), 128, 128))
 
 
-@pytest.mark.parametrize(
-    ("array", "shade"),
-    [
-        pytest.param(np.full((9, 9), 32896, np.uint16), 128, id="16 bits"),
-        pytest.param(np.full((9, 9), 257, np.uint16), 1, id="16 bits, dark"),
-        pytest.param(np.full((9, 9), 65535, np.uint16), 255, id="16 bits, white"),
-        pytest.param(np.full((9, 9), 200, np.int32), 200, id="32 bits, small"),
-        pytest.param(np.full((9, 9), 65535, np.int32), 255, id="32 bits, large"),
-        pytest.param(np.full((9, 9), -5, np.int32), 0, id="32 bits, negative"),
-        pytest.param(np.full((9, 9), 0.5, np.float32), 128, id="float 0 … 1"),
-        pytest.param(np.full((9, 9), 200.0, np.float32), 200, id="float 0 … 255"),
-        pytest.param(np.full((9, 9), np.nan, np.float32), 0, id="not a number"),
-        pytest.param(np.full((9, 9), np.inf, np.float32), 255, id="infinite"),
-    ],
+@cases(
+    "array, shade",
+    {
+        "16 bits": (np.full((9, 9), 32896, np.uint16), 128),
+        "16 bits, dark": (np.full((9, 9), 257, np.uint16), 1),
+        "16 bits, white": (np.full((9, 9), 65535, np.uint16), 255),
+        "32 bits, small": (np.full((9, 9), 200, np.int32), 200),
+        "32 bits, large": (np.full((9, 9), 65535, np.int32), 255),
+        "32 bits, negative": (np.full((9, 9), -5, np.int32), 0),
+        "float 0 … 1": (np.full((9, 9), 0.5, np.float32), 128),
+        "float 0 … 255": (np.full((9, 9), 200.0, np.float32), 200),
+        "not a number": (np.full((9, 9), np.nan, np.float32), 0),
+        "infinite": (np.full((9, 9), np.inf, np.float32), 255),
+    },
 )
 def test_deep_greys_become_eight_bits(array: np.ndarray, shade: int) -> None:
     assert middle(decoded(saved(Image.fromarray(array), "TIFF"))) == [shade] * 3
@@ -308,7 +309,7 @@ def test_a_transparent_colour_is_white() -> None:
 
 
 @pytest.mark.parametrize(
-    ("orientation", "red_at"), [(1, "left"), (3, "right"), (6, "top"), (8, "bottom")]
+    "orientation, red_at", [(1, "left"), (3, "right"), (6, "top"), (8, "bottom")]
 )
 def test_a_photograph_is_turned_upright(orientation: int, red_at: str) -> None:
     image = Image.new("RGB", (80, 80), "white")
@@ -351,7 +352,7 @@ def test_damaged_bytes_never_escape_as_something_else(seed: int) -> None:
 
 
 @pytest.mark.parametrize(
-    ("size", "alike"),
+    "size, alike",
     [((WIDTH, HEIGHT), True), ((300, 200), False)],
     ids=["the field's", "another"],
 )

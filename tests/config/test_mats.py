@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.cases import cases
 from tuisim.config import folders, mats, program_file
 from tuisim.core.geometry import Pose
 from tuisim.core.spec import Obstacle
@@ -86,7 +87,7 @@ def test_every_mat_is_listed_in_order() -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "guess"),
+    "name, guess",
     [
         ("grey_bands", "Grey_bands"),
         ("Gray_bands", "Grey_bands"),
@@ -120,7 +121,7 @@ def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 @pytest.mark.parametrize(
-    ("word", "file", "name"),
+    "word, file, name",
     [
         ("maze.png", "maze.png", "maze"),
         ("./maze.png", "maze.png", "maze"),
@@ -146,21 +147,17 @@ def test_the_catalogue_goes_before_files(here: Path) -> None:
     assert mats.background("Loop").image == folders.backgrounds_folder() / "Loop.png"
 
 
-@pytest.mark.parametrize(
-    ("word", "message"),
-    [
-        pytest.param("nowhere.png", "nowhere.png: cannot be read: No such file", id="missing"),
-        pytest.param("./nowhere", "nowhere: cannot be read: No such file", id="missing, no suffix"),
-        pytest.param("mats/", "mats: is a folder", id="folder"),
-        pytest.param(
-            "maze.png/x.png", "x.png: cannot be read: Not a directory", id="file for a folder"
-        ),
-        pytest.param("a\0b.png", "is not a file name", id="null character"),
-        pytest.param("x" * 300 + ".png", "File name too long", id="long name"),
-        pytest.param(
-            "~nobody-of-that-name/x.png", "no such folder|cannot be read", id="no such home"
-        ),
-    ],
+@cases(
+    "word, message",
+    {
+        "missing": ("nowhere.png", "nowhere.png: cannot be read: No such file"),
+        "missing, no suffix": ("./nowhere", "nowhere: cannot be read: No such file"),
+        "folder": ("mats/", "mats: is a folder"),
+        "file for a folder": ("maze.png/x.png", "x.png: cannot be read: Not a directory"),
+        "null character": ("a\0b.png", "is not a file name"),
+        "long name": ("x" * 300 + ".png", "File name too long"),
+        "no such home": ("~nobody-of-that-name/x.png", "no such folder|cannot be read"),
+    },
 )
 def test_an_image_that_is_not_there(word: str, message: str, here: Path) -> None:
     with pytest.raises(BackgroundError, match=message):
@@ -176,22 +173,16 @@ def test_programs_have_titles(root: Path) -> None:
         assert title == docstring.splitlines()[0]
 
 
-@pytest.mark.parametrize(
-    ("text", "title"),
-    [
-        pytest.param('"""Turn round.\n\nTwice."""\n', "Turn round.", id="docstring"),
-        pytest.param(
-            '%%sim_magic_preloaded -b Loop\n"""Turn round."""\n',
-            "Turn round.",
-            id="after a magic line",
-        ),
-        pytest.param(
-            '# %%sim_magic -b Loop\n"""Turn round."""\n', "Turn round.", id="after a comment"
-        ),
-        pytest.param("print(1)\n", "", id="none"),
-        pytest.param("print 1\n", "", id="not Python"),
-        pytest.param("", "", id="empty"),
-    ],
+@cases(
+    "text, title",
+    {
+        "docstring": ('"""Turn round.\n\nTwice."""\n', "Turn round."),
+        "after a magic line": ('%%sim_magic_preloaded -b Loop\n"""Turn round."""\n', "Turn round."),
+        "after a comment": ('# %%sim_magic -b Loop\n"""Turn round."""\n', "Turn round."),
+        "none": ("print(1)\n", ""),
+        "not Python": ("print 1\n", ""),
+        "empty": ("", ""),
+    },
 )
 def test_program_title(text: str, title: str, given: Path) -> None:
     (given / "programs" / "turn.py").write_text(text, encoding="utf-8")
@@ -247,44 +238,25 @@ def test_obstacles_and_sensors_are_read(given: Path) -> None:
     assert mat.sensor_x_mm == {"left": -30.0}
 
 
-@pytest.mark.parametrize(
-    ("text", "message"),
-    [
-        pytest.param("[Mine", "is not TOML", id="not TOML"),
-        pytest.param("Mine = 3", "Mine: must be a table", id="no table"),
-        pytest.param("[Mine]\ntitle = 'x'\n", "Mine.start: is missing", id="no start"),
-        pytest.param(
-            GOOD.replace("2.5", "'2.5'"),
-            "Mine.start.y_mm: must be a number",
-            id="text for a number",
-        ),
-        pytest.param(
-            GOOD.replace("2.5", "true"),
-            "Mine.start.y_mm: must be a number",
-            id="truth for a number",
-        ),
-        pytest.param(GOOD.replace('"My own"', '""'), "Mine.title: must be one line", id="no title"),
-        pytest.param(
-            GOOD + "titel = 3\n", "Mine.titel: no such key .did you mean title", id="unknown key"
-        ),
-        pytest.param(GOOD + "obstacles = 3\n", "Mine.obstacles: must be a list", id="no list"),
-        pytest.param(
-            GOOD + "obstacles = [[1, 2, 3]]\n",
-            r"Mine.obstacles\[1\]: must be .x, y",
-            id="three sides",
-        ),
-        pytest.param(
+@cases(
+    "text, message",
+    {
+        "not TOML": ("[Mine", "is not TOML"),
+        "no table": ("Mine = 3", "Mine: must be a table"),
+        "no start": ("[Mine]\ntitle = 'x'\n", "Mine.start: is missing"),
+        "text for a number": (GOOD.replace("2.5", "'2.5'"), "Mine.start.y_mm: must be a number"),
+        "truth for a number": (GOOD.replace("2.5", "true"), "Mine.start.y_mm: must be a number"),
+        "no title": (GOOD.replace('"My own"', '""'), "Mine.title: must be one line"),
+        "unknown key": (GOOD + "titel = 3\n", "Mine.titel: no such key .did you mean title"),
+        "no list": (GOOD + "obstacles = 3\n", "Mine.obstacles: must be a list"),
+        "three sides": (GOOD + "obstacles = [[1, 2, 3]]\n", r"Mine.obstacles\[1\]: must be .x, y"),
+        "flat obstacle": (
             GOOD + "obstacles = [[1, 2, 3, 0]]\n",
             r"Mine.obstacles\[1\].height_mm: must be above 0",
-            id="flat obstacle",
         ),
-        pytest.param(
-            GOOD + "sensor_x_mm = 3\n", "Mine.sensor_x_mm: must be a table", id="no sensor table"
-        ),
-        pytest.param(
-            GOOD + "sensor_x_mm = { left = 'x' }\n", "Mine.sensor_x_mm.left", id="no sensor number"
-        ),
-    ],
+        "no sensor table": (GOOD + "sensor_x_mm = 3\n", "Mine.sensor_x_mm: must be a table"),
+        "no sensor number": (GOOD + "sensor_x_mm = { left = 'x' }\n", "Mine.sensor_x_mm.left"),
+    },
 )
 def test_a_wrong_catalogue_is_explained(text: str, message: str, given: Path) -> None:
     catalog(given, text)

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 from PIL import Image
 
+from tests.cases import cases
 from tests.conftest import Command
 from tuisim.config.build import build_run_spec, settings_from
 from tuisim.config.mats import find_mat, mats
@@ -70,13 +71,13 @@ def test_what_stands_on_the_mat_and_moves_sensors_stays(own: Path) -> None:
     assert [sensor.x_mm for sensor in sensors] == [-60, 60]
 
 
-@pytest.mark.parametrize(
-    ("file", "said", "fit"),
-    [
-        pytest.param("FuBK_testcard_vectorized.png", None, "corner", id="its old file"),
-        pytest.param("Testcard.png", None, "stretch", id="its name"),
-        pytest.param("FuBK_testcard_vectorized.png", "fit", "fit", id="the user says it"),
-    ],
+@cases(
+    "file, said, fit",
+    {
+        "its old file": ("FuBK_testcard_vectorized.png", None, "corner"),
+        "its name": ("Testcard.png", None, "stretch"),
+        "the user says it": ("FuBK_testcard_vectorized.png", "fit", "fit"),
+    },
 )
 def test_how_a_picture_meets_the_field(file: str, said: str | None, fit: str, own: Path) -> None:
     paint(own / file, size=(2215, 1073))
@@ -149,24 +150,19 @@ def test_the_switch_works_in_a_magic_line_from_the_programs_folder(
     assert (done.returncode, done.stdout) == (0, "(200, 0, 0)\n")
 
 
-@pytest.mark.parametrize(
-    ("words", "expected"),
-    [
-        pytest.param(
+@cases(
+    "words, expected",
+    {
+        "none": (
             "-b FLL_2018_Into_Orbit",
             "save it as FLL2018.jpg or FLL_2018_Into_Orbit.png in {own}",
-            id="none",
         ),
-        pytest.param(
-            "-b FLL_2018_into_orbit", "did you mean FLL_2018_Into_Orbit?", id="a wrong name"
-        ),
-        pytest.param("-b maz --mats pics", "did you mean maze?", id="a wrong name of one's own"),
-        pytest.param(
-            "-b maze --mats nowhere", "nowhere: --mats: there is no such folder", id="no folder"
-        ),
-        pytest.param("-b maze --mats p.py", "p.py: cannot be read: Not a directory", id="a file"),
-        pytest.param("-b text --mats pics", "text.png: is not a readable image", id="no picture"),
-    ],
+        "a wrong name": ("-b FLL_2018_into_orbit", "did you mean FLL_2018_Into_Orbit?"),
+        "a wrong name of one's own": ("-b maz --mats pics", "did you mean maze?"),
+        "no folder": ("-b maze --mats nowhere", "nowhere: --mats: there is no such folder"),
+        "a file": ("-b maze --mats p.py", "p.py: cannot be read: Not a directory"),
+        "no picture": ("-b text --mats pics", "text.png: is not a readable image"),
+    },
 )
 def test_what_is_not_there_is_told(
     words: str, expected: str, here: Command, own: Path, tmp_path: Path
@@ -210,16 +206,14 @@ def test_originals_are_imported_and_used(here: Command, own: Path, tmp_path: Pat
     assert "Into Orbit (your FLL2018.jpg)" in here("backgrounds").stdout
 
 
-@pytest.mark.parametrize(
-    ("folder", "expected"),
-    [
-        pytest.param("nowhere", "nowhere: cannot be read: No such file", id="missing"),
-        pytest.param("p.py", "p.py: cannot be read: Not a directory", id="a file"),
-        pytest.param(
-            "empty", "has no image of a mat of the catalogue (such as _loop.png", id="empty"
-        ),
-        pytest.param("broken", "_square.png: is not a readable image", id="no picture"),
-    ],
+@cases(
+    "folder, expected",
+    {
+        "missing": ("nowhere", "nowhere: cannot be read: No such file"),
+        "a file": ("p.py", "p.py: cannot be read: Not a directory"),
+        "empty": ("empty", "has no image of a mat of the catalogue (such as _loop.png"),
+        "no picture": ("broken", "_square.png: is not a readable image"),
+    },
 )
 def test_a_folder_without_originals_changes_nothing(
     folder: str, expected: str, here: Command, own: Path, tmp_path: Path

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.cases import cases
 from tests.conftest import Command
 from tuisim.config.notebook_file import notebook_programs
 
@@ -117,16 +118,16 @@ def test_a_cell_with_a_variable_of_the_notebook_is_skipped(here: Command, tmp_pa
     assert done.stderr.splitlines()[:2] == [f"tuisim: {note}" for note in notes]
 
 
-@pytest.mark.parametrize(
-    ("words", "unknown", "settings"),
-    [
-        pytest.param("-b Loop -x $_x", "$_x", {"background": "Loop"}, id="value"),
-        pytest.param("-x$x -b Loop", "$x", {"background": "Loop"}, id="joined"),
-        pytest.param("--xpos={2 * x} -b Loop", "{2 * x}", {"background": "Loop"}, id="braces"),
-        pytest.param("-x {x} -y $y.z -R", "{x}, $y.z", {"autorun": True}, id="two"),
-        pytest.param("$words", "$words", {}, id="alone"),
-        pytest.param("-b my$$mat", "", {"background": "my$$mat"}, id="a real dollar"),
-    ],
+@cases(
+    "words, unknown, settings",
+    {
+        "value": ("-b Loop -x $_x", "$_x", {"background": "Loop"}),
+        "joined": ("-x$x -b Loop", "$x", {"background": "Loop"}),
+        "braces": ("--xpos={2 * x} -b Loop", "{2 * x}", {"background": "Loop"}),
+        "two": ("-x {x} -y $y.z -R", "{x}, $y.z", {"autorun": True}),
+        "alone": ("$words", "$words", {}),
+        "a real dollar": ("-b my$$mat", "", {"background": "my$$mat"}),
+    },
 )
 def test_what_only_the_notebook_knows_is_left_out(
     words: str, unknown: str, settings: dict[str, object], tmp_path: Path
@@ -169,44 +170,26 @@ def test_twenty_cells_are_twenty_rows(here: Command, tmp_path: Path) -> None:
     ]
 
 
-@pytest.mark.parametrize(
-    ("content", "cell", "told"),
-    [
-        pytest.param(None, "", "there is no such notebook", id="missing"),
-        pytest.param("{", "", "is not a readable notebook", id="torn"),
-        pytest.param('{"cells": [1]}', "", "is not a readable notebook", id="not cells"),
-        pytest.param('{"cells": []}', "", "has no program cells", id="empty"),
-        pytest.param(LESSON, "#4", "a number from 1 to 3", id="no such cell"),
-        pytest.param(LESSON, "#x", "a number from 1 to 3", id="no number"),
-        pytest.param(
-            VARIABLES,
-            "#1",
-            "$_x is defined only in the notebook (run the cell there",
-            id="variable",
-        ),
-        pytest.param(
-            [("code", "%%sim_magic -Y\npass")], "", "cell 1: no such option", id="wrong switch"
-        ),
-        pytest.param(
-            [("code", "%%sim_magic -b Nope\npass")],
-            "",
-            "bad.ipynb#1: -b: no such mat",
-            id="wrong mat",
-        ),
-        pytest.param(
-            [("code", "%%sim_magic_preload\npass")],
-            "",
-            "cell 1: no such magic %%sim",
-            id="wrong magic",
-        ),
-        pytest.param('{"cells": ' + "[" * 100_000, "", "is not a readable notebook", id="deep"),
-        pytest.param(
+@cases(
+    "content, cell, told",
+    {
+        "missing": (None, "", "there is no such notebook"),
+        "torn": ("{", "", "is not a readable notebook"),
+        "not cells": ('{"cells": [1]}', "", "is not a readable notebook"),
+        "empty": ('{"cells": []}', "", "has no program cells"),
+        "no such cell": (LESSON, "#4", "a number from 1 to 3"),
+        "no number": (LESSON, "#x", "a number from 1 to 3"),
+        "variable": (VARIABLES, "#1", "$_x is defined only in the notebook (run the cell there"),
+        "wrong switch": ([("code", "%%sim_magic -Y\npass")], "", "cell 1: no such option"),
+        "wrong mat": ([("code", "%%sim_magic -b Nope\npass")], "", "bad.ipynb#1: -b: no such mat"),
+        "wrong magic": ([("code", "%%sim_magic_preload\npass")], "", "cell 1: no such magic %%sim"),
+        "deep": ('{"cells": ' + "[" * 100_000, "", "is not a readable notebook"),
+        "no text": (
             '{"cells": [{"cell_type": "code", "source": [1]}]}',
             "",
             "not a readable notebook",
-            id="no text",
         ),
-    ],
+    },
 )
 def test_what_is_wrong_is_told(
     content: str | list[tuple[str, str]] | None, cell: str, told: str, here: Command, tmp_path: Path

@@ -14,7 +14,7 @@ from tuisim.errors import ConfigError
 
 
 @pytest.mark.parametrize(
-    ("words", "fields"),
+    "words, fields",
     [
         ("", {}),
         ("-b Grey_bands", {"background": "Grey_bands"}),
@@ -67,7 +67,7 @@ def test_options(words: str, fields: dict[str, Any]) -> None:
 
 
 @pytest.mark.parametrize(
-    ("words", "said"),
+    "words, said",
     [
         ("-x abc", r"^-x: must be a number from .*'abc'"),
         ("-x nan", "^-x: must be a number"),
@@ -118,7 +118,7 @@ PLAIN = "import time\nprint(1)\n"
 
 
 @pytest.mark.parametrize(
-    ("text", "line", "prelude", "comment"),
+    "text, line, prelude, comment",
     [
         ("%%sim_magic_preloaded -b Loop -OHR\n" + PLAIN, 1, "preloaded", False),
         ("%%sim_magic_imports\n" + PLAIN, 1, "imports", False),
@@ -176,7 +176,7 @@ def test_raw_magic_line_becomes_a_comment_so_that_it_is_seen_and_lines_keep_thei
 
 
 @pytest.mark.parametrize(
-    ("text", "prelude"),
+    "text, prelude",
     [
         ("from ev3dev2.motor import MoveTank\n", "none"),
         ("import ev3dev2.sensor as s\n", "none"),
@@ -223,7 +223,7 @@ def test_prelude(text: str, prelude: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("line", "said"),
+    "line, said",
     [
         ("%%sim_magic_preloded -b Loop", r"^a\.py, line 1: no such magic .*sim_magic_preloaded"),
         ("# %%sim_magic -x abc", r"^a\.py, line 1: -x: must be a number"),
@@ -238,7 +238,7 @@ def test_wrong_magic_lines_say_where(line: str, said: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("data", "said"),
+    "data, said",
     [
         (b"\xff\xfe\x00", "is not Python text"),
         (b"x = '\x00'\n", "null characters"),
@@ -267,7 +267,7 @@ def test_other_encodings_and_line_ends_are_read(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "metavar"),
+    "name, metavar",
     [("solid", ""), ("walls", "on|off"), ("seed", "N"), ("output", ""), ("background", "MAT")],
 )
 def test_the_help_says_what_stands_for_a_value(name: str, metavar: str) -> None:

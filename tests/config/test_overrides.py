@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 
+from tests.cases import cases
 from tuisim.config.build import build_run_spec
 from tuisim.config.options import Settings, settings_of
 from tuisim.config.overrides import settings_of_keys
@@ -23,42 +24,29 @@ def spec_with(values: dict[str, Any], **chosen: Any) -> RunSpec:
     return build_run_spec(settings_of(chosen, settings_of_keys(values, Settings(chosen), HERE)))
 
 
-@pytest.mark.parametrize(
+@cases(
     "values, read, expected",
-    [
-        pytest.param({"noise.motor": 20}, lambda spec: spec.world.noise.motor, 20, id="noise"),
-        pytest.param({"start.x_mm": 300}, lambda spec: spec.world.start.x_mm, 300, id="start pose"),
-        pytest.param(
-            {"background": "Lollipop"}, lambda spec: spec.world.background, "Lollipop", id="mat"
-        ),
-        pytest.param({"profile": "ev3"}, lambda spec: spec.profile.name, "ev3", id="profile"),
-        pytest.param(
-            {"profile.color_read_ms": 7},
-            lambda spec: spec.profile.color_read_ns,
-            7_000_000,
-            id="cost",
-        ),
-        pytest.param({"seed": 9}, lambda spec: spec.seed, 9, id="seed"),
-        pytest.param(
-            {"robot": "Small_Robot"}, lambda spec: spec.robot.wheel_diameter_mm, 28.0, id="robot"
-        ),
-        pytest.param(
-            {"robot.weight": "heavy"}, lambda spec: spec.robot.weight, 9.0, id="key of the robot"
-        ),
-        pytest.param(
+    {
+        "noise": ({"noise.motor": 20}, lambda spec: spec.world.noise.motor, 20),
+        "start pose": ({"start.x_mm": 300}, lambda spec: spec.world.start.x_mm, 300),
+        "mat": ({"background": "Lollipop"}, lambda spec: spec.world.background, "Lollipop"),
+        "profile": ({"profile": "ev3"}, lambda spec: spec.profile.name, "ev3"),
+        "cost": ({"profile.color_read_ms": 7}, lambda spec: spec.profile.color_read_ns, 7_000_000),
+        "seed": ({"seed": 9}, lambda spec: spec.seed, 9),
+        "robot": ({"robot": "Small_Robot"}, lambda spec: spec.robot.wheel_diameter_mm, 28.0),
+        "key of the robot": ({"robot.weight": "heavy"}, lambda spec: spec.robot.weight, 9.0),
+        "key of a sensor": (
             {"robot.color_sensors.left.diameter_mm": 30},
             lambda spec: spec.robot.color_sensors[0].diameter_mm,
             30,
-            id="key of a sensor",
         ),
-        pytest.param(
+        "a robot and its key": (
             {"robot": "Small_Robot", "robot.weight": 3},
             lambda spec: (spec.robot.wheel_diameter_mm, spec.robot.weight),
             (28.0, 3.0),
-            id="a robot and its key",
         ),
-        pytest.param({"walls": False}, lambda spec: spec.world.walls, False, id="walls"),
-    ],
+        "walls": ({"walls": False}, lambda spec: spec.world.walls, False),
+    },
 )
 def test_a_key_changes_its_setting(values: dict[str, Any], read: Any, expected: object) -> None:
     assert read(spec_with(values)) == expected
@@ -100,46 +88,26 @@ def test_arguments_are_split_as_in_a_shell(value: object, expected: tuple[str, .
     assert settings_of_keys({"arguments": value}, Settings(), HERE)["arguments"] == expected
 
 
-@pytest.mark.parametrize(
+@cases(
     "values, words",
-    [
-        pytest.param(
-            {"noise.motr": 1}, r"^set: noise.motr: no such key .did you mean motor", id="misspelt"
-        ),
-        pytest.param(
-            {"nois.motor": 1}, r"^set: nois: no such key .did you mean noise", id="misspelt table"
-        ),
-        pytest.param(
-            {"robot.wheel_diametr_mm": 1}, r"wheel_diametr_mm: .*wheel_diameter_mm", id="robot"
-        ),
-        pytest.param(
+    {
+        "misspelt": ({"noise.motr": 1}, r"^set: noise.motr: no such key .did you mean motor"),
+        "misspelt table": ({"nois.motor": 1}, r"^set: nois: no such key .did you mean noise"),
+        "robot": ({"robot.wheel_diametr_mm": 1}, r"wheel_diametr_mm: .*wheel_diameter_mm"),
+        "too large": (
             {"noise.motor": 501},
             r"^set: noise.motor: must be a whole number from 0 to 500",
-            id="too large",
         ),
-        pytest.param(
-            {"background": "Lollipo"}, r"^set: background: no such mat .*Lollipop", id="no such mat"
-        ),
-        pytest.param(
-            {"program": "x.py"}, r"^set: program: cannot be varied", id="not part of a run"
-        ),
-        pytest.param(
+        "no such mat": ({"background": "Lollipo"}, r"^set: background: no such mat .*Lollipop"),
+        "not part of a run": ({"program": "x.py"}, r"^set: program: cannot be varied"),
+        "misspelt drift": (
             {"drift.gyro": 1},
             r"^set: drift.gyro: no such key .did you mean gyro_dps",
-            id="misspelt drift",
         ),
-        pytest.param(
-            {"noise": 1, "noise.motor": 2},
-            r"noise.motor: is inside noise",
-            id="a value and a table",
-        ),
-        pytest.param(
-            {"noise.motor": 2, "noise": 1},
-            r"^set: noise: is given together",
-            id="a table and a value",
-        ),
-        pytest.param({"arguments": "'a"}, r"^set: arguments: cannot be split", id="an open quote"),
-    ],
+        "a value and a table": ({"noise": 1, "noise.motor": 2}, r"noise.motor: is inside noise"),
+        "a table and a value": ({"noise.motor": 2, "noise": 1}, r"^set: noise: is given together"),
+        "an open quote": ({"arguments": "'a"}, r"^set: arguments: cannot be split"),
+    },
 )
 def test_wrong_keys_are_explained(values: dict[str, Any], words: str) -> None:
     with pytest.raises(ConfigError, match=words):

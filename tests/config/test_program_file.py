@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.cases import cases
 from tuisim.config.program_file import (
     find_magic,
     find_program,
@@ -20,7 +21,7 @@ from tuisim.errors import ConfigError
 
 
 @pytest.mark.parametrize(
-    ("text", "line", "is_comment"),
+    "text, line, is_comment",
     [
         ("# %%sim_magic_preloaded -x 5\n", 1, True),
         ("\n# words\n%%sim_magic_preloaded -x 5\nx = 1\n", 3, False),
@@ -41,7 +42,7 @@ def test_a_magic_line_below_a_statement_is_a_comment() -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "said"),
+    "text, said",
     [
         ("# %%sim_magic_preloded\n", "no such magic"),
         ("# %%sim_magic -x 'five\n", "cannot be split"),
@@ -55,7 +56,7 @@ def test_a_wrong_magic_line_is_told_with_its_place(text: str, said: str) -> None
 
 
 @pytest.mark.parametrize(
-    ("text", "prelude"),
+    "text, prelude",
     [
         ("from ev3dev2.motor import LargeMotor\n", "none"),
         ("def go():\n    import ev3dev2.sensor\n", "none"),
@@ -101,7 +102,7 @@ def test_an_example_is_found_by_its_name_unless_a_file_has_it(
 
 
 @pytest.mark.parametrize(
-    ("name", "data", "said"),
+    "name, data, said",
     [
         ("none.py", None, "there is no such program"),
         ("notes.ipynb", b"{}", "is a notebook"),
@@ -122,7 +123,7 @@ def test_what_is_no_program_is_told(
 
 
 @pytest.mark.parametrize(
-    ("text", "prelude"),
+    "text, prelude",
     [
         ("tank_dr", "preloaded"),
         ("tank_drive.on(", "preloaded"),
@@ -166,6 +167,6 @@ MAGIC_MATS = {
 }
 
 
-@pytest.mark.parametrize(("before", "after"), MAGIC_MATS.values(), ids=MAGIC_MATS)
+@cases("before, after", MAGIC_MATS)
 def test_a_mat_is_written_into_the_magic_line(before: str, after: str) -> None:
     assert with_mat(before, "p.py", "Loop") == after

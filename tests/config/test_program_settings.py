@@ -9,6 +9,7 @@ from typing import Any
 
 import pytest
 
+from tests.cases import cases
 from tuisim.config.build import build_run_spec
 from tuisim.config.options import Settings
 from tuisim.config.program_file import parse_program
@@ -215,7 +216,7 @@ def test_a_program_with_a_profile_for_the_other_library_can_be_opened() -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "fitting", "other"),
+    "text, fitting, other",
     [
         (PYBRICKS, "pybricks4", "ev3"),
         (USUAL, "robolab", "pybricks4"),
@@ -285,15 +286,15 @@ MoveDifferential(OUTPUT_C, OUTPUT_B, EV3Tire, 120)
 """
 
 
-@pytest.mark.parametrize(
-    ("magic", "above", "is_built"),
-    [
-        pytest.param("", {}, True, id="nothing is chosen"),
-        pytest.param("# %%sim_magic\n", {}, False, id="magic line"),
-        pytest.param("", {"background": "Loop"}, False, id="mat"),
-        pytest.param("", {"profile": "robolab"}, False, id="profile"),
-        pytest.param("", {"start.x_mm": 300.0}, True, id="start"),
-    ],
+@cases(
+    "magic, above, is_built",
+    {
+        "nothing is chosen": ("", {}, True),
+        "magic line": ("# %%sim_magic\n", {}, False),
+        "mat": ("", {"background": "Loop"}, False),
+        "profile": ("", {"profile": "robolab"}, False),
+        "start": ("", {"start.x_mm": 300.0}, True),
+    },
 )
 def test_sizes_and_sides_count_where_the_program_brings_its_rules(
     magic: str, above: Mapping[str, Any], is_built: bool
@@ -306,7 +307,7 @@ FORMATTED = "from pybricks.tools import wait\nprint(f'{1}')\n"
 
 
 @pytest.mark.parametrize(
-    ("text", "above", "refusal"),
+    "text, above, refusal",
     [
         (FORMATTED, {}, "p.py:2: the brick's Python would refuse this line (f-string)"),
         (

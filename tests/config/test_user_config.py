@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.cases import cases
 from tests.conftest import ROOT
 from tuisim.config.user_config import SETTINGS, config_file, config_of_text, load_config
 from tuisim.config.user_config_file import save_setting, template, write_template
@@ -21,73 +22,41 @@ def _home(home: Path) -> None:
     """Each test has its own file."""
 
 
-@pytest.mark.parametrize(
-    ("text", "problem"),
-    [
-        pytest.param(
-            "fps = 20",
-            "fps: no such table (it belongs into [app]; see `tuisim guide s",
-            id="no table",
-        ),
-        pytest.param(
-            "app = 3", "app: must be a table of keys and values, got 3", id="no table but a value"
-        ),
-        pytest.param("[apps]", "apps: no such table (did you mean app?", id="another table"),
-        pytest.param(
+@cases(
+    "text, problem",
+    {
+        "no table": ("fps = 20", "fps: no such table (it belongs into [app]; see `tuisim guide s"),
+        "no table but a value": ("app = 3", "app: must be a table of keys and values, got 3"),
+        "another table": ("[apps]", "apps: no such table (did you mean app?"),
+        "another name": (
             "[app]\nthem = 'light'",
             "app.them: no such setting (did you mean theme?)",
-            id="another name",
         ),
-        pytest.param("[simulation]\nspeed = 2", "(it belongs into [app])", id="in the wrong table"),
-        pytest.param(
-            "[app]\nquiet = 1", "app.quiet: must be true or false, got 1", id="no boolean"
-        ),
-        pytest.param(
-            "[simulation]\nwalls = 'on'",
-            "walls: must be true or false, got 'on'",
-            id="a switch's word",
-        ),
-        pytest.param(
-            "[app]\nfps = '20'",
-            "fps: must be a whole number from 1 to 60, got '20'",
-            id="no number",
-        ),
-        pytest.param("[app]\nfps = 61", "fps: must be a whole number from 1 to 60", id="too high"),
-        pytest.param(
-            "[app]\nfps = true", "fps: must be a whole number from 1 to 60, got true", id="not 1"
-        ),
-        pytest.param("[app]\nspeed = 'fast'", "speed: must be max, or a number", id="another word"),
-        pytest.param(
+        "in the wrong table": ("[simulation]\nspeed = 2", "(it belongs into [app])"),
+        "no boolean": ("[app]\nquiet = 1", "app.quiet: must be true or false, got 1"),
+        "a switch's word": ("[simulation]\nwalls = 'on'", "walls: must be true or false, got 'on'"),
+        "no number": ("[app]\nfps = '20'", "fps: must be a whole number from 1 to 60, got '20'"),
+        "too high": ("[app]\nfps = 61", "fps: must be a whole number from 1 to 60"),
+        "not 1": ("[app]\nfps = true", "fps: must be a whole number from 1 to 60, got true"),
+        "another word": ("[app]\nspeed = 'fast'", "speed: must be max, or a number"),
+        "none of the words": (
             "[app]\ncells = 'oct'",
             "cells: no such value 'oct' (one of auto, half",
-            id="none of the words",
         ),
-        pytest.param(
-            "[simulation]\nrobot = 'Foo'",
-            "robot: no such robot 'Foo' (one of Default",
-            id="no robot",
-        ),
-        pytest.param(
-            "[simulation]\nbackground = 'Lop'", "no such mat 'Lop' (did you mean Loop?", id="no mat"
-        ),
-        pytest.param("[simulation]\nprofile = 'p.toml'", "simulation.profile: ", id="no file"),
-        pytest.param(
+        "no robot": ("[simulation]\nrobot = 'Foo'", "robot: no such robot 'Foo' (one of Default"),
+        "no mat": ("[simulation]\nbackground = 'Lop'", "no such mat 'Lop' (did you mean Loop?"),
+        "no file": ("[simulation]\nprofile = 'p.toml'", "simulation.profile: "),
+        "no colour": (
             "[simulation]\npencolor = 'gren'",
             "no such colour 'gren' (did you mean green",
-            id="no colour",
         ),
-        pytest.param(
+        "removed": (
             "[editor]\nmotions = 'vim'",
             "editor: this table is no longer used: remove it (",
-            id="removed",
         ),
-        pytest.param(
-            "[keys]\nrun = 3", "keys.run: must be a key or a list of keys, got 3", id="no key"
-        ),
-        pytest.param(
-            "[keys]\nrun = []", "keys.run: must be a key or a list of keys, got []", id="no keys"
-        ),
-    ],
+        "no key": ("[keys]\nrun = 3", "keys.run: must be a key or a list of keys, got 3"),
+        "no keys": ("[keys]\nrun = []", "keys.run: must be a key or a list of keys, got []"),
+    },
 )
 def test_what_is_wrong_is_named_and_counts_as_missing(text: str, problem: str) -> None:
     found = config_of_text(f"{text}\n", PATH)

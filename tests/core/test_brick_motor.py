@@ -15,7 +15,7 @@ from tuisim.core.spec import MotorSpec, RobotSpec, RunSpec, WorldSpec
 
 
 @pytest.mark.parametrize(
-    ("speed", "target", "step", "after"),
+    "speed, target, step, after",
     [
         (0, 100, 8, 8),
         (96, 100, 8, 100),

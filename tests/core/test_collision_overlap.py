@@ -66,7 +66,7 @@ def leaves(sim: Simulation) -> bool:
     "profile", ["robolab", *(slow(profile) for profile in PROFILES if profile != "robolab")]
 )
 @pytest.mark.parametrize(
-    ("walls", "solid"),
+    "walls, solid",
     [(False, False), slow(False, True), slow(True, False), (True, True)],
     ids=["open", "solid", "open with walls", "solid with walls"],
 )
@@ -108,7 +108,7 @@ PLACES = {
 
 @pytest.mark.quick_cases("on a post-*")
 @pytest.mark.parametrize(
-    ("motion", "noise"),
+    "motion, noise",
     [(motion, 0) for motion in MOTIONS]
     + [("forwards", 100), *(slow(motion, 100) for motion in MOTIONS if motion != "forwards")],
 )
@@ -201,7 +201,7 @@ def test_no_motion_leads_deeper_into_what_the_robot_was_put_into(
 
 
 @pytest.mark.parametrize(
-    ("x_mm", "y_mm", "heading_deg", "out_deg"),
+    "x_mm, y_mm, heading_deg, out_deg",
     [
         (660, 550, 0, 180),
         (1640, 550, 180, 0),

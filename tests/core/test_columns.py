@@ -227,7 +227,7 @@ def test_a_new_value_is_added_by_one_line(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "name"),
+    "text, name",
     [
         ("left.red%", "left_red_pc"),
         ("left red %", "left_red_pc"),

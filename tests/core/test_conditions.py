@@ -90,7 +90,7 @@ HELD = {
 
 
 @pytest.mark.parametrize("place", PLACES)
-@pytest.mark.parametrize(("condition", "expected"), HELD.items(), ids=HELD)
+@pytest.mark.parametrize("condition, expected", HELD.items(), ids=HELD)
 def test_a_comparison_means_the_same_everywhere(
     place: str, condition: str, expected: list[float]
 ) -> None:
@@ -121,7 +121,7 @@ RUN_CONDITIONS = {
 }
 
 
-@pytest.mark.parametrize(("text", "condition"), RUN_CONDITIONS.items(), ids=RUN_CONDITIONS)
+@pytest.mark.parametrize("text, condition", RUN_CONDITIONS.items(), ids=RUN_CONDITIONS)
 def test_conditions_on_a_run(text: str, condition: ValueCondition | None) -> None:
     assert run_condition_in(text) == condition
 
@@ -138,7 +138,7 @@ EVENTS = {
 }
 
 
-@pytest.mark.parametrize(("text", "rising"), EVENTS.items(), ids=EVENTS)
+@pytest.mark.parametrize("text, rising", EVENTS.items(), ids=EVENTS)
 def test_an_event_is_a_comparison_with_a_direction(
     text: str, rising: tuple[bool, ...] | None
 ) -> None:
@@ -155,7 +155,7 @@ def test_an_event_is_a_comparison_with_a_direction(
 
 
 @pytest.mark.parametrize(
-    ("text", "name"),
+    "text, name",
     [
         ("a > 5 > 0.5", "a > 5"),
         ("a+-5 < 3", "a+-5"),
@@ -182,7 +182,7 @@ OTHER_FILTERS = {
 }
 
 
-@pytest.mark.parametrize(("text", "expected"), OTHER_FILTERS.items(), ids=OTHER_FILTERS)
+@pytest.mark.parametrize("text, expected", OTHER_FILTERS.items(), ids=OTHER_FILTERS)
 def test_a_filter_also_compares_texts(text: str, expected: list[float]) -> None:
     assert by_filter(text) == expected
 
@@ -201,7 +201,7 @@ REFUSED = {
 }
 
 
-@pytest.mark.parametrize(("place", "operators"), REFUSED.items(), ids=REFUSED)
+@pytest.mark.parametrize("place, operators", REFUSED.items(), ids=REFUSED)
 @pytest.mark.parametrize("condition", ["Colour ? 50", "? 50"])
 def test_what_is_no_comparison_is_answered_with_what_is_allowed(
     place: str, operators: str, condition: str

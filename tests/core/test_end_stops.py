@@ -27,7 +27,7 @@ def arm_of(robot: RobotSpec = ROBOT, profile: str = "ev3") -> Simulation:
 
 @pytest.mark.parametrize("profile", COMMANDED)
 @pytest.mark.parametrize(
-    ("dps", "end_deg", "flag"), [(-200.0, -90.0, LOW), (500.0, 180.0, HIGH)], ids=["low", "high"]
+    "dps, end_deg, flag", [(-200.0, -90.0, LOW), (500.0, 180.0, HIGH)], ids=["low", "high"]
 )
 def test_a_motor_stops_at_its_end(profile: str, dps: float, end_deg: float, flag: int) -> None:
     sim = arm_of(profile=profile)

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 import pytest
 
+from tests.cases import cases
 from tests.running import PATIENCE_S, Run
 
 TURN_MM = math.pi * 56
@@ -103,7 +104,7 @@ MOVES = {
 
 @pytest.mark.quick_cases("*-ev3")
 @pytest.mark.parametrize("profile", [OLD, *TRUE])
-@pytest.mark.parametrize("move", MOVES.values(), ids=MOVES)
+@cases("move", MOVES)
 def test_move(run: Run, move: Move, profile: str) -> None:
     done = run(move.text, profile=profile, pose=(1000.0, 500.0, 0.0), background="Empty_Map")
     assert done.ended.end == "finished"
@@ -131,14 +132,14 @@ TIMES = {
 
 @pytest.mark.quick_cases("*-robolab", "*-ev3")
 @pytest.mark.parametrize("profile", [OLD, *TRUE])
-@pytest.mark.parametrize(("text", "old_s", "true_s"), TIMES.values(), ids=TIMES)
+@cases("text, old_s, true_s", TIMES)
 def test_cost_of_a_call(run: Run, text: str, old_s: float, true_s: float, profile: str) -> None:
     done = run(text, profile=profile)
     assert done.ended.time_ns / 1e9 == pytest.approx(old_s if profile == OLD else true_s, abs=1e-6)
 
 
 @pytest.mark.quick_cases("*-ev3-*")
-@pytest.mark.parametrize(("profile", "seconds"), [(OLD, 0.02), ("robolab", 0.02), ("ev3", 0.01)])
+@pytest.mark.parametrize("profile, seconds", [(OLD, 0.02), ("robolab", 0.02), ("ev3", 0.01)])
 @pytest.mark.parametrize(
     "call", ["colorLeft.color", "colorLeft.color_name", "gyro.angle", "gyro.rate"]
 )
@@ -164,7 +165,7 @@ STANDS = {
 
 @pytest.mark.quick_cases("*-robolab")
 @pytest.mark.parametrize("profile", [OLD, *TRUE])
-@pytest.mark.parametrize(("text", "old", "true"), STANDS.values(), ids=STANDS)
+@cases("text, old, true", STANDS)
 def test_stopping(
     run: Run, text: str, old: tuple[int, int], true: tuple[int, int], profile: str
 ) -> None:
@@ -176,7 +177,7 @@ STATE = "m = tank_drive.left_motor\nprint(repr(m.state))\nm.on(20)\nprint(repr(m
 
 
 @pytest.mark.parametrize(
-    ("profile", "lines"),
+    "profile, lines",
     [
         (OLD, ["''", "'running'", "'running'"]),
         *((name, ["[]", "['running', 'ramping']", "['holding']"]) for name in TRUE),
@@ -189,7 +190,7 @@ def test_state_of_a_motor(run: Run, profile: str, lines: list[str]) -> None:
 CREEPS = "import time\ntank_drive.on(0, 0)\ntime.sleep(5)\ntank_drive.off()"
 
 
-@pytest.mark.parametrize(("profile", "creeps"), [(OLD, True), ("robolab", False), ("ev3", False)])
+@pytest.mark.parametrize("profile, creeps", [(OLD, True), ("robolab", False), ("ev3", False)])
 def test_motor_noise_on_a_robot_that_was_told_to_stand(
     run: Run, profile: str, creeps: bool
 ) -> None:
@@ -206,7 +207,7 @@ def test_old_noise_leaves_speeds_alone_that_stay_negative_with_it(run: Run) -> N
     assert quiet == noisy
 
 
-@pytest.mark.parametrize(("profile", "beyond"), [(OLD, True), ("robolab", True), ("ev3", False)])
+@pytest.mark.parametrize("profile, beyond", [(OLD, True), ("robolab", True), ("ev3", False)])
 def test_driving_off_the_field(run: Run, profile: str, beyond: bool) -> None:
     from dataclasses import replace
 
@@ -241,7 +242,7 @@ GREYS = {125: 255, 325: 220, 725: 211, 1125: 128, 1525: 0}
 
 @pytest.mark.quick_cases("*-robolab")
 @pytest.mark.parametrize("profile", [OLD, *TRUE])
-@pytest.mark.parametrize(("x_mm", "grey"), GREYS.items())
+@pytest.mark.parametrize("x_mm, grey", GREYS.items())
 def test_all_properties_of_a_grey(run: Run, profile: str, x_mm: int, grey: int) -> None:
     reflected = grey * 100 // 255 if profile == "ev3" else grey
     code, name = (1, "Black") if grey < 128 else (6, "White")

@@ -10,6 +10,7 @@ from typing import Any
 
 import pytest
 
+from tests.cases import cases
 from tests.runtime.debugging import Driver
 from tuisim.app.setup.fields import find
 from tuisim.app.setup.next_run import plan_of_spec
@@ -29,7 +30,7 @@ from tuisim.runs.views import instant_of
 from tuisim.shim.sensors import DEVICES
 from tuisim.source import Program
 
-each_kind = pytest.mark.parametrize("kind", SENSORS.values(), ids=SENSORS)
+each_kind = cases("kind", SENSORS)
 each_mount = pytest.mark.parametrize("mount", MOUNTS, ids=lambda mount: mount.field)
 
 NONE: dict[str, Any] = {mount.field: () if mount.many else None for mount in MOUNTS}

@@ -9,6 +9,7 @@ from typing import Any
 
 import pytest
 
+from tests.cases import cases
 from tests.core.memory_sink import MemorySink
 from tests.core.motors import commanded
 from tuisim.core.geometry import Pose
@@ -78,7 +79,7 @@ MISTAKES: dict[str, Callable[[], Any]] = {
 }
 
 
-@pytest.mark.parametrize("make", MISTAKES.values(), ids=MISTAKES)
+@cases("make", MISTAKES)
 def test_impossible_parts_are_refused(make: Callable[[], Any]) -> None:
     with pytest.raises(ConfigError):
         make()
@@ -156,7 +157,7 @@ TOUCHES = {
 }
 
 
-@pytest.mark.parametrize(("x_mm", "y_mm", "heading_deg", "pressed"), TOUCHES.values(), ids=TOUCHES)
+@cases("x_mm, y_mm, heading_deg, pressed", TOUCHES)
 def test_touch(x_mm: float, y_mm: float, heading_deg: float, pressed: bool) -> None:
     assert touch.pressed(Pose(x_mm, y_mm, heading_deg), TouchSpec(), BOX) is pressed
 
@@ -169,7 +170,7 @@ SEEN = {
 }
 
 
-@pytest.mark.parametrize(("x_mm", "y_mm", "heading_deg", "seen"), SEEN.values(), ids=SEEN)
+@cases("x_mm, y_mm, heading_deg, seen", SEEN)
 def test_beacon(x_mm: float, y_mm: float, heading_deg: float, seen: tuple[int, int]) -> None:
     values = infrared.seek(Pose(x_mm, y_mm, heading_deg), InfraredSpec(), WORLD)
     assert values == (0, -128, 0, -128, *seen, 0, -128)
@@ -214,7 +215,7 @@ def test_turns_that_are_told_say_where_a_further_motor_is_at_any_tick(profile: s
     assert len(told) < 100
 
 
-@pytest.mark.parametrize(("kind", "limit_dps"), [("large", 1050.0), ("medium", 1560.0)])
+@pytest.mark.parametrize("kind, limit_dps", [("large", 1050.0), ("medium", 1560.0)])
 def test_noise_makes_a_wheel_no_faster_than_its_motor(kind: str, limit_dps: float) -> None:
     robot = RobotSpec(left_motor=kind, right_motor=kind, weight=0.0)
     sink = MemorySink()

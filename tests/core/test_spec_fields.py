@@ -45,7 +45,7 @@ def test_values_are_given_in_order_or_by_name() -> None:
 
 
 @pytest.mark.parametrize(
-    ("values", "said"),
+    "values, said",
     [
         ({}, "Wheel lacks size_mm"),
         ({"size_mm": 2, "colour": 1}, "Wheel has no colour"),
@@ -64,7 +64,7 @@ def test_more_values_than_there_are_and_one_given_twice_are_told() -> None:
 
 
 @pytest.mark.parametrize(
-    ("make", "error", "said"),
+    "make, error, said",
     [
         (lambda: Wheel(0), ObstacleError, "wheel.size_mm: must be a number from 1 to 9, got 0"),
         (lambda: Wheel(6, True), ObstacleError, "wheel.worn: is too large"),

@@ -28,7 +28,7 @@ Said = Callable[..., str]
 
 
 @pytest.mark.parametrize(
-    ("path", "value"),
+    "path, value",
     [
         ("seed", 0),
         ("world.noise.light", 0),
@@ -59,7 +59,7 @@ def test_another_value_leaves_the_rest() -> None:
 
 
 @pytest.mark.parametrize(
-    ("path", "value", "error", "said"),
+    "path, value, error, said",
     [
         (
             "world.noise.light",

@@ -44,7 +44,7 @@ TYPICAL = DriftSpec(0.5, 1.0, 1.0, 1.0, 3.0, 0.05, 100.0, 10.0)
 
 
 @pytest.mark.parametrize(
-    ("kind", "data", "found"),
+    "kind, data, found",
     [
         ("flag", True, True),
         ("number", 1, 1.0),
@@ -67,7 +67,7 @@ def test_a_file_gives_it(kind: str, data: object, found: object) -> None:
 
 
 @pytest.mark.parametrize(
-    ("kind", "data", "said"),
+    "kind, data, said",
     [
         ("flag", 1, "must be true or false, got 1"),
         ("number", float("nan"), "must be a number from 0.5 to 2, got nan"),
@@ -104,7 +104,7 @@ def test_one_of_several_is_told_by_its_place() -> None:
 
 
 @pytest.mark.parametrize(
-    ("kind", "text", "found", "again"),
+    "kind, text, found, again",
     [
         ("flag", "on", True, "on"),
         ("number", "1.5", 1.5, "1.5"),
@@ -135,7 +135,7 @@ def test_an_option_or_a_form_gives_it_and_shows_it(
 
 
 @pytest.mark.parametrize(
-    ("kind", "text", "said"),
+    "kind, text, said",
     [
         ("flag", "yes", "-v: no such value 'yes' (one of on, off)"),
         ("number", "3", "-v: must be a number from 0.5 to 2, got '3'"),

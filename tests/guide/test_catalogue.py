@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from tests.app.terminals import Terminal
+from tests.cases import cases
 from tests.conftest import ROOT, Command
 from tuisim.app.actions.keys import ACTIONS
 from tuisim.cli import COMMANDS
@@ -58,19 +59,15 @@ def test_a_table_says_what_the_code_says(name: str) -> None:
     assert missing == []
 
 
-@pytest.mark.parametrize(
-    ("words", "topic"),
-    [
-        pytest.param(["run", "log_greys", "--break", "wen hot"], "breakpoints", id="a breakpoint"),
-        pytest.param(["run", "magic.py"], "writing-programs", id="a magic line"),
-        pytest.param(["goals", "check", "empty.toml"], "goal-files", id="goals"),
-        pytest.param(["batch", "log_greys", "--set", "noise"], "experiments", id="a parameter"),
-        pytest.param(
-            ["mark", str(ROOT / "programs" / "log_greys_goals.toml"), "nobody"],
-            "marking",
-            id="a class",
-        ),
-    ],
+@cases(
+    "words, topic",
+    {
+        "a breakpoint": (["run", "log_greys", "--break", "wen hot"], "breakpoints"),
+        "a magic line": (["run", "magic.py"], "writing-programs"),
+        "goals": (["goals", "check", "empty.toml"], "goal-files"),
+        "a parameter": (["batch", "log_greys", "--set", "noise"], "experiments"),
+        "a class": (["mark", str(ROOT / "programs" / "log_greys_goals.toml"), "nobody"], "marking"),
+    },
 )
 def test_an_error_names_the_page_that_helps(
     words: list[str], topic: str, tmp_path: Path, here: Command
@@ -106,23 +103,18 @@ def test_the_shell_lists_the_contents_and_searches(here: Command) -> None:
     assert here("guide", "--search", "wheel diameter").stdout.split()[1] == "world-files"
 
 
-@pytest.mark.parametrize(
-    ("words", "code", "said"),
-    [
-        pytest.param(
+@cases(
+    "words, code, said",
+    {
+        "no page": (
             ["keyz"],
             2,
             "guide: no such page 'keyz' (did you mean keys? See `tuisim guide`)",
-            id="no page",
         ),
-        pytest.param(["keys", "--search", "x"], 2, "exclude each other", id="two at once"),
-        pytest.param(
-            ["--html", "a"], 2, "no such option: --html (`tuisim guide` and the key ?", id="HTML"
-        ),
-        pytest.param(
-            ["--search", "xyzzy"], 1, "No page has these words: xyzzy", id="nothing found"
-        ),
-    ],
+        "two at once": (["keys", "--search", "x"], 2, "exclude each other"),
+        "HTML": (["--html", "a"], 2, "no such option: --html (`tuisim guide` and the key ?"),
+        "nothing found": (["--search", "xyzzy"], 1, "No page has these words: xyzzy"),
+    },
 )
 def test_what_cannot_be_shown_is_told(
     words: list[str], code: int, said: str, tmp_path: Path, here: Command

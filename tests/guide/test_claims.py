@@ -146,7 +146,7 @@ def _lay_out(name: str, where: Path) -> None:
                 (where / block.file).write_text(block.code)
 
 
-@pytest.mark.parametrize(("name", "claim"), [*_cases()])
+@pytest.mark.parametrize("name, claim", [*_cases()])
 def test_a_claim_is_so(
     name: str,
     claim: dict[str, Any],

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.cases import cases
 from tests.guide.questions import QUESTIONS
 from tuisim.guide.catalogue import pages
 from tuisim.guide.excerpt import excerpt_of, passage_text
@@ -35,12 +36,12 @@ def passage_in(page: str, question: str) -> str:
     return next(one.passage for one in search(question) if one.name == page)
 
 
-@pytest.mark.parametrize(("question", "page"), QUESTIONS.items())
+@pytest.mark.parametrize("question, page", QUESTIONS.items())
 def test_the_right_page_is_among_the_first_two(question: str, page: str) -> None:
     assert page in names(question)
 
 
-@pytest.mark.parametrize(("written", "least"), [("first", 20), ("later", 48)])
+@pytest.mark.parametrize("written, least", [("first", 20), ("later", 48)])
 def test_questions_in_words_find_their_page(written: str, least: int) -> None:
     asked = STUDENTS[written]
     assert all({*one["pages"]} <= {*pages()} for one in asked)
@@ -53,20 +54,20 @@ def test_the_passage_that_answers_is_found() -> None:
     assert passage_in("keys", question).startswith("| `[` | Slower |")
 
 
-@pytest.mark.parametrize(
-    ("question", "page"),
-    [
-        pytest.param("Wheel DIAMETER?", "world-files", id="signs and capitals"),
-        pytest.param("noteb", "notebooks", id="a word that is not complete"),
-        pytest.param("debugging", "stepping", id="another form of a word"),
-    ],
+@cases(
+    "question, page",
+    {
+        "signs and capitals": ("Wheel DIAMETER?", "world-files"),
+        "a word that is not complete": ("noteb", "notebooks"),
+        "another form of a word": ("debugging", "stepping"),
+    },
 )
 def test_words_need_not_be_exact(question: str, page: str) -> None:
     assert search(question)[0].name == page
 
 
 @pytest.mark.parametrize(
-    ("question", "page", "section"),
+    "question, page, section",
     [
         ("How do I stop at the wall", "how-sensors-see", "Ultrasonic: stop at a wall"),
         ("stop in front of an obstacle", "how-sensors-see", "Ultrasonic: stop at a wall"),
@@ -84,7 +85,7 @@ def test_the_answer_comes_first(question: str, page: str, section: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("question", "page", "begins"),
+    "question, page, begins",
     [
         ("stop a program", "keys", "| `S` | Stop the program"),
         ("why does the sensor say White on grey", "how-sensors-see", "**White on grey**"),
@@ -109,7 +110,7 @@ def test_a_passage_is_neither_a_fence_nor_a_rule(question: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("question", "section"),
+    "question, section",
     [
         ("run faster than real time", "Faster or slower than real time"),
         ("black outside the mat", "Light and colour"),
@@ -124,7 +125,7 @@ def test_nothing_is_found_where_nothing_is_asked(question: str) -> None:
     assert search(question) == []
 
 
-@pytest.mark.parametrize(("width", "begins"), [(36, "gyro"), (76, "gyro"), (118, " gyro  ")])
+@pytest.mark.parametrize("width, begins", [(36, "gyro"), (76, "gyro"), (118, " gyro  ")])
 def test_a_row_of_a_table_is_found_in_each_width(width: int, begins: str) -> None:
     found = next(
         one for one in search("gyro angle INPUT_4 Port.S4") if one.name == "ev3dev2-and-pybricks"
@@ -200,7 +201,7 @@ def test_code_alone_keeps_its_lines() -> None:
 
 
 @pytest.mark.parametrize(
-    ("question", "pages_first"),
+    "question, pages_first",
     [
         (
             "how do I zoom the world, and how do I measure the grey bands",

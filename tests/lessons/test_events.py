@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import pytest
 
+from tests.cases import cases
 from tuisim.goals.trial_world import TrialWorld
 from tuisim.lessons.events import (
     BreakMet,
@@ -137,7 +138,7 @@ CASES: dict[str, tuple[Check, Sequence[Event], bool]] = {
 }
 
 
-@pytest.mark.parametrize(("check", "events", "passes"), CASES.values(), ids=CASES)
+@cases("check, events, passes", CASES)
 def test_check(check: Check, events: Sequence[Event], passes: bool) -> None:
     assert is_met(check, events) is passes
 
@@ -167,7 +168,7 @@ UNREADY = {
 }
 
 
-@pytest.mark.parametrize(("question", "typed", "words"), UNREADY.values(), ids=UNREADY)
+@cases("question, typed, words", UNREADY)
 def test_what_a_question_needs_first(question: QuestionCheck, typed: Typed, words: str) -> None:
     found = unready(question, typed)
     assert found.startswith(words)
@@ -186,7 +187,7 @@ NOTES = {
 }
 
 
-@pytest.mark.parametrize(("note", "words"), NOTES.values(), ids=NOTES)
+@cases("note, words", NOTES)
 def test_why_a_note_does_not_pass(note: Noted, words: str) -> None:
     found = note_fault(NOTE, note)
     assert found.startswith(words)
@@ -194,7 +195,7 @@ def test_why_a_note_does_not_pass(note: Noted, words: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "words"),
+    "text, words",
     [
         ("50.2 cm", "the number in mm"),
         ("0.502m", "the number in mm"),

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.cases import cases
 from tuisim.errors import ConfigError
 from tuisim.lessons.files import load_lesson, name_of
 from tuisim.lessons.skeleton import SKELETON
@@ -194,7 +195,7 @@ BAD = {
 }
 
 
-@pytest.mark.parametrize(("text", "message"), BAD.values(), ids=BAD)
+@cases("text, message", BAD)
 def test_bad_lesson(text: str, message: str, tmp_path: Path) -> None:
     path = tmp_path / "it.md"
     path.write_text(text)
@@ -211,7 +212,7 @@ NO_FILE = {
 }
 
 
-@pytest.mark.parametrize(("name", "message"), NO_FILE.values(), ids=NO_FILE)
+@cases("name, message", NO_FILE)
 def test_no_lesson(name: str, message: str, tmp_path: Path) -> None:
     (tmp_path / "bytes.md").write_bytes(b"+++\n\xff\n")
     with pytest.raises(ConfigError, match=message):
@@ -221,7 +222,7 @@ def test_no_lesson(name: str, message: str, tmp_path: Path) -> None:
 NAMES = {"01-first-run.md": "first-run", "02_b.md": "b", "plain.md": "plain", "7.md": "7"}
 
 
-@pytest.mark.parametrize(("file", "name"), NAMES.items(), ids=NAMES)
+@pytest.mark.parametrize("file, name", NAMES.items(), ids=NAMES)
 def test_name_of_file(file: str, name: str) -> None:
     assert name_of(Path(file)) == name
 
@@ -275,7 +276,7 @@ WAYS = {
 }
 
 
-@pytest.mark.parametrize(("keys", "missing"), WAYS.values(), ids=WAYS)
+@cases("keys, missing", WAYS)
 def test_wrong_ways_that_are_missing(keys: str, missing: list[str], tmp_path: Path) -> None:
     path = tmp_path / "it.md"
     path.write_text(

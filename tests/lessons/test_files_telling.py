@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.cases import cases
 from tests.lessons.test_files import GOAL, HEAD, RUN, lesson
 from tuisim.errors import ConfigError
 from tuisim.lessons.files import load_lesson, merge_telling
@@ -57,7 +58,7 @@ BAD = {
 }
 
 
-@pytest.mark.parametrize(("front", "message"), BAD.values(), ids=BAD)
+@cases("front, message", BAD)
 def test_bad_telling(front: str, message: str, tmp_path: Path) -> None:
     with pytest.raises(ConfigError) as raised:
         told(tmp_path, front)
@@ -80,6 +81,6 @@ MERGED = {
 }
 
 
-@pytest.mark.parametrize(("other", "own", "both"), MERGED.values(), ids=MERGED)
+@cases("other, own, both", MERGED)
 def test_own_values_take_precedence(other: object, own: object, both: object) -> None:
     assert merge_telling(other, own) == both

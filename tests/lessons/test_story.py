@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import pytest
-
+from tests.cases import cases
 from tuisim.goals.condition import Condition
 from tuisim.goals.judgement import Change, GoalState, Judgement
 from tuisim.goals.spec import (
@@ -49,7 +48,7 @@ SAID: dict[str, tuple[Condition, str]] = {
 }
 
 
-@pytest.mark.parametrize(("condition", "words"), SAID.values(), ids=SAID)
+@cases("condition, words", SAID)
 def test_story(condition: Condition, words: str) -> None:
     met = Judgement(
         Goal("a", condition), (Change(542, 5.42, GoalState.MET, 1152.9, 500.0),), line=3

@@ -32,7 +32,7 @@ def column(*parts: list[Any], kind: pa.DataType | None = None) -> pa.ChunkedArra
 
 
 @pytest.mark.parametrize(
-    ("cells", "expected"),
+    "cells, expected",
     [
         (column([1.5, None], [2.5]), [1.5, NAN, 2.5]),
         (column([3, None]), [3.0, NAN]),
@@ -78,7 +78,7 @@ def test_texts_that_are_no_utf_8_are_replaced() -> None:
 
 
 @pytest.mark.parametrize(
-    ("cells", "operator", "value", "expected"),
+    "cells, operator, value, expected",
     [
         (column([1, 2, None]), Operator.GREATER, "1.5", [False, True, False]),
         (column([1_500, 500], kind=pa.duration("ms")), Operator.LESS, "1", [False, True]),
@@ -107,7 +107,7 @@ def test_coded_texts_are_sorted_as_texts() -> None:
 
 
 @pytest.mark.parametrize(
-    ("cell", "text"),
+    "cell, text",
     [
         (pa.scalar(1_234_567, pa.duration("us")), "1.235"),
         (pa.scalar(None, pa.duration("s")), ""),

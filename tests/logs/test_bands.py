@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from tests.cases import cases
 from tuisim.logs.plateaus import Plateau, plateaus
 
 HELD_SEEDS = range(20_000, 20_200)
@@ -109,7 +110,7 @@ CLEAN = {
 }
 
 
-@pytest.mark.parametrize(("values", "expected"), CLEAN.values(), ids=CLEAN)
+@cases("values, expected", CLEAN)
 def test_plateaus(values: list[float], expected: list[tuple[int, int, float]]) -> None:
     found = plateaus(np.array(values, np.float64))
     assert [(plateau.start, plateau.stop, plateau.level) for plateau in found] == expected
@@ -175,7 +176,7 @@ def short_log(seed: int) -> NDArray[np.float64]:
 
 
 @pytest.mark.parametrize(
-    ("make", "sums"),
+    "make, sums",
     [
         (lambda seed: made_log(seed).values, [706, 91169, 114753, 36064.081, 298.694, 216.12, 268]),
         (short_log, [860, 21070.0, 25820.0, 37586.057, 389.459, 100.449, 134.0]),

@@ -36,7 +36,7 @@ def test_greys_have_names() -> None:
 
 
 @pytest.mark.parametrize(
-    ("values", "expected"),
+    "values, expected",
     [
         ([0.0, 100.0], 1.0),
         ([0.0, 255.0], 100 / 255),
@@ -96,7 +96,7 @@ def test_empty_cells_belong_to_no_band() -> None:
 
 
 @pytest.mark.parametrize(
-    ("light", "levels"),
+    "light, levels",
     [
         ([100.0] * 5 + [50.0] * 5 + [0.0], [(100, 5), (50, 5), (0, 1)]),
         ([0.0] + [100.0] * 5 + [50.0] * 5, [(0, 1), (100, 5), (50, 5)]),

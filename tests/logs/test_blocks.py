@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.cases import cases
 from tuisim.logs.blocks import BLOCK_BYTES
 from tuisim.logs.reader import open_log
 
@@ -24,7 +25,7 @@ TEXTS = {
 
 
 @pytest.mark.quick_cases("names that repeat")
-@pytest.mark.parametrize(("text", "kind"), TEXTS.values(), ids=TEXTS)
+@cases("text, kind", TEXTS)
 def test_texts_of_several_blocks(tmp_path: Path, text: Callable[[int], str], kind: str) -> None:
     lines = [f"{at},{text(at)},5" for at in range(LONG)]
     (tmp_path / "a.csv").write_text("time,variable,value\n" + "\n".join(lines) + "\n")
@@ -37,7 +38,7 @@ LATE = {"numbers": ("5.5", 5.5), "texts": ("five", "five")}
 
 
 @pytest.mark.quick_cases(".csv-*")
-@pytest.mark.parametrize(("cell", "value"), LATE.values(), ids=LATE)
+@cases("cell, value", LATE)
 @pytest.mark.parametrize("suffix", [".csv", ".jsonl"])
 def test_a_column_that_begins_empty(tmp_path: Path, suffix: str, cell: str, value: object) -> None:
     quoted = cell if isinstance(value, float) else f'"{cell}"'

@@ -14,6 +14,7 @@ import numpy as np
 import pyarrow as pa
 import pytest
 
+from tests.cases import cases
 from tests.conftest import Command
 from tests.logs.log_cases import Case, Read, check_input, times, values
 
@@ -155,7 +156,7 @@ CASES: dict[str, Case] = {
 }
 
 
-@pytest.mark.parametrize(("name", "content", "expected"), CASES.values(), ids=CASES)
+@cases("name, content, expected", CASES)
 def test_input(
     tmp_path: Path, name: str, content: bytes | Callable[[], bytes], expected: Read | str
 ) -> None:
@@ -163,7 +164,7 @@ def test_input(
 
 
 @pytest.mark.parametrize(
-    ("text", "said"),
+    "text, said",
     [
         (
             "t_ms,red\n0,1\n9,2\n",

@@ -11,6 +11,7 @@ import pyarrow.parquet as pq
 import pytest
 from numpy.testing import assert_allclose
 
+from tests.cases import cases
 from tuisim.logs.columns import seconds_of
 from tuisim.logs.export import EXPORTERS, export_log
 from tuisim.logs.reader import open_log
@@ -25,7 +26,7 @@ TEXTS: dict[str, tuple[list[str | None], list[float]]] = {
 }
 
 
-@pytest.mark.parametrize(("texts", "expected"), TEXTS.values(), ids=TEXTS)
+@cases("texts, expected", TEXTS)
 def test_texts(texts: list[str | None], expected: list[float]) -> None:
     assert_allclose(
         seconds_of(pa.chunked_array([pa.array(texts, pa.string())]), 1.0), expected, atol=1e-9
@@ -44,7 +45,7 @@ KINDS: dict[str, tuple[pa.Array, list[float]]] = {
 }
 
 
-@pytest.mark.parametrize(("column", "expected"), KINDS.values(), ids=KINDS)
+@cases("column, expected", KINDS)
 def test_kinds(column: pa.Array, expected: list[float]) -> None:
     assert_allclose(seconds_of(pa.chunked_array([column]), 1.0), expected, rtol=1e-12)
 

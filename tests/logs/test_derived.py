@@ -11,6 +11,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from tests.app.analyser.logs import long_log, model_of, wide_log
+from tests.cases import cases
 from tests.logs.test_signals import column
 from tuisim.analysis.model import derive
 from tuisim.app.analyser.panes import PANES
@@ -44,7 +45,7 @@ DEFINED = {
 }
 
 
-@pytest.mark.parametrize(("text", "values"), DEFINED.values(), ids=DEFINED)
+@cases("text, values", DEFINED)
 def test_what_is_reckoned(text: str, values: np.ndarray) -> None:
     model = model_of(long_log())
     derive(model, text)
@@ -75,7 +76,7 @@ def test_wheels_without_numbers_cannot_be_reckoned() -> None:
         reckoned_series(Log("test", table, guess_columns(table)))
 
 
-@pytest.mark.parametrize(("text", "said"), REFUSED.values(), ids=REFUSED)
+@cases("text, said", REFUSED)
 def test_what_cannot_be_reckoned_changes_nothing(text: str, said: str) -> None:
     model = model_of(long_log())
     before = model.log

@@ -11,6 +11,7 @@ import pandas as pd
 import pytest
 from numpy.testing import assert_array_equal
 
+from tests.cases import cases
 from tests.logs.log_cases import Case, Read, check_input, times, values
 from tuisim.logs.reader import open_log
 
@@ -112,7 +113,7 @@ CASES: dict[str, Case] = {
 }
 
 
-@pytest.mark.parametrize(("name", "content", "expected"), CASES.values(), ids=CASES)
+@cases("name, content, expected", CASES)
 def test_input(tmp_path: Path, name: str, content: bytes, expected: Read | str) -> None:
     check_input(tmp_path / name, content, expected)
 

@@ -15,6 +15,7 @@ import pandas as pd
 import pytest
 
 import tuisim
+from tests.cases import cases
 from tests.runs.run_recorder import Recorder
 from tuisim.core.field import Field
 from tuisim.core.spec import RunSpec
@@ -127,7 +128,7 @@ OTHER_FRAMES: dict[str, tuple[dict[str, object], str]] = {
 
 @pytest.mark.quick_cases("*-.csv", "*-.parquet")
 @each_format
-@pytest.mark.parametrize(("columns", "types"), OTHER_FRAMES.values(), ids=OTHER_FRAMES)
+@cases("columns, types", OTHER_FRAMES)
 def test_other_frames_come_back(
     tmp_path: Path, suffix: str, columns: dict[str, object], types: str
 ) -> None:
@@ -305,7 +306,7 @@ BAD_TARGETS = {
 }
 
 
-@pytest.mark.parametrize(("name", "message"), BAD_TARGETS.values(), ids=BAD_TARGETS)
+@cases("name, message", BAD_TARGETS)
 def test_bad_target_is_refused_before_anything_is_done(
     tmp_path: Path, name: str, message: str
 ) -> None:
@@ -329,7 +330,7 @@ READ_ERRORS = {
 }
 
 
-@pytest.mark.parametrize(("name", "message"), READ_ERRORS.values(), ids=READ_ERRORS)
+@cases("name, message", READ_ERRORS)
 def test_log_that_cannot_be_read(tmp_path: Path, name: str, message: str) -> None:
     with pytest.raises(LogError, match=message):
         read_log(tmp_path / name)

@@ -7,6 +7,7 @@ import math
 import pytest
 from numpy.testing import assert_allclose
 
+from tests.cases import cases
 from tests.logs.test_signals import NAN, column
 from tuisim.errors import LogError
 from tuisim.logs.expressions import FUNCTIONS, evaluate
@@ -39,7 +40,7 @@ VALUES = {
 }
 
 
-@pytest.mark.parametrize(("text", "expected"), VALUES.items(), ids=VALUES)
+@pytest.mark.parametrize("text, expected", VALUES.items(), ids=VALUES)
 def test_expression(text: str, expected: list[float]) -> None:
     assert_allclose(evaluate(text, COLUMNS), expected)
 
@@ -72,7 +73,7 @@ REFUSED = {
 }
 
 
-@pytest.mark.parametrize("text", REFUSED.values(), ids=REFUSED)
+@cases("text", REFUSED)
 def test_expression_is_refused(text: str) -> None:
     with pytest.raises(LogError):
         evaluate(text, COLUMNS)

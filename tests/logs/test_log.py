@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
-import pytest
 
+from tests.cases import cases
 from tuisim.logs.columns import guess_columns
 from tuisim.logs.log import Log
 from tuisim.logs.reader import open_log
@@ -59,7 +59,7 @@ ROWS = {
 }
 
 
-@pytest.mark.parametrize(("log", "expected"), ROWS.values(), ids=ROWS)
+@cases("log, expected", ROWS)
 def test_rows(log: Log, expected: dict[str, list[int]]) -> None:
     assert {name: list(log.series(name).rows) for name in log.names} == expected
     assert list(log.names) == list(expected)

@@ -49,7 +49,7 @@ def test_it_imports_the_package_of_this_process() -> None:
 
 
 @pytest.mark.parametrize(
-    ("module", "name", "number"),
+    "module, name, number",
     [
         (plateaus_module, "_FEW_STARTS", 0),
         (plateaus_module, "_FEW_STARTS", 10**6),

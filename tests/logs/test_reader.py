@@ -15,6 +15,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
+from tests.cases import cases
 from tests.logs.log_cases import Case, Read, check_input, times, values
 from tuisim.errors import LogError
 from tuisim.logs.reader import open_log
@@ -338,7 +339,7 @@ CASES: dict[str, Case] = {
 
 
 @pytest.mark.slow_cases("a line of 100 MB", "nothing but a line of 100 MB")
-@pytest.mark.parametrize(("name", "content", "expected"), CASES.values(), ids=CASES)
+@cases("name, content, expected", CASES)
 def test_input(
     tmp_path: Path, name: str, content: bytes | Callable[[], bytes], expected: Read | str
 ) -> None:
@@ -350,7 +351,7 @@ def test_there_are_sixty() -> None:
 
 
 @pytest.mark.parametrize(
-    ("make", "expected"),
+    "make, expected",
     [(lambda path: None, "no such file"), (lambda path: path.mkdir(), "folder")],
     ids=["no file", "a folder"],
 )
@@ -378,7 +379,7 @@ def test_a_pipe_that_ends(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("time", "columns", "expected"),
+    "time, columns, expected",
     [
         ("tme", (), "did you mean 'time'"),
         (None, ("blue",), "no column 'blue'"),

@@ -59,7 +59,7 @@ class TestSignals:
         assert np.isnan(derivative(values, values)).all()
 
     @pytest.mark.parametrize(
-        ("between", "expected"),
+        "between, expected",
         [(Between.LINEAR, [0, 1.5, 6.5]), (Between.HOLD, [0, 1, 5])],
         ids=["linear", "hold"],
     )

@@ -6,9 +6,9 @@ from pathlib import Path
 
 import numpy as np
 import pandas as pd
-import pytest
 from numpy.testing import assert_allclose
 
+from tests.cases import cases
 from tests.logs.log_cases import Case, Read, check_input, times, values
 from tuisim.logs.reader import open_log
 
@@ -162,7 +162,7 @@ CASES: dict[str, Case] = {
 }
 
 
-@pytest.mark.parametrize(("name", "content", "expected"), CASES.values(), ids=CASES)
+@cases("name, content, expected", CASES)
 def test_input(tmp_path: Path, name: str, content: bytes, expected: Read | str) -> None:
     check_input(tmp_path / name, content, expected)
 

@@ -7,8 +7,8 @@ import threading
 from pathlib import Path
 
 import pandas as pd
-import pytest
 
+from tests.cases import cases
 from tests.logs.log_cases import Case, Read, check_input, times, values
 from tuisim.logs.reader import open_log
 
@@ -66,7 +66,7 @@ CASES: dict[str, Case] = {
 }
 
 
-@pytest.mark.parametrize(("name", "content", "expected"), CASES.values(), ids=CASES)
+@cases("name, content, expected", CASES)
 def test_input(tmp_path: Path, name: str, content: bytes, expected: Read | str) -> None:
     check_input(tmp_path / name, content, expected)
 

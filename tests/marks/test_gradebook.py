@@ -77,7 +77,7 @@ def test_who_is_missing_and_who_is_absent(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "what"),
+    "text, what",
     [
         ("", "no column that names the submissions"),
         ("name,mail\nben,x\n", "submission, Username, SIS Login ID"),

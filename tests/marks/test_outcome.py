@@ -6,9 +6,9 @@ from dataclasses import replace
 from math import nan
 from pathlib import Path
 
-import pytest
 from ev3dev2 import motor
 
+from tests.cases import cases
 from tuisim.batch.task import Result
 from tuisim.goals.judgement import Change, GoalState, Judgement
 from tuisim.goals.spec import AllOf, FinishCondition, Goal, ReachCondition
@@ -58,7 +58,7 @@ FAILURES = {
 }
 
 
-@pytest.mark.parametrize(("result", "failure"), FAILURES.values(), ids=FAILURES)
+@cases("result, failure", FAILURES)
 def test_why_a_program_did_not_finish(result: Result, failure: str) -> None:
     assert outcome_of(result, 3, FOLDER).failure == failure
 

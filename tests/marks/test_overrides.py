@@ -49,7 +49,7 @@ def test_page_and_feedback_show_them(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "what"),
+    "text, what",
     [
         ("[adda]\npoints = 1\n", "did you mean ada?"),
         ("[ada]\npoint = 1\n", "ada.point: no such key"),

@@ -94,7 +94,7 @@ def test_in_a_task_without_points_a_run_is_complete_if_it_meets_every_goal() -> 
 
 
 @pytest.mark.parametrize(
-    ("place", "hit", "points"), [(True, False, 7), (True, True, 5), (False, True, 0)]
+    "place, hit, points", [(True, False, 7), (True, True, 5), (False, True, 0)]
 )
 def test_points_that_are_taken_off_never_leave_less_than_none(
     place: bool, hit: bool, points: float

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.cases import cases
 from tests.marks.the_class import CLASS, write_class
 from tuisim.config.program_settings import program_settings
 from tuisim.errors import ConfigError
@@ -63,7 +64,7 @@ CASES = {
 }
 
 
-@pytest.mark.parametrize(("files", "program", "main", "problem"), CASES.values(), ids=CASES)
+@cases("files, program, main, problem", CASES)
 def test_main_program_of_a_folder(
     tmp_path: Path, files: tuple[str, ...], program: str, main: str, problem: str
 ) -> None:
@@ -245,7 +246,7 @@ LINKS = {
 }
 
 
-@pytest.mark.parametrize(("link", "target", "problem"), LINKS.values(), ids=LINKS)
+@cases("link, target, problem", LINKS)
 @pytest.mark.parametrize("by_name", [False, True], ids=["in a class", "by name"])
 def test_a_link_out_of_the_folder_is_refused_by_name(
     tmp_path: Path, link: str, target: str, problem: str, by_name: bool
@@ -280,7 +281,7 @@ def _many(folder: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("hands_in", "problem"),
+    "hands_in, problem",
     [
         (_nested, "its folders are nested more than 50 deep"),
         (_large, "it has more than 20 files or 1 GiB"),
@@ -316,7 +317,7 @@ def test_a_magic_line_may_not_name_files_outside_the_folder(tmp_path: Path, opti
 
 
 @pytest.mark.parametrize(
-    ("words", "is_refused"),
+    "words, is_refused",
     [
         ("-b ./mat.png", False),
         ("-r ben/robot.toml", True),

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.cases import cases
 from tests.conftest import Command
 from tuisim.goals.files import example_names
 
@@ -89,7 +90,7 @@ BAD = {
 }
 
 
-@pytest.mark.parametrize(("words", "message"), BAD.values(), ids=BAD)
+@cases("words, message", BAD)
 def test_bad_input_is_refused(tmp_path: Path, here: Command, words: str, message: str) -> None:
     (tmp_path / "task.toml").write_text(TASK)
     if "model" not in message and words != "task.toml":

@@ -32,7 +32,7 @@ def test_a_movie_is_a_gif_and_says_how_far_it_is(clip: Clip, tmp_path: Path) -> 
     assert drawn[0] == (0, 3) and drawn[-1] == (2, 3)
 
 
-@pytest.mark.parametrize(("suffix", "magic"), [(".png", b"\x89PNG"), (".svg", b"<svg ")])
+@pytest.mark.parametrize("suffix, magic", [(".png", b"\x89PNG"), (".svg", b"<svg ")])
 def test_a_picture_is_of_pixels_or_of_shapes(
     suffix: str, magic: bytes, recorded: Recorded, tmp_path: Path
 ) -> None:

@@ -55,7 +55,7 @@ WRONG = {
 }
 
 
-@pytest.mark.parametrize(("words", "says"), WRONG.items(), ids=WRONG)
+@pytest.mark.parametrize("words, says", WRONG.items(), ids=WRONG)
 def test_wrong_words_start_nothing(words: str, says: str, cell: Cell) -> None:
     shown = cell(f"%sim_app {words}")
     assert says in shown.err

@@ -9,6 +9,7 @@ from typing import Any
 import pytest
 from IPython.core.interactiveshell import InteractiveShell
 
+from tests.cases import cases
 from tests.notebook.conftest import Cell, Kernel
 from tuisim.notebook import cell_run
 from tuisim.notebook.cell_output import CellOutput
@@ -44,13 +45,13 @@ def check_that_all_is_well(cell: Cell) -> None:
 
 
 @pytest.mark.slow_cases("among its lines")
-@pytest.mark.parametrize(
-    ("holder", "name"),
-    [
-        pytest.param(cell_run, "start_run", id="as it starts"),
-        pytest.param(CellOutput, "show", id="among its lines"),
-        pytest.param(Stage, "show", id="in the display"),
-    ],
+@cases(
+    "holder, name",
+    {
+        "as it starts": (cell_run, "start_run"),
+        "among its lines": (CellOutput, "show"),
+        "in the display": (Stage, "show"),
+    },
 )
 def test_an_interrupt_stops_the_program(
     holder: Any, name: str, cell: Cell, shell: InteractiveShell, monkeypatch: pytest.MonkeyPatch
@@ -96,25 +97,22 @@ def test_an_interrupt_before_the_run_leaves_everything_as_it_was(
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
+@cases(
     "text",
-    [
-        pytest.param(ENDLESS, id="in real time"),
-        pytest.param(ENDLESS.replace(" --speed 1", ""), id="at full speed"),
-        pytest.param(ENDLESS.replace("-RW", "-RAciXpF 0.02"), id="while everything is drawn"),
-        pytest.param(
-            ENDLESS.replace("    pass", "    print('Flood: 1')").replace(" --speed 1", ""),
-            id="in a flood",
+    {
+        "in real time": ENDLESS,
+        "at full speed": ENDLESS.replace(" --speed 1", ""),
+        "while everything is drawn": ENDLESS.replace("-RW", "-RAciXpF 0.02"),
+        "in a flood": ENDLESS.replace("    pass", "    print('Flood: 1')").replace(
+            " --speed 1", ""
         ),
-        pytest.param(
-            ENDLESS.replace("    pass", "    print('Flood: 1')").replace("-RW --speed 1", "-RcO"),
-            id="in a charted flood",
+        "in a charted flood": ENDLESS.replace("    pass", "    print('Flood: 1')").replace(
+            "-RW --speed 1", "-RcO"
         ),
-        pytest.param(
-            ENDLESS.replace("    pass", "    try:\n        pass\n    except BaseException: pass"),
-            id="stubborn",
+        "stubborn": ENDLESS.replace(
+            "    pass", "    try:\n        pass\n    except BaseException: pass"
         ),
-    ],
+    },
 )
 def test_a_kernel_is_interrupted(text: str, kernel: Kernel) -> None:
     parent = kernel.begin(text)

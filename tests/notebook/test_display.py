@@ -7,8 +7,8 @@ from functools import partial
 from typing import TypeVar
 
 import numpy as np
-import pytest
 
+from tests.cases import cases
 from tests.charts.test_layout import log_of
 from tuisim.analysis.chart import View
 from tuisim.analysis.chart import chart_of as plotted
@@ -54,16 +54,16 @@ def test_samples_are_drawn_as_log_plot_draws_them() -> None:
     assert svg_of(replace(drawings[0], title="")) == svg_of(replace(drawings[1], title=""))
 
 
-@pytest.mark.parametrize(
+@cases(
     "values",
-    [
-        pytest.param([100.0] * 5, id="constant"),
-        pytest.param([0.0] * 5, id="nothing"),
-        pytest.param([1e300], id="huge"),
-        pytest.param([0.0, 100.0], id="percent"),
-        pytest.param([-1e308, 1e308], id="everything"),
-        pytest.param([-1e149, 1e149], id="almost everything"),
-    ],
+    {
+        "constant": [100.0] * 5,
+        "nothing": [0.0] * 5,
+        "huge": [1e300],
+        "percent": [0.0, 100.0],
+        "everything": [-1e308, 1e308],
+        "almost everything": [-1e149, 1e149],
+    },
 )
 def test_each_label_of_a_chart_stands_for_another_value(values: list[float]) -> None:
     rows = [Sample("Grey", value, at / 10, at, at, 1) for at, value in enumerate(values)]

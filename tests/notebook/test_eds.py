@@ -8,9 +8,9 @@ from typing import Any
 import matplotlib as mpl
 import matplotlib.pyplot as plt
 import pandas as pd
-import pytest
 import seaborn as sns  # type: ignore[import-untyped]
 
+from tests.cases import cases
 from tuisim.notebook.eds import use_seconds
 
 FRAME = pd.DataFrame(
@@ -27,7 +27,7 @@ CHARTS: dict[str, Callable[[], Any]] = {
 }
 
 
-@pytest.mark.parametrize("draw", CHARTS.values(), ids=CHARTS)
+@cases("draw", CHARTS)
 def test_an_axis_of_spans_is_in_seconds(draw: Callable[[], Any]) -> None:
     mpl.use("Agg")
     use_seconds()

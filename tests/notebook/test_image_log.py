@@ -21,7 +21,7 @@ LINES = [
 ]
 
 
-@pytest.mark.parametrize(("text", "side"), LINES, ids=[text for text, _ in LINES])
+@pytest.mark.parametrize("text, side", LINES, ids=[text for text, _ in LINES])
 def test_a_line_asks_for_sides(text: str, side: str) -> None:
     assert asked_side(OutputRow(text, 0, 0, 1, Stream.STDOUT)) == side
     assert asked_side(OutputRow(text, 0, 0, 1, Stream.STDERR)) == ""
@@ -35,7 +35,7 @@ SIDES = "[record.partition(' ')[0] for record in roboSim.raw_image_data]"
 RECORDS = [("left", ["left"]), ("right", ["right"]), ("both", ["left", "right"])]
 
 
-@pytest.mark.parametrize(("side", "sides"), RECORDS, ids=[side for side, _ in RECORDS])
+@pytest.mark.parametrize("side, sides", RECORDS, ids=[side for side, _ in RECORDS])
 def test_each_side_is_a_record(side: str, sides: list[str], cell: Cell) -> None:
     shown = cell(program(f"print('image_data {side}')"))
     assert shown.out == f"{side} image data logged...\n"

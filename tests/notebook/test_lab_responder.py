@@ -60,7 +60,7 @@ ANSWERS = [
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("answer", "got"), ANSWERS, ids=[answer for answer, _ in ANSWERS])
+@pytest.mark.parametrize("answer, got", ANSWERS, ids=[answer for answer, _ in ANSWERS])
 def test_an_answer_is_what_json_can_hold(answer: str, got: str, cell: Cell) -> None:
     cell(f"roboSim.responder = lambda text: {answer}")
     text = "%%sim_magic -RWL\nfrom ev3dev2_glue import pyState\nprint('PY::?')\nprint(pyState()['messages'])"
@@ -85,7 +85,7 @@ OLD_ANSWERS = [
 
 
 @pytest.mark.parametrize(
-    ("answer", "shown", "got"), OLD_ANSWERS, ids=[answer for answer, _, _ in OLD_ANSWERS]
+    "answer, shown, got", OLD_ANSWERS, ids=[answer for answer, _, _ in OLD_ANSWERS]
 )
 def test_under_its_old_name_a_responder_talks_in_texts(
     answer: str, shown: str, got: list[object], cell: Cell
@@ -189,7 +189,7 @@ OLD_MISTAKES = [
 
 
 @pytest.mark.slow_cases("a key")
-@pytest.mark.parametrize(("responder", "told"), MISTAKES)
+@pytest.mark.parametrize("responder, told", MISTAKES)
 def test_a_wrong_responder_is_one_line(responder: str, told: str, cell: Cell) -> None:
     cell(f"roboSim.responder = {responder}")
     shown = cell("%%sim_magic -RWL --speed 1\nprint('PY::?')\nwhile True:\n    pass\n")
@@ -200,7 +200,7 @@ def test_a_wrong_responder_is_one_line(responder: str, told: str, cell: Cell) ->
     assert cell("%%sim_magic -RW\nprint('next')").out == "next\n"
 
 
-@pytest.mark.parametrize(("responder", "told"), OLD_MISTAKES)
+@pytest.mark.parametrize("responder, told", OLD_MISTAKES)
 def test_a_wrong_responder_of_the_old_name_is_one_line(
     responder: str, told: str, cell: Cell
 ) -> None:

@@ -191,7 +191,7 @@ def with_slow(cases: Sequence[Any], quick: Callable[[Any], bool]) -> list[Any]:
 FLAGS = [(flag, case) for case in CASES for flag in case.flags]
 
 
-@pytest.mark.parametrize(("flag", "case"), with_slow(FLAGS, lambda one: one[0] == one[1].flags[0]))
+@pytest.mark.parametrize("flag, case", with_slow(FLAGS, lambda one: one[0] == one[1].flags[0]))
 def test_a_switch_does_what_it_says(flag: str, case: Case, cell: Cell) -> None:
     cell(PROGRAM)
     assert case.probe(cell, f"{flag} {case.value}") == case.seen
@@ -222,7 +222,7 @@ COMPOUNDS = [
 ]
 
 
-@pytest.mark.parametrize(("together", "apart"), with_slow(COMPOUNDS, lambda one: one[0] == "-OHR"))
+@pytest.mark.parametrize("together, apart", with_slow(COMPOUNDS, lambda one: one[0] == "-OHR"))
 def test_switches_may_be_put_together(together: str, apart: str, cell: Cell) -> None:
     cell(PROGRAM)
     one = cell(f"%sim_magic {together}")

@@ -44,7 +44,7 @@ def test_the_log_has_the_plateaus_and_adds_up_until_it_is_cleared(cell: Cell) ->
 
 
 @pytest.mark.parametrize(
-    ("words", "pictures", "status"),
+    "words, pictures, status",
     [
         ("-R", 1, True),
         ("-OHRA", 2, False),
@@ -60,7 +60,7 @@ def test_what_is_hidden_is_not_there(words: str, pictures: int, status: bool, ce
 
 
 @pytest.mark.parametrize(
-    ("magic", "text", "out"),
+    "magic, text, out",
     [
         ("sim_magic", "print('tank_drive' in dir())", "False\n"),
         ("sim_magic_imports", "print('MoveTank' in dir(), 'tank_drive' in dir())", "True False\n"),
@@ -116,7 +116,7 @@ MISTAKES = [
 ]
 
 
-@pytest.mark.parametrize(("words", "told"), MISTAKES, ids=[words for words, _ in MISTAKES])
+@pytest.mark.parametrize("words, told", MISTAKES, ids=[words for words, _ in MISTAKES])
 def test_a_mistake_is_one_line_and_changes_nothing(words: str, told: str, cell: Cell) -> None:
     cell(program("-b Grey_bands -x 300 -WH"))
     before = cell("roboSim.state").result
@@ -197,7 +197,7 @@ OLD_SWITCHES = [
 """Switches of the magics that read the log, as courses know them, and the size of what comes of them."""
 
 
-@pytest.mark.parametrize(("line", "size"), OLD_SWITCHES, ids=[line for line, _ in OLD_SWITCHES])
+@pytest.mark.parametrize("line, size", OLD_SWITCHES, ids=[line for line, _ in OLD_SWITCHES])
 def test_the_old_switches_of_a_log_are_there(line: str, size: object, cell: Cell) -> None:
     cell("from tuisim.notebook.lab import Lab\nother = Lab()")
     cell(program("-WRH", "print('Colour: 1')\nprint('image_data both')"))

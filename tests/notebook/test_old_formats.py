@@ -30,7 +30,7 @@ PARTS = [
 ]
 
 
-@pytest.mark.parametrize(("mode", "part"), PARTS, ids=[mode for mode, _ in PARTS])
+@pytest.mark.parametrize("mode, part", PARTS, ids=[mode for mode, _ in PARTS])
 def test_a_mode_takes_its_part_of_the_numbers(mode: str, part: str) -> None:
     assert process_raw_image_data(PIXELS, mode) == part
     assert process_raw_image_data(PIXELS, mode=mode, to_str=False) == part.split(",")
@@ -53,7 +53,7 @@ def array(side: str, time_ns: int = 0, grey: int = 128) -> LoggedArray:
 
 
 @pytest.mark.parametrize(
-    ("time_ns", "clock"),
+    "time_ns, clock",
     [(0, "0"), (33_333_333, "0"), (33_333_334, "1"), (500_000_000, "15"), (1_233_333_334, "37")],
 )
 def test_a_clock_counts_the_old_ticks(time_ns: int, clock: str) -> None:
@@ -90,7 +90,7 @@ def test_pairs_are_what_was_logged_of_both_at_one_time() -> None:
         image_pair([first, second], 2)
 
 
-@pytest.mark.parametrize(("threshold", "white"), [(127, 395), (128, 0), (0, 395), (255, 0)])
+@pytest.mark.parametrize("threshold, white", [(127, 395), (128, 0), (0, 395), (255, 0)])
 def test_a_picture_is_white_above_the_threshold(threshold: int, white: int) -> None:
     picture = bw_picture([array("left")], threshold=threshold)
     assert picture.mode == "1"
@@ -212,7 +212,7 @@ MOVES = [
 
 
 @pytest.mark.parametrize(
-    ("profile", "move", "parts"), MOVES, ids=[f"{move[0]}-{at}" for at, move in enumerate(MOVES)]
+    "profile, move, parts", MOVES, ids=[f"{move[0]}-{at}" for at, move in enumerate(MOVES)]
 )
 def test_a_wheel_holds_what_was_written_to_it(
     profile: str, move: str, parts: dict[str, Any], cell: Cell

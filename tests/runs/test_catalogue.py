@@ -14,6 +14,7 @@ from types import SimpleNamespace
 
 import pytest
 
+from tests.cases import cases
 from tests.runs.run_recorder import PROGRAM, Recorder
 from tuisim.core.spec import RunSpec
 from tuisim.errors import LogError
@@ -72,7 +73,7 @@ HARM: dict[str, Callable[[Path], object]] = {
 }
 
 
-@pytest.mark.parametrize("harm", HARM.values(), ids=HARM)
+@cases("harm", HARM)
 def test_catalogue_is_made_again_from_the_folders(
     record: Callable[..., Recorder], spec: RunSpec, store: RunStore, harm: Callable[[Path], object]
 ) -> None:
@@ -124,7 +125,7 @@ def test_runs_are_listed_and_removed_also_where_no_catalogue_can_be_written(
     assert store.runs() == before[1:]
 
 
-@pytest.mark.parametrize("harm", HARM.values(), ids=HARM)
+@cases("harm", HARM)
 def test_harm_to_the_catalogue_does_not_stop_a_run(
     store: RunStore, spec: RunSpec, harm: Callable[[Path], object]
 ) -> None:

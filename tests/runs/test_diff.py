@@ -25,7 +25,7 @@ def test_the_difference_of_two_runs_is_told() -> None:
 
 
 @pytest.mark.parametrize(
-    ("field", "step", "at_s"),
+    "field, step, at_s",
     [
         ("x_mm", 0.3, 0.4),
         ("heading_deg", -0.3, 0.4),
@@ -48,7 +48,7 @@ def test_a_full_turn_is_no_parting() -> None:
 
 
 @pytest.mark.parametrize(
-    ("until", "prefix", "row"),
+    "until, prefix, row",
     [(None, False, 2), (None, True, 2), (99, False, None), (100, False, None), (101, False, 2)],
 )
 def test_output_is_compared_up_to_a_tick(until: int | None, prefix: bool, row: int | None) -> None:

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.cases import cases
 from tests.running import PATIENCE_S, Start
 from tuisim.config.build import build_run_spec
 from tuisim.config.options import Settings
@@ -96,7 +97,7 @@ sum(range(10**12))
 }
 
 
-@pytest.mark.parametrize("text", FALSIFIES.values(), ids=FALSIFIES)
+@cases("text", FALSIFIES)
 def test_a_falsified_run_ends_as_falsified(start: Start, text: str) -> None:
     handle = start(text)
     ended = handle.wait(PATIENCE_S)

@@ -88,7 +88,7 @@ def _replace(path: Path, begin: int, data: bytes) -> None:
 
 
 @pytest.mark.parametrize(
-    ("begin", "data", "complaint"),
+    "begin, data, complaint",
     [
         (0, b"TUISIMTL", "not a tuisim recording"),
         (8, b"\x09", "format version 9"),

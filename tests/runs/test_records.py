@@ -107,7 +107,7 @@ def test_rows_that_are_not_complete_are_left_out(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "stream", "shown"),
+    "text, stream, shown",
     [
         ("hi", Stream.SPEECH, "says: hi"),
         ("[beep]", Stream.SPEECH, "[beep]"),

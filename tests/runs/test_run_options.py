@@ -6,6 +6,7 @@ import json
 
 import pytest
 
+from tests.cases import cases
 from tuisim.protocol import Answer, SetButtons, SetNoise, SetPose, UserAction
 from tuisim.runs.run_options import RunOptions
 
@@ -17,20 +18,15 @@ ACTIONS = (
 )
 
 
-@pytest.mark.parametrize(
+@cases(
     "options",
-    [
-        pytest.param(RunOptions(), id="default"),
-        pytest.param(RunOptions(live=True, speed=0.25, start_paused=True), id="live"),
-        pytest.param(
-            RunOptions(answers=("yes", ""), asks_user=True, time_waits=True, replies=True),
-            id="answers",
-        ),
-        pytest.param(RunOptions(actions=ACTIONS), id="actions"),
-        pytest.param(
-            RunOptions(breaks=("12 if x > 3",), trace_from_tick=7, hold_at=(7, 2)), id="debugged"
-        ),
-    ],
+    {
+        "default": RunOptions(),
+        "live": RunOptions(live=True, speed=0.25, start_paused=True),
+        "answers": RunOptions(answers=("yes", ""), asks_user=True, time_waits=True, replies=True),
+        "actions": RunOptions(actions=ACTIONS),
+        "debugged": RunOptions(breaks=("12 if x > 3",), trace_from_tick=7, hold_at=(7, 2)),
+    },
 )
 def test_options_are_the_same_after_a_file(options: RunOptions) -> None:
     assert RunOptions.from_plain(json.loads(json.dumps(options.to_plain()))) == options

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import pytest
-
+from tests.cases import cases
 from tuisim.runs.records import OutputRow, Stream
 from tuisim.runs.samples import Sample, parse_sample, samples_of
 
@@ -52,12 +51,12 @@ TEXTS = {
 }
 
 
-@pytest.mark.parametrize(("text", "expected"), SAMPLES.values(), ids=SAMPLES)
+@cases("text, expected", SAMPLES)
 def test_line_is_a_sample(text: str, expected: tuple[str, float, float | None]) -> None:
     assert parse_sample(text) == expected
 
 
-@pytest.mark.parametrize("text", TEXTS.values(), ids=TEXTS)
+@cases("text", TEXTS)
 def test_line_is_only_text(text: str) -> None:
     assert parse_sample(text) is None
 

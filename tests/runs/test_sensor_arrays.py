@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from tests.cases import cases
 from tuisim.core.field import Field
 from tuisim.core.sensors import mounted
 from tuisim.core.spec import GyroSpec, NoiseSpec, Obstacle, RobotSpec, RunSpec, UltrasonicSpec
@@ -48,7 +49,7 @@ def places(count: int) -> np.ndarray:
     return records
 
 
-@pytest.mark.parametrize("robot", ROBOTS.values(), ids=ROBOTS)
+@cases("robot", ROBOTS)
 @pytest.mark.parametrize("walls", [True, False], ids=["walls", "open"])
 def test_arrays_are_the_readings_to_the_bit(
     robot: RobotSpec, walls: bool, spec: RunSpec, field: Field

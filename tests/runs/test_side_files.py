@@ -65,7 +65,7 @@ def test_state_of_no_file(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("one", "other", "same"),
+    "one, other, same",
     [
         (MISSING, MISSING, True),
         (MISSING, FileRead("a", there=True), False),

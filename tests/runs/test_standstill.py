@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import pytest
 
+from tests.cases import cases
 from tests.core.motors import commanded
 from tests.runs.run_recorder import Recorder
 from tuisim.core.geometry import Pose
@@ -90,7 +91,7 @@ SAID: dict[str, tuple[RunSpec, Moves, str]] = {
 }
 
 
-@pytest.mark.parametrize(("spec", "moves", "said"), SAID.values(), ids=SAID)
+@cases("spec, moves, said", SAID)
 def test_what_is_said_of_a_run(record: Record, spec: RunSpec, moves: Moves, said: str) -> None:
     assert words(record, spec, moves) == said
 

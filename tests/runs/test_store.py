@@ -17,6 +17,7 @@ from typing import Any
 
 import pytest
 
+from tests.cases import cases
 from tests.running import Start
 from tests.runs.run_recorder import PROGRAM, Recorder
 from tuisim.config.folders import home_folder
@@ -315,7 +316,7 @@ DAMAGED = {
 }
 
 
-@pytest.mark.parametrize("content", DAMAGED.values(), ids=DAMAGED)
+@cases("content", DAMAGED)
 def test_damaged_run_file_is_named_and_does_not_hide_the_others(
     logged: StoredRun, store: RunStore, spec: RunSpec, content: bytes
 ) -> None:

@@ -297,7 +297,7 @@ def test_runs_that_are_over_keep_no_files_open(
     assert len(os.listdir("/proc/self/fd")) == before
 
 
-@pytest.mark.parametrize(("name", "rows", "ticks"), [(TELEMETRY_FILE, 1, 0), (OUTPUT_FILE, 0, 11)])
+@pytest.mark.parametrize("name, rows, ticks", [(TELEMETRY_FILE, 1, 0), (OUTPUT_FILE, 0, 11)])
 def test_of_a_run_with_a_damaged_recording_the_other_one_is_read(
     name: str,
     rows: int,
@@ -317,7 +317,7 @@ def test_of_a_run_with_a_damaged_recording_the_other_one_is_read(
     assert (len(run.output.all_rows()), run.telemetry.count) == (rows, ticks)
 
 
-@pytest.mark.parametrize(("time_ns", "most"), [(0, 5), (2_000_000_000, 25)])
+@pytest.mark.parametrize("time_ns, most", [(0, 5), (2_000_000_000, 25)])
 def test_a_flood_of_short_rows_is_refused(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, time_ns: int, most: int
 ) -> None:
@@ -491,7 +491,7 @@ def test_output_that_a_program_changes_later_is_damage_and_no_error(tmp_path: Pa
 
 
 @pytest.mark.parametrize(
-    ("mode", "is_damage"), [(0o600, False), (0o000, True)], ids=["by the machine", "by its program"]
+    "mode, is_damage", [(0o600, False), (0o000, True)], ids=["by the machine", "by its program"]
 )
 def test_a_recording_that_may_not_be_read(
     mode: int, is_damage: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.cases import cases
 from tests.conftest import Command
 from tests.running import Run, over
 from tuisim.config.build import build_run_spec
@@ -93,7 +94,7 @@ TOLD = {
 }
 
 
-@pytest.mark.parametrize(("text", "told"), TOLD.values(), ids=TOLD)
+@cases("text, told", TOLD)
 def test_an_address_stands_for_one_object(run: Run, text: str, told: str) -> None:
     lines = "\n".join(run(text, prelude="none").lines)
     names = [f"<object object at {0x7F0000000010 + 16 * n:#x}>" for n in range(3)]

@@ -12,6 +12,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.cases import cases
 from tests.running import PATIENCE_S, Start, until
 from tuisim.core.tick_record import TICK_RECORD
 from tuisim.protocol import End, Ended, SetPose
@@ -96,12 +97,12 @@ time.sleep(60)
 
 
 @pytest.mark.quick_cases("C call")
-@pytest.mark.parametrize(
+@cases(
     "text",
-    [
-        pytest.param("while True: print('A: 1')", id="python"),
-        pytest.param("print('A: 1')\nsum(range(10**12))", id="C call"),
-    ],
+    {
+        "python": "while True: print('A: 1')",
+        "C call": "print('A: 1')\nsum(range(10**12))",
+    },
 )
 def test_child_dies_with_its_host(text: str) -> None:
     command = [sys.executable, "-c", HOST, text]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from tests.cases import cases
 from tests.running import PATIENCE_S, Run, Start, over, until
 
 ENDLESS = "    while True: time.sleep(1)\n"
@@ -18,13 +19,13 @@ LATE = {
 }
 
 
-@pytest.mark.parametrize("text", LATE.values(), ids=LATE)
+@cases("text", LATE)
 def test_a_limit_in_what_python_calls_at_the_end_is_one(run: Run, text: str) -> None:
     done = run(text, prelude="none", time_limit_s=2.0)
     assert (done.ended.end, done.lines, done.errors) == ("time_limit", [], [])
 
 
-@pytest.mark.parametrize("text", LATE.values(), ids=LATE)
+@cases("text", LATE)
 def test_a_stop_in_what_python_calls_at_the_end_is_one(start: Start, text: str) -> None:
     handle = start(text, prelude="none", live=True)
     until(handle, lambda: handle.telemetry.count > 2)
@@ -64,7 +65,7 @@ OWN_SIGNALS = {
 }
 
 
-@pytest.mark.parametrize(("text", "end"), OWN_SIGNALS.values(), ids=OWN_SIGNALS)
+@cases("text, end", OWN_SIGNALS)
 def test_signals_are_the_programs(start: Start, text: str, end: str) -> None:
     handle = start(text, prelude="none", live=True)
     until(handle, lambda: handle.telemetry.count > 2 or handle.ended is not None)
@@ -87,7 +88,7 @@ HARD_TO_STOP = {
 
 
 @pytest.mark.slow_cases("C call")
-@pytest.mark.parametrize("text", HARD_TO_STOP.values(), ids=HARD_TO_STOP)
+@cases("text", HARD_TO_STOP)
 def test_stop_always_works_and_keeps_what_was_printed(start: Start, text: str) -> None:
     run = start("print('Before: 1')\n" + text, live=True)
     until(run, lambda: run.output.length > 0)

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.cases import cases
 from tests.running import Run
 
 ENDS = {
@@ -72,7 +73,7 @@ ENDS = {
     "spin",
     "a line without an end",
 )
-@pytest.mark.parametrize(("text", "end", "exit_code"), ENDS.values(), ids=ENDS)
+@cases("text, end, exit_code", ENDS)
 @pytest.mark.usefixtures("real_start")
 def test_end_of_a_program(run: Run, text: str, end: str, exit_code: int) -> None:
     done = run(text, time_limit_s=1.0)
@@ -90,7 +91,7 @@ HINTS = {
 }
 
 
-@pytest.mark.parametrize(("name", "how"), HINTS.items(), ids=HINTS)
+@pytest.mark.parametrize("name, how", HINTS.items(), ids=HINTS)
 def test_a_name_of_the_prelude_that_is_missing_names_the_prelude(
     run: Run, name: str, how: str
 ) -> None:
@@ -140,7 +141,7 @@ LIBRARY_ERRORS = {
 }
 
 
-@pytest.mark.parametrize(("text", "words"), LIBRARY_ERRORS.values(), ids=LIBRARY_ERRORS)
+@cases("text, words", LIBRARY_ERRORS)
 def test_misuse_raises_the_librarys_own_error(run: Run, text: str, words: str) -> None:
     done = run(text)
     assert done.ended.end == "raised"
@@ -216,7 +217,7 @@ SUMMARIES = {
 }
 
 
-@pytest.mark.parametrize(("text", "summary"), SUMMARIES.values(), ids=SUMMARIES)
+@cases("text, summary", SUMMARIES)
 def test_summary_of_an_error_is_one_line(run: Run, text: str, summary: str) -> None:
     assert run(text).ended.summary == summary
 
@@ -247,7 +248,7 @@ print('end')
 """
 
 
-@pytest.mark.parametrize(("profile", "ticks"), [("ev3", 3), ("lego-micropython", 1)])
+@pytest.mark.parametrize("profile, ticks", [("ev3", 3), ("lego-micropython", 1)])
 def test_a_program_of_micropython_ends_with_its_main_thread(
     run: Run, profile: str, ticks: int
 ) -> None:

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.cases import cases
 from tests.running import as_python, over
 from tests.runtime import python_ends as ends
 from tests.runtime import python_errors as errors
@@ -69,7 +70,7 @@ def same_for_all(text: str, folder: Path) -> str:
     "print-objects*",
     "print-hexes",
 )
-@pytest.mark.parametrize("text", PROGRAMS.values(), ids=PROGRAMS)
+@cases("text", PROGRAMS)
 def test_a_program_prints_and_ends_as_with_python_itself(text: str, tmp_path: Path) -> None:
     theirs, ours = tmp_path / "theirs", tmp_path / "ours"
     for folder in (theirs, ours):

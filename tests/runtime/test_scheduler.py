@@ -25,7 +25,7 @@ def test_the_limit_of_threads_is_named(run: Run) -> None:
 
 
 @pytest.mark.parametrize(
-    ("last", "end", "exit_code"), [("sys.exit(3)", "finished", 3), ("1 / 0", "raised", 1)]
+    "last, end, exit_code", [("sys.exit(3)", "finished", 3), ("1 / 0", "raised", 1)]
 )
 def test_other_threads_go_on_after_an_error_or_exit_of_the_main_thread(
     run: Run, last: str, end: str, exit_code: int

@@ -7,6 +7,7 @@ from typing import Any
 
 import pytest
 
+from tests.cases import cases
 from tests.running import Run, Start, over, until_tick
 from tuisim.protocol import (
     Answer,
@@ -88,7 +89,7 @@ SCRIPTS: dict[str, tuple[str, tuple[Message, ...]]] = {
 
 
 @pytest.mark.quick_cases("drive")
-@pytest.mark.parametrize(("text", "actions"), SCRIPTS.values(), ids=SCRIPTS)
+@cases("text, actions", SCRIPTS)
 def test_what_a_user_did_can_be_done_again(
     start: Start, run: Run, text: str, actions: tuple[Message, ...]
 ) -> None:

@@ -7,8 +7,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
-import pytest
-
+from tests.cases import cases
 from tests.running import Done, Run, Start, over, until
 from tuisim.protocol import Answer, Message, Reply, UserAction
 from tuisim.runs.handle import RunHandle
@@ -80,19 +79,16 @@ def test_a_reply_may_be_larger_than_the_pipe(start: Start) -> None:
     assert over(handle).lines == ["300000"]
 
 
-@pytest.mark.parametrize(
-    ("text", "options"),
-    [
-        pytest.param(GLUE + "pyState()\nprint('never')", {"replies": True}, id="message"),
-        pytest.param(
-            "input()\nprint('never')", {"asks_user": True, "time_waits": True}, id="input"
-        ),
-        pytest.param(
+@cases(
+    "text, options",
+    {
+        "message": (GLUE + "pyState()\nprint('never')", {"replies": True}),
+        "input": ("input()\nprint('never')", {"asks_user": True, "time_waits": True}),
+        "thread": (
             f"{GLUE}import threading\nthread = threading.Thread(target=pyState)\nthread.start()\nthread.join()\n",
             {"replies": True},
-            id="thread",
         ),
-    ],
+    },
 )
 def test_a_stop_ends_the_waiting(text: str, options: dict[str, Any], start: Start) -> None:
     handle = start(text, **options)

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import pytest
-
+from tests.cases import cases
 from tests.running import Run
 
 OWN_STACK = {
@@ -30,7 +29,7 @@ OWN_STACK = {
 }
 
 
-@pytest.mark.parametrize(("text", "told"), OWN_STACK.values(), ids=OWN_STACK)
+@cases("text, told", OWN_STACK)
 def test_a_program_sees_its_own_frames_only(run: Run, text: str, told: list[str]) -> None:
     done = run(
         f"import faulthandler, inspect, time, traceback\ndef f(): {text}\nf()", prelude="none"

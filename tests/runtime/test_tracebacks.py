@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.cases import cases
 from tests.conftest import Command
 from tests.running import Run
 
@@ -34,7 +35,7 @@ ERRORS = {
 }
 
 
-@pytest.mark.parametrize(("text", "summary"), ERRORS.values(), ids=ERRORS)
+@cases("text, summary", ERRORS)
 def test_an_error_that_is_hard_to_tell_is_told(run: Run, text: str, summary: str) -> None:
     done = run(text, prelude="none")
     assert (done.ended.end, done.ended.summary) == ("raised", summary)
@@ -65,7 +66,7 @@ EXITS = {
 }
 
 
-@pytest.mark.parametrize(("text", "code", "errors"), EXITS.values(), ids=EXITS)
+@cases("text, code, errors", EXITS)
 def test_a_program_that_ends_itself(run: Run, text: str, code: int, errors: list[str]) -> None:
     done = run(text, prelude="none")
     assert (done.ended.end, done.ended.exit_code, done.errors, done.lines) == (
@@ -118,7 +119,7 @@ CRASHES = {
 }
 
 
-@pytest.mark.parametrize(("signal", "text"), CRASHES.items(), ids=CRASHES)
+@pytest.mark.parametrize("signal, text", CRASHES.items(), ids=CRASHES)
 @pytest.mark.parametrize(
     "before", ["", "import faulthandler; faulthandler.enable(); "], ids=["plain", "enabled"]
 )

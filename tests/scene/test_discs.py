@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from tests.cases import cases
 from tuisim.config.program_robot.thresholds import AIM, ProgramThreshold
 from tuisim.core.sensors.color import ColorReading, LightRead
 from tuisim.scene.discs import RIM_RGB, RINGS, DiscFace, draw_disc, shrunk
@@ -17,15 +18,15 @@ FACE = DiscFace(
 )
 
 
-@pytest.mark.parametrize(
-    ("width", "height", "tall"),
-    [
-        pytest.param(20, 20, 1.0, id="square"),
-        pytest.param(13, 12, 1.0, id="half blocks at 80x24"),
-        pytest.param(26, 18, 4 / 3, id="sextants"),
-        pytest.param(26, 48, 0.5, id="wide pixels"),
-        pytest.param(200, 300, 1.0, id="pixels"),
-    ],
+@cases(
+    "width, height, tall",
+    {
+        "square": (20, 20, 1.0),
+        "half blocks at 80x24": (13, 12, 1.0),
+        "sextants": (26, 18, 4 / 3),
+        "wide pixels": (26, 48, 0.5),
+        "pixels": (200, 300, 1.0),
+    },
 )
 @pytest.mark.parametrize("grey", [255, 128, 0])
 def test_a_disc_is_whole_and_round_at_every_size(
@@ -80,7 +81,7 @@ def test_rings_are_means_from_the_inside() -> None:
 
 
 @pytest.mark.parametrize(
-    ("read", "most", "words"),
+    "read, most, words",
     [
         (LightRead.PERCENT, 255, "82.7 %"),
         (LightRead.REFLECTED, 255, "211 of 255"),

@@ -49,7 +49,7 @@ def test_a_mat_of_dots_or_signs_ends_where_a_cell_ends(size: tuple[int, int]) ->
 
 @pytest.mark.parametrize("width_mm", [4, 10, 20])
 @pytest.mark.parametrize(
-    ("ground", "ink"), [(255, 0), (0, 255), (211, 80)], ids=["black on white", "white", "grey"]
+    "ground, ink", [(255, 0), (0, 255), (211, 80)], ids=["black on white", "white", "grey"]
 )
 def test_a_thin_line_is_kept(width_mm: int, ground: int, ink: int) -> None:
     pixels = mat(ground)

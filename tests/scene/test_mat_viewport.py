@@ -6,18 +6,19 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from tests.cases import cases
 from tuisim.core.geometry import Pose
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
 from tuisim.scene.view import following, whole_field
 
 
-@pytest.mark.parametrize(
-    ("width", "height"),
-    [
-        pytest.param(76, 54, id="letterbox above and below"),
-        pytest.param(200, 40, id="letterbox at the sides"),
-        pytest.param(1, 2, id="one cell"),
-    ],
+@cases(
+    "width, height",
+    {
+        "letterbox above and below": (76, 54),
+        "letterbox at the sides": (200, 40),
+        "one cell": (1, 2),
+    },
 )
 def test_whole_field_is_inside(width: int, height: int) -> None:
     view = whole_field(width, height)

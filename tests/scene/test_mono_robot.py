@@ -6,6 +6,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
+from tests.cases import cases
 from tuisim.core.geometry import Pose
 from tuisim.core.outline import outline_of
 from tuisim.core.spec import RobotSpec
@@ -127,16 +128,16 @@ def test_a_line_shows_on_any_ground(ground: tuple[int, int, int], grey: bool) ->
     assert ground != (255, 255, 255) or shown.tolist() == [[255, 0, 0]]
 
 
-@pytest.mark.parametrize(
-    ("heading", "shown"),
-    [
-        pytest.param(0, ["O---->"], id="ahead"),
-        pytest.param(90, ["^", "|", "|", "O"], id="up"),
-        pytest.param(180, ["<----O"], id="back"),
-        pytest.param(-90, ["O", "|", "|", "v"], id="down"),
-        pytest.param(30, ["  ////", "O//"], id="ahead and up"),
-        pytest.param(135, ["\\\\", " \\\\\\", "   \\O"], id="back and up"),
-    ],
+@cases(
+    "heading, shown",
+    {
+        "ahead": (0, ["O---->"]),
+        "up": (90, ["^", "|", "|", "O"]),
+        "back": (180, ["<----O"]),
+        "down": (-90, ["O", "|", "|", "v"]),
+        "ahead and up": (30, ["  ////", "O//"]),
+        "back and up": (135, ["\\\\", " \\\\\\", "   \\O"]),
+    },
 )
 def test_a_pointer_of_signs_shows_the_heading(heading: float, shown: list[str]) -> None:
     view = whole_field(2 * COLS, 4 * ROWS, CellPoints(2, 4))

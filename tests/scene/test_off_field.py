@@ -11,7 +11,7 @@ from tuisim.scene.view import whole_field
 
 
 @pytest.mark.parametrize(
-    ("pose", "words"),
+    "pose, words",
     [
         (Pose(0.0, 1143.0, 0.0), ""),
         (Pose(-2133.4, 500.0, 0.0), "robot off the mat: 2133 mm to the left"),
@@ -23,7 +23,7 @@ def test_words(pose: Pose, words: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("pose", "width", "words"),
+    "pose, width, words",
     [
         (Pose(8825.0, 500.0, 0.0), 33, "robot off the mat: 6463 mm right"),
         (Pose(8825.0, 500.0, 0.0), 30, "off the mat: 6463 mm right"),

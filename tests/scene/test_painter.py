@@ -153,7 +153,7 @@ EVERYTHING = SceneState(
 
 
 @pytest.mark.parametrize(
-    ("view", "options", "checksum"),
+    "view, options, checksum",
     [
         (VIEW, {}, 69861790),
         (VIEW, {"for_file": True}, 2026224127),

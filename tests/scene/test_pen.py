@@ -65,7 +65,7 @@ def test_each_stretch_keeps_its_pen_and_a_wiped_trace_is_gone() -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "rgb"),
+    "name, rgb",
     [("orange", (255, 165, 0)), ("#0a0b0c", (10, 11, 12)), ("#zzzzzz", (255, 0, 0))],
 )
 def test_pen_colours(name: str, rgb: tuple[int, int, int]) -> None:

@@ -13,6 +13,7 @@ from textual.driver import Driver
 from textual.drivers.web_driver import WebDriver
 from textual.message import Message
 
+from tests.cases import cases
 from tuisim.app.terminal_app import TerminalApp
 from tuisim.terminal import kitty
 from tuisim.terminal.app import ActionAsked
@@ -28,7 +29,7 @@ CHOSEN = {
 }
 
 
-@pytest.mark.parametrize(("named", "chosen"), CHOSEN.values(), ids=CHOSEN)
+@cases("named, chosen", CHOSEN)
 def test_the_driver_suits_what_shows_the_app(
     named: str | None, chosen: type[Driver], monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -86,7 +87,7 @@ CODES = {
 }
 
 
-@pytest.mark.parametrize(("codes", "expected"), CODES.values(), ids=CODES)
+@cases("codes, expected", CODES)
 def test_the_page_gets_what_its_terminal_passes_on(
     codes: str, expected: str, driver: BrowserDriver, monkeypatch: pytest.MonkeyPatch
 ) -> None:

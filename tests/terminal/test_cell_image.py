@@ -89,7 +89,7 @@ def test_lines_reach_the_edges(name: str) -> None:
     assert light.any()
 
 
-@pytest.mark.parametrize(("char", "count"), [("⠁", 1), ("⣿", 8), ("⠀", 0)])
+@pytest.mark.parametrize("char, count", [("⠁", 1), ("⣿", 8), ("⠀", 0)])
 def test_braille_has_its_dots(char: str, count: int) -> None:
     light = pixels([cells(char)])[..., 0] > 128
     width, height = CELL_PX
@@ -153,7 +153,7 @@ ROWS: Sequence[tuple[str, list[str]]] = [
 ]
 
 
-@pytest.mark.parametrize(("row", "texts"), ROWS)
+@pytest.mark.parametrize("row, texts", ROWS)
 def test_svg_holds_text_as_text(row: str, texts: list[str]) -> None:
     svg = svg_of_cells([cells(row)], "a <title>")
     assert texts_of(svg) == texts

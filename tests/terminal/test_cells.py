@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from tests.cases import cases
 from tuisim.terminal.cells import changed_cells, changed_runs
 from tuisim.terminal.fitted_cells import Cells, all_cells, fit_cells
 from tuisim.terminal.glyphs import GLYPHS, glyph_set, half_block_of
@@ -96,15 +97,15 @@ def test_half_blocks_do_not_lose_a_line_of_one_point(cells: CellSet, at: int) ->
     assert fit_cells(picture, coarse, all_cells(1, 1)).tolist() == [0x808080_808080]
 
 
-@pytest.mark.parametrize(
-    ("changed", "runs"),
-    [
-        pytest.param([], [], id="nothing"),
-        pytest.param([4], [(0, 4, 1)], id="one cell"),
-        pytest.param([2, 5], [(0, 2, 4)], id="a gap of two is joined"),
-        pytest.param([2, 6], [(0, 2, 1), (0, 6, 1)], id="a gap of three is not"),
-        pytest.param([9, 10], [(0, 9, 1), (1, 0, 1)], id="rows are apart"),
-    ],
+@cases(
+    "changed, runs",
+    {
+        "nothing": ([], []),
+        "one cell": ([4], [(0, 4, 1)]),
+        "a gap of two is joined": ([2, 5], [(0, 2, 4)]),
+        "a gap of three is not": ([2, 6], [(0, 2, 1), (0, 6, 1)]),
+        "rows are apart": ([9, 10], [(0, 9, 1), (1, 0, 1)]),
+    },
 )
 def test_changed_runs(changed: list[int], runs: list[tuple[int, int, int]]) -> None:
     old = np.zeros((3, 10), np.int64)

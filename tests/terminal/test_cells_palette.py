@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from tests.cases import cases
 from tuisim.scene.robot import COLORED, GREY
 from tuisim.terminal.cells import (
     PALETTE_8,
@@ -69,16 +70,16 @@ def test_marker_and_body_differ_in_grey() -> None:
     assert area(GREY.marker, mode).mean() - area(GREY.body, mode).mean() > 100
 
 
-@pytest.mark.parametrize(
-    ("rgb", "depth", "index"),
-    [
-        pytest.param(0x000000, PALETTE_256, 16, id="black"),
-        pytest.param(0xFFFFFF, PALETTE_256, 231, id="white"),
-        pytest.param(0xD0D0D0, PALETTE_256, 252, id="a grey of the ramp"),
-        pytest.param(0x005FD7, PALETTE_256, 26, id="a colour of the cube"),
-        pytest.param(0xFF0000, PALETTE_16, 1, id="red of 16"),
-        pytest.param(0xFFFFFF, PALETTE_16, 15, id="white of 16"),
-    ],
+@cases(
+    "rgb, depth, index",
+    {
+        "black": (0x000000, PALETTE_256, 16),
+        "white": (0xFFFFFF, PALETTE_256, 231),
+        "a grey of the ramp": (0xD0D0D0, PALETTE_256, 252),
+        "a colour of the cube": (0x005FD7, PALETTE_256, 26),
+        "red of 16": (0xFF0000, PALETTE_16, 1),
+        "white of 16": (0xFFFFFF, PALETTE_16, 15),
+    },
 )
 def test_palette_numbers(rgb: int, depth: int, index: int) -> None:
     assert sgr_index(rgb, depth) == index

@@ -298,7 +298,7 @@ def test_ctrl_z_stops_the_app_and_it_goes_on_with_the_run_paused(
 
 @pytest.mark.quick_cases("a program while it is edited")
 @pytest.mark.parametrize(
-    ("places", "suspends"),
+    "places, suspends",
     [(((), ("b",), ("escape", "ctrl+p"), ("escape", "d", "escape")), True), ((("d", "x"),), False)],
     ids=[
         "world, dialog, palette and a program where nothing is typed",

@@ -18,6 +18,7 @@ from textual.app import App, ComposeResult
 from textual.geometry import Region
 from textual.strip import Strip
 
+from tests.cases import cases
 from tuisim.terminal.cell_view import CellStrip, LinesView, PixelView
 from tuisim.terminal.cells import MONO, PALETTE_8, PALETTE_16, PALETTE_256
 from tuisim.terminal.frame_buffer import FrameBuffer, TextMode
@@ -73,17 +74,17 @@ def shown(screen: pyte.Screen) -> list[list[tuple[object, ...]]]:
     return cells
 
 
-@pytest.mark.parametrize(
-    ("before", "after", "codes"),
-    [
-        pytest.param("aaaa", "aaaa", "", id="nothing"),
-        pytest.param("aaaa", "aaba", "\x1b[1;3Hb", id="one"),
-        pytest.param("aaaaaa", "baaaab", "\x1b[1;1Hbaaaab", id="a short way is written"),
-        pytest.param("aaaaaaaaaa", "baaaaaaaab", "\x1b[1;1Hb\x1b[8Cb", id="a long way is jumped"),
-        pytest.param("中文", "中国", "\x1b[1;3H国", id="wide"),
-        pytest.param("中文", "ab文", "\x1b[1;1Hab", id="wide to narrow"),
-        pytest.param("ab文", "中文", "\x1b[1;1H中", id="narrow to wide"),
-    ],
+@cases(
+    "before, after, codes",
+    {
+        "nothing": ("aaaa", "aaaa", ""),
+        "one": ("aaaa", "aaba", "\x1b[1;3Hb"),
+        "a short way is written": ("aaaaaa", "baaaab", "\x1b[1;1Hbaaaab"),
+        "a long way is jumped": ("aaaaaaaaaa", "baaaaaaaab", "\x1b[1;1Hb\x1b[8Cb"),
+        "wide": ("中文", "中国", "\x1b[1;3H国"),
+        "wide to narrow": ("中文", "ab文", "\x1b[1;1Hab"),
+        "narrow to wide": ("ab文", "中文", "\x1b[1;1H中"),
+    },
 )
 def test_only_what_differs_is_sent(before: str, after: str, codes: str) -> None:
     frame_buffer = FrameBuffer()
@@ -92,39 +93,26 @@ def test_only_what_differs_is_sent(before: str, after: str, codes: str) -> None:
     assert sent(frame_buffer, rows([text(after)])) == codes
 
 
-@pytest.mark.parametrize(
-    ("strip", "mode", "codes"),
-    [
-        pytest.param(
-            CellStrip([0xFF0000_FF0000] * 3), FULL, "\x1b[48;2;255;0;0m   \x1b[0m", id="even cells"
-        ),
-        pytest.param(
+@cases(
+    "strip, mode, codes",
+    {
+        "even cells": (CellStrip([0xFF0000_FF0000] * 3), FULL, "\x1b[48;2;255;0;0m   \x1b[0m"),
+        "half blocks": (
             CellStrip([0xFF0000_0000FF] * 2),
             FULL,
             "\x1b[38;2;255;0;0;48;2;0;0;255m▀▀\x1b[0m",
-            id="half blocks",
         ),
-        pytest.param(
-            CellStrip([0xFF0000_0000FF]),
-            MODE_256,
-            "\x1b[38;5;196;48;5;21m▀\x1b[0m",
-            id="256 colours",
-        ),
-        pytest.param(CellStrip([0xFF0000_0000FF]), MODE_16, "\x1b[31;44m▀\x1b[0m", id="16 colours"),
-        pytest.param(
-            CellStrip([0xFF4646_C80000]), MODE_16, "\x1b[91;41m▀\x1b[0m", id="two reds of 16"
-        ),
-        pytest.param(CellStrip([0xFF4646_0000FF]), MODE_8, "\x1b[31;44m▀\x1b[0m", id="8 colours"),
-        pytest.param(
-            CellStrip([100 << 48 | 0xFFFFFF << 24]), PLAIN, f"{GLYPHS[100]}", id="no colours"
-        ),
-        pytest.param(
+        "256 colours": (CellStrip([0xFF0000_0000FF]), MODE_256, "\x1b[38;5;196;48;5;21m▀\x1b[0m"),
+        "16 colours": (CellStrip([0xFF0000_0000FF]), MODE_16, "\x1b[31;44m▀\x1b[0m"),
+        "two reds of 16": (CellStrip([0xFF4646_C80000]), MODE_16, "\x1b[91;41m▀\x1b[0m"),
+        "8 colours": (CellStrip([0xFF4646_0000FF]), MODE_8, "\x1b[31;44m▀\x1b[0m"),
+        "no colours": (CellStrip([100 << 48 | 0xFFFFFF << 24]), PLAIN, f"{GLYPHS[100]}"),
+        "dim of 8": (
             Strip([Segment("a", Style(color="#44505e", bgcolor="#10151c"))]),
             MODE_8,
             "\x1b[37;40ma\x1b[0m",
-            id="dim of 8",
         ),
-        pytest.param(
+        "a highlight without colours": (
             Strip(
                 [
                     Segment("a", Style(color="#ffffff", bgcolor="#2f4a63")),
@@ -133,22 +121,19 @@ def test_only_what_differs_is_sent(before: str, after: str, codes: str) -> None:
             ),
             PLAIN,
             "\x1b[7ma\x1b[0mb",
-            id="a highlight without colours",
         ),
-        pytest.param(Strip([Segment("╭─ 0° · ä 中 ▶")]), PLAIN, "+- 0  . a ?? >", id="ASCII"),
-        pytest.param(
+        "ASCII": (Strip([Segment("╭─ 0° · ä 中 ▶")]), PLAIN, "+- 0  . a ?? >"),
+        "blanks are alike": (
             Strip([Segment("a b", Style(bold=True)), Segment(" "), Segment("c", Style(bold=True))]),
             FULL,
             "\x1b[1ma b c\x1b[0m",
-            id="blanks are alike",
         ),
-        pytest.param(
+        "an attribute ends": (
             Strip([Segment("a", Style(bold=True)), Segment("b")]),
             MODE_256,
             "\x1b[1ma\x1b[0mb",
-            id="an attribute ends",
         ),
-    ],
+    },
 )
 def test_a_colour_is_written_where_it_changes(strip: Strip, mode: TextMode, codes: str) -> None:
     assert sent(FrameBuffer(), rows([strip]), mode) == f"\x1b[1;1H{codes}"

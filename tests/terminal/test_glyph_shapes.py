@@ -34,7 +34,7 @@ def painted(shapes: tuple[GlyphShape, ...] | None) -> set[tuple[int, int]]:
 
 
 @pytest.mark.parametrize(
-    ("char", "shapes"), SHAPES.items(), ids=[hex(ord(char[0])) + char for char in SHAPES]
+    "char, shapes", SHAPES.items(), ids=[hex(ord(char[0])) + char for char in SHAPES]
 )
 def test_shapes_of_a_character(char: str, shapes: tuple[GlyphShape, ...] | None) -> None:
     found = shapes_of(char, 8, 16)
@@ -45,7 +45,7 @@ def test_shapes_of_a_character(char: str, shapes: tuple[GlyphShape, ...] | None)
         assert found == shapes
 
 
-@pytest.mark.parametrize(("width", "height"), [(4, 8), (7, 15), (20, 41)])
+@pytest.mark.parametrize("width, height", [(4, 8), (7, 15), (20, 41)])
 @pytest.mark.parametrize("char", "┼╬╋")
 def test_lines_that_cross_reach_all_edges(char: str, width: int, height: int) -> None:
     found = painted(shapes_of(char, width, height))
@@ -65,7 +65,7 @@ def test_an_arc_ends_where_lines_of_the_next_cells_begin() -> None:
     assert (arc.points[0], arc.points[-1]) == ((3.5, 16.0), (8.0, 7.5))
 
 
-@pytest.mark.parametrize(("char", "count"), [("┄", 3), ("┈", 4), ("╌", 2)])
+@pytest.mark.parametrize("char, count", [("┄", 3), ("┈", 4), ("╌", 2)])
 def test_dashes_have_gaps(char: str, count: int) -> None:
     columns = sorted({x for x, _ in painted(shapes_of(char, 24, 24))})
     gaps = sum(after - before > 1 for before, after in pairwise(columns))

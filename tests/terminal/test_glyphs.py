@@ -7,6 +7,7 @@ import unicodedata
 import numpy as np
 import pytest
 
+from tests.cases import cases
 from tuisim.terminal.glyphs import GLYPHS, glyph_set
 from tuisim.terminal.picture_options import CellSet
 
@@ -18,31 +19,24 @@ def shown(cells: CellSet) -> dict[str, str]:
     return dict(zip((GLYPHS[number] for number in glyphs.numbers), points, strict=True))
 
 
-@pytest.mark.parametrize(
-    ("cells", "glyph", "points"),
-    [
-        pytest.param(CellSet.HALF, "▀", "#.", id="upper half"),
-        pytest.param(CellSet.QUADRANT, "▛", "###.", id="quadrants 1 2 3"),
-        pytest.param(CellSet.QUADRANT, "▚", "#..#", id="a diagonal"),
-        pytest.param(CellSet.SEXTANT, "\N{BLOCK SEXTANT-1}", "#.....", id="sextant 1"),
-        pytest.param(CellSet.SEXTANT, "\N{BLOCK SEXTANT-12346}", "####.#", id="sextants 12346"),
-        pytest.param(CellSet.SEXTANT, "▌", "#.#.#.", id="the left half, which is older"),
+@cases(
+    "cells, glyph, points",
+    {
+        "upper half": (CellSet.HALF, "▀", "#."),
+        "quadrants 1 2 3": (CellSet.QUADRANT, "▛", "###."),
+        "a diagonal": (CellSet.QUADRANT, "▚", "#..#"),
+        "sextant 1": (CellSet.SEXTANT, "\N{BLOCK SEXTANT-1}", "#....."),
+        "sextants 12346": (CellSet.SEXTANT, "\N{BLOCK SEXTANT-12346}", "####.#"),
+        "the left half, which is older": (CellSet.SEXTANT, "▌", "#.#.#."),
         # The names of octants are in The Unicode Standard 16.0, Symbols for Legacy Computing Supplement.
-        pytest.param(CellSet.OCTANT, "\U0001cd02", "###.....", id="octants 123"),
-        pytest.param(CellSet.OCTANT, "\U0001cde4", "#.######", id="octants 1345678"),
-        pytest.param(
-            CellSet.OCTANT,
-            "\U0001cea8",
-            "#.......",
-            id="octant 1, left half upper one quarter block",
-        ),
-        pytest.param(
-            CellSet.OCTANT, "\U0001fb82", "##......", id="octants 12, upper one quarter block"
-        ),
-        pytest.param(CellSet.OCTANT, "▙", "#.#.####", id="a quadrant"),
-        pytest.param(CellSet.BRAILLE, "\N{BRAILLE PATTERN DOTS-1}", "#.......", id="dot 1"),
-        pytest.param(CellSet.BRAILLE, "\N{BRAILLE PATTERN DOTS-478}", ".#....##", id="dots 478"),
-    ],
+        "octants 123": (CellSet.OCTANT, "\U0001cd02", "###....."),
+        "octants 1345678": (CellSet.OCTANT, "\U0001cde4", "#.######"),
+        "octant 1, left half upper one quarter block": (CellSet.OCTANT, "\U0001cea8", "#......."),
+        "octants 12, upper one quarter block": (CellSet.OCTANT, "\U0001fb82", "##......"),
+        "a quadrant": (CellSet.OCTANT, "▙", "#.#.####"),
+        "dot 1": (CellSet.BRAILLE, "\N{BRAILLE PATTERN DOTS-1}", "#......."),
+        "dots 478": (CellSet.BRAILLE, "\N{BRAILLE PATTERN DOTS-478}", ".#....##"),
+    },
 )
 def test_the_points_of_a_glyph(cells: CellSet, glyph: str, points: str) -> None:
     assert shown(cells)[glyph] == points

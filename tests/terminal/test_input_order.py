@@ -64,7 +64,7 @@ BURSTS = {
 }
 
 
-@pytest.mark.parametrize(("keys", "typed"), BURSTS.values(), ids=list(BURSTS))
+@pytest.mark.parametrize("keys, typed", BURSTS.values(), ids=list(BURSTS))
 async def test_keys_of_a_burst_keep_their_order(keys: str, typed: str) -> None:
     app = _App()
     async with app.run_test() as pilot:

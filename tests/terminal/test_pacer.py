@@ -7,6 +7,7 @@ from math import inf
 
 import pytest
 
+from tests.cases import cases
 from tuisim.terminal.pacer import MAX_ON_THE_WAY, PAGE_QUEUED_S, PATIENCE_S, PROOF_S, Pacer
 
 TICK_S = 0.005
@@ -65,17 +66,17 @@ class Line:
         return drawn
 
 
-@pytest.mark.parametrize(
-    ("bytes_s", "round_trip_s", "least", "most"),
-    [
-        pytest.param(inf, 0.002, 19, 21, id="at once"),
-        pytest.param(inf, 0.070, 19, 21, id="a little too late for the next frame"),
+@cases(
+    "bytes_s, round_trip_s, least, most",
+    {
+        "at once": (inf, 0.002, 19, 21),
+        "a little too late for the next frame": (inf, 0.070, 19, 21),
         # Without more than one frame on the way there would be 8.
-        pytest.param(inf, 0.120, 15, 21, id="a long way"),
-        pytest.param(inf, 0.400, 6, 9, id="a very long way"),
-        pytest.param(16_000, 0.150, 10, 16, id="128 kbit/s"),
-        pytest.param(2_000, 0.150, 1, 2, id="16 kbit/s"),
-    ],
+        "a long way": (inf, 0.120, 15, 21),
+        "a very long way": (inf, 0.400, 6, 9),
+        "128 kbit/s": (16_000, 0.150, 10, 16),
+        "16 kbit/s": (2_000, 0.150, 1, 2),
+    },
 )
 def test_frames_a_second(bytes_s: float, round_trip_s: float, least: int, most: int) -> None:
     line = Line(bytes_s, round_trip_s)
@@ -192,16 +193,16 @@ def test_an_answer_to_nothing_is_ignored() -> None:
     assert pacer.ready()
 
 
-@pytest.mark.parametrize(
-    ("line", "slow"),
-    [
-        pytest.param(Line(), False, id="local"),
-        pytest.param(Line(1e6, 0.150), False, id="quick but far"),
-        pytest.param(Line(10_000), True, id="a frame takes 0.1 s"),
-        pytest.param(Line(6_000, 0.150), True, id="slow and far"),
-        pytest.param(Line(10_000, most_queued_s=PAGE_QUEUED_S), False, id="a page that is busy"),
-        pytest.param(Line(1_500, most_queued_s=PAGE_QUEUED_S), True, id="a page on a slow link"),
-    ],
+@cases(
+    "line, slow",
+    {
+        "local": (Line(), False),
+        "quick but far": (Line(1e6, 0.150), False),
+        "a frame takes 0.1 s": (Line(10_000), True),
+        "slow and far": (Line(6_000, 0.150), True),
+        "a page that is busy": (Line(10_000, most_queued_s=PAGE_QUEUED_S), False),
+        "a page on a slow link": (Line(1_500, most_queued_s=PAGE_QUEUED_S), True),
+    },
 )
 def test_fine_frames_are_for_quick_links(line: Line, slow: bool) -> None:
     line.drive(3.0)

@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
+from tests.cases import cases
 from tests.terminal.decoder import PixelTerminal
 from tuisim.terminal import kitty, sixel
 from tuisim.terminal.picture import Graphics, Rectangle, TilePicture, rectangles
@@ -125,7 +126,7 @@ KEPT = {
 
 
 @pytest.mark.parametrize("in_tmux", [False, True], ids=["", "tmux"])
-@pytest.mark.parametrize(("draw", "expected"), KEPT.values(), ids=KEPT)
+@cases("draw, expected", KEPT)
 def test_kitty_keeps_no_images_that_are_not_seen(
     draw: Callable[[PixelTerminal, TilePicture], None], expected: int, in_tmux: bool
 ) -> None:
@@ -170,7 +171,7 @@ def test_pictures_with_many_colors_are_sent_in_the_nearest() -> None:
 
 
 @pytest.mark.parametrize(
-    ("rows", "expected"),
+    "rows, expected",
     [
         (["....", "...."], []),
         ([".##.", ".##."], [(0, 1, 2, 3)]),

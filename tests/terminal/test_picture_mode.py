@@ -13,6 +13,7 @@ import pytest
 import tuisim
 from tests.app.app_help import LOGS, ready, settings
 from tests.app.wires import on_wire, until_quiet, wire_of
+from tests.cases import cases
 from tuisim.app.app import LabApp
 from tuisim.terminal import probe
 from tuisim.terminal.cells import MONO
@@ -34,22 +35,22 @@ def test_every_sign_of_the_app_has_one_in_ascii() -> None:
     assert not {char for char in lost if not char.isalpha()} - set("\u200b\ufeff")
 
 
-@pytest.mark.parametrize(
-    ("text", "plain"),
-    [
-        pytest.param("╭──╮│╰╯┼", "+--+|+++", id="frames"),
-        pytest.param("━┃═", "=#=", id="heavy frames"),
-        pytest.param("⠀⠁⣿", " .@", id="braille"),
-        pytest.param("90° 1 … 9 cut…", "90  1...9 c...", id="degrees and ellipses"),
-        pytest.param("é中✓", "e??v", id="letters"),
-    ],
+@cases(
+    "text, plain",
+    {
+        "frames": ("╭──╮│╰╯┼", "+--+|+++"),
+        "heavy frames": ("━┃═", "=#="),
+        "braille": ("⠀⠁⣿", " .@"),
+        "degrees and ellipses": ("90° 1 … 9 cut…", "90  1...9 c..."),
+        "letters": ("é中✓", "e??v"),
+    },
 )
 def test_each_sign_keeps_its_width(text: str, plain: str) -> None:
     assert as_ascii(text) == plain
 
 
 @pytest.mark.parametrize(
-    ("terminal", "colors"),
+    "terminal, colors",
     [
         ("dumb", "none"),
         ("", "none"),
@@ -72,15 +73,13 @@ def test_terminfo_knows_which_terminals_have_no_colours(terminal: str) -> None:
     assert done.stdout.strip() == str(terminal == "xterm-256color")
 
 
-@pytest.mark.parametrize(
-    ("environment", "cells"),
-    [
-        pytest.param({"TERM": "vt220", "LANG": "C.UTF-8"}, CellSet.BRAILLE, id="utf-8"),
-        pytest.param({"TERM": "vt220", "LANG": "C"}, CellSet.ASCII, id="ascii"),
-        pytest.param(
-            {"TERM": "linux", "LANG": "C.UTF-8"}, CellSet.ASCII, id="no braille in its font"
-        ),
-    ],
+@cases(
+    "environment, cells",
+    {
+        "utf-8": ({"TERM": "vt220", "LANG": "C.UTF-8"}, CellSet.BRAILLE),
+        "ascii": ({"TERM": "vt220", "LANG": "C"}, CellSet.ASCII),
+        "no braille in its font": ({"TERM": "linux", "LANG": "C.UTF-8"}, CellSet.ASCII),
+    },
 )
 def test_without_colours_no_blocks_are_taken(
     environment: dict[str, str], cells: CellSet, monkeypatch: pytest.MonkeyPatch
@@ -93,12 +92,12 @@ def test_without_colours_no_blocks_are_taken(
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    ("cells", "most"),
-    [
-        pytest.param(CellSet.ASCII, 0x7F, id="ascii"),
-        pytest.param(CellSet.BRAILLE, 0x28FF, id="dots"),
-    ],
+@cases(
+    "cells, most",
+    {
+        "ascii": (CellSet.ASCII, 0x7F),
+        "dots": (CellSet.BRAILLE, 0x28FF),
+    },
 )
 async def test_without_colours_nothing_but_text_is_sent(
     cells: CellSet, most: int, monkeypatch: pytest.MonkeyPatch
@@ -137,14 +136,14 @@ def _reversed_on(sent: str) -> list[str]:
 
 
 @pytest.mark.quick_cases("the cursor in a field")
-@pytest.mark.parametrize(
-    ("keys", "lit"),
-    [
-        pytest.param(["ctrl+p", "down"], "Step over: next line", id="an entry of the palette"),
-        pytest.param(["f10"], "textual-dark", id="a theme"),
+@cases(
+    "keys, lit",
+    {
+        "an entry of the palette": (["ctrl+p", "down"], "Step over: next line"),
+        "a theme": (["f10"], "textual-dark"),
         # The field is bright, and its cursor dark.
-        pytest.param(["o", "x", "y", "z", "left", "left"], "xz", id="the cursor in a field"),
-    ],
+        "the cursor in a field": (["o", "x", "y", "z", "left", "left"], "xz"),
+    },
 )
 async def test_without_colours_what_is_selected_is_seen(
     keys: list[str], lit: str, monkeypatch: pytest.MonkeyPatch

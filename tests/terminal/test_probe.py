@@ -10,6 +10,7 @@ from collections.abc import Mapping
 
 import pytest
 
+from tests.cases import cases
 from tests.running import PATIENCE_S
 from tuisim.terminal import probe
 from tuisim.terminal.picture_options import CellSet
@@ -18,26 +19,24 @@ from tuisim.terminal.probe import best_cells, cells_of, cells_without_asking
 ATTRIBUTES = b"\x1b[?62;4c"
 
 
-@pytest.mark.parametrize(
-    ("name", "octant_cols", "cells"),
-    [
-        pytest.param("kitty(0.42.1)", 1, CellSet.OCTANT, id="kitty"),
-        pytest.param("kitty(0.26.5)", 1, CellSet.SEXTANT, id="an older kitty"),
-        pytest.param("foot(1.22.0)", 1, CellSet.OCTANT, id="foot"),
-        pytest.param("foot(1.13.1)", 1, CellSet.SEXTANT, id="an older foot"),
-        pytest.param("ghostty 1.2.3", 1, CellSet.OCTANT, id="ghostty"),
-        pytest.param("WezTerm 20240203-110809-5046fc22", 1, CellSet.SEXTANT, id="WezTerm"),
-        pytest.param("WezTerm 20200101-1", 1, CellSet.QUADRANT, id="a very old WezTerm"),
-        pytest.param("VTE(7000)", 1, CellSet.SEXTANT, id="VTE"),
-        pytest.param("XTerm(379)", 1, CellSet.QUADRANT, id="xterm draws with its font"),
-        pytest.param(
-            "tmux 3.5a", 1, CellSet.QUADRANT, id="tmux that does not tell what is around it"
-        ),
-        pytest.param("kitty(0.42.1)", 0, CellSet.QUADRANT, id="octants are dropped on the way"),
-        pytest.param("kitty(0.42.1)", None, CellSet.QUADRANT, id="no position"),
-        pytest.param("kitty", 1, CellSet.QUADRANT, id="no version"),
-        pytest.param("", 1, CellSet.QUADRANT, id="no name"),
-    ],
+@cases(
+    "name, octant_cols, cells",
+    {
+        "kitty": ("kitty(0.42.1)", 1, CellSet.OCTANT),
+        "an older kitty": ("kitty(0.26.5)", 1, CellSet.SEXTANT),
+        "foot": ("foot(1.22.0)", 1, CellSet.OCTANT),
+        "an older foot": ("foot(1.13.1)", 1, CellSet.SEXTANT),
+        "ghostty": ("ghostty 1.2.3", 1, CellSet.OCTANT),
+        "WezTerm": ("WezTerm 20240203-110809-5046fc22", 1, CellSet.SEXTANT),
+        "a very old WezTerm": ("WezTerm 20200101-1", 1, CellSet.QUADRANT),
+        "VTE": ("VTE(7000)", 1, CellSet.SEXTANT),
+        "xterm draws with its font": ("XTerm(379)", 1, CellSet.QUADRANT),
+        "tmux that does not tell what is around it": ("tmux 3.5a", 1, CellSet.QUADRANT),
+        "octants are dropped on the way": ("kitty(0.42.1)", 0, CellSet.QUADRANT),
+        "no position": ("kitty(0.42.1)", None, CellSet.QUADRANT),
+        "no version": ("kitty", 1, CellSet.QUADRANT),
+        "no name": ("", 1, CellSet.QUADRANT),
+    },
 )
 def test_fine_glyphs_are_for_terminals_that_draw_them(
     name: str, octant_cols: int | None, cells: CellSet
@@ -45,21 +44,19 @@ def test_fine_glyphs_are_for_terminals_that_draw_them(
     assert cells_of(name, octant_cols) is cells
 
 
-@pytest.mark.parametrize(
-    ("environment", "cells"),
-    [
-        pytest.param({"TERM": "dumb", "LANG": "en_GB.UTF-8"}, CellSet.ASCII, id="dumb"),
-        pytest.param({"LANG": "en_GB.UTF-8"}, CellSet.ASCII, id="no TERM"),
-        pytest.param({"TERM": "xterm", "LANG": "C"}, CellSet.ASCII, id="C"),
-        pytest.param({"TERM": "xterm", "LANG": "POSIX"}, CellSet.ASCII, id="POSIX"),
-        pytest.param({"TERM": "xterm", "LANG": "de_DE.ISO-8859-1"}, CellSet.ASCII, id="Latin 1"),
-        pytest.param(
-            {"TERM": "xterm", "LANG": "de_DE.UTF-8", "LC_ALL": "C"}, CellSet.ASCII, id="LC_ALL wins"
-        ),
-        pytest.param({"TERM": "linux", "LANG": "C.UTF-8"}, CellSet.HALF, id="the Linux console"),
-        pytest.param({"TERM": "xterm", "LANG": "C.utf8"}, None, id="UTF-8"),
-        pytest.param({"TERM": "xterm"}, None, id="no locale, as in a container"),
-    ],
+@cases(
+    "environment, cells",
+    {
+        "dumb": ({"TERM": "dumb", "LANG": "en_GB.UTF-8"}, CellSet.ASCII),
+        "no TERM": ({"LANG": "en_GB.UTF-8"}, CellSet.ASCII),
+        "C": ({"TERM": "xterm", "LANG": "C"}, CellSet.ASCII),
+        "POSIX": ({"TERM": "xterm", "LANG": "POSIX"}, CellSet.ASCII),
+        "Latin 1": ({"TERM": "xterm", "LANG": "de_DE.ISO-8859-1"}, CellSet.ASCII),
+        "LC_ALL wins": ({"TERM": "xterm", "LANG": "de_DE.UTF-8", "LC_ALL": "C"}, CellSet.ASCII),
+        "the Linux console": ({"TERM": "linux", "LANG": "C.UTF-8"}, CellSet.HALF),
+        "UTF-8": ({"TERM": "xterm", "LANG": "C.utf8"}, None),
+        "no locale, as in a container": ({"TERM": "xterm"}, None),
+    },
 )
 def test_what_the_environment_decides(
     environment: Mapping[str, str], cells: CellSet | None
@@ -93,21 +90,18 @@ class Answers:
         os.close(self.outside)
 
 
-@pytest.mark.parametrize(
-    ("answers", "cells", "asks_name"),
-    [
-        pytest.param(
+@cases(
+    "answers, cells, asks_name",
+    {
+        "kitty": (
             {b"[6n": b"\x1b[9;2R", b"[c": b"\x1bP>|kitty(0.42.1)\x1b\\" + ATTRIBUTES},
             CellSet.OCTANT,
             True,
-            id="kitty",
         ),
-        pytest.param(
-            {b"[6n": b"\x1b[9;2R", b"[c": ATTRIBUTES}, CellSet.QUADRANT, True, id="no name"
-        ),
-        pytest.param({b"[6n": b"\x1b[9;1R"}, CellSet.QUADRANT, False, id="tmux 3.3a drops it"),
-        pytest.param({}, CellSet.QUADRANT, False, id="no answer at all"),
-    ],
+        "no name": ({b"[6n": b"\x1b[9;2R", b"[c": ATTRIBUTES}, CellSet.QUADRANT, True),
+        "tmux 3.3a drops it": ({b"[6n": b"\x1b[9;1R"}, CellSet.QUADRANT, False),
+        "no answer at all": ({}, CellSet.QUADRANT, False),
+    },
 )
 def test_a_terminal_is_asked(
     answers: Mapping[bytes, bytes], cells: CellSet, asks_name: bool, monkeypatch: pytest.MonkeyPatch

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.cases import cases
 from tuisim.terminal.probe import colors_without_asking, name_around
 
 AROUND = {"COLORTERM": "truecolor"}
@@ -27,32 +28,20 @@ def tmux(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return answer
 
 
-@pytest.mark.parametrize(
-    ("environment", "features", "colors"),
-    [
-        pytest.param({"TERM": "screen"}, "RGB", "256", id="screen"),
-        pytest.param(
-            {"TERM": "screen-256color", "STY": "1.pts"}, "RGB", "256", id="screen with 256 colours"
-        ),
-        pytest.param(
-            {"TERM": "screen.xterm-256color", "STY": "1.pts"}, "RGB", "256", id="screen in xterm"
-        ),
-        pytest.param(
-            {"TERM": "screen.linux", "STY": "1.pts"}, "", "8", id="screen on the Linux console"
-        ),
-        pytest.param(
-            {"TERM": "screen.vt220"}, "", "none", id="screen on a terminal without colours"
-        ),
-        pytest.param(
-            {"TERM": "screen", **TMUX}, "256,RGB,title", "truecolor", id="tmux that says so"
-        ),
-        pytest.param({"TERM": "screen", **TMUX}, "256,title", "256", id="tmux that does not"),
-        pytest.param({"TERM": "screen", **TMUX}, "", "256", id="tmux that says nothing"),
-        pytest.param({"TERM": "screen", "STY": "1.pts", **TMUX}, "RGB", "256", id="screen in tmux"),
-        pytest.param(
-            {"TERM": "tmux-256color", **TMUX}, "256", "auto", id="tmux reduces colours itself"
-        ),
-    ],
+@cases(
+    "environment, features, colors",
+    {
+        "screen": ({"TERM": "screen"}, "RGB", "256"),
+        "screen with 256 colours": ({"TERM": "screen-256color", "STY": "1.pts"}, "RGB", "256"),
+        "screen in xterm": ({"TERM": "screen.xterm-256color", "STY": "1.pts"}, "RGB", "256"),
+        "screen on the Linux console": ({"TERM": "screen.linux", "STY": "1.pts"}, "", "8"),
+        "screen on a terminal without colours": ({"TERM": "screen.vt220"}, "", "none"),
+        "tmux that says so": ({"TERM": "screen", **TMUX}, "256,RGB,title", "truecolor"),
+        "tmux that does not": ({"TERM": "screen", **TMUX}, "256,title", "256"),
+        "tmux that says nothing": ({"TERM": "screen", **TMUX}, "", "256"),
+        "screen in tmux": ({"TERM": "screen", "STY": "1.pts", **TMUX}, "RGB", "256"),
+        "tmux reduces colours itself": ({"TERM": "tmux-256color", **TMUX}, "256", "auto"),
+    },
 )
 def test_the_colours_in_a_multiplexer(
     tmux: Path, environment: Mapping[str, str], features: str, colors: str
@@ -61,17 +50,15 @@ def test_the_colours_in_a_multiplexer(
     assert colors_without_asking({**AROUND, **environment}) == colors
 
 
-@pytest.mark.parametrize(
-    ("name", "environment", "told", "around"),
-    [
-        pytest.param("tmux 3.5a", TMUX, "kitty(0.42.1)", "kitty(0.42.1)", id="kitty around tmux"),
-        pytest.param("tmux 3.5a", TMUX, "", "tmux 3.5a", id="unknown"),
-        pytest.param("tmux 3.5a", {}, "kitty(0.42.1)", "tmux 3.5a", id="over SSH"),
-        pytest.param(
-            "tmux 3.5a", {"STY": "1.pts", **TMUX}, "kitty(0.42.1)", "tmux 3.5a", id="screen in tmux"
-        ),
-        pytest.param("foot(1.22.0)", TMUX, "kitty(0.42.1)", "foot(1.22.0)", id="no tmux"),
-    ],
+@cases(
+    "name, environment, told, around",
+    {
+        "kitty around tmux": ("tmux 3.5a", TMUX, "kitty(0.42.1)", "kitty(0.42.1)"),
+        "unknown": ("tmux 3.5a", TMUX, "", "tmux 3.5a"),
+        "over SSH": ("tmux 3.5a", {}, "kitty(0.42.1)", "tmux 3.5a"),
+        "screen in tmux": ("tmux 3.5a", {"STY": "1.pts", **TMUX}, "kitty(0.42.1)", "tmux 3.5a"),
+        "no tmux": ("foot(1.22.0)", TMUX, "kitty(0.42.1)", "foot(1.22.0)"),
+    },
 )
 def test_the_terminal_around_tmux(
     tmux: Path, name: str, environment: Mapping[str, str], told: str, around: str

@@ -11,6 +11,7 @@ import pytest
 from textual import events
 from textual.message import Message
 
+from tests.cases import cases
 from tuisim.terminal import queries
 from tuisim.terminal.picture import Graphics
 from tuisim.terminal.picture_mode import graphics_of
@@ -101,7 +102,7 @@ CHOICES = {
 }
 
 
-@pytest.mark.parametrize(("answers", "expected"), CHOICES.values(), ids=CHOICES)
+@cases("answers, expected", CHOICES)
 def test_the_answers_decide_how_pixels_are_drawn(answers: str, expected: Graphics | None) -> None:
     assert graphics_of(_facts(answers), AUTO, (9, 18)) == expected
 
@@ -135,7 +136,7 @@ def test_another_page_is_asked_for_kitty_again() -> None:
 
 
 @pytest.mark.parametrize(
-    ("size_px", "expected"),
+    "size_px, expected",
     [((960, 640), (8, 16)), ((120, 40), None), ((0, 0), None), ((65535, 65535), None)],
     ids=["pixels", "cells", "nothing", "too large"],
 )
@@ -192,7 +193,7 @@ KEYS = {
 }
 
 
-@pytest.mark.parametrize(("text", "key"), KEYS.values(), ids=KEYS)
+@cases("text, key", KEYS)
 def test_keys_that_begin_like_an_answer_are_keys(text: str, key: str) -> None:
     parser = AnswerParser()
     found = [*parser.feed(text), *parser.tick(), *parser.feed("")]

@@ -12,7 +12,7 @@ PLAIN, BOLD = Style(), Style(bold=True)
 
 
 @pytest.mark.parametrize(
-    ("text", "width", "shown"),
+    "text, width, shown",
     [("name", 4, "name"), ("names", 4, "nam…"), ("names", 1, "…"), ("names", 0, ""), ("", 0, "")],
 )
 def test_a_text_is_cut(text: str, width: int, shown: str) -> None:
@@ -20,7 +20,7 @@ def test_a_text_is_cut(text: str, width: int, shown: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("texts", "shown"),
+    "texts, shown",
     [
         (["abc", "def"], ["abc", "def"]),
         (["abc", "defgh"], ["abc", "de…"]),

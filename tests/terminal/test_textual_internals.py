@@ -54,7 +54,7 @@ def told(monkeypatch: pytest.MonkeyPatch) -> dict[Widget, Size]:
 
 @pytest.mark.quick_cases("80x24")
 @pytest.mark.parametrize(
-    ("size", "last"),
+    "size, last",
     [((80, 24), "instrumentation"), ((120, 40), "code"), ((200, 60), "chart")],
     ids=["80x24", "120x40", "200x60"],
 )

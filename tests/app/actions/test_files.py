@@ -12,6 +12,7 @@ import pytest
 from tests.app.app_help import LOGS, notices, ready, settings, until
 from tests.app.editor.test_document import own
 from tests.app.terminals import Terminal
+from tests.cases import cases
 from tuisim.app.actions.files import own_editor
 from tuisim.app.app import LabApp
 from tuisim.errors import TuisimError
@@ -25,25 +26,21 @@ with open(sys.argv[1], "a") as file:
 """
 
 
-@pytest.mark.parametrize(
-    ("environment", "command"),
-    [
-        pytest.param({"EDITOR": "nano"}, ["nano"], id="EDITOR"),
-        pytest.param(
-            {"EDITOR": "nano", "VISUAL": "code --wait"},
-            ["code", "--wait"],
-            id="VISUAL counts first",
-        ),
-        pytest.param({"EDITOR": "nano", "VISUAL": " "}, ["nano"], id="an empty one does not count"),
-        pytest.param({"EDITOR": "'my editor' -n"}, ["my editor", "-n"], id="quoted"),
-    ],
+@cases(
+    "environment, command",
+    {
+        "EDITOR": ({"EDITOR": "nano"}, ["nano"]),
+        "VISUAL counts first": ({"EDITOR": "nano", "VISUAL": "code --wait"}, ["code", "--wait"]),
+        "an empty one does not count": ({"EDITOR": "nano", "VISUAL": " "}, ["nano"]),
+        "quoted": ({"EDITOR": "'my editor' -n"}, ["my editor", "-n"]),
+    },
 )
 def test_the_environment_names_the_editor(environment: dict[str, str], command: list[str]) -> None:
     assert own_editor(environment) == command
 
 
 @pytest.mark.parametrize(
-    ("environment", "problem"),
+    "environment, problem",
     [({}, "VISUAL and EDITOR are not set"), ({"EDITOR": "'nano"}, "EDITOR='nano: ")],
 )
 def test_without_an_editor_that_is_said(environment: dict[str, str], problem: str) -> None:

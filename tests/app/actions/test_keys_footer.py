@@ -10,6 +10,7 @@ from textual.widgets import Input, OptionList
 
 from tests.app.analyser.test_screen import text_of
 from tests.app.app_help import LOGS, program, ready, settings, until
+from tests.cases import cases
 from tuisim.analysis.source import LogRequest
 from tuisim.app.action import fitting
 from tuisim.app.actions.keys import ACTIONS, footer_actions, working
@@ -25,7 +26,7 @@ from tuisim.runs.handle import RunOptions, start_run
 
 @pytest.mark.parametrize("width", [80, 100, 120])
 @pytest.mark.parametrize(
-    ("reads_code", "keys"), [(False, {"R", "l", "e", "c"}), (True, {"R", "l", "c", "d"})]
+    "reads_code, keys", [(False, {"R", "l", "e", "c"}), (True, {"R", "l", "c", "d"})]
 )
 def test_after_a_run_the_next_steps_of_a_student_come_first(
     width: int, reads_code: bool, keys: set[str]
@@ -111,7 +112,7 @@ PAUSE_WORDS = {
 }
 
 
-@pytest.mark.parametrize(("now", "playing", "word"), PAUSE_WORDS.values(), ids=PAUSE_WORDS)
+@cases("now, playing, word", PAUSE_WORDS)
 def test_the_pause_key_says_what_it_does_now(now: Situation, playing: bool, word: str) -> None:
     (pause,) = [
         one for one in footer_actions(ACTIONS, working(now), now, playing) if one.id == "pause"
@@ -129,7 +130,7 @@ async def test_a_field_for_numbers_names_the_letters_that_are_keys() -> None:
 
 
 @pytest.mark.parametrize(
-    ("key", "own"), [("c", "← → cursor 1…9 traces"), ("Z", "↑ ↓ fields ← → choices")]
+    "key, own", [("c", "← → cursor 1…9 traces"), ("Z", "↑ ↓ fields ← → choices")]
 )
 async def test_the_keys_of_the_panel_with_the_focus_come_first(key: str, own: str) -> None:
     async with LabApp(settings("x = 1\n")).run_test(size=(80, 24)) as pilot:

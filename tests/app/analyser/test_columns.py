@@ -9,6 +9,7 @@ import pytest
 from textual.pilot import Pilot
 
 from tests.app.app_help import until
+from tests.cases import cases
 from tuisim.analysis.source import LogRequest
 from tuisim.app.analyser.app import Analyser, AnalyserApp
 from tuisim.app.analyser.columns import ColumnsDialog
@@ -25,18 +26,18 @@ def foreign(tmp_path: Path) -> Path:
     return path
 
 
-@pytest.mark.parametrize(
-    ("text", "sure"),
-    [
-        pytest.param("boot,light\n0,1\n20,2\n", False, id="a column that rises"),
-        pytest.param("b,light\n3,1\n2,2\n", False, id="two columns of which none rises"),
-        pytest.param("t_ms,light\n0,1\n20,2\n", True, id="time by name"),
-        pytest.param("light\n3\n2\n", True, id="nothing to choose from"),
-        pytest.param("time,variable,value\n0,A,1\n1,A,2\n", True, id="a log of ours"),
-        pytest.param("boot,name,value\n0,A,1\n3,A,2\n", False, id="beside names and values"),
-        pytest.param("name,value\nA,1\nA,2\n", True, id="names and values only"),
-        pytest.param("Colour: 3\nColour: 4\n", True, id="printed lines"),
-    ],
+@cases(
+    "text, sure",
+    {
+        "a column that rises": ("boot,light\n0,1\n20,2\n", False),
+        "two columns of which none rises": ("b,light\n3,1\n2,2\n", False),
+        "time by name": ("t_ms,light\n0,1\n20,2\n", True),
+        "nothing to choose from": ("light\n3\n2\n", True),
+        "a log of ours": ("time,variable,value\n0,A,1\n1,A,2\n", True),
+        "beside names and values": ("boot,name,value\n0,A,1\n3,A,2\n", False),
+        "names and values only": ("name,value\nA,1\nA,2\n", True),
+        "printed lines": ("Colour: 3\nColour: 4\n", True),
+    },
 )
 def test_what_is_doubtful(text: str, sure: bool, tmp_path: Path) -> None:
     path = tmp_path / ("log.txt" if ": " in text else "log.csv")

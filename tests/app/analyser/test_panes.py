@@ -52,7 +52,7 @@ def test_few_bands_are_all_in_sight_with_their_statistics_in_a_small_terminal() 
 
 
 @pytest.mark.parametrize(
-    ("size", "heads"),
+    "size, heads",
     [
         ((48, 9), ["variable count min mean max std 5 %", "variable 25 % 50 % 75 % 95 %"]),
         ((48, 3), ["variable count min mean max std 5 % …"]),
@@ -69,7 +69,7 @@ def test_figures_that_do_not_fit_beside_the_others_are_below_them(
     assert len(lines) == 2 * len(heads)
 
 
-@pytest.mark.parametrize(("bands", "rows"), [(8, 8), (9, 8), (20, 8)])
+@pytest.mark.parametrize("bands, rows", [(8, 8), (9, 8), (20, 8)])
 def test_a_summary_that_does_not_fit_leaves_its_line_to_the_rows(bands: int, rows: int) -> None:
     table = stepped(10 * bands, 10)
     model = model_of(Log("test", table, guess_columns(table)))
@@ -100,7 +100,7 @@ def test_a_narrow_table_shows_the_chosen_column() -> None:
 
 
 @pytest.mark.parametrize(
-    ("pane", "words"),
+    "pane, words",
     [
         ("table", "Colour"),
         ("bands", "stays at a level"),

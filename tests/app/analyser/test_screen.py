@@ -143,7 +143,7 @@ async def test_the_bands_as_shown_are_exported(run: StoredRun, tmp_path: Path) -
 
 
 @pytest.mark.parametrize(
-    ("size", "words"), [((80, 20), "row 2 of 8"), ((80, 24), "")], ids=["too many", "all fit"]
+    "size, words", [((80, 20), "row 2 of 8"), ((80, 24), "")], ids=["too many", "all fit"]
 )
 async def test_a_pane_tells_which_row_is_selected_where_not_all_fit(
     run: StoredRun, size: tuple[int, int], words: str

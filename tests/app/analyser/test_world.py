@@ -45,7 +45,7 @@ def run(home: Path) -> StoredRun:
 
 
 @pytest.mark.parametrize(
-    ("log", "has"),
+    "log, has",
     [
         (opened({"runs": [to_plain(SPEC)]}, **POSES), True),
         (opened({"runs": [{**to_plain(SPEC), "run": 1, "program": "p.py"}]}, **POSES), True),

@@ -29,7 +29,7 @@ def no_file(word: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("typed", "listed", "result"),
+    "typed, listed, result",
     [
         ("log", ["data_log.py", "log.py"], "/e/log.py"),
         ("log sec", ["data_log.py"], "/e/data_log.py"),

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-import pytest
 from textual.app import App
 from textual.screen import Screen
 
+from tests.cases import cases
 from tuisim.app.dialogs.entries import BreaksDialog, SavedPoses, WatchesDialog
 from tuisim.app.dialogs.runs import Differences
 from tuisim.app.setup.poses import save_pose
@@ -46,7 +46,7 @@ DIALOGS: dict[str, tuple[Callable[[], Screen[Any]], tuple[str, ...]]] = {
 }
 
 
-@pytest.mark.parametrize(("make", "shown"), DIALOGS.values(), ids=DIALOGS)
+@cases("make, shown", DIALOGS)
 async def test_brackets_are_shown(make: Callable[[], Screen[Any]], shown: tuple[str, ...]) -> None:
     app: App[None] = App()
     async with app.run_test(size=(100, 40)) as pilot:

@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from tests.app.app_help import ready, until, until_shown
+from tests.cases import cases
 from tuisim.app.app import AppSettings, LabApp
 from tuisim.app.dialogs.chooser import MatPicker
 from tuisim.app.dialogs.new_program import NewProgramDialog, Skeleton, program_text
@@ -28,7 +29,7 @@ CHOSEN = {
 
 
 @pytest.mark.quick_cases("letters")
-@pytest.mark.parametrize(("keys", "wanted"), CHOSEN.values(), ids=CHOSEN)
+@cases("keys, wanted", CHOSEN)
 async def test_a_new_program_is_chosen_by_keys(
     keys: list[str], wanted: tuple[str, str, Skeleton]
 ) -> None:

@@ -17,7 +17,7 @@ ENTRIES = [
 
 
 @pytest.mark.parametrize(
-    ("typed", "first"),
+    "typed, first",
     [
         ("chart", "panel-chart"),
         ("graph", "panel-chart"),

@@ -57,7 +57,7 @@ def test_a_path_is_completed_as_far_as_all_agree(folder: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("typed", "expected"),
+    "typed, expected",
     [
         ("/tmp", True),
         ("~/x", True),

@@ -20,7 +20,7 @@ def test_the_word_that_is_typed_is_ended() -> None:
     assert {line: completed(line, words) for line in lines} == lines
 
 
-@pytest.mark.parametrize(("rows", "is_brief"), [(24, True), (40, False)], ids=["low", "high"])
+@pytest.mark.parametrize("rows, is_brief", [(24, True), (40, False)], ids=["low", "high"])
 async def test_a_prompt_is_brief_where_the_screen_below_should_stay_in_sight(
     rows: int, is_brief: bool
 ) -> None:

@@ -167,7 +167,7 @@ async def test_a_damaged_run_is_a_notice(damage: Callable[[Path], str]) -> None:
 
 @pytest.mark.quick_cases("a mat too")
 @pytest.mark.parametrize(
-    ("words", "said"),
+    "words, said",
     [
         (["--run", "99"], "no run '99'"),
         (["--run", "1", "prog.py"], "remove prog.py"),
@@ -198,7 +198,7 @@ def info(number: int, **facts: Any) -> RunInfo:
 
 
 @pytest.mark.parametrize(
-    ("facts", "noted", "end"),
+    "facts, noted, end",
     [
         ({"end": End.STOPPED, "summary": "stopped"}, True, "0"),
         ({"end": End.TIME_LIMIT, "summary": "stopped at the limit of 20 s"}, True, "0"),
@@ -215,7 +215,7 @@ def test_the_note_of_a_run_does_not_repeat_its_end(
 
 
 @pytest.mark.parametrize(
-    ("search", "numbers"),
+    "search, numbers",
     [
         ("", [3, 2, 1]),
         ("line", [3, 1]),

@@ -10,6 +10,7 @@ from typing import Any
 import pytest
 
 from tests.app.app_help import lab, notices, ready, screen_text, settings, until, until_shown
+from tests.cases import cases
 from tuisim.app.app import AppSettings, LabApp
 from tuisim.app.dialogs.chooser import Chooser
 from tuisim.app.dialogs.new_program import NewProgramDialog
@@ -64,7 +65,7 @@ CHOICES: dict[str, tuple[list[str], Any]] = {
 
 
 @pytest.mark.quick_cases("new", "open")
-@pytest.mark.parametrize(("keys", "is_done"), CHOICES.values(), ids=CHOICES)
+@cases("keys, is_done", CHOICES)
 async def test_each_choice_of_the_welcome_begins(keys: list[str], is_done: Any, home: Path) -> None:
     async with LabApp(FIRST).run_test(size=(80, 24)) as pilot:
         await ready(pilot)
@@ -79,7 +80,7 @@ DRAFTS: dict[str, tuple[str, str]] = {
 
 
 @pytest.mark.slow_cases("of a file")
-@pytest.mark.parametrize(("name", "text"), DRAFTS.values(), ids=DRAFTS)
+@cases("name, text", DRAFTS)
 async def test_a_later_start_offers_unsaved_text_to_go_on_with(
     name: str, text: str, tmp_path: Path
 ) -> None:
@@ -119,7 +120,7 @@ NAMED: dict[str, tuple[dict[str, Any], bool]] = {
 }
 
 
-@pytest.mark.parametrize(("given", "is_empty"), NAMED.values(), ids=NAMED)
+@cases("given, is_empty", NAMED)
 def test_the_welcome_is_for_those_who_name_nothing(given: dict[str, Any], is_empty: bool) -> None:
     none: dict[str, Any] = {"words": (), "world": None, "goals": None, "run": None, "settings": {}}
     opened = command.read_opened(SimpleNamespace(**{**none, **given}))

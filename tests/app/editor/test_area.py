@@ -14,7 +14,7 @@ Keys = list[str]
 
 @pytest.mark.quick_cases("letters*", "typing", "redo", "outdent", "comment", "after*", "cut*")
 @pytest.mark.parametrize(
-    ("keys", "after"),
+    "keys, after",
     [
         (["x", "R", "space"], TEXT),
         (["enter", "x"], "x" + TEXT),

@@ -64,7 +64,7 @@ async def test_the_only_name_is_put_in(home: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("keys", "text"),
+    "keys, text",
     [
         (["enter"], "tank_drive.on"),
         (["down", "tab"], "tank_drive.off"),

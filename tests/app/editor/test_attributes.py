@@ -11,7 +11,7 @@ from tuisim.app.editor.completion import members
 
 
 @pytest.mark.parametrize(
-    ("text", "messages"),
+    "text, messages",
     [
         ("tank_drive.onn(1)", ["`tank_drive` has no `onn`: did you mean `on`?"]),
         ("é = tank_drive.offf", ["`tank_drive` has no `offf`: did you mean `off`?"]),

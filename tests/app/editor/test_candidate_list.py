@@ -37,7 +37,7 @@ def test_the_last_name_of_a_long_list_is_reached() -> None:
 
 
 @pytest.mark.parametrize(
-    ("longest", "room", "width"),
+    "longest, room, width",
     [("on", 78, 24), ("n" * 40, 78, 59), ("n" * 200, 118, 76), ("n" * 200, 58, 58)],
 )
 def test_width_of_a_list(longest: str, room: int, width: int) -> None:
@@ -45,7 +45,7 @@ def test_width_of_a_list(longest: str, room: int, width: int) -> None:
 
 
 @pytest.mark.parametrize(
-    ("word", "place"),
+    "word, place",
     [
         (Offset(10, 5), Offset(9, 6)),
         (Offset(70, 5), Offset(39, 6)),
@@ -59,7 +59,7 @@ def test_a_list_stands_at_its_word_and_in_view(word: Offset, place: Offset) -> N
 
 
 @pytest.mark.parametrize(
-    ("width", "text"),
+    "width, text",
     [
         (80, "on_for_seconds(left_speed, right_speed, seconds, brake=True, block=True)"),
         (70, "on_for_seconds(…, right_speed, seconds, brake=True, block=True)"),

@@ -51,7 +51,7 @@ def names(text: str) -> list[str]:
 
 
 @pytest.mark.parametrize(
-    ("text", "first"),
+    "text, first",
     [
         (
             "tank_drive.",
@@ -79,7 +79,7 @@ def test_what_programs_use_comes_first_and_what_is_inherited_or_internal_last(
 
 
 @pytest.mark.parametrize(
-    ("text", "found"),
+    "text, found",
     [
         ("tank_drive.o", ["on", "off", "on_for_degrees", "on_for_rotations", "on_for_seconds"]),
         ("col", ["colorLeft", "colorRight", "ColorSensor"]),
@@ -172,7 +172,7 @@ def test_it_is_not_imported_before_it_is_asked() -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "found"),
+    "text, found",
     [
         ("tank_drive.on(", Signature("on", ("left_speed", "right_speed"), 0)),
         ("tank_drive.on(SpeedPercent(5), ", Signature("on", ("left_speed", "right_speed"), 1)),
@@ -190,7 +190,7 @@ def test_signature_of_a_call(home: Path, text: str, found: Signature | None) -> 
 
 
 @pytest.mark.parametrize(
-    ("line", "column", "word"),
+    "line, column, word",
     [
         ("tank", 4, "tank"),
         ("tank", 2, "ta"),
@@ -213,7 +213,7 @@ def test_the_word_that_is_typed(line: str, column: int, word: str | None) -> Non
 
 
 @pytest.mark.parametrize(
-    ("lines", "is_in"),
+    "lines, is_in",
     [
         (["f("], True),
         (["f(1, [2], "], True),
@@ -232,7 +232,7 @@ def test_whether_a_place_is_in_a_call(lines: Sequence[str], is_in: bool) -> None
 
 
 @pytest.mark.parametrize(
-    ("documentation", "first"),
+    "documentation, first",
     [
         ("Stop.  Then go.", "Stop"),
         ("One\nline, e.g. here. More", "One line, e.g. here"),

@@ -255,7 +255,7 @@ async def test_ctrl_s_saves_the_world_outside_the_editor(tmp_path: Path) -> None
 
 @pytest.mark.quick_cases("save")
 @pytest.mark.parametrize(
-    ("answer", "in_file"), [("s", "x" + TEXT), ("d", TEXT)], ids=["save", "discard"]
+    "answer, in_file", [("s", "x" + TEXT), ("d", TEXT)], ids=["save", "discard"]
 )
 async def test_leaving_with_unsaved_changes_asks(answer: str, in_file: str, tmp_path: Path) -> None:
     path = tmp_path / "prog.py"
@@ -290,7 +290,7 @@ async def test_opening_another_program_with_unsaved_changes_asks(tmp_path: Path)
 
 @pytest.mark.quick_cases("later")
 @pytest.mark.parametrize(
-    ("answer", "shown", "kept"),
+    "answer, shown, kept",
     [("r", "draft = 1\n", True), ("d", TEXT, False), ("escape", TEXT, True)],
     ids=["restore", "discard", "later"],
 )
@@ -322,7 +322,7 @@ async def test_unsaved_text_is_kept_soon_and_forgotten_when_undone(tmp_path: Pat
 
 @pytest.mark.quick_cases("mine")
 @pytest.mark.parametrize(
-    ("answer", "shown"), [("k", "x" + TEXT), ("t", "other = 1\n")], ids=["mine", "file"]
+    "answer, shown", [("k", "x" + TEXT), ("t", "other = 1\n")], ids=["mine", "file"]
 )
 async def test_a_file_that_changes_under_unsaved_edits(
     answer: str, shown: str, tmp_path: Path

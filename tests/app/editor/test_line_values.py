@@ -50,7 +50,7 @@ def shown(text: str, state: Inspected) -> dict[int, list[str]]:
 
 
 @pytest.mark.parametrize(
-    ("line", "variables", "beside"),
+    "line, variables, beside",
     [
         (5, {"total": "0"}, {1: ["total=0"], 6: ["total=0"]}),
         (6, {"total": "3", "n": "2"}, {5: ["n=2"], 6: ["total=3"]}),

@@ -18,7 +18,7 @@ def found(text: str) -> list[tuple[int, int, int, str]] | None:
 
 
 @pytest.mark.parametrize(
-    ("text", "unknown"),
+    "text, unknown",
     [
         ("tank_drve.on(1)", [(0, 0, 9, "did you mean `tank_drive`?")]),
         ("x = 1\nprnt(X)", [(1, 0, 4, "did you mean `print`?"), (1, 5, 6, "did you mean `x`?")]),

@@ -11,7 +11,7 @@ from tuisim.config.program_file import programs
 
 
 @pytest.mark.parametrize(
-    ("line", "before", "parts", "after"),
+    "line, before, parts, after",
     [
         ("while x:  # go", "", [("while", "keyword"), ("# go", "comment")], ""),
         ("def run(a):", "", [("def", "keyword"), ("run", "name")], ""),
@@ -73,7 +73,7 @@ def test_every_example_is_coloured_in_order_and_without_overlap(path: Path) -> N
 
 
 @pytest.mark.parametrize(
-    ("text", "line", "words"),
+    "text, line, words",
     [
         ("x = 1\n", None, ""),
         ("%%sim_magic_preloaded -b Grey_bands\nprint(colorLeft)\n", None, ""),

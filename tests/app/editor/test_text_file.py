@@ -24,7 +24,7 @@ from tuisim.errors import ConfigError
 
 
 @pytest.mark.parametrize(
-    ("data", "form"),
+    "data, form",
     [
         (b"x = 1\ny = 2\n", Form()),
         (b"x = 1\r\ny = 2\r\n", Form(newline="\r\n")),

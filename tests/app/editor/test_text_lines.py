@@ -11,7 +11,7 @@ from tuisim.app.editor.text_lines import MOST_COMPARED, LineMap, code_line
 
 
 @pytest.mark.parametrize(
-    ("line", "code"),
+    "line, code",
     [(1, 4), (2, 4), (3, 4), (4, 4), (5, 0)],
     ids=["magic", "comment", "blank", "code", "end"],
 )
@@ -20,7 +20,7 @@ def test_a_breakpoint_is_on_the_next_line_of_code(line: int, code: int) -> None:
 
 
 @pytest.mark.parametrize(
-    ("run", "shown", "to_shown"),
+    "run, shown, to_shown",
     [
         ("abc", "abc", [1, 2, 3]),
         ("abc", "xabc", [2, 3, 4]),
@@ -57,7 +57,7 @@ def test_of_a_text_that_is_all_new_only_its_ends_are_compared() -> None:
 
 
 @pytest.mark.parametrize(
-    ("line", "indent"),
+    "line, indent",
     [
         ("while x:", "    "),
         ("    if x:  # why", "        "),
@@ -74,7 +74,7 @@ def test_the_indentation_after_a_line(line: str, indent: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("change", "before", "after"),
+    "change, before, after",
     [
         (text_lines.indented, ["a", "", "  b"], ["    a", "", "      b"]),
         (
@@ -96,7 +96,7 @@ def test_lines_are_changed(
 
 
 @pytest.mark.parametrize(
-    ("wanted", "found"),
+    "wanted, found",
     [("speed", [(0, 0), (1, 4)]), ("Speed", [(1, 4)]), ("(", [(1, 9)]), ("", []), ("nothing", [])],
 )
 def test_places_of_a_text(wanted: str, found: list[tuple[int, int]]) -> None:
@@ -104,7 +104,7 @@ def test_places_of_a_text(wanted: str, found: list[tuple[int, int]]) -> None:
 
 
 @pytest.mark.parametrize(
-    ("one", "other", "count"),
+    "one, other, count",
     [("a\nb\nc", "a\nb\nc", 0), ("a\nb\nc", "a\nx\nc", 1), ("a", "a\nb\nc", 2), ("", "a", 1)],
     ids=["same", "changed", "added", "from nothing"],
 )

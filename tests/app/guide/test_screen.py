@@ -10,6 +10,7 @@ from textual.pilot import Pilot
 from textual.widgets import Input, Tree
 
 from tests.app.app_help import lab, ready, screen_text, settings, until, until_shown
+from tests.cases import cases
 from tests.guide.questions import QUESTIONS
 from tuisim.app.app import LabApp
 from tuisim.app.guide.answers import STANDS_OUT, AnswerList
@@ -91,13 +92,13 @@ async def test_a_long_page_scrolls_and_starts_at_its_top_again() -> None:
 
 
 @pytest.mark.slow_cases("settings")
-@pytest.mark.parametrize(
-    ("panel", "place", "words"),
-    [
-        pytest.param("G", "stepping", ("Debugging", "Step through a program"), id="debug"),
-        pytest.param("K", "the-brick", ("The brick",), id="brick"),
-        pytest.param("Z", "options", ("Options",), id="settings"),
-    ],
+@cases(
+    "panel, place, words",
+    {
+        "debug": ("G", "stepping", ("Debugging", "Step through a program")),
+        "brick": ("K", "the-brick", ("The brick",)),
+        "settings": ("Z", "options", ("Options",)),
+    },
 )
 async def test_the_page_of_the_panel_with_the_focus(
     panel: str, place: str, words: tuple[str, ...]
@@ -215,13 +216,13 @@ async def test_no_title_is_cut_off(size: tuple[int, int]) -> None:
 
 
 @pytest.mark.slow_cases("brick")
-@pytest.mark.parametrize(
-    ("panel", "first", "then"),
-    [
-        pytest.param("K", "Press this button of the brick", "The brick", id="brick"),
-        pytest.param("c", "Previous trace", "Pause or resume", id="chart"),
-        pytest.param("X", "enter  apply", "Move the robot to its start pose", id="fields"),
-    ],
+@cases(
+    "panel, first, then",
+    {
+        "brick": ("K", "Press this button of the brick", "The brick"),
+        "chart": ("c", "Previous trace", "Pause or resume"),
+        "fields": ("X", "enter  apply", "Move the robot to its start pose"),
+    },
 )
 async def test_the_keys_of_the_panel_come_first(panel: str, first: str, then: str) -> None:
     async with LabApp(settings()).run_test(size=SMALL) as pilot:
@@ -242,13 +243,13 @@ async def test_the_best_answers_are_in_sight_below_each_other(size: tuple[int, i
         assert shown == answers[: len(shown)] and len(shown) >= (3 if size != (40, 12) else 1)
 
 
-@pytest.mark.parametrize(
-    ("question", "passage"),
-    [
-        pytest.param("How do I make the robot slower?", "A smaller number makes", id="paragraph"),
-        pytest.param("leave a trace behind the robot", "Pen up or down", id="row"),
-        pytest.param("colours look wrong in my terminal", "does not announce", id="first"),
-    ],
+@cases(
+    "question, passage",
+    {
+        "paragraph": ("How do I make the robot slower?", "A smaller number makes"),
+        "row": ("leave a trace behind the robot", "Pen up or down"),
+        "first": ("colours look wrong in my terminal", "does not announce"),
+    },
 )
 async def test_the_passage_of_an_answer_is_in_sight_on_its_page(
     question: str, passage: str

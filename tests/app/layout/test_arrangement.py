@@ -33,7 +33,7 @@ def assert_fills(boxes: dict[str, PanelBox], width: int, height: int) -> None:
 
 
 @pytest.mark.quick_cases("60x18")
-@pytest.mark.parametrize(("width", "height"), SIZES, ids=[f"{w}x{h}" for w, h in SIZES])
+@pytest.mark.parametrize("width, height", SIZES, ids=[f"{w}x{h}" for w, h in SIZES])
 def test_any_panels_fill_the_screen(width: int, height: int) -> None:
     for count in range(1, len(PANELS) + 1):
         for panels in itertools.islice(itertools.combinations(PANELS, count), 40):
@@ -45,7 +45,7 @@ def test_any_panels_fill_the_screen(width: int, height: int) -> None:
 
 
 @pytest.mark.parametrize(
-    ("size", "expected"),
+    "size, expected",
     [
         ((80, 24), {"world", "instrumentation", "output"}),
         ((120, 40), {"world", "instrumentation", "output", "arrays", "code", "controls"}),
@@ -61,7 +61,7 @@ def test_what_is_shown_unless_asked_otherwise(size: tuple[int, int], expected: s
 
 
 @pytest.mark.parametrize(
-    ("size", "name"),
+    "size, name",
     [
         ((80, 24), TerminalSize.SMALL),
         ((111, 40), TerminalSize.SMALL),
@@ -79,7 +79,7 @@ def test_the_most_wanted_panel_gets_the_room() -> None:
     assert placed.boxes["instrumentation"].height == PANELS["instrumentation"].min_rows
 
 
-LOW_SIZES = pytest.mark.parametrize(("width", "height"), [(80, 23), (100, 29), (72, 24)])
+LOW_SIZES = pytest.mark.parametrize("width, height", [(80, 23), (100, 29), (72, 24)])
 
 
 @LOW_SIZES
@@ -90,7 +90,7 @@ def test_the_world_has_the_whole_width_of_a_low_terminal(width: int, height: int
 
 
 @LOW_SIZES
-@pytest.mark.parametrize(("panel", "rows"), [("chart", 14), ("code", 11)])
+@pytest.mark.parametrize("panel, rows", [("chart", 14), ("code", 11)])
 def test_a_roomy_panel_replaces_nothing_in_a_low_terminal(
     panel: str, rows: int, width: int, height: int
 ) -> None:

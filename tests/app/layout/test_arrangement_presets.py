@@ -72,7 +72,7 @@ def test_the_output_leaves_its_rows_to_the_code_when_debugging(size: tuple[int, 
 
 
 @pytest.mark.quick_cases("analyse")
-@pytest.mark.parametrize(("preset", "key"), KEYS.items(), ids=KEYS)
+@pytest.mark.parametrize("preset, key", KEYS.items(), ids=KEYS)
 async def test_a_key_shows_a_preset_and_again_the_standard_layout(preset: Preset, key: str) -> None:
     async with LabApp(settings(LOGS)).run_test(size=(80, 24)) as pilot:
         app = await ready(pilot)
@@ -89,7 +89,7 @@ async def test_a_key_shows_a_preset_and_again_the_standard_layout(preset: Preset
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    ("size", "round_"),
+    "size, round_",
     [
         ((80, 24), ["debug", "analyse", "standard"]),
         ((120, 40), ["drive", "debug", "analyse", "standard"]),

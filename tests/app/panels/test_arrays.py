@@ -10,6 +10,7 @@ import pytest
 from textual.geometry import Region
 
 from tests.app.panel_help import SPEC, PanelApp, moment, screen_text, small_field
+from tests.cases import cases
 from tuisim.app.panels.arrays import Arrays
 from tuisim.core.geometry import Pose
 from tuisim.source import Program
@@ -38,17 +39,17 @@ async def shown(size: tuple[int, int], program: Program | None = None) -> tuple[
         return [view.region for view in app.panel.query(PixelView)], "\n".join(screen_text(app))
 
 
-@pytest.mark.parametrize(
-    ("size", "across"),
-    [
-        pytest.param((26, 8), True, id="80x24"),
-        pytest.param((40, 10), True, id="120x40"),
-        pytest.param((44, 12), True, id="200x60"),
-        pytest.param((40, 18), True, id="much room"),
-        pytest.param((80, 6), True, id="low"),
-        pytest.param((20, 30), False, id="narrow"),
-        pytest.param((20, 6), True, id="small"),
-    ],
+@cases(
+    "size, across",
+    {
+        "80x24": ((26, 8), True),
+        "120x40": ((40, 10), True),
+        "200x60": ((44, 12), True),
+        "much room": ((40, 18), True),
+        "low": ((80, 6), True),
+        "narrow": ((20, 30), False),
+        "small": ((20, 6), True),
+    },
 )
 async def test_both_discs_are_whole_with_what_the_program_gets(
     size: tuple[int, int], across: bool

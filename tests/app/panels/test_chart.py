@@ -9,6 +9,7 @@ from textual.pilot import Pilot
 
 from tests.app.app_help import until
 from tests.app.panel_help import PanelApp, moment, screen_text
+from tests.cases import cases
 from tuisim.app.panels.chart import Chart
 from tuisim.app.snapshot import RunPhase
 from tuisim.charts.text_chart import ChartPainter, ChartPicture
@@ -204,9 +205,9 @@ async def test_bands_are_shown_while_the_run_stands_still() -> None:
     assert shown == [False, True, False, True]
 
 
-@pytest.mark.parametrize(
-    ("column", "sample"),
-    [pytest.param(30, "Colour", id="in a band"), pytest.param(70, "", id="beside all samples")],
+@cases(
+    "column, sample",
+    {"in a band": (30, "Colour"), "beside all samples": (70, "")},
 )
 async def test_a_click_goes_to_the_sample_there(column: int, sample: str) -> None:
     app = PanelApp(Chart())

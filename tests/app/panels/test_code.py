@@ -26,7 +26,7 @@ async def test_it_says_that_there_is_no_program_only_when_it_knows() -> None:
 
 
 @pytest.mark.parametrize(
-    ("keys", "wanted"),
+    "keys, wanted",
     [
         (["ctrl+s"], ["save"]),
         (["f5"], ["run"]),
@@ -99,7 +99,7 @@ PAUSE = pause(Variable("total", "int", "100000000000", True), Variable("n", "int
 
 
 @pytest.mark.parametrize(
-    ("width", "rows"),
+    "width, rows",
     [
         (
             70,

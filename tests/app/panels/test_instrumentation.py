@@ -8,6 +8,7 @@ from itertools import product
 import pytest
 
 from tests.app.panel_help import SPEC, PanelApp, moment, screen_text
+from tests.cases import cases
 from tuisim.app.panels.instrumentation import Instrumentation, lines
 from tuisim.app.snapshot import RunPhase, Snapshot
 from tuisim.core.geometry import Pose
@@ -46,7 +47,7 @@ def text(now: Snapshot, width: int, height: int) -> list[str]:
 
 
 @pytest.mark.parametrize(
-    ("heading_deg", "shown"),
+    "heading_deg, shown",
     [
         (-399.3, "-39.3°"),
         (0.0, "0.0°"),
@@ -70,13 +71,13 @@ def test_a_robot_that_was_moved_after_its_run_is_not_called_finished() -> None:
     assert text(replace(now, placed=True), 44, 14)[-1].split()[:2] == ["State", "moved"]
 
 
-@pytest.mark.parametrize(
-    ("width", "names", "pose"),
-    [
-        pytest.param(60, True, True, id="both"),
-        pytest.param(38, False, True, id="the pose first"),
-        pytest.param(24, False, False, id="neither"),
-    ],
+@cases(
+    "width, names, pose",
+    {
+        "both": (60, True, True),
+        "the pose first": (38, False, True),
+        "neither": (24, False, False),
+    },
 )
 def test_the_pose_goes_before_the_names_of_colours(width: int, names: bool, pose: bool) -> None:
     white = ColorReading(255, 255, 255)
@@ -116,7 +117,7 @@ def test_a_word_and_its_value_have_a_space_between_them() -> None:
     ]
 
 
-@pytest.mark.parametrize(("width", "height"), [(26, 6), (24, 11), (40, 13)], ids=str)
+@pytest.mark.parametrize("width, height", [(26, 6), (24, 11), (40, 13)], ids=str)
 def test_names_are_whole(width: int, height: int) -> None:
     rows = "\n".join(text(moment(), width, height))
 
@@ -209,7 +210,7 @@ def test_further_parts() -> None:
 
 
 @pytest.mark.parametrize(
-    ("width", "height", "shown"),
+    "width, height, shown",
     [
         (78, 2, "L R S1 S2 US Gyro x y"),
         (46, 3, "L R S1 S2 US Gyro x y h"),

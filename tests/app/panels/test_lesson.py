@@ -346,7 +346,7 @@ async def test_menu_shows_the_step_before_again(tmp_path: Path) -> None:
 
 @pytest.mark.quick_cases("80")
 @pytest.mark.parametrize(
-    ("size", "columns"), [(SMALL, 40), (LARGE, 45), ((200, 60), 58)], ids=["80", "120", "200"]
+    "size, columns", [(SMALL, 40), (LARGE, 45), ((200, 60), 58)], ids=["80", "120", "200"]
 )
 async def test_lesson_stands_beside_world_and_code(
     size: tuple[int, int], columns: int, tmp_path: Path
@@ -385,7 +385,7 @@ async def test_page_keys_scroll_the_text_after_a_run_from_the_editor(tmp_path: P
 
 
 @pytest.mark.parametrize(
-    ("text", "words"),
+    "text, words",
     [
         ("41", "41 is not right. Try again: escape, then Y shows a hint"),
         ("Q0", "Q0: type a number, such as 12.5"),
@@ -426,7 +426,7 @@ async def test_the_last_lesson_can_be_reached_in_a_low_terminal(tmp_path: Path) 
         assert listed.show_vertical_scrollbar
 
 
-@pytest.mark.parametrize(("size", "is_shown"), [(SMALL, False), (LARGE, True)])
+@pytest.mark.parametrize("size, is_shown", [(SMALL, False), (LARGE, True)])
 async def test_output_is_back_when_another_lesson_is_opened(
     size: tuple[int, int], is_shown: bool, tmp_path: Path
 ) -> None:

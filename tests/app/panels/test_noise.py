@@ -38,7 +38,7 @@ async def test_a_slider_acts_on_the_readings_at_once() -> None:
 
 @pytest.mark.quick_cases("seed-*")
 @pytest.mark.parametrize(
-    ("field", "typed", "said"),
+    "field, typed, said",
     [
         ("light-number", "129", "Light must be a whole number from 0 to 128, got '129'"),
         ("motor-number", "x", "Motor must be a whole number from 0 to 500, got 'x'"),

@@ -224,7 +224,7 @@ BOXES = (Obstacle(100, 100, 200, 200), Obstacle(200, 200, 200, 200), Obstacle(90
 
 
 @pytest.mark.parametrize(
-    ("point", "index"),
+    "point, index",
     [((150, 150), 0), ((250, 250), 1), ((350, 350), 1), ((910, 200), 2), ((600, 600), None)],
     ids=["one", "the upper of two", "beside the lower", "a thin one nearby", "none"],
 )
@@ -233,7 +233,7 @@ def test_which_box_is_under_the_mouse(point: tuple[float, float], index: int | N
 
 
 @pytest.mark.parametrize(
-    ("start", "end", "drawn"),
+    "start, end, drawn",
     [
         ((100, 100), (301, 402), Obstacle(100, 100, 200, 300)),
         ((300, 400), (101, 99), Obstacle(100, 100, 200, 300)),

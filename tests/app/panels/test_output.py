@@ -31,7 +31,7 @@ def lines(app: App[None]) -> list[str]:
 
 
 @pytest.mark.parametrize(
-    ("text", "stream", "width", "expected"),
+    "text, stream, width, expected",
     [
         ("", Stream.STDOUT, 10, [""]),
         ("Colour: 1", Stream.STDOUT, 10, ["Colour: 1"]),

@@ -18,7 +18,7 @@ BAR = BarTimes(tick=200, newest=1000, tick_hz=100, past=True, over=True)
 
 
 @pytest.mark.parametrize(
-    ("width", "past", "now"),
+    "width, past, now",
     [(80, " 2.00 of 10.00 s", "         10.00 s"), (50, " 2.00 s", "10.00 s")],
 )
 def test_the_words_are_as_wide_in_the_past_as_now(width: int, past: str, now: str) -> None:

@@ -65,7 +65,7 @@ _ASTRAY = Pose(-4000.0, 500.0, 0.0)
 
 
 @pytest.mark.parametrize(
-    ("now_pose", "earlier_pose", "width", "words"),
+    "now_pose, earlier_pose, width, words",
     [
         (None, None, 70, ""),
         (POSE, None, 70, "outline: the robot now"),
@@ -254,7 +254,7 @@ async def test_ctrl_and_the_wheel_zoom_the_world_as_two_fingers_do() -> None:
 
 
 @pytest.mark.parametrize(
-    ("kind", "turn"),
+    "kind, turn",
     [(events.MouseScrollUp, TURN_STEP_DEG), (events.MouseScrollDown, -TURN_STEP_DEG)],
 )
 async def test_the_wheel_turns_the_robot_that_it_is_over(

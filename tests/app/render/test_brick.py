@@ -27,7 +27,7 @@ def text_of(face: BrickState, width: int, height: int) -> list[str]:
     return ["".join(text for text, _ in line) for line in draw_brick(face, (), width, height).lines]
 
 
-@pytest.mark.parametrize(("width", "height"), SIZES)
+@pytest.mark.parametrize("width, height", SIZES)
 def test_nothing_is_wider_or_higher_than_the_panel(width: int, height: int) -> None:
     face = BrickState(
         picture=picture((slice(0, 60), slice(0, 90))), text=TextScreen(14, 5, ("x" * 14,) * 5)
@@ -56,7 +56,7 @@ def test_dots_keep_a_thin_line() -> None:
     assert sum(0x2800 < ord(char) <= 0x28FF for char in rows[0]) == 89
 
 
-@pytest.mark.parametrize(("width", "height"), [(60, 24), (30, 9), (16, 6)])
+@pytest.mark.parametrize("width, height", [(60, 24), (30, 9), (16, 6)])
 def test_a_small_display_keeps_every_thin_line(width: int, height: int) -> None:
     def dots(*place: slice) -> int:
         lines = text_of(BrickState(picture=picture((place[0], place[1]))), width, height)
@@ -83,7 +83,7 @@ def test_text_screen_is_text() -> None:
     ]
 
 
-@pytest.mark.parametrize(("width", "height"), [(60, 20), (44, 6)], ids=["pad", "row"])
+@pytest.mark.parametrize("width, height", [(60, 20), (44, 6)], ids=["pad", "row"])
 def test_buttons_are_where_they_are_drawn(width: int, height: int) -> None:
     drawn = draw_brick(BrickState(), {"enter", "left"}, width, height)
     assert {box.name for box in drawn.buttons} == set(BUTTONS)
@@ -108,7 +108,7 @@ def test_a_pressed_button_stands_out() -> None:
 
 
 @pytest.mark.parametrize(
-    ("red", "green", "name"),
+    "red, green, name",
     [
         (0, 0, "off"),
         (255, 0, "red"),
@@ -129,7 +129,7 @@ def test_untouched_lamps_are_green() -> None:
 
 
 @pytest.mark.parametrize(
-    ("sound", "shown"),
+    "sound, shown",
     [
         ("[♪ song of 3 notes, 1.5 s]", "♪ song of 3 notes, 1.5 s"),
         ("[beep]", "♪ beep"),
@@ -141,7 +141,7 @@ def test_the_last_sound_stands_below(sound: str, shown: str) -> None:
     assert text_of(BrickState(sound=sound), 60, 20)[-1].strip() == shown
 
 
-@pytest.mark.parametrize(("width", "shown"), [(60, "green"), (31, "gr…"), (27, "")], ids=str)
+@pytest.mark.parametrize("width, shown", [(60, "green"), (31, "gr…"), (27, "")], ids=str)
 def test_the_name_of_a_lamp_is_cut_with_an_ellipsis(width: int, shown: str) -> None:
     (row,) = [line for line in text_of(BrickState(), width, 6) if "▲" in line]
     assert row.split("⌫")[0].strip() == shown

@@ -6,6 +6,7 @@ import ast
 
 import pytest
 
+from tests.cases import cases
 from tuisim.app.render.code_rows import code_rows
 from tuisim.lessons.catalogue import shipped_paths
 from tuisim.lessons.files import load_lesson
@@ -47,7 +48,7 @@ PROGRAMS = {
 }
 
 
-@pytest.mark.parametrize(("program", "rows"), PROGRAMS.values(), ids=PROGRAMS)
+@cases("program, rows", PROGRAMS)
 def test_long_lines_are_broken_between_words(program: str, rows: list[str]) -> None:
     assert list(code_rows(program, 30)) == rows
 

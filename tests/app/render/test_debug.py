@@ -73,7 +73,7 @@ def test_variables_keep_their_places_and_names_of_constants_are_the_last(changed
 
 
 @pytest.mark.parametrize(
-    ("width", "past", "head"),
+    "width, past, head",
     [
         (26, False, "line 13 · 4.69 s"),
         (27, False, "line 13 · 4.69 s · tick 469"),

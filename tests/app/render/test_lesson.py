@@ -53,7 +53,7 @@ def test_pages_of_a_lesson(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("at", "text"),
+    "at, text",
     [
         (0, "Q types"),
         (0, "Y shows hint"),

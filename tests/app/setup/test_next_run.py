@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.cases import cases
 from tuisim.app.setup import next_run as plans
 from tuisim.app.setup.fields import find
 from tuisim.app.setup.next_run import NextRun, plan_of, plan_of_spec, with_robot_edited
@@ -74,7 +75,7 @@ WAYS: dict[str, tuple[list[Callable[[NextRun], NextRun]], list[float]]] = {
 }
 
 
-@pytest.mark.parametrize(("steps", "expected"), WAYS.values(), ids=WAYS)
+@cases("steps, expected", WAYS)
 def test_sensor_places_never_leak(
     steps: list[Callable[[NextRun], NextRun]], expected: list[float]
 ) -> None:
@@ -180,7 +181,7 @@ WRONG = [
 ]
 
 
-@pytest.mark.parametrize(("field", "typed", "said"), WRONG, ids=[f"{f} {t!r}" for f, t, _ in WRONG])
+@pytest.mark.parametrize("field, typed, said", WRONG, ids=[f"{f} {t!r}" for f, t, _ in WRONG])
 def test_a_wrong_value_is_refused(field: str, typed: str, said: str) -> None:
     from tuisim.app.form import reason
 
@@ -252,7 +253,7 @@ RIGHT: list[tuple[str, str, Callable[[NextRun], object], object]] = [
 
 
 @pytest.mark.parametrize(
-    ("field", "entered", "look", "expected"),
+    "field, entered, look, expected",
     RIGHT,
     ids=[f"{field} {entered}" for field, entered, _, _ in RIGHT],
 )

@@ -24,7 +24,7 @@ POSTS = tuple(Obstacle(x, y, 150, 150) for x in range(200, 2300, 500) for y in (
 
 
 @pytest.mark.parametrize(
-    ("pose", "obstacles", "solid", "fit"),
+    "pose, obstacles, solid, fit",
     [
         (Pose(1000, 500, 0), (), False, True),
         (Pose(50, 500, 0), (), False, False),
@@ -102,7 +102,7 @@ def test_a_pose_needs_a_name(name: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "said"),
+    "text, said",
     [
         ("[poses.a]\nx_mm = 1\ny_mm = 2\n", "poses.a.heading_deg: is missing"),
         ("[poses.a]\nx_mm = nan\ny_mm = 2\nheading_deg = 0\n", "poses.a.x_mm: must be a number"),

@@ -8,6 +8,7 @@ from xml.etree import ElementTree
 import pytest
 from PIL import Image
 
+from tests.cases import cases
 from tests.conftest import Command
 from tests.running import told
 
@@ -124,7 +125,7 @@ BAD = {
 }
 
 
-@pytest.mark.parametrize(("words", "expected"), BAD.values(), ids=BAD)
+@cases("words, expected", BAD)
 def test_bad_input(
     here: Command, log: Path, tmp_path: Path, words: tuple[str, ...], expected: str
 ) -> None:

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import pytest
-
+from tests.cases import cases
 from tuisim.commands.system import diagnosis
 from tuisim.commands.system.diagnosis import Finding, State, prevents_use
 from tuisim.terminal.picture_options import CellSet
@@ -84,7 +83,7 @@ JUDGED: dict[str, tuple[Finding, State, str]] = {
 }
 
 
-@pytest.mark.parametrize(("finding", "state", "advice"), JUDGED.values(), ids=JUDGED)
+@cases("finding, state, advice", JUDGED)
 def test_each_finding_says_what_to_do(finding: Finding, state: State, advice: str) -> None:
     assert finding.state is state
     assert advice in finding.advice

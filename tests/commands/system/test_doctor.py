@@ -13,6 +13,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.cases import cases
 from tests.conftest import ROOT, Command
 from tuisim.commands.system import diagnosis
 
@@ -110,7 +111,7 @@ ASKED = {
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("environment", "expected"), ASKED.values(), ids=ASKED)
+@cases("environment, expected", ASKED)
 def test_asks_the_terminal(
     environment: dict[str, str], expected: tuple[str, ...], home: Path
 ) -> None:

@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 
+from tests.cases import cases
 from tests.conftest import Command
 from tuisim.app import app as lab_app
 from tuisim.commands import app as app_command
@@ -46,42 +47,24 @@ def test_the_file_is_written_once(config: Path, here: Command) -> None:
     assert f"{config}: exists already" in again.stderr
 
 
-@pytest.mark.parametrize(
-    ("text", "problem"),
-    [
-        pytest.param(
-            "[app]\nfps = 0", "app.fps: must be a whole number from 1 to 60", id="a value"
-        ),
-        pytest.param(
+@cases(
+    "text, problem",
+    {
+        "a value": ("[app]\nfps = 0", "app.fps: must be a whole number from 1 to 60"),
+        "a theme": (
             "[app]\ntheme = 'lite'",
             "app.theme: no such theme 'lite' (did you mean light?)",
-            id="a theme",
         ),
-        pytest.param(
-            "[keys]\nrnu = 'x'", "keys.rnu: no such action (did you mean run", id="an action"
-        ),
-        pytest.param(
-            "[keys]\nrun = 'hyper+x'", "keys.run: no such key 'hyper+x' (a character", id="a key"
-        ),
-        pytest.param(
-            "[keys]\nrun = 'esc'", "keys.run: esc leaves a field and cannot", id="a key that stays"
-        ),
-        pytest.param(
-            "[keys]\nrun = 'ctrl+i'",
-            "keys.run: ctrl+i goes to the next",
-            id="the same in a terminal",
-        ),
-        pytest.param(
-            "[keys]\nrun = 'S'",
-            "keys.run: S is also the key of stop (Stop the program)",
-            id="taken",
-        ),
-        pytest.param(
+        "an action": ("[keys]\nrnu = 'x'", "keys.rnu: no such action (did you mean run"),
+        "a key": ("[keys]\nrun = 'hyper+x'", "keys.run: no such key 'hyper+x' (a character"),
+        "a key that stays": ("[keys]\nrun = 'esc'", "keys.run: esc leaves a field and cannot"),
+        "the same in a terminal": ("[keys]\nrun = 'ctrl+i'", "keys.run: ctrl+i goes to the next"),
+        "taken": ("[keys]\nrun = 'S'", "keys.run: S is also the key of stop (Stop the program)"),
+        "both new": (
             "[keys]\nrun = 'f5'\nstop = ['S', 'f5']",
             "keys.stop: F5 is also the key of run",
-            id="both new",
         ),
-    ],
+    },
 )
 def test_what_is_wrong_ends_the_command(
     text: str, problem: str, config: Path, here: Command
@@ -94,14 +77,14 @@ def test_what_is_wrong_ends_the_command(
     assert f"tuisim: {config}: {problem}" in done.stderr
 
 
-@pytest.mark.parametrize(
-    ("words", "noise"),
-    [
-        pytest.param(["p.py"], 7, id="applies"),
-        pytest.param(["p.py", "-M", "0"], 0, id="a switch is above"),
-        pytest.param(["magic.py"], 3, id="a magic line is above"),
-        pytest.param(["--world", "w.toml", "p.py"], 0, id="not in a world"),
-    ],
+@cases(
+    "words, noise",
+    {
+        "applies": (["p.py"], 7),
+        "a switch is above": (["p.py", "-M", "0"], 0),
+        "a magic line is above": (["magic.py"], 3),
+        "not in a world": (["--world", "w.toml", "p.py"], 0),
+    },
 )
 def test_run_tells_what_the_settings_change(
     words: list[str], noise: int, config: Path, tmp_path: Path, here: Command
@@ -143,15 +126,15 @@ def test_a_batch_gives_everybody_the_same(config: Path, tmp_path: Path, here: Co
     assert here("batch", "p.py", "--seeds", "0..1").returncode == 0
 
 
-@pytest.mark.parametrize(
-    ("words", "noise"),
-    [
-        pytest.param(["open", "p.py"], 7, id="a program"),
-        pytest.param(["open"], 7, id="nothing"),
-        pytest.param(["open", "w.toml"], 0, id="a world"),
-        pytest.param(["open", "--goals", "log_greys_goals.toml", "p.py"], 0, id="goals"),
-        pytest.param(["learn", "first-run"], 0, id="a lesson"),
-    ],
+@cases(
+    "words, noise",
+    {
+        "a program": (["open", "p.py"], 7),
+        "nothing": (["open"], 7),
+        "a world": (["open", "w.toml"], 0),
+        "goals": (["open", "--goals", "log_greys_goals.toml", "p.py"], 0),
+        "a lesson": (["learn", "first-run"], 0),
+    },
 )
 def test_the_app_opens_with_the_settings(
     words: list[str],

@@ -8,7 +8,7 @@ from tests.config.program_robot.reading import built
 
 
 @pytest.mark.parametrize(
-    ("text", "doubt"),
+    "text, doubt",
     [
         (
             "[LargeMotor(p) for p in (OUTPUT_A, OUTPUT_B, OUTPUT_C)]",

@@ -15,7 +15,7 @@ def found(text: str) -> list[tuple[int, str]]:
 
 
 @pytest.mark.parametrize(
-    ("text", "what"),
+    "text, what",
     [
         ("print(f'{1:{2}d}')", "f-string"),
         ("if (n := 3): pass", "assignment in an expression, :="),

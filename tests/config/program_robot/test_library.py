@@ -16,7 +16,7 @@ from tuisim.config.program_robot.library import (
 
 
 @pytest.mark.parametrize(
-    ("text", "port"),
+    "text, port",
     [
         ("outA", "outA"),
         (" ev3-ports:in4\n", "in4"),

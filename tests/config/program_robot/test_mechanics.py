@@ -10,7 +10,7 @@ from tests.config.program_robot.reading import USUAL, built, changed
 
 
 @pytest.mark.parametrize(
-    ("text", "reversed_"),
+    "text, reversed_",
     [
         (
             "a, b = LargeMotor(OUTPUT_B), LargeMotor(OUTPUT_C)\na.polarity = b.polarity = 'inversed'",
@@ -70,7 +70,7 @@ STOPS: Mapping[str, tuple[str, tuple[float | None, float | None]]] = {
 
 
 @pytest.mark.parametrize(
-    ("text", "reversed_"),
+    "text, reversed_",
     [
         ("def vorwaerts():\n    t.on(-40, -40)", True),
         ("def drive_forward(speed=40):\n    t.on_for_rotations(-speed, -speed, 2)", True),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from tests.cases import cases
 from tuisim.config.program_robot.thresholds import read_in, thresholds_in
 from tuisim.core.sensors.color import LightRead
 from tuisim.core.spec import RobotSpec
@@ -26,48 +27,41 @@ def found(text: str, prelude: str = "none") -> dict[str, list[str]]:
     }
 
 
-@pytest.mark.parametrize(
-    ("text", "expected"),
-    [
-        pytest.param(
+@cases(
+    "text, expected",
+    {
+        "as it is": (
             "while colorLeft.reflected_light_intensity_pc > 5:\n    pass\n",
             {"left": ["reflected_light_intensity_pc > 5 1"]},
-            id="as it is",
         ),
-        pytest.param(
+        "by names, the other way round": (
             "LIMIT = 40\nseen = colorRight.reflected_light_intensity\nif LIMIT >= seen:\n    pass\n",
             {"right": ["reflected_light_intensity <= 40 3"]},
-            id="by names, the other way round",
         ),
-        pytest.param(
+        "colours": (
             "def dark(value):\n    return value < 3\n\n"
             "if colorLeft.color == 5 or colorLeft.color_name == 'Blue':\n    pass\n",
             {"left": ["color == Red 4", "color_name == Blue 4"]},
-            id="colours",
         ),
-        pytest.param(
+        "an aim": (
             "error = int(colorLeft.full_reflected_light_intensity) - 50\n",
             {"left": ["full_reflected_light_intensity aim 50 1"]},
-            id="an aim",
         ),
-        pytest.param(
+        "between": (
             "if 20 < colorLeft.reflected_light_intensity <= 60:\n  pass\n",
             {"left": ["reflected_light_intensity > 20 1", "reflected_light_intensity <= 60 1"]},
-            id="between",
         ),
-        pytest.param(
+        "no number": (
             "if colorLeft.reflected_light_intensity > colorRight.reflected_light_intensity: pass\n",
             {},
-            id="no number",
         ),
-        pytest.param("if gyro.angle > 90: pass\nif len([]) > 3: pass\n", {}, id="others"),
-        pytest.param("if (:\n", {}, id="no Python"),
-        pytest.param(
+        "others": ("if gyro.angle > 90: pass\nif len([]) > 3: pass\n", {}),
+        "no Python": ("if (:\n", {}),
+        "too deep": (
             f"if colorLeft.reflected_light_intensity < {'+'.join(['1'] * 5000)}: pass\n",
             {},
-            id="too deep",
         ),
-    ],
+    },
 )
 def test_of_a_program_with_the_prelude(text: str, expected: dict[str, list[str]]) -> None:
     assert found(text, "preloaded") == expected
@@ -91,7 +85,7 @@ def test_of_pybricks() -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "read"),
+    "text, read",
     [
         ("print(eye.reflection())", LightRead.REFLECTION),
         ("colorLeft.reflected_light_intensity_pc", LightRead.PERCENT),

@@ -10,7 +10,7 @@ MS = 1_000_000
 
 
 @pytest.mark.parametrize(
-    ("jiffies", "fires_at"),
+    "jiffies, fires_at",
     [(0, 1), (5, 6), (63, 64), (64, 72), (100, 104), (504, 512), (505, 512), (1000, 1024)],
 )
 def test_long_timers_fire_late(jiffies: int, fires_at: int) -> None:
@@ -25,6 +25,6 @@ def test_a_run_begins_anywhere_on_the_kernels_clock() -> None:
     assert clock.find_expiry_ns(0, 100) == clock.begin_ns(168) == 1075 * MS
 
 
-@pytest.mark.parametrize(("time_ms", "jiffies"), [(0, 0), (1, 1), (10, 1), (11, 2), (1000, 100)])
+@pytest.mark.parametrize("time_ms, jiffies", [(0, 0), (1, 1), (10, 1), (11, 2), (1000, 100)])
 def test_a_time_is_rounded_up(time_ms: int, jiffies: int) -> None:
     assert round_up(time_ms) == jiffies

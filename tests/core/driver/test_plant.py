@@ -15,7 +15,7 @@ def steady_dps(axle: Axle, duty: int) -> float:
 
 
 @pytest.mark.parametrize(
-    ("plant", "battery_v", "expected_dps"),
+    "plant, battery_v, expected_dps",
     [(LARGE, 8.0, 930), (LARGE, 7.2, 834), (LARGE, 8.38, 976), (MEDIUM, 8.38, 1445)],
 )
 def test_the_battery_sets_the_highest_speed(
@@ -30,7 +30,7 @@ def test_a_free_motor_has_the_measured_time_constant() -> None:
     assert build_circuit(robot, 8.0).time_constant_s == pytest.approx(0.089, abs=0.001)
 
 
-@pytest.mark.parametrize(("duty", "turns"), [(6, False), (-6, False), (7, True), (-7, True)])
+@pytest.mark.parametrize("duty, turns", [(6, False), (-6, False), (7, True), (-7, True)])
 def test_a_motor_at_rest_needs_a_torque_to_start(duty: int, turns: bool) -> None:
     assert bool(steady_dps(Axle(LARGE, 8.0), duty)) is turns
 

@@ -11,6 +11,7 @@ from typing import Any
 
 import pytest
 
+from tests.cases import cases
 from tuisim.config import mat_cache, mats
 from tuisim.core.field import OUTSIDE_DISC_RGB, Field, disc_mask, disc_pixels
 from tuisim.core.geometry import Pose
@@ -73,7 +74,7 @@ def test_all_properties_on_grey_bands(x_mm: int, sensor: ColorSensorSpec, mat: O
 
 
 @pytest.mark.parametrize(
-    ("x_mm", "rgb", "code", "name", "red_percent", "mean_percent"),
+    "x_mm, rgb, code, name, red_percent, mean_percent",
     [
         (100, (255, 255, 255), 6, "White", 100, 100),
         (300, (255, 0, 0), 5, "Red", 100, 100 / 3),
@@ -100,19 +101,19 @@ def test_rainbow_bands(
 
 
 @pytest.mark.slow_cases("far off, other side")
-@pytest.mark.parametrize(
-    ("name", "x_mm", "red"),
-    [
-        pytest.param("Grey_bands", 210.999, 255, id="before the band"),
-        pytest.param("Grey_bands", 211, 253.967, id="one column in"),
-        pytest.param("Grey_bands", 212, 252.705, id="two columns in"),
-        pytest.param("Empty_Map", 2317, 255, id="box within the field"),
-        pytest.param("Empty_Map", 2326, 213.2, id="a little off"),
-        pytest.param("Empty_Map", 2334.6, 87.8, id="half off"),
-        pytest.param("Empty_Map", 2343, 0, id="wholly off"),
-        pytest.param("Empty_Map", 1e6, 0, id="far off"),
-        pytest.param("Empty_Map", -1e6, 0, id="far off, other side"),
-    ],
+@cases(
+    "name, x_mm, red",
+    {
+        "before the band": ("Grey_bands", 210.999, 255),
+        "one column in": ("Grey_bands", 211, 253.967),
+        "two columns in": ("Grey_bands", 212, 252.705),
+        "box within the field": ("Empty_Map", 2317, 255),
+        "a little off": ("Empty_Map", 2326, 213.2),
+        "half off": ("Empty_Map", 2334.6, 87.8),
+        "wholly off": ("Empty_Map", 2343, 0),
+        "far off": ("Empty_Map", 1e6, 0),
+        "far off, other side": ("Empty_Map", -1e6, 0),
+    },
 )
 def test_edges(name: str, x_mm: float, red: float, mat: OpenMat) -> None:
     seen = color.reading(LEFT, at(x_mm, 500), mat(name))
@@ -131,7 +132,7 @@ def glow(inner: int, outer: int, col: int, row: int) -> int:
 
 @pytest.mark.quick_cases("20-*")
 @pytest.mark.parametrize(
-    ("name", "red_at"),
+    "name, red_at",
     [
         ("Linear_grey", linear_grey),
         ("Radial_grey", lambda col, row: glow(255, 0, col, row)),
@@ -161,48 +162,48 @@ def test_gradients_follow_their_formula(
     assert color.reading(sensor, instant, mat(name)).red == sum(beneath) / len(beneath)
 
 
-@pytest.mark.parametrize(("diameter", "pixels"), [(10, 69), (20, 305), (30, 697)])
+@pytest.mark.parametrize("diameter, pixels", [(10, 69), (20, 305), (30, 697)])
 def test_disc_has_the_known_number_of_pixels(diameter: int, pixels: int) -> None:
     assert disc_pixels(diameter) == pixels
 
 
-@pytest.mark.parametrize(
-    ("pose", "corner"),
-    [
-        pytest.param(Pose(500, 500, 0), (520, 613), id="facing right"),
-        pytest.param(Pose(500, 500, 90), (470, 603), id="facing up"),
-        pytest.param(Pose(500, 500, 180), (460, 653), id="facing left"),
-        pytest.param(Pose(500, 500, -90), (510, 663), id="facing down"),
-        pytest.param(Pose(-20.5, 500, 0), (0, 613), id="half a pixel off is cut toward zero"),
-        pytest.param(Pose(-21.5, 500, 0), (-1, 613), id="one and a half off"),
-        pytest.param(Pose(500.9, 500, 0), (520, 613), id="fractions are cut"),
-    ],
+@cases(
+    "pose, corner",
+    {
+        "facing right": (Pose(500, 500, 0), (520, 613)),
+        "facing up": (Pose(500, 500, 90), (470, 603)),
+        "facing left": (Pose(500, 500, 180), (460, 653)),
+        "facing down": (Pose(500, 500, -90), (510, 663)),
+        "half a pixel off is cut toward zero": (Pose(-20.5, 500, 0), (0, 613)),
+        "one and a half off": (Pose(-21.5, 500, 0), (-1, 613)),
+        "fractions are cut": (Pose(500.9, 500, 0), (520, 613)),
+    },
 )
 def test_box_corner(pose: Pose, corner: tuple[int, int]) -> None:
     nudged = Pose(pose.x_mm + 1e-9, pose.y_mm - 1e-9, pose.heading_deg)
     assert color.box_corner(nudged, LEFT) == corner
 
 
-@pytest.mark.parametrize(
-    ("rgb", "code"),
-    [
-        pytest.param((0, 0, 0), 1, id="black"),
-        pytest.param((76, 76, 76), 1, id="grey of value 29"),
-        pytest.param((77, 77, 77), 6, id="grey of value 30"),
-        pytest.param((255, 255, 255), 6, id="white"),
-        pytest.param((100, 81, 81), 6, id="saturation 19 counts as grey"),
-        pytest.param((100, 80, 80), 5, id="saturation 20 has a colour"),
-        pytest.param((60, 59, 59), 1, id="dark, no colour"),
-        pytest.param((240, 119, 0), 5, id="hue 29"),
-        pytest.param((240, 120, 0), 4, id="hue 30"),
-        pytest.param((121, 240, 0), 4, id="hue 89"),
-        pytest.param((120, 240, 0), 3, id="hue 90"),
-        pytest.param((0, 240, 168), 3, id="hue 162"),
-        pytest.param((0, 240, 172), 2, id="hue 163"),
-        pytest.param((168, 0, 240), 2, id="hue 282"),
-        pytest.param((172, 0, 240), 5, id="hue 283"),
-        pytest.param((255, 0, 1), 5, id="hue 359"),
-    ],
+@cases(
+    "rgb, code",
+    {
+        "black": ((0, 0, 0), 1),
+        "grey of value 29": ((76, 76, 76), 1),
+        "grey of value 30": ((77, 77, 77), 6),
+        "white": ((255, 255, 255), 6),
+        "saturation 19 counts as grey": ((100, 81, 81), 6),
+        "saturation 20 has a colour": ((100, 80, 80), 5),
+        "dark, no colour": ((60, 59, 59), 1),
+        "hue 29": ((240, 119, 0), 5),
+        "hue 30": ((240, 120, 0), 4),
+        "hue 89": ((121, 240, 0), 4),
+        "hue 90": ((120, 240, 0), 3),
+        "hue 162": ((0, 240, 168), 3),
+        "hue 163": ((0, 240, 172), 2),
+        "hue 282": ((168, 0, 240), 2),
+        "hue 283": ((172, 0, 240), 5),
+        "hue 359": ((255, 0, 1), 5),
+    },
 )
 def test_color_code(rgb: tuple[int, int, int], code: int) -> None:
     assert color.color_code(*rgb) == code
@@ -247,14 +248,14 @@ def test_noise_is_the_same_when_read_twice(mat: OpenMat) -> None:
     assert noisy(mat) == noisy(mat)
 
 
-@pytest.mark.parametrize(
+@cases(
     "other",
-    [
-        pytest.param({"seed": 2}, id="seed"),
-        pytest.param({"tick": 8}, id="tick"),
-        pytest.param({"sensor": RIGHT}, id="sensor"),
-        pytest.param({"light": 21}, id="level"),
-    ],
+    {
+        "seed": {"seed": 2},
+        "tick": {"tick": 8},
+        "sensor": {"sensor": RIGHT},
+        "level": {"light": 21},
+    },
 )
 def test_noise_differs_by(other: dict[str, Any], mat: OpenMat) -> None:
     assert noisy(mat) != noisy(mat, **other)
@@ -271,7 +272,7 @@ def test_noise_stays_within_its_level_and_reaches_it(light: int, mat: OpenMat) -
 
 
 @pytest.mark.parametrize(
-    ("x_mm", "low", "high"), [(1525, 0, 20), (125, 235, 255)], ids=["black", "white"]
+    "x_mm, low, high", [(1525, 0, 20), (125, 235, 255)], ids=["black", "white"]
 )
 def test_noise_is_clamped(x_mm: float, low: int, high: int, mat: OpenMat) -> None:
     seen = color.reading(LEFT, at(x_mm, 500, light=20), mat("Grey_bands"))

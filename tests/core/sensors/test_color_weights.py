@@ -39,7 +39,7 @@ def seen(field: Field, x_mm: float, strategy: str, light: int = 0) -> float:
     return reading(replace(LEFT, strategy=strategy), instant, field).red
 
 
-@pytest.mark.parametrize(("x_mm", "reds"), EDGE.items())
+@pytest.mark.parametrize("x_mm, reds", EDGE.items())
 def test_readings_across_an_edge(grey_bands: Field, x_mm: int, reds: tuple[float, ...]) -> None:
     found = tuple(seen(grey_bands, float(x_mm), strategy) for strategy in STRATEGIES)
     assert found == pytest.approx(reds, abs=0.005)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from tests.cases import cases
 from tuisim.core.geometry import Pose
 from tuisim.core.sensors.ultrasonic import distance_mm, rays_mm
 from tuisim.core.spec import Obstacle, UltrasonicSpec, WorldSpec
@@ -14,7 +15,7 @@ POST = WorldSpec(obstacles=(Obstacle(900, 500, 200, 200),))
 
 
 @pytest.mark.parametrize(
-    ("heading_deg", "expected_mm"),
+    "heading_deg, expected_mm",
     [
         (0.0, 1342),
         (40.0, 1424),
@@ -29,24 +30,23 @@ def test_walls_from_the_middle(heading_deg: float, expected_mm: int) -> None:
     assert distance_mm(Pose(1000, 500, heading_deg), SENSOR, WALLS) == expected_mm
 
 
-@pytest.mark.parametrize(
-    ("pose", "world", "expected_mm"),
-    [
-        pytest.param(Pose(500, 600, 0), POST, 380, id="post in front"),
-        pytest.param(Pose(1400, 600, 180), POST, 280, id="post from the right"),
-        pytest.param(Pose(1000, 300, 90), POST, 180, id="post from below"),
-        pytest.param(Pose(1000, 1000, -90), POST, 280, id="post from above"),
-        pytest.param(Pose(500, 1000, 0), POST, 1842, id="past the post"),
-        pytest.param(Pose(500, 600, 180), POST, 480, id="post behind"),
-        pytest.param(Pose(500, 500, 0), WorldSpec(walls=False), 2550, id="no echo"),
-        pytest.param(
+@cases(
+    "pose, world, expected_mm",
+    {
+        "post in front": (Pose(500, 600, 0), POST, 380),
+        "post from the right": (Pose(1400, 600, 180), POST, 280),
+        "post from below": (Pose(1000, 300, 90), POST, 180),
+        "post from above": (Pose(1000, 1000, -90), POST, 280),
+        "past the post": (Pose(500, 1000, 0), POST, 1842),
+        "post behind": (Pose(500, 600, 180), POST, 480),
+        "no echo": (Pose(500, 500, 0), WorldSpec(walls=False), 2550),
+        "post, no walls": (
             Pose(500, 500, 0),
             WorldSpec(walls=False, obstacles=POST.obstacles),
             380,
-            id="post, no walls",
         ),
-        pytest.param(Pose(3000, 500, 0), WALLS, 2550, id="outside, facing away"),
-    ],
+        "outside, facing away": (Pose(3000, 500, 0), WALLS, 2550),
+    },
 )
 def test_distance(pose: Pose, world: WorldSpec, expected_mm: int) -> None:
     assert distance_mm(pose, SENSOR, world) == expected_mm

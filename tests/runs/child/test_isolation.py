@@ -163,7 +163,7 @@ def test_what_is_open_and_has_no_name_is_counted(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("files", "size", "says"), [(3, 1, ""), (4, 1, "more than 3 files"), (1, 9, "more than")]
+    "files, size, says", [(3, 1, ""), (4, 1, "more than 3 files"), (1, 9, "more than")]
 )
 def test_what_is_added_to_the_folders_has_limits(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, files: int, size: int, says: str

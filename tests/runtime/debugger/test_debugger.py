@@ -6,6 +6,7 @@ from collections.abc import Callable
 
 import pytest
 
+from tests.cases import cases
 from tests.running import Done, Run, Start, until
 from tests.runtime.debugging import Driver
 from tuisim.errors import ConfigError
@@ -80,13 +81,13 @@ def places(driver: Driver, how: LineStep, most: int) -> list[int]:
     raise AssertionError("it never ended")
 
 
-@pytest.mark.parametrize(
-    ("how", "lines"),
-    [
-        pytest.param(LineStep.OVER, [1, 2, 6, 7, 8, 9, 7, 8, 9, 7, 8, 9, 7], id="over"),
-        pytest.param(LineStep.INTO, [1, 2, 6, *[7, 8, 3, 4, 5, 9] * 3, 7], id="into"),
-        pytest.param(LineStep.OUT, [1], id="out"),
-    ],
+@cases(
+    "how, lines",
+    {
+        "over": (LineStep.OVER, [1, 2, 6, 7, 8, 9, 7, 8, 9, 7, 8, 9, 7]),
+        "into": (LineStep.INTO, [1, 2, 6, *[7, 8, 3, 4, 5, 9] * 3, 7]),
+        "out": (LineStep.OUT, [1]),
+    },
 )
 def test_steps_show_the_lines_of_the_program_only(
     debug: Callable[..., Driver], how: LineStep, lines: list[int]
@@ -172,7 +173,7 @@ CONDITIONS = {
 }
 
 
-@pytest.mark.parametrize(("text", "expected"), CONDITIONS.items(), ids=CONDITIONS)
+@pytest.mark.parametrize("text, expected", CONDITIONS.items(), ids=CONDITIONS)
 def test_conditions_are_evaluated_without_moving_anything(
     debug: Callable[..., Driver], text: str, expected: tuple[str, int | None]
 ) -> None:
@@ -231,7 +232,7 @@ for i in range(2):
 
 
 @pytest.mark.parametrize(
-    ("line", "held"),
+    "line, held",
     [(2, 4), (3, 4), (5, 7), (8, 9), (10, 11)],
     ids=["blank", "comment", "doc", "between", "in a loop"],
 )
@@ -333,7 +334,7 @@ WAITS = {
 }
 
 
-@pytest.mark.parametrize(("text", "note"), WAITS.values(), ids=WAITS)
+@cases("text, note", WAITS)
 def test_what_is_waited_for_is_said(debug: Callable[..., Driver], text: str, note: str) -> None:
     driver = debug(text, hold_at=(30, BEFORE_NEXT_TICK), asks_user=True)
     assert driver.paused().reason == "instant"
@@ -363,7 +364,7 @@ HELD_THEN_STOPPED = {
 
 
 @pytest.mark.slow_cases("with a loop around")
-@pytest.mark.parametrize(("text", "how"), HELD_THEN_STOPPED.values(), ids=HELD_THEN_STOPPED)
+@cases("text, how", HELD_THEN_STOPPED)
 def test_stop_works_wherever_it_holds(
     debug: Callable[..., Driver], text: str, how: dict[str, object]
 ) -> None:
@@ -405,7 +406,7 @@ RUNNING = {
 }
 
 
-@pytest.mark.parametrize("text", RUNNING.values(), ids=RUNNING)
+@cases("text", RUNNING)
 def test_a_break_set_while_the_program_runs_is_met(debug: Callable[..., Driver], text: str) -> None:
     driver = debug("print('A: 1')\n" + text, speed=1.0)
     until(driver.run, lambda: driver.run.output.length > 0)

@@ -23,7 +23,7 @@ LOOKS: dict[str, tuple[str, str | tuple[str, ...]]] = {
 
 
 @pytest.mark.slow_cases("repr that loops", "repr of 20 MB")
-@pytest.mark.parametrize(("name", "shown"), LOOKS.items(), ids=LOOKS)
+@pytest.mark.parametrize("name, shown", LOOKS.items(), ids=LOOKS)
 def test_hostile_values_are_cut_safely(
     start: Start, name: str, shown: tuple[str, str | tuple[str, ...]]
 ) -> None:

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from tests.cases import cases
 from tuisim.runtime.debugger.value_text import (
     MOST_CHARACTERS,
     MOST_ITEMS,
@@ -44,7 +45,7 @@ TEXTS: dict[str, tuple[object, str]] = {
 }
 
 
-@pytest.mark.parametrize(("value", "text"), TEXTS.values(), ids=TEXTS)
+@cases("value, text", TEXTS)
 def test_a_value_as_text(value: object, text: str) -> None:
     assert Renderer(1.0).render(value) == text
 
@@ -79,7 +80,7 @@ def test_an_error_whose_text_raises_is_its_kind() -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "found"),
+    "text, found",
     [("a + 1", ("4", "")), (" a ", ("3", "")), ("b", ("", "NameError: name 'b' is not defined"))],
     ids=["value", "spaces", "error"],
 )
@@ -88,7 +89,7 @@ def test_an_expression_has_a_value_or_an_error(text: str, found: tuple[str, str]
 
 
 @pytest.mark.parametrize(
-    ("text", "answer"),
+    "text, answer",
     [
         ("a > 2", ".is true"),
         ("a > 3", "."),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from tests.cases import cases
 from tests.running import Run, Start, until
 from tuisim.app.snapshot import busy_loop_words
 from tuisim.protocol import BusyLoop, Message
@@ -94,7 +95,7 @@ PROGRAMS = {
 @pytest.mark.quick_cases(
     "sleep", "spinning threads", "error in a thread", "event", "queue", "clock loop"
 )
-@pytest.mark.parametrize(("text", "lines"), PROGRAMS.values(), ids=PROGRAMS)
+@cases("text, lines", PROGRAMS)
 def test_time_and_threads(run: Run, text: str, lines: list[str] | None) -> None:
     first = run(text)
     assert first.ended.end == "finished", first.errors
@@ -147,7 +148,7 @@ def test_lines_of_the_program_are_recorded(run: Run) -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "told"),
+    "text, told",
     [
         (
             "import time\ntime.sleep(1)\nx = 0\nwhile True:\n    x += 1\n",

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.cases import cases
 from tests.running import Run
 from tuisim.runs.side_files import MOST_READS, FileRead, read_reads, state_of
 
@@ -50,7 +51,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-@pytest.mark.parametrize("text", READS.values(), ids=READS)
+@cases("text", READS)
 def test_a_file_that_was_there_is_noted_as_it_was(run: Run, folder: Path, text: str) -> None:
     before = state_of(str(folder / "data.txt"))
     done = run(SETUP + text, prelude="none")
@@ -58,7 +59,7 @@ def test_a_file_that_was_there_is_noted_as_it_was(run: Run, folder: Path, text: 
     assert read_reads(done.run.folder).files == (before,)
 
 
-@pytest.mark.parametrize("text", NO_READS.values(), ids=NO_READS)
+@cases("text", NO_READS)
 def test_what_the_run_has_made_itself_is_not_noted(run: Run, folder: Path, text: str) -> None:
     done = run(SETUP + text, prelude="none")
     assert done.ended.end == "finished", done.errors

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from tests.cases import cases
 from tests.running import Run
 
 NOW = "import time\ndef now(): return round(time.monotonic(), 1)\n"
@@ -75,7 +76,7 @@ PROGRAMS = {
 
 
 @pytest.mark.slow_cases("pandas")
-@pytest.mark.parametrize(("text", "lines"), PROGRAMS.values(), ids=PROGRAMS)
+@cases("text, lines", PROGRAMS)
 def test_it_is_the_runs(run: Run, text: str, lines: list[str] | None) -> None:
     first = run(text, prelude="none")
     assert first.ended.end == "finished", first.errors

@@ -5,8 +5,7 @@ from __future__ import annotations
 import importlib
 import inspect
 
-import pytest
-
+from tests.cases import cases
 from tests.running import Run
 
 MODULES = (
@@ -52,7 +51,7 @@ def builtins_of(module: str) -> list[tuple[str, str, str]]:
     ]
 
 
-@pytest.mark.parametrize("check", CHECKS.values(), ids=CHECKS)
+@cases("check", CHECKS)
 def test_every_builtin_is_still_one(run: Run, check: str) -> None:
     names = [row for module in MODULES for row in builtins_of(module)]
     done = run(WALK.format(names=names, check=check), prelude="none")
@@ -147,7 +146,7 @@ VALUES = {
 }
 
 
-@pytest.mark.parametrize(("text", "lines", "errors"), VALUES.values(), ids=VALUES)
+@cases("text, lines, errors", VALUES)
 def test_what_they_give_passes_for_the_real_thing(
     run: Run, text: str, lines: list[str], errors: list[str]
 ) -> None:

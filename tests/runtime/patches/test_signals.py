@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from tests.cases import cases
 from tests.running import Run
 
 HEAD = """\
@@ -55,7 +56,7 @@ PROGRAMS: dict[str, tuple[str, str, list[str]]] = {
 }
 
 
-@pytest.mark.parametrize(("handler", "text", "lines"), PROGRAMS.values(), ids=PROGRAMS)
+@cases("handler, text, lines", PROGRAMS)
 def test_an_interrupt_comes_in_simulated_time(
     run: Run, handler: str, text: str, lines: list[str]
 ) -> None:
