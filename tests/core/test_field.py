@@ -6,7 +6,7 @@ import pytest
 
 from tuisim.core.field import Field, disc_mask
 
-WIDTH, HEIGHT = 6, 5
+WIDTH, HEIGHT = 9, 8
 
 
 def pixel(col: int, row: int) -> tuple[int, int, int]:
@@ -15,7 +15,7 @@ def pixel(col: int, row: int) -> tuple[int, int, int]:
     return (at, at + 50, at + 100) if 0 <= col < WIDTH and 0 <= row < HEIGHT else (0, 0, 0)
 
 
-@pytest.mark.parametrize("diameter", [2, 3, 4])
+@pytest.mark.parametrize("diameter", [2, 3, 7])
 def test_what_is_off_the_mat_is_black(diameter: int) -> None:
     def disc_at(col: int, row: int) -> list[tuple[int, int, int]]:
         mask = disc_mask(diameter)
