@@ -41,15 +41,20 @@ class Robot:
     def command(self, chance: random.Random) -> None:
         """Give any command, some milliseconds after a tick."""
         now_us, motor = self.now_us + chance.randrange(10) * 1000, chance.choice(self.motors)
-        match chance.randrange(7):
+        match chance.randrange(9):
             case 0:
                 self.base.move(now_us, chance.randrange(-300, 301), chance.choice((0, 0, 90, -37)))
             case 1:
                 self.base.drive(now_us, chance.randrange(-200, 201), chance.randrange(-90, 91))
             case 2:
                 self.base.stop(now_us, chance.choice((None, 0, 4000)))
-            case 3 | 4:
+            case _:
                 self.base.stop(now_us, None)
+                self._command_motor(now_us, motor, chance)
+
+    def _command_motor(self, now_us: int, motor: ServoMotor, chance: random.Random) -> None:
+        match chance.randrange(6):
+            case 0 | 1:
                 settings = motor.control.settings
                 rate = chance.randrange(-1600, 1601)
                 if chance.random() < 0.5:
@@ -57,13 +62,20 @@ class Robot:
                 else:
                     motor.control.run(now_us, motor.measured, rate, settings.acceleration)
                 motor.follow(ending=chance.choice((Ending.COAST, Ending.BRAKE, Ending.HOLD)))
-            case 5:
-                self.base.stop(now_us, None)
+            case 2:
                 motor.control.hold(now_us, chance.randrange(-500_000, 500_000))
                 motor.follow()
-            case _:
-                self.base.stop(now_us, None)
+            case 3:
                 motor.run_freely(now_us, chance.choice((None, 0, -9000, 6000)))
+            case 4:
+                target, rate = chance.randrange(-900, 900), chance.randrange(50, 2000)
+                relative, settings = chance.random() < 0.5, motor.control.settings
+                motor.control.move_to(
+                    now_us, motor.measured, target, rate, settings.acceleration, relative=relative
+                )
+                motor.follow(ending=chance.choice((Ending.COAST, Ending.BRAKE, Ending.HOLD)))
+            case _:
+                motor.set_position(now_us, chance.randrange(-90_000, 90_000))
 
 
 @pytest.mark.parametrize("world", [WORLD, WALLED], ids=["free", "walled"])
@@ -149,3 +161,47 @@ def test_motors_that_a_wall_has_blocked_drive_back(
     # A motion at a speed that was blocked counts on: a move to a position begins there.
     robot.sim.advance(800)
     assert robot.sim.drive.x_mm < at_mm - 100
+
+
+@pytest.mark.parametrize(
+    ("profile", "seed", "given"),
+    [
+        (
+            "lego-micropython",
+            3,
+            "54062 115625 11610 72827 30091 69126 28273 30880 161 49 0 1 52 173914867 144884333 110291 89229",
+        ),
+        (
+            "lego-micropython",
+            5,
+            "105018 109073 28539 40201 31094 58865 24783 29305 173 38 0 2 196 94455534 109546676 96305 76517",
+        ),
+        (
+            "pybricks4",
+            3,
+            "40583 123894 19377 59209 32024 69266 27924 31644 165 47 0 2 151 161878283 114935481 106630 90266",
+        ),
+        (
+            "pybricks4",
+            5,
+            "104786 110496 27647 40395 32402 58899 25169 30464 169 40 0 3 217 96953689 112192895 95167 73697",
+        ),
+    ],
+)
+def test_commands_give_what_they_gave(profile: str, seed: int, given: str) -> None:
+    robot, chance, rows = Robot(WALLED, PROFILES[profile]), random.Random(seed), []
+    for _ in range(150):
+        robot.command(chance)
+        robot.sim.advance(chance.choice((1, 2, 7, 60, 150)))
+        left, right = robot.motors
+        pose, soon_us = robot.sim.pose, robot.now_us + 3000
+        rows.append(
+            (
+                *(pose.x_mm, pose.y_mm, pose.heading_deg, left.position_deg, right.position_deg),
+                *(left.counts_per_s, left.moving_dps, left.aim_dps, left.mode),
+                *(left.resting, left.control.stalled, robot.base.stalled, left.blocked_ticks),
+                *(*robot.base.millis_at(soon_us), *robot.base.rates_at(soon_us)),
+            )
+        )
+    sums = [sum(map(abs, values)) for values in zip(*rows, strict=True)]
+    assert sums == pytest.approx(list(map(int, given.split())), abs=0.6)
