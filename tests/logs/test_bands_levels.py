@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pyarrow as pa
 import pytest
 
 from tuisim.core.noise import clamping
-from tuisim.logs.bands import band_report, in_words, light_noise
+from tuisim.logs.bands import BandReport, band_report, in_words, light_noise
 from tuisim.logs.columns import guess_columns
 from tuisim.logs.levels import greys, light_scale, nearest_greys, without_clamping
 from tuisim.logs.log import Log
@@ -114,4 +116,16 @@ def test_one_sample_at_an_end_is_a_level(
     assert [(band.level, band.samples) for band in report.bands] == levels
     assert ("0.00 black (one sample)" in in_words(report)) is any(
         samples == 1 for _, samples in levels
+    )
+
+
+def test_bands_of_one_level_are_told_together() -> None:
+    columns: dict[str, Any] = {
+        "number": np.arange(4),
+        "grey": ["grey", "", "grey", "white"],
+        "true_level": np.array([50.0, 7.0, 56.0, 100.0]),
+        "samples": np.array([10, 4, 20, 1]),
+    }
+    assert in_words(BandReport("Grey", columns, 1, 36)) == (
+        "Grey: 3 levels: 54.00 grey (2x), 7.00, 100.00 white (one sample); 1 of 36 samples lies on edges"
     )
