@@ -143,3 +143,19 @@ def test_a_command_that_is_left_out_is_asked_for(capsys: pytest.CaptureFixture[s
     assert capsys.readouterr().err.startswith(
         "tuisim: log: no command given (one of summary, bands, "
     )
+
+
+@pytest.mark.parametrize(
+    ("words", "found"),
+    [
+        ("", ""),
+        ("bands a.csv", "bands a.csv"),
+        ("--help", "--help"),
+        ("--json bands a.csv", "bands --json a.csv"),
+    ],
+)
+def test_options_may_stand_before_the_command(words: str, found: str) -> None:
+    group = COMMANDS["log"].load()
+    assert isinstance(group, Group)
+    context = click.Context(group, **group.context_settings)
+    assert group.with_command(context, words.split()) == found.split()

@@ -117,7 +117,9 @@ def test_the_pen_of_a_long_run_takes_little_memory() -> None:
 
 def test_a_timeline_marks_what_the_user_and_breakpoints_did() -> None:
     timeline = Timeline()
-    timeline.switch_to(Recording(stored("tank_drive.on_for_seconds(50, 50, 1)\n")))
+    recording = Recording(stored("tank_drive.on_for_seconds(50, 50, 1)\n"))
+    timeline.switch_to(recording)
+    assert recording.name == f"run {recording.number}"
     timeline.breaks.append(40)
     assert timeline.marks() == [(40, "break")]
     timeline.go(30)
