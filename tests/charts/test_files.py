@@ -15,7 +15,7 @@ from tuisim.analysis.chart import View, chart_of
 from tuisim.analysis.report import default_name, report_of, write_report
 from tuisim.analysis.source import LogRequest, OpenedLog
 from tuisim.charts.files import CHART_FORMATS, image_of, parse_size, save_chart
-from tuisim.charts.layout import Drawing, Shade, Stroke
+from tuisim.charts.layout import Drawing, Raster, Shade, Stroke
 from tuisim.errors import ExportError, LogError
 from tuisim.logs.log import Log
 
@@ -102,11 +102,12 @@ def test_what_is_drawn_has_its_size_in_the_picture() -> None:
         Stroke(points, (255, 0, 0), dots=True),
         Stroke(points + np.array([0, 20]), (0, 0, 255)),
         Shade(10, 45, 20, 10),
+        Raster(10, 65, 20, 10, np.zeros((2, 2, 3), np.uint8)),
     )
-    image = np.asarray(image_of(Drawing("", 40, 60, shapes))).astype(int)
-    is_inked = (image < 250).any(axis=2).reshape(3, 20, 40)
+    image = np.asarray(image_of(Drawing("", 40, 80, shapes))).astype(int)
+    is_inked = (image < 250).any(axis=2).reshape(4, 20, 40)
     sizes = [[int(np.ptp(places)) + 1 for places in part.nonzero()] for part in is_inked]
-    assert sizes == [[7, 27], [3, 24], [11, 21]]
+    assert sizes == [[7, 27], [3, 24], [11, 21], [12, 22]]
 
 
 @pytest.mark.parametrize(
