@@ -8,8 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from tuisim.app.feed import PanelFeed, _thinned, _with_gaps, sample_series
-from tuisim.app.panels.chart import PERIOD_S
+from tuisim.app.feed import CHART_PERIOD_S, PanelFeed, _thinned, _with_gaps, sample_series
 from tuisim.app.snapshot import RunPhase
 from tuisim.runs.records import OutputRow, Stream
 
@@ -89,7 +88,7 @@ def test_a_chart_gets_telemetry_as_often_as_it_is_drawn(
     for _ in range(3):
         feed.show()
     assert len(panels.got) == 1
-    now_s += PERIOD_S
+    now_s += CHART_PERIOD_S
     feed.show()
     assert len(panels.got) == 2
     telemetry.is_far_behind = True

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import re
+import subprocess
+import sys
 from collections.abc import Iterator
 
 import pytest
@@ -100,3 +102,9 @@ async def test_the_panel_with_the_focus_stays_when_the_keyboard_of_a_phone_takes
             await pilot.resize_terminal(64, rows)
             await until(pilot, lambda rows=rows: area.size.height == rows - 1)  # type: ignore[misc]
             assert (area.shown("code"), area.focused_panel()) == (True, "code"), rows
+
+
+def test_a_panel_is_imported_when_it_is_shown() -> None:
+    code = "import sys, tuisim.app.app; print('tuisim.app.panels.chart' in sys.modules)"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    assert done.stdout == "False\n"

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from tuisim.app.panels.chart import PERIOD_S
 from tuisim.app.snapshot import RunPhase
 from tuisim.core.field import Field
 from tuisim.core.sensors import columns_of
@@ -32,6 +31,8 @@ Series = dict[str, tuple[list[float], list[float]]]
 Points = tuple[list[float], list[float]]
 """x and y in mm, NaN where the pen was lifted."""
 
+CHART_PERIOD_S = 0.33
+"""Drawing a chart takes tens of milliseconds: three times a second is enough to follow it."""
 POINTS_A_FEED = 60
 """Most telemetry moments that one call measures; each one costs a reading of every sensor."""
 POINTS_OF_A_RUN = 1500
@@ -221,7 +222,7 @@ class PanelFeed:
     def _chart_telemetry(self, feed: Feed) -> None:
         """Pass on telemetry as often as the chart is drawn; at once where there is much of it, or no more to come."""
         now_s = time.monotonic()
-        is_soon = now_s < self._charted_s + PERIOD_S and not feed.is_far_behind
+        is_soon = now_s < self._charted_s + CHART_PERIOD_S and not feed.is_far_behind
         if is_soon and self._runs.state is RunPhase.RUNNING:
             return
         if (mat := self._charted_mat(feed)) is not None:

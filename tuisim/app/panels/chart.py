@@ -12,6 +12,7 @@ from textual.binding import Binding, BindingType
 from textual.message import Message
 
 from tuisim.app.action import KeyWord
+from tuisim.app.feed import CHART_PERIOD_S
 from tuisim.app.plot_view import PlotView
 from tuisim.app.snapshot import AT_REST, RunPhase, Snapshot
 from tuisim.charts import axes
@@ -24,9 +25,6 @@ from tuisim.terminal.cell_view import LinesPanel
 from tuisim.terminal.pacer import Throttle
 from tuisim.terminal.picture_mode import shows_ascii
 from tuisim.terminal.text_runs import Run, as_markup
-
-PERIOD_S = 0.33
-"""Drawing a chart takes tens of milliseconds: three times a second is enough to follow it."""
 
 
 class Chart(LinesPanel, can_focus=True):
@@ -74,7 +72,7 @@ class Chart(LinesPanel, can_focus=True):
         self._noise, self._is_at_rest = 0, False
         self._spanned: object = None
         """What the bands were found in."""
-        self._throttle = Throttle(self, PERIOD_S, self._draw)
+        self._throttle = Throttle(self, CHART_PERIOD_S, self._draw)
 
     def append(
         self, name: str, times_s: Sequence[float], values: Sequence[float], logged: bool = True
