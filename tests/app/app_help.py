@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import AsyncIterator, Callable
+from contextlib import asynccontextmanager
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +13,7 @@ from textual.widgets import Static
 
 from tests.running import PATIENCE_S
 from tuisim.app.app import AppSettings, LabApp
+from tuisim.app.snapshot import RunPhase
 from tuisim.config.build import build_run_spec
 from tuisim.config.options import Settings
 from tuisim.source import Program
@@ -77,6 +79,24 @@ def screen_text(app: LabApp) -> str:
     return "\n".join(
         "".join(s.text for s in strip) for strip in app.screen._compositor.render_strips()
     )
+
+
+@asynccontextmanager
+async def open_lab(
+    text: str | None = None,
+    background: str = "Grey_bands",
+    *,
+    size: tuple[int, int] = (120, 40),
+    **more: Any,
+) -> AsyncIterator[tuple[Pilot[Any], LabApp]]:
+    """Open the app with a program, with `settings`, and wait until the mat lies there."""
+    async with LabApp(settings(text, background, **more)).run_test(size=size) as pilot:
+        yield pilot, await ready(pilot)
+
+
+async def until_state(pilot: Pilot[Any], state: RunPhase) -> None:
+    """Wait until the run has come so far."""
+    await until(pilot, lambda: lab(pilot).run_controller.state == state)
 
 
 async def until_shown(pilot: Pilot[Any], text: str) -> None:

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from textual.widgets import OptionList
 
-from tests.app.app_help import ready, screen_text, settings, until
+from tests.app.app_help import open_lab, ready, screen_text, settings, until
 from tuisim.analysis.source import LogRequest
 from tuisim.app.action import fitting, most_entries
 from tuisim.app.actions.keys import ACTIONS
@@ -19,8 +19,7 @@ from tuisim.app.dialogs.palette import Palette
 
 
 async def test_it_offers_every_key_those_that_work_now_first_and_finds_one_by_its_title() -> None:
-    async with LabApp(settings()).run_test(size=(120, 40)) as pilot:
-        app = await ready(pilot)
+    async with open_lab() as (pilot, app):
         await pilot.press("ctrl+p")
         await until(pilot, lambda: isinstance(app.screen, Palette) and app.screen.is_ready)
         listed = app.screen.query_one(OptionList)

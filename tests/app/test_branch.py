@@ -8,7 +8,16 @@ from typing import Any
 import pytest
 from textual.pilot import Pilot
 
-from tests.app.app_help import notices, program, ready, screen_text, settings, until, until_shown
+from tests.app.app_help import (
+    notices,
+    program,
+    ready,
+    screen_text,
+    settings,
+    until,
+    until_shown,
+    until_state,
+)
 from tuisim.app.actions.time_travel import to_tick
 from tuisim.app.app import LabApp
 from tuisim.app.dialogs.runs import branch_root
@@ -43,7 +52,7 @@ async def with_a_past(pilot: Pilot[Any], ticks: int = 300) -> LabApp:
 
 async def stop(pilot: Pilot[Any], app: LabApp) -> None:
     await pilot.press("S")
-    await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED)
+    await until_state(pilot, RunPhase.ENDED)
 
 
 def telemetry(run_id: str) -> Any:
@@ -87,7 +96,7 @@ async def test_a_branch_is_the_same_run_up_to_its_instant(deed: Deed, kind: str)
         first = app.run_controller.run_id
         to_tick(app.context, 260)
         await deed(pilot, app)
-        await until(pilot, lambda: "Branch from 2.60 s?" in screen_text(app))
+        await until_shown(pilot, "Branch from 2.60 s?")
         await pilot.press("y")
         await until(
             pilot,
@@ -123,11 +132,11 @@ async def test_a_paused_run_branches_paused_and_is_kept() -> None:
         app = await with_a_past(pilot)
         first = app.run_controller.run_id
         await pilot.press("space", "less_than_sign")
-        await until(pilot, lambda: app.run_controller.state == RunPhase.PAUSED)
+        await until_state(pilot, RunPhase.PAUSED)
         at = app.run_controller.timeline.at
         assert at is not None
         await pilot.press("R")
-        await until(pilot, lambda: "ends now and is kept" in screen_text(app))
+        await until_shown(pilot, "ends now and is kept")
         await pilot.press("n")
         assert app.run_controller.timeline.at == at
         await pilot.press("y")
@@ -164,7 +173,7 @@ async def test_an_edited_program_says_where_it_went_another_way() -> None:
         )
         to_tick(app.context, 260)
         await pilot.press("R")
-        await until(pilot, lambda: "The edited program" in screen_text(app))
+        await until_shown(pilot, "The edited program")
         await pilot.press("y")
         await until(
             pilot,
@@ -237,7 +246,7 @@ async def test_a_branch_is_compared_with_the_run_that_it_left() -> None:
             lambda: "Compare run 2 with" in screen_text(app) and "1 of 1 runs" in screen_text(app),
         )
         await pilot.press("enter")
-        await until(pilot, lambda: "first differing tick" in screen_text(app))
+        await until_shown(pilot, "first differing tick")
         assert "tick 200, 2.00 s: actions" in screen_text(app)
         assert "user actions" in screen_text(app)
         await pilot.press("enter")

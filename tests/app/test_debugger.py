@@ -8,7 +8,7 @@ import pytest
 from textual.pilot import Pilot
 from textual.widgets import Input, OptionList, Static
 
-from tests.app.app_help import notices, press_and_stand, ready, settings, until
+from tests.app.app_help import notices, open_lab, press_and_stand, ready, settings, until
 from tuisim.app.app import LabApp
 from tuisim.app.debugger import Kept, following, keep, load_kept
 from tuisim.app.snapshot import RunPhase
@@ -145,8 +145,7 @@ async def test_into_and_out_of_calls() -> None:
 
 @pytest.mark.slow
 async def test_a_breakpoint_holds_and_is_kept_with_the_program() -> None:
-    async with LabApp(settings(COUNTS)).run_test(size=(120, 40)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(COUNTS) as (pilot, app):
         # It belongs to a line that the user sees: the first press goes to the code.
         await pilot.press("t")
         assert not app.debugger.breaks
@@ -162,14 +161,12 @@ async def test_a_breakpoint_holds_and_is_kept_with_the_program() -> None:
         await pilot.press("t", "space")
         await until(pilot, lambda: not app.run_controller.in_run)
         await pilot.press("t")
-    async with LabApp(settings(COUNTS)).run_test(size=(120, 40)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(COUNTS) as (pilot, app):
         await until(pilot, lambda: [one.text for one in app.debugger.breaks] == ["5"])
 
 
 async def test_a_breakpoint_on_the_current_line_needs_no_code_in_sight() -> None:
-    async with LabApp(settings(COUNTS)).run_test(size=(80, 24)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(COUNTS, size=(80, 24)) as (pilot, app):
         await pilot.press("R")
         await until(pilot, lambda: app.run_controller.snapshot().line >= 3)
         await press_and_stand(pilot, "space")
@@ -182,8 +179,7 @@ async def test_a_breakpoint_on_the_current_line_needs_no_code_in_sight() -> None
 
 
 async def test_the_footer_offers_what_is_needed_while_the_code_is_read() -> None:
-    async with LabApp(settings(COUNTS)).run_test(size=(80, 24)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(COUNTS, size=(80, 24)) as (pilot, app):
         await press(pilot, app, "n", 1, 2)
         assert app.panel_area.focused_panel() == "code"
         shown = str(app.key_footer.render())

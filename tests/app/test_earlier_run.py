@@ -9,7 +9,7 @@ import pytest
 from textual.pilot import Pilot
 from textual.widgets import OptionList
 
-from tests.app.app_help import notices, program, ready, settings, until
+from tests.app.app_help import notices, open_lab, program, ready, until
 from tests.app.lesson_help import opened, run_over
 from tests.runs.test_recorded_run import stored
 from tuisim.app.app import LabApp
@@ -43,8 +43,7 @@ def earlier_pose(app: LabApp) -> Pose | None:
 
 
 async def test_the_run_before_is_drawn_at_the_same_time() -> None:
-    async with LabApp(settings(STRAIGHT, speed=0.0)).run_test(size=SIZE) as pilot:
-        app = await ready(pilot)
+    async with open_lab(STRAIGHT, speed=0.0, size=SIZE) as (pilot, app):
         await run(pilot, app, STRAIGHT)
         assert earlier_pose(app) is None
         first = app.run_controller.timeline.recording
@@ -62,8 +61,7 @@ async def test_the_run_before_is_drawn_at_the_same_time() -> None:
 
 
 async def test_a_key_goes_to_where_they_parted() -> None:
-    async with LabApp(settings(STRAIGHT, speed=0.0)).run_test(size=SIZE) as pilot:
-        app = await ready(pilot)
+    async with open_lab(STRAIGHT, speed=0.0, size=SIZE) as (pilot, app):
         await run(pilot, app, STRAIGHT)
         await pilot.press("exclamation_mark")
         none = "No other run on this mat to compare with. g and Enter go to where"

@@ -10,7 +10,16 @@ import pytest
 from textual.pilot import Pilot
 from textual.widgets import Input, OptionList
 
-from tests.app.app_help import notices, ready, screen_text, settings, until, until_shown
+from tests.app.app_help import (
+    notices,
+    open_lab,
+    ready,
+    screen_text,
+    settings,
+    until,
+    until_shown,
+    until_state,
+)
 from tests.app.render.test_goals import texts
 from tests.conftest import Command
 from tests.running import PATIENCE_S
@@ -76,8 +85,7 @@ def state(app: LabApp, name: str) -> str:
 
 
 async def test_without_goals_the_panel_says_what_to_do_next() -> None:
-    async with LabApp(settings()).run_test(size=SIZE) as pilot:
-        app = await ready(pilot)
+    async with open_lab(size=SIZE) as (pilot, app):
         await pilot.press("J")
         await until_shown(pilot, "No goals: o opens a goals file")
         assert shown(app) == ["No goals: o opens a goals file such as", "square_goals.toml"]
@@ -186,7 +194,7 @@ async def test_goals_are_opened_with_their_world_and_closed_with_the_next(task: 
     async with app.run_test(size=SIZE) as pilot:
         await ready(pilot)
         await pilot.press("R")
-        await until(pilot, lambda: app.run_controller.state is RunPhase.ENDED)
+        await until_state(pilot, RunPhase.ENDED)
         await open_path(pilot, app, task.name)
         await until(pilot, lambda: app.panel_area.shown("goals") and state(app, "said") == "· open")
         assert app.run_controller.next_run.spec.world.start.x_mm == 300
@@ -200,13 +208,12 @@ async def test_goals_are_opened_with_their_world_and_closed_with_the_next(task: 
         await open_path(pilot, app, task.name)
         await until(pilot, lambda: state(app, "there") == "✓ met")
         await open_path(pilot, app, "lab.toml")
-        await until(pilot, lambda: "No goals: o opens" in screen_text(app))
+        await until_shown(pilot, "No goals: o opens")
 
 
 @pytest.mark.slow
 async def test_examples_of_goals_are_offered_and_opened_by_name(task: Path) -> None:
-    async with LabApp(settings()).run_test(size=SIZE) as pilot:
-        app = await ready(pilot)
+    async with open_lab(size=SIZE) as (pilot, app):
         await pilot.press("o")
         await until(pilot, lambda: bool(app.screen.query(OptionList)))
         listed = app.screen.query_one(OptionList)
@@ -259,7 +266,7 @@ async def test_nothing_is_judged_while_the_panel_is_closed(
     async with app.run_test(size=SIZE) as pilot:
         await ready(pilot)
         await pilot.press("R")
-        await until(pilot, lambda: app.run_controller.state is RunPhase.ENDED)
+        await until_state(pilot, RunPhase.ENDED)
         app.goals.update()
         assert not judged
         await pilot.press("J")
@@ -273,7 +280,7 @@ async def test_an_error_in_judging_is_told_once(task: Path) -> None:
     async with app.run_test(size=SIZE) as pilot:
         await ready(pilot)
         await pilot.press("R")
-        await until(pilot, lambda: app.run_controller.state is RunPhase.ENDED)
+        await until_state(pilot, RunPhase.ENDED)
         assert app.run_controller.run is not None
         (app.run_controller.run.folder / "run.json").unlink()
         await pilot.press("J")

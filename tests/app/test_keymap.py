@@ -6,10 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from tests.app.app_help import LOGS, ready, screen_text, settings, until
+from tests.app.app_help import LOGS, open_lab, screen_text, until, until_shown
 from tests.cases import cases
 from tuisim.app.actions.keys import ACTIONS
-from tuisim.app.app import LabApp
 from tuisim.app.guide.screen import GuideScreen
 from tuisim.app.keymap import with_keys
 from tuisim.config.user_config import UserConfig
@@ -38,9 +37,8 @@ def test_keys_are_those_of_the_user(
 
 async def test_the_new_key_works_and_is_shown_and_the_old_one_does_nothing(tmp_path: Path) -> None:
     (tmp_path / "config.toml").write_text("[keys]\npen = '%'\nzoom = 'p'\nmats = '$'\n")
-    async with LabApp(settings(LOGS)).run_test(size=(200, 170)) as pilot:
-        app = await ready(pilot)
-        await until(pilot, lambda: " $ mats" in screen_text(app))
+    async with open_lab(LOGS, size=(200, 170)) as (pilot, app):
+        await until_shown(pilot, " $ mats")
         down = app.run_controller.pen_down
 
         await pilot.press("percent_sign")
@@ -50,7 +48,7 @@ async def test_the_new_key_works_and_is_shown_and_the_old_one_does_nothing(tmp_p
         assert app.run_controller.pen_down != down
 
         await pilot.press("question_mark")
-        await until(pilot, lambda: "Pen up or down" in screen_text(app))
+        await until_shown(pilot, "Pen up or down")
         row = next(row for row in screen_text(app).split("\n") if "Pen up or down" in row)
         assert row.partition("Pen up")[0].split()[-1] == "%"
 
@@ -61,17 +59,15 @@ async def test_the_words_of_a_panel_follow_the_new_key(
     panel: str, shown: str, tmp_path: Path
 ) -> None:
     (tmp_path / "config.toml").write_text("[keys]\nrobot = '%'\nhome = '['\nslower = 'm'\n")
-    async with LabApp(settings(panels_on=frozenset({panel}))).run_test(size=(120, 40)) as pilot:
-        app = await ready(pilot)
-        await until(pilot, lambda: shown in screen_text(app))
+    async with open_lab(panels_on=frozenset({panel})) as (pilot, _app):
+        await until_shown(pilot, shown)
 
 
 @pytest.mark.parametrize("panel", ["controls", "code"])
 async def test_notices_and_panels_name_the_new_key(panel: str, tmp_path: Path) -> None:
     (tmp_path / "config.toml").write_text("[keys]\nopen = '%'\nrun = 'ctrl+k'\n")
-    async with LabApp(settings(panels_on=frozenset({panel}))).run_test(size=(120, 40)) as pilot:
-        app = await ready(pilot)
-        await until(pilot, lambda: "% opens one" in screen_text(app))
+    async with open_lab(panels_on=frozenset({panel})) as (pilot, app):
+        await until_shown(pilot, "% opens one")
         await pilot.press("ctrl+k")
         await until(
             pilot,
@@ -83,9 +79,8 @@ async def test_notices_and_panels_name_the_new_key(panel: str, tmp_path: Path) -
 
 async def test_the_welcome_obeys_the_new_key(tmp_path: Path) -> None:
     (tmp_path / "config.toml").write_text("[keys]\nhelp = '%'\n")
-    async with LabApp(settings(welcomes=True)).run_test(size=(80, 24)) as pilot:
-        app = await ready(pilot)
-        await until(pilot, lambda: "% shows all keys" in screen_text(app))
+    async with open_lab(welcomes=True, size=(80, 24)) as (pilot, app):
+        await until_shown(pilot, "% shows all keys")
         await pilot.press("percent_sign")
         await until(pilot, lambda: isinstance(app.screen, GuideScreen))
 
@@ -94,8 +89,7 @@ async def test_a_wrong_file_is_told_and_the_app_works_with_what_is_right(tmp_pat
     (tmp_path / "config.toml").write_text(
         "[app]\ntheme = 'light'\nfps = 0\n[keys]\npen = 'R'\nzoom = 'ctrl+k'\n"
     )
-    async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(LOGS) as (pilot, app):
         await until(pilot, lambda: len(app._notifications) == 2)
         said = [notice.message for notice in app._notifications]
         assert ["app.fps: must be" in said[0], "R is also the key of run" in said[1]] == [

@@ -14,11 +14,13 @@ from tests.app.app_help import (
     LOGS,
     message_of,
     notices,
+    open_lab,
     ready,
     screen_text,
     settings,
     until,
     until_shown,
+    until_state,
 )
 from tuisim.app.app import AppSettings, LabApp
 from tuisim.app.snapshot import RunPhase
@@ -81,8 +83,7 @@ def look(app: LabApp) -> None:
 
 
 async def test_a_world_is_opened_whole(folder: Path) -> None:
-    async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(LOGS) as (pilot, app):
         app.run_controller.set_noise(NoiseSpec(1, 99))
         await open_path(pilot, "lab.toml")
         spec = app.run_controller.next_run.spec
@@ -97,8 +98,7 @@ async def test_a_world_is_opened_whole(folder: Path) -> None:
 
 
 async def test_worlds_of_the_folder_are_offered_and_robots_are_not(folder: Path) -> None:
-    async with LabApp(settings()).run_test(size=(120, 40)) as pilot:
-        app = await ready(pilot)
+    async with open_lab() as (pilot, app):
         await pilot.press("o")
         await pilot.pause()
         text = screen_text(app)
@@ -108,8 +108,7 @@ async def test_worlds_of_the_folder_are_offered_and_robots_are_not(folder: Path)
 
 async def test_a_wrong_world_changes_nothing(folder: Path) -> None:
     (folder / "lab.toml").write_text(LAB + "[pen]\nwidth_mm = 'thick'\n")
-    async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(LOGS) as (pilot, app):
         before = app.run_controller.next_run, app.run_controller.program
         await enter_path(pilot, "lab.toml")
         await until(pilot, lambda: "pen.width_mm: must be a number" in message_of(app))
@@ -161,8 +160,7 @@ async def test_panels_of_a_magic_line_come_as_a_program_is_opened(folder: Path) 
 
 
 async def test_a_world_is_saved_and_an_old_file_only_after_a_question(folder: Path) -> None:
-    async with LabApp(settings()).run_test(size=(120, 40)) as pilot:
-        app = await ready(pilot)
+    async with open_lab() as (pilot, app):
         app.loader.open_file(str(folder / "mine.py"))
         app.run_controller.place(Pose(321, 432, 10))
         app.run_controller.set_noise(NoiseSpec(3, 4))
@@ -170,7 +168,7 @@ async def test_a_world_is_saved_and_an_old_file_only_after_a_question(folder: Pa
         await pilot.press("ctrl+s")
         assert app.screen.query_one(Input).value == "lab.toml"
         await pilot.press("enter")
-        await until(pilot, lambda: "already exists" in screen_text(app))
+        await until_shown(pilot, "already exists")
         assert (folder / "lab.toml").read_text() == LAB
         await pilot.press("enter")
         await until(pilot, lambda: len(app.screen_stack) == 1)
@@ -185,8 +183,7 @@ async def test_a_world_is_saved_and_an_old_file_only_after_a_question(folder: Pa
 
 @pytest.mark.slow
 async def test_what_cannot_be_written_is_told(folder: Path) -> None:
-    async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(LOGS) as (pilot, app):
         await pilot.press("ctrl+s")
         for typed, said in (
             ("lab.txt", "must end in .toml"),
@@ -212,7 +209,7 @@ async def test_a_changed_program_is_reloaded_at_once(folder: Path) -> None:
         app.run_controller.place(Pose(500, 500, 0))
         path.write_text("print('Better: 2')\n")
         look(app)
-        await until(pilot, lambda: "Better: 2" in screen_text(app))
+        await until_shown(pilot, "Better: 2")
         await until(pilot, lambda: "mine.py changed on disk: reloaded" in notices(app))
         assert app.run_controller.program is not None
         assert app.run_controller.program.text == "print('Better: 2')\n"
@@ -224,9 +221,9 @@ async def test_a_changed_program_is_reloaded_at_once(folder: Path) -> None:
 async def test_the_timer_looks_by_itself(folder: Path) -> None:
     path = folder / "mine.py"
     async with LabApp(with_file(path)).run_test(size=(120, 40)) as pilot:
-        app = await ready(pilot)
+        await ready(pilot)
         path.write_text("print('By itself: 2')\n")
-        await until(pilot, lambda: "By itself: 2" in screen_text(app))
+        await until_shown(pilot, "By itself: 2")
 
 
 @pytest.mark.slow
@@ -257,7 +254,7 @@ async def test_a_program_changed_during_a_run_waits_for_its_end(folder: Path) ->
     async with LabApp(with_file(path)).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)
         await pilot.press("R")
-        await until(pilot, lambda: app.run_controller.state == RunPhase.RUNNING)
+        await until_state(pilot, RunPhase.RUNNING)
         path.write_text("print('Later: 2')\n")
         look(app)
         await until(
@@ -266,7 +263,7 @@ async def test_a_program_changed_during_a_run_waits_for_its_end(folder: Path) ->
         assert app.run_controller.program is not None
         assert app.run_controller.program.text == ENDLESS
         await pilot.press("S")
-        await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED)
+        await until_state(pilot, RunPhase.ENDED)
         await until(
             pilot,
             lambda: (
@@ -347,8 +344,7 @@ async def test_the_command_opens_a_world_that_is_watched(folder: Path) -> None:
 async def test_an_example_is_opened_by_its_name_and_the_footer_shows_the_keys_again(
     folder: Path,
 ) -> None:
-    async with LabApp(settings()).run_test(size=(80, 24)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(size=(80, 24)) as (pilot, app):
         await pilot.press("o", *"log_greys", "enter")
         await until(pilot, lambda: len(app.screen_stack) == 1)
         await until(pilot, lambda: not any(word == "apply" for _, word in app.key_footer._typing))
@@ -365,7 +361,7 @@ async def test_the_output_has_the_name_of_its_own_program_until_another_one_runs
         app = await ready(pilot)
         output = app.panel_area.output
         await pilot.press("R")
-        await until(pilot, lambda: app.run_controller.state is RunPhase.ENDED)
+        await until_state(pilot, RunPhase.ENDED)
         (folder / "other.py").write_text("print('B: 1')\n")
         await open_path(pilot, "other.py")
         app.draw(force=True)

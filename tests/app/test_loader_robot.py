@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from textual.widgets import OptionList
 
-from tests.app.app_help import lab, notices, ready, screen_text, until
+from tests.app.app_help import lab, notices, ready, screen_text, until, until_shown
 from tuisim.app.app import AppSettings, LabApp
 from tuisim.app.setup import next_run as plans
 from tuisim.config.build import build_run_spec
@@ -47,7 +47,7 @@ async def test_it_is_told_and_the_dialog_lists_its_ports(claw: Path) -> None:
             lambda: any("built from it: medium motor on outA" in notice for notice in notices(app)),
         )
         await pilot.press("r")
-        await until(pilot, lambda: "Robot of claw.py" in screen_text(app))
+        await until_shown(pilot, "Robot of claw.py")
         for part in ("B C wheels", "A   medium motor", "1   ultrasonic", "2   left", "4   gyro"):
             assert part in screen_text(app)
         entries = app.screen.query_one(OptionList)

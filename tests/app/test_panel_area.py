@@ -12,7 +12,7 @@ from rich.cells import cell_len
 from textual.widget import Widget
 from textual.widgets import Static
 
-from tests.app.app_help import LOGS, ready, screen_text, settings, until
+from tests.app.app_help import LOGS, open_lab, screen_text, until
 from tests.app.layout.test_arrangement_presets import KEYS, SIZES
 from tuisim.app.app import LabApp
 from tuisim.app.panels.world import WorldView
@@ -59,8 +59,7 @@ def fits(text: Static) -> bool:
 @in_each_size
 @pytest.mark.slow
 async def test_nothing_is_cut_in_any_layout(size: tuple[int, int]) -> None:
-    async with LabApp(settings(LOGS, autorun=True, speed=0.0)).run_test(size=size) as pilot:
-        app = await ready(pilot)
+    async with open_lab(LOGS, autorun=True, speed=0.0, size=size) as (pilot, app):
         await until(pilot, lambda: app.run_controller.snapshot().end == End.FINISHED)
         for keys in ((), *((key,) for key in KEYS.values())):
             await pilot.press(*keys)
@@ -71,8 +70,7 @@ async def test_nothing_is_cut_in_any_layout(size: tuple[int, int]) -> None:
 @pytest.mark.quick_cases("80x24", "120x40", "40x12")
 @in_each_size
 async def test_the_world_is_as_large_as_its_panel(size: tuple[int, int]) -> None:
-    async with LabApp(settings(LOGS)).run_test(size=size) as pilot:
-        app = await ready(pilot)
+    async with open_lab(LOGS, size=size) as (pilot, app):
         view = app.query_one(WorldView)
         await until(pilot, lambda: view._port is not None)
         port = view._port
@@ -92,8 +90,7 @@ async def test_the_world_is_as_large_as_its_panel(size: tuple[int, int]) -> None
 
 
 async def test_the_panel_with_the_focus_stays_when_the_keyboard_of_a_phone_takes_room() -> None:
-    async with LabApp(settings(LOGS)).run_test(size=(64, 60)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(LOGS, size=(64, 60)) as (pilot, app):
         area = app.panel_area
         await until(pilot, lambda: area.shown("code"))
         area.attend("code")

@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-from tests.app.app_help import ENDLESS, ready, screen_text, settings, until
-from tuisim.app.app import LabApp
+from tests.app.app_help import ENDLESS, open_lab, until, until_shown
 from tuisim.app.panels.arrays import Arrays
 from tuisim.app.panels.instrumentation import Instrumentation
 from tuisim.app.snapshot import RunPhase
 
 
 async def test_all_readings_are_of_one_instant() -> None:
-    async with LabApp(settings(ENDLESS, autorun=True, speed=1.0)).run_test(size=(200, 60)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(ENDLESS, autorun=True, speed=1.0, size=(200, 60)) as (pilot, app):
         area, run = app.panel_area, app.run_controller
         await until(pilot, lambda: run.state == RunPhase.RUNNING and run.timeline.newest > 50)
         assert area.world is not None
@@ -31,6 +29,4 @@ async def test_all_readings_are_of_one_instant() -> None:
         await until(pilot, has_seen_five)
         await pilot.press("S")
         await until(pilot, lambda: run.state == RunPhase.ENDED)
-        await until(
-            pilot, lambda: f"{run.timeline.newest / run.timeline.tick_hz:.2f} s" in screen_text(app)
-        )
+        await until_shown(pilot, f"{run.timeline.newest / run.timeline.tick_hz:.2f} s")

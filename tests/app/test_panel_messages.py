@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tests.app.app_help import notices, ready, settings, until
-from tuisim.app.app import LabApp
+from tests.app.app_help import notices, open_lab, until
 from tuisim.app.panel_messages import looks_at_buttons
 from tuisim.app.snapshot import RunPhase
 
@@ -30,8 +29,7 @@ def test_a_program_that_looks_at_the_buttons(text: str, expected: bool) -> None:
 
 
 async def test_the_panel_is_named_once_while_it_is_hidden() -> None:
-    async with LabApp(settings(DRAWS, speed=0.0)).run_test(size=(80, 24)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(DRAWS, speed=0.0, size=(80, 24)) as (pilot, app):
         for _ in range(2):
             await pilot.press("R")
             await until(

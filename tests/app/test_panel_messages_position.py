@@ -5,17 +5,13 @@ from __future__ import annotations
 import pytest
 from textual.widgets import Input, Static
 
-from tests.app.app_help import LOGS, ready, settings, until
-from tuisim.app.app import LabApp
+from tests.app.app_help import LOGS, open_lab, until
 from tuisim.core.geometry import Pose
 
 
 @pytest.mark.slow
 async def test_bad_position_is_refused_with_a_reason() -> None:
-    async with LabApp(settings(LOGS, panels_on=frozenset({"positioning"}))).run_test(
-        size=(120, 40)
-    ) as pilot:
-        app = await ready(pilot)
+    async with open_lab(LOGS, panels_on=frozenset({"positioning"})) as (pilot, app):
         await until(pilot, lambda: len(app.query("Positioning Input")) == 3)
         for field, typed, message in (
             ("x", "abc", "X: a number from -10000 to 10000, not 'abc'"),
@@ -35,10 +31,7 @@ async def test_bad_position_is_refused_with_a_reason() -> None:
 
 
 async def test_good_position_is_applied() -> None:
-    async with LabApp(settings(LOGS, panels_on=frozenset({"positioning"}))).run_test(
-        size=(120, 40)
-    ) as pilot:
-        app = await ready(pilot)
+    async with open_lab(LOGS, panels_on=frozenset({"positioning"})) as (pilot, app):
         await until(pilot, lambda: len(app.query("Positioning Input")) == 3)
         app.query_one("#x", Input).focus()
         await pilot.press("4", "0", "0", "comma", "5", "enter")

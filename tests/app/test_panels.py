@@ -8,9 +8,8 @@ from typing import Any
 import pytest
 from textual.pilot import Pilot
 
-from tests.app.app_help import lab, ready, settings, until
+from tests.app.app_help import lab, open_lab, until
 from tests.app.panel_help import screen_text
-from tuisim.app.app import LabApp
 
 EMPTY = {
     "output": ("", "What the program prints appears here: R runs it"),
@@ -39,8 +38,7 @@ async def _open_and_close(pilot: Pilot[Any], panel: str) -> None:
 
 @pytest.mark.parametrize("size", [(80, 24), (120, 40)], ids=["80", "120"])
 async def test_each_empty_panel_says_what_to_do(size: tuple[int, int]) -> None:
-    async with LabApp(settings("x = 1\n")).run_test(size=size) as pilot:
-        await ready(pilot)
+    async with open_lab("x = 1\n", size=size) as (pilot, _):
         for panel in EMPTY:
             await _open_and_close(pilot, panel)
 
@@ -52,8 +50,7 @@ def _has(screen: Sequence[str], words: str) -> bool:
 
 
 async def test_output_of_a_silent_run_asks_for_no_run() -> None:
-    async with LabApp(settings("x = 1\n", speed=0.0)).run_test(size=(120, 40)) as pilot:
-        app = await ready(pilot)
+    async with open_lab("x = 1\n", speed=0.0) as (pilot, app):
         await until(pilot, lambda: _has(screen_text(app), "appears here"))
         await pilot.press("R")
         await until(pilot, lambda: _has(screen_text(app), "finished at"))

@@ -9,7 +9,19 @@ import pandas as pd
 import pytest
 from textual.widgets import Input
 
-from tests.app.app_help import ENDLESS, LOGS, lab, notices, ready, screen_text, settings, until
+from tests.app.app_help import (
+    ENDLESS,
+    LOGS,
+    lab,
+    notices,
+    open_lab,
+    ready,
+    screen_text,
+    settings,
+    until,
+    until_shown,
+    until_state,
+)
 from tuisim.app.app import LabApp
 from tuisim.app.panels.code import Code
 from tuisim.app.panels.output import Answer
@@ -25,10 +37,9 @@ from tuisim.terminal.picture_options import CellSet
 
 
 async def test_a_run_shows_its_output_and_its_end() -> None:
-    async with LabApp(settings(LOGS, autorun=True, speed=0.0)).run_test(size=(120, 40)) as pilot:
-        app = await ready(pilot)
-        await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED)
-        await until(pilot, lambda: "Colour: 0.0" in screen_text(app))
+    async with open_lab(LOGS, autorun=True, speed=0.0) as (pilot, app):
+        await until_state(pilot, RunPhase.ENDED)
+        await until_shown(pilot, "Colour: 0.0")
         await until(pilot, lambda: "finished" in screen_text(app).splitlines()[-1])
         assert app.run_controller.pose.x_mm > 1400
 
@@ -57,11 +68,10 @@ async def test_the_end_says_that_the_robot_stood_at_a_wall() -> None:
 @pytest.mark.slow
 async def test_the_same_run_again_gives_the_same_log(tmp_path: Path) -> None:
     files = [tmp_path / f"{number}.csv" for number in (1, 2)]
-    async with LabApp(settings(LOGS, speed=0.0)).run_test(size=(120, 40)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(LOGS, speed=0.0) as (pilot, app):
         for file in files:
             await pilot.press("R")
-            await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED)
+            await until_state(pilot, RunPhase.ENDED)
             await pilot.press("e")
             entry = app.screen.query_one(Input)
             entry.value = str(file)
@@ -77,19 +87,16 @@ async def test_the_same_run_again_gives_the_same_log(tmp_path: Path) -> None:
 async def test_export_asks_before_it_replaces_a_file(tmp_path: Path) -> None:
     target = tmp_path / "old.csv"
     target.write_text("mine")
-    async with LabApp(settings("print('A: 1')\n", autorun=True, speed=0.0)).run_test(
-        size=(120, 40)
-    ) as pilot:
-        app = await ready(pilot)
-        await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED)
+    async with open_lab("print('A: 1')\n", autorun=True, speed=0.0) as (pilot, app):
+        await until_state(pilot, RunPhase.ENDED)
         await pilot.press("e")
         app.screen.query_one(Input).value = str(tmp_path / "x.xls")
         await pilot.press("enter")
-        await until(pilot, lambda: "unknown format" in screen_text(app))
+        await until_shown(pilot, "unknown format")
         app.screen.query_one(Input).value = str(target)
         await pilot.pause()
         await pilot.press("enter")
-        await until(pilot, lambda: "already exists" in screen_text(app))
+        await until_shown(pilot, "already exists")
         assert target.read_text() == "mine"
         await pilot.press("enter")
         await until(pilot, lambda: len(app.screen_stack) == 1)
@@ -100,8 +107,7 @@ async def test_export_asks_before_it_replaces_a_file(tmp_path: Path) -> None:
 
 
 async def test_pause_one_tick_go_on_and_stop() -> None:
-    async with LabApp(settings(ENDLESS, autorun=True)).run_test(size=(120, 40)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(ENDLESS, autorun=True) as (pilot, app):
         await until(
             pilot,
             lambda: (
@@ -110,25 +116,24 @@ async def test_pause_one_tick_go_on_and_stop() -> None:
             ),
         )
         await pilot.press("space")
-        await until(pilot, lambda: app.run_controller.state == RunPhase.PAUSED)
+        await until_state(pilot, RunPhase.PAUSED)
         tick = app.run_controller.snapshot().instant.tick
         await pilot.press("full_stop")
         await until(pilot, lambda: app.run_controller.snapshot().instant.tick == tick + 1)
         await pilot.press("space")
         await until(pilot, lambda: app.run_controller.snapshot().instant.tick > tick + 5)
         await pilot.press("S")
-        await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED)
+        await until_state(pilot, RunPhase.ENDED)
         assert app.run_controller.snapshot().end == "stopped"
 
 
 async def test_the_robot_can_be_placed_during_a_run() -> None:
-    async with LabApp(settings(ENDLESS, autorun=True)).run_test(size=(120, 40)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(ENDLESS, autorun=True) as (pilot, app):
         await until(pilot, lambda: app.run_controller.in_run)
         app.run_controller.place(Pose(1000, 700, 90))
         await until(pilot, lambda: app.run_controller.pose.y_mm >= 700)
         await pilot.press("S")
-        await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED)
+        await until_state(pilot, RunPhase.ENDED)
         recording = app.run_controller.timeline.recording
         assert recording is not None
         last = recording.telemetry.last()
@@ -139,17 +144,14 @@ async def test_the_robot_can_be_placed_during_a_run() -> None:
             0.0,
         )
         await pilot.press("R")
-        await until(pilot, lambda: app.run_controller.state == RunPhase.RUNNING)
+        await until_state(pilot, RunPhase.RUNNING)
         # A run begins where the last one began, unless the robot was placed at rest.
         assert app.run_controller.pose.y_mm == 500
 
 
 async def test_an_error_is_shown_with_its_line() -> None:
-    async with LabApp(settings("print('A: 1')\nprint(nothing)\n", autorun=True)).run_test(
-        size=(120, 40)
-    ) as pilot:
-        app = await ready(pilot)
-        await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED)
+    async with open_lab("print('A: 1')\nprint(nothing)\n", autorun=True) as (pilot, app):
+        await until_state(pilot, RunPhase.ENDED)
         await until(pilot, lambda: all(words in screen_text(app) for words in ("NameError", "✗ 2")))
         assert screen_text(app).count("Traceback") == 1
         await until(
@@ -161,22 +163,20 @@ async def test_an_error_is_shown_with_its_line() -> None:
 
 async def test_an_error_opens_the_code_at_its_line() -> None:
     text = "\n" * 40 + "print(nothing)\n"
-    async with LabApp(settings(text, autorun=True)).run_test(size=(80, 24)) as pilot:
-        app = await ready(pilot)
-        await until(pilot, lambda: "✗41 print(nothing)" in screen_text(app))
+    async with open_lab(text, autorun=True, size=(80, 24)) as (pilot, app):
+        await until_shown(pilot, "✗41 print(nothing)")
         assert app.panel_area.shown("output")
 
 
 async def test_an_error_is_readable_in_a_small_terminal_until_the_next_run() -> None:
     # The output is narrow there: the line goes on in the next row.
     parts = "NameError: name 'nothing' is ", "not defined"
-    async with LabApp(settings("print('A: 1')\nprint(nothing)\n")).run_test(size=(80, 24)) as pilot:
-        app = await ready(pilot)
+    async with open_lab("print('A: 1')\nprint(nothing)\n", size=(80, 24)) as (pilot, app):
         await pilot.press("O")
         assert not app.panel_area.shown("output")
         await pilot.press("R")
         await until(pilot, lambda: all(part in screen_text(app) for part in parts))
-        await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED)
+        await until_state(pilot, RunPhase.ENDED)
         app.clear_notifications()
         await pilot.press("right", "comma", "end")
         await until(pilot, lambda: all(part in screen_text(app) for part in parts))
@@ -190,33 +190,30 @@ async def test_an_error_is_readable_in_a_small_terminal_until_the_next_run() -> 
 )
 async def test_input_is_answered_from_the_app(keys: list[str], printed: str) -> None:
     asks = "try:\n    print('got', input('Name? '))\nexcept EOFError:\n    print('nothing more')\n"
-    async with LabApp(settings(asks, autorun=True)).run_test(size=(120, 40)) as pilot:
-        app = await ready(pilot)
-        await until(pilot, lambda: app.run_controller.state == RunPhase.WAITING)
+    async with open_lab(asks, autorun=True) as (pilot, app):
+        await until_state(pilot, RunPhase.WAITING)
         await until(pilot, lambda: isinstance(app.focused, Answer))
-        await until(pilot, lambda: "Name?" in screen_text(app))
+        await until_shown(pilot, "Name?")
         await pilot.press(*keys)
-        await until(pilot, lambda: printed in screen_text(app))
-        await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED)
+        await until_shown(pilot, printed)
+        await until_state(pilot, RunPhase.ENDED)
         await until(pilot, lambda: not app.query(Answer))
 
 
 @pytest.mark.slow
 async def test_a_flood_of_prints_leaves_the_app_usable() -> None:
     flood = "for n in range(200_000):\n    print('line', n)\n"
-    async with LabApp(settings(flood, autorun=True)).run_test(size=(120, 40)) as pilot:
-        app = await ready(pilot)
-        await until(pilot, lambda: app.run_controller.state == RunPhase.RUNNING)
+    async with open_lab(flood, autorun=True) as (pilot, app):
+        await until_state(pilot, RunPhase.RUNNING)
         await pilot.press("D")
         assert not app.panel_area.shown("code")
-        await until(pilot, lambda: "line 199999" in screen_text(app))
+        await until_shown(pilot, "line 199999")
 
 
 @pytest.mark.slow
 async def test_quit_during_a_run_asks_and_leaves_no_child() -> None:
-    async with LabApp(settings(ENDLESS, autorun=True)).run_test(size=(120, 40)) as pilot:
-        app = await ready(pilot)
-        await until(pilot, lambda: app.run_controller.state == RunPhase.RUNNING)
+    async with open_lab(ENDLESS, autorun=True) as (pilot, app):
+        await until_state(pilot, RunPhase.RUNNING)
         run = app.run_controller.run
         assert run is not None
         await pilot.press("q", "n")
@@ -241,12 +238,11 @@ async def test_a_mat_that_failed_is_prepared_again_for_a_run(
         app = lab(pilot)
         await until(pilot, lambda: any("cannot be opened" in notice for notice in notices(app)))
         await pilot.press("R")
-        await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED)
+        await until_state(pilot, RunPhase.ENDED)
 
 
 async def test_no_words_say_that_the_robot_stands_before_it_does() -> None:
-    async with LabApp(settings(ENDLESS, autorun=True)).run_test(size=(120, 40)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(ENDLESS, autorun=True) as (pilot, app):
         await until(
             pilot,
             lambda: (

@@ -10,7 +10,7 @@ import pytest
 from PIL import Image
 
 from tests.app.analyser.test_screen import text_of
-from tests.app.app_help import notices, ready, settings, until
+from tests.app.app_help import notices, open_lab, until
 from tuisim.analysis.source import LogRequest
 from tuisim.app.analyser.app import AnalyserApp
 from tuisim.app.app import LabApp
@@ -40,8 +40,7 @@ def _in_a_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 async def test_a_key_saves_the_screen_and_names_the_files(tmp_path: Path) -> None:
-    async with LabApp(settings()).run_test(size=(100, 30)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(size=(100, 30)) as (pilot, app):
         await until(
             pilot, lambda: any(look.ink == GREY for row in screen_cells(app) for _, look in row)
         )
@@ -58,8 +57,7 @@ async def test_a_key_saves_the_screen_and_names_the_files(tmp_path: Path) -> Non
 
 @pytest.mark.slow
 async def test_a_dialog_and_the_screen_below_it(tmp_path: Path) -> None:
-    async with LabApp(settings()).run_test(size=(100, 30)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(size=(100, 30)) as (pilot, app):
         await pilot.press("b")
         await until(pilot, lambda: len(app.screen_stack) == 2)
         await pilot.press("f12")
@@ -77,8 +75,7 @@ async def test_a_dialog_and_the_screen_below_it(tmp_path: Path) -> None:
 
 @pytest.mark.slow
 async def test_from_the_palette_the_palette_is_not_shown(tmp_path: Path) -> None:
-    async with LabApp(settings()).run_test(size=(100, 30)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(size=(100, 30)) as (pilot, app):
         await pilot.press("ctrl+p", *"screenshot")
         await until(pilot, lambda: len(app.screen_stack) == 2)
         await pilot.press("down", "enter")
@@ -102,8 +99,7 @@ async def test_a_folder_that_cannot_be_written(
 ) -> None:
     gone = tmp_path / "gone"
     monkeypatch.setattr(Path, "cwd", lambda: gone)
-    async with LabApp(settings()).run_test(size=(100, 30)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(size=(100, 30)) as (pilot, app):
         await pilot.press("I")
         await until(
             pilot,

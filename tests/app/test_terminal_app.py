@@ -6,9 +6,8 @@ import pytest
 from textual import events
 from textual.geometry import Size
 
-from tests.app.app_help import LOGS, ready, screen_text, settings, until
+from tests.app.app_help import LOGS, open_lab, screen_text, until
 from tests.app.terminals import Terminal
-from tuisim.app.app import LabApp
 from tuisim.app.terminal_app import MINIMUM, is_too_small, message_lines
 
 SIZES = [
@@ -46,8 +45,7 @@ def test_the_message_says_as_much_as_fits(size: Size, expected: str) -> None:
 async def test_a_terminal_that_shrinks_and_grows_again_shows_what_it_showed(
     size: tuple[int, int],
 ) -> None:
-    async with LabApp(settings(LOGS)).run_test(size=(80, 24)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(LOGS, size=(80, 24)) as (pilot, app):
         await until(pilot, lambda: all(words in screen_text(app) for words in ("White", "Gyro")))
         before, focused = screen_text(app), app.focused
         await pilot.resize_terminal(*size)
@@ -59,8 +57,7 @@ async def test_a_terminal_that_shrinks_and_grows_again_shows_what_it_showed(
 
 
 async def test_what_is_not_seen_is_not_clicked_on() -> None:
-    async with LabApp(settings(LOGS)).run_test(size=(20, 5)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(LOGS, size=(20, 5)) as (pilot, app):
         # The words of the keys are in the last row that is laid out.
         for x in range(20):
             for kind in (events.MouseDown, events.MouseUp):

@@ -11,7 +11,7 @@ from textual.app import App
 from textual.pilot import Pilot
 from textual.widgets import Input, OptionList, Static, TextArea
 
-from tests.app.app_help import LOGS, ready, settings, until
+from tests.app.app_help import LOGS, open_lab, settings, until
 from tuisim.analysis.source import LogRequest
 from tuisim.app.analyser.app import Analyser, AnalyserApp
 from tuisim.app.app import LabApp
@@ -125,15 +125,13 @@ async def test_a_burst_does_what_its_keys_do(
 
 
 async def test_backspace_is_not_overtaken_by_what_is_typed_after_it() -> None:
-    async with LabApp(settings(LOGS)).run_test(size=(80, 24)) as pilot:
-        await ready(pilot)
+    async with open_lab(LOGS, size=(80, 24)) as (pilot, _):
         send(pilot, f"onew.csv{BACKSPACE * 3}parquet")
         await settle(pilot)
         assert pilot.app.screen.query_one(Input).value == "new.parquet"
 
 
 async def test_enter_waits_for_what_the_palette_finds() -> None:
-    async with LabApp(settings(LOGS)).run_test(size=(80, 24)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(LOGS, size=(80, 24)) as (pilot, app):
         send(pilot, f"{CTRL_P}Glyphs of the world{ENTER}")
         await until(pilot, lambda: isinstance(app.screen, CellsCard))

@@ -4,17 +4,15 @@ from __future__ import annotations
 
 import pytest
 
-from tests.app.app_help import ENDLESS, LOGS, notices, ready, settings, until
+from tests.app.app_help import ENDLESS, LOGS, notices, open_lab, until
 from tuisim.app.analyser.app import Analyser
-from tuisim.app.app import LabApp
 from tuisim.app.dialogs.chooser import Chooser
 from tuisim.app.snapshot import IN_RUN
 from tuisim.terminal.app import ActionAsked
 
 
 async def test_a_button_of_the_page_acts_also_while_the_user_types() -> None:
-    async with LabApp(settings(ENDLESS)).run_test(size=(120, 40)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(ENDLESS) as (pilot, app):
         await pilot.press("d")
         await until(pilot, lambda: app.is_typed_into)
         app.post_message(ActionAsked("run"))
@@ -24,8 +22,7 @@ async def test_a_button_of_the_page_acts_also_while_the_user_types() -> None:
 
 
 async def test_a_button_of_the_page_leaves_a_dialog_alone() -> None:
-    async with LabApp(settings(ENDLESS)).run_test(size=(120, 40)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(ENDLESS) as (pilot, app):
         await pilot.press("b")
         await until(pilot, lambda: len(app.screen_stack) == 2)
         app.post_message(ActionAsked("run"))
@@ -34,18 +31,14 @@ async def test_a_button_of_the_page_leaves_a_dialog_alone() -> None:
 
 
 async def test_an_action_that_no_page_has_is_ignored() -> None:
-    async with LabApp(settings(ENDLESS)).run_test(size=(120, 40)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(ENDLESS) as (pilot, app):
         app.post_message(ActionAsked("__init__"))
         app.post_message(ActionAsked("panel-chart"))
         await until(pilot, lambda: app.panel_area.shown("chart"))
 
 
 async def test_a_click_on_the_empty_panel_of_lessons_offers_them() -> None:
-    async with LabApp(settings(ENDLESS, panels_on=frozenset({"lesson"}))).run_test(
-        size=(120, 40)
-    ) as pilot:
-        app = await ready(pilot)
+    async with open_lab(ENDLESS, panels_on=frozenset({"lesson"})) as (pilot, app):
         await until(pilot, lambda: app.panel_area.shown("lesson"))
         await pilot.click(app.panel_area.lesson, offset=(5, 5))
         await until(pilot, lambda: isinstance(app.screen, Chooser))
@@ -53,8 +46,7 @@ async def test_a_click_on_the_empty_panel_of_lessons_offers_them() -> None:
 
 @pytest.mark.slow
 async def test_a_button_says_that_it_does_nothing_above_the_lab() -> None:
-    async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(LOGS) as (pilot, app):
         app.post_message(ActionAsked("run"))
         await until(
             pilot, lambda: app.situation().has_run and app.run_controller.state not in IN_RUN

@@ -14,7 +14,7 @@ from textual.color import Color
 from textual.theme import BUILTIN_THEMES
 
 import tuisim.app
-from tests.app.app_help import LOGS, ready, settings, until
+from tests.app.app_help import LOGS, open_lab, settings, until
 from tests.bench.cells import lab_of
 from tuisim import palette
 from tuisim.app.app import LabApp
@@ -99,8 +99,7 @@ def test_colours_that_a_sensor_sees_stay_as_they_are() -> None:
 
 @pytest.mark.slow
 async def test_a_theme_is_chosen_from_the_list_and_kept() -> None:
-    async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(LOGS) as (pilot, app):
         await pilot.press("f10")
         await until(pilot, lambda: isinstance(app.screen, ThemeChooser) and app.screen.is_ready)
         await pilot.press(*"light")

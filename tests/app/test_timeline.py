@@ -12,7 +12,16 @@ import pytest
 from textual.pilot import Pilot
 from textual.widgets import Input
 
-from tests.app.app_help import ENDLESS, LOGS, notices, ready, screen_text, settings, until
+from tests.app.app_help import (
+    ENDLESS,
+    LOGS,
+    notices,
+    open_lab,
+    screen_text,
+    until,
+    until_shown,
+    until_state,
+)
 from tuisim.app.app import LabApp
 from tuisim.app.snapshot import RunPhase, Snapshot
 from tuisim.app.timeline import Timeline, find
@@ -28,9 +37,8 @@ async def a_run(
     text: str = LOGS, size: tuple[int, int] = (120, 40)
 ) -> AsyncIterator[tuple[Pilot[None], LabApp]]:
     """A run that is over, in the app."""
-    async with LabApp(settings(text, autorun=True, speed=0.0)).run_test(size=size) as pilot:
-        app = await ready(pilot)
-        await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED)
+    async with open_lab(text, autorun=True, speed=0.0, size=size) as (pilot, app):
+        await until_state(pilot, RunPhase.ENDED)
         recording = app.run_controller.timeline.recording
         assert recording is not None
         await until(pilot, lambda: not recording.rows.take(1) and not app._last_words)
@@ -90,7 +98,7 @@ async def test_a_former_instant_is_shown_as_it_was() -> None:
         last = recording.telemetry.last()
         assert last is not None
         assert shown.now_pose == last.pose
-        await until(pilot, lambda: "past 2.00 s" in screen_text(app))
+        await until_shown(pilot, "past 2.00 s")
         printed = [row.text for row in recording.rows.rows(0) if row.tick <= 200]
         output = app.panel_area.output
         assert output is not None
@@ -104,12 +112,11 @@ async def test_a_former_instant_is_shown_as_it_was() -> None:
 
 @pytest.mark.slow
 async def test_the_pen_has_drawn_no_more_than_then() -> None:
-    async with LabApp(settings(ENDLESS, autorun=True, speed=0.0)).run_test(size=(120, 40)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(ENDLESS, autorun=True, speed=0.0) as (pilot, app):
         app.run_controller.set_pen(True)
         await until(pilot, lambda: app.run_controller.timeline.newest > 300)
         await pilot.press("comma")
-        await until(pilot, lambda: app.run_controller.state == RunPhase.PAUSED)
+        await until_state(pilot, RunPhase.PAUSED)
         app.run_controller.timeline.go(150)
         app.draw(force=True)
         world = app.panel_area.world
@@ -124,14 +131,13 @@ async def test_the_pen_has_drawn_no_more_than_then() -> None:
                 ahead
             )
         await pilot.press("end", "S")
-        await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED)
+        await until_state(pilot, RunPhase.ENDED)
         assert world._view.past_trace is None
 
 
 @pytest.mark.slow
 async def test_looking_back_pauses_a_running_program_and_space_plays_it_on() -> None:
-    async with LabApp(settings(ENDLESS, autorun=True, speed=4.0)).run_test(size=(120, 40)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(ENDLESS, autorun=True, speed=4.0) as (pilot, app):
         await until(
             pilot,
             lambda: (
@@ -140,7 +146,7 @@ async def test_looking_back_pauses_a_running_program_and_space_plays_it_on() -> 
             ),
         )
         await pilot.press("less_than_sign", "home")
-        await until(pilot, lambda: app.run_controller.state == RunPhase.PAUSED)
+        await until_state(pilot, RunPhase.PAUSED)
         newest = app.run_controller.timeline.newest
         assert app.run_controller.timeline.at == 0
         # Slowly, so that the past is not over before anybody looks.
@@ -164,7 +170,7 @@ async def test_looking_back_pauses_a_running_program_and_space_plays_it_on() -> 
         )
         assert not app.run_controller.in_past
         await pilot.press("S")
-        await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED)
+        await until_state(pilot, RunPhase.ENDED)
 
 
 async def test_a_click_on_the_bar_or_a_panel_leaves_no_instant() -> None:
@@ -289,7 +295,7 @@ async def test_the_dialog_says_what_is_wrong_and_the_keys_go_from_sample_to_samp
         await pilot.press("g")
         app.screen.query_one(Input).value = "nowhere"
         await pilot.press("enter")
-        await until(pilot, lambda: "'nowhere' is not an instant" in screen_text(app))
+        await until_shown(pilot, "'nowhere' is not an instant")
         await pilot.press("escape", "home")
         recording = app.run_controller.timeline.recording
         assert recording is not None

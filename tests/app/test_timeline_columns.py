@@ -8,7 +8,7 @@ import pytest
 from textual.pilot import Pilot
 from textual.widgets import Input, OptionList
 
-from tests.app.app_help import ready, settings, until
+from tests.app.app_help import ready, settings, until, until_state
 from tuisim.app.app import LabApp
 from tuisim.app.dialogs.entries import WatchesDialog
 from tuisim.app.snapshot import RunPhase
@@ -30,7 +30,7 @@ async def test_every_trace_of_the_chart_can_be_typed() -> None:
     )
     async with app.run_test(size=(120, 40)) as pilot:
         await ready(pilot)
-        await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED)
+        await until_state(pilot, RunPhase.ENDED)
         chart = app.panel_area.chart
         assert chart is not None
         await until(pilot, lambda: len(chart._traces) == 4)

@@ -7,7 +7,7 @@ from functools import partial
 
 import pytest
 
-from tests.app.app_help import LOGS, lab, notices, ready, screen_text, settings, until
+from tests.app.app_help import LOGS, lab, notices, open_lab, ready, screen_text, settings, until
 from tuisim.app.actions.keys import ACTIONS
 from tuisim.app.app import LabApp
 from tuisim.app.panels import PANELS, TerminalSize
@@ -17,8 +17,7 @@ SIZES = [(80, 24), (120, 40), (200, 60)]
 
 @pytest.mark.slow
 async def test_every_panels_key_shows_and_hides_it() -> None:
-    async with LabApp(settings(LOGS)).run_test(size=(200, 60)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(LOGS, size=(200, 60)) as (pilot, app):
 
         def has_focus(name: str) -> bool:
             return app.panel_area.focused_panel() == name
@@ -39,10 +38,7 @@ async def test_every_panels_key_shows_and_hides_it() -> None:
 @pytest.mark.slow
 async def test_a_panel_that_its_key_opens_takes_the_focus_and_gives_it_back() -> None:
     panels = PANELS.keys() - {"world", "output"}
-    async with LabApp(settings(LOGS, panels_off=frozenset(panels))).run_test(
-        size=(120, 40)
-    ) as pilot:
-        app = await ready(pilot)
+    async with open_lab(LOGS, panels_off=frozenset(panels)) as (pilot, app):
 
         def has_focus(panel: str) -> bool:
             return (
@@ -62,8 +58,7 @@ async def test_a_panel_that_its_key_opens_takes_the_focus_and_gives_it_back() ->
 
 
 async def test_the_key_of_a_panel_that_is_shown_focuses_it_first() -> None:
-    async with LabApp(settings()).run_test(size=(200, 60)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(size=(200, 60)) as (pilot, app):
         assert app.panel_area.shown("chart") and app.panel_area.focused_panel() == "world"
         await pilot.press("c")
         await until(pilot, lambda: app.panel_area.focused_panel() == "chart")
@@ -74,8 +69,7 @@ async def test_the_key_of_a_panel_that_is_shown_focuses_it_first() -> None:
 
 @pytest.mark.slow
 async def test_help_has_as_many_columns_as_there_is_room_for() -> None:
-    async with LabApp(settings(LOGS)).run_test(size=SIZES[0]) as pilot:
-        app = await ready(pilot)
+    async with open_lab(LOGS, size=SIZES[0]) as (pilot, app):
         groups = {"In the code", *(action.group for action in ACTIONS.values())}
 
         def top() -> str:
@@ -97,8 +91,7 @@ async def test_help_has_as_many_columns_as_there_is_room_for() -> None:
 
 @pytest.mark.slow
 async def test_a_panel_without_room_takes_the_place_of_another() -> None:
-    async with LabApp(settings(LOGS)).run_test(size=(80, 24)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(LOGS, size=(80, 24)) as (pilot, app):
         await pilot.press("X", "H")
         assert all(
             app.panel_area.shown(panel)
@@ -128,15 +121,13 @@ async def test_switched_off_stays_off_in_every_size() -> None:
 
 
 async def test_quit_without_a_run_asks_nothing() -> None:
-    async with LabApp(settings()).run_test(size=(80, 24)) as pilot:
-        await ready(pilot)
+    async with open_lab(size=(80, 24)) as (pilot, _):
         await pilot.press("q")
         assert not lab(pilot).is_running or lab(pilot)._exit
 
 
 async def test_nothing_is_opened_while_the_app_ends() -> None:
-    async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(LOGS) as (_pilot, app):
         app.exit()
         # What was typed quickly after q, and what was to be done soon after the start.
         for action in ("open", "runs", "panel-settings", "breaks", "analyse"):

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.app.app_help import LOGS, notices, ready, settings, until
+from tests.app.app_help import LOGS, notices, open_lab, ready, until
 from tests.app.editor.test_document import own
 from tests.app.terminals import Terminal
 from tests.cases import cases
@@ -82,8 +82,7 @@ async def test_of_an_example_a_copy_is_saved_first(monkeypatch: pytest.MonkeyPat
     monkeypatch.setattr(
         LabApp, "run_in_terminal", lambda app, command: opened.append(" ".join(command))
     )
-    async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(LOGS) as (pilot, app):
         await pilot.press("ctrl+e")
         await until(pilot, lambda: len(app.screen_stack) == 2)
         assert opened == []

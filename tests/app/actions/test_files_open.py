@@ -7,8 +7,7 @@ from pathlib import Path
 import pytest
 from textual.widgets import Input
 
-from tests.app.app_help import notices, ready, settings, until
-from tuisim.app.app import LabApp
+from tests.app.app_help import notices, open_lab, until
 from tuisim.app.snapshot import RunPhase
 
 
@@ -16,8 +15,7 @@ from tuisim.app.snapshot import RunPhase
 async def test_opening_a_program_by_its_path(tmp_path: Path) -> None:
     path = tmp_path / "mine.py"
     path.write_text("# %%sim_magic_preloaded -b Square -x 500\nprint(1)\n")
-    async with LabApp(settings()).run_test(size=(120, 40)) as pilot:
-        app = await ready(pilot)
+    async with open_lab() as (pilot, app):
         await pilot.press("o")
         entry = app.screen.query_one(Input)
         entry.focus()
@@ -34,8 +32,7 @@ async def test_opening_a_program_by_its_path(tmp_path: Path) -> None:
 
 
 async def test_a_program_that_is_not_there_is_a_notice(tmp_path: Path) -> None:
-    async with LabApp(settings()).run_test(size=(120, 40)) as pilot:
-        app = await ready(pilot)
+    async with open_lab() as (pilot, app):
         app.loader.open_file(str(tmp_path / "none.py"))
         await pilot.pause()
         assert "there is no such program" in notices(app)[0]

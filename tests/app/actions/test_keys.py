@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 from textual.widgets import OptionList
 
-from tests.app.app_help import LOGS, notices, ready, screen_text, settings, until
+from tests.app.app_help import LOGS, notices, open_lab, screen_text, settings, until
 from tuisim.app.action import Action, fitting
 from tuisim.app.actions.keys import ACTIONS, working
 from tuisim.app.analyser.actions.keys import ACTIONS as ANALYSER_ACTIONS
@@ -25,8 +25,7 @@ SIZES = [(80, 24), (120, 40), (200, 60)]
 @pytest.mark.quick_cases("80x24")
 @pytest.mark.parametrize("size", SIZES, ids=[f"{w}x{h}" for w, h in SIZES])
 async def test_first_picture(size: tuple[int, int]) -> None:
-    async with LabApp(settings(LOGS)).run_test(size=size) as pilot:
-        app = await ready(pilot)
+    async with open_lab(LOGS, size=size) as (pilot, app):
         await until(
             pilot,
             lambda: all(
@@ -56,8 +55,7 @@ async def test_a_key_clears_the_log_as_shown_and_the_run_keeps_it() -> None:
 
 @pytest.mark.slow
 async def test_resize_there_and_back() -> None:
-    async with LabApp(settings(LOGS)).run_test(size=(80, 24)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(LOGS, size=(80, 24)) as (pilot, app):
         await until(
             pilot,
             lambda: all(words in screen_text(app) for words in ("White", "World: Grey_bands")),
@@ -72,8 +70,7 @@ async def test_resize_there_and_back() -> None:
 
 
 async def test_a_key_that_does_nothing_says_why() -> None:
-    async with LabApp(settings()).run_test(size=(120, 40)) as pilot:
-        app = await ready(pilot)
+    async with open_lab() as (pilot, app):
         for key, reason in (
             ("R", "No program yet: o opens one"),
             ("S", "Nothing is running: R runs the program"),
@@ -88,8 +85,7 @@ async def test_a_key_that_does_nothing_says_why() -> None:
 
 @pytest.mark.slow
 async def test_nudge() -> None:
-    async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(LOGS) as (pilot, app):
         for key, pose in (
             ("left", Pose(140, 500, 0)),
             ("up", Pose(150, 510, 0)),
@@ -108,16 +104,14 @@ async def test_nudge() -> None:
 
 
 async def test_readings_follow_the_robot_at_rest() -> None:
-    async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(LOGS) as (_pilot, app):
         assert app.run_controller.snapshot().colors["left"].red == 255
         app.run_controller.place(Pose(300, 500, 0))
         assert app.run_controller.snapshot().colors["left"].red == 220
 
 
 async def test_speed_steps_and_ends() -> None:
-    async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(LOGS) as (pilot, app):
         await pilot.press("left_square_bracket", "left_square_bracket")
         assert app.run_controller.speed == 0.25
         await pilot.press("left_square_bracket")
@@ -128,8 +122,7 @@ async def test_speed_steps_and_ends() -> None:
 
 @pytest.mark.slow
 async def test_pen_is_p_and_not_shift_p() -> None:
-    async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(LOGS) as (pilot, app):
         await pilot.press("P", "escape")
         after_shift_p = app.run_controller.pen_down
         await pilot.press("p")
@@ -141,8 +134,7 @@ async def test_pen_is_p_and_not_shift_p() -> None:
 
 
 async def test_help_lists_every_key() -> None:
-    async with LabApp(settings()).run_test(size=(150, 240)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(size=(150, 240)) as (pilot, app):
         await pilot.press("question_mark")
         assert isinstance(app.screen, GuideScreen)
         await until(pilot, lambda: ACTIONS["run"].title in screen_text(app))
@@ -155,8 +147,7 @@ async def test_help_lists_every_key() -> None:
 
 @pytest.mark.slow
 async def test_choosing_a_mat_lays_it_out_with_its_start() -> None:
-    async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(LOGS) as (pilot, app):
         await pilot.press("b")
         mats = app.screen.query_one(OptionList)
         mats.highlighted = mats.get_option_index("Lollipop")

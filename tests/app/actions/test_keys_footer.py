@@ -9,13 +9,12 @@ from textual.pilot import Pilot
 from textual.widgets import Input, OptionList
 
 from tests.app.analyser.test_screen import text_of
-from tests.app.app_help import LOGS, program, ready, settings, until
+from tests.app.app_help import LOGS, open_lab, program, until
 from tests.cases import cases
 from tuisim.analysis.source import LogRequest
 from tuisim.app.action import fitting
 from tuisim.app.actions.keys import ACTIONS, footer_actions, working
 from tuisim.app.analyser.app import AnalyserApp
-from tuisim.app.app import LabApp
 from tuisim.app.dialogs.question import Question
 from tuisim.app.form import NumberInput
 from tuisim.app.snapshot import RunPhase, Situation
@@ -61,8 +60,7 @@ FAILS = "print('Colour: 1')\n1 / 0\n"
 
 
 async def test_the_state_of_a_run_that_failed_is_a_warning() -> None:
-    async with LabApp(settings(FAILS, autorun=True, speed=0.0)).run_test(size=(120, 40)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(FAILS, autorun=True, speed=0.0) as (pilot, app):
         warning = app.key_footer.get_component_rich_style("footer--failed").color
 
         def said() -> list[object]:
@@ -82,10 +80,7 @@ def last_line(pilot: Pilot[Any]) -> str:
 
 @pytest.mark.slow
 async def test_letters_that_are_typed_are_not_offered_as_keys() -> None:
-    async with LabApp(settings(LOGS, panels_on=frozenset({"code"}))).run_test(
-        size=(120, 40)
-    ) as pilot:
-        await ready(pilot)
+    async with open_lab(LOGS, panels_on=frozenset({"code"})) as (pilot, _):
         await until(pilot, lambda: "R run" in last_line(pilot))
         await pilot.press("d")
         await until(pilot, lambda: "esc done" in last_line(pilot))
@@ -95,8 +90,7 @@ async def test_letters_that_are_typed_are_not_offered_as_keys() -> None:
 
 
 async def test_the_key_of_a_panel_that_is_not_shown_looks_like_any_other() -> None:
-    async with LabApp(settings(LOGS, autorun=True, speed=0.0)).run_test(size=(120, 40)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(LOGS, autorun=True, speed=0.0) as (pilot, app):
         await until(pilot, lambda: "chart" in app.key_footer.render().plain)
         rendered = app.key_footer.render()
         assert not app.panel_area.shown("chart")
@@ -121,8 +115,7 @@ def test_the_pause_key_says_what_it_does_now(now: Situation, playing: bool, word
 
 
 async def test_a_field_for_numbers_names_the_letters_that_are_keys() -> None:
-    async with LabApp(settings("pass\n")).run_test(size=(80, 24)) as pilot:
-        await ready(pilot)
+    async with open_lab("pass\n", size=(80, 24)) as (pilot, _):
         await pilot.press("X")
         await until(pilot, lambda: isinstance(pilot.app.focused, NumberInput))
         await until(pilot, lambda: "esc leave" in last_line(pilot) and "R run" in last_line(pilot))
@@ -133,8 +126,7 @@ async def test_a_field_for_numbers_names_the_letters_that_are_keys() -> None:
     "key, own", [("c", "← → cursor 1…9 traces"), ("Z", "↑ ↓ fields ← → choices")]
 )
 async def test_the_keys_of_the_panel_with_the_focus_come_first(key: str, own: str) -> None:
-    async with LabApp(settings("x = 1\n")).run_test(size=(80, 24)) as pilot:
-        await ready(pilot)
+    async with open_lab("x = 1\n", size=(80, 24)) as (pilot, _):
         await pilot.press(key)
         await until(pilot, lambda: last_line(pilot).startswith(f" {own} R run "))
         await pilot.press(key)
@@ -143,8 +135,7 @@ async def test_the_keys_of_the_panel_with_the_focus_come_first(key: str, own: st
 
 @pytest.mark.parametrize("key", ["r", "b", "h", "o", "ctrl+p"])
 async def test_under_a_dialog_the_footer_names_only_keys_that_work_in_it(key: str) -> None:
-    async with LabApp(settings("x = 1\n")).run_test(size=(80, 24)) as pilot:
-        await ready(pilot)
+    async with open_lab("x = 1\n", size=(80, 24)) as (pilot, _):
         await until(pilot, lambda: "R run" in last_line(pilot))
         await pilot.press(key)
         await until(pilot, lambda: "esc close" in last_line(pilot))
@@ -156,8 +147,7 @@ async def test_under_a_dialog_the_footer_names_only_keys_that_work_in_it(key: st
 
 
 async def test_the_footer_names_the_answers_to_a_question() -> None:
-    async with LabApp(settings("x = 1\n")).run_test(size=(80, 24)) as pilot:
-        app = await ready(pilot)
+    async with open_lab("x = 1\n", size=(80, 24)) as (pilot, app):
         await app.push_screen(
             Question("Unsaved changes", "", (("s", "Save them"), ("d", "Discard them")))
         )
@@ -167,8 +157,7 @@ async def test_the_footer_names_the_answers_to_a_question() -> None:
 
 
 async def test_letters_are_no_keys_of_a_dialog_while_its_field_has_the_focus() -> None:
-    async with LabApp(settings("x = 1\n")).run_test(size=(80, 24)) as pilot:
-        await ready(pilot)
+    async with open_lab("x = 1\n", size=(80, 24)) as (pilot, _):
         await pilot.press("T")
         await until(pilot, lambda: "esc close" in last_line(pilot))
         assert isinstance(pilot.app.focused, Input)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tests.app.app_help import ENDLESS, ready, settings, until
+from tests.app.app_help import ENDLESS, open_lab, ready, until, until_state
 from tuisim.app.app import AppSettings, LabApp
 from tuisim.app.dialogs.question import Question
 from tuisim.app.snapshot import RunPhase
@@ -11,14 +11,13 @@ from tuisim.config.options import Settings
 
 
 async def test_a_paused_program_starts_again() -> None:
-    async with LabApp(settings(ENDLESS, autorun=True)).run_test(size=(120, 40)) as pilot:
-        app = await ready(pilot)
-        await until(pilot, lambda: app.run_controller.state == RunPhase.RUNNING)
+    async with open_lab(ENDLESS, autorun=True) as (pilot, app):
+        await until_state(pilot, RunPhase.RUNNING)
         await pilot.press("space")
-        await until(pilot, lambda: app.run_controller.state == RunPhase.PAUSED)
+        await until_state(pilot, RunPhase.PAUSED)
         before = app.run_controller.run_id
         await pilot.press("R")
-        await until(pilot, lambda: app.run_controller.state == RunPhase.RUNNING)
+        await until_state(pilot, RunPhase.RUNNING)
         assert app.run_controller.run_id != before
 
 
@@ -30,6 +29,6 @@ async def test_a_new_program_that_has_run_is_worth_a_question() -> None:
         await until(pilot, lambda: app.run_controller.program is not None)
         assert not app.document.dirty
         await pilot.press("escape", "R")
-        await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED)
+        await until_state(pilot, RunPhase.ENDED)
         await pilot.press("q")
         await until(pilot, lambda: isinstance(app.screen, Question))

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from tests.app.app_help import notices, ready, settings
-from tuisim.app.app import LabApp
+from tests.app.app_help import notices, open_lab
 
 
 async def test_the_pen_is_told_before_the_robot_drives() -> None:
-    async with LabApp(settings()).run_test(size=(80, 24)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(size=(80, 24)) as (pilot, app):
         await pilot.press("p")
         await pilot.press("p")
 

@@ -13,7 +13,15 @@ import pytest
 from textual.pilot import Pilot
 from textual.widgets import Input
 
-from tests.app.app_help import press_and_stand, ready, screen_text, settings, until
+from tests.app.app_help import (
+    open_lab,
+    press_and_stand,
+    ready,
+    settings,
+    until,
+    until_shown,
+    until_state,
+)
 from tests.running import PATIENCE_S
 from tuisim.app.actions.time_travel import to_now, to_tick
 from tuisim.app.app import LabApp
@@ -86,7 +94,7 @@ async def test_the_robot_stays_where_it_is_put_while_a_line_holds_the_run() -> N
         ]
         assert app.run_controller.pose == Pose(start.x_mm + 10, start.y_mm + 20, start.heading_deg)
         await pilot.press("S")
-        await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED)
+        await until_state(pilot, RunPhase.ENDED)
         # It stands nowhere any more.
         assert app.debugger.view is None
         run = RunStore().load_run(app.run_controller.run_id)
@@ -179,19 +187,18 @@ async def test_a_run_paused_while_it_asks_goes_on() -> None:
     asks = settings("name = input('Name? ')\nprint('A: 1')\nwhile True:\n    pass\n", autorun=True)
     async with LabApp(asks).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)
-        await until(pilot, lambda: app.run_controller.state == RunPhase.WAITING)
+        await until_state(pilot, RunPhase.WAITING)
         await pilot.press("escape", "space")
-        await until(pilot, lambda: app.run_controller.state == RunPhase.PAUSED)
+        await until_state(pilot, RunPhase.PAUSED)
         await pilot.press("space")
-        await until(pilot, lambda: app.run_controller.state == RunPhase.WAITING)
+        await until_state(pilot, RunPhase.WAITING)
         app.run_controller.send(Answer("Ann"))
-        await until(pilot, lambda: app.run_controller.state == RunPhase.RUNNING)
+        await until_state(pilot, RunPhase.RUNNING)
 
 
 @pytest.mark.slow
 async def test_lines_back_add_up_and_the_end_key_comes_back_from_a_line_of_the_same_tick() -> None:
-    async with LabApp(settings(LINES)).run_test(size=(120, 40)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(LINES) as (pilot, app):
         for line in range(1, 5):
             await pilot.press("n")
             await until(pilot, partial(at_line, app, line))
@@ -201,7 +208,7 @@ async def test_lines_back_add_up_and_the_end_key_comes_back_from_a_line_of_the_s
             )
         await pilot.press("N", "N", "n")
         await until(pilot, lambda: at_line(app, 2) and not app.debugger.busy)
-        await until(pilot, lambda: "past 0.00 s" in screen_text(app))
+        await until_shown(pilot, "past 0.00 s")
         # As the end key does it: the run at work is not let on from a former line.
         await pilot.press("full_stop")
         await until(pilot, partial(at_line, app, 4))
@@ -224,7 +231,7 @@ async def test_what_is_changed_for_the_next_run_is_seen_also_from_the_past() -> 
     ).run_test() as pilot:
         app = await ready(pilot)
         await pilot.press("R")
-        await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED)
+        await until_state(pilot, RunPhase.ENDED)
         to_tick(app.context, 10)
         assert app.run_controller.in_past
         assert app.loader.attempt(lambda plan: with_obstacles(plan, (Obstacle(100, 100, 50, 50),)))
@@ -233,12 +240,11 @@ async def test_what_is_changed_for_the_next_run_is_seen_also_from_the_past() -> 
 
 async def test_a_sample_clicked_in_the_chart_is_found_in_the_code() -> None:
     program = "import time\ntank_drive.on(50, 50)\nfor n in range(20):\n    time.sleep(0.1)\n    print('Colour: 100')\n"
-    async with LabApp(settings(program, speed=0.0)).run_test(size=(120, 40)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(program, speed=0.0) as (pilot, app):
         await pilot.press("R")
-        await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED)
+        await until_state(pilot, RunPhase.ENDED)
         await pilot.press("c")
-        await until(pilot, lambda: "100 white" in screen_text(app))
+        await until_shown(pilot, "100 white")
         await pilot.mouse_down(app.query_one(Chart), offset=(20, 4))
         await until(pilot, lambda: app.run_controller.in_past)
         clicked = app.run_controller.snapshot()
@@ -256,16 +262,13 @@ async def test_a_line_of_a_module_beside_the_program_is_shown(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     Path("helper.py").write_text("def turn(by):\n    return by + 1\n")
-    async with LabApp(settings("from helper import turn\nturn(1)\n")).run_test(
-        size=(120, 40)
-    ) as pilot:
-        app = await ready(pilot)
+    async with open_lab("from helper import turn\nturn(1)\n") as (pilot, app):
         for line in (1, 2):
             await pilot.press("n")
             await until(pilot, partial(at_line, app, line))
         await pilot.press("s")
-        await until(pilot, lambda: "line 2 of helper.py" in screen_text(app))
-        await until(pilot, lambda: "  return by + 1" in screen_text(app))
+        await until_shown(pilot, "line 2 of helper.py")
+        await until_shown(pilot, "  return by + 1")
 
 
 @asynccontextmanager
@@ -274,7 +277,7 @@ async def run_over_bands(program: str) -> AsyncIterator[tuple[Pilot[Any], LabApp
     app = LabApp(settings(program, autorun=True, speed=0.0, background="Grey_bands"))
     async with app.run_test(size=(120, 40)) as pilot:
         await ready(pilot)
-        await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED)
+        await until_state(pilot, RunPhase.ENDED)
         yield pilot, app
 
 

@@ -9,7 +9,7 @@ from PIL import Image
 from textual.pilot import Pilot
 from textual.widgets import Input, OptionList, Static
 
-from tests.app.app_help import LOGS, message_of, notices, ready, settings, until
+from tests.app.app_help import LOGS, message_of, notices, open_lab, ready, settings, until
 from tuisim.app.app import AppSettings, LabApp
 from tuisim.config.options import Settings
 from tuisim.terminal.cell_view import PixelView
@@ -18,8 +18,7 @@ from tuisim.terminal.cell_view import PixelView
 @pytest.mark.slow
 @pytest.mark.parametrize("size", [(80, 24), (120, 40)], ids=["80x24", "120x40"])
 async def test_the_mat_at_hand_is_shown(size: tuple[int, int]) -> None:
-    async with LabApp(settings(LOGS)).run_test(size=size) as pilot:
-        app = await ready(pilot)
+    async with open_lab(LOGS, size=size) as (pilot, app):
         await pilot.press("b")
         view = app.screen.query_one(PixelView)
         # The view gets its height after the dialog; before, a picture may have another shape.
@@ -54,8 +53,7 @@ async def enter_path(pilot: Pilot[None], path: Path) -> None:
 async def test_an_image_is_laid_out_by_its_path(tmp_path: Path) -> None:
     path = tmp_path / "red.png"
     Image.new("RGB", (300, 200), (200, 0, 0)).save(path)
-    async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(LOGS) as (pilot, app):
         await pilot.press("b")
         await pilot.pause()
         await enter_path(pilot, path)
@@ -75,8 +73,7 @@ async def test_what_is_no_image_changes_nothing(content: str | None, tmp_path: P
     path = tmp_path / "none.png"
     if content:
         path.write_text(content)
-    async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(LOGS) as (pilot, app):
         before = app.run_controller.next_run
         await pilot.press("b")
         await pilot.pause()
@@ -130,8 +127,7 @@ async def test_mats_of_ones_own_are_listed_by_name(named: bool, home: Path, tmp_
 
 @pytest.mark.slow
 async def test_a_mat_without_a_picture_says_which_file_to_bring(home: Path) -> None:
-    async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(LOGS) as (pilot, app):
         before = app.run_controller.next_run
         await choose(pilot, "FLL_2018_Into_Orbit")
         await until(

@@ -15,7 +15,7 @@ from textual.screen import Screen
 from textual.widgets import Input, OptionList, Static
 
 import tuisim.app
-from tests.app.app_help import LOGS, ready, settings, until
+from tests.app.app_help import LOGS, open_lab, ready, settings, until
 from tests.app.monkey import at_once, key_event
 from tuisim.analysis.source import LogRequest
 from tuisim.app.analyser.app import Analyser, AnalyserApp
@@ -49,8 +49,7 @@ def _own_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.quick_cases("palette", "mat", "robot")
 @pytest.mark.parametrize("keys", IN_THE_LAB.values(), ids=list(IN_THE_LAB))
 async def test_a_key_too_many_leaves_the_lab_as_it_is(keys: str) -> None:
-    async with LabApp(settings(LOGS)).run_test(size=(80, 24)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(LOGS, size=(80, 24)) as (pilot, app):
         at_once(pilot, keys.split())
         await pilot.pause(0.1)
         await until(pilot, lambda: app._input.is_idle and len(app.screen_stack) == 1)
@@ -80,8 +79,7 @@ async def test_a_key_too_many_leaves_the_analyser_as_it_is(keys: str) -> None:
 
 
 async def test_what_is_typed_while_a_dialog_opens_is_typed_into_it() -> None:
-    async with LabApp(settings()).run_test(size=(80, 24)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(size=(80, 24)) as (pilot, app):
         at_once(pilot, "o/tmp")
         await until(pilot, lambda: isinstance(app.screen, Chooser))
         await until(pilot, lambda: [field.value for field in app.screen.query(Input)] == ["/tmp"])
@@ -121,8 +119,7 @@ async def test_a_screen_that_is_still_opening_when_the_app_is_shut_down_does_no_
 
 
 async def test_a_click_beside_the_list_of_a_dialog_leaves_the_keys_to_the_dialog() -> None:
-    async with LabApp(settings()).run_test(size=(80, 24)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(size=(80, 24)) as (pilot, app):
         await pilot.press("o")
         await until(pilot, lambda: isinstance(app.focused, OptionList))
         await pilot.click(offset=(1, 1))
@@ -131,8 +128,7 @@ async def test_a_click_beside_the_list_of_a_dialog_leaves_the_keys_to_the_dialog
 
 async def test_a_dialog_gives_its_result_once() -> None:
     given: list[str | None] = []
-    async with LabApp(settings()).run_test(size=(80, 24)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(size=(80, 24)) as (pilot, app):
         app.push_screen(Question("", "", (("y", ""),)), given.append)
         await pilot.pause()
         at_once(pilot, ["y", "y", "enter"])
@@ -143,8 +139,7 @@ async def test_a_dialog_gives_its_result_once() -> None:
 
 
 async def test_a_click_on_what_has_just_been_removed_does_nothing() -> None:
-    async with LabApp(settings()).run_test(size=(80, 24)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(size=(80, 24)) as (pilot, app):
         text = Static("gone", id="gone")
         guide = GuideScreen(KeyPage("Help", "", {}), Topic())
         await app.push_screen(guide)
@@ -165,8 +160,7 @@ async def test_a_click_on_what_has_just_been_removed_does_nothing() -> None:
 async def test_a_screen_that_is_not_drawn_yet_does_not_hear_the_mouse(
     is_ready: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    async with LabApp(settings()).run_test(size=(80, 24)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(size=(80, 24)) as (pilot, app):
         guide, heard = GuideScreen(KeyPage("Help", "", {}), Topic()), list[events.Event]()
         await app.push_screen(guide)
         await until(pilot, lambda: guide.is_ready)
@@ -181,8 +175,7 @@ async def test_a_screen_that_is_not_drawn_yet_does_not_hear_the_mouse(
 
 @pytest.mark.slow
 async def test_no_palette_opens_above_a_dialog() -> None:
-    async with LabApp(settings()).run_test(size=(80, 24)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(size=(80, 24)) as (pilot, app):
         for key in ("o", "question_mark", "ctrl+s"):
             await pilot.press(key)
             await until(pilot, lambda: isinstance(app.screen, Dialog) and app.screen.is_ready, key)
@@ -196,8 +189,7 @@ async def test_no_palette_opens_above_a_dialog() -> None:
 async def test_a_dialog_is_drawn_above_a_screen_that_is_not_laid_out_for_a_larger_terminal_yet() -> (
     None
 ):
-    async with LabApp(settings()).run_test(size=(80, 24)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(size=(80, 24)) as (pilot, app):
         await pilot.press("o")
         await until(pilot, lambda: isinstance(app.screen, Dialog) and app.screen.is_ready)
         lines = app.screen.render_lines(Region(0, 20, 80, 30))
@@ -205,8 +197,7 @@ async def test_a_dialog_is_drawn_above_a_screen_that_is_not_laid_out_for_a_large
 
 
 async def test_a_click_on_the_palette_where_the_terminal_was_does_no_harm() -> None:
-    async with LabApp(settings()).run_test(size=(80, 24)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(size=(80, 24)) as (pilot, app):
         await pilot.press("ctrl+p")
         await until(pilot, lambda: isinstance(app.screen, Palette) and app.screen.is_ready)
         event = events.Click(
@@ -226,8 +217,7 @@ async def test_a_dialog_that_is_closed_before_it_is_built_takes_along_what_is_ab
     above: Callable[[], Screen[None]],
 ) -> None:
     given: list[str | None] = []
-    async with LabApp(settings()).run_test(size=(80, 24)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(size=(80, 24)) as (pilot, app):
         below = Question("", "", (("y", ""),))
         app.push_screen(below, given.append)
         app.push_screen(above())

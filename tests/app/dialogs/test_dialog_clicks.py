@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from textual.widgets import Input
 
-from tests.app.app_help import ready, screen_text, settings, until
+from tests.app.app_help import open_lab, ready, screen_text, settings, until, until_shown
 from tuisim.app.app import LabApp
 from tuisim.app.dialogs.save import SaveDialog
 from tuisim.source import Program
@@ -18,8 +18,7 @@ async def test_a_click_on_a_word_of_the_footer_presses_its_key(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    async with LabApp(settings()).run_test(size=(64, 60)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(size=(64, 60)) as (pilot, app):
 
         async def click(word: str) -> None:
             await until(pilot, lambda: word in screen_text(app).splitlines()[-1])
@@ -44,7 +43,7 @@ async def test_a_click_on_a_word_of_the_editors_keys_saves_the_program(
     async with LabApp(replace(settings(), program=given)).run_test(size=(80, 24)) as pilot:
         app = await ready(pilot)
         await pilot.press("d")
-        await until(pilot, lambda: "^s save" in screen_text(app))
+        await until_shown(pilot, "^s save")
         await pilot.press("#")
         for word in ("^s save", "esc done"):
             await pilot.click(offset=(screen_text(app).splitlines()[-1].index(word) + 1, 23))

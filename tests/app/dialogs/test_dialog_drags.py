@@ -5,8 +5,7 @@ from __future__ import annotations
 import pytest
 from textual.widget import Widget
 
-from tests.app.app_help import LOGS, ready, settings, until
-from tuisim.app.app import LabApp
+from tests.app.app_help import LOGS, open_lab, until
 from tuisim.app.dialogs.dialog import Dialog
 from tuisim.app.form import Slider
 from tuisim.app.panels.brick import Brick
@@ -16,10 +15,10 @@ from tuisim.app.panels.world import WorldView
 
 @pytest.mark.slow
 async def test_no_drag_outlives_a_dialog() -> None:
-    async with LabApp(settings(LOGS, panels_on=frozenset({"noise", "brick"}))).run_test(
-        size=(120, 50)
-    ) as pilot:
-        app = await ready(pilot)
+    async with open_lab(LOGS, panels_on=frozenset({"noise", "brick"}), size=(120, 50)) as (
+        pilot,
+        app,
+    ):
         view, slider = app.query_one(WorldView), app.query_one("#light", Slider)
         chart, brick = app.query_one(Chart), app.query_one(Brick)
         assert view._port is not None

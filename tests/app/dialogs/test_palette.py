@@ -5,9 +5,8 @@ from __future__ import annotations
 import pytest
 from textual.widgets import Input
 
-from tests.app.app_help import lab, ready, screen_text, settings, until
+from tests.app.app_help import open_lab, until, until_shown
 from tuisim.app.actions.keys import ACTIONS
-from tuisim.app.app import LabApp
 from tuisim.app.dialogs.palette import Entry, ThemeChooser, matching
 from tuisim.app.guide.screen import GuideScreen
 
@@ -39,8 +38,7 @@ def test_words_that_people_use_find_an_action(typed: str, first: str) -> None:
 
 
 async def test_the_palette_keeps_its_place_while_the_list_becomes_shorter() -> None:
-    async with LabApp(settings("x = 1\n")).run_test(size=(80, 24)) as pilot:
-        await ready(pilot)
+    async with open_lab("x = 1\n", size=(80, 24)) as (pilot, _):
         await pilot.press("ctrl+p")
         await until(pilot, lambda: bool(pilot.app.screen.query(".dialog")))
         await pilot.pause()
@@ -53,12 +51,11 @@ async def test_the_palette_keeps_its_place_while_the_list_becomes_shorter() -> N
         await pilot.pause()
         assert frame.region == before
         assert pilot.app.screen.query_one("#message").display
-        await until(pilot, lambda: "No command has these words" in screen_text(lab(pilot)))
+        await until_shown(pilot, "No command has these words")
 
 
 async def test_words_of_no_command_are_a_question_to_the_guide() -> None:
-    async with LabApp(settings("x = 1\n")).run_test(size=(80, 24)) as pilot:
-        await ready(pilot)
+    async with open_lab("x = 1\n", size=(80, 24)) as (pilot, _):
         await pilot.press("ctrl+p")
         await until(pilot, lambda: bool(pilot.app.screen.query(".dialog")))
         pilot.app.screen.query_one(Input).value = "what turns the robot by ninety degrees"
@@ -67,12 +64,11 @@ async def test_words_of_no_command_are_a_question_to_the_guide() -> None:
             pilot,
             lambda: isinstance(pilot.app.screen, GuideScreen) and bool(pilot.app.screen.answers),
         )
-        await until(pilot, lambda: "To turn on the spot" in screen_text(lab(pilot)))
+        await until_shown(pilot, "To turn on the spot")
 
 
 async def test_enter_where_nothing_is_typed_or_found_does_nothing() -> None:
-    async with LabApp(settings("x = 1\n")).run_test(size=(80, 24)) as pilot:
-        await ready(pilot)
+    async with open_lab("x = 1\n", size=(80, 24)) as (pilot, _):
         await pilot.press("f10")
         await until(pilot, lambda: isinstance(pilot.app.screen, ThemeChooser))
         await pilot.press(*"xyzzy", "enter")

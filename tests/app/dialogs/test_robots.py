@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 from textual.widgets import OptionList
 
-from tests.app.app_help import LOGS, ready, settings, until
-from tuisim.app.app import LabApp
+from tests.app.app_help import LOGS, open_lab, until
 from tuisim.app.dialogs.robots import RobotParts, RobotPicture, part_lines, robot_picture, view_of
 from tuisim.config.robots import ROBOTS
 from tuisim.core.spec import RobotSpec
@@ -46,8 +45,7 @@ def test_a_robot_is_whole_in_its_picture(robot: str, size: tuple[int, int]) -> N
 @pytest.mark.slow
 @pytest.mark.parametrize("size", [(80, 24), (120, 40)], ids=["80x24", "120x40"])
 async def test_the_chosen_robot_is_drawn_with_its_parts(size: tuple[int, int]) -> None:
-    async with LabApp(settings(LOGS)).run_test(size=size) as pilot:
-        app = await ready(pilot)
+    async with open_lab(LOGS, size=size) as (pilot, app):
         await pilot.press("r")
         view = app.screen.query_one(RobotPicture)
         await until(pilot, lambda: view._cells.shape[0] == view.size.height >= 6)

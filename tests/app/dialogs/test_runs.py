@@ -12,7 +12,17 @@ from typing import Any
 import pytest
 from textual.widgets import Input, OptionList
 
-from tests.app.app_help import LOGS, notices, program, ready, screen_text, settings, until
+from tests.app.app_help import (
+    LOGS,
+    notices,
+    open_lab,
+    program,
+    ready,
+    screen_text,
+    until,
+    until_shown,
+    until_state,
+)
 from tests.conftest import Command
 from tests.running import PATIENCE_S
 from tuisim.app.app import AppSettings, LabApp
@@ -84,15 +94,14 @@ async def test_a_run_is_searched_for_and_chosen() -> None:
         stored("print('A: 1')\n"),
         stored("tank_drive.on_for_seconds(50, 50, 1)\n", background="Lollipop"),
     ]
-    async with LabApp(settings()).run_test(size=(80, 24)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(size=(80, 24)) as (pilot, app):
         await pilot.press("h")
-        await until(pilot, lambda: "2 of 2 runs" in screen_text(app))
+        await until_shown(pilot, "2 of 2 runs")
         assert re.search(
             r" samples +│.* Grey_bands finished +0\.\d+ +1 ", screen_text(app), re.DOTALL
         )
         await pilot.press(*"grey_b")
-        await until(pilot, lambda: "1 of 2 runs" in screen_text(app))
+        await until_shown(pilot, "1 of 2 runs")
         assert isinstance(app.screen, RunChooser)
         assert app.screen.query_one(OptionList).option_count == 1
         way = app.screen.query_one(PixelView)
@@ -121,7 +130,7 @@ async def test_mat_and_program_may_be_gone(tmp_path: Path) -> None:
     folder = RunStore().folder(run_id)
     async with LabApp(replaying(run_id)).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)
-        await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED)
+        await until_state(pilot, RunPhase.ENDED)
         # The prepared mat is in the cache still.
         assert app.run_controller.snapshot().colors["left"].green > 150
         assert app.run_controller.program is not None
@@ -133,7 +142,7 @@ async def test_mat_and_program_may_be_gone(tmp_path: Path) -> None:
         Path(name[1]).unlink()
     async with LabApp(replaying(run_id)).run_test(size=(120, 40)) as pilot:
         app = await ready(pilot)
-        await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED)
+        await until_state(pilot, RunPhase.ENDED)
         await until(pilot, lambda: any("the mat of the run" in notice for notice in notices(app)))
         await pilot.press("less_than_sign")
         assert app.run_controller.snapshot().past
@@ -156,10 +165,9 @@ def _other_format(folder: Path) -> str:
 async def test_a_damaged_run_is_a_notice(damage: Callable[[Path], str]) -> None:
     run_id = stored("print('A: 1')\ntank_drive.on_for_seconds(50, 50, 1)\n")
     said = damage(RunStore().folder(run_id))
-    async with LabApp(settings()).run_test(size=(120, 40)) as pilot:
-        app = await ready(pilot)
+    async with open_lab() as (pilot, app):
         await pilot.press("h")
-        await until(pilot, lambda: "1 of 1 runs" in screen_text(app))
+        await until_shown(pilot, "1 of 1 runs")
         await pilot.press("enter")
         await until(pilot, lambda: any(said in notice for notice in notices(app)))
         assert not app.run_controller.run_id

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from textual.widgets import Input, OptionList
 
-from tests.app.app_help import LOGS, ready, screen_text, settings, until
+from tests.app.app_help import LOGS, open_lab, screen_text, until
 from tuisim.app.app import LabApp
 from tuisim.app.dialogs.settings import SettingsScreen
 from tuisim.app.panels.world import World
@@ -41,8 +41,7 @@ APPLIED: dict[str, tuple[list[str], object, Callable[[LabApp], bool]]] = {
 @pytest.mark.parametrize("path", APPLIED)
 async def test_a_change_is_written_and_applies(path: str) -> None:
     keys, value, applies = APPLIED[path]
-    async with LabApp(settings(LOGS)).run_test(size=(80, 24)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(LOGS, size=(80, 24)) as (pilot, app):
         await pilot.press("asterisk")
         await until(pilot, lambda: isinstance(app.screen, SettingsScreen) and app.screen.is_ready)
         screen = app.screen
@@ -67,8 +66,7 @@ async def test_a_change_is_written_and_applies(path: str) -> None:
 
 
 async def test_a_wrong_value_is_told_and_can_be_corrected() -> None:
-    async with LabApp(settings(LOGS)).run_test(size=(80, 24)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(LOGS, size=(80, 24)) as (pilot, app):
         await pilot.press("asterisk")
         await until(pilot, lambda: isinstance(app.screen, SettingsScreen) and app.screen.is_ready)
         listed = app.screen.query_one(OptionList)
@@ -87,8 +85,7 @@ async def test_a_wrong_value_is_told_and_can_be_corrected() -> None:
 
 @pytest.mark.parametrize("size", [(80, 24), (40, 12)], ids=str)
 async def test_every_setting_can_be_reached_and_says_what_it_is(size: tuple[int, int]) -> None:
-    async with LabApp(settings(LOGS)).run_test(size=size) as pilot:
-        app = await ready(pilot)
+    async with open_lab(LOGS, size=size) as (pilot, app):
         await pilot.press("asterisk")
         await until(pilot, lambda: isinstance(app.screen, SettingsScreen) and app.screen.is_ready)
         listed, seen = app.screen.query_one(OptionList), []
@@ -109,8 +106,7 @@ async def test_every_setting_can_be_reached_and_says_what_it_is(size: tuple[int,
 
 async def test_a_file_that_is_no_toml_is_told_and_stays(tmp_path: Path) -> None:
     (tmp_path / "config.toml").write_text("[app\n")
-    async with LabApp(settings(LOGS)).run_test(size=(80, 24)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(LOGS, size=(80, 24)) as (pilot, app):
         await pilot.press("asterisk")
         await until(pilot, lambda: isinstance(app.screen, SettingsScreen) and app.screen.is_ready)
         listed = app.screen.query_one(OptionList)

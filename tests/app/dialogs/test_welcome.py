@@ -9,7 +9,16 @@ from typing import Any
 
 import pytest
 
-from tests.app.app_help import lab, notices, ready, screen_text, settings, until, until_shown
+from tests.app.app_help import (
+    lab,
+    notices,
+    open_lab,
+    ready,
+    screen_text,
+    settings,
+    until,
+    until_shown,
+)
 from tests.cases import cases
 from tuisim.app.app import AppSettings, LabApp
 from tuisim.app.dialogs.chooser import Chooser
@@ -131,8 +140,7 @@ def test_the_welcome_is_for_those_who_name_nothing(given: dict[str, Any], is_emp
 @pytest.mark.slow_cases("(120, 40)")
 @pytest.mark.parametrize("size", [(80, 24), (120, 40), (59, 14)], ids=str)
 async def test_a_program_with_a_syntax_error_opens_at_its_line(size: tuple[int, int]) -> None:
-    async with LabApp(settings(WRONG)).run_test(size=size) as pilot:
-        app = await ready(pilot)
+    async with open_lab(WRONG, size=size) as (pilot, app):
         await until_shown(pilot, "print((1)")
         code = app.panel_area.code
         assert code is not None

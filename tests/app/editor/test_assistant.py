@@ -10,11 +10,10 @@ import pytest
 from textual import events
 from textual.pilot import Pilot
 
-from tests.app.app_help import ready, settings, until
+from tests.app.app_help import open_lab, until
 from tests.app.code_help import CodeApp, alone
 from tests.app.panel_help import screen_text
 from tests.running import PATIENCE_S
-from tuisim.app.app import LabApp
 from tuisim.app.editor import area as area_module
 from tuisim.app.editor import completion
 from tuisim.app.editor.area import CodeArea
@@ -121,8 +120,7 @@ async def test_what_is_typed_during_a_lookup_goes_on_with_the_name(
         return found
 
     monkeypatch.setattr(area_module, "candidates", slow)
-    async with LabApp(settings("tan")).run_test(size=(120, 40)) as pilot:
-        app = await ready(pilot)
+    async with open_lab("tan") as (pilot, app):
         code = app.query_one(Code)
         code.start_typing(at_end=True)
         await until(pilot, lambda: code.typing and code.query_one(CodeArea).has_focus)

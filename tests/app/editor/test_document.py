@@ -9,7 +9,16 @@ from typing import Any
 import pytest
 from textual.pilot import Pilot
 
-from tests.app.app_help import ENDLESS, notices, ready, screen_text, settings, until
+from tests.app.app_help import (
+    ENDLESS,
+    notices,
+    ready,
+    screen_text,
+    settings,
+    until,
+    until_shown,
+    until_state,
+)
 from tuisim.app.actions.files import open_path
 from tuisim.app.app import AppSettings, LabApp
 from tuisim.app.dialogs.new_program import Skeleton, program_text
@@ -64,7 +73,7 @@ async def test_edited_text_runs_unsaved_and_is_stored_with_the_run(tmp_path: Pat
         await typed(pilot, code, *"print", "left_parenthesis", "7", "right_parenthesis", "enter")
         assert str(code.border_title) == "Code: prog.py • edited"
         await pilot.press("ctrl+r")
-        await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED)
+        await until_state(pilot, RunPhase.ENDED)
         await pilot.pause()
         assert app.run_controller.timeline.recording is not None
         assert app.run_controller.timeline.recording.program.text == "print(7)\n" + TEXT
@@ -102,7 +111,7 @@ async def test_text_with_a_mistake_does_not_run_and_leaves_the_world_alone(tmp_p
         # The notice goes; the reason stays at the mark.
         assert "line 1" in str(code.border_subtitle)
         await pilot.press(*["backspace"] * 3, "ctrl+r")
-        await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED)
+        await until_state(pilot, RunPhase.ENDED)
 
 
 async def test_a_program_opened_without_its_mat_runs_only_on_one_that_is_chosen(
@@ -220,7 +229,7 @@ async def test_after_an_error_typing_begins_on_its_line(
     async with LabApp(own(tmp_path / "prog.py", WRONG)).run_test(size=size) as pilot:
         app = await ready(pilot)
         await pilot.press("R")
-        await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED)
+        await until_state(pilot, RunPhase.ENDED)
         await pilot.press("d")
         await until(pilot, lambda: app.panel_area.code is not None and app.panel_area.code.typing)
         assert app.panel_area.code is not None
@@ -247,10 +256,10 @@ async def test_no_line_is_marked_any_more_once_the_file_was_mended_elsewhere(
 
 async def test_ctrl_s_saves_the_world_outside_the_editor(tmp_path: Path) -> None:
     async with LabApp(own(tmp_path / "prog.py")).run_test(size=(120, 40)) as pilot:
-        app, code = await begun(pilot)
+        _app, code = await begun(pilot)
         await typed(pilot, code, "x", "escape", "escape")
         await pilot.press("ctrl+s")
-        await until(pilot, lambda: "Save the world" in screen_text(app))
+        await until_shown(pilot, "Save the world")
 
 
 @pytest.mark.quick_cases("save")
@@ -283,7 +292,7 @@ async def test_opening_another_program_with_unsaved_changes_asks(tmp_path: Path)
         open_path(app.context, str(other))
         await asked(pilot)
         await pilot.press("d")
-        await until(pilot, lambda: "print('other')" in screen_text(app))
+        await until_shown(pilot, "print('other')")
         assert path.read_text() == TEXT
         assert not app.document.dirty
 
@@ -362,7 +371,7 @@ async def test_a_new_program_runs_and_asks_for_its_file(
         text = program_text("Grey_bands", "colorLeft", Skeleton.LOG)
         assert code.query_one(CodeArea).program_text == text
         await pilot.press("f5")
-        await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED)
+        await until_state(pilot, RunPhase.ENDED)
         assert app.run_controller._end == "finished"
         await pilot.press("ctrl+s")
         await until(pilot, lambda: isinstance(app.screen, ProgramDialog))
@@ -380,7 +389,7 @@ async def test_an_edited_magic_line_changes_the_world_when_it_runs(tmp_path: Pat
         assert "%%sim_magic_preloaded -x 300" in screen_text(app)
         await typed(pilot, code, *["right"] * 25, "delete", "5", "escape")
         await pilot.press("R")
-        await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED)
+        await until_state(pilot, RunPhase.ENDED)
         assert app.run_controller.timeline.recording is not None
         assert app.run_controller.timeline.recording.spec.world.start.x_mm == 500
 
@@ -393,14 +402,14 @@ async def test_the_text_may_be_edited_and_saved_during_a_run(tmp_path: Path) -> 
     ) as pilot:
         app, code = await begun(pilot)
         await pilot.press("R")
-        await until(pilot, lambda: app.run_controller.state == RunPhase.RUNNING)
-        await until(pilot, lambda: "▶" in screen_text(app))
+        await until_state(pilot, RunPhase.RUNNING)
+        await until_shown(pilot, "▶")
         await typed(pilot, code, "#", "enter", "ctrl+s")
-        await until(pilot, lambda: "running text differs" in screen_text(app))
+        await until_shown(pilot, "running text differs")
         assert path.read_text().startswith("#\n# %%")
         assert "▶ 4" not in screen_text(app)
         app.run_controller.stop()
-        await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED)
+        await until_state(pilot, RunPhase.ENDED)
         await until(pilot, lambda: "running text differs" not in screen_text(app))
 
 

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tests.app.app_help import notices, ready, settings, until
-from tuisim.app.app import LabApp
+from tests.app.app_help import notices, open_lab, until
 
 TURNS = """\
 import time
@@ -19,8 +18,7 @@ while True:
 
 @pytest.mark.slow
 async def test_breakpoints_and_light_stay_on_their_lines_when_a_held_program_is_edited() -> None:
-    async with LabApp(settings(TURNS, speed=0.0)).run_test(size=(120, 40)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(TURNS, speed=0.0) as (pilot, app):
 
         def at(line: int) -> bool:
             return app.debugger.view is not None and app.debugger.view.paused.line == line

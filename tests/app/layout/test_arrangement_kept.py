@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tests.app.app_help import LOGS, ready, settings
+from tests.app.app_help import LOGS, open_lab, ready, settings
 from tuisim.app.app import LabApp
 from tuisim.app.layout.arrangement import KeptLayout, Preset, load_layout, save_layout
 from tuisim.app.panels import TerminalSize
@@ -21,8 +21,7 @@ async def test_the_next_start_forgets_the_arrangement() -> None:
 
 @pytest.mark.slow
 async def test_the_next_start_finds_an_arrangement_that_was_kept_for_its_size() -> None:
-    async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(LOGS) as (pilot, app):
         await pilot.press("f7", "i", "shift+f9")
         kept = app.panel_area.arrangement.boxes
     async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:

@@ -4,8 +4,15 @@ from __future__ import annotations
 
 import pytest
 
-from tests.app.app_help import ENDLESS, LOGS, ready, screen_text, settings, until
-from tuisim.app.app import LabApp
+from tests.app.app_help import (
+    ENDLESS,
+    LOGS,
+    open_lab,
+    screen_text,
+    until,
+    until_shown,
+    until_state,
+)
 from tuisim.app.layout.arrangement import Preset, arrange, core_panels, mat_cells, wanted_panels
 from tuisim.app.layout.tree import PanelLayout
 from tuisim.app.panels import PANELS
@@ -74,8 +81,7 @@ def test_the_output_leaves_its_rows_to_the_code_when_debugging(size: tuple[int, 
 @pytest.mark.quick_cases("analyse")
 @pytest.mark.parametrize("preset, key", KEYS.items(), ids=KEYS)
 async def test_a_key_shows_a_preset_and_again_the_standard_layout(preset: Preset, key: str) -> None:
-    async with LabApp(settings(LOGS)).run_test(size=(80, 24)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(LOGS, size=(80, 24)) as (pilot, app):
         standard = set(app.panel_area.arrangement.boxes)
         await pilot.press(key)
         core = core_panels(preset, 80, 23)
@@ -99,8 +105,7 @@ async def test_a_key_shows_a_preset_and_again_the_standard_layout(preset: Preset
 async def test_one_key_goes_round_the_presets_that_differ(
     size: tuple[int, int], round_: list[str]
 ) -> None:
-    async with LabApp(settings(LOGS)).run_test(size=size) as pilot:
-        app = await ready(pilot)
+    async with open_lab(LOGS, size=size) as (pilot, app):
         shown = []
         for _ in round_:
             before = app.panel_area.arrangement.boxes
@@ -112,9 +117,8 @@ async def test_one_key_goes_round_the_presets_that_differ(
 
 @pytest.mark.slow
 async def test_a_preset_leaves_the_run_alone() -> None:
-    async with LabApp(settings(ENDLESS, autorun=True)).run_test(size=(120, 40)) as pilot:
-        app = await ready(pilot)
-        await until(pilot, lambda: app.run_controller.state == RunPhase.RUNNING)
+    async with open_lab(ENDLESS, autorun=True) as (pilot, app):
+        await until_state(pilot, RunPhase.RUNNING)
         run, plan = app.run_controller.run, app.run_controller.next_run
         await pilot.press(*KEYS.values())
         assert (app.run_controller.run, app.run_controller.next_run) == (run, plan)
@@ -123,10 +127,9 @@ async def test_a_preset_leaves_the_run_alone() -> None:
 
 @pytest.mark.slow
 async def test_the_palette_offers_every_preset() -> None:
-    async with LabApp(settings(LOGS)).run_test(size=(80, 24)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(LOGS, size=(80, 24)) as (pilot, app):
         await pilot.press("ctrl+p", *"analyse: large")
-        await until(pilot, lambda: "Layout to analyse" in screen_text(app))
+        await until_shown(pilot, "Layout to analyse")
         await pilot.press("enter")
         await until(pilot, lambda: app.panel_area.preset == Preset.ANALYSE)
 

@@ -11,7 +11,7 @@ import pytest
 from textual.pilot import Pilot
 from textual.widgets import Input, OptionList, Static
 
-from tests.app.app_help import notices, ready, until
+from tests.app.app_help import notices, ready, until, until_state
 from tests.app.lesson_help import (
     LARGE,
     PROGRAM,
@@ -263,7 +263,7 @@ async def test_program_is_saved_when_it_runs(tmp_path: Path) -> None:
         await pilot.press("d")
         await until(pilot, lambda: app.panel_area.code is not None and app.panel_area.code.typing)
         await pilot.press("y", "=", "2", "enter", "ctrl+r")
-        await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED)
+        await until_state(pilot, RunPhase.ENDED)
         assert not app.document.dirty
         assert program_path(app.lesson.lesson).read_text() == f"y=2\n{PROGRAM}"  # type: ignore[arg-type]
 
@@ -407,13 +407,13 @@ async def test_running_an_edited_text_ends_the_run_of_the_former_one(tmp_path: P
     async with LabApp(opened(tmp_path)).run_test(size=SMALL) as pilot:
         app = await ready(pilot)
         await pilot.press("n")
-        await until(pilot, lambda: app.run_controller.state == RunPhase.PAUSED)
+        await until_state(pilot, RunPhase.PAUSED)
         first = app.run_controller.run_id
         await pilot.press("d")
         await until(pilot, lambda: app.panel_area.code is not None and app.panel_area.code.typing)
         await pilot.press("y", "=", "2", "enter", "ctrl+r")
         await until(pilot, lambda: app.run_controller.run_id not in ("", first))
-        await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED)
+        await until_state(pilot, RunPhase.ENDED)
 
 
 async def test_the_last_lesson_can_be_reached_in_a_low_terminal(tmp_path: Path) -> None:

@@ -7,7 +7,14 @@ import json
 import pytest
 from textual.widgets import Input, Static
 
-from tests.app.app_help import ENDLESS, LOGS, ready, screen_text, settings, until
+from tests.app.app_help import (
+    ENDLESS,
+    LOGS,
+    open_lab,
+    until,
+    until_shown,
+    until_state,
+)
 from tuisim.app.app import LabApp
 from tuisim.app.form import Slider
 from tuisim.app.panels.noise import Noise
@@ -24,8 +31,7 @@ def sliders(app: LabApp) -> list[int]:
 
 
 async def test_a_slider_acts_on_the_readings_at_once() -> None:
-    async with LabApp(settings(LOGS, panels_on=SHOWN)).run_test(size=(80, 24)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(LOGS, panels_on=SHOWN, size=(80, 24)) as (pilot, app):
         assert app.run_controller.snapshot().colors["left"].green == 255
         app.query_one("#light", Slider).focus()
         await pilot.press("end")
@@ -46,8 +52,7 @@ async def test_a_slider_acts_on_the_readings_at_once() -> None:
     ],
 )
 async def test_a_wrong_number_is_refused_beside_it(field: str, typed: str, said: str) -> None:
-    async with LabApp(settings(LOGS, panels_on=SHOWN)).run_test(size=(80, 24)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(LOGS, panels_on=SHOWN, size=(80, 24)) as (pilot, app):
         before = app.run_controller.next_run
         entry = app.query_one(f"#{field}", Input)
         entry.focus()
@@ -60,10 +65,10 @@ async def test_a_wrong_number_is_refused_beside_it(field: str, typed: str, said:
 
 @pytest.mark.slow
 async def test_typed_numbers_and_the_seed_are_for_the_next_run_too() -> None:
-    async with LabApp(settings("print('A: 1')\n", panels_on=SHOWN, speed=0.0)).run_test(
-        size=(80, 24)
-    ) as pilot:
-        app = await ready(pilot)
+    async with open_lab("print('A: 1')\n", panels_on=SHOWN, speed=0.0, size=(80, 24)) as (
+        pilot,
+        app,
+    ):
         for field, typed in (("motor-number", "50"), ("seed", "7")):
             entry = app.query_one(f"#{field}", Input)
             entry.focus()
@@ -71,7 +76,7 @@ async def test_typed_numbers_and_the_seed_are_for_the_next_run_too() -> None:
             await pilot.press("enter")
         await until(pilot, lambda: app.run_controller.next_run.spec.seed == 7)
         await pilot.press("escape", "R")
-        await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED)
+        await until_state(pilot, RunPhase.ENDED)
         assert app.run_controller.run is not None
         assert app.run_controller.run.spec.world.noise == NoiseSpec(0, 50)
         assert app.run_controller.run.spec.seed == 7
@@ -79,10 +84,7 @@ async def test_typed_numbers_and_the_seed_are_for_the_next_run_too() -> None:
 
 @pytest.mark.slow
 async def test_noise_set_during_a_run_is_recorded_and_shown_from_its_tick_on() -> None:
-    async with LabApp(settings(ENDLESS, autorun=True, panels_on=SHOWN)).run_test(
-        size=(120, 40)
-    ) as pilot:
-        app = await ready(pilot)
+    async with open_lab(ENDLESS, autorun=True, panels_on=SHOWN) as (pilot, app):
         await until(
             pilot,
             lambda: (
@@ -99,21 +101,20 @@ async def test_noise_set_during_a_run_is_recorded_and_shown_from_its_tick_on() -
         actions, _ = read_actions(run.folder)
         assert [action.command for action in actions] == [SetNoise(10, 0)]
         assert recording.noise_at(run.telemetry.record(0)) == NoiseSpec(0, 0)
-        await until(pilot, lambda: "light ±10" in screen_text(app))
+        await until_shown(pilot, "light ±10")
         # The run itself began without: what it was made of does not change.
         assert (
             json.loads((run.folder / "run.json").read_text())["spec"]["world"]["noise"]["light"]
             == 0
         )
         await pilot.press("escape", "S")
-        await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED)
+        await until_state(pilot, RunPhase.ENDED)
         assert app.run_controller.snapshot().instant.noise.light == 10
         assert sliders(app) == [10, 0]
 
 
 async def test_the_panel_shows_what_a_mat_or_a_program_leaves() -> None:
-    async with LabApp(settings(LOGS, panels_on=SHOWN)).run_test(size=(80, 24)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(LOGS, panels_on=SHOWN, size=(80, 24)) as (pilot, app):
         app.query_one("#motor", Slider).focus()
         await pilot.press("right")
         app.loader.change_mat("Loop")

@@ -9,7 +9,18 @@ import pytest
 from textual.pilot import Pilot
 from textual.widgets import Input, OptionList, Static
 
-from tests.app.app_help import ENDLESS, LOGS, notices, ready, screen_text, settings, until
+from tests.app.app_help import (
+    ENDLESS,
+    LOGS,
+    notices,
+    open_lab,
+    ready,
+    screen_text,
+    settings,
+    until,
+    until_shown,
+    until_state,
+)
 from tuisim.app.app import LabApp
 from tuisim.app.panels.obstacles import BoxGrip, Obstacles, box_at
 from tuisim.app.panels.world import WorldView
@@ -69,7 +80,7 @@ async def test_add_type_and_remove() -> None:
         app.query_one("#x_mm", Input).value = "30"
         await pilot.press("enter")
         await until(pilot, lambda: boxes(app)[1].x_mm == 30)
-        await until(pilot, lambda: "200×200 at 30, " in screen_text(app))
+        await until_shown(pilot, "200×200 at 30, ")
         app.query_one("Obstacles OptionList").focus()
         await pilot.press("delete")
         await until(pilot, lambda: len(boxes(app)) == 1)
@@ -169,8 +180,7 @@ async def test_the_box_at_hand_is_marked_in_the_world() -> None:
 
 async def test_a_set_is_chosen_and_saved(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
-    async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(LOGS) as (pilot, app):
         await pilot.press("k")
         sets = app.screen.query_one(OptionList)
         sets.highlighted = sets.get_option_index("Wall")
@@ -188,11 +198,8 @@ async def test_a_set_is_chosen_and_saved(tmp_path: Path, monkeypatch: pytest.Mon
 
 @pytest.mark.slow
 async def test_obstacles_are_not_changed_during_a_run() -> None:
-    async with LabApp(settings(ENDLESS, autorun=True, panels_on=SHOWN)).run_test(
-        size=(120, 40)
-    ) as pilot:
-        app = await ready(pilot)
-        await until(pilot, lambda: app.run_controller.state == RunPhase.RUNNING)
+    async with open_lab(ENDLESS, autorun=True, panels_on=SHOWN) as (pilot, app):
+        await until_state(pilot, RunPhase.RUNNING)
         await drag(pilot, cell(app, 1000, 900), cell(app, 1300, 600))
         await until(pilot, lambda: "Not available during a run: S stops it" in notices(app))
         assert boxes(app) == ()
@@ -201,10 +208,7 @@ async def test_obstacles_are_not_changed_during_a_run() -> None:
 @pytest.mark.slow
 async def test_a_blocked_motor_is_shown_as_stalled() -> None:
     wall = "tank_drive.on(SpeedPercent(50), SpeedPercent(50))\nimport time\ntime.sleep(60)\n"
-    async with LabApp(settings(wall, background="Empty_Map", autorun=False)).run_test(
-        size=(120, 40)
-    ) as pilot:
-        app = await ready(pilot)
+    async with open_lab(wall, background="Empty_Map", autorun=False) as (pilot, app):
         from tuisim.app.setup.next_run import with_values
 
         plan = with_values(app.run_controller.next_run, {"solid": True})
@@ -216,7 +220,7 @@ async def test_a_blocked_motor_is_shown_as_stalled() -> None:
         await until(pilot, lambda: app.run_controller.snapshot().stalled == (True, True))
         await until(pilot, lambda: screen_text(app).count("stalled") == 2)
         await pilot.press("S")
-        await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED)
+        await until_state(pilot, RunPhase.ENDED)
         await until(pilot, lambda: "stalled" not in screen_text(app))
 
 

@@ -14,10 +14,13 @@ from tests.app.app_help import (
     LOGS,
     message_of,
     notices,
+    open_lab,
     ready,
     screen_text,
     settings,
     until,
+    until_shown,
+    until_state,
 )
 from tuisim.app.app import LabApp
 from tuisim.app.form import Choice, Row
@@ -136,12 +139,12 @@ async def test_choices_are_stepped_through_with_the_arrows() -> None:
 async def test_settings_are_not_changed_during_a_run() -> None:
     async with LabApp(settings(ENDLESS, autorun=True)).run_test(size=(120, 40)) as pilot:
         app = await opened(pilot)
-        await until(pilot, lambda: app.run_controller.state == RunPhase.RUNNING)
+        await until_state(pilot, RunPhase.RUNNING)
         await enter(pilot, "wheel_diameter_mm", "60")
         assert "Not available during a run: S stops it" in screen_text(app)
         assert app.run_controller.next_run.spec.robot.wheel_diameter_mm == 56
         await pilot.press("escape", "S")
-        await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED)
+        await until_state(pilot, RunPhase.ENDED)
         await enter(pilot, "wheel_diameter_mm", "60")
         assert app.run_controller.spec.robot.wheel_diameter_mm == 60
 
@@ -177,8 +180,7 @@ async def test_a_wrong_robot_file_changes_nothing(
 ) -> None:
     (tmp_path / "bad.toml").write_text("wheels = 3\n")
     monkeypatch.chdir(tmp_path)
-    async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(LOGS) as (pilot, app):
         before = app.run_controller.next_run
         await pilot.press("r")
         entry = app.screen.query_one(Input)
@@ -190,13 +192,12 @@ async def test_a_wrong_robot_file_changes_nothing(
 
 
 async def test_a_profile_is_chosen_and_seen_in_the_controls() -> None:
-    async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(LOGS) as (pilot, app):
         await pilot.press("F")
         profiles = app.screen.query_one(OptionList)
         profiles.highlighted = profiles.get_option_index("ev3")
         await pilot.press("enter")
-        await until(pilot, lambda: "ev3, seed 0" in screen_text(app))
+        await until_shown(pilot, "ev3, seed 0")
         assert app.run_controller.next_run.spec.world.solid
 
 
@@ -210,7 +211,7 @@ async def test_the_pen_draws_with_its_own_place_width_and_colour() -> None:
         await enter(pilot, "pen.down", "off")
         assert app.run_controller.pen_down
         await pilot.press("escape", "R")
-        await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED)
+        await until_state(pilot, RunPhase.ENDED)
         world = app.panel_area.world
         assert world is not None
         await until(pilot, lambda: len(world._view.trace) > 0)
@@ -221,8 +222,7 @@ async def test_the_pen_draws_with_its_own_place_width_and_colour() -> None:
 
 async def test_what_a_robots_file_has_that_means_nothing_here_is_said(tmp_path: Path) -> None:
     (tmp_path / "mine.json").write_text('{"owner": "Ann"}')
-    async with LabApp(settings()).run_test(size=(120, 40)) as pilot:
-        app = await ready(pilot)
+    async with open_lab() as (pilot, app):
         app.loader.attempt(lambda plan: with_robot(plan, str(tmp_path / "mine.json")))
         await until(
             pilot,
@@ -235,6 +235,6 @@ async def test_a_long_value_is_seen_from_its_beginning_and_escape_closes_the_pan
         app = await opened(pilot)
         await pilot.press("down")
         await until(pilot, lambda: app.focused is row(app, "name").entry)
-        await until(pilot, lambda: "Name        Default_" in screen_text(app))
+        await until_shown(pilot, "Name        Default_")
         await pilot.press("escape")
         await until(pilot, lambda: not app.panel_area.shown("settings"))

@@ -9,9 +9,8 @@ import pytest
 from textual import events
 from textual.geometry import Region
 
-from tests.app.app_help import LOGS, ready, settings, until
+from tests.app.app_help import LOGS, open_lab, until, until_state
 from tests.app.panel_help import PanelApp, moment, white_mat
-from tuisim.app.app import LabApp
 from tuisim.app.layout.tree import TIME_BAR_ROWS
 from tuisim.app.panels.world import TURN_STEP_DEG, World, WorldView, legend
 from tuisim.app.snapshot import RunPhase
@@ -280,10 +279,9 @@ async def test_the_wheel_turns_the_robot_that_it_is_over(
 
 
 async def test_a_file_would_show_what_the_panel_shows() -> None:
-    async with LabApp(settings(LOGS, "Obstacles_Test")).run_test(size=(80, 24)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(LOGS, "Obstacles_Test", size=(80, 24)) as (pilot, app):
         await pilot.press("R")
-        await until(pilot, lambda: app.run_controller.state is RunPhase.ENDED)
+        await until_state(pilot, RunPhase.ENDED)
         view, recording = app.query_one(WorldView), app.run_controller.timeline.recording
         assert recording is not None
         last = recording.telemetry.last()

@@ -8,8 +8,15 @@ from dataclasses import replace
 import pytest
 from textual.widgets import Input, OptionList
 
-from tests.app.app_help import ENDLESS, LOGS, ready, screen_text, settings, until
-from tuisim.app.app import LabApp
+from tests.app.app_help import (
+    ENDLESS,
+    LOGS,
+    open_lab,
+    screen_text,
+    until,
+    until_shown,
+    until_state,
+)
 from tuisim.app.setup.next_run import plan_of
 from tuisim.app.setup.poses import delete_pose, fits, load_poses, poses_file, random_pose, save_pose
 from tuisim.app.snapshot import RunPhase
@@ -61,8 +68,7 @@ def test_no_free_place_is_told() -> None:
 
 
 async def test_random_and_back_to_the_start() -> None:
-    async with LabApp(settings(LOGS)).run_test(size=(80, 24)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(LOGS, size=(80, 24)) as (pilot, app):
         await pilot.press("j")
         assert app.run_controller.pose != Pose(150, 500, 0)
         assert fits(app.run_controller.spec, app.run_controller.pose)
@@ -118,8 +124,7 @@ def test_a_wrong_file_of_poses_is_told_and_left_alone(text: str, said: str) -> N
 
 
 async def test_saved_poses_in_the_app() -> None:
-    async with LabApp(settings(LOGS)).run_test(size=(80, 24)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(LOGS, size=(80, 24)) as (pilot, app):
         app.run_controller.place(Pose(700, 300, 45))
         await pilot.press("P")
         await until(pilot, lambda: isinstance(app.focused, Input))
@@ -136,28 +141,26 @@ async def test_saved_poses_in_the_app() -> None:
         await pilot.press("P")
         await until(pilot, lambda: isinstance(app.focused, OptionList))
         await pilot.press("down", "delete")
-        await until(pilot, lambda: "None yet" in screen_text(app))
+        await until_shown(pilot, "None yet")
         assert load_poses() == {}
 
 
 @pytest.mark.slow
 async def test_a_place_during_a_run_is_an_action_of_the_user() -> None:
-    async with LabApp(settings(ENDLESS, autorun=True)).run_test(size=(120, 40)) as pilot:
-        app = await ready(pilot)
-        await until(pilot, lambda: app.run_controller.state == RunPhase.RUNNING)
+    async with open_lab(ENDLESS, autorun=True) as (pilot, app):
+        await until_state(pilot, RunPhase.RUNNING)
         await pilot.press("j")
         run = app.run_controller.run
         assert run is not None
         await until(pilot, lambda: bool((last := run.telemetry.last()) and last.actions == 1))
         await pilot.press("S")
-        await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED)
+        await until_state(pilot, RunPhase.ENDED)
 
 
 @pytest.mark.slow
 async def test_the_cursor_of_the_chart_shows_where_the_robot_was() -> None:
-    async with LabApp(settings(LOGS, autorun=True, speed=0.0)).run_test(size=(200, 60)) as pilot:
-        app = await ready(pilot)
-        await until(pilot, lambda: app.run_controller.state == RunPhase.ENDED)
+    async with open_lab(LOGS, autorun=True, speed=0.0, size=(200, 60)) as (pilot, app):
+        await until_state(pilot, RunPhase.ENDED)
         chart, world = app.panel_area.chart, app.panel_area.world
         assert chart is not None
         assert world is not None
