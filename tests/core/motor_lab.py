@@ -28,6 +28,7 @@ from tuisim.core.simulation import Simulation
 from tuisim.core.spec import RobotSpec, RunSpec, WorldSpec
 from tuisim.core.tick_record import TICK_RECORD
 from tuisim.core.tree import from_plain, to_plain
+from tuisim.runs.readings import ReadingsWriter
 from tuisim.runs.run_folder import field_files
 from tuisim.runs.run_options import RunOptions
 from tuisim.runtime.channel import Channel
@@ -137,8 +138,10 @@ class Lines:
         """Nothing is open."""
 
 
-def carry_out(spec: RunSpec, text: str, prelude: str, files: FieldFiles) -> dict[str, Any]:
-    """Run a program to its end, in this process."""
+def carry_out(
+    spec: RunSpec, text: str, prelude: str, files: FieldFiles, folder: Path
+) -> dict[str, Any]:
+    """Run a program to its end, in this process; what it reads is recorded in a folder."""
     program, options = (
         Program("program.py", text, prelude),
         RunOptions(speed=0.0, time_limit_s=60.0, stall_limit_s=0.0),
@@ -150,6 +153,7 @@ def carry_out(spec: RunSpec, text: str, prelude: str, files: FieldFiles) -> dict
     channel = Channel(*os.pipe())
     steering = RunControl(channel, Path(), False, 0.0, False, ())
     session = Session(sim, open_field(files), output)
+    session.readings = ReadingsWriter(folder)
     session.connect(channel, steering, RunLimits(60 * NS_PER_S), "program.py")
     output.place = lambda: (sim.tick, session.now, 0)
     turn = loop_hook(session, 500, 5_000_000)
@@ -167,6 +171,12 @@ def carry_out(spec: RunSpec, text: str, prelude: str, files: FieldFiles) -> dict
     runner.prepare(prelude)
     runner.connect(config)
     outcome = runner.run()
+    return course_of(outcome, session, lines)
+
+
+def course_of(outcome: ProgramOutcome, session: Session, lines: Lines) -> dict[str, Any]:
+    """Return what became of a program, as data for JSON."""
+    sim = session.sim
     return {
         "end": " ".join(filter(None, (outcome.end, outcome.error))),
         "end_tick": sim.tick,
@@ -203,7 +213,8 @@ def main(folder: Path) -> None:
         child = os.fork()
         if not child:
             signal.alarm(60)
-            done = carry_out(spec, job["text"], job["prelude"], files)
+            (recording := folder / f"{at}").mkdir()
+            done = carry_out(spec, job["text"], job["prelude"], files, recording)
             (folder / f"{at}.json").write_text(json.dumps(done))
             wallclock.exit_process(0)
         os.waitpid(child, 0)
