@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import pytest
-
+from tests.cases import cases
 from tuisim.goals.calls import lines_of_calls
 
 CALLS = {
@@ -66,6 +65,6 @@ CALLS = {
 }
 
 
-@pytest.mark.parametrize(("text", "call", "lines"), CALLS.values(), ids=CALLS)
+@cases("text, call, lines", CALLS)
 def test_lines_of_calls(text: str, call: str, lines: list[int]) -> None:
     assert lines_of_calls(text, "preloaded", call) == lines

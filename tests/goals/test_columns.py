@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import pytest
-
+from tests.cases import cases
 from tests.goals.recorded import Run, Step, ahead, goals_of, says, wait, world
 from tests.runs.run_recorder import Recorder
 from tuisim.core.spec import Obstacle
@@ -119,7 +118,7 @@ reach = { x_mm = 2000 }
 """
 
 
-@pytest.mark.parametrize(("lines", "reason"), GOALS.values(), ids=GOALS)
+@cases("lines, reason", GOALS)
 def test_a_goal_on_what_happened(lines: str, reason: str, tmp_path: Path, home: Path) -> None:
     goals = goals_of(tmp_path, f"[[goal]]\nname = 'a'\n{lines}\n{OTHERS}")
     run = Run(RunStore(), world(obstacles=(Obstacle(1000, 0, 50, 1143),)), "")

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 from PIL import Image
 
+from tests.cases import cases
 from tests.conftest import Command
 from tuisim.errors import ConfigError
 from tuisim.goals.files import line_of_key, load_goals
@@ -362,7 +363,7 @@ BAD = {
 }
 
 
-@pytest.mark.parametrize(("text", "message"), BAD.values(), ids=BAD)
+@cases("text, message", BAD)
 def test_bad_file(text: str, message: str, tmp_path: Path) -> None:
     Image.new("L", (20, 10), 255).save(tmp_path / "white.png")
     path = tmp_path / "it.toml"
@@ -394,7 +395,7 @@ LINES = {
 }
 
 
-@pytest.mark.parametrize(("text", "key", "line"), LINES.values(), ids=LINES)
+@cases("text, key, line", LINES)
 def test_line_of_key(text: str, key: str, line: int) -> None:
     assert line_of_key(text, key) == line
 

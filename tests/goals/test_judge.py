@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.cases import cases
 from tests.goals.recorded import Run, Step, ahead, drive, goals_of, says, wait, world
 from tests.running import Run as RunProgram
 from tuisim.goals.condition import ConditionKind
@@ -138,7 +139,7 @@ def judged(run: Run, folder: Path, text: str) -> dict[str, Judgement]:
     return {each.goal.name: each for each in judge(goals_of(folder, text), run.end())}
 
 
-@pytest.mark.parametrize(("condition", "state", "time_s", "reason"), CASES.values(), ids=CASES)
+@cases("condition, state, time_s, reason", CASES)
 def test_combination(
     condition: str, state: str, time_s: float, reason: str, home: Path, tmp_path: Path
 ) -> None:
@@ -193,7 +194,7 @@ RUNNING = {
 }
 
 
-@pytest.mark.parametrize(("condition", "state"), RUNNING.values(), ids=RUNNING)
+@cases("condition, state", RUNNING)
 def test_state_while_it_runs(condition: str, state: str, home: Path, tmp_path: Path) -> None:
     run = finished(home)
     goals = goals_of(
@@ -235,7 +236,7 @@ def test_judgements_pass_between_processes(home: Path, tmp_path: Path) -> None:
 ENDS = {end.value: end for end in End if end is not End.FINISHED}
 
 
-@pytest.mark.parametrize("end", ENDS.values(), ids=ENDS)
+@cases("end", ENDS)
 def test_no_other_end_is_a_finish(end: End, home: Path, tmp_path: Path) -> None:
     run = Run(RunStore(), world(), "")
     run.do((drive(10, 10, 0.1),))

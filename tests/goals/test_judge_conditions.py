@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.cases import cases
 from tests.goals.recorded import (
     Run,
     Step,
@@ -691,7 +692,7 @@ READINGS = {
 CASES = PLACES | OUTPUT | READINGS
 
 
-@pytest.mark.parametrize("case", CASES.values(), ids=CASES)
+@cases("case", CASES)
 def test_condition(case: Case, home: Path, tmp_path: Path) -> None:
     goals = goals_of(tmp_path, f"[[goal]]\nname = 'it'\n{case.condition}\n{case.more}")
     run = Run(RunStore(), case.world, case.text)

@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 
+from tests.cases import cases
 from tests.conftest import ROOT, Command
 from tests.constants import print_constants
 from tuisim.config.program_file import programs
@@ -44,7 +45,7 @@ def checked(here: Command, *words: object) -> list[dict[str, Any]]:
 
 
 @pytest.mark.slow_cases("*noise*", "*, ev3", "*, nbev3devsim")
-@pytest.mark.parametrize(("name", "words"), CASES.values(), ids=CASES)
+@cases("name, words", CASES)
 def test_example_meets_its_goals(name: str, words: tuple[object, ...], here: Command) -> None:
     assert here("run", EXAMPLES[name], *words).returncode == 0
     assert [
@@ -184,7 +185,7 @@ WRONG: dict[str, tuple[str, dict[str, str], dict[str, str]]] = {
     "log_greys, too rarely",
     "square, wrong corners",
 )
-@pytest.mark.parametrize(("name", "changes", "missed"), WRONG.values(), ids=WRONG)
+@cases("name, changes, missed", WRONG)
 def test_wrong_program_misses_goals(
     name: str, changes: dict[str, str], missed: dict[str, str], here: Command, tmp_path: Path
 ) -> None:

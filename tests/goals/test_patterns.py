@@ -56,7 +56,7 @@ def test_a_process_of_its_own_finds_the_same(pattern: str, monkeypatch: pytest.M
 
 
 @pytest.mark.parametrize(
-    ("pattern", "text"),
+    "pattern, text",
     [
         (r"\d+x", "1" * 1_000_000),
         (r"(?:a?){30}a{30}", "a" * 30),

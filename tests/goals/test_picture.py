@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 from PIL import Image, ImageDraw
 
+from tests.cases import cases
 from tests.goals.recorded import Run, Step, ahead, drive, goals_of, turn, wait, world
 from tuisim.goals.judge import judge
 from tuisim.runs.store import RunStore
@@ -41,7 +42,7 @@ FOLLOWED = {
 }
 
 
-@pytest.mark.parametrize(("keys", "state", "reason"), FOLLOWED.values(), ids=FOLLOWED)
+@cases("keys, state, reason", FOLLOWED)
 def test_follow(keys: str, state: str, reason: str, home: Path, tmp_path: Path) -> None:
     (goal,) = goals_of(tmp_path, f"[[goal]]\nname = 'it'\nfollow = {{ {keys} }}\n")
     run = Run(RunStore(), BANDS, "")
@@ -91,7 +92,7 @@ DRAWN: dict[str, tuple[str, tuple[Step, ...], str, str]] = {
 
 
 @pytest.mark.slow_cases("image*")
-@pytest.mark.parametrize(("keys", "steps", "state", "reason"), DRAWN.values(), ids=DRAWN)
+@cases("keys, steps, state, reason", DRAWN)
 def test_draw(
     keys: str, steps: tuple[Step, ...], state: str, reason: str, home: Path, tmp_path: Path
 ) -> None:

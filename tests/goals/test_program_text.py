@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import pytest
-
+from tests.cases import cases
 from tests.goals.recorded import Run, goals_of, world
 from tuisim.goals.judge import judge
 from tuisim.goals.program_text import fault_in
@@ -21,7 +20,7 @@ FAULTS = {
 }
 
 
-@pytest.mark.parametrize(("text", "fault"), FAULTS.values(), ids=FAULTS)
+@cases("text, fault", FAULTS)
 def test_a_program_that_does_not_compile_has_a_fault(
     text: str, fault: tuple[str, int] | None
 ) -> None:
@@ -67,7 +66,7 @@ STRUCTURE = {
 }
 
 
-@pytest.mark.parametrize(("comparison", "reason"), STRUCTURE.values(), ids=STRUCTURE)
+@cases("comparison, reason", STRUCTURE)
 def test_structure(comparison: str, reason: str, tmp_path: Path, home: Path) -> None:
     goals = goals_of(tmp_path, f"[[goal]]\nname = 'a'\nstructure = '{comparison}'\n")
     (found,) = judge(goals, Run(RunStore(), world(), PROGRAM).end())

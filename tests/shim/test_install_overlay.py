@@ -138,7 +138,7 @@ EXERCISED = {
 
 @pytest.mark.quick_cases("robolab-*")
 @pytest.mark.parametrize(
-    ("profile", "robot"),
+    "profile, robot",
     [
         *(
             (profile, robot)

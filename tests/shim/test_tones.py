@@ -8,7 +8,7 @@ from tuisim.shim.tones import Tone, parse_beep
 
 
 @pytest.mark.parametrize(
-    ("words", "tones"),
+    "words, tones",
     [
         ("", [Tone(440, 200)]),
         ("-f 500", [Tone(500, 200)]),

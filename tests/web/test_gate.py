@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import pytest
-
+from tests.cases import cases
 from tuisim.web.gate import Gate, new_token
 
 HERE = "127.0.0.1:8000"
@@ -77,11 +76,7 @@ REQUESTS: dict[str, tuple[str, str, str, str | None, bool, bool]] = {
 }
 
 
-@pytest.mark.parametrize(
-    ("listens_on", "path", "host", "origin", "from_a_page", "admitted"),
-    REQUESTS.values(),
-    ids=REQUESTS,
-)
+@cases("listens_on, path, host, origin, from_a_page, admitted", REQUESTS)
 def test_only_the_address_and_its_own_pages_are_admitted(
     listens_on: str, path: str, host: str, origin: str | None, from_a_page: bool, admitted: bool
 ) -> None:

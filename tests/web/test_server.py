@@ -21,6 +21,7 @@ from aiohttp import (
 from textual_serve import download_manager
 from textual_serve.app_service import AppService
 
+from tests.cases import cases
 from tests.running import PATIENCE_S
 from tests.web.stand_in import stand_in
 from tuisim.web import session
@@ -134,8 +135,8 @@ STRANGERS: dict[str, tuple[str, Mapping[str, str]]] = {
 
 
 @pytest.mark.quick_cases("*-script")
-@pytest.mark.parametrize("place", PLACES.values(), ids=PLACES)
-@pytest.mark.parametrize(("path", "headers"), STRANGERS.values(), ids=STRANGERS)
+@cases("place", PLACES)
+@cases("path, headers", STRANGERS)
 async def test_a_stranger_gets_nothing(
     path: str, headers: Mapping[str, str], place: str, visited: Visited
 ) -> None:
@@ -149,7 +150,7 @@ async def test_a_stranger_gets_nothing(
 
 
 @pytest.mark.parametrize(
-    ("path", "headers"),
+    "path, headers",
     [*STRANGERS.values(), ("/the-token/{place}", {"Origin": ""})],
     ids=[*STRANGERS, "without a page"],
 )
@@ -171,7 +172,7 @@ WRONG = {
 }
 
 
-@pytest.mark.parametrize("request_bytes", WRONG.values(), ids=WRONG)
+@cases("request_bytes", WRONG)
 async def test_a_wrong_request_leaves_no_trace_in_the_terminal(
     request_bytes: bytes, visited: Visited, caplog: pytest.LogCaptureFixture
 ) -> None:
@@ -200,7 +201,7 @@ VISITS = {
 }
 
 
-@pytest.mark.parametrize(("path", "kind"), VISITS.values(), ids=VISITS)
+@cases("path, kind", VISITS)
 async def test_a_visitor_gets(path: str, kind: str, visited: Visited) -> None:
     visitor = await visited()
     async with visitor.client.get(visitor.top + path) as answer:
@@ -269,7 +270,7 @@ PACKETS = {
 }
 
 
-@pytest.mark.parametrize("sent", PACKETS.values(), ids=PACKETS)
+@cases("sent", PACKETS)
 async def test_a_packet_that_makes_no_sense_ends_its_app_only(sent: str, visited: Visited) -> None:
     visitor = await visited()
     socket, pid = await visitor.started()
@@ -306,7 +307,7 @@ MESSAGES: dict[str, tuple[str, str]] = {
 """What a page sends before `blur`, and what comes back first."""
 
 
-@pytest.mark.parametrize(("sent", "back"), MESSAGES.values(), ids=MESSAGES)
+@cases("sent, back", MESSAGES)
 async def test_messages_of_the_page_reach_the_app(sent: str, back: str, visited: Visited) -> None:
     socket, _ = await (await visited()).started()
     await socket.send_str(sent)
@@ -321,7 +322,7 @@ SIZES = {
 }
 
 
-@pytest.mark.parametrize(("query", "size"), SIZES.values(), ids=SIZES)
+@cases("query, size", SIZES)
 async def test_the_app_starts_in_the_size_of_the_page(
     query: str, size: str, visited: Visited
 ) -> None:
@@ -358,7 +359,7 @@ ENDS = {
 }
 
 
-@pytest.mark.parametrize(("how", "reason", "reported"), ENDS.values(), ids=ENDS)
+@cases("how, reason, reported", ENDS)
 async def test_visitor_and_server_are_told_why_the_app_has_ended(
     how: str, reason: str, reported: list[str], visited: Visited
 ) -> None:
@@ -392,7 +393,7 @@ async def gone(pid: int) -> None:
 STUBBORN = {"an app that ends": (), "an app that does not": ("stubborn",)}
 
 
-@pytest.mark.parametrize("words", STUBBORN.values(), ids=STUBBORN)
+@cases("words", STUBBORN)
 async def test_an_app_that_no_tab_shows_ends_after_a_while(
     words: Sequence[str], visited: Visited, monkeypatch: pytest.MonkeyPatch
 ) -> None:

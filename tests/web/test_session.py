@@ -21,6 +21,7 @@ import pyte
 import pytest
 from aiohttp import ClientSession, ClientWebSocketResponse, WSMsgType
 
+from tests.cases import cases
 from tests.conftest import ROOT
 from tests.running import PATIENCE_S
 from tests.web.test_server import is_there
@@ -325,7 +326,7 @@ ENDS = {
 }
 
 
-@pytest.mark.parametrize(("number", "code"), ENDS.values(), ids=ENDS)
+@cases("number, code", ENDS)
 async def test_the_end_of_the_server_ends_apps_and_programs(
     number: signal.Signals, code: int, serve: Serve
 ) -> None:

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import pytest
-
+from tests.cases import cases
 from tuisim.web.visit import Activity, is_done_by_a_person
 
 INPUT = {
@@ -26,7 +25,7 @@ INPUT = {
 }
 
 
-@pytest.mark.parametrize(("text", "by_a_person"), INPUT.values(), ids=INPUT)
+@cases("text, by_a_person", INPUT)
 def test_answers_of_the_terminal_do_not_count_as_done(text: str, by_a_person: bool) -> None:
     assert is_done_by_a_person(text) is by_a_person
 

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.cases import cases
 from tests.running import PATIENCE_S
 from tests.web.test_server import Visited, Visitor, drawn, gone, heard, is_there, visited
 from tuisim.web.link import TAKEN_OVER
@@ -115,7 +116,7 @@ STRANGERS: Mapping[str, Mapping[str, str]] = {
 }
 
 
-@pytest.mark.parametrize("headers", STRANGERS.values(), ids=STRANGERS)
+@cases("headers", STRANGERS)
 @pytest.mark.parametrize("what", ["end", "file?name=a.py"])
 async def test_only_pages_of_the_server_end_a_session_or_bring_a_file(
     what: str,

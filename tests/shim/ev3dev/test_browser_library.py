@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import pytest
 
+from tests.cases import cases
 from tests.shim.conftest import RunOn
 from tuisim.shim.ev3dev.browser_library import round_half_up
 
 MOTOR = "from ev3dev2.motor import *\nm, t = LargeMotor('outB'), MoveTank('outB', 'outC')\n"
 
 
-@pytest.mark.parametrize(("number", "rounded"), [(2.5, 3), (-2.5, -2), (2.4, 2), (-0.6, -1)])
+@pytest.mark.parametrize("number, rounded", [(2.5, 3), (-2.5, -2), (2.4, 2), (-0.6, -1)])
 def test_halves_are_rounded_up(number: float, rounded: int) -> None:
     assert round_half_up(number) == rounded
 
@@ -33,7 +34,7 @@ SHOWN = {
 }
 
 
-@pytest.mark.parametrize(("text", "lines"), SHOWN.values(), ids=SHOWN)
+@cases("text, lines", SHOWN)
 def test_what_a_motor_shows(run_on: RunOn, text: str, lines: list[str]) -> None:
     done = run_on(MOTOR + text, profile="nbev3devsim")
     assert (done.lines, done.errors) == (lines, [])

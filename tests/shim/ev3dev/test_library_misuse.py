@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from tests.cases import cases
 from tests.shim.conftest import RunOn
 
 SETUP = """\
@@ -100,7 +101,7 @@ MISUSES = {
     "negative seconds",
     "unknown font",
 )
-@pytest.mark.parametrize(("text", "error"), MISUSES.values(), ids=MISUSES)
+@cases("text, error", MISUSES)
 def test_misuse(run_on: RunOn, text: str, error: str) -> None:
     done = run_on(SETUP + text, "default")
     assert (done.ended.end, done.ended.error_line) == ("raised", 5)

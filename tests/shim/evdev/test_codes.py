@@ -12,7 +12,7 @@ CODES: Any = codes_module("evdev.ecodes")
 
 
 @pytest.mark.parametrize(
-    ("name", "number"),
+    "name, number",
     [
         ("EV_SYN", 0),
         ("EV_KEY", 1),

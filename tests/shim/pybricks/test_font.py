@@ -29,7 +29,7 @@ def test_sizes_differ_in_height_and_width() -> None:
     assert large.style == "Bold"
 
 
-@pytest.mark.parametrize(("size_px", "cell_px"), [(12, 7), (24, 14), (30, 18)])
+@pytest.mark.parametrize("size_px, cell_px", [(12, 7), (24, 14), (30, 18)])
 def test_characters_of_a_monospaced_font_are_equally_wide(size_px: int, cell_px: int) -> None:
     font = Font(size=size_px, monospace=True)
     assert [font.text_width(text) for text in ("i", "W", "iW il")] == [
@@ -50,7 +50,7 @@ def test_a_font_is_no_higher_than_the_screen() -> None:
 
 
 @pytest.mark.parametrize(
-    ("given", "error"),
+    "given, error",
     [({"size": 0}, ValueError), ({"size": "12"}, TypeError), ({"family": 12}, TypeError)],
 )
 def test_a_font_must_be_possible(given: dict[str, Any], error: type[Exception]) -> None:

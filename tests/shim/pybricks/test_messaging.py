@@ -20,7 +20,7 @@ PROFILE = "lego-micropython"
 
 
 @pytest.mark.parametrize(
-    ("kind", "value", "payload"),
+    "kind, value, payload",
     [
         (LogicMailbox, True, b"\x01"),
         (LogicMailbox, False, b"\x00"),
@@ -89,7 +89,7 @@ def test_a_server_and_a_client_of_one_program_talk(run_on: RunOn) -> None:
 
 
 @pytest.mark.parametrize(
-    ("call", "told"),
+    "call, told",
     [
         ("BluetoothMailboxServer().wait_for_connection()", "no other brick is simulated"),
         ("BluetoothMailboxClient().connect('left')", "'left' is not simulated"),

@@ -31,7 +31,7 @@ def test_a_beep_takes_its_time_and_one_without_an_end_none(lab: Lab) -> None:
 
 
 @pytest.mark.parametrize(
-    ("note", "expected"),
+    "note, expected",
     [
         ("C4/4", (262, 437, 63)),
         ("A4/4_", (440, 500, 0)),

@@ -28,7 +28,7 @@ def base() -> DriveBase:
 
 
 @pytest.mark.parametrize(
-    ("then", "active"), [(Stop.HOLD, True), (Stop.COAST, False), (Stop.BRAKE, False)]
+    "then, active", [(Stop.HOLD, True), (Stop.COAST, False), (Stop.BRAKE, False)]
 )
 def test_a_move_ends_as_it_is_told(base: DriveBase, then: Stop, active: bool) -> None:
     base.straight(100, then)

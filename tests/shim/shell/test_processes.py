@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from tests.cases import cases
 from tests.shim.conftest import RunOn
 from tests.shim.shell.test_commands import SETUP
 from tuisim.core.profile import PROFILES
@@ -36,7 +37,7 @@ STEPS = {
 }
 
 
-@pytest.mark.parametrize(("text", "lines"), STEPS.values(), ids=STEPS)
+@cases("text, lines", STEPS)
 def test_a_process_takes_simulated_time(run_on: RunOn, text: str, lines: list[str]) -> None:
     done = run_on(f"{SETUP}start = time.time()\n{text}")
     assert (done.lines, done.errors) == (lines, [])

@@ -6,6 +6,7 @@ from types import SimpleNamespace
 
 import pytest
 
+from tests.cases import cases
 from tests.running import Run
 from tuisim.errors import NotSimulated
 from tuisim.shim.unsupported.devices import DRIVERS, SIMULATED, of_driver, refused_device
@@ -106,7 +107,7 @@ USES = {
 }
 
 
-@pytest.mark.parametrize(("text", "words"), USES.values(), ids=USES)
+@cases("text, words", USES)
 def test_the_program_ends_with_its_name(run: Run, text: str, words: str) -> None:
     done = run(text, prelude="none")
     assert done.errors[-1].startswith(f"NotSimulated: {words}")
@@ -185,7 +186,7 @@ def test_the_error_is_the_librarys_own_too() -> None:
 
 
 @pytest.mark.parametrize(
-    ("class_name", "wanted"),
+    "class_name, wanted",
     [
         ("lego-sensor", {"address": "in1"}),
         ("lego-sensor", {"address": 3, "driver_name": None}),

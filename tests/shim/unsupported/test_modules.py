@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.cases import cases
 from tests.running import Run, Start, over
 from tuisim.app.snapshot import end_words
 from tuisim.protocol import End
@@ -65,7 +66,7 @@ USES = {
 }
 
 
-@pytest.mark.parametrize(("text", "words"), USES.values(), ids=USES)
+@cases("text, words", USES)
 def test_the_program_ends_with_its_name(run: Run, text: str, words: str) -> None:
     done = run(text, prelude="none")
     assert done.errors[-1].startswith(f"NotSimulated: {words}")
@@ -74,7 +75,7 @@ def test_the_program_ends_with_its_name(run: Run, text: str, words: str) -> None
 
 
 @pytest.mark.parametrize(
-    ("profile", "own", "other"),
+    "profile, own, other",
     [("ev3", "ev3dev2", "pybricks"), ("pybricks4", "pybricks", "ev3dev2")],
 )
 def test_hints_have_the_names_of_the_programs_library(
@@ -158,7 +159,7 @@ def test_numbers_are_those_of_the_system(name: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "package"),
+    "name, package",
     [("paho.mqtt.client", "paho-mqtt"), ("flask_of_mine", "flask_of_mine")],
     ids=["other name", "same name"],
 )
