@@ -13,9 +13,13 @@ from typing import Any
 import pytest
 from textual import app as textual_app
 from textual import pilot as textual_pilot
+from textual._compositor import Compositor
+from textual._context import active_app
 from textual._wait import wait_for_idle as seem_idle
 from textual._xterm_parser import XTermParser
+from textual.css.stylesheet import Stylesheet
 from textual.notifications import Notification
+from textual.pilot import Pilot
 
 from tests.app.terminals import Terminal
 from tests.running import PATIENCE_S
@@ -38,6 +42,47 @@ def _keys_are_heard_before_a_test_goes_on() -> Iterator[None]:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(textual_app, "wait_for_idle", wait_for_idle)
         patch.setattr(textual_pilot, "wait_for_idle", wait_for_idle)
+        yield
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _apps_are_drawn_once_for_a_key() -> Iterator[None]:
+    """Draw an app in memory after each key and wait of a test, not for each change in between, which nobody sees.
+
+    That takes two fifths of what most of the tests of the app cost.
+    """
+    draw, wait = Compositor.render_update, Pilot._wait_for_screen
+
+    def render_update(compositor: Compositor, *words: Any, **options: Any) -> Any:
+        # What has changed stays marked until it is drawn.
+        return None if active_app.get().is_headless else draw(compositor, *words, **options)
+
+    async def wait_for_screen(pilot: Pilot[Any], timeout: float = 30.0) -> bool:
+        has_settled = await wait(pilot, timeout)
+        if pilot.app.is_headless and pilot.app.screen_stack:
+            draw(pilot.app.screen._compositor, screen_stack=pilot.app._background_screens)
+        return has_settled
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(Compositor, "render_update", render_update)
+        patch.setattr(Pilot, "_wait_for_screen", wait_for_screen)
+        yield
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _styles_are_parsed_once() -> Iterator[None]:
+    """Keep the rules that Textual has parsed for the apps that follow: all have the same ones."""
+    parse = Stylesheet._parse_rules
+    known: dict[object, Any] = {}
+
+    def parse_rules(sheet: Stylesheet, *words: Any, **options: Any) -> Any:
+        key = words, tuple(options.items()), tuple(sheet._variables.items())
+        if key not in known:
+            known[key] = parse(sheet, *words, **options)
+        return known[key]
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(Stylesheet, "_parse_rules", parse_rules)
         yield
 
 
