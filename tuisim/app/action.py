@@ -256,7 +256,7 @@ def fitting(actions: Sequence[Action[Any, Any]], width: int, most: int) -> list[
     for action in actions:
         if (
             not action.footer
-            or action in always
+            or action.id in _ALWAYS
             or len(always) + sum(map(len, groups.values())) >= most
         ):
             continue
