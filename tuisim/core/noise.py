@@ -119,6 +119,8 @@ def noisy_sums(
     second = round(sums[1] + shift + spread * normals[1])
     shift, spread = (red_shift, red_spread) if blue == red else _moved(blue, level)
     third = round(sums[2] + shift + spread * normals[2])
+    if 0 <= first <= most and 0 <= second <= most and 0 <= third <= most:
+        return first, second, third
     return min(max(first, 0), most), min(max(second, 0), most), min(max(third, 0), most)
 
 
