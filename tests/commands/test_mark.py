@@ -491,8 +491,8 @@ def test_a_run_that_could_not_be_started_is_missing_in_the_marks_until_it_is_res
 def test_a_careless_regular_expression_is_named_and_the_rest_is_marked(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr(patterns, "LIMIT_S", 0)
-    goals = "[[goal]]\nname = 'said'\nprint = '(a+)+$'\n[[goal]]\nname = 'other'\nprint = '[a-z]'\n"
+    monkeypatch.setattr(patterns, "LIMIT_S", 0.02)
+    goals = "[[goal]]\nname = 'said'\nprint = '((a|aa)+)+$'\n[[goal]]\nname = 'other'\nprint = '[a-z]'\n"
     (tmp_path / "goals.toml").write_text(f"background = 'Empty_Map'\n{goals}")
     (tmp_path / "class").mkdir()
     for name, text in {"ada": "aaa", "ben": "a" * 60 + "!"}.items():
@@ -510,10 +510,10 @@ def test_a_careless_regular_expression_is_named_and_the_rest_is_marked(
     said = capsys.readouterr()
     assert "ada      2       100%        1     1" in said.out
     assert (
-        "ben      1       0%          0     1      The regular expression '(a+)+$' takes more than"
+        "ben      ?       0%          ?     1      The regular expression '((a|aa)+)+$' takes more than"
         in said.out
     )
-    assert "tuisim: “said” cannot be judged and counts as missed, for ben:" in said.err
+    assert "tuisim: “said” cannot be judged, so that there are no points for ben:" in said.err
 
 
 def test_a_marking_without_a_place_for_copies_says_so(

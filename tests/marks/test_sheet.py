@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 import subprocess
 from dataclasses import replace
@@ -18,8 +19,10 @@ from tuisim.config.program_file import ProgramSource
 from tuisim.errors import printable
 from tuisim.goals.spec import FinishCondition, Goal
 from tuisim.marks.feedback import feedback_of, file_stems, write_feedback
+from tuisim.marks.gradebook import GradebookKind, Roster, write_gradebook
 from tuisim.marks.outcome import GoalOutcome, Outcome
-from tuisim.marks.page import page_of
+from tuisim.marks.overrides import Override, overridden
+from tuisim.marks.page import distribution, goal_statistics, page_of
 from tuisim.marks.sheet import Sheet, export_marks, frame_of, lines_of, sheet_of, summary_of
 from tuisim.marks.students import Student
 from tuisim.source import Program
@@ -113,6 +116,43 @@ def test_points_that_are_taken_off_never_leave_less_than_none(
     told = "[happened] Hit the wall. (-2)" if hit else "[did not happen] Hit the wall."
     assert told in feedback_of(sheet, row)
     assert f'class="number {"missed" if hit else "met"}' in page_of(sheet)
+
+
+def _unjudged_sheet() -> Sheet:
+    """A sheet of three students in three worlds: not known; not known and missed; met and not known."""
+    place = {
+        "?": GoalOutcome("place", False, "the expression is slow", is_unknown=True),
+        "-": GoalOutcome("place", False, "it stopped 40 mm away"),
+        "+": GoalOutcome("place", True),
+    }
+    wall = GoalOutcome("wall", True)
+    outcomes = {
+        name: [
+            Outcome(0, "finished", goals=(place[state], wall), world=world)
+            for state, world in zip(states, ("", "a", "b"), strict=True)
+        ]
+        for name, states in {"ada": "???", "ben": "?+-", "cleo": "+?+"}.items()
+    }
+    return sheet_of("", COLUMNS, range(1), STUDENTS[:3], outcomes, ("", "a", "b"))
+
+
+def test_what_could_not_be_judged_has_no_points() -> None:
+    sheet = _unjudged_sheet()
+    table = [row[1:5] for row in lines_of(sheet)[1]]
+    assert table == [["?", "0%", "?", "3"], ["3", "0%", "0", "3"], ["?", "0%", "?", "3"]]
+    assert summary_of(sheet).startswith("3 students, 1 seed: mean 3 of 10 points")
+    assert "[could not be judged] Stop at the place." in feedback_of(sheet, sheet.rows[0], TEXT)
+    assert sum(count for *_, count in distribution(sheet)) == 1
+    assert [one.mean for one in goal_statistics(sheet)] == [0.0, 3.0]
+    (row, *_) = overridden(sheet, {"ada": Override(goals={"wall": 2.0})}).rows
+    assert math.isnan(row.points)
+
+
+def test_a_gradebook_has_no_number_for_what_could_not_be_judged(tmp_path: Path) -> None:
+    path, sheet = tmp_path / "g.csv", _unjudged_sheet()
+    write_gradebook(path, GradebookKind.CANVAS, sheet, [TEXT] * 3, Roster({}), goals=True)
+    ends = [row.split(",")[-3:] for row in path.read_text().splitlines()[2:]]
+    assert ends == [["", "", "3"], ["3", "0", "3"], ["", "", "3"]]
 
 
 def test_a_table_has_a_column_a_goal_and_names_the_line() -> None:

@@ -54,7 +54,11 @@ def row_of(result: Result, program: str, seed: int) -> Row:
     row[SEED] = seed
     row |= {name: getattr(result, name) for name in ENDS}
     if result.judgements:
-        row |= {f"{GOAL}{one.goal.name}": one.state is GoalState.MET for one in result.judgements}
+        row |= {
+            f"{GOAL}{one.goal.name}": one.state is GoalState.MET
+            for one in result.judgements
+            if one.state is not GoalState.UNKNOWN
+        }
         row[POINTS] = points(result.judgements)
     if result.run_id:
         row[RUN_ID] = result.run_id

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict
@@ -43,7 +44,12 @@ _WHERE = ("background", *START)
 """Settings that the places in a goals file depend on."""
 TRIAL_SEEDS = "0..2"
 _RUNS = "Runs"
-_MARKS = {GoalState.MET: "✓", GoalState.MISSED: "✗", GoalState.OPEN: "·"}
+_MARKS = {
+    GoalState.MET: "✓",
+    GoalState.MISSED: "✗",
+    GoalState.OPEN: "·",
+    GoalState.UNKNOWN: "?",
+}
 
 
 @command(
@@ -130,7 +136,7 @@ def _plain(run: StoredRun, judgements: Sequence[Judgement]) -> dict[str, Any]:
         "run": run.number,
         "id": run.id,
         "program": run.program.name,
-        "points": points(judgements),
+        "points": None if math.isnan(earned := points(judgements)) else earned,
         "of": most_points(each.goal for each in judgements),
         "goals": [
             {
@@ -154,7 +160,7 @@ def _show(file: GoalsFile, run: StoredRun, judgements: Sequence[Judgement]) -> N
     title = f" · {file.title}" if file.title else ""
     echo(
         f"run {run.number}, {run.program.name}{title}: {met} of {counted(len(judgements), 'goal')}, "
-        f"{points(judgements):g} of {most:g} points"
+        f"{in_words(points(judgements))} of {most:g} points"
     )
     for each in judgements:
         goal = each.goal
@@ -166,7 +172,8 @@ def _show(file: GoalsFile, run: StoredRun, judgements: Sequence[Judgement]) -> N
 
 def _mark_of(judgement: Judgement) -> str:
     """Return the mark before a goal; one that takes points off is at its best if it is missed."""
-    is_penalty = judgement.goal.points < 0 and judgement.state is not GoalState.OPEN
+    is_decided = judgement.state in (GoalState.MET, GoalState.MISSED)
+    is_penalty = judgement.goal.points < 0 and is_decided
     return (
         _MARKS[GoalState.MET if judgement.is_good else GoalState.MISSED]
         if is_penalty

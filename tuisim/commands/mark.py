@@ -295,13 +295,13 @@ def _tell_missing(outcomes: Mapping[str, Sequence[Outcome]]) -> int:
 
 
 def _tell_unknown(outcomes: Mapping[str, Sequence[Outcome]]) -> int:
-    """Tell which goals could not be judged, because of a regular expression of the task; return the exit code."""
+    """Tell which goals could not be judged; return the exit code."""
     by_student = {name: unknown_goals(every) for name, every in outcomes.items()}
     found = {goal: reason for unknown in by_student.values() for goal, reason in unknown.items()}
     for goal in sorted(found):
         by = [name for name, unknown in by_student.items() if goal in unknown]
         echo_error(
-            f"tuisim: “{goal}” cannot be judged and counts as missed, for {listed(map(printable, by))}:"
+            f"tuisim: “{goal}” cannot be judged, so that there are no points for {listed(map(printable, by))}:"
         )
         echo_error(f"tuisim: {found[goal]}")
     return 1 if found else 0

@@ -11,8 +11,8 @@ from typing import Any
 
 from tuisim.core.conditions import Operator, ValueCondition, ValueSource
 from tuisim.goals.comparisons import CountCondition, WhenCondition
-from tuisim.goals.condition import Condition
-from tuisim.goals.patterns import SlowPatternError, search_in
+from tuisim.goals.condition import Condition, UnjudgedError
+from tuisim.goals.patterns import build_search
 from tuisim.goals.spec import DialogueCondition, Goal, LogCondition, PrintCondition
 
 ASK = ""
@@ -77,9 +77,9 @@ def _line_for(condition: ValueCondition) -> str:
 def line_like(pattern: str) -> str:
     """Return a line in which a regular expression is found; its words, if none is found easily."""
     plain = re.sub(r"[\\^$.|?*+(){}\[\]]", "", pattern)
-    with suppress(re.error, RecursionError, IndexError, OverflowError, SlowPatternError):
+    with suppress(re.error, RecursionError, IndexError, OverflowError, UnjudgedError):
         found = _text(_parser.parse(pattern), {})
-        return found if "\n" not in found and search_in(pattern, [found])(found) else plain
+        return found if "\n" not in found and build_search(pattern)(found) else plain
     return plain
 
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from tuisim.core.conditions import Operator, ValueCondition, ValueSource, run_condition_in
 from tuisim.core.sensors import named_column
 from tuisim.core.spec import BUTTONS, RobotSpec
-from tuisim.goals.patterns import search_in
+from tuisim.goals.patterns import build_search
 from tuisim.protocol import SetButtons, UserAction
 from tuisim.runs.brick_state import LED_NAMES, BrickState, face_after
 from tuisim.runs.records import OutputRow, Stream
@@ -63,13 +63,11 @@ def text_ticks(condition: ValueCondition, rows: Iterable[OutputRow]) -> list[int
     """Return the ticks in which a sound was played, or a text written on the display, that matches.
 
     Raises:
-        SlowPatternError: the regular expression takes too long.
-        LogError: this machine cannot search.
+        UnjudgedError: the regular expression takes too long.
     """
     stream = BRICK_TEXTS[condition.name]
-    texts = [(row.tick, _texts(row)) for row in rows if row.stream is stream]
-    search = search_in(condition.value, (text for _, several in texts for text in several))
-    return [tick for tick, several in texts if any(map(search, several))]
+    search = build_search(condition.value)
+    return [row.tick for row in rows if row.stream is stream and any(map(search, _texts(row)))]
 
 
 def _texts(row: OutputRow) -> list[str]:

@@ -29,6 +29,10 @@ Times = Annotated[int, Meta(ge=0, le=1_000_000)]
 Number = Annotated[float, Meta(ge=-1e15, le=1e15)]
 
 
+class UnjudgedError(Exception):
+    """Whether a condition is met cannot be said; its text is the reason, without the stop at its end."""
+
+
 class ConditionKind(StrEnum):
     """When a condition is decided."""
 

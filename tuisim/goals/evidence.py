@@ -15,7 +15,7 @@ from tuisim.core.profile import NS_PER_S
 from tuisim.data_class import dataclass
 from tuisim.goals.brick import BRICK_COLUMNS, BRICK_STREAMS, BRICK_TEXTS, brick_column, text_ticks
 from tuisim.goals.motion import impossible_motion
-from tuisim.goals.patterns import Search, search_in
+from tuisim.goals.patterns import Search, build_search
 from tuisim.protocol import End, Ended, Unended, UserAction
 from tuisim.runs.frames import column_values, held, tick_times_s
 from tuisim.runs.readings import Readings, read_readings
@@ -142,13 +142,11 @@ class Evidence:
         """Return the search for a regular expression in the lines that the program printed.
 
         Raises:
-            LogError: this machine cannot search.
+            UnjudgedError: it cannot be searched for.
         """
         key = f"search {pattern}"
         if key not in self.memo:
-            self.memo[key] = search_in(
-                pattern, (row.text for row in self.rows if row.stream in SAMPLE_STREAMS)
-            )
+            self.memo[key] = build_search(pattern)
         found: Search = self.memo[key]
         return found
 
@@ -181,7 +179,7 @@ class Evidence:
 
         Raises:
             ValueError: what it compares with is no number.
-            SlowPatternError: its regular expression takes too long.
+            UnjudgedError: its regular expression takes too long.
             LogError, ConfigError: as `column`.
         """
         import numpy as np
@@ -200,7 +198,7 @@ class Evidence:
 
         Raises:
             ValueError: what it compares with is no number.
-            SlowPatternError: its regular expression takes too long.
+            UnjudgedError: its regular expression takes too long.
         """
         if condition.source is ValueSource.PRINT:
             search = self.search(condition.value)

@@ -16,11 +16,10 @@ from tuisim.goals.comparisons import (
     StructureCondition,
     WhenCondition,
 )
-from tuisim.goals.condition import WINDOWED, Condition, ConditionKind
+from tuisim.goals.condition import WINDOWED, Condition, ConditionKind, UnjudgedError
 from tuisim.goals.evidence import START, Evidence, EvidencePoint, EvidenceSpan, JudgedRun
 from tuisim.goals.found import Occurrence
 from tuisim.goals.judgement import Change, GoalState, Judgement
-from tuisim.goals.patterns import SlowPatternError
 from tuisim.goals.spec import (
     AllOf,
     AnyOf,
@@ -77,8 +76,6 @@ class _Outcome:
     """0: there is none; None: the line at the moment."""
     happened: EvidencePoint | None = None
     """When that happened which meets it; None: at the moment."""
-    is_unknown: bool = False
-    """Whether it counts as missed because a regular expression of the task takes too long."""
 
 
 def judge(
@@ -116,13 +113,6 @@ class _Judge:
         outcome = self._outcome(goal.name)
         if outcome.state is GoalState.OPEN:
             return Judgement(goal, (), outcome.reason, self._line(outcome))
-        if outcome.is_unknown:
-            return Judgement(
-                goal,
-                (self._change(outcome.moment, outcome.state),),
-                outcome.reason,
-                is_unknown=True,
-            )
         changes = (self._change(outcome.moment, outcome.state),)
         happened = self._change(outcome.happened, outcome.state) if outcome.happened else None
         return Judgement(goal, changes, outcome.reason, self._line(outcome), happened)
@@ -157,6 +147,9 @@ class _Judge:
             return _Outcome(
                 GoalState.MISSED, reason=f"The program does not compile: {fault[0]}.", line=fault[1]
             )
+        for name in (goal.before, goal.after, goal.until):
+            if isinstance(name, str) and self._outcome(name).state is GoalState.UNKNOWN:
+                return self._unknown(f"Whether “{name}” was met is not known.")
         start = START
         match goal.after:
             case str(name):
@@ -184,8 +177,8 @@ class _Judge:
         span = self._evidence.span(start, stop)
         try:
             found = FINDERS[type(condition)](condition, self._evidence, span)
-        except SlowPatternError as error:
-            return _Outcome(GoalState.MISSED, self._evidence.last, f"{error}.", is_unknown=True)
+        except UnjudgedError as error:
+            return self._unknown(f"{error}.")
         match condition.KIND:
             case ConditionKind.REACHED:
                 return self._reached(goal, found, stop)
@@ -213,6 +206,9 @@ class _Judge:
         if goal.within_s is not None and kind in WINDOWED:
             stops.append(self._evidence.at_time(self._evidence.time_s(start) + goal.within_s))
         return min((stop for stop in stops if stop is not None), default=None)
+
+    def _unknown(self, reason: str) -> _Outcome:
+        return _Outcome(GoalState.UNKNOWN, self._evidence.last, reason)
 
     def _never(self, reason: str) -> _Outcome:
         """Return the outcome of what has not happened: open, or missed if the run has ended."""
@@ -251,6 +247,8 @@ class _Judge:
         else:
             parts = [self._outcome(name, "None of its goals was met.") for name in condition.goals]
             outcome = _first_of(parts, GoalState.MET)
+        if outcome.state is GoalState.UNKNOWN:
+            return outcome
         if stop is not None and not (outcome.state is not GoalState.OPEN and outcome.moment < stop):
             return _Outcome(GoalState.MISSED, stop, _too_late(goal, ""), self._line(outcome))
         return outcome
@@ -258,8 +256,6 @@ class _Judge:
 
 def _inverted(name: str, outcome: _Outcome) -> _Outcome:
     """Return the outcome of not meeting a goal."""
-    if outcome.is_unknown:
-        return replace(outcome, reason=f"Whether “{name}” was met is not known.")
     match outcome.state:
         case GoalState.MET:
             return replace(
@@ -267,6 +263,8 @@ def _inverted(name: str, outcome: _Outcome) -> _Outcome:
             )
         case GoalState.MISSED:
             return replace(outcome, state=GoalState.MET, reason="")
+        case GoalState.UNKNOWN:
+            return replace(outcome, reason=f"Whether “{name}” was met is not known.")
         case GoalState.OPEN:
             return outcome
         case _:
@@ -274,12 +272,17 @@ def _inverted(name: str, outcome: _Outcome) -> _Outcome:
 
 
 def _first_of(parts: Sequence[_Outcome], deciding: GoalState) -> _Outcome:
-    """Return the outcome of a combination: the first part with the deciding state, else the last one to be decided."""
+    """Return the outcome of a combination: the first part with the deciding state, else the last one to be decided.
+
+    One that is open, or not known, leaves it so unless another one decides.
+    """
     decided = [part for part in parts if part.state is deciding]
     if decided:
         return min(decided, key=lambda part: part.moment)
-    if any(part.state is GoalState.OPEN for part in parts):
-        return next(part for part in parts if part.state is GoalState.OPEN)
+    for state in (GoalState.OPEN, GoalState.UNKNOWN):
+        undecided = [part for part in parts if part.state is state]
+        if undecided:
+            return undecided[0]
     return max(parts, key=lambda part: part.moment)
 
 

@@ -16,6 +16,8 @@ class GoalState(StrEnum):
     OPEN = "open"
     MET = "met"
     MISSED = "missed"
+    UNKNOWN = "unknown"
+    """It cannot be judged; the program is not to blame."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,9 +45,6 @@ class Judgement:
     happened: Change | None = None
     """When and where that happened which meets it, if a later moment has decided; None: at its last change."""
 
-    is_unknown: bool = False
-    """Whether it counts as missed only because a regular expression of the task takes too long."""
-
     @property
     def state(self) -> GoalState:
         """The state at the end of the recording."""
@@ -54,6 +53,8 @@ class Judgement:
     @property
     def is_good(self) -> bool:
         """Whether it is met, or not met if it takes points off."""
+        if self.state is GoalState.UNKNOWN:
+            return False
         return (self.state is GoalState.MET) is (self.goal.points >= 0)
 
     @property
@@ -68,13 +69,22 @@ class Judgement:
 
 
 def points(judgements: Iterable[Judgement]) -> float:
-    """Return the sum of the points of the goals that are met; never less than 0."""
-    return points_of(each.goal.points for each in judgements if each.state is GoalState.MET)
+    """Return the sum of the points of the goals that are met, never less than 0; NaN if one cannot be judged."""
+    counts = (GoalState.MET, GoalState.UNKNOWN)
+    return points_of(
+        math.nan if each.state is GoalState.UNKNOWN and each.goal.points else each.goal.points
+        for each in judgements
+        if each.state in counts
+    )
 
 
 def points_of(met: Iterable[float]) -> float:
-    """Return the sum of the points of goals that are met, some of which may be negative; never less than 0."""
-    return max(0.0, math.fsum(met))
+    """Return the sum of the points of goals that are met, some of which may be negative; never less than 0.
+
+    NaN stands for what is not known, and makes the sum NaN.
+    """
+    # In this order: the other one makes 0 of NaN.
+    return max(math.fsum(met), 0.0)
 
 
 def most_points(goals: Iterable[Goal]) -> float:

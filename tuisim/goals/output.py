@@ -10,7 +10,7 @@ from tuisim.core.profile import NS_PER_S
 from tuisim.errors import counted
 from tuisim.goals.evidence import Evidence, EvidencePoint, EvidenceSpan
 from tuisim.goals.found import Occurrence
-from tuisim.goals.patterns import search_in
+from tuisim.goals.patterns import build_search
 from tuisim.goals.readings import NOUNS, is_as_read, place_words, range_words, read_ticks, within
 from tuisim.goals.spec import (
     DialogueCondition,
@@ -404,7 +404,7 @@ def _turn(
     Args:
         asked: The rows of the turn, from the question to the next one.
     """
-    if turn.prompt and not search_in(turn.prompt, [prompt])(prompt):
+    if turn.prompt and not build_search(turn.prompt)(prompt):
         return (
             None,
             f"The question for {_shown(turn.answer)} was {_shown(prompt)}, not one like {_shown(turn.prompt)}.",

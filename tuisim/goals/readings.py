@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 from tuisim.core.profile import NS_PER_S
 from tuisim.core.spec import FIELD_HEIGHT_MM, ColorSensorSpec
 from tuisim.errors import counted
+from tuisim.goals.condition import UnjudgedError
 from tuisim.goals.evidence import Evidence, EvidencePoint, EvidenceSpan
 from tuisim.goals.found import Occurrence, share_words
 from tuisim.goals.places import line_of_motion
@@ -51,9 +52,15 @@ def read_ticks(reading: Reading, evidence: Evidence) -> Array:
 
 
 def _readings(reading: Reading, evidence: Evidence) -> tuple[Array, Array]:
-    """Return tick and source line of each such reading that the program took, in ascending order."""
+    """Return tick and source line of each such reading that the program took, in ascending order.
+
+    Raises:
+        UnjudgedError: they are not all recorded.
+    """
     name = f"{reading} is read"
     if name not in evidence.memo:
+        if evidence.readings.left_out:
+            raise UnjudgedError("The program read more often than a run records")
         rows = evidence.readings.find(_MODES[reading])
         seconds, rest_ns = divmod(rows["time_ns"], NS_PER_S)
         hz = evidence.spec.profile.tick_hz

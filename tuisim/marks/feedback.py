@@ -94,6 +94,8 @@ def _hidden(cells: Sequence[tuple[Goal, Cell]]) -> list[str]:
 
 
 def _goal(column: Goal, cell: Cell, runs: int, lines: Sequence[str]) -> list[str]:
+    if math.isnan(cell.points):
+        return [_wrapped(f"[could not be judged] {column.say}")]
     if column.points < 0 and not cell.met:
         return [_wrapped(f"[did not happen] {column.say}")]
     is_met = bool(runs) and cell.met == runs

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import csv
 import io
+import math
 from collections.abc import Mapping, Sequence
 from enum import StrEnum
 from pathlib import Path
@@ -144,7 +145,9 @@ def write_gradebook(
         heads.append("Feedback")
     for row, source in zip(sheet.rows, sources, strict=True):
         points = [row.points, *(row.cells[at].points for at in shown)]
-        cells = [*_identity(row, kind, roster), *map(in_words, points)]
+        # What could not be judged stays empty.
+        words = ["" if math.isnan(one) else in_words(one) for one in points]
+        cells = [*_identity(row, kind, roster), *words]
         table.append(
             cells if kind is GradebookKind.CANVAS else [*cells, feedback_of(sheet, row, source)]
         )

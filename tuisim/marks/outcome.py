@@ -56,12 +56,12 @@ class GoalOutcome:
     is_penalty: bool = False
     """Whether it takes points off."""
     is_unknown: bool = False
-    """Whether it counts as missed only because a regular expression of the task takes too long."""
+    """Whether it could not be judged, so that nobody knows whether it was met."""
 
     @property
     def is_good(self) -> bool:
         """Whether it is as it should be."""
-        return self.met is not self.is_penalty
+        return self.met is not self.is_penalty and not self.is_unknown
 
 
 @dataclass(frozen=True, slots=True)
@@ -125,7 +125,7 @@ def outcome_of(result: Result, seed: int, folder: Path, world: TrialWorld | None
                     reason,
                     cause.line,
                     is_penalty=one.goal.points < 0,
-                    is_unknown=cause.is_unknown,
+                    is_unknown=one.state is GoalState.UNKNOWN,
                 )
             )
     return Outcome(
@@ -178,7 +178,7 @@ def _merged(seed: int, parts: Sequence[Outcome]) -> Outcome:
     is_known = all(part.goals for part in parts)
     for part in parts:
         for goal in part.goals if is_known else ():
-            if goal.name not in goals or goals[goal.name].is_good:
+            if _counts_more(goal, goals.get(goal.name)):
                 reason = (
                     f"{part.world}: {goal.reason}" if part.world and goal.reason else goal.reason
                 )
@@ -193,8 +193,15 @@ def _merged(seed: int, parts: Sequence[Outcome]) -> Outcome:
     )
 
 
+def _counts_more(goal: GoalOutcome, before: GoalOutcome | None) -> bool:
+    """Return whether a world decides on a goal, not those before: a fault counts most, then what is not known."""
+    if before is None or before.is_good:
+        return True
+    return before.is_unknown and not (goal.is_good or goal.is_unknown)
+
+
 def unknown_goals(outcomes: Iterable[Outcome]) -> dict[str, str]:
-    """Return the goals that some runs count as missed though nobody knows, by name, each with its reason."""
+    """Return the goals that could not be judged in some runs, by name, each with its reason."""
     return {goal.name: goal.reason for one in outcomes for goal in one.goals if goal.is_unknown}
 
 

@@ -165,7 +165,8 @@ def goal_statistics(sheet: Sheet) -> tuple[GoalStatistics, ...]:
         cells = [(row, row.cells[at]) for row in sheet.rows]
         met = sum(bool(row.runs) and cell.met == row.runs for row, cell in cells)
         partly = sum(0 < cell.met < row.runs for row, cell in cells)
-        mean = math.fsum(cell.points for _, cell in cells) / len(cells) if cells else 0.0
+        points = [cell.points for _, cell in cells if not math.isnan(cell.points)]
+        mean = math.fsum(points) / len(points) if points else 0.0
         reasons = Counter(cell.reason for _, cell in cells if cell.reason).most_common(MOST_REASONS)
         found.append(GoalStatistics(goal, met, partly, mean, tuple(reasons)))
     return tuple(found)
@@ -179,7 +180,8 @@ def distribution(sheet: Sheet) -> tuple[tuple[float, float, int], ...]:
     most = sheet.most_points
     if not most:
         return ()
-    counts = Counter(min(max(int(row.points / most * BINS), 0), BINS - 1) for row in sheet.rows)
+    known = [row.points for row in sheet.rows if not math.isnan(row.points)]
+    counts = Counter(min(max(int(points / most * BINS), 0), BINS - 1) for points in known)
     return tuple(
         (most * part / BINS, most * (part + 1) / BINS, counts[part]) for part in range(BINS)
     )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import math
 import os
 import shutil
 from collections.abc import Iterator, Mapping, Sequence
@@ -168,11 +169,10 @@ def _verdicts(
     rows, pins = [], []
     for number, column in enumerate(columns, start=1):
         goal = found.get(column.name, GoalOutcome(column.name, False, outcome.failure))
-        result = "met" if goal.met else "missed"
+        result = "could not be judged" if goal.is_unknown else "met" if goal.met else "missed"
         why = f"{goal.reason} (line {goal.line})" if goal.line else goal.reason
-        points = (
-            f"{in_words(column.points if goal.met else 0)} of {in_words(max(0, column.points))}"
-        )
+        earned = math.nan if goal.is_unknown else column.points if goal.met else 0
+        points = f"{in_words(earned)} of {in_words(max(0, column.points))}"
         if (event := judged.get(column.name)) is not None:
             result += f" at {event.time_s:.2f} s, x {event.x_mm:.0f}, y {event.y_mm:.0f} mm"
             said = f"{number}. {column.say} {result}"

@@ -36,7 +36,7 @@ class Cell:
     """One goal of one student."""
 
     points: float
-    """Mean over the runs."""
+    """Mean over the runs; NaN if one could not be judged."""
     met: int
     """Number of runs that met it; of a goal that takes points off, that is the fault."""
     reason: str = ""
@@ -57,7 +57,7 @@ class SheetRow:
     program: str
     """Name of the main program; empty if there is none."""
     points: float
-    """Mean over the runs, unless the tutor has set others."""
+    """Mean over the runs, NaN if one could not be judged; unless the tutor has set others."""
     robustness: float
     """Share of the runs with all points, 0 to 1; in a task without points, of those that met every goal."""
     cells: tuple[Cell, ...]
@@ -188,7 +188,12 @@ def row_of(
 def _points(columns: Sequence[Goal], outcome: Outcome) -> float:
     """Return the points of one run; one of which nothing is recorded has no judgements, and no points."""
     met = {goal.name for goal in outcome.goals if goal.met}
-    return points_of(column.points for column in columns if column.name in met)
+    unknown = {goal.name for goal in outcome.goals if goal.is_unknown}
+    return points_of(
+        math.nan if column.points and column.name in unknown else column.points
+        for column in columns
+        if column.name in met | unknown
+    )
 
 
 def _cell(column: Goal, outcomes: Sequence[Outcome]) -> Cell:
@@ -197,7 +202,8 @@ def _cell(column: Goal, outcomes: Sequence[Outcome]) -> Cell:
         for one in outcomes
     ]
     met = sum(goal is not None and goal.met for _, goal in goals)
-    points = rounded(column.points * met / len(goals))
+    is_unknown = any(goal is not None and goal.is_unknown for _, goal in goals)
+    points = math.nan if is_unknown else rounded(column.points * met / len(goals))
     for outcome, goal in goals:
         if goal is None:
             # Of a run of which nothing is recorded, it is known only that it failed.
@@ -230,8 +236,8 @@ def rounded(value: float) -> float:
 
 
 def in_words(points: float) -> str:
-    """Return points as text, at most two decimals."""
-    return f"{points:.2f}".rstrip("0").rstrip(".")
+    """Return points as text, at most two decimals; `?` for NaN."""
+    return "?" if math.isnan(points) else f"{points:.2f}".rstrip("0").rstrip(".")
 
 
 def lines_of(
@@ -265,7 +271,8 @@ def _without_middle(name: str, most: int) -> str:
 def summary_of(sheet: Sheet) -> str:
     """Return one sentence about the class."""
     full = sum(row.robustness == 1 for row in sheet.rows)
-    mean = math.fsum(row.points for row in sheet.rows) / len(sheet.rows) if sheet.rows else 0.0
+    known = [row.points for row in sheet.rows if not math.isnan(row.points)]
+    mean = math.fsum(known) / len(known) if known else 0.0
     size = f"{counted(len(sheet.rows), 'student')}, {counted(len(sheet.seeds), 'seed')}"
     points = f"mean {in_words(mean)} of {in_words(sheet.most_points)} points"
     return f"{size}: {points}; {full} with all points" + (

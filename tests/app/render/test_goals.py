@@ -37,6 +37,11 @@ OPEN = Judgement(
 )
 
 
+UNKNOWN = Judgement(
+    Goal("says", FinishCondition(), "Say it.", 2),
+    (Change(200, 2.0, GoalState.UNKNOWN, 1.0, 2.0),),
+    "The expression is slow.",
+)
 KEPT = replace(MISSED, goal=replace(MISSED.goal, name="hit", say="Hit the wall.", points=-2))
 LOST = replace(MET, goal=replace(MET.goal, name="hit", say="Hit the wall.", points=-2))
 
@@ -50,6 +55,11 @@ TEXTS = {
         LOST,
         "✗ lost   hit                 -2",
         ["met at 1.00 s, x 300, y 80 mm,", "line 7", "Hit the wall."],
+    ),
+    "not known": (
+        UNKNOWN,
+        "? ?      says               ?/2",
+        ["It could not be judged.", "The expression is slow."],
     ),
     "met": (
         MET,

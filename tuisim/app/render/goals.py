@@ -24,8 +24,14 @@ _STATES = {
     GoalState.OPEN: ("·", _PALE),
     GoalState.MET: ("✓", Style(color=palette.GREEN, bold=True)),
     GoalState.MISSED: ("✗", Style(color=palette.RED, bold=True)),
+    GoalState.UNKNOWN: ("?", _HINT),
 }
-_PENALTY_WORDS = {GoalState.OPEN: "open", GoalState.MET: "lost", GoalState.MISSED: "kept"}
+_PENALTY_WORDS = {
+    GoalState.OPEN: "open",
+    GoalState.MET: "lost",
+    GoalState.MISSED: "kept",
+    GoalState.UNKNOWN: "?",
+}
 """What is said of a goal that takes points off."""
 _STATE_COLUMNS = 9
 """Columns of the sign and the word, such as `✗ missed `."""
@@ -150,8 +156,9 @@ def _header(goal: Goal, state: GoalState, width: int) -> Iterator[Line]:
     )
     sign, style = _STATES[good.get(state, state)]
     of = f"/{goal.points:g}" if goal.points > 0 else ""
-    points = f" {goal.points if state is GoalState.MET else 0:g}{of}" if goal.points else ""
-    word = _PENALTY_WORDS[state] if goal.points < 0 else state
+    earned = "?" if state is GoalState.UNKNOWN else f"{goal.points * (state is GoalState.MET):g}"
+    points = f" {earned}{of}" if goal.points else ""
+    word = _PENALTY_WORDS[state] if goal.points < 0 or state is GoalState.UNKNOWN else state
     room = max(1, width - _STATE_COLUMNS - len(points))
     first, *rest = textwrap.wrap(goal.name, room) or [""]
     yield [(f"{sign} {word:<6} ", style), (first.ljust(room), _NAME), (points, style)]
@@ -169,6 +176,9 @@ def _detail(judgement: Judgement, state: GoalState, width: int) -> Iterator[Line
         case GoalState.MET:
             yield from _wrapped(f"met {_when(judgement)}{line}", width, _PALE)
             yield from _wrapped(goal.say, width, _PLAIN)
+        case GoalState.UNKNOWN:
+            yield from _wrapped("It could not be judged.", width, _PALE)
+            yield from _wrapped(judgement.reason, width, _PLAIN)
         case GoalState.MISSED if goal.points < 0:
             yield from _wrapped(f"It did not happen: {goal.say or goal.name}", width, _PLAIN)
         case GoalState.MISSED:

@@ -45,6 +45,7 @@ _GOAL_MARKS = {
     GoalState.OPEN: ("· ", _PALE),
     GoalState.MET: ("✓ ", _GOOD),
     GoalState.MISSED: ("✗ ", _BAD),
+    GoalState.UNKNOWN: ("? ", _PALE),
 }
 
 
