@@ -51,10 +51,6 @@ BAD = {
         "run prog.py -x abc",
         "-x: must be a number from -10000 to 10000, got 'abc'",
     ),
-    "noise too large": (
-        "run prog.py -N 999",
-        "-N: must be a whole number from 0 to 128, got '999'",
-    ),
     "motor noise too large": ("run prog.py -M 501", "-M: must be a whole number from 0 to 500"),
     "speed": ("run prog.py --speed fast", "--speed: must be max, or a number from 0.01"),
     "timeout": ("run prog.py --timeout 0", "--timeout: must be a number from 0.001"),

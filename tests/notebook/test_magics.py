@@ -107,7 +107,6 @@ MISTAKES = [
     ("-r Nope", "Nope"),
     ("-o Nope", "Nope"),
     ("-x far", "-x: must be a number"),
-    ("-N 300", "-N: must be a whole number from 0 to 128"),
     ("-P greenish", "no such colour 'greenish'"),
     ("--profile Nope", "Nope"),
     ("-s nobody", "-s: no simulator 'nobody'"),
