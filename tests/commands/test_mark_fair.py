@@ -20,10 +20,6 @@ QUICK = ("plain", "busy_daemon", "raises", "exits", "condition")
 MOST_S = 900.0
 
 
-def test_there_are_fifty() -> None:
-    assert len(FAIR) == 50
-
-
 @pytest.fixture(scope="module")
 def in_run(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Stored]:
     """What `tuisim run` makes of them all."""
