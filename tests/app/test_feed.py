@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from tuisim.app.feed import CHART_PERIOD_S, PanelFeed, _thinned, _with_gaps, sample_series
-from tuisim.app.snapshot import RunPhase
+from tuisim.app.feed import PanelFeed, _thinned, _with_gaps, sample_series
+from tuisim.app.snapshot import CHART_PERIOD_S, RunPhase
 from tuisim.runs.records import OutputRow, Stream
 
 

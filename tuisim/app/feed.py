@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from tuisim.app.snapshot import RunPhase
+from tuisim.app.snapshot import CHART_PERIOD_S, RunPhase
 from tuisim.core.field import Field
 from tuisim.core.sensors import columns_of
 from tuisim.core.tick_record import FLAG_PEN_DOWN
@@ -31,8 +31,6 @@ Series = dict[str, tuple[list[float], list[float]]]
 Points = tuple[list[float], list[float]]
 """x and y in mm, NaN where the pen was lifted."""
 
-CHART_PERIOD_S = 0.33
-"""Drawing a chart takes tens of milliseconds: three times a second is enough to follow it."""
 POINTS_A_FEED = 60
 """Most telemetry moments that one call measures; each one costs a reading of every sensor."""
 POINTS_OF_A_RUN = 1500

@@ -19,6 +19,9 @@ from tuisim.protocol import BusyLoop, End, Ended, Inspected, Paused, RunState, U
 from tuisim.runs.brick_state import BrickState
 from tuisim.source import Program
 
+CHART_PERIOD_S = 0.33
+"""Drawing a chart takes tens of milliseconds: three times a second is enough to follow it."""
+
 
 class RunPhase(StrEnum):
     """What the run in view is doing."""

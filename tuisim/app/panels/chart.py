@@ -12,9 +12,8 @@ from textual.binding import Binding, BindingType
 from textual.message import Message
 
 from tuisim.app.action import KeyWord
-from tuisim.app.feed import CHART_PERIOD_S
 from tuisim.app.plot_view import PlotView
-from tuisim.app.snapshot import AT_REST, RunPhase, Snapshot
+from tuisim.app.snapshot import AT_REST, CHART_PERIOD_S, RunPhase, Snapshot
 from tuisim.charts import axes
 from tuisim.charts.bands import spans_of
 from tuisim.charts.layout import Span
