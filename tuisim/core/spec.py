@@ -453,6 +453,24 @@ class RobotSpec(Spec):
         0.01, 100, default=1.0, later=True, label="Gear ratio", help="motor turns per wheel turn"
     )
     """Turns of a wheel's motor for one turn of the wheel: above 1 the robot is slower than its motors."""
+    mass_kg: float = number(
+        0.1,
+        20,
+        default=0.95,
+        unit="kg",
+        later=True,
+        label="Mass kg",
+        help="with brick and battery; only where motors are as on the brick",
+    )
+    battery_v: float = number(
+        5,
+        9,
+        default=8.0,
+        unit="V",
+        later=True,
+        label="Battery V",
+        help="without a load: it sets the highest speed",
+    )
 
     @property
     def has_wheels(self) -> bool:

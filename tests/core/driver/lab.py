@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import json
 import lzma
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cache
 from itertools import accumulate
 from math import inf
@@ -16,7 +16,14 @@ from pathlib import Path
 from typing import Any
 
 from tuisim.core.driver.jiffies import Jiffies
-from tuisim.core.driver.motor import Command, DriverMotor
+from tuisim.core.driver.motor import (
+    Command,
+    Constant,
+    DriverMotor,
+    MotorCommand,
+    SetPoints,
+    Setting,
+)
 from tuisim.core.driver.regulator import MODELS, StopAction
 
 MS = 1_000_000
@@ -101,6 +108,7 @@ class Bench:
                 DriverMotor(model, plant, recording.battery_v, recording.jiffies),
             )
         self.signs = [1 for _ in self.motors]
+        self.set_points: list[dict[str, Any]] = [{} for _ in self.motors]
         self.states: list[list[Any]] = []
         self._last_states: list[str | None] = [None for _ in self.motors]
         self.samples = [Samples([], [], [], []) for _ in self.motors]
@@ -124,26 +132,31 @@ class Bench:
         motor = self.motors[number]
         value = value * self.signs[number] if name in SIGNED else value
         if name in SET_POINTS:
-            motor.set_points(now_ms * MS, replace(motor.setpoints, **{SET_POINTS[name]: value}))
+            self.set_points[number][SET_POINTS[name]] = value
+            if name == "duty_cycle_sp":
+                tell(motor, now_ms * MS, Setting.DUTY, value)
             return
         match name:
             case "stop_action":
-                setpoints = replace(motor.setpoints, stop_action=StopAction(value))
-                motor.set_points(now_ms * MS, setpoints)
+                self.set_points[number][name] = StopAction(value)
             case "command":
-                motor.command(now_ms * MS, Command(value))
-                self.signs[number] = 1 if value == "reset" else self.signs[number]
+                set_points = SetPoints(**self.set_points[number])
+                motor.obey(MotorCommand(now_ms * MS, number, Command(value), set_points))
+                if value == "reset":
+                    self.signs[number], self.set_points[number] = 1, {}
             case "polarity":
                 self.signs[number] = POLARITIES[value]
             case "position":
-                motor.set_position(now_ms * MS, value)
+                tell(motor, now_ms * MS, Setting.POSITION, value)
             case "speed_pid/Ki":
-                motor.speed_control.ki = value
+                tell(motor, now_ms * MS, Setting.CONSTANT, Constant("speed", "ki", value))
             case "BLOCK":
+                motor.wake(now_ms * MS)
                 axle = motor.axle
                 axle.low_deg = axle.high_deg = axle.angle_deg
                 axle.speed_dps = 0.0
             case "UNBLOCK":
+                motor.wake(now_ms * MS)
                 motor.axle.low_deg, motor.axle.high_deg = -inf, inf
             case _:
                 raise ValueError(name)
@@ -161,3 +174,13 @@ class Bench:
             samples.tenths_deg.append(round(10 * round(motor.axle.angle_deg - 0.125, 1)))
             samples.speed.append(motor.speed_dps * sign)
             samples.duty.append(motor.duty * sign)
+
+
+def tell(motor: DriverMotor, time_ns: int, setting: Setting, value: Constant | int) -> None:
+    """Set something that takes effect at once."""
+    motor.obey(MotorCommand(time_ns, 0, setting, value))
+
+
+def give(motor: DriverMotor, time_ns: int, command: Command, **setpoints: Any) -> None:
+    """Set values and give a command; values that are not set stay."""
+    motor.obey(MotorCommand(time_ns, 0, command, motor.active._replace(**setpoints)))

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import random
 from collections.abc import Iterator
-from dataclasses import replace
 from math import inf, isfinite
+from typing import Any
 
 import pytest
 
-from tests.core.driver.lab import MS, Bench, load_recordings
+from tests.core.driver.lab import MS, Bench, give, load_recordings, tell
 from tuisim.core.driver.jiffies import Jiffies
-from tuisim.core.driver.motor import Command, DriverMotor, SetPoints, State
+from tuisim.core.driver.motor import Command, DriverMotor, Setting, State
 from tuisim.core.driver.regulator import MODELS, StopAction
 
 RECORDINGS = load_recordings()
@@ -80,17 +80,17 @@ def build_motor(kind: str = "large", jiffies: Jiffies = Jiffies()) -> DriverMoto
     return DriverMotor(MODELS[kind], MODELS[kind].plant, 8.0, jiffies)
 
 
-def random_setpoints(chance: random.Random) -> SetPoints:
+def random_setpoints(chance: random.Random) -> dict[str, Any]:
     ramps = (0, 0, 0, chance.randrange(2000))
-    return SetPoints(
-        chance.randrange(-1050, 1051),
-        chance.randrange(-400, 401),
-        chance.randrange(-100, 101),
-        chance.randrange(2000),
-        chance.choice(ramps),
-        chance.choice(ramps),
-        chance.choice([*StopAction]),
-    )
+    return {
+        "speed_dps": chance.randrange(-1050, 1051),
+        "position": chance.randrange(-400, 401),
+        "duty": chance.randrange(-100, 101),
+        "time_ms": chance.randrange(2000),
+        "ramp_up_ms": chance.choice(ramps),
+        "ramp_down_ms": chance.choice(ramps),
+        "stop_action": chance.choice([*StopAction]),
+    }
 
 
 def play(motor: DriverMotor, seed: int, looks: random.Random | None) -> Iterator[object]:
@@ -103,10 +103,9 @@ def play(motor: DriverMotor, seed: int, looks: random.Random | None) -> Iterator
             now_ns = min(end_ns, now_ns + looks.randrange(20 * MS))
             motor.run_until(now_ns)
         now_ns = end_ns
-        motor.set_points(now_ns, random_setpoints(chance))
-        motor.command(now_ns, chance.choice([*Command]))
+        give(motor, now_ns, chance.choice([*Command]), **random_setpoints(chance))
         if chance.random() < 0.2:
-            motor.set_position(now_ns, chance.randrange(-100, 100))
+            tell(motor, now_ns, Setting.POSITION, chance.randrange(-100, 100))
         if chance.random() < 0.3:
             angle_deg = motor.axle.angle_deg
             motor.axle.low_deg, motor.axle.high_deg = chance.choice(
@@ -129,8 +128,7 @@ def test_a_released_motor_never_speeds_up(seed: int) -> None:
     motor = build_motor()
     for _ in play(motor, seed, None):
         pass
-    motor.set_points(3000 * MS, SetPoints())
-    motor.command(3000 * MS, Command.RESET)
+    give(motor, 3000 * MS, Command.RESET)
     speed_dps = abs(motor.axle.speed_dps)
     for now_ms in range(3000, 8000, 10):
         motor.run_until(now_ms * MS)
@@ -141,8 +139,7 @@ def test_a_released_motor_never_speeds_up(seed: int) -> None:
 def test_an_obstacle_stops_the_wheel_and_the_driver_finds_out() -> None:
     motor = build_motor()
     motor.axle.high_deg = 100.0
-    motor.set_points(0, SetPoints(speed_dps=500))
-    motor.command(0, Command.RUN_FOREVER)
+    give(motor, 0, Command.RUN_FOREVER, speed_dps=500)
     motor.run_until(1000 * MS)
     assert motor.axle.angle_deg == 100.0 and motor.axle.speed_dps == 0.0
     assert motor.states == [State.RUNNING, State.OVERLOADED, State.STALLED]
@@ -150,11 +147,9 @@ def test_an_obstacle_stops_the_wheel_and_the_driver_finds_out() -> None:
 
 def test_a_ramp_that_turns_back_goes_through_0() -> None:
     motor = build_motor()
-    motor.set_points(0, SetPoints(speed_dps=400, ramp_up_ms=500, ramp_down_ms=500))
-    motor.command(0, Command.RUN_FOREVER)
+    give(motor, 0, Command.RUN_FOREVER, speed_dps=400, ramp_up_ms=500, ramp_down_ms=500)
     motor.run_until(1000 * MS)
-    motor.set_points(1000 * MS, replace(motor.setpoints, speed_dps=-400))
-    motor.command(1000 * MS, Command.RUN_FOREVER)
+    give(motor, 1000 * MS, Command.RUN_FOREVER, speed_dps=-400)
     speeds = []
     for now_ms in range(1000, 2500, 50):
         motor.run_until(now_ms * MS)
@@ -165,10 +160,10 @@ def test_a_ramp_that_turns_back_goes_through_0() -> None:
 
 def test_a_relative_move_after_another_begins_where_that_was_to_end() -> None:
     motor = build_motor()
-    motor.set_points(0, SetPoints(speed_dps=900, position=90, stop_action=StopAction.BRAKE))
     for number in range(4):
-        motor.command(number * 1000 * MS, Command.RUN_TO_REL_POS)
+        time_ns = number * 1000 * MS
+        give(motor, time_ns, Command.RUN_TO_REL_POS, speed_dps=900, position=90)
     assert motor.target == 360
-    motor.set_position(4900 * MS, 0)
-    motor.command(5000 * MS, Command.RUN_TO_REL_POS)
+    tell(motor, 4900 * MS, Setting.POSITION, 0)
+    give(motor, 5000 * MS, Command.RUN_TO_REL_POS)
     assert motor.target == 90

@@ -30,7 +30,7 @@ class Controller:
         constants: Proportional, integral and derivative constant; `reset` restores them.
     """
 
-    __slots__ = ("_constants", "_error", "_sum", "kd", "ki", "kp", "overloaded", "setpoint")
+    __slots__ = ("_constants", "error", "kd", "ki", "kp", "overloaded", "setpoint", "total")
 
     def __init__(self, constants: tuple[int, int, int]) -> None:
         self._constants = constants
@@ -44,21 +44,34 @@ class Controller:
 
     def clear(self) -> None:
         """Forget the errors."""
-        self._error = self._sum = 0
+        self.error = self.total = 0
+        """Of the last step, and of all."""
         self.overloaded = False
         """Whether it asks for more than the full duty."""
 
     def compute_duty(self, value: int) -> int:
         """Return the duty of the next step, in percent."""
         error = self.setpoint - value
-        change, self._error = self._error - error, error
-        self._sum += error
-        scaled = error * self.kp + self._sum * self.ki + change * self.kd
+        change, self.error = self.error - error, error
+        self.total += error
+        scaled = error * self.kp + self.total * self.ki + change * self.kd
         self.overloaded = False
         if not -FULL < scaled < FULL:
             scaled = _wrap(scaled)
             if not -FULL < scaled < FULL:
                 self.overloaded = True
-                self._sum -= error
+                self.total -= error
                 return MAX_DUTY if scaled > 0 else -MAX_DUTY
         return int(scaled / SCALE)
+
+    def is_steady(self, value: int, duty: int) -> bool:
+        """Return whether a value that stays makes a duty that stays."""
+        error = self.error
+        if error != self.setpoint - value:
+            return False
+        if self.overloaded:
+            return not self.kd
+        return (
+            not (self.ki and error)
+            and int((error * self.kp + self.total * self.ki) / SCALE) == duty
+        )

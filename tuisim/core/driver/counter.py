@@ -7,30 +7,35 @@ from math import floor
 
 CLOCK_HZ = 24_000_000
 """The clock of the time stamps."""
+HALF_CLOCK_HZ = CLOCK_HZ // 2
 MIN_SPAN = CLOCK_HZ * 20 // 1000
 """A speed is measured over at least this time, in ticks of that clock."""
 LOOK = CLOCK_HZ // 1000
 """Whether the counter stands is looked up once in this time..."""
 IDLE_LOOKS = 51
 """...and noted with the first look more than 50 ms after the last note."""
+MIN_IDLE = (IDLE_LOOKS - 1) * LOOK
 CAPACITY = 256
 """How many of the last changes are remembered."""
 LAST_NOTE = -43 * LOOK
 """When a counter that stood was noted last before the run: the driver has been at work for 400 ms."""
+MOST = 2 * CAPACITY
 FIRST_NOTE = LAST_NOTE - (CAPACITY - 1) * IDLE_LOOKS * LOOK
 STRIDE = 4
 """The driver looks back by this many changes, or twice, three times … as many."""
-MAX_STRIDES = 16
+MAX_DEPTH = 16 * STRIDE
 
 
 class Counter:
     """The counter of one motor, which has stood at 0 for a while."""
 
-    __slots__ = ("_counts", "_depth", "_speed_dps", "_times", "count")
+    __slots__ = ("_counts", "_depth", "_speed_dps", "_straight", "_times", "count")
 
     def __init__(self) -> None:
         self._times = [*range(FIRST_NOTE, LAST_NOTE + 1, IDLE_LOOKS * LOOK)]
         self._counts = [0] * CAPACITY
+        self._straight = 0
+        """How many of the last changes went in one direction, negative if backwards."""
         self._depth = STRIDE
         """By how many changes the driver looked back for the last speed."""
         self._speed_dps: int | None = 0
@@ -49,59 +54,99 @@ class Counter:
             end_deg: The axle's angle at the end.
             middle: The part of the way that it turns in the first half of the time; each half is taken as even.
         """
-        count, last = floor(2 * end_deg), self.count
-        times = self._times
+        count, last, times = floor(2 * end_deg), self.count, self._times
+        end, way = begin + duration, 2 * (end_deg - begin_deg)
+        if end - times[-1] > MIN_IDLE:
+            edge = last + (count > last)
+            part = 1.0 if count == last else (edge - 2 * begin_deg) / way
+            self.record_rest(begin + duration * part)
         if count == last:
-            self.record_rest(begin + duration)
             return
-        way = 2 * (end_deg - begin_deg)
-        part, one = 2 * begin_deg, 1
         if count > last:
-            part, per_count = (last + 1 - part) / way, 1 / way
+            part, per_count, one = (last + 1 - 2 * begin_deg) / way, 1 / way, 1
         else:
-            part, per_count, one = (last - part) / way, -1 / way, -1
-        self.record_rest(begin + duration * part)
-        counts, second_half = self._counts, 1.0 - middle
+            part, per_count, one = (last - 2 * begin_deg) / way, -1 / way, -1
+        straight, counts = self._straight, self._counts
+        self._straight = count - last + (straight if straight * one > 0 else 0)
+        half_time = 0.5 * duration
+        first_half, second_half = half_time / middle, half_time / (1.0 - middle)
         while last != count:
             last += one
-            half = part / middle if part <= middle else 1.0 + (part - middle) / second_half
             counts.append(last)
-            times.append(int(begin + duration * half / 2))
+            times.append(
+                int(
+                    begin + part * first_half
+                    if part <= middle
+                    else end - (1.0 - part) * second_half
+                )
+            )
             part += per_count
         self.count, self._speed_dps = count, None
-        if len(times) > 2 * CAPACITY:
+        if len(times) > MOST:
             del times[:-CAPACITY], counts[:-CAPACITY]
 
     def record_rest(self, end: float) -> None:
         """Note that the counter has stood until a time."""
         times = self._times
+        if end - times[-1] < MIN_IDLE:
+            return
         look = (times[-1] // LOOK + IDLE_LOOKS) * LOOK
         if look > end:
             return
         looks = range(look, int(end) + 1, IDLE_LOOKS * LOOK)[-CAPACITY:]
+        self._straight = 0
         times += looks
         self._counts += repeat(self.count, len(looks))
         self._speed_dps = None
-        del times[: -2 * CAPACITY], self._counts[: -2 * CAPACITY]
+        del times[:-MOST], self._counts[:-MOST]
+
+    def refill(self, time: float, angle_deg: float, speed_dps: float) -> None:
+        """Set the last changes as if the axle had turned evenly, for longer than any speed is measured.
+
+        Args:
+            time: Now, in ticks of the clock.
+            angle_deg: The axle's angle now.
+            speed_dps: Its speed, not 0.
+        """
+        self.count = count = floor(2 * angle_deg)
+        per_count = CLOCK_HZ / (2 * speed_dps)
+        edge, one = (count, -1) if speed_dps > 0 else (count + 1, 1)
+        self._straight = -CAPACITY * one
+        backs = range(CAPACITY - 1, -1, -1)
+        self._counts = [count + one * back for back in backs]
+        self._times = [
+            int(time - (2 * angle_deg - edge - one * back) * per_count) for back in backs
+        ]
+        self._speed_dps = None
 
     def measure_speed_dps(self) -> int:
         """Return the speed that the driver reads."""
-        if self._speed_dps is None:
-            self._speed_dps = self._measure()
-        return self._speed_dps
+        speed_dps = self._speed_dps
+        if speed_dps is not None:
+            return speed_dps
+        times, depth, straight = self._times, self._depth, self._straight
+        time = times[-1]
+        # Most often the depth is that of the last time, or the next one.
+        while depth > STRIDE and time - times[STRIDE - 1 - depth] >= MIN_SPAN:
+            depth -= STRIDE
+        while (span := time - times[-1 - depth]) < MIN_SPAN and depth < MAX_DEPTH:
+            depth += STRIDE
+        self._depth = depth
+        if -depth < straight < depth:
+            turned, span = self._search(time)
+        else:
+            turned = depth if straight > 0 else -depth
+        speed_dps = self._speed_dps = int(turned * HALF_CLOCK_HZ / span) if span else 0
+        return speed_dps
 
-    def _measure(self) -> int:
-        counts, times = self._counts, self._times
-        count, time = counts[-1], times[-1]
-        depth = self._depth
-        turned, span = count - counts[-1 - depth], time - times[-1 - depth]
-        # Most often it is the depth of the last time: then no change in between can have been back and forth.
-        if span < MIN_SPAN or abs(turned) != depth or time - times[-1 + STRIDE - depth] >= MIN_SPAN:
-            for depth in range(STRIDE, STRIDE * MAX_STRIDES + 1, STRIDE):
-                turned, span = count - counts[-1 - depth], time - times[-1 - depth]
-                if turned == 0:
-                    return 0
-                if span >= MIN_SPAN:
-                    break
-            self._depth = depth
-        return int(int(turned * CLOCK_HZ / span) / 2) if span else 0
+    def _search(self, time: int) -> tuple[int, int]:
+        """Return how many counts are looked back, and the time that they took, in ticks of the clock."""
+        turned = span = 0
+        for depth in range(STRIDE, MAX_DEPTH + 1, STRIDE):
+            turned = self.count - self._counts[-1 - depth]
+            if turned == 0:
+                return 0, 1
+            span = time - self._times[-1 - depth]
+            if span >= MIN_SPAN:
+                break
+        return turned, span

@@ -2,10 +2,17 @@
 
 from __future__ import annotations
 
+from tuisim.core.noise import drawn_numbers
 from tuisim.data_class import dataclass
 
 JIFFY_US = 10_000
 NS_PER_US = 1000
+STEP_US = 2000
+"""The period of the driver's control."""
+LOOK_JIFFIES = 6
+"""A driver looks once in this time whether its state has changed."""
+FIRST_JIFFIES = 4096
+"""A run begins at any of so many."""
 LEVEL_JIFFIES = 63
 """The finest wheel of the timers holds this many jiffies."""
 COARSER = 8
@@ -20,6 +27,8 @@ class Jiffies:
     """Jiffies at the start of the run."""
     phase_us: int = 0
     """How long the first jiffy has lasted by then."""
+    first_look: int = 2
+    """Number of jiffies until the drivers look for the first time whether a state has changed."""
 
     def count(self, time_ns: int) -> int:
         """Return how many jiffies the kernel has counted."""
@@ -35,6 +44,15 @@ class Jiffies:
         while jiffies > reach:
             grain, reach = grain * COARSER, reach * COARSER
         return self.begin_ns((expiry // grain + 1) * grain)
+
+
+def draw_jiffies(seed: int) -> Jiffies:
+    """Return the clock of a run; its jiffies begin with a step of the control."""
+    first, phase, look = drawn_numbers(seed, 0, "jiffies", 3)
+    steps = JIFFY_US // STEP_US
+    return Jiffies(
+        int(first * FIRST_JIFFIES), int(phase * steps) * STEP_US, 1 + int(look * LOOK_JIFFIES)
+    )
 
 
 def round_up(time_ms: int) -> int:

@@ -1,15 +1,15 @@
 """A motor as programs see it: attributes, commands, ramps, timed moves and states of the class of all motors.
 
-A command takes a copy of all set points: what is written later waits for the next command.
+A command comes with all set points: what a program writes later waits for the next command.
 """
 
 from __future__ import annotations
 
-from dataclasses import replace
 from enum import StrEnum
+from typing import NamedTuple
 
 from tuisim.core.driver.control import divide
-from tuisim.core.driver.jiffies import Jiffies, round_up
+from tuisim.core.driver.jiffies import JIFFY_US, LOOK_JIFFIES, NS_PER_US, Jiffies, round_up
 from tuisim.core.driver.plant import STEP_NS, PlantSpec
 from tuisim.core.driver.regulator import Model, MotorDriver, StopAction
 from tuisim.data_class import dataclass
@@ -17,6 +17,8 @@ from tuisim.data_class import dataclass
 NEVER_NS = 1 << 62
 RAMP_JIFFIES = 10
 """A ramp changes the setpoint again after about this time, less the time since its change before."""
+LOOK_NS = LOOK_JIFFIES * JIFFY_US * NS_PER_US
+"""A state that has changed is noticed with the next look, once in this time."""
 RAMP_LEAD_JIFFIES = 5
 """A ramp begins this long before its command."""
 
@@ -43,9 +45,16 @@ class State(StrEnum):
     STALLED = "stalled"
 
 
-@dataclass(frozen=True, slots=True)
-class SetPoints:
-    """What a program has set for the next command, in the motor's own direction."""
+class Setting(StrEnum):
+    """What a program sets without a command, and what takes effect at once."""
+
+    DUTY = "duty"
+    POSITION = "position"
+    CONSTANT = "constant"
+
+
+class SetPoints(NamedTuple):
+    """What a program has set by the time of its command, in the motor's own direction."""
 
     speed_dps: int = 0
     position: int = 0
@@ -59,6 +68,27 @@ class SetPoints:
     def ramped(self) -> bool:
         """Whether the speed changes by ramps."""
         return bool(self.ramp_up_ms or self.ramp_down_ms)
+
+
+class Constant(NamedTuple):
+    """A constant of one of the two controllers."""
+
+    control: str
+    """`speed` or `hold`."""
+    name: str
+    """`kp`, `ki` or `kd`."""
+    value: int
+
+
+class MotorCommand(NamedTuple):
+    """All that a program can do to a motor."""
+
+    time_ns: int
+    motor: int
+    """Its number: the left motor, the right one, then the further ones."""
+    call: Command | Setting
+    values: SetPoints | Constant | int
+    """The set points of a command; the constant, duty or position that is set."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,11 +120,12 @@ class DriverMotor(MotorDriver):
     """
 
     __slots__ = (
-        "_active",
         "_due_ns",
         "_ends_at_target",
         "_jiffies",
         "_last_command",
+        "_look_ns",
+        "_looked_states",
         "_ramp",
         "_ramp_goal_dps",
         "_ramp_jiffy",
@@ -103,21 +134,37 @@ class DriverMotor(MotorDriver):
         "_step_ns",
         "_stops_after_ramp",
         "_timed_ns",
+        "_timers_ns",
+        "active",
+        "is_at_rest",
         "is_ramping",
-        "setpoints",
+        "noticed_ns",
     )
 
     def __init__(self, model: Model, plant: PlantSpec, battery_v: float, jiffies: Jiffies) -> None:
         super().__init__(model, plant, battery_v)
-        self._jiffies = jiffies
-        self.setpoints = self._active = SetPoints()
+        self.start_clock(jiffies)
+        self.active = SetPoints()
+        """The set points of the last command."""
         self._last_command: Command | None = None
         self._step_ns = STEP_NS
-        self._ramp_ns = self._timed_ns = self._due_ns = NEVER_NS
+        self._ramp_ns = self._timed_ns = self._timers_ns = NEVER_NS
         """When a ramp's next change and the end of a timed move are due, and the earlier of the two."""
         self._ramp = Ramp(0, 0, 0, 0)
         self._ramp_goal_dps = self._ramp_jiffy = self._ramp_setpoint = 0
         self.is_ramping = self._stops_after_ramp = self._ends_at_target = False
+        self._looked_states: list[State] = []
+        self.noticed_ns = -1
+        """When a change of the state was noticed last: then who waits for it goes on."""
+        self.is_at_rest = True
+        """Whether time changes nothing: a fresh motor, or one that `settle` found so."""
+
+    def start_clock(self, jiffies: Jiffies) -> None:
+        """Take a clock, before any time has passed."""
+        self._jiffies = jiffies
+        self._look_ns = jiffies.begin_ns(jiffies.first + jiffies.first_look)
+        self._due_ns = self._look_ns
+        """When a timer or the next look is due."""
 
     @property
     def states(self) -> list[State]:
@@ -133,16 +180,58 @@ class DriverMotor(MotorDriver):
 
     # Time
 
+    @property
+    def next_look_ns(self) -> int:
+        """When the driver looks next whether the state has changed."""
+        return self._look_ns
+
     def run_until(self, time_ns: int) -> None:
         """Run all steps and timers that are due."""
-        while self._step_ns <= time_ns:
-            if self._due_ns <= self._step_ns:
+        if self.is_at_rest:
+            self._skip(time_ns)
+            return
+        while (step_ns := self._step_ns) <= time_ns:
+            if self._due_ns <= step_ns:
                 self._fire()
-            else:
-                self.control(self._step_ns)
-                self._step_ns += STEP_NS
+                continue
+            if self._is_regulated and self._regulates(step_ns):
+                due_ns = self._due_ns
+                end_ns = due_ns if due_ns <= time_ns else time_ns + 1
+                self._step_ns = self._regulate(step_ns, end_ns)
+                if self._step_ns != step_ns:
+                    continue
+            self.control(step_ns)
+            self._step_ns += STEP_NS
+            if self.is_stalled and self.settle():
+                self._skip(time_ns)
+                return
         while self._due_ns <= time_ns:
             self._fire()
+
+    def settle(self) -> bool:
+        """Return whether time changes nothing any more: the axle stands, and its driver leaves it alone."""
+        self.is_at_rest = (
+            (self.axle.stands or self.axle.is_blocked)
+            and not (self.speed_dps or self._timers_ns < NEVER_NS)
+            and self.is_stalled == self.is_running
+            and self.states == self._looked_states
+            and self._control_rests()
+        )
+        return self.is_at_rest
+
+    def _skip(self, time_ns: int) -> None:
+        """Go on to a time, of a motor at rest."""
+        if self._step_ns <= time_ns:
+            self._step_ns = (time_ns // STEP_NS + 1) * STEP_NS
+            self._moved_ns = time_ns
+        self._skip_looks(time_ns)
+
+    def _skip_looks(self, time_ns: int) -> None:
+        """Let looks pass that have nothing to notice."""
+        if self._look_ns <= time_ns:
+            passed = (time_ns - self._look_ns) // LOOK_NS + 1
+            self._look_ns += passed * LOOK_NS
+            self._due_ns = min(self._timers_ns, self._look_ns)
 
     def _fire(self) -> None:
         """Do what a timer is for."""
@@ -150,39 +239,56 @@ class DriverMotor(MotorDriver):
         if self._timed_ns == time_ns:
             self._set_timers(ramp_ns=self._ramp_ns)
             self._end_timed(time_ns)
-        else:
+        elif self._ramp_ns == time_ns:
             self._set_timers(timed_ns=self._timed_ns)
             self._continue_ramp(time_ns)
+        else:
+            self._look_ns += LOOK_NS
+            self._due_ns = min(self._timers_ns, self._look_ns)
+            if self.states != self._looked_states:
+                self._looked_states, self.noticed_ns = self.states, time_ns
 
     def _set_timers(self, ramp_ns: int = NEVER_NS, timed_ns: int = NEVER_NS) -> None:
         self._ramp_ns, self._timed_ns = ramp_ns, timed_ns
-        self._due_ns = min(ramp_ns, timed_ns)
+        self._timers_ns = min(ramp_ns, timed_ns)
+        self._due_ns = min(self._timers_ns, self._look_ns)
 
     # Commands
 
-    def set_points(self, time_ns: int, setpoints: SetPoints) -> None:
-        """Take set points for the next command; the duty of `run-direct` applies at once."""
+    def wake(self, time_ns: int) -> None:
+        """Run until a time at which something changes that a motor at rest does not expect."""
         self.run_until(time_ns)
-        self.setpoints = setpoints
-        if self._last_command is Command.RUN_DIRECT and setpoints.duty != self._active.duty:
-            self._active = replace(self._active, duty=setpoints.duty)
-            self.run_direct(time_ns, setpoints.duty)
+        self.is_at_rest = False
 
-    def set_position(self, time_ns: int, position: int) -> None:
-        """Make the present position another one."""
-        self.run_until(time_ns)
-        self.renumber(position)
+    def obey(self, command: MotorCommand) -> None:
+        """Do what a program wants, after all steps and timers that are due."""
+        time_ns, _, call, values = command
+        if isinstance(values, SetPoints):
+            assert isinstance(call, Command)
+            self._command(time_ns, call, values)
+        elif isinstance(values, Constant):
+            self.wake(time_ns)
+            control = self.speed_control if values.control == "speed" else self.hold_control
+            setattr(control, values.name, values.value)
+        elif call is Setting.POSITION:
+            self.wake(time_ns)
+            self.renumber(values)
+        elif self._last_command is Command.RUN_DIRECT:
+            self.wake(time_ns)
+            self.run_direct(time_ns, values)
 
-    def command(self, time_ns: int, command: Command) -> None:
-        """Carry out a command, after all steps and timers that are due."""
-        self.run_until(time_ns)
-        self._set_timers()
+    def _command(self, time_ns: int, command: Command, active: SetPoints) -> None:
+        if command is Command.RUN_FOREVER and self._changes_nothing(active):
+            return
+        self.wake(time_ns)
+        if self._timers_ns < NEVER_NS:
+            self._set_timers()
         last, self._last_command = self._last_command, command
-        active = self._active = self.setpoints
+        self.active = active
         self.ramp_down_ms = active.ramp_down_ms
         match command:
             case Command.RUN_FOREVER | Command.RUN_TIMED:
-                self._run_on(time_ns, active.speed_dps)
+                self._take_up_speed(time_ns, active.speed_dps)
                 if command is Command.RUN_TIMED:
                     jiffies = round_up(active.time_ms)
                     end_ns = self._jiffies.find_expiry_ns(time_ns, jiffies)
@@ -204,46 +310,55 @@ class DriverMotor(MotorDriver):
             case Command.RESET:
                 self._reset(time_ns)
 
-    def _run_on(self, time_ns: int, speed_dps: int) -> None:
+    def _changes_nothing(self, active: SetPoints) -> bool:
+        """Whether `run-forever` was the last command, with the same values, and no ramp is set."""
+        return (
+            self._last_command is Command.RUN_FOREVER
+            and active == self.active
+            and self.is_running
+            and not active.ramped
+        )
+
+    def _take_up_speed(self, time_ns: int, speed_dps: int) -> None:
         self._ends_at_target = self._stops_after_ramp = False
-        if self._active.ramped:
+        if self.active.ramped:
             self._begin_ramp(time_ns, speed_dps)
         else:
             self._run(speed_dps)
 
     def _run_to_target(self, time_ns: int) -> None:
         self._ends_at_target, self._stops_after_ramp = True, False
-        if self._active.ramp_up_ms:
-            speed_dps = abs(self._active.speed_dps)
+        if self.active.ramp_up_ms:
+            speed_dps = abs(self.active.speed_dps)
             self._begin_ramp(time_ns, -speed_dps if self.position > self.target else speed_dps)
         else:
-            self._run(self._active.speed_dps)
+            self._run(self.active.speed_dps)
 
     def _run(self, speed_dps: int) -> None:
         if self._ends_at_target:
-            self.run_to(self.target, speed_dps, self._active.stop_action)
+            self.run_to(self.target, speed_dps, self.active.stop_action)
         else:
             self.run_regulated(speed_dps)
 
     def _stop(self, time_ns: int) -> None:
-        if self._active.ramped:
+        if self.active.ramped:
             self._ramp_down(time_ns)
         else:
-            self.halt(time_ns, self._active.stop_action)
+            self.halt(time_ns, self.active.stop_action)
 
     def _end_timed(self, time_ns: int) -> None:
         self._set_timers()
-        if self._active.ramp_down_ms:
+        if self.active.ramp_down_ms:
             self._ramp_down(time_ns)
         else:
-            self.halt(time_ns, self._active.stop_action)
+            self.halt(time_ns, self.active.stop_action)
 
     def _ramp_down(self, time_ns: int) -> None:
         self._ends_at_target, self._stops_after_ramp = False, True
         self._begin_ramp(time_ns, 0)
 
     def _reset(self, time_ns: int) -> None:
-        self.setpoints = self._active = SetPoints()
+        self.active = SetPoints()
         self.halt(time_ns, StopAction.COAST)
         self.speed_control.reset()
         self.hold_control.reset()
@@ -263,7 +378,7 @@ class DriverMotor(MotorDriver):
         self._ramp_goal_dps = goal_dps
         end_dps = 0 if start_dps * goal_dps < 0 else goal_dps
         leads_away = abs(end_dps) > abs(start_dps)
-        ramp_ms = self._active.ramp_up_ms if leads_away else self._active.ramp_down_ms
+        ramp_ms = self.active.ramp_up_ms if leads_away else self.active.ramp_down_ms
         change_dps = abs(end_dps - start_dps)
         jiffies = round_up(ramp_ms) * change_dps // self.model.max_speed_dps
         start_jiffy = self._jiffies.count(time_ns) - RAMP_LEAD_JIFFIES
@@ -293,4 +408,4 @@ class DriverMotor(MotorDriver):
         else:
             self.is_ramping = False
             if self._stops_after_ramp:
-                self.halt(time_ns, self._active.stop_action)
+                self.halt(time_ns, self.active.stop_action)

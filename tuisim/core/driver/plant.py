@@ -15,6 +15,7 @@ from tuisim.data_class import dataclass
 NS_PER_S = 1_000_000_000
 STEP_NS = 2_000_000
 """The period of the driver's control."""
+STEP_S = STEP_NS / NS_PER_S
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,11 +104,11 @@ class Axle:
     """
 
     __slots__ = (
-        "_circuit",
         "_coasting",
-        "_goal_dps",
         "_powered",
         "angle_deg",
+        "circuit",
+        "goal_dps",
         "high_deg",
         "low_deg",
         "speed_dps",
@@ -115,34 +116,76 @@ class Axle:
 
     def __init__(self, plant: PlantSpec, battery_v: float) -> None:
         self._powered, self._coasting = build_circuit(plant, battery_v), build_circuit(plant, None)
-        self._circuit, self._goal_dps = self._coasting, 0.0
+        self.circuit = self._coasting
+        self.goal_dps = 0.0
+        """The speed that the duty leads to, without friction."""
         self.angle_deg = 0.125
         """From the zero of the counter, which stands in the middle of a count."""
         self.speed_dps = 0.0
         self.low_deg, self.high_deg = -inf, inf
         """An obstacle keeps the axle between these angles."""
 
+    @property
+    def stands(self) -> bool:
+        """Whether it is at rest, and the torque is too small to start it."""
+        return self.speed_dps == 0.0 and abs(self.goal_dps) <= self.circuit.breakaway_dps
+
+    @property
+    def is_blocked(self) -> bool:
+        """Whether it is at rest because an obstacle is in the way of a torque that is enough."""
+        return not (self.speed_dps or self.stands or self._leaves_rest(self.goal_dps > 0.0))
+
+    @property
+    def turns_freely(self) -> bool:
+        """Whether it turns with power on, and no obstacle is anywhere."""
+        return (
+            self.circuit is self._powered
+            and self.speed_dps != 0.0
+            and self.low_deg == -inf
+            and self.high_deg == inf
+        )
+
     def power(self, duty: int | None) -> None:
         """Set the duty of the bridge in percent; 0 brakes, None coasts."""
-        self._circuit = self._coasting if duty is None else self._powered
-        self._goal_dps = 0.0 if duty is None else duty * self._powered.dps_per_percent
+        self.circuit = self._coasting if duty is None else self._powered
+        self.goal_dps = 0.0 if duty is None else duty * self._powered.dps_per_percent
+
+    def turn_step(self) -> bool:
+        """Turn for one step of the control; return False, and do nothing, unless it turns on freely all the time."""
+        circuit, speed_dps = self.circuit, self.speed_dps
+        if speed_dps > 0.0:
+            end_dps = self.goal_dps - circuit.friction_dps
+            after_dps = end_dps + (speed_dps - end_dps) * circuit.step_decay
+            if after_dps <= 0.0:
+                return False
+        else:
+            end_dps = self.goal_dps + circuit.friction_dps
+            after_dps = end_dps + (speed_dps - end_dps) * circuit.step_decay
+            if after_dps >= 0.0 or speed_dps == 0.0:
+                return False
+        turned_deg = end_dps * STEP_S + (speed_dps - after_dps) * circuit.time_constant_s
+        angle_deg = self.angle_deg + turned_deg
+        if not self.low_deg <= angle_deg <= self.high_deg:
+            return False
+        self.angle_deg, self.speed_dps = angle_deg, after_dps
+        return True
 
     def advance(self, duration_ns: float) -> float:
         """Turn until the time is over or the axle comes to rest on its way, and return the time that is left, in ns."""
-        circuit, speed_dps = self._circuit, self.speed_dps
-        forwards = speed_dps > 0.0 if speed_dps else self._goal_dps > 0.0
+        circuit, speed_dps = self.circuit, self.speed_dps
+        forwards = speed_dps > 0.0 if speed_dps else self.goal_dps > 0.0
         if not speed_dps and not self._leaves_rest(forwards):
             return 0.0
         constant_s, decay = circuit.time_constant_s, circuit.step_decay
         if duration_ns != STEP_NS:
             decay = exp(-duration_ns / NS_PER_S / constant_s)
-        goal_dps = self._goal_dps - (circuit.friction_dps if forwards else -circuit.friction_dps)
-        after_dps, left_ns = goal_dps + (speed_dps - goal_dps) * decay, 0.0
+        end_dps = self.goal_dps - (circuit.friction_dps if forwards else -circuit.friction_dps)
+        after_dps, left_ns = end_dps + (speed_dps - end_dps) * decay, 0.0
         if after_dps < 0.0 if forwards else after_dps > 0.0:
-            until_rest_ns = constant_s * log(1.0 - speed_dps / goal_dps) * NS_PER_S
+            until_rest_ns = constant_s * log(1.0 - speed_dps / end_dps) * NS_PER_S
             after_dps, left_ns = 0.0, max(duration_ns - until_rest_ns, 0.0)
             duration_ns = until_rest_ns
-        self.angle_deg += goal_dps * duration_ns / NS_PER_S + (speed_dps - after_dps) * constant_s
+        self.angle_deg += end_dps * duration_ns / NS_PER_S + (speed_dps - after_dps) * constant_s
         self.speed_dps = after_dps
         if not self.low_deg <= self.angle_deg <= self.high_deg:
             self.angle_deg = min(max(self.angle_deg, self.low_deg), self.high_deg)
@@ -151,6 +194,6 @@ class Axle:
 
     def _leaves_rest(self, forwards: bool) -> bool:
         """Whether the axle at rest begins to turn: the torque is enough, and no obstacle is in the way."""
-        if abs(self._goal_dps) <= self._circuit.breakaway_dps:
+        if abs(self.goal_dps) <= self.circuit.breakaway_dps:
             return False
         return self.angle_deg < self.high_deg if forwards else self.angle_deg > self.low_deg

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from enum import StrEnum
+from math import copysign
 
-from tuisim.core.driver.control import SPEED_CONSTANTS, Controller, divide
+from tuisim.core.driver.control import FULL, SCALE, SPEED_CONSTANTS, Controller, divide
 from tuisim.core.driver.counter import CLOCK_HZ, Counter
-from tuisim.core.driver.plant import LARGE, MEDIUM, NS_PER_S, Axle, PlantSpec
+from tuisim.core.driver.plant import LARGE, MEDIUM, NS_PER_S, STEP_NS, STEP_S, Axle, PlantSpec
 from tuisim.data_class import dataclass
 
 TICKS_PER_NS = CLOCK_HZ / NS_PER_S
+STEP_TICKS = STEP_NS * TICKS_PER_NS
 STALL_NS = 100_000_000
 """A running motor whose speed reads 0 for longer than this is stalled."""
 
@@ -46,6 +48,7 @@ class MotorDriver:
     __slots__ = (
         "_arrival_action",
         "_control",
+        "_is_regulated",
         "_moved_ns",
         "_offset",
         "_raw",
@@ -83,6 +86,8 @@ class MotorDriver:
         """Where the last move to a position ends."""
         self._arrival_action: StopAction | None = None
         """What happens at the target; None if no move to a position is active."""
+        self._is_regulated = False
+        """Whether nothing but the speed control is active."""
         self.ramp_down_ms = 0
         self.is_running = self.is_lowering = self.is_stalled = False
         self._still_ns: int | None = None
@@ -97,6 +102,11 @@ class MotorDriver:
     def is_overloaded(self) -> bool:
         """Whether the active controller asks for more than the full duty."""
         return self._control is not None and self._control.overloaded
+
+    @property
+    def lowering_s(self) -> float:
+        """How long before its target a motor begins to slow down."""
+        return abs(self.speed_dps) * self.ramp_down_ms / self.model.max_speed_dps / 2000
 
     # Commands
 
@@ -114,17 +124,18 @@ class MotorDriver:
         """Run to a position, at a speed without sign."""
         self.speed_control.setpoint = -abs(speed_dps) if self.position > target else abs(speed_dps)
         self._start(self.speed_control)
-        self.target, self._arrival_action = target, action
+        self.target, self._arrival_action, self._is_regulated = target, action, False
 
     def _start(self, control: Controller | None) -> None:
         self._control, self._arrival_action, self.is_running = control, None, True
+        self._is_regulated = control is not None and control.setpoint != 0
 
     def halt(self, time_ns: int, action: StopAction, held: int | None = None) -> None:
         """Stop, and hold a position if the action says so: if none is given, the present one."""
         self.speed_control.clear()
         self.hold_control.clear()
         self._control = self._arrival_action = self._still_ns = None
-        self.is_running = self.is_lowering = self.is_stalled = False
+        self._is_regulated = self.is_running = self.is_lowering = self.is_stalled = False
         self.duty = 0
         if action is StopAction.HOLD:
             self._control = self.hold_control
@@ -159,25 +170,102 @@ class MotorDriver:
             else:
                 self.counter.record_rest(time_ns * TICKS_PER_NS)
 
+    def read_counts(self, count: int) -> None:
+        """Take the position from a count."""
+        self._raw = raw = count // 2 if count >= 0 else -(-count // 2)
+        self.position = raw + self._offset
+
     def control(self, time_ns: int) -> None:
         """Run one step of the control."""
-        self.move_axle(time_ns)
-        self._raw = raw = divide(self.counter.count, 2)
+        axle, counter = self.axle, self.counter
+        begin_deg, begin_dps = axle.angle_deg, axle.speed_dps
+        if time_ns - self._moved_ns == STEP_NS and axle.turn_step():
+            # The usual case of `move_axle`, in few calls.
+            self._moved_ns = time_ns
+            middle = 0.25 + 0.5 * begin_dps / (begin_dps + axle.speed_dps)
+            begin = (time_ns - STEP_NS) * TICKS_PER_NS
+            counter.record(begin, STEP_TICKS, begin_deg, axle.angle_deg, middle)
+        else:
+            self.move_axle(time_ns)
+        count = counter.count
+        self._raw = raw = count // 2 if count >= 0 else -(-count // 2)
         self.position = raw + self._offset
-        self.speed_dps = speed_dps = self.counter.measure_speed_dps()
-        if self.is_running:
+        self.speed_dps = speed_dps = counter.measure_speed_dps()
+        if self.is_running and (speed_dps == 0 or self._still_ns is not None):
             self._watch_stall(time_ns)
         control = self._control
-        if control is self.speed_control:
-            if control.setpoint:
-                self._set_duty(time_ns, control.compute_duty(speed_dps))
+        if control is None:
+            return
+        if control is self.hold_control:
+            duty = control.compute_duty(self.position)
+        elif control.setpoint:
+            duty = control.compute_duty(speed_dps)
+        else:
+            control.clear()
+            duty = 0
+        if duty != self.duty:
+            self.duty = duty
+            axle.power(duty)
+        if self._arrival_action is not None:
+            self._approach(time_ns, self._arrival_action)
+
+    def _regulates(self, step_ns: int) -> bool:
+        """Whether the next step is one of the speed control alone, with a motor that turns."""
+        return (
+            self.speed_dps != 0
+            and self._still_ns is None
+            and self._moved_ns == step_ns - STEP_NS
+            and self.axle.turns_freely
+        )
+
+    def _regulate(self, step_ns: int, end_ns: int) -> int:
+        """Run steps of the speed control alone: `control`, in few calls, as long as the motor turns on.
+
+        Returns:
+            When the next step is due: before the end if it is not one of these.
+        """
+        axle, counter, control = self.axle, self.counter, self.speed_control
+        angle_deg, speed_dps, read_dps = axle.angle_deg, axle.speed_dps, self.speed_dps
+        circuit, duty, goal_dps = axle.circuit, self.duty, axle.goal_dps
+        friction_dps = copysign(circuit.friction_dps, speed_dps)
+        decay, constant_s = circuit.step_decay, circuit.time_constant_s
+        setpoint, kp, ki = control.setpoint, control.kp, control.ki
+        while step_ns < end_ns and read_dps:
+            end_dps = goal_dps - friction_dps
+            after_dps = end_dps + (speed_dps - end_dps) * decay
+            if after_dps * speed_dps <= 0.0:
+                break
+            begin_deg = angle_deg
+            angle_deg += end_dps * STEP_S + (speed_dps - after_dps) * constant_s
+            middle = 0.25 + 0.5 * speed_dps / (speed_dps + after_dps)
+            counter.record(
+                (step_ns - STEP_NS) * TICKS_PER_NS, STEP_TICKS, begin_deg, angle_deg, middle
+            )
+            speed_dps, read_dps = after_dps, counter.measure_speed_dps()
+            # As `Controller.compute_duty`.
+            error = setpoint - read_dps
+            total = control.total + error
+            scaled = error * kp + total * ki + (control.error - error) * control.kd
+            if -FULL < scaled < FULL:
+                control.error, control.total, control.overloaded = error, total, False
+                next_duty = int(scaled / SCALE)
             else:
-                control.clear()
-                self._set_duty(time_ns, 0)
-            if self._arrival_action is not None:
-                self._approach(time_ns, self._arrival_action)
-        elif control is not None:
-            self._set_duty(time_ns, control.compute_duty(self.position))
+                next_duty = control.compute_duty(read_dps)
+            if next_duty != duty:
+                duty, goal_dps = next_duty, next_duty * circuit.dps_per_percent
+            step_ns += STEP_NS
+        axle.angle_deg, axle.speed_dps, axle.goal_dps = angle_deg, speed_dps, goal_dps
+        self.duty, self.speed_dps, self._moved_ns = duty, read_dps, step_ns - STEP_NS
+        self.read_counts(counter.count)
+        if not read_dps:
+            self._still_ns = self._moved_ns
+        return step_ns
+
+    def _control_rests(self) -> bool:
+        """Whether the control of a motor at rest sets the same duty in every step."""
+        control = self._control
+        value = self.speed_dps if control is self.speed_control else self.position
+        return control is None or control.is_steady(value, self.duty)
 
     def _set_duty(self, time_ns: int, duty: int) -> None:
         if duty != self.duty:
