@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 
+from tuisim.core.driver.simulated import SimulatedMotor
 from tuisim.core.motors import Motor
 from tuisim.core.spec import MOTOR_ENDS, MotorSpec, RobotSpec
 from tuisim.core.tick_record import FLAG_FIRST_END
@@ -56,3 +57,28 @@ class EndStops:
         else:
             motor.hold_back(before, turned_deg, (stop_deg - self._at_deg) / turned_deg)
         self._at_deg = stop_deg
+
+
+class Fence(EndStops):
+    """The stops of a motor that feels them itself.
+
+    Args:
+        robot: The robot.
+        spec: The motor as the robot has it.
+        motor: The motor.
+    """
+
+    def __init__(self, robot: RobotSpec, spec: MotorSpec, motor: SimulatedMotor) -> None:
+        super().__init__(robot, spec)
+        motor.fence(self._low_deg, self._high_deg)
+
+    def step(self, motor: Motor, tick: int) -> None:
+        """Run one tick of the motor."""
+        self._at_deg += motor.step(tick, 0.0)
+
+
+def build_stops(robot: RobotSpec, spec: MotorSpec, motor: Motor) -> EndStops:
+    """Return the stops of a motor."""
+    if isinstance(motor, SimulatedMotor):
+        return Fence(robot, spec, motor)
+    return EndStops(robot, spec)

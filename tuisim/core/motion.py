@@ -15,10 +15,13 @@ from tuisim.core.browser_motor import BrowserMotor
 from tuisim.core.collision import Solids
 from tuisim.core.drift import MOST_TIMES, slipping_wheels
 from tuisim.core.drive import BrickDrive, BrowserDrive, Drive, Glide, Records, mm_per_degree
+from tuisim.core.driver.jiffies import draw_jiffies
+from tuisim.core.driver.motor import MotorCommand
+from tuisim.core.driver.simulated import SimulatedMotor, build_free_motor, build_wheel_motor
 from tuisim.core.end_stops import flags_at_start
 from tuisim.core.motors import POSITION, Motor, MotorState, top_speed_dps
 from tuisim.core.noise import wheel_noise, wheel_noises
-from tuisim.core.profile import MotorLaw
+from tuisim.core.profile import NS_PER_S, MotorLaw
 from tuisim.core.servo.motor import ServoMotor
 from tuisim.core.tick_record import (
     FLAG_LEFT_RUNNING,
@@ -59,12 +62,18 @@ def weight_step(spec: RunSpec) -> float:
     return WEIGHT_DPS2 / spec.robot.weight / spec.profile.tick_hz if spec.robot.weight else 0.0
 
 
-def motor_of(spec: RunSpec, kind: str) -> Motor:
-    """Return a motor of one of `MOTOR_KINDS`, in its initial state."""
+def motor_of(spec: RunSpec, kind: str, *, free: bool = False) -> Motor:
+    """Return a motor of one of `MOTOR_KINDS`, in its initial state.
+
+    Args:
+        free: Whether it drives no wheel.
+    """
     profile, step, fastest_dps = spec.profile, weight_step(spec), top_speed_dps(kind, spec.profile)
     match profile.motor_law:
         case MotorLaw.BRICK:
             return BrickMotor(profile.tick_hz, step, fastest_dps)
+        case MotorLaw.EV3DEV:
+            return build_free_motor(spec, kind) if free else build_wheel_motor(spec, kind)
         case MotorLaw.NBEV3DEVSIM:
             return BrowserMotor(profile.tick_hz, step, fastest_dps)
         case MotorLaw.PYBRICKS | MotorLaw.PYBRICKS_4:
@@ -77,7 +86,7 @@ def drive_of(spec: RunSpec) -> Drive:
     """Return the drive of a run's robot, at its initial pose."""
     robot, start, early = spec.robot, spec.world.start, 0.5 if spec.profile.halfway_heading else 0.0
     match spec.profile.motor_law:
-        case MotorLaw.BRICK | MotorLaw.PYBRICKS | MotorLaw.PYBRICKS_4:
+        case MotorLaw.BRICK | MotorLaw.EV3DEV | MotorLaw.PYBRICKS | MotorLaw.PYBRICKS_4:
             return BrickDrive(robot, start, early)
         case MotorLaw.NBEV3DEVSIM:
             return BrowserDrive(robot, start, early)
@@ -95,6 +104,7 @@ class Motion:
 
     __slots__ = (
         "_buffer",
+        "_driven",
         "_early",
         "_hz",
         "_left_dps",
@@ -110,6 +120,7 @@ class Motion:
         "_tick_s",
         "actions",
         "changed",
+        "changed_ns",
         "drive",
         "end_flags",
         "left",
@@ -152,6 +163,10 @@ class Motion:
         self.changed = False
         """Set when a motor ends a move by itself; the caller clears it."""
         self._left_dps = self._right_dps = 0.0
+        self._driven: tuple[SimulatedMotor, ...] = ()
+        """The motors whose driver notices changes of their states by itself."""
+        self.changed_ns = 0
+        """When a driver noticed the last such change."""
         self._begin(spec, sink)
 
     def _begin(self, spec: RunSpec, sink: TickSink) -> None:
@@ -161,19 +176,63 @@ class Motion:
         self.drive = drive_of(spec)
         """The robot's pose and how its wheels change it."""
         self._slipping = slipping_wheels(spec)
+        self._start_clocks()
         self._buffer: Buffer = sink.room(ROOM_TICKS)
         self._room_end = ROOM_TICKS
         """Number of records the buffer has space for."""
         TICK_RECORD.pack_into(self._buffer, 64, *self._fields())
         sink.publish(1)
 
+    def _start_clocks(self) -> None:
+        """Let the drivers' clocks begin where the seed says."""
+        motors = self._all_motors()
+        self._driven = tuple(motor for motor in motors if isinstance(motor, SimulatedMotor))
+        if self._driven:
+            jiffies = draw_jiffies(self.spec.seed)
+            for motor in self._driven:
+                motor.start_clock(jiffies)
+
+    def _all_motors(self) -> tuple[Motor, ...]:
+        return self.left, self.right
+
+    def command_motor(self, command: MotorCommand) -> None:
+        """Do to a motor what a program wants."""
+        self._driven[command.motor].obey(command)
+
+    def find_number(self, motor: SimulatedMotor) -> int:
+        """Return the number by which commands name a motor."""
+        return self._driven.index(motor)
+
+    @property
+    def notices(self) -> bool:
+        """Whether drivers notice changes of the motors' states late, when they look."""
+        return bool(self._driven)
+
+    def next_change_ns(self, now_ns: int) -> int:
+        """Return when a motor may change next, as far as a program can be told: with the next tick or look."""
+        ends_ns = -(-(self.tick + 1) * NS_PER_S // self._hz)
+        looks_ns = [motor.next_look_ns for motor in self._driven if motor.next_look_ns > now_ns]
+        return min([ends_ns, *looks_ns])
+
+    def notice_change(self) -> bool:
+        """Return whether a driver notices a change before the next tick is over; the motors run until then."""
+        end_ns = -(-(self.tick + 1) * NS_PER_S // self._hz)
+        for motor in self._driven:
+            if motor.next_look_ns <= end_ns:
+                motor.run_until(motor.next_look_ns)
+            if motor.noticed_ns > self.changed_ns:
+                self.changed_ns, self.changed = motor.noticed_ns, True
+        return self.changed
+
     def advance(self, ticks: int, until_change: bool = False) -> int:
         """Run ticks and return their number; with `until_change` they end early when a motor ends a move."""
-        if ticks == 1:
+        if ticks == 1 and not until_change:
             self.tick_once()
             return 1
         done = 0
         while done < ticks:
+            if until_change and self._driven and self.notice_change():
+                break
             quiet = self._quiet_ticks(ticks - done) if ticks - done > FEW_TICKS else 0
             if quiet > 0:
                 self._glide(quiet)
@@ -217,7 +276,7 @@ class Motion:
         left_noise, right_noise = wheel_noise(self.spec.seed, tick, noise) if noise else (0.0, 0.0)
         left_mode, right_mode = left.mode, right.mode
         left_deg, right_deg = left.step(tick, left_noise), right.step(tick, right_noise)
-        if left.mode != left_mode or right.mode != right_mode:
+        if not self._driven and (left.mode != left_mode or right.mode != right_mode):
             self.changed = True
         left_roll, right_roll = left_deg, right_deg
         if slipping is not None:
@@ -230,7 +289,9 @@ class Motion:
         if slipping is not None:
             drive.gyro_zero_deg = slipping.gyro_zero_deg(drive.gyro_zero_deg)
         if aside_mm is not None:
-            drive.x_mm, drive.y_mm = drive.x_mm + aside_mm[0], drive.y_mm + aside_mm[1]
+            self._push(aside_mm)
+        if self._driven:
+            self._bar_wheels()
         self._left_dps, self._right_dps = left_deg * self._hz, right_deg * self._hz
         flags = (left.mode and FLAG_LEFT_RUNNING) | (right.mode and FLAG_RIGHT_RUNNING)
         flags |= (self.pen_down and FLAG_PEN_DOWN) | self.end_flags
@@ -251,6 +312,11 @@ class Motion:
             self.actions & 0xFFFF,
         )
         self._sink.publish(count + 1)
+
+    def _push(self, aside_mm: tuple[float, float]) -> None:
+        """Move the robot aside, along x and y."""
+        drive = self.drive
+        drive.x_mm, drive.y_mm = drive.x_mm + aside_mm[0], drive.y_mm + aside_mm[1]
 
     def _clear_ticks(self, most: int) -> int:
         """Return for how many ticks, at most `most`, no collision is possible without a new command."""
@@ -314,9 +380,28 @@ class Motion:
             (self.left, self.right), before, (left_deg, right_deg), strict=True
         ):
             motor.hold_back(state, turned_deg, part)
-            if motor.blocked_ticks == self.stall_ticks:
+            if motor.blocked_ticks == self.stall_ticks and not self._driven:
                 self.changed = True
         return part, aside_mm
+
+    def _bar_wheels(self) -> None:
+        """Set free the wheels that nothing blocks any more."""
+        left, right = self.left, self.right
+        assert isinstance(left, SimulatedMotor) and isinstance(right, SimulatedMotor)
+        if not (left.is_barred or right.is_barred):
+            return
+        left_deg, right_deg = left.tendency_deg, right.tendency_deg
+        left_mm, right_mm = left_deg * self._left_mm_per_deg, right_deg * self._right_mm_per_deg
+        blocked = self._meets(left_mm, right_mm)
+        left.bar(left_deg if blocked else 0.0)
+        right.bar(right_deg if blocked else 0.0)
+
+    def _meets(self, left_mm: float, right_mm: float) -> bool:
+        """Whether an obstacle allows no part of a motion of the wheels."""
+        if self._solids is None or (left_mm == 0.0 and right_mm == 0.0):
+            return False
+        turn_deg = degrees((right_mm - left_mm) / self._spacing_mm)
+        return self._solids.leeway(self._pose(), (left_mm + right_mm) / 2, turn_deg).part == 0.0
 
     def _fields(self) -> tuple[float, ...]:
         """Return the record of the current tick."""

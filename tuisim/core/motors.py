@@ -46,14 +46,18 @@ class MotorState:
 class Motor(Protocol):
     """One motor with its encoder. Its class implements the motor law; see `BrickMotor` for what is without a text."""
 
-    mode: int
-    """The current command; anything but `STOPPED` counts as running."""
     position_deg: float
     """Encoder position."""
-    speed_dps: float
-    """Current speed; some laws keep it while the motor is stopped."""
     blocked_ticks: int
     """Number of consecutive ticks in which an obstacle or wall has blocked the wheel."""
+
+    @property
+    def mode(self) -> int:
+        """The current command; anything but `STOPPED` counts as running."""
+
+    @property
+    def speed_dps(self) -> float:
+        """Current speed; some laws keep it while the motor is stopped."""
 
     @property
     def goal_deg(self) -> float:

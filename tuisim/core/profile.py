@@ -45,7 +45,9 @@ class MotorLaw(StrEnum):
     """How motors obey commands and move, and how the library drives them."""
 
     BRICK = "brick"
-    """Moves end exactly at their goal or time, as on the real brick."""
+    """Moves end exactly at their goal or time, as the course says."""
+    EV3DEV = "ev3dev"
+    """As on a brick with ev3dev: the electric motor, and the driver's control."""
     NBEV3DEVSIM = "nbev3devsim"
     """As in the browser simulator of that name, to the last bit."""
     PYBRICKS = "pybricks"

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from tuisim.core.drift import sensed_turn_rate_dps
 from tuisim.core.drive import float32, turn_rate_dps
-from tuisim.core.end_stops import EndStops
+from tuisim.core.end_stops import build_stops
 from tuisim.core.geometry import Pose
 from tuisim.core.motion import Motion, motor_of
 from tuisim.core.profile import NS_PER_S
@@ -108,21 +108,29 @@ class FurtherMotors(Simulation):
     __slots__ = ("_reported", "_reported_tick", "_stops", "on_turns", "others")
 
     def __init__(self, spec: RunSpec, sink: TickSink) -> None:
-        super().__init__(spec, sink)
         self.others: tuple[Motor, ...] = tuple(
-            motor_of(spec, motor.kind) for motor in spec.robot.extra_motors
+            motor_of(spec, motor.kind, free=True) for motor in spec.robot.extra_motors
         )
-        self._stops = tuple(EndStops(spec.robot, motor) for motor in spec.robot.extra_motors)
+        self._stops = tuple(
+            build_stops(spec.robot, *pair)
+            for pair in zip(spec.robot.extra_motors, self.others, strict=True)
+        )
+        super().__init__(spec, sink)
         self.on_turns: Callable[[tuple[Turn, ...]], None] = lambda _: None
         """Called when a motor deviates from its last report; until then each motor turns at the reported speed."""
         self._reported: tuple[Turn, ...] = ((0.0, 0.0),) * len(self.others)
         self._reported_tick = 0
+
+    def _all_motors(self) -> tuple[Motor, ...]:
+        return *super()._all_motors(), *self.others
 
     def advance(self, ticks: int, until_change: bool = False) -> int:
         """Run ticks as `Motion.advance` does, one by one while an extra motor runs."""
         done = 0
         self._report_turns()
         while done < ticks and not all(motor.resting for motor in self.others):
+            if until_change and self._driven and self.notice_change():
+                return done
             self.tick_once()
             done += 1
             if until_change and self.changed:
@@ -136,7 +144,9 @@ class FurtherMotors(Simulation):
             if not motor.resting:
                 before = motor.mode
                 stops.step(motor, self.tick)
-                if motor.mode != before or motor.blocked_ticks == self.stall_ticks:
+                if not self._driven and (
+                    motor.mode != before or motor.blocked_ticks == self.stall_ticks
+                ):
                     self.changed = True
         flags = sum(stops.flags for stops in self._stops)
         if flags != self.end_flags:

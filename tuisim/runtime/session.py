@@ -294,8 +294,9 @@ class Session:
                 raise self.stop_reason
         else:
             changed = self._run_ticks(until, on_change)
-        # A wait that a motor ended is over at the tick in which the motor stopped.
-        self.now = max(self.now, self.sim.due_ns(self.sim.tick)) if changed else until
+        # A wait that a motor ended is over at the tick in which the motor stopped, or when its driver noticed it.
+        sim = self.sim
+        self.now = max(self.now, sim.due_ns(sim.tick), sim.changed_ns) if changed else until
         self._due = self.sim.due_ns(self.sim.tick + 1)
         return changed
 
