@@ -75,12 +75,12 @@ OWN: Mapping[str, Case] = {
     "factory": Case("1 left, 2 ultrasonic, A left wheel, B -, D medium motor", "White 45"),
     "four_large": Case("A large motor, D large motor", "4"),
     "from_modules/main": Case(
-        "1 left, 2 ultrasonic, A left wheel, B medium motor, C -, D right wheel", "White 60"
+        "1 left, 2 ultrasonic, A left wheel, B medium motor, C -, D right wheel", "White 62"
     ),
     "generic_motor": Case("1 left, 2 ultrasonic, A left wheel, B -, C -, D right wheel", "100 360"),
     "gyro_and_infrared": Case("1 infrared", "True 87"),
     "homing_arm_wait": Case("D medium motor", "True True", {"outD": (-245.0, 45.0)}),
-    "homing_claw": Case("A medium motor", "80", {"outA": (-45.0, 225.0)}),
+    "homing_claw": Case("A medium motor", "81", {"outA": (-45.0, 225.0)}),
     "homing_stalled_state": Case("A medium motor", "closed True\nopen", {"outA": (-45.0, 225.0)}),
     "joystick": Case("A left wheel, B -", "ok"),
     "long_text_ports": Case("1 gyro, 4 ultrasonic, B -, D left wheel", "ev3-ports:in4 True"),
@@ -111,11 +111,11 @@ OWN: Mapping[str, Case] = {
         "720 inversed",
         {"left_reversed": True, "right_reversed": True},
     ),
-    "robot_class": Case("A left wheel, B -, C medium motor, D right wheel", "360 360 720"),
+    "robot_class": Case("A left wheel, B -, C medium motor, D right wheel", "361 361 724"),
     "sensor_by_mode": Case("4 infrared", "lego-ev3-ir 100"),
     "star_import": Case("2 touch, A left wheel, B right wheel, C medium motor", "360 0"),
     "swapped_tank": Case("B right wheel, C left wheel", "ev3-ports:outC"),
-    "tank_a_d": Case("A left wheel, B -, C -, D right wheel", "ev3-ports:outA 360"),
+    "tank_a_d": Case("A left wheel, B -, C -, D right wheel", "ev3-ports:outA 366"),
     "tank_subclass": Case("A medium motor", "120"),
     "text_ports": Case(
         "1 infrared, 2 gyro, 4 left, A left wheel, B right wheel, C -, D medium motor", "far True"
@@ -175,7 +175,7 @@ BLIND: Mapping[str, Case] = {
         (292, 800),
     ),
     "floor_scan/scan": Case(
-        "2 gyro, 4 left", "row 3: 150 samples", {"wheel_spacing_mm": 118.0}, "", 0, (1180, 397)
+        "2 gyro, 4 left", "row 3: 238 samples", {"wheel_spacing_mm": 118.0}, "", 0, (1178, 379)
     ),
     "gyro_square": Case(
         "2 gyro, 4 left, A left wheel, B -, C -, D right wheel",

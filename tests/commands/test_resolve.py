@@ -129,7 +129,7 @@ def test_profiles_of_ones_own_stand_beside_the_others(folder: Path, here: Comman
     (folder / "slow.toml").write_text("color_read_ms = 25\n")
     lines = here("profiles", "ev3", "slow.toml").stdout.splitlines()
     assert [line.split()[:5] for line in lines if line.startswith("color_read")] == [
-        ["color_read", "10", "ms", "25", "ms"]
+        ["color_read", "1.2", "ms", "25", "ms"]
     ]
     assert "measured on the old simulator" in next(
         line for line in lines if line.startswith("color_read")

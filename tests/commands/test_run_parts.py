@@ -170,8 +170,8 @@ tank.on_for_rotations(SpeedPercent(50), SpeedPercent(50), 2)
 motor = MediumMotor(OUTPUT_B)
 print(motor.driver_name, motor.max_speed, motor.count_per_rot, motor.position)
 tank.on_for_seconds(SpeedPercent(100), SpeedPercent(100), 2.2, brake=False, block=False)
-tank.wait(lambda _: motor.speed == 1560, 4000)
-print(motor.speed, tank.left_motor.max_speed)
+tank.wait(lambda _: motor.speed > 1200, 4000)
+print(motor.speed > 1200, tank.left_motor.max_speed)
 tank.off()
 print(MediumMotor().address)
 try:
@@ -183,7 +183,7 @@ except Exception as error:
 
 @pytest.mark.parametrize(
     "profile, position",
-    [("robolab", "720"), ("ev3", "720"), ("nbev3devsim", "809.6000000000001")],
+    [("robolab", "720"), ("ev3", "738"), ("nbev3devsim", "809.6000000000001")],
 )
 def test_wheels_of_medium_motors(
     here: Command, tmp_path: Path, profile: str, position: str
@@ -192,7 +192,7 @@ def test_wheels_of_medium_motors(
     (tmp_path / "prog.py").write_text(DRIVES)
     done = here("run", "prog.py", "--profile", profile)
     *values, error = done.stdout.splitlines()
-    assert values == [f"lego-ev3-m-motor 1560 360 {position}", "1560 1560", "ev3-ports:outB"], (
+    assert values == [f"lego-ev3-m-motor 1560 360 {position}", "True 1560", "ev3-ports:outB"], (
         done.stderr
     )
     there = "This robot has: outB lego-ev3-m-motor, outC lego-ev3-m-motor."

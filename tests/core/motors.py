@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from typing import cast
 
+from tests.core.driver.lab import give
+from tuisim.core.driver.motor import Command
+from tuisim.core.driver.simulated import SimulatedMotor
 from tuisim.core.motors import CommandedMotor, Motor
 from tuisim.core.profile import PROFILES, Library
 from tuisim.core.servo.motor import ServoMotor
@@ -17,8 +20,42 @@ SERVO = sorted(set(PROFILES) - set(COMMANDED))
 """The profiles whose motors follow trajectories."""
 
 
+class DriverCommands:
+    """Gives a motor of the driver the commands of the others, at the end of its last tick.
+
+    Args:
+        motor: The motor.
+    """
+
+    def __init__(self, motor: SimulatedMotor) -> None:
+        self._motor = motor
+
+    def _give(self, command: Command, **setpoints: int) -> None:
+        motor = self._motor
+        give(motor, motor._end_ns(motor._tick), command, **setpoints)
+
+    def run(self, speed_dps: float) -> None:
+        """Run until the next command."""
+        self._give(Command.RUN_FOREVER, speed_dps=int(speed_dps))
+
+    def run_until(self, speed_dps: float, end_tick: int) -> None:
+        """Run for a time that ends with a tick, or as soon as the kernel's timer allows."""
+        time_ms = (end_tick - self._motor._tick) * 1000 // self._motor._hz
+        self._give(Command.RUN_TIMED, speed_dps=int(speed_dps), time_ms=time_ms)
+
+    def run_to(self, goal_deg: float, speed_dps: float, backwards: bool) -> None:
+        """Run to a position."""
+        self._give(Command.RUN_TO_ABS_POS, position=int(goal_deg), speed_dps=int(speed_dps))
+
+    def stop(self) -> None:
+        """Let the motor coast."""
+        self._give(Command.STOP)
+
+
 def commanded(motor: Motor) -> CommandedMotor:
-    """Return a motor of a brick or of the browser simulator."""
+    """Return what gives commands to a motor of a brick or of the browser simulator."""
+    if isinstance(motor, SimulatedMotor):
+        return cast(CommandedMotor, DriverCommands(motor))
     return cast(CommandedMotor, motor)
 
 

@@ -33,7 +33,7 @@ def test_the_speed_changes_by_a_step_and_not_beyond_its_target(
 
 def arm(weight: float = 0.0) -> tuple[Simulation, BrickMotor]:
     robot = RobotSpec(extra_motors=(MotorSpec("outA"),), weight=weight)
-    sim = simulation_of(RunSpec(robot, WorldSpec(), PROFILES["ev3"]), MemorySink())
+    sim = simulation_of(RunSpec(robot, WorldSpec(), PROFILES["robolab"]), MemorySink())
     motor = sim.others[0]
     assert isinstance(motor, BrickMotor)
     return sim, motor

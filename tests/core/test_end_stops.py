@@ -21,7 +21,7 @@ ROBOT = RobotSpec(
 LOW, HIGH = (end_flag(ROBOT, "outA", end) for end in ("low", "high"))
 
 
-def arm_of(robot: RobotSpec = ROBOT, profile: str = "ev3") -> Simulation:
+def arm_of(robot: RobotSpec = ROBOT, profile: str = "robolab") -> Simulation:
     return simulation_of(RunSpec(robot, WorldSpec(), PROFILES[profile]), MemorySink())
 
 

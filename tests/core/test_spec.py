@@ -45,7 +45,7 @@ WORLD = WorldSpec(
     beacon=BeaconSpec(900.0, 500.0, 3),
     remote=(RemotePress(("top_left", "top_right"), 1.0, 2.0, 2),),
 )
-RUN = RunSpec(ROBOT, WORLD, PROFILES["ev3"])
+RUN = RunSpec(ROBOT, WORLD, ROBOLAB)
 
 MISTAKES: dict[str, Callable[[], Any]] = {
     "kind of motor": lambda: MotorSpec("outA", "tiny"),
@@ -188,7 +188,7 @@ def test_proximity_is_the_nearest_surface_in_percent_of_70_cm() -> None:
     assert infrared.proximity(Pose(1000.0, 500.0, 0.0), InfraredSpec(), BOX) == 100
 
 
-@pytest.mark.parametrize("profile", ["ev3", "nbev3devsim"])
+@pytest.mark.parametrize("profile", ["robolab", "nbev3devsim"])
 def test_turns_that_are_told_say_where_a_further_motor_is_at_any_tick(profile: str) -> None:
     sim = simulation_of(replace(RUN, profile=PROFILES[profile]), MemorySink())
     assert isinstance(sim, FurtherMotors)

@@ -199,7 +199,7 @@ MOVES = [
     ),
     (
         "ev3",
-        "tank_drive.on_for_seconds(SpeedPercent(50), SpeedPercent(50), 0.5)",
+        "tank_drive.on_for_seconds(SpeedPercent(50), SpeedPercent(50), 0.5)\nimport time\ntime.sleep(1)",
         {"time_sp": 0.5, "speed": 0},
     ),
     ("ev3", "tank_drive.on(5, 5)\ntank_drive.off()", {"command": ""}),

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import pytest
 
+from tests.profiles import EXACT
 from tests.running import Done, over
 from tuisim.config.presses import parse_press
 from tuisim.core.geometry import Pose
@@ -126,14 +127,14 @@ RunOn = Callable[..., Done]
 
 @pytest.fixture
 def run_on() -> Iterator[RunOn]:
-    """`run_on(text, robot="plain", world="empty", profile="ev3", live=False)`: run a program to its end."""
+    """`run_on(text, robot="plain", world="empty", profile="exact", live=False)`: run a program to its end."""
     handles: list[RunHandle] = []
 
     def finish(
         text: str,
         robot: str = "plain",
         world: str = "empty",
-        profile: str = "ev3",
+        profile: str = "exact",
         live: bool = False,
         start: Pose | None = None,
         time_limit_s: float = 900.0,
@@ -145,7 +146,7 @@ def run_on() -> Iterator[RunOn]:
             if start is None
             else WorldSpec(background=WORLDS[world].background, start=start)
         )
-        spec = RunSpec(ROBOTS[robot], place, PROFILES[profile])
+        spec = RunSpec(ROBOTS[robot], place, {**PROFILES, EXACT.name: EXACT}[profile])
         actions = press_actions([parse_press(press) for press in presses], spec.profile.tick_hz)
         options = RunOptions(live=live, speed=speed, time_limit_s=time_limit_s, actions=actions)
         handles.append(start_run(Program("program.py", text, "none"), spec, options))

@@ -11,6 +11,7 @@ from functools import partial
 
 from tuisim.core.brick_motor import BrickMotor
 from tuisim.core.browser_motor import BrowserMotor
+from tuisim.core.driver.simulated import SimulatedMotor
 from tuisim.core.motors import Motor
 from tuisim.core.sensors import mounted
 from tuisim.core.servo.motor import ServoMotor
@@ -23,6 +24,7 @@ from tuisim.core.spec import (
 from tuisim.data_class import dataclass
 from tuisim.errors import NotSimulated
 from tuisim.shim.device_files import DeviceFiles, SimDevice, refuse
+from tuisim.shim.driver_motor import DriverTacho
 from tuisim.shim.leds import LED_CLASS, Lights, led_name
 from tuisim.shim.motor import KINDS, BrowserTacho, ServoTacho, Tacho, TachoMotor
 from tuisim.shim.power import BATTERY, POWER_CLASS, Battery
@@ -241,6 +243,8 @@ def tacho_of(session: DeviceSession, motor: Motor, port: str, kind: str) -> Tach
     match motor:
         case BrickMotor():
             return TachoMotor(session, motor, port, kind)
+        case SimulatedMotor():
+            return DriverTacho(session, motor, port, kind)
         case BrowserMotor():
             return BrowserTacho(session, motor, port, kind)
         case ServoMotor():

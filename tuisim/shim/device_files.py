@@ -55,7 +55,7 @@ class SimDevice:
         writers: Functions that accept the written text, by attribute.
         costs: Cost of a read in ns, by attribute, if it differs from the default.
         number_writers: Functions that accept a written integer, by attribute.
-        notifying: Attributes that wake up who polls their files.
+        notifying: Attributes that wake up who polls their files, with functions whose values differ after a change.
         temporary: Attributes whose files exist only while their readers raise no ENOENT.
         codes: What is recorded of a read, by attribute; see `DeviceSession.note_reading`.
     """
@@ -67,12 +67,12 @@ class SimDevice:
         writers: Mapping[str, Writer],
         costs: Mapping[str, int] | None = None,
         number_writers: Mapping[str, NumberWriter] | None = None,
-        notifying: Collection[str] = (),
+        notifying: Mapping[str, Reader] | None = None,
         temporary: Collection[str] = (),
         codes: Mapping[str, int] | None = None,
     ) -> None:
         self.session = session
-        self.notifying, self._temporary = notifying, temporary
+        self.notifying, self._temporary = dict(notifying or {}), temporary
         self.commands = 0
         """Number of commands that were written to its file: who polls it sees each."""
         self.readers = dict(readers)
@@ -82,6 +82,9 @@ class SimDevice:
         """Setters from an integer, by attribute, without conversion to text."""
         for name, write_number in self.number_writers.items():
             self.writers[name] = partial(_write_whole, write_number)
+        if session.sim.spec.profile.attribute_write_ns:
+            for charged in (self.writers, self.number_writers):
+                charged.update({name: self._charge(write) for name, write in charged.items()})
         costs, codes = costs or {}, codes or {}
         common_ns = session.sim.spec.profile.attribute_read_ns
         self._reads = {
@@ -89,6 +92,16 @@ class SimDevice:
             for name, reader in readers.items()
         }
         """Value, cost in ns, and code if it is recorded, of each attribute."""
+
+    def _charge(self, write: Callable[[Any], None]) -> Callable[[Any], None]:
+        """Return a function that lets the time of a write pass first."""
+        session, cost_ns = self.session, self.session.sim.spec.profile.attribute_write_ns
+
+        def write_slowly(value: Any) -> None:
+            session.charge(cost_ns)
+            write(value)
+
+        return write_slowly
 
     def attributes(self) -> list[str]:
         """Return the names of the attributes that exist at present."""

@@ -58,6 +58,8 @@ class Tacho(ABC):
         self._session, self._port, self._kind = session, port, KINDS[kind]
         self._stop_action, self._polarity = "coast", "normal"
         self._last_command = ""
+        self._look: Reader | None = None
+        """What differs after a change of the state that the driver tells of, if not the state itself."""
 
     @abstractmethod
     def registers(self) -> MotorRegisters:
@@ -89,13 +91,14 @@ class Tacho(ABC):
             "polarity": self._set_polarity,
             "command": self._take_command,
         }
+        notifying = {"state": self._look or readers["state"]}
         return SimDevice(
             self._session,
             common | readers,
             writers,
             None,
             numbers,
-            notifying=("state",),
+            notifying=notifying,
             codes={name: READING_CODES[self._port, name] for name in MODES_BY_KIND["motor"]},
         )
 

@@ -1,7 +1,7 @@
 """The battery: a rechargeable one whose voltage depends on its charge and the current.
 
-The open-circuit voltage falls linearly from `FULL_V` to `EMPTY_V` over the capacity; a current
-lowers it by that current times the internal resistance. The brick draws `BRICK_A` all
+The open-circuit voltage falls linearly from `FULL_V`, or from the robot's own where its motors feel it, to `EMPTY_V`
+over the capacity; a current lowers it by that current times the internal resistance. The brick draws `BRICK_A` all
 the time, a running motor `RUNNING_A` and `SPEED_A` more at full speed, a blocked one `BLOCKED_A`.
 The charge drawn is the sum over the recorded ticks, so only the wheel motors count there.
 The same world at the same tick has the same voltage, no matter how often it was measured.
@@ -33,6 +33,7 @@ class Battery:
     def __init__(self, session: DeviceSession) -> None:
         self._session = session
         self._max_dps = session.sim.spec.profile.max_speed_dps
+        self._full_v = session.sim.spec.robot.battery_v if session.sim.notices else FULL_V
         self._records = 0
         self._drawn_as = 0.0
         """Ampere seconds drawn in the records summed up to now."""
@@ -71,7 +72,9 @@ class Battery:
     def voltage_v(self) -> float:
         """Return the present voltage."""
         used = self._charge_used_as() / S_PER_H / CAPACITY_AH
-        return max(EMPTY_V, FULL_V - (FULL_V - EMPTY_V) * used) - INNER_OHM * self.current_a()
+        full_v = self._full_v
+        open_v = full_v - max(full_v - EMPTY_V, 0.0) * used
+        return max(min(EMPTY_V, full_v), open_v) - INNER_OHM * self.current_a()
 
     def _charge_used_as(self) -> float:
         """Return the charge drawn since the start, in ampere seconds."""

@@ -62,9 +62,8 @@ class MotorPoll:
         target_zero = any(
             motor.mode and not motor.aim_dps for motor in (sim.left, sim.right, *sim.others)
         )
-        self._session.wait_for_motor(
-            timeout_ns, again=self._patience.until_motors_stop > 0 and not target_zero
-        )
+        patient = self._patience.until_motors_stop > 0 and not (target_zero or sim.notices)
+        self._session.wait_for_motor(timeout_ns, again=patient)
         return []
 
 

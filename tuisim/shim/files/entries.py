@@ -151,9 +151,8 @@ class AttributeFile(DeviceFile):
 
     def _state(self) -> object:
         """Return what differs after a change; None if the attribute does not tell of changes."""
-        if self._name not in self._device.notifying:
-            return None
-        return self._device.commands, self._device.readers[self._name]()
+        look = self._device.notifying.get(self._name)
+        return None if look is None else (self._device.commands, look())
 
 
 class TextFile(DeviceFile):

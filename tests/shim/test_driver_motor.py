@@ -1,0 +1,96 @@
+"""Motors of a brick with ev3dev: what a program writes, reads and waits for."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.cases import cases
+from tests.shim.conftest import RunOn
+
+HEAD = "import time\nfrom ev3dev2.motor import *\nm = LargeMotor(OUTPUT_B)\n"
+LINES = {
+    "set points keep their direction if the polarity is written after them": (
+        "m.speed_sp = 300; m.position_sp = 90; m.polarity = 'inversed'\n"
+        "print(m.speed_sp, m.position_sp, m.duty_cycle_sp)\n"
+        "m.stop_action = 'hold'; m.command = 'run-to-rel-pos'; time.sleep(1.5)\n"
+        "print(abs(m.position + 90) <= 1)",
+        ["-300 -90 0", "True"],
+    ),
+    "set points wait for the next command": (
+        "m.run_forever(speed_sp=300)\ntime.sleep(1)\nm.speed_sp = 600\ntime.sleep(0.5)\n"
+        "print(abs(m.speed - 300) <= 2)\nm.command = 'run-forever'\ntime.sleep(1)\n"
+        "print(abs(m.speed - 600) <= 2)",
+        ["True", "True"],
+    ),
+    "the duty of run-direct acts at once": (
+        "m.run_direct(duty_cycle_sp=50)\nm.duty_cycle_sp = -50\ntime.sleep(1)\n"
+        "print(m.duty_cycle, -450 < m.speed < -400, m.state)",
+        ["-50 True ['running']"],
+    ),
+    "reset restores everything": (
+        "m.speed_p = 7; m.polarity = 'inversed'; m.stop_action = 'hold'; m.ramp_up_sp = 100\n"
+        "m.run_forever(speed_sp=300)\ntime.sleep(1)\nm.reset()\n"
+        "print(m.speed_p, m.polarity, m.stop_action, m.ramp_up_sp, m.speed_sp, m.state, -9 < m.position < 0)",
+        ["1000 normal coast 0 0 [] True"],
+    ),
+    "what is out of range is refused": (
+        "for name, value in dict(speed_sp=1051, duty_cycle_sp=-101, time_sp=-1, ramp_up_sp=60001,"
+        " speed_p=-1, stop_action='fly', command='jump').items():\n"
+        "    try:\n        setattr(m, name, value)\n"
+        "    except ValueError:\n        print(name)",
+        [
+            "speed_sp",
+            "duty_cycle_sp",
+            "time_sp",
+            "ramp_up_sp",
+            "speed_p",
+            "stop_action",
+            "command",
+        ],
+    ),
+    "a motor that is held back is stalled": (
+        "m.on(0)\nm.wait_until('stalled', 1000)\nprint(m.state)",
+        ["['running', 'stalled']"],
+    ),
+    "the shell sees the same": (
+        "import subprocess\nm.on_for_degrees(50, 90)\ntime.sleep(1)\n"
+        "path = f'/sys/class/tacho-motor/motor{m.device_index}/'\n"
+        "for name in ('state', 'speed_sp', 'position_sp', 'stop_action'):\n"
+        "    print(subprocess.check_output(['cat', path + name], text=True).strip())\n"
+        "path += 'position'\nprint(int(subprocess.check_output(['cat', path])) == m.position)",
+        ["holding", "525", "90", "hold", "True"],
+    ),
+}
+
+
+@cases("text, lines", LINES)
+def test_what_a_program_sees(run_on: RunOn, text: str, lines: list[str]) -> None:
+    done = run_on(HEAD + text, profile="ev3")
+    assert done.lines == lines, done.errors
+
+
+def test_a_move_goes_too_far_and_swings_back(run_on: RunOn) -> None:
+    text = "m.on_for_degrees(50, 360)\nprint(m.position)\ntime.sleep(1)\nprint(m.position)"
+    first, last = map(int, run_on(HEAD + text, profile="ev3").lines)
+    assert 365 <= first <= 380
+    assert 358 <= last <= 362
+
+
+@pytest.mark.parametrize("seconds", [0.25, 1.0, 2.0])
+def test_a_timed_move_ends_late(run_on: RunOn, seconds: float) -> None:
+    text = f"t = time.time()\nm.on_for_seconds(50, {seconds})\nprint(time.time() - t)"
+    [line] = run_on(HEAD + text, profile="ev3").lines
+    # By the kernel's timer, by the driver's look, and by four attributes that are written.
+    assert 0.004 < float(line) - seconds < 0.16
+
+
+def test_a_wait_ends_when_the_driver_looks(run_on: RunOn) -> None:
+    text = (
+        "for _ in range(6):\n    m.on_for_degrees(50, 90, block=False)\n"
+        "    while 'running' in m.state: pass\n    t = time.time()\n"
+        "    m.on_for_degrees(50, 90, block=False)\n    m.wait_until_not_moving()\n"
+        "    u = time.time()\n    print(round(u * 1000) - round(t * 1000))\n"
+    )
+    lines = [int(line) for line in run_on(HEAD + text, profile="ev3").lines]
+    assert all(200 < line < 320 for line in lines), lines
+    assert len(set(lines)) > 1
