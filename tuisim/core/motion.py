@@ -17,7 +17,7 @@ from tuisim.core.drift import MOST_TIMES, slipping_wheels
 from tuisim.core.drive import BrickDrive, BrowserDrive, Drive, Glide, Records, mm_per_degree
 from tuisim.core.driver.jiffies import draw_jiffies
 from tuisim.core.driver.motor import MotorCommand
-from tuisim.core.driver.simulated import SimulatedMotor, build_free_motor, build_wheel_motor
+from tuisim.core.driver.simulated import SimulatedMotor, build_axle, build_motor
 from tuisim.core.end_stops import flags_at_start
 from tuisim.core.motors import POSITION, Motor, MotorState, top_speed_dps
 from tuisim.core.noise import wheel_noise, wheel_noises
@@ -73,11 +73,12 @@ def motor_of(spec: RunSpec, kind: str, *, free: bool = False) -> Motor:
         case MotorLaw.BRICK:
             return BrickMotor(profile.tick_hz, step, fastest_dps)
         case MotorLaw.EV3DEV:
-            return build_free_motor(spec, kind) if free else build_wheel_motor(spec, kind)
+            return build_motor(spec, kind, free=free)
         case MotorLaw.NBEV3DEVSIM:
             return BrowserMotor(profile.tick_hz, step, fastest_dps)
         case MotorLaw.PYBRICKS | MotorLaw.PYBRICKS_4:
-            return ServoMotor(profile.tick_hz, profile.motor_law, kind)
+            axle = build_axle(spec, kind, free=free)
+            return ServoMotor(profile.tick_hz, profile.motor_law, kind, axle)
         case _:
             assert_never(profile.motor_law)
 

@@ -9,6 +9,7 @@ import pytest
 
 from tests.core.memory_sink import MemorySink
 from tests.core.motors import SERVO, run
+from tuisim.core.driver.motor import Command, MotorCommand, SetPoints
 from tuisim.core.geometry import Pose
 from tuisim.core.motors import STOPPED, TIMED
 from tuisim.core.profile import PROFILES, ProfileSpec
@@ -169,22 +170,22 @@ def test_motors_that_a_wall_has_blocked_drive_back(
         (
             "lego-micropython",
             3,
-            "54062 115625 11610 72827 30091 69126 28273 30880 161 49 0 1 52 173914867 144884333 110291 89229",
+            "43379 137911 9733 71781 27687 61433 24370 27892 153 57 0 1 48 174302923 144095435 99085 83459",
         ),
         (
             "lego-micropython",
             5,
-            "105018 109073 28539 40201 31094 58865 24783 29305 173 38 0 2 196 94455534 109546676 96305 76517",
+            "81661 58561 12843 25295 27879 56967 22434 27362 163 46 0 0 66 74402575 78795859 83041 79727",
         ),
         (
             "pybricks4",
             3,
-            "40583 123894 19377 59209 32024 69266 27924 31644 165 47 0 2 151 161878283 114935481 106630 90266",
+            "39357 129709 11966 61254 29430 59072 23224 27710 152 58 0 1 81 158747552 122885476 98207 82649",
         ),
         (
             "pybricks4",
             5,
-            "104786 110496 27647 40395 32402 58899 25169 30464 169 40 0 3 217 96953689 112192895 95167 73697",
+            "82658 54850 13038 27153 30206 62372 25448 30194 162 47 0 1 151 82254509 80618961 102459 71503",
         ),
     ],
 )
@@ -205,3 +206,17 @@ def test_commands_give_what_they_gave(profile: str, seed: int, given: str) -> No
         )
     sums = [sum(map(abs, values)) for values in zip(*rows, strict=True)]
     assert sums == pytest.approx(list(map(int, given.split())), abs=0.6)
+
+
+@pytest.mark.parametrize("duty", [100, -60, 30])
+def test_a_free_motor_turns_as_under_ev3dev(duty: int) -> None:
+    robot, other = (
+        Robot(WORLD),
+        Simulation(RunSpec(RobotSpec(), WORLD, PROFILES["ev3"]), MemorySink()),
+    )
+    robot.motors[0].run_freely(0, 100 * duty)
+    other.command_motor(MotorCommand(0, 0, Command.RUN_DIRECT, SetPoints(duty=duty)))
+    for _ in range(30):
+        robot.sim.advance(1)
+        other.advance(1)
+        assert robot.motors[0].position_deg == pytest.approx(other.left.position_deg, abs=0.01)

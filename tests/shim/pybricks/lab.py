@@ -6,14 +6,21 @@ from collections.abc import Callable
 from types import SimpleNamespace
 from typing import Any, cast
 
+from tuisim.core.driver.plant import Axle, PlantSpec
 from tuisim.core.profile import PROFILES, MotorLaw
 from tuisim.core.servo.motor import ServoMotor
+from tuisim.core.servo.settings import BATTERY_V
 from tuisim.runs.records import Stream
 from tuisim.shim.display import Screen
 from tuisim.shim.pybricks.brick import Brick, Connected
 from tuisim.shim.sound import Mixer
 
 TICK_NS = 10_000_000
+RECORDED_PLANTS = {
+    "large": PlantSpec(5.504587, 0.473084, 0.274603, 0.002478, 1e-7, 0.016476, 0.016476),
+    "medium": PlantSpec(10.727729, 0.291152, 0.245926, 0.000521, 1e-7, 0.024593, 0.024593),
+}
+"""The motors of the recordings: with the firmware's own data, not with those of a brick's motors."""
 
 
 class Lab:
@@ -26,7 +33,10 @@ class Lab:
     """
 
     def __init__(self, law: MotorLaw, kinds: dict[str, str], stop_deg: float | None = None) -> None:
-        self.motors = {port: ServoMotor(100, law, kind) for port, kind in kinds.items()}
+        self.motors = {
+            port: ServoMotor(100, law, kind, Axle(RECORDED_PLANTS[kind], BATTERY_V))
+            for port, kind in kinds.items()
+        }
         self.now = self.tick = 0
         self.free = 1
         """The recordings have no costs of calls."""

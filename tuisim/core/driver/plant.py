@@ -145,7 +145,7 @@ class Axle:
             and self.high_deg == inf
         )
 
-    def power(self, duty: int | None) -> None:
+    def power(self, duty: float | None) -> None:
         """Set the duty of the bridge in percent; 0 brakes, None coasts."""
         self.circuit = self._coasting if duty is None else self._powered
         self.goal_dps = 0.0 if duty is None else duty * self._powered.dps_per_percent

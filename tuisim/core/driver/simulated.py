@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from tuisim.core.drive import EvenGlide, Glide
 from tuisim.core.driver.jiffies import Jiffies
 from tuisim.core.driver.motor import NEVER_NS, DriverMotor
-from tuisim.core.driver.plant import NS_PER_S, STEP_NS, PlantSpec
+from tuisim.core.driver.plant import NS_PER_S, STEP_NS, Axle, PlantSpec
 from tuisim.core.driver.regulator import MODELS, TICKS_PER_NS
 from tuisim.core.motors import (
     ENDLESS,
@@ -50,15 +50,21 @@ def load_wheel(plant: PlantSpec, robot: RobotSpec) -> PlantSpec:
     return plant.add_load(inertia_kg_m2 / gears**2, friction_nm / gears)
 
 
-def build_wheel_motor(spec: RunSpec, kind: str) -> SimulatedMotor:
-    """Return the motor of a wheel, in its initial state."""
-    plant = load_wheel(MODELS[kind].plant, spec.robot)
+def choose_plant(spec: RunSpec, kind: str, *, free: bool) -> PlantSpec:
+    """Return the constants of a motor with what it moves: a wheel with its share of the robot, unless it is free."""
+    plant = MODELS[kind].plant
+    return plant if free else load_wheel(plant, spec.robot)
+
+
+def build_motor(spec: RunSpec, kind: str, *, free: bool) -> SimulatedMotor:
+    """Return a motor in its initial state."""
+    plant = choose_plant(spec, kind, free=free)
     return SimulatedMotor(spec.profile.tick_hz, kind, plant, spec.robot.battery_v)
 
 
-def build_free_motor(spec: RunSpec, kind: str) -> SimulatedMotor:
-    """Return a motor that moves nothing but itself, in its initial state."""
-    return SimulatedMotor(spec.profile.tick_hz, kind, MODELS[kind].plant, spec.robot.battery_v)
+def build_axle(spec: RunSpec, kind: str, *, free: bool) -> Axle:
+    """Return the axle of a motor that something else controls."""
+    return Axle(choose_plant(spec, kind, free=free), spec.robot.battery_v)
 
 
 class SimulatedMotor(DriverMotor):

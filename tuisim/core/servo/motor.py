@@ -1,7 +1,7 @@
 """A servo motor: it follows the trajectory of its own controller or of a drive base, or runs freely.
 
 A motor that follows is exactly where its trajectory is, at every time; see `control` for what happens when something
-holds it back. A free motor obeys its power and its friction.
+holds it back. A free motor is the electric motor that other libraries drive, too.
 """
 
 from __future__ import annotations
@@ -10,6 +10,7 @@ from itertools import pairwise, repeat
 from typing import TYPE_CHECKING, Protocol
 
 from tuisim.core.drive import EvenGlide, Glide
+from tuisim.core.driver.plant import Axle
 from tuisim.core.motors import (
     ENDLESS,
     FOREVER,
@@ -26,6 +27,7 @@ from tuisim.core.servo.trajectory import MILLI, Segment
 if TYPE_CHECKING:
     from tuisim.core.profile import MotorLaw
 
+PER_PERCENT = 100
 HALVES_PER_DEG = 2 * MILLI * COUNTS_PER_DEG
 """Positions are kept in half thousandths of a count: a drive base divides a sum of counts by two."""
 
@@ -60,10 +62,12 @@ class ServoMotor:
         tick_hz: Ticks per second.
         law: Which firmware moves it.
         kind: One of `settings.MODELS`.
+        axle: How it turns while nothing controls it.
     """
 
     __slots__ = (
         "_actuation",
+        "_axle",
         "_course",
         "_ending",
         "_fastest_deg",
@@ -88,9 +92,9 @@ class ServoMotor:
         "speed_dps",
     )
 
-    def __init__(self, tick_hz: int, law: MotorLaw, kind: str) -> None:
+    def __init__(self, tick_hz: int, law: MotorLaw, kind: str, axle: Axle) -> None:
         self._hz, self._tick_s, self._tick_us = tick_hz, 1.0 / tick_hz, 1_000_000 // tick_hz
-        self.law, self.kind, self.model = law, kind, MODELS[kind]
+        self.law, self.kind, self.model, self._axle = law, kind, MODELS[kind], axle
         self.mode = STOPPED
         self.position_deg = 0.0
         self.speed_dps = 0.0
@@ -373,29 +377,15 @@ class ServoMotor:
 
     def _run_on(self, now_us: int) -> float:
         """Run one tick without a guide."""
-        time_s = min(self._tick_us, now_us - self._free_us) / 1_000_000
-        before, after = self._free_dps, self._after(time_s)
-        turned = self._jump_deg + (before + after) / 2 * time_s
-        self._jump_deg, self._free_dps = 0.0, after
+        axle, left_ns = self._axle, min(self._tick_us, now_us - self._free_us) * 1000.0
+        begin_deg, axle.speed_dps = axle.angle_deg, self._free_dps
+        axle.power(None if self.duty is None else self.duty / PER_PERCENT)
+        while left_ns:
+            left_ns = axle.advance(left_ns)
+        turned = self._jump_deg + axle.angle_deg - begin_deg
+        self._jump_deg, self._free_dps = 0.0, axle.speed_dps
         self.position_deg += turned
-        self.speed_dps = after
-        if not (turned or after or self.duty):
+        self.speed_dps = axle.speed_dps
+        if not (turned or axle.speed_dps or self.duty):
             self.mode = STOPPED
         return turned
-
-    def _after(self, time_s: float) -> float:
-        """Return the speed after a time, as power, friction and the current that the motor itself makes change it."""
-        speed = self._free_dps
-        if self.duty is None:
-            left = abs(speed) - self.model.coasting_dps2 * time_s
-            return 0.0 if left <= 0 else left if speed > 0 else -left
-        share = time_s / (self.model.time_constant_s + time_s)
-        steady = self.model.steady_dps(self.duty, BATTERY_V)
-        if not steady:
-            # Friction, as a speed: it stops the motor in the end.
-            loss = -self.model.friction_dps
-            steady = loss if speed > 0 else -loss
-        after = speed + (steady - speed) * share
-        return (
-            0.0 if not self.model.steady_dps(self.duty, BATTERY_V) and after * speed <= 0 else after
-        )

@@ -72,12 +72,11 @@ def _times(number: int, factor: int) -> int:
 
 @dataclass(frozen=True, slots=True)
 class MotorModel:
-    """An electric motor, by the data that the firmware's authors measured."""
+    """What a motor that is controlled can do at most, by the data that the firmware's authors measured."""
 
     resistance_ohm: float
     back_emf_v_s: float
     torque_nm_per_a: float
-    inertia_kg_m2: float
     friction_nm: float
 
     def steady_dps(self, actuation: int, battery_v: float) -> float:
@@ -98,20 +97,10 @@ class MotorModel:
             / pi
         )
 
-    @property
-    def time_constant_s(self) -> float:
-        """How fast the motor reaches its steady speed."""
-        return self.inertia_kg_m2 * self.resistance_ohm / (self.torque_nm_per_a * self.back_emf_v_s)
-
-    @property
-    def coasting_dps2(self) -> float:
-        """How fast friction alone stops the motor."""
-        return self.friction_nm / self.inertia_kg_m2 * 180 / pi
-
 
 MODELS: Mapping[str, MotorModel] = {
-    "large": MotorModel(5.504587, 0.473084, 0.274603, 0.002478, 0.016476),
-    "medium": MotorModel(10.727729, 0.291152, 0.245926, 0.000521, 0.024593),
+    "large": MotorModel(5.504587, 0.473084, 0.274603, 0.016476),
+    "medium": MotorModel(10.727729, 0.291152, 0.245926, 0.024593),
 }
 """By `MotorSpec.kind`."""
 
