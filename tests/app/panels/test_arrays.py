@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from textual.geometry import Region
 
+from tests.app.app_help import until
 from tests.app.panel_help import SPEC, PanelApp, moment, screen_text, small_field
 from tests.cases import cases
 from tuisim.app.panels.arrays import Arrays
@@ -101,8 +102,9 @@ async def test_with_few_colours_what_is_around_a_disc_is_plain_and_darker(
     app = PanelApp(Arrays())
     async with app.run_test(size=(40, 11)) as pilot:
         app.panel.show(moment(POSE, field=FIELD))
-        await pilot.pause()
-        picture = app.panel.query(PixelView).first()._shown @ np.array([0.299, 0.587, 0.114])
+        views = app.panel.query(PixelView)
+        await until(pilot, lambda: any(view._shown.size for view in views))
+        picture = views.first()._shown @ np.array([0.299, 0.587, 0.114])
     high, wide = picture.shape
     # In the middle is the edge between red and white, the left half lies on the former.
     disc, corner = (
