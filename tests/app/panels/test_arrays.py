@@ -102,9 +102,8 @@ async def test_with_few_colours_what_is_around_a_disc_is_plain_and_darker(
     app = PanelApp(Arrays())
     async with app.run_test(size=(40, 11)) as pilot:
         app.panel.show(moment(POSE, field=FIELD))
-        views = app.panel.query(PixelView)
-        await until(pilot, lambda: any(view._shown.size for view in views))
-        picture = views.first()._shown @ np.array([0.299, 0.587, 0.114])
+        await until(pilot, lambda: any(view._shown.size for view in app.panel.query(PixelView)))
+        picture = app.panel.query(PixelView).first()._shown @ np.array([0.299, 0.587, 0.114])
     high, wide = picture.shape
     # In the middle is the edge between red and white, the left half lies on the former.
     disc, corner = (
