@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from itertools import chain
+from math import isfinite
+
 import pytest
 
 from tests.cases import cases
 from tests.shim.conftest import RunOn
+from tuisim.core.tick_record import TICK_RECORD
 
 HEAD = "import time\nfrom ev3dev2.motor import *\nm = LargeMotor(OUTPUT_B)\n"
 LINES = {
@@ -94,3 +98,96 @@ def test_a_wait_ends_when_the_driver_looks(run_on: RunOn) -> None:
     lines = [int(line) for line in run_on(HEAD + text, profile="ev3").lines]
     assert all(200 < line < 320 for line in lines), lines
     assert len(set(lines)) > 1
+
+
+EV3DEV = """
+import random, time
+from ev3dev2.motor import *
+chance = random.Random({seed})
+motors = [LargeMotor(OUTPUT_B), LargeMotor(OUTPUT_C), MediumMotor(OUTPUT_A)]
+for _ in range(25):
+    m = chance.choice(motors)
+    m.polarity = chance.choice(['normal', 'normal', 'inversed'])
+    m.ramp_up_sp = m.ramp_down_sp = chance.choice([0, 0, 0, 300])
+    m.stop_action = chance.choice(['coast', 'brake', 'hold'])
+    m.speed_sp, m.position_sp = chance.randrange(-900, 900), chance.randrange(-500, 500)
+    m.duty_cycle_sp, m.time_sp = chance.randrange(-100, 101), chance.randrange(800)
+    if chance.random() < 0.1:
+        m.position = chance.randrange(-90, 90)
+    m.command = chance.choice(m.commands + ['run-forever'] * 2)
+    if chance.random() < 0.3:
+        m.wait_until_not_moving(timeout=chance.randrange(1, 900))
+    elif chance.random() < 0.2:
+        m.on_for_degrees(chance.randrange(1, 90), chance.randrange(-200, 200))
+    else:
+        time.sleep(chance.random() / 3)
+    print(time.time(), [(m.position, m.speed, m.duty_cycle, m.state) for m in motors])
+"""
+PYBRICKS = """
+import urandom as random
+from pybricks.ev3devices import Motor
+from pybricks.parameters import Port, Stop
+from pybricks.tools import wait
+random.seed({seed})
+motors = [Motor(Port.B), Motor(Port.C), Motor(Port.A)]
+for _ in range(25):
+    m, speed = random.choice(motors), random.randrange(-900, 900)
+    then = random.choice([Stop.COAST, Stop.BRAKE, Stop.HOLD])
+    call = random.choice([
+        lambda: m.dc(speed // 9), lambda: m.run(speed), lambda: m.run_time(speed, 300, then, False),
+        lambda: m.run_angle(speed, 200, then, False), lambda: m.run_target(speed, 90, then, False),
+        m.stop, m.brake, m.hold, lambda: m.reset_angle(speed // 9),
+    ])
+    call()
+    wait(random.randrange(300))
+    print([(m.angle(), m.speed()) for m in motors])
+"""
+LIBRARIES = {"ev3": EV3DEV, "lego-micropython": PYBRICKS}
+
+
+def check_random_program(run_on: RunOn, profile: str, seed: int) -> None:
+    """A random program on a robot with an arm, among obstacles, comes out the same in every way of running it."""
+    text = LIBRARIES[profile].format(seed=seed)
+    done = run_on(text, "arm", "furnished", profile)
+    assert done.ended.end == "finished", done.errors
+    assert len(done.lines) == 25
+    fields = chain.from_iterable(TICK_RECORD.iter_unpack(done.recording[0][64:]))
+    assert all(map(isfinite, fields))
+    for live in (False, True):
+        again = run_on(text, "arm", "furnished", profile, live)
+        assert again.recording == done.recording
+        assert again.lines == done.lines
+
+
+@pytest.mark.parametrize("profile", LIBRARIES)
+@pytest.mark.parametrize("seed", range(2))
+def test_random_programs_come_out_the_same(run_on: RunOn, profile: str, seed: int) -> None:
+    check_random_program(run_on, profile, seed)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("profile", LIBRARIES)
+@pytest.mark.parametrize("seed", range(2, 102))
+def test_many_random_programs_come_out_the_same(run_on: RunOn, profile: str, seed: int) -> None:
+    check_random_program(run_on, profile, seed)
+
+
+def test_the_battery_is_the_one_that_motors_feel(run_on: RunOn) -> None:
+    text = "from ev3dev2.power import PowerSupply\nprint(PowerSupply().measured_volts)"
+    [line] = run_on(text, profile="ev3").lines
+    # Less what the brick takes.
+    assert 7.9 < float(line) < 8.0
+
+
+def test_who_polls_the_file_of_a_state_goes_on_with_the_look(run_on: RunOn) -> None:
+    text = (
+        "import select\n"
+        "f = open(f'/sys/class/tacho-motor/motor{m.device_index}/state')\np = select.poll()\n"
+        "p.register(f, select.POLLPRI | select.POLLERR)\nf.read()\n"
+        "m.run_timed(speed_sp=300, time_sp=500)\nt = time.time()\n"
+        "while 'running' not in f.read(): p.poll(); f.seek(0)\n"
+        "while p.poll(2000):\n    f.seek(0)\n    if 'running' not in f.read(): break\n"
+        "print(round(1000 * (time.time() - t)))"
+    )
+    [line] = run_on(HEAD + text, profile="ev3").lines
+    assert 490 <= int(line) <= 590

@@ -10,7 +10,7 @@ from tuisim.core.drive import float32, turn_rate_dps
 from tuisim.core.end_stops import build_stops
 from tuisim.core.geometry import Pose
 from tuisim.core.motion import Motion, motor_of
-from tuisim.core.profile import NS_PER_S
+from tuisim.core.profile import NS_PER_S, MotorLaw
 from tuisim.core.state import Instant
 from tuisim.core.tick_record import TICK_RECORD, TickSink
 
@@ -105,7 +105,7 @@ REPORT_DEG = 0.25
 class FurtherMotors(Simulation):
     """A simulation whose robot has motors besides its two wheel motors. They do not change the pose."""
 
-    __slots__ = ("_reported", "_reported_tick", "_stops", "on_turns", "others")
+    __slots__ = ("_reported", "_reported_tick", "_reports_first", "_stops", "on_turns", "others")
 
     def __init__(self, spec: RunSpec, sink: TickSink) -> None:
         self.others: tuple[Motor, ...] = tuple(
@@ -116,6 +116,7 @@ class FurtherMotors(Simulation):
             for pair in zip(spec.robot.extra_motors, self.others, strict=True)
         )
         super().__init__(spec, sink)
+        self._reports_first = spec.profile.motor_law not in (MotorLaw.BRICK, MotorLaw.NBEV3DEVSIM)
         self.on_turns: Callable[[tuple[Turn, ...]], None] = lambda _: None
         """Called when a motor deviates from its last report; until then each motor turns at the reported speed."""
         self._reported: tuple[Turn, ...] = ((0.0, 0.0),) * len(self.others)
@@ -139,6 +140,9 @@ class FurtherMotors(Simulation):
 
     def tick_once(self) -> None:
         """Run one tick of the robot, then of the extra motors."""
+        if self._reports_first:
+            # A position may have been set since the last tick.
+            self._report_turns()
         super().tick_once()
         for motor, stops in zip(self.others, self._stops, strict=True):
             if not motor.resting:

@@ -159,3 +159,42 @@ def test_a_motor_that_runs_evenly_is_within_2_degrees_of_its_steps(speed_dps: in
         stepped.run_until(tick * TICK_NS)
         assert abs(lab.motors[0].position - stepped.position) <= 2
         assert lab.motors[0].speed_dps == pytest.approx(stepped.speed_dps, abs=2)
+
+
+def find_gains(lab: Lab, ticks: int) -> list[float]:
+    """Return by how much the speeds of released motors rise from tick to tick."""
+    gains = []
+    for _ in range(ticks):
+        before = [abs(motor.axle.speed_dps) for motor in lab.motors]
+        lab.sim.advance(1)
+        after = [abs(motor.axle.speed_dps) for motor in lab.motors]
+        gains += [new - old for new, old in zip(after, before, strict=True) if new > old]
+    return gains
+
+
+def release(lab: Lab, seed: int) -> None:
+    """Let every motor coast or brake, at once."""
+    for number, motor in enumerate(lab.motors):
+        action = StopAction.COAST if (seed + number) % 2 else StopAction.BRAKE
+        now_ns = lab.sim.tick * TICK_NS
+        # A ramp set before would go on.
+        give(motor, now_ns, Command.STOP, ramp_up_ms=0, ramp_down_ms=0, stop_action=action)
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_a_released_robot_never_speeds_up(seed: int) -> None:
+    lab = Lab(seed=seed)
+    lab.run(seed, 1000)
+    release(lab, seed)
+    assert find_gains(lab, 400) == []
+    assert all(motor.is_at_rest for motor in lab.motors)
+
+
+@pytest.mark.soak
+@pytest.mark.parametrize("block", range(100))
+def test_no_energy_comes_from_nothing_in_many_random_programs(block: int) -> None:
+    for seed in range(100 * block, 100 * block + 100):
+        lab = Lab(seed=seed)
+        lab.run(seed, 1000)
+        release(lab, seed)
+        assert find_gains(lab, 100) == []

@@ -86,6 +86,7 @@ class SimulatedMotor(DriverMotor):
         "_tick",
         "_tick_ns",
         "blocked_ticks",
+        "counting_dps",
         "is_barred",
         "position_deg",
     )
@@ -97,6 +98,8 @@ class SimulatedMotor(DriverMotor):
         """At the end of the last tick, from the zero of the counter."""
         self.position_deg = 0.0
         """Encoder position at the end of the last tick."""
+        self.counting_dps = 0.0
+        """Speed of the encoder at the end of the last tick, whoever looks in between."""
         self.blocked_ticks = 0
         self.is_barred = False
         """Whether an obstacle of the world keeps it from turning on."""
@@ -133,11 +136,6 @@ class SimulatedMotor(DriverMotor):
     @property
     def moving_dps(self) -> float:
         """Current speed of the wheel, signed."""
-        return self.axle.speed_dps
-
-    @property
-    def counting_dps(self) -> float:
-        """Current speed of the encoder."""
         return self.axle.speed_dps
 
     @property
@@ -180,9 +178,9 @@ class SimulatedMotor(DriverMotor):
                 return turned_deg
             self._leave_cruise()
         self._tick = tick
-        if self.is_at_rest:
-            return 0.0
         axle = self.axle
+        if self.is_at_rest and axle.angle_deg == self._angle_deg:
+            return 0.0
         DriverMotor.run_until(self, end_ns)
         if self._moved_ns != end_ns:
             self.move_axle(end_ns)
@@ -197,6 +195,7 @@ class SimulatedMotor(DriverMotor):
                 self.blocked_ticks = 0 if axle.stands else self.blocked_ticks + 1
         elif self._control is self.speed_control:
             self._consider_cruise(end_ns, noise_dps)
+        self.counting_dps = axle.speed_dps
         return turned_deg
 
     # Even speed
@@ -298,7 +297,7 @@ class SimulatedMotor(DriverMotor):
         self._turn_to(self._moved_ns, there_deg)
         self.position_deg += axle.angle_deg - self._angle_deg
         self._angle_deg = axle.angle_deg
-        axle.speed_dps = 0.0
+        axle.speed_dps = self.counting_dps = 0.0
         self.bar(turned_deg)
         self.blocked_ticks = (
             self.blocked_ticks + 1 if abs(turned_deg * part) < STANDSTILL_DEG else 0
