@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -115,3 +116,9 @@ def decode_source(data: bytes, shown: str) -> tuple[str, str]:
     # For example `rot13`, which is not a text encoding, and `undefined`, which always raises.
     except (SyntaxError, LookupError, ValueError) as error:
         raise ConfigError(f"is not Python text: {error}", "save it as UTF-8", file=shown) from None
+
+
+def user_python_path() -> tuple[str, ...]:
+    """Return the folders of the user's PYTHONPATH; an empty one is the current folder, as in Python."""
+    folders = os.environ.get("PYTHONPATH")
+    return tuple(os.path.abspath(folder) for folder in folders.split(os.pathsep)) if folders else ()

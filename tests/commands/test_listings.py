@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from pathlib import Path
 
 import pytest
 
@@ -26,3 +27,17 @@ def test_lists(command: str, name: str, here: Command) -> None:
 
 def test_list_of_robots_tells_their_ports(here: Command) -> None:
     assert "in1 bumper, in2 left, in3 infrared" in here("robots").stdout
+
+
+def test_no_default_robot_is_written_for_parts_that_are_not_found(
+    here: Command, tmp_path: Path
+) -> None:
+    (tmp_path / "libs").mkdir()
+    (tmp_path / "libs" / "my_robot.py").write_text("from ev3dev2.motor import LargeMotor\n")
+    program = tmp_path / "prog" / "main.py"
+    program.parent.mkdir()
+    program.write_text("from my_robot import Robot\n")
+    done = here("robots", "--from", program, "--out", tmp_path / "robot.toml")
+    assert done.returncode == 2
+    assert "it imports my_robot, which is in ../libs: PYTHONPATH=../libs finds it" in done.stderr
+    assert not (tmp_path / "robot.toml").exists()

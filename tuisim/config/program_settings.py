@@ -16,12 +16,18 @@ from tuisim.config.options import Settings, settings_of
 from tuisim.config.profiles import DEFAULT_PROFILE, load_profile
 from tuisim.config.program_file import ProgramSource
 from tuisim.config.program_robot.course import uses_course_names
-from tuisim.config.program_robot.source import Module, data_files, library_of, read_modules
+from tuisim.config.program_robot.source import (
+    Module,
+    data_files,
+    library_of,
+    missing_module,
+    read_modules,
+)
 from tuisim.config.robots import RobotChoice
 from tuisim.core.profile import PROFILES, PYBRICKS_4, Library, MotorLaw, ProfileSpec
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
 from tuisim.data_class import dataclass
-from tuisim.errors import ProfileError
+from tuisim.errors import ProfileError, RobotError
 from tuisim.source import Program
 
 if TYPE_CHECKING:
@@ -54,6 +60,10 @@ class SourceFacts:
     """The robot that it needs; None if the default one does."""
     refused: tuple[RefusedLine, ...] = ()
     """Its lines that LEGO's MicroPython refuses, if it is for that."""
+    unread: str = ""
+    """Why the robot is not read from all of it, in words; empty if it is."""
+    hides_parts: bool = False
+    """Whether it names classes of motors or sensors, and its text shows no part that is made."""
 
 
 _PLACE = ("start.x_mm", "start.y_mm")
@@ -107,22 +117,37 @@ class ProgramSettings:
 
 def facts_of(program: Program) -> SourceFacts:
     """Return what the source of a program says; nothing if it is not Python, or too deeply nested to be read."""
+    library = None
     try:
         modules = read_modules(program)
         library = _library_in(program, modules)
         if not modules or library is None:
-            return SourceFacts(library)
+            return SourceFacts(library, unread=missing_module(program, modules))
         # Most programs are the course's, and need no reading of their own.
-        from tuisim.config.program_robot.assembly import build_robot
-        from tuisim.config.program_robot.brick_syntax import refused_lines
-        from tuisim.config.program_robot.mentions import mentions_in
-        from tuisim.config.program_robot.report import USUAL
-
-        robot = build_robot(mentions_in(modules, data_files(program)), program.name, USUAL)
-        refused = refused_lines(modules.values()) if library is Library.PYBRICKS else ()
-        return SourceFacts(library, uses_course_names(modules, program.text), robot, refused)
-    except RecursionError:
+        return _facts_in(program, modules, library)
+    except (RecursionError, SyntaxError):
+        # What is wrong with the program is said when it runs.
         return SourceFacts()
+    except Exception as error:  # no text ends a run before it begins
+        why = f"tuisim failed to read the robot from its text ({type(error).__name__})"
+        return SourceFacts(library, unread=f"{why}: it gets the default robot")
+
+
+def _facts_in(program: Program, modules: dict[str, Module], library: Library) -> SourceFacts:
+    from tuisim.config.program_robot.assembly import build_robot
+    from tuisim.config.program_robot.brick_syntax import refused_lines
+    from tuisim.config.program_robot.mentions import mentions_in
+    from tuisim.config.program_robot.report import USUAL, hides_parts
+
+    mentions = mentions_in(modules, data_files(program))
+    return SourceFacts(
+        library,
+        uses_course_names(modules, program.text),
+        build_robot(mentions, program.name, USUAL),
+        refused_lines(modules.values()) if library is Library.PYBRICKS else (),
+        missing_module(program, modules),
+        hides_parts(mentions),
+    )
 
 
 def _library_in(program: Program, modules: dict[str, Module]) -> Library | None:
@@ -272,9 +297,20 @@ def _misfit(name: str, library: Library, profile: ProfileSpec) -> ProfileError:
 
 
 def robot_for(source: ProgramSource) -> BuiltRobot | None:
-    """Return the robot on which a program runs without further options; None for the default one."""
+    """Return the robot on which a program runs without further options; None for the default one.
+
+    Raises:
+        RobotError: the program has parts that its text does not show.
+    """
     free = free_paths((source.options,), (), in_world=False, of_task=False)
-    return _facts_in_run(source, free).robot
+    facts = _facts_in_run(source, free)
+    if facts.robot is None and (facts.unread or facts.hides_parts):
+        raise RobotError(
+            facts.unread or "makes its motors and sensors where tuisim cannot read their ports",
+            "`tuisim robots Default_Robot` shows the robot that it gets",
+            file=source.program.name,
+        )
+    return facts.robot
 
 
 def _facts_in_run(source: ProgramSource, free: Collection[str]) -> SourceFacts:
@@ -313,7 +349,8 @@ def _in_words(
         if keeps_robot:
             parts = [f"{program.name} is for another robot than that of the task: {words}"]
         else:
-            parts = [f"{program.name} runs on a robot built from it: {words}", *facts.robot.doubts]
+            runs_on = f"{program.name} runs on a robot built from it: {words}"
+            parts = [runs_on, *facts.robot.doubts, facts.unread]
         options = "-r or --profile" if rules else "-r"
         shown = (
             f"; `tuisim robots --from {shlex.quote(program.path)}` shows the robot"
@@ -321,4 +358,5 @@ def _in_words(
             else ""
         )
         return "; ".join(filter(None, [*parts, rules])), f"{options} to change it{shown}"
-    return (f"{program.name} runs {rules}", "--profile to change it") if rules else ("", "")
+    said = "; ".join(filter(None, [rules and f"{program.name} runs {rules}", facts.unread]))
+    return (said, "--profile to change it" if rules else "-r to name a robot") if said else ("", "")

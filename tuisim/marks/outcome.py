@@ -19,8 +19,7 @@ from tuisim.goals.judgement import GoalState, Judgement
 from tuisim.goals.spec import AllOf
 from tuisim.goals.trial_world import TrialWorld
 from tuisim.protocol import End
-from tuisim.runs.handle import user_python_path
-from tuisim.source import source_lines
+from tuisim.source import source_lines, user_python_path
 
 _ADDRESS = re.compile(r"\b0x[0-9a-fA-F]{6,}\b")
 MOST_CHARACTERS = 300

@@ -18,10 +18,11 @@ from tuisim.marks.journal import Journal
 from tuisim.marks.outcome import Outcome, outcome_of
 from tuisim.marks.students import Student
 from tuisim.marks.workspace import copy_of, digest_of, program_in
-from tuisim.runs.handle import RunOptions, user_python_path
+from tuisim.runs.handle import RunOptions
 from tuisim.runs.removal import remove_tree
 from tuisim.runs.run_options import press_actions
 from tuisim.runs.temporary import temporary_home
+from tuisim.source import user_python_path
 
 STALL_LIMIT_S = 10.0
 """CPU seconds in one instant of simulated time after which a program counts as hung."""

@@ -67,7 +67,7 @@ from tuisim.runs.side_files import (
 )
 from tuisim.runs.store import NewRun, RunStore
 from tuisim.runs.views import TelemetryView, views_of
-from tuisim.source import Program
+from tuisim.source import Program, user_python_path
 
 STUCK_AFTER_S = 0.3
 """A child that has not ended this long after a stop is killed; see `RunHandle._fair_time_s`."""
@@ -547,12 +547,6 @@ def _here() -> str:
     except FileNotFoundError:
         # It has been deleted.
         return ""
-
-
-def user_python_path() -> tuple[str, ...]:
-    """Return the folders of the user's PYTHONPATH; an empty one is the current folder, as in Python."""
-    folders = os.environ.get("PYTHONPATH")
-    return tuple(os.path.abspath(folder) for folder in folders.split(os.pathsep)) if folders else ()
 
 
 def in_surroundings(program: Program) -> Program:

@@ -32,5 +32,17 @@ def test_what_constants_say_about_wheels(case: str) -> None:
     assert (found.choice.spec.wheel_diameter_mm, found.choice.spec.wheel_spacing_mm) == expected
 
 
-def test_constants_change_no_robot_that_has_everything_on_its_ports() -> None:
-    assert built("MoveTank(OUTPUT_B, OUTPUT_C)\nWHEEL_MM = 30") is None
+def test_constants_count_on_the_usual_ports_too() -> None:
+    found = built("MoveTank(OUTPUT_B, OUTPUT_C)\nWHEEL_MM = 30")
+    assert found is not None
+    assert (found.choice.spec.wheel_diameter_mm, found.keeps_ports) == (30.0, True)
+
+
+@pytest.mark.parametrize("ports", ["OUTPUT_A, OUTPUT_D", "OUTPUT_B, OUTPUT_C"])
+@pytest.mark.parametrize(
+    "named", ["WHEEL_RAD = 3.44  # cm", "wheel_radius_mm = 34.4", "wheelR = 3.44"]
+)
+def test_a_radius_is_half_a_diameter(ports: str, named: str) -> None:
+    found = built(f"{named}\nMoveTank({ports})")
+    assert found is not None
+    assert found.choice.spec.wheel_diameter_mm == 68.8

@@ -7,12 +7,16 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import field, replace
 from typing import Any
 
+from tuisim.config.program_robot.end_stops import Mechanics
 from tuisim.config.program_robot.library import PAIRS, DeviceKind
-from tuisim.config.program_robot.mechanics import Mechanics, mechanics_in
+from tuisim.config.program_robot.mechanics import mechanics_in
 from tuisim.config.program_robot.mentions import Mention, Mentions, Pair, Where
 from tuisim.config.program_robot.places import (
     Body,
     NewSensors,
+    fields_of,
+    mounted,
+    on_port,
     places_for,
     say_other_sides,
     with_sides,
@@ -97,9 +101,9 @@ def build_robot(mentions: Mentions, name: str, usual: RobotSpec) -> BuiltRobot |
     builder = _Builder(mentions, mechanics_in(mentions), usual)
     motors = builder.motors()
     changes = builder.with_presses({**motors, **builder.sensors(motors)})
+    changes |= builder.said_sizes(motors)
     if all(getattr(usual, key) == value for key, value in changes.items()):
         return None
-    changes |= builder.said_sizes(motors)
     shown = "".join(letter if letter.isprintable() else "?" for letter in name)[:_MAX_NAME]
     try:
         spec = replace(usual, name=f"Robot of {shown}", **changes)
@@ -346,15 +350,11 @@ class _Builder:
             for port in kinds
         }
         by_side = say_other_sides(by_port, usual)
-        placed: dict[str, SensorSpec] = {}
-        for port, kind in kinds.items():
-            is_there = port in usual and kind in (KINDS[type(usual[port])], DeviceKind.SENSOR)
-            if is_there and not (
-                by_side
-                and kind is DeviceKind.COLOR
-                and side_of(by_port[port].names) != usual[port].name
-            ):
-                placed[port] = usual[port]
+        placed = {
+            port: mounted(sensor, by_port[port])
+            for port, sensor in usual.items()
+            if _is_there(sensor, by_port.get(port), by_side=by_side)
+        }
         waiting = {
             port: one
             for port, one in by_port.items()
@@ -366,7 +366,7 @@ class _Builder:
         ]
         if by_side:
             wanted.sort(key=lambda one: not side_of(one[1].names))
-        left = [sensor for sensor in self.usual.sensors if sensor not in placed.values()]
+        left = [sensor for sensor in self.usual.sensors if sensor.port not in placed]
         new = NewSensors()
         for port, mention in wanted:
             alike = [sensor for sensor in left if KINDS[type(sensor)] is mention.kind]
@@ -375,13 +375,13 @@ class _Builder:
             if alike:
                 chosen = new.likeliest(alike, mention)
                 left.remove(chosen)
-                placed[port] = _on_port(chosen, port)
+                placed[port] = mounted(on_port(chosen, port), mention)
             else:
                 new.add(port, mention)
         placed |= places_for(new, placed, self._body(motors), self.doubts)
         self._stay(left, placed)
         self._tell_sensors(placed, by_port, mentions)
-        return _fields(placed, self.usual)
+        return fields_of(placed, self.usual)
 
     def _body(self, motors: Mapping[str, Any]) -> Body:
         said = {**{key: size.mm for key, size in self._said_sizes(motors).items()}, **motors}
@@ -430,7 +430,7 @@ class _Builder:
                 placed[sensor.port] = sensor
         for sensor in moving:
             if port := next((port for port in INPUT_PORTS if port not in placed), ""):
-                placed[port] = _on_port(sensor, port)
+                placed[port] = on_port(sensor, port)
 
     def _tell_sensors(
         self,
@@ -459,6 +459,18 @@ class _Builder:
                 self.parts.append(RobotPart(f"no {_called(sensor)}", _path(sensor)))
 
 
+def _is_there(sensor: SensorSpec, mention: Mention | None, *, by_side: bool) -> bool:
+    """Return whether a sensor of the usual robot is the one that the program makes on its port.
+
+    Args:
+        by_side: Whether the colour sensors are where their names say.
+    """
+    if mention is None or mention.kind not in (KINDS[type(sensor)], DeviceKind.SENSOR):
+        return False
+    is_moved = by_side and mention.kind is DeviceKind.COLOR
+    return not is_moved or side_of(mention.names) == sensor.name
+
+
 def _called(sensor: SensorSpec) -> str:
     kind = KINDS[type(sensor)]
     return f"{sensor.name} {kind}" if kind is DeviceKind.COLOR else str(kind)
@@ -479,30 +491,3 @@ def _path(sensor: SensorSpec) -> str:
 
 def _motor_kind(kind: DeviceKind) -> str:
     return "medium" if kind is DeviceKind.MEDIUM else "large"
-
-
-def _on_port(sensor: Any, port: str) -> SensorSpec:
-    moved: SensorSpec = replace(sensor, port=port)
-    return moved
-
-
-def _fields(placed: Mapping[str, SensorSpec], usual: RobotSpec) -> dict[str, Any]:
-    """Return the sensors as fields of a robot, those of the usual robot first and in its order."""
-    order = [sensor.name for sensor in usual.sensors]
-    sensors = sorted(
-        placed.values(), key=lambda one: order.index(one.name) if one.name in order else len(order)
-    )
-    colors = [one for one in sensors if isinstance(one, ColorSensorSpec)]
-    ultrasonics = [one for one in sensors if isinstance(one, UltrasonicSpec)]
-    infrareds = [one for one in sensors if isinstance(one, InfraredSpec)]
-    front = next((one for one in ultrasonics if one.name == UltrasonicSpec().name), None)
-    infrared = next((one for one in infrareds if one.name == InfraredSpec().name), None)
-    return {
-        "color_sensors": tuple(colors),
-        "ultrasonic": front,
-        "gyro": next((one for one in sensors if isinstance(one, GyroSpec)), None),
-        "extra_ultrasonics": tuple(one for one in ultrasonics if one is not front),
-        "touch_sensors": tuple(one for one in sensors if isinstance(one, TouchSpec)),
-        "infrared": infrared,
-        "extra_infrareds": tuple(one for one in infrareds if one is not infrared),
-    }

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import field
 
 from tuisim.config.program_robot import library
+from tuisim.config.program_robot.end_stops import EndStop, Mechanics, StopPress, Target
 from tuisim.config.program_robot.evaluation import Evaluation
 from tuisim.config.program_robot.library import INVERSED, NORMAL, DeviceKind, Moves
 from tuisim.config.program_robot.mentions import Mentions, Pair, Where
@@ -14,62 +15,6 @@ from tuisim.config.program_robot.scopes import FUNCTIONS, Bound, Scope
 from tuisim.config.program_robot.values import Instance, OwnClass, OwnFunction, Value
 from tuisim.config.program_robot.words import means_forwards
 from tuisim.data_class import dataclass
-
-_USUAL_REACH_DEG = 180.0
-_MARGIN_DEG = 45.0
-"""How far the end stop, at which a motor finds its place, is from where it is at the start."""
-_MOST_REACH_DEG = 20_000.0
-
-
-@dataclass(frozen=True, slots=True)
-class EndStop:
-    """A motor that drives against an end stop."""
-
-    where: Where
-    forwards: bool | None
-    """Its direction; None if the program does not say it."""
-
-
-@dataclass(frozen=True, slots=True)
-class StopPress:
-    """A motor that presses a touch sensor at its end."""
-
-    touch: str
-    """The port of the sensor; empty if the program does not say it."""
-    motor: str
-    stop: EndStop
-
-
-@dataclass(slots=True)
-class Mechanics:
-    """What a program says about its motors, by port; the port is empty if the program does not say it."""
-
-    reversed: dict[str, Where] = field(default_factory=dict)
-    stops: dict[str, EndStop] = field(default_factory=dict)
-    presses: list[StopPress] = field(default_factory=list)
-    reach_deg: dict[str, float] = field(default_factory=dict)
-    """The farthest that the program turns a motor, from where it stands or from its end stop."""
-    endless: set[str] = field(default_factory=set)
-    """The motors that the program turns by an angle that is not known."""
-    driven_to_stops: set[str] = field(default_factory=set)
-    """The motors of which a call ends when an end stop stops them: they drive no wheel."""
-    closed: set[str] = field(default_factory=set)
-    """The motors that the program drives against an end stop in both directions."""
-
-    def range_of(self, port: str) -> tuple[float | None, float | None]:
-        """Return the end stops of a motor, from its position at the start; None for a side without one."""
-        stop = self.stops.get(port) or next(
-            (press.stop for press in self.presses if press.motor == port), None
-        )
-        if stop is None:
-            return None, None
-        reach = (
-            max(_USUAL_REACH_DEG, min(self.reach_deg.get(port, 0.0), _MOST_REACH_DEG)) + _MARGIN_DEG
-        )
-        if stop.forwards is None:
-            return -reach, reach
-        far = None if port in self.endless - self.closed else reach
-        return (-far if far else None, _MARGIN_DEG) if stop.forwards else (-_MARGIN_DEG, far)
 
 
 def mechanics_in(mentions: Mentions) -> Mechanics:
@@ -89,7 +34,7 @@ class _MechanicsReader:
     normal: set[str] = field(default_factory=set)
     places: dict[str, set[float]] = field(default_factory=dict)
     """The positions that the program says its motors have, as at an end stop, by port."""
-    targets: dict[str, set[float]] = field(default_factory=dict)
+    targets: dict[str, list[Target]] = field(default_factory=dict)
     """The positions to which it turns them."""
     backwards: dict[str, Where] = field(default_factory=dict)
     """The motors that have negative speeds where the program says that it drives forwards."""
@@ -119,13 +64,10 @@ class _MechanicsReader:
             if self.found.reversed.pop(port, None) is None:
                 self.found.reversed[port] = where
         for port, targets in self.targets.items():
-            far = max(
-                abs(target - place) for target in targets for place in self.places.get(port, {0.0})
-            )
-            self.found.reach_deg[port] = max(self.found.reach_deg.get(port, 0.0), far)
-        for port, reach_deg in self.found.reach_deg.items():
+            self.found.note_targets(port, targets, self.places.get(port, set()))
+        for port in {*self.found.reach_deg, *self.found.targets_deg}:
             if mention := self.mentions.motor_on(port):
-                self.found.reach_deg[port] = reach_deg * mention.gear_ratio
+                self.found.turn_motor(port, mention.gear_ratio, is_turned=mention.is_turned)
         return self.found
 
     def _read(self, node: ast.AST, scope: Scope) -> None:
@@ -327,7 +269,8 @@ class _MechanicsReader:
             self.found.endless.update(ports)
             return
         for port in ports:
-            self.targets.setdefault(port, set()).update(targets)
+            where = _where(node, scope)
+            self.targets.setdefault(port, []).extend(Target(deg, where) for deg in targets)
 
     # Touch sensors
 

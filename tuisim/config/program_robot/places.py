@@ -8,11 +8,12 @@ from typing import Any
 
 from tuisim.config.program_robot.library import DeviceKind
 from tuisim.config.program_robot.mentions import Mention
-from tuisim.config.program_robot.words import Side, side_of
+from tuisim.config.program_robot.words import Side, means_aside, side_of
 from tuisim.core.spec import (
     ColorSensorSpec,
     GyroSpec,
     InfraredSpec,
+    RobotSpec,
     SensorSpec,
     TouchSpec,
     UltrasonicSpec,
@@ -29,6 +30,7 @@ _LOOKS: Mapping[Side, tuple[float, float, float]] = {
     Side.MIDDLE: (0.0, 20.0, 0.0),
 }
 """x, y and direction of a sensor that looks to a side."""
+_ASIDE = (Side.LEFT, Side.RIGHT, Side.BACK)
 _ROW = (Side.LEFT, Side.MIDDLE, Side.RIGHT)
 _DOWN: Mapping[Side, tuple[float, float]] = {
     Side.MIDDLE: (0.0, 30.0),
@@ -199,3 +201,40 @@ _MAKERS: Mapping[DeviceKind, Callable[[str, Side, set[str], Body], Any]] = {
     DeviceKind.TOUCH: _touch,
     DeviceKind.INFRARED: _infrared,
 }
+
+
+def on_port(sensor: Any, port: str) -> SensorSpec:
+    """Return a sensor on another port."""
+    moved: SensorSpec = replace(sensor, port=port)
+    return moved
+
+
+def mounted(sensor: SensorSpec, mention: Mention) -> SensorSpec:
+    """Return a sensor that looks ahead, or aside or back if the program's name for it says so."""
+    side = side_of(mention.names) or (Side.RIGHT if means_aside(mention.names) else Side.NONE)
+    if not isinstance(sensor, UltrasonicSpec | InfraredSpec) or side not in _ASIDE:
+        return sensor
+    x_mm, y_mm, angle_deg = _LOOKS[side]
+    return replace(sensor, x_mm=x_mm, y_mm=y_mm, angle_deg=angle_deg)
+
+
+def fields_of(placed: Mapping[str, SensorSpec], usual: RobotSpec) -> dict[str, Any]:
+    """Return the sensors as fields of a robot, those of the usual robot first and in its order."""
+    order = [sensor.name for sensor in usual.sensors]
+    sensors = sorted(
+        placed.values(), key=lambda one: order.index(one.name) if one.name in order else len(order)
+    )
+    colors = [one for one in sensors if isinstance(one, ColorSensorSpec)]
+    ultrasonics = [one for one in sensors if isinstance(one, UltrasonicSpec)]
+    infrareds = [one for one in sensors if isinstance(one, InfraredSpec)]
+    front = next((one for one in ultrasonics if one.name == UltrasonicSpec().name), None)
+    infrared = next((one for one in infrareds if one.name == InfraredSpec().name), None)
+    return {
+        "color_sensors": tuple(colors),
+        "ultrasonic": front,
+        "gyro": next((one for one in sensors if isinstance(one, GyroSpec)), None),
+        "extra_ultrasonics": tuple(one for one in ultrasonics if one is not front),
+        "touch_sensors": tuple(one for one in sensors if isinstance(one, TouchSpec)),
+        "infrared": infrared,
+        "extra_infrareds": tuple(one for one in infrareds if one is not infrared),
+    }

@@ -12,7 +12,7 @@ from tuisim.config.program_robot.scopes import Scope
 def reachable(modules: Mapping[str, Scope]) -> list[Scope]:
     """Return the scopes that can run, those of the program itself first.
 
-    A function or class counts as soon as its name is used anywhere in what can run.
+    A function counts as soon as its name is used anywhere in what can run; the body of a class runs in any case.
     """
     found: list[Scope] = []
     names: set[str] = set()
@@ -55,10 +55,14 @@ def _names(scope: Scope) -> Iterator[str]:
 def _is_used(scope: Scope, names: set[str]) -> bool:
     node, owner = scope.node, scope.outer
     assert not isinstance(node, ast.Module)
+    if isinstance(node, ast.ClassDef):
+        return True
+    if owner is None or not isinstance(owner.node, ast.ClassDef):
+        return node.name in names or bool(node.decorator_list)
+    if owner.node.name not in names and not owner.node.decorator_list:
+        return False
     if node.name in names or node.decorator_list:
         return True
-    if isinstance(node, ast.ClassDef) or owner is None or not isinstance(owner.node, ast.ClassDef):
-        return False
     # Python, or a class that is not the program's, may call the others.
     return (node.name.startswith("__") and node.name.endswith("__")) or any(
         map(_is_foreign, owner.node.bases)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import tomllib
 from collections.abc import Iterator, Mapping
 from pathlib import Path
@@ -9,12 +10,27 @@ from typing import Any
 
 from tuisim.config.files import Location, save_toml, toml_key, toml_lines
 from tuisim.config.program_robot.assembly import BuiltRobot
+from tuisim.config.program_robot.library import DEVICES, PAIRS
+from tuisim.config.program_robot.mentions import Mentions
 from tuisim.config.robots import DEFAULT_ROBOT, ROBOTS, robot_from_table, robot_lines, values_in
 from tuisim.core.spec import RobotSpec
 from tuisim.errors import RobotError
 
 USUAL = ROBOTS[DEFAULT_ROBOT]
 """The robot that programs change."""
+
+
+def hides_parts(mentions: Mentions) -> bool:
+    """Return whether a program uses classes of motors or sensors, and its text shows no part that it makes."""
+    if mentions.devices or mentions.pairs:
+        return False
+    for scope in mentions.scopes:
+        for node in scope.body:
+            match node:
+                case ast.Name(id=name, ctx=ast.Load()) | ast.Attribute(attr=name):
+                    if name in DEVICES or name in PAIRS:
+                        return True
+    return False
 
 
 def in_words(built: BuiltRobot) -> str:

@@ -4,14 +4,18 @@ from __future__ import annotations
 
 import ast
 import json
+import os
+import sys
 from collections.abc import Iterator
 from dataclasses import field
 from pathlib import Path
 
 from tuisim.config.files import read_bytes
+from tuisim.config.program_robot.search_path import added_folders, first_folders, own_folder
 from tuisim.core.profile import Library
 from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError
+from tuisim.repository import find_module_folder
 from tuisim.source import LIBRARIES, PYBRICKS, Program, decode_source
 
 MAX_MODULES = 100
@@ -53,7 +57,8 @@ def read_modules(program: Program) -> dict[str, Module]:
     tree = parsed(program.text)
     if tree is None:
         return {}
-    folder = _folder(program)
+    search = _Search(program)
+    search.extend(tree, program.file)
     found = {"": Module("", program.name, tree)}
     waiting = [found[""]]
     while waiting and len(found) < MAX_MODULES:
@@ -61,10 +66,62 @@ def read_modules(program: Program) -> dict[str, Module]:
         for name in _imported(module):
             if name in found or name.split(".")[0] in LIBRARIES:
                 continue
-            if (read := _read(folder, name)) is not None:
+            if (read := search.module(name)) is not None:
                 found[name] = read
                 waiting.append(read)
     return found
+
+
+def missing_module(program: Program, modules: dict[str, Module]) -> str:
+    """Return how to find a module that a program imports and that lies elsewhere in its repository; empty for none."""
+    known = {"", *modules, *LIBRARIES, *sys.stdlib_module_names}
+    named = (name.split(".")[0] for module in modules.values() for name in _imported(module))
+    for name in dict.fromkeys(named):
+        if name not in known and (folder := find_module_folder(name, own_folder(program))):
+            return f"it imports {name}, which is in {folder}: PYTHONPATH={folder} finds it"
+    return ""
+
+
+class _Search:
+    """The folders in which a program finds its modules.
+
+    Args:
+        program: The program.
+    """
+
+    def __init__(self, program: Program) -> None:
+        self._own = own_folder(program)
+        self._folders = first_folders(program)
+
+    def extend(self, tree: ast.Module, file: str) -> None:
+        """Add the folders that a module puts into `sys.path`; a relative one is beside the program, as on the brick."""
+        if os.path.isdir(self._own):
+            added = added_folders(tree, file)
+            self._folders += [os.path.join(self._own, folder) for folder in added]
+
+    def module(self, name: str) -> Module | None:
+        """Return a module by its name; None if it is in none of the folders."""
+        if not all(part.isidentifier() for part in name.split(".")):
+            return None
+        for folder in self._folders:
+            if (found := self._read(Path(folder), name)) is not None:
+                return found
+        return None
+
+    def _read(self, folder: Path, name: str) -> Module | None:
+        place = folder.joinpath(*name.split("."))
+        for path, is_package in ((place / "__init__.py", True), (place.with_suffix(".py"), False)):
+            try:
+                data = read_bytes(path, MAX_MODULE_BYTES, ConfigError)
+                text, _ = decode_source(data[:MAX_MODULE_BYTES], str(path))
+            except ConfigError:
+                continue
+            if (tree := parsed(text)) is None:
+                return None
+            self.extend(tree, str(path))
+            return Module(name, os.path.relpath(path, self._own), tree, is_package)
+        # A folder without __init__.py is a package, too.
+        return Module(name, name, ast.Module([], []), is_package=True) if place.is_dir() else None
 
 
 def _imported(module: Module) -> Iterator[str]:
@@ -80,23 +137,6 @@ def _imported(module: Module) -> Iterator[str]:
                 parts = base.split(".") if base else []
                 yield from (".".join(parts[:end]) for end in range(1, len(parts) + 1))
                 yield from (f"{base}.{alias.name}" if base else alias.name for alias in names)
-
-
-def _read(folder: Path, name: str) -> Module | None:
-    """Return a module of a folder; None if there is none, or it cannot be read."""
-    if not all(part.isidentifier() for part in name.split(".")):
-        return None
-    place = folder.joinpath(*name.split("."))
-    for path, is_package in ((place / "__init__.py", True), (place.with_suffix(".py"), False)):
-        try:
-            data = read_bytes(path, MAX_MODULE_BYTES, ConfigError)
-            text, _ = decode_source(data[:MAX_MODULE_BYTES], str(path))
-        except ConfigError:
-            continue
-        tree = parsed(text)
-        return Module(name, str(path.relative_to(folder)), tree, is_package) if tree else None
-    # A folder without __init__.py is a package, too.
-    return Module(name, name, ast.Module([], []), is_package=True) if place.is_dir() else None
 
 
 @dataclass(slots=True)
@@ -136,11 +176,7 @@ class DataFiles:
 
 def data_files(program: Program) -> DataFiles:
     """Return the files beside a program."""
-    return DataFiles(_folder(program))
-
-
-def _folder(program: Program) -> Path:
-    return Path(program.module_folder or Path(program.path).parent)
+    return DataFiles(Path(own_folder(program)))
 
 
 def library_of(modules: dict[str, Module]) -> Library | None:

@@ -14,6 +14,7 @@ from tuisim.config.program_robot.words import (
     means_diameter,
     means_girth,
     means_large,
+    means_radius,
     means_spacing,
     means_tool,
     side_of,
@@ -237,7 +238,10 @@ class Sizes:
 def sizes_in(mentions: Mentions) -> Sizes:
     """Return the diameter of the wheels and their distance, by the names of numbers in a program."""
     named = [*_named(mentions)]
-    wheels = [(name, size) for name, size in named if means_diameter(name)]
+    wheels = [
+        *((name, size) for name, size in named if means_diameter(name)),
+        *((name, Size(2 * size.mm, size.where)) for name, size in named if means_radius(name)),
+    ]
     girths = [
         (name, Size(round(size.mm / math.pi, 2), size.where))
         for name, size in named
@@ -291,7 +295,7 @@ def _in_dict(node: ast.Dict, scope: Scope | None = None) -> Iterator[tuple[str, 
 
 
 def _says_size(name: str) -> bool:
-    return means_diameter(name) or means_girth(name) or means_spacing(name)
+    return means_diameter(name) or means_radius(name) or means_girth(name) or means_spacing(name)
 
 
 def _number(value: object) -> float:

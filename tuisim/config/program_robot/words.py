@@ -60,6 +60,7 @@ _WHEEL = _words("wheel wheels tire tyre reifen raddurchmesser radumfang roue rue
 _DIAMETER = _words(
     "diameter diam dia d durchmesser raddurchmesser diametre diamètre diametro diámetro mm cm"
 )
+_RADIUS = _words("radius rad r radio rayon raio raggio")
 _GIRTH = _words("circumference circ umfang radumfang circonference circunferencia perimeter")
 _TRACK = _words("track wheelbase spurweite achsabstand radabstand")
 _APART = _words("distance spacing separation gap base track apart")
@@ -82,10 +83,25 @@ def side_of(names: Iterable[str]) -> Side:
     return Side.NONE
 
 
+def means_aside(names: Iterable[str]) -> bool:
+    """Return whether names say that a part looks aside, whatever the side."""
+    return any(part in ("side", "aside") for name in names for part in _parts(name))
+
+
 def means_diameter(name: str) -> bool:
     """Return whether a number of that name is the diameter of a wheel."""
     parts = {*_parts(name)}
     return parts <= _WHEEL | _DIAMETER and bool(parts & _WHEEL) and bool(parts & _DIAMETER)
+
+
+def means_radius(name: str) -> bool:
+    """Return whether a number of that name is the radius of a wheel."""
+    parts = {*_parts(name)}
+    return (
+        parts <= _WHEEL | _RADIUS | _UNITS_MM.keys()
+        and bool(parts & _WHEEL)
+        and bool(parts & _RADIUS)
+    )
 
 
 def means_girth(name: str) -> bool:

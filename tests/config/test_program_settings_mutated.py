@@ -1,0 +1,116 @@
+"""No text makes the reader of programs fail: programs with random changes give a robot, or the default one."""
+
+from __future__ import annotations
+
+import ast
+import copy
+import random
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tests.sources import ROOT
+from tuisim.config.program_file import parse_program
+from tuisim.config.program_settings import facts_of, program_settings, robot_for
+from tuisim.errors import RobotError
+from tuisim.source import Program
+
+_FOLDERS = ("brick_programs", "pybricks_programs", "real_programs")
+_VALUES = (
+    "0",
+    "-1",
+    "1e400",
+    "None",
+    "''",
+    "'outA'",
+    "[]",
+    "{}",
+    "self",
+    "x",
+    "f(*x)",
+    "lambda: x",
+)
+
+
+def _programs() -> list[ast.Module]:
+    files = [
+        file for folder in _FOLDERS for file in sorted((ROOT / "tests" / folder).rglob("*.py"))
+    ]
+    assert files
+    return [ast.parse(file.read_text(encoding="utf-8")) for file in files]
+
+
+def _mutants(count: int) -> Iterator[str]:
+    """Yield programs in which some expressions and statements are others, twice there or missing."""
+    chance, programs = random.Random(26), _programs()
+    for _ in range(count):
+        tree = copy.deepcopy(chance.choice(programs))
+        for _ in range(chance.randint(1, 5)):
+            _mutate(tree, chance)
+        yield ast.unparse(ast.fix_missing_locations(tree))
+
+
+def _mutate(tree: ast.Module, chance: random.Random) -> None:
+    places = [*_places(tree)]
+    if not places:
+        return
+    values, at = chance.choice(places)
+    others = [given[place] for given, place in places if type(given[place]) is type(values[at])]
+    kind = chance.randrange(4)
+    if isinstance(values[at], ast.stmt):
+        # A block is never empty.
+        changed = [[ast.Pass()], [values[at]] * 2, [chance.choice(others)], [ast.Pass()]]
+        values[at : at + 1] = copy.deepcopy(changed[kind])
+    else:
+        value = ast.parse(chance.choice(_VALUES), mode="eval").body
+        values[at] = copy.deepcopy(value if kind == 0 else chance.choice(others))
+
+
+class _Field(list[Any]):
+    """The only value of a field of a node, as a list that changes the node."""
+
+    def __init__(self, node: ast.AST, name: str) -> None:
+        super().__init__([getattr(node, name)])
+        self._node, self._name = node, name
+
+    def __setitem__(self, at: Any, value: Any) -> None:
+        super().__setitem__(at, value)
+        setattr(self._node, self._name, value)
+
+
+def _places(tree: ast.Module) -> Iterator[tuple[list[Any], int]]:
+    """Yield where expressions that are read and statements stand: a list, and the index in it."""
+    for node in ast.walk(tree):
+        for name, value in ast.iter_fields(node):
+            values = value if isinstance(value, list) else _Field(node, name)
+            for at, inside in enumerate(values):
+                is_read = isinstance(getattr(inside, "ctx", ast.Load()), ast.Load)
+                if isinstance(inside, ast.stmt) or (isinstance(inside, ast.expr) and is_read):
+                    yield values, at
+
+
+@pytest.mark.parametrize("count", [60, pytest.param(10_000, marks=pytest.mark.slow)])
+def test_no_text_makes_the_reader_fail(count: int, tmp_path: Path) -> None:
+    path = str(tmp_path / "p.py")
+    read = [(text, facts_of(Program("p.py", text, path=path))) for text in _mutants(count)]
+    assert sum(facts.robot is not None for _, facts in read) > count / 4
+    assert [(facts.unread, text) for text, facts in read if facts.unread] == []
+
+
+def test_a_failure_of_the_reader_gives_the_default_robot_and_a_sentence(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def fail(*_given: object) -> None:
+        raise ZeroDivisionError
+
+    monkeypatch.setattr("tuisim.config.program_robot.assembly.build_robot", fail)
+    source = parse_program("from ev3dev2.motor import MoveTank\n", "p.py")
+    decided = program_settings(source).decided
+    why = "tuisim failed to read the robot from its text (ZeroDivisionError)"
+    assert decided.note.startswith(
+        f"p.py runs by the rules of a brick (profile ev3); {why}: it gets the default robot. "
+    )
+    with pytest.raises(RobotError, match="ZeroDivisionError"):
+        robot_for(source)
