@@ -48,7 +48,8 @@ VALUE_METHODS = re.compile(r"allowed|metavar|choices|check|from_data|from_text|t
 """What `Value` and `Spec` explain for all of their subclasses."""
 UNFINISHED = "|".join(("TO" + "DO", "FIX" + "ME", "XX" + "X", "NotImplemented" + "Error"))
 PLACES = "|".join(f"/{place}/" for place in ("work", "farm", "root", "home"))
-LEFT_OPEN = re.compile(rf"\b({UNFINISHED})\b|(?<![\w.$])({PLACES})")
+LEFT_OPEN = re.compile(rf"\b({UNFINISHED})\b|(?<![\w.$])(?!/home/robot)({PLACES})")
+"""The home folder of the brick is no place on a machine."""
 
 OF_THE_BRICK = "# as on the brick"
 """Marks an error that a library of the brick raises, too."""

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 import shutil
+import subprocess
+import sys
 from contextlib import closing
 from pathlib import Path
 
@@ -265,3 +267,38 @@ async def test_the_app_gives_arguments_that_can_be_edited(folder: Path) -> None:
         (folder / "q.py").write_text(SHOWS)
         app.loader.open_file(str(folder / "q.py"))
         assert app.run_controller.next_run.settings["arguments"] == ()
+
+
+ASKS = "# %%sim_magic\nwhile True:\n    print(input('? '))\n"
+
+
+@pytest.mark.parametrize("kind", ["pipe", "file"])
+def test_what_is_on_stdin_answers_until_its_end(tmp_path: Path, kind: str) -> None:
+    (tmp_path / "asks.py").write_text(ASKS)
+    (tmp_path / "answers").write_text("one\n\nthree")
+    command = [sys.executable, "-m", "tuisim", "run", "asks.py"]
+    with (tmp_path / "answers").open() as answers:
+        given = {"stdin": answers} if kind == "file" else {"input": "one\n\nthree"}
+        done = subprocess.run(
+            command, cwd=tmp_path, capture_output=True, text=True, check=False, **given
+        )
+    assert (done.returncode, done.stdout) == (1, "one\n\nthree\n")
+    assert "EOFError" in done.stderr
+    again = subprocess.run(
+        [sys.executable, "-m", "tuisim", "runs", "rerun", "last"],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        check=False,
+        stdin=subprocess.DEVNULL,
+    )
+    assert "one" in again.stdout, again
+
+
+def test_given_answers_leave_stdin_alone(tmp_path: Path) -> None:
+    (tmp_path / "asks.py").write_text(ASKS)
+    command = [sys.executable, "-m", "tuisim", "run", "asks.py", "--input", "given"]
+    done = subprocess.run(
+        command, cwd=tmp_path, capture_output=True, text=True, check=False, input="piped\n"
+    )
+    assert done.stdout == "given\n"

@@ -97,7 +97,7 @@ def report(run: StoredRun, exit_code: int, *, as_json: bool) -> None:
         echo_error_lines(facts["error"].rstrip("\n"))
     if facts["error"].rstrip("\n").endswith(NO_ANSWER):
         echo_error(
-            "`tuisim run` is not interactive: give each answer with --input TEXT, or use the app."
+            "give each answer to input() with --input TEXT or in a line of a pipe, or use the app."
         )
     if as_json:
         echo_json({**facts, "exit_code": exit_code}, flush=True)

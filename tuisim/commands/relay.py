@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import stat
 import sys
 from collections.abc import Callable, Iterable
 from itertools import groupby
@@ -115,3 +117,19 @@ class Follower:
         except OSError as error:
             # The run goes on: its recording has every line.
             self.lost = f"cannot write to stdout: {error.strerror or error}"
+
+
+def is_piped() -> bool:
+    """Return whether stdin is a pipe or a file, whose lines answer `input()`."""
+    try:
+        mode = os.fstat(sys.stdin.fileno()).st_mode
+    except (AttributeError, OSError, ValueError):
+        # It is closed, or no file.
+        return False
+    return stat.S_ISFIFO(mode) or stat.S_ISREG(mode)
+
+
+def next_answer() -> str | None:
+    """Return the next line of stdin, without its end; None after the last one."""
+    line = sys.stdin.readline()
+    return line.rstrip("\r\n") if line else None

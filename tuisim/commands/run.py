@@ -12,7 +12,7 @@ from tuisim.commands.echo import Progress, echo_error, echo_written, is_watched,
 from tuisim.commands.exit_status import signals_handled
 from tuisim.commands.listings import COLUMN, WORLD, names_of
 from tuisim.commands.notebooks import NotRun, print_list, print_results, to_list
-from tuisim.commands.relay import Follower, RelayInterrupts
+from tuisim.commands.relay import Follower, RelayInterrupts, is_piped, next_answer
 from tuisim.commands.resolve import Prepared, check_arguments, prepare_runs
 from tuisim.commands.run_options import input_option, timeout_option
 from tuisim.config.command_line import Arguments, WordType, argument, choice, command, option
@@ -32,7 +32,7 @@ from tuisim.errors import (
     shortened,
 )
 from tuisim.logs.export import EXPORTERS, check_targets, export_samples, export_telemetry
-from tuisim.protocol import Inspect, Inspected, Message, Paused, Resume
+from tuisim.protocol import Answer, InputWanted, Inspect, Inspected, Message, Paused, Resume
 from tuisim.runs.handle import RunHandle, RunOptions, start_run
 from tuisim.runs.run_folder import StoredRun
 from tuisim.runs.run_options import press_actions
@@ -342,6 +342,25 @@ def _how_far(number: int, count: int) -> Callable[[RunHandle], None]:
     return tell_run if is_watched() else lambda _: None
 
 
+def _options(one: Prepared, arguments: Arguments) -> RunOptions:
+    """Return how a program is run; without given answers, a pipe or a file on stdin answers `input()`."""
+    speed = one.settings["speed"] or 0.0
+    answers = arguments.input or (one.world.inputs if one.world else ())
+    asks_pipe = not answers and is_piped()
+    return RunOptions(
+        live=speed > 0,
+        speed=speed,
+        time_limit_s=arguments.timeout,
+        answers=answers,
+        actions=press_actions(
+            arguments.press or (one.world.presses if one.world else ()), one.spec.profile.tick_hz
+        ),
+        breaks=arguments.breaks,
+        asks_user=asks_pipe,
+        time_waits=asks_pipe,
+    )
+
+
 def _run_one(
     one: Prepared,
     arguments: Arguments,
@@ -350,23 +369,21 @@ def _run_one(
     how_far: Callable[[RunHandle], None],
 ) -> tuple[int, RunHandle]:
     assert one.program is not None
-    speed = one.settings["speed"] or 0.0
-    options = RunOptions(
-        live=speed > 0,
-        speed=speed,
-        time_limit_s=arguments.timeout,
-        answers=arguments.input or (one.world.inputs if one.world else ()),
-        actions=press_actions(
-            arguments.press or (one.world.presses if one.world else ()), one.spec.profile.tick_hz
-        ),
-        breaks=arguments.breaks,
-    )
+    options = _options(one, arguments)
     handle = start_run(one.program, one.spec, options, store)
     interrupts.watch(handle)
     reporter = BreakpointReporter(handle, arguments.watches, stops=arguments.break_then == STOP)
+
+    def listen(event: Message) -> None:
+        if isinstance(event, InputWanted):
+            handle.send(Answer(next_answer()))
+        else:
+            reporter.handle(event)
+
     try:
         out = sys.stderr if arguments.json else sys.stdout
-        follower = Follower(handle, out, reporter.handle if options.breaks else None, how_far)
+        is_heard = options.breaks or options.asks_user
+        follower = Follower(handle, out, listen if is_heard else None, how_far)
         ended = follower.to_the_end()
     finally:
         handle.close()

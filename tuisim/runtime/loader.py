@@ -106,7 +106,16 @@ def compile_program(text: str, file: str) -> types.CodeType:
         SyntaxError, ValueError: the text is not Python.
     """
     _check_encoding(text, file)
-    tree = ast.parse(text, file)
+    return compile_with_hooks(text, file)
+
+
+def compile_with_hooks(source: str | bytes, file: str) -> types.CodeType:
+    """Return the code of a program or of one of its modules, with loop hooks and its own line numbers.
+
+    Raises:
+        SyntaxError, ValueError: the source is not Python.
+    """
+    tree = ast.parse(source, file)
     return compile(_LoopHooks().visit(tree), file, "exec", dont_inherit=True)
 
 

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any, NoReturn
 
 from tuisim.runs.side_files import OwnModule, note_module, read_modules
+from tuisim.runtime.loader import compile_with_hooks
 from tuisim.runtime.stack import PACKAGE_FOLDER
 from tuisim.source import source_lines
 
@@ -48,6 +49,10 @@ class OwnLoader(SourceFileLoader):
     def get_data(self, path: str) -> bytes:
         """Return the stored text, or the contents of another file."""
         return self._data if path == self.path else super().get_data(path)
+
+    def source_to_code(self, data: Any, path: Any, *, _optimize: int = -1) -> types.CodeType:  # type: ignore[override]
+        """Return the code of the module: its loops pass time as those of the program do."""
+        return compile_with_hooks(data, path)
 
     def path_stats(self, path: str) -> NoReturn:
         """Raise OSError: compiled code beside the file may belong to another text."""

@@ -25,6 +25,7 @@ from tuisim.runtime.hooks import ErrorHooks, flush_streams, safe_text
 from tuisim.runtime.loader import LOOP_HOOK, MissingPart, compile_prelude, compile_program
 from tuisim.runtime.modules import find_modules_for
 from tuisim.runtime.output import LineStream, OutputRecorder
+from tuisim.runtime.patches.home_folder import HomeFolder
 from tuisim.runtime.patches.replacement import replace
 from tuisim.runtime.raw_output import RawOutput
 from tuisim.runtime.run_config import RunConfig
@@ -241,6 +242,8 @@ class ProgramRunner:
         patch_faulthandler()
         replace(builtins, "input", self._input, (0, 1))
         replace(os, "write", self.raw.write, (2, 2))
+        if self._session.sim.spec.profile.starts_in_own_folder:
+            HomeFolder(lambda: self._config.own_folder).patch()
         replace(os, "_exit", lambda status: self._exit_now(operator.index(status)))
 
     def _execute(self) -> None:

@@ -168,3 +168,13 @@ def test_a_long_loop_without_a_wait_is_told(start: Start, text: str, told: list[
 def test_the_output_says_what_stops_a_long_loop() -> None:
     words = "— line 5: a loop without a wait since 1.00 s. {stop} stops it"
     assert busy_loop_words(BusyLoop(5, 1_000_000_000)) == words
+
+
+@pytest.mark.parametrize(
+    ("profile", "lines"),
+    [("ev3", ["True 1.0"]), ("robolab", ["False"])],
+)
+def test_the_bricks_python_has_the_old_clock(run: Run, profile: str, lines: list[str]) -> None:
+    text = "import time\nhas = hasattr(time, 'clock')\nif not has: print(has)\nelse:\n"
+    text += "    start = time.clock()\n    time.sleep(1)\n    print(has, round(time.clock() - start, 3))"
+    assert run(text, profile=profile, prelude="none").lines == lines

@@ -44,6 +44,34 @@ def test_a_square_closes(run_on: RunOn) -> None:
     assert done.errors == []
 
 
+BY_DUTY = """
+from time import sleep
+from ev3dev.auto import *
+left, right = LargeMotor(OUTPUT_B), LargeMotor(OUTPUT_C)
+for motor in (left, right):
+    {}
+sleep(1)
+print(left.duty_cycle, right.duty_cycle)
+"""
+
+
+@pytest.mark.parametrize(
+    ("commands", "duty"),
+    [
+        ("motor.run_forever(duty_cycle_sp=50)", "50 50"),
+        ("motor.duty_cycle_sp = -30; motor.run_forever()", "-30 -30"),
+        ("motor.run_forever(speed_sp=0, duty_cycle_sp=50)", "0 0"),
+        ("motor.speed_sp = 0; motor.run_forever(duty_cycle_sp=50)", "0 0"),
+        ("motor.run_forever()", "0 0"),
+    ],
+)
+def test_a_motor_runs_by_its_duty_cycle_if_no_speed_was_ever_written(
+    run_on: RunOn, commands: str, duty: str
+) -> None:
+    done = run_on(BY_DUTY.format(commands), "plain")
+    assert (done.lines, done.errors) == ([duty], [])
+
+
 REFUSED = """
 import ev3dev.GyroBalancer, ev3dev.virtualterminal, ev3dev.webserver
 def attempt(call):

@@ -12,7 +12,7 @@ from collections.abc import Callable, Mapping
 from functools import wraps
 from typing import Any
 
-from tuisim.core.profile import NS_PER_S
+from tuisim.core.profile import NS_PER_S, Library
 from tuisim.protocol import BusyLoop
 from tuisim.runtime import wallclock as real
 from tuisim.runtime.modules import OWN_FILES
@@ -29,7 +29,8 @@ LONGEST_SLEEP_S = 9_000_000_000
 
 def patch_time(session: Session) -> None:
     """Replace the functions of `time` in place; names imported from it before keep the real functions."""
-    cost = session.sim.spec.profile.clock_read_ns
+    profile = session.sim.spec.profile
+    cost = profile.clock_read_ns
     real_sleep = time.sleep
 
     def clock_ns() -> int:
@@ -62,6 +63,9 @@ def patch_time(session: Session) -> None:
     for name in ("monotonic", "perf_counter", "process_time", "thread_time"):
         replace(time, name, clock, (0, 0))
         replace(time, f"{name}_ns", clock_ns, (0, 0))
+    if profile.motor_law.library is Library.EV3DEV2 and not profile.mend_library:
+        # The brick has Python 3.5.
+        vars(time)["clock"] = clock
     # The real functions check whether the clock exists.
     gettime, gettime_ns = time.clock_gettime, time.clock_gettime_ns
     replace(time, "clock_gettime", lambda clock: (gettime(clock), wall())[1], (1, 1))

@@ -80,6 +80,7 @@ def finish_core(
     draw_with_the_bricks_font(core.Screen)
     if session.sim.spec.profile.mend_library:
         mend_trigger(core.Led)
+    _run_by_duty_cycle(core.Motor)
 
     def explained(access: Callable[..., Any]) -> Callable[..., Any]:
         @wraps(access)
@@ -104,3 +105,27 @@ def finish_core(
         explained(device._get_attribute),
         explained(device._set_attribute),
     )
+
+
+def _run_by_duty_cycle(motor: Any) -> None:
+    """Let `run_forever` turn a motor by its duty cycle if no speed was ever written, as the kernel of 2015 did.
+
+    Args:
+        motor: The class of motors.
+    """
+    with_speed: set[str] = set()
+    speed_sp, run_forever = motor.speed_sp, motor.run_forever
+
+    def set_speed(self: Any, value: Any) -> None:
+        with_speed.add(self._path)
+        speed_sp.fset(self, value)
+
+    @wraps(run_forever)
+    def run(self: Any, **given: Any) -> None:
+        for name, value in given.items():
+            setattr(self, name, value)
+        by_duty = self._path not in with_speed and self.duty_cycle_sp
+        self.command = self.COMMAND_RUN_DIRECT if by_duty else self.COMMAND_RUN_FOREVER
+
+    motor.speed_sp = property(speed_sp.fget, set_speed, doc=speed_sp.__doc__)
+    motor.run_forever = run
