@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 import types
 from collections.abc import Callable
@@ -64,7 +65,7 @@ class ErrorHooks:
         if not alone:
             point_at_prelude(error)
             point_at_namesake(error, self._session.program_file)
-            point_at_package(error)
+            point_at_package(error, os.path.dirname(self._session.program_file) or os.curdir)
             point_at_gamepads(error)
         report = report_error(error, self._session.program_file, self._source(), alone)
         text, summary = self._output.stable(report.text, report.summary)

@@ -186,3 +186,41 @@ def test_no_module_is_in_two_tables() -> None:
 def test_the_guide_names_each_module(name: str, root: Path) -> None:
     page = (root / "tuisim/guide/pages/library-differences.md").read_text("utf-8")
     assert f"`{name}`" in page
+
+
+SPIKE = "a program for a SPIKE hub; tuisim simulates the EV3"
+
+
+@pytest.mark.parametrize(
+    ("text", "profile"),
+    [
+        ("from pybricks.hubs import PrimeHub", "lego-micropython"),
+        ("from pybricks.hubs import InventorHub", "pybricks4"),
+        ("from pybricks.pupdevices import Motor", "lego-micropython"),
+        ("from hub import port", "ev3"),
+        ("import motor, runloop", "ev3"),
+        ("from spike import PrimeHub", "robolab"),
+    ],
+)
+def test_programs_for_other_hubs_are_named(run: Run, text: str, profile: str) -> None:
+    errors = run(text, profile=profile, prelude="none").errors
+    assert errors[-1].endswith(f"({SPIKE})")
+    assert "pip install" not in "\n".join(errors)
+    tried = f"try:\n    {text}\nexcept ImportError:\n    print('without')"
+    assert run(tried, profile=profile, prelude="none").lines == ["without"]
+
+
+def test_a_name_that_no_hub_has_is_missing(run: Run) -> None:
+    errors = run("from pybricks.hubs import Nothing", profile="pybricks4", prelude="none").errors
+    assert errors[-1].startswith("ImportError: cannot import name 'Nothing' from 'pybricks.hubs'")
+
+
+@pytest.mark.parametrize(
+    ("profile", "other"), [("ev3", "pybricks.hubs"), ("pybricks4", "ev3dev2.motor")]
+)
+def test_the_other_library_is_refused_without_advice_that_cannot_help(
+    run: Run, profile: str, other: str
+) -> None:
+    errors = run(f"import {other}", profile=profile, prelude="none").errors
+    assert "this program runs by the rules of" in errors[-1]
+    assert "--profile" not in errors[-1]

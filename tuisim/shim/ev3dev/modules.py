@@ -13,6 +13,7 @@ from tuisim.shim.brick import BuiltBrick, ports_hint
 from tuisim.shim.buttons import patch_button_module
 from tuisim.shim.console import Terminal, patch_console_module
 from tuisim.shim.display import draw_with_the_bricks_font
+from tuisim.shim.ev3dev import virtual
 from tuisim.shim.ev3dev.library import connect, patch_motor_module, patch_sensor_module
 from tuisim.shim.ev3dev.older_library import MissingLibrary, finish_core, surroundings
 from tuisim.shim.ev3dev.robolab import glue_module, patch_lego_module
@@ -62,9 +63,10 @@ def finishers(
 
 def install(session: DeviceSession, built: BuiltBrick) -> None:
     """Let a program import the libraries."""
-    sys.meta_path.insert(0, OtherLibrary((PYBRICKS,), "choose --profile lego-micropython"))
+    sys.meta_path.insert(0, OtherLibrary((PYBRICKS,), Library.EV3DEV2))
     sys.meta_path.append(MissingLibrary())
     sys.meta_path.append(HardwareFinder(Library.EV3DEV2))
     connect(built.files, partial(ports_hint, session))
     sys.modules["ev3dev2_glue"] = glue_module(session)
+    sys.modules[virtual.NAME] = virtual.virtual_module(session)
     sys.modules.update(evdev_modules(session))

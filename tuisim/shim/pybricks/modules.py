@@ -30,7 +30,13 @@ from tuisim.shim.pybricks import (
     version_1,
 )
 from tuisim.shim.pybricks.brick import Brick, Connected
-from tuisim.shim.pybricks.unsimulated import IO_DEVICES, NXT_DEVICES, refused_classes
+from tuisim.shim.pybricks.unsimulated import (
+    IO_DEVICES,
+    NXT_DEVICES,
+    OtherHub,
+    refused_classes,
+    refused_hub,
+)
 from tuisim.shim.session import DeviceSession
 from tuisim.shim.sound import Mixer
 from tuisim.shim.unsupported.modules import HardwareFinder, OtherLibrary
@@ -87,7 +93,7 @@ def _version_4() -> Mapping[str, Mapping[str, Any]]:
 
 def install(session: DeviceSession, built: BuiltBrick, screen: Screen, mixer: Mixer) -> None:
     """Let a program import the library, and the modules of MicroPython."""
-    sys.meta_path.insert(0, OtherLibrary(("ev3dev2", "ev3dev"), "choose --profile ev3"))
+    sys.meta_path.insert(0, OtherLibrary(("ev3dev2", "ev3dev"), Library.PYBRICKS))
     sys.meta_path.append(HardwareFinder(Library.PYBRICKS))
     micropython.install(session)
     motors = {port: motor for port, motor in built.motors.items() if isinstance(motor, ServoMotor)}
@@ -95,9 +101,11 @@ def install(session: DeviceSession, built: BuiltBrick, screen: Screen, mixer: Mi
     brick = Brick(session, motors, built.sensors, built.lights, built.battery, screen, mixer, hint)
     Connected.brick = brick
     law = session.sim.spec.profile.motor_law
+    sys.meta_path.insert(0, OtherHub())
     names = _version_4() if law == MotorLaw.PYBRICKS_4 else MODULES
     speaker.set_volumes(brick.mixer, speaker.START_VOLUMES)
     made = {name: types.ModuleType(name) for name in names}
+    vars(made["pybricks.hubs"])["__getattr__"] = refused_hub
     for name, module in made.items():
         vars(module).update(names[name])
         parent, _, last = name.rpartition(".")

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any
+import types
+from collections.abc import Mapping, Sequence
+from typing import Any, NoReturn
 
-from tuisim.shim.unsupported.modules import Hardware, refused_part
+from tuisim.shim.unsupported.modules import SPIKE, Hardware, refused_as, refused_part
 
 LOGGER = Hardware(
     "the log of a motor",
@@ -38,6 +39,43 @@ NXT_DEVICES: Mapping[str, Hardware] = {
     "VernierAdapter": Hardware("the adapter for Vernier sensors", _LEGO),
 }
 """Classes of `pybricks.nxtdevices`."""
+
+HUBS = ("CityHub", "EssentialHub", "InventorHub", "MoveHub", "PrimeHub", "TechnicHub", "VirtualHub")
+"""Classes of `pybricks.hubs` for hubs of SPIKE, Technic and others."""
+
+
+class OtherHub:
+    """Refuses to import the modules for the motors and sensors of other hubs; the first finder."""
+
+    def find_spec(
+        self,
+        fullname: str,
+        path: Sequence[str] | None = None,
+        target: types.ModuleType | None = None,
+    ) -> None:
+        """Raise for such a module.
+
+        Raises:
+            NotSimulated: it is one; it is an ImportError, too.
+        """
+        if fullname == "pybricks.pupdevices":
+            raise _refusal(fullname)
+
+
+def refused_hub(name: str) -> NoReturn:
+    """Raise the error about a name that `pybricks.hubs` does not have here.
+
+    Raises:
+        NotSimulated: it is that of another hub; it is an ImportError, too.
+        AttributeError: it is none.
+    """
+    if name in HUBS:
+        raise _refusal(f"pybricks.hubs.{name}")
+    raise AttributeError(f"module 'pybricks.hubs' has no attribute {name!r}")
+
+
+def _refusal(name: str) -> Exception:
+    return refused_as(ImportError, f"{name}: {SPIKE.title} is not simulated", SPIKE.instead)
 
 
 def refused_classes(module: str, classes: Mapping[str, Hardware]) -> dict[str, Any]:

@@ -18,6 +18,7 @@ from typing import Any, NoReturn
 from tuisim.core.profile import Library
 from tuisim.data_class import dataclass
 from tuisim.errors import NotSimulated
+from tuisim.repository import find_module_folder
 
 
 @dataclass(frozen=True, slots=True)
@@ -115,6 +116,7 @@ ON_THE_BRICK: Mapping[str, Hardware] = {
 _PI = Hardware("the Raspberry Pi", "this is an EV3: use {library}")
 _PI_CAMERA = Hardware("the camera of the Raspberry Pi", CAMERA)
 _BRICKPI = Hardware("the BrickPi", "this is an EV3: use {library}")
+SPIKE = Hardware("the SPIKE hub", "a program for a SPIKE hub; tuisim simulates the EV3")
 
 ELSEWHERE: Mapping[str, Hardware] = {
     "RPi": _PI,
@@ -127,8 +129,12 @@ ELSEWHERE: Mapping[str, Hardware] = {
     "brickpi": _BRICKPI,
     "brickpi3": _BRICKPI,
     "microbit": Hardware("the micro:bit", "this is an EV3: use {library}"),
-    "spike": Hardware("the SPIKE hub", "this is an EV3: use {library}"),
+    **dict.fromkeys(("hub", "motor", "motor_pair", "runloop", "spike"), SPIKE),
+    **dict.fromkeys(("color_sensor", "distance_sensor", "force_sensor"), SPIKE),
     "mindstorms": Hardware("the hub of the Robot Inventor", "this is an EV3: use {library}"),
+    "ev3sim": Hardware(
+        "the simulator ev3sim", "leave out its import: the rest of the program needs only {library}"
+    ),
 }
 """Modules that cannot be imported, by name."""
 
@@ -221,11 +227,11 @@ class OtherLibrary:
 
     Args:
         names: The packages of that library.
-        instead: What to do.
+        library: The one of this run.
     """
 
-    def __init__(self, names: Sequence[str], instead: str) -> None:
-        self._names, self._instead = names, instead
+    def __init__(self, names: Sequence[str], library: Library) -> None:
+        self._names, self._library = names, library
 
     def find_spec(
         self,
@@ -239,8 +245,8 @@ class OtherLibrary:
             NotSimulated: it is one; it is an ImportError, too.
         """
         if fullname in self._names:
-            told = f"{fullname}: the rules of this run are for another library"
-            raise refused_as(ImportError, told, self._instead)
+            told = f"{fullname}: this program runs by the rules of {self._library}"
+            raise refused_as(ImportError, told, "a program uses one of the two libraries")
 
 
 class HardwareFinder:
@@ -320,12 +326,22 @@ def refuse_bluetooth(module: types.ModuleType, library: Library) -> None:
     module.socket.__init__ = __init__
 
 
-def point_at_package(error: BaseException) -> None:
-    """Add a note to the error about a missing module: where it can come from."""
+def point_at_package(error: BaseException, folder: str) -> None:
+    """Add a note to the error about a missing module: where it can come from.
+
+    Args:
+        error: Any error of the program.
+        folder: That of the program.
+    """
     if not isinstance(error, ModuleNotFoundError) or not isinstance(error.name, str):
         return
     top = error.name.partition(".")[0]
     if not top.isidentifier() or top in sys.modules or top in sys.stdlib_module_names:
+        return
+    if place := find_module_folder(top, folder):
+        error.add_note(
+            f"{top} is in {place}, which Python does not search: PYTHONPATH={place} finds it."
+        )
         return
     package = PACKAGES.get(top, top)
     error.add_note(
