@@ -210,13 +210,7 @@ class ExportError(TuisimError):
     """An export could not be written; no partial file is left."""
 
 
-def require_one_of(
-    value: object,
-    what: str,
-    allowed: Iterable[object],
-    key: str,
-    error: type[ConfigError] = RobotError,
-) -> None:
+def require_one_of(value: object, what: str, allowed: Iterable[object], key: str) -> None:
     """Check that a value is one of `allowed`.
 
     Args:
@@ -224,14 +218,13 @@ def require_one_of(
         what: What the value is, such as `port`.
         allowed: All allowed values.
         key: Name of the value in the error.
-        error: Class of the error.
 
     Raises:
-        ConfigError: the check failed; raised as `error`.
+        RobotError: the check failed.
     """
     allowed = tuple(allowed)
     if value not in allowed or isinstance(value, bool):
-        raise error(
+        raise RobotError(
             f"no such {what} {reprlib.repr(value)}",
             f"one of {', '.join(map(str, allowed))}",
             key=key,

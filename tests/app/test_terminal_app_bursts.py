@@ -22,8 +22,8 @@ from tuisim.terminal.queries import AnswerParser
 ENTER, TAB, BACK_TAB, BACKSPACE, DELETE = "\r", "\t", "\x1b[Z", "\x7f", "\x1b[3~"
 UP, DOWN, RIGHT, LEFT, HOME, END = "\x1b[A", "\x1b[B", "\x1b[C", "\x1b[D", "\x1b[H", "\x1b[F"
 PAGE_UP, PAGE_DOWN, F3 = "\x1b[5~", "\x1b[6~", "\x1bOR"
-CTRL_A, CTRL_F, CTRL_G, CTRL_P, CTRL_S, CTRL_T, CTRL_U, CTRL_Y, CTRL_Z = map(
-    chr, (1, 6, 7, 16, 19, 20, 21, 25, 26)
+CTRL_A, CTRL_F, CTRL_G, CTRL_P, CTRL_S, CTRL_U, CTRL_Y, CTRL_Z = map(
+    chr, (1, 6, 7, 16, 19, 21, 25, 26)
 )
 MOVES = [UP, DOWN, LEFT, RIGHT, HOME, END, PAGE_UP, PAGE_DOWN]
 EDITS = [BACKSPACE, BACKSPACE, BACKSPACE, DELETE, TAB, ENTER]

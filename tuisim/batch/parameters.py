@@ -176,18 +176,18 @@ def _values(name: str, choice: Choice, is_whole: Callable[[str, float], bool]) -
     )
 
 
-def parse_set(text: str, key: str = "--set") -> tuple[str, Choice]:
+def parse_set(text: str) -> tuple[str, Choice]:
     """Parse `NAME=VALUES`; return the name and what it takes.
 
     Raises:
-        ConfigError: there is no name, or the values are wrong; errors blame the option `key`.
+        ConfigError: there is no name, or the values are wrong; errors blame `--set`.
     """
     name, equals, values = text.partition("=")
     name = name.strip()
     if not equals or not name:
         hint = f"such as noise.motor=0,20,50; {see_page('experiments')}"
-        raise ConfigError(f"must be NAME=VALUES, got {text!r}", hint, key=key)
-    return name, parse_values(values, f"{key} {name}")
+        raise ConfigError(f"must be NAME=VALUES, got {text!r}", hint, key="--set")
+    return name, parse_values(values, f"--set {name}")
 
 
 def parse_values(text: str, key: str) -> Choice:

@@ -33,7 +33,6 @@ class RobotOutline:
     """The wheels are at both sides, inside the body."""
     wheel_radius_mm: float
     has_wheels: bool
-    pen_mm: Point
     color_sensors_mm: tuple[tuple[float, float, float], ...]
     """x, y and radius of the disc that each sees."""
     bumpers_mm: tuple[tuple[float, float, float], ...]
@@ -68,7 +67,6 @@ def outline_of(robot: RobotSpec) -> RobotOutline:
         wheel_width_mm=robot.wheel_width_mm,
         wheel_radius_mm=robot.wheel_diameter_mm / 2,
         has_wheels=robot.has_wheels,
-        pen_mm=(robot.pen.x_mm, robot.pen.y_mm),
         color_sensors_mm=tuple(
             (sensor.x_mm, sensor.y_mm, sensor.diameter_mm / 2) for sensor in robot.color_sensors
         ),

@@ -1,1 +1,1 @@
-"""The guide: pages of Markdown, reference tables from the code, search, and the pages as HTML."""
+"""The guide: pages of Markdown, reference tables from the code, and search."""

@@ -39,15 +39,14 @@ def _words(picture: Pixels, word: type[np.unsignedinteger]) -> npt.NDArray[np.un
     return np.ascontiguousarray(picture).ravel().view(word)
 
 
-def changed_runs(old: Cells, new: Cells, gap: int = MERGE_GAP) -> list[CellRun]:
-    """Return the runs of cells that differ between two frames of the same shape.
+def changed_runs(old: Cells, new: Cells) -> list[CellRun]:
+    """Return the runs of cells that differ between two frames of the same shape; close ones are one.
 
     Args:
         old: The frame on the screen.
         new: The next frame.
-        gap: Runs with fewer unchanged cells than this between them are joined.
     """
-    return runs_of(old != new, gap)
+    return runs_of(old != new, MERGE_GAP)
 
 
 def runs_of(changed: npt.NDArray[np.bool_], gap: int = 1) -> list[CellRun]:
