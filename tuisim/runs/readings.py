@@ -72,7 +72,7 @@ class ReadingsWriter(MappedWriter):
         self._count = 0
         self._room = _FIRST_BYTES // READING_RECORD.size
         """How many readings fit."""
-        self.newest_ns, self.newest_code = -1, -1
+        self.newest_ns = -1
 
     def add(self, code: int, time_ns: int, line: int) -> None:
         """Append a reading.
@@ -82,7 +82,7 @@ class ReadingsWriter(MappedWriter):
             time_ns: Simulated time, not before that of the reading before.
             line: Source line; 0 for none.
         """
-        self.newest_ns, self.newest_code = time_ns, code
+        self.newest_ns = time_ns
         count = self._count
         if count < self._room or self._extend(count):
             _pack_into(self._map, HEADER_BYTES + (count << 4), time_ns, line, code)

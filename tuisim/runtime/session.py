@@ -160,9 +160,9 @@ class Session:
         self._pen.take_in(self.sim.records_since(self._pen.records))
         return self._pen.field
 
-    def spend(self, duration_ns: int) -> int:
-        """Let simulated time pass, even where calls are free. Return the program's line if it was looked up, else 0."""
-        until = self.now + duration_ns
+    def spend(self, duration_ns: int, code: int = -1) -> None:
+        """Let simulated time pass, even where calls are free; arguments as in `DeviceSession`."""
+        until, line = self.now + duration_ns, 0
         if self.flags or until > self._quick_ns:
             self._pass(until, False)
         elif until < self._due:
@@ -181,23 +181,25 @@ class Session:
             if until < following:
                 sim.tick_once()
                 self.now, self._due = until, following
-                return line
+                if code >= 0:
+                    self.readings.add(code, until, line)
+                return
             ticks = sim.ticks_at(until) - sim.tick
             if ticks > CHUNK_TICKS:
                 self.advance(until, False)
             else:
                 sim.advance(ticks)
                 self.now, self._due = until, sim.due_ns(sim.tick + 1)
-            return line
-        return 0
+        if code >= 0:
+            self.note_reading(code, line)
 
     def note_reading(self, code: int, line: int = 0) -> None:
-        """Record that the program has read something; arguments as in `DeviceSession`."""
+        """Record that the program has read something, in this line if it is known; see `DeviceSession`."""
         readings, now = self.readings, self.now
         # While no time passes, a loop may read the same any number of times: that is written once.
-        if now == readings.newest_ns and (code == readings.newest_code or readings.has(code)):
+        if now == readings.newest_ns and readings.has(code):
             return
-        readings.add(code, now, line or self.program_line(4))
+        readings.add(code, now, line or self.program_line(3))
 
     def charge(self, cost_ns: int) -> None:
         """Let the time of a call pass, unless calls are free."""

@@ -131,7 +131,7 @@ def read_pressed(session: DeviceSession) -> list[str]:
     session.command()
     if not session.free:
         cost_ns = session.sim.spec.profile.attribute_read_ns
-        session.note_reading(READING_CODE, session.spend(cost_ns))
+        session.spend(cost_ns, READING_CODE)
     return [name for name in BUTTONS if name in session.pressed]
 
 

@@ -88,10 +88,10 @@ class SimDevice:
         costs, codes = costs or {}, codes or {}
         common_ns = session.sim.spec.profile.attribute_read_ns
         self._reads = {
-            name: (reader, costs.get(name, common_ns), codes.get(name))
+            name: (reader, costs.get(name, common_ns), codes.get(name, -1))
             for name, reader in readers.items()
         }
-        """Value, cost in ns, and code if it is recorded, of each attribute."""
+        """Value, cost in ns, and code of each attribute; -1 if it is not recorded."""
 
     def _charge(self, write: Callable[[Any], None]) -> Callable[[Any], None]:
         """Return a function that lets the time of a write pass first."""
@@ -129,9 +129,10 @@ class SimDevice:
             raise OSError(errno.EACCES if name in self.writers else errno.ENOENT, name) from None
         session = self.session
         if not session.free:
-            line = session.spend(cost_ns) if cost_ns else 0
-            if code is not None:
-                session.note_reading(code, line)
+            if cost_ns:
+                session.spend(cost_ns, code)
+            elif code >= 0:
+                session.note_reading(code)
         return reader()
 
     def write(self, name: str, text: str) -> None:

@@ -103,7 +103,7 @@ class LegoSensor:
         chosen = self.modes[mode]
         session = self._session
         if not session.free:
-            session.note_reading(self._codes[mode], session.spend(chosen.cost_ns))
+            session.spend(chosen.cost_ns, self._codes[mode])
         return chosen.measure()
 
     def measure_switched(self, mode: str) -> tuple[int, ...]:
@@ -190,7 +190,7 @@ class ColorDevice(LegoSensor):
         self.mode = mode
         session = self._session
         if not session.free:
-            session.note_reading(self._codes[mode], session.spend(self._read_ns))
+            session.spend(self._read_ns, self._codes[mode])
         return self.channels()
 
 

@@ -34,18 +34,18 @@ class DeviceSession(Protocol):
     def field(self) -> Field:
         """The mat in its current state."""
 
-    def spend(self, duration_ns: int) -> int:
-        """Let simulated time pass, even where calls are free. Return the program's line if it was looked up, else 0."""
-
-    def program_line(self) -> int:
-        """Return the line of the program that is running; 0 if there is none."""
-
-    def note_reading(self, code: int, line: int = 0) -> None:
-        """Record that the program has read something; not where calls are free.
+    def spend(self, duration_ns: int, code: int = -1) -> None:
+        """Let simulated time pass, even where calls are free.
 
         Args:
-            code: One of `runs.readings.READING_CODES`.
-            line: The program's line; 0 looks it up: then the caller's caller is not the program.
+            duration_ns: How long.
+            code: What the program has read then, see `note_reading`; -1 for nothing.
+        """
+
+    def note_reading(self, code: int) -> None:
+        """Record that the program has read something, by one of `runs.readings.READING_CODES`.
+
+        Not where calls are free. The caller is not the program.
         """
 
     def charge(self, cost_ns: int) -> None:

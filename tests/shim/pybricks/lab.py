@@ -58,7 +58,7 @@ class Lab:
             lambda _: "",
         )
 
-    def spend(self, duration_ns: int) -> None:
+    def spend(self, duration_ns: int, code: int = -1) -> None:
         """Let time pass.
 
         Raises:
@@ -80,7 +80,7 @@ class Lab:
             raise TimeoutError
         self.now = until
 
-    def note_reading(self, code: int, line: int = 0) -> None:
+    def note_reading(self, code: int) -> None:
         """Record nothing."""
 
     def charge(self, _cost_ns: int) -> None:

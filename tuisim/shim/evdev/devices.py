@@ -147,7 +147,7 @@ class InputDevice:
         """Yield events forever, blocking between them; buttons that are already pressed yield none."""
         self._seen = self._session.pressed
         while True:
-            self._session.note_reading(READING_CODE, self._session.program_line())
+            self._session.note_reading(READING_CODE)
             yield from self._changes()
             self._session.spend(POLL_NS)
 
@@ -157,7 +157,7 @@ class InputDevice:
 
         self._seen = self._session.pressed
         while True:
-            self._session.note_reading(READING_CODE, self._session.program_line())
+            self._session.note_reading(READING_CODE)
             for event in self._changes():
                 yield event
             await asyncio.sleep(POLL_NS / NS_PER_S)

@@ -74,9 +74,10 @@ class Brick:
         """
         session = self.session
         if not session.free:
-            line = session.spend(session.sim.spec.profile.attribute_read_ns)
-            for port in ports:
-                session.note_reading(READING_CODES[port, mode], line)
+            codes = [READING_CODES[port, mode] for port in ports]
+            session.spend(session.sim.spec.profile.attribute_read_ns, *codes[:1])
+            for code in codes[1:]:
+                session.note_reading(code)
         return session.now // 1000
 
     def command(self) -> int:
