@@ -50,12 +50,12 @@ OWN: Mapping[str, Case] = {
         "A left wheel, B medium motor, C -, D right wheel", "30 ev3-ports:outB"
     ),
     "balancer": Case("1 touch, A right wheel, B -, C -, D left wheel", ""),
-    "class_with_arguments": Case("A right wheel, B large motor, C -, D left wheel", "90"),
+    "class_with_arguments": Case("A right wheel, B large motor, C -, D left wheel", "91"),
     "constants": Case(
         "1 touch, 2 ultrasonic, 4 left, A left wheel, B medium motor, C -, D right wheel",
-        "100 0 45",
+        "100 0 49",
     ),
-    "dict_of_motors": Case("A right wheel, C medium motor", "[180, 180, -30]"),
+    "dict_of_motors": Case("A right wheel, C medium motor", "[180, 180, -31]"),
     "dict_ports": Case(
         "1 left, 2 right, 3 gyro, 4 ultrasonic, A left wheel, B right wheel, C medium motor",
         "True 100",
@@ -72,7 +72,7 @@ OWN: Mapping[str, Case] = {
     "enum_ports": Case("4 touch, A medium motor, B -, C left wheel, D right wheel", "0 False"),
     "environment": Case("A left wheel, B right wheel, C -", "ev3-ports:outA ev3-ports:outB"),
     "every_sensor": Case("1 touch, 2 gyro, 4 ultrasonic", "0 0 White True"),
-    "factory": Case("1 left, 2 ultrasonic, A left wheel, B -, D medium motor", "White 45"),
+    "factory": Case("1 left, 2 ultrasonic, A left wheel, B -, D medium motor", "White 48"),
     "four_large": Case("A large motor, D large motor", "4"),
     "from_modules/main": Case(
         "1 left, 2 ultrasonic, A left wheel, B medium motor, C -, D right wheel", "White 62"
@@ -89,7 +89,7 @@ OWN: Mapping[str, Case] = {
     ),
     "medium_wheels": Case(
         "A left wheel (medium motor), B right wheel (medium motor), C medium motor",
-        "lego-ev3-m-motor 1080",
+        "lego-ev3-m-motor 1088",
     ),
     "module_alias": Case(
         "1 left, 2 ultrasonic, 3 gyro, 4 right, A medium motor, C -, D right wheel", "White White"
@@ -108,7 +108,7 @@ OWN: Mapping[str, Case] = {
     "reversed_tank": Case("", "inversed", {"left_reversed": True, "right_reversed": True}),
     "reversed_wheels": Case(
         "A left wheel, B right wheel, C -",
-        "720 inversed",
+        "726 inversed",
         {"left_reversed": True, "right_reversed": True},
     ),
     "robot_class": Case("A left wheel, B -, C medium motor, D right wheel", "361 361 724"),
@@ -116,7 +116,7 @@ OWN: Mapping[str, Case] = {
     "star_import": Case("2 touch, A left wheel, B right wheel, C medium motor", "360 0"),
     "swapped_tank": Case("B right wheel, C left wheel", "ev3-ports:outC"),
     "tank_a_d": Case("A left wheel, B -, C -, D right wheel", "ev3-ports:outA 366"),
-    "tank_subclass": Case("A medium motor", "120"),
+    "tank_subclass": Case("A medium motor", "125"),
     "text_ports": Case(
         "1 infrared, 2 gyro, 4 left, A left wheel, B right wheel, C -, D medium motor", "far True"
     ),
@@ -124,7 +124,7 @@ OWN: Mapping[str, Case] = {
         "1 right, 3 ultrasonic, A left wheel, B medium motor, C -, D right wheel", "stopped"
     ),
     "three_colors": Case("1 middle", "100 100 100"),
-    "three_medium": Case("A medium motor, B medium motor, C medium motor", "[40, 40, 40]"),
+    "three_medium": Case("A medium motor, B medium motor, C medium motor", "[40, 40, 43]"),
     "touch_at_the_top": Case(
         "1 touch, A large motor", "at the top 1", {"outA": (-225.0, 45.0), "in1": "outA high"}
     ),
@@ -135,7 +135,7 @@ OWN: Mapping[str, Case] = {
     "v1_core": Case("A left wheel, B right wheel, C large motor", None),
     "v1_helper": Case("1 infrared, A medium motor", None),
     "v1_motors": Case("1 touch, A left wheel, B medium motor, C -, D right wheel", None),
-    "wheel_class": Case("A right wheel, B -, C left wheel", "90"),
+    "wheel_class": Case("A right wheel, B -, C left wheel", "93"),
 }
 REVERSED = {"left_reversed": True, "right_reversed": True}
 MIDDLE = (1181, 572)
@@ -147,7 +147,7 @@ BLIND: Mapping[str, Case] = {
         {},
         "--world programs/beacon.toml --timeout 10",
         3,
-        (1717, 830),
+        (1713, 834),
     ),
     "color_sorter": Case(
         "1 touch, A medium motor, D large motor",
@@ -168,22 +168,22 @@ BLIND: Mapping[str, Case] = {
     ),
     "fll_2019/main": Case(
         "1 left, 2 ultrasonic, A medium motor, D medium motor",
-        "run_crane 8.8",
+        "run_crane 8.2",
         {"wheel_diameter_mm": 81.6},
         f"{BANDS} --press enter@5-5.2 --press backspace@20-20.5",
         0,
-        (292, 800),
+        (284, 798),
     ),
     "floor_scan/scan": Case(
         "2 gyro, 4 left", "row 3: 238 samples", {"wheel_spacing_mm": 118.0}, "", 0, (1178, 379)
     ),
     "gyro_square": Case(
         "2 gyro, 4 left, A left wheel, B -, C -, D right wheel",
-        "side 4 gyro 7",
+        "side 4 gyro 8",
         {},
         "-x 1181 -y 200 -a 90",
         0,
-        (1134, 159),
+        (1133, 156),
     ),
     # The head turns, but the ultrasonic sensor on it looks ahead.
     "laberinto": Case(
@@ -192,10 +192,15 @@ BLIND: Mapping[str, Case] = {
         {"wheel_spacing_mm": 121.0},
         "",
         0,
-        (1146, 544),
+        (1150, 545),
     ),
     "line_pid_two": Case(
-        "1 left, 2 ultrasonic, 3 gyro, 4 right", "stopped", {}, f"{LINE} --timeout 7", 3, (133, 975)
+        "1 left, 2 ultrasonic, 3 gyro, 4 right",
+        "stopped",
+        {},
+        f"{LINE} --timeout 7",
+        3,
+        (168, 1047),
     ),
     "mini_medium": Case(
         "1 infrared, B left wheel (medium motor), C right wheel (medium motor)",
@@ -203,18 +208,18 @@ BLIND: Mapping[str, Case] = {
         {"wheel_diameter_mm": 30.0, "wheel_spacing_mm": 88.0, **REVERSED},
         "--press enter@20-21",
         0,
-        (1173, 754),
+        (1121, 594),
     ),
     "motorlevel": Case(
-        "1 touch", "parked 764 3207", REVERSED, "-b Grey_bands --profile ev3", 0, (1344, 126)
+        "1 touch", "parked 734 3210", REVERSED, "-b Grey_bands --profile ev3", 0, (1364, 129)
     ),
     "odometry_tour": Case(
         "",
-        "66 points saved",
+        "58 points saved",
         {"wheel_diameter_mm": 81.6, "wheel_spacing_mm": 136.0},
         "-x 1181 -y 900",
         0,
-        (1544, 335),
+        (1554, 343),
     ),
     "plotter/plotter": Case(
         "A medium motor, B large motor, C large motor",
@@ -224,7 +229,7 @@ BLIND: Mapping[str, Case] = {
         0,
         MIDDLE,
     ),
-    "police_patrol": Case("1 gyro, 4 ultrasonic", "", {}, "--timeout 20", 3, (1922, 457)),
+    "police_patrol": Case("1 gyro, 4 ultrasonic", "", {}, "--timeout 20", 3, (2061, 378)),
     "puppy": Case(
         "1 touch, 2 ultrasonic, 4 left, A large motor, B -, C medium motor, D large motor",
         "",
@@ -242,7 +247,7 @@ BLIND: Mapping[str, Case] = {
         MIDDLE,
     ),
     "rob_subclass": Case(
-        "1 gyro, 4 ultrasonic, A left wheel, B -", "[  18.83] bye", {}, LINE, 0, (291, 727)
+        "1 gyro, 4 ultrasonic, A left wheel, B -", "[  14.45] bye", {}, LINE, 0, (185, 1048)
     ),
     "robot_arm": Case(
         "1 touch, A medium motor, B large motor, C large motor",
@@ -258,29 +263,29 @@ BLIND: Mapping[str, Case] = {
         {},
         "-b Loop -x 315 -y 500 -a 90 --profile ev3 --press enter@1 --press enter@6-6.3",
         0,
-        (370, 914),
+        (376, 924),
     ),
     "staubsauger": Case(
         "1 touch, 2 touch_right, A left wheel, B right wheel, C medium motor",
-        "Hindernis Nr. 8",
+        "Hindernis Nr. 6",
         REVERSED,
         "--timeout 30",
         3,
-        (1469, 1011),
+        (198, 914),
     ),
-    "suiveur3": Case("1 left, 2 middle", "", {}, f"{LINE} --timeout 7", 3, (175, 865)),
+    "suiveur3": Case("1 left, 2 middle", "", {}, f"{LINE} --timeout 7", 3, (116, 979)),
     "sumo": Case(
         "1 touch, 4 infrared, A left wheel, B -, C medium motor, D right wheel",
         "",
         {},
         "--press enter@1 --press backspace@15-16",
         0,
-        (574, 1017),
+        (563, 1017),
     ),
     "track3r_remote": Case(
-        "1 infrared, A medium motor", "", {}, "--world programs/beacon.toml", 0, (1370, 572)
+        "1 infrared, A medium motor", "", {}, "--world programs/beacon.toml", 0, (1485, 568)
     ),
-    "wallfollow": Case("1 touch, 2 ultrasonic", "", {}, "", 0, (1924, 134)),
+    "wallfollow": Case("1 touch, 2 ultrasonic", "", {}, "", 0, (1931, 180)),
     "wro_regular/main": Case(
         "1 left, 2 right, 3 middle, A medium motor, D medium motor",
         "",
@@ -292,7 +297,7 @@ BLIND: Mapping[str, Case] = {
         },
         BANDS,
         0,
-        (878, 995),
+        (1196, 812),
     ),
 }
 CASES = {**OWN, **{f"blind/{name}": case for name, case in BLIND.items()}}

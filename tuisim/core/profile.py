@@ -122,7 +122,10 @@ class ProfileSpec(Spec):
     motor_law: MotorLaw = choice(
         MotorLaw,
         default=MotorLaw.BRICK,
-        source=f"{MotorLaw.BRICK}: moves end at their target, as with the EV3 motor driver; "
+        source=f"{MotorLaw.BRICK}: moves end at their target, as the course says; "
+        f"{MotorLaw.EV3DEV}: the driver of kernel 4.14; a large motor measured by nxt-unroller (2015), its "
+        "friction from steps logged in five public repositories; of a medium one two points under load by Philo, "
+        "its inertia an estimate; "
         f"{MotorLaw.NBEV3DEVSIM}: {_OLD}; {MotorLaw.PYBRICKS}, {MotorLaw.PYBRICKS_4}: the firmware's own control code",
     )
     """How motors obey commands and move."""
