@@ -6,6 +6,7 @@ from collections.abc import Collection, Sequence
 from dataclasses import field
 
 from tuisim.config.program_robot.mentions import Where
+from tuisim.config.program_robot.scopes import Scope
 from tuisim.data_class import dataclass
 
 _USUAL_REACH_DEG = 180.0
@@ -21,6 +22,8 @@ class EndStop:
     where: Where
     forwards: bool | None
     """Its direction; None if the program does not say it."""
+    scope: Scope
+    """The function or module that drives it there."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,6 +42,8 @@ class Target:
 
     deg: float
     where: Where
+    scope: Scope
+    """The function or module that turns it."""
 
 
 @dataclass(slots=True)
@@ -93,7 +98,7 @@ class Mechanics:
         from_start = [
             target.deg
             for target in targets
-            if not places or (stop is not None and _is_above(target.where, stop.where))
+            if not places or (stop is not None and _is_before(target, stop))
         ]
         self.targets_deg[port] = min((0.0, *from_start)), max((0.0, *from_start))
 
@@ -104,5 +109,6 @@ class Mechanics:
         self.targets_deg[port] = (-ahead_deg, -back_deg) if is_turned else (back_deg, ahead_deg)
 
 
-def _is_above(one: Where, other: Where) -> bool:
-    return one.file == other.file and one.line < other.line
+def _is_before(target: Target, stop: EndStop) -> bool:
+    """Return whether a motor turns to a target before it is driven to its end stop; in other functions, it is later."""
+    return target.scope is stop.scope and target.where.line < stop.where.line

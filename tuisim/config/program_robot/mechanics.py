@@ -196,7 +196,7 @@ class _MechanicsReader:
         """
         for port in self._motors(base, scope):
             forwards = next(iter(said or self._directions(scope.body, [port], scope)), None)
-            stop = EndStop(_where(node, scope), self._as_mounted(port, forwards))
+            stop = EndStop(_where(node, scope), self._as_mounted(port, forwards), scope)
             known = self.found.stops.setdefault(port, stop)
             if any(self._as_mounted(port, way) != known.forwards for way in said):
                 self.found.closed.add(port)
@@ -270,7 +270,7 @@ class _MechanicsReader:
             return
         for port in ports:
             where = _where(node, scope)
-            self.targets.setdefault(port, []).extend(Target(deg, where) for deg in targets)
+            self.targets.setdefault(port, []).extend(Target(deg, where, scope) for deg in targets)
 
     # Touch sensors
 
@@ -306,7 +306,7 @@ class _MechanicsReader:
         if len(moved) == 1 and touches:
             forwards = next(self._directions([*nodes, *scope.body], moved, scope), None)
             motor = moved.pop()
-            stop = EndStop(_where(last, scope), self._as_mounted(motor, forwards))
+            stop = EndStop(_where(last, scope), self._as_mounted(motor, forwards), scope)
             self.found.presses.append(StopPress(touches[0], motor, stop))
 
     # Devices
