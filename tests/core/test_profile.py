@@ -140,8 +140,8 @@ def test_cost_of_a_call(run: Run, text: str, old_s: float, true_s: float, profil
 
 ON_THE_BRICK = {
     "light": ("colorLeft.reflected_light_intensity", 0.0012),
-    "rgb": ("colorLeft.rgb", 0.0023),
-    "colour": ("colorLeft.color", 0.0023),
+    "rgb": ("colorLeft.rgb", 0.0173),
+    "colour": ("colorLeft.color", 0.0173),
     "angle": ("gyro.angle", 0.0012),
     "position": ("tank_drive.left_motor.position", 0.0012),
     "set point": ("tank_drive.left_motor.speed_sp = 100", 0.0011),

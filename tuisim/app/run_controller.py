@@ -233,15 +233,14 @@ class RunController:
     def _at_rest(self, pose: Pose) -> Instant:
         spec = self.next_run.spec
         flags = flags_at_start(spec.robot)
-        noise, drift = spec.world.noise, spec.world.drift
-        zero_deg = pose.heading_deg
         return Instant(
             0,
             pose,
-            gyro_zero_deg=zero_deg,
+            gyro_zero_deg=pose.heading_deg,
             end_flags=flags,
-            noise=noise,
-            drift=drift,
+            noise=spec.world.noise,
+            drift=spec.world.drift,
+            profile=spec.profile,
             seed=spec.seed,
         )
 

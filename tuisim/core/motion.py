@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, assert_never
 from tuisim.core.brick_motor import BrickMotor
 from tuisim.core.browser_motor import BrowserMotor
 from tuisim.core.collision import Solids
-from tuisim.core.drift import MOST_TIMES, slipping_wheels
+from tuisim.core.drift import MOST_TIMES, build_gyro, can_strain_gyro, slipping_wheels
 from tuisim.core.drive import BrickDrive, BrowserDrive, Drive, Glide, Records, mm_per_degree
 from tuisim.core.driver.jiffies import draw_jiffies
 from tuisim.core.driver.motor import MotorCommand
@@ -113,11 +113,13 @@ class Motion:
         "_longest_mm",
         "_right_dps",
         "_right_mm_per_deg",
+        "_roll",
         "_room_end",
         "_sink",
         "_slipping",
         "_solids",
         "_spacing_mm",
+        "_strains_gyro",
         "_tick_s",
         "actions",
         "changed",
@@ -177,6 +179,10 @@ class Motion:
         self.drive = drive_of(spec)
         """The robot's pose and how its wheels change it."""
         self._slipping = slipping_wheels(spec)
+        gyro = build_gyro(spec, self.drive)
+        self._roll = self.drive.roll if gyro is None else gyro.roll
+        """Moves the robot, and what its gyro senses."""
+        self._strains_gyro = can_strain_gyro(spec)
         self._start_clocks()
         self._buffer: Buffer = sink.room(ROOM_TICKS)
         self._room_end = ROOM_TICKS
@@ -247,12 +253,15 @@ class Motion:
 
     def _quiet_ticks(self, most: int) -> int:
         """Return for how many ticks, at most `most`, nothing but ramps and motion happens."""
+        left, right = self.left, self.right
         if self._slipping is not None or (self.noise.motor and not self._glides_with_noise()):
+            return 0
+        if self._strains_gyro and not (left.resting and right.resting):
             return 0
         return min(
             most,
-            self.left.quiet_ticks(self.tick),
-            self.right.quiet_ticks(self.tick),
+            left.quiet_ticks(self.tick),
+            right.quiet_ticks(self.tick),
             self._clear_ticks(most),
         )
 
@@ -286,9 +295,7 @@ class Motion:
             part, aside_mm = self._obstructed(before, left_roll, right_roll)
             left_deg, right_deg = left_deg * part, right_deg * part
             left_roll, right_roll = left_roll * part, right_roll * part
-        drive.roll(left_roll, right_roll)
-        if slipping is not None:
-            drive.gyro_zero_deg = slipping.gyro_zero_deg(drive.gyro_zero_deg)
+        self._roll(left_roll, right_roll)
         if aside_mm is not None:
             self._push(aside_mm)
         if self._driven:

@@ -60,6 +60,7 @@ class Simulation(Motion):
             end_flags=self.end_flags,
             noise=self.noise,
             drift=spec.world.drift,
+            profile=spec.profile,
             seed=spec.seed,
         )
 

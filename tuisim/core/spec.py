@@ -231,6 +231,26 @@ class ColorSensorSpec(SensorSpec):
         help="weights of the disc's pixels: mean, gaussian or centre",
     )
     """How the pixels of the disc are weighted, one of `STRATEGIES`."""
+    white_percent: float | None = number(
+        50,
+        100,
+        default=None,
+        later=True,
+        unit="%",
+        label="White %",
+        help="reflected light of white; by default as the profile says",
+    )
+    """Reflected light of white; None: `ProfileSpec.white_percent`."""
+    black_percent: float | None = number(
+        0,
+        49,
+        default=None,
+        later=True,
+        unit="%",
+        label="Black %",
+        help="reflected light of black; by default as the profile says",
+    )
+    """Reflected light of black; None: `ProfileSpec.black_percent`."""
 
 
 @spec
@@ -272,6 +292,13 @@ class GyroSpec(SensorSpec):
 
     name: str = _sensor_name("gyro")
     port: str = _input_port("in4")
+    keeps_angle: bool = flag(
+        default=False,
+        later=True,
+        label="Keeps angle",
+        help="a newer sensor, from date code N4 on: a change of mode leaves its angle",
+    )
+    """Whether a change of mode leaves the angle as it is, where the profile lets it restart."""
 
 
 @spec

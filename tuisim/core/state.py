@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from tuisim.core.drift_spec import NO_DRIFT, DriftSpec
 from tuisim.core.geometry import Pose
+from tuisim.core.profile import ROBOLAB, ProfileSpec
 from tuisim.core.spec import NoiseSpec
 from tuisim.data_class import dataclass
 
@@ -26,4 +27,5 @@ class Instant:
     """Which end stops the motors are at that drive no wheel: the bits of `core.end_stops`."""
     noise: NoiseSpec = NoiseSpec()
     drift: DriftSpec = NO_DRIFT
+    profile: ProfileSpec = ROBOLAB
     seed: int = 0

@@ -16,7 +16,7 @@ from tuisim.core.field import Field
 from tuisim.core.pen_marks import PenMarks
 from tuisim.core.profile import NS_PER_S
 from tuisim.core.sensors import MountedSensor, columns_of, mounted
-from tuisim.core.spec import NoiseSpec, RobotSpec, RunSpec
+from tuisim.core.spec import NoiseSpec, RunSpec
 from tuisim.core.tick_record import TICK_RECORD
 from tuisim.protocol import SetNoise, UserAction
 from tuisim.runs.records import TELEMETRY_FILE
@@ -168,7 +168,7 @@ def column_values(
     return {
         column.name: measured[column.name]
         if column.of is None
-        else computed(column.of, columns, measured, spec.robot)
+        else computed(column.of, columns, measured, spec)
         for columns in (MOTION, *(mount.columns for mount in sensors))
         for column in columns
         if column.name in names
@@ -176,16 +176,16 @@ def column_values(
 
 
 def computed(
-    of: Callable[[Iterable[Sequence[float]], RobotSpec], list[float]],
+    of: Callable[[Iterable[Sequence[float]], RunSpec], list[float]],
     columns: Iterable[Column],
     measured: Mapping[str, Array],
-    robot: RobotSpec,
+    spec: RunSpec,
 ) -> Array:
     """Return what is computed from the measured columns of an owner, at every tick, shape (n,)."""
     import numpy as np
 
     rows = zip(*(measured[name].tolist() for name in measured_names(columns)), strict=True)
-    return np.array(of(rows, robot), np.float64)
+    return np.array(of(rows, spec), np.float64)
 
 
 def held(condition: ValueCondition, values: Array) -> Array:

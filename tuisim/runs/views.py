@@ -98,6 +98,7 @@ def instant_of(record: TickRecord, spec: RunSpec, noise: NoiseSpec) -> Instant:
         end_flags=record.flags & END_FLAGS,
         noise=noise,
         drift=spec.world.drift,
+        profile=spec.profile,
         seed=spec.seed,
     )
 

@@ -113,9 +113,7 @@ def _value(
 ) -> float:
     measured = measure(instant, spec, field)
     return (
-        measured[names.index(column.name)]
-        if column.of is None
-        else column.of([measured], spec.robot)[0]
+        measured[names.index(column.name)] if column.of is None else column.of([measured], spec)[0]
     )
 
 
