@@ -16,7 +16,7 @@ from tuisim.config.program_settings import require_library
 from tuisim.core.end_stops import flags_at_start
 from tuisim.core.field import Field
 from tuisim.core.geometry import Pose
-from tuisim.core.spec import BUTTONS, NoiseSpec, RunSpec
+from tuisim.core.spec import PRESSABLE, NoiseSpec, RunSpec
 from tuisim.core.state import Instant
 from tuisim.core.tick_record import FLAG_PEN_DOWN
 from tuisim.data_class import dataclass
@@ -237,7 +237,7 @@ class RunController:
             0,
             pose,
             gyro_zero_deg=pose.heading_deg,
-            end_flags=flags,
+            press_flags=flags,
             noise=spec.world.noise,
             drift=spec.world.drift,
             profile=spec.profile,
@@ -429,11 +429,11 @@ class RunController:
         self.next_run = plans.with_pen(self.next_run, down)
 
     def press(self, buttons: frozenset[str]) -> None:
-        """Hold down these buttons of the brick, and no others."""
+        """Hold down these of `PRESSABLE`, and no others."""
         if buttons == self.pressed:
             return
         self.pressed = buttons
-        self.send(protocol.SetButtons(tuple(name for name in BUTTONS if name in buttons)))
+        self.send(protocol.SetButtons(tuple(name for name in PRESSABLE if name in buttons)))
 
     def set_noise(self, noise: NoiseSpec) -> None:
         """Change the noise, at once and for the next run."""

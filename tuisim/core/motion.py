@@ -125,11 +125,11 @@ class Motion:
         "changed",
         "changed_ns",
         "drive",
-        "end_flags",
         "left",
         "line",
         "noise",
         "pen_down",
+        "press_flags",
         "right",
         "spec",
         "stall_ticks",
@@ -157,8 +157,8 @@ class Motion:
         left, right = spec.robot.wheel_motors
         self.left, self.right = motor_of(spec, left.kind), motor_of(spec, right.kind)
         self.pen_down = spec.robot.pen.down
-        self.end_flags = flags_at_start(spec.robot)
-        """Which end stops the motors are at that drive no wheel: the bits of `core.end_stops`."""
+        self.press_flags = flags_at_start(spec.robot)
+        """End stops that motors are at, and touch sensors that a hand presses: the bits of `PRESS_FLAGS`."""
         self.line = 0
         """Source line that spends the simulated time, for the record."""
         self.actions = 0
@@ -302,7 +302,7 @@ class Motion:
             self._bar_wheels()
         self._left_dps, self._right_dps = left_deg * self._hz, right_deg * self._hz
         flags = (left.mode and FLAG_LEFT_RUNNING) | (right.mode and FLAG_RIGHT_RUNNING)
-        flags |= (self.pen_down and FLAG_PEN_DOWN) | self.end_flags
+        flags |= (self.pen_down and FLAG_PEN_DOWN) | self.press_flags
         TICK_RECORD.pack_into(
             buffer,
             64 + 64 * count,
@@ -431,7 +431,7 @@ class Motion:
             (FLAG_LEFT_RUNNING if self.left.mode else 0)
             | (FLAG_RIGHT_RUNNING if self.right.mode else 0)
             | (FLAG_PEN_DOWN if self.pen_down else 0)
-            | self.end_flags
+            | self.press_flags
         )
 
     def _make_room(self, ticks: int) -> Buffer:

@@ -12,7 +12,7 @@ from tuisim.core.geometry import Pose
 from tuisim.core.motion import Motion, motor_of
 from tuisim.core.profile import NS_PER_S, MotorLaw
 from tuisim.core.state import Instant
-from tuisim.core.tick_record import TICK_RECORD, TickSink
+from tuisim.core.tick_record import END_FLAGS, TICK_RECORD, TickSink
 
 if TYPE_CHECKING:
     from tuisim.core.motors import Motor
@@ -57,7 +57,7 @@ class Simulation(Motion):
             if self._slipping is None
             else sensed_turn_rate_dps(left, right, spec),
             gyro_zero_deg=self.drive.gyro_zero_deg,
-            end_flags=self.end_flags,
+            press_flags=self.press_flags,
             noise=self.noise,
             drift=spec.world.drift,
             profile=spec.profile,
@@ -69,6 +69,10 @@ class Simulation(Motion):
         return TICK_RECORD.iter_unpack(self._buffer[64 + 64 * first : 64 + 64 * self._sink.count])
 
     # Changing
+
+    def press(self, hand_flags: int) -> None:
+        """Let hands press the touch sensors with these flags, and no others."""
+        self.press_flags = self.press_flags & END_FLAGS | hand_flags
 
     def restart(self, spec: RunSpec, sink: TickSink) -> None:
         """Begin the recorded run of a simulation that was prepared without one, and has not run yet.
@@ -154,8 +158,8 @@ class FurtherMotors(Simulation):
                 ):
                     self.changed = True
         flags = sum(stops.flags for stops in self._stops)
-        if flags != self.end_flags:
-            self.end_flags = flags
+        if flags != self.press_flags & END_FLAGS:
+            self.press_flags = self.press_flags & ~END_FLAGS | flags
             self.rewrite_record()
         self._report_turns()
 

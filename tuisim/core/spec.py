@@ -66,6 +66,21 @@ BUTTONS = ("up", "down", "left", "right", "enter", "backspace")
 REMOTE_BUTTONS = ("top_left", "bottom_left", "top_right", "bottom_right", "beacon")
 """Buttons of the remote control, by their names in ev3dev2."""
 
+REMOTE_BY_HAND = {
+    "remote.left_up": "top_left",
+    "remote.left_down": "bottom_left",
+    "remote.right_up": "top_right",
+    "remote.right_down": "bottom_right",
+    "remote.beacon": "beacon",
+}
+"""Names of the remote control's buttons for presses by hand; each of `REMOTE_BUTTONS` by its name."""
+
+TOUCH = "touch"
+"""Presses every touch sensor by hand."""
+
+PRESSABLE = (*BUTTONS, TOUCH, *INPUT_PORTS, *REMOTE_BY_HAND)
+"""What can be pressed by hand: buttons, touch sensors by their ports, and the remote control."""
+
 REMOTE_CHANNELS = (1, 2, 3, 4)
 """Channels of a remote control or beacon."""
 

@@ -23,8 +23,8 @@ class Instant:
     """Counter-clockwise, over the last tick, as a gyro senses it."""
     gyro_zero_deg: float = 0.0
     """Heading at which the gyro reads 0."""
-    end_flags: int = 0
-    """Which end stops the motors are at that drive no wheel: the bits of `core.end_stops`."""
+    press_flags: int = 0
+    """End stops that motors are at, and touch sensors that a hand presses: the bits of `PRESS_FLAGS`."""
     noise: NoiseSpec = NoiseSpec()
     drift: DriftSpec = NO_DRIFT
     profile: ProfileSpec = ROBOLAB

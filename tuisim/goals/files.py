@@ -16,7 +16,7 @@ from typing import Any
 from tuisim.config import files
 from tuisim.config.files import Location
 from tuisim.config.folders import programs_folder, user_path
-from tuisim.config.presses import ButtonPress
+from tuisim.config.presses import Press
 from tuisim.config.robots import DEFAULT_ROBOT, RobotChoice, choose_robot
 from tuisim.config.worlds import WorldFile, means_world, world_from_table
 from tuisim.core.conditions import ValueCondition
@@ -60,7 +60,7 @@ class GoalsFile:
     """The program that it names, if any: a path, or the name of an example."""
     others: tuple[TrialWorld, ...] = ()
     """Other worlds in which programs are tried, too."""
-    presses: tuple[ButtonPress, ...] = ()
+    presses: tuple[Press, ...] = ()
     """The buttons of the brick that are pressed in a run."""
     inputs: tuple[str, ...] = ()
     """The answers to `input()`, if the goals have no dialogue."""

@@ -322,8 +322,12 @@ def infrared_sensor(session: DeviceSession, spec: InfraredSpec) -> LegoSensor:
     modes = {
         "IR-PROX": Mode(lambda: (infrared.proximity(sim.pose, spec, world),), read, units="pct"),
         "IR-SEEK": Mode(lambda: infrared.seek(sim.pose, spec, world), read, units="pct"),
-        "IR-REMOTE": Mode(lambda: infrared.remote(time_s(), world), read, units="btn"),
-        "IR-REM-A": Mode(lambda: (infrared.remote_bits(time_s(), world),), read, form="s16"),
+        "IR-REMOTE": Mode(
+            lambda: infrared.remote(time_s(), world, session.pressed), read, units="btn"
+        ),
+        "IR-REM-A": Mode(
+            lambda: (infrared.remote_bits(time_s(), world, session.pressed),), read, form="s16"
+        ),
         "IR-CAL": Mode(lambda: (0, 0), read, form="s16"),
     }
     driver_name, switch_ns = SENSORS["infrared"].driver_name, sim.spec.profile.infrared_switch_ns
