@@ -8,10 +8,12 @@ from typing import TYPE_CHECKING
 
 from tuisim import protocol
 from tuisim.app.earlier_run import is_comparable, pose_at
+from tuisim.app.run_update import RunUpdate
 from tuisim.app.setup import next_run as plans
 from tuisim.app.setup.next_run import NextRun
-from tuisim.app.snapshot import RunPhase, Snapshot
+from tuisim.app.snapshot import RunPhase, Snapshot, busy_loop_words
 from tuisim.app.timeline import Timeline
+from tuisim.app.waiting import WaitWatch
 from tuisim.config.program_settings import require_library
 from tuisim.core.end_stops import flags_at_start
 from tuisim.core.field import Field
@@ -23,7 +25,6 @@ from tuisim.data_class import dataclass
 from tuisim.protocol import RunState
 from tuisim.runs.handle import RunOptions, start_run
 from tuisim.runs.recorded_run import Recording
-from tuisim.runs.records import OutputRow
 from tuisim.runs.standstill import standstill_words
 from tuisim.runs.store import RunStore
 from tuisim.runs.views import instant_of
@@ -126,6 +127,7 @@ class RunController:
         self._moved = True
         """Whether the robot was placed since the last run, so that the run's last record no longer applies."""
         self._pending = Pending()
+        self._waits = WaitWatch()
         self.propose: Callable[[protocol.Message], None] = lambda _: None
         """Called instead of a user action while a past instant is in view: the action is only possible in a branch."""
         self.paused_line: tuple[int, int] | None = None
@@ -528,9 +530,10 @@ class RunController:
         recording = self.timeline.recording
         if recording is None:
             return RunUpdate([])
-        ended = branched = busy_loop = None
+        ended = branched = None
         spoken: list[protocol.Spoke] = []
         pauses: list[protocol.Message] = []
+        remarks: list[str] = []
         for event in self.run.pump() if self.run else ():
             match event:
                 case protocol.Ended():
@@ -549,37 +552,11 @@ class RunController:
                 case protocol.Spoke() if self._branch is None:
                     spoken.append(event)
                 case protocol.BusyLoop() if self._branch is None:
-                    busy_loop = event
+                    remarks.append(busy_loop_words(event))
         stood = standstill_words(recording.telemetry, recording.spec) if ended else ""
+        remarks += self._waits.look(self, recording, ended)
         rows = recording.rows.take(ROWS_A_POLL)
         prompt = self.run.waiting_for_input if self.run and self.in_run else None
         return RunUpdate(
-            rows, ended, stood, tuple(spoken), prompt, branched, tuple(pauses), busy_loop
-        )
-
-
-@dataclass(frozen=True, slots=True)
-class RunUpdate:
-    """What has come from the run since the last poll."""
-
-    rows: list[OutputRow]
-    ended: protocol.Ended | None = None
-    """Set once, in the poll that receives the end."""
-    stood: str = ""
-    """Then also: where the robot stood in the way of something solid, in words."""
-    spoken: tuple[protocol.Spoke, ...] = ()
-    """Texts and sounds from the program."""
-    prompt: str | None = None
-    """The prompt while the program waits in `input()`."""
-    branched: Branch | None = None
-    """Set once, when a branch has reached its instant, or has ended before it."""
-    pauses: tuple[protocol.Message, ...] = ()
-    """Reports that the program has paused or resumed, and its frames and variables."""
-    busy_loop: protocol.BusyLoop | None = None
-    """Set once, when a loop has gone on for long without a wait."""
-
-    def __bool__(self) -> bool:
-        """Return whether anything has arrived; a prompt that is still open does not count."""
-        return bool(
-            self.rows or self.ended or self.spoken or self.branched or self.pauses or self.busy_loop
+            rows, ended, stood, tuple(spoken), prompt, branched, tuple(pauses), tuple(remarks)
         )

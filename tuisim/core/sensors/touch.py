@@ -49,7 +49,7 @@ def _meets(x_mm: float, y_mm: float, world: WorldSpec) -> bool:
     )
 
 
-def hand_flags(pressed: Collection[str]) -> int:
+def find_hand_flags(pressed: Collection[str]) -> int:
     """Return the flags of a tick record for the touch sensors that are pressed by hand.
 
     Args:
@@ -69,7 +69,7 @@ def columns(spec: TouchSpec) -> tuple[Column, ...]:
 
 def measure(spec: TouchSpec, instant: Instant, run: RunSpec, field: Field) -> tuple[float, ...]:
     """Return the value of `columns`: 1 pressed, 0 not."""
-    if instant.press_flags & hand_flags((spec.port,)):
+    if instant.press_flags & find_hand_flags((spec.port,)):
         return (1.0,)
     if spec.pressed_by:
         return (
