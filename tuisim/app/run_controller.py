@@ -27,7 +27,6 @@ from tuisim.runs.handle import RunOptions, start_run
 from tuisim.runs.recorded_run import Recording
 from tuisim.runs.standstill import standstill_words
 from tuisim.runs.store import RunStore
-from tuisim.runs.views import instant_of
 
 if TYPE_CHECKING:
     from tuisim.app.branch import Branch
@@ -200,7 +199,7 @@ class RunController:
         turns = turns or ((0.0, 0.0),) * len(spec.robot.extra_motors)
         if state is RunPhase.ENDED and not past:
             # The last record is of the tick before the program's last commands; after its end, nothing turns.
-            instant = replace(instant, left_speed_dps=0.0, right_speed_dps=0.0)
+            instant = instant.stop()
             turns = tuple((position_deg, 0.0) for position_deg, _ in turns)
         return Snapshot(
             state=state,
@@ -271,7 +270,8 @@ class RunController:
             else self.next_run.spec.robot.pen.down
         )
         exact = dict(known for known in (self.paused_line, self.printed_line) if known)
-        instant, line = instant_of(record, self.spec, noise), exact.get(record.tick, record.line)
+        instant = recording.instant(record, self.spec, noise)
+        line = exact.get(record.tick, record.line)
         if self.in_run and not self.in_past:
             instant, down = self._pending.done_to(record, instant, down)
         return instant, line, down

@@ -197,7 +197,7 @@ def check_breaks(
             or there are watches without breakpoints.
     """
     for one in prepared:
-        parse_breakpoints(texts, one.spec.robot)
+        parse_breakpoints(texts, one.spec)
     for watch in watches:
         parse_watch(watch)
     if watches and not texts:

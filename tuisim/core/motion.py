@@ -19,6 +19,7 @@ from tuisim.core.driver.jiffies import draw_jiffies
 from tuisim.core.driver.motor import MotorCommand
 from tuisim.core.driver.simulated import SimulatedMotor, build_axle, build_motor
 from tuisim.core.end_stops import flags_at_start
+from tuisim.core.motor_columns import MotorRecorder, MotorSink, MotorValues
 from tuisim.core.motors import POSITION, Motor, MotorState, top_speed_dps
 from tuisim.core.noise import wheel_noise, wheel_noises
 from tuisim.core.profile import NS_PER_S, MotorLaw
@@ -111,6 +112,7 @@ class Motion:
         "_left_dps",
         "_left_mm_per_deg",
         "_longest_mm",
+        "_motor_recorder",
         "_right_dps",
         "_right_mm_per_deg",
         "_roll",
@@ -172,7 +174,7 @@ class Motion:
         """When a driver noticed the last such change."""
         self._begin(spec, sink)
 
-    def _begin(self, spec: RunSpec, sink: TickSink) -> None:
+    def _begin(self, spec: RunSpec, sink: TickSink, motor_sink: MotorSink | None = None) -> None:
         """Take up its initial state, as far as it differs between runs of one robot in one world."""
         self.spec, self._sink = spec, sink
         self.noise = spec.world.noise
@@ -187,8 +189,10 @@ class Motion:
         self._buffer: Buffer = sink.room(ROOM_TICKS)
         self._room_end = ROOM_TICKS
         """Number of records the buffer has space for."""
+        self._motor_recorder = MotorRecorder(self._driven, motor_sink)
+        self._motor_recorder.make_room(ROOM_TICKS)
         TICK_RECORD.pack_into(self._buffer, 64, *self._fields())
-        sink.publish(1)
+        self._publish(1)
 
     def _start_clocks(self) -> None:
         """Let the drivers' clocks begin where the seed says."""
@@ -214,6 +218,17 @@ class Motion:
     def notices(self) -> bool:
         """Whether drivers notice changes of the motors' states late, when they look."""
         return bool(self._driven)
+
+    @property
+    def motor_values(self) -> tuple[MotorValues, ...]:
+        """What the drivers of all motors know, as it is recorded at the end of the last tick; empty without drivers."""
+        return self._motor_recorder.read_values(self._sink.count - 1)
+
+    def _publish(self, ticks: int) -> None:
+        """Let readers see the records of some more ticks; in all of them the drivers know the same."""
+        count = self._sink.count
+        self._motor_recorder.record(count, ticks)
+        self._sink.publish(count + ticks)
 
     def next_change_ns(self, now_ns: int) -> int:
         """Return when a motor may change next, as far as a program can be told: with the next tick or look."""
@@ -319,7 +334,7 @@ class Motion:
             flags,
             self.actions & 0xFFFF,
         )
-        self._sink.publish(count + 1)
+        self._publish(1)
 
     def _push(self, aside_mm: tuple[float, float]) -> None:
         """Move the robot aside, along x and y."""
@@ -439,6 +454,7 @@ class Motion:
         end = self._sink.count + ticks
         if end > self._room_end:
             self._buffer, self._room_end = self._sink.room(ticks + ROOM_TICKS), end + ROOM_TICKS
+            self._motor_recorder.make_room(self._room_end)
         return self._buffer
 
     def _glide(self, ticks: int) -> None:
@@ -478,7 +494,7 @@ class Motion:
                 left_deg, right_deg = left_even.roll_deg, right_even.roll_deg
             self._left_dps, self._right_dps = left_deg * hz, right_deg * hz
             self.tick += part
-            sink.publish(sink.count + part)
+            self._publish(part)
             ticks -= part
 
     def _glides(self, ticks: int) -> tuple[Glide, Glide]:

@@ -153,7 +153,7 @@ def computed_columns(log: Log) -> dict[str, Callable[[], FloatArray]]:
     there = set(numeric_columns(log.table.schema))
     return {
         column.name: partial(_computed_column, column.of, columns, log, spec)
-        for columns, _ in owners(spec.robot)
+        for columns, _ in owners(spec)
         for column in columns
         if column.of is not None
         and column.name not in there
@@ -164,12 +164,6 @@ def computed_columns(log: Log) -> dict[str, Callable[[], FloatArray]]:
 def _computed_column(of: Any, columns: Sequence[Column], log: Log, spec: RunSpec) -> FloatArray:
     measured = {name: log.numbers(name) for name in measured_names(columns)}
     return computed(of, columns, measured, spec)
-
-
-def robot_of(log: Log) -> RobotSpec | None:
-    """Return the robot of a log, None if its metadata describe none."""
-    spec = spec_in(log.metadata)
-    return spec.robot if spec else None
 
 
 def named_columns(log: Log, text: str) -> list[str]:

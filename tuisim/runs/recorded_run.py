@@ -6,21 +6,26 @@ from array import array
 from bisect import bisect_right
 from collections.abc import Iterator
 from contextlib import suppress
+from dataclasses import replace
 from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tuisim.core.field import Field
 from tuisim.core.motion import stall_ticks
+from tuisim.core.motor_columns import MotorValues
 from tuisim.core.pen_marks import MarkedField, PenMarks
 from tuisim.core.spec import NoiseSpec, RunSpec
+from tuisim.core.state import Instant
 from tuisim.core.tick_record import FLAG_LEFT_RUNNING, FLAG_RIGHT_RUNNING, TICK_RECORD
 from tuisim.errors import LogError
 from tuisim.protocol import SetButtons, UserAction
+from tuisim.runs.motor_records import read_motor_values
 from tuisim.runs.records import SAMPLE_STREAMS, TEXT_STREAMS, Mark, OutputRow, Stream
 from tuisim.runs.run_folder import StoredRun, noise_at, program_again
 from tuisim.runs.samples import parse_sample
 from tuisim.runs.side_files import read_actions
+from tuisim.runs.views import instant_of
 
 if TYPE_CHECKING:
     from tuisim.runs.handle import RunHandle
@@ -104,6 +109,13 @@ class Recording:
         if self._marks is None:
             self._marks = _TimedMarks(mat, self)
         return self._marks.at(tick)
+
+    def instant(self, record: TickRecord, spec: RunSpec, noise: NoiseSpec) -> Instant:
+        """Return the instant of a record, with what the drivers knew of the motors if that is not damaged."""
+        motors: tuple[MotorValues, ...] = ()
+        with suppress(LogError):
+            motors = read_motor_values(self.folder, self.spec, record.tick)
+        return replace(instant_of(record, spec, noise), motors=motors)
 
     def stalled(self, record: TickRecord) -> tuple[bool, bool]:
         """Return whether the left and the right motor were running but did not turn."""
