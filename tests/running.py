@@ -53,8 +53,7 @@ class Done:
         """Everything the run recorded."""
         return tuple(
             (self.run.folder / name).read_bytes()
-            for name in ("telemetry.bin", "output.bin", "readings.bin", "motors.bin")
-            if (self.run.folder / name).exists()
+            for name in ("telemetry.bin", "output.bin", "readings.bin")
         )
 
 

@@ -66,11 +66,10 @@ _OPTIONS = (
     option(
         "--press",
         multiple=True,
-        metavar="NAME@S",
+        metavar="BUTTON@S",
         type=WordType(parse_press),
         group=_REPORTS,
-        help="Press a button, a touch sensor or the remote by hand: enter@1.0-1.5, in1@2, touch@2 (every touch "
-        "sensor), remote.left_up@1-3; without an end for 0.1 s; may be repeated.",
+        help="Press a button of the brick: enter@1.0-1.5, or enter@1 for 0.1 s; may be repeated.",
     ),
     option(
         "--all",
@@ -197,7 +196,7 @@ def check_breaks(
             or there are watches without breakpoints.
     """
     for one in prepared:
-        parse_breakpoints(texts, one.spec)
+        parse_breakpoints(texts, one.spec.robot)
     for watch in watches:
         parse_watch(watch)
     if watches and not texts:
