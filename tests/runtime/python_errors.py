@@ -84,13 +84,6 @@ speed = 1
 raise NameError('mine', name='sped')
 """,
     "attr-mine": "raise AttributeError('mine', name='appendd', obj=[])",
-    "del-builtin": """\
-import builtins
-del builtins.len
-try: len('x')
-except NameError as e: print(e)
-len('x')
-""",
 }
 
 CHAINS: Mapping[str, str] = {
