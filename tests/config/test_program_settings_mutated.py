@@ -94,7 +94,7 @@ def _places(tree: ast.Module) -> Iterator[tuple[list[Any], int]]:
                     yield values, at
 
 
-@pytest.mark.parametrize("count", [60, pytest.param(1_000, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("count", [60])
 def test_no_text_makes_the_reader_fail(count: int, tmp_path: Path) -> None:
     path = str(tmp_path / "p.py")
     read = [(text, facts_of(Program("p.py", text, path=path))) for text in _mutants(count)]
