@@ -9,10 +9,10 @@ from pybricks.tools import wait, StopWatch, DataLog
 from pybricks.robotics import DriveBase
 from pybricks.media.ev3dev import SoundFile, ImageFile
 
-# Black reads 0 and white 100: halfway between, the sensor is over the edge of the line.
-EDGE = 50
+# Black reads 5 and white 85: halfway between, the sensor is over the edge of the line.
+EDGE = 45
 SPEED = 80
-GAIN = 1.2
+GAIN = 1.5
 
 left_motor = Motor(Port.B)
 right_motor = Motor(Port.C)

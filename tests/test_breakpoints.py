@@ -17,11 +17,12 @@ from tuisim.breakpoints import (
     parse_breakpoints,
 )
 from tuisim.core.conditions import ValueCondition, ValueSource
+from tuisim.core.profile import PROFILES
 from tuisim.core.sensors import columns_of
-from tuisim.core.spec import RobotSpec
+from tuisim.core.spec import RobotSpec, RunSpec, WorldSpec
 from tuisim.errors import ConfigError
 
-ROBOT = RobotSpec()
+RUN = RunSpec(RobotSpec(), WorldSpec(), PROFILES["ev3"])
 
 RULES: dict[str, tuple[BreakRule, str]] = {
     "12": (LineBreak(12), "12"),
@@ -69,12 +70,12 @@ RULES: dict[str, tuple[BreakRule, str]] = {
 
 @pytest.mark.parametrize("text, rule, common", [(t, *r) for t, r in RULES.items()], ids=RULES)
 def test_a_text_is_a_rule_and_back(text: str, rule: BreakRule, common: str) -> None:
-    found = parse_break(text, ROBOT)
+    found = parse_break(text, RUN)
     assert found == Breakpoint(rule, common)
-    assert parse_break(found.written(), ROBOT) == found
-    off = parse_break("# " + text, ROBOT)
+    assert parse_break(found.written(), RUN) == found
+    off = parse_break("# " + text, RUN)
     assert off.disabled
-    assert parse_break(off.written(), ROBOT) == off
+    assert parse_break(off.written(), RUN) == off
 
 
 WRONG = {
@@ -101,17 +102,15 @@ WRONG = {
 @pytest.mark.parametrize("text, why", WRONG.items(), ids=[text[:20] or "empty" for text in WRONG])
 def test_what_is_no_break_says_why_and_what_is_allowed(text: str, why: str) -> None:
     with pytest.raises(ConfigError, match="break: ") as refused:
-        parse_break(text, ROBOT)
+        parse_break(text, RUN)
     assert why in refused.value.message
     assert refused.value.hint
 
 
 def test_every_column_of_a_robot_can_be_compared_and_without_one_any_name() -> None:
-    for column in columns_of(ROBOT):
+    for column in columns_of(RUN):
         for name in (column.name, *column.also):
-            assert parse_break(f"{name} > 1.5", ROBOT).rule == ValueCondition(
-                column.name, ">", "1.5"
-            )
+            assert parse_break(f"{name} > 1.5", RUN).rule == ValueCondition(column.name, ">", "1.5")
     assert parse_break("middle.red > 1").rule == ValueCondition("middle.red", ">", "1")
 
 

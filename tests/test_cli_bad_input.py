@@ -56,7 +56,7 @@ BAD = {
     "timeout": ("run prog.py --timeout 0", "--timeout: must be a number from 0.001"),
     "press": (
         "run prog.py --press entre@1",
-        "--press: the brick has no button 'entre' (did you mean enter?)",
+        "--press: 'entre' cannot be pressed (did you mean enter?)",
     ),
     "pen colour": ("run prog.py -P reed", "-P: no such colour 'reed' (did you mean red"),
     "a command that is gone": ("man", "man: no such command or program (`tuisim --help` lists"),

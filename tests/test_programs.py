@@ -192,4 +192,4 @@ def test_pybricks_data_log_has_a_row_for_each_sample_but_the_last(
     assert [f"Colour: {row.split(', ')[1]}" for row in rows] == printed[:-1]
     values = [int(row.split(", ")[1]) for row in rows]
     flat = [value for value, after in pairwise(values) if value == after]
-    assert list(dict.fromkeys(flat)) == [100, 86, 82, 50]
+    assert list(dict.fromkeys(flat)) == [85, 74, 70, 45]

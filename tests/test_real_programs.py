@@ -75,7 +75,7 @@ OWN: Mapping[str, Case] = {
     "factory": Case("1 left, 2 ultrasonic, A left wheel, B -, D medium motor", "White 48"),
     "four_large": Case("A large motor, D large motor", "4"),
     "from_modules/main": Case(
-        "1 left, 2 ultrasonic, A left wheel, B medium motor, C -, D right wheel", "White 62"
+        "1 left, 2 ultrasonic, A left wheel, B medium motor, C -, D right wheel", "NoColor 59"
     ),
     "generic_motor": Case("1 left, 2 ultrasonic, A left wheel, B -, C -, D right wheel", "100 360"),
     "gyro_and_infrared": Case("1 infrared", "True 87"),

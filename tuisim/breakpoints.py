@@ -17,7 +17,7 @@ from tuisim.core.conditions import (
     finite_number,
     run_condition_in,
 )
-from tuisim.core.spec import RobotSpec
+from tuisim.core.spec import RunSpec
 from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError, see_page
 
@@ -94,8 +94,8 @@ _LINE = re.compile(r"(?:line\s+)?(\d+)(?:\s+if\s+(.*))?", re.DOTALL)
 _NAME = re.compile(r"\w+(?:[. ]\w+)*\s*%?")
 
 
-def parse_break(text: str, robot: RobotSpec | None = None) -> Breakpoint:
-    """Return the breakpoint that a text describes; without a robot any name of a sensor is accepted.
+def parse_break(text: str, run: RunSpec | None = None) -> Breakpoint:
+    """Return the breakpoint that a text describes; without a run any name of a sensor is accepted.
 
     Raises:
         ConfigError: the text is not a valid breakpoint; the hint lists what is allowed.
@@ -103,15 +103,13 @@ def parse_break(text: str, robot: RobotSpec | None = None) -> Breakpoint:
     stripped = text.strip()
     disabled = stripped.startswith("#")
     bare = stripped.lstrip("#").strip()
-    rule = _rule(bare, robot)
+    rule = _rule(bare, run)
     return Breakpoint(rule, _common_text(rule), disabled)
 
 
-def parse_breakpoints(
-    texts: Iterable[str], robot: RobotSpec | None = None
-) -> tuple[Breakpoint, ...]:
+def parse_breakpoints(texts: Iterable[str], run: RunSpec | None = None) -> tuple[Breakpoint, ...]:
     """Return the breakpoints of several texts; see `parse_break`."""
-    return tuple(parse_break(text, robot) for text in texts)
+    return tuple(parse_break(text, run) for text in texts)
 
 
 def break_lines(breaks: Iterable[Breakpoint]) -> dict[int, Breakpoint]:
@@ -143,7 +141,7 @@ def _refuse(
     return ConfigError(f"{text!r}: {why}", hint, key="break")
 
 
-def _rule(text: str, robot: RobotSpec | None) -> BreakRule:
+def _rule(text: str, run: RunSpec | None) -> BreakRule:
     if not text:
         raise _refuse(text, "is empty")
     word, _, rest = text.partition(" ")
@@ -153,7 +151,7 @@ def _rule(text: str, robot: RobotSpec | None) -> BreakRule:
         return StallBreak()
     if word == "time":
         return TimeBreak(_seconds(text, rest.strip().removesuffix("s").strip()))
-    return _condition(text, word, robot)
+    return _condition(text, word, run)
 
 
 def _line_rule(text: str, line: int, condition: str | None) -> LineBreak:
@@ -188,7 +186,7 @@ def parse_watch(text: str) -> str:
     return text
 
 
-def _condition(text: str, word: str, robot: RobotSpec | None) -> ValueCondition:
+def _condition(text: str, word: str, run: RunSpec | None) -> ValueCondition:
     found = run_condition_in(text)
     if found is None or (found.source is ValueSource.SAMPLE and not found.name):
         raise _refuse(text, *_NO_CONDITION.get(word, ("is not a breakpoint",)))
@@ -200,16 +198,16 @@ def _condition(text: str, word: str, robot: RobotSpec | None) -> ValueCondition:
             except (re.error, OverflowError, RecursionError) as error:
                 raise _refuse(text, f"not a regular expression: {error}", _PRINT_FORM) from error
         case ValueSource.COLUMN:
-            name = _column(text, found.name, robot)
+            name = _column(text, found.name, run)
     try:
         return found.of_column(name)
     except ValueError as error:
         raise _refuse(text, str(error)) from None
 
 
-def _column(text: str, written: str, robot: RobotSpec | None) -> str:
-    """Return the name of a column; without a robot, what is written, if it can be one."""
-    if robot is None:
+def _column(text: str, written: str, run: RunSpec | None) -> str:
+    """Return the name of a column; without a run, what is written, if it can be one."""
+    if run is None:
         if not _NAME.fullmatch(written):
             raise _refuse(text, f"there is no {written!r}")
         return written
@@ -217,7 +215,7 @@ def _column(text: str, written: str, robot: RobotSpec | None) -> str:
         # Imported on demand: most runs have no breakpoints, and nothing else in a host needs the sensors.
         from tuisim.core.sensors import named_column
 
-        return named_column(written, robot)
+        return named_column(written, run)
     except ConfigError as error:
         raise _refuse(text, error.message, error.hint) from None
 

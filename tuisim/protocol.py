@@ -10,7 +10,7 @@ from dataclasses import asdict
 from enum import StrEnum
 from typing import Any, ClassVar
 
-from tuisim.core.spec import BUTTONS
+from tuisim.core.spec import PRESSABLE
 from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError
 
@@ -293,19 +293,17 @@ class SetPen(Message):
 
 @dataclass(frozen=True, slots=True)
 class SetButtons(Message):
-    """User action: these buttons of the brick are pressed from now on, all others are released."""
+    """User action: this is pressed by hand from now on, all else is released: buttons and touch sensors."""
 
     pressed: tuple[str, ...]
-    """Names from `BUTTONS`; others raise a ConfigError."""
+    """Names from `PRESSABLE`; others raise a ConfigError."""
 
     def __post_init__(self) -> None:
         # JSON gives a list.
         object.__setattr__(self, "pressed", tuple(self.pressed))
         for name in self.pressed:
-            if name not in BUTTONS:
-                raise ConfigError(
-                    f"the brick has no button {name!r}", f"one of {', '.join(BUTTONS)}"
-                )
+            if name not in PRESSABLE:
+                raise ConfigError(f"{name!r} cannot be pressed", f"one of {', '.join(PRESSABLE)}")
 
 
 @dataclass(frozen=True, slots=True)

@@ -18,7 +18,7 @@ from tuisim.analysis.source import LogRequest
 from tuisim.app import app as app_module
 from tuisim.app.analyser.app import AnalyserApp
 from tuisim.app.app import LabApp
-from tuisim.app.run_controller import RunUpdate
+from tuisim.app.run_update import RunUpdate
 from tuisim.app.snapshot import RunPhase
 from tuisim.protocol import Resumed
 from tuisim.terminal.pacer import Pacer

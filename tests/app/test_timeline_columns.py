@@ -47,7 +47,7 @@ async def test_every_trace_of_the_chart_can_be_typed() -> None:
             await entered(pilot, f"{name} > -1")
         await pilot.press("escape")
         assert [one.text for one in app.debugger.breaks] == [f"{name} > -1" for name in names]
-        app.push_screen(WatchesDialog((), app.run_controller.spec.robot, app.debugger.set_watches))
+        app.push_screen(WatchesDialog((), app.run_controller.spec, app.debugger.set_watches))
         await until(pilot, lambda: bool(app.screen.query(OptionList)))
         for name in names:
             await entered(pilot, name)

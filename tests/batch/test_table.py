@@ -39,6 +39,7 @@ def test_there_is_one_row_for_each_run_whatever_the_order() -> None:
         "x_mm",
         "y_mm",
         "heading_deg",
+        "waited_for",
         "Colour_last",
         "Colour_count",
         "Colour_mean",

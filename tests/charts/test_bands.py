@@ -9,6 +9,7 @@ from tuisim.charts.bands import MOST_SAMPLES, SHADES, placed_names, spans_of
 from tuisim.charts.plot_image import PlotInks, plot_image
 from tuisim.charts.text_chart import ChartPainter, ChartState
 from tuisim.charts.traces import Traces
+from tuisim.logs.levels import PLAIN_LIGHT
 
 LEVELS = [100.0] * 20 + [60.0] * 20 + [0.0] * 20
 GROUND, AXIS, WHITE, SHADED = (
@@ -22,7 +23,7 @@ GROUND, AXIS, WHITE, SHADED = (
 def chart(values: list[float]) -> tuple[Traces, ChartState]:
     traces = Traces()
     traces.append("Colour", (np.arange(len(values)) / 10).tolist(), values)
-    return traces, ChartState(spans=spans_of(next(iter(traces)), 0))
+    return traces, ChartState(spans=spans_of(next(iter(traces)), PLAIN_LIGHT))
 
 
 def test_each_band_is_named_by_its_level_and_grey() -> None:
@@ -37,7 +38,7 @@ def test_each_band_is_named_by_its_level_and_grey() -> None:
 
 
 def test_names_are_all_long_or_all_short_and_never_touch() -> None:
-    spans = spans_of(next(iter(chart([86.2745] * 9 + [82.745] * 9 + [0.0])[0])), 0)
+    spans = spans_of(next(iter(chart([86.2745] * 9 + [82.745] * 9 + [0.0])[0])), PLAIN_LIGHT)
 
     wide = placed_names(spans, [range(20), range(20, 40), range(40, 41)], 4, 41, lambda *_: True)
     narrow = placed_names(spans, [range(3), range(3, 6), range(6, 7)], 4, 7, lambda *_: True)
@@ -47,7 +48,7 @@ def test_names_are_all_long_or_all_short_and_never_touch() -> None:
 
 
 def test_a_name_stands_beside_a_cursor() -> None:
-    spans = spans_of(next(iter(chart(LEVELS)[0])), 0)
+    spans = spans_of(next(iter(chart(LEVELS)[0])), PLAIN_LIGHT)
     places = [range(5), range(5, 10), range(10, 15)]
 
     def put(cursors: list[int]) -> list[tuple[int, int, str]]:

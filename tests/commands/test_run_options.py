@@ -1,42 +1,45 @@
-"""`--press`: which button is held from which tick."""
+"""`--press`: what is held from which tick."""
 
 from __future__ import annotations
 
 import pytest
 
 from tests.cases import cases
-from tuisim.config.presses import ButtonPress, parse_press
-from tuisim.core.spec import BUTTONS
+from tuisim.config.presses import Press, parse_press
+from tuisim.core.spec import PRESSABLE
 from tuisim.errors import ConfigError
 from tuisim.protocol import SetButtons, UserAction
 from tuisim.runs.run_options import press_actions
 
 GIVEN = {
-    "plain": ("enter@1", ButtonPress("enter", 1.0, 1.1)),
-    "held": ("up@0.5-2", ButtonPress("up", 0.5, 2.0)),
-    "from the start": ("backspace@0-0.01", ButtonPress("backspace", 0.0, 0.01)),
+    "plain": ("enter@1", Press("enter", 1.0, 1.1)),
+    "held": ("up@0.5-2", Press("up", 0.5, 2.0)),
+    "a touch sensor": ("in1@2-2.5", Press("in1", 2.0, 2.5)),
+    "every touch sensor": ("touch@2", Press("touch", 2.0, 2.1)),
+    "the remote": ("remote.left_up@1-3", Press("remote.left_up", 1.0, 3.0)),
+    "from the start": ("backspace@0-0.01", Press("backspace", 0.0, 0.01)),
 }
 
 
 @cases("text, press", GIVEN)
-def test_a_press_is_read(text: str, press: ButtonPress) -> None:
+def test_a_press_is_read(text: str, press: Press) -> None:
     assert parse_press(text) == press
 
 
 WRONG = {
     "no time": (
         "enter",
-        "--press: must be BUTTON@FROM or BUTTON@FROM-UNTIL, got 'enter' (such as enter@1.5)",
+        "--press: must be NAME@FROM or NAME@FROM-UNTIL, got 'enter' (such as enter@1.5)",
     ),
-    "no button": ("entre@1", "--press: the brick has no button 'entre' (did you mean enter?)"),
-    "empty": ("@1", f"--press: the brick has no button '' (one of {', '.join(BUTTONS)})"),
+    "no button": ("entre@1", "--press: 'entre' cannot be pressed (did you mean enter?)"),
+    "empty": ("@1", f"--press: '' cannot be pressed (one of {', '.join(PRESSABLE)})"),
     "no number": ("up@soon", "--press: must be a number from 0 to 1e+06, got 'soon'"),
     "negative": ("up@-1", "--press: must be a number from 0 to 1e+06, got '-1'"),
     "not a number": ("up@nan", "--press: must be a number from 0 to 1e+06, got 'nan'"),
     "no end": ("up@1-", "--press: must be a number from 0 to 1e+06, got ''"),
     "backwards": (
         "up@2-1",
-        "--press: 'up@2-1' ends before it begins (BUTTON@FROM-UNTIL, in simulated seconds)",
+        "--press: 'up@2-1' ends before it begins (NAME@FROM-UNTIL, in simulated seconds)",
     ),
 }
 
@@ -75,5 +78,5 @@ def test_ticks_are_those_of_the_profile() -> None:
 
 
 def test_a_button_that_the_brick_does_not_have_is_refused() -> None:
-    with pytest.raises(ConfigError, match="the brick has no button 'start'"):
+    with pytest.raises(ConfigError, match="'start' cannot be pressed"):
         SetButtons(("up", "start"))

@@ -24,7 +24,7 @@ ASKED = {
     "a program or a command": ("pro", ["programs", "profiles", "prog.py"]),
     "an example or a file": ("run lo", ["log_greys", "log.csv"]),
     "a value": ("run --walls ", ["on", "off"]),
-    "a column to stop at": ("run prog.py --break left_r", ["left_red", "left_red_pc"]),
+    "a column to stop at": ("run prog.py --break left_re", ["left_red", "left_red_pc"]),
     "a column of a log": ("log events last --when gyro_", ["gyro_deg", "gyro_rate_dps"]),
     "a name": ("run -b Grey_b", ["Grey_bands"]),
     "a profile": (

@@ -59,7 +59,7 @@ def test_a_key_of_the_robot_leaves_the_rest_of_the_chosen_robot() -> None:
 
 
 def test_a_key_of_drift_leaves_the_rest_of_the_chosen_drift() -> None:
-    typical = DriftSpec(0.5, 1.0, 1.0, 1.0, 3.0, 0.05, 100.0, 10.0)
+    typical = DriftSpec(0.5, 1.0, 1.0, 1.0, 3.0, 0.05, 2.0, 14.0, 100.0, 10.0, 5.0)
     assert spec_with({"drift": "typical"}).world.drift == typical
     assert spec_with({"drift.slip_pc": 7}, drift=typical).world.drift == replace(
         typical, slip_pc=7.0

@@ -25,15 +25,14 @@ from tuisim.config.build import build_run_spec
 from tuisim.config.options import Settings
 from tuisim.core.columns import column_name
 from tuisim.core.sensors import columns_of
-from tuisim.core.spec import RobotSpec
 from tuisim.goals.judge import judge
 from tuisim.runs.frames import column_values
 from tuisim.runs.recorded_run import Recording
 from tuisim.runs.run_folder import StoredRun, open_mat
 from tuisim.runs.store import RunStore
 
-ROBOT = build_run_spec(Settings()).robot
-TRACES = [column.name for column in columns_of(ROBOT) if column.is_traced]
+RUN = build_run_spec(Settings())
+TRACES = [column.name for column in columns_of(RUN) if column.is_traced]
 PROGRAM = "tank_drive.on_for_rotations(30, 20, 1)\nx = 1\n"
 
 
@@ -54,7 +53,7 @@ def run(home_of_runs: Path, monkeypatch: pytest.MonkeyPatch) -> StoredRun:
 
 
 def value_of(run: StoredRun, name: str) -> float:
-    values = column_values([name], run.telemetry.array(), run.spec, run.actions, open_mat(run))
+    values = column_values([name], run.telemetry.array(), run, run.actions, open_mat(run))
     return float(values[name][-1])
 
 
@@ -243,4 +242,4 @@ def test_a_new_value_is_added_by_one_line(tmp_path: Path) -> None:
     ],
 )
 def test_names_of_before_are_understood(text: str, name: str | None) -> None:
-    assert column_name(text, columns_of(RobotSpec())) == name
+    assert column_name(text, columns_of(RUN)) == name

@@ -140,8 +140,8 @@ def test_cost_of_a_call(run: Run, text: str, old_s: float, true_s: float, profil
 
 ON_THE_BRICK = {
     "light": ("colorLeft.reflected_light_intensity", 0.0012),
-    "rgb": ("colorLeft.rgb", 0.0023),
-    "colour": ("colorLeft.color", 0.0023),
+    "rgb": ("colorLeft.rgb", 0.0173),
+    "colour": ("colorLeft.color", 0.0173),
     "angle": ("gyro.angle", 0.0012),
     "position": ("tank_drive.left_motor.position", 0.0012),
     "set point": ("tank_drive.left_motor.speed_sp = 100", 0.0011),
@@ -257,13 +257,12 @@ GREYS = {125: 255, 325: 220, 725: 211, 1125: 128, 1525: 0}
 
 
 @pytest.mark.quick_cases("*-robolab")
-@pytest.mark.parametrize("profile", [OLD, TRUE, "ev3"])
+@pytest.mark.parametrize("profile", [OLD, TRUE])
 @pytest.mark.parametrize("x_mm, grey", GREYS.items())
 def test_all_properties_of_a_grey(run: Run, profile: str, x_mm: int, grey: int) -> None:
-    reflected = grey * 100 // 255 if profile == "ev3" else grey
     code, name = (1, "Black") if grey < 128 else (6, "White")
     share = 100 * (grey / 255)
-    expected = f"{reflected} {share} {share} {(grey, grey, grey)} {code} {name}"
+    expected = f"{grey} {share} {share} {(grey, grey, grey)} {code} {name}"
     done = run(PROPERTIES, profile=profile, pose=(float(x_mm), 500.0, 0.0))
     assert done.lines == [expected] * 2
 

@@ -40,7 +40,7 @@ KINDS: dict[str, Value] = {
     "color": Color(),
     "part": NamedPart(DriftSpec),
 }
-TYPICAL = DriftSpec(0.5, 1.0, 1.0, 1.0, 3.0, 0.05, 100.0, 10.0)
+TYPICAL = DriftSpec(0.5, 1.0, 1.0, 1.0, 3.0, 0.05, 2.0, 14.0, 100.0, 10.0, 5.0)
 
 
 @pytest.mark.parametrize(

@@ -341,11 +341,11 @@ BAD = {
     ),
     "a button that there is not": (
         f"press = ['entr@2']\n{GOOD}",
-        "line 1: press[1]: the brick has no button 'entr'",
+        "line 1: press[1]: 'entr' cannot be pressed",
     ),
     "another world's press without a time": (
         f"{GOOD}[[also]]\nwhere = 'x'\npress = ['enter']",
-        "line 7: also[1].press[1]: must be BUTTON@FROM or BUTTON@FROM-UNTIL",
+        "line 7: also[1].press[1]: must be NAME@FROM or NAME@FROM-UNTIL",
     ),
     "another world's mat that there is not": (
         f"background = 'Loop'\n{GOOD}[[also]]\nwhere = 'x'\nbackground = 'Lop'",

@@ -40,7 +40,8 @@ read = { reading = "color", times = 9 }
 
 def test_each_reading_of_a_pybricks_program_counts(tmp_path: Path, here: Command) -> None:
     (tmp_path / "reads.py").write_text(PROGRAM)
-    (tmp_path / "goals.toml").write_text(GOALS)
+    # A brick's sensor reads 85 % on white paper.
+    (tmp_path / "goals.toml").write_text(GOALS.replace("86.3", "74"))
     assert here("run", "goals.toml").returncode == 0
     lines = here("goals", "check", "goals.toml").stdout.splitlines()
     marks = [line.split()[:2] for line in lines if line.lstrip()[:1] in "✓✗" and line.strip()]

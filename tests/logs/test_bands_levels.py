@@ -9,9 +9,19 @@ import pyarrow as pa
 import pytest
 
 from tuisim.core.noise import clamping
-from tuisim.logs.bands import BandReport, band_report, in_words, light_noise
+from tuisim.core.profile import EV3
+from tuisim.core.spec import RobotSpec, RunSpec, WorldSpec
+from tuisim.logs.bands import BandReport, band_report, in_words, read_light
 from tuisim.logs.columns import guess_columns
-from tuisim.logs.levels import greys, light_scale, nearest_greys, without_clamping
+from tuisim.logs.levels import (
+    Light,
+    find_light,
+    greys,
+    levels_of,
+    light_scale,
+    nearest_greys,
+    without_clamping,
+)
 from tuisim.logs.log import Log
 
 
@@ -87,7 +97,19 @@ def test_places_and_widths() -> None:
     ],
 )
 def test_log_that_does_not_know_its_noise(metadata: dict[str, object]) -> None:
-    assert light_noise(metadata, 0) == 0
+    assert read_light(metadata, 0) == Light()
+
+
+def test_greys_as_a_brick_reads_them() -> None:
+    light = find_light(RunSpec(RobotSpec(), WorldSpec(), EV3))
+    values = np.repeat([85.0, 74.0, 70.0, 45.0, 5.0], 5)
+    found = levels_of(values, light)
+    names = [grey.name if grey else "" for grey in found.greys]
+    assert names == ["white", "pale grey", "light grey", "grey", "black"]
+    noisy = levels_of(values, light._replace(noise=20))
+    # Noise makes white darker, and black lighter.
+    assert noisy.true_level[0] >= 85.0 and noisy.true_level[-1] <= 5.1
+    assert noisy.true_level[3] == pytest.approx(45.0)
 
 
 def test_empty_cells_belong_to_no_band() -> None:

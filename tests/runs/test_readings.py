@@ -93,7 +93,7 @@ def _replace(path: Path, begin: int, data: bytes) -> None:
         (0, b"TUISIMTL", "not a tuisim recording"),
         (8, b"\x09", "format version 9"),
         (HEADER_BYTES, b"\xff" * 8, "these are no readings"),
-        (HEADER_BYTES + 12, b"\x09", "these are no readings"),
+        (HEADER_BYTES + 12, bytes([len(READING_PORTS)]), "these are no readings"),
         (HEADER_BYTES + 13, b"\x7f", "these are no readings"),
         (HEADER_BYTES, b"\x09", "these are no readings"),
     ],

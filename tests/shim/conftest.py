@@ -78,8 +78,8 @@ FURNISHED = WorldSpec(
     beacon=BeaconSpec(520.0, 171.5, channel=2),
     remote=(
         RemotePress(("top_left",), 0.0, 1e9, channel=4),
-        RemotePress(("top_left",), 0.0, 1.0, channel=1),
-        RemotePress(("bottom_right",), 1.0, 2.0, channel=1),
+        RemotePress(("top_left",), 0.0, 2.0, channel=1),
+        RemotePress(("bottom_right",), 2.0, 3.0, channel=1),
     ),
 )
 """An obstacle 400 mm ahead, a beacon to the right, and somebody with a remote control."""
@@ -93,15 +93,15 @@ REMOTE = WorldSpec(
         *(
             RemotePress(tuple(sorted(buttons)), second, second + 1.0, channel)
             for channel in REMOTE_CHANNELS
-            for second, buttons in enumerate(CODES)
+            for second, buttons in enumerate(CODES, start=2)
         ),
-        RemotePress(("bottom_left",), 20.0, 21.0),
-        RemotePress(("top_left",), 20.0, 21.0, channel=2),
-        RemotePress(("beacon",), 21.0, 22.0),
+        RemotePress(("bottom_left",), 20.0, 22.0),
+        RemotePress(("top_left",), 20.0, 22.0, channel=2),
+        RemotePress(("beacon",), 23.0, 26.0),
         RemotePress(("top_left",), 30.0, 31.0),
     ),
 )
-"""Somebody holds every set of buttons for a second, on all channels at once."""
+"""Somebody holds every set of buttons for a second from 2 s on, on all channels at once."""
 
 ROBOTS = {
     "square": SQUARE,
@@ -112,6 +112,7 @@ ROBOTS = {
     "arm": ARM,
     "reversed": RobotSpec(left_reversed=True, right_reversed=True),
     "geared": RobotSpec(gear_ratio=0.5),
+    "newer gyro": RobotSpec(gyro=GyroSpec(keeps_angle=True)),
 }
 WORLDS = {
     "empty": FAR_WALL,

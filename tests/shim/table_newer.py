@@ -15,6 +15,10 @@ def seconds(call, *words, **more):
     start = time.time()
     result = call(*words, **more)
     return result, round(time.time() - start, 2)
+
+def settle(sensor, mode):
+    sensor.mode = mode
+    time.sleep(0.02)
 """
 
 DRIVE = Table(
@@ -88,16 +92,17 @@ tank = MoveTank(OUTPUT_B, OUTPUT_C)
 tank.gyro = gy
 """,
     (
-        Check(
-            "us.distance_centimeters, us.distance_inches, us.distance_centimeters_ping",
-            "(38.0, 15.0, 38.0)",
-        ),
+        Check("us.distance_centimeters", "38.0"),
+        Check("settle(us, us.MODE_US_DIST_IN), us.distance_inches", "(None, 15.0)"),
+        Check("settle(us, us.MODE_US_SI_CM), us.distance_centimeters_ping", "(None, 38.0)"),
+        Check("settle(us, us.MODE_US_DIST_CM)", "None"),
         Check("seconds(lambda: us.distance_centimeters)", "(38.0, 0.01)"),
+        Check("settle(us, us.MODE_US_LISTEN)", "None"),
         Check(
             "us.other_sensor_present, us.modes, us.mode",
             "(False, ['US-DIST-CM', 'US-DIST-IN', 'US-LISTEN', 'US-SI-CM', 'US-SI-IN'], 'US-LISTEN')",
         ),
-        Check("us.mode = 'US-DIST-CM'", "None"),
+        Check("settle(us, us.MODE_US_DIST_CM)", "None"),
         Check(
             "us.value(0), us.bin_data('<h'), us.num_values, us.decimals, us.units",
             "(380, (380,), 1, 1, 'cm')",
@@ -180,11 +185,12 @@ cl = ColorSensor(INPUT_2)
             "LegoPort(OUTPUT_B).status, LegoPort(INPUT_2).mode, LegoPort(INPUT_2).driver_name",
             "('tacho-motor', 'auto', 'ev3-input-port')",
         ),
-        Check("cl.color_name, cl.rgb, cl.raw", "('Red', (160, 36, 36), (189, 43, 43))"),
-        Check(
-            "cl.reflected_light_intensity, cl.ambient_light_intensity, cl.mode",
-            "(62, 3, 'COL-AMBIENT')",
-        ),
+        Check("settle(cl, cl.MODE_COL_COLOR), cl.color_name", "(None, 'Red')"),
+        Check("settle(cl, cl.MODE_RGB_RAW)", "None"),
+        Check("cl.rgb, cl.raw", "((141, 42, 42), (166, 50, 50))"),
+        Check("settle(cl, cl.MODE_COL_REFLECT), cl.reflected_light_intensity", "(None, 55)"),
+        Check("settle(cl, cl.MODE_COL_AMBIENT)", "None"),
+        Check("cl.ambient_light_intensity, cl.mode", "(3, 'COL-AMBIENT')"),
     ),
     presses=("left@7-7.2",),
 )

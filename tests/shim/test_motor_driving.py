@@ -100,7 +100,7 @@ from ev3dev2.sensor.lego import ColorSensor
 tank = MoveTank(OUTPUT_B, OUTPUT_C)
 tank.cs = ColorSensor('in2')
 try:
-    tank.follow_line({gains}, target_light_intensity=50, white=90, off_line_count_max=20)
+    tank.follow_line({gains}, target_light_intensity=45, white=77, off_line_count_max=20)
 except ({errors}) as error:
     print(type(error).__name__, tank.left_motor.is_running)
 """
@@ -108,7 +108,7 @@ ERRORS = "LineFollowErrorLostLine, LineFollowErrorTooFast"
 
 
 def test_the_librarys_own_follower_drives_the_lollipop(run_on: RunOn) -> None:
-    text = FOLLOW.format(gains="kp=4, ki=0, kd=10, speed=SpeedPercent(15)", errors=ERRORS)
+    text = FOLLOW.format(gains="kp=5, ki=0, kd=12.5, speed=SpeedPercent(15)", errors=ERRORS)
     done = run_on(text, "default", "lollipop")
     assert done.lines == ["LineFollowErrorLostLine False"]
     # Past the left end and the far side of the loop, then to where the stick ends.

@@ -22,7 +22,7 @@ print(touch.is_pressed, eye.proximity)
 def test_columns_of_touch_and_infrared(run_on: RunOn, profile: str) -> None:
     done = run_on(PROGRAM, "eyes", "furnished", profile)
     names, mat = ["touch_pressed", "infrared_proximity"], open_field(done.run.field)
-    columns = column_values(names, done.run.telemetry.array(), done.run.spec, [], mat)
+    columns = column_values(names, done.run.telemetry.array(), done.run, [], mat)
     assert list(columns) == names
     pressed, proximity = columns["touch_pressed"], columns["infrared_proximity"]
     assert (pressed[0], pressed[-1]) == (0, 1)

@@ -36,7 +36,8 @@ from tuisim.app.loader import Loader
 from tuisim.app.notebook_cells import do_asked
 from tuisim.app.panel_area import PanelArea
 from tuisim.app.panel_messages import PanelMessages, looks_at_buttons
-from tuisim.app.run_controller import ROWS_A_POLL, RunController, RunUpdate
+from tuisim.app.run_controller import ROWS_A_POLL, RunController
+from tuisim.app.run_update import RunUpdate
 from tuisim.app.setup import next_run as plans
 from tuisim.app.setup.mat import PATIENCE_S
 from tuisim.app.snapshot import (
@@ -45,7 +46,6 @@ from tuisim.app.snapshot import (
     AppState,
     RunPhase,
     Situation,
-    busy_loop_words,
     end_words,
 )
 from tuisim.app.speech import Voice
@@ -422,8 +422,8 @@ class LabApp(PanelMessages):
         ):
             self.hint_at_brick("uses the brick's display")
         if output := self.panel_area.output:
-            if news.busy_loop:
-                output.note(self.with_keys(busy_loop_words(news.busy_loop)))
+            for remark in news.remarks:
+                output.note(self.with_keys(remark))
             if news.prompt is not None and not output.asking:
                 self._ask_user(news.prompt)
             elif news.prompt is None and output.asking:

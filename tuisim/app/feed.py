@@ -83,11 +83,11 @@ class Feed:
         records = run.telemetry.array(self._charted)[
             _thinned(0, end - self._charted, POINTS_A_FEED)
         ]
-        names = [column.name for column in columns_of(run.spec.robot) if column.is_traced]
+        names = [column.name for column in columns_of(run.spec) if column.is_traced]
         values = column_values(
             names,
             records,
-            run.spec,
+            run,
             run.actions(),
             mat,
             lambda record: run.field_at(int(record[0]), mat),

@@ -8,25 +8,25 @@ from typing import TYPE_CHECKING
 
 from tuisim import protocol
 from tuisim.app.earlier_run import is_comparable, pose_at
+from tuisim.app.run_update import RunUpdate
 from tuisim.app.setup import next_run as plans
 from tuisim.app.setup.next_run import NextRun
-from tuisim.app.snapshot import RunPhase, Snapshot
+from tuisim.app.snapshot import RunPhase, Snapshot, busy_loop_words
 from tuisim.app.timeline import Timeline
+from tuisim.app.waiting import WaitWatch
 from tuisim.config.program_settings import require_library
 from tuisim.core.end_stops import flags_at_start
 from tuisim.core.field import Field
 from tuisim.core.geometry import Pose
-from tuisim.core.spec import BUTTONS, NoiseSpec, RunSpec
+from tuisim.core.spec import PRESSABLE, NoiseSpec, RunSpec
 from tuisim.core.state import Instant
 from tuisim.core.tick_record import FLAG_PEN_DOWN
 from tuisim.data_class import dataclass
 from tuisim.protocol import RunState
 from tuisim.runs.handle import RunOptions, start_run
 from tuisim.runs.recorded_run import Recording
-from tuisim.runs.records import OutputRow
 from tuisim.runs.standstill import standstill_words
 from tuisim.runs.store import RunStore
-from tuisim.runs.views import instant_of
 
 if TYPE_CHECKING:
     from tuisim.app.branch import Branch
@@ -126,6 +126,7 @@ class RunController:
         self._moved = True
         """Whether the robot was placed since the last run, so that the run's last record no longer applies."""
         self._pending = Pending()
+        self._waits = WaitWatch()
         self.propose: Callable[[protocol.Message], None] = lambda _: None
         """Called instead of a user action while a past instant is in view: the action is only possible in a branch."""
         self.paused_line: tuple[int, int] | None = None
@@ -198,7 +199,7 @@ class RunController:
         turns = turns or ((0.0, 0.0),) * len(spec.robot.extra_motors)
         if state is RunPhase.ENDED and not past:
             # The last record is of the tick before the program's last commands; after its end, nothing turns.
-            instant = replace(instant, left_speed_dps=0.0, right_speed_dps=0.0)
+            instant = instant.stop()
             turns = tuple((position_deg, 0.0) for position_deg, _ in turns)
         return Snapshot(
             state=state,
@@ -233,15 +234,14 @@ class RunController:
     def _at_rest(self, pose: Pose) -> Instant:
         spec = self.next_run.spec
         flags = flags_at_start(spec.robot)
-        noise, drift = spec.world.noise, spec.world.drift
-        zero_deg = pose.heading_deg
         return Instant(
             0,
             pose,
-            gyro_zero_deg=zero_deg,
-            end_flags=flags,
-            noise=noise,
-            drift=drift,
+            gyro_zero_deg=pose.heading_deg,
+            press_flags=flags,
+            noise=spec.world.noise,
+            drift=spec.world.drift,
+            profile=spec.profile,
             seed=spec.seed,
         )
 
@@ -270,7 +270,8 @@ class RunController:
             else self.next_run.spec.robot.pen.down
         )
         exact = dict(known for known in (self.paused_line, self.printed_line) if known)
-        instant, line = instant_of(record, self.spec, noise), exact.get(record.tick, record.line)
+        instant = recording.instant(record, self.spec, noise)
+        line = exact.get(record.tick, record.line)
         if self.in_run and not self.in_past:
             instant, down = self._pending.done_to(record, instant, down)
         return instant, line, down
@@ -430,11 +431,11 @@ class RunController:
         self.next_run = plans.with_pen(self.next_run, down)
 
     def press(self, buttons: frozenset[str]) -> None:
-        """Hold down these buttons of the brick, and no others."""
+        """Hold down these of `PRESSABLE`, and no others."""
         if buttons == self.pressed:
             return
         self.pressed = buttons
-        self.send(protocol.SetButtons(tuple(name for name in BUTTONS if name in buttons)))
+        self.send(protocol.SetButtons(tuple(name for name in PRESSABLE if name in buttons)))
 
     def set_noise(self, noise: NoiseSpec) -> None:
         """Change the noise, at once and for the next run."""
@@ -529,9 +530,10 @@ class RunController:
         recording = self.timeline.recording
         if recording is None:
             return RunUpdate([])
-        ended = branched = busy_loop = None
+        ended = branched = None
         spoken: list[protocol.Spoke] = []
         pauses: list[protocol.Message] = []
+        remarks: list[str] = []
         for event in self.run.pump() if self.run else ():
             match event:
                 case protocol.Ended():
@@ -550,37 +552,11 @@ class RunController:
                 case protocol.Spoke() if self._branch is None:
                     spoken.append(event)
                 case protocol.BusyLoop() if self._branch is None:
-                    busy_loop = event
+                    remarks.append(busy_loop_words(event))
         stood = standstill_words(recording.telemetry, recording.spec) if ended else ""
+        remarks += self._waits.look(self, recording, ended)
         rows = recording.rows.take(ROWS_A_POLL)
         prompt = self.run.waiting_for_input if self.run and self.in_run else None
         return RunUpdate(
-            rows, ended, stood, tuple(spoken), prompt, branched, tuple(pauses), busy_loop
-        )
-
-
-@dataclass(frozen=True, slots=True)
-class RunUpdate:
-    """What has come from the run since the last poll."""
-
-    rows: list[OutputRow]
-    ended: protocol.Ended | None = None
-    """Set once, in the poll that receives the end."""
-    stood: str = ""
-    """Then also: where the robot stood in the way of something solid, in words."""
-    spoken: tuple[protocol.Spoke, ...] = ()
-    """Texts and sounds from the program."""
-    prompt: str | None = None
-    """The prompt while the program waits in `input()`."""
-    branched: Branch | None = None
-    """Set once, when a branch has reached its instant, or has ended before it."""
-    pauses: tuple[protocol.Message, ...] = ()
-    """Reports that the program has paused or resumed, and its frames and variables."""
-    busy_loop: protocol.BusyLoop | None = None
-    """Set once, when a loop has gone on for long without a wait."""
-
-    def __bool__(self) -> bool:
-        """Return whether anything has arrived; a prompt that is still open does not count."""
-        return bool(
-            self.rows or self.ended or self.spoken or self.branched or self.pauses or self.busy_loop
+            rows, ended, stood, tuple(spoken), prompt, branched, tuple(pauses), tuple(remarks)
         )

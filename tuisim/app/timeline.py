@@ -191,7 +191,7 @@ def proposal(timeline: Timeline, mat: Field | None) -> str:
         return timeline.searched
     sensors = {f"{sensor.name}_red_pc": sensor for sensor in recording.spec.robot.color_sensors}
     records = recording.telemetry.array()[: timeline.tick + 1]
-    values = column_values(tuple(sensors), records, recording.spec, recording.actions(), mat)
+    values = column_values(tuple(sensors), records, recording, recording.actions(), mat)
     found = []
     for name, sensor in sensors.items():
         is_on = _is_on_mat(records, sensor)
@@ -393,12 +393,12 @@ def _sample(search: _Search, condition: ValueCondition) -> int:
 def _becomes(search: _Search, condition: ValueCondition, mat: Field | None) -> int:
     """Return the tick at which a column begins to meet a condition."""
     recording = search.recording
-    name = named_column(condition.name, recording.spec.robot)
+    name = named_column(condition.name, recording.spec)
     if mat is None:
         raise ConfigError("the mat is still being opened", "a moment later")
     condition = condition.of_column(name)
     values = column_values(
-        (name,), recording.telemetry.array(), recording.spec, recording.actions(), mat
+        (name,), recording.telemetry.array(), recording, recording.actions(), mat
     )
     tick = search.nearest(begins(condition, held(condition, values[name])).tolist())
     if tick is None:

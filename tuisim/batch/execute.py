@@ -22,6 +22,7 @@ from tuisim.runs.run_folder import StoredRun
 from tuisim.runs.samples import samples_of
 from tuisim.runs.store import RunStore
 from tuisim.runs.temporary import TemporaryRun
+from tuisim.runs.waited_words import describe_wait
 
 MATS_KEPT = 20
 MOST_OUTPUT_BYTES = 16 << 20
@@ -160,6 +161,7 @@ def _result(task: Task, run: StoredRun, ended: Ended, judgements: tuple[Judgemen
         variables=statistics_of(rows),
         judgements=judgements,
         output=_beginning(rows),
+        waited_for=describe_wait(run),
     )
 
 

@@ -86,5 +86,7 @@ class Result:
     judgements: tuple[Judgement, ...] = ()
     output: str = ""
     """The beginning of what it printed on stdout."""
+    waited_for: str = ""
+    """What it waited for in vain, in words; see `runs.waited`."""
     run_id: str = ""
     """Its id in the store; empty if it was not kept."""

@@ -11,7 +11,7 @@ from tuisim.charts import axes
 from tuisim.charts.axes import Limits
 from tuisim.charts.layout import Span, names_of
 from tuisim.charts.traces import Trace
-from tuisim.logs.levels import levels_of
+from tuisim.logs.levels import Light, levels_of
 from tuisim.terminal.text_runs import Run
 
 MOST_SAMPLES = 4000
@@ -35,16 +35,16 @@ def band_span(name: str, start: float, stop: float, level: float, grey: str) -> 
     return Span(start, stop, (f"{text} {grey}".rstrip(), text), name)
 
 
-def spans_of(trace: Trace, noise: int) -> tuple[Span, ...]:
+def spans_of(trace: Trace, light: Light) -> tuple[Span, ...]:
     """Return the bands of a trace, none if it has more than `MOST_SAMPLES`.
 
     Args:
         trace: A variable over time.
-        noise: Light noise of the run, 0 to 128.
+        light: What stands between it and the greys of the mat.
     """
     if len(trace.times_s) > MOST_SAMPLES:
         return ()
-    found = levels_of(trace.values, noise)
+    found = levels_of(trace.values, light)
     ends = trace.times_s[found.start].tolist(), trace.times_s[found.stop - 1].tolist()
     names = [grey.name if grey and not trace.scale else "" for grey in found.greys]
     rows = zip(*ends, found.true_level.tolist(), names, strict=True)

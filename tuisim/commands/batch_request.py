@@ -92,10 +92,10 @@ OPTIONS = (
     option(
         "--press",
         multiple=True,
-        metavar="BUTTON@S",
+        metavar="NAME@S",
         type=WordType(parse_press),
         group=_LIMITS,
-        help="Press a button of the brick, as in `tuisim run`; may be repeated.",
+        help="Press by hand, as in `tuisim run`; may be repeated.",
     ),
 )
 """The options of `tuisim batch` besides the shared ones."""

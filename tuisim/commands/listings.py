@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 from tuisim.commands.echo import echo, echo_error, echo_json, echo_lines, table
 from tuisim.config.command_line import AS_JSON, WordType, argument, command, option
 from tuisim.core.profile import MS, PROFILES, ProfileSpec
-from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, RobotSpec
+from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, RobotSpec, RunSpec, WorldSpec
 from tuisim.core.values import values_of
 from tuisim.errors import ConfigError, counted, listed
 
@@ -45,7 +45,7 @@ def names_of(field: str) -> Iterable[str]:
         case "columns":
             from tuisim.core.sensors import column_names
 
-            return column_names(RobotSpec())
+            return column_names(RunSpec(RobotSpec(), WorldSpec(), PROFILES["ev3"]))
         case "goals":
             from tuisim.goals.files import example_names
 

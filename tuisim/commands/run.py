@@ -66,10 +66,11 @@ _OPTIONS = (
     option(
         "--press",
         multiple=True,
-        metavar="BUTTON@S",
+        metavar="NAME@S",
         type=WordType(parse_press),
         group=_REPORTS,
-        help="Press a button of the brick: enter@1.0-1.5, or enter@1 for 0.1 s; may be repeated.",
+        help="Press a button, a touch sensor or the remote by hand: enter@1.0-1.5, in1@2, touch@2 (every touch "
+        "sensor), remote.left_up@1-3; without an end for 0.1 s; may be repeated.",
     ),
     option(
         "--all",
@@ -196,7 +197,7 @@ def check_breaks(
             or there are watches without breakpoints.
     """
     for one in prepared:
-        parse_breakpoints(texts, one.spec.robot)
+        parse_breakpoints(texts, one.spec)
     for watch in watches:
         parse_watch(watch)
     if watches and not texts:

@@ -32,8 +32,8 @@ from tuisim.config.command_line import AS_JSON, Group, WordType, argument, comma
 from tuisim.config.files import toml_form
 from tuisim.config.options import RUN_VALUES
 from tuisim.core import tree
-from tuisim.core.drift import drawn_errors
-from tuisim.core.spec import RunSpec
+from tuisim.core.drift import draw_echo_bias_mm, draw_light_gain, drawn_errors
+from tuisim.core.spec import ColorSensorSpec, RunSpec, UltrasonicSpec
 from tuisim.core.values import shown
 from tuisim.errors import ConfigError, LogError, counted, shortened
 from tuisim.logs.export import EXPORTERS, LISTED, check_targets, export_samples, export_telemetry
@@ -178,9 +178,16 @@ def _drawn_words(spec: RunSpec) -> str:
     drawn = drawn_errors(spec.world.drift, spec.seed)
     sizes = {"left wheel": drawn.left, "right wheel": drawn.right, "spacing": drawn.spacing}
     parts = [f"{name} {100 * (times - 1):+.2f} %" for name, times in sizes.items()]
-    return ", ".join(
-        (*parts, f"gyro {drawn.gyro_dps:+.3f} °/s", f"light from {degrees(drawn.bright_rad):.0f}°")
-    )
+    parts += [f"gyro {drawn.gyro_dps:+.3f} °/s", f"light from {degrees(drawn.bright_rad):.0f}°"]
+    drift = spec.world.drift
+    for sensor in spec.robot.sensors:
+        if isinstance(sensor, ColorSensorSpec):
+            gain = draw_light_gain(sensor.port, drift, spec.seed)
+            parts.append(f"{sensor.name} light {100 * (gain - 1):+.1f} %")
+        elif isinstance(sensor, UltrasonicSpec):
+            bias_mm = draw_echo_bias_mm(sensor.port, drift, spec.seed)
+            parts.append(f"{sensor.name} {bias_mm:+d} mm")
+    return ", ".join(parts)
 
 
 def _show(run: StoredRun, *, as_json: bool) -> None:

@@ -17,7 +17,7 @@ from tuisim.config.folders import programs_folder, user_path
 from tuisim.config.mats import find_mat, spec_name
 from tuisim.config.obstacles import load_obstacles, obstacle_lines, obstacles_from_list
 from tuisim.config.options import OPTION_PANELS, RUN_VALUES, settings_of
-from tuisim.config.presses import ButtonPress, parse_press
+from tuisim.config.presses import Press, parse_press
 from tuisim.config.profiles import load_profile, profile_from_table, profile_lines
 from tuisim.config.robots import RobotChoice, load_robot, robot_from_table, robot_lines
 from tuisim.core import tree
@@ -97,7 +97,7 @@ class WorldFile:
     """The file itself, and the files that it refers to."""
     is_task: bool = False
     """Whether it has goals: then its robot is the same for every program."""
-    presses: tuple[ButtonPress, ...] = ()
+    presses: tuple[Press, ...] = ()
     """The buttons of the brick that are pressed in a run."""
     inputs: tuple[str, ...] = ()
     """The answers to `input()` in a run."""
@@ -201,7 +201,7 @@ def _texts(world: Mapping[str, Any], key: str, at: Location) -> list[tuple[str, 
     return [(files.convert(text, str, place), place) for text, place in listed]
 
 
-def _press(text: str, at: Location) -> ButtonPress:
+def _press(text: str, at: Location) -> Press:
     with files.errors_at(at.file, at.key):
         return parse_press(text, "")
 

@@ -14,7 +14,7 @@ from tuisim.data_class import dataclass
 
 if TYPE_CHECKING:
     from tuisim.core.field import Field
-    from tuisim.core.spec import RobotSpec, RunSpec
+    from tuisim.core.spec import RunSpec
     from tuisim.core.state import Instant
 
 
@@ -28,7 +28,7 @@ class Column:
 
     name: str
     """An identifier that ends in the unit, such as `left_red_pc`; see `logs.units`."""
-    of: Callable[[Iterable[Sequence[float]], RobotSpec], list[float]] | None = None
+    of: Callable[[Iterable[Sequence[float]], RunSpec], list[float]] | None = None
     """Computes it from what its owner measures, at each of some ticks; None: it is measured."""
     is_traced: bool = False
     """Whether the chart offers it."""

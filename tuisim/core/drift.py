@@ -12,11 +12,12 @@ Kleeman, Accurate Odometry and Error Modelling for a Mobile Robot, 1997).
 from __future__ import annotations
 
 from functools import lru_cache
-from math import cos, log, pi, sin, sqrt
+from math import cos, degrees, inf, log, pi, sin, sqrt
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from tuisim.core.drift_spec import DriftSpec
-from tuisim.core.drive import float32, mm_per_degree, turn_rate_dps
+from tuisim.core.drive import Drive, float32, mm_per_degree, turn_rate_dps
+from tuisim.core.motors import top_speed_dps
 from tuisim.core.noise import drawn_numbers, wheel_slip
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
 
@@ -28,6 +29,9 @@ JERK_MM = 1.0
 
 MAX_DEVIATIONS = 3.0
 """What is drawn from a normal distribution is within this many standard deviations."""
+
+MAX_OVERSHOOT = 1.2
+"""A motor turns no faster than this many times its top speed."""
 
 MOST_TIMES = 3.0
 """A wheel that slips, of a robot with wrong sizes, never moves it as if it turned more than this many times as fast."""
@@ -48,6 +52,25 @@ class DrawnErrors(NamedTuple):
     """The rate that the gyro shows while the robot stands, clockwise."""
     bright_rad: float
     """The direction from the middle of the field to its brightest side."""
+
+
+@lru_cache(maxsize=64)
+def _drawn_normal(seed: int, channel: str) -> float:
+    """Return a normally distributed number for one seed and channel, limited to `MAX_DEVIATIONS`."""
+    far, turn = drawn_numbers(seed, 0, channel, 2)
+    return max(-MAX_DEVIATIONS, min(MAX_DEVIATIONS, sqrt(-2 * log(1 - far)) * cos(2 * pi * turn)))
+
+
+def draw_light_gain(port: str, drift: DriftSpec, seed: int) -> float:
+    """Return the brightness that the colour sensor on a port sees, as a multiple of the robot's."""
+    return 1 + _drawn_normal(seed, f"drift/light/{port}") * drift.light_gain_pc / 100
+
+
+@lru_cache(maxsize=64)
+def draw_echo_bias_mm(port: str, drift: DriftSpec, seed: int) -> int:
+    """Return the error of the distances of the ultrasonic sensor on a port."""
+    (share,) = drawn_numbers(seed, 0, f"drift/echo/{port}", 1)
+    return round(drift.echo_bias_mm * (share - (1 - share) / 7))
 
 
 @lru_cache(maxsize=16)
@@ -77,7 +100,10 @@ def sensed_turn_rate_dps(left_dps: float, right_dps: float, spec: RunSpec) -> fl
         return turn_rate_dps(left_dps, right_dps, spec.robot)
     drawn = drawn_errors(drift, spec.seed)
     rate = turn_rate_dps(left_dps * drawn.left, right_dps * drawn.right, spec.robot)
-    return rate / drawn.spacing * (1 - drift.turn_slip_pc / 100) - drawn.gyro_dps
+    rate = rate / drawn.spacing * (1 - drift.turn_slip_pc / 100)
+    if drift.gyro_scale_pc:
+        rate += drift.gyro_scale_pc / 100 * (abs(rate) - rate) / 2
+    return rate - drawn.gyro_dps
 
 
 def light_share(x_mm: Any, y_mm: Any, drift: DriftSpec, seed: int) -> Any:
@@ -132,15 +158,13 @@ class _Wheel:
 
 
 class SlippingWheels:
-    """The wheels of a run with drift: their play and speed, and the gyro's error.
+    """The wheels of a run with drift: their play and speed.
 
     Args:
         spec: The run.
     """
 
     __slots__ = (
-        "_carry_deg",
-        "_gyro_deg",
         "_left",
         "_left_mm",
         "_right",
@@ -163,7 +187,6 @@ class SlippingWheels:
             for times, mm in ((drawn.left, self._left_mm), (drawn.right, self._right_mm))
         )
         self._spacing, self._turn_slip = drawn.spacing, drift.turn_slip_pc / 100
-        self._gyro_deg, self._carry_deg = drawn.gyro_dps / hz, 0.0
 
     def turned_deg(self, tick: int, left_deg: float, right_deg: float) -> tuple[float, float]:
         """Return the turns of the motors that would move a robot without errors as this one moves in a tick."""
@@ -185,14 +208,57 @@ class SlippingWheels:
         left, right = (max(-most, min(most, one)) for one in (forward - turning, forward + turning))
         return left / self._left_mm, right / self._right_mm
 
-    def gyro_zero_deg(self, zero_deg: float) -> float:
-        """Return the heading at which the gyro reads 0 after one more tick, in single precision."""
-        wanted = zero_deg + self._gyro_deg + self._carry_deg
-        found = float32(wanted)
-        self._carry_deg = wanted - found
-        return found
+
+class WrongGyro:
+    """A gyro that senses something else than the turn of the robot: it drifts, and has a limit.
+
+    Args:
+        spec: The run.
+        drive: The drive of the robot.
+    """
+
+    __slots__ = ("_carry_deg", "_drift_deg", "_drive", "_max_deg", "_scale")
+
+    def __init__(self, spec: RunSpec, drive: Drive) -> None:
+        drift, profile = spec.world.drift, spec.profile
+        self._drive, self._scale = drive, 1 - drift.gyro_scale_pc / 100
+        self._drift_deg = drawn_errors(drift, spec.seed).gyro_dps / profile.tick_hz
+        self._max_deg = (profile.gyro_max_dps or inf) / profile.tick_hz
+        self._carry_deg = 0.0
+
+    def roll(self, left_deg: float, right_deg: float) -> None:
+        """Move the robot by one tick's rotation of the wheels' motors, as `Drive.roll`, and the gyro with it."""
+        drive = self._drive
+        angle_deg = drive.gyro_zero_deg - drive.heading_deg
+        drive.roll(left_deg, right_deg)
+        turned_deg = drive.gyro_zero_deg - drive.heading_deg - angle_deg
+        sensed_deg = turned_deg * self._scale if turned_deg > 0 else turned_deg
+        sensed_deg = max(-self._max_deg, min(self._max_deg, sensed_deg))
+        exact_deg = (
+            drive.gyro_zero_deg + self._drift_deg + self._carry_deg - (turned_deg - sensed_deg)
+        )
+        drive.gyro_zero_deg = float32(exact_deg)
+        self._carry_deg = exact_deg - drive.gyro_zero_deg
 
 
 def slipping_wheels(spec: RunSpec) -> SlippingWheels | None:
     """Return the wheels of a run with drift; None if nothing drifts."""
     return None if spec.world.drift.is_none else SlippingWheels(spec)
+
+
+def build_gyro(spec: RunSpec, drive: Drive) -> WrongGyro | None:
+    """Return the gyro of a run; None if it senses each turn as it is."""
+    is_right = spec.world.drift.is_none and not spec.profile.gyro_max_dps
+    return None if is_right else WrongGyro(spec, drive)
+
+
+def can_strain_gyro(spec: RunSpec) -> bool:
+    """Return whether the motors can turn the robot faster than its gyro senses, without noise."""
+    if not spec.profile.gyro_max_dps:
+        return False
+    fastest_mm = sum(
+        abs(mm) * top_speed_dps(motor.kind, spec.profile)
+        for mm, motor in zip(mm_per_degree(spec.robot), spec.robot.wheel_motors, strict=True)
+    )
+    fastest_dps = MAX_OVERSHOOT * degrees(fastest_mm / spec.robot.wheel_spacing_mm)
+    return fastest_dps > spec.profile.gyro_max_dps

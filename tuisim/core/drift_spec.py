@@ -65,6 +65,21 @@ class DriftSpec(Spec):
         "standard deviation of the gyro's rate while the robot stands, drawn once a run",
         "LEGO states an accuracy of ±3° for the EV3 gyro: this is 3° in a minute",
     )
+    gyro_scale_pc: float = _drift(
+        20,
+        2.0,
+        "%",
+        "how much too little the gyro counts of a clockwise turn",
+        "40 measurements on a turntable (EV3 Basic): 353° of 360° clockwise in 5 s, 361° counter-clockwise",
+    )
+    echo_bias_mm: float = _drift(
+        100,
+        14.0,
+        "mm",
+        "largest error of an ultrasonic sensor's distances, drawn once a run from -1/7 of it up to it",
+        "measured at 5, 10, 15, 20, 25 and 30 cm: 5.0, 11.4, 14.8, 20.4, 25.4 and 31.4 "
+        "(eriymirsai, 2022; the sensor is not named)",
+    )
     echo_loss_pc: float = _drift(
         100,
         100.0,
@@ -80,6 +95,14 @@ class DriftSpec(Spec):
         "how much darker the field is at one side than at the opposite one, whose direction is drawn",
         "EN 12464-1 lets the darkest place of a classroom have 60 % of the mean light; the sensor's own lamp, close "
         "to the mat, outshines most of that: a quarter of 40 %",
+    )
+    light_gain_pc: float = _drift(
+        30,
+        5.0,
+        "%",
+        "standard deviation of each colour sensor's brightness from the robot's, drawn once a run",
+        "an estimate, as nobody publishes it: sold line followers calibrate each sensor by itself "
+        "(redrobots.xyz, 2019)",
     )
 
     @property

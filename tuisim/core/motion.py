@@ -13,12 +13,13 @@ from typing import TYPE_CHECKING, assert_never
 from tuisim.core.brick_motor import BrickMotor
 from tuisim.core.browser_motor import BrowserMotor
 from tuisim.core.collision import Solids
-from tuisim.core.drift import MOST_TIMES, slipping_wheels
+from tuisim.core.drift import MOST_TIMES, build_gyro, can_strain_gyro, slipping_wheels
 from tuisim.core.drive import BrickDrive, BrowserDrive, Drive, Glide, Records, mm_per_degree
 from tuisim.core.driver.jiffies import draw_jiffies
 from tuisim.core.driver.motor import MotorCommand
 from tuisim.core.driver.simulated import SimulatedMotor, build_axle, build_motor
 from tuisim.core.end_stops import flags_at_start
+from tuisim.core.motor_columns import MotorRecorder, MotorSink, MotorValues
 from tuisim.core.motors import POSITION, Motor, MotorState, top_speed_dps
 from tuisim.core.noise import wheel_noise, wheel_noises
 from tuisim.core.profile import NS_PER_S, MotorLaw
@@ -111,23 +112,26 @@ class Motion:
         "_left_dps",
         "_left_mm_per_deg",
         "_longest_mm",
+        "_motor_recorder",
         "_right_dps",
         "_right_mm_per_deg",
+        "_roll",
         "_room_end",
         "_sink",
         "_slipping",
         "_solids",
         "_spacing_mm",
+        "_strains_gyro",
         "_tick_s",
         "actions",
         "changed",
         "changed_ns",
         "drive",
-        "end_flags",
         "left",
         "line",
         "noise",
         "pen_down",
+        "press_flags",
         "right",
         "spec",
         "stall_ticks",
@@ -155,8 +159,8 @@ class Motion:
         left, right = spec.robot.wheel_motors
         self.left, self.right = motor_of(spec, left.kind), motor_of(spec, right.kind)
         self.pen_down = spec.robot.pen.down
-        self.end_flags = flags_at_start(spec.robot)
-        """Which end stops the motors are at that drive no wheel: the bits of `core.end_stops`."""
+        self.press_flags = flags_at_start(spec.robot)
+        """End stops that motors are at, and touch sensors that a hand presses: the bits of `PRESS_FLAGS`."""
         self.line = 0
         """Source line that spends the simulated time, for the record."""
         self.actions = 0
@@ -170,19 +174,25 @@ class Motion:
         """When a driver noticed the last such change."""
         self._begin(spec, sink)
 
-    def _begin(self, spec: RunSpec, sink: TickSink) -> None:
+    def _begin(self, spec: RunSpec, sink: TickSink, motor_sink: MotorSink | None = None) -> None:
         """Take up its initial state, as far as it differs between runs of one robot in one world."""
         self.spec, self._sink = spec, sink
         self.noise = spec.world.noise
         self.drive = drive_of(spec)
         """The robot's pose and how its wheels change it."""
         self._slipping = slipping_wheels(spec)
+        gyro = build_gyro(spec, self.drive)
+        self._roll = self.drive.roll if gyro is None else gyro.roll
+        """Moves the robot, and what its gyro senses."""
+        self._strains_gyro = can_strain_gyro(spec)
         self._start_clocks()
         self._buffer: Buffer = sink.room(ROOM_TICKS)
         self._room_end = ROOM_TICKS
         """Number of records the buffer has space for."""
+        self._motor_recorder = MotorRecorder(self._driven, motor_sink)
+        self._motor_recorder.make_room(ROOM_TICKS)
         TICK_RECORD.pack_into(self._buffer, 64, *self._fields())
-        sink.publish(1)
+        self._publish(1)
 
     def _start_clocks(self) -> None:
         """Let the drivers' clocks begin where the seed says."""
@@ -208,6 +218,17 @@ class Motion:
     def notices(self) -> bool:
         """Whether drivers notice changes of the motors' states late, when they look."""
         return bool(self._driven)
+
+    @property
+    def motor_values(self) -> tuple[MotorValues, ...]:
+        """What the drivers of all motors know, as it is recorded at the end of the last tick; empty without drivers."""
+        return self._motor_recorder.read_values(self._sink.count - 1)
+
+    def _publish(self, ticks: int) -> None:
+        """Let readers see the records of some more ticks; in all of them the drivers know the same."""
+        count = self._sink.count
+        self._motor_recorder.record(count, ticks)
+        self._sink.publish(count + ticks)
 
     def next_change_ns(self, now_ns: int) -> int:
         """Return when a motor may change next, as far as a program can be told: with the next tick or look."""
@@ -247,12 +268,15 @@ class Motion:
 
     def _quiet_ticks(self, most: int) -> int:
         """Return for how many ticks, at most `most`, nothing but ramps and motion happens."""
+        left, right = self.left, self.right
         if self._slipping is not None or (self.noise.motor and not self._glides_with_noise()):
+            return 0
+        if self._strains_gyro and not (left.resting and right.resting):
             return 0
         return min(
             most,
-            self.left.quiet_ticks(self.tick),
-            self.right.quiet_ticks(self.tick),
+            left.quiet_ticks(self.tick),
+            right.quiet_ticks(self.tick),
             self._clear_ticks(most),
         )
 
@@ -286,16 +310,14 @@ class Motion:
             part, aside_mm = self._obstructed(before, left_roll, right_roll)
             left_deg, right_deg = left_deg * part, right_deg * part
             left_roll, right_roll = left_roll * part, right_roll * part
-        drive.roll(left_roll, right_roll)
-        if slipping is not None:
-            drive.gyro_zero_deg = slipping.gyro_zero_deg(drive.gyro_zero_deg)
+        self._roll(left_roll, right_roll)
         if aside_mm is not None:
             self._push(aside_mm)
         if self._driven:
             self._bar_wheels()
         self._left_dps, self._right_dps = left_deg * self._hz, right_deg * self._hz
         flags = (left.mode and FLAG_LEFT_RUNNING) | (right.mode and FLAG_RIGHT_RUNNING)
-        flags |= (self.pen_down and FLAG_PEN_DOWN) | self.end_flags
+        flags |= (self.pen_down and FLAG_PEN_DOWN) | self.press_flags
         TICK_RECORD.pack_into(
             buffer,
             64 + 64 * count,
@@ -312,7 +334,7 @@ class Motion:
             flags,
             self.actions & 0xFFFF,
         )
-        self._sink.publish(count + 1)
+        self._publish(1)
 
     def _push(self, aside_mm: tuple[float, float]) -> None:
         """Move the robot aside, along x and y."""
@@ -424,7 +446,7 @@ class Motion:
             (FLAG_LEFT_RUNNING if self.left.mode else 0)
             | (FLAG_RIGHT_RUNNING if self.right.mode else 0)
             | (FLAG_PEN_DOWN if self.pen_down else 0)
-            | self.end_flags
+            | self.press_flags
         )
 
     def _make_room(self, ticks: int) -> Buffer:
@@ -432,6 +454,7 @@ class Motion:
         end = self._sink.count + ticks
         if end > self._room_end:
             self._buffer, self._room_end = self._sink.room(ticks + ROOM_TICKS), end + ROOM_TICKS
+            self._motor_recorder.make_room(self._room_end)
         return self._buffer
 
     def _glide(self, ticks: int) -> None:
@@ -471,7 +494,7 @@ class Motion:
                 left_deg, right_deg = left_even.roll_deg, right_even.roll_deg
             self._left_dps, self._right_dps = left_deg * hz, right_deg * hz
             self.tick += part
-            sink.publish(sink.count + part)
+            self._publish(part)
             ticks -= part
 
     def _glides(self, ticks: int) -> tuple[Glide, Glide]:

@@ -172,13 +172,75 @@ class ProfileSpec(Spec):
     mode_switch_ns: int = _cost(
         default=0,
         later=True,
-        source="Pybricks 2.0, `pbdevice.c`: 30 ms; ev3dev2: none, the driver answers at once",
+        source="Pybricks 2.0, `pbdevice.c`: 30 ms; ev3: 15 ms, an estimate: the driver waits for a message in the "
+        "new mode; the course, the old simulator: none",
     )
     """Time that a sensor needs for the first reading in another mode than before."""
     infrared_switch_ns: int = _cost(
-        default=0, later=True, source="Pybricks 2.0, `pbdevice.c`: 1100 ms"
+        default=0,
+        later=True,
+        source="Pybricks 2.0, `pbdevice.c`, and ev3: 1100 ms (pybricks/support, issue 14)",
     )
     """Likewise, of the infrared sensor."""
+    stale_reading_ns: int = _cost(
+        default=0,
+        later=True,
+        source="measured on a brick (pybricks/support, issue 14): ev3: old values up to 18 ms after the change, "
+        "new ones from 22 ms on; the course, the old simulator: none",
+    )
+    """For so long from the beginning of a change of mode, a sensor gives the last value of the other mode."""
+    white_percent: float = number(
+        50,
+        100,
+        default=100.0,
+        later=True,
+        unit="%",
+        source="measured with EV3 sensors: 95 to 100 on white paper in a lit room, 83, 62 and 55 on three white "
+        "surfaces in the dark (EV3 test 3, Port View); ev3: 85; the course, the old simulator: 100",
+    )
+    """Reflected light of white, unless a colour sensor has its own."""
+    black_percent: float = number(
+        0,
+        49,
+        default=0.0,
+        later=True,
+        unit="%",
+        source="measured with EV3 sensors: 2 to 6 on black (EV3 test 3, Port View); ev3: 5; the course, the old "
+        "simulator: 0",
+    )
+    """Likewise, of black."""
+    brick_colors: bool = flag(
+        default=False,
+        later=True,
+        source="the EV3 driver's table of colours; ev3: 0 for nothing and 7 for brown, too, and white only if all "
+        f"channels are high, from limits that are a {_NEW}; the course, the old simulator: 1 to 6",
+    )
+    """Whether the colour sensor also tells 0, no colour, and 7, brown."""
+    min_echo_mm: int = whole(
+        0,
+        255,
+        default=0,
+        later=True,
+        unit="mm",
+        source="measured (ETH Zürich, with the NXT sensor): ev3: no echo below 30 mm; the course, the old simulator: 0",
+    )
+    """An ultrasonic sensor hears no echo of what is closer."""
+    gyro_max_dps: int = whole(
+        0,
+        100_000,
+        default=0,
+        later=True,
+        unit="°/s",
+        source="the EV3 driver's table of sensors; ev3: 440; 0, as in the course and the old simulator: no limit",
+    )
+    """The highest rate of turn that a gyro senses: its angle misses what is beyond."""
+    gyro_restarts: bool = flag(
+        default=False,
+        later=True,
+        source="ev3dev-lang-python, issue 517, and ev3dev, issue 402: ev3: the angle restarts from 0; the course, "
+        "the old simulator: it goes on",
+    )
+    """Whether a change of mode sets the angle of a gyro to 0, unless the sensor keeps it."""
 
     attribute_write_ns: int = _cost(
         default=0,
@@ -223,6 +285,15 @@ EV3 = ProfileSpec(
     solid=True,
     mend_library=False,
     starts_in_own_folder=True,
+    mode_switch_ns=15 * MS,
+    infrared_switch_ns=1100 * MS,
+    stale_reading_ns=20 * MS,
+    white_percent=85.0,
+    black_percent=5.0,
+    brick_colors=True,
+    min_echo_mm=30,
+    gyro_max_dps=440,
+    gyro_restarts=True,
 )
 
 LEGO_MICROPYTHON = replace(
@@ -239,7 +310,6 @@ LEGO_MICROPYTHON = replace(
     motor_law=MotorLaw.PYBRICKS,
     max_speed_dps=930.0,
     mode_switch_ns=30 * MS,
-    infrared_switch_ns=1100 * MS,
 )
 
 PYBRICKS_4 = replace(

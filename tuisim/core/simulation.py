@@ -10,9 +10,10 @@ from tuisim.core.drive import float32, turn_rate_dps
 from tuisim.core.end_stops import build_stops
 from tuisim.core.geometry import Pose
 from tuisim.core.motion import Motion, motor_of
+from tuisim.core.motor_columns import MotorSink
 from tuisim.core.profile import NS_PER_S, MotorLaw
 from tuisim.core.state import Instant
-from tuisim.core.tick_record import TICK_RECORD, TickSink
+from tuisim.core.tick_record import END_FLAGS, TICK_RECORD, TickSink
 
 if TYPE_CHECKING:
     from tuisim.core.motors import Motor
@@ -43,8 +44,12 @@ class Simulation(Motion):
         drive = self.drive
         return Pose(drive.x_mm, drive.y_mm, drive.heading_deg)
 
-    def instant(self) -> Instant:
-        """Return the current instant, with values rounded as the telemetry stores them."""
+    def instant(self, *, with_motors: bool = False) -> Instant:
+        """Return the current instant, with values rounded as the telemetry stores them.
+
+        Args:
+            with_motors: Whether with what the drivers know of the motors.
+        """
         left, right, spec = float32(self._left_dps), float32(self._right_dps), self.spec
         return Instant(
             tick=self.tick,
@@ -57,10 +62,12 @@ class Simulation(Motion):
             if self._slipping is None
             else sensed_turn_rate_dps(left, right, spec),
             gyro_zero_deg=self.drive.gyro_zero_deg,
-            end_flags=self.end_flags,
+            press_flags=self.press_flags,
             noise=self.noise,
             drift=spec.world.drift,
+            profile=spec.profile,
             seed=spec.seed,
+            motors=self.motor_values if with_motors else (),
         )
 
     def records_since(self, first: int) -> Iterator[tuple[float, ...]]:
@@ -69,14 +76,19 @@ class Simulation(Motion):
 
     # Changing
 
-    def restart(self, spec: RunSpec, sink: TickSink) -> None:
+    def press(self, hand_flags: int) -> None:
+        """Let hands press the touch sensors with these flags, and no others."""
+        self.press_flags = self.press_flags & END_FLAGS | hand_flags
+
+    def restart(self, spec: RunSpec, sink: TickSink, motor_sink: MotorSink | None = None) -> None:
         """Begin the recorded run of a simulation that was prepared without one, and has not run yet.
 
         Args:
             spec: Differs from the earlier one at most in seed, noise and start.
             sink: Receives the tick records.
+            motor_sink: Receives what the drivers of the motors know; None if they have none, or nobody asks.
         """
-        self._begin(spec, sink)
+        self._begin(spec, sink, motor_sink)
 
     def place(self, pose: Pose) -> None:
         """Set the robot's pose; the gyro keeps its angle."""
@@ -139,23 +151,23 @@ class FurtherMotors(Simulation):
         return done + super().advance(ticks - done, until_change) if done < ticks else done
 
     def tick_once(self) -> None:
-        """Run one tick of the robot, then of the extra motors."""
+        """Run one tick of the extra motors, then of the robot, which records it."""
         if self._reports_first:
             # A position may have been set since the last tick.
             self._report_turns()
-        super().tick_once()
+        # Before anything moves: without space for its record there is no tick.
+        self._make_room(1)
         for motor, stops in zip(self.others, self._stops, strict=True):
             if not motor.resting:
                 before = motor.mode
-                stops.step(motor, self.tick)
+                stops.step(motor, self.tick + 1)
                 if not self._driven and (
                     motor.mode != before or motor.blocked_ticks == self.stall_ticks
                 ):
                     self.changed = True
         flags = sum(stops.flags for stops in self._stops)
-        if flags != self.end_flags:
-            self.end_flags = flags
-            self.rewrite_record()
+        self.press_flags = self.press_flags & ~END_FLAGS | flags
+        super().tick_once()
         self._report_turns()
 
     def _report_turns(self) -> None:

@@ -66,6 +66,21 @@ BUTTONS = ("up", "down", "left", "right", "enter", "backspace")
 REMOTE_BUTTONS = ("top_left", "bottom_left", "top_right", "bottom_right", "beacon")
 """Buttons of the remote control, by their names in ev3dev2."""
 
+REMOTE_BY_HAND = {
+    "remote.left_up": "top_left",
+    "remote.left_down": "bottom_left",
+    "remote.right_up": "top_right",
+    "remote.right_down": "bottom_right",
+    "remote.beacon": "beacon",
+}
+"""Names of the remote control's buttons for presses by hand; each of `REMOTE_BUTTONS` by its name."""
+
+TOUCH = "touch"
+"""Presses every touch sensor by hand."""
+
+PRESSABLE = (*BUTTONS, TOUCH, *INPUT_PORTS, *REMOTE_BY_HAND)
+"""What can be pressed by hand: buttons, touch sensors by their ports, and the remote control."""
+
 REMOTE_CHANNELS = (1, 2, 3, 4)
 """Channels of a remote control or beacon."""
 
@@ -231,6 +246,26 @@ class ColorSensorSpec(SensorSpec):
         help="weights of the disc's pixels: mean, gaussian or centre",
     )
     """How the pixels of the disc are weighted, one of `STRATEGIES`."""
+    white_percent: float | None = number(
+        50,
+        100,
+        default=None,
+        later=True,
+        unit="%",
+        label="White %",
+        help="reflected light of white; by default as the profile says",
+    )
+    """Reflected light of white; None: `ProfileSpec.white_percent`."""
+    black_percent: float | None = number(
+        0,
+        49,
+        default=None,
+        later=True,
+        unit="%",
+        label="Black %",
+        help="reflected light of black; by default as the profile says",
+    )
+    """Reflected light of black; None: `ProfileSpec.black_percent`."""
 
 
 @spec
@@ -272,6 +307,13 @@ class GyroSpec(SensorSpec):
 
     name: str = _sensor_name("gyro")
     port: str = _input_port("in4")
+    keeps_angle: bool = flag(
+        default=False,
+        later=True,
+        label="Keeps angle",
+        help="a newer sensor, from date code N4 on: a change of mode leaves its angle",
+    )
+    """Whether a change of mode leaves the angle as it is, where the profile lets it restart."""
 
 
 @spec

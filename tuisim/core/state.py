@@ -2,10 +2,17 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
 from tuisim.core.drift_spec import NO_DRIFT, DriftSpec
 from tuisim.core.geometry import Pose
+from tuisim.core.profile import ROBOLAB, ProfileSpec
 from tuisim.core.spec import NoiseSpec
 from tuisim.data_class import dataclass
+
+if TYPE_CHECKING:
+    from tuisim.core.motor_columns import MotorValues
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,8 +29,16 @@ class Instant:
     """Counter-clockwise, over the last tick, as a gyro senses it."""
     gyro_zero_deg: float = 0.0
     """Heading at which the gyro reads 0."""
-    end_flags: int = 0
-    """Which end stops the motors are at that drive no wheel: the bits of `core.end_stops`."""
+    press_flags: int = 0
+    """End stops that motors are at, and touch sensors that a hand presses: the bits of `PRESS_FLAGS`."""
     noise: NoiseSpec = NoiseSpec()
     drift: DriftSpec = NO_DRIFT
+    profile: ProfileSpec = ROBOLAB
     seed: int = 0
+    motors: tuple[MotorValues, ...] = ()
+    """What the drivers know of all motors, if they have drivers and it was asked for."""
+
+    def stop(self) -> Instant:
+        """Return the same instant with motors that stand, and of which nothing is asked."""
+        motors = ((0, 0, 0, 0),) * len(self.motors)
+        return replace(self, left_speed_dps=0.0, right_speed_dps=0.0, motors=motors)

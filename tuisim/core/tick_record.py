@@ -34,8 +34,12 @@ FLAG_RIGHT_RUNNING = 2
 FLAG_PEN_DOWN = 4
 FLAG_FIRST_END = 8
 """The lowest of the flags of `core.end_stops`."""
-END_FLAGS = -FLAG_FIRST_END
-"""All of those flags."""
+FLAG_FIRST_HAND = 1 << 12
+"""The lowest of the flags of touch sensors that are pressed by hand, one for each of `INPUT_PORTS`."""
+END_FLAGS = FLAG_FIRST_HAND - FLAG_FIRST_END
+"""All flags of `core.end_stops`."""
+PRESS_FLAGS = -FLAG_FIRST_END
+"""All flags that decide about touch sensors: those of end stops, and those of hands."""
 
 Buffer: TypeAlias = mmap | bytearray
 """A mutable buffer: a mapped file, or memory."""

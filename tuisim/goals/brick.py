@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from tuisim.core.conditions import Operator, ValueCondition, ValueSource, run_condition_in
 from tuisim.core.sensors import named_column
-from tuisim.core.spec import BUTTONS, RobotSpec
+from tuisim.core.spec import BUTTONS, RunSpec
 from tuisim.goals.patterns import build_search
 from tuisim.protocol import SetButtons, UserAction
 from tuisim.runs.brick_state import LED_NAMES, BrickState, face_after
@@ -32,11 +32,11 @@ _GREEN = 255
 """Until the program sets a LED, all are green."""
 
 
-def with_column(wanted: ValueCondition, robot: RobotSpec) -> ValueCondition:
+def with_column(wanted: ValueCondition, run: RunSpec) -> ValueCondition:
     """Return a condition with the name of its column.
 
     Raises:
-        ConfigError: the robot has no such column.
+        ConfigError: the run has no such column.
     """
     if (
         wanted.source is not ValueSource.COLUMN
@@ -44,7 +44,7 @@ def with_column(wanted: ValueCondition, robot: RobotSpec) -> ValueCondition:
         or wanted.name in (*BRICK_COLUMNS, *BRICK_TEXTS)
     ):
         return wanted
-    return replace(wanted, name=named_column(wanted.name, robot))
+    return replace(wanted, name=named_column(wanted.name, run))
 
 
 def goal_condition_in(text: str) -> ValueCondition | None:

@@ -31,7 +31,7 @@ def find_when(condition: WhenCondition, evidence: Evidence, span: EvidenceSpan) 
     never: list[str] = []
     for text, wanted in zip(condition.comparisons, condition.conditions, strict=True):
         try:
-            named = with_column(wanted, evidence.spec.robot)
+            named = with_column(wanted, evidence.spec)
             here = evidence.held(named)[ticks]
         except (ConfigError, ValueError) as error:
             return _unfit(text, wanted, error)
@@ -72,7 +72,7 @@ def find_lapse(condition: KeepCondition, evidence: Evidence, span: EvidenceSpan)
     parts: list[tuple[Array, str]] = []
     for text, wanted in zip(condition.comparisons, condition.conditions, strict=True):
         try:
-            named = with_column(wanted, evidence.spec.robot)
+            named = with_column(wanted, evidence.spec)
             true = evidence.held(named)
             if named.source is ValueSource.SAMPLE:
                 # Between two samples there is nothing to look at.
@@ -131,7 +131,7 @@ def find_miscount(condition: CountCondition, evidence: Evidence, span: EvidenceS
     """Find when something had happened too often, or at the end of a span that it had not often enough."""
     wanted = condition.condition
     try:
-        named = with_column(wanted, evidence.spec.robot)
+        named = with_column(wanted, evidence.spec)
         moments = _moments(named, evidence, span)
     except (ConfigError, ValueError) as error:
         unfit = _unfit(condition.of, wanted, error)

@@ -160,7 +160,7 @@ class Evidence:
         )
 
     def column(self, name: str) -> Array:
-        """Return a column of `columns_of` the robot, or one of `BRICK_COLUMNS`, at every tick.
+        """Return a column of `columns_of` the run, or one of `BRICK_COLUMNS`, at every tick.
 
         Raises:
             LogError, ConfigError: the mat no longer exists, or its image has changed.
@@ -170,7 +170,7 @@ class Evidence:
             if name in BRICK_COLUMNS:
                 self.memo[name] = brick_column(name, len(self.records), self.brick_rows, actions)
                 return self.column(name)
-            self.memo |= column_values((name,), self.records, self.spec, actions, self.mat)
+            self.memo |= column_values((name,), self.records, self._run, actions, self.mat)
         found: Array = self.memo[name]
         return found
 

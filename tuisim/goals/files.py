@@ -16,11 +16,12 @@ from typing import Any
 from tuisim.config import files
 from tuisim.config.files import Location
 from tuisim.config.folders import programs_folder, user_path
-from tuisim.config.presses import ButtonPress
+from tuisim.config.presses import Press
 from tuisim.config.robots import DEFAULT_ROBOT, RobotChoice, choose_robot
 from tuisim.config.worlds import WorldFile, means_world, world_from_table
 from tuisim.core.conditions import ValueCondition
-from tuisim.core.spec import RobotSpec
+from tuisim.core.profile import PROFILES
+from tuisim.core.spec import RunSpec, WorldSpec
 from tuisim.core.values import shown
 from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError, nearest, see_page
@@ -60,7 +61,7 @@ class GoalsFile:
     """The program that it names, if any: a path, or the name of an example."""
     others: tuple[TrialWorld, ...] = ()
     """Other worlds in which programs are tried, too."""
-    presses: tuple[ButtonPress, ...] = ()
+    presses: tuple[Press, ...] = ()
     """The buttons of the brick that are pressed in a run."""
     inputs: tuple[str, ...] = ()
     """The answers to `input()`, if the goals have no dialogue."""
@@ -214,10 +215,10 @@ def _goals_file(data: Any, path: Path, world: WorldFile) -> GoalsFile | None:
     )
     # Without a world, programs choose the robot.
     if world.settings:
-        robots = robots_of(task.worlds)
-        check_columns(own, robots, at.at("goal"))
+        runs = runs_of(task.worlds)
+        check_columns(own, runs, at.at("goal"))
         for number, other in enumerate(others, start=1):
-            check_columns(other.own_goals, robots, at.at(f"also[{number}].goal"))
+            check_columns(other.own_goals, runs, at.at(f"also[{number}].goal"))
     return task
 
 
@@ -461,23 +462,25 @@ def _has(data: Any, path: list[int | str]) -> bool:
     return True
 
 
-def robots_of(worlds: Sequence[TrialWorld]) -> list[RobotSpec]:
-    """Return the robots of some worlds, each with all that it has."""
+def runs_of(worlds: Sequence[TrialWorld]) -> list[RunSpec]:
+    """Return runs in some worlds, each with all columns that it can have."""
     chosen = [world.settings.get("robot", DEFAULT_ROBOT) for world in worlds]
-    return [(one if isinstance(one, RobotChoice) else choose_robot(one)).spec for one in chosen]
+    robots = [one if isinstance(one, RobotChoice) else choose_robot(one) for one in chosen]
+    # Whoever runs a program may choose another profile: this one has the most columns.
+    return [RunSpec(robot.spec, WorldSpec(), PROFILES["ev3"]) for robot in robots]
 
 
-def check_columns(goals: Sequence[Goal], robots: Sequence[RobotSpec], at: Location) -> None:
+def check_columns(goals: Sequence[Goal], runs: Sequence[RunSpec], at: Location) -> None:
     """Check the goals in a list of tables, in its order.
 
     Raises:
-        ConfigError: one names a column that none of the robots has.
+        ConfigError: one names a column that none of the runs has.
     """
     for number, goal in enumerate(goals, start=1):
         for part in goal.parts:
             for wanted in _conditions(part):
                 key = next(key for key, kind in CONDITIONS.items() if type(part) is kind)
-                _check(wanted, robots, at.at(f"[{number}]").at(key))
+                _check(wanted, runs, at.at(f"[{number}]").at(key))
 
 
 def _conditions(part: Condition) -> tuple[ValueCondition, ...]:
@@ -489,11 +492,11 @@ def _conditions(part: Condition) -> tuple[ValueCondition, ...]:
     return ()
 
 
-def _check(wanted: ValueCondition, robots: Sequence[RobotSpec], at: Location) -> None:
+def _check(wanted: ValueCondition, runs: Sequence[RunSpec], at: Location) -> None:
     found: ConfigError | None = None
-    for robot in robots:
+    for run in runs:
         try:
-            with_column(wanted, robot)
+            with_column(wanted, run)
             return
         except ConfigError as error:
             found = error

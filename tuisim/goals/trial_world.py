@@ -9,7 +9,7 @@ from typing import Any
 
 from tuisim.config import files
 from tuisim.config.files import Location
-from tuisim.config.presses import ButtonPress
+from tuisim.config.presses import Press
 from tuisim.config.worlds import world_from_table
 from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError
@@ -48,7 +48,7 @@ class TrialWorld:
     """Names of the goals to be met there."""
     own_goals: tuple[Goal, ...] = ()
     """Those of them that only this world has."""
-    presses: tuple[ButtonPress, ...] = ()
+    presses: tuple[Press, ...] = ()
     """The buttons of the brick that are pressed there."""
     inputs: tuple[str, ...] = ()
     """The answers to `input()` there, if its goals have no dialogue."""

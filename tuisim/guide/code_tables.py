@@ -9,7 +9,7 @@ from tuisim.config.user_config import SETTINGS
 from tuisim.core.drift_spec import DriftSpec
 from tuisim.core.profile import MS, PROFILES, ProfileSpec
 from tuisim.core.sensors import column_names, mounted
-from tuisim.core.spec import RobotSpec
+from tuisim.core.spec import RobotSpec, RunSpec, WorldSpec
 from tuisim.core.values import NamedNumber, values_of
 from tuisim.guide.tables import Table, code
 from tuisim.logs.export import EXPORTERS
@@ -151,5 +151,5 @@ def breakpoints() -> Table:
 
 
 def columns() -> Table:
-    """Return the columns that every run of the default robot has."""
-    return _columns(column_names(RobotSpec()))
+    """Return the columns of a run of the default robot, those of its motors under profile `ev3` alone."""
+    return _columns(column_names(RunSpec(RobotSpec(), WorldSpec(), PROFILES["ev3"])))

@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 from tuisim.data_class import dataclass
 from tuisim.errors import counted
 from tuisim.logs.columns import numeric_columns
-from tuisim.logs.levels import levels_of
+from tuisim.logs.derived import spec_in
+from tuisim.logs.levels import Light, find_light, levels_of
 from tuisim.logs.plateaus import Search, plateaus
 from tuisim.runs.arrays import FloatArray, IntArray
 
@@ -95,7 +96,8 @@ def band_report(log: Log, name: str, search: Search = plateaus) -> BandReport:
         LogError: there is no such variable.
     """
     series = log.series(name)
-    found = levels_of(series.values, light_noise(log.metadata, series.run), search)
+    light = read_light(log.metadata, series.run)
+    found = levels_of(series.values, light, search)
     finite = np.append(0, np.cumsum(np.isfinite(series.values)))
     first, last = found.start, found.stop - 1
     samples = finite[last + 1] - finite[first]
@@ -109,7 +111,9 @@ def band_report(log: Log, name: str, search: Search = plateaus) -> BandReport:
         "spread": found.spread,
         "strays": found.strays,
         "grey": [grey.name if grey else "" for grey in found.greys],
-        "grey_percent": np.array([grey.percent if grey else NAN for grey in found.greys]),
+        "grey_percent": light.seen(
+            np.array([grey.percent if grey else NAN for grey in found.greys])
+        ),
         "true_level": found.true_level,
         **_places(driven_mm(log, series), first, last),
         "first_row": series.rows[first],
@@ -129,17 +133,15 @@ def _places(driven: FloatArray | None, first: IntArray, last: IntArray) -> dict[
     return {"start_mm": start_mm, "stop_mm": stop_mm, "width_mm": width_mm}
 
 
-def light_noise(metadata: Mapping[str, Any], run: int) -> int:
-    """Return the light noise of a run (0: the first) from the metadata of its log; 0 if they do not say."""
-    try:
-        found = [
-            entry
-            for entry in metadata["runs"]
-            if isinstance(entry, Mapping) and run in (0, entry.get("run"))
-        ]
-        return int(found[0]["world"]["noise"]["light"])
-    except (IndexError, KeyError, TypeError, ValueError, OverflowError):
-        return 0
+def read_light(metadata: Mapping[str, Any], run: int) -> Light:
+    """Return what stands between the mat and the readings of a run, as far as the metadata of a log say.
+
+    Args:
+        metadata: Those of the log.
+        run: Its number in the log; 0 for the first.
+    """
+    spec = spec_in(metadata, max(run - 1, 0))
+    return find_light(spec) if spec else Light()
 
 
 def driven_mm(log: Log, series: Series) -> FloatArray | None:

@@ -148,12 +148,12 @@ def _column(log: Log, name: str, base: Series) -> FloatArray:
 
 def computed_columns(log: Log) -> dict[str, Callable[[], FloatArray]]:
     """Return what computes those columns of a recording that a log of telemetry has not, but can compute, by name."""
-    if (robot := robot_of(log)) is None:
+    if (spec := spec_in(log.metadata)) is None:
         return {}
     there = set(numeric_columns(log.table.schema))
     return {
-        column.name: partial(_computed_column, column.of, columns, log, robot)
-        for columns, _ in owners(robot)
+        column.name: partial(_computed_column, column.of, columns, log, spec)
+        for columns, _ in owners(spec)
         for column in columns
         if column.of is not None
         and column.name not in there
@@ -161,16 +161,9 @@ def computed_columns(log: Log) -> dict[str, Callable[[], FloatArray]]:
     }
 
 
-def _computed_column(of: Any, columns: Sequence[Column], log: Log, robot: RobotSpec) -> FloatArray:
-    return computed(
-        of, columns, {name: log.numbers(name) for name in measured_names(columns)}, robot
-    )
-
-
-def robot_of(log: Log) -> RobotSpec | None:
-    """Return the robot of a log, None if its metadata describe none."""
-    spec = spec_in(log.metadata)
-    return spec.robot if spec else None
+def _computed_column(of: Any, columns: Sequence[Column], log: Log, spec: RunSpec) -> FloatArray:
+    measured = {name: log.numbers(name) for name in measured_names(columns)}
+    return computed(of, columns, measured, spec)
 
 
 def named_columns(log: Log, text: str) -> list[str]:

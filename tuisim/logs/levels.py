@@ -5,10 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 from functools import cache
 from types import MappingProxyType
+from typing import NamedTuple
 
 import numpy as np
 
 from tuisim.core.css_colors import css_names
+from tuisim.core.sensors.color import find_response
+from tuisim.core.spec import RunSpec
 from tuisim.data_class import dataclass
 from tuisim.logs.plateaus import FIELDS, Search, plateaus
 from tuisim.runs.arrays import FloatArray, IntArray
@@ -84,6 +87,42 @@ def light_scale(values: FloatArray) -> float:
     return 1.0 if finite.max() <= 100.0 else 100.0 / 255.0
 
 
+class Light(NamedTuple):
+    """What stands between the readings of a colour sensor and the mat."""
+
+    noise: int = 0
+    """Light noise of the run, 0 to 128."""
+    black: float = 0.0
+    """What the sensor reads of black, in percent."""
+    white: float = 100.0
+    """Likewise, of white."""
+
+    def undo_response(self, percents: FloatArray) -> FloatArray:
+        """Return the greys of the mat that give readings, both 0 to 100."""
+        if (self.black, self.white) == (0.0, 100.0):
+            return percents
+        return (percents - self.black) / (self.white - self.black) * 100.0
+
+    def seen(self, percents: FloatArray) -> FloatArray:
+        """Return the readings that greys of the mat give."""
+        if (self.black, self.white) == (0.0, 100.0):
+            return percents
+        return self.black + percents * (self.white - self.black) / 100.0
+
+
+PLAIN_LIGHT = Light()
+"""A sensor that reads the greys as they are, without noise."""
+
+
+def find_light(spec: RunSpec) -> Light:
+    """Return what stands between the mat and the first colour sensor of a run."""
+    noise = spec.world.noise.light
+    for sensor in spec.robot.color_sensors:
+        dark, span = find_response(sensor, spec.profile)
+        return Light(noise, 100.0 * dark / FULL, 100.0 * (dark + span) / FULL)
+    return Light(noise)
+
+
 @dataclass(frozen=True, eq=False)
 class Levels:
     """The plateaus of the samples of one variable."""
@@ -102,12 +141,12 @@ class Levels:
     """The nearest grey of each; None if there is none, or if the samples are not light levels."""
 
 
-def levels_of(values: FloatArray, noise: int, search: Search = plateaus) -> Levels:
+def levels_of(values: FloatArray, light: Light = PLAIN_LIGHT, search: Search = plateaus) -> Levels:
     """Return the plateaus of samples, which `search` finds.
 
     Args:
         values: Shape (n,).
-        noise: Light noise of the run, 0 to 128.
+        light: What stands between them and the greys of the mat.
         search: Finds them.
     """
     found = np.array(search(values), FIELDS)
@@ -115,8 +154,8 @@ def levels_of(values: FloatArray, noise: int, search: Search = plateaus) -> Leve
     true_level = level
     greys_near: list[Grey | None] = [None] * len(found)
     if scale:
-        percents = without_clamping(level * scale, noise)
-        true_level = percents / scale if noise else level
+        percents = without_clamping(light.undo_response(level * scale), light.noise)
+        true_level = light.seen(percents) / scale if light.noise else level
         greys_near = nearest_greys(percents)
     return Levels(
         found["start"],

@@ -66,9 +66,10 @@ def table_bundle(title: str, rows: Sequence[Row], *, keep_blanks: bool = False) 
     }
 
 
-def _reading(name: str, values: dict[str, float]) -> str:
+def _reading(name: str, values: dict[str, float], spec: RunSpec) -> str:
     if f"{name}_red" in values:
-        seen = ColorReading(*(values[f"{name}_{channel}"] for channel in ("red", "green", "blue")))
+        red, green, blue = (values[f"{name}_{channel}"] for channel in ("red", "green", "blue"))
+        seen = ColorReading(red, green, blue, spec.profile.brick_colors)
         return f"red {seen.red_percent:.1f} %, mean {seen.mean_percent:.1f} %, rgb {seen.rgb}, {seen.name}"
     return ", ".join(
         f"{value:g}{_unit(column)}" for column, value in values.items() if column.startswith(name)
@@ -121,7 +122,7 @@ def instrumentation(scene: Scene) -> list[Row]:
             if name in _LEFT_RIGHT
             else name.capitalize()
         )
-        rows.append((shown, _reading(name, values)))
+        rows.append((shown, _reading(name, values, scene.spec)))
     return [*rows, ("Clock", f"{record.tick / spec.profile.tick_hz:.2f} s")]
 
 

@@ -8,17 +8,20 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from itertools import chain, pairwise, repeat
-from typing import TYPE_CHECKING, Any, TypeAlias
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Protocol, TypeAlias
 
 from tuisim.core.columns import MOTION, Column, measured_names
 from tuisim.core.conditions import ValueCondition
 from tuisim.core.field import Field
+from tuisim.core.motor_columns import find_motor_owners
 from tuisim.core.pen_marks import PenMarks
 from tuisim.core.profile import NS_PER_S
 from tuisim.core.sensors import MountedSensor, columns_of, mounted
-from tuisim.core.spec import NoiseSpec, RobotSpec, RunSpec
+from tuisim.core.spec import NoiseSpec, RunSpec
 from tuisim.core.tick_record import TICK_RECORD
 from tuisim.protocol import SetNoise, UserAction
+from tuisim.runs.motor_records import read_motor_columns
 from tuisim.runs.records import TELEMETRY_FILE
 from tuisim.runs.run_folder import StoredRun, noise_at, open_mat
 from tuisim.runs.samples import samples_of
@@ -32,6 +35,17 @@ if TYPE_CHECKING:
 
 FieldAt: TypeAlias = Callable[[tuple[float, ...]], Field]
 """Returns the mat as the sensors see it in the tick of a record, which has the fields of `TICK_RECORD`."""
+
+
+class RecordedRun(Protocol):
+    """A run with its folder, running or stored."""
+
+    @property
+    def spec(self) -> RunSpec: ...
+
+    @property
+    def folder(self) -> Path: ...
+
 
 _POSE = ("x_mm", "y_mm", "heading_deg")
 SAMPLE_COLUMNS = ("index", "variable", "value", "time", "run", *_POSE, "line")
@@ -123,8 +137,8 @@ def telemetry_columns(run: StoredRun, field: Field | None = None) -> dict[str, A
     """Return one row per tick, including tick 0 (the start); damaged records are omitted, see `damage_note`.
 
     Columns: `time` in s, simulated; MOTION_COLUMNS; those of every mounted sensor, such as
-    `left_red` (0 … 255), `ultrasonic_mm`, `gyro_deg`, `gyro_rate_dps`; `line`, the source line
-    that spent the time, 0 for none.
+    `left_red` (0 … 255), `ultrasonic_mm`, `gyro_deg`, `gyro_rate_dps`; those of every motor with
+    a driver, such as `left_asked_dps`; `line`, the source line that spent the time, 0 for none.
 
     Args:
         field: The mat; by default that of the run.
@@ -134,15 +148,15 @@ def telemetry_columns(run: StoredRun, field: Field | None = None) -> dict[str, A
     """
     records = _sound(run.telemetry.array())
     mat = open_mat(run) if field is None else field
-    exported = measured_names(columns_of(run.spec.robot))
-    values = column_values(exported, records, run.spec, run.actions, mat)
+    exported = measured_names(columns_of(run.spec))
+    values = column_values(exported, records, run, run.actions, mat)
     return {"time": tick_times_s(records, run.spec), **values, "line": records["line"].astype("i8")}
 
 
 def column_values(
     names: Collection[str],
     records: Array,
-    spec: RunSpec,
+    run: RecordedRun,
     actions: Sequence[UserAction],
     field: Field,
     field_at: FieldAt | None = None,
@@ -150,14 +164,15 @@ def column_values(
     """Return columns at every tick by name: float64, shape (n,).
 
     Args:
-        names: Some of `columns_of` the robot.
+        names: Some of `columns_of` the run.
         records: Telemetry, structured as `TICK_FIELDS`, shape (n,).
-        spec: The specification of the run.
+        run: The run.
         actions: The user's actions, which may have changed the noise.
         field: The mat.
         field_at: Returns the mat as the sensors saw it in a tick; needed if the records do not begin with tick 0, or
             some are left out. None: the pen's marks are drawn on it as the records say.
     """
+    spec = run.spec
     sensors = [
         mount
         for mount in mounted(spec.robot)
@@ -165,27 +180,34 @@ def column_values(
     ]
     measured = {name: records[name].astype("f8") for name in MOTION_COLUMNS}
     measured |= _measured(records, sensors, _noises(records, spec, actions), spec, field, field_at)
+    motors = [
+        columns
+        for columns, _ in find_motor_owners(spec)
+        if any(column.name in names for column in columns)
+    ]
+    if motors:
+        measured |= read_motor_columns(run.folder, spec.robot, records["tick"])
     return {
         column.name: measured[column.name]
         if column.of is None
-        else computed(column.of, columns, measured, spec.robot)
-        for columns in (MOTION, *(mount.columns for mount in sensors))
+        else computed(column.of, columns, measured, spec)
+        for columns in (MOTION, *(mount.columns for mount in sensors), *motors)
         for column in columns
         if column.name in names
     }
 
 
 def computed(
-    of: Callable[[Iterable[Sequence[float]], RobotSpec], list[float]],
+    of: Callable[[Iterable[Sequence[float]], RunSpec], list[float]],
     columns: Iterable[Column],
     measured: Mapping[str, Array],
-    robot: RobotSpec,
+    spec: RunSpec,
 ) -> Array:
     """Return what is computed from the measured columns of an owner, at every tick, shape (n,)."""
     import numpy as np
 
     rows = zip(*(measured[name].tolist() for name in measured_names(columns)), strict=True)
-    return np.array(of(rows, robot), np.float64)
+    return np.array(of(rows, spec), np.float64)
 
 
 def held(condition: ValueCondition, values: Array) -> Array:

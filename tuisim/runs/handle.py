@@ -565,7 +565,7 @@ def start_run(
         BackgroundError: the mat does not exist.
         LogError: the run cannot be stored.
     """
-    parse_breakpoints(options.breaks, spec.robot)
+    parse_breakpoints(options.breaks, spec)
     return RunHandle(
         in_surroundings(program), spec, field_files(spec), options, store or RunStore()
     )

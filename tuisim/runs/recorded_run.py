@@ -6,21 +6,26 @@ from array import array
 from bisect import bisect_right
 from collections.abc import Iterator
 from contextlib import suppress
+from dataclasses import replace
 from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tuisim.core.field import Field
 from tuisim.core.motion import stall_ticks
+from tuisim.core.motor_columns import MotorValues
 from tuisim.core.pen_marks import MarkedField, PenMarks
 from tuisim.core.spec import NoiseSpec, RunSpec
+from tuisim.core.state import Instant
 from tuisim.core.tick_record import FLAG_LEFT_RUNNING, FLAG_RIGHT_RUNNING, TICK_RECORD
 from tuisim.errors import LogError
 from tuisim.protocol import SetButtons, UserAction
+from tuisim.runs.motor_records import read_motor_values
 from tuisim.runs.records import SAMPLE_STREAMS, TEXT_STREAMS, Mark, OutputRow, Stream
 from tuisim.runs.run_folder import StoredRun, noise_at, program_again
 from tuisim.runs.samples import parse_sample
 from tuisim.runs.side_files import read_actions
+from tuisim.runs.views import instant_of
 
 if TYPE_CHECKING:
     from tuisim.runs.handle import RunHandle
@@ -50,7 +55,7 @@ class Recording:
         self.spec: RunSpec = source.spec
         self.folder: Path = source.folder
         self.telemetry: TelemetryView = source.telemetry
-        self._output = source.output
+        self.output = source.output
         self.rows = RowIndex(source.output)
         self.program = program_again(source.program, source.folder)
         self.known_actions: tuple[UserAction, ...] = (
@@ -66,7 +71,7 @@ class Recording:
 
     def hold(self) -> None:
         """Stay as written up to now, until the next `RunHandle.pump` of a running run."""
-        for view in (self.telemetry, self._output):
+        for view in (self.telemetry, self.output):
             view.read_on()
             view.holds = True
 
@@ -104,6 +109,13 @@ class Recording:
         if self._marks is None:
             self._marks = _TimedMarks(mat, self)
         return self._marks.at(tick)
+
+    def instant(self, record: TickRecord, spec: RunSpec, noise: NoiseSpec) -> Instant:
+        """Return the instant of a record, with what the drivers knew of the motors if that is not damaged."""
+        motors: tuple[MotorValues, ...] = ()
+        with suppress(LogError):
+            motors = read_motor_values(self.folder, self.spec, record.tick)
+        return replace(instant_of(record, spec, noise), motors=motors)
 
     def stalled(self, record: TickRecord) -> tuple[bool, bool]:
         """Return whether the left and the right motor were running but did not turn."""
@@ -177,7 +189,7 @@ class RowIndex:
     """Tick and position of each row that has been read of an output, which may still grow."""
 
     def __init__(self, output: OutputView) -> None:
-        self._output = output
+        self.output = output
         self._end = 0
         # 16 bytes a row: a program may print for hours.
         self._ticks, self._lines, self._starts = array("I"), array("I"), array("I")
@@ -200,7 +212,7 @@ class RowIndex:
             LogError: the recording is damaged.
         """
         rows = []
-        for row, after in islice(self._output.rows_from(self._end), limit):
+        for row, after in islice(self.output.rows_from(self._end), limit):
             self._note(row)
             self._end = after
             rows.append(row)
@@ -249,14 +261,14 @@ class RowIndex:
         """Return one row by its index, from 0."""
         # Nothing, if the program has changed its recording meanwhile.
         nothing = OutputRow("", self._ticks[number], 0, 0, Stream.NOTE), 0
-        return next(self._output.rows_from(self._starts[number]), nothing)[0]
+        return next(self.output.rows_from(self._starts[number]), nothing)[0]
 
     def rows(self, first: int, step: int = 1) -> Iterator[OutputRow]:
         """Yield the rows from an index on; with a step of -1 backwards."""
         if step < 0:
             yield from (self.row(number) for number in range(first, -1, -1))
         elif first < len(self):
-            rows = self._output.rows_from(self._starts[first])
+            rows = self.output.rows_from(self._starts[first])
             yield from (row for row, _ in islice(rows, len(self) - first))
 
     def line_of(self, name: str, tick: int) -> int:

@@ -9,12 +9,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
-from tuisim.core.spec import BUTTONS
+from tuisim.core.spec import PRESSABLE
 from tuisim.data_class import dataclass
 from tuisim.protocol import SetButtons, UserAction
 
 if TYPE_CHECKING:
-    from tuisim.config.presses import ButtonPress
+    from tuisim.config.presses import Press
 
 DEFAULT_TIME_LIMIT_S = 600.0
 """Simulated time that a run may take if nothing else is asked for."""
@@ -76,17 +76,17 @@ class RunOptions:
         return cls(**{**plain, **rebuilt})
 
 
-def press_actions(presses: Sequence[ButtonPress], tick_hz: int) -> tuple[UserAction, ...]:
-    """Return the changes of the button states, ordered by tick; presses may overlap, and last at least one tick."""
+def press_actions(presses: Sequence[Press], tick_hz: int) -> tuple[UserAction, ...]:
+    """Return the changes of what a hand presses, ordered by tick; presses may overlap, and last at least one tick."""
     held = []
     for press in presses:
         first = round(press.from_s * tick_hz)
-        held.append((press.button, first, max(first + 1, round(press.until_s * tick_hz))))
+        held.append((press.name, first, max(first + 1, round(press.until_s * tick_hz))))
     changes: list[UserAction] = []
     before: tuple[str, ...] = ()
     for tick in sorted({tick for _, first, last in held for tick in (first, last)}):
-        down = {button for button, first, last in held if first <= tick < last}
-        pressed = tuple(button for button in BUTTONS if button in down)
+        down = {name for name, first, last in held if first <= tick < last}
+        pressed = tuple(name for name in PRESSABLE if name in down)
         if pressed != before:
             changes.append(UserAction(tick, SetButtons(pressed)))
             before = pressed

@@ -12,11 +12,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tuisim.core.drift import light_share, sensed_turn_rate_dps
+from tuisim.core.drift import draw_echo_bias_mm, sensed_turn_rate_dps
 from tuisim.core.field import Field
 from tuisim.core.noise import stream
 from tuisim.core.sensors import SENSORS
-from tuisim.core.sensors.color import disc_pixels_of
+from tuisim.core.sensors.color import EVEN, WHITE, disc_pixels_of, find_response, light_seen
 from tuisim.core.sensors.ultrasonic import MAX_ECHO_DEG, MIN_ECHO_DEG, Edge, surfaces
 from tuisim.core.spec import (
     FIELD_HEIGHT_MM,
@@ -78,8 +78,12 @@ def quiet_color_columns(
     table = np.frombuffer(field.sums[diameter], np.uint32).reshape(height, width, 3)
     sums[inside] = table[row[inside], col[inside]]
     means = sums / disc_pixels_of(diameter)
-    if run.world.drift.light_pc:
-        means *= light_share(x_mm, y_mm, run.world.drift, run.seed)[:, None]
+    response, drift = find_response(sensor, run.profile), run.world.drift
+    if response != EVEN:
+        means = response.dark * inside[:, None] + means * response.span / WHITE
+    if drift.light_pc or drift.light_gain_pc:
+        light = np.broadcast_to(light_seen(x_mm, y_mm, sensor, drift, run.seed), x_mm.shape)
+        means = np.minimum(means * light[:, None], WHITE)
     return {name: means[:, channel] for channel, name in enumerate(SENSORS["color"].names(sensor))}
 
 
@@ -93,7 +97,8 @@ def _gyro(sensor: GyroSpec, records: Array, run: RunSpec, field: Field) -> tuple
     left_dps: Any = records["left_speed_dps"].astype("f8")
     right_dps: Any = records["right_speed_dps"].astype("f8")
     angle_deg = records["gyro_zero_deg"].astype("f8") - records["heading_deg"]
-    rate_dps: Any = -sensed_turn_rate_dps(left_dps, right_dps, run)
+    fastest = run.profile.gyro_max_dps or np.inf
+    rate_dps: Any = np.clip(-sensed_turn_rate_dps(left_dps, right_dps, run), -fastest, fastest)
     return _rounded(angle_deg), _rounded(rate_dps)
 
 
@@ -112,13 +117,19 @@ def _ultrasonic(
         nearest_mm = _cut_off(
             nearest_mm, found.level, start[::-1], (sin, cos), _echoes(0.0, facing_deg)
         )
-    distance_mm = _rounded(nearest_mm)
+    distance_mm, farthest = _rounded(nearest_mm), float(round(sensor.max_range_mm))
+    is_near = distance_mm < run.profile.min_echo_mm
+    if run.world.drift.echo_bias_mm:
+        bias_mm = draw_echo_bias_mm(sensor.port, run.world.drift, run.seed)
+        biased_mm = np.clip(distance_mm + bias_mm, 0.0, farthest)
+        distance_mm = np.where(distance_mm < farthest, biased_mm, distance_mm)
+    distance_mm = np.where(is_near, farthest, distance_mm)
     if not sensor.noise_mm:
         return (distance_mm,)
     drawn = (stream(run.seed, tick, sensor.name, 4) for tick in records["tick"].tolist())
     shares = np.array([int.from_bytes(four, "little") / 2147483647.5 - 1 for four in drawn])
     noisy_mm = _rounded(distance_mm + sensor.noise_mm * shares)
-    return (np.clip(noisy_mm, 0.0, float(round(sensor.max_range_mm))),)
+    return (np.clip(noisy_mm, 0.0, farthest),)
 
 
 def _cut_off(

@@ -52,6 +52,9 @@ MOST_PATH = 200
 READINGS_FILE = "readings.bin"
 """What sensors, encoders and buttons the program has read; see `runs.readings`."""
 
+MOTORS_FILE = "motors.bin"
+"""What the drivers knew of the motors at each tick; see `runs.motor_records`. Missing if they have none."""
+
 LOG_FILE = "child.log"
 """The stderr of the child, for errors below Python; missing if there were none."""
 
@@ -64,6 +67,7 @@ SIDE_FILES = (
     MODULES_FILE,
     READS_FILE,
     READINGS_FILE,
+    MOTORS_FILE,
     LOG_FILE,
     STACK_FILE,
 )

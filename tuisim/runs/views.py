@@ -24,7 +24,7 @@ from weakref import finalize
 from tuisim.core.geometry import Pose
 from tuisim.core.spec import NoiseSpec, RunSpec
 from tuisim.core.state import Instant
-from tuisim.core.tick_record import END_FLAGS, TICK_FIELDS, TICK_RECORD
+from tuisim.core.tick_record import PRESS_FLAGS, TICK_FIELDS, TICK_RECORD
 from tuisim.data_class import dataclass
 from tuisim.errors import LogError, counted
 from tuisim.regular_file import of_the_machine, open_regular
@@ -95,9 +95,10 @@ def instant_of(record: TickRecord, spec: RunSpec, noise: NoiseSpec) -> Instant:
         right_speed_dps=record.right_speed_dps,
         turn_rate_dps=sensed_turn_rate_dps(record.left_speed_dps, record.right_speed_dps, spec),
         gyro_zero_deg=record.gyro_zero_deg,
-        end_flags=record.flags & END_FLAGS,
+        press_flags=record.flags & PRESS_FLAGS,
         noise=noise,
         drift=spec.world.drift,
+        profile=spec.profile,
         seed=spec.seed,
     )
 

@@ -16,16 +16,18 @@ from tuisim.core.profile import NS_PER_S
 from tuisim.core.simulation import FurtherMotors, Turn, simulation_of
 from tuisim.core.tick_record import NoRecording
 from tuisim.runs.brick_state import motors_row
+from tuisim.runs.motor_records import MotorsWriter
 from tuisim.runs.readings import ReadingsWriter
 from tuisim.runs.records import (
     OUTPUT_FILE,
     TELEMETRY_FILE,
+    MappedWriter,
     OutputWriter,
     Stream,
     TelemetryWriter,
     is_full,
 )
-from tuisim.runs.side_files import READINGS_FILE
+from tuisim.runs.side_files import MOTORS_FILE, READINGS_FILE
 from tuisim.runtime.channel import Channel
 from tuisim.runtime.control import ATTENTION, STOPPING, RunControl
 from tuisim.runtime.interrupts import Interrupts, die_with_host
@@ -76,7 +78,7 @@ def main(arguments: list[str], prepared: Child | None = None) -> NoReturn:
         child = Child(read_config(Path(arguments[0]))) if prepared is None else prepared
         child.connect(channel)
     except OSError as error:
-        for name in (TELEMETRY_FILE, OUTPUT_FILE, READINGS_FILE):
+        for name in (TELEMETRY_FILE, OUTPUT_FILE, READINGS_FILE, MOTORS_FILE):
             Path(arguments[0], name).unlink(missing_ok=True)
         end, summary = protocol.End.DISK_FULL, _no_room(error)
         if not is_full(error):
@@ -186,7 +188,8 @@ class Child:
             OutputWriter(config.folder),
         )
         session.readings = ReadingsWriter(config.folder)
-        self._sim.restart(config.spec, self._telemetry)
+        self._motors = MotorsWriter(config.folder, config.spec.robot) if self._sim.notices else None
+        self._sim.restart(config.spec, self._telemetry, self._motors)
         steering = RunControl(
             channel,
             config.folder,
@@ -198,10 +201,7 @@ class Child:
         limits = RunLimits(int(options.time_limit_s * NS_PER_S), options.stall_limit_s)
         session.connect(channel, steering, limits, config.program.file)
         session.replies = options.replies
-        for writer in (self._telemetry, self._output.writer, session.readings):
-            writer.full = lambda error: session.request_stop(
-                protocol.End.DISK_FULL, _no_room(error)
-            )
+        self._stop_when_full(self._telemetry, self._motors, self._output.writer, session.readings)
         self._output.place = lambda: (self._sim.tick, session.now, session.program_line(3))
         self._output.after_write = self._after_write
         if isinstance(self._sim, FurtherMotors):
@@ -211,6 +211,13 @@ class Child:
         self._reads.begin(config.folder, config.own_folder, session.program_file)
         self._runner.raw.open()
         self._output.drain = self._runner.raw.drain
+
+    def _stop_when_full(self, *writers: MappedWriter | None) -> None:
+        """Let the run stop when there is no space for what it records."""
+        for writer in filter(None, writers):
+            writer.full = lambda error: self._session.request_stop(
+                protocol.End.DISK_FULL, _no_room(error)
+            )
 
     def _write_turns(self, turns: tuple[Turn, ...]) -> None:
         sim = self._sim
@@ -236,6 +243,8 @@ class Child:
             # A copy that the program has forked at a lower level: only the original records and reports.
             wallclock.exit_process(0)
         self._telemetry.close()
+        if self._motors is not None:
+            self._motors.close(self._telemetry.count)
         self._output.close()
         self._session.readings.close()
         self._channel.send(protocol.Wheels(*(read() for read in self._session.wheel_registers)))

@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 from tuisim import protocol
 from tuisim.atomic import private
 from tuisim.core.geometry import Pose
+from tuisim.core.sensors.touch import find_hand_flags
 from tuisim.core.spec import NoiseSpec
 from tuisim.protocol import (
     AFTER_TICK,
@@ -398,6 +399,7 @@ class RunControl:
                 sim.pen_down = down
             case protocol.SetButtons(pressed=pressed):
                 session.pressed = frozenset(pressed)
+                sim.press(find_hand_flags(session.pressed))
             case protocol.Answer(text=text):
                 self.answers.append(text)
             case protocol.Reply(messages=messages):

@@ -8,6 +8,7 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from typing import Any, NoReturn
 
+from tuisim.core.columns import COLOR_NAMES
 from tuisim.core.sensors import SENSORS, color, gyro, infrared, touch, ultrasonic
 from tuisim.core.spec import ColorSensorSpec, GyroSpec, InfraredSpec, TouchSpec, UltrasonicSpec
 from tuisim.data_class import dataclass
@@ -57,6 +58,7 @@ class LegoSensor:
         driver_name: str,
         modes: Mapping[str, Mode],
         default_mode: str,
+        switch_ns: int | None = None,
     ) -> None:
         self._session = session
         self._port, self.driver_name = port, driver_name
@@ -65,6 +67,11 @@ class LegoSensor:
         self.mode = default_mode
         self._values: tuple[int, ...] = ()
         self._next_free = (-1, -1)
+        profile = session.sim.spec.profile
+        self._stale_ns = profile.stale_reading_ns
+        self._switch_ns = profile.mode_switch_ns if switch_ns is None else switch_ns
+        self._stale: tuple[int, ...] = ()
+        self._stale_until_ns = 0
 
     def writers(self) -> dict[str, Writer]:
         """Return the functions that accept text written to each attribute."""
@@ -93,10 +100,25 @@ class LegoSensor:
         return SimDevice(session, readers, self.writers(), costs)
 
     def set_mode(self, text: str) -> None:
-        """Switch the mode; costs nothing."""
+        """Switch to a mode. Charges the time of the change if it is another one."""
         if text not in self.modes:
             raise foreign_mode(text, self._port, self.driver_name) or refuse(text)
-        self.mode = text
+        if text != self.mode:
+            self.switch(text)
+
+    def switch(self, mode: str) -> None:
+        """Switch to a mode, even from itself. Charges the time of the change."""
+        if self._stale_ns and not self._session.free:
+            self._stale = self._stale_values(mode)
+            self._stale_until_ns = self._session.now + self._stale_ns
+        self.mode = mode
+        if self._switch_ns:
+            self._session.charge(self._switch_ns)
+
+    def _stale_values(self, mode: str) -> tuple[int, ...]:
+        """Return what the first message after a change to a mode says: the values of the present one."""
+        count = len(self.modes[mode].measure())
+        return (*self.modes[self.mode].measure(), *[0] * count)[:count]
 
     def measure(self, mode: str) -> tuple[int, ...]:
         """Take one measurement in a mode. Charges its cost."""
@@ -104,7 +126,7 @@ class LegoSensor:
         session = self._session
         if not session.free:
             session.spend(chosen.cost_ns, self._codes[mode])
-        return chosen.measure()
+        return self._stale if session.now < self._stale_until_ns else chosen.measure()
 
     def measure_switched(self, mode: str) -> tuple[int, ...]:
         """Take the first measurement after a change of mode, which has charged its cost."""
@@ -137,36 +159,32 @@ class ColorDevice(LegoSensor):
         def reflected() -> tuple[int]:
             return (self.channels()[0] * 100 // color.WHITE,)
 
-        def raw() -> tuple[int, int, int]:
-            # The library computes int(raw * 255 / 300): rounding up here restores the channel exactly.
-            red, green, blue = self.channels()
-            return (
-                -(-red * RAW_WHITE // 255),
-                -(-green * RAW_WHITE // 255),
-                -(-blue * RAW_WHITE // 255),
-            )
+        white = sum(color.find_response(spec, profile))
 
         def ambient() -> tuple[int]:
-            return (sum(self.channels()) * profile.ambient_percent // (3 * color.WHITE),)
+            return (sum(self.channels()) * profile.ambient_percent // (3 * white),)
+
+        tell_color = color.bricks_color_code if profile.brick_colors else color.color_code
 
         modes = {
             "COL-REFLECT": Mode(reflected, read, units="pct"),
             "COL-AMBIENT": Mode(ambient, read, units="pct"),
             "COL-COLOR": Mode(
-                lambda: (color.color_code(*self.channels()),),
+                lambda: (tell_color(*self.channels()),),
                 profile.color_code_read_ns,
                 units="col",
             ),
-            "REF-RAW": Mode(lambda: (raw()[0], 0), read, form="s16"),
-            "RGB-RAW": Mode(raw, read, form="s16"),
-            "COL-CAL": Mode(lambda: (*raw(), 0), read, form="s16"),
+            "REF-RAW": Mode(lambda: (self._raw()[0], 0), read, form="s16"),
+            "RGB-RAW": Mode(self._raw, read, form="s16"),
+            "COL-CAL": Mode(lambda: (*self._raw(), 0), read, form="s16"),
         }
         super().__init__(session, spec.port, SENSORS["color"].driver_name, modes, "COL-REFLECT")
         self._spec = spec
-        self._clear = color.rgb_reader(spec, session.field)
-        self._noisy = color.noisy_rgb_reader(spec, session.field)
+        self._clear = color.rgb_reader(spec, profile, session.field)
+        self._noisy = color.noisy_rgb_reader(spec, profile, session.field)
         world = session.sim.spec.world
-        self._in_full = world.pen_marks or world.drift.light_pc > 0
+        drift = world.drift
+        self._in_full = world.pen_marks or drift.light_pc > 0 or drift.light_gain_pc > 0
         self._seen = (0, 0, 0)
         self._seen_tick, self._seen_actions = -1, -1
 
@@ -185,13 +203,26 @@ class ColorDevice(LegoSensor):
                 self._seen = self._clear(drive.x_mm, drive.y_mm, drive.heading_deg)
         return self._seen
 
+    def _raw(self) -> tuple[int, int, int]:
+        # The library computes int(raw * 255 / 300): rounding up here restores the channel exactly.
+        red, green, blue = self.channels()
+        return (
+            -(-red * RAW_WHITE // 255),
+            -(-green * RAW_WHITE // 255),
+            -(-blue * RAW_WHITE // 255),
+        )
+
     def read(self, mode: str) -> tuple[int, int, int]:
         """Switch to a mode and return the channels as integers. Charges the cost of a reading."""
-        self.mode = mode
+        self.set_mode(mode)
         session = self._session
         if not session.free:
             session.spend(self._read_ns, self._codes[mode])
         return self.channels()
+
+    def _stale_values(self, mode: str) -> tuple[int, ...]:
+        values = super()._stale_values(mode)
+        return (0,) if mode == "COL-COLOR" and values[0] not in range(len(COLOR_NAMES)) else values
 
 
 def ultrasonic_sensor(
@@ -232,7 +263,7 @@ def ultrasonic_sensor(
 
 
 class GyroDevice(LegoSensor):
-    """A gyro; a calibration resets it to 0."""
+    """A gyro; a calibration resets it to 0, and a change of mode where the profile says so."""
 
     def __init__(self, session: DeviceSession, spec: GyroSpec) -> None:
         sim = session.sim
@@ -255,16 +286,17 @@ class GyroDevice(LegoSensor):
             "TILT-RATE": Mode(lambda: (0,), read, 0, "d/s", "s16"),
         }
         super().__init__(session, spec.port, SENSORS["gyro"].driver_name, modes, "GYRO-ANG")
+        self.restarts = sim.spec.profile.gyro_restarts and not spec.keeps_angle
 
     def writers(self) -> dict[str, Writer]:
         """Return also the attribute that resets the sensor."""
         return super().writers() | {"direct": lambda _text: self._session.sim.reset_gyro()}
 
-    def set_mode(self, text: str) -> None:
-        """Switch the mode; a switch that ends a calibration resets the angle to 0."""
-        calibrated = self.mode == "GYRO-CAL" != text
-        super().set_mode(text)
-        if calibrated:
+    def switch(self, mode: str) -> None:
+        """Switch to a mode; a change that ends a calibration always resets the angle to 0."""
+        restarts = self.restarts or self.mode == "GYRO-CAL"
+        super().switch(mode)
+        if restarts:
             self._session.sim.reset_gyro()
 
 
@@ -290,11 +322,16 @@ def infrared_sensor(session: DeviceSession, spec: InfraredSpec) -> LegoSensor:
     modes = {
         "IR-PROX": Mode(lambda: (infrared.proximity(sim.pose, spec, world),), read, units="pct"),
         "IR-SEEK": Mode(lambda: infrared.seek(sim.pose, spec, world), read, units="pct"),
-        "IR-REMOTE": Mode(lambda: infrared.remote(time_s(), world), read, units="btn"),
-        "IR-REM-A": Mode(lambda: (infrared.remote_bits(time_s(), world),), read, form="s16"),
+        "IR-REMOTE": Mode(
+            lambda: infrared.remote(time_s(), world, session.pressed), read, units="btn"
+        ),
+        "IR-REM-A": Mode(
+            lambda: (infrared.remote_bits(time_s(), world, session.pressed),), read, form="s16"
+        ),
         "IR-CAL": Mode(lambda: (0, 0), read, form="s16"),
     }
-    return LegoSensor(session, spec.port, SENSORS["infrared"].driver_name, modes, "IR-PROX")
+    driver_name, switch_ns = SENSORS["infrared"].driver_name, sim.spec.profile.infrared_switch_ns
+    return LegoSensor(session, spec.port, driver_name, modes, "IR-PROX", switch_ns)
 
 
 DEVICES: Mapping[type, Callable[[DeviceSession, Any, Sequence[LegoSensor]], LegoSensor]] = {

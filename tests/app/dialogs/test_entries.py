@@ -7,7 +7,10 @@ from textual.app import App
 from textual.widgets import Input, OptionList
 
 from tuisim.app.dialogs.entries import BreaksDialog, WatchesDialog
-from tuisim.core.spec import RobotSpec
+from tuisim.core.profile import PROFILES
+from tuisim.core.spec import RobotSpec, RunSpec, WorldSpec
+
+RUN = RunSpec(RobotSpec(), WorldSpec(), PROFILES["ev3"])
 
 
 @pytest.mark.parametrize("kind", [BreaksDialog, WatchesDialog])
@@ -16,7 +19,7 @@ async def test_tab_completes_the_name_of_a_column(
 ) -> None:
     app: App[None] = App()
     async with app.run_test(size=(100, 40)) as pilot:
-        app.push_screen(kind((), RobotSpec(), lambda _: None))
+        app.push_screen(kind((), RUN, lambda _: None))
         await pilot.pause()
         await pilot.press(*"left_red_p")
         await pilot.pause()

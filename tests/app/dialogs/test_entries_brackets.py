@@ -14,8 +14,11 @@ from tuisim.app.dialogs.runs import Differences
 from tuisim.app.setup.poses import save_pose
 from tuisim.breakpoints import parse_break
 from tuisim.core.geometry import Pose
-from tuisim.core.spec import RobotSpec
+from tuisim.core.profile import PROFILES
+from tuisim.core.spec import RobotSpec, RunSpec, WorldSpec
 from tuisim.runs.diff import RowDifference, RunDiff
+
+RUN = RunSpec(RobotSpec(), WorldSpec(), PROFILES["ev3"])
 
 
 def _poses() -> Screen[Any]:
@@ -35,11 +38,11 @@ def _differences() -> Screen[Any]:
 DIALOGS: dict[str, tuple[Callable[[], Screen[Any]], tuple[str, ...]]] = {
     "poses": (_poses, ("door [/x]",)),
     "breaks": (
-        lambda: BreaksDialog((parse_break("print matches [/b]"),), RobotSpec(), lambda _: None),
+        lambda: BreaksDialog((parse_break("print matches [/b]"),), RUN, lambda _: None),
         ("[/b]",),
     ),
     "watches": (
-        lambda: WatchesDialog(("table[row]",), RobotSpec(), lambda _: None),
+        lambda: WatchesDialog(("table[row]",), RUN, lambda _: None),
         ("table[row]",),
     ),
     "differences": (_differences, ("'[/x]' at 0.000 s | '[beep]' at 0.100 s", "[b] | 1", "-a[i]")),

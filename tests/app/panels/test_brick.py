@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 
 import pytest
 
@@ -10,6 +11,8 @@ from tests.app.app_help import notices, ready, settings, until
 from tuisim.app.app import LabApp
 from tuisim.app.panels.brick import Brick
 from tuisim.app.snapshot import RunPhase
+from tuisim.core.profile import PROFILES
+from tuisim.core.spec import RobotSpec, RunSpec, TouchSpec, WorldSpec
 
 WATCHES = """\
 from ev3dev2.button import Button
@@ -184,3 +187,43 @@ async def test_buttons_are_of_now_and_a_branch_begins_with_none_held() -> None:
             ),
         )
         assert (app.run_controller.pressed, app.panel_area.brick.held) == (frozenset(), frozenset())
+
+
+WAITS_FOR_TOUCH = """\
+from ev3dev2.sensor.lego import TouchSensor
+from time import sleep
+bumper = TouchSensor('in1')
+bumper.wait_for_pressed()
+print('pressed')
+bumper.wait_for_released()
+print('released')
+while True:
+    sleep(0.1)
+"""
+WITH_BUMPER = RunSpec(
+    RobotSpec(ultrasonic=None, touch_sensors=(TouchSpec(port="in1"),)),
+    WorldSpec(),
+    PROFILES["ev3"],
+)
+
+
+@pytest.mark.parametrize("by_mouse", [False, True])
+async def test_a_bumper_is_pressed_by_key_and_by_mouse(by_mouse: bool) -> None:
+    app = LabApp(replace(settings(WAITS_FOR_TOUCH), spec=WITH_BUMPER))
+    async with app.run_test(size=(120, 40)) as pilot:
+        await ready(pilot)
+        await pilot.press("K", "R")
+        await until(pilot, lambda: app.run_controller.state is RunPhase.RUNNING)
+        await until(pilot, lambda: "in1" in drawn(app))
+        brick = app.panel_area.brick
+        assert brick is not None
+        if by_mouse:
+            box = next(box for box in brick._picture.buttons if box.name == "in1")
+            await pilot.mouse_down(brick, offset=(box.first + 2, box.row + 1))
+            await until(pilot, lambda: "pressed" in printed(app))
+            await pilot.mouse_up(brick, offset=(box.first + 2, box.row + 1))
+        else:
+            await until(pilot, lambda: isinstance(app.focused, Brick))
+            await pilot.press("1")
+        await until(pilot, lambda: printed(app) == ["pressed", "released"])
+        assert actions(app) == [["in1"], []]

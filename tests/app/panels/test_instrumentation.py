@@ -32,6 +32,11 @@ BARE = moment(
     colors={},
 )
 
+HELD = replace(
+    moment(),
+    instant=replace(moment().instant, motors=((0, -304, -96, 4), (-1050, 1050, 100, 17))),
+)
+
 ARMED = replace(
     SPEC, robot=replace(SPEC.robot, extra_motors=(MotorSpec("outA"), MotorSpec("outD")))
 )
@@ -92,7 +97,7 @@ def test_a_narrow_panel_names_the_pen() -> None:
 
 
 @pytest.mark.parametrize(
-    "now", [moment(), BARE, FURTHER], ids=["usual", "no sensors", "further parts"]
+    "now", [moment(), BARE, FURTHER, HELD], ids=["usual", "no sensors", "further parts", "drivers"]
 )
 def test_it_fits(now: Snapshot) -> None:
     for width, height in product((18, 20, 24, 26, 32, 40, 44, 80), (4, 6, 8, 9, 11, 13, 14, 30)):
@@ -235,3 +240,13 @@ def test_readings_side_by_side_do_not_move_with_their_values() -> None:
         for far, angle in ((90, 5), (2550, -180))
     )
     assert low == high
+
+
+def test_what_drivers_know_has_lines_of_its_own_if_they_fit() -> None:
+    shown = text(HELD, 40, 14)
+    assert shown[0] == "LeftMotor   tacho    1234   -304 °/s"
+    assert shown[1] == "asked     0 °/s  duty  -96 %  holding   "
+    assert shown[3] == "asked -1050 °/s  duty  100 %  overloaded"
+    assert len(shown) == 14
+    assert text(HELD, 48, 11)[0].endswith("-304 °/s  holding   ")
+    assert text(HELD, 46, 3)[0].startswith("L  1234 holding ")

@@ -11,8 +11,10 @@ from hypothesis import strategies as st
 
 from tuisim.core.field import Field, disc_pixels
 from tuisim.core.geometry import Pose
-from tuisim.core.sensors.color import clear_reading, rgb_reader
+from tuisim.core.profile import EV3, ROBOLAB, ProfileSpec
+from tuisim.core.sensors.color import reading, rgb_reader
 from tuisim.core.spec import FIELD_HEIGHT_MM, RobotSpec
+from tuisim.core.state import Instant
 
 WIDTH_PX, DIAMETER = 40, 20
 LEFT, RIGHT = RobotSpec().color_sensors
@@ -30,20 +32,30 @@ def random_field() -> Field:
 FIELD = random_field()
 
 
-@given(st.floats(-80, 120), st.floats(-80, 1200), st.floats(-720, 720))
+SENSORS = (LEFT, RIGHT, replace(LEFT, white_percent=61.0, black_percent=7.5))
+
+
+@given(
+    st.floats(-80, 120),
+    st.floats(-80, 1200),
+    st.floats(-720, 720),
+    st.sampled_from((ROBOLAB, EV3)),
+)
 def test_whole_channels_are_those_of_a_reading(
-    x_mm: float, y_mm: float, heading_deg: float
+    x_mm: float, y_mm: float, heading_deg: float, profile: ProfileSpec
 ) -> None:
-    for sensor in (LEFT, RIGHT):
-        seen = clear_reading(sensor, Pose(x_mm, y_mm, heading_deg), FIELD)
-        assert rgb_reader(sensor, FIELD)(x_mm, y_mm, heading_deg) == seen.rgb
+    instant = Instant(0, Pose(x_mm, y_mm, heading_deg), profile=profile)
+    for sensor in SENSORS:
+        seen = reading(sensor, instant, FIELD)
+        assert rgb_reader(sensor, profile, FIELD)(x_mm, y_mm, heading_deg) == seen.rgb
 
 
+@pytest.mark.parametrize("profile", [ROBOLAB, EV3])
 @pytest.mark.parametrize("strategy", ["gaussian", "centre"])
-def test_weighted_discs_are_read_as_well(strategy: str) -> None:
+def test_weighted_discs_are_read_as_well(strategy: str, profile: ProfileSpec) -> None:
     sensor = replace(LEFT, strategy=strategy)
-    seen = clear_reading(sensor, Pose(20.0, 500.0, 30.0), FIELD)
-    assert rgb_reader(sensor, FIELD)(20.0, 500.0, 30.0) == seen.rgb
+    seen = reading(sensor, Instant(0, Pose(20.0, 500.0, 30.0), profile=profile), FIELD)
+    assert rgb_reader(sensor, profile, FIELD)(20.0, 500.0, 30.0) == seen.rgb
     assert any(seen.rgb)
 
 

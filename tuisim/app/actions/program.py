@@ -103,7 +103,7 @@ def list_breaks(context: ActionContext) -> None:
     from tuisim.app.dialogs.entries import BreaksDialog
 
     context.app.push_screen(
-        BreaksDialog(context.debugger.breaks, context.runs.spec.robot, context.debugger.set_breaks)
+        BreaksDialog(context.debugger.breaks, context.runs.spec, context.debugger.set_breaks)
     )
 
 
@@ -112,7 +112,5 @@ def list_watches(context: ActionContext) -> None:
     from tuisim.app.dialogs.entries import WatchesDialog
 
     context.app.push_screen(
-        WatchesDialog(
-            context.debugger.watches, context.runs.spec.robot, context.debugger.set_watches
-        )
+        WatchesDialog(context.debugger.watches, context.runs.spec, context.debugger.set_watches)
     )

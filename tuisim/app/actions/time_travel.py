@@ -147,7 +147,7 @@ def ask_where(context: ActionContext) -> None:
         context.runs.state in (RunPhase.STARTING, RunPhase.RUNNING) and not context.runs.in_past
     )
     title = "Go to · pauses the program" if goes_on else f"Go to · now at {timeline.time_s:.2f} s"
-    words = column_names(context.runs.spec.robot)
+    words = column_names(context.runs.spec)
     proposed = proposal(timeline, field)
     context.app.push_screen(
         LinePrompt(title, go, proposed, forms=forms(timeline), words=words, sees_below=True)

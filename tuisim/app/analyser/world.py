@@ -89,8 +89,11 @@ class WorldAt:
         x_mm, y_mm, heading_deg = (table.column(name)[row].as_py() for name in _POSE)
         pose = Pose(float(x_mm or 0.0), float(y_mm or 0.0), float(heading_deg or 0.0))
         tick = round(time_s * self.spec.profile.tick_hz)
-        world = self.spec.world
-        instant = Instant(tick, pose, noise=world.noise, drift=world.drift, seed=self.spec.seed)
+        spec = self.spec
+        world = spec.world
+        instant = Instant(
+            tick, pose, noise=world.noise, drift=world.drift, profile=spec.profile, seed=spec.seed
+        )
         line = table.column("line")[row].as_py() if "line" in table.column_names else 0
         return self._snapshot(instant, self.mat.field, int(line or 0), False)
 

@@ -19,7 +19,7 @@ from tuisim.app.setup.poses import MAX_NAME, delete_pose, load_poses, save_pose
 from tuisim.breakpoints import FORMS, Breakpoint, parse_break, parse_watch
 from tuisim.core.geometry import Pose, shown_heading_deg
 from tuisim.core.sensors import column_names
-from tuisim.core.spec import RobotSpec
+from tuisim.core.spec import RunSpec
 from tuisim.errors import TuisimError
 
 Entry = TypeVar("Entry")
@@ -50,7 +50,7 @@ class _TextList(_List[None], Generic[Entry]):
 
     Args:
         entries: The current ones.
-        robot: Its columns can be used in entries.
+        run: Its columns can be used in entries.
         changed: Called with the new entries after each change.
     """
 
@@ -64,11 +64,11 @@ class _TextList(_List[None], Generic[Entry]):
     def __init__(
         self,
         entries: Sequence[Entry],
-        robot: RobotSpec,
+        run: RunSpec,
         changed: Callable[[tuple[Entry, ...]], None],
     ) -> None:
         super().__init__()
-        self.robot = robot
+        self.run_spec = run
         self._entries: list[Entry] = list(entries)
         self._changed = changed
         self._editing: int | None = None
@@ -76,7 +76,7 @@ class _TextList(_List[None], Generic[Entry]):
 
     def content(self) -> ComposeResult:
         yield OptionList(markup=False)
-        yield LineInput("", column_names(self.robot), self.PLACEHOLDER)
+        yield LineInput("", column_names(self.run_spec), self.PLACEHOLDER)
         yield Static(id="message", classes="wrong", markup=False)
         yield from self.explanation()
 
@@ -159,7 +159,7 @@ class BreaksDialog(_TextList[Breakpoint]):
 
     def parse(self, text: str) -> Breakpoint:
         """Parse a breakpoint."""
-        return parse_break(text, self.robot)
+        return parse_break(text, self.run_spec)
 
     def written(self, entry: Breakpoint) -> str:
         """Return the text of a breakpoint."""

@@ -1,4 +1,4 @@
-"""The brick panel: display, lights and the six buttons, which keys and mouse press."""
+"""The brick panel: display, lights, the six buttons and the bumpers of touch sensors, which keys and mouse press."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from textual.timer import Timer
 
 from tuisim.app.render.brick import BrickPicture, draw_brick
 from tuisim.app.snapshot import IN_RUN, RunPhase, Snapshot
-from tuisim.core.spec import BUTTONS
+from tuisim.core.spec import BUTTONS, INPUT_PORTS
 from tuisim.data_class import dataclass
 from tuisim.terminal.cell_view import LinesPanel
 from tuisim.terminal.pacer import Throttle
@@ -26,7 +26,7 @@ TAP_S = 0.25
 SEEN_S = 0.05
 """Minimum hold in simulated time: programs poll the buttons only now and then."""
 
-_HELP = "arrows enter backspace press · shift holds · + size"
+_HELP = "arrows enter backspace press · shift holds · 1 … 4 press a touch sensor · + size"
 
 
 class Brick(LinesPanel, can_focus=True):
@@ -37,6 +37,10 @@ class Brick(LinesPanel, can_focus=True):
         *(
             Binding(name, f"tap('{name}')", "Press this button of the brick", show=False)
             for name in BUTTONS
+        ),
+        *(
+            Binding(port[2:], f"tap('{port}')", "Press the touch sensor on this port", show=False)
+            for port in INPUT_PORTS
         ),
         *(
             Binding(
@@ -93,7 +97,10 @@ class Brick(LinesPanel, can_focus=True):
         if self._snapshot is None or not size:
             return
         now = self._snapshot
-        self._picture = draw_brick(now.face, now.pressed, max(1, size.width), max(1, size.height))
+        bumpers = [sensor.port for sensor in now.spec.robot.touch_sensors]
+        self._picture = draw_brick(
+            now.face, now.pressed, max(1, size.width), max(1, size.height), bumpers
+        )
         self._text.set_lines(self._picture.lines)
 
     # Buttons

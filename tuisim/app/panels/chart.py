@@ -20,6 +20,7 @@ from tuisim.charts.layout import Span
 from tuisim.charts.text_chart import ChartPainter, ChartPicture, ChartState, values_at
 from tuisim.charts.traces import Trace, Traces
 from tuisim.data_class import dataclass
+from tuisim.logs.levels import PLAIN_LIGHT, find_light
 from tuisim.terminal.cell_view import LinesPanel
 from tuisim.terminal.pacer import Throttle
 from tuisim.terminal.picture_mode import shows_ascii
@@ -68,7 +69,7 @@ class Chart(LinesPanel, can_focus=True):
         self._dragging = False
         self._pointed_s: float | None = None
         """The time below the pointer."""
-        self._noise, self._is_at_rest = 0, False
+        self._light, self._is_at_rest = PLAIN_LIGHT, False
         self._spanned: object = None
         """What the bands were found in."""
         self._throttle = Throttle(self, CHART_PERIOD_S, self._draw)
@@ -103,7 +104,7 @@ class Chart(LinesPanel, can_focus=True):
             state = replace(state, cursor_s=snapshot.time_s if snapshot.past else None)
         if state != self._state:
             self._state, self._dirty = state, True
-        self._noise, was_at_rest = snapshot.spec.world.noise.light, self._is_at_rest
+        self._light, was_at_rest = find_light(snapshot.spec), self._is_at_rest
         self._is_at_rest = snapshot.state in AT_REST
         if self._dirty or self._is_at_rest != was_at_rest:
             self._dirty = True
@@ -145,13 +146,13 @@ class Chart(LinesPanel, can_focus=True):
             spans: tuple[Span, ...] = ()
         else:
             traces = [chosen, *(trace for trace in self._traces.drawn() if trace is not chosen)]
-            key = [(trace.name, len(trace.times_s)) for trace in traces], self._noise
+            key = [(trace.name, len(trace.times_s)) for trace in traces], self._light
             if key == self._spanned:
                 return
             self._spanned = key
-            found = (spans_of(trace, self._noise) for trace in traces)
+            found = (spans_of(trace, self._light) for trace in traces)
             spans = next(
-                (spans for spans in found if len(spans) > 1), spans_of(chosen, self._noise)
+                (spans for spans in found if len(spans) > 1), spans_of(chosen, self._light)
             )
         self._state = replace(self._state, spans=spans)
 

@@ -2,11 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
-from rich.style import Style
-
-from tuisim import palette
+from tuisim.app.panels.motor_lines import (
+    add_states,
+    build_driver_line,
+    build_extra_motor_lines,
+    build_motor_cells,
+    build_wheel_lines,
+)
+from tuisim.app.panels.reading_runs import (
+    COLUMN,
+    VALUE,
+    WARNING,
+    fit_line,
+    label_run,
+    unit_run,
+    value_run,
+    value_runs,
+)
 from tuisim.app.render.arrays import swatch_of
 from tuisim.app.snapshot import RunPhase, Snapshot, end_label
 from tuisim.core.geometry import shown_heading_deg
@@ -15,12 +27,6 @@ from tuisim.logs.units import unit_of
 from tuisim.terminal.cell_view import LinesPanel
 from tuisim.terminal.text_runs import Line, Run, cut
 
-_LABEL = Style(color=palette.LABEL)
-_VALUE = Style(color=palette.WHITE, bold=True)
-_UNIT = Style(color=palette.LABEL)
-_WARNING = Style(color=palette.RED, bold=True)
-_COLUMN = 12
-"""Width of the labels if there is room."""
 _GAP = 2
 """Columns between readings side by side."""
 _CELL = 16
@@ -56,25 +62,14 @@ def lines(now: Snapshot, width: int, height: int) -> list[Line]:
         width: Columns, 18 or more for whole words.
         height: Rows; with fewer than 6, the readings stand side by side.
     """
-    wheels = [_wheel(now, "LeftMotor", "L", width), _wheel(now, "RightMotor", "R", width)]
-    motors = wheels if now.spec.robot.has_wheels else []
+    if tall := _lines_with_drivers(now, width, height):
+        return tall
+    motors = add_states(build_wheel_lines(now, width), now, width)
     sensors = [
         (f"Sensor{at}", now.colors.get(s.name))
         for at, s in enumerate(now.spec.robot.color_sensors, 1)
     ]
-    further = [
-        *(
-            _motor(
-                f"Motor {motor.port[-1]}",
-                motor.port[-1],
-                round(position),
-                _value(f"{round(dps):d}"),
-                width,
-            )
-            for motor, (position, dps) in zip(now.spec.robot.extra_motors, now.turns, strict=False)
-        ),
-        *(_further(column, value, width) for column, value in now.further.items()),
-    ]
+    further = [*build_extra_motor_lines(now, width), *_further_sensors(now, width)]
     small = height < 7 + len(sensors) + len(further)
     if small:
         short = [_sensor_in_one(name, seen, width) for name, seen in sensors]
@@ -91,6 +86,39 @@ def lines(now: Snapshot, width: int, height: int) -> list[Line]:
     return [*motors, [], *full, [], *ranging, [], *rest[len(ranging) :]]
 
 
+def _further_sensors(now: Snapshot, width: int) -> list[Line]:
+    return [_further(column, value, width) for column, value in now.further.items()]
+
+
+def _lines_with_drivers(now: Snapshot, width: int, height: int) -> list[Line]:
+    """Return all lines, those of motors with what their drivers know; none if that is nothing, or they do not fit."""
+    drivers = [build_driver_line(values, width) for values in now.instant.motors]
+    if not drivers:
+        return []
+    wheels, extra = build_wheel_lines(now, width), build_extra_motor_lines(now, width)
+    groups = [
+        [line for pair in zip(wheels, drivers, strict=False) for line in pair],
+        [
+            line
+            for at, sensor in enumerate(now.spec.robot.color_sensors, 1)
+            for line in _sensor(f"Sensor{at}", now.colors.get(sensor.name), width)
+        ],
+        [
+            _ultrasonic(now, width),
+            _gyro(now, width),
+            *(line for pair in zip(extra, drivers[2:], strict=False) for line in pair),
+            *_further_sensors(now, width),
+        ],
+        [_pose(now, width), _clock(now, width), _state(now, width)],
+    ]
+    free = height - sum(map(len, groups))
+    if free < 0:
+        return []
+    for group in groups[:-1][:free]:
+        group.append([])
+    return [line for group in groups for line in group]
+
+
 def _further(column: str, value: float, width: int) -> Line:
     """Return the line of a sensor that not every robot has, by its telemetry column."""
     name, _, what = column.rpartition("_")
@@ -100,14 +128,14 @@ def _further(column: str, value: float, width: int) -> Line:
         sign = unit_of(column).sign
         shown, unit = f"{value:.0f}", sign if sign == "°" else f" {sign}".rstrip()
     label = name.capitalize()
-    return _fit(
+    return fit_line(
         width,
         (
-            _label(cut(label, _COLUMN - 1)),
-            _value(shown if what == "pressed" else f"{shown:>6}"),
-            _unit(unit),
+            label_run(cut(label, COLUMN - 1)),
+            value_run(shown if what == "pressed" else f"{shown:>6}"),
+            unit_run(unit),
         ),
-        (_label(cut(label, 8), 9), _value(shown), _unit(unit)),
+        (label_run(cut(label, 8), 9), value_run(shown), unit_run(unit)),
     )
 
 
@@ -129,7 +157,11 @@ def _side_by_side(now: Snapshot, width: int, height: int) -> list[Line]:
             break
         for row, line in enumerate(lines):
             cell = cells[row] if row < len(cells) else []
-            line += [_unit(" " * _GAP * bool(used)), *cell, _unit(" " * (column - _length(cell)))]
+            line += [
+                unit_run(" " * _GAP * bool(used)),
+                *cell,
+                unit_run(" " * (column - _length(cell))),
+            ]
         used += column + _GAP * bool(used)
     if detail < 2 and (below := max(map(len, columns))) < height:
         lines[below] = _names_of_colors(now, width)
@@ -142,9 +174,9 @@ def _names_of_colors(now: Snapshot, width: int) -> Line:
     for at, sensor in enumerate(now.spec.robot.color_sensors, 1):
         seen = now.colors.get(sensor.name)
         more = [
-            _label(f"S{at}", 3),
-            _value(f"{seen.name if seen else '–':<{_LONGEST_NAME}}"),
-            _unit(" " * _GAP),
+            label_run(f"S{at}", 3),
+            value_run(f"{seen.name if seen else '–':<{_LONGEST_NAME}}"),
+            unit_run(" " * _GAP),
         ]
         if _length(line) + _length(more) - _GAP <= width:
             line += more
@@ -159,31 +191,23 @@ def _columns(now: Snapshot, height: int, detail: int) -> tuple[list[list[Line]],
         height: Cells a column has at most.
         detail: 2 with speeds and names of colours, 1 without names, 0 without both.
     """
-    robot, instant = now.spec.robot, now.instant
-    wheels = [
-        ("L", instant.left_position_deg, instant.left_speed_dps, now.stalled[0]),
-        ("R", instant.right_position_deg, instant.right_speed_dps, now.stalled[1]),
-    ]
-    turns = zip(robot.extra_motors, now.turns, strict=False)
-    extra = [(motor.port[-1], position, dps, False) for motor, (position, dps) in turns]
-    motors = [
-        _motor_cell(*motor, detail > 0) for motor in (wheels if robot.has_wheels else []) + extra
-    ]
+    robot = now.spec.robot
+    motors = build_motor_cells(now, with_speed=detail > 0)
     colors = [
         (f"S{at}", now.colors.get(sensor.name)) for at, sensor in enumerate(robot.color_sensors, 1)
     ]
     sensors = [_color_cell(name, seen, detail > 1) for name, seen in colors]
     ranging: list[Line] = []
     if now.ultrasonic_mm is not None:
-        ranging.append([_label("US", 3), *_values(f"{now.ultrasonic_mm / 10:5.1f}", "cm")])
+        ranging.append([label_run("US", 3), *value_runs(f"{now.ultrasonic_mm / 10:5.1f}", "cm")])
     if robot.gyro is not None:
-        ranging.append([_label("Gyro", 5), *_values(f"{now.gyro_deg:4d}", "°")])
+        ranging.append([label_run("Gyro", 5), *value_runs(f"{now.gyro_deg:4d}", "°")])
     ranging += [_further(column, value, _CELL) for column, value in now.further.items()]
     pose = now.instant.pose
-    heading = [_unit("h"), *_values(f"{shown_heading_deg(pose.heading_deg):4.0f}", "°")]
+    heading = [unit_run("h"), *value_runs(f"{shown_heading_deg(pose.heading_deg):4.0f}", "°")]
     places: list[Line] = [
-        [_unit("x "), _value(f"{pose.x_mm:4.0f}")],
-        [_unit("y "), _value(f"{pose.y_mm:4.0f}")],
+        [unit_run("x "), value_run(f"{pose.x_mm:4.0f}")],
+        [unit_run("y "), value_run(f"{pose.y_mm:4.0f}")],
     ]
     groups = [motors + ranging[:1], sensors + ranging[1:]]
     if not motors or not sensors or max(map(len, groups)) > height:
@@ -195,98 +219,66 @@ def _columns(now: Snapshot, height: int, detail: int) -> tuple[list[list[Line]],
     ], len(groups)
 
 
-def _motor_cell(name: str, counts: float, dps: float, has_stalled: bool, with_speed: bool) -> Line:
-    cell: Line = [_label(name, 2), _value(f"{round(counts):5d}")]
-    if has_stalled:
-        return [*cell, (" stalled" if with_speed else "!", _WARNING)]
-    return [*cell, *_values(f"{round(dps):6d}", "°/s")] if with_speed else cell
-
-
 def _color_cell(name: str, seen: ColorReading | None, with_name: bool) -> Line:
     if seen is None:
-        return [_label(name, 3), _unit("–")]
-    cell: Line = [_label(name, 3), *_values(f"{seen.red_percent:5.1f}", "% "), swatch_of(seen)]
-    return [*cell, _value(f" {seen.name:<{_LONGEST_NAME}}")] if with_name else cell
+        return [label_run(name, 3), unit_run("–")]
+    cell: Line = [
+        label_run(name, 3),
+        *value_runs(f"{seen.red_percent:5.1f}", "% "),
+        swatch_of(seen),
+    ]
+    return [*cell, value_run(f" {seen.name:<{_LONGEST_NAME}}")] if with_name else cell
 
 
 def _length(line: Line) -> int:
     return sum(len(text) for text, _ in line)
 
 
-def _fit(width: int, *variants: Sequence[Run]) -> Line:
-    """Return the first variant that fits, or the last one."""
-    for variant in variants:
-        if sum(len(text) for text, _ in variant) <= width:
-            return list(variant)
-    return list(variants[-1])
-
-
-def _label(text: str, column: int = _COLUMN) -> Run:
-    return text.ljust(column), _LABEL
-
-
-def _value(text: str) -> Run:
-    return text, _VALUE
-
-
-def _unit(text: str) -> Run:
-    return text, _UNIT
-
-
-def _values(*texts: str) -> list[Run]:
-    """Return values, each with the unit after it."""
-    return [_unit(text) if at % 2 else _value(text) for at, text in enumerate(texts)]
-
-
-def _wheel(now: Snapshot, name: str, short: str, width: int) -> Line:
-    left = short == "L"
-    instant = now.instant
-    counts = round(instant.left_position_deg if left else instant.right_position_deg)
-    dps = round(instant.left_speed_dps if left else instant.right_speed_dps)
-    if now.stalled[0 if left else 1]:
-        return _motor(name, short, counts, ("stalled", _WARNING), width)
-    return _motor(name, short, counts, _value(f"{dps:d}"), width)
-
-
-def _motor(name: str, short: str, counts: int, speed: Run, width: int) -> Line:
-    """Return the line of a motor's counts and speed, or a warning instead."""
-    warns = speed[1] is _WARNING
-    unit, close = (_unit(""), _unit("")) if warns else (_unit(" °/s"), _unit("°/s"))
-    return _fit(
-        width,
-        (_label(name), _unit("tacho"), _value(f"{counts:8d}"), _right(speed, 7 + 4 * warns), unit),
-        (_label(name, 11), _value(f"{counts:6d}"), _right(speed, 6 + 3 * warns), close),
-        (_label(name, 11), _value(f"{counts:d} "), speed, close),
-        (_label(short, 2), _value(f"{counts:7d}"), _right(speed, 6 + 3 * warns), close),
-    )
-
-
-def _right(run: Run, width: int) -> Run:
-    return run[0].rjust(width), run[1]
-
-
 def _sensor(name: str, seen: ColorReading | None, width: int) -> tuple[Line, Line]:
     if seen is None:
-        return [_label(name), _unit("–")], []
+        return [label_run(name), unit_run("–")], []
     red, mean = f"{seen.red_percent:5.1f}", f"{seen.mean_percent:5.1f}"
     # 100 without a decimal leaves a space after the word before it.
     short_red, short_mean = (
         f"{value[:3]:>5}" if value == "100.0" else value for value in (red, mean)
     )
-    first = _fit(
+    first = fit_line(
         width,
-        (_label(name), _unit("red "), _value(red), _unit(" %  mean "), _value(mean), _unit(" %")),
-        (_label(name, 8), _unit("red"), _value(short_red), _unit(" mean"), _value(short_mean)),
-        (_label(name, 8), _value(short_red), _unit(" mean"), _value(short_mean)),
-        (_label(name[:1] + name[-1:], 3), _value(short_red), _unit(" mean"), _value(short_mean)),
+        (
+            label_run(name),
+            unit_run("red "),
+            value_run(red),
+            unit_run(" %  mean "),
+            value_run(mean),
+            unit_run(" %"),
+        ),
+        (
+            label_run(name, 8),
+            unit_run("red"),
+            value_run(short_red),
+            unit_run(" mean"),
+            value_run(short_mean),
+        ),
+        (label_run(name, 8), value_run(short_red), unit_run(" mean"), value_run(short_mean)),
+        (
+            label_run(name[:1] + name[-1:], 3),
+            value_run(short_red),
+            unit_run(" mean"),
+            value_run(short_mean),
+        ),
     )
     channels = [f"{channel}" for channel in seen.rgb]
     wide, narrow = f"({', '.join(channels)})", f"({','.join(channels)})"
-    second = _fit(
+    second = fit_line(
         width,
-        (_label(""), _value(wide.ljust(16)), swatch_of(seen), _value(f" {seen.name}")),
-        (_label("", 2), _value(narrow.ljust(14)), swatch_of(seen), _value(f" {seen.name}")),
-        (swatch_of(seen), _value(f" {narrow}")),
+        (label_run(""), value_run(wide.ljust(16)), swatch_of(seen), value_run(f" {seen.name}")),
+        (
+            label_run("", 2),
+            value_run(narrow.ljust(14)),
+            swatch_of(seen),
+            value_run(f" {seen.name}"),
+        ),
+        (swatch_of(seen), value_run(f" {narrow}")),
     )
     return first, second
 
@@ -294,52 +286,69 @@ def _sensor(name: str, seen: ColorReading | None, width: int) -> tuple[Line, Lin
 def _sensor_in_one(name: str, seen: ColorReading | None, width: int) -> Line:
     short = name[:1] + name[-1:]
     if seen is None:
-        return _fit(width, (_label(name, 9), _unit("–")), (_label(short, 3), _unit("–")))
+        return fit_line(
+            width, (label_run(name, 9), unit_run("–")), (label_run(short, 3), unit_run("–"))
+        )
     red = f"{seen.red_percent:5.1f}"
-    return _fit(
+    return fit_line(
         width,
         (
-            _label(name),
-            _unit("red "),
-            _value(red),
-            _unit(" %  "),
+            label_run(name),
+            unit_run("red "),
+            value_run(red),
+            unit_run(" %  "),
             swatch_of(seen),
-            _value(f" {seen.name}"),
+            value_run(f" {seen.name}"),
         ),
-        (_label(name, 9), _value(red), _unit("% "), swatch_of(seen), _value(f" {seen.name}")),
-        (_label(short, 3), _value(red), _unit("% "), swatch_of(seen), _value(f" {seen.name}")),
+        (
+            label_run(name, 9),
+            value_run(red),
+            unit_run("% "),
+            swatch_of(seen),
+            value_run(f" {seen.name}"),
+        ),
+        (
+            label_run(short, 3),
+            value_run(red),
+            unit_run("% "),
+            swatch_of(seen),
+            value_run(f" {seen.name}"),
+        ),
     )
 
 
 def _ultrasonic(now: Snapshot, width: int) -> Line:
     if now.ultrasonic_mm is None:
-        return [_label("Ultrasonic"), _unit("none")]
+        return [label_run("Ultrasonic"), unit_run("none")]
     centimetres = f"{now.ultrasonic_mm / 10:.1f}"
-    return _fit(
+    return fit_line(
         width,
         (
-            _label("Ultrasonic"),
-            *_values(f"{centimetres:>6}", " cm", f"{now.ultrasonic_mm:8d}", " mm"),
+            label_run("Ultrasonic"),
+            *value_runs(f"{centimetres:>6}", " cm", f"{now.ultrasonic_mm:8d}", " mm"),
         ),
         (
-            _label("Ultrasonic", 11),
-            *_values(f"{centimetres:>5}", "cm", f"{now.ultrasonic_mm:5d}", "mm"),
+            label_run("Ultrasonic", 11),
+            *value_runs(f"{centimetres:>5}", "cm", f"{now.ultrasonic_mm:5d}", "mm"),
         ),
-        (_label("Ultrasonic", 11), _value(centimetres), _unit("cm")),
+        (label_run("Ultrasonic", 11), value_run(centimetres), unit_run("cm")),
     )
 
 
 def _gyro(now: Snapshot, width: int) -> Line:
     if now.spec.robot.gyro is None:
-        return [_label("Gyro"), _unit("none")]
-    return _fit(
+        return [label_run("Gyro"), unit_run("none")]
+    return fit_line(
         width,
         (
-            _label("Gyro"),
-            *_values(f"{now.gyro_deg:6d}", "°   rate", f"{now.gyro_rate_dps:6d}", " °/s"),
+            label_run("Gyro"),
+            *value_runs(f"{now.gyro_deg:6d}", "°   rate", f"{now.gyro_rate_dps:6d}", " °/s"),
         ),
-        (_label("Gyro", 7), *_values(f"{now.gyro_deg}", "° rate ", f"{now.gyro_rate_dps}", "°/s")),
-        (_label("Gyro", 5), *_values(f"{now.gyro_deg}", "° ", f"{now.gyro_rate_dps}", "°/s")),
+        (
+            label_run("Gyro", 7),
+            *value_runs(f"{now.gyro_deg}", "° rate ", f"{now.gyro_rate_dps}", "°/s"),
+        ),
+        (label_run("Gyro", 5), *value_runs(f"{now.gyro_deg}", "° ", f"{now.gyro_rate_dps}", "°/s")),
     )
 
 
@@ -347,20 +356,23 @@ def _pose(now: Snapshot, width: int) -> Line:
     pose = now.instant.pose
     shown_deg = shown_heading_deg(pose.heading_deg)
     x, y, heading = f"{pose.x_mm:.1f}", f"{pose.y_mm:.1f}", f"{shown_deg:.1f}"
-    return _fit(
+    return fit_line(
         width,
         (
-            _label("Pose"),
-            _unit("x"),
-            *_values(f"{x:>7}", "  y", f"{y:>7}", "  heading", f"{heading:>7}", "°"),
+            label_run("Pose"),
+            unit_run("x"),
+            *value_runs(f"{x:>7}", "  y", f"{y:>7}", "  heading", f"{heading:>7}", "°"),
         ),
         (
-            _label("Pose"),
-            _unit("x"),
-            *_values(f"{x:>7}", " y", f"{y:>7}", " h", f"{heading:>7}", "°"),
+            label_run("Pose"),
+            unit_run("x"),
+            *value_runs(f"{x:>7}", " y", f"{y:>7}", " h", f"{heading:>7}", "°"),
         ),
-        (_unit("x "), *_values(x, " y ", y, " ", heading, "°")),
-        (*_values(f"{pose.x_mm:.0f}", ",", f"{pose.y_mm:.0f}"), *_values(f" {shown_deg:.0f}", "°")),
+        (unit_run("x "), *value_runs(x, " y ", y, " ", heading, "°")),
+        (
+            *value_runs(f"{pose.x_mm:.0f}", ",", f"{pose.y_mm:.0f}"),
+            *value_runs(f" {shown_deg:.0f}", "°"),
+        ),
     )
 
 
@@ -370,21 +382,26 @@ def _speed(now: Snapshot) -> str:
 
 def _clock(now: Snapshot, width: int) -> Line:
     time_s = f"{now.time_s:.2f}"
-    return _fit(
+    return fit_line(
         width,
-        (_label("Clock"), _value(f"{time_s:>8}"), _unit(" s   speed "), _value(_speed(now))),
-        (_label("Clock", 6), _value(time_s), _unit(" s  speed "), _value(_speed(now))),
-        (_label("Clock", 6), _value(time_s), _unit("s "), _value(_speed(now))),
+        (
+            label_run("Clock"),
+            value_run(f"{time_s:>8}"),
+            unit_run(" s   speed "),
+            value_run(_speed(now)),
+        ),
+        (label_run("Clock", 6), value_run(time_s), unit_run(" s  speed "), value_run(_speed(now))),
+        (label_run("Clock", 6), value_run(time_s), unit_run("s "), value_run(_speed(now))),
     )
 
 
 def _state_word(now: Snapshot) -> Run:
     if now.past:
-        return "past", _VALUE
+        return "past", VALUE
     if now.placed:
-        return "moved", _VALUE
+        return "moved", VALUE
     word = end_label(now.end) if now.state == RunPhase.ENDED and now.end else now.state
-    return word, _WARNING if now.failed else _VALUE
+    return word, WARNING if now.failed else VALUE
 
 
 def _state(now: Snapshot, width: int) -> Line:
@@ -393,20 +410,27 @@ def _state(now: Snapshot, width: int) -> Line:
         now.spec.profile.name,
         "pen down" if now.pen_down else "pen up",
     )
-    return _fit(
+    return fit_line(
         width,
         (
-            _label("State"),
+            label_run("State"),
             (f"{state[0]:<9}", state[1]),
-            _unit(" "),
-            _value(pen.ljust(9)),
-            _unit(" "),
-            _value(profile),
+            unit_run(" "),
+            value_run(pen.ljust(9)),
+            unit_run(" "),
+            value_run(profile),
         ),
-        (_label("State", 6), state, _unit(" · "), _value(pen), _unit(" · "), _value(profile)),
-        (_label("State"), state, _unit(" · "), _value(profile)),
-        (_label("State", 6), state, _unit(" · "), _value(profile)),
-        (state, _unit("·"), _value(profile)),
+        (
+            label_run("State", 6),
+            state,
+            unit_run(" · "),
+            value_run(pen),
+            unit_run(" · "),
+            value_run(profile),
+        ),
+        (label_run("State"), state, unit_run(" · "), value_run(profile)),
+        (label_run("State", 6), state, unit_run(" · "), value_run(profile)),
+        (state, unit_run("·"), value_run(profile)),
         (state,),
     )
 
@@ -414,14 +438,20 @@ def _state(now: Snapshot, width: int) -> Line:
 def _distance_and_angle(now: Snapshot, width: int) -> Line:
     centimetres = "–" if now.ultrasonic_mm is None else f"{now.ultrasonic_mm / 10:.1f}"
     angle = "–" if now.spec.robot.gyro is None else f"{now.gyro_deg}"
-    far = _value(f"{centimetres:>6}")
-    return _fit(
+    far = value_run(f"{centimetres:>6}")
+    return fit_line(
         width,
-        (_label("Ultrasonic"), far, _unit(" cm   Gyro"), _value(f"{angle:>5}"), _unit("°")),
-        (_label("Ultrasonic", 10), far, _unit("cm Gyro "), _value(angle), _unit("°")),
-        (_label("Ultrasonic", 10), far, _unit("cm G "), _value(angle), _unit("°")),
-        (_label("US", 2), far, _unit("cm G "), _value(angle), _unit("°")),
-        (_label("US", 2), far, _unit("cm")),
+        (
+            label_run("Ultrasonic"),
+            far,
+            unit_run(" cm   Gyro"),
+            value_run(f"{angle:>5}"),
+            unit_run("°"),
+        ),
+        (label_run("Ultrasonic", 10), far, unit_run("cm Gyro "), value_run(angle), unit_run("°")),
+        (label_run("Ultrasonic", 10), far, unit_run("cm G "), value_run(angle), unit_run("°")),
+        (label_run("US", 2), far, unit_run("cm G "), value_run(angle), unit_run("°")),
+        (label_run("US", 2), far, unit_run("cm")),
     )
 
 
@@ -432,24 +462,24 @@ def _place_and_time(now: Snapshot, width: int) -> Line:
         f"{pose.y_mm:.0f}",
         f"{shown_heading_deg(pose.heading_deg):.0f}",
     )
-    at = _unit("x "), _value(x), _unit(" y "), _value(y)
+    at = unit_run("x "), value_run(x), unit_run(" y "), value_run(y)
     where, named = (
-        (*at, _unit(" "), _value(heading), _unit("°")),
-        (*at, _unit(" h "), _value(heading), _unit("°")),
+        (*at, unit_run(" "), value_run(heading), unit_run("°")),
+        (*at, unit_run(" h "), value_run(heading), unit_run("°")),
     )
-    return _fit(
+    return fit_line(
         width,
-        (*named, _value(f"  {now.time_s:.2f}"), _unit(" s  "), _state_word(now)),
-        (*where, _value(f"  {now.time_s:.2f}"), _unit(" s  "), _state_word(now)),
-        (*where, _value(f" {now.time_s:.2f}"), _unit("s")),
+        (*named, value_run(f"  {now.time_s:.2f}"), unit_run(" s  "), _state_word(now)),
+        (*where, value_run(f"  {now.time_s:.2f}"), unit_run(" s  "), _state_word(now)),
+        (*where, value_run(f" {now.time_s:.2f}"), unit_run("s")),
         (
-            _value(x),
-            _unit(","),
-            _value(y),
-            _value(f" {heading}"),
-            _unit("° "),
-            _value(f"{now.time_s:.1f}"),
-            _unit("s"),
+            value_run(x),
+            unit_run(","),
+            value_run(y),
+            value_run(f" {heading}"),
+            unit_run("° "),
+            value_run(f"{now.time_s:.1f}"),
+            unit_run("s"),
         ),
-        (_value(f"{now.time_s:.2f}"), _unit(" s")),
+        (value_run(f"{now.time_s:.2f}"), unit_run(" s")),
     )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from functools import lru_cache
 
 import numpy as np
@@ -12,6 +12,7 @@ from rich.style import Style
 
 from tuisim import palette
 from tuisim.core.css_colors import Rgb
+from tuisim.core.spec import TOUCH
 from tuisim.data_class import dataclass
 from tuisim.runs.brick_state import DISPLAY_HEIGHT, DISPLAY_WIDTH, ROW_BYTES, BrickState, TextScreen
 from tuisim.scene.discs import shrunk
@@ -38,6 +39,8 @@ the greater part of a thin line leaves in one of two dots."""
 
 _SYMBOLS = {"backspace": "⌫", "up": "▲", "left": "◀", "enter": "●", "right": "▶", "down": "▼"}
 """In the order of the single-row layout."""
+
+_BUMPER = "⊓"
 
 _PAD_ROWS, _PAD_COLUMNS = 3, 23
 _PLACES = {
@@ -73,18 +76,26 @@ class BrickPicture:
     buttons: tuple[ButtonBox, ...]
 
 
-def draw_brick(face: BrickState, pressed: Collection[str], width: int, height: int) -> BrickPicture:
+def draw_brick(
+    face: BrickState,
+    pressed: Collection[str],
+    width: int,
+    height: int,
+    bumpers: Sequence[str] = (),
+) -> BrickPicture:
     """Return the brick for a panel of that inner size.
 
     Args:
         face: State of the brick.
         pressed: Buttons that are held down.
         width: Columns, at least 1.
-        height: Rows, at least 1; the buttons have priority, then the display, then the sound.
+        height: Rows, at least 1; the buttons have priority, then the bumpers, the display and the sound.
+        bumpers: Ports of the touch sensors.
     """
     pad_rows = _PAD_ROWS if height >= 9 and width >= _PAD_COLUMNS + 2 * _LED_COLUMNS else 1
-    sound_rows = 1 if height >= pad_rows + 3 else 0
-    rows = max(0, height - pad_rows - sound_rows)
+    bumper_rows = 1 if bumpers and height > pad_rows else 0
+    sound_rows = 1 if height >= pad_rows + bumper_rows + 3 else 0
+    rows = max(0, height - pad_rows - bumper_rows - sound_rows)
     screen = _screen(face, width, rows) if rows else []
     pad, buttons = _pad(face, pressed, width, pad_rows, len(screen))
     sound = (
@@ -93,7 +104,12 @@ def draw_brick(face: BrickState, pressed: Collection[str], width: int, height: i
         else face.sound
     )
     heard: list[Run] = [(f"♪ {sound}"[:width] if sound else "", _CAPTION)]
-    return BrickPicture([*screen, *pad, *([heard] if sound_rows else [])], buttons)
+    lines = [*screen, *pad]
+    if bumper_rows:
+        line, boxes = _draw_bumpers(bumpers, pressed, width, len(lines))
+        lines.append(line)
+        buttons += boxes
+    return BrickPicture([*lines, *([heard] if sound_rows else [])], buttons)
 
 
 # The display
@@ -248,3 +264,21 @@ def _pad(
         line += [(" " * (columns - at + 1), _PLAIN), _lamp(lamps[1], named, led_columns)]
         lines.append(line)
     return lines, tuple(boxes)
+
+
+def _draw_bumpers(
+    ports: Sequence[str], pressed: Collection[str], width: int, row: int
+) -> tuple[list[Run], tuple[ButtonBox, ...]]:
+    """Return the row of the touch sensors' bumpers, as many as fit, and their areas."""
+    labels = [f" {port} {_BUMPER} " for port in ports]
+    while len(labels) > 1 and sum(map(len, labels)) + len(labels) - 1 > width:
+        labels.pop()
+    first = max(0, (width - sum(map(len, labels)) - len(labels) + 1) // 2)
+    line: list[Run] = [(" " * first, _PLAIN)]
+    boxes = []
+    for port, label in zip(ports, labels, strict=False):
+        is_down = port in pressed or TOUCH in pressed
+        line += [(label, _PRESSED if is_down else _BUTTON), (" ", _PLAIN)]
+        boxes.append(ButtonBox(row, first, first + len(label), port))
+        first += len(label) + 1
+    return line[:-1], tuple(boxes)

@@ -123,10 +123,12 @@ def _value_field(edit_id: str, value: Value, path: Callable[[RobotSpec], str]) -
     """
 
     def change(robot: RobotSpec, text: str) -> RobotSpec:
-        return tree.put(robot, path(robot), _parsed(value, text))
+        is_none = value.optional and not text.strip()
+        return tree.put(robot, path(robot), None if is_none else _parsed(value, text))
 
     def read(robot: RobotSpec) -> str:
-        return value.to_text(tree.at(robot, path(robot)))
+        known = tree.at(robot, path(robot))
+        return "" if known is None else value.to_text(known)
 
     return _robot_field(edit_id, value.label, read, change, value.choices)
 

@@ -14,7 +14,7 @@ from tuisim.core.columns import column_name
 from tuisim.core.sensors import column_names, columns_of
 from tuisim.errors import ConfigError, LogError, among, listed
 from tuisim.logs.columns import choose_columns, time_in_words
-from tuisim.logs.derived import robot_of, with_named_columns
+from tuisim.logs.derived import spec_in, with_named_columns
 from tuisim.logs.expressions import names_in
 from tuisim.logs.log import Log
 from tuisim.logs.reader import STDIN, log_of_runs, read_pieces, telemetry_log
@@ -111,8 +111,7 @@ def _logs_of(runs: Sequence[StoredRun], arguments: Arguments) -> list[Log]:
     known = {name.partition(" #")[0] for name in samples.names}
     asked_for = _name_columns(arguments, known, runs)
     is_telemetry = bool(asked_for) and all(
-        asked_for.isdisjoint(known) and asked_for.issubset(column_names(run.spec.robot))
-        for run in runs
+        asked_for.isdisjoint(known) and asked_for.issubset(column_names(run.spec)) for run in runs
     )
     return list(map(telemetry_log, runs)) if is_telemetry else [samples]
 
@@ -125,10 +124,10 @@ def _name_columns(
     Args:
         known: The names of samples, which come first.
     """
-    robot = runs[0].spec.robot
+    run = runs[0].spec
     words: Sequence[str] = getattr(arguments, "variable", None) or ()
     arguments.variable = tuple(
-        word if word in known else column_name(word, columns_of(robot)) or word for word in words
+        word if word in known else column_name(word, columns_of(run)) or word for word in words
     )
     expression = getattr(arguments, "expression", "")
     return {*arguments.variable, *(names_in(expression) if expression else ())}
@@ -176,8 +175,8 @@ def names_of(log: Log, arguments: Arguments) -> tuple[str, ...]:
     for word in wanted:
         matching = [name for name in with_rows if name == word or name.partition(" #")[0] == word]
         if not matching:
-            robot = robot_of(log)
-            columns = () if robot is None else column_names(robot)
+            run = spec_in(log.metadata)
+            columns = () if run is None else column_names(run)
             raise LogError(f"no variable {word!r}", among(word, with_rows, columns), file=log.title)
         found += matching
     return tuple(dict.fromkeys(found))

@@ -11,6 +11,14 @@ from tuisim.core.driver.jiffies import Jiffies
 from tuisim.core.driver.motor import NEVER_NS, DriverMotor
 from tuisim.core.driver.plant import NS_PER_S, STEP_NS, Axle, PlantSpec
 from tuisim.core.driver.regulator import MODELS, TICKS_PER_NS
+from tuisim.core.motor_columns import (
+    HOLDING,
+    MOTOR_RECORD,
+    OVERLOADED,
+    RAMPING,
+    RUNNING,
+    STALLED,
+)
 from tuisim.core.motors import (
     ENDLESS,
     FOREVER,
@@ -23,6 +31,9 @@ from tuisim.core.motors import (
 
 if TYPE_CHECKING:
     from tuisim.core.spec import RobotSpec, RunSpec
+    from tuisim.core.tick_record import Buffer
+
+_pack_into = MOTOR_RECORD.pack_into
 
 WHEEL_KG = 0.0194
 """Mass of a wheel, which is taken for a disc."""
@@ -160,6 +171,21 @@ class SimulatedMotor(DriverMotor):
         before = self.position
         super().renumber(position)
         self.position_deg += position - before
+
+    def record(self, buffer: Buffer, at: int) -> None:
+        """Write `MOTOR_RECORD` at a place in a buffer; a speed is asked only by the speed control."""
+        control, asked_dps, state = self._control, 0, 0
+        if control is self.speed_control:
+            asked_dps = control.setpoint
+        if self.is_running:
+            state = STALLED | RUNNING if self.is_stalled else RUNNING
+        elif control is not None:
+            state = HOLDING
+        if self.is_ramping or self.is_lowering:
+            state |= RAMPING
+        if control is not None and control.overloaded:
+            state |= OVERLOADED
+        _pack_into(buffer, at, asked_dps, self.speed_dps, self.duty, state)
 
     # Ticks
 

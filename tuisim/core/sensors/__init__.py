@@ -9,11 +9,14 @@ test walk these tables.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
+from dataclasses import replace
 from functools import lru_cache, partial
 from typing import Any, NamedTuple
 
 from tuisim.core.columns import MOTION, Column, column_name, measured_names, motion_of
 from tuisim.core.field import Field
+from tuisim.core.motor_columns import find_motor_owners
+from tuisim.core.profile import PROFILES
 from tuisim.core.sensors import color, gyro, infrared, touch, ultrasonic
 from tuisim.core.spec import (
     ColorSensorSpec,
@@ -63,40 +66,41 @@ Measure = Callable[[Instant, RunSpec, Field], tuple[float, ...]]
 """Returns the values of the columns of an owner that are measured."""
 
 
-def owners(robot: RobotSpec) -> list[tuple[tuple[Column, ...], Measure]]:
-    """Return the columns of the robot and of each sensor, in the order of telemetry, and how they are measured."""
+def owners(run: RunSpec) -> list[tuple[tuple[Column, ...], Measure]]:
+    """Return the columns of the robot, of each sensor and of each motor with a driver, and how they are measured."""
     of_sensors = [
-        (mount.columns, partial(mount.kind.measure, mount.sensor)) for mount in mounted(robot)
+        (mount.columns, partial(mount.kind.measure, mount.sensor)) for mount in mounted(run.robot)
     ]
-    return [(MOTION, motion_of), *of_sensors]
+    return [(MOTION, motion_of), *of_sensors, *find_motor_owners(run)]
 
 
-@lru_cache(maxsize=16)
-def columns_of(robot: RobotSpec) -> tuple[Column, ...]:
-    """Return the columns that every run of a robot has."""
-    return tuple(column for columns, _ in owners(robot) for column in columns)
+def columns_of(run: RunSpec) -> tuple[Column, ...]:
+    """Return the columns of a run, in the order of telemetry."""
+    return tuple(column for columns, _ in owners(run) for column in columns)
 
 
-def column_names(robot: RobotSpec) -> tuple[str, ...]:
+def column_names(run: RunSpec) -> tuple[str, ...]:
     """Return the names of `columns_of`."""
-    return tuple(column.name for column in columns_of(robot))
+    return tuple(column.name for column in columns_of(run))
 
 
-def named_column(text: str, robot: RobotSpec) -> str:
+def named_column(text: str, run: RunSpec) -> str:
     """Return the name of the column that a text means, see `column_name`.
 
     Raises:
-        ConfigError: the robot has no such column.
+        ConfigError: the run has no such column.
     """
-    found = column_name(text, columns_of(robot))
+    found = column_name(text, columns_of(run))
     if found is None:
-        raise ConfigError(f"this robot has no {text!r}", nearest(text, column_names(robot)))
+        measured = column_names(replace(run, profile=PROFILES["ev3"]))
+        hint = "only profile ev3 has it" if text in measured else nearest(text, column_names(run))
+        raise ConfigError(f"this robot has no {text!r}", hint)
     return found
 
 
-def reader_of(name: str, robot: RobotSpec) -> Callable[[Instant, RunSpec, Field], float] | None:
-    """Return a function that gives the value of a column at an instant; None if the robot has no such column."""
-    for columns, measure in owners(robot):
+def reader_of(name: str, run: RunSpec) -> Callable[[Instant, RunSpec, Field], float] | None:
+    """Return a function that gives the value of a column at an instant `with_motors`; None if the run has none."""
+    for columns, measure in owners(run):
         for column in columns:
             if column.name == name:
                 return partial(_value, column, measured_names(columns), measure)
@@ -113,9 +117,7 @@ def _value(
 ) -> float:
     measured = measure(instant, spec, field)
     return (
-        measured[names.index(column.name)]
-        if column.of is None
-        else column.of([measured], spec.robot)[0]
+        measured[names.index(column.name)] if column.of is None else column.of([measured], spec)[0]
     )
 
 

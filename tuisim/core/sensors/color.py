@@ -5,21 +5,22 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from enum import StrEnum
 from functools import lru_cache
-from math import cos, radians, sin
+from math import ceil, cos, radians, sin
 from operator import attrgetter
-from typing import TYPE_CHECKING, assert_never
+from typing import TYPE_CHECKING, Any, NamedTuple, assert_never
 
 from tuisim.core.columns import COLOR_NAMES, Column
-from tuisim.core.drift import light_share
+from tuisim.core.drift import draw_light_gain, light_share
 from tuisim.core.field import OUTSIDE_DISC_RGB, Field, disc_pixels, disc_weights, weighted_mean
 from tuisim.core.geometry import Pose, world_point
 from tuisim.core.noise import noisy_channel, noisy_sums, reading_noise, stream
 from tuisim.core.spec import FIELD_HEIGHT_MM, ColorSensorSpec, RunSpec
+from tuisim.core.state import Instant
 from tuisim.data_class import dataclass
 
 if TYPE_CHECKING:
-    from tuisim.core.spec import RobotSpec
-    from tuisim.core.state import Instant
+    from tuisim.core.drift_spec import DriftSpec
+    from tuisim.core.profile import ProfileSpec
 
 WHITE = 255
 """Maximum of a channel."""
@@ -38,6 +39,8 @@ class ColorReading:
     red: float
     green: float
     blue: float
+    is_bricks: bool = False
+    """Whether the colour is the brick's."""
 
     @property
     def rgb(self) -> tuple[int, int, int]:
@@ -56,8 +59,8 @@ class ColorReading:
 
     @property
     def code(self) -> int:
-        """Colour code 1 … 6, by hue, see `color_code`."""
-        return color_code(*self.rgb)
+        """Colour code, see `color_code` and `bricks_color_code`."""
+        return bricks_color_code(*self.rgb) if self.is_bricks else color_code(*self.rgb)
 
     @property
     def name(self) -> str:
@@ -89,6 +92,27 @@ def color_code(red: int, green: int, blue: int) -> int:
         if hue < limit:
             return code
     return 5
+
+
+def bricks_color_code(red: int, green: int, blue: int) -> int:
+    """Return the colour code of a reading as on the brick: also 0 for nothing and 7 for brown."""
+    hue, saturation, value = hsv(red, green, blue)
+    if not value:
+        return 0
+    code = color_code(red, green, blue)
+    if code == WHITE_CODE and min(red, green, blue) < WHITE_SHARE * WHITE:
+        return 0
+    is_brown = saturation >= MIN_BROWN_SATURATION and value < MAX_BROWN_VALUE
+    return BROWN_CODE if is_brown and hue in BROWN_HUES else code
+
+
+WHITE_CODE, BROWN_CODE = 6, 7
+WHITE_SHARE = 0.5
+"""White has at least this share of each channel."""
+BROWN_HUES = range(10, 60)
+MAX_BROWN_VALUE = 50
+"""Brown is darker than this, in percent."""
+MIN_BROWN_SATURATION = 20
 
 
 class LightRead(StrEnum):
@@ -141,8 +165,47 @@ def box_corner(pose: Pose, spec: ColorSensorSpec) -> tuple[int, int]:
     return int(x_mm - radius), int(FIELD_HEIGHT_MM - y_mm - radius)
 
 
+class Response(NamedTuple):
+    """What a colour sensor makes of the channels of the mat."""
+
+    dark: int
+    """What it reads of black."""
+    span: int
+    """What it reads of white in addition."""
+
+    def channel(self, value: float, is_over_field: bool) -> float:
+        """Return what it reads of a channel; beyond the edge of the field nothing reflects."""
+        if self == EVEN:
+            return value
+        return (self.dark if is_over_field else 0) + value * self.span / WHITE
+
+
+EVEN = Response(0, WHITE)
+"""It reads the channels as they are."""
+
+
+def find_response(spec: ColorSensorSpec, profile: ProfileSpec) -> Response:
+    """Return the response of a sensor, in whole channels that give at least its percents of black and white."""
+    white = profile.white_percent if spec.white_percent is None else spec.white_percent
+    black = profile.black_percent if spec.black_percent is None else spec.black_percent
+    dark = ceil(WHITE * black / 100)
+    return Response(dark, ceil(WHITE * white / 100) - dark)
+
+
+def light_seen(x_mm: Any, y_mm: Any, spec: ColorSensorSpec, drift: DriftSpec, seed: int) -> Any:
+    """Return the brightness that a sensor sees at places of the field, numbers or arrays: 1 without drift."""
+    share = light_share(x_mm, y_mm, drift, seed) if drift.light_pc else 1.0
+    return share * draw_light_gain(spec.port, drift, seed) if drift.light_gain_pc else share
+
+
+def _is_over(field: Field, diameter: int, corner: tuple[int, int]) -> bool:
+    """Return whether a box is on the mat, at least in part."""
+    col, row = corner
+    return -diameter <= col < field.width_px and -diameter <= row < field.height_px
+
+
 def clear_reading(spec: ColorSensorSpec, pose: Pose, field: Field) -> ColorReading:
-    """Return the reading of a colour sensor without noise."""
+    """Return the mean of the mat under a colour sensor, without noise."""
     if spec.strategy != "mean":
         box = field.box(spec.diameter_mm, *box_corner(pose, spec))
         return ColorReading(*weighted_mean(box, spec.diameter_mm, spec.strategy))
@@ -152,18 +215,20 @@ def clear_reading(spec: ColorSensorSpec, pose: Pose, field: Field) -> ColorReadi
 
 
 def rgb_reader(
-    spec: ColorSensorSpec, field: Field
+    spec: ColorSensorSpec, profile: ProfileSpec, field: Field
 ) -> Callable[[float, float, float], tuple[int, int, int]]:
-    """Return a function that gives a sensor's channels without noise, truncated to integers.
+    """Return a function that gives a sensor's channels without noise and drift, truncated to integers.
 
     It takes the robot's x and y in mm and its heading in degrees, and agrees with
-    `clear_reading(...).rgb`. A tight control loop spends much of its time here, so everything
+    `reading(...).rgb`. A tight control loop spends much of its time here, so everything
     that depends on the sensor is precomputed, and the steps are inlined.
     """
     if spec.strategy != "mean":
         return lambda x_mm, y_mm, heading_deg: (
-            clear_reading(spec, Pose(x_mm, y_mm, heading_deg), field).rgb
+            reading(spec, Instant(0, Pose(x_mm, y_mm, heading_deg), profile=profile), field).rgb
         )
+    dark, span = response = find_response(spec, profile)
+    is_even = response == EVEN
     diameter, right_mm, forward_mm = spec.diameter_mm, spec.x_mm, spec.y_mm
     radius, count, sums = diameter / 2, disc_pixels_of(diameter), field.sums[diameter]
     width, height = field.width_px + diameter, field.height_px + diameter
@@ -178,13 +243,16 @@ def rgb_reader(
         if not (0 <= col < width and 0 <= row < height):
             return 0, 0, 0
         at = (row * width + col) * 3
-        return sums[at] // count, sums[at + 1] // count, sums[at + 2] // count
+        if is_even:
+            return sums[at] // count, sums[at + 1] // count, sums[at + 2] // count
+        red, green, blue = (int(dark + total / count * span / WHITE) for total in sums[at : at + 3])
+        return red, green, blue
 
     return read
 
 
 def noisy_rgb_reader(
-    spec: ColorSensorSpec, field: Field
+    spec: ColorSensorSpec, profile: ProfileSpec, field: Field
 ) -> Callable[[float, float, float, int, int, int], tuple[int, int, int]]:
     """Return a function that gives a sensor's channels with noise, truncated to integers.
 
@@ -193,7 +261,7 @@ def noisy_rgb_reader(
     """
     diameter, right_mm, forward_mm, name = spec.diameter_mm, spec.x_mm, spec.y_mm, spec.name
     radius, count = diameter / 2, disc_pixels_of(diameter)
-    disc_sums, disc = field.disc_sums, field.disc
+    disc_sums, disc, response = field.disc_sums, field.disc, find_response(spec, profile)
 
     def read(
         x_mm: float, y_mm: float, heading_deg: float, level: int, seed: int, tick: int
@@ -204,7 +272,14 @@ def noisy_rgb_reader(
         row = int(FIELD_HEIGHT_MM - (y_mm + up * right_mm + across * forward_mm) - radius)
         sums, normals = disc_sums(diameter, col, row), reading_noise(seed, tick, name)
         red, green, blue = noisy_sums(lambda: disc(diameter, col, row), count, sums, level, normals)
-        return red // count, green // count, blue // count
+        if response == EVEN:
+            return red // count, green // count, blue // count
+        is_over = _is_over(field, diameter, (col, row))
+        return (
+            int(response.channel(red / count, is_over)),
+            int(response.channel(green / count, is_over)),
+            int(response.channel(blue / count, is_over)),
+        )
 
     return read
 
@@ -243,22 +318,23 @@ def _seen_box(spec: ColorSensorSpec, instant: Instant, field: Field) -> bytes:
 
 
 def reading(spec: ColorSensorSpec, instant: Instant, field: Field) -> ColorReading:
-    """Return the reading of a colour sensor at an instant, including noise and the light of the place."""
-    seen = _evenly_lit(spec, instant, field)
-    if not instant.drift.light_pc:
-        return seen
-    share = _light_share(spec, instant)
-    return ColorReading(seen.red * share, seen.green * share, seen.blue * share)
-
-
-def _light_share(spec: ColorSensorSpec, instant: Instant) -> float:
-    share: float = light_share(
-        *world_point(instant.pose, spec.x_mm, spec.y_mm), instant.drift, instant.seed
+    """Return the reading of a colour sensor at an instant, including noise, its response and the light of the place."""
+    mean, tell = _mean_of_mat(spec, instant, field), _teller(spec, instant, field)
+    return ColorReading(
+        tell(mean.red), tell(mean.green), tell(mean.blue), instant.profile.brick_colors
     )
-    return share
 
 
-def _evenly_lit(spec: ColorSensorSpec, instant: Instant, field: Field) -> ColorReading:
+def _teller(spec: ColorSensorSpec, instant: Instant, field: Field) -> Callable[[float], float]:
+    """Return a function that gives what a sensor reads of a channel of the mat."""
+    response = find_response(spec, instant.profile)
+    is_over = _is_over(field, spec.diameter_mm, box_corner(instant.pose, spec))
+    place = world_point(instant.pose, spec.x_mm, spec.y_mm)
+    light: float = light_seen(*place, spec, instant.drift, instant.seed)
+    return lambda value: min(response.channel(value, is_over) * light, float(WHITE))
+
+
+def _mean_of_mat(spec: ColorSensorSpec, instant: Instant, field: Field) -> ColorReading:
     if not instant.noise.light:
         return clear_reading(spec, instant.pose, field)
     if spec.strategy != "mean":
@@ -287,17 +363,20 @@ def pixel_array(spec: ColorSensorSpec, instant: Instant, field: Field) -> bytes:
 
 
 def _lit_box(spec: ColorSensorSpec, instant: Instant, field: Field) -> bytes:
-    box = _seen_box(spec, instant, field)
-    if not instant.drift.light_pc:
-        return box
-    share = _light_share(spec, instant)
-    return box.translate(bytes(min(WHITE, round(value * share)) for value in range(WHITE + 1)))
+    tell = _teller(spec, instant, field)
+    return _seen_box(spec, instant, field).translate(bytes(round(tell(value)) for value in _LEVELS))
 
 
-def _compute(name: str) -> Callable[[Iterable[Sequence[float]], RobotSpec], list[float]]:
+_LEVELS = range(WHITE + 1)
+
+
+def _compute(name: str) -> Callable[[Iterable[Sequence[float]], RunSpec], list[float]]:
     """Return a function of channels at some ticks, which returns what a reading says there."""
     read = attrgetter(name)
-    return lambda channels, _: [float(read(ColorReading(*seen))) for seen in channels]
+    return lambda channels, run: [
+        float(read(ColorReading(red, green, blue, run.profile.brick_colors)))
+        for red, green, blue in channels
+    ]
 
 
 def columns(spec: ColorSensorSpec) -> tuple[Column, ...]:

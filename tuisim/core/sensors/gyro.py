@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import inf
 from typing import TYPE_CHECKING
 
 from tuisim.core.columns import Column
@@ -18,8 +19,9 @@ def angle_deg(instant: Instant) -> int:
 
 
 def rate_dps(instant: Instant) -> int:
-    """Return the clockwise rate of turn, in whole degrees per second."""
-    return round(-instant.turn_rate_dps)
+    """Return the clockwise rate of turn, in whole degrees per second, as far as the sensor measures it."""
+    fastest = instant.profile.gyro_max_dps or inf
+    return round(max(-fastest, min(fastest, -instant.turn_rate_dps)))
 
 
 def columns(spec: GyroSpec) -> tuple[Column, ...]:

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Collection
 from typing import TYPE_CHECKING
 
 from tuisim.core.columns import Column
 from tuisim.core.geometry import Pose, world_point
 from tuisim.core.sensors.ultrasonic import first_hit_mm, surfaces
-from tuisim.core.spec import REMOTE_CODES, InfraredSpec, RunSpec, WorldSpec
+from tuisim.core.spec import REMOTE_BY_HAND, REMOTE_CODES, InfraredSpec, RunSpec, WorldSpec
 
 if TYPE_CHECKING:
     from tuisim.core.field import Field
@@ -69,25 +70,38 @@ def seek(pose: Pose, spec: InfraredSpec, world: WorldSpec) -> tuple[int, ...]:
     return NOT_FOUND * (beacon.channel - 1) + seen + NOT_FOUND * (4 - beacon.channel)
 
 
-def _pressed(channel: int, time_s: float, world: WorldSpec) -> frozenset[str]:
+def _pressed(
+    channel: int, time_s: float, world: WorldSpec, by_hand: Collection[str]
+) -> frozenset[str]:
     """Return the buttons pressed on a channel; of two presses at the same time the later in the list counts."""
+    if held := [button for name, button in REMOTE_BY_HAND.items() if name in by_hand]:
+        return frozenset(held)
     for press in reversed(world.remote):
         if press.channel == channel and press.from_s <= time_s < press.until_s:
             return frozenset(press.buttons)
     return frozenset()
 
 
-def remote(time_s: float, world: WorldSpec) -> tuple[int, int, int, int]:
-    """Return the code of the pressed buttons, for channels 1 to 4; 0 is none."""
+def remote(
+    time_s: float, world: WorldSpec, by_hand: Collection[str] = ()
+) -> tuple[int, int, int, int]:
+    """Return the code of the pressed buttons, for channels 1 to 4; 0 is none.
+
+    Args:
+        time_s: Simulated time, for the presses that the world has.
+        world: The world.
+        by_hand: Names of `REMOTE_BY_HAND`: while there is one, its buttons are pressed on every channel, and no others.
+    """
     one, two, three, four = (
-        REMOTE_CODES.get(_pressed(channel, time_s, world), 0) for channel in range(1, 5)
+        REMOTE_CODES.get(_pressed(channel, time_s, world, by_hand), 0) for channel in range(1, 5)
     )
     return one, two, three, four
 
 
-def remote_bits(time_s: float, world: WorldSpec) -> int:
-    """Return the buttons pressed on channel 1 as bits."""
-    return _REM_A_NONE + sum(_REM_A_BUTTONS.get(button, 0) for button in _pressed(1, time_s, world))
+def remote_bits(time_s: float, world: WorldSpec, by_hand: Collection[str] = ()) -> int:
+    """Return the buttons pressed on channel 1 as bits; arguments as of `remote`."""
+    pressed = _pressed(1, time_s, world, by_hand)
+    return _REM_A_NONE + sum(_REM_A_BUTTONS.get(button, 0) for button in pressed)
 
 
 def columns(spec: InfraredSpec) -> tuple[Column, ...]:

@@ -1,13 +1,23 @@
-"""Touch sensor: pressed while its bumper touches an obstacle or a wall, or by a motor at its end stop."""
+"""Touch sensor: pressed while its bumper touches an obstacle or a wall, by a motor at its end stop, or by hand."""
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from typing import TYPE_CHECKING
 
 from tuisim.core.columns import Column
 from tuisim.core.end_stops import end_flag
 from tuisim.core.geometry import Pose, world_point
-from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, RunSpec, TouchSpec, WorldSpec
+from tuisim.core.spec import (
+    FIELD_HEIGHT_MM,
+    FIELD_WIDTH_MM,
+    INPUT_PORTS,
+    TOUCH,
+    RunSpec,
+    TouchSpec,
+    WorldSpec,
+)
+from tuisim.core.tick_record import FLAG_FIRST_HAND
 
 if TYPE_CHECKING:
     from tuisim.core.field import Field
@@ -39,6 +49,19 @@ def _meets(x_mm: float, y_mm: float, world: WorldSpec) -> bool:
     )
 
 
+def find_hand_flags(pressed: Collection[str]) -> int:
+    """Return the flags of a tick record for the touch sensors that are pressed by hand.
+
+    Args:
+        pressed: Names of `PRESSABLE`; `TOUCH` presses the sensors on all ports.
+    """
+    return sum(
+        FLAG_FIRST_HAND << number
+        for number, port in enumerate(INPUT_PORTS)
+        if port in pressed or TOUCH in pressed
+    )
+
+
 def columns(spec: TouchSpec) -> tuple[Column, ...]:
     """Return the column of a touch sensor."""
     return (Column(f"{spec.name}_pressed", is_traced=True),)
@@ -46,8 +69,10 @@ def columns(spec: TouchSpec) -> tuple[Column, ...]:
 
 def measure(spec: TouchSpec, instant: Instant, run: RunSpec, field: Field) -> tuple[float, ...]:
     """Return the value of `columns`: 1 pressed, 0 not."""
+    if instant.press_flags & find_hand_flags((spec.port,)):
+        return (1.0,)
     if spec.pressed_by:
         return (
-            float(instant.end_flags & end_flag(run.robot, spec.pressed_by, spec.pressed_at) != 0),
+            float(instant.press_flags & end_flag(run.robot, spec.pressed_by, spec.pressed_at) != 0),
         )
     return (float(pressed(instant.pose, spec, run.world)),)

@@ -8,7 +8,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from tuisim.core.columns import Column
-from tuisim.core.drift import lost_echoes
+from tuisim.core.drift import draw_echo_bias_mm, lost_echoes
 from tuisim.core.geometry import Pose, world_point
 from tuisim.core.noise import drawn_numbers, stream
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, RunSpec, UltrasonicSpec, WorldSpec
@@ -161,15 +161,24 @@ def _heard(spec: UltrasonicSpec, instant: Instant, world: WorldSpec) -> Surfaces
 
 
 def reading_mm(spec: UltrasonicSpec, instant: Instant, world: WorldSpec) -> int:
-    """Return the distance in whole mm including the sensor's noise, 0 … `max_range_mm`."""
+    """Return the distance in whole mm including the sensor's errors and noise, 0 … `max_range_mm`.
+
+    Without an echo it is `max_range_mm`, also at what is closer than the sensor measures.
+    """
     distance = distance_mm(instant.pose, spec, world, _heard(spec, instant, world))
+    farthest = round(spec.max_range_mm)
+    if distance < instant.profile.min_echo_mm:
+        distance = farthest
+    elif world.drift.echo_bias_mm and distance < farthest:
+        bias_mm = draw_echo_bias_mm(spec.port, world.drift, instant.seed)
+        distance = max(0, min(farthest, distance + bias_mm))
     if not spec.noise_mm:
         return distance
     share = (
         int.from_bytes(stream(instant.seed, instant.tick, spec.name, 4), "little") / 2147483647.5
         - 1
     )
-    return max(0, min(round(spec.max_range_mm), round(distance + spec.noise_mm * share)))
+    return max(0, min(farthest, round(distance + spec.noise_mm * share)))
 
 
 def columns(spec: UltrasonicSpec) -> tuple[Column, ...]:

@@ -75,7 +75,7 @@ def supervise(root: int) -> None:
 
 @contextmanager
 def supervised() -> Iterator[None]:
-    """Continue this process, and those that it starts in the block, when a program stops them; see `runs.supervisor`.
+    """Continue this process, and those that it starts in the block, when a program stops them.
 
     Without `/proc` nothing is continued.
 

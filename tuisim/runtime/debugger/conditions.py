@@ -198,9 +198,11 @@ class Watcher:
     def _value_of(self, column: str) -> Value | None:
         """Return a function that reads a column; None if this robot does not have it."""
         session, sim = self._session, self._session.sim
-        robot = sim.spec.robot
-        read = reader_of(column_name(column, columns_of(robot)) or "", robot)
-        return None if read is None else lambda: read(sim.instant(), sim.spec, session.field)
+        spec = sim.spec
+        read = reader_of(column_name(column, columns_of(spec)) or "", spec)
+        if read is None:
+            return None
+        return lambda: read(sim.instant(with_motors=True), sim.spec, session.field)
 
 
 def _first(found: Iterator[tuple[str, str]]) -> tuple[str, str] | None:

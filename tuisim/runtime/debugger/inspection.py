@@ -200,11 +200,9 @@ class Inspector:
     def _columns_in(self, watches: tuple[str, ...]) -> dict[str, float]:
         """Return the values of the recording's columns that watches name."""
         sim, field = self._session.sim, self._session.field
-        readers = {
-            name: reader_of(name, sim.spec.robot) for text in watches for name in _names_in(text)
-        }
+        readers = {name: reader_of(name, sim.spec) for text in watches for name in _names_in(text)}
         return {
-            name: read(sim.instant(), sim.spec, field)
+            name: read(sim.instant(with_motors=True), sim.spec, field)
             for name, read in readers.items()
             if read is not None
         }

@@ -8,11 +8,12 @@ import select
 import stat
 import types
 from collections.abc import Callable
-from functools import partial, wraps
+from functools import wraps
 from typing import Any, NoReturn, TypeVar
 
 from tuisim.core.profile import NS_PER_S
 from tuisim.errors import NotSimulated
+from tuisim.runs.readings import READING_CODES, SOCKET_PORT
 from tuisim.runtime.control import THREADS
 from tuisim.runtime.patches.replacement import replace
 from tuisim.runtime.session import Session
@@ -170,19 +171,29 @@ class FileWaits:
         sockets.sendall = self._sendall(sockets.sendall, sockets.send)
         sockets.connect = self._connect(sockets.connect, sockets.connect_ex)
 
-    def _wait_for_socket(self, socket: Any, writes: bool) -> None:
+    def _wait_for_socket(self, socket: Any, writes: bool, code: int | None = None) -> None:
+        """Wait until a socket is ready; each vain look at one that reads is recorded, by its code."""
         timeout_s = socket.gettimeout()
         if timeout_s == 0.0:
             return
         readers, writers = ([], [socket]) if writes else ([socket], [])
-        look = partial(self._select, readers, writers, [], 0)
-        if not self.until_found(lambda: any(look()), _nanoseconds(timeout_s, NS_PER_S)):
+
+        def look() -> bool:
+            is_ready = any(self._select(readers, writers, [], 0))
+            if code is not None and not is_ready:
+                self._session.note_reading(code)
+            return is_ready
+
+        if not self.until_found(look, _nanoseconds(timeout_s, NS_PER_S)):
             raise TimeoutError("timed out")
 
     def _after_wait(self, real: Any, writes: bool) -> Callable[..., Any]:
+        mode = "accept" if real.__name__ == "_accept" else "receive"
+        code = None if writes else READING_CODES[SOCKET_PORT, mode]
+
         @wraps(real)
         def method(socket: Any, *given: Any, **named: Any) -> Any:
-            self._wait_for_socket(socket, writes)
+            self._wait_for_socket(socket, writes, code)
             return real(socket, *given, **named)
 
         return method

@@ -70,13 +70,7 @@ class Sensor(Connected):
 
     def _switched(self, mode: str) -> tuple[int, ...]:
         """Switch the mode, and return the first measurement in it."""
-        brick, profile = self.brick, self.brick.session.sim.spec.profile
-        self._sensor.set_mode(mode)
-        brick.session.charge(
-            profile.infrared_switch_ns if mode.startswith("IR") else profile.mode_switch_ns
-        )
-        if isinstance(self._sensor, GyroDevice):
-            brick.session.sim.reset_gyro()
+        self._sensor.switch(mode)
         return self._sensor.measure_switched(mode)
 
 
@@ -181,9 +175,11 @@ class GyroSensor(Sensor):
         self._zero = self._angle()
 
     def _switched(self, mode: str) -> tuple[int, ...]:
-        super()._switched(mode)
-        self._zero = 0
-        return self._sensor.modes[mode].measure()
+        values = super()._switched(mode)
+        assert isinstance(self._sensor, GyroDevice)
+        if self._sensor.restarts:
+            self._zero = 0
+        return values
 
     def _angle(self) -> int:
         return self._read("GYRO-ANG")[0] * self._sign

@@ -67,7 +67,7 @@ class OutPipe(io.RawIOBase):
 class Process:
     """Replaces `subprocess.Popen`, with the same arguments and methods.
 
-    `patch_processes` sets `system` in a subclass made for the run.
+    A subclass that is made for the run has the `system`.
     """
 
     system: System

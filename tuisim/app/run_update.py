@@ -1,0 +1,35 @@
+"""What has come from a run since the app looked last."""
+
+from __future__ import annotations
+
+from tuisim import protocol
+from tuisim.app.branch import Branch
+from tuisim.data_class import dataclass
+from tuisim.runs.records import OutputRow
+
+
+@dataclass(frozen=True, slots=True)
+class RunUpdate:
+    """What has come from the run since the last poll."""
+
+    rows: list[OutputRow]
+    ended: protocol.Ended | None = None
+    """Set once, in the poll that receives the end."""
+    stood: str = ""
+    """Then also: where the robot stood in the way of something solid, in words."""
+    spoken: tuple[protocol.Spoke, ...] = ()
+    """Texts and sounds from the program."""
+    prompt: str | None = None
+    """The prompt while the program waits in `input()`."""
+    branched: Branch | None = None
+    """Set once, when a branch has reached its instant, or has ended before it."""
+    pauses: tuple[protocol.Message, ...] = ()
+    """Reports that the program has paused or resumed, and its frames and variables."""
+    remarks: tuple[str, ...] = ()
+    """What the output says besides: of a loop without a wait, of what the program waits for; with ids in braces."""
+
+    def __bool__(self) -> bool:
+        """Return whether anything has arrived; a prompt that is still open does not count."""
+        return bool(
+            self.rows or self.ended or self.spoken or self.branched or self.pauses or self.remarks
+        )

@@ -1,0 +1,321 @@
+"""What a program waited for in vain: what it read up to the end of its run and never saw change.
+
+It is found in the recording alone. A reading counts if its line ran in the last seconds; of these, those in the call
+that the program was in come first. What the program turns itself, its motors and the gyro, does not count.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from enum import Enum, auto
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from tuisim.core.columns import COLOR_NAMES
+from tuisim.core.profile import NS_PER_S
+from tuisim.core.sensors import mounted_sensor
+from tuisim.core.sensors.color import color_code
+from tuisim.core.spec import (
+    BUTTONS,
+    REMOTE_BY_HAND,
+    ColorSensorSpec,
+    InfraredSpec,
+    RunSpec,
+    SensorSpec,
+    TouchSpec,
+    UltrasonicSpec,
+)
+from tuisim.data_class import dataclass
+from tuisim.errors import LogError
+from tuisim.protocol import End, SetButtons, UserAction
+from tuisim.runs.brick_state import BrickState, face_after
+from tuisim.runs.readings import MODES_BY_KIND, READING_MODES, READING_PORTS, read_readings
+from tuisim.runs.records import TEXT_STREAMS, Stream
+from tuisim.runs.run_folder import StoredRun, open_mat
+from tuisim.runs.views import OutputView, TelemetryView, instant_of
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from tuisim.core.field import Field
+
+    Array = NDArray[Any]
+
+WINDOW_S = 5.0
+"""Lines that ran in this time before the end are what the program was busy with."""
+MAX_AWAITED = 2
+"""More things at once are no help."""
+_ENDS = frozenset({End.TIME_LIMIT, End.STOPPED})
+"""Ends in the middle of a wait."""
+_SAME_LIGHT = 25
+"""A colour sensor whose channels change by less, of 255, sees the same."""
+_MAX_POSES = 4000
+"""Distances are measured again at so many poses."""
+
+
+class Subject(Enum):
+    """What can be waited for."""
+
+    BUTTONS = auto()
+    TOUCH = auto()
+    REMOTE = auto()
+    BEACON = auto()
+    COLOR = auto()
+    DISTANCE = auto()
+    PROXIMITY = auto()
+    CONNECTION = auto()
+    DATA = auto()
+
+
+_MODES: dict[Subject, tuple[str, ...]] = {
+    Subject.BUTTONS: MODES_BY_KIND["buttons"],
+    Subject.TOUCH: MODES_BY_KIND["touch"],
+    Subject.REMOTE: ("IR-REMOTE", "IR-REM-A"),
+    Subject.BEACON: ("IR-SEEK",),
+    Subject.COLOR: ("COL-REFLECT", "COL-COLOR", "REF-RAW", "RGB-RAW"),
+    Subject.DISTANCE: ("US-DIST-CM", "US-DIST-IN", "US-SI-CM", "US-SI-IN"),
+    Subject.PROXIMITY: ("IR-PROX",),
+    Subject.CONNECTION: ("accept",),
+    Subject.DATA: ("receive",),
+}
+_BY_HAND = (Subject.BUTTONS, Subject.REMOTE)
+"""While the robot moves, a look at these is a guard, not a wait."""
+_SEEN = (Subject.COLOR, Subject.DISTANCE, Subject.PROXIMITY)
+"""A robot that stands and prints what it sees of these does not wait for them."""
+
+
+@dataclass(frozen=True, slots=True)
+class Awaited:
+    """Something that the program read and never saw change."""
+
+    subject: Subject
+    port: str
+    times: int
+    """How often it was read."""
+    value: str = ""
+    """What was read each time: a colour, a distance with its unit; of a socket, the line that waits."""
+
+
+@dataclass(frozen=True, slots=True)
+class Recorded:
+    """The recording of a run up to an instant."""
+
+    folder: Path
+    spec: RunSpec
+    telemetry: TelemetryView
+    output: OutputView
+    actions: Sequence[UserAction]
+    open_mat: Callable[[], Field | None]
+    """Return the mat, prepared for the robot's sensors; None if it is not at hand."""
+
+
+def find_awaited(run: StoredRun) -> tuple[Awaited, ...]:
+    """Return what a stored run waited for."""
+    recorded = Recorded(
+        folder=run.folder,
+        spec=run.spec,
+        telemetry=run.telemetry,
+        output=run.output,
+        actions=run.actions,
+        open_mat=lambda: open_mat(run),
+    )
+    return find_at_end(recorded, run.end.end) if run.end else ()
+
+
+def find_at_end(run: Recorded, end: End) -> tuple[Awaited, ...]:
+    """Return what a run waited for that was stopped, or stood still at its end; otherwise nothing."""
+    is_over = end is End.FINISHED and is_standing(run.telemetry, run.spec)
+    return find_in_recording(run) if end in _ENDS or is_over else ()
+
+
+def is_standing(telemetry: TelemetryView, spec: RunSpec) -> bool:
+    """Return whether the robot has stood still for the last `WINDOW_S`."""
+    ticks = _count_window_ticks(spec)
+    return telemetry.count > ticks and not _is_driving(telemetry.array(telemetry.count - 1 - ticks))
+
+
+def find_in_recording(run: Recorded) -> tuple[Awaited, ...]:
+    """Return what the program of a recording has read in its last seconds and never saw change; most important first.
+
+    What is damaged, or missing, was not waited for.
+    """
+    try:
+        return tuple(_Search(run).find_awaited())[:MAX_AWAITED]
+    except LogError:
+        return ()
+
+
+def _count_window_ticks(spec: RunSpec) -> int:
+    return round(WINDOW_S * spec.profile.tick_hz)
+
+
+def _is_driving(records: Array) -> bool:
+    """Return whether the robot or one of its wheels moves in some records."""
+    names = ("x_mm", "y_mm", "heading_deg", "left_position_deg", "right_position_deg")
+    return any((records[name][1:] != records[name][:-1]).any() for name in names)
+
+
+class _Search:
+    """Looks for what a program waits for.
+
+    Raises:
+        LogError: a recording is damaged.
+    """
+
+    def __init__(self, run: Recorded) -> None:
+        import numpy as np
+
+        self._run, self._hz = run, run.spec.profile.tick_hz
+        self._records = run.telemetry.array()
+        self._rows = read_readings(run.folder).rows
+        seconds, rest_ns = np.divmod(self._rows["time_ns"], NS_PER_S)
+        ticks = seconds * self._hz + rest_ns * self._hz // NS_PER_S
+        self._ticks = np.minimum(ticks, len(self._records) - 1)
+        self._first = max(0, len(self._records) - 1 - _count_window_ticks(run.spec))
+        """The tick at which the last seconds begin."""
+        self._drives = len(self._records) > 0 and _is_driving(self._records[self._first :])
+
+    def find_awaited(self) -> Iterator[Awaited]:
+        """Yield what the program waits for, most important first."""
+        if not len(self._rows) or not len(self._records):
+            return
+        subjects = [one for one in Subject if not (one in _BY_HAND and self._drives)]
+        if self._drives:
+            subjects.sort(key=lambda one: one not in _SEEN)
+        for subject in subjects:
+            if subject in _BY_HAND and self._is_turning():
+                continue
+            if subject in _SEEN and not self._drives and self._is_printing():
+                continue
+            for port in READING_PORTS:
+                rows = self._find_readings(subject, port)
+                if (
+                    len(rows)
+                    and (value := self._describe_constant(subject, port, rows)) is not None
+                ):
+                    yield Awaited(subject, port, len(rows), value)
+
+    def _find_readings(self, subject: Subject, port: str) -> Array:
+        """Return the indices of all readings of a subject on the lines that the program is busy with."""
+        import numpy as np
+
+        modes = [READING_MODES.index(mode) for mode in _MODES[subject]]
+        is_meant = np.isin(self._rows["mode"], modes)
+        is_meant &= self._rows["port"] == READING_PORTS.index(port)
+        lines = self._rows["line"][is_meant & (self._ticks >= self._first)]
+        if (line := self._find_blocking_line()) is not None:
+            lines = lines[lines == line]
+        rows: Array = np.flatnonzero(is_meant & np.isin(self._rows["line"], lines))
+        return rows
+
+    def _find_blocking_line(self) -> int | None:
+        """Return the line of the call that the program is in, if it reads anything there."""
+        import numpy as np
+
+        lines = np.unique(self._records["line"][self._first + 1 :])
+        reads = self._rows["line"][self._ticks >= self._first]
+        return int(lines[0]) if len(lines) == 1 and (reads == lines[0]).any() else None
+
+    def _is_turning(self) -> bool:
+        """Return whether a motor that drives no wheel has turned in the last seconds."""
+        face = BrickState()
+        for row in self._run.output.rows():
+            if row.stream is Stream.MOTORS:
+                if row.tick > self._first:
+                    return True
+                face = face_after(face, [row])
+        return any(dps for _, dps in face.turns)
+
+    def _is_printing(self) -> bool:
+        """Return whether the program has printed in the last seconds."""
+        return any(
+            row.tick > self._first
+            for row in self._run.output.rows()
+            if row.stream in TEXT_STREAMS or row.stream is Stream.CONSOLE
+        )
+
+    def _describe_constant(self, subject: Subject, port: str, rows: Array) -> str | None:
+        """Return what was read each time, in words; None if it changed, or was what a program waits for."""
+        import numpy as np
+
+        if subject in (Subject.CONNECTION, Subject.DATA):
+            return f"line {self._rows['line'][rows[-1]]}"
+        ticks = np.unique(self._ticks[rows])
+        sensor = next((one for one in self._run.spec.robot.sensors if one.port == port), None)
+        match subject, sensor:
+            case Subject.BUTTONS, _:
+                return None if self._is_pressed(ticks, BUTTONS).any() else ""
+            case Subject.REMOTE, InfraredSpec():
+                return None if self._is_remote_pressed(ticks) else ""
+            case Subject.BEACON, InfraredSpec():
+                return None if self._run.spec.world.beacon else ""
+            case Subject.TOUCH, TouchSpec():
+                return None if any(value for (value,) in self._measure(sensor, ticks)) else ""
+            case Subject.COLOR, ColorSensorSpec():
+                return self._describe_color(sensor, ticks)
+            case Subject.DISTANCE, UltrasonicSpec():
+                return self._describe_distance(sensor, ticks, 10, sensor.noise_mm * 2 + 10)
+            case Subject.PROXIMITY, InfraredSpec():
+                return self._describe_distance(sensor, ticks, 1, 2)
+        return None
+
+    def _is_pressed(self, ticks: Array, names: Sequence[str]) -> Array:
+        """Return at each of some ticks whether any of some names is pressed by hand."""
+        import numpy as np
+
+        changes = [
+            (action.tick, not {*names}.isdisjoint(action.command.pressed))
+            for action in self._run.actions
+            if isinstance(action.command, SetButtons)
+        ]
+        states = [False, *(is_pressed for _, is_pressed in changes)]
+        at = np.searchsorted([tick for tick, _ in changes], ticks, side="right")
+        return np.array(states)[at]
+
+    def _is_remote_pressed(self, ticks: Array) -> bool:
+        times_s = ticks / self._hz
+        in_world = any(
+            ((times_s >= press.from_s) & (times_s < press.until_s)).any()
+            for press in self._run.spec.world.remote
+        )
+        return in_world or bool(self._is_pressed(ticks, tuple(REMOTE_BY_HAND)).any())
+
+    def _measure(self, sensor: SensorSpec, ticks: Array) -> Iterator[tuple[float, ...]]:
+        """Yield what a sensor that needs no mat measures at each pose that the robot had at some ticks."""
+        import numpy as np
+
+        run = self._run
+        state = self._records[["x_mm", "y_mm", "heading_deg", "flags"]][ticks]
+        poses = ticks[np.sort(np.unique(state, return_index=True)[1])]
+        # Only a colour sensor looks at the mat.
+        measure: Callable[..., tuple[float, ...]] = mounted_sensor(sensor).kind.measure
+        for tick in poses[:: 1 + len(poses) // _MAX_POSES].tolist():
+            instant = instant_of(run.telemetry.record(tick), run.spec, run.spec.world.noise)
+            yield measure(sensor, instant, run.spec, None)
+
+    def _describe_distance(
+        self, sensor: SensorSpec, ticks: Array, per_unit: int, tolerance: float
+    ) -> str | None:
+        """Return the smallest distance that was measured; None if they differ by more than a tolerance."""
+        low, high = math.inf, -math.inf
+        for value, *_ in self._measure(sensor, ticks):
+            low, high = min(value, low), max(value, high)
+            if high - low > tolerance:
+                return None
+        return f"{low / per_unit:.0f} {'cm' if per_unit > 1 else '%'}"
+
+    def _describe_color(self, sensor: ColorSensorSpec, ticks: Array) -> str | None:
+        """Return the name of the one colour that a sensor saw; None if it saw more, or if that is not known."""
+        import numpy as np
+
+        from tuisim.runs.sensor_arrays import quiet_color_columns
+
+        if self._run.spec.world.pen_marks or (mat := self._run.open_mat()) is None:
+            return None
+        columns = quiet_color_columns(self._records[ticks], sensor, self._run.spec, mat).values()
+        channels = np.array(list(columns))
+        if np.ptp(channels, axis=1).max() > _SAME_LIGHT:
+            return None
+        red, green, blue = (int(level) for level in channels.mean(axis=1))
+        return COLOR_NAMES[color_code(red, green, blue)].lower()
