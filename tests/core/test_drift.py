@@ -10,7 +10,14 @@ import pytest
 
 from tests.core.memory_sink import MemorySink
 from tests.core.motors import commanded
-from tuisim.core.drift import JERK_MM, bright_side, drawn_errors, light_share, lost_echoes
+from tuisim.core.drift import (
+    JERK_MM,
+    bright_side,
+    drawn_errors,
+    find_drift,
+    light_share,
+    lost_echoes,
+)
 from tuisim.core.drift_spec import NO_DRIFT, DriftSpec
 from tuisim.core.geometry import Pose
 from tuisim.core.profile import PROFILES
@@ -44,6 +51,16 @@ def simulation(
 ) -> Simulation:
     world = WorldSpec(start=Pose(500.0, 500.0, 0.0), drift=drift, noise=noise, solid=solid)
     return Simulation(RunSpec(ROBOT, world, PROFILES[profile], seed), MemorySink())
+
+
+@pytest.mark.parametrize("name", PROFILES)
+def test_sensors_differ_only_where_bricks_were_measured(name: str) -> None:
+    spec = RunSpec(ROBOT, WorldSpec(drift=TYPICAL), PROFILES[name])
+    drift = find_drift(spec)
+    sizes = drift.gyro_scale_pc, drift.echo_bias_mm, drift.light_gain_pc
+    assert all(sizes) if spec.profile.motor_law.is_measured else sizes == (0.0, 0.0, 0.0)
+    assert (drift.wheel_pc, drift.gyro_dps, drift.light_pc) == (0.5, 0.05, 10.0)
+    assert find_drift(spec) == Simulation(spec, MemorySink()).instant().drift
 
 
 def move(sim: Simulation, left_deg: float, right_deg: float, speed_dps: float = 400.0) -> None:

@@ -15,6 +15,7 @@ from tuisim.app.snapshot import RunPhase, Snapshot, busy_loop_words
 from tuisim.app.timeline import Timeline
 from tuisim.app.waiting import WaitWatch
 from tuisim.config.program_settings import require_library
+from tuisim.core.drift import find_drift
 from tuisim.core.end_stops import flags_at_start
 from tuisim.core.field import Field
 from tuisim.core.geometry import Pose
@@ -240,7 +241,7 @@ class RunController:
             gyro_zero_deg=pose.heading_deg,
             press_flags=flags,
             noise=spec.world.noise,
-            drift=spec.world.drift,
+            drift=find_drift(spec),
             profile=spec.profile,
             seed=spec.seed,
         )
@@ -488,7 +489,7 @@ class RunController:
         self.next_run = plan
         world = plan.spec.world
         self._still = replace(
-            self._still, noise=world.noise, drift=world.drift, seed=plan.spec.seed
+            self._still, noise=world.noise, drift=find_drift(plan.spec), seed=plan.spec.seed
         )
 
     def close(self) -> None:

@@ -32,7 +32,7 @@ from tuisim.config.command_line import AS_JSON, Group, WordType, argument, comma
 from tuisim.config.files import toml_form
 from tuisim.config.options import RUN_VALUES
 from tuisim.core import tree
-from tuisim.core.drift import draw_echo_bias_mm, draw_light_gain, drawn_errors
+from tuisim.core.drift import draw_echo_bias_mm, draw_light_gain, drawn_errors, find_drift
 from tuisim.core.spec import ColorSensorSpec, RunSpec, UltrasonicSpec
 from tuisim.core.values import shown
 from tuisim.errors import ConfigError, LogError, counted, shortened
@@ -175,16 +175,16 @@ def _files_read(run: StoredRun) -> tuple[FilesRead, tuple[str, ...]]:
 
 def _drawn_words(spec: RunSpec) -> str:
     """Return the errors that the seed of a run with drift has drawn."""
-    drawn = drawn_errors(spec.world.drift, spec.seed)
+    drift = find_drift(spec)
+    drawn = drawn_errors(drift, spec.seed)
     sizes = {"left wheel": drawn.left, "right wheel": drawn.right, "spacing": drawn.spacing}
     parts = [f"{name} {100 * (times - 1):+.2f} %" for name, times in sizes.items()]
     parts += [f"gyro {drawn.gyro_dps:+.3f} °/s", f"light from {degrees(drawn.bright_rad):.0f}°"]
-    drift = spec.world.drift
     for sensor in spec.robot.sensors:
-        if isinstance(sensor, ColorSensorSpec):
+        if drift.light_gain_pc and isinstance(sensor, ColorSensorSpec):
             gain = draw_light_gain(sensor.port, drift, spec.seed)
             parts.append(f"{sensor.name} light {100 * (gain - 1):+.1f} %")
-        elif isinstance(sensor, UltrasonicSpec):
+        elif drift.echo_bias_mm and isinstance(sensor, UltrasonicSpec):
             bias_mm = draw_echo_bias_mm(sensor.port, drift, spec.seed)
             parts.append(f"{sensor.name} {bias_mm:+d} mm")
     return ", ".join(parts)

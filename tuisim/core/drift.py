@@ -11,11 +11,12 @@ Kleeman, Accurate Odometry and Error Modelling for a Mobile Robot, 1997).
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import lru_cache
 from math import cos, degrees, inf, log, pi, sin, sqrt
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from tuisim.core.drift_spec import DriftSpec
+from tuisim.core.drift_spec import NO_DRIFT, DriftSpec
 from tuisim.core.drive import Drive, float32, mm_per_degree, turn_rate_dps
 from tuisim.core.motors import top_speed_dps
 from tuisim.core.noise import drawn_numbers, wheel_slip
@@ -52,6 +53,19 @@ class DrawnErrors(NamedTuple):
     """The rate that the gyro shows while the robot stands, clockwise."""
     bright_rad: float
     """The direction from the middle of the field to its brightest side."""
+
+
+def find_drift(spec: RunSpec) -> DriftSpec:
+    """Return what drifts in a run: in a course or a simulator, sensors of one kind are all alike."""
+    drift = spec.world.drift
+    if drift is NO_DRIFT or spec.profile.motor_law.is_measured:
+        return drift
+    return _equal_sensors(drift)
+
+
+@lru_cache(maxsize=16)
+def _equal_sensors(drift: DriftSpec) -> DriftSpec:
+    return replace(drift, gyro_scale_pc=0.0, echo_bias_mm=0.0, light_gain_pc=0.0)
 
 
 @lru_cache(maxsize=64)
@@ -95,7 +109,7 @@ def sensed_turn_rate_dps(left_dps: float, right_dps: float, spec: RunSpec) -> fl
 
     The slip of wheels that accelerate is too short for it.
     """
-    drift = spec.world.drift
+    drift = find_drift(spec)
     if drift.is_none:
         return turn_rate_dps(left_dps, right_dps, spec.robot)
     drawn = drawn_errors(drift, spec.seed)
@@ -176,9 +190,9 @@ class SlippingWheels:
 
     def __init__(self, spec: RunSpec) -> None:
         drift, hz, drawn = (
-            spec.world.drift,
+            find_drift(spec),
             spec.profile.tick_hz,
-            drawn_errors(spec.world.drift, spec.seed),
+            drawn_errors(find_drift(spec), spec.seed),
         )
         self._seed = spec.seed
         self._left_mm, self._right_mm = mm_per_degree(spec.robot)
@@ -220,7 +234,7 @@ class WrongGyro:
     __slots__ = ("_carry_deg", "_drift_deg", "_drive", "_max_deg", "_scale")
 
     def __init__(self, spec: RunSpec, drive: Drive) -> None:
-        drift, profile = spec.world.drift, spec.profile
+        drift, profile = find_drift(spec), spec.profile
         self._drive, self._scale = drive, 1 - drift.gyro_scale_pc / 100
         self._drift_deg = drawn_errors(drift, spec.seed).gyro_dps / profile.tick_hz
         self._max_deg = (profile.gyro_max_dps or inf) / profile.tick_hz
@@ -243,12 +257,12 @@ class WrongGyro:
 
 def slipping_wheels(spec: RunSpec) -> SlippingWheels | None:
     """Return the wheels of a run with drift; None if nothing drifts."""
-    return None if spec.world.drift.is_none else SlippingWheels(spec)
+    return None if find_drift(spec).is_none else SlippingWheels(spec)
 
 
 def build_gyro(spec: RunSpec, drive: Drive) -> WrongGyro | None:
     """Return the gyro of a run; None if it senses each turn as it is."""
-    is_right = spec.world.drift.is_none and not spec.profile.gyro_max_dps
+    is_right = find_drift(spec).is_none and not spec.profile.gyro_max_dps
     return None if is_right else WrongGyro(spec, drive)
 
 

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, assert_never
 from tuisim.core.brick_motor import BrickMotor
 from tuisim.core.browser_motor import BrowserMotor
 from tuisim.core.collision import Solids
-from tuisim.core.drift import MOST_TIMES, build_gyro, can_strain_gyro, slipping_wheels
+from tuisim.core.drift import MOST_TIMES, build_gyro, can_strain_gyro, find_drift, slipping_wheels
 from tuisim.core.drive import BrickDrive, BrowserDrive, Drive, Glide, Records, mm_per_degree
 from tuisim.core.driver.jiffies import draw_jiffies
 from tuisim.core.driver.motor import MotorCommand
@@ -153,7 +153,7 @@ class Motion:
                 top_speed_dps(motor.kind, spec.profile) for motor in spec.robot.wheel_motors
             )
             farthest = fastest * self._tick_s * abs(self._left_mm_per_deg)
-            farthest *= 1 if spec.world.drift.is_none else MOST_TIMES
+            farthest *= 1 if find_drift(spec).is_none else MOST_TIMES
             self._longest_mm = farthest * (1 + 2 * self._solids.reach_mm / self._spacing_mm)
         self.tick = 0
         left, right = spec.robot.wheel_motors

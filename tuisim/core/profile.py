@@ -64,6 +64,11 @@ class MotorLaw(StrEnum):
             else Library.EV3DEV2
         )
 
+    @property
+    def is_measured(self) -> bool:
+        """Whether the robot is as bricks were measured, and not as a course or a simulator has it."""
+        return self not in (MotorLaw.BRICK, MotorLaw.NBEV3DEVSIM)
+
 
 _OLD = "measured on the old simulator"
 _BRICK = "measured on a brick (ev3dev-lang-python, issue 732): ev3: 1.2 ms"

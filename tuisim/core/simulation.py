@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING
 
-from tuisim.core.drift import sensed_turn_rate_dps
+from tuisim.core.drift import find_drift, sensed_turn_rate_dps
 from tuisim.core.drive import float32, turn_rate_dps
 from tuisim.core.end_stops import build_stops
 from tuisim.core.geometry import Pose
 from tuisim.core.motion import Motion, motor_of
 from tuisim.core.motor_columns import MotorSink
-from tuisim.core.profile import NS_PER_S, MotorLaw
+from tuisim.core.profile import NS_PER_S
 from tuisim.core.state import Instant
 from tuisim.core.tick_record import END_FLAGS, TICK_RECORD, TickSink
 
@@ -64,7 +64,7 @@ class Simulation(Motion):
             gyro_zero_deg=self.drive.gyro_zero_deg,
             press_flags=self.press_flags,
             noise=self.noise,
-            drift=spec.world.drift,
+            drift=find_drift(spec),
             profile=spec.profile,
             seed=spec.seed,
             motors=self.motor_values if with_motors else (),
@@ -128,7 +128,7 @@ class FurtherMotors(Simulation):
             for pair in zip(spec.robot.extra_motors, self.others, strict=True)
         )
         super().__init__(spec, sink)
-        self._reports_first = spec.profile.motor_law not in (MotorLaw.BRICK, MotorLaw.NBEV3DEVSIM)
+        self._reports_first = spec.profile.motor_law.is_measured
         self.on_turns: Callable[[tuple[Turn, ...]], None] = lambda _: None
         """Called when a motor deviates from its last report; until then each motor turns at the reported speed."""
         self._reported: tuple[Turn, ...] = ((0.0, 0.0),) * len(self.others)

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tuisim.core.drift import draw_echo_bias_mm, sensed_turn_rate_dps
+from tuisim.core.drift import draw_echo_bias_mm, find_drift, sensed_turn_rate_dps
 from tuisim.core.field import Field
 from tuisim.core.noise import stream
 from tuisim.core.sensors import SENSORS
@@ -46,7 +46,7 @@ def measured_at_once(
         has_light_noise or sensor.strategy != "mean" or run.world.pen_marks
     ):
         return None
-    if isinstance(sensor, UltrasonicSpec) and run.world.drift.echo_loss_pc:
+    if isinstance(sensor, UltrasonicSpec) and find_drift(run).echo_loss_pc:
         return None
     measure = _AT_ONCE.get(type(sensor))
     if measure is None:
@@ -78,7 +78,7 @@ def quiet_color_columns(
     table = np.frombuffer(field.sums[diameter], np.uint32).reshape(height, width, 3)
     sums[inside] = table[row[inside], col[inside]]
     means = sums / disc_pixels_of(diameter)
-    response, drift = find_response(sensor, run.profile), run.world.drift
+    response, drift = find_response(sensor, run.profile), find_drift(run)
     if response != EVEN:
         means = response.dark * inside[:, None] + means * response.span / WHITE
     if drift.light_pc or drift.light_gain_pc:
@@ -119,8 +119,9 @@ def _ultrasonic(
         )
     distance_mm, farthest = _rounded(nearest_mm), float(round(sensor.max_range_mm))
     is_near = distance_mm < run.profile.min_echo_mm
-    if run.world.drift.echo_bias_mm:
-        bias_mm = draw_echo_bias_mm(sensor.port, run.world.drift, run.seed)
+    drift = find_drift(run)
+    if drift.echo_bias_mm:
+        bias_mm = draw_echo_bias_mm(sensor.port, drift, run.seed)
         biased_mm = np.clip(distance_mm + bias_mm, 0.0, farthest)
         distance_mm = np.where(distance_mm < farthest, biased_mm, distance_mm)
     distance_mm = np.where(is_near, farthest, distance_mm)

@@ -21,6 +21,7 @@ from stat import S_IRUSR
 from typing import TYPE_CHECKING, Any, ClassVar
 from weakref import finalize
 
+from tuisim.core.drift import find_drift
 from tuisim.core.geometry import Pose
 from tuisim.core.spec import NoiseSpec, RunSpec
 from tuisim.core.state import Instant
@@ -97,7 +98,7 @@ def instant_of(record: TickRecord, spec: RunSpec, noise: NoiseSpec) -> Instant:
         gyro_zero_deg=record.gyro_zero_deg,
         press_flags=record.flags & PRESS_FLAGS,
         noise=noise,
-        drift=spec.world.drift,
+        drift=find_drift(spec),
         profile=spec.profile,
         seed=spec.seed,
     )

@@ -9,6 +9,7 @@ from functools import partial
 from typing import Any, NoReturn
 
 from tuisim.core.columns import COLOR_NAMES
+from tuisim.core.drift import find_drift
 from tuisim.core.sensors import SENSORS, color, gyro, infrared, touch, ultrasonic
 from tuisim.core.spec import ColorSensorSpec, GyroSpec, InfraredSpec, TouchSpec, UltrasonicSpec
 from tuisim.data_class import dataclass
@@ -182,9 +183,10 @@ class ColorDevice(LegoSensor):
         self._spec = spec
         self._clear = color.rgb_reader(spec, profile, session.field)
         self._noisy = color.noisy_rgb_reader(spec, profile, session.field)
-        world = session.sim.spec.world
-        drift = world.drift
-        self._in_full = world.pen_marks or drift.light_pc > 0 or drift.light_gain_pc > 0
+        drift = find_drift(session.sim.spec)
+        self._in_full = (
+            session.sim.spec.world.pen_marks or drift.light_pc > 0 or drift.light_gain_pc > 0
+        )
         self._seen = (0, 0, 0)
         self._seen_tick, self._seen_actions = -1, -1
 

@@ -19,6 +19,7 @@ from tuisim.app.panels.arrays import Arrays
 from tuisim.app.panels.world import WorldView
 from tuisim.app.setup.mat import Mat, blank_mat, prepare_mat, prepare_mat_of
 from tuisim.app.snapshot import RunPhase, Snapshot
+from tuisim.core.drift import find_drift
 from tuisim.core.geometry import Pose
 from tuisim.core.spec import RunSpec
 from tuisim.core.state import Instant
@@ -92,7 +93,12 @@ class WorldAt:
         spec = self.spec
         world = spec.world
         instant = Instant(
-            tick, pose, noise=world.noise, drift=world.drift, profile=spec.profile, seed=spec.seed
+            tick,
+            pose,
+            noise=world.noise,
+            drift=find_drift(spec),
+            profile=spec.profile,
+            seed=spec.seed,
         )
         line = table.column("line")[row].as_py() if "line" in table.column_names else 0
         return self._snapshot(instant, self.mat.field, int(line or 0), False)

@@ -146,7 +146,7 @@ def distance_mm(
 
 def _heard(spec: UltrasonicSpec, instant: Instant, world: WorldSpec) -> Surfaces | None:
     """Return the surfaces that send back the pulse of an instant; None if no pulse can be lost."""
-    drift = world.drift
+    drift = instant.drift
     if not drift.echo_loss_pc:
         return None
     found = surfaces(world)
@@ -169,8 +169,8 @@ def reading_mm(spec: UltrasonicSpec, instant: Instant, world: WorldSpec) -> int:
     farthest = round(spec.max_range_mm)
     if distance < instant.profile.min_echo_mm:
         distance = farthest
-    elif world.drift.echo_bias_mm and distance < farthest:
-        bias_mm = draw_echo_bias_mm(spec.port, world.drift, instant.seed)
+    elif instant.drift.echo_bias_mm and distance < farthest:
+        bias_mm = draw_echo_bias_mm(spec.port, instant.drift, instant.seed)
         distance = max(0, min(farthest, distance + bias_mm))
     if not spec.noise_mm:
         return distance
