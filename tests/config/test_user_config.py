@@ -50,10 +50,6 @@ def _home(home: Path) -> None:
             "[simulation]\npencolor = 'gren'",
             "no such colour 'gren' (did you mean green",
         ),
-        "removed": (
-            "[editor]\nmotions = 'vim'",
-            "editor: this table is no longer used: remove it (",
-        ),
         "no key": ("[keys]\nrun = 3", "keys.run: must be a key or a list of keys, got 3"),
         "no keys": ("[keys]\nrun = []", "keys.run: must be a key or a list of keys, got []"),
     },

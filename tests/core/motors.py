@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from typing import cast
+from typing import Protocol, cast
 
 from tests.core.driver.lab import give
 from tuisim.core.driver.motor import Command
 from tuisim.core.driver.simulated import SimulatedMotor
-from tuisim.core.motors import CommandedMotor, Motor
+from tuisim.core.motors import Motor
 from tuisim.core.profile import PROFILES, Library
 from tuisim.core.servo.motor import ServoMotor
 from tuisim.core.simulation import Simulation
@@ -18,6 +18,19 @@ COMMANDED = sorted(
 """The profiles whose motors a driver commands."""
 SERVO = sorted(set(PROFILES) - set(COMMANDED))
 """The profiles whose motors follow trajectories."""
+
+
+class CommandedMotor(Motor, Protocol):
+    """A motor that a driver commands, as those of a brick and of the browser simulator do."""
+
+    def run(self, speed_dps: float) -> None: ...
+
+    def run_until(self, speed_dps: float, end_tick: int) -> None:
+        """Run until a tick."""
+
+    def run_to(self, goal_deg: float, speed_dps: float, backwards: bool) -> None: ...
+
+    def stop(self) -> None: ...
 
 
 class DriverCommands:

@@ -6,6 +6,7 @@ import re
 import shlex
 import shutil
 from collections.abc import Callable
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -17,8 +18,8 @@ from tests.guide.documents import DOCUMENTS, Block, blocks, commands_in_text, pr
 from tuisim.app import app as lab_app
 from tuisim.cli import COMMANDS
 from tuisim.commands import app as app_command
+from tuisim.config.command_line import Group
 from tuisim.guide.catalogue import pages
-from tuisim.guide.command_tables import command_names
 
 
 def _class(where: Path) -> None:
@@ -111,13 +112,23 @@ def test_blocks_without_a_kind_are_drawings() -> None:
     assert ["tuisim" in code.split() for code in plain] == [False] * len(plain)
 
 
+@cache
+def _load_commands() -> dict[str, click.Command]:
+    """Return every command by its words, without `tuisim`."""
+    known = {name: entry.load() for name, entry in COMMANDS.items()}
+    for name, command in list(known.items()):
+        if isinstance(command, Group):
+            known |= {f"{name} {word}": command.load(word) for word in command.listing}
+    return known
+
+
 def _faults(span: str) -> list[str]:
     """What is wrong with a command in a text; words in capitals stand for something."""
     try:
         words = shlex.split(span.replace("…", ""))[1:]
     except ValueError:
         return [span]
-    known = command_names()
+    known = _load_commands()
     name = next((found for count in (2, 1) if (found := " ".join(words[:count])) in known), "")
     if (
         not name

@@ -17,7 +17,6 @@ import pytest
 import tuisim
 from tests.cases import cases
 from tests.runs.run_recorder import Recorder
-from tuisim.core.field import Field
 from tuisim.core.spec import RunSpec
 from tuisim.errors import ExportError, LogError
 from tuisim.logs.export import (
@@ -61,12 +60,12 @@ def test_samples_come_back_to_the_last_bit(
 @pytest.mark.quick_cases(".csv", ".parquet")
 @each_format
 def test_telemetry_comes_back_to_the_last_bit(
-    record: Callable[..., Recorder], noisy_spec: RunSpec, field: Field, tmp_path: Path, suffix: str
+    record: Callable[..., Recorder], noisy_spec: RunSpec, tmp_path: Path, suffix: str
 ) -> None:
     run = noisy_run(record, noisy_spec)
     target = tmp_path / f"log{suffix}"
-    export_telemetry(run, target, field)
-    pd.testing.assert_frame_equal(read_log(target), telemetry_frame(run, field), check_exact=True)
+    export_telemetry(run, target)
+    pd.testing.assert_frame_equal(read_log(target), telemetry_frame(run), check_exact=True)
 
 
 @each_format
@@ -159,7 +158,6 @@ def test_frame_without_rows_comes_back_with_its_types(
 def test_identical_runs_give_identical_files(
     record: Callable[..., Recorder],
     noisy_spec: RunSpec,
-    field: Field,
     tmp_path: Path,
     suffix: str,
     table: str,
@@ -172,7 +170,7 @@ def test_identical_runs_give_identical_files(
         if table == "samples":
             export_samples([run], folder / f"log{suffix}")
         else:
-            export_telemetry(run, folder / f"log{suffix}", field)
+            export_telemetry(run, folder / f"log{suffix}")
         written.append({path.name: path.read_bytes() for path in folder.iterdir()})
     assert written[0] == written[1]
     assert len(written[0]) == 1 + EXPORTERS[suffix].companion

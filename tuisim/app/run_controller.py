@@ -555,7 +555,9 @@ class RunController:
                 case protocol.BusyLoop() if self._branch is None:
                     remarks.append(busy_loop_words(event))
         stood = standstill_words(recording.telemetry, recording.spec) if ended else ""
-        remarks += self._waits.look(self, recording, ended)
+        if not self.in_past:
+            is_running = self.state is RunPhase.RUNNING
+            remarks += self._waits.look(recording, ended, is_running, self.mat_for)
         rows = recording.rows.take(ROWS_A_POLL)
         prompt = self.run.waiting_for_input if self.run and self.in_run else None
         return RunUpdate(

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Callable
 
-from tuisim.app.snapshot import RunPhase
+from tuisim.core.field import Field
+from tuisim.core.spec import RunSpec
 from tuisim.protocol import Ended
 from tuisim.runs.recorded_run import Recording
 from tuisim.runs.waited import (
@@ -17,9 +18,6 @@ from tuisim.runs.waited import (
 )
 from tuisim.runs.waited_words import describe_wait_with_keys
 
-if TYPE_CHECKING:
-    from tuisim.app.run_controller import RunController
-
 
 class WaitWatch:
     """Watches the run in view for what its program waits for."""
@@ -30,30 +28,37 @@ class WaitWatch:
         """When to look next."""
         self._has_told = False
 
-    def look(self, runs: RunController, recording: Recording, ended: Ended | None) -> list[str]:
+    def look(
+        self,
+        recording: Recording,
+        ended: Ended | None,
+        is_running: bool,
+        open_mat: Callable[[RunSpec], Field | None],
+    ) -> list[str]:
         """Return what the program waits for, with ids of actions in braces; nothing if it was told already.
 
         Args:
-            runs: The run in view.
-            recording: Its recording.
-            ended: Its end, once.
+            recording: The recording in view.
+            ended: The end of its run, once.
+            is_running: Whether its program runs, neither paused nor ended.
+            open_mat: Returns the mat of a run, None if it is not there.
 
         Raises:
             LogError: the recording is damaged.
         """
         if recording.run_id != self._run_id:
             self._run_id, self._next_tick, self._has_told = recording.run_id, 0, False
-        if self._has_told or runs.in_past:
+        if self._has_told:
             return []
         awaited: tuple[Awaited, ...] = ()
         if ended is not None:
-            awaited = find_at_end(_build_recorded(runs, recording), ended.end)
+            awaited = find_at_end(_build_recorded(recording, open_mat), ended.end)
         elif (
-            runs.state is RunPhase.RUNNING
+            is_running
             and recording.newest >= self._next_tick
             and is_standing(recording.telemetry, recording.spec)
         ):
-            awaited = find_in_recording(_build_recorded(runs, recording))
+            awaited = find_in_recording(_build_recorded(recording, open_mat))
             # A long run has many readings: the longer it is, the more seldom they are all read.
             pause_ticks = round(WINDOW_S * recording.spec.profile.tick_hz)
             self._next_tick = recording.newest + max(pause_ticks, recording.newest // 2)
@@ -61,12 +66,12 @@ class WaitWatch:
         return [f"— {describe_wait_with_keys(awaited, recording.spec)}"] if awaited else []
 
 
-def _build_recorded(runs: RunController, recording: Recording) -> Recorded:
+def _build_recorded(recording: Recording, open_mat: Callable[[RunSpec], Field | None]) -> Recorded:
     return Recorded(
         folder=recording.folder,
         spec=recording.spec,
         telemetry=recording.telemetry,
         output=recording.output,
         actions=recording.actions(),
-        open_mat=lambda: runs.mat_for(recording.spec),
+        open_mat=lambda: open_mat(recording.spec),
     )

@@ -94,10 +94,6 @@ THEME, CELL_SET = f"{Section.APP}.theme", f"{Section.APP}.cells"
 """Paths of settings that are read by themselves."""
 _THEME = Name("the name of a theme", "THEME", help="colours of the app; F10 lists the themes")
 _EVERY = (*_of_options(), Setting(Section.APP, "theme", _THEME, "textual-dark"))
-REMOVED = {
-    "editor": "there are no keys of vim and Emacs; ctrl+e in the app opens the program in $EDITOR"
-}
-"""What to do without a table that files of before may have."""
 SETTINGS: Mapping[str, Setting] = {
     one.path: one for section in Section for one in _EVERY if one.section is section
 }
@@ -247,8 +243,6 @@ def _entries(
     for section, content in data.items():
         here = at.at(section)
         try:
-            if section in REMOVED:
-                raise here.wrong("this table is no longer used: remove it", REMOVED[section])
             if section not in names:
                 raise here.wrong("no such table", f"{_hint(section, names)}; {see_page(PAGE)}")
             table(content, here)

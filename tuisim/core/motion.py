@@ -19,7 +19,7 @@ from tuisim.core.driver.jiffies import draw_jiffies
 from tuisim.core.driver.motor import MotorCommand
 from tuisim.core.driver.simulated import SimulatedMotor, build_axle, build_motor
 from tuisim.core.end_stops import flags_at_start
-from tuisim.core.motor_columns import MotorRecorder, MotorSink, MotorValues
+from tuisim.core.motor_columns import MotorRecorder, MotorSink
 from tuisim.core.motors import POSITION, Motor, MotorState, top_speed_dps
 from tuisim.core.noise import wheel_noise, wheel_noises
 from tuisim.core.profile import NS_PER_S, MotorLaw
@@ -35,6 +35,7 @@ from tuisim.core.tick_record import (
 
 if TYPE_CHECKING:
     from tuisim.core.spec import RunSpec
+    from tuisim.core.state import MotorValues
 
 STALL_MS = 100
 """A running motor that does not turn for longer than this is stalled (EV3 motor driver)."""

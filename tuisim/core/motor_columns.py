@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import partial
 from struct import Struct
-from typing import TYPE_CHECKING, Protocol, TypeAlias
+from typing import TYPE_CHECKING, Protocol
 
 from tuisim.core.columns import Column
 from tuisim.core.profile import MotorLaw
@@ -16,11 +16,8 @@ from tuisim.core.profile import MotorLaw
 if TYPE_CHECKING:
     from tuisim.core.field import Field
     from tuisim.core.spec import RobotSpec, RunSpec
-    from tuisim.core.state import Instant
+    from tuisim.core.state import Instant, MotorValues
     from tuisim.core.tick_record import Buffer
-
-MotorValues: TypeAlias = tuple[int, int, int, int]
-"""Of one motor, in the order of `MOTOR_FIELDS`."""
 
 MOTOR_FIELDS = (
     ("asked_dps", "<i4"),

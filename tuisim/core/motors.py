@@ -99,16 +99,3 @@ class Motor(Protocol):
 
     def hold_back(self, before: MotorState, turned_deg: float, part: float) -> None:
         """Undo the rest of a tick in which an obstacle stopped the wheel: only a part of it, below 1, was possible."""
-
-
-class CommandedMotor(Motor, Protocol):
-    """A motor that a driver commands, as the kernel's drivers do."""
-
-    def run(self, speed_dps: float) -> None: ...
-
-    def run_until(self, speed_dps: float, end_tick: int) -> None:
-        """Run until a tick."""
-
-    def run_to(self, goal_deg: float, speed_dps: float, backwards: bool) -> None: ...
-
-    def stop(self) -> None: ...

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TypeAlias
 
 from tuisim.core.drift_spec import NO_DRIFT, DriftSpec
 from tuisim.core.geometry import Pose
@@ -11,8 +11,8 @@ from tuisim.core.profile import ROBOLAB, ProfileSpec
 from tuisim.core.spec import NoiseSpec
 from tuisim.data_class import dataclass
 
-if TYPE_CHECKING:
-    from tuisim.core.motor_columns import MotorValues
+MotorValues: TypeAlias = tuple[int, int, int, int]
+"""Of one motor, in the order of `MOTOR_FIELDS`."""
 
 
 @dataclass(frozen=True, slots=True)

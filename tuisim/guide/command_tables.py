@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from importlib import import_module
 
 import click
@@ -52,8 +52,3 @@ def command_options() -> Table:
 def _names(param: click.Option) -> str:
     names = " ".join(param.opts)
     return f"{names} {param.metavar}" if param.metavar else names
-
-
-def command_names() -> Mapping[str, click.Command]:
-    """Return every command by its words, without `tuisim`."""
-    return {words.removeprefix("tuisim "): found for words, found, _ in _commands()}

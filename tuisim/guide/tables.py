@@ -69,11 +69,6 @@ def table(name: str) -> Table:
     return cast("Callable[[], Table]", getattr(import_module(f"tuisim.{module}"), function))()
 
 
-def tables_in(page: Page) -> list[str]:
-    """Return the names of the tables of a page."""
-    return _MARK.findall(page.source)
-
-
 def markdown_of(page: Page) -> str:
     """Return the whole page with its title and its tables."""
     made = _MARK.sub(lambda found: table(found[1]).markdown(), page.source)

@@ -18,7 +18,6 @@ from tuisim.runs.run_folder import StoredRun
 if TYPE_CHECKING:
     import pandas as pd
 
-    from tuisim.core.field import Field
     from tuisim.logs.log import Log, LogTable
 
 LOG_FORMAT = 1
@@ -128,7 +127,7 @@ def export_samples(runs: Sequence[StoredRun], path: str | Path) -> None:
     export_frame(frame, path, log_metadata("samples", frame, runs))
 
 
-def export_telemetry(run: StoredRun, path: str | Path, field: Field | None = None) -> None:
+def export_telemetry(run: StoredRun, path: str | Path) -> None:
     """Write every tick of a run, see `frames.telemetry_frame`.
 
     Raises:
@@ -138,7 +137,7 @@ def export_telemetry(run: StoredRun, path: str | Path, field: Field | None = Non
     check_target(path)
     from tuisim.runs.frames import telemetry_frame
 
-    frame = telemetry_frame(run, field)
+    frame = telemetry_frame(run)
     export_frame(frame, path, log_metadata("telemetry", frame, [run]))
 
 

@@ -14,11 +14,11 @@ from typing import TYPE_CHECKING, Any
 from tuisim.core.motor_columns import (
     MOTOR_FIELDS,
     MOTOR_RECORD,
-    MotorValues,
     has_driver,
     name_motors,
 )
 from tuisim.core.spec import RobotSpec, RunSpec
+from tuisim.core.state import MotorValues
 from tuisim.errors import LogError
 from tuisim.regular_file import of_the_machine, open_regular
 from tuisim.runs.records import HEADER_BYTES, MappedWriter, published_length

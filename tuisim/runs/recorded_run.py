@@ -13,10 +13,9 @@ from typing import TYPE_CHECKING
 
 from tuisim.core.field import Field
 from tuisim.core.motion import stall_ticks
-from tuisim.core.motor_columns import MotorValues
 from tuisim.core.pen_marks import MarkedField, PenMarks
 from tuisim.core.spec import NoiseSpec, RunSpec
-from tuisim.core.state import Instant
+from tuisim.core.state import Instant, MotorValues
 from tuisim.core.tick_record import FLAG_LEFT_RUNNING, FLAG_RIGHT_RUNNING, TICK_RECORD
 from tuisim.errors import LogError
 from tuisim.protocol import SetButtons, UserAction
