@@ -61,6 +61,21 @@ def test_actions_come_at_their_ticks(run: Run) -> None:
     assert last is not None and last.actions == 3
 
 
+def test_an_action_comes_after_what_a_program_does_before_its_tick(run: Run) -> None:
+    # The driver notices the end of the move between two ticks, and the program goes on at once.
+    text = """
+import time
+from ev3dev2.button import Button
+button = Button()
+tank_drive.left_motor.on_for_degrees(20, 30)
+print(time.perf_counter_ns() // 10_000_000)
+print(button.enter)
+"""
+    (tick, _) = run(text, profile="ev3").lines
+    press = UserAction(int(tick), SetButtons(("enter",)))
+    assert run(text, profile="ev3", actions=(press,)).lines == [tick, "False"]
+
+
 def test_a_button_is_held_between_its_actions(run: Run) -> None:
     done = run(
         "import time\nfrom ev3dev2.button import Button\nb = Button()\n"

@@ -150,6 +150,11 @@ class FurtherMotors(Simulation):
                 return done
         return done + super().advance(ticks - done, until_change) if done < ticks else done
 
+    def notice_change(self) -> bool:
+        """Report the turns first, as `advance` does."""
+        self._report_turns()
+        return super().notice_change()
+
     def tick_once(self) -> None:
         """Run one tick of the extra motors, then of the robot, which records it."""
         if self._reports_first:

@@ -327,7 +327,10 @@ class Session:
         if not steering.wanted:
             self.flags &= ~LIVE
         while sim.tick < target:
-            # Never beyond the last tick of this wait: user actions take effect right before a tick.
+            # User actions take effect right before a tick: not if the program goes on before it.
+            if on_change and sim.notice_change():
+                return True
+            # Never beyond the last tick of this wait.
             self.now = max(self.now, sim.due_ns(sim.tick))
             ticks = steering.before_ticks(self, target - sim.tick)
             sim.advance(ticks, on_change)
