@@ -105,9 +105,10 @@ ROWS: dict[str, Row] = {
     "`GyroSensor.circle_angle()`": same(
         "g.circle_angle()", "360", setup="g = GyroSensor(); g._init_angle = 270"
     ),
-    "`MotorSet.run_to_rel_pos()` and similar methods": same(
-        "t.run_to_rel_pos(position_sp=90, speed_sp=200), t.wait_while('running'), t.left_motor.position // 90",
-        "(None, None, 2)",
+    "`MotorSet.run_to_rel_pos()` and similar methods": Row(
+        "t.run_to_rel_pos(position_sp=90, speed_sp=200), t.wait_while('running'), t.left_motor.position",
+        "(None, None, 180)",
+        "(None, None, 185)",
         "plain",
         "t = MoveTank(OUTPUT_B, OUTPUT_C)",
     ),
