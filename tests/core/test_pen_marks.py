@@ -17,6 +17,7 @@ from tuisim.core.sensors.color import pixel_array, reading
 from tuisim.core.simulation import Simulation
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, PenSpec, RobotSpec, RunSpec, WorldSpec
 from tuisim.core.state import Instant
+from tuisim.core.tick_record import FLAG_PEN_DOWN
 
 PIXELS = FIELD_WIDTH_MM * FIELD_HEIGHT_MM
 WHITE_SUM = 305 * 255
@@ -41,6 +42,20 @@ def drawn(white: Field, pen: PenSpec, heading_deg: float = 0.0) -> tuple[Simulat
         sim.advance(10)
         marks.take_in(sim.records_since(marks.records))
     return sim, marks
+
+
+def test_a_pen_draws_on_the_floor_around_a_mat(white: Field) -> None:
+    pen = PenSpec(color="#00ff00", width_mm=40.0, down=True)
+    world = WorldSpec(start=Pose(-300.0, 500.0, 180.0), pen_marks=True)
+    spec = RunSpec(RobotSpec(pen=pen), world, ROBOLAB)
+    record = (0, 0, -300.0, 500.0, 180.0, *[0] * 5, FLAG_PEN_DOWN, 0)
+    on_floor, off = PenMarks(replace(white, floor_rgb=(250, 251, 252)), spec), PenMarks(white, spec)
+    for marks in (on_floor, off):
+        marks.take_in([record])
+    corner = -300 - 10, FIELD_HEIGHT_MM - 500 - 10
+    assert on_floor.field.disc_sums(20, *corner) == (0, 255 * 305, 0)
+    assert off.field.disc_sums(20, *corner) == (0, 0, 0)
+    assert on_floor.field_of_first(0).disc_sums(20, *corner) == (250 * 305, 251 * 305, 252 * 305)
 
 
 def test_a_line_is_as_wide_as_the_pen_and_has_its_colour(white: Field) -> None:

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from tests.cases import cases
+from tuisim.core.css_colors import Rgb
 from tuisim.core.field import Field
 from tuisim.core.sensors import mounted
 from tuisim.core.spec import GyroSpec, NoiseSpec, Obstacle, RobotSpec, RunSpec, UltrasonicSpec
@@ -51,9 +52,11 @@ def places(count: int) -> np.ndarray:
 
 @cases("robot", ROBOTS)
 @pytest.mark.parametrize("walls", [True, False], ids=["walls", "open"])
+@pytest.mark.parametrize("floor_rgb", [None, (255, 250, 130)], ids=["mat", "floor"])
 def test_arrays_are_the_readings_to_the_bit(
-    robot: RobotSpec, walls: bool, spec: RunSpec, field: Field
+    robot: RobotSpec, walls: bool, spec: RunSpec, field: Field, floor_rgb: Rgb | None
 ) -> None:
+    field = replace(field, floor_rgb=floor_rgb)
     run = replace(spec, robot=robot, world=replace(spec.world, walls=walls, obstacles=BOXES))
     records = places(400)
     for kind, sensor, *_ in mounted(robot):

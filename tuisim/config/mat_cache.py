@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING, Any
 from tuisim.atomic import make_private_folder, replacing, sweep
 from tuisim.config.folders import cache_folder
 from tuisim.config.mat_image import check_fit, decode, fits_as_it_is, read_file
-from tuisim.core.field import Field, disc_mask
+from tuisim.core.field import Field, disc_mask, find_floor_rgb
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
 from tuisim.data_class import dataclass
 from tuisim.errors import BackgroundError
@@ -295,8 +295,11 @@ def _mapped(path: Path, size: int) -> memoryview:
         raise BackgroundError(message, file=str(path)) from error
 
 
-def open_field(files: FieldFiles) -> Field:
+def open_field(files: FieldFiles, *, has_floor: bool = False) -> Field:
     """Memory-map a prepared mat, in any process.
+
+    Args:
+        has_floor: Whether it lies on a floor of the colour of its edges: `WorldSpec.is_open`.
 
     Raises:
         BackgroundError: a file is missing, for example because the cache evicted it, or incomplete.
@@ -304,7 +307,9 @@ def open_field(files: FieldFiles) -> Field:
     width, height = files.width_px, files.height_px
     pixels = _mapped(files.pixels, 3 * width * height)
     sums = {d: _mapped(path, 12 * (width + d) * (height + d)).cast("I") for d, path in files.sums}
-    return Field(width, height, pixels, sums)
+    return Field(
+        width, height, pixels, sums, find_floor_rgb(width, height, pixels) if has_floor else None
+    )
 
 
 def mat_pixels(files: FieldFiles) -> NDArray[np.uint8]:

@@ -354,7 +354,7 @@ _DEFAULTS: Mapping[str, Any] = {
 }
 
 
-_PATHS = frozenset({"arguments", "beacon", "remote", *(option.path for option in OPTIONS)})
+_PATHS = frozenset({"arguments", "beacon", "remote", "floor", *(option.path for option in OPTIONS)})
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,16 +2,21 @@
 
 A disc of diameter d is the set of pixels of a d × d box with
 (row - d/2)² + (col - d/2)² < (d/2)². Its sums over the whole mat are precomputed, so
-that a reading is one look-up. Pixels off the mat are black.
+that a reading is one look-up. Pixels off the mat are black, unless it lies on a floor of its own colour.
 """
 
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Mapping
 from functools import lru_cache
+from typing import TYPE_CHECKING
 
 from tuisim.data_class import dataclass
+
+if TYPE_CHECKING:
+    from tuisim.core.css_colors import Rgb
 
 OUTSIDE_DISC_RGB = (245, 226, 225)
 """Colour of a pixel array in the corners of the box, outside the disc."""
@@ -57,6 +62,8 @@ class Field:
     sums: Mapping[int, memoryview]
     """By diameter d: unsigned 32-bit red, green and blue sums of the disc whose box has its
     corner at (col - d, row - d); shape (height + d, width + d, 3), flat."""
+    floor_rgb: Rgb | None = None
+    """Colour of the floor around the mat; None for no floor, where nothing reflects."""
 
     def disc_sums(self, diameter: int, col: int, row: int) -> tuple[int, int, int]:
         """Return the sums of red, green and blue over a disc; the upper left corner of its box may be off the mat.
@@ -64,31 +71,57 @@ class Field:
         `diameter` is a key of `sums`.
         """
         width = self.width_px + diameter
-        col += diameter
-        row += diameter
-        if not (0 <= col < width and 0 <= row < self.height_px + diameter):
-            return (0, 0, 0)
-        sums = self.sums[diameter]
-        at = (row * width + col) * 3
-        return sums[at], sums[at + 1], sums[at + 2]
+        left, top = col + diameter, row + diameter
+        if 0 <= left < width and 0 <= top < self.height_px + diameter:
+            sums = self.sums[diameter]
+            at = (top * width + left) * 3
+            found = sums[at], sums[at + 1], sums[at + 2]
+        else:
+            found = (0, 0, 0)
+        if self.floor_rgb is None or self.holds(diameter, col, row):
+            return found
+        count = self._count_on_floor(diameter, col, row)
+        red, green, blue = self.floor_rgb
+        return found[0] + count * red, found[1] + count * green, found[2] + count * blue
+
+    def holds(self, diameter: int, col: int, row: int) -> bool:
+        """Return whether all of a box is on the mat."""
+        return 0 <= col <= self.width_px - diameter and 0 <= row <= self.height_px - diameter
+
+    def _count_on_floor(self, diameter: int, col: int, row: int) -> int:
+        """Return how many pixels of a disc are off the mat."""
+        count = 0
+        for down, first, end in disc_spans(diameter):
+            count += end - first
+            if 0 <= row + down < self.height_px:
+                count -= max(0, min(col + end, self.width_px) - max(col + first, 0))
+        return count
+
+    def pixel(self, col: int, row: int) -> Rgb:
+        """Return a pixel of the mat, or of what is around it."""
+        if 0 <= col < self.width_px and 0 <= row < self.height_px:
+            at = 3 * (row * self.width_px + col)
+            return self.pixels[at], self.pixels[at + 1], self.pixels[at + 2]
+        return self.floor_rgb or (0, 0, 0)
 
     def box(self, diameter: int, col: int, row: int) -> bytes:
-        """Return the pixels of one box, row-major, three bytes per pixel; black off the mat."""
+        """Return the pixels of one box, row-major, three bytes per pixel."""
+        off = bytes(self.floor_rgb or (0, 0, 0))
         left, right = max(col, 0), min(col + diameter, self.width_px)
-        before = bytes(3 * min(max(left - col, 0), diameter))
+        before, after = off * max(left - col, 0), off * max(col + diameter - right, 0)
         rows = []
         for image_row in range(row, row + diameter):
             if 0 <= image_row < self.height_px and left < right:
                 at = 3 * image_row * self.width_px
                 inside = self.pixels[at + 3 * left : at + 3 * right]
-                rows.append((before + bytes(inside)).ljust(3 * diameter, b"\0"))
+                rows.append(before + bytes(inside) + after)
             else:
-                rows.append(bytes(3 * diameter))
+                rows.append(off * diameter)
         return b"".join(rows)
 
     def disc(self, diameter: int, col: int, row: int) -> bytes:
-        """Return the pixels of a disc, row by row, three bytes per pixel; black off the mat."""
-        if not (0 <= col <= self.width_px - diameter and 0 <= row <= self.height_px - diameter):
+        """Return the pixels of a disc, row by row, three bytes per pixel."""
+        if not self.holds(diameter, col, row):
             return in_disc(Field.box(self, diameter, col, row), diameter)
         pixels, line, corner = self.pixels, 3 * self.width_px, 3 * (row * self.width_px + col)
         return b"".join(
@@ -97,6 +130,16 @@ class Field:
                 for down, first, end in disc_spans(diameter)
             ]
         )
+
+
+def find_floor_rgb(width_px: int, height_px: int, pixels: memoryview) -> Rgb:
+    """Return the colour in which a mat goes on beyond its edges: the most frequent one on them."""
+    line = 3 * width_px
+    ends = range(0, line, 3), range(line * (height_px - 1), line * height_px, 3)
+    sides = range(0, line * height_px, line), range(line - 3, line * height_px, line)
+    edge = Counter(bytes(pixels[at : at + 3]) for places in (*ends, *sides) for at in places)
+    red, green, blue = edge.most_common(1)[0][0]
+    return red, green, blue
 
 
 def in_disc(box: bytes, diameter: int) -> bytes:

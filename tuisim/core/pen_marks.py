@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import field as dataclass_field
 from itertools import islice
+from math import floor
 
 from tuisim.core.css_colors import css_rgb
 from tuisim.core.field import Field, disc_weights, in_disc
@@ -26,8 +28,15 @@ class MarkedField(Field):
     `marks` and `blocks` are filled by `PenMarks`; nothing else changes them.
     """
 
-    marks: Marks
-    blocks: set[tuple[int, int]]
+    marks: Marks = dataclass_field(default_factory=dict)
+    blocks: set[tuple[int, int]] = dataclass_field(default_factory=set)
+
+    @classmethod
+    def on(cls, field: Field, marks: Marks) -> MarkedField:
+        """Return a mat with marks on it in place of its own."""
+        blocks = {(col // _BLOCK_PX, row // _BLOCK_PX) for col, row in marks}
+        mat = field.width_px, field.height_px, field.pixels, field.sums, field.floor_rgb
+        return cls(*mat, marks, blocks)
 
     def _touched(self, diameter: int, col: int, row: int) -> bool:
         rows = range(row // _BLOCK_PX, (row + diameter) // _BLOCK_PX + 1)
@@ -46,10 +55,10 @@ class MarkedField(Field):
             place = (col + number % diameter, row + number // diameter)
             drawn = self.marks.get(place) if inside else None
             if drawn is not None:
-                at = 3 * (place[1] * self.width_px + place[0])
-                red += drawn[0] - self.pixels[at]
-                green += drawn[1] - self.pixels[at + 1]
-                blue += drawn[2] - self.pixels[at + 2]
+                below = self.pixel(*place)
+                red += drawn[0] - below[0]
+                green += drawn[1] - below[1]
+                blue += drawn[2] - below[2]
         return red, green, blue
 
     def disc(self, diameter: int, col: int, row: int) -> bytes:
@@ -83,9 +92,7 @@ class PenMarks:
     def __init__(self, field: Field, spec: RunSpec) -> None:
         self._pen = spec.robot.pen
         self._rgb = css_rgb(self._pen.color) or (0, 0, 0)
-        self.field = MarkedField(
-            field.width_px, field.height_px, field.pixels, field.sums, {}, set()
-        )
+        self.field = MarkedField.on(field, {})
         """The mat with everything drawn up to now."""
         self.records = 0
         """Number of tick records processed."""
@@ -94,10 +101,7 @@ class PenMarks:
 
     def field_of_first(self, count: int) -> MarkedField:
         """Return the mat with only the first `count` marks, as it was at that time."""
-        field = self.field
-        marks = dict(islice(field.marks.items(), count))
-        blocks = {(col // _BLOCK_PX, row // _BLOCK_PX) for col, row in marks}
-        return MarkedField(field.width_px, field.height_px, field.pixels, field.sums, marks, blocks)
+        return MarkedField.on(self.field, dict(islice(self.field.marks.items(), count)))
 
     def take_in(self, records: Iterable[tuple[float, ...]]) -> None:
         """Continue the trace with the next tick records, which have the fields of `TICK_RECORD`."""
@@ -113,19 +117,23 @@ class PenMarks:
                 self._stroke(last, point)
             self._last, self._last_actions = point, int(actions)
 
+    def _pixels(self, start: float, end: float) -> range:
+        """Return the columns or rows of the pixels that a stroke may reach."""
+        radius = self._pen.width_mm / 2
+        return range(floor(min(start, end) - radius), int(max(start, end) + radius) + 1)
+
     def _stroke(self, start: _Point, end: _Point) -> None:
         radius = self._pen.width_mm / 2
         x0, y0, x1, y1 = start[0], FIELD_HEIGHT_MM - start[1], end[0], FIELD_HEIGHT_MM - end[1]
         dx, dy = x1 - x0, y1 - y0
         squared = dx * dx + dy * dy
         field = self.field
-        for row in range(
-            max(0, int(min(y0, y1) - radius)), min(field.height_px, int(max(y0, y1) + radius) + 1)
-        ):
-            for col in range(
-                max(0, int(min(x0, x1) - radius)),
-                min(field.width_px, int(max(x0, x1) + radius) + 1),
-            ):
+        cols, rows = self._pixels(x0, x1), self._pixels(y0, y1)
+        if field.floor_rgb is None:
+            cols = range(max(0, cols.start), min(field.width_px, cols.stop))
+            rows = range(max(0, rows.start), min(field.height_px, rows.stop))
+        for row in rows:
+            for col in cols:
                 # A pixel is drawn if its centre is no farther from the line than half the pen's width.
                 px, py = col + 0.5 - x0, row + 0.5 - y0
                 along = max(0.0, min(1.0, (px * dx + py * dy) / squared)) if squared else 0.0

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
+from dataclasses import MISSING
 from typing import Any, NamedTuple
 
 from tuisim.core.drift_spec import NO_DRIFT, DriftSpec
@@ -92,10 +93,9 @@ MIN_RANGE_DEG = 5.0
 
 _MAX_RANGE_DEG = 100_000
 _MAX_POSITION_MM = 10_000
-_MAX_OBSTACLE_MM = 10_000.0
 
 
-def _x(default: float) -> Any:
+def _x(default: Any = MISSING) -> Any:
     return number(
         -500,
         500,
@@ -106,7 +106,7 @@ def _x(default: float) -> Any:
     )
 
 
-def _y(default: float) -> Any:
+def _y(default: Any = MISSING) -> Any:
     return number(-500, 500, default=default, unit="mm", label="y mm", help="forward of the axle")
 
 
@@ -230,10 +230,8 @@ class ColorSensorSpec(SensorSpec):
 
     name: str = text(what="sensor name", pattern=SENSOR_NAME)
     port: str = choice(INPUT_PORTS, what="port", label="Port", help="in1 … in4")
-    x_mm: float = number(
-        -500, 500, unit="mm", label="x mm", help="to the right of the robot's centre"
-    )
-    y_mm: float = number(-500, 500, unit="mm", label="y mm", help="forward of the axle")
+    x_mm: float = _x()
+    y_mm: float = _y()
     # A disc of 1 pixel has no pixel strictly inside it.
     diameter_mm: int = whole(
         2, 100, default=20, unit="mm", label="⌀ mm", help="of the visible disc, whole mm"
@@ -637,10 +635,10 @@ class Obstacle(Spec):
 
     ERROR = ObstacleError
 
-    x_mm: float = number(-_MAX_OBSTACLE_MM, _MAX_OBSTACLE_MM, unit="mm")
-    y_mm: float = number(-_MAX_OBSTACLE_MM, _MAX_OBSTACLE_MM, unit="mm")
-    width_mm: float = number(-_MAX_OBSTACLE_MM, _MAX_OBSTACLE_MM, unit="mm")
-    height_mm: float = number(-_MAX_OBSTACLE_MM, _MAX_OBSTACLE_MM, unit="mm")
+    x_mm: float = number(-_MAX_POSITION_MM, _MAX_POSITION_MM, unit="mm")
+    y_mm: float = number(-_MAX_POSITION_MM, _MAX_POSITION_MM, unit="mm")
+    width_mm: float = number(-_MAX_POSITION_MM, _MAX_POSITION_MM, unit="mm")
+    height_mm: float = number(-_MAX_POSITION_MM, _MAX_POSITION_MM, unit="mm")
 
     def check(self) -> None:
         for key in ("width_mm", "height_mm"):
@@ -750,10 +748,21 @@ class WorldSpec(Spec):
         help="errors of wheels and sensors: none, typical, or values",
     )
     """Errors of wheels and sensors that a program does not know of."""
+    floor: bool = flag(
+        default=False,
+        later=True,
+        help="where there are no walls, the ground goes on around the mat in the colour of its edges",
+    )
+    """Whether the mat lies on a floor of its own colour."""
     beacon: BeaconSpec | None = part(BeaconSpec, default=None)
     """An infrared beacon."""
     remote: tuple[RemotePress, ...] = parts(RemotePress, default=())
     """Presses of buttons on the infrared remote control."""
+
+    @property
+    def is_open(self) -> bool:
+        """Whether the robot may leave the field for a floor that goes on around it."""
+        return self.floor and not self.walls
 
 
 @spec

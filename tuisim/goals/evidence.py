@@ -220,9 +220,9 @@ class Evidence:
         """
         if self._field is not None:
             return self._field
-        return (
-            open_mat(self._run) if isinstance(self._run, StoredRun) else open_field(self._run.field)
-        )
+        if isinstance(self._run, StoredRun):
+            return open_mat(self._run)
+        return open_field(self._run.field, has_floor=self.spec.world.is_open)
 
     @cached_property
     def end_s(self) -> float:

@@ -169,7 +169,7 @@ def find_off_line(condition: FollowCondition, evidence: Evidence, span: Evidence
 
 
 def _light_at_percent(records: Array, x_mm: float, y_mm: float, evidence: Evidence) -> Array:
-    """Return the light of the mat's pixel under a point of the robot, at every tick; 0 off the mat."""
+    """Return the light of the mat's pixel under a point of the robot, at every tick; 0 where there is nothing."""
     import numpy as np
 
     mat = evidence.mat
@@ -179,7 +179,7 @@ def _light_at_percent(records: Array, x_mm: float, y_mm: float, evidence: Eviden
     col, row = np.floor(world_x_mm), np.floor(FIELD_HEIGHT_MM - world_y_mm)
     inside = (col >= 0) & (col < mat.width_px) & (row >= 0) & (row < mat.height_px)
     pixels = np.frombuffer(mat.pixels, np.uint8).reshape(mat.height_px, mat.width_px, 3)
-    percent = np.zeros(len(records))
+    percent = np.full(len(records), mat.pixel(-1, -1)[0] / 255 * 100)
     percent[inside] = pixels[row[inside].astype("i8"), col[inside].astype("i8"), 0] / 255 * 100
     return percent
 

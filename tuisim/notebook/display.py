@@ -17,6 +17,7 @@ from tuisim.charts.sample_chart import sample_chart
 from tuisim.config.mat_cache import FieldFiles, mat_pixels, open_field
 from tuisim.config.options import Settings
 from tuisim.core.end_stops import flags_at_start
+from tuisim.core.field import Field
 from tuisim.core.geometry import shown_heading_deg
 from tuisim.core.sensors import readings
 from tuisim.core.sensors.color import ColorReading
@@ -96,6 +97,10 @@ class Scene:
     printed: Sequence[str] | None = None
     """The lines of the last run, unless they are in the cell already."""
 
+    def open_field(self) -> Field:
+        """Return the mat as sensors see it."""
+        return open_field(self.files, has_floor=self.spec.world.is_open)
+
 
 def start_record(spec: RunSpec) -> TickRecord:
     """Return the state before any run."""
@@ -108,7 +113,7 @@ def start_record(spec: RunSpec) -> TickRecord:
 
 def instrumentation(scene: Scene) -> list[Row]:
     """Return motors, sensors and pose of a scene."""
-    spec, record, field = scene.spec, scene.last, open_field(scene.files)
+    spec, record, field = scene.spec, scene.last, scene.open_field()
     instant = instant_of(record, spec, spec.world.noise)
     rows = [
         ("LeftMotor", f"{record.left_position_deg:.0f} counts, {record.left_speed_dps:.0f} °/s"),
@@ -199,7 +204,7 @@ class Stage:
             self._put("world", picture_bundle(picture, "world"))
         if "arrays" in on:
             instant = instant_of(scene.last, spec, spec.world.noise)
-            faces = disc_faces(spec, instant, open_field(scene.files), scene.program)
+            faces = disc_faces(spec, instant, scene.open_field(), scene.program)
             drawing = arrays_drawing(faces, FACE_PX[0] * max(len(faces), 1), FACE_PX[1])
             self._put("arrays", picture_bundle(image_of(drawing), "sensor arrays"))
         if "chart" in on:

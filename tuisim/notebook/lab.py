@@ -172,7 +172,8 @@ class Lab:
         record = run.telemetry.last() if run else None
         if run is None or record is None:
             spec = self.spec
-            field, highest_deg = open_field(field_files(spec)), spec.world.start.heading_deg
+            field = open_field(field_files(spec), has_floor=spec.world.is_open)
+            highest_deg = spec.world.start.heading_deg
             return old_formats.robot_state(
                 spec, start_record(spec), spec.world.noise, field, highest_deg, self._wheels
             )

@@ -321,7 +321,7 @@ def open_mat(run: StoredRun) -> Field:
     """
     files = mat_files(run)
     try:
-        return open_field(files)
+        return open_field(files, has_floor=run.spec.world.is_open)
     except ConfigError as error:
         raise _no_mat(run, error) from error
 

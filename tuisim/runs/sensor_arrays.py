@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tuisim.core.drift import draw_echo_bias_mm, find_drift, sensed_turn_rate_dps
-from tuisim.core.field import Field
+from tuisim.core.field import Field, disc_mask
 from tuisim.core.noise import stream
 from tuisim.core.sensors import SENSORS
 from tuisim.core.sensors.color import EVEN, WHITE, disc_pixels_of, find_response, light_seen
@@ -72,11 +72,7 @@ def quiet_color_columns(
     with np.errstate(invalid="ignore"):  # a position beyond all integers is off the mat either way
         col = (x_mm - diameter / 2).astype(np.int64) + diameter
         row = (FIELD_HEIGHT_MM - y_mm - diameter / 2).astype(np.int64) + diameter
-    height, width = field.height_px + diameter, field.width_px + diameter
-    inside = (col >= 0) & (col < width) & (row >= 0) & (row < height)
-    sums = np.zeros((len(records), 3), np.uint32)
-    table = np.frombuffer(field.sums[diameter], np.uint32).reshape(height, width, 3)
-    sums[inside] = table[row[inside], col[inside]]
+    sums, inside = _sum_discs(col, row, diameter, field)
     means = sums / disc_pixels_of(diameter)
     response, drift = find_response(sensor, run.profile), find_drift(run)
     if response != EVEN:
@@ -85,6 +81,30 @@ def quiet_color_columns(
         light = np.broadcast_to(light_seen(x_mm, y_mm, sensor, drift, run.seed), x_mm.shape)
         means = np.minimum(means * light[:, None], WHITE)
     return {name: means[:, channel] for channel, name in enumerate(SENSORS["color"].names(sensor))}
+
+
+def _sum_discs(col: Array, row: Array, diameter: int, field: Field) -> tuple[Array, Array]:
+    """Return the sums of red, green and blue over discs, and whether there is anything below them.
+
+    Args:
+        col, row: The corners of their boxes, from `diameter` before those of the mat, shape (n,).
+        diameter: Of the discs.
+        field: The mat.
+    """
+    height, width = field.height_px + diameter, field.width_px + diameter
+    inside = (col >= 0) & (col < width) & (row >= 0) & (row < height)
+    sums = np.zeros((len(col), 3), np.uint32)
+    table = np.frombuffer(field.sums[diameter], np.uint32).reshape(height, width, 3)
+    sums[inside] = table[row[inside], col[inside]]
+    if field.floor_rgb is None:
+        return sums, inside
+    counts = np.zeros((diameter + 1, diameter + 1), np.uint32)
+    counts[1:, 1:] = np.array(disc_mask(diameter)).cumsum(0).cumsum(1)
+    left, right = (np.clip(end - col, 0, diameter) for end in (diameter, width))
+    upper, lower = (np.clip(end - row, 0, diameter) for end in (diameter, height))
+    on_mat = counts[lower, right] - counts[upper, right] - counts[lower, left] + counts[upper, left]
+    beside = (counts[-1, -1] - on_mat)[:, None] * np.array(field.floor_rgb, np.uint32)
+    return sums + beside, np.ones(len(col), np.bool_)
 
 
 def _color(

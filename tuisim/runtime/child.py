@@ -103,7 +103,8 @@ class Child:
         self._config = config
         self._sim = simulation_of(config.spec, NoRecording())
         self._output = OutputRecorder()
-        self._session = session = Session(self._sim, open_field(config.field), self._output)
+        mat = open_field(config.field, has_floor=config.spec.world.is_open)
+        self._session = session = Session(self._sim, mat, self._output)
         turn = loop_hook(session, LOOP_TURNS, LOOP_COST_NS)
         self._interrupts = Interrupts(session, frozenset({turn.__code__}))
         self._patch_modules(turn)

@@ -30,6 +30,7 @@ def random_field() -> Field:
 
 
 FIELD = random_field()
+ON_FLOOR = replace(FIELD, floor_rgb=(250, 240, 131))
 
 
 SENSORS = (LEFT, RIGHT, replace(LEFT, white_percent=61.0, black_percent=7.5))
@@ -40,14 +41,15 @@ SENSORS = (LEFT, RIGHT, replace(LEFT, white_percent=61.0, black_percent=7.5))
     st.floats(-80, 1200),
     st.floats(-720, 720),
     st.sampled_from((ROBOLAB, EV3)),
+    st.sampled_from((FIELD, ON_FLOOR)),
 )
 def test_whole_channels_are_those_of_a_reading(
-    x_mm: float, y_mm: float, heading_deg: float, profile: ProfileSpec
+    x_mm: float, y_mm: float, heading_deg: float, profile: ProfileSpec, field: Field
 ) -> None:
     instant = Instant(0, Pose(x_mm, y_mm, heading_deg), profile=profile)
     for sensor in SENSORS:
-        seen = reading(sensor, instant, FIELD)
-        assert rgb_reader(sensor, profile, FIELD)(x_mm, y_mm, heading_deg) == seen.rgb
+        seen = reading(sensor, instant, field)
+        assert rgb_reader(sensor, profile, field)(x_mm, y_mm, heading_deg) == seen.rgb
 
 
 @pytest.mark.parametrize("profile", [ROBOLAB, EV3])

@@ -16,14 +16,15 @@ PATIENCE_S = 1.0
 """A run that waits longer than this for its mat says so: mostly it is prepared sooner."""
 SOON = "Preparing the mat; the program starts right after that"
 
-MatKey = tuple[str, str, frozenset[int]]
-"""Name, how a custom image is fitted, and the diameters of the prepared discs."""
+MatKey = tuple[str, str, frozenset[int], bool]
+"""Name, how a custom image is fitted, the diameters of the prepared discs, and whether it lies on a floor."""
 
 
 def mat_key(spec: RunSpec) -> MatKey:
     """Return the key of the mat that a run needs."""
     diameters = frozenset(sensor.diameter_mm for sensor in spec.robot.color_sensors)
-    return spec.world.background, spec.world.background_fit, diameters
+    world = spec.world
+    return world.background, world.background_fit, diameters, world.is_open
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,8 +39,8 @@ class Mat:
 
     def serves(self, spec: RunSpec) -> bool:
         """Return whether this is the mat of a run, prepared for its sensors."""
-        wanted = mat_key(spec)
-        return wanted[:2] == self.key[:2] and wanted[2] <= self.key[2]
+        *same, diameters, has_floor = mat_key(spec)
+        return (*same, has_floor) == (*self.key[:2], self.key[3]) and diameters <= self.key[2]
 
     @property
     def name(self) -> str:
@@ -73,4 +74,4 @@ def blank_mat(spec: RunSpec) -> Mat:
 
 
 def _opened(key: MatKey, files: FieldFiles) -> Mat:
-    return Mat(key, mat_cache.open_field(files), mat_cache.mat_pixels(files))
+    return Mat(key, mat_cache.open_field(files, has_floor=key[3]), mat_cache.mat_pixels(files))

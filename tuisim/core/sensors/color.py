@@ -199,9 +199,10 @@ def light_seen(x_mm: Any, y_mm: Any, spec: ColorSensorSpec, drift: DriftSpec, se
 
 
 def _is_over(field: Field, diameter: int, corner: tuple[int, int]) -> bool:
-    """Return whether a box is on the mat, at least in part."""
+    """Return whether a box is on the mat, at least in part, or on the floor around it."""
     col, row = corner
-    return -diameter <= col < field.width_px and -diameter <= row < field.height_px
+    is_on_mat = -diameter <= col < field.width_px and -diameter <= row < field.height_px
+    return is_on_mat or field.floor_rgb is not None
 
 
 def clear_reading(spec: ColorSensorSpec, pose: Pose, field: Field) -> ColorReading:
@@ -223,7 +224,7 @@ def rgb_reader(
     `reading(...).rgb`. A tight control loop spends much of its time here, so everything
     that depends on the sensor is precomputed, and the steps are inlined.
     """
-    if spec.strategy != "mean":
+    if spec.strategy != "mean" or field.floor_rgb is not None:
         return lambda x_mm, y_mm, heading_deg: (
             reading(spec, Instant(0, Pose(x_mm, y_mm, heading_deg), profile=profile), field).rgb
         )
