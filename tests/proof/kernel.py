@@ -11,7 +11,7 @@ from typing import Any
 
 from tests.proof.device_rules import check_devices
 from tests.proof.kind import FaultError, Kind
-from tests.proof.tacho_model import NEAR, RANGES, WORDS, TachoMotor
+from tests.proof.tacho_model import HELD, NEAR, RANGES, WORDS, TachoMotor
 from tests.running import PATIENCE_S
 from tuisim.config.build import build_run_spec
 from tuisim.config.options import Settings
@@ -21,6 +21,7 @@ from tuisim.runs.handle import RunOptions, start_run
 from tuisim.runs.records import Stream
 from tuisim.source import Program
 
+_CONSTANTS = [f"{control}_{part}" for control in ("speed", "position") for part in "pid"]
 _READ = ("state", "position", "speed", "duty_cycle", *RANGES, "speed_sp", *WORDS)
 _PROGRAM = """\
 import json, time
@@ -41,6 +42,8 @@ MOTORS: Mapping[str, tuple[str, int, int]] = {
 }
 """How each is made, its largest speed, and the default of its position regulator."""
 STEPS = 40
+_END_S = 1000
+"""Until then every move to a position has ended."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,7 +87,13 @@ def _value(random: Random, name: str, model: TachoMotor) -> Any:
 
 def _any_setting(random: Random, model: TachoMotor) -> list[Step]:
     name = random.choice([*RANGES, "speed_sp", "stop_action"])
-    return [_setting(name, _value(random, name, model))]
+    step = _setting(name, _value(random, name, model))
+    if name not in _CONSTANTS:
+        return [step]
+    # How a motor moves with other constants is not known here.
+    usual = model.settings[name]
+    text = f"m.{name} = {usual}; time.sleep(8)"
+    return [step, Step(text, lambda model, _: model.set(name, usual))]
 
 
 def _polarity(random: Random, model: TachoMotor) -> list[Step]:
@@ -117,7 +126,7 @@ def _stop(random: Random, _: TachoMotor) -> list[Step]:
 
 
 def _reset(_random: Random, _: TachoMotor) -> list[Step]:
-    return [Step("m.reset()", _nothing(TachoMotor.reset))]
+    return [Step("m.reset(); time.sleep(8)", _nothing(TachoMotor.reset))]
 
 
 def _settings(random: Random) -> tuple[dict[str, Any], str]:
@@ -169,13 +178,13 @@ def _to_position(random: Random, model: TachoMotor) -> list[Step]:
     )
     if abs(number) < 2 or not relative:
         # It may end before it is looked at.
-        text = f"{started.text}; time.sleep(300)"
+        text = f"{started.text}; time.sleep({_END_S})"
 
         def does(model: TachoMotor, seen: Mapping[str, Any]) -> str:
             return started.does(model, seen) or _ended(model, seen)
 
         return [Step(text, does)]
-    return [started, *_meanwhile(random, model), Step("time.sleep(60)", _ended)]
+    return [started, *_meanwhile(random, model), Step(f"time.sleep({_END_S})", _ended)]
 
 
 def _one_after_another(random: Random, model: TachoMotor) -> list[Step]:
@@ -186,7 +195,7 @@ def _one_after_another(random: Random, model: TachoMotor) -> list[Step]:
         chosen["position_sp"] = number = random.choice([-1, 1]) * random.randint(300, 900)
         does = _commanded(chosen, lambda model: model.run_to(relative=True))
         steps.append(Step(f"m.run_to_rel_pos({words}, position_sp={number})", does))
-    return [*steps, Step("time.sleep(300)", _ended)]
+    return [*steps, Step(f"time.sleep({_END_S})", _ended)]
 
 
 def _timed(random: Random, model: TachoMotor) -> list[Step]:
@@ -243,7 +252,9 @@ def _library_move(random: Random, model: TachoMotor) -> list[Step]:
             model, seen
         )
 
-    return [Step(f"m.{call}({percent}, {degrees}, brake={brake})", does)]
+    # It returns while the motor may still swing or roll.
+    text = f"m.{call}({percent}, {degrees}, brake={brake}); assert not m.is_running; time.sleep(8)"
+    return [Step(text, does)]
 
 
 def _library_error(random: Random, _: TachoMotor) -> list[Step]:
@@ -296,26 +307,35 @@ _ACROSS_S = 60
 """More than a robot takes to cross the mat."""
 
 
+def _drive(random: Random, sign: int) -> tuple[str, dict[str, Any]]:
+    """Return a command that drives without an end, with its settings."""
+    speed = random.randint(250, 900) * sign
+    command, settings = random.choice(
+        [
+            ("run_forever", {"speed_sp": speed}),
+            ("run_direct", {"duty_cycle_sp": speed // 10}),
+            ("run_timed", {"speed_sp": speed, "time_sp": 1_000_000}),
+            ("run_to_rel_pos", {"speed_sp": speed, "position_sp": 100_000 * sign}),
+        ]
+    )
+    ramps = {name: random.choice([0, 0, 500]) for name in ("ramp_up_sp", "ramp_down_sp")}
+    return command, {**settings, **ramps}
+
+
 def _check_blocked(random: Random) -> None:
     """Drive to and fro between two walls: a motor is stalled where it should turn and cannot, and nowhere else."""
     commands: list[tuple[str, dict[str, Any], float]] = []
     wanted: list[tuple[str, ...]] = []
-    there, gone = ("running", "overloaded", "stalled"), ("running",)
+    gone = ("running",)
     for number in range(8):
-        speed = random.randint(250, 900) * (-1) ** number
-        command, settings = random.choice(
-            [
-                ("run_forever", {"speed_sp": speed}),
-                ("run_direct", {"duty_cycle_sp": speed // 10}),
-                ("run_timed", {"speed_sp": speed, "time_sp": 1_000_000}),
-                ("run_to_rel_pos", {"speed_sp": speed, "position_sp": 100_000 * (-1) ** number}),
-            ]
-        )
-        ramps = {name: random.choice([0, 0, 500]) for name in ("ramp_up_sp", "ramp_down_sp")}
+        command, settings = _drive(random, (-1) ** number)
         action = random.choice(WORDS["stop_action"])
+        # Without a control nothing is overloaded.
+        regulated = () if command == "run_direct" else ("overloaded",)
+        there = ("running", *regulated, "stalled")
         # The way back is free; the same command again begins anew, and meets the wall.
         commands += [
-            (command, {**settings, **ramps}, random.uniform(0.6, 1.0)),
+            (command, settings, random.uniform(0.6, 1.0)),
             (command, {}, _ACROSS_S),
         ]
         commands += [("stop", {"stop_action": action}, 1.0)]
@@ -396,10 +416,10 @@ def _check_step(
         raise fault(f"(is, must be): {wrong}")
     if step is _LOOK and (seen["position"] - before) * model.rising <= 0:
         raise fault(f"the position goes from {before} to {seen['position']}")
+    # Where it is is known now, but for what a command may still turn it.
+    model.position = seen["position"]
     if not model.is_running:
-        # Where it stands is known now, but for what it may still roll.
-        model.position = seen["position"]
-        model.near = 1.0 if "holding" in model.state.there else min(model.near, NEAR)
+        model.near = HELD if "holding" in model.state.there else min(model.near, NEAR)
 
 
 KERNEL = Kind(

@@ -1,4 +1,4 @@
-"""A model of a tacho motor, from the documented rules of the kernel's driver: attributes and state words, no motion."""
+"""A model of a tacho motor, by the rules of the kernel's driver: attributes, state words, and bounds of motion."""
 
 from __future__ import annotations
 
@@ -26,7 +26,13 @@ WORDS: Mapping[str, tuple[str, ...]] = {
 }
 FLAGS = ("running", "ramping", "holding", "overloaded", "stalled")
 NEAR = 40
-"""Counts that a motor may roll on where the driver does not hold it."""
+"""Counts that a motor at rest may be turned by a command that is not meant to move it."""
+HELD = 1
+"""Counts that a motor may be off where it holds: the duty for one of them does not start it."""
+MAX_OVERSHOOT = 1.25
+"""The share of its speed setpoint that a motor reaches at most."""
+ENDS_AT_ONCE = 150
+"""Counts: a way that may be gone before a program looks."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,23 +89,24 @@ class TachoMotor:
     position: float = 0.0
     near: float = 0.0
     """How far the position may be from that."""
+    is_running: bool = False
+    """Whether a command goes on."""
+    fastest: float = 0.0
+    """No less than its speed since it stood."""
+    may_ramp: bool = False
+    """Whether a ramp has begun that nothing surely ended: a later command leaves its state word there."""
     relative_to: tuple[float, float] | None = None
     """The target of the last command, if that was run-to-rel-pos, and how far from that it may be."""
     state: Flags = field(default_factory=lambda: Flags((), FLAGS))
     rising: int = 0
     """The direction in which a motor runs without an end: 1, -1, or 0."""
-    latched: tuple[str, float] | None = None
-    """Stop action of the move that goes on, and its target; a target of NaN is open."""
+    latched: tuple[str, float, float] | None = None
+    """Stop action of the move that goes on, its target, and how far from that it may be; a target of NaN is open."""
     duty_cycle: int | None = None
     speed: About | None = None
 
     def __post_init__(self) -> None:
         self.settings = _defaults(self.hold_p)
-
-    @property
-    def is_running(self) -> bool:
-        """Whether a command goes on."""
-        return "running" in self.state.there
 
     def expected(self) -> dict[str, Any]:
         """Return the attributes that the rules fix now, with their values."""
@@ -131,6 +138,10 @@ class TachoMotor:
             self.settings[name] = value
             return ""
         self.settings[name] = value if name in WORDS else int(value)
+        if name.startswith("position_") and name != "position_sp" and not self.is_running:
+            self.near = NEAR
+        elif name.startswith("speed_") and name != "speed_sp":
+            self.speed = None
         if name == "duty_cycle_sp" and self.duty_cycle is not None:
             self.duty_cycle = int(value)
             self.rising = _sign(self.duty_cycle)
@@ -142,10 +153,11 @@ class TachoMotor:
 
     def reset(self) -> None:
         """Do the command of that name."""
-        near = NEAR if self.is_running else 0.0
+        near = self._roll("coast") if self.is_running else HELD
         self._command()
         self.settings = _defaults(self.hold_p)
-        self.position, self.near, self.state = 0.0, near, Flags((), FLAGS)
+        self._stand("coast")
+        self.position, self.near = 0.0, near
 
     def stop(self) -> None:
         """Do the command of that name."""
@@ -158,23 +170,24 @@ class TachoMotor:
         """Do the command of that name."""
         self._command()
         # No ramp limits it.
-        self.state = Flags(("running",), ("ramping", "holding"))
+        self._run(self.max_speed)
+        self.state = Flags(("running",), ("holding", *self._unramped()))
         self.duty_cycle = self.settings["duty_cycle_sp"]
         self.rising = _sign(self.duty_cycle)
 
     def run_forever(self) -> None:
         """Do the command of that name."""
         self._command()
-        self._run()
         speed = self.settings["speed_sp"]
+        self._run(speed)
         self.rising = _sign(speed)
         self.speed = About(speed, abs(speed) * 0.2 + 10)
 
     def run_timed(self) -> None:
         """Do the command of that name."""
         self._command()
-        self._run()
-        self.latched = self.settings["stop_action"], float("nan")
+        self._run(self.settings["speed_sp"])
+        self.latched = self.settings["stop_action"], float("nan"), 0.0
 
     def run_to(self, relative: bool) -> None:
         """Do run-to-rel-pos or run-to-abs-pos."""
@@ -185,41 +198,60 @@ class TachoMotor:
         target = float(self.settings["position_sp"])
         if relative and not target:
             self.stop()
+            self.relative_to = base, near
             return
         self._command()
         if relative:
             target += base
             # What cannot be known of the position cannot be known of the target.
-            self.relative_to, self.near = (target, near), near
+            self.relative_to = target, near
         else:
-            self.near = 0.0
-        self._run()
-        self.latched = self.settings["stop_action"], target
+            near = 0.0
+        self._run(self.settings["speed_sp"])
+        if abs(target - self.position) < near + ENDS_AT_ONCE:
+            self.state = Flags((), ())
+        self.latched = self.settings["stop_action"], target, near
 
     def end_of_move(self, position: float) -> None:
         """Let a move end that was given the time for it, at the position that is read if the rules leave it open."""
         assert self.latched is not None
-        action, target = self.latched
-        base = self.relative_to
+        action, target, near = self.latched
+        base, has_arrived = self.relative_to, target == target
         self._command()
         self.relative_to = base
+        self.may_ramp = self.may_ramp and not has_arrived
+        roll = self._roll(action)
         self._stand(action)
-        if target == target:
-            self.position = target
-            self.near += 1.0 if action == "hold" else NEAR
+        if has_arrived:
+            self.position, self.near = target, near + roll
         else:
             self.position, self.near = position, 0.0
+
+    def _roll(self, action: str) -> float:
+        """Return how far from where it stops a motor comes to rest at most."""
+        if action == "hold":
+            return HELD
+        # Shorted it has a time constant below 0.1 s; a large motor that coasts loses 450 deg/s in a second.
+        return self.fastest * 0.1 + 10 if action == "brake" else self.fastest**2 / 900 + 20
 
     def _command(self) -> None:
         self.relative_to = self.latched = self.duty_cycle = self.speed = None
         self.rising = 0
 
-    def _run(self) -> None:
-        self.state = Flags(("running",), ("holding",))
+    def _run(self, speed: float) -> None:
+        self.is_running, self.state = True, Flags(("running",), ("holding",))
+        self.fastest = max(self.fastest, abs(speed) * MAX_OVERSHOOT)
+        self.may_ramp |= bool(self.settings["ramp_up_sp"] or self.settings["ramp_down_sp"])
 
     def _stand(self, action: str) -> None:
         there = ("holding",) if action == "hold" else ()
-        self.state = Flags(there, ("running", "ramping", "stalled", *({"holding"} - set(there))))
+        # Also to stop it takes a ramp.
+        self.may_ramp |= bool(self.settings["ramp_up_sp"] or self.settings["ramp_down_sp"])
+        gone = ("running", "stalled", *self._unramped(), *({"holding"} - set(there)))
+        self.is_running, self.fastest, self.state = False, 0.0, Flags(there, gone)
+
+    def _unramped(self) -> tuple[str, ...]:
+        return () if self.may_ramp else ("ramping",)
 
 
 def _sign(number: float) -> int:
