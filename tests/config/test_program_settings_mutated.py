@@ -43,9 +43,9 @@ def _programs() -> list[ast.Module]:
     return [ast.parse(file.read_text(encoding="utf-8")) for file in files]
 
 
-def _mutants(count: int) -> Iterator[str]:
+def _mutants(count: int, seed: int) -> Iterator[str]:
     """Yield programs in which some expressions and statements are others, twice there or missing."""
-    chance, programs = random.Random(26), _programs()
+    chance, programs = random.Random(seed), _programs()
     for _ in range(count):
         tree = copy.deepcopy(chance.choice(programs))
         for _ in range(chance.randint(1, 5)):
@@ -94,12 +94,14 @@ def _places(tree: ast.Module) -> Iterator[tuple[list[Any], int]]:
                     yield values, at
 
 
-@pytest.mark.parametrize("count", [60])
-def test_no_text_makes_the_reader_fail(count: int, tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    ("count", "seed"), [(200, 1), pytest.param(10_000, 26, marks=pytest.mark.slow)]
+)
+def test_no_text_makes_the_reader_fail(count: int, seed: int, tmp_path: Path) -> None:
     path = str(tmp_path / "p.py")
-    read = [(text, facts_of(Program("p.py", text, path=path))) for text in _mutants(count)]
+    read = [(text, facts_of(Program("p.py", text, path=path))) for text in _mutants(count, seed)]
     assert sum(facts.robot is not None for _, facts in read) > count / 4
-    assert [(facts.unread, text) for text, facts in read if facts.unread] == []
+    assert [(facts.unread, text) for text, facts in read if "failed" in facts.unread] == []
 
 
 def test_a_failure_of_the_reader_gives_the_default_robot_and_a_sentence(
@@ -116,4 +118,24 @@ def test_a_failure_of_the_reader_gives_the_default_robot_and_a_sentence(
         f"p.py runs by the rules of a brick (profile ev3); {why}: it gets the default robot. "
     )
     with pytest.raises(RobotError, match="ZeroDivisionError"):
+        robot_for(source)
+
+
+def test_an_impossible_size_gives_the_default_robot_and_a_sentence() -> None:
+    text = (
+        "from ev3dev2.motor import MoveDifferential\nfrom ev3dev2.wheel import EV3Tire\n"
+        "from ev3dev2.sensor.lego import TouchSensor\nbumper = TouchSensor()\n"
+        "drive = MoveDifferential('outB', 'outC', EV3Tire, 12000)\n"
+    )
+    source = parse_program(text, "p.py")
+    decided = program_settings(source).decided
+    why = (
+        "no robot can be what its text says (wheel_spacing_mm: must be a number from 1 to 1000, "
+        "got 12000.0)"
+    )
+    assert decided.note.startswith(
+        f"p.py runs by the rules of a brick (profile ev3); {why}: it gets the default robot. "
+    )
+    assert "robot" not in decided.layer
+    with pytest.raises(RobotError, match="got 12000"):
         robot_for(source)

@@ -128,6 +128,9 @@ def facts_of(program: Program) -> SourceFacts:
     except (RecursionError, SyntaxError):
         # What is wrong with the program is said when it runs.
         return SourceFacts()
+    except RobotError as error:
+        why = f"no robot can be what its text says ({error.message})"
+        return SourceFacts(library, unread=f"{why}: it gets the default robot")
     except Exception as error:  # no text ends a run before it begins
         why = f"tuisim failed to read the robot from its text ({type(error).__name__})"
         return SourceFacts(library, unread=f"{why}: it gets the default robot")

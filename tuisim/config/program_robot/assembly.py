@@ -44,7 +44,6 @@ from tuisim.core.spec import (
     UltrasonicSpec,
 )
 from tuisim.data_class import dataclass
-from tuisim.errors import RobotError
 
 KINDS: Mapping[type, DeviceKind] = {
     ColorSensorSpec: DeviceKind.COLOR,
@@ -97,19 +96,20 @@ def build_robot(mentions: Mentions, name: str, usual: RobotSpec) -> BuiltRobot |
     Args:
         name: What the program is called.
         usual: The robot that is changed.
+
+    Raises:
+        RobotError: what the program says is impossible, such as a wheel of 0 mm.
     """
     builder = _Builder(mentions, mechanics_in(mentions), usual)
     motors = builder.motors()
+    # A wrong size is told as such, not as the wrong place of a sensor beside the wheels.
+    replace(usual, **motors)
     changes = builder.with_presses({**motors, **builder.sensors(motors)})
     changes |= builder.said_sizes(motors)
     if all(getattr(usual, key) == value for key, value in changes.items()):
         return None
     shown = "".join(letter if letter.isprintable() else "?" for letter in name)[:_MAX_NAME]
-    try:
-        spec = replace(usual, name=f"Robot of {shown}", **changes)
-    except RobotError:
-        # What a program says may be impossible, such as a wheel of 0 mm: the run then says what is missing.
-        return None
+    spec = replace(usual, name=f"Robot of {shown}", **changes)
     own_places = {sensor.name for sensor in spec.color_sensors} > {
         sensor.name for sensor in usual.color_sensors
     }
