@@ -38,9 +38,10 @@ def test_a_flip_leaves_the_rest_and_the_numbers_of_the_lines() -> None:
 
 
 def test_a_seed_draws_the_same_mutants() -> None:
-    drawn = draw_mutants(["core", "tuisim/scene"], 7, 20)
-    assert (len(drawn), {mutant.room for mutant in drawn}) == (20, {"core", "scene"})
-    assert draw_mutants(["core", "scene"], 7, 20) == drawn != draw_mutants(["core", "scene"], 8, 20)
+    drawn = draw_mutants(["core", "tuisim/scene"], 7, 300)
+    assert (len(drawn), {mutant.room for mutant in drawn}) == (300, {"core", "scene"})
+    assert draw_mutants(["core", "scene"], 7, 300) == drawn
+    assert draw_mutants(["core", "scene"], 8, 300) != drawn
     place = f"{drawn[0].file}:{drawn[0].line}"
     operators = {mutant.operator for mutant in draw_mutants([place], 1, 100)}
     assert drawn[0].operator in operators
