@@ -9,7 +9,7 @@ sound = Sound()
 tank_drive.on(SpeedPercent(30), SpeedPercent(30))
 
 light = 100
-while light > 5:
+while light > 6:
     light = colorLeft.reflected_light_intensity_pc
     # Nothing is seen before update().
     display.text_grid("Light: " + str(round(light)) + " %", x=6, y=2)

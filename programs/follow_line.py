@@ -12,7 +12,7 @@ while not red:
     right = colorRight.reflected_light_intensity_pc
     steering = GAIN * (left - right)
     tank_turn.on(max(-100, min(100, steering)), SPEED)
-    red = left > 90 and colorLeft.color_name == "Red"
+    red = left > 84 and colorLeft.color_name == "Red"
 
 tank_turn.off()
 print("There is the red bar.")

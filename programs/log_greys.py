@@ -8,8 +8,8 @@ tank_drive.on(SpeedPercent(50), SpeedPercent(50))
 sensor_val = colorLeft.reflected_light_intensity_pc
 print("Colour: " + str(sensor_val))
 
-# Black reads 0, with noise a little more.
-while sensor_val > 5:
+# Black reads 0, on a brick about 5, with noise a little more.
+while sensor_val > 6:
     time.sleep(0.1)
     sensor_val = colorLeft.reflected_light_intensity_pc
     print("Colour: " + str(sensor_val))

@@ -40,7 +40,7 @@ CASES: Mapping[str, Case] = {
     "02_square": Case(),
     "03_gyro_turn": Case((1203, 591, -12)),
     "04_gyro_straight": Case((1783, 571, 0)),
-    "05_line_follower": Case((758, 777, -19)),
+    "05_line_follower": Case((726, 787, -11)),
     "06_button_menu": Case(
         (1381, 571, -90), given="--press left@1 --press right@6 --press enter@9"
     ),
@@ -58,7 +58,7 @@ CASES: Mapping[str, Case] = {
     "15_v1_drive": Case((1385, 571, -92)),
     "16_v1_display": Case(),
     "17_robot_class": Case((1478, 471, 89)),
-    "18_pid_two_sensors": Case((810, 716, -34)),
+    "18_pid_two_sensors": Case((816, 720, -33)),
     "19_control_settings": Case(),
     "20_data_log": Case((1263, 518, -66)),
     "21_sounds_and_speech": Case(),
@@ -85,8 +85,8 @@ CASES: Mapping[str, Case] = {
         (1466, 371, 0), code=3, given="--press enter@1 --press enter@20 --timeout 40"
     ),
     "42_gyro_square": Case((1307, 430, 0)),
-    "43_line_follow_p": Case((1182, 390, -178), code=3, given="--timeout 20"),
-    "44_pid_line_two": Case((1199, 398, -164)),
+    "43_line_follow_p": Case((1183, 317, -178), code=3, given="--timeout 20"),
+    "44_pid_line_two": Case((1205, 389, -177)),
     "45_wall_follow": Case((2223, 269, 28), code=3, given="--timeout 30"),
     "46_gripper_arm": Case(),
     "47_color_sort": Case(),

@@ -53,12 +53,12 @@ OWN: Mapping[str, Case] = {
     "class_with_arguments": Case("A right wheel, B large motor, C -, D left wheel", "91"),
     "constants": Case(
         "1 touch, 2 ultrasonic, 4 left, A left wheel, B medium motor, C -, D right wheel",
-        "100 0 49",
+        "85 0 49",
     ),
     "dict_of_motors": Case("A right wheel, C medium motor", "[180, 180, -31]"),
     "dict_ports": Case(
         "1 left, 2 right, 3 gyro, 4 ultrasonic, A left wheel, B right wheel, C medium motor",
-        "True 100",
+        "True 85",
     ),
     "differential_own_wheel": Case(
         "", "280", {"wheel_diameter_mm": 81.6, "wheel_spacing_mm": 115.5}
@@ -75,9 +75,9 @@ OWN: Mapping[str, Case] = {
     "factory": Case("1 left, 2 ultrasonic, A left wheel, B -, D medium motor", "White 48"),
     "four_large": Case("A large motor, D large motor", "4"),
     "from_modules/main": Case(
-        "1 left, 2 ultrasonic, A left wheel, B medium motor, C -, D right wheel", "NoColor 59"
+        "1 left, 2 ultrasonic, A left wheel, B medium motor, C -, D right wheel", "White 59"
     ),
-    "generic_motor": Case("1 left, 2 ultrasonic, A left wheel, B -, C -, D right wheel", "100 360"),
+    "generic_motor": Case("1 left, 2 ultrasonic, A left wheel, B -, C -, D right wheel", "85 360"),
     "gyro_and_infrared": Case("1 infrared", "True 87"),
     "homing_arm_wait": Case("D medium motor", "True True", {"outD": (-245.0, 45.0)}),
     "homing_claw": Case("A medium motor", "81", {"outA": (-45.0, 225.0)}),
@@ -85,7 +85,7 @@ OWN: Mapping[str, Case] = {
     "joystick": Case("A left wheel, B -", "ok"),
     "long_text_ports": Case("1 gyro, 4 ultrasonic, B -, D left wheel", "ev3-ports:in4 True"),
     "loop_of_ports": Case(
-        "1 left, 2 middle, A left wheel, B -, C -, D right wheel", "[100, 100, 100]"
+        "1 left, 2 middle, A left wheel, B -, C -, D right wheel", "[85, 85, 85]"
     ),
     "medium_wheels": Case(
         "A left wheel (medium motor), B right wheel (medium motor), C medium motor",
@@ -123,7 +123,7 @@ OWN: Mapping[str, Case] = {
     "threads": Case(
         "1 right, 3 ultrasonic, A left wheel, B medium motor, C -, D right wheel", "stopped"
     ),
-    "three_colors": Case("1 middle", "100 100 100"),
+    "three_colors": Case("1 middle", "85 85 85"),
     "three_medium": Case("A medium motor, B medium motor, C medium motor", "[40, 40, 43]"),
     "touch_at_the_top": Case(
         "1 touch, A large motor", "at the top 1", {"outA": (-225.0, 45.0), "in1": "outA high"}
@@ -172,7 +172,7 @@ BLIND: Mapping[str, Case] = {
         {"wheel_diameter_mm": 81.6},
         f"{BANDS} --press enter@5-5.2 --press backspace@20-20.5",
         0,
-        (284, 798),
+        (284, 800),
     ),
     "floor_scan/scan": Case(
         "2 gyro, 4 left", "row 3: 238 samples", {"wheel_spacing_mm": 118.0}, "", 0, (1178, 379)
@@ -183,7 +183,7 @@ BLIND: Mapping[str, Case] = {
         {},
         "-x 1181 -y 200 -a 90",
         0,
-        (1133, 156),
+        (1127, 156),
     ),
     # The head turns, but the ultrasonic sensor on it looks ahead.
     "laberinto": Case(
@@ -200,7 +200,7 @@ BLIND: Mapping[str, Case] = {
         {},
         f"{LINE} --timeout 7",
         3,
-        (168, 1047),
+        (165, 1043),
     ),
     "mini_medium": Case(
         "1 infrared, B left wheel (medium motor), C right wheel (medium motor)",
@@ -208,10 +208,10 @@ BLIND: Mapping[str, Case] = {
         {"wheel_diameter_mm": 30.0, "wheel_spacing_mm": 88.0, **REVERSED},
         "--press enter@20-21",
         0,
-        (1121, 594),
+        (1117, 596),
     ),
     "motorlevel": Case(
-        "1 touch", "parked 734 3210", REVERSED, "-b Grey_bands --profile ev3", 0, (1364, 129)
+        "1 touch", "parked 735 3214", REVERSED, "-b Grey_bands --profile ev3", 0, (1364, 128)
     ),
     "odometry_tour": Case(
         "",
@@ -247,7 +247,7 @@ BLIND: Mapping[str, Case] = {
         MIDDLE,
     ),
     "rob_subclass": Case(
-        "1 gyro, 4 ultrasonic, A left wheel, B -", "[  14.45] bye", {}, LINE, 0, (185, 1048)
+        "1 gyro, 4 ultrasonic, A left wheel, B -", "[  14.31] bye", {}, LINE, 0, (188, 1043)
     ),
     "robot_arm": Case(
         "1 touch, A medium motor, B large motor, C large motor",
@@ -273,7 +273,7 @@ BLIND: Mapping[str, Case] = {
         3,
         (198, 914),
     ),
-    "suiveur3": Case("1 left, 2 middle", "", {}, f"{LINE} --timeout 7", 3, (116, 979)),
+    "suiveur3": Case("1 left, 2 middle", "", {}, f"{LINE} --timeout 7", 3, (149, 901)),
     "sumo": Case(
         "1 touch, 4 infrared, A left wheel, B -, C medium motor, D right wheel",
         "",
@@ -283,7 +283,7 @@ BLIND: Mapping[str, Case] = {
         (563, 1017),
     ),
     "track3r_remote": Case(
-        "1 infrared, A medium motor", "", {}, "--world programs/beacon.toml", 0, (1485, 568)
+        "1 infrared, A medium motor", "", {}, "--world programs/beacon.toml", 0, (1485, 570)
     ),
     "wallfollow": Case("1 touch, 2 ultrasonic", "", {}, "", 0, (1931, 180)),
     "wro_regular/main": Case(
@@ -297,7 +297,7 @@ BLIND: Mapping[str, Case] = {
         },
         BANDS,
         0,
-        (1196, 812),
+        (1168, 814),
     ),
 }
 CASES = {**OWN, **{f"blind/{name}": case for name, case in BLIND.items()}}

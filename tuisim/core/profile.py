@@ -193,7 +193,7 @@ class ProfileSpec(Spec):
         source="measured on a brick (pybricks/support, issue 14): ev3: old values up to 18 ms after the change, "
         "new ones from 22 ms on; the course, the old simulator: none",
     )
-    """For so long from the beginning of a change of mode, a sensor gives the last value of the other mode."""
+    """So long after a change of mode a colour sensor gives what it measured last in that mode."""
     white_percent: float = number(
         50,
         100,

@@ -8,8 +8,8 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from typing import Any, NoReturn
 
-from tuisim.core.columns import COLOR_NAMES
 from tuisim.core.drift import find_drift
+from tuisim.core.profile import ProfileSpec
 from tuisim.core.sensors import SENSORS, color, gyro, infrared, touch, ultrasonic
 from tuisim.core.spec import ColorSensorSpec, GyroSpec, InfraredSpec, TouchSpec, UltrasonicSpec
 from tuisim.data_class import dataclass
@@ -68,11 +68,8 @@ class LegoSensor:
         self.mode = default_mode
         self._values: tuple[int, ...] = ()
         self._next_free = (-1, -1)
-        profile = session.sim.spec.profile
-        self._stale_ns = profile.stale_reading_ns
-        self._switch_ns = profile.mode_switch_ns if switch_ns is None else switch_ns
-        self._stale: tuple[int, ...] = ()
-        self._stale_until_ns = 0
+        mode_switch_ns = session.sim.spec.profile.mode_switch_ns
+        self._switch_ns = mode_switch_ns if switch_ns is None else switch_ns
 
     def writers(self) -> dict[str, Writer]:
         """Return the functions that accept text written to each attribute."""
@@ -109,17 +106,9 @@ class LegoSensor:
 
     def switch(self, mode: str) -> None:
         """Switch to a mode, even from itself. Charges the time of the change."""
-        if self._stale_ns and not self._session.free:
-            self._stale = self._stale_values(mode)
-            self._stale_until_ns = self._session.now + self._stale_ns
         self.mode = mode
         if self._switch_ns:
             self._session.charge(self._switch_ns)
-
-    def _stale_values(self, mode: str) -> tuple[int, ...]:
-        """Return what the first message after a change to a mode says: the values of the present one."""
-        count = len(self.modes[mode].measure())
-        return (*self.modes[self.mode].measure(), *[0] * count)[:count]
 
     def measure(self, mode: str) -> tuple[int, ...]:
         """Take one measurement in a mode. Charges its cost."""
@@ -127,7 +116,7 @@ class LegoSensor:
         session = self._session
         if not session.free:
             session.spend(chosen.cost_ns, self._codes[mode])
-        return self._stale if session.now < self._stale_until_ns else chosen.measure()
+        return chosen.measure()
 
     def measure_switched(self, mode: str) -> tuple[int, ...]:
         """Take the first measurement after a change of mode, which has charged its cost."""
@@ -155,7 +144,24 @@ class ColorDevice(LegoSensor):
 
     def __init__(self, session: DeviceSession, spec: ColorSensorSpec) -> None:
         profile = session.sim.spec.profile
-        read = self._read_ns = profile.color_read_ns
+        modes = self._build_modes(spec, profile)
+        super().__init__(session, spec.port, SENSORS["color"].driver_name, modes, "COL-REFLECT")
+        self._read_ns = profile.color_read_ns
+        self._stale_ns = profile.stale_reading_ns
+        self._stale_until_ns = 0
+        self._left_values: dict[str, tuple[int, ...]] = {}
+        self._spec = spec
+        self._clear = color.rgb_reader(spec, profile, session.field)
+        self._noisy = color.noisy_rgb_reader(spec, profile, session.field)
+        drift = find_drift(session.sim.spec)
+        self._in_full = (
+            session.sim.spec.world.pen_marks or drift.light_pc > 0 or drift.light_gain_pc > 0
+        )
+        self._seen = (0, 0, 0)
+        self._seen_tick, self._seen_actions = -1, -1
+
+    def _build_modes(self, spec: ColorSensorSpec, profile: ProfileSpec) -> dict[str, Mode]:
+        read = profile.color_read_ns
 
         def reflected() -> tuple[int]:
             return (self.channels()[0] * 100 // color.WHITE,)
@@ -167,7 +173,7 @@ class ColorDevice(LegoSensor):
 
         tell_color = color.bricks_color_code if profile.brick_colors else color.color_code
 
-        modes = {
+        return {
             "COL-REFLECT": Mode(reflected, read, units="pct"),
             "COL-AMBIENT": Mode(ambient, read, units="pct"),
             "COL-COLOR": Mode(
@@ -179,16 +185,6 @@ class ColorDevice(LegoSensor):
             "RGB-RAW": Mode(self._raw, read, form="s16"),
             "COL-CAL": Mode(lambda: (*self._raw(), 0), read, form="s16"),
         }
-        super().__init__(session, spec.port, SENSORS["color"].driver_name, modes, "COL-REFLECT")
-        self._spec = spec
-        self._clear = color.rgb_reader(spec, profile, session.field)
-        self._noisy = color.noisy_rgb_reader(spec, profile, session.field)
-        drift = find_drift(session.sim.spec)
-        self._in_full = (
-            session.sim.spec.world.pen_marks or drift.light_pc > 0 or drift.light_gain_pc > 0
-        )
-        self._seen = (0, 0, 0)
-        self._seen_tick, self._seen_actions = -1, -1
 
     def channels(self) -> tuple[int, int, int]:
         """Return the channels as integers, free of charge; measured once per tick."""
@@ -222,9 +218,18 @@ class ColorDevice(LegoSensor):
             session.spend(self._read_ns, self._codes[mode])
         return self.channels()
 
-    def _stale_values(self, mode: str) -> tuple[int, ...]:
-        values = super()._stale_values(mode)
-        return (0,) if mode == "COL-COLOR" and values[0] not in range(len(COLOR_NAMES)) else values
+    def switch(self, mode: str) -> None:
+        """Switch to a mode. Its first message still says what it measured last, before it was left."""
+        if self._stale_ns and not self._session.free:
+            self._left_values[self.mode] = self.modes[self.mode].measure()
+            self._stale_until_ns = self._session.now + self._stale_ns
+        super().switch(mode)
+
+    def measure(self, mode: str) -> tuple[int, ...]:
+        """Take one measurement in a mode. Charges its cost."""
+        values = super().measure(mode)
+        is_stale = self._session.now < self._stale_until_ns
+        return self._left_values.get(mode, values) if is_stale else values
 
 
 def ultrasonic_sensor(
