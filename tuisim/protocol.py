@@ -449,6 +449,17 @@ class ReplyWanted(Message):
 
 
 @dataclass(frozen=True, slots=True)
+class Plugged(Message):
+    """A part was plugged in that the program has asked for; the values are those of `core.plugged.PluggedPart`."""
+
+    port: str
+    part: str
+    tick: int
+    line: int
+    role: str = ""
+
+
+@dataclass(frozen=True, slots=True)
 class MotorRegisters:
     """What a driver holds of a motor at the end of a run: what the program has written, and the speed."""
 
@@ -528,6 +539,7 @@ _EVENTS = (
     BusyLoop,
     InputWanted,
     ReplyWanted,
+    Plugged,
     Wheels,
     Ended,
 )

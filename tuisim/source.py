@@ -72,6 +72,9 @@ class Program:
     """Initial working directory; empty means the current one, with the PYTHONPATH of this process."""
     module_folder: str = ""
     """Module folder of a program without a file, such as the folder of the notebook whose cell it is."""
+    shown_ports: tuple[str, ...] | None = None
+    """The ports of the parts that its text shows, such as `in1`: what it asks for elsewhere is plugged in. None: the
+    robot stays as it is."""
     modules_from: Path | None = None
     """Folder of an earlier run: modules are read as that one recorded them; None reads them from their files."""
 

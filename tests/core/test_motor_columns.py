@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from random import Random
 
@@ -33,6 +34,10 @@ class Memory:
     def extend_buffer(self, ticks: int) -> bytearray:
         """Return the same buffer: it is larger than any test needs."""
         return self.data
+
+    def arrange(self, sources: Sequence[int | None], ticks: int) -> None:
+        """Refuse: the motors of these tests stay the same."""
+        raise AssertionError(sources)
 
 
 def record(seed: int, most: int, looks: Random | None = None) -> tuple[Lab, bytes]:

@@ -18,7 +18,7 @@ from tuisim.runs.catalogue import CATALOGUE_FILE
 from tuisim.runs.run_folder import read_run
 from tuisim.runs.store import RunStore
 
-REFUSED = "stored by another version of tuisim: format 1, this one reads 2 (run its program again)"
+REFUSED = "stored by another version of tuisim: format 1, this one reads 3 (run its program again)"
 
 
 @pytest.fixture
@@ -59,7 +59,7 @@ def test_another_format_is_one_sentence(
 def test_another_format_is_told_in_the_list(earlier: Path) -> None:
     (info,) = (info for info in RunStore(earlier.parent.parent).runs() if info.id == earlier.name)
     assert info.end == "damaged"
-    assert info.summary == "stored by another version of tuisim: format 1, this one reads 2"
+    assert info.summary == "stored by another version of tuisim: format 1, this one reads 3"
 
 
 @pytest.mark.parametrize("profile", PROFILES)

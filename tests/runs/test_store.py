@@ -78,6 +78,7 @@ def test_run_file_is_what_others_may_read(logged: StoredRun) -> None:
         "live",
         "program",
         "spec",
+        "plugged",
         "field",
         "options",
         "tags",

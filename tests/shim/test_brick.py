@@ -4,22 +4,22 @@ from __future__ import annotations
 
 from tests.shim.conftest import EYES, RunOn
 from tuisim.core.spec import NO_PORT, RobotSpec
-from tuisim.shim.brick import Plugged, plugged_in
+from tuisim.shim.brick import Connection, find_connections
 
 
 def test_devices_of_a_robot_by_port() -> None:
-    found = plugged_in(EYES)
+    found = find_connections(EYES)
     assert found.keys() == {"outA", "outB", "outC", "outD", "in1", "in2", "in3", "in4"}
     assert (found["outA"], found["outD"]) == (
-        Plugged("lego-ev3-m-motor", "tacho-motor"),
-        Plugged("lego-ev3-l-motor", "tacho-motor"),
+        Connection("lego-ev3-m-motor", "tacho-motor"),
+        Connection("lego-ev3-l-motor", "tacho-motor"),
     )
     assert (found["in2"].driver_name, found["in2"].mode) == ("lego-ev3-touch", "ev3-analog")
 
 
 def test_a_robot_without_wheels_has_empty_outputs() -> None:
     robot = RobotSpec(left_port=NO_PORT, right_port=NO_PORT)
-    assert not [port for port in plugged_in(robot) if port.startswith("out")]
+    assert not [port for port in find_connections(robot) if port.startswith("out")]
 
 
 PORTS = """

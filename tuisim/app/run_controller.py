@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 
 from tuisim import protocol
 from tuisim.app.earlier_run import is_comparable, pose_at
-from tuisim.app.run_update import RunUpdate
+from tuisim.app.run_update import RunUpdate, describe_remarks
 from tuisim.app.setup import next_run as plans
 from tuisim.app.setup.next_run import NextRun
-from tuisim.app.snapshot import RunPhase, Snapshot, busy_loop_words
+from tuisim.app.snapshot import RunPhase, Snapshot
 from tuisim.app.timeline import Timeline
 from tuisim.app.waiting import WaitWatch
 from tuisim.config.program_settings import require_library
@@ -316,7 +316,11 @@ class RunController:
         """
         if self.program is None or self.in_run:
             return
-        program = replace(self.program, arguments=self.next_run.settings["arguments"])
+        program = replace(
+            self.program,
+            arguments=self.next_run.settings["arguments"],
+            shown_ports=self.next_run.shown_ports if "robot" in self.next_run.free else None,
+        )
         if "profile" not in self.next_run.free:
             require_library(program, self.next_run.spec.profile)
         options = replace(self._options, breaks=breaks, hold_at=FIRST_LINE if paused else None)
@@ -344,7 +348,7 @@ class RunController:
         options = replace(
             self._options, answers=branch.of.answers, actions=branch.script(), hold_at=hold_at
         )
-        run = start_run(branch.runs, branch.of.spec, options)
+        run = start_run(branch.runs, branch.of.first_spec, options)
         RunStore().tag(run.run_id, branch.tags)
         self._show_run(run, branch.of.answers)
         # The noise of the current run is that of the next one, as if chosen now.
@@ -552,8 +556,8 @@ class RunController:
                         self.timeline.breaks.append(event.tick)
                 case protocol.Spoke() if self._branch is None:
                     spoken.append(event)
-                case protocol.BusyLoop() if self._branch is None:
-                    remarks.append(busy_loop_words(event))
+                case protocol.BusyLoop() | protocol.Plugged() if self._branch is None:
+                    remarks += describe_remarks(event, recording)
         stood = standstill_words(recording.telemetry, recording.spec) if ended else ""
         if not self.in_past:
             is_running = self.state is RunPhase.RUNNING

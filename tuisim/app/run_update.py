@@ -2,10 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
 from tuisim import protocol
 from tuisim.app.branch import Branch
+from tuisim.app.snapshot import busy_loop_words
 from tuisim.data_class import dataclass
+from tuisim.runs.plugged_words import describe_newest
 from tuisim.runs.records import OutputRow
+
+if TYPE_CHECKING:
+    from tuisim.runs.recorded_run import Recording
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,3 +41,13 @@ class RunUpdate:
         return bool(
             self.rows or self.ended or self.spoken or self.branched or self.pauses or self.remarks
         )
+
+
+def describe_remarks(
+    event: protocol.BusyLoop | protocol.Plugged, recording: Recording
+) -> Iterator[str]:
+    """Yield what the output says of an event."""
+    if isinstance(event, protocol.BusyLoop):
+        yield busy_loop_words(event)
+    elif words := describe_newest(recording.plugged):
+        yield words

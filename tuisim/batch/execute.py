@@ -18,7 +18,7 @@ from tuisim.protocol import End, Ended
 from tuisim.regular_file import of_the_machine
 from tuisim.runs.handle import RunHandle
 from tuisim.runs.records import OutputRow, Stream
-from tuisim.runs.run_folder import StoredRun
+from tuisim.runs.run_folder import StoredRun, find_diameters
 from tuisim.runs.samples import samples_of
 from tuisim.runs.store import RunStore
 from tuisim.runs.temporary import TemporaryRun
@@ -95,8 +95,7 @@ def _prepared(background_name: str, fit: str, diameters: frozenset[int]) -> Fiel
 
 def _field_files(spec: RunSpec) -> FieldFiles:
     """Return the prepared mat of a run; the image is read only once in a process, while the files are kept."""
-    diameters = frozenset(sensor.diameter_mm for sensor in spec.robot.color_sensors)
-    mat = spec.world.background, spec.world.background_fit, diameters
+    mat = spec.world.background, spec.world.background_fit, find_diameters(spec)
     found = _prepared(*mat)
     if not found.are_sound:
         _prepared.cache_clear()

@@ -13,6 +13,7 @@ from tuisim.commands.echo import echo_error, echo_error_lines, echo_json
 from tuisim.core.geometry import Pose, pose_in_words
 from tuisim.errors import SIGNALLED, counted
 from tuisim.protocol import NO_ANSWER, End
+from tuisim.runs.plugged_words import describe_plugged
 from tuisim.runs.records import Stream
 from tuisim.runs.run_folder import StoredRun
 from tuisim.runs.samples import counts_of
@@ -70,6 +71,7 @@ def describe(run: StoredRun, most_bytes: int | None = None) -> dict[str, Any]:
         "heading_deg": pose.heading_deg,
         "standstill": asdict(stood) if stood else None,
         "waited_for": describe_wait(run),
+        "plugged": [part.to_plain() for part in run.plugged],
         "lines": counts.lines if counts else None,
         "samples": counts.samples if counts else None,
         "summary": end.summary if end else "",
@@ -104,8 +106,10 @@ def report(run: StoredRun, exit_code: int, *, as_json: bool) -> None:
         )
     if as_json:
         echo_json({**facts, "exit_code": exit_code}, flush=True)
-    else:
-        echo_error(last_state(facts))
+        return
+    if plugged := describe_plugged(run):
+        echo_error(f"note: {plugged}")
+    echo_error(last_state(facts))
 
 
 class Interrupted(KeyboardInterrupt):

@@ -154,9 +154,10 @@ def _size(one: Taken) -> str:
     option(
         "--from",
         "program",
-        metavar="PROGRAM",
+        metavar="PROGRAM|RUN",
         type=WordType(names=lambda: names_of("programs")),
-        help="Print the robot that a program for a real brick talks about, with the lines that say so.",
+        help="Print the robot that a program for a real brick talks about, with the lines that say so, or that of a "
+        "run, by its number or `last`, with the parts that were plugged in.",
     ),
     option(
         "--out", metavar="FILE", type=WordType(), help="Write it to a robot file for -r instead."
@@ -190,6 +191,8 @@ def robots(robot: str | None, program: str | None, out: str | None, as_json: boo
 
 def _robot_from(program: str, out: str | None, *, as_json: bool) -> int:
     """Print or write the robot that a program talks about."""
+    if program.isdecimal() or program == "last":
+        return _print_robot_of_run(program, out, as_json=as_json)
     from tuisim.config.program_file import find_program, read_program
     from tuisim.config.program_robot.report import USUAL, robot_file_of, save_robot_of
     from tuisim.config.program_settings import robot_for
@@ -203,6 +206,25 @@ def _robot_from(program: str, out: str | None, *, as_json: bool) -> int:
         echo_error(f"{out}: the robot of {program}; `tuisim run {program} -r {out}` takes it")
     else:
         echo_lines("\n".join(robot_file_of(program, built)))
+    return 0
+
+
+def _print_robot_of_run(word: str, out: str | None, *, as_json: bool) -> int:
+    """Print or write the robot of a run."""
+    from tuisim.config.robots import robot_file, save_robot
+    from tuisim.runs.plugged_words import list_parts
+    from tuisim.runs.store import load_run
+
+    run = load_run(word)
+    robot, parts = run.spec.robot, list_parts(run.plugged)
+    if as_json:
+        echo_json([asdict(robot)])
+    elif out is not None:
+        save_robot(robot, Path(out))
+        echo_error(f"{out}: the robot of run {run.number}; -r {out} takes it")
+    else:
+        said = [f"# Plugged in while {run.program.name} ran: {parts}."] if parts else []
+        echo_lines("\n".join([*said, *robot_file(robot)]))
     return 0
 
 

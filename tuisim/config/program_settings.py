@@ -62,6 +62,8 @@ class SourceFacts:
     """Its lines that LEGO's MicroPython refuses, if it is for that."""
     unread: str = ""
     """Why the robot is not read from all of it, in words; empty if it is."""
+    shown_ports: tuple[str, ...] | None = None
+    """The ports of the parts that it shows; None if it does not bring its library."""
     hides_parts: bool = False
     """Whether it names classes of motors or sensors, and its text shows no part that is made."""
 
@@ -83,6 +85,8 @@ class Decided:
     """How to change it in the shell."""
     robot: RobotChoice | None = None
     """The robot that the program needs, even if another one was chosen; None for the default one."""
+    shown_ports: tuple[str, ...] | None = None
+    """As `Program.shown_ports`: None if somebody has named the robot, or the program does not bring its library."""
     free: frozenset[str] = frozenset()
     """Which of `PROGRAM_PATHS` nobody has chosen."""
     refused: tuple[RefusedLine, ...] = ()
@@ -110,9 +114,14 @@ class ProgramSettings:
     decided: Decided
 
     def applied_to(self, program: Program) -> Program:
-        """Return a program with the prelude and the arguments that are chosen."""
+        """Return a program with the prelude and the arguments that are chosen, and what its text shows."""
         prelude = self.settings["preload"] or program.prelude
-        return replace(program, prelude=prelude, arguments=self.settings["arguments"])
+        return replace(
+            program,
+            prelude=prelude,
+            arguments=self.settings["arguments"],
+            shown_ports=self.decided.shown_ports,
+        )
 
 
 def facts_of(program: Program) -> SourceFacts:
@@ -133,22 +142,25 @@ def facts_of(program: Program) -> SourceFacts:
         return SourceFacts(library, unread=f"{why}: it gets the default robot")
     except Exception as error:  # no text ends a run before it begins
         why = f"tuisim failed to read the robot from its text ({type(error).__name__})"
-        return SourceFacts(library, unread=f"{why}: it gets the default robot")
+        unread = f"{why}: it gets the default robot"
+        return SourceFacts(library, unread=unread, shown_ports=() if library else None)
 
 
 def _facts_in(program: Program, modules: dict[str, Module], library: Library) -> SourceFacts:
-    from tuisim.config.program_robot.assembly import build_robot
+    from tuisim.config.program_robot.assembly import build_robot, find_shown_ports
     from tuisim.config.program_robot.brick_syntax import refused_lines
     from tuisim.config.program_robot.mentions import mentions_in
     from tuisim.config.program_robot.report import USUAL, hides_parts
 
     mentions = mentions_in(modules, data_files(program))
+    robot = build_robot(mentions, program.name, USUAL)
     return SourceFacts(
         library,
         uses_course_names(modules, program.text),
-        build_robot(mentions, program.name, USUAL),
+        robot,
         refused_lines(modules.values()) if library is Library.PYBRICKS else (),
         missing_module(program, modules),
+        find_shown_ports(mentions, robot.choice.spec if robot else USUAL),
         hides_parts(mentions),
     )
 
@@ -255,11 +267,21 @@ def decide(
     if by_rules and not source.has_magic and {*_PLACE} <= {*free}:
         layer |= dict(zip(_PLACE, (FIELD_WIDTH_MM / 2, FIELD_HEIGHT_MM / 2), strict=True))
     needed = facts.robot.choice if facts.robot else None
-    law = _law(profile) if facts.refused else None
-    refused = facts.refused if law is MotorLaw.PYBRICKS else ()
+    refused = _find_refused(facts, profile)
     keeps_robot = "robot" not in layer and settings.given.get("robot") is None
     words = _in_words(source.program, facts, layer, keeps_robot=keeps_robot)
-    return Decided(layer, *words, needed, frozenset(free), refused)
+    return Decided(layer, *words, needed, _find_shown(facts, free), frozenset(free), refused)
+
+
+def _find_refused(facts: SourceFacts, profile: str | ProfileSpec) -> tuple[RefusedLine, ...]:
+    """Return the lines that the Python of the simulated brick would refuse."""
+    law = _law(profile) if facts.refused else None
+    return facts.refused if law is MotorLaw.PYBRICKS else ()
+
+
+def _find_shown(facts: SourceFacts, free: Collection[str]) -> tuple[str, ...] | None:
+    """Return `Decided.shown_ports`."""
+    return facts.shown_ports if "robot" in free else None
 
 
 def _check_prelude(program: Program) -> None:

@@ -147,15 +147,7 @@ class Motion:
         self._spacing_mm = spec.robot.wheel_spacing_mm
         self._early = 0.5 if spec.profile.halfway_heading else 0.0
         """Fraction of a tick's turn that already applies to the motion of that tick."""
-        self._solids = Solids(spec.world, spec.robot, self._early) if spec.world.solid else None
-        if self._solids is not None:
-            # One wheel at full speed forwards, the other backwards.
-            fastest = max(
-                top_speed_dps(motor.kind, spec.profile) for motor in spec.robot.wheel_motors
-            )
-            farthest = fastest * self._tick_s * abs(self._left_mm_per_deg)
-            farthest *= 1 if find_drift(spec).is_none else MOST_TIMES
-            self._longest_mm = farthest * (1 + 2 * self._solids.reach_mm / self._spacing_mm)
+        self._build_solids(spec)
         self.tick = 0
         left, right = spec.robot.wheel_motors
         self.left, self.right = motor_of(spec, left.kind), motor_of(spec, right.kind)
@@ -174,6 +166,18 @@ class Motion:
         self.changed_ns = 0
         """When a driver noticed the last such change."""
         self._begin(spec, sink)
+
+    def _build_solids(self, spec: RunSpec) -> None:
+        """Prepare what the robot can meet."""
+        self._solids = Solids(spec.world, spec.robot, self._early) if spec.world.solid else None
+        if self._solids is not None:
+            # One wheel at full speed forwards, the other backwards.
+            fastest = max(
+                top_speed_dps(motor.kind, spec.profile) for motor in spec.robot.wheel_motors
+            )
+            farthest = fastest * self._tick_s * abs(self._left_mm_per_deg)
+            farthest *= 1 if find_drift(spec).is_none else MOST_TIMES
+            self._longest_mm = farthest * (1 + 2 * self._solids.reach_mm / self._spacing_mm)
 
     def _begin(self, spec: RunSpec, sink: TickSink, motor_sink: MotorSink | None = None) -> None:
         """Take up its initial state, as far as it differs between runs of one robot in one world."""

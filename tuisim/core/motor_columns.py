@@ -35,6 +35,14 @@ class MotorSink(Protocol):
     def extend_buffer(self, ticks: int) -> Buffer:
         """Return a writable buffer with space for the records of so many ticks, from byte 64 on."""
 
+    def arrange(self, sources: Sequence[int | None], ticks: int) -> None:
+        """Write what there is again for other motors.
+
+        Args:
+            sources: Of each motor the number that it had, in their new order; None for one that was at rest.
+            ticks: How many ticks are recorded.
+        """
+
 
 RUNNING, RAMPING, HOLDING, STALLED, OVERLOADED = (1 << bit for bit in range(5))
 """The bits of `state`."""
@@ -68,6 +76,14 @@ class MotorRecorder:
         self._size = MOTOR_RECORD.size * len(motors)
         """Bytes of a tick."""
         self._buffer: Buffer | None = None
+
+    def change_motors(
+        self, motors: tuple[DrivenMotor, ...], sources: Sequence[int | None], ticks: int
+    ) -> None:
+        """Go on with other motors; `sources` and `ticks` as of `MotorSink.arrange`."""
+        self._motors, self._size = motors, MOTOR_RECORD.size * len(motors)
+        if self._sink is not None:
+            self._sink.arrange(sources, ticks)
 
     def make_room(self, ticks: int) -> None:
         """Make room for the records of so many ticks."""

@@ -2,31 +2,56 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from tuisim.core.drift import find_drift, sensed_turn_rate_dps
+from tuisim.core.drift import can_strain_gyro, find_drift, sensed_turn_rate_dps
 from tuisim.core.drive import float32, turn_rate_dps
+from tuisim.core.driver.jiffies import draw_jiffies
+from tuisim.core.driver.simulated import SimulatedMotor, change_load
 from tuisim.core.end_stops import build_stops
 from tuisim.core.geometry import Pose
 from tuisim.core.motion import Motion, motor_of
 from tuisim.core.motor_columns import MotorSink
 from tuisim.core.profile import NS_PER_S
+from tuisim.core.servo.motor import ServoMotor
+from tuisim.core.spec import NO_PORT
 from tuisim.core.state import Instant
 from tuisim.core.tick_record import END_FLAGS, TICK_RECORD, TickSink
 
 if TYPE_CHECKING:
     from tuisim.core.motors import Motor
-    from tuisim.core.spec import RunSpec
+    from tuisim.core.spec import MotorSpec, RobotSpec, RunSpec
+
+
+Turn = tuple[float, float]
+"""Position in degrees and speed in degrees per second, both at the axle."""
 
 
 class Simulation(Motion):
     """The world of one run."""
 
-    __slots__ = ()
+    __slots__ = ("_reported", "_reported_tick", "_reports_first", "_stops", "on_turns", "others")
 
-    others: tuple[Motor, ...] = ()
-    """Motors that do not drive a wheel, in the order of `RobotSpec.extra_motors`."""
+    def __init__(self, spec: RunSpec, sink: TickSink) -> None:
+        extra = spec.robot.extra_motors
+        self.others: tuple[Motor, ...] = tuple(
+            motor_of(spec, motor.kind, free=True) for motor in extra
+        )
+        """Motors that do not drive a wheel, in the order of `RobotSpec.extra_motors`."""
+        self._stops = tuple(
+            build_stops(spec.robot, *pair) for pair in zip(extra, self.others, strict=True)
+        )
+        super().__init__(spec, sink)
+        self._reports_first = spec.profile.motor_law.is_measured
+        self.on_turns: Callable[[tuple[Turn, ...]], None] = lambda _: None
+        """Called when one of the other motors deviates from its last report: until then it turns as reported."""
+        self._reported: tuple[Turn, ...] = ((0.0, 0.0),) * len(self.others)
+        self._reported_tick = 0
+
+    def _all_motors(self) -> tuple[Motor, ...]:
+        return self.left, self.right, *self.others
 
     # Reading
 
@@ -100,6 +125,74 @@ class Simulation(Motion):
         """Make the current heading the gyro's 0."""
         self.drive.gyro_zero_deg = float32(self.drive.heading_deg)
 
+    def change_robot(self, robot: RobotSpec) -> None:
+        """Go on with a robot that has other parts.
+
+        A motor of the same kind stays where its port is, as a wheel's or not; any other one is new, and at rest.
+        """
+        before = {
+            find_place(number, motor): number for number, motor in enumerate(self.spec.robot.motors)
+        }
+        sources = [before.get(find_place(at, motor)) for at, motor in enumerate(robot.motors)]
+        self.spec = replace(self.spec, robot=robot)
+        earlier = self._all_motors()
+        motors = [
+            self._add_motor(motor.kind, free=number > 1)
+            if source is None
+            else self._keep_motor(earlier[source], motor.kind, source, number)
+            for number, (motor, source) in enumerate(zip(robot.motors, sources, strict=True))
+        ]
+        self.left, self.right, *others = motors
+        self.others = tuple(others)
+        self._take_others(sources[2:])
+        self._driven = tuple(motor for motor in motors if isinstance(motor, SimulatedMotor))
+        self._motor_recorder.change_motors(self._driven, sources, self._sink.count)
+        self._motor_recorder.make_room(self._room_end)
+        self._build_solids(self.spec)
+        self._strains_gyro = can_strain_gyro(self.spec)
+        if others:
+            # The robot had wheel motors only, until now.
+            self.__class__ = FurtherMotors
+
+    def _take_others(self, sources: Sequence[int | None]) -> None:
+        """Take over the stops and the reports of the other motors, by the numbers that they had among all motors."""
+        stops, reported, robot = self._stops, self._reported, self.spec.robot
+        pairs = [*zip(robot.extra_motors, self.others, sources, strict=True)]
+        self._stops = tuple(
+            stops[number] if source == number + 2 else build_stops(robot, motor, simulated)
+            for number, (motor, simulated, source) in enumerate(pairs)
+        )
+        self._reported = tuple(
+            (0.0, 0.0) if source is None or source < 2 else reported[source - 2]
+            for source in sources
+        )
+
+    def _add_motor(self, kind: str, *, free: bool) -> Motor:
+        """Return a motor that has been at rest until now."""
+        motor = motor_of(self.spec, kind, free=free)
+        if isinstance(motor, SimulatedMotor):
+            motor.start_clock(draw_jiffies(self.spec.seed))
+        motor.glide_evenly(self.tick)
+        return motor
+
+    def _keep_motor(self, motor: Motor, kind: str, before: int, after: int) -> Motor:
+        """Return a motor that was at rest until now, or stays what it is: a wheel's or not, by its number."""
+        free = after > 1
+        if free != (before > 1) and isinstance(motor, SimulatedMotor | ServoMotor):
+            change_load(motor.axle, self.spec, kind, free=free)
+        return motor
+
+    @property
+    def has_driven(self) -> bool:
+        """Whether a wheel has turned, or is about to."""
+        is_moving = self.left.mode or self.right.mode
+        return bool(is_moving) or any(record[7] or record[8] for record in self.records_since(0))
+
+    def has_turned(self, number: int) -> bool:
+        """Return whether a motor that drives no wheel has turned or is about to, by its number among them."""
+        motor = self.others[number]
+        return bool(motor.mode or motor.position_deg) or self._reported[number] != (0.0, 0.0)
+
     def rewrite_record(self) -> None:
         """Write the current tick's record again, after a change from outside."""
         # In one write: readers see this record already.
@@ -107,35 +200,19 @@ class Simulation(Motion):
         self._buffer[at : at + 64] = TICK_RECORD.pack(*self._fields())
 
 
-Turn = tuple[float, float]
-"""Position in degrees and speed in degrees per second, both at the axle."""
-
 REPORT_DEG = 0.25
 """A motor farther than this from the position that its last report predicts is reported again."""
+
+
+def find_place(number: int, motor: MotorSpec) -> tuple[str | int, str]:
+    """Return by what a motor is known again: its port, or its number if it has none, and its kind."""
+    return number if motor.port == NO_PORT else motor.port, motor.kind
 
 
 class FurtherMotors(Simulation):
     """A simulation whose robot has motors besides its two wheel motors. They do not change the pose."""
 
-    __slots__ = ("_reported", "_reported_tick", "_reports_first", "_stops", "on_turns", "others")
-
-    def __init__(self, spec: RunSpec, sink: TickSink) -> None:
-        self.others: tuple[Motor, ...] = tuple(
-            motor_of(spec, motor.kind, free=True) for motor in spec.robot.extra_motors
-        )
-        self._stops = tuple(
-            build_stops(spec.robot, *pair)
-            for pair in zip(spec.robot.extra_motors, self.others, strict=True)
-        )
-        super().__init__(spec, sink)
-        self._reports_first = spec.profile.motor_law.is_measured
-        self.on_turns: Callable[[tuple[Turn, ...]], None] = lambda _: None
-        """Called when a motor deviates from its last report; until then each motor turns at the reported speed."""
-        self._reported: tuple[Turn, ...] = ((0.0, 0.0),) * len(self.others)
-        self._reported_tick = 0
-
-    def _all_motors(self) -> tuple[Motor, ...]:
-        return *super()._all_motors(), *self.others
+    __slots__ = ()
 
     def advance(self, ticks: int, until_change: bool = False) -> int:
         """Run ticks as `Motion.advance` does, one by one while an extra motor runs."""

@@ -46,7 +46,10 @@ def entries_of(
                 specs = tuple(build_run_spec(own.settings) for own in every)
                 if not task.settings:
                     _check_background(specs[0])
-                student = replace(student, refusal=every[0].decided.refusal)
+                decided = every[0].decided
+                program = replace(student.source.program, shown_ports=decided.shown_ports)
+                source = replace(student.source, program=program)
+                student = replace(student, source=source, refusal=decided.refusal)
             except ConfigError as error:
                 misfits += [error] if isinstance(error, ProfileError) and names_profile else []
                 cause = error.__cause__

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from tuisim.data_class import dataclass
@@ -292,6 +293,7 @@ class Lab:
             insists = text is not None or settings["autorun"]
             found = program_settings(source, persistent, words.settings, insists=insists)
             settings = found.settings
+            program = replace(program, shown_ports=found.decided.shown_ports)
             if text is not None and found.decided.note:
                 print(f"tuisim: note: {found.decided.note}", file=sys.stderr)
         spec = build_run_spec(settings)

@@ -9,7 +9,7 @@ from __future__ import annotations
 import os
 import subprocess
 import time
-from collections.abc import Hashable, Mapping
+from collections.abc import Hashable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
@@ -18,9 +18,10 @@ from typing import Any, Protocol
 from tuisim.breakpoints import parse_breakpoints
 from tuisim.config.mat_cache import FieldFiles
 from tuisim.core.geometry import Pose
+from tuisim.core.plugged import PluggedPart
 from tuisim.core.profile import due_ns
 from tuisim.core.spec import NoiseSpec, RunSpec
-from tuisim.errors import HostError, LogError, counted
+from tuisim.errors import HostError, LogError, RobotError, counted
 from tuisim.protocol import (
     CLEANUP_S,
     COMMAND_SIGNAL,
@@ -31,6 +32,7 @@ from tuisim.protocol import (
     InputWanted,
     Message,
     Paused,
+    Plugged,
     Reply,
     ReplyWanted,
     Resumed,
@@ -39,7 +41,7 @@ from tuisim.protocol import (
     Stop,
     Wheels,
 )
-from tuisim.runs.child.events import DEBUGGED, EventStream, allowed_events
+from tuisim.runs.child.events import DEBUGGED, EventStream, allowed_events, build_part
 from tuisim.runs.child.fair_clock import FairClock
 from tuisim.runs.child.isolation import Quota
 from tuisim.runs.child.process import (
@@ -54,7 +56,7 @@ from tuisim.runs.child.process import (
     write_command,
 )
 from tuisim.runs.child.readable import is_readable
-from tuisim.runs.run_folder import RUN_FILE, StoredRun, field_files
+from tuisim.runs.run_folder import RUN_FILE, StoredRun, add_plugged, field_files
 from tuisim.runs.run_options import DEFAULT_TIME_LIMIT_S as DEFAULT_TIME_LIMIT_S
 from tuisim.runs.run_options import RunOptions as RunOptions
 from tuisim.runs.side_files import (
@@ -95,6 +97,8 @@ class RunFolders(Protocol):
 
     def finish(self, run: NewRun, end: Ended, /) -> None: ...
 
+    def note_plugged(self, run: NewRun, parts: Sequence[PluggedPart], /) -> None: ...
+
     def forget(self, run_id: str, /) -> None: ...
 
     def load_run(self, run: Path, /) -> StoredRun: ...
@@ -133,7 +137,9 @@ class RunHandle:
         of_many: bool = False,
         isolated: bool = False,
     ) -> None:
-        self.program, self.spec, self.field = program, spec, field
+        self.program, self.first_spec, self.field = program, spec, field
+        self.spec, self.plugged = spec, list[PluggedPart]()
+        """The run with the parts that have been plugged in, and these."""
         self._options, self._store = options, store
         self._run = run = store.new_run(
             program, spec, field.to_plain(), options.to_plain(), options.live
@@ -162,15 +168,28 @@ class RunHandle:
         """Why the run or its end is not stored; empty if it is."""
         # Held beyond the end of the process: until its end is stored, nobody else may remove the run.
         self._lock_fd = os.dup(run.lock_fd)
+        self._start(of_many=of_many, isolated=isolated)
+        self._mark = mark(self._process.pid)
+        self._clock = FairClock(self._process.pid)
+        allowed = allowed_events(options, plugs=program.shown_ports is not None)
+        self._events = EventStream(self._event_fd, allowed)
+        writable: list[str | Path] = [run.folder, program.working_directory]
+        self._quota = Quota(self._process.pid, writable) if isolated else None
+        self._exceeded = self._falsified = ""
+        """Which limit an isolated program has exceeded; why what the child does is not what the simulation does."""
+
+    def _start(self, *, of_many: bool, isolated: bool) -> None:
+        """Start the child; arguments as of the class."""
+        program, run = self.program, self._run
         try:
             self._process, self._command_fd, self._event_fd, self._lifeline_fd = start_child(
                 run.folder,
                 run.lock_fd,
                 program.working_directory,
                 run.data,
-                _template_key(program, spec, field),
+                _template_key(program, self.first_spec, self.field),
                 of_many,
-                _needs(program, field) if isolated else None,
+                _needs(program, self.field) if isolated else None,
             )
         except OSError as error:
             os.close(self._lock_fd)
@@ -179,13 +198,6 @@ class RunHandle:
                 f"the program's process cannot be started: {error.strerror or error}",
                 str(run.folder),
             ) from error
-        self._mark = mark(self._process.pid)
-        self._clock = FairClock(self._process.pid)
-        self._events = EventStream(self._event_fd, allowed_events(options))
-        writable: list[str | Path] = [run.folder, program.working_directory]
-        self._quota = Quota(self._process.pid, writable) if isolated else None
-        self._exceeded = self._falsified = ""
-        """Which limit an isolated program has exceeded; why what the child does is not what the simulation does."""
 
     def _copy_modules(self) -> None:
         if self.program.modules_from is None:
@@ -234,6 +246,8 @@ class RunHandle:
                     self.waiting_for_input = prompt
                 case ReplyWanted():
                     self.waiting_for_reply = True
+                case Plugged():
+                    self._note_plugged(event)
                 case Wheels():
                     self.wheels = event
                 case Ended():
@@ -254,6 +268,16 @@ class RunHandle:
             return kept
         self._finish(final)
         return [*kept, final]
+
+    def _note_plugged(self, event: Plugged) -> None:
+        self.plugged.append(build_part(event))
+        try:
+            self.spec = add_plugged(self.first_spec, self.plugged)
+            self._store.note_plugged(self._run, self.plugged)
+        except RobotError as error:
+            self._events.falsified = f"it plugged in what does not fit: {error.message}"
+        except LogError as error:
+            self.unstored = self._what_is_wrong(error)
 
     def _look_for_falsified(self) -> None:
         """Kill a child that has sent or recorded what the simulation does not."""
@@ -479,7 +503,7 @@ class RunHandle:
     def prepare_next(self) -> None:
         """Prepare a process for later runs of this robot and world, which then start sooner. Does not block."""
         prepare_template(
-            _template_key(self.program, self.spec, self.field), self.folder, self._run.data
+            _template_key(self.program, self.first_spec, self.field), self.folder, self._run.data
         )
 
     def close(self) -> None:

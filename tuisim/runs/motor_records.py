@@ -8,6 +8,8 @@ from __future__ import annotations
 
 import mmap
 import os
+from array import array
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -17,11 +19,11 @@ from tuisim.core.motor_columns import (
     has_driver,
     name_motors,
 )
-from tuisim.core.spec import RobotSpec, RunSpec
+from tuisim.core.spec import OUTPUT_PORTS, RobotSpec, RunSpec
 from tuisim.core.state import MotorValues
 from tuisim.errors import LogError
 from tuisim.regular_file import of_the_machine, open_regular
-from tuisim.runs.records import HEADER_BYTES, MappedWriter, published_length
+from tuisim.runs.records import HEADER_BYTES, MappedWriter, read_header
 from tuisim.runs.side_files import MOTORS_FILE
 
 if TYPE_CHECKING:
@@ -31,6 +33,8 @@ if TYPE_CHECKING:
 
 MOTORS_MAGIC = b"TUISIMMO"
 _FIRST_BYTES = 1 << 16
+MAX_MOTORS = 2 + len(OUTPUT_PORTS)
+"""A robot without wheels has motors in their places, too."""
 
 
 class MotorsWriter(MappedWriter):
@@ -43,13 +47,35 @@ class MotorsWriter(MappedWriter):
 
     def __init__(self, folder: Path, robot: RobotSpec) -> None:
         self._size = MOTOR_RECORD.size * len(name_motors(robot))
-        super().__init__(f"{folder}{os.sep}{MOTORS_FILE}", MOTORS_MAGIC, self._size, _FIRST_BYTES)
+        self._path = f"{folder}{os.sep}{MOTORS_FILE}"
+        super().__init__(self._path, MOTORS_MAGIC, self._size, _FIRST_BYTES)
 
     def extend_buffer(self, ticks: int) -> mmap.mmap:
         """Return the map, with space for the records of so many ticks."""
         if (need := HEADER_BYTES + ticks * self._size) > self._capacity:
             self._make_room(need)
         return self._map
+
+    def arrange(self, sources: Sequence[int | None], ticks: int) -> None:
+        """Write the records of so many ticks again for other motors; see `MotorSink.arrange`."""
+        before, after = self._size // MOTOR_RECORD.size, len(sources)
+        recorded = array("Q", self._map[HEADER_BYTES : HEADER_BYTES + ticks * self._size])
+        arranged = array("Q", bytes(MOTOR_RECORD.size * after * ticks))
+        for number, source in enumerate(sources):
+            if source is not None:
+                arranged[number::after] = recorded[source::before]
+        # A reader has the old file or the new one.
+        path, full, self._size = Path(self._path), self.full, MOTOR_RECORD.size * after
+        self._close(HEADER_BYTES)
+        new = path.with_name(f"{path.name}.new")
+        size = ticks * self._size
+        try:
+            super().__init__(str(new), MOTORS_MAGIC, self._size, max(_FIRST_BYTES, size))
+        except OSError as error:
+            raise full(error) from None
+        self.full = full
+        self._map[HEADER_BYTES : HEADER_BYTES + size] = arranged.tobytes()
+        os.replace(new, path)
 
     def close(self, ticks: int) -> None:
         """Truncate the file to its true size."""
@@ -65,8 +91,7 @@ def read_motor_values(folder: Path, run: RunSpec, tick: int) -> tuple[MotorValue
     """
     if not has_driver(run):
         return ()
-    size = MOTOR_RECORD.size * len(name_motors(run.robot))
-    return tuple(MOTOR_RECORD.iter_unpack(_read_part(folder, size, tick, tick + 1)))
+    return tuple(MOTOR_RECORD.iter_unpack(_read_part(folder, tick, tick + 1)[1]))
 
 
 def read_motor_columns(folder: Path, robot: RobotSpec, ticks: Array) -> dict[str, Array]:
@@ -83,35 +108,35 @@ def read_motor_columns(folder: Path, robot: RobotSpec, ticks: Array) -> dict[str
     import numpy as np
 
     names = name_motors(robot)
-    kind = np.dtype((np.dtype(list(MOTOR_FIELDS)), (len(names),)))
     first = int(ticks.min()) if len(ticks) else 0
-    rows = np.frombuffer(
-        _read_part(folder, kind.itemsize, first, int(ticks.max()) + 1 if len(ticks) else 0),
-        kind,
-    )
+    count, data = _read_part(folder, first, int(ticks.max()) + 1 if len(ticks) else 0)
+    rows = np.frombuffer(data, np.dtype((np.dtype(list(MOTOR_FIELDS)), (count,))))
     known = ticks < first + len(rows)
     places = ticks[known].astype(np.int64) - first
     columns: dict[str, Array] = {}
     for number, name in enumerate(names):
         for field, _ in MOTOR_FIELDS:
             values = np.full(len(ticks), np.nan)
-            values[known] = rows[field][places, number]
+            if number < count:
+                values[known] = rows[field][places, number]
             columns[f"{name}_{field}"] = values
     return columns
 
 
-def _read_part(folder: Path, size: int, first: int, end: int) -> bytes:
-    """Return the records of some ticks, as far as there are any: whole ones."""
+def _read_part(folder: Path, first: int, end: int) -> tuple[int, bytes]:
+    """Return the number of motors, and their records of some ticks as far as there are any: whole ones."""
     path = folder / MOTORS_FILE
     try:
         with open_regular(path) as file:
-            published_length(file.read(HEADER_BYTES), MOTORS_MAGIC, str(path))
+            size, _ = read_header(file.read(HEADER_BYTES), MOTORS_MAGIC, str(path))
+            if not size or size % MOTOR_RECORD.size or size > MOTOR_RECORD.size * MAX_MOTORS:
+                raise LogError("not a recording of motors", file=str(path))
             file.seek(HEADER_BYTES + first * size)
             data: bytes = file.read((end - first) * size)
     except FileNotFoundError:
-        return b""
+        return 1, b""
     except OSError as error:
         raise LogError(f"cannot be read: {error.strerror or error}", file=str(path)) from (
             error if of_the_machine(error) else None
         )
-    return data[: len(data) // size * size]
+    return size // MOTOR_RECORD.size, data[: len(data) // size * size]

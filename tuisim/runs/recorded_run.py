@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from array import array
 from bisect import bisect_right
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from itertools import islice
@@ -27,6 +27,7 @@ from tuisim.runs.side_files import read_actions
 from tuisim.runs.views import instant_of
 
 if TYPE_CHECKING:
+    from tuisim.core.plugged import PluggedPart
     from tuisim.runs.handle import RunHandle
     from tuisim.runs.views import OutputView, TelemetryView, TickRecord
 
@@ -51,7 +52,9 @@ class Recording:
         """Number in the catalogue; 0 if it is not listed."""
         self.name = name or (f"run {self.number}" if self.number else self.run_id)
         """Display name."""
-        self.spec: RunSpec = source.spec
+        self._source = source
+        self.first_spec: RunSpec = source.first_spec
+        """As it began."""
         self.folder: Path = source.folder
         self.telemetry: TelemetryView = source.telemetry
         self.output = source.output
@@ -67,6 +70,16 @@ class Recording:
             tuple(source.options.get("answers", ())) if isinstance(source, StoredRun) else answers
         )
         """Scripted answers to `input()`."""
+
+    @property
+    def spec(self) -> RunSpec:
+        """The run with all parts that have been plugged in."""
+        return self._source.spec
+
+    @property
+    def plugged(self) -> Sequence[PluggedPart]:
+        """These parts."""
+        return self._source.plugged
 
     def hold(self) -> None:
         """Stay as written up to now, until the next `RunHandle.pump` of a running run."""

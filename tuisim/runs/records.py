@@ -287,14 +287,19 @@ def published_length(data: bytes, magic: bytes, file: str) -> int:
     Raises:
         LogError: the file is not such a recording, or of another version.
     """
+    return read_header(data, magic, file)[1]
+
+
+def read_header(data: bytes, magic: bytes, file: str) -> tuple[int, int]:
+    """Return the size of a record and the length in a header; errors as of `published_length`."""
     if len(data) < HEADER_BYTES:
         raise LogError("too short to be a recording", file=file)
-    found, version, _, length = _HEADER.unpack_from(data)
+    found, version, record_bytes, length = _HEADER.unpack_from(data)
     if found != magic:
         raise LogError("not a tuisim recording", file=file)
     if version != FORMAT_VERSION:
         raise LogError(f"format version {version}, this tuisim reads {FORMAT_VERSION}", file=file)
-    return int(length)
+    return int(record_bytes), int(length)
 
 
 def is_hole(part: bytes | memoryview) -> bool:

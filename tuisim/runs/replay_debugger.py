@@ -145,7 +145,9 @@ class ReplayDebugger:
         )
         try:
             self._folder = owned_folder()
-            self.run = start_run(recording.program, recording.spec, options, _scratch(self._folder))
+            self.run = start_run(
+                recording.program, recording.first_spec, options, _scratch(self._folder)
+            )
         except (TuisimError, OSError) as error:
             self.busy = False
             self._failed(str(error))

@@ -47,7 +47,10 @@ def rerun(run: StoredRun, store: RunStore, **options: Any) -> RunHandle:
         LogError: the run has no recording, or its options are invalid.
     """
     return start_run(
-        program_again(run.program, run.folder), run.spec, replace(_options(run), **options), store
+        program_again(run.program, run.folder),
+        run.first_spec,
+        replace(_options(run), **options),
+        store,
     )
 
 

@@ -13,6 +13,7 @@ from tuisim.atomic import replacing
 from tuisim.config.mat_cache import FieldFiles, open_field, prepare
 from tuisim.config.mats import background
 from tuisim.core.field import Field
+from tuisim.core.plugged import PLUGGED_DIAMETER_MM, PluggedPart, plug_parts
 from tuisim.core.profile import NS_PER_S, due_ns
 from tuisim.core.spec import NoiseSpec, RunSpec
 from tuisim.core.tree import restore, to_plain
@@ -26,7 +27,7 @@ from tuisim.runs.views import OutputView, TelemetryView, TickRecord, views_of
 from tuisim.source import Program
 
 RUN_FILE = "run.json"
-RUN_FORMAT = 2
+RUN_FORMAT = 3
 _PROGRAM_KEYS = (
     "name",
     "path",
@@ -37,6 +38,7 @@ _PROGRAM_KEYS = (
     "python_path",
     "working_directory",
     "module_folder",
+    "shown_ports",
 )
 """What `run.json` holds of the program, in this order."""
 
@@ -65,6 +67,10 @@ class StoredRun:
     live: bool
     program: Program
     spec: RunSpec
+    """With all parts that were plugged in."""
+    first_spec: RunSpec
+    """As it began."""
+    plugged: tuple[PluggedPart, ...]
     field: Mapping[str, Any] | None
     """Files of the prepared mat, as written by the host."""
     options: Mapping[str, Any]
@@ -142,6 +148,7 @@ def new_run_data(
         "live": live,
         "program": {name: getattr(program, name) for name in _PROGRAM_KEYS},
         "spec": to_plain(spec),
+        "plugged": [],
         "field": None if field is None else dict(field),
         "options": dict(options or {}),
         "tags": [],
@@ -218,6 +225,22 @@ def _restored(plain: Mapping[str, Any]) -> RunSpec:
     return spec
 
 
+def add_plugged(spec: RunSpec, parts: Sequence[PluggedPart]) -> RunSpec:
+    """Return a run whose robot has the parts, too, that were plugged in."""
+    return replace(spec, robot=plug_parts(spec.robot, parts)) if parts else spec
+
+
+def _parse_program(plain: Mapping[str, Any]) -> Program:
+    """Return the program in a run file."""
+    texts = ("name", "path", "text", "prelude", "working_directory", "module_folder")
+    found: dict[str, Any] = {key: _typed(plain[key], str, key) for key in texts}
+    lists = ["arguments", "python_path"]
+    lists += ["shown_ports"] if plain["shown_ports"] is not None else []
+    for key in lists:
+        found[key] = tuple(_typed(word, str, key) for word in _typed(plain[key], list, key))
+    return Program(**found)
+
+
 def _options_of(data: Mapping[str, Any]) -> dict[str, Any]:
     options = _typed(data["options"], dict, "options")
     for answer in _typed(options.get("answers", []), list, "answers"):
@@ -253,15 +276,8 @@ def read_run(folder: Path, document: str | None = None, known: RunSpec | None = 
     except LogError as error:
         actions, cut = (), f"{error.message}: the user's actions are ignored"
     try:
-        program: dict[str, Any] = {
-            key: _typed(data["program"][key], str, key)
-            for key in ("name", "path", "text", "prelude", "working_directory", "module_folder")
-        }
-        for key in ("arguments", "python_path"):
-            program[key] = tuple(
-                _typed(word, str, key) for word in _typed(data["program"][key], list, key)
-            )
-        spec = _restored(data["spec"]) if known is None else known
+        first_spec = _restored(data["spec"]) if known is None else known
+        plugged = tuple(map(PluggedPart.from_plain, _typed(data["plugged"], list, "plugged")))
         end = None if data["end"] is None else _end_of(data["end"])
         lost = [view.note or _lost_of(view, end) for view in (telemetry, output)]
         # What has ended stays as it is.
@@ -272,8 +288,10 @@ def read_run(folder: Path, document: str | None = None, known: RunSpec | None = 
             number=int(data["number"]),
             created=_typed(data["created"], str, "created"),
             live=bool(data["live"]),
-            program=Program(**program),
-            spec=spec,
+            program=_parse_program(data["program"]),
+            spec=add_plugged(first_spec, plugged),
+            first_spec=first_spec,
+            plugged=plugged,
             field=_typed(data["field"] or {}, dict, "field") or None,
             options=_options_of(data),
             tags=tuple(_typed(tag, str, "a tag") for tag in data["tags"]),
@@ -308,9 +326,13 @@ def field_files(spec: RunSpec) -> FieldFiles:
         BackgroundError: the mat does not exist, or its image cannot be read.
     """
     image = background(spec.world.background).image
-    return prepare(
-        image, {s.diameter_mm for s in spec.robot.color_sensors}, fit=spec.world.background_fit
-    )
+    return prepare(image, find_diameters(spec), fit=spec.world.background_fit)
+
+
+def find_diameters(spec: RunSpec) -> frozenset[int]:
+    """Return the diameters of a run's colour sensors, also of one that may be plugged in."""
+    sensors = spec.robot.color_sensors
+    return frozenset({PLUGGED_DIAMETER_MM, *(sensor.diameter_mm for sensor in sensors)})
 
 
 def open_mat(run: StoredRun) -> Field:

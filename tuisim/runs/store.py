@@ -14,6 +14,7 @@ from typing import Any
 
 from tuisim.atomic import make_private_folder, private
 from tuisim.config.folders import home_folder
+from tuisim.core.plugged import PluggedPart
 from tuisim.core.profile import NS_PER_S, due_ns
 from tuisim.core.spec import RunSpec
 from tuisim.data_class import dataclass
@@ -60,7 +61,7 @@ class NewRun:
     folder: Path
     lock_fd: int = -1
     """The lock of the folder, see `side_files.hold`, which the process of the run inherits; -1 if it is over."""
-    data: Mapping[str, Any] = field(default_factory=dict)
+    data: dict[str, Any] = field(default_factory=dict)
     """The contents of its `run.json`."""
 
 
@@ -173,6 +174,16 @@ class RunStore:
                 samples=samples,
                 summary=end.summary,
             )
+
+    def note_plugged(self, run: NewRun, parts: Sequence[PluggedPart]) -> None:
+        """Record which parts have been plugged in up to now.
+
+        Raises:
+            LogError: the run cannot be written.
+        """
+        run.data["plugged"] = [part.to_plain() for part in parts]
+        with locked(self.home):
+            write_run_file(run.folder, {**run.data, "tags": _tags_in(run.folder)})
 
     def forget(self, run_id: str) -> None:
         """Delete a run that could not be started."""

@@ -6,7 +6,7 @@ import json
 import os
 import tempfile
 import threading
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import asdict
 from datetime import UTC, datetime
@@ -15,6 +15,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any
 
+from tuisim.core.plugged import PluggedPart
 from tuisim.core.spec import RunSpec
 from tuisim.errors import LogError
 from tuisim.protocol import Ended
@@ -168,6 +169,11 @@ class TemporaryRun:
 
     def finish(self, _run: NewRun, _end: Ended) -> None:
         """Do nothing: the handle of the run keeps its end."""
+
+    def note_plugged(self, _run: NewRun, parts: Sequence[PluggedPart]) -> None:
+        """Record which parts have been plugged in up to now."""
+        self._data["plugged"] = [part.to_plain() for part in parts]
+        self._document = json.dumps(self._data)
 
     def forget(self, _run_id: str) -> None:
         """Do nothing: the end of the `with` block deletes the folder."""

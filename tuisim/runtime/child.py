@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 from tuisim import protocol
 from tuisim.config.mat_cache import open_field
 from tuisim.core.profile import NS_PER_S
-from tuisim.core.simulation import FurtherMotors, Turn, simulation_of
+from tuisim.core.simulation import Turn, simulation_of
 from tuisim.core.tick_record import NoRecording
 from tuisim.runs.brick_state import motors_row
 from tuisim.runs.motor_records import MotorsWriter
@@ -201,12 +201,11 @@ class Child:
         )
         limits = RunLimits(int(options.time_limit_s * NS_PER_S), options.stall_limit_s)
         session.connect(channel, steering, limits, config.program.file)
-        session.replies = options.replies
+        session.replies, session.shown_ports = options.replies, config.program.shown_ports
         self._stop_when_full(self._telemetry, self._motors, self._output.writer, session.readings)
         self._output.place = lambda: (self._sim.tick, session.now, session.program_line(3))
         self._output.after_write = self._after_write
-        if isinstance(self._sim, FurtherMotors):
-            self._sim.on_turns = self._write_turns
+        self._sim.on_turns = self._write_turns
         remember_source(session.program_file, config.program.text)
         self._runner.connect(config)
         self._reads.begin(config.folder, config.own_folder, session.program_file)

@@ -122,4 +122,5 @@ def _program_of(plain: Mapping[str, Any]) -> Program:
         arguments=tuple(plain["arguments"]),
         python_path=tuple(plain["python_path"]),
         module_folder=plain["module_folder"],
+        shown_ports=None if plain["shown_ports"] is None else tuple(plain["shown_ports"]),
     )

@@ -8,7 +8,7 @@ any mode that needs more (live pacing, threads, a command, stopping) sets a bit 
 from __future__ import annotations
 
 import types
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from sys import _getframe
 from typing import TYPE_CHECKING, Any
 
@@ -16,7 +16,7 @@ from tuisim.core.field import Field
 from tuisim.core.profile import MS, NS_PER_S
 from tuisim.core.simulation import Simulation
 from tuisim.data_class import dataclass
-from tuisim.protocol import CLEANUP_S, End, MotorRegisters, Reply, ReplyWanted, Spoke
+from tuisim.protocol import CLEANUP_S, End, MotorRegisters, Plugged, Reply, ReplyWanted, Spoke
 from tuisim.runs.records import Stream
 from tuisim.runtime import wallclock
 from tuisim.runtime.channel import Channel
@@ -34,6 +34,7 @@ from tuisim.shim.waits import Wait, waits_for
 
 if TYPE_CHECKING:
     from tuisim.core.pen_marks import PenMarks
+    from tuisim.core.plugged import PluggedPart
     from tuisim.runs.readings import ReadingsWriter
 
 COMMANDS_AN_INSTANT = 100
@@ -107,6 +108,7 @@ class Session:
         self.flags = 0
         """Bits of `SessionFlag`."""
         self.held_up = ""
+        self.shown_ports: tuple[str, ...] | None = None
         self.pressed: frozenset[str] = frozenset()
         """The brick's buttons that are pressed."""
         self._due = sim.due_ns(1)
@@ -228,6 +230,24 @@ class Session:
             # Nothing else can change during the wait, so many short waits are equivalent to one long wait.
             timeout_ns *= max(1, REPEATED_WAIT_NS // max(1, timeout_ns))
         self._pass(self.now + timeout_ns, True)
+
+    def describe_part(self, port: str, part: str, role: str = "") -> PluggedPart:
+        """Return a part that is plugged in now; arguments as of `PluggedPart`."""
+        from tuisim.core.plugged import PluggedPart
+
+        return PluggedPart(port, part, self.sim.tick, self.program_line(), role)
+
+    def tell_plugged(self, parts: Sequence[PluggedPart]) -> None:
+        """Tell the host which parts have been plugged in."""
+        for part in parts:
+            self.channel.send(Plugged(part.port, part.part, part.tick, part.line, part.role))
+
+    def is_tried(self, error: type[Exception]) -> bool:
+        """Return whether the program would catch an error that is raised here; see `DeviceSession`."""
+        # Imported on demand: few programs ask for what is not there.
+        from tuisim.runtime.handlers import is_caught
+
+        return is_caught(error, _getframe(1), self.program_file)
 
     @waits_for(Wait.SOUND)
     def speak(self, text: str, wait_ns: int, tones: str = "", file: str = "") -> None:

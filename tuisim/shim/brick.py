@@ -7,6 +7,7 @@ would disconnect or exchange the device is refused with a message that names it.
 from __future__ import annotations
 
 import errno
+from dataclasses import field
 from functools import partial
 
 from tuisim.core.brick_motor import BrickMotor
@@ -19,7 +20,9 @@ from tuisim.core.spec import (
     INPUT_PORTS,
     NO_PORT,
     OUTPUT_PORTS,
+    MotorSpec,
     RobotSpec,
+    SensorSpec,
 )
 from tuisim.data_class import dataclass
 from tuisim.errors import NotSimulated
@@ -81,7 +84,7 @@ OUTPUT = PortKind("ev3-output-port", (AUTO, "tacho-motor", "dc-motor", "led", "r
 
 
 @dataclass(frozen=True, slots=True)
-class Plugged:
+class Connection:
     """The device that is connected to a port."""
 
     driver_name: str
@@ -89,22 +92,28 @@ class Plugged:
     """The port mode it needs."""
 
 
-def plugged_in(robot: RobotSpec) -> dict[str, Plugged]:
+def find_connections(robot: RobotSpec) -> dict[str, Connection]:
     """Return the devices on the robot's ports, by short name such as `in1`."""
     motors = [motor for motor in robot.motors if motor.port != NO_PORT]
-    found = {motor.port: Plugged(KINDS[motor.kind].driver_name, "tacho-motor") for motor in motors}
+    found = {
+        motor.port: Connection(KINDS[motor.kind].driver_name, "tacho-motor") for motor in motors
+    }
     for kind, sensor, *_ in mounted(robot):
-        found[sensor.port] = Plugged(kind.driver_name, kind.port_mode)
+        found[sensor.port] = Connection(kind.driver_name, kind.port_mode)
     return found
 
 
 class LegoPort:
     """One port, by its short name such as `in1`, and what is connected to it."""
 
-    def __init__(self, session: DeviceSession, port: str, plugged: Plugged | None) -> None:
-        self._session, self._port, self._plugged = session, port, plugged
+    def __init__(self, session: DeviceSession, port: str) -> None:
+        self._session, self._port = session, port
         self._kind = INPUT if port in INPUT_PORTS else OUTPUT
         self._mode = AUTO
+
+    @property
+    def _plugged(self) -> Connection | None:
+        return find_connections(self._session.sim.spec.robot).get(self._port)
 
     def device(self) -> SimDevice:
         """Return the device that the library reads and writes."""
@@ -154,11 +163,7 @@ class LegoPort:
 
 def all_ports(session: DeviceSession) -> list[SimDevice]:
     """Return the brick's ports, inputs first."""
-    plugged = plugged_in(session.sim.spec.robot)
-    return [
-        LegoPort(session, port, plugged.get(port)).device()
-        for port in (*INPUT_PORTS, *OUTPUT_PORTS)
-    ]
+    return [LegoPort(session, port).device() for port in (*INPUT_PORTS, *OUTPUT_PORTS)]
 
 
 def ports_hint(session: DeviceSession, class_name: str) -> str:
@@ -166,62 +171,97 @@ def ports_hint(session: DeviceSession, class_name: str) -> str:
     if class_name not in (MOTOR_CLASS, SENSOR_CLASS):
         return ""
     ports = OUTPUT_PORTS if class_name == MOTOR_CLASS else INPUT_PORTS
-    plugged = plugged_in(session.sim.spec.robot)
+    plugged = find_connections(session.sim.spec.robot)
     parts = [f"{port} {plugged[port].driver_name}" for port in sorted(plugged) if port in ports]
     there = f"This robot has: {', '.join(parts) or 'nothing of the kind'}."
     return f"{there} Another robot: -r ROBOT; `tuisim robots --from PROGRAM --out FILE` writes the program's own."
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True)
 class BuiltBrick:
-    """The brick of a robot."""
+    """The brick of a robot, and what is connected to it."""
 
+    session: DeviceSession
     files: DeviceFiles
-    colors: dict[str, ColorDevice]
-    """Its colour sensors, by device path."""
-    sensors: dict[str, LegoSensor]
-    """By port."""
-    motors: dict[str, Motor]
-    """By port."""
     lights: Lights
     battery: Battery
+    colors: dict[str, ColorDevice] = field(default_factory=dict)
+    """Its colour sensors, by device path."""
+    sensors: dict[str, LegoSensor] = field(default_factory=dict)
+    """By port."""
+    motors: dict[str, Motor] = field(default_factory=dict)
+    """By port."""
+    tachos: dict[str, Tacho] = field(default_factory=dict)
+    """The drivers of the motors, by port."""
+    paths: dict[str, str] = field(default_factory=dict)
+    """Of the devices on ports, by port."""
+    _heard: list[LegoSensor] = field(default_factory=list)
+    """All sensors: an ultrasonic one hears the others."""
+
+    def connect_motor(self, motor: MotorSpec, simulated: Motor) -> None:
+        """Connect a motor of the robot."""
+        port = motor.port
+        self.motors[port] = simulated
+        tacho = self.tachos[port] = tacho_of(self.session, simulated, port, motor.kind)
+        self._add(MOTOR_CLASS, "motor", port, tacho.device())
+
+    def connect_sensor(self, spec: SensorSpec) -> None:
+        """Connect a sensor of the robot."""
+        sensor = self.sensors[spec.port] = DEVICES[type(spec)](self.session, spec, self._heard)
+        self._heard.append(sensor)
+        path = self._add(SENSOR_CLASS, "sensor", spec.port, sensor.device())
+        if isinstance(sensor, ColorDevice):
+            self.colors[path] = sensor
+
+    def _add(self, class_name: str, name: str, port: str, device: SimDevice) -> str:
+        """Add a device under the next number that was never used, as the kernel does, and return its path."""
+        path = self.paths[port] = self.files.add_numbered(class_name, name, device)
+        return path
+
+    def disconnect(self, port: str) -> None:
+        """Take away what is connected to a port."""
+        path = self.paths.pop(port)
+        del self.files.by_path[path]
+        self.colors.pop(path, None)
+        self.motors.pop(port, None)
+        self.tachos.pop(port, None)
+        if (sensor := self.sensors.pop(port, None)) is not None:
+            self._heard.remove(sensor)
+
+    def take_wheels(self) -> None:
+        """Let the session read the registers of the motors that are the wheels' now."""
+        session = self.session
+        wheels = zip(
+            session.sim.spec.robot.wheel_motors, (session.sim.left, session.sim.right), strict=True
+        )
+        session.wheel_registers = tuple(
+            (
+                self.tachos.get(motor.port) or tacho_of(session, simulated, motor.port, motor.kind)
+            ).registers
+            for motor, simulated in wheels
+        )
 
 
 def build_brick(session: DeviceSession) -> BuiltBrick:
     """Build the brick and connect the robot's motors and sensors."""
-    brick, robot, sim = DeviceFiles(CLASSES), session.sim.spec.robot, session.sim
-    motors = [*zip(robot.motors, (sim.left, sim.right, *sim.others), strict=True)]
-    tachos: dict[str, Tacho] = {}
+    robot, sim = session.sim.spec.robot, session.sim
+    built = BuiltBrick(session, DeviceFiles(CLASSES), Lights(session), Battery(session))
+    brick = built.files
+    motors = zip(robot.motors, (sim.left, sim.right, *sim.others), strict=True)
     # Sorted by port, so that a class without an address finds the first port.
-    on_ports = sorted(
-        (found for found in motors if found[0].port != NO_PORT), key=lambda found: found[0].port
-    )
-    for at, (motor, simulated) in enumerate(on_ports):
-        tachos[motor.port] = tacho_of(session, simulated, motor.port, motor.kind)
-        brick.add(MOTOR_CLASS, f"motor{at}", tachos[motor.port].device())
-    session.wheel_registers = tuple(
-        (tachos.get(motor.port) or tacho_of(session, simulated, motor.port, motor.kind)).registers
-        for motor, simulated in motors[:2]
-    )
-    colors: dict[str, ColorDevice] = {}
-    sensors: dict[str, LegoSensor] = {}
-    heard: list[LegoSensor] = []
-    for at, spec in enumerate(sorted(robot.sensors, key=lambda found: found.port)):
-        sensor = sensors[spec.port] = DEVICES[type(spec)](session, spec, heard)
-        heard.append(sensor)
-        brick.add(SENSOR_CLASS, f"sensor{at}", sensor.device())
-        if isinstance(sensor, ColorDevice):
-            colors[f"/sys/class/{SENSOR_CLASS}/sensor{at}"] = sensor
+    for motor, simulated in sorted(motors, key=lambda found: found[0].port):
+        if motor.port != NO_PORT:
+            built.connect_motor(motor, simulated)
+    built.take_wheels()
+    for spec in sorted(robot.sensors, key=lambda found: found.port):
+        built.connect_sensor(spec)
     for at, socket in enumerate(all_ports(session)):
         brick.add(PORT_CLASS, f"port{at}", socket)
-    lights, battery = Lights(session), Battery(session)
-    for name, light in lights.lights.items():
+    for name, light in built.lights.lights.items():
         brick.add(LED_CLASS, led_name(name), light.device())
-    brick.add(POWER_CLASS, BATTERY, battery.device())
+    brick.add(POWER_CLASS, BATTERY, built.battery.device())
     brick.add(BOARD_CLASS, BOARD, board(session))
-    return BuiltBrick(
-        brick, colors, sensors, {spec.port: motor for spec, motor in on_ports}, lights, battery
-    )
+    return built
 
 
 def board(session: DeviceSession) -> SimDevice:

@@ -73,6 +73,8 @@ class SimDevice:
     ) -> None:
         self.session = session
         self.notifying, self._temporary = dict(notifying or {}), temporary
+        self.is_opened = False
+        """Whether the program has taken hold of it."""
         self.commands = 0
         """Number of commands that were written to its file: who polls it sees each."""
         self.readers = dict(readers)
@@ -166,10 +168,18 @@ class DeviceFiles:
     def __init__(self, classes: Iterable[str]) -> None:
         self.classes = tuple(classes)
         self.by_path: dict[str, SimDevice] = {}
+        self._next_numbers: dict[str, int] = {}
 
     def add(self, class_name: str, name: str, device: SimDevice) -> None:
         """Add a device."""
         self.by_path[f"{CLASSES_FOLDER}/{class_name}/{name}"] = device
+
+    def add_numbered(self, class_name: str, name: str, device: SimDevice) -> str:
+        """Add a device whose name gets the next number of its class, and return its path."""
+        number = self._next_numbers.get(class_name, 0)
+        self._next_numbers[class_name] = number + 1
+        self.add(class_name, f"{name}{number}", device)
+        return f"{CLASSES_FOLDER}/{class_name}/{name}{number}"
 
     def names(self, class_path: str) -> Iterator[str]:
         """Yield the names of the devices of one class, like a listing of its folder."""

@@ -41,7 +41,6 @@ class DriverTacho(Tacho):
     ) -> None:
         super().__init__(session, port, kind)
         self._motor, self._sign = motor, 1
-        self._number = session.sim.find_number(motor)
         self._set_points: list[Any] = [*SetPoints()]
         self._look = lambda: self._now().noticed_ns
 
@@ -134,5 +133,7 @@ class DriverTacho(Tacho):
             self._stop_action, self._polarity, self._sign = "coast", "normal", 1
 
     def _tell(self, call: Command | Setting, values: SetPoints | Constant | int) -> None:
-        command = MotorCommand(self._session.now, self._number, call, values)
-        self._session.sim.command_motor(command)
+        sim = self._session.sim
+        sim.command_motor(
+            MotorCommand(self._session.now, sim.find_number(self._motor), call, values)
+        )

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any, Protocol
 
 if TYPE_CHECKING:
     from tuisim.core.field import Field
+    from tuisim.core.plugged import PluggedPart
     from tuisim.core.simulation import Simulation
     from tuisim.protocol import MotorRegisters
     from tuisim.runs.records import Stream
@@ -26,6 +27,9 @@ class DeviceSession(Protocol):
 
     held_up: str
     """What keeps the program from going on, for the summary if a limit ends the run; empty for nothing."""
+
+    shown_ports: tuple[str, ...] | None
+    """As `Program.shown_ports`; None also before the program begins."""
 
     pressed: frozenset[str]
     """The pressed buttons of the brick, by their names in the library."""
@@ -65,6 +69,15 @@ class DeviceSession(Protocol):
 
     def show(self, row: str, stream: Stream) -> None:
         """Record what the brick shows; `row` has the format of `runs.brick_state`."""
+
+    def tell_plugged(self, parts: Sequence[PluggedPart]) -> None:
+        """Tell the host which parts have been plugged in."""
+
+    def describe_part(self, port: str, part: str, role: str = "") -> PluggedPart:
+        """Return a part that is plugged in now; arguments as of `PluggedPart`."""
+
+    def is_tried(self, error: type[Exception]) -> bool:
+        """Return whether the program would catch an error that is raised here, and so just tries what there is."""
 
     def spawn_daemon(self, work: Callable[[], None]) -> None:
         """Run `work` in the background while the program continues."""

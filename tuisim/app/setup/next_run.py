@@ -54,6 +54,8 @@ class NextRun:
     """What the source of the program has decided, or may decide, by path: nobody has chosen it."""
     program_robot: RobotChoice | None = None
     """The robot that the program needs; None for the default one."""
+    shown_ports: tuple[str, ...] | None = None
+    """As `Program.shown_ports`, while the robot follows the program."""
 
     @property
     def free(self) -> frozenset[str]:
@@ -104,7 +106,8 @@ def first_plan(
     """
     if settings is None:
         return with_arguments(plan_of_run(spec), program.arguments if program else ())
-    return replace(plan_of(settings, decided.free), program_robot=decided.robot)
+    plan = plan_of(settings, decided.free)
+    return replace(plan, program_robot=decided.robot, shown_ports=decided.shown_ports)
 
 
 def plan_of_spec(spec: RunSpec) -> NextRun:
@@ -192,7 +195,12 @@ def following(plan: NextRun, source: ProgramSource) -> tuple[NextRun, Decided]:
     found = replace(
         with_values(plan, changed) if changed else plan, words=kept | named, from_program=layer
     )
-    found = replace(found, robot=changed.get("robot", plan.robot), program_robot=decided.robot)
+    found = replace(
+        found,
+        robot=changed.get("robot", plan.robot),
+        program_robot=decided.robot,
+        shown_ports=decided.shown_ports,
+    )
     return found, decided if changed.keys() & {"robot", "profile"} else Decided()
 
 

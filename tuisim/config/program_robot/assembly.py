@@ -12,7 +12,6 @@ from tuisim.config.program_robot.library import PAIRS, DeviceKind
 from tuisim.config.program_robot.mechanics import mechanics_in
 from tuisim.config.program_robot.mentions import Mention, Mentions, Pair, Where
 from tuisim.config.program_robot.places import (
-    Body,
     NewSensors,
     fields_of,
     mounted,
@@ -31,9 +30,11 @@ from tuisim.config.program_robot.wheels import (
 )
 from tuisim.config.program_robot.words import side_of
 from tuisim.config.robots import RobotChoice
+from tuisim.core.sensor_places import Body
 from tuisim.core.spec import (
     INPUT_PORTS,
     NO_PORT,
+    OUTPUT_PORTS,
     ColorSensorSpec,
     GyroSpec,
     InfraredSpec,
@@ -53,6 +54,7 @@ KINDS: Mapping[type, DeviceKind] = {
     InfraredSpec: DeviceKind.INFRARED,
 }
 """The kind of each sensor, by the class of its spec."""
+MOTOR_KINDS_SHOWN = {"large": DeviceKind.LARGE, "medium": DeviceKind.MEDIUM}
 _USUAL_PORTS = {
     DeviceKind.TOUCH: "in1",
     DeviceKind.INFRARED: "in1",
@@ -116,6 +118,20 @@ def build_robot(mentions: Mentions, name: str, usual: RobotSpec) -> BuiltRobot |
     keeps = _on_ports(spec) == _on_ports(usual)
     return BuiltRobot(
         RobotChoice(spec, own_places=own_places), tuple(builder.parts), tuple(builder.doubts), keeps
+    )
+
+
+def find_shown_ports(mentions: Mentions, robot: RobotSpec) -> tuple[str, ...]:
+    """Return the ports of the parts that a program shows on its robot, also of those whose ports it does not say."""
+    pairs = [port for pair in mentions.pairs for port in (pair.left, pair.right)]
+    shown = {one.port for one in mentions.devices} | {*pairs}
+    without_port = {one.kind for one in mentions.devices if not one.port}
+    kinds = {motor.port: MOTOR_KINDS_SHOWN[motor.kind] for motor in robot.motors}
+    kinds |= {sensor.port: KINDS[type(sensor)] for sensor in robot.sensors}
+    return tuple(
+        port
+        for port in (*INPUT_PORTS, *OUTPUT_PORTS)
+        if port in shown or kinds.get(port) in without_port
     )
 
 

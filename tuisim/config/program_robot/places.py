@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import field, replace
 from typing import Any
 
 from tuisim.config.program_robot.library import DeviceKind
 from tuisim.config.program_robot.mentions import Mention
 from tuisim.config.program_robot.words import Side, means_aside, side_of
+from tuisim.core.sensor_places import LOOKS, ORDERS, SENSOR_MAKERS, Body
 from tuisim.core.spec import (
     ColorSensorSpec,
     GyroSpec,
@@ -20,26 +21,8 @@ from tuisim.core.spec import (
 )
 from tuisim.data_class import dataclass
 
-_BUMPER_MM = 60.0
-"""How far a bumper is ahead of the axle, before the front of the robot."""
-_LOOKS: Mapping[Side, tuple[float, float, float]] = {
-    Side.FRONT: (0.0, 20.0, 0.0),
-    Side.LEFT: (-60.0, 0.0, 90.0),
-    Side.RIGHT: (60.0, 0.0, -90.0),
-    Side.BACK: (0.0, -100.0, 180.0),
-    Side.MIDDLE: (0.0, 20.0, 0.0),
-}
-"""x, y and direction of a sensor that looks to a side."""
 _ASIDE = (Side.LEFT, Side.RIGHT, Side.BACK)
 _ROW = (Side.LEFT, Side.MIDDLE, Side.RIGHT)
-_DOWN: Mapping[Side, tuple[float, float]] = {
-    Side.MIDDLE: (0.0, 30.0),
-    Side.FRONT: (0.0, 60.0),
-    Side.LEFT: (-50.0, 30.0),
-    Side.RIGHT: (50.0, 30.0),
-    Side.BACK: (0.0, -60.0),
-}
-"""x and y of a colour sensor."""
 
 
 def with_sides(mentions: Sequence[Mention]) -> list[Mention]:
@@ -70,16 +53,6 @@ def say_other_sides(mentions: Mapping[str, Mention], usual: Mapping[str, SensorS
     )
 
 
-@dataclass(frozen=True, slots=True)
-class Body:
-    """How far a robot extends."""
-
-    half_width_mm: float
-    """To either side of its middle."""
-    back_mm: float
-    """Behind the axle, as a negative y."""
-
-
 @dataclass(slots=True)
 class NewSensors:
     """The sensors that the usual robot does not have, by port."""
@@ -102,7 +75,7 @@ def places_for(
 ) -> dict[str, SensorSpec]:
     """Return new sensors by port, at places and with names that no other sensor has."""
     found: dict[str, SensorSpec] = {}
-    for kind, make in _MAKERS.items():
+    for kind, spec in _SPECS.items():
         mentions = {port: one for port, one in sorted(new.by_port.items()) if one.kind is kind}
         known = [*placed.values(), *found.values()]
         names = {sensor.name for sensor in known}
@@ -113,31 +86,23 @@ def places_for(
                 del mentions[port]
         sides = _sides(
             mentions,
-            first_free=not any(isinstance(sensor, _SPECS[kind]) for sensor in known),
+            first_free=not any(isinstance(sensor, spec) for sensor in known),
             kind=kind,
         )
         for port, side in sides.items():
-            sensor = make(port, side, names, body)
+            sensor = SENSOR_MAKERS[spec](port, side, names, body)
             names.add(sensor.name)
             found[port] = sensor
     return found
 
 
-_SPECS: Mapping[DeviceKind, type] = {
+_SPECS: Mapping[DeviceKind, type[SensorSpec]] = {
     DeviceKind.COLOR: ColorSensorSpec,
     DeviceKind.ULTRASONIC: UltrasonicSpec,
     DeviceKind.GYRO: GyroSpec,
     DeviceKind.TOUCH: TouchSpec,
     DeviceKind.INFRARED: InfraredSpec,
 }
-_ORDERS: Mapping[DeviceKind, tuple[Side, ...]] = {
-    DeviceKind.COLOR: (Side.MIDDLE, Side.FRONT, Side.LEFT, Side.RIGHT),
-    DeviceKind.ULTRASONIC: (Side.FRONT, Side.RIGHT, Side.LEFT, Side.BACK),
-    DeviceKind.INFRARED: (Side.FRONT, Side.RIGHT, Side.LEFT, Side.BACK),
-    DeviceKind.TOUCH: (Side.LEFT, Side.RIGHT, Side.BACK, Side.FRONT),
-    DeviceKind.GYRO: (Side.MIDDLE,),
-}
-"""The sides of sensors of which no name says the side, in turn."""
 
 
 def _sides(
@@ -147,60 +112,16 @@ def _sides(
     found = {port: side_of(mention.names) for port, mention in mentions.items()}
     if kind is DeviceKind.TOUCH and first_free and len(found) == 1 and Side.NONE in found.values():
         return dict.fromkeys(found, Side.FRONT)
+    orders = [Side(side) for side in ORDERS[_SPECS[kind]]]
     taken = {*found.values()} | (
         set() if first_free or kind in (DeviceKind.TOUCH, DeviceKind.COLOR) else {Side.FRONT}
     )
     for port, side in found.items():
         if side is Side.NONE or [*found.values()].count(side) > 1:
-            free = [one for one in _ORDERS[kind] if one not in taken]
-            found[port] = free[0] if free else _ORDERS[kind][-1]
+            free = [one for one in orders if one not in taken]
+            found[port] = free[0] if free else orders[-1]
             taken.add(found[port])
     return found
-
-
-def _name(base: str, side: Side, names: set[str]) -> str:
-    """Return a name that is free: the base, else with its side, else with a number."""
-    choices = [base, f"{base}_{side}", *(f"{base}{number}" for number in range(2, 6))]
-    return next(name for name in choices if name not in names)
-
-
-def _color(port: str, side: Side, names: set[str], _body: Body) -> SensorSpec:
-    x_mm, y_mm = _DOWN[side]
-    name = side.value if side.value not in names else _name("color", side, names)
-    return ColorSensorSpec(name, port, x_mm, y_mm)
-
-
-def _ultrasonic(port: str, side: Side, names: set[str], _body: Body) -> SensorSpec:
-    x_mm, y_mm, angle_deg = _LOOKS[side]
-    return UltrasonicSpec(_name("ultrasonic", side, names), port, x_mm, y_mm, angle_deg)
-
-
-def _infrared(port: str, side: Side, names: set[str], _body: Body) -> SensorSpec:
-    x_mm, y_mm, angle_deg = _LOOKS[side]
-    return InfraredSpec(_name("infrared", side, names), port, x_mm, y_mm, angle_deg)
-
-
-def _touch(port: str, side: Side, names: set[str], body: Body) -> SensorSpec:
-    # As wide as the robot, or half as wide: one of its corners would meet a wall before a narrow bumper does.
-    half_mm = body.half_width_mm
-    x_mm = {Side.LEFT: -half_mm / 2, Side.RIGHT: half_mm / 2}.get(side, 0.0)
-    y_mm = body.back_mm - 15.0 if side is Side.BACK else _BUMPER_MM
-    return TouchSpec(
-        _name("touch", side, names), port, x_mm, y_mm, half_mm if x_mm else 2 * half_mm
-    )
-
-
-def _gyro(port: str, _side: Side, names: set[str], _body: Body) -> SensorSpec:
-    return GyroSpec(_name("gyro", Side.NONE, names), port)
-
-
-_MAKERS: Mapping[DeviceKind, Callable[[str, Side, set[str], Body], Any]] = {
-    DeviceKind.COLOR: _color,
-    DeviceKind.ULTRASONIC: _ultrasonic,
-    DeviceKind.GYRO: _gyro,
-    DeviceKind.TOUCH: _touch,
-    DeviceKind.INFRARED: _infrared,
-}
 
 
 def on_port(sensor: Any, port: str) -> SensorSpec:
@@ -214,7 +135,7 @@ def mounted(sensor: SensorSpec, mention: Mention) -> SensorSpec:
     side = side_of(mention.names) or (Side.RIGHT if means_aside(mention.names) else Side.NONE)
     if not isinstance(sensor, UltrasonicSpec | InfraredSpec) or side not in _ASIDE:
         return sensor
-    x_mm, y_mm, angle_deg = _LOOKS[side]
+    x_mm, y_mm, angle_deg = LOOKS[side]
     return replace(sensor, x_mm=x_mm, y_mm=y_mm, angle_deg=angle_deg)
 
 

@@ -125,6 +125,12 @@ class Axle:
         self.low_deg, self.high_deg = -inf, inf
         """An obstacle keeps the axle between these angles."""
 
+    def change_load(self, plant: PlantSpec, battery_v: float) -> None:
+        """Let the motor move something else from now on; arguments as for the class."""
+        is_powered = self.circuit is self._powered
+        self._powered, self._coasting = build_circuit(plant, battery_v), build_circuit(plant, None)
+        self.circuit = self._powered if is_powered else self._coasting
+
     @property
     def stands(self) -> bool:
         """Whether it is at rest, and the torque is too small to start it."""

@@ -78,6 +78,11 @@ def build_axle(spec: RunSpec, kind: str, *, free: bool) -> Axle:
     return Axle(choose_plant(spec, kind, free=free), spec.robot.battery_v)
 
 
+def change_load(axle: Axle, spec: RunSpec, kind: str, *, free: bool) -> None:
+    """Let a motor carry a wheel from now on, or no longer; arguments as of `choose_plant`."""
+    axle.change_load(choose_plant(spec, kind, free=free), spec.robot.battery_v)
+
+
 class SimulatedMotor(DriverMotor):
     """One motor of a robot.
 

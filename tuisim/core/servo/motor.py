@@ -67,7 +67,6 @@ class ServoMotor:
 
     __slots__ = (
         "_actuation",
-        "_axle",
         "_course",
         "_ending",
         "_fastest_deg",
@@ -80,6 +79,7 @@ class ServoMotor:
         "_tick",
         "_tick_s",
         "_tick_us",
+        "axle",
         "blocked_ticks",
         "control",
         "duty",
@@ -94,7 +94,7 @@ class ServoMotor:
 
     def __init__(self, tick_hz: int, law: MotorLaw, kind: str, axle: Axle) -> None:
         self._hz, self._tick_s, self._tick_us = tick_hz, 1.0 / tick_hz, 1_000_000 // tick_hz
-        self.law, self.kind, self.model, self._axle = law, kind, MODELS[kind], axle
+        self.law, self.kind, self.model, self.axle = law, kind, MODELS[kind], axle
         self.mode = STOPPED
         self.position_deg = 0.0
         self.speed_dps = 0.0
@@ -377,7 +377,7 @@ class ServoMotor:
 
     def _run_on(self, now_us: int) -> float:
         """Run one tick without a guide."""
-        axle, left_ns = self._axle, min(self._tick_us, now_us - self._free_us) * 1000.0
+        axle, left_ns = self.axle, min(self._tick_us, now_us - self._free_us) * 1000.0
         begin_deg, axle.speed_dps = axle.angle_deg, self._free_dps
         axle.power(None if self.duty is None else self.duty / PER_PERCENT)
         while left_ns:

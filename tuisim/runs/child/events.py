@@ -7,6 +7,7 @@ from dataclasses import asdict
 
 import msgspec
 
+from tuisim.core.plugged import PluggedPart
 from tuisim.errors import HostError
 from tuisim.protocol import (
     EVENTS,
@@ -18,6 +19,7 @@ from tuisim.protocol import (
     LineHistory,
     Message,
     Paused,
+    Plugged,
     ReplyWanted,
     Resumed,
     Spoke,
@@ -55,11 +57,23 @@ def decode_event(line: bytes) -> Message:
         event = msgspec.json.decode(line, type=kind)
         if not _is_sound(asdict(event)):
             raise ValueError(line)
+        if isinstance(event, Plugged):
+            # Raises a ValueError unless it is a part.
+            build_part(event)
     except (msgspec.MsgspecError, ValueError, KeyError, RecursionError) as error:
         raise HostError(
             f"the program's process sent an invalid message: {line[:_MOST_SHOWN]!r}"
         ) from error
     return event
+
+
+def build_part(event: Plugged) -> PluggedPart:
+    """Return the part that an event tells of.
+
+    Raises:
+        ValueError: there is no such part.
+    """
+    return PluggedPart(event.port, event.part, event.tick, event.line, event.role)
 
 
 def _is_sound(value: object) -> bool:
@@ -149,9 +163,15 @@ class EventStream:
         return None if self.falsified else event
 
 
-def allowed_events(options: RunOptions) -> _Kinds:
-    """Return the classes of events that a run can send besides its start, its sounds and its end."""
+def allowed_events(options: RunOptions, *, plugs: bool) -> _Kinds:
+    """Return the classes of events that a run can send besides its start, its sounds and its end.
+
+    Args:
+        options: How it is run.
+        plugs: Whether parts may be plugged in.
+    """
     return (
+        *((Plugged,) if plugs else ()),
         *(DEBUGGED if options.can_pause else ()),
         *((InputWanted,) if options.asks_user else ()),
         *((ReplyWanted,) if options.replies else ()),

@@ -7,14 +7,16 @@ from __future__ import annotations
 
 import select
 import types
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from fnmatch import fnmatch
 from functools import wraps
 from typing import Any
 
 from tuisim.core.profile import MS, MotorLaw
+from tuisim.shim.brick import MOTOR_CLASS, SENSOR_CLASS, BuiltBrick
 from tuisim.shim.device_files import DeviceFiles, free_of_charge
 from tuisim.shim.ev3dev.browser_library import speak_as_browser
+from tuisim.shim.plugs import PART_OF_KIND, Plugs
 from tuisim.shim.session import DeviceSession
 from tuisim.shim.unsupported.devices import other_sensors_note, refused_device
 from tuisim.shim.waits import Wait, waits_for
@@ -67,18 +69,20 @@ class MotorPoll:
         return []
 
 
-def connect(brick: DeviceFiles, hint: Callable[[str], str]) -> None:
-    """Patch `ev3dev2` before any of its submodules is imported.
+def connect(built: BuiltBrick, hint: Callable[[str], str]) -> Plugs:
+    """Patch `ev3dev2` before any of its submodules is imported, and return what plugs in its parts.
 
     Args:
-        brick: The devices.
+        built: The brick.
         hint: Returns what to add to the error about a missing device of a class.
     """
     import ev3dev2
 
+    brick, plugs = built.files, Plugs(built, ev3dev2.DeviceNotFound)
     ev3dev2.list_device_names = _in_place_of(ev3dev2.list_device_names, _device_lister(brick))
     _patch_device(ev3dev2.Device, brick)
-    _patch_look_up(ev3dev2, hint)
+    _patch_look_up(ev3dev2, brick, plugs, hint)
+    return plugs
 
 
 def _in_place_of(
@@ -92,7 +96,27 @@ def _in_place_of(
     return wraps(original)(copy)
 
 
-def _patch_look_up(library: Any, hint: Callable[[str], str]) -> None:
+def plug_device(plugs: Plugs, device: Any, class_name: str) -> bool:
+    """Plug in what the library looks for, and return whether it is there now.
+
+    Args:
+        plugs: Plugs it in.
+        device: Object of the library; its `kwargs` say what it was to match.
+        class_name: Kernel name of the class that was searched.
+    """
+    wanted: Mapping[str, Any] = device.kwargs
+    drivers = wanted.get("driver_name", ())
+    if wanted.keys() - {"driver_name", "address"} or class_name not in (MOTOR_CLASS, SENSOR_CLASS):
+        return False
+    usual = PART_OF_KIND["large"] if class_name == MOTOR_CLASS and not drivers else ""
+    return plugs.add_driver(
+        [drivers] if isinstance(drivers, str) else drivers, wanted.get("address"), usual
+    )
+
+
+def _patch_look_up(
+    library: Any, brick: DeviceFiles, plugs: Plugs, hint: Callable[[str], str]
+) -> None:
     look_up = library.Device.__init__
 
     @wraps(look_up)
@@ -103,6 +127,10 @@ def _patch_look_up(library: Any, hint: Callable[[str], str]) -> None:
             refused = refused_device(self, class_name, library.DeviceNotFound)
             if refused is not None:
                 raise refused from None
+            if plug_device(plugs, self, class_name):
+                look_up(self, class_name, *args, **kwargs)
+                brick.by_path[self._path].is_opened = True
+                return
             error.args = (
                 " ".join(
                     filter(
@@ -111,6 +139,8 @@ def _patch_look_up(library: Any, hint: Callable[[str], str]) -> None:
                 ),
             )
             raise
+        if self._path in brick.by_path:
+            brick.by_path[self._path].is_opened = True
 
     library.Device.__init__ = __init__
 

@@ -66,7 +66,7 @@ def install(session: DeviceSession, built: BuiltBrick) -> None:
     sys.meta_path.insert(0, OtherLibrary((PYBRICKS,), Library.EV3DEV2))
     sys.meta_path.append(MissingLibrary())
     sys.meta_path.append(HardwareFinder(Library.EV3DEV2))
-    connect(built.files, partial(ports_hint, session))
+    connect(built, partial(ports_hint, session))
     sys.modules["ev3dev2_glue"] = glue_module(session)
     sys.modules[virtual.NAME] = virtual.virtual_module(session)
     sys.modules.update(evdev_modules(session))

@@ -1,0 +1,122 @@
+"""Programs that ask for parts which their text does not show: they are plugged in, the same in every run."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tests.running import Done, over
+from tuisim.config.build import build_run_spec
+from tuisim.config.program_file import find_program, read_program
+from tuisim.config.program_settings import program_settings
+from tuisim.runs.handle import RunOptions, start_run
+
+LATE_TOUCH = """\
+from ev3dev2.motor import MoveTank, OUTPUT_B, OUTPUT_C
+import ev3dev2.sensor.lego as lego
+tank = MoveTank(OUTPUT_B, OUTPUT_C)
+tank.on_for_seconds(20, 20, 0.5)
+touch = getattr(lego, "".join(("Touch", "Sensor")))("in1")
+print(touch.is_pressed)
+"""
+TAKEN = """\
+from ev3dev2.sensor import INPUT_1
+from ev3dev2.sensor.lego import UltrasonicSensor
+import ev3dev2.sensor.lego as lego
+far = UltrasonicSensor(INPUT_1)
+getattr(lego, "".join(("Touch", "Sensor")))("in1")
+"""
+OPENED = """\
+import ev3dev2.sensor.lego as lego
+kinds = ["".join((kind, "Sensor")) for kind in ("Ultrasonic", "Touch")]
+for kind in kinds:
+    getattr(lego, kind)("in1")
+"""
+TRIED = """\
+from ev3dev2 import DeviceNotFound
+import ev3dev2.sensor.lego as lego
+def look(kind):
+    return getattr(lego, "".join((kind, "Sensor")))("in1")
+for kind in ("Touch", "Infra" + "red"):
+    try:
+        look(kind)
+    except DeviceNotFound:
+        print("no", kind)
+"""
+TRIED_WIDELY = """\
+import ev3dev2.sensor.lego as lego
+kind = "".join(("Touch", "Sensor"))
+def look():
+    try:
+        return getattr(lego, kind)("in1")
+    except Exception:
+        return None
+def main():
+    return getattr(lego, kind)("in1").is_pressed
+print(look())
+try:
+    print(main())
+except Exception as error:
+    print(error)
+"""
+LISTED = """\
+from ev3dev2.sensor import Sensor, list_sensors
+print(sorted(sensor.driver_name for sensor in list_sensors()))
+print(Sensor("in2").driver_name)
+"""
+
+
+def run_program(folder: Path, text: str, robot: str | None = None, **options: object) -> Done:
+    """Run a program from its file, as `tuisim run` does."""
+    path = folder / "late.py"
+    path.write_text(text, "utf-8")
+    source = read_program(find_program(str(path)))
+    found = program_settings(source, {} if robot is None else {"robot": robot})
+    program, spec = found.applied_to(source.program), build_run_spec(found.settings)
+    return over(start_run(program, spec, RunOptions(time_limit_s=60.0, **options)))  # type: ignore[arg-type]
+
+
+def test_a_sensor_is_there_when_the_program_asks_for_it(home: Path, tmp_path: Path) -> None:
+    done = run_program(tmp_path, LATE_TOUCH)
+    assert (done.ended.end, done.lines) == ("finished", ["0"])
+    (part,) = done.run.plugged
+    assert (part.port, part.part, part.line, part.role) == ("in1", "TouchSensor", 5, "")
+    stored = done.run.stored()
+    assert stored.plugged == (part,)
+    assert stored.first_spec.robot.ultrasonic is not None
+    assert stored.spec.robot.ultrasonic is None
+    assert [sensor.port for sensor in stored.spec.robot.touch_sensors] == ["in1"]
+
+
+@pytest.mark.parametrize("text", [TAKEN, OPENED])
+def test_a_port_that_is_used_stays_taken(home: Path, tmp_path: Path, text: str) -> None:
+    done = run_program(tmp_path, text)
+    assert done.run.plugged == []
+    assert "DeviceNotFound: TouchSensor(in1) is not connected" in done.errors[-1]
+
+
+def test_a_named_robot_stays_as_it_is(home: Path, tmp_path: Path) -> None:
+    done = run_program(tmp_path, LATE_TOUCH, robot="Default_Robot")
+    assert done.run.plugged == []
+    assert "DeviceNotFound" in done.errors[-1]
+
+
+def test_a_trial_plugs_in_nothing(home: Path, tmp_path: Path) -> None:
+    done = run_program(tmp_path, TRIED)
+    assert (done.lines, done.run.plugged) == (["no Touch", "no Infrared"], [])
+
+
+def test_a_handler_around_the_whole_program_is_no_trial(home: Path, tmp_path: Path) -> None:
+    done = run_program(tmp_path, TRIED_WIDELY)
+    assert done.lines == ["None", "0"]
+    assert [part.line for part in done.run.plugged] == [9]
+
+
+def test_listing_plugs_in_nothing(home: Path, tmp_path: Path) -> None:
+    done = run_program(tmp_path, LISTED)
+    assert done.lines == [
+        "['lego-ev3-color', 'lego-ev3-color', 'lego-ev3-gyro', 'lego-ev3-us']",
+        "lego-ev3-color",
+    ]
+    assert done.run.plugged == []
