@@ -132,12 +132,10 @@ def _prepared(
     program: str | Path,
     arguments: Sequence[str],
     *layers: Mapping[str, Any],
-    in_world: bool,
-    of_task: bool = False,
 ) -> tuple[Program, ProgramSettings]:
     """Return a program to start, and its settings; arguments of the call take precedence over those of the settings."""
     source = _source(program)
-    found = program_settings(source, *layers, in_world=in_world, of_task=of_task)
+    found = program_settings(source, *layers)
     started = found.applied_to(source.program)
     return replace(started, arguments=tuple(arguments)) if arguments else started, found
 
@@ -174,9 +172,7 @@ def simulate(
     """
     _check_timeout(timeout_s)
     given = choices_of(choices)
-    started, found = _prepared(
-        program, arguments, _in_world(world, given), given, in_world=world is not None
-    )
+    started, found = _prepared(program, arguments, _in_world(world, given), given)
     options = RunOptions(time_limit_s=timeout_s, answers=tuple(answers))
     handle = start_run(started, build_run_spec(found.settings), options, RunStore())
     try:
@@ -239,11 +235,9 @@ def experiment(
     given = choices_of(choices)
     task = load_goals(goals) if goals is not None else None
     in_world = task.settings if task and world is None else _in_world(world, given)
-    of_task = bool(task and world is None and task.settings)
-    where = {"in_world": of_task or world is not None, "of_task": of_task}
     subjects = []
     for one in [program] if isinstance(program, str | Path) else program:
-        started, found = _prepared(one, arguments, in_world, given, **where)
+        started, found = _prepared(one, arguments, in_world, given)
         subjects.append(Subject(started, found.settings, frozenset(given)))
     if not subjects:
         raise ConfigError("no program is named", key="program")

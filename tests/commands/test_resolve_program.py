@@ -145,7 +145,7 @@ def test_marks_use_the_robot_of_the_task_and_else_that_of_the_program(
 ) -> None:
     (folder / "class").mkdir()
     (folder / "class" / "ann.py").write_text(CLAW)
-    for world, points in (("", 1.0), ("seed = 3\n", 0.0)):
+    for world, points in (("seed = 3\n", 1.0), ("robot = 'Default_Robot'\n", 0.0)):
         (folder / "goals.toml").write_text(world + GOALS)
         done = here(
             "mark", "goals.toml", "class", "--seeds", "1", "--jobs", 1, "--export", "marks.csv"
@@ -157,7 +157,7 @@ def test_marks_use_the_robot_of_the_task_and_else_that_of_the_program(
 
 
 def test_a_task_that_is_run_as_a_world_keeps_its_robot_too(folder: Path, here: Command) -> None:
-    (folder / "goals.toml").write_text("seed = 3\n" + GOALS)
+    (folder / "goals.toml").write_text("robot = 'Default_Robot'\n" + GOALS)
     (folder / "world.toml").write_text("seed = 3\n")
     assert here("run", "goals.toml", "claw.py").returncode == 1
     assert here("run", "world.toml", "claw.py").returncode == 0

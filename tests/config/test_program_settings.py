@@ -24,29 +24,39 @@ SENSOR = "from ev3dev2.sensor.lego import ColorSensor\nprint(ColorSensor('in2').
 PYBRICKS = "from pybricks.ev3devices import Motor\nfrom pybricks.parameters import Port\nMotor(Port.B).run(200)\n"
 BASE = f"from pybricks.robotics import DriveBase\n{PYBRICKS}DriveBase(Motor(Port.B), Motor(Port.C), 55.5, 104)\n"
 MIDDLE = (1181.0, 571.5)
-MAT = (None, None)
+MAT = (100.0, 800.0)
+LINE, LOOP = (220.0, 400.0), (500.0, 500.0)
 
 # The text, the arguments of `program_settings`; profile, the robot's name, and the place.
-CASES: Mapping[
-    str, tuple[str, dict[str, Any], tuple[str, str, tuple[float | None, float | None]]]
-] = {
+CASES: Mapping[str, tuple[str, dict[str, Any], tuple[str, str, tuple[float, float]]]] = {
     "a brick's program": (USUAL, {}, ("ev3", "Default_Robot", MIDDLE)),
     "with another robot": (CLAW, {}, ("ev3", "Robot of p.py", MIDDLE)),
     "-r": (CLAW, {"above": {"robot": "Explorer"}}, ("ev3", "Explorer", MIDDLE)),
-    "-x": (CLAW, {"above": {"start.x_mm": 300.0}}, ("ev3", "Robot of p.py", (300, None))),
+    "-x": (CLAW, {"above": {"start.x_mm": 300.0}}, ("ev3", "Robot of p.py", (300, 571.5))),
+    "-y": (CLAW, {"above": {"start.y_mm": 300.0}}, ("ev3", "Robot of p.py", (1181, 300))),
     "-a": (USUAL, {"above": {"start.heading_deg": 90.0}}, ("ev3", "Default_Robot", MIDDLE)),
-    "-b": (CLAW, {"above": {"background": "Loop"}}, ("robolab", "Robot of p.py", MAT)),
+    "-b": (CLAW, {"above": {"background": "Loop"}}, ("ev3", "Robot of p.py", LINE)),
+    "-b and -y": (
+        CLAW,
+        {"above": {"background": "Loop", "start.y_mm": 500.0}},
+        ("ev3", "Robot of p.py", (220, 500)),
+    ),
+    "-b without a line": (
+        CLAW,
+        {"above": {"background": "Grey_bands"}},
+        ("ev3", "Robot of p.py", (157, 500)),
+    ),
     "-b of the usual mat": (
         USUAL,
         {"above": {"background": "Empty_Map"}},
-        ("robolab", "Default_Robot", MAT),
+        ("ev3", "Default_Robot", MIDDLE),
     ),
-    "--profile": (CLAW, {"above": {"profile": "robolab"}}, ("robolab", "Robot of p.py", MAT)),
+    "--profile": (CLAW, {"above": {"profile": "robolab"}}, ("robolab", "Robot of p.py", MIDDLE)),
     "--profile ev3": (SENSOR, {"above": {"profile": "ev3"}}, ("ev3", "Default_Robot", MIDDLE)),
     "--profile ev3 on a mat": (
         USUAL,
         {"above": {"profile": "ev3", "background": "Loop"}},
-        ("ev3", "Default_Robot", MAT),
+        ("ev3", "Default_Robot", LINE),
     ),
     "a magic line": (f"# %%sim_magic\n{CLAW}", {}, ("robolab", "Robot of p.py", MAT)),
     "a magic line with a robot": (
@@ -57,7 +67,7 @@ CASES: Mapping[
     "a magic line with the profile": (
         f"# %%sim_magic --profile ev3\n{USUAL}",
         {},
-        ("ev3", "Default_Robot", MAT),
+        ("ev3", "Default_Robot", (157, 800)),
     ),
     "a preloaded program": (
         f"# %%sim_magic_preloaded\n{CLAW}",
@@ -65,24 +75,24 @@ CASES: Mapping[
         ("robolab", "Default_Robot", MAT),
     ),
     "--preload": (CLAW, {"above": {"preload": "preloaded"}}, ("robolab", "Default_Robot", MAT)),
-    "a world": (CLAW, {"above": {}, "in_world": True}, ("robolab", "Robot of p.py", MAT)),
-    "a world with a robot": (
+    "another seed": (CLAW, {"above": {"seed": 1}}, ("ev3", "Robot of p.py", MIDDLE)),
+    "the course's robot and profile": (
         CLAW,
-        {"above": {"robot": "Explorer"}, "in_world": True},
-        ("robolab", "Explorer", MAT),
+        {"above": {"robot": "Default_Robot", "profile": "robolab"}},
+        ("robolab", "Default_Robot", MIDDLE),
     ),
-    "a task": (
-        CLAW,
-        {"above": {"seed": 1}, "in_world": True, "of_task": True},
-        ("robolab", "Default_Robot", MAT),
+    "a preloaded program on a mat": (
+        "tank_drive.on(5, 5)\n",
+        {"above": {"background": "Loop"}},
+        ("robolab", "Default_Robot", LOOP),
     ),
     "the user's profile": (
         CLAW,
         {"below": {"profile": "robolab"}},
-        ("robolab", "Robot of p.py", MAT),
+        ("robolab", "Robot of p.py", MIDDLE),
     ),
     "the user's robot": (CLAW, {"below": {"robot": "Explorer"}}, ("ev3", "Explorer", MIDDLE)),
-    "the user's mat": (CLAW, {"below": {"background": "Loop"}}, ("ev3", "Robot of p.py", MAT)),
+    "the user's mat": (CLAW, {"below": {"background": "Loop"}}, ("ev3", "Robot of p.py", LINE)),
     "the course's percents": (
         SENSOR.replace("intensity)", "intensity_pc)"),
         {},
@@ -120,17 +130,12 @@ CASES: Mapping[
     "pybricks on a mat": (
         BASE,
         {"above": {"background": "Loop"}},
-        ("lego-micropython", "Robot of p.py", MAT),
+        ("lego-micropython", "Robot of p.py", LINE),
     ),
     "pybricks and a magic line": (
         f"# %%sim_magic\n{BASE}",
         {},
-        ("lego-micropython", "Robot of p.py", MAT),
-    ),
-    "pybricks in a task": (
-        BASE,
-        {"above": {"seed": 1}, "in_world": True, "of_task": True},
-        ("lego-micropython", "Default_Robot", MAT),
+        ("lego-micropython", "Robot of p.py", (136, 800)),
     ),
     "--profile pybricks4": (
         PYBRICKS,
@@ -163,20 +168,8 @@ def test_what_is_decided(case: str) -> None:
     found = program_settings(parse_program(text, "p.py"), *above, **rest)
     spec = build_run_spec(found.settings)
     assert (spec.profile.name, spec.robot.name) == (profile, robot)
-    assert (found.settings["start.x_mm"], found.settings["start.y_mm"]) == place
-    keeps_robot = bool(found.decided.robot) and rest.get("of_task", False)
-    assert bool(found.decided.note) == (
-        keeps_robot or bool({"robot", "profile"} & found.decided.layer.keys())
-    )
-
-
-def test_a_program_for_another_robot_than_that_of_a_task_is_told() -> None:
-    given: Mapping[str, Any] = {"in_world": True, "of_task": True}
-    told = "p.py is for another robot than that of the task: medium motor on outA"
-    program = parse_program(CLAW, "p.py")
-    assert program_settings(program, {"seed": 1}, **given).decided.said == told
-    assert program_settings(program, {"robot": "Explorer"}, **given).decided.said == ""
-    assert program_settings(parse_program(USUAL, "p.py"), {"seed": 1}, **given).decided.said == ""
+    assert (spec.world.start.x_mm, spec.world.start.y_mm) == place
+    assert bool(found.decided.note) == bool({"robot", "profile"} & found.decided.layer.keys())
 
 
 MISFITS: Mapping[str, tuple[str, dict[str, Any], str]] = {
@@ -291,8 +284,8 @@ MoveDifferential(OUTPUT_C, OUTPUT_B, EV3Tire, 120)
     {
         "nothing is chosen": ("", {}, True),
         "magic line": ("# %%sim_magic\n", {}, False),
-        "mat": ("", {"background": "Loop"}, False),
-        "profile": ("", {"profile": "robolab"}, False),
+        "mat": ("", {"background": "Loop"}, True),
+        "profile": ("", {"profile": "robolab"}, True),
         "start": ("", {"start.x_mm": 300.0}, True),
     },
 )

@@ -133,6 +133,8 @@ def _lay_out(name: str, where: Path) -> None:
         front = lesson.path.read_text(encoding="utf-8").split("+++")[1]
         if told := re.search(r'^tells = "(.+)"$', front, re.MULTILINE):
             front = (lesson.path.parent / told[1]).read_text(encoding="utf-8").split("+++")[1]
+            profile = f'profile = "{lesson.settings["profile"]}"'
+            front = re.sub(r"^profile = .*$", profile, front, flags=re.MULTILINE)
         world = front.partition("[[step]]")[0]
         (where / "world.toml").write_text(
             re.sub(r"^(why|minutes) = .*$", "", world, flags=re.MULTILINE)

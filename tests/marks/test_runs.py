@@ -141,6 +141,8 @@ def test_a_program_that_does_not_end_in_another_world_loses_what_counts_there(
 
 
 PRESSED = """\
+profile = "robolab"
+start = { x_mm = 100, y_mm = 800, heading_deg = 0 }
 background = "Empty_Map"
 press = ["enter@2"]
 inputs = ["300"]

@@ -18,7 +18,7 @@ from tuisim.app.snapshot import end_label
 from tuisim.config.files import means_file
 from tuisim.config.folders import user_path
 from tuisim.config.magic_mat import without_wrong_mat
-from tuisim.config.options import START, Settings
+from tuisim.config.options import START, Settings, settings_of
 from tuisim.config.program_settings import Decided, free_paths
 from tuisim.errors import LogError, TuisimError
 from tuisim.runs.run_folder import program_again
@@ -235,9 +235,7 @@ class Loader:
             named, goals = self._read_world(Path(path))
             source = _read_program(named) if named else None
             program, magic = _parts(source) if source else (self._run_controller.program, {})
-            plan, decided = _in_world(
-                source, magic, self._world_settings, is_task=goals is not None
-            )
+            plan, decided = _in_world(source, magic, self._world_settings)
         except TuisimError:
             self.world_file, self._world_settings, self._world_refers = before
             raise
@@ -256,7 +254,7 @@ class Loader:
         """
         source = _read_program(program_path)
         program, magic = _parts(source)
-        plan, decided = _in_world(source, magic, world, is_task=True)
+        plan, decided = _in_world(source, magic, world)
         self.world_file, self._world_settings, self._world_refers = None, {}, ()
         self._note_program(program, magic)
         self._load(plan, program)
@@ -527,17 +525,10 @@ def _parts(source: ProgramSource) -> tuple[Program, Mapping[str, Any]]:
 
 
 def _in_world(
-    source: ProgramSource | None,
-    magic: Mapping[str, Any],
-    world: Mapping[str, Any],
-    *,
-    is_task: bool,
+    source: ProgramSource | None, magic: Mapping[str, Any], world: Mapping[str, Any]
 ) -> tuple[NextRun, Decided]:
     """Return the plan of a program in a world, which replaces all earlier choices, and what the program decides."""
-    of_task = is_task and bool(world)
-    free = free_paths(
-        (magic, world), (world,), in_world=bool(world) or not is_task, of_task=of_task
-    )
+    free = free_paths(settings_of(magic, world))
     plan = plans.with_choices(plans.with_choices(plans.plan_of(Settings(), free), magic), world)
     return plans.following(plan, source) if source else (plan, Decided())
 

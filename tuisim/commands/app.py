@@ -168,10 +168,7 @@ def open_lesson_in_app(lesson: Lesson, folder: str | None) -> int:
     from tuisim.lessons.progress import prepare_program
 
     source = read_program(prepare_program(lesson))
-    of_user, of_lesson = load_config().layer(Section.APP), bool(lesson.settings)
-    found = program_settings(
-        source, lesson.settings, below=of_user, in_world=of_lesson, of_task=of_lesson
-    )
+    found = program_settings(source, lesson.settings, below=load_config().layer(Section.APP))
     settings = found.settings
     app_settings = AppSettings(
         spec=build_run_spec(settings),

@@ -192,7 +192,7 @@ def _subjects(
     check_arguments(arguments.programs, arguments)
     world = file.world
     if world is None and goals is not None:
-        world = WorldFile(goals.path, goals.settings, goals.program, is_task=True)
+        world = WorldFile(goals.path, goals.settings, goals.program)
     elif world is not None and goals is not None and world.program is None:
         world = replace(world, program=goals.program)
     # A notebook stands for all of its cells.

@@ -103,13 +103,11 @@ def _prepared(
             raise ConfigError(
                 f"{named} names no program to pass arguments to", key=ARGUMENTS_FOLLOW
             )
-        above = (in_world, arguments.settings)
-        layers = (_defaults(world, config), *above)
-        settings = settings_of(*layers)
+        settings = settings_of(_defaults(world, config), in_world, arguments.settings)
         spec = _spec(settings)
         said = _from_config(spec, world, config, arguments.settings)
-        free = free_paths(layers, above, in_world=world is not None, of_task=_decides_robot(world))
-        return Prepared(None, settings, spec, world, from_config=said, decided=Decided(free=free))
+        decided = Decided(free=free_paths(settings))
+        return Prepared(None, settings, spec, world, from_config=said, decided=decided)
     return _of_source(read_program(find_program(word)), world, arguments, config)
 
 
@@ -133,9 +131,7 @@ def _of_source(
     file: ProgramSource, world: WorldFile | None, arguments: Arguments, config: UserConfig
 ) -> Prepared:
     layers = [*([world.settings] if world else []), arguments.settings]
-    said = partial(
-        program_settings, file, *layers, in_world=world is not None, of_task=_decides_robot(world)
-    )
+    said = partial(program_settings, file, *layers)
     found = said(below=_defaults(world, config))
     try:
         program, spec = found.applied_to(file.program), _spec(found.settings)
@@ -149,11 +145,6 @@ def _of_source(
     return Prepared(
         program, found.settings, spec, world, from_config=changed, decided=found.decided
     )
-
-
-def _decides_robot(world: WorldFile | None) -> bool:
-    """Return whether a world is that of a task, whose robot is the same for every program."""
-    return world is not None and world.is_task and bool(world.settings)
 
 
 def _spec(settings: Settings) -> RunSpec:

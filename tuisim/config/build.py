@@ -42,7 +42,7 @@ def robot_on_mat(choice: RobotChoice, mat: Background) -> RobotSpec:
 
 def _start(settings: Settings, mat: Background, robot: RobotSpec, walled: bool) -> Pose:
     """Return the mat's start pose, overridden by the settings; with solid walls, moved so the robot can turn."""
-    start = mat.start
+    start = (settings["for_brick"] and mat.brick_start) or mat.start
     if walled:
         margin_mm = outline_of(robot).reach_mm
         start = replace(
@@ -128,6 +128,7 @@ def settings_from(spec: RunSpec) -> dict[str, Any]:
         else spec.profile,
         "beacon": world.beacon,
         "remote": world.remote,
+        "for_brick": world.start == mat.brick_start,
     }
 
 

@@ -41,6 +41,8 @@ class Background:
     image: Path
     obstacles: tuple[Obstacle, ...] = ()
     """The default obstacles on the mat."""
+    brick_start: Pose | None = None
+    """The start pose of programs for a brick, if it is another one: on the line, or in the middle of an empty field."""
     sensor_x_mm: Mapping[str, float] = field(default_factory=dict)
     """The x positions of colour sensors on this mat, by name, where they differ from the robot's."""
     original: str = ""
@@ -59,6 +61,7 @@ class _MatEntry:
 
     title: str
     start: Pose
+    brick_start: Pose | None = None
     original: str = ""
     shipped: bool = True
     obstacles: list[Any] = field(default_factory=list)
@@ -75,6 +78,7 @@ def _background(name: str, data: object, file: Path) -> Background:
         start=entry.start,
         image=file.parent / f"{name}.png",
         obstacles=obstacles_from_sides(entry.obstacles, at.at("obstacles")),
+        brick_start=entry.brick_start,
         sensor_x_mm={
             sensor: convert(x_mm, float, at.at(f"sensor_x_mm.{sensor}"))
             for sensor, x_mm in entry.sensor_x_mm.items()

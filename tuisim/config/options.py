@@ -351,10 +351,11 @@ _DEFAULTS: Mapping[str, Any] = {
     "seed": 0,
     "arguments": (),
     "remote": (),
+    "for_brick": False,
 }
 
 
-_PATHS = frozenset({"arguments", "beacon", "remote", "floor", *(option.path for option in OPTIONS)})
+_PATHS = frozenset({*_DEFAULTS, "beacon", "floor", *(option.path for option in OPTIONS)})
 
 
 @dataclass(frozen=True, slots=True)

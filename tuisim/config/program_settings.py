@@ -2,13 +2,13 @@
 
 Every host that runs a program gets its settings here. A program for a real brick, which imports its library itself,
 says which robot it needs; if nothing marks it as one of the course's, it runs by the rules of the brick. What its
-source says stands below everything that somebody has chosen.
+source says stands below everything that somebody has chosen, and a choice replaces only itself.
 """
 
 from __future__ import annotations
 
 import shlex
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import field, replace
 from typing import TYPE_CHECKING, Any
 
@@ -25,7 +25,6 @@ from tuisim.config.program_robot.source import (
 )
 from tuisim.config.robots import RobotChoice
 from tuisim.core.profile import PROFILES, PYBRICKS_4, Library, MotorLaw, ProfileSpec
-from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
 from tuisim.data_class import dataclass
 from tuisim.errors import ProfileError, RobotError
 from tuisim.source import Program
@@ -68,8 +67,7 @@ class SourceFacts:
     """Whether it names classes of motors or sensors, and its text shows no part that is made."""
 
 
-_PLACE = ("start.x_mm", "start.y_mm")
-PROGRAM_PATHS = ("robot", "profile", *_PLACE)
+PROGRAM_PATHS = ("robot", "profile", "for_brick")
 """The paths of the settings that the source of a program may decide."""
 
 
@@ -187,8 +185,6 @@ def program_settings(
     source: ProgramSource,
     *above: Mapping[str, Any],
     below: Mapping[str, Any] | None = None,
-    in_world: bool = False,
-    of_task: bool = False,
     insists: bool = True,
 ) -> ProgramSettings:
     """Return the settings of a program.
@@ -197,41 +193,24 @@ def program_settings(
         source: The program with the options of its magic line.
         above: What takes precedence over them, such as a world file and the command line, by path.
         below: What they take precedence over: the user's defaults.
-        in_world: Whether a world file, goals or a lesson say where it runs: then these decide the profile.
-        of_task: Whether a task with a world of its own says so: then it also decides the robot.
         insists: Whether what is chosen must be for the program's library; else another profile takes its place.
 
     Raises:
         ProfileError: the chosen profile is not, or the prelude is not.
     """
     layers = (below or {}, source.options, *above)
-    free = free_paths(layers, above, in_world=in_world, of_task=of_task)
     settings = settings_of(*layers)
     if insists and (settings["preload"] or source.program.prelude) != _NO_PRELUDE:
         _check_prelude(source.program)
     # A default of the user is no choice for this program.
     is_chosen = any(layer.get("profile") is not None for layer in (source.options, *above))
-    decided = decide(source, settings, free, insists=insists and is_chosen)
+    decided = decide(source, settings, free_paths(settings), insists=insists and is_chosen)
     return ProgramSettings(settings_of(*layers, decided.layer), decided)
 
 
-def free_paths(
-    layers: Iterable[Mapping[str, Any]],
-    above: Iterable[Mapping[str, Any]],
-    *,
-    in_world: bool,
-    of_task: bool,
-) -> frozenset[str]:
-    """Return which of `PROGRAM_PATHS` nobody has chosen, for the arguments of `program_settings`."""
-    said = {key for layer in layers for key, value in layer.items() if value is not None}
-    free = set(PROGRAM_PATHS) - said
-    if of_task:
-        free.discard("robot")
-    if in_world or any("background" in layer for layer in above):
-        free.discard("profile")
-    if in_world or said & {"background", *_PLACE}:
-        free -= {*_PLACE}
-    return frozenset(free)
+def free_paths(settings: Settings) -> frozenset[str]:
+    """Return which of `PROGRAM_PATHS` nobody has chosen."""
+    return frozenset(path for path in PROGRAM_PATHS if settings.given.get(path) is None)
 
 
 def decide(
@@ -250,11 +229,12 @@ def decide(
     """
     prelude = settings["preload"] or source.program.prelude
     for_course = prelude != _NO_PRELUDE
-    facts = SourceFacts(Library.EV3DEV2) if for_course else _facts_in_run(source, free)
+    facts = SourceFacts(Library.EV3DEV2) if for_course else _facts_in_run(source)
     layer: dict[str, Any] = {}
     if facts.robot and "robot" in free:
         layer["robot"] = facts.robot.choice
-    if facts.library and not for_course and _by_brick_rules(source, facts, free):
+    by_brick_rules = not for_course and _brings_rules(source, facts)
+    if facts.library and by_brick_rules and "profile" in free:
         layer["profile"] = PROFILE_OF[facts.library]
     elif facts.library and not _fits(settings, facts.library):
         if insists and settings.given.get("profile") is not None:
@@ -263,14 +243,12 @@ def decide(
             DEFAULT_PROFILE if for_course or facts.of_course else PROFILE_OF[facts.library]
         )
     profile = layer.get("profile", settings["profile"])
-    by_rules = profile in OF_BRICKS or profile in [PROFILES[name] for name in OF_BRICKS]
-    if by_rules and not source.has_magic and {*_PLACE} <= {*free}:
-        layer |= dict(zip(_PLACE, (FIELD_WIDTH_MM / 2, FIELD_HEIGHT_MM / 2), strict=True))
+    has_rules = profile in OF_BRICKS or profile in [PROFILES[name] for name in OF_BRICKS]
+    if "for_brick" in free and (by_brick_rules or (has_rules and not source.has_magic)):
+        layer["for_brick"] = True
     needed = facts.robot.choice if facts.robot else None
-    refused = _find_refused(facts, profile)
-    keeps_robot = "robot" not in layer and settings.given.get("robot") is None
-    words = _in_words(source.program, facts, layer, keeps_robot=keeps_robot)
-    return Decided(layer, *words, needed, _find_shown(facts, free), frozenset(free), refused)
+    words, shown = _in_words(source.program, facts, layer), _find_shown(facts, free)
+    return Decided(layer, *words, needed, shown, frozenset(free), _find_refused(facts, profile))
 
 
 def _find_refused(facts: SourceFacts, profile: str | ProfileSpec) -> tuple[RefusedLine, ...]:
@@ -327,8 +305,7 @@ def robot_for(source: ProgramSource) -> BuiltRobot | None:
     Raises:
         RobotError: the program has parts that its text does not show.
     """
-    free = free_paths((source.options,), (), in_world=False, of_task=False)
-    facts = _facts_in_run(source, free)
+    facts = _facts_in_run(source)
     if facts.robot is None and (facts.unread or facts.hides_parts):
         raise RobotError(
             facts.unread or "makes its motors and sensors where tuisim cannot read their ports",
@@ -338,44 +315,32 @@ def robot_for(source: ProgramSource) -> BuiltRobot | None:
     return facts.robot
 
 
-def _facts_in_run(source: ProgramSource, free: Collection[str]) -> SourceFacts:
+def _facts_in_run(source: ProgramSource) -> SourceFacts:
     """Return what the source of a program says that counts in its run.
 
     What it says of sizes, sides and mountings counts only where it also brings its rules, as one for Pybricks always
-    does. A program of the course, or one that is told where or how to run, keeps the default robot if that has every
-    part on its port.
+    does. A program of the course keeps the default robot if that has every part on its port.
     """
     facts = facts_of(source.program)
-    brings_rules = facts.library is Library.PYBRICKS or _by_brick_rules(source, facts, free)
+    brings_rules = facts.library is Library.PYBRICKS or _brings_rules(source, facts)
     if facts.robot and facts.robot.keeps_ports and not brings_rules:
         return replace(facts, robot=None)
     return facts
 
 
-def _by_brick_rules(source: ProgramSource, facts: SourceFacts, free: Collection[str]) -> bool:
-    return (
-        bool(facts.library) and not facts.of_course and not source.has_magic and "profile" in free
-    )
+def _brings_rules(source: ProgramSource, facts: SourceFacts) -> bool:
+    """Return whether a program is for a brick, and nothing marks it as one of the course's."""
+    return facts.library is not None and not facts.of_course and not source.has_magic
 
 
-def _in_words(
-    program: Program, facts: SourceFacts, layer: Mapping[str, Any], *, keeps_robot: bool
-) -> tuple[str, str]:
-    """Return what the source of a program decided, and how to change it; both empty for nothing.
-
-    Args:
-        keeps_robot: Whether a task keeps its own robot, though nobody has named one.
-    """
+def _in_words(program: Program, facts: SourceFacts, layer: Mapping[str, Any]) -> tuple[str, str]:
+    """Return what the source of a program decided, and how to change it; both empty for nothing."""
     rules = f"by the rules of a brick (profile {layer['profile']})" if "profile" in layer else ""
-    if facts.robot and ("robot" in layer or keeps_robot):
+    if facts.robot and "robot" in layer:
         from tuisim.config.program_robot.report import in_words
 
-        words = in_words(facts.robot)
-        if keeps_robot:
-            parts = [f"{program.name} is for another robot than that of the task: {words}"]
-        else:
-            runs_on = f"{program.name} runs on a robot built from it: {words}"
-            parts = [runs_on, *facts.robot.doubts, facts.unread]
+        runs_on = f"{program.name} runs on a robot built from it: {in_words(facts.robot)}"
+        parts = [runs_on, *facts.robot.doubts, facts.unread]
         options = "-r or --profile" if rules else "-r"
         shown = (
             f"; `tuisim robots --from {shlex.quote(program.path)}` shows the robot"

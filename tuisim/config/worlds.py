@@ -95,8 +95,6 @@ class WorldFile:
     """The program to run in it: a path, or the name of an example."""
     files: tuple[Path, ...] = ()
     """The file itself, and the files that it refers to."""
-    is_task: bool = False
-    """Whether it has goals: then its robot is the same for every program."""
     presses: tuple[Press, ...] = ()
     """The buttons of the brick that are pressed in a run."""
     inputs: tuple[str, ...] = ()
@@ -177,11 +175,10 @@ def world_from_table(
             _argument(word, at.at(f"arguments[{number}]")) for number, word in words
         )
     program = _program(world["program"], path.parent, resolve) if "program" in world else None
-    is_task = "goal" in world
     presses = tuple(_press(text, place) for text, place in _texts(world, "press", at))
     inputs = tuple(text for text, _ in _texts(world, "inputs", at))
     if "world" not in world:
-        return WorldFile(path, found, program, (path, *referred), is_task, presses, inputs)
+        return WorldFile(path, found, program, (path, *referred), presses, inputs)
     base = _base(world["world"], at.at("world"), resolve, mats, (*above, path))
     every = (path, *referred, *base.files)
     return WorldFile(
@@ -189,7 +186,6 @@ def world_from_table(
         {**base.settings, **found},
         program or base.program,
         every,
-        is_task or base.is_task,
         presses or base.presses,
         inputs or base.inputs,
     )

@@ -16,8 +16,10 @@ title = "Drive half a metre"
 why = "A robot that knows how far it drives can leave its charging station and come back."
 minutes = 10
 
-# The world, with the keys of a world file: background, robot, obstacles, noise, drift, pen, panels …
+# The world, with the keys of a world file: background, robot, profile, obstacles, noise, drift, pen, panels …
 background = "Empty_Map"
+robot = "Default_Robot"
+profile = "robolab"
 start = { x_mm = 500, y_mm = 500, heading_deg = 0 }
 
 # Goals, as in a goals file. Steps name them.

@@ -67,9 +67,8 @@ def task_of(
         ConfigError: its magic line, or the world, is wrong.
     """
     source = parse_program(text, f"{lesson.name}.py")
-    of_lesson = bool(lesson.settings)
     given = {**lesson.settings, **(other.settings if other else {})}
-    found = program_settings(source, given, {"seed": seed}, in_world=of_lesson, of_task=of_lesson)
+    found = program_settings(source, given, {"seed": seed})
     spec, goals = (
         build_run_spec(found.settings),
         (*lesson.goals, *(other.own_goals if other else ())),

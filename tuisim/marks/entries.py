@@ -77,7 +77,7 @@ def _settings(student: Student, world: TrialWorld, given: Mapping[str, Any]) -> 
     assert student.source is not None
     if world.settings:
         bare = replace(student.source, options={})
-        return program_settings(bare, world.settings, given, in_world=True, of_task=True)
+        return program_settings(bare, world.settings, given)
     if outside := file_outside(student):
         raise ConfigError("the magic line names a file outside the folder", key=outside)
     return program_settings(student.source, given)

@@ -61,7 +61,7 @@ WAYS: Mapping[str, tuple[list[Step], tuple[list[str], str, str]]] = {
         [CLAW, lambda plan: plans.with_profile(plan, "robolab"), LIFT],
         (["outD"], "Robot of p.py", "robolab"),
     ),
-    "a mat chosen before": ([mat("Loop"), CLAW], (["outA"], "Robot of p.py", "robolab")),
+    "a mat chosen before": ([mat("Loop"), CLAW], (["outA"], "Robot of p.py", "ev3")),
     "a mat chosen after": ([CLAW, mat("Loop"), LIFT], (["outD"], "Robot of p.py", "ev3")),
     "an edited robot": (
         [CLAW, lambda plan: plans.with_robot_edited(plan, plan.robot.spec), LIFT],
@@ -103,7 +103,9 @@ PLACES: Mapping[str, tuple[list[Step], tuple[float, float]]] = {
         [CLAW, lambda plan: plans.at_pose(plan, Pose(300, 400, 0)), LIFT],
         (300, 400),
     ),
-    "a mat": ([CLAW, mat("Loop"), LIFT], (500, 500)),
+    "a mat with a line": ([CLAW, mat("Loop"), LIFT], (220, 400)),
+    "such a mat before": ([mat("Loop"), CLAW], (220, 400)),
+    "such a mat, and one of the course": ([CLAW, mat("Loop"), COURSE], (500, 500)),
 }
 
 

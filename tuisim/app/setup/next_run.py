@@ -22,7 +22,7 @@ from tuisim.config.options import (
 )
 from tuisim.config.profiles import load_profile
 from tuisim.config.program_file import ProgramSource
-from tuisim.config.program_settings import PROFILE_OF, PROGRAM_PATHS, Decided, decide
+from tuisim.config.program_settings import PROGRAM_PATHS, Decided, decide
 from tuisim.config.robots import DEFAULT_ROBOT, RobotChoice, choose_robot
 from tuisim.core import tree
 from tuisim.core.geometry import Pose
@@ -32,7 +32,7 @@ from tuisim.errors import BackgroundError
 from tuisim.source import Program
 
 WORLD_PATHS = frozenset(
-    {"background", "mats", "robot", "obstacles", "profile", "arguments", *RUN_VALUES}
+    {"background", "mats", "robot", "obstacles", "profile", "for_brick", "arguments", *RUN_VALUES}
 )
 """The paths of settings that affect a run."""
 
@@ -177,15 +177,8 @@ def following(plan: NextRun, source: ProgramSource) -> tuple[NextRun, Decided]:
         ConfigError: the mat is missing.
     """
     free, usual, settings = plan.free, Settings(), plan.settings
-    on_mat = settings["background"] != usual["background"]
-    if on_mat:
-        free -= {*START}
-    # On a mat that was chosen, a program is taken to be the course's, unless it has been known not to be.
-    guessed = (
-        free if not on_mat or plan.spec.profile.name in PROFILE_OF.values() else free - {"profile"}
-    )
     decided = decide(
-        source, settings.changed({key: usual[key] for key in free}), guessed, insists=False
+        source, settings.changed({key: usual[key] for key in free}), free, insists=False
     )
     free |= decided.layer.keys() & {"profile"}
     layer, words = _resolved({key: decided.layer.get(key, usual[key]) for key in free})
