@@ -247,7 +247,7 @@ BLIND: Mapping[str, Case] = {
         MIDDLE,
     ),
     "rob_subclass": Case(
-        "1 gyro, 4 ultrasonic, A left wheel, B -", "[  14.31] bye", {}, LINE, 0, (188, 1043)
+        "1 gyro, 4 ultrasonic, A left wheel, B -", "[  14.49] bye", {}, LINE, 0, (188, 1043)
     ),
     "robot_arm": Case(
         "1 touch, A medium motor, B large motor, C large motor",
@@ -273,7 +273,7 @@ BLIND: Mapping[str, Case] = {
         3,
         (198, 914),
     ),
-    "suiveur3": Case("1 left, 2 middle", "", {}, f"{LINE} --timeout 7", 3, (149, 901)),
+    "suiveur3": Case("1 left, 2 middle", "", {}, f"{LINE} --timeout 7", 3, (151, 899)),
     "sumo": Case(
         "1 touch, 4 infrared, A left wheel, B -, C medium motor, D right wheel",
         "",

@@ -231,7 +231,7 @@ class WrongGyro:
         drive: The drive of the robot.
     """
 
-    __slots__ = ("_carry_deg", "_drift_deg", "_drive", "_max_deg", "_scale")
+    __slots__ = ("_carry_deg", "_drift_deg", "_drifts", "_drive", "_max_deg", "_scale")
 
     def __init__(self, spec: RunSpec, drive: Drive) -> None:
         drift, profile = find_drift(spec), spec.profile
@@ -239,6 +239,7 @@ class WrongGyro:
         self._drift_deg = drawn_errors(drift, spec.seed).gyro_dps / profile.tick_hz
         self._max_deg = (profile.gyro_max_dps or inf) / profile.tick_hz
         self._carry_deg = 0.0
+        self._drifts = not drift.is_none
 
     def roll(self, left_deg: float, right_deg: float) -> None:
         """Move the robot by one tick's rotation of the wheels' motors, as `Drive.roll`, and the gyro with it."""
@@ -246,6 +247,8 @@ class WrongGyro:
         angle_deg = drive.gyro_zero_deg - drive.heading_deg
         drive.roll(left_deg, right_deg)
         turned_deg = drive.gyro_zero_deg - drive.heading_deg - angle_deg
+        if -self._max_deg <= turned_deg <= self._max_deg and not self._drifts:
+            return
         sensed_deg = turned_deg * self._scale if turned_deg > 0 else turned_deg
         sensed_deg = max(-self._max_deg, min(self._max_deg, sensed_deg))
         exact_deg = (

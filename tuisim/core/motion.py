@@ -20,7 +20,7 @@ from tuisim.core.driver.motor import MotorCommand
 from tuisim.core.driver.simulated import SimulatedMotor, build_axle, build_motor
 from tuisim.core.end_stops import flags_at_start
 from tuisim.core.motor_columns import MotorRecorder, MotorSink
-from tuisim.core.motors import POSITION, Motor, MotorState, top_speed_dps
+from tuisim.core.motors import POSITION, STANDSTILL_DEG, Motor, MotorState, top_speed_dps
 from tuisim.core.noise import wheel_noise, wheel_noises
 from tuisim.core.profile import NS_PER_S, MotorLaw
 from tuisim.core.servo.motor import ServoMotor
@@ -348,9 +348,9 @@ class Motion:
 
     def _clear_ticks(self, most: int) -> int:
         """Return for how many ticks, at most `most`, no collision is possible without a new command."""
-        if self._solids is None:
-            return most
         left, right = self.left, self.right
+        if self._solids is None or (self._driven and left.resting and right.resting):
+            return most
         if left.blocked_ticks or right.blocked_ticks:
             return 0
         left_ends, right_ends = self._wheel_ends(left, right)
@@ -425,11 +425,13 @@ class Motion:
         right.bar(right_deg if blocked else 0.0)
 
     def _meets(self, left_mm: float, right_mm: float) -> bool:
-        """Whether an obstacle allows no part of a motion of the wheels."""
+        """Whether an obstacle allows no part of a motion of the wheels that is worth mentioning."""
         if self._solids is None or (left_mm == 0.0 and right_mm == 0.0):
             return False
         turn_deg = degrees((right_mm - left_mm) / self._spacing_mm)
-        return self._solids.leeway(self._pose(), (left_mm + right_mm) / 2, turn_deg).part == 0.0
+        part = self._solids.leeway(self._pose(), (left_mm + right_mm) / 2, turn_deg).part
+        way_mm = part * max(abs(left_mm), abs(right_mm))
+        return way_mm < STANDSTILL_DEG * abs(self._left_mm_per_deg)
 
     def _fields(self) -> tuple[float, ...]:
         """Return the record of the current tick."""

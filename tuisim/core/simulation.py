@@ -120,6 +120,8 @@ class Simulation(Motion):
         drive, before_deg = self.drive, self.drive.heading_deg
         drive.put(pose)
         drive.gyro_zero_deg = float32(drive.gyro_zero_deg + drive.heading_deg - before_deg)
+        if self._driven:
+            self._bar_wheels()
 
     def reset_gyro(self) -> None:
         """Make the current heading the gyro's 0."""

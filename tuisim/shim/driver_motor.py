@@ -9,7 +9,7 @@ from __future__ import annotations
 from functools import partial
 from typing import Any
 
-from tuisim.core.driver.motor import Command, Constant, MotorCommand, SetPoints, Setting
+from tuisim.core.driver.motor import STATES, Command, Constant, MotorCommand, SetPoints, Setting
 from tuisim.core.driver.regulator import StopAction
 from tuisim.core.driver.simulated import SimulatedMotor
 from tuisim.protocol import MotorRegisters
@@ -30,6 +30,7 @@ STOP_ACTION = len(SET_POINTS)
 SIGNED = ("speed_sp", "position_sp", "duty_cycle_sp")
 COMMANDS: dict[str, Command] = {command.value: command for command in Command}
 STOP_ACTIONS: dict[str, StopAction] = {action.value: action for action in StopAction}
+STATE_TEXTS = tuple(map(" ".join, STATES))
 CONSTANTS = {"Kp": "kp", "Ki": "ki", "Kd": "kd"}
 
 
@@ -50,7 +51,7 @@ class DriverTacho(Tacho):
             "position": lambda: self._now().position * self._sign,
             "speed": lambda: self._now().speed_dps * self._sign,
             "duty_cycle": lambda: self._now().duty * self._sign,
-            "state": lambda: " ".join(self._now().states),
+            "state": lambda: STATE_TEXTS[self._now().state_bits],
         }
         max_speed = self._kind.max_speed_dps
         limits = dict.fromkeys(SET_POINTS, (0, MAX_SET_POINT)) | {

@@ -39,3 +39,17 @@ def test_turning_back_counts_the_same_counts() -> None:
     counter.record(0, 2 * LOOK, 0.1, 3.1, 0.5)
     counter.record(2 * LOOK, 2 * LOOK, 3.1, -3.1, 0.5)
     assert counter.count == -7
+
+
+@pytest.mark.parametrize("speed_dps", [500.0, -500.0])
+def test_what_an_obstacle_prevented_was_never_counted(speed_dps: float) -> None:
+    counter, stopped = Counter(), Counter()
+    for each in counter, stopped:
+        turn(each, 0, 200, speed_dps)
+    turn(counter, 200, 210, speed_dps)
+    counter.take_back(stopped.count / 2 + 0.25)
+    assert counter.count == stopped.count
+    for now_ms in range(210, 500, 10):
+        counter.record_rest(now_ms * LOOK)
+        stopped.record_rest(now_ms * LOOK)
+        assert counter.measure_speed_dps() == stopped.measure_speed_dps()

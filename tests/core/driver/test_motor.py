@@ -142,7 +142,7 @@ def test_an_obstacle_stops_the_wheel_and_the_driver_finds_out() -> None:
     give(motor, 0, Command.RUN_FOREVER, speed_dps=500)
     motor.run_until(1000 * MS)
     assert motor.axle.angle_deg == 100.0 and motor.axle.speed_dps == 0.0
-    assert motor.states == [State.RUNNING, State.OVERLOADED, State.STALLED]
+    assert motor.states == (State.RUNNING, State.OVERLOADED, State.STALLED)
 
 
 def test_a_ramp_that_turns_back_goes_through_0() -> None:

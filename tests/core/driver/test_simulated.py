@@ -123,14 +123,38 @@ def test_a_robot_at_a_wall_stalls_and_drives_away() -> None:
     lab.sim.advance(300)
     x_mm = lab.sim.pose.x_mm
     assert all(motor.axle.speed_dps == 0.0 for motor in lab.motors)
-    assert lab.motors[0].states == [State.RUNNING, State.OVERLOADED, State.STALLED]
+    assert lab.motors[0].states == (State.RUNNING, State.OVERLOADED, State.STALLED)
     lab.sim.advance(100)
     assert lab.sim.pose.x_mm == x_mm
     for motor in lab.motors[:2]:
         give(motor, 4000 * MS, Command.RUN_FOREVER, speed_dps=-500)
     lab.sim.advance(100)
     assert lab.sim.pose.x_mm < x_mm - 150
-    assert lab.motors[0].states == [State.RUNNING]
+    assert lab.motors[0].states == (State.RUNNING,)
+
+
+@pytest.mark.parametrize("speed_dps", [200, 500, 900])
+@pytest.mark.parametrize("heading_deg", [0, 10])
+def test_a_wheel_at_a_wall_stalls_as_late_as_a_blocked_one_and_rests(
+    speed_dps: int, heading_deg: int
+) -> None:
+    lab = Lab(replace(WORLD, start=Pose(600, 500, heading_deg)))
+    left, right = lab.motors[:2]
+    for motor in left, right:
+        give(motor, 0, Command.RUN_FOREVER, speed_dps=speed_dps)
+    while not left.is_barred:
+        lab.sim.advance(1)
+    contact_tick = lab.sim.tick
+    while not left.is_stalled:
+        lab.sim.advance(1)
+    # 305 ms after the contact, which is up to a tick before.
+    assert 29 <= lab.sim.tick - contact_tick <= 32
+    lab.sim.advance(10)
+    assert left.is_at_rest and right.is_at_rest and lab.sim._quiet_ticks(1000) == 1000
+    pose = lab.sim.pose
+    lab.sim.place(Pose(pose.x_mm - 300, pose.y_mm, heading_deg))
+    lab.sim.advance(10)
+    assert lab.sim.pose.x_mm > pose.x_mm - 300
 
 
 def test_an_arm_stands_at_its_end() -> None:

@@ -100,6 +100,16 @@ class Counter:
         self._speed_dps = None
         del times[:-MOST], self._counts[:-MOST]
 
+    def take_back(self, angle_deg: float) -> None:
+        """Forget the last changes in one direction: an obstacle has stopped the axle at an angle before them."""
+        count, counts = floor(2 * angle_deg), self._counts
+        one = 1 if self.count > count else -1
+        while self.count != count and counts[-1] - counts[-2] == one:
+            del counts[-1], self._times[-1]
+            self.count -= one
+            self._straight -= one
+            self._speed_dps = None
+
     def refill(self, time: float, angle_deg: float, speed_dps: float) -> None:
         """Set the last changes as if the axle had turned evenly, for longer than any speed is measured.
 

@@ -12,6 +12,14 @@ from tuisim.core.driver.control import divide
 from tuisim.core.driver.jiffies import JIFFY_US, LOOK_JIFFIES, NS_PER_US, Jiffies, round_up
 from tuisim.core.driver.plant import STEP_NS, PlantSpec
 from tuisim.core.driver.regulator import Model, MotorDriver, StopAction
+from tuisim.core.motor_columns import (
+    HOLDING,
+    OVERLOADED,
+    RAMPING,
+    RUNNING,
+    STALLED,
+    STATE_BITS,
+)
 from tuisim.data_class import dataclass
 
 NEVER_NS = 1 << 62
@@ -43,6 +51,13 @@ class State(StrEnum):
     HOLDING = "holding"
     OVERLOADED = "overloaded"
     STALLED = "stalled"
+
+
+STATES = tuple(
+    tuple(state for state in State if STATE_BITS[state] & bits)
+    for bits in range(2 * max(STATE_BITS.values()))
+)
+"""What `state` lists, by the bits that are recorded."""
 
 
 class Setting(StrEnum):
@@ -125,7 +140,7 @@ class DriverMotor(MotorDriver):
         "_jiffies",
         "_last_command",
         "_look_ns",
-        "_looked_states",
+        "_looked_bits",
         "_ramp",
         "_ramp_goal_dps",
         "_ramp_jiffy",
@@ -153,7 +168,7 @@ class DriverMotor(MotorDriver):
         self._ramp = Ramp(0, 0, 0, 0)
         self._ramp_goal_dps = self._ramp_jiffy = self._ramp_setpoint = 0
         self.is_ramping = self._stops_after_ramp = self._ends_at_target = False
-        self._looked_states: list[State] = []
+        self._looked_bits = 0
         self.noticed_ns = -1
         """When a change of the state was noticed last: then who waits for it goes on."""
         self.is_at_rest = True
@@ -167,16 +182,23 @@ class DriverMotor(MotorDriver):
         """When a timer or the next look is due."""
 
     @property
-    def states(self) -> list[State]:
+    def state_bits(self) -> int:
+        """The bits of `STATES` that apply."""
+        bits = 0
+        if self.is_running:
+            bits = STALLED | RUNNING if self.is_stalled else RUNNING
+        if self.is_ramping or self.is_lowering:
+            bits |= RAMPING
+        if self.is_holding:
+            bits |= HOLDING
+        if self.is_overloaded:
+            bits |= OVERLOADED
+        return bits
+
+    @property
+    def states(self) -> tuple[State, ...]:
         """What `state` lists."""
-        states = {
-            State.RUNNING: self.is_running,
-            State.RAMPING: self.is_ramping or self.is_lowering,
-            State.HOLDING: self.is_holding,
-            State.OVERLOADED: self.is_overloaded,
-            State.STALLED: self.is_stalled,
-        }
-        return [state for state, applies in states.items() if applies]
+        return STATES[self.state_bits]
 
     # Time
 
@@ -214,7 +236,7 @@ class DriverMotor(MotorDriver):
             (self.axle.stands or self.axle.is_blocked)
             and not (self.speed_dps or self._timers_ns < NEVER_NS)
             and self.is_stalled == self.is_running
-            and self.states == self._looked_states
+            and self.state_bits == self._looked_bits
             and self._control_rests()
         )
         return self.is_at_rest
@@ -245,8 +267,9 @@ class DriverMotor(MotorDriver):
         else:
             self._look_ns += LOOK_NS
             self._due_ns = min(self._timers_ns, self._look_ns)
-            if self.states != self._looked_states:
-                self._looked_states, self.noticed_ns = self.states, time_ns
+            bits = self.state_bits
+            if bits != self._looked_bits:
+                self._looked_bits, self.noticed_ns = bits, time_ns
 
     def _set_timers(self, ramp_ns: int = NEVER_NS, timed_ns: int = NEVER_NS) -> None:
         self._ramp_ns, self._timed_ns = ramp_ns, timed_ns
@@ -278,7 +301,11 @@ class DriverMotor(MotorDriver):
             self.run_direct(time_ns, values)
 
     def _command(self, time_ns: int, command: Command, active: SetPoints) -> None:
-        if command is Command.RUN_FOREVER and self._changes_nothing(active):
+        if command is Command.RUN_FOREVER and self._runs_on(active):
+            if active != self.active:
+                self.wake(time_ns)
+                self.active = active
+                self.run_regulated(active.speed_dps)
             return
         self.wake(time_ns)
         if self._timers_ns < NEVER_NS:
@@ -310,13 +337,14 @@ class DriverMotor(MotorDriver):
             case Command.RESET:
                 self._reset(time_ns)
 
-    def _changes_nothing(self, active: SetPoints) -> bool:
-        """Whether `run-forever` was the last command, with the same values, and no ramp is set."""
+    def _runs_on(self, active: SetPoints) -> bool:
+        """Whether `run-forever` was the last command, too, and no ramp was or is set: at most the speed changes."""
         return (
             self._last_command is Command.RUN_FOREVER
-            and active == self.active
             and self.is_running
+            and not self.is_ramping
             and not active.ramped
+            and not self.active.ramped
         )
 
     def _take_up_speed(self, time_ns: int, speed_dps: int) -> None:

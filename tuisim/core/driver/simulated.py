@@ -11,14 +11,7 @@ from tuisim.core.driver.jiffies import Jiffies
 from tuisim.core.driver.motor import NEVER_NS, DriverMotor
 from tuisim.core.driver.plant import NS_PER_S, STEP_NS, Axle, PlantSpec
 from tuisim.core.driver.regulator import MODELS, TICKS_PER_NS
-from tuisim.core.motor_columns import (
-    HOLDING,
-    MOTOR_RECORD,
-    OVERLOADED,
-    RAMPING,
-    RUNNING,
-    STALLED,
-)
+from tuisim.core.motor_columns import MOTOR_RECORD
 from tuisim.core.motors import (
     ENDLESS,
     FOREVER,
@@ -179,18 +172,9 @@ class SimulatedMotor(DriverMotor):
 
     def record(self, buffer: Buffer, at: int) -> None:
         """Write `MOTOR_RECORD` at a place in a buffer; a speed is asked only by the speed control."""
-        control, asked_dps, state = self._control, 0, 0
-        if control is self.speed_control:
-            asked_dps = control.setpoint
-        if self.is_running:
-            state = STALLED | RUNNING if self.is_stalled else RUNNING
-        elif control is not None:
-            state = HOLDING
-        if self.is_ramping or self.is_lowering:
-            state |= RAMPING
-        if control is not None and control.overloaded:
-            state |= OVERLOADED
-        _pack_into(buffer, at, asked_dps, self.speed_dps, self.duty, state)
+        control = self.speed_control
+        asked_dps = control.setpoint if self._control is control else 0
+        _pack_into(buffer, at, asked_dps, self.speed_dps, self.duty, self.state_bits)
 
     # Ticks
 
@@ -242,7 +226,7 @@ class SimulatedMotor(DriverMotor):
             return
         cruise_dps = setpoint + copysign(CUT_OFF_DPS, setpoint)
         end_ns = min(self._timers_ns, now_ns + self._free_ns(cruise_dps))
-        if end_ns > now_ns + self._tick_ns and self.states == self._looked_states:
+        if end_ns > now_ns + self._tick_ns and self.state_bits == self._looked_bits:
             self._cruise_dps, self._cruise_end_ns = cruise_dps, end_ns
             self.axle.speed_dps = cruise_dps
 
@@ -268,7 +252,8 @@ class SimulatedMotor(DriverMotor):
         """Run until a time at which something changes that a motor at rest does not expect."""
         if self._cruise_dps:
             self._leave_cruise()
-        super().wake(time_ns)
+        DriverMotor.run_until(self, time_ns)
+        self.is_at_rest = False
         self._even_ticks = 0
 
     def run_until(self, time_ns: int) -> None:
@@ -325,6 +310,7 @@ class SimulatedMotor(DriverMotor):
             self._leave_cruise()
         axle = self.axle
         there_deg = before.position_deg + (self._angle_deg - before.position_deg) * part
+        self.counter.take_back(there_deg)
         self._turn_to(self._moved_ns, there_deg)
         self.position_deg += axle.angle_deg - self._angle_deg
         self._angle_deg = axle.angle_deg
