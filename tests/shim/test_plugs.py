@@ -3,14 +3,21 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from tests.running import Done, over
+from tests.shim.late_programs import LATE_PROGRAMS, LateProgram
 from tuisim.config.build import build_run_spec
 from tuisim.config.program_file import find_program, read_program
 from tuisim.config.program_settings import program_settings
-from tuisim.runs.handle import RunOptions, start_run
+from tuisim.runs.frames import telemetry_columns
+from tuisim.runs.handle import RunHandle, RunOptions, in_surroundings
+from tuisim.runs.plugged_words import list_parts
+from tuisim.runs.rerun import rerun
+from tuisim.runs.run_folder import field_files
+from tuisim.runs.store import RunStore
 
 LATE_TOUCH = """\
 from ev3dev2.motor import MoveTank, OUTPUT_B, OUTPUT_C
@@ -67,14 +74,17 @@ print(Sensor("in2").driver_name)
 """
 
 
-def run_program(folder: Path, text: str, robot: str | None = None, **options: object) -> Done:
+def run_program(
+    folder: Path, text: str, robot: str | None = None, of_many: bool = False, **options: Any
+) -> Done:
     """Run a program from its file, as `tuisim run` does."""
     path = folder / "late.py"
     path.write_text(text, "utf-8")
     source = read_program(find_program(str(path)))
     found = program_settings(source, {} if robot is None else {"robot": robot})
     program, spec = found.applied_to(source.program), build_run_spec(found.settings)
-    return over(start_run(program, spec, RunOptions(time_limit_s=60.0, **options)))  # type: ignore[arg-type]
+    program, how = in_surroundings(program), RunOptions(time_limit_s=60.0, **options)
+    return over(RunHandle(program, spec, field_files(spec), how, RunStore(), of_many=of_many))
 
 
 def test_a_sensor_is_there_when_the_program_asks_for_it(home: Path, tmp_path: Path) -> None:
@@ -120,3 +130,34 @@ def test_listing_plugs_in_nothing(home: Path, tmp_path: Path) -> None:
         "lego-ev3-color",
     ]
     assert done.run.plugged == []
+
+
+@pytest.fixture(params=LATE_PROGRAMS)
+def late(request: pytest.FixtureRequest) -> LateProgram:
+    """Each of the ten programs."""
+    return LATE_PROGRAMS[request.param]
+
+
+def read_columns(done: Done) -> dict[str, list[float]]:
+    """Return everything that telemetry exports."""
+    return {name: values.tolist() for name, values in telemetry_columns(done.run.stored()).items()}
+
+
+def test_a_late_program_runs_and_names_its_parts(
+    home: Path, tmp_path: Path, late: LateProgram
+) -> None:
+    done = run_program(tmp_path, late.text, answers=late.answers)
+    assert (done.errors, tuple(sorted(done.lines))) == ([], tuple(sorted(late.prints)))
+    assert list_parts(done.run.plugged) == late.parts
+
+
+def test_a_late_program_is_the_same_in_every_way_of_running(
+    home: Path, tmp_path: Path, late: LateProgram
+) -> None:
+    done = run_program(tmp_path, late.text, answers=late.answers)
+    live = run_program(tmp_path, late.text, answers=late.answers, live=True, speed=16.0)
+    again = over(rerun(done.run.stored(), RunStore(tmp_path / "again")))
+    many = run_program(tmp_path, late.text, answers=late.answers, of_many=True)
+    assert live.recording == again.recording == many.recording == done.recording
+    assert live.run.plugged == again.run.plugged == many.run.plugged == done.run.plugged
+    assert read_columns(live) == read_columns(again) == read_columns(many) == read_columns(done)

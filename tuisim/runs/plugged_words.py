@@ -31,7 +31,11 @@ def list_parts(parts: Sequence[PluggedPart]) -> str:
     """Return the parts with their ports and the lines that asked for them; empty for none."""
     right = {(part.tick, part.line): part.port for part in parts if part.role == RIGHT}
     words = []
-    for part in parts:
+    wheels = {part.port: number for number, part in enumerate(parts) if part.role in (LEFT, RIGHT)}
+    for number, part in enumerate(parts):
+        if not part.role and wheels.get(part.port, 0) > number:
+            # It has become a wheel's.
+            continue
         line = f" (line {part.line})" if part.line else ""
         kind = DEVICES[part.part]
         if part.role == LEFT:

@@ -19,6 +19,7 @@ from tuisim.shim.files.open_files import OpenFiles
 from tuisim.shim.files.patches import FilePatches
 from tuisim.shim.files.tree import DeviceTree
 from tuisim.shim.fonts import quiet_pillow
+from tuisim.shim.plugs import Plugs
 from tuisim.shim.session import DeviceSession
 from tuisim.shim.shell.commands import Shell
 from tuisim.shim.shell.processes import Replace, System, finish_asyncio
@@ -103,6 +104,7 @@ def install(
         is_own: Whether a file belongs to the program.
     """
     built = build_brick(session)
+    plugs = Plugs(built)
     screen = Screen(session)
     terminal, mixer = Terminal(session, screen), Mixer()
     system = System(session, Shell(session, terminal, mixer))
@@ -129,11 +131,13 @@ def install(
         from tuisim.shim.pybricks import modules as pybricks
 
         finish_imports(finishers, is_own)
-        pybricks.install(session, built, screen, mixer)
+        pybricks.install(session, built, plugs, screen, mixer)
     else:
         from tuisim.shim.ev3dev import modules as ev3dev
 
         finish_imports(
-            ev3dev.finishers(session, built, terminal, mixer) | finishers, is_own, ev3dev.AROUND
+            ev3dev.finishers(session, built, plugs, terminal, mixer) | finishers,
+            is_own,
+            ev3dev.AROUND,
         )
-        ev3dev.install(session, built)
+        ev3dev.install(session, built, plugs)

@@ -7,7 +7,8 @@ program that catches the library's error about a missing device just tries what 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 from tuisim.core.plugged import (
     LATE,
@@ -19,8 +20,9 @@ from tuisim.core.plugged import (
     plug_parts,
 )
 from tuisim.core.sensors import SENSORS
-from tuisim.core.spec import NO_PORT
-from tuisim.shim.brick import BuiltBrick
+from tuisim.core.spec import INPUT_PORTS, NO_PORT, OUTPUT_PORTS
+from tuisim.errors import NotSimulated
+from tuisim.shim.brick import MOTOR_CLASS, SENSOR_CLASS, BuiltBrick
 from tuisim.shim.motor import KINDS
 
 PART_OF_KIND = {kind: part for part, kind in MOTOR_PARTS.items()}
@@ -51,26 +53,59 @@ class Plugs:
 
     Args:
         built: The brick.
-        missing: The library's error about a device that is not there.
     """
 
-    def __init__(self, built: BuiltBrick, missing: type[Exception]) -> None:
-        self._built, self._session, self._missing = built, built.session, missing
+    def __init__(self, built: BuiltBrick) -> None:
+        self._built, self._session = built, built.session
+        self.missing: type[Exception] = Exception
+        """The library's error about a device that is not there."""
         self._late: frozenset[str] = frozenset()
         """The ports of motors that are asked for as wheels, when it is too late for that."""
 
-    def add_driver(self, drivers: Iterable[str], address: object, usual: str = "") -> bool:
-        """Plug in a part that the library looks for, and return whether it is there now.
+    def add_device(self, class_name: str, wanted: Mapping[str, Any]) -> bool:
+        """Plug in what a library for device files looks for, and return whether it is there now.
 
         Args:
-            drivers: Names of the drivers that will do.
-            address: What the program gives as the port.
-            usual: The class of the part if any driver will do; empty for none.
+            class_name: Kernel name of the class that was searched.
+            wanted: What the device was to match, by attribute.
         """
-        port = find_port(address)
-        known = [PART_OF_DRIVER[name] for name in drivers if name in PART_OF_DRIVER]
-        part = known[0] if known else usual
-        return bool(port and part) and self.add(part, port)
+        if wanted.keys() - {"driver_name", "address"} or class_name not in (
+            MOTOR_CLASS,
+            SENSOR_CLASS,
+        ):
+            return False
+        drivers = wanted.get("driver_name", [])
+        names = [drivers] if isinstance(drivers, str) else drivers
+        known = [PART_OF_DRIVER[name] for name in names if name in PART_OF_DRIVER]
+        # A motor of any kind is a large one.
+        known += [PART_OF_KIND["large"]] if class_name == MOTOR_CLASS and not names else []
+        if not known:
+            return False
+        address = wanted.get("address")
+        port = self._choose_port(known[0]) if address is None else find_port(address)
+        return bool(port) and self.add(known[0], port)
+
+    def _choose_port(self, part: str) -> str:
+        """Return a port for a part of which the program does not say it; empty if all are used."""
+        ports = OUTPUT_PORTS if part in MOTOR_PARTS else INPUT_PORTS
+        free = [port for port in ports if not self.find_path(port)]
+        return next((port for port in (*free, *ports) if self._can_give_way(port)), "")
+
+    def take_hold(self, path: str) -> None:
+        """Note that the program uses the device with a path."""
+        if (device := self._built.files.by_path.get(path)) is not None:
+            device.is_opened = True
+
+    def refuse_value(self, path: str, number: int) -> NotSimulated | None:
+        """Return the error about a value that the sensor with a path has in no mode; None if it has."""
+        found = (
+            sensor for port, sensor in self._built.sensors.items() if self.find_path(port) == path
+        )
+        return next((sensor.refuse_value(number) for sensor in found), None)
+
+    def find_path(self, port: str) -> str:
+        """Return the path of what is on a port; empty for nothing."""
+        return self._built.paths.get(port, "")
 
     def add(self, part: str, port: str) -> bool:
         """Plug in a part, and return whether it is there now.
@@ -88,7 +123,7 @@ class Plugs:
         if part == "GyroSensor" and robot.gyro and not self._can_give_way(robot.gyro.port):
             # A robot has one.
             return False
-        if self._session.is_tried(self._missing):
+        if self._session.is_tried(self.missing):
             return False
         parts = [self._session.describe_part(port, part, LATE if port in self._late else "")]
         if port in wheels:
@@ -108,18 +143,17 @@ class Plugs:
         if session.shown_ports is None or left == right:
             return
         robot = session.sim.spec.robot
-        if ports == (robot.left_port, robot.right_port) or {*ports} <= {*session.shown_ports}:
+        wheels = (robot.left_port, robot.right_port)
+        if ports == wheels or ({*ports} == {*wheels} and {*ports} <= {*session.shown_ports}):
             return
         if not all(self._is_there(part, port) or self._can_give_way(port) for port in ports):
             return
-        if session.is_tried(self._missing):
+        if session.is_tried(self.missing):
             return
         if self._can_change_wheels(ports):
-            wheels = (
-                self._session.describe_part(left, part, LEFT),
-                self._session.describe_part(right, part, RIGHT),
-            )
-            self._plug([*wheels, *self._keep_wheels(ports)])
+            parts = [session.describe_part(left, part, LEFT)]
+            parts += [session.describe_part(right, part, RIGHT), *self._keep_wheels(ports)]
+            self._plug(parts)
         else:
             self._late |= {*ports}
 

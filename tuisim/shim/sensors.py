@@ -13,6 +13,7 @@ from tuisim.core.profile import ProfileSpec
 from tuisim.core.sensors import SENSORS, color, gyro, infrared, touch, ultrasonic
 from tuisim.core.spec import ColorSensorSpec, GyroSpec, InfraredSpec, TouchSpec, UltrasonicSpec
 from tuisim.data_class import dataclass
+from tuisim.errors import NotSimulated
 from tuisim.runs.readings import READING_CODES
 from tuisim.shim.device_files import SimDevice, Writer, refuse
 from tuisim.shim.session import DeviceSession
@@ -137,6 +138,16 @@ class LegoSensor:
             raise refuse(f"value{n}")
         self._next_free = (n + 1, self._session.now)
         return self._values[n]
+
+    def refuse_value(self, number: int) -> NotSimulated | None:
+        """Return the error about a value that it has in no mode: the program is for another sensor. None if it has."""
+        count = max(len(mode.measure()) for mode in self.modes.values())
+        if number < count:
+            return None
+        return NotSimulated(
+            f"value({number}) on {self._port}: {self.driver_name} has no such value; no other sensor is simulated",
+            "the simulated sensors are those of ev3dev2.sensor.lego for colour, distance, turning, touch and infrared",
+        )
 
 
 class ColorDevice(LegoSensor):

@@ -45,14 +45,18 @@ class Lab:
         self.shown: list[tuple[str, Stream]] = []
         self.looks: list[Callable[[int], None]] = []
         self.sim: Any = SimpleNamespace(spec=SimpleNamespace(profile=PROFILES["lego-micropython"]))
-        empty: Any = SimpleNamespace()
+        built: Any = SimpleNamespace(motors=self.motors, sensors={}, lights=None, battery=None)
+        plugs: Any = SimpleNamespace(
+            add=lambda *_: False,
+            take_hold=lambda _: None,
+            find_path=lambda _: "",
+            make_wheels=lambda *_: None,
+        )
         self.mixer, self.sounds = Mixer(), list[tuple[str, int, str]]()
         Connected.brick = self.brick = Brick(
             cast(Any, self),
-            self.motors,
-            {},
-            empty,
-            empty,
+            built,
+            plugs,
             Screen(cast(Any, self)),
             self.mixer,
             lambda _: "",

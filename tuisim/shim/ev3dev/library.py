@@ -5,18 +5,18 @@ Attributes are read and written hundreds of times in a simulated second; everyth
 
 from __future__ import annotations
 
+import inspect
 import select
 import types
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from fnmatch import fnmatch
 from functools import wraps
 from typing import Any
 
 from tuisim.core.profile import MS, MotorLaw
-from tuisim.shim.brick import MOTOR_CLASS, SENSOR_CLASS, BuiltBrick
 from tuisim.shim.device_files import DeviceFiles, free_of_charge
 from tuisim.shim.ev3dev.browser_library import speak_as_browser
-from tuisim.shim.plugs import PART_OF_KIND, Plugs
+from tuisim.shim.plugs import PART_OF_KIND, Plugs, find_port
 from tuisim.shim.session import DeviceSession
 from tuisim.shim.unsupported.devices import other_sensors_note, refused_device
 from tuisim.shim.waits import Wait, waits_for
@@ -69,20 +69,20 @@ class MotorPoll:
         return []
 
 
-def connect(built: BuiltBrick, hint: Callable[[str], str]) -> Plugs:
-    """Patch `ev3dev2` before any of its submodules is imported, and return what plugs in its parts.
+def connect(brick: DeviceFiles, plugs: Plugs, hint: Callable[[str], str]) -> None:
+    """Patch `ev3dev2` before any of its submodules is imported.
 
     Args:
-        built: The brick.
+        brick: The devices.
+        plugs: Plugs in what is missing.
         hint: Returns what to add to the error about a missing device of a class.
     """
     import ev3dev2
 
-    brick, plugs = built.files, Plugs(built, ev3dev2.DeviceNotFound)
+    plugs.missing = ev3dev2.DeviceNotFound
     ev3dev2.list_device_names = _in_place_of(ev3dev2.list_device_names, _device_lister(brick))
     _patch_device(ev3dev2.Device, brick)
-    _patch_look_up(ev3dev2, brick, plugs, hint)
-    return plugs
+    _patch_look_up(ev3dev2, plugs, hint)
 
 
 def _in_place_of(
@@ -96,27 +96,7 @@ def _in_place_of(
     return wraps(original)(copy)
 
 
-def plug_device(plugs: Plugs, device: Any, class_name: str) -> bool:
-    """Plug in what the library looks for, and return whether it is there now.
-
-    Args:
-        plugs: Plugs it in.
-        device: Object of the library; its `kwargs` say what it was to match.
-        class_name: Kernel name of the class that was searched.
-    """
-    wanted: Mapping[str, Any] = device.kwargs
-    drivers = wanted.get("driver_name", ())
-    if wanted.keys() - {"driver_name", "address"} or class_name not in (MOTOR_CLASS, SENSOR_CLASS):
-        return False
-    usual = PART_OF_KIND["large"] if class_name == MOTOR_CLASS and not drivers else ""
-    return plugs.add_driver(
-        [drivers] if isinstance(drivers, str) else drivers, wanted.get("address"), usual
-    )
-
-
-def _patch_look_up(
-    library: Any, brick: DeviceFiles, plugs: Plugs, hint: Callable[[str], str]
-) -> None:
+def _patch_look_up(library: Any, plugs: Plugs, hint: Callable[[str], str]) -> None:
     look_up = library.Device.__init__
 
     @wraps(look_up)
@@ -127,9 +107,9 @@ def _patch_look_up(
             refused = refused_device(self, class_name, library.DeviceNotFound)
             if refused is not None:
                 raise refused from None
-            if plug_device(plugs, self, class_name):
+            if plugs.add_device(class_name, self.kwargs):
                 look_up(self, class_name, *args, **kwargs)
-                brick.by_path[self._path].is_opened = True
+                plugs.take_hold(self._path)
                 return
             error.args = (
                 " ".join(
@@ -139,8 +119,7 @@ def _patch_look_up(
                 ),
             )
             raise
-        if self._path in brick.by_path:
-            brick.by_path[self._path].is_opened = True
+        plugs.take_hold(self._path)
 
     library.Device.__init__ = __init__
 
@@ -229,7 +208,7 @@ def _set_directly(motor_class: Any, brick: DeviceFiles) -> None:
 
 
 def patch_motor_module(
-    session: DeviceSession, module: types.ModuleType, brick: DeviceFiles
+    session: DeviceSession, module: types.ModuleType, brick: DeviceFiles, plugs: Plugs
 ) -> None:
     """Patch `ev3dev2.motor` after its import."""
     motor: Any = module
@@ -241,12 +220,48 @@ def patch_motor_module(
     motor.Motor.wait_until_not_moving = patience.patient(motor.Motor.wait_until_not_moving)
     motor.Motor.__init__ = free_of_charge(session, motor.Motor.__init__)
     motor.Motor.wait = free_of_charge(session, motor.Motor.wait)
+    _patch_tank(motor, plugs)
     if session.sim.spec.profile.motor_law == MotorLaw.NBEV3DEVSIM:
         speak_as_browser(session, motor, brick)
 
 
+def _patch_tank(motor: Any, plugs: Plugs) -> None:
+    """Let the motors of a tank become the robot's wheels if they have to be plugged in."""
+    make = motor.MoveTank.__init__
+    signature = inspect.signature(make)
+
+    @wraps(make)
+    def __init__(self: Any, *args: Any, **named: Any) -> None:  # noqa: N807
+        given = signature.bind(self, *args, **named)
+        given.apply_defaults()
+        left, right = (
+            find_port(given.arguments[f"{side}_motor_port"]) for side in ("left", "right")
+        )
+        is_medium = motor.MediumMotor in getattr(given.arguments["motor_class"], "__mro__", ())
+        plugs.make_wheels(left, right, PART_OF_KIND["medium" if is_medium else "large"])
+        make(self, *args, **named)
+
+    motor.MoveTank.__init__ = __init__
+
+
+def refuse_values(sensor: Any, plugs: Plugs) -> None:
+    """Let a class of sensors refuse by name a value that only a sensor has which is not simulated."""
+    read = sensor.value
+
+    @wraps(read)
+    def value(self: Any, n: int = 0) -> Any:
+        try:
+            return read(self, n)
+        except Exception:  # the library's classes of errors differ
+            if (refused := plugs.refuse_value(self._path, int(n))) is not None:
+                raise refused from None
+            raise
+
+    sensor.value = value
+
+
 def patch_sensor_module(
-    session: DeviceSession, module: types.ModuleType, brick: DeviceFiles
+    session: DeviceSession, module: types.ModuleType, brick: DeviceFiles, plugs: Plugs
 ) -> None:
     """Patch `ev3dev2.sensor` after its import: reading or setting the mode costs nothing."""
     devices = brick.by_path
@@ -258,4 +273,5 @@ def patch_sensor_module(
             self.mode = mode
 
     sensor.Sensor._ensure_mode = ensure_mode
+    refuse_values(sensor.Sensor, plugs)
     sensor.Sensor._scale = free_of_charge(session, sensor.Sensor._scale)

@@ -20,6 +20,7 @@ from tuisim.shim.ev3dev.robolab import glue_module, patch_lego_module
 from tuisim.shim.evdev.devices import evdev_modules
 from tuisim.shim.fonts import patch_fonts_module
 from tuisim.shim.leds import patch_led_module
+from tuisim.shim.plugs import Plugs
 from tuisim.shim.session import DeviceSession
 from tuisim.shim.sound import Mixer, patch_sound_module
 from tuisim.shim.unsupported.modules import HardwareFinder, OtherLibrary
@@ -39,12 +40,14 @@ AROUND: Mapping[str, Callable[[], AbstractContextManager[None]]] = dict.fromkeys
 
 
 def finishers(
-    session: DeviceSession, built: BuiltBrick, terminal: Terminal, mixer: Mixer
+    session: DeviceSession, built: BuiltBrick, plugs: Plugs, terminal: Terminal, mixer: Mixer
 ) -> dict[str, Callable[[types.ModuleType], None]]:
     """Return what to do with a module after its import, by name."""
     brick, colors = built.files, built.colors
     return {
-        "ev3dev.core": lambda module: finish_core(session, module, partial(ports_hint, session)),
+        "ev3dev.core": lambda module: finish_core(
+            session, module, plugs, partial(ports_hint, session)
+        ),
         "ev3dev.fonts": patch_fonts_module,
         **dict.fromkeys(OTHER_BOARDS, refuse_board),
         "ev3dev2.button": lambda module: patch_button_module(session, module),
@@ -52,8 +55,8 @@ def finishers(
         "ev3dev2.display": lambda module: draw_with_the_bricks_font(vars(module)["Display"]),
         "ev3dev2.fonts": patch_fonts_module,
         "ev3dev2.led": lambda module: patch_led_module(session, module),
-        "ev3dev2.motor": lambda module: patch_motor_module(session, module, brick),
-        "ev3dev2.sensor": lambda module: patch_sensor_module(session, module, brick),
+        "ev3dev2.motor": lambda module: patch_motor_module(session, module, brick, plugs),
+        "ev3dev2.sensor": lambda module: patch_sensor_module(session, module, brick, plugs),
         "ev3dev2.sensor.lego": lambda module: patch_lego_module(session, module, brick, colors),
         "ev3dev2.sound": lambda module: patch_sound_module(session, module, mixer),
         **dict.fromkeys(REFUSED, refuse_classes),
@@ -61,12 +64,12 @@ def finishers(
     }
 
 
-def install(session: DeviceSession, built: BuiltBrick) -> None:
+def install(session: DeviceSession, built: BuiltBrick, plugs: Plugs) -> None:
     """Let a program import the libraries."""
     sys.meta_path.insert(0, OtherLibrary((PYBRICKS,), Library.EV3DEV2))
     sys.meta_path.append(MissingLibrary())
     sys.meta_path.append(HardwareFinder(Library.EV3DEV2))
-    connect(built, partial(ports_hint, session))
+    connect(built.files, plugs, partial(ports_hint, session))
     sys.modules["ev3dev2_glue"] = glue_module(session)
     sys.modules[virtual.NAME] = virtual.virtual_module(session)
     sys.modules.update(evdev_modules(session))

@@ -13,7 +13,9 @@ from functools import wraps
 from typing import Any
 
 from tuisim.shim.display import draw_with_the_bricks_font
+from tuisim.shim.ev3dev.library import refuse_values
 from tuisim.shim.leds import mend_trigger
+from tuisim.shim.plugs import Plugs
 from tuisim.shim.session import DeviceSession
 from tuisim.shim.unsupported.devices import refused_device
 
@@ -67,13 +69,14 @@ def _resources() -> types.ModuleType:
 
 
 def finish_core(
-    session: DeviceSession, module: types.ModuleType, hint: Callable[[str], str]
+    session: DeviceSession, module: types.ModuleType, plugs: Plugs, hint: Callable[[str], str]
 ) -> None:
     """Patch `ev3dev.core` after its import: the screen's font, and what it says about a missing device.
 
     Args:
         session: The run.
         module: The module.
+        plugs: Plugs in what is missing.
         hint: Returns what to add to the error about a missing device of a class.
     """
     core: Any = module
@@ -100,11 +103,26 @@ def finish_core(
 
         return call
 
+    refuse_values(core.Sensor, plugs)
     device = core.Device
+    device.__init__ = _look_up(device.__init__, plugs)
     device._get_attribute, device._set_attribute = (
         explained(device._get_attribute),
         explained(device._set_attribute),
     )
+
+
+def _look_up(look_up: Callable[..., None], plugs: Plugs) -> Callable[..., None]:
+    """Return the library's search for a device, which plugs in what is missing."""
+
+    @wraps(look_up)
+    def __init__(self: Any, class_name: str, *args: Any, **kwargs: Any) -> None:  # noqa: N807
+        look_up(self, class_name, *args, **kwargs)
+        if not self.connected and plugs.add_device(class_name, self.kwargs):
+            look_up(self, class_name, *args, **kwargs)
+        plugs.take_hold(self._path)
+
+    return __init__
 
 
 def _run_by_duty_cycle(motor: Any) -> None:

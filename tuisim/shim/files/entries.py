@@ -19,6 +19,8 @@ READ_MODE, WRITE_MODE = 0o444, 0o220
 """Permissions of attributes: everybody may read, the programs' group may write."""
 ATTRIBUTE_BYTES = 4096
 """Size of every attribute's file, as the kernel reports it."""
+IDENTITY = ("address", "driver_name")
+"""Attributes by which a library looks for a device: to read them is not to use it."""
 ALWAYS_READY = select.POLLIN | select.POLLOUT
 
 
@@ -117,6 +119,11 @@ class AttributeFile(DeviceFile):
         mode = stat.S_IFREG | (READ_MODE if readable else 0) | (WRITE_MODE if writable else 0)
         super().__init__(path, mode, ATTRIBUTE_BYTES)
         self._device, self._name = device, name
+
+    def begin(self, opened: OpenFile) -> None:
+        """Take hold of the device."""
+        if self._name not in IDENTITY:
+            self._device.is_opened = True
 
     def read(self, opened: OpenFile, size: int) -> bytes:
         """Read the value as text with an end of line; a value of bytes as it is."""

@@ -4,15 +4,18 @@ from __future__ import annotations
 
 import errno
 import sys
-from collections.abc import Callable, Generator, Mapping
+from collections.abc import Callable, Generator
 from dataclasses import field
 from typing import Any, ClassVar, Generic, TypeVar
 
+from tuisim.core.sensors import SENSORS
 from tuisim.core.servo.motor import ServoMotor
 from tuisim.data_class import dataclass
 from tuisim.runs.readings import READING_CODES
+from tuisim.shim.brick import BuiltBrick
 from tuisim.shim.display import Screen
 from tuisim.shim.leds import Lights
+from tuisim.shim.plugs import PART_OF_DRIVER, PART_OF_KIND, Plugs
 from tuisim.shim.power import Battery
 from tuisim.shim.pybricks.parameters import Port
 from tuisim.shim.sensors import LegoSensor
@@ -47,11 +50,8 @@ class Brick:
     """The brick of one run."""
 
     session: DeviceSession
-    motors: Mapping[str, ServoMotor]
-    """By port, such as `outA`."""
-    sensors: Mapping[str, LegoSensor]
-    lights: Lights
-    battery: Battery
+    built: BuiltBrick
+    plugs: Plugs
     screen: Screen
     mixer: Mixer
     hint: Callable[[str], str]
@@ -60,6 +60,38 @@ class Brick:
     """What was said that is said once, by subject."""
     in_task: bool = False
     """Whether the program runs a task of version 4, in which nothing blocks."""
+
+    @property
+    def lights(self) -> Lights:
+        """The lights of its buttons."""
+        return self.built.lights
+
+    @property
+    def battery(self) -> Battery:
+        """Its battery."""
+        return self.built.battery
+
+    def find_motor(self, port: str) -> ServoMotor | None:
+        """Return the motor on a port such as `outA`, which may be plugged in now; None for none."""
+        if port not in self.built.motors:
+            self.plugs.add(PART_OF_KIND["large"], port)
+        self.plugs.take_hold(self.plugs.find_path(port))
+        motor = self.built.motors.get(port)
+        return motor if isinstance(motor, ServoMotor) else None
+
+    def find_sensor(self, port: str, kind: str) -> LegoSensor | None:
+        """Return the sensor on a port, which may be plugged in now; None for none.
+
+        Args:
+            port: The port, such as `in1`.
+            kind: One of `core.sensors.SENSORS`; empty for any of them.
+        """
+        driver, sensors = SENSORS[kind].driver_name if kind else "", self.built.sensors
+        sensor = sensors.get(port)
+        if kind and (sensor is None or sensor.driver_name != driver):
+            sensor = sensors[port] if self.plugs.add(PART_OF_DRIVER[driver], port) else None
+        self.plugs.take_hold(self.plugs.find_path(port) if sensor else "")
+        return sensor
 
     @property
     def now_us(self) -> int:
@@ -97,7 +129,7 @@ class Brick:
         begin = now = self.now_us
         while not done(now):
             until = max(end_us() or 0, now + 1)
-            if any(motor.blocked_ticks for motor in self.motors.values()):
+            if any(motor.blocked_ticks for motor in self.built.motors.values()):
                 until = min(until, now + BLOCKED_POLL_US)
             yield begin - (begin - until) // POLL_US * POLL_US
             now = self.now_us

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any, ClassVar
 
-from tuisim.core.sensors import SENSORS, color
+from tuisim.core.sensors import color
 from tuisim.shim.brick import SENSOR_CLASS
 from tuisim.shim.pybricks.brick import Connected, invalid_argument, no_device, whole
 from tuisim.shim.pybricks.parameters import Button, Color, Direction, Port
@@ -59,8 +59,8 @@ class Sensor(Connected):
             raise TypeError(f"a Port is needed, not {type(port).__name__}")
         if not port.device_port.startswith("in"):
             raise ValueError("Invalid port")
-        found = self.brick.sensors.get(port.device_port)
-        if found is None or (self.KIND and found.driver_name != SENSORS[self.KIND].driver_name):
+        found = self.brick.find_sensor(port.device_port, self.KIND)
+        if found is None:
             raise no_device(self.brick.hint(SENSOR_CLASS))
         self.port, self._sensor = port, found
 

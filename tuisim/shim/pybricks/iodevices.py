@@ -14,7 +14,8 @@ class Ev3devSensor(Sensor):
 
     def __init__(self, port: Port) -> None:
         super().__init__(port)
-        self.sensor_index = sorted(self.brick.sensors).index(port.device_port)
+        _, _, number = self.brick.plugs.find_path(port.device_port).rpartition("/sensor")
+        self.sensor_index = int(number)
         """The number of the sensor's device."""
         self.port_index = INPUT_PORTS.index(port.device_port)
         """The number of the port's device."""

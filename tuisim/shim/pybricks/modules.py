@@ -9,9 +9,9 @@ from functools import partial
 from typing import Any
 
 from tuisim.core.profile import Library, MotorLaw
-from tuisim.core.servo.motor import ServoMotor
 from tuisim.shim.brick import BuiltBrick, ports_hint
 from tuisim.shim.display import Screen
+from tuisim.shim.plugs import Plugs
 from tuisim.shim.pybricks import (
     ev3devices,
     experimental,
@@ -91,14 +91,15 @@ def _version_4() -> Mapping[str, Mapping[str, Any]]:
     }
 
 
-def install(session: DeviceSession, built: BuiltBrick, screen: Screen, mixer: Mixer) -> None:
+def install(
+    session: DeviceSession, built: BuiltBrick, plugs: Plugs, screen: Screen, mixer: Mixer
+) -> None:
     """Let a program import the library, and the modules of MicroPython."""
     sys.meta_path.insert(0, OtherLibrary(("ev3dev2", "ev3dev"), Library.PYBRICKS))
     sys.meta_path.append(HardwareFinder(Library.PYBRICKS))
     micropython.install(session)
-    motors = {port: motor for port, motor in built.motors.items() if isinstance(motor, ServoMotor)}
-    hint = partial(ports_hint, session)
-    brick = Brick(session, motors, built.sensors, built.lights, built.battery, screen, mixer, hint)
+    plugs.missing = OSError
+    brick = Brick(session, built, plugs, screen, mixer, partial(ports_hint, session))
     Connected.brick = brick
     law = session.sim.spec.profile.motor_law
     sys.meta_path.insert(0, OtherHub())

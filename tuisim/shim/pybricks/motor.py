@@ -74,7 +74,7 @@ class DCMotor(Connected):
     def _set_up(
         self, port: Port, direction: Direction, ratio: float, *, keeps_angle: bool = False
     ) -> None:
-        found = self.brick.motors.get(self._port_name(port))
+        found = self.brick.find_motor(self._port_name(port))
         if found is None:
             raise no_device(self.brick.hint(MOTOR_CLASS))
         self._motor: ServoMotor = found

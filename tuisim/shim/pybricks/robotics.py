@@ -7,6 +7,7 @@ from typing import Any, ClassVar
 from tuisim.core.servo import drive_base
 from tuisim.core.servo.control import Controller, Ending
 from tuisim.core.servo.trajectory import MILLI
+from tuisim.shim.plugs import PART_OF_KIND
 from tuisim.shim.pybricks.brick import Connected, invalid_argument, not_permitted, whole
 from tuisim.shim.pybricks.motor import Control, Motor
 from tuisim.shim.pybricks.parameters import Stop
@@ -30,6 +31,8 @@ class DriveBase(Connected):
         for motor in (left_motor, right_motor):
             if not isinstance(motor, Motor):
                 raise TypeError(f"a Motor is needed, not {type(motor).__name__}")
+        kind = PART_OF_KIND[left_motor.simulated.kind]
+        self.brick.plugs.make_wheels(*left_motor.port_names, *right_motor.port_names, kind)
         if left_motor.simulated is right_motor.simulated or wheel_diameter <= 0 or axle_track <= 0:
             raise invalid_argument()
         if left_motor.simulated.control.settings != right_motor.simulated.control.settings:
