@@ -25,6 +25,12 @@ def test_lists(command: str, name: str, here: Command) -> None:
     assert name in [entry["name"] for entry in json.loads(here(command, "--json").stdout)]
 
 
+def test_profiles_of_a_brick_tell_each_figure_of_its_motors(here: Command) -> None:
+    shown = here("profiles", "ev3").stdout
+    assert "inertia_kg_m2     0.00150274   0.0003  large: nxt-unroller" in shown
+    assert "inertia_kg_m2" not in here("profiles", "robolab", "lego-micropython").stdout
+
+
 def test_list_of_robots_tells_their_ports(here: Command) -> None:
     assert "in1 bumper, in2 left, in3 infrared" in here("robots").stdout
 

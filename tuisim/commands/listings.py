@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from tuisim.commands.echo import echo, echo_error, echo_json, echo_lines, table
 from tuisim.config.command_line import AS_JSON, WordType, argument, command, option
-from tuisim.core.profile import MS, PROFILES, ProfileSpec
+from tuisim.core.profile import MS, PROFILES, MotorLaw, ProfileSpec
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, RobotSpec, RunSpec, WorldSpec
 from tuisim.core.values import values_of
 from tuisim.errors import ConfigError, counted, listed
@@ -287,12 +287,11 @@ def programs(as_json: bool) -> int:
 
 @command(argument("words", "[NAME|FILE]…", lambda: PROFILES, nargs=-1), AS_JSON)
 def profiles(words: Sequence[str], as_json: bool) -> int:
-    """List the profiles: the simulated time of each call, and the source of each number."""
+    """List the profiles: the simulated time of each call, the motors of a brick, and the source of each number."""
     from tuisim.config.profiles import load_profile
 
-    shown = [
-        asdict(profile) for profile in [load_profile(word) for word in words] or PROFILES.values()
-    ]
+    chosen = [load_profile(word) for word in words] or PROFILES.values()
+    shown = [asdict(profile) for profile in chosen]
     if as_json:
         echo_json(shown)
         return 0
@@ -310,7 +309,18 @@ def profiles(words: Sequence[str], as_json: bool) -> int:
         if key not in ("name", "title")
     ]
     echo_lines(table(("", *(profile["name"] for profile in shown), "SOURCE"), rows))
+    if any(profile.motor_law is MotorLaw.EV3DEV for profile in chosen):
+        echo_lines("\n" + table(("MOTORS OF ev3dev", "large", "medium", "SOURCE"), _motor_rows()))
     return 0
+
+
+def _motor_rows() -> list[tuple[str, ...]]:
+    from tuisim.core.driver.figures import list_figures
+
+    return [
+        (figure.name, f"{figure.large:g}", f"{figure.medium:g}", figure.source)
+        for figure in list_figures()
+    ]
 
 
 def _cost(key: str, value: object) -> str:

@@ -1,8 +1,6 @@
 """The electric motor: how its axle turns under a mean voltage, in closed form.
 
-Sources: a large motor measured by nxt-unroller (2015) from coast-down, load and start; its friction and breakaway
-from logged steps of free motors in five public repositories. Of a medium motor only the two load points by Philo are
-measured: its inertia and breakaway are estimates.
+`core.driver.figures` has the source of each constant.
 """
 
 from __future__ import annotations
