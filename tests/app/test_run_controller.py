@@ -227,11 +227,11 @@ async def test_a_mat_that_failed_is_prepared_again_for_a_run(
 ) -> None:
     open_field, tries = mat_cache.open_field, []
 
-    def opened(files: mat_cache.FieldFiles) -> Field:
+    def opened(files: mat_cache.FieldFiles, has_floor: bool) -> Field:
         tries.append(files)
         if len(tries) == 1:
             raise BackgroundError("the prepared mat cannot be opened")
-        return open_field(files)
+        return open_field(files, has_floor=has_floor)
 
     monkeypatch.setattr(mat_cache, "open_field", opened)
     async with LabApp(settings("print(1)\n")).run_test(size=(80, 24)) as pilot:

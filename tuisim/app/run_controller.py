@@ -191,12 +191,8 @@ class RunController:
         instant, line, pen_down = self._moment(record)
         state, face = self.state, timeline.face(now_tick if timeline.at is None else timeline.at)
         # After the robot was placed following the run, all its motors are reset.
-        has_turned = record is not None and face.turns
-        turns = (
-            face.turns_at(instant.tick / spec.profile.tick_hz, spec.profile.tick_hz)
-            if has_turned
-            else ()
-        )
+        hz = spec.profile.tick_hz
+        turns = face.turns_at(instant.tick / hz, hz) if record else ()
         turns = turns or ((0.0, 0.0),) * len(spec.robot.extra_motors)
         if state is RunPhase.ENDED and not past:
             # The last record is of the tick before the program's last commands; after its end, nothing turns.
@@ -215,6 +211,7 @@ class RunController:
             if record and recording and self._is_of_run
             else (False, False),
             next_spec=self.next_run.spec,
+            recorded_spec=recording.spec if recording else None,
             face=face,
             turns=turns,
             pressed=self._pressed_at(record),

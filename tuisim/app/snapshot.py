@@ -16,7 +16,7 @@ from tuisim.core.spec import RunSpec
 from tuisim.core.state import Instant
 from tuisim.data_class import dataclass
 from tuisim.protocol import BusyLoop, End, Ended, Inspected, Paused, RunState, Unended
-from tuisim.runs.brick_state import BrickState
+from tuisim.runs.brick_state import BrickState, Turns
 from tuisim.source import Program
 
 CHART_PERIOD_S = 0.33
@@ -70,9 +70,12 @@ class Snapshot:
     next_spec: RunSpec | None = None
     """Settings of the next run; differ from `spec` in what was changed during the run. None: the same."""
 
+    recorded_spec: RunSpec | None = None
+    """Settings of the run whose records charts show; None without a run."""
+
     face: BrickState = _DARK
     """What the brick shows."""
-    turns: tuple[tuple[float, float], ...] = ()
+    turns: Turns = ()
     """Position in degrees and speed in degrees per second of each motor that does not drive the robot."""
     pressed: frozenset[str] = frozenset()
     """The brick's buttons that are held down."""

@@ -104,7 +104,8 @@ class Chart(LinesPanel, can_focus=True):
             state = replace(state, cursor_s=snapshot.time_s if snapshot.past else None)
         if state != self._state:
             self._state, self._dirty = state, True
-        self._light, was_at_rest = find_light(snapshot.spec), self._is_at_rest
+        self._light = find_light(snapshot.recorded_spec or snapshot.spec)
+        was_at_rest = self._is_at_rest
         self._is_at_rest = snapshot.state in AT_REST
         if self._dirty or self._is_at_rest != was_at_rest:
             self._dirty = True
