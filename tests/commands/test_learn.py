@@ -17,7 +17,7 @@ from tuisim.lessons.skeleton import SKELETON
 FAULTY = {
     "model answer": (
         ("500 / (3.14159 * 56)", "1"),
-        "line 73: the model answer does not pass “Drive them”: there: At the end the robot was 324 mm left of x = ",
+        "line 75: the model answer does not pass “Drive them”: there: At the end the robot was 324 mm left of x = ",
     ),
     "wrong program": (
         ("SpeedPercent(30), 5)", "SpeedPercent(30), 2.842)"),
@@ -240,7 +240,7 @@ def test_missing_wrong_way_is_a_warning(here: Command, tmp_path: Path) -> None:
     )
     done = here("learn", "check", "mine.md", "--no-runs")
     assert (
-        "warning: mine.md, line 72: no wrong way “no sensor” is tried on “Drive them”, nor excluded"
+        "warning: mine.md, line 74: no wrong way “no sensor” is tried on “Drive them”, nor excluded"
         in done.stdout
     )
     assert (
