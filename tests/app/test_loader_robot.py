@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from textual.pilot import Pilot
 from textual.widgets import OptionList
 
 from tests.app.app_help import lab, notices, ready, screen_text, until, until_shown
@@ -75,6 +76,28 @@ async def test_another_robot_is_chosen_and_the_program_s_again(claw: Path) -> No
             await until(pilot, lambda: bool(app.screen.query(OptionList)))
             await pilot.press(key, "enter")
             await until(pilot, lambda ports=ports: extra_ports(app) == ports)  # type: ignore[misc]
+
+
+async def choose(pilot: Pilot[None], app: LabApp, key: str, name: str) -> None:
+    """Choose an entry of the dialog that a key opens."""
+    await pilot.press(key)
+    await until(pilot, lambda: bool(app.screen.query(OptionList)))
+    entries = app.screen.query_one(OptionList)
+    entries.highlighted = entries.get_option_index(name)
+    await pilot.press("enter")
+
+
+async def test_a_mat_and_a_profile_chosen_by_key_leave_the_robot(claw: Path) -> None:
+    async with LabApp(opened(claw)).run_test(size=(120, 40)) as pilot:
+        app = await ready(pilot)
+        plan = app.run_controller.next_run
+        await choose(pilot, app, "b", "Loop")
+        await until(pilot, lambda: app.run_controller.next_run.spec.world.background == "Loop")
+        on_mat = app.run_controller.next_run.spec
+        assert (on_mat.robot, on_mat.profile) == (plan.spec.robot, plan.spec.profile)
+        await choose(pilot, app, "F", "robolab")
+        await until(pilot, lambda: app.run_controller.next_run.spec.profile.name == "robolab")
+        assert app.run_controller.next_run.spec.robot == plan.spec.robot
 
 
 async def test_it_follows_the_text_of_the_program(claw: Path) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import math
 import shutil
 import subprocess
 import sys
@@ -12,8 +13,9 @@ import pytest
 
 from tests.cases import cases
 from tuisim.config import folders, mats, program_file
+from tuisim.config.mat_image import decode, read_file
 from tuisim.core.geometry import Pose
-from tuisim.core.spec import Obstacle
+from tuisim.core.spec import BACKGROUND_FITS, FIELD_HEIGHT_MM, Obstacle
 from tuisim.errors import BackgroundError, ConfigError
 
 STARTS = {
@@ -80,6 +82,40 @@ def test_only_one_mat_brings_obstacles() -> None:
 def test_only_radial_grey_moves_sensors() -> None:
     moved = {name: mat.sensor_x_mm for name, mat in mats.catalogue().items() if mat.sensor_x_mm}
     assert moved == {"Radial_grey": {"left": -60.0, "right": 60.0}}
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "Loop",
+        "Square",
+        "Two_shapes",
+        "Lollipop",
+        "Line_Following_Test",
+        "Junction_Handling_Test",
+        "Obstacles_Test",
+        "Thruxton_Circuit",
+        "Harvest_Trail",
+        "Space_Port",
+    ],
+)
+def test_a_program_for_a_brick_starts_on_the_line_of_a_mat(name: str) -> None:
+    mat = mats.background(name)
+    image = decode(read_file(mat.image), mat.image, BACKGROUND_FITS[0])
+    floor = image[10, 10]
+    start = mat.brick_start or mat.start
+    along, across = (
+        (math.cos(angle), math.sin(angle))
+        for angle in map(math.radians, (start.heading_deg, start.heading_deg - 90))
+    )
+    seen = [
+        image[
+            round(FIELD_HEIGHT_MM - 1 - start.y_mm - along[1] * 30 - across[1] * x_mm),
+            round(start.x_mm + along[0] * 30 + across[0] * x_mm),
+        ]
+        for x_mm in (-20, 0, 20)
+    ]
+    assert any(abs(color.astype(int) - floor).max() > 60 for color in seen)
 
 
 def test_every_mat_is_listed_in_order() -> None:

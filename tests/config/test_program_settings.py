@@ -25,7 +25,7 @@ PYBRICKS = "from pybricks.ev3devices import Motor\nfrom pybricks.parameters impo
 BASE = f"from pybricks.robotics import DriveBase\n{PYBRICKS}DriveBase(Motor(Port.B), Motor(Port.C), 55.5, 104)\n"
 MIDDLE = (1181.0, 571.5)
 MAT = (100.0, 800.0)
-LINE, LOOP = (220.0, 400.0), (500.0, 500.0)
+LINE, LOOP = (280.0, 700.0), (500.0, 500.0)
 
 # The text, the arguments of `program_settings`; profile, the robot's name, and the place.
 CASES: Mapping[str, tuple[str, dict[str, Any], tuple[str, str, tuple[float, float]]]] = {
@@ -39,7 +39,7 @@ CASES: Mapping[str, tuple[str, dict[str, Any], tuple[str, str, tuple[float, floa
     "-b and -y": (
         CLAW,
         {"above": {"background": "Loop", "start.y_mm": 500.0}},
-        ("ev3", "Robot of p.py", (220, 500)),
+        ("ev3", "Robot of p.py", (280, 500)),
     ),
     "-b without a line": (
         CLAW,

@@ -103,8 +103,8 @@ PLACES: Mapping[str, tuple[list[Step], tuple[float, float]]] = {
         [CLAW, lambda plan: plans.at_pose(plan, Pose(300, 400, 0)), LIFT],
         (300, 400),
     ),
-    "a mat with a line": ([CLAW, mat("Loop"), LIFT], (220, 400)),
-    "such a mat before": ([mat("Loop"), CLAW], (220, 400)),
+    "a mat with a line": ([CLAW, mat("Loop"), LIFT], (280, 700)),
+    "such a mat before": ([mat("Loop"), CLAW], (280, 700)),
     "such a mat, and one of the course": ([CLAW, mat("Loop"), COURSE], (500, 500)),
 }
 

@@ -1,0 +1,280 @@
+"""The same words give the same run by each way into tuisim, and an option of a brick's program changes only itself."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+import pytest
+
+import tuisim
+from tests.config.golden import outside
+from tuisim.api import choices_of
+from tuisim.app.setup import next_run as plans
+from tuisim.app.setup.next_run import NextRun
+from tuisim.config.build import build_run_spec
+from tuisim.config.options import settings_of
+from tuisim.config.program_file import ProgramSource, read_program
+from tuisim.config.program_settings import free_paths, program_settings
+from tuisim.core.spec import NoiseSpec, RunSpec
+from tuisim.core.tree import to_plain
+from tuisim.goals.files import load_goals
+from tuisim.marks.entries import entries_of
+from tuisim.marks.students import find_students
+
+PROGRAMS = {
+    "tyre": """\
+from ev3dev2.motor import MoveDifferential, OUTPUT_B, OUTPUT_C
+from ev3dev2.wheel import EV3Tire
+m = MoveDifferential(OUTPUT_B, OUTPUT_C, EV3Tire, 128)
+m.on_for_distance(30, 500)
+""",
+    "reversed": """\
+from ev3dev2.motor import LargeMotor, MoveTank, OUTPUT_C, OUTPUT_B
+def forward(cm):
+    tank.on_for_degrees(-30, -30, cm * 20)
+tank = MoveTank(OUTPUT_C, OUTPUT_B)
+forward(30)
+""",
+    "arm": """\
+from ev3dev2.motor import MediumMotor, MoveTank, OUTPUT_A, OUTPUT_B, OUTPUT_C
+MediumMotor(OUTPUT_A).on_for_degrees(20, 45)
+MoveTank(OUTPUT_B, OUTPUT_C).on_for_rotations(30, 30, 1)
+""",
+    "pybricks": """\
+from pybricks.ev3devices import Motor
+from pybricks.parameters import Port
+from pybricks.robotics import DriveBase
+DriveBase(Motor(Port.B), Motor(Port.C), 43.2, 120).straight(300)
+""",
+    "of the course": "tank_drive.on_for_rotations(20, 20, 1)\n",
+}
+GOAL = '[[goal]]\nname = "done"\nfinish = true\n'
+
+Change = Callable[[NextRun], NextRun]
+
+
+class Option(NamedTuple):
+    """An option, as each way into tuisim has it."""
+
+    words: str
+    choices: Mapping[str, Any]
+    world: str
+    key: Change
+    changes: tuple[str, ...]
+    """What it may change of the run."""
+
+
+def mat(name: str) -> Option:
+    return Option(
+        f"-b {name}",
+        {"background": name},
+        f'background = "{name}"',
+        lambda plan: plans.with_mat(plan, name),
+        ("world.background", "world.start", "world.obstacles", "robot.color_sensors"),
+    )
+
+
+def profile(name: str) -> Option:
+    return Option(
+        f"--profile {name}",
+        {"profile": name},
+        f'profile = "{name}"',
+        lambda plan: plans.with_profile(plan, name),
+        ("profile", "world.solid"),
+    )
+
+
+def moved(**values: float) -> Change:
+    def key(plan: NextRun) -> NextRun:
+        return plans.at_pose(plan, replace(plan.spec.world.start, **values))
+
+    return key
+
+
+def noise(**values: int) -> Change:
+    return lambda plan: plans.with_noise(plan, NoiseSpec(**values))
+
+
+OPTIONS: Mapping[str, Option] = {
+    option.words: option
+    for option in (
+        Option("", {}, "seed = 0", lambda plan: plan, ()),
+        *map(mat, ("Loop", "Grey_bands", "Obstacles_Test", "Empty_Map")),
+        *map(profile, ("ev3", "robolab", "nbev3devsim", "lego-micropython", "pybricks4")),
+        Option("-x 600", {"x": 600}, "start = { x_mm = 600 }", moved(x_mm=600), ("world.start",)),
+        Option("-y 400", {"y": 400}, "start = { y_mm = 400 }", moved(y_mm=400), ("world.start",)),
+        Option(
+            "-a 90",
+            {"angle": 90},
+            "start = { heading_deg = 90 }",
+            moved(heading_deg=90),
+            ("world.start",),
+        ),
+        Option(
+            "-o Square_posts",
+            {"obstacles": "Square_posts"},
+            'obstacles = "Square_posts"',
+            lambda plan: plans.with_obstacle_set(plan, "Square_posts"),
+            ("world.obstacles",),
+        ),
+        Option("-N 20", {"sensornoise": 20}, "noise.light = 20", noise(light=20), ("world.noise",)),
+        Option("-M 20", {"motornoise": 20}, "noise.motor = 20", noise(motor=20), ("world.noise",)),
+        Option(
+            "--seed 4", {"seed": 4}, "seed = 4", lambda plan: plans.with_seed(plan, 4), ("seed",)
+        ),
+    )
+}
+"""By its words in the shell."""
+
+
+OF_ITSELF = ("of the course", "--profile ev3")
+
+
+def is_fitting(program: str, option: str) -> bool:
+    """Return whether a program may run with an option: a profile may be for the other library.
+
+    A course program that gets the rules of a brick by a key stays where it is.
+    """
+    of_pybricks = option in ("--profile lego-micropython", "--profile pybricks4")
+    if option.startswith("--profile"):
+        return of_pybricks is (program == "pybricks") and (program, option) != OF_ITSELF
+    return True
+
+
+TABLE = [
+    (program, option) for program in PROGRAMS for option in OPTIONS if is_fitting(program, option)
+]
+
+
+@pytest.fixture
+def folder(tmp_path: Path, home: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
+    """A folder to work in, in which nothing starts."""
+    monkeypatch.chdir(tmp_path)
+    assert home.parent.is_dir()
+    with outside.nothing_starts():
+        yield tmp_path
+
+
+def runs_of(folder: Path, program: str, option: Option) -> dict[str, RunSpec]:
+    """Return the run of a program with an option by each way into tuisim."""
+    (folder / "class").mkdir(exist_ok=True)
+    for path in ("p.py", "class/p.py"):
+        (folder / path).write_text(PROGRAMS[program])
+    (folder / "w.toml").write_text(f"{option.world}\n")
+    (folder / "t.toml").write_text(f"{option.world}\n{GOAL}")
+    (folder / "g.toml").write_text(GOAL)
+    words, given = option.words.split(), choices_of(option.choices)
+    commands = {
+        "run": ("run", "p.py", *words),
+        "app": ("p.py", *words),
+        "batch": ("batch", "p.py", *words, "--jobs", "1"),
+        "a world": ("run", "w.toml", "p.py"),
+        "a world in the app": ("w.toml", "p.py"),
+        "a task": ("run", "t.toml", "p.py"),
+        "a batch of a task": ("batch", "t.toml", "p.py", "--jobs", "1"),
+    }
+    runs = {}
+    for door, command in commands.items():
+        outcome = outside.of_command(command)
+        assert outcome.specs, (door, outcome.err)
+        runs[door] = outcome.specs[0]
+    runs["simulate"] = outside.of_choices("p.py", option.choices).specs[0]
+    students = find_students(["class"]).students
+    for door, goals, above in (("mark", "g.toml", given), ("mark in a world", "t.toml", {})):
+        (entry,), _ = entries_of(students, load_goals(folder / goals), above)
+        runs[door] = entry.specs[0]
+    return runs | runs_in_app(read_program(folder / "p.py"), option)
+
+
+def runs_in_app(source: ProgramSource, option: Option) -> dict[str, RunSpec]:
+    """Return the run of a program in the app, if the option comes after it, and before."""
+    plain, before = program_settings(source), settings_of(choices_of(option.choices))
+    opened = plans.first_plan(
+        build_run_spec(plain.settings), plain.settings, plain.decided, source.program
+    )
+    later, _ = plans.following(plans.plan_of(before, free_paths(before)), source)
+    return {"a key in the app": option.key(opened).spec, "opened in the app": later.spec}
+
+
+@pytest.mark.parametrize("program, option", TABLE)
+def test_every_door_gives_the_same_run(program: str, option: str, folder: Path) -> None:
+    runs = runs_of(folder, program, OPTIONS[option])
+    assert [door for door, spec in runs.items() if spec != runs["run"]] == []
+
+
+def values_of(spec: RunSpec) -> dict[str, object]:
+    """Return a run as values by path."""
+
+    def flat(value: object, path: str) -> Iterator[tuple[str, object]]:
+        if isinstance(value, dict):
+            for key, inside in value.items():
+                yield from flat(inside, f"{path}.{key}" if path else key)
+        else:
+            yield path, value
+
+    return dict(flat(to_plain(spec), ""))
+
+
+@pytest.mark.parametrize(
+    "program, option", [(program, option) for program, option in TABLE if program[:2] != "of"]
+)
+def test_an_option_changes_only_itself(program: str, option: str, folder: Path) -> None:
+    (folder / "p.py").write_text(PROGRAMS[program])
+    first, second = (
+        values_of(outside.of_command(("run", "p.py", *words)).specs[0])
+        for words in ((), option.split())
+    )
+    changed = {path for path in first.keys() | second.keys() if first.get(path) != second.get(path)}
+    assert [path for path in changed if not path.startswith(OPTIONS[option].changes)] == []
+
+
+OPEN_WAY = (
+    "-b Loop",
+    "-b Grey_bands",
+    "-b Empty_Map",
+    "--profile ev3",
+    "-x 600",
+    "-y 400",
+    "-a 90",
+    "-o Square_posts",
+)
+"""Options that neither put something in the way nor ask for other motors."""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("program", ["tyre", "reversed"])
+@pytest.mark.parametrize("option", OPEN_WAY)
+def test_wheels_turn_as_they_did(program: str, option: str, tmp_path: Path, home: Path) -> None:
+    (tmp_path / "p.py").write_text(PROGRAMS[program])
+    ends = []
+    for choices in ({}, OPTIONS[option].choices):
+        run = tuisim.simulate(tmp_path / "p.py", **choices)
+        ends.append(run.telemetry.iloc[[0, -1]])
+    angles = [end[["left_position_deg", "right_position_deg"]].iloc[-1].tolist() for end in ends]
+    assert angles[0] == angles[1]
+    way_mm = [end[["x_mm", "y_mm"]].diff().iloc[-1].pow(2).sum() ** 0.5 for end in ends]
+    assert way_mm[0] == pytest.approx(way_mm[1], abs=0.001)
+    assert way_mm[0] == pytest.approx({"tyre": 500, "reversed": 293}[program], abs=3)
+
+
+FOLLOWING = """\
+from ev3dev2.sensor.lego import ColorSensor
+from ev3dev2.motor import MoveSteering, OUTPUT_B, OUTPUT_C
+cs = ColorSensor()
+steer = MoveSteering(OUTPUT_B, OUTPUT_C)
+while True:
+    error = cs.reflected_light_intensity - 45
+    steer.on(max(-100, min(100, error)), 20)
+"""
+
+
+@pytest.mark.slow
+def test_a_line_follower_goes_round_the_loop(tmp_path: Path, home: Path) -> None:
+    (tmp_path / "p.py").write_text(FOLLOWING)
+    way = tuisim.simulate(tmp_path / "p.py", background="Loop", timeout_s=80).telemetry
+    laps = np.unwrap(np.arctan2(way.y_mm - 542, way.x_mm - 1050)) / (2 * np.pi)
+    assert laps[-1] - laps[0] > 1
