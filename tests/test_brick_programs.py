@@ -22,7 +22,7 @@ EXIT_CODES = {
     "34_guard_forever": 3,
 }
 """Of those that do not finish: four wait or drive for ever, one has a mistake in it."""
-FROM_THE_LEFT = {"03_stop_at_wall", "13_sumo", "22_what_is_plugged_in", "25_ir_seek", "28_inches"}
+FROM_THE_LEFT = {"03_stop_at_wall", "13_sumo", "25_ir_seek", "28_inches"}
 """Those whose output tells how far the wall is."""
 WITH_FILE = [name for name in PROGRAMS if (FOLDER / name / "robot.toml").exists()]
 """Those that come with a file of their robot, which must do the same as the robot that is read from them."""

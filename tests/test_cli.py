@@ -70,18 +70,27 @@ sleep(2)
 def test_the_last_line_says_that_the_robot_stood_at_the_wall(tmp_path: Path, here: Command) -> None:
     (tmp_path / "push.py").write_text(PUSHES)
     told = {}
-    for profile in ("ev3", "robolab"):
-        done = here("run", "push.py", "-x", "2200", "--profile", profile)
-        told[profile] = done.stderr.splitlines()[-1]
+    for words in ("--walls on", "--profile robolab", "-b Loop --profile ev3 -y 800 -a 0"):
+        done = here("run", "push.py", "-x", "2200", *words.split())
+        told[words] = done.stderr.splitlines()[-1]
+    assert " · stood at the wall for 1.5 s (--walls off) · 0 samples · run " in told["--walls on"]
+    assert "stood" not in told["--profile robolab"]
     assert (
         " · stood at the wall from 0.49 s on, its wheels pushed for 1.5 s · 0 samples · run "
-        in told["ev3"]
+        in told["-b Loop --profile ev3 -y 800 -a 0"]
     )
-    assert "stood" not in told["robolab"]
-    stood = json.loads(here("run", "push.py", "-x", "2200", "--profile", "ev3", "--json").stdout)[
-        "standstill"
-    ]
+    done = here("run", "push.py", "-x", "2200", "--walls", "on", "--json")
+    stood = json.loads(done.stdout)["standstill"]
     assert (stood["at"], stood["times"], stood["until_s"]) == ("the wall", 1, None)
+
+
+def test_the_last_line_says_that_the_robot_left_the_field(tmp_path: Path, here: Command) -> None:
+    (tmp_path / "push.py").write_text(PUSHES)
+    done = here("run", "push.py", "-x", "2200")
+    assert " · left the field · 0 samples · run " in done.stderr.splitlines()[-1]
+    assert json.loads(here("run", "push.py", "-x", "2200", "--json").stdout)["left_field"]
+    near = json.loads(here("run", "push.py", "-x", "1000", "--json").stdout)
+    assert not near["left_field"]
 
 
 def test_program_that_raises_shows_its_own_lines_only_and_keeps_its_rows(

@@ -45,6 +45,7 @@ def spec_with(values: dict[str, Any], **chosen: Any) -> RunSpec:
             lambda spec: (spec.robot.wheel_diameter_mm, spec.robot.weight),
             (28.0, 3.0),
         ),
+        "floor": ({"floor": True}, lambda spec: spec.world.floor, True),
         "walls": ({"walls": False}, lambda spec: spec.world.walls, False),
     },
 )

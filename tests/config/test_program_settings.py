@@ -317,3 +317,40 @@ def test_lines_that_the_brick_refuses_are_told_of_its_programs(
     text: str, above: Mapping[str, Any], refusal: str
 ) -> None:
     assert program_settings(parse_program(text, "p.py"), above).decided.refusal == refusal
+
+
+TOUCH = "from ev3dev2.sensor.lego import TouchSensor\nTouchSensor('in1').wait_for_pressed()\n"
+SONAR = "from pybricks.ev3devices import UltrasonicSensor\nprint(UltrasonicSensor(Port.S4).distance())\n"
+OPEN, WALLED, AS_EVER = (True, False), (True, True), (False, True)
+
+# The text, what is chosen, and whether there are a floor and walls.
+GROUNDS: Mapping[str, tuple[str, dict[str, Any], tuple[bool, bool]]] = {
+    "no sensor": (USUAL, {}, OPEN),
+    "Pybricks": (BASE, {}, OPEN),
+    "a colour sensor": (f"{USUAL}{SENSOR}", {}, OPEN),
+    "a touch sensor": (f"{USUAL}{TOUCH}", {}, WALLED),
+    "an ultrasonic sensor": (f"{BASE}{SONAR}", {}, WALLED),
+    "--walls on": (USUAL, {"walls": True}, WALLED),
+    "--walls off": (f"{BASE}{SONAR}", {"walls": False}, OPEN),
+    "a place": (USUAL, {"start.x_mm": 300.0}, OPEN),
+    "a robot": (USUAL, {"robot": "Explorer"}, OPEN),
+    "--profile ev3": (USUAL, {"profile": "ev3"}, OPEN),
+    "--profile robolab": (USUAL, {"profile": "robolab"}, AS_EVER),
+    "-b": (USUAL, {"background": "Loop"}, AS_EVER),
+    "-b and --profile ev3": (USUAL, {"background": "Empty_Map", "profile": "ev3"}, AS_EVER),
+    "a world": (USUAL, {"floor": False, "profile": "ev3"}, AS_EVER),
+    "a world with a floor": (USUAL, {"floor": True, "walls": False, "profile": "ev3"}, OPEN),
+    "a magic line": (f"# %%sim_magic --profile ev3\n{USUAL}", {}, AS_EVER),
+    "a course program": ("tank_drive.on(5, 5)\n", {"profile": "ev3"}, AS_EVER),
+    "no library": ("print(1)\n", {"profile": "ev3"}, AS_EVER),
+}
+
+
+@cases("text, chosen, ground", GROUNDS)
+def test_a_program_for_a_brick_drives_on_a_floor_without_walls_that_it_cannot_tell(
+    text: str, chosen: dict[str, Any], ground: tuple[bool, bool]
+) -> None:
+    settings = program_settings(parse_program(text, "p.py"), chosen).settings
+    world = build_run_spec(settings).world
+    assert (world.floor, world.walls) == ground
+    assert world.is_open == (ground == OPEN)

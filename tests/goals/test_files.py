@@ -421,7 +421,8 @@ def test_world_of_another_file_is_overridden(tmp_path: Path) -> None:
     (tmp_path / "goals.toml").write_text(f"title = 'T'\nworld = 'base.toml'\nseed = 4\n{GOOD}")
     file = load_goals(tmp_path / "goals.toml")
     assert (file.title, file.program) == ("T", str(tmp_path / "follow.py"))
-    assert file.settings == {"start.x_mm": 5.0, "background": "Loop", "seed": 4}
+    world = {"background": "Loop", "floor": False, "seed": 4, "start.x_mm": 5.0}
+    assert file.settings == world
 
 
 def test_goals_of_another_file_are_added_to_and_replaced(tmp_path: Path) -> None:
@@ -437,12 +438,12 @@ def test_goals_of_another_file_are_added_to_and_replaced(tmp_path: Path) -> None
     own_world, other = file.worlds
     assert (own_world.where, own_world.settings, own_world.goals) == (
         "",
-        {"background": "Loop"},
+        {"background": "Loop", "floor": False},
         ("a", "b"),
     )
     assert (other.hidden, other.settings, other.goals) == (
         True,
-        {"background": "Loop", "start.x_mm": 5},
+        {"background": "Loop", "floor": False, "start.x_mm": 5},
         ("a", "b", "c"),
     )
     assert [(goal.name, goal.hidden) for goal in file.every_goal] == [

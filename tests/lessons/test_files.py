@@ -237,7 +237,11 @@ def test_parts_of_a_lesson(tmp_path: Path) -> None:
         lesson(f"{HEAD}seed = 3\n{GOAL}{ASK}{RUN}".replace("'a'\nrun", "'b'\nrun"), body)
     )
     found = load_lesson(path)
-    assert (found.intro, found.program, found.settings) == ("Hello", "print(0)\n", {"seed": 3})
+    assert (found.intro, found.program, found.settings) == (
+        "Hello",
+        "print(0)\n",
+        {"seed": 3, "floor": False},
+    )
     one, two = found.steps
     assert (one.text, one.check) == ("Do\n```python\n## shown\n```", QuestionCheck("Q", 5))
     assert (two.check, two.answer, [wrong.text for wrong in two.wrong_programs]) == (

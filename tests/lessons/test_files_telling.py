@@ -33,7 +33,7 @@ def test_what_a_telling_does_not_say_is_that_of_the_lesson(tmp_path: Path) -> No
         "U",
         "W",
         3,
-        {"seed": 5},
+        {"floor": False, "seed": 5},
     )
     (step,) = found.steps
     assert (step.title, step.hints, step.check, step.answer) == (

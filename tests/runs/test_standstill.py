@@ -13,7 +13,7 @@ from tests.runs.run_recorder import Recorder
 from tuisim.core.geometry import Pose
 from tuisim.core.profile import PROFILES
 from tuisim.core.spec import NoiseSpec, Obstacle, RobotSpec, RunSpec, WorldSpec
-from tuisim.runs.standstill import standstill_of, standstill_words
+from tuisim.runs.standstill import has_left_field, standstill_of, standstill_words
 
 Record = Callable[..., Recorder]
 
@@ -83,6 +83,16 @@ SAID: dict[str, tuple[RunSpec, Moves, str]] = {
         [((-400.0, 400.0), 200)],
         PUSHED,
     ),
+    "on a floor": (
+        replace(SPEC, world=replace(WALL, floor=True)),
+        [(ON, 200)],
+        "stood at the wall for 0.9 s (--walls off)",
+    ),
+    "an obstacle on a floor": (
+        replace(SPEC, world=replace(BOX, floor=True)),
+        [(ON, 200)],
+        "stood at an obstacle from 1.05 s on, its wheels pushed for 0.9 s",
+    ),
     "too short to stall": (SPEC, [(ON, 110), (STOP, 50)], ""),
     "does not get there": (SPEC, [(ON, 100), (STOP, 50)], ""),
     "speed 0 in the open": (SPEC, [((0.0, 0.0), 100)], ""),
@@ -94,6 +104,19 @@ SAID: dict[str, tuple[RunSpec, Moves, str]] = {
 @cases("spec, moves, said", SAID)
 def test_what_is_said_of_a_run(record: Record, spec: RunSpec, moves: Moves, said: str) -> None:
     assert words(record, spec, moves) == said
+
+
+@pytest.mark.parametrize(
+    ("walls", "floor", "ticks", "has_left"),
+    [(False, True, 200, True), (False, True, 50, False), (False, False, 200, False)],
+)
+def test_a_robot_leaves_the_field_for_an_open_floor(
+    record: Record, walls: bool, floor: bool, ticks: int, has_left: bool
+) -> None:
+    recorder = record(replace(SPEC, world=replace(WALL, walls=walls, floor=floor)))
+    recorder.drive(*ON, ticks)
+    run = recorder.end()
+    assert has_left_field(run.telemetry, run.spec) == has_left
 
 
 def test_noise_that_lets_the_wheels_turn_a_little_does_not_hide_that_they_push(

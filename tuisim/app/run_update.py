@@ -49,5 +49,5 @@ def describe_remarks(
     """Yield what the output says of an event."""
     if isinstance(event, protocol.BusyLoop):
         yield busy_loop_words(event)
-    elif words := describe_newest(recording.plugged):
+    elif words := describe_newest(recording.plugged, recording.spec):
         yield words

@@ -17,7 +17,7 @@ from tuisim.runs.plugged_words import describe_plugged
 from tuisim.runs.records import Stream
 from tuisim.runs.run_folder import StoredRun
 from tuisim.runs.samples import counts_of
-from tuisim.runs.standstill import Standstill, standstill_of
+from tuisim.runs.standstill import Standstill, has_left_field, standstill_of
 from tuisim.runs.waited_words import describe_wait
 
 EXIT_RAISED, EXIT_BAD_OUTPUT, EXIT_LIMIT = 1, 2, 3
@@ -70,6 +70,7 @@ def describe(run: StoredRun, most_bytes: int | None = None) -> dict[str, Any]:
         "y_mm": pose.y_mm,
         "heading_deg": pose.heading_deg,
         "standstill": asdict(stood) if stood else None,
+        "left_field": has_left_field(run.telemetry, run.spec),
         "waited_for": describe_wait(run),
         "plugged": [part.to_plain() for part in run.plugged],
         "lines": counts.lines if counts else None,
@@ -87,11 +88,12 @@ def last_state(facts: dict[str, Any]) -> str:
     what = state if facts["summary"] in ("", state) else f"{state}: {facts['summary']}"
     pose = Pose(facts["x_mm"], facts["y_mm"], facts["heading_deg"])
     stood = f"{Standstill(**facts['standstill']).words} · " if facts["standstill"] else ""
+    left = "left the field · " if facts["left_field"] else ""
     waited = f"{facts['waited_for']} · " if facts["waited_for"] else ""
     samples = "" if facts["samples"] is None else f"{counted(facts['samples'], 'sample')} · "
     return (
         f"{facts['program']}: {what} · {facts['time_s']:.3f} s, tick {facts['tick']} · "
-        f"{pose_in_words(pose)} · {stood}{waited}{samples}run {facts['run']}"
+        f"{pose_in_words(pose)} · {left}{stood}{waited}{samples}run {facts['run']}"
     )
 
 

@@ -105,7 +105,7 @@ RUN_VALUES: Mapping[str, RunValue] = dict(_run_values())
 START = tuple(path for path in RUN_VALUES if path.startswith("start."))
 """The paths of the start pose."""
 
-OF_THE_MAT = ("obstacles", "background_fit", *START)
+OF_THE_MAT = ("obstacles", "background_fit", "floor", *START)
 """The paths of what a mat brings with it, so that another mat replaces it."""
 
 OF_THE_PROFILE = ("solid",)

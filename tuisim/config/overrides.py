@@ -59,7 +59,8 @@ def settings_of_keys(values: Mapping[str, Any], chosen: Settings, path: Path) ->
     parts = {
         key: table.pop(key) for key, base in _PARTS.items() if isinstance(table.get(key), dict)
     }
-    found = dict(world_from_table(table | named, path, chosen["mats"]).settings)
+    world = world_from_table(table | named, path, chosen["mats"], changes=True)
+    found = dict(world.settings)
     for key, inside in parts.items():
         found[key] = read_part(inside, chosen[key] or _PARTS[key], at.at(key))
     if "robot" in changed:

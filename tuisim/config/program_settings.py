@@ -63,11 +63,14 @@ class SourceFacts:
     """Why the robot is not read from all of it, in words; empty if it is."""
     shown_ports: tuple[str, ...] | None = None
     """The ports of the parts that it shows; None if it does not bring its library."""
+    senses_walls: bool = False
+    """Whether it makes a sensor that can tell a wall."""
     hides_parts: bool = False
     """Whether it names classes of motors or sensors, and its text shows no part that is made."""
 
 
-PROGRAM_PATHS = ("robot", "profile", "for_brick")
+OF_THE_GROUND = ("floor", "walls")
+PROGRAM_PATHS = ("robot", "profile", "for_brick", *OF_THE_GROUND)
 """The paths of the settings that the source of a program may decide."""
 
 
@@ -147,6 +150,7 @@ def facts_of(program: Program) -> SourceFacts:
 def _facts_in(program: Program, modules: dict[str, Module], library: Library) -> SourceFacts:
     from tuisim.config.program_robot.assembly import build_robot, find_shown_ports
     from tuisim.config.program_robot.brick_syntax import refused_lines
+    from tuisim.config.program_robot.library import SENSES_WALLS
     from tuisim.config.program_robot.mentions import mentions_in
     from tuisim.config.program_robot.report import USUAL, hides_parts
 
@@ -159,6 +163,7 @@ def _facts_in(program: Program, modules: dict[str, Module], library: Library) ->
         refused_lines(modules.values()) if library is Library.PYBRICKS else (),
         missing_module(program, modules),
         find_shown_ports(mentions, robot.choice.spec if robot else USUAL),
+        any(one.kind in SENSES_WALLS for one in mentions.devices),
         hides_parts(mentions),
     )
 
@@ -209,8 +214,11 @@ def program_settings(
 
 
 def free_paths(settings: Settings) -> frozenset[str]:
-    """Return which of `PROGRAM_PATHS` nobody has chosen."""
-    return frozenset(path for path in PROGRAM_PATHS if settings.given.get(path) is None)
+    """Return which of `PROGRAM_PATHS` nobody has chosen; who chooses a mat chooses its edges."""
+    free = {path for path in PROGRAM_PATHS if settings.given.get(path) is None}
+    if "floor" not in free or settings.given.get("background") is not None:
+        free -= {*OF_THE_GROUND}
+    return frozenset(free)
 
 
 def decide(
@@ -246,9 +254,17 @@ def decide(
     has_rules = profile in OF_BRICKS or profile in [PROFILES[name] for name in OF_BRICKS]
     if "for_brick" in free and (by_brick_rules or (has_rules and not source.has_magic)):
         layer["for_brick"] = True
+    if by_brick_rules and has_rules:
+        layer |= _decide_ground(facts, free)
     needed = facts.robot.choice if facts.robot else None
     words, shown = _in_words(source.program, facts, layer), _find_shown(facts, free)
     return Decided(layer, *words, needed, shown, frozenset(free), _find_refused(facts, profile))
+
+
+def _decide_ground(facts: SourceFacts, free: Collection[str]) -> dict[str, bool]:
+    """Return whether a program for a brick drives on a floor, and whether there are walls."""
+    ground = {"floor": True, "walls": facts.senses_walls} if "floor" in free else {}
+    return {path: value for path, value in ground.items() if path in free}
 
 
 def _find_refused(facts: SourceFacts, profile: str | ProfileSpec) -> tuple[RefusedLine, ...]:

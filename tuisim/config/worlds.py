@@ -125,7 +125,12 @@ def _load_world(path: Path, mats: str | None, above: tuple[Path, ...]) -> WorldF
 
 
 def world_from_table(
-    data: object, path: Path, mats: str | None = None, above: tuple[Path, ...] = ()
+    data: object,
+    path: Path,
+    mats: str | None = None,
+    above: tuple[Path, ...] = (),
+    *,
+    changes: bool = False,
 ) -> WorldFile:
     """Return the world in a table; keys of goals files are left to `tuisim.goals`.
 
@@ -133,6 +138,7 @@ def world_from_table(
         path: The path of the file, which may not exist yet.
         mats: As for `load_world`.
         above: The world files that are based on this one.
+        changes: Whether it only changes another world; else it has no floor unless it says so.
 
     Raises:
         ConfigError: a key or a value is wrong.
@@ -177,15 +183,15 @@ def world_from_table(
     program = _program(world["program"], path.parent, resolve) if "program" in world else None
     presses = tuple(_press(text, place) for text, place in _texts(world, "press", at))
     inputs = tuple(text for text, _ in _texts(world, "inputs", at))
-    if "world" not in world:
-        return WorldFile(path, found, program, (path, *referred), presses, inputs)
-    base = _base(world["world"], at.at("world"), resolve, mats, (*above, path))
-    every = (path, *referred, *base.files)
+    if "world" in world:
+        base = _base(world["world"], at.at("world"), resolve, mats, (*above, path))
+    else:
+        base = WorldFile(path, {"floor": False} if found and not changes else {})
     return WorldFile(
         path,
         {**base.settings, **found},
         program or base.program,
-        every,
+        (path, *referred, *base.files),
         presses or base.presses,
         inputs or base.inputs,
     )

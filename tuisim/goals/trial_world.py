@@ -119,11 +119,11 @@ def others_of(
         own = read_goals(found["goal"], place.at("goal"), path.parent) if "goal" in found else ()
         own_names = tuple(goal.name for goal in own)
         named = files.convert(found.get("goals", []), tuple[str, ...], place.at("goals"))
-        usual = goals if of_task else () if own else goals
+        usual = goals if of_task or not own else ()
         wanted = tuple(dict.fromkeys((*(named or usual), *own_names)))
         try:
             world = world_from_table(
-                {key: value for key, value in found.items() if key in _WORLD_KEYS}, path
+                {key: found[key] for key in _WORLD_KEYS if key in found}, path, changes=True
             )
         except ConfigError as error:
             # It names the key in the table, or another file.

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from tuisim.config.program_robot.library import DEVICES
+from tuisim.config.program_robot.library import DEVICES, SENSES_WALLS
 from tuisim.core.plugged import LATE, LEFT, RIGHT, PluggedPart
+from tuisim.core.spec import RunSpec
 from tuisim.runs.run_folder import StoredRun
 
 
@@ -14,16 +15,21 @@ def describe_plugged(run: StoredRun) -> str:
     parts = list_parts(run.plugged)
     if not parts:
         return ""
+    words = f"plugged in {parts}{_name_remedy(run.plugged, run.spec)}"
     shown = f"; `tuisim robots --from {run.number}` shows the robot" if run.number else ""
-    return (
-        f"{run.program.name} asked for parts that its text does not show: plugged in {parts}{shown}"
-    )
+    return f"{run.program.name} asked for parts that its text does not show: {words}{shown}"
 
 
-def describe_newest(parts: Sequence[PluggedPart]) -> str:
+def _name_remedy(parts: Sequence[PluggedPart], spec: RunSpec) -> str:
+    """Return how a sensor for walls that was plugged in gets some; empty for none, or if there are walls."""
+    is_blind = spec.world.is_open and any(DEVICES[part.part] in SENSES_WALLS for part in parts)
+    return "; there are no walls: --walls on" if is_blind else ""
+
+
+def describe_newest(parts: Sequence[PluggedPart], spec: RunSpec) -> str:
     """Return what was plugged in last; empty for a left wheel, which is told of together with the right one."""
     last = parts[-2:] if parts[-1].role == RIGHT else parts[-1:]
-    words = list_parts(last)
+    words = f"{list_parts(last)}{_name_remedy(last, spec)}"
     return "" if parts[-1].role == LEFT else f"— plugged in, as the program asked for it: {words}"
 
 

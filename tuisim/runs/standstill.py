@@ -1,6 +1,7 @@
 """Where something solid stopped the robot: since when it stood there, and how long its wheels pushed.
 
-It is found in the recording alone: a motor runs, no wheel turns, and the robot touches a wall or an obstacle.
+It is found in the recording alone: a motor runs, no wheel turns, and the robot touches a wall or an obstacle. So is
+whether it left the field, where nothing stops it.
 """
 
 from __future__ import annotations
@@ -11,7 +12,7 @@ from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 from tuisim.core.profile import NS_PER_S, due_ns
-from tuisim.core.spec import RunSpec
+from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, RunSpec
 from tuisim.core.tick_record import FLAG_LEFT_RUNNING, FLAG_RIGHT_RUNNING
 from tuisim.data_class import dataclass
 from tuisim.errors import counted
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
 _CONTACT_MM = 0.01
 """A robot that is closer than this touches; collisions end within a small part of it."""
 
+WALL = "the wall"
 _WALLS = 4
 """`Solids.gaps_mm` begins with the walls."""
 
@@ -45,10 +47,14 @@ class Standstill:
     """When it moved on for the last time; None if it has not."""
     pushed_s: float
     """How long its wheels pushed in all."""
+    on_floor: bool = False
+    """Whether there would be a floor behind the wall."""
 
     @property
     def words(self) -> str:
         """The sentence for people, without a subject."""
+        if self.on_floor and WALL in self.at:
+            return f"stood at {self.at} for {self.pushed_s:.1f} s (--walls off)"
         pushed = f"its wheels pushed for {self.pushed_s:.1f} s"
         if self.times > 1:
             return f"stood at {self.at} {counted(self.times, 'time')}, first at {self.since_s:.2f} s, {pushed} in all"
@@ -93,7 +99,21 @@ def standstill_of(telemetry: TelemetryView, spec: RunSpec) -> Standstill | None:
         time_s(stretches[0].start - 1),
         None if until is None else time_s(until - 1),
         time_s(sum(stretch.end - stretch.start for stretch in stretches)),
+        spec.world.floor,
     )
+
+
+def has_left_field(telemetry: TelemetryView, spec: RunSpec) -> bool:
+    """Return whether a robot on an open floor has been off the field.
+
+    Raises:
+        LogError: the recording is damaged.
+    """
+    if not spec.world.is_open:
+        return False
+    records = telemetry.array()
+    sides = (records["x_mm"], FIELD_WIDTH_MM), (records["y_mm"], FIELD_HEIGHT_MM)
+    return any(bool(((at_mm < 0) | (at_mm > size_mm)).any()) for at_mm, size_mm in sides)
 
 
 def standstill_words(telemetry: TelemetryView, spec: RunSpec) -> str:
@@ -143,7 +163,7 @@ def _touched(solids: Solids, records: NDArray[Any], tick: int, spec: RunSpec) ->
     number = next((number for number, gap in enumerate(gaps) if gap < _CONTACT_MM), None)
     if number is None:
         return ""
-    return "the wall" if spec.world.walls and number < _WALLS else "an obstacle"
+    return WALL if spec.world.walls and number < _WALLS else "an obstacle"
 
 
 def _pose(records: NDArray[Any], tick: int) -> PoseTuple:

@@ -13,6 +13,7 @@ from tuisim.core.geometry import Pose, world_point
 from tuisim.core.outline import RobotOutline, outline_of
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, BeaconSpec, Obstacle, RobotSpec
 from tuisim.data_class import dataclass
+from tuisim.scene.floor import draw_grid, field_pixels, floor_rgb_of, grid_rgb_on
 from tuisim.scene.mat import MatPictures
 from tuisim.scene.mono_robot import draw_mono_robot
 from tuisim.scene.off_field import draw_arrow_to
@@ -72,13 +73,14 @@ class ScenePainter:
 
     Args:
         mat: The mat, shape (height in mm, width in mm, 3).
-        outside_rgb: Colour of what lies off the mat.
+        outside_rgb: Colour of what lies off the mat, unless that is a floor.
         trace: The pen trace; it may grow, and be replaced.
         grey: Draw for a terminal with greys only.
         mono: Draw for a terminal without any colours.
         coarse: Draw the robot with few details, for glyphs that show less than the points of their cells.
         whole_cells: End the mat where a cell ends, for glyphs that do not fill their cells.
         for_file: Draw for a file: the mat as it is, and a frame around it.
+        has_floor: Whether the mat lies on a floor in the colour of its edges.
     """
 
     def __init__(
@@ -91,8 +93,13 @@ class ScenePainter:
         coarse: bool = False,
         whole_cells: bool = False,
         for_file: bool = False,
+        has_floor: bool = False,
     ) -> None:
         self.trace = trace
+        self._grid_rgb = None
+        if has_floor:
+            outside_rgb = floor_rgb_of(mat)
+            self._grid_rgb = None if mono else grid_rgb_on(outside_rgb)
         self._mat = MatPictures(mat, outside_rgb, whole_cells, exact=for_file)
         self._is_for_file = for_file
         self._has_frame = for_file or (not mono and min(outside_rgb) >= _LIGHT)
@@ -152,6 +159,8 @@ class ScenePainter:
         key = (view, scene.obstacles, scene.marked, scene.beacon, self.trace, self.trace.clears)
         if self._ground is None or self._ground_key != key:
             self._ground = self._mat.picture(view).copy()
+            if self._grid_rgb is not None:
+                draw_grid(self._ground, view, self._grid_rgb)
             if self._has_frame:
                 if self._is_for_file:
                     draw_frame(self._ground, view)
@@ -199,8 +208,7 @@ def draw_frame(
     picture: Pixels, view: Viewport, width_px: int = FRAME_PX, rgb: Rgb = _FRAME_RGB
 ) -> None:
     """Paint a frame around the field."""
-    left, top = (max(round(edge), 0) for edge in view.to_px(0.0, FIELD_HEIGHT_MM))
-    right, low = (max(int(edge), 0) for edge in view.to_px(FIELD_WIDTH_MM, 0.0))
+    left, top, right, low = field_pixels(view)
     rows, cols = (
         slice(max(top - width_px, 0), low + width_px),
         slice(max(left - width_px, 0), right + width_px),

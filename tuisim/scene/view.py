@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
+from typing import NamedTuple
 
 from tuisim.core.geometry import Pose
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
@@ -14,6 +16,20 @@ ZOOMS = (1, 2, 4)
 
 _KEEP_INSIDE = 0.22
 """A following view moves once the robot is nearer to an edge than this share of its size."""
+_KEEP_ON_FLOOR = 0.15
+"""Likewise, of the view of a whole field that lies on a floor: a robot in its middle is inside two thirds of it."""
+
+
+class Area(NamedTuple):
+    """A rectangle of the world, in mm."""
+
+    left: float
+    lower: float
+    right: float
+    upper: float
+
+
+FIELD = Area(0.0, 0.0, float(FIELD_WIDTH_MM), float(FIELD_HEIGHT_MM))
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,10 +59,13 @@ class Viewport:
         return self.left_mm + col_px * self.mm_per_px, self.top_mm - row_px * self.mm_per_row
 
 
-def whole_field(width_px: int, height_px: int, cell: CellPoints = SQUARE) -> Viewport:
-    """Return the viewport that shows the whole field, centred, in a picture of that size (each at least 1)."""
-    mm_per_px = _fit_mm_per_px(width_px, height_px, cell)
-    return _around(width_px, height_px, mm_per_px, FIELD_WIDTH_MM / 2, FIELD_HEIGHT_MM / 2, cell)
+def whole_field(
+    width_px: int, height_px: int, cell: CellPoints = SQUARE, area: Area = FIELD
+) -> Viewport:
+    """Return the viewport that shows an area, centred, in a picture of that size (each at least 1)."""
+    mm_per_px = _fit_mm_per_px(width_px, height_px, cell, area)
+    middle = (area.left + area.right) / 2, (area.lower + area.upper) / 2
+    return _around(width_px, height_px, mm_per_px, *middle, cell)
 
 
 def following(
@@ -56,6 +75,8 @@ def following(
     pose: Pose,
     previous: Viewport | None,
     cell: CellPoints = SQUARE,
+    *,
+    on_floor: bool = False,
 ) -> Viewport:
     """Return a viewport that keeps the robot visible.
 
@@ -69,8 +90,9 @@ def following(
         pose: The pose of the robot.
         previous: The viewport of the last frame, if any.
         cell: The pixels in a character cell.
+        on_floor: Whether the robot may leave the field: then the view follows it there, by thirds of its size.
     """
-    if zoom == 1:
+    if zoom == 1 and not on_floor:
         return whole_field(width_px, height_px, cell)
     mm_per_px = _fit_mm_per_px(width_px, height_px, cell) / zoom
     same_scale = (
@@ -78,16 +100,43 @@ def following(
         and (previous.width_px, previous.height_px, previous.cell) == (width_px, height_px, cell)
         and math.isclose(previous.mm_per_px, mm_per_px)
     )
-    if same_scale and previous is not None and _well_inside(previous, pose):
-        return previous
+    kept = previous if same_scale else None
+    if on_floor:
+        at_mm = (pose.x_mm, pose.y_mm) if zoom > 1 else (FIELD_WIDTH_MM / 2, FIELD_HEIGHT_MM / 2)
+        kept = kept or _around(width_px, height_px, mm_per_px, *at_mm, cell)
+        return _shifted(kept, zoom, pose)
+    if kept is not None and _well_inside(kept, pose):
+        return kept
     x_mm = _clamped(pose.x_mm, width_px * mm_per_px, FIELD_WIDTH_MM)
     y_mm = _clamped(pose.y_mm, height_px * mm_per_px * cell.tall, FIELD_HEIGHT_MM)
     moved = _around(width_px, height_px, mm_per_px, x_mm, y_mm, cell)
     return previous if previous is not None and moved == previous else moved
 
 
-def _fit_mm_per_px(width_px: int, height_px: int, cell: CellPoints) -> float:
-    return max(FIELD_WIDTH_MM / width_px, FIELD_HEIGHT_MM / (height_px * cell.tall))
+def _shifted(view: Viewport, zoom: int, pose: Pose) -> Viewport:
+    """Return a view moved by thirds of its size until the robot is not near its edges."""
+    share = _KEEP_ON_FLOOR if zoom == 1 else _KEEP_INSIDE
+    col, row = view.to_px(pose.x_mm, pose.y_mm)
+    right_px = _count_steps(col, view.width_px, share, view.cell.cols)
+    down_px = _count_steps(row, view.height_px, share, view.cell.rows)
+    left_mm, top_mm = view.to_mm(right_px, down_px)
+    return replace(view, left_mm=left_mm, top_mm=top_mm)
+
+
+def _count_steps(at_px: float, size_px: int, share: float, cell_px: int) -> int:
+    """Return by how much a picture has to move along an axis, in pixels."""
+    margin_px = size_px * share
+    beyond_px = min(at_px - margin_px, 0.0) + max(at_px - (size_px - margin_px), 0.0)
+    if not math.isfinite(beyond_px):
+        # A damaged record may have no valid pose.
+        return 0
+    step_px = max(size_px // 3 // cell_px, 1) * cell_px
+    return int(math.copysign(math.ceil(abs(beyond_px) / step_px), beyond_px)) * step_px
+
+
+def _fit_mm_per_px(width_px: int, height_px: int, cell: CellPoints, area: Area = FIELD) -> float:
+    wide_mm, high_mm = area.right - area.left, area.upper - area.lower
+    return max(wide_mm / width_px, high_mm / (height_px * cell.tall))
 
 
 def _around(

@@ -16,6 +16,7 @@ from tuisim.core.geometry import Pose
 CLAW = "from ev3dev2.motor import MediumMotor\nMediumMotor('outA').on(5)\n"
 LIFT = CLAW.replace("outA", "outD")
 USUAL = "from ev3dev2.motor import LargeMotor\nLargeMotor('outB').on(5)\n"
+TOUCH = f"{USUAL}from ev3dev2.sensor.lego import TouchSensor\nTouchSensor('in1')\n"
 COURSE = "tank_drive.on(5, 5)\n"
 PYBRICKS = "from pybricks.ev3devices import Motor\nfrom pybricks.parameters import Port\nMotor(Port.A).run(100)\n"
 MAGIC = f"# %%sim_magic\n{CLAW}"
@@ -114,6 +115,27 @@ def test_the_place_follows_until_the_robot_is_moved_or_a_mat_says_it(way: str) -
     steps, (x_mm, y_mm) = PLACES[way]
     start = done(steps).spec.world.start
     assert (start.x_mm, start.y_mm) == (x_mm, y_mm)
+
+
+GROUNDS: Mapping[str, tuple[list[Step], tuple[bool, bool]]] = {
+    "a brick's program": ([CLAW], (True, False)),
+    "then one with a sensor for walls": ([CLAW, TOUCH], (True, True)),
+    "then one of the course": ([CLAW, COURSE], (False, True)),
+    "a mat": ([CLAW, mat("Loop")], (False, True)),
+    "a mat, then another program": ([TOUCH, mat("Loop"), CLAW], (False, True)),
+    "walls": ([CLAW, lambda plan: plans.with_choices(plan, {"walls": True}), LIFT], (True, True)),
+    "no walls, then a mat": (
+        [TOUCH, lambda plan: plans.with_choices(plan, {"walls": False}), mat("Loop")],
+        (False, False),
+    ),
+}
+
+
+@pytest.mark.parametrize("way", GROUNDS)
+def test_floor_and_walls_follow_until_a_mat_is_chosen(way: str) -> None:
+    steps, ground = GROUNDS[way]
+    world = done(steps).spec.world
+    assert (world.floor, world.walls) == ground
 
 
 def test_nothing_follows_where_everything_was_chosen() -> None:

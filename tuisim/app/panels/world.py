@@ -15,11 +15,12 @@ from textual.widget import Widget
 
 from tuisim.app.panels import PANELS
 from tuisim.app.panels.obstacles import BoxGrip, box_at
+from tuisim.app.panels.pose_grip import PoseGrip
 from tuisim.app.panels.time_bar import TimeBar
 from tuisim.app.snapshot import AT_REST, Snapshot
 from tuisim.core.geometry import Pose
 from tuisim.core.outline import outline_of
-from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, Obstacle, PenSpec
+from tuisim.core.spec import Obstacle, PenSpec
 from tuisim.data_class import dataclass
 from tuisim.scene.mono_robot import body, pointer
 from tuisim.scene.off_field import off_field_words
@@ -31,7 +32,7 @@ from tuisim.terminal.cell_view import PixelView
 from tuisim.terminal.cells import MONO
 from tuisim.terminal.picture_mode import BLOCKS
 from tuisim.terminal.picture_options import CellSet
-from tuisim.terminal.pixels import Pixels
+from tuisim.terminal.pixels import CellPoints, Pixels
 
 TURN_STEP_DEG = 5.0
 """Turn of the robot per notch of the mouse wheel."""
@@ -54,16 +55,6 @@ _LEGEND_COLS = 22
 
 _SHOWS_UNTIL_TAKEN = 10
 """Number of updates after which a dropped robot that was not accepted jumps back."""
-
-
-@dataclass(frozen=True, slots=True)
-class _Grip:
-    """A drag in progress: where it began."""
-
-    pose: Pose
-    x_mm: float
-    y_mm: float
-    turns: bool
 
 
 class World(Widget, can_focus=True):
@@ -247,12 +238,14 @@ class WorldView(PixelView):
         """Shown instead of `trace` while a past instant is in view."""
         self._trace_drawn = 0
         self._painter: ScenePainter | None = None
+        self._has_floor = False
+        """Whether the painter draws a floor around the mat."""
         self._has_signs = False
         """Whether the robots are drawn as signs above the picture."""
         self._port: Viewport | None = None
         self._snapshot: Snapshot | None = None
         self._scene: SceneState | None = None
-        self._grip: _Grip | None = None
+        self._grip: PoseGrip | None = None
         self._held: Pose | None = None
         self._held_shows = 0
 
@@ -285,6 +278,18 @@ class WorldView(PixelView):
                 self._held = None
         self._draw()
 
+    def _follow(
+        self, width_px: int, height_px: int, pose: Pose, now: Snapshot, cell: CellPoints
+    ) -> Viewport:
+        """Return the view; on a floor the whole field, until the robot has driven to its edge."""
+        on_floor, previous, zoom = now.spec.world.is_open, self._port, self.zoom
+        if on_floor and self._grip is not None:
+            # It stays where it is below the mouse.
+            pose = self._grip.pose
+        elif on_floor and zoom == 1 and not now.instant.tick:
+            previous = None
+        return following(width_px, height_px, zoom, pose, previous, cell, on_floor=on_floor)
+
     def repaint_scene(self) -> None:
         """Redraw unconditionally."""
         self._scene = None
@@ -297,19 +302,12 @@ class WorldView(PixelView):
         graphics = self.graphics
         cell = self.cell_for(graphics)
         width_px, height_px = cell.cols * self.size.width, cell.rows * self.size.height
-        port = following(width_px, height_px, self.zoom, scene.pose, self._port, cell)
+        port = self._follow(width_px, height_px, scene.pose, self._snapshot, cell)
+        has_floor = self._snapshot.spec.world.is_open
+        if has_floor != self._has_floor:
+            self._has_floor, self._painter, self._scene = has_floor, None, None
         if self._painter is None:
-            mode = self.color_mode
-            mono = mode.depth == MONO
-            outside_rgb = _PAPER if mono else self.ground_rgb
-            few = {CellSet.ASCII} if mono else {CellSet.ASCII, CellSet.BRAILLE}
-            coarse = graphics is None and self.cell_set in few
-            whole = graphics is None and self.cell_set not in BLOCKS
-            self._has_signs = mono and self.cell_set is CellSet.ASCII
-            self.set_signs({})
-            self._painter = ScenePainter(
-                self._mat, outside_rgb, self.trace, mode.grey, mono, coarse, whole
-            )
+            self._painter = self._make_painter(self._mat, in_cells=graphics is None)
         trace = self.trace if self.past_trace is None else self.past_trace
         # What stands still is drawn finely at once, and not a moment later by itself.
         stands = self._snapshot.state in AT_REST and not self._snapshot.past and self._held is None
@@ -321,6 +319,24 @@ class WorldView(PixelView):
         self.set_fine_picture(self._painter.paint(port, scene), graphics, stands=stands)
         if self._has_signs:
             self.set_signs(_pointers(port, scene))
+
+    def _make_painter(self, mat: Pixels, *, in_cells: bool) -> ScenePainter:
+        """Return a painter for the app's glyphs and colours."""
+        mode = self.color_mode
+        mono = mode.depth == MONO
+        few = {CellSet.ASCII} if mono else {CellSet.ASCII, CellSet.BRAILLE}
+        self._has_signs = mono and self.cell_set is CellSet.ASCII
+        self.set_signs({})
+        return ScenePainter(
+            mat,
+            _PAPER if mono else self.ground_rgb,
+            self.trace,
+            mode.grey,
+            mono,
+            coarse=in_cells and self.cell_set in few,
+            whole_cells=in_cells and self.cell_set not in BLOCKS,
+            has_floor=self._has_floor,
+        )
 
     def redraw(self) -> None:
         """Draw the image again: the app's glyphs or colours have changed."""
@@ -415,7 +431,12 @@ class WorldView(PixelView):
         pose = self._held or self._snapshot.instant.pose
         if not self._is_over_robot(event, pose):
             return False
-        self._grip = _Grip(pose, *self._at(event), turns=event.shift or event.ctrl)
+        self._grip = PoseGrip(
+            pose,
+            *self._at(event),
+            turns=event.shift or event.ctrl,
+            on_floor=self._snapshot.spec.world.is_open,
+        )
         self.capture_mouse()
         event.stop()
         return True
@@ -429,7 +450,7 @@ class WorldView(PixelView):
         if self._grip is None or self._port is None:
             return
         event.stop()
-        pose = self._dragged_to(self._grip, *self._at(event))
+        pose = self._grip.dragged_to(*self._at(event))
         if pose != self._held:
             self._held = pose
             self.post_message(World.PoseDragged(pose, done=False))
@@ -491,16 +512,3 @@ class WorldView(PixelView):
             )
         self.post_message(World.PoseDragged(self._held, done=self._grip is None))
         self._draw()
-
-    def _dragged_to(self, grip: _Grip, x_mm: float, y_mm: float) -> Pose:
-        start = grip.pose
-        if grip.turns:
-            before = math.atan2(grip.y_mm - start.y_mm, grip.x_mm - start.x_mm)
-            now = math.atan2(y_mm - start.y_mm, x_mm - start.x_mm)
-            turn = math.remainder(math.degrees(now - before), 360.0)
-            return replace(start, heading_deg=float(round(start.heading_deg + turn)))
-        return Pose(
-            float(round(min(max(start.x_mm + x_mm - grip.x_mm, 0), FIELD_WIDTH_MM))),
-            float(round(min(max(start.y_mm + y_mm - grip.y_mm, 0), FIELD_HEIGHT_MM))),
-            start.heading_deg,
-        )

@@ -22,7 +22,7 @@ from tuisim.config.options import (
 )
 from tuisim.config.profiles import load_profile
 from tuisim.config.program_file import ProgramSource
-from tuisim.config.program_settings import PROGRAM_PATHS, Decided, decide
+from tuisim.config.program_settings import OF_THE_GROUND, PROGRAM_PATHS, Decided, decide
 from tuisim.config.robots import DEFAULT_ROBOT, RobotChoice, choose_robot
 from tuisim.core import tree
 from tuisim.core.geometry import Pose
@@ -159,7 +159,9 @@ def with_choices(plan: NextRun, choices: Mapping[str, Any]) -> NextRun:
     """
     said, words = _resolved({path: value for path, value in choices.items() if path in WORLD_PATHS})
     if "background" in said:
-        said = {**dict.fromkeys(OF_THE_MAT), **said}
+        # Another mat also takes the program's decision about walls back.
+        gone = [*OF_THE_MAT, *({"walls"} & plan.free)]
+        said = {**dict.fromkeys(gone), **said}
     elif said.keys() & set(START):
         said = {**dict.fromkeys(START), **said}
     kept = {path: word for path, word in plan.words.items() if path not in said}
@@ -177,6 +179,8 @@ def following(plan: NextRun, source: ProgramSource) -> tuple[NextRun, Decided]:
         ConfigError: the mat is missing.
     """
     free, usual, settings = plan.free, Settings(), plan.settings
+    if settings["background"] != usual["background"]:
+        free -= {*OF_THE_GROUND}
     decided = decide(
         source, settings.changed({key: usual[key] for key in free}), free, insists=False
     )

@@ -37,6 +37,9 @@ class DeviceKind(StrEnum):
         return self in (DeviceKind.LARGE, DeviceKind.MEDIUM, DeviceKind.MOTOR)
 
 
+SENSES_WALLS = frozenset({DeviceKind.ULTRASONIC, DeviceKind.INFRARED, DeviceKind.TOUCH})
+"""The kinds of sensors that can tell a wall."""
+
 DEVICES: Mapping[str, DeviceKind] = {
     "LargeMotor": DeviceKind.LARGE,
     "MediumMotor": DeviceKind.MEDIUM,

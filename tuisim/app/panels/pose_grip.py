@@ -1,0 +1,41 @@
+"""A drag that moves or turns the robot."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+from tuisim.core.geometry import Pose
+from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, START_VALUES
+from tuisim.data_class import dataclass
+
+_ON_FIELD = (0, FIELD_WIDTH_MM), (0, FIELD_HEIGHT_MM)
+_ON_FLOOR = tuple((START_VALUES[key].low, START_VALUES[key].high) for key in ("x_mm", "y_mm"))
+
+
+@dataclass(frozen=True, slots=True)
+class PoseGrip:
+    """A drag in progress: where it began."""
+
+    pose: Pose
+    x_mm: float
+    y_mm: float
+    turns: bool
+    on_floor: bool
+    """Whether it may lead off the field."""
+
+    def dragged_to(self, x_mm: float, y_mm: float) -> Pose:
+        """Return the pose with the mouse at a point."""
+        start = self.pose
+        if self.turns:
+            before = math.atan2(self.y_mm - start.y_mm, self.x_mm - start.x_mm)
+            now = math.atan2(y_mm - start.y_mm, x_mm - start.x_mm)
+            turn = math.remainder(math.degrees(now - before), 360.0)
+            return replace(start, heading_deg=float(round(start.heading_deg + turn)))
+        at_mm = start.x_mm + x_mm - self.x_mm, start.y_mm + y_mm - self.y_mm
+        sides = _ON_FLOOR if self.on_floor else _ON_FIELD
+        x_mm, y_mm = (
+            float(round(min(max(place, low), high)))
+            for place, (low, high) in zip(at_mm, sides, strict=True)
+        )
+        return Pose(x_mm, y_mm, start.heading_deg)
