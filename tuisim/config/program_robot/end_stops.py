@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Sequence
 from dataclasses import field
 
+from tuisim.config.program_robot.call_order import CallOrder
 from tuisim.config.program_robot.mentions import Where
 from tuisim.config.program_robot.scopes import Scope
 from tuisim.data_class import dataclass
@@ -38,7 +39,7 @@ class StopPress:
 
 @dataclass(frozen=True, slots=True)
 class Target:
-    """A position to which the program turns a motor."""
+    """A position to which the program turns a motor, or how far it turns it."""
 
     deg: float
     where: Where
@@ -50,13 +51,17 @@ class Target:
 class Mechanics:
     """What a program says about its motors, by port; the port is empty if the program does not say it."""
 
+    order: CallOrder = field(default_factory=CallOrder)
+    """What the program does first."""
     reversed: dict[str, Where] = field(default_factory=dict)
     stops: dict[str, EndStop] = field(default_factory=dict)
     presses: list[StopPress] = field(default_factory=list)
     reach_deg: dict[str, float] = field(default_factory=dict)
     """The farthest that the program turns a motor, from where it stands or from its end stop."""
+    turns: dict[str, list[Target]] = field(default_factory=dict)
+    """How far it turns them from where they stand."""
     targets_deg: dict[str, tuple[float, float]] = field(default_factory=dict)
-    """The farthest positions to which it turns a motor that stands at 0 at the start: backwards and forwards."""
+    """The farthest positions that a motor can reach that stands at 0 at the start: backwards and forwards."""
     endless: set[str] = field(default_factory=set)
     """The motors that the program turns by an angle that is not known."""
     driven_to_stops: set[str] = field(default_factory=set)
@@ -85,30 +90,39 @@ class Mechanics:
             return (-far if far else None), min(ahead_deg, _MOST_REACH_DEG) + _MARGIN_DEG
         return max(back_deg, -_MOST_REACH_DEG) - _MARGIN_DEG, far
 
+    def note_turn(self, port: str, turn: Target) -> None:
+        """Note a turn of a motor from where it stands."""
+        self.reach_deg[port] = max(self.reach_deg.get(port, 0.0), turn.deg)
+        self.turns.setdefault(port, []).append(turn)
+
     def note_targets(self, port: str, targets: Sequence[Target], places: Collection[float]) -> None:
-        """Note how far a motor turns for some targets.
+        """Note how far a motor turns for some targets, and for its turns, once these are known.
 
         Args:
             places: The positions that the program says the motor has, as at an end stop. Once it is there, targets
                 count from the end stop.
         """
-        far = max(abs(target.deg - place) for target in targets for place in places or (0.0,))
+        far = max(
+            (abs(one.deg - place) for one in targets for place in places or (0.0,)), default=0
+        )
         self.reach_deg[port] = max(self.reach_deg.get(port, 0.0), far)
         stop = self.stop_of(port)
-        from_start = [
-            target.deg
-            for target in targets
-            if not places or (stop is not None and _is_before(target, stop))
-        ]
-        self.targets_deg[port] = min((0.0, *from_start)), max((0.0, *from_start))
+        first = [one.deg for one in targets if not places or self._is_before(one, stop)]
+        # Which way they lead is not known.
+        turned_deg = sum(one.deg for one in self.turns.get(port, ()) if self._is_before(one, stop))
+        self.targets_deg[port] = min((0.0, *first)) - turned_deg, max((0.0, *first)) + turned_deg
+
+    def _is_before(self, target: Target, stop: EndStop | None) -> bool:
+        """Return whether a motor turns to a target before it is driven to its end stop."""
+        if stop is None:
+            return False
+        before, driven = (
+            self.order.find_order(one.where.line, one.scope) for one in (target, stop)
+        )
+        return before < driven
 
     def turn_motor(self, port: str, gear_ratio: float, *, is_turned: bool) -> None:
         """Change the angles of the program into those of a motor."""
         self.reach_deg[port] = self.reach_deg.get(port, 0.0) * gear_ratio
         back_deg, ahead_deg = (deg * gear_ratio for deg in self.targets_deg.get(port, (0.0, 0.0)))
         self.targets_deg[port] = (-ahead_deg, -back_deg) if is_turned else (back_deg, ahead_deg)
-
-
-def _is_before(target: Target, stop: EndStop) -> bool:
-    """Return whether a motor turns to a target before it is driven to its end stop; in other functions, it is later."""
-    return target.scope is stop.scope and target.where.line < stop.where.line

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import field
 
 from tuisim.config.program_robot import library
+from tuisim.config.program_robot.call_order import CallOrder
 from tuisim.config.program_robot.end_stops import EndStop, Mechanics, StopPress, Target
 from tuisim.config.program_robot.evaluation import Evaluation
 from tuisim.config.program_robot.library import INVERSED, NORMAL, DeviceKind, Moves
@@ -21,7 +22,9 @@ def mechanics_in(mentions: Mentions) -> Mechanics:
     """Return what a program says about how its motors are mounted."""
     if mentions.evaluation is None:
         return Mechanics()
-    return _MechanicsReader(mentions, mentions.evaluation, library.MOVES[mentions.library]).read()
+    evaluation, moves = mentions.evaluation, library.MOVES[mentions.library]
+    found = Mechanics(CallOrder(evaluation.calls))
+    return _MechanicsReader(mentions, evaluation, moves, found).read()
 
 
 @dataclass(slots=True)
@@ -30,7 +33,7 @@ class _MechanicsReader:
     evaluation: Evaluation
     moves: Moves
     """Of the library."""
-    found: Mechanics = field(default_factory=Mechanics)
+    found: Mechanics
     normal: set[str] = field(default_factory=set)
     places: dict[str, set[float]] = field(default_factory=dict)
     """The positions that the program says its motors have, as at an end stop, by port."""
@@ -63,8 +66,8 @@ class _MechanicsReader:
             # With the polarity turned as well, the motor is mounted the usual way.
             if self.found.reversed.pop(port, None) is None:
                 self.found.reversed[port] = where
-        for port, targets in self.targets.items():
-            self.found.note_targets(port, targets, self.places.get(port, set()))
+        for port in {**self.targets, **self.found.turns}:
+            self.found.note_targets(port, self.targets.get(port, ()), self.places.get(port, ()))
         for port in {*self.found.reach_deg, *self.found.targets_deg}:
             if mention := self.mentions.motor_on(port):
                 self.found.turn_motor(port, mention.gear_ratio, is_turned=mention.is_turned)
@@ -258,10 +261,9 @@ class _MechanicsReader:
             lengths = self._numbers(node, scope)
             self.found.endless.update(() if lengths else ports)
             for length in lengths:
+                turn = Target(abs(length) * turns, _where(node, scope), scope)
                 for port in ports:
-                    self.found.reach_deg[port] = max(
-                        self.found.reach_deg.get(port, 0.0), abs(length) * turns
-                    )
+                    self.found.note_turn(port, turn)
 
     def _note_targets(self, node: ast.expr, ports: Sequence[str], scope: Scope) -> None:
         targets = self._numbers(node, scope)
