@@ -16,6 +16,7 @@ from tests.running import PATIENCE_S
 from tuisim.config.build import build_run_spec
 from tuisim.config.options import Settings
 from tuisim.core.spec import MotorSpec, RobotSpec
+from tuisim.protocol import End
 from tuisim.runs.child import process
 from tuisim.runs.handle import RunOptions, start_run
 from tuisim.runs.records import Stream
@@ -369,7 +370,7 @@ def printed(text: str, solid: bool = False) -> list[str]:
     process.warm_up()
     run = start_run(Program("program.py", text), spec, RunOptions(time_limit_s=1e6))
     try:
-        if (ended := run.wait(PATIENCE_S)) is None or ended.summary:
+        if (ended := run.wait(PATIENCE_S)) is None or ended.end is not End.FINISHED:
             raise FaultError(f"the program ends with {ended}")
         return [row.text for row in run.output.all_rows() if row.stream == Stream.STDOUT]
     finally:

@@ -13,6 +13,7 @@ import sys
 import types
 from collections.abc import Callable
 from contextlib import suppress
+from dataclasses import replace as replace_fields
 from typing import NoReturn
 
 from tuisim.core.profile import NS_PER_S
@@ -33,6 +34,7 @@ from tuisim.runtime.scheduler import Scheduler
 from tuisim.runtime.session import Deadlock, Session, StopProgram
 from tuisim.runtime.stack import patch_faulthandler
 from tuisim.runtime.tracebacks import line_in
+from tuisim.runtime.unended_moves import finish_moves
 from tuisim.shim.waits import Wait, waits_for
 
 
@@ -66,16 +68,16 @@ def _is_data(value: object) -> bool:
     )
 
 
+def _add(outcome: ProgramOutcome, words: str) -> ProgramOutcome:
+    """Add words to the summary."""
+    return replace_fields(outcome, summary="; ".join(filter(None, (outcome.summary, words))))
+
+
 def _with_caught(outcome: ProgramOutcome) -> ProgramOutcome:
     """Add to the summary what the program used that is not simulated, if it caught the error about it."""
     if not NotSimulated.first or outcome.end not in (End.FINISHED, End.TIME_LIMIT):
         return outcome
-    summary = "; ".join(
-        filter(None, (outcome.summary, f"caught NotSimulated: {NotSimulated.first}"))
-    )
-    return ProgramOutcome(
-        outcome.end, outcome.exit_code, summary, outcome.error, outcome.error_line
-    )
+    return _add(outcome, f"caught NotSimulated: {NotSimulated.first}")
 
 
 class ProgramRunner:
@@ -169,6 +171,8 @@ class ProgramRunner:
         outcome = self._hold_at_end(outcome)
         self._shut_down()
         self._finish_streams()
+        if outcome.end is End.FINISHED and self._session.stop_reason is None:
+            outcome = self._finish_moves(outcome)
         # A stop in another thread, an exit function or a `__del__` need not have arrived here.
         stop = self._session.stop_reason
         if stop is not None and outcome.end is End.FINISHED:
@@ -191,6 +195,14 @@ class ProgramRunner:
         except StopProgram as stop:
             return ProgramOutcome(stop.end, 0, stop.summary, error_line=stop.line)
         return outcome
+
+    def _finish_moves(self, outcome: ProgramOutcome) -> ProgramOutcome:
+        """Let the moves end that the program has begun, as they do on a brick, and say what it left running."""
+        try:
+            left = finish_moves(self._session)
+        except StopProgram as stop:
+            return ProgramOutcome(stop.end, 0, stop.summary)
+        return _add(outcome, left)
 
     def _shut_down(self) -> None:
         """Do what Python does at the end of a program: exit functions, open files, finalizers."""

@@ -200,6 +200,15 @@ class DriverMotor(MotorDriver):
         """What `state` lists."""
         return STATES[self.state_bits]
 
+    @property
+    def ends_alone(self) -> bool:
+        """Whether it runs, and stops by itself: at a time, at a position, or at the end of a ramp."""
+        return self.is_running and (
+            self._timed_ns < NEVER_NS
+            or self._arrival_action is not None
+            or (self._stops_after_ramp and self._ramp_ns < NEVER_NS)
+        )
+
     # Time
 
     @property

@@ -1,0 +1,86 @@
+"""What a program leaves its motors to do when it ends: a brick's driver ends its moves, the rest is named."""
+
+from __future__ import annotations
+
+from tests.cases import cases
+from tests.running import Run
+
+_EV3DEV2 = (
+    "from ev3dev2.motor import LargeMotor, MoveTank\n"
+    "from time import sleep\n"
+    "left, right = LargeMotor('outB'), LargeMotor('outC')\n"
+)
+_LEFT_AND_RIGHT = "ended while outB and outC were still told to turn"
+LEFT = {
+    "a tank": ("MoveTank('outB', 'outC').on(50, 50)", "ev3", _LEFT_AND_RIGHT),
+    "one motor": (
+        "right.run_direct(duty_cycle_sp=-30)",
+        "ev3",
+        "ended while outC was still told to turn",
+    ),
+    "an exit": (
+        "left.on(10); right.on(10); raise SystemExit(2)",
+        "ev3",
+        f"the program ended itself with exit code 2; {_LEFT_AND_RIGHT}",
+    ),
+    "a stop": ("left.on(50); sleep(1); left.off()", "ev3", ""),
+    "speed 0": ("left.on(0)", "ev3", ""),
+    "an exit function": ("import atexit; atexit.register(left.off); left.on(50)", "ev3", ""),
+    "an error": ("left.on(50); 1 / 0", "ev3", "ZeroDivisionError: division by zero"),
+    "the course's rules": ("left.on(50)", "robolab", ""),
+}
+
+
+@cases("text, profile, summary", LEFT)
+def test_motors_that_run_for_ever_are_named(
+    run: Run, text: str, profile: str, summary: str
+) -> None:
+    assert run(_EV3DEV2 + text, profile=profile).ended.summary.startswith(summary)
+
+
+MOVES = {
+    "for a time": ("left.run_timed(speed_sp=300, time_sp=2000)", 1.99, (600, 0)),
+    "to a position": ("left.run_to_rel_pos(speed_sp=300, position_sp=600)", 1.99, (600, 0)),
+    "the longer one": (
+        "left.on_for_degrees(20, 90, block=False); right.on_for_seconds(20, 3, block=False)",
+        2.99,
+        (90, 630),
+    ),
+    "a ramp to its end": (
+        "left.run_forever(speed_sp=500, ramp_down_sp=2000); sleep(1); left.stop()",
+        1.9,
+        (740, 0),
+    ),
+}
+
+
+@cases("text, least_s, turned", MOVES)
+def test_a_move_that_ends_goes_on_to_its_end(
+    run: Run, text: str, least_s: float, turned: tuple[int, int]
+) -> None:
+    done = run(_EV3DEV2 + text, profile="ev3")
+    assert (done.ended.end, done.ended.summary) == ("finished", "")
+    assert least_s < done.ended.time_ns / 1e9 < least_s + 0.4
+    last = done.run.telemetry.last()
+    assert last is not None
+    wheels = last.left_position_deg, last.right_position_deg
+    assert all(abs(is_deg - must) < 40 for is_deg, must in zip(wheels, turned, strict=True))
+
+
+def test_a_move_counts_to_the_limit(run: Run) -> None:
+    done = run(
+        _EV3DEV2 + "left.on_for_seconds(20, 9, block=False)", profile="ev3", time_limit_s=2.0
+    )
+    assert (done.ended.end, done.ended.time_ns) == ("time_limit", 2_000_000_000)
+
+
+def test_a_threads_work_ends_with_the_program(run: Run) -> None:
+    done = run(
+        "import threading\n"
+        + _EV3DEV2
+        + "def talk():\n    while True:\n        sleep(0.5)\n        print('on')\n"
+        "threading.Thread(target=talk, daemon=True).start()\n"
+        "left.on_for_seconds(20, 2, block=False)\n",
+        profile="ev3",
+    )
+    assert (done.lines, done.ended.time_ns > 1.9e9) == ([], True)
