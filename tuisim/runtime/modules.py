@@ -12,6 +12,7 @@ from importlib.machinery import ModuleSpec, PathFinder, SourceFileLoader
 from pathlib import Path
 from typing import Any, NoReturn
 
+from tuisim.brick_home import place_folder
 from tuisim.runs.side_files import OwnModule, note_module, read_modules
 from tuisim.runtime.loader import compile_with_hooks
 from tuisim.runtime.stack import PACKAGE_FOLDER
@@ -65,10 +66,11 @@ class OwnModules(PathFinder):
     Args:
         run_folder: Where the copies are stored.
         known: Modules of the run that is repeated; they are loaded instead of the files.
+        brick_folder: What the program finds in the home folder of the brick is in this folder; empty without a brick.
     """
 
-    def __init__(self, run_folder: Path, known: Sequence[OwnModule]) -> None:
-        self._run_folder = run_folder
+    def __init__(self, run_folder: Path, known: Sequence[OwnModule], brick_folder: str) -> None:
+        self._run_folder, self._brick_folder = run_folder, brick_folder
         self._missed: dict[str, int] = {}
         """How often a name was not found, beyond the first time, which is stored at once."""
         self._known: dict[str, list[OwnModule]] = {}
@@ -85,6 +87,8 @@ class OwnModules(PathFinder):
         if known := self._known.get(fullname):
             # A module that was reloaded may have had another text each time.
             return _spec_of(known.pop(0) if len(known) > 1 else known[0])
+        if path is None and self._brick_folder:
+            path = [place_folder(str(folder), self._brick_folder) for folder in sys.path]
         spec = PathFinder.find_spec(fullname, path, target)
         module = OwnModule(fullname) if spec is None else _own_module(fullname, spec)
         if module is None:
@@ -100,10 +104,12 @@ class OwnModules(PathFinder):
         return spec if spec is None or not module.file else _spec_of(module)
 
 
-def find_modules_for(run_folder: Path) -> None:
+def find_modules_for(run_folder: Path, brick_folder: str) -> None:
     """Store modules that the program imports with its run; modules from a repeated run are loaded instead."""
     finders: list[Any] = sys.meta_path
-    finders[finders.index(PathFinder)] = OwnModules(run_folder, read_modules(run_folder))
+    finders[finders.index(PathFinder)] = OwnModules(
+        run_folder, read_modules(run_folder), brick_folder
+    )
 
 
 def _own_module(name: str, spec: ModuleSpec) -> OwnModule | None:

@@ -246,6 +246,11 @@ class ProgramRunner:
                 # The file is full, and reports that itself.
                 continue
 
+    @property
+    def _has_brick_folder(self) -> bool:
+        """Whether the program's folder is in the home folder of the brick."""
+        return self._session.sim.spec.profile.starts_in_own_folder
+
     def _patch(self) -> None:
         sys.stdout, sys.stderr = self.stdout, self.stderr
         # Also for code that replaces a stream and restores it.
@@ -254,7 +259,7 @@ class ProgramRunner:
         patch_faulthandler()
         replace(builtins, "input", self._input, (0, 1))
         replace(os, "write", self.raw.write, (2, 2))
-        if self._session.sim.spec.profile.starts_in_own_folder:
+        if self._has_brick_folder:
             HomeFolder(lambda: self._config.own_folder).patch()
         replace(os, "_exit", lambda status: self._exit_now(operator.index(status)))
 
@@ -267,7 +272,7 @@ class ProgramRunner:
         # Not earlier: a program named logging.py is not what the library means by `import logging`.
         folder = self._config.own_folder
         sys.path[:0] = [folder, *self._config.program.python_path]
-        find_modules_for(self._config.folder)
+        find_modules_for(self._config.folder, folder if self._has_brick_folder else "")
         if self._starts_in_own_folder:
             # If a repeated run's folder no longer exists, only files that it opens there are missing.
             with suppress(OSError):

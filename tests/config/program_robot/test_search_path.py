@@ -8,7 +8,7 @@ import pytest
 
 from tests.config.program_robot.reading import HEAD
 from tuisim.config.program_file import read_program
-from tuisim.config.program_settings import facts_of, robot_for
+from tuisim.config.program_settings import facts_of, program_settings, robot_for
 from tuisim.errors import RobotError
 from tuisim.source import Program
 
@@ -53,6 +53,17 @@ def test_folders_that_the_program_adds(folder: Path, case: str) -> None:
     assert _ports(folder, f"{head}{FOUND[case]}\n{_USE}") == ["outD"]
 
 
+@pytest.mark.parametrize("place", ["/home/robot/tools", "/home/robot/projects/tools"])
+def test_folders_in_the_home_folder_of_the_brick_are_beside_the_program(
+    folder: Path, place: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (folder.parent / "libs").rename(folder / "tools")
+    text = f"import sys\nsys.path.append({place!r})\n{_USE}"
+    assert _ports(folder, text) == ["outD"]
+    monkeypatch.chdir(folder.parent)
+    assert _ports(Path("prog"), text) == ["outD"]
+
+
 def test_what_only_a_run_could_tell_is_not_searched(folder: Path) -> None:
     for added in ("input()", "unknown", "x.parent", "'../' + find()", "[].parents[0]"):
         assert _ports(folder, f"import sys\nsys.path.append({added})\n{_USE}") == []
@@ -79,6 +90,8 @@ def test_a_module_elsewhere_in_the_repository_is_named(folder: Path) -> None:
     (folder / "main.py").write_text(_USE)
     with pytest.raises(RobotError, match=r"PYTHONPATH=\.\./libs"):
         robot_for(read_program(folder / "main.py"))
+    decided = program_settings(read_program(folder / "main.py")).decided
+    assert decided.note.startswith("main.py: it imports my_robot, which is in ../libs")
 
 
 def test_no_default_robot_stands_for_parts_that_are_not_found(folder: Path) -> None:

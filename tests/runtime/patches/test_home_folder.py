@@ -28,6 +28,7 @@ def folder(tmp_path: Path) -> Path:
     (tmp_path / "own" / "data").mkdir(parents=True)
     (tmp_path / "own" / "a.txt").write_text("first")
     (tmp_path / "own" / "data" / "b.txt").write_text("second")
+    (tmp_path / "own" / "data" / "c.py").write_text("name = 'third'\n")
     return tmp_path / "own"
 
 
@@ -45,6 +46,10 @@ READS = {
     ),
     "list": ("print(*sorted(os.listdir('/home/robot/projects')))", "a.txt data"),
     "change": ("os.chdir('/home/robot/x')\nprint(open('a.txt').read())", "first"),
+    "modules": (
+        "import sys\nsys.path.append('/home/robot/x/data')\nimport c\nprint(c.name)",
+        "third",
+    ),
     "another home": ("print(os.path.exists('/home/robots/a.txt'))", "False"),
     "out of it": ("print(os.path.exists('/home/robot/../a.txt'))", "False"),
 }

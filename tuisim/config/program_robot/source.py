@@ -10,6 +10,7 @@ from collections.abc import Iterator
 from dataclasses import field
 from pathlib import Path
 
+from tuisim.brick_home import place_folder
 from tuisim.config.files import read_bytes
 from tuisim.config.program_robot.search_path import added_folders, first_folders, own_folder
 from tuisim.core.profile import Library
@@ -96,8 +97,9 @@ class _Search:
     def extend(self, tree: ast.Module, file: str) -> None:
         """Add the folders that a module puts into `sys.path`; a relative one is beside the program, as on the brick."""
         if os.path.isdir(self._own):
-            added = added_folders(tree, file)
-            self._folders += [os.path.join(self._own, folder) for folder in added]
+            own = os.path.abspath(self._own)
+            places = (place_folder(folder, own) for folder in added_folders(tree, file))
+            self._folders += [os.path.join(own, place) for place in places]
 
     def module(self, name: str) -> Module | None:
         """Return a module by its name; None if it is in none of the folders."""

@@ -5,12 +5,12 @@ from __future__ import annotations
 import builtins
 import io
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from typing import Any
 
+from tuisim.brick_home import HOME, find_beside, parts_in_home, place_folder
 from tuisim.runtime.patches.replacement import replace
 
-HOME = "/home/robot"
 _OF_FILES = ("open", "stat", "lstat", "access")
 _OF_FOLDERS = ("listdir", "scandir", "chdir")
 """Functions of `os` that take the path of a folder: one that is not there is that of the program."""
@@ -46,11 +46,13 @@ class HomeFolder:
 
     def _file(self, path: Any) -> Any:
         """Return the path of a file; one that is not there is to be made in the program's folder."""
-        if (parts := self._parts(path)) is None:
+        if not (text := _text_in_home(path)):
             return path
-        if known := self._known(parts):
-            return known
         own_folder = self._own_folder()
+        if (parts := parts_in_home(text, own_folder)) is None:
+            return path
+        if known := find_beside(parts, own_folder):
+            return known
         for first in range(len(parts) - 1):
             if os.path.isdir(folder := os.path.join(own_folder, *parts[first:-1])):
                 return os.path.join(folder, parts[-1])
@@ -58,33 +60,10 @@ class HomeFolder:
 
     def _folder(self, path: Any) -> Any:
         """Return the path of a folder; one that is not there is that of the program."""
-        parts = self._parts(path)
-        return path if parts is None else self._known(parts) or self._own_folder()
-
-    def _known(self, parts: Sequence[str]) -> str:
-        """Return the path that is there; the program's folder may be anywhere in the home folder of the brick."""
-        ends = (parts[first:] for first in range(len(parts)))
-        paths = (os.path.join(self._own_folder(), *end) for end in ends)
-        return next((path for path in paths if os.path.exists(path)), "")
-
-    def _parts(self, path: Any) -> list[str] | None:
-        """Return the parts of a path in the home folder; None for another one, or if the program itself is there."""
-        text = path if path.__class__ is str else _text_of(path)
-        if text is None or not text.startswith(HOME):
-            return None
-        text = os.path.normpath(text)
-        if not _is_in_home(text) or _is_in_home(self._own_folder()):
-            return None
-        return text[len(HOME) + 1 :].split(os.sep)
+        return place_folder(text, self._own_folder()) if (text := _text_in_home(path)) else path
 
 
-def _text_of(path: Any) -> str | None:
-    """Return the text of a path that is an object; None if it is something else, such as a descriptor."""
-    if isinstance(path, os.PathLike):
-        text = os.fspath(path)
-        return text if isinstance(text, str) else None
-    return None
-
-
-def _is_in_home(path: str) -> bool:
-    return path == HOME or path.startswith(f"{HOME}{os.sep}")
+def _text_in_home(path: Any) -> str:
+    """Return the text of a path that begins in the home folder; empty for another one, and for a descriptor."""
+    text = os.fspath(path) if isinstance(path, os.PathLike) else path
+    return text if isinstance(text, str) and text.startswith(HOME) else ""

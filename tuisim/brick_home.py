@@ -1,0 +1,35 @@
+"""The home folder of the brick: what a program looks for under `/home/robot` lies in its own folder."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+
+HOME = "/home/robot"
+
+
+def parts_in_home(path: str, own_folder: str) -> list[str] | None:
+    """Return the parts of a path in the home folder; None for another one, or if the program itself is there."""
+    if not path.startswith(HOME):
+        return None
+    path = os.path.normpath(path)
+    if not _is_in_home(path) or _is_in_home(own_folder):
+        return None
+    return path[len(HOME) + 1 :].split(os.sep)
+
+
+def find_beside(parts: Sequence[str], own_folder: str) -> str:
+    """Return the path that is there, empty for none; the program's folder may be anywhere in the home folder."""
+    ends = (parts[first:] for first in range(len(parts)))
+    paths = (os.path.join(own_folder, *end) for end in ends)
+    return next((path for path in paths if os.path.exists(path)), "")
+
+
+def place_folder(path: str, own_folder: str) -> str:
+    """Return the folder that a path of the program stands for; in the home folder one that is not there is its own."""
+    parts = parts_in_home(path, own_folder)
+    return path if parts is None else find_beside(parts, own_folder) or own_folder
+
+
+def _is_in_home(path: str) -> bool:
+    return path == HOME or path.startswith(f"{HOME}{os.sep}")
