@@ -43,6 +43,31 @@ PRELUDE_TEXTS: Mapping[str, str] = {
 PYBRICKS = "pybricks"
 LIBRARIES = ("ev3dev2", "ev3dev", PYBRICKS)
 """The packages of the libraries for a brick: a program that imports one needs no prelude."""
+SPIKE_MODULES = (
+    "color_sensor",
+    "distance_sensor",
+    "force_sensor",
+    "hub",
+    "motor",
+    "motor_pair",
+    "runloop",
+    "spike",
+)
+"""Modules of LEGO's Python for the SPIKE hub."""
+OTHER_HUBS = (
+    "CityHub",
+    "EssentialHub",
+    "InventorHub",
+    "MoveHub",
+    "PrimeHub",
+    "TechnicHub",
+    "VirtualHub",
+)
+"""Classes of `pybricks.hubs` for hubs of SPIKE, Technic and others."""
+OTHER_HUB_DEVICES = "pybricks.pupdevices"
+"""The module of Pybricks for motors and sensors of these."""
+FOR_SPIKE = "a program for a SPIKE hub; tuisim simulates the EV3"
+"""What is told about a program that imports one of these."""
 
 PRELUDES: Mapping[str, str] = {
     "sim_magic": "none",

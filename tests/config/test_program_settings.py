@@ -12,10 +12,10 @@ import pytest
 from tests.cases import cases
 from tuisim.config.build import build_run_spec
 from tuisim.config.options import Settings
-from tuisim.config.program_file import parse_program
-from tuisim.config.program_settings import program_settings, require_library
+from tuisim.config.program_file import parse_program, read_program
+from tuisim.config.program_settings import program_settings, require_library, robot_for
 from tuisim.core.profile import PROFILES
-from tuisim.errors import ProfileError
+from tuisim.errors import ProfileError, RobotError
 
 BRICK = "from ev3dev2.motor import MediumMotor, MoveTank, OUTPUT_A, OUTPUT_B, OUTPUT_C\n"
 CLAW = f"{BRICK}MediumMotor(OUTPUT_A).on(5)\n"
@@ -201,6 +201,43 @@ def test_what_is_for_the_other_library_is_refused(case: str) -> None:
     text, above, told = MISFITS[case]
     with pytest.raises(ProfileError, match=told):
         program_settings(parse_program(text, "p.py"), above)
+
+
+SPIKE: Mapping[str, str] = {
+    "pybricks": "from pybricks.hubs import PrimeHub\n",
+    "devices": "from pybricks.pupdevices import Motor\nfrom pybricks.parameters import Port\nMotor(Port.A)\n",
+    "lego": "import motor, runloop\nfrom hub import port\n",
+    "old lego": "from spike import PrimeHub\n",
+}
+
+
+@pytest.mark.parametrize("case", SPIKE)
+def test_nothing_that_cannot_help_is_advised_to_a_program_for_another_hub(case: str) -> None:
+    source = parse_program(SPIKE[case], "p.py")
+    told = "p.py: it is a program for a SPIKE hub; tuisim simulates the EV3"
+    assert program_settings(source).decided.note == ""
+    with pytest.raises(RobotError, match=told):
+        robot_for(source)
+    if "pybricks" in SPIKE[case]:
+        with pytest.raises(ProfileError) as caught:
+            program_settings(source, {"profile": "ev3"})
+        assert str(caught.value) == told
+
+
+def test_a_program_for_more_than_one_hub_is_one_for_the_brick() -> None:
+    both = (
+        f"{PYBRICKS}try:\n    from pybricks.hubs import PrimeHub\nexcept ImportError:\n    pass\n"
+    )
+    assert program_settings(parse_program(both, "p.py")).settings["profile"] == "lego-micropython"
+    assert program_settings(parse_program(both, "p.py")).decided.note
+
+
+def test_an_own_module_with_the_name_of_one_of_a_hub_is_no_sign_of_it(tmp_path: Path) -> None:
+    (tmp_path / "motor.py").write_text(
+        "from ev3dev2.motor import MediumMotor\narm = MediumMotor('outA')\n"
+    )
+    (tmp_path / "p.py").write_text("import motor\n")
+    assert "medium motor on outA" in program_settings(read_program(tmp_path / "p.py")).decided.note
 
 
 def test_a_program_with_a_profile_for_the_other_library_can_be_opened() -> None:

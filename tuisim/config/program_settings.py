@@ -19,6 +19,7 @@ from tuisim.config.program_robot.course import uses_course_names
 from tuisim.config.program_robot.source import (
     Module,
     data_files,
+    is_for_other_hub,
     library_of,
     missing_module,
     read_modules,
@@ -27,7 +28,7 @@ from tuisim.config.robots import RobotChoice
 from tuisim.core.profile import PROFILES, PYBRICKS_4, Library, MotorLaw, ProfileSpec
 from tuisim.data_class import dataclass
 from tuisim.errors import ProfileError, RobotError
-from tuisim.source import Program
+from tuisim.source import FOR_SPIKE, Program
 
 if TYPE_CHECKING:
     from tuisim.config.program_robot.assembly import BuiltRobot
@@ -67,6 +68,8 @@ class SourceFacts:
     """Whether it makes a sensor that can tell a wall."""
     hides_parts: bool = False
     """Whether it names classes of motors or sensors, and its text shows no part that is made."""
+    for_other_hub: bool = False
+    """Whether it is for a hub that no profile is for."""
 
 
 OF_THE_GROUND = ("floor", "walls")
@@ -131,6 +134,8 @@ def facts_of(program: Program) -> SourceFacts:
     try:
         modules = read_modules(program)
         library = _library_in(program, modules)
+        if is_for_other_hub(modules):
+            return SourceFacts(library, unread=f"it is {FOR_SPIKE}", for_other_hub=True)
         if not modules or library is None:
             return SourceFacts(library, unread=missing_module(program, modules))
         # Most programs are the course's, and need no reading of their own.
@@ -140,7 +145,8 @@ def facts_of(program: Program) -> SourceFacts:
         return SourceFacts()
     except RobotError as error:
         why = f"no robot can be what its text says ({error.message})"
-        return SourceFacts(library, unread=f"{why}: it gets the default robot")
+        unread = f"{why}: it gets the default robot"
+        return SourceFacts(library, unread=unread, shown_ports=() if library else None)
     except Exception as error:  # no text ends a run before it begins
         why = f"tuisim failed to read the robot from its text ({type(error).__name__})"
         unread = f"{why}: it gets the default robot"
@@ -183,7 +189,7 @@ def require_library(program: Program, profile: ProfileSpec) -> None:
     for_course = program.prelude != _NO_PRELUDE
     library = Library.EV3DEV2 if for_course else _library_in(program, read_modules(program))
     if library is not None and profile.motor_law.library is not library:
-        raise _misfit(program.name, library, profile)
+        raise _misfit(program, library, profile)
 
 
 def program_settings(
@@ -246,7 +252,7 @@ def decide(
         layer["profile"] = PROFILE_OF[facts.library]
     elif facts.library and not _fits(settings, facts.library):
         if insists and settings.given.get("profile") is not None:
-            raise _misfit(source.program.name, facts.library, _profile(settings["profile"]))
+            raise _misfit(source.program, facts.library, _profile(settings["profile"]))
         layer["profile"] = (
             DEFAULT_PROFILE if for_course or facts.of_course else PROFILE_OF[facts.library]
         )
@@ -306,10 +312,12 @@ def _profile(named: str | ProfileSpec) -> ProfileSpec:
     return named if isinstance(named, ProfileSpec) else load_profile(named)
 
 
-def _misfit(name: str, library: Library, profile: ProfileSpec) -> ProfileError:
+def _misfit(program: Program, library: Library, profile: ProfileSpec) -> ProfileError:
+    if is_for_other_hub(read_modules(program)):
+        return ProfileError(f"it is {FOR_SPIKE}", file=program.name)
     fitting = [known for known, profile in PROFILES.items() if profile.motor_law.library is library]
     return ProfileError(
-        f"{name} uses {library}, and the profile {profile.name} is for {profile.motor_law.library}",
+        f"{program.name} uses {library}, and the profile {profile.name} is for {profile.motor_law.library}",
         f"choose {' or '.join(fitting)}, or none",
         key="profile",
     )
@@ -351,6 +359,9 @@ def _brings_rules(source: ProgramSource, facts: SourceFacts) -> bool:
 
 def _in_words(program: Program, facts: SourceFacts, layer: Mapping[str, Any]) -> tuple[str, str]:
     """Return what the source of a program decided, and how to change it; both empty for nothing."""
+    if facts.for_other_hub:
+        # Nothing of that helps.
+        return "", ""
     rules = f"by the rules of a brick (profile {layer['profile']})" if "profile" in layer else ""
     if facts.robot and "robot" in layer:
         from tuisim.config.program_robot.report import in_words
@@ -364,5 +375,7 @@ def _in_words(program: Program, facts: SourceFacts, layer: Mapping[str, Any]) ->
             else ""
         )
         return "; ".join(filter(None, [*parts, rules])), f"{options} to change it{shown}"
-    said = "; ".join(filter(None, [rules and f"{program.name} runs {rules}", facts.unread]))
-    return (said, "--profile to change it" if rules else "-r to name a robot") if said else ("", "")
+    if rules:
+        runs = f"{program.name} runs {rules}"
+        return "; ".join(filter(None, [runs, facts.unread])), "--profile to change it"
+    return (f"{program.name}: {facts.unread}", "-r to name a robot") if facts.unread else ("", "")

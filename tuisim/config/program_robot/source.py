@@ -17,7 +17,15 @@ from tuisim.core.profile import Library
 from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError
 from tuisim.repository import find_module_folder
-from tuisim.source import LIBRARIES, PYBRICKS, Program, decode_source
+from tuisim.source import (
+    LIBRARIES,
+    OTHER_HUB_DEVICES,
+    OTHER_HUBS,
+    PYBRICKS,
+    SPIKE_MODULES,
+    Program,
+    decode_source,
+)
 
 MAX_MODULES = 100
 MAX_MODULE_BYTES = 1 << 20
@@ -75,7 +83,7 @@ def read_modules(program: Program) -> dict[str, Module]:
 
 def missing_module(program: Program, modules: dict[str, Module]) -> str:
     """Return how to find a module that a program imports and that lies elsewhere in its repository; empty for none."""
-    known = {"", *modules, *LIBRARIES, *sys.stdlib_module_names}
+    known = {"", *modules, *LIBRARIES, *SPIKE_MODULES, *sys.stdlib_module_names}
     named = (name.split(".")[0] for module in modules.values() for name in _imported(module))
     for name in dict.fromkeys(named):
         if name not in known and (folder := find_module_folder(name, own_folder(program))):
@@ -179,6 +187,14 @@ class DataFiles:
 def data_files(program: Program) -> DataFiles:
     """Return the files beside a program."""
     return DataFiles(Path(own_folder(program)))
+
+
+def is_for_other_hub(modules: dict[str, Module]) -> bool:
+    """Return whether a program, or one of its own modules, imports what only hubs other than the EV3 have."""
+    names = {name for module in modules.values() for name in _imported(module)} - {*modules}
+    other = {*SPIKE_MODULES, OTHER_HUB_DEVICES, *(f"pybricks.hubs.{hub}" for hub in OTHER_HUBS)}
+    ours = {"pybricks.hubs.EV3Brick", "pybricks.ev3devices", "ev3dev2", "ev3dev"}
+    return bool(names & other) and not names & ours
 
 
 def library_of(modules: dict[str, Module]) -> Library | None:

@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any, NoReturn
 
 from tuisim.shim.unsupported.modules import SPIKE, Hardware, refused_as, refused_part
+from tuisim.source import OTHER_HUB_DEVICES, OTHER_HUBS
 
 LOGGER = Hardware(
     "the log of a motor",
@@ -40,9 +41,6 @@ NXT_DEVICES: Mapping[str, Hardware] = {
 }
 """Classes of `pybricks.nxtdevices`."""
 
-HUBS = ("CityHub", "EssentialHub", "InventorHub", "MoveHub", "PrimeHub", "TechnicHub", "VirtualHub")
-"""Classes of `pybricks.hubs` for hubs of SPIKE, Technic and others."""
-
 
 class OtherHub:
     """Refuses to import the modules for the motors and sensors of other hubs; the first finder."""
@@ -58,7 +56,7 @@ class OtherHub:
         Raises:
             NotSimulated: it is one; it is an ImportError, too.
         """
-        if fullname == "pybricks.pupdevices":
+        if fullname == OTHER_HUB_DEVICES:
             raise _refusal(fullname)
 
 
@@ -69,7 +67,7 @@ def refused_hub(name: str) -> NoReturn:
         NotSimulated: it is that of another hub; it is an ImportError, too.
         AttributeError: it is none.
     """
-    if name in HUBS:
+    if name in OTHER_HUBS:
         raise _refusal(f"pybricks.hubs.{name}")
     raise AttributeError(f"module 'pybricks.hubs' has no attribute {name!r}")
 

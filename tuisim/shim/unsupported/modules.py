@@ -19,6 +19,7 @@ from tuisim.core.profile import Library
 from tuisim.data_class import dataclass
 from tuisim.errors import NotSimulated
 from tuisim.repository import find_module_folder
+from tuisim.source import FOR_SPIKE, SPIKE_MODULES
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,7 +117,7 @@ ON_THE_BRICK: Mapping[str, Hardware] = {
 _PI = Hardware("the Raspberry Pi", "this is an EV3: use {library}")
 _PI_CAMERA = Hardware("the camera of the Raspberry Pi", CAMERA)
 _BRICKPI = Hardware("the BrickPi", "this is an EV3: use {library}")
-SPIKE = Hardware("the SPIKE hub", "a program for a SPIKE hub; tuisim simulates the EV3")
+SPIKE = Hardware("the SPIKE hub", FOR_SPIKE)
 
 ELSEWHERE: Mapping[str, Hardware] = {
     "RPi": _PI,
@@ -129,8 +130,7 @@ ELSEWHERE: Mapping[str, Hardware] = {
     "brickpi": _BRICKPI,
     "brickpi3": _BRICKPI,
     "microbit": Hardware("the micro:bit", "this is an EV3: use {library}"),
-    **dict.fromkeys(("hub", "motor", "motor_pair", "runloop", "spike"), SPIKE),
-    **dict.fromkeys(("color_sensor", "distance_sensor", "force_sensor"), SPIKE),
+    **dict.fromkeys(SPIKE_MODULES, SPIKE),
     "mindstorms": Hardware("the hub of the Robot Inventor", "this is an EV3: use {library}"),
     "ev3sim": Hardware(
         "the simulator ev3sim", "leave out its import: the rest of the program needs only {library}"
