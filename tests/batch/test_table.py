@@ -40,6 +40,7 @@ def test_there_is_one_row_for_each_run_whatever_the_order() -> None:
         "y_mm",
         "heading_deg",
         "waited_for",
+        "plugged",
         "Colour_last",
         "Colour_count",
         "Colour_mean",

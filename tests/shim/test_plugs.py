@@ -9,9 +9,13 @@ import pytest
 
 from tests.running import Done, over
 from tests.shim.late_programs import LATE_PROGRAMS, LateProgram
+from tuisim.batch.execute import execute
+from tuisim.batch.task import Keep, Task
 from tuisim.config.build import build_run_spec
 from tuisim.config.program_file import find_program, read_program
 from tuisim.config.program_settings import program_settings
+from tuisim.logs.export import export_telemetry
+from tuisim.runs.diff import diff_runs
 from tuisim.runs.frames import telemetry_columns
 from tuisim.runs.handle import RunHandle, RunOptions, in_surroundings
 from tuisim.runs.plugged_words import list_parts
@@ -138,6 +142,10 @@ def late(request: pytest.FixtureRequest) -> LateProgram:
     return LATE_PROGRAMS[request.param]
 
 
+def options(late: LateProgram) -> RunOptions:
+    return RunOptions(time_limit_s=60.0, answers=late.answers)
+
+
 def read_columns(done: Done) -> dict[str, list[float]]:
     """Return everything that telemetry exports."""
     return {name: values.tolist() for name, values in telemetry_columns(done.run.stored()).items()}
@@ -158,6 +166,24 @@ def test_a_late_program_is_the_same_in_every_way_of_running(
     live = run_program(tmp_path, late.text, answers=late.answers, live=True, speed=16.0)
     again = over(rerun(done.run.stored(), RunStore(tmp_path / "again")))
     many = run_program(tmp_path, late.text, answers=late.answers, of_many=True)
+    task = Task(0, done.run.program, done.run.first_spec, options(late), keep=Keep.ALL)
+    row = execute(task, tmp_path)
+    batch = RunStore().load_run(row.run_id)
     assert live.recording == again.recording == many.recording == done.recording
+    assert diff_runs(done.run.stored(), batch).same
+    assert (row.plugged, batch.plugged) == (late.parts, tuple(done.run.plugged))
     assert live.run.plugged == again.run.plugged == many.run.plugged == done.run.plugged
     assert read_columns(live) == read_columns(again) == read_columns(many) == read_columns(done)
+
+
+def test_exports_have_the_columns_of_the_whole_robot(home: Path, tmp_path: Path) -> None:
+    late = LATE_PROGRAMS["late, after driving"]
+    done = run_program(tmp_path, late.text)
+    run, target = done.run.stored(), tmp_path / "ticks.csv"
+    export_telemetry(run, str(target))
+    head, *rows = target.read_text("utf-8").splitlines()
+    duty = head.split(",").index("motor_a_duty_pc")
+    (part,) = run.plugged
+    before = [row.split(",")[duty] for row in rows[: part.tick + 1]]
+    assert {*before} == {"0.0"}
+    assert any(row.split(",")[duty] != "0.0" for row in rows)

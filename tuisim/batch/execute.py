@@ -17,6 +17,7 @@ from tuisim.goals.judgement import Judgement
 from tuisim.protocol import End, Ended
 from tuisim.regular_file import of_the_machine
 from tuisim.runs.handle import RunHandle
+from tuisim.runs.plugged_words import list_parts
 from tuisim.runs.records import OutputRow, Stream
 from tuisim.runs.run_folder import StoredRun, find_diameters
 from tuisim.runs.samples import samples_of
@@ -161,6 +162,7 @@ def _result(task: Task, run: StoredRun, ended: Ended, judgements: tuple[Judgemen
         judgements=judgements,
         output=_beginning(rows),
         waited_for=describe_wait(run),
+        plugged=list_parts(run.plugged),
     )
 
 

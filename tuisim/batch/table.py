@@ -25,7 +25,7 @@ Row = dict[str, Any]
 
 RUN, PROGRAM, POINTS, RUN_ID = "run", "program", "points", "id"
 POSE = ("x_mm", "y_mm", "heading_deg")
-ENDS = ("end", "exit_code", "summary", "error_line", "time_s", *POSE, "waited_for")
+ENDS = ("end", "exit_code", "summary", "error_line", "time_s", *POSE, "waited_for", "plugged")
 """Columns of every run after its parameters, as in `Result`."""
 
 STATISTICS = tuple(VariableStatistics.__dataclass_fields__)

@@ -88,5 +88,7 @@ class Result:
     """The beginning of what it printed on stdout."""
     waited_for: str = ""
     """What it waited for in vain, in words; see `runs.waited`."""
+    plugged: str = ""
+    """The parts that were plugged in, in words; see `runs.plugged_words`."""
     run_id: str = ""
     """Its id in the store; empty if it was not kept."""
