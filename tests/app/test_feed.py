@@ -75,6 +75,7 @@ def test_a_chart_gets_telemetry_as_often_as_it_is_drawn(
     telemetry: Any = SimpleNamespace(
         is_far_behind=False,
         recording=SimpleNamespace(spec=None),
+        begin_again=lambda: False,
         chart_series=lambda _: {"gyro_deg": ([0.0], [1.0])},
     )
     runs: Any = SimpleNamespace(

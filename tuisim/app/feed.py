@@ -55,6 +55,8 @@ class Feed:
     """Reading positions in one run's telemetry."""
 
     recording: Recording
+    _parts: int = field(default=0, init=False)
+    """How many plugged in parts the charted columns know."""
     _charted: int = field(default=0, init=False)
     _traced: int = field(default=0, init=False)
     _lifted: bool = field(default=False, init=False)
@@ -71,6 +73,13 @@ class Feed:
     def is_far_behind(self) -> bool:
         """Whether more than one call of `chart_series` is due."""
         return self._charted + POINTS_A_FEED < self.recording.telemetry.count
+
+    def begin_again(self) -> bool:
+        """Chart the run anew if a part was plugged in, which brings columns; return whether that is so."""
+        if self._parts == len(self.recording.plugged):
+            return False
+        self._parts, self._charted = len(self.recording.plugged), 0
+        return True
 
     def chart_series(self, mat: Field) -> Series:
         """Return telemetry traces of the ticks since the last call; of a long stretch, only the first part."""
@@ -237,6 +246,10 @@ class PanelFeed:
         """Pass on the telemetry since the last call; keep trace and output at the instant in view."""
         self._chart_rows()
         if self._feed is not None:
+            if self._feed.begin_again() and self._panel_area.chart:
+                self._panel_area.chart.clear()
+                self._uncharted = [*self._feed.recording.rows.rows(0)]
+                self._chart_rows()
             if world := self._panel_area.world:
                 xs, ys = self._feed.trace_points()
                 if xs:

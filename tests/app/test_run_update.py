@@ -1,0 +1,48 @@
+"""The app with a part that is plugged in while a program runs: a line of the output, columns, and the robot in view."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from tests.app.app_help import ready, screen_text, settings, until
+from tests.shim.late_programs import LATE_PROGRAMS
+from tuisim.app.app import LabApp
+from tuisim.config.build import build_run_spec
+from tuisim.config.program_file import parse_program
+from tuisim.config.program_settings import program_settings
+from tuisim.core.sensors import column_names
+
+
+def begin(text: str) -> LabApp:
+    """Return the app with a program as `tuisim open` reads it."""
+    source = parse_program(text, "late.py")
+    found = program_settings(source)
+    begun = settings(text, speed=16.0)
+    return LabApp(
+        replace(
+            begun,
+            program=source.program,
+            spec=build_run_spec(found.settings),
+            settings=found.settings,
+            decided=found.decided,
+        )
+    )
+
+
+async def test_a_part_that_is_plugged_in_is_named_and_seen() -> None:
+    app = begin(LATE_PROGRAMS["late, after driving"].text)
+    async with app.run_test(size=(160, 50)) as pilot:
+        await ready(pilot)
+        await pilot.press("R")
+        runs = app.run_controller
+        await until(pilot, lambda: runs.run is not None and runs.run.ended is not None)
+        await until(pilot, lambda: "medium motor on outA (line 7)" in screen_text(app))
+        recording = runs.timeline.recording
+        assert recording is not None
+        assert [motor.port for motor in recording.spec.robot.extra_motors] == ["outA"]
+        assert recording.first_spec.robot.extra_motors == ()
+        assert "motor_a_duty_pc" in column_names(recording.spec)
+        # In a past instant, the whole robot is in view.
+        runs.timeline.go(recording.newest - 1)
+        await pilot.pause()
+        assert runs.spec.robot == recording.spec.robot
