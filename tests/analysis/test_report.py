@@ -92,7 +92,11 @@ def driven(tmp_path_factory: pytest.TempPathFactory) -> Driven:
     with redirect_stdout(io.StringIO()):
         assert run_command(["run", str(program)]) == 0
         run = RunStore().load_run("last")
-        write_notes(run.folder / NOTES_FILE, [Note("the <i>first</i> white", 0.5, 1.25, "Colour")])
+        notes = [
+            Note("the <i>first</i> white", 0.5, 1.25, "Colour"),
+            Note("at once", 2.0, 2.0, "Colour"),
+        ]
+        write_notes(run.folder / NOTES_FILE, notes)
         assert run_command(["log", "report", run.id, "--out", str(target)]) == 0
     return Driven(run, page_of(target))
 
@@ -116,7 +120,10 @@ def test_a_run_is_told_whole(driven: Driven) -> None:
         for text in driven.page.section["Bands"]
     )
     assert driven.page.section["Statistics"].count("Colour") == 1
-    assert driven.page.section["Notes"][-3:] == ["0.50 to 1.25", "Colour", "the <i>first</i> white"]
+    assert driven.page.section["Notes"][-6:] == [
+        *("0.50 to 1.25", "Colour", "the <i>first</i> white"),
+        *("2.00", "Colour", "at once"),
+    ]
     assert {"Colour", "Way_mm (mm)", "time (s)", "86.27"} <= set(driven.page.section["Chart"])
 
 

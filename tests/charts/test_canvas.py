@@ -44,6 +44,12 @@ def test_of_neighbours_at_one_dot_the_first_is_kept() -> None:
     assert [one.tolist() for one in found] == [[0.0, 10.0], [0.0, 10.0]]
 
 
+def test_a_dot_is_as_high_as_a_quarter_of_a_row() -> None:
+    ys = np.linspace(0.0, 10.0, 1001)
+    _, found = seen_points(np.zeros(1001), ys, ((0.0, 10.0), (0.0, 10.0)), 10, 5)
+    assert len(found) == 20
+
+
 def test_a_path_to_and_fro_gives_each_dot_once() -> None:
     xs = np.tile([0.0, 10.0], 50)
     found, _ = seen_points(xs, np.zeros(100), ((0.0, 10.0), (-1.0, 1.0)), 4, 4)

@@ -183,14 +183,14 @@ def test_only_data_have_colours_for_any_ground(view: View) -> None:
 
 
 def test_a_path_on_the_field_has_equal_scales() -> None:
-    path = Line("y_mm", np.array([0.0, 1000.0]), np.array([100.0, 400.0]), 0)
-    chart = ChartData("", (path,), (0.0, 1000.0), "x_mm (mm)", path=True)
-    for width, height in ((960, 420), (400, 900)):
+    path = Line("y_mm", np.array([200.0, 1200.0]), np.array([100.0, 400.0]), 0)
+    chart = ChartData("", (path,), (200.0, 1200.0), "x_mm (mm)", path=True)
+    for width, height in ((960, 420), (400, 900), (2000, 300)):
         (frame,) = laid_out(chart, width, height).plots
         mm_per_px = (frame.x[1] - frame.x[0]) / (frame.right - frame.left)
         assert mm_per_px == pytest.approx((frame.y[1] - frame.y[0]) / (frame.bottom - frame.top))
-        assert [sum(frame.x), sum(frame.y)] == pytest.approx([1000, 500])
-        assert frame.x == pytest.approx((0, 1000)) or frame.y == pytest.approx((100, 400), abs=20)
+        assert [sum(frame.x), sum(frame.y)] == pytest.approx([1400, 500])
+        assert frame.x == pytest.approx((200, 1200)) or frame.y == pytest.approx((100, 400), abs=20)
 
 
 def two_facets() -> Drawing:

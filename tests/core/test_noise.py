@@ -125,6 +125,19 @@ def test_pixels_have_the_mean_that_is_read(kind: str) -> None:
         )
 
 
+def test_each_number_moves_its_own_channel_upwards() -> None:
+    disc, level = DISCS["grey, never clamped"]
+    sums = sum(disc[0::3]), sum(disc[1::3]), sum(disc[2::3])
+    still = noisy_sums(lambda: disc, COUNT, sums, level, (0.0, 0.0, 0.0))
+    for channel in range(3):
+        numbers = [0.0, 0.0, 0.0]
+        numbers[channel] = 1.0
+        moved = noisy_sums(lambda: disc, COUNT, sums, level, (*numbers,))
+        assert [new > old for new, old in zip(moved, still, strict=True)] == [
+            number > 0 for number in numbers
+        ]
+
+
 @pytest.mark.parametrize("other", [(2, 5, "left"), (1, 6, "left"), (1, 5, "right")])
 def test_noise_depends_on_seed_tick_and_sensor(other: tuple[int, int, str]) -> None:
     read: Callable[..., tuple[float, ...]] = reading_noise

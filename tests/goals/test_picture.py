@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 from PIL import Image, ImageDraw
 
 from tests.cases import cases
 from tests.goals.recorded import Run, Step, ahead, drive, goals_of, turn, wait, world
+from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
 from tuisim.goals.judge import judge
+from tuisim.goals.picture import cell_mm, compare
 from tuisim.runs.store import RunStore
 
 BANDS = world(100, 500, background="Grey_bands")
@@ -106,3 +109,17 @@ def test_draw(
     (found,) = judge([goal], run.end())
     assert found.state == state, found
     assert reason in found.reason
+
+
+def test_a_drawing_is_compared_up_to_the_edges_of_the_field() -> None:
+    within_mm = 16.0
+    side_mm = cell_mm(within_mm)
+    cols, rows = int(FIELD_WIDTH_MM // side_mm), int(FIELD_HEIGHT_MM // side_mm)
+    corners = np.array([[0, 0], [cols - 1, 0], [0, rows - 1], [cols - 1, rows - 1]])
+    numbers = corners[:, 1] * cols + corners[:, 0]
+    points = (corners + 0.5) * side_mm
+    for shift_mm, is_near in ((0, True), (10, True), (18, False)):
+        for direction in (-1, 1):
+            moved = points + np.array([direction * shift_mm, 0.0])
+            drawn, near = compare(numbers, moved, within_mm)
+            assert (drawn.tolist(), near.tolist()) == ([is_near] * 4, [is_near] * 4)

@@ -27,6 +27,11 @@ def text(value: Any, indent: int | None = None) -> bytes:
 CASES: dict[str, Case] = {
     "columns": ("a.json", text(COLUMNS), TWO),
     "columns under another name": ("a.txt", text(COLUMNS), TWO),
+    "a text that is missing": (
+        "a.jsonl",
+        b'{"time": 0, "red": 1, "who": "a"}\n{"time": 1, "red": 2}\n',
+        Read(2, check=lambda log: log.table["who"].to_pylist() == ["a", None]),
+    ),
     "columns in a file of rows": ("a.jsonl", text(COLUMNS) + b"\n", TWO),
     "columns on many lines": ("a.json", text(COLUMNS, 2), TWO),
     "rows on many lines": ("a.json", text(ROWS, 4), TWO),

@@ -60,6 +60,13 @@ def test_rows_are_found_by_tick(tmp_path: Path) -> None:
     assert index.ticks_of_line(3) == [0, 5, 5, 7, 9]
 
 
+def test_the_line_that_printed_a_sample_is_found_in_its_tick(tmp_path: Path) -> None:
+    samples = [(2, Stream.STDOUT, "A: 1"), (5, Stream.STDOUT, "B: 1")]
+    index = index_of(tmp_path, samples)
+    assert [index.line_of("A", tick) for tick in (1, 2, 3, 5)] == [0, 3, 0, 0]
+    assert index.line_of("B", 5) == 3
+
+
 def test_new_levels_and_errors_stand_out_once(tmp_path: Path) -> None:
     values = [100, 100, 99, 50, 50, 51, 100]
     rows = [(10 * at, Stream.STDOUT, f"Colour: {value}") for at, value in enumerate(values)]

@@ -346,8 +346,8 @@ def test_a_recording_that_is_lost_without_a_trace_is_told(
 def test_ticks_that_are_lost_without_a_trace_are_told(logged: StoredRun, store: RunStore) -> None:
     file = logged.folder / TELEMETRY_FILE
     whole = file.read_bytes()
-    file.write_bytes(header(TELEMETRY_MAGIC, TICK_RECORD.size, 5) + whole[HEADER_BYTES:])
-    assert store.load_run(logged.id).notes == (f"{TELEMETRY_FILE} has 5 of 18 records",)
+    file.write_bytes(header(TELEMETRY_MAGIC, TICK_RECORD.size, 17) + whole[HEADER_BYTES:])
+    assert store.load_run(logged.id).notes == (f"{TELEMETRY_FILE} has 17 of 18 records",)
 
 
 def test_a_stream_of_another_version_is_read_as_unknown(tmp_path: Path) -> None:

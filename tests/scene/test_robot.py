@@ -109,6 +109,18 @@ def test_a_robot_is_filled_and_has_all_its_parts(robot: str) -> None:
             assert np.abs(np.subtract(found, color)).max() < 60, (color, place)
 
 
+def test_an_eye_is_drawn_at_its_side_only() -> None:
+    spec = spec_of()
+    robot = replace(spec.robot, color_sensors=spec.robot.color_sensors[:1])
+    ((x_mm, y_mm, _),) = outline_of(robot).color_sensors_mm
+    picture = world_picture(replace(spec, robot=robot), WHITE, MIDDLE)
+    drawn = [pixel(picture, robot, world_point(MIDDLE, side, y_mm)) for side in (x_mm, -x_mm)]
+    assert [bool(np.abs(np.subtract(color, COLORED.sensor)).max() < 60) for color in drawn] == [
+        True,
+        False,
+    ]
+
+
 def test_a_robot_without_wheels_is_drawn_without_them() -> None:
     spec = spec_of()
     standing = replace(spec, robot=replace(spec.robot, left_port=NO_PORT, right_port=NO_PORT))
