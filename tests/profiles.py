@@ -16,4 +16,5 @@ EXACT = replace(
     gyro_read_ns=10 * MS,
     attribute_read_ns=1 * MS,
     attribute_write_ns=0,
+    cached_read_ns=0,
 )

@@ -115,7 +115,7 @@ OWN: Mapping[str, Case] = {
     "sensor_by_mode": Case("4 infrared", "lego-ev3-ir 100"),
     "star_import": Case("2 touch, A left wheel, B right wheel, C medium motor", "360 0"),
     "swapped_tank": Case("B right wheel, C left wheel", "ev3-ports:outC"),
-    "tank_a_d": Case("A left wheel, B -, C -, D right wheel", "ev3-ports:outA 366"),
+    "tank_a_d": Case("A left wheel, B -, C -, D right wheel", "ev3-ports:outA 365"),
     "tank_subclass": Case("A medium motor", "125"),
     "text_ports": Case(
         "1 infrared, 2 gyro, 4 left, A left wheel, B right wheel, C -, D medium motor", "far True"
@@ -147,7 +147,7 @@ BLIND: Mapping[str, Case] = {
         {},
         "--world programs/beacon.toml --timeout 10",
         3,
-        (1713, 834),
+        (1713, 835),
     ),
     "color_sorter": Case(
         "1 touch, A medium motor, D large motor",
@@ -172,10 +172,10 @@ BLIND: Mapping[str, Case] = {
         {"wheel_diameter_mm": 81.6},
         f"{BANDS} --press enter@5-5.2 --press backspace@20-20.5",
         0,
-        (284, 800),
+        (284, 796),
     ),
     "floor_scan/scan": Case(
-        "2 gyro, 4 left", "row 3: 238 samples", {"wheel_spacing_mm": 118.0}, "", 0, (1178, 379)
+        "2 gyro, 4 left", "row 3: 236 samples", {"wheel_spacing_mm": 118.0}, "", 0, (1179, 381)
     ),
     "gyro_square": Case(
         "2 gyro, 4 left, A left wheel, B -, C -, D right wheel",
@@ -183,7 +183,7 @@ BLIND: Mapping[str, Case] = {
         {},
         "-x 1181 -y 200 -a 90",
         0,
-        (1127, 154),
+        (1126, 155),
     ),
     # The head turns, but the ultrasonic sensor on it looks ahead.
     "laberinto": Case(
@@ -200,7 +200,7 @@ BLIND: Mapping[str, Case] = {
         {},
         f"{LINE} --timeout 7",
         3,
-        (165, 1043),
+        (162, 1039),
     ),
     "mini_medium": Case(
         "1 infrared, B left wheel (medium motor), C right wheel (medium motor)",
@@ -208,10 +208,10 @@ BLIND: Mapping[str, Case] = {
         {"wheel_diameter_mm": 30.0, "wheel_spacing_mm": 88.0, **REVERSED},
         "--press enter@20-21",
         0,
-        (1117, 596),
+        (1119, 595),
     ),
     "motorlevel": Case(
-        "1 touch", "parked 735 3214", REVERSED, "-b Grey_bands --profile ev3", 0, (1364, 128)
+        "1 touch", "parked 735 3214", REVERSED, "-b Grey_bands --profile ev3", 0, (1364, 129)
     ),
     "odometry_tour": Case(
         "",
@@ -219,7 +219,7 @@ BLIND: Mapping[str, Case] = {
         {"wheel_diameter_mm": 81.6, "wheel_spacing_mm": 136.0},
         "-x 1181 -y 900",
         0,
-        (1554, 343),
+        (1566, 339),
     ),
     "plotter/plotter": Case(
         "A medium motor, B large motor, C large motor",
@@ -229,7 +229,7 @@ BLIND: Mapping[str, Case] = {
         0,
         MIDDLE,
     ),
-    "police_patrol": Case("1 gyro, 4 ultrasonic", "", {}, "--timeout 20", 3, (2061, 378)),
+    "police_patrol": Case("1 gyro, 4 ultrasonic", "", {}, "--timeout 20", 3, (2055, 383)),
     "puppy": Case(
         "1 touch, 2 ultrasonic, 4 left, A large motor, B -, C medium motor, D large motor",
         "",
@@ -263,7 +263,7 @@ BLIND: Mapping[str, Case] = {
         {},
         "-b Loop -x 315 -y 500 -a 90 --profile ev3 --press enter@1 --press enter@6-6.3",
         0,
-        (376, 924),
+        (372, 924),
     ),
     "staubsauger": Case(
         "1 touch, 2 touch_right, A left wheel, B right wheel, C medium motor",
@@ -271,21 +271,21 @@ BLIND: Mapping[str, Case] = {
         REVERSED,
         "--timeout 30",
         3,
-        (198, 914),
+        (208, 926),
     ),
-    "suiveur3": Case("1 left, 2 middle", "", {}, f"{LINE} --timeout 7", 3, (151, 899)),
+    "suiveur3": Case("1 left, 2 middle", "", {}, f"{LINE} --timeout 7", 3, (134, 912)),
     "sumo": Case(
         "1 touch, 4 infrared, A left wheel, B -, C medium motor, D right wheel",
         "",
         {},
         "--press enter@1 --press backspace@15-16",
         0,
-        (563, 1017),
+        (564, 1018),
     ),
     "track3r_remote": Case(
         "1 infrared, A medium motor", "", {}, "--world programs/beacon.toml", 0, (1485, 570)
     ),
-    "wallfollow": Case("1 touch, 2 ultrasonic", "", {}, "", 0, (1931, 180)),
+    "wallfollow": Case("1 touch, 2 ultrasonic", "", {}, "", 0, (1938, 178)),
     "wro_regular/main": Case(
         "1 left, 2 right, 3 middle, A medium motor, D medium motor",
         "",
@@ -297,7 +297,7 @@ BLIND: Mapping[str, Case] = {
         },
         BANDS,
         0,
-        (1168, 814),
+        (1167, 815),
     ),
 }
 CASES = {**OWN, **{f"blind/{name}": case for name, case in BLIND.items()}}

@@ -253,6 +253,12 @@ class ProfileSpec(Spec):
         source="measured on a brick (ev3dev-lang-python, issue 732): 1.1 ms; the course, the old simulator: nothing",
     )
     """Any write of a device attribute."""
+    cached_read_ns: int = _cost(
+        default=0,
+        later=True,
+        source="measured on a brick (ev3dev-lang-python, issue 732): 0.14 ms; the course, the old simulator: nothing",
+    )
+    """An attribute that the library has read before and remembers, such as `max_speed`."""
 
 
 ROBOLAB = ProfileSpec(
@@ -283,6 +289,7 @@ EV3 = ProfileSpec(
     gyro_read_ns=1_200_000,
     attribute_read_ns=1_200_000,
     attribute_write_ns=1_100_000,
+    cached_read_ns=140_000,
     motor_law=MotorLaw.EV3DEV,
     reflected_max=100,
     ambient_percent=10,
@@ -311,6 +318,7 @@ LEGO_MICROPYTHON = replace(
     gyro_read_ns=350_000,
     attribute_read_ns=350_000,
     attribute_write_ns=0,
+    cached_read_ns=0,
     display_update_ns=1 * MS,
     motor_law=MotorLaw.PYBRICKS,
     max_speed_dps=930.0,

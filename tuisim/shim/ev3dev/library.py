@@ -82,6 +82,7 @@ def connect(brick: DeviceFiles, plugs: Plugs, hint: Callable[[str], str]) -> Non
     plugs.missing = ev3dev2.DeviceNotFound
     ev3dev2.list_device_names = _in_place_of(ev3dev2.list_device_names, _device_lister(brick))
     _patch_device(ev3dev2.Device, brick)
+    _charge_memory(ev3dev2.Device, brick)
     _patch_look_up(ev3dev2, plugs, hint)
 
 
@@ -182,6 +183,23 @@ def _patch_device(device_class: Any, brick: DeviceFiles) -> None:
     ):
         for name in names:
             setattr(device_class, name, _in_place_of(getattr(device_class, name), replacement))
+
+
+def _charge_memory(device_class: Any, brick: DeviceFiles) -> None:
+    """Let what the library remembers of a device cost the time of its own code."""
+    devices = brick.by_path
+
+    def charged(get: Callable[..., Any]) -> Callable[..., Any]:
+        def get_cached(self: Any, attribute: Any, name: str) -> Any:
+            if name in self._attr_cache:
+                session = devices[self._path].session
+                session.charge(session.sim.spec.profile.cached_read_ns)
+            return get(self, attribute, name)
+
+        return _in_place_of(get, get_cached)
+
+    for name in ("get_cached_attr_int", "get_cached_attr_string", "get_cached_attr_set"):
+        setattr(device_class, name, charged(getattr(device_class, name)))
 
 
 def _set_directly(motor_class: Any, brick: DeviceFiles) -> None:
