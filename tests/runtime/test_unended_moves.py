@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from tests.cases import cases
-from tests.running import Run
+from tests.running import Run, Start, over, until_tick
 
 _EV3DEV2 = (
     "from ev3dev2.motor import LargeMotor, MoveTank\n"
@@ -84,3 +84,25 @@ def test_a_threads_work_ends_with_the_program(run: Run) -> None:
         profile="ev3",
     )
     assert (done.lines, done.ended.time_ns > 1.9e9) == ([], True)
+
+
+def test_a_live_run_ends_as_one_in_the_background(run: Run) -> None:
+    text = _EV3DEV2 + "left.on_for_degrees(30, 200, block=False); right.on(10)"
+    live = run(text, profile="ev3", live=True, speed=0.0)
+    background = run(text, profile="ev3")
+    assert live.ended.summary == "ended while outC was still told to turn"
+    assert (live.ended.time_ns, live.ended.summary, live.recording) == (
+        background.ended.time_ns,
+        background.ended.summary,
+        background.recording,
+    )
+
+
+def test_the_user_stops_a_move_that_goes_on(start: Start) -> None:
+    handle = start(
+        _EV3DEV2 + "left.run_timed(speed_sp=100, time_sp=100_000)", profile="ev3", live=True
+    )
+    until_tick(handle, 20)
+    handle.stop()
+    done = over(handle)
+    assert (done.ended.end, done.ended.time_ns < 100e9) == ("stopped", True)
