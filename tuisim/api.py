@@ -16,6 +16,7 @@ from tuisim.core.spec import RunSpec
 from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError, nearest
 from tuisim.runs.handle import DEFAULT_TIME_LIMIT_S, RunOptions, start_run
+from tuisim.runs.plugged_words import describe_plugged
 from tuisim.runs.records import Stream
 from tuisim.runs.run_folder import StoredRun
 from tuisim.runs.run_options import press_actions
@@ -179,7 +180,8 @@ def simulate(
         handle.wait()
     finally:
         handle.close()
-    return SimulatedRun(handle.stored(), found.decided.note)
+    run = handle.stored()
+    return SimulatedRun(run, "; ".join(filter(None, (found.decided.note, describe_plugged(run)))))
 
 
 def experiment(

@@ -7,6 +7,7 @@ from typing import Any
 
 import pytest
 
+import tuisim
 from tests.running import Done, over
 from tests.shim.late_programs import LATE_PROGRAMS, LateProgram
 from tuisim.batch.execute import execute
@@ -187,3 +188,20 @@ def test_exports_have_the_columns_of_the_whole_robot(home: Path, tmp_path: Path)
     before = [row.split(",")[duty] for row in rows[: part.tick + 1]]
     assert {*before} == {"0.0"}
     assert any(row.split(",")[duty] != "0.0" for row in rows)
+
+
+def test_simulate_names_the_parts(home: Path) -> None:
+    late = LATE_PROGRAMS["by getattr"]
+    assert f"plugged in {late.parts}" in tuisim.simulate(late.text).note
+
+
+def test_a_batch_that_varies_the_robot_names_it(home: Path, tmp_path: Path) -> None:
+    late = LATE_PROGRAMS["by getattr"]
+    path = tmp_path / "late.py"
+    path.write_text(late.text, "utf-8")
+    named, free = (
+        tuisim.experiment(path, seeds=[0], parameters=parameters).loc[0]
+        for parameters in ({"robot": ["Default_Robot"]}, None)
+    )
+    assert (named["end"], named["plugged"]) == ("raised", "")
+    assert (free["end"], free["plugged"]) == ("finished", late.parts)

@@ -152,6 +152,9 @@ class Plan:
         program = subject.program
         if "arguments" in values:
             program = replace(program, arguments=self._settings(subject, values)["arguments"])
+        if any(name.partition(".")[0] == "robot" for name in values):
+            # It is a named one.
+            program = replace(program, shown_ports=None)
         return Task(
             index,
             program,

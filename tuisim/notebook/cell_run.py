@@ -25,6 +25,7 @@ from tuisim.notebook.image_log import SENT_DATA, ArrayReader, ImageLog, asked_si
 from tuisim.notebook.old_formats import sent_text
 from tuisim.protocol import Answer, Reply, Wheels
 from tuisim.runs.handle import RunHandle, RunOptions, start_run
+from tuisim.runs.plugged_words import list_parts
 from tuisim.runs.records import OutputRow, Stream
 from tuisim.runs.run_folder import StoredRun
 from tuisim.runs.samples import Sample, samples_of
@@ -156,7 +157,8 @@ def end_text(run: StoredRun, *, hurry: bool = False) -> str:
     In a hurry, the number of samples is omitted if counting them would be slow.
     """
     what = f": {run.end.summary}" if run.end and run.end.summary not in ("", run.state) else ""
-    status = f"{run.state}{what} · {run.time_s:.3f} s"
+    plugged = f" · plugged in {parts}" if (parts := list_parts(run.plugged)) else ""
+    status = f"{run.state}{what} · {run.time_s:.3f} s{plugged}"
     if hurry and run.output.length > BYTES_IN_A_HURRY:
         return status
     samples = len(samples_of(run.output.rows()))
