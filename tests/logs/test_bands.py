@@ -135,15 +135,6 @@ def test_values_near_the_largest_number_do_no_harm() -> None:
     plateaus(np.tile([1e308, -1e308], 20))
 
 
-@pytest.mark.parametrize("samples", [2, 3])
-def test_short_levels_with_noise(samples: int) -> None:
-    levels = np.repeat([100.0, 80.0, 60.0, 20.0, 70.0, 0.0] * 2, samples)
-    found = plateaus(levels + np.random.default_rng(5).normal(0.0, 0.2, len(levels)))
-    assert [(plateau.start, plateau.stop) for plateau in found] == [
-        (at, at + samples) for at in range(0, len(levels), samples)
-    ]
-
-
 def test_level_of_equal_samples_is_exact() -> None:
     grey = 86.27450980392157
     assert [

@@ -3,17 +3,11 @@
 from __future__ import annotations
 
 import json
-from io import StringIO
 from pathlib import Path
 from typing import Any
 
-import pandas as pd
-import pytest
-from numpy.testing import assert_array_equal
-
 from tests.cases import cases
 from tests.logs.log_cases import Case, Read, check_input, times, values
-from tuisim.logs.reader import open_log
 
 ROWS = [{"time": 0, "red": 1}, {"time": 0.5, "red": 2}]
 COLUMNS = {"time": [0, 0.5], "red": [1, 2]}
@@ -121,19 +115,3 @@ CASES: dict[str, Case] = {
 @cases("name, content, expected", CASES)
 def test_input(tmp_path: Path, name: str, content: bytes, expected: Read | str) -> None:
     check_input(tmp_path / name, content, expected)
-
-
-@pytest.mark.parametrize("orient", ["records", "columns", "split", "list"])
-def test_as_pandas_reads_the_same(tmp_path: Path, orient: Any) -> None:
-    frame = pd.DataFrame({"time": [0.0, 0.25, 0.5], "red": [98.5, 12.0, 0.125], "blue": [1, 2, 3]})
-    written = (
-        text(frame.to_dict("list"), 2)
-        if orient == "list"
-        else frame.to_json(orient=orient, indent=2).encode()
-    )
-    read = pd.read_json(
-        StringIO(written.decode()), orient="columns" if orient == "list" else orient
-    )
-    (tmp_path / "a.json").write_bytes(written)
-    log = open_log(tmp_path / "a.json")
-    assert_array_equal(log.table.select(["time", "red", "blue"]).to_pandas(), read)

@@ -4,13 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import numpy as np
-import pandas as pd
-from numpy.testing import assert_allclose
-
 from tests.cases import cases
 from tests.logs.log_cases import Case, Read, check_input, times, values
-from tuisim.logs.reader import open_log
 
 VALUE = "column 2"
 
@@ -165,20 +160,3 @@ CASES: dict[str, Case] = {
 @cases("name, content, expected", CASES)
 def test_input(tmp_path: Path, name: str, content: bytes, expected: Read | str) -> None:
     check_input(tmp_path / name, content, expected)
-
-
-def test_as_pandas_reads_the_same(tmp_path: Path) -> None:
-    moments = pd.date_range("2023-04-07 23:59:30", periods=90, freq="s")
-    levels = np.arange(90) % 7 * 14.5
-    path = tmp_path / "a.txt"
-    path.write_text(
-        "".join(
-            f"[{at:%d-%m-%Y / %H:%M:%S}] : {level}\n"
-            for at, level in zip(moments, levels, strict=True)
-        )
-    )
-    frame = pd.read_csv(path, sep=r" : ", engine="python", header=None, names=["time", "value"])
-    seconds = pd.to_datetime(frame["time"], format="[%d-%m-%Y / %H:%M:%S]")
-    series = open_log(path).series(VALUE)
-    assert_allclose(series.time_s, (seconds - seconds[0]).dt.total_seconds())
-    assert_allclose(series.values, frame["value"])

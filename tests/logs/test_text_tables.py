@@ -6,8 +6,6 @@ import os
 import threading
 from pathlib import Path
 
-import pandas as pd
-
 from tests.cases import cases
 from tests.logs.log_cases import Case, Read, check_input, times, values
 from tuisim.logs.reader import open_log
@@ -69,15 +67,6 @@ CASES: dict[str, Case] = {
 @cases("name, content, expected", CASES)
 def test_input(tmp_path: Path, name: str, content: bytes, expected: Read | str) -> None:
     check_input(tmp_path / name, content, expected)
-
-
-def test_as_pandas_reads_the_same(tmp_path: Path) -> None:
-    path = tmp_path / "a.csv"
-    path.write_text(", ".join(str(at * 0.3) for at in range(500)))
-    assert values(open_log(path), BOTH[0]) == pd.read_csv(path, header=None).T[0].tolist()
-    path.write_text("0.1,17.25")
-    cells = pd.read_csv(path, header=None).iloc[0]
-    assert [values(open_log(path), name) for name in BOTH] == [[cell] for cell in cells]
 
 
 def test_a_second_line_that_comes_later(tmp_path: Path) -> None:
