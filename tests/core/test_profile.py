@@ -145,7 +145,7 @@ ON_THE_BRICK = {
     "angle": ("gyro.angle", 0.0012),
     "position": ("tank_drive.left_motor.position", 0.0012),
     "set point": ("tank_drive.left_motor.speed_sp = 100", 0.0011),
-    "start of a move": ("tank_drive.left_motor.on(50)", 0.0033),
+    "start of a move": ("tank_drive.left_motor.on(50)", 0.00344),
 }
 
 

@@ -30,10 +30,14 @@ print(ColorSensor('in2').reflected_light_intensity)
 """
 SWITCH = """
 import time
+from ev3dev2.motor import MoveTank, OUTPUT_B, OUTPUT_C
 from ev3dev2.sensor.lego import ColorSensor
 eye = ColorSensor('in2')
-old, before = eye.value(0), time.time()
+old = eye.value(0)
 eye.mode = 'RGB-RAW'
+MoveTank(OUTPUT_B, OUTPUT_C).on_for_degrees(20, 20, 360)
+before = time.time()
+eye.mode = 'COL-REFLECT'
 while eye.value(0) == old:
     last = time.time()
 print(f"old until {1000 * (last - before):.0f} ms, new from {1000 * (time.time() - before):.0f} ms on")

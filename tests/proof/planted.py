@@ -138,8 +138,8 @@ PLANTED: tuple[Planted, ...] = (
     Planted(
         "run.json is taken from the run folder, not from what was started",
         "runs/store.py",
-        "run.folder, {**run.data, ",
-        "run.folder, {**read_run_file(run.folder), ",
+        '{**run.data, "tags": _tags_in(run.folder), "end"',
+        '{**read_run_file(run.folder), "tags": _tags_in(run.folder), "end"',
         "enemies",
         ("notebook:forged:0",),
         "is not what was started",

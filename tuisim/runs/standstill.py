@@ -26,6 +26,9 @@ if TYPE_CHECKING:
 _CONTACT_MM = 0.01
 """A robot that is closer than this touches; collisions end within a small part of it."""
 
+_STILL = 1e-3
+"""A robot that moves less, in mm or degrees, stands: wheels that push anew press it on by parts of that."""
+
 WALL = "the wall"
 _WALLS = 4
 """`Solids.gaps_mm` begins with the walls."""
@@ -172,11 +175,11 @@ def _pose(records: NDArray[Any], tick: int) -> PoseTuple:
 
 
 def _moves_on(records: NDArray[Any], start: int, end: int) -> int | None:
-    """Return the first tick after `start`, up to `end`, with another pose; None if the robot stays where it is."""
+    """Return the first tick after `start`, up to `end`, at which the robot is elsewhere; None without one."""
     import numpy as np
 
     moved = np.zeros(max(0, end - start), np.bool_)
     for name in _POSE:
-        moved |= records[name][start + 1 : end + 1] != records[name][start]
+        moved |= np.abs(records[name][start + 1 : end + 1] - records[name][start]) > _STILL
     ticks = np.flatnonzero(moved)
     return start + 1 + int(ticks[0]) if len(ticks) else None

@@ -40,7 +40,7 @@ the greater part of a thin line leaves in one of two dots."""
 _SYMBOLS = {"backspace": "⌫", "up": "▲", "left": "◀", "enter": "●", "right": "▶", "down": "▼"}
 """In the order of the single-row layout."""
 
-_BUMPER = "⊓"
+_BUMPER = "□"
 
 _PAD_ROWS, _PAD_COLUMNS = 3, 23
 _PLACES = {
