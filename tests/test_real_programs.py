@@ -139,7 +139,7 @@ OWN: Mapping[str, Case] = {
 }
 REVERSED = {"left_reversed": True, "right_reversed": True}
 MIDDLE = (1181, 572)
-LINE, BANDS = "-b Line_Following_Test --profile ev3", "-b Coloured_bands --profile ev3"
+LINE, BANDS = "-b Line_Following_Test", "-b Coloured_bands"
 BLIND: Mapping[str, Case] = {
     "baken_volger": Case(
         "4 infrared, A medium motor, B right wheel, C left wheel",
@@ -210,9 +210,7 @@ BLIND: Mapping[str, Case] = {
         0,
         (1119, 595),
     ),
-    "motorlevel": Case(
-        "1 touch", "parked 735 3214", REVERSED, "-b Grey_bands --profile ev3", 0, (1364, 129)
-    ),
+    "motorlevel": Case("1 touch", "parked 735 3214", REVERSED, "-b Grey_bands", 0, (1364, 129)),
     "odometry_tour": Case(
         "",
         "58 points saved",
@@ -261,7 +259,7 @@ BLIND: Mapping[str, Case] = {
         "A left wheel, B right wheel, C -",
         "Press a button",
         {},
-        "-b Loop -x 315 -y 500 -a 90 --profile ev3 --press enter@1 --press enter@6-6.3",
+        "-b Loop -x 315 -y 500 -a 90 --press enter@1 --press enter@6-6.3",
         0,
         (372, 924),
     ),

@@ -16,6 +16,7 @@ from tuisim.api import choices_of
 from tuisim.app.setup import next_run as plans
 from tuisim.app.setup.next_run import NextRun
 from tuisim.config.build import build_run_spec
+from tuisim.config.magic_line import parse_line
 from tuisim.config.options import settings_of
 from tuisim.config.program_file import ProgramSource, read_program
 from tuisim.config.program_settings import free_paths, program_settings
@@ -24,6 +25,7 @@ from tuisim.core.tree import to_plain
 from tuisim.goals.files import load_goals
 from tuisim.marks.entries import entries_of
 from tuisim.marks.students import find_students
+from tuisim.notebook.lab import Lab
 
 PROGRAMS = {
     "tyre": """\
@@ -204,6 +206,22 @@ def runs_in_app(source: ProgramSource, option: Option) -> dict[str, RunSpec]:
 def test_every_door_gives_the_same_run(program: str, option: str, folder: Path) -> None:
     runs = runs_of(folder, program, OPTIONS[option])
     assert [door for door, spec in runs.items() if spec != runs["run"]] == []
+
+
+@pytest.mark.parametrize(
+    "program, option", [pair for pair in TABLE if pair[0] in ("tyre", "reversed", "arm")]
+)
+def test_a_cell_is_a_file_that_begins_with_its_magic_line(
+    program: str, option: str, folder: Path
+) -> None:
+    (folder / "p.py").write_text(f"# %%sim_magic {option}\n{PROGRAMS[program]}")
+    (of_file,) = outside.of_command(("run", "p.py")).specs
+    lab = Lab()
+    lab.apply(parse_line(option, "sim_magic"), PROGRAMS[program], "none")
+    of_cell = lab.spec
+    name = of_file.robot.name
+    assert of_file == replace(of_cell, robot=replace(of_cell.robot, name=name))
+    assert name == ("Robot of p.py" if program == "arm" else "Default_Robot")
 
 
 def values_of(spec: RunSpec) -> dict[str, object]:
