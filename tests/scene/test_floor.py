@@ -8,7 +8,7 @@ import pytest
 from tuisim.core.css_colors import Rgb
 from tuisim.core.geometry import Pose
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, RobotSpec
-from tuisim.scene.floor import grid_rgb_on
+from tuisim.scene.floor import find_grid_rgb
 from tuisim.scene.painter import ScenePainter, SceneState
 from tuisim.scene.pen import PenTrace
 from tuisim.scene.view import Viewport
@@ -25,7 +25,7 @@ def paint(mat_rgb: Rgb, **how: bool) -> Pixels:
 
 @pytest.mark.parametrize("floor_rgb", [(250, 240, 230), (10, 20, 30)])
 def test_a_floor_has_the_colour_of_the_mat_under_a_faint_grid(floor_rgb: Rgb) -> None:
-    grid_rgb = grid_rgb_on(floor_rgb)
+    grid_rgb = find_grid_rgb(floor_rgb)
     assert 0 < max(abs(one - other) for one, other in zip(grid_rgb, floor_rgb, strict=True)) < 30
     picture = paint(floor_rgb, has_floor=True)
     line_x, line_y = (int(at) for at in VIEW.to_px(3000.0, -500.0))
@@ -41,3 +41,10 @@ def test_without_colours_a_floor_has_no_grid() -> None:
 
 def test_without_a_floor_nothing_is_around_the_mat() -> None:
     assert (paint((255, 255, 255))[:50] == 9).all()
+
+
+def test_nothing_of_the_field_is_drawn_where_only_floor_is_in_view() -> None:
+    mat = np.full((FIELD_HEIGHT_MM, FIELD_WIDTH_MM, 3), 255, np.uint8)
+    painter = ScenePainter(mat, (255, 255, 255), PenTrace(), has_floor=True)
+    picture = painter.paint(Viewport(40, 30, 1.0, 3010.0, -10.0), SCENE)
+    assert (picture == 255).all()

@@ -24,11 +24,14 @@ from tuisim.core.spec import (
     TouchSpec,
     WorldSpec,
 )
+from tuisim.core.tick_record import TICK_FIELDS
 from tuisim.runs.views import TickRecord
 from tuisim.scene.painter import BEACON_RGB, OBSTACLE_RGB, RAY_RGB, ScenePainter
 from tuisim.scene.pen import PenTrace, Piece
 from tuisim.scene.pictures import (
     RIM_RGB,
+    find_area,
+    find_view,
     fitting_view,
     path_picture,
     scene_of,
@@ -38,7 +41,7 @@ from tuisim.scene.pictures import (
     world_view,
 )
 from tuisim.scene.robot import COLORED
-from tuisim.scene.view import whole_field
+from tuisim.scene.view import FIELD, Area, whole_field
 from tuisim.terminal.pixels import Pixels
 
 WHITE: Pixels = np.full((FIELD_HEIGHT_MM, FIELD_WIDTH_MM, 3), 255, np.uint8)
@@ -134,6 +137,30 @@ def test_the_way_of_a_run_is_drawn_small(run: Run) -> None:
     rows, columns = np.nonzero(reddish)
     assert len({*rows}) <= 2
     assert 5 < np.ptp(columns) < 20
+
+
+def records_at(*places: tuple[float, float]) -> np.ndarray:
+    records = np.zeros(len(places), np.dtype(list(TICK_FIELDS)))
+    records["x_mm"], records["y_mm"] = zip(*places, strict=True)
+    return records
+
+
+def test_a_picture_shows_how_far_a_robot_has_left_the_field() -> None:
+    on_floor = replace(SPEC, world=replace(SPEC.world, floor=True, walls=False))
+    records = records_at((900.0, 480.0), (5362.0, 480.0), (900.0, -700.0), (nan, 0.0))
+    area = find_area(on_floor, records)
+    assert area == Area(0.0, -700.0, 5362.0, FIELD_HEIGHT_MM)
+    away, view = Pose(5362.0, -700.0, 0.0), find_view(on_floor, area)
+    picture = world_picture(on_floor, WHITE, away, area=area)
+    assert picture.size == (view.width_px, view.height_px)
+    field = world_picture(on_floor, WHITE, HERE).size
+    assert abs(picture.size[0] - field[0]) < 100
+    col, row = (int(at) for at in view.to_px(away.x_mm, away.y_mm))
+    assert (np.asarray(picture)[row - 3 : row + 4, col - 9 : col] == COLORED.body).all(2).any()
+
+
+def test_without_a_floor_a_picture_shows_the_field() -> None:
+    assert find_area(SPEC, records_at((5362.0, 480.0))) == FIELD
 
 
 def test_a_damaged_record_has_no_pose() -> None:

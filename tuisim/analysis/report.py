@@ -30,7 +30,7 @@ from tuisim.movies.clip import Recorded
 from tuisim.movies.files import small_movie
 from tuisim.protocol import SetNoise
 from tuisim.runs.run_folder import StoredRun
-from tuisim.scene.pictures import world_at_end, world_view
+from tuisim.scene.pictures import find_area, find_view, world_at_end
 from tuisim.source import source_lines
 
 if TYPE_CHECKING:
@@ -156,7 +156,7 @@ def _world(run: StoredRun, pins: Sequence[Pin], *, many: bool) -> Picture:
     which = f"run {run.number}: " if many else ""
     text = f"{which}the mat {mat} and the robot at its end pose; its path in orange, from the ring"
     text += "; numbers: where goals were met (✓) or missed (✗)" if pins else ""
-    view = world_view(run.spec.robot)
+    view = find_view(run.spec, find_area(run.spec, run.telemetry.array()))
     return Picture(text, encode_picture(picture), picture.size, view, place_pins(pins, view))
 
 
@@ -171,7 +171,7 @@ def _way_picture(run: StoredRun) -> Image:
 
     picture = world_at_end(run)
     records: Any = run.telemetry.array()
-    view = world_view(run.spec.robot)
+    view = find_view(run.spec, find_area(run.spec, records))
     path: Any = view.to_px(records["x_mm"], records["y_mm"])
     way = list(zip(*(places.tolist() for places in path), strict=True))
     draw = ImageDraw.Draw(picture)

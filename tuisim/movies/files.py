@@ -52,7 +52,7 @@ class Clip:
     @property
     def view(self) -> Viewport:
         """Which part of the field its frames would show if the world filled them; it has the panel of the world."""
-        return view_of_frame(self.recorded.run.spec.robot, self.panels, self.size)
+        return view_of_frame(self.recorded, self.panels, self.size)
 
 
 def _encode_gif(clip: Clip, watch: Watch) -> bytes:

@@ -33,8 +33,8 @@ from tuisim.runs.run_folder import mat_files, open_mat
 from tuisim.runs.views import instant_of
 from tuisim.scene.discs import DiscFace, disc_faces
 from tuisim.scene.pen import pen_trace
-from tuisim.scene.pictures import fitting_view, scene_of, sound_pose, world_painter
-from tuisim.scene.view import Viewport
+from tuisim.scene.pictures import find_area, fitting_view, scene_of, sound_pose, world_painter
+from tuisim.scene.view import Area, Viewport
 
 if TYPE_CHECKING:
     from PIL.Image import Image
@@ -68,30 +68,31 @@ class PictureBox:
     height: int
 
 
-def _fitting_size(panels: Sequence[ClipPanel], robot: RobotSpec) -> Size:
+def _fitting_size(panels: Sequence[ClipPanel], robot: RobotSpec, area: Area) -> Size:
     height_px = _CAPTION_PX
     if ClipPanel.WORLD in panels:
-        height_px += fitting_view(robot, WIDTH_PX - 2 * PAD, MOST[1]).height_px
+        height_px += fitting_view(robot, WIDTH_PX - 2 * PAD, MOST[1], area).height_px
     if ClipPanel.CHART in panels or ClipPanel.ARRAYS in panels:
         height_px += _STRIP_PX
     return WIDTH_PX, height_px + PAD
 
 
 def view_of_frame(
-    robot: RobotSpec, panels: Sequence[ClipPanel], size: Size | None = None
+    recorded: Recorded, panels: Sequence[ClipPanel], size: Size | None = None
 ) -> Viewport:
-    """Return which part of the field a whole frame would show if its world, which it has, filled it.
+    """Return which part of the world a whole frame would show if its world, which it has, filled it.
 
     What is drawn over a frame in this view lies on the frame's world.
 
     Args:
-        robot: The robot of the run.
+        recorded: The run.
         panels: What is shown.
         size: Width and height in pixels; None for the size that fits the panels.
     """
-    size = size or _fitting_size(panels, robot)
+    robot, area = recorded.run.spec.robot, find_area(recorded.run.spec, recorded.telemetry)
+    size = size or _fitting_size(panels, robot, area)
     room = _boxes(panels, size, len(robot.color_sensors))[ClipPanel.WORLD]
-    shown = fitting_view(robot, room.width, room.height)
+    shown = fitting_view(robot, room.width, room.height, area)
     box = _centred(room, (shown.width_px, shown.height_px))
     left_mm, top_mm = shown.to_mm(-box.left, -box.top)
     return Viewport(*size, shown.mm_per_px, left_mm, top_mm)
@@ -120,11 +121,13 @@ class FramePainter:
     ) -> None:
         run = recorded.run
         self._recorded, self._panels = recorded, panels
-        self.size = size or _fitting_size(panels, run.spec.robot)
+        area = find_area(run.spec, recorded.telemetry)
+        self.size = size or _fitting_size(panels, run.spec.robot, area)
         boxes = self._boxes = _boxes(panels, self.size, len(run.spec.robot.color_sensors))
         if ClipPanel.WORLD in boxes:
             box = boxes[ClipPanel.WORLD]
-            self._world = MovingWorld(recorded, fitting_view(run.spec.robot, box.width, box.height))
+            view = fitting_view(run.spec.robot, box.width, box.height, area)
+            self._world = MovingWorld(recorded, view)
         if ClipPanel.CHART in boxes:
             box = boxes[ClipPanel.CHART]
             self._chart = laid_out(
@@ -240,7 +243,8 @@ class MovingWorld:
 
     def __init__(self, recorded: Recorded, view: Viewport) -> None:
         self._recorded, self._spec, self._view = recorded, recorded.run.spec, view
-        self._painter = world_painter(mat_pixels(mat_files(recorded.run)))
+        mat = mat_pixels(mat_files(recorded.run))
+        self._painter = world_painter(mat, has_floor=self._spec.world.is_open)
         self._traced = 0
         """Records whose pen traces are drawn."""
 

@@ -18,20 +18,20 @@ _FAINT = 0.07
 """The difference of the lines from the floor."""
 
 
-def floor_rgb_of(mat: Pixels) -> Rgb:
+def find_mat_floor_rgb(mat: Pixels) -> Rgb:
     """Return the colour of the floor around a mat, shape (height, width, 3)."""
     height_px, width_px = mat.shape[:2]
     return find_floor_rgb(width_px, height_px, memoryview(mat.tobytes()))
 
 
-def grid_rgb_on(floor_rgb: Rgb) -> Rgb:
+def find_grid_rgb(floor_rgb: Rgb) -> Rgb:
     """Return the colour of the grid on a floor: a little darker, on a dark floor a little lighter."""
     towards = 0 if sum(floor_rgb) > 3 * 127 else 255
     red, green, blue = (round(value + (towards - value) * _FAINT) for value in floor_rgb)
     return red, green, blue
 
 
-def field_pixels(view: Viewport) -> tuple[int, int, int, int]:
+def find_field_pixels(view: Viewport) -> tuple[int, int, int, int]:
     """Return the left, top, right and low edge of the field in a picture; what is before it counts as 0."""
     left, top = (max(round(edge), 0) for edge in view.to_px(0.0, FIELD_HEIGHT_MM))
     right, low = (max(int(edge), 0) for edge in view.to_px(FIELD_WIDTH_MM, 0.0))
@@ -40,7 +40,7 @@ def field_pixels(view: Viewport) -> tuple[int, int, int, int]:
 
 def draw_grid(picture: Pixels, view: Viewport, rgb: Rgb) -> None:
     """Paint the lines of a grid around the field; it is modified in place."""
-    left, top, right, low = field_pixels(view)
+    left, top, right, low = find_field_pixels(view)
     mat = picture[top:low, left:right].copy()
     least_mm = _MIN_CELLS * view.cell.cols * view.mm_per_px
     step_mm = next((step for step in GRID_MM if step >= least_mm), GRID_MM[-1])

@@ -13,7 +13,7 @@ from tuisim.core.geometry import Pose, world_point
 from tuisim.core.outline import RobotOutline, outline_of
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, BeaconSpec, Obstacle, RobotSpec
 from tuisim.data_class import dataclass
-from tuisim.scene.floor import draw_grid, field_pixels, floor_rgb_of, grid_rgb_on
+from tuisim.scene.floor import draw_grid, find_field_pixels, find_grid_rgb, find_mat_floor_rgb
 from tuisim.scene.mat import MatPictures
 from tuisim.scene.mono_robot import draw_mono_robot
 from tuisim.scene.off_field import draw_arrow_to
@@ -98,8 +98,8 @@ class ScenePainter:
         self.trace = trace
         self._grid_rgb = None
         if has_floor:
-            outside_rgb = floor_rgb_of(mat)
-            self._grid_rgb = None if mono else grid_rgb_on(outside_rgb)
+            outside_rgb = find_mat_floor_rgb(mat)
+            self._grid_rgb = None if mono else find_grid_rgb(outside_rgb)
         self._mat = MatPictures(mat, outside_rgb, whole_cells, exact=for_file)
         self._is_for_file = for_file
         self._has_frame = for_file or (not mono and min(outside_rgb) >= _LIGHT)
@@ -208,7 +208,10 @@ def draw_frame(
     picture: Pixels, view: Viewport, width_px: int = FRAME_PX, rgb: Rgb = _FRAME_RGB
 ) -> None:
     """Paint a frame around the field."""
-    left, top, right, low = field_pixels(view)
+    left, top, right, low = find_field_pixels(view)
+    if not (right and low):
+        # The view has followed a robot off the field.
+        return
     rows, cols = (
         slice(max(top - width_px, 0), low + width_px),
         slice(max(left - width_px, 0), right + width_px),

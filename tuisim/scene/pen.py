@@ -196,7 +196,7 @@ def drawn_points_mm(
     return xs_mm, ys_mm, lifted
 
 
-_FAR_MM = 1e5
+FAR_MM = 1e5
 """What is drawn farther from the field is left out: the time for a line grows with its length."""
 _FINE_MM = 1.0
 """In most ticks the pen moves less."""
@@ -206,9 +206,9 @@ def pen_trace(spec: RunSpec, telemetry: npt.NDArray[Any]) -> Piece:
     """Return the pen trace of a run, from the records of `runs.views.TelemetryView.array`."""
     xs_mm, ys_mm, _ = drawn_points_mm(spec.robot, telemetry)
     # Damaged records may have no valid pose.
-    far = (np.abs(xs_mm) >= _FAR_MM) | (np.abs(ys_mm) >= _FAR_MM)
+    far = (np.abs(xs_mm) >= FAR_MM) | (np.abs(ys_mm) >= FAR_MM)
     xs_mm[far] = ys_mm[far] = np.nan
-    places = np.nan_to_num(np.round(np.stack((xs_mm, ys_mm)) / _FINE_MM), nan=_FAR_MM)
+    places = np.nan_to_num(np.round(np.stack((xs_mm, ys_mm)) / _FINE_MM), nan=FAR_MM)
     moved = np.any(np.diff(places, axis=1, prepend=np.nan) != 0, axis=0)
     # The end of a line is where the next one begins, or the pen is lifted.
     kept = moved | np.append(moved[1:], True)

@@ -4,21 +4,24 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from tuisim.core.css_colors import Rgb
 from tuisim.core.geometry import Pose
 from tuisim.core.outline import outline_of
 from tuisim.core.sensors.touch import pressed
 from tuisim.core.sensors.ultrasonic import rays_mm
-from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, PenSpec, RobotSpec, RunSpec
+from tuisim.core.spec import PenSpec, RobotSpec, RunSpec
 from tuisim.scene.painter import FRAME_PX, ScenePainter, SceneState
-from tuisim.scene.pen import PenTrace, Piece, pen_trace
+from tuisim.scene.pen import FAR_MM, PenTrace, Piece, pen_trace
 from tuisim.scene.robot import drawn_reach_mm
-from tuisim.scene.view import Viewport
+from tuisim.scene.view import FIELD, Area, Viewport, whole_field
 from tuisim.terminal.pixels import Pixels
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
     from PIL.Image import Image
 
     from tuisim.runs.run_folder import StoredRun
@@ -31,31 +34,52 @@ RIM_RGB: Rgb = (232, 234, 238)
 """Around the field."""
 
 
-def world_view(robot: RobotSpec, mm_per_px: float = MM_PER_PX) -> Viewport:
-    """Return an area in which a robot is completely visible while its axle is on the field."""
-    width_px, height_px = _field_px(mm_per_px)
-    rim_px = math.ceil(drawn_reach_mm(outline_of(robot)) / mm_per_px) + FRAME_PX
-    rim_mm = rim_px * mm_per_px
-    return Viewport(
-        width_px + 2 * rim_px, height_px + 2 * rim_px, mm_per_px, -rim_mm, FIELD_HEIGHT_MM + rim_mm
+def find_area(spec: RunSpec, records: NDArray[Any]) -> Area:
+    """Return where a robot has been, with the whole field; without a floor around it, the field.
+
+    Args:
+        records: Telemetry, structured as `TICK_FIELDS`.
+    """
+    if not spec.world.is_open or not len(records):
+        return FIELD
+    xs_mm, ys_mm = (
+        np.clip(np.nan_to_num(records[key]), -FAR_MM, FAR_MM) for key in ("x_mm", "y_mm")
+    )
+    return Area(
+        min(FIELD.left, float(xs_mm.min())),
+        min(FIELD.lower, float(ys_mm.min())),
+        max(FIELD.right, float(xs_mm.max())),
+        max(FIELD.upper, float(ys_mm.max())),
     )
 
 
-def _field_px(mm_per_px: float) -> tuple[int, int]:
+def world_view(robot: RobotSpec, mm_per_px: float = MM_PER_PX, area: Area = FIELD) -> Viewport:
+    """Return a view in which a robot is completely visible while its axle is in an area."""
     # The field is no multiple of three mm wide: the rest of the last column is left out.
-    return max(int(FIELD_WIDTH_MM / mm_per_px), 1), max(int(FIELD_HEIGHT_MM / mm_per_px), 1)
+    width_px, height_px = (max(int(side_mm / mm_per_px), 1) for side_mm in area.size_mm)
+    rim_px = math.ceil(drawn_reach_mm(outline_of(robot)) / mm_per_px) + FRAME_PX
+    left_mm, top_mm = area.left - rim_px * mm_per_px, area.upper + rim_px * mm_per_px
+    return Viewport(width_px + 2 * rim_px, height_px + 2 * rim_px, mm_per_px, left_mm, top_mm)
 
 
-def fitting_view(robot: RobotSpec, width_px: int, height_px: int) -> Viewport:
+def find_view(spec: RunSpec, area: Area = FIELD) -> Viewport:
+    """Return the view of `world_picture`: a larger area is shown in a picture that is about as large."""
+    larger = max(
+        side_mm / field_mm for side_mm, field_mm in zip(area.size_mm, FIELD.size_mm, strict=True)
+    )
+    return world_view(spec.robot, MM_PER_PX * larger, area)
+
+
+def fitting_view(robot: RobotSpec, width_px: int, height_px: int, area: Area = FIELD) -> Viewport:
     """Return the view of `world_view` in the largest scale that fits a size."""
     reach_mm = drawn_reach_mm(outline_of(robot))
     # The rim is rounded up to whole pixels on both sides.
-    sides = ((FIELD_WIDTH_MM, width_px), (FIELD_HEIGHT_MM, height_px))
+    sides = zip(area.size_mm, (width_px, height_px), strict=True)
     mm_per_px = max(
         (side_mm + 2 * reach_mm) / max(side_px - 2 * (FRAME_PX + 1), 1)
         for side_mm, side_px in sides
     )
-    return world_view(robot, mm_per_px)
+    return world_view(robot, mm_per_px, area)
 
 
 def scene_of(spec: RunSpec, pose: Pose | None, *, rays: bool = False) -> SceneState:
@@ -80,12 +104,14 @@ def scene_of(spec: RunSpec, pose: Pose | None, *, rays: bool = False) -> SceneSt
     )
 
 
-def world_painter(mat: Pixels, traces: Sequence[Piece] = ()) -> ScenePainter:
+def world_painter(
+    mat: Pixels, traces: Sequence[Piece] = (), *, has_floor: bool = False
+) -> ScenePainter:
     """Return what draws a field for files, with pen traces on it."""
     trace = PenTrace()
     for piece in traces:
         trace.add(piece.apart())
-    return ScenePainter(mat, RIM_RGB, trace, for_file=True)
+    return ScenePainter(mat, RIM_RGB, trace, for_file=True, has_floor=has_floor)
 
 
 def world_picture(
@@ -95,6 +121,7 @@ def world_picture(
     traces: Sequence[Piece] = (),
     *,
     rays: bool = False,
+    area: Area = FIELD,
 ) -> Image:
     """Return mat, obstacles, pen traces and robot.
 
@@ -102,14 +129,16 @@ def world_picture(
         mat: Shape (height, width, 3), rows from the top.
         pose: Where the robot is, by default at its start.
         rays: Whether to draw the rays of the ultrasonic sensor.
+        area: What is shown.
 
     Returns:
-        The picture, in the size of `world_view`.
+        The picture, in the size of `find_view`.
     """
     from PIL import Image
 
     scene = scene_of(spec, pose or spec.world.start, rays=rays)
-    return Image.fromarray(world_painter(mat, traces).paint(world_view(spec.robot), scene))
+    painter = world_painter(mat, traces, has_floor=spec.world.is_open)
+    return Image.fromarray(painter.paint(find_view(spec, area), scene))
 
 
 def sound_pose(record: TickRecord | None) -> Pose | None:
@@ -127,8 +156,11 @@ def world_at_end(run: StoredRun) -> Image:
     from tuisim.config.mat_cache import mat_pixels
     from tuisim.runs.run_folder import mat_files
 
-    last, trace = run.telemetry.last(), pen_trace(run.spec, run.telemetry.array())
-    return world_picture(run.spec, mat_pixels(mat_files(run)), sound_pose(last), (trace,))
+    last, records = run.telemetry.last(), run.telemetry.array()
+    mat, trace = mat_pixels(mat_files(run)), pen_trace(run.spec, records)
+    return world_picture(
+        run.spec, mat, sound_pose(last), (trace,), area=find_area(run.spec, records)
+    )
 
 
 _PATH = PenSpec(color="red", width_mm=12.0)
@@ -148,5 +180,9 @@ def path_picture(run: StoredRun, port: Viewport, outside_rgb: Rgb) -> Pixels:
     some = records[:: max(1, len(records) // _MOST_PATH_POINTS)]
     trace = PenTrace()
     trace.add(Piece.of(some["x_mm"].astype(float), some["y_mm"].astype(float), _PATH))
-    painter = ScenePainter(mat_pixels(mat_files(run)), outside_rgb, trace)
+    mat, has_floor = mat_pixels(mat_files(run)), run.spec.world.is_open
+    painter = ScenePainter(mat, outside_rgb, trace, has_floor=has_floor)
+    shown = find_area(run.spec, records)
+    if shown != FIELD:
+        port = whole_field(port.width_px, port.height_px, port.cell, shown)
     return painter.paint(port, scene_of(run.spec, None))

@@ -28,6 +28,11 @@ class Area(NamedTuple):
     right: float
     upper: float
 
+    @property
+    def size_mm(self) -> tuple[float, float]:
+        """Width and height."""
+        return self.right - self.left, self.upper - self.lower
+
 
 FIELD = Area(0.0, 0.0, float(FIELD_WIDTH_MM), float(FIELD_HEIGHT_MM))
 
@@ -135,7 +140,7 @@ def _count_steps(at_px: float, size_px: int, share: float, cell_px: int) -> int:
 
 
 def _fit_mm_per_px(width_px: int, height_px: int, cell: CellPoints, area: Area = FIELD) -> float:
-    wide_mm, high_mm = area.right - area.left, area.upper - area.lower
+    wide_mm, high_mm = area.size_mm
     return max(wide_mm / width_px, high_mm / (height_px * cell.tall))
 
 
