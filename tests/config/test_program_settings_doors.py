@@ -20,6 +20,7 @@ from tuisim.config.magic_line import parse_line
 from tuisim.config.options import settings_of
 from tuisim.config.program_file import ProgramSource, read_program
 from tuisim.config.program_settings import free_paths, program_settings
+from tuisim.core import tree
 from tuisim.core.spec import NoiseSpec, RunSpec
 from tuisim.core.tree import to_plain
 from tuisim.goals.files import load_goals
@@ -70,13 +71,17 @@ class Option(NamedTuple):
     """What it may change of the run."""
 
 
+GROUND = ("world.floor", "world.walls")
+"""What a program for a brick has only where nobody has chosen a mat, and by the rules of a brick."""
+
+
 def mat(name: str) -> Option:
     return Option(
         f"-b {name}",
         {"background": name},
         f'background = "{name}"',
         lambda plan: plans.with_mat(plan, name),
-        ("world.background", "world.start", "world.obstacles", "robot.color_sensors"),
+        (*GROUND, "world.background", "world.start", "world.obstacles", "robot.color_sensors"),
     )
 
 
@@ -86,7 +91,7 @@ def profile(name: str) -> Option:
         {"profile": name},
         f'profile = "{name}"',
         lambda plan: plans.with_profile(plan, name),
-        ("profile", "world.solid"),
+        ("profile", "world.solid", *(GROUND if name in ("robolab", "nbev3devsim") else ())),
     )
 
 
@@ -202,10 +207,16 @@ def runs_in_app(source: ProgramSource, option: Option) -> dict[str, RunSpec]:
     return {"a key in the app": option.key(opened).spec, "opened in the app": later.spec}
 
 
+WITH_WORLD = ("a world", "a world in the app", "a task", "a batch of a task", "mark in a world")
+"""There is no floor around the mat in a world or a task that does not say so."""
+
+
 @pytest.mark.parametrize("program, option", TABLE)
 def test_every_door_gives_the_same_run(program: str, option: str, folder: Path) -> None:
     runs = runs_of(folder, program, OPTIONS[option])
-    assert [door for door, spec in runs.items() if spec != runs["run"]] == []
+    on_field = tree.put_all(runs["run"], {"world.floor": False, "world.walls": True})
+    given = {door: on_field if door in WITH_WORLD else runs["run"] for door in runs}
+    assert [door for door, spec in runs.items() if spec != given[door]] == []
 
 
 @pytest.mark.parametrize(

@@ -105,7 +105,8 @@ def _prepared(
             )
         settings = settings_of(_defaults(world, config), in_world, arguments.settings)
         spec = _spec(settings)
-        said = _from_config(spec, world, config, arguments.settings)
+        plain = settings_of(arguments.settings)
+        said = _from_config(spec, world, config, plain, arguments.settings)
         decided = Decided(free=free_paths(settings))
         return Prepared(None, settings, spec, world, from_config=said, decided=decided)
     return _of_source(read_program(find_program(word)), world, arguments, config)
@@ -116,12 +117,16 @@ def _defaults(world: WorldFile | None, config: UserConfig) -> dict[str, Any]:
 
 
 def _from_config(
-    spec: RunSpec, world: WorldFile | None, config: UserConfig, *above: Mapping[str, Any]
+    spec: RunSpec,
+    world: WorldFile | None,
+    config: UserConfig,
+    plain: Settings,
+    *above: Mapping[str, Any],
 ) -> tuple[str, ...]:
-    """Return the user's defaults that make the run another one, in words."""
+    """Return the user's defaults that make the run another one than with the plain settings, in words."""
     said = () if world else tuple(config.in_effect(*above))
     try:
-        return said if said and build_run_spec(settings_of(*above)) != spec else ()
+        return said if said and build_run_spec(plain) != spec else ()
     except ConfigError:
         # Only with them the run exists, such as one on a mat of the user's own folder.
         return said
@@ -139,9 +144,8 @@ def _of_source(
         wrong = wrong_mat(file.program.text, file.program.name, found.settings["mats"])
         is_it = wrong is not None and found.settings["background"] == file.options["background"]
         raise (wrong.error if wrong and is_it and not error.file else error) from None
-    changed = _from_config(
-        spec, world, config, said().decided.layer, file.options, arguments.settings
-    )
+    above = (found.decided.layer, file.options, arguments.settings)
+    changed = _from_config(spec, world, config, said().settings, *above)
     return Prepared(
         program, found.settings, spec, world, from_config=changed, decided=found.decided
     )

@@ -257,7 +257,7 @@ def decide(
             DEFAULT_PROFILE if for_course or facts.of_course else PROFILE_OF[facts.library]
         )
     profile = layer.get("profile", settings["profile"])
-    has_rules = profile in OF_BRICKS or profile in [PROFILES[name] for name in OF_BRICKS]
+    has_rules = has_brick_rules(profile)
     if "for_brick" in free and (by_brick_rules or (has_rules and not source.has_magic)):
         layer["for_brick"] = True
     if by_brick_rules and has_rules:
@@ -265,6 +265,11 @@ def decide(
     needed = facts.robot.choice if facts.robot else None
     words, shown = _in_words(source.program, facts, layer), _find_shown(facts, free)
     return Decided(layer, *words, needed, shown, frozenset(free), _find_refused(facts, profile))
+
+
+def has_brick_rules(profile: str | ProfileSpec) -> bool:
+    """Return whether a profile, or the one of a name, has the rules of a real brick."""
+    return profile in OF_BRICKS or profile in [PROFILES[name] for name in OF_BRICKS]
 
 
 def _decide_ground(facts: SourceFacts, free: Collection[str]) -> dict[str, bool]:

@@ -22,7 +22,13 @@ from tuisim.config.options import (
 )
 from tuisim.config.profiles import load_profile
 from tuisim.config.program_file import ProgramSource
-from tuisim.config.program_settings import OF_THE_GROUND, PROGRAM_PATHS, Decided, decide
+from tuisim.config.program_settings import (
+    OF_THE_GROUND,
+    PROGRAM_PATHS,
+    Decided,
+    decide,
+    has_brick_rules,
+)
 from tuisim.config.robots import DEFAULT_ROBOT, RobotChoice, choose_robot
 from tuisim.core import tree
 from tuisim.core.geometry import Pose
@@ -158,14 +164,21 @@ def with_choices(plan: NextRun, choices: Mapping[str, Any]) -> NextRun:
         ConfigError: they name something that does not exist, or an invalid file.
     """
     said, words = _resolved({path: value for path, value in choices.items() if path in WORLD_PATHS})
+    ground = {
+        key: value
+        for key, value in plan.from_program.items()
+        if key in OF_THE_GROUND and plan.settings[key] in (None, value)
+    }
     if "background" in said:
-        # Another mat also takes the program's decision about walls back.
-        gone = [*OF_THE_MAT, *({"walls"} & plan.free)]
-        said = {**dict.fromkeys(gone), **said}
+        # Who chooses a mat chooses its edges.
+        said = {**dict.fromkeys([*OF_THE_MAT, *ground]), **said}
+    elif "profile" in said and ground:
+        said |= ground if has_brick_rules(said["profile"]) else dict.fromkeys(ground)
     elif said.keys() & set(START):
         said = {**dict.fromkeys(START), **said}
     kept = {path: word for path, word in plan.words.items() if path not in said}
-    following = {key: value for key, value in plan.from_program.items() if key not in choices}
+    gone = {*choices, *(OF_THE_GROUND if "background" in said else ())}
+    following = {key: value for key, value in plan.from_program.items() if key not in gone}
     built = with_values(plan, said)
     return replace(
         built, words=kept | words, robot=said.get("robot", plan.robot), from_program=following
