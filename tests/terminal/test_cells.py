@@ -87,16 +87,6 @@ def test_fine_points_can_be_drawn_as_half_blocks(cells: CellSet) -> None:
     assert glyph(int(cell[0])) == "▀"
 
 
-@pytest.mark.parametrize("at", [0, 1], ids=["left", "right"])
-@pytest.mark.parametrize("cells", [CellSet.QUADRANT, CellSet.SEXTANT, CellSet.OCTANT])
-def test_half_blocks_do_not_lose_a_line_of_one_point(cells: CellSet, at: int) -> None:
-    coarse = half_block_of(cells)
-    picture = np.full((coarse.rows, coarse.cols, 3), 255, np.uint8)
-    picture[:, at] = 0
-
-    assert fit_cells(picture, coarse, all_cells(1, 1)).tolist() == [0x808080_808080]
-
-
 @cases(
     "changed, runs",
     {

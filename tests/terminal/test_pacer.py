@@ -118,29 +118,6 @@ def test_a_terminal_that_never_answers_is_drawn_for_all_the_same() -> None:
     assert 19 <= line.drive(1.0) <= 21
 
 
-def test_a_late_answer_switches_pacing_on_again() -> None:
-    line = Line(bytes_s=16_000)
-    line.answers = False
-    line.drive(PROOF_S + 5.0, 2_000)
-    line.answers = True
-    line.pacer.answered()
-    line.drive(20.0, 2_000)
-
-    assert line.drive(10.0, 2_000) <= 85
-    assert line.backlog_s <= 0.5
-
-
-def test_a_lost_question_holds_it_up_but_once() -> None:
-    line = Line()
-    line.drive(1.0)
-    line.answers = False
-    line.drive(0.1)
-    line.answers = True
-    line.drive(PATIENCE_S + 0.5)
-
-    assert 19 <= line.drive(1.0) <= 21
-
-
 def test_questions_to_a_page_that_is_gone_are_no_slow_link() -> None:
     line = Line(most_queued_s=PAGE_QUEUED_S)
     line.drive(1.0)
@@ -191,23 +168,6 @@ def test_an_answer_to_nothing_is_ignored() -> None:
     pacer = Pacer(20, clock=Clock())
     pacer.answered()
     assert pacer.ready()
-
-
-@cases(
-    "line, slow",
-    {
-        "local": (Line(), False),
-        "quick but far": (Line(1e6, 0.150), False),
-        "a frame takes 0.1 s": (Line(10_000), True),
-        "slow and far": (Line(6_000, 0.150), True),
-        "a page that is busy": (Line(10_000, most_queued_s=PAGE_QUEUED_S), False),
-        "a page on a slow link": (Line(1_500, most_queued_s=PAGE_QUEUED_S), True),
-    },
-)
-def test_fine_frames_are_for_quick_links(line: Line, slow: bool) -> None:
-    line.drive(3.0)
-
-    assert line.pacer.is_slow is slow
 
 
 def test_a_link_is_slow_until_the_first_answer_and_quick_again_after_a_rest() -> None:
