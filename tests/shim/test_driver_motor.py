@@ -129,6 +129,9 @@ for _ in range(25):
     else:
         time.sleep(chance.random() / 3)
     print(time.time(), [(m.position, m.speed, m.duty_cycle, m.state) for m in motors])
+for m in motors:
+    # A move that a wall holds up never ends.
+    m.stop()
 """
 PYBRICKS = """
 import urandom as random
@@ -148,6 +151,8 @@ for _ in range(25):
     call()
     wait(random.randrange(300))
     print([(m.angle(), m.speed()) for m in motors])
+for m in motors:
+    m.stop()
 """
 LIBRARIES = {"ev3": EV3DEV, "lego-micropython": PYBRICKS}
 
