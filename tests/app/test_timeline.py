@@ -7,6 +7,7 @@ from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from dataclasses import replace
 from itertools import pairwise
+from typing import Any
 
 import pytest
 from textual.pilot import Pilot
@@ -68,6 +69,10 @@ async def test_keys_go_back_and_forward() -> None:
         assert "This is the start of the run" in notices(app)
 
 
+OF_NOW: dict[str, Any] = dict.fromkeys(("next_spec", "recorded_spec", "now_pose", "program"))
+"""What a snapshot of a former instant says of the present."""
+
+
 @pytest.mark.slow
 async def test_a_former_instant_is_shown_as_it_was() -> None:
     async with a_run(size=(200, 60)) as (pilot, app):
@@ -93,8 +98,7 @@ async def test_a_former_instant_is_shown_as_it_was() -> None:
             pen_down=False,
         )
         shown = app.run_controller.snapshot()
-        plain = replace(shown, next_spec=None, past=False, now_tick=0, now_pose=None, program=None)
-        assert plain == expected
+        assert replace(shown, **OF_NOW, past=False, now_tick=0) == expected
         last = recording.telemetry.last()
         assert last is not None
         assert shown.now_pose == last.pose

@@ -158,7 +158,7 @@ def test_a_name_of_before_is_the_column_in_the_commands_for_logs(
 
 NEW = """\
     Column("right_speed_dps"),
-    Column("speed_mm_s", lambda moved, robot: (moved[5] + moved[6]) * robot.wheel_diameter_mm * 3.14159 / 720, True),
+    Column("speed_mm_s", lambda ticks, run: [(tick[5] + tick[6]) * 28 * 3.14159 / 360 for tick in ticks], True),
 """
 
 

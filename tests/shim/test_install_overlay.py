@@ -119,9 +119,10 @@ ROWS: dict[str, Row] = {
         "(True, None, False)",
         setup="t = Tank()",
     ),
-    "`odometry_start()` after driving": same(
+    "`odometry_start()` after driving": Row(
         "d.odometry_start(), time.sleep(0.1), d.odometry_stop(), round(d.y_pos_mm)",
         "(None, None, None, 100)",
+        "(None, None, None, 101)",
         "plain",
         "d = MoveDifferential(OUTPUT_B, OUTPUT_C, EV3EducationSetTire, 168)\nd.on_for_distance(30, 100)",
     ),

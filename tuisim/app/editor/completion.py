@@ -27,10 +27,6 @@ if TYPE_CHECKING:
 
 Result = TypeVar("Result")
 
-# Jedi raises the limit while it is asked, in a thread of its own: in Python 3.11 a parser that runs meanwhile in
-# another thread fails if the limit changes. It leaves one that is high enough.
-sys.setrecursionlimit(max(sys.getrecursionlimit(), 3000))
-
 MOST_DESCRIBED = 200
 """So many candidates get a signature and a line of help; that of a library with many functions takes long."""
 MOST_LINES_OF_CALL = 20
