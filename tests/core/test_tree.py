@@ -139,13 +139,16 @@ def test_data_of_another_kind_are_told(path: str, damage: object) -> None:
 
 
 def test_only_what_comes_from_outside_is_checked() -> None:
-    plain = tree.to_plain(RUN)
+    plain = json.loads(json.dumps(tree.to_plain(RUN)))
     plain["world"]["noise"]["light"] = 129
     assert tree.restore(plain).world.noise.light == 129
     with pytest.raises(TypeError, match="weight is 'heavy'"):
         tree.restore({**plain, "robot": {**plain["robot"], "weight": "heavy"}})
     with pytest.raises(ConfigError, match=r"noise\.light"):
         tree.from_plain(plain)
+    plain["robot"]["ultrasonic"] = {"ray_angles_deg": [-21.0, [-14.0]]}
+    with pytest.raises(TypeError, match="ray_angles_deg is"):
+        tree.restore(plain)
 
 
 def test_every_leaf_that_an_option_sets_says_what_it_is() -> None:

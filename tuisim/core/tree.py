@@ -143,7 +143,12 @@ def _from_plain(name: str, value: Value | None, data: Any, is_checked: bool) -> 
     if isinstance(value, Part):
         return _part_from_plain(value, data, is_checked)
     is_flag = value.stored_as is bool
-    if not isinstance(data, value.stored_as) or (isinstance(data, bool) and not is_flag):
+    is_nested = isinstance(data, list) and any(isinstance(item, list | dict) for item in data)
+    if (
+        not isinstance(data, value.stored_as)
+        or (isinstance(data, bool) and not is_flag)
+        or is_nested
+    ):
         raise TypeError(f"{name} is {data!r:.60}")
     if isinstance(data, list):
         return tuple(data)
