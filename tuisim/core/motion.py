@@ -201,14 +201,15 @@ class Motion:
 
     def _start_clocks(self) -> None:
         """Let the drivers' clocks begin where the seed says."""
-        motors = self._all_motors()
-        self._driven = tuple(motor for motor in motors if isinstance(motor, SimulatedMotor))
+        self._driven = tuple(motor for motor in self.motors if isinstance(motor, SimulatedMotor))
         if self._driven:
             jiffies = draw_jiffies(self.spec.seed)
             for motor in self._driven:
                 motor.start_clock(jiffies)
 
-    def _all_motors(self) -> tuple[Motor, ...]:
+    @property
+    def motors(self) -> tuple[Motor, ...]:
+        """All motors, in the order of `RobotSpec.motors`."""
         return self.left, self.right
 
     def command_motor(self, command: MotorCommand) -> None:

@@ -50,8 +50,16 @@ class Simulation(Motion):
         self._reported: tuple[Turn, ...] = ((0.0, 0.0),) * len(self.others)
         self._reported_tick = 0
 
-    def _all_motors(self) -> tuple[Motor, ...]:
+    @property
+    def motors(self) -> tuple[Motor, ...]:
+        """All motors, in the order of `RobotSpec.motors`."""
         return self.left, self.right, *self.others
+
+    @property
+    def motors_by_port(self) -> dict[str, Motor]:
+        """The motors that are on a port, by it."""
+        pairs = zip(self.spec.robot.motors, self.motors, strict=True)
+        return {spec.port: motor for spec, motor in pairs if spec.port != NO_PORT}
 
     # Reading
 
@@ -137,7 +145,7 @@ class Simulation(Motion):
         }
         sources = [before.get(find_place(at, motor)) for at, motor in enumerate(robot.motors)]
         self.spec = replace(self.spec, robot=robot)
-        earlier = self._all_motors()
+        earlier = self.motors
         motors = [
             self._add_motor(motor.kind, free=number > 1)
             if source is None

@@ -17,8 +17,11 @@ def finish_moves(session: Session) -> str:
         StopProgram: the time limit is reached, or the user stops the run.
     """
     sim = session.sim
-    robot_motors = zip(sim.spec.robot.motors, (sim.left, sim.right, *sim.others), strict=True)
-    motors = {spec.port: one for spec, one in robot_motors if isinstance(one, SimulatedMotor)}
+    motors = {
+        port: motor
+        for port, motor in sim.motors_by_port.items()
+        if isinstance(motor, SimulatedMotor)
+    }
     if any(motor.ends_alone for motor in motors.values()):
         sim.line = 0
     while any(motor.ends_alone for motor in motors.values()):

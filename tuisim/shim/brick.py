@@ -198,10 +198,10 @@ class BuiltBrick:
     _heard: list[LegoSensor] = field(default_factory=list)
     """All sensors: an ultrasonic one hears the others."""
 
-    def connect_motor(self, motor: MotorSpec, simulated: Motor) -> None:
+    def connect_motor(self, motor: MotorSpec) -> None:
         """Connect a motor of the robot."""
         port = motor.port
-        self.motors[port] = simulated
+        simulated = self.motors[port] = self.session.sim.motors_by_port[port]
         tacho = self.tachos[port] = tacho_of(self.session, simulated, port, motor.kind)
         self._add(MOTOR_CLASS, "motor", port, tacho.device())
 
@@ -244,14 +244,13 @@ class BuiltBrick:
 
 def build_brick(session: DeviceSession) -> BuiltBrick:
     """Build the brick and connect the robot's motors and sensors."""
-    robot, sim = session.sim.spec.robot, session.sim
+    robot = session.sim.spec.robot
     built = BuiltBrick(session, DeviceFiles(CLASSES), Lights(session), Battery(session))
     brick = built.files
-    motors = zip(robot.motors, (sim.left, sim.right, *sim.others), strict=True)
     # Sorted by port, so that a class without an address finds the first port.
-    for motor, simulated in sorted(motors, key=lambda found: found[0].port):
+    for motor in sorted(robot.motors, key=lambda found: found.port):
         if motor.port != NO_PORT:
-            built.connect_motor(motor, simulated)
+            built.connect_motor(motor)
     built.take_wheels()
     for spec in sorted(robot.sensors, key=lambda found: found.port):
         built.connect_sensor(spec)

@@ -194,11 +194,7 @@ class Plugs:
         before = sim.spec.robot
         robot = plug_parts(before, parts)
         sim.change_robot(robot)
-        simulated = {
-            motor.port: one
-            for motor, one in zip(robot.motors, (sim.left, sim.right, *sim.others), strict=True)
-            if motor.port != NO_PORT
-        }
+        simulated = sim.motors_by_port
         sensors = {sensor.port: sensor for sensor in robot.sensors}
         for port in [*built.paths]:
             if port in built.motors:
@@ -209,7 +205,7 @@ class Plugs:
                 built.disconnect(port)
         for motor in robot.motors:
             if motor.port in simulated and motor.port not in built.paths:
-                built.connect_motor(motor, simulated[motor.port])
+                built.connect_motor(motor)
         for port, sensor in sensors.items():
             if port not in built.paths:
                 built.connect_sensor(sensor)

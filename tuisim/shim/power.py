@@ -56,8 +56,7 @@ class Battery:
 
     def current_a(self) -> float:
         """Return the present current."""
-        sim = self._session.sim
-        return BRICK_A + sum(self._motor_a(motor) for motor in (sim.left, sim.right, *sim.others))
+        return BRICK_A + sum(map(self._motor_a, self._session.sim.motors))
 
     def _motor_a(self, motor: Motor) -> float:
         if motor.mode == STOPPED:

@@ -188,12 +188,7 @@ class Watcher:
 
     def _stalled(self) -> float:
         sim = self._session.sim
-        return float(
-            sum(
-                motor.blocked_ticks >= sim.stall_ticks
-                for motor in (sim.left, sim.right, *sim.others)
-            )
-        )
+        return float(sum(motor.blocked_ticks >= sim.stall_ticks for motor in sim.motors))
 
     def _value_of(self, column: str) -> Value | None:
         """Return a function that reads a column; None if this robot does not have it."""

@@ -10,7 +10,6 @@ from typing import Any, assert_never
 
 from tuisim.core.motors import POSITION, TIMED, Motor
 from tuisim.core.profile import NS_PER_S
-from tuisim.core.spec import NO_PORT
 from tuisim.runtime.scheduler import FOREVER, ScheduledThread
 from tuisim.runtime.session import Session
 from tuisim.runtime.stack import PACKAGE_FOLDER
@@ -124,12 +123,7 @@ def _button_note(names: dict[str, Any]) -> str:
 
 
 def _motors(session: Session) -> list[tuple[str, Motor]]:
-    sim = session.sim
-    motors = zip(sim.spec.robot.motors, (sim.left, sim.right, *sim.others), strict=True)
-    return sorted(
-        ((spec.port, motor) for spec, motor in motors if spec.port != NO_PORT),
-        key=lambda one: one[0],
-    )
+    return sorted(session.sim.motors_by_port.items(), key=lambda one: one[0])
 
 
 def _motor_note(session: Session, outer: list[types.FrameType], until: str) -> str:

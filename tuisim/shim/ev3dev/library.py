@@ -61,9 +61,7 @@ class MotorPoll:
         timeout_ns = int((1000 if timeout_ms is None else timeout_ms) * MS)
         sim = self._session.sim
         # A running motor with target speed 0 never ends its move: repeated polling lets it count as stalled.
-        target_zero = any(
-            motor.mode and not motor.aim_dps for motor in (sim.left, sim.right, *sim.others)
-        )
+        target_zero = any(motor.mode and not motor.aim_dps for motor in sim.motors)
         patient = self._patience.until_motors_stop > 0 and not (target_zero or sim.notices)
         self._session.wait_for_motor(timeout_ns, again=patient)
         return []
