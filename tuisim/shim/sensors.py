@@ -69,6 +69,9 @@ class LegoSensor:
         self.mode = default_mode
         self._values: tuple[int, ...] = ()
         self._next_free = (-1, -1)
+        self._old_values: tuple[int, ...] = ()
+        self._old_until_ns = 0
+        """So long it still tells these values after a change of mode, if there are any."""
         mode_switch_ns = session.sim.spec.profile.mode_switch_ns
         self._switch_ns = mode_switch_ns if switch_ns is None else switch_ns
 
@@ -117,6 +120,8 @@ class LegoSensor:
         session = self._session
         if not session.free:
             session.spend(chosen.cost_ns, self._codes[mode])
+        if session.now < self._old_until_ns and self._old_values:
+            return self._old_values
         return chosen.measure()
 
     def measure_switched(self, mode: str) -> tuple[int, ...]:
@@ -159,7 +164,6 @@ class ColorDevice(LegoSensor):
         super().__init__(session, spec.port, SENSORS["color"].driver_name, modes, "COL-REFLECT")
         self._read_ns = profile.color_read_ns
         self._stale_ns = profile.stale_reading_ns
-        self._stale_until_ns = 0
         self._left_values: dict[str, tuple[int, ...]] = {}
         self._spec = spec
         self._clear = color.rgb_reader(spec, profile, session.field)
@@ -233,14 +237,9 @@ class ColorDevice(LegoSensor):
         """Switch to a mode. Its first message still says what it measured last, before it was left."""
         if self._stale_ns and not self._session.free:
             self._left_values[self.mode] = self.modes[self.mode].measure()
-            self._stale_until_ns = self._session.now + self._stale_ns
+            self._old_until_ns = self._session.now + self._stale_ns
+        self._old_values = self._left_values.get(mode, ())
         super().switch(mode)
-
-    def measure(self, mode: str) -> tuple[int, ...]:
-        """Take one measurement in a mode. Charges its cost."""
-        values = super().measure(mode)
-        is_stale = self._session.now < self._stale_until_ns
-        return self._left_values.get(mode, values) if is_stale else values
 
 
 def ultrasonic_sensor(

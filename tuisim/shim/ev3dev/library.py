@@ -67,10 +67,13 @@ class MotorPoll:
         return []
 
 
-def connect(brick: DeviceFiles, plugs: Plugs, hint: Callable[[str], str]) -> None:
+def connect(
+    session: DeviceSession, brick: DeviceFiles, plugs: Plugs, hint: Callable[[str], str]
+) -> None:
     """Patch `ev3dev2` before any of its submodules is imported.
 
     Args:
+        session: The run.
         brick: The devices.
         plugs: Plugs in what is missing.
         hint: Returns what to add to the error about a missing device of a class.
@@ -80,7 +83,7 @@ def connect(brick: DeviceFiles, plugs: Plugs, hint: Callable[[str], str]) -> Non
     plugs.missing = ev3dev2.DeviceNotFound
     ev3dev2.list_device_names = _in_place_of(ev3dev2.list_device_names, _device_lister(brick))
     _patch_device(ev3dev2.Device, brick)
-    _charge_memory(ev3dev2.Device, brick)
+    _charge_memory(ev3dev2.Device, session)
     _patch_look_up(ev3dev2, plugs, hint)
 
 
@@ -183,15 +186,16 @@ def _patch_device(device_class: Any, brick: DeviceFiles) -> None:
             setattr(device_class, name, _in_place_of(getattr(device_class, name), replacement))
 
 
-def _charge_memory(device_class: Any, brick: DeviceFiles) -> None:
-    """Let what the library remembers of a device cost the time of its own code."""
-    devices = brick.by_path
+def _charge_memory(device_class: Any, session: DeviceSession) -> None:
+    """Let what the library remembers of a device cost the time of its own code, where that is simulated."""
+    cost_ns = session.sim.spec.profile.cached_read_ns
+    if not cost_ns:
+        return
 
     def charged(get: Callable[..., Any]) -> Callable[..., Any]:
         def get_cached(self: Any, attribute: Any, name: str) -> Any:
             if name in self._attr_cache:
-                session = devices[self._path].session
-                session.charge(session.sim.spec.profile.cached_read_ns)
+                session.charge(cost_ns)
             return get(self, attribute, name)
 
         return _in_place_of(get, get_cached)

@@ -69,7 +69,7 @@ def install(session: DeviceSession, built: BuiltBrick, plugs: Plugs) -> None:
     sys.meta_path.insert(0, OtherLibrary((PYBRICKS,), Library.EV3DEV2))
     sys.meta_path.append(MissingLibrary())
     sys.meta_path.append(HardwareFinder(Library.EV3DEV2))
-    connect(built.files, plugs, partial(ports_hint, session))
+    connect(session, built.files, plugs, partial(ports_hint, session))
     sys.modules["ev3dev2_glue"] = glue_module(session)
     sys.modules[virtual.NAME] = virtual.virtual_module(session)
     sys.modules.update(evdev_modules(session))
