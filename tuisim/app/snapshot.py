@@ -16,7 +16,7 @@ from tuisim.core.spec import RunSpec
 from tuisim.core.state import Instant
 from tuisim.data_class import dataclass
 from tuisim.protocol import BusyLoop, End, Ended, Inspected, Paused, RunState, Unended
-from tuisim.runs.brick_state import BrickState, Turns
+from tuisim.runs.brick_state import BrickState
 from tuisim.source import Program
 
 CHART_PERIOD_S = 0.33
@@ -75,7 +75,7 @@ class Snapshot:
 
     face: BrickState = _DARK
     """What the brick shows."""
-    turns: Turns = ()
+    turns: tuple[tuple[float, float], ...] = ()
     """Position in degrees and speed in degrees per second of each motor that does not drive the robot."""
     pressed: frozenset[str] = frozenset()
     """The brick's buttons that are held down."""

@@ -12,7 +12,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import field
 from typing import Any, NamedTuple
 
-from tuisim.core.spec import RunSpec
+from tuisim.core.spec import EMPTY_MAT, RunSpec
 from tuisim.core.tree import leaves
 from tuisim.core.values import Choice, Flag, NamedNumber, Value, Whole, WrongValue, values_of
 from tuisim.data_class import dataclass
@@ -234,7 +234,7 @@ OPTIONS: tuple[Option, ...] = (
         "MAT",
         "the name of a mat, or an image file",
         "a mat from `tuisim backgrounds`, or an image file",
-        "Empty_Map",
+        EMPTY_MAT,
     ),
     _word("mats", ("--mats",), "FOLDER", "a folder", "folder of images that `-b` finds by name"),
     _word(

@@ -61,6 +61,9 @@ centre or from the upper left corner."""
 MOTOR_KINDS = ("large", "medium")
 """Kinds of motors, for `MotorSpec.kind` and the wheel motors."""
 
+EMPTY_MAT = "Empty_Map"
+"""The mat without anything on it."""
+
 BUTTONS = ("up", "down", "left", "right", "enter", "backspace")
 """The brick's buttons, by their names in the library."""
 
@@ -704,7 +707,7 @@ START_VALUES = {
 class WorldSpec(Spec):
     """The robot's environment."""
 
-    background: str = text(what="name of a mat", default="Empty_Map")
+    background: str = text(what="name of a mat", default=EMPTY_MAT)
     obstacles: tuple[Obstacle, ...] = parts(Obstacle, default=())
     walls: bool = flag(
         default=True, label="Walls", flags=("--walls",), help="walls on the edges of the field"

@@ -25,8 +25,6 @@ ROW_BYTES = -(-DISPLAY_WIDTH // 8)
 LED_NAMES = ("left red", "left green", "right red", "right green")
 
 BLANK = bytes(ROW_BYTES * DISPLAY_HEIGHT)
-Turns = tuple[tuple[float, float], ...]
-"""Position in degrees and speed in degrees per second of motors."""
 _MOST_CELLS = 1000
 """More columns and rows than the text screen has with any font."""
 _MOST_NUMBER = 1e12
@@ -56,7 +54,7 @@ class BrickState:
     """The text screen; None until the program writes to it."""
     shows_text: bool = False
     """Whether the text screen was changed after the picture."""
-    turns: Turns = ()
+    turns: tuple[tuple[float, float], ...] = ()
     """Position in degrees and speed in degrees per second of each motor in `RobotSpec.extra_motors`.
 
     Valid at `turns_tick`; from then on each motor turns at its speed. Empty until one of them has turned.
@@ -65,7 +63,7 @@ class BrickState:
     sound: str = ""
     """What the brick said or played last; in brackets unless it is speech."""
 
-    def turns_at(self, time_s: float, tick_hz: int) -> Turns:
+    def turns_at(self, time_s: float, tick_hz: int) -> tuple[tuple[float, float], ...]:
         """Return `turns` extrapolated to a later time."""
         since_s = time_s - self.turns_tick / tick_hz
         return tuple((position_deg + dps * since_s, dps) for position_deg, dps in self.turns)

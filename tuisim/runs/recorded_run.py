@@ -201,7 +201,7 @@ class RowIndex:
     """Tick and position of each row that has been read of an output, which may still grow."""
 
     def __init__(self, output: OutputView) -> None:
-        self.output = output
+        self._output = output
         self._end = 0
         # 16 bytes a row: a program may print for hours.
         self._ticks, self._lines, self._starts = array("I"), array("I"), array("I")
@@ -224,7 +224,7 @@ class RowIndex:
             LogError: the recording is damaged.
         """
         rows = []
-        for row, after in islice(self.output.rows_from(self._end), limit):
+        for row, after in islice(self._output.rows_from(self._end), limit):
             self._note(row)
             self._end = after
             rows.append(row)
@@ -273,14 +273,14 @@ class RowIndex:
         """Return one row by its index, from 0."""
         # Nothing, if the program has changed its recording meanwhile.
         nothing = OutputRow("", self._ticks[number], 0, 0, Stream.NOTE), 0
-        return next(self.output.rows_from(self._starts[number]), nothing)[0]
+        return next(self._output.rows_from(self._starts[number]), nothing)[0]
 
     def rows(self, first: int, step: int = 1) -> Iterator[OutputRow]:
         """Yield the rows from an index on; with a step of -1 backwards."""
         if step < 0:
             yield from (self.row(number) for number in range(first, -1, -1))
         elif first < len(self):
-            rows = self.output.rows_from(self._starts[first])
+            rows = self._output.rows_from(self._starts[first])
             yield from (row for row, _ in islice(rows, len(self) - first))
 
     def line_of(self, name: str, tick: int) -> int:

@@ -5,12 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import assert_never
 
-from tuisim.core.spec import RunSpec
+from tuisim.core.spec import EMPTY_MAT, RunSpec
 from tuisim.runs.run_folder import StoredRun
 from tuisim.runs.waited import Awaited, Subject, find_awaited
-
-EMPTY_MAT = "Empty_Map"
-"""The mat without anything on it."""
 
 
 def describe_wait(run: StoredRun) -> str:

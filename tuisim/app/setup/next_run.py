@@ -32,7 +32,7 @@ from tuisim.config.program_settings import (
 from tuisim.config.robots import DEFAULT_ROBOT, RobotChoice, choose_robot
 from tuisim.core import tree
 from tuisim.core.geometry import Pose
-from tuisim.core.spec import NoiseSpec, Obstacle, RobotSpec, RunSpec
+from tuisim.core.spec import EMPTY_MAT, NoiseSpec, Obstacle, RobotSpec, RunSpec
 from tuisim.data_class import dataclass
 from tuisim.errors import BackgroundError
 from tuisim.source import Program
@@ -41,8 +41,6 @@ WORLD_PATHS = frozenset(
     {"background", "mats", "robot", "obstacles", "profile", "for_brick", "arguments", *RUN_VALUES}
 )
 """The paths of settings that affect a run."""
-
-_ANY_MAT = "Empty_Map"
 
 
 @dataclass(frozen=True, slots=True)
@@ -126,7 +124,7 @@ def plan_of_run(spec: RunSpec) -> NextRun:
     try:
         return plan_of_spec(spec)
     except BackgroundError:
-        elsewhere = replace(spec, world=replace(spec.world, background=_ANY_MAT))
+        elsewhere = replace(spec, world=replace(spec.world, background=EMPTY_MAT))
         return replace(plan_of_spec(elsewhere), spec=spec)
 
 

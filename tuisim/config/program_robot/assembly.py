@@ -12,6 +12,7 @@ from tuisim.config.program_robot.library import PAIRS, DeviceKind
 from tuisim.config.program_robot.mechanics import mechanics_in
 from tuisim.config.program_robot.mentions import Mention, Mentions, Pair, Where
 from tuisim.config.program_robot.places import (
+    SENSOR_SPECS,
     NewSensors,
     fields_of,
     mounted,
@@ -36,7 +37,6 @@ from tuisim.core.spec import (
     NO_PORT,
     OUTPUT_PORTS,
     ColorSensorSpec,
-    GyroSpec,
     InfraredSpec,
     MotorSpec,
     RobotSpec,
@@ -46,13 +46,7 @@ from tuisim.core.spec import (
 )
 from tuisim.data_class import dataclass
 
-KINDS: Mapping[type, DeviceKind] = {
-    ColorSensorSpec: DeviceKind.COLOR,
-    UltrasonicSpec: DeviceKind.ULTRASONIC,
-    GyroSpec: DeviceKind.GYRO,
-    TouchSpec: DeviceKind.TOUCH,
-    InfraredSpec: DeviceKind.INFRARED,
-}
+KINDS: Mapping[type, DeviceKind] = {spec: kind for kind, spec in SENSOR_SPECS.items()}
 """The kind of each sensor, by the class of its spec."""
 MOTOR_KINDS_SHOWN = {"large": DeviceKind.LARGE, "medium": DeviceKind.MEDIUM}
 _USUAL_PORTS = {

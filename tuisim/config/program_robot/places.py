@@ -75,7 +75,7 @@ def places_for(
 ) -> dict[str, SensorSpec]:
     """Return new sensors by port, at places and with names that no other sensor has."""
     found: dict[str, SensorSpec] = {}
-    for kind, spec in _SPECS.items():
+    for kind, spec in SENSOR_SPECS.items():
         mentions = {port: one for port, one in sorted(new.by_port.items()) if one.kind is kind}
         known = [*placed.values(), *found.values()]
         names = {sensor.name for sensor in known}
@@ -96,13 +96,14 @@ def places_for(
     return found
 
 
-_SPECS: Mapping[DeviceKind, type[SensorSpec]] = {
+SENSOR_SPECS: Mapping[DeviceKind, type[SensorSpec]] = {
     DeviceKind.COLOR: ColorSensorSpec,
     DeviceKind.ULTRASONIC: UltrasonicSpec,
     DeviceKind.GYRO: GyroSpec,
     DeviceKind.TOUCH: TouchSpec,
     DeviceKind.INFRARED: InfraredSpec,
 }
+"""The class of spec of each kind of sensor."""
 
 
 def _sides(
@@ -112,7 +113,7 @@ def _sides(
     found = {port: side_of(mention.names) for port, mention in mentions.items()}
     if kind is DeviceKind.TOUCH and first_free and len(found) == 1 and Side.NONE in found.values():
         return dict.fromkeys(found, Side.FRONT)
-    orders = [Side(side) for side in ORDERS[_SPECS[kind]]]
+    orders = [Side(side) for side in ORDERS[SENSOR_SPECS[kind]]]
     taken = {*found.values()} | (
         set() if first_free or kind in (DeviceKind.TOUCH, DeviceKind.COLOR) else {Side.FRONT}
     )

@@ -252,8 +252,7 @@ class SimulatedMotor(DriverMotor):
         """Run until a time at which something changes that a motor at rest does not expect."""
         if self._cruise_dps:
             self._leave_cruise()
-        DriverMotor.run_until(self, time_ns)
-        self.is_at_rest = False
+        super().wake(time_ns)
         self._even_ticks = 0
 
     def run_until(self, time_ns: int) -> None:
