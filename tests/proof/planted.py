@@ -69,7 +69,7 @@ PLANTED: tuple[Planted, ...] = (
         "if not stat.S_ISREG(os.fstat(descriptor).st_mode):",
         "if stat.S_ISDIR(os.fstat(descriptor).st_mode):",
         "enemies",
-        ("run:places:4050",),
+        ("run:places:41",),
         "something else in place of",
     ),
     Planted(
