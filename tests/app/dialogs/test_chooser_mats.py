@@ -11,7 +11,9 @@ from textual.widgets import Input, OptionList, Static
 
 from tests.app.app_help import LOGS, message_of, notices, open_lab, ready, settings, until
 from tuisim.app.app import AppSettings, LabApp
+from tuisim.app.dialogs.chooser import MatPicker
 from tuisim.config.options import Settings
+from tuisim.errors import TuisimError
 from tuisim.terminal.cell_view import PixelView
 
 
@@ -156,3 +158,16 @@ async def test_a_path_to_nothing_has_no_preview() -> None:
         await until(pilot, lambda: bool(str(title.content)))
         await pilot.press(*"/no/such.png")
         await until(pilot, lambda: not str(title.content))
+
+
+async def test_a_picture_that_comes_while_the_dialog_closes_is_dropped() -> None:
+    async with open_lab(LOGS) as (pilot, app):
+        await pilot.press("b")
+        await until(pilot, lambda: bool(app.screen.query(PixelView)))
+        picker = app.screen
+        assert isinstance(picker, MatPicker)
+        await until(pilot, lambda: bool(picker._pictures))
+        key, picture = next(iter(picker._pictures.items()))
+        await picker.query(PixelView).remove()
+        picker._decoded((picker._shown, key[1]), picture)
+        picker._failed(picker._shown, TuisimError("no picture"))

@@ -486,7 +486,8 @@ class MatPicker(Chooser):
 
     def _decoded(self, key: tuple[str, Viewport], picture: Pixels) -> None:
         self._pictures[key] = picture
-        if not self.is_attached or key[0] != self._shown:
+        # A dialog that is being closed loses its view first.
+        if not self.is_attached or not self.query(PixelView) or key[0] != self._shown:
             return
         view = self.query_one(PixelView)
         if key[1] == field_view(view):
@@ -496,7 +497,7 @@ class MatPicker(Chooser):
             self.show_again()
 
     def _failed(self, name: str, error: TuisimError) -> None:
-        if self.is_attached and name == self._shown:
+        if self.is_attached and self.query(PixelView) and name == self._shown:
             self.query_one(PixelView).clear_picture()
             self.query_one("#title", Static).update(str(error))
 

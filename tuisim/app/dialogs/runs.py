@@ -188,7 +188,8 @@ class RunChooser(ListDialog):
         background.run(self, work, show, lambda _: show(None), group="way", exclusive=True)
 
     def _show_way(self, run_id: str, picture: Pixels | None) -> None:
-        if not self.is_attached or run_id != self._looked_at:
+        # A dialog that is being closed loses its view first.
+        if not self.is_attached or not self.query(PixelView) or run_id != self._looked_at:
             return
         view = self.query_one(PixelView)
         if picture is None:

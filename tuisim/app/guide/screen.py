@@ -300,7 +300,9 @@ class GuideScreen(Dialog[None]):
 
     def on_resize(self, event: events.Resize) -> None:
         self._arrange(self._page.has_focus)
-        self.call_after_refresh(lambda: self._answers.fit(self._room))
+        # They may be removed by then.
+        answers, room = self._answers, self.query_one("#both")
+        self.call_after_refresh(lambda: answers.fit(room.size))
 
     @property
     def _room(self) -> Size:
