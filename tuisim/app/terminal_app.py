@@ -172,7 +172,11 @@ class TerminalApp(BufferedApp):
         if not isinstance(event, events.MouseDown):
             return False
         # Until the next layout a screen still finds a removed widget, and fails when a selection begins there.
-        widget, _ = self.screen.get_widget_and_offset_at(event.x, event.y)
+        try:
+            widget, _ = self.screen.get_widget_and_offset_at(event.x, event.y)
+        except AttributeError:
+            # Textual's tree fails to say what is at a place before it is drawn.
+            return True
         return widget is not None and not widget.is_attached
 
     @on(ClosesOnce.Changed)

@@ -83,6 +83,15 @@ def text_of(model: Model, pane: str = "table", width: int = 100, height: int = 3
     return "\n".join("".join(text for text, _ in line) for line in lines)
 
 
+@pytest.mark.parametrize("width", range(1, 12))
+def test_a_pane_narrower_than_its_first_column_shows_that(width: int) -> None:
+    table = stepped(80, 10)
+    model = model_of(Log("test", table, guess_columns(table)))
+    model.find_bands(model.unsearched())
+    for pane in ("bands", "statistics"):
+        assert text_of(model, pane, width, 9)
+
+
 def test_a_row_without_the_name_of_its_variable_is_shown_all_the_same() -> None:
     table = pa.table(
         {"variable": ["A", None, "A"], "value": [1.0, 2.0, 3.0], "time": [0.0, 1.0, 2.0]}

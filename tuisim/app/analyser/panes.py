@@ -282,7 +282,6 @@ def pane_lines(name: str, model: Model, chosen: int, width: int, height: int) ->
     )
     if over and not more:
         head = [(f"{cut(head[0][0], width - 2):{width - 1}}…", HEAD)]
-    lines: list[Line] = [head]
     shown: list[Line] = []
     chosen_at = range(0)
     for number, row in enumerate(rows[first : first + room], first):
@@ -299,7 +298,7 @@ def pane_lines(name: str, model: Model, chosen: int, width: int, height: int) ->
         shown += made
     # With rows of several lines, the selected one stays visible.
     start = max(min(chosen_at.start, chosen_at.stop - room), 0)
-    return lines + shown[start : start + room] + more + [[(text, DIM)] for text in below]
+    return [head, *shown[start : start + room], *more, *([(text, DIM)] for text in below)]
 
 
 def _continued(
@@ -382,10 +381,10 @@ def _rows_of(
 
 
 def _fitting_whole(columns: Sequence[int], widths: Sequence[int], width: int) -> list[int]:
-    """Return the columns that fit completely, and the last one if it is a text that may be cut."""
+    """Return the first column, those that fit, and the last one if it is a text that may be cut."""
     left, seen = width, []
     for at in columns:
-        if widths[at] > left and (widths[at] <= _WIDEST or left < _WIDEST // 2):
+        if seen and widths[at] > left and (widths[at] <= _WIDEST or left < _WIDEST // 2):
             break
         left -= widths[at] + _GAP
         seen.append(at)
