@@ -107,9 +107,10 @@ async def visited() -> AsyncIterator[Visited]:
             visitors: int = 2,
             idle_s: float = PATIENCE_S,
             keep_s: float = PATIENCE_S,
+            keep_unused_s: float = PATIENCE_S,
             report: Callable[[str], None] = lambda _: None,
         ) -> Visitor:
-            limits = ServerLimits(visitors, VisitLimits(idle_s, keep_s))
+            limits = ServerLimits(visitors, VisitLimits(idle_s, keep_s, keep_unused_s))
             server = Server(command or stand_in(), Gate("127.0.0.1", TOKEN), limits, report)
             port = await stack.enter_async_context(listening(server, "127.0.0.1", 0))
             visitor = Visitor(await stack.enter_async_context(ClientSession()), port)

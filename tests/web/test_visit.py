@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from tests.cases import cases
-from tuisim.web.visit import Activity, is_done_by_a_person
+from tuisim.web.visit import Activity, is_done_by_a_person, is_use
 
 INPUT = {
     "a letter": ("R", True),
@@ -28,6 +28,23 @@ INPUT = {
 @cases("text, by_a_person", INPUT)
 def test_answers_of_the_terminal_do_not_count_as_done(text: str, by_a_person: bool) -> None:
     assert is_done_by_a_person(text) is by_a_person
+
+
+MOUSE = {
+    "a move": ("\x1b[<35;10;20M", False),
+    "two moves with keys held": ("\x1b[<39;10;20M\x1b[<51;11;20M", False),
+    "a move and an answer": ("\x1b[<35;10;20M\x1b[12;40R", False),
+    "a press": ("\x1b[<0;10;20M", True),
+    "a drag": ("\x1b[<32;10;20M", True),
+    "the wheel": ("\x1b[<64;10;20M", True),
+    "a move and a key": ("\x1b[<35;10;20MR", True),
+}
+
+
+@cases("text, uses", MOUSE)
+def test_the_mouse_on_its_way_does_not_use_an_app(text: str, uses: bool) -> None:
+    assert is_done_by_a_person(text)
+    assert is_use(text) is uses
 
 
 def test_a_visitor_is_idle_since_the_last_input() -> None:

@@ -49,6 +49,48 @@ async def test_a_page_is_told_its_session_and_finds_the_same_app_again(visited: 
     assert is_there(pid)
 
 
+MOVE = "\x1b[<35;10;20M"
+UNUSED = {
+    "at once": [],
+    "the mouse has moved over it": [["stdin", MOVE]],
+    "it was in front": [["focus"]],
+}
+USED: Mapping[str, list[list[object]]] = {
+    "a key": [["stdin", "R"]],
+    "a button": [["act", "run"]],
+    "a program has run": [["stdin", "tell run a.py"], ["stdin", "tell ended a.py"]],
+}
+
+
+async def left_again(visitor: Visitor, sent: list[list[object]]) -> int:
+    """Open an app in a tab that sends this, and close the tab; return its process."""
+    socket, pid = await visitor.started()
+    for message in (*sent, ["stdin", MOVE]):
+        await socket.send_json(message)
+        await heard(socket)
+    await socket.close()
+    return pid
+
+
+@cases("sent", UNUSED)
+async def test_an_app_that_nobody_has_used_ends_soon_without_its_tab(
+    sent: list[list[object]], visited: Visited
+) -> None:
+    visitor = await visited(visitors=1, keep_unused_s=0.01)
+    for _ in range(3):
+        await gone(await left_again(visitor, sent))
+
+
+@cases("sent", USED)
+async def test_an_app_that_was_used_is_kept_without_its_tab(
+    sent: list[list[object]], visited: Visited
+) -> None:
+    visitor = await visited(keep_unused_s=0.01)
+    used = await left_again(visitor, sent)
+    await gone(await left_again(visitor, []))
+    assert is_there(used)
+
+
 async def test_a_second_tab_takes_a_session_over(visited: Visited) -> None:
     visitor = await visited()
     first, pid = await visitor.started()

@@ -46,7 +46,7 @@ _SERVER = (
         metavar="MIN",
         group=_GROUP,
         type=WordType(lambda text: parse(_MINUTES, text, "--keep")),
-        help=f"End an app that no tab has shown for so many minutes ({DEFAULT_KEEP_MIN:g}).",
+        help=f"End an app that no tab has shown for so many minutes ({DEFAULT_KEEP_MIN:g}); an unused one, after 1.",
     ),
     option(
         "--idle",

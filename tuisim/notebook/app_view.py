@@ -59,7 +59,7 @@ class AppView:
 
     def __init__(self, words: list[str], origins: tuple[str, ...]) -> None:
         gate = Gate("127.0.0.1", frames=(*notebook_origins(), *origins))
-        limits = ServerLimits(1, VisitLimits(keep_s=float("inf")))
+        limits = ServerLimits(1, VisitLimits(keep_s=float("inf"), keep_unused_s=float("inf")))
         self._server = BackgroundServer(Server(app_command(words), gate, limits))
         self._is_ready = Event()
         self.begun: SimpleQueue[str] = SimpleQueue()

@@ -28,11 +28,18 @@ _ANSWER = re.compile(
     r"\x1b(\[[\d;]*[cnRt]|\[[?>=][\d;:]*\$?[A-Za-z]|[P_\]^][^\x07\x1b]*(\x07|\x1b\\))"
 )
 """What a terminal sends by itself: reports of its cursor, size, modes, colours and name."""
+_MOVE = re.compile(r"\x1b\[<(3[59]|4[37]|5[159]|63);\d+;\d+M")
+"""A mouse that moves with no button pressed."""
 
 
 def is_done_by_a_person(text: str) -> bool:
     """Return whether input contains more than answers of the terminal: a key, the mouse, a paste."""
     return _ANSWER.sub("", text) != ""
+
+
+def is_use(text: str) -> bool:
+    """Return whether input does something in the app: a key, a click, a paste; the mouse on its way does not."""
+    return is_done_by_a_person(_MOVE.sub("", text))
 
 
 class Activity:
@@ -64,6 +71,8 @@ class VisitLimits:
     """It ends when the visitor does nothing for this time."""
     keep_s: float = 3600.0
     """It ends when no browser shows it for this time."""
+    keep_unused_s: float = 60.0
+    """The same, if nobody has used it and it has run no program."""
 
 
 class Visit:
@@ -89,6 +98,8 @@ class Visit:
         self._session.told = self._told
         self._program, self._runs = "", False
         """The program that the app has open, and whether it runs, as far as it has told."""
+        self._is_used = False
+        """Whether somebody has used the app, or it has run a program."""
         self._panels: list[str] = []
         """The panels that the app shows, as far as it has told."""
         self._telling: asyncio.Task[None] | None = None
@@ -164,6 +175,7 @@ class Visit:
             case {"what": "ready" | "run" as what, **more}:
                 self._program = printable(str(more.get("program", "")))[:_MAX_PROGRAM]
                 self._runs = what == "run"
+                self._is_used |= self._runs
             case {"what": "ended"}:
                 self._runs = False
             case {"what": "panels", "shown": list(shown)}:
@@ -185,15 +197,16 @@ class Visit:
                     await self._take(message.data)
         finally:
             if self._link.leave(socket):
+                keep_s, unused_s = self._limits.keep_s, self._limits.keep_unused_s
                 self._left = asyncio.get_running_loop().call_later(
-                    min(self._limits.keep_s, _LONGEST_S),
+                    min(keep_s if self._is_used else unused_s, keep_s, _LONGEST_S),
                     self.end,
                     "No tab has shown this session for too long.",
                 )
 
     async def open_file(self, path: Path) -> None:
         """Let the app open a file that the visitor has brought."""
-        self._activity.note()
+        self._note_use()
         await self.ask({"what": "open", "path": str(path)})
 
     async def ask(self, asked: Mapping[str, Any]) -> None:
@@ -219,6 +232,10 @@ class Visit:
         if not self._end.done():
             self._end.set_result(reason)
 
+    def _note_use(self) -> None:
+        self._activity.note()
+        self._is_used = True
+
     def _is_watched(self) -> None:
         if self._left is not None:
             self._left.cancel()
@@ -242,7 +259,9 @@ class Visit:
         with suppress(ValueError, RecursionError):
             match json.loads(data):
                 case ["stdin", str(text)]:
-                    if is_done_by_a_person(text):
+                    if is_use(text):
+                        self._note_use()
+                    elif is_done_by_a_person(text):
                         self._activity.note()
                     await self._session.send_bytes(text.encode("utf-8", "ignore"))
                 case ["resize", {"width": int(width), "height": int(height)}]:
@@ -252,7 +271,7 @@ class Visit:
                 case ["ping", str(sent)]:
                     await self._link.send_str(json.dumps(["pong", sent]))
                 case ["act", str(name)]:
-                    self._activity.note()
+                    self._note_use()
                     await self._session.send_meta({"type": "act", "name": name})
                 case ["focus"]:
                     await self._session.focus()
