@@ -1,4 +1,4 @@
-"""The kernel that `tuisim kernel install` adds: the cells of a course run in it as they are."""
+"""The cells of a course in the kernel that `tuisim kernel install` adds, and the old simulator beside it."""
 
 from __future__ import annotations
 
@@ -44,6 +44,9 @@ def test_magics_are_there_without_being_loaded(course_kernel: str) -> None:
 
 
 @pytest.mark.slow
-def test_in_other_kernels_these_modules_are_what_they_are() -> None:
+def test_in_other_kernels_the_old_simulator_wins_and_a_note_says_so() -> None:
     done = execute({"load": "%load_ext tuisim\n%load_ext nbev3devsim"})
     assert stream(done["load"]) == "the old one\n"
+    assert stream(done["load"], "stderr") == (
+        "tuisim: note: nbev3devsim is the old simulator here, and tuisim in the kernel RoboLab (tuisim)\n"
+    )

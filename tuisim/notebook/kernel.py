@@ -1,4 +1,4 @@
-"""The extension of the Jupyter kernel `RoboLab (tuisim)`: the magics, under the names of the old simulator, too.
+"""The modules that a course's cells import, and the extension of the Jupyter kernel `RoboLab (tuisim)`.
 
 `tuisim kernel install` adds the kernel. It is IPython's own, started with `--ext tuisim.notebook.kernel`.
 """
@@ -6,6 +6,8 @@
 from __future__ import annotations
 
 import sys
+from contextlib import suppress
+from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -13,7 +15,22 @@ if TYPE_CHECKING:
     from IPython.core.interactiveshell import InteractiveShell
 
 OLD_NAMES = Path(__file__).with_name("course")
-"""Folder with the modules that a course's cells import. Only this kernel adds it to `sys.path`."""
+"""Folder with the modules that a course's cells import.
+
+An installation puts it last on `sys.path`, so that the old simulator wins where that is installed; this kernel puts it
+first.
+"""
+
+
+def find_old_simulator() -> Path | None:
+    """Return the file of the old simulator if a cell that imports `nbev3devsim` gets that one, else None."""
+    # A module that was put in its place need not say where it is from.
+    with suppress(ValueError):
+        spec = find_spec("nbev3devsim")
+        if spec is not None and spec.origin is not None:
+            file = Path(spec.origin)
+            return None if file.is_relative_to(OLD_NAMES) else file
+    return None
 
 
 def load_ipython_extension(shell: InteractiveShell) -> None:

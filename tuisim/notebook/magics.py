@@ -13,6 +13,7 @@ from IPython.core.interactiveshell import InteractiveShell
 
 from tuisim.errors import ConfigError, TuisimError
 from tuisim.notebook import eds, old_formats
+from tuisim.notebook.kernel import find_old_simulator
 from tuisim.notebook.lab import Lab, roboSim
 from tuisim.source import PRELUDE_TEXTS, PRELUDES
 
@@ -120,6 +121,11 @@ LOG_MAGICS: Mapping[str, Log] = {
 
 def install(shell: InteractiveShell) -> None:
     """Register every magic, and put `roboSim` and `eds` into the notebook's namespace."""
+    if find_old_simulator() is not None:
+        print(
+            "tuisim: note: nbev3devsim is the old simulator here, and tuisim in the kernel RoboLab (tuisim)",
+            file=sys.stderr,
+        )
     for name in PRELUDES:
         shell.magics_manager.register_function(_guarded(_sim_magic(shell, name)), "line_cell", name)
     shell.magics_manager.register_function(_guarded(_sim_app(shell)), "line", "sim_app")

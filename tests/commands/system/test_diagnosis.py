@@ -75,6 +75,11 @@ JUDGED: dict[str, tuple[Finding, State, str]] = {
         PROBLEM,
         "Install tuisim again",
     ),
+    "the old simulator": (
+        diagnosis.simulator_findings("old.py")[0],
+        ADVICE,
+        "tuisim kernel install",
+    ),
     "package of another version": (
         diagnosis.dependency_findings([("a", "1.0", "2.0")])[1],
         PROBLEM,

@@ -258,6 +258,19 @@ def _dependency(name: str, pinned: str, installed: str) -> Finding:
     return Finding(name, installed)
 
 
+def simulator_findings(old_simulator: str) -> list[Finding]:
+    """Judge which `nbev3devsim` the notebooks of a course import: nothing to tell if it is tuisim's.
+
+    Args:
+        old_simulator: The file of the old simulator; empty if it is not installed.
+    """
+    if not old_simulator:
+        return []
+    advice = "It is tuisim in the kernel RoboLab (tuisim): tuisim kernel install"
+    value = f"the old simulator, in {old_simulator}"
+    return [Finding("nbev3devsim", value, State.ADVICE, advice)]
+
+
 Version = tuple[int, ...]
 
 

@@ -22,6 +22,7 @@ from tuisim.commands.system.diagnosis import Finding, State, prevents_use
 from tuisim.config.command_line import AS_JSON, command, option
 from tuisim.config.folders import backgrounds_folder, home_folder, programs_folder
 from tuisim.errors import ConfigError, TuisimError
+from tuisim.notebook.kernel import find_old_simulator
 
 EXIT_PREVENTED = 1
 _WIDTH = 78
@@ -197,7 +198,12 @@ def _machine_findings() -> list[Finding]:
     ]
     if not why_not:
         found.append(diagnosis.store_finding(*_store(home)))
-    return [*found, _textual_finding(), *diagnosis.dependency_findings(_requirements())]
+    return [
+        *found,
+        _textual_finding(),
+        *diagnosis.dependency_findings(_requirements()),
+        *diagnosis.simulator_findings(str(find_old_simulator() or "")),
+    ]
 
 
 def _textual_finding() -> Finding:

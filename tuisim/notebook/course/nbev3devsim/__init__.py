@@ -1,4 +1,4 @@
-"""The extension that `%load_ext nbev3devsim` loads in the kernel `RoboLab (tuisim)`."""
+"""The extension that `%load_ext nbev3devsim` loads, unless the old simulator is installed."""
 
 from tuisim import load_ipython_extension
 
