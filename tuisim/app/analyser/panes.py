@@ -382,7 +382,8 @@ def _rows_of(
 
 def _fitting_whole(columns: Sequence[int], widths: Sequence[int], width: int) -> list[int]:
     """Return the first column, those that fit, and the last one if it is a text that may be cut."""
-    left, seen = width, []
+    left = width
+    seen: list[int] = []
     for at in columns:
         if seen and widths[at] > left and (widths[at] <= _WIDEST or left < _WIDEST // 2):
             break
