@@ -283,7 +283,7 @@ def pane_lines(name: str, model: Model, chosen: int, width: int, height: int) ->
     if over and not more:
         head = [(f"{cut(head[0][0], width - 2):{width - 1}}…", HEAD)]
     shown: list[Line] = []
-    chosen_at = range(0)
+    start = stop = 0
     for number, row in enumerate(rows[first : first + room], first):
         style = HERE if number == chosen else PLAIN
         texts, wide = [row[at] for at in used], [widths[at] for at in used]
@@ -293,11 +293,11 @@ def pane_lines(name: str, model: Model, chosen: int, width: int, height: int) ->
             else [_row(texts, wide, gap, style)]
         )
         if number == chosen:
-            chosen_at = range(len(shown), len(shown) + len(made))
+            start, stop = len(shown), len(shown) + len(made)
             made = [[*line, (" " * width, HERE)] for line in made]
         shown += made
     # With rows of several lines, the selected one stays visible.
-    start = max(min(chosen_at.start, chosen_at.stop - room), 0)
+    start = max(min(start, stop - room), 0)
     return [head, *shown[start : start + room], *more, *([(text, DIM)] for text in below)]
 
 
