@@ -118,6 +118,11 @@ def test_extended_limits_have_ticks_at_equal_distances_in_the_middle_of_rows(
     assert [*axes.row_labels(extended, rows)] == [round(one) for one in at]
 
 
+def test_limits_are_extended_as_little_as_possible() -> None:
+    assert axes.on_rows((50.0, 100.0), 15) == (50.0, 100.0)
+    assert axes.on_rows((86.0, 91.0), 7) == (86.0, 92.0)
+
+
 def test_reduction_keeps_extremes_and_order() -> None:
     times = np.linspace(0, 60, 100_000)
     values = np.sin(times)

@@ -47,15 +47,18 @@ def test_names_are_all_long_or_all_short_and_never_touch() -> None:
     assert narrow == [(3, 0, "86.27"), (2, 2, "82.75")]
 
 
-def test_a_name_stands_beside_a_cursor() -> None:
-    spans = spans_of(next(iter(chart(LEVELS)[0])), PLAIN_LIGHT)
+@pytest.mark.parametrize("values", [LEVELS, LEVELS[::-1]], ids=["white first", "white last"])
+def test_a_name_stands_beside_a_cursor_and_within_the_chart(values: list[float]) -> None:
+    spans = spans_of(next(iter(chart(values)[0])), PLAIN_LIGHT)
     places = [range(5), range(5, 10), range(10, 15)]
 
     def put(cursors: list[int]) -> list[tuple[int, int, str]]:
         return placed_names(spans, places, 4, 15, lambda *_: True, cursors)
 
     for cursor in range(15):
-        assert all(not at <= cursor < at + len(text) for _, at, text in put([cursor])), cursor
+        names = put([cursor])
+        assert all(not at <= cursor < at + len(text) for _, at, text in names), cursor
+        assert all(0 <= at <= 15 - len(text) for _, at, text in names), cursor
 
 
 def test_too_many_samples_are_left_to_the_analyser() -> None:

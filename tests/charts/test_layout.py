@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from xml.etree import ElementTree
 
@@ -18,6 +19,7 @@ from tuisim.charts import axes
 from tuisim.charts.files import image_of, svg_of
 from tuisim.charts.layout import (
     COLORS,
+    LINE_PX,
     ChartData,
     Drawing,
     Line,
@@ -170,6 +172,10 @@ def test_facets_stand_below_each_other() -> None:
     first, second = (shape.points[:, 1] for shape in drawing.shapes if isinstance(shape, Stroke))
     assert first.max() < second.min()
     assert any(isinstance(shape, Rule) and shape.faint for shape in drawing.shapes)
+    names = [shape for shape in drawing.shapes if isinstance(shape, Words) and shape.strong]
+    above = (-math.inf, drawing.plots[0].bottom)
+    for name, upper, plot in zip(names[-2:], above, drawing.plots, strict=True):
+        assert upper <= name.y - LINE_PX / 2 and name.y + LINE_PX / 2 <= plot.top
 
 
 @pytest.mark.parametrize(

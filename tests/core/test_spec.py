@@ -162,6 +162,12 @@ def test_touch(x_mm: float, y_mm: float, heading_deg: float, pressed: bool) -> N
     assert touch.pressed(Pose(x_mm, y_mm, heading_deg), TouchSpec(), BOX) is pressed
 
 
+@pytest.mark.parametrize("size_mm", [(0.0, 100.0), (100.0, 0.0), (100.0, -1.0)])
+def test_an_obstacle_has_a_size(size_mm: tuple[float, float]) -> None:
+    with pytest.raises(ConfigError, match="must be above 0"):
+        Obstacle(0.0, 0.0, *size_mm)
+
+
 SEEN = {
     "ahead": (500.0, 500.0, 0.0, (0, 19)),
     "to the right": (900.0, 980.0, 0.0, (23, 24)),

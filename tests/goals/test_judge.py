@@ -150,6 +150,13 @@ def test_combination(
     assert found.changes[-1].time_s == pytest.approx(time_s, abs=0.006)
 
 
+def test_what_begins_after_the_last_tick_is_judged(home: Path, tmp_path: Path) -> None:
+    goals = "[[goal]]\nname = 'end'\nfinish = true\n[[goal]]\nname = 'it'\nafter = 'end'\n"
+    goals += "follow = { sensors = 'middle', darker_than = 50 }\n"
+    result = judged(finished(home), tmp_path, goals)["it"]
+    assert (result.state, result.reason[:34]) == ("missed", "The robot has no colour sensor mid")
+
+
 def test_points_are_those_of_met_goals(home: Path, tmp_path: Path) -> None:
     assert points(judged(finished(home), tmp_path, GOALS).values()) == 7.5
 

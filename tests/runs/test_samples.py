@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from tests.cases import cases
+from tuisim.core.conditions import ValueCondition, ValueSource
 from tuisim.runs.records import OutputRow, Stream
-from tuisim.runs.samples import Sample, parse_sample, samples_of
+from tuisim.runs.samples import Sample, parse_sample, rows_when, samples_of
 
 SAMPLES = {
     "whole number": ("Ultrasonic: 2550", ("Ultrasonic", 2550.0, None)),
@@ -72,3 +73,20 @@ def test_only_what_was_printed_is_logged() -> None:
 def test_printed_time_counts() -> None:
     (sample,) = samples_of([OutputRow("a: 1 7.5", 5, 50_000_000, 3, Stream.STDOUT)])
     assert (sample.time_s, sample.time_ns) == (7.5, 50_000_000)
+
+
+@cases(
+    "name, sign, value, source, texts",
+    {
+        "of any name": ("", ">", "2", ValueSource.SAMPLE, ["a: 3", "b: 4"]),
+        "of one name": ("a", ">", "2", ValueSource.SAMPLE, ["a: 3"]),
+        "a line": ("", "matches", "x$", ValueSource.PRINT, ["max"]),
+    },
+)
+def test_lines_of_which_a_condition_is_true(
+    name: str, sign: str, value: str, source: ValueSource, texts: list[str]
+) -> None:
+    printed = ("a: 1", "max", "a: 3", "b: 4")
+    rows = [OutputRow(text, tick, tick, 1, Stream.STDOUT) for tick, text in enumerate(printed)]
+    condition = ValueCondition(name, sign, value, source)
+    assert [row.text for row in rows_when(condition, rows)] == texts

@@ -90,6 +90,15 @@ def test_everything_on_the_field_is_seen() -> None:
     } <= seen
 
 
+@pytest.mark.parametrize(
+    "pose, rays, is_seen", [(HERE, True, True), (HERE, False, False), (None, True, False)]
+)
+def test_rays_are_those_of_a_robot_that_is_there(
+    pose: Pose | None, rays: bool, is_seen: bool
+) -> None:
+    assert bool(scene_of(SPEC, pose, rays=rays).rays) == is_seen
+
+
 def test_runs_whose_pens_have_not_touched_are_not_joined() -> None:
     other = replace(TRACE, xs_mm=TRACE.xs_mm + 100, ys_mm=TRACE.ys_mm + 100)
     view = fitting_view(SPEC.robot, 600, 400)

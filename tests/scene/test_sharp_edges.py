@@ -48,6 +48,15 @@ def test_bands_beside_each_other_have_no_spikes_where_three_colours_meet(
     assert colors_of(drawn(mat, size)) == {*colors, (255, 255, 255)}
 
 
+def test_an_edge_is_sharp_up_to_an_area_that_begins_beside_it() -> None:
+    mat = field()
+    mat[204:601, 503:701] = 0
+    mat[303:701, 703:901] = 128
+    is_mixed = drawn(mat, SIZES[1], exact=True)[18:21, 45] < 250
+    assert is_mixed.all()
+    assert (drawn(mat, SIZES[1])[18:21, 45] == 255).all()
+
+
 @pytest.mark.parametrize("size", SIZES, ids=str)
 def test_lines_round_shapes_and_gradients_are_as_before(size: tuple[int, int]) -> None:
     rows, cols = np.indices((1143, 2362))

@@ -37,6 +37,11 @@ def test_a_move_ends_as_it_is_told(base: DriveBase, then: Stop, active: bool) ->
     assert base._base.active == active
 
 
+def test_what_is_no_end_of_a_move_is_refused(base: DriveBase) -> None:
+    with pytest.raises(TypeError, match="a Stop is needed, not"):
+        call(base.straight, 100, Port.A)
+
+
 def test_a_move_without_an_end_drives_on(base: DriveBase) -> None:
     base.straight(100, Stop.NONE)
     assert base.state()[1] == 156
