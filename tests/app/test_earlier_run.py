@@ -1,4 +1,4 @@
-"""The earlier run: its robot beside the one in view, and where the two parted."""
+"""The earlier run: its robot beside the one in view."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import pytest
 from textual.pilot import Pilot
 from textual.widgets import OptionList
 
-from tests.app.app_help import notices, open_lab, program, ready, until
+from tests.app.app_help import open_lab, program, ready, until
 from tests.app.lesson_help import opened, run_over
 from tests.runs.test_recorded_run import stored
 from tuisim.app.app import LabApp
@@ -58,29 +58,6 @@ async def test_the_run_before_is_drawn_at_the_same_time() -> None:
         assert earlier_pose(app) is None
         await pilot.press("minus")
         assert earlier_pose(app) is not None
-
-
-async def test_a_key_goes_to_where_they_parted() -> None:
-    async with open_lab(STRAIGHT, speed=0.0, size=SIZE) as (pilot, app):
-        await run(pilot, app, STRAIGHT)
-        await pilot.press("exclamation_mark")
-        none = "No other run on this mat to compare with. g and Enter go to where"
-        await until(pilot, lambda: any(notice.startswith(none) for notice in notices(app)))
-        await run(pilot, app, STRAIGHT)
-        await pilot.press("exclamation_mark")
-        await until(
-            pilot,
-            lambda: any(
-                notice.startswith("The robot has driven as in run") for notice in notices(app)
-            ),
-        )
-        await run(pilot, app, STRAIGHT.replace("20, 20, 1", "20, 10, 1"))
-        await pilot.press("exclamation_mark")
-        timeline = app.run_controller.timeline
-        await until(pilot, lambda: timeline.at is not None)
-        assert 0 < timeline.tick < 30
-        where = f"Here, at {timeline.time_s:.2f} s, it left run"
-        await until(pilot, lambda: any(notice.startswith(where) for notice in notices(app)))
 
 
 def test_without_a_run_before_it_is_the_last_stored_one_of_the_program() -> None:

@@ -55,8 +55,8 @@ def test_what_matters_comes_first(words: str, width: int, told: str) -> None:
     "words, told",
     [
         (PORT, "no ColorSensor on in1: in1 us, in2 color, in4 gyro. {robot} chooses another robot"),
-        (TYPO, ""),
-        ("ValueError: no", ""),
+        (TYPO, "{went-wrong} goes to where it went wrong"),
+        ("ValueError: no", "{went-wrong} goes to where it went wrong"),
     ],
 )
 def test_the_remedy_is_told(words: str, told: str) -> None:

@@ -107,7 +107,7 @@ WAITS: dict[str, tuple[WorldSpec, Moves, list[tuple[Subject, str, int, str]]]] =
     "connection": (
         SPEC.world,
         lambda r: poll(r, "socket", "accept"),
-        [(Subject.CONNECTION, "socket", 70, "line 5")],
+        [(Subject.CONNECTION, "socket", 70, "")],
     ),
     "line while it turns": (
         SPEC.world,
@@ -162,6 +162,7 @@ def test_what_a_run_waited_for(
     moves(recorder)
     found = find_awaited(recorder.end(End.TIME_LIMIT))
     assert [(one.subject, one.port, one.times, one.value) for one in found] == awaited
+    assert all(0.0 <= one.since_s <= recorder.simulation.tick / 100 for one in found)
 
 
 @pytest.mark.parametrize(

@@ -144,13 +144,13 @@ def test_a_batch_says_it_in_a_column(tmp_path: Path, here: Command) -> None:
 
 @pytest.mark.parametrize("subject", Subject)
 def test_there_are_words_for_everything(subject: Subject) -> None:
-    awaited = Awaited(subject, "in4", 3, "12 cm")
+    awaited = Awaited(subject, "in4", 3, 0.5, 7, "12 cm")
     assert describe_awaited(awaited) and name_remedy(awaited, SPEC)
     assert describe_wait_with_keys([awaited], SPEC).startswith(describe_awaited(awaited))
 
 
 def test_without_walls_they_are_advised() -> None:
     open_floor = RunSpec(RobotSpec(), WorldSpec(walls=False), PROFILES["ev3"])
-    awaited = Awaited(Subject.DISTANCE, "in4", 3, "255 cm")
+    awaited = Awaited(Subject.DISTANCE, "in4", 3, 0.5, 7, "255 cm")
     assert name_remedy(awaited, open_floor).startswith("--walls on, or -o ")
     assert "--walls" not in name_remedy(awaited, SPEC)

@@ -16,6 +16,7 @@ from textual.timer import Timer
 from textual.widget import Widget
 from textual.widgets import Input
 
+from tuisim.app import reasons
 from tuisim.app.action import FIELD_KEYS, TYPING_KEYS, KeyFooter, KeyWord, key_bindings, panel_keys
 from tuisim.app.actions import ActionContext, time_travel
 from tuisim.app.actions.files import welcome_at_start
@@ -394,6 +395,7 @@ class LabApp(PanelMessages):
         # An extra call between two frames would leave the next one no time.
         if not self._is_awake:
             self._on_frame_timer()
+        reasons.look(self.context)
 
     @property
     def _is_awake(self) -> bool:
@@ -449,8 +451,7 @@ class LabApp(PanelMessages):
         if not good:
             self.panel_area.bring("output")
         notice, last = end_words(ended, stood)
-        helps = "" if good else self.with_keys(remedy(ended.summary))
-        self._last_words = ": ".join(filter(None, (last, helps)))
+        self._last_words = last if good else f"{last}: {self.with_keys(remedy(ended.summary))}"
         self.document.run_ended_at(ended.error_line, "" if good else notice)
         # The output ends with the same words.
         if not self.panel_area.shown("output"):
@@ -521,7 +522,7 @@ class LabApp(PanelMessages):
             code is not None and code.is_read,
         )
         return Situation(
-            phase, *facts, is_away, reads_code, self.has_pixels, runs.earlier is not None
+            phase, *facts, is_away, reads_code, self.has_pixels, self.context.reasons.are_of(runs)
         )
 
     @property

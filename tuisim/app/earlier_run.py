@@ -1,4 +1,4 @@
-"""The earlier run: its robot is drawn beside that of the run in view, and where the two parted can be found."""
+"""The earlier run: its robot is drawn beside that of the run in view."""
 
 from __future__ import annotations
 
@@ -42,15 +42,3 @@ def stored_before(later: Recording) -> Recording | None:
             if run.program.path == path and is_comparable(run, later):
                 return run
     return None
-
-
-def left_at_s(later: Recording, earlier: Recording) -> float | None:
-    """Return the time in seconds at which a run left an earlier one; None if it never did.
-
-    Raises:
-        LogError: a recording is damaged.
-    """
-    from tuisim.runs.diff import parted_at_s
-
-    hz = later.spec.profile.tick_hz, earlier.spec.profile.tick_hz
-    return parted_at_s(later.telemetry.array(), earlier.telemetry.array(), hz)

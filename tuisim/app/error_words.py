@@ -53,12 +53,13 @@ def fitting(words: str, width: int) -> str:
 
 
 def remedy(words: str) -> str:
-    """Return what to do in the app about an error, with ids of actions in braces; empty for nothing.
+    """Return what to do in the app about an error, with ids of actions in braces.
 
     Which name was meant is told by the error itself.
     """
-    parts = _parts(words)
-    return "" if parts is None else f"{_missing(words)}: {parts}. {{robot}} chooses another robot"
+    if (parts := _parts(words)) is None:
+        return "{went-wrong} goes to where it went wrong"
+    return f"{_missing(words)}: {parts}. {{robot}} chooses another robot"
 
 
 def in_a_list(error: TuisimError) -> str:

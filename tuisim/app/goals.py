@@ -83,13 +83,13 @@ class GoalsController:
             shows: Whether to open their panel.
         """
         recording = self._run_controller.timeline.recording
-        self._earlier = None if recording is None or self._is_of_task(recording) else recording
+        self._earlier = None if recording is None or self.is_of_task(recording) else recording
         self.judges_always = False
         if file is not None and shows:
             self._panel_area.request({"goals": True})
         self.change(file)
 
-    def _is_of_task(self, recording: Recording) -> bool:
+    def is_of_task(self, recording: Recording) -> bool:
         """Return whether a run was on the mat and from the start of the next one."""
         was, now = recording.spec.world, self._run_controller.next_run.spec.world
         return (was.background, was.start) == (now.background, now.start)

@@ -119,7 +119,7 @@ class LessonController:
         """What the student has done since the step began."""
         self._before = ""
         """Id of the run that was in view when the step began, which does not count."""
-        self._judgements: tuple[Judgement, ...] = ()
+        self.judgements: tuple[Judgement, ...] = ()
         self._done: LessonStep | None = None
         """The step that has just been done."""
         self._elsewhere: RunSpec | None = None
@@ -195,7 +195,7 @@ class LessonController:
     def _begin_step(self) -> None:
         assert self.lesson is not None
         self._at = self.progress.current(self.lesson)
-        self._events, self._judgements, self._elsewhere = [], (), None
+        self._events, self.judgements, self._elsewhere = [], (), None
         self._seen, self._remark = set(), ""
         recording = self._run_controller.timeline.recording
         self._before = recording.run_id if recording else ""
@@ -400,9 +400,9 @@ class LessonController:
 
     def _judged_run(self, step: LessonStep) -> Iterator[Event]:
         recording, judgements = self._goals.judged
-        if recording is None or recording.run_id == self._before or judgements is self._judgements:
+        if recording is None or recording.run_id == self._before or judgements is self.judgements:
             return
-        self._judgements = judgements
+        self.judgements = judgements
         met = frozenset(each.goal.name for each in judgements if each.state is GoalState.MET)
         is_from_start = _world_of(self._wanted_spec()) == _world_of(recording.spec)
         self._elsewhere = None if is_from_start else recording.spec
@@ -416,7 +416,7 @@ class LessonController:
         """Return how the run has failed that the goals were judged on; empty if it has not."""
         run, (recording, _) = self._run_controller.run, self._goals.judged
         if (
-            not self._judgements
+            not self.judgements
             or run is None
             or recording is None
             or run.run_id != recording.run_id
@@ -535,7 +535,7 @@ class LessonController:
 
     def _leave_step(self, step: LessonStep, state: StepState) -> None:
         goals = step.check.goals if isinstance(step.check, RunCheck) else ()
-        self._story = story(each for each in self._judgements if each.goal.name in goals)
+        self._story = story(each for each in self.judgements if each.goal.name in goals)
         self._keep(self.progress.with_step(step.name, state=state, at=stored.now()))
         self._done = step if state is StepState.DONE else None
         self._begin_step()
@@ -586,7 +586,7 @@ class LessonController:
             states=tuple(self.progress.of(each.name).state for each in self.lesson.steps),
             at=self._at,
             hints=self.progress.of(step.name).hints if step else 0,
-            judgements=self._judgements,
+            judgements=self.judgements,
             good_runs=good,
             elsewhere=self._elsewhere_words(),
             done=self._done,

@@ -59,7 +59,7 @@ class Loader:
         world_file: Path | None,
     ) -> None:
         self._app, self._run_controller, self._panel_area = app, run_controller, panel_area
-        self._goals = goals
+        self.goals = goals
         self._watch = FileWatch()
         self.is_preparing = True
         """Whether the mat of the next run is being prepared, or will be: at first the app is drawn."""
@@ -241,7 +241,7 @@ class Loader:
             raise
         self._note_program(program, magic)
         self._load(plan, program)
-        self._goals.open(goals)
+        self.goals.open(goals)
         self._follow()
         self._app.say(f"{Path(path).name} is open" + (": {run} runs its program" if named else ""))
         self.tell(decided)
@@ -258,7 +258,7 @@ class Loader:
         self.world_file, self._world_settings, self._world_refers = None, {}, ()
         self._note_program(program, magic)
         self._load(plan, program)
-        self._goals.open(goals, shows=False)
+        self.goals.open(goals, shows=False)
         self._follow()
         self.tell(decided)
 
@@ -336,7 +336,7 @@ class Loader:
             else []
         )
         paths += [self.world_file, *self._world_refers] if self.world_file else []
-        paths += [self._goals.path] if self._goals.path else []
+        paths += [self.goals.path] if self.goals.path else []
         paths += [user_path(word) for word in words.values() if means_file(word)]
         self._watch.follow(dict.fromkeys(paths))
 
@@ -393,13 +393,13 @@ class Loader:
             before = self._world_settings
             _, goals = self._read_world(path)
             self._apply_changed(_differences(before, self._world_settings), program)
-            if goals is not None or path == self._goals.path:
-                self._goals.change(goals)
+            if goals is not None or path == self.goals.path:
+                self.goals.change(goals)
             return True
-        if path == self._goals.path:
+        if path == self.goals.path:
             from tuisim.goals.files import load_goals
 
-            self._goals.change(load_goals(path))
+            self.goals.change(load_goals(path))
             return True
         fields = [
             field

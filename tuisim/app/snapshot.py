@@ -185,8 +185,8 @@ class Situation:
     """Whether the code has the focus."""
     has_pixels: bool = False
     """Whether pictures are drawn with pixels, or were until the user switched to characters."""
-    has_earlier: bool = False
-    """Whether there is an earlier run that the one in view is compared with."""
+    has_reasons: bool = False
+    """Whether the run in view went wrong, or there is an earlier run that it is compared with."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,10 +5,7 @@ from __future__ import annotations
 import re
 from bisect import bisect_left, bisect_right
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any
-
-import numpy as np
-import numpy.typing as npt
+from typing import TYPE_CHECKING
 
 from tuisim.core.conditions import (
     Operator,
@@ -20,10 +17,8 @@ from tuisim.core.conditions import (
 )
 from tuisim.core.field import Field
 from tuisim.core.sensors import named_column
-from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, ColorSensorSpec
 from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError
-from tuisim.runs.arrays import world_points_mm
 from tuisim.runs.brick_state import BrickState, face_after
 from tuisim.runs.frames import begins, column_values, held
 from tuisim.runs.records import TEXT_STREAMS, Mark, OutputRow
@@ -177,69 +172,6 @@ def forms(timeline: Timeline) -> list[tuple[str, str]]:
     # Nothing can be found after the newest instant: the search goes from the start.
     which = "the first" if timeline.tick >= timeline.newest else "the next"
     return [(form, meaning.replace("{which}", which)) for form, meaning in _FORMS]
-
-
-def proposal(timeline: Timeline, mat: Field | None) -> str:
-    """Return the words to search for: those of the last search, else where a light sensor left what it last saw.
-
-    That is where a robot lost its line: of the sensor whose reading changed last on the mat, where the reading was half
-    way to what it is since then. Where the search would find another instant, such as at the edge of the mat, that is
-    told as a time. Empty if no reading has changed, or there is no run yet.
-    """
-    recording = timeline.recording
-    if timeline.searched or mat is None or recording is None or recording.newest < 0:
-        return timeline.searched
-    sensors = {f"{sensor.name}_red_pc": sensor for sensor in recording.spec.robot.color_sensors}
-    records = recording.telemetry.array()[: timeline.tick + 1]
-    values = column_values(tuple(sensors), records, recording, recording.actions(), mat)
-    found = []
-    for name, sensor in sensors.items():
-        is_on = _is_on_mat(records, sensor)
-        found.append((_last_in((np.diff(values[name]) != 0) & is_on[1:] & is_on[:-1]), name, is_on))
-    last, name, is_on = max(found, key=lambda one: one[:2], default=(-1, "", np.zeros(0, bool)))
-    if last < 0:
-        return ""
-    comparison, became = _left(values[name], is_on, last)
-    tick = int(became[became <= last + 1][-1])
-    return (
-        f"{name} {comparison} back"
-        if tick == became[-1] < timeline.tick
-        else f"{tick / timeline.tick_hz:.2f}"
-    )
-
-
-def _left(
-    values: npt.NDArray[Any], is_on: npt.NDArray[np.bool_], last: int
-) -> tuple[str, npt.NDArray[np.intp]]:
-    """Return the comparison that tells what a reading has become from what it was before, and where it became true.
-
-    Args:
-        values: The reading at each tick, in percent.
-        is_on: Whether it is one of the mat.
-        last: The tick before its last change on the mat.
-    """
-    now, before = values[last + 1], values[: last + 1][is_on[: last + 1]]
-    was = before[np.argmax(np.abs(before - now))]
-    middle = round(float(now + was) / 2)
-    if not min(now, was) < middle < max(now, was):
-        # Two greys that are nearly the same.
-        return str(Operator.CHANGES), np.flatnonzero(np.diff(values)) + 1
-    true = values > middle if now > was else values < middle
-    return f"{'>' if now > was else '<'} {middle}", np.flatnonzero(true[1:] & ~true[:-1]) + 1
-
-
-def _is_on_mat(records: npt.NDArray[Any], sensor: ColorSensorSpec) -> npt.NDArray[np.bool_]:
-    """Return at which ticks all that a sensor sees is on the mat, shape (n,)."""
-    x_mm, y_mm = world_points_mm(records, sensor.x_mm, sensor.y_mm)
-    edge_mm = sensor.diameter_mm / 2
-    in_width = (x_mm >= edge_mm) & (x_mm <= FIELD_WIDTH_MM - edge_mm)
-    return in_width & (y_mm >= edge_mm) & (y_mm <= FIELD_HEIGHT_MM - edge_mm)
-
-
-def _last_in(true: npt.NDArray[np.bool_]) -> int:
-    """Return the last place of a true value, -1 if there is none."""
-    places = np.flatnonzero(true)
-    return int(places[-1]) if places.size else -1
 
 
 _HINT = f"3.5, tick 120, line 12, sample NAME, sample {comparison_form()}, COLUMN < 50, print REGEX, start or end"

@@ -93,8 +93,12 @@ class Awaited:
     port: str
     times: int
     """How often it was read."""
+    since_s: float
+    """When it was read for the first time."""
+    line: int
+    """The line that read it last."""
     value: str = ""
-    """What was read each time: a colour, a distance with its unit; of a socket, the line that waits."""
+    """What was read each time: a colour, a distance with its unit."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -194,7 +198,9 @@ class _Search:
                     len(rows)
                     and (value := self._describe_constant(subject, port, rows)) is not None
                 ):
-                    yield Awaited(subject, port, len(rows), value)
+                    since_s = float(self._rows["time_ns"][rows[0]]) / NS_PER_S
+                    line = int(self._rows["line"][rows[-1]])
+                    yield Awaited(subject, port, len(rows), since_s, line, value)
 
     def _find_readings(self, subject: Subject, port: str) -> Array:
         """Return the indices of all readings of a subject on the lines that the program is busy with."""
@@ -240,7 +246,7 @@ class _Search:
         import numpy as np
 
         if subject in (Subject.CONNECTION, Subject.DATA):
-            return f"line {self._rows['line'][rows[-1]]}"
+            return ""
         ticks = np.unique(self._ticks[rows])
         sensor = next((one for one in self._run.spec.robot.sensors if one.port == port), None)
         match subject, sensor:

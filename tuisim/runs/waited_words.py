@@ -43,9 +43,9 @@ def describe_awaited(awaited: Awaited) -> str:
         case Subject.PROXIMITY:
             return f"infrared sensor on {port} saw nothing nearer than {value}"
         case Subject.CONNECTION:
-            return f"socket.accept in {value}: nobody connected"
+            return f"socket.accept in line {awaited.line}: nobody connected"
         case Subject.DATA:
-            return f"a socket in {value}: nothing arrived"
+            return f"a socket in line {awaited.line}: nothing arrived"
         case other:
             assert_never(other)
 

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from dataclasses import field
 from typing import TYPE_CHECKING
 
+from tuisim.app.reasons import ReasonTour
 from tuisim.data_class import dataclass
 
 if TYPE_CHECKING:
@@ -27,3 +29,4 @@ class ActionContext:
     loader: Loader
     debugger: DebugController
     lesson: LessonController
+    reasons: ReasonTour = field(default_factory=ReasonTour)

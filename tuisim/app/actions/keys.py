@@ -276,13 +276,13 @@ def _travels() -> list[LabAction]:
             "branch",
         ),
         Action(
-            "parting",
+            "went-wrong",
             "exclamation_mark",
-            "Where this run left the earlier one",
+            "Where did it go wrong? Again: the next reason",
             TIME,
-            go.to_parting,
+            go.go_wrong,
             back,
-            "parting",
+            "wrong?",
         ),
         Action("start-of-run", "home", "Start of the run", TIME, partial(go.to_tick, tick=0), back),
     ]
@@ -354,7 +354,7 @@ _WORDS: Mapping[str, str] = {
     "panel-goals": "tasks marks points",
     "panel-settings": "robot wheels sensors pen options",
     "earlier": "grey ghost robot run before previous compare",
-    "parting": "grey ghost robot wrong differ difference first mistake where",
+    "went-wrong": "why reason error mistake lost line wall blocked goal missed first difference ghost grey",
     "analyse": "graph plot data statistics grey bands values level",
     "palette": "search find commands",
     "break": "pause halt stop at line",
@@ -587,17 +587,17 @@ RUN_KEYS = frozenset(
 def _next_steps(now: Situation) -> tuple[str, ...]:
     """Return the ids of the likely next steps: out of the past, on with a run, to its results, or to a first run."""
     code = ("to-cursor", "break") if now.reads_code else ()
-    parting = ("parting",) if now.has_earlier else ()
+    wrong = ("went-wrong",) if now.has_reasons else ()
     if now.looks_back:
-        return ("now", "branch", "line-back", "next-line", *code)
+        return ("now", *wrong, "branch", "line-back", "next-line", *code)
     if now.state == RunPhase.PAUSED:
-        return ("stop", "pause", "next-line", "line-back", *code, *parting)
+        return ("stop", "pause", "next-line", "line-back", *code, *wrong)
     if now.state in IN_RUN:
         return ("stop", "pause")
     if now.reads_code:
-        return ("run", *(("analyse", "panel-chart") if now.has_run else ()), "edit", *code)
+        return ("run", *wrong, *(("analyse", "panel-chart") if now.has_run else ()), "edit", *code)
     if now.has_run:
-        return ("run", "analyse", "export", "panel-chart", "edit", "back", *parting)
+        return ("run", *wrong, "analyse", "export", "panel-chart", "edit", "back")
     return ("run", "open", "edit", "mats")
 
 

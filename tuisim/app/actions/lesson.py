@@ -149,8 +149,8 @@ def _switch_model(context: ActionContext) -> None:
         if context.lesson.lesson is lesson:
             runs.accompany(recording)
             context.app.say(
-                "The grey robot of the model answer drives along with each run: {parting} goes to where yours left it, "
-                "{earlier} hides it"
+                "The grey robot of the model answer drives along with each run: {went-wrong} goes to where "
+                "yours went wrong, {earlier} hides it"
             )
             context.app.draw(force=True)
 

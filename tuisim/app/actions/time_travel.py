@@ -6,21 +6,19 @@ import time
 from typing import TYPE_CHECKING
 
 from tuisim import protocol
-from tuisim.app import background
+from tuisim.app import reasons
 from tuisim.app.branch import Branch, action_words
-from tuisim.app.earlier_run import left_at_s, stored_before
 from tuisim.app.setup.mat import mat_key
 from tuisim.app.snapshot import RunPhase
-from tuisim.app.timeline import find, forms, proposal
+from tuisim.app.timeline import find, forms
 from tuisim.core.sensors import column_names
 from tuisim.errors import TuisimError
+from tuisim.reasons.reason import ReasonKind
 
 if TYPE_CHECKING:
     from tuisim.app.actions import ActionContext
     from tuisim.runs.recorded_run import Recording
 
-_SEEK = "{go-to} and Enter go to where a light sensor last left what it saw"
-_NO_EARLIER = f"No other run on this mat to compare with. {_SEEK}, {{compare}} chooses a run"
 MANY_TICKS = 10
 """Ticks that `:` runs."""
 
@@ -139,18 +137,20 @@ def ask_where(context: ActionContext) -> None:
     field = mat.field if mat is not None else None
 
     def go(text: str) -> None:
+        text = text or timeline.searched
         to_tick(context, find(text, timeline, field, first_at_end=True))
-        if text != proposed:
-            timeline.searched = text
+        timeline.searched = text
 
     goes_on = (
         context.runs.state in (RunPhase.STARTING, RunPhase.RUNNING) and not context.runs.in_past
     )
     title = "Go to · pauses the program" if goes_on else f"Go to · now at {timeline.time_s:.2f} s"
     words = column_names(context.runs.spec)
-    proposed = proposal(timeline, field)
+    again = f"Enter: {timeline.searched}" if timeline.searched else ""
     context.app.push_screen(
-        LinePrompt(title, go, proposed, forms=forms(timeline), words=words, sees_below=True)
+        LinePrompt(
+            title, go, forms=forms(timeline), words=words, placeholder=again, sees_below=True
+        )
     )
 
 
@@ -162,37 +162,37 @@ def to_sample(context: ActionContext, words: str) -> None:
         context.app.say(error.message)
 
 
-def to_parting(context: ActionContext) -> None:
-    """Go to the instant at which the run left the earlier one, which is drawn beside it.
-
-    Without one in this session, it is the last stored run of the same program file.
-    """
-    later, drawn = context.runs.timeline.recording, context.runs.earlier
-    if later is None:
-        context.app.say(_NO_EARLIER)
+def go_wrong(context: ActionContext) -> None:
+    """Go to the first reason why the run went wrong, then each time to the next; after the last to the end."""
+    recording = context.runs.timeline.recording
+    if recording is None:
         return
+    tour = context.reasons
+    if not tour.is_of(recording):
+        tour.begin(recording)
+    before = context.runs.earlier or tour.earlier
 
-    def compared() -> tuple[Recording | None, float | None]:
-        earlier = drawn or stored_before(later)
-        return earlier, left_at_s(later, earlier) if earlier else None
+    def show(found: reasons.FoundReasons) -> None:
+        reasons.note(context, recording, found)
+        if context.runs.timeline.recording is recording:
+            _show_reason(context, found[1])
 
-    def go(found: tuple[Recording | None, float | None]) -> None:
-        earlier, time_s = found
-        if context.runs.timeline.recording is not later:
-            return
-        if earlier is None:
-            context.app.say(_NO_EARLIER)
-            return
-        if drawn is None:
-            context.runs.show_earlier(earlier)
-        if time_s is None:
-            context.app.say(f"The robot has driven as in {earlier.name}. {_SEEK}")
-        else:
-            to_time(context, time_s)
-            which = "" if drawn else ", the last one of this program before it"
-            context.app.say(f"Here, at {time_s:.2f} s, it left {earlier.name}{which}")
+    reasons.find(context, recording, before, show, searches=True)
 
-    background.run(context.panels, compared, go, context.app.complain, group="diff", exclusive=True)
+
+def _show_reason(context: ActionContext, earlier: Recording | None) -> None:
+    """Go to the next reason, and say it."""
+    tour = context.reasons
+    if (reason := tour.advance()) is None:
+        to_now(context)
+        context.app.say(reasons.NO_REASON if not tour.reasons else tour.words)
+        return
+    if reason.kind is ReasonKind.DIFFERS and context.runs.earlier is None:
+        context.runs.show_earlier(earlier)
+    tick = round(reason.time_s * context.runs.timeline.tick_hz)
+    context.runs.printed_line = (tick, reason.line) if reason.line else None
+    to_tick(context, tick)
+    context.app.say(tour.words)
 
 
 def propose_branch(

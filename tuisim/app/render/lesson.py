@@ -165,7 +165,7 @@ def _page(view: LessonView, page: int, width: int, away: Away) -> Iterator[Line]
         yield []
     yield from _wrapped(f"{page + 1}. {step.title}", width, _NAME)
     if is_current:
-        yield from _result(view, step, width)
+        yield from _result(view, step, width, away)
         if view.remark:
             yield from _wrapped(view.remark, width, _BAD)
             yield []
@@ -222,7 +222,7 @@ def _question(question: QuestionCheck, width: int) -> Iterator[Line]:
         yield from _wrapped(f"{number}  {choice}", width, _PLAIN, "   ")
 
 
-def _result(view: LessonView, step: LessonStep, width: int) -> Iterator[Line]:
+def _result(view: LessonView, step: LessonStep, width: int, away: Away) -> Iterator[Line]:
     """Yield how the last run did on the goals of a step."""
     if not isinstance(step.check, RunCheck) or not view.judgements:
         return
@@ -245,6 +245,8 @@ def _result(view: LessonView, step: LessonStep, width: int) -> Iterator[Line]:
             yield from _wrapped(judgement.reason, width, _BAD, "  ", "  ")
             if judgement.goal.hint:
                 yield from _wrapped(judgement.goal.hint, width, _HINT, "  ", "  ")
+    if view.error or any(by_name[name].state is GoalState.MISSED for name in step.check.goals):
+        yield from _wrapped(f"{_escape(away)}! goes to where it went wrong.", width, _PALE)
     yield []
 
 

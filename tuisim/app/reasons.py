@@ -1,0 +1,144 @@
+"""Why the run in view went wrong: finds the reasons in the background, and keeps which one is in view."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from tuisim.app import background
+from tuisim.app.earlier_run import stored_before
+from tuisim.app.snapshot import RunPhase
+from tuisim.lessons.spec import RunCheck
+from tuisim.reasons.reason import find_reasons
+from tuisim.runs.store import load_run
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+    from pathlib import Path
+
+    from tuisim.app.actions import ActionContext
+    from tuisim.app.run_controller import RunController
+    from tuisim.core.field import Field
+    from tuisim.goals.judgement import Judgement
+    from tuisim.goals.spec import Goal
+    from tuisim.reasons.reason import Reason
+    from tuisim.runs.recorded_run import Recording
+
+NO_REASON = (
+    "No reason found: nothing raised or stood in the way, no goal was missed, no line lost. "
+    "{compare} compares it with another run"
+)
+
+
+class ReasonTour:
+    """The reasons of one run, and the one in view."""
+
+    def __init__(self) -> None:
+        self.reasons: tuple[Reason, ...] = ()
+        self.earlier: Recording | None = None
+        """The run before that was compared with."""
+        self._of: Recording | None = None
+        self._at: int | None = None
+        """Index of the one in view; None before the first, and after the last."""
+
+    def is_of(self, recording: Recording | None) -> bool:
+        """Return whether these are, or will be, the reasons of a run."""
+        return recording is not None and self._of is recording
+
+    def are_of(self, runs: RunController) -> bool:
+        """Return whether the run in view is known to have gone wrong, or can be compared with another one."""
+        has_gone_wrong = self.is_of(runs.timeline.recording) and bool(self.reasons)
+        return has_gone_wrong or runs.earlier is not None
+
+    def begin(self, recording: Recording) -> None:
+        """Forget another run."""
+        self._of, self._at, self.reasons, self.earlier = recording, None, (), None
+
+    def take(
+        self, recording: Recording, reasons: tuple[Reason, ...], earlier: Recording | None
+    ) -> None:
+        """Keep the reasons of a run, unless another one is in view by now."""
+        if self._of is recording:
+            self.reasons, self.earlier = reasons, earlier
+
+    def advance(self) -> Reason | None:
+        """Go to the next reason, and return it; None after the last."""
+        number = 0 if self._at is None else self._at + 1
+        self._at = number if number < len(self.reasons) else None
+        return None if self._at is None else self.reasons[self._at]
+
+    @property
+    def words(self) -> str:
+        """The reason in view with its number, with ids of actions in braces; after the last, that it was the last."""
+        count = len(self.reasons)
+        if self._at is None:
+            return "This is the end of the run again; {went-wrong} goes to the first reason"
+        number = f"reason {self._at + 1} of {count}, {{went-wrong}} goes on" if count > 1 else ""
+        return " · ".join(filter(None, (self.reasons[self._at].words, number)))
+
+
+FoundReasons = tuple[tuple["Reason", ...], "Recording | None"]
+"""The reasons, and the run before that they may speak of."""
+
+
+def look(context: ActionContext) -> None:
+    """Find out in the background whether the run in view, which has ended, went wrong; once."""
+    recording, tour = context.runs.timeline.recording, context.reasons
+    if recording is None or context.runs.state is not RunPhase.ENDED or tour.is_of(recording):
+        return
+    tour.begin(recording)
+    find(context, recording, context.runs.earlier, lambda found: note(context, recording, found))
+
+
+def note(context: ActionContext, recording: Recording, found: FoundReasons) -> None:
+    """Keep the reasons of a run, and let the footer name the key."""
+    context.reasons.take(recording, *found)
+    context.app.situation_changed()
+
+
+def find(
+    context: ActionContext,
+    recording: Recording,
+    earlier: Recording | None,
+    then: Callable[[FoundReasons], None],
+    searches: bool = False,
+) -> None:
+    """Find the reasons of the run in view in the background.
+
+    Args:
+        context: The parts of the app.
+        recording: The run.
+        earlier: The run to compare with.
+        then: Called with what was found.
+        searches: Whether the store is searched for a run to compare with, if there is none.
+    """
+    lesson, file = context.lesson, context.loader.goals.file
+    judgements: tuple[Judgement, ...] = ()
+    goals: Sequence[Goal] = ()
+    if lesson.lesson is not None:
+        check = lesson.step.check if lesson.step else None
+        asked = check.goals if isinstance(check, RunCheck) else ()
+        judgements = tuple(each for each in lesson.judgements if each.goal.name in asked)
+    elif file is not None and context.loader.goals.is_of_task(recording):
+        goals = file.goals
+    mat = context.runs.mat_for(recording.spec)
+
+    def work() -> FoundReasons:
+        before = earlier or (stored_before(recording) if searches else None)
+        return _read(recording.folder, goals, judgements, before, mat), before
+
+    failed = context.app.complain if searches else lambda _: None
+    background.run(context.panels, work, then, failed, group="reasons", exclusive=True)
+
+
+def _read(
+    folder: Path,
+    goals: Sequence[Goal],
+    judgements: tuple[Judgement, ...],
+    earlier: Recording | None,
+    mat: Field | None,
+) -> tuple[Reason, ...]:
+    """Return the reasons of a run. The app goes on reading the recording, so that this needs views of its own."""
+    from tuisim.goals.judge import judge
+
+    run = load_run(folder)
+    return find_reasons(run, judge(goals, run, mat) if goals else judgements, earlier, mat)
