@@ -94,6 +94,50 @@ def test_the_guides_example_does_as_it_says(
     assert (tmp_path / "world.png").stat().st_size > 1000
 
 
+WAITS = """\
+# %%sim_magic_preloaded --press enter@1
+from ev3dev2.button import Button
+Button().wait_for_pressed('enter')
+"""
+
+
+@cases(
+    "choices, time_s",
+    {
+        "as its first line says": ({}, 1),
+        "one": ({"press": "enter@2"}, 2),
+        "several": ({"press": ["up@1", "enter@3"]}, 3),
+        "in a world": ({"world": "hands.toml"}, 4),
+    },
+)
+def test_a_hand_presses(
+    choices: dict[str, Any], time_s: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "hands.toml").write_text('press = ["enter@4"]\n')
+    (tmp_path / "waits.py").write_text(WAITS)
+    assert int(tuisim.simulate("waits.py", **choices).time_s) == time_s
+    frame = tuisim.experiment("waits.py", jobs=1, **choices)
+    assert frame["time_s"].astype(int).tolist() == [time_s]
+
+
+@cases(
+    "press, message",
+    {
+        "no list": (5, "press: must be a list of presses such as enter@1.5, got 5"),
+        "no button": (
+            ["up@1", "entre@1"],
+            "press [2]: 'entre' cannot be pressed (did you mean enter?)",
+        ),
+        "no text": ([1], "press [1]: must be text, got 1"),
+    },
+)
+def test_a_wrong_press_names_its_place(press: Any, message: str) -> None:
+    with pytest.raises(ConfigError) as raised:
+        tuisim.simulate(WAITS, press=press)
+    assert str(raised.value) == message
+
+
 LAB = """
 background = "Loop"
 arguments = ["fast"]

@@ -31,7 +31,6 @@ RUN_OPTIONS = (
     "telemetry",
     "timeout",
     "input",
-    "press",
     "breaks",
     "watches",
     "break_then",

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tuisim.config.build import build_run_spec
-from tuisim.config.options import APP, OPTIONS, Option
+from tuisim.config.options import APP, OPTIONS, Option, Settings
 from tuisim.config.program_file import ProgramSource, find_program, program_of_text, read_program
 from tuisim.config.program_settings import ProgramSettings, program_settings
 from tuisim.config.worlds import load_world
@@ -17,9 +17,9 @@ from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError, nearest
 from tuisim.runs.handle import DEFAULT_TIME_LIMIT_S, RunOptions, start_run
 from tuisim.runs.plugged_words import describe_plugged
+from tuisim.runs.presses import press_actions
 from tuisim.runs.records import Stream
 from tuisim.runs.run_folder import StoredRun
-from tuisim.runs.run_options import press_actions
 from tuisim.runs.store import RunStore
 from tuisim.source import Program
 
@@ -174,8 +174,10 @@ def simulate(
     _check_timeout(timeout_s)
     given = choices_of(choices)
     started, found = _prepared(program, arguments, _in_world(world, given), given)
-    options = RunOptions(time_limit_s=timeout_s, answers=tuple(answers))
-    handle = start_run(started, build_run_spec(found.settings), options, RunStore())
+    spec = build_run_spec(found.settings)
+    actions = press_actions(found.settings["press"], spec.profile.tick_hz)
+    options = RunOptions(time_limit_s=timeout_s, answers=tuple(answers), actions=actions)
+    handle = start_run(started, spec, options, RunStore())
     try:
         handle.wait()
     finally:
@@ -236,7 +238,8 @@ def experiment(
         raise ConfigError(f"must be a whole number from 0 to {MAX_JOBS}, got {jobs!r}", key="jobs")
     given = choices_of(choices)
     task = load_goals(goals) if goals is not None else None
-    in_world = task.settings if task and world is None else _in_world(world, given)
+    pressed = task.presses if task else {}
+    in_world = task.settings if task and world is None else {**_in_world(world, given), **pressed}
     subjects = []
     for one in [program] if isinstance(program, str | Path) else program:
         started, found = _prepared(one, arguments, in_world, given)
@@ -259,10 +262,8 @@ def experiment(
         time_limit_s=timeout_s, answers=tuple(answers) or (task.answers if task else ())
     )
 
-    def options_of(spec: RunSpec) -> RunOptions:
-        return replace(
-            options, actions=press_actions(task.presses if task else (), spec.profile.tick_hz)
-        )
+    def options_of(spec: RunSpec, settings: Settings) -> RunOptions:
+        return replace(options, actions=press_actions(settings["press"], spec.profile.tick_hz))
 
     judged = task.goals if task else ()
     plan = Plan(tuple(subjects), varied, Path("parameters"), judged, Keep(keep), options_of)

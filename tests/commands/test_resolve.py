@@ -134,3 +134,49 @@ def test_profiles_of_ones_own_stand_beside_the_others(folder: Path, here: Comman
     assert "measured on the old simulator" in next(
         line for line in lines if line.startswith("color_read")
     )
+
+
+WAITS = """\
+# %%sim_magic_preloaded --press enter@1 --press in1@1
+from ev3dev2.button import Button
+Button().wait_for_pressed('enter')
+print('Pressed: 1')
+"""
+"""With a hand that presses what it waits for."""
+PRESSES: dict[str, tuple[list[str], int]] = {
+    "the first line": (["run", "waits.py"], 1),
+    "the command line wins": (["run", "waits.py", "--press", "enter@2"], 2),
+    "a world wins over the first line": (["run", "hands.toml", "waits.py"], 3),
+    "and the command line over the world": (
+        ["run", "hands.toml", "waits.py", "--press", "enter@2"],
+        2,
+    ),
+    "a batch": (["batch", "waits.py"], 1),
+    "a batch by the command line": (["batch", "waits.py", "--press", "enter@2"], 2),
+    "a batch in a world": (["batch", "hands.toml", "waits.py"], 3),
+}
+
+
+@cases("words, time_s", PRESSES)
+def test_a_hand_presses_what_the_first_line_says(
+    words: list[str], time_s: int, folder: Path, here: Command
+) -> None:
+    (folder / "waits.py").write_text(WAITS)
+    (folder / "hands.toml").write_text('press = ["enter@3"]\n')
+    done = here(*words, "--json")
+    assert done.returncode == 0, done.stderr
+    (found,) = (json.loads(line) for line in done.stdout.splitlines())
+    assert int(found["time_s"]) == time_s
+
+
+def test_a_wrong_press_in_the_first_line_is_told_in_one_sentence(
+    folder: Path, here: Command
+) -> None:
+    (folder / "waits.py").write_text(WAITS.replace("enter@1", "entre@1"))
+    for command in ("run", "batch"):
+        done = here(command, "waits.py")
+        assert (done.returncode, done.stdout, done.stderr) == (
+            2,
+            "",
+            "tuisim: waits.py, line 1: --press: 'entre' cannot be pressed (did you mean enter?)\n",
+        )

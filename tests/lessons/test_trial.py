@@ -117,6 +117,13 @@ def test_question_about_the_end_of_a_run_leads_back_to_its_start() -> None:
     assert words and all("m and R" in each for each in words)
 
 
+def test_a_hand_presses_in_a_trial_as_the_first_line_says() -> None:
+    lesson = LESSONS["exact-moves"]
+    task = task_of(lesson, "# %%sim_magic_preloaded --press enter@1-2\n", 0)
+    hz = task.spec.profile.tick_hz
+    assert [action.tick for action in task.options.actions] == [hz, 2 * hz]
+
+
 def test_names_are_not_those_of_commands_or_examples() -> None:
     taken = {*COMMANDS, *learn.listing, *(file.path.stem for file in programs())}
     assert set(LESSONS) & taken == set()

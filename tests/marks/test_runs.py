@@ -173,6 +173,25 @@ print("Far:", 95 + far_mm)
 """
 
 
+def test_without_a_world_of_the_task_a_hand_presses_as_the_program_says(
+    tmp_path: Path, here: Command
+) -> None:
+    (tmp_path / "class").mkdir()
+    (tmp_path / "class" / "ada.py").write_text(
+        "# %%sim_magic_preloaded --press enter@1\n"
+        "from ev3dev2.button import Button\n"
+        "from time import time\n"
+        "before_s = time()\n"
+        "Button().wait_for_pressed('enter')\n"
+        "print('Waited:', time() - before_s)\n"
+    )
+    goal = '[[goal]]\nname = "soon"\nwhen = "sample Waited < 2"\n'
+    for press, points in (("", "1"), ('press = ["enter@2.5"]\n', "0")):
+        (tmp_path / "task.toml").write_text(press + goal)
+        done = here("mark", "task.toml", "class", "--seeds", "0", "--jobs", "1", "--keep", "none")
+        assert done.stdout.splitlines()[1].split()[:2] == ["ada", points], done.stdout
+
+
 def test_a_task_presses_buttons_and_gives_inputs_in_each_world(
     tmp_path: Path, here: Command
 ) -> None:

@@ -102,6 +102,18 @@ def given_ready(cell: Cell, words: str) -> bool:
     return "import MoveTank" in str(cell(f"%sim_magic -W {words}").result)
 
 
+def pressed(cell: Cell, words: str) -> bool:
+    """Whether a program sees that the button was pressed at some time."""
+    cell(
+        "%%sim_magic -W\n"
+        "from ev3dev2.button import Button\n"
+        "from time import sleep\n"
+        "sleep(0.55)\n"
+        "print(Button().enter)\n"
+    )
+    return "True" in cell(f"%sim_magic -WR {words}").out
+
+
 def own_mat(cell: Cell, words: str) -> str:
     """The file of the mat `Loop`, with a picture of one's own in a folder `pics`."""
     folder = Path(os.environ["TUISIM_HOME"], "pics")
@@ -152,6 +164,7 @@ CASES = [
     Case(("--pen-marks",), "", spec("world.pen_marks"), True),
     Case(("--profile",), "nbev3devsim", spec("profile.name"), "nbev3devsim"),
     Case(("--seed",), "5", spec("seed"), 5),
+    Case(("--press",), "enter@0.5", pressed, True),
     Case(("--speed",), "9", paced),
     Case(("--preload",), "none", names, "False False\n"),
     Case(("-R", "--autorun"), "", text("ran")),
@@ -237,4 +250,27 @@ def test_a_program_that_has_not_run_is_ready_whatever_became_of_the_one_before(c
     assert (
         cell("%%sim_magic_preloaded\nprint('x')").bundles[-1]["text/plain"]
         == "ready: -R runs the program"
+    )
+
+
+WAITS = """\
+%%sim_magic -WR --press enter@1
+from ev3dev2.button import Button
+print(Button().wait_for_pressed('enter', timeout_ms=3000))
+"""
+
+
+def test_a_hand_presses_as_the_cell_of_the_program_says(cell: Cell) -> None:
+    assert cell(WAITS).out == "True\n"
+    assert cell("%sim_magic -R").out == "True\n"
+    assert cell("%sim_magic -R --press up@1").out == "False\n"
+    assert cell("%sim_magic -R").out == "True\n"
+    assert cell(WAITS.replace(" --press enter@1", "")).out == "False\n"
+
+
+def test_a_wrong_press_is_told_in_the_cell(cell: Cell) -> None:
+    shown = cell(WAITS.replace("enter@1", "entre@1"))
+    assert (shown.out, shown.err) == (
+        "",
+        "tuisim: --press: 'entre' cannot be pressed (did you mean enter?)\n",
     )

@@ -9,7 +9,6 @@ import pytest
 
 from tests.profiles import EXACT
 from tests.running import Done, over
-from tuisim.config.presses import parse_press
 from tuisim.core.geometry import Pose
 from tuisim.core.profile import PROFILES
 from tuisim.core.spec import (
@@ -28,7 +27,7 @@ from tuisim.core.spec import (
     WorldSpec,
 )
 from tuisim.runs.handle import RunHandle, RunOptions, start_run
-from tuisim.runs.run_options import press_actions
+from tuisim.runs.presses import press_actions
 from tuisim.source import Program
 
 START = Pose(500.0, 571.5, 0.0)
@@ -148,7 +147,7 @@ def run_on() -> Iterator[RunOn]:
             else WorldSpec(background=WORLDS[world].background, start=start)
         )
         spec = RunSpec(ROBOTS[robot], place, {**PROFILES, EXACT.name: EXACT}[profile])
-        actions = press_actions([parse_press(press) for press in presses], spec.profile.tick_hz)
+        actions = press_actions(presses, spec.profile.tick_hz)
         options = RunOptions(live=live, speed=speed, time_limit_s=time_limit_s, actions=actions)
         handles.append(start_run(Program("program.py", text, "none"), spec, options))
         return over(handles[-1])

@@ -13,7 +13,7 @@ from tuisim.app import background
 from tuisim.app.file_watch import FileWatch
 from tuisim.app.setup import next_run as plans
 from tuisim.app.setup.mat import SOON, Mat, blank_mat, mat_key, prepare_mat, prepare_mat_of
-from tuisim.app.setup.next_run import NextRun, plan_of_run, with_arguments
+from tuisim.app.setup.next_run import NextRun, plan_of_run, read_first_line
 from tuisim.app.snapshot import end_label
 from tuisim.config.files import means_file
 from tuisim.config.folders import user_path
@@ -141,7 +141,7 @@ class Loader:
         """Set a plan and a program together with their mat, which must have been prepared already."""
         self._run_controller.mat = mat
         self._good = plan, mat
-        self._note_program(program, _settings_in(program))
+        self._note_program(program, read_first_line(program))
         self._load(plan, program)
         self._app.mat_ready(mat.pixels)
 
@@ -207,13 +207,10 @@ class Loader:
         """Open a program with what its magic line asks for; return what its source decides."""
         program, said = _parts(source)
         source = without_wrong_mat(source, self._run_controller.next_run.settings["mats"])
-        plan, before = (
-            plans.with_choices(self._run_controller.next_run, source.options),
-            self._run_controller.program,
-        )
-        plan, decided = plans.following(plan, source)
+        plan, before = self._run_controller.next_run, self._run_controller.program
         if before is not None and before.path != program.path:
-            plan = plans.with_arguments(plan, ())
+            plan = plans.with_choices(plan, {"arguments": (), "press": ()})
+        plan, decided = plans.following(plans.with_choices(plan, source.options), source)
         self._note_program(program, said)
         self._load(plan, program)
         self._apply_app_settings({}, said)
@@ -309,7 +306,7 @@ class Loader:
         if self._run_controller.in_run:
             self._app.say(NOT_NOW)
             return
-        plan = with_arguments(plan_of_run(run.spec), run.program.arguments)
+        plan = plan_of_run(run.spec, run.program)
         self.lay_out(plan, program_of(run), mat)
         self._run_controller.replay(run)
         end_s = max(0, run.telemetry.count - 1) / run.spec.profile.tick_hz
@@ -531,19 +528,6 @@ def _in_world(
     free = free_paths(settings_of(magic, world))
     plan = plans.with_choices(plans.with_choices(plans.plan_of(Settings(), free), magic), world)
     return plans.following(plan, source) if source else (plan, Decided())
-
-
-def _settings_in(program: Program | None) -> Mapping[str, Any]:
-    """Return the settings of the magic line of the open program; empty if the line is invalid by now."""
-    from tuisim.config.program_file import program_of_text
-
-    if program is None:
-        return {}
-    try:
-        path = Path(program.path) if program.path else None
-        return program_of_text(program.text, path, program.name).options
-    except TuisimError:
-        return {}
 
 
 def _program_path(word: str) -> str:

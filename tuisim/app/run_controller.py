@@ -275,11 +275,11 @@ class RunController:
         return instant, line, down
 
     def _pressed_at(self, record: TickRecord | None) -> frozenset[str]:
-        """Return the brick's buttons that are held down: by the user now, or at the instant in view."""
+        """Return the buttons that are held down: by the user now, or in the recording at the instant in view."""
         recording = self.timeline.recording
-        if not self.in_past or record is None or recording is None:
-            return self.pressed if self.in_run else frozenset()
-        return recording.pressed_at(record.tick)
+        if record is None or recording is None or not self._is_of_run:
+            return frozenset()
+        return (not self.in_past and self.pressed) or recording.pressed_at(record.tick)
 
     def _field(self, record: TickRecord | None) -> Field | None:
         """Return the mat as the sensors saw it then, None until it is prepared for them."""
@@ -320,7 +320,10 @@ class RunController:
         )
         if "profile" not in self.next_run.free:
             require_library(program, self.next_run.spec.profile)
-        options = replace(self._options, breaks=breaks, hold_at=FIRST_LINE if paused else None)
+        hold_at = FIRST_LINE if paused else None
+        options = replace(
+            self._options, breaks=breaks, hold_at=hold_at, actions=self.next_run.actions
+        )
         self._show_run(start_run(program, self.next_run.spec, options))
 
     def prepare_next(self) -> None:

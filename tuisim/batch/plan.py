@@ -57,8 +57,8 @@ class Plan:
     """The file to blame for wrong parameters; paths in them are relative to its folder."""
     goals: tuple[Goal, ...] = ()
     keep: Keep = Keep.NONE
-    options_of: Callable[[RunSpec], RunOptions] = lambda _: RunOptions()
-    """Returns how a run is executed."""
+    options_of: Callable[[RunSpec, Settings], RunOptions] = lambda *_: RunOptions()
+    """Returns how a run is executed, by its specification and the settings of its program."""
     grid: Grid = field(init=False)
     _specs: dict[tuple[object, ...], RunSpec] = field(init=False, default_factory=dict)
 
@@ -159,7 +159,7 @@ class Plan:
             index,
             program,
             spec,
-            self.options_of(spec),
+            self.options_of(spec, subject.settings),
             goals=self.goals,
             parameters=values,
             keep=self.keep,
@@ -184,7 +184,7 @@ class Plan:
         for subject in self.subjects:
             for values in own:
                 spec = self.spec_of(subject, values)
-                plain = [to_plain(spec), self.options_of(spec).to_plain()]
+                plain = [to_plain(spec), self.options_of(spec, subject.settings).to_plain()]
                 whole.update(json.dumps(plain, sort_keys=True).encode())
         whole.update(repr((programs, self.grid.axes, self.goals, str(self.keep))).encode())
         return {

@@ -22,7 +22,7 @@ from tuisim.commands.run_options import input_option, timeout_option
 from tuisim.config.command_line import Arguments, WordType, argument, option
 from tuisim.config.files import read_file
 from tuisim.config.folders import user_path
-from tuisim.config.presses import parse_press
+from tuisim.config.options import Settings
 from tuisim.config.worlds import WorldFile, means_world
 from tuisim.core.spec import RunSpec
 from tuisim.data_class import dataclass
@@ -30,7 +30,7 @@ from tuisim.errors import ConfigError
 from tuisim.goals.files import GoalsFile, load_goals
 from tuisim.logs.export import LISTED, check_target
 from tuisim.runs.handle import RunOptions
-from tuisim.runs.run_options import press_actions
+from tuisim.runs.presses import press_actions
 
 _GRID, _RESULTS, _LIMITS = "Parameters", "Results", "Input and limits"
 OPTIONS = (
@@ -89,14 +89,6 @@ OPTIONS = (
     ),
     timeout_option(_LIMITS),
     input_option(_LIMITS),
-    option(
-        "--press",
-        multiple=True,
-        metavar="NAME@S",
-        type=WordType(parse_press),
-        group=_LIMITS,
-        help="Press by hand, as in `tuisim run`; may be repeated.",
-    ),
 )
 """The options of `tuisim batch` besides the shared ones."""
 
@@ -137,7 +129,7 @@ def read_request(arguments: Arguments) -> Request:
         file.path if kept.keys() - {SEED} else Path("--set"),
         goals=goals.goals if goals else (),
         keep=Keep(arguments.keep or file.keep or Keep.NONE),
-        options_of=lambda spec: _run_options(spec, arguments, goals),
+        options_of=lambda spec, settings: _run_options(spec, settings, arguments, goals),
     )
     expressions = {**file.expressions, **dict(map(_expression, arguments.expressions))}
     check_expressions(expressions, plan.names, [goal.name for goal in plan.goals])
@@ -193,8 +185,9 @@ def _subjects(
     world = file.world
     if world is None and goals is not None:
         world = WorldFile(goals.path, goals.settings, goals.program)
-    elif world is not None and goals is not None and world.program is None:
-        world = replace(world, program=goals.program)
+    elif world is not None and goals is not None:
+        settings = {**world.settings, **goals.presses}
+        world = replace(world, settings=settings, program=world.program or goals.program)
     # A notebook stands for all of its cells.
     arguments.all = True
     found, refusals = [], []
@@ -238,11 +231,11 @@ def _expression(text: str) -> tuple[str, str]:
     return name.strip(), expression.strip()
 
 
-def _run_options(spec: RunSpec, arguments: Arguments, goals: GoalsFile | None) -> RunOptions:
+def _run_options(
+    spec: RunSpec, settings: Settings, arguments: Arguments, goals: GoalsFile | None
+) -> RunOptions:
     return RunOptions(
         time_limit_s=arguments.timeout,
         answers=arguments.input or (goals.answers if goals else ()),
-        actions=press_actions(
-            arguments.press or (goals.presses if goals else ()), spec.profile.tick_hz
-        ),
+        actions=press_actions(settings["press"], spec.profile.tick_hz),
     )

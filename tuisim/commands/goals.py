@@ -35,8 +35,8 @@ from tuisim.goals.judgement import GoalState, Judgement, most_points, points
 from tuisim.marks.runs import STALL_LIMIT_S, TIME_LIMIT_S, MarkPlan
 from tuisim.marks.sheet import Sheet, SheetRow, in_words
 from tuisim.runs.handle import RunOptions
+from tuisim.runs.presses import press_actions
 from tuisim.runs.run_folder import StoredRun
-from tuisim.runs.run_options import press_actions
 from tuisim.runs.store import RunStore
 
 _RANGE = re.compile(r"(\d{1,9})\.\.(\d{1,9})")
@@ -107,7 +107,8 @@ def _names(word: str, store: RunStore) -> Iterator[str]:
 
 def _differences(file: GoalsFile, run: StoredRun) -> Iterator[str]:
     """Yield notes if a run is not one of the program alone, from the start that a goals file names."""
-    if run.actions and run.actions != press_actions(file.presses, run.spec.profile.tick_hz):
+    presses = press_actions(settings_of(file.settings)["press"], run.spec.profile.tick_hz)
+    if run.actions and run.actions != presses:
         yield f"run {run.number} was changed while it ran: {counted(len(run.actions), 'action')} of the user"
     try:
         found = settings_from(run.spec)

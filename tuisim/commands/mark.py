@@ -44,8 +44,9 @@ PAGE_SUFFIXES = (".html", ".htm")
 DEFAULT_SEEDS = "0..19"
 USUAL_KEEP = Keep.FAILED
 
-_LEFT_OUT = ("seed", "speed")
-"""Shared options that marking does not take: each program has several seeds, and runs as fast as possible."""
+_LEFT_OUT = ("seed", "speed", "press")
+"""Shared options that marking does not take: each program has several seeds, and runs as fast as possible; a task says
+what is pressed in each of its worlds."""
 _RUNS, _RESULTS = "Runs", "Results"
 _OPTIONS = (
     argument("goals", "GOALS"),

@@ -17,7 +17,6 @@ from tuisim.commands.resolve import Prepared, check_arguments, prepare_runs
 from tuisim.commands.run_options import input_option, timeout_option
 from tuisim.config.command_line import Arguments, WordType, argument, choice, command, option
 from tuisim.config.options import APP, PANEL
-from tuisim.config.presses import parse_press
 from tuisim.config.shared_options import shared_options
 from tuisim.config.user_config import FILE, Section, load_config
 from tuisim.core.geometry import pose_in_words
@@ -34,8 +33,8 @@ from tuisim.errors import (
 from tuisim.logs.export import EXPORTERS, check_targets, export_samples, export_telemetry
 from tuisim.protocol import Answer, InputWanted, Inspect, Inspected, Message, Paused, Resume
 from tuisim.runs.handle import RunHandle, RunOptions, start_run
+from tuisim.runs.presses import press_actions
 from tuisim.runs.run_folder import StoredRun
-from tuisim.runs.run_options import press_actions
 from tuisim.runs.store import RunStore
 from tuisim.source import source_lines
 
@@ -63,15 +62,6 @@ _OPTIONS = (
     ),
     timeout_option(_REPORTS),
     input_option(_REPORTS),
-    option(
-        "--press",
-        multiple=True,
-        metavar="NAME@S",
-        type=WordType(parse_press),
-        group=_REPORTS,
-        help="Press a button, a touch sensor or the remote by hand: enter@1.0-1.5, in1@2, touch@2 (every touch "
-        "sensor), remote.left_up@1-3; without an end for 0.1 s; may be repeated.",
-    ),
     option(
         "--all",
         is_flag=True,
@@ -353,9 +343,7 @@ def _options(one: Prepared, arguments: Arguments) -> RunOptions:
         speed=speed,
         time_limit_s=arguments.timeout,
         answers=answers,
-        actions=press_actions(
-            arguments.press or (one.world.presses if one.world else ()), one.spec.profile.tick_hz
-        ),
+        actions=press_actions(one.settings["press"], one.spec.profile.tick_hz),
         breaks=arguments.breaks,
         asks_user=asks_pipe,
         time_waits=asks_pipe,

@@ -9,7 +9,7 @@ import inspect
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from glob import escape, glob
-from itertools import pairwise
+from itertools import chain, pairwise
 from types import MappingProxyType, SimpleNamespace
 from typing import Any, Self
 
@@ -225,6 +225,7 @@ class Command(click.Command):
         for name in [name for name in ctx.params if name in self._shared]:
             value, one = ctx.params.pop(name), self._shared[name]
             if ctx.get_parameter_source(name) is ParameterSource.COMMANDLINE:
+                value = tuple(chain(*value)) if one.multiple else value
                 found[one.sets] = (*found.get(one.sets, ()), one.adds) if one.adds else value
         return found
 

@@ -12,6 +12,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import field
 from typing import Any, NamedTuple
 
+from tuisim.config.presses import Presses
 from tuisim.core.spec import EMPTY_MAT, RunSpec
 from tuisim.core.tree import leaves
 from tuisim.core.values import Choice, Flag, NamedNumber, Value, Whole, WrongValue, values_of
@@ -35,8 +36,12 @@ def parse(value: Value, text: str, key: str) -> Any:
     try:
         return value.from_text(text)
     except WrongValue as error:
-        where = f"{key} {error.part}" if error.part else key
-        raise ConfigError(error.message, error.hint, key=where) from None
+        raise _blame(error, key) from None
+
+
+def _blame(error: WrongValue, key: str) -> ConfigError:
+    where = f"{key} {error.part}" if error.part else key
+    return ConfigError(error.message, error.hint, key=where)
 
 
 class Name(Value):
@@ -131,6 +136,8 @@ class Option:
     """Further names in a magic line only, because they mean something else on the command line."""
     is_live: bool = True
     """Whether the app applies a change in `config.toml` at once; else from its next start on."""
+    repeats: bool = False
+    """Whether it may be given several times, each of which adds to a tuple."""
 
     @property
     def name(self) -> str:
@@ -165,7 +172,7 @@ class Option:
         try:
             found = self.value.from_data(value)
         except WrongValue as error:
-            raise ConfigError(error.message, error.hint, key=key) from None
+            raise _blame(error, key) from None
         return not found if self.constant is False else found
 
 
@@ -219,6 +226,13 @@ def _panel(panel: str, *flags: str, hide: bool = False, magic: tuple[str, ...] =
     )
 
 
+PRESSES = Presses(
+    flags=("--press",),
+    help="press by hand a button, a touch sensor or the remote: enter@1.0-1.5, in1@2, remote.left_up@1-3; "
+    "may be repeated",
+    in_config=False,
+)
+
 _SPEED = NamedNumber(
     MIN_SPEED,
     MAX_SPEED,
@@ -262,6 +276,7 @@ OPTIONS: tuple[Option, ...] = (
         "robolab",
     ),
     *_of_values("seed"),
+    Option(RUN, "press", PRESSES, (), PRESSES.flags, repeats=True),
     Option(RUN, "speed", _SPEED, 1, _SPEED.flags),
     Option(
         RUN,
@@ -376,6 +391,11 @@ class Settings:
     def changed(self, values: Mapping[str, Any]) -> Settings:
         """Return the settings with other values; None leaves the decision to mat, robot, profile or program."""
         return Settings({**self.given, **values})
+
+
+def names_world(given: Mapping[str, Any]) -> bool:
+    """Return whether settings say something of a world, and not only what a hand presses in it."""
+    return bool(given.keys() - {"press"})
 
 
 def settings_of(*layers: Mapping[str, Any]) -> Settings:

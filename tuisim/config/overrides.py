@@ -28,6 +28,8 @@ _NOT_VARIED = (
     "hidden_panels",
     "obstacle",
     "remote",
+    "press",
+    "inputs",
 )
 """Keys of a world file that do not affect a run, or that have no single value."""
 _PARTS = {path: one.default for path, one in RUN_VALUES.items() if isinstance(one.value, NamedPart)}

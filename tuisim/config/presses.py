@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from tuisim.config.options import parse
 from tuisim.core.spec import PRESSABLE
-from tuisim.core.values import Number
+from tuisim.core.values import Number, Value, WrongValue
 from tuisim.data_class import dataclass
-from tuisim.errors import ConfigError, nearest
+from tuisim.errors import nearest
 
-PRESS = "--press"
 DEFAULT_PRESS_S = 0.1
 MAX_PRESS_S = 1e6
+MAX_PRESSES = 10_000
+_SECONDS = Number(0.0, MAX_PRESS_S)
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,26 +23,53 @@ class Press:
     until_s: float
 
 
-def parse_press(text: str, key: str = PRESS) -> Press:
+def parse_press(text: str) -> Press:
     """Parse a press such as `enter@1.0-1.5` or `in1@1`.
 
     Raises:
-        ConfigError: nothing of that name can be pressed, or the times are wrong.
+        WrongValue: nothing of that name can be pressed, or the times are wrong.
     """
     name, at, times = text.partition("@")
     if not at:
-        raise ConfigError(
-            f"must be NAME@FROM or NAME@FROM-UNTIL, got {text!r}", "such as enter@1.5", key=key
-        )
+        raise WrongValue(f"must be NAME@FROM or NAME@FROM-UNTIL, got {text!r}", "such as enter@1.5")
     if name not in PRESSABLE:
-        raise ConfigError(f"{name!r} cannot be pressed", nearest(name, PRESSABLE), key=key)
-    seconds = Number(0.0, MAX_PRESS_S)
+        raise WrongValue(f"{name!r} cannot be pressed", nearest(name, PRESSABLE))
     # A leading minus is a sign: negative times are refused.
     begin, to, end = (times, "", "") if times.startswith("-") else times.partition("-")
-    from_s = parse(seconds, begin, key)
-    until_s = parse(seconds, end, key) if to else from_s + DEFAULT_PRESS_S
+    from_s = _SECONDS.from_text(begin)
+    until_s = _SECONDS.from_text(end) if to else from_s + DEFAULT_PRESS_S
     if until_s <= from_s:
-        raise ConfigError(
-            f"{text!r} ends before it begins", "NAME@FROM-UNTIL, in simulated seconds", key=key
-        )
+        raise WrongValue(f"{text!r} ends before it begins", "NAME@FROM-UNTIL, in simulated seconds")
     return Press(name, from_s, until_s)
+
+
+class Presses(Value):
+    """Presses by hand as a tuple of texts, of which an option gives one at a time."""
+
+    __slots__ = ()
+
+    @property
+    def allowed(self) -> str:
+        return "a list of presses such as enter@1.5"
+
+    @property
+    def metavar(self) -> str:
+        return "NAME@S"
+
+    def from_data(self, data: object) -> tuple[str, ...]:
+        if not isinstance(data, list | tuple):
+            raise self.wrong(data)
+        if len(data) > MAX_PRESSES:
+            raise WrongValue(f"has {len(data)} presses", f"at most {MAX_PRESSES}")
+        for number, text in enumerate(data, start=1):
+            if not isinstance(text, str):
+                raise WrongValue(f"must be text, got {text!r}", part=f"[{number}]")
+            try:
+                parse_press(text)
+            except WrongValue as error:
+                raise WrongValue(error.message, error.hint, f"[{number}]") from None
+        return tuple(data)
+
+    def from_text(self, text: str) -> tuple[str, ...]:
+        parse_press(text)
+        return (text,)

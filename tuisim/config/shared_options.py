@@ -33,7 +33,9 @@ def _parameter(shared: Option, *, magic: bool, hidden: bool, names: Names) -> Gr
         lambda text: parse_value(shared.value, text, shared.flags[0]),
         lambda: shared.value.choices or names(shared.path),
     )
-    return GroupedOption([*flags, name], type=kind, metavar=shared.metavar, **how)
+    return GroupedOption(
+        [*flags, name], type=kind, metavar=shared.metavar, multiple=shared.repeats, **how
+    )
 
 
 def shared_options(

@@ -16,8 +16,8 @@ from tuisim.config.files import Location, Scalar
 from tuisim.config.folders import programs_folder, user_path
 from tuisim.config.mats import find_mat, spec_name
 from tuisim.config.obstacles import load_obstacles, obstacle_lines, obstacles_from_list
-from tuisim.config.options import OPTION_PANELS, RUN_VALUES, settings_of
-from tuisim.config.presses import Press, parse_press
+from tuisim.config.options import OPTION_PANELS, PRESSES, RUN_VALUES, names_world, settings_of
+from tuisim.config.presses import MAX_PRESSES
 from tuisim.config.profiles import load_profile, profile_from_table, profile_lines
 from tuisim.config.robots import RobotChoice, load_robot, robot_from_table, robot_lines
 from tuisim.core import tree
@@ -31,7 +31,7 @@ from tuisim.errors import ConfigError, ObstacleError, ProfileError, RobotError
 WORLD_SUFFIX = ".toml"
 BATCH_KEY = "batch"
 """The table of a batch file, which may have the keys of a world beside it."""
-MAX_PRESSES = 10_000
+MAX_INPUTS = 10_000
 
 _Value = TypeVar("_Value")
 Given: TypeAlias = _Value | UnsetType
@@ -95,8 +95,6 @@ class WorldFile:
     """The program to run in it: a path, or the name of an example."""
     files: tuple[Path, ...] = ()
     """The file itself, and the files that it refers to."""
-    presses: tuple[Press, ...] = ()
-    """The buttons of the brick that are pressed in a run."""
     inputs: tuple[str, ...] = ()
     """The answers to `input()` in a run."""
 
@@ -181,31 +179,25 @@ def world_from_table(
             _argument(word, at.at(f"arguments[{number}]")) for number, word in words
         )
     program = _program(world["program"], path.parent, resolve) if "program" in world else None
-    presses = tuple(_press(text, place) for text, place in _texts(world, "press", at))
-    inputs = tuple(text for text, _ in _texts(world, "inputs", at))
+    if "press" in world:
+        found["press"] = files.read_value(world["press"], PRESSES, at.at("press"))
+    inputs = _inputs(world, at)
     if "world" in world:
         base = _base(world["world"], at.at("world"), resolve, mats, (*above, path))
     else:
-        base = WorldFile(path, {"floor": False} if found and not changes else {})
+        base = WorldFile(path, {"floor": False} if names_world(found) and not changes else {})
     return WorldFile(
         path,
         {**base.settings, **found},
         program or base.program,
         (path, *referred, *base.files),
-        presses or base.presses,
         inputs or base.inputs,
     )
 
 
-def _texts(world: Mapping[str, Any], key: str, at: Location) -> list[tuple[str, Location]]:
-    """Return the texts in a list, each with its place."""
-    listed = files.entries(world.get(key, []), at.at(key), MAX_PRESSES, key)
-    return [(files.convert(text, str, place), place) for text, place in listed]
-
-
-def _press(text: str, at: Location) -> Press:
-    with files.errors_at(at.file, at.key):
-        return parse_press(text, "")
+def _inputs(world: Mapping[str, Any], at: Location) -> tuple[str, ...]:
+    listed = files.entries(world.get("inputs", []), at.at("inputs"), MAX_INPUTS, "inputs")
+    return tuple(files.convert(text, str, place) for text, place in listed)
 
 
 def _base(

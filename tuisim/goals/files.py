@@ -16,7 +16,7 @@ from typing import Any
 from tuisim.config import files
 from tuisim.config.files import Location
 from tuisim.config.folders import programs_folder, user_path
-from tuisim.config.presses import Press
+from tuisim.config.options import names_world
 from tuisim.config.robots import DEFAULT_ROBOT, RobotChoice, choose_robot
 from tuisim.config.worlds import WorldFile, means_world, world_from_table
 from tuisim.core.conditions import ValueCondition
@@ -61,10 +61,13 @@ class GoalsFile:
     """The program that it names, if any: a path, or the name of an example."""
     others: tuple[TrialWorld, ...] = ()
     """Other worlds in which programs are tried, too."""
-    presses: tuple[Press, ...] = ()
-    """The buttons of the brick that are pressed in a run."""
     inputs: tuple[str, ...] = ()
     """The answers to `input()`, if the goals have no dialogue."""
+
+    @property
+    def presses(self) -> Mapping[str, Any]:
+        """The setting of what is pressed by hand, if it says so: that holds in any world."""
+        return {path: value for path, value in self.settings.items() if path == "press"}
 
     @property
     def answers(self) -> tuple[str, ...]:
@@ -75,7 +78,7 @@ class GoalsFile:
     def worlds(self) -> tuple[TrialWorld, ...]:
         """All worlds in which programs are tried, its own first, each with all that it has."""
         names = tuple(goal.name for goal in self.goals)
-        own = TrialWorld("", self.settings, names, self.goals, self.presses, self.inputs)
+        own = TrialWorld("", self.settings, names, self.goals, self.inputs)
         return (own, *(other.beside(own) for other in self.others))
 
     @property
@@ -210,11 +213,10 @@ def _goals_file(data: Any, path: Path, world: WorldFile) -> GoalsFile | None:
         world.settings,
         world.program,
         (*known, *others),
-        world.presses,
         world.inputs,
     )
     # Without a world, programs choose the robot.
-    if world.settings:
+    if names_world(world.settings):
         runs = runs_of(task.worlds)
         check_columns(own, runs, at.at("goal"))
         for number, other in enumerate(others, start=1):

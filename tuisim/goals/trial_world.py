@@ -9,7 +9,6 @@ from typing import Any
 
 from tuisim.config import files
 from tuisim.config.files import Location
-from tuisim.config.presses import Press
 from tuisim.config.worlds import world_from_table
 from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError
@@ -48,8 +47,6 @@ class TrialWorld:
     """Names of the goals to be met there."""
     own_goals: tuple[Goal, ...] = ()
     """Those of them that only this world has."""
-    presses: tuple[Press, ...] = ()
-    """The buttons of the brick that are pressed there."""
     inputs: tuple[str, ...] = ()
     """The answers to `input()` there, if its goals have no dialogue."""
     hidden: bool = False
@@ -74,12 +71,11 @@ class TrialWorld:
         return (*(own.pop(goal.name, goal) for goal in goals), *own.values())
 
     def beside(self, first: TrialWorld) -> TrialWorld:
-        """Return another world with all that it has from the first one: settings, goals, presses and inputs."""
+        """Return another world with all that it has from the first one: settings, goals and inputs."""
         return replace(
             self,
             settings={**first.settings, **self.settings},
             own_goals=self.goals_among(first.own_goals),
-            presses=self.presses or first.presses,
             inputs=self.inputs or first.inputs,
         )
 
@@ -130,12 +126,10 @@ def others_of(
             if error.file != place.file:
                 raise
             raise files.with_location(error, place.file, f"{place.key}.{error.key}") from None
-        if not (world.settings or world.presses or world.inputs):
+        if not (world.settings or world.inputs):
             raise place.wrong("is the same world", f"one of {', '.join(_WORLD_KEYS)}")
         is_hidden = files.convert(found.get(_HIDDEN, False), bool, place.at(_HIDDEN))
-        others.append(
-            TrialWorld(where, world.settings, wanted, own, world.presses, world.inputs, is_hidden)
-        )
+        others.append(TrialWorld(where, world.settings, wanted, own, world.inputs, is_hidden))
     return tuple(others)
 
 

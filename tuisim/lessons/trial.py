@@ -15,6 +15,7 @@ from tuisim.goals.judgement import GoalState, Judgement
 from tuisim.goals.trial_world import TrialWorld
 from tuisim.lessons.spec import Lesson, LessonStep, QuestionCheck, RunCheck, Way
 from tuisim.runs.handle import RunOptions, start_run
+from tuisim.runs.presses import press_actions
 from tuisim.runs.recorded_run import Recording
 from tuisim.runs.run_folder import StoredRun
 from tuisim.runs.store import RunStore
@@ -73,7 +74,9 @@ def task_of(
         build_run_spec(found.settings),
         (*lesson.goals, *(other.own_goals if other else ())),
     )
-    return Task(index, source.program, spec, RunOptions(time_limit_s=TIME_LIMIT_S), goals)
+    actions = press_actions(found.settings["press"], spec.profile.tick_hz)
+    options = RunOptions(time_limit_s=TIME_LIMIT_S, actions=actions)
+    return Task(index, source.program, spec, options, goals)
 
 
 def tried_elsewhere(

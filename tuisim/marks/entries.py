@@ -11,7 +11,7 @@ from tuisim.config.build import build_run_spec
 from tuisim.config.folders import backgrounds_folder
 from tuisim.config.mat_image import decode, read_file
 from tuisim.config.mats import background
-from tuisim.config.options import settings_of
+from tuisim.config.options import names_world, settings_of
 from tuisim.config.program_settings import ProgramSettings, program_settings
 from tuisim.core.spec import RunSpec
 from tuisim.errors import ConfigError, ProfileError, printable
@@ -39,12 +39,13 @@ def entries_of(
     names_profile = "profile" in {**task.settings, **given}
     entries, students, misfits = [], [], []
     for student in found:
-        specs = shared
+        specs, presses = shared, ()
         if student.source:
             try:
                 every = [_settings(student, world, given) for world in task.worlds]
                 specs = tuple(build_run_spec(own.settings) for own in every)
-                if not task.settings:
+                presses = tuple(own.settings["press"] for own in every)
+                if not names_world(task.settings):
                     _check_background(specs[0])
                 decided = every[0].decided
                 program = replace(student.source.program, shown_ports=decided.shown_ports)
@@ -58,7 +59,7 @@ def entries_of(
                     student, source=None, problem=_told(error, student), is_unread=is_unread
                 )
         if student.source:
-            entries.append(RunEntry(student, specs))
+            entries.append(RunEntry(student, specs, presses))
         students.append(student)
     if misfits and not entries:
         raise misfits[0]
@@ -75,12 +76,12 @@ def _settings(student: Student, world: TrialWorld, given: Mapping[str, Any]) -> 
         ProfileError: a profile is named for another library.
     """
     assert student.source is not None
-    if world.settings:
+    if names_world(world.settings):
         bare = replace(student.source, options={})
         return program_settings(bare, world.settings, given)
     if outside := file_outside(student):
         raise ConfigError("the magic line names a file outside the folder", key=outside)
-    return program_settings(student.source, given)
+    return program_settings(student.source, world.settings, given)
 
 
 def _check_background(spec: RunSpec) -> None:

@@ -19,8 +19,8 @@ from tuisim.marks.outcome import Outcome, outcome_of
 from tuisim.marks.students import Student
 from tuisim.marks.workspace import copy_of, digest_of, program_in
 from tuisim.runs.handle import RunOptions
+from tuisim.runs.presses import press_actions
 from tuisim.runs.removal import remove_tree
-from tuisim.runs.run_options import press_actions
 from tuisim.runs.temporary import temporary_home
 from tuisim.source import user_python_path
 
@@ -57,6 +57,8 @@ class RunEntry:
     student: Student
     specs: tuple[RunSpec, ...]
     """In the order of the worlds, with any seed."""
+    presses: tuple[tuple[str, ...], ...]
+    """What a hand presses, in the same order."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -125,11 +127,11 @@ def _turns(entry: RunEntry, plan: MarkPlan) -> list[_Turn]:
     ]
     basis += [plan.keep, plan.isolate, plan.arguments, user_python_path()]
     turns = []
-    for world, of_world in zip(plan.worlds, entry.specs, strict=True):
+    for world, of_world, presses in zip(plan.worlds, entry.specs, entry.presses, strict=True):
         options = replace(
             plan.options,
             answers=plan.options.answers or world.answers,
-            actions=press_actions(world.presses, of_world.profile.tick_hz),
+            actions=press_actions(presses, of_world.profile.tick_hz),
         )
         for seed in plan.seeds:
             spec = replace(of_world, seed=seed)

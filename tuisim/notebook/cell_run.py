@@ -26,6 +26,7 @@ from tuisim.notebook.old_formats import sent_text
 from tuisim.protocol import Answer, Reply, Wheels
 from tuisim.runs.handle import RunHandle, RunOptions, start_run
 from tuisim.runs.plugged_words import list_parts
+from tuisim.runs.presses import press_actions
 from tuisim.runs.records import OutputRow, Stream
 from tuisim.runs.run_folder import StoredRun
 from tuisim.runs.samples import Sample, samples_of
@@ -92,6 +93,8 @@ class CellRun:
     files: FieldFiles
     speed: float
     """As in `RunOptions`."""
+    presses: tuple[str, ...]
+    """What a hand presses, as texts."""
     refresh_s: float
     traces: tuple[Piece, ...]
     """Pen traces of earlier runs on the mat."""
@@ -124,6 +127,7 @@ def run_cell(
         asks_user=True,
         time_waits=not paced,
         replies=cell.listener.answers,
+        actions=press_actions(cell.presses, cell.spec.profile.tick_hz),
     )
     with (
         Interruption() as interruption,

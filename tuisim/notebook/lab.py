@@ -65,6 +65,8 @@ class Lab:
         """Of the last run."""
         self._persistent: Mapping[str, Any] = {}
         self._program: Program | None = None
+        self._presses: tuple[str, ...] = ()
+        """What a hand presses while it runs, as its cell says."""
         self._runs: list[StoredRun] = []
         self._last: StoredRun | None = None
         self._spec: RunSpec | None = None
@@ -249,6 +251,8 @@ class Lab:
         )
         self._traces = self._traces if same_mat and not plan.settings["clear_trace"] else ()
         self._persistent, self._program, self._spec = plan.persistent, plan.program, plan.spec
+        if text is not None:
+            self._presses = plan.settings["press"]
         view = self._view_for(words, plan)
         if view is not None:
             if not listener.answers:
@@ -286,12 +290,13 @@ class Lab:
             # The first line is that of the magic, so that line numbers are those of the cell.
             preload = str(words.settings.get("preload", prelude))
             program = Program("cell", "\n" + text, preload)
-        settings = settings_of(persistent, words.settings)
+        layers = persistent, {"press": self._presses if text is None else ()}, words.settings
+        settings = settings_of(*layers)
         if program is not None:
             source = ProgramSource(program, has_magic=True)
             # A line says what holds for the cells below it: the program above it has run already.
             insists = text is not None or settings["autorun"]
-            found = program_settings(source, persistent, words.settings, insists=insists)
+            found = program_settings(source, *layers, insists=insists)
             settings = found.settings
             program = replace(program, shown_ports=found.decided.shown_ports)
             if text is not None and found.decided.note:
@@ -336,7 +341,8 @@ class Lab:
         from tuisim.notebook.cell_run import Listener
         from tuisim.notebook.display import Stage
 
-        said = settings_of(plan.persistent, words.settings).given
+        presses = {"press": plan.settings["press"]}
+        said = settings_of(plan.persistent, words.settings, presses).given
         program = plan.program
         view.take_cell(
             {path: value for path, value in said.items() if path != "autorun"},
@@ -384,6 +390,7 @@ class Lab:
             plan.spec,
             plan.files,
             plan.settings["speed"] or 0.0,
+            plan.settings["press"],
             words.refresh_s,
             self._traces,
             listener,

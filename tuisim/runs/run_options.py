@@ -5,16 +5,12 @@ Pure Python: the child imports it.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import asdict
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from tuisim.core.spec import PRESSABLE
 from tuisim.data_class import dataclass
-from tuisim.protocol import SetButtons, UserAction
-
-if TYPE_CHECKING:
-    from tuisim.config.presses import Press
+from tuisim.protocol import UserAction
 
 DEFAULT_TIME_LIMIT_S = 600.0
 """Simulated time that a run may take if nothing else is asked for."""
@@ -74,20 +70,3 @@ class RunOptions:
             "hold_at": None if hold_at is None else (int(hold_at[0]), int(hold_at[1])),
         }
         return cls(**{**plain, **rebuilt})
-
-
-def press_actions(presses: Sequence[Press], tick_hz: int) -> tuple[UserAction, ...]:
-    """Return the changes of what a hand presses, ordered by tick; presses may overlap, and last at least one tick."""
-    held = []
-    for press in presses:
-        first = round(press.from_s * tick_hz)
-        held.append((press.name, first, max(first + 1, round(press.until_s * tick_hz))))
-    changes: list[UserAction] = []
-    before: tuple[str, ...] = ()
-    for tick in sorted({tick for _, first, last in held for tick in (first, last)}):
-        down = {name for name, first, last in held if first <= tick < last}
-        pressed = tuple(name for name in PRESSABLE if name in down)
-        if pressed != before:
-            changes.append(UserAction(tick, SetButtons(pressed)))
-            before = pressed
-    return tuple(changes)

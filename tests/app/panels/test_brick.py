@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 
@@ -227,3 +228,45 @@ async def test_a_bumper_is_pressed_by_key_and_by_mouse(by_mouse: bool) -> None:
             await pilot.press("1")
         await until(pilot, lambda: printed(app) == ["pressed", "released"])
         assert actions(app) == [["in1"], []]
+
+
+PRESSED = """\
+# %%sim_magic_preloaded --press enter@0.3-600
+from ev3dev2.button import Button
+Button().wait_for_pressed('enter')
+print('went on')
+while True:
+    pass
+"""
+
+
+async def test_a_hand_presses_as_the_first_line_says(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "waits.py").write_text(PRESSED)
+    app = LabApp(settings())
+    async with app.run_test(size=(120, 40)) as pilot:
+        await ready(pilot)
+        app.loader.open_file("waits.py")
+        await pilot.press("K", "R")
+        await until(pilot, lambda: "went on" in printed(app))
+        assert app.run_controller.snapshot().pressed == {"enter"}
+        assert actions(app) == [["enter"]]
+        await pilot.press("S")
+        await until(pilot, lambda: not app.run_controller.in_run)
+        app.loader.apply_text("print('other')", str(tmp_path / "waits.py"), "waits.py")
+        assert app.run_controller.next_run.actions == ()
+
+
+async def test_a_wrong_press_in_the_first_line_is_told(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "waits.py").write_text(PRESSED.replace("enter@", "entre@"))
+    app = LabApp(settings())
+    async with app.run_test(size=(120, 40)) as pilot:
+        await ready(pilot)
+        app.loader.open_file("waits.py")
+        message = "waits.py, line 1: --press: 'entre' cannot be pressed"
+        await until(pilot, lambda: any(message in text for text in notices(app)))

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import field, replace
+from pathlib import Path
 from typing import Any
 
 from tuisim.config.build import build_run_spec, settings_from
@@ -21,7 +22,7 @@ from tuisim.config.options import (
     settings_of,
 )
 from tuisim.config.profiles import load_profile
-from tuisim.config.program_file import ProgramSource
+from tuisim.config.program_file import ProgramSource, program_of_text
 from tuisim.config.program_settings import (
     OF_THE_GROUND,
     PROGRAM_PATHS,
@@ -34,11 +35,23 @@ from tuisim.core import tree
 from tuisim.core.geometry import Pose
 from tuisim.core.spec import EMPTY_MAT, NoiseSpec, Obstacle, RobotSpec, RunSpec
 from tuisim.data_class import dataclass
-from tuisim.errors import BackgroundError
+from tuisim.errors import BackgroundError, TuisimError
+from tuisim.protocol import UserAction
+from tuisim.runs.presses import press_actions
 from tuisim.source import Program
 
 WORLD_PATHS = frozenset(
-    {"background", "mats", "robot", "obstacles", "profile", "for_brick", "arguments", *RUN_VALUES}
+    {
+        "background",
+        "mats",
+        "robot",
+        "obstacles",
+        "profile",
+        "for_brick",
+        "arguments",
+        "press",
+        *RUN_VALUES,
+    }
 )
 """The paths of settings that affect a run."""
 
@@ -67,6 +80,11 @@ class NextRun:
         return frozenset(
             key for key, value in self.from_program.items() if self.settings[key] == value
         )
+
+    @property
+    def actions(self) -> tuple[UserAction, ...]:
+        """What a hand presses in it."""
+        return press_actions(self.settings["press"], self.spec.profile.tick_hz)
 
     @property
     def robot_is_edited(self) -> bool:
@@ -109,7 +127,7 @@ def first_plan(
         program: Its program.
     """
     if settings is None:
-        return with_arguments(plan_of_run(spec), program.arguments if program else ())
+        return plan_of_run(spec, program)
     plan = plan_of(settings, decided.free)
     return replace(plan, program_robot=decided.robot, shown_ports=decided.shown_ports)
 
@@ -119,13 +137,30 @@ def plan_of_spec(spec: RunSpec) -> NextRun:
     return replace(plan_of(settings_of(settings_from(spec))), spec=spec)
 
 
-def plan_of_run(spec: RunSpec) -> NextRun:
-    """Return the plan for repeating a run, even if its mat is missing: the mat has to be found before the start."""
+def plan_of_run(spec: RunSpec, program: Program | None = None) -> NextRun:
+    """Return the plan for repeating a run with the arguments of its program, and the presses of its first line.
+
+    The mat may be missing: it has to be found before the start.
+    """
     try:
-        return plan_of_spec(spec)
+        plan = plan_of_spec(spec)
     except BackgroundError:
         elsewhere = replace(spec, world=replace(spec.world, background=EMPTY_MAT))
-        return replace(plan_of_spec(elsewhere), spec=spec)
+        plan = replace(plan_of_spec(elsewhere), spec=spec)
+    arguments = program.arguments if program else ()
+    presses = read_first_line(program).get("press", ())
+    return replace(plan, settings=plan.settings.changed({"arguments": arguments, "press": presses}))
+
+
+def read_first_line(program: Program | None) -> Mapping[str, Any]:
+    """Return the settings of the magic line of a program; empty if the line is invalid."""
+    if program is None:
+        return {}
+    try:
+        path = Path(program.path) if program.path else None
+        return program_of_text(program.text, path, program.name).options
+    except TuisimError:
+        return {}
 
 
 def _resolved(choices: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, str]]:

@@ -1,15 +1,15 @@
-"""`--press`: what is held from which tick."""
+"""Presses by hand as texts."""
 
 from __future__ import annotations
 
 import pytest
 
 from tests.cases import cases
+from tuisim.config.options import PRESSES, parse
 from tuisim.config.presses import Press, parse_press
 from tuisim.core.spec import PRESSABLE
 from tuisim.errors import ConfigError
-from tuisim.protocol import SetButtons, UserAction
-from tuisim.runs.run_options import press_actions
+from tuisim.protocol import SetButtons
 
 GIVEN = {
     "plain": ("enter@1", Press("enter", 1.0, 1.1)),
@@ -47,34 +47,8 @@ WRONG = {
 @cases("text, message", WRONG)
 def test_a_wrong_press_says_what_is_allowed(text: str, message: str) -> None:
     with pytest.raises(ConfigError) as raised:
-        parse_press(text)
+        parse(PRESSES, text, "--press")
     assert str(raised.value) == message
-
-
-HELD = {
-    "none": ((), ()),
-    "one": (("enter@1",), ((100, ("enter",)), (110, ()))),
-    "shorter than a tick": (("enter@1-1.001",), ((100, ("enter",)), (101, ()))),
-    "overlapping": (
-        ("enter@1-3", "up@2-4"),
-        ((100, ("enter",)), (200, ("up", "enter")), (300, ("up",)), (400, ())),
-    ),
-    "the same one": (("up@1-2", "up@1.5-3"), ((100, ("up",)), (300, ()))),
-    "one after the other": (("up@1-2", "down@2-3"), ((100, ("up",)), (200, ("down",)), (300, ()))),
-    "not in order": (("up@5", "down@1"), ((100, ("down",)), (110, ()), (500, ("up",)), (510, ()))),
-}
-
-
-@cases("texts, changes", HELD)
-def test_presses_become_changes_at_ticks(
-    texts: tuple[str, ...], changes: tuple[tuple[int, tuple[str, ...]], ...]
-) -> None:
-    found = press_actions([parse_press(text) for text in texts], 100)
-    assert found == tuple(UserAction(tick, SetButtons(pressed)) for tick, pressed in changes)
-
-
-def test_ticks_are_those_of_the_profile() -> None:
-    assert [change.tick for change in press_actions([parse_press("up@1-2")], 30)] == [30, 60]
 
 
 def test_a_button_that_the_brick_does_not_have_is_refused() -> None:
