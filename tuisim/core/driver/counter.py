@@ -8,6 +8,7 @@ from math import floor
 CLOCK_HZ = 24_000_000
 """The clock of the time stamps."""
 HALF_CLOCK_HZ = CLOCK_HZ // 2
+TICKS_PER_NS = CLOCK_HZ / 1_000_000_000
 MIN_SPAN = CLOCK_HZ * 20 // 1000
 """A speed is measured over at least this time, in ticks of that clock."""
 LOOK = CLOCK_HZ // 1000
@@ -32,7 +33,7 @@ class Counter:
     __slots__ = ("_counts", "_depth", "_speed_dps", "_straight", "_times", "count")
 
     def __init__(self) -> None:
-        self._times = [*range(FIRST_NOTE, LAST_NOTE + 1, IDLE_LOOKS * LOOK)]
+        self._times: list[int] = [*range(FIRST_NOTE, LAST_NOTE + 1, IDLE_LOOKS * LOOK)]
         self._counts = [0] * CAPACITY
         self._straight = 0
         """How many of the last changes went in one direction, negative if backwards."""
@@ -109,6 +110,30 @@ class Counter:
             self.count -= one
             self._straight -= one
             self._speed_dps = None
+
+    def is_straight(self, speed_dps: float) -> bool:
+        """Return whether all changes that matter for the speed went in the direction of this speed."""
+        return (self._straight if speed_dps > 0 else -self._straight) >= self._depth + STRIDE
+
+    def find_time(self, back: int) -> int:
+        """Return when the count changed, so many changes before the last one, in ticks of the clock."""
+        return self._times[-1 - back]
+
+    def add_straight(self, count: int, times: list[int]) -> None:
+        """Take over a stretch of changes in the direction of the last ones.
+
+        Args:
+            count: The count after the last of them.
+            times: When the last ones came, in ticks of the clock: all that matter from now on.
+        """
+        if not times:
+            return
+        one = 1 if count > self.count else -1
+        self._straight += count - self.count
+        self._counts += range(count - one * (len(times) - 1), count + one, one)
+        self._times += times
+        self.count, self._speed_dps = count, None
+        del self._times[:-MOST], self._counts[:-MOST]
 
     def refill(self, time: float, angle_deg: float, speed_dps: float) -> None:
         """Set the last changes as if the axle had turned evenly, for longer than any speed is measured.

@@ -221,6 +221,8 @@ class DriverMotor(MotorDriver):
         if self.is_at_rest:
             self._skip(time_ns)
             return
+        if self._roll is not None and self._follow_roll(time_ns):
+            return
         while (step_ns := self._step_ns) <= time_ns:
             if self._due_ns <= step_ns:
                 self._fire()
@@ -231,13 +233,35 @@ class DriverMotor(MotorDriver):
                 self._step_ns = self._regulate(step_ns, end_ns)
                 if self._step_ns != step_ns:
                     continue
+            elif self._control is None and self._try_to_roll():
+                if self._follow_roll(time_ns):
+                    return
+                continue
+            if not self.is_running and self._is_still():
+                step_ns = time_ns // STEP_NS * STEP_NS
             self.control(step_ns)
-            self._step_ns += STEP_NS
+            self._step_ns = step_ns + STEP_NS
             if self.is_stalled and self.settle():
                 self._skip(time_ns)
                 return
         while self._due_ns <= time_ns:
             self._fire()
+
+    def _try_to_roll(self) -> bool:
+        """Return whether the motor rolls on from now, without any control or timer."""
+        return self._timers_ns == NEVER_NS and super()._try_to_roll()
+
+    def _follow_roll(self, time_ns: int) -> bool:
+        """Roll until a time, and return whether the roll goes on."""
+        rolls_on = self._advance_roll(time_ns)
+        self._step_ns = (self._moved_ns // STEP_NS + 1) * STEP_NS
+        while rolls_on and self._due_ns <= time_ns:
+            self._fire()
+        return rolls_on
+
+    def _is_still(self) -> bool:
+        """Return whether only the reading of its speed changes: the axle stands, and no timer is set."""
+        return self._timers_ns == NEVER_NS and self.axle.stands and self._control_rests()
 
     def settle(self) -> bool:
         """Return whether time changes nothing any more: the axle stands, and its driver leaves it alone."""
@@ -290,6 +314,7 @@ class DriverMotor(MotorDriver):
     def wake(self, time_ns: int) -> None:
         """Run until a time at which something changes that a motor at rest does not expect."""
         self.run_until(time_ns)
+        self.leave_roll()
         self.is_at_rest = False
 
     def obey(self, command: MotorCommand) -> None:

@@ -6,11 +6,11 @@ from enum import StrEnum
 from math import copysign
 
 from tuisim.core.driver.control import FULL, SCALE, SPEED_CONSTANTS, Controller, divide
-from tuisim.core.driver.counter import CLOCK_HZ, Counter
-from tuisim.core.driver.plant import LARGE, MEDIUM, NS_PER_S, STEP_NS, STEP_S, Axle, PlantSpec
+from tuisim.core.driver.counter import TICKS_PER_NS, Counter
+from tuisim.core.driver.plant import LARGE, MEDIUM, STEP_NS, STEP_S, Axle, PlantSpec
+from tuisim.core.driver.roll import Roll, begin_roll
 from tuisim.data_class import dataclass
 
-TICKS_PER_NS = CLOCK_HZ / NS_PER_S
 STEP_TICKS = STEP_NS * TICKS_PER_NS
 STALL_NS = 100_000_000
 """A running motor whose speed reads 0 for longer than this is stalled."""
@@ -52,6 +52,7 @@ class MotorDriver:
         "_moved_ns",
         "_offset",
         "_raw",
+        "_roll",
         "_still_ns",
         "axle",
         "counter",
@@ -88,6 +89,8 @@ class MotorDriver:
         """What happens at the target; None if no move to a position is active."""
         self._is_regulated = False
         """Whether nothing but the speed control is active."""
+        self._roll: Roll | None = None
+        """How the axle rolls, without any control."""
         self.ramp_down_ms = 0
         self.is_running = self.is_lowering = self.is_stalled = False
         self._still_ns: int | None = None
@@ -208,6 +211,35 @@ class MotorDriver:
             axle.power(duty)
         if self._arrival_action is not None:
             self._approach(time_ns, self._arrival_action)
+
+    def _try_to_roll(self) -> bool:
+        """Return whether the motor rolls on from now, without any control, and its steps can be left out."""
+        if self.is_running and not self.speed_dps:
+            return False
+        self._roll = begin_roll(self.axle, self.counter, self._moved_ns)
+        return self._roll is not None
+
+    def _advance_roll(self, time_ns: int) -> bool:
+        """Roll until the last step that is due; return False, and roll no further, if the roll ends before."""
+        roll = self._roll
+        if roll is None:
+            return False
+        step_ns = min(time_ns // STEP_NS * STEP_NS, roll.end_ns)
+        if step_ns > roll.time_ns:
+            self._moved_ns = step_ns
+            roll.turn_to(step_ns)
+            self.read_counts(roll.count)
+            self.speed_dps = roll.measure_speed_dps()
+        if time_ns < roll.end_ns + STEP_NS:
+            return True
+        self.leave_roll()
+        return False
+
+    def leave_roll(self) -> None:
+        """Go on in single steps from where the axle is."""
+        if self._roll is not None:
+            self._roll.tell_counter()
+            self._roll = None
 
     def _regulates(self, step_ns: int) -> bool:
         """Whether the next step is one of the speed control alone, with a motor that turns."""

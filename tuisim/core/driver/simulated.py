@@ -7,10 +7,11 @@ from math import copysign, floor, inf
 from typing import TYPE_CHECKING
 
 from tuisim.core.drive import EvenGlide, Glide
+from tuisim.core.driver.counter import TICKS_PER_NS
 from tuisim.core.driver.jiffies import Jiffies
 from tuisim.core.driver.motor import NEVER_NS, DriverMotor
 from tuisim.core.driver.plant import NS_PER_S, STEP_NS, Axle, PlantSpec
-from tuisim.core.driver.regulator import MODELS, TICKS_PER_NS
+from tuisim.core.driver.regulator import MODELS
 from tuisim.core.motor_columns import MOTOR_RECORD
 from tuisim.core.motors import (
     ENDLESS,
@@ -198,6 +199,7 @@ class SimulatedMotor(DriverMotor):
             return 0.0
         DriverMotor.run_until(self, end_ns)
         if self._moved_ns != end_ns:
+            self.leave_roll()
             self.move_axle(end_ns)
         if noise_dps and axle.speed_dps:
             self._turn_to(end_ns, axle.angle_deg + noise_dps / self._hz)
@@ -266,6 +268,7 @@ class SimulatedMotor(DriverMotor):
 
     def _turn_to(self, time_ns: int, angle_deg: float) -> None:
         """Turn the axle from outside, at once."""
+        self.leave_roll()
         axle, before_deg = self.axle, self.axle.angle_deg
         axle.angle_deg = min(max(angle_deg, axle.low_deg), axle.high_deg)
         self.counter.record(time_ns * TICKS_PER_NS, 0.0, before_deg, axle.angle_deg, 0.5)
@@ -307,6 +310,7 @@ class SimulatedMotor(DriverMotor):
             return
         if self._cruise_dps:
             self._leave_cruise()
+        self.leave_roll()
         axle = self.axle
         there_deg = before.position_deg + (self._angle_deg - before.position_deg) * part
         self.counter.take_back(there_deg)
@@ -334,6 +338,7 @@ class SimulatedMotor(DriverMotor):
         high_deg = axle.angle_deg if direction > 0 else inf
         if self.is_at_rest and (low_deg, high_deg) != (axle.low_deg, axle.high_deg):
             self.wake(self._end_ns(self._tick))
+        self.leave_roll()
         axle.low_deg, axle.high_deg = low_deg, high_deg
         self.is_barred = bool(direction)
         if not direction:
@@ -341,5 +346,6 @@ class SimulatedMotor(DriverMotor):
 
     def fence(self, low_deg: float, high_deg: float) -> None:
         """Keep the axle between two angles from where it is now."""
+        self.leave_roll()
         angle_deg = self.axle.angle_deg
         self.axle.low_deg, self.axle.high_deg = angle_deg + low_deg, angle_deg + high_deg
