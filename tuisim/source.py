@@ -75,6 +75,8 @@ PRELUDES: Mapping[str, str] = {
     "sim_magic_preloaded": "preloaded",
 }
 """The prelude of each magic."""
+APP_MAGIC = "sim_app"
+"""The magic that shows the app in its cell, beside all that the others do."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,80 +2,99 @@
 
 from __future__ import annotations
 
+import asyncio
 import json
-import sys
-from collections.abc import Iterator
-from pathlib import Path
+from collections.abc import Coroutine, Iterator
+from threading import Thread
+from typing import Any
 
 import pytest
 from aiohttp import ClientSession, WSMsgType
 
-from tests.notebook.conftest import Cell, Shown
+from tests.cases import cases
+from tests.notebook.conftest import Cell
 from tests.running import PATIENCE_S
 from tests.web.test_server import is_there
 from tuisim.notebook import lab
-from tuisim.notebook.app_view import AppView, notebook_origins
+from tuisim.notebook.app_view import AppView
+
+MAT = ["-b", "Grey_bands"]
+LAB = "http://lab:8888"
+"""Where the page of the notebook is from."""
 
 
-def server_file(folder: Path, **values: object) -> None:
-    """Write what a Jupyter server tells about itself."""
-    (folder / f"jpserver-{values['pid']}.json").write_text(json.dumps(values))
+class Page:
+    """What shows the app: a client in a thread of its own."""
+
+    def __init__(self, view: AppView) -> None:
+        self._view = view
+        self._loop = asyncio.new_event_loop()
+        self._thread = Thread(target=self._loop.run_forever)
+        self._thread.start()
+        self._call(self._open())
+
+    def _call(self, work: Coroutine[Any, Any, None]) -> None:
+        asyncio.run_coroutine_threadsafe(work, self._loop).result(PATIENCE_S)
+
+    async def _open(self) -> None:
+        self._client = ClientSession()
+        top = address(self._view)
+        query = f"session={self._view._visit.id}&width=100&height=30"
+        headers = {"Origin": top.rpartition("/")[0]}
+        self._socket = await self._client.ws_connect(f"{top}/ws?{query}", headers=headers)
+        self._reads = asyncio.create_task(self._read())
+
+    async def _read(self) -> None:
+        async for message in self._socket:
+            if message.type is WSMsgType.BINARY and b"\x1b[6n" in message.data:
+                await self._socket.send_json(["stdin", "\x1b[20;40R"])
+
+    def act(self, name: str) -> None:
+        """Press a button of the page."""
+        self._call(self._socket.send_json(["act", name]))
+
+    def close(self) -> None:
+        """Leave the app alone."""
+        self._call(self._close())
+        self._loop.call_soon_threadsafe(self._loop.stop)
+        self._thread.join()
+        self._loop.close()
+
+    async def _close(self) -> None:
+        await self._socket.close()
+        await self._reads
+        await self._client.close()
+        while self._view.is_shown:
+            await asyncio.sleep(0.005)
 
 
-def test_only_the_server_that_has_started_the_kernel_may_show_the_app(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setenv("JUPYTER_RUNTIME_DIR", str(tmp_path))
-    server_file(tmp_path, pid=7, url="http://lab.local:8888/", port=8888)
-    server_file(tmp_path, pid=8, url="http://localhost:9999/", port=9999)
-    (tmp_path / "jpserver-9.json").write_text("no JSON")
-    assert notebook_origins({"JPY_PARENT_PID": "7"}) == (
-        "http://localhost:8888",
-        "http://127.0.0.1:8888",
-        "http://lab.local:8888",
-    )
-    assert notebook_origins({"JPY_PARENT_PID": "1"}) == notebook_origins({}) == ()
-
-
-def test_without_the_extra_a_line_says_so_and_the_picture_is_shown(
-    cell: Cell, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setitem(sys.modules, "tuisim.notebook.app_view", None)
-    shown = cell("%sim_app -b Grey_bands")
-    hint = "pip install -e '.[web]' in the clone of tuisim"
-    assert shown.err == f"tuisim: note: the app in a cell needs textual-serve: {hint}\n"
-    assert shown.pictures == 1
-
-
-WRONG = {
-    "--origin evil": "must be the beginning of an address, got 'evil'",
-    "--origin 'http://a b'": "must be the beginning of an address",
-    "--origin 'http://a;'": "must be the beginning of an address",
-    "--height 5": "--height",
-}
-
-
-@pytest.mark.parametrize("words, says", WRONG.items(), ids=WRONG)
-def test_wrong_words_start_nothing(words: str, says: str, cell: Cell) -> None:
-    shown = cell(f"%sim_app {words}")
-    assert says in shown.err
-    assert not shown.bundles
+def address(view: AppView) -> str:
+    """Return a new address of the page."""
+    given = view.renew_address(())
+    return f"http://127.0.0.1:{given['port']}/{given['token']}"
 
 
 @pytest.fixture
-def view(cell: Cell) -> Iterator[AppView]:
-    """The app in a cell."""
-    cell("%sim_app -b Grey_bands --origin http://lab:8888")
-    found = lab.roboSim._view
-    assert found is not None
-    yield found
-    found.close()
+def hidden(cell: Cell) -> Iterator[AppView]:
+    """The app of a notebook that no page shows."""
+    view = lab.roboSim._live.view = AppView(MAT, (LAB,))
+    yield view
+    view.close()
 
 
-def address(shown: Shown) -> str:
-    """Return the address in the frame of a cell."""
-    text = str(shown.bundles[0]["text/html"])
-    return text[text.index("http://127") : text.index('/"] : []')]
+@pytest.fixture
+def page(hidden: AppView) -> Iterator[Page]:
+    """The page that shows the app of a notebook."""
+    page = Page(hidden)
+    assert hidden._is_ready.wait(PATIENCE_S)
+    yield page
+    page.close()
+
+
+@pytest.fixture
+def view(hidden: AppView, page: Page) -> AppView:
+    """The app of a notebook, which a page shows."""
+    return hidden
 
 
 RUN = """\
@@ -89,11 +108,11 @@ def test_cells_run_their_programs_in_the_app_and_its_runs_are_in_the_log(
     cell: Cell, view: AppView
 ) -> None:
     shown = cell(RUN)
-    assert (shown.out, shown.bundles) == ("Colour: 100.0\n", ())
+    assert (shown.out, shown.pictures) == ("Colour: 100.0\n", 1)
     data = cell("%sim_data").result
     assert (list(data["value"]), list(data["x_mm"])) == ([100.0], [100.0])
     # As the user does by a key.
-    view.ask("cell", settings={}, program=None, home=False, runs=True)
+    view.ask("cell", settings={}, program=None, home=False, runs=True, speed=0.0)
     view.told.get(timeout=PATIENCE_S)
     while view.told.get(timeout=PATIENCE_S)["what"] != "ended":
         pass
@@ -106,7 +125,9 @@ def test_cells_run_their_programs_in_the_app_and_its_runs_are_in_the_log(
 def test_the_log_follows_a_run_that_the_user_has_started(cell: Cell, view: AppView) -> None:
     endless = "print('Colour: 5')\nprint('image_data left')\nimport time\nwhile True:\n    time.sleep(1)\n"
     cell(f"%%sim_magic -b Grey_bands -x 100\n{endless}")
-    view.ask("cell", settings={"background": "Grey_bands"}, program=None, home=True, runs=True)
+    view.ask(
+        "cell", settings={"background": "Grey_bands"}, program=None, home=True, runs=True, speed=1.0
+    )
     while view.told.get(timeout=PATIENCE_S)["what"] != "run":
         pass
     while not len(cell("roboSim.images()").result):
@@ -136,7 +157,14 @@ def test_a_program_that_is_answered_runs_in_the_cell(cell: Cell) -> None:
 @pytest.mark.slow
 def test_a_cell_says_why_the_app_does_not_run_its_program(cell: Cell, view: AppView) -> None:
     cell("%%sim_magic -b Grey_bands\nwhile True:\n    pass\n")
-    view.ask("cell", settings={"background": "Grey_bands"}, program=None, home=False, runs=True)
+    view.ask(
+        "cell",
+        settings={"background": "Grey_bands"},
+        program=None,
+        home=False,
+        runs=True,
+        speed=0.0,
+    )
     while view.told.get(timeout=PATIENCE_S)["what"] != "run":
         pass
     assert "the app runs a program" in cell(RUN).err
@@ -145,7 +173,7 @@ def test_a_cell_says_why_the_app_does_not_run_its_program(cell: Cell, view: AppV
 @pytest.mark.slow
 @pytest.mark.usefixtures("view")
 def test_without_the_app_cells_show_pictures_again(cell: Cell) -> None:
-    view = lab.roboSim._view
+    view = lab.roboSim._live.view
     assert view is not None
     view._server.call(view._server.server.send_all_away())
     shown = cell(RUN)
@@ -153,42 +181,94 @@ def test_without_the_app_cells_show_pictures_again(cell: Cell) -> None:
 
 
 @pytest.mark.slow
-async def test_only_the_newest_cell_and_only_the_notebook_show_the_app(
-    cell: Cell, view: AppView
-) -> None:
-    old, new = (address(cell("%sim_app --origin http://lab:8888")) for _ in range(2))
+async def test_only_the_newest_page_and_only_the_notebook_show_the_app(hidden: AppView) -> None:
+    old, new = address(hidden), address(hidden)
     assert old != new
     origin = new.rpartition("/")[0]
     async with ClientSession() as client:
         async with client.get(f"{new}/") as answer:
             policy = answer.headers["Content-Security-Policy"]
-            assert (answer.status, "frame-ancestors 'self' http://lab:8888" in policy) == (
-                200,
-                True,
-            )
+            assert (answer.status, f"frame-ancestors 'self' {LAB}" in policy) == (200, True)
         refused = {
-            "a token of an older cell": (f"{old}/", {}),
+            "a token of an older page": (f"{old}/", {}),
             "no token": (f"{origin}/", {}),
             "another site": (f"{new}/", {"Origin": "http://evil.example"}),
-            "the notebook itself": (f"{new}/sessions", {"Origin": "http://lab:8888"}),
+            "the notebook itself": (f"{new}/sessions", {"Origin": LAB}),
             "another name": (f"{new}/", {"Host": "evil.example"}),
         }
         for name, (url, headers) in refused.items():
             async with client.get(url, headers=headers) as answer:
                 assert answer.status == 403, name
         # As jupyter-server-proxy passes it on.
-        through = {"Host": "lab:8888", "Origin": "http://lab:8888"}
+        through = {"Host": "lab:8888", "Origin": LAB}
         async with client.ws_connect(
-            f"{new}/ws?session={view._visit.id}", headers=through
+            f"{new}/ws?session={hidden._visit.id}", headers=through
         ) as socket:
             assert (await socket.receive(PATIENCE_S)).type is WSMsgType.TEXT
 
 
 @pytest.mark.slow
-def test_the_end_of_the_app_leaves_no_process(view: AppView) -> None:
-    view.ask("stop")
-    process = view._visit._session._process
+def test_the_end_of_the_app_leaves_no_process(hidden: AppView) -> None:
+    hidden.ask("stop")
+    process = hidden._visit._session._process
     assert process is not None
     assert is_there(process.pid)
-    view.close()
+    hidden.close()
     assert not is_there(process.pid)
+
+
+@pytest.mark.slow
+def test_cells_run_without_an_app_that_no_page_shows(cell: Cell, hidden: AppView) -> None:
+    assert cell(RUN).out == "Colour: 100.0\n"
+    assert hidden.begun.empty()
+    page = Page(hidden)
+    assert hidden._is_ready.wait(PATIENCE_S)
+    cell(RUN)
+    assert not hidden.begun.empty()
+    page.close()
+    cell(RUN)
+    assert (hidden.begun.qsize(), len(cell("%sim_data").result)) == (1, 3)
+
+
+DRIVE = """\
+%%sim_magic_preloaded -b Grey_bands -x 100 -RiA
+tank_drive.on_for_seconds(SpeedPercent(40), SpeedPercent(40), 4)
+print('Light: ' + str(colorLeft.reflected_light_intensity_pc))
+"""
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("view")
+def test_pictures_and_data_are_the_same_with_the_app_and_without_it(cell: Cell) -> None:
+    live = cell(DRIVE), cell("%sim_data").result
+    assert lab.roboSim.results_log[0].spec.seed == 0
+    cell("%sim_app --off\n%sim_data --clear")
+    still = cell(DRIVE), cell("%sim_data").result
+    assert live[0] == still[0]
+    assert (len(live[1]), live[1].equals(still[1])) == (1, True)
+
+
+SPEEDS = {
+    "as fast as possible": ("", None, 0.0),
+    "as the cell says": (" --speed 8", None, 8.0),
+    "as the user has set it": ("", 4.0, 4.0),
+    "as the cell says after all": (" --speed max", 4.0, 0.0),
+}
+
+
+@pytest.mark.slow
+@cases("words, chosen, speed", SPEEDS)
+def test_a_cell_runs_as_fast_as_possible_unless_a_speed_is_set(
+    words: str, chosen: float | None, speed: float, cell: Cell, page: Page
+) -> None:
+    if chosen is not None:
+        for _ in range(2):
+            page.act("faster")
+        # What it is asked next comes after what the buttons have done.
+    cell(DRIVE.replace("-x 100", f"-x 100{words}"))
+    options = json.loads((lab.roboSim.results_log[-1].folder / "run.json").read_text())["options"]
+    assert (options["speed"], options["time_limit_s"], options["stall_limit_s"]) == (
+        speed,
+        600.0,
+        60.0,
+    )

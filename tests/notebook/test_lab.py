@@ -23,6 +23,7 @@ from tests.notebook.lesson import (
     stream,
     texts,
 )
+from tuisim.notebook.live_robot import SENTENCE
 from tuisim.scene.robot import COLORED
 
 pytestmark = pytest.mark.slow
@@ -57,9 +58,10 @@ def test_nothing_goes_wrong(done: Done) -> None:
 
 
 def test_instruments_and_world_are_shown(done: Done) -> None:
-    assert kinds(done["instruments"]) == ["image/png", "text/html"]
+    assert kinds(done["instruments"]) == ["image/png", "text/html", "text/html"]
     assert texts(done["instruments"]) == [
         WORLD,
+        SENTENCE,
         "Instrumentation\n"
         "  LeftMotor        736 counts, 420 °/s\n"
         "  RightMotor       736 counts, 420 °/s\n"

@@ -217,13 +217,9 @@ def test_without_it_that_is_not_so(case: Case, cell: Cell) -> None:
     assert case.probe(cell, "") != case.seen
 
 
-OF_THE_APP = {"--app", "--height", "--origin"}
-"""Tried with the app, see `test_app_view.py`."""
-
-
 def test_every_switch_is_here() -> None:
     known = {flag for param in _command("sim_magic").params for flag in param.opts}
-    assert known == {flag for case in CASES for flag in case.flags} | OF_TERMINALS | OF_THE_APP
+    assert known == {flag for case in CASES for flag in case.flags} | OF_TERMINALS
 
 
 COMPOUNDS = [

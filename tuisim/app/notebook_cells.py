@@ -10,6 +10,7 @@ from tuisim.app.actions import robot
 from tuisim.app.actions.files import open_brought
 from tuisim.config.program_file import ProgramSource
 from tuisim.errors import TuisimError
+from tuisim.runs.run_options import RunOptions
 from tuisim.source import Program
 
 if TYPE_CHECKING:
@@ -24,8 +25,8 @@ def do_asked(context: ActionContext, asked: Mapping[str, Any]) -> None:
     Args:
         context: What it is done with.
         asked: `what`, and its details: `open` a file by its `path`; take the `settings` and the `program` of a `cell`,
-            put the robot back to its start if it goes `home`, and run the program if it `runs`; `stop` the program;
-            show the stored `run` with an `id`.
+            put the robot back to its start if it goes `home`, and run the program if it `runs`, at a `speed` if it has
+            one; `stop` the program; show the stored `run` with an `id`.
     """
     match asked:
         case {"what": "open", "path": str(path)}:
@@ -36,8 +37,10 @@ def do_asked(context: ActionContext, asked: Mapping[str, Any]) -> None:
             "program": program,
             "home": bool(home),
             "runs": bool(runs),
+            "speed": speed,
         }:
-            _take_cell(context, settings, program, home=home, runs=runs)
+            options = _choose_run_options(context, speed) if runs else None
+            _take_cell(context, settings, program, home=home, options=options)
         case {"what": "stop"}:
             context.runs.stop()
         case {"what": "run", "id": str(run_id)}:
@@ -50,7 +53,7 @@ def _take_cell(
     program: Mapping[str, Any] | None,
     *,
     home: bool,
-    runs: bool,
+    options: RunOptions | None,
 ) -> None:
     if context.runs.in_run:
         context.app.tell_server("problem", text=BUSY)
@@ -69,5 +72,18 @@ def _take_cell(
         return
     if home:
         robot.home(context)
-    if runs:
+    if options is not None:
+        context.runs.next_options = options
         context.app.start_run()
+
+
+def _choose_run_options(context: ActionContext, speed: float | None) -> RunOptions:
+    """Return how a cell's program runs, with the limits that it has without the app: as fast as possible, unless the
+    cell or the user of the app has set a speed."""
+    runs = context.runs
+    if speed:
+        runs.speed = speed
+    rushes = not (speed or (speed is None and runs.has_chosen_speed))
+    return RunOptions(
+        live=True, speed=0.0 if rushes else runs.speed, asks_user=True, time_waits=rushes
+    )

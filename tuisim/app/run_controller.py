@@ -106,6 +106,10 @@ class RunController:
         self.home: Pose = self.next_run.spec.world.start
         """The pose that `back to start` uses."""
         self.speed = speed
+        self.has_chosen_speed = False
+        """Whether a key of the user's has set the speed."""
+        self.next_options: RunOptions | None = None
+        """Those of the next run only, in place of the usual ones."""
         self.mat: Mat | None = None
         self.run: RunHandle | None = None
         """The live run or the last one; None before the first one, and while a stored run is shown."""
@@ -320,10 +324,13 @@ class RunController:
         )
         if "profile" not in self.next_run.free:
             require_library(program, self.next_run.spec.profile)
-        hold_at = FIRST_LINE if paused else None
         options = replace(
-            self._options, breaks=breaks, hold_at=hold_at, actions=self.next_run.actions
+            self.next_options or self._options,
+            breaks=breaks,
+            hold_at=FIRST_LINE if paused else None,
+            actions=self.next_run.actions,
         )
+        self.next_options = None
         self._show_run(start_run(program, self.next_run.spec, options))
 
     def prepare_next(self) -> None:

@@ -20,7 +20,9 @@ from tuisim.config.options import OF_THE_MAT, RUN_VALUES
 from tuisim.config.options import parse as parse_value
 from tuisim.config.shared_options import shared_options
 from tuisim.core.values import Number, Whole
+from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError
+from tuisim.source import APP_MAGIC
 
 MIN_HEIGHT_PX, MAX_HEIGHT_PX, DEFAULT_HEIGHT_PX = 200, 4000, 560
 MAX_INDEX = 1_000_000
@@ -31,6 +33,17 @@ PERSISTENT = frozenset({"background", "mats", "robot", "obstacles", "profile", *
     "pen.down"
 }
 """Paths of settings that persist until another cell changes them; all others apply to their cell only."""
+
+
+@dataclass(frozen=True, slots=True)
+class AppWords:
+    """What a magic line says of the app in a cell."""
+
+    height_px: int = DEFAULT_HEIGHT_PX
+    origins: tuple[str, ...] = ()
+    """Further origins of pages that may show it."""
+    off: bool = False
+    """Whether cells show pictures only from now on."""
 
 
 def _of_every_magic(**how: str) -> list[GroupedOption]:
@@ -94,10 +107,30 @@ def _command(magic: str) -> Command:
             help="Seconds between two redraws.",
         ),
         option(
-            "--app",
+            "-L",
+            "--collab",
+            "collaborative",
             is_flag=True,
             group=group,
-            help="Show the app in this cell, live, as %sim_app does.",
+            help="`roboSim.pyresponder` or `.responder` answers the program.",
+        ),
+    ]
+    of_app = _options_of_app()
+    if magic == APP_MAGIC:
+        return Command(f"%{magic}", params=[*params, *of_app], add_help_option=False)
+    instead = {flag: f"%{APP_MAGIC} {flag}" for param in of_app for flag in param.opts}
+    instead["--app"] = f"%{APP_MAGIC}"
+    return Command(f"%{magic}", params=params, add_help_option=False, instead=instead)
+
+
+def _options_of_app() -> list[GroupedOption]:
+    group = "App"
+    return [
+        option(
+            "--off",
+            is_flag=True,
+            group=group,
+            help="Only pictures in this notebook from now on; %sim_app shows the app again.",
         ),
         option(
             "--height",
@@ -117,20 +150,13 @@ def _command(magic: str) -> Command:
             group=group,
             help="Another address under which this notebook is read, such as http://lab:8888.",
         ),
-        option(
-            "-L",
-            "--collab",
-            "collaborative",
-            is_flag=True,
-            group=group,
-            help="`roboSim.pyresponder` or `.responder` answers the program.",
-        ),
     ]
-    return Command(f"%{magic}", params=params, add_help_option=False)
 
 
 def parse_line(line: str, magic: str) -> Arguments:
     """Parse the words after a magic that sets the world; `help` is the help text, if it was requested.
+
+    `app` is what the magic of the app says of that, None for other magics.
 
     Raises:
         ConfigError: a word is no option, or a value is wrong.
@@ -144,6 +170,9 @@ def parse_line(line: str, magic: str) -> Arguments:
             error.message, f"see %{magic} -h" if not error.hint else error.hint
         ) from None
     found.help = help_of(command) if found.help else ""
+    found.app = None
+    if magic == APP_MAGIC:
+        found.app = AppWords(found.height_px, found.origins, found.off)
     return found
 
 
@@ -159,7 +188,7 @@ def _type(value: Number, flag: str) -> WordType:
     return WordType(lambda text: parse_value(value, text, flag))
 
 
-_ORIGIN = re.compile(r"https?://(?:[\w.-]+|\[[\da-fA-F:.]+\])(?::\d+)?|vscode-webview:", re.ASCII)
+_ORIGIN = re.compile(r"https?://(?:[\w.-]+|\[[\da-fA-F:.]+\])(?::\d+)?", re.ASCII)
 
 
 def _origin(text: str) -> str:

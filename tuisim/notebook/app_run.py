@@ -16,6 +16,9 @@ if TYPE_CHECKING:
     from tuisim.runs.run_folder import StoredRun
 
 
+_START_WITHIN_S = 30.0
+
+
 class AppRun:
     """Follows a run in the app; its output is read from the store.
 
@@ -38,14 +41,17 @@ class AppRun:
         self.output = RunStore().load_run(self.run_id).output
 
     def _next(self, *kinds: str) -> Mapping[str, Any]:
-        """Wait until the app tells one of these."""
-        while self._view.is_alive:
+        """Wait until the app tells one of these, but not for ever."""
+        until_s = time.monotonic() + _START_WITHIN_S
+        while self._view.is_alive and time.monotonic() < until_s:
             told = self._told(0.2)
             if told.get("what") == "problem" and "problem" in kinds:
                 raise HostError(str(told["text"]))
             if told.get("what") in kinds:
                 return told
-        raise HostError("the app in the cell has ended", "%sim_app starts it again")
+        raise HostError(
+            "the app in the cell does not answer", "%sim_app --off runs cells without it"
+        )
 
     def _told(self, timeout_s: float) -> Mapping[str, Any]:
         try:

@@ -9,6 +9,7 @@ import threading
 import time
 from collections.abc import Callable
 from contextlib import closing
+from dataclasses import replace
 from functools import partial
 from itertools import islice
 from types import FrameType
@@ -28,7 +29,7 @@ from tuisim.runs.handle import RunHandle, RunOptions, start_run
 from tuisim.runs.plugged_words import list_parts
 from tuisim.runs.presses import press_actions
 from tuisim.runs.records import OutputRow, Stream
-from tuisim.runs.run_folder import StoredRun
+from tuisim.runs.run_folder import StoredRun, field_files
 from tuisim.runs.samples import Sample, samples_of
 from tuisim.runs.store import RunStore
 from tuisim.scene.pen import Piece, pen_trace
@@ -136,6 +137,9 @@ def run_cell(
         ) as handle,
     ):
         run = store.load_run(handle.run_id)
+        if view is not None:
+            # The user may have put the robot elsewhere in it.
+            cell = replace(cell, spec=run.spec, files=field_files(run.spec))
         begun(run, handle.wheels)
         screen = _Screen(cell, stage, run)
         try:

@@ -6,7 +6,8 @@ import html
 import sys
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict
-from typing import Any
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any
 
 from IPython.core.getipython import get_ipython
 from IPython.display import DisplayHandle, display
@@ -30,6 +31,9 @@ from tuisim.scene.discs import disc_faces
 from tuisim.scene.pen import Piece
 from tuisim.scene.pictures import world_picture
 from tuisim.source import Program, source_lines
+
+if TYPE_CHECKING:
+    from PIL.Image import Image
 
 _LEFT_RIGHT = ("left", "right")
 
@@ -170,11 +174,24 @@ CHART_SIZE = (760, 300)
 """Width and height of the chart in pixels."""
 
 
-class Stage:
-    """The panels of one cell, each a display that is updated in place."""
+def _draw_arrays(scene: Scene) -> Image:
+    instant = instant_of(scene.last, scene.spec, scene.spec.world.noise)
+    faces = disc_faces(scene.spec, instant, scene.open_field(), scene.program)
+    return image_of(arrays_drawing(faces, FACE_PX[0] * max(len(faces), 1), FACE_PX[1]))
 
-    def __init__(self, settings: Settings) -> None:
-        self._settings = settings
+
+class Stage:
+    """The panels of one cell, each a display that is updated in place.
+
+    Args:
+        settings: Say which panels there are.
+        captions: What stands below the picture of the world and stays as it is, by a name.
+    """
+
+    def __init__(
+        self, settings: Settings, captions: Mapping[str, dict[str, Any]] = MappingProxyType({})
+    ) -> None:
+        self._settings, self._captions = settings, captions
         self.redraws = hasattr(get_ipython(), "kernel")
         """Whether displays can be updated in place; a terminal would print them again."""
         self._handles: dict[str, DisplayHandle] = {}
@@ -197,16 +214,16 @@ class Stage:
         # A kernel sends printed text with a delay, but displays immediately.
         sys.stdout.flush()
         sys.stderr.flush()
-        on, off, spec = self._settings["panels_on"], self._settings["panels_off"], scene.spec
+        on, off = self._settings["panels_on"], self._settings["panels_off"]
         if "world" not in off:
-            mat, pose = mat_pixels(scene.files), scene.last.pose
-            picture = world_picture(spec, mat, pose, scene.traces, rays=self._settings["rays"])
+            mat, pose, rays = mat_pixels(scene.files), scene.last.pose, self._settings["rays"]
+            picture = world_picture(scene.spec, mat, pose, scene.traces, rays=rays)
             self._put("world", picture_bundle(picture, "world"))
+        for name, caption in self._captions.items():
+            if name not in self._handles:
+                self._put(name, caption)
         if "arrays" in on:
-            instant = instant_of(scene.last, spec, spec.world.noise)
-            faces = disc_faces(spec, instant, scene.open_field(), scene.program)
-            drawing = arrays_drawing(faces, FACE_PX[0] * max(len(faces), 1), FACE_PX[1])
-            self._put("arrays", picture_bundle(image_of(drawing), "sensor arrays"))
+            self._put("arrays", picture_bundle(_draw_arrays(scene), "sensor arrays"))
         if "chart" in on:
             drawing = laid_out(
                 sample_chart(scene.samples, CHART_SIZE[0]), *CHART_SIZE, titled=False

@@ -14,6 +14,7 @@ from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError
 from tuisim.notebook import eds, old_formats
 from tuisim.notebook.image_log import ImageLog
+from tuisim.notebook.live_robot import LiveRobot
 from tuisim.protocol import Wheels
 
 if TYPE_CHECKING:
@@ -70,8 +71,7 @@ class Lab:
         self._runs: list[StoredRun] = []
         self._last: StoredRun | None = None
         self._spec: RunSpec | None = None
-        self._view: AppView | None = None
-        """The app in a cell, once there is one."""
+        self._live = LiveRobot()
         self._followed: list[str] = []
         """The ids of runs in the app that had not ended when the log was last asked for."""
         self._traces: tuple[Piece, ...] = ()
@@ -231,8 +231,6 @@ class Lab:
         Raises:
             ConfigError: a mat, robot or value is invalid, or there is no program to run.
         """
-        from tuisim.notebook.display import Stage
-
         plan = self._checked(words, text, prelude)
         runs = plan.settings["autorun"] or (self.autorun and text is not None)
         if runs and plan.program is None:
@@ -253,23 +251,28 @@ class Lab:
         self._persistent, self._program, self._spec = plan.persistent, plan.program, plan.spec
         if text is not None:
             self._presses = plan.settings["press"]
-        view = self._view_for(words, plan)
-        if view is not None:
-            if not listener.answers:
-                self._run_in_app(view, plan, words, runs)
-                return
+        self._show(plan, words, listener, runs=runs)
+
+    def _show(self, plan: _CellPlan, words: Arguments, listener: Listener, *, runs: bool) -> None:
+        """Run the program of a cell, in the app if a page shows that, or show the world."""
+        from tuisim.notebook.display import Stage
+
+        stage = Stage(plan.settings, self._build_captions(words, plan))
+        view = self._live.find_shown()
+        if view is not None and listener.answers:
             print(
                 "tuisim: note: a program that is answered runs here; the app shows its run",
                 file=sys.stderr,
             )
-        stage = Stage(plan.settings)
-        if runs:
-            self._run(plan, stage, words, listener)
-            if view is not None and self._last is not None:
-                view.ask("run", id=self._last.id)
-        else:
+        elif view is not None:
+            self._take_into_app(view, plan, words, runs=runs)
+        if not runs:
             scene, status = self._scene(plan)
             stage.show(scene, f"nothing is running · {status}" if words.stop else status)
+            return
+        self._run(plan, stage, words, listener, None if listener.answers else view)
+        if view is not None and listener.answers and self._last is not None:
+            view.ask("run", id=self._last.id)
 
     def _checked(self, words: Arguments, text: str | None, prelude: str) -> _CellPlan:
         from tuisim.config.build import build_run_spec
@@ -318,50 +321,36 @@ class Lab:
 
         return Listener(responder, self._in_texts, None if handler is None else handled)
 
-    def _view_for(self, words: Arguments, plan: _CellPlan) -> AppView | None:
-        """Return the app in a cell, which this one may have asked for; None if there is none."""
-        if self._view is not None and not self._view.is_alive:
-            self._view.close()
-            self._view = None
-        if not words.app:
-            return self._view
-        try:
-            from tuisim.notebook.app_view import AppView
-        except ImportError:
-            hint = "pip install -e '.[web]' in the clone of tuisim"
-            print(f"tuisim: note: the app in a cell needs textual-serve: {hint}", file=sys.stderr)
-            return None
-        if self._view is None:
-            self._view = AppView(["-b", plan.spec.world.background], words.origins)
-        self._view.show(words.height_px, words.origins)
-        return self._view
+    def _build_captions(self, words: Arguments, plan: _CellPlan) -> dict[str, dict[str, Any]]:
+        """Return what stands below the picture of the cell; without a picture, only the app that it asks for."""
+        asked = words.app if words.app is not None and not words.app.off else None
+        if words.app is not None:
+            self._live.turn(on=asked is not None)
+        if asked is None and "world" in plan.settings["panels_off"]:
+            return {}
+        return self._live.build_captions(plan.spec.world.background, asked)
 
-    def _run_in_app(self, view: AppView, plan: _CellPlan, words: Arguments, runs: bool) -> None:
+    def _take_into_app(
+        self, view: AppView, plan: _CellPlan, words: Arguments, *, runs: bool
+    ) -> None:
         from tuisim.config.options import settings_of
-        from tuisim.notebook.cell_run import Listener
-        from tuisim.notebook.display import Stage
 
         presses = {"press": plan.settings["press"]}
         said = settings_of(plan.persistent, words.settings, presses).given
-        program = plan.program
         view.take_cell(
-            {path: value for path, value in said.items() if path != "autorun"},
-            program,
+            {path: value for path, value in said.items() if path not in ("autorun", "speed")},
+            plan.program,
             home=words.move_back,
             runs=runs,
+            speed=plan.settings["speed"],
         )
-        if runs:
-            stage = Stage(
-                plan.settings.changed({"panels_on": (), "panels_off": ("world", "controls")})
-            )
-            self._run(plan, stage, words, Listener(), view)
 
     def _catch_up(self) -> None:
         """Take the runs that have begun in the app into the log, as far as they are."""
-        if self._view is None:
+        if self._live.view is None:
             return
-        while not self._view.begun.empty():
-            self._followed.append(self._view.begun.get())
+        while not self._live.view.begun.empty():
+            self._followed.append(self._live.view.begun.get())
         if self._followed:
             from tuisim.runs.store import RunStore
 
@@ -379,7 +368,7 @@ class Lab:
         stage: Stage,
         words: Arguments,
         listener: Listener,
-        view: AppView | None = None,
+        view: AppView | None,
     ) -> None:
         from tuisim.notebook.cell_run import CellRun, run_cell
         from tuisim.scene.pen import pen_trace

@@ -15,7 +15,7 @@ from tuisim.errors import ConfigError, TuisimError
 from tuisim.notebook import eds, old_formats
 from tuisim.notebook.kernel import find_old_simulator
 from tuisim.notebook.lab import Lab, roboSim
-from tuisim.source import PRELUDE_TEXTS, PRELUDES
+from tuisim.source import APP_MAGIC, PRELUDE_TEXTS, PRELUDES
 
 if TYPE_CHECKING:
     from PIL.Image import Image
@@ -53,7 +53,8 @@ def _sim_magic(shell: InteractiveShell, magic: str) -> Handler:
         from tuisim.config.magic_line import parse_line
 
         words = parse_line(line, magic)
-        ready = PRELUDE_TEXTS[words.settings.get("preload", PRELUDES[magic])]
+        prelude = PRELUDES.get(magic, "none")
+        ready = PRELUDE_TEXTS[words.settings.get("preload", prelude)]
         if words.help or words.preview_code:
             print(words.help, end="")
             return ready if words.preview_code else None
@@ -62,16 +63,12 @@ def _sim_magic(shell: InteractiveShell, magic: str) -> Handler:
             if cell is None:
                 return None
         lab = _lab(shell, words.sim)
-        lab.apply(words, cell, PRELUDES[magic])
+        lab.apply(words, cell, prelude)
         if words.preview:
             print(lab.program_text)
         return None
 
     return act
-
-
-def _sim_app(shell: InteractiveShell) -> Handler:
-    return lambda line, _: _sim_magic(shell, "sim_magic")(f"--app {line}", None)
 
 
 Log = Callable[[Lab, "Arguments"], Any]
@@ -128,7 +125,9 @@ def install(shell: InteractiveShell) -> None:
         )
     for name in PRELUDES:
         shell.magics_manager.register_function(_guarded(_sim_magic(shell, name)), "line_cell", name)
-    shell.magics_manager.register_function(_guarded(_sim_app(shell)), "line", "sim_app")
+    shell.magics_manager.register_function(
+        _guarded(_sim_magic(shell, APP_MAGIC)), "line", APP_MAGIC
+    )
     for name, read in LOG_MAGICS.items():
         shell.magics_manager.register_function(
             _guarded(_log_magic(shell, name, read)), "line", name

@@ -118,7 +118,7 @@ class Visit:
         """Return what a list of visits tells about it."""
         age_s = time.monotonic() - self._begun_s
         times = {"age_s": round(age_s), "idle_s": round(self._activity.idle_s)}
-        shows = {"shown": self._link.socket is not None, "program": self._program}
+        shows = {"shown": self.is_shown, "program": self._program}
         return {"id": self.id, **times, **shows, "runs": self._runs}
 
     async def live(self, width: int, height: int, began: Callable[[], None]) -> None:
@@ -212,6 +212,11 @@ class Visit:
     async def ask(self, asked: Mapping[str, Any]) -> None:
         """Ask the app for something; see `ServerAsks`."""
         await self._session.send_meta({"type": "ask", **asked})
+
+    @property
+    def is_shown(self) -> bool:
+        """Whether a browser shows the app now."""
+        return self._link.socket is not None
 
     @property
     def has_ended(self) -> bool:

@@ -58,6 +58,7 @@ def change_speed(context: ActionContext, by: int) -> None:
             f"The speed is already {speed_label(speed)}, the {'slowest' if by < 0 else 'fastest'}"
         )
         return
+    context.runs.has_chosen_speed = True
     context.runs.set_speed(SPEEDS[to])
     context.app.situation_changed()
 

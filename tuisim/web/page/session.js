@@ -8,9 +8,9 @@ const session = (() => {
   const [LOST, TAKEN_OVER, REFUSED] = [1006, 4001, 403];
   // A line that says nothing for so long is asked, and has so long to answer; a request, too.
   const [SILENT_MS, ANSWER_MS, RETRY_MS] = [10000, 10000, 1000];
-  const [ENDED, HERE] = ["The session has ended.", "Run %sim_app to have it here."];
+  const ENDED = "The session has ended.";
   let chosen = "";
-  let [current, since, answered] = [null, 0, true];
+  let [current, since, answered, drawn] = [null, 0, true, false];
 
   const pause = (ms) => new Promise((over) => setTimeout(over, ms));
 
@@ -19,12 +19,16 @@ const session = (() => {
     document.body.classList.add("-closed");
   };
 
+  // Tells the cell of a notebook that shows the page: it is here, the app is open, or closed and why.
+  const tell = (...said) => framed && window.parent.postMessage({ tuisim: said }, "*");
+
   // Says why there is no app; only a cell of the notebook can start another one there.
   const end = (words, button) => {
     const again = document.getElementById("again");
     again.hidden = framed;
     again.textContent = button;
-    say(framed ? `${words} ${HERE}` : words);
+    say(words);
+    tell("closed", words);
     // textual.js shows the dialog when it hears of the end, after this.
     setTimeout(() => again.focus());
   };
@@ -35,13 +39,14 @@ const session = (() => {
     if (answer.ok) return answer.json();
     if (answer.status !== REFUSED) throw new Error(answer.statusText);
     document.getElementById("again").hidden = true;
-    say(framed ? `Another cell shows the app now. ${HERE}` : await answer.text());
+    say(await answer.text());
+    tell("closed", "Another cell shows the app now.");
     return new Promise(() => {});
   };
 
   const sayLost = () => {
     document.getElementById("again").hidden = true;
-    const more = framed ? ` If the kernel has ended: ${HERE}` : "";
+    const more = framed ? " If the kernel has ended, run the cell again." : "";
     say(`The connection to the server is lost. Trying again …${more}`);
   };
 
@@ -175,7 +180,12 @@ const session = (() => {
     // Adds the app to the address of a socket.
     address: (url) => (chosen ? `${url}&session=${chosen}` : url),
     heard: (data) => {
-      if (typeof data !== "string") return;
+      if (typeof data !== "string") {
+        // What the app draws.
+        if (!drawn) tell("open");
+        drawn = true;
+        return;
+      }
       const [what, told] = JSON.parse(data);
       if (what === "panels") {
         for (const button of document.querySelectorAll("[data-act^=panel-]:not([data-act=panel-next])")) {
@@ -203,6 +213,7 @@ const session = (() => {
       if (!answer.ok) alert(`${file.name}: ${await answer.text()}`);
     },
     framed,
+    tell,
   };
 })();
 
@@ -218,7 +229,7 @@ if (session.framed) {
 }
 
 // The cell of a notebook waits for this, in case the address does not lead here.
-if (session.framed) window.parent.postMessage("tuisim", "*");
+session.tell("here");
 
 window.addEventListener("dragover", (event) => event.preventDefault());
 window.addEventListener("drop", (event) => {

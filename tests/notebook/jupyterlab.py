@@ -1,0 +1,139 @@
+"""JupyterLab with one notebook, in a browser."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import os
+import sys
+from asyncio.subprocess import DEVNULL, STDOUT
+from collections.abc import AsyncIterator, Sequence
+from contextlib import asynccontextmanager
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any
+
+import nbformat
+import pytest
+from nbformat.notebooknode import NotebookNode
+
+from tests.running import PATIENCE_S
+from tests.web.chromium import Chromium, chromium, needs_chromium
+
+needs_jupyterlab = [
+    needs_chromium,
+    pytest.mark.skipif(find_spec("jupyterlab") is None, reason="needs jupyterlab"),
+]
+_TOKEN = "token-of-a-test"
+_APP = "window.jupyterapp"
+_NOTEBOOK = f"[...{_APP}?.shell?.widgets('main') ?? []][0]"
+_CELLS = f"[...{_NOTEBOOK}.content.model.cells]"
+_IS_READY = f"{_NOTEBOOK}?.context?.sessionContext?.session?.kernel?.status === 'idle'"
+_IS_LIVE = (
+    "[...document.querySelectorAll('iframe[title=tuisim]')]"
+    ".some((frame) => frame.parentElement.getBoundingClientRect().height > 100)"
+)
+_SEEN = (
+    "[...document.querySelectorAll('.jp-OutputArea-output')].filter((one) => one.offsetHeight > 0)"
+)
+
+
+class Lab:
+    """A notebook that JupyterLab shows.
+
+    Args:
+        page: The browser.
+        file: The notebook.
+        names: Those of its cells.
+    """
+
+    def __init__(self, page: Chromium, file: Path, names: Sequence[str]) -> None:
+        self._page, self._file, self._names = page, file, list(names)
+
+    async def open(self, url: str) -> None:
+        """Open the notebook with the kernel that it asks for."""
+        self._url = url
+        await self._page.do("Page.navigate", url=url)
+        await self._page.until(_IS_READY)
+        await self._page.js(f"{_APP}.shell.activateById({_NOTEBOOK}.id)")
+
+    async def reload(self) -> None:
+        """Load the page again; the kernel goes on."""
+        await self._page.js(f"{_NOTEBOOK}.context.save().then(() => 0)")
+        await self._page.do("Page.navigate", url="about:blank")
+        await self.open(self._url)
+
+    async def run(self, *names: str) -> None:
+        """Run cells by name and wait until they have run; without any, run all at once, as the menu does."""
+        for name in names:
+            await self._page.js(
+                f"{_NOTEBOOK}.content.activeCellIndex = {self._names.index(name)}; 0"
+            )
+            await self._page.js(f"{_APP}.commands.execute('notebook:run-cell').then(() => 0)")
+        if not names:
+            await self._page.js(f"{_APP}.commands.execute('notebook:run-all-cells').then(() => 0)")
+            await self._page.until(f"{_CELLS}.every((cell) => cell.executionState === 'idle')")
+
+    async def outputs(self) -> dict[str, NotebookNode]:
+        """Return the cells by name, as they are in the file once it is saved."""
+        await self._page.js(f"{_NOTEBOOK}.context.save().then(() => 0)")
+        cells = nbformat.read(self._file, as_version=4).cells
+        return dict(zip(self._names, cells, strict=True))
+
+    async def until_live(self) -> None:
+        """Wait until the app is seen in a cell."""
+        await self._page.until(_IS_LIVE)
+
+    async def until_still(self) -> None:
+        """Wait until no app is seen."""
+        await self._page.until(f"!{_IS_LIVE}")
+
+    async def pictures(self) -> int:
+        """Return how many pictures are seen."""
+        return int(await self._page.js(f"{_SEEN}.filter((one) => one.querySelector('img')).length"))
+
+    async def text(self) -> str:
+        """Return the texts of the outputs that are seen."""
+        return str(await self._page.js(f"{_SEEN}.map((one) => one.innerText).join('\\n')"))
+
+
+@asynccontextmanager
+async def jupyterlab(folder: Path, cells: dict[str, NotebookNode]) -> AsyncIterator[Lab]:
+    """Open a notebook in JupyterLab, with the kernel "Python 3".
+
+    Args:
+        folder: Where all files are kept.
+        cells: The cells of the notebook, by name.
+    """
+    kernel = {"name": "python3", "display_name": "Python 3", "language": "python"}
+    notebook = nbformat.v4.new_notebook(cells=[*cells.values()], metadata={"kernelspec": kernel})
+    file = folder / "lesson.ipynb"
+    nbformat.write(notebook, file)
+    options: dict[str, Any] = {
+        "IdentityProvider.token": _TOKEN,
+        "LabApp.check_for_updates_class": "jupyterlab.NeverCheckForUpdate",
+        "LabApp.expose_app_in_browser": True,
+        "LabApp.news_url": None,
+        "ServerApp.root_dir": folder,
+    }
+    places = {"CONFIG_DIR": "config", "DATA_DIR": "data", "RUNTIME_DIR": "runtime"}
+    process = await asyncio.create_subprocess_exec(
+        *(sys.executable, "-P", "-m", "jupyterlab", "--no-browser", "--port=0", "--allow-root"),
+        *(f"--{name}={value}" for name, value in options.items()),
+        env=os.environ | {f"JUPYTER_{name}": str(folder / place) for name, place in places.items()},
+        stdin=DEVNULL,
+        stdout=DEVNULL,
+        stderr=STDOUT,
+    )
+    try:
+        async with asyncio.timeout(PATIENCE_S):
+            while not (found := [*(folder / "runtime").glob("jpserver-*.json")]):
+                await asyncio.sleep(0.05)
+        port = json.loads(found[0].read_text())["port"]
+        async with chromium(folder / "browser", 1200, 900, 1, fingers=False) as page:
+            lab = Lab(page, file, [*cells])
+            await lab.open(f"http://127.0.0.1:{port}/lab/tree/{file.name}?token={_TOKEN}")
+            yield lab
+    finally:
+        process.terminate()
+        await process.wait()

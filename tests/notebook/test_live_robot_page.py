@@ -1,0 +1,89 @@
+"""The live robot in JupyterLab: the page takes the offer of a picture, and cells run in the app."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import nbformat
+import pytest
+from nbformat.notebooknode import NotebookNode
+
+from tests.notebook.jupyterlab import jupyterlab, needs_jupyterlab
+from tests.notebook.lesson import CELLS, LOAD, execute, pictures, result, stream
+from tuisim.notebook.live_robot import SENTENCE
+
+pytestmark = [pytest.mark.slow, *needs_jupyterlab]
+
+LOGS = """\
+%%sim_magic_preloaded -b Grey_bands -x 100 -RA
+tank_drive.on_for_seconds(SpeedPercent(40), SpeedPercent(40), 3)
+print('Colour: ' + str(colorLeft.reflected_light_intensity_pc))
+"""
+STEPS = {
+    "load": LOAD,
+    "picture": "%sim_magic -b Grey_bands",
+    "ready": "roboSim._live.view._is_ready.wait()",
+    "run": LOGS,
+    "runs in the app": "roboSim._live.view.begun.qsize()",
+    "log": "frame = %sim_data",
+    "data": "frame.values.tolist()",
+    "off": "%sim_app --off",
+    "on": "%sim_app --height 300",
+}
+
+
+def code(cells: dict[str, str]) -> dict[str, NotebookNode]:
+    """Return cells of a notebook that has not been run."""
+    return {name: nbformat.v4.new_code_cell(text) for name, text in cells.items()}
+
+
+def shown(cell: NotebookNode) -> tuple[str, list[bytes]]:
+    """Return what a cell has printed and drawn."""
+    return stream(cell), [picture.tobytes() for picture in pictures(cell)]
+
+
+async def test_the_picture_becomes_the_app_in_which_later_cells_run(tmp_path: Path) -> None:
+    async with jupyterlab(tmp_path, code(STEPS)) as lab:
+        await lab.run("load", "picture")
+        await lab.until_live()
+        assert await lab.pictures() == 0
+        await lab.run("ready", "run", "runs in the app", "log", "data")
+        saved = await lab.outputs()
+        await lab.reload()
+        await lab.until_live()
+        await lab.run("off")
+        await lab.until_still()
+        assert "The server has been ended. This is a picture" in await lab.text()
+        await lab.run("on")
+        await lab.until_live()
+    assert result(saved["runs in the app"]) == "1"
+    still = execute({name: STEPS[name] for name in ("load", "picture", "run", "log", "data")})
+    for name in ("picture", "run"):
+        assert shown(saved[name]) == shown(still[name])
+    assert result(saved["data"]) == result(still["data"])
+
+
+async def test_all_cells_of_a_lesson_run_at_once_and_the_robot_lives(tmp_path: Path) -> None:
+    async with jupyterlab(tmp_path, code(CELLS)) as lab:
+        await lab.run()
+        await lab.until_live()
+        saved = await lab.outputs()
+    errors = [out for cell in saved.values() for out in cell.outputs if out.output_type == "error"]
+    assert errors == []
+    still = execute(CELLS)
+    assert {name: len(pictures(cell)) for name, cell in saved.items()} == {
+        name: len(pictures(cell)) for name, cell in still.items()
+    }
+
+
+async def test_a_saved_notebook_that_is_not_trusted_keeps_its_picture(tmp_path: Path) -> None:
+    cells = code({"load": LOAD, "picture": "%sim_magic -b Grey_bands"})
+    (tmp_path / "first").mkdir()
+    async with jupyterlab(tmp_path / "first", cells) as lab:
+        await lab.run("load", "picture")
+        await lab.until_live()
+        saved = await lab.outputs()
+    (tmp_path / "second").mkdir()
+    async with jupyterlab(tmp_path / "second", saved) as lab:
+        assert SENTENCE in await lab.text()
+        assert await lab.pictures() == 1

@@ -1,0 +1,172 @@
+"""The live robot of a notebook: offered below a picture, and shown there by a page that asks for it.
+
+Nothing is started before a page has asked: the script of the offer sends a message of its own to the kernel, on the
+control channel, which a kernel answers also while it runs a cell. Where no script runs, the picture stays.
+"""
+
+from __future__ import annotations
+
+import html
+import json
+import os
+import secrets
+from collections.abc import Mapping
+from contextlib import suppress
+from importlib.util import find_spec
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+from urllib.parse import urlsplit
+
+if TYPE_CHECKING:
+    from tuisim.config.magic_line import AppWords
+    from tuisim.notebook.app_view import AppView
+
+REQUEST, REPLY = "tuisim_app_request", "tuisim_app_reply"
+"""The messages by which a page asks for the address of the app, and gets it."""
+SENTENCE = (
+    "This is a picture: JupyterLab on this machine shows the robot live here, to be dragged, and elsewhere "
+    "%sim_app --origin ADDRESS does."
+)
+NEEDS_WEB = "This is a picture: to see the robot live here and drag it, pip install -e '.[web]' in the clone of tuisim."
+HOW_TO_DRAG = "To drag the robot, use its live view, which %sim_app shows; in a picture, -x, -y and -a place it."
+DEFAULT_HEIGHT_PX = 560
+_OFFER = Path(__file__).with_name("live_robot.html")
+_LOCAL = ("localhost", "127.0.0.1")
+
+
+def find_notebook_origins(environment: Mapping[str, str] = os.environ) -> tuple[str, ...]:
+    """Return the origins under which the Jupyter server that has started this kernel is reached on this machine."""
+    from jupyter_core.paths import jupyter_runtime_dir
+
+    parent = environment.get("JPY_PARENT_PID", "")
+    origins: list[str] = []
+    for path in Path(jupyter_runtime_dir()).glob("jpserver-*.json"):
+        with suppress(OSError, ValueError, KeyError, TypeError):
+            server = json.loads(path.read_text("utf-8"))
+            if str(server["pid"]) == parent:
+                url = urlsplit(str(server["url"]))
+                hosts = dict.fromkeys((*_LOCAL, url.hostname or _LOCAL[0]))
+                origins += [f"{url.scheme}://{host}:{int(server['port'])}" for host in hosts]
+    return tuple(dict.fromkeys(origins))
+
+
+class LiveRobot:
+    """The app of a notebook: at most one, begun when the first page asks for it."""
+
+    def __init__(self) -> None:
+        self.is_wanted = True
+        """Whether pictures offer it."""
+        self.view: AppView | None = None
+        """The app, once a page has asked for it."""
+        self._is_taken = self._was_shown = False
+        """Whether a page has taken the newest offer, and has shown the app since."""
+        self._offer = ""
+        """The name of the newest offer, which a page has to know; empty for none yet."""
+        self._cell = ""
+        """The cell that has it."""
+        self._words: list[str] = []
+        self._origins: tuple[str, ...] = ()
+
+    def find_shown(self) -> AppView | None:
+        """Return the app if a page shows it now."""
+        if self.view is None or not self.view.is_shown:
+            return None
+        self._was_shown = self._is_taken
+        return self.view
+
+    def build_captions(self, background: str, words: AppWords | None) -> dict[str, dict[str, Any]]:
+        """Return what stands below the picture of a cell, by a name: a sentence with the offer, and how to drag the
+        robot where the cell says so.
+
+        Args:
+            background: The mat that the app opens.
+            words: What the cell says of the app; None for nothing.
+        """
+        kernel = _find_kernel()
+        if kernel is None:
+            return {}
+        shown = {}
+        if words is not None or self._is_due(kernel):
+            shown["offer"] = self._offer_app(background, words, kernel)
+        if "drag" in str(kernel.get_parent("shell")["content"].get("code", "")).lower():
+            shown["drag"] = {"text/plain": HOW_TO_DRAG}
+        return shown
+
+    def _offer_app(self, background: str, words: AppWords | None, kernel: Any) -> dict[str, Any]:
+        origins = (*find_notebook_origins(), *self._origins, *(words.origins if words else ()))
+        self._origins = tuple(dict.fromkeys(origins))
+        self._offer, self._cell = f"tuisim-{secrets.token_hex(8)}", _find_cell(kernel)
+        self._is_taken = self._was_shown = False
+        self._words = ["-b", background]
+        sentence = SENTENCE if find_spec("textual_serve") else NEEDS_WEB
+        bundle = {"text/plain": sentence, "text/html": f"<p>{html.escape(sentence)}</p>"}
+        if sentence is SENTENCE and self._origins:
+            kernel.control_handlers[REQUEST] = self._answer
+            bundle["text/html"] = self._build_page(words.height_px if words else DEFAULT_HEIGHT_PX)
+        return bundle
+
+    def _is_due(self, kernel: Any) -> bool:
+        """Return whether a picture offers it unasked: the first one, that of the same cell, or one after a page that
+        has shown it has gone."""
+        if not self.is_wanted:
+            return False
+        if self.view is not None and not self.view.is_alive:
+            return False
+        is_same = bool(self._cell) and self._cell == _find_cell(kernel)
+        return not self._offer or is_same or (self._was_shown and self.find_shown() is None)
+
+    def _build_page(self, height_px: int) -> str:
+        values = {
+            "OFFER": self._offer,
+            "HEIGHT": str(height_px),
+            "KERNEL": _find_kernel_id(),
+            "ORIGINS": json.dumps(self._origins),
+            "SENTENCE": html.escape(SENTENCE),
+        }
+        text = _OFFER.read_text("utf-8")
+        for name, value in values.items():
+            text = text.replace(name, value)
+        return text
+
+    def _answer(self, stream: Any, identity: Any, message: Mapping[str, Any]) -> None:
+        """Answer a page that asks for the address of the app; one whose offer is not the newest gets none."""
+        content = self.open(str(message["content"].get("offer")))
+        _find_kernel().session.send(stream, REPLY, content, message, identity)
+
+    def open(self, offer: str) -> dict[str, Any]:
+        """Begin the app if there is none yet; return its port and token, nothing for an old offer or once it has
+        ended."""
+        from tuisim.notebook.app_view import AppView
+
+        if offer != self._offer or (self.view is not None and not self.view.is_alive):
+            return {}
+        self._is_taken = True
+        if self.view is None:
+            self.view = AppView(self._words, self._origins)
+        return self.view.renew_address(self._origins)
+
+    def turn(self, *, on: bool) -> None:
+        """Offer the app from now on, another one if it has ended; or end it and show pictures only."""
+        self.is_wanted = on
+        if self.view is not None and not (on and self.view.is_alive):
+            self.view.close()
+            self.view = None
+
+
+def _find_cell(kernel: Any) -> str:
+    """Return the id of the cell that the kernel executes; empty where the front end does not tell it."""
+    return str(kernel.get_parent("shell")["metadata"].get("cellId", ""))
+
+
+def _find_kernel() -> Any:
+    """Return the kernel that this code runs in; None in a shell."""
+    from IPython.core.getipython import get_ipython
+
+    return getattr(get_ipython(), "kernel", None)
+
+
+def _find_kernel_id() -> str:
+    """Return the name that the notebook server has for this kernel."""
+    from ipykernel.connect import get_connection_file
+
+    return Path(get_connection_file()).stem.removeprefix("kernel-")
