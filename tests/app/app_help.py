@@ -83,14 +83,16 @@ def screen_text(app: LabApp) -> str:
 
 @asynccontextmanager
 async def open_lab(
-    text: str | None = None,
+    opened: AppSettings | str | None = None,
     background: str = "Grey_bands",
     *,
     size: tuple[int, int] = (120, 40),
     **more: Any,
 ) -> AsyncIterator[tuple[Pilot[Any], LabApp]]:
-    """Open the app with a program, with `settings`, and wait until the mat lies there."""
-    async with LabApp(settings(text, background, **more)).run_test(size=size) as pilot:
+    """Open the app as it is set, or with the text of a program and `settings`, and wait until the mat lies there."""
+    if not isinstance(opened, AppSettings):
+        opened = settings(opened, background, **more)
+    async with LabApp(opened).run_test(size=size) as pilot:
         yield pilot, await ready(pilot)
 
 

@@ -80,9 +80,7 @@ def drawn(app: LabApp) -> str:
 
 
 async def test_steps_from_the_first_line() -> None:
-    app = LabApp(settings(COUNTS))
-    async with app.run_test(size=(120, 40)) as pilot:
-        await ready(pilot)
+    async with open_lab(COUNTS) as (pilot, app):
         await press(pilot, app, "n", 1, 2, 3, 4, 5)
         assert values(app) == {"total": "0", "i": "0"}
         assert app.run_controller.snapshot().line == 5
@@ -94,9 +92,7 @@ async def test_steps_from_the_first_line() -> None:
 
 @pytest.mark.slow
 async def test_one_line_back_and_on_again() -> None:
-    app = LabApp(settings(COUNTS))
-    async with app.run_test(size=(120, 40)) as pilot:
-        await ready(pilot)
+    async with open_lab(COUNTS) as (pilot, app):
         await press(pilot, app, "n", 1, 2, 3, 4, 5, 6, 3, 4, 5, 6)
         assert values(app)["total"] == "1"
         await press(pilot, app, "N", 5, 4)
@@ -114,9 +110,7 @@ async def test_one_line_back_and_on_again() -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("key", ["n", "u"], ids=["a line on", "on to the end of the program"])
 async def test_going_on_from_the_past_ends_at_now(home: object, key: str) -> None:
-    app = LabApp(settings(COUNTS))
-    async with app.run_test(size=(120, 40)) as pilot:
-        await ready(pilot)
+    async with open_lab(COUNTS) as (pilot, app):
         await press(pilot, app, "n", 1, 2, 3, 4, 5, 6)
         await press(pilot, app, "N", 5)
         await until(pilot, lambda: "past" in drawn(app))
@@ -127,9 +121,7 @@ async def test_going_on_from_the_past_ends_at_now(home: object, key: str) -> Non
 
 
 async def test_into_and_out_of_calls() -> None:
-    app = LabApp(settings(CALLS))
-    async with app.run_test(size=(120, 40)) as pilot:
-        await ready(pilot)
+    async with open_lab(CALLS) as (pilot, app):
         await press(pilot, app, "n", 1, 2, 7, 11)
         await press(pilot, app, "s", 3, 4, 8)
         assert [frame.function for frame in looked(app).stack] == ["inner", "outer", "<module>"]
@@ -192,9 +184,7 @@ async def test_the_footer_offers_what_is_needed_while_the_code_is_read() -> None
 
 @pytest.mark.slow
 async def test_breaks_and_watches_are_listed_added_switched_and_deleted() -> None:
-    app = LabApp(settings(COUNTS))
-    async with app.run_test(size=(120, 40)) as pilot:
-        await ready(pilot)
+    async with open_lab(COUNTS) as (pilot, app):
         await pilot.press("T")
         await pilot.pause()
         field = app.screen.query_one(Input)
@@ -219,9 +209,7 @@ async def test_breaks_and_watches_are_listed_added_switched_and_deleted() -> Non
 
 @pytest.mark.slow
 async def test_the_variables_of_any_former_instant() -> None:
-    app = LabApp(settings(COUNTS, speed=0.0))
-    async with app.run_test(size=(120, 40)) as pilot:
-        await ready(pilot)
+    async with open_lab(COUNTS, speed=0.0) as (pilot, app):
         await pilot.press("R")
         await until(pilot, lambda: app.run_controller.state == "ended")
         # Beside the code also without the debug panel.
@@ -245,9 +233,7 @@ async def test_the_variables_of_any_former_instant() -> None:
 
 
 async def test_run_to_the_cursor_starts_the_program() -> None:
-    app = LabApp(settings(COUNTS))
-    async with app.run_test(size=(120, 40)) as pilot:
-        await ready(pilot)
+    async with open_lab(COUNTS) as (pilot, app):
         cursor_to(app, 6)
         await pilot.press("L")
         await stands(pilot, app, 6)
@@ -293,9 +279,7 @@ async def test_breaks_are_kept_with_a_program_that_no_panel_shows() -> None:
 
 
 async def test_editing_begins_where_the_program_is_paused() -> None:
-    app = LabApp(settings(COUNTS))
-    async with app.run_test(size=(80, 24)) as pilot:
-        await ready(pilot)
+    async with open_lab(COUNTS, size=(80, 24)) as (pilot, app):
         await pilot.press("R")
         await until(pilot, lambda: app.run_controller.snapshot().state is RunPhase.RUNNING)
         await pilot.press("space")

@@ -9,7 +9,7 @@ import pytest
 from textual.pilot import Pilot
 from textual.widgets import OptionList
 
-from tests.app.app_help import open_lab, program, ready, until
+from tests.app.app_help import open_lab, program, until
 from tests.app.lesson_help import opened, run_over
 from tests.runs.test_recorded_run import stored
 from tuisim.app.app import LabApp
@@ -87,8 +87,7 @@ def test_a_run_on_another_mat_is_not_comparable() -> None:
 
 @pytest.mark.slow
 async def test_the_model_answer_of_a_lesson_drives_along(tmp_path: Path) -> None:
-    async with LabApp(opened(tmp_path)).run_test(size=SIZE) as pilot:
-        app = await ready(pilot)
+    async with open_lab(opened(tmp_path), size=SIZE) as (pilot, app):
         await pilot.press("M")
         await until(pilot, lambda: isinstance(app.screen, Chooser) and app.screen.is_ready)
         listed = app.screen.query_one(OptionList)

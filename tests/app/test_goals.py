@@ -13,7 +13,6 @@ from textual.widgets import Input, OptionList
 from tests.app.app_help import (
     notices,
     open_lab,
-    ready,
     screen_text,
     settings,
     until,
@@ -92,9 +91,7 @@ async def test_without_goals_the_panel_says_what_to_do_next() -> None:
 
 
 async def test_a_run_is_judged_when_it_has_ended(task: Path) -> None:
-    app = LabApp(with_goals(task, DRIVES))
-    async with app.run_test(size=SIZE) as pilot:
-        await ready(pilot)
+    async with open_lab(with_goals(task, DRIVES), size=SIZE) as (pilot, app):
         await until(pilot, lambda: "0 of 5 points" in shown(app))
         assert "R runs the program" in screen_text(app)
         await pilot.press("R")
@@ -111,9 +108,9 @@ async def test_a_run_is_judged_when_it_has_ended(task: Path) -> None:
 
 @pytest.mark.slow
 async def test_goals_are_judged_while_the_program_runs(task: Path) -> None:
-    app = LabApp(with_goals(task, f"{DRIVES}input('more?')\nprint('done')\n"))
-    async with app.run_test(size=SIZE) as pilot:
-        await ready(pilot)
+    async with open_lab(
+        with_goals(task, f"{DRIVES}input('more?')\nprint('done')\n"), size=SIZE
+    ) as (pilot, app):
         await pilot.press("R")
         await until(pilot, lambda: state(app, "there") == "✓ met")
         assert app.run_controller.in_run
@@ -123,9 +120,7 @@ async def test_goals_are_judged_while_the_program_runs(task: Path) -> None:
 
 
 async def test_a_past_instant_shows_the_goals_as_of_then(task: Path) -> None:
-    app = LabApp(with_goals(task, DRIVES))
-    async with app.run_test(size=SIZE) as pilot:
-        await ready(pilot)
+    async with open_lab(with_goals(task, DRIVES), size=SIZE) as (pilot, app):
         await pilot.press("R")
         await until(pilot, lambda: state(app, "said") == "✗ missed")
         panel, judgements = app.panel_area.goals, app.goals._judgements
@@ -150,17 +145,14 @@ async def test_a_stored_run_is_judged(task: Path) -> None:
     assert made.program is not None
     run = start_run(made.program, made.spec, RunOptions())
     assert run.wait(PATIENCE_S)
-    async with LabApp(replace(made, replay=run.stored())).run_test(size=SIZE) as pilot:
-        app = await ready(pilot)
+    async with open_lab(replace(made, replay=run.stored()), size=SIZE) as (pilot, app):
         await until(
             pilot, lambda: (state(app, "there"), state(app, "said")) == ("✓ met", "✗ missed")
         )
 
 
 async def test_keys_and_mouse_choose_the_goal_that_is_shown_in_detail(task: Path) -> None:
-    app = LabApp(with_goals(task, DRIVES))
-    async with app.run_test(size=SIZE) as pilot:
-        await ready(pilot)
+    async with open_lab(with_goals(task, DRIVES), size=SIZE) as (pilot, app):
         panel = app.panel_area.goals
         assert panel is not None
         await until(pilot, lambda: any(text.startswith("── there") for text in shown(app)))
@@ -190,9 +182,7 @@ async def open_path(pilot: Pilot[Any], app: LabApp, path: str) -> None:
 @pytest.mark.slow
 async def test_goals_are_opened_with_their_world_and_closed_with_the_next(task: Path) -> None:
     (task.parent / "lab.toml").write_text('background = "Loop"\n')
-    app = LabApp(settings(DRIVES, speed=0.0))
-    async with app.run_test(size=SIZE) as pilot:
-        await ready(pilot)
+    async with open_lab(DRIVES, speed=0.0, size=SIZE) as (pilot, app):
         await pilot.press("R")
         await until_state(pilot, RunPhase.ENDED)
         await open_path(pilot, app, task.name)
@@ -233,9 +223,9 @@ async def test_examples_of_goals_are_offered_and_opened_by_name(task: Path) -> N
 @pytest.mark.quick_cases("beside a world")
 @pytest.mark.parametrize("is_world", [True, False], ids=["as the world", "beside a world"])
 async def test_goals_that_change_on_disk_are_read_again(task: Path, is_world: bool) -> None:
-    app = LabApp(replace(with_goals(task, DRIVES), world_file=task if is_world else None))
-    async with app.run_test(size=SIZE) as pilot:
-        await ready(pilot)
+    async with open_lab(
+        replace(with_goals(task, DRIVES), world_file=task if is_world else None), size=SIZE
+    ) as (pilot, app):
         await pilot.press("R")
         await until(pilot, lambda: state(app, "said") == "✗ missed")
         task.write_text(GOALS.replace("x_mm = 500 }", "x_mm = 2000 }"))
@@ -262,9 +252,7 @@ async def test_nothing_is_judged_while_the_panel_is_closed(
         return judge(*given)
 
     monkeypatch.setattr(app_goals, "_judged", noted)
-    app = LabApp(with_goals(task, DRIVES, panels_on=frozenset()))
-    async with app.run_test(size=SIZE) as pilot:
-        await ready(pilot)
+    async with open_lab(with_goals(task, DRIVES, panels_on=frozenset()), size=SIZE) as (pilot, app):
         await pilot.press("R")
         await until_state(pilot, RunPhase.ENDED)
         app.goals.update()
@@ -276,9 +264,7 @@ async def test_nothing_is_judged_while_the_panel_is_closed(
 
 
 async def test_an_error_in_judging_is_told_once(task: Path) -> None:
-    app = LabApp(with_goals(task, DRIVES, panels_on=frozenset()))
-    async with app.run_test(size=SIZE) as pilot:
-        await ready(pilot)
+    async with open_lab(with_goals(task, DRIVES, panels_on=frozenset()), size=SIZE) as (pilot, app):
         await pilot.press("R")
         await until_state(pilot, RunPhase.ENDED)
         assert app.run_controller.run is not None

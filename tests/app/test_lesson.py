@@ -11,7 +11,7 @@ from textual.events import MouseScrollUp
 from textual.pilot import Pilot
 from textual.widgets import Static
 
-from tests.app.app_help import ready, until
+from tests.app.app_help import open_lab, ready, until
 from tests.app.lesson_help import (
     LARGE,
     SMALL,
@@ -42,8 +42,7 @@ PLACED = "question = { ask = 'What?', answer = 5, at_x_mm = [[600, 700]], where 
 
 
 async def test_answer_about_another_place_is_not_wrong(tmp_path: Path) -> None:
-    async with LabApp(opened(tmp_path, PLACED)).run_test(size=SMALL) as pilot:
-        app = await ready(pilot)
+    async with open_lab(opened(tmp_path, PLACED), size=SMALL) as (pilot, app):
         app.lesson.skip_step()
         app.lesson.skip_step()
         await type_answer(pilot, app, "5")
@@ -89,8 +88,7 @@ async def test_panel_of_a_paused_program(tmp_path: Path) -> None:
 
 
 async def test_lesson_is_in_sight_while_one_types_in_a_small_terminal(tmp_path: Path) -> None:
-    async with LabApp(with_lines(opened(tmp_path), 40)).run_test(size=SMALL) as pilot:
-        app = await ready(pilot)
+    async with open_lab(with_lines(opened(tmp_path), 40), size=SMALL) as (pilot, app):
         await pilot.press("d")
         await until(pilot, lambda: app.panel_area.is_stacked)
         # The step, not the introduction before it.
@@ -105,8 +103,7 @@ async def test_lesson_is_in_sight_while_one_types_in_a_small_terminal(tmp_path: 
 async def test_lesson_is_beside_the_log(
     size: tuple[int, int], has_world: bool, tmp_path: Path
 ) -> None:
-    async with LabApp(opened(tmp_path, PLACED)).run_test(size=size) as pilot:
-        app = await ready(pilot)
+    async with open_lab(opened(tmp_path, PLACED), size=size) as (pilot, app):
         await run_over(pilot, app)
         await pilot.press("l")
         await until(pilot, lambda: isinstance(app.screen, Analyser) and app.screen.is_open)
@@ -133,8 +130,7 @@ async def test_program_is_tried_from_another_start(tmp_path: Path) -> None:
         "run = { goals = ['far'], also = [{ where = 'from farther back', start = { x_mm = 460 } }] }",
     )
     (tmp_path / "lessons" / "try.md").write_text(wide)
-    async with LabApp(made).run_test(size=LARGE) as pilot:
-        app = await ready(pilot)
+    async with open_lab(made, size=LARGE) as (pilot, app):
         app.lesson.open("try")
         app.lesson.skip_step()
         await run_over(pilot, app)
@@ -153,8 +149,7 @@ async def test_program_is_tried_from_another_start(tmp_path: Path) -> None:
 
 
 async def test_lesson_scrolls_while_one_types_in_a_small_terminal(tmp_path: Path) -> None:
-    async with LabApp(with_lines(opened(tmp_path), 40)).run_test(size=SMALL) as pilot:
-        app = await ready(pilot)
+    async with open_lab(with_lines(opened(tmp_path), 40), size=SMALL) as (pilot, app):
         await pilot.press("d")
         code, lesson = app.panel_area.code, app.panel_area.lesson
         await until(
@@ -179,8 +174,7 @@ async def test_way_to_the_next_lesson_is_in_sight_in_a_small_terminal(tmp_path: 
     (tmp_path / "lessons" / "zz.md").write_text(
         (tmp_path / "lessons" / "try.md").read_text().replace("Try it", "Next")
     )
-    async with LabApp(made).run_test(size=SMALL) as pilot:
-        app = await ready(pilot)
+    async with open_lab(made, size=SMALL) as (pilot, app):
         app.lesson.skip_step()
         app.lesson.skip_step()
         await pilot.press("c")
@@ -191,8 +185,7 @@ async def test_way_to_the_next_lesson_is_in_sight_in_a_small_terminal(tmp_path: 
 
 async def test_way_back_to_the_start_is_said_when_the_run_is_over(tmp_path: Path) -> None:
     made = opened(tmp_path)
-    async with LabApp(made).run_test(size=SMALL) as pilot:
-        app = await ready(pilot)
+    async with open_lab(made, size=SMALL) as (pilot, app):
         app.lesson.skip_step()
         await pilot.press("shift+right")
         await pilot.press("n")
@@ -219,8 +212,7 @@ async def test_run_counts_although_the_next_one_is_over_before_it_was_tried(
         return tried_elsewhere(*of)
 
     monkeypatch.setattr(trial, "tried_elsewhere", tried_late)
-    async with LabApp(made).run_test(size=LARGE) as pilot:
-        app = await ready(pilot)
+    async with open_lab(made, size=LARGE) as (pilot, app):
         app.lesson.open("try")
         app.lesson.skip_step()
         for count in (1, 2):

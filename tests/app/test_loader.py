@@ -137,8 +137,7 @@ async def test_panels_of_a_magic_line_come_and_go_as_it_is_saved(
     folder: Path, words: str, panel: str, shown: bool
 ) -> None:
     path = folder / "mine.py"
-    async with LabApp(with_file(path)).run_test(size=(120, 40)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(with_file(path)) as (pilot, app):
         before = app.panel_area.shown(panel)
         path.write_text(with_magic(words))
         look(app)
@@ -204,8 +203,7 @@ async def test_what_cannot_be_written_is_told(folder: Path) -> None:
 async def test_a_changed_program_is_reloaded_at_once(folder: Path) -> None:
     path = folder / "mine.py"
     path.write_text("print('A: 1')\n")
-    async with LabApp(with_file(path)).run_test(size=(120, 40)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(with_file(path)) as (pilot, app):
         app.run_controller.place(Pose(500, 500, 0))
         path.write_text("print('Better: 2')\n")
         look(app)
@@ -220,8 +218,7 @@ async def test_a_changed_program_is_reloaded_at_once(folder: Path) -> None:
 @pytest.mark.slow
 async def test_the_timer_looks_by_itself(folder: Path) -> None:
     path = folder / "mine.py"
-    async with LabApp(with_file(path)).run_test(size=(120, 40)) as pilot:
-        await ready(pilot)
+    async with open_lab(with_file(path)) as (pilot, _):
         path.write_text("print('By itself: 2')\n")
         await until_shown(pilot, "By itself: 2")
 
@@ -251,8 +248,7 @@ async def test_a_changed_magic_line_applies_what_is_new_in_it(folder: Path) -> N
 async def test_a_program_changed_during_a_run_waits_for_its_end(folder: Path) -> None:
     path = folder / "mine.py"
     path.write_text(ENDLESS)
-    async with LabApp(with_file(path)).run_test(size=(120, 40)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(with_file(path)) as (pilot, app):
         await pilot.press("R")
         await until_state(pilot, RunPhase.RUNNING)
         path.write_text("print('Later: 2')\n")
@@ -332,8 +328,7 @@ async def test_the_command_opens_a_world_that_is_watched(folder: Path) -> None:
         world_file=prepared.world.path,
         program=prepared.program,
     )
-    async with LabApp(opened).run_test(size=(120, 40)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(opened) as (_, app):
         assert app.run_controller.next_run.spec == prepared.spec
         (folder / "lab.toml").write_text(LAB.replace("seed = 5", "seed = 6"))
         look(app)
@@ -357,8 +352,7 @@ async def test_an_example_is_opened_by_its_name_and_the_footer_shows_the_keys_ag
 async def test_the_output_has_the_name_of_its_own_program_until_another_one_runs(
     folder: Path,
 ) -> None:
-    async with LabApp(with_file(folder / "mine.py", speed=0.0)).run_test(size=(120, 40)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(with_file(folder / "mine.py", speed=0.0)) as (pilot, app):
         output = app.panel_area.output
         await pilot.press("R")
         await until_state(pilot, RunPhase.ENDED)

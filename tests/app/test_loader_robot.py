@@ -8,7 +8,7 @@ import pytest
 from textual.pilot import Pilot
 from textual.widgets import OptionList
 
-from tests.app.app_help import lab, notices, ready, screen_text, until, until_shown
+from tests.app.app_help import lab, notices, open_lab, screen_text, until, until_shown
 from tuisim.app.app import AppSettings, LabApp
 from tuisim.app.setup import next_run as plans
 from tuisim.config.build import build_run_spec
@@ -41,8 +41,7 @@ def extra_ports(app: LabApp) -> list[str]:
 
 
 async def test_it_is_told_and_the_dialog_lists_its_ports(claw: Path) -> None:
-    async with LabApp(opened(claw)).run_test(size=(120, 40)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(opened(claw)) as (pilot, app):
         await until(
             pilot,
             lambda: any("built from it: medium motor on outA" in notice for notice in notices(app)),
@@ -58,8 +57,7 @@ async def test_it_is_told_and_the_dialog_lists_its_ports(claw: Path) -> None:
 
 async def test_what_the_brick_would_refuse_is_told(claw: Path) -> None:
     claw.write_text("from pybricks.tools import wait\nprint(f'{1}')\n")
-    async with LabApp(opened(claw)).run_test(size=(120, 40)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(opened(claw)) as (pilot, app):
         await until(
             pilot,
             lambda: any(
@@ -69,8 +67,7 @@ async def test_what_the_brick_would_refuse_is_told(claw: Path) -> None:
 
 
 async def test_another_robot_is_chosen_and_the_program_s_again(claw: Path) -> None:
-    async with LabApp(opened(claw)).run_test(size=(120, 40)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(opened(claw)) as (pilot, app):
         for key, ports in (("down", []), ("up", ["outA"])):
             await pilot.press("r")
             await until(pilot, lambda: bool(app.screen.query(OptionList)))
@@ -88,8 +85,7 @@ async def choose(pilot: Pilot[None], app: LabApp, key: str, name: str) -> None:
 
 
 async def test_a_mat_and_a_profile_chosen_by_key_leave_the_robot(claw: Path) -> None:
-    async with LabApp(opened(claw)).run_test(size=(120, 40)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(opened(claw)) as (pilot, app):
         plan = app.run_controller.next_run
         await choose(pilot, app, "b", "Loop")
         await until(pilot, lambda: app.run_controller.next_run.spec.world.background == "Loop")
@@ -101,8 +97,7 @@ async def test_a_mat_and_a_profile_chosen_by_key_leave_the_robot(claw: Path) -> 
 
 
 async def test_it_follows_the_text_of_the_program(claw: Path) -> None:
-    async with LabApp(opened(claw)).run_test(size=(120, 40)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(opened(claw)) as (pilot, app):
         claw.write_text(CLAW.replace("outA", "outD"))
         app.check_files()
         await until(pilot, lambda: extra_ports(app) == ["outD"])
@@ -112,8 +107,7 @@ async def test_it_follows_the_text_of_the_program(claw: Path) -> None:
 async def test_opening_a_program_gives_it_its_robot(claw: Path) -> None:
     settings, decided = Settings(), Decided(free=frozenset(PROGRAM_PATHS))
     start = AppSettings(spec=build_run_spec(settings), settings=settings, decided=decided)
-    async with LabApp(start).run_test(size=(120, 40)) as pilot:
-        await ready(pilot)
+    async with open_lab(start) as (pilot, _):
         app = lab(pilot)
         app.loader.open_file(str(claw))
         assert extra_ports(app) == ["outA"]
@@ -139,8 +133,7 @@ async def test_programs_of_both_libraries_run_one_after_another(claw: Path) -> N
     (claw.parent / "drives.py").write_text(DRIVES)
     settings, decided = Settings(), Decided(free=frozenset(PROGRAM_PATHS))
     start = AppSettings(spec=build_run_spec(settings), settings=settings, decided=decided)
-    async with LabApp(start).run_test(size=(120, 40)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(start) as (pilot, app):
         for name, profile in (
             ("drives", "lego-micropython"),
             ("claw", "ev3"),
@@ -159,8 +152,7 @@ async def test_programs_of_both_libraries_run_one_after_another(claw: Path) -> N
 async def test_a_chosen_profile_that_does_not_fit_the_program_is_told_when_it_is_to_run(
     claw: Path,
 ) -> None:
-    async with LabApp(opened(claw)).run_test(size=(120, 40)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(opened(claw)) as (pilot, app):
         app.loader.attempt(lambda plan: plans.with_profile(plan, "pybricks4"))
         await until(pilot, lambda: app.loader.mat_is_ready)
         await pilot.press("R")

@@ -51,8 +51,7 @@ async def test_the_end_says_that_the_robot_stood_at_a_wall() -> None:
     setup = settings(PUSHES, autorun=True, speed=0.0)
     world = replace(setup.spec.world, solid=True, start=Pose(2200.0, 571.5, 0.0))
     setup = replace(setup, spec=replace(setup.spec, world=world))
-    async with LabApp(setup).run_test(size=(120, 40)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(setup) as (pilot, app):
         stood = "stood at the wall from 0.77 s on, its wheels pushed for 1.2 s"
         # The output panel breaks the line.
         await until(

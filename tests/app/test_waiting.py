@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from tests.app.app_help import ready, screen_text, settings, until
-from tuisim.app.app import LabApp
+from tests.app.app_help import open_lab, screen_text, settings, until
 from tuisim.core.profile import PROFILES
 from tuisim.core.spec import RobotSpec, RunSpec, TouchSpec, WorldSpec
 
@@ -22,9 +21,10 @@ SENTENCE = "touch sensor on in1 was never pressed"
 
 
 async def test_after_5_s_of_standing_still_the_output_says_what_it_waits_for() -> None:
-    app = LabApp(replace(settings(WAITS, speed=4.0), spec=WITH_BUMPER))
-    async with app.run_test(size=(160, 50)) as pilot:
-        await ready(pilot)
+    async with open_lab(replace(settings(WAITS, speed=4.0), spec=WITH_BUMPER), size=(160, 50)) as (
+        pilot,
+        app,
+    ):
         await pilot.press("R")
         await until(pilot, lambda: SENTENCE in screen_text(app))
         recording = app.run_controller.timeline.recording

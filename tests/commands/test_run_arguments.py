@@ -11,11 +11,11 @@ from pathlib import Path
 
 import pytest
 
-from tests.app.app_help import ready, until
+from tests.app.app_help import open_lab, until
 from tests.conftest import Command
 from tests.running import until as until_so
 from tuisim.api import simulate
-from tuisim.app.app import AppSettings, LabApp
+from tuisim.app.app import AppSettings
 from tuisim.app.branch import Branch
 from tuisim.app.run_controller import RunController
 from tuisim.app.setup.fields import find
@@ -248,8 +248,7 @@ def shows(folder: Path, *arguments: str) -> AppSettings:
 
 
 async def test_the_app_gives_arguments_that_can_be_edited(folder: Path) -> None:
-    async with LabApp(shows(folder, "A", "B C")).run_test(size=(120, 40)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(shows(folder, "A", "B C")) as (pilot, app):
         edit = find(app.run_controller.next_run, "arguments")
         assert edit is not None
         assert edit.read(app.run_controller.next_run) == "A 'B C'"

@@ -9,9 +9,9 @@ from pathlib import Path
 
 from textual.widgets._toast import Toast
 
-from tests.app.app_help import ready, until
+from tests.app.app_help import open_lab, until
 from tests.conftest import ROOT
-from tuisim.app.app import AppSettings, LabApp
+from tuisim.app.app import AppSettings
 from tuisim.app.editor.area import CodeArea
 from tuisim.app.screenshot import screen_cells
 from tuisim.app.snapshot import RunPhase
@@ -32,8 +32,7 @@ async def drawn() -> str:
     program = Program(name="log_greys.py", text=text, prelude="preloaded", path="log_greys.py")
     spec = build_run_spec(Settings({"background": "Grey_bands"}))
     started = AppSettings(spec=spec, program=program, speed=0.0, panels_on=frozenset({"chart"}))
-    async with LabApp(started).run_test(size=SIZE) as pilot:
-        app = await ready(pilot)
+    async with open_lab(started, size=SIZE) as (pilot, app):
         await pilot.press("R")
         await until(
             pilot, lambda: app.situation().has_run and app.situation().state is RunPhase.ENDED

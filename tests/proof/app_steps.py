@@ -11,12 +11,12 @@ from typing import Any
 
 from textual.pilot import Pilot
 
-from tests.app.app_help import lab, program, ready
+from tests.app.app_help import lab, open_lab, program
 from tests.app.monkey import is_over, leave
 from tests.proof.kind import FaultError
 from tests.proof.run_model import RunModel, Seen
 from tests.proof.run_steps import ENDLESS, PROGRAMS, done_in, spec_of
-from tuisim.app.app import AppSettings, LabApp
+from tuisim.app.app import AppSettings
 from tuisim.config.build import build_run_spec
 from tuisim.logs.reader import read_log
 from tuisim.protocol import Unended
@@ -155,8 +155,7 @@ async def _in_app(model: RunModel, steps: Sequence[int], seed: str) -> None:
         spec=spec, program=program(text), autorun=True, speed=random.choice(speeds)
     )
     own, names = set(model.seen), done_in(seed, [*KEYS, *OUTSIDE])
-    async with LabApp(settings).run_test(size=(120, 40)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(settings) as (pilot, app):
         todo = AppSteps(model, pilot)
         for step in steps:
             one = Random(f"{seed} {step}")

@@ -7,7 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 from random import Random
 
-from tests.app.app_help import ready, screen_text, settings, until
+from tests.app.app_help import open_lab, screen_text, settings, until
 from tests.proof.kind import FaultError
 from tuisim.app.app import LabApp
 from tuisim.config.preferences import keep
@@ -29,8 +29,7 @@ def _check_screen(app: LabApp, where: str) -> None:
 async def _shown(name: str, text: str, random: Random) -> None:
     program = Program(name=name, text=text, prelude="preloaded", path=str(Path(name).absolute()))
     chosen = replace(settings(background="Empty_Map", speed=0.0), program=program)
-    async with LabApp(chosen).run_test(size=random.choice([(80, 24), (120, 40)])) as pilot:
-        app = await ready(pilot)
+    async with open_lab(chosen, size=random.choice([(80, 24), (120, 40)])) as (pilot, app):
         _check_screen(app, "at the start")
         await pilot.press("R")
         run = app.run_controller

@@ -24,7 +24,7 @@ from textual.drivers._writer_thread import MAX_QUEUED_WRITES, WriterThread
 from textual.screen import ModalScreen
 from textual.widgets import Static
 
-from tests.app.app_help import ready, settings
+from tests.app.app_help import open_lab, settings
 from tests.running import PATIENCE_S
 from tuisim.app.app import LabApp
 from tuisim.app.dialogs.entries import SavedPoses
@@ -310,8 +310,7 @@ async def test_where_ctrl_z_suspends(
 ) -> None:
     suspended: list[App[None]] = []
     monkeypatch.setattr(TerminalApp, "action_suspend_process", lambda app: suspended.append(app))
-    async with LabApp(settings("print('A: 1')\n")).run_test(size=(120, 40)) as pilot:
-        app = await ready(pilot)
+    async with open_lab("print('A: 1')\n") as (pilot, app):
         for keys in places:
             await pilot.press(*keys, "ctrl+z")
             await pilot.pause()
@@ -328,9 +327,7 @@ async def test_where_ctrl_z_suspends(
 async def test_a_screen_that_is_being_opened_when_the_app_ends_does_no_harm(
     opened: Callable[[], ModalScreen[object]],
 ) -> None:
-    app = LabApp(settings("print('A: 1')\n"))
-    async with app.run_test(size=(80, 24)) as pilot:
-        await ready(pilot)
+    async with open_lab("print('A: 1')\n", size=(80, 24)) as (_, app):
         app.push_screen(opened())
         app.exit(return_code=129)
     assert app.return_code == 129
@@ -350,9 +347,7 @@ def _find_no_screen(area: PanelArea) -> None:
     ids=["a panel is added", "what was not added is moved", "there is no screen any more"],
 )
 async def test_a_change_when_the_app_ends_does_no_harm(change: Callable[[PanelArea], None]) -> None:
-    app = LabApp(settings("print('A: 1')\n"))
-    async with app.run_test(size=(80, 24)) as pilot:
-        await ready(pilot)
+    async with open_lab("print('A: 1')\n", size=(80, 24)) as (_, app):
         assert "debug" not in app.panel_area.panels
         app.panel_area.call_later(change, app.panel_area)
         app.exit(return_code=129)

@@ -25,7 +25,7 @@ from textual.widgets._toast import Toast
 
 import tuisim.app
 import tuisim.terminal
-from tests.app.app_help import LOGS, ready, settings, until
+from tests.app.app_help import LOGS, open_lab, ready, settings, until
 from tests.app.wires import on_wire, until_quiet, wire_of
 from tuisim.app.app import LabApp
 from tuisim.app.terminal_app import TerminalApp
@@ -61,8 +61,7 @@ def told(monkeypatch: pytest.MonkeyPatch) -> dict[Widget, Size]:
 async def test_every_widget_is_told_its_size(
     size: tuple[int, int], last: str, told: dict[Widget, Size]
 ) -> None:
-    async with LabApp(settings(LOGS)).run_test(size=size) as pilot:
-        app = await ready(pilot)
+    async with open_lab(LOGS, size=size) as (pilot, app):
         await until(
             pilot, lambda: app.panel_area.shown(last) and app.panel_area.panels[last].is_mounted
         )

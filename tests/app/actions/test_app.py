@@ -7,9 +7,8 @@ from functools import partial
 
 import pytest
 
-from tests.app.app_help import LOGS, lab, notices, open_lab, ready, screen_text, settings, until
+from tests.app.app_help import LOGS, lab, notices, open_lab, screen_text, settings, until
 from tuisim.app.actions.keys import ACTIONS
-from tuisim.app.app import LabApp
 from tuisim.app.panels import PANELS, TerminalSize
 
 SIZES = [(80, 24), (120, 40), (200, 60)]
@@ -112,8 +111,7 @@ async def test_switched_off_stays_off_in_every_size() -> None:
     off = settings(
         LOGS, panels_off=frozenset({"world"}), panels_on=frozenset({"arrays", "no such panel"})
     )
-    async with LabApp(off).run_test(size=(80, 24)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(off, size=(80, 24)) as (pilot, app):
         assert app.panel_area.shown("arrays")
         await pilot.resize_terminal(200, 60)
         await until(pilot, lambda: app.panel_area.shown("chart"))
@@ -127,7 +125,7 @@ async def test_quit_without_a_run_asks_nothing() -> None:
 
 
 async def test_nothing_is_opened_while_the_app_ends() -> None:
-    async with open_lab(LOGS) as (_pilot, app):
+    async with open_lab(LOGS) as (_, app):
         app.exit()
         # What was typed quickly after q, and what was to be done soon after the start.
         for action in ("open", "runs", "panel-settings", "breaks", "analyse"):

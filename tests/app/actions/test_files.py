@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.app.app_help import LOGS, notices, open_lab, ready, until
+from tests.app.app_help import LOGS, notices, open_lab, until
 from tests.app.editor.test_document import own
 from tests.app.terminals import Terminal
 from tests.cases import cases
@@ -52,8 +52,7 @@ async def test_without_a_terminal_to_give_that_is_said(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("VISUAL", "nano")
-    async with LabApp(own(tmp_path / "prog.py", "a = 1\n")).run_test(size=(120, 40)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(own(tmp_path / "prog.py", "a = 1\n")) as (pilot, app):
         await pilot.press("ctrl+e")
         await until(
             pilot, lambda: any(one.startswith("nano needs a terminal") for one in notices(app))
@@ -68,8 +67,7 @@ async def test_unsaved_changes_are_saved_before(
     monkeypatch.setattr(
         LabApp, "run_in_terminal", lambda app, command: opened.append(" ".join(command))
     )
-    async with LabApp(own(path, "a = 1\n")).run_test(size=(120, 40)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(own(path, "a = 1\n")) as (pilot, app):
         await pilot.press("d", "b", "escape", "ctrl+e")
         await until(pilot, lambda: opened == [f"nano {path}"])
         assert path.read_text() == "ba = 1\n"

@@ -104,7 +104,7 @@ async def test_nudge() -> None:
 
 
 async def test_readings_follow_the_robot_at_rest() -> None:
-    async with open_lab(LOGS) as (_pilot, app):
+    async with open_lab(LOGS) as (_, app):
         assert app.run_controller.snapshot().colors["left"].red == 255
         app.run_controller.place(Pose(300, 500, 0))
         assert app.run_controller.snapshot().colors["left"].red == 220

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from tests.app.app_help import ENDLESS, open_lab, ready, until, until_state
-from tuisim.app.app import AppSettings, LabApp
+from tests.app.app_help import ENDLESS, open_lab, until, until_state
+from tuisim.app.app import AppSettings
 from tuisim.app.dialogs.question import Question
 from tuisim.app.snapshot import RunPhase
 from tuisim.config.build import build_run_spec
@@ -23,8 +23,7 @@ async def test_a_paused_program_starts_again() -> None:
 
 async def test_a_new_program_that_has_run_is_worth_a_question() -> None:
     plain = AppSettings(spec=build_run_spec(Settings()), settings=Settings())
-    async with LabApp(plain).run_test(size=(80, 24)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(plain, size=(80, 24)) as (pilot, app):
         app.document.new("print(1)\n")
         await until(pilot, lambda: app.run_controller.program is not None)
         assert not app.document.dirty

@@ -182,8 +182,7 @@ async def test_noise_of_the_past_is_asked_about_once_and_set_once() -> None:
 @pytest.mark.slow
 async def test_a_run_paused_while_it_asks_goes_on() -> None:
     asks = settings("name = input('Name? ')\nprint('A: 1')\nwhile True:\n    pass\n", autorun=True)
-    async with LabApp(asks).run_test(size=(120, 40)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(asks) as (pilot, app):
         await until_state(pilot, RunPhase.WAITING)
         await pilot.press("escape", "space")
         await until_state(pilot, RunPhase.PAUSED)

@@ -9,8 +9,8 @@ from PIL import Image
 from textual.pilot import Pilot
 from textual.widgets import Input, OptionList, Static
 
-from tests.app.app_help import LOGS, message_of, notices, open_lab, ready, settings, until
-from tuisim.app.app import AppSettings, LabApp
+from tests.app.app_help import LOGS, message_of, notices, open_lab, settings, until
+from tuisim.app.app import AppSettings
 from tuisim.app.dialogs.chooser import MatPicker
 from tuisim.config.options import Settings
 from tuisim.errors import TuisimError
@@ -113,8 +113,7 @@ async def test_mats_of_ones_own_are_listed_by_name(named: bool, home: Path, tmp_
     folder = tmp_path / "pics" if named else home / "backgrounds"
     folder.mkdir(parents=True)
     Image.new("RGB", (300, 200), (200, 0, 0)).save(folder / "FLL2018.jpg", quality=100)
-    async with LabApp(with_mats(folder if named else None)).run_test(size=(120, 40)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(with_mats(folder if named else None)) as (pilot, app):
         await choose(pilot, "FLL_2018_Into_Orbit")
         picture = str(folder / "FLL2018.jpg")
         await until(
@@ -141,8 +140,7 @@ async def test_a_mat_without_a_picture_says_which_file_to_bring(home: Path) -> N
 async def test_a_folder_of_mats_that_is_gone_is_told(tmp_path: Path) -> None:
     folder = tmp_path / "pics"
     folder.mkdir()
-    async with LabApp(with_mats(folder)).run_test(size=(120, 40)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(with_mats(folder)) as (pilot, app):
         folder.rmdir()
         await pilot.press("b")
         await until(
@@ -151,8 +149,7 @@ async def test_a_folder_of_mats_that_is_gone_is_told(tmp_path: Path) -> None:
 
 
 async def test_a_path_to_nothing_has_no_preview() -> None:
-    async with LabApp(with_mats(None)).run_test(size=(120, 40)) as pilot:
-        await ready(pilot)
+    async with open_lab(with_mats(None)) as (pilot, _):
         await pilot.press("b")
         title = pilot.app.screen.query_one("#title", Static)
         await until(pilot, lambda: bool(str(title.content)))

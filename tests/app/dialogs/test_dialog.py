@@ -101,9 +101,7 @@ async def test_a_closed_screen_draws_nothing(monkeypatch: pytest.MonkeyPatch) ->
 
 
 async def test_keys_that_come_when_the_app_has_ended_do_no_harm() -> None:
-    app = LabApp(settings())
-    async with app.run_test(size=(80, 24)) as pilot:
-        await ready(pilot)
+    async with open_lab(size=(80, 24)) as (_, app):
         app.exit()
     # They are taken out of the queue when there is no screen any more.
     await app.on_event(key_event("question_mark"))
@@ -111,9 +109,7 @@ async def test_keys_that_come_when_the_app_has_ended_do_no_harm() -> None:
 
 
 async def test_a_screen_that_is_still_opening_when_the_app_is_shut_down_does_no_harm() -> None:
-    app = LabApp(settings())
-    async with app.run_test(size=(80, 24)) as pilot:
-        await ready(pilot)
+    async with open_lab(size=(80, 24)) as (_, app):
         app.push_screen(GuideScreen(KeyPage("Help", "", {}), Topic()))
     assert app._exception is None
 

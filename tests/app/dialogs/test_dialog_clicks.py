@@ -8,8 +8,7 @@ from pathlib import Path
 import pytest
 from textual.widgets import Input
 
-from tests.app.app_help import open_lab, ready, screen_text, settings, until, until_shown
-from tuisim.app.app import LabApp
+from tests.app.app_help import open_lab, screen_text, settings, until, until_shown
 from tuisim.app.dialogs.save import SaveDialog
 from tuisim.source import Program
 
@@ -40,8 +39,7 @@ async def test_a_click_on_a_word_of_the_editors_keys_saves_the_program(
     file = tmp_path / "mine.py"
     file.write_text("print(1)\n")
     given = Program(file.name, file.read_text(), "preloaded", str(file))
-    async with LabApp(replace(settings(), program=given)).run_test(size=(80, 24)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(replace(settings(), program=given), size=(80, 24)) as (pilot, app):
         await pilot.press("d")
         await until_shown(pilot, "^s save")
         await pilot.press("#")

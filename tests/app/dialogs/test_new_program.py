@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.app.app_help import ready, until, until_shown
+from tests.app.app_help import open_lab, ready, until, until_shown
 from tests.cases import cases
 from tuisim.app.app import AppSettings, LabApp
 from tuisim.app.dialogs.chooser import MatPicker
@@ -34,8 +34,7 @@ async def test_a_new_program_is_chosen_by_keys(
     keys: list[str], wanted: tuple[str, str, Skeleton]
 ) -> None:
     plain = AppSettings(spec=build_run_spec(Settings()), settings=Settings())
-    async with LabApp(plain).run_test(size=(80, 24)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(plain, size=(80, 24)) as (pilot, app):
         await pilot.press("ctrl+t")
         await until(pilot, lambda: isinstance(app.screen, NewProgramDialog))
         await pilot.press(*keys, "enter")

@@ -17,7 +17,6 @@ from tests.app.app_help import (
     notices,
     open_lab,
     program,
-    ready,
     screen_text,
     until,
     until_shown,
@@ -25,7 +24,7 @@ from tests.app.app_help import (
 )
 from tests.conftest import Command
 from tests.running import PATIENCE_S
-from tuisim.app.app import AppSettings, LabApp
+from tuisim.app.app import AppSettings
 from tuisim.app.dialogs.runs import RunChooser, matching, run_line
 from tuisim.app.snapshot import RunPhase
 from tuisim.config.build import build_run_spec
@@ -56,8 +55,7 @@ def replaying(run_id: str) -> AppSettings:
 
 async def test_a_stored_run_is_shown_as_it_was_and_run_anew_alike() -> None:
     run_id = stored()
-    async with LabApp(replaying(run_id)).run_test(size=(120, 40)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(replaying(run_id)) as (pilot, app):
         await until(
             pilot,
             lambda: (
@@ -128,8 +126,7 @@ async def test_mat_and_program_may_be_gone(tmp_path: Path) -> None:
     run_id = stored("tank_drive.on_for_seconds(50, 50, 1)\n", background=str(own))
     own.unlink()
     folder = RunStore().folder(run_id)
-    async with LabApp(replaying(run_id)).run_test(size=(120, 40)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(replaying(run_id)) as (pilot, app):
         await until_state(pilot, RunPhase.ENDED)
         # The prepared mat is in the cache still.
         assert app.run_controller.snapshot().colors["left"].green > 150
@@ -140,8 +137,7 @@ async def test_mat_and_program_may_be_gone(tmp_path: Path) -> None:
         assert app.run_controller.run_id == run_id
     for name in json.loads((folder / "run.json").read_text())["field"]["sums"]:
         Path(name[1]).unlink()
-    async with LabApp(replaying(run_id)).run_test(size=(120, 40)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(replaying(run_id)) as (pilot, app):
         await until_state(pilot, RunPhase.ENDED)
         await until(pilot, lambda: any("the mat of the run" in notice for notice in notices(app)))
         await pilot.press("less_than_sign")

@@ -44,8 +44,7 @@ def is_closed(app: LabApp) -> bool:
 @pytest.mark.parametrize("size", [(80, 24), (120, 40)], ids=str)
 async def test_the_welcome_appears_once(size: tuple[int, int], home: Path) -> None:
     for is_first in (True, False):
-        async with LabApp(FIRST).run_test(size=size) as pilot:
-            app = await ready(pilot)
+        async with open_lab(FIRST, size=size) as (pilot, app):
             assert isinstance(app.screen, Welcome) is is_first
             if is_first:
                 await until_shown(pilot, "4 Open a file")
@@ -76,8 +75,7 @@ CHOICES: dict[str, tuple[list[str], Any]] = {
 @pytest.mark.quick_cases("new", "open")
 @cases("keys, is_done", CHOICES)
 async def test_each_choice_of_the_welcome_begins(keys: list[str], is_done: Any, home: Path) -> None:
-    async with LabApp(FIRST).run_test(size=(80, 24)) as pilot:
-        await ready(pilot)
+    async with open_lab(FIRST, size=(80, 24)) as (pilot, _):
         await pilot.press(*keys)
         await until(pilot, lambda: is_done(pilot.app))
 
@@ -97,8 +95,7 @@ async def test_a_later_start_offers_unsaved_text_to_go_on_with(
     if path:
         Path(path).write_text("print('before')\n")
     keep_draft(path, text)
-    async with LabApp(FIRST).run_test(size=(120, 40)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(FIRST) as (pilot, app):
         await until_shown(pilot, f"5 {name or 'new.py'}")
         await pilot.press("enter")
         await until(pilot, lambda: app.panel_area.code is not None and app.panel_area.code.typing)
@@ -114,8 +111,7 @@ async def test_all_that_the_first_welcome_offers_is_in_sight(tmp_path: Path) -> 
         path = folder / f"a_program_with_a_name_{number}.py"
         path.write_text("tank_drive.on_for_seconds(9, 9, 0.1)\n")
         run_command(["run", str(path)])
-    async with LabApp(FIRST).run_test(size=(80, 24)) as pilot:
-        await ready(pilot)
+    async with open_lab(FIRST, size=(80, 24)) as (pilot, _):
         await until_shown(pilot, "9 Run 2")
         await until_shown(pilot, "? shows all keys")
         assert "This is a robot lab." in screen_text(lab(pilot))

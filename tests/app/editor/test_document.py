@@ -12,6 +12,7 @@ from textual.pilot import Pilot
 from tests.app.app_help import (
     ENDLESS,
     notices,
+    open_lab,
     ready,
     screen_text,
     settings,
@@ -137,8 +138,7 @@ async def test_a_program_opened_without_its_mat_runs_only_on_one_that_is_chosen(
 async def test_a_small_panel_keeps_the_whole_place_where_the_text_cannot_run(
     tmp_path: Path,
 ) -> None:
-    async with LabApp(own(tmp_path / "prog.py")).run_test(size=(80, 24)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(own(tmp_path / "prog.py"), size=(80, 24)) as (pilot, app):
         await pilot.press("d")
         await until(pilot, lambda: app.panel_area.alone == "code")
         await pilot.press("i", "f", "enter", "ctrl+r")
@@ -170,8 +170,7 @@ async def test_an_example_is_saved_to_another_place(
 
 @pytest.mark.slow
 async def test_a_small_panel_has_the_whole_place_while_one_types(tmp_path: Path) -> None:
-    async with LabApp(own(tmp_path / "prog.py")).run_test(size=(80, 24)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(own(tmp_path / "prog.py"), size=(80, 24)) as (pilot, app):
         await pilot.press("d")
         await until(
             pilot, lambda: app.panel_area.code is not None and app.panel_area.code.size.height > 20
@@ -191,8 +190,7 @@ async def test_a_small_panel_has_the_whole_place_while_one_types(tmp_path: Path)
 @pytest.mark.slow
 @pytest.mark.parametrize("size", [(80, 24), (100, 30), (120, 40), (200, 60)], ids=str)
 async def test_editing_gets_the_room(size: tuple[int, int], tmp_path: Path) -> None:
-    async with LabApp(own(tmp_path / "prog.py")).run_test(size=size) as pilot:
-        app = await ready(pilot)
+    async with open_lab(own(tmp_path / "prog.py"), size=size) as (pilot, app):
         before = (
             app.panel_area.code.size
             if app.panel_area.shown("code") and app.panel_area.code
@@ -226,8 +224,7 @@ WRONG = "print('A: 1')\nfor n in range(3):\n    n.x\n"
 async def test_after_an_error_typing_begins_on_its_line(
     size: tuple[int, int], tmp_path: Path
 ) -> None:
-    async with LabApp(own(tmp_path / "prog.py", WRONG)).run_test(size=size) as pilot:
-        app = await ready(pilot)
+    async with open_lab(own(tmp_path / "prog.py", WRONG), size=size) as (pilot, app):
         await pilot.press("R")
         await until_state(pilot, RunPhase.ENDED)
         await pilot.press("d")

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.app.app_help import notices, ready, settings, until
+from tests.app.app_help import notices, open_lab, settings, until
 from tuisim.app.app import LabApp
 from tuisim.app.panels.brick import Brick
 from tuisim.app.snapshot import RunPhase
@@ -62,9 +62,7 @@ def actions(app: LabApp) -> list[list[str]]:
 
 
 async def test_keys_press_buttons_while_the_panel_has_the_focus() -> None:
-    app = LabApp(settings(WATCHES))
-    async with app.run_test(size=(120, 40)) as pilot:
-        await ready(pilot)
+    async with open_lab(WATCHES) as (pilot, app):
         await pilot.press("K")
         await until(pilot, lambda: isinstance(app.focused, Brick))
         await pilot.press("enter")
@@ -92,9 +90,7 @@ async def test_keys_press_buttons_while_the_panel_has_the_focus() -> None:
 
 @pytest.mark.slow
 async def test_a_run_may_end_while_a_pressed_button_is_about_to_be_released() -> None:
-    app = LabApp(settings(WATCHES))
-    async with app.run_test(size=(120, 40)) as pilot:
-        await ready(pilot)
+    async with open_lab(WATCHES) as (pilot, app):
         await pilot.press("K", "R")
         await until(pilot, lambda: "ready" in printed(app))
         panel = app.panel_area.brick
@@ -108,9 +104,7 @@ async def test_a_run_may_end_while_a_pressed_button_is_about_to_be_released() ->
 
 @pytest.mark.slow
 async def test_the_mouse_holds_a_button_as_long_as_it_is_down() -> None:
-    app = LabApp(settings(WATCHES))
-    async with app.run_test(size=(120, 40)) as pilot:
-        await ready(pilot)
+    async with open_lab(WATCHES) as (pilot, app):
         await pilot.press("K", "R")
         await until(pilot, lambda: "ready" in printed(app))
         brick = app.panel_area.brick
@@ -128,9 +122,7 @@ async def test_the_mouse_holds_a_button_as_long_as_it_is_down() -> None:
 
 @pytest.mark.slow
 async def test_a_former_instant_shows_the_brick_as_it_was() -> None:
-    app = LabApp(settings(WATCHES))
-    async with app.run_test(size=(120, 40)) as pilot:
-        await ready(pilot)
+    async with open_lab(WATCHES) as (pilot, app):
         await pilot.press("K", "R")
         await until(pilot, lambda: "ready" in printed(app))
         await pilot.press("down")
@@ -145,9 +137,7 @@ async def test_a_former_instant_shows_the_brick_as_it_was() -> None:
 
 @pytest.mark.slow
 async def test_plus_gives_the_panel_the_whole_desk_and_back() -> None:
-    app = LabApp(settings(WATCHES))
-    async with app.run_test(size=(120, 40)) as pilot:
-        await ready(pilot)
+    async with open_lab(WATCHES) as (pilot, app):
         await pilot.press("K", "plus")
         await pilot.pause()
         assert [panel for panel in app.panel_area.panels if app.panel_area.shown(panel)] == [
@@ -164,9 +154,7 @@ async def test_plus_gives_the_panel_the_whole_desk_and_back() -> None:
 
 @pytest.mark.slow
 async def test_buttons_are_of_now_and_a_branch_begins_with_none_held() -> None:
-    app = LabApp(settings(WATCHES, speed=4.0, panels_on=frozenset({"brick"})))
-    async with app.run_test(size=(120, 40)) as pilot:
-        await ready(pilot)
+    async with open_lab(WATCHES, speed=4.0, panels_on=frozenset({"brick"})) as (pilot, app):
         await pilot.press("R")
         await until(pilot, lambda: "ready" in printed(app))
         assert app.panel_area.brick is not None
@@ -210,9 +198,7 @@ WITH_BUMPER = RunSpec(
 
 @pytest.mark.parametrize("by_mouse", [False, True])
 async def test_a_bumper_is_pressed_by_key_and_by_mouse(by_mouse: bool) -> None:
-    app = LabApp(replace(settings(WAITS_FOR_TOUCH), spec=WITH_BUMPER))
-    async with app.run_test(size=(120, 40)) as pilot:
-        await ready(pilot)
+    async with open_lab(replace(settings(WAITS_FOR_TOUCH), spec=WITH_BUMPER)) as (pilot, app):
         await pilot.press("K", "R")
         await until(pilot, lambda: app.run_controller.state is RunPhase.RUNNING)
         await until(pilot, lambda: "in1" in drawn(app))
@@ -245,9 +231,7 @@ async def test_a_hand_presses_as_the_first_line_says(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     (tmp_path / "waits.py").write_text(PRESSED)
-    app = LabApp(settings())
-    async with app.run_test(size=(120, 40)) as pilot:
-        await ready(pilot)
+    async with open_lab() as (pilot, app):
         app.loader.open_file("waits.py")
         await pilot.press("K", "R")
         await until(pilot, lambda: "went on" in printed(app))
@@ -264,9 +248,7 @@ async def test_a_wrong_press_in_the_first_line_is_told(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     (tmp_path / "waits.py").write_text(PRESSED.replace("enter@", "entre@"))
-    app = LabApp(settings())
-    async with app.run_test(size=(120, 40)) as pilot:
-        await ready(pilot)
+    async with open_lab() as (pilot, app):
         app.loader.open_file("waits.py")
         message = "waits.py, line 1: --press: 'entre' cannot be pressed"
         await until(pilot, lambda: any(message in text for text in notices(app)))

@@ -11,7 +11,7 @@ import pytest
 from textual.pilot import Pilot
 from textual.widgets import Input, OptionList, Static
 
-from tests.app.app_help import notices, ready, until, until_state
+from tests.app.app_help import notices, open_lab, ready, until, until_state
 from tests.app.lesson_help import (
     LARGE,
     PROGRAM,
@@ -35,8 +35,7 @@ from tuisim.lessons.spec import SHOWABLE
 
 @pytest.mark.slow
 async def test_a_lesson_from_its_first_step_to_its_model_answer(tmp_path: Path) -> None:
-    async with LabApp(opened(tmp_path)).run_test(size=LARGE) as pilot:
-        app = await ready(pilot)
+    async with open_lab(opened(tmp_path), size=LARGE) as (pilot, app):
         await until(pilot, lambda: "1. Think" in shown(app))
         assert "On a real robot: It matters." in shown(app)
         await type_answer(pilot, app, "41")
@@ -53,8 +52,7 @@ async def test_a_lesson_from_its_first_step_to_its_model_answer(tmp_path: Path) 
 
 
 async def test_lesson_that_found_no_room_is_drawn_later(tmp_path: Path) -> None:
-    async with LabApp(opened(tmp_path)).run_test(size=LARGE) as pilot:
-        app = await ready(pilot)
+    async with open_lab(opened(tmp_path), size=LARGE) as (pilot, app):
         await until(pilot, lambda: "1. Think" in shown(app))
         assert app.panel_area.lesson is not None
         app.panel_area.lesson._picture = LessonPicture([])
@@ -64,8 +62,7 @@ async def test_lesson_that_found_no_room_is_drawn_later(tmp_path: Path) -> None:
 
 @pytest.mark.slow
 async def test_leaving_and_coming_back_to_the_step(tmp_path: Path) -> None:
-    async with LabApp(opened(tmp_path)).run_test(size=LARGE) as pilot:
-        app = await ready(pilot)
+    async with open_lab(opened(tmp_path), size=LARGE) as (pilot, app):
         await type_answer(pilot, app, "42")
         await until(pilot, lambda: "2. Drive" in shown(app))
     async with LabApp(opened(tmp_path)).run_test(size=LARGE) as pilot:
@@ -74,8 +71,7 @@ async def test_leaving_and_coming_back_to_the_step(tmp_path: Path) -> None:
 
 
 async def test_hints_come_one_by_one_and_are_counted(tmp_path: Path) -> None:
-    async with LabApp(opened(tmp_path)).run_test(size=LARGE) as pilot:
-        app = await ready(pilot)
+    async with open_lab(opened(tmp_path), size=LARGE) as (pilot, app):
         await until(pilot, lambda: "Y shows hint 1 of 2." in shown(app))
         await pilot.press("Y")
         await until(pilot, lambda: "Hint 1: Half of 84." in shown(app))
@@ -87,8 +83,7 @@ async def test_hints_come_one_by_one_and_are_counted(tmp_path: Path) -> None:
 
 
 async def test_skip_and_start_over(tmp_path: Path) -> None:
-    async with LabApp(opened(tmp_path)).run_test(size=SMALL) as pilot:
-        app = await ready(pilot)
+    async with open_lab(opened(tmp_path), size=SMALL) as (pilot, app):
         await until(pilot, lambda: "1. Think" in shown(app))
         app.lesson.skip_step()
         assert states() == {"number": "skipped"}
@@ -102,8 +97,7 @@ async def test_skip_and_start_over(tmp_path: Path) -> None:
 
 
 async def test_run_after_starting_over_is_judged(tmp_path: Path) -> None:
-    async with LabApp(opened(tmp_path)).run_test(size=SMALL) as pilot:
-        app = await ready(pilot)
+    async with open_lab(opened(tmp_path), size=SMALL) as (pilot, app):
         app.lesson.skip_step()
         app.lesson.start_over()
         app.lesson.skip_step()
@@ -112,8 +106,7 @@ async def test_run_after_starting_over_is_judged(tmp_path: Path) -> None:
 
 
 async def test_menu_opens_another_lesson(tmp_path: Path) -> None:
-    async with LabApp(opened(tmp_path)).run_test(size=SMALL) as pilot:
-        app = await ready(pilot)
+    async with open_lab(opened(tmp_path), size=SMALL) as (pilot, app):
         await until(pilot, lambda: "1. Think" in shown(app))
         app.lesson.skip_step()
         await run_over(pilot, app)
@@ -132,8 +125,7 @@ async def test_menu_opens_another_lesson(tmp_path: Path) -> None:
 
 
 async def test_run_that_misses_a_goal_says_why_and_counts_as_a_try(tmp_path: Path) -> None:
-    async with LabApp(opened(tmp_path)).run_test(size=LARGE) as pilot:
-        app = await ready(pilot)
+    async with open_lab(opened(tmp_path), size=LARGE) as (pilot, app):
         app.lesson.skip_step()
         program_path(app.lesson.lesson).write_text("pass\n")  # type: ignore[arg-type]
         app.check_files()
@@ -146,8 +138,7 @@ async def test_run_that_misses_a_goal_says_why_and_counts_as_a_try(tmp_path: Pat
 
 @pytest.mark.slow
 async def test_run_from_elsewhere_does_not_count(tmp_path: Path) -> None:
-    async with LabApp(opened(tmp_path)).run_test(size=LARGE) as pilot:
-        app = await ready(pilot)
+    async with open_lab(opened(tmp_path), size=LARGE) as (pilot, app):
         app.lesson.skip_step()
         await pilot.press("shift+right")
         await run_over(pilot, app)
@@ -160,8 +151,7 @@ async def test_run_from_elsewhere_does_not_count(tmp_path: Path) -> None:
 
 @pytest.mark.slow
 async def test_run_before_the_step_does_not_count(tmp_path: Path) -> None:
-    async with LabApp(opened(tmp_path)).run_test(size=LARGE) as pilot:
-        app = await ready(pilot)
+    async with open_lab(opened(tmp_path), size=LARGE) as (pilot, app):
         await run_over(pilot, app)
         await until(pilot, lambda: bool(app.goals.judged[1]))
         app.lesson.skip_step()
@@ -222,8 +212,7 @@ async def test_step_is_done_by_doing_it(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     check, do = DONE[name]
-    async with LabApp(opened(tmp_path, check)).run_test(size=SMALL) as pilot:
-        app = await ready(pilot)
+    async with open_lab(opened(tmp_path, check), size=SMALL) as (pilot, app):
         app.lesson.skip_step()
         app.lesson.skip_step()
         await until(pilot, lambda: "3. Do it" in shown(app))
@@ -232,8 +221,7 @@ async def test_step_is_done_by_doing_it(
 
 
 async def test_panel_that_a_step_asks_for_is_not_open_already(tmp_path: Path) -> None:
-    async with LabApp(opened(tmp_path, "show = 'instrumentation'")).run_test(size=LARGE) as pilot:
-        app = await ready(pilot)
+    async with open_lab(opened(tmp_path, "show = 'instrumentation'"), size=LARGE) as (pilot, app):
         await until(pilot, lambda: app.panel_area.shown("instrumentation"))
         app.lesson.skip_step()
         app.lesson.skip_step()
@@ -245,8 +233,7 @@ async def test_panel_that_a_step_asks_for_is_not_open_already(tmp_path: Path) ->
 
 
 async def test_typing_ends_when_the_program_is_run_from_the_editor(tmp_path: Path) -> None:
-    async with LabApp(opened(tmp_path)).run_test(size=SMALL) as pilot:
-        app = await ready(pilot)
+    async with open_lab(opened(tmp_path), size=SMALL) as (pilot, app):
         await pilot.press("d")
         await until(pilot, lambda: app.panel_area.code is not None and app.panel_area.code.typing)
         await pilot.press("ctrl+r")
@@ -258,8 +245,7 @@ async def test_typing_ends_when_the_program_is_run_from_the_editor(tmp_path: Pat
 
 @pytest.mark.slow
 async def test_program_is_saved_when_it_runs(tmp_path: Path) -> None:
-    async with LabApp(opened(tmp_path)).run_test(size=SMALL) as pilot:
-        app = await ready(pilot)
+    async with open_lab(opened(tmp_path), size=SMALL) as (pilot, app):
         await pilot.press("d")
         await until(pilot, lambda: app.panel_area.code is not None and app.panel_area.code.typing)
         await pilot.press("y", "=", "2", "enter", "ctrl+r")
@@ -270,8 +256,7 @@ async def test_program_is_saved_when_it_runs(tmp_path: Path) -> None:
 
 @pytest.mark.slow
 async def test_other_panels_do_not_replace_the_lesson(tmp_path: Path) -> None:
-    async with LabApp(opened(tmp_path)).run_test(size=SMALL) as pilot:
-        app = await ready(pilot)
+    async with open_lab(opened(tmp_path), size=SMALL) as (pilot, app):
         for key, panel in (
             ("i", "instrumentation"),
             ("A", "arrays"),
@@ -286,8 +271,7 @@ async def test_other_panels_do_not_replace_the_lesson(tmp_path: Path) -> None:
 
 @pytest.mark.slow
 async def test_page_keys_scroll_the_text_while_the_world_has_the_focus(tmp_path: Path) -> None:
-    async with LabApp(with_lines(opened(tmp_path), 40)).run_test(size=SMALL) as pilot:
-        app = await ready(pilot)
+    async with open_lab(with_lines(opened(tmp_path), 40), size=SMALL) as (pilot, app):
         await until(pilot, lambda: "Line 0" in shown(app))
         await pilot.press("pagedown")
         await until(pilot, lambda: "Line 0\n" not in shown(app))
@@ -299,8 +283,7 @@ async def test_page_keys_scroll_the_text_while_the_world_has_the_focus(tmp_path:
 # The settings are too high to stand beside a lesson in a low terminal.
 @pytest.mark.parametrize("panel", [name for name in PANELS if name not in ("lesson", "settings")])
 async def test_page_keys_scroll_the_text_beside_every_panel(panel: str, tmp_path: Path) -> None:
-    async with LabApp(with_lines(opened(tmp_path), 40)).run_test(size=SMALL) as pilot:
-        app = await ready(pilot)
+    async with open_lab(with_lines(opened(tmp_path), 40), size=SMALL) as (pilot, app):
         app.panel_area.request({panel: True, "lesson": True})
         await until(pilot, lambda: app.panel_area.shown(panel) and "Line 0" in shown(app))
         lesson = app.panel_area.lesson
@@ -318,8 +301,7 @@ async def test_page_keys_scroll_the_text_beside_every_panel(panel: str, tmp_path
 
 
 async def test_page_keys_belong_to_the_editor_while_it_is_typed_in(tmp_path: Path) -> None:
-    async with LabApp(with_lines(opened(tmp_path), 60)).run_test(size=(200, 60)) as pilot:
-        app = await ready(pilot)
+    async with open_lab(with_lines(opened(tmp_path), 60), size=(200, 60)) as (pilot, app):
         await until(pilot, lambda: "Line 0" in shown(app))
         await pilot.press("d")
         await until(pilot, lambda: app.panel_area.code is not None and app.panel_area.code.typing)
@@ -330,8 +312,7 @@ async def test_page_keys_belong_to_the_editor_while_it_is_typed_in(tmp_path: Pat
 
 
 async def test_menu_shows_the_step_before_again(tmp_path: Path) -> None:
-    async with LabApp(opened(tmp_path)).run_test(size=SMALL) as pilot:
-        app = await ready(pilot)
+    async with open_lab(opened(tmp_path), size=SMALL) as (pilot, app):
         await until(pilot, lambda: "1. Think" in shown(app))
         app.lesson.skip_step()
         await until(pilot, lambda: "2. Drive" in shown(app))
@@ -351,8 +332,7 @@ async def test_menu_shows_the_step_before_again(tmp_path: Path) -> None:
 async def test_lesson_stands_beside_world_and_code(
     size: tuple[int, int], columns: int, tmp_path: Path
 ) -> None:
-    async with LabApp(opened(tmp_path)).run_test(size=size) as pilot:
-        app = await ready(pilot)
+    async with open_lab(opened(tmp_path), size=size) as (pilot, app):
         await until(
             pilot, lambda: all(map(app.panel_area.shown, ("lesson", "world", "code", "output")))
         )
@@ -364,8 +344,7 @@ async def test_lesson_stands_beside_world_and_code(
 async def test_damaged_progress_is_reported_and_kept(home: Path, tmp_path: Path) -> None:
     (home / "lessons").mkdir(parents=True)
     (home / "lessons" / "progress.json").write_text("[1]")
-    async with LabApp(opened(tmp_path)).run_test(size=SMALL) as pilot:
-        app = await ready(pilot)
+    async with open_lab(opened(tmp_path), size=SMALL) as (pilot, app):
         await until(
             pilot, lambda: any("progress.json: is damaged" in text for text in notices(app))
         )
@@ -377,8 +356,7 @@ def test_steps_can_ask_for_every_panel() -> None:
 
 
 async def test_page_keys_scroll_the_text_after_a_run_from_the_editor(tmp_path: Path) -> None:
-    async with LabApp(with_lines(opened(tmp_path), 40)).run_test(size=SMALL) as pilot:
-        app = await ready(pilot)
+    async with open_lab(with_lines(opened(tmp_path), 40), size=SMALL) as (pilot, app):
         await until(pilot, lambda: "Line 0" in shown(app))
         await pilot.press("d", "escape", "pagedown")
         await until(pilot, lambda: "Line 0\n" not in shown(app))
@@ -395,8 +373,7 @@ async def test_page_keys_scroll_the_text_after_a_run_from_the_editor(tmp_path: P
 async def test_answer_that_is_not_right_says_what_to_do(
     text: str, words: str, tmp_path: Path
 ) -> None:
-    async with LabApp(opened(tmp_path)).run_test(size=SMALL) as pilot:
-        app = await ready(pilot)
+    async with open_lab(opened(tmp_path), size=SMALL) as (pilot, app):
         await type_answer(pilot, app, text)
         await until(pilot, lambda: words in str(app.screen.query_one("#message", Static).content))
         # The readings at the bottom stay in view.
@@ -404,8 +381,7 @@ async def test_answer_that_is_not_right_says_what_to_do(
 
 
 async def test_running_an_edited_text_ends_the_run_of_the_former_one(tmp_path: Path) -> None:
-    async with LabApp(opened(tmp_path)).run_test(size=SMALL) as pilot:
-        app = await ready(pilot)
+    async with open_lab(opened(tmp_path), size=SMALL) as (pilot, app):
         await pilot.press("n")
         await until_state(pilot, RunPhase.PAUSED)
         first = app.run_controller.run_id
@@ -417,8 +393,7 @@ async def test_running_an_edited_text_ends_the_run_of_the_former_one(tmp_path: P
 
 
 async def test_the_last_lesson_can_be_reached_in_a_low_terminal(tmp_path: Path) -> None:
-    async with LabApp(opened(tmp_path)).run_test(size=SMALL) as pilot:
-        app = await ready(pilot)
+    async with open_lab(opened(tmp_path), size=SMALL) as (pilot, app):
         await pilot.press("M")
         await until(pilot, lambda: isinstance(app.screen, Chooser) and app.screen.is_ready)
         listed = app.screen.query_one(OptionList)
@@ -430,8 +405,7 @@ async def test_the_last_lesson_can_be_reached_in_a_low_terminal(tmp_path: Path) 
 async def test_output_is_back_when_another_lesson_is_opened(
     size: tuple[int, int], is_shown: bool, tmp_path: Path
 ) -> None:
-    async with LabApp(opened(tmp_path)).run_test(size=size) as pilot:
-        app = await ready(pilot)
+    async with open_lab(opened(tmp_path), size=size) as (pilot, app):
         if not app.panel_area.shown("chart"):
             await pilot.press("c")
         await until(pilot, lambda: app.panel_area.shown("chart"))
@@ -444,8 +418,7 @@ async def test_output_is_back_when_another_lesson_is_opened(
 
 async def test_chart_stays_in_the_lesson_that_asks_for_it(tmp_path: Path) -> None:
     made = opened(tmp_path)
-    async with LabApp(made).run_test(size=SMALL) as pilot:
-        app = await ready(pilot)
+    async with open_lab(made, size=SMALL) as (pilot, app):
         app.lesson.skip_step()
         app.lesson.skip_step()
         await pilot.press("c")
@@ -456,8 +429,7 @@ async def test_chart_stays_in_the_lesson_that_asks_for_it(tmp_path: Path) -> Non
 
 
 async def test_arrow_keys_move_the_robot_when_another_lesson_begins(tmp_path: Path) -> None:
-    async with LabApp(opened(tmp_path)).run_test(size=SMALL) as pilot:
-        app = await ready(pilot)
+    async with open_lab(opened(tmp_path), size=SMALL) as (pilot, app):
         await pilot.press("d")
         code = app.panel_area.code
         await until(pilot, lambda: code is not None and code.typing)
