@@ -21,7 +21,7 @@ from tuisim.app.analyser.app import Analyser, AnalyserApp
 from tuisim.app.app import LabApp
 from tuisim.app.terminal_app import TerminalApp
 
-PRESSES, AT_ONE_GO = 1500, 400
+PRESSES, AT_ONE_GO = 1000, 250
 """How often something is pressed for one seed, and at most before the app is left and opened anew."""
 
 pytestmark = pytest.mark.slow
@@ -93,7 +93,7 @@ async def one_go(pilot: Pilot[Any], rng: Random, count: int, done: list[str]) ->
         raise
 
 
-@pytest.mark.parametrize("seed", [1, 2, 3])
+@pytest.mark.parametrize("seed", [1, 2])
 @pytest.mark.parametrize("make", [lab, analyser])
 async def test_whatever_is_pressed_the_app_bears_it_and_can_be_left(
     make: Callable[[int], TerminalApp], seed: int

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import asyncio
+
 import pytest
 from textual import events
 from textual.geometry import Size
 
 from tests.app.app_help import LOGS, open_lab, screen_text, until
+from tests.app.monkey import at_once
 from tests.app.terminals import Terminal
+from tuisim.app.guide.screen import GuideScreen
 from tuisim.app.terminal_app import MINIMUM, is_too_small, message_lines
 
 SIZES = [
@@ -66,6 +70,18 @@ async def test_what_is_not_seen_is_not_clicked_on() -> None:
                 )
         await pilot.pause()
         assert (len(app.screen_stack), app.run_controller.run) == (1, None)
+
+
+async def test_a_click_on_what_is_not_drawn_yet_does_no_harm() -> None:
+    click = events.MouseDown(None, 5, 4, 0, 0, 1, False, False, False, screen_x=5, screen_y=4)
+    async with open_lab(size=(20, 5)) as (pilot, app):
+        at_once(pilot, ["question_mark"])
+        await until(pilot, lambda: isinstance(app.screen, GuideScreen))
+        app.post_message(events.Resize(Size(120, 40), Size(120, 40)))
+        for _ in range(150):
+            await app.on_event(click)
+            await asyncio.sleep(0)
+        assert not app.too_small
 
 
 @pytest.mark.tmux

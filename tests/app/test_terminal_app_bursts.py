@@ -37,7 +37,7 @@ SURFACES: dict[str, tuple[str, list[str]]] = {
     "chooser": ("o", [*"pk./", *MOVES, *EDITS, BACK_TAB, "o"]),
     "analyser": ("", [*"bcdmnz+-", *MOVES, ENTER, TAB, BACKSPACE]),
 }
-BURSTS = [f"{name}-{number}" for name in SURFACES for number in range(50)]
+BURSTS = [f"{name}-{number}" for name in SURFACES for number in range(12)]
 ROWS = "".join(f"Colour: {value // 4 * 10}\n" for value in range(40))
 
 

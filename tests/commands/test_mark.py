@@ -19,6 +19,7 @@ import pytest
 
 from tests.cases import cases
 from tests.conftest import ROOT, Command
+from tests.marks.hazards import ODD_NAME
 from tests.marks.student import GOAL_POINTS, GOALS, Student
 from tests.marks.test_sheet import LONG_SHEET
 from tests.marks.the_class import CLASS, write_class
@@ -31,7 +32,6 @@ from tuisim.goals import patterns
 from tuisim.marks.outcome import Outcome
 from tuisim.runs.handle import RunHandle
 
-SEEDS = "0,1"
 FEW = ("ada.py", "ben.py", "gustav.py", "raises.py", "empty.py", "zip.py", "viktor")
 PROCESSES_S = 600.0
 
@@ -50,8 +50,6 @@ def _command(*words: str) -> list[str]:
             "mark",
             str(GOALS),
             "class",
-            "--seeds",
-            SEEDS,
             "--timeout",
             "30",
         ),
@@ -98,7 +96,7 @@ def marked(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The folder of the class, marked once by one command."""
     folder = tmp_path_factory.mktemp("marked")
     write_class(folder / "class")
-    done = _mark(folder, tmp_path_factory.mktemp("home"), "--jobs", "2")
+    done = _mark(folder, tmp_path_factory.mktemp("home"), "--jobs", "2", "--seeds", "0")
     assert done.returncode == 0, done.stderr
     (folder / "stdout.txt").write_text(done.stdout)
     return folder
@@ -153,26 +151,12 @@ def test_each_failed_run_has_a_report_and_each_student_feedback(marked: Path) ->
     assert len(list((marked / "feedback").iterdir())) == len(CLASS)
 
 
-@pytest.mark.slow
-def test_marking_again_elsewhere_gives_the_same_bytes(
-    marked: Path, tmp_path_factory: pytest.TempPathFactory
-) -> None:
-    folder = tmp_path_factory.mktemp("again")
-    write_class(folder / "class")
-    done = _mark(folder, tmp_path_factory.mktemp("home"), "--jobs", "1")
-    (folder / "stdout.txt").write_text(done.stdout)
-    first, second = _results(marked), _results(folder)
-    assert sorted(first) == sorted(second)
-    assert [name for name in first if first[name] != second[name]] == []
-
-
-@pytest.mark.slow
-def test_an_interrupted_marking_is_resumed(tmp_path: Path) -> None:
-    folder, home = tmp_path / "work", tmp_path / "home"
-    write_class(folder / "class", _few(*FEW, "endless.py"))
+def _interrupt(folder: Path, home: Path) -> Path:
+    """Interrupt a marking after two runs, and return its journal."""
     environment = {**os.environ, "PYTHONPATH": str(ROOT), "TUISIM_HOME": str(home)}
+    words = _command("--jobs", "1", "--seeds", "0,1")
     command = subprocess.Popen(
-        _command("--jobs", "1"), cwd=folder, env=environment, stderr=subprocess.PIPE, text=True
+        words, cwd=folder, env=environment, stderr=subprocess.PIPE, text=True
     )
     give_up = time.monotonic() + PATIENCE_S
     journals: list[Path] = []
@@ -182,17 +166,28 @@ def test_an_interrupted_marking_is_resumed(tmp_path: Path) -> None:
         journals = list((home / "marks").glob("*.jsonl")) if home.exists() else []
     command.send_signal(signal.SIGINT)
     said = command.communicate(timeout=PATIENCE_S)[1]
-    done = journals[0].read_bytes().count(b"\n")
     assert (command.returncode, "with --resume goes on" in said) == (130, True)
+    return journals[0]
+
+
+@pytest.mark.slow
+def test_a_resumed_marking_gives_the_bytes_of_another_one_elsewhere(tmp_path: Path) -> None:
+    folder, home, elsewhere = (tmp_path / name for name in ("work", "home", "elsewhere"))
+    for place in folder, elsewhere:
+        write_class(place / "class", _few(*FEW, "endless.py", "thread.py", "deletes", ODD_NAME))
+    journal = _interrupt(folder, home)
+    done = journal.read_bytes().count(b"\n")
     assert not (folder / "marks.csv").exists()
     # A run that is known is not run again, so that its line in the journal is the only one.
-    again = _mark(folder, home, "--jobs", "1", "--resume")
+    again = _mark(folder, home, "--jobs", "1", "--seeds", "0,1", "--resume")
     assert again.returncode == 0, again.stderr
-    lines = [line for line in journals[0].read_bytes().split(b"\n") if line]
+    lines = [line for line in journal.read_bytes().split(b"\n") if line]
     assert 2 <= done < len(lines) == len({line[:80] for line in lines})
-    resumed = _results(folder)
-    assert _mark(folder, home, "--jobs", "1").returncode == 0
-    assert _results(folder) == resumed
+    whole = _mark(elsewhere, tmp_path / "another home", "--jobs", "2", "--seeds", "0,1")
+    assert (whole.returncode, whole.stdout) == (0, again.stdout)
+    resumed, first = _results(folder), _results(elsewhere)
+    assert sorted(resumed) == sorted(first)
+    assert [name for name in first if first[name] != resumed[name]] == []
 
 
 def test_a_class_is_marked_as_a_table(tmp_path: Path, here: Command) -> None:

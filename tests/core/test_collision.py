@@ -213,9 +213,9 @@ QUIET = [HealthCheck.too_slow, HealthCheck.data_too_large, HealthCheck.filter_to
 
 
 @pytest.mark.slow
-@settings(max_examples=2_500, deadline=None, suppress_health_check=QUIET)
+@settings(max_examples=500, deadline=None, suppress_health_check=QUIET)
 @given(**CASE)
-def test_outline_never_enters_anything_in_thousands_of_cases(**case: Any) -> None:
+def test_outline_never_enters_anything_in_hundreds_of_cases(**case: Any) -> None:
     check_case(**case)
 
 

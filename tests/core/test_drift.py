@@ -189,7 +189,7 @@ def test_umbmark_finds_the_errors_of_the_robot(seed: int) -> None:
 
 @pytest.mark.slow
 def test_the_spread_of_squares_is_that_of_the_closed_form() -> None:
-    runs, wheel, spacing = 1000, 0.002, 0.005
+    runs, wheel, spacing = 400, 0.002, 0.005
     drift = DriftSpec(wheel_pc=100 * wheel, spacing_pc=100 * spacing)
     errors = [drive_square(simulation(drift, seed)) for seed in range(runs)]
     # The heading: 4 sides of type B and 4 corners of type A.

@@ -97,8 +97,8 @@ def test_readings_are_distributed_as_means_of_pixels(kind: str) -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("kind", DISCS)
-def test_a_million_readings_are_distributed_as_means_of_pixels(kind: str) -> None:
-    compare(*DISCS[kind], 170_000)
+def test_many_readings_are_distributed_as_means_of_pixels(kind: str) -> None:
+    compare(*DISCS[kind], 40_000)
 
 
 @pytest.mark.parametrize("level", [1, 10, 128])

@@ -37,27 +37,27 @@ others = [int(name) for name in os.listdir('/proc') if name.isdigit() and int(na
 """
 
 
-def _program_link(folder: Path) -> None:
-    (folder / "eve").mkdir()
-    (folder / "eve" / "main.py").symlink_to(folder / "ada.py")
+def _program_link(folder: Path, student: str) -> None:
+    (folder / student).mkdir()
+    (folder / student / "main.py").symlink_to(folder / "ada.py")
 
 
-def _folder_link(folder: Path) -> None:
-    (folder / "eve").symlink_to(folder / "ben", True)
+def _folder_link(folder: Path, student: str) -> None:
+    (folder / student).symlink_to(folder / "ben", True)
 
 
-def _inner_link(folder: Path) -> None:
-    (folder / "eve").mkdir()
-    (folder / "eve" / "main.py").write_text(HOPS)
-    (folder / "eve" / "data").symlink_to(folder.parent, True)
+def _inner_link(folder: Path, student: str) -> None:
+    (folder / student).mkdir()
+    (folder / student / "main.py").write_text(HOPS)
+    (folder / student / "data").symlink_to(folder.parent, True)
 
 
-LINKS: Mapping[str, Callable[[Path], None]] = {
+LINKS: Mapping[str, Callable[[Path, str], None]] = {
     "in place of the program": _program_link,
     "in place of the folder": _folder_link,
     "out of the folder": _inner_link,
 }
-"""Three kinds of links, by what they do; each hands in what is not the student's own."""
+"""Three kinds of links, by the name of the student, who hands in what is not the student's own."""
 
 DESCRIPTORS: Mapping[str, str] = {
     "all descriptors": TO_ALL,

@@ -179,7 +179,7 @@ def test_random_programs_come_out_the_same(run_on: RunOn, profile: str, seed: in
 
 @pytest.mark.slow
 @pytest.mark.parametrize("profile", LIBRARIES)
-@pytest.mark.parametrize("seed", range(2, 102))
+@pytest.mark.parametrize("seed", range(2, 22))
 def test_many_random_programs_come_out_the_same(run_on: RunOn, profile: str, seed: int) -> None:
     check_random_program(run_on, profile, seed)
 
