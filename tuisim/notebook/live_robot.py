@@ -28,7 +28,9 @@ SENTENCE = (
     "%sim_app --origin ADDRESS does."
 )
 NEEDS_WEB = "This is a picture: to see the robot live here and drag it, pip install -e '.[web]' in the clone of tuisim."
-HOW_TO_DRAG = "To drag the robot, use its live view, which %sim_app shows; in a picture, -x, -y and -a place it."
+HOW_TO_DRAG = (
+    "Drag the robot where it is live: %sim_app shows that in a cell. Or place it by -x, -y and -a."
+)
 DEFAULT_HEIGHT_PX = 560
 _OFFER = Path(__file__).with_name("live_robot.html")
 _LOCAL = ("localhost", "127.0.0.1")
@@ -89,7 +91,7 @@ class LiveRobot:
         if words is not None or self._is_due(kernel):
             shown["offer"] = self._offer_app(background, words, kernel)
         if "drag" in str(kernel.get_parent("shell")["content"].get("code", "")).lower():
-            shown["drag"] = {"text/plain": HOW_TO_DRAG}
+            shown["drag"] = _build_bundle(HOW_TO_DRAG)
         return shown
 
     def _offer_app(self, background: str, words: AppWords | None, kernel: Any) -> dict[str, Any]:
@@ -99,7 +101,7 @@ class LiveRobot:
         self._is_taken = self._was_shown = False
         self._words = ["-b", background]
         sentence = SENTENCE if find_spec("textual_serve") else NEEDS_WEB
-        bundle = {"text/plain": sentence, "text/html": f"<p>{html.escape(sentence)}</p>"}
+        bundle = _build_bundle(sentence)
         if sentence is SENTENCE and self._origins:
             kernel.control_handlers[REQUEST] = self._answer
             bundle["text/html"] = self._build_page(words.height_px if words else DEFAULT_HEIGHT_PX)
@@ -153,16 +155,26 @@ class LiveRobot:
             self.view = None
 
 
+def _build_bundle(sentence: str) -> dict[str, Any]:
+    """Return a sentence as a displayable object."""
+    return {"text/plain": sentence, "text/html": f"<p>{html.escape(sentence)}</p>"}
+
+
 def _find_cell(kernel: Any) -> str:
     """Return the id of the cell that the kernel executes; empty where the front end does not tell it."""
     return str(kernel.get_parent("shell")["metadata"].get("cellId", ""))
 
 
 def _find_kernel() -> Any:
-    """Return the kernel that this code runs in; None in a shell."""
+    """Return the kernel that this code runs in; None in a shell and in kernels of another make."""
     from IPython.core.getipython import get_ipython
 
-    return getattr(get_ipython(), "kernel", None)
+    kernel = getattr(get_ipython(), "kernel", None)
+    with suppress(ImportError):
+        from ipykernel.kernelbase import Kernel
+
+        return kernel if isinstance(kernel, Kernel) else None
+    return None
 
 
 def _find_kernel_id() -> str:
