@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Awaitable, Callable
+from collections.abc import AsyncIterator, Awaitable, Callable
+from contextlib import asynccontextmanager
 from typing import Any
 
 import pytest
@@ -10,10 +11,9 @@ from textual.pilot import Pilot
 
 from tests.app.app_help import (
     notices,
+    open_lab,
     program,
-    ready,
     screen_text,
-    settings,
     until,
     until_shown,
     until_state,
@@ -39,15 +39,16 @@ while True:
 """
 
 
-async def with_a_past(pilot: Pilot[Any], ticks: int = 300) -> LabApp:
-    """Let the program run with noise and a user who meddles, and stop it."""
-    app = await ready(pilot)
-    await until(pilot, lambda: app.run_controller.timeline.newest > ticks // 4)
-    app.run_controller.set_noise(NoiseSpec(30, 20))
-    await until(pilot, lambda: app.run_controller.timeline.newest > ticks // 2)
-    app.run_controller.place(Pose(500, 700, 45))
-    await until(pilot, lambda: app.run_controller.timeline.newest > ticks)
-    return app
+@asynccontextmanager
+async def open_with_a_past(ticks: int = 300) -> AsyncIterator[tuple[Pilot[Any], LabApp]]:
+    """Let a program run with noise and a user who meddles."""
+    async with open_lab(DRIVES, autorun=True, speed=4.0) as (pilot, app):
+        await until(pilot, lambda: app.run_controller.timeline.newest > ticks // 4)
+        app.run_controller.set_noise(NoiseSpec(30, 20))
+        await until(pilot, lambda: app.run_controller.timeline.newest > ticks // 2)
+        app.run_controller.place(Pose(500, 700, 45))
+        await until(pilot, lambda: app.run_controller.timeline.newest > ticks)
+        yield pilot, app
 
 
 async def stop(pilot: Pilot[Any], app: LabApp) -> None:
@@ -90,8 +91,7 @@ async def _nothing(pilot: Pilot[Any], app: LabApp) -> None:
     ids=["nudge", "noise", "pen", "branch key"],
 )
 async def test_a_branch_is_the_same_run_up_to_its_instant(deed: Deed, kind: str) -> None:
-    async with LabApp(settings(DRIVES, autorun=True, speed=4.0)).run_test(size=(120, 40)) as pilot:
-        app = await with_a_past(pilot)
+    async with open_with_a_past() as (pilot, app):
         await stop(pilot, app)
         first = app.run_controller.run_id
         to_tick(app.context, 260)
@@ -128,8 +128,7 @@ async def test_a_branch_is_the_same_run_up_to_its_instant(deed: Deed, kind: str)
 
 @pytest.mark.slow
 async def test_a_paused_run_branches_paused_and_is_kept() -> None:
-    async with LabApp(settings(DRIVES, autorun=True, speed=4.0)).run_test(size=(120, 40)) as pilot:
-        app = await with_a_past(pilot)
+    async with open_with_a_past() as (pilot, app):
         first = app.run_controller.run_id
         await pilot.press("space", "less_than_sign")
         await until_state(pilot, RunPhase.PAUSED)
@@ -164,8 +163,7 @@ async def test_a_paused_run_branches_paused_and_is_kept() -> None:
 
 @pytest.mark.slow
 async def test_an_edited_program_says_where_it_went_another_way() -> None:
-    async with LabApp(settings(DRIVES, autorun=True, speed=4.0)).run_test(size=(120, 40)) as pilot:
-        app = await with_a_past(pilot)
+    async with open_with_a_past() as (pilot, app):
         await stop(pilot, app)
         first = app.run_controller.run_id
         app.run_controller.program = program(
@@ -184,8 +182,7 @@ async def test_an_edited_program_says_where_it_went_another_way() -> None:
 
 
 async def test_from_the_past_the_program_can_be_run_from_its_start() -> None:
-    async with LabApp(settings(DRIVES, autorun=True, speed=4.0)).run_test(size=(120, 40)) as pilot:
-        app = await with_a_past(pilot, ticks=80)
+    async with open_with_a_past(ticks=80) as (pilot, app):
         first = app.run_controller.run_id
         await pilot.press("less_than_sign", "R")
         await until(pilot, lambda: len(app.screen_stack) == 2)
@@ -204,8 +201,7 @@ async def test_from_the_past_the_program_can_be_run_from_its_start() -> None:
 
 @pytest.mark.slow
 async def test_a_program_that_ends_before_the_instant_is_told() -> None:
-    async with LabApp(settings(DRIVES, autorun=True, speed=4.0)).run_test(size=(120, 40)) as pilot:
-        app = await with_a_past(pilot, ticks=100)
+    async with open_with_a_past(ticks=100) as (pilot, app):
         await stop(pilot, app)
         first = app.run_controller.run_id
         app.run_controller.program = program("tank_drive.on_for_seconds(20, 20, 0.2)\n")
@@ -226,8 +222,7 @@ async def test_a_program_that_ends_before_the_instant_is_told() -> None:
 
 @pytest.mark.slow
 async def test_a_branch_is_compared_with_the_run_that_it_left() -> None:
-    async with LabApp(settings(DRIVES, autorun=True, speed=4.0)).run_test(size=(120, 40)) as pilot:
-        app = await with_a_past(pilot)
+    async with open_with_a_past() as (pilot, app):
         await stop(pilot, app)
         first = app.run_controller.run_id
         to_tick(app.context, 200)

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import AsyncIterator, Callable
+from contextlib import asynccontextmanager
 from pathlib import Path
 from typing import Any
 
@@ -30,14 +31,18 @@ from tuisim.runs.run_folder import StoredRun
 SIZES = [(80, 24), (120, 40), (200, 60)]
 
 
-async def opened(pilot: Pilot[Any]) -> tuple[Analyser, Model]:
-    """Wait until the log is there."""
-    screen = pilot.app.screen
-    await until(pilot, lambda: isinstance(pilot.app.screen, Analyser) and pilot.app.screen.is_open)
-    screen = pilot.app.screen
-    assert isinstance(screen, Analyser) and screen.is_open
-    await pilot.pause()
-    return screen, screen.model
+@asynccontextmanager
+async def open_analyser(
+    size: tuple[int, int] = (120, 40), **log: Any
+) -> AsyncIterator[tuple[Pilot[Any], Analyser, Model]]:
+    """Open the analyser with a log, asked for as in `LogRequest`, and wait until it is there."""
+    async with AnalyserApp(LogRequest(**log)).run_test(size=size) as pilot:
+        app = pilot.app
+        await until(pilot, lambda: isinstance(app.screen, Analyser) and app.screen.is_open)
+        screen = app.screen
+        assert isinstance(screen, Analyser) and screen.is_open
+        await pilot.pause()
+        yield pilot, screen, screen.model
 
 
 def text_of(pilot: Pilot[Any]) -> str:
@@ -50,8 +55,7 @@ def text_of(pilot: Pilot[Any]) -> str:
 @pytest.mark.slow_cases("(200, 60)")
 @pytest.mark.parametrize("size", SIZES, ids=str)
 async def test_everything_is_on_the_first_screen(run: StoredRun, size: tuple[int, int]) -> None:
-    async with AnalyserApp(LogRequest(runs=(run.id,))).run_test(size=size) as pilot:
-        await opened(pilot)
+    async with open_analyser(runs=(run.id,), size=size) as (pilot, _, _):
         await until(pilot, lambda: "print('Colour" in text_of(pilot))
         text = text_of(pilot)
         assert all(
@@ -62,16 +66,14 @@ async def test_everything_is_on_the_first_screen(run: StoredRun, size: tuple[int
 
 
 async def test_a_high_and_narrow_screen_has_all_columns_for_each_view(run: StoredRun) -> None:
-    async with AnalyserApp(LogRequest(runs=(run.id,))).run_test(size=(64, 60)) as pilot:
-        screen, _ = await opened(pilot)
+    async with open_analyser(runs=(run.id,), size=(64, 60)) as (pilot, screen, _):
         views = (screen.chart, screen.pane, screen.world)
         await until(pilot, lambda: all(view.region.width == 64 for view in views))
         assert screen.chart.region.y < screen.pane.region.y < screen.world.region.y
 
 
 async def test_the_bands_are_found_and_noted_by_keys(run: StoredRun) -> None:
-    async with AnalyserApp(LogRequest(runs=(run.id,))).run_test(size=(120, 40)) as pilot:
-        screen, model = await opened(pilot)
+    async with open_analyser(runs=(run.id,)) as (pilot, screen, model):
         await pilot.press("b", "down")
         text = text_of(pilot)
         assert "82.75 light grey" in text
@@ -92,8 +94,7 @@ async def test_the_bands_are_found_and_noted_by_keys(run: StoredRun) -> None:
 
 
 async def test_the_mouse_reads_the_chart_without_a_press(run: StoredRun) -> None:
-    async with AnalyserApp(LogRequest(runs=(run.id,))).run_test(size=(120, 40)) as pilot:
-        screen, model = await opened(pilot)
+    async with open_analyser(runs=(run.id,)) as (pilot, screen, model):
         before = model.row
         at_cursor = str(screen.chart.border_subtitle)
         await pilot.hover(screen.chart, offset=(40, 5))
@@ -107,8 +108,7 @@ async def test_the_mouse_reads_the_chart_without_a_press(run: StoredRun) -> None
 @pytest.mark.slow
 async def test_a_long_note_goes_on_in_further_lines(run: StoredRun) -> None:
     words = " ".join(f"word{at}" for at in range(40))
-    async with AnalyserApp(LogRequest(runs=(run.id,))).run_test(size=(80, 30)) as pilot:
-        _, model = await opened(pilot)
+    async with open_analyser(runs=(run.id,), size=(80, 30)) as (pilot, _, model):
         await typed(pilot, "m", f"={words}", "enter", "n")
         await until(pilot, lambda: "word39" in text_of(pilot))
         assert all(word in text_of(pilot) for word in words.split())
@@ -117,8 +117,7 @@ async def test_a_long_note_goes_on_in_further_lines(run: StoredRun) -> None:
 
 
 async def test_tab_takes_the_word_that_is_offered(run: StoredRun) -> None:
-    async with AnalyserApp(LogRequest(runs=(run.id,))).run_test(size=(80, 24)) as pilot:
-        await opened(pilot)
+    async with open_analyser(runs=(run.id,), size=(80, 24)) as (pilot, _, _):
         await pilot.press("d")
         await until(pilot, lambda: isinstance(pilot.app.focused, Input))
         field = pilot.app.screen.query_one(Input)
@@ -131,8 +130,7 @@ async def test_tab_takes_the_word_that_is_offered(run: StoredRun) -> None:
 @pytest.mark.slow
 async def test_the_bands_as_shown_are_exported(run: StoredRun, tmp_path: Path) -> None:
     target = tmp_path / "bands.csv"
-    async with AnalyserApp(LogRequest(runs=(run.id,))).run_test(size=(120, 40)) as pilot:
-        _, model = await opened(pilot)
+    async with open_analyser(runs=(run.id,)) as (pilot, _, model):
         await pilot.press("b")
         await until(pilot, lambda: bool(model.bands()))
         await typed(pilot, "e", f"={target}", "enter")
@@ -148,8 +146,7 @@ async def test_the_bands_as_shown_are_exported(run: StoredRun, tmp_path: Path) -
 async def test_a_pane_tells_which_row_is_selected_where_not_all_fit(
     run: StoredRun, size: tuple[int, int], words: str
 ) -> None:
-    async with AnalyserApp(LogRequest(runs=(run.id,))).run_test(size=size) as pilot:
-        screen, model = await opened(pilot)
+    async with open_analyser(runs=(run.id,), size=size) as (pilot, screen, model):
         await pilot.press("b")
         await until(pilot, lambda: bool(model.bands()))
         await pilot.press("down")
@@ -164,8 +161,7 @@ async def test_runs_to_open_are_listed_and_several_may_be_marked(run: StoredRun)
         program("print('Colour: 7')\n"), build_run_spec(Settings()), RunOptions(speed=0.0)
     )
     handle.wait()
-    async with AnalyserApp(LogRequest(runs=(run.id,))).run_test(size=(80, 24)) as pilot:
-        screen, _ = await opened(pilot)
+    async with open_analyser(runs=(run.id,), size=(80, 24)) as (pilot, screen, _):
         await pilot.press("R")
         await until(pilot, lambda: pilot.app.screen is not screen and "prog.py" in text_of(pilot))
         await pilot.press("space", "space", "enter")
@@ -185,15 +181,13 @@ async def test_the_source_shows_a_magic_line_that_is_no_comment() -> None:
     ).program.text
     handle = start_run(program(text), build_run_spec(Settings()), RunOptions(speed=0.0))
     handle.wait()
-    async with AnalyserApp(LogRequest(runs=(handle.run_id,))).run_test(size=(120, 40)) as pilot:
-        await opened(pilot)
+    async with open_analyser(runs=(handle.run_id,)) as (pilot, _, _):
         await until(pilot, lambda: "%%sim_magic_preloaded -b Grey" in text_of(pilot))
 
 
 @pytest.mark.slow
 async def test_one_cursor_moves_all(run: StoredRun) -> None:
-    async with AnalyserApp(LogRequest(runs=(run.id,))).run_test(size=(120, 40)) as pilot:
-        _, model = await opened(pilot)
+    async with open_analyser(runs=(run.id,)) as (pilot, _, model):
         await until(pilot, lambda: "print('Colour" in text_of(pilot))
         before = text_of(pilot)
         await pilot.press("end")
@@ -263,8 +257,7 @@ STEPS: list[tuple[list[str], Callable[[Analyser, Model], bool]]] = [
 
 @pytest.mark.slow
 async def test_what_the_keys_do(run: StoredRun) -> None:
-    async with AnalyserApp(LogRequest(runs=(run.id,))).run_test(size=(120, 40)) as pilot:
-        screen, model = await opened(pilot)
+    async with open_analyser(runs=(run.id,)) as (pilot, screen, model):
         for keys, so in STEPS:
             await typed(pilot, *keys)
             assert so(screen, model), keys
@@ -279,8 +272,11 @@ async def test_every_action_does_no_harm_to_an_empty_log(
     spec = build_run_spec(Settings())
     handle = start_run(program("print('no sample')"), spec, RunOptions(speed=0.0))
     handle.wait()
-    async with AnalyserApp(LogRequest(runs=(handle.run_id,))).run_test(size=(80, 24)) as pilot:
-        screen, _ = await opened(pilot)
+    async with open_analyser(runs=(handle.run_id,), size=(80, 24)) as (
+        pilot,
+        screen,
+        _,
+    ):
         # Without a sample, it opens with the telemetry.
         await until(pilot, lambda: " · telemetry" in text_of(pilot))
         await pilot.press("T")
@@ -298,8 +294,7 @@ async def test_every_action_does_no_harm_to_an_empty_log(
 async def test_a_file_is_read_on_when_it_grows(tmp_path: Path) -> None:
     file = tmp_path / "log.txt"
     file.write_text("Colour: 1\nColour: 2\n")
-    async with AnalyserApp(LogRequest(file=str(file))).run_test(size=(80, 24)) as pilot:
-        screen, model = await opened(pilot)
+    async with open_analyser(file=str(file), size=(80, 24)) as (pilot, screen, model):
         await pilot.press("end", "d")
         with file.open("a") as handle:
             handle.write("Colour: 3\n")
@@ -319,8 +314,7 @@ async def test_a_file_is_read_on_when_it_grows(tmp_path: Path) -> None:
 async def test_how_a_file_was_read_is_said_once(tmp_path: Path) -> None:
     file = tmp_path / "log.txt"
     file.write_text("5, 6, 7.5\n")
-    async with AnalyserApp(LogRequest(file=str(file))).run_test(size=(80, 24)) as pilot:
-        screen, _ = await opened(pilot)
+    async with open_analyser(file=str(file), size=(80, 24)) as (pilot, screen, _):
         await until(pilot, lambda: screen.model.opened.done)
         await pilot.pause()
         said = [str(notice.message) for notice in pilot.app._notifications]
@@ -362,8 +356,7 @@ async def test_the_lab_below_hears_no_key(run: StoredRun) -> None:
 @pytest.mark.slow
 async def test_the_rows_as_shown_are_exported(run: StoredRun, tmp_path: Path) -> None:
     file = tmp_path / "rows.parquet"
-    async with AnalyserApp(LogRequest(runs=(run.id,))).run_test(size=(80, 24)) as pilot:
-        _, model = await opened(pilot)
+    async with open_analyser(runs=(run.id,), size=(80, 24)) as (pilot, _, model):
         await typed(pilot, "F", "=value<60", "enter", "h", "e", f"={file}", "enter")
         await until(pilot, file.exists)
         frame = read_log(file)

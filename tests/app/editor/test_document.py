@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import os
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +15,6 @@ from tests.app.app_help import (
     ENDLESS,
     notices,
     open_lab,
-    ready,
     screen_text,
     settings,
     until,
@@ -45,11 +46,13 @@ def own(path: Path, text: str = TEXT) -> AppSettings:
     return AppSettings(spec=spec, program=program)
 
 
-async def begun(pilot: Pilot[Any]) -> tuple[LabApp, Code]:
-    app = await ready(pilot)
-    await until(pilot, lambda: app.panel_area.code is not None)
-    assert app.panel_area.code is not None
-    return app, app.panel_area.code
+@asynccontextmanager
+async def open_code(opened: AppSettings) -> AsyncIterator[tuple[Pilot[Any], LabApp, Code]]:
+    """Open the app and wait until it shows its program."""
+    async with open_lab(opened) as (pilot, app):
+        await until(pilot, lambda: app.panel_area.code is not None)
+        assert app.panel_area.code is not None
+        yield pilot, app, app.panel_area.code
 
 
 async def typed(pilot: Pilot[Any], code: Code, *keys: str) -> None:
@@ -69,8 +72,7 @@ async def asked(pilot: Pilot[Any]) -> Question:
 
 async def test_edited_text_runs_unsaved_and_is_stored_with_the_run(tmp_path: Path) -> None:
     path = tmp_path / "prog.py"
-    async with LabApp(own(path)).run_test(size=(120, 40)) as pilot:
-        app, code = await begun(pilot)
+    async with open_code(own(path)) as (pilot, app, code):
         await typed(pilot, code, *"print", "left_parenthesis", "7", "right_parenthesis", "enter")
         assert str(code.border_title) == "Code: prog.py • edited"
         await pilot.press("ctrl+r")
@@ -88,8 +90,7 @@ async def test_edited_text_runs_unsaved_and_is_stored_with_the_run(tmp_path: Pat
 
 async def test_a_mistake_is_saved_and_marked(tmp_path: Path) -> None:
     path = tmp_path / "prog.py"
-    async with LabApp(own(path)).run_test(size=(120, 40)) as pilot:
-        app, code = await begun(pilot)
+    async with open_code(own(path)) as (pilot, app, code):
         await typed(pilot, code, "enter", "i", "f", "space", "ctrl+s")
         assert path.read_text() == "\nif " + TEXT
         assert any("line 2" in text and "is saved" in text for text in notices(app))
@@ -99,10 +100,11 @@ async def test_a_mistake_is_saved_and_marked(tmp_path: Path) -> None:
 @pytest.mark.slow
 async def test_text_with_a_mistake_does_not_run_and_leaves_the_world_alone(tmp_path: Path) -> None:
     path = tmp_path / "prog.py"
-    async with LabApp(own(path, "# %%sim_magic_preloaded -x 300\n" + TEXT)).run_test(
-        size=(120, 40)
-    ) as pilot:
-        app, code = await begun(pilot)
+    async with open_code(own(path, "# %%sim_magic_preloaded -x 300\n" + TEXT)) as (
+        pilot,
+        app,
+        code,
+    ):
         start = app.run_controller.next_run.spec.world.start
         await typed(pilot, code, "i", "f", "enter", "ctrl+r")
         assert app.run_controller.state == RunPhase.IDLE
@@ -119,8 +121,7 @@ async def test_a_program_opened_without_its_mat_runs_only_on_one_that_is_chosen(
     tmp_path: Path,
 ) -> None:
     wrong = "# %%sim_magic_preloaded -b Grey_bnds\n" + TEXT
-    async with LabApp(own(tmp_path / "prog.py", wrong)).run_test(size=(120, 40)) as pilot:
-        app, code = await begun(pilot)
+    async with open_code(own(tmp_path / "prog.py", wrong)) as (pilot, app, code):
         await until(pilot, lambda: code.error_line == 1)
         told = "prog.py cannot run: line 1: no such mat 'Grey_bnds', did you mean Grey_bands?"
         assert "prog.py cannot run" in screen_text(app)
@@ -156,8 +157,7 @@ async def test_an_example_is_saved_to_another_place(
     monkeypatch.chdir(tmp_path)
     example = programs()[0]
     before = example.path.read_bytes()
-    async with LabApp(own(example.path)).run_test(size=(120, 40)) as pilot:
-        app, code = await begun(pilot)
+    async with open_code(own(example.path)) as (pilot, app, code):
         await typed(pilot, code, "#", "enter", "ctrl+s")
         await until(pilot, lambda: isinstance(app.screen, ProgramDialog))
         await pilot.press("enter")
@@ -240,8 +240,7 @@ async def test_no_line_is_marked_any_more_once_the_file_was_mended_elsewhere(
     tmp_path: Path,
 ) -> None:
     path = tmp_path / "prog.py"
-    async with LabApp(own(path, WRONG)).run_test(size=(120, 40)) as pilot:
-        app, code = await begun(pilot)
+    async with open_code(own(path, WRONG)) as (pilot, app, code):
         await pilot.press("R")
         await until(pilot, lambda: code.error_line == 3)
         path.write_text(WRONG.replace("n.x", "n + 1"))
@@ -252,8 +251,7 @@ async def test_no_line_is_marked_any_more_once_the_file_was_mended_elsewhere(
 
 
 async def test_ctrl_s_saves_the_world_outside_the_editor(tmp_path: Path) -> None:
-    async with LabApp(own(tmp_path / "prog.py")).run_test(size=(120, 40)) as pilot:
-        _app, code = await begun(pilot)
+    async with open_code(own(tmp_path / "prog.py")) as (pilot, _, code):
         await typed(pilot, code, "x", "escape", "escape")
         await pilot.press("ctrl+s")
         await until_shown(pilot, "Save the world")
@@ -265,8 +263,7 @@ async def test_ctrl_s_saves_the_world_outside_the_editor(tmp_path: Path) -> None
 )
 async def test_leaving_with_unsaved_changes_asks(answer: str, in_file: str, tmp_path: Path) -> None:
     path = tmp_path / "prog.py"
-    async with LabApp(own(path)).run_test(size=(120, 40)) as pilot:
-        app, code = await begun(pilot)
+    async with open_code(own(path)) as (pilot, app, code):
         await typed(pilot, code, "x", "escape", "escape")
         await until(pilot, lambda: find_draft(str(path)) is not None)
         for key, expected, left in (("escape", TEXT, False), (answer, in_file, True)):
@@ -283,8 +280,7 @@ async def test_leaving_with_unsaved_changes_asks(answer: str, in_file: str, tmp_
 async def test_opening_another_program_with_unsaved_changes_asks(tmp_path: Path) -> None:
     path, other = tmp_path / "prog.py", tmp_path / "other.py"
     other.write_text("print('other')\n")
-    async with LabApp(own(path)).run_test(size=(120, 40)) as pilot:
-        app, code = await begun(pilot)
+    async with open_code(own(path)) as (pilot, app, code):
         await typed(pilot, code, "x", "escape")
         open_path(app.context, str(other))
         await asked(pilot)
@@ -303,8 +299,7 @@ async def test_opening_another_program_with_unsaved_changes_asks(tmp_path: Path)
 async def test_a_draft_is_offered(answer: str, shown: str, kept: bool, tmp_path: Path) -> None:
     path = tmp_path / "prog.py"
     keep_draft(str(path), "draft = 1\n")
-    async with LabApp(own(path)).run_test(size=(120, 40)) as pilot:
-        app, code = await begun(pilot)
+    async with open_code(own(path)) as (pilot, app, code):
         await asked(pilot)
         assert "3 lines differ" in screen_text(app)
         await pilot.press(answer)
@@ -317,8 +312,7 @@ async def test_a_draft_is_offered(answer: str, shown: str, kept: bool, tmp_path:
 @pytest.mark.slow
 async def test_unsaved_text_is_kept_soon_and_forgotten_when_undone(tmp_path: Path) -> None:
     path = tmp_path / "prog.py"
-    async with LabApp(own(path)).run_test(size=(120, 40)) as pilot:
-        app, code = await begun(pilot)
+    async with open_code(own(path)) as (pilot, app, code):
         await typed(pilot, code, "x")
         await until(pilot, lambda: find_draft(str(path)) is not None)
         await pilot.press("ctrl+z")
@@ -334,8 +328,7 @@ async def test_a_file_that_changes_under_unsaved_edits(
     answer: str, shown: str, tmp_path: Path
 ) -> None:
     path = tmp_path / "prog.py"
-    async with LabApp(own(path)).run_test(size=(120, 40)) as pilot:
-        app, code = await begun(pilot)
+    async with open_code(own(path)) as (pilot, app, code):
         await typed(pilot, code, "x", "escape")
         path.write_text("other = 1\n")
         app.check_files()
@@ -347,8 +340,7 @@ async def test_a_file_that_changes_under_unsaved_edits(
 
 
 async def test_a_change_of_the_plan_leaves_edits_alone(tmp_path: Path) -> None:
-    async with LabApp(own(tmp_path / "prog.py")).run_test(size=(120, 40)) as pilot:
-        app, code = await begun(pilot)
+    async with open_code(own(tmp_path / "prog.py")) as (pilot, app, code):
         await typed(pilot, code, "x", "escape")
         app.loader.change_mat("Grey_bands")
         await pilot.pause()
@@ -361,8 +353,7 @@ async def test_a_new_program_runs_and_asks_for_its_file(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    async with LabApp(settings(speed=0.0)).run_test(size=(120, 40)) as pilot:
-        app, code = await begun(pilot)
+    async with open_code(settings(speed=0.0)) as (pilot, app, code):
         await pilot.press("ctrl+t", "enter")
         await until(pilot, lambda: code.typing)
         text = program_text("Grey_bands", "colorLeft", Skeleton.LOG)
@@ -381,8 +372,7 @@ async def test_a_new_program_runs_and_asks_for_its_file(
 async def test_an_edited_magic_line_changes_the_world_when_it_runs(tmp_path: Path) -> None:
     path = tmp_path / "prog.py"
     text = "%%sim_magic_preloaded -x 300\nprint('A: 1')\n"
-    async with LabApp(own(path, text)).run_test(size=(120, 40)) as pilot:
-        app, code = await begun(pilot)
+    async with open_code(own(path, text)) as (pilot, app, code):
         assert "%%sim_magic_preloaded -x 300" in screen_text(app)
         await typed(pilot, code, *["right"] * 25, "delete", "5", "escape")
         await pilot.press("R")
@@ -394,10 +384,7 @@ async def test_an_edited_magic_line_changes_the_world_when_it_runs(tmp_path: Pat
 @pytest.mark.slow
 async def test_the_text_may_be_edited_and_saved_during_a_run(tmp_path: Path) -> None:
     path = tmp_path / "prog.py"
-    async with LabApp(own(path, "# %%sim_magic_preloaded\n" + ENDLESS)).run_test(
-        size=(120, 40)
-    ) as pilot:
-        app, code = await begun(pilot)
+    async with open_code(own(path, "# %%sim_magic_preloaded\n" + ENDLESS)) as (pilot, app, code):
         await pilot.press("R")
         await until_state(pilot, RunPhase.RUNNING)
         await until_shown(pilot, "▶")
@@ -413,8 +400,7 @@ async def test_the_text_may_be_edited_and_saved_during_a_run(tmp_path: Path) -> 
 @pytest.mark.slow
 async def test_a_file_that_may_not_be_written_is_saved_elsewhere(tmp_path: Path) -> None:
     path = tmp_path / "prog.py"
-    async with LabApp(own(path)).run_test(size=(120, 40)) as pilot:
-        app, code = await begun(pilot)
+    async with open_code(own(path)) as (pilot, app, code):
         path.chmod(0o444)
         if os.access(path, os.W_OK):
             # The superuser may write it all the same, and does.

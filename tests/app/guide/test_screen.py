@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
 from typing import Any
 
 import pytest
@@ -9,10 +11,9 @@ from rich.text import Text
 from textual.pilot import Pilot
 from textual.widgets import Input, Tree
 
-from tests.app.app_help import lab, ready, screen_text, settings, until, until_shown
+from tests.app.app_help import lab, open_lab, screen_text, until, until_shown
 from tests.cases import cases
 from tests.guide.questions import QUESTIONS
-from tuisim.app.app import LabApp
 from tuisim.app.guide.answers import STANDS_OUT, AnswerList
 from tuisim.app.guide.screen import KEYS, TOPICS, GuideScreen
 from tuisim.app.panels import PANELS
@@ -53,12 +54,15 @@ def first_words(one: SearchResult) -> str:
     return "".join(text for text, _ in excerpt_of(one, 33, 1)[0]).removesuffix(" …")
 
 
-async def opened(pilot: Pilot[Any], *keys: str) -> GuideScreen:
-    """Press keys and open the guide."""
-    app = await ready(pilot)
-    await pilot.press(*keys, "question_mark")
-    await until(pilot, lambda: isinstance(app.screen, GuideScreen) and app.screen.is_ready)
-    return guide(pilot)
+@asynccontextmanager
+async def open_guide(
+    *keys: str, text: str | None = None, size: tuple[int, int] = SMALL
+) -> AsyncIterator[tuple[Pilot[Any], GuideScreen]]:
+    """Press keys in the app and open the guide."""
+    async with open_lab(text, size=size) as (pilot, app):
+        await pilot.press(*keys, "question_mark")
+        await until(pilot, lambda: isinstance(app.screen, GuideScreen) and app.screen.is_ready)
+        yield pilot, guide(pilot)
 
 
 def test_every_panel_has_a_topic() -> None:
@@ -69,8 +73,7 @@ def test_every_panel_has_a_topic() -> None:
 @pytest.mark.quick_cases("small")
 @pytest.mark.parametrize("size", [SMALL, MEDIUM], ids=["small", "medium"])
 async def test_the_keys_come_first_and_enter_opens_a_page(size: tuple[int, int]) -> None:
-    async with LabApp(settings()).run_test(size=size) as pilot:
-        screen = await opened(pilot)
+    async with open_guide(size=size) as (pilot, screen):
         assert screen.place == KEYS
         await until_shown(pilot, "Run the program")
         await pilot.press("tab", *DOWN_TO_PAGE, "enter")
@@ -82,8 +85,7 @@ async def test_the_keys_come_first_and_enter_opens_a_page(size: tuple[int, int])
 
 @pytest.mark.slow
 async def test_a_long_page_scrolls_and_starts_at_its_top_again() -> None:
-    async with LabApp(settings()).run_test(size=SMALL) as pilot:
-        await opened(pilot)
+    async with open_guide() as (pilot, _):
         await until_shown(pilot, "Run the program")
         await pilot.press("end")
         await until_shown(pilot, "Leave a field")
@@ -103,16 +105,14 @@ async def test_a_long_page_scrolls_and_starts_at_its_top_again() -> None:
 async def test_the_page_of_the_panel_with_the_focus(
     panel: str, place: str, words: tuple[str, ...]
 ) -> None:
-    async with LabApp(settings("print(1)")).run_test(size=MEDIUM) as pilot:
-        screen = await opened(pilot, panel)
+    async with open_guide(panel, text="print(1)", size=MEDIUM) as (pilot, screen):
         assert screen.place == (place, "")
         for word in words:
             await until_shown(pilot, word)
 
 
 async def test_the_scroll_bar_covers_no_letter() -> None:
-    async with LabApp(settings()).run_test(size=SMALL) as pilot:
-        screen = await opened(pilot, "G")
+    async with open_guide("G") as (pilot, screen):
         page = screen._page
         await until(
             pilot,
@@ -123,8 +123,7 @@ async def test_the_scroll_bar_covers_no_letter() -> None:
 
 
 async def test_a_page_is_drawn_again_when_only_its_own_width_changes() -> None:
-    async with LabApp(settings()).run_test(size=MEDIUM) as pilot:
-        screen = await opened(pilot)
+    async with open_guide(size=MEDIUM) as (pilot, screen):
         page = screen._page
         await until(pilot, lambda: page.scrollable_content_region.width == page.drawn_columns > 0)
         before = page.drawn_columns
@@ -137,8 +136,7 @@ async def test_a_page_is_drawn_again_when_only_its_own_width_changes() -> None:
 @pytest.mark.quick_cases("take a screenshot")
 @pytest.mark.parametrize("question", list(QUESTIONS)[:48:12])
 async def test_a_question_is_answered_by_its_page(question: str) -> None:
-    async with LabApp(settings()).run_test(size=SMALL) as pilot:
-        screen = await opened(pilot)
+    async with open_guide() as (pilot, screen):
         answers = await asked(pilot, question)
         await pilot.press(
             *["down"] * [one.name for one in answers].index(QUESTIONS[question]), "enter"
@@ -148,16 +146,14 @@ async def test_a_question_is_answered_by_its_page(question: str) -> None:
 
 
 async def test_a_new_search_replaces_the_old_one() -> None:
-    async with LabApp(settings()).run_test(size=SMALL) as pilot:
-        screen = await opened(pilot)
+    async with open_guide() as (pilot, screen):
         await pilot.press("slash", *"noise", "enter", "slash", *"black")
         assert screen.query_one(Input).value == "black"
 
 
 @pytest.mark.slow
 async def test_escape_leaves_the_search_first() -> None:
-    async with LabApp(settings()).run_test(size=SMALL) as pilot:
-        screen = await opened(pilot)
+    async with open_guide() as (pilot, screen):
         await pilot.press("slash", "x", "y", "z", "z")
         await until_shown(pilot, "No page has these words")
         await pilot.press("escape")
@@ -168,8 +164,7 @@ async def test_escape_leaves_the_search_first() -> None:
 
 
 async def test_escape_goes_from_a_page_to_the_answers_and_from_these_to_the_contents() -> None:
-    async with LabApp(settings()).run_test(size=SMALL) as pilot:
-        screen = await opened(pilot)
+    async with open_guide() as (pilot, screen):
         answers = await asked(pilot, "save the program")
         await pilot.press("down", "down", "enter")
         await until(pilot, lambda: screen._page.has_focus)
@@ -184,8 +179,7 @@ async def test_escape_goes_from_a_page_to_the_answers_and_from_these_to_the_cont
 
 @pytest.mark.slow
 async def test_a_section_is_gone_to() -> None:
-    async with LabApp(settings()).run_test(size=SMALL) as pilot:
-        screen = await opened(pilot)
+    async with open_guide() as (pilot, screen):
         await pilot.press("tab", *DOWN_TO_PAGE, "space", "down", "down", "enter")
         second = headings_in(pages()["first-steps"])[1]
         await until(pilot, lambda: screen.place == ("first-steps", second))
@@ -204,8 +198,7 @@ async def test_a_section_is_gone_to() -> None:
     "size", [(40, 12), (60, 18), SMALL, MEDIUM, (200, 60)], ids=lambda size: f"{size[0]}x{size[1]}"
 )
 async def test_no_title_is_cut_off(size: tuple[int, int]) -> None:
-    async with LabApp(settings()).run_test(size=size) as pilot:
-        screen = await opened(pilot)
+    async with open_guide(size=size) as (pilot, screen):
         await pilot.press("tab")
         tree = screen.query_one(Tree)
         await until(pilot, lambda: tree.has_focus and tree.size.width > 0)
@@ -225,8 +218,7 @@ async def test_no_title_is_cut_off(size: tuple[int, int]) -> None:
     },
 )
 async def test_the_keys_of_the_panel_come_first(panel: str, first: str, then: str) -> None:
-    async with LabApp(settings()).run_test(size=SMALL) as pilot:
-        await opened(pilot, panel)
+    async with open_guide(panel) as (pilot, _):
         await until_shown(pilot, first)
         await until_shown(pilot, then)
         text = screen_text(lab(pilot))
@@ -235,8 +227,7 @@ async def test_the_keys_of_the_panel_come_first(panel: str, first: str, then: st
 
 @pytest.mark.parametrize("size", [(40, 12), SMALL, (200, 60)], ids=["40x12", "80x24", "200x60"])
 async def test_the_best_answers_are_in_sight_below_each_other(size: tuple[int, int]) -> None:
-    async with LabApp(settings()).run_test(size=size) as pilot:
-        await opened(pilot)
+    async with open_guide(size=size) as (pilot, _):
         answers = await asked(pilot, "save the program")
         await until_shown(pilot, first_words(answers[0]))
         shown = [one for one in answers if first_words(one) in screen_text(lab(pilot))]
@@ -254,8 +245,7 @@ async def test_the_best_answers_are_in_sight_below_each_other(size: tuple[int, i
 async def test_the_passage_of_an_answer_is_in_sight_on_its_page(
     question: str, passage: str
 ) -> None:
-    async with LabApp(settings()).run_test(size=SMALL) as pilot:
-        await opened(pilot)
+    async with open_guide() as (pilot, _):
         answers = await asked(pilot, question)
         downs = next(at for at, one in enumerate(answers) if passage in passage_text(one.passage))
         await pilot.press(*["down"] * downs, "enter")
@@ -264,8 +254,7 @@ async def test_the_passage_of_an_answer_is_in_sight_on_its_page(
 
 
 async def test_the_page_keys_go_on_to_further_answers_also_from_the_question() -> None:
-    async with LabApp(settings()).run_test(size=SMALL) as pilot:
-        await opened(pilot)
+    async with open_guide() as (pilot, _):
         answers = await asked(pilot, "where is my data saved, and how do I read it in Python")
         listed = guide(pilot).query_one(AnswerList)
         await pilot.press("pagedown")
@@ -276,8 +265,7 @@ async def test_the_page_keys_go_on_to_further_answers_also_from_the_question() -
 
 
 async def test_answers_fit_a_window_that_has_changed() -> None:
-    async with LabApp(settings()).run_test(size=SMALL) as pilot:
-        await opened(pilot)
+    async with open_guide() as (pilot, _):
         (first, *_) = await asked(pilot, "How do I make the robot slower?")
         words = passage_text(first.passage)
         await until_shown(pilot, words[:60])
@@ -287,8 +275,7 @@ async def test_answers_fit_a_window_that_has_changed() -> None:
 
 
 async def test_words_of_the_question_stand_out_and_a_section_is_named_once() -> None:
-    async with LabApp(settings()).run_test(size=SMALL) as pilot:
-        await opened(pilot)
+    async with open_guide() as (pilot, _):
         answers = await asked(pilot, "colours of the sensor")
         listed = guide(pilot).query_one(AnswerList)
         first, second = (listed.get_option_at_index(at).prompt for at in range(2))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
 from pathlib import Path
 from typing import Any
 
@@ -14,9 +16,7 @@ from tests.app.app_help import (
     LOGS,
     notices,
     open_lab,
-    ready,
     screen_text,
-    settings,
     until,
     until_shown,
     until_state,
@@ -36,12 +36,15 @@ def boxes(app: LabApp) -> tuple[Obstacle, ...]:
     return app.run_controller.next_run.spec.world.obstacles
 
 
-async def opened(pilot: Pilot[Any]) -> LabApp:
-    """The app with the list of obstacles at hand."""
-    app = await ready(pilot)
-    await pilot.press("B")
-    await until(pilot, lambda: app.focused is app.query_one("Obstacles OptionList"))
-    return app
+@asynccontextmanager
+async def open_obstacles(
+    size: tuple[int, int] = (120, 40),
+) -> AsyncIterator[tuple[Pilot[Any], LabApp]]:
+    """Open the app with the list of obstacles at hand."""
+    async with open_lab(LOGS, size=size) as (pilot, app):
+        await pilot.press("B")
+        await until(pilot, lambda: app.focused is app.query_one("Obstacles OptionList"))
+        yield pilot, app
 
 
 def cell(app: LabApp, x_mm: float, y_mm: float) -> tuple[int, int]:
@@ -62,16 +65,14 @@ async def drag(pilot: Pilot[Any], start: tuple[int, int], end: tuple[int, int]) 
 @pytest.mark.quick_cases("80x24")
 @pytest.mark.parametrize("size", [(80, 24), (120, 40)], ids=["80x24", "120x40"])
 async def test_an_empty_list_says_how_to_begin(size: tuple[int, int]) -> None:
-    async with LabApp(settings(LOGS)).run_test(size=size) as pilot:
-        app = await opened(pilot)
+    async with open_obstacles(size=size) as (_, app):
         assert "none: + or drag adds one" in screen_text(app)
         assert "drag to draw or move an obstacle" in screen_text(app)
         assert all(entry.disabled for entry in app.query("Obstacles Input"))
 
 
 async def test_add_type_and_remove() -> None:
-    async with LabApp(settings(LOGS)).run_test(size=(80, 24)) as pilot:
-        app = await opened(pilot)
+    async with open_obstacles(size=(80, 24)) as (pilot, app):
         await pilot.press("plus", "plus")
         await until(pilot, lambda: len(boxes(app)) == 2)
         await pilot.pause()
@@ -93,8 +94,7 @@ async def test_add_type_and_remove() -> None:
 
 @pytest.mark.slow
 async def test_no_box_is_lost_when_two_are_added_at_once() -> None:
-    async with LabApp(settings(LOGS)).run_test(size=(80, 24)) as pilot:
-        app = await opened(pilot)
+    async with open_obstacles(size=(80, 24)) as (pilot, app):
         panel = app.query_one(Obstacles)
         panel.action_add()
         panel.action_add()
@@ -104,8 +104,7 @@ async def test_no_box_is_lost_when_two_are_added_at_once() -> None:
 
 @pytest.mark.slow
 async def test_a_wrong_number_is_refused() -> None:
-    async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
-        app = await opened(pilot)
+    async with open_obstacles() as (pilot, app):
         await pilot.press("plus")
         await until(pilot, lambda: len(boxes(app)) == 1)
         await pilot.pause()
@@ -134,8 +133,7 @@ async def refused(pilot: Pilot[Any], said: str) -> None:
 
 @pytest.mark.slow
 async def test_one_is_drawn_and_moved_with_the_mouse() -> None:
-    async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
-        app = await opened(pilot)
+    async with open_obstacles() as (pilot, app):
         start, end = cell(app, 1000, 900), cell(app, 1300, 600)
         await drag(pilot, start, end)
         await until(pilot, lambda: len(boxes(app)) == 1)
@@ -151,8 +149,7 @@ async def test_one_is_drawn_and_moved_with_the_mouse() -> None:
 
 @pytest.mark.slow
 async def test_a_click_chooses_and_the_mouse_draws_only_while_the_panel_is_shown() -> None:
-    async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
-        app = await opened(pilot)
+    async with open_obstacles() as (pilot, app):
         app.loader.set_next_run(
             with_obstacles(app.run_controller.next_run, OBSTACLES["Square_posts"])
         )
@@ -167,8 +164,7 @@ async def test_a_click_chooses_and_the_mouse_draws_only_while_the_panel_is_shown
 
 @pytest.mark.slow
 async def test_the_box_at_hand_is_marked_in_the_world() -> None:
-    async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
-        app = await opened(pilot)
+    async with open_obstacles() as (pilot, app):
         app.loader.set_next_run(with_obstacles(app.run_controller.next_run, OBSTACLES["Wall"]))
         view = app.query_one(WorldView)
         await until(pilot, lambda: view._scene is not None and view._scene.marked == 0)

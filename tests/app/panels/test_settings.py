@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
 from pathlib import Path
 from typing import Any
 
@@ -15,9 +17,7 @@ from tests.app.app_help import (
     message_of,
     notices,
     open_lab,
-    ready,
     screen_text,
-    settings,
     until,
     until_shown,
     until_state,
@@ -29,12 +29,13 @@ from tuisim.app.snapshot import RunPhase
 from tuisim.config.robots import ROBOTS, load_robot
 
 
-async def opened(pilot: Pilot[Any]) -> LabApp:
-    """The app with its settings shown."""
-    app = await ready(pilot)
-    await pilot.press("Z")
-    await until(pilot, lambda: isinstance(app.focused, Choice))
-    return app
+@asynccontextmanager
+async def open_settings(text: str = LOGS, **more: Any) -> AsyncIterator[tuple[Pilot[Any], LabApp]]:
+    """Open the app with its settings shown."""
+    async with open_lab(text, **more) as (pilot, app):
+        await pilot.press("Z")
+        await until(pilot, lambda: isinstance(app.focused, Choice))
+        yield pilot, app
 
 
 def row(app: LabApp, field: str) -> Row:
@@ -56,8 +57,7 @@ async def enter(pilot: Pilot[Any], field: str, text: str) -> None:
     "size", [(80, 24), (120, 40), (200, 60)], ids=["80x24", "120x40", "200x60"]
 )
 async def test_it_opens_with_the_robots_values(size: tuple[int, int]) -> None:
-    async with LabApp(settings(LOGS)).run_test(size=size) as pilot:
-        app = await opened(pilot)
+    async with open_settings(size=size) as (pilot, app):
         assert "‹ Default_Robot ›" in screen_text(app)
         assert row(app, "wheel_spacing_mm").entry.value == "180"
         assert row(app, "left.port").entry.value == "in2"
@@ -74,8 +74,7 @@ async def test_it_opens_with_the_robots_values(size: tuple[int, int]) -> None:
 
 @pytest.mark.slow
 async def test_a_value_is_taken_at_once() -> None:
-    async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
-        app = await opened(pilot)
+    async with open_settings() as (pilot, app):
         await enter(pilot, "left.x_mm", "-100")
         assert app.run_controller.spec.robot.color_sensors[0].x_mm == -100
         assert row(app, "preset").entry.value == "Default_Robot, edited"
@@ -90,8 +89,7 @@ async def test_a_value_is_taken_at_once() -> None:
 async def test_values_are_checked_and_entered_also_where_a_field_is_left_or_a_choice_stepped_quickly() -> (
     None
 ):
-    async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
-        app = await opened(pilot)
+    async with open_settings() as (pilot, app):
         before = app.run_controller.next_run
         await enter(pilot, "wheel_diameter_mm", "999")
         assert "must be a number from 1 to 500" in screen_text(app)
@@ -120,8 +118,7 @@ async def test_values_are_checked_and_entered_also_where_a_field_is_left_or_a_ch
 
 @pytest.mark.slow
 async def test_choices_are_stepped_through_with_the_arrows() -> None:
-    async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
-        app = await opened(pilot)
+    async with open_settings() as (pilot, app):
         await pilot.press("right")
         await until(pilot, lambda: app.run_controller.next_run.spec.robot.name == "Small_Robot")
         await pilot.press("left", "left", "left")
@@ -137,8 +134,7 @@ async def test_choices_are_stepped_through_with_the_arrows() -> None:
 
 @pytest.mark.slow
 async def test_settings_are_not_changed_during_a_run() -> None:
-    async with LabApp(settings(ENDLESS, autorun=True)).run_test(size=(120, 40)) as pilot:
-        app = await opened(pilot)
+    async with open_settings(ENDLESS, autorun=True) as (pilot, app):
         await until_state(pilot, RunPhase.RUNNING)
         await enter(pilot, "wheel_diameter_mm", "60")
         assert "Not available during a run: S stops it" in screen_text(app)
@@ -154,8 +150,7 @@ async def test_a_robot_is_saved_edited_and_loaded_again(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    async with LabApp(settings(LOGS)).run_test(size=(120, 40)) as pilot:
-        app = await opened(pilot)
+    async with open_settings() as (pilot, app):
         await enter(pilot, "wheel_diameter_mm", "77")
         await pilot.press("ctrl+r")
         app.screen.query_one(Input).value = "mine.toml"
@@ -204,8 +199,7 @@ async def test_a_profile_is_chosen_and_seen_in_the_controls() -> None:
 @pytest.mark.slow
 async def test_the_pen_draws_with_its_own_place_width_and_colour() -> None:
     drive = "tank_drive.on_for_seconds(SpeedPercent(20), SpeedPercent(20), 1)\n"
-    async with LabApp(settings(drive, speed=0.0)).run_test(size=(120, 40)) as pilot:
-        app = await opened(pilot)
+    async with open_settings(drive, speed=0.0) as (pilot, app):
         for field, text in (("pen.color", "teal"), ("pen.width_mm", "40"), ("pen.x_mm", "150")):
             await enter(pilot, field, text)
         await enter(pilot, "pen.down", "off")
@@ -231,8 +225,7 @@ async def test_what_a_robots_file_has_that_means_nothing_here_is_said(tmp_path: 
 
 
 async def test_a_long_value_is_seen_from_its_beginning_and_escape_closes_the_panel() -> None:
-    async with LabApp(settings(LOGS)).run_test(size=(80, 24)) as pilot:
-        app = await opened(pilot)
+    async with open_settings(size=(80, 24)) as (pilot, app):
         await pilot.press("down")
         await until(pilot, lambda: app.focused is row(app, "name").entry)
         await until_shown(pilot, "Name        Default_")

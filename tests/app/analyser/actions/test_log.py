@@ -6,10 +6,8 @@ from dataclasses import replace
 
 import pytest
 
-from tests.app.analyser.test_screen import opened, text_of, typed
+from tests.app.analyser.test_screen import open_analyser, text_of, typed
 from tests.app.app_help import LOGS, program, until
-from tuisim.analysis.source import LogRequest
-from tuisim.app.analyser.app import AnalyserApp
 from tuisim.app.dialogs.runs import Differences
 from tuisim.core.spec import NoiseSpec
 from tuisim.runs.handle import RunOptions, start_run
@@ -28,8 +26,7 @@ def noisy(run: StoredRun) -> StoredRun:
 
 @pytest.mark.slow
 async def test_events_and_differences_by_keys(run: StoredRun, noisy: StoredRun) -> None:
-    async with AnalyserApp(LogRequest(runs=(run.id,))).run_test(size=(120, 40)) as pilot:
-        screen, model = await opened(pilot)
+    async with open_analyser(runs=(run.id,)) as (pilot, screen, model):
         await typed(pilot, "c", "=Colour < 60", "enter")
         events = model.events.found(model.log)
         assert model.row == events[0].row and "▼" in text_of(pilot) and "[Events]" in text_of(pilot)

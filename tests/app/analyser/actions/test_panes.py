@@ -9,7 +9,7 @@ import pyarrow.parquet as pq
 import pytest
 
 from tests.app.analyser.test_panes import stepped
-from tests.app.analyser.test_screen import opened, text_of, typed
+from tests.app.analyser.test_screen import open_analyser, text_of, typed
 from tests.app.app_help import until
 from tuisim.analysis.model import Model
 from tuisim.analysis.source import LogRequest
@@ -36,8 +36,7 @@ async def test_long_logs_are_worked_on_beside_the_screen(
     lines = (f"{at / 10},{'ab'[at % 2]},{at // 2}" for at in range(200))
     file = tmp_path / "log.csv"
     file.write_text("\n".join(("time,name,value", *lines)) + "\n")
-    async with AnalyserApp(LogRequest(file=str(file))).run_test(size=(120, 40)) as pilot:
-        screen, _ = await opened(pilot)
+    async with open_analyser(file=str(file)) as (pilot, screen, _):
         await until(pilot, lambda: screen.is_open and screen.model.opened.done)
         model = screen.model
         assert model is not None
