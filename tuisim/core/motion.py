@@ -305,9 +305,9 @@ class Motion:
             before = left.state(), right.state()
         noise = self.noise.motor
         left_noise, right_noise = wheel_noise(self.spec.seed, tick, noise) if noise else (0.0, 0.0)
-        left_mode, right_mode = left.mode, right.mode
+        modes = None if self._driven else (left.mode, right.mode)
         left_deg, right_deg = left.step(tick, left_noise), right.step(tick, right_noise)
-        if not self._driven and (left.mode != left_mode or right.mode != right_mode):
+        if modes is not None and modes != (left.mode, right.mode):
             self.changed = True
         left_roll, right_roll = left_deg, right_deg
         if slipping is not None:

@@ -9,7 +9,18 @@ from __future__ import annotations
 from functools import partial
 from typing import Any
 
-from tuisim.core.driver.motor import STATES, Command, Constant, MotorCommand, SetPoints, Setting
+from tuisim.core.driver.motor import (
+    CONSTANT,
+    DUTY,
+    POSITION,
+    RESET,
+    STATES,
+    Command,
+    Constant,
+    MotorCommand,
+    SetPoints,
+    Setting,
+)
 from tuisim.core.driver.regulator import StopAction
 from tuisim.core.driver.simulated import SimulatedMotor
 from tuisim.protocol import MotorRegisters
@@ -74,8 +85,10 @@ class DriverTacho(Tacho):
 
     def _now(self) -> SimulatedMotor:
         """Return the motor as it is now."""
-        self._motor.run_until(self._session.now)
-        return self._motor
+        motor = self._motor
+        if not motor.is_at_rest:
+            motor.run_until(self._session.now)
+        return motor
 
     def registers(self) -> MotorRegisters:
         """Return what the program has written to the motor, and its speed."""
@@ -100,7 +113,7 @@ class DriverTacho(Tacho):
                 raise refuse(str(value))
             set_points[index] = value * self._sign if signed else value
             if name == "duty_cycle_sp":
-                self._tell(Setting.DUTY, set_points[index])
+                self._tell(DUTY, set_points[index])
 
         return write
 
@@ -108,12 +121,12 @@ class DriverTacho(Tacho):
         def write(value: int) -> None:
             if not 0 <= value <= MAX_SET_POINT:
                 raise refuse(str(value))
-            self._tell(Setting.CONSTANT, Constant(control, field, value))
+            self._tell(CONSTANT, Constant(control, field, value))
 
         return write
 
     def _set_position(self, value: int) -> None:
-        self._tell(Setting.POSITION, value * self._sign)
+        self._tell(POSITION, value * self._sign)
 
     def _set_stop_action(self, text: str) -> None:
         super()._set_stop_action(text)
@@ -128,8 +141,8 @@ class DriverTacho(Tacho):
         if command is None:
             raise refuse(text)
         self._session.command()
-        self._tell(command, SetPoints._make(self._set_points))
-        if command is Command.RESET:
+        self._tell(command, SetPoints(*self._set_points))
+        if command is RESET:
             self._set_points[:] = SetPoints()
             self._stop_action, self._polarity, self._sign = "coast", "normal", 1
 

@@ -11,7 +11,7 @@ from typing import NamedTuple
 from tuisim.core.driver.control import divide
 from tuisim.core.driver.jiffies import JIFFY_US, LOOK_JIFFIES, NS_PER_US, Jiffies, round_up
 from tuisim.core.driver.plant import STEP_NS, PlantSpec
-from tuisim.core.driver.regulator import Model, MotorDriver, StopAction
+from tuisim.core.driver.regulator import COAST, Model, MotorDriver, StopAction
 from tuisim.core.motor_columns import (
     HOLDING,
     OVERLOADED,
@@ -43,6 +43,10 @@ class Command(StrEnum):
     RESET = "reset"
 
 
+RUN_FOREVER, RUN_TO_ABS_POS, RUN_TO_REL_POS, RUN_TIMED, RUN_DIRECT, STOP, RESET = Command
+"""By themselves: to look up a member in its class takes longer than a call."""
+
+
 class State(StrEnum):
     """What `state` can list, in this order."""
 
@@ -68,6 +72,9 @@ class Setting(StrEnum):
     CONSTANT = "constant"
 
 
+DUTY, POSITION, CONSTANT = Setting
+
+
 class SetPoints(NamedTuple):
     """What a program has set by the time of its command, in the motor's own direction."""
 
@@ -77,7 +84,7 @@ class SetPoints(NamedTuple):
     time_ms: int = 0
     ramp_up_ms: int = 0
     ramp_down_ms: int = 0
-    stop_action: StopAction = StopAction.COAST
+    stop_action: StopAction = COAST
 
     @property
     def ramped(self) -> bool:
@@ -161,7 +168,7 @@ class DriverMotor(MotorDriver):
         self.start_clock(jiffies)
         self.active = SetPoints()
         """The set points of the last command."""
-        self._last_command: Command | None = None
+        self._last_command: Command | Setting | None = None
         self._step_ns = STEP_NS
         self._ramp_ns = self._timed_ns = self._timers_ns = NEVER_NS
         """When a ramp's next change and the end of a timed move are due, and the earlier of the two."""
@@ -189,10 +196,12 @@ class DriverMotor(MotorDriver):
             bits = STALLED | RUNNING if self.is_stalled else RUNNING
         if self.is_ramping or self.is_lowering:
             bits |= RAMPING
-        if self.is_holding:
-            bits |= HOLDING
-        if self.is_overloaded:
-            bits |= OVERLOADED
+        control = self._control
+        if control is not None:
+            if control is self.hold_control:
+                bits |= HOLDING
+            if control.overloaded:
+                bits |= OVERLOADED
         return bits
 
     @property
@@ -266,11 +275,11 @@ class DriverMotor(MotorDriver):
     def settle(self) -> bool:
         """Return whether time changes nothing any more: the axle stands, and its driver leaves it alone."""
         self.is_at_rest = (
-            (self.axle.stands or self.axle.is_blocked)
+            self.is_stalled == self.is_running
             and not (self.speed_dps or self._timers_ns < NEVER_NS)
-            and self.is_stalled == self.is_running
-            and self.state_bits == self._looked_bits
             and self._control_rests()
+            and self.state_bits == self._looked_bits
+            and (self.axle.stands or self.axle.is_blocked)
         )
         return self.is_at_rest
 
@@ -314,28 +323,28 @@ class DriverMotor(MotorDriver):
     def wake(self, time_ns: int) -> None:
         """Run until a time at which something changes that a motor at rest does not expect."""
         self.run_until(time_ns)
-        self.leave_roll()
+        if self._roll is not None:
+            self.leave_roll()
         self.is_at_rest = False
 
     def obey(self, command: MotorCommand) -> None:
         """Do what a program wants, after all steps and timers that are due."""
         time_ns, _, call, values = command
         if isinstance(values, SetPoints):
-            assert isinstance(call, Command)
             self._command(time_ns, call, values)
         elif isinstance(values, Constant):
             self.wake(time_ns)
             control = self.speed_control if values.control == "speed" else self.hold_control
             setattr(control, values.name, values.value)
-        elif call is Setting.POSITION:
+        elif call is POSITION:
             self.wake(time_ns)
             self.renumber(values)
-        elif self._last_command is Command.RUN_DIRECT:
+        elif self._last_command is RUN_DIRECT:
             self.wake(time_ns)
             self.run_direct(time_ns, values)
 
-    def _command(self, time_ns: int, command: Command, active: SetPoints) -> None:
-        if command is Command.RUN_FOREVER and self._runs_on(active):
+    def _command(self, time_ns: int, command: Command | Setting, active: SetPoints) -> None:
+        if command is RUN_FOREVER and self._runs_on(active):
             if active != self.active:
                 self.wake(time_ns)
                 self.active = active
@@ -347,34 +356,31 @@ class DriverMotor(MotorDriver):
         last, self._last_command = self._last_command, command
         self.active = active
         self.ramp_down_ms = active.ramp_down_ms
-        match command:
-            case Command.RUN_FOREVER | Command.RUN_TIMED:
-                self._take_up_speed(time_ns, active.speed_dps)
-                if command is Command.RUN_TIMED:
-                    jiffies = round_up(active.time_ms)
-                    end_ns = self._jiffies.find_expiry_ns(time_ns, jiffies)
-                    self._set_timers(self._ramp_ns, end_ns)
-            case Command.RUN_TO_ABS_POS:
-                self.target = active.position
+        if command is RUN_FOREVER or command is RUN_TIMED:
+            self._take_up_speed(time_ns, active.speed_dps)
+            if command is RUN_TIMED:
+                end_ns = self._jiffies.find_expiry_ns(time_ns, round_up(active.time_ms))
+                self._set_timers(self._ramp_ns, end_ns)
+        elif command is RUN_TO_ABS_POS:
+            self.target = active.position
+            self._run_to_target(time_ns)
+        elif command is RUN_TO_REL_POS:
+            self.target = (self.target if last is command else self.position) + active.position
+            if active.position:
                 self._run_to_target(time_ns)
-            case Command.RUN_TO_REL_POS:
-                base = self.target if last is command else self.position
-                self.target = base + active.position
-                if active.position:
-                    self._run_to_target(time_ns)
-                else:
-                    self._stop(time_ns)
-            case Command.RUN_DIRECT:
-                self.run_direct(time_ns, active.duty)
-            case Command.STOP:
+            else:
                 self._stop(time_ns)
-            case Command.RESET:
-                self._reset(time_ns)
+        elif command is RUN_DIRECT:
+            self.run_direct(time_ns, active.duty)
+        elif command is STOP:
+            self._stop(time_ns)
+        else:
+            self._reset(time_ns)
 
     def _runs_on(self, active: SetPoints) -> bool:
         """Whether `run-forever` was the last command, too, and no ramp was or is set: at most the speed changes."""
         return (
-            self._last_command is Command.RUN_FOREVER
+            self._last_command is RUN_FOREVER
             and self.is_running
             and not self.is_ramping
             and not active.ramped
@@ -421,7 +427,7 @@ class DriverMotor(MotorDriver):
 
     def _reset(self, time_ns: int) -> None:
         self.active = SetPoints()
-        self.halt(time_ns, StopAction.COAST)
+        self.halt(time_ns, COAST)
         self.speed_control.reset()
         self.hold_control.reset()
         self.renumber(0)

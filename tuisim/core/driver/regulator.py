@@ -24,6 +24,10 @@ class StopAction(StrEnum):
     HOLD = "hold"
 
 
+COAST, BRAKE, HOLD = StopAction
+"""By themselves: to look up a member in its class takes longer than a call."""
+
+
 @dataclass(frozen=True, slots=True)
 class Model:
     """A kind of motor, as the driver knows it."""
@@ -97,16 +101,6 @@ class MotorDriver:
         """Since when the speed of the running motor reads 0."""
 
     @property
-    def is_holding(self) -> bool:
-        """Whether it holds its position."""
-        return self._control is self.hold_control
-
-    @property
-    def is_overloaded(self) -> bool:
-        """Whether the active controller asks for more than the full duty."""
-        return self._control is not None and self._control.overloaded
-
-    @property
     def lowering_s(self) -> float:
         """How long before its target a motor begins to slow down."""
         return abs(self.speed_dps) * self.ramp_down_ms / self.model.max_speed_dps / 2000
@@ -140,12 +134,12 @@ class MotorDriver:
         self._control = self._arrival_action = self._still_ns = None
         self._is_regulated = self.is_running = self.is_lowering = self.is_stalled = False
         self.duty = 0
-        if action is StopAction.HOLD:
+        if action is HOLD:
             self._control = self.hold_control
             self.hold_control.setpoint = self.position if held is None else held
         else:
             self.move_axle(time_ns)
-            self.axle.power(None if action is StopAction.COAST else 0)
+            self.axle.power(None if action is COAST else 0)
 
     def renumber(self, position: int) -> None:
         """Make the present position another one; a target becomes it, too."""

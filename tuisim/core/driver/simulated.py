@@ -254,13 +254,13 @@ class SimulatedMotor(DriverMotor):
         """Run until a time at which something changes that a motor at rest does not expect."""
         if self._cruise_dps:
             self._leave_cruise()
-        super().wake(time_ns)
+        DriverMotor.wake(self, time_ns)
         self._even_ticks = 0
 
     def run_until(self, time_ns: int) -> None:
         """Run all steps and timers that are due."""
         if not self._cruise_dps:
-            super().run_until(time_ns)
+            DriverMotor.run_until(self, time_ns)
             return
         self._skip_looks(time_ns)
         since_s = (time_ns // STEP_NS * STEP_NS - self._end_ns(self._tick)) / NS_PER_S
