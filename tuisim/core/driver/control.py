@@ -62,7 +62,7 @@ class Controller:
                 self.overloaded = True
                 self.total -= error
                 return MAX_DUTY if scaled > 0 else -MAX_DUTY
-        return int(scaled / SCALE)
+        return scaled // SCALE if scaled > 0 else -(-scaled // SCALE)
 
     def is_steady(self, value: int, duty: int) -> bool:
         """Return whether a value that stays makes a duty that stays."""
@@ -73,5 +73,5 @@ class Controller:
             return not self.kd
         return (
             not (self.ki and error)
-            and int((error * self.kp + self.total * self.ki) / SCALE) == duty
+            and divide(error * self.kp + self.total * self.ki, SCALE) == duty
         )

@@ -15,7 +15,7 @@ LOOK = CLOCK_HZ // 1000
 """Whether the counter stands is looked up once in this time..."""
 IDLE_LOOKS = 51
 """...and noted with the first look more than 50 ms after the last note."""
-MIN_IDLE = (IDLE_LOOKS - 1) * LOOK
+MIN_IDLE = 50.0 * LOOK
 CAPACITY = 256
 """How many of the last changes are remembered."""
 LAST_NOTE = -43 * LOOK
@@ -55,8 +55,8 @@ class Counter:
             end_deg: The axle's angle at the end.
             middle: The part of the way that it turns in the first half of the time; each half is taken as even.
         """
-        count, last, times = floor(2 * end_deg), self.count, self._times
-        end, way = begin + duration, 2 * (end_deg - begin_deg)
+        count, last, times = floor(2.0 * end_deg), self.count, self._times
+        end, way = begin + duration, 2.0 * (end_deg - begin_deg)
         if end - times[-1] > MIN_IDLE:
             edge = last + (count > last)
             part = 1.0 if count == last else (edge - 2 * begin_deg) / way
@@ -64,9 +64,9 @@ class Counter:
         if count == last:
             return
         if count > last:
-            part, per_count, one = (last + 1 - 2 * begin_deg) / way, 1 / way, 1
+            part, per_count, one = (last + 1 - 2.0 * begin_deg) / way, 1.0 / way, 1
         else:
-            part, per_count, one = (last - 2 * begin_deg) / way, -1 / way, -1
+            part, per_count, one = (last - 2.0 * begin_deg) / way, -1.0 / way, -1
         straight, counts = self._straight, self._counts
         self._straight = count - last + (straight if straight * one > 0 else 0)
         half_time = 0.5 * duration
@@ -75,7 +75,7 @@ class Counter:
             last += one
             counts.append(last)
             times.append(
-                int(
+                floor(
                     begin + part * first_half
                     if part <= middle
                     else end - (1.0 - part) * second_half
@@ -171,7 +171,13 @@ class Counter:
             turned, span = self._search(time)
         else:
             turned = depth if straight > 0 else -depth
-        speed_dps = self._speed_dps = int(turned * HALF_CLOCK_HZ / span) if span else 0
+        if not span:
+            speed_dps = 0
+        elif turned > 0:
+            speed_dps = turned * HALF_CLOCK_HZ // span
+        else:
+            speed_dps = -(-turned * HALF_CLOCK_HZ // span)
+        self._speed_dps = speed_dps
         return speed_dps
 
     def _search(self, time: int) -> tuple[int, int]:

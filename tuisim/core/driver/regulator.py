@@ -255,7 +255,6 @@ class MotorDriver:
         circuit, duty, goal_dps = axle.circuit, self.duty, axle.goal_dps
         friction_dps = copysign(circuit.friction_dps, speed_dps)
         decay, constant_s = circuit.step_decay, circuit.time_constant_s
-        setpoint, kp, ki = control.setpoint, control.kp, control.ki
         while step_ns < end_ns and read_dps:
             end_dps = goal_dps - friction_dps
             after_dps = end_dps + (speed_dps - end_dps) * decay
@@ -269,12 +268,12 @@ class MotorDriver:
             )
             speed_dps, read_dps = after_dps, counter.measure_speed_dps()
             # As `Controller.compute_duty`.
-            error = setpoint - read_dps
-            total = control.total + error
-            scaled = error * kp + total * ki + (control.error - error) * control.kd
+            error = control.setpoint - read_dps
+            total, change = control.total + error, control.error - error
+            scaled = error * control.kp + total * control.ki + change * control.kd
             if -FULL < scaled < FULL:
                 control.error, control.total, control.overloaded = error, total, False
-                next_duty = int(scaled / SCALE)
+                next_duty = scaled // SCALE if scaled > 0 else -(-scaled // SCALE)
             else:
                 next_duty = control.compute_duty(read_dps)
             if next_duty != duty:

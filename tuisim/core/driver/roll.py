@@ -97,7 +97,8 @@ class Roll:
         while (span := time - self._find_time(depth)) < MIN_SPAN and depth < MAX_DEPTH:
             depth += STRIDE
         self._depth = depth
-        return int(self._sign * depth * HALF_CLOCK_HZ / span)
+        speed_dps = depth * HALF_CLOCK_HZ // span
+        return speed_dps if self._sign > 0 else -speed_dps
 
     def _find_time(self, back: int) -> int:
         """Return when the axle came to a count, so many before the newest one, in ticks of the clock."""
@@ -107,7 +108,7 @@ class Roll:
             return counter.find_time(before)
         edge = count if sign > 0 else count + 1
         way_deg = sign * (self._axle.angle_deg - edge / 2) + back / 2
-        return int(self._now - self._find_age_s(way_deg) * CLOCK_HZ)
+        return floor(self._now - self._find_age_s(way_deg) * CLOCK_HZ)
 
     def _find_age_s(self, way_deg: float) -> float:
         """Return how long the axle has taken for its last so many degrees."""
