@@ -90,7 +90,7 @@ def recording() -> Recording:
 
 
 def test_variables_at_instants_forwards_and_back(recording: Recording, looker: Looker) -> None:
-    for tick, n in ((105, "10"), (205, "20"), (55, "5")):
+    for tick, n in ((105, "10"), (205, "20"), (205, "20"), (55, "5")):
         looker.debugger.go(recording, Position(tick), Inspect())
         paused, names = looker.answer()
         assert (paused.tick, names["n"], names["m"]) == (tick, n, str(int(n) ** 2))

@@ -113,8 +113,8 @@ class RunController:
         self.mat: Mat | None = None
         self.run: RunHandle | None = None
         """The live run or the last one; None before the first one, and while a stored run is shown."""
-        self._served: tuple[Mat, RunSpec, bool] | None = None
-        """Whether a mat serves a run, as last asked."""
+        self._mat_of_run: Mat | None = None
+        """That on which the run in view drove; another one is prepared for another robot."""
         self.timeline = Timeline()
         self.earlier: Recording | None = None
         """The run before, or one that was compared with the run in view: it is drawn beside it."""
@@ -195,7 +195,7 @@ class RunController:
         instant, line, pen_down = self._moment(record)
         state, face = self.state, timeline.face(now_tick if timeline.at is None else timeline.at)
         # After the robot was placed following the run, all its motors are reset.
-        hz = spec.profile.tick_hz
+        hz = timeline.tick_hz
         turns = face.turns_at(instant.tick / hz, hz) if record else ()
         turns = turns or ((0.0, 0.0),) * len(spec.robot.extra_motors)
         if state is RunPhase.ENDED and not past:
@@ -224,7 +224,7 @@ class RunController:
             now_tick=now_tick,
             now_pose=newest.pose if newest and past else None,
             earlier_pose=self._earlier_pose(instant) if record else None,
-            program=self.program,
+            program=recording.program if recording and self._is_of_run else self.program,
         )
 
     def _earlier_pose(self, instant: Instant) -> Pose | None:
@@ -295,13 +295,11 @@ class RunController:
         )
 
     def mat_for(self, spec: RunSpec) -> Field | None:
-        """Return the mat if it is that of a run, prepared for its sensors; else None."""
-        mat = self.mat
-        if mat is None:
-            return None
-        if self._served is None or self._served[0] is not mat or self._served[1] is not spec:
-            self._served = mat, spec, mat.serves(spec)
-        return mat.field if self._served[2] else None
+        """Return the mat of the next run or of that in view, if it is one for a run's sensors; else None."""
+        recording, mats = self.timeline.recording, (self.mat, self._mat_of_run)
+        if recording and self.mat and self.mat.serves(recording.spec):
+            self._mat_of_run = self.mat
+        return next((mat.field for mat in mats if mat and mat.serves(spec)), None)
 
     # What the user does
 

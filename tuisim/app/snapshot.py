@@ -96,7 +96,12 @@ class Snapshot:
     @cached_property
     def time_s(self) -> float:
         """Simulated time."""
-        return self.instant.tick / self.spec.profile.tick_hz
+        return self.instant.tick / self.tick_hz
+
+    @property
+    def tick_hz(self) -> int:
+        """Ticks per second of the run whose record is in view."""
+        return (self.recorded_spec or self.spec).profile.tick_hz
 
     @cached_property
     def colors(self) -> Mapping[str, ColorReading]:

@@ -197,10 +197,12 @@ class Lab:
 
     @property
     def state(self) -> dict[str, Any]:
-        """The robot's pose in mm and degrees, and the end of the last run."""
+        """The robot's pose in mm and degrees, and the world and the end of the last run."""
         self._catch_up()
+        # A run in the app may have had other settings than the cells.
+        spec = self._last.spec if self._last else self.spec
         record = self._last.telemetry.last() if self._last else None
-        pose = record.pose if record else self.spec.world.start
+        pose = record.pose if record else spec.world.start
         return {
             "x_mm": pose.x_mm,
             "y_mm": pose.y_mm,
@@ -208,9 +210,9 @@ class Lab:
             "left_position_deg": record.left_position_deg if record else 0.0,
             "right_position_deg": record.right_position_deg if record else 0.0,
             "time_s": self._last.time_s if self._last else 0.0,
-            "background": self.spec.world.background,
-            "profile": self.spec.profile.name,
-            "seed": self.spec.seed,
+            "background": spec.world.background,
+            "profile": spec.profile.name,
+            "seed": spec.seed,
             "state": self._last.state.value if self._last else "ready",
         }
 
@@ -412,6 +414,7 @@ class Lab:
         from tuisim.notebook.cell_run import end_text
         from tuisim.notebook.display import Scene, start_record
         from tuisim.runs.records import TEXT_STREAMS
+        from tuisim.runs.run_folder import mat_files
         from tuisim.runs.samples import samples_of
 
         program, start = plan.program, start_record(plan.spec)
@@ -419,11 +422,14 @@ class Lab:
         if self._last is None:
             return Scene(plan.spec, plan.files, program, start, self._traces, printed=()), ready
         is_other = program is not None and program.text != self._last.program.text
+        spec, files = plan.spec, plan.files
+        if self._last.first_spec != spec:
+            spec, files = self._last.spec, mat_files(self._last)
         rows = self._last.output.all_rows()
         printed = [shown_text(row) for row in rows if row.stream in TEXT_STREAMS]
         last, samples = self._last.telemetry.last() or start, samples_of(rows)
         status = ready if is_other else end_text(self._last)
-        return Scene(plan.spec, plan.files, program, last, self._traces, samples, printed), status
+        return Scene(spec, files, program, last, self._traces, samples, printed), status
 
 
 roboSim = Lab()  # noqa: N816 - the course's cells call it so

@@ -121,9 +121,13 @@ class ReplayDebugger:
         known = self._of is recording and self._actions == len(actions) and self.run is not None
         if known and self._paused is not None and traced_from < 0:
             here = Position(self._paused.tick, self._paused.ordinal)
-            if here == at or here.is_before(at):
+            assert self.run is not None
+            if here == at:
+                # It would run on from there without a pause.
+                self.run.send(self._request)
+                return
+            if here.is_before(at):
                 self._paused = None
-                assert self.run is not None
                 self.run.send(protocol.RunToInstant(at.tick, at.ordinal))
                 return
         self.close()

@@ -133,8 +133,9 @@ def ask_where(context: ActionContext) -> None:
 
     timeline = context.runs.timeline
 
-    mat = context.runs.mat
-    field = mat.field if mat is not None else None
+    recording = timeline.recording
+    spec = recording.spec if recording else context.runs.spec
+    field = context.runs.mat_for(spec)
 
     def go(text: str) -> None:
         text = text or timeline.searched
@@ -145,7 +146,7 @@ def ask_where(context: ActionContext) -> None:
         context.runs.state in (RunPhase.STARTING, RunPhase.RUNNING) and not context.runs.in_past
     )
     title = "Go to · pauses the program" if goes_on else f"Go to · now at {timeline.time_s:.2f} s"
-    words = column_names(context.runs.spec)
+    words = column_names(spec)
     again = f"Enter: {timeline.searched}" if timeline.searched else ""
     context.app.push_screen(
         LinePrompt(

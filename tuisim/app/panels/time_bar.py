@@ -142,9 +142,12 @@ class TimeBar(LinesView):
             self.set_lines([])
             return
         tick = snapshot.instant.tick if snapshot.past else snapshot.now_tick
-        hz = snapshot.spec.profile.tick_hz
         self._times = BarTimes(
-            tick, snapshot.now_tick, hz, snapshot.past, snapshot.state == RunPhase.ENDED
+            tick,
+            snapshot.now_tick,
+            snapshot.tick_hz,
+            snapshot.past,
+            snapshot.state == RunPhase.ENDED,
         )
         self._draw()
 
