@@ -15,7 +15,9 @@ from tests.cases import cases
 from tests.notebook.conftest import Cell
 from tests.running import PATIENCE_S
 from tests.web.test_server import is_there
+from tuisim.errors import HostError
 from tuisim.notebook import lab
+from tuisim.notebook.app_run import AppRun
 from tuisim.notebook.app_view import AppView
 
 MAT = ["-b", "Grey_bands"]
@@ -272,3 +274,9 @@ def test_a_cell_runs_as_fast_as_possible_unless_a_speed_is_set(
         600.0,
         60.0,
     )
+
+
+@pytest.mark.slow
+def test_a_cell_that_waits_for_the_app_can_be_interrupted(view: AppView) -> None:
+    with pytest.raises(HostError, match="interrupted before the app had begun"):
+        AppRun(view, lambda: True)

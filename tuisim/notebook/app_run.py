@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from queue import Empty
 from typing import TYPE_CHECKING, Any
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from tuisim.runs.run_folder import StoredRun
 
 
-_START_WITHIN_S = 30.0
+_START_WITHIN_S = 60.0
 
 
 class AppRun:
@@ -24,17 +24,19 @@ class AppRun:
 
     Args:
         view: The app, which has been asked to start a run.
+        is_interrupted: Whether the user does not want to wait for it any more.
 
     Raises:
-        HostError: the app has told why it cannot, or has ended.
+        HostError: the app has told why it cannot, does not answer, or the user has interrupted the cell before.
     """
 
     waiting_for_reply = False
     waiting_for_input: str | None = None
     """The app asks its user."""
 
-    def __init__(self, view: AppView) -> None:
+    def __init__(self, view: AppView, is_interrupted: Callable[[], bool]) -> None:
         self._view = view
+        self._is_interrupted = is_interrupted
         self.ended: Ended | None = None
         self.wheels = Wheels()
         self.run_id = str(self._next("run", "problem")["id"])
@@ -44,6 +46,9 @@ class AppRun:
         """Wait until the app tells one of these, but not for ever."""
         until_s = time.monotonic() + _START_WITHIN_S
         while self._view.is_alive and time.monotonic() < until_s:
+            if self._is_interrupted():
+                self._view.ask("stop")
+                raise HostError("interrupted before the app had begun")
             told = self._told(0.2)
             if told.get("what") == "problem" and "problem" in kinds:
                 raise HostError(str(told["text"]))

@@ -133,7 +133,9 @@ def run_cell(
     with (
         Interruption() as interruption,
         closing(
-            AppRun(view) if view else start_run(cell.program, cell.spec, options, store)
+            AppRun(view, lambda: interruption.count > 0)
+            if view
+            else start_run(cell.program, cell.spec, options, store)
         ) as handle,
     ):
         run = store.load_run(handle.run_id)
