@@ -169,6 +169,10 @@ class Session:
             self._pass(until, False)
         elif until < self._due:
             self.now = until
+            if code >= 0:
+                # No reading is as new.
+                self.readings.add(code, until, self.program_line(3))
+            return
         else:
             self.output.drain()
             sim = self.sim
