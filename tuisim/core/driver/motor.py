@@ -237,8 +237,9 @@ class DriverMotor(MotorDriver):
                 self._fire()
                 continue
             if self._is_regulated and self._regulates(step_ns):
-                due_ns = self._due_ns
-                end_ns = due_ns if due_ns <= time_ns else time_ns + 1
+                end_ns = min(self._due_ns, time_ns + 1)
+                if self._arrival_action is not None:
+                    end_ns = min(end_ns, self._find_arrival_ns(step_ns))
                 self._step_ns = self._regulate(step_ns, end_ns)
                 if self._step_ns != step_ns:
                     continue

@@ -5,7 +5,7 @@ from __future__ import annotations
 from enum import StrEnum
 from math import copysign
 
-from tuisim.core.driver.control import FULL, SCALE, SPEED_CONSTANTS, Controller, divide
+from tuisim.core.driver.control import FULL, MAX_DUTY, SCALE, SPEED_CONSTANTS, Controller, divide
 from tuisim.core.driver.counter import TICKS_PER_NS, Counter
 from tuisim.core.driver.plant import LARGE, MEDIUM, STEP_NS, STEP_S, Axle, PlantSpec
 from tuisim.core.driver.roll import Roll, begin_roll
@@ -14,6 +14,10 @@ from tuisim.data_class import dataclass
 STEP_TICKS = STEP_NS * TICKS_PER_NS
 STALL_NS = 100_000_000
 """A running motor whose speed reads 0 for longer than this is stalled."""
+
+
+COUNTED_DEG = 2
+"""A position differs from the axle's angle by less than this."""
 
 
 class StopAction(StrEnum):
@@ -92,7 +96,7 @@ class MotorDriver:
         self._arrival_action: StopAction | None = None
         """What happens at the target; None if no move to a position is active."""
         self._is_regulated = False
-        """Whether nothing but the speed control is active."""
+        """Whether nothing but the speed control is active, and the arrival at a target."""
         self._roll: Roll | None = None
         """How the axle rolls, without any control."""
         self.ramp_down_ms = 0
@@ -121,7 +125,9 @@ class MotorDriver:
         """Run to a position, at a speed without sign."""
         self.speed_control.setpoint = -abs(speed_dps) if self.position > target else abs(speed_dps)
         self._start(self.speed_control)
-        self.target, self._arrival_action, self._is_regulated = target, action, False
+        self.target, self._arrival_action = target, action
+        if self.ramp_down_ms:
+            self._is_regulated = False
 
     def _start(self, control: Controller | None) -> None:
         self._control, self._arrival_action, self.is_running = control, None, True
@@ -243,6 +249,13 @@ class MotorDriver:
             and self._moved_ns == step_ns - STEP_NS
             and self.axle.turns_freely
         )
+
+    def _find_arrival_ns(self, step_ns: int) -> int:
+        """Return before when a motor that does not slow down cannot be at its target."""
+        way = self.target - self.position
+        way_deg = (way if self.speed_control.setpoint > 0 else -way) - COUNTED_DEG
+        top_dps = max(abs(self.axle.speed_dps), MAX_DUTY * self.axle.circuit.dps_per_percent)
+        return step_ns + int(way_deg / (top_dps * STEP_S)) * STEP_NS
 
     def _regulate(self, step_ns: int, end_ns: int) -> int:
         """Run steps of the speed control alone: `control`, in few calls, as long as the motor turns on.
