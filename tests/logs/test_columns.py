@@ -121,7 +121,8 @@ CASES: dict[str, Case] = {
     ),
     "bars around text with commas": (
         "a.log",
-        b"time|tag|id|text\n" + b"0|x|1|a, b, c, d, e\n1|x|2|a, b, c, d|e, f\n" * 2,
+        b"time|tag|id|text\n0|x|1|a, b, c, d, e\n1|x|2|a, b, c, d|e, f\n"
+        b"2|x|1|a, b, c, d, e\n3|x|2|a, b, c, d|e, f\n",
         Read(4, ("id",), 2, check=lambda log: values(log, "id") == [1, 2, 1, 2]),
     ),
     "an Arrow stream": ("a.arrows", arrow_stream, TWO),

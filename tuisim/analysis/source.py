@@ -16,6 +16,7 @@ from tuisim.atomic import make_private_folder, replacing
 from tuisim.config.folders import home_folder
 from tuisim.data_class import dataclass
 from tuisim.errors import LogError
+from tuisim.logs.text_form import ANY_FORM, TextForm
 from tuisim.regular_file import open_regular, read_regular
 
 if TYPE_CHECKING:
@@ -39,6 +40,8 @@ class LogRequest:
     """Value columns, empty to guess."""
     unit: str = ""
     """Unit of numeric times, empty to guess."""
+    form: TextForm = ANY_FORM
+    """What is known of a text."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,7 +97,9 @@ def opening(request: LogRequest) -> Iterator[OpenedLog]:
         log = telemetry_log(runs[0]) if request.telemetry else log_of_runs(runs)
         yield OpenedLog(request, log, runs[:1] if request.telemetry else runs)
         return
-    for loaded in read_pieces(request.file, request.time, request.values, request.unit):
+    for loaded in read_pieces(
+        request.file, request.time, request.values, request.unit, request.form
+    ):
         if loaded.log is not None:
             yield OpenedLog(request, loaded.log, (), loaded.part, loaded.done)
 

@@ -23,6 +23,7 @@ from tuisim.config.command_line import (
 )
 from tuisim.data_class import dataclass
 from tuisim.logs.export import LISTED
+from tuisim.logs.text_form import SIGNS
 from tuisim.logs.units import SECONDS
 
 TELEMETRY = option(
@@ -44,8 +45,45 @@ COLUMNS = (
         group="Columns",
         help="Value column; may be repeated.",
     ),
+    option(
+        "--header",
+        type=int,
+        default=0,
+        metavar="LINE",
+        group="Text",
+        help="Line of the file with the names of the columns.",
+    ),
+    option(
+        "--table",
+        type=int,
+        default=1,
+        metavar="N",
+        group="Text",
+        help="Which of several tables in the file (1).",
+    ),
+    option(
+        "--encoding",
+        default="",
+        metavar="NAME",
+        group="Text",
+        help="Encoding, such as utf-8, cp1252, gbk or shift_jis.",
+    ),
+    choice(
+        "--separator",
+        tuple(SIGNS),
+        group="Text",
+        callback=lambda _, __, sign: sign or "",
+        help="What is between the cells.",
+    ),
+    choice(
+        "--decimal",
+        (".", ","),
+        group="Text",
+        callback=lambda _, __, sign: sign or "",
+        help="Decimal sign.",
+    ),
 )
-"""Options that name the columns of a file."""
+"""Options that say how a file is to be read."""
 
 OPTIONS: Mapping[str, GroupedOption] = {
     "at": option("--at", type=float, metavar="VALUE", help="Threshold."),

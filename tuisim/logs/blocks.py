@@ -30,6 +30,9 @@ _BOMS = (
     (codecs.BOM_UTF16_BE, "utf-16-be"),
 )
 
+_GUESSES = {"cp1252": "Windows-1252", "gbk": "GBK", "shift_jis": "Shift-JIS"}
+"""Encodings that are tried in this order if a text is not UTF-8, with their names."""
+
 
 @dataclass(frozen=True, slots=True)
 class Block:
@@ -58,13 +61,24 @@ class LineCutter:
 
     Args:
         longest: Bytes of the longest line; longer ones are left out.
+        encoding: Name of the text's encoding as Python knows it; empty to find it.
+
+    Raises:
+        LogError: there is no such encoding.
     """
 
-    def __init__(self, notes: Notes, longest: int = MAX_LINE_BYTES) -> None:
+    def __init__(self, notes: Notes, longest: int = MAX_LINE_BYTES, encoding: str = "") -> None:
         self._notes, self._longest = notes, longest
+        self._encoding = encoding
         self._rest = b""
         self._row = 1
         self._decoder: codecs.IncrementalDecoder | None = None
+        if encoding:
+            try:
+                self._decoder = codecs.getincrementaldecoder(encoding)("replace")
+            except LookupError as error:
+                hint = "one of Python's, such as utf-8, cp1252, gbk, shift_jis"
+                raise LogError(f"no encoding {encoding!r}", hint) from error
         self._started = False
         self._newline = "\n"
         self._dropping = False
@@ -113,6 +127,8 @@ class LineCutter:
         return self._block(text + b"\n")
 
     def _begin(self, data: bytes) -> bytes:
+        if self._encoding:
+            return data
         for mark, encoding in _BOMS:
             if data.startswith(mark):
                 if encoding != "utf-8":
@@ -146,9 +162,25 @@ class LineCutter:
             if not text.isascii():
                 text.decode("utf-8")
         except UnicodeDecodeError:
-            self._notes.say("not UTF-8: read as Windows-1252")
-            text = text.decode("cp1252", "replace").encode()
+            text = self._guess_text(text).encode()
         return Block(first, text, self._newline)
+
+    def _guess_text(self, text: bytes) -> str:
+        """Return a text that is not UTF-8 in the first encoding that it may have, which counts from then on."""
+        guesses = {self._encoding: ""} if self._encoding else _GUESSES
+        for encoding in guesses:
+            try:
+                decoded = text.decode(encoding)
+            except UnicodeDecodeError:
+                continue
+            break
+        else:
+            encoding = next(iter(guesses))
+            decoded = text.decode(encoding, "replace")
+        if not self._encoding:
+            self._encoding = encoding
+            self._notes.say(f"not UTF-8: read as {_GUESSES[encoding]} (--encoding selects another)")
+        return decoded
 
 
 class Readable(Protocol):

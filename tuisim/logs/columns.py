@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Any, NamedTuple
 
@@ -14,9 +14,9 @@ import pyarrow.compute as pc
 from tuisim.data_class import dataclass
 from tuisim.errors import LogError, among
 from tuisim.logs.arrow import PER_S, numbers_of
-from tuisim.logs.dates import in_usual_form, order_is_guessed
+from tuisim.logs.dates import in_usual_form, is_moment, order_is_guessed
 from tuisim.logs.units import SECONDS
-from tuisim.runs.arrays import FloatArray
+from tuisim.runs.arrays import FloatArray, IntArray
 
 NAMES = (
     "time",
@@ -124,14 +124,34 @@ def _first(column: pa.ChunkedArray) -> float:
     return 0.0
 
 
+_DAY_S = 86400.0
+_COUNTER = 2.0**32
+"""After as many milliseconds or microseconds the counter of a microcontroller begins again."""
+_NO_ROWS: IntArray = np.empty(0, np.int64)
 _SPAN = r"^(?P<sign>-?)(?:(?P<days>\d+) days? )?(?P<h>\d+):(?P<m>\d{2}):(?P<s>\d{2}(?:\.\d+)?)$"
 """A time span as pandas prints it, or hours, minutes and seconds."""
 _REST = r":\d{2}(?P<part>\.\d+)? ?(?:(?P<sign>[+-])(?P<h>\d{2}):?(?P<m>\d{2})|Z|UTC)?$"
 """Fraction of a second, and offset from UTC."""
 
 
+class Times(NamedTuple):
+    """A time column in seconds."""
+
+    seconds: FloatArray
+    """Shape (n,); NaN where there is no time."""
+    wraps: IntArray = _NO_ROWS
+    """Rows, from 0, in which a clock or a counter began again at 0; from there on its period is added."""
+    period: str = ""
+    """The period in words, if there are wraps."""
+
+
 def seconds_of(column: pa.ChunkedArray, unit_s: float, since_first: bool = False) -> FloatArray:
-    """Return a time column in seconds, shape (n,): dates since the first of them, numbers times their unit.
+    """Return a time column in seconds, as `read_times`."""
+    return read_times(column, unit_s, since_first).seconds
+
+
+def read_times(column: pa.ChunkedArray, unit_s: float, since_first: bool = False) -> Times:
+    """Return a time column: dates since the first of them, numbers times their unit.
 
     Args:
         column: Numbers, dates, time spans, or texts with dates or time spans.
@@ -151,14 +171,29 @@ def seconds_of(column: pa.ChunkedArray, unit_s: float, since_first: bool = False
         if pa.types.is_timestamp(kind):
             # Subtracted as integers: floats have no digits left for nanoseconds since 1970.
             wide = pc.subtract(wide, pc.first(wide))
-        return _floats(wide) / PER_S[kind.unit]
+        return Times(_floats(wide) / PER_S[kind.unit])
     if pa.types.is_string(kind) or pa.types.is_large_string(kind) or pa.types.is_dictionary(kind):
-        return seconds_of_texts(column)
+        return parse_times(column)
     if since_first and pa.types.is_integer(kind):
         # Subtracted as integers, as above.
         column = pc.subtract(column.cast(pa.int64()), pc.first(column.cast(pa.int64())))
-    seconds = _since_first(_floats(column)) if since_first else _floats(column)
-    return seconds if unit_s == 1.0 else seconds * unit_s
+    if since_first:
+        return Times(_since_first(_floats(column)) * unit_s)
+    times = _unwrap(_floats(column), _COUNTER, "2³²")
+    return times if unit_s == 1.0 else times._replace(seconds=times.seconds * unit_s)
+
+
+def _unwrap(seconds: FloatArray, period: float, words: str) -> Times:
+    """Return times of a clock or counter that begins again at 0 after its period, without going back."""
+    with np.errstate(invalid="ignore"):
+        if not len(seconds) or not 0.9 * period < np.nanmax(seconds, initial=0.0) < period:
+            return Times(seconds)
+        wraps = np.flatnonzero(np.diff(seconds) < -0.8 * period) + 1
+    if not len(wraps):
+        return Times(seconds)
+    rounds = np.zeros(len(seconds))
+    rounds[wraps] = period
+    return Times(seconds + np.cumsum(rounds), wraps, words)
 
 
 def _since_first(seconds: FloatArray) -> FloatArray:
@@ -170,17 +205,18 @@ def _floats(column: pa.ChunkedArray) -> FloatArray:
     return np.asarray(numbers_of(column), np.float64)
 
 
-def seconds_of_texts(column: pa.ChunkedArray) -> FloatArray:
-    """Return texts in seconds: time spans as they are, dates since the first; NaN for other texts."""
+def parse_times(column: pa.ChunkedArray) -> Times:
+    """Return texts as times: spans and times of day as they are, dates since the first; NaN for other texts."""
     texts = in_usual_form(column.cast(pa.string()))
     spans: Any = pc.extract_regex(texts, _SPAN)
     if spans.null_count == len(spans):
-        return _seconds_of_dates(texts)
+        return Times(_seconds_of_dates(texts))
     days, hours, minutes, seconds = (
         _filled(pc.struct_field(spans, name)) for name in ("days", "h", "m", "s")
     )
-    total = _signed(86400.0 * days + 3600.0 * hours + 60.0 * minutes + seconds, spans)
-    return np.where(spans.is_valid().to_numpy(), total, np.nan)
+    total = _signed(_DAY_S * days + 3600.0 * hours + 60.0 * minutes + seconds, spans)
+    total = np.where(spans.is_valid().to_numpy(), total, np.nan)
+    return Times(total) if days.any() else _unwrap(total, _DAY_S, "a day")
 
 
 def _seconds_of_dates(texts: Any) -> FloatArray:
@@ -221,9 +257,22 @@ def _filled(texts: Any) -> FloatArray:
 ROW = ""
 """In place of a time column: the samples are counted."""
 
-_TEXT_TIMES = frozenset(NAMES) - {"index", "row"}
+COUNTS = ("index", "row")
+"""Names of columns that count the samples."""
+_TEXT_TIMES = frozenset(NAMES) - {*COUNTS}
 
-_VARIABLE_NAMES = ("variable", "name", "sensor", "channel", "signal", "key", "metric")
+_VARIABLE_NAMES = (
+    "variable",
+    "name",
+    "sensor",
+    "channel",
+    "signal",
+    "key",
+    "metric",
+    "entry",
+    "topic",
+    "field",
+)
 _VALUE_NAMES = ("value", "val", "y", "reading", "measurement")
 _NO_VALUES = ("run", "line", "row", "x_mm", "y_mm", "heading_deg")
 """Columns of our own long frames with the origin of a sample."""
@@ -277,12 +326,8 @@ def guess_columns(table: pa.Table) -> Layout:
     named = _named_time(table)
     time = named or _rising(table)
     run = "run" if "run" in names and is_numeric(table.schema.field("run").type) else ""
-    variable = next(
-        (n for n in _VARIABLE_NAMES if n in names and is_text(table.schema.field(n).type)), ""
-    )
-    value = next(
-        (n for n in _VALUE_NAMES if n in names and is_numeric(table.schema.field(n).type)), ""
-    )
+    variable = _find_named(table, _VARIABLE_NAMES, is_text)
+    value = _find_named(table, _VALUE_NAMES, is_numeric)
     numeric = [n for n in names if is_numeric(table.schema.field(n).type) and n not in (time, run)]
     if variable and value and value != time:
         sure = bool(named) or not set(numeric) - {value, *_NO_VALUES}
@@ -295,6 +340,12 @@ def guess_columns(table: pa.Table) -> Layout:
     # With a single numeric column, there is no choice.
     sure = bool(named) or (len(numeric) < 2 and not time)
     return _timed(Layout(time, 1.0, False, "", tuple(kept or numeric), run, sure), table)
+
+
+def _find_named(table: pa.Table, names: Sequence[str], fits: Callable[[pa.DataType], bool]) -> str:
+    """Return the first column with one of the names, in upper or lower case, whose type fits; empty if none has."""
+    columns = {field.name.strip().lower(): field.name for field in table.schema if fits(field.type)}
+    return next((columns[name] for name in names if name in columns), "")
 
 
 def _timed(layout: Layout, table: pa.Table, unit_s: float | None = None) -> Layout:
@@ -324,9 +375,17 @@ def _named_time(table: pa.Table) -> str:
         for n in table.column_names
         if has_time_word(n) and _is_usable(table, n) and _is_rising_time(table, n)
     )
-    return next(
-        compound, next((n for n in table.column_names if is_time(table.schema.field(n).type)), ROW)
-    )
+    by_type = (n for n in table.column_names if is_time(table.schema.field(n).type))
+    by_content = (n for n in table.column_names if _has_moments(table, n))
+    return next((name for names in (compound, by_type, by_content) for name in names), ROW)
+
+
+def _has_moments(table: pa.Table, name: str) -> bool:
+    """Return whether the first cells of a text column are all dates or times of day."""
+    if not is_text(table.schema.field(name).type):
+        return False
+    texts = table.column(name).slice(0, 20).cast(pa.string()).drop_null().to_pylist()
+    return bool(texts) and all(map(is_moment, texts))
 
 
 def _is_rising_time(table: pa.Table, name: str) -> bool:
@@ -390,7 +449,7 @@ def _is_moment(table: pa.Table, name: str) -> bool:
         return True
     if not is_text(kind) or not table.num_rows:
         return False
-    return bool(np.isfinite(seconds_of_texts(table.column(name).slice(0, 20))).any())
+    return bool(np.isfinite(parse_times(table.column(name).slice(0, 20)).seconds).any())
 
 
 def _rises(table: pa.Table, name: str) -> bool:

@@ -29,6 +29,7 @@ MOMENT = (
 """Regular expression of a date, a time of day with seconds, or both."""
 _MOMENT_CELL = re.compile(rf"\s*[\[(<]?\s*{MOMENT}\s*[\])>]?\s*")
 _DATE_CELL = re.compile(rf"\s*{_DATE}\s*")
+_CLOCK_CELL = re.compile(rf"\s*\d{{1,2}}:\d{{2}}:\d{{2}}{_PART}?\s*")
 
 _USUAL = r"^-?(?:\d+ days? )?\d+:\d{2}:\d{2}(?:\.\d+)?$|^\d{4}-\d{2}-\d{2}(?:$|[T ]\d{2}:\d{2}(?:$|[^,]*$))"
 """Texts that need no change."""
@@ -60,6 +61,11 @@ def is_moment(cell: str) -> bool:
 def is_date(cell: str) -> bool:
     """Return whether a cell is a date without a time of day."""
     return _DATE_CELL.fullmatch(cell) is not None
+
+
+def is_clock(cell: str) -> bool:
+    """Return whether a cell is a time of day with seconds, without a date."""
+    return _CLOCK_CELL.fullmatch(cell) is not None
 
 
 def in_usual_form(texts: Any) -> Any:

@@ -12,7 +12,7 @@ from tuisim.errors import LogError, counted, listed, shortened
 from tuisim.logs.arrow import unique_names
 from tuisim.logs.blocks import MAX_DOCUMENT_BYTES, Block
 from tuisim.logs.columns import NAMES, time_name
-from tuisim.logs.text_tables import JsonReader
+from tuisim.logs.json_rows import JsonReader, parse_value
 from tuisim.logs.warnings import Notes
 
 _ALLOWED = "a JSON log is rows as objects, or an object of columns that have equal lengths"
@@ -27,6 +27,11 @@ def begins_as_json(lines: Sequence[str]) -> bool:
     return first.startswith("[") and _value_in(first) is not None
 
 
+def are_objects(lines: Sequence[str]) -> bool:
+    """Return whether most of the lines are an object each."""
+    return 2 * sum(line.lstrip().startswith("{") and _is_row(line) for line in lines) > len(lines)
+
+
 def is_document(lines: Sequence[str]) -> bool:
     """Return whether JSON with these first lines is one document, not a row on each line."""
     first = lines[0].strip()
@@ -37,7 +42,7 @@ def is_document(lines: Sequence[str]) -> bool:
 
 def _value_in(line: str) -> Any:
     try:
-        return json.loads(line.strip().removesuffix(","))
+        return parse_value(line.strip().removesuffix(","))
     except (ValueError, RecursionError):
         return None
 

@@ -118,7 +118,7 @@ class Series:
 
 
 @dataclass(slots=True)
-class _Kept:
+class Kept:
     """Cache of a log's converted columns and series, filled on demand."""
 
     members: Mapping[str, Member] | None = None
@@ -147,7 +147,7 @@ class Log:
     metadata: Mapping[str, Any] = field(default_factory=dict)
     """Metadata of the runs, if the file was exported by tuisim."""
     derived: Mapping[str, Series] = field(default_factory=dict)
-    _kept: _Kept = field(default_factory=_Kept, repr=False, compare=False)
+    _kept: Kept = field(default_factory=Kept, repr=False, compare=False)
 
     @property
     def rows(self) -> int:
@@ -233,7 +233,7 @@ class Log:
 
     def with_layout(self, layout: Layout) -> Log:
         """Return the same log with another layout."""
-        return replace(self.bare(), layout=layout, _kept=_Kept())
+        return replace(self.bare(), layout=layout, _kept=Kept())
 
     def bare(self) -> Log:
         """Return the same log without derived series."""

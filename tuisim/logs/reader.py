@@ -9,15 +9,17 @@ import stat
 import sys
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
+from dataclasses import replace
 from itertools import islice
 from pathlib import Path
 from time import monotonic
 from typing import TYPE_CHECKING, Any, BinaryIO, cast
 
 import pyarrow as pa
+import pyarrow.compute as pc
 
 from tuisim.data_class import dataclass
-from tuisim.errors import LogError
+from tuisim.errors import LogError, counted, listed
 from tuisim.logs import arrow
 from tuisim.logs.blocks import (
     BLOCK_BYTES,
@@ -31,22 +33,27 @@ from tuisim.logs.blocks import (
 )
 from tuisim.logs.columns import (
     UNIT_NAMES,
+    Layout,
     choose_columns,
     guess_columns,
     guessed_order,
+    is_text,
     unread_time,
 )
-from tuisim.logs.documents import DocumentReader, begins_as_json, is_document
+from tuisim.logs.documents import DocumentReader, are_objects, begins_as_json, is_document
 from tuisim.logs.export import ALLOWED, EXPORTERS, companion_of, log_metadata, typed_frame
-from tuisim.logs.log import Log
-from tuisim.logs.stamped import StampedReader, looks_stamped, reader_of_stamped
-from tuisim.logs.text_tables import (
-    CsvReader,
-    JsonReader,
-    PrintedReader,
-    exported_csv,
-    looks_printed,
+from tuisim.logs.json_rows import JsonReader
+from tuisim.logs.log import Kept, Log
+from tuisim.logs.program_lines import (
+    SampleReader,
+    StampedReader,
+    TupleReader,
+    are_tuples,
+    reader_of_lines,
 )
+from tuisim.logs.text_form import ANY_FORM, TextForm
+from tuisim.logs.text_tables import CsvReader, exported_csv
+from tuisim.logs.time_order import guess_unit_s, join_times, order_times
 from tuisim.logs.units import TEXT, TIMEDELTA
 from tuisim.logs.warnings import Notes
 from tuisim.regular_file import read_regular
@@ -65,6 +72,8 @@ _SHOW_SELDOM = 5.0
 """Minimum time between two updates, as a multiple of the duration of an update."""
 _MOST_COMPANION_BYTES = 64 << 20
 _TABLES = (".csv", ".tsv")
+_JUDGED_LINES = 30
+"""Lines from which the kind of a text is told."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,7 +88,11 @@ class Loaded:
 
 
 def open_log(
-    source: str | Path, time: str | None = None, values: Sequence[str] = (), unit: str = ""
+    source: str | Path,
+    time: str | None = None,
+    values: Sequence[str] = (),
+    unit: str = "",
+    form: TextForm = ANY_FORM,
 ) -> Log:
     """Return the whole log in a file.
 
@@ -88,15 +101,25 @@ def open_log(
         time: Column with the time; empty to count the rows; None to guess.
         values: Columns with values; none to guess.
         unit: Unit of numeric times, one of `SECONDS`; empty to guess.
+        form: What is known of a text.
 
     Raises:
         LogError: it cannot be read, has no row, or there is no such column.
     """
     last = None
-    for loaded in read_pieces(source, time, values, unit):
+    for loaded in read_pieces(source, time, values, unit, form):
         last = loaded.log or last
     assert last is not None
     return last
+
+
+def read_beginning(path: str, form: TextForm) -> Log:
+    """Return the log in the first rows of a file.
+
+    Raises:
+        LogError: it cannot be read, or has no row.
+    """
+    return next(loaded.log for loaded in read_pieces(path, form=form) if loaded.log is not None)
 
 
 def read_log(path: str | Path) -> pd.DataFrame:
@@ -142,14 +165,18 @@ def _exported(source: Path, notes: Notes) -> pa.Table:
 
 
 def read_pieces(
-    source: str | Path, time: str | None = None, values: Sequence[str] = (), unit: str = ""
+    source: str | Path,
+    time: str | None = None,
+    values: Sequence[str] = (),
+    unit: str = "",
+    form: TextForm = ANY_FORM,
 ) -> Iterator[Loaded]:
     """Read a log; yield the log so far, soon after the start and then repeatedly; arguments are those of `open_log`."""
     title = "standard input" if str(source) == STDIN else str(source)
     notes = Notes()
     parts: list[pa.Table] = []
     show_at = 0.0
-    for part, table in _parts(source, title, notes):
+    for part, table in _parts(source, title, notes, form):
         if table is not None:
             parts.append(table)
         now = monotonic()
@@ -177,7 +204,7 @@ def _log(
     notes: Notes,
     named: tuple[str | None, Sequence[str], str],
 ) -> Log:
-    table = joined(parts)
+    table = join_times(joined(parts))
     try:
         layout = choose_columns(table, *named)
     except LogError as error:
@@ -187,12 +214,44 @@ def _log(
         notes.say(
             f"the times in {layout.time!r} are {unit} since 1970: shown from the first one on"
         )
-    if named[0] is None and (unread := unread_time(table, layout)):
+    unread = unread_time(table, layout) if named[0] is None else ""
+    if unread:
         notes.say(f"the times in {unread!r} cannot be read: row numbers are used")
     if guessed_order(table, layout):
         notes.say(f"the dates in {layout.time!r} are read as day, month, year")
     metadata = arrow.metadata_in(parts[0].schema) or _metadata_beside(Path(title))
-    return Log(title, table, layout, notes.texts(), notes.left_out, metadata)
+    if metadata:
+        return Log(title, table, layout, notes.texts(), notes.left_out, metadata)
+    # Of the rows so far, so that they are collected anew each time.
+    later = Notes()
+    if not named[2] and (unit_s := guess_unit_s(table, layout)) is not None:
+        layout = replace(layout, unit_s=unit_s)
+        later.say(
+            f"the times in {layout.time!r} are whole numbers in large steps: read as"
+            f" {UNIT_NAMES[unit_s]} (--unit selects another)"
+        )
+    table, layout, seconds = order_times(table, layout, later)
+    _tell_odd_columns(table, layout, unread, later)
+    texts = (*notes.texts(), *later.texts())
+    return Log(title, table, layout, texts, notes.left_out, metadata, _kept=Kept(times_s=seconds))
+
+
+def _tell_odd_columns(table: pa.Table, layout: Layout, unread: str, notes: Notes) -> None:
+    """Say which columns are text, and how many values are infinite."""
+    used = (layout.time, layout.variable, layout.run, unread)
+    texts = [
+        repr(field.name) for field in table.schema if is_text(field.type) and field.name not in used
+    ]
+    if texts:
+        notes.say(f"text, not numbers: {listed(texts)}")
+    for name in layout.values:
+        column = table.column(name)
+        if pa.types.is_floating(column.type):
+            count = pc.sum(pc.is_inf(column)).as_py() or 0
+            if count:
+                notes.say(
+                    f"{counted(count, f'value of {name!r} is', f'values of {name!r} are')} infinite"
+                )
 
 
 def _metadata_beside(path: Path) -> Mapping[str, Any]:
@@ -237,21 +296,25 @@ def _with_kinds(part: pa.Table, kinds: pa.Schema) -> pa.Table:
     return part
 
 
-def _parts(source: str | Path, title: str, notes: Notes) -> Iterator[tuple[float, pa.Table | None]]:
+def _parts(
+    source: str | Path, title: str, notes: Notes, form: TextForm
+) -> Iterator[tuple[float, pa.Table | None]]:
     try:
-        yield from _source_parts(source, notes)
+        yield from _source_parts(source, notes, form)
     except LogError as error:
         if error.file:
             raise
         raise LogError(error.message, error.hint, file=title) from error
 
 
-def _source_parts(source: str | Path, notes: Notes) -> Iterator[tuple[float, pa.Table | None]]:
+def _source_parts(
+    source: str | Path, notes: Notes, form: TextForm
+) -> Iterator[tuple[float, pa.Table | None]]:
     if str(source) == STDIN:
         # None if the shell closed it.
         if cast("Any", sys.stdin) is None:
             raise LogError("is closed", "name a file instead of -", file="standard input")
-        yield from text_parts(sys.stdin.buffer, 0, "", notes)
+        yield from text_parts(sys.stdin.buffer, 0, "", notes, form)
         return
     path = Path(source)
     try:
@@ -264,20 +327,17 @@ def _source_parts(source: str | Path, notes: Notes) -> Iterator[tuple[float, pa.
         regular = stat.S_ISREG(mode)
         with path.open("rb", buffering=0 if not regular else -1) as handle:
             head = handle.read(MAGIC_BYTES) if regular else b""
-            binary = next(
-                (parts for magic, parts in arrow.FORMATS.items() if head.startswith(magic)), None
-            )
-            if binary is not None:
-                yield from binary(path, notes)
-                return
+            for magic, parts in arrow.FORMATS.items():
+                if head.startswith(magic):
+                    yield from parts(path, notes)
+                    return
             if regular:
                 handle.seek(0)
             if (inner := unpacked(str(path), head, handle, notes)) is not None:
-                yield from text_parts(inner, 0, path.with_suffix("").suffix.lower(), notes)
+                yield from text_parts(inner, 0, path.with_suffix("").suffix.lower(), notes, form)
             else:
-                yield from text_parts(
-                    handle, path.stat().st_size if regular else 0, path.suffix.lower(), notes
-                )
+                size = path.stat().st_size if regular else 0
+                yield from text_parts(handle, size, path.suffix.lower(), notes, form)
     except FileNotFoundError as error:
         raise LogError("no such file", file=str(path)) from error
     except OSError as error:
@@ -285,7 +345,7 @@ def _source_parts(source: str | Path, notes: Notes) -> Iterator[tuple[float, pa.
 
 
 def text_parts(
-    handle: Readable, size: int, suffix: str, notes: Notes
+    handle: Readable, size: int, suffix: str, notes: Notes, form: TextForm = ANY_FORM
 ) -> Iterator[tuple[float, pa.Table | None]]:
     """Yield the rows of a text, with the fraction of it that has been read.
 
@@ -294,14 +354,14 @@ def text_parts(
         size: Their number, 0 if unknown.
         suffix: Suffix of the file name in lower case, such as `.csv`.
     """
-    cutter, reader, held = LineCutter(notes), None, None
+    cutter, reader, held = LineCutter(notes, encoding=form.encoding), None, None
     read = 0
     while True:
         data = handle.read(FIRST_BYTES if not read else BLOCK_BYTES) or b""
         if not read:
             _refuse_binary(data)
             if data.lstrip().startswith((b"{", b"[")):
-                cutter = LineCutter(notes, MAX_DOCUMENT_BYTES)
+                cutter = LineCutter(notes, MAX_DOCUMENT_BYTES, form.encoding)
         read += len(data)
         if size and len(data) == BLOCK_BYTES and not data.strip(b"\0"):
             read = _after_hole(cast("BinaryIO", handle), read)
@@ -317,13 +377,15 @@ def text_parts(
             block, held = None, block
         part = min(1.0, read / size) if size else float("nan")
         if block is not None:
-            reader = reader or _reader_for(block, suffix, notes)
+            reader = reader or _reader_for(block, suffix, form, notes)
             yield part, reader.read(block)
         elif data:
             yield part, None
         if not data:
             if isinstance(reader, DocumentReader):
                 yield part, reader.finish()
+            if isinstance(reader, CsvReader):
+                reader.finish()
             return
 
 
@@ -352,18 +414,17 @@ def _refuse_binary(data: bytes) -> None:
 
 
 def _reader_for(
-    block: Block, suffix: str, notes: Notes
-) -> CsvReader | JsonReader | DocumentReader | PrintedReader | StampedReader:
-    lines = [line for _, line in islice(block.lines(), 30)]
-    if suffix in (".jsonl", ".ndjson", ".json") or (
-        suffix not in _TABLES and begins_as_json(lines)
-    ):
+    block: Block, suffix: str, form: TextForm, notes: Notes
+) -> CsvReader | JsonReader | DocumentReader | SampleReader | StampedReader | TupleReader:
+    lines = [line for _, line in islice(block.lines(), _JUDGED_LINES)]
+    is_table = suffix in _TABLES or form.header > 0 or form.separator != ""
+    if lines and are_tuples(lines):
+        return TupleReader(notes, form)
+    if suffix in (".jsonl", ".ndjson", ".json") or (not is_table and begins_as_json(lines)):
         return DocumentReader(notes) if lines and is_document(lines) else JsonReader(notes)
-    if looks_stamped(lines):
-        return reader_of_stamped(lines, notes)
-    if suffix not in _TABLES and looks_printed(lines):
-        return PrintedReader(notes)
-    return CsvReader(notes)
+    if not is_table and are_objects(lines):
+        return JsonReader(notes)
+    return reader_of_lines(lines, is_table, notes) or CsvReader(notes, form)
 
 
 def log_of_runs(runs: Sequence[StoredRun]) -> Log:

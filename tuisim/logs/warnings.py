@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 from tuisim.errors import counted, shortened
 
@@ -12,6 +12,12 @@ MOST_SAID = 8
 """Warnings about a whole file that are told; more are only counted."""
 MOST_CHARACTERS = 200
 """Length of a warning; a longer one, which quotes something of the file, is cut."""
+
+
+def list_rows(rows: Sequence[int]) -> str:
+    """Return rows of a file in words: the first few by number."""
+    more = ", …" if len(rows) > ROWS_NAMED else ""
+    return f"{'row' if len(rows) == 1 else 'rows'} {', '.join(map(str, rows[:ROWS_NAMED]))}{more}"
 
 
 class Notes:
@@ -43,6 +49,11 @@ class Notes:
         self._counts[text] = self._counts.get(text, 0) + count
         named = self._rows.setdefault(text, [])
         named += found[: ROWS_NAMED - len(named)]
+
+    def say_rows(self, text: str, rows: Sequence[int]) -> None:
+        """Add a warning about some rows of which nothing is left out; none without rows."""
+        if rows:
+            self.say(f"{text} ({list_rows(rows)})")
 
     @property
     def left_out(self) -> int:

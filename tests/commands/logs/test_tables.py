@@ -52,7 +52,7 @@ def test_reckoning_is_wrong_where_the_robot_drifts(here: Command) -> None:
 
 def test_json_has_every_digit(here: Command, tmp_path: Path) -> None:
     path = tmp_path / "a.csv"
-    path.write_text("time,v\n0,0.30000000000000004\n300000,1.3\n300000,inf\n")
+    path.write_text("time_s,v\n0,0.30000000000000004\n300000,1.3\n300000,inf\n")
     rows = [
         json.loads(line) for line in here("log", "derive", str(path), "--json").stdout.splitlines()
     ]

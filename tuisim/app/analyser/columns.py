@@ -16,6 +16,8 @@ from textual.widgets.option_list import Option
 from tuisim.app.dialogs.dialog import Dialog
 from tuisim.errors import TuisimError
 from tuisim.logs.columns import ROW, choose_columns, is_numeric, is_time
+from tuisim.logs.reader import STDIN, read_beginning
+from tuisim.logs.text_form import SIGNS, TextForm
 from tuisim.logs.units import SECONDS
 
 if TYPE_CHECKING:
@@ -47,10 +49,18 @@ class ColumnsDialog(Dialog["LogRequest"]):
         Binding("t", "time", "Time", show=False),
         Binding("space", "value", "Value", show=False),
         Binding("u", "unit", "Unit", show=False),
+        Binding("h", "header(1)", "Heading", show=False),
+        Binding("H", "header(-1)", "Heading", show=False),
+        Binding("s", "separator", "Separator", show=False),
+        Binding("d", "decimal", "Decimal sign", show=False),
     ]
 
     def __init__(self, request: LogRequest, log: Log) -> None:
         super().__init__()
+        self._show(request, log)
+
+    def _show(self, request: LogRequest, log: Log) -> None:
+        """Take a table and the meaning of its columns as they are."""
         self._log = log
         self._names = candidates(log.table)
         unit = next(
@@ -65,6 +75,9 @@ class ColumnsDialog(Dialog["LogRequest"]):
         keys.add_row("t", "use this column as the time; again: use row numbers")
         keys.add_row("space", "draw or omit this column")
         keys.add_row("u", f"unit of the time: {', '.join(SECONDS)}")
+        if self._is_text:
+            keys.add_row("h H", "the line below, or above, has the names of the columns")
+            keys.add_row("s d", "another separator, another decimal sign")
         yield Static(keys)
 
     def on_mount(self) -> None:
@@ -138,6 +151,40 @@ class ColumnsDialog(Dialog["LogRequest"]):
             replace(self._chosen, unit=units[(units.index(self._chosen.unit) + 1) % len(units)])
         )
 
+    @property
+    def _is_text(self) -> bool:
+        """Whether the beginning of the file can be read again."""
+        return self._chosen.file not in ("", STDIN)
+
+    def action_header(self, step: int) -> None:
+        form = self._chosen.form
+        self._read_again(replace(form, header=max(0, form.header + step)))
+
+    def action_separator(self) -> None:
+        signs = ["", *SIGNS.values()]
+        form = self._chosen.form
+        self._read_again(
+            replace(form, separator=signs[(signs.index(form.separator) + 1) % len(signs)])
+        )
+
+    def action_decimal(self) -> None:
+        signs = ["", ".", ","]
+        form = self._chosen.form
+        self._read_again(replace(form, decimal=signs[(signs.index(form.decimal) + 1) % len(signs)]))
+
+    def _read_again(self, form: TextForm) -> None:
+        """Show the beginning of the file as it is read in another form."""
+        if not self._is_text:
+            return
+        try:
+            log = read_beginning(self._chosen.file, form)
+        except TuisimError as error:
+            self.say(str(error), wrong=True)
+            return
+        self._show(replace(self._chosen, form=form), log)
+        self._list(0)
+        self.say(_describe(form))
+
     @on(OptionList.OptionSelected)
     def _apply(self) -> None:
         try:
@@ -150,3 +197,11 @@ class ColumnsDialog(Dialog["LogRequest"]):
             self.say(str(error), wrong=True)
         else:
             self.dismiss(self._chosen)
+
+
+def _describe(form: TextForm) -> str:
+    """Return a sentence on what the user chose, and what is found by itself."""
+    names = {sign: name for name, sign in SIGNS.items()}
+    heading = f"line {form.header}" if form.header else "found"
+    separator, decimal = names.get(form.separator, "found"), form.decimal or "found"
+    return f"heading: {heading} · separator: {separator} · decimal sign: {decimal}"

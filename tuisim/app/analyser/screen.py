@@ -382,7 +382,7 @@ class LogScreen(ActionHost, ClosesOnce[None]):
         if request is None:
             return
         log = self.model.log
-        if not self.model.opened.done:
+        if not self.model.opened.done or request.form != self.model.opened.request.form:
             self.open(request)
             return
         # All of it has been read: the same rows have another meaning now.

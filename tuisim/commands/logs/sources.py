@@ -18,6 +18,7 @@ from tuisim.logs.derived import spec_in, with_named_columns
 from tuisim.logs.expressions import names_in
 from tuisim.logs.log import Log
 from tuisim.logs.reader import STDIN, log_of_runs, read_pieces, telemetry_log
+from tuisim.logs.text_form import SIGNS, TextForm
 from tuisim.runs.run_folder import StoredRun
 from tuisim.runs.store import RunStore
 
@@ -44,7 +45,24 @@ def asked(arguments: Arguments) -> LogRequest:
         raise ConfigError("takes one file, or runs", f"got {' '.join(words)}", key="analyse")
     file, runs = (files[0], ()) if files else ("", tuple(words))
     return LogRequest(
-        file, runs, arguments.telemetry, arguments.time, tuple(arguments.value), arguments.unit
+        file,
+        runs,
+        arguments.telemetry,
+        arguments.time,
+        tuple(arguments.value),
+        arguments.unit,
+        build_text_form(arguments),
+    )
+
+
+def build_text_form(arguments: Arguments) -> TextForm:
+    """Return what the arguments say of a text."""
+    return TextForm(
+        arguments.header,
+        arguments.table,
+        arguments.encoding,
+        SIGNS.get(arguments.separator, ""),
+        arguments.decimal,
     )
 
 
@@ -135,7 +153,8 @@ def _name_columns(
 
 def _open_file(word: str, arguments: Arguments) -> Log:
     log = None
-    for loaded in read_pieces(word, arguments.time, arguments.value, arguments.unit):
+    form = build_text_form(arguments)
+    for loaded in read_pieces(word, arguments.time, arguments.value, arguments.unit, form):
         log = loaded.log or log
         if loaded.part == loaded.part:
             tell(f"reading {word}", loaded.part, 1.0)
@@ -150,8 +169,10 @@ def _open_file(word: str, arguments: Arguments) -> Log:
 
 def _ready(log: Log, arguments: Arguments) -> Log:
     """Tell the notes on a log; return it with the columns that must be asked for by name."""
-    for note in log.notes:
-        echo_error(f"note: {log.title}: {note}")
+    # The notes of a summary are its last lines.
+    if arguments.action != "summary":
+        for note in log.notes:
+            echo_error(f"note: {log.title}: {note}")
     words = [getattr(arguments, name, "") for name in ("expression", "against")]
     return with_named_columns(
         log, " ".join((*words, *(getattr(arguments, "variable", None) or ())))

@@ -13,6 +13,7 @@ from tuisim.analysis.events import THRESHOLD_FORM, Threshold, threshold_of
 from tuisim.commands.echo import (
     CsvOut,
     echo,
+    echo_error,
     echo_json,
     echo_json_list,
     echo_lines,
@@ -47,7 +48,9 @@ _QUANTILE_NAMES = tuple(f"q{100 * part:g}" for part in signals.QUANTILES)
 def summary(arguments: Arguments) -> int:
     """Print count, min, max, mean, std and quantiles of every variable."""
     rows: list[dict[str, Any]] = []
+    notes: list[str] = []
     for log in open_sources(arguments):
+        notes += [f"note: {log.title}: {note}" for note in log.notes]
         for name in names_of(log, arguments):
             series = log.series(name)
             figures = asdict(signals.summary_of(series.values))
@@ -55,10 +58,15 @@ def summary(arguments: Arguments) -> int:
             times_s = series.time_s
             span = {"first_s": float(times_s.min()), "last_s": float(times_s.max())}
             rows.append({"log": log.title, "variable": name, **span, **figures, **quantiles})
+            if arguments.json:
+                rows[-1]["notes"] = log.notes
     number = dict.fromkeys(("min", "mean", "max", "std", *_QUANTILE_NAMES), ".4g")
     show_rows(
         rows, arguments, {"variable": "", "count": "", "first_s": ".2f", "last_s": ".2f", **number}
     )
+    if not arguments.json:
+        for note in notes:
+            echo_error(note)
     return 0
 
 

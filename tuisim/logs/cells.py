@@ -1,0 +1,172 @@
+"""Cells of a text: numbers in the forms that people and programs write them in, and truth values."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from typing import Any
+
+import pyarrow as pa
+import pyarrow.compute as pc
+
+from tuisim.core.conditions import NUMBER
+from tuisim.data_class import dataclass
+from tuisim.logs.arrow import texts_array
+
+EMPTY_CELLS = ("", "NA", "N/A", "null", "None", "-")
+"""Cells that mean a missing value."""
+_SPECIAL = r"^[+-]?(?i:inf|infinity|nan)$"
+UNIT = (
+    r"(?:[mµun]?s|sec|min|h|[mck]?m(?:/s²?)?|°c?|(?:deg|°|rad)(?:/s)?|%|m?v|m?a|w|k?hz|c|k|lux|n|nm|k?g|rpm|dps"
+    r"|counts|pulses|ticks)"
+)
+"""Regular expression of a unit as it stands in cells and below names, in lower case."""
+is_unit = re.compile(UNIT, re.IGNORECASE).fullmatch
+_UNIT = r"^(?P<number>.*\d\.?)(?P<gap>\s*)(?P<unit>%|°\w?|[A-Za-zµΩ][A-Za-z0-9µΩ²/]{0,7})$"
+_JUDGED_CELLS = 10_000
+"""Cells of a column from which the form of its numbers is told."""
+
+
+@dataclass(frozen=True, slots=True)
+class NumberForm:
+    """How the numbers of a column are written."""
+
+    pattern: str = rf"^{NUMBER}$|{_SPECIAL}"
+    """Regular expression of a number."""
+    changes: tuple[tuple[str, str], ...] = ()
+    """What is replaced so that Python's form comes out: regular expressions and texts."""
+    words: str = ""
+    """What the numbers are or have, empty for Python's own form."""
+    is_hexadecimal: bool = False
+
+
+PLAIN = NumberForm()
+DECIMAL_COMMA = NumberForm(
+    rf"^[+-]?\d*,?\d+(?:[eE][+-]?\d+)?$|{_SPECIAL}", ((",", "."),), "have a comma as decimal sign"
+)
+_COMMAS = NumberForm(
+    r"^[+-]?(?:\d{1,3}(?:,\d{3})+|\d{1,3})(?:\.\d*)?$",
+    ((",", ""),),
+    "have commas between thousands (1,000 is a thousand)",
+)
+_POINTS = NumberForm(
+    r"^[+-]?(?:\d{1,3}(?:\.\d{3})+|\d{1,3})(?:,\d*)?$",
+    ((r"\.", ""), (",", ".")),
+    "have points between thousands (1.000 is a thousand)",
+)
+_GAPS = NumberForm(
+    r"^[+-]?\d{1,3}(?:[ '\x{a0}\x{202f}’]\d{3})*(?:[.,]\d*)?$",
+    ((r"[ '\x{a0}\x{202f}’]", ""), (",", ".")),
+    "have gaps between thousands",
+)
+_HEXADECIMAL = NumberForm(r"^0[xX][0-9a-fA-F]{1,15}$", (), "are hexadecimal", True)
+
+
+def parse_numbers(cells: pa.Array, form: NumberForm = PLAIN) -> tuple[pa.Array, pa.Array]:
+    """Parse texts as float64, with nulls for those that are not numbers.
+
+    Returns:
+        Numbers, and a mask of the cells that are neither a number nor empty.
+    """
+    texts, empty = _trim(cells)
+    nothing = pa.nulls(len(texts), pa.string())
+    if form is PLAIN:
+        try:
+            return _drop_infinite(pc.cast(texts, pa.float64()), texts, pc.is_valid(nothing))
+        except pa.ArrowInvalid:
+            pass
+    # For empty cells, false and null give false.
+    good = pc.and_kleene(pc.is_valid(texts), pc.match_substring_regex(texts, form.pattern))
+    wrong = pc.and_(pc.invert(good), pc.invert(empty))
+    texts = pc.if_else(good, texts, nothing)
+    for pattern, new in form.changes:
+        texts = pc.replace_substring_regex(texts, pattern, new)
+    numbers = pc.cast(texts, pa.int64()) if form.is_hexadecimal else texts
+    return _drop_infinite(pc.cast(numbers, pa.float64()), texts, wrong)
+
+
+def _drop_infinite(numbers: pa.Array, texts: Any, wrong: Any) -> tuple[pa.Array, pa.Array]:
+    """Return numbers without those that are too large, and a mask that has them, too."""
+    infinite = pc.fill_null(pc.is_inf(numbers), False)
+    if not pc.any(infinite).as_py():
+        return numbers, wrong
+    large = pc.and_(infinite, pc.invert(pc.match_substring_regex(texts, _SPECIAL)))
+    large = pc.fill_null(large, False)
+    return pc.if_else(large, pa.scalar(None, pa.float64()), numbers), pc.or_(wrong, large)
+
+
+def _trim(cells: pa.Array) -> tuple[Any, Any]:
+    """Return texts without blanks around them, null where they are empty, and a mask of those."""
+    texts: Any = pc.utf8_trim_whitespace(cells)
+    empty = pc.or_(pc.is_null(texts), pc.is_in(texts, value_set=texts_array(EMPTY_CELLS)))
+    return pc.if_else(empty, pa.nulls(len(texts), pa.string()), texts), empty
+
+
+def find_form(cells: pa.Array, separator: str, decimal: str = "") -> NumberForm | None:
+    """Return the form of most of the cells of a column; None if most are not numbers.
+
+    Args:
+        cells: Texts, at least one of which is not empty.
+        separator: What separates the cells: beside a comma, 1,000 is a thousand, else 1.
+        decimal: The decimal sign; empty to find it.
+    """
+    texts = _trim(cells)[0].drop_null()[:_JUDGED_CELLS]
+    special = pc.match_substring_regex(texts, _SPECIAL)
+    if not pc.all(special).as_py():
+        texts = texts.filter(pc.invert(special))
+    if decimal == ",":
+        forms: Sequence[NumberForm] = (DECIMAL_COMMA, _POINTS)
+    elif decimal:
+        forms = (PLAIN, _COMMAS, _GAPS, _HEXADECIMAL)
+    elif separator == ",":
+        forms = (PLAIN, _COMMAS, DECIMAL_COMMA, _POINTS, _GAPS, _HEXADECIMAL)
+    else:
+        forms = (PLAIN, DECIMAL_COMMA, _COMMAS, _POINTS, _GAPS, _HEXADECIMAL)
+    return _choose_form(texts, forms) or _find_unit_form(texts, forms)
+
+
+def _find_unit_form(texts: pa.Array, forms: Sequence[NumberForm]) -> NumberForm | None:
+    """Return the form of numbers with a unit behind them; None if most of the texts are none."""
+    parts: Any = pc.extract_regex(texts, _UNIT)
+    units = pc.value_counts(pc.struct_field(parts, "unit").drop_null())
+    if not len(units):
+        return None
+    usual = max(units.to_pylist(), key=lambda unit: unit["counts"])
+    unit = str(usual["values"])
+    inner = _choose_form(pc.struct_field(parts, "number").drop_null(), forms)
+    if inner is None or 2 * usual["counts"] <= len(texts):
+        return None
+    # Labels such as 1a and 2a are no numbers.
+    if not is_unit(unit) and not all(pc.struct_field(parts, "gap").to_pylist()):
+        return None
+    escaped = "".join(rf"\x{{{ord(sign):x}}}" for sign in unit)
+    body = inner.pattern.replace("$", rf"\s*(?:{escaped})?$")
+    words = f"have the unit {unit}" + (f" and {inner.words}" if inner.words else "")
+    return NumberForm(body, ((rf"\s*{escaped}$", ""), *inner.changes), words)
+
+
+def _choose_form(texts: pa.Array, forms: Sequence[NumberForm]) -> NumberForm | None:
+    """Return the first of the forms that most of the texts have; None if no form has more than half."""
+    counts = []
+    for form in forms:
+        count = pc.sum(pc.match_substring_regex(texts, form.pattern)).as_py() or 0
+        if count == len(texts):
+            return form if count else None
+        counts.append(count)
+    most = max(counts)
+    return forms[counts.index(most)] if 2 * most > len(texts) else None
+
+
+def parse_truths(cells: pa.Array) -> tuple[pa.Array, pa.Array]:
+    """Parse cells such as `true` or `False`, with nulls for others; also return a mask of the invalid cells."""
+    texts, empty = _trim(cells)
+    texts = pc.utf8_lower(texts)
+    known = pc.is_in(texts, value_set=texts_array(("true", "false")))
+    values = pc.if_else(known, pc.equal(texts, "true"), pa.nulls(len(texts), pa.bool_()))
+    return values, pc.invert(pc.or_(known, empty))
+
+
+def are_truths(cells: pa.Array) -> bool:
+    """Return whether all cells that are not empty are true or false, and there is at least one."""
+    values, wrong = parse_truths(cells)
+    return values.null_count < len(values) and not pc.any(wrong).as_py()

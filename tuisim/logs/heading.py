@@ -1,0 +1,418 @@
+"""Where the table is in a text: what stands above it, its heading, its separator and its kinds of cells."""
+
+from __future__ import annotations
+
+import csv
+import re
+from collections.abc import Iterator, Sequence
+from itertools import pairwise, starmap, takewhile
+from typing import NamedTuple
+
+from tuisim.core.conditions import NUMBER
+from tuisim.data_class import dataclass
+from tuisim.errors import LogError, counted
+from tuisim.logs.arrow import unique_names
+from tuisim.logs.cells import EMPTY_CELLS, is_unit
+from tuisim.logs.columns import NAMES, time_name
+from tuisim.logs.dates import is_date, is_moment
+from tuisim.logs.warnings import Notes
+
+SEPARATORS = (";", "\t", "|", ",")
+"""The comma, which may be a part of a number, comes last."""
+BLANKS = " "
+"""A separator of any number of blanks."""
+SNIFFED_LINES = 400
+"""Lines from the beginning of a text in which its table is looked for."""
+
+_COMMENT_SIGNS = ("#", "%", "//", ";")
+_ZEEK = re.compile(r"#separator \\x[0-9a-fA-F]{2}")
+"""The first line of a Zeek log."""
+_EXCEL = re.compile(r"sep=(.)", re.IGNORECASE)
+"""The first line of a CSV file for Excel."""
+_OWN_UNIT = re.compile(r"(?:^|[_. ])(?:[mun]|nano|micro|milli)?(?:s|secs?|seconds)$", re.IGNORECASE)
+"""The end of the name of a time that says its unit."""
+_YEARS = range(1900, 2101)
+_WORD = re.compile(r'(?<!\S)"[^"]*"(?!\S)|\S+')
+"""A cell between blanks."""
+_NUMBER = re.compile(
+    rf"(?:{NUMBER}|[+-]?\d{{1,3}}(?:[.,' \xa0\u202f’]\d{{3}})+(?:[.,]\d+)?|[+-]?\d+,\d+(?:[eE][+-]?\d+)?)"
+    r"\s*(?:%|°\w?|[A-Za-zµΩ]{1,3}(?:/[a-z]{1,3}²?)?)?"
+    r"|0[xX][0-9a-fA-F]+|[+-]?(?:inf|infinity|nan)|true|false",
+    re.IGNORECASE,
+)
+_LEAST_PART = 10
+"""The table has at least one row for this many of the longest run of rows alike."""
+_MOST_LINES = 10
+"""Lines of a heading whose names have line breaks."""
+
+
+@dataclass(frozen=True, slots=True)
+class Heading:
+    """The format of a table."""
+
+    names: tuple[str, ...] = ()
+    """Names of the columns; empty if there were only comments."""
+    separator: str = ","
+    """One of `SEPARATORS`, or `BLANKS`."""
+    comment: str = ""
+    """Lines that begin with it are skipped."""
+    rows_follow: int = 1
+    """Line of the file where the table's first row may be."""
+    kinds: str = ""
+    """For each column a letter as `parse_kinds` returns them."""
+
+
+class _Line(NamedTuple):
+    row: int
+    """Line of the file, from 1."""
+    cells: list[str]
+    kinds: str
+    next_row: int
+    """Line of the file that follows."""
+
+
+class _Run(NamedTuple):
+    """Lines that follow each other, with the same number of cells of the same kinds."""
+
+    start: int
+    length: int
+    kinds: str
+
+    @property
+    def rank(self) -> tuple[bool, int, int, int, int]:
+        """How certainly these are the rows of a table: several columns, many rows, many numbers, few words."""
+        numbers = sum(kind in "nt" for kind in self.kinds)
+        width = len(self.kinds)
+        return width > 1 and numbers > 0, self.length, numbers, -self.kinds.count("w"), width
+
+
+def parse_kinds(cells: Sequence[str]) -> str:
+    """Return a letter for each cell: `n` for a number, `t` for a time, `-` for nothing, `w` for words."""
+    return "".join(map(_kind, cells))
+
+
+def _kind(cell: str) -> str:
+    text = cell.strip()
+    if text in EMPTY_CELLS:
+        return "-"
+    return "n" if _NUMBER.fullmatch(text) else "t" if is_moment(text) else "w"
+
+
+def find_heading(
+    lines: Sequence[tuple[int, str]], notes: Notes, separator: str = "", header_row: int = 0
+) -> Heading:
+    """Find the table in the first lines of a text that are not blank, each with its number in the file.
+
+    Args:
+        separator: One of `SEPARATORS` or `BLANKS`; empty to find it.
+        header_row: Number of the line with the heading; 0 to find it.
+
+    Raises:
+        LogError: `header_row` is no line of the beginning.
+    """
+    if header_row:
+        return _read_heading(lines, notes, separator, header_row)
+    excel = _EXCEL.fullmatch(lines[0][1]) if lines else None
+    if excel:
+        separator, lines = separator or excel[1], lines[1:]
+    sign = _find_comment_sign([text for _, text in lines])
+    comments = [
+        text for _, text in takewhile(lambda line: sign and line[1].startswith(sign), lines)
+    ]
+    # A row of units may begin with a percent sign.
+    inner = sign if sign == "#" else ""
+    body = [line for line in lines[len(comments) :] if line[1][0] != inner]
+    if not body:
+        return Heading(comment=inner)
+    separator = separator or sniff_separator([text for _, text in body])
+    table = list(_split_lines(body, separator))
+    run = _find_table(table)
+    start = _find_first_row(table, run)
+    above = table[:start]
+    names: list[str] | None = None
+    if comments and not above:
+        names = _find_comment_names(comments[-1].removeprefix(sign), table, separator)
+    if names is None:
+        names, above, start = _find_names(table, above, start, run)
+    if names is None:
+        names = _number_columns(table[start].cells, notes)
+    _tell_unread(above, notes)
+    follow = table[start].row if start < len(table) else table[-1].next_row
+    return Heading(_clean_names(names, notes), separator, inner, follow, run.kinds)
+
+
+def _tell_unread(above: Sequence[_Line], notes: Notes) -> None:
+    unread = f"{counted(len(above), 'line')} above the table not read"
+    notes.say_rows(unread, [line.row for line in above])
+
+
+def refuse_zeek(line: str) -> None:
+    """Raise a LogError if a line is the first of a Zeek log."""
+    if _ZEEK.match(line):
+        raise LogError(
+            "is a Zeek log with a heading of its own, which cannot be read", "let Zeek write JSON"
+        )
+
+
+def _read_heading(
+    lines: Sequence[tuple[int, str]], notes: Notes, separator: str, header_row: int
+) -> Heading:
+    """Return the format of the table whose heading is in a known line."""
+    lines = [line for line in lines if line[0] >= header_row]
+    if not lines or lines[0][0] != header_row:
+        raise LogError(f"has no line {header_row} for --header", "lines count from 1")
+    separator = separator or sniff_separator([text for _, text in lines])
+    first, *rest = _split_lines(lines, separator)
+    kinds = _find_table(rest or [first]).kinds
+    return Heading(_clean_names(first.cells, notes), separator, "", first.next_row, kinds)
+
+
+def _clean_names(names: Sequence[str], notes: Notes) -> tuple[str, ...]:
+    """Return names of columns in one line each, all different."""
+    return tuple(unique_names([" ".join(name.split()) for name in names], notes))
+
+
+def _find_comment_sign(texts: Sequence[str]) -> str:
+    """Return the sign that the first line begins with, if lines that do so are comments; else nothing."""
+    sign = next((sign for sign in _COMMENT_SIGNS if texts and texts[0].startswith(sign)), "")
+    if sign in SEPARATORS and any(sign in text for text in texts if not text.startswith(sign)):
+        return ""
+    return sign
+
+
+def split_cells(line: str, separator: str) -> list[str]:
+    """Return the cells of a line; an unclosed quote is an ordinary character."""
+    if separator == BLANKS:
+        return [word.strip('"') for word in _WORD.findall(line)]
+    if '"' in line:
+        line = close_quotes(line.encode(), separator).decode()
+    try:
+        return next(csv.reader([line], delimiter=separator, strict=True))
+    except (csv.Error, StopIteration):
+        return line.split(separator)
+
+
+def close_quotes(text: bytes, separator: str) -> bytes:
+    """Return a text without blanks between quotes and separators."""
+    sign = re.escape(separator.encode())
+    return re.sub(rb'(?m)(?:^|(?<=%b))[ \t]+(?=")|(?<=")[ \t]+(?=%b)' % (sign, sign), b"", text)
+
+
+def _split_lines(lines: Sequence[tuple[int, str]], separator: str) -> Iterator[_Line]:
+    """Yield the lines in cells; quoted names with line breaks make a single one of several lines."""
+    after, is_first = 0, True
+    for at, (row, text) in enumerate(lines):
+        if at < after:
+            continue
+        end = at + 1
+        cells = split_cells(text, separator)
+        if is_first and text.count('"') % 2 and (joined := _join_heading(lines[at:], separator)):
+            cells, count = joined
+            end = after = at + count
+        is_first = is_first and not any(kind in "nt" for kind in parse_kinds(cells))
+        next_row = lines[end][0] if end < len(lines) else lines[end - 1][0] + 1
+        yield _Line(row, cells, parse_kinds(cells), next_row)
+
+
+def _join_heading(lines: Sequence[tuple[int, str]], separator: str) -> tuple[list[str], int] | None:
+    """Return the cells of a heading on several lines, and their number; None if it is none."""
+    texts = [text + "\n" for _, text in lines[:_MOST_LINES]]
+    if separator == BLANKS:
+        return None
+    reader = csv.reader(texts, delimiter=separator, strict=True)
+    try:
+        cells = next(reader)
+    except csv.Error:
+        return None
+    following = lines[reader.line_num : reader.line_num + 1]
+    fits = following and len(split_cells(following[0][1], separator)) == len(cells)
+    return (cells, reader.line_num) if fits and len(cells) > 1 else None
+
+
+def sniff_separator(lines: Sequence[str]) -> str:
+    """Return the separator that makes the most certain rows; blanks only if no other makes any."""
+    if len(lines) == 1:
+        return _sniff_line(lines[0])
+
+    def rank(separator: str) -> tuple[bool, int, int, int, int, int]:
+        table = list(_split_lines(list(enumerate(lines)), separator))
+        is_table, length, numbers, words, width = _find_table(table).rank
+        as_wide = sum(len(line.cells) == width for line in table)
+        return is_table, length, numbers, words, as_wide, width
+
+    best = max(SEPARATORS, key=rank)
+    was_table, _, was_numbers, was_words, was_wide, _ = rank(best)
+    is_table, length, numbers, words, as_wide, width = rank(BLANKS)
+    is_better = (as_wide, words, numbers) > (was_wide, was_words, was_numbers)
+    beats = best == "," and is_better and _have_commas_inside(lines)
+    if is_table and (beats or not was_table) and 2 * length >= len(lines) - 1:
+        return BLANKS
+    if was_table:
+        return best
+    # Without any number, the separator is the one that the lines have equally often.
+    best = max(SEPARATORS, key=lambda sign: (rank(sign)[-1] > 1, *rank(sign)))
+    if rank(best)[-1] > 1:
+        return best
+    return BLANKS if width > 1 and length == len(lines) else ","
+
+
+def _have_commas_inside(lines: Sequence[str]) -> bool:
+    """Return whether the commas between blanks are parts of numbers and times in most of the lines."""
+    outside = 0
+    for line in lines:
+        words = [word for word in split_cells(line, BLANKS) if "," in word]
+        outside += "w" in parse_kinds(words)
+    return 2 * outside <= len(lines)
+
+
+def count_rows(lines: Sequence[str]) -> int:
+    """Return how many of the lines are rows of one table with numbers."""
+    if not lines:
+        return 0
+    run = _find_table(list(_split_lines(list(enumerate(lines)), sniff_separator(lines))))
+    return run.length if run.rank[0] else 0
+
+
+def _sniff_line(line: str) -> str:
+    """Return the separator of a text of one line, which may be a sentence."""
+    counts = {separator: line.count(separator) for separator in SEPARATORS}
+    if counts[";"] and "w" not in parse_kinds(line.split(";")):
+        return ";"
+    best = max(counts, key=counts.__getitem__)
+    kinds = set(parse_kinds(line.split()[1:]))
+    return best if counts[best] else BLANKS if kinds and kinds <= set("nt-") else ","
+
+
+def _find_table(table: Sequence[_Line]) -> _Run:
+    """Return the run that is the table: the first of those that begin with numbers, else the most certain one."""
+    runs = list(_find_runs(table))
+    best = max(runs, key=lambda run: (run.rank[2] > 0, *run.rank[1:]))
+    strong = [run for run in runs if run.kinds[0] in "nt" and run.rank[0]]
+    longest = max((run.length for run in strong), default=0)
+    return next((run for run in strong if _LEAST_PART * run.length >= longest), best)
+
+
+def _find_runs(table: Sequence[_Line]) -> Iterator[_Run]:
+    start, kinds = 0, table[0].kinds
+    for at, line in enumerate(table[1:], 1):
+        both = _merge_kinds(kinds, line.kinds)
+        if both is None:
+            yield _Run(start, at - start, kinds)
+            start, both = at, line.kinds
+        kinds = both
+    yield _Run(start, len(table) - start, kinds)
+
+
+def _merge_kinds(kinds: str, others: str) -> str | None:
+    """Return the kinds of cells that two lines have in common, an empty cell being of any kind; None if they differ."""
+    pairs = list(zip(kinds, others, strict=False))
+    if len(kinds) != len(others) or any(a != b and "-" not in (a, b) for a, b in pairs):
+        return None
+    return "".join(b if a == "-" else a for a, b in pairs)
+
+
+def _find_first_row(table: Sequence[_Line], run: _Run) -> int:
+    """Return the index of the table's first row: above a run there may be rows with a cell of another kind."""
+    start = run.start
+    while start and _is_row(table[start - 1].kinds, run.kinds):
+        start -= 1
+    return start
+
+
+def _is_row(kinds: str, usual: str) -> bool:
+    if len(kinds) != len(usual) or kinds[0] not in (usual[0], "-"):
+        return False
+    return any(a == b and a in "nt" for a, b in zip(kinds, usual, strict=True))
+
+
+def is_words(kinds: str) -> bool:
+    """Return whether cells of these kinds may be names: there are words, and no numbers."""
+    return "w" in kinds and "n" not in kinds
+
+
+def _find_comment_names(text: str, table: Sequence[_Line], separator: str) -> list[str] | None:
+    """Return column names from the last comment, if they match the number of cells."""
+    width = len(table[0].cells)
+    names = [name.strip() for name in split_cells(text.strip(), separator)]
+    if len(names) != width:
+        names = text.split()
+        if time_name(names[0] if names else "").base not in NAMES:
+            # It may be a sentence.
+            return None
+    alike = len(table) < 2 or table[0].kinds == table[1].kinds
+    is_heading = len(names) == width and alike and parse_kinds(names).strip("n") != ""
+    return names if is_heading else None
+
+
+def _find_names(
+    table: Sequence[_Line], above: list[_Line], start: int, run: _Run
+) -> tuple[list[str] | None, list[_Line], int]:
+    """Return the names of the columns, the lines above their heading, and the index of the first row."""
+    width = len(run.kinds)
+    if above:
+        *before, last = above
+        are_names = is_words(last.kinds) or _are_numbers_as_names([last, *table[start:]])
+        if len(last.kinds) == width and are_names:
+            if before and len(before[-1].kinds) == width and _are_units(last.cells, before[-1]):
+                pairs = zip(before[-1].cells, last.cells, strict=True)
+                return list(starmap(_join_unit, pairs)), before[:-1], start
+            return last.cells, before, start
+        if is_words(last.kinds) and len(last.kinds) > 1 and abs(len(last.kinds) - width) == 1:
+            # R writes no name above the names of rows; a separator may end each row.
+            if len(last.kinds) > width or run.kinds[-1] == "-":
+                return last.cells, before, start
+            if not before and run.kinds[0] != "t":
+                return ["", *last.cells], before, start
+        if not is_words(table[start].kinds):
+            return None, above, start
+    rows = table[start:]
+    if _are_names(rows):
+        return rows[0].cells, above, start + 1
+    return None, above, start
+
+
+def _join_unit(name: str, unit: str) -> str:
+    """Return a name with the unit below it, unless it has one itself."""
+    name, unit = name.strip(), unit.strip(" ()[]")
+    has_unit = unit in ("", "-", "1") or name.endswith((")", "]")) or _OWN_UNIT.search(name)
+    return name if has_unit else f"{name} [{unit}]"
+
+
+def _are_units(cells: Sequence[str], names: _Line) -> bool:
+    units = [cell.strip(" ()[]").lower() for cell in cells]
+    return is_words(names.kinds) and any(units) and all(is_unit(u) or u in "-1" for u in units)
+
+
+def _are_names(rows: Sequence[_Line]) -> bool:
+    """Return whether the first row is a heading although it is of the same kind as the others."""
+    first = rows[0]
+    if first.kinds[0] == "t" and (len(rows) < 2 or rows[1].kinds[0] == "t"):
+        return False
+    if _are_numbers_as_names(rows):
+        return True
+    # One line with a number is a row: below a heading, nothing would be left.
+    return (
+        "n" not in first.kinds if len(rows) < 2 else 2 * first.kinds.count("n") < len(first.kinds)
+    )
+
+
+def _are_numbers_as_names(rows: Sequence[_Line]) -> bool:
+    """Return whether the first row has names that are increasing numbers or years."""
+    first = rows[0]
+    numbers = [int(cell) for cell in first.cells[1:] if re.fullmatch(r"\s*\d+\s*", cell)]
+    if first.kinds[0] != "w" or not len(numbers) == len(first.kinds) - 1 > 0:
+        return False
+    below = {row.kinds[0] for row in rows[1:]}
+    rises = all(a < b for a, b in pairwise(numbers))
+    are_years = all(number in _YEARS for number in numbers)
+    return rises and (("n" in below and "w" not in below and len(numbers) > 1) or are_years)
+
+
+def _number_columns(cells: Sequence[str], notes: Notes) -> list[str]:
+    """Return the names of columns from the cells of their first row: `date` and `time` once, else numbers."""
+    notes.say("no header: the columns are numbered")
+    names: list[str] = []
+    for at, cell in enumerate(cells, 1):
+        name = "" if not is_moment(cell) else "date" if is_date(cell) else "time"
+        names.append(name if name and name not in names else f"column {at}")
+    return names

@@ -1,0 +1,279 @@
+"""Lines that programs print: names with numbers, behind times, levels of logging and other prefixes."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import pyarrow as pa
+
+from tuisim.core.conditions import NUMBER
+from tuisim.logs.blocks import Block
+from tuisim.logs.cells import UNIT
+from tuisim.logs.columns import NAMES, time_name
+from tuisim.logs.dates import MOMENT
+from tuisim.logs.heading import BLANKS, SEPARATORS, Heading, count_rows, parse_kinds, split_cells
+from tuisim.logs.text_form import ANY_FORM, TextForm
+from tuisim.logs.text_tables import CsvReader
+from tuisim.logs.warnings import Notes
+from tuisim.runs.samples import parse_sample
+
+_STAMPED = re.compile(
+    rf"\s*(?:(?P<open>[\[(<])\s*)?(?P<stamp>(?>{MOMENT})|(?>{NUMBER}))(?(open)\s*[\])>])"
+    r"(?P<between>\s*(?::|->|=>|=|-(?= ))\s*| +|(?<=[\])>]))(?P<rest>\S.*?)\s*"
+)
+_LEVEL = r"(?:DEBUG|INFO|WARN(?:ING)?|ERROR|CRITICAL)"
+_PREFIX = re.compile(
+    rf"\s*(?:>+|\[[^\]=]*\]|{_LEVEL}(?=[\s:])\s*:?|-(?=\s)|[\w.]+\s*:(?=\s*[^\W\d][\w.]*\s*[:=])"
+    r"|[\w.]+\s+-(?=\s))\s*"
+)
+"""A prompt, brackets, a level of Python's `logging`, or the name of a logger."""
+_VALUE = rf"(?:{NUMBER}|(?i:[+-]?(?:nan|inf(?:inity)?)|none|null|na)\b)"
+"""A number, or what is printed where there is none."""
+_ITEM = re.compile(
+    rf"((?!{_LEVEL}\s)[^\W\d][\w.\-/]*(?: [^\W\d][\w.\-/]*){{0,2}}?)\s*[:=]\s*({_VALUE})"
+    rf"(?:\s*(?i:{UNIT})(?![\w.\-/%°]|\s*[:=]))?"
+)
+"""A name with its number, of which a unit may follow."""
+_GAP = re.compile(r"[\s,;|]+")
+_TELEPLOT = re.compile(rf">?([^\W\d]\w*):(\d{{9,}}(?:\.\d+)?):({NUMBER})(?:[|§].*)?")
+"""Name, milliseconds and value."""
+_VALUES = re.compile(rf"{_VALUE}(?:(?:\s*[,;]\s*|\s+){_VALUE})*")
+_SEPARATORS = frozenset(SEPARATORS)
+_SEPARATOR = re.compile(r"\s*[,;]\s*|\s+")
+_WORDS = re.compile(r"[\s,;:]+")
+_TUPLE = re.compile(r"\s*(?:[A-Za-z_]*\((?P<tuple>.*)\)|\[(?P<list>[^\[\]{}]*)\])\s*,?")
+_MOST_CHARACTERS = 4000
+"""Longer lines are not searched for samples."""
+
+Values = tuple[tuple[str, float], ...]
+"""Names with their numbers."""
+
+
+class ProgramLine(NamedTuple):
+    """What a line tells."""
+
+    time: str | None
+    """Its time as it is written; None without one."""
+    samples: Values = ()
+    rest: str = ""
+    """Numbers without names; empty if there are samples."""
+
+
+def parse_line(line: str) -> ProgramLine | None:
+    """Return what a line tells; None if it has neither samples nor a time with numbers."""
+    if len(line) > _MOST_CHARACTERS:
+        return None
+    if (sample := parse_sample(line)) is not None:
+        name, value, time_s = sample
+        return ProgramLine(None if time_s is None else repr(time_s), ((name, value),))
+    if (teleplot := _TELEPLOT.fullmatch(line.strip())) is not None:
+        return ProgramLine(repr(float(teleplot[2]) / 1000), ((teleplot[1], float(teleplot[3])),))
+    time, rest, certain = _split_time(line)
+    if samples := _parse_samples(rest):
+        return ProgramLine(time, samples)
+    # Of two numbers, the first need not be a time.
+    rest = _strip_prefixes(rest) if certain else ""
+    return ProgramLine(time, (), rest) if rest and _VALUES.fullmatch(rest) else None
+
+
+def _split_time(line: str) -> tuple[str | None, str, bool]:
+    """Return the time that a line begins with, the rest, and whether it is certainly a time."""
+    match = _STAMPED.fullmatch(line)
+    if match is None:
+        return None, line, False
+    between = match["between"].strip()
+    is_certain = match["open"] is not None or ":" in between
+    # With nothing but blanks between them, these are the cells of a row.
+    return (
+        match["stamp"],
+        match["rest"],
+        is_certain or (between != "" and not _is_number(match["stamp"])),
+    )
+
+
+def _strip_prefixes(text: str) -> str:
+    while (prefix := _PREFIX.match(text)) is not None and prefix.end() < len(text):
+        text = text[prefix.end() :]
+    return text
+
+
+def _parse_samples(text: str) -> Values:
+    """Return the samples that a text consists of; none if there is anything else in it."""
+    text = text.strip()
+    while True:
+        if (sample := parse_sample(text)) is not None and sample[2] is None:
+            return (sample[:2],)
+        samples, at = [], 0
+        while at < len(text) and (item := _ITEM.match(text, at)) is not None:
+            samples.append((item[1], _parse_value(item[2])))
+            gap = _GAP.match(text, item.end())
+            at = item.end() if gap is None else gap.end()
+            if gap is None:
+                break
+        if samples and at == len(text):
+            return tuple(samples)
+        prefix = _PREFIX.match(text)
+        if prefix is None or prefix.end() == len(text):
+            return ()
+        text = text[prefix.end() :]
+
+
+def _parse_value(text: str) -> float:
+    """Return a number; NaN for a missing one, or one that is too large."""
+    try:
+        value = float(text)
+    except ValueError:
+        return math.nan
+    return value if math.isfinite(value) or "inf" in text.lower() else math.nan
+
+
+def _is_number(time: str) -> bool:
+    return re.fullmatch(NUMBER, time) is not None
+
+
+def _is_row(line: str) -> bool:
+    """Return whether a line is like a row of a table: separators, or several numbers between blanks."""
+    kinds = parse_kinds(split_cells(line, BLANKS))
+    numbers = sum(kind in "nt" for kind in kinds)
+    return not _SEPARATORS.isdisjoint(line) or numbers > 1 or (numbers == 1 and len(kinds) == 1)
+
+
+def reader_of_lines(
+    lines: Sequence[str], is_table: bool, notes: Notes
+) -> StampedReader | SampleReader | None:
+    """Return what reads a file with these first lines; None if they are no lines of a program.
+
+    Args:
+        is_table: Whether the file's name is that of a table, so that only lines with times are a program's.
+    """
+    parsed = [line for line in map(parse_line, lines) if line is not None]
+    if not parsed:
+        return None
+    samples = [line for line in parsed if line.samples]
+    numbers = len(parsed) - len(samples)
+    with_heading = (
+        len(lines) > 1
+        and parse_line(lines[0]) is None
+        and len(lines[0].split()) == len(lines[1].split())
+    )
+    stamped = sum(line.time is not None for line in parsed)
+    if numbers >= len(samples):
+        is_stamped = 2 * stamped > len(lines) and not with_heading
+        return StampedReader(lines, notes) if is_stamped else None
+    rows = sum(_is_row(line) for line in lines if parse_line(line) is None)
+    last = max(at for at, line in enumerate(lines) if parse_line(line) is not None)
+    rows = max(rows, count_rows(lines[last + 1 :]))
+    if len(parsed) <= rows or (is_table and 2 * stamped <= len(lines)):
+        return None
+    times = [line.time for line in samples if line.time is not None]
+    return SampleReader(notes, not times or all(map(_is_number, times)))
+
+
+class SampleReader:
+    """Reads blocks of one file of samples.
+
+    Args:
+        has_seconds: Whether times are numbers; else they are dates or times of day.
+    """
+
+    def __init__(self, notes: Notes, has_seconds: bool = True) -> None:
+        self._notes, self._has_seconds = notes, has_seconds
+
+    def read(self, block: Block) -> pa.Table | None:
+        """Return the samples of a block; None if it has none. The time is empty where none was printed."""
+        rows: list[tuple[int, str, float, float | str | None]] = []
+        others = []
+        for row, line in block.lines():
+            parsed = parse_line(line)
+            if parsed is None or not parsed.samples:
+                others.append(row)
+                continue
+            time = self._choose_time(parsed)
+            rows += [(row, name, value, time) for name, value in parsed.samples]
+        self._notes.add("line is not a sample", "lines are not samples", others)
+        if not rows:
+            return None
+        kinds = {
+            "row": pa.float64(),
+            "variable": pa.string(),
+            "value": pa.float64(),
+            "time": pa.float64() if self._has_seconds else pa.string(),
+        }
+        cells = zip(*rows, strict=True)
+        return pa.table({name: pa.array(next(cells), kind) for name, kind in kinds.items()})
+
+    def _choose_time(self, line: ProgramLine) -> float | str | None:
+        if line.time is None or not self._has_seconds:
+            return line.time
+        return float(line.time) if _is_number(line.time) else None
+
+
+class StampedReader:
+    """Reads blocks of one file with numbers behind the times.
+
+    Args:
+        lines: First lines of the file, at least one of them with a time.
+    """
+
+    def __init__(self, lines: Sequence[str], notes: Notes) -> None:
+        at, first = next(
+            (at, parsed) for at, line in enumerate(lines) if (parsed := _parse_numbers(line))
+        )
+        width = 1 + len(_SEPARATOR.split(first.rest))
+        words = _WORDS.split(lines[at - 1].strip()) if at else []
+        self._heading = (
+            lines[at - 1] if len(words) == width and time_name(words[0]).base in NAMES else ""
+        )
+        if not self._heading:
+            # A number may be a time or not, which the column then shows.
+            words = ["column 1" if _is_number(first.time or "") else "time"]
+            words += [f"column {number}" for number in range(2, width + 1)]
+            notes.say("no header: the columns after the time are numbered")
+        self._notes = notes
+        self._table = CsvReader(notes, ANY_FORM, Heading(tuple(words), "\t"))
+
+    def read(self, block: Block) -> pa.Table | None:
+        """Return the rows of a block; None if it has none."""
+        rows, others = [], []
+        for row, line in enumerate(block.text.decode("utf-8").split("\n"), block.first_row):
+            if (parsed := _parse_numbers(line)) is not None:
+                rows.append("\t".join((parsed.time or "", *_SEPARATOR.split(parsed.rest))))
+                continue
+            rows.append("")
+            if line.strip() and line.rstrip("\r") != self._heading and not line.startswith("#"):
+                others.append(row)
+        self._notes.add(
+            "line is not a time with a value", "lines are not times with values", others
+        )
+        return self._table.read(Block(block.first_row, "\n".join(rows).encode(), block.newline))
+
+
+def _parse_numbers(line: str) -> ProgramLine | None:
+    parsed = parse_line(line)
+    return parsed if parsed is not None and parsed.rest else None
+
+
+def are_tuples(lines: Sequence[str]) -> bool:
+    """Return whether most of the lines are tuples or lists as Python prints them."""
+    is_document = lines[0].lstrip().startswith(("[[", "[{")) or lines[0].strip() == "["
+    rows = sum(_TUPLE.fullmatch(line) is not None for line in lines)
+    return len(lines) > 1 and not is_document and 2 * rows > len(lines)
+
+
+class TupleReader:
+    """Reads blocks of one file of tuples."""
+
+    def __init__(self, notes: Notes, form: TextForm) -> None:
+        self._table = CsvReader(notes, form)
+
+    def read(self, block: Block) -> pa.Table | None:
+        """Return the rows of a block; None if it has none."""
+        lines = block.text.decode("utf-8").split("\n")
+        rows = [
+            (match["tuple"] or match["list"] or "") if (match := _TUPLE.fullmatch(line)) else line
+            for line in lines
+        ]
+        return self._table.read(Block(block.first_row, "\n".join(rows).encode(), block.newline))

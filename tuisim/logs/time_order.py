@@ -1,0 +1,183 @@
+"""The time of a table: put together from two columns, and going on where it goes back."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from itertools import pairwise
+from typing import NamedTuple
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.compute as pc
+
+from tuisim.errors import counted
+from tuisim.logs.arrow import numbers_of, unique_names, whole_numbers
+from tuisim.logs.columns import (
+    COUNTS,
+    ROW,
+    Layout,
+    Times,
+    is_numeric,
+    is_text,
+    read_times,
+    time_name,
+)
+from tuisim.logs.dates import is_clock, is_date
+from tuisim.logs.warnings import Notes, list_rows
+from tuisim.runs.arrays import FloatArray, IntArray
+
+_SECONDS = re.compile(r"(.*?)[._ ]?\b_?(?:tv_)?(?:secs?|seconds)", re.IGNORECASE)
+_PARTS = {
+    10**9: re.compile(r"(.*?)[._ ]?\b_?(?:tv_)?(?:nsecs?|nanosecs?|nanoseconds)", re.IGNORECASE),
+    10**6: re.compile(r"(.*?)[._ ]?\b_?(?:tv_)?(?:usecs?|microsecs?|microseconds)", re.IGNORECASE),
+}
+"""Names of columns with a part of a second, by its number of parts."""
+_SINCE_1970_S = 6e8
+_RESTART_PART = 0.1
+"""A time begins again if it goes back to this part of what had passed."""
+_MOST_RUNS = 1000
+_JUDGED_ROWS = 20
+_JUDGED_TIMES = 1000
+_LEAST_STEPS = {1e-9: 1e7, 1e-6: 1e4, 1e-3: 5.0}
+"""Smallest usual step of whole numbers by the unit in seconds: a robot samples every 5 ms to 10 s."""
+
+
+class Ordered(NamedTuple):
+    """A table whose time does not go back without a word."""
+
+    table: pa.Table
+    layout: Layout
+    seconds: FloatArray | None
+    """Its time column in seconds, shape (n,); None without one."""
+
+
+def join_times(table: pa.Table) -> pa.Table:
+    """Return a table with one column for a time that stands in two: seconds and their parts, or date and clock."""
+    for name in table.column_names:
+        for per_s, pattern in _PARTS.items():
+            base = _SECONDS.fullmatch(name)
+            other = next(
+                (
+                    column
+                    for column in table.column_names
+                    if base and (part := pattern.fullmatch(column)) and part[1] == base[1]
+                ),
+                None,
+            )
+            if base and other and (joined := _join_parts(table, name, other, per_s)):
+                return _replace_columns(table, name, other, base[1].strip("._ ") or "time", joined)
+    dates = [name for name in table.column_names if _fits_all(table, name, is_date)]
+    clocks = [name for name in table.column_names if _fits_all(table, name, is_clock)]
+    if len(dates) == 1 and clocks:
+        texts = [table.column(name).cast(pa.string()) for name in (dates[0], clocks[0])]
+        joined = pc.binary_join_element_wise(*texts, " ")
+        return _replace_columns(table, dates[0], clocks[0], f"{dates[0]} {clocks[0]}", joined)
+    return table
+
+
+def _replace_columns(
+    table: pa.Table, first: str, second: str, name: str, joined: pa.ChunkedArray
+) -> pa.Table:
+    at = table.column_names.index(first)
+    rest = table.drop_columns([first, second])
+    return rest.add_column(
+        min(at, rest.num_columns), unique_names([*rest.column_names, name])[-1], joined
+    )
+
+
+def _join_parts(table: pa.Table, seconds: str, parts: str, per_s: int) -> pa.ChunkedArray | None:
+    if not all(is_numeric(table.schema.field(name).type) for name in (seconds, parts)):
+        return None
+    whole, fraction = (
+        np.asarray(numbers_of(table.column(name)), float) for name in (seconds, parts)
+    )
+    if not (np.isfinite(whole).all() and ((fraction >= 0) & (fraction < per_s)).all()):
+        return None
+    nanoseconds = whole.astype(np.int64) * 10**9 + (fraction * (10**9 // per_s)).astype(np.int64)
+    is_date = len(whole) > 0 and whole[0] > _SINCE_1970_S
+    kind = pa.timestamp("ns") if is_date else pa.duration("ns")
+    return pa.chunked_array([whole_numbers(nanoseconds)]).cast(kind)
+
+
+def _fits_all(table: pa.Table, name: str, fits: object) -> bool:
+    assert callable(fits)
+    if not is_text(table.schema.field(name).type):
+        return False
+    texts = table.column(name).slice(0, _JUDGED_ROWS).cast(pa.string()).to_pylist()
+    return bool(texts) and all(text is not None and fits(text) for text in texts)
+
+
+def guess_unit_s(table: pa.Table, layout: Layout) -> float | None:
+    """Return the unit of a time column that names none, if its steps are whole and too large for seconds."""
+    if layout.time in (ROW, *COUNTS) or layout.since_first or "line" in table.column_names:
+        return None
+    if time_name(layout.time).unit_s is not None or not is_numeric(
+        table.schema.field(layout.time).type
+    ):
+        return None
+    times = numbers_of(table.column(layout.time))
+    times = times[np.isfinite(times)][:_JUDGED_TIMES]
+    if len(times) < 3 or (times != np.floor(times)).any():
+        return None
+    step = float(np.median(np.abs(np.diff(times))))
+    return next((unit_s for unit_s, least in _LEAST_STEPS.items() if step >= least), None)
+
+
+def order_times(table: pa.Table, layout: Layout, notes: Notes) -> Ordered:
+    """Return a table with a column of runs if its time begins again; `notes` receives where it goes back."""
+    if layout.time in (ROW, "row"):
+        return Ordered(table, layout, None)
+    times = read_times(table.column(layout.time), layout.unit_s, layout.since_first)
+    _tell_wraps(times, notes)
+    with np.errstate(invalid="ignore"):
+        back = np.flatnonzero(np.diff(times.seconds) < 0) + 1
+    if not len(back) or layout.run or not _is_one_clock(table, layout, back):
+        return Ordered(table, layout, times.seconds)
+    restarts = _find_restarts(times.seconds, back)
+    others = np.setdiff1d(back, restarts)
+    if len(others):
+        notes.say(f"time goes back in {list_rows((others + 1).tolist())} of the table")
+    if not len(restarts) or len(restarts) > _MOST_RUNS:
+        return Ordered(table, layout, times.seconds)
+    notes.say(
+        f"time begins again in {list_rows((restarts + 1).tolist())} of the table:"
+        f" {counted(len(restarts) + 1, 'run')}"
+    )
+    begins = np.zeros(table.num_rows, np.int64)
+    begins[[0, *restarts]] = 1
+    name = unique_names([*table.column_names, "run"])[-1]
+    table = table.append_column(name, whole_numbers(np.cumsum(begins)))
+    return Ordered(table, replace(layout, run=name), times.seconds)
+
+
+def _tell_wraps(times: Times, notes: Notes) -> None:
+    if len(times.wraps):
+        rows = list_rows((times.wraps + 1).tolist())
+        notes.say(f"the clock begins again at 0 in {rows} of the table: {times.period} is added")
+
+
+def _find_restarts(seconds: FloatArray, back: IntArray) -> IntArray:
+    """Return those of the rows where the time goes back at which it begins again."""
+    start, restarts = 0, []
+    for row in back.tolist():
+        passed = seconds[row - 1] - seconds[start]
+        if seconds[row] <= seconds[start] + _RESTART_PART * passed:
+            restarts.append(row)
+            start = row
+    return np.array(restarts, np.int64)
+
+
+def _is_one_clock(table: pa.Table, layout: Layout, back: IntArray) -> bool:
+    """Return whether the rows of a table follow each other in time, not one variable after the other."""
+    if not layout.variable:
+        return True
+    names = table.column(layout.variable)
+    edges = [0, *back.tolist(), table.num_rows]
+    if len(edges) > _MOST_RUNS:
+        return False
+    parts = [
+        set(names.slice(start, stop - start).unique().to_pylist())
+        for start, stop in pairwise(edges)
+    ]
+    return all(not before.isdisjoint(after) for before, after in pairwise(parts))
