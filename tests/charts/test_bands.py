@@ -47,6 +47,12 @@ def test_names_are_all_long_or_all_short_and_never_touch() -> None:
     assert narrow == [(3, 0, "86.27"), (2, 2, "82.75")]
 
 
+def test_names_with_room_between_them_are_in_the_lowest_row() -> None:
+    spans = spans_of(next(iter(chart(LEVELS)[0])), PLAIN_LIGHT)
+    places = [range(20), range(20, 40), range(40, 60)]
+    assert [row for row, _, _ in placed_names(spans, places, 4, 60, lambda *_: True)] == [3, 3, 3]
+
+
 @pytest.mark.parametrize("values", [LEVELS, LEVELS[::-1]], ids=["white first", "white last"])
 def test_a_name_stands_beside_a_cursor_and_within_the_chart(values: list[float]) -> None:
     spans = spans_of(next(iter(chart(values)[0])), PLAIN_LIGHT)

@@ -17,8 +17,13 @@ import pytest
 
 from tests.cases import cases
 from tests.logs.log_cases import Case, Read, check_input, times, values
+from tests.runs.run_recorder import Recorder
+from tuisim.core.spec import RunSpec
+from tuisim.core.tick_record import TICK_FIELDS
 from tuisim.errors import LogError
-from tuisim.logs.reader import open_log
+from tuisim.logs.reader import log_of_runs, open_log, telemetry_log
+from tuisim.runs.records import HEADER_BYTES, TELEMETRY_FILE
+from tuisim.runs.run_folder import read_run
 
 ROWS = "".join(f"{at / 10},{at * 2}\n" for at in range(40))
 CSV = "time,red\n" + ROWS
@@ -429,3 +434,19 @@ def test_standard_input_that_is_closed(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("sys.stdin", None)
     with pytest.raises(LogError, match="is closed"):
         open_log("-")
+
+
+def test_damaged_records_are_told_of_telemetry_only(
+    record: Callable[..., Recorder], noisy_spec: RunSpec
+) -> None:
+    recorder = record(noisy_spec)
+    recorder.drive(300, 300, 20)
+    recorder.print("Colour: 5")
+    folder = recorder.end().folder
+    path = folder / TELEMETRY_FILE
+    content = bytearray(path.read_bytes())
+    np.frombuffer(content, list(TICK_FIELDS), offset=HEADER_BYTES)["x_mm"][3] = math.nan
+    path.write_bytes(content)
+    run = read_run(folder)
+    note = f"{TELEMETRY_FILE}: 1 of 21 records is damaged and left out"
+    assert (telemetry_log(run).notes, log_of_runs([run]).notes) == ((note,), ())
