@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from pathlib import Path
-from types import TracebackType
 from typing import Self
 
 from tests.bench.processes import cpu_s
@@ -33,13 +32,8 @@ class Viewer:
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        self._terminal.__exit__(kind, error, trace)
+    def __exit__(self, *error: object) -> None:
+        self._terminal.__exit__(*error)
 
     def text(self) -> str:
         """Return what is on the screen."""
