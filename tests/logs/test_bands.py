@@ -6,10 +6,14 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+import pyarrow as pa
 import pytest
 from numpy.typing import NDArray
 
 from tests.cases import cases
+from tuisim.logs.bands import band_report
+from tuisim.logs.columns import guess_columns
+from tuisim.logs.log import Log
 from tuisim.logs.plateaus import Plateau, plateaus
 
 HELD_SEEDS = range(20_000, 20_200)
@@ -180,3 +184,23 @@ def test_plateaus_are_where_they_were(
     found = [plateau for seed in range(100) for plateau in plateaus(make(seed))]
     figures = [sum(map(abs, values)) for values in zip(*found, strict=True)]
     assert [len(found), *figures] == pytest.approx(sums, abs=0.01)
+
+
+@pytest.mark.parametrize(
+    "name, grey",
+    [
+        ("Colour", "white"),
+        ("left", "white"),
+        ("left_red_pc", "white"),
+        ("light (%)", "white"),
+        ("gyro", ""),
+        ("Ultrasonic", ""),
+        ("left [mm/s]", ""),
+        ("x_mm", ""),
+    ],
+)
+def test_only_what_may_be_light_has_names_of_greys(name: str, grey: str) -> None:
+    values = np.repeat([0.0, 100.0], 50)
+    table = pa.table({"time": np.arange(100) / 10, name: values})
+    report = band_report(Log("test", table, guess_columns(table)), name)
+    assert report.bands[-1].grey == grey

@@ -12,6 +12,7 @@ from tuisim.charts.axes import Limits
 from tuisim.charts.layout import Span, names_of
 from tuisim.charts.traces import Trace
 from tuisim.logs.levels import Light, levels_of
+from tuisim.logs.units import may_be_light
 from tuisim.terminal.text_runs import Run
 
 MOST_SAMPLES = 4000
@@ -44,7 +45,7 @@ def spans_of(trace: Trace, light: Light) -> tuple[Span, ...]:
     """
     if len(trace.times_s) > MOST_SAMPLES:
         return ()
-    found = levels_of(trace.values, light)
+    found = levels_of(trace.values, light if may_be_light(trace.name) else None)
     ends = trace.times_s[found.start].tolist(), trace.times_s[found.stop - 1].tolist()
     names = [grey.name if grey and not trace.scale else "" for grey in found.greys]
     rows = zip(*ends, found.true_level.tolist(), names, strict=True)

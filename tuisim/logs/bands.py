@@ -15,6 +15,7 @@ from tuisim.logs.columns import numeric_columns
 from tuisim.logs.derived import spec_in
 from tuisim.logs.levels import Light, find_light, levels_of
 from tuisim.logs.plateaus import Search, plateaus
+from tuisim.logs.units import may_be_light
 from tuisim.runs.arrays import FloatArray, IntArray
 
 if TYPE_CHECKING:
@@ -97,7 +98,7 @@ def band_report(log: Log, name: str, search: Search = plateaus) -> BandReport:
     """
     series = log.series(name)
     light = read_light(log.metadata, series.run)
-    found = levels_of(series.values, light, search)
+    found = levels_of(series.values, light if may_be_light(name) else None, search)
     finite = np.append(0, np.cumsum(np.isfinite(series.values)))
     first, last = found.start, found.stop - 1
     samples = finite[last + 1] - finite[first]

@@ -141,19 +141,21 @@ class Levels:
     """The nearest grey of each; None if there is none, or if the samples are not light levels."""
 
 
-def levels_of(values: FloatArray, light: Light = PLAIN_LIGHT, search: Search = plateaus) -> Levels:
+def levels_of(
+    values: FloatArray, light: Light | None = PLAIN_LIGHT, search: Search = plateaus
+) -> Levels:
     """Return the plateaus of samples, which `search` finds.
 
     Args:
         values: Shape (n,).
-        light: What stands between them and the greys of the mat.
+        light: What stands between them and the greys of the mat; None if they are no light.
         search: Finds them.
     """
     found = np.array(search(values), FIELDS)
-    level, scale = found["level"], light_scale(values)
+    level, scale = found["level"], light_scale(values) if light else 0.0
     true_level = level
     greys_near: list[Grey | None] = [None] * len(found)
-    if scale:
+    if light and scale:
         percents = without_clamping(light.undo_response(level * scale), light.noise)
         true_level = light.seen(percents) / scale if light.noise else level
         greys_near = nearest_greys(percents)

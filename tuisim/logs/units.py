@@ -52,6 +52,23 @@ _LIGHT = re.compile(
 _PERCENT = re.compile(r"(?:%|_pc|percent|_proximity)$", re.IGNORECASE)
 
 
+_OTHER = re.compile(
+    r"gyro|angle|heading|yaw|pitch|roll|dist|ultra|sonic|range|proximity|speed|veloc|rate|accel|pos|batt|volt|curr"
+    r"|temp|press|torque|power|rpm|count|step|error|time|duty|force|weight|touch|(?:^|_)[xyz](?:_mm)?$"
+    r"|[(\[](?!%|lx|lux)[^)\]]+[)\]]$",
+    re.IGNORECASE,
+)
+"""Names of variables that are no light, or have a unit that light has not."""
+
+
+def may_be_light(name: str) -> bool:
+    """Return whether a variable may be the reading of a colour sensor, by its name."""
+    name = name.partition(" #")[0]
+    return bool(_LIGHT.search(name)) or not (
+        _OTHER.search(name) or unit_of(name).sign not in ("", "%")
+    )
+
+
 def begins_at_zero(name: str, low: float, high: float) -> bool:
     """Return whether a variable is a reading whose scale starts at 0.
 
