@@ -148,3 +148,11 @@ def test_reduction_of_nothing() -> None:
     when, values = min_max(np.empty(0), np.empty(0), (0.0, 1.0), 10)
 
     assert len(when) == len(values) == 0
+
+
+@pytest.mark.parametrize("low, high", [(0.0, 5.51), (8.3, 12.9), (99.9, 100.4), (0.0, 1e-6)])
+@pytest.mark.parametrize("columns", [4, 12, 19, 40])
+def test_an_axis_never_has_a_single_tick(low: float, high: float, columns: int) -> None:
+    positions = axes.time_ticks((low, high), columns)
+    assert len(positions) >= 2
+    assert all(low - 1e-9 <= at <= high + 1e-9 for at in positions)

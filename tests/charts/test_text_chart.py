@@ -156,16 +156,26 @@ def test_marks_use_the_full_height(rows: int) -> None:
     assert sum("o" in "".join(part for part, _ in runs) for runs in drawn) == len(levels)
 
 
-@pytest.mark.parametrize("height", [6, 9, 12, 16, 24, 40])
-def test_tick_boxes_leave_most_of_a_chart_to_the_curves(height: int) -> None:
-    made = traces(*(f"a_long_name_of_trace_{at}" for at in range(8)))
-    picture = ChartPainter().paint(made, ChartState(), 30, height)
-    assert picture.top <= height / 6
+@pytest.mark.parametrize(
+    "width, row",
+    [
+        (68, "[x] a_long_name_0  [x] a_long_name_1  [x] a_long_name_2  [x] Light"),
+        (65, "[x] a_long_name_0  [x] a_long_name_1  [x] a_long_name_2        +1"),
+        (40, "[x] a_long_name_0  [x] a_long_name_1  +2"),
+        (19, "[x] a_long_name… +3"),
+        (12, "[x] a_lo… +3"),
+    ],
+)
+def test_tick_boxes_are_one_row_that_counts_what_does_not_fit(width: int, row: str) -> None:
+    made = traces(*(f"a_long_name_{at}" for at in range(3)), "Light")
+    picture = ChartPainter().paint(made, ChartState(), width, 24)
+    assert picture.top == 1
+    assert text(picture)[0].rstrip() == row
 
 
 def test_a_name_that_does_not_fit_ends_in_an_ellipsis() -> None:
     rows = text(ChartPainter().paint(traces("a_name_that_is_much_too_long"), ChartState(), 20, 8))
-    assert rows[0].rstrip() == "[x] a_name_that_i…"
+    assert rows[0].rstrip() == "[x] a_name_that_is_…"
 
 
 def test_a_variable_with_the_name_of_a_column_is_the_programs() -> None:

@@ -26,3 +26,18 @@ def test_flat_cells_are_those_without_two_colors(cells: CellSet) -> None:
     fitted = fit_cells(picture, glyphs, all_cells(1, 2))
     has_two = (fitted >> 24 & 0xFFFFFF) != (fitted & 0xFFFFFF)
     assert is_flat(picture, glyphs, all_cells(1, 2)).tolist() == (~has_two).tolist()
+
+
+@pytest.mark.parametrize("ground_first", [True, False], ids=["left edge", "right edge"])
+@pytest.mark.parametrize("band", [(211, 211, 211), (128, 128, 128)])
+def test_a_robots_corner_makes_no_notch_of_the_ground_in_a_band(
+    band: tuple[int, int, int], ground_first: bool
+) -> None:
+    ground, robot = (255, 255, 255), (0, 95, 215)
+    above = [ground, band] if ground_first else [band, ground]
+    picture = np.array([above, [robot, robot]], np.uint8)
+    (cell,) = fit_cells(picture, glyph_set(CellSet.QUADRANT), all_cells(1, 1)).tolist()
+    shown = {cell >> 24 & 0xFFFFFF, cell & 0xFFFFFF}
+    red, green, blue = band
+    assert 0xFFFFFF not in shown
+    assert red << 16 | green << 8 | blue in shown

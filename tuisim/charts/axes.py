@@ -34,12 +34,21 @@ def value_limits(low: float, high: float, from_zero: bool = False) -> Limits:
     return math.floor(low / step + 1e-9) * step, math.ceil(high / step - 1e-9) * step
 
 
+_MORE_PARTS = 4
+"""A step of a part so much smaller is at most half of the span, so that two positions are inside."""
+
+
 def ticks(limits: Limits, count: int) -> list[float]:
-    """Return at most about `count` round positions inside limits."""
+    """Return at most about `count` round positions inside limits, but two at least: one tells no distance."""
     low, high = limits
-    step = nice_step(high - low, count)
-    first, last = math.ceil(low / step - 1e-9), math.floor(high / step + 1e-9)
-    return [at * step for at in range(first, last + 1)]
+    positions: list[float] = []
+    for parts in range(count, count + _MORE_PARTS):
+        step = nice_step(high - low, parts)
+        first, last = math.ceil(low / step - 1e-9), math.floor(high / step + 1e-9)
+        positions = [at * step for at in range(first, last + 1)]
+        if len(positions) > 1:
+            break
+    return positions
 
 
 _MOST_DIGITS = 300

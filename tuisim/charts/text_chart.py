@@ -28,8 +28,8 @@ _GRID = "┈"
 
 _LINE_ROWS = 13
 """Lower charts have no line above the labels of time, so that the curves have its row."""
-_ROWS_A_LEGEND_LINE = 8
-"""Rows of a chart per line of tick boxes, so that most rows are left for the curves."""
+_BETWEEN_BOXES = "  "
+"""What stands between tick boxes."""
 
 EMPTY_TEXT = (
     "Nothing logged yet. To log a value, print it with a name:",
@@ -114,7 +114,7 @@ class ChartPainter:
         """Return the chart in a panel of that inner size, each at least 1; `is_blank` for an image on the canvas."""
         drawn = traces.drawn()
         by_mark = state.grey and (len(drawn) > 1 or state.is_ascii)
-        lines, boxes = _tick_boxes(traces, state.selected, by_mark, width, height)
+        lines, boxes = _tick_boxes(traces, state.selected, by_mark, width)
         if not drawn:
             return ChartPicture(
                 (lines + _empty(traces, width, height - len(lines), state.selected))[:height], boxes
@@ -225,59 +225,49 @@ def _with_cursors(runs: list[Run], columns: Sequence[int]) -> list[Run]:
 
 
 def _tick_boxes(
-    traces: Traces, selected: str | None, by_mark: bool, width: int, height: int
+    traces: Traces, selected: str | None, by_mark: bool, width: int
 ) -> tuple[list[list[Run]], tuple[Box, ...]]:
-    """Return the lines of tick boxes that fit, those around the selected one, and where the boxes are."""
-    most_lines = min(max(height // _ROWS_A_LEGEND_LINE, 1), 3)
-    lines: list[list[tuple[str, Trace]]] = [[]]
-    used = 0
-    for trace in traces:
-        text = cut(f"[{'x' if trace.on else ' '}] {trace.name}", max(width - 2, 1))
-        if used and used + 2 + len(text) > width - 2:
-            lines.append([])
-            used = 0
-        used += len(text) + (2 if used else 0)
-        lines[-1].append((text, trace))
-    chosen = next(
-        (at for at, line in enumerate(lines) for _, trace in line if trace.name == selected), 0
-    )
-    first, most_lines = _lines_in_sight(lines, chosen, most_lines, height)
-    shown = lines[first : first + most_lines]
-    made, boxes = [], []
-    for row, line in enumerate(shown):
-        runs, column = [], 0
-        for text, trace in line:
-            if column:
-                runs.append(("  ", PLAIN))
-                column += 2
-            boxes.append(Box(row, column, column + len(text), trace.name))
-            runs += _box_runs(text, trace, trace.name == selected, by_mark)
-            column += len(text)
-        made.append(runs)
-    hidden = len(lines) - first - len(shown), first
-    if made and any(hidden):
-        # More lines above, below, or both; two columns are reserved for the arrow.
-        space = width - 1 - sum(len(text) for text, _ in made[-1])
-        arrow = "↕" if all(hidden) else "↓" if hidden[0] else "↑"
-        made[-1].append((" " * max(space, 0) + arrow, AXIS))
-    return [line for line in made if line], tuple(boxes)
-
-
-def _lines_in_sight(
-    lines: Sequence[Sequence[tuple[str, Trace]]], chosen: int, most_lines: int, height: int
-) -> tuple[int, int]:
-    """Return the first line of tick boxes that is shown, and how many: the chosen one, and what is drawn if it fits."""
-    wanted = [
-        at for at, line in enumerate(lines) if at == chosen or any(trace.on for _, trace in line)
+    """Return the row of tick boxes, none without a trace, and where they are; what does not fit is counted."""
+    every = [*traces]
+    if not every:
+        return [], ()
+    widest = width - len(f" +{len(every)}") * (len(every) > 1)
+    texts = [
+        (cut(f"[{'x' if trace.on else ' '}] {trace.name}", max(widest, 1)), trace)
+        for trace in every
     ]
-    span = wanted[-1] - wanted[0] + 1
-    if span == most_lines + 1 and height > _ROWS_A_LEGEND_LINE:
-        # One row less for the curves is less of a loss than a curve without a name.
-        most_lines += 1
-    first = max(0, chosen - most_lines + 1)
-    if span <= most_lines:
-        first = min(max(first, wanted[-1] - most_lines + 1), wanted[0])
-    return first, most_lines
+    shown = _boxes_in_sight(texts, selected, width)
+    runs: list[Run] = []
+    boxes, column = [], 0
+    for text, trace in (texts[at] for at in shown):
+        if column:
+            runs.append((_BETWEEN_BOXES, PLAIN))
+            column += len(_BETWEEN_BOXES)
+        boxes.append(Box(0, column, column + len(text), trace.name))
+        runs += _box_runs(text, trace, trace.name == selected, by_mark)
+        column += len(text)
+    if more := len(texts) - len(shown):
+        runs.append((f"+{more}".rjust(width - column), AXIS))
+    return [runs], tuple(boxes)
+
+
+def _boxes_in_sight(
+    texts: Sequence[tuple[str, Trace]], selected: str | None, width: int
+) -> list[int]:
+    """Return the numbers of the boxes that fit into a row, in order: the selected one, what is drawn, then others."""
+    gap = len(_BETWEEN_BOXES)
+    if sum(len(text) + gap for text, _ in texts) - gap <= width:
+        return [*range(len(texts))]
+    shown: list[int] = []
+    room = width - len(f"+{len(texts)}") - 1
+    for at in sorted(
+        range(len(texts)), key=lambda at: (texts[at][1].name != selected, not texts[at][1].on)
+    ):
+        room -= len(texts[at][0]) + gap * bool(shown)
+        if room < 0 and shown:
+            break
+        shown.append(at)
+    return sorted(shown)
 
 
 def _box_runs(text: str, trace: Trace, selected: bool, by_mark: bool) -> list[Run]:

@@ -18,6 +18,8 @@ _FLAT = 3
 """Points whose channels differ by no more than this are one colour."""
 _OTHER = 1e9
 """Added to the distance of a point of the other group; more than any distance."""
+_DARKER = 0.01
+"""Times the lightness of a point, added to its distance: decides between points that are equally far."""
 _AT_ONCE = 1024
 """Cells that are fitted in one step, to limit memory."""
 
@@ -109,14 +111,16 @@ def _half_blocks(points: npt.NDArray[np.uint8], glyphs: GlyphSet) -> Cells:
 def _typical(
     lab: npt.NDArray[np.float32], covered: npt.NDArray[np.float32]
 ) -> list[npt.NDArray[np.intp]]:
-    """Return the point of each cell's two groups that is nearest to the mean of its group.
+    """Return the point of each cell's two groups that is nearest to the mean of its group; of two, the darker one.
 
-    It is a colour of the picture; the mean of three colours is often none, and looks blurred.
+    It is a colour of the picture; the mean of three colours is often none, and looks blurred. Of the edge of a band
+    beside a robot's corner, the ground would be a notch in the band.
     """
     found: list[npt.NDArray[np.intp]] = []
     for share in (covered, 1 - covered):
         mean = (lab * share).sum(axis=1, keepdims=True) / share.sum(axis=0)
-        found.append((np.square(lab - mean).sum(axis=0) + _OTHER * (share < 0.5)).argmin(axis=0))
+        distance = np.square(lab - mean).sum(axis=0) + _DARKER * lab[0]
+        found.append((distance + _OTHER * (share < 0.5)).argmin(axis=0))
     return found
 
 
