@@ -16,6 +16,7 @@ from tuisim.app.layout.arrangement import (
     KeptLayout,
     Preset,
     arrange,
+    beside_world,
     core_panels,
     is_single,
     load_layout,
@@ -110,6 +111,8 @@ class PanelArea(Container):
         """Whether what was kept has been taken up."""
         self.is_stacked = False
         """Whether a roomy panel stands above the lesson, and nothing else is shown."""
+        self.is_beside = False
+        """Whether a roomy panel stands beside the world."""
         self._snapshot: Snapshot | None = None
         self._throttle = Throttle(self, _READINGS_PERIOD_S, self._show_readings)
         self._roomy: tuple[str, int, int] | None = None
@@ -296,12 +299,16 @@ class PanelArea(Container):
     def _wanted(self) -> tuple[list[str], list[str]]:
         """Return the ids of the panels to show, by priority, and those for what space is left."""
         width, height = self.size
-        self.is_stacked = False
+        self.is_stacked = self.is_beside = False
         wanted, fill = wanted_panels(self.preset, self._asked, width, height)
         if self._roomy:
             panel, columns, rows = self._roomy
             keeps_lesson = "lesson" in wanted and panel != "lesson" and height >= _STACKED_ROWS
+            asked_for = wanted
             wanted = with_room(panel, wanted, (columns, rows), (width, height), self.preset)
+            if wanted == [panel] and beside_world(panel, asked_for, width, height):
+                self.alone, self.is_beside = "", True
+                return [panel, *asked_for], []
             if wanted == [panel] and keeps_lesson:
                 # Its lines need the whole width, but not all rows.
                 self.alone, self.is_stacked = "", True
@@ -314,6 +321,8 @@ class PanelArea(Container):
 
     def _arranged(self) -> PanelLayout:
         wanted, fill = self._wanted()
+        if self.is_beside and (layout := beside_world(wanted[0], wanted[1:], *self.size)):
+            return layout
         if self.is_stacked:
             return stacked(wanted[0], wanted[1], self.size.width, self.size.height)
         return arrange(wanted, self.size.width, self.size.height, fill, self.preset)

@@ -7,7 +7,7 @@ import itertools
 import numpy as np
 import pytest
 
-from tuisim.app.layout.arrangement import arrange, size_class
+from tuisim.app.layout.arrangement import Preset, arrange, beside_world, size_class, wanted_panels
 from tuisim.app.layout.tree import PanelBox
 from tuisim.app.panels import PANELS, PanelInfo, TerminalSize
 
@@ -48,14 +48,15 @@ def test_any_panels_fill_the_screen(width: int, height: int) -> None:
     "size, expected",
     [
         ((80, 24), {"world", "instrumentation", "output"}),
-        ((120, 40), {"world", "instrumentation", "output", "arrays", "code", "controls"}),
+        ((100, 30), {"world", "instrumentation", "output", "arrays", "chart"}),
+        ((120, 40), {"world", "instrumentation", "output", "arrays", "chart", "code"}),
         ((200, 60), {panel.id for panel in PANELS.values() if panel.sizes}),
     ],
-    ids=["80x24", "120x40", "200x60"],
+    ids=["80x24", "100x30", "120x40", "200x60"],
 )
 def test_what_is_shown_unless_asked_otherwise(size: tuple[int, int], expected: set[str]) -> None:
     width, height = size[0], size[1] - 1
-    placed = arrange(defaults(width, height), width, height)
+    placed = arrange(wanted_panels(Preset.STANDARD, {}, width, height)[0], width, height)
     assert set(placed.boxes) == expected
     assert not placed.left_out
 
@@ -64,7 +65,8 @@ def test_what_is_shown_unless_asked_otherwise(size: tuple[int, int], expected: s
     "size, name",
     [
         ((80, 24), TerminalSize.SMALL),
-        ((111, 40), TerminalSize.SMALL),
+        ((99, 40), TerminalSize.SMALL),
+        ((100, 30), TerminalSize.MEDIUM),
         ((120, 40), TerminalSize.MEDIUM),
         ((200, 60), TerminalSize.LARGE),
     ],
@@ -79,7 +81,7 @@ def test_the_most_wanted_panel_gets_the_room() -> None:
     assert placed.boxes["instrumentation"].height == PANELS["instrumentation"].min_rows
 
 
-LOW_SIZES = pytest.mark.parametrize("width, height", [(80, 23), (100, 29), (72, 24)])
+LOW_SIZES = pytest.mark.parametrize("width, height", [(80, 23), (100, 28), (72, 24)])
 
 
 @LOW_SIZES
@@ -116,6 +118,42 @@ def test_the_settings_leave_room_for_all_readings_in_a_small_terminal() -> None:
         boxes["instrumentation"].height >= 8
         and boxes["settings"].height >= PANELS["settings"].fair_rows
     )
+
+
+@pytest.mark.parametrize("size", [(100, 29), (112, 33), (120, 39), (150, 45)], ids=str)
+def test_the_board_shows_a_chart_that_can_be_read(size: tuple[int, int]) -> None:
+    boxes = arrange(wanted_panels(Preset.STANDARD, {}, *size)[0], *size).boxes
+    assert boxes["chart"].width >= 50 and boxes["chart"].height >= 10
+    assert boxes["instrumentation"].height >= 8 and boxes["output"].height >= 3
+    assert ("code" in boxes) is (size[0] >= 120)
+
+
+@pytest.mark.parametrize("size", [(100, 29), (112, 39)], ids=str)
+def test_a_stop_at_a_line_shows_code_and_variables(size: tuple[int, int]) -> None:
+    asked = {"code": True, "debug": True}
+    placed = arrange(wanted_panels(Preset.STANDARD, asked, *size)[0], *size)
+    assert set(placed.boxes) == {"world", "instrumentation", "output", "code", "debug"}
+    assert placed.boxes["code"].width == size[0]
+
+
+@pytest.mark.parametrize("width, height", [(65, 57), (60, 60), (72, 50)])
+def test_code_and_chart_fill_a_tall_terminal(width: int, height: int) -> None:
+    wanted, fill = wanted_panels(Preset.STANDARD, {}, width, height)
+    boxes = arrange(wanted, width, height, fill).boxes
+    assert {"code", "chart"} <= boxes.keys() and not {"positioning", "noise"} & boxes.keys()
+    assert boxes["code"].height >= 9 and boxes["chart"].height >= 10
+
+
+def test_the_editor_stands_beside_the_world() -> None:
+    wanted = ["world", "instrumentation", "output", "arrays", "chart"]
+    assert beside_world("code", wanted, 109, 39) is None
+    assert beside_world("code", ["lesson", *wanted], 120, 39) is None
+    for width, height in ((110, 29), (120, 39), (150, 45)):
+        layout = beside_world("code", wanted, width, height)
+        assert layout is not None and {"code", "world", "output"} <= layout.boxes.keys()
+        assert_fills(layout.boxes, width, height)
+        assert layout.boxes["code"].height == height
+        assert layout.boxes["code"].width >= 68 and layout.boxes["world"].width >= 42
 
 
 def test_no_panels_no_boxes() -> None:

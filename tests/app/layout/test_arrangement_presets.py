@@ -59,14 +59,14 @@ def test_code_and_chart_have_room_beside_each_other_in_a_medium_terminal() -> No
     boxes = arrange(wanted, 120, 39, fill).boxes
     assert boxes["code"].height - 2 >= 8
     # Two rows for the tick boxes, two for the axis of time.
-    assert boxes["chart"].height - 2 - 4 >= 10
+    assert boxes["chart"].height - 2 - 4 >= 7
 
 
-def test_lines_of_code_are_whole_in_a_medium_terminal() -> None:
+def test_most_lines_of_code_are_whole_in_a_medium_terminal() -> None:
     layout = layout_of(Preset.STANDARD, 120, 40)
-    assert layout.boxes["code"].width - 2 >= 72 and layout.boxes["code"].height - 2 >= 8
-    # An error in one line: the five lines of its traceback, and the end of the run.
-    assert layout.boxes["output"].height - 2 >= 6
+    assert layout.boxes["code"].width - 2 >= 59 and layout.boxes["code"].height - 2 >= 14
+    # The end of a run, with the lines before it.
+    assert layout.boxes["output"].height - 2 >= 4
 
 
 @in_each_size
@@ -140,5 +140,5 @@ def test_the_world_stays_with_every_panel_asked_for(size: tuple[int, int]) -> No
     wanted, fill = wanted_panels(Preset.STANDARD, dict.fromkeys(PANELS, True), width, height)
     box = arrange(wanted, width, height, fill).boxes["world"]
     # Two rows of panels below it leave it narrower than its panel in a low terminal.
-    least = 2 / 3 if height >= 39 else 0.45
+    least = 2 / 3 if height >= 39 else 0.4
     assert mat_cells(box) > least * (box.width - 2) * (box.height - 3)

@@ -39,6 +39,17 @@ _TALL_ROWS = 30
 """From this height on, narrow panels stand below each other, as on a phone with large text."""
 _LOW_COLS, _LOW_ROWS = 112, 33
 """Below both, the panels share the screen as in a terminal of 80×24."""
+_MIN_LARGE_COLS, _MIN_LARGE_ROWS = 170, 50
+_BOARD_COLS, _BOARD_ROWS = 100, 30
+"""From this size of terminal on, world, readings, sensor arrays and chart are shown at once."""
+_CODE_FROM_COLS = 120
+"""From this width on, code is shown beside them."""
+_EDITOR_FROM_COLS = 110
+"""From this width on, the code that is typed in stands beside the world."""
+_EDITOR_COLS = 86
+"""Columns in which lines of 79 characters are whole."""
+_DISCS_COLS = 42
+"""Columns of the side column in which two sensor discs fit side by side."""
 _READINGS_COLS, _TEXT_COLS = 48, 32
 """Columns of the readings in three lines, and of the output beside them."""
 _MAX_SIDE_COLS = 46
@@ -72,9 +83,9 @@ Form = Callable[[Sequence[str], int, int], Node]
 
 def size_class(width: int, height: int) -> TerminalSize:
     """Return the size of a terminal: small, medium or large."""
-    if width >= 170 and height >= 50:
+    if width >= _MIN_LARGE_COLS and height >= _MIN_LARGE_ROWS:
         return TerminalSize.LARGE
-    if width >= 112 and height >= 34:
+    if width >= _BOARD_COLS and height >= _BOARD_ROWS:
         return TerminalSize.MEDIUM
     return TerminalSize.SMALL
 
@@ -89,12 +100,14 @@ def is_tall(width: int, height: int) -> bool:
     return height * 1.6 >= width
 
 
-def is_low(width: int, height: int) -> bool:
+def is_low(preset: Preset, width: int, height: int) -> bool:
     """Return whether an area has room for few panels: the world in its whole width, or one with long lines or a chart.
 
     A lower area shows one panel only.
     """
-    return width < _LOW_COLS and height < _LOW_ROWS and not is_tall(width, height)
+    shows_board = preset == Preset.STANDARD and size_class(width, height + 1) != TerminalSize.SMALL
+    is_small = width < _LOW_COLS and height < _LOW_ROWS and not is_tall(width, height)
+    return is_small and not shows_board
 
 
 def side_width(width: int, panels: Sequence[str] = ()) -> int:
@@ -108,7 +121,7 @@ def side_width(width: int, panels: Sequence[str] = ()) -> int:
         return min(width // 2, max(_LEAST_TEXT, min(_MOST_TEXT, width * 3 // 8)))
     if width < 112:
         return max(26, min(34, width * 28 // 80))
-    return 42 if width < 170 else _MAX_SIDE_COLS
+    return _DISCS_COLS if width < _MIN_LARGE_COLS else _MAX_SIDE_COLS
 
 
 def _in(panels: Sequence[str], where: PanelPlace) -> list[str]:
@@ -170,6 +183,103 @@ def _wide(panels: Sequence[str], width: int, height: int) -> Node:
     return joined(Axis.COLUMNS, [left, joined(Axis.ROWS, side)], shares=shares)
 
 
+_STRIP_ROWS, _CODE_STRIP_ROWS = 12, 16
+"""Rows of the strip below the board: for chart and output beside each other, and beside code."""
+_CHART_ROWS = 10
+_CHART_SHARE = 5 / 8
+"""Of the width, beside the output."""
+_MAX_EMPTY_ROWS = 3
+"""The readings beside the world make it so much higher than its shape at most."""
+
+
+def _board(panels: Sequence[str], width: int, height: int) -> Node:
+    """The world with readings beside it, and below both a strip with the chart; the wide form without these three."""
+    side, main = _in(panels, PanelPlace.SIDE), _in(panels, PanelPlace.MAIN)
+    roomy = [panel for panel in ("code", "brick") if panel in panels]
+    fits = size_class(width, height + 1) == TerminalSize.MEDIUM and width >= MIN_STRIP_COLS * (
+        len(roomy) + 1
+    )
+    if not (fits and main and side and "chart" in panels and "lesson" not in panels):
+        return _wide(panels, width, height)
+    world_cols = width - _DISCS_COLS
+    share = world_cols / width
+    above = joined(Axis.COLUMNS, [*main, joined(Axis.ROWS, side)], shares=(share, 1 - share))
+    below = _board_strip(roomy, "output" in panels, height)
+    highest = ideal_rows(world_cols) + _MAX_EMPTY_ROWS
+    rows = min(
+        max(ideal_rows(world_cols), fair_rows(above, width)),
+        height - (_CODE_STRIP_ROWS if roomy and height >= 3 * _STRIP_ROWS else _STRIP_ROWS),
+        highest,
+    )
+    rows = max(rows, least_rows(above))
+    if rows > highest or rows + least_rows(below) > height:
+        return _wide(panels, width, height)
+    return Split(Axis.ROWS, (above, below), least=(rows, height - rows))
+
+
+def _board_strip(roomy: Sequence[str], has_output: bool, height: int) -> Node:
+    """Return the chart with the output beside it, or below it if there are panels that need the width."""
+    if not roomy:
+        parts = ["chart", "output"] if has_output else ["chart"]
+        return joined(Axis.COLUMNS, parts, shares=(_CHART_SHARE, 1 - _CHART_SHARE))
+    chart_rows = _CHART_ROWS if height >= 3 * _STRIP_ROWS else 0
+    last: Node = (
+        Split(Axis.ROWS, ("chart", "output"), least=(chart_rows, 0)) if has_output else "chart"
+    )
+    return joined(Axis.COLUMNS, [*roomy, last])
+
+
+def beside_world(panel: str, panels: Sequence[str], width: int, height: int) -> PanelLayout | None:
+    """Place a panel beside the world, with others below that as far as they fit; None where there is no room.
+
+    Args:
+        panel: The one that gets most of the width.
+        panels: The others, the most wanted first.
+        width: Columns.
+        height: Rows.
+    """
+    if width < _EDITOR_FROM_COLS or "world" not in panels or "lesson" in panels:
+        return None
+    wide = min(_EDITOR_COLS, width - _DISCS_COLS)
+    right = ["world"]
+    for other in ("output", "instrumentation", "arrays", "chart"):
+        if (
+            other in panels
+            and fair_rows(joined(Axis.ROWS, [*right, other]), width - wide) <= height
+        ):
+            right.append(other)
+    share = wide / width
+    node = joined(Axis.COLUMNS, [panel, joined(Axis.ROWS, right)], shares=(share, 1 - share))
+    layout = PanelLayout(wanted=(panel, *right))
+    place(node, PanelBox(0, 0, width, height), layout)
+    return layout
+
+
+_TIGHT_ROWS: Mapping[str, int] = {
+    "instrumentation": 5,
+    "output": 4,
+    "code": 9,
+    "chart": 10,
+    "arrays": 9,
+}
+"""Rows in which these panels are read on a narrow and high screen."""
+
+
+def _tight_rows(panels: Sequence[str], width: int) -> list[int]:
+    return [
+        ideal_rows(width) if panel == "world" else _TIGHT_ROWS.get(panel, PANELS[panel].fair_rows)
+        for panel in panels
+    ]
+
+
+def _column(panels: Sequence[str], width: int, height: int) -> Node:
+    """Return panels one above the other, each with the rows in which it is read if there are so many."""
+    tight = _tight_rows(panels, width)
+    if len(panels) == 1 or sum(tight) > height:
+        return joined(Axis.ROWS, panels)
+    return Split(Axis.ROWS, tuple(panels), least=tuple(tight))
+
+
 def _under(panels: Sequence[str], width: int, height: int) -> Node:
     """The world in the whole width, and everything else in columns below it."""
     side, strip, main = (
@@ -177,7 +287,7 @@ def _under(panels: Sequence[str], width: int, height: int) -> Node:
     )
     most = max(1, width // _COLUMN_COLS)
     if most == 1 or not side + strip:
-        return joined(Axis.ROWS, [*main, *side, *strip])
+        return _column([*main, *side, *strip], width, height)
     high = max(height - (ideal_rows(width) if main else 0), 1)
     packed: list[list[str]] = []
     for panel in side:
@@ -321,7 +431,7 @@ _SHOWN = tuple(info.id for info in PANELS.values() if info.sizes)
 
 _PLANS: Mapping[Preset, _Plan] = {
     Preset.STANDARD: _Plan(
-        (), _SHOWN, (_wide, _under), ("world", "instrumentation", "output"), compact=False
+        (), _SHOWN, (_board, _under), ("world", "instrumentation", "output"), compact=False
     ),
     Preset.DRIVE: _Plan(
         ("world", "instrumentation", "positioning"),
@@ -353,7 +463,7 @@ _PLANS: Mapping[Preset, _Plan] = {
 def core_panels(preset: Preset, width: int, height: int) -> tuple[str, ...]:
     """Return the panels that a preset is made for, in an area of that size; none for the standard of a large one."""
     plan = _PLANS[preset]
-    return plan.low if is_low(width, height) else plan.core
+    return plan.low if is_low(preset, width, height) else plan.core
 
 
 def wanted_panels(
@@ -370,9 +480,11 @@ def wanted_panels(
     plan, size = _PLANS[preset], size_class(width, height + 1)
     columns = max(0, width // _COLUMN_COLS - len(plan.core) + 1)
     usual = plan.core + plan.beside[:columns] or tuple(
-        panel for panel in _SHOWN if size in PANELS[panel].sizes
+        panel
+        for panel in _SHOWN
+        if size in PANELS[panel].sizes and not _yields(panel, asked, width)
     )
-    if is_low(width, height):
+    if is_low(preset, width, height):
         usual = plan.low
     latest = [panel for panel, on in reversed(list(asked.items())) if on]
     rest = [panel for panel in usual if panel not in asked]
@@ -380,12 +492,33 @@ def wanted_panels(
     places = {"lesson": 0, "world": 1}
     wanted = sorted(latest + rest, key=lambda panel: places.get(panel, 2))
     fill = [panel for panel in plan.fill if panel not in asked and panel not in wanted]
-    if is_low(width, height):
+    if preset == Preset.STANDARD and is_tall(width, height):
+        fill.sort(key=lambda panel: [*_READ_FIRST, panel].index(panel))
+    if is_low(preset, width, height):
         return wanted, []
     if preset == Preset.STANDARD and not is_tall(width, height):
-        # The strip below a wide world gets no fuller: its panels would be too narrow.
-        fill = _in(fill, PanelPlace.SIDE)
+        # The strip below a wide world gets no fuller: its panels would be too narrow. A board has no room beside it.
+        is_board = size == TerminalSize.MEDIUM and "chart" in wanted
+        fill = [] if is_board else _in(fill, PanelPlace.SIDE)
     return wanted, fill
+
+
+_READ_FIRST = ("code", "chart", "arrays")
+"""Panels that fill a tall terminal before those that set up a run."""
+
+
+def _yields(panel: str, asked: Mapping[str, bool], width: int) -> bool:
+    """Return whether a panel leaves its room to others: to code and variables in a narrow terminal, to a lesson."""
+    is_narrow = width < _CODE_FROM_COLS
+    match panel:
+        case "code":
+            return is_narrow
+        case "chart" if asked.get("lesson", False):
+            return width < _MIN_LARGE_COLS
+        case "chart" | "arrays":
+            return is_narrow and asked.get("debug", False)
+        case _:
+            return False
 
 
 def _kept(
@@ -399,7 +532,10 @@ def _kept(
             kept.append(panel)
     for panel in fill:
         node = form([*kept, panel], width, height)
-        if fair_rows(node, width) <= height and least_columns(node) <= width:
+        rows = fair_rows(node, width)
+        if panel in _READ_FIRST and is_tall(width, height) and width < 2 * _COLUMN_COLS:
+            rows = sum(_tight_rows([*kept, panel], width))
+        if rows <= height and least_columns(node) <= width:
             kept.append(panel)
     return kept
 
@@ -471,7 +607,8 @@ def _scored(
 ) -> Iterator[tuple[tuple[int, float], Node]]:
     """Yield the tree in each form, and how good that is."""
     plan = _PLANS[preset]
-    forms = (_low,) if is_low(width, height) else plan.forms
+    is_cramped = preset == Preset.STANDARD and "debug" in panels and width < _CODE_FROM_COLS
+    forms = (_low,) if is_cramped or is_low(preset, width, height) else plan.forms
     for form in forms:
         if not (kept := _kept(form, panels, fill, width, height)):
             continue

@@ -27,7 +27,7 @@ class TerminalSize(StrEnum):
     SMALL = "small"
     """From 80×24."""
     MEDIUM = "medium"
-    """From 112×34."""
+    """From 100×30."""
     LARGE = "large"
     """From 170×50."""
 
@@ -122,7 +122,7 @@ PANELS: Mapping[str, PanelInfo] = {
             "output:Output",
             _BOTTOM,
             _ALL,
-            5,
+            3,
             7,
             9,
             weight=13,
@@ -134,7 +134,17 @@ PANELS: Mapping[str, PanelInfo] = {
             "code", "Code", "D", "code:Code", _BOTTOM, _MEDIUM_UP, 5, 11, 20, weight=29, grows=True
         ),
         PanelInfo(
-            "chart", "Chart", "c", "chart:Chart", _BOTTOM, _LARGE, 8, 14, 16, weight=28, grows=True
+            "chart",
+            "Chart",
+            "c",
+            "chart:Chart",
+            _BOTTOM,
+            _MEDIUM_UP,
+            8,
+            14,
+            16,
+            weight=28,
+            grows=True,
         ),
         PanelInfo(
             "controls",
@@ -142,7 +152,7 @@ PANELS: Mapping[str, PanelInfo] = {
             "H",
             "controls:Controls",
             _SIDE,
-            _MEDIUM_UP,
+            _LARGE,
             11,
             11,
             12,
