@@ -8,12 +8,14 @@ from contextlib import asynccontextmanager
 from pathlib import Path
 from typing import Any
 
+from textual.app import App
 from textual.pilot import Pilot
 from textual.widgets import Static
 
 from tests.running import PATIENCE_S
 from tuisim.app.app import AppSettings, LabApp
 from tuisim.app.snapshot import RunPhase
+from tuisim.app.terminal_app import TerminalApp
 from tuisim.config.build import build_run_spec
 from tuisim.config.options import Settings
 from tuisim.source import Program
@@ -65,8 +67,10 @@ async def ready(pilot: Pilot[Any]) -> LabApp:
     return app
 
 
-def notices(app: LabApp) -> list[str]:
-    return [str(notice.message) for notice in app._notifications]
+def notices(app: App[Any]) -> list[str]:
+    """What the user was told lately."""
+    assert isinstance(app, TerminalApp)
+    return app.notices.messages()
 
 
 def message_of(app: LabApp) -> str:

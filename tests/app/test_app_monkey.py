@@ -13,7 +13,7 @@ import pytest
 from textual.app import App
 from textual.pilot import Pilot
 
-from tests.app.app_help import ENDLESS, LOGS, settings, until
+from tests.app.app_help import ENDLESS, LOGS, notices, settings, until
 from tests.app.monkey import is_over, leave, press_at_random
 from tests.running import PATIENCE_S
 from tuisim.analysis.source import LogRequest
@@ -86,9 +86,9 @@ async def one_go(pilot: Pilot[Any], rng: Random, count: int, done: list[str]) ->
         await leave(pilot)
     # Whatever it is, it helps to know what was pressed.
     except BaseException as error:
-        notices = [str(notice.message) for notice in pilot.app._notifications]
+        told = notices(pilot.app)
         error.add_note(
-            f"after {done}, with the notices {notices} and the work {list(pilot.app.workers)}"
+            f"after {done}, with the notices {told} and the work {list(pilot.app.workers)}"
         )
         raise
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.app.app_help import LOGS, open_lab, screen_text, until, until_shown
+from tests.app.app_help import LOGS, notices, open_lab, screen_text, until, until_shown
 from tests.cases import cases
 from tuisim.app.actions.keys import ACTIONS
 from tuisim.app.guide.screen import GuideScreen
@@ -71,9 +71,7 @@ async def test_notices_and_panels_name_the_new_key(panel: str, tmp_path: Path) -
         await pilot.press("ctrl+k")
         await until(
             pilot,
-            lambda: (
-                [notice.message for notice in app._notifications] == ["No program yet: % opens one"]
-            ),
+            lambda: notices(app) == ["No program yet: % opens one"],
         )
 
 
@@ -90,8 +88,8 @@ async def test_a_wrong_file_is_told_and_the_app_works_with_what_is_right(tmp_pat
         "[app]\ntheme = 'light'\nfps = 0\n[keys]\npen = 'R'\nzoom = 'ctrl+k'\n"
     )
     async with open_lab(LOGS) as (pilot, app):
-        await until(pilot, lambda: len(app._notifications) == 2)
-        said = [notice.message for notice in app._notifications]
+        await until(pilot, lambda: len(notices(app)) == 2)
+        said = notices(app)
         assert ["app.fps: must be" in said[0], "R is also the key of run" in said[1]] == [
             True,
             True,

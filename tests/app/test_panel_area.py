@@ -8,7 +8,7 @@ import sys
 from collections.abc import Iterator
 
 import pytest
-from rich.cells import cell_len
+from textual.content import Content
 from textual.widget import Widget
 from textual.widgets import Static
 
@@ -37,7 +37,8 @@ def cut(app: LabApp) -> Iterator[str]:
                 line for line in text_of(app, panel).split("\n") if CUT.search(line)
             )
         for title in (panel.border_title, panel.border_subtitle):
-            if name not in USERS and title and cell_len(str(title)) > box.width - 6:
+            shown = Content.from_markup(str(title or "")).cell_length
+            if name not in USERS and shown > box.width - 6:
                 yield f"{name}: {title}"
         for text in panel.query(Static):
             if text.region and not fits(text):

@@ -1,13 +1,18 @@
-"""Notices cover neither the mat nor the readings."""
+"""Notices cover neither the mat nor the readings, nor the keys."""
 
 from __future__ import annotations
 
+from typing import Any, cast
+
 import pytest
 from textual.geometry import Region
-from textual.widgets._toast import Toast
+from textual.pilot import Pilot
+from textual.widget import Widget
 
 from tests.app.app_help import LOGS, ready, settings, until
 from tuisim.app.app import LabApp
+from tuisim.app.guide.screen import GuideScreen
+from tuisim.app.notices import NoticeRow
 from tuisim.app.panels.world import World
 
 
@@ -30,26 +35,33 @@ NOTICES = {
 }
 
 
-async def test_a_notice_leaves_the_axis_of_a_chart_free() -> None:
-    async with LabApp(settings(LOGS)).run_test(size=(100, 30), notifications=True) as pilot:
+async def shown_row(pilot: Pilot[Any], app: LabApp, message: str) -> NoticeRow:
+    """Return the row of a notice once it is drawn."""
+    await until(
+        pilot,
+        lambda: (
+            [row.notice.message for row in app.screen.query(NoticeRow) if row.region] == [message]
+        ),
+    )
+    return app.screen.query_one(NoticeRow)
+
+
+@pytest.mark.quick_cases("(65, 58)", "(100, 30)")
+@pytest.mark.parametrize("size", [(65, 58), (80, 24), (100, 30), (120, 40)], ids=str)
+async def test_a_notice_lies_on_the_border_and_leaves_axis_and_keys_free(
+    size: tuple[int, int],
+) -> None:
+    async with LabApp(settings(LOGS)).run_test(size=size, notifications=True) as pilot:
         app = await ready(pilot)
-        await pilot.press("c")
-        await until(
-            pilot,
-            lambda: app.panel_area.shown("chart") and bool(app.panel_area.panels["chart"].region),
-        )
+        app.panel_area.bring("chart")
+        await until(pilot, lambda: bool(app.panel_area.panels["chart"].region))
         app.say(NOTICES["long"][0])
-        await until(
-            pilot,
-            lambda: any(
-                t.region and NOTICES["long"][0] == t._notification.message
-                for t in app.screen.query(Toast)
-            ),
-        )
-        chart = app.panel_area.panels["chart"].region
-        for toast in app.screen.query(Toast):
-            assert not toast.region.overlaps(chart.shrink((1, 1, 1, 1)))
-            assert app.screen.region.contains_region(toast.region)
+        row = (await shown_row(pilot, app, NOTICES["long"][0])).region
+        assert row.height == 1 and row.y == app.panel_area.region.bottom - 1
+        assert app.screen.region.contains_region(row)
+        assert not row.overlaps(app.key_footer.region)
+        for panel in app.panel_area.on_screen():
+            assert not row.overlaps(cast(Widget, panel).region.shrink((1, 1, 1, 1)))
 
 
 @pytest.mark.quick_cases("two")
@@ -66,18 +78,20 @@ async def test_the_newest_notice_covers_neither_mat_nor_readings_nor_output(
         read = rows_with_text(app, readings)
         for text in texts:
             app.say(text)
-        await until(
-            pilot,
-            lambda: (
-                [t._notification.message for t in app.screen.query(Toast) if t.region] == texts[-1:]
-            ),
-        )
-        (toast,) = (one for one in app.screen.query(Toast) if one.region)
-        assert app.screen.region.contains_region(toast.region)
-        assert not toast.region.overlaps(world)
-        assert not toast.region.overlaps(read)
-        assert not toast.region.overlaps(
-            app.panel_area.panels["output"].region.shrink((1, 1, 1, 1))
-        )
-        # One row leaves the keys free.
-        assert toast.region.height > 1 or not toast.region.overlaps(app.key_footer.region)
+        row = (await shown_row(pilot, app, texts[-1])).region
+        assert app.screen.region.contains_region(row)
+        assert not row.overlaps(world)
+        assert not row.overlaps(read)
+        assert not row.overlaps(app.panel_area.panels["output"].region.shrink((1, 1, 1, 1)))
+
+
+async def test_a_notice_outlives_the_screen_that_it_is_on() -> None:
+    async with LabApp(settings(LOGS)).run_test(size=(80, 24), notifications=True) as pilot:
+        app = await ready(pilot)
+        await pilot.press("question_mark")
+        await until(pilot, lambda: isinstance(app.screen, GuideScreen))
+        app.say("said in the guide")
+        await shown_row(pilot, app, "said in the guide")
+        await pilot.press("escape")
+        await until(pilot, lambda: not isinstance(app.screen, GuideScreen))
+        await shown_row(pilot, app, "said in the guide")

@@ -7,8 +7,6 @@ import os
 import tempfile
 from pathlib import Path
 
-from textual.widgets._toast import Toast
-
 from tests.app.app_help import open_lab, until
 from tests.conftest import ROOT
 from tuisim.app.app import AppSettings
@@ -43,7 +41,6 @@ async def drawn() -> str:
         await pilot.press("less_than_sign", "less_than_sign")
         await until(pilot, lambda: app.situation().looks_back)
         app.clear_notifications()
-        await until(pilot, lambda: not app.screen.query(Toast))
         seen = [""]
         while len(seen) < LOOKS or len(set(seen[-LOOKS:])) > 1:
             await pilot.pause(0.3)

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from textual.geometry import Region
 
-from tests.app.app_help import lab, settings, until
+from tests.app.app_help import lab, notices, settings, until
 from tests.app.panel_help import PanelApp
 from tests.app.wires import on_wire, until_quiet, wire_of
 from tests.terminal.pixel_help import ANSWERS, answered, drawn_by, part_of, seen_on, sharp
@@ -95,7 +95,7 @@ async def test_an_error_of_kitty_brings_the_cells_back_at_once() -> None:
         assert pilot.app.query_one(WorldView)._tiles is None
         seen = seen_on(pilot)
         assert not seen.pixels.any(), "a picture is still in sight"
-        assert any("ENOSPC:No space left" in notice.message for notice in lab(pilot)._notifications)
+        assert any("ENOSPC:No space left" in message for message in notices(lab(pilot)))
 
 
 async def test_one_key_switches_to_characters_and_back() -> None:

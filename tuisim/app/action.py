@@ -29,9 +29,6 @@ from tuisim.terminal.textual_internals import bindings_of, is_leaving
 ACT = "act"
 """Key of the style metadata that names the action of a clickable word."""
 
-CHARACTERS_A_SECOND = 25
-"""How fast a notice is read."""
-
 KeyWord = tuple[str, str]
 """The display name of a key, and what it does."""
 
@@ -189,9 +186,7 @@ class ActionHost(DOMNode):
 
     def say(self, text: str) -> None:
         """Show a short notice, as long as it takes to read."""
-        self.app.notify(
-            self.with_keys(text), timeout=max(3, len(text) / CHARACTERS_A_SECOND), markup=False
-        )
+        self.app.notify(self.with_keys(text), markup=False)
 
     def with_keys(self, text: str) -> str:
         """Return a text with the key of each action in place of its id in braces, such as `{run}`."""

@@ -287,8 +287,7 @@ class DebugController:
             return
         self._panels_opened = True
         for panel in ("code", "debug"):
-            if not self._panel_area.shown(panel):
-                self._panel_area.toggle(panel)
+            self._panel_area.open(panel)
         # The arrow keys are for what is read now; a field that is typed into keeps them.
         if self._panel_area.focused_panel() in ("", "world"):
             self._app.call_after_refresh(self._panel_area.attend, "code")

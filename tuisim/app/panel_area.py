@@ -11,7 +11,7 @@ from textual.dom import DOMNode
 from textual.message import Message
 from textual.widget import Widget
 
-from tuisim.app.action import label_of_key
+from tuisim.app.action import label_of_key, with_keys_of
 from tuisim.app.layout.arrangement import (
     KeptLayout,
     Preset,
@@ -346,12 +346,16 @@ class PanelArea(Container):
                 styles = self._panel(panel).styles
                 styles.width, styles.height = box.width, box.height
                 styles.offset = (box.x, box.y)
+        if self.world:
+            is_usual = self.preset == Preset.STANDARD
+            key = with_keys_of(self.app, f"{{layout-{self.preset}}}")
+            self.world.name_layout("" if is_usual else f"{key} {self.preset}")
         self.post_message(self.Rearranged())
 
     def _panel(self, panel: str) -> Widget:
         if panel not in self.panels:
             widget = cast(Widget, PANELS[panel].load()())
-            widget.border_title = PANELS[panel].title
+            widget.border_title = PANELS[panel].titled(self.app)
             widget.add_class("panel")
             self.panels[panel] = widget
             self.mount(widget)

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 from rich.control import Control
 from textual import events, on
 from textual.geometry import Size
+from textual.notifications import SeverityLevel
 from textual.screen import Screen
 from textual.theme import Theme
 
@@ -19,6 +20,7 @@ from tuisim import palette
 from tuisim.app import background
 from tuisim.app.action import ActionHost, KeyFooter, with_keys_of
 from tuisim.app.dialogs.dialog import ClosesOnce, Dialog
+from tuisim.app.notices import Notice, Notices
 from tuisim.app.themes import (
     HIGH_CONTRAST,
     LIGHT,
@@ -90,6 +92,8 @@ class TerminalApp(BufferedApp):
 
     def __init__(self, picture_mode: PictureMode | None = None) -> None:
         super().__init__(picture_mode)
+        self.notices = Notices(self)
+        """What the user is told."""
         self.too_small: Size | None = None
         """Size of a terminal that is too small, else None."""
         for theme in (HIGH_CONTRAST, LIGHT):
@@ -141,6 +145,32 @@ class TerminalApp(BufferedApp):
 
         return ThemeChooser(theme_names(), self.theme, partial(setattr, self, "theme"))
 
+    def notify(
+        self,
+        message: str,
+        *,
+        title: str = "",
+        severity: SeverityLevel = "information",
+        timeout: float | None = None,
+        markup: bool = False,
+    ) -> None:
+        """Tell the user something, in a row on the lower edge of the panels; always as it is, without markup.
+
+        Args:
+            message: What.
+            title: Comes before it.
+            severity: An error stays until it can have been read.
+            timeout: How long it is shown at least, in seconds; None for the usual time.
+            markup: Not used.
+        """
+        text = f"{title}: {message}" if title else message
+        shown_s = self.NOTIFICATION_TIMEOUT if timeout is None else timeout
+        self.notices.add(Notice(text, severity, shown_s))
+
+    def clear_notifications(self) -> None:
+        """Forget what the user was told."""
+        self.notices.clear()
+
     async def on_event(self, event: events.Event) -> None:
         """Lay out for the minimum size at least; ignore clicks on cells outside the terminal."""
         if isinstance(event, events.Resize):
@@ -182,6 +212,7 @@ class TerminalApp(BufferedApp):
     @on(ClosesOnce.Changed)
     async def give_waiting_keys(self) -> None:
         """Pass the keys that were pressed while a screen was being opened to the topmost screen."""
+        self.notices.follow_screen()
         await self._input.go_on()
 
     @on(ClosesOnce.Changed)

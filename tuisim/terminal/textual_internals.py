@@ -341,6 +341,15 @@ def is_leaving(app: App[Any]) -> bool:
     return bool(getattr(app, "_exit", False))
 
 
+NOTICE_LAYER = "_toastrack"
+"""The layer above all others, which an app has that shows notices."""
+
+
+def shows_notices(app: App[Any]) -> bool:
+    """Return whether an app shows notices; one without a terminal may not."""
+    return not getattr(app, "_disable_notifications", False)
+
+
 def app_of(driver: Driver) -> App[Any]:
     """Return the app that a driver draws."""
     return driver._app

@@ -12,7 +12,7 @@ import pytest
 from textual.pilot import Pilot
 from textual.widgets import Input
 
-from tests.app.app_help import LOGS, program, ready, until
+from tests.app.app_help import LOGS, notices, program, ready, until
 from tuisim.analysis.model import Model
 from tuisim.analysis.source import NOTES_FILE, LogRequest, read_notes
 from tuisim.app.analyser.actions.keys import ACTIONS
@@ -317,7 +317,7 @@ async def test_how_a_file_was_read_is_said_once(tmp_path: Path) -> None:
     async with open_analyser(file=str(file), size=(80, 24)) as (pilot, screen, _):
         await until(pilot, lambda: screen.model.opened.done)
         await pilot.pause()
-        said = [str(notice.message) for notice in pilot.app._notifications]
+        said = notices(pilot.app)
         assert (
             said == [*screen.model.log.notes]
             and "3 numbers: they are read as one column" in said[0]

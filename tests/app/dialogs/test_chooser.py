@@ -7,9 +7,10 @@ from pathlib import Path
 import pytest
 from textual.app import App
 from textual.widgets import Input, OptionList, Static
-from textual.widgets._toast import Toast
 
 from tuisim.app.dialogs.chooser import ChoiceGroup, Chooser, files_here
+from tuisim.app.notices import NoticeRow
+from tuisim.app.terminal_app import TerminalApp
 from tuisim.errors import ConfigError
 
 GROUPS = [
@@ -156,10 +157,10 @@ def test_the_second_file_of_an_export_is_not_listed(
 
 
 async def test_what_was_said_before_covers_no_row_of_it() -> None:
-    app: App[None] = App()
+    app = TerminalApp()
     async with app.run_test(notifications=True) as pilot:
         app.notify("said before")
         await pilot.pause()
         app.push_screen(Chooser("Open", [ChoiceGroup("", [("a.py", "a.py", "first")])]))
         await pilot.pause()
-        assert not app.screen.query(Toast)
+        assert not [row for screen in app.screen_stack for row in screen.query(NoticeRow)]

@@ -157,7 +157,7 @@ class Code(Vertical):
 
     def set_title(self, name: str, edited: bool = False) -> None:
         """Show the name of the program, and whether it has unsaved changes."""
-        self._said = (_INFO.titled(name), " • edited" if edited else "")
+        self._said = (_INFO.titled(self.app, name), " • edited" if edited else "")
         self._say()
 
     @property

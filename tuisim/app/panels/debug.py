@@ -19,7 +19,7 @@ from tuisim.terminal.text_runs import Line
 if TYPE_CHECKING:
     from tuisim.protocol import Paused
 
-_TITLE = PANELS["debug"].title
+_INFO = PANELS["debug"]
 
 
 class Debug(LinesPanel, can_focus=True):
@@ -93,7 +93,7 @@ class Debug(LinesPanel, can_focus=True):
         )
         self._top = max(0, min(self._top, len(self._lines) - size.height))
         below = len(self._lines) - self._top - size.height
-        self.border_title = f"{_TITLE} ↓{below}" if below > 0 else _TITLE
+        self.border_title = _INFO.titled(self.app) + (f" ↓{below}" if below > 0 else "")
         self._text.set_lines(self._lines[self._top : self._top + size.height])
 
     def action_scroll_lines(self, by: int) -> None:

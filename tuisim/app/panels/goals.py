@@ -14,7 +14,7 @@ from tuisim.terminal.cell_view import LinesPanel
 if TYPE_CHECKING:
     from tuisim.app.snapshot import Snapshot
 
-_TITLE = PANELS["goals"].title
+_INFO = PANELS["goals"]
 
 
 class Goals(LinesPanel, can_focus=True):
@@ -85,7 +85,8 @@ class Goals(LinesPanel, can_focus=True):
         self._picture = draw_goals(
             self._content, states, self._at, self._first, size.width, size.height
         )
-        self.border_title = f"{_TITLE} ↓{self._picture.below}" if self._picture.below else _TITLE
+        below = f" ↓{self._picture.below}" if self._picture.below else ""
+        self.border_title = _INFO.titled(self.app) + below
         self._text.set_lines(self._picture.lines)
 
     def _show_subtitle(self) -> None:

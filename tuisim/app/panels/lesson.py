@@ -15,7 +15,7 @@ from tuisim.terminal.text_runs import as_markup
 if TYPE_CHECKING:
     from tuisim.app.snapshot import Snapshot
 
-_TITLE = PANELS["lesson"].title
+_INFO = PANELS["lesson"]
 
 
 class LessonPanel(LinesPanel, can_focus=True):
@@ -88,7 +88,9 @@ class LessonPanel(LinesPanel, can_focus=True):
 
     def _show_subtitle(self) -> None:
         below = self._picture.below
-        title = f"{_TITLE} ↓{below}" if below else _TITLE
+        # Above a log, the key that hides it does something else.
+        title = _INFO.title if self._is_brief else _INFO.titled(self.app)
+        title += f" ↓{below}" if below else ""
         if title != self.border_title:
             self.border_title = title
         key = "{lesson-back} {lesson-on} read on" if self._is_typing else "{lesson-down} reads on"

@@ -70,7 +70,7 @@ class Output(Vertical):
     def set_program(self, name: str) -> None:
         """Show the name of the program whose output this is."""
         if name != self._program_name:
-            self._program_name, self.border_title = name, _INFO.titled(name)
+            self._program_name, self.border_title = name, _INFO.titled(self.app, name)
 
     def clear(self) -> None:
         """Remove every line."""

@@ -8,6 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+from rich.cells import cell_len
 from textual import events
 from textual.app import ComposeResult
 from textual.message import Message
@@ -97,6 +98,7 @@ class World(Widget, can_focus=True):
         self._snapshot: Snapshot | None = None
         self._mat = ""
         """Name of the mat."""
+        self._layout_words = ""
         self.time_bar = TimeBar()
         """Shows the instant of the readings."""
 
@@ -132,7 +134,18 @@ class World(Widget, can_focus=True):
         self._view.repaint_scene()
 
     def _say(self) -> None:
-        self.border_title = _INFO.titled(self._mat) + (f" {self.zoom}×" if self.zoom > 1 else "")
+        name = self._mat + (f" {self.zoom}×" if self.zoom > 1 else "")
+        words = self._layout_words
+        room = self.size.width - _FRAME - cell_len(f"{_INFO.key} {_INFO.title}: ")
+        wordings = (f"{name} · {words}", words) if words else ()
+        fitting = (wording for wording in wordings if cell_len(wording) <= room)
+        self.border_title = _INFO.titled(self.app, next(fitting, name))
+
+    def name_layout(self, words: str) -> None:
+        """Name the layout of the panels beside the mat; empty for the standard one."""
+        if words != self._layout_words:
+            self._layout_words = words
+            self._say()
 
     def _say_below(self) -> None:
         """Say below the picture what the mouse does, where a robot is that is not seen, or what the others are."""
@@ -144,6 +157,7 @@ class World(Widget, can_focus=True):
             self.border_subtitle = words
 
     def on_resize(self) -> None:
+        self._say()
         self._say_below()
 
     def cycle_zoom(self) -> None:

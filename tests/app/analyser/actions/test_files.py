@@ -12,7 +12,7 @@ import pytest
 from textual.pilot import Pilot
 from textual.widgets import Input, Static
 
-from tests.app.app_help import until
+from tests.app.app_help import notices, until
 from tuisim.analysis.source import LogRequest
 from tuisim.app.analyser.app import Analyser, AnalyserApp
 from tuisim.app.dialogs.save import FileDialog
@@ -68,7 +68,7 @@ async def test_everything_leaves_as_it_is_shown(run: StoredRun, tmp_path: Path) 
         await until(pilot, lambda: page.exists() and rows.exists())
         await until(
             pilot,
-            lambda: "Report saved to" in "".join(note.message for note in pilot.app._notifications),
+            lambda: "Report saved to" in "".join(notices(pilot.app)),
         )
     frame = samples_frame([run])
     pd.testing.assert_frame_equal(read_log(rows), frame, check_exact=True)

@@ -10,7 +10,7 @@ import pytest
 
 from tests.app.analyser.test_panes import stepped
 from tests.app.analyser.test_screen import open_analyser, text_of, typed
-from tests.app.app_help import until
+from tests.app.app_help import notices, until
 from tuisim.analysis.model import Model
 from tuisim.analysis.source import LogRequest
 from tuisim.analysis.table import TableTask
@@ -46,7 +46,7 @@ async def test_long_logs_are_worked_on_beside_the_screen(
             assert so(model), keys
         await typed(pilot, "slash", "=nowhere at all", "enter")
         await until(
-            pilot, lambda: any("was not found" in told.message for told in pilot.app._notifications)
+            pilot, lambda: any("was not found" in message for message in notices(pilot.app))
         )
         old, new = TableTask("older"), TableTask("newer")
         screen.begin(old)

@@ -1,0 +1,43 @@
+"""What is told, in which order, and in which parts."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.app.app_help import notices, until
+from tuisim.app.notices import NoticeRow, split_message
+from tuisim.app.terminal_app import TerminalApp
+
+LONG = "words of an error that names a file and a key, and says what is allowed"
+
+
+@pytest.mark.parametrize("columns", [20, 40, 71, 200])
+def test_a_message_is_shown_whole_part_by_part(columns: int) -> None:
+    parts = split_message(LONG, columns)
+    assert all(len(part) <= columns for part in parts)
+    assert " ".join(part.removesuffix(" …") for part in parts) == LONG
+    assert all(part.endswith(" …") for part in parts[:-1])
+
+
+def test_lines_become_one() -> None:
+    assert split_message("one\n  two", 40) == ["one two"]
+
+
+async def test_an_error_stays_until_it_is_read_and_the_newest_notice_follows() -> None:
+    app = TerminalApp()
+    async with app.run_test(notifications=True) as pilot:
+        app.notify("wrong", severity="error", timeout=8)
+        app.notify("first")
+        app.notify("second [not markup]")
+        await until(
+            pilot, lambda: [row.notice.message for row in app.query(NoticeRow)] == ["wrong"]
+        )
+        assert notices(app) == ["wrong", "first", "second [not markup]"]
+        await pilot.click(NoticeRow)
+        await until(
+            pilot,
+            lambda: [row.notice.message for row in app.query(NoticeRow)] == ["second [not markup]"],
+        )
+        app.clear_notifications()
+        await until(pilot, lambda: not app.query(NoticeRow))
+        assert notices(app) == []

@@ -1,0 +1,168 @@
+"""Notices: one row on the lower edge of the panels, which shows one message at a time and covers no text."""
+
+from __future__ import annotations
+
+import time
+from collections import deque
+from collections.abc import Callable
+from math import inf
+from textwrap import wrap
+from typing import Any
+
+from textual.app import App
+from textual.notifications import SeverityLevel
+from textual.widgets import Static
+
+from tuisim.data_class import dataclass
+from tuisim.terminal.textual_internals import NOTICE_LAYER, is_leaving, shows_notices
+
+CHARACTERS_A_SECOND = 25
+"""How fast a notice is read."""
+_MIN_PART_S = 2.5
+_MORE = " …"
+"""At the end of a part that another one follows."""
+_EDGES = 3
+"""Columns of the row beside its text."""
+
+
+@dataclass(frozen=True, slots=True)
+class Notice:
+    """A message to the user."""
+
+    message: str
+    severity: SeverityLevel
+    timeout_s: float
+    """How long it is shown; longer if it takes longer to read."""
+
+
+def split_message(message: str, columns: int) -> list[str]:
+    """Return the parts of a message that are shown one after the other, each in that many columns."""
+    columns = max(columns, len(_MORE) + 1)
+    text = " ".join(message.split())
+    if len(text) <= columns:
+        return [text]
+    parts = wrap(text, columns - len(_MORE))
+    return [part + _MORE for part in parts[:-1]] + parts[-1:]
+
+
+class NoticeRow(Static):
+    """The row of a notice; long ones follow part by part.
+
+    Args:
+        notice: What it shows.
+        ended: Called once all of it has been shown, or a click has closed it.
+    """
+
+    DEFAULT_CSS = f"""
+    NoticeRow {{
+        layer: {NOTICE_LAYER};
+        dock: bottom;
+        width: auto;
+        max-width: 100%;
+        height: 1;
+        margin-bottom: 1;
+        padding: 0 1;
+        background: $panel-lighten-1;
+        text-wrap: nowrap;
+        text-overflow: ellipsis;
+        border-left: outer $success;
+    }}
+    NoticeRow.-warning {{ border-left: outer $warning; }}
+    NoticeRow.-error {{ border-left: outer $error; }}
+    """
+    ALLOW_SELECT = False
+
+    def __init__(self, notice: Notice, ended: Callable[[], None]) -> None:
+        super().__init__(markup=False, classes=f"-{notice.severity}")
+        self.notice = notice
+        self._ended = ended
+        self._parts: deque[str] = deque()
+        self._part_until_s = inf
+
+    @property
+    def is_read(self) -> bool:
+        """Whether the user has had the time to read all of it."""
+        return not self._parts and time.monotonic() >= self._part_until_s
+
+    def on_mount(self) -> None:
+        self._parts.extend(split_message(self.notice.message, self.app.size.width - _EDGES))
+        self._show_next()
+
+    def on_click(self) -> None:
+        """Close it."""
+        self._ended()
+
+    def _show_next(self) -> None:
+        if not self._parts:
+            self._ended()
+            return
+        part = self._parts.popleft()
+        self.update(part)
+        reading_s = max(_MIN_PART_S, len(part) / CHARACTERS_A_SECOND)
+        self._part_until_s = time.monotonic() + reading_s
+        shown_s = reading_s if self._parts else max(reading_s, self.notice.timeout_s)
+        self.set_timer(shown_s, self._show_next)
+
+
+class Notices:
+    """The notices of an app: the newest replaces the one that is shown, unless that is an error nobody can have read.
+
+    Args:
+        app: On whose topmost screen they are shown.
+    """
+
+    def __init__(self, app: App[Any]) -> None:
+        self._app = app
+        self._row: NoticeRow | None = None
+        self._waiting: deque[Notice] = deque()
+        self._told: list[tuple[float, Notice]] = []
+
+    def add(self, notice: Notice) -> None:
+        """Show a notice as soon as its turn comes."""
+        now_s = time.monotonic()
+        self._told = [(until_s, one) for until_s, one in self._told if until_s > now_s]
+        reading_s = len(notice.message) / CHARACTERS_A_SECOND
+        self._told.append((now_s + max(notice.timeout_s, reading_s), notice))
+        if notice.severity != "error":
+            self._waiting = deque(one for one in self._waiting if one.severity == "error")
+        self._waiting.append(notice)
+        self._app.call_later(self._take_turn)
+
+    def messages(self) -> list[str]:
+        """Return the messages whose time has not passed."""
+        now_s = time.monotonic()
+        return [notice.message for until_s, notice in self._told if until_s > now_s]
+
+    def clear(self) -> None:
+        """Forget all notices."""
+        self._waiting.clear()
+        self._told.clear()
+        self._remove_row()
+
+    def follow_screen(self) -> None:
+        """Show the notice on the topmost screen: the one that it was on has been closed."""
+        row = self._row
+        if row is not None and not row.is_attached:
+            self._row = None
+            self._waiting.appendleft(row.notice)
+            self._take_turn()
+
+    def _take_turn(self) -> None:
+        if is_leaving(self._app) or not shows_notices(self._app) or not self._app.screen_stack:
+            return
+        row = self._row
+        if row is not None and row.notice.severity == "error" and not row.is_read:
+            return
+        if self._waiting:
+            self._remove_row()
+            self._row = NoticeRow(self._waiting.popleft(), self._end_turn)
+            self._app.screen.mount(self._row)
+
+    def _end_turn(self) -> None:
+        self._remove_row()
+        self._take_turn()
+
+    def _remove_row(self) -> None:
+        if self._row is not None and self._row.is_attached:
+            self._row.remove()
+        self._row = None
