@@ -623,6 +623,7 @@ class LabApp(PanelMessages):
         if isinstance(event.widget, Widget) and not event.widget.can_focus and not in_a_dialog:
             # The instant in view stays: a drag along the timeline ends with a click, too.
             self.panel_area.focus_world()
+            self.panel_area.clicked = self.panel_area.panel_around(event.widget)
 
 
 def _footed(state: AppState) -> tuple[Any, ...]:

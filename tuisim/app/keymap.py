@@ -27,7 +27,7 @@ _TAKEN = {
     "ctrl+c": "copies",
     "ctrl+q": "quits",
 }
-"""Keys that are no lines of the table, and what they do."""
+"""Keys that no other action can have, and what they do."""
 _SAME = {
     "ctrl+i": "tab",
     "ctrl+m": "enter",

@@ -105,6 +105,8 @@ class PanelArea(Container):
         self.preset = self._kept_preset = Preset.STANDARD
         self.alone = ""
         """Id of the maximized panel, empty for none."""
+        self.clicked = ""
+        """The panel clicked last, if it cannot have the focus, until another one gets it."""
         self.front = "world"
         """The panel shown last or with the focus, which is shown where there is room for one only."""
         self._is_loaded = False
@@ -208,9 +210,18 @@ class PanelArea(Container):
 
     def focused_panel(self) -> str:
         """Return the panel that has the focus, or an empty text."""
-        focused = self.screen.focused
-        around = focused.ancestors_with_self if focused else []
-        return next((name for name, widget in self.panels.items() if widget in around), "")
+        return self.panel_around(self.screen.focused)
+
+    def panel_around(self, widget: Widget | None) -> str:
+        """Return the panel that a widget is in, or an empty text."""
+        around = widget.ancestors_with_self if widget else []
+        return next((name for name, panel in self.panels.items() if panel in around), "")
+
+    def pointed_panel(self) -> str:
+        """Return the panel that was clicked last if it cannot have the focus, else the one with the focus."""
+        if self.clicked and self.shown(self.clicked):
+            return self.clicked
+        return self.focused_panel() or (self.alone or "world")
 
     def focused_widgets(self) -> list[DOMNode]:
         """Return the widget with the focus and those around it, up to its panel."""
@@ -433,6 +444,8 @@ class PanelArea(Container):
         for panel in self.panels.values():
             panel.set_class(panel in around, "-focused")
         self.front = self.focused_panel() or self.front
+        if self.front != "world":
+            self.clicked = ""
 
     def show(self, snapshot: Snapshot) -> None:
         """Show a moment in every panel on the screen; the readings follow a few times per second, all together."""

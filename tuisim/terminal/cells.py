@@ -9,8 +9,16 @@ from typing import TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from tuisim.terminal.fitted_cells import CellIndex, Cells
-from tuisim.terminal.glyphs import BRAILLE_FROM, Covered, GlyphSet, nearest_signs, sign_number
+from tuisim.terminal.fitted_cells import CellIndex, Cells, all_cells
+from tuisim.terminal.glyphs import (
+    BRAILLE_FROM,
+    GLYPHS,
+    Covered,
+    GlyphSet,
+    glyph_set,
+    nearest_signs,
+    sign_number,
+)
 from tuisim.terminal.picture_options import CellSet
 from tuisim.terminal.pixels import Pixels, channels_of, packed_rgb
 
@@ -253,6 +261,14 @@ def mono_cells(picture: Pixels, glyphs: GlyphSet, at: CellIndex, cell_set: CellS
         numbers = np.where(even, ramp[steps], nearest_signs(ink))
     cells: Cells = numbers.astype(np.int64) << 48 | _INK_ON_PAPER
     return cells
+
+
+def mono_rows(picture: Pixels, cell_set: CellSet) -> list[str]:
+    """Return an image as rows of characters without colours; it has the points of these glyphs."""
+    glyphs = glyph_set(cell_set)
+    shape = len(picture) // glyphs.rows, picture.shape[1] // glyphs.cols
+    cells = mono_cells(picture, glyphs, all_cells(*shape), cell_set).reshape(shape)
+    return ["".join(GLYPHS[cell >> 48] for cell in row).rstrip() for row in cells.tolist()]
 
 
 def sign_cell(sign: str) -> int:

@@ -36,6 +36,19 @@ def enlarge(context: ActionContext) -> None:
         context.app.say("No panel has the focus: press tab, or click a panel")
 
 
+def copy(context: ActionContext) -> None:
+    """Send the text of the panel with the focus, or of the one that was clicked, to the terminal's clipboard."""
+    from tuisim.app.clipboard import describe_copy, find_copied
+
+    panel = context.panels.pointed_panel()
+    copied = find_copied(context.panels, panel)
+    if not copied.text:
+        context.app.say(f"{copied.name}: nothing to copy")
+        return
+    context.app.copy_to_clipboard(copied.text)
+    context.app.say(describe_copy(panel, copied))
+
+
 def choose_preset(context: ActionContext, preset: Preset) -> None:
     """Show the panels of a preset; if it is shown already, the standard ones."""
     shown = context.panels.choose_preset(preset)

@@ -362,6 +362,7 @@ _WORDS: Mapping[str, str] = {
     "go-to": "jump search find time past instant sensor column first",
     "enlarge": "maximise full screen zoom",
     "screenshot": "picture image capture",
+    "copy": "clipboard output error readings chart value panel picture text",
     "new": "create template skeleton",
 }
 """Further words by which the command palette finds actions, by id."""
@@ -568,6 +569,7 @@ ACTIONS: Mapping[str, LabAction] = {
         Action("cells", "V", "Glyphs of the world: choose by eye", APP, app.choose_cells),
         Action("theme", "f10", "Theme: light, high contrast and others", APP, app.choose_theme),
         Action("settings", "asterisk", "Settings: your own defaults", APP, app.open_settings),
+        Action("copy", "ctrl+c", "Copy what has the focus, or was clicked", APP, app.copy),
         Action("redraw", "ctrl+l", "Redraw a screen that other output overwrote", APP, app.redraw),
         Action("screenshot", "I,f12", _SCREENSHOT, APP, app.save_screen, shown_key="I"),
         Action("suspend", "ctrl+z", "Suspend; fg in the shell resumes", APP, app.suspend),

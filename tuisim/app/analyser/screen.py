@@ -393,7 +393,7 @@ class LogScreen(ActionHost, ClosesOnce[None]):
     def copy(self, text: str, what: str) -> None:
         """Copy a text to the clipboard of the user's terminal."""
         self.app.copy_to_clipboard(text)
-        self.say(f"Copied: {what}")
+        self.say(f"{what}: sent to the terminal's clipboard. {{export}} writes a file")
 
     # Background work
 

@@ -12,6 +12,7 @@ from textual.binding import Binding, BindingType
 from textual.message import Message
 
 from tuisim.app.action import KeyWord
+from tuisim.app.clipboard import Copied
 from tuisim.app.plot_view import PlotView
 from tuisim.app.snapshot import AT_REST, CHART_PERIOD_S, RunPhase, Snapshot
 from tuisim.charts import axes
@@ -25,6 +26,9 @@ from tuisim.terminal.cell_view import LinesPanel
 from tuisim.terminal.pacer import Throttle
 from tuisim.terminal.picture_mode import shows_ascii
 from tuisim.terminal.text_runs import Run, as_markup
+
+_VALUE_COLS = 40
+"""More than a value with its unit takes."""
 
 
 class Chart(LinesPanel, can_focus=True):
@@ -274,6 +278,15 @@ class Chart(LinesPanel, can_focus=True):
         # Each assignment draws the panel again.
         if said != self.border_subtitle:
             self.border_subtitle = said
+
+    def copy_text(self) -> Copied | None:
+        """Return the values of all traces at the pointer, or at the cursor; without both, None."""
+        time_s = self._state.cursor_s if self._pointed_s is None else self._pointed_s
+        drawn = self._traces.drawn()
+        if time_s is None or not drawn:
+            return None
+        width = sum(len(trace.name) + _VALUE_COLS for trace in drawn) + _VALUE_COLS
+        return Copied("Values of the chart", values_at(drawn, time_s, self._state.unit, width))
 
     def on_mouse_up(self, event: events.MouseUp) -> None:
         if self._dragging:

@@ -17,6 +17,7 @@ from textual.widgets import TextArea
 from textual.widgets.text_area import Selection
 
 from tuisim.app.action import with_keys_of
+from tuisim.app.clipboard import Copied
 from tuisim.app.editor.area import FIND, LINE, CodeArea, EditorCommand, FindBar
 from tuisim.app.editor.assistant import Assistant
 from tuisim.app.editor.candidate_list import CandidateList
@@ -292,6 +293,12 @@ class Code(Vertical):
                 shown: found for line, found in of_run.items() if (shown := self._line_shown(line))
             }
         self._area.set_values(values)
+
+    def copy_text(self) -> Copied:
+        """Return what is wrong with the program, if the panel says so, else its text."""
+        if self.error_line and self._error_words:
+            return Copied("Error", f"line {self.error_line}: {self._error_words}")
+        return Copied("Program", self._area.program_text)
 
     def page(self, by: int) -> None:
         """Move the cursor a page down, or up if `by` is negative."""

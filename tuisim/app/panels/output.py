@@ -20,6 +20,7 @@ from textual.widget import Widget
 from textual.widgets import Input, Static
 
 from tuisim.app.action import with_keys_of
+from tuisim.app.clipboard import Copied
 from tuisim.app.panels import PANELS
 from tuisim.app.snapshot import RunPhase, Snapshot
 from tuisim.data_class import dataclass
@@ -71,6 +72,10 @@ class Output(Vertical):
         """Show the name of the program whose output this is."""
         if name != self._program_name:
             self._program_name, self.border_title = name, _INFO.titled(self.app, name)
+
+    def copy_text(self) -> Copied:
+        """Return the lines of the instant in view, also those above the panel."""
+        return Copied(_INFO.title, (self._log if self._log.display else self._past_log).text)
 
     def clear(self) -> None:
         """Remove every line."""
@@ -228,6 +233,11 @@ class Log(Widget, can_focus=True):
         if words != self._empty_words:
             self._empty_words = words
             self._update()
+
+    @property
+    def text(self) -> str:
+        """The rows that are kept, whole."""
+        return "\n".join(plain(line_of(row)) for row in self._rows)
 
     def clear(self) -> None:
         """Remove every line."""

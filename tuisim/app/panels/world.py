@@ -14,7 +14,9 @@ from textual.app import ComposeResult
 from textual.message import Message
 from textual.widget import Widget
 
+from tuisim.app.clipboard import Copied
 from tuisim.app.panels import PANELS
+from tuisim.app.panels.instrumentation import lines
 from tuisim.app.panels.obstacles import BoxGrip, box_at
 from tuisim.app.panels.pose_grip import PoseGrip
 from tuisim.app.panels.time_bar import TimeBar
@@ -30,7 +32,8 @@ from tuisim.scene.pen import PenTrace, Piece
 from tuisim.scene.robot import drawn_scale
 from tuisim.scene.view import ZOOMS, Viewport, following
 from tuisim.terminal.cell_view import PixelView
-from tuisim.terminal.cells import MONO
+from tuisim.terminal.cells import MONO, mono_rows
+from tuisim.terminal.glyphs import glyph_set
 from tuisim.terminal.picture_mode import BLOCKS
 from tuisim.terminal.picture_options import CellSet
 from tuisim.terminal.pixels import CellPoints, Pixels
@@ -49,6 +52,8 @@ _INFO = PANELS["world"]
 _PIVOT, _GHOST_PIVOT = "O", "x"
 _ANY_PEN = PenSpec()
 
+_READING_COLS = 60
+"""Columns of the readings below a copied picture."""
 _FRAME = 4
 """Cells of the frame beside what it says."""
 _LEGEND_COLS = 22
@@ -192,6 +197,15 @@ class World(Widget, can_focus=True):
             past.add(Piece.of(np.array(points_mm[0]), np.array(points_mm[1]), pen))
         self._view.past_trace = past
         self._view.repaint_scene()
+
+    def copy_text(self) -> Copied | None:
+        """Return the picture in characters without colours, and the readings below it."""
+        now, rows = self._snapshot, self._view.text_rows()
+        if now is None or not rows:
+            return None
+        readings = ("".join(text for text, _ in line) for line in lines(now, _READING_COLS, 3))
+        text = [f"{self._mat}, {now.time_s:.2f} s", *rows, *(line.rstrip() for line in readings)]
+        return Copied("Picture and readings", "\n".join(text))
 
     def show(self, snapshot: Snapshot) -> None:
         """Show a moment."""
@@ -351,6 +365,30 @@ class WorldView(PixelView):
             whole_cells=in_cells and self.cell_set not in BLOCKS,
             has_floor=self._has_floor,
         )
+
+    def text_rows(self) -> list[str]:
+        """Return the picture as rows of characters without colours; none before it is drawn."""
+        now, mat = self._snapshot, self._mat
+        if now is None or mat is None or not self.size:
+            return []
+        cell_set = CellSet.ASCII if self.cell_set is CellSet.ASCII else CellSet.BRAILLE
+        glyphs = glyph_set(cell_set)
+        cell = CellPoints(glyphs.cols, glyphs.rows)
+        scene, on_floor = self._scene_of(now), now.spec.world.is_open
+        width_px, height_px = cell.cols * self.size.width, cell.rows * self.size.height
+        port = following(width_px, height_px, self.zoom, scene.pose, None, cell, on_floor=on_floor)
+        trace = self.trace if self.past_trace is None else self.past_trace
+        painter = ScenePainter(
+            mat,
+            _PAPER,
+            trace,
+            grey=True,
+            mono=True,
+            coarse=True,
+            whole_cells=True,
+            has_floor=on_floor,
+        )
+        return mono_rows(painter.paint(port, scene), cell_set)
 
     def redraw(self) -> None:
         """Draw the image again: the app's glyphs or colours have changed."""

@@ -39,7 +39,7 @@ def copy_value(screen: LogScreen) -> None:
 def copy_row(screen: LogScreen) -> None:
     """Copy the row of the cursor, with tabs between the cells."""
     rows, row = screen.model.rows, screen.model.row
-    screen.copy("\t".join(rows.text(row, column) for column in rows.columns), f"row {row + 1}")
+    screen.copy("\t".join(rows.text(row, column) for column in rows.columns), f"Row {row + 1}")
 
 
 def copy_pane(screen: LogScreen) -> None:
@@ -48,7 +48,7 @@ def copy_pane(screen: LogScreen) -> None:
     if name != "table":
         pane = PANES[name]
         lines = ["\t".join(row) for row in (pane.heads, *pane.rows(model))]
-        screen.copy("\n".join([*lines, *pane.below(model)]), pane.title.lower())
+        screen.copy("\n".join([*lines, *pane.below(model)]), pane.title)
         return
     rows = model.rows
     if len(rows) > MOST_COPIED:

@@ -257,7 +257,16 @@ ACTIONS: Mapping[str, LogAction] = {
             lambda screen: screen.model.rows.freeze(),
             _rows,
         ),
-        Action("copy", "y", "Copy the value", FILES, files.copy_value, _rows, "copy"),
+        Action(
+            "copy",
+            "y,ctrl+c",
+            "Copy the value",
+            FILES,
+            files.copy_value,
+            _rows,
+            "copy",
+            footer_key="y",
+        ),
         Action("copy-row", "Y", "Copy the row", FILES, files.copy_row, _rows),
         Action(
             "copy-pane",

@@ -1,0 +1,66 @@
+"""What `ctrl+c` copies: the text of what has the focus, in the form in which it is read elsewhere."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Protocol, runtime_checkable
+
+from textual.widget import Widget
+
+from tuisim.app.panels import PANELS
+from tuisim.data_class import dataclass
+from tuisim.terminal.textual_internals import screen_strips
+
+if TYPE_CHECKING:
+    from tuisim.app.panel_area import PanelArea
+
+_WRITES: Mapping[str, str] = {
+    "code": "save-program",
+    "output": "export",
+    "chart": "export",
+    "instrumentation": "export",
+    "arrays": "export",
+}
+"""The action that writes a file of what a panel shows, by panel."""
+_PICTURE = "screenshot"
+"""The action for all other panels."""
+
+
+@dataclass(frozen=True, slots=True)
+class Copied:
+    """A text for the clipboard."""
+
+    name: str
+    """What it is, in words."""
+    text: str
+
+
+@runtime_checkable
+class CopiedPanel(Protocol):
+    """The additional interface of a panel that knows better what to copy than what is on the screen."""
+
+    def copy_text(self) -> Copied | None:
+        """Return what is copied now; None for the panel's text on the screen."""
+
+
+def find_copied(area: PanelArea, panel: str) -> Copied:
+    """Return what is copied of a panel on the screen."""
+    widget = area.panels[panel]
+    if isinstance(widget, CopiedPanel) and (own := widget.copy_text()):
+        return own
+    return Copied(PANELS[panel].title, "\n".join(read_rows(widget)))
+
+
+def describe_copy(panel: str, copied: Copied) -> str:
+    """Return what to tell: what was copied, and the action in braces that writes a file of it."""
+    action = _WRITES.get(panel, _PICTURE)
+    return f"{copied.name}: sent to the terminal's clipboard. {{{action}}} writes a file"
+
+
+def read_rows(widget: Widget) -> Sequence[str]:
+    """Return the rows of characters inside a widget's edges, without blanks at their ends."""
+    inside = widget.region.shrink((1, 1, 1, 1))
+    strips = screen_strips(widget.app)[inside.y : inside.bottom]
+    rows = [strip.crop(inside.x, inside.right).text.rstrip() for strip in strips]
+    last = max((at for at, row in enumerate(rows, 1) if row), default=0)
+    return rows[:last]
