@@ -156,7 +156,8 @@ async def test_an_error_is_shown_with_its_line() -> None:
     async with open_lab("print('A: 1')\nprint(nothing)\n", autorun=True) as (pilot, app):
         await until_state(pilot, RunPhase.ENDED)
         await until(pilot, lambda: all(words in screen_text(app) for words in ("NameError", "✗ 2")))
-        assert screen_text(app).count("Traceback") == 1
+        output = app.panel_area.output
+        assert output is not None and output.copy_text().text.count("Traceback") == 1
         await until(
             pilot,
             lambda: "name 'nothing' is not defined" in str(app.query_one(Code).border_subtitle),

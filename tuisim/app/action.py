@@ -220,6 +220,9 @@ TYPING_KEYS: tuple[KeyWord, ...] = (
 )
 """Keys while the user types in the program."""
 
+CLICKED_KEYS: tuple[KeyWord, ...] = (("letters", "edit"), ("esc", "keys"), ("^p", "all"))
+"""Keys after a click into the program: the next letter starts typing."""
+
 
 def panel_keys(focused: DOMNode | None) -> tuple[KeyWord, ...]:
     """Return the keys that a panel has for the footer, as `FOOTER_KEYS`, while the focus is in it; else nothing."""

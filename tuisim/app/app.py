@@ -17,7 +17,15 @@ from textual.widget import Widget
 from textual.widgets import Input
 
 from tuisim.app import reasons
-from tuisim.app.action import FIELD_KEYS, TYPING_KEYS, KeyFooter, KeyWord, key_bindings, panel_keys
+from tuisim.app.action import (
+    CLICKED_KEYS,
+    FIELD_KEYS,
+    TYPING_KEYS,
+    KeyFooter,
+    KeyWord,
+    key_bindings,
+    panel_keys,
+)
 from tuisim.app.actions import ActionContext, time_travel
 from tuisim.app.actions.files import welcome_at_start
 from tuisim.app.actions.keys import ACTIONS, PAGES, RUN_KEYS, TEXT_KEYS, footer_actions, working
@@ -335,6 +343,7 @@ class LabApp(PanelMessages):
 
     def run_changed(self, last_words: str = "", error_line: int = 0) -> None:
         """Prepare the panels for another run, which may have ended already with some last words."""
+        self.undo = None
         self._last_words = last_words
         self.feed.run_changed()
         self.panel_area.release_buttons()
@@ -439,6 +448,11 @@ class LabApp(PanelMessages):
             self.panel_area.output.note(self._last_words)
             self._last_words = ""
 
+    def show_log_again(self) -> None:
+        """Show what the run in view has written in output and chart again, after they were cleared."""
+        self.feed.begin_again()
+        self.draw(force=True)
+
     def _ask_user(self, prompt: str) -> None:
         self.panel_area.bring("output")
         if self.panel_area.output:
@@ -522,7 +536,13 @@ class LabApp(PanelMessages):
             code is not None and code.is_read,
         )
         return Situation(
-            phase, *facts, is_away, reads_code, self.has_pixels, self.context.reasons.are_of(runs)
+            phase,
+            *facts,
+            is_away,
+            reads_code,
+            self.has_pixels,
+            self.context.reasons.are_of(runs),
+            self.undo is not None,
         )
 
     @property
@@ -545,7 +565,7 @@ class LabApp(PanelMessages):
         if self.panel_area.is_single:
             names = ("panel-next", *names)
         actions = footer_actions(self.ACTIONS, names, state.situation, state.playing)
-        if (keys := self._field_keys()) in (FIELD_KEYS, TYPING_KEYS):
+        if (keys := self._field_keys()) in (FIELD_KEYS, TYPING_KEYS, CLICKED_KEYS):
             field = self.focused
             actions = [
                 one for one in actions if isinstance(field, NumberInput) and field.leaves(one.key)
@@ -562,6 +582,8 @@ class LabApp(PanelMessages):
         typing = (
             code is not None and code.typing and focused is not None and code in focused.ancestors
         )
+        if code is not None and code.awaits_letters:
+            return CLICKED_KEYS
         return TYPING_KEYS if typing else panel_keys(focused)
 
     # Panels

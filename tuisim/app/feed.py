@@ -81,6 +81,10 @@ class Feed:
         self._parts, self._charted = len(self.recording.plugged), 0
         return True
 
+    def chart_anew(self) -> None:
+        """Let the next call of `chart_series` begin with the first tick."""
+        self._charted = 0
+
     def chart_series(self, mat: Field) -> Series:
         """Return telemetry traces of the ticks since the last call; of a long stretch, only the first part."""
         run = self.recording
@@ -194,6 +198,15 @@ class PanelFeed:
         self._feed = Feed(recording) if recording else None
         self._uncharted.clear()
         self._panel_area.clear_log()
+
+    def begin_again(self) -> None:
+        """Pass on once more what the run in view has written so far; its trace stays as it is."""
+        recording = self._runs.timeline.recording
+        if recording is not None and self._feed is not None:
+            self._feed.chart_anew()
+            self._uncharted.clear()
+            self._panel_area.clear_log()
+            self.add_rows([*recording.rows.rows(0)])
 
     def add_rows(self, rows: list[OutputRow]) -> None:
         """Pass on what the program has written."""

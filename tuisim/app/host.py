@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from abc import abstractmethod
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from tuisim.app.action import ActionHost
@@ -15,6 +16,14 @@ if TYPE_CHECKING:
 class LabHost(ActionHost, TerminalApp):
     """Notices, dialogs and timers of an app with keys; and what changes its screen as a whole."""
 
+    undo: Callable[[], None] | None = None
+    """Takes back what the last key has changed at once; None if there is nothing to take back."""
+
+    def offer_undo(self, undo: Callable[[], None] | None) -> None:
+        """Offer a key that takes something back, until a run starts or another key changes something."""
+        self.undo = undo
+        self.situation_changed()
+
     @abstractmethod
     def situation_changed(self) -> None:
         """Update the footer: other keys may be available."""
@@ -22,6 +31,10 @@ class LabHost(ActionHost, TerminalApp):
     @abstractmethod
     def draw(self, force: bool = False) -> bool:
         """Show the instant in view in every panel. Return whether it differs from what they show already."""
+
+    @abstractmethod
+    def show_log_again(self) -> None:
+        """Show what the run in view has written in output and chart again, after they were cleared."""
 
     @abstractmethod
     def start_run(self, paused: bool = False) -> bool:

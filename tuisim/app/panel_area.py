@@ -218,10 +218,10 @@ class PanelArea(Container):
         return next((name for name, panel in self.panels.items() if panel in around), "")
 
     def pointed_panel(self) -> str:
-        """Return the panel that was clicked last if it cannot have the focus, else the one with the focus."""
+        """Return the panel that was clicked last if it cannot have the focus, else the one with the focus, if any."""
         if self.clicked and self.shown(self.clicked):
             return self.clicked
-        return self.focused_panel() or (self.alone or "world")
+        return self.focused_panel()
 
     def focused_widgets(self) -> list[DOMNode]:
         """Return the widget with the focus and those around it, up to its panel."""

@@ -73,6 +73,9 @@ class PanelMessages(LabHost):
         if area.lesson:
             area.lesson.set_typing(message.typing, is_low=area.is_stacked)
 
+    def on_code_area_letters_changed(self) -> None:
+        self.situation_changed()
+
     def _end_former_text(self) -> None:
         """End a run of the text before the edit: the user wants the new one to run."""
         controller, code = self.context.runs, self.context.panels.code

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from bisect import bisect_left, bisect_right
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from tuisim.core.conditions import (
@@ -16,7 +17,7 @@ from tuisim.core.conditions import (
     spelled,
 )
 from tuisim.core.field import Field
-from tuisim.core.sensors import named_column
+from tuisim.core.sensors import column_names, named_column
 from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError
 from tuisim.runs.brick_state import BrickState, face_after
@@ -155,7 +156,7 @@ _FORMS = (
     ("tick 120", "a tick"),
     ("line 12", "{which} time that line 12 runs"),
     ("sample Colour", "{which} sample with this name; `sample` alone: with any name"),
-    ("sample Colour < 90", f"{{which}} sample that matches; operators: {spelled()}"),
+    ("Colour < 90", f"{{which}} sample that matches; operators: {spelled()}"),
     (
         "left_red_pc < 50",
         "{which} tick at which a column becomes so; also left_color changes, gyro_deg > 90, x_mm …",
@@ -267,6 +268,8 @@ def find(
                 return _printed(search, condition)
             case ValueSource.SAMPLE:
                 return _sample(search, condition)
+            case ValueSource.COLUMN if _is_printed(condition.name, recording):
+                return _sample(search, replace(condition, source=ValueSource.SAMPLE))
             case ValueSource.COLUMN:
                 return _becomes(search, condition, mat)
     except ValueError as error:
@@ -320,6 +323,14 @@ def _sample(search: _Search, condition: ValueCondition) -> int:
         )
         raise ConfigError(f"no {condition} {search.words}", hint)
     return tick
+
+
+def _is_printed(name: str, recording: Recording) -> bool:
+    """Return whether a name is no column of a run's telemetry, but one that its program has printed."""
+    if name in column_names(recording.spec):
+        return False
+    printed = (row for row in recording.rows.rows(0) if row.stream in TEXT_STREAMS)
+    return any((sample := parse_sample(row.text)) and sample[0] == name for row in printed)
 
 
 def _becomes(search: _Search, condition: ValueCondition, mat: Field | None) -> int:

@@ -52,7 +52,7 @@ def shown(text: str, state: Inspected) -> dict[int, list[str]]:
 @pytest.mark.parametrize(
     "line, variables, beside",
     [
-        (5, {"total": "0"}, {1: ["total=0"], 6: ["total=0"]}),
+        (5, {"total": "0"}, {6: ["total=0"]}),
         (6, {"total": "3", "n": "2"}, {5: ["n=2"], 6: ["total=3"]}),
         (11, {"n": "2", "done": "True", "speed": "1"}, {5: ["n=2"], 10: ["done=True"]}),
         (

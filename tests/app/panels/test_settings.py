@@ -187,7 +187,7 @@ async def test_a_wrong_robot_file_changes_nothing(
 
 
 async def test_a_profile_is_chosen_and_seen_in_the_controls() -> None:
-    async with open_lab(LOGS) as (pilot, app):
+    async with open_lab(LOGS, panels_on=frozenset({"controls"})) as (pilot, app):
         await pilot.press("F")
         profiles = app.screen.query_one(OptionList)
         profiles.highlighted = profiles.get_option_index("ev3")

@@ -36,11 +36,18 @@ def enlarge(context: ActionContext) -> None:
         context.app.say("No panel has the focus: press tab, or click a panel")
 
 
+def undo(context: ActionContext) -> None:
+    """Take back what the last key has changed at once."""
+    if take_back := context.app.undo:
+        context.app.offer_undo(None)
+        take_back()
+
+
 def copy(context: ActionContext) -> None:
     """Send the text of the panel with the focus, or of the one that was clicked, to the terminal's clipboard."""
     from tuisim.app.clipboard import describe_copy, find_copied
 
-    panel = context.panels.pointed_panel()
+    panel = context.panels.pointed_panel() or context.panels.alone or "world"
     copied = find_copied(context.panels, panel)
     if not copied.text:
         context.app.say(f"{copied.name}: nothing to copy")
@@ -110,7 +117,8 @@ def show_help(context: ActionContext) -> None:
     )
     groups["Robot"] += _NUDGES
     every: Mapping[str, Iterable[KeyWord]] = {**groups, "In the code": EDITOR_KEYS, "": EVERYWHERE}
-    panel, widgets = context.panels.focused_panel(), context.panels.focused_widgets()
+    panel = context.panels.pointed_panel()
+    widgets = context.panels.focused_widgets() if panel == context.panels.focused_panel() else []
     topic = TOPICS.get(panel, Topic())
     # The keys of the code have a group already.
     if panel != "code" and (own := own_keys(widgets)):

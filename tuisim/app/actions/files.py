@@ -36,6 +36,8 @@ if TYPE_CHECKING:
 def clear_log(context: ActionContext) -> None:
     """Clear the logged data from the output and the chart; the run keeps its log."""
     context.panels.clear_log()
+    if context.runs.timeline.recording is not None:
+        context.app.offer_undo(context.app.show_log_again)
     context.app.say(
         "Output and chart cleared. The run keeps its log: {analyse} analyses it, {export} exports it"
     )

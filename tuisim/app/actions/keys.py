@@ -71,6 +71,10 @@ def _can_export(now: Situation) -> str:
     return "" if now.has_run else "No log yet: {run} runs the program"
 
 
+def _can_undo(now: Situation) -> str:
+    return "" if now.can_undo else "Nothing to undo"
+
+
 def _can_draw_pixels(now: Situation) -> str:
     return "" if now.has_pixels else "This terminal draws no pixels, as far as it tells"
 
@@ -299,6 +303,7 @@ def _scroll(name: str, key: str, where: str, by: int) -> LabAction:
     )
 
 
+_UNDO = "Undo: a move of the robot by a key, a cleared trace or log"
 _SCREENSHOT = "Save a screenshot: SVG and PNG (also F12)"
 _TICK_BACK = partial(time_travel.by_ticks, ticks=-1)
 _SLOWER, _FASTER = (partial(program.change_speed, by=by) for by in (-1, 1))
@@ -555,7 +560,13 @@ ACTIONS: Mapping[str, LabAction] = {
         Action("enlarge", "plus", "Enlarge the focused panel, or restore it", PANEL, app.enlarge),
         *_nudges(),
         Action(
-            "help", "question_mark", "Guide: keys, pages, search", APP, app.show_help, footer="help"
+            "help",
+            "question_mark,f1",
+            "Guide: about the focused panel, keys, pages, search",
+            APP,
+            app.show_help,
+            footer="help",
+            shown_key="?",
         ),
         Action(
             "palette",
@@ -569,6 +580,7 @@ ACTIONS: Mapping[str, LabAction] = {
         Action("cells", "V", "Glyphs of the world: choose by eye", APP, app.choose_cells),
         Action("theme", "f10", "Theme: light, high contrast and others", APP, app.choose_theme),
         Action("settings", "asterisk", "Settings: your own defaults", APP, app.open_settings),
+        Action("undo", "backspace", _UNDO, APP, app.undo, _can_undo, "undo"),
         Action("copy", "ctrl+c", "Copy what has the focus, or was clicked", APP, app.copy),
         Action("redraw", "ctrl+l", "Redraw a screen that other output overwrote", APP, app.redraw),
         Action("screenshot", "I,f12", _SCREENSHOT, APP, app.save_screen, shown_key="I"),
@@ -590,6 +602,8 @@ def _next_steps(now: Situation) -> tuple[str, ...]:
     """Return the ids of the likely next steps: out of the past, on with a run, to its results, or to a first run."""
     code = ("to-cursor", "break") if now.reads_code else ()
     wrong = ("went-wrong",) if now.has_reasons else ()
+    if now.can_undo:
+        return ("undo", *_next_steps(replace(now, can_undo=False)))
     if now.looks_back:
         return ("now", *wrong, "branch", "line-back", "next-line", *code)
     if now.state == RunPhase.PAUSED:

@@ -29,7 +29,15 @@ def pen(context: ActionContext) -> None:
 
 def home(context: ActionContext) -> None:
     """Put the robot back to the start pose of the mat or the command line."""
-    context.runs.place(context.runs.home)
+    _move(context, context.runs.home)
+
+
+def _move(context: ActionContext, pose: Pose) -> None:
+    """Place the robot, so that it can be taken back."""
+    before = context.runs.pose
+    context.runs.place(pose)
+    if not context.runs.in_past:
+        context.app.offer_undo(lambda: context.runs.place(before))
 
 
 def nudge(context: ActionContext, right_mm: float, up_mm: float, turn_deg: float) -> None:
@@ -41,8 +49,9 @@ def nudge(context: ActionContext, right_mm: float, up_mm: float, turn_deg: float
 def clear_trace(context: ActionContext) -> None:
     """Clear the pen trace."""
     if world := world_panel(context):
-        world.clear_trace()
+        pieces = world.clear_trace()
         context.app.draw(force=True)
+        context.app.offer_undo(lambda: world.restore_trace(pieces))
 
 
 def random_place(context: ActionContext) -> None:
@@ -51,7 +60,7 @@ def random_place(context: ActionContext) -> None:
     from tuisim.app.setup.poses import random_pose
 
     if pose := random_pose(context.runs.spec, Random()):
-        context.runs.place(pose)
+        _move(context, pose)
     else:
         context.app.say(
             "No free position found: there are too many obstacles, or the robot is too large"

@@ -107,6 +107,9 @@ class CodeArea(TextArea):
     class LookedUp(Message):
         """Posted when the lookup of names begins or ends, see `is_completing`."""
 
+    class LettersChanged(Message):
+        """Posted when letters have become text, or keys of the app again."""
+
     @dataclass
     class GutterClicked(Message):
         """Posted when a line number was clicked."""
@@ -127,6 +130,10 @@ class CodeArea(TextArea):
         self.candidates = CandidateList()
         """The list of names; it takes its keys from here."""
         self._unknown: tuple[UnknownName, ...] = ()
+        self.can_be_typed_in = False
+        """Whether a click makes the next letter start typing."""
+        self.awaits_letters = False
+        """Whether the next letter starts typing: the text was clicked."""
         self._values: Mapping[int, Sequence[Variable]] = {}
         super().__init__(
             read_only=True,
@@ -348,7 +355,14 @@ class CodeArea(TextArea):
     @property
     def takes_letters(self) -> bool:
         """Whether letters are typed."""
-        return self.typing
+        return self.typing or self.awaits_letters
+
+    def await_letters(self, on: bool) -> None:
+        """Let the next letter start typing, or not."""
+        on = on and self.can_be_typed_in and not self.typing
+        if on != self.awaits_letters:
+            self.awaits_letters = on
+            self.post_message(self.LettersChanged())
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
         """Leave keys that are also the app's, such as those of its layouts, to it while the user does not type."""
@@ -367,9 +381,13 @@ class CodeArea(TextArea):
 
     async def on_key(self, event: events.Key) -> None:
         if not self.typing:
-            if event.key == "enter":
+            if event.key == "enter" or (self.awaits_letters and event.is_printable):
                 self._done(event)
                 self.post_message(self.Wanted(EditorCommand.TYPE))
+                self.insert_text("" if event.key == "enter" else event.character or "")
+            elif self.awaits_letters and event.key == "escape":
+                self._done(event)
+                self.await_letters(False)
             return
         # What was typed just before may not have been reported yet.
         self.follow_word()
@@ -486,6 +504,7 @@ class CodeArea(TextArea):
     def on_blur(self) -> None:
         """Close the list of names."""
         self.candidates.close()
+        self.await_letters(False)
 
     def insert_text(self, text: str) -> None:
         """Replace the selection with a text."""
@@ -510,8 +529,10 @@ class CodeArea(TextArea):
             self.selection = Selection((top, 0), (bottom, len(changed[-1])))
 
     def on_mouse_down(self, event: events.MouseDown) -> None:
-        """Report a click on a line number, without moving the cursor."""
-        if event.x < self.gutter_width:
+        """Report a click on a line number, without moving the cursor; one on the text starts typing with a letter."""
+        if event.x >= self.gutter_width:
+            self.await_letters(True)
+        else:
             event.stop()
             event.prevent_default()
             row = self.get_target_document_location(event)[0]

@@ -21,8 +21,9 @@ _OWN_NAMES = (ast.Lambda, ast.ClassDef, ast.ListComp, ast.SetComp, ast.DictComp,
 def line_values(text: str, inspected: Inspected) -> dict[int, tuple[Variable, ...]]:
     """Return the variables that each line of a program, from 1, has assigned.
 
-    A line counts if it may have run: it is above the current line of its function, or in a loop with it. One that
-    assigns a constant does not count if the variable has another value by now.
+    Of the lines that may have run, above the current line of the function or in a loop with it, only the one that has
+    run last counts, and the current line itself. One that assigns a constant does not count if the variable has another
+    value by now.
 
     Args:
         text: The program that runs.
@@ -78,13 +79,23 @@ def _values_in(
     first, last = min(
         ((start, end) for start, end in loops if start <= here <= end), default=(0, -1)
     )
-    found: dict[int, dict[str, Variable]] = {}
+    lines_of: dict[str, list[int]] = {}
     for line, name, constant in _assignments(scope):
         variable = by_name.get(name)
         is_past = not here or line < here or first <= line <= last
         if variable is not None and is_past and constant in (None, variable.value):
-            found.setdefault(line, {})[name] = variable
-    return {line: tuple(names.values()) for line, names in found.items()}
+            lines_of.setdefault(name, []).append(line)
+
+    def age(line: int) -> tuple[int, int]:
+        """Order lines by when they may have run last: in this round of the loop, in the one before, before the loop."""
+        in_loop = first <= line <= last
+        return (0 if in_loop and line < here else 1 if in_loop else 2), -line
+
+    found: dict[int, dict[str, Variable]] = {}
+    for name, lines in lines_of.items():
+        for line in {min(lines, key=age), *(one for one in lines if one == here)}:
+            found.setdefault(line, {})[name] = by_name[name]
+    return {line: tuple(names.values()) for line, names in sorted(found.items())}
 
 
 def _nodes(scope: ast.AST) -> Iterator[ast.AST]:

@@ -51,7 +51,7 @@ class Chart(LinesPanel, can_focus=True):
         Binding("shift+right", "move_cursor(10)", "Cursor far forward", show=False),
         Binding("escape", "drop_cursor", "Remove the cursor"),
         Binding("f", "freeze", "Follow or freeze"),
-        Binding("delete,backspace", "clear", "Clear chart"),
+        Binding("delete", "clear", "Clear chart"),
     ]
 
     @dataclass

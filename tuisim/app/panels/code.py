@@ -95,6 +95,8 @@ class Code(Vertical):
         """The shown lines when the line map was last computed."""
         self._tells_run = self._in_run = False
         self._lit_at_s = 0.0
+        self._stands = False
+        """Whether the program stood still when a line was last highlighted."""
         self._line = 0
         self._said = (_INFO.title, "")
         self._error_words = ""
@@ -128,6 +130,11 @@ class Code(Vertical):
     def typing(self) -> bool:
         """Whether the user types in the text."""
         return self._area.typing
+
+    @property
+    def awaits_letters(self) -> bool:
+        """Whether the next letter starts typing: the text was clicked."""
+        return self._area.awaits_letters
 
     def set_program(self, name: str, text: str, key: str = "") -> None:
         """Show a program.
@@ -239,11 +246,15 @@ class Code(Vertical):
         if in_run != self._in_run:
             self._in_run = in_run
             self._say()
+        self._area.can_be_typed_in = bool(self._key) and not in_run
+        if in_run:
+            self._area.await_letters(False)
         if snapshot.instant.tick != self._tick:
             self._tick = snapshot.instant.tick
             self._show_values()
         line = snapshot.line if in_run else 0
-        if line == self._line:
+        stands = snapshot.past or snapshot.state is RunPhase.PAUSED
+        if line == self._line and stands == self._stands:
             return
         now = time.monotonic()
         if (
@@ -252,13 +263,9 @@ class Code(Vertical):
             and now - self._lit_at_s < LIT_GAP_S
         ):
             return
-        self._lit_at_s = now
+        self._lit_at_s, self._stands = now, stands
         self.show_line(line)
-        if (
-            (lit := self._line_shown(line))
-            and not self.typing
-            and (snapshot.past or snapshot.state is RunPhase.PAUSED)
-        ):
+        if (lit := self._line_shown(line)) and not self.typing and stands:
             # From here the arrow keys go on.
             self._area.move_to_code(lit)
 
@@ -339,6 +346,7 @@ class Code(Vertical):
         self._area.scroll_cursor_visible(animate=False)
 
     def _type(self, typing: bool) -> None:
+        self._area.await_letters(False)
         if typing != self.typing:
             self._area.read_only = not typing
             if typing:

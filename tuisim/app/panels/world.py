@@ -183,9 +183,19 @@ class World(Widget, can_focus=True):
         """Add points that a pen drew, joined to the previous ones; NaN lifts the pen."""
         self._view.trace.add(Piece.of(np.array(xs_mm), np.array(ys_mm), pen))
 
-    def clear_trace(self) -> None:
-        """Clear the trace."""
+    def clear_trace(self) -> Sequence[Piece]:
+        """Clear the trace; return its pieces."""
+        pieces = [*self._view.trace.pieces(0)]
         self._view.clear_trace()
+        return pieces
+
+    def restore_trace(self, pieces: Sequence[Piece]) -> None:
+        """Draw pieces of a trace that was cleared below what has been drawn since."""
+        since = [*self._view.trace.pieces(0)]
+        self._view.trace.clear()
+        for piece in (*pieces, *since):
+            self._view.trace.add(piece)
+        self._view.repaint_scene()
 
     def show_past_trace(
         self, points_mm: tuple[Sequence[float], Sequence[float]] | None, pen: PenSpec = _ANY_PEN
