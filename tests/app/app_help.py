@@ -70,7 +70,7 @@ async def ready(pilot: Pilot[Any]) -> LabApp:
 def notices(app: App[Any]) -> list[str]:
     """What the user was told lately."""
     assert isinstance(app, TerminalApp)
-    return app.notices.messages()
+    return app.notices.list_messages()
 
 
 def message_of(app: LabApp) -> str:

@@ -35,10 +35,10 @@ SEEN: dict[str, Callable[[str], bool]] = {
     ",": ends("past"),
     "<": ends("past"),
     "end": lambda text: not ends("past")(text),
-    "n": shows("─ Code: my_program.py", "─ Debug", "▶ "),
-    "c": shows("─ Chart"),
+    "n": shows("D Code: my_program.py", "G Debug", "▶ "),
+    "c": shows("c Chart"),
     "b": shows("white", "grey"),
-    "q": shows("─ World"),
+    "q": shows("W World"),
     "d": ends("esc done"),
     "escape": lambda text: not ends("esc done")(text),
 }
@@ -68,14 +68,14 @@ def test_the_tour_can_be_typed(terminal: Terminal, tmp_path: Path) -> None:
     assert [row[0] for row in ROWS][-2:] == ["`d`", "arrows"]
     (tmp_path / "my_program.py").write_text(program[1])
     terminal.start(["my_program.py"], 80, 24, code=SLOWLY)
-    terminal.until(shows("─ World", "R run"))
+    terminal.until(shows("W World", "R run"))
     for row in ROWS:
         if row[0] == "arrows":
             # Without code, chart and debugger there is room for the position among the readings.
             # The first press of a key focuses the panel.
             terminal.keys("D", "c", "c", "G", "G")
             terminal.until(
-                lambda text: "─ Code" not in text and re.search(_POSITION, text) is not None
+                lambda text: "D Code" not in text and re.search(_POSITION, text) is not None
             )
         before = terminal.screen()
         for key in keys_of(row):

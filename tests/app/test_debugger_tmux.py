@@ -58,8 +58,6 @@ def branch_with_noise(terminal: Terminal) -> None:
     """From the instant that is looked at, go on with noise and without breakpoints, to the end."""
     terminal.keys("z")
     terminal.until(lambda text: "Light ◆" in text)
-    terminal.keys("Tab")
-    terminal.until(lambda text: "Light ●" in text)
     terminal.keys("3", "0", "Enter")
     terminal.until(lambda text: "Branch from 0.67 s?" in text)
     terminal.keys("y")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from tests.app.app_help import ready, screen_text, settings, until
+from tests.app.app_help import ready, settings, until
 from tests.shim.late_programs import LATE_PROGRAMS
 from tuisim.app.app import LabApp
 from tuisim.config.build import build_run_spec
@@ -36,7 +36,9 @@ async def test_a_part_that_is_plugged_in_is_named_and_seen() -> None:
         await pilot.press("R")
         runs = app.run_controller
         await until(pilot, lambda: runs.run is not None and runs.run.ended is not None)
-        await until(pilot, lambda: "medium motor on outA (line 7)" in screen_text(app))
+        output = app.panel_area.output
+        assert output is not None
+        await until(pilot, lambda: "medium motor on outA (line 7)" in output.copy_text().text)
         recording = runs.timeline.recording
         assert recording is not None
         assert [motor.port for motor in recording.spec.robot.extra_motors] == ["outA"]

@@ -91,7 +91,7 @@ def test_a_small_terminal_says_so_and_grows(terminal: Terminal) -> None:
     shown = terminal.until(lambda text: "Too small" in text)
     assert "this terminal has 20×5." in " ".join(shown.split())
     terminal.resize(80, 24)
-    terminal.until(lambda text: "─ World" in text and "R run" in text.splitlines()[-1])
+    terminal.until(lambda text: "W World" in text and "R run" in text.splitlines()[-1])
     terminal.keys("b")
     terminal.until(lambda text: "─ Mats" in text)
     terminal.resize(39, 12)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from tests.app.app_help import open_lab, screen_text, settings, until
+from tests.app.app_help import open_lab, settings, until
 from tuisim.core.profile import PROFILES
 from tuisim.core.spec import RobotSpec, RunSpec, TouchSpec, WorldSpec
 
@@ -26,11 +26,13 @@ async def test_after_5_s_of_standing_still_the_output_says_what_it_waits_for() -
         app,
     ):
         await pilot.press("R")
-        await until(pilot, lambda: SENTENCE in screen_text(app))
+        output = app.panel_area.output
+        assert output is not None
+        await until(pilot, lambda: SENTENCE in output.copy_text().text)
         recording = app.run_controller.timeline.recording
         assert recording is not None and recording.newest >= 500
         await pilot.press("escape")
         app.run_controller.stop()
-        await until(pilot, lambda: "stopped at" in screen_text(app))
+        await until(pilot, lambda: "stopped at" in output.copy_text().text)
         # The end does not say it again.
-        assert screen_text(app).count(SENTENCE) == 1
+        assert output.copy_text().text.count(SENTENCE) == 1

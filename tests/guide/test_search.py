@@ -90,7 +90,7 @@ def test_the_answer_comes_first(question: str, page: str, section: str) -> None:
         ("stop a program", "keys", "| `S` | Stop the program"),
         ("why does the sensor say White on grey", "how-sensors-see", "**White on grey**"),
         ("what does in→out mean", "how-sensors-see", "Below each disc"),
-        ("copy text from output", "keys", "- To copy text from the output"),
+        ("copy text from output", "keys", "- `ctrl+c` copies what has the focus"),
         ("undo a step", "stepping", "- `N` goes one line back"),
         ("threshold", "analysing-logs", "| `c` `j` `J` | events"),
         ("change the threshold", "how-sensors-see", "If the program compares the reading"),

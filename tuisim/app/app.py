@@ -13,7 +13,6 @@ from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
 from textual.driver import Driver
 from textual.timer import Timer
-from textual.widget import Widget
 from textual.widgets import Input
 
 from tuisim.app import reasons
@@ -568,7 +567,9 @@ class LabApp(PanelMessages):
         if (keys := self._field_keys()) in (FIELD_KEYS, TYPING_KEYS, CLICKED_KEYS):
             field = self.focused
             actions = [
-                one for one in actions if isinstance(field, NumberInput) and field.leaves(one.key)
+                one
+                for one in actions
+                if isinstance(field, NumberInput) and any(map(field.leaves, one.key.split(",")))
             ]
         self.key_footer.show(actions, state.status, keys, state.failed)
 
@@ -639,13 +640,6 @@ class LabApp(PanelMessages):
     def on_server_asks(self, message: ServerAsks) -> None:
         """Do what the page of a browser asks for."""
         do_asked(self.context, message.asked)
-
-    def on_click(self, event: events.Click) -> None:
-        in_a_dialog = self.screen is not self.panel_area.screen
-        if isinstance(event.widget, Widget) and not event.widget.can_focus and not in_a_dialog:
-            # The instant in view stays: a drag along the timeline ends with a click, too.
-            self.panel_area.focus_world()
-            self.panel_area.clicked = self.panel_area.panel_around(event.widget)
 
 
 def _footed(state: AppState) -> tuple[Any, ...]:

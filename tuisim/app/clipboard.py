@@ -13,6 +13,7 @@ from tuisim.terminal.textual_internals import screen_strips
 
 if TYPE_CHECKING:
     from tuisim.app.panel_area import PanelArea
+    from tuisim.app.snapshot import Snapshot
 
 _WRITES: Mapping[str, str] = {
     "code": "save-program",
@@ -22,6 +23,8 @@ _WRITES: Mapping[str, str] = {
     "arrays": "export",
 }
 """The action that writes a file of what a panel shows, by panel."""
+_READING_COLS = 60
+"""Columns of the readings below a picture."""
 _PICTURE = "screenshot"
 """The action for all other panels."""
 
@@ -49,6 +52,17 @@ def find_copied(area: PanelArea, panel: str) -> Copied:
     if isinstance(widget, CopiedPanel) and (own := widget.copy_text()):
         return own
     return Copied(PANELS[panel].title, "\n".join(read_rows(widget)))
+
+
+def describe_world(now: Snapshot, mat: str, rows: Sequence[str]) -> Copied | None:
+    """Return the picture of the world with the readings below it; None without a picture."""
+    from tuisim.app.panels.instrumentation import lines
+
+    if not rows:
+        return None
+    readings = ("".join(text for text, _ in line).rstrip() for line in lines(now, _READING_COLS, 3))
+    text = "\n".join([f"{mat}, {now.time_s:.2f} s", *rows, *readings])
+    return Copied("Picture and readings", text)
 
 
 def describe_copy(panel: str, copied: Copied) -> str:

@@ -81,7 +81,7 @@ class Feed:
         self._parts, self._charted = len(self.recording.plugged), 0
         return True
 
-    def chart_anew(self) -> None:
+    def restart_chart(self) -> None:
         """Let the next call of `chart_series` begin with the first tick."""
         self._charted = 0
 
@@ -203,7 +203,7 @@ class PanelFeed:
         """Pass on once more what the run in view has written so far; its trace stays as it is."""
         recording = self._runs.timeline.recording
         if recording is not None and self._feed is not None:
-            self._feed.chart_anew()
+            self._feed.restart_chart()
             self._uncharted.clear()
             self._panel_area.clear_log()
             self.add_rows([*recording.rows.rows(0)])

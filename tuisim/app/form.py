@@ -270,7 +270,7 @@ class Slider(_Control):
         slider: Slider
         value: int
         done: bool = True
-        """False while the mouse holds the knob; its last number is posted again on release."""
+        """False while the mouse holds the knob or digits are typed; the last number is posted again at the end."""
 
         @property
         def control(self) -> Slider:
@@ -284,16 +284,37 @@ class Slider(_Control):
         super().__init__(id=id)
         self.maximum = maximum
         self.dragging = False
+        self._typed = ""
+        """The digits of a number that is being typed."""
 
     def validate_value(self, value: int) -> int:
         """Return the nearest possible number."""
         return min(max(value, 0), self.maximum)
 
-    def _choose(self, value: int) -> None:
+    def on_key(self, event: events.Key) -> None:
+        """Take a number that is typed digit by digit; enter, another key or the end of the focus ends it."""
+        if event.character and event.character.isdecimal() and event.character.isascii():
+            event.stop()
+            event.prevent_default()
+            longer = int(f"{self._typed}{event.character}")
+            self._typed = str(longer if longer <= self.maximum else int(event.character))
+            self._choose(int(self._typed), done=False)
+        else:
+            self._end_typing()
+
+    def on_blur(self) -> None:
+        self._end_typing()
+
+    def _end_typing(self) -> None:
+        if self._typed:
+            self._typed = ""
+            self.post_message(self.Changed(self, self.value))
+
+    def _choose(self, value: int, *, done: bool = True) -> None:
         before = self.value
         self.value = value
         if self.value != before:
-            self.post_message(self.Changed(self, self.value, not self.dragging))
+            self.post_message(self.Changed(self, self.value, done and not self.dragging))
 
     def action_move(self, step: int) -> None:
         self._choose(self.value + step)

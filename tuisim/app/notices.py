@@ -14,7 +14,7 @@ from textual.notifications import SeverityLevel
 from textual.widgets import Static
 
 from tuisim.data_class import dataclass
-from tuisim.terminal.textual_internals import NOTICE_LAYER, is_leaving, shows_notices
+from tuisim.terminal.textual_internals import NOTICE_LAYER, can_show_notices, is_leaving
 
 CHARACTERS_A_SECOND = 25
 """How fast a notice is read."""
@@ -128,7 +128,7 @@ class Notices:
         self._waiting.append(notice)
         self._app.call_later(self._take_turn)
 
-    def messages(self) -> list[str]:
+    def list_messages(self) -> list[str]:
         """Return the messages whose time has not passed."""
         now_s = time.monotonic()
         return [notice.message for until_s, notice in self._told if until_s > now_s]
@@ -148,7 +148,7 @@ class Notices:
             self._take_turn()
 
     def _take_turn(self) -> None:
-        if is_leaving(self._app) or not shows_notices(self._app) or not self._app.screen_stack:
+        if is_leaving(self._app) or not can_show_notices(self._app) or not self._app.screen_stack:
             return
         row = self._row
         if row is not None and row.notice.severity == "error" and not row.is_read:

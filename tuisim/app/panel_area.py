@@ -16,18 +16,18 @@ from tuisim.app.layout.arrangement import (
     KeptLayout,
     Preset,
     arrange,
-    beside_world,
+    arrange_beside_world,
     core_panels,
-    is_single,
     load_layout,
     save_layout,
-    size_class,
     stacked,
     wanted_panels,
     with_room,
 )
+from tuisim.app.layout.forms import is_single, size_class
 from tuisim.app.layout.tree import PanelLayout
 from tuisim.app.panels import PANELS, NextRunPanel, Panel, TerminalSize
+from tuisim.app.panels.titles import build_title
 from tuisim.data_class import dataclass
 from tuisim.terminal.pacer import Throttle
 
@@ -210,14 +210,14 @@ class PanelArea(Container):
 
     def focused_panel(self) -> str:
         """Return the panel that has the focus, or an empty text."""
-        return self.panel_around(self.screen.focused)
+        return self.find_owner(self.screen.focused)
 
-    def panel_around(self, widget: Widget | None) -> str:
+    def find_owner(self, widget: Widget | None) -> str:
         """Return the panel that a widget is in, or an empty text."""
         around = widget.ancestors_with_self if widget else []
         return next((name for name, panel in self.panels.items() if panel in around), "")
 
-    def pointed_panel(self) -> str:
+    def find_pointed_panel(self) -> str:
         """Return the panel that was clicked last if it cannot have the focus, else the one with the focus, if any."""
         if self.clicked and self.shown(self.clicked):
             return self.clicked
@@ -317,7 +317,7 @@ class PanelArea(Container):
             keeps_lesson = "lesson" in wanted and panel != "lesson" and height >= _STACKED_ROWS
             asked_for = wanted
             wanted = with_room(panel, wanted, (columns, rows), (width, height), self.preset)
-            if wanted == [panel] and beside_world(panel, asked_for, width, height):
+            if wanted == [panel] and arrange_beside_world(panel, asked_for, width, height):
                 self.alone, self.is_beside = "", True
                 return [panel, *asked_for], []
             if wanted == [panel] and keeps_lesson:
@@ -332,7 +332,7 @@ class PanelArea(Container):
 
     def _arranged(self) -> PanelLayout:
         wanted, fill = self._wanted()
-        if self.is_beside and (layout := beside_world(wanted[0], wanted[1:], *self.size)):
+        if self.is_beside and (layout := arrange_beside_world(wanted[0], wanted[1:], *self.size)):
             return layout
         if self.is_stacked:
             return stacked(wanted[0], wanted[1], self.size.width, self.size.height)
@@ -366,7 +366,7 @@ class PanelArea(Container):
     def _panel(self, panel: str) -> Widget:
         if panel not in self.panels:
             widget = cast(Widget, PANELS[panel].load()())
-            widget.border_title = PANELS[panel].titled(self.app)
+            widget.border_title = build_title(self.app, panel)
             widget.add_class("panel")
             self.panels[panel] = widget
             self.mount(widget)

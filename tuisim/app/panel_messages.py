@@ -5,7 +5,8 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING, assert_never
 
-from textual import on
+from textual import events, on
+from textual.widget import Widget
 
 from tuisim.app.actions import ActionContext, time_travel
 from tuisim.app.dialogs.dialog import ClosesOnce
@@ -72,6 +73,13 @@ class PanelMessages(LabHost):
             area.make_room("code", columns, ROOMY_ROWS)
         if area.lesson:
             area.lesson.set_typing(message.typing, is_low=area.is_stacked)
+
+    def on_click(self, event: events.Click) -> None:
+        in_a_dialog = self.screen is not self.context.panels.screen
+        if isinstance(event.widget, Widget) and not event.widget.can_focus and not in_a_dialog:
+            # The instant in view stays: a drag along the timeline ends with a click, too.
+            self.context.panels.focus_world()
+            self.context.panels.clicked = self.context.panels.find_owner(event.widget)
 
     def on_code_area_letters_changed(self) -> None:
         self.situation_changed()

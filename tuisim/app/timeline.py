@@ -268,8 +268,6 @@ def find(
                 return _printed(search, condition)
             case ValueSource.SAMPLE:
                 return _sample(search, condition)
-            case ValueSource.COLUMN if _is_printed(condition.name, recording):
-                return _sample(search, replace(condition, source=ValueSource.SAMPLE))
             case ValueSource.COLUMN:
                 return _becomes(search, condition, mat)
     except ValueError as error:
@@ -334,8 +332,10 @@ def _is_printed(name: str, recording: Recording) -> bool:
 
 
 def _becomes(search: _Search, condition: ValueCondition, mat: Field | None) -> int:
-    """Return the tick at which a column begins to meet a condition."""
+    """Return the tick at which a column begins to meet a condition, or at which a printed name of no column does."""
     recording = search.recording
+    if _is_printed(condition.name, recording):
+        return _sample(search, replace(condition, source=ValueSource.SAMPLE))
     name = named_column(condition.name, recording.spec)
     if mat is None:
         raise ConfigError("the mat is still being opened", "a moment later")

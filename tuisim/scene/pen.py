@@ -156,9 +156,15 @@ class PenTrace:
             )
         self._pieces.append(piece)
 
-    def clear(self) -> None:
-        """Clear the trace."""
-        self._pieces.clear()
+    def clear(self) -> list[Piece]:
+        """Clear the trace; return its pieces."""
+        pieces, self._pieces = self._pieces, []
+        self.clears += 1
+        return pieces
+
+    def put_back(self, pieces: list[Piece]) -> None:
+        """Put pieces of a cleared trace before all others; what is drawn is drawn anew."""
+        self._pieces[:0] = pieces
         self.clears += 1
 
     def pieces(self, first: int) -> Iterator[Piece]:

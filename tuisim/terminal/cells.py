@@ -20,7 +20,7 @@ from tuisim.terminal.glyphs import (
     sign_number,
 )
 from tuisim.terminal.picture_options import CellSet
-from tuisim.terminal.pixels import Pixels, channels_of, packed_rgb
+from tuisim.terminal.pixels import CellPoints, Pixels, channels_of, packed_rgb
 
 CellRun: TypeAlias = tuple[int, int, int]
 """Row, first column and number of some cells; several are in order from the top left."""
@@ -263,7 +263,13 @@ def mono_cells(picture: Pixels, glyphs: GlyphSet, at: CellIndex, cell_set: CellS
     return cells
 
 
-def mono_rows(picture: Pixels, cell_set: CellSet) -> list[str]:
+def find_cell_points(cell_set: CellSet) -> CellPoints:
+    """Return the points of an image in a cell with some glyphs."""
+    glyphs = glyph_set(cell_set)
+    return CellPoints(glyphs.cols, glyphs.rows)
+
+
+def draw_mono_rows(picture: Pixels, cell_set: CellSet) -> list[str]:
     """Return an image as rows of characters without colours; it has the points of these glyphs."""
     glyphs = glyph_set(cell_set)
     shape = len(picture) // glyphs.rows, picture.shape[1] // glyphs.cols

@@ -345,7 +345,7 @@ NOTICE_LAYER = "_toastrack"
 """The layer above all others, which an app has that shows notices."""
 
 
-def shows_notices(app: App[Any]) -> bool:
+def can_show_notices(app: App[Any]) -> bool:
     """Return whether an app shows notices; one without a terminal may not."""
     return not getattr(app, "_disable_notifications", False)
 

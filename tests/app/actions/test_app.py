@@ -31,7 +31,9 @@ async def test_every_panels_key_shows_and_hides_it() -> None:
                 await pilot.press(panel.key)
                 assert app.panel_area.shown(panel.id) is shown, panel.id
                 await pilot.pause()
-                assert bool(re.search(f"[─━] {panel.title}", screen_text(app))) is shown, panel.id
+                assert (
+                    bool(re.search(f"[─━] {panel.key} {panel.title}", screen_text(app))) is shown
+                ), panel.id
 
 
 @pytest.mark.slow

@@ -69,9 +69,9 @@ async def test_the_state_of_a_run_that_failed_is_a_warning() -> None:
                 one.style.color for one in pieces if one.style and one.text.split()[:1] == ["error"]
             ]
 
-        # In the footer, the instrumentation and the simulator controls.
-        await until(pilot, lambda: len(said()) == 3)
-        assert said() == [warning] * 3
+        # In the footer and the instrumentation.
+        await until(pilot, lambda: len(said()) == 2)
+        assert said() == [warning] * 2
 
 
 def last_line(pilot: Pilot[Any]) -> str:
@@ -90,7 +90,7 @@ async def test_letters_that_are_typed_are_not_offered_as_keys() -> None:
 
 
 async def test_the_key_of_a_panel_that_is_not_shown_looks_like_any_other() -> None:
-    async with open_lab(LOGS, autorun=True, speed=0.0) as (pilot, app):
+    async with open_lab(LOGS, autorun=True, speed=0.0, size=(80, 24)) as (pilot, app):
         await until(pilot, lambda: "chart" in app.key_footer.render().plain)
         rendered = app.key_footer.render()
         assert not app.panel_area.shown("chart")

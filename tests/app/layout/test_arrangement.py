@@ -7,7 +7,13 @@ import itertools
 import numpy as np
 import pytest
 
-from tuisim.app.layout.arrangement import Preset, arrange, beside_world, size_class, wanted_panels
+from tuisim.app.layout.arrangement import (
+    Preset,
+    arrange,
+    arrange_beside_world,
+    wanted_panels,
+)
+from tuisim.app.layout.forms import size_class
 from tuisim.app.layout.tree import PanelBox
 from tuisim.app.panels import PANELS, PanelInfo, TerminalSize
 
@@ -146,10 +152,10 @@ def test_code_and_chart_fill_a_tall_terminal(width: int, height: int) -> None:
 
 def test_the_editor_stands_beside_the_world() -> None:
     wanted = ["world", "instrumentation", "output", "arrays", "chart"]
-    assert beside_world("code", wanted, 109, 39) is None
-    assert beside_world("code", ["lesson", *wanted], 120, 39) is None
+    assert arrange_beside_world("code", wanted, 109, 39) is None
+    assert arrange_beside_world("code", ["lesson", *wanted], 120, 39) is None
     for width, height in ((110, 29), (120, 39), (150, 45)):
-        layout = beside_world("code", wanted, width, height)
+        layout = arrange_beside_world("code", wanted, width, height)
         assert layout is not None and {"code", "world", "output"} <= layout.boxes.keys()
         assert_fills(layout.boxes, width, height)
         assert layout.boxes["code"].height == height

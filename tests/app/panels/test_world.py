@@ -7,12 +7,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from textual import events
+from textual.content import Content
 from textual.geometry import Region
 
 from tests.app.app_help import LOGS, open_lab, until, until_state
 from tests.app.panel_help import PanelApp, moment, white_mat
 from tuisim.app.layout.tree import TIME_BAR_ROWS
-from tuisim.app.panels.world import TURN_STEP_DEG, World, WorldView, legend
+from tuisim.app.panels.world import TURN_STEP_DEG, World, WorldView
+from tuisim.app.render.world_text import legend
 from tuisim.app.snapshot import RunPhase
 from tuisim.core.geometry import Pose
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
@@ -173,9 +175,10 @@ async def test_zoom_goes_round_and_says_so() -> None:
         seen = []
         for _ in range(3):
             app.panel.cycle_zoom()
-            seen.append((app.panel.zoom, app.panel.border_title))
+            title = Content.from_markup(app.panel.border_title or "").plain
+            seen.append((app.panel.zoom, title))
 
-    title = f"World: {moment().spec.world.background}"
+    title = f"W World: {moment().spec.world.background}"
     assert seen == [(2, f"{title} 2×"), (4, f"{title} 4×"), (1, title)]
 
 

@@ -47,7 +47,7 @@ def copy(context: ActionContext) -> None:
     """Send the text of the panel with the focus, or of the one that was clicked, to the terminal's clipboard."""
     from tuisim.app.clipboard import describe_copy, find_copied
 
-    panel = context.panels.pointed_panel() or context.panels.alone or "world"
+    panel = context.panels.find_pointed_panel() or context.panels.alone or "world"
     copied = find_copied(context.panels, panel)
     if not copied.text:
         context.app.say(f"{copied.name}: nothing to copy")
@@ -117,7 +117,7 @@ def show_help(context: ActionContext) -> None:
     )
     groups["Robot"] += _NUDGES
     every: Mapping[str, Iterable[KeyWord]] = {**groups, "In the code": EDITOR_KEYS, "": EVERYWHERE}
-    panel = context.panels.pointed_panel()
+    panel = context.panels.find_pointed_panel()
     widgets = context.panels.focused_widgets() if panel == context.panels.focused_panel() else []
     topic = TOPICS.get(panel, Topic())
     # The keys of the code have a group already.

@@ -303,7 +303,7 @@ def _scroll(name: str, key: str, where: str, by: int) -> LabAction:
     )
 
 
-_UNDO = "Undo: a move of the robot by a key, a cleared trace or log"
+_UNDO = "Undo a move, a cleared trace or log"
 _SCREENSHOT = "Save a screenshot: SVG and PNG (also F12)"
 _TICK_BACK = partial(time_travel.by_ticks, ticks=-1)
 _SLOWER, _FASTER = (partial(program.change_speed, by=by) for by in (-1, 1))

@@ -27,7 +27,7 @@ from tuisim.app.analyser.panes import PANES, PaneView
 from tuisim.app.analyser.world import WorldPane
 from tuisim.app.dialogs.dialog import ClosesOnce
 from tuisim.app.dialogs.question import Form, LinePrompt
-from tuisim.app.layout.arrangement import is_tall
+from tuisim.app.layout.forms import is_tall
 from tuisim.errors import LogError, TuisimError
 from tuisim.logs.columns import choose_columns, numeric_columns
 from tuisim.logs.derived import SIGNALS, TIME, computed_columns

@@ -13,14 +13,12 @@ from rich.segment import Segment
 from rich.style import Style
 from rich.text import Text
 from textual import events
-from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
-from textual.containers import Horizontal
 from textual.geometry import Offset, Region
 from textual.message import Message
 from textual.strip import Strip
 from textual.widget import Widget
-from textual.widgets import Input, Static, TextArea
+from textual.widgets import TextArea
 from textual.widgets.text_area import Edit, EditResult, Selection
 
 from tuisim.app.editor import text_lines
@@ -381,13 +379,7 @@ class CodeArea(TextArea):
 
     async def on_key(self, event: events.Key) -> None:
         if not self.typing:
-            if event.key == "enter" or (self.awaits_letters and event.is_printable):
-                self._done(event)
-                self.post_message(self.Wanted(EditorCommand.TYPE))
-                self.insert_text("" if event.key == "enter" else event.character or "")
-            elif self.awaits_letters and event.key == "escape":
-                self._done(event)
-                self.await_letters(False)
+            self._begin_with(event)
             return
         # What was typed just before may not have been reported yet.
         self.follow_word()
@@ -423,6 +415,17 @@ class CodeArea(TextArea):
         elif event.key.startswith("alt+"):
             # The event has a character that nobody has typed.
             self._done(event)
+
+    def _begin_with(self, event: events.Key) -> None:
+        """Start typing with enter, or after a click with a letter, which is typed; escape makes letters keys again."""
+        is_letter = self.awaits_letters and event.is_printable
+        if event.key == "enter" or is_letter:
+            self._done(event)
+            self.post_message(self.Wanted(EditorCommand.TYPE))
+            self.insert_text(event.character or "" if is_letter else "")
+        elif self.awaits_letters and event.key == "escape":
+            self._done(event)
+            self.await_letters(False)
 
     def _done(self, event: events.Key) -> None:
         event.stop()
@@ -586,82 +589,3 @@ def _on(strip: Strip, base: Style, lit: Style) -> Strip:
 def _cut(strip: Strip, width: int, style: Style) -> Strip:
     """Return a row that is too long, or is to give way, with a mark that more follows."""
     return Strip.join([strip.crop(0, width - 1), Strip([Segment("…", style)], 1)])
-
-
-FIND, LINE = "find", "line"
-
-
-class FindBar(Horizontal):
-    """The find bar, shown during a search."""
-
-    DEFAULT_CSS = """
-    FindBar { height: 1; }
-    FindBar > Static { width: auto; }
-    FindBar > Input { width: 1fr; height: 1; }
-    """
-    BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("escape", "close", "Close", show=False),
-        Binding("down,f3,ctrl+f", "go(1)", "Next", show=False),
-        Binding("up,shift+f3", "go(-1)", "Before", show=False),
-    ]
-
-    @dataclass
-    class Asked(Message):
-        """Posted to find the text, or to go to the line."""
-
-        mode: str
-        text: str
-        by: int
-        """1 the next match, -1 the previous one, 0 the one at or after the cursor."""
-
-    class Closed(Message):
-        """Posted when the focus returns to the text."""
-
-    def __init__(self) -> None:
-        super().__init__()
-        self.mode = FIND
-        self.wanted = ""
-        """The last search text."""
-        self.display = False
-
-    def compose(self) -> ComposeResult:
-        yield Static(id="label", markup=False)
-        yield Input(compact=True)
-        yield Static(id="found", markup=False)
-
-    def open(self, mode: str) -> None:
-        """Open the bar to find a text or go to a line."""
-        self.mode = mode
-        self.display = True
-        self.query_one("#label", Static).update("Find " if mode == FIND else "Line ")
-        self.say("")
-        field = self.query_one(Input)
-        with field.prevent(Input.Changed):
-            field.value = self.wanted if mode == FIND else ""
-        field.select_all()
-        field.focus()
-
-    def say(self, text: str) -> None:
-        """Show the result of the search."""
-        self.query_one("#found", Static).update(text)
-
-    def action_close(self) -> None:
-        self.display = False
-        self.post_message(self.Closed())
-
-    def action_go(self, by: int) -> None:
-        text = self.query_one(Input).value
-        if self.mode == FIND:
-            self.wanted = text
-        self.post_message(self.Asked(self.mode, text, by))
-
-    def on_input_changed(self, event: Input.Changed) -> None:
-        event.stop()
-        if self.mode == FIND:
-            self.action_go(0)
-
-    def on_input_submitted(self, event: Input.Submitted) -> None:
-        event.stop()
-        self.action_go(1)
-        if self.mode == LINE:
-            self.action_close()

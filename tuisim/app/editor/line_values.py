@@ -86,14 +86,14 @@ def _values_in(
         if variable is not None and is_past and constant in (None, variable.value):
             lines_of.setdefault(name, []).append(line)
 
-    def age(line: int) -> tuple[int, int]:
+    def rank_age(line: int) -> tuple[int, int]:
         """Order lines by when they may have run last: in this round of the loop, in the one before, before the loop."""
         in_loop = first <= line <= last
         return (0 if in_loop and line < here else 1 if in_loop else 2), -line
 
     found: dict[int, dict[str, Variable]] = {}
     for name, lines in lines_of.items():
-        for line in {min(lines, key=age), *(one for one in lines if one == here)}:
+        for line in {min(lines, key=rank_age), *(one for one in lines if one == here)}:
             found.setdefault(line, {})[name] = by_name[name]
     return {line: tuple(names.values()) for line, names in sorted(found.items())}
 

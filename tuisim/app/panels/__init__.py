@@ -11,13 +11,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from enum import StrEnum
 from importlib import import_module
-from typing import TYPE_CHECKING, Any, Protocol, cast, runtime_checkable
+from typing import TYPE_CHECKING, Protocol, cast, runtime_checkable
 
-from textual.app import App
-
-from tuisim.app.action import ActionHost, label_of_key
 from tuisim.data_class import dataclass
-from tuisim.terminal.text_runs import as_markup
 
 if TYPE_CHECKING:
     from tuisim.app.setup.next_run import NextRun
@@ -84,15 +80,6 @@ class PanelInfo:
     """Whether it has a use for more rows than the preferred ones."""
     min_cols: int = 24
     """Beside another one it is not made narrower. In *Output* a printed fraction is one line."""
-
-    def titled(self, app: App[Any], name: str = "") -> str:
-        """Return its key in an app and its title, with the name of what it shows unless that is empty, as markup."""
-        actions = app.ACTIONS if isinstance(app, ActionHost) else {}
-        action = actions.get(f"panel-{self.id}")
-        key = action.key_label if action else label_of_key(self.key)
-        # A file name is no markup.
-        title = as_markup(f"{self.title}: {name}" if name else self.title)
-        return f"[bold $tuisim-yellow]{as_markup(key)}[/] {title}"
 
     def load(self) -> type[Panel]:
         """Import the panel's class."""

@@ -18,13 +18,15 @@ from textual.widgets.text_area import Selection
 
 from tuisim.app.action import with_keys_of
 from tuisim.app.clipboard import Copied
-from tuisim.app.editor.area import FIND, LINE, CodeArea, EditorCommand, FindBar
+from tuisim.app.editor.area import CodeArea, EditorCommand
 from tuisim.app.editor.assistant import Assistant
 from tuisim.app.editor.candidate_list import CandidateList
+from tuisim.app.editor.find_bar import FIND, LINE, FindBar
 from tuisim.app.editor.line_values import line_values
 from tuisim.app.editor.text_lines import LineMap, places
 from tuisim.app.error_words import fitting
 from tuisim.app.panels import PANELS
+from tuisim.app.panels.titles import build_title
 from tuisim.app.snapshot import PauseView, RunPhase, Snapshot
 from tuisim.data_class import dataclass
 from tuisim.source import source_lines
@@ -165,7 +167,7 @@ class Code(Vertical):
 
     def set_title(self, name: str, edited: bool = False) -> None:
         """Show the name of the program, and whether it has unsaved changes."""
-        self._said = (_INFO.titled(self.app, name), " • edited" if edited else "")
+        self._said = (build_title(self.app, _INFO.id, name), " • edited" if edited else "")
         self._say()
 
     @property

@@ -10,6 +10,7 @@ from textual.binding import Binding, BindingType
 from textual.message import Message
 
 from tuisim.app.panels import PANELS
+from tuisim.app.panels.titles import build_title
 from tuisim.app.render.debug import DebugView, debug_lines
 from tuisim.app.snapshot import PauseView, RunPhase, Snapshot
 from tuisim.data_class import dataclass
@@ -93,7 +94,7 @@ class Debug(LinesPanel, can_focus=True):
         )
         self._top = max(0, min(self._top, len(self._lines) - size.height))
         below = len(self._lines) - self._top - size.height
-        self.border_title = _INFO.titled(self.app) + (f" ↓{below}" if below > 0 else "")
+        self.border_title = build_title(self.app, _INFO.id) + (f" ↓{below}" if below > 0 else "")
         self._text.set_lines(self._lines[self._top : self._top + size.height])
 
     def action_scroll_lines(self, by: int) -> None:

@@ -8,6 +8,7 @@ from textual import events
 from textual.binding import Binding, BindingType
 
 from tuisim.app.panels import PANELS
+from tuisim.app.panels.titles import build_title
 from tuisim.app.render.goals import GoalsPicture, GoalsView, current_goal, draw_goals
 from tuisim.terminal.cell_view import LinesPanel
 
@@ -86,7 +87,7 @@ class Goals(LinesPanel, can_focus=True):
             self._content, states, self._at, self._first, size.width, size.height
         )
         below = f" ↓{self._picture.below}" if self._picture.below else ""
-        self.border_title = _INFO.titled(self.app) + below
+        self.border_title = build_title(self.app, _INFO.id) + below
         self._text.set_lines(self._picture.lines)
 
     def _show_subtitle(self) -> None:

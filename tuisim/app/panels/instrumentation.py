@@ -19,6 +19,7 @@ from tuisim.app.panels.reading_runs import (
     value_run,
     value_runs,
 )
+from tuisim.app.panels.titles import build_title, name_setup
 from tuisim.app.render.arrays import swatch_of
 from tuisim.app.snapshot import RunPhase, Snapshot, end_label
 from tuisim.core.geometry import shown_heading_deg
@@ -49,6 +50,10 @@ class Instrumentation(LinesPanel):
 
     def _redraw(self) -> None:
         if self._snapshot is not None and self._text.size:
+            name = name_setup(self._snapshot, self.size.width)
+            title = build_title(self.app, "instrumentation", name)
+            if title != self.border_title:
+                self.border_title = title
             self._text.set_lines(
                 lines(self._snapshot, self._text.size.width, self._text.size.height)
             )

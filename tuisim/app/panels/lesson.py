@@ -8,6 +8,7 @@ from textual.binding import Binding, BindingType
 
 from tuisim.app.action import Act, with_keys_of
 from tuisim.app.panels import PANELS
+from tuisim.app.panels.titles import build_title
 from tuisim.app.render.lesson import Away, LessonPicture, LessonView, draw_lesson
 from tuisim.terminal.cell_view import LinesPanel
 from tuisim.terminal.text_runs import as_markup
@@ -89,7 +90,7 @@ class LessonPanel(LinesPanel, can_focus=True):
     def _show_subtitle(self) -> None:
         below = self._picture.below
         # Above a log, the key that hides it does something else.
-        title = _INFO.title if self._is_brief else _INFO.titled(self.app)
+        title = _INFO.title if self._is_brief else build_title(self.app, _INFO.id)
         title += f" ↓{below}" if below else ""
         if title != self.border_title:
             self.border_title = title

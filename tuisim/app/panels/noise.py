@@ -23,7 +23,7 @@ _SEED = values_of(RunSpec)["seed"]
 
 
 class Noise(EntryPanel):
-    """The noise panel: two sliders with a field each, and the seed."""
+    """The noise panel: two sliders, which take digits too, and the seed."""
 
     USE = "At once; seed at next run"
 
@@ -50,16 +50,14 @@ class Noise(EntryPanel):
                 yield Label(value.label, markup=False)
                 assert isinstance(value, Whole)
                 yield Slider(int(value.high), id=kind)
-                yield NumberInput(
-                    "0", id=f"{kind}-number", compact=True, select_on_focus=True, max_length=3
-                )
+                yield Static("0", id=f"{kind}-number", classes="number", markup=False)
         with Horizontal(classes="field"):
             yield Label("Seed", markup=False)
             yield NumberInput("0", id="seed", compact=True, select_on_focus=True)
         yield Static(self.USE, id="message", markup=False)
 
     def begin(self) -> None:
-        """Focus a slider, where letters are still keys of the app; tab leads to its number field."""
+        """Focus a slider, where letters are still keys of the app and digits set its number."""
         self.query_one("#light", Slider).focus()
 
     def show(self, snapshot: Snapshot) -> None:
@@ -74,20 +72,16 @@ class Noise(EntryPanel):
         before, self._shown = self._shown, shown
         for kind in _KINDS:
             value = getattr(noise, kind)
-            slider, entry = (
-                self.query_one(f"#{kind}", Slider),
-                self.query_one(f"#{kind}-number", Input),
-            )
             if before is None or getattr(before[0], kind) != value:
-                slider.value = value
-                entry.value = str(value)
+                self.query_one(f"#{kind}", Slider).value = value
+                self.query_one(f"#{kind}-number", Static).update(str(value))
         if before is None or before[1] != shown[1]:
             self.query_one("#seed", Input).value = str(shown[1])
 
     @on(Slider.Changed)
     def _slid(self, event: Slider.Changed) -> None:
         event.stop()
-        self.query_one(f"#{event.slider.id}-number", Input).value = str(event.value)
+        self.query_one(f"#{event.slider.id}-number", Static).update(str(event.value))
         self.say("")
         # In the past, the question about a branch comes at the end of the drag only.
         if event.done or not self._past:
@@ -101,18 +95,12 @@ class Noise(EntryPanel):
         self.post_message(self.Changed(NoiseSpec(light, motor)))
 
     def _apply(self, entry: Input) -> None:
-        kind = (entry.id or "").removesuffix("-number")
-        about = _KINDS.get(kind, _SEED)
         try:
-            value = about.from_text(entry.value.strip())
+            seed = _SEED.from_text(entry.value.strip())
         except WrongValue as error:
             entry.add_class("wrong")
-            self.say(f"{about.label} {error.message}")
+            self.say(f"{_SEED.label} {error.message}")
             return
         entry.remove_class("wrong")
         self.say("")
-        if kind == "seed":
-            self.post_message(self.Seeded(value))
-        else:
-            self.query_one(f"#{kind}", Slider).value = value
-            self._choose()
+        self.post_message(self.Seeded(seed))

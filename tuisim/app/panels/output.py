@@ -22,6 +22,7 @@ from textual.widgets import Input, Static
 from tuisim.app.action import with_keys_of
 from tuisim.app.clipboard import Copied
 from tuisim.app.panels import PANELS
+from tuisim.app.panels.titles import build_title
 from tuisim.app.snapshot import RunPhase, Snapshot
 from tuisim.data_class import dataclass
 from tuisim.errors import counted
@@ -71,7 +72,7 @@ class Output(Vertical):
     def set_program(self, name: str) -> None:
         """Show the name of the program whose output this is."""
         if name != self._program_name:
-            self._program_name, self.border_title = name, _INFO.titled(self.app, name)
+            self._program_name, self.border_title = name, build_title(self.app, _INFO.id, name)
 
     def copy_text(self) -> Copied:
         """Return the lines of the instant in view, also those above the panel."""

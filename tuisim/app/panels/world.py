@@ -8,32 +8,29 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-from rich.cells import cell_len
 from textual import events
 from textual.app import ComposeResult
 from textual.message import Message
 from textual.widget import Widget
 
-from tuisim.app.clipboard import Copied
-from tuisim.app.panels import PANELS
-from tuisim.app.panels.instrumentation import lines
+from tuisim.app.clipboard import Copied, describe_world
 from tuisim.app.panels.obstacles import BoxGrip, box_at
 from tuisim.app.panels.pose_grip import PoseGrip
 from tuisim.app.panels.time_bar import TimeBar
+from tuisim.app.panels.titles import build_title, name_mat
+from tuisim.app.render.world_text import draw_signs, draw_world_text, legend
 from tuisim.app.snapshot import AT_REST, Snapshot
 from tuisim.core.geometry import Pose
 from tuisim.core.outline import outline_of
 from tuisim.core.spec import Obstacle, PenSpec
 from tuisim.data_class import dataclass
-from tuisim.scene.mono_robot import body, pointer
 from tuisim.scene.off_field import off_field_words
 from tuisim.scene.painter import Faint, ScenePainter, SceneState
 from tuisim.scene.pen import PenTrace, Piece
 from tuisim.scene.robot import drawn_scale
 from tuisim.scene.view import ZOOMS, Viewport, following
 from tuisim.terminal.cell_view import PixelView
-from tuisim.terminal.cells import MONO, mono_rows
-from tuisim.terminal.glyphs import glyph_set
+from tuisim.terminal.cells import MONO
 from tuisim.terminal.picture_mode import BLOCKS
 from tuisim.terminal.picture_options import CellSet
 from tuisim.terminal.pixels import CellPoints, Pixels
@@ -48,16 +45,10 @@ smaller move is invisible."""
 _PAPER = (255, 255, 255)
 """Off the mat, where there are no colours: nothing is drawn there."""
 
-_INFO = PANELS["world"]
-_PIVOT, _GHOST_PIVOT = "O", "x"
 _ANY_PEN = PenSpec()
 
-_READING_COLS = 60
-"""Columns of the readings below a copied picture."""
 _FRAME = 4
 """Cells of the frame beside what it says."""
-_LEGEND_COLS = 22
-"""Room for one of the other robots in whole words."""
 
 _SHOWS_UNTIL_TAKEN = 10
 """Number of updates after which a dropped robot that was not accepted jumps back."""
@@ -140,11 +131,8 @@ class World(Widget, can_focus=True):
 
     def _say(self) -> None:
         name = self._mat + (f" {self.zoom}×" if self.zoom > 1 else "")
-        words = self._layout_words
-        room = self.size.width - _FRAME - cell_len(f"{_INFO.key} {_INFO.title}: ")
-        wordings = (f"{name} · {words}", words) if words else ()
-        fitting = (wording for wording in wordings if cell_len(wording) <= room)
-        self.border_title = _INFO.titled(self.app, next(fitting, name))
+        name = name_mat(name, self._layout_words, self.size.width)
+        self.border_title = build_title(self.app, "world", name)
 
     def name_layout(self, words: str) -> None:
         """Name the layout of the panels beside the mat; empty for the standard one."""
@@ -183,18 +171,15 @@ class World(Widget, can_focus=True):
         """Add points that a pen drew, joined to the previous ones; NaN lifts the pen."""
         self._view.trace.add(Piece.of(np.array(xs_mm), np.array(ys_mm), pen))
 
-    def clear_trace(self) -> Sequence[Piece]:
+    def clear_trace(self) -> list[Piece]:
         """Clear the trace; return its pieces."""
-        pieces = [*self._view.trace.pieces(0)]
-        self._view.clear_trace()
+        pieces = self._view.trace.clear()
+        self._view.repaint_scene()
         return pieces
 
-    def restore_trace(self, pieces: Sequence[Piece]) -> None:
+    def restore_trace(self, pieces: list[Piece]) -> None:
         """Draw pieces of a trace that was cleared below what has been drawn since."""
-        since = [*self._view.trace.pieces(0)]
-        self._view.trace.clear()
-        for piece in (*pieces, *since):
-            self._view.trace.add(piece)
+        self._view.trace.put_back(pieces)
         self._view.repaint_scene()
 
     def show_past_trace(
@@ -210,12 +195,8 @@ class World(Widget, can_focus=True):
 
     def copy_text(self) -> Copied | None:
         """Return the picture in characters without colours, and the readings below it."""
-        now, rows = self._snapshot, self._view.text_rows()
-        if now is None or not rows:
-            return None
-        readings = ("".join(text for text, _ in line) for line in lines(now, _READING_COLS, 3))
-        text = [f"{self._mat}, {now.time_s:.2f} s", *rows, *(line.rstrip() for line in readings)]
-        return Copied("Picture and readings", "\n".join(text))
+        rows = self._view.draw_text()
+        return describe_world(self._snapshot, self._mat, rows) if self._snapshot else None
 
     def show(self, snapshot: Snapshot) -> None:
         """Show a moment."""
@@ -226,36 +207,6 @@ class World(Widget, can_focus=True):
         self._snapshot = snapshot
         self._say_below()
         self._view.show(snapshot)
-
-
-def legend(now: Snapshot, width: int) -> str:
-    """Return what the robots are that are drawn beside the one in view, in words that fit."""
-    drawn = (
-        now.now_pose is not None and not off_field_words(now.now_pose),
-        now.earlier_pose is not None,
-    )
-    match drawn:
-        case True, True:
-            fits = (
-                "outline: the robot now, grey: the earlier run",
-                "outline: now, grey: earlier",
-                "line now, grey before",
-            )
-            return next((words for words in fits if len(words) <= width), fits[-1])
-        case True, False:
-            return "outline: the robot now" if width >= _LEGEND_COLS else "outline: now"
-        case False, True:
-            return "grey: the earlier run" if width >= _LEGEND_COLS else "grey: earlier"
-        case _:
-            return ""
-
-
-def _pointers(port: Viewport, scene: SceneState) -> dict[tuple[int, int], int]:
-    outline = outline_of(scene.robot)
-    reach_mm = outline.front_mm * drawn_scale(outline, port)
-    now = dict(scene.faint).get(Faint.NOW)
-    ghost = pointer(port, now, reach_mm, _GHOST_PIVOT) if now else {}
-    return ghost | body(port, scene.pose, outline) | pointer(port, scene.pose, reach_mm, _PIVOT)
 
 
 class WorldView(PixelView):
@@ -301,11 +252,6 @@ class WorldView(PixelView):
         if (on, marked) != (self._edits_boxes, self._marked):
             self._edits_boxes, self._marked = on, marked
             self.repaint_scene()
-
-    def clear_trace(self) -> None:
-        """Clear the trace."""
-        self.trace.clear()
-        self.repaint_scene()
 
     def show(self, snapshot: Snapshot) -> None:
         """Show a moment, if it differs from the last one."""
@@ -356,7 +302,7 @@ class WorldView(PixelView):
         self._painter.trace = trace
         self.set_fine_picture(self._painter.paint(port, scene), graphics, stands=stands)
         if self._has_signs:
-            self.set_signs(_pointers(port, scene))
+            self.set_signs(draw_signs(port, scene))
 
     def _make_painter(self, mat: Pixels, *, in_cells: bool) -> ScenePainter:
         """Return a painter for the app's glyphs and colours."""
@@ -376,29 +322,21 @@ class WorldView(PixelView):
             has_floor=self._has_floor,
         )
 
-    def text_rows(self) -> list[str]:
+    def draw_text(self) -> list[str]:
         """Return the picture as rows of characters without colours; none before it is drawn."""
         now, mat = self._snapshot, self._mat
         if now is None or mat is None or not self.size:
             return []
-        cell_set = CellSet.ASCII if self.cell_set is CellSet.ASCII else CellSet.BRAILLE
-        glyphs = glyph_set(cell_set)
-        cell = CellPoints(glyphs.cols, glyphs.rows)
-        scene, on_floor = self._scene_of(now), now.spec.world.is_open
-        width_px, height_px = cell.cols * self.size.width, cell.rows * self.size.height
-        port = following(width_px, height_px, self.zoom, scene.pose, None, cell, on_floor=on_floor)
         trace = self.trace if self.past_trace is None else self.past_trace
-        painter = ScenePainter(
+        return draw_world_text(
             mat,
-            _PAPER,
             trace,
-            grey=True,
-            mono=True,
-            coarse=True,
-            whole_cells=True,
-            has_floor=on_floor,
+            self._scene_of(now),
+            self.size,
+            self.cell_set,
+            self.zoom,
+            now.spec.world.is_open,
         )
-        return mono_rows(painter.paint(port, scene), cell_set)
 
     def redraw(self) -> None:
         """Draw the image again: the app's glyphs or colours have changed."""

@@ -1,0 +1,56 @@
+"""The forms of the screen: which panels stand beside, below and above each other."""
+
+from __future__ import annotations
+
+import pytest
+
+from tuisim.app.layout.forms import build_board, build_under, build_wide, count_tight_rows
+from tuisim.app.layout.tree import Axis, PanelBox, PanelLayout, Split, least_rows, panels_of, place
+
+BOARD = ("world", "instrumentation", "arrays", "output", "chart")
+
+
+def boxes_of(node: str | Split, width: int, height: int) -> dict[str, PanelBox]:
+    layout = PanelLayout()
+    place(node, PanelBox(0, 0, width, height), layout)
+    return layout.boxes
+
+
+@pytest.mark.parametrize("size", [(100, 29), (120, 39), (160, 47)], ids=str)
+def test_a_board_has_readings_beside_the_world_and_the_chart_below(size: tuple[int, int]) -> None:
+    boxes = boxes_of(build_board(BOARD, *size), *size)
+    assert boxes["instrumentation"].x == boxes["arrays"].x == boxes["world"].width
+    assert boxes["chart"].y == boxes["output"].y == boxes["world"].height
+    assert boxes["chart"].width > boxes["output"].width
+
+
+def test_code_stands_beside_chart_and_output() -> None:
+    boxes = boxes_of(build_board((*BOARD, "code"), 120, 39), 120, 39)
+    assert boxes["code"].height == boxes["chart"].height + boxes["output"].height
+    assert boxes["chart"].x == boxes["output"].x == boxes["code"].width
+
+
+@pytest.mark.parametrize("panels", [BOARD[:4], (*BOARD, "lesson"), (*BOARD, "settings")], ids=str)
+def test_where_a_board_has_no_room_the_side_column_is_whole(panels: tuple[str, ...]) -> None:
+    assert build_board(panels, 100, 29) == build_wide(panels, 100, 29)
+
+
+@pytest.mark.parametrize("panel", ["noise", "positioning", "debug"])
+@pytest.mark.parametrize("size", [(80, 23), (100, 29), (120, 39)], ids=str)
+def test_a_lesson_keeps_its_column_beside_a_panel_that_it_asks_for(
+    panel: str, size: tuple[int, int]
+) -> None:
+    boxes = boxes_of(build_wide(("lesson", "world", "code", panel), *size), *size)
+    assert boxes["lesson"].height == size[1]
+    assert boxes[panel].x < boxes["lesson"].x
+
+
+def test_a_column_gives_each_panel_the_rows_in_which_it_is_read() -> None:
+    panels = ("world", "instrumentation", "arrays", "output", "code", "chart")
+    rows = count_tight_rows(panels, 65)
+    node = build_under(panels, 65, sum(rows))
+    assert isinstance(node, Split) and node.axis is Axis.ROWS
+    assert {name: box.height for name, box in boxes_of(node, 65, sum(rows)).items()} == dict(
+        zip(panels_of(node), count_tight_rows(panels_of(node), 65), strict=True)
+    )
+    assert least_rows(build_under(panels, 65, sum(rows) - 1)) < sum(rows)

@@ -1,0 +1,377 @@
+"""Forms of the screen: how panels are laid out for its size, as trees."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from math import ceil
+
+from tuisim.app.layout.tree import (
+    Axis,
+    Node,
+    Split,
+    fair_rows,
+    ideal_columns,
+    ideal_rows,
+    joined,
+    least_rows,
+)
+from tuisim.app.panels import PANELS, PanelPlace, TerminalSize
+
+MIN_STRIP_COLS = 36
+"""A panel of the bottom strip is not made narrower than this to fit another one next to it."""
+_SINGLE_COLS, _SINGLE_ROWS = 60, 15
+"""Below this size one panel is shown at a time."""
+_TALL_ROWS = 30
+"""From this height on, narrow panels stand below each other, as on a phone with large text."""
+LOW_COLS, LOW_ROWS = 112, 33
+"""Below both, the panels share the screen as in a terminal of 80×24."""
+MIN_LARGE_COLS, _MIN_LARGE_ROWS = 170, 50
+_BOARD_COLS, _BOARD_ROWS = 100, 30
+"""From this size of terminal on, world, readings, sensor arrays and chart are shown at once."""
+DISCS_COLS = 42
+"""Columns of the side column in which two sensor discs fit side by side."""
+_READINGS_COLS, _TEXT_COLS = 48, 32
+"""Columns of the readings in three lines, and of the output beside them."""
+_MAX_SIDE_COLS = 46
+_CODE_COLS = 64
+"""Columns in which most lines of code are whole, with the values beside them."""
+_ERROR_ROWS = 8
+"""Rows of the panels below it, so that *Output* shows an error with its traceback."""
+COLUMN_COLS = 40
+"""Columns below the world are not made narrower."""
+_LEAST_TEXT, _MOST_TEXT = 40, 58
+"""Columns for text to read, if that is at most half of the screen."""
+
+
+Form = Callable[[Sequence[str], int, int], Node]
+"""Returns the tree of some panels for a number of columns and rows."""
+
+
+def size_class(width: int, height: int) -> TerminalSize:
+    """Return the size of a terminal: small, medium or large."""
+    if width >= MIN_LARGE_COLS and height >= _MIN_LARGE_ROWS:
+        return TerminalSize.LARGE
+    if width >= _BOARD_COLS and height >= _BOARD_ROWS:
+        return TerminalSize.MEDIUM
+    return TerminalSize.SMALL
+
+
+def is_single(width: int, height: int) -> bool:
+    """Return whether the area of the panels is so small that it shows one panel at a time."""
+    return height < _SINGLE_ROWS - 1 or (width < _SINGLE_COLS and height < _TALL_ROWS)
+
+
+def is_tall(width: int, height: int) -> bool:
+    """Return whether an area is higher than wide, as it looks."""
+    return height * 1.6 >= width
+
+
+def side_width(width: int, panels: Sequence[str] = ()) -> int:
+    """Return the width of the side column: two sensor discs fit side by side from 112 columns on.
+
+    Args:
+        width: Columns of the screen.
+        panels: The panels in the column; a lesson gets up to half of the screen.
+    """
+    if "lesson" in panels:
+        return min(width // 2, max(_LEAST_TEXT, min(_MOST_TEXT, width * 3 // 8)))
+    if width < 112:
+        return max(26, min(34, width * 28 // 80))
+    return DISCS_COLS if width < MIN_LARGE_COLS else _MAX_SIDE_COLS
+
+
+def select_panels(panels: Sequence[str], where: PanelPlace) -> list[str]:
+    """Return the panels of an area of the screen."""
+    return [info.id for info in PANELS.values() if info.place == where and info.id in panels]
+
+
+def _stacks(columns: Sequence[Sequence[str]], fixed: Mapping[int, int], width: int) -> Node:
+    """Return columns of stacked panels; those in `fixed` get that many columns, the others the rest."""
+    nodes = [joined(Axis.ROWS, column) for column in columns if column]
+    free = [at for at in range(len(nodes)) if at not in fixed]
+    if not free or len(nodes) == 1:
+        return joined(Axis.COLUMNS, nodes, shares=[1 / len(nodes)] * len(nodes))
+    rest = 1 - sum(fixed.values()) / width
+    weights = {at: max(PANELS[panel].weight for panel in columns[at]) for at in free}
+    shares = [
+        fixed[at] / width if at in fixed else rest * weights[at] / sum(weights.values())
+        for at in range(len(nodes))
+    ]
+    return joined(Axis.COLUMNS, nodes, shares=shares)
+
+
+def _strip(panels: Sequence[str], width: int, height: int) -> list[Node]:
+    """Return the bottom strip: panels side by side, as many as fit, the others below the first ones.
+
+    Code that would be narrow has the whole width, above the others, if all of them are high enough.
+    """
+    if not panels:
+        return []
+    columns = max(1, min(len(panels), width // MIN_STRIP_COLS))
+    others = [panel for panel in panels if panel != "code"]
+    if others != panels and others and width < columns * _CODE_COLS:
+        stacked = ["code", *_strip(others, width, height)]
+        if sum(fair_rows(node, width) for node in stacked) <= height:
+            return [
+                Split(Axis.ROWS, tuple(stacked), least=(0, *(_ERROR_ROWS for _ in stacked[1:])))
+            ]
+    count = ceil(len(panels) / columns)
+    stacks = [
+        joined(Axis.ROWS, panels[first : first + count]) for first in range(0, len(panels), count)
+    ]
+    return [joined(Axis.COLUMNS, stacks)]
+
+
+def _split_side(side: Sequence[str], height: int) -> tuple[list[str], list[str]]:
+    """Return the panels of the side column, and those that leave it because a lesson needs its rows."""
+    kept: list[str] = []
+    for panel in side:
+        rows = sum(PANELS[one].fair_rows for one in (*kept, panel))
+        fits = panel == "instrumentation" and rows <= height
+        if "lesson" not in side or panel == "lesson" or fits:
+            kept.append(panel)
+    return kept, [panel for panel in side if panel not in kept]
+
+
+def build_wide(panels: Sequence[str], width: int, height: int) -> Node:
+    """The world above the bottom strip, and a column beside both; a lesson has that column, as far as there is room."""
+    side, strip, main = (
+        select_panels(panels, where)
+        for where in (PanelPlace.SIDE, PanelPlace.BOTTOM, PanelPlace.MAIN)
+    )
+    kept, lowered = _split_side(side, height)
+    if main and lowered:
+        world_cols = width - side_width(width, kept)
+        below = _strip([*strip, *lowered], world_cols, height)
+        if 3 * ideal_rows(world_cols) // 4 + sum(map(least_rows, below)) <= height:
+            side, strip = kept, [*strip, *lowered]
+    return _place_wide(side, strip, main, width, height)
+
+
+def _place_wide(
+    side: Sequence[str], strip: Sequence[str], main: Sequence[str], width: int, height: int
+) -> Node:
+    if not strip and not main:
+        return joined(Axis.ROWS, side)
+    beside = side_width(width, side) if side else 0
+    wide = width - beside
+    left = joined(
+        Axis.ROWS, [*main, *_strip(strip, wide, height - (ideal_rows(wide) if main else 0))]
+    )
+    if not side:
+        return left
+    shares = (1 - beside / width, beside / width)
+    return joined(Axis.COLUMNS, [left, joined(Axis.ROWS, side)], shares=shares)
+
+
+_STRIP_ROWS, _CODE_STRIP_ROWS = 12, 16
+"""Rows of the strip below the board: for chart and output beside each other, and beside code."""
+_CHART_ROWS = 10
+_CHART_SHARE = 5 / 8
+"""Of the width, beside the output."""
+_MAX_EMPTY_ROWS = 3
+"""The readings beside the world make it so much higher than its shape at most."""
+
+
+def build_board(panels: Sequence[str], width: int, height: int) -> Node:
+    """The world with readings beside it, and below both a strip with the chart; the wide form without these three."""
+    side, main = select_panels(panels, PanelPlace.SIDE), select_panels(panels, PanelPlace.MAIN)
+    roomy = [panel for panel in ("code", "brick") if panel in panels]
+    fits = size_class(width, height + 1) == TerminalSize.MEDIUM and width >= MIN_STRIP_COLS * (
+        len(roomy) + 1
+    )
+    if not (fits and main and side and "chart" in panels and "lesson" not in panels):
+        return build_wide(panels, width, height)
+    world_cols = width - DISCS_COLS
+    share = world_cols / width
+    above = joined(Axis.COLUMNS, [*main, joined(Axis.ROWS, side)], shares=(share, 1 - share))
+    below = _build_board_strip(roomy, "output" in panels, height)
+    highest = ideal_rows(world_cols) + _MAX_EMPTY_ROWS
+    rows = min(
+        max(ideal_rows(world_cols), fair_rows(above, width)),
+        height - (_CODE_STRIP_ROWS if roomy and height >= 3 * _STRIP_ROWS else _STRIP_ROWS),
+        highest,
+    )
+    rows = max(rows, least_rows(above))
+    if rows > highest or rows + least_rows(below) > height:
+        return build_wide(panels, width, height)
+    return Split(Axis.ROWS, (above, below), least=(rows, height - rows))
+
+
+def _build_board_strip(roomy: Sequence[str], has_output: bool, height: int) -> Node:
+    """Return the chart with the output beside it, or below it if there are panels that need the width."""
+    if not roomy:
+        parts = ["chart", "output"] if has_output else ["chart"]
+        return joined(Axis.COLUMNS, parts, shares=(_CHART_SHARE, 1 - _CHART_SHARE))
+    chart_rows = _CHART_ROWS if height >= 3 * _STRIP_ROWS else 0
+    last: Node = (
+        Split(Axis.ROWS, ("chart", "output"), least=(chart_rows, 0)) if has_output else "chart"
+    )
+    return joined(Axis.COLUMNS, [*roomy, last])
+
+
+_TIGHT_ROWS: Mapping[str, int] = {
+    "instrumentation": 5,
+    "output": 4,
+    "code": 9,
+    "chart": 10,
+    "arrays": 9,
+}
+"""Rows in which these panels are read on a narrow and high screen."""
+
+
+def count_tight_rows(panels: Sequence[str], width: int) -> list[int]:
+    """Return the rows in which each panel is read on a narrow and high screen."""
+    return [
+        ideal_rows(width) if panel == "world" else _TIGHT_ROWS.get(panel, PANELS[panel].fair_rows)
+        for panel in panels
+    ]
+
+
+def _build_column(panels: Sequence[str], width: int, height: int) -> Node:
+    """Return panels one above the other, each with the rows in which it is read if there are so many."""
+    tight = count_tight_rows(panels, width)
+    if len(panels) == 1 or sum(tight) > height:
+        return joined(Axis.ROWS, panels)
+    return Split(Axis.ROWS, tuple(panels), least=tuple(tight))
+
+
+def build_under(panels: Sequence[str], width: int, height: int) -> Node:
+    """The world in the whole width, and everything else in columns below it."""
+    side, strip, main = (
+        select_panels(panels, where)
+        for where in (PanelPlace.SIDE, PanelPlace.BOTTOM, PanelPlace.MAIN)
+    )
+    most = width // COLUMN_COLS
+    if most <= 1 or not side + strip:
+        return _build_column([*main, *side, *strip], width, height)
+    high = max(height - (ideal_rows(width) if main else 0), 1)
+    packed: list[list[str]] = []
+    for panel in side:
+        column = next((one for one in packed if _fair([*one, panel]) <= high), None)
+        if column is None:
+            packed.append([panel])
+        else:
+            column.append(panel)
+    growing = [[panel] for panel in strip]
+    if growing and packed and len(packed[-1]) == 1 and 3 * _fair(packed[-1]) < 2 * high:
+        growing[0] = [*packed.pop(), *growing[0]]
+    for columns in (growing, packed):
+        while len(columns) > 1 and len(growing) + len(packed) > most:
+            columns[-2:] = [columns[-2] + columns[-1]]
+    columns = growing + packed
+    fixed = min(side_width(width, side), width // len(columns))
+    below = _stacks(
+        columns, {len(growing) + at: fixed for at in range(len(packed))} if growing else {}, width
+    )
+    return joined(Axis.ROWS, [*main, below])
+
+
+_LINE_ROWS = 5
+"""Rows of output and readings below the world: the readings are three lines."""
+_ROOMY = ("code", "chart", "brick")
+"""Panels that get the whole width of a low screen."""
+_FAIR_ROWS = 22
+"""From this height on, such a panel shows enough beside a world, even if others find no room."""
+
+
+def build_low(panels: Sequence[str], width: int, height: int) -> Node:
+    """The world in the whole width, or above a panel that needs it; readings and output below or beside it."""
+    roomy = [panel for panel in _ROOMY if panel in panels]
+    beside = [
+        panel for panel in (*select_panels(panels, PanelPlace.SIDE), "output") if panel in panels
+    ]
+    if "lesson" in panels or (not roomy and not {"instrumentation", "output"}.issuperset(beside)):
+        return build_wide(panels, width, height)
+    main = select_panels(panels, PanelPlace.MAIN)
+    if not roomy:
+        if not main or not beside:
+            return joined(Axis.ROWS, main or beside)
+        return Split(Axis.ROWS, (*main, _line_of(beside, width)), least=(0, _LINE_ROWS))
+    fair = max(_fair(roomy), height // 2)
+    above = height - fair
+    if not main or not beside:
+        top: list[Node] = [*main] or ([joined(Axis.ROWS, beside)] if beside else [])
+    else:
+        share = (
+            min(max(ideal_columns(above), PANELS["world"].min_cols), width - MIN_STRIP_COLS) / width
+        )
+        top = [joined(Axis.COLUMNS, [*main, _with_pose(beside, above)], shares=(share, 1 - share))]
+    below = joined(Axis.ROWS, roomy)
+    if not top:
+        return below
+    is_fair = height >= _FAIR_ROWS or least_rows(top[0]) <= above
+    return Split(Axis.ROWS, (*top, below), least=(0, fair) if is_fair else ())
+
+
+def _with_pose(panels: Sequence[str], height: int) -> Node:
+    """Return stacked panels; the readings get a row more than they need, if there is one, for the pose."""
+    column = joined(Axis.ROWS, panels)
+    if isinstance(column, str) or least_rows(column) >= height:
+        return column
+    least = tuple(PANELS[panel].min_rows + (panel == "instrumentation") for panel in panels)
+    return Split(Axis.ROWS, column.parts, least=least)
+
+
+def _line_of(panels: Sequence[str], width: int) -> Node:
+    """Return output and readings side by side, the output where notices appear."""
+    share = max(1 / 2, min(_READINGS_COLS, width - _TEXT_COLS) / width)
+    order = [panel for panel in ("output", "instrumentation") if panel in panels]
+    return joined(Axis.COLUMNS, order, shares=(1 - share, share))
+
+
+def _fair(panels: Sequence[str]) -> int:
+    return sum(PANELS[panel].fair_rows for panel in panels)
+
+
+def build_halves(first: Sequence[str], second: Sequence[str], share: float) -> Form:
+    """Return the form with two columns, of these panels in this order; further ones go below them."""
+
+    def form(panels: Sequence[str], width: int, height: int) -> Node:
+        if is_tall(width, height) and width < 2 * COLUMN_COLS:
+            return joined(
+                Axis.ROWS,
+                [
+                    panel
+                    for panel in dict.fromkeys(("world", *first, *second, *panels))
+                    if panel in panels
+                ],
+            )
+        rest = [panel for panel in panels if panel not in {*first, *second}]
+        left = [panel for panel in first if panel in panels] + select_panels(
+            rest, PanelPlace.BOTTOM
+        )
+        right = [panel for panel in second if panel in panels] + select_panels(
+            rest, PanelPlace.SIDE
+        )
+        wide = share or 1 - side_width(width, right) / width
+        columns = [
+            joined(Axis.ROWS, _paired(column, round((1 - wide) * width)))
+            for column in (left, right)
+            if column
+        ]
+        return joined(Axis.COLUMNS, columns, shares=(wide, 1 - wide)[: len(columns)])
+
+    return form
+
+
+def _paired(panels: Sequence[str], width: int) -> list[Node]:
+    """Return stacked panels, with small ones that follow each other side by side if there is room."""
+    nodes: list[Node] = []
+    for panel in panels:
+        last = nodes[-1] if nodes else None
+        pair = (
+            isinstance(last, str)
+            and _is_small(last)
+            and _is_small(panel)
+            and width >= 2 * side_width(112)
+        )
+        if pair and last is not None:
+            nodes[-1] = joined(Axis.COLUMNS, [last, panel])
+        else:
+            nodes.append(panel)
+    return nodes
+
+
+def _is_small(panel: str) -> bool:
+    return PANELS[panel].place == PanelPlace.SIDE and not PANELS[panel].grows

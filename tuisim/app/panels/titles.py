@@ -1,0 +1,47 @@
+"""The titles of panels, with the keys that show and hide them."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from rich.cells import cell_len
+from textual.app import App
+
+from tuisim.app.action import ActionHost, label_of_key
+from tuisim.app.panels import PANELS
+from tuisim.app.snapshot import Snapshot
+from tuisim.terminal.text_runs import as_markup
+
+_FRAME = 4
+"""Columns of the edge beside a title."""
+
+
+def build_title(app: App[Any], panel: str, name: str = "") -> str:
+    """Return a panel's key in an app and its title, with the name of what it shows unless that is empty, as markup."""
+    info = PANELS[panel]
+    actions = app.ACTIONS if isinstance(app, ActionHost) else {}
+    action = actions.get(f"panel-{panel}")
+    key = action.key_label if action else label_of_key(info.key)
+    # A file name is no markup.
+    title = as_markup(f"{info.title}: {name}" if name else info.title)
+    return f"[bold $tuisim-yellow]{as_markup(key)}[/] {title}"
+
+
+def name_mat(mat: str, layout: str, width: int) -> str:
+    """Return what the title of the world names: the mat, and the layout of the panels if there is room for it."""
+    info = PANELS["world"]
+    room = width - _FRAME - len(f"{info.key} {info.title}: ")
+    wordings = (f"{mat} · {layout}", layout) if layout else ()
+    return next((words for words in wordings if cell_len(words) <= room), mat)
+
+
+def name_setup(now: Snapshot, width: int) -> str:
+    """Return robot, seed and noise in words, as far as they fit a title; a seed or noise of 0 is left out."""
+    info, spec, noise = PANELS["instrumentation"], now.spec, now.instant.noise
+    seed = [f"seed {spec.seed}"] if spec.seed else []
+    kinds = [f"light ±{noise.light}"] * bool(noise.light) + [f"motor ±{noise.motor}"] * bool(
+        noise.motor
+    )
+    wordings = ([spec.robot.name, *seed, *kinds], [*seed, *kinds], kinds, kinds[:1])
+    room = width - _FRAME - len(f"{info.key} {info.title}: ")
+    return next((words for words in map(", ".join, wordings) if len(words) <= room), "")

@@ -1,0 +1,88 @@
+"""The picture of the world in characters without colours, and what stands below it."""
+
+from __future__ import annotations
+
+from tuisim.app.snapshot import Snapshot
+from tuisim.core.outline import outline_of
+from tuisim.scene.mono_robot import body, pointer
+from tuisim.scene.off_field import off_field_words
+from tuisim.scene.painter import Faint, ScenePainter, SceneState
+from tuisim.scene.pen import PenTrace
+from tuisim.scene.robot import drawn_scale
+from tuisim.scene.view import Viewport, following
+from tuisim.terminal.cells import draw_mono_rows, find_cell_points
+from tuisim.terminal.picture_options import CellSet
+from tuisim.terminal.pixels import Pixels
+
+_PAPER = (255, 255, 255)
+_PIVOT, _GHOST_PIVOT = "O", "x"
+_LEGEND_COLS = 22
+"""Room for one of the other robots in whole words."""
+
+
+def draw_world_text(
+    mat: Pixels,
+    trace: PenTrace,
+    scene: SceneState,
+    size: tuple[int, int],
+    cell_set: CellSet,
+    zoom: int,
+    has_floor: bool,
+) -> list[str]:
+    """Return the rows of the picture.
+
+    Args:
+        mat: The mat, shape (height in mm, width in mm, 3).
+        trace: What the pen has drawn.
+        scene: What else is drawn.
+        size: Columns and rows.
+        cell_set: The glyphs of the app; the text has signs if they are ASCII, else dots.
+        zoom: Zoom factor.
+        has_floor: Whether the mat lies on a floor.
+    """
+    dots = CellSet.ASCII if cell_set is CellSet.ASCII else CellSet.BRAILLE
+    cell = find_cell_points(dots)
+    width_px, height_px = cell.cols * size[0], cell.rows * size[1]
+    view = following(width_px, height_px, zoom, scene.pose, None, cell, on_floor=has_floor)
+    painter = ScenePainter(
+        mat,
+        _PAPER,
+        trace,
+        grey=True,
+        mono=True,
+        coarse=True,
+        whole_cells=True,
+        has_floor=has_floor,
+    )
+    return draw_mono_rows(painter.paint(view, scene), dots)
+
+
+def legend(now: Snapshot, width: int) -> str:
+    """Return what the robots are that are drawn beside the one in view, in words that fit."""
+    drawn = (
+        now.now_pose is not None and not off_field_words(now.now_pose),
+        now.earlier_pose is not None,
+    )
+    match drawn:
+        case True, True:
+            fits = (
+                "outline: the robot now, grey: the earlier run",
+                "outline: now, grey: earlier",
+                "line now, grey before",
+            )
+            return next((words for words in fits if len(words) <= width), fits[-1])
+        case True, False:
+            return "outline: the robot now" if width >= _LEGEND_COLS else "outline: now"
+        case False, True:
+            return "grey: the earlier run" if width >= _LEGEND_COLS else "grey: earlier"
+        case _:
+            return ""
+
+
+def draw_signs(port: Viewport, scene: SceneState) -> dict[tuple[int, int], int]:
+    """Return the signs that show the robots where there are no colours: cells by row and column."""
+    outline = outline_of(scene.robot)
+    reach_mm = outline.front_mm * drawn_scale(outline, port)
+    now = dict(scene.faint).get(Faint.NOW)
+    ghost = pointer(port, now, reach_mm, _GHOST_PIVOT) if now else {}
+    return ghost | body(port, scene.pose, outline) | pointer(port, scene.pose, reach_mm, _PIVOT)
