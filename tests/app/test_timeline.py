@@ -264,7 +264,7 @@ async def test_words_find_their_instants() -> None:
             "sample back": None,
             "sample": rows[0].tick,
             "print matches off": rows[1].tick,
-            "sample Colour < 90 first": dark,
+            "Colour < 90 first": dark,
             "sample Colour changes": changed[0],
         }
         for text, tick in table.items():

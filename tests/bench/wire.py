@@ -208,10 +208,8 @@ def _rests(server: Sshd, circle: Path, short: Path, watch_s: float) -> Iterator[
     yield from rest("palette", *world, shows="▀", keys=[b"\x10"])
     yield from rest("open a program", *world, shows="▀", keys=[b"o"])
     yield from rest("editor", *world, str(short), shows="▀", keys=[b"d"])
-    yield from rest("paused, no chart", str(circle), "-R", shows="running", keys=[b" "])
-    yield from rest("paused, chart", str(circle), "-Rc", shows="running", keys=[b" "])
-    yield from rest("finished, no chart", str(short), "-R", shows="finished")
-    yield from rest("finished, chart", str(short), "-Rc", shows="finished")
+    yield from rest("paused", str(circle), "-R", shows="running", keys=[b" "])
+    yield from rest("finished", str(short), "-R", shows="finished")
     yield from rest("analyser", "analyse", "last", shows="Colour")
 
 
@@ -227,26 +225,23 @@ def _driving(remote: Remote, name: str) -> Iterator[Figure]:
 
 def _answers(server: Sshd, line: Line, circle: Path) -> Iterator[Figure]:
     """Yield how soon a slow line shows the app, and what a key does."""
-    for panels, words in (("no chart", "-R"), ("chart", "-Rc")):
-        with Remote(server, line, _app(str(circle), words)) as remote:
-            remote.until("World")
-            yield Figure(f"panels are there, {line.name}", time.monotonic() - remote.began_s, "s")
-            remote.until("running")
-            yield from _driving(remote, f"driving, {panels}, {line.name}")
-            remote.terminal.type(b" ")
+    with Remote(server, line, _app(str(circle), "-R")) as remote:
+        remote.until("World")
+        yield Figure(f"panels are there, {line.name}", time.monotonic() - remote.began_s, "s")
+        remote.until("running")
+        yield from _driving(remote, f"driving, {line.name}")
+        remote.terminal.type(b" ")
+        yield Figure(f"space until 'paused', {line.name}", remote.until("paused"), "s", most=1)
+        remote.until_quiet()
+        for name in ("help", "palette"):
+            key, shows = _DIALOGS[name]
+            yield Figure(f"{name} opens, {line.name}", remote.paint(key, shows)[1], "s", most=1)
             yield Figure(
-                f"space until 'paused', {panels}, {line.name}", remote.until("paused"), "s", most=1
+                f"{name} closes, {line.name}",
+                remote.paint(b"\x1b", shows, on=False)[1],
+                "s",
+                most=1,
             )
-            remote.until_quiet()
-            for name in ("help", "palette"):
-                key, shows = _DIALOGS[name]
-                yield Figure(f"{name} opens, {line.name}", remote.paint(key, shows)[1], "s", most=1)
-                yield Figure(
-                    f"{name} closes, {line.name}",
-                    remote.paint(b"\x1b", shows, on=False)[1],
-                    "s",
-                    most=1,
-                )
 
 
 def _driven(

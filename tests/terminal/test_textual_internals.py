@@ -21,7 +21,6 @@ from textual.message import Message
 from textual.screen import Screen
 from textual.widget import Widget
 from textual.widgets import OptionList
-from textual.widgets._toast import Toast
 
 import tuisim.app
 import tuisim.terminal
@@ -122,10 +121,9 @@ async def test_a_notice_that_is_gone_leaves_the_screen(told: dict[Widget, Size])
         stream.feed("".join(wire_of(pilot).sent))
         assert "A notice" in "\n".join(terminal.display)
         wire_of(pilot).sent.clear()
-        for toast in app.screen.query(Toast):
-            # What is drawn meanwhile is not known in the map of all widgets: it is made anew for who asks.
-            app.screen._compositor._full_map_invalidated = True
-            toast._expire()
+        # What is drawn meanwhile is not known in the map of all widgets: it is made anew for who asks.
+        app.screen._compositor._full_map_invalidated = True
+        app.clear_notifications()
         await until_quiet(pilot)
         stream.feed("".join(wire_of(pilot).sent))
         assert "A notice" not in "\n".join(terminal.display)

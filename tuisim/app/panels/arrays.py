@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from textual.app import ComposeResult
 from textual.widget import Widget
 
+from tuisim.app.panels.titles import name_sensors
 from tuisim.app.render.arrays import Arrangement, arranged, face_lines, names_in_border
 from tuisim.scene.discs import RIM_16_RGB, RIM_RGB, DiscFace, disc_faces, draw_disc
 from tuisim.terminal.cell_view import LinesView, PixelView
@@ -128,9 +129,8 @@ class Arrays(Widget):
         has_limits = any(face.thresholds for face in faces)
         self._arrange(faces)
         names = [face.name for face in faces]
-        self.border_subtitle = (
-            names_in_border(names, self._where, has_limits=has_limits) if self._where else ""
-        )
+        usual = names_in_border(names, self._where, has_limits=has_limits) if self._where else ""
+        self.border_subtitle = name_sensors(now, self.size.width) or usual
         for disc, face in zip(self._discs, faces, strict=True):
             disc.show(face, has_limits=has_limits)
 

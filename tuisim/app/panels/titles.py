@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import Any
 
 from rich.cells import cell_len
@@ -10,8 +11,11 @@ from textual.app import App
 from tuisim.app.action import ActionHost, label_of_key
 from tuisim.app.panels import PANELS
 from tuisim.app.snapshot import Snapshot
+from tuisim.source import PRELUDE_TEXTS
 from tuisim.terminal.text_runs import as_markup
 
+_PREDEFINED = re.compile(r"^(\w+) = ColorSensor\(INPUT_(\d)\)$", re.MULTILINE)
+"""A name that programs find for a sensor, and its port."""
 _FRAME = 4
 """Columns of the edge beside a title."""
 
@@ -33,6 +37,24 @@ def name_mat(mat: str, layout: str, width: int) -> str:
     room = width - _FRAME - len(f"{info.key} {info.title}: ")
     wordings = (f"{mat} · {layout}", layout) if layout else ()
     return next((words for words in wordings if cell_len(words) <= room), mat)
+
+
+def name_sensors(now: Snapshot, width: int) -> str:
+    """Return all names of each colour sensor, as many as fit a frame: by number, in the robot, port, in the program.
+
+    Empty if not even the numbers with name and port fit.
+    """
+    prelude = PRELUDE_TEXTS.get(now.program.prelude, "") if now.program else ""
+    predefined = {f"in{port}": name for name, port in _PREDEFINED.findall(prelude)}
+    sensors = [
+        (f"Sensor{at}", sensor.name, sensor.port, *filter(None, [predefined.get(sensor.port)]))
+        for at, sensor in enumerate(now.spec.robot.color_sensors, 1)
+    ]
+    wordings = (
+        " │ ".join(mark.join(names[:count]) for names in sensors)
+        for mark, count in ((" · ", 4), (" ", 4), (" ", 3))
+    )
+    return next((words for words in wordings if cell_len(words) <= width - _FRAME - 2), "")
 
 
 def name_setup(now: Snapshot, width: int) -> str:

@@ -1,0 +1,46 @@
+"""One key takes back what a letter has changed at once."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.app.app_help import LOGS, notices, open_lab, screen_text, until, until_shown
+from tuisim.protocol import End
+
+
+@pytest.mark.parametrize("key", ["m", "j"])
+async def test_a_move_is_taken_back(key: str) -> None:
+    async with open_lab(LOGS) as (pilot, app):
+        await pilot.press("right")
+        await until(pilot, lambda: app.run_controller.pose.x_mm == 160)
+        await pilot.press(key)
+        await until(pilot, lambda: app.run_controller.pose.x_mm != 160)
+        await until_shown(pilot, "backspace undo")
+        await pilot.press("backspace")
+        await until(pilot, lambda: app.run_controller.pose.x_mm == 160)
+        await until(pilot, lambda: "backspace undo" not in screen_text(app))
+
+
+async def test_a_cleared_log_and_a_cleared_trace_come_back() -> None:
+    drive = "tank_drive.on_for_seconds(20, 20, 0.5)\nprint('Colour: 7')\n"
+    async with open_lab(drive, autorun=True, speed=0.0) as (pilot, app):
+        await until(pilot, lambda: app.run_controller.snapshot().end == End.FINISHED)
+        output, world = app.panel_area.output, app.panel_area.world
+        assert output is not None and world is not None
+        await until(pilot, lambda: "Colour: 7" in output.copy_text().text)
+        await pilot.press("x")
+        await until(pilot, lambda: "Colour" not in output.copy_text().text)
+        await pilot.press("backspace")
+        await until(pilot, lambda: "Colour: 7" in output.copy_text().text)
+        await until_shown(pilot, "[x] Colour")
+        pieces = len(world._view.trace)
+        await pilot.press("C")
+        await until(pilot, lambda: len(world._view.trace) == 0)
+        await pilot.press("backspace")
+        await until(pilot, lambda: len(world._view.trace) == pieces)
+
+
+async def test_without_a_change_there_is_nothing_to_undo() -> None:
+    async with open_lab(LOGS) as (pilot, app):
+        await pilot.press("backspace")
+        await until(pilot, lambda: notices(app) == ["Nothing to undo"])
