@@ -175,7 +175,7 @@ BLIND: Mapping[str, Case] = {
         (284, 796),
     ),
     "floor_scan/scan": Case(
-        "2 gyro, 4 left", "row 3: 236 samples", {"wheel_spacing_mm": 118.0}, "", 0, (1179, 381)
+        "2 gyro, 4 left", "row 3: 236 samples", {"wheel_spacing_mm": 118.0}, "", 0, (1172, 381)
     ),
     "gyro_square": Case(
         "2 gyro, 4 left, A left wheel, B -, C -, D right wheel",
@@ -210,14 +210,14 @@ BLIND: Mapping[str, Case] = {
         0,
         (1119, 595),
     ),
-    "motorlevel": Case("1 touch", "parked 735 3214", REVERSED, "-b Grey_bands", 0, (1364, 129)),
+    "motorlevel": Case("1 touch", "parked 735 3214", REVERSED, "-b Grey_bands", 0, (1365, 139)),
     "odometry_tour": Case(
         "",
         "58 points saved",
         {"wheel_diameter_mm": 81.6, "wheel_spacing_mm": 136.0},
         "-x 1181 -y 900",
         0,
-        (1566, 339),
+        (1562, 338),
     ),
     "plotter/plotter": Case(
         "A medium motor, B large motor, C large motor",
@@ -245,7 +245,7 @@ BLIND: Mapping[str, Case] = {
         MIDDLE,
     ),
     "rob_subclass": Case(
-        "1 gyro, 4 ultrasonic, A left wheel, B -", "[  14.49] bye", {}, LINE, 0, (188, 1043)
+        "1 gyro, 4 ultrasonic, A left wheel, B -", "[  14.49] bye", {}, LINE, 0, (211, 1033)
     ),
     "robot_arm": Case(
         "1 touch, A medium motor, B large motor, C large motor",
@@ -261,7 +261,7 @@ BLIND: Mapping[str, Case] = {
         {},
         "-b Loop -x 315 -y 500 -a 90 --press enter@1 --press enter@6-6.3",
         0,
-        (372, 924),
+        (373, 925),
     ),
     "staubsauger": Case(
         "1 touch, 2 touch_right, A left wheel, B right wheel, C medium motor",
@@ -283,7 +283,7 @@ BLIND: Mapping[str, Case] = {
     "track3r_remote": Case(
         "1 infrared, A medium motor", "", {}, "--world programs/beacon.toml", 0, (1485, 570)
     ),
-    "wallfollow": Case("1 touch, 2 ultrasonic", "", {}, "", 0, (1938, 178)),
+    "wallfollow": Case("1 touch, 2 ultrasonic", "", {}, "", 0, (1937, 178)),
     "wro_regular/main": Case(
         "1 left, 2 right, 3 middle, A medium motor, D medium motor",
         "",

@@ -39,8 +39,8 @@ def test_motors_that_run_for_ever_are_named(
 
 
 MOVES = {
-    "for a time": ("left.run_timed(speed_sp=300, time_sp=2000)", 1.99, (600, 0)),
-    "to a position": ("left.run_to_rel_pos(speed_sp=300, position_sp=600)", 1.99, (600, 0)),
+    "for a time": ("left.run_timed(speed_sp=300, time_sp=2000)", 1.99, (680, 0)),
+    "to a position": ("left.run_to_rel_pos(speed_sp=300, position_sp=600)", 1.99, (670, 0)),
     "the longer one": (
         "left.on_for_degrees(20, 90, block=False); right.on_for_seconds(20, 3, block=False)",
         2.99,
@@ -60,11 +60,52 @@ def test_a_move_that_ends_goes_on_to_its_end(
 ) -> None:
     done = run(_EV3DEV2 + text, profile="ev3")
     assert (done.ended.end, done.ended.summary) == ("finished", "")
-    assert least_s < done.ended.time_ns / 1e9 < least_s + 0.4
+    assert least_s < done.ended.time_ns / 1e9 < least_s + 0.7
     last = done.run.telemetry.last()
     assert last is not None
     wheels = last.left_position_deg, last.right_position_deg
     assert all(abs(is_deg - must) < 40 for is_deg, must in zip(wheels, turned, strict=True))
+
+
+BOTH = "left.on_for_degrees(30, 500, block=False); right.on_for_degrees(30, 500)"
+RESTS = {
+    "held": (BOTH, 0.5),
+    "rolling out": (f"{BOTH.replace(')', ', brake=False)')}", 0.5),
+    "held while it ran": ("left.on(50); sleep(1); left.off()", 0.5),
+    "at rest": (f"{BOTH}; sleep(1)", 0.0),
+    "never moved": ("sleep(1)", 0.0),
+}
+
+
+@cases("text, most_s", RESTS)
+def test_wheels_come_to_rest(run: Run, text: str, most_s: float) -> None:
+    done = run(_EV3DEV2 + text, profile="ev3")
+    alone = run(f"{_EV3DEV2}{text}; left.on(5)", profile="ev3")
+    rests_s = (done.ended.time_ns - alone.ended.time_ns) / 1e9
+    assert (done.ended.end, 0 < rests_s if most_s else rests_s <= 0) == ("finished", True)
+    assert rests_s <= most_s
+    *_, before, last = done.run.telemetry.array()
+    assert abs(before["x_mm"] - last["x_mm"]) < 0.01
+
+
+def test_wheels_that_come_to_rest_do_not_count_to_the_limit(run: Run) -> None:
+    text = _EV3DEV2 + "left.on(50); sleep(1); left.off()"
+    done = run(text, profile="ev3", time_limit_s=1.05)
+    assert (done.ended.end, done.ended.time_ns) == ("finished", 1_050_000_000)
+
+
+def test_by_the_rules_of_the_course_a_run_ends_with_its_program(run: Run) -> None:
+    done = run(_EV3DEV2 + "left.on(50); sleep(1); left.off()", profile="robolab")
+    assert done.ended.time_ns < 1_010_000_000
+
+
+def test_a_held_robot_stands_where_it_should(run: Run) -> None:
+    """Wheels of 56 mm: 300 mm."""
+    text = "left.on_for_degrees(30, 614, block=False); right.on_for_degrees(30, 614)"
+    done = run(_EV3DEV2 + text, profile="ev3")
+    first, *_, last = done.run.telemetry.array()
+    assert abs(last["x_mm"] - first["x_mm"] - 300) < 2
+    assert abs(last["heading_deg"]) < 0.1
 
 
 def test_a_move_counts_to_the_limit(run: Run) -> None:

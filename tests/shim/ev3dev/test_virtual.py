@@ -15,7 +15,7 @@ def test_the_pen_draws_and_the_place_is_true(run: Run) -> None:
         f"{_HEAD}wheels, pen, place = MoveTank(OUTPUT_B, OUTPUT_C), Pen(INPUT_5), GPSSensor(INPUT_6)\n"
         "talk = Radio()\nwheels.on_for_rotations(30, 30, 1)\npen.down()\npen.setColor(255, 0, 0)\n"
         "wheels.on_for_rotations(30, 30, 1)\npen.up()\nwheels.on_for_rotations(30, 30, 1)\n"
-        "print(place.x * 10, place.y * 10, place.position)\n",
+        "import time\ntime.sleep(1)\nprint(place.x * 10, place.y * 10, place.position)\n",
         profile="ev3",
         prelude="none",
     )
