@@ -225,9 +225,15 @@ def test_stored_runs_are_listed_shown_exported_and_removed(
     assert "prog.py: finished" in shown.stdout
     assert shown.stdout.endswith("Number: 4\n")
     assert len(json.loads(here("runs", "show", "1", "--json").stdout)["output"]) == 5
-    assert here("runs", "export", "1", "2", "rows.jsonl", "--telemetry", "t.csv").returncode == 2
-    assert "is named twice" in here("runs", "export", "1", "t.csv", "--telemetry", "./t.csv").stderr
-    assert here("runs", "export", "1", "2", "rows.jsonl").returncode == 0
+    assert (
+        here("runs", "export", "1", "2", "--out", "rows.jsonl", "--telemetry", "t.csv").returncode
+        == 2
+    )
+    assert (
+        "is named twice"
+        in here("runs", "export", "1", "--out", "t.csv", "--telemetry", "./t.csv").stderr
+    )
+    assert here("runs", "export", "1", "2", "--out", "rows.jsonl").returncode == 0
     assert len(package.read_log(tmp_path / "rows.jsonl")) == 10
     assert here("runs", "export", "2", "--telemetry", "t.csv").returncode == 0
     assert here("runs", "rm", "1", listed[0]["id"]).returncode == 0

@@ -60,6 +60,19 @@ BAD = {
     ),
     "pen colour": ("run prog.py -P reed", "-P: no such colour 'reed' (did you mean red"),
     "a command that is gone": ("man", "man: no such command or program (`tuisim --help` lists"),
+    "a command of two groups": (
+        "export last",
+        "did you mean `tuisim runs export last --out FILE` or `tuisim log export last --out FILE`?",
+    ),
+    "another word for a command of a group": (
+        "compare 1 2",
+        "compare: no such command or program (did you mean `tuisim log diff 1 2`?)",
+    ),
+    "a log for a program": (
+        "run rows.csv",
+        "rows.csv: is a log, not a program (`tuisim analyse rows.csv` opens it)",
+    ),
+    "a log in the app": ("rows.csv", "rows.csv: is a log, not a program"),
     "an option that is gone": (
         "doctor --clean",
         "no such option: --clean (what killed processes have left is removed when tuisim runs again)",
@@ -121,6 +134,10 @@ BAD = {
     "which run": ("runs show", "show: no run given"),
     "compact": ("runs compact", "no such command 'compact' (recordings are plain files;"),
     "unknown action": ("runs shwo 1", "no such command 'shwo' (did you mean show?)"),
+    "export names its files": (
+        "runs export 1 a.csv",
+        "export: a.csv is not a run (--out a.csv writes it)",
+    ),
     "export needs a file": ("runs export 1", "needs a run and a file"),
     "too many words": ("backgrounds Loop", "Loop"),
     "two programs in the app": ("prog.py magic.py", "two programs: prog.py and magic.py"),
@@ -141,6 +158,7 @@ BAD = {
 def folder(tmp_path: Path) -> Path:
     (tmp_path / "prog.py").write_text("print('Number: 1')\n")
     (tmp_path / "magic.py").write_text("# %%sim_magic -x abc\n")
+    (tmp_path / "rows.csv").write_text("time,light\n0,1\n")
     (tmp_path / "binary.py").write_bytes(b"\xff\xfe\x00\x01")
     (tmp_path / "book.ipynb").write_text("{}")
     (tmp_path / "folder.csv").mkdir()

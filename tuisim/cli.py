@@ -98,18 +98,29 @@ LEAST_OPEN_FILES = 64
 EXIT_OUR_MISTAKE = 70
 _INSTEAD = {"man": "`tuisim --help` lists the commands, `tuisim guide commands` explains them"}
 """What to use instead of commands that there are not."""
+_GROUPS = ("runs", "log", "goals", "learn")
+"""Commands with subcommands that are taken for commands."""
+_SYNONYMS = {"compare": "diff", "delete": "rm", "remove": "rm", "chart": "plot", "replay": "rerun"}
+"""Words for subcommands."""
 
 
-def _check_command(word: str) -> None:
-    """Raise ConfigError if a word looks like a misspelt command and is not a program."""
-    hint = _INSTEAD.get(word) or did_you_mean(
-        [f"`tuisim {name}`" for name in closest(word, COMMANDS, 1)]
-    )
-    if not hint or "." in word:
-        return
+def _find_commands(word: str, others: Sequence[str]) -> list[str]:
+    """Return the lines that may have been meant by a word and those after it, best first; at most two."""
+    action, rest = _SYNONYMS.get(word, word), "".join(f" {other}" for other in others)
+    if action == "export" and "--out" not in others:
+        rest += " --out FILE"
+    groups = [name for name in _GROUPS if action in cast("Group", COMMANDS[name].load()).listing]
+    lines = [f"`tuisim {name} {action}{rest}`" for name in groups]
+    return lines[:2] or [f"`tuisim {name}`" for name in closest(word, COMMANDS, 1)]
+
+
+def _check_command(word: str, others: Sequence[str]) -> None:
+    """Raise ConfigError if a word looks like a misspelt command, or like one of a group, and is not a program."""
     from tuisim.config.program_file import find_program
 
-    if not os.path.exists(find_program(word)):
+    if "." in word or os.path.exists(find_program(word)):
+        return
+    if hint := _INSTEAD.get(word) or did_you_mean(_find_commands(word, others)):
         raise ConfigError(f"{word}: no such command or program", hint)
 
 
@@ -135,7 +146,7 @@ class _Root(Group):
         if args and (args[0] in COMMANDS or args[0] in ("-h", "--help", "--version")):
             return args
         if args and not args[0].startswith("-") and not ctx.resilient_parsing:
-            _check_command(args[0])
+            _check_command(args[0], args[1:])
         return [self.default, *args]
 
 

@@ -249,7 +249,7 @@ def test_a_file_is_told_without_program_and_world(
 
 
 def test_an_export_tells_of_its_runs(here: Command, tmp_path: Path, driven: Driven) -> None:
-    here("runs", "export", driven.run.id, "x.parquet")
+    here("runs", "export", driven.run.id, "--out", "x.parquet")
     here("log", "report", "x.parquet", "--variable", "Colour")
     facts = page_of(tmp_path / "x-report.html").section["Facts"]
     assert facts[facts.index("SHA-256") + 1] == driven.run.program.sha256

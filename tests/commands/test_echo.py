@@ -208,7 +208,7 @@ COMMANDS = {
     "run, several": (("run", "p.py", "p.py"), ("1 of 2, p.py", "2 of 2, p.py")),
     "rerun": (("runs", "rerun", "last"), ("rerunning run 1: p.py", "comparing run 1")),
     "export": (
-        ("runs", "export", "1", "a.csv", "--telemetry", "b.csv"),
+        ("runs", "export", "1", "--out", "a.csv", "--telemetry", "b.csv"),
         ("writing a.csv", "writing b.csv"),
     ),
     "bands": (("log", "bands", "1"), ("log bands 1",)),
@@ -256,3 +256,27 @@ def test_rich_is_not_loaded_for_what_is_quick() -> None:
     check = "import sys, tuisim.commands.run, tuisim.commands.runs, tuisim.commands.log; print('rich' in sys.modules)"
     done = subprocess.run([sys.executable, "-c", check], capture_output=True, text=True, check=True)
     assert done.stdout == "False\n"
+
+
+WRITERS = {
+    "runs export": (("runs", "export", "1", "--out", "a.csv"), "a.csv; what it is and its units"),
+    "log export": (("log", "export", "1", "--out", "a.jsonl"), "a.jsonl"),
+    "log plot": (("log", "plot", "1", "--out", "a.svg"), "a.svg"),
+    "run": (("run", "p.py", "--export", "a.arrow"), "a.arrow"),
+    "batch": (("batch", "p.py", "--jobs", "1", "--out", "a.csv"), "a.csv; what it is"),
+}
+
+
+@cases("words, file", WRITERS)
+def test_commands_name_the_files_that_they_write(
+    home: object,
+    here: Command,
+    tmp_path: Any,
+    monkeypatch: pytest.MonkeyPatch,
+    words: tuple[str, ...],
+    file: str,
+) -> None:
+    (tmp_path / "p.py").write_text("for i in range(3):\n    print('Number:', i)\n")
+    here("run", "p.py")
+    monkeypatch.setattr("tuisim.commands.echo.is_watched", lambda: True)
+    assert f"written: {file}" in here(*words).stderr

@@ -63,7 +63,7 @@ def kept(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Kept]:
         files.mkdir()
         for suffix in EXPORTERS:
             target = str(files / f"log{suffix}")
-            words = [run.id for run in runs] + [target]
+            words = [run.id for run in runs] + ["--out", target]
             words = words if name == "samples" else [runs[0].id, "--telemetry", target]
             assert run_command(["runs", "export", *words]) == 0
     frames = {"samples": samples_frame(runs), "telemetry": telemetry_frame(runs[0])}

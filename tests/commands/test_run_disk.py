@@ -206,7 +206,8 @@ def test_ctrl_c_while_the_export_is_written(
     monkeypatch.setattr(run_command, "export_samples", export)
     done = here("run", short, "--export", "a.csv")
     assert done.returncode == 130
-    cancelled = f"a.csv was not written; the log is stored (tuisim runs export {RunStore().find('last').number} a.csv)"
+    again = f"tuisim runs export {RunStore().find('last').number} --out a.csv"
+    cancelled = f"a.csv was not written; the log is stored ({again})"
     assert (cancelled in done.stderr) == (rows is None)
     written = tmp_path / "a.csv"
     assert (len(read_log(written)) if written.exists() else None) == rows

@@ -210,7 +210,7 @@ WORDS = (
     "runs --json",
     "runs show 1",
     "runs show 1 --json",
-    "runs export 1 a.csv",
+    "runs export 1 --out a.csv",
     "log summary 1",
     "log bands 1",
     "runs export 1 --telemetry a.parquet",

@@ -32,7 +32,7 @@ ASKED = {
         ["robolab", "nbev3devsim", "ev3", "lego-micropython", "pybricks4"],
     ),
     "actions": ("runs re", ["rerun"]),
-    "options of an action": ("runs export --", ["--telemetry", "--help"]),
+    "options of an action": ("runs export --", ["--out", "--telemetry", "--help"]),
     "options of the default action": ("runs --js", ["--json"]),
     "subcommands of log": ("log p", ["plot"]),
     "options of a subcommand": ("log bands --f", []),

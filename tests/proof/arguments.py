@@ -28,7 +28,7 @@ SOUND: Mapping[str, str] = {
     "learn new": "new.md",
     "runs list": "",
     "runs show": "1",
-    "runs export": "1 new.csv",
+    "runs export": "1 --out new.csv",
     "runs picture": "1 --out new.png",
     "runs movie": "1 --out new.svg --to 0.2",
     "runs rerun": "1",

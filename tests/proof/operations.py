@@ -74,7 +74,9 @@ OPERATIONS: Mapping[str, Operation] = {
         is_slow=True,
     ),
     "csv": Operation(
-        (*_COMMAND, "runs", "export", "1", "out.csv"), ("out.csv", "out.csv.json"), is_slow=True
+        (*_COMMAND, "runs", "export", "1", "--out", "out.csv"),
+        ("out.csv", "out.csv.json"),
+        is_slow=True,
     ),
     "parquet": Operation(
         (*_COMMAND, "log", "export", "1", "--out", "out.parquet"), ("out.parquet",), is_slow=True

@@ -37,7 +37,7 @@ def earlier(run: Run) -> Path:
     "words",
     [
         "runs show RUN",
-        "runs export RUN a.csv",
+        "runs export RUN --out a.csv",
         "runs rerun RUN",
         "runs picture RUN",
         "log summary RUN",

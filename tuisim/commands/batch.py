@@ -35,6 +35,7 @@ from tuisim.commands.echo import (
     echo_error,
     echo_json,
     echo_lines,
+    echo_written,
     finite,
     table,
     tell,
@@ -134,6 +135,7 @@ class _Batch:
             if self.request.out is not None and self.rows:
                 tell(f"writing {self.request.out}")
                 export_frame(frame, self.request.out, metadata_of(frame, self.identity))
+                echo_written(self.request.out)
         if partly is not None and not code:
             partly.remove()
         self._print(frame)

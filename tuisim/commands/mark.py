@@ -15,7 +15,16 @@ from tuisim.batch.parameters import parse_seeds
 from tuisim.batch.task import Keep
 from tuisim.charts.files import write_whole
 from tuisim.commands.batch_options import jobs_option, keep_option
-from tuisim.commands.echo import Progress, echo, echo_error, echo_lines, echo_wrapped, table, tell
+from tuisim.commands.echo import (
+    Progress,
+    echo,
+    echo_error,
+    echo_lines,
+    echo_wrapped,
+    echo_written,
+    table,
+    tell,
+)
 from tuisim.commands.exit_status import Interrupted, signals_raise
 from tuisim.commands.listings import names_of
 from tuisim.commands.run_options import input_option, timeout_option
@@ -390,10 +399,12 @@ def _write(
         if target.suffix.lower() in EXPORTERS:
             tell(f"writing {target}")
             export_marks(sheet, target)
-            continue
-        _write_page(sheet, worlds, students, ignored, target, movies=arguments.movies)
+        else:
+            _write_page(sheet, worlds, students, ignored, target, movies=arguments.movies)
+        echo_written(target)
     if arguments.feedback:
         write_feedback(Path(arguments.feedback), sheet, [student.text for student in students])
+        echo_written(arguments.feedback)
 
 
 def _write_page(
@@ -430,6 +441,7 @@ def _write_gradebooks(
             write_gradebook(
                 Path(target), kind, sheet, sources, roster, goals=arguments.goal_columns
             )
+            echo_written(target)
 
 
 _NARROWER = ((40, 60), (24, 20), (16, 10), (12, 6))

@@ -263,9 +263,9 @@ def _export(done: Sequence[StoredRun], arguments: Arguments) -> None:
         except (ExportError, LogError) as error:
             errors.append(error)
         except KeyboardInterrupt:
-            option = "--telemetry " if target == arguments.telemetry else ""
+            option = "--telemetry" if target == arguments.telemetry else "--out"
             again = (
-                f"tuisim runs export {' '.join(str(run.number) for run in done)} {option}{target}"
+                f"tuisim runs export {' '.join(str(run.number) for run in done)} {option} {target}"
             )
             echo_error(f"tuisim: {target} was not written; the log is stored ({again})")
             raise

@@ -341,7 +341,15 @@ def diff_text(found: RunDiff) -> str:
 
 
 @command(
-    argument("words", "RUN… FILE…", lambda: ("last",), nargs=-1),
+    argument("words", "RUN…", lambda: ("last",), nargs=-1),
+    option(
+        "--out",
+        "files",
+        multiple=True,
+        metavar="FILE",
+        type=WordType(),
+        help="Export the samples; may be repeated.",
+    ),
     option(
         "--telemetry",
         metavar="FILE",
@@ -350,18 +358,19 @@ def diff_text(found: RunDiff) -> str:
     ),
     help=f"Export samples of runs, or the telemetry of one run.\n\nA FILE ends in {LISTED}.",
 )
-def export(words: Sequence[str], telemetry: str | None) -> int:
+def export(words: Sequence[str], files: Sequence[str], telemetry: str | None) -> int:
     """Export samples or telemetry of runs."""
-    files = [Path(word) for word in words if Path(word).suffix.lower() in EXPORTERS]
-    names = [word for word in words if Path(word).suffix.lower() not in EXPORTERS]
-    if not names or not (files or telemetry is not None):
-        hint = f"tuisim runs export RUN… FILE…, FILE ends in {', '.join(EXPORTERS)}"
+    for word in words:
+        if Path(word).suffix.lower() in EXPORTERS:
+            raise ConfigError(f"{word} is not a run", f"--out {word} writes it", key="export")
+    if not words or not (files or telemetry is not None):
+        hint = f"tuisim runs export RUN… --out FILE, FILE ends in {', '.join(EXPORTERS)}"
         raise ConfigError("needs a run and a file", hint, key="export")
-    if telemetry is not None and len(names) > 1:
-        raise ConfigError("takes one run", f"got {len(names)}", key="--telemetry")
+    if telemetry is not None and len(words) > 1:
+        raise ConfigError("takes one run", f"got {len(words)}", key="--telemetry")
     check_targets(target for target in (*files, telemetry) if target is not None)
     with Progress("export"):
-        runs = _load(RunStore(), names)
+        runs = _load(RunStore(), words)
         for note in (note for run in runs for note in run.notes):
             echo_error(f"note: {note}")
         for file in files:

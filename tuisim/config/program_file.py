@@ -23,6 +23,8 @@ from tuisim.regular_file import read_regular
 from tuisim.source import LIBRARIES, PRELUDE_TEXTS, PRELUDES, Program, decode_source, source_lines
 
 MAX_PROGRAM_BYTES = 4 << 20
+_LOGS = (".csv", ".tsv", ".parquet", ".jsonl", ".arrow")
+"""What files with measurements end in."""
 
 FILE_FIELDS = {"background", "robot", "obstacles", "profile", "mats"}
 """Settings that may name a file or a folder."""
@@ -299,6 +301,9 @@ def read_program(path: Path, *, as_python: bool = False, alone: bool = False) ->
         raise ConfigError(f"is larger than {MAX_PROGRAM_BYTES >> 20} MiB", hint, file=shown)
     if path.suffix == ".ipynb":
         raise ConfigError("is a notebook", hint, file=shown)
+    if path.suffix.lower() in _LOGS:
+        opens = f"`tuisim analyse {shlex.quote(shown)}` opens it"
+        raise ConfigError("is a log, not a program", opens, file=shown)
     return program_of_text(_decode(data, shown, as_python), path, path.name, alone=alone)
 
 

@@ -19,7 +19,7 @@ from tuisim.charts.files import (
     parse_size,
     save_chart,
 )
-from tuisim.commands.echo import echo, echo_drawn, echo_error
+from tuisim.commands.echo import echo, echo_drawn, echo_error, echo_written
 from tuisim.commands.logs.sources import asked, names_of, the_source
 from tuisim.config.command_line import Arguments
 from tuisim.errors import ConfigError, LogError, listed
@@ -47,6 +47,7 @@ def plot(arguments: Arguments) -> int:
     _check_visible(model)
     if target:
         save_chart(partial(chart_of, model, view), target, size)
+        echo_written(target)
     else:
         _show(model, view, size)
     hidden = [trace.name for trace in model.traces if not trace.on]
