@@ -44,7 +44,7 @@ def test_a_run_says_in_one_line_what_was_built(folder: Path, here: Command) -> N
     notes = [line for line in done.stderr.splitlines() if line.startswith("note: ")]
     assert notes == [
         "note: claw.py runs on a robot built from it: wheels on outA (left) and outD, medium motor on outB, touch "
-        "sensor on in1, no ultrasonic sensor; by the rules of a brick (profile ev3). -r or --profile to change it; "
+        "sensor on in1, no ultrasonic sensor; as on a brick (profile ev3). -r or --profile to change it; "
         "`tuisim robots --from claw.py` shows the robot"
     ]
 

@@ -227,7 +227,7 @@ def test_prelude(text: str, prelude: str) -> None:
     [
         ("%%sim_magic_preloded -b Loop", r"^a\.py, line 1: no such magic .*sim_magic_preloaded"),
         ("# %%sim_magic -x abc", r"^a\.py, line 1: -x: must be a number"),
-        ("# %%sim_magic -b 'Loop", r"^a\.py, line 1: the magic line cannot be split"),
+        ("# %%sim_magic -b 'Loop", r"^a\.py, line 1: cannot be split"),
         ("# %%sim_magic -s other", r"^a\.py, line 1: no such option"),
     ],
     ids=["name", "value", "quote", "switch"],

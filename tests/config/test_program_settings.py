@@ -191,7 +191,7 @@ MISFITS: Mapping[str, tuple[str, dict[str, Any], str]] = {
     "a prelude before pybricks": (
         f"# %%sim_magic_preloaded\n{PYBRICKS}",
         {},
-        "preload: p.py uses pybricks, and the names of its prelude",
+        "preload: p.py uses pybricks, and its predefined names",
     ),
 }
 
@@ -298,11 +298,11 @@ def test_a_course_program_may_have_a_module_that_imports_the_library(tmp_path: P
 def test_the_line_names_what_was_built_and_how_to_change_it() -> None:
     source = parse_program(CLAW, "my claw.py", "a folder/my claw.py")
     assert program_settings(source).decided.note == (
-        "my claw.py runs on a robot built from it: medium motor on outA; by the rules of a brick (profile ev3). "
+        "my claw.py runs on a robot built from it: medium motor on outA; as on a brick (profile ev3). "
         "-r or --profile to change it; `tuisim robots --from 'a folder/my claw.py'` shows the robot"
     )
     assert program_settings(source, {"robot": "Explorer"}).decided.note == (
-        "my claw.py runs by the rules of a brick (profile ev3). --profile to change it"
+        "my claw.py runs as on a brick (profile ev3). --profile to change it"
     )
     assert program_settings(replace(source, has_magic=True)).decided.hint.startswith(
         "-r to change it"

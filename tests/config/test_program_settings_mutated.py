@@ -115,7 +115,7 @@ def test_a_failure_of_the_reader_gives_the_default_robot_and_a_sentence(
     decided = program_settings(source).decided
     why = "tuisim failed to read the robot from its text (ZeroDivisionError)"
     assert decided.note.startswith(
-        f"p.py runs by the rules of a brick (profile ev3); {why}: it gets the default robot. "
+        f"p.py runs as on a brick (profile ev3); {why}: it gets the default robot. "
     )
     with pytest.raises(RobotError, match="ZeroDivisionError"):
         robot_for(source)
@@ -134,7 +134,7 @@ def test_an_impossible_size_gives_the_default_robot_and_a_sentence() -> None:
         "got 12000.0)"
     )
     assert decided.note.startswith(
-        f"p.py runs by the rules of a brick (profile ev3); {why}: it gets the default robot. "
+        f"p.py runs as on a brick (profile ev3); {why}: it gets the default robot. "
     )
     assert "robot" not in decided.layer
     with pytest.raises(RobotError, match="got 12000"):

@@ -252,7 +252,7 @@ def test_the_imports_of_a_cell_choose_its_profile(cell: Cell) -> None:
     shown = cell(f"%%sim_magic -RW\n{PYBRICKS}")
     assert shown.out == "Distance: 100\n"
     assert (
-        "both wheel motors the other way round; by the rules of a brick (profile lego-micropython)"
+        "both wheel motors the other way round; as on a brick (profile lego-micropython)"
         in shown.err
     )
     (sample,) = cell("%sim_data").result.to_dict("records")
@@ -280,7 +280,7 @@ def test_a_chosen_profile_of_the_same_library_wins(cell: Cell) -> None:
 def test_the_names_of_a_prelude_are_not_for_pybricks(cell: Cell) -> None:
     told = cell(f"%%sim_magic_preloaded -RW\n{PYBRICKS}").err
     assert told.startswith(
-        "tuisim: preload: cell uses pybricks, and the names of its prelude are of ev3dev2"
+        "tuisim: preload: cell uses pybricks, and its predefined names are of ev3dev2"
     )
 
 

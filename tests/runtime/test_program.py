@@ -100,7 +100,7 @@ def test_a_name_of_the_prelude_that_is_missing_names_the_prelude(
     if name == "sensor_val":
         assert told == "NameError: name 'sensor_val' is not defined"
         return
-    assert told.startswith(f"`{name}` is a name of the prelude")
+    assert told.startswith(f"`{name}` is a predefined name")
     assert "put `# %%sim_magic_preloaded` into its first line" in told
     assert how in told
 

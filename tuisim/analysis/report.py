@@ -363,13 +363,15 @@ def _noise(run: StoredRun) -> str:
     )
 
 
+_PREDEFINED = {"none": "none", "imports": "the imports", "preloaded": "the imports and the parts"}
+"""By prelude."""
 _FACTS: Mapping[str, Callable[[StoredRun], str]] = {
     "run": lambda run: f"{run.number or ''} {run.id}".strip(),
     "made": lambda run: run.created[:19].replace("T", " ") + " UTC",
     "program": lambda run: run.program.name,
     "arguments": lambda run: shlex.join(run.program.arguments),
     "SHA-256": lambda run: run.program.sha256,
-    "prelude": lambda run: run.program.prelude,
+    "predefined names": lambda run: _PREDEFINED[run.program.prelude],
     "mat": _mat,
     "obstacles": lambda run: f"{len(run.spec.world.obstacles)}" if run.spec.world.obstacles else "",
     "profile": lambda run: run.spec.profile.name,

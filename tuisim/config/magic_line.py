@@ -77,7 +77,7 @@ def _command(magic: str) -> Command:
             "preview_code",
             is_flag=True,
             group=group,
-            help="Only return the text of the prelude.",
+            help="Only return the lines that predefine names.",
         ),
         option(
             "-S",

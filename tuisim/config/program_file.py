@@ -145,9 +145,7 @@ def find_magic(text: str, name: str) -> Magic | None:
         except ConfigError as error:
             raise ConfigError(error.message, error.hint, file=where) from None
         except ValueError as error:
-            raise ConfigError(
-                f"the magic line cannot be split into words: {error}", file=where
-            ) from None
+            raise ConfigError(f"cannot be split into words: {error}", file=where) from None
         return Magic(number, PRELUDES[match["name"]], options, match["comment"] is not None)
     return None
 

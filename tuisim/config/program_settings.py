@@ -293,7 +293,7 @@ def _check_prelude(program: Program) -> None:
     """Check that a program with a prelude, which uses ev3dev2, does not use Pybricks itself."""
     if Library.PYBRICKS in program.text and library_of(read_modules(program)) is Library.PYBRICKS:
         raise ProfileError(
-            f"{program.name} uses {Library.PYBRICKS}, and the names of its prelude are of {Library.EV3DEV2}",
+            f"{program.name} uses {Library.PYBRICKS}, and its predefined names are of {Library.EV3DEV2}",
             "use %%sim_magic, or --preload none",
             key="preload",
         )
@@ -367,7 +367,7 @@ def _in_words(program: Program, facts: SourceFacts, layer: Mapping[str, Any]) ->
     if facts.for_other_hub:
         # Nothing of that helps.
         return "", ""
-    rules = f"by the rules of a brick (profile {layer['profile']})" if "profile" in layer else ""
+    rules = f"as on a brick (profile {layer['profile']})" if "profile" in layer else ""
     if facts.robot and "robot" in layer:
         from tuisim.config.program_robot.report import in_words
 

@@ -286,10 +286,10 @@ def _setup(first: StoredRun, second: StoredRun) -> Iterator[tuple[str, str, str]
         left, right = (str(one.get(name, "—")) for one in values)
         if left != right:
             yield name, left, right
-    for name in ("name", "prelude"):
+    for name, label in (("name", "program name"), ("prelude", "predefined names")):
         left, right = getattr(first.program, name), getattr(second.program, name)
         if left != right:
-            yield f"program {name}", left, right
+            yield label, left, right
     if first.program.arguments != second.program.arguments:
         yield (
             "program arguments",

@@ -23,7 +23,7 @@ class MissingPart:
     _error: Exception
 
     def __init__(self, name: str, error: Exception) -> None:
-        error.add_note(f"`{name}` is a name of the prelude, for a part of Default_Robot.")
+        error.add_note(f"`{name}` is a predefined name, for a part of Default_Robot.")
         object.__setattr__(self, "_name", name)
         object.__setattr__(self, "_error", error.with_traceback(None))
 
@@ -150,7 +150,7 @@ def point_at_prelude(error: BaseException) -> None:
         case _:
             how = ""
     error.add_note(
-        f"`{error.name}` is a name of the prelude, which this program has not asked for: {magic}{how}."
+        f"`{error.name}` is a predefined name, which this program has not asked for: {magic}{how}."
     )
 
 

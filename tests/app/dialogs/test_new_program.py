@@ -66,3 +66,11 @@ async def test_another_mat_is_written_into_the_file_if_one_agrees(
         after = before.replace("Grey_bands", "Grey_and_black")
         assert path.read_text() == (after if answer == "w" else before)
         assert not app.document.dirty
+
+
+@pytest.mark.parametrize("skeleton", Skeleton)
+def test_the_first_line_is_explained_below_it(skeleton: Skeleton) -> None:
+    lines = program_text("Loop", "colorLeft", skeleton).splitlines()
+    (at,) = (number for number, line in enumerate(lines) if "%%sim_magic" in line)
+    assert lines[at + 1].startswith("# Lays out the mat")
+    assert len(lines[at + 1]) < 70

@@ -109,7 +109,7 @@ def _propose_to_write(context: ActionContext, mat: str) -> None:
         if answer:
             document.write_mat(mat)
 
-    text = f"{document.name} begins with {f'the mat {named}' if named else 'a magic line without a mat'}."
+    text = f"{document.name} begins with {f'the mat {named}' if named else 'a first line without a mat'}."
     answers = (("w", f"Write {mat} there"),)
     context.app.push_screen(
         Question("The program's mat", text, answers, "keeps the program as it is"), answered

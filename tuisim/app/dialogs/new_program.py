@@ -95,6 +95,8 @@ _SAYS = {
     Skeleton.LIBRARY: "Log the {noun} sixty times while driving, as on a real robot.",
     Skeleton.EMPTY: "A new program.",
 }
+_EXPLAINS = "# Lays out the mat, and makes tank_drive, colorLeft and other names.\n"
+_EXPLAINS_BRICK = "# Lays out the mat; the program runs as on a brick.\n"
 OF_THE_BRICK = "sim_magic", "--profile ev3"
 """Magic and words of a program with imports: it runs as on the brick."""
 
@@ -117,17 +119,18 @@ def program_text(mat: str, sensor: str, skeleton: Skeleton) -> str:
         "drive": "tank_drive",
     }
     head = f'"""{_SAYS[skeleton].format(**words)}"""\n'
+    begins = with_mat(head, "", mat) + _EXPLAINS
     match skeleton:
         case Skeleton.EMPTY:
-            return with_mat(head, "", mat) + "\n"
+            return begins + "\n"
         case Skeleton.LIBRARY:
             # The course's own name for it is not in the library.
             words |= {"drive": "tank", "value": reading.value.removesuffix("_pc")}
-            magic = with_mat("# %%{} {}\n".format(*OF_THE_BRICK), "", mat)
+            magic = with_mat("# %%{} {}\n".format(*OF_THE_BRICK), "", mat) + _EXPLAINS_BRICK
             return head + magic + "\nimport time\n\n" + (_LIBRARY + _LOG).format(**words)
         case Skeleton.LOG | Skeleton.UNTIL:
             body = _LOG if skeleton is Skeleton.LOG else _UNTIL
-            return with_mat(head, "", mat) + "\nimport time\n\n" + body.format(**words)
+            return begins + "\nimport time\n\n" + body.format(**words)
 
 
 _LISTS = ("mat", "sensor", "skeleton")
