@@ -25,7 +25,7 @@ def test_a_title_has_the_key_of_its_panel_and_shows_a_name_as_it_is() -> None:
     [
         (80, "Sensor1 · left · in2 · colorLeft │ Sensor2 · right · in3 · colorRight"),
         (65, "Sensor1 left in2 colorLeft │ Sensor2 right in3 colorRight"),
-        (42, "Sensor1 left in2 │ Sensor2 right in3"),
+        (40, "Sensor1 left in2 │ Sensor2 right in3"),
         (30, ""),
     ],
 )

@@ -54,7 +54,7 @@ def name_sensors(now: Snapshot, width: int) -> str:
         " │ ".join(mark.join(names[:count]) for names in sensors)
         for mark, count in ((" · ", 4), (" ", 4), (" ", 3))
     )
-    return next((words for words in wordings if cell_len(words) <= width - _FRAME - 2), "")
+    return next((words for words in wordings if cell_len(words) <= width - _FRAME), "")
 
 
 def name_setup(now: Snapshot, width: int) -> str:
