@@ -12,6 +12,7 @@ from pathlib import Path
 
 import numpy as np
 import pandas as pd
+import pyarrow as pa
 import pytest
 
 import tuisim
@@ -26,6 +27,7 @@ from tuisim.logs.export import (
     export_frame,
     export_samples,
     export_telemetry,
+    typed_frame,
 )
 from tuisim.logs.reader import open_log, read_log
 from tuisim.runs.frames import samples_frame, telemetry_frame
@@ -332,6 +334,12 @@ READ_ERRORS = {
 def test_log_that_cannot_be_read(tmp_path: Path, name: str, message: str) -> None:
     with pytest.raises(LogError, match=message):
         read_log(tmp_path / name)
+
+
+@pytest.mark.parametrize("lines, kind", [([1.0, 2.0], "int64"), ([1.5, 2.5], "float64")])
+def test_lines_are_whole_numbers_where_all_are(lines: list[float], kind: str) -> None:
+    column = typed_frame(pa.table({"line": lines}))["line"]
+    assert (column.tolist(), str(column.dtype)) == (lines, kind)
 
 
 # Imports

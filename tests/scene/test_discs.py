@@ -43,6 +43,13 @@ def test_a_disc_is_whole_and_round_at_every_size(
     assert across >= 0.6 * min(width, height * tall)
 
 
+@pytest.mark.parametrize("diameter", [10, 20, 40])
+def test_the_rim_of_a_disc_reaches_the_edges(diameter: int) -> None:
+    picture = draw_disc(bytes([128]) * 3 * diameter**2, 200, 200, GROUND, RIM_RGB)
+    is_seen = (picture != GROUND).any(axis=2)
+    assert all(1 <= edge.sum() < 60 for edge in (is_seen[1], is_seen[-2], *is_seen.T[[1, -2]]))
+
+
 def test_there_may_be_hardly_any_room() -> None:
     assert draw_disc(bytes([255]) * 1200, 1, 1, GROUND, RIM_RGB).shape == (1, 1, 3)
 
