@@ -84,9 +84,11 @@ class Lab:
         """Wait until the app is seen in a cell."""
         await self._page.until(_IS_LIVE)
 
-    async def until_still(self) -> None:
-        """Wait until no app is seen."""
-        await self._page.until(f"!{_IS_LIVE}")
+    async def until_says(self, name: str, words: str) -> None:
+        """Scroll to a cell, and wait until its outputs say something."""
+        cell = f"{_NOTEBOOK}.content.widgets[{self._names.index(name)}]"
+        await self._page.js(f"{_NOTEBOOK}.content.scrollToCell({cell}).then(() => 0)")
+        await self._page.until(f"{cell}.node.innerText.includes({json.dumps(words)})")
 
     async def pictures(self) -> int:
         """Return how many pictures are seen."""

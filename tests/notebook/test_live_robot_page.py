@@ -52,8 +52,7 @@ async def test_the_picture_becomes_the_app_in_which_later_cells_run(tmp_path: Pa
         await lab.reload()
         await lab.until_live()
         await lab.run("off")
-        await lab.until_still()
-        assert "The server has been ended. This is a picture" in await lab.text()
+        await lab.until_says("picture", "This is a picture; %sim_app shows the robot live.")
         await lab.run("on")
         await lab.until_live()
     assert result(saved["runs in the app"]) == "1"
