@@ -22,7 +22,7 @@ print('Colour: ' + str(colorLeft.reflected_light_intensity_pc))
 STEPS = {
     "load": LOAD,
     "picture": "%sim_magic -b Grey_bands",
-    "ready": "roboSim._live.view._is_ready.wait()",
+    "ready": "roboSim._live.view._is_ready.wait(60)",
     "run": LOGS,
     "runs in the app": "roboSim._live.view.begun.qsize()",
     "log": "frame = %sim_data",

@@ -41,10 +41,9 @@ class AppView:
         """The ids of the runs that have begun in the app."""
         self.told: SimpleQueue[Mapping[str, Any]] = SimpleQueue()
         """What the app has told: `run` and `ended` with the `id` of a run, `problem` with its `text`."""
-        visit = self._server.call(self._server.server.begin(*_SIZE_AT_FIRST))
+        visit = self._server.call(self._server.server.begin(*_SIZE_AT_FIRST, told=self._take))
         assert visit is not None
         self._visit: Visit = visit
-        visit.listen(self._take)
 
     def renew_address(self, origins: tuple[str, ...]) -> dict[str, Any]:
         """Return the port and a new token: whoever has had another one cannot open the app again."""

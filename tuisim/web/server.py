@@ -7,7 +7,7 @@ import atexit
 import errno
 import logging
 import signal
-from collections.abc import AsyncIterator, Callable, Coroutine, Sequence
+from collections.abc import AsyncIterator, Callable, Coroutine, Mapping, Sequence
 from contextlib import asynccontextmanager
 from itertools import count
 from pathlib import Path
@@ -168,7 +168,11 @@ class Server:
         return socket
 
     async def begin(
-        self, width: int, height: int, socket: web.WebSocketResponse | None = None
+        self,
+        width: int,
+        height: int,
+        socket: web.WebSocketResponse | None = None,
+        told: Callable[[Mapping[str, Any]], None] | None = None,
     ) -> Visit | None:
         """Start an app for a visitor, if need be once one that is ending has gone; return None if all live.
 
@@ -176,6 +180,7 @@ class Server:
             width: Columns of the visitor's terminal.
             height: Its rows.
             socket: The connection to the browser that shows it from its first frame; None for none yet.
+            told: Called with what the app tells, from its start on; see `Visit.listen`.
         """
         while self._free <= 0:
             ending = [life for id_, life in self._lives.items() if self._visits[id_].is_ending]
@@ -184,6 +189,8 @@ class Server:
             await asyncio.wait(ending, return_when=asyncio.FIRST_COMPLETED)
         visit = Visit(self._command, self._downloads, self._limits.visit, self._report)
         self._visits[visit.id] = visit
+        if told is not None:
+            visit.listen(told)
         if socket is not None:
             await visit.take(socket)
         has_begun = asyncio.Event()
