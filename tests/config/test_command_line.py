@@ -14,6 +14,7 @@ import pytest
 from tests.cases import cases
 from tests.conftest import ROOT, Command
 from tuisim.cli import COMMANDS, run_command
+from tuisim.config import command_line
 from tuisim.config.command_line import Group
 
 ASKED = {
@@ -165,3 +166,12 @@ def test_options_may_stand_before_the_command(words: str, found: str) -> None:
     assert isinstance(group, Group)
     context = click.Context(group, **group.context_settings)
     assert group.with_command(context, words.split()) == found.split()
+
+
+def test_words_of_the_command_without_some_options() -> None:
+    words = ("mark", "--resume", "a.py", "--jobs", "2", "--keep=all", "--seeds", "0")
+    options = [click.Option(["--resume"], is_flag=True), click.Option(["--jobs"])]
+    with click.Context(click.Command("mark")) as context:
+        context.meta[command_line._WORDS] = words
+        left = command_line.words_without([*options, click.Option(["--keep"])])
+    assert left == ["mark", "a.py", "--seeds", "0"]
