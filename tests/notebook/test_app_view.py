@@ -261,9 +261,8 @@ def test_a_cell_runs_as_fast_as_possible_unless_a_speed_is_set(
 ) -> None:
     if chosen is not None:
         # By the same way as the cell, so that it comes first.
-        press = {"type": "act", "name": "faster"}
         for _ in range(2):
-            view._server.call(view._visit._session.send_meta(press))
+            view._server.call(view._visit._session.send_meta({"type": "act", "name": "faster"}))
     cell(DRIVE.replace("-x 100", f"-x 100{words}"))
     options = json.loads((lab.roboSim.results_log[-1].folder / "run.json").read_text())["options"]
     assert (options["speed"], options["time_limit_s"], options["stall_limit_s"]) == (
