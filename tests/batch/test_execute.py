@@ -5,6 +5,7 @@ from __future__ import annotations
 import shutil
 from dataclasses import replace
 from pathlib import Path
+from unittest.mock import MagicMock
 
 import pytest
 
@@ -12,7 +13,7 @@ from tests.batch.test_pool import LOGS, task
 from tests.cases import cases
 from tests.running import over
 from tuisim.batch import execute as execute_module
-from tuisim.batch.execute import _prepared, execute
+from tuisim.batch.execute import _prepared, _to_the_end, execute
 from tuisim.batch.task import Keep
 from tuisim.errors import LogError
 from tuisim.goals.judgement import GoalState
@@ -135,3 +136,18 @@ def test_a_run_whose_folder_is_gone_is_not_started(
     result = execute(task("print(1)"), tmp_path)
     assert (result.end, result.exit_code) == ("", 2)
     assert "cannot be written: No such file" in result.summary
+
+
+def test_a_run_is_stopped_when_it_has_used_its_time() -> None:
+    done: list[float | str | None] = []
+    handle = MagicMock(time_used_s=3.0)
+
+    def wait(limit_s: float | None = None) -> str | None:
+        done.append(limit_s)
+        if len(done) == 2:
+            handle.time_used_s = 5.0
+        return "ended" if "stop" in done else None
+
+    handle.wait, handle.stop = wait, lambda: done.append("stop")
+    assert str(_to_the_end(handle, 5.0)) == "ended"
+    assert done == [5.0, 2.0, "stop", None]

@@ -60,6 +60,7 @@ def test_a_part_shares_its_pixels_and_a_copy_does_not(lab: Lab) -> None:
     part, copy = Image(whole, sub=True, x1=5, y1=2, x2=9, y2=6), Image(whole)
     part.draw_pixel(0, 0)
     assert (part.width, part.height) == (5, 5)
+    assert (Image(part).width, Image(part).height) == (5, 5)
     assert dark(whole) == {(5, 2)} and dark(copy) == set()
     with pytest.raises(ValueError, match="Invalid"):
         Image(whole, sub=True, x1=5, x2=20)
