@@ -38,7 +38,7 @@ _ITEM = re.compile(
 )
 """A name with its number, of which a unit may follow."""
 _GAP = re.compile(r"[\s,;|]+")
-_TELEPLOT = re.compile(rf">?([^\W\d]\w*):(\d{{9,}}(?:\.\d+)?):({NUMBER})(?:[|§].*)?")
+_TELEPLOT = re.compile(rf">?([^\W\d]\w*):(\d{{9,}}(?:\.\d+)?):({NUMBER})(?:[|\xa7].*)?")
 """Name, milliseconds and value."""
 _VALUES = re.compile(rf"{_VALUE}(?:(?:\s*[,;]\s*|\s+){_VALUE})*")
 _SEPARATORS = frozenset(SEPARATORS)
