@@ -46,6 +46,8 @@ def finish_moves(session: Session) -> str:
 
 def _let_rest(session: Session, motors: Collection[SimulatedMotor]) -> None:
     """Let wheels roll out, or swing back to where they are held, within the time limit."""
+    if all(motor.axle.stands for motor in motors):
+        return
     end_ns = min(session.now + MAX_REST_NS, session.limits.time_ns or 1 << 62)
     while session.now < end_ns and not all(motor.resting for motor in motors):
         session.sim.line = 0
