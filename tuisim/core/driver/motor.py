@@ -271,7 +271,12 @@ class DriverMotor(MotorDriver):
 
     def _is_still(self) -> bool:
         """Return whether only the reading of its speed changes: the axle stands, and no timer is set."""
-        return self._timers_ns == NEVER_NS and self.axle.stands and self._control_rests()
+        return (
+            self._timers_ns == NEVER_NS
+            and self.axle.stands
+            and self._knows_count()
+            and self._control_rests()
+        )
 
     def settle(self) -> bool:
         """Return whether time changes nothing any more: the axle stands, and its driver leaves it alone."""

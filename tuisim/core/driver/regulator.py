@@ -299,6 +299,11 @@ class MotorDriver:
             self._still_ns = self._moved_ns
         return step_ns
 
+    def _knows_count(self) -> bool:
+        """Whether nothing has turned the axle since its position was read."""
+        count = self.counter.count
+        return self._raw == (count // 2 if count >= 0 else -(-count // 2))
+
     def _control_rests(self) -> bool:
         """Whether the control of a motor at rest sets the same duty in every step."""
         control = self._control
