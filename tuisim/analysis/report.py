@@ -371,7 +371,7 @@ _FACTS: Mapping[str, Callable[[StoredRun], str]] = {
     "program": lambda run: run.program.name,
     "arguments": lambda run: shlex.join(run.program.arguments),
     "SHA-256": lambda run: run.program.sha256,
-    "predefined names": lambda run: _PREDEFINED[run.program.prelude],
+    "predefined names": lambda run: _PREDEFINED.get(run.program.prelude, run.program.prelude),
     "mat": _mat,
     "obstacles": lambda run: f"{len(run.spec.world.obstacles)}" if run.spec.world.obstacles else "",
     "profile": lambda run: run.spec.profile.name,
