@@ -71,6 +71,21 @@ class _Line(NamedTuple):
     """Line of the file that follows."""
 
 
+class _Rank(NamedTuple):
+    """How certainly some lines are the rows of a table, what matters most first."""
+
+    is_table: bool
+    """Whether there are several columns, and numbers."""
+    length: int
+    numbers: int
+    """Columns with numbers or times."""
+    words: int
+    """Columns with words, negative: the fewer, the better."""
+    as_wide: int
+    """Lines with as many cells, also outside of the run; 0 if they were not counted."""
+    width: int
+
+
 class _Run(NamedTuple):
     """Lines that follow each other, with the same number of cells of the same kinds."""
 
@@ -79,11 +94,11 @@ class _Run(NamedTuple):
     kinds: str
 
     @property
-    def rank(self) -> tuple[bool, int, int, int, int]:
-        """How certainly these are the rows of a table: several columns, many rows, many numbers, few words."""
+    def rank(self) -> _Rank:
+        """How certainly these are the rows of a table."""
         numbers = sum(kind in "nt" for kind in self.kinds)
-        width = len(self.kinds)
-        return width > 1 and numbers > 0, self.length, numbers, -self.kinds.count("w"), width
+        words, width = -self.kinds.count("w"), len(self.kinds)
+        return _Rank(width > 1 and numbers > 0, self.length, numbers, words, 0, width)
 
 
 def parse_kinds(cells: Sequence[str]) -> str:
@@ -233,27 +248,30 @@ def sniff_separator(lines: Sequence[str]) -> str:
     """Return the separator that makes the most certain rows; blanks only if no other makes any."""
     if len(lines) == 1:
         return _sniff_line(lines[0])
-
-    def rank(separator: str) -> tuple[bool, int, int, int, int, int]:
-        table = list(_split_lines(list(enumerate(lines)), separator))
-        is_table, length, numbers, words, width = _find_table(table).rank
-        as_wide = sum(len(line.cells) == width for line in table)
-        return is_table, length, numbers, words, as_wide, width
-
-    best = max(SEPARATORS, key=rank)
-    was_table, _, was_numbers, was_words, was_wide, _ = rank(best)
-    is_table, length, numbers, words, as_wide, width = rank(BLANKS)
-    is_better = (as_wide, words, numbers) > (was_wide, was_words, was_numbers)
+    ranks = {sign: _rank_separator(lines, sign) for sign in (*SEPARATORS, BLANKS)}
+    best = max(SEPARATORS, key=ranks.__getitem__)
+    signs, blanks = ranks[best], ranks[BLANKS]
+    is_better = (blanks.as_wide, blanks.words, blanks.numbers) > (
+        signs.as_wide,
+        signs.words,
+        signs.numbers,
+    )
     beats = best == "," and is_better and _have_commas_inside(lines)
-    if is_table and (beats or not was_table) and 2 * length >= len(lines) - 1:
+    if blanks.is_table and (beats or not signs.is_table) and 2 * blanks.length >= len(lines) - 1:
         return BLANKS
-    if was_table:
+    if signs.is_table:
         return best
     # Without any number, the separator is the one that the lines have equally often.
-    best = max(SEPARATORS, key=lambda sign: (rank(sign)[-1] > 1, *rank(sign)))
-    if rank(best)[-1] > 1:
+    best = max(SEPARATORS, key=lambda sign: (ranks[sign].width > 1, ranks[sign]))
+    if ranks[best].width > 1:
         return best
-    return BLANKS if width > 1 and length == len(lines) else ","
+    return BLANKS if blanks.width > 1 and blanks.length == len(lines) else ","
+
+
+def _rank_separator(lines: Sequence[str], separator: str) -> _Rank:
+    table = list(_split_lines(list(enumerate(lines)), separator))
+    rank = _find_table(table).rank
+    return rank._replace(as_wide=sum(len(line.cells) == rank.width for line in table))
 
 
 def _have_commas_inside(lines: Sequence[str]) -> bool:
@@ -270,7 +288,7 @@ def count_rows(lines: Sequence[str]) -> int:
     if not lines:
         return 0
     run = _find_table(list(_split_lines(list(enumerate(lines)), sniff_separator(lines))))
-    return run.length if run.rank[0] else 0
+    return run.length if run.rank.is_table else 0
 
 
 def _sniff_line(line: str) -> str:
@@ -286,8 +304,8 @@ def _sniff_line(line: str) -> str:
 def _find_table(table: Sequence[_Line]) -> _Run:
     """Return the run that is the table: the first of those that begin with numbers, else the most certain one."""
     runs = list(_find_runs(table))
-    best = max(runs, key=lambda run: (run.rank[2] > 0, *run.rank[1:]))
-    strong = [run for run in runs if run.kinds[0] in "nt" and run.rank[0]]
+    best = max(runs, key=lambda run: run.rank._replace(is_table=run.rank.numbers > 0))
+    strong = [run for run in runs if run.kinds[0] in "nt" and run.rank.is_table]
     longest = max((run.length for run in strong), default=0)
     return next((run for run in strong if _LEAST_PART * run.length >= longest), best)
 

@@ -149,22 +149,21 @@ def reader_of_lines(
     Args:
         is_table: Whether the file's name is that of a table, so that only lines with times are a program's.
     """
-    parsed = [line for line in map(parse_line, lines) if line is not None]
+    by_line = [parse_line(line) for line in lines]
+    parsed = [line for line in by_line if line is not None]
     if not parsed:
         return None
     samples = [line for line in parsed if line.samples]
     numbers = len(parsed) - len(samples)
     with_heading = (
-        len(lines) > 1
-        and parse_line(lines[0]) is None
-        and len(lines[0].split()) == len(lines[1].split())
+        len(lines) > 1 and by_line[0] is None and len(lines[0].split()) == len(lines[1].split())
     )
     stamped = sum(line.time is not None for line in parsed)
     if numbers >= len(samples):
         is_stamped = 2 * stamped > len(lines) and not with_heading
         return StampedReader(lines, notes) if is_stamped else None
-    rows = sum(_is_row(line) for line in lines if parse_line(line) is None)
-    last = max(at for at, line in enumerate(lines) if parse_line(line) is not None)
+    rows = sum(_is_row(text) for text, line in zip(lines, by_line, strict=True) if line is None)
+    last = max(at for at, line in enumerate(by_line) if line is not None)
     rows = max(rows, count_rows(lines[last + 1 :]))
     if len(parsed) <= rows or (is_table and 2 * stamped <= len(lines)):
         return None
