@@ -257,6 +257,7 @@ def _filled(texts: Any) -> FloatArray:
 ROW = ""
 """In place of a time column: the samples are counted."""
 
+_JUDGED_CELLS = 20
 COUNTS = ("index", "row")
 """Names of columns that count the samples."""
 _TEXT_TIMES = frozenset(NAMES) - {*COUNTS}
@@ -382,10 +383,18 @@ def _named_time(table: pa.Table) -> str:
 
 def _has_moments(table: pa.Table, name: str) -> bool:
     """Return whether the first cells of a text column are all dates or times of day."""
-    if not is_text(table.schema.field(name).type):
-        return False
-    texts = table.column(name).slice(0, 20).cast(pa.string()).drop_null().to_pylist()
+    texts = [text for text in list_first_texts(table, name) if text is not None]
     return bool(texts) and all(map(is_moment, texts))
+
+
+def list_first_texts(table: pa.Table, name: str) -> list[str | None]:
+    """Return the first cells of a column of texts; none of another column."""
+    if not is_text(table.schema.field(name).type):
+        return []
+    texts: list[str | None] = (
+        table.column(name).slice(0, _JUDGED_CELLS).cast(pa.string()).to_pylist()
+    )
+    return texts
 
 
 def _is_rising_time(table: pa.Table, name: str) -> bool:
@@ -449,7 +458,7 @@ def _is_moment(table: pa.Table, name: str) -> bool:
         return True
     if not is_text(kind) or not table.num_rows:
         return False
-    return bool(np.isfinite(parse_times(table.column(name).slice(0, 20)).seconds).any())
+    return bool(np.isfinite(parse_times(table.column(name).slice(0, _JUDGED_CELLS)).seconds).any())
 
 
 def _rises(table: pa.Table, name: str) -> bool:

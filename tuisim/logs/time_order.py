@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from dataclasses import replace
 from itertools import pairwise
 from typing import NamedTuple
@@ -19,9 +20,10 @@ from tuisim.logs.columns import (
     Layout,
     Times,
     is_numeric,
-    is_text,
+    list_first_texts,
     read_times,
     time_name,
+    unit_since_1970_s,
 )
 from tuisim.logs.dates import is_clock, is_date
 from tuisim.logs.warnings import Notes, list_rows
@@ -33,11 +35,9 @@ _PARTS = {
     10**6: re.compile(r"(.*?)[._ ]?\b_?(?:tv_)?(?:usecs?|microsecs?|microseconds)", re.IGNORECASE),
 }
 """Names of columns with a part of a second, by its number of parts."""
-_SINCE_1970_S = 6e8
 _RESTART_PART = 0.1
 """A time begins again if it goes back to this part of what had passed."""
 _MOST_RUNS = 1000
-_JUDGED_ROWS = 20
 _JUDGED_TIMES = 1000
 _LEAST_STEPS = {1e-9: 1e7, 1e-6: 1e4, 1e-3: 5.0}
 """Smallest usual step of whole numbers by the unit in seconds: a robot samples every 5 ms to 10 s."""
@@ -54,19 +54,11 @@ class Ordered(NamedTuple):
 
 def join_times(table: pa.Table) -> pa.Table:
     """Return a table with one column for a time that stands in two: seconds and their parts, or date and clock."""
-    for name in table.column_names:
+    for name, base in _list_matches(table, _SECONDS):
         for per_s, pattern in _PARTS.items():
-            base = _SECONDS.fullmatch(name)
-            other = next(
-                (
-                    column
-                    for column in table.column_names
-                    if base and (part := pattern.fullmatch(column)) and part[1] == base[1]
-                ),
-                None,
-            )
-            if base and other and (joined := _join_parts(table, name, other, per_s)):
-                return _replace_columns(table, name, other, base[1].strip("._ ") or "time", joined)
+            other = next((part for part, own in _list_matches(table, pattern) if own == base), "")
+            if other and (joined := _join_parts(table, name, other, per_s)):
+                return _replace_columns(table, name, other, base.strip("._ ") or "time", joined)
     dates = [name for name in table.column_names if _fits_all(table, name, is_date)]
     clocks = [name for name in table.column_names if _fits_all(table, name, is_clock)]
     if len(dates) == 1 and clocks:
@@ -74,6 +66,12 @@ def join_times(table: pa.Table) -> pa.Table:
         joined = pc.binary_join_element_wise(*texts, " ")
         return _replace_columns(table, dates[0], clocks[0], f"{dates[0]} {clocks[0]}", joined)
     return table
+
+
+def _list_matches(table: pa.Table, pattern: re.Pattern[str]) -> list[tuple[str, str]]:
+    """Return the columns whose names match, each with what the pattern's group has found."""
+    matches = ((name, pattern.fullmatch(name)) for name in table.column_names)
+    return [(name, match[1]) for name, match in matches if match]
 
 
 def _replace_columns(
@@ -95,16 +93,13 @@ def _join_parts(table: pa.Table, seconds: str, parts: str, per_s: int) -> pa.Chu
     if not (np.isfinite(whole).all() and ((fraction >= 0) & (fraction < per_s)).all()):
         return None
     nanoseconds = whole.astype(np.int64) * 10**9 + (fraction * (10**9 // per_s)).astype(np.int64)
-    is_date = len(whole) > 0 and whole[0] > _SINCE_1970_S
+    is_date = unit_since_1970_s(table.column(seconds), 1.0) is not None
     kind = pa.timestamp("ns") if is_date else pa.duration("ns")
     return pa.chunked_array([whole_numbers(nanoseconds)]).cast(kind)
 
 
-def _fits_all(table: pa.Table, name: str, fits: object) -> bool:
-    assert callable(fits)
-    if not is_text(table.schema.field(name).type):
-        return False
-    texts = table.column(name).slice(0, _JUDGED_ROWS).cast(pa.string()).to_pylist()
+def _fits_all(table: pa.Table, name: str, fits: Callable[[str], bool]) -> bool:
+    texts = list_first_texts(table, name)
     return bool(texts) and all(text is not None and fits(text) for text in texts)
 
 
