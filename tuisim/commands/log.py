@@ -26,6 +26,12 @@ from tuisim.logs.export import LISTED
 from tuisim.logs.text_form import SIGNS
 from tuisim.logs.units import SECONDS
 
+
+def _or_empty(_: object, __: object, word: str | None) -> str:
+    """Return the word of a choice, an empty one if nothing was chosen."""
+    return word or ""
+
+
 TELEMETRY = option(
     "--telemetry", is_flag=True, help="Use the telemetry of a run instead of its samples."
 )
@@ -35,7 +41,7 @@ COLUMNS = (
         "--unit",
         tuple(SECONDS),
         group="Columns",
-        callback=lambda _, __, unit: unit or "",
+        callback=_or_empty,
         help="Unit of the time column, if its name has none.",
     ),
     option(
@@ -72,14 +78,14 @@ COLUMNS = (
         "--separator",
         tuple(SIGNS),
         group="Text",
-        callback=lambda _, __, sign: sign or "",
+        callback=_or_empty,
         help="What is between the cells.",
     ),
     choice(
         "--decimal",
         (".", ","),
         group="Text",
-        callback=lambda _, __, sign: sign or "",
+        callback=_or_empty,
         help="Decimal sign.",
     ),
 )
