@@ -301,8 +301,7 @@ class MotorDriver:
 
     def _knows_count(self) -> bool:
         """Whether nothing has turned the axle since its position was read."""
-        count = self.counter.count
-        return self._raw == (count // 2 if count >= 0 else -(-count // 2))
+        return self._raw == divide(self.counter.count, 2)
 
     def _control_rests(self) -> bool:
         """Whether the control of a motor at rest sets the same duty in every step."""
