@@ -34,8 +34,10 @@ def __getattr__(name: str) -> Any:
 
 def load_ipython_extension(shell: InteractiveShell) -> None:
     """Give a notebook the magics, `roboSim` and `eds`: what `%load_ext tuisim` calls."""
+    from tuisim.notebook.kernel import tell_old_simulator
     from tuisim.notebook.magics import install
 
+    tell_old_simulator()
     install(shell)
 
 

@@ -33,6 +33,15 @@ def find_old_simulator() -> Path | None:
     return None
 
 
+def tell_old_simulator() -> None:
+    """Say it if a cell that imports `nbev3devsim` gets the old simulator."""
+    if find_old_simulator() is not None:
+        print(
+            "tuisim: note: nbev3devsim is the old simulator here, and tuisim in the kernel RoboLab (tuisim)",
+            file=sys.stderr,
+        )
+
+
 def load_ipython_extension(shell: InteractiveShell) -> None:
     """Provide the modules and magics of a course, so that its cells run unchanged."""
     from tuisim.notebook.magics import install

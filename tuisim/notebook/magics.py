@@ -13,7 +13,6 @@ from IPython.core.interactiveshell import InteractiveShell
 
 from tuisim.errors import ConfigError, TuisimError
 from tuisim.notebook import eds, old_formats
-from tuisim.notebook.kernel import find_old_simulator
 from tuisim.notebook.lab import Lab, roboSim
 from tuisim.source import APP_MAGIC, PRELUDE_TEXTS, PRELUDES
 
@@ -118,11 +117,6 @@ LOG_MAGICS: Mapping[str, Log] = {
 
 def install(shell: InteractiveShell) -> None:
     """Register every magic, and put `roboSim` and `eds` into the notebook's namespace."""
-    if find_old_simulator() is not None:
-        print(
-            "tuisim: note: nbev3devsim is the old simulator here, and tuisim in the kernel RoboLab (tuisim)",
-            file=sys.stderr,
-        )
     for name in PRELUDES:
         shell.magics_manager.register_function(_guarded(_sim_magic(shell, name)), "line_cell", name)
     shell.magics_manager.register_function(
