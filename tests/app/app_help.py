@@ -105,6 +105,17 @@ async def until_state(pilot: Pilot[Any], state: RunPhase) -> None:
     await until(pilot, lambda: lab(pilot).run_controller.state == state)
 
 
+async def run_from_start(pilot: Pilot[None], app: LabApp, text: str) -> None:
+    """Run a program from the start pose to its end."""
+    before = app.run_controller.run_id
+    app.run_controller.program = program(text)
+    await pilot.press("m", "R")
+    await until(
+        pilot,
+        lambda: app.run_controller.run_id != before and app.run_controller.state is RunPhase.ENDED,
+    )
+
+
 async def until_shown(pilot: Pilot[Any], text: str) -> None:
     """Wait until words stand on the screen."""
     await until(pilot, lambda: text in screen_text(lab(pilot)))

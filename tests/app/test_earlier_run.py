@@ -6,16 +6,14 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from textual.pilot import Pilot
 from textual.widgets import OptionList
 
-from tests.app.app_help import open_lab, program, until
+from tests.app.app_help import open_lab, program, run_from_start, until
 from tests.app.lesson_help import opened, run_over
 from tests.runs.test_recorded_run import stored
 from tuisim.app.app import LabApp
 from tuisim.app.dialogs.chooser import Chooser
 from tuisim.app.earlier_run import is_comparable, stored_before
-from tuisim.app.snapshot import RunPhase
 from tuisim.config.build import build_run_spec
 from tuisim.config.options import Settings
 from tuisim.core.geometry import Pose
@@ -27,28 +25,17 @@ LONGER = STRAIGHT + "tank_drive.on_for_seconds(20, 10, 1)\n"
 SIZE = (120, 40)
 
 
-async def run(pilot: Pilot[None], app: LabApp, text: str) -> None:
-    """Run a program from the start pose to its end."""
-    before = app.run_controller.run_id
-    app.run_controller.program = program(text)
-    await pilot.press("m", "R")
-    await until(
-        pilot,
-        lambda: app.run_controller.run_id != before and app.run_controller.state is RunPhase.ENDED,
-    )
-
-
 def earlier_pose(app: LabApp) -> Pose | None:
     return app.run_controller.snapshot().earlier_pose
 
 
 async def test_the_run_before_is_drawn_at_the_same_time() -> None:
     async with open_lab(STRAIGHT, speed=0.0, size=SIZE) as (pilot, app):
-        await run(pilot, app, STRAIGHT)
+        await run_from_start(pilot, app, STRAIGHT)
         assert earlier_pose(app) is None
         first = app.run_controller.timeline.recording
         assert first is not None
-        await run(pilot, app, LONGER)
+        await run_from_start(pilot, app, LONGER)
         # It stands where it has ended.
         assert earlier_pose(app) == first.telemetry.record(first.newest).pose
         # As long as both drive alike, there is nothing to draw.

@@ -3,33 +3,17 @@
 from __future__ import annotations
 
 from pathlib import Path
-from types import SimpleNamespace
-from typing import Any
 
 import pytest
 from textual.pilot import Pilot
 
-from tests.app.app_help import notices, open_lab, program, screen_text, until
+from tests.app.app_help import notices, open_lab, run_from_start, screen_text, until
 from tests.reasons.runs import WRONG_SIGN
 from tuisim.app.app import LabApp
-from tuisim.app.reasons import ReasonTour
-from tuisim.app.snapshot import RunPhase
 from tuisim.goals.files import load_goals
-from tuisim.reasons.reason import Reason, ReasonKind
 
 STRAIGHT = "tank_drive.on_for_seconds(20, 20, 1)\n"
 SIZE = (120, 40)
-
-
-async def run(pilot: Pilot[None], app: LabApp, text: str) -> None:
-    """Run a program from the start pose to its end."""
-    before = app.run_controller.run_id
-    app.run_controller.program = program(text)
-    await pilot.press("m", "R")
-    await until(
-        pilot,
-        lambda: app.run_controller.run_id != before and app.run_controller.state is RunPhase.ENDED,
-    )
 
 
 async def ask(pilot: Pilot[None], app: LabApp, words: str) -> None:
@@ -42,9 +26,9 @@ async def ask(pilot: Pilot[None], app: LabApp, words: str) -> None:
 async def test_it_goes_to_each_reason_and_back_to_the_end() -> None:
     text = "tank_drive.on_for_seconds(20, 20, 1)\nprint(colour)\n"
     async with open_lab(STRAIGHT, speed=0.0, size=SIZE) as (pilot, app):
-        await run(pilot, app, STRAIGHT)
+        await run_from_start(pilot, app, STRAIGHT)
         await ask(pilot, app, "No reason found")
-        await run(pilot, app, text.replace("20, 20", "20, 10"))
+        await run_from_start(pilot, app, text.replace("20, 20", "20, 10"))
         await ask(pilot, app, "1.00 s, line 2: NameError: name 'colour' is not defined")
         timeline = app.run_controller.timeline
         assert not app.run_controller.in_past
@@ -59,7 +43,7 @@ async def test_it_goes_to_each_reason_and_back_to_the_end() -> None:
 async def test_after_a_run_that_went_wrong_the_footer_names_it() -> None:
     async with open_lab(STRAIGHT, speed=0.0, size=SIZE) as (pilot, app):
         assert "! wrong?" not in screen_text(app)
-        await run(pilot, app, "print(colour)\n")
+        await run_from_start(pilot, app, "print(colour)\n")
         await until(pilot, lambda: "! wrong?" in screen_text(app))
         assert "! goes to where it went wrong" in screen_text(app)
 
@@ -67,7 +51,7 @@ async def test_after_a_run_that_went_wrong_the_footer_names_it() -> None:
 @pytest.mark.slow
 async def test_the_chart_the_code_and_the_world_are_there() -> None:
     async with open_lab(WRONG_SIGN, speed=0.0, size=SIZE, background="Lollipop") as (pilot, app):
-        await run(pilot, app, WRONG_SIGN)
+        await run_from_start(pilot, app, WRONG_SIGN)
         await pilot.press("c")
         await ask(pilot, app, "line 4: the right sensor left the black, and saw it no more")
         snapshot = app.run_controller.snapshot()
@@ -90,51 +74,6 @@ async def test_the_goals_that_are_open_are_judged(tmp_path: Path) -> None:
     path = tmp_path / "task_goals.toml"
     path.write_text(GOALS, encoding="utf-8")
     async with open_lab(STRAIGHT, speed=0.0, size=SIZE) as (pilot, app):
-        await run(pilot, app, STRAIGHT)
+        await run_from_start(pilot, app, STRAIGHT)
         app.goals.change(load_goals(path))
         await ask(pilot, app, "a goal was missed: ")
-
-
-REASONS = (
-    Reason(ReasonKind.BLOCKED, 1.0, 3, "the robot stood at the wall"),
-    Reason(ReasonKind.LOST, 0.5, 0, "the robot left the mat"),
-)
-
-
-def test_each_reason_comes_in_turn_and_then_the_end() -> None:
-    tour, recording = ReasonTour(), SimpleNamespace()
-    run: Any = recording
-    tour.begin(run)
-    tour.take(run, REASONS, None)
-    assert tour.advance() == REASONS[0]
-    assert tour.words == (
-        "1.00 s, line 3: the robot stood at the wall · reason 1 of 2, {went-wrong} goes on"
-    )
-    assert tour.advance() == REASONS[1]
-    assert tour.words.startswith("0.50 s: the robot left the mat · reason 2 of 2")
-    assert tour.advance() is None
-    assert tour.words.startswith("This is the end of the run again")
-    assert tour.advance() == REASONS[0]
-
-
-def test_a_single_reason_has_no_number() -> None:
-    tour = ReasonTour()
-    run: Any = SimpleNamespace()
-    tour.begin(run)
-    tour.take(run, REASONS[1:], None)
-    tour.advance()
-    assert tour.words == "0.50 s: the robot left the mat"
-
-
-def test_reasons_of_a_run_that_is_no_longer_in_view_are_dropped() -> None:
-    tour = ReasonTour()
-    first: Any = SimpleNamespace()
-    second: Any = SimpleNamespace()
-    tour.begin(first)
-    tour.begin(second)
-    tour.take(first, REASONS, None)
-    assert tour.reasons == ()
-    runs: Any = SimpleNamespace(timeline=SimpleNamespace(recording=second), earlier=None)
-    assert not tour.are_of(runs)
-    tour.take(second, REASONS, None)
-    assert tour.are_of(runs)

@@ -12,7 +12,6 @@ from tuisim.data_class import dataclass
 from tuisim.terminal.textual_internals import screen_strips
 
 if TYPE_CHECKING:
-    from tuisim.app.panel_area import PanelArea
     from tuisim.app.snapshot import Snapshot
 
 _WRITES: Mapping[str, str] = {
@@ -46,9 +45,8 @@ class CopiedPanel(Protocol):
         """Return what is copied now; None for the panel's text on the screen."""
 
 
-def find_copied(area: PanelArea, panel: str) -> Copied:
-    """Return what is copied of a panel on the screen."""
-    widget = area.panels[panel]
+def find_copied(panel: str, widget: Widget) -> Copied:
+    """Return what is copied of a panel, whose widget is on the screen."""
     if isinstance(widget, CopiedPanel) and (own := widget.copy_text()):
         return own
     return Copied(PANELS[panel].title, "\n".join(read_rows(widget)))

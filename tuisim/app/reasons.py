@@ -1,4 +1,4 @@
-"""Why the run in view went wrong: finds the reasons in the background, and keeps which one is in view."""
+"""Finds in the background why the run in view went wrong."""
 
 from __future__ import annotations
 
@@ -16,7 +16,6 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from tuisim.app.actions import ActionContext
-    from tuisim.app.run_controller import RunController
     from tuisim.core.field import Field
     from tuisim.goals.judgement import Judgement
     from tuisim.goals.spec import Goal
@@ -27,53 +26,6 @@ NO_REASON = (
     "No reason found: nothing raised or stood in the way, no goal was missed, no line lost. "
     "{compare} compares it with another run"
 )
-
-
-class ReasonTour:
-    """The reasons of one run, and the one in view."""
-
-    def __init__(self) -> None:
-        self.reasons: tuple[Reason, ...] = ()
-        self.earlier: Recording | None = None
-        """The run before that was compared with."""
-        self._of: Recording | None = None
-        self._at: int | None = None
-        """Index of the one in view; None before the first, and after the last."""
-
-    def is_of(self, recording: Recording | None) -> bool:
-        """Return whether these are, or will be, the reasons of a run."""
-        return recording is not None and self._of is recording
-
-    def are_of(self, runs: RunController) -> bool:
-        """Return whether the run in view is known to have gone wrong, or can be compared with another one."""
-        has_gone_wrong = self.is_of(runs.timeline.recording) and bool(self.reasons)
-        return has_gone_wrong or runs.earlier is not None
-
-    def begin(self, recording: Recording) -> None:
-        """Forget another run."""
-        self._of, self._at, self.reasons, self.earlier = recording, None, (), None
-
-    def take(
-        self, recording: Recording, reasons: tuple[Reason, ...], earlier: Recording | None
-    ) -> None:
-        """Keep the reasons of a run, unless another one is in view by now."""
-        if self._of is recording:
-            self.reasons, self.earlier = reasons, earlier
-
-    def advance(self) -> Reason | None:
-        """Go to the next reason, and return it; None after the last."""
-        number = 0 if self._at is None else self._at + 1
-        self._at = number if number < len(self.reasons) else None
-        return None if self._at is None else self.reasons[self._at]
-
-    @property
-    def words(self) -> str:
-        """The reason in view with its number, with ids of actions in braces; after the last, that it was the last."""
-        count = len(self.reasons)
-        if self._at is None:
-            return "This is the end of the run again; {went-wrong} goes to the first reason"
-        number = f"reason {self._at + 1} of {count}, {{went-wrong}} goes on" if count > 1 else ""
-        return " · ".join(filter(None, (self.reasons[self._at].words, number)))
 
 
 FoundReasons = tuple[tuple["Reason", ...], "Recording | None"]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import field
 from typing import TYPE_CHECKING
 
-from tuisim.app.reasons import ReasonTour
+from tuisim.app.reason_tour import ReasonTour
 from tuisim.data_class import dataclass
 
 if TYPE_CHECKING:

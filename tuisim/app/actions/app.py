@@ -48,7 +48,7 @@ def copy(context: ActionContext) -> None:
     from tuisim.app.clipboard import describe_copy, find_copied
 
     panel = context.panels.find_pointed_panel() or context.panels.alone or "world"
-    copied = find_copied(context.panels, panel)
+    copied = find_copied(panel, context.panels.panels[panel])
     if not copied.text:
         context.app.say(f"{copied.name}: nothing to copy")
         return

@@ -1,0 +1,53 @@
+"""The reasons come in turn, and those of another run are forgotten."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any
+
+from tuisim.app.reason_tour import ReasonTour
+from tuisim.reasons.reason import Reason, ReasonKind
+
+REASONS = (
+    Reason(ReasonKind.BLOCKED, 1.0, 3, "the robot stood at the wall"),
+    Reason(ReasonKind.LOST, 0.5, 0, "the robot left the mat"),
+)
+
+
+def test_each_reason_comes_in_turn_and_then_the_end() -> None:
+    tour, recording = ReasonTour(), SimpleNamespace()
+    run: Any = recording
+    tour.begin(run)
+    tour.take(run, REASONS, None)
+    assert tour.advance() == REASONS[0]
+    assert tour.words == (
+        "1.00 s, line 3: the robot stood at the wall · reason 1 of 2, {went-wrong} goes on"
+    )
+    assert tour.advance() == REASONS[1]
+    assert tour.words.startswith("0.50 s: the robot left the mat · reason 2 of 2")
+    assert tour.advance() is None
+    assert tour.words.startswith("This is the end of the run again")
+    assert tour.advance() == REASONS[0]
+
+
+def test_a_single_reason_has_no_number() -> None:
+    tour = ReasonTour()
+    run: Any = SimpleNamespace()
+    tour.begin(run)
+    tour.take(run, REASONS[1:], None)
+    tour.advance()
+    assert tour.words == "0.50 s: the robot left the mat"
+
+
+def test_reasons_of_a_run_that_is_no_longer_in_view_are_dropped() -> None:
+    tour = ReasonTour()
+    first: Any = SimpleNamespace()
+    second: Any = SimpleNamespace()
+    tour.begin(first)
+    tour.begin(second)
+    tour.take(first, REASONS, None)
+    assert tour.reasons == ()
+    runs: Any = SimpleNamespace(timeline=SimpleNamespace(recording=second), earlier=None)
+    assert not tour.are_of(runs)
+    tour.take(second, REASONS, None)
+    assert tour.are_of(runs)
