@@ -31,10 +31,15 @@ def build_title(app: App[Any], panel: str, name: str = "") -> str:
     return f"[bold $tuisim-yellow]{as_markup(key)}[/] {title}"
 
 
+def _count_columns(panel: str, width: int) -> int:
+    """Return the columns that a panel's title leaves for what it names."""
+    info = PANELS[panel]
+    return width - _FRAME - len(f"{info.key} {info.title}: ")
+
+
 def name_mat(mat: str, layout: str, width: int) -> str:
     """Return what the title of the world names: the mat, and the layout of the panels if there is room for it."""
-    info = PANELS["world"]
-    room = width - _FRAME - len(f"{info.key} {info.title}: ")
+    room = _count_columns("world", width)
     wordings = (f"{mat} · {layout}", layout) if layout else ()
     return next((words for words in wordings if cell_len(words) <= room), mat)
 
@@ -59,11 +64,10 @@ def name_sensors(now: Snapshot, width: int) -> str:
 
 def name_setup(now: Snapshot, width: int) -> str:
     """Return robot, seed and noise in words, as far as they fit a title; a seed or noise of 0 is left out."""
-    info, spec, noise = PANELS["instrumentation"], now.spec, now.instant.noise
+    spec, noise, room = now.spec, now.instant.noise, _count_columns("instrumentation", width)
     seed = [f"seed {spec.seed}"] if spec.seed else []
     kinds = [f"light ±{noise.light}"] * bool(noise.light) + [f"motor ±{noise.motor}"] * bool(
         noise.motor
     )
     wordings = ([spec.robot.name, *seed, *kinds], [*seed, *kinds], kinds, kinds[:1])
-    room = width - _FRAME - len(f"{info.key} {info.title}: ")
     return next((words for words in map(", ".join, wordings) if len(words) <= room), "")
