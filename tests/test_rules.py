@@ -80,7 +80,7 @@ OF_NO_MODULE = {
     "guide/test_documents.py": "what the pages run and name",
     "guide/test_ev3dev2_and_pybricks.py": "the table with the calls of both libraries",
     "guide/test_the_real_robot_sensors.py": "the table of what sensors do on bricks and here",
-    "guide/test_readme_picture.py": "README's picture",
+    "guide/test_readme_film.py": "README's film",
     "guide/test_the_real_robot.py": "the tables of what was measured on bricks",
     "test_brick_programs.py": "programs of others, as a whole",
     "test_hosts.py": "an enemy in every host",
