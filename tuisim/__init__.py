@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from IPython.core.interactiveshell import InteractiveShell
 
     from tuisim.api import experiment, simulate
-    from tuisim.logs.reader import read_log
+    from tuisim.logs.frames import read_log
     from tuisim.runs.store import load_run
 
 __version__ = "1.0.0"
@@ -21,7 +21,7 @@ __all__ = ["__version__", "experiment", "load_run", "read_log", "simulate"]
 _HOMES = {
     "experiment": "tuisim.api",
     "load_run": "tuisim.runs.store",
-    "read_log": "tuisim.logs.reader",
+    "read_log": "tuisim.logs.frames",
     "simulate": "tuisim.api",
 }
 

@@ -31,7 +31,7 @@ from tuisim.config import mat_cache
 from tuisim.core.field import Field
 from tuisim.core.geometry import Pose
 from tuisim.errors import BackgroundError
-from tuisim.logs.reader import read_log
+from tuisim.logs.frames import read_log
 from tuisim.terminal.picture_mode import PictureMode
 from tuisim.terminal.picture_options import CellSet
 

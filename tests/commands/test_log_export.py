@@ -16,7 +16,8 @@ import pytest
 from tests.conftest import Command
 from tuisim.cli import run_command
 from tuisim.logs.export import EXPORTERS, companion_of
-from tuisim.logs.reader import open_log, read_log
+from tuisim.logs.frames import read_log
+from tuisim.logs.reader import open_log
 from tuisim.runs.frames import samples_frame, telemetry_frame
 from tuisim.runs.store import RunStore
 

@@ -23,7 +23,7 @@ from tuisim.core.spec import RobotSpec, RunSpec, WorldSpec
 from tuisim.core.tick_record import TICK_RECORD
 from tuisim.errors import ExportError, LogError
 from tuisim.logs.export import export_samples
-from tuisim.logs.reader import read_log
+from tuisim.logs.frames import read_log
 from tuisim.runs import run_folder
 from tuisim.runs import store as store_module
 from tuisim.runs.records import OUTPUT_FILE, TELEMETRY_CHUNK, TELEMETRY_FILE

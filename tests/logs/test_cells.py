@@ -6,8 +6,8 @@ from pathlib import Path
 
 from tests.cases import cases
 from tests.logs.log_cases import Case, Read, check_input, values
+from tuisim.logs.choices import ReadChoices
 from tuisim.logs.reader import open_log
-from tuisim.logs.text_form import TextForm
 
 
 def red(*numbers: float, note: str = "", left_out: int = 0) -> Read:
@@ -62,7 +62,7 @@ def test_input(tmp_path: Path, name: str, content: bytes, expected: Read | str) 
 def test_a_decimal_sign(tmp_path: Path, sign: str, number: float) -> None:
     path = tmp_path / "a.csv"
     path.write_text('x,red\na,"1,000"\nb,"2,000"\n')
-    assert values(open_log(path, form=TextForm(decimal=sign)))[0] == number
+    assert values(open_log(path, ReadChoices(decimal=sign)))[0] == number
 
 
 @cases(
@@ -76,6 +76,6 @@ def test_a_decimal_sign(tmp_path: Path, sign: str, number: float) -> None:
 def test_an_encoding(tmp_path: Path, encoding: str, sign: str, note: str) -> None:
     path = tmp_path / "a.csv"
     path.write_bytes(f"time,{sign}\n0,5\n1,6\n".encode(encoding))
-    log = open_log(path, form=TextForm(encoding="" if note else encoding))
+    log = open_log(path, ReadChoices(encoding="" if note else encoding))
     assert values(log, sign) == [5, 6]
     assert note in "; ".join(log.notes)

@@ -11,7 +11,7 @@ import pytest
 from tests.conftest import Command
 from tuisim.logs.csv_cells import harmless
 from tuisim.logs.export import export_frame
-from tuisim.logs.reader import read_log
+from tuisim.logs.frames import read_log
 
 FORMULAS = (
     "=cmd|' /C calc'!A0",

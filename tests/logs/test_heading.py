@@ -9,8 +9,8 @@ import pytest
 from tests.cases import cases
 from tests.logs.log_cases import Case, Read, check_input, times, values
 from tuisim.errors import LogError
+from tuisim.logs.choices import ReadChoices
 from tuisim.logs.reader import open_log
-from tuisim.logs.text_form import TextForm
 
 ROWS = b"0.0,5\n0.1,6\n0.2,7\n"
 
@@ -107,17 +107,19 @@ TWO = "a note\ntime,red\n0.0,5\n0.1,6\n\ntime,gyro,rate\n0.0,1,2.5\n0.1,3,4.5\n0
 
 
 @cases(
-    "form, names, first",
+    "choices, names, first",
     {
-        "the first table": (TextForm(), ("red",), 5.0),
-        "a line for the heading": (TextForm(header=6), ("gyro", "rate"), 1.0),
-        "a row for the heading": (TextForm(header=3), ("0.0", "5"), 0.1),
+        "the first table": (ReadChoices(), ("red",), 5.0),
+        "a line for the heading": (ReadChoices(header=6), ("gyro", "rate"), 1.0),
+        "a row for the heading": (ReadChoices(header=3), ("0.0", "5"), 0.1),
     },
 )
-def test_a_form(tmp_path: Path, form: TextForm, names: tuple[str, ...], first: float) -> None:
+def test_choices(
+    tmp_path: Path, choices: ReadChoices, names: tuple[str, ...], first: float
+) -> None:
     path = tmp_path / "a.csv"
     path.write_text(TWO)
-    log = open_log(path, form=form)
+    log = open_log(path, choices)
     assert log.names == names
     assert values(log, names[0])[0] == first
 
@@ -125,13 +127,13 @@ def test_a_form(tmp_path: Path, form: TextForm, names: tuple[str, ...], first: f
 def test_a_second_table(tmp_path: Path) -> None:
     path = tmp_path / "a.csv"
     path.write_bytes(b"time,red\n" + ROWS + b"\ntime,gyro\n0.0,1\n0.1,3\n")
-    assert values(open_log(path, form=TextForm(table=2)), "gyro") == [1, 3]
+    assert values(open_log(path, ReadChoices(table=2)), "gyro") == [1, 3]
     with pytest.raises(LogError, match="has 2 tables"):
-        open_log(path, form=TextForm(table=3))
+        open_log(path, ReadChoices(table=3))
 
 
 def test_a_line_that_is_not_there(tmp_path: Path) -> None:
     path = tmp_path / "a.csv"
     path.write_bytes(b"time,red\n" + ROWS)
     with pytest.raises(LogError, match="no line 50"):
-        open_log(path, form=TextForm(header=50))
+        open_log(path, ReadChoices(header=50))

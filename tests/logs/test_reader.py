@@ -21,6 +21,7 @@ from tests.runs.run_recorder import Recorder
 from tuisim.core.spec import RunSpec
 from tuisim.core.tick_record import TICK_FIELDS
 from tuisim.errors import LogError
+from tuisim.logs.choices import ReadChoices
 from tuisim.logs.reader import log_of_runs, open_log, telemetry_log
 from tuisim.runs.records import HEADER_BYTES, TELEMETRY_FILE
 from tuisim.runs.run_folder import read_run
@@ -410,13 +411,13 @@ def test_columns_that_are_not_there(
     path = tmp_path / "a.csv"
     path.write_text("time,red,word\n0,1,a\n1,2,b\n")
     with pytest.raises(LogError, match=expected):
-        open_log(path, time, columns)
+        open_log(path, ReadChoices(time=time, value=columns))
 
 
 def test_named_columns(tmp_path: Path) -> None:
     path = tmp_path / "a.csv"
     path.write_text("n,clock_ms,red,blue\n0,100,1,5\n1,200,2,6\n")
-    log = open_log(path, "clock_ms", ("blue",))
+    log = open_log(path, ReadChoices(time="clock_ms", value=("blue",)))
     assert log.names == ("blue",)
     assert times(log, "blue") == [0.1, 0.2]
 

@@ -18,7 +18,7 @@ from tests.proof.run_model import RunModel, Seen
 from tests.proof.run_steps import ENDLESS, PROGRAMS, done_in, spec_of
 from tuisim.app.app import AppSettings
 from tuisim.config.build import build_run_spec
-from tuisim.logs.reader import read_log
+from tuisim.logs.frames import read_log
 from tuisim.protocol import Unended
 
 KEYS: Mapping[str, Sequence[str]] = {

@@ -16,7 +16,7 @@ from tuisim.app.branch import Branch, first_difference
 from tuisim.config.options import Settings
 from tuisim.errors import LogError, TuisimError
 from tuisim.logs.export import export_samples, export_telemetry
-from tuisim.logs.reader import read_log
+from tuisim.logs.frames import read_log
 from tuisim.protocol import (
     BEFORE_NEXT_TICK,
     Answer,

@@ -16,7 +16,7 @@ from tuisim.atomic import make_private_folder, replacing
 from tuisim.config.folders import home_folder
 from tuisim.data_class import dataclass
 from tuisim.errors import LogError
-from tuisim.logs.text_form import ANY_FORM, TextForm
+from tuisim.logs.choices import NO_CHOICES, ReadChoices
 from tuisim.regular_file import open_regular, read_regular
 
 if TYPE_CHECKING:
@@ -34,14 +34,8 @@ class LogRequest:
     """Numbers, ids, or `last`."""
     telemetry: bool = False
     """Use the telemetry of the first run instead of samples."""
-    time: str | None = None
-    """Time column, None to guess."""
-    values: tuple[str, ...] = ()
-    """Value columns, empty to guess."""
-    unit: str = ""
-    """Unit of numeric times, empty to guess."""
-    form: TextForm = ANY_FORM
-    """What is known of a text."""
+    choices: ReadChoices = NO_CHOICES
+    """How a file is to be read."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,9 +91,7 @@ def opening(request: LogRequest) -> Iterator[OpenedLog]:
         log = telemetry_log(runs[0]) if request.telemetry else log_of_runs(runs)
         yield OpenedLog(request, log, runs[:1] if request.telemetry else runs)
         return
-    for loaded in read_pieces(
-        request.file, request.time, request.values, request.unit, request.form
-    ):
+    for loaded in read_pieces(request.file, request.choices):
         if loaded.log is not None:
             yield OpenedLog(request, loaded.log, (), loaded.part, loaded.done)
 

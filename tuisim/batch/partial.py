@@ -108,7 +108,8 @@ def rows_of_table(
         identity: What identifies the batch.
         columns: The columns that rows have besides those of sample variables; others have been computed.
     """
-    from tuisim.logs.reader import open_log, read_log
+    from tuisim.logs.frames import read_log
+    from tuisim.logs.reader import open_log
 
     try:
         found = open_log(path).metadata.get("batch")

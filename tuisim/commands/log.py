@@ -22,8 +22,8 @@ from tuisim.config.command_line import (
     option,
 )
 from tuisim.data_class import dataclass
+from tuisim.logs.choices import DECIMAL_SIGNS, SIGNS
 from tuisim.logs.export import LISTED
-from tuisim.logs.text_form import SIGNS
 from tuisim.logs.units import SECONDS
 
 
@@ -83,7 +83,7 @@ COLUMNS = (
     ),
     choice(
         "--decimal",
-        (".", ","),
+        DECIMAL_SIGNS,
         group="Text",
         callback=_or_empty,
         help="Decimal sign.",

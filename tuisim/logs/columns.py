@@ -14,6 +14,7 @@ import pyarrow.compute as pc
 from tuisim.data_class import dataclass
 from tuisim.errors import LogError, among
 from tuisim.logs.arrow import PER_S, numbers_of
+from tuisim.logs.choices import ReadChoices
 from tuisim.logs.dates import in_usual_form, is_moment, order_is_guessed
 from tuisim.logs.units import SECONDS
 from tuisim.runs.arrays import FloatArray, IntArray
@@ -470,33 +471,27 @@ def _rises(table: pa.Table, name: str) -> bool:
     return bool((numbers[1:] > numbers[:-1]).all())
 
 
-def choose_columns(
-    table: pa.Table, time: str | None, values: Sequence[str], unit: str = ""
-) -> Layout:
-    """Return the roles of the columns; the user may name some of them.
-
-    Args:
-        time: Column with the time; empty to count the rows; None to guess.
-        values: Columns with values; none to guess.
-        unit: Unit of a numeric time column, one of `SECONDS`; empty to guess it.
+def choose_columns(table: pa.Table, choices: ReadChoices) -> Layout:
+    """Return the roles of the columns; the user may have chosen some of them.
 
     Raises:
         LogError: there is no such column, or it is not numeric.
     """
     layout = guess_columns(table)
+    time, values = choices.time, choices.value
     if time is not None:
         if time:
             _require(table, time)
-        values = values or [n for n in layout.values if n != time]
+        values = values or tuple(n for n in layout.values if n != time)
         layout = replace(layout, time=time, sure=True)
-    if values and tuple(values) != layout.values:
+    if values and values != layout.values:
         for name in values:
             _require(table, name)
             if not is_numeric(table.schema.field(name).type):
                 raise LogError(f"column {name!r} is not numeric")
         keep = layout.variable if len(values) == 1 and layout.variable else ""
-        layout = replace(layout, variable=keep, values=tuple(values), sure=True)
-    return _timed(layout, table, SECONDS[unit] if unit else None)
+        layout = replace(layout, variable=keep, values=values, sure=True)
+    return _timed(layout, table, SECONDS[choices.unit] if choices.unit else None)
 
 
 def _require(table: pa.Table, name: str) -> None:

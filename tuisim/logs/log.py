@@ -202,6 +202,11 @@ class Log:
             kept.whole = np.arange(self.rows), self._times(None)
         return Series(member.name, kept.whole[1], values, kept.whole[0], member.run)
 
+    @property
+    def times_s(self) -> FloatArray:
+        """The time of each row, shape (n,): row numbers from 0 without a time column. Must not be modified."""
+        return self._times(None)
+
     def _times(self, rows: IntArray | None) -> FloatArray:
         if self.layout.time == ROW:
             return np.arange(self.rows if rows is None else len(rows), dtype=np.float64)

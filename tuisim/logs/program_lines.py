@@ -12,10 +12,10 @@ import pyarrow as pa
 from tuisim.core.conditions import NUMBER
 from tuisim.logs.blocks import Block
 from tuisim.logs.cells import UNIT
+from tuisim.logs.choices import NO_CHOICES, ReadChoices
 from tuisim.logs.columns import NAMES, time_name
 from tuisim.logs.dates import MOMENT
 from tuisim.logs.heading import BLANKS, SEPARATORS, Heading, count_rows, parse_kinds, split_cells
-from tuisim.logs.text_form import ANY_FORM, TextForm
 from tuisim.logs.text_tables import CsvReader
 from tuisim.logs.warnings import Notes
 from tuisim.runs.samples import parse_sample
@@ -232,7 +232,7 @@ class StampedReader:
             words += [f"column {number}" for number in range(2, width + 1)]
             notes.say("no header: the columns after the time are numbered")
         self._notes = notes
-        self._table = CsvReader(notes, ANY_FORM, Heading(tuple(words), "\t"))
+        self._table = CsvReader(notes, NO_CHOICES, Heading(tuple(words), "\t"))
 
     def read(self, block: Block) -> pa.Table | None:
         """Return the rows of a block; None if it has none."""
@@ -265,8 +265,8 @@ def are_tuples(lines: Sequence[str]) -> bool:
 class TupleReader:
     """Reads blocks of one file of tuples."""
 
-    def __init__(self, notes: Notes, form: TextForm) -> None:
-        self._table = CsvReader(notes, form)
+    def __init__(self, notes: Notes, choices: ReadChoices) -> None:
+        self._table = CsvReader(notes, choices)
 
     def read(self, block: Block) -> pa.Table | None:
         """Return the rows of a block; None if it has none."""

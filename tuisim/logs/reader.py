@@ -31,6 +31,7 @@ from tuisim.logs.blocks import (
     Readable,
     unpacked,
 )
+from tuisim.logs.choices import NO_CHOICES, ReadChoices
 from tuisim.logs.columns import (
     UNIT_NAMES,
     Layout,
@@ -41,7 +42,7 @@ from tuisim.logs.columns import (
     unread_time,
 )
 from tuisim.logs.documents import DocumentReader, are_objects, begins_as_json, is_document
-from tuisim.logs.export import ALLOWED, EXPORTERS, companion_of, log_metadata, typed_frame
+from tuisim.logs.export import companion_of, log_metadata
 from tuisim.logs.json_rows import JsonReader
 from tuisim.logs.log import Kept, Log
 from tuisim.logs.program_lines import (
@@ -51,17 +52,15 @@ from tuisim.logs.program_lines import (
     are_tuples,
     reader_of_lines,
 )
-from tuisim.logs.text_form import ANY_FORM, TextForm
-from tuisim.logs.text_tables import CsvReader, exported_csv
+from tuisim.logs.text_tables import CsvReader
 from tuisim.logs.time_order import guess_unit_s, join_times, order_times
-from tuisim.logs.units import TEXT, TIMEDELTA
 from tuisim.logs.warnings import Notes
 from tuisim.regular_file import read_regular
 from tuisim.runs.frames import damage_note, sample_columns, telemetry_columns
 from tuisim.runs.run_folder import StoredRun
 
 if TYPE_CHECKING:
-    import pandas as pd
+    pass
 
 
 STDIN = "-"
@@ -87,103 +86,45 @@ class Loaded:
     done: bool = False
 
 
-def open_log(
-    source: str | Path,
-    time: str | None = None,
-    values: Sequence[str] = (),
-    unit: str = "",
-    form: TextForm = ANY_FORM,
-) -> Log:
+def open_log(source: str | Path, choices: ReadChoices = NO_CHOICES) -> Log:
     """Return the whole log in a file.
 
     Args:
         source: Path of a CSV, Parquet, JSONL, Arrow or text file; `-` is the standard input.
-        time: Column with the time; empty to count the rows; None to guess.
-        values: Columns with values; none to guess.
-        unit: Unit of numeric times, one of `SECONDS`; empty to guess.
-        form: What is known of a text.
 
     Raises:
         LogError: it cannot be read, has no row, or there is no such column.
     """
     last = None
-    for loaded in read_pieces(source, time, values, unit, form):
+    for loaded in read_pieces(source, choices):
         last = loaded.log or last
     assert last is not None
     return last
 
 
-def read_beginning(path: str, form: TextForm) -> Log:
+def read_beginning(path: str, choices: ReadChoices) -> Log:
     """Return the log in the first rows of a file.
 
     Raises:
         LogError: it cannot be read, or has no row.
     """
-    return next(loaded.log for loaded in read_pieces(path, form=form) if loaded.log is not None)
+    return next(loaded.log for loaded in read_pieces(path, choices) if loaded.log is not None)
 
 
-def read_log(path: str | Path) -> pd.DataFrame:
-    """Return the frame in an exported file: the same values and types as were written, to the last bit.
-
-    Raises:
-        LogError: no such file, unknown format, or it cannot be read.
-    """
-    source = Path(path)
-    if source.suffix.lower() not in EXPORTERS:
-        raise LogError(
-            f"unknown format {source.suffix!r}", f"a log ends in {ALLOWED}", file=str(source)
-        )
-    if not os.path.isfile(source):
-        raise LogError("no such file", file=str(source))
-    notes, binary = Notes(), not EXPORTERS[source.suffix.lower()].companion
-    try:
-        table = _exported(source, notes)
-        frame = table.to_pandas() if binary else typed_frame(table)
-    # Text that is not UTF-8 or not JSON, and all errors of Arrow.
-    except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
-        raise LogError(f"cannot be read: {error}", file=str(source)) from error
-    if notes.texts():
-        raise LogError(f"cannot be read: {'; '.join(notes.texts())}", file=str(source))
-    return frame
-
-
-def _exported(source: Path, notes: Notes) -> pa.Table:
-    """Return the table in an exported file; `notes` receives what is wrong with it."""
-    suffix = source.suffix.lower()
-    if suffix == ".csv":
-        return exported_csv(source.read_bytes())
-    if suffix == ".jsonl":
-        table = JsonReader(notes, exact=True).read(Block(1, source.read_bytes()))
-        # Without a row, only the companion file names the columns.
-        names = () if table is not None else _metadata_beside(source).get("columns", ())
-        kinds = {
-            name: pa.string() if name in (*TIMEDELTA, *TEXT) else pa.float64() for name in names
-        }
-        return pa.schema(kinds).empty_table() if table is None else table
-    parts = arrow.parquet_parts if suffix == ".parquet" else arrow.arrow_parts
-    return joined([table for _, table in parts(source, notes)])
-
-
-def read_pieces(
-    source: str | Path,
-    time: str | None = None,
-    values: Sequence[str] = (),
-    unit: str = "",
-    form: TextForm = ANY_FORM,
-) -> Iterator[Loaded]:
+def read_pieces(source: str | Path, choices: ReadChoices = NO_CHOICES) -> Iterator[Loaded]:
     """Read a log; yield the log so far, soon after the start and then repeatedly; arguments are those of `open_log`."""
     title = "standard input" if str(source) == STDIN else str(source)
     notes = Notes()
     parts: list[pa.Table] = []
     show_at = 0.0
-    for part, table in _parts(source, title, notes, form):
+    for part, table in _parts(source, title, notes, choices):
         if table is not None:
             parts.append(table)
         now = monotonic()
         if not parts or now < show_at:
             yield Loaded(part, None)
             continue
-        yield Loaded(part, _log(title, parts, notes, (time, values, unit)))
+        yield Loaded(part, _log(title, parts, notes, choices))
         # Showing the log so far takes only a fraction of the whole time.
         took = monotonic() - now
         show_at = now + took + max(_SHOW_EVERY_S, _SHOW_SELDOM * took)
@@ -194,19 +135,14 @@ def read_pieces(
             "a log has a header and one row per sample",
             file=title,
         )
-    log = _log(title, parts, notes, (time, values, unit))
+    log = _log(title, parts, notes, choices)
     yield Loaded(1.0, log, done=True)
 
 
-def _log(
-    title: str,
-    parts: Sequence[pa.Table],
-    notes: Notes,
-    named: tuple[str | None, Sequence[str], str],
-) -> Log:
+def _log(title: str, parts: Sequence[pa.Table], notes: Notes, choices: ReadChoices) -> Log:
     table = join_times(joined(parts))
     try:
-        layout = choose_columns(table, *named)
+        layout = choose_columns(table, choices)
     except LogError as error:
         raise LogError(str(error), file=title) from error
     if layout.since_first:
@@ -214,17 +150,17 @@ def _log(
         notes.say(
             f"the times in {layout.time!r} are {unit} since 1970: shown from the first one on"
         )
-    unread = unread_time(table, layout) if named[0] is None else ""
+    unread = unread_time(table, layout) if choices.time is None else ""
     if unread:
         notes.say(f"the times in {unread!r} cannot be read: row numbers are used")
     if guessed_order(table, layout):
         notes.say(f"the dates in {layout.time!r} are read as day, month, year")
-    metadata = arrow.metadata_in(parts[0].schema) or _metadata_beside(Path(title))
+    metadata = arrow.metadata_in(parts[0].schema) or read_companion(Path(title))
     if metadata:
         return Log(title, table, layout, notes.texts(), notes.left_out, metadata)
     # Of the rows so far, so that they are collected anew each time.
     later = Notes()
-    if not named[2] and (unit_s := guess_unit_s(table, layout)) is not None:
+    if not choices.unit and (unit_s := guess_unit_s(table, layout)) is not None:
         layout = replace(layout, unit_s=unit_s)
         later.say(
             f"the times in {layout.time!r} are whole numbers in large steps: read as"
@@ -254,7 +190,7 @@ def _tell_odd_columns(table: pa.Table, layout: Layout, unread: str, notes: Notes
                 )
 
 
-def _metadata_beside(path: Path) -> Mapping[str, Any]:
+def read_companion(path: Path) -> Mapping[str, Any]:
     """Return the metadata in the companion file of an export; empty if there is none."""
     try:
         found = json.loads(
@@ -297,10 +233,10 @@ def _with_kinds(part: pa.Table, kinds: pa.Schema) -> pa.Table:
 
 
 def _parts(
-    source: str | Path, title: str, notes: Notes, form: TextForm
+    source: str | Path, title: str, notes: Notes, choices: ReadChoices
 ) -> Iterator[tuple[float, pa.Table | None]]:
     try:
-        yield from _source_parts(source, notes, form)
+        yield from _source_parts(source, notes, choices)
     except LogError as error:
         if error.file:
             raise
@@ -308,13 +244,13 @@ def _parts(
 
 
 def _source_parts(
-    source: str | Path, notes: Notes, form: TextForm
+    source: str | Path, notes: Notes, choices: ReadChoices
 ) -> Iterator[tuple[float, pa.Table | None]]:
     if str(source) == STDIN:
         # None if the shell closed it.
         if cast("Any", sys.stdin) is None:
             raise LogError("is closed", "name a file instead of -", file="standard input")
-        yield from text_parts(sys.stdin.buffer, 0, "", notes, form)
+        yield from text_parts(sys.stdin.buffer, 0, "", notes, choices)
         return
     path = Path(source)
     try:
@@ -334,10 +270,10 @@ def _source_parts(
             if regular:
                 handle.seek(0)
             if (inner := unpacked(str(path), head, handle, notes)) is not None:
-                yield from text_parts(inner, 0, path.with_suffix("").suffix.lower(), notes, form)
+                yield from text_parts(inner, 0, path.with_suffix("").suffix.lower(), notes, choices)
             else:
                 size = path.stat().st_size if regular else 0
-                yield from text_parts(handle, size, path.suffix.lower(), notes, form)
+                yield from text_parts(handle, size, path.suffix.lower(), notes, choices)
     except FileNotFoundError as error:
         raise LogError("no such file", file=str(path)) from error
     except OSError as error:
@@ -345,7 +281,7 @@ def _source_parts(
 
 
 def text_parts(
-    handle: Readable, size: int, suffix: str, notes: Notes, form: TextForm = ANY_FORM
+    handle: Readable, size: int, suffix: str, notes: Notes, choices: ReadChoices = NO_CHOICES
 ) -> Iterator[tuple[float, pa.Table | None]]:
     """Yield the rows of a text, with the fraction of it that has been read.
 
@@ -354,14 +290,14 @@ def text_parts(
         size: Their number, 0 if unknown.
         suffix: Suffix of the file name in lower case, such as `.csv`.
     """
-    cutter, reader, held = LineCutter(notes, encoding=form.encoding), None, None
+    cutter, reader, held = LineCutter(notes, encoding=choices.encoding), None, None
     read = 0
     while True:
         data = handle.read(FIRST_BYTES if not read else BLOCK_BYTES) or b""
         if not read:
             _refuse_binary(data)
             if data.lstrip().startswith((b"{", b"[")):
-                cutter = LineCutter(notes, MAX_DOCUMENT_BYTES, form.encoding)
+                cutter = LineCutter(notes, MAX_DOCUMENT_BYTES, choices.encoding)
         read += len(data)
         if size and len(data) == BLOCK_BYTES and not data.strip(b"\0"):
             read = _after_hole(cast("BinaryIO", handle), read)
@@ -377,7 +313,7 @@ def text_parts(
             block, held = None, block
         part = min(1.0, read / size) if size else float("nan")
         if block is not None:
-            reader = reader or _reader_for(block, suffix, form, notes)
+            reader = reader or _reader_for(block, suffix, choices, notes)
             yield part, reader.read(block)
         elif data:
             yield part, None
@@ -414,17 +350,17 @@ def _refuse_binary(data: bytes) -> None:
 
 
 def _reader_for(
-    block: Block, suffix: str, form: TextForm, notes: Notes
+    block: Block, suffix: str, choices: ReadChoices, notes: Notes
 ) -> CsvReader | JsonReader | DocumentReader | SampleReader | StampedReader | TupleReader:
     lines = [line for _, line in islice(block.lines(), _JUDGED_LINES)]
-    is_table = suffix in _TABLES or form.header > 0 or form.separator != ""
+    is_table = suffix in _TABLES or choices.header > 0 or choices.separator != ""
     if lines and are_tuples(lines):
-        return TupleReader(notes, form)
+        return TupleReader(notes, choices)
     if suffix in (".jsonl", ".ndjson", ".json") or (not is_table and begins_as_json(lines)):
         return DocumentReader(notes) if lines and is_document(lines) else JsonReader(notes)
     if not is_table and are_objects(lines):
         return JsonReader(notes)
-    return reader_of_lines(lines, is_table, notes) or CsvReader(notes, form)
+    return reader_of_lines(lines, is_table, notes) or CsvReader(notes, choices)
 
 
 def log_of_runs(runs: Sequence[StoredRun]) -> Log:

@@ -27,6 +27,7 @@ from tuisim.logs.cells import (
     parse_numbers,
     parse_truths,
 )
+from tuisim.logs.choices import NO_CHOICES, ReadChoices
 from tuisim.logs.csv_cells import WRITTEN, restored
 from tuisim.logs.heading import (
     BLANKS,
@@ -41,7 +42,6 @@ from tuisim.logs.heading import (
     sniff_separator,
     split_cells,
 )
-from tuisim.logs.text_form import ANY_FORM, TextForm
 from tuisim.logs.units import TEXT, TIMEDELTA
 from tuisim.logs.warnings import Notes
 
@@ -81,16 +81,15 @@ class CsvReader:
     """Reads blocks of one file; names and types of the columns are fixed by the first.
 
     Args:
-        form: What the user knows of the file.
         heading: The format of the table; without one it is found.
     """
 
     def __init__(
-        self, notes: Notes, form: TextForm = ANY_FORM, heading: Heading | None = None
+        self, notes: Notes, choices: ReadChoices = NO_CHOICES, heading: Heading | None = None
     ) -> None:
-        self._notes, self._form = notes, form
+        self._notes, self._choices = notes, choices
         self._heading = heading or Heading()
-        self._tables_left = form.table - 1
+        self._tables_left = choices.table - 1
         """Tables that are still to be passed by."""
         self._is_over = False
         """Whether the table has ended, so that the rest of the file is another one's."""
@@ -133,8 +132,8 @@ class CsvReader:
         """
         if self._tables_left:
             raise LogError(
-                f"has {counted(self._form.table - self._tables_left, 'table')}",
-                f"--table takes 1 to {self._form.table - self._tables_left}",
+                f"has {counted(self._choices.table - self._tables_left, 'table')}",
+                f"--table takes 1 to {self._choices.table - self._tables_left}",
             )
 
     def _build_rows(self, block: Block, columns: list[pa.Array] | None) -> pa.Table | None:
@@ -165,7 +164,7 @@ class CsvReader:
         if one_column := _one_column(lines, self._notes):
             block, lines = Block(lines[0][0], one_column, block.newline), [(lines[0][0], "0")]
         refuse_zeek(lines[0][1])
-        self._heading = find_heading(lines, self._notes, self._form.separator, self._form.header)
+        self._heading = find_heading(lines, self._notes, self._choices.sign, self._choices.header)
         follow = self._heading.rows_follow
         head = "\n".join(line for row, line in lines if follow - 2 < row <= follow).encode()
         self._has_gaps = len(self._heading.names) == 1 or head != close_quotes(
@@ -209,7 +208,7 @@ class CsvReader:
             if not self._tables_left:
                 self._notes.say(
                     f"another table begins in row {block.first_row + at}, with"
-                    f" {listed(map(repr, cells))}: --table {self._form.table + 1} reads it"
+                    f" {listed(map(repr, cells))}: --table {self._choices.table + 1} reads it"
                 )
             return self._join_block(block, lines[:at], 0), self._join_block(block, lines, at)
         self._notes.say_rows("the heading is repeated", repeated)
@@ -349,7 +348,7 @@ class CsvReader:
             for name, cells in zip(self._heading.names, columns, strict=True)
             if name not in self._columns and not _is_empty(cells)
         }
-        separator, decimal = self._separator, self._form.decimal
+        separator, decimal = self._separator, self._choices.decimal
         for name, cells in texts.items():
             forms[name] = find_form(cells, separator, decimal)
         if DECIMAL_COMMA in forms.values():

@@ -13,6 +13,7 @@ from tests.cases import cases
 from tuisim.analysis.source import LogRequest
 from tuisim.app.analyser.app import Analyser, AnalyserApp
 from tuisim.app.analyser.columns import ColumnsDialog
+from tuisim.logs.choices import ReadChoices
 from tuisim.logs.reader import open_log
 
 
@@ -89,7 +90,7 @@ async def test_the_guess_may_stay(leave: str, foreign: Path) -> None:
 
 
 async def test_what_was_named_in_the_shell_is_not_asked_about(foreign: Path) -> None:
-    wanted = LogRequest(str(foreign), time="boot", values=("light",), unit="ms")
+    wanted = LogRequest(str(foreign), choices=ReadChoices(time="boot", value=("light",), unit="ms"))
     async with AnalyserApp(wanted).run_test(size=(80, 24)) as pilot:
         await until(
             pilot, lambda: isinstance(pilot.app.screen, Analyser) and pilot.app.screen.is_open

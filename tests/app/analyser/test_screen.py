@@ -24,7 +24,7 @@ from tuisim.config.build import build_run_spec
 from tuisim.config.options import Settings
 from tuisim.config.program_file import parse_program
 from tuisim.errors import LogError
-from tuisim.logs.reader import read_log
+from tuisim.logs.frames import read_log
 from tuisim.runs.handle import RunOptions, start_run
 from tuisim.runs.run_folder import StoredRun
 

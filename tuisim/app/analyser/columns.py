@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import replace
 from typing import TYPE_CHECKING, ClassVar
 
@@ -15,9 +16,9 @@ from textual.widgets.option_list import Option
 
 from tuisim.app.dialogs.dialog import Dialog
 from tuisim.errors import TuisimError
+from tuisim.logs.choices import DECIMAL_SIGNS, SIGNS, ReadChoices
 from tuisim.logs.columns import ROW, choose_columns, is_numeric, is_time
 from tuisim.logs.reader import STDIN, read_beginning
-from tuisim.logs.text_form import SIGNS, TextForm
 from tuisim.logs.units import SECONDS
 
 if TYPE_CHECKING:
@@ -57,16 +58,17 @@ class ColumnsDialog(Dialog["LogRequest"]):
 
     def __init__(self, request: LogRequest, log: Log) -> None:
         super().__init__()
-        self._show(request, log)
+        self._request = request
+        self._show(request.choices, log)
 
-    def _show(self, request: LogRequest, log: Log) -> None:
+    def _show(self, choices: ReadChoices, log: Log) -> None:
         """Take a table and the meaning of its columns as they are."""
         self._log = log
         self._names = candidates(log.table)
         unit = next(
             (unit for unit, seconds in SECONDS.items() if seconds == log.layout.unit_s), "s"
         )
-        self._chosen = replace(request, time=log.layout.time, values=log.layout.values, unit=unit)
+        self._chosen = replace(choices, time=log.layout.time, value=log.layout.values, unit=unit)
 
     def content(self) -> ComposeResult:
         yield OptionList(markup=False)
@@ -105,7 +107,7 @@ class ColumnsDialog(Dialog["LogRequest"]):
                 if is_numeric(self._log.table.schema.field(name).type)
                 else "time"
             )
-        return "[x]" if name in self._chosen.values else "[ ]"
+        return "[x]" if name in self._chosen.value else "[ ]"
 
     def _beginning(self, name: str) -> str:
         first = self._log.table.column(name).slice(0, _SHOWN_VALUES).to_pylist()
@@ -119,7 +121,7 @@ class ColumnsDialog(Dialog["LogRequest"]):
     def _at(self) -> int:
         return self.query_one(OptionList).highlighted or 0
 
-    def _choose(self, chosen: LogRequest) -> None:
+    def _choose(self, chosen: ReadChoices) -> None:
         self._chosen = chosen
         self.say("")
         self._list(self._at)
@@ -133,17 +135,15 @@ class ColumnsDialog(Dialog["LogRequest"]):
                 replace(
                     chosen,
                     time=name,
-                    values=tuple(value for value in chosen.values if value != name),
+                    value=tuple(value for value in chosen.value if value != name),
                 )
             )
 
     def action_value(self) -> None:
         name, chosen = self._names[self._at], self._chosen
-        values = {*chosen.values} ^ {name}
+        values = {*chosen.value} ^ {name}
         time = ROW if name == chosen.time else chosen.time
-        self._choose(
-            replace(chosen, time=time, values=tuple(n for n in self._names if n in values))
-        )
+        self._choose(replace(chosen, time=time, value=tuple(n for n in self._names if n in values)))
 
     def action_unit(self) -> None:
         units = list(SECONDS)
@@ -154,54 +154,52 @@ class ColumnsDialog(Dialog["LogRequest"]):
     @property
     def _is_text(self) -> bool:
         """Whether the beginning of the file can be read again."""
-        return self._chosen.file not in ("", STDIN)
+        return self._request.file not in ("", STDIN)
 
     def action_header(self, step: int) -> None:
-        form = self._chosen.form
-        self._read_again(replace(form, header=max(0, form.header + step)))
+        choices = self._chosen
+        self._read_again(replace(choices, header=max(0, choices.header + step)))
 
     def action_separator(self) -> None:
-        signs = ["", *SIGNS.values()]
-        form = self._chosen.form
-        self._read_again(
-            replace(form, separator=signs[(signs.index(form.separator) + 1) % len(signs)])
-        )
+        self._read_again(_choose_next(self._chosen, "separator", SIGNS))
 
     def action_decimal(self) -> None:
-        signs = ["", ".", ","]
-        form = self._chosen.form
-        self._read_again(replace(form, decimal=signs[(signs.index(form.decimal) + 1) % len(signs)]))
+        self._read_again(_choose_next(self._chosen, "decimal", DECIMAL_SIGNS))
 
-    def _read_again(self, form: TextForm) -> None:
-        """Show the beginning of the file as it is read in another form."""
+    def _read_again(self, choices: ReadChoices) -> None:
+        """Show the beginning of the file as it is read with other choices."""
         if not self._is_text:
             return
         try:
-            log = read_beginning(self._chosen.file, form)
+            log = read_beginning(self._request.file, choices.of_text)
         except TuisimError as error:
             self.say(str(error), wrong=True)
             return
-        self._show(replace(self._chosen, form=form), log)
+        self._show(choices, log)
         self._list(0)
-        self.say(_describe(form))
+        self.say(_describe(choices))
 
     @on(OptionList.OptionSelected)
     def _apply(self) -> None:
         try:
-            if not self._chosen.values:
+            if not self._chosen.value:
                 raise TuisimError("Nothing to draw: space selects a column")
-            choose_columns(
-                self._log.table, self._chosen.time, self._chosen.values, self._chosen.unit
-            )
+            choose_columns(self._log.table, self._chosen)
         except TuisimError as error:
             self.say(str(error), wrong=True)
         else:
-            self.dismiss(self._chosen)
+            self.dismiss(replace(self._request, choices=self._chosen))
 
 
-def _describe(form: TextForm) -> str:
+def _choose_next(choices: ReadChoices, name: str, words: Iterable[str]) -> ReadChoices:
+    """Return choices with the word that follows in a list, the first of which is none."""
+    listed = ["", *words]
+    at = listed.index(getattr(choices, name)) + 1
+    return replace(choices, **{name: listed[at % len(listed)]})
+
+
+def _describe(choices: ReadChoices) -> str:
     """Return a sentence on what the user chose, and what is found by itself."""
-    names = {sign: name for name, sign in SIGNS.items()}
-    heading = f"line {form.header}" if form.header else "found"
-    separator, decimal = names.get(form.separator, "found"), form.decimal or "found"
+    heading = f"line {choices.header}" if choices.header else "found"
+    separator, decimal = choices.separator or "found", choices.decimal or "found"
     return f"heading: {heading} · separator: {separator} · decimal sign: {decimal}"

@@ -382,11 +382,12 @@ class LogScreen(ActionHost, ClosesOnce[None]):
         if request is None:
             return
         log = self.model.log
-        if not self.model.opened.done or request.form != self.model.opened.request.form:
+        opened = self.model.opened
+        if not opened.done or request.choices.of_text != opened.request.choices.of_text:
             self.open(request)
             return
         # All of it has been read: the same rows have another meaning now.
-        layout = choose_columns(log.bare().table, request.time, request.values, request.unit)
+        layout = choose_columns(log.bare().table, request.choices)
         self.request = request
         self.set_model(Model(OpenedLog(request, log.with_layout(layout))))
 

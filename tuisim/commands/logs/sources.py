@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Container, Iterator, Sequence
 from contextlib import suppress
+from dataclasses import fields
 from pathlib import Path
 
 from tuisim.analysis.source import LogRequest
@@ -13,12 +14,12 @@ from tuisim.config.command_line import Arguments
 from tuisim.core.columns import column_name
 from tuisim.core.sensors import column_names, columns_of
 from tuisim.errors import ConfigError, LogError, among, listed
+from tuisim.logs.choices import ReadChoices
 from tuisim.logs.columns import choose_columns, time_in_words
 from tuisim.logs.derived import spec_in, with_named_columns
 from tuisim.logs.expressions import names_in
 from tuisim.logs.log import Log
 from tuisim.logs.reader import STDIN, log_of_runs, read_pieces, telemetry_log
-from tuisim.logs.text_form import SIGNS, TextForm
 from tuisim.runs.run_folder import StoredRun
 from tuisim.runs.store import RunStore
 
@@ -44,26 +45,14 @@ def asked(arguments: Arguments) -> LogRequest:
     if files and len(words) > 1:
         raise ConfigError("takes one file, or runs", f"got {' '.join(words)}", key="analyse")
     file, runs = (files[0], ()) if files else ("", tuple(words))
-    return LogRequest(
-        file,
-        runs,
-        arguments.telemetry,
-        arguments.time,
-        tuple(arguments.value),
-        arguments.unit,
-        build_text_form(arguments),
-    )
+    return LogRequest(file, runs, arguments.telemetry, build_choices(arguments))
 
 
-def build_text_form(arguments: Arguments) -> TextForm:
-    """Return what the arguments say of a text."""
-    return TextForm(
-        arguments.header,
-        arguments.table,
-        arguments.encoding,
-        SIGNS.get(arguments.separator, ""),
-        arguments.decimal,
-    )
+def build_choices(arguments: Arguments) -> ReadChoices:
+    """Return what the arguments say of a log that is to be read."""
+    names = (field.name for field in fields(ReadChoices))
+    words = {name: getattr(arguments, name) for name in names}
+    return ReadChoices(**{**words, "value": tuple(arguments.value)})
 
 
 def open_sources(arguments: Arguments) -> Iterator[Log]:
@@ -116,7 +105,7 @@ def _open_runs(words: Sequence[str], arguments: Arguments) -> Iterator[Log]:
                 )
             hint = "a program logs by printing lines such as `Colour: 50`; --telemetry uses every tick instead"
             raise LogError("no samples", damage or hint, file=log.title)
-        layout = choose_columns(log.table, arguments.time, arguments.value, arguments.unit)
+        layout = choose_columns(log.table, build_choices(arguments))
         yield _ready(log.with_layout(layout), arguments)
 
 
@@ -153,8 +142,7 @@ def _name_columns(
 
 def _open_file(word: str, arguments: Arguments) -> Log:
     log = None
-    form = build_text_form(arguments)
-    for loaded in read_pieces(word, arguments.time, arguments.value, arguments.unit, form):
+    for loaded in read_pieces(word, build_choices(arguments)):
         log = loaded.log or log
         if loaded.part == loaded.part:
             tell(f"reading {word}", loaded.part, 1.0)

@@ -17,7 +17,8 @@ from tuisim.analysis.source import LogRequest
 from tuisim.app.analyser.app import Analyser, AnalyserApp
 from tuisim.app.dialogs.save import FileDialog
 from tuisim.logs.export import log_metadata
-from tuisim.logs.reader import open_log, read_log
+from tuisim.logs.frames import read_log
+from tuisim.logs.reader import open_log
 from tuisim.runs.frames import samples_frame
 from tuisim.runs.run_folder import StoredRun
 

@@ -1,0 +1,59 @@
+"""What the user knows of a log that is read: the options of the `log` commands."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from tuisim.data_class import dataclass
+from tuisim.errors import LogError, among
+from tuisim.logs.units import SECONDS
+
+SIGNS = {"comma": ",", "semicolon": ";", "tab": "\t", "bar": "|", "blank": " "}
+"""Separators by name; a blank is any number of blanks."""
+DECIMAL_SIGNS = (".", ",")
+_ALLOWED = {"unit": tuple(SECONDS), "separator": tuple(SIGNS), "decimal": DECIMAL_SIGNS}
+
+
+@dataclass(frozen=True, slots=True)
+class ReadChoices:
+    """How a log is to be read; what has its default is found.
+
+    Raises:
+        LogError: there is no such unit, separator or decimal sign.
+    """
+
+    time: str | None = None
+    """Column with the time; empty to count the rows; None to find it."""
+    unit: str = ""
+    """Unit of numeric times, one of `SECONDS`."""
+    value: tuple[str, ...] = ()
+    """Columns with values."""
+    header: int = 0
+    """Line of a text with the names of the columns, from 1."""
+    table: int = 1
+    """Which of several tables in a text, from 1."""
+    encoding: str = ""
+    """That of a text as Python knows it, such as `cp1252`."""
+    separator: str = ""
+    """What is between the cells of a text, one of `SIGNS`."""
+    decimal: str = ""
+    """One of `DECIMAL_SIGNS`."""
+
+    def __post_init__(self) -> None:
+        for name, allowed in _ALLOWED.items():
+            word = getattr(self, name)
+            if word and word not in allowed:
+                raise LogError(f"no {name} {word!r}", among(word, allowed))
+
+    @property
+    def of_text(self) -> ReadChoices:
+        """What is chosen for a text alone, without the columns."""
+        return replace(self, time=None, unit="", value=())
+
+    @property
+    def sign(self) -> str:
+        """The separator itself; empty if it is to be found."""
+        return SIGNS.get(self.separator, "")
+
+
+NO_CHOICES = ReadChoices()

@@ -1,0 +1,103 @@
+"""Files as frames of pandas."""
+
+from __future__ import annotations
+
+import os
+import warnings
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pyarrow as pa
+
+from tuisim.errors import LogError
+from tuisim.logs import arrow
+from tuisim.logs.blocks import Block
+from tuisim.logs.choices import NO_CHOICES, ReadChoices
+from tuisim.logs.columns import ROW
+from tuisim.logs.export import EXPORTERS, companion_of, typed_frame
+from tuisim.logs.json_rows import JsonReader
+from tuisim.logs.reader import joined, open_log, read_companion
+from tuisim.logs.text_tables import exported_csv
+from tuisim.logs.units import TEXT, TIMEDELTA
+from tuisim.logs.warnings import Notes
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+
+def read_log(
+    path: str | Path,
+    *,
+    time: str | None = None,
+    unit: str = "",
+    value: Sequence[str] = (),
+    header: int = 0,
+    table: int = 1,
+    encoding: str = "",
+    separator: str = "",
+    decimal: str = "",
+) -> pd.DataFrame:
+    """Return the table in a file. Without choices, an export of tuisim is as it was written, to the last bit.
+
+    Of another file, and with choices, the index is the time in seconds, if there is one; warnings say what was guessed
+    or left out. The choices are the options of the `log` commands: see `ReadChoices`.
+
+    Args:
+        path: A CSV, Parquet, JSON, JSONL, Arrow or text file.
+        value: Columns with values: beside them, only times, names of variables and runs are kept.
+
+    Raises:
+        LogError: it cannot be read, has no row, there is no such column, or a choice is none.
+    """
+    choices = ReadChoices(time, unit, tuple(value), header, table, encoding, separator, decimal)
+    source = Path(path)
+    if choices == NO_CHOICES and (frame := _read_export(source)) is not None:
+        return frame
+    log = open_log(source, choices)
+    for note in log.notes:
+        warnings.warn(f"{log.title}: {note}", stacklevel=2)
+    layout, rows = log.layout, log.table
+    if choices.value:
+        chosen = {layout.time, layout.variable, layout.run, *choices.value}
+        rows = rows.select([name for name in rows.column_names if name in chosen])
+    frame = typed_frame(rows)
+    return frame if layout.time == ROW else frame.set_index(log.times_s).rename_axis("time_s")
+
+
+def _read_export(source: Path) -> pd.DataFrame | None:
+    """Return the frame in an exported file; None if it is another file."""
+    exporter = EXPORTERS.get(source.suffix.lower())
+    if exporter is None or not os.path.isfile(source):
+        return None
+    if exporter.companion and not os.path.isfile(companion_of(source)):
+        return None
+    notes = Notes()
+    try:
+        table = _exported(source, notes)
+        if not exporter.companion and arrow.METADATA_KEY not in (table.schema.metadata or {}):
+            return None
+        frame = typed_frame(table) if exporter.companion else table.to_pandas()
+    # Text that is not UTF-8 or not JSON, and all errors of Arrow.
+    except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
+        raise LogError(f"cannot be read: {error}", file=str(source)) from error
+    if notes.texts():
+        raise LogError(f"cannot be read: {'; '.join(notes.texts())}", file=str(source))
+    return frame
+
+
+def _exported(source: Path, notes: Notes) -> pa.Table:
+    """Return the table in an exported file; `notes` receives what is wrong with it."""
+    suffix = source.suffix.lower()
+    if suffix == ".csv":
+        return exported_csv(source.read_bytes())
+    if suffix == ".jsonl":
+        table = JsonReader(notes, exact=True).read(Block(1, source.read_bytes()))
+        # Without a row, only the companion file names the columns.
+        names = () if table is not None else read_companion(source).get("columns", ())
+        kinds = {
+            name: pa.string() if name in (*TIMEDELTA, *TEXT) else pa.float64() for name in names
+        }
+        return pa.schema(kinds).empty_table() if table is None else table
+    parts = arrow.parquet_parts if suffix == ".parquet" else arrow.arrow_parts
+    return joined([table for _, table in parts(source, notes)])
