@@ -6,6 +6,7 @@ import itertools
 from pathlib import Path
 
 import numpy as np
+import numpy.typing as npt
 import pytest
 from rich.color import Color as RichColor
 from rich.segment import Segment
@@ -15,7 +16,6 @@ from textual.theme import BUILTIN_THEMES
 
 import tuisim.app
 from tests.app.app_help import LOGS, open_lab, settings, until
-from tests.bench.cells import lab_of
 from tuisim import palette
 from tuisim.app.app import LabApp
 from tuisim.app.dialogs.palette import ThemeChooser
@@ -141,11 +141,24 @@ SEEN_BY = {
 }
 
 
+def lab_of(light: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+    """Return CIE L*a*b* (D65) of shares of linear red, green and blue."""
+    to_xyz = [
+        [0.4124564, 0.2126729, 0.0193339],
+        [0.3575761, 0.7151522, 0.1191920],
+        [0.1804375, 0.0721750, 0.9503041],
+    ]
+    xyz = light @ np.array(to_xyz) / np.array([0.95047, 1.0, 1.08883])
+    root = np.where(xyz > (6 / 29) ** 3, np.cbrt(xyz), xyz * (29 / 6) ** 2 / 3 + 4 / 29)
+    x, y, z = root[..., 0], root[..., 1], root[..., 2]
+    return np.stack((116 * y - 16, 500 * (x - y), 200 * (y - z)), axis=-1)
+
+
 @pytest.mark.parametrize("eyes", SEEN_BY)
 def test_traces_stay_apart_for_everybody(eyes: str) -> None:
     value = np.array(TRACE_COLORS) / 255
     light = np.where(value <= 0.04045, value / 12.92, ((value + 0.055) / 1.055) ** 2.4)
     seen = np.clip(light @ np.array(SEEN_BY[eyes]).T, 0, 1)
-    lab = lab_of(255 * np.where(seen <= 0.0031308, 12.92 * seen, 1.055 * seen ** (1 / 2.4) - 0.055))
+    lab = lab_of(seen)
 
     assert min(np.linalg.norm(one - other) for one, other in itertools.combinations(lab, 2)) > 15

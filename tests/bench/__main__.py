@@ -11,17 +11,14 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from tests.bench.back import back
 from tests.bench.bands import bands
 from tests.bench.batches import batches
-from tests.bench.cells import cells
 from tests.bench.command_modules import command_modules
-from tests.bench.crowded import crowded
 from tests.bench.debugging import debugging
 from tests.bench.figures import Figure, as_json, as_line, as_table
 from tests.bench.frame_modules import frame_modules
-from tests.bench.frames import chart, frames, pictures
+from tests.bench.frames import chart, frames
 from tests.bench.listing import listing
 from tests.bench.logs import logs
 from tests.bench.processes import keep_bytecode
-from tests.bench.recording import recording
 from tests.bench.references import usual
 from tests.bench.run_key import run_key
 from tests.bench.running import EMPTY, begin
@@ -38,7 +35,6 @@ BENCHES: Mapping[str, Callable[[Effort], Iterator[Figure]]] = {
     "speed": speeds,
     "noise": noise,
     "libraries": libraries,
-    "crowded": crowded,
     "first-line": first_line,
     "help": help_text,
     "commands": commands,
@@ -49,11 +45,8 @@ BENCHES: Mapping[str, Callable[[Effort], Iterator[Figure]]] = {
     "frames": frames,
     "frame-modules": frame_modules,
     "command-modules": command_modules,
-    "cells": cells,
     "chart": chart,
-    "pictures": pictures,
     "back": back,
-    "recording": recording,
     "variables": variables,
     "logs": logs,
     "bands": bands,

@@ -13,7 +13,6 @@ from tests.bench.processes import cpu_s
 from tests.bench.references import paints
 from tests.bench.sampling import Effort
 from tests.bench.terminal import Terminal
-from tuisim.terminal.picture_options import CellSet, Protocol
 
 CIRCLE = """\
 # %%sim_magic_preloaded -b Grey_bands -x 600 -y 500
@@ -28,7 +27,6 @@ while True:
 SETTLE_S = 3.0
 """From the program's start: the first paint, of the chart too, is not counted."""
 ALL_BUT_CHART = ("-R", "-O", "-A", "-i", "-D", "-X")
-SIZES = (80, 24), (120, 40), (200, 60)
 WITH_CHART = (*ALL_BUT_CHART, "-c")
 HIDE_CHART = b"cc"
 """The first of the keys gives the chart the focus."""
@@ -81,31 +79,16 @@ def chart(effort: Effort) -> Iterator[Figure]:
     )
 
 
-def pictures(effort: Effort) -> Iterator[Figure]:
-    """Yield bytes a second with each set of glyphs and each protocol for pixels, in terminals of three sizes."""
-    for size in SIZES:
-        for words in (
-            *(("--cells", cells) for cells in CellSet),
-            *(("--pixels", protocol) for protocol in Protocol),
-        ):
-            seen = _watch((*ALL_BUT_CHART, *words), effort.watch_s, size, colorterm="truecolor")
-            name = f"{size[0]}x{size[1]}, {' '.join(words)[2:]}"
-            yield Figure(name, seen.bytes_sent / seen.wall_s / 1e3, "kB / s")
-            yield Figure(f"{name}, frames", seen.frames / seen.wall_s, "/ s")
-            yield Figure(f"{name}, app's CPU for a frame", 1e3 * seen.frame_cpu_s, "ms CPU")
-
-
 def _watch(
     panels: tuple[str, ...],
     seconds: float,
-    size: tuple[int, int] = SIZES[1],
     colorterm: str = "",
     keys: bytes = b"",
 ) -> Watched:
     with tempfile.TemporaryDirectory() as folder:
         program = Path(folder) / "circle.py"
         program.write_text(CIRCLE, "utf-8")
-        with Terminal([str(program), *panels], size=size, COLORTERM=colorterm) as terminal:
+        with Terminal([str(program), *panels], COLORTERM=colorterm) as terminal:
             terminal.read_until(lambda: b"Colour: " in terminal.seen and terminal.queries > 0)
             terminal.read_for(SETTLE_S)
             for key in keys:

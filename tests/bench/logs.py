@@ -1,9 +1,7 @@
-"""The analyser on long logs: opening, each key, and memory; beside other programs that show tables."""
+"""The analyser on long logs: opening, each key, and memory."""
 
 from __future__ import annotations
 
-import json
-import subprocess
 import sys
 import tempfile
 from collections.abc import Iterator, Mapping, Sequence
@@ -12,8 +10,6 @@ from statistics import median
 
 from tests.bench.figures import Figure
 from tests.bench.longlogs import KINDS, MILLION, written
-from tests.bench.others import others
-from tests.bench.processes import app_environment
 from tests.bench.references import paints
 from tests.bench.sampling import Effort
 from tests.bench.viewer import Viewer
@@ -28,10 +24,9 @@ KEYS: Mapping[str, Sequence[bytes]] = {
     "row": [DOWN] * 10,
 }
 """What is pressed, in this order; what is panned has been zoomed."""
-MOST_OPEN, MOST_KEY, MOST_REDRAW, MOST_TIMES = 8.2, 0.25, 0.08, 3.0
+MOST_OPEN, MOST_KEY, MOST_TIMES = 8.2, 0.25, 3.0
 FEW_ROWS = 1000
 """Of the log that tells how much memory the app needs for itself."""
-REDRAWN = 100_000
 
 
 def analyser(path: Path) -> Viewer:
@@ -41,13 +36,11 @@ def analyser(path: Path) -> Viewer:
 
 def logs(effort: Effort) -> Iterator[Figure]:
     """Yield what long logs cost, in CPU time of the whole process of the analyser, and in memory."""
-    yield from _redraws()
     with tempfile.TemporaryDirectory() as folder:
         for kind, make in KINDS.items():
             path = written(make(MILLION), Path(folder) / f"{kind}.csv")
             yield from _opened(f"1 M rows CSV, {kind}", path, MILLION, effort.repeats)
             yield from _keys(f"1 M rows CSV, {kind}", path, MILLION)
-        yield from others(path)
         for kind in KINDS:
             yield from _parquet(Path(folder) / f"{kind}.parquet", kind, effort.parquet_rows)
 
@@ -112,17 +105,3 @@ def _peak_bytes(path: Path, rows: int) -> int:
             for key in keys:
                 viewer.key_s(key)
         return viewer.peak_bytes()
-
-
-def _redraws() -> Iterator[Figure]:
-    command = [sys.executable, "-m", "tests.bench.redraw", str(REDRAWN)]
-    told = subprocess.run(command, env=app_environment(), stdout=subprocess.PIPE, check=True).stdout
-    for what, used_s in json.loads(told).items():
-        name = f"chart of {REDRAWN:,} samples: redraw, {what}"
-        yield Figure(
-            name,
-            1e3 * used_s,
-            "ms CPU",
-            most=MOST_REDRAW if what == "median" else None,
-            ratio=paints(used_s),
-        )

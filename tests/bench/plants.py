@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import sys
-import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -24,19 +22,6 @@ sys.setprofile(burn)
 threading.setprofile(burn)
 """
 """Makes every call and every return of a process cost so many turns of a loop."""
-CROWDED = """
-from tuisim.core.collision import Solids
-boxes_near = Solids._boxes_near
-
-def burn(solids, pose):
-    near = boxes_near(solids, pose)
-    for _ in range({turns} * len(near)):
-        pass
-    return near
-
-Solids._boxes_near = burn
-"""
-"""Makes every obstacle near the robot cost so many turns of a loop."""
 NOISY = """
 from tuisim.core import noise
 moved = noise._moved
@@ -74,19 +59,6 @@ def burn(channel, event):
 Channel.send = burn
 """
 """Makes every event of a run cost so many turns of a loop; a debugger works where calls are not noticed."""
-RECORDED = """
-from tuisim.runtime import wallclock
-from tuisim.runs.records import TelemetryWriter
-publish = TelemetryWriter.publish
-
-def burn(writer, count):
-    for _ in range({turns} * (count - writer.count)):
-        pass
-    publish(writer, count)
-
-TelemetryWriter.publish = burn
-"""
-"""Makes every recorded tick cost so many turns of a loop."""
 DRAWN = """
 from tuisim.terminal.frame_buffer import FrameBuffer
 codes = FrameBuffer.codes
@@ -140,15 +112,3 @@ def in_commands(code: str) -> Iterator[None]:
         Path(folder, "sitecustomize.py").write_text(code)
         with patch.object(processes, "SEARCH_PATH", [folder, *processes.SEARCH_PATH]):
             yield
-
-
-@contextmanager
-def here(code: str) -> Iterator[None]:
-    """Plant code in this process."""
-    profile, threads = sys.getprofile(), threading.getprofile()
-    exec(code, {})
-    try:
-        yield
-    finally:
-        sys.setprofile(profile)
-        threading.setprofile(threads)

@@ -28,7 +28,6 @@ class Terminal:
     Args:
         words: The command line of the app.
         command: What is started with them, if it is not the app.
-        size: Columns and rows.
         environment: What it is started in, if that is not the app's environment.
         variables: More of that, such as COLORTERM.
     """
@@ -37,12 +36,11 @@ class Terminal:
         self,
         words: Sequence[str],
         command: Sequence[str] = (sys.executable, "-m", "tuisim"),
-        size: tuple[int, int] = (COLUMNS, ROWS),
         environment: Mapping[str, str] | None = None,
         **variables: str,
     ) -> None:
         self._fd, inside = pty.openpty()
-        fcntl.ioctl(inside, termios.TIOCSWINSZ, struct.pack("HHHH", size[1], size[0], 0, 0))
+        fcntl.ioctl(inside, termios.TIOCSWINSZ, struct.pack("HHHH", ROWS, COLUMNS, 0, 0))
         self._process = subprocess.Popen(
             [*command, *words],
             stdin=inside,

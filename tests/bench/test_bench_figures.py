@@ -10,7 +10,7 @@ from math import inf
 import pytest
 
 from tests.bench.__main__ import BENCHES, main
-from tests.bench.figures import Figure, as_json, as_table
+from tests.bench.figures import NOT_MEASURED, Figure, as_json, as_table
 from tests.bench.frozen_ticks import drive
 from tests.bench.references import (
     Ratio,
@@ -92,14 +92,16 @@ def test_the_table_has_a_line_a_figure_and_json_says_the_same() -> None:
     figures = [
         Figure("one", 1234.5, "ms", most=10.0, ratio=Ratio(12.0, "x app")),
         Figure("another", 1.25, "kB"),
+        Figure("absent", NOT_MEASURED, ""),
     ]
-    heads, first, second = as_table(figures).splitlines()
+    heads, first, second, third = as_table(figures).splitlines()
     assert heads.split() == ["name", "figure", "ratio", "goal"]
     assert first.split() == ["one", "1,234", "ms", "12.0", "x", "app", "<=", "10", "x", "missed"]
-    assert second.split() == ["another", "1.25", "kB"]
+    assert (second.split(), third.split()) == (["another", "1.25", "kB"], ["absent", "–"])
     plain = json.loads(as_json(figures))
-    assert [line["verdict"] for line in plain] == ["missed", ""]
-    assert [line["ratio"] for line in plain] == [{"value": 12.0, "reference": "x app"}, None]
+    assert [line["verdict"] for line in plain] == ["missed", "", ""]
+    assert [line["ratio"] for line in plain] == [{"value": 12.0, "reference": "x app"}, None, None]
+    assert [line["value"] for line in plain] == [1234.5, 1.25, None]
 
 
 def test_an_unknown_bench_is_refused_with_those_there_are(

@@ -74,12 +74,6 @@ class Viewer:
             terminal.read_for(QUIET_S)
         return self.cpu_s() - before
 
-    def work_s(self, keys: bytes) -> float:
-        """Press keys and return the CPU seconds from there until the program does nothing any more."""
-        before = self.cpu_s()
-        self._terminal.type(keys)
-        return self.until_calm() - before
-
     def peak_bytes(self) -> int:
         """Return the most memory it has had in use."""
         status = Path(f"/proc/{self._terminal.pid}/status").read_text()
