@@ -65,6 +65,7 @@ def offered(shell: str, said: str) -> list[str]:
     return [line.partition(",")[2].partition("\t")[0] for line in lines]
 
 
+@pytest.mark.quick_cases("*-bash", "a value-*")
 @pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
 @cases("typed, words", ASKED)
 def test_words_are_offered(

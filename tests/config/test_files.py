@@ -481,14 +481,6 @@ def test_things_are_solid_as_the_profile_says_unless_a_switch_does(words: str, s
     assert build_run_spec(settings_of(parse_words(words.split()))).world.solid is solid
 
 
-def test_pen_and_world_switches_reach_the_run() -> None:
-    words = "--walls off --pen-marks --pen-width 2.5 -P #00FF7f -p --background-fit fit"
-    spec = build_run_spec(settings_of(parse_words(words.split())))
-    world = spec.world
-    assert (world.walls, world.pen_marks, world.background_fit) == (False, True, "fit")
-    assert spec.robot.pen == PenSpec(color="#00ff7f", width_mm=2.5, down=True)
-
-
 def run_like(**changes: Any) -> RunSpec:
     spec = build_run_spec(Settings())
     return replace(

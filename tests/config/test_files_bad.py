@@ -104,17 +104,9 @@ WRONG: dict[str, tuple[str, str]] = {
     "robot: text": ("back_mm = 'far'", "back_mm: must be a number from -1000 to 0, got 'far'"),
     "robot: truth": ("back_mm = true", "back_mm: must be a number from -1000 to 0, got true"),
     "robot: NaN": ("back_mm = nan", "back_mm: must be a number from -1000 to 0, got nan"),
-    "robot: infinite": (
-        "wheel_width_mm = inf",
-        "wheel_width_mm: must be a number from 1 to 200, got inf",
-    ),
     "robot: negative": (
         "wheel_spacing_mm = -5",
         "wheel_spacing_mm: must be a number from 1 to 1000, got -5",
-    ),
-    "robot: 1e9": (
-        "wheel_diameter_mm = 1e9",
-        "wheel_diameter_mm: must be a number from 1 to 500, got 1000000000.0",
     ),
     "robot: weight": ("weight = 'hevy'", "weight: must be weightless, light, medium, heavy, or a"),
     "robot: base": ("base = 'Big'", "base: no such value 'Big' (one of Default_Robot, Small_Robot"),
@@ -139,10 +131,6 @@ WRONG: dict[str, tuple[str, str]] = {
     "robot: half a pixel": (
         EYE + "diameter_mm = 2.5",
         "color_sensors.left.diameter_mm: must be a whole number",
-    ),
-    "robot: eye too far": (
-        EYE + "x_mm = 501",
-        "color_sensors.left.x_mm: must be a number from -500 to 500, got 501",
     ),
     "robot: strategy": (
         EYE + "strategy = 'max'",
@@ -170,10 +158,6 @@ WRONG: dict[str, tuple[str, str]] = {
     ),
     "robot: gyro": ("gyro = 3", "gyro: must be a table of keys and values, got 3"),
     "robot: pen": ("[pen]\ncolor = 'reed'", "pen.color: no such colour 'reed' (did you mean red"),
-    "robot: wide pen": (
-        "[pen]\nwidth_mm = 201",
-        "pen.width_mm: must be a number from 0.1 to 200, got 201",
-    ),
     "robot: huge whole number": (
         "back_mm = -1" + "0" * 400,
         "back_mm: must be a number from -1000 to 0, got -10000",
@@ -194,11 +178,6 @@ WRONG: dict[str, tuple[str, str]] = {
         EYE + "name = 'x'",
         "color_sensors.left.name: no such key (one of port, x_mm",
     ),
-    "robot: eye without a table": (
-        "color_sensors.left = 3",
-        "color_sensors.left: must be a table of keys and values",
-    ),
-    "robot: gyro on": ("gyro = true", "gyro: must be a table of keys and values, got true"),
     "robot: escape in a key": ('"a\\u001b[31m" = 1', "a\\x1b[31m: no such key (one of base, name"),
     "robot: motor taken from a wheel": (
         "[motors]\noutB = false",
@@ -212,11 +191,6 @@ WRONG: dict[str, tuple[str, str]] = {
         '{"back": "\\ud800"}',
         r"back: must be a number from -1000 to 0, got '\u",
     ),
-    "json robot: null": (
-        '{"wheeldiameter": null}',
-        "wheeldiameter: must be a number from 1 to 500, got None",
-    ),
-    "json robot: 1e999": ('{"back": 1e999}', "back: must be a number from -1000 to 0, got inf"),
     "json robot: colour": (
         '{"pen": {"color": "reed"}}',
         "pen.color: no such colour 'reed' (did you mean red",
@@ -232,18 +206,6 @@ WRONG: dict[str, tuple[str, str]] = {
     "json robot: type": (
         '{"sensor1": {"x": "3"}}',
         "sensor1.x: must be a number from -500 to 500, got '3'",
-    ),
-    "json robot: range": (
-        '{"wheelSpacing": -1}',
-        "wheelSpacing: must be a number from 1 to 1000, got -1",
-    ),
-    "json robot: inner range": (
-        '{"sensor2": {"y": 999}}',
-        "sensor2.y: must be a number from -500 to 500, got 999",
-    ),
-    "json robot: noise": (
-        '{"wheelNoise": 501}',
-        "wheelNoise: must be a whole number from 0 to 500, got 501",
     ),
     "json robot: enabled": (
         '{"gyro": {"enabled": 1}}',
@@ -270,10 +232,6 @@ WRONG: dict[str, tuple[str, str]] = {
     ),
     "obstacle: key missing": (BOX, "obstacle[1].height_mm: is missing"),
     "obstacle: flat": (BOX + "height_mm = 0", "obstacle[1].height_mm: must be above 0, got 0.0"),
-    "obstacle: negative": (
-        BOX + "height_mm = -3",
-        "obstacle[1].height_mm: must be above 0, got -3.0",
-    ),
     "obstacle: 1e9": (
         BOX + "height_mm = 1e9",
         "obstacle[1].height_mm: must be a number from -10000",
@@ -301,11 +259,6 @@ WRONG: dict[str, tuple[str, str]] = {
         "color_read_ms = -1",
         "color_read_ms: must be a number from 0 to 60000, got -1",
     ),
-    "profile: NaN": (
-        "max_speed_dps = nan",
-        "max_speed_dps: must be a number from 1 to 100000, got nan",
-    ),
-    "profile: flag": ("solid = 'no'", "solid: must be true or false, got 'no'"),
     "profile: both": (
         "gyro_read_ms = 1\ngyro_read_ns = 1",
         "gyro_read_ms: is given together with gyro_read_ns",
@@ -314,7 +267,6 @@ WRONG: dict[str, tuple[str, str]] = {
         "background = 'Grey_band'",
         "background: no such mat 'Grey_band' (did you mean Grey_bands",
     ),
-    "world: mat's type": ("background = 3", "background: must be text, got 3"),
     "world: fit": (
         "background_fit = 'tile'",
         "background_fit: no such value 'tile' (one of stretch, fit",
@@ -326,10 +278,6 @@ WRONG: dict[str, tuple[str, str]] = {
     "world: robot inside": (
         "[robot.pen]\nx_mm = 900",
         "robot.pen.x_mm: must be a number from -500 to 500, got 900",
-    ),
-    "world: eye inside": (
-        "[robot.color_sensors.left]\ny_mm = nan",
-        "robot.color_sensors.left.y_mm: must be a number",
     ),
     "world: obstacles": (
         "obstacles = 'Posts'",
@@ -352,7 +300,6 @@ WRONG: dict[str, tuple[str, str]] = {
         "[noise]\nlight = 129",
         "noise.light: must be a whole number from 0 to 128, got 129",
     ),
-    "world: start": ("[start]\nx_mm = 1e9", "start.x_mm: must be a number from -10000 to 10000"),
     "world: seed": (
         "seed = -1",
         "seed: must be a whole number from 0 to 9223372036854775807, got -1",
@@ -391,10 +338,6 @@ WRONG: dict[str, tuple[str, str]] = {
     "world: press ends": (
         "[[remote]]\nbuttons = ['beacon']\nfrom_s = 3\nuntil_s = 1",
         "remote[1].until_s: ends before it begins",
-    ),
-    "world: endless press": (
-        "[[remote]]\nbuttons = ['beacon']\nuntil_s = inf",
-        "remote[1].until_s: must be a number from 0 to 1e+09",
     ),
     "world: presses": (
         "remote = [" + "{buttons = []},\n" * 10_001 + "]",
@@ -481,24 +424,7 @@ def test_a_mistake_in_a_file_that_a_world_names_is_told_with_that_file(
     assert str(caught.value).startswith(f"{tmp_path}/sub/part.toml: frobnicate: no such key")
 
 
-REAL = (
-    "robot: misspelt key",
-    "robot: NaN",
-    "robot: motors",
-    "json robot: type",
-    "json robot: syntax",
-    "json obstacles: deep",
-    "obstacle: flat",
-    "obstacle: 1e9",
-    "profile: negative",
-    "world: mat",
-    "world: robot inside",
-    "world: noise",
-)
-REAL_BROKEN = ("symlink loop", "100 MB", "binary", "deep", "unreadable")
-
-
-@pytest.mark.parametrize("case", [*REAL, *REAL_BROKEN])
+@pytest.mark.parametrize("case", ["json robot: syntax", "world: mat", "binary"])
 def test_the_command_says_it_in_one_line_and_runs_nothing(
     case: str, home: Path, tmp_path: Path, here: Command
 ) -> None:

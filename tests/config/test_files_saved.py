@@ -10,11 +10,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from tests.cases import cases
-from tests.config.makers import robots
 from tuisim.config import files
 from tuisim.config.build import build_run_spec
 from tuisim.config.obstacles import load_obstacles, save_obstacles
@@ -101,12 +98,6 @@ ROBOT_FILES = {
 def test_a_robot_reads_back_from_a_file_that_was_another(
     old: str, robot: RobotSpec, tmp_path: Path
 ) -> None:
-    saved("robot", old, robot, tmp_path)
-
-
-@pytest.mark.slow
-@given(old=st.sampled_from(list(ROBOT_FILES.values())), robot=robots())
-def test_any_robot_reads_back_from_any_file(old: str, robot: RobotSpec, tmp_path: Path) -> None:
     saved("robot", old, robot, tmp_path)
 
 

@@ -292,11 +292,6 @@ def test_several_at_once_make_the_same_files(home: Path, tmp_path: Path) -> None
     assert mat_cache.open_field(files).disc_sums(20, 500, 500) == (0, 0, 305 * 128)
 
 
-def test_plain_form_survives_json(home: Path, tmp_path: Path) -> None:
-    files = mat_cache.prepare(picture(tmp_path), (20, 10))
-    assert mat_cache.FieldFiles.from_plain(json.loads(json.dumps(files.to_plain()))) == files
-
-
 @pytest.mark.parametrize("diameter", [0, -5, 129])
 def test_impossible_diameters(diameter: int, home: Path, tmp_path: Path) -> None:
     with pytest.raises(BackgroundError, match="from 1 to 128"):

@@ -225,21 +225,11 @@ def test_program_title(text: str, title: str, given: Path) -> None:
     assert program_file.programs() == [("turn.py", given / "programs" / "turn.py", title)]
 
 
-def test_a_given_folder_comes_first(given: Path) -> None:
-    assert folders.backgrounds_folder() == given / "backgrounds"
-    assert mats.background("Mine").start == Pose(1, 2.5, -90)
-
-
 def test_a_given_folder_needs_only_what_is_asked_for(given: Path) -> None:
     (given / "programs").rmdir()
     assert mats.background("Mine").title == "My own"
     with pytest.raises(ConfigError, match="TUISIM_ASSETS"):
         program_file.programs()
-
-
-def test_a_checkout_is_found_beside_the_package(root: Path) -> None:
-    assert folders.backgrounds_folder() == root / "backgrounds"
-    assert folders.programs_folder() == root / "programs"
 
 
 def test_an_installed_copy_is_found_in_the_package(tmp_path: Path, root: Path) -> None:

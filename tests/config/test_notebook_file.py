@@ -76,7 +76,7 @@ BESIDE = [
 """A cell that takes a module which lies beside its notebook."""
 
 
-@pytest.mark.parametrize("profile", ["robolab", "nbev3devsim", "ev3"])
+@pytest.mark.parametrize("profile", ["robolab", "ev3"])
 def test_a_cell_finds_modules_beside_its_notebook(
     profile: str, here: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -154,20 +154,6 @@ def test_json_stands_alone_on_stdout_also_for_all_cells(here: Command, tmp_path:
     done = here("run", lesson, "--json")
     assert (done.returncode, done.stdout) == (2, "")
     assert "has 3 program cells; name one (--all, or " in done.stderr
-
-
-@pytest.mark.slow
-def test_twenty_cells_are_twenty_rows(here: Command, tmp_path: Path) -> None:
-    cells = [
-        ("code", f"%%sim_magic_preloaded -x {100 * at}\nprint('Number: {at}')\n")
-        for at in range(20)
-    ]
-    done = here("run", write(tmp_path / "twenty.ipynb", cells), "--all")
-    table = done.stdout.splitlines()[-20:]
-    assert done.returncode == 0
-    assert [line.split()[:3] for line in table] == [
-        [f"twenty.ipynb#{at}", "finished", "1"] for at in range(1, 21)
-    ]
 
 
 @cases(

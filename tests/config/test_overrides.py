@@ -113,17 +113,3 @@ def test_arguments_are_split_as_in_a_shell(value: object, expected: tuple[str, .
 def test_wrong_keys_are_explained(values: dict[str, Any], words: str) -> None:
     with pytest.raises(ConfigError, match=words):
         settings_of_keys(values, Settings(), HERE)
-
-
-@pytest.mark.parametrize(
-    "key, value",
-    [
-        ("noise.motor", 5),
-        ("start.x_mm", 5),
-        ("pen.color", "red"),
-        ("background", "Lollipop"),
-        ("robot", "Small_Robot"),
-    ],
-)
-def test_a_key_sets_what_its_option_sets(key: str, value: object) -> None:
-    assert settings_of_keys({key: value}, Settings(), HERE)[key] == value

@@ -8,86 +8,16 @@ import pytest
 
 from tests.cases import cases
 from tuisim.config.program_file import (
+    MAX_PROGRAM_BYTES,
     find_magic,
     find_program,
     parse_program,
     parse_unfinished,
-    prelude_for,
     programs,
     read_program,
     with_mat,
 )
 from tuisim.errors import ConfigError
-
-
-@pytest.mark.parametrize(
-    "text, line, is_comment",
-    [
-        ("# %%sim_magic_preloaded -x 5\n", 1, True),
-        ("\n# words\n%%sim_magic_preloaded -x 5\nx = 1\n", 3, False),
-        ("'''What it does.'''\n# %sim_magic_preloaded -x 5\n", 2, True),
-    ],
-    ids=["comment", "cell", "below a docstring"],
-)
-def test_a_magic_line_is_found_before_the_first_statement(
-    text: str, line: int, is_comment: bool
-) -> None:
-    magic = find_magic(text, "p.py")
-    assert magic is not None
-    assert (magic.line, magic.comment, magic.prelude) == (line, is_comment, "preloaded")
-
-
-def test_a_magic_line_below_a_statement_is_a_comment() -> None:
-    assert find_magic("x = 1\n# %%sim_magic_preloaded -x 5\n", "p.py") is None
-
-
-@pytest.mark.parametrize(
-    "text, said",
-    [
-        ("# %%sim_magic_preloded\n", "no such magic"),
-        ("# %%sim_magic -x 'five\n", "cannot be split"),
-        ("# %%sim_magic -x five\n", "-x"),
-    ],
-)
-def test_a_wrong_magic_line_is_told_with_its_place(text: str, said: str) -> None:
-    with pytest.raises(ConfigError) as caught:
-        find_magic("\n" + text, "p.py")
-    assert said in str(caught.value) and "p.py, line 2" in str(caught.value)
-
-
-@pytest.mark.parametrize(
-    "text, prelude",
-    [
-        ("from ev3dev2.motor import LargeMotor\n", "none"),
-        ("def go():\n    import ev3dev2.sensor\n", "none"),
-        ("print(1)\n", "none"),
-        ("tank_drive.off()\n", "preloaded"),
-        ("tank_drive = None\ntank_drive.off()\n", "none"),
-        ("eval(input())\n", "preloaded"),
-        ("tank_drive.on(\n", "preloaded"),
-        ("import ev3dev2\nx = (\n", "none"),
-    ],
-    ids=[
-        "imports",
-        "imports later",
-        "uses nothing",
-        "uses a name",
-        "defines it",
-        "may use any",
-        "broken",
-        "broken one",
-    ],
-)
-def test_a_program_without_a_magic_line_has_the_prelude_that_it_uses(
-    text: str, prelude: str
-) -> None:
-    assert prelude_for(text) == prelude
-
-
-def test_the_magic_line_of_a_cell_becomes_a_comment() -> None:
-    source = parse_program("%%sim_magic_preloaded\nx = 1\n", "p.py")
-    assert source.program.text == "# %%sim_magic_preloaded\nx = 1\n"
-    assert source.has_magic
 
 
 def test_an_example_is_found_by_its_name_unless_a_file_has_it(
@@ -107,7 +37,9 @@ def test_an_example_is_found_by_its_name_unless_a_file_has_it(
         ("none.py", None, "there is no such program"),
         ("notes.ipynb", b"{}", "is a notebook"),
         ("null.py", b"x = 1\0\n", "null characters"),
-        ("bytes.py", b"x = '\xff'\n", "bytes.py"),
+        ("bytes.py", b"x = '\xff'\n", "bytes.py: is not Python text"),
+        ("coding.py", b"# coding: klingon\n", "is not Python text"),
+        ("large.py", b"#" * (MAX_PROGRAM_BYTES + 1), "is larger than 4 MiB"),
     ],
 )
 def test_what_is_no_program_is_told(
@@ -170,3 +102,138 @@ MAGIC_MATS = {
 @cases("before, after", MAGIC_MATS)
 def test_a_mat_is_written_into_the_magic_line(before: str, after: str) -> None:
     assert with_mat(before, "p.py", "Loop") == after
+
+
+PLAIN = "import time\nprint(1)\n"
+
+
+@pytest.mark.parametrize(
+    "text, line, prelude, comment",
+    [
+        ("%%sim_magic_preloaded -b Loop -OHR\n" + PLAIN, 1, "preloaded", False),
+        ("%%sim_magic_imports\n" + PLAIN, 1, "imports", False),
+        ("%sim_magic -R\n" + PLAIN, 1, "none", False),
+        ("# %%sim_magic -b Loop\n" + PLAIN, 1, "none", True),
+        ("#%%sim_magic_preloaded\n" + PLAIN, 1, "preloaded", True),
+        ('"""Title."""\n# %%sim_magic_preloaded\n' + PLAIN, 2, "preloaded", True),
+        ('"""Title.\n\n%%sim_magic\n"""\n\n# %%sim_magic_imports\n' + PLAIN, 6, "imports", True),
+        (
+            "#!/usr/bin/env python3\n# -*- coding: utf-8 -*-\n\n# %%sim_magic_imports\n" + PLAIN,
+            4,
+            "imports",
+            True,
+        ),
+    ],
+    ids=[
+        "raw",
+        "raw imports",
+        "one percent",
+        "comment",
+        "no blank",
+        "after a docstring",
+        "long docstring",
+        "shebang",
+    ],
+)
+def test_magic_line_is_found(text: str, line: int, prelude: str, comment: bool) -> None:
+    magic = find_magic(text, "a.py")
+    assert magic is not None
+    assert (magic.line, magic.prelude, magic.comment) == (line, prelude, comment)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        PLAIN,
+        PLAIN + "# %%sim_magic -b Loop\n",
+        '"""\n%%sim_magic\n"""\n',
+        "# about %%sim_magic\n",
+        "",
+    ],
+    ids=["none", "too late", "in the docstring", "in a sentence", "empty"],
+)
+def test_no_magic_line(text: str) -> None:
+    assert find_magic(text, "a.py") is None
+
+
+@pytest.mark.parametrize("end", ["\n", ""], ids=["newline", "end of file"])
+def test_raw_magic_line_becomes_a_comment_so_that_it_is_seen_and_lines_keep_their_numbers(
+    end: str,
+) -> None:
+    program = parse_program(f"\n%%sim_magic_preloaded -b Grey_bands -OHR{end}", "a.py")
+    assert program.program.text == f"\n# %%sim_magic_preloaded -b Grey_bands -OHR{end}"
+    assert program.options["background"] == "Grey_bands"
+
+
+@pytest.mark.parametrize(
+    "text, prelude",
+    [
+        ("from ev3dev2.motor import MoveTank\n", "none"),
+        ("import ev3dev2.sensor as s\n", "none"),
+        ("def f():\n    from ev3dev2 import motor\n", "none"),
+        ("from ev3dev2.motor import (\n", "none"),
+        ("print('import ev3dev2')\n", "none"),
+        ("from ev3dev2_glue import get_clock\nprint(get_clock())\n", "none"),
+        ("from lib import go\ngo()\n", "none"),
+        ("tank_drive.on(10, 10)\n", "preloaded"),
+        ("from lib import *\ntank_drive.on(10, 10)\n", "preloaded"),
+        ("def f():\n    return [colorLeft.color for _ in range(3)]\n", "preloaded"),
+        ("def f(gyro):\n    return gyro.angle\n", "none"),
+        ("class Team:\n    gyro = 3\n    print(gyro)\n", "none"),
+        ("def f():\n    global gyro\n    gyro = 3\nf()\nprint(gyro)\n", "none"),
+        ("def say(text):\n    print(text)\nsay('hello')\n", "none"),
+        ("# tank_drive\nprint('tank_drive')\n", "none"),
+        ("print(eval(input()))\n", "preloaded"),
+        ("tank_drive.on(10, 10\n", "preloaded"),
+        ("# %%sim_magic_imports --preload none\n", "none"),
+    ],
+    ids=[
+        "from",
+        "import",
+        "inside",
+        "broken import",
+        "in a text",
+        "glue",
+        "own module",
+        "used",
+        "all of a module",
+        "used in a function",
+        "argument",
+        "attribute",
+        "global",
+        "own function",
+        "comment",
+        "eval",
+        "broken",
+        "switch in the magic",
+    ],
+)
+def test_prelude(text: str, prelude: str) -> None:
+    assert parse_program(text, "a.py").program.prelude == prelude
+
+
+@pytest.mark.parametrize(
+    "line, said",
+    [
+        ("%%sim_magic_preloded -b Loop", r"^a\.py, line 1: no such magic .*sim_magic_preloaded"),
+        ("# %%sim_magic -x abc", r"^a\.py, line 1: -x: must be a number"),
+        ("# %%sim_magic -b 'Loop", r"^a\.py, line 1: cannot be split"),
+        ("# %%sim_magic -s other", r"^a\.py, line 1: no such option"),
+    ],
+    ids=["name", "value", "quote", "switch"],
+)
+def test_wrong_magic_lines_say_where(line: str, said: str) -> None:
+    with pytest.raises(ConfigError, match=said):
+        parse_program(line + "\n", "a.py")
+
+
+def test_missing_program_names_its_neighbour(tmp_path: Path) -> None:
+    (tmp_path / "follow.py").touch()
+    with pytest.raises(ConfigError, match=r"no such program \(did you mean follow\.py\?\)"):
+        read_program(tmp_path / "folow.py")
+
+
+def test_other_encodings_and_line_ends_are_read(tmp_path: Path) -> None:
+    file = tmp_path / "a.py"
+    file.write_bytes("# coding: latin-1\r\nx = 'ä'\r\n".encode("latin-1"))
+    assert read_program(file).program.text == "# coding: latin-1\nx = 'ä'\n"

@@ -7,10 +7,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
-import numpy as np
 import pytest
 
-import tuisim
 from tests.config.golden import outside
 from tuisim.api import choices_of
 from tuisim.app.setup import next_run as plans
@@ -259,51 +257,3 @@ def test_an_option_changes_only_itself(program: str, option: str, folder: Path) 
     )
     changed = {path for path in first.keys() | second.keys() if first.get(path) != second.get(path)}
     assert [path for path in changed if not path.startswith(OPTIONS[option].changes)] == []
-
-
-OPEN_WAY = (
-    "-b Loop",
-    "-b Grey_bands",
-    "-b Empty_Map",
-    "--profile ev3",
-    "-x 600",
-    "-y 400",
-    "-a 90",
-    "-o Square_posts",
-)
-"""Options that neither put something in the way nor ask for other motors."""
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("program", ["tyre", "reversed"])
-@pytest.mark.parametrize("option", OPEN_WAY)
-def test_wheels_turn_as_they_did(program: str, option: str, tmp_path: Path, home: Path) -> None:
-    (tmp_path / "p.py").write_text(PROGRAMS[program])
-    ends = []
-    for choices in ({}, OPTIONS[option].choices):
-        run = tuisim.simulate(tmp_path / "p.py", **choices)
-        ends.append(run.telemetry.iloc[[0, -1]])
-    angles = [end[["left_position_deg", "right_position_deg"]].iloc[-1].tolist() for end in ends]
-    assert angles[0] == angles[1]
-    way_mm = [end[["x_mm", "y_mm"]].diff().iloc[-1].pow(2).sum() ** 0.5 for end in ends]
-    assert way_mm[0] == pytest.approx(way_mm[1], abs=0.001)
-    assert way_mm[0] == pytest.approx({"tyre": 500, "reversed": 293}[program], abs=3)
-
-
-FOLLOWING = """\
-from ev3dev2.sensor.lego import ColorSensor
-from ev3dev2.motor import MoveSteering, OUTPUT_B, OUTPUT_C
-cs = ColorSensor()
-steer = MoveSteering(OUTPUT_B, OUTPUT_C)
-while True:
-    error = cs.reflected_light_intensity - 45
-    steer.on(max(-100, min(100, error)), 20)
-"""
-
-
-@pytest.mark.slow
-def test_a_line_follower_goes_round_the_loop(tmp_path: Path, home: Path) -> None:
-    (tmp_path / "p.py").write_text(FOLLOWING)
-    way = tuisim.simulate(tmp_path / "p.py", background="Loop", timeout_s=80).telemetry
-    laps = np.unwrap(np.arctan2(way.y_mm - 542, way.x_mm - 1050)) / (2 * np.pi)
-    assert laps[-1] - laps[0] > 1

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import ast
-import copy
 import random
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
@@ -35,67 +34,43 @@ _VALUES = (
 )
 
 
-def _programs() -> list[ast.Module]:
-    files = [
-        file for folder in _FOLDERS for file in sorted((ROOT / "tests" / folder).rglob("*.py"))
-    ]
-    assert files
-    return [ast.parse(file.read_text(encoding="utf-8")) for file in files]
+class _Exchange(ast.NodeTransformer):
+    """Puts other expressions in place of some."""
+
+    def __init__(self, others: Mapping[ast.AST, str]) -> None:
+        self._others = others
+
+    def visit(self, node: ast.AST) -> Any:
+        """Return what stands there then."""
+        if node in self._others:
+            return ast.parse(self._others[node], mode="eval").body
+        return super().visit(node)
 
 
 def _mutants(count: int, seed: int) -> Iterator[str]:
-    """Yield programs in which some expressions and statements are others, twice there or missing."""
-    chance, programs = random.Random(seed), _programs()
+    """Yield programs in which some expressions are others."""
+    files = [
+        path for folder in _FOLDERS for path in sorted((ROOT / "tests" / folder).rglob("*.py"))
+    ]
+    chance = random.Random(seed)
     for _ in range(count):
-        tree = copy.deepcopy(chance.choice(programs))
-        for _ in range(chance.randint(1, 5)):
-            _mutate(tree, chance)
+        tree = ast.parse(chance.choice(files).read_text(encoding="utf-8"))
+        nodes = [
+            node
+            for node in ast.walk(tree)
+            if isinstance(node, ast.expr) and isinstance(getattr(node, "ctx", ast.Load()), ast.Load)
+        ]
+        changed = chance.sample(nodes, min(len(nodes), chance.randint(1, 5)))
+        words = [*_VALUES, *map(ast.unparse, chance.sample(nodes, len(changed)))]
         # Not every tree has a text: a format string takes no lambda.
         with suppress(ValueError):
-            yield ast.unparse(ast.fix_missing_locations(tree))
-
-
-def _mutate(tree: ast.Module, chance: random.Random) -> None:
-    places = [*_places(tree)]
-    if not places:
-        return
-    values, at = chance.choice(places)
-    others = [given[place] for given, place in places if type(given[place]) is type(values[at])]
-    kind = chance.randrange(4)
-    if isinstance(values[at], ast.stmt):
-        # A block is never empty.
-        changed = [[ast.Pass()], [values[at]] * 2, [chance.choice(others)], [ast.Pass()]]
-        values[at : at + 1] = copy.deepcopy(changed[kind])
-    else:
-        value = ast.parse(chance.choice(_VALUES), mode="eval").body
-        values[at] = copy.deepcopy(value if kind == 0 else chance.choice(others))
-
-
-class _Field(list[Any]):
-    """The only value of a field of a node, as a list that changes the node."""
-
-    def __init__(self, node: ast.AST, name: str) -> None:
-        super().__init__([getattr(node, name)])
-        self._node, self._name = node, name
-
-    def __setitem__(self, at: Any, value: Any) -> None:
-        super().__setitem__(at, value)
-        setattr(self._node, self._name, value)
-
-
-def _places(tree: ast.Module) -> Iterator[tuple[list[Any], int]]:
-    """Yield where expressions that are read and statements stand: a list, and the index in it."""
-    for node in ast.walk(tree):
-        for name, value in ast.iter_fields(node):
-            values = value if isinstance(value, list) else _Field(node, name)
-            for at, inside in enumerate(values):
-                is_read = isinstance(getattr(inside, "ctx", ast.Load()), ast.Load)
-                if isinstance(inside, ast.stmt) or (isinstance(inside, ast.expr) and is_read):
-                    yield values, at
+            yield ast.unparse(
+                _Exchange({node: chance.choice(words) for node in changed}).visit(tree)
+            )
 
 
 @pytest.mark.parametrize(
-    ("count", "seed"), [(200, 1), pytest.param(2_000, 26, marks=pytest.mark.slow)]
+    ("count", "seed"), [(100, 1), pytest.param(2_000, 26, marks=pytest.mark.slow)]
 )
 def test_no_text_makes_the_reader_fail(count: int, seed: int, tmp_path: Path) -> None:
     path = str(tmp_path / "p.py")
