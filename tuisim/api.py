@@ -164,11 +164,11 @@ def simulate(
         arguments: The program's `sys.argv[1:]`.
         answers: The return values of successive `input()` calls.
         timeout_s: Limit in simulated seconds.
-        world: A world file; it takes precedence over the program's magic line, and `choices` over it.
+        world: A world file; it takes precedence over the program's first line, and `choices` over it.
         choices: Switches by their long names: `background="Grey_bands", x=100, seed=7`.
 
     Raises:
-        ConfigError: the program, its magic line, the world or a choice is wrong; nothing was run.
+        ConfigError: the program, its first line, the world or a choice is wrong; nothing was run.
         KeyboardInterrupt: ctrl-C; the run has been stopped, and its log is stored.
     """
     _check_timeout(timeout_s)

@@ -99,8 +99,8 @@ def read_opened(arguments: Arguments) -> Opened | None:
 
     A program from a real robot gets the robot that it talks about, unless -r names one: see tuisim guide real-programs.
 
-    A program's magic line, such as `# %%sim_magic_preloaded -b Grey_bands`, can also hold options. The command line
-    takes precedence over a world file, the world file over the magic line.
+    A program's first line, such as `# %%sim_magic_preloaded -b Grey_bands`, can also hold options. The command line
+    takes precedence over a world file, the world file over the first line.
     """,
 )
 def open_app(**given: Any) -> int:

@@ -161,7 +161,7 @@ _OPTIONS = (
     GOALS is a file with the goals of the task and its world. A FOLDER contains a file NAME.py or a folder for each
     student; a student's folder contains the program main.py, a single program, or the one that GOALS names.
 
-    Programs run in the world of GOALS; if it names none, in that of their magic line. A program that hangs, floods or
+    Programs run in the world of GOALS; if it names none, in that of their first line. A program that hangs, floods or
     crashes affects its own marks only. Where bubblewrap is installed and starts, each program is isolated.
 
     Exit code: 0 all programs have marks, 1 this machine could not make some runs (--resume makes them), or a goal's

@@ -80,7 +80,7 @@ def _settings(student: Student, world: TrialWorld, given: Mapping[str, Any]) -> 
         bare = replace(student.source, options={})
         return program_settings(bare, world.settings, given)
     if outside := file_outside(student):
-        raise ConfigError("the magic line names a file outside the folder", key=outside)
+        raise ConfigError("the first line names a file outside the folder", key=outside)
     return program_settings(student.source, world.settings, given)
 
 
