@@ -1,4 +1,7 @@
-"""The profile `nbev3devsim` to the last bit: recorded programs, and a second model beside the first."""
+"""The profile `nbev3devsim` to the last bit, as recorded.
+
+The old simulator ran the first 101 programs, and a second model without a line of tuisim the other 20, with threads.
+"""
 
 from __future__ import annotations
 
@@ -11,8 +14,6 @@ from typing import Any
 import pytest
 
 from tests.core.motor_lab import Course, Job, courses
-from tests.core.motor_programs import PROGRAMS
-from tests.core.tick_model import Lab
 from tuisim.config.files import Location
 from tuisim.config.robots import ROBOTS, robot_from_json
 from tuisim.core.geometry import Pose
@@ -24,8 +25,6 @@ with gzip.open(Path(__file__).with_name("motor_records.jsonl.gz"), "rt", encodin
         record["name"]: record for record in map(json.loads, _file)
     }
 
-START = (1000.0, 500.0, 0.0)
-
 
 def _robot(described: str | dict[str, Any]) -> RobotSpec:
     if isinstance(described, str):
@@ -35,7 +34,7 @@ def _robot(described: str | dict[str, Any]) -> RobotSpec:
 
 @pytest.fixture(scope="module")
 def lab(tmp_path_factory: pytest.TempPathFactory) -> Mapping[str, Course]:
-    """What becomes of every program, recorded or not: one process for all of them is quick."""
+    """What becomes of every program: one process for all of them is quick."""
     jobs = {
         name: Job(
             one["program"],
@@ -45,14 +44,10 @@ def lab(tmp_path_factory: pytest.TempPathFactory) -> Mapping[str, Course]:
         )
         for name, one in RECORDS.items()
     }
-    jobs |= {
-        name: Job(text, WorldSpec(start=Pose(*START)), RobotSpec())
-        for name, text in PROGRAMS.items()
-    }
     return dict(zip(jobs, courses(jobs.values(), tmp_path_factory.mktemp("lab")), strict=True))
 
 
-@pytest.mark.slow_cases("on_spin")
+@pytest.mark.slow_cases("on_spin", "pairs_made_anew")
 @pytest.mark.parametrize("name", RECORDS)
 def test_a_recorded_program(name: str, lab: Mapping[str, Course]) -> None:
     record, done = RECORDS[name], lab[name]
@@ -63,17 +58,3 @@ def test_a_recorded_program(name: str, lab: Mapping[str, Course]) -> None:
         record["end_tick"],
         record["end_ms"],
     )
-
-
-def _model(name: str) -> Any:
-    return Lab(PROGRAMS[name], *START)  # type: ignore[no-untyped-call]
-
-
-@pytest.mark.slow_cases("pairs made anew")
-@pytest.mark.parametrize("name", PROGRAMS)
-def test_a_program_under_both_models(name: str, lab: Mapping[str, Course]) -> None:
-    done, model = lab[name], _model(name)
-    assert done.end == "finished"
-    assert done.rows == model.rows
-    assert done.lines == model.lines
-    assert (done.end_tick, done.end_ms) == (model.tick, model.ms)

@@ -114,37 +114,6 @@ def test_a_move_to_a_position_goes_on_once_the_way_is_clear() -> None:
     assert sim.left.position_deg == 720.0
 
 
-def test_the_robot_can_leave_what_it_was_put_into() -> None:
-    world = WorldSpec(
-        start=Pose(1000.0, 571.0, 0.0),
-        obstacles=(Obstacle(950.0, 500.0, 100.0, 100.0),),
-        solid=True,
-    )
-    sim = simulation(world)
-    for motor in (sim.left, sim.right):
-        commanded(motor).run(-500.0)
-    sim.advance(300)
-    assert sim.pose.x_mm < 700
-
-
-def test_grouping_of_ticks_does_not_matter_near_obstacles() -> None:
-    def drive(step: int) -> bytes:
-        world = WorldSpec(
-            start=Pose(300.0, 571.0, 20.0),
-            obstacles=(Obstacle(1000.0, 500.0, 100.0, 300.0),),
-            solid=True,
-        )
-        sim = simulation(world)
-        commanded(sim.left).run(500.0)
-        commanded(sim.right).run(430.0)
-        for _ in range(900 // step):
-            sim.advance(step)
-        assert isinstance(sim._sink, MemorySink)
-        return sim._sink.records()
-
-    assert drive(1) == drive(9) == drive(900)
-
-
 SIZES = st.floats(0.5, 400.0)
 OBSTACLE = st.builds(Obstacle, st.floats(0, 2300), st.floats(0, 1100), SIZES, SIZES)
 ROBOT = st.builds(

@@ -13,7 +13,6 @@ from tests.core.memory_sink import MemorySink
 from tests.core.motors import commanded, run
 from tests.core.test_collision import overlap_mm, simulation
 from tuisim.config import mats
-from tuisim.core.collision import _way_out_of_box
 from tuisim.core.geometry import Pose
 from tuisim.core.motors import FOREVER
 from tuisim.core.profile import PROFILES
@@ -106,12 +105,12 @@ PLACES = {
 }
 
 
-@pytest.mark.quick_cases("on a post-*")
-@pytest.mark.parametrize(
-    "motion, noise",
-    [(motion, 0) for motion in MOTIONS]
-    + [("forwards", 100), *(slow(motion, 100) for motion in MOTIONS if motion != "forwards")],
+@pytest.mark.quick_cases(
+    *("on a post-*-0", "on a post-forwards-100"),
+    *("along a box-forwards-100", "in the middle of a box-back on a bend-100"),
 )
+@pytest.mark.parametrize("noise", [0, 100])
+@pytest.mark.parametrize("motion", MOTIONS)
 @pytest.mark.parametrize("place", PLACES)
 def test_a_robot_put_into_something_gets_no_deeper_and_can_leave(
     place: str, motion: str, noise: int
@@ -198,30 +197,3 @@ def test_no_motion_leads_deeper_into_what_the_robot_was_put_into(
     for left, right in moves:
         assert told(sim, float(int(left)), float(int(right)), 100) <= first_mm + CLEAR_MM
     assert leaves(sim)
-
-
-@pytest.mark.parametrize(
-    "x_mm, y_mm, heading_deg, out_deg",
-    [
-        (660, 550, 0, 180),
-        (1640, 550, 180, 0),
-        (1150, 260, 90, -90),
-        (1150, 840, -90, 90),
-        # At the lower left corner and at the upper right one: the front, the back, and both flanks.
-        (680, 280, 45, -135),
-        (680, 280, -135, -135),
-        (680, 280, 135, -135),
-        (680, 280, -45, -135),
-        (1620, 820, 45, 45),
-        (1620, 820, -135, 45),
-        (1620, 820, 135, 45),
-        (1620, 820, -45, 45),
-    ],
-)
-def test_the_shortest_way_leads_out_of_a_box(
-    x_mm: float, y_mm: float, heading_deg: float, out_deg: float
-) -> None:
-    solids = simulation(WorldSpec(obstacles=(AROUND,), solid=True))._solids
-    assert solids is not None
-    out = _way_out_of_box(solids._body(x_mm, y_mm, heading_deg), solids._boxes[0])
-    assert math.degrees(math.atan2(out[1], out[0])) == pytest.approx(out_deg)

@@ -1,9 +1,9 @@
-"""Drift: robots that are not where their encoders say, against closed forms and the UMBmark of Borenstein and Feng."""
+"""Drift: robots that are not where their encoders say, against closed forms."""
 
 from __future__ import annotations
 
 from dataclasses import replace
-from math import hypot, pi, radians, sin, sqrt
+from math import hypot, pi, radians, sqrt
 from statistics import fmean, pstdev
 
 import pytest
@@ -128,14 +128,6 @@ def test_the_same_however_ticks_are_divided(noise: int, solid: bool) -> None:
     assert ends[0] == ends[1] == ends[2]
 
 
-def test_a_robot_that_drifts_stops_at_a_wall() -> None:
-    sim = simulation(TYPICAL, 5, solid=True)
-    commanded(sim.left).run(900)
-    commanded(sim.right).run(905)
-    sim.advance(1500)
-    assert 2362 - 60 < sim.pose.x_mm < 2362
-
-
 def test_a_seed_draws_the_same_errors_and_another_one_others() -> None:
     assert drawn_errors(TYPICAL, 1) == drawn_errors(replace(TYPICAL), 1) != drawn_errors(TYPICAL, 2)
 
@@ -163,50 +155,6 @@ def test_wrong_sizes_turn_a_square_as_far_as_the_closed_form_says() -> None:
         assert radians(error.heading_deg) == pytest.approx(sides + turns, abs=1e-9)
 
 
-def umbmark(clockwise: Pose, other: Pose) -> tuple[float, float]:
-    """Return the errors of wheels and spacing that the ends of squares driven both ways tell.
-
-    These are the equations of Borenstein and Feng: alpha is the error of type A, of each corner; beta that of type B,
-    of each side, in rad.
-    """
-    alpha = (clockwise.x_mm + other.x_mm) / (-4 * SIDE_MM)
-    beta = (clockwise.x_mm - other.x_mm) / (-4 * SIDE_MM)
-    radius = SIDE_MM / 2 / sin(beta / 2)
-    of_wheels = (radius + ROBOT.wheel_spacing_mm / 2) / (radius - ROBOT.wheel_spacing_mm / 2)
-    return of_wheels, (pi / 2) / (pi / 2 - alpha)
-
-
-@pytest.mark.parametrize("seed", range(6))
-def test_umbmark_finds_the_errors_of_the_robot(seed: int) -> None:
-    drift = DriftSpec(wheel_pc=0.1, spacing_pc=0.3)
-    drawn = drawn_errors(drift, seed)
-    ends = [drive_square(simulation(drift, seed), clockwise) for clockwise in (True, False)]
-    of_wheels, of_spacing = umbmark(*ends)
-    # The equations hold for small errors; that of the spacing is one against the mean size of the wheels.
-    assert of_wheels == pytest.approx(drawn.right / drawn.left, abs=5e-5)
-    assert of_spacing == pytest.approx(drawn.spacing / ((drawn.left + drawn.right) / 2), abs=2e-4)
-
-
-@pytest.mark.slow
-def test_the_spread_of_squares_is_that_of_the_closed_form() -> None:
-    runs, wheel, spacing = 400, 0.002, 0.005
-    drift = DriftSpec(wheel_pc=100 * wheel, spacing_pc=100 * spacing)
-    errors = [drive_square(simulation(drift, seed)) for seed in range(runs)]
-    # The heading: 4 sides of type B and 4 corners of type A.
-    sides, corners = (
-        4 * SIDE_MM / ROBOT.wheel_spacing_mm * wheel * sqrt(2),
-        2 * pi * hypot(spacing, wheel / sqrt(2)),
-    )
-    # The place: -2 L (alpha - beta) along x, 2 L (alpha - beta) along y.
-    beta, alpha = sides / 4, corners / 4
-    close = 3 / sqrt(2 * runs)
-    assert pstdev([radians(one.heading_deg) for one in errors]) == pytest.approx(
-        hypot(sides, corners), rel=close
-    )
-    for along in ([one.x_mm for one in errors], [one.y_mm for one in errors]):
-        assert pstdev(along) == pytest.approx(2 * SIDE_MM * hypot(alpha, beta), rel=close)
-
-
 def test_slip_loses_a_share_of_each_turn_and_spreads_as_its_root() -> None:
     ways = []
     for seed in range(200):
@@ -228,7 +176,7 @@ def test_slip_grows_with_acceleration_and_steady_wheels_do_not_slip() -> None:
             WorldSpec(start=Pose(0.0, 500.0, 0.0), drift=DriftSpec(slip_pc=5.0)),
         )
         found = []
-        for seed in range(200):
+        for seed in range(40):
             sim = Simulation(RunSpec(robot, world, PROFILES["robolab"], seed), MemorySink())
             commanded(sim.left).run(500)
             commanded(sim.right).run(500)

@@ -9,6 +9,7 @@ import pytest
 
 from tests.core.memory_sink import MemorySink
 from tests.core.motors import commanded
+from tuisim.core.drive import turn_rate_dps
 from tuisim.core.geometry import Pose
 from tuisim.core.profile import PROFILES
 from tuisim.core.simulation import Simulation
@@ -58,6 +59,7 @@ def test_a_reversed_motor_that_runs_backwards_drives_as_a_usual_one_forwards(
         if name.startswith(sides):
             found[name] = 0.0 - found[name]
     assert found.tolist() == usual.tolist()
+    assert turn_rate_dps(*given, robot) == turn_rate_dps(left, right, RobotSpec())
 
 
 def test_reversed_motors_turn_the_wheels_backwards_in_the_browser_simulator_too() -> None:

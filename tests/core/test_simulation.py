@@ -1,6 +1,5 @@
 """Motors and drive: figures of both profiles, and one answer however ticks are grouped."""
 
-import math
 from dataclasses import replace
 from random import Random
 
@@ -31,28 +30,6 @@ from tuisim.core.values import values_of
 def simulation(profile: ProfileSpec, motor_noise: int = 0, weight: float = 6.0) -> Simulation:
     world = WorldSpec(start=Pose(0.0, 0.0, 0.0), noise=NoiseSpec(0, motor_noise))
     return Simulation(RunSpec(RobotSpec(weight=weight), world, profile, seed=5), MemorySink())
-
-
-@pytest.mark.parametrize("speed", [100.0, 525.0, 1050.0])
-@pytest.mark.parametrize("backwards", [False, True], ids=["forwards", "backwards"])
-def test_position_moves_end_exactly(speed: float, backwards: bool) -> None:
-    sim = simulation(ROBOLAB)
-    goal = -360.0 if backwards else 360.0
-    for motor in (sim.left, sim.right):
-        commanded(motor).run_to(goal, speed, backwards)
-    sim.advance(1000, until_change=True)
-    assert sim.left.position_deg == goal
-    assert abs(sim.pose.x_mm) == pytest.approx(math.pi * 56, abs=1e-9)
-    assert sim.left.moving_dps == 0
-
-
-def test_seed_experiment_is_at_its_place_at_tick_162() -> None:
-    sim = simulation(NBEV3DEVSIM)
-    sim.place(Pose(150.0, 500.0, 0.0))
-    for motor in (sim.left, sim.right):
-        commanded(motor).run(525.0)
-    sim.advance(162)
-    assert sim.pose.x_mm == pytest.approx(1459.50, abs=0.01)
 
 
 def script(sim: Simulation, step: int) -> bytes:
@@ -86,45 +63,6 @@ def test_grouping_of_ticks_does_not_matter(profile: ProfileSpec, weight: float, 
     whole = script(simulation(profile, noise, weight), 10_000)
     assert script(simulation(profile, noise, weight), 1) == whole
     assert script(simulation(profile, noise, weight), 7) == whole
-
-
-def test_tight_loops_agree_with_the_full_tick() -> None:
-    class Slow(Simulation):
-        def _glide(self, ticks: int) -> None:
-            for _ in range(ticks):
-                self.tick_once()
-
-    spec = simulation(ROBOLAB).spec
-    assert script(Slow(spec, MemorySink()), 10_000) == script(
-        Simulation(spec, MemorySink()), 10_000
-    )
-
-
-@pytest.mark.parametrize("profile", [ROBOLAB, NBEV3DEVSIM], ids=lambda profile: profile.name)
-def test_braking_down_the_ramp(profile: ProfileSpec) -> None:
-    sim = simulation(profile)
-    for motor in (sim.left, sim.right):
-        commanded(motor).run(525.0)
-    sim.advance(profile.tick_hz * 2)
-    before = sim.pose.x_mm
-    for motor in (sim.left, sim.right):
-        commanded(motor).run(0.0)
-    sim.advance(profile.tick_hz * 3)
-    assert sim.pose.x_mm - before == pytest.approx(76.0, abs=5.0)
-    assert sim.left.moving_dps == 0
-
-
-def test_seeds_give_different_noise_and_the_same_seed_the_same() -> None:
-    def end(seed: int) -> float:
-        spec = replace(simulation(ROBOLAB, motor_noise=50).spec, seed=seed)
-        sim = Simulation(spec, MemorySink())
-        commanded(sim.left).run(500.0)
-        commanded(sim.right).run(500.0)
-        sim.advance(300)
-        return sim.pose.y_mm
-
-    assert end(1) == end(1)
-    assert end(1) != end(2)
 
 
 def test_no_gyro_change_when_the_robot_is_lifted() -> None:

@@ -12,9 +12,7 @@ import pytest
 from tests.cases import cases
 from tests.core.memory_sink import MemorySink
 from tests.core.motors import commanded
-from tuisim.core.geometry import Pose
 from tuisim.core.profile import PROFILES, ROBOLAB
-from tuisim.core.sensors import infrared, touch
 from tuisim.core.simulation import FurtherMotors, Simulation, Turn, simulation_of
 from tuisim.core.spec import (
     BeaconSpec,
@@ -110,16 +108,6 @@ def test_what_is_as_usual_is_not_written_down() -> None:
     )
 
 
-def test_a_run_written_before_there_were_such_parts_can_be_read() -> None:
-    run = RunSpec(RobotSpec(), WorldSpec(), PROFILES["robolab"])
-    plain = to_plain(run)
-    for key in ("extra_motors", "extra_ultrasonics", "touch_sensors", "infrared"):
-        del plain["robot"][key]
-    for key in ("beacon", "remote"):
-        del plain["world"][key]
-    assert from_plain(plain) == run
-
-
 @pytest.mark.parametrize("chunk", [1, 3, 7, 50, 1000])
 def test_further_motors_go_the_same_way_however_the_ticks_are_divided(chunk: int) -> None:
     sim = simulation_of(RUN, MemorySink())
@@ -145,53 +133,10 @@ def _alone() -> tuple[float, float]:
     return sim.pose.x_mm, sim.pose.heading_deg
 
 
-BOX = replace(WORLD, obstacles=(Obstacle(600.0, 400.0, 100.0, 200.0),))
-TOUCHES = {
-    "far": (500.0, 500.0, 0.0, False),
-    "just not": (552.0, 500.0, 0.0, False),
-    "at it": (554.0, 500.0, 0.0, True),
-    "left end of the bumper": (556.0, 391.0, 0.0, True),
-    "past it": (556.0, 380.0, 0.0, False),
-    "behind it": (746.0, 500.0, 180.0, True),
-    "wall": (2316.0, 900.0, 0.0, True),
-}
-
-
-@cases("x_mm, y_mm, heading_deg, pressed", TOUCHES)
-def test_touch(x_mm: float, y_mm: float, heading_deg: float, pressed: bool) -> None:
-    assert touch.pressed(Pose(x_mm, y_mm, heading_deg), TouchSpec(), BOX) is pressed
-
-
 @pytest.mark.parametrize("size_mm", [(0.0, 100.0), (100.0, 0.0), (100.0, -1.0)])
 def test_an_obstacle_has_a_size(size_mm: tuple[float, float]) -> None:
     with pytest.raises(ConfigError, match="must be above 0"):
         Obstacle(0.0, 0.0, *size_mm)
-
-
-SEEN = {
-    "ahead": (500.0, 500.0, 0.0, (0, 19)),
-    "to the right": (900.0, 980.0, 0.0, (23, 24)),
-    "to the left": (900.0, 100.0, 0.0, (-23, 20)),
-    "behind": (1300.0, 500.0, 0.0, (0, -128)),
-}
-
-
-@cases("x_mm, y_mm, heading_deg, seen", SEEN)
-def test_beacon(x_mm: float, y_mm: float, heading_deg: float, seen: tuple[int, int]) -> None:
-    values = infrared.seek(Pose(x_mm, y_mm, heading_deg), InfraredSpec(), WORLD)
-    assert values == (0, -128, 0, -128, *seen, 0, -128)
-
-
-def test_a_beacon_behind_an_obstacle_is_not_found() -> None:
-    assert infrared.seek(Pose(500.0, 500.0, 0.0), InfraredSpec(), BOX) == infrared.NOT_FOUND * 4
-
-
-def test_proximity_is_the_nearest_surface_in_percent_of_70_cm() -> None:
-    values = [
-        infrared.proximity(Pose(x_mm, 500.0, 0.0), InfraredSpec(), BOX) for x_mm in (510.0, 230.0)
-    ]
-    assert values == [10, 50]
-    assert infrared.proximity(Pose(1000.0, 500.0, 0.0), InfraredSpec(), BOX) == 100
 
 
 @pytest.mark.parametrize("profile", ["robolab", "nbev3devsim"])
@@ -231,8 +176,3 @@ def test_noise_makes_a_wheel_no_faster_than_its_motor(kind: str, limit_dps: floa
     sim.advance(100)
     speeds = [TICK_RECORD.unpack_from(sink.buffer, 64 * (tick + 1))[7] for tick in range(1, 101)]
     assert max(speeds) == limit_dps
-
-
-def test_a_run_says_nothing_new_of_a_robot_without_new_parts() -> None:
-    plain = to_plain(RunSpec(RobotSpec(), WorldSpec(), ROBOLAB))
-    assert not {"left_motor", "right_motor", "extra_infrareds"} & plain["robot"].keys()

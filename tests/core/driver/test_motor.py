@@ -115,7 +115,7 @@ def play(motor: DriverMotor, seed: int, looks: random.Random | None) -> Iterator
         yield motor.position, motor.speed_dps, motor.duty, motor.axle.angle_deg, motor.states
 
 
-@pytest.mark.parametrize("seed", range(30))
+@pytest.mark.parametrize("seed", range(10))
 def test_a_motor_moves_the_same_however_often_one_looks(seed: int) -> None:
     jiffies = Jiffies(seed, 137 * seed)
     motors = build_motor(jiffies=jiffies), build_motor(jiffies=jiffies)
@@ -141,7 +141,7 @@ def test_a_move_is_the_same_in_single_steps(position: int, speed_dps: int) -> No
         )
 
 
-@pytest.mark.parametrize("seed", range(30))
+@pytest.mark.parametrize("seed", range(10))
 def test_a_released_motor_never_speeds_up(seed: int) -> None:
     motor = build_motor()
     for _ in play(motor, seed, None):
@@ -152,15 +152,6 @@ def test_a_released_motor_never_speeds_up(seed: int) -> None:
         motor.run_until(now_ms * MS)
         assert abs(motor.axle.speed_dps) <= speed_dps
         speed_dps = abs(motor.axle.speed_dps)
-
-
-def test_an_obstacle_stops_the_wheel_and_the_driver_finds_out() -> None:
-    motor = build_motor()
-    motor.axle.high_deg = 100.0
-    give(motor, 0, Command.RUN_FOREVER, speed_dps=500)
-    motor.run_until(1000 * MS)
-    assert motor.axle.angle_deg == 100.0 and motor.axle.speed_dps == 0.0
-    assert motor.states == (State.RUNNING, State.OVERLOADED, State.STALLED)
 
 
 def test_a_ramp_that_turns_back_goes_through_0() -> None:

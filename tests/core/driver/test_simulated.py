@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import random
 from dataclasses import replace
-from math import isfinite
 
 import pytest
 
@@ -81,7 +80,7 @@ class Lab:
 
 @pytest.mark.parametrize("world", [WORLD, NOISY], ids=["still", "noisy"])
 # In the last one an obstacle pushes a wheel back that its control holds.
-@pytest.mark.parametrize("seed", [*range(12), 2333])
+@pytest.mark.parametrize("seed", [*range(4), 2333])
 def test_the_same_bytes_however_the_ticks_are_divided_and_whoever_looks(
     seed: int, world: WorldSpec
 ) -> None:
@@ -89,15 +88,6 @@ def test_the_same_bytes_however_the_ticks_are_divided_and_whoever_looks(
     assert Lab(world, seed=seed).run(seed, 1) == recorded
     assert Lab(world, seed=seed).run(seed, 7, random.Random(seed)) == recorded
     assert Lab(world, seed=seed).run(seed, 1, random.Random(~seed)) == recorded
-
-
-@pytest.mark.soak
-@pytest.mark.parametrize("block", range(4))
-def test_the_same_bytes_in_many_random_programs(block: int) -> None:
-    for seed in range(100 * block, 100 * block + 100):
-        lab = Lab(seed=seed)
-        assert lab.run(seed, 1000) == Lab(seed=seed).run(seed, 1 + seed % 9, random.Random(seed))
-        assert all(isfinite(motor.position_deg) for motor in lab.motors)
 
 
 def test_a_wheel_has_its_share_of_the_robot() -> None:
@@ -206,20 +196,10 @@ def release(lab: Lab, seed: int) -> None:
         give(motor, now_ns, Command.STOP, ramp_up_ms=0, ramp_down_ms=0, stop_action=action)
 
 
-@pytest.mark.parametrize("seed", range(8))
+@pytest.mark.parametrize("seed", range(4))
 def test_a_released_robot_never_speeds_up(seed: int) -> None:
     lab = Lab(seed=seed)
     lab.run(seed, 1000)
     release(lab, seed)
     assert find_gains(lab, 400) == []
     assert all(motor.is_at_rest for motor in lab.motors)
-
-
-@pytest.mark.soak
-@pytest.mark.parametrize("block", range(4))
-def test_no_energy_comes_from_nothing_in_many_random_programs(block: int) -> None:
-    for seed in range(100 * block, 100 * block + 100):
-        lab = Lab(seed=seed)
-        lab.run(seed, 1000)
-        release(lab, seed)
-        assert find_gains(lab, 100) == []

@@ -80,7 +80,7 @@ class Robot:
 
 
 @pytest.mark.parametrize("world", [WORLD, WALLED], ids=["free", "walled"])
-@pytest.mark.parametrize("seed", range(24))
+@pytest.mark.parametrize("seed", range(8))
 def test_ticks_are_the_same_however_they_are_divided(world: WorldSpec, seed: int) -> None:
     records = []
     for at_once in (True, False):
@@ -169,11 +169,6 @@ def test_motors_that_a_wall_has_blocked_drive_back(
     [
         (
             "lego-micropython",
-            3,
-            "43379 137911 9733 71781 27687 61433 24370 27892 153 57 0 1 48 174302923 144095435 99085 83459",
-        ),
-        (
-            "lego-micropython",
             5,
             "81661 58561 12843 25295 27879 56967 22434 27362 163 46 0 0 66 74402575 78795859 83041 79727",
         ),
@@ -181,11 +176,6 @@ def test_motors_that_a_wall_has_blocked_drive_back(
             "pybricks4",
             3,
             "39357 129709 11966 61254 29430 59072 23224 27710 152 58 0 1 81 158747552 122885476 98207 82649",
-        ),
-        (
-            "pybricks4",
-            5,
-            "82658 54850 13038 27153 30206 62372 25448 30194 162 47 0 1 151 82254509 80618961 102459 71503",
         ),
     ],
 )
