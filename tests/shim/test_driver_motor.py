@@ -157,7 +157,9 @@ for m in motors:
 LIBRARIES = {"ev3": EV3DEV, "lego-micropython": PYBRICKS}
 
 
-def check_random_program(run_on: RunOn, profile: str, seed: int) -> None:
+@pytest.mark.parametrize("profile", LIBRARIES)
+@pytest.mark.parametrize("seed", range(2))
+def test_random_programs_come_out_the_same(run_on: RunOn, profile: str, seed: int) -> None:
     """A random program on a robot with an arm, among obstacles, comes out the same in every way of running it."""
     text = LIBRARIES[profile].format(seed=seed)
     done = run_on(text, "arm", "furnished", profile)
@@ -169,19 +171,6 @@ def check_random_program(run_on: RunOn, profile: str, seed: int) -> None:
         again = run_on(text, "arm", "furnished", profile, live)
         assert again.recording == done.recording
         assert again.lines == done.lines
-
-
-@pytest.mark.parametrize("profile", LIBRARIES)
-@pytest.mark.parametrize("seed", range(2))
-def test_random_programs_come_out_the_same(run_on: RunOn, profile: str, seed: int) -> None:
-    check_random_program(run_on, profile, seed)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("profile", LIBRARIES)
-@pytest.mark.parametrize("seed", range(2, 22))
-def test_many_random_programs_come_out_the_same(run_on: RunOn, profile: str, seed: int) -> None:
-    check_random_program(run_on, profile, seed)
 
 
 def test_the_battery_is_the_one_that_motors_feel(run_on: RunOn) -> None:

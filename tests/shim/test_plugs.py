@@ -137,12 +137,6 @@ def test_listing_plugs_in_nothing(home: Path, tmp_path: Path) -> None:
     assert done.run.plugged == []
 
 
-@pytest.fixture(params=LATE_PROGRAMS)
-def late(request: pytest.FixtureRequest) -> LateProgram:
-    """Each of the ten programs."""
-    return LATE_PROGRAMS[request.param]
-
-
 def options(late: LateProgram) -> RunOptions:
     return RunOptions(time_limit_s=60.0, answers=late.answers)
 
@@ -152,6 +146,7 @@ def read_columns(done: Done) -> dict[str, list[float]]:
     return {name: values.tolist() for name, values in telemetry_columns(done.run.stored()).items()}
 
 
+@pytest.mark.parametrize("late", LATE_PROGRAMS.values(), ids=LATE_PROGRAMS)
 def test_a_late_program_runs_and_names_its_parts(
     home: Path, tmp_path: Path, late: LateProgram
 ) -> None:
@@ -160,9 +155,11 @@ def test_a_late_program_runs_and_names_its_parts(
     assert list_parts(done.run.plugged) == late.parts
 
 
+@pytest.mark.parametrize("name", ["late, after driving", "wheels too late", "after a menu"])
 def test_a_late_program_is_the_same_in_every_way_of_running(
-    home: Path, tmp_path: Path, late: LateProgram
+    home: Path, tmp_path: Path, name: str
 ) -> None:
+    late = LATE_PROGRAMS[name]
     done = run_program(tmp_path, late.text, answers=late.answers)
     live = run_program(tmp_path, late.text, answers=late.answers, live=True, speed=16.0)
     again = over(rerun(done.run.stored(), RunStore(tmp_path / "again")))

@@ -38,17 +38,6 @@ REFUSED: Mapping[str, str] = {
     "pybricks.nxtdevices:VernierAdapter": "no robot has Vernier sensors",
 }
 """What is NotSimulated, with the reason; all other members are simulated."""
-CORE = (
-    "pybricks.hubs:",
-    "pybricks.ev3devices:",
-    "pybricks.robotics:",
-    "pybricks.tools:",
-    "pybricks.media.ev3dev:",
-    "pybricks.ev3brick:",
-    "pybricks.experimental:",
-)
-"""What most programs use."""
-MOST_REFUSED_IN_CORE = 8
 
 PORTS = {
     "ColorSensor": "Port.S2",
@@ -281,13 +270,6 @@ def test_every_member_takes_every_keyword(run_on: RunOn, robot: str, tmp_path: P
     wrong = [" ".join(found) for found in shown if found[2] != outcome(found[0])]
     assert "\n".join(wrong) == ""
     assert len(shown) == len(tried), done.errors
-
-
-def test_few_members_of_what_most_programs_use_are_refused() -> None:
-    members = [*CALLS, *API["attributes"]]
-    assert all(any(member.startswith(part) for member in members) for part in REFUSED)
-    refused = [member for member in members if member.startswith(CORE) and is_refused(member)]
-    assert len([member for member in refused if ".log" not in member]) <= MOST_REFUSED_IN_CORE
 
 
 @pytest.mark.parametrize("name", API["enums"])

@@ -125,13 +125,3 @@ def test_print_has_its_own_cursor_and_scrolls(lab: Lab) -> None:
     shifted = {(x, y - screen._font.height) for x, y in before if y >= 2 * screen._font.height}
     assert shifted & dark(screen)
     assert dark(screen) != before
-
-
-def test_fonts(lab: Lab) -> None:
-    plain, bold, wide = Font(size=16), Font(None, 16, bold=True), Font(size=16, monospace=True)
-    assert (plain.family, plain.style, bold.style) == ("Lucida", "Regular", "Bold")
-    assert wide.text_width("iii") == wide.text_width("mmm") == 3 * wide.width
-    assert plain.text_width("iii") < plain.text_width("mmm")
-    assert plain.height == plain.text_height("x") > Font.DEFAULT.height
-    with pytest.raises(ValueError, match="Invalid"):
-        Font(size=0)

@@ -8,7 +8,6 @@ import pytest
 
 from tests.shim.conftest import RunOn
 from tuisim.shim.pybricks.messaging import (
-    BluetoothMailboxClient,
     LogicMailbox,
     Mailbox,
     MailboxHandlerMixIn,
@@ -99,12 +98,3 @@ def test_another_brick_is_refused(run_on: RunOn, call: str, told: str) -> None:
     done = run_on(f"from pybricks.messaging import *\n{call}", profile=PROFILE)
     assert done.ended.summary.startswith("NotSimulated: BluetoothMailbox")
     assert told in done.ended.summary
-
-
-def test_a_client_that_has_closed_is_not_connected() -> None:
-    client, server = BluetoothMailboxClient(), MailboxHandlerMixIn()
-    client.join("brick", server)
-    server.join("brick", client)
-    client.close()
-    server.receive("box", b"")
-    assert (client._peers, server._peers) == ([], [])

@@ -224,19 +224,6 @@ def test_settings_are_those_of_the_firmware(key: str) -> None:
         assert [speed, acceleration, turn_rate, turn_acceleration] == [*limits.values()]
 
 
-def test_settings_of_the_sizes_in_the_handbook() -> None:
-    expected = {
-        (56, 114): (130, 521, 131, 524),
-        (55.5, 104): (129, 516, 142, 569),
-        (43.2, 120): (100, 402, 96, 384),
-        (68.8, 150): (160, 640, 122, 489),
-    }
-    for sizes, settings in expected.items():
-        Lab(MotorLaw.PYBRICKS, {"outA": "large", "outB": "large"})
-        DriveBase.current = None
-        assert DriveBase(Motor(Port.A), Motor(Port.B), *sizes).settings() == settings
-
-
 # Recordings that depend on the simulated motor: their rules
 
 

@@ -20,10 +20,6 @@ USES = {
         f"{SENSORS}LightSensor()",
         "ev3dev2.sensor.lego.LightSensor: the NXT light sensor (lego-nxt-light)",
     ),
-    "NXT sound": (
-        f"{SENSORS}SoundSensor(INPUT_2)",
-        "ev3dev2.sensor.lego.SoundSensor: the NXT sound sensor",
-    ),
     "NXT ultrasonic": (
         f"{SENSORS}Sensor(INPUT_1, driver_name='lego-nxt-us')",
         "ev3dev2.sensor.Sensor: the NXT ultra",
@@ -32,29 +28,13 @@ USES = {
         f"{SENSORS}class Eye(LightSensor): pass\nEye()",
         "ev3dev2.sensor.lego.LightSensor: the",
     ),
-    "Pixy": (
-        f"{SENSORS}Sensor(INPUT_1, driver_name='pixy-lego')",
-        "ev3dev2.sensor.Sensor: the Pixy camera (pixy",
-    ),
     "mode of the Pixy": (
         f"{SENSORS}Sensor(INPUT_1).mode = 'SIG1'",
         "mode SIG1 on in1, where lego-ev3-us is: the Pixy",
     ),
-    "gyro of Microinfinity": (
-        f"{SENSORS}Sensor(driver_name='mi-xg1300l')",
-        "ev3dev2.sensor.Sensor: the Microinfinity",
-    ),
-    "HiTechnic": (
-        f"{SENSORS}Sensor(driver_name='ht-nxt-compass')",
-        "ev3dev2.sensor.Sensor: the HiTechnic compass",
-    ),
     "mindsensors": (
         f"{SENSORS}Sensor(driver_name=['ms-line-leader'])",
         "ev3dev2.sensor.Sensor: the mindsensors line",
-    ),
-    "I2C": (
-        f"{SENSORS}I2cSensor(INPUT_4)",
-        "ev3dev2.sensor.I2cSensor: an I2C sensor (nxt-i2c-sensor)",
     ),
     "I2C address": (
         f"{SENSORS}Sensor('in2:i2c1')",
@@ -63,10 +43,6 @@ USES = {
     "multiplexer": (
         f"{SENSORS}ColorSensor('ev3-ports:in1:i2c80:mux1')",
         "ev3dev2.sensor.lego.ColorSensor: a sensor",
-    ),
-    "motor multiplexer": (
-        f"{MOTORS}LargeMotor('in1:i2c3:M1')",
-        "ev3dev2.motor.LargeMotor: an I2C sensor (in1:i2c3",
     ),
     "BrickPi": (
         f"{MOTORS}LargeMotor('spi0.1:MA')",
@@ -80,18 +56,6 @@ USES = {
         f"{MOTORS}DcMotor(OUTPUT_A)",
         "ev3dev2.motor.DcMotor: a motor without a rotation sensor (dc-motor)",
     ),
-    "servo motor": (
-        f"{MOTORS}ServoMotor()",
-        "ev3dev2.motor.ServoMotor: a servo motor (servo-motor)",
-    ),
-    "linear motor": (
-        f"{MOTORS}ActuonixL1250Motor()",
-        "ev3dev2.motor.ActuonixL1250Motor: a linear motor of Actuonix",
-    ),
-    "longer linear motor": (
-        f"{MOTORS}ActuonixL12100Motor()",
-        "ev3dev2.motor.ActuonixL12100Motor: a linear motor of",
-    ),
     "port of a DC motor": (
         f"{PORTS}LegoPort('outA').mode = 'dc-motor'",
         "ev3dev2.port.LegoPort.mode: a motor without",
@@ -99,10 +63,6 @@ USES = {
     "port of another": (
         f"{PORTS}LegoPort('in1').mode = 'nxt-i2c'",
         "ev3dev2.port.LegoPort.mode: 'nxt-i2c' would disc",
-    ),
-    "device of a port": (
-        f"{PORTS}p = LegoPort('outA')\np.mode = 'tacho-motor'\np.set_device = 'lego-nxt-motor'",
-        "ev3dev2.port.LegoPort.set_device: the NXT motor (lego-nxt-motor) is not simulated",
     ),
 }
 

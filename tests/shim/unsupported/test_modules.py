@@ -14,10 +14,6 @@ from tuisim.protocol import End
 from tuisim.shim.unsupported.modules import BLUETOOTH, ELSEWHERE, ON_THE_BRICK, PACKAGES
 
 USES = {
-    "pybluez": (
-        "import bluetooth\nbluetooth.discover_devices(lookup_names=True)",
-        "bluetooth.discover_devices: Blue",
-    ),
     "every name": (
         "from bluetooth import *\nBluetoothSocket(RFCOMM)",
         "bluetooth.BluetoothSocket: Bluetooth is not",
@@ -34,35 +30,15 @@ USES = {
         "import socket\nsocket.socket(socket.AF_BLUETOOTH, socket.SOCK_STREAM, socket.BTPROTO_RFCOMM)",
         "socket.AF_BLUETOOTH: Bluetooth is not simulated",
     ),
-    "smbus": (
-        "from smbus import SMBus\nSMBus(3)",
-        "smbus.SMBus: the I2C bus of the brick is not simulated",
-    ),
-    "smbus2": (
-        "from smbus2 import SMBus, i2c_msg\nSMBus(3)",
-        "smbus2.SMBus: the I2C bus of the brick is not",
-    ),
-    "serial": (
-        "import serial\nserial.Serial('/dev/tty_in1', 9600)",
-        "serial.Serial: a serial port is not simulated",
-    ),
     "submodule": (
         "from serial.tools import list_ports\nlist_ports.comports()",
         "serial.tools.list_ports.comports: a serial port is not simulated",
-    ),
-    "deeper": (
-        "import usb.core\nusb.core.find()",
-        "usb.core.find: the brick's USB port is not simulated",
     ),
     "Pixy": (
         "from pixycamev3.pixy2 import Pixy2\nPixy2()",
         "pixycamev3.pixy2.Pixy2: the Pixy camera is not",
     ),
     "GPIO": ("import RPi.GPIO as GPIO", "RPi: the Raspberry Pi is not simulated"),
-    "camera": (
-        "from picamera import PiCamera",
-        "picamera: the camera of the Raspberry Pi is not simulated",
-    ),
 }
 
 
@@ -195,9 +171,7 @@ SPIKE = "a program for a SPIKE hub; tuisim simulates the EV3"
     ("text", "profile"),
     [
         ("from pybricks.hubs import PrimeHub", "lego-micropython"),
-        ("from pybricks.hubs import InventorHub", "pybricks4"),
         ("from pybricks.pupdevices import Motor", "lego-micropython"),
-        ("from hub import port", "ev3"),
         ("import motor, runloop", "ev3"),
         ("from spike import PrimeHub", "robolab"),
     ],
