@@ -7,8 +7,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 
+import tuisim
 from tests.conftest import ROOT, Command
 from tests.typed_programs import check_typed, names_in, run_typed
 
@@ -42,3 +44,26 @@ def test_it_does_what_a_brick_does(name: str, robot: str, tmp_path: Path, here: 
         run_typed(FOLDER / name, here, tmp_path, *place, *file),
         EXIT_CODES.get(name, 0),
     )
+
+
+P_LINE = """
+from ev3dev2.sensor.lego import ColorSensor
+from ev3dev2.motor import MoveTank, OUTPUT_B, OUTPUT_C
+cs = ColorSensor()
+tank = MoveTank(OUTPUT_B, OUTPUT_C)
+while True:
+    turn = KP * (cs.reflected_light_intensity - 50)
+    tank.on(max(-100, min(100, 30 + turn)), max(-100, min(100, 30 - turn)))
+"""
+"""It never calibrates: white paper reads 85 and black 5, so its target is off the middle."""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("gain", [0.6, 1.0, 2.0])
+def test_a_p_controller_goes_round_the_loop(gain: float) -> None:
+    run = tuisim.simulate(
+        f"KP = {gain}\n{P_LINE}", background="Loop", x=220, y=400, angle=90, timeout_s=40
+    )
+    path = run.telemetry
+    direction = np.unwrap(np.arctan2(path.y_mm - 571.0, path.x_mm - 1181.0))
+    assert direction[0] - direction[-1] > 2.0 * np.pi

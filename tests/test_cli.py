@@ -69,15 +69,16 @@ sleep(2)
 
 def test_the_last_line_says_that_the_robot_stood_at_the_wall(tmp_path: Path, here: Command) -> None:
     (tmp_path / "push.py").write_text(PUSHES)
+    (tmp_path / "room.toml").write_text("seed = 0\n")
     told = {}
-    for words in ("--walls on", "--profile robolab", "-b Loop --profile ev3 -y 800 -a 0"):
+    for words in ("--walls on", "--profile robolab", "--world room.toml -y 800 -a 0"):
         done = here("run", "push.py", "-x", "2200", *words.split())
         told[words] = done.stderr.splitlines()[-1]
     assert " · stood at the wall for 1.5 s (--walls off) · 0 samples · run " in told["--walls on"]
     assert "stood" not in told["--profile robolab"]
     assert (
         " · stood at the wall from 0.49 s on, its wheels pushed for 1.5 s · 0 samples · run "
-        in told["-b Loop --profile ev3 -y 800 -a 0"]
+        in told["--world room.toml -y 800 -a 0"]
     )
     done = here("run", "push.py", "-x", "2200", "--walls", "on", "--json")
     stood = json.loads(done.stdout)["standstill"]

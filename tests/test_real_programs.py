@@ -168,11 +168,11 @@ BLIND: Mapping[str, Case] = {
     ),
     "fll_2019/main": Case(
         "1 left, 2 ultrasonic, A medium motor, D medium motor",
-        "run_crane 8.2",
+        "run_crane 7.0",
         {"wheel_diameter_mm": 81.6},
         f"{BANDS} --press enter@5-5.2 --press backspace@20-20.5",
         0,
-        (284, 796),
+        (36, 797),
     ),
     "floor_scan/scan": Case(
         "2 gyro, 4 left", "row 3: 236 samples", {"wheel_spacing_mm": 118.0}, "", 0, (1172, 381)
@@ -200,7 +200,7 @@ BLIND: Mapping[str, Case] = {
         {},
         f"{LINE} --timeout 7",
         3,
-        (162, 1039),
+        (149, 1017),
     ),
     "mini_medium": Case(
         "1 infrared, B left wheel (medium motor), C right wheel (medium motor)",
@@ -271,7 +271,7 @@ BLIND: Mapping[str, Case] = {
         3,
         (208, 926),
     ),
-    "suiveur3": Case("1 left, 2 middle", "", {}, f"{LINE} --timeout 7", 3, (134, 912)),
+    "suiveur3": Case("1 left, 2 middle", "", {}, f"{LINE} --timeout 7", 3, (123, 1010)),
     "sumo": Case(
         "1 touch, 4 infrared, A left wheel, B -, C medium motor, D right wheel",
         "",
@@ -295,7 +295,7 @@ BLIND: Mapping[str, Case] = {
         },
         BANDS,
         0,
-        (1167, 815),
+        (1180, 793),
     ),
 }
 CASES = {**OWN, **{f"blind/{name}": case for name, case in BLIND.items()}}

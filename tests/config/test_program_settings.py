@@ -44,7 +44,7 @@ CASES: Mapping[str, tuple[str, dict[str, Any], tuple[str, str, tuple[float, floa
     "-b without a line": (
         CLAW,
         {"above": {"background": "Grey_bands"}},
-        ("ev3", "Robot of p.py", (157, 500)),
+        ("ev3", "Robot of p.py", (150, 500)),
     ),
     "-b of the usual mat": (
         USUAL,
@@ -373,8 +373,9 @@ GROUNDS: Mapping[str, tuple[str, dict[str, Any], tuple[bool, bool]]] = {
     "a robot": (USUAL, {"robot": "Explorer"}, OPEN),
     "--profile ev3": (USUAL, {"profile": "ev3"}, OPEN),
     "--profile robolab": (USUAL, {"profile": "robolab"}, AS_EVER),
-    "-b": (USUAL, {"background": "Loop"}, AS_EVER),
-    "-b and --profile ev3": (USUAL, {"background": "Empty_Map", "profile": "ev3"}, AS_EVER),
+    "-b": (USUAL, {"background": "Loop"}, OPEN),
+    "-b and a touch sensor": (f"{USUAL}{TOUCH}", {"background": "Loop"}, WALLED),
+    "-b and --profile ev3": (USUAL, {"background": "Empty_Map", "profile": "ev3"}, OPEN),
     "a world": (USUAL, {"floor": False, "profile": "ev3"}, AS_EVER),
     "a world with a floor": (USUAL, {"floor": True, "walls": False, "profile": "ev3"}, OPEN),
     "a magic line": (f"# %%sim_magic --profile ev3\n{USUAL}", {}, AS_EVER),

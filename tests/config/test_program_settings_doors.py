@@ -18,7 +18,6 @@ from tuisim.config.magic_line import parse_line
 from tuisim.config.options import settings_of
 from tuisim.config.program_file import ProgramSource, read_program
 from tuisim.config.program_settings import free_paths, program_settings
-from tuisim.core import tree
 from tuisim.core.spec import NoiseSpec, RunSpec
 from tuisim.core.tree import to_plain
 from tuisim.goals.files import load_goals
@@ -70,7 +69,7 @@ class Option(NamedTuple):
 
 
 GROUND = ("world.floor", "world.walls")
-"""What a program for a brick has only where nobody has chosen a mat, and by the rules of a brick."""
+"""What a program for a brick has only by the rules of a brick."""
 
 
 def mat(name: str) -> Option:
@@ -79,7 +78,7 @@ def mat(name: str) -> Option:
         {"background": name},
         f'background = "{name}"',
         lambda plan: plans.with_mat(plan, name),
-        (*GROUND, "world.background", "world.start", "world.obstacles", "robot.color_sensors"),
+        ("world.background", "world.start", "world.obstacles", "robot.color_sensors"),
     )
 
 
@@ -212,7 +211,9 @@ WITH_WORLD = ("a world", "a world in the app", "a task", "a batch of a task", "m
 @pytest.mark.parametrize("program, option", TABLE)
 def test_every_door_gives_the_same_run(program: str, option: str, folder: Path) -> None:
     runs = runs_of(folder, program, OPTIONS[option])
-    on_field = tree.put_all(runs["run"], {"world.floor": False, "world.walls": True})
+    given_in_world = {"floor": False, **choices_of(OPTIONS[option].choices)}
+    source = read_program(folder / "p.py")
+    on_field = build_run_spec(program_settings(source, given_in_world).settings)
     given = {door: on_field if door in WITH_WORLD else runs["run"] for door in runs}
     assert [door for door, spec in runs.items() if spec != given[door]] == []
 

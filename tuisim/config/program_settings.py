@@ -220,11 +220,9 @@ def program_settings(
 
 
 def free_paths(settings: Settings) -> frozenset[str]:
-    """Return which of `PROGRAM_PATHS` nobody has chosen; who chooses a mat chooses its edges."""
+    """Return which of `PROGRAM_PATHS` nobody has chosen; who says whether there is a floor also decides on walls."""
     free = {path for path in PROGRAM_PATHS if settings.given.get(path) is None}
-    if "floor" not in free or settings.given.get("background") is not None:
-        free -= {*OF_THE_GROUND}
-    return frozenset(free)
+    return frozenset(free if "floor" in free else free - {*OF_THE_GROUND})
 
 
 def decide(

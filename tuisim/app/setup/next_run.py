@@ -203,15 +203,13 @@ def with_choices(plan: NextRun, choices: Mapping[str, Any]) -> NextRun:
         if key in OF_THE_GROUND and plan.settings[key] in (None, value)
     }
     if "background" in said:
-        # Who chooses a mat chooses its edges.
-        said = {**dict.fromkeys([*OF_THE_MAT, *ground]), **said}
+        said = {**dict.fromkeys(OF_THE_MAT), **ground, **said}
     elif "profile" in said and ground:
         said |= ground if has_brick_rules(said["profile"]) else dict.fromkeys(ground)
     elif said.keys() & set(START):
         said = {**dict.fromkeys(START), **said}
     kept = {path: word for path, word in plan.words.items() if path not in said}
-    gone = {*choices, *(OF_THE_GROUND if "background" in said else ())}
-    following = {key: value for key, value in plan.from_program.items() if key not in gone}
+    following = {key: value for key, value in plan.from_program.items() if key not in choices}
     built = with_values(plan, said)
     return replace(
         built, words=kept | words, robot=said.get("robot", plan.robot), from_program=following
@@ -225,8 +223,6 @@ def following(plan: NextRun, source: ProgramSource) -> tuple[NextRun, Decided]:
         ConfigError: the mat is missing.
     """
     free, usual, settings = plan.free, Settings(), plan.settings
-    if settings["background"] != usual["background"]:
-        free -= {*OF_THE_GROUND}
     decided = decide(
         source, settings.changed({key: usual[key] for key in free}), free, insists=False
     )
