@@ -27,8 +27,6 @@ while True:
     elif said.get("type") == "deliver_chunk_request":
         chunk = chunks.pop(0)
         send(b"P", b"ts13:deliver_chunks3:key%d:%se" % (len(chunk), chunk))
-    elif data == b"nonsense":
-        os.write(1, b"X" * 5)
     elif data.startswith(b"packet "):
         os.write(1, bytes.fromhex(data.decode().split()[1]))
     elif data == b"offer":

@@ -248,13 +248,6 @@ async def test_a_download_that_breaks_off_is_no_file(
             await answer.read()
 
 
-async def test_an_app_that_sends_nonsense_is_ended(visited: Visited) -> None:
-    socket, pid = await (await visited()).started()
-    await socket.send_json(["stdin", "nonsense"])
-    assert await heard(socket) == "The app has been ended."
-    await gone(pid)
-
-
 def packet(kind: bytes, payload: bytes, size: int | None = None) -> str:
     """Return a packet of an app in hexadecimal, with the size that it says it has."""
     return (kind + (len(payload) if size is None else size).to_bytes(4, "big") + payload).hex()

@@ -14,7 +14,6 @@ from asyncio.subprocess import PIPE, Process
 from collections.abc import AsyncIterator, Awaitable, Callable
 from contextlib import AsyncExitStack, asynccontextmanager, suppress
 from functools import partial
-from itertools import product
 from pathlib import Path
 
 import pyte
@@ -175,54 +174,6 @@ async def gone(processes: set[int]) -> None:
             await asyncio.sleep(0.02)
 
 
-def place(tab: Tab) -> str:
-    """Return where the robot is, as the panel says."""
-    found = re.search(r"x +([\d.]+) +y +([\d.]+)", tab.text)
-    return found[0] if found else ""
-
-
-def cells_of_robot(tab: Tab) -> list[tuple[int, int]]:
-    """Return the cells that are blue in the left of the world, its border left out."""
-    cells = {(x, y): tab._screen.buffer[y][x] for x, y in product(range(2, 30), range(2, 18))}
-    # A blank shows only its background.
-    return [
-        at
-        for at, cell in cells.items()
-        if is_blue(cell.bg) or (cell.data != " " and is_blue(cell.fg))
-    ]
-
-
-def is_blue(color: str) -> bool:
-    return (
-        re.fullmatch("[0-9a-f]{6}", color) is not None
-        and int(color[4:], 16) - int(color[:2], 16) > 100
-    )
-
-
-async def test_a_program_runs_and_is_charted_at_the_pace_of_the_page(serve: Serve) -> None:
-    async with (await serve(DRIVES, "-R", "--chart")).tab() as tab:
-        await tab.until(lambda: "finished" in tab.text and "Light" in tab.text)
-        assert tab.seen.count(QUERY) > 10
-
-
-async def test_the_mouse_drags_the_robot(serve: Serve) -> None:
-    async with (await serve(DRIVES)).tab() as tab:
-        await tab.until(lambda: "150.0" in place(tab) and len(cells_of_robot(tab)) > 9)
-        column, row = (
-            sum(values) // len(values) for values in zip(*cells_of_robot(tab), strict=True)
-        )
-        for code, right, end in ((0, 0, "M"), (32, 20, "M"), (32, 30, "M"), (0, 30, "m")):
-            await tab.press(f"\x1b[<{code};{column + 1 + right};{row + 1}{end}")
-        await tab.until(lambda: place(tab) and "150.0" not in place(tab))
-
-
-async def test_the_app_follows_the_size_of_the_page(serve: Serve) -> None:
-    async with (await serve(DRIVES)).tab() as tab:
-        await tab.until(lambda: "quit" in tab._screen.display[39])
-        await tab.resize(90, 28)
-        await tab.until(lambda: "quit" in tab._screen.display[27])
-
-
 async def test_what_is_copied_reaches_the_clipboard_of_the_browser(serve: Serve) -> None:
     async with (await serve(DRIVES)).tab() as tab:
         await tab.until(lambda: "idle" in tab.text)
@@ -250,24 +201,6 @@ async def test_ctrl_z_says_that_there_is_nothing_to_go_back_to(serve: Serve) -> 
         await tab.until(lambda: "idle" in tab.text)
         await tab.press("\x1a")
         await tab.until(lambda: "tuisim cannot be suspended in a browser" in tab.text)
-
-
-async def test_q_ends_the_session(serve: Serve) -> None:
-    async with (await serve(DRIVES)).tab() as tab:
-        await tab.until(lambda: "idle" in tab.text)
-        await tab.press("q")
-        await tab.until(lambda: tab.reason is not None)
-        assert tab.reason == ""
-
-
-async def test_two_visitors_have_an_app_each(serve: Serve) -> None:
-    server = await serve(DRIVES)
-    async with server.tab() as one, server.tab(90, 28) as other:
-        await one.until(lambda: "idle" in one.text)
-        await other.until(lambda: "idle" in other.text)
-        await one.press("R")
-        await one.until(lambda: "finished" in one.text)
-        assert "idle" in other.text
 
 
 async def test_a_closed_tab_ends_its_app_and_its_program_only(serve: Serve) -> None:
