@@ -27,7 +27,6 @@ needs_jupyterlab = [
 _TOKEN = "token-of-a-test"
 _APP = "window.jupyterapp"
 _NOTEBOOK = f"[...{_APP}?.shell?.widgets('main') ?? []][0]"
-_CELLS = f"[...{_NOTEBOOK}.content.model.cells]"
 _IS_READY = f"{_NOTEBOOK}?.context?.sessionContext?.session?.kernel?.status === 'idle'"
 _IS_LIVE = (
     "[...document.querySelectorAll('iframe[title=tuisim]')]"
@@ -64,15 +63,12 @@ class Lab:
         await self.open(self._url)
 
     async def run(self, *names: str) -> None:
-        """Run cells by name and wait until they have run; without any, run all at once, as the menu does."""
+        """Run cells by name and wait until they have run."""
         for name in names:
             await self._page.js(
                 f"{_NOTEBOOK}.content.activeCellIndex = {self._names.index(name)}; 0"
             )
             await self._page.js(f"{_APP}.commands.execute('notebook:run-cell').then(() => 0)")
-        if not names:
-            await self._page.js(f"{_APP}.commands.execute('notebook:run-all-cells').then(() => 0)")
-            await self._page.until(f"{_CELLS}.every((cell) => cell.executionState === 'idle')")
 
     async def outputs(self) -> dict[str, NotebookNode]:
         """Return the cells by name, as they are in the file once it is saved."""

@@ -32,24 +32,7 @@ from ev3dev2.sensor.lego import ColorSensor
 tank_drive = MoveTank(OUTPUT_B, OUTPUT_C)
 colorLeft = ColorSensor(INPUT_2)
 """
-EVERYTHING = """\
-print(colorLeft.reflected_light_intensity, colorLeft.reflected_light_intensity_pc)
-print(colorLeft.full_reflected_light_intensity, colorLeft.color, colorLeft.color_name, colorLeft.rgb)
-"""
-GREYS = {150: 255, 360: 220, 760: 211, 1160: 128, 1560: 0}
-"""By place, the grey of the band below the sensors."""
 
-COLOURS = {
-    100: "White",
-    300: "Red",
-    500: "Green",
-    700: "Blue",
-    900: "Blue",
-    1100: "Red",
-    1300: "Yellow",
-    1500: "Black",
-}
-"""By place on Rainbow_bands, the name; the sensor takes cyan for blue and magenta for red."""
 
 LOAD = "from nbev3devsim.load_nbev3devwidget import roboSim, eds\n\n%load_ext nbev3devsim\n"
 """What the lesson's own first cell loads: the old simulator."""
@@ -61,11 +44,6 @@ CELLS = {
     "arrays": "%sim_magic -b Testcard -A -H",
     "until black": "%%sim_magic_preloaded -b Grey_bands -R --profile nbev3devsim\n"
     + UNTIL_BLACK.format(pause=""),
-    **{f"grey {x}": f"%%sim_magic_preloaded -x {x} -RH\n{EVERYTHING}" for x in GREYS},
-    **{
-        f"colour {x}": f"%%sim_magic_preloaded -b Rainbow_bands -x {x} -RHW\nprint(colorLeft.color_name)"
-        for x in COLOURS
-    },
     "clear": "%sim_data --clear",
     "none": "data_df = %sim_data\nlen(data_df)",
     "logger": f"%%sim_magic_preloaded -b Grey_bands -x 100 --autorun -W\n{LOGGER}",
@@ -76,8 +54,6 @@ CELLS = {
     "the last": f"%%sim_magic_preloaded -b Grey_bands -x 100 --autorun -WH --profile robolab\n{LOGGER}",
     "frame": "data_df = %sim_data\nprint(len(data_df), sorted(set(data_df.run)))",
     "columns": "data_df.dtypes.astype(str).to_dict()",
-    "plateaus": "sorted(float(value) for value in set(data_df.value))",
-    "head": "data_df.head()",
     "lineplot": "import seaborn as sns\nax = sns.lineplot(x='index', y='value', hue='variable', data=data_df)",
     "line": "line = ax.get_lines()[0]\nlist(map(float, line.get_ydata())) == list(data_df.value)",
     "grid": "import matplotlib.pyplot as plt\ng = sns.FacetGrid(data_df, row='variable')\n"

@@ -169,16 +169,6 @@ def test_a_cell_says_why_the_app_does_not_run_its_program(cell: Cell, view: AppV
 
 
 @pytest.mark.slow
-@pytest.mark.usefixtures("view")
-def test_without_the_app_cells_show_pictures_again(cell: Cell) -> None:
-    view = lab.roboSim._live.view
-    assert view is not None
-    view._server.call(view._server.server.send_all_away())
-    shown = cell(RUN)
-    assert (shown.out, shown.pictures) == ("Colour: 100.0\n", 1)
-
-
-@pytest.mark.slow
 async def test_only_the_newest_page_and_only_the_notebook_show_the_app(hidden: AppView) -> None:
     old, new = address(hidden), address(hidden)
     assert old != new

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -50,22 +49,6 @@ for i in range(2):
 print('image_data right')
 """
 
-TALK = """\
-%%sim_magic_preloaded --collab -RWH -b Grey_bands -x 1520
-import ev3dev2_glue as glue
-print('PY::hello')
-print('PY::0')
-print('IMG_DATA')
-for message in glue.pyState()['messages']:
-    print('got', message)
-"""
-
-SCAN = """\
-%%sim_magic_preloaded -RWH
-from ev3dev2_glue import pyState
-print('image_data both')
-print(pyState())
-"""
 
 CELLS = {
     "load": LOAD,
@@ -84,9 +67,6 @@ CELLS = {
     " roboSim.process_raw_image_data(one, mode='bw', to_str=False)[:3])",
     "picture": "zoom(pixels(df, -1))",
     "grey picture": "zoom(pixels(roboSim.image_data(mode='greyscale'), 0, 'L'))",
-    "state": "robot = %sim_robot_state\nrobot.update()\nprint(json.dumps(robot.state))",
-    "shown state": "robot",
-    "light": "pd.DataFrame([{side: robot.state[f'{side}_light_pc'] for side in ('left', 'right')}])",
     "bw": "bw = %sim_bw_image_data --index -1 --threshold 127\nzoom(bw)",
     "bw kind": "(isinstance(bw, Image.Image), bw.mode, bw.size, features(bw).shape)",
     "bw parts": "whole = %sim_bw_image_data -i 0 -t 200 --nocrop\npart = %sim_bw_image_data -c 4,4,16,12 --random\n"
@@ -95,20 +75,6 @@ CELLS = {
     "[(isinstance(picture, Image.Image), picture.mode, picture.size) for picture in (left, right)]",
     "shown pair": "%sim_image_pair",
     "first pair": "left, right = %sim_image_pair --pairindex 0\nzoom(left)",
-    "bar": "total = 0\nfor index in tqdma(range(len(df))):\n    total += np.array(pixels(df, index)).shape[0]\ntotal",
-    # Chapter 5 and 8: answers of the notebook.
-    "responder": "heard = []\ndef respond(text):\n    heard.append(text)\n"
-    "    if text.startswith('IMG_DATA'):\n        sides = json.loads(text.split('::', 1)[1])\n"
-    "        parts = {side: roboSim.process_raw_image_data(vals, 'bw', False) for side, vals in sides.items()}\n"
-    "        return 'JSON::' + json.dumps({side: part.count('0') for side, part in parts.items()})\n"
-    "    return text\nroboSim.pyresponder = respond",
-    "talk": TALK,
-    "heard": "[text[:13] for text in heard]",
-    "clear": "roboSim.clear_datalog()\n(roboSim.raw_image_data, len(roboSim.image_data()))",
-    "handler": "def handle(count):\n    left_right = roboSim.image_data(mode='greyscale')\n"
-    "    return 'JSON::' + json.dumps({'count': count, 'rows': len(left_right)}) if count == 2 else None\n"
-    "roboSim.live_image_handler = handle",
-    "scan": SCAN,
     "ours": "frame = roboSim.images()\n"
     "(list(frame.columns), type(frame.vals[0][0]).__name__, roboSim.state['profile'])",
     "our picture": "zoom(eds.image_pair(frame)[0])",
@@ -149,24 +115,6 @@ def test_records_are_texts_with_the_old_clock(done: Mapping[str, NotebookNode]) 
     assert value(done["processed"]) == (True, ["1", "1", "1"])
 
 
-def test_the_state_has_the_old_units(done: Mapping[str, NotebookNode]) -> None:
-    state = eval(stream(done["state"]).replace("true", "True"), {})
-    assert (state["_x"], state["_y"], state["_angle"]) == (590, 1143 - 500, 0)
-    # 30 ticks up to 525 °/s, 28 °/s more in each.
-    assert state["leftWheel"] == state["rightWheel"]
-    assert state["leftWheel"] == state["leftWheel"] | {
-        "speed_sp": 525,
-        "command": "run-forever",
-        "state": "running",
-    }
-    way_mm = state["leftWheel"]["pos"] / 360 * math.pi * 56
-    assert state["x"] - state["_x"] == pytest.approx(way_mm)
-    assert (state["penDown"], state["_sensorNoise"], state["_wheelNoise"]) == (True, 2, 0)
-    assert state["left_light_raw"] == state["sensor1"]
-    assert "leftWheel" in result(done["shown state"])
-    assert "left" in result(done["light"])
-
-
 def test_pictures_are_of_the_sensors_disc(done: Mapping[str, NotebookNode], tmp_path: Path) -> None:
     assert value(done["bw kind"]) == (True, "1", (14, 14), (1, 784))
     assert value(done["bw parts"]) == ((20, 20), (12, 8))
@@ -187,33 +135,6 @@ def test_pictures_are_of_the_sensors_disc(done: Mapping[str, NotebookNode], tmp_
     corner, middle = (np.asarray(pictures(done["picture"])[0])[at, at] for at in (2, 100))
     assert corner.tolist() == [245, 226, 225]
     assert np.ptp(middle) <= 8
-
-
-def test_answers_reach_the_program_as_json_only(done: Mapping[str, NotebookNode]) -> None:
-    assert stream(done["talk"]).splitlines() == [
-        "PY::hello",
-        "PY RESPONSE",
-        "PY::hello",
-        "PY::0",
-        "PY RESPONSE",
-        "PY::0",
-        "IMG_DATA",
-        "PY RESPONSE",
-        'JSON::{"left": 305, "right": 305}',
-        "got {'left': 305, 'right': 305}",
-    ]
-    assert value(done["heard"]) == ["PY::hello", "PY::0", 'IMG_DATA::{"l']
-    assert value(done["clear"]) == ([], 0)
-    assert stream(done["scan"]).splitlines() == [
-        "both image data logged...",
-        "PY RESPONSE",
-        'JSON::{"count": 2, "rows": 2}',
-        "{'messages': [{'count': 2, 'rows': 2}]}",
-    ]
-
-
-def test_the_bar_counts_all(done: Mapping[str, NotebookNode]) -> None:
-    assert value(done["bar"]) == 120
 
 
 def test_ours_stay_reachable(done: Mapping[str, NotebookNode]) -> None:

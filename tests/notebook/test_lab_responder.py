@@ -260,8 +260,3 @@ def test_a_kernel_asks_its_user(kernel: Kernel) -> None:
     kernel.client.input("Ada")
     kernel.message(parent, lambda message: message["content"].get("text") == "Hello Ada 0.0\n")
     kernel.idle(parent)
-
-
-@pytest.mark.slow
-def test_a_kernel_without_stdin_says_so(kernel: Kernel) -> None:
-    assert "which is not supported here" in kernel.text(ASKS)

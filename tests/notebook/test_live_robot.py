@@ -12,7 +12,6 @@ import pytest
 
 from tests.cases import cases
 from tests.notebook.conftest import Cell
-from tests.notebook.lesson import execute, pictures, result, texts
 from tuisim.notebook import app_view, lab, live_robot
 from tuisim.notebook.live_robot import REPLY, REQUEST, SENTENCE, find_notebook_origins
 
@@ -234,13 +233,3 @@ def test_wrong_words_offer_nothing(line: str, says: str, cell: Cell) -> None:
     shown = cell(line)
     assert says in shown.err
     assert not shown.bundles
-
-
-@pytest.mark.slow
-def test_a_notebook_that_is_executed_without_a_page_starts_nothing() -> None:
-    cells = {"picture": "%load_ext tuisim\n%sim_magic", "app": "roboSim._live.view is None"}
-    done = execute(cells)
-    assert len(pictures(done["picture"])) == 1
-    assert SENTENCE in texts(done["picture"])
-    assert "script" not in str(done["picture"].outputs)
-    assert result(done["app"]) == "True"

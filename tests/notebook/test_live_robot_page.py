@@ -9,7 +9,7 @@ import pytest
 from nbformat.notebooknode import NotebookNode
 
 from tests.notebook.jupyterlab import jupyterlab, needs_jupyterlab
-from tests.notebook.lesson import CELLS, LOAD, execute, pictures, result, stream
+from tests.notebook.lesson import LOAD, execute, pictures, result, stream
 from tuisim.notebook.live_robot import SENTENCE
 
 pytestmark = [pytest.mark.slow, *needs_jupyterlab]
@@ -60,19 +60,6 @@ async def test_the_picture_becomes_the_app_in_which_later_cells_run(tmp_path: Pa
     for name in ("picture", "run"):
         assert shown(saved[name]) == shown(still[name])
     assert result(saved["data"]) == result(still["data"])
-
-
-async def test_all_cells_of_a_lesson_run_at_once_and_the_robot_lives(tmp_path: Path) -> None:
-    async with jupyterlab(tmp_path, code(CELLS)) as lab:
-        await lab.run()
-        await lab.until_live()
-        saved = await lab.outputs()
-    errors = [out for cell in saved.values() for out in cell.outputs if out.output_type == "error"]
-    assert errors == []
-    still = execute(CELLS)
-    assert {name: len(pictures(cell)) for name, cell in saved.items()} == {
-        name: len(pictures(cell)) for name, cell in still.items()
-    }
 
 
 async def test_a_saved_notebook_that_is_not_trusted_keeps_its_picture(tmp_path: Path) -> None:
