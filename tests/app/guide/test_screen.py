@@ -13,7 +13,6 @@ from textual.widgets import Input, Tree
 
 from tests.app.app_help import lab, open_lab, screen_text, until, until_shown
 from tests.cases import cases
-from tests.guide.questions import QUESTIONS
 from tuisim.app.guide.answers import STANDS_OUT, AnswerList
 from tuisim.app.guide.screen import KEYS, TOPICS, GuideScreen
 from tuisim.app.panels import PANELS
@@ -131,18 +130,6 @@ async def test_a_page_is_drawn_again_when_only_its_own_width_changes() -> None:
         await until(
             pilot, lambda: before < page.scrollable_content_region.width == page.drawn_columns
         )
-
-
-@pytest.mark.quick_cases("take a screenshot")
-@pytest.mark.parametrize("question", list(QUESTIONS)[:48:12])
-async def test_a_question_is_answered_by_its_page(question: str) -> None:
-    async with open_guide() as (pilot, screen):
-        answers = await asked(pilot, question)
-        await pilot.press(
-            *["down"] * [one.name for one in answers].index(QUESTIONS[question]), "enter"
-        )
-        await until(pilot, lambda: screen.focused is not None and screen.focused.id == "page")
-        assert screen.place[0] == QUESTIONS[question]
 
 
 async def test_a_new_search_replaces_the_old_one() -> None:
