@@ -8,21 +8,18 @@ from collections.abc import Callable
 from dataclasses import replace
 from types import FrameType
 
-import numpy as np
 import pandas as pd
 import pytest
 
 from tests.runs.run_recorder import Recorder
 from tuisim.config.mat_cache import FieldFiles, open_field, prepare
 from tuisim.config.mats import background
-from tuisim.core.drift_spec import NO_DRIFT, DriftSpec
+from tuisim.core.drift_spec import DriftSpec
 from tuisim.core.field import Field
 from tuisim.core.geometry import Pose
 from tuisim.core.sensors import readings
 from tuisim.core.sensors.color import reading
-from tuisim.core.spec import ColorSensorSpec, NoiseSpec, Obstacle, RunSpec, WorldSpec
-from tuisim.core.state import Instant
-from tuisim.core.tick_record import TICK_FIELDS, TICK_RECORD
+from tuisim.core.spec import NoiseSpec, Obstacle, RunSpec, WorldSpec
 from tuisim.errors import LogError
 from tuisim.runs.frames import SAMPLE_COLUMNS, samples_frame, telemetry_frame
 from tuisim.runs.records import TELEMETRY_FILE
@@ -142,12 +139,10 @@ def sensors_one_by_one(run: StoredRun, field: Field) -> pd.DataFrame:
     return pd.DataFrame(rows)
 
 
-@pytest.mark.parametrize(
-    "drift", [NO_DRIFT, DriftSpec(wheel_pc=1, gyro_dps=1, echo_loss_pc=90, light_pc=30)]
-)
 def test_sensors_are_those_of_the_core_to_the_last_bit(
-    record: Callable[..., Recorder], spec: RunSpec, field: Field, drift: DriftSpec
+    record: Callable[..., Recorder], spec: RunSpec, field: Field
 ) -> None:
+    drift = DriftSpec(wheel_pc=1, gyro_dps=1, echo_loss_pc=90, light_pc=30)
     world = replace(
         spec.world, obstacles=(Obstacle(300, 900, 50, 300),), noise=NoiseSpec(0, 80), drift=drift
     )
@@ -204,32 +199,6 @@ def test_noise_that_the_user_changes_is_in_the_sensors(
     )
     differs = (quiet != frame[quiet.columns]).any(axis=1)
     assert differs.tolist() == [False] * 5 + [True] * 5 + [False] * 6
-
-
-def test_colour_at_any_place_is_that_of_the_core(spec: RunSpec, field: Field) -> None:
-    random = np.random.default_rng(11)
-    places = [
-        (x, y, heading)
-        for x, y, heading in random.uniform((-60, 1040, -400), (150, 1180, 400), (1500, 3)).tolist()
-    ]
-    places += [
-        (x, y, h)
-        for x in (-20.0, 0.0, 30.0)
-        for y in (1143.0, 1113.0)
-        for h in (0.0, 90.0, -180.0, 270.0)
-    ]
-    places += [(1e300, 0.0, 0.0), (-1e19, 1e19, 3.0)]
-    records = np.zeros(len(places), np.dtype(list(TICK_FIELDS)))
-    records["x_mm"], records["y_mm"], records["heading_deg"] = np.array(places).T
-    for sensor in (*spec.robot.color_sensors, ColorSensorSpec("odd", "in2", 7.25, -3.5, 20)):
-        found = quiet_color_columns(records, sensor, spec, field)
-        for at, record in enumerate(TICK_RECORD.iter_unpack(records.tobytes())):
-            expected = reading(sensor, Instant(0, Pose(*record[2:5])), field)
-            assert [column[at] for column in found.values()] == [
-                expected.red,
-                expected.green,
-                expected.blue,
-            ]
 
 
 def test_robot_without_some_sensors(

@@ -64,17 +64,13 @@ FALSIFIES = {
         )
         + "import ctypes; ctypes.CDLL(None)._exit(0)"
         for name, more in {
-            "another time": b'"time_ns":20000000',
             "a time before the start": b'"time_ns":-1',
-            "a time that no file can hold": b'"time_ns":1000000000000000000000000000',
             "a line that no file can hold": b'"time_ns":0,"error_line":99999999999999999999',
-            "an exit code that no file can hold": b'"time_ns":0,"exit_code":-99999999999999999999',
         }.items()
     },
     "a message without end": TO_PIPES.format(b"x" * 65536) * 200 + "sum(range(10**12))",
     "an empty start": "print(1)\n" + FILES + "open(telemetry, 'r+b').truncate(16)",
     "zeros at the start": "print(1)\n" + FILES + "open(telemetry, 'r+b').write(bytes(64))",
-    "random telemetry": FILES + "open(telemetry, 'r+b').write(bytes(range(200)))",
     "another position": FILES
     + "with open(telemetry, 'r+b') as f: f.seek(72); f.write(struct.pack('<d', float('nan')))",
     "a record too many": FILES
@@ -91,7 +87,6 @@ sum(range(10**12))
     + FILES
     + "with open(output, 'r+b') as f: f.seek(64); f.write(b'xxxx')",
     "pipes in place of recordings": FILES + REPLACED.format(ALL, "os.mkfifo(name)"),
-    "pipes in place of small files": FILES + REPLACED.format(ALL[3:], "os.mkfifo(name)"),
     "links": FILES + REPLACED.format(ALL, "os.symlink('/dev/zero', name)"),
     "deleted": FILES + REPLACED.format(ALL[:2], "pass"),
 }

@@ -81,12 +81,6 @@ def test_new_levels_and_errors_stand_out_once(tmp_path: Path) -> None:
     ]
 
 
-@pytest.mark.slow
-def test_a_flood_of_changes_leaves_few_marks(tmp_path: Path) -> None:
-    rows = [(tick, Stream.STDOUT, f"Flips: {tick % 2}") for tick in range(20_000)]
-    assert len(index_of(tmp_path, rows).marks) < 4000
-
-
 def stored(text: str, choices: Mapping[str, Any] | None = None) -> StoredRun:
     spec = build_run_spec(Settings({"background": "Grey_bands", **(choices or {})}))
     run = start_run(program(text), spec, RunOptions())
@@ -94,15 +88,11 @@ def stored(text: str, choices: Mapping[str, Any] | None = None) -> StoredRun:
     return RunStore().load_run(run.run_id)
 
 
-@pytest.mark.quick_cases("near")
-@pytest.mark.parametrize(
-    "ticks", [(0, 20, 59), (59, 20, 0), (30, 30, 31)], ids=["forward", "back", "near"]
-)
-def test_sensors_see_what_the_pen_had_drawn_by_then(ticks: tuple[int, ...]) -> None:
+def test_sensors_see_what_the_pen_had_drawn_by_then() -> None:
     run = stored("tank_drive.on_for_seconds(50, 50, 0.6)\n", {"pen.down": True, "pen_marks": True})
     mat, recording = open_mat(run), Recording(run)
     records = run.telemetry.array().tolist()
-    for tick in ticks:
+    for tick in (30, 30, 31, 0, 59):
         drawn = PenMarks(mat, run.spec)
         drawn.take_in(records[: tick + 1])
         seen = recording.field_at(tick, mat)

@@ -17,7 +17,6 @@ from tuisim.config.options import Settings
 from tuisim.errors import LogError
 from tuisim.protocol import Answer, Message, SetButtons, SetNoise, SetPen, SetPose
 from tuisim.runs.brick_state import BrickState, face_after
-from tuisim.runs.diff import diff_runs
 from tuisim.runs.handle import RunOptions, start_run
 from tuisim.runs.records import Stream
 from tuisim.runs.rerun import rerun, same
@@ -73,7 +72,9 @@ def _action(chance: random.Random) -> Message:
     )
 
 
-def _check(number: int, start: Start, scratch: Path) -> None:
+@pytest.mark.quick_cases("1", "2", "3")
+@pytest.mark.parametrize("number", range(10))
+def test_runs_again(number: int, start: Start, tmp_path: Path) -> None:
     chance = random.Random(number)
     way = WAYS[number % len(WAYS)]
     text = PROGRAMS[number % len(PROGRAMS)].format(
@@ -105,42 +106,11 @@ def _check(number: int, start: Start, scratch: Path) -> None:
             handle.send(Answer("more"))
     over(handle)
     stored = RunStore().load_run(handle.run_id)
-    store = RunStore(scratch)
+    store = RunStore(tmp_path)
     again = rerun(stored, store)
     over(again)
     found = same(stored, store.load_run(again.run_id))
     assert found.same, (way, text, found)
-
-
-@pytest.mark.quick_cases("1", "2", "3")
-@pytest.mark.parametrize("number", range(10))
-def test_runs_again(number: int, start: Start, tmp_path: Path) -> None:
-    _check(number, start, tmp_path)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("number", range(10, 50))
-def test_many_runs_again(number: int, start: Start, tmp_path: Path) -> None:
-    _check(number, start, tmp_path)
-
-
-def test_a_difference_is_found(start: Start) -> None:
-    text = LOOP.format(turns=20, speed=40)
-    ids = []
-    for seed in (1, 2):
-        handle = start(text, seed=seed, noise=(0, 50))
-        over(handle)
-        ids.append(handle.run_id)
-    one, two = (RunStore().load_run(run_id) for run_id in ids)
-    found = diff_runs(one, two)
-    assert not found.same
-    assert found.setup == (("seed", "1", "2"),)
-    assert found.tick is not None and "x_mm" in found.tick.fields
-    assert (
-        found.divergence is not None
-        and found.divergence.table[0][1] == 0.0 < found.divergence.max_mm
-    )
-    assert diff_runs(one, one).same
 
 
 def test_commands(capsys: pytest.CaptureFixture[str]) -> None:
@@ -254,19 +224,6 @@ def test_a_motor_that_does_not_drive_is_recorded_alike_live_and_headless(home: P
     again = rerun(run, RunStore())
     over(again)
     assert same(run, RunStore().load_run(again.run_id)).same
-
-
-def test_a_differing_line_is_numbered_as_people_see_it(home: Path) -> None:
-    spec, runs = build_run_spec(Settings({"robot": "Explorer"})), []
-    for word in ("one", "two"):
-        handle = start_run(
-            Program("arm.py", f"print('first'){ARM}print('{word}')\n"), spec, RunOptions()
-        )
-        over(handle)
-        runs.append(RunStore().load_run(handle.run_id))
-    found = diff_runs(*runs).output
-    assert found is not None
-    assert (found.row, found.first, found.second) == (2, "one", "two")
 
 
 def test_a_run_that_cannot_be_prepared_is_not_listed(home: Path, tmp_path: Path) -> None:

@@ -12,7 +12,6 @@ import pytest
 
 from tests.conftest import Command
 from tests.running import Run
-from tuisim.core.profile import PROFILES
 from tuisim.errors import LogError
 from tuisim.runs.catalogue import CATALOGUE_FILE
 from tuisim.runs.run_folder import read_run
@@ -36,13 +35,8 @@ def earlier(run: Run) -> Path:
 @pytest.mark.parametrize(
     "words",
     [
-        "runs show RUN",
-        "runs export RUN --out a.csv",
         "runs rerun RUN",
-        "runs picture RUN",
         "log summary RUN",
-        "log report RUN",
-        "analyse RUN",
         "open --run RUN",
     ],
 )
@@ -60,15 +54,6 @@ def test_another_format_is_told_in_the_list(earlier: Path) -> None:
     (info,) = (info for info in RunStore(earlier.parent.parent).runs() if info.id == earlier.name)
     assert info.end == "damaged"
     assert info.summary == "stored by another version of tuisim: format 1, this one reads 3"
-
-
-@pytest.mark.parametrize("profile", PROFILES)
-def test_a_stored_run_has_its_profile(profile: str, run: Run) -> None:
-    library = PROFILES[profile].motor_law.library
-    text = "pass" if library == "pybricks" else "tank_drive.on_for_seconds(50, 50, 0.1)"
-    stored = read_run(run(text, profile=profile).run.folder)
-    assert (stored.spec.profile, stored.notes) == (PROFILES[profile], ())
-    assert type(stored.spec.profile.motor_law) is type(PROFILES[profile].motor_law)
 
 
 def test_a_motor_law_that_does_not_exist_is_told(run: Run) -> None:

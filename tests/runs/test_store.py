@@ -219,12 +219,6 @@ def test_runs_are_listed_where_no_lock_can_be_asked_for(
     assert [info.end for info in store.runs()] == [Unended.INTERRUPTED]
 
 
-def test_run_that_never_started_is_interrupted(store: RunStore, spec: RunSpec) -> None:
-    run = store.new_run(PROGRAM, spec)
-    os.close(run.lock_fd)
-    assert store.runs()[0].end == Unended.INTERRUPTED
-
-
 def test_killed_run_keeps_its_rows(
     record: Callable[..., Recorder], spec: RunSpec, store: RunStore
 ) -> None:
@@ -427,19 +421,6 @@ def test_folder_deleted_or_copied_by_hand_is_noticed(
 
 
 # Noise
-
-
-def test_noise_follows_the_user(record: Callable[..., Recorder], spec: RunSpec) -> None:
-    recorder = record(spec)
-    recorder.drive(10, 10, 2)
-    recorder.act("set_noise", light=20, motor=0)
-    recorder.act("set_pen", down=True)
-    recorder.drive(10, 10, 2)
-    recorder.act("set_noise", light=0, motor=0)
-    recorder.drive(10, 10, 1)
-    run = recorder.end()
-    levels = [run.noise_at(run.telemetry.record(tick)).light for tick in range(6)]
-    assert levels == [0, 0, 20, 20, 0, 0]
 
 
 def test_noise_is_found_also_after_65536_actions(logged: StoredRun) -> None:

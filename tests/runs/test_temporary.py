@@ -46,7 +46,7 @@ def test_threads_create_homes_at_the_same_time(place: Path) -> None:
 
     def create_and_remove(_: int) -> None:
         ready.wait()
-        for _ in range(50):
+        for _ in range(10):
             with temporary_home() as folder:
                 assert is_held(folder)
 

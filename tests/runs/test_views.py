@@ -8,14 +8,13 @@ import subprocess
 import sys
 import tracemalloc
 from collections.abc import Callable
-from dataclasses import fields
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from tests.runs.run_recorder import Recorder
-from tuisim.core.spec import NoiseSpec, RunSpec
+from tuisim.core.spec import RunSpec
 from tuisim.core.tick_record import TICK_FIELDS, TICK_RECORD
 from tuisim.errors import LogError
 from tuisim.runs import records
@@ -33,7 +32,7 @@ from tuisim.runs.records import (
 )
 from tuisim.runs.run_folder import StoredRun
 from tuisim.runs.store import RunStore
-from tuisim.runs.views import OutputView, TelemetryView, TickRecord, instant_of
+from tuisim.runs.views import OutputView, TelemetryView, TickRecord
 
 CHILD = """
 import sys
@@ -73,12 +72,6 @@ def put(writer: TelemetryWriter, count: int) -> None:
         record = TICK_RECORD.pack(tick, 7, tick + 0.5, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 1, 2)
         writer.room(1)[at : at + TICK_RECORD.size] = record
         writer.publish(tick + 1)
-
-
-def test_fields_are_those_of_the_record() -> None:
-    assert TICK_RECORD.format == "<IIdddddfffHH"
-    assert np.dtype(list(TICK_FIELDS)).itemsize == TICK_RECORD.size
-    assert [field.name for field in fields(TickRecord)] == [name for name, _ in TICK_FIELDS]
 
 
 def test_run_without_files_is_empty(tmp_path: Path) -> None:
@@ -146,37 +139,6 @@ def test_last_record_written_anew_is_read_anew(tmp_path: Path) -> None:
     writer.close()
 
 
-SHRUNK = """
-import os, sys
-from pathlib import Path
-from tuisim.runs.store import RunStore
-from tuisim.runs.views import OutputView, TelemetryView
-folder = Path(sys.argv[1])
-telemetry, output = TelemetryView(folder), OutputView(folder)
-array, rows = telemetry.array(), output.rows()
-next(rows)
-for name in ("telemetry.bin", "output.bin"):
-    os.truncate(folder / name, int(sys.argv[2]))
-print(array["tick"].sum(), telemetry.record(19_999).tick, telemetry.count, sum(1 for _ in rows))
-"""
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    "size", [0, 10, HEADER_BYTES, 5000], ids=["empty", "half a header", "header", "some"]
-)
-def test_recording_that_shrinks_under_its_reader_stays_read(tmp_path: Path, size: int) -> None:
-    telemetry, output = TelemetryWriter(tmp_path), OutputWriter(tmp_path)
-    put(telemetry, 20_000)
-    for number in range(2000):
-        output.write(b"x" * 100, number, 0, 0, Stream.STDOUT)
-    command = [sys.executable, "-c", SHRUNK, str(tmp_path), str(size)]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
-    assert (done.stdout.split(), done.returncode) == (["199990000", "19999", "20000", "1999"], 0), (
-        done.stderr
-    )
-
-
 @pytest.mark.parametrize("index", [-1, 2, 5000])
 def test_no_such_record(tmp_path: Path, index: int) -> None:
     writer = TelemetryWriter(tmp_path)
@@ -210,17 +172,6 @@ def test_cut_off_telemetry_keeps_whole_records(tmp_path: Path) -> None:
     assert view.note == "telemetry.bin was truncated: the last 3 of 10 records are lost"
 
 
-def test_cut_off_output_keeps_whole_rows(tmp_path: Path) -> None:
-    writer = OutputWriter(tmp_path)
-    for number in range(3):
-        writer.write(b"0123456789", number, 0, 0, Stream.STDOUT)
-    writer.close()
-    os.truncate(tmp_path / OUTPUT_FILE, (tmp_path / OUTPUT_FILE).stat().st_size - 4)
-    view = OutputView(tmp_path)
-    assert [row.tick for row in view.all_rows()] == [0, 1]
-    assert view.note == "output.bin was truncated: its last 4 bytes are lost"
-
-
 def test_row_that_was_never_published_is_not_read(tmp_path: Path) -> None:
     writer = TelemetryWriter(tmp_path)
     put(writer, 4)
@@ -228,35 +179,6 @@ def test_row_that_was_never_published_is_not_read(tmp_path: Path) -> None:
     view = TelemetryView(tmp_path)
     assert (view.count, view.note) == (4, "")
     writer.close()
-
-
-@pytest.mark.parametrize(
-    "content", [b"x" * 200, b"TUISIMTL" + b"\x09\0\0\0" + bytes(80)], ids=["foreign", "version"]
-)
-def test_of_another_file_nothing_is_read(tmp_path: Path, content: bytes) -> None:
-    (tmp_path / TELEMETRY_FILE).write_bytes(content)
-    view = TelemetryView(tmp_path)
-    assert (view.count, TELEMETRY_FILE in view.damage) == (0, True)
-
-
-@pytest.mark.slow
-def test_reader_beside_a_writing_process_sees_whole_records_only(tmp_path: Path) -> None:
-    total = 60_000
-    command = [sys.executable, "-c", CHILD, str(tmp_path), str(total)]
-    telemetry, output = TelemetryView(tmp_path), OutputView(tmp_path)
-    seen, rows = -1, []
-    with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as child:
-        while seen < total - 1:
-            assert child.poll() is None
-            last = telemetry.last()
-            if last is not None:
-                assert last.x_mm == last.line == last.tick >= seen
-                assert telemetry.array()[-1]["right_position_deg"] >= last.tick
-                seen = last.tick
-            rows += output.new_rows(50)
-        child.communicate()
-    rows += output.new_rows()
-    assert [row.text for row in rows] == [f"n: {tick}" for tick in range(0, total, 10)]
 
 
 def test_nothing_is_lost_when_the_writer_is_killed(tmp_path: Path) -> None:
@@ -268,18 +190,6 @@ def test_nothing_is_lost_when_the_writer_is_killed(tmp_path: Path) -> None:
     assert (tmp_path / TELEMETRY_FILE).stat().st_size > HEADER_BYTES + 64 * 1003
     assert TelemetryView(tmp_path).array()["tick"].tolist() == list(range(1003))
     assert len(OutputView(tmp_path).all_rows()) == 101
-
-
-def test_instant_has_what_the_sensors_need(spec: RunSpec) -> None:
-    record = TickRecord(12, 3, 1.0, 2.0, 30.0, 4.0, 5.0, 100.0, 200.0, 8.0, 0, 0)
-    instant = instant_of(record, spec, NoiseSpec(5, 6))
-    assert (instant.tick, instant.pose, instant.seed, instant.noise) == (
-        12,
-        record.pose,
-        3,
-        NoiseSpec(5, 6),
-    )
-    assert instant.turn_rate_dps == 100.0 * 56 / (2 * 180)
 
 
 def test_runs_that_are_over_keep_no_files_open(
