@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shutil
+from concurrent.futures import Future
 from dataclasses import replace
 from pathlib import Path
 from unittest.mock import MagicMock
@@ -14,8 +15,9 @@ from tests.cases import cases
 from tests.running import over
 from tuisim.batch import execute as execute_module
 from tuisim.batch.execute import _prepared, _to_the_end, execute
-from tuisim.batch.task import Keep
-from tuisim.errors import LogError
+from tuisim.batch.pool import _results_of
+from tuisim.batch.task import Keep, Result
+from tuisim.faults import report_file
 from tuisim.goals.judgement import GoalState
 from tuisim.goals.spec import FinishCondition, Goal, ReachCondition
 from tuisim.runs import temporary
@@ -123,10 +125,35 @@ def test_a_mat_that_does_not_exist_is_a_result(tmp_path: Path) -> None:
 
 
 def test_a_run_without_a_folder_is_told(tmp_path: Path) -> None:
-    with pytest.raises(
-        LogError, match=r"missing: no folder for temporary runs can be created: No such file"
-    ):
-        execute(task("print(1)"), tmp_path / "missing")
+    report_file().unlink(missing_ok=True)
+    result = execute(task("print(1)"), tmp_path / "missing")
+    assert (result.end, result.exit_code) == ("", 2)
+    assert result.summary == (
+        "could not be judged: no folder for temporary runs can be created: No such file or directory"
+    )
+    assert not report_file().exists()
+
+
+@pytest.mark.parametrize("error", [ZeroDivisionError("ours"), MemoryError(), OSError(5, "broken")])
+def test_a_fault_of_tuisim_is_a_result_with_a_report(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, error: Exception
+) -> None:
+    monkeypatch.setattr(execute_module, "_judged", MagicMock(side_effect=error))
+    result = execute(task("print(1)"), tmp_path)
+    why = error.strerror if isinstance(error, OSError) else error
+    assert (result.end, result.summary) == (
+        "",
+        f"could not be judged: {type(error).__name__}: {why}",
+    )
+    assert "in _executed" in report_file().read_text()
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_result_that_cannot_be_sent_is_told() -> None:
+    future: Future[list[Result]] = Future()
+    future.set_exception(MemoryError())
+    (result,) = _results_of(future, [task("print(1)")])
+    assert (result.end, result.summary) == ("", "could not be judged: MemoryError: ")
 
 
 def test_a_run_whose_folder_is_gone_is_not_started(

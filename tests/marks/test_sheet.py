@@ -23,7 +23,15 @@ from tuisim.marks.gradebook import GradebookKind, Roster, write_gradebook
 from tuisim.marks.outcome import GoalOutcome, Outcome
 from tuisim.marks.overrides import Override, overridden
 from tuisim.marks.page import distribution, goal_statistics, page_of
-from tuisim.marks.sheet import Sheet, export_marks, frame_of, lines_of, sheet_of, summary_of
+from tuisim.marks.sheet import (
+    Sheet,
+    export_marks,
+    frame_of,
+    in_words,
+    lines_of,
+    sheet_of,
+    summary_of,
+)
 from tuisim.marks.students import Student
 from tuisim.source import Program
 
@@ -381,12 +389,12 @@ def test_a_class_that_was_interrupted_has_rows_without_runs() -> None:
 def test_a_run_that_this_machine_could_not_make_says_nothing_about_the_student() -> None:
     outcomes = {
         "ada": [*OUTCOMES["ada"], Outcome(4, "", "too many open files")],
-        "ben": [Outcome(0, "disk_full")],
+        "ben": [Outcome(0, "disk_full", "no space")],
     }
     sheet: Sheet = sheet_of("", COLUMNS, range(5), STUDENTS[:2], outcomes)
-    assert [(row.points, row.runs, row.reason) for row in sheet.rows] == [
-        (10.0, 4, ""),
-        (0.0, 0, "not run"),
+    assert [(in_words(row.points), row.runs, row.reason) for row in sheet.rows] == [
+        ("10", 4, ""),
+        ("?", 0, "could not be judged: no space"),
     ]
 
 

@@ -12,9 +12,10 @@ from tuisim.charts.axes import Limits, column_of, value_limits
 from tuisim.charts.bands import band_span
 from tuisim.charts.canvas import DOTS_X, DOTS_Y, seen_points
 from tuisim.charts.layout import ChartData, Line, Span, with_unit
-from tuisim.charts.traces import LARGEST, min_max
+from tuisim.charts.traces import min_max
 from tuisim.data_class import dataclass
 from tuisim.errors import LogError, printable
+from tuisim.logs.magnitude import limit_drawn
 from tuisim.runs.arrays import FloatArray
 
 if TYPE_CHECKING:
@@ -84,17 +85,15 @@ def _clipped(xs: FloatArray, ys: FloatArray, limits: Limits) -> tuple[FloatArray
 def _path(model: Model, names: tuple[str, str], marks: bool, columns: int, rows: int) -> ChartData:
     xs, ys = (model.along(name) for name in names)
     places = model.trace.places
-    with np.errstate(invalid="ignore"):
-        good = (np.abs(xs) < LARGEST) & (np.abs(ys) < LARGEST)
-        if model.limits:
-            good &= (places >= model.limits[0]) & (places <= model.limits[1])
+    good = np.isfinite(xs) & np.isfinite(ys)
+    if model.limits:
+        good &= (places >= model.limits[0]) & (places <= model.limits[1])
     if not good.any():
         raise LogError(f"no sample has both {names[0]} and {names[1]}", file=model.log.title)
-    limits = [
-        value_limits(float(values[good].min()), float(values[good].max())) for values in (xs, ys)
-    ]
+    xs, ys = (limit_drawn(values[good]) for values in (xs, ys))
+    limits = [value_limits(float(values.min()), float(values.max())) for values in (xs, ys)]
     cells = max(columns // DOTS_X, 1), max(rows // DOTS_Y, 1)
-    xs, ys = seen_points(xs[good], ys[good], limits, *cells)
+    xs, ys = seen_points(xs, ys, limits, *cells)
     title, x_label = printable(model.log.title), with_unit(names[0])
     return ChartData(
         title, (Line(names[1], xs, ys, 0),), limits[0], x_label, marks=marks, path=True

@@ -13,7 +13,9 @@ from tuisim.config.mat_cache import FieldFiles, prepare
 from tuisim.config.mats import background
 from tuisim.core.spec import RunSpec
 from tuisim.errors import LogError, TuisimError
+from tuisim.faults import describe_fault
 from tuisim.goals.judgement import Judgement
+from tuisim.logs.magnitude import find_scale
 from tuisim.protocol import End, Ended
 from tuisim.regular_file import of_the_machine
 from tuisim.runs.handle import RunHandle
@@ -31,15 +33,19 @@ MOST_OUTPUT_BYTES = 16 << 20
 
 
 def execute(task: Task, folder: Path) -> Result:
-    """Run a task and return its result. Blocks until the run is over; never raises an error of the run.
+    """Run a task and return its result. Blocks until the run is over; whatever goes wrong is told by the result.
 
     Args:
         task: The task.
         folder: Where its recording is until it has been evaluated; see `runs.temporary.batch_folder`.
-
-    Raises:
-        LogError: a run to be kept cannot be stored.
     """
+    try:
+        return _executed(task, folder)
+    except Exception as error:  # Also a mistake of tuisim's: the other runs go on.
+        return unjudged(task, describe_fault(error))
+
+
+def _executed(task: Task, folder: Path) -> Result:
     with TemporaryRun(folder) as temporary:
         try:
             handle = RunHandle(
@@ -52,7 +58,7 @@ def execute(task: Task, folder: Path) -> Result:
                 isolated=task.isolate,
             )
         except TuisimError as error:
-            return _not_started(task, error)
+            return unjudged(task, str(error))
         try:
             ended = _to_the_end(handle, task.real_time_limit_s)
             run = handle.stored()
@@ -65,7 +71,7 @@ def execute(task: Task, folder: Path) -> Result:
         except LogError as error:
             cause = error.__cause__
             if isinstance(cause, OSError) and of_the_machine(cause):
-                return _not_started(task, error)
+                return unjudged(task, str(error))
             why = f"the program has falsified its recording: {error.message}"
             return nothing_known_of(task, End.FALSIFIED, why)
         finally:
@@ -127,10 +133,10 @@ def _keep(temporary: TemporaryRun, ended: Ended) -> str:
     return RunStore().adopt(temporary.folder).id
 
 
-def _not_started(task: Task, error: TuisimError) -> Result:
-    text = str(error)
+def unjudged(task: Task, why: str) -> Result:
+    """Return the result of a run that says nothing about the program."""
     return Result(
-        task.index, task.parameters, "", 2, text, text, 0, 0, 0.0, math.nan, math.nan, math.nan
+        task.index, task.parameters, "", 2, why, why, 0, 0, 0.0, math.nan, math.nan, math.nan
     )
 
 
@@ -175,11 +181,13 @@ def statistics_of(rows: Iterable[OutputRow]) -> dict[str, VariableStatistics]:
 
 
 def _statistics(values: Sequence[float]) -> VariableStatistics:
-    count = len(values)
+    count, low, high = len(values), min(values), max(values)
+    scale = find_scale(low, high)
+    scaled = [value / scale for value in values]
     # Exact sums: the result does not depend on the order of equal values.
-    mean = math.fsum(values) / count
-    std = math.sqrt(math.fsum((value - mean) ** 2 for value in values) / count)
-    return VariableStatistics(values[-1], count, mean, std, min(values), max(values))
+    mean = math.fsum(scaled) / count
+    std = math.sqrt(math.fsum((value - mean) ** 2 for value in scaled) / count)
+    return VariableStatistics(values[-1], count, mean * scale, std * scale, low, high)
 
 
 def _beginning(rows: Iterable[OutputRow]) -> str:

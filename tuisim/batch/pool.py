@@ -16,8 +16,9 @@ from multiprocessing.context import SpawnContext, SpawnProcess
 from pathlib import Path
 from typing import Any
 
-from tuisim.batch.execute import execute, nothing_known_of
+from tuisim.batch.execute import execute, nothing_known_of, unjudged
 from tuisim.batch.task import Result, Task
+from tuisim.faults import describe_fault
 from tuisim.protocol import End
 from tuisim.runs.child.process import warm_up
 from tuisim.runs.removal import remove_tree
@@ -51,7 +52,7 @@ def run_many(tasks: Iterable[Task], jobs: int = 0) -> Generator[Result]:
         jobs: Number of workers; 0 is one for each processor. A single one is this process.
 
     Raises:
-        LogError: a recording cannot be read, or a run to be kept cannot be stored.
+        LogError: the folder for the recordings cannot be created.
     """
     jobs, folder = jobs or default_jobs(), batch_folder()
     try:
@@ -98,7 +99,7 @@ class _Pool:
             done, _ = wait(self._pending, return_when=FIRST_COMPLETED)
             try:
                 for future in done:
-                    found = future.result()
+                    found = _results_of(future, self._pending[future])
                     del self._pending[future]
                     yield from found
             except BrokenProcessPool:
@@ -138,6 +139,15 @@ class _Pool:
             process.kill()
         for process in self._context.processes:
             process.join()
+
+
+def _results_of(future: Future[list[Result]], tasks: Sequence[Task]) -> list[Result]:
+    try:
+        return future.result()
+    except BrokenProcessPool:
+        raise
+    except Exception as error:  # One that cannot be sent, or is too large: the others go on.
+        return [unjudged(task, describe_fault(error)) for task in tasks]
 
 
 def _is_done(future: Future[list[Result]]) -> bool:

@@ -58,7 +58,7 @@ def run_plan(
     Raises:
         ConfigError, HostError: there is no such cluster, or it is lost.
         ExportError: the partial file cannot be written.
-        LogError: a recording cannot be read, or a run to be kept cannot be stored.
+        LogError: the folder for the recordings cannot be created.
     """
     several = len(plan.subjects) > 1
     # What is done by now is taken out of the tasks before the first new row comes.

@@ -70,7 +70,7 @@ class Result:
     index: int
     parameters: Mapping[str, Value]
     end: str
-    """A value of `protocol.End`; empty if the run could not be started."""
+    """A value of `protocol.End`; empty if the run could not be started or judged."""
     exit_code: int
     summary: str
     error: str

@@ -52,6 +52,8 @@ def ticks(limits: Limits, count: int) -> list[float]:
 
 
 _MOST_DIGITS = 300
+_MAX_CHARACTERS = 20
+"""Longer labels are written with a power of ten."""
 
 
 def label(value: float, step: float) -> str:
@@ -64,6 +66,8 @@ def label(value: float, step: float) -> str:
     )
     digits = next(exact, _MOST_DIGITS)
     text = f"{value:.{digits}f}"
+    if len(text) > _MAX_CHARACTERS:
+        return f"{value:.4g}"
     return "0" if float(text) == 0 else text
 
 

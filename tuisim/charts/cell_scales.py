@@ -14,6 +14,7 @@ from tuisim.charts.canvas import AXIS, BRAILLE, Curve, styled
 from tuisim.charts.layout import Scale, Scales
 from tuisim.charts.traces import Trace
 from tuisim.data_class import dataclass
+from tuisim.logs.magnitude import limit_drawn
 from tuisim.terminal.text_runs import Run
 
 _LEAST_WIDTH = 36
@@ -140,13 +141,12 @@ def _ends(
     found: list[tuple[int, Run]] = []
     width = 0
     for trace in drawn:
-        scale = scales.of_variable(trace.name)
-        count = int(np.searchsorted(trace.times_s, x_limits[1], "right"))
-        if not count:
+        scale, value = scales.of_variable(trace.name), trace.at(x_limits[1])
+        if value is None:
             continue
-        value = trace.values[count - 1 : count]
-        texts = [_rounded(end, scale) for end in (float(value[0]), *scale.limits)]
-        row = int(axes.row_of(float(scales.on_left(value, scale)[0]), scales.left.limits, rows))
+        texts = [_rounded(end, scale) for end in (value, *scale.limits)]
+        place = scales.on_left(limit_drawn(np.array([value])), scale)
+        row = int(axes.row_of(float(place[0]), scales.left.limits, rows))
         found.append(
             (
                 row,

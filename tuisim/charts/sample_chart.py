@@ -9,6 +9,7 @@ import numpy as np
 from tuisim.charts.axes import Limits
 from tuisim.charts.layout import ChartData, Line
 from tuisim.charts.traces import Pyramid, min_max, scale_of
+from tuisim.logs.magnitude import limit_drawn
 from tuisim.runs.samples import Sample
 
 
@@ -31,7 +32,12 @@ def sample_chart(
         (float(low), float(high)) if high > low else (float(low) - 0.5, float(low) + 0.5)
     )
     lines = tuple(
-        Line(name, *min_max(found.times_s, found.values, limits, columns), number, scale_of(name))
+        Line(
+            name,
+            *min_max(found.times_s, limit_drawn(found.values), limits, columns),
+            number,
+            scale_of(name),
+        )
         for number, (name, found) in enumerate(series.items())
     )
     return ChartData("", lines, limits, "time (s)")

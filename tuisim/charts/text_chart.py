@@ -184,10 +184,14 @@ class ChartPainter:
         self._canvas = canvas(curves, columns, rows, x_limits, scales.y_limits)
 
 
+_MIN_SPAN_S = 1e-9
+"""Shorter than the clock's step: such times were printed."""
+
+
 def _time_limits(end_s: float, grows: bool) -> Limits:
     if grows:
         return axes.growing_limits(end_s)
-    return 0.0, end_s if end_s > 0 else 1.0
+    return 0.0, end_s if end_s > _MIN_SPAN_S else 1.0
 
 
 def _styled(runs: list[TextRun], is_on_grid: bool) -> list[Run]:

@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from tuisim.core.css_colors import Rgb
+from tuisim.logs.magnitude import MAX_DRAWN, find_scale, limit_drawn
 from tuisim.logs.signals import Summary, summary_of
 from tuisim.logs.units import unit_of
 from tuisim.runs.arrays import FloatArray
@@ -72,26 +73,26 @@ class Trace:
 
     @property
     def values(self) -> FloatArray:
-        """Values, shape (n,)."""
-        return self._values[: self._count]
+        """Values as they are drawn, shape (n,)."""
+        return limit_drawn(self._values[: self._count])
 
     def add(self, times_s: Sequence[float], values: Sequence[float]) -> None:
-        """Append points; those that are not finite are left out."""
+        """Append points; those that are not finite are left out, as are times beyond `MAX_DRAWN`."""
         new_times, new_values = np.array(times_s, float), np.array(values, float)
-        good = np.isfinite(new_times) & np.isfinite(new_values)
+        good = (np.abs(new_times) < MAX_DRAWN) & np.isfinite(new_values)
         new_times, new_values = new_times[good], new_values[good]
         end = self._count + len(new_times)
         if end > len(self._times_s):
             room = max(end, 2 * len(self._times_s)) - self._count
             self._times_s = np.concatenate((self.times_s, np.empty(room)))
-            self._values = np.concatenate((self.values, np.empty(room)))
+            self._values = np.concatenate((self._values[: self._count], np.empty(room)))
         self._times_s[self._count : end], self._values[self._count : end] = new_times, new_values
         late = self._count and len(new_times) and new_times[0] < self._times_s[self._count - 1]
         self._count = end
         if late or (np.diff(new_times) < 0).any():
             # A program may log its own times; lookups need them sorted.
             order = np.argsort(self.times_s, kind="stable")
-            self._times_s[:end], self._values[:end] = self.times_s[order], self.values[order]
+            self._times_s[:end], self._values[:end] = self.times_s[order], self._values[order]
         if end > MOST_POINTS:
             self._thin()
 
@@ -238,23 +239,20 @@ _ENOUGH = 4
 _SUMMED_AT_ONCE = 10_000
 """Up to this number of points, statistics are computed directly."""
 
-LARGEST = 1e150
-"""Values beyond this limit are dropped: the difference of two such numbers may overflow."""
-
 
 class Pyramid:
     """The finite points of a series, sorted by time.
 
     Args:
         times_s: Shape (n,).
-        values: Shape (n,); values that are not finite or exceed `LARGEST` are left out.
+        values: Shape (n,); those that are not finite are left out, as are times beyond `MAX_DRAWN`.
     """
 
     def __init__(self, times_s: FloatArray, values: FloatArray) -> None:
         self._index: npt.NDArray[np.intp] | None = None
         """Index of each point in the input; None if the order is unchanged."""
-        if not (_measurable(values) and _measurable(times_s)):
-            good = (np.abs(values) < LARGEST) & (np.abs(times_s) < LARGEST)
+        if not (_are_within(values, np.inf) and _are_within(times_s, MAX_DRAWN)):
+            good = (np.abs(values) < np.inf) & (np.abs(times_s) < MAX_DRAWN)
             self._index = np.flatnonzero(good)
             times_s, values = times_s[good], values[good]
         if len(times_s) > 1 and (times_s[1:] < times_s[:-1]).any():
@@ -268,7 +266,7 @@ class Pyramid:
             self._add_level()
 
     def points(self, x_limits: tuple[float, float], columns: int) -> tuple[FloatArray, FloatArray]:
-        """Return times and values of at most a few thousand points that give the same drawing as all points.
+        """Return times and values as they are drawn: at most a few thousand points that give the drawing of all.
 
         Args:
             x_limits: First and last time shown; one point beyond each is kept.
@@ -279,13 +277,13 @@ class Pyramid:
         while (last - first) // (size * _BLOCK) >= _ENOUGH * columns:
             level, size = level + 1, size * _BLOCK
         if level < 0:
-            return self.times_s[first:last], self.values[first:last]
+            return self.times_s[first:last], limit_drawn(self.values[first:last])
         least, greatest = self._levels[level]
         blocks = np.arange(first // size, (last - 1) // size + 1)
         starts, ends = blocks * size, np.minimum((blocks + 1) * size, len(self.times_s)) - 1
         rising = self.values[starts] <= self.values[ends]
         values = _extremes(rising, least[blocks], greatest[blocks])
-        return _in_pairs(self.times_s[starts], self.times_s[ends]), values
+        return _in_pairs(self.times_s[starts], self.times_s[ends]), limit_drawn(values)
 
     def _add_level(self) -> None:
         least, greatest = self._levels[-1] if self._levels else (self.values, self.values)
@@ -318,7 +316,7 @@ class Pyramid:
     def figures(self, start_s: float, stop_s: float) -> Summary:
         """Return the statistics of a time range, both ends included, without quantiles."""
         first, last = self._span(start_s, stop_s)
-        if last - first <= _SUMMED_AT_ONCE:
+        if last - first <= _SUMMED_AT_ONCE or find_scale(*self._ends()) != 1.0:
             return summary_of(self.values[first:last], quantiles=())
         # Whole blocks are cached; only the partial blocks at both ends are computed.
         begin, end = -(-first // _BLOCK), last // _BLOCK
@@ -336,6 +334,10 @@ class Pyramid:
             count, 0, low, mean, high, float(np.sqrt(off / (count - 1))) if low != high else 0.0, ()
         )
 
+    def _ends(self) -> tuple[float, float]:
+        least, greatest = self._levels[-1]
+        return float(least.min()), float(greatest.max())
+
     def _moments(self) -> tuple[FloatArray, FloatArray]:
         """Mean and sum of squared deviations of each whole block; cached."""
         if self._sums is None:
@@ -350,7 +352,7 @@ class Pyramid:
         return self._sums
 
 
-def _measurable(numbers: FloatArray) -> bool:
-    """Return whether all numbers are within the limit, without a copy."""
+def _are_within(numbers: FloatArray, limit: float) -> bool:
+    """Return whether all numbers are below a limit, without a copy."""
     # One NaN makes minimum and maximum NaN, and all comparisons false.
-    return not len(numbers) or bool(numbers.min() > -LARGEST and numbers.max() < LARGEST)
+    return not len(numbers) or bool(numbers.min() > -limit and numbers.max() < limit)

@@ -47,6 +47,7 @@ from tuisim.config.options import APP, PANEL
 from tuisim.config.shared_options import shared_options
 from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError, counted
+from tuisim.faults import UNJUDGED, report_file
 from tuisim.logs.export import export_frame
 from tuisim.logs.signals import QUANTILES
 from tuisim.protocol import End
@@ -139,6 +140,8 @@ class _Batch:
         if partly is not None and not code:
             partly.remove()
         self._print(frame)
+        if any(str(row["summary"]).startswith(UNJUDGED) for row in self.rows.values()):
+            echo_error(f"tuisim: the report of what went wrong is in {report_file()}")
         if code:
             self._tell_interrupted()
         return max([code, *map(_exit_code, self.rows.values())])

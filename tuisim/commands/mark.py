@@ -5,8 +5,9 @@ from __future__ import annotations
 import os
 import shutil
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import closing, nullcontext
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -31,7 +32,16 @@ from tuisim.commands.run_options import input_option, timeout_option
 from tuisim.config.command_line import Arguments, WordType, argument, command, option
 from tuisim.config.options import APP, PANEL, settings_of
 from tuisim.config.shared_options import shared_options
-from tuisim.errors import ConfigError, ExportError, counted, listed, printable, see_page
+from tuisim.errors import (
+    ConfigError,
+    ExportError,
+    TuisimError,
+    counted,
+    listed,
+    printable,
+    see_page,
+)
+from tuisim.faults import UNJUDGED, describe_fault, report_file
 from tuisim.goals.files import GoalsFile, load_goals
 from tuisim.goals.trial_world import TrialWorld
 from tuisim.logs.export import ALLOWED, EXPORTERS, check_place, check_target
@@ -48,6 +58,7 @@ from tuisim.marks.students import Student, StudentsFound, find_students
 from tuisim.runs.child.isolation import check_isolation
 from tuisim.runs.child.supervisor import supervised
 from tuisim.runs.handle import RunOptions
+from tuisim.source import source_lines
 
 PAGE_SUFFIXES = (".html", ".htm")
 DEFAULT_SEEDS = "0..19"
@@ -211,9 +222,8 @@ def mark(**given: Any) -> int:
         # First, so that marks are seen also if a file cannot be written.
         _print(sheet, found.ignored)
         _tell_refusals(students)
-        _write(sheet, task.worlds, students, found.ignored, arguments)
-        _write_gradebooks(sheet, students, roster, arguments)
-    return max(_tell_unread(students), _tell_missing(outcomes), _tell_unknown(outcomes))
+        code = _write(_exports(sheet, task.worlds, students, found.ignored, roster, arguments))
+    return max(code, _tell_unread(students), _tell_missing(outcomes), _tell_unknown(outcomes))
 
 
 def _tutor_files(
@@ -301,6 +311,8 @@ def _tell_missing(outcomes: Mapping[str, Sequence[Outcome]]) -> int:
     echo_error(
         f"tuisim: {missing[0][1].failure}; the same command with --resume runs what is missing"
     )
+    if any(UNJUDGED in one.failure for _, one in missing) and report_file().exists():
+        echo_error(f"tuisim: the report of what went wrong is in {report_file()}")
     return 1
 
 
@@ -388,23 +400,48 @@ def _collect(
             tell(f"run {done} of {total}", done, total)
 
 
-def _write(
+def _exports(
     sheet: Sheet,
     worlds: Sequence[TrialWorld],
     students: Sequence[Student],
     ignored: Sequence[str],
+    roster: Roster,
     arguments: Arguments,
-) -> None:
+) -> Iterator[tuple[Path, Callable[[], None]]]:
+    """Yield what is to be written: each file or folder, and what writes it."""
     for target in map(Path, arguments.export):
         if target.suffix.lower() in EXPORTERS:
-            tell(f"writing {target}")
-            export_marks(sheet, target)
+            yield target, partial(export_marks, sheet, target)
         else:
-            _write_page(sheet, worlds, students, ignored, target, movies=arguments.movies)
-        echo_written(target)
+            page = partial(_write_page, sheet, worlds, students, ignored, target)
+            yield target, partial(page, movies=arguments.movies)
+    sources = [student.text for student in students]
     if arguments.feedback:
-        write_feedback(Path(arguments.feedback), sheet, [student.text for student in students])
-        echo_written(arguments.feedback)
+        folder = Path(arguments.feedback)
+        yield folder, partial(write_feedback, folder, sheet, sources)
+    for kind in GradebookKind:
+        if name := vars(arguments)[kind]:
+            book = partial(write_gradebook, Path(name), kind, sheet, sources, roster)
+            yield Path(name), partial(book, goals=arguments.goal_columns)
+
+
+def _write(exports: Iterable[tuple[Path, Callable[[], None]]]) -> int:
+    """Write everything that can be written; return the exit code."""
+    code = 0
+    for target, write in exports:
+        tell(f"writing {target}")
+        try:
+            write()
+        except TuisimError as error:
+            code = max(code, error.exit_code)
+            echo_error(f"tuisim: {' '.join(source_lines(str(error)))}")
+        except Exception as error:  # Whatever it is, the other files are written.
+            code = max(code, 1)
+            echo_error(f"tuisim: {target}: {describe_fault(error)}")
+            echo_error(f"tuisim: the report is in {report_file()}")
+        else:
+            echo_written(target)
+    return code
 
 
 def _write_page(
@@ -422,26 +459,18 @@ def _write_page(
     from tuisim.marks.reports import write_reports
 
     kept = sum(bool(outcome.run_id) for row in sheet.rows for outcome in row.outcomes)
-    links, misses = {}, []
+    links, misses, faults = {}, [], []
     for one in write_reports(sheet, worlds, target, movies=movies):
+        if one.fault:
+            faults.append(f"{one.student}: {one.fault}")
+            continue
         links[one.student, one.world, one.seed] = one.path
         misses.append(one.misses)
         tell(f"report {len(links)} of {kept}", len(links), kept)
     alike = similar({student.name: student.text for student in students})
     write_whole(target, page_of(sheet, links, ignored, alike, build_class_maps(misses)).encode())
-
-
-def _write_gradebooks(
-    sheet: Sheet, students: Sequence[Student], roster: Roster, arguments: Arguments
-) -> None:
-    for kind in GradebookKind:
-        if target := vars(arguments)[kind]:
-            tell(f"writing {target}")
-            sources = [student.text for student in students]
-            write_gradebook(
-                Path(target), kind, sheet, sources, roster, goals=arguments.goal_columns
-            )
-            echo_written(target)
+    if faults:
+        raise ExportError(f"{target} is without {counted(len(faults), 'report')}: {faults[0]}")
 
 
 _NARROWER = ((40, 60), (24, 20), (16, 10), (12, 6))

@@ -13,6 +13,7 @@ from tuisim.core.css_colors import css_names
 from tuisim.core.sensors.color import find_response
 from tuisim.core.spec import RunSpec
 from tuisim.data_class import dataclass
+from tuisim.logs.magnitude import find_scale
 from tuisim.logs.plateaus import FIELDS, Search, plateaus
 from tuisim.runs.arrays import FloatArray, IntArray
 
@@ -151,7 +152,11 @@ def levels_of(
         light: What stands between them and the greys of the mat; None if they are no light.
         search: Finds them.
     """
-    found = np.array(search(values), FIELDS)
+    finite = values[np.isfinite(values)]
+    magnitude = find_scale(float(finite.min()), float(finite.max())) if len(finite) else 1.0
+    found = np.array(search(values if magnitude == 1.0 else values / magnitude), FIELDS)
+    found["level"] *= magnitude
+    found["spread"] *= magnitude
     level, scale = found["level"], light_scale(values) if light else 0.0
     true_level = level
     greys_near: list[Grey | None] = [None] * len(found)

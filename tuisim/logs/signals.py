@@ -10,6 +10,7 @@ import numpy as np
 
 from tuisim.data_class import dataclass
 from tuisim.errors import LogError
+from tuisim.logs.magnitude import find_scale
 from tuisim.runs.arrays import FloatArray, IntArray
 
 
@@ -230,12 +231,10 @@ def summary_of(values: FloatArray, quantiles: Sequence[float] = QUANTILES) -> Su
         nan = float("nan")
         return Summary(0, left_out, nan, nan, nan, nan, (nan,) * len(quantiles))
     low, high = float(finite.min()), float(finite.max())
-    # Sums of very large values may overflow.
-    with np.errstate(over="ignore", invalid="ignore"):
-        # The mean of equal values may be off by rounding.
-        mean = low if low == high else float(finite.mean(dtype=np.float64))
-        std = (
-            float(finite.std(ddof=1, dtype=np.float64)) if len(finite) > 1 and low != high else 0.0
-        )
-        found = tuple(float(value) for value in np.quantile(finite, quantiles)) if quantiles else ()
+    scale = find_scale(low, high)
+    scaled = finite if scale == 1.0 else finite / scale
+    # The mean of equal values may be off by rounding.
+    mean = low if low == high else float(scaled.mean(dtype=np.float64)) * scale
+    std = 0.0 if low == high else float(scaled.std(ddof=1, dtype=np.float64)) * scale
+    found = tuple((np.quantile(scaled, quantiles) * scale).tolist()) if quantiles else ()
     return Summary(len(finite), left_out, low, mean, high, std, found)

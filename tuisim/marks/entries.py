@@ -12,9 +12,11 @@ from tuisim.config.folders import backgrounds_folder
 from tuisim.config.mat_image import decode, read_file
 from tuisim.config.mats import background
 from tuisim.config.options import names_world, settings_of
+from tuisim.config.program_file import ProgramSource
 from tuisim.config.program_settings import ProgramSettings, program_settings
 from tuisim.core.spec import RunSpec
 from tuisim.errors import ConfigError, ProfileError, printable
+from tuisim.faults import describe_fault
 from tuisim.goals.files import GoalsFile
 from tuisim.goals.trial_world import TrialWorld
 from tuisim.marks.runs import RunEntry
@@ -35,22 +37,15 @@ def entries_of(
     Raises:
         ConfigError: the world of the goals, or an option, is wrong, or none of the programs can run by its profile.
     """
-    shared = tuple(build_run_spec(settings_of(world.settings, given)) for world in task.worlds)
+    for world in task.worlds:
+        build_run_spec(settings_of(world.settings, given))
     names_profile = "profile" in {**task.settings, **given}
     entries, students, misfits = [], [], []
     for student in found:
-        specs, presses = shared, ()
         if student.source:
             try:
-                every = [_settings(student, world, given) for world in task.worlds]
-                specs = tuple(build_run_spec(own.settings) for own in every)
-                presses = tuple(own.settings["press"] for own in every)
-                if not names_world(task.settings):
-                    _check_background(specs[0])
-                decided = every[0].decided
-                program = replace(student.source.program, shown_ports=decided.shown_ports)
-                source = replace(student.source, program=program)
-                student = replace(student, source=source, refusal=decided.refusal)
+                entries.append(_entry_of(student, student.source, task, given))
+                student = entries[-1].student
             except ConfigError as error:
                 misfits += [error] if isinstance(error, ProfileError) and names_profile else []
                 cause = error.__cause__
@@ -58,12 +53,28 @@ def entries_of(
                 student = replace(
                     student, source=None, problem=_told(error, student), is_unread=is_unread
                 )
-        if student.source:
-            entries.append(RunEntry(student, specs, presses))
+            except Exception as error:  # Whatever it is, the others go on.
+                student = replace(
+                    student, source=None, problem=describe_fault(error), is_unread=True
+                )
         students.append(student)
     if misfits and not entries:
         raise misfits[0]
     return entries, students
+
+
+def _entry_of(
+    student: Student, source: ProgramSource, task: GoalsFile, given: Mapping[str, Any]
+) -> RunEntry:
+    every = [_settings(student, world, given) for world in task.worlds]
+    specs = tuple(build_run_spec(own.settings) for own in every)
+    if not names_world(task.settings):
+        _check_background(specs[0])
+    decided = every[0].decided
+    program = replace(source.program, shown_ports=decided.shown_ports)
+    source = replace(source, program=program)
+    student = replace(student, source=source, refusal=decided.refusal)
+    return RunEntry(student, specs, tuple(own.settings["press"] for own in every))
 
 
 def _settings(student: Student, world: TrialWorld, given: Mapping[str, Any]) -> ProgramSettings:

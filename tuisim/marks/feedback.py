@@ -10,6 +10,7 @@ from textwrap import fill
 
 from tuisim.atomic import replacing
 from tuisim.errors import ExportError, printable
+from tuisim.faults import describe_fault
 from tuisim.goals.spec import Goal
 from tuisim.marks.sheet import Cell, Sheet, SheetRow, in_words
 from tuisim.source import source_lines
@@ -47,6 +48,13 @@ def feedback_of(sheet: Sheet, row: SheetRow, source: str = "") -> str:
     Args:
         source: The text of the main program, whose lines are quoted.
     """
+    try:
+        return _feedback_of(sheet, row, source)
+    except Exception as error:  # Whatever it is, the others go on.
+        return f"{describe_fault(error)}\n"
+
+
+def _feedback_of(sheet: Sheet, row: SheetRow, source: str) -> str:
     head = f"{row.name}: {in_words(row.points)} of {in_words(sheet.most_points)} points"
     parts = (
         [head, "=" * min(len(head), WIDTH), "", sheet.title, ""] if sheet.title else [head, "", ""]

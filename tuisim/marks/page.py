@@ -178,9 +178,9 @@ def distribution(sheet: Sheet) -> tuple[tuple[float, float, int], ...]:
     The upper end belongs to the next part, but for the last one; fewer and more points count at the ends.
     """
     most = sheet.most_points
-    if not most:
-        return ()
     known = [row.points for row in sheet.rows if not math.isnan(row.points)]
+    if not most or not known:
+        return ()
     counts = Counter(min(max(int(points / most * BINS), 0), BINS - 1) for points in known)
     return tuple(
         (most * part / BINS, most * (part + 1) / BINS, counts[part]) for part in range(BINS)

@@ -16,6 +16,7 @@ from tuisim.analysis.source import LogRequest, opening
 from tuisim.charts.files import write_whole
 from tuisim.data_class import dataclass
 from tuisim.errors import ExportError, LogError
+from tuisim.faults import describe_fault
 from tuisim.goals.condition import ConditionKind
 from tuisim.goals.judgement import Change
 from tuisim.goals.spec import Goal
@@ -47,6 +48,8 @@ class Report:
     """Relative to the page."""
     misses: MissesOfRun
     """Where it missed goals; none if another run with the same record has said so."""
+    fault: str = ""
+    """Why there is none; empty if there is one."""
 
 
 def write_reports(
@@ -60,6 +63,8 @@ def write_reports(
     Args:
         worlds: The worlds of the task, the first one first.
         movies: Whether the report of a run that missed a goal has a movie with the goals on it.
+
+    A report that cannot be made has a fault.
 
     Raises:
         ExportError: a report cannot be written.
@@ -75,26 +80,39 @@ def write_reports(
             number, world = next(
                 (at, one) for at, one in enumerate(worlds) if one.where == outcome.world
             )
-            recorded, misses = (outcome.world, _digest(run)), tuple[Miss, ...]()
-            if recorded not in written:
-                name = f"{stem}{f'-world-{number + 1}' if number else ''}-seed-{outcome.seed}.html"
-                *_, opened = opening(LogRequest(runs=(run.id,)))
-                opened = replace(opened, runs=tuple(map(_portable, opened.runs)))
-                columns = [column for column in sheet.columns if column.name in world.goals]
-                judged = _judged(world.own_goals, outcome, run)
-                shown, pins = _verdicts(columns, judged, outcome)
-                misses = _misses(row.name, columns, judged, outcome, run)
-                title = ", ".join(filter(None, (row.name, outcome.world, f"seed {outcome.seed}")))
-                _write(
-                    folder / name,
-                    report_of(
-                        opened, title=title, movie=movies and bool(misses), pins=pins, goals=shown
-                    ),
-                )
-                written[recorded] = f"{folder.name}/{name}"
+            name = f"{stem}{f'-world-{number + 1}' if number else ''}-seed-{outcome.seed}.html"
+            misses, fault = tuple[Miss, ...](), ""
+            try:
+                recorded = outcome.world, _digest(run)
+                if recorded not in written:
+                    columns = [column for column in sheet.columns if column.name in world.goals]
+                    goals = columns, _judged(world.own_goals, outcome, run)
+                    misses = _misses(row.name, *goals, outcome, run)
+                    shows = movies and bool(misses)
+                    _write(folder / name, _report_of(row.name, goals, outcome, run, movie=shows))
+                    written[recorded] = f"{folder.name}/{name}"
+                path = written[recorded]
+            except ExportError:
+                raise
+            except Exception as error:  # Whatever it is, the others go on.
+                path, fault = "", describe_fault(error)
             yield Report(
-                row.name, outcome.world, outcome.seed, written[recorded], MissesOfRun(run, misses)
+                row.name, outcome.world, outcome.seed, path, MissesOfRun(run, misses), fault
             )
+
+
+_Judged = tuple[Sequence[Goal], Mapping[str, Change]]
+"""The goals that are shown, and when and where they were decided, as of `_judged`."""
+
+
+def _report_of(
+    student: str, goals: _Judged, outcome: Outcome, run: StoredRun, *, movie: bool
+) -> str:
+    *_, opened = opening(LogRequest(runs=(run.id,)))
+    opened = replace(opened, runs=tuple(map(_portable, opened.runs)))
+    shown, pins = _verdicts(*goals, outcome)
+    title = ", ".join(filter(None, (student, outcome.world, f"seed {outcome.seed}")))
+    return report_of(opened, title=title, movie=movie, pins=pins, goals=shown)
 
 
 def _write(path: Path, content: str) -> None:

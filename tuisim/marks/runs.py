@@ -13,6 +13,7 @@ from tuisim.batch.task import Keep, Task
 from tuisim.core.spec import RunSpec
 from tuisim.core.tree import to_plain
 from tuisim.data_class import dataclass
+from tuisim.faults import describe_fault
 from tuisim.goals.trial_world import TrialWorld
 from tuisim.marks.journal import Journal
 from tuisim.marks.outcome import Outcome, outcome_of
@@ -82,10 +83,17 @@ def outcomes_of(
     world, nor in the others. Outcomes that the journal knows are not run again. Closing the iterator stops what is
     running.
 
+    What goes wrong with one student is an outcome that does not count.
+
     Raises:
-        LogError: a student's files, a recording or the journal cannot be read or written.
+        LogError: the journal cannot be read or written.
     """
-    turns = {entry.student.name: _turns(entry, plan) for entry in entries}
+    turns: dict[str, list[_Turn]] = {}
+    for entry in entries:
+        try:
+            turns[entry.student.name] = _turns(entry, plan)
+        except Exception as error:  # Whatever it is, the others go on.
+            yield entry.student.name, Outcome(plan.seeds[0], "", describe_fault(error))
     given_up: set[tuple[str, str]] = set()
     first, *others = (world.where for world in plan.worlds)
     rounds = (
@@ -155,19 +163,38 @@ def _run(turns: Sequence[_Turn], plan: MarkPlan, journal: Journal) -> Iterator[t
     with temporary_home("tuisim-mark-") as home:
         # Its resolved path is what a program sees.
         workspace = home.resolve()
-        for result in run_many(_tasks(unknown, plan, workspace), plan.jobs):
+        uncopied: list[tuple[str, Outcome]] = []
+        for result in run_many(_tasks(unknown, plan, workspace, uncopied), plan.jobs):
             turn, place = unknown[result.index], workspace / str(result.index)
-            outcome = outcome_of(result, turn.seed, place, turn.world)
+            try:
+                outcome = outcome_of(result, turn.seed, place, turn.world)
+            except Exception as error:  # Whatever it is, the others go on.
+                outcome = _unjudged(turn, error)
             remove_tree(place)
             if outcome.counts:
                 journal.add(turn.key, outcome)
             yield turn.entry.student.name, outcome
+        yield from uncopied
 
 
-def _tasks(turns: Sequence[_Turn], plan: MarkPlan, workspace: Path) -> Iterator[Task]:
+def _unjudged(turn: _Turn, error: Exception) -> Outcome:
+    return Outcome(turn.seed, "", describe_fault(error), world=turn.world.where)
+
+
+def _tasks(
+    turns: Sequence[_Turn],
+    plan: MarkPlan,
+    workspace: Path,
+    uncopied: list[tuple[str, Outcome]],
+) -> Iterator[Task]:
+    """Yield the runs; those whose files cannot be copied are added to `uncopied`."""
     for index, turn in enumerate(turns):
         student = turn.entry.student
-        folder = copy_of(student, workspace / str(index))
+        try:
+            folder = copy_of(student, workspace / str(index))
+        except Exception as error:  # Whatever it is, the others go on.
+            uncopied.append((student.name, _unjudged(turn, error)))
+            continue
         program = program_in(
             student, folder, arguments=plan.arguments, python_path=user_python_path()
         )

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from tuisim.data_class import dataclass
 from tuisim.errors import counted, printable
+from tuisim.faults import UNJUDGED
 from tuisim.goals.judgement import most_points, points_of
 from tuisim.goals.spec import Goal
 from tuisim.logs.export import export_frame
@@ -138,21 +139,9 @@ def row_of(
     worlds: Sequence[str],
 ) -> SheetRow:
     """Return the row of a student."""
-    if not student.source:
-        cells = tuple(Cell(0.0, 0, student.problem) for _ in columns)
-        return SheetRow(
-            student.name, student.main, 0.0, 0.0, cells, student.problem, failure=student.problem
-        )
     ordered = merged(outcomes, seeds, worlds)
-    if not ordered:
-        return SheetRow(
-            student.name,
-            student.main,
-            0.0,
-            0.0,
-            tuple(Cell(0.0, 0, NOT_RUN) for _ in columns),
-            NOT_RUN,
-        )
+    if not student.source or not ordered:
+        return _row_without_runs(student, columns, outcomes)
     totals = [_points(columns, one) for one in ordered]
     # In a task without points, every goal counts.
     counted_goals = [column for column in columns if column.points] or columns
@@ -162,7 +151,7 @@ def row_of(
     lines = source_lines(student.text)
     return SheetRow(
         name=student.name,
-        program=student.main,
+        program=student.shown_main,
         points=rounded(math.fsum(totals) / len(totals)),
         robustness=rounded(1 - len(incomplete) / len(ordered)),
         cells=tuple(_cell(column, ordered) for column in columns),
@@ -182,6 +171,23 @@ def row_of(
                 key=lambda one: (worlds.index(one.world), one.seed),
             )
         ),
+    )
+
+
+def _row_without_runs(
+    student: Student, columns: Sequence[Goal], outcomes: Sequence[Outcome]
+) -> SheetRow:
+    """Return the row of a student of whom no run is known; the points are NaN unless that is the student's doing."""
+    failed = next((one for one in outcomes if not one.counts), None)
+    reason = student.problem or NOT_RUN
+    if failed or student.is_unread:
+        reason = (
+            f"{UNJUDGED}: {(failed.failure if failed else reason).removeprefix(f'{UNJUDGED}: ')}"
+        )
+    points = math.nan if failed or student.is_unread else 0.0
+    cells = tuple(Cell(points, 0, reason) for _ in columns)
+    return SheetRow(
+        student.name, student.shown_main, points, 0.0, cells, reason, failure=student.problem
     )
 
 

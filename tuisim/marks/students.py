@@ -14,6 +14,7 @@ from tuisim.config.notebook_file import chosen_programs
 from tuisim.config.program_file import FILE_FIELDS, ProgramSource, names_file, read_program
 from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError, listed, printable, see_page
+from tuisim.faults import describe_fault
 from tuisim.runs.child.isolation import MOST_BYTES, MOST_FILES
 
 MAIN = "main.py"
@@ -49,6 +50,11 @@ class Student:
     """Whether this machine could not read what the student has handed in, which is not the student's fault."""
     refusal: str = ""
     """The first line that the brick's Python would refuse, and how many follow; empty for none."""
+
+    @property
+    def shown_main(self) -> str:
+        """The path of the main program as it is shown."""
+        return _shown(self.main)
 
     @property
     def text(self) -> str:
@@ -146,6 +152,13 @@ def _named(students: Iterable[tuple[Path, Student]]) -> Iterator[Student]:
 
 
 def _student(path: Path, program: str) -> Student:
+    try:
+        return _read_student(path, program)
+    except Exception as error:  # Whatever it is, the others go on.
+        return Student(_own_name(path), path, problem=describe_fault(error), is_unread=True)
+
+
+def _read_student(path: Path, program: str) -> Student:
     own = _own_name(path)
     is_file = not os.path.isdir(path)
     endings = (SUFFIX, NOTEBOOK_SUFFIX, *_NO_PROGRAM)
@@ -225,8 +238,8 @@ def file_outside(student: Student) -> str:
 
 
 def _shown(name: str) -> str:
-    """Return the name of a file or folder as it is shown and stored; bytes that are not UTF-8 become `?`."""
-    return printable(name.encode("utf-8", "replace").decode())
+    """Return the name of a file or folder as it is shown and stored; bytes that are not UTF-8 become `\\xff`."""
+    return printable(os.fsencode(name).decode("utf-8", "backslashreplace"))
 
 
 def _read(student: Student, path: Path, cell: str) -> Student:

@@ -35,7 +35,7 @@ def copy_of(student: Student, place: Path) -> Path:
             place.mkdir()
             _copy_file(student.path, place / student.main)
     except OSError as error:
-        raise LogError(f"cannot be written: {error.strerror or error}", file=str(place)) from error
+        raise LogError(f"its copy cannot be written: {error.strerror or error}") from error
     return place
 
 
@@ -50,7 +50,7 @@ def _copy_file(source: str | Path, target: str | Path) -> None:
         shutil.copyfile(source, target)
     except OSError as error:
         if error.errno in _FULL:
-            raise LogError(f"cannot be written: {error.strerror}", file=str(target)) from error
+            raise LogError(f"its copy cannot be written: {error.strerror}") from error
 
 
 def program_in(student: Student, folder: Path, **changes: Any) -> Program:

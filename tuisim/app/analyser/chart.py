@@ -18,6 +18,7 @@ from tuisim.charts.canvas import BRAILLE, xy_lines
 from tuisim.charts.text_chart import ChartPainter, ChartPicture, ChartState, margins_of, values_at
 from tuisim.charts.traces import Traces
 from tuisim.data_class import dataclass
+from tuisim.logs.magnitude import limit_drawn
 from tuisim.terminal.cell_view import LinesPanel
 from tuisim.terminal.picture import MOST_POINTS
 from tuisim.terminal.picture_mode import shows_ascii
@@ -162,7 +163,7 @@ class LogChart(LinesPanel):
         self, model: Model, names: tuple[str, str], width: int, height: int
     ) -> list[list[Run]]:
         trace = model.trace
-        xs, ys = (model.along(name) for name in names)
+        xs, ys = (limit_drawn(model.along(name)) for name in names)
         marker = (
             trace.mark
             if (self.app.no_color and shows_ascii(self.app)) or self.options.marks

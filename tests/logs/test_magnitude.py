@@ -1,0 +1,111 @@
+"""Every number that there is, through charts, summaries and bands: nothing overflows, and nothing ends."""
+
+from __future__ import annotations
+
+import math
+import sys
+from collections.abc import Sequence
+
+import numpy as np
+import pytest
+from hypothesis import example, given
+from hypothesis import strategies as st
+
+from tuisim.batch.execute import statistics_of
+from tuisim.charts.canvas import xy_lines
+from tuisim.charts.layout import Scales
+from tuisim.charts.sample_chart import sample_chart
+from tuisim.charts.text_chart import ChartPainter, ChartState
+from tuisim.charts.traces import Pyramid, Traces
+from tuisim.logs.levels import levels_of
+from tuisim.logs.magnitude import MAX_DRAWN, find_scale, limit_drawn
+from tuisim.logs.signals import summary_of
+from tuisim.runs.records import OutputRow, Stream
+from tuisim.runs.samples import Sample
+
+HUGE = sys.float_info.max
+EVERY = st.lists(
+    st.floats() | st.sampled_from([0.0, 5e-324, -5e-324, 1e155, 1e308, -1e308, HUGE, -HUGE]),
+    min_size=1,
+    max_size=40,
+)
+ODD = ([1e155, 0.0], [1e308, -1e308], [HUGE, -HUGE], [5e-324, 0.0], [HUGE] * 20 + [0.0] * 20)
+
+
+def _printed(values: Sequence[float]) -> list[OutputRow]:
+    return [OutputRow(f"A: {value!r}", 0, 0, 0, Stream.STDOUT) for value in values]
+
+
+def _are_equal(found: float, expected: float) -> bool:
+    return found == pytest.approx(expected, rel=1e-9, abs=0.0)
+
+
+@pytest.mark.parametrize("low, high", ODD[:4], ids=str)
+def test_mean_and_spread_of_two_are_exact(low: float, high: float) -> None:
+    mean, half = low / 2 + high / 2, abs(high / 2 - low / 2)
+    one = summary_of(np.array([low, high]))
+    assert _are_equal(one.mean, mean)
+    # Of the sample: it may be more than the largest number.
+    assert one.std == pytest.approx(half * math.sqrt(2), rel=1e-9, abs=5e-324)
+    found = statistics_of(_printed([low, high]))["A"]
+    assert _are_equal(found.mean, mean) and _are_equal(found.std, half)
+
+
+@pytest.mark.parametrize("values", ODD, ids=lambda values: f"{values[0]:g} {values[-1]:g}")
+def test_huge_levels_are_found(values: Sequence[float]) -> None:
+    found = levels_of(np.tile(values, 10 if len(values) == 2 else 1))
+    assert all(value in found.level for value in values) or len(values) == 2
+    assert np.isfinite(found.level).all() and np.isfinite(found.spread).all()
+
+
+def test_usual_numbers_are_not_scaled() -> None:
+    assert find_scale(-1e100, 1e100) == find_scale(0.0, 0.0) == find_scale(1e-100, 1e-90) == 1.0
+    drawn = limit_drawn(np.array([-HUGE, math.nan, -math.inf, 1.0]))
+    assert np.array_equal(drawn, [-MAX_DRAWN, math.nan, -math.inf, 1.0], equal_nan=True)
+
+
+@pytest.mark.filterwarnings("error")
+@given(values=EVERY, times_s=st.lists(st.floats(0.0), min_size=40, max_size=40))
+@example(values=[1e308, -1e308], times_s=[float(at) for at in range(40)])
+@example(values=[HUGE, -HUGE, 1.0], times_s=[float(at) for at in range(40)])
+@example(values=[5e-324, 0.0, math.nan], times_s=[5e-324 * at for at in range(40)])
+def test_every_number_is_drawn(values: Sequence[float], times_s: Sequence[float]) -> None:
+    times_s = times_s[: len(values)]
+    traces = Traces()
+    traces.append("A", times_s, values)
+    for state in (ChartState("A"), ChartState("A", cursor_s=1.0)):
+        rows = ChartPainter().paint(traces, state, 60, 12).lines
+        assert all(sum(len(text) for text, _ in row) <= 60 for row in rows)
+    points = np.array(times_s), np.array(values)
+    assert xy_lines(
+        limit_drawn(points[0]),
+        limit_drawn(points[1]),
+        None,
+        ("t", "A"),
+        (0, 0, 0),
+        "braille",
+        60,
+        12,
+    )
+    chart = sample_chart(
+        [Sample("A", *pair[::-1], 0, 0, 0) for pair in zip(*points, strict=True)], 80
+    )
+    assert Scales.of([(line.name, line.ys, line.scale) for line in chart.lines], False)
+
+
+@pytest.mark.filterwarnings("error")
+@given(values=EVERY)
+@example(values=[HUGE, -HUGE])
+def test_every_number_is_summed(values: Sequence[float]) -> None:
+    samples = np.array(values, np.float64)
+    for found in (
+        summary_of(samples),
+        Pyramid(np.arange(len(values), dtype=np.float64), samples).figures(0, 99),
+    ):
+        if found.count:
+            assert found.min <= found.mean <= found.max and found.std >= 0.0
+            assert list(found.quantiles) == sorted(found.quantiles)
+    levels = levels_of(samples)
+    assert np.isfinite(levels.level).all()
+    for of in statistics_of(_printed(values)).values():
+        assert of.min <= of.mean <= of.max and 0.0 <= of.std < math.inf
