@@ -28,10 +28,11 @@ _TOKEN = "token-of-a-test"
 _APP = "window.jupyterapp"
 _NOTEBOOK = f"[...{_APP}?.shell?.widgets('main') ?? []][0]"
 _IS_READY = f"{_NOTEBOOK}?.context?.sessionContext?.session?.kernel?.status === 'idle'"
-_IS_LIVE = (
+_LIVE = (
     "[...document.querySelectorAll('iframe[title=tuisim]')]"
-    ".some((frame) => frame.parentElement.getBoundingClientRect().height > 100)"
+    ".find((frame) => frame.parentElement.getBoundingClientRect().height > 100)"
 )
+_LIVE_PLACE = f"(({{ left, top }}) => [left, top])({_LIVE}.getBoundingClientRect())"
 _SEEN = (
     "[...document.querySelectorAll('.jp-OutputArea-output')].filter((one) => one.offsetHeight > 0)"
 )
@@ -78,7 +79,13 @@ class Lab:
 
     async def until_live(self) -> None:
         """Wait until the app is seen in a cell."""
-        await self._page.until(_IS_LIVE)
+        await self._page.until(f"Boolean({_LIVE})")
+
+    async def copy_by_key(self) -> str:
+        """Click into the world of the live robot and press ctrl+c; return what is on the clipboard then."""
+        left, top = await self._page.js(_LIVE_PLACE)
+        await self._page.click(left + 60, top + 40)
+        return await self._page.copy_by_key()
 
     async def until_says(self, name: str, words: str) -> None:
         """Scroll to a cell, and wait until its outputs say something."""

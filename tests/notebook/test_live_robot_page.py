@@ -51,6 +51,7 @@ async def test_the_picture_becomes_the_app_in_which_later_cells_run(tmp_path: Pa
         saved = await lab.outputs()
         await lab.reload()
         await lab.until_live()
+        assert (await lab.copy_by_key()).startswith("Grey_bands, ")
         await lab.run("off")
         await lab.until_says("picture", "This is a picture; %sim_app shows the robot live.")
         await lab.run("on")

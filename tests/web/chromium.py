@@ -68,6 +68,27 @@ class Chromium:
         """Return what the page shows, pixel by pixel."""
         return pixels_of((await self.do("Page.captureScreenshot"))["data"])
 
+    async def click(self, x: float, y: float) -> None:
+        """Press and release the mouse."""
+        for kind in ("mousePressed", "mouseReleased"):
+            await self.do(
+                "Input.dispatchMouseEvent", type=kind, x=x, y=y, button="left", clickCount=1
+            )
+
+    async def copy_by_key(self) -> str:
+        """Press ctrl+c until something is on the clipboard; return that."""
+        allowed = ["clipboardReadWrite", "clipboardSanitizedWrite"]
+        await self.do("Browser.grantPermissions", permissions=allowed)
+        key = {"modifiers": 2, "key": "c", "code": "KeyC", "windowsVirtualKeyCode": 67}
+        copied = ""
+        async with asyncio.timeout(PATIENCE_S):
+            while not copied:
+                for kind in ("rawKeyDown", "keyUp"):
+                    await self.do("Input.dispatchKeyEvent", type=kind, **key)
+                await asyncio.sleep(0.3)
+                copied = await self.js("navigator.clipboard.readText()")
+        return copied
+
     async def finger(self, kind: str, *places: tuple[float, float]) -> None:
         """Put fingers on the page (`touchStart`), move them, or take them away (`touchEnd`, without places)."""
         points = [{"x": x, "y": y, "id": at} for at, (x, y) in enumerate(places)]

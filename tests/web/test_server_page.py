@@ -116,6 +116,11 @@ async def test_fingers_drag_the_robot_and_press_buttons(serve: Serve, tmp_path: 
         assert driven[1] == pytest.approx(dragged[1], abs=3)
 
 
+async def test_ctrl_c_puts_the_picture_on_the_clipboard(serve: Serve, tmp_path: Path) -> None:
+    async with opened(serve, tmp_path, (1000, 700), 1) as page:
+        assert (await page.copy_by_key()).startswith("Grey_bands, 0.00 s\n")
+
+
 NOTES_COLUMNS = """
 window.columns = [];
 const send = Socket.prototype.send;
