@@ -17,7 +17,7 @@ from tuisim.config.preferences import preference, preferences_file
 from tuisim.errors import LogError
 from tuisim.logs.arrow import METADATA_KEY, metadata_in
 from tuisim.logs.export import companion_of
-from tuisim.logs.reader import _metadata_beside
+from tuisim.logs.reader import read_companion
 from tuisim.marks.journal import Journal
 from tuisim.runs.side_files import (
     MODULES_FILE,
@@ -61,7 +61,7 @@ def of_breakpoints(_folder: Path) -> object:
 
 def of_companion(folder: Path) -> object:
     deep(companion_of(folder / "a.csv"))
-    return _metadata_beside(folder / "a.csv")
+    return read_companion(folder / "a.csv")
 
 
 def of_schema(_folder: Path) -> object:

@@ -43,8 +43,8 @@ CASES: dict[str, Case] = {
         Read(
             2,
             (VALUE,),
-            1,
-            "1 line is not a time with a value (row 1)",
+            0,
+            "1 line above the table not read (row 1)",
             lambda log: values(log, VALUE) == [5, 6],
         ),
     ),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from typing import Any, NamedTuple
 
@@ -378,24 +378,18 @@ def _named_time(table: pa.Table) -> str:
         if has_time_word(n) and _is_usable(table, n) and _is_rising_time(table, n)
     )
     by_type = (n for n in table.column_names if is_time(table.schema.field(n).type))
-    by_content = (n for n in table.column_names if _has_moments(table, n))
+    by_content = find_texts(table, is_moment)
     return next((name for names in (compound, by_type, by_content) for name in names), ROW)
 
 
-def _has_moments(table: pa.Table, name: str) -> bool:
-    """Return whether the first cells of a text column are all dates or times of day."""
-    texts = [text for text in list_first_texts(table, name) if text is not None]
-    return bool(texts) and all(map(is_moment, texts))
-
-
-def list_first_texts(table: pa.Table, name: str) -> list[str | None]:
-    """Return the first cells of a column of texts; none of another column."""
-    if not is_text(table.schema.field(name).type):
-        return []
-    texts: list[str | None] = (
-        table.column(name).slice(0, _JUDGED_CELLS).cast(pa.string()).to_pylist()
-    )
-    return texts
+def find_texts(table: pa.Table, fits: Callable[[str], bool]) -> Iterator[str]:
+    """Yield the columns of texts whose first cells all fit, but for the missing ones."""
+    for field in table.schema:
+        if is_text(field.type):
+            cells = table.column(field.name).slice(0, _JUDGED_CELLS).cast(pa.string())
+            texts = cells.drop_null().to_pylist()
+            if texts and all(map(fits, texts)):
+                yield field.name
 
 
 def _is_rising_time(table: pa.Table, name: str) -> bool:

@@ -67,7 +67,7 @@ class JsonReader:
         if name not in self._kinds:
             kinds = [_is_number(cell) for cell in cells if cell is not None]
             if not kinds:
-                return pa.nulls(len(cells), pa.float64())
+                return pa.nulls(len(cells))
             self._kinds[name] = 2 * sum(kinds) >= len(kinds)
         if not self._kinds[name]:
             return pa.array([None if cell is None else _text(cell) for cell in cells], pa.string())

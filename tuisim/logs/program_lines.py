@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import NamedTuple
 
 import pyarrow as pa
@@ -12,10 +13,10 @@ import pyarrow as pa
 from tuisim.core.conditions import NUMBER
 from tuisim.logs.blocks import Block
 from tuisim.logs.cells import UNIT
-from tuisim.logs.choices import NO_CHOICES, ReadChoices
+from tuisim.logs.choices import ReadChoices
 from tuisim.logs.columns import NAMES, time_name
 from tuisim.logs.dates import MOMENT
-from tuisim.logs.heading import BLANKS, SEPARATORS, Heading, count_rows, parse_kinds, split_cells
+from tuisim.logs.heading import BLANKS, SEPARATORS, count_rows, parse_kinds, split_cells
 from tuisim.logs.text_tables import CsvReader
 from tuisim.logs.warnings import Notes
 from tuisim.runs.samples import parse_sample
@@ -142,8 +143,8 @@ def _is_row(line: str) -> bool:
 
 
 def reader_of_lines(
-    lines: Sequence[str], is_table: bool, notes: Notes
-) -> StampedReader | SampleReader | None:
+    lines: Sequence[str], is_table: bool, notes: Notes, choices: ReadChoices
+) -> RowReader | SampleReader | None:
     """Return what reads a file with these first lines; None if they are no lines of a program.
 
     Args:
@@ -161,7 +162,8 @@ def reader_of_lines(
     stamped = sum(line.time is not None for line in parsed)
     if numbers >= len(samples):
         is_stamped = 2 * stamped > len(lines) and not with_heading
-        return StampedReader(lines, notes) if is_stamped else None
+        tabs = replace(choices, separator="tab")
+        return RowReader(split_stamped, notes, tabs) if is_stamped else None
     rows = sum(_is_row(text) for text, line in zip(lines, by_line, strict=True) if line is None)
     last = max(at for at, line in enumerate(by_line) if line is not None)
     rows = max(rows, count_rows(lines[last + 1 :]))
@@ -210,51 +212,6 @@ class SampleReader:
         return float(line.time) if _is_number(line.time) else None
 
 
-class StampedReader:
-    """Reads blocks of one file with numbers behind the times.
-
-    Args:
-        lines: First lines of the file, at least one of them with a time.
-    """
-
-    def __init__(self, lines: Sequence[str], notes: Notes) -> None:
-        at, first = next(
-            (at, parsed) for at, line in enumerate(lines) if (parsed := _parse_numbers(line))
-        )
-        width = 1 + len(_SEPARATOR.split(first.rest))
-        words = _WORDS.split(lines[at - 1].strip()) if at else []
-        self._heading = (
-            lines[at - 1] if len(words) == width and time_name(words[0]).base in NAMES else ""
-        )
-        if not self._heading:
-            # A number may be a time or not, which the column then shows.
-            words = ["column 1" if _is_number(first.time or "") else "time"]
-            words += [f"column {number}" for number in range(2, width + 1)]
-            notes.say("no header: the columns after the time are numbered")
-        self._notes = notes
-        self._table = CsvReader(notes, NO_CHOICES, Heading(tuple(words), "\t"))
-
-    def read(self, block: Block) -> pa.Table | None:
-        """Return the rows of a block; None if it has none."""
-        rows, others = [], []
-        for row, line in enumerate(block.text.decode("utf-8").split("\n"), block.first_row):
-            if (parsed := _parse_numbers(line)) is not None:
-                rows.append("\t".join((parsed.time or "", *_SEPARATOR.split(parsed.rest))))
-                continue
-            rows.append("")
-            if line.strip() and line.rstrip("\r") != self._heading and not line.startswith("#"):
-                others.append(row)
-        self._notes.add(
-            "line is not a time with a value", "lines are not times with values", others
-        )
-        return self._table.read(Block(block.first_row, "\n".join(rows).encode(), block.newline))
-
-
-def _parse_numbers(line: str) -> ProgramLine | None:
-    parsed = parse_line(line)
-    return parsed if parsed is not None and parsed.rest else None
-
-
 def are_tuples(lines: Sequence[str]) -> bool:
     """Return whether most of the lines are tuples or lists as Python prints them."""
     is_document = lines[0].lstrip().startswith(("[[", "[{")) or lines[0].strip() == "["
@@ -262,17 +219,34 @@ def are_tuples(lines: Sequence[str]) -> bool:
     return len(lines) > 1 and not is_document and 2 * rows > len(lines)
 
 
-class TupleReader:
-    """Reads blocks of one file of tuples."""
+class RowReader:
+    """Reads blocks of one file whose lines are rows of a table when they are rewritten.
 
-    def __init__(self, notes: Notes, choices: ReadChoices) -> None:
-        self._table = CsvReader(notes, choices)
+    Args:
+        rewrite: Returns a line with nothing but cells; other lines as they are.
+        choices: How the table is to be read.
+    """
+
+    def __init__(self, rewrite: Callable[[str], str], notes: Notes, choices: ReadChoices) -> None:
+        self._rewrite, self._table = rewrite, CsvReader(notes, choices)
 
     def read(self, block: Block) -> pa.Table | None:
         """Return the rows of a block; None if it has none."""
         lines = block.text.decode("utf-8").split("\n")
-        rows = [
-            (match["tuple"] or match["list"] or "") if (match := _TUPLE.fullmatch(line)) else line
-            for line in lines
-        ]
-        return self._table.read(Block(block.first_row, "\n".join(rows).encode(), block.newline))
+        text = "\n".join(map(self._rewrite, lines)).encode()
+        return self._table.read(replace(block, text=text))
+
+
+def strip_brackets(line: str) -> str:
+    """Return the cells of a tuple or list."""
+    match = _TUPLE.fullmatch(line)
+    return line if match is None else match["tuple"] or match["list"] or ""
+
+
+def split_stamped(line: str) -> str:
+    """Return a time and the numbers behind it, or their names, with tabs between them."""
+    parsed = parse_line(line)
+    if parsed is not None and parsed.rest:
+        return "\t".join((parsed.time or "", *_SEPARATOR.split(parsed.rest)))
+    words = _WORDS.split(line.strip())
+    return "\t".join(words) if time_name(words[0]).base in NAMES else line

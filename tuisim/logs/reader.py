@@ -46,11 +46,11 @@ from tuisim.logs.export import companion_of, log_metadata
 from tuisim.logs.json_rows import JsonReader
 from tuisim.logs.log import Kept, Log
 from tuisim.logs.program_lines import (
+    RowReader,
     SampleReader,
-    StampedReader,
-    TupleReader,
     are_tuples,
     reader_of_lines,
+    strip_brackets,
 )
 from tuisim.logs.text_tables import CsvReader
 from tuisim.logs.time_order import guess_unit_s, join_times, order_times
@@ -140,7 +140,7 @@ def read_pieces(source: str | Path, choices: ReadChoices = NO_CHOICES) -> Iterat
 
 
 def _log(title: str, parts: Sequence[pa.Table], notes: Notes, choices: ReadChoices) -> Log:
-    table = join_times(joined(parts))
+    table = join_times(_as_numbers(joined(parts)))
     try:
         layout = choose_columns(table, choices)
     except LogError as error:
@@ -203,33 +203,16 @@ def read_companion(path: Path) -> Mapping[str, Any]:
 
 def joined(parts: Sequence[pa.Table]) -> pa.Table:
     """Return the rows of several tables; columns that a table lacks are empty there."""
-    try:
-        table = pa.concat_tables(parts, promote_options="permissive")
-    except (pa.ArrowTypeError, pa.ArrowInvalid):
-        # A column that was empty at first, and typed as numbers, may turn out to be text.
-        kinds = pa.unify_schemas(
-            [_filled(part).schema for part in parts], promote_options="permissive"
-        )
-        table = pa.concat_tables(
-            [_with_kinds(part, kinds) for part in parts], promote_options="permissive"
-        )
-    return table.unify_dictionaries()
+    return pa.concat_tables(parts, promote_options="permissive").unify_dictionaries()
 
 
-def _is_empty(column: pa.ChunkedArray) -> bool:
-    return bool(column.null_count == len(column))
-
-
-def _filled(part: pa.Table) -> pa.Table:
-    return part.select([name for name in part.column_names if not _is_empty(part.column(name))])
-
-
-def _with_kinds(part: pa.Table, kinds: pa.Schema) -> pa.Table:
-    """Return a table with its empty columns cast to the types of other tables."""
-    for at, name in enumerate(part.column_names):
-        if _is_empty(part.column(at)) and name in kinds.names:
-            part = part.set_column(at, name, pa.nulls(part.num_rows, kinds.field(name).type))
-    return part
+def _as_numbers(table: pa.Table) -> pa.Table:
+    """Return a table in which columns without any cell are numbers."""
+    kinds = [
+        field.with_type(pa.float64()) if field.type == pa.null() else field
+        for field in table.schema
+    ]
+    return table.cast(pa.schema(kinds, table.schema.metadata))
 
 
 def _parts(
@@ -351,16 +334,16 @@ def _refuse_binary(data: bytes) -> None:
 
 def _reader_for(
     block: Block, suffix: str, choices: ReadChoices, notes: Notes
-) -> CsvReader | JsonReader | DocumentReader | SampleReader | StampedReader | TupleReader:
+) -> CsvReader | JsonReader | DocumentReader | SampleReader | RowReader:
     lines = [line for _, line in islice(block.lines(), _JUDGED_LINES)]
     is_table = suffix in _TABLES or choices.header > 0 or choices.separator != ""
     if lines and are_tuples(lines):
-        return TupleReader(notes, choices)
+        return RowReader(strip_brackets, notes, choices)
     if suffix in (".jsonl", ".ndjson", ".json") or (not is_table and begins_as_json(lines)):
         return DocumentReader(notes) if lines and is_document(lines) else JsonReader(notes)
     if not is_table and are_objects(lines):
         return JsonReader(notes)
-    return reader_of_lines(lines, is_table, notes) or CsvReader(notes, choices)
+    return reader_of_lines(lines, is_table, notes, choices) or CsvReader(notes, choices)
 
 
 def log_of_runs(runs: Sequence[StoredRun]) -> Log:

@@ -372,7 +372,7 @@ class CsvReader:
     def _typed(self, name: str, cells: pa.Array, block: Block, rows: list[int] | None) -> pa.Array:
         column = self._columns.get(name)
         if column is None:
-            return pa.nulls(len(cells), pa.float64())
+            return pa.nulls(len(cells))
         if cells.type == column.kind:
             return cells
         if column.kind == CODED:

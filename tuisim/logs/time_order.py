@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
 from dataclasses import replace
 from itertools import pairwise
 from typing import NamedTuple
@@ -19,8 +18,8 @@ from tuisim.logs.columns import (
     ROW,
     Layout,
     Times,
+    find_texts,
     is_numeric,
-    list_first_texts,
     read_times,
     time_name,
     unit_since_1970_s,
@@ -59,8 +58,7 @@ def join_times(table: pa.Table) -> pa.Table:
             other = next((part for part, own in _list_matches(table, pattern) if own == base), "")
             if other and (joined := _join_parts(table, name, other, per_s)):
                 return _replace_columns(table, name, other, base.strip("._ ") or "time", joined)
-    dates = [name for name in table.column_names if _fits_all(table, name, is_date)]
-    clocks = [name for name in table.column_names if _fits_all(table, name, is_clock)]
+    dates, clocks = (list(find_texts(table, fits)) for fits in (is_date, is_clock))
     if len(dates) == 1 and clocks:
         texts = [table.column(name).cast(pa.string()) for name in (dates[0], clocks[0])]
         joined = pc.binary_join_element_wise(*texts, " ")
@@ -96,11 +94,6 @@ def _join_parts(table: pa.Table, seconds: str, parts: str, per_s: int) -> pa.Chu
     is_date = unit_since_1970_s(table.column(seconds), 1.0) is not None
     kind = pa.timestamp("ns") if is_date else pa.duration("ns")
     return pa.chunked_array([whole_numbers(nanoseconds)]).cast(kind)
-
-
-def _fits_all(table: pa.Table, name: str, fits: Callable[[str], bool]) -> bool:
-    texts = list_first_texts(table, name)
-    return bool(texts) and all(text is not None and fits(text) for text in texts)
 
 
 def guess_unit_s(table: pa.Table, layout: Layout) -> float | None:

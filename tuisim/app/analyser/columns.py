@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import replace
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from rich.table import Table
 from rich.text import Text
@@ -195,7 +195,8 @@ def _choose_next(choices: ReadChoices, name: str, words: Iterable[str]) -> ReadC
     """Return choices with the word that follows in a list, the first of which is none."""
     listed = ["", *words]
     at = listed.index(getattr(choices, name)) + 1
-    return replace(choices, **{name: listed[at % len(listed)]})
+    changes: dict[str, Any] = {name: listed[at % len(listed)]}
+    return replace(choices, **changes)
 
 
 def _describe(choices: ReadChoices) -> str:
