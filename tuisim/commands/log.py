@@ -23,7 +23,7 @@ from tuisim.config.command_line import (
 )
 from tuisim.data_class import dataclass
 from tuisim.logs.choices import DECIMAL_SIGNS, SIGNS
-from tuisim.logs.export import LISTED
+from tuisim.logs.export import EXPORTERS, LISTED
 from tuisim.logs.units import SECONDS
 
 
@@ -150,6 +150,12 @@ OPTIONS: Mapping[str, GroupedOption] = {
     "out": option(
         "--out", metavar="FILE", type=WordType(), help=f"Write the result to a file: {LISTED}."
     ),
+    "copy": option(
+        "--out",
+        metavar="FILE",
+        type=WordType(),
+        help=f"Write the log to a file: {', '.join(EXPORTERS)} or .mcap.",
+    ),
     "chart": option(
         "--out",
         metavar="FILE",
@@ -160,7 +166,7 @@ OPTIONS: Mapping[str, GroupedOption] = {
         "--out", metavar="FILE", type=WordType(), help="Write the page to this .html file."
     ),
 }
-"""The options of the subcommands besides `COLUMNS`; three are called `--out`."""
+"""The options of the subcommands besides `COLUMNS`; four are called `--out`."""
 
 _TABLE = ("variable", "telemetry", "json", "out")
 _FRAME = ("telemetry", "json", "out")
@@ -222,7 +228,7 @@ SUBCOMMANDS: Mapping[str, Subcommand] = {
         "Show where two runs differ; exit code 1 if they do", "tables:diff", ("json",), "RUN RUN"
     ),
     "export": Subcommand(
-        "Write the log in another format", "tables:export", ("variable", "telemetry", "out")
+        "Write the log in another format", "tables:export", ("variable", "telemetry", "copy")
     ),
     "plot": Subcommand("Draw the chart, as text, SVG or PNG", "documents:plot", _CHART),
     "report": Subcommand(

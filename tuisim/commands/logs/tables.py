@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict, replace
 from math import isnan
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -21,11 +22,12 @@ from tuisim.commands.echo import (
     echo_wrapped,
     echo_written,
     finite,
+    tell,
 )
 from tuisim.commands.logs.sources import names_of, open_sources, the_source
 from tuisim.config.command_line import Arguments
 from tuisim.core.conditions import Operator
-from tuisim.errors import ConfigError, LogError
+from tuisim.errors import ConfigError, LogError, counted
 from tuisim.logs import signals
 from tuisim.logs.arrow import unique_names
 from tuisim.logs.bands import BandReport, Column, band_report, in_words, items_of
@@ -35,13 +37,13 @@ from tuisim.logs.derived import reckoned_series
 from tuisim.logs.export import check_target, export_frame, export_log, table_metadata
 from tuisim.logs.expressions import evaluate
 from tuisim.logs.log import Log, LogTable, Series
+from tuisim.logs.mcap_export import POSE, SUFFIX, export_mcap, load_writer
 from tuisim.logs.signals import Between
 from tuisim.runs.arrays import FloatArray
 
 if TYPE_CHECKING:
     import pandas as pd
 
-_POSE = ("x_mm", "y_mm", "heading_deg")
 _QUANTILE_NAMES = tuple(f"q{100 * part:g}" for part in signals.QUANTILES)
 
 
@@ -261,19 +263,19 @@ def reckon(arguments: Arguments) -> int:
     arguments.telemetry = True
     log = the_source(arguments)
     computed = {series.name: series.values for series in reckoned_series(log)}
-    frame = log.table.select(["time", *_POSE]).to_pandas().assign(**computed)
+    frame = log.table.select(["time", *POSE]).to_pandas().assign(**computed)
     if arguments.out or arguments.json:
         show_frame(frame, arguments)
         return 0
     if frame.empty:
         raise LogError("has no ticks", file=log.title)
     end, worst = frame.iloc[-1], frame.loc[frame["error_mm"].idxmax()]
-    real, reckoned = ([end[f"{of}{name}"] for name in _POSE] for of in ("", "reckoned_"))
+    real, reckoned = ([end[f"{of}{name}"] for name in POSE] for of in ("", "reckoned_"))
     error = [one - other for one, other in zip(reckoned, real, strict=True)]
     # By the shorter way round.
     error = [round(one, 2) + 0.0 for one in (*error[:2], (error[2] + 180.0) % 360.0 - 180.0)]
     rows = [("real", *real), ("reckoned", *reckoned), ("error", *error)]
-    formats = dict(zip(("at_the_end", *_POSE), ("", ".2f", ".2f", ".2f"), strict=True))
+    formats = dict(zip(("at_the_end", *POSE), ("", ".2f", ".2f", ".2f"), strict=True))
     show_rows([dict(zip(formats, row, strict=True)) for row in rows], arguments, formats)
     echo(
         f"reckoned place: {end['error_mm']:.2f} mm off at the end, at most {worst['error_mm']:.2f} mm, "
@@ -286,11 +288,29 @@ def export(arguments: Arguments) -> int:
     """Write the log, or some of its variables, in another format."""
     if not arguments.out:
         raise ConfigError("no file given", "such as --out log.parquet", key="export")
+    if Path(arguments.out).suffix.lower() == SUFFIX:
+        _export_mcap(arguments)
+        return 0
     check_target(arguments.out)
     log = the_source(arguments)
     export_log(log, _chosen_part(log, arguments), arguments.out)
     echo_written(arguments.out)
     return 0
+
+
+def _export_mcap(arguments: Arguments) -> None:
+    target = Path(arguments.out)
+    load_writer()
+    log = the_source(arguments)
+    names = names_of(log, arguments)
+    has_pose = not arguments.variable or set(POSE) <= set(arguments.variable)
+    infinite = export_mcap(
+        log, names, target, lambda part: tell(f"writing {target}", part, 1.0), has_pose=has_pose
+    )
+    if infinite:
+        values = counted(infinite, "value is", "values are")
+        echo_error(f"note: {target}: {values} infinite, which JSON does not have: left out")
+    echo_written(target)
 
 
 def _chosen_part(log: Log, arguments: Arguments) -> LogTable:
