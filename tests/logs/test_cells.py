@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import pytest
+
 from tests.cases import cases
 from tests.logs.log_cases import Case, Read, check_input, values
 from tuisim.logs.choices import ReadChoices
@@ -63,6 +65,16 @@ def test_a_decimal_sign(tmp_path: Path, sign: str, number: float) -> None:
     path = tmp_path / "a.csv"
     path.write_text('x,red\na,"1,000"\nb,"2,000"\n')
     assert values(open_log(path, ReadChoices(decimal=sign)))[0] == number
+
+
+@pytest.mark.parametrize("encoding", ["cp1252", "gbk", "shift_jis"])
+def test_numbers_are_right_in_whatever_encoding_is_guessed(tmp_path: Path, encoding: str) -> None:
+    words = {"cp1252": "Größe", "gbk": "亮度", "shift_jis": "光ー"}
+    path = tmp_path / "a.csv"
+    path.write_bytes(f"time;{words[encoding]}\n0;5,5\n1;6,5\n2;7,5\n".encode(encoding))
+    log = open_log(path)
+    assert values(log, log.names[0]) == [5.5, 6.5, 7.5]
+    assert "(--encoding selects another)" in log.notes[0]
 
 
 @cases(

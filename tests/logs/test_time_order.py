@@ -62,6 +62,21 @@ CASES: dict[str, Case] = {
         b"tv_sec,tv_usec,red\n1,900000,5\n2,400000,6\n",
         red(1.9, 2.4),
     ),
+    "date and clock, the first of which are missing": (
+        "a.csv",
+        b"date,clock,red\n,,5\n2024-01-05,10:00:00,6\n2024-01-05,10:00:02,7\n",
+        red(0, 0, 2),
+    ),
+    "a date under another name, missing at first": (
+        "a.csv",
+        b"when,red\n,5\n2024-01-05 10:00:00,6\n2024-01-05 10:00:02,7\n",
+        red(0, 0, 2),
+    ),
+    "few dates are remarks": (
+        "a.csv",
+        b"red,seen\n5,\n6,\n7,2024-01-05 10:00:02\n",
+        red(0, 1, 2),
+    ),
     "date and clock": (
         "a.csv",
         b"Datum;Uhrzeit;red\n01.03.2025;23:59:59;5\n02.03.2025;00:00:01;6\n",

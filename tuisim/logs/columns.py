@@ -383,12 +383,12 @@ def _named_time(table: pa.Table) -> str:
 
 
 def find_texts(table: pa.Table, fits: Callable[[str], bool]) -> Iterator[str]:
-    """Yield the columns of texts whose first cells all fit, but for the missing ones."""
+    """Yield the columns of texts whose first cells all fit; less than half of them may be missing."""
     for field in table.schema:
         if is_text(field.type):
             cells = table.column(field.name).slice(0, _JUDGED_CELLS).cast(pa.string())
-            texts = cells.drop_null().to_pylist()
-            if texts and all(map(fits, texts)):
+            texts = list(filter(str.strip, cells.drop_null().to_pylist()))
+            if 2 * len(texts) > len(cells) and all(map(fits, texts)):
                 yield field.name
 
 

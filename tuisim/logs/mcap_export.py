@@ -25,20 +25,20 @@ _TOLD_EVERY = 10_000
 """Messages between two updates of the progress."""
 
 
-def _object(title: str, **properties: Any) -> dict[str, Any]:
+def _build_object(title: str, **properties: Any) -> dict[str, Any]:
     return {"type": "object", "title": title, "properties": properties}
 
 
 _NUMBER = {"type": "number"}
 _AXES = dict.fromkeys(("x", "y", "z"), _NUMBER)
-_POSE_SCHEMA = _object(
+_POSE_SCHEMA = _build_object(
     "foxglove.PoseInFrame",
-    timestamp=_object("time", sec={"type": "integer"}, nsec={"type": "integer"}),
+    timestamp=_build_object("time", sec={"type": "integer"}, nsec={"type": "integer"}),
     frame_id={"type": "string"},
-    pose=_object(
+    pose=_build_object(
         "foxglove.Pose",
-        position=_object("foxglove.Vector3", **_AXES),
-        orientation=_object("foxglove.Quaternion", **_AXES, w=_NUMBER),
+        position=_build_object("foxglove.Vector3", **_AXES),
+        orientation=_build_object("foxglove.Quaternion", **_AXES, w=_NUMBER),
     ),
 )
 
@@ -87,8 +87,8 @@ def export_mcap(
     check_place(path)
     is_posed = has_pose and set(POSE) <= set(log.table.column_names)
     values = [name for name in names if not (is_posed and name.partition(" #")[0] in POSE)]
-    channels = [*map(_value_channel, [log] * len(values), values)]
-    channels += _pose_channels(log) if is_posed else ()
+    channels = [*map(_build_value_channel, [log] * len(values), values)]
+    channels += _build_pose_channels(log) if is_posed else ()
     if any(len(one.times_ns) and one.times_ns.min() < 0 for one in channels):
         raise ExportError(f"cannot write {path}: MCAP has no times before 0", "export to Parquet")
     try:
@@ -125,24 +125,24 @@ def _write_messages(
         writer.add_message(ids[at], time_ns, text, time_ns, count)
 
 
-def _value_channel(log: Log, name: str) -> _Channel:
+def _build_value_channel(log: Log, name: str) -> _Channel:
     series = log.series(name)
     known = np.isfinite(series.values)
     times_s, values = series.time_s[known].tolist(), series.values[known].tolist()
     base = name.partition(" #")[0]
     unit = log.metadata.get("units", {}).get(base) or unit_of(base).words
     number = {"type": "number", "description": unit} if unit else _NUMBER
-    schema = _object(name, time={"type": "number", "description": "s"}, value=number)
+    schema = _build_object(name, time={"type": "number", "description": "s"}, value=number)
     return _Channel(
         f"/{name}",
         f"tuisim.{name}",
         schema,
-        _nanoseconds(series.time_s[known]),
+        _round_nanoseconds(series.time_s[known]),
         lambda at: f'{{"time": {times_s[at]!r}, "value": {values[at]!r}}}',
     )
 
 
-def _pose_channels(log: Log) -> Iterator[_Channel]:
+def _build_pose_channels(log: Log) -> Iterator[_Channel]:
     """Yield the poses of each run."""
     runs = log.numbers(log.layout.run) if log.layout.run else np.ones(log.rows)
     numbers = [log.numbers(name) for name in POSE]
@@ -151,12 +151,12 @@ def _pose_channels(log: Log) -> Iterator[_Channel]:
     for run in ordinals:
         of_run = known & (runs == run)
         topic = "/pose" if len(ordinals) == 1 else f"/pose #{run:.0f}"
-        times_ns = _nanoseconds(log.times_s[of_run])
-        write = _pose_writer(times_ns, *(column[of_run] for column in numbers))
+        times_ns = _round_nanoseconds(log.times_s[of_run])
+        write = _build_pose_writer(times_ns, *(column[of_run] for column in numbers))
         yield _Channel(topic, "foxglove.PoseInFrame", _POSE_SCHEMA, times_ns, write)
 
 
-def _pose_writer(
+def _build_pose_writer(
     times_ns: IntArray, x_mm: FloatArray, y_mm: FloatArray, heading_deg: FloatArray
 ) -> Callable[[int], str]:
     half_rad = np.radians(heading_deg) / 2
@@ -176,5 +176,5 @@ def _pose_writer(
     return write
 
 
-def _nanoseconds(times_s: FloatArray) -> IntArray:
+def _round_nanoseconds(times_s: FloatArray) -> IntArray:
     return np.rint(times_s * 1e9).astype(np.int64)

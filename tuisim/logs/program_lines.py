@@ -56,8 +56,8 @@ Values = tuple[tuple[str, float], ...]
 class ProgramLine(NamedTuple):
     """What a line tells."""
 
-    time: str | None
-    """Its time as it is written; None without one."""
+    time: float | str | None
+    """Its time: seconds behind a sample, or what stands before; None without one."""
     samples: Values = ()
     rest: str = ""
     """Numbers without names; empty if there are samples."""
@@ -68,10 +68,9 @@ def parse_line(line: str) -> ProgramLine | None:
     if len(line) > _MOST_CHARACTERS:
         return None
     if (sample := parse_sample(line)) is not None:
-        name, value, time_s = sample
-        return ProgramLine(None if time_s is None else repr(time_s), ((name, value),))
+        return ProgramLine(sample[2], (sample[:2],))
     if (teleplot := _TELEPLOT.fullmatch(line.strip())) is not None:
-        return ProgramLine(repr(float(teleplot[2]) / 1000), ((teleplot[1], float(teleplot[3])),))
+        return ProgramLine(float(teleplot[2]) / 1000, ((teleplot[1], float(teleplot[3])),))
     time, rest, certain = _split_time(line)
     if samples := _parse_samples(rest):
         return ProgramLine(time, samples)
@@ -131,8 +130,8 @@ def _parse_value(text: str) -> float:
     return value if math.isfinite(value) or "inf" in text.lower() else math.nan
 
 
-def _is_number(time: str) -> bool:
-    return re.fullmatch(NUMBER, time) is not None
+def _is_number(time: float | str) -> bool:
+    return isinstance(time, float) or re.fullmatch(NUMBER, time) is not None
 
 
 def _is_row(line: str) -> bool:
@@ -188,6 +187,10 @@ class SampleReader:
         rows: list[tuple[int, str, float, float | str | None]] = []
         others = []
         for row, line in block.lines():
+            # The usual case is fast.
+            if self._has_seconds and (sample := parse_sample(line)) is not None:
+                rows.append((row, *sample))
+                continue
             parsed = parse_line(line)
             if parsed is None or not parsed.samples:
                 others.append(row)
@@ -208,7 +211,7 @@ class SampleReader:
 
     def _choose_time(self, line: ProgramLine) -> float | str | None:
         if line.time is None or not self._has_seconds:
-            return line.time
+            return None if line.time is None else str(line.time)
         return float(line.time) if _is_number(line.time) else None
 
 
@@ -247,6 +250,6 @@ def split_stamped(line: str) -> str:
     """Return a time and the numbers behind it, or their names, with tabs between them."""
     parsed = parse_line(line)
     if parsed is not None and parsed.rest:
-        return "\t".join((parsed.time or "", *_SEPARATOR.split(parsed.rest)))
+        return "\t".join((str(parsed.time), *_SEPARATOR.split(parsed.rest)))
     words = _WORDS.split(line.strip())
     return "\t".join(words) if time_name(words[0]).base in NAMES else line

@@ -140,7 +140,7 @@ def read_pieces(source: str | Path, choices: ReadChoices = NO_CHOICES) -> Iterat
 
 
 def _log(title: str, parts: Sequence[pa.Table], notes: Notes, choices: ReadChoices) -> Log:
-    table = join_times(_as_numbers(joined(parts)))
+    table = join_times(_fill_types(joined(parts)))
     try:
         layout = choose_columns(table, choices)
     except LogError as error:
@@ -206,7 +206,7 @@ def joined(parts: Sequence[pa.Table]) -> pa.Table:
     return pa.concat_tables(parts, promote_options="permissive").unify_dictionaries()
 
 
-def _as_numbers(table: pa.Table) -> pa.Table:
+def _fill_types(table: pa.Table) -> pa.Table:
     """Return a table in which columns without any cell are numbers."""
     kinds = [
         field.with_type(pa.float64()) if field.type == pa.null() else field
