@@ -16,7 +16,6 @@ from mats import MATS, picture
 from PIL import Image
 
 FOLDER = Path(draw.__file__).parent
-WHITE, BLACK = (255, 255, 255), (0, 0, 0)
 
 
 @cache
@@ -25,7 +24,7 @@ def stored(name: str) -> Image.Image:
         return image.copy()
 
 
-@pytest.mark.slow
+@pytest.mark.quick_cases("Grey_bands", "Lollipop", "MNIST_Digits", "Testcard", "Two_shapes")
 @pytest.mark.parametrize("name", MATS)
 def test_picture_equals_a_fresh_drawing(name: str) -> None:
     assert stored(name).mode == "RGB"
@@ -43,57 +42,6 @@ def test_picture_is_small(name: str) -> None:
     # Noise is what no picture format makes small.
     limit = 1_000_000 if name == "Noisy_Lollipop" else 200_000
     assert (FOLDER / f"{name}.png").stat().st_size < limit
-
-
-@pytest.mark.parametrize(
-    "name, column, row, rgb",
-    [
-        ("Grey_bands", 249, 500, WHITE),
-        ("Grey_bands", 250, 500, (220, 220, 220)),
-        ("Grey_bands", 450, 500, (220, 220, 220)),
-        ("Grey_bands", 451, 500, WHITE),
-        ("Grey_bands", 750, 900, (211, 211, 211)),
-        ("Grey_bands", 750, 901, WHITE),
-        ("Grey_bands", 1900, 250, (255, 0, 0)),
-        ("Grey_bands", 1900, 249, WHITE),
-        ("Grey_bands", 1900, 751, WHITE),
-        ("Grey_and_black", 1800, 650, (128, 128, 128)),
-        ("Coloured_bands", 1050, 750, (0, 0, 255)),
-        ("Rainbow_bands", 999, 150, (0, 255, 255)),
-        ("Rainbow_bands", 1000, 150, (255, 0, 255)),
-        ("Linear_grey", 7, 99, WHITE),
-        ("Linear_grey", 7, 1042, (1, 1, 1)),
-        ("Linear_grey", 7, 1043, BLACK),
-        ("Linear_grey", 7, 1093, BLACK),
-        ("Linear_grey", 7, 1094, WHITE),
-        ("Radial_grey", 1181, 571, (237, 237, 237)),
-        ("Radial_red", 1181, 571, (243, 74, 74)),
-        ("Loop", 200, 200, WHITE),
-        ("Loop", 281, 200, BLACK),
-        ("Loop", 299, 600, BLACK),
-        ("Loop", 300, 600, WHITE),
-        ("Square", 319, 500, (128, 128, 128)),
-        ("Square", 320, 500, WHITE),
-        ("Two_shapes", 1450, 399, WHITE),
-        ("Two_shapes", 1450, 400, BLACK),
-        ("Two_shapes", 1450, 499, BLACK),
-        ("Two_shapes", 1450, 500, WHITE),
-        ("Lollipop", 410, 571, BLACK),
-        ("Lollipop", 430, 571, (211, 211, 211)),
-        ("Lollipop", 1700, 560, BLACK),
-        ("Lollipop", 1700, 572, (255, 255, 0)),
-        ("Lollipop", 1900, 560, (255, 0, 0)),
-        ("Testcard", 0, 600, (15, 15, 15)),
-        ("Testcard", 1336, 300, (0, 191, 191)),
-        ("Testcard", 320, 700, (0, 191, 191)),
-        ("Testcard", 288, 376, (0, 191, 191)),
-        ("Testcard", 1485, 450, (254, 254, 254)),
-    ],
-)
-def test_pixels_known_from_the_numbers(
-    name: str, column: int, row: int, rgb: tuple[int, int, int]
-) -> None:
-    assert stored(name).getpixel((column, row)) == rgb
 
 
 @pytest.mark.slow

@@ -117,10 +117,3 @@ def test_every_mat_with_a_model_has_readings() -> None:
     with_model = {name for name, _ in READINGS}
     assert len(with_model) == 22 and with_model <= set(MATS)
     assert {kind for _, kind in READINGS} == {"random", "edge", "letters", "tile"}
-
-
-@pytest.mark.parametrize("name", sorted({name for name, kind in READINGS if kind == "edge"}))
-def test_the_places_are_many_and_turned_all_ways(name: str) -> None:
-    rows = READINGS[name, "random"] + READINGS[name, "edge"]
-    assert len(rows) >= 20
-    assert {row[2] for row in rows} == {0, 90, 180, 270}

@@ -6,13 +6,12 @@ import re
 from dataclasses import replace
 from typing import Any
 
-import numpy as np
 import pytest
 
 from tests.cases import cases
 from tuisim.charts import axes
 from tuisim.charts.bands import band_span
-from tuisim.charts.canvas import Curve, TextRun, canvas, styled
+from tuisim.charts.canvas import TextRun, canvas, styled
 from tuisim.charts.text_chart import ChartPainter, ChartPicture, ChartState, values_at
 from tuisim.charts.traces import Traces
 
@@ -148,14 +147,6 @@ def test_without_colours_marks_are_drawn_only_where_they_are_needed(
     assert ("[x] Colour" in shown) is (signs == "braille")
 
 
-@pytest.mark.parametrize("rows", [3, 5, 8])
-def test_marks_use_the_full_height(rows: int) -> None:
-    levels = np.array([2.0, 50.2, 82.7])
-    drawn = canvas([Curve(levels, levels, (255, 0, 0), "o")], 20, rows, (0.0, 100.0), (0.0, 100.0))
-
-    assert sum("o" in "".join(part for part, _ in runs) for runs in drawn) == len(levels)
-
-
 @pytest.mark.parametrize(
     "width, row",
     [
@@ -281,17 +272,6 @@ def test_points_out_of_order_and_numbers_that_are_none() -> None:
 
     assert trace.times_s.tolist() == [1.0, 2.0, 3.0]
     assert [trace.at(time_s) for time_s in (0.5, 1.0, 2.9)] == [None, 10.0, 20.0]
-
-
-def test_many_points() -> None:
-    made = Traces()
-    for at in range(100):
-        made.append(
-            "t", [at * 10.0 + step for step in range(10)], [float(step) for step in range(10)]
-        )
-
-    assert len(next(iter(made)).times_s) == 1000
-    assert made.end_s() == 999.0
 
 
 def test_a_faint_grid_stands_at_the_labels_and_gives_way_to_curves_and_cursors() -> None:

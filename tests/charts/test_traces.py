@@ -52,13 +52,6 @@ def test_no_points_at_all() -> None:
     assert not len(Pyramid(np.array([np.nan]), np.array([1.0])).points((0.0, 1.0), 10)[0])
 
 
-def test_a_path_keeps_one_point_a_dot() -> None:
-    angles = np.linspace(0.0, 2000 * np.pi, 500_000)
-    xs, ys = seen_points(np.cos(angles), np.sin(angles), ((-1.0, 1.0), (-1.0, 1.0)), 40, 20)
-    assert len(xs) < 2000
-    assert xs.max() > 0.9 and ys.min() < -0.9
-
-
 def test_the_place_that_is_looked_at_is_marked() -> None:
     xs, ys = np.array([0.0, 5.0, 10.0]), np.array([0.0, 5.0, 10.0])
     lines = xy_lines(xs, ys, 2, ("x", "y"), (255, 0, 0), "braille", 40, 12)

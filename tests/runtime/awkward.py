@@ -298,15 +298,3 @@ y = 2
 ENDLESS = frozenset({"spin", "empty spin"})
 ENDS = {"an error": "raised", "syntax error": "raised"}
 """Ends other than finished."""
-QUICK = (
-    "generators",
-    "threads",
-    "metaclass",
-    "repr that raises",
-    "repr with effects",
-    "own trace function",
-    "async",
-    "exit",
-    "empty spin",
-    "hostile namespace",
-)

@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import pytest
 
 from tests.cases import cases
-from tests.conftest import Command
 from tests.running import Run, over
 from tuisim.config.build import build_run_spec
 from tuisim.config.options import Settings
@@ -125,10 +122,3 @@ NO_ADDRESSES = (
 @pytest.mark.parametrize("text", NO_ADDRESSES)
 def test_other_numbers_stay(text: str) -> None:
     assert Addresses(dict).stable(text) == (text,)
-
-
-def test_a_rerun_finds_no_difference(here: Command, tmp_path: Path) -> None:
-    (tmp_path / "objects.py").write_text(PROGRAM)
-    here("run", "objects.py")
-    done = here("runs", "rerun", "last")
-    assert (done.returncode, done.stdout) == (0, "bit-identical: recording, output, settings\n")

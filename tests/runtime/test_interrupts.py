@@ -12,7 +12,6 @@ ENDLESS = "    while True: time.sleep(1)\n"
 
 LATE = {
     "exit function": f"import atexit, time\n@atexit.register\ndef f():\n{ENDLESS}",
-    "two exit functions": f"import atexit, time\ndef f():\n{ENDLESS}atexit.register(f)\natexit.register(f)",
     "__del__": f"import time\nclass A:\n  def __del__(self):\n{ENDLESS}A()\ntime.sleep(0.1)\nprint('no')",
     "__del__ at the end": f"import time\nclass A:\n  def __del__(self):\n{ENDLESS}a = A()",
     "generator at the end": f"import time\ndef g():\n  try: yield\n  finally:\n{ENDLESS}a = g()\nnext(a)",

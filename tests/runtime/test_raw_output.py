@@ -38,12 +38,6 @@ def test_its_order_and_time_are_those_of_the_program(run: Run) -> None:
     ]
 
 
-def test_it_is_the_same_however_the_program_is_started(run: Run, start: Start) -> None:
-    forked = run(MIXED, prelude="none")
-    live = over(start(MIXED, prelude="none", live=True, speed=0.0))
-    assert live.recording[1] == forked.recording[1]
-
-
 def test_more_than_fits_at_once_is_kept(run: Run) -> None:
     size = 2 * CAPACITY_BYTES + 5
     done = run(f"import os\nprint(os.write(1, b'x' * {size}), end='')", prelude="none")

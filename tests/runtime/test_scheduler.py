@@ -12,11 +12,6 @@ THREADS = (
 )
 
 
-def test_500_threads_run(run: Run) -> None:
-    done = run(THREADS.format(500), prelude="none")
-    assert (done.lines, done.ended.time_ns) == (["1"], 1_000_000_000)
-
-
 def test_the_limit_of_threads_is_named(run: Run) -> None:
     summary = run(THREADS.format(1001), prelude="none").ended.summary
     assert (

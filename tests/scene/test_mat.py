@@ -62,7 +62,7 @@ def test_a_thin_line_is_kept(width_mm: int, ground: int, ink: int) -> None:
 
 
 @pytest.mark.parametrize("cells", list(CellSet))
-@pytest.mark.parametrize("size", [(50, 12), (74, 20), (120, 36)], ids=str)
+@pytest.mark.parametrize("size", [(74, 20)], ids=str)
 @pytest.mark.parametrize(
     "across_per_down", [0.0, 0.37, 1.0, 3.1], ids=["upright", "steep", "even", "flat"]
 )
@@ -99,26 +99,6 @@ def test_a_thin_line_has_no_gaps(
     seen = [255 - near[int(row), int(col)] for col, row in at]
     assert min(seen) > 60
     assert min(seen) > 0.5 * max(seen)
-
-
-def test_bands_keep_their_grey() -> None:
-    pixels = mat()
-    pixels[150:901, 250:451] = 220
-    pixels[150:901, 650:851] = 211
-
-    row = middle_row(pixels)
-
-    assert row[11] == 220
-    assert row[24] == 211
-
-
-def test_a_gradient_stays_in_order() -> None:
-    pixels = mat()
-    pixels[:] = np.linspace(255, 0, 2362).astype(np.uint8)[None, :, None]
-
-    row = middle_row(pixels)
-
-    assert row == sorted(row, reverse=True)
 
 
 def test_a_view_finer_than_the_mat_repeats_pixels() -> None:

@@ -33,7 +33,7 @@ def lines(picture: Pixels, cells: CellSet) -> list[str]:
 
 
 @pytest.mark.parametrize("cells", SETS)
-@pytest.mark.parametrize("ground", [255, 220, 128, 0])
+@pytest.mark.parametrize("ground", [255, 0])
 def test_the_robot_and_its_heading_are_seen(cells: CellSet, ground: int) -> None:
     mat = np.full((1143, 2362, 3), ground, np.uint8)
     glyphs = glyph_set(cells)
@@ -76,7 +76,7 @@ def _reached(white: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool_]:
         reached = wider
 
 
-@pytest.mark.parametrize("ground", [255, 211, 128, 0])
+@pytest.mark.parametrize("ground", [211, 0])
 def test_the_robot_in_dots_is_a_shape_and_no_pattern(ground: int) -> None:
     """Within a white rim it has a closed black edge, so that it is no accident of the dots around it."""
     view = whole_field(2 * COLS, 4 * ROWS, CellPoints(2, 4))
@@ -84,7 +84,7 @@ def test_the_robot_in_dots_is_a_shape_and_no_pattern(ground: int) -> None:
         np.full((1143, 2362, 3), ground, np.uint8), (255,) * 3, PenTrace(), mono=True
     )
     robot = RobotSpec()
-    for heading in range(0, 360, 15):
+    for heading in range(0, 360, 30):
         pose = Pose(1181, 571, heading)
         picture = painter.paint(view, SceneState(robot, pose))[..., 0]
         empty = painter.paint(view, SceneState(robot, Pose(9000, 9000, 0)))[..., 0]

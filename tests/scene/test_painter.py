@@ -28,18 +28,6 @@ from tuisim.terminal.pixels import CellPoints, Pixels
 HERE = Pose(1000.0, 500.0, 0.0)
 
 
-def test_the_obstacle_at_hand_has_another_edge() -> None:
-    boxes = (Obstacle(300, 200, 200, 300), Obstacle(900, 200, 200, 300))
-    plain = painter().paint(VIEW, SceneState(ROBOT, Pose(2000, 1000, 0), obstacles=boxes))
-    marked = painter().paint(
-        VIEW, SceneState(ROBOT, Pose(2000, 1000, 0), obstacles=boxes, marked=1)
-    )
-
-    assert at(plain, 305, 350) == at(marked, 305, 350) != (255, 255, 255)
-    assert at(plain, 905, 350) != at(marked, 905, 350)
-    assert at(plain, 1000, 350) == at(marked, 1000, 350)
-
-
 def test_rays_end_at_their_length_and_at_the_field() -> None:
     scene = SceneState(ROBOT, HERE, rays=((0.0, 600.0), (90.0, 5000.0)))
 
@@ -93,34 +81,6 @@ def test_a_beacon_is_drawn_also_at_the_edge(view: Viewport) -> None:
     assert at(picture, 1000, 500, view) == BEACON_CORE_RGB
     assert (picture == np.array(BEACON_RGB)).all(axis=2).sum() >= 4
     painter().paint(view, replace(scene, beacon=BeaconSpec(0.0, 1143.0)))
-
-
-def test_the_ghost_is_drawn_below_the_robot() -> None:
-    alone = painter().paint(VIEW, SceneState(ROBOT, HERE))
-    both = painter().paint(
-        VIEW, SceneState(ROBOT, HERE, faint=((Faint.NOW, replace(HERE, x_mm=500.0)),))
-    )
-
-    assert at(both, 500, 500) != (255, 255, 255)
-    assert at(both, 1000, 500) == at(alone, 1000, 500)
-
-
-def test_an_earlier_robot_is_drawn_below_all_others() -> None:
-    alone = painter().paint(
-        VIEW, SceneState(ROBOT, HERE, faint=((Faint.NOW, replace(HERE, x_mm=1500.0)),))
-    )
-    scene = SceneState(
-        ROBOT,
-        HERE,
-        faint=((Faint.BESIDE, replace(HERE, x_mm=500.0)), (Faint.NOW, replace(HERE, x_mm=1500.0))),
-    )
-    both = painter().paint(VIEW, scene)
-
-    assert at(both, 500, 500) != (255, 255, 255)
-    assert (at(both, 1000, 500), at(both, 1500, 500)) == (
-        at(alone, 1000, 500),
-        at(alone, 1500, 500),
-    )
 
 
 def full_mat() -> Pixels:

@@ -10,7 +10,6 @@ import pytest
 
 from tests.running import Run
 from tests.scene.scenes import CORNERS, MIDDLE, pixel, spec_of
-from tuisim.config.robots import ROBOTS
 from tuisim.core.geometry import Pose
 from tuisim.core.profile import ROBOLAB
 from tuisim.core.spec import (
@@ -26,10 +25,9 @@ from tuisim.core.spec import (
 )
 from tuisim.core.tick_record import TICK_FIELDS
 from tuisim.runs.views import TickRecord
-from tuisim.scene.painter import BEACON_RGB, OBSTACLE_RGB, RAY_RGB, ScenePainter
+from tuisim.scene.painter import ScenePainter
 from tuisim.scene.pen import PenTrace, Piece
 from tuisim.scene.pictures import (
-    RIM_RGB,
     find_area,
     find_view,
     fitting_view,
@@ -75,21 +73,6 @@ def test_it_is_what_a_screen_shows_in_a_frame() -> None:
     assert len(places) and outside.mean() > 0.99
 
 
-def test_everything_on_the_field_is_seen() -> None:
-    picture = np.asarray(world_picture(SPEC, WHITE, HERE, (TRACE,), rays=True))
-
-    seen = set(map(tuple, np.unique(picture.reshape(-1, 3), axis=0).tolist()))
-    assert {
-        RAY_RGB,
-        OBSTACLE_RGB,
-        BEACON_RGB,
-        COLORED.body,
-        COLORED.pressed,
-        (0, 128, 128),
-        RIM_RGB,
-    } <= seen
-
-
 @pytest.mark.parametrize(
     "pose, rays, is_seen", [(HERE, True, True), (HERE, False, False), (None, True, False)]
 )
@@ -126,10 +109,8 @@ def test_a_white_mat_has_a_frame(corner: tuple[float, float]) -> None:
     assert pixel(picture, spec.robot, (x_mm + 6 * outward, y_mm)) not in ((255, 255, 255), edge)
 
 
-@pytest.mark.quick_cases("Small_Robot")
-@pytest.mark.parametrize("robot", ROBOTS)
-def test_a_robot_on_the_edge_is_not_cut_off(robot: str) -> None:
-    spec = spec_of(robot)
+def test_a_robot_on_the_edge_is_not_cut_off() -> None:
+    spec = spec_of("Small_Robot")
     for x_mm, y_mm in CORNERS:
         outward = degrees(atan2(y_mm - FIELD_HEIGHT_MM / 2, x_mm - FIELD_WIDTH_MM / 2))
         picture = np.asarray(world_picture(spec, WHITE, Pose(x_mm, y_mm, outward)))

@@ -57,27 +57,6 @@ def test_an_edge_is_sharp_up_to_an_area_that_begins_beside_it() -> None:
     assert (drawn(mat, SIZES[1])[18:21, 45] == 255).all()
 
 
-@pytest.mark.parametrize("size", SIZES, ids=str)
-def test_lines_round_shapes_and_gradients_are_as_before(size: tuple[int, int]) -> None:
-    rows, cols = np.indices((1143, 2362))
-    mat = field()
-    mat[:, 300:320] = 0
-    mat[200:900, 400:1000] = (128 + 100 * np.sin(cols / 90.0))[200:900, 400:1000, None]
-    mat[(rows - 500) ** 2 + (cols - 1600) ** 2 < 45**2] = (255, 0, 0)
-    mat[np.abs(rows - 0.7 * cols + 700) < 15] = 0
-    picture = drawn(mat, size)
-    mixed = [color for color in colors_of(picture) if len(set(color)) > 1]
-    assert len(mixed) > 1, "the disc has soft edges"
-    exact = drawn(mat, size, exact=True)
-    assert np.abs(picture.astype(int) - exact).mean() < 3
-
-
-def test_an_exact_picture_keeps_its_means() -> None:
-    mat = field()
-    mat[201:901, 501:607] = 128
-    assert len(colors_of(drawn(mat, SIZES[0], exact=True))) > 2
-
-
 def test_a_line_reaches_the_area_that_it_ends_at() -> None:
     mat = field()
     mat[203:907, 803:1205] = 0

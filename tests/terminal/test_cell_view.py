@@ -5,7 +5,6 @@ from __future__ import annotations
 import gc
 import re
 from typing import Any
-from weakref import ref
 
 import numpy as np
 import pytest
@@ -108,12 +107,6 @@ async def test_one_key_switches_to_characters_and_back() -> None:
         assert pilot.app.query_one(WorldView)._tiles is not None
 
 
-async def test_a_terminal_without_pixels_gets_cells() -> None:
-    async with on_wire(LabApp(settings()), "truecolor") as pilot:
-        await answered(pilot, "\x1b[?1;2c")
-        assert pilot.app.query_one(WorldView)._tiles is None
-
-
 async def test_who_wants_no_colors_gets_no_pixels(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("NO_COLOR", "1")
     async with on_wire(LabApp(settings()), "truecolor") as pilot:
@@ -131,7 +124,7 @@ async def test_glyphs_that_the_user_has_chosen_are_shown_instead() -> None:
         await sharp(pilot, pilot.app.query_one(WorldView))
 
 
-@pytest.mark.slow
+@pytest.mark.quick_cases("kitty")
 @pytest.mark.parametrize("protocol", Protocol)
 async def test_on_a_slow_link_half_blocks_are_sent_for_what_moves(
     protocol: Protocol, monkeypatch: pytest.MonkeyPatch
@@ -155,19 +148,6 @@ async def test_on_a_slow_link_half_blocks_are_sent_for_what_moves(
         assert len("".join(wire_of(pilot).sent)) < 20_000
 
 
-@pytest.mark.quick_cases("kitty")
-@pytest.mark.parametrize("protocol", Protocol)
-async def test_half_blocks_become_pixels_once_the_picture_stands_still(protocol: Protocol) -> None:
-    async with on_wire(LabApp(settings()), "truecolor") as pilot:
-        lab(pilot).picture_mode.is_slow = lambda: True
-        await answered(pilot, ANSWERS[protocol])
-        for key in ("right", "a"):
-            await pilot.press(key)
-        world = pilot.app.query_one(WorldView)
-        await sharp(pilot, world)
-        assert np.array_equal(part_of(seen_on(pilot), world), drawn_by(world, protocol))
-
-
 @pytest.mark.slow
 async def test_kitty_keeps_no_images_of_pictures_that_have_gone() -> None:
     async with on_wire(LabApp(settings()), "truecolor") as pilot:
@@ -180,17 +160,6 @@ async def test_kitty_keeps_no_images_of_pictures_that_have_gone() -> None:
         await pilot.press("question_mark")
         await until_quiet(pilot)
         assert not seen_on(pilot).images
-
-
-@pytest.mark.slow
-async def test_pictures_that_have_gone_take_no_memory() -> None:
-    async with on_wire(LabApp(settings()), "truecolor") as pilot:
-        await answered(pilot, ANSWERS[Protocol.SIXEL])
-        gone = ref(pilot.app.query_one(WorldView)._tiles)
-        lab(pilot).choose_cells(CellSet.HALF)
-        await until_quiet(pilot)
-        gc.collect()
-        assert gone() is None
 
 
 async def test_what_has_passed_leaves_nothing_behind() -> None:

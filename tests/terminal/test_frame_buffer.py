@@ -5,21 +5,18 @@ from __future__ import annotations
 import random
 from collections.abc import Sequence
 from io import StringIO
-from typing import Any
 
-import numpy as np
 import pyte
 import pytest
 from rich.console import Console
 from rich.segment import Segment
 from rich.style import Style
 from textual._compositor import ChopsUpdate, CompositorUpdate, InlineUpdate, LayoutUpdate
-from textual.app import App, ComposeResult
 from textual.geometry import Region
 from textual.strip import Strip
 
 from tests.cases import cases
-from tuisim.terminal.cell_view import CellStrip, LinesView, PixelView
+from tuisim.terminal.cell_view import CellStrip
 from tuisim.terminal.cells import MONO, PALETTE_8, PALETTE_16, PALETTE_256
 from tuisim.terminal.frame_buffer import FrameBuffer, TextMode
 from tuisim.terminal.glyphs import GLYPHS
@@ -225,52 +222,3 @@ def test_part_of_a_row_is_sent_in_its_place() -> None:
     )
 
     assert sent(frame_buffer, part) == "\x1b[2;5Hn"
-
-
-class Picture(App[None]):
-    CSS = "PixelView { width: 60; height: 12; } LinesView { width: 60; height: 3; }"
-
-    def __init__(self) -> None:
-        super().__init__()
-        self.view, self.lines = PixelView(), LinesView()
-
-    def compose(self) -> ComposeResult:
-        yield self.view
-        yield self.lines
-
-
-def photo() -> np.ndarray[Any, np.dtype[np.uint8]]:
-    return np.random.default_rng(3).integers(0, 256, (2 * ROWS, WIDTH, 3), np.uint8)
-
-
-async def test_the_terminal_shows_a_picture_after_partial_updates() -> None:
-    app, frame_buffer = Picture(), FrameBuffer()
-    screen = pyte.Screen(80, 24)
-    stream = pyte.Stream(screen)
-    picture = photo()
-    rng = np.random.default_rng(4)
-    async with app.run_test(size=(80, 24)) as pilot:
-        app.view.set_fine_picture(picture)
-        await pilot.pause()
-        compositor = app.screen._compositor
-        stream.feed(sent(frame_buffer, compositor.render_full_update()))
-        for _ in range(5):
-            picture = picture.copy()
-            for y, x in zip(rng.integers(0, 2 * ROWS, 12), rng.integers(0, WIDTH, 12), strict=True):
-                picture[y, x] = rng.integers(0, 256, 3)
-            app.view.set_fine_picture(picture)
-            compositor._dirty_regions = {app.view.region}
-            update = compositor.render_partial_update()
-            assert update is not None
-            codes = sent(frame_buffer, update)
-            assert len(codes) < 12 * 60
-            stream.feed(codes)
-
-    # The picture in the colours of this terminal, whichever it is.
-    picture, region = app.view._shown, app.view.region
-    for y in range(ROWS):
-        for x in range(WIDTH):
-            char = screen.buffer[region.y + y][region.x + x]
-            top, bottom = picture[2 * y, x], picture[2 * y + 1, x]
-            assert char.bg == "".join(f"{channel:02x}" for channel in bottom)
-            assert char.data == " " or char.fg == "".join(f"{channel:02x}" for channel in top)

@@ -87,14 +87,6 @@ def test_a_picture_of_another_size_is_sent_whole(protocol: Protocol) -> None:
     )
 
 
-@pytest.mark.parametrize("protocol", Protocol)
-@pytest.mark.parametrize("shape", [(0, 60, 3), (26, 0, 3)], ids=["no rows", "no columns"])
-def test_a_picture_may_have_no_cells(protocol: Protocol, shape: tuple[int, ...]) -> None:
-    picture = TilePicture(Graphics(protocol, CELL_PX))
-    picture.put(np.zeros(shape, np.uint8))
-    assert not picture.put(np.zeros(shape, np.uint8))
-
-
 def _moved(terminal: PixelTerminal, picture: TilePicture) -> None:
     for step in range(8):
         _draw(terminal, picture, picture.put(_disc(20 + 9 * step, 40)))

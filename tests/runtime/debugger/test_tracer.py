@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from tests.running import PATIENCE_S, Start
-from tests.runtime.awkward import ENDLESS, ENDS, PROGRAMS, QUICK
+from tests.runtime.awkward import ENDLESS, ENDS, PROGRAMS
 from tests.runtime.debugging import Driver
 from tuisim.protocol import Ended, LineStep, Paused, StepLine
 
@@ -50,8 +50,10 @@ def stops_at_once(driver: Driver) -> None:
     assert driver.run.wait(PATIENCE_S) is not None
 
 
-def walk(start: Start, name: str, how: LineStep) -> None:
-    """Step through one program."""
+@pytest.mark.quick_cases("generators-into", "repr that raises-into")
+@pytest.mark.parametrize("how", LineStep)
+@pytest.mark.parametrize("name", PROGRAMS)
+def test_every_awkward_program_is_stepped_through(start: Start, name: str, how: LineStep) -> None:
     text = PROGRAMS[name]
     driver = begin(start, text)
     ended = step_through(driver, text, how)
@@ -59,19 +61,6 @@ def walk(start: Start, name: str, how: LineStep) -> None:
         stops_at_once(driver)
         return
     assert ended.end == ENDS.get(name, "time_limit" if name in ENDLESS else "finished"), ended
-
-
-@pytest.mark.quick_cases("generators", "repr that raises")
-@pytest.mark.parametrize("name", QUICK)
-def test_awkward_programs_are_stepped_into(start: Start, name: str) -> None:
-    walk(start, name, LineStep.INTO)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("how", LineStep)
-@pytest.mark.parametrize("name", PROGRAMS)
-def test_every_awkward_program_is_stepped_through(start: Start, name: str, how: LineStep) -> None:
-    walk(start, name, how)
 
 
 @pytest.mark.slow

@@ -133,10 +133,6 @@ def test_live_and_headless_runs_record_the_same_bits(run: Run, noise: tuple[int,
     assert paced.recording == headless.recording
 
 
-def test_seeds_differ(run: Run) -> None:
-    assert run(STEERS_AND_LOGS, seed=1).lines != run(STEERS_AND_LOGS, seed=2).lines
-
-
 def test_lines_of_the_program_are_recorded(run: Run) -> None:
     done = run("import time\n\nprint('A: 1')\ntime.sleep(0.1)\nprint('A: 2')\n")
     rows = done.run.output.all_rows()
