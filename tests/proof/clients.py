@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import os
 import subprocess
 import sys
@@ -26,36 +25,18 @@ _SLACK = 10
 """How many times as long as alone a client may take for each that works beside it."""
 
 
-@dataclass(frozen=True, slots=True)
-class Scale:
-    """How many clients work for how long."""
-
-    roles: Mapping[str, int]
-    """The number of clients of each role."""
-    rounds: int
-    """How often each that runs programs does so; the others go on until these have ended."""
-    most_s: float = math.inf
-    """Seconds after which none begins another round."""
-
-
-SCALES: Mapping[str, Scale] = {
-    "some": Scale(
-        {
-            "app": 2,
-            "batch": 1,
-            "analyser": 1,
-            "remover": 1,
-            "rerunner": 1,
-            "tagger": 1,
-            "killer": 1,
-        },
-        4,
-    ),
-    "full": Scale(
-        {"app": 20, "batch": 5, "analyser": 5, "remover": 1, "tagger": 1}, 1 << 30, 600.0
-    ),
+ROLES: Mapping[str, int] = {
+    "app": 2,
+    "batch": 1,
+    "analyser": 1,
+    "remover": 1,
+    "rerunner": 1,
+    "tagger": 1,
+    "killer": 1,
 }
-"""`full` runs only by its name."""
+"""The number of clients of each role."""
+ROUNDS = 4
+"""How often each that runs programs does so; the others go on until these have ended."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,9 +69,7 @@ def _alone_s() -> float:
     """Return the seconds that an app takes alone to start, and to run one program."""
     with tempfile.TemporaryDirectory(prefix="tuisim-proof-alone-") as folder:
         start_s = time.monotonic()
-        client = _start(
-            "app", Path(folder, "app"), Path(folder, "home"), "alone", 1, math.inf, PATIENCE_S
-        )
+        client = _start("app", Path(folder, "app"), Path(folder, "home"), "alone", 1, PATIENCE_S)
         with client.log, client.process:
             if client.process.wait(PATIENCE_S):
                 raise FaultError(f"one app alone: {client.said()}")
@@ -126,18 +105,17 @@ def _check_ends(clients: Sequence[_Started], patience_s: float) -> None:
 
 def _names(random: Random) -> Iterator[str]:
     while True:
-        yield f"some:{random.getrandbits(32)}"
+        yield str(random.getrandbits(32))
 
 
 def _check(case: str, folder: Path) -> None:
-    name, _, seed = case.partition(":")
-    scale, home = SCALES[name], Path(os.environ["TUISIM_HOME"])
-    patience_s = PATIENCE_S + _SLACK * _alone_s() * sum(scale.roles.values())
+    home = Path(os.environ["TUISIM_HOME"])
+    patience_s = PATIENCE_S + _SLACK * _alone_s() * sum(ROLES.values())
     clients: list[_Started] = []
     with ExitStack() as stack:
-        for role, count in scale.roles.items():
+        for role, count in ROLES.items():
             for number in range(count):
-                words = f"{seed} {number}", scale.rounds, scale.most_s, patience_s
+                words = f"{case} {number}", ROUNDS, patience_s
                 clients.append(client := _start(role, folder / f"{role}-{number}", home, *words))
                 stack.enter_context(client.log)
                 stack.enter_context(client.process)

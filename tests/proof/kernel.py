@@ -9,7 +9,6 @@ from pathlib import Path
 from random import Random
 from typing import Any
 
-from tests.proof.device_rules import check_devices
 from tests.proof.kind import FaultError, Kind
 from tests.proof.tacho_model import HELD, NEAR, RANGES, WORDS, TachoMotor
 from tests.running import PATIENCE_S
@@ -357,7 +356,7 @@ def _check_blocked(random: Random) -> None:
 
 def _names(random: Random) -> Iterator[str]:
     while True:
-        yield f"{random.choice([*MOTORS, 'devices', 'blocked'])}:{random.getrandbits(32)}"
+        yield f"{random.choice([*MOTORS, 'blocked'])}:{random.getrandbits(32)}"
 
 
 def printed(text: str, solid: bool = False) -> list[str]:
@@ -379,9 +378,6 @@ def printed(text: str, solid: bool = False) -> list[str]:
 
 def _check(case: str, folder: Path) -> None:
     kind, random = case.partition(":")[0], Random(case)
-    if kind == "devices":
-        check_devices(random, printed)
-        return
     if kind == "blocked":
         _check_blocked(random)
         return

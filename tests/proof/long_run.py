@@ -1,7 +1,7 @@
-"""`python -m tests.proof.long_run [--hours N] [--minutes N] [--out FOLDER]`: an app that runs a program for a day.
+"""`python -m tests.proof.long_run [--hours N] [--minutes N]`: an app that runs a program for a day.
 
 The program drives for ever, at the highest speed, in an app with a chart, in a real terminal. The memory and the
-descriptors of both processes and the size of the recording over time are printed as a table, and drawn as a chart.
+descriptors of both processes and the size of the recording over time are printed as a table.
 
 The recording grows with each tick by design. Of it the app holds the newest part only: its memory must be flat, as all
 the rest.
@@ -10,7 +10,6 @@ the rest.
 from __future__ import annotations
 
 import argparse
-import csv
 import os
 import sys
 import time
@@ -22,7 +21,6 @@ from tempfile import TemporaryDirectory
 from tests.proof.kind import FaultError, home
 from tests.proof.monkey import ROOT, leave
 from tests.proof.terminals import Terminal
-from tuisim.cli import run_command
 from tuisim.runs.catalogue import RunInfo
 from tuisim.runs.records import HEADER_BYTES, TELEMETRY_FILE, TELEMETRY_MAGIC, published_length
 from tuisim.runs.store import RunStore, bytes_in
@@ -155,30 +153,13 @@ def main(words: Sequence[str]) -> int:
     parser.add_argument(
         "--minutes", type=float, default=10.0, metavar="N", help="at most (default: 10)"
     )
-    parser.add_argument(
-        "--out",
-        type=Path,
-        default=Path(),
-        metavar="FOLDER",
-        help="for long_run.csv and long_run.svg",
-    )
     arguments = parser.parse_args(words)
     names = [field.name for field in fields(Sample)]
     print(*(f"{name:>19}" for name in names))
     found = []
-    table = arguments.out / "long_run.csv"
-    with table.open("w", newline="") as handle:
-        writer = csv.DictWriter(handle, names)
-        writer.writeheader()
-        for one in samples(arguments.hours, arguments.minutes):
-            found.append(one)
-            writer.writerow(asdict(one))
-            handle.flush()
-            print(*(f"{value:19.2f}" for value in asdict(one).values()), flush=True)
-    variables = [word for name in names[1:] for word in ("--variable", name)]
-    run_command(
-        ["log", "plot", str(table), "--facets", *variables, "--out", str(table.with_suffix(".svg"))]
-    )
+    for one in samples(arguments.hours, arguments.minutes):
+        found.append(one)
+        print(*(f"{value:19.2f}" for value in asdict(one).values()), flush=True)
     wrong = grown(found)
     last = found[-1]
     print(

@@ -1,4 +1,4 @@
-"""`python -m tests.proof.planted`: plant faults in a copy of tuisim, one at a time, and show that the proof finds them.
+"""Faults to plant in a copy of tuisim, one at a time: the proof must find them.
 
 A fault that is not found says that a kind does not look where it seems to. Each is a change of a line or two, such as
 an edit could make by mistake: a link that is followed, a check that is left out, a descriptor too many. They are in
@@ -11,14 +11,12 @@ import json
 import shutil
 import subprocess
 import sys
-import time
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from tests.conftest import ROOT
-from tests.isolated import refusal
 from tests.running import PATIENCE_S
 
 
@@ -224,29 +222,3 @@ def missed(fault: Planted) -> list[str]:
         for case, text in pairs
         if fault.shows not in text
     ]
-
-
-def main() -> int:
-    """Plant each fault, and print a table; return 1 if one is not found."""
-    print(f"{'fault':<72} {'kind':<8} {'cases':>5} {'wall s':>7}")
-    wrong: list[str] = []
-    for fault in PLANTED:
-        if fault.is_isolated and (reason := refusal()):
-            print(f"{fault.about:<72} cannot be tried here: {reason}")
-            continue
-        start_s = time.monotonic()
-        left = missed(fault)
-        wrong += left
-        took_s = time.monotonic() - start_s
-        print(
-            f"{fault.about:<72} {fault.kind:<8} {len(fault.cases):>5} {took_s:>7.1f}",
-            *left,
-            sep="\n  ",
-            flush=True,
-        )
-    print(f"{len(PLANTED)} faults, {len(wrong)} cases show none", *wrong, sep="\n")
-    return int(bool(wrong))
-
-
-if __name__ == "__main__":
-    sys.exit(main())

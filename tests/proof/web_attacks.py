@@ -7,7 +7,7 @@ import json
 from collections.abc import Awaitable, Callable, Mapping, Sequence
 from contextlib import AsyncExitStack, suppress
 
-from aiohttp import ClientError, ClientSession, WSMsgType, WSServerHandshakeError
+from aiohttp import ClientError, ClientSession, WSMsgType
 
 from tests.proof.kind import FaultError
 from tests.running import PATIENCE_S
@@ -84,43 +84,6 @@ async def _methods(target: Target) -> None:
         await target.refused(method, f"/{TOKEN}/ws")
 
 
-async def _tokens(target: Target) -> None:
-    for token in (
-        "",
-        "the-toke",
-        "the-tokens",
-        "THE-TOKEN",
-        "the%2Dtokem",
-        "%00",
-        "the-token%00",
-        "*",
-        "null",
-    ):
-        await target.refused("GET", f"/{token}/")
-    await target.refused("GET", f"/?token={TOKEN}")
-    await target.refused("GET", "/x/", Authorization=f"Bearer {TOKEN}", Cookie=f"token={TOKEN}")
-
-
-async def _origins(target: Target) -> None:
-    for origin in (
-        "http://evil.example",
-        "null",
-        "",
-        f"http://127.0.0.1.evil.example:{target.port}",
-        f"{target.origin}.evil.example",
-        f"{target.origin}@evil.example",
-        "file://",
-    ):
-        try:
-            socket = await target.client.ws_connect(
-                f"{target.origin}/{TOKEN}/ws", headers={"Origin": origin}
-            )
-        except WSServerHandshakeError:
-            continue
-        await socket.close()
-        raise FaultError(f"a socket of {origin!r} is accepted")
-
-
 async def _actions(target: Target) -> None:
     """What ends a session or brings a file is done by a page of the server only."""
     url = f"{target.origin}/{TOKEN}/ws"
@@ -142,18 +105,6 @@ async def _actions(target: Target) -> None:
         while (message := await socket.receive(PATIENCE_S)).data != '["pong", "1"]':
             if message.type is WSMsgType.CLOSE:
                 raise FaultError("somebody else has ended a session")
-
-
-async def _hosts(target: Target) -> None:
-    for host in (
-        "evil.example",
-        "127.0.0.1.evil.example",
-        "",
-        "127.0.0.1:1@evil.example",
-        "[::1",
-        "a b",
-    ):
-        await target.refused("GET", f"/{TOKEN}/", Host=host)
 
 
 async def _headers(target: Target) -> None:
@@ -237,30 +188,14 @@ async def _frames(target: Target) -> None:
                 await socket.send_str('["ping", "1"]')
 
 
-async def _visitors(target: Target) -> None:
-    """More visitors than there are places."""
-    url, headers = f"{target.origin}/{TOKEN}/ws", {"Origin": target.origin}
-    sockets = [await target.client.ws_connect(url, headers=headers) for _ in range(_VISITORS * 4)]
-    first = [(await socket.receive(PATIENCE_S)).type for socket in sockets]
-    # An app tells which session it is.
-    if first.count(WSMsgType.TEXT) > _VISITORS:
-        raise FaultError(f"{first.count(WSMsgType.TEXT)} visitors have an app, not {_VISITORS}")
-    for socket in sockets:
-        await socket.close()
-
-
 ATTACKS: Mapping[str, Callable[[Target], Awaitable[None]]] = {
     "paths": _paths,
     "methods": _methods,
-    "tokens": _tokens,
-    "origins": _origins,
     "actions": _actions,
-    "hosts": _hosts,
     "headers": _headers,
     "connections": _connections,
     "heads": _heads,
     "frames": _frames,
-    "visitors": _visitors,
 }
 """By name."""
 
