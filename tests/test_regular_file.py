@@ -49,9 +49,6 @@ def sparse(path: Path) -> None:
 KINDS: dict[str, Callable[[Path], None]] = {
     "a pipe": pipe,
     "a device": device,
-    "a folder": Path.mkdir,
-    "a dangling link": dangling,
-    "a link to itself": loop,
     "a hole of 64 GB": sparse,
 }
 

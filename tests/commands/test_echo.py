@@ -8,6 +8,7 @@ import subprocess
 import sys
 import threading
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -203,35 +204,26 @@ def test_commands_of_many_runs_tell_their_progress_in_lines(
     )
 
 
-COMMANDS = {
-    "run": (("run", "p.py", "--export", "a.csv"), ("p.py: ", "writing a.csv")),
-    "run, several": (("run", "p.py", "p.py"), ("1 of 2, p.py", "2 of 2, p.py")),
-    "rerun": (("runs", "rerun", "last"), ("rerunning run 1: p.py", "comparing run 1")),
-    "export": (
-        ("runs", "export", "1", "--out", "a.csv", "--telemetry", "b.csv"),
-        ("writing a.csv", "writing b.csv"),
-    ),
-    "bands": (("log", "bands", "1"), ("log bands 1",)),
-    "report": (("log", "report", "1"), ("log report 1",)),
-    "a file": (("log", "summary", "log.csv"), ("reading log.csv", "summary log.csv")),
-    "rm": (("runs", "rm", "1"), ("removing runs",)),
-}
+COMMANDS = (
+    ("run p.py --export a.csv", ("p.py: ", "writing a.csv")),
+    ("run p.py p.py", ("1 of 2, p.py", "2 of 2, p.py")),
+    ("runs rerun 1", ("rerunning run 1: p.py", "comparing run 1")),
+    ("runs export 1 --out a.csv --telemetry b.csv", ("writing a.csv", "writing b.csv")),
+    ("log bands 1", ("log bands 1",)),
+    ("log report 1", ("log report 1",)),
+    ("log summary log.csv", ("reading log.csv", "summary log.csv")),
+    ("runs rm 1", ("removing runs",)),
+)
+"""Words in one home, one after the other, and what is told meanwhile."""
 
 
-@cases("words, told", COMMANDS)
 def test_commands_tell_how_far_they_are(
-    home: object,
-    here: Command,
-    tmp_path: Any,
-    monkeypatch: pytest.MonkeyPatch,
-    words: Any,
-    told: tuple[str, ...],
+    home: object, here: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     (tmp_path / "p.py").write_text(
         "tank_drive.on_for_seconds(20, 30, 0.3)\nfor n in range(9): print('a:', n)\n"
     )
     (tmp_path / "log.csv").write_text("time,red\n0,1\n1,2\n")
-    here("run", "p.py")
     heard: list[str] = []
 
     class Spy(Progress):
@@ -246,9 +238,11 @@ def test_commands_tell_how_far_they_are(
         monkeypatch.setattr(f"tuisim.commands.{module}.Progress", Spy)
     monkeypatch.setattr("tuisim.commands.run.is_watched", lambda: True)
     monkeypatch.setattr("tuisim.commands.echo.is_watched", lambda: True)
-    assert here(*words).returncode == 0
-    missing = [one for one in told if not any(line.startswith(one) for line in heard)]
-    assert not missing, heard
+    for words, told in COMMANDS:
+        heard.clear()
+        assert here(*words.split()).returncode == 0
+        missing = [one for one in told if not any(line.startswith(one) for line in heard)]
+        assert not missing, heard
 
 
 @pytest.mark.slow
@@ -259,24 +253,19 @@ def test_rich_is_not_loaded_for_what_is_quick() -> None:
 
 
 WRITERS = {
-    "runs export": (("runs", "export", "1", "--out", "a.csv"), "a.csv; what it is and its units"),
-    "log export": (("log", "export", "1", "--out", "a.jsonl"), "a.jsonl"),
-    "log plot": (("log", "plot", "1", "--out", "a.svg"), "a.svg"),
-    "run": (("run", "p.py", "--export", "a.arrow"), "a.arrow"),
-    "batch": (("batch", "p.py", "--jobs", "1", "--out", "a.csv"), "a.csv; what it is"),
+    "run p.py --export a.arrow": "a.arrow",
+    "runs export 1 --out a.csv": "a.csv; what it is and its units",
+    "log export 1 --out a.jsonl": "a.jsonl",
+    "log plot 1 --out a.svg": "a.svg",
+    "batch p.py --jobs 1 --out b.csv": "b.csv; what it is",
 }
+"""Words in one home, one after the other, and the file that is named."""
 
 
-@cases("words, file", WRITERS)
 def test_commands_name_the_files_that_they_write(
-    home: object,
-    here: Command,
-    tmp_path: Any,
-    monkeypatch: pytest.MonkeyPatch,
-    words: tuple[str, ...],
-    file: str,
+    home: object, here: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     (tmp_path / "p.py").write_text("for i in range(3):\n    print('Number:', i)\n")
-    here("run", "p.py")
     monkeypatch.setattr("tuisim.commands.echo.is_watched", lambda: True)
-    assert f"written: {file}" in here(*words).stderr
+    for words, file in WRITERS.items():
+        assert f"written: {file}" in here(*words.split()).stderr

@@ -106,10 +106,8 @@ def test_json(task: Path, here: Command) -> None:
 
 RUNS = {
     "none": ((), 0, [3]),
-    "last": (("last",), 0, [3]),
     "number": (("2",), 1, [2]),
     "several": (("3", "2"), 1, [3, 2]),
-    "range": (("1..3",), 1, [1, 2, 3]),
     "range beyond": (("2..99",), 1, [2, 3]),
 }
 
@@ -145,7 +143,6 @@ def test_bad_input(words: tuple[str, ...], message: str, task: Path, here: Comma
 
 OWN_MATS = {
     "an image": "background = 'own.png'",
-    "an image in a folder": "background = 'mats/../own.png'",
     "a name in a folder of mats": "background = 'other'\nmats = 'mats'",
 }
 

@@ -80,15 +80,6 @@ def test_events(here: Command, log: Path) -> None:
     ]
 
 
-@pytest.mark.parametrize("suffix", ["csv", "parquet", "jsonl", "arrow"])
-def test_export_keeps_the_values(here: Command, tmp_path: Path, suffix: str) -> None:
-    here("run", "log_greys")
-    target = tmp_path / f"out.{suffix}"
-    here("log", "export", "last", "--out", str(target))
-    found = json.loads(here("log", "summary", str(target), "--json").stdout)
-    assert (found[0]["variable"], found[0]["count"], found[0]["min"]) == ("Colour", 51, 0.0)
-
-
 BAD = {
     "no log": (("bands",), "no log given"),
     "no subcommand": (("bnads", "last"), "did you mean bands"),

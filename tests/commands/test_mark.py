@@ -126,21 +126,6 @@ def test_every_student_of_the_class_has_the_expected_marks(marked: Path) -> None
 
 
 @pytest.mark.slow
-def test_students_files_are_as_before(marked: Path, tmp_path: Path) -> None:
-    fresh = write_class(tmp_path / "class")
-    files = {
-        path.relative_to(fresh): path.read_bytes() for path in fresh.rglob("*") if path.is_file()
-    }
-    left = {
-        path.relative_to(marked / "class")
-        for path in (marked / "class").rglob("*")
-        if path.is_file()
-    }
-    assert left == set(files)
-    assert all((marked / "class" / path).read_bytes() == content for path, content in files.items())
-
-
-@pytest.mark.slow
 def test_each_failed_run_has_a_report_and_each_student_feedback(marked: Path) -> None:
     page = (marked / "marks.html").read_text()
     links = [part.partition('"')[0] for part in page.split('href="')[1:]]
@@ -288,9 +273,6 @@ def test_a_wrong_file_of_a_student_is_named_without_the_path_of_the_class(
 
 UNREADABLE = {
     "latin-1": "print('grün')\n".encode("latin-1"),
-    "utf-16": "print('grün')\n".encode("utf-16"),
-    "binary": b"\x7fELF\0\1\2\xff",
-    "encoding": b"# coding: klingon\nprint('green')\n",
     "null": b"print('green')\n\0",
     "tabs": b"if True:\n\tpass\n        pass\n",
 }
@@ -343,20 +325,14 @@ FINISH = "[[goal]]\nname = 'done'\nfinish = true\n"
 @pytest.mark.parametrize(
     "task, points, told",
     [
-        ("title = 'No world'\n", ["1", "1"], ""),
         ("background = 'Loop'\n", ["1", "1"], ""),
         (
             "profile = 'robolab'\n",
             ["1", "0"],
             "lego.py uses pybricks, and the profile robolab is for ev3dev2",
         ),
-        (
-            "profile = 'pybricks4'\n",
-            ["0", "1"],
-            "dev.py uses ev3dev2, and the profile pybricks4 is for pybricks",
-        ),
     ],
-    ids=["no world", "a mat", "a profile of ev3dev2", "a profile of pybricks"],
+    ids=["a mat", "a profile of ev3dev2"],
 )
 def test_each_program_runs_by_the_rules_for_its_library(
     tmp_path: Path, here: Command, task: str, points: list[str], told: str

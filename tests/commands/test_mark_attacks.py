@@ -19,7 +19,7 @@ import pytest
 
 from tests.conftest import ROOT, Command
 from tests.isolated import needs_isolation
-from tests.marks.attackers import ALWAYS, DEEDS, LINKS, RUN_FOLDER, SECRET, TABLES, write_attackers
+from tests.marks.attackers import ALWAYS, DEEDS, RUN_FOLDER, SECRET, TABLES, write_attackers
 from tests.marks.right import HOPS, MAGIC
 from tests.marks.student import GOALS
 
@@ -169,17 +169,6 @@ def test_a_link_in_a_recording_does_not_end_the_marking(field: Path, here: Comma
     assert (done.returncode, SECRET in done.stdout) == (0, False)
     rows = [line.split()[:2] for line in done.stdout.splitlines()]
     assert ["ada", "10"] in rows and ["links", "in"] in rows
-
-
-@pytest.mark.slow
-def test_links_are_refused_with_and_without_isolation(
-    field: Path, honest: Callable[[str], Rows], isolation: str
-) -> None:
-    for name, link in LINKS.items():
-        link(field / "class", name)
-    rows, _ = _check_others(field, isolation, honest)
-    refused = {name for name, row in rows.items() if "link" in row["reason"]}
-    assert (refused, {row["points"] for row in rows.values()}) == (set(LINKS), {"0.0"})
 
 
 @pytest.fixture

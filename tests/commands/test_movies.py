@@ -182,23 +182,15 @@ BAD = {
     ),
     "no folder": ("movie last --out no/a.gif", "cannot write no/a.gif: there is no folder no"),
     "folder": ("movie last --out folder.gif", "cannot write folder.gif: it is a folder"),
-    "no run": ("movie", "RUN is missing (see `tuisim runs movie --help`)"),
-    "unknown run": ("movie 99", "no run '99'"),
     "nothing after the end": (
         "movie last --from 2",
         "nothing to show from 2 s to 1 s (run 1 lasts from 0 s to 1 s)",
     ),
-    "range backwards": ("movie last --from 0.5 --to 0.2", "nothing to show from 0.5 s to 0.2 s"),
     "empty range": ("movie last --from 0.5 --to 0.5", "nothing to show from 0.5 s to 0.5 s"),
     "no number": ("movie last --from nan", "nothing to show from nan s"),
     "instant after the end": ("picture last --at 1.5", "--at: must be from 0 to 1, got 1.5"),
     "speed": ("movie last --speed 0", "--speed: must be from 0.01 to 1000, got 0"),
-    "frames a second": ("movie last --fps 60", "--fps: must be from 1 to 50, got 60"),
     "panel": ("movie last --panels wrld", "--panels: no such panel 'wrld' (did you mean world?)"),
-    "no panel": (
-        "movie last --panels ,",
-        "--panels: no panel given (some of world, chart, arrays)",
-    ),
     "size": (
         "movie last --size 20x20",
         "--size: no such size '20x20' (width and height in pixels, 160x120 to 3840x2160)",

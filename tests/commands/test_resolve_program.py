@@ -190,13 +190,3 @@ def test_a_task_with_a_profile_for_another_library_is_refused(
     told = "tuisim: profile: lego.py uses pybricks, and the profile ev3 is for ev3dev2 (choose lego-micropython"
     assert (done.returncode, done.stdout) == (2, "")
     assert done.stderr.startswith(told)
-
-
-def test_the_robot_of_a_pybricks_program_is_printed_as_a_file(folder: Path, here: Command) -> None:
-    (folder / "lego.py").write_text(LEGO)
-    table = tomllib.loads(here("robots", "--from", "lego.py").stdout)
-    assert table == {
-        "base": "Default_Robot",
-        "name": "Robot of lego.py",
-        "motors": {"outA": "medium"},
-    }

@@ -6,7 +6,6 @@ from pathlib import Path
 
 import pytest
 
-from tests.cases import cases
 from tests.conftest import Command
 
 ASKS = (
@@ -130,36 +129,6 @@ def test_missing_part_of_the_prelude_is_told_where_it_is_used(
     assert (done.returncode, done.stdout) == (1, "First\n")
     assert f"DeviceNotFound: {missing} is not connected" in done.stderr
     assert "line 3" in done.stderr
-
-
-BAD = {
-    "no port": ("[touch_sensors.nose]\nx_mm = 1", "touch_sensors.nose.port: is missing"),
-    "a port twice": ("[touch_sensors.nose]\nport = 'in2'", "two sensors are on in2"),
-    "a wheel without a motor": ("[motors]\noutB = false", "motors.outB: drives a wheel"),
-    "no such motor of a wheel": ("[motors]\noutB = 'huge'", "motors.outB: no such value 'huge'"),
-    "an infrared port twice": ("[infrareds.back]\nport = 'in1'", "two sensors are on in1"),
-    "no such motor": ("[motors]\noutA = 'huge'", "motors.outA: no such value 'huge'"),
-    "no such motor port": ("[motors]\nin1 = 'large'", "motors.in1: no such key"),
-    "no such port": ("[infrared]\nport = 'in9'", "no such port 'in9'"),
-    "no such key": (
-        "[touch_sensors.nose]\nport = 'in1'\ndepth = 3",
-        "touch_sensors.nose.depth: no such key",
-    ),
-    "no name": ("[ultrasonics.'2nd one']\nport = 'in1'", "is not a valid sensor name"),
-}
-
-
-@cases("text, expected", BAD)
-def test_wrong_robot_file(tmp_path: Path, text: str, expected: str) -> None:
-    from tuisim.config.robots import load_robot
-    from tuisim.errors import RobotError
-
-    path = tmp_path / "robot.toml"
-    path.write_text(text)
-    with pytest.raises(RobotError) as caught:
-        load_robot(str(path))
-    assert expected in str(caught.value)
-    assert str(path) in str(caught.value)
 
 
 MEDIUM_WHEELS = "ultrasonic = false\n[motors]\noutB = 'medium'\noutC = 'medium'\n"

@@ -63,7 +63,6 @@ def test_size(count: int, shown: str) -> None:
 
 
 AGES = {
-    "none so old": ("9w", [1, 2, 3], "0 runs removed, 0.0 kB"),
     "one": ("3w", [2, 3], "1 run removed"),
     "days": ("10d", [3], "2 runs removed"),
     "hours": ("0.5h", [], "3 runs removed"),

@@ -187,6 +187,12 @@ WRONG: dict[str, tuple[str, str]] = {
         "[motors]\noutA = 'huge'",
         "motors.outA: no such value 'huge' (one of large, medium)",
     ),
+    "robot: motor on an input": ("[motors]\nin1 = 'large'", "motors.in1: no such key"),
+    "robot: infrared port": ("[infrared]\nport = 'in9'", "infrared.port: no such port 'in9'"),
+    "robot: key of a touch sensor": (
+        "[touch_sensors.nose]\nport = 'in1'\ndepth = 3",
+        "touch_sensors.nose.depth: no such key",
+    ),
     "json robot: half a surrogate pair": (
         '{"back": "\\ud800"}',
         r"back: must be a number from -1000 to 0, got '\u",

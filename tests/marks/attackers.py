@@ -6,10 +6,10 @@ and the home folder of tuisim.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 
-from tests.marks.right import HOPS, MAGIC
+from tests.marks.right import MAGIC
 
 SECRET = "the secret of the tutor"
 OWN_RUN = """
@@ -36,28 +36,6 @@ _OTHERS = """
 others = [int(name) for name in os.listdir('/proc') if name.isdigit() and int(name) != os.getpid()]
 """
 
-
-def _program_link(folder: Path, student: str) -> None:
-    (folder / student).mkdir()
-    (folder / student / "main.py").symlink_to(folder / "ada.py")
-
-
-def _folder_link(folder: Path, student: str) -> None:
-    (folder / student).symlink_to(folder / "ben", True)
-
-
-def _inner_link(folder: Path, student: str) -> None:
-    (folder / student).mkdir()
-    (folder / student / "main.py").write_text(HOPS)
-    (folder / student / "data").symlink_to(folder.parent, True)
-
-
-LINKS: Mapping[str, Callable[[Path, str], None]] = {
-    "in place of the program": _program_link,
-    "in place of the folder": _folder_link,
-    "out of the folder": _inner_link,
-}
-"""Three kinds of links, by the name of the student, who hands in what is not the student's own."""
 
 DESCRIPTORS: Mapping[str, str] = {
     "all descriptors": TO_ALL,

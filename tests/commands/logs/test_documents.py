@@ -109,8 +109,6 @@ def test_what_is_not_drawn_is_told(here: Command, log: Path) -> None:
 BAD = {
     "no such format": (("--out", "x.gif"), "a chart ends in .svg, .png, .txt"),
     "no such folder": (("--out", "gone/x.svg"), "there is no folder gone"),
-    "no such variable": (("--variable", "up"), "no variable 'up'"),
-    "against nothing": (("--against", "up"), "no variable 'up'"),
     "two against one": (
         ("--variable", "left", "--variable", "right", "--against", "x_mm"),
         "got 2",
@@ -118,10 +116,8 @@ BAD = {
     "a size": (("--size", "big"), "width and height, 20x8 to 1000x500"),
     "a size of no picture": (("--size", "10x10", "--out", "x.png"), "200x150 to 6000x6000"),
     "time that runs back": (("--from", "5", "--to", "1"), "--from must be less than --to"),
-    "no number": (("--from", "nan"), "no range from"),
     "nothing then": (("--from", "50", "--to", "60"), "they are between 0 s and 9.9 s"),
     "as JSON": (("--json",), "no such option: --json"),
-    "an option of another": (("--width", "3"), "no such option: --width"),
 }
 
 
