@@ -73,7 +73,7 @@ FILES: dict[str, tuple[str, ...]] = {
     "home/runs.db": ("runs", "runs show 1"),
     "home/runs.lock": ("runs", "runs rm 1"),
     "home/config.toml": ("config", "runs"),
-    "home/preferences.json": ("runs", "doctor"),
+    "home/preferences.json": ("runs", "doctor", "log summary log.csv"),
     "home/lessons/progress.json": ("learn",),
     "log.csv": ("log summary log.csv", "log report log.csv"),
     "log.csv.json": ("log summary log.csv",),

@@ -124,6 +124,32 @@ def test_choices(
     assert values(log, names[0])[0] == first
 
 
+def test_words_below_a_chosen_heading(tmp_path: Path) -> None:
+    path = tmp_path / "a.csv"
+    path.write_text("Lab 3\ntime;red\nseconds;percent\n0;5,5\n1;6,5\n")
+    log = open_log(path)
+    assert (log.names, log.form.header) == (("percent",), 3)
+    assert (log.form.separator, log.form.decimal) == ("semicolon", ",")
+    log = open_log(path, ReadChoices(header=2))
+    assert (values(log, "red"), log.form.header) == ([5.5, 6.5], 2)
+    assert "1 line below the heading not read (row 3)" in log.notes
+
+
+@cases(
+    "text, row",
+    {
+        "in the first line": ("time,red\n0,5\n1,6\n", 1),
+        "in a comment": ("# a note\n# time,red\n0,5\n1,6\n", 2),
+        "above units": ("a note\n\ntime,red\ns,%\n0,5\n1,6\n", 3),
+        "nowhere": ("a note\n0,5\n1,6\n", 0),
+    },
+)
+def test_the_line_of_the_heading_is_known(text: str, row: int, tmp_path: Path) -> None:
+    path = tmp_path / "a.csv"
+    path.write_text(text)
+    assert open_log(path).form.header == row
+
+
 def test_a_second_table(tmp_path: Path) -> None:
     path = tmp_path / "a.csv"
     path.write_bytes(b"time,red\n" + ROWS + b"\ntime,gyro\n0.0,1\n0.1,3\n")

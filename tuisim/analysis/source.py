@@ -8,7 +8,7 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Iterator, Sequence
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -36,6 +36,16 @@ class LogRequest:
     """Use the telemetry of the first run instead of samples."""
     choices: ReadChoices = NO_CHOICES
     """How a file is to be read."""
+    is_remembered: bool = False
+    """Whether the choices were made before, for a file that is still the same."""
+
+    def mark(self, log: Log) -> Log:
+        """Return a log of this request with a note on choices that were remembered."""
+        if not self.is_remembered or self.choices == NO_CHOICES:
+            return log
+        options = " ".join(self.choices.in_options())
+        note = f"read as chosen in the analyser: {options} (any of these options replaces all)"
+        return replace(log, notes=(note, *log.notes))
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,7 +103,7 @@ def opening(request: LogRequest) -> Iterator[OpenedLog]:
         return
     for loaded in read_pieces(request.file, request.choices):
         if loaded.log is not None:
-            yield OpenedLog(request, loaded.log, (), loaded.part, loaded.done)
+            yield OpenedLog(request, request.mark(loaded.log), (), loaded.part, loaded.done)
 
 
 NOTES_FILE = "notes.jsonl"

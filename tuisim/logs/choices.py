@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+import shlex
+from dataclasses import fields
 
 from tuisim.data_class import dataclass
 from tuisim.errors import LogError, among
@@ -10,6 +11,7 @@ from tuisim.logs.units import SECONDS
 
 SIGNS = {"comma": ",", "semicolon": ";", "tab": "\t", "bar": "|", "blank": " "}
 """Separators by name; a blank is any number of blanks."""
+NAMES_OF_SIGNS = {sign: name for name, sign in SIGNS.items()}
 DECIMAL_SIGNS = (".", ",")
 _ALLOWED = {"unit": tuple(SECONDS), "separator": tuple(SIGNS), "decimal": DECIMAL_SIGNS}
 
@@ -45,10 +47,15 @@ class ReadChoices:
             if word and word not in allowed:
                 raise LogError(f"no {name} {word!r}", among(word, allowed))
 
-    @property
-    def of_text(self) -> ReadChoices:
-        """What is chosen for a text alone, without the columns."""
-        return replace(self, time=None, unit="", value=())
+    def in_options(self) -> list[str]:
+        """Return what is chosen, as options of a command."""
+        options = []
+        for field in fields(self):
+            word = getattr(self, field.name)
+            if word != field.default:
+                words = word if isinstance(word, tuple) else (word,)
+                options += [f"--{field.name} {shlex.quote(str(one))}" for one in words]
+        return options
 
     @property
     def sign(self) -> str:

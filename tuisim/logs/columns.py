@@ -255,6 +255,8 @@ def _filled(texts: Any) -> FloatArray:
     )
 
 
+_MAX_TIMES = 500
+"""More columns are too many to choose from one by one."""
 ROW = ""
 """In place of a time column: the samples are counted."""
 
@@ -315,6 +317,12 @@ def numeric_columns(schema: pa.Schema) -> list[str]:
 def is_time(kind: pa.DataType) -> bool:
     """Return whether a type is a date, a time or a time span."""
     return bool(pa.types.is_temporal(kind) and not pa.types.is_interval(kind))
+
+
+def time_columns(table: pa.Table) -> list[str]:
+    """Return the names of the columns that can be the time."""
+    names = table.column_names[:_MAX_TIMES]
+    return [n for n in names if is_numeric(table.schema.field(n).type) or _is_moment(table, n)]
 
 
 def guess_columns(table: pa.Table) -> Layout:

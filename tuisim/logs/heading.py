@@ -60,6 +60,8 @@ class Heading:
     """Line of the file where the table's first row may be."""
     kinds: str = ""
     """For each column a letter as `parse_kinds` returns them."""
+    row: int = 0
+    """Line of the file with the names, 0 if there is none."""
 
 
 class _Line(NamedTuple):
@@ -127,13 +129,9 @@ def find_heading(
     """
     if header_row:
         return _read_heading(lines, notes, separator, header_row)
-    excel = _EXCEL.fullmatch(lines[0][1]) if lines else None
-    if excel:
-        separator, lines = separator or excel[1], lines[1:]
+    separator, lines = _read_excel_line(lines, separator)
     sign = _find_comment_sign([text for _, text in lines])
-    comments = [
-        text for _, text in takewhile(lambda line: sign and line[1].startswith(sign), lines)
-    ]
+    comments = list(takewhile(lambda line: sign and line[1].startswith(sign), lines))
     # A row of units may begin with a percent sign.
     inner = sign if sign == "#" else ""
     body = [line for line in lines[len(comments) :] if line[1][0] != inner]
@@ -146,19 +144,29 @@ def find_heading(
     above = table[:start]
     names: list[str] | None = None
     if comments and not above:
-        names = _find_comment_names(comments[-1].removeprefix(sign), table, separator)
+        row, text = comments[-1]
+        names = _find_comment_names(text.removeprefix(sign), table, separator)
     if names is None:
         names, above, start = _find_names(table, above, start, run)
+        row = table[len(above)].row
     if names is None:
-        names = _number_columns(table[start].cells, notes)
-    _tell_unread(above, notes)
+        names, row = _number_columns(table[start].cells, notes), 0
+    _tell_unread(above, "above the table", notes)
     follow = table[start].row if start < len(table) else table[-1].next_row
-    return Heading(_clean_names(names, notes), separator, inner, follow, run.kinds)
+    return Heading(_clean_names(names, notes), separator, inner, follow, run.kinds, row)
 
 
-def _tell_unread(above: Sequence[_Line], notes: Notes) -> None:
-    unread = f"{counted(len(above), 'line')} above the table not read"
-    notes.say_rows(unread, [line.row for line in above])
+def _read_excel_line(
+    lines: Sequence[tuple[int, str]], separator: str
+) -> tuple[str, Sequence[tuple[int, str]]]:
+    """Return the separator, which Excel names in a line of its own, and the lines without that."""
+    excel = _EXCEL.fullmatch(lines[0][1]) if lines else None
+    return (separator or excel[1], lines[1:]) if excel else (separator, lines)
+
+
+def _tell_unread(lines: Sequence[_Line], where: str, notes: Notes) -> None:
+    unread = f"{counted(len(lines), 'line')} {where} not read"
+    notes.say_rows(unread, [line.row for line in lines])
 
 
 def refuse_zeek(line: str) -> None:
@@ -179,7 +187,11 @@ def _read_heading(
     separator = separator or sniff_separator([text for _, text in lines])
     first, *rest = _split_lines(lines, separator)
     kinds = _find_table(rest or [first]).kinds
-    return Heading(_clean_names(first.cells, notes), separator, "", first.next_row, kinds)
+    below = takewhile(lambda line: is_words(line.kinds) and "-" not in line.kinds, rest)
+    unread = list(below) if set(kinds) & set("nt") else []
+    _tell_unread(unread, "below the heading", notes)
+    follow = unread[-1].next_row if unread else first.next_row
+    return Heading(_clean_names(first.cells, notes), separator, "", follow, kinds, header_row)
 
 
 def _clean_names(names: Sequence[str], notes: Notes) -> tuple[str, ...]:

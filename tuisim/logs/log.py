@@ -14,6 +14,7 @@ import pyarrow.compute as pc
 from tuisim.data_class import dataclass
 from tuisim.errors import LogError, among
 from tuisim.logs.arrow import numbers_of, whole_numbers, whole_numbers_of
+from tuisim.logs.choices import NO_CHOICES, ReadChoices
 from tuisim.logs.columns import ROW, Layout, seconds_of
 from tuisim.runs.arrays import FloatArray, IntArray
 
@@ -146,6 +147,8 @@ class Log:
     """Rows or cells that could not be read."""
     metadata: Mapping[str, Any] = field(default_factory=dict)
     """Metadata of the runs, if the file was exported by tuisim."""
+    form: ReadChoices = NO_CHOICES
+    """How a text was read: what was chosen, else what was found."""
     derived: Mapping[str, Series] = field(default_factory=dict)
     _kept: Kept = field(default_factory=Kept, repr=False, compare=False)
 

@@ -70,6 +70,8 @@ _SHOW_EVERY_S = 1.0
 _SHOW_SELDOM = 5.0
 """Minimum time between two updates, as a multiple of the duration of an update."""
 _MOST_COMPANION_BYTES = 64 << 20
+_SHOWN_LINES = 100
+"""Lines from which the user chooses the heading."""
 _TABLES = (".csv", ".tsv")
 _JUDGED_LINES = 30
 """Lines from which the kind of a text is told."""
@@ -157,7 +159,7 @@ def _log(title: str, parts: Sequence[pa.Table], notes: Notes, choices: ReadChoic
         notes.say(f"the dates in {layout.time!r} are read as day, month, year")
     metadata = arrow.metadata_in(parts[0].schema) or read_companion(Path(title))
     if metadata:
-        return Log(title, table, layout, notes.texts(), notes.left_out, metadata)
+        return Log(title, table, layout, notes.texts(), notes.left_out, metadata, notes.form)
     # Of the rows so far, so that they are collected anew each time.
     later = Notes()
     if not choices.unit and (unit_s := guess_unit_s(table, layout)) is not None:
@@ -169,7 +171,8 @@ def _log(title: str, parts: Sequence[pa.Table], notes: Notes, choices: ReadChoic
     table, layout, seconds = order_times(table, layout, later)
     _tell_odd_columns(table, layout, unread, later)
     texts = (*notes.texts(), *later.texts())
-    return Log(title, table, layout, texts, notes.left_out, metadata, _kept=Kept(times_s=seconds))
+    kept = Kept(times_s=seconds)
+    return Log(title, table, layout, texts, notes.left_out, metadata, notes.form, _kept=kept)
 
 
 def _tell_odd_columns(table: pa.Table, layout: Layout, unread: str, notes: Notes) -> None:
@@ -199,6 +202,27 @@ def read_companion(path: Path) -> Mapping[str, Any]:
     except (OSError, ValueError, RecursionError):
         return {}
     return found if isinstance(found, dict) else {}
+
+
+def read_first_lines(path: str, encoding: str) -> list[tuple[int, str]]:
+    """Return lines of the beginning of a text that are not blank, each with its number; none of another file.
+
+    Raises:
+        LogError: it cannot be read.
+    """
+    notes = Notes()
+    try:
+        with open(path, "rb") as handle:
+            head = handle.read(MAGIC_BYTES)
+            handle.seek(0)
+            if head.startswith(tuple(arrow.FORMATS)):
+                return []
+            text = unpacked(path, head, handle, notes) or handle
+            cutter = LineCutter(notes, encoding=encoding)
+            block = cutter.feed(text.read(FIRST_BYTES) or b"") or cutter.finish()
+    except OSError as error:
+        raise LogError(f"cannot be read: {error.strerror or error}", file=path) from error
+    return [] if block is None else list(islice(block.lines(), _SHOWN_LINES))
 
 
 def joined(parts: Sequence[pa.Table]) -> pa.Table:

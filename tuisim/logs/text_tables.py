@@ -6,6 +6,7 @@ import csv
 import io
 import re
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from itertools import islice, takewhile
 from typing import Any
 
@@ -27,7 +28,7 @@ from tuisim.logs.cells import (
     parse_numbers,
     parse_truths,
 )
-from tuisim.logs.choices import NO_CHOICES, ReadChoices
+from tuisim.logs.choices import NAMES_OF_SIGNS, NO_CHOICES, ReadChoices
 from tuisim.logs.csv_cells import WRITTEN, restored
 from tuisim.logs.heading import (
     BLANKS,
@@ -165,6 +166,11 @@ class CsvReader:
             block, lines = Block(lines[0][0], one_column, block.newline), [(lines[0][0], "0")]
         refuse_zeek(lines[0][1])
         self._heading = find_heading(lines, self._notes, self._choices.sign, self._choices.header)
+        self._notes.form = replace(
+            self._choices,
+            header=self._heading.row,
+            separator=NAMES_OF_SIGNS.get(self._heading.separator, ""),
+        )
         follow = self._heading.rows_follow
         head = "\n".join(line for row, line in lines if follow - 2 < row <= follow).encode()
         self._has_gaps = len(self._heading.names) == 1 or head != close_quotes(
@@ -351,11 +357,12 @@ class CsvReader:
         separator, decimal = self._separator, self._choices.decimal
         for name, cells in texts.items():
             forms[name] = find_form(cells, separator, decimal)
-        if DECIMAL_COMMA in forms.values():
+        if comma := DECIMAL_COMMA in forms.values():
             # Where one column has decimal commas, points are between thousands.
             forms = {
                 name: find_form(texts[name], separator, ",") or form for name, form in forms.items()
             }
+        self._notes.form = replace(self._notes.form, decimal="," if comma else ".")
         names_by_words: dict[str, list[str]] = {}
         for name, form in forms.items():
             if form is None:

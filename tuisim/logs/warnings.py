@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 from tuisim.errors import counted, shortened
+from tuisim.logs.choices import NO_CHOICES
 
 ROWS_NAMED = 3
 """Rows that a warning names; more are only counted."""
@@ -24,6 +25,8 @@ class Notes:
     """Collects warnings about skipped or guessed data."""
 
     def __init__(self) -> None:
+        self.form = NO_CHOICES
+        """How a text is read: what was chosen, else what was found."""
         self._rows: dict[tuple[str, str], list[int]] = {}
         self._counts: dict[tuple[str, str], int] = {}
         self._general: dict[str, None] = {}

@@ -313,15 +313,12 @@ async def test_a_file_is_read_on_when_it_grows(tmp_path: Path) -> None:
 
 async def test_how_a_file_was_read_is_said_once(tmp_path: Path) -> None:
     file = tmp_path / "log.txt"
-    file.write_text("5, 6, 7.5\n")
+    file.write_text("Colour: 5\nColour: 6\nEnd\n")
     async with open_analyser(file=str(file), size=(80, 24)) as (pilot, screen, _):
         await until(pilot, lambda: screen.model.opened.done)
         await pilot.pause()
         said = notices(pilot.app)
-        assert (
-            said == [*screen.model.log.notes]
-            and "3 numbers: they are read as one column" in said[0]
-        )
+        assert said == [*screen.model.log.notes] == ["1 line is not a sample (row 3)"]
 
 
 async def test_what_cannot_be_opened_ends_the_app_with_the_reason(tmp_path: Path) -> None:

@@ -15,6 +15,8 @@ import pytest
 
 from tests.conftest import ROOT, Command
 from tests.running import PATIENCE_S
+from tuisim.analysis.remembered import remember_choices
+from tuisim.logs.choices import ReadChoices
 
 
 @pytest.mark.slow
@@ -49,3 +51,20 @@ def test_empty_run_says_how_to_log(here: Command, tmp_path: Path) -> None:
     assert not math.isnan(
         json.loads(here("log", "summary", "last", "--telemetry", "--json").stdout)[0]["mean"]
     )
+
+
+def test_what_was_chosen_in_the_analyser_counts_and_is_said(
+    here: Command, tmp_path: Path, home: Path
+) -> None:
+    (tmp_path / "log.csv").write_text("boot;light\n0;1\n20;2\n")
+    remember_choices("log.csv", ReadChoices(time="boot", unit="ms"))
+    note = (
+        "read as chosen in the analyser: --time boot --unit ms (any of these options replaces all)"
+    )
+    done = here("log", "summary", "log.csv")
+    assert (done.returncode, f"note: log.csv: {note}\n" in done.stderr) == (0, True)
+    (row,) = json.loads(here("log", "summary", "log.csv", "--json").stdout)
+    assert (row["variable"], row["last_s"], row["notes"]) == ("light", 0.02, [note])
+    assert f"note: log.csv: {note}\n" in here("log", "bands", "log.csv", "--json").stderr
+    done = here("log", "summary", "log.csv", "--time", "", "--json")
+    assert [row["variable"] for row in json.loads(done.stdout)] == ["boot", "light"]

@@ -8,7 +8,7 @@ from collections.abc import Callable, Mapping
 from contextlib import suppress
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from tuisim.app import background
 from tuisim.app.actions import lesson
@@ -28,6 +28,7 @@ _LOGGED = "Grey_bands"
 """What a new program is offered in place of the empty mat, on which there is nothing to log."""
 
 if TYPE_CHECKING:
+    from tuisim.analysis.source import LogRequest
     from tuisim.app.actions import ActionContext
     from tuisim.app.setup.recent import Recent
     from tuisim.runs.diff import RunDiff
@@ -77,7 +78,7 @@ def open_brought(context: ActionContext, path: Path) -> None:
     elif path.suffix in _OPENED:
         open_path(context, str(path))
     else:
-        _analyse(context, file=str(path))
+        analyse_file(context, str(path))
 
 
 _WELCOMED = "welcomed"
@@ -321,16 +322,23 @@ def _show(
 
 def analyse(context: ActionContext) -> None:
     """Open the log of the current run in the analyser."""
-    _analyse(context, runs=(context.runs.run_id,))
-
-
-def _analyse(context: ActionContext, **source: Any) -> None:
-    # The analyser is slow to import, and many sessions never use it.
     from tuisim.analysis.source import LogRequest
+
+    _analyse(context, LogRequest(runs=(context.runs.run_id,)))
+
+
+def analyse_file(context: ActionContext, file: str) -> None:
+    """Open a log in a file in the analyser."""
+    from tuisim.analysis.remembered import request_file
+
+    _analyse(context, request_file(file))
+
+
+def _analyse(context: ActionContext, request: LogRequest) -> None:
+    # The analyser is slow to import, and many sessions never use it.
     from tuisim.app.analyser.app import Analyser
 
     controller = context.lesson
-    request = LogRequest(**source)
     context.app.push_screen(
         Analyser(request, controller.beside_log()), lambda _: controller.log_closed()
     )

@@ -17,22 +17,25 @@ from textual.widget import Widget
 
 from tuisim import palette
 from tuisim.analysis.model import RECKONING, Model
-from tuisim.analysis.source import LogRequest, OpenedLog, opening
+from tuisim.analysis.remembered import is_readable_again, read_doubtful, remember_choices
+from tuisim.analysis.source import LogRequest, opening
 from tuisim.analysis.table import AT_ONCE, TableTask
 from tuisim.app import background
 from tuisim.app.action import ActionHost, KeyFooter
 from tuisim.app.analyser.chart import LogChart
-from tuisim.app.analyser.columns import ColumnsDialog, candidates
 from tuisim.app.analyser.panes import PANES, PaneView
+from tuisim.app.analyser.preview import PreviewDialog
 from tuisim.app.analyser.world import WorldPane
 from tuisim.app.dialogs.dialog import ClosesOnce
 from tuisim.app.dialogs.question import Form, LinePrompt
 from tuisim.app.layout.forms import is_tall
 from tuisim.errors import LogError, TuisimError
-from tuisim.logs.columns import choose_columns, numeric_columns
+from tuisim.logs.choices import ReadChoices
+from tuisim.logs.columns import numeric_columns
 from tuisim.logs.derived import SIGNALS, TIME, computed_columns
 from tuisim.logs.expressions import CONSTANTS, FUNCTIONS
 from tuisim.logs.log import Log
+from tuisim.logs.reader import read_beginning
 from tuisim.terminal.cell_view import LinesView
 
 _POLL_S = 1.0
@@ -133,7 +136,7 @@ class LogScreen(ActionHost, ClosesOnce[None]):
 
     def on_mount(self) -> None:
         self.world.is_on = self._beside is None or self.size.width >= _WIDE_COLS
-        self.open(self.request)
+        self.open(self.request, asks=True)
         self.set_interval(_POLL_S, self.poll)
 
     # The log
@@ -154,15 +157,23 @@ class LogScreen(ActionHost, ClosesOnce[None]):
             raise LogError("no log is open yet")
         return self._model
 
-    def open(self, request: LogRequest) -> None:
-        """Open another log in the background; the current one stays until then."""
+    def open(self, request: LogRequest, asks: bool = False) -> None:
+        """Open another log in the background; the current one stays until then.
+
+        Args:
+            request: What to open.
+            asks: Whether the user is asked how to read it, if that is in doubt.
+        """
         self.request = request
         self._reading, self._began_s = True, monotonic()
         self._show_title("opening …")
-        work, failed = partial(self._open, request), partial(self._failed, request)
+        work, failed = partial(self._open, request, asks), partial(self._failed, request)
         background.run(self, work, lambda _: None, failed, group="log", exclusive=True)
 
-    def _open(self, request: LogRequest) -> None:
+    def _open(self, request: LogRequest, asks: bool) -> None:
+        if asks and (log := read_doubtful(request)) is not None:
+            background.call(self.app, self._ask_choices, request, log)
+            return
         for opened in opening(request):
             if request is not self.request or not self.is_running:
                 return
@@ -208,8 +219,6 @@ class LogScreen(ActionHost, ClosesOnce[None]):
         self.redraw_chart()
         self.world.set_model(model)
         self.update()
-        if before is None and opened.request.file and not model.log.layout.sure and self.is_current:
-            self.ask_columns()
         if before is None:
             self.app.post_message(self.Changed())
         if opened.done and opened.log.notes != self._said:
@@ -366,30 +375,30 @@ class LogScreen(ActionHost, ClosesOnce[None]):
         words = tuple(expression_words(self.model.log)) if completes else ()
         self.app.push_screen(LinePrompt(title, apply, value, forms, words))
 
-    def ask_columns(self) -> None:
-        """Ask for the meaning of the file's columns."""
-        model = self.model
-        if not model.opened.request.file:
-            self.say("Columns can be chosen only in a file: those of a run are fixed")
-        elif not candidates(model.log.table):
-            self.say("There is no numeric column")
-        else:
-            self.app.push_screen(
-                ColumnsDialog(model.opened.request, model.log.bare()), self._set_columns
-            )
+    def ask_choices(self) -> None:
+        """Ask how the file is to be read."""
+        request = self.request
+        if not is_readable_again(request.file):
+            self.say("Only a file can be read in another way, not a run or a pipe")
+            return
+        self._ask_choices(request, read_beginning(request.file, request.choices))
 
-    def _set_columns(self, request: LogRequest | None) -> None:
-        if request is None:
+    def _ask_choices(self, request: LogRequest, log: Log) -> None:
+        if request is self.request and not self.is_closed:
+            dialog = PreviewDialog(request.file, request.choices, log)
+            self.app.push_screen(dialog, self._set_choices)
+
+    def _set_choices(self, choices: ReadChoices | None) -> None:
+        """Open the file as the user wants it to be read; leave if nothing is open and nothing was chosen."""
+        if choices is None:
+            if not self.is_open:
+                self.dismiss()
             return
-        log = self.model.log
-        opened = self.model.opened
-        if not opened.done or request.choices.of_text != opened.request.choices.of_text:
-            self.open(request)
-            return
-        # All of it has been read: the same rows have another meaning now.
-        layout = choose_columns(log.bare().table, request.choices)
-        self.request = request
-        self.set_model(Model(OpenedLog(request, log.with_layout(layout))))
+        try:
+            remember_choices(self.request.file, choices)
+        except OSError as error:
+            self.say(f"The choices are not remembered: {error.strerror or error}")
+        self.open(LogRequest(self.request.file, choices=choices))
 
     def copy(self, text: str, what: str) -> None:
         """Copy a text to the clipboard of the user's terminal."""

@@ -8,6 +8,7 @@ from contextlib import suppress
 from dataclasses import fields
 from pathlib import Path
 
+from tuisim.analysis.remembered import request_file
 from tuisim.analysis.source import LogRequest
 from tuisim.commands.echo import echo_error, tell
 from tuisim.config.command_line import Arguments
@@ -44,8 +45,10 @@ def asked(arguments: Arguments) -> LogRequest:
     files = [word for word in words if is_file(word)]
     if files and len(words) > 1:
         raise ConfigError("takes one file, or runs", f"got {' '.join(words)}", key="analyse")
-    file, runs = (files[0], ()) if files else ("", tuple(words))
-    return LogRequest(file, runs, arguments.telemetry, build_choices(arguments))
+    choices = build_choices(arguments)
+    if files:
+        return request_file(files[0], choices)
+    return LogRequest("", tuple(words), arguments.telemetry, choices)
 
 
 def build_choices(arguments: Arguments) -> ReadChoices:
@@ -142,12 +145,14 @@ def _name_columns(
 
 def _open_file(word: str, arguments: Arguments) -> Log:
     log = None
-    for loaded in read_pieces(word, build_choices(arguments)):
+    request = request_file(word, build_choices(arguments))
+    for loaded in read_pieces(word, request.choices):
         log = loaded.log or log
         if loaded.part == loaded.part:
             tell(f"reading {word}", loaded.part, 1.0)
     tell(f"{arguments.action} {word}")
     assert log is not None
+    log = request.mark(log)
     # Exports of tuisim name their time column in the metadata.
     if arguments.time is None and not log.metadata:
         hint = "--time COLUMN selects another, --time '' uses row numbers"

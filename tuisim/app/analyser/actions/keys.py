@@ -298,7 +298,7 @@ ACTIONS: Mapping[str, LogAction] = {
         ),
         Action("delete-note", "delete", "Delete the selected note", LOG, log.delete_note, _rows),
         Action("telemetry", "T", "Telemetry or printed samples", LOG, log.telemetry, _log),
-        Action("columns", "C", "Choose the columns of the file", LOG, LogScreen.ask_columns, _log),
+        Action("choices", "C", "Change how the file is read", LOG, LogScreen.ask_choices, _log),
         Action("open-runs", "R", "Open other runs, several in one chart", LOG, log.runs, _log),
         Action("differences", "D", "Go to where two runs differ", LOG, log.differences, _log),
         Action("world", "w", "Show or hide the world", PANE, panes.world, _log),

@@ -1,0 +1,126 @@
+"""How a file was read is found again as long as it is the same."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pytest
+
+from tests.cases import cases
+from tuisim.analysis import remembered
+from tuisim.analysis.remembered import (
+    find_choices,
+    read_doubtful,
+    remember_choices,
+    request_file,
+)
+from tuisim.analysis.source import LogRequest, opening
+from tuisim.config.preferences import keep, preferences_file
+from tuisim.logs.choices import NO_CHOICES, ReadChoices
+
+CHOICES = ReadChoices(time="boot", unit="ms", header=1, separator="semicolon", decimal=",")
+
+
+@pytest.fixture
+def file(tmp_path: Path, home: Path) -> Path:
+    path = tmp_path / "log.csv"
+    path.write_text("boot;light\n" + "".join(f"{20 * n};{n % 5}\n" for n in range(9)))
+    return path
+
+
+def test_choices_are_found_by_any_path_of_the_file_and_kept_in_the_home(
+    file: Path, home: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert find_choices(str(file)) is None
+    remember_choices(str(file), CHOICES)
+    monkeypatch.chdir(file.parent)
+    assert find_choices("log.csv") == find_choices(str(file)) == CHOICES
+    assert sorted(file.parent.iterdir()) == [home, file]
+    remember_choices("log.csv", NO_CHOICES)
+    assert find_choices(str(file)) == NO_CHOICES
+
+
+def test_a_changed_file_is_another_one(file: Path) -> None:
+    remember_choices(str(file), CHOICES)
+    status = file.stat()
+    os.utime(file, ns=(status.st_atime_ns, status.st_mtime_ns + 1))
+    assert find_choices(str(file)) is None
+    remember_choices(str(file), CHOICES)
+    with file.open("a") as handle:
+        handle.write("180;4\n")
+    os.utime(file, ns=(status.st_atime_ns, status.st_mtime_ns + 1))
+    assert find_choices(str(file)) is None
+    file.unlink()
+    remember_choices(str(file), CHOICES)
+    assert find_choices(str(file)) is None
+
+
+def test_the_oldest_files_are_forgotten(
+    file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(remembered, "MAX_FILES", 2)
+    files = [str(file.rename(tmp_path / "0"))] + [str(tmp_path / str(n)) for n in (1, 2)]
+    for name in files:
+        Path(name).write_text("a\n1\n")
+        remember_choices(name, CHOICES)
+    assert [find_choices(name) for name in files] == [None, CHOICES, CHOICES]
+
+
+@cases(
+    "text",
+    {
+        "no JSON": "{",
+        "another thing": '{"logs": 5}',
+        "entries that are none": '{"logs": [5, {}, {"path": 5}]}',
+        "a choice that is none": '{"logs": [{"path": "FILE", "size_bytes": SIZE, "mtime_ns": DATE,'
+        ' "choices": {"separator": "x"}}]}',
+        "a choice of another type": '{"logs": [{"path": "FILE", "size_bytes": SIZE, "mtime_ns": DATE,'
+        ' "choices": {"header": "x"}}]}',
+    },
+)
+def test_damaged_memory_is_no_error(text: str, file: Path) -> None:
+    keep("logs", [])
+    status = file.stat()
+    text = text.replace("FILE", str(file)).replace("SIZE", str(status.st_size))
+    preferences_file().write_text(text.replace("DATE", str(status.st_mtime_ns)))
+    assert request_file(str(file)) == LogRequest(str(file))
+    remember_choices(str(file), CHOICES)
+    assert find_choices(str(file)) == CHOICES
+
+
+def test_what_is_remembered_counts_without_choices_and_is_said(file: Path) -> None:
+    remember_choices(str(file), CHOICES)
+    *_, opened = opening(request_file(str(file)))
+    assert opened.log.series("light").time_s[-1] == pytest.approx(0.16)
+    options = "--time boot --unit ms --header 1 --separator semicolon --decimal ,"
+    assert opened.log.notes[0].startswith(f"read as chosen in the analyser: {options} (")
+    *_, opened = opening(request_file(str(file), ReadChoices(time="")))
+    assert opened.log.series("light").time_s[-1] == 8
+    assert opened.log.notes == ()
+
+
+@cases(
+    "name, text, is_shown",
+    {
+        "a time by name": ("log.csv", "t_ms,light\n0,1\n20,2\n", False),
+        "lines of a program": ("log.txt", "Begin\nColour: 3\nColour: 4\nEnd\n", False),
+        "names of variables": ("log.csv", "time,variable,value\n0,A,1\n1,A,2\n", False),
+        "no column is surely the time": ("log.csv", "boot,light\n0,1\n20,2\n", True),
+        "a line above": ("log.csv", "Lab 3\ntime,light\n0,1\n20,2\n", True),
+        "commas in numbers": ("log.csv", 'time,light\n0,"1,000"\n20,"2,000"\n', True),
+    },
+)
+def test_what_somebody_should_see_first(
+    name: str, text: str, is_shown: bool, tmp_path: Path, home: Path
+) -> None:
+    file = tmp_path / name
+    file.write_text(text)
+    assert (read_doubtful(LogRequest(str(file))) is not None) is is_shown
+    assert read_doubtful(LogRequest(str(file), choices=ReadChoices(time=""))) is None
+    remember_choices(str(file), NO_CHOICES)
+    assert read_doubtful(request_file(str(file))) is None
+
+
+def test_runs_and_pipes_are_not_asked_about() -> None:
+    assert read_doubtful(LogRequest(runs=("last",))) is read_doubtful(LogRequest("-")) is None

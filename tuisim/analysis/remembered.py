@@ -1,0 +1,99 @@
+"""How the user has had files read: found again as long as a file is the same.
+
+The choices are kept in the user's data folder by path, size and date, never beside the file.
+"""
+
+from __future__ import annotations
+
+import os
+from contextlib import suppress
+from dataclasses import asdict, replace
+
+import msgspec
+
+from tuisim.analysis.source import LogRequest
+from tuisim.config.preferences import keep, preference
+from tuisim.data_class import dataclass
+from tuisim.errors import LogError
+from tuisim.logs.choices import NO_CHOICES, ReadChoices
+from tuisim.logs.log import Log
+from tuisim.logs.reader import STDIN, read_beginning
+
+MAX_FILES = 200
+_NAME = "logs"
+
+
+@dataclass(frozen=True, slots=True)
+class _Reading:
+    """How a file was read, and what tells whether it still is the same."""
+
+    path: str
+    size_bytes: int
+    mtime_ns: int
+    choices: ReadChoices = NO_CHOICES
+
+
+def request_file(file: str, choices: ReadChoices = NO_CHOICES) -> LogRequest:
+    """Return the request for a file: without choices, with those that were made before."""
+    remembered = find_choices(file) if choices == NO_CHOICES else None
+    return LogRequest(file, choices=remembered or choices, is_remembered=remembered is not None)
+
+
+def find_choices(file: str) -> ReadChoices | None:
+    """Return the choices that were made for a file; None if there are none, or it has changed since."""
+    reading = _look_up(file)
+    return next(
+        (old.choices for old in _load() if replace(old, choices=NO_CHOICES) == reading), None
+    )
+
+
+def remember_choices(file: str, choices: ReadChoices) -> None:
+    """Keep the choices for a file, in place of earlier ones; the oldest of too many are forgotten.
+
+    Raises:
+        OSError: they cannot be kept.
+    """
+    if (reading := _look_up(file)) is not None:
+        others = [old for old in _load() if old.path != reading.path]
+        newest = [*others, replace(reading, choices=choices)][-MAX_FILES:]
+        keep(_NAME, list(map(asdict, newest)))
+
+
+def read_doubtful(request: LogRequest) -> Log | None:
+    """Return the first rows of a file in which something was guessed or left out; None if nobody needs to see them.
+
+    Raises:
+        LogError: it cannot be read, or has no row.
+    """
+    is_known = request.is_remembered or request.choices != NO_CHOICES
+    if is_known or not is_readable_again(request.file):
+        return None
+    log = read_beginning(request.file, NO_CHOICES)
+    # Of lines of programs there is nothing to choose.
+    is_guessed = not log.layout.sure or bool(log.form.separator and log.notes)
+    return log if is_guessed and not log.metadata else None
+
+
+def is_readable_again(file: str) -> bool:
+    """Return whether a log is in a file, not in a pipe, which has its rows only once, nor in runs."""
+    return file not in ("", STDIN) and os.path.isfile(file)
+
+
+def _look_up(file: str) -> _Reading | None:
+    """Return a file as it is now; None if it is none."""
+    try:
+        status = os.stat(file) if is_readable_again(file) else None
+    except OSError:
+        return None
+    path = os.path.realpath(file)
+    return status and _Reading(path, status.st_size, status.st_mtime_ns)
+
+
+def _load() -> list[_Reading]:
+    """Return what was kept, the newest last; what is damaged is left out."""
+    entries = preference(_NAME)
+    readings = []
+    for entry in entries if isinstance(entries, list) else ():
+        with suppress(msgspec.ValidationError, LogError):
+            readings.append(msgspec.convert(entry, _Reading))
+    return readings

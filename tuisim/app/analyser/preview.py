@@ -1,0 +1,216 @@
+"""The dialog with the first rows of a file: what was taken for heading and time, and how else it may be read."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Any, ClassVar
+
+from rich.style import Style
+from rich.table import Table
+from rich.text import Text
+from textual import on
+from textual.app import ComposeResult
+from textual.binding import Binding, BindingType
+from textual.containers import Horizontal, ScrollableContainer, VerticalScroll
+from textual.widgets import Label, Select, Static
+
+from tuisim import palette
+from tuisim.app.dialogs.dialog import Dialog
+from tuisim.errors import TuisimError, shortened
+from tuisim.logs.choices import DECIMAL_SIGNS, NO_CHOICES, SIGNS, ReadChoices
+from tuisim.logs.columns import ROW, UNIT_NAMES, is_numeric, time_columns
+from tuisim.logs.log import Log
+from tuisim.logs.reader import read_beginning, read_first_lines
+from tuisim.logs.units import SECONDS
+
+_ROWS, _COLUMNS = 30, 60
+"""Cells that are shown."""
+_MAX_CELL, _MAX_LINE = 24, 60
+"""Characters of a cell, and of a line of the file."""
+_FIELDS = {
+    "header": "Heading",
+    "separator": "Separator",
+    "decimal": "Decimal sign",
+    "time": "Time",
+    "unit": "Unit",
+}
+"""The choices by name, with their labels, whose first letters are their keys."""
+_OF_COLUMNS = ("header", "separator")
+"""Choices that change which columns there are."""
+
+_WORDS = {"separator": tuple(SIGNS), "decimal": DECIMAL_SIGNS, "unit": tuple(SECONDS)}
+
+_EXAMPLES = {".": "1.5", ",": "1,5"}
+"""Numbers in place of signs that are hard to see."""
+Offers = list[tuple[str, Any]]
+"""What can be chosen: words, and values of `ReadChoices`."""
+
+
+class PreviewDialog(Dialog[ReadChoices]):
+    """Returns how the file is to be read.
+
+    Args:
+        file: Its path.
+        choices: How it is read at first.
+        log: Its first rows, read in this way.
+    """
+
+    HINT = "Enter opens · Escape goes back"
+    BINDINGS: ClassVar[list[BindingType]] = [
+        *(
+            Binding(label[0].lower(), f"choose('{name}')", label, show=False)
+            for name, label in _FIELDS.items()
+        ),
+        Binding("enter", "open", "", show=False),
+    ]
+
+    def __init__(self, file: str, choices: ReadChoices, log: Log) -> None:
+        super().__init__()
+        self.TITLE_TEXT = f"How to read {Path(file).name}"
+        self._file, self._choices, self._log = file, choices, log
+        self._lines = read_first_lines(file, choices.encoding)
+
+    def content(self) -> ComposeResult:
+        for names in (("header",), ("separator", "decimal"), ("time", "unit")):
+            with Horizontal(classes="choices"):
+                for name in names:
+                    yield Label(_FIELDS[name], markup=False)
+                    yield Select(
+                        self._offers(name),
+                        id=name,
+                        value=getattr(self._choices, name),
+                        allow_blank=False,
+                        type_to_search=False,
+                        compact=True,
+                        disabled=self._is_idle(name),
+                    )
+        with ScrollableContainer(id="rows"):
+            yield Static(_build_rows(self._log), id="table")
+        with VerticalScroll(id="notes", can_focus=False):
+            yield Static(self._notes(), id="message", markup=False)
+
+    def on_mount(self) -> None:
+        self.query_one("#rows").focus()
+
+    def action_choose(self, name: str) -> None:
+        """Open the list of a choice."""
+        field = self.query_one(f"#{name}", Select)
+        if not field.disabled:
+            field.focus()
+            field.action_show_overlay()
+
+    def action_open(self) -> None:
+        """Return the choices, unless nothing can be read with them."""
+        if not self.query_one("#message").has_class("wrong"):
+            self.dismiss(self._choices)
+
+    @on(Select.Changed)
+    def _change(self, event: Select.Changed) -> None:
+        name = event.select.id or ""
+        # The message may be late: a list of other offers has its first one for a moment.
+        chosen: Any = event.select.value
+        if chosen == getattr(self._choices, name):
+            return
+        self.query_one("#rows").focus()
+        self._choices = replace(self._choices, **{name: chosen})
+        if name in _OF_COLUMNS:
+            self._choices = replace(self._choices, time=None, value=())
+        self._read()
+
+    def _read(self) -> None:
+        """Show the first rows as they are read now."""
+        try:
+            self._log = read_beginning(self._file, self._choices)
+        except TuisimError as error:
+            self.say(error.message, wrong=True)
+            return
+        self.query_one("#table", Static).update(_build_rows(self._log))
+        self.say(self._notes())
+        for name in _FIELDS:
+            field, offers = self.query_one(f"#{name}", Select), self._offers(name)
+            field.set_options(offers)
+            field.value, field.disabled = getattr(self._choices, name), self._is_idle(name)
+            # The widget shows another word only for another value.
+            word = next(word for word, value in offers if value == field.value)
+            field.query_one("#label", Static).update(word)
+
+    def _is_idle(self, name: str) -> bool:
+        """Return whether a choice would change nothing."""
+        if name == "time":
+            return False
+        return not self._has_number_time if name == "unit" else not self._lines
+
+    @property
+    def _has_number_time(self) -> bool:
+        time = self._log.layout.time
+        return bool(time) and is_numeric(self._log.table.schema.field(time).type)
+
+    def _notes(self) -> str:
+        return "\n".join(self._log.notes)
+
+    def _offers(self, name: str) -> Offers:
+        """Return what can be chosen; the first is to find it."""
+        chosen = getattr(self._choices, name)
+        offers = self._words(name)
+        usual = getattr(NO_CHOICES, name)
+        if chosen not in (usual, *dict(offers).values()):
+            # It was named in the shell.
+            offers.append((str(chosen), chosen))
+        is_found = chosen == usual
+        label = f"found: {self._find_word(name) or 'none'}" if is_found else "find it"
+        return [(label, usual), *offers]
+
+    def _words(self, name: str) -> Offers:
+        match name:
+            case "header":
+                return [(f"{row}: {text[:_MAX_LINE]}", row) for row, text in self._lines]
+            case "time":
+                names = time_columns(self._log.table)
+                return [*((shortened(one, _MAX_CELL), one) for one in names), ("row numbers", ROW)]
+            case _:
+                return [(_EXAMPLES.get(word, word), word) for word in _WORDS[name]]
+
+    def _find_word(self, name: str) -> str:
+        """Return what was found for a choice that nobody made; empty if nothing was."""
+        layout, form = self._log.layout, self._log.form
+        match name:
+            case "header":
+                return f"line {form.header}" if form.header else ""
+            case "time":
+                return shortened(layout.time or "row numbers", _MAX_CELL)
+            case "unit":
+                return UNIT_NAMES.get(layout.unit_s, "") if self._has_number_time else ""
+            case _:
+                word: str = getattr(form, name)
+                return _EXAMPLES.get(word, word)
+
+
+def _build_rows(log: Log) -> Table:
+    """Return the first rows with names and roles of the columns."""
+    rows = Table(box=None, padding=(0, 1), pad_edge=False)
+    row = log.form.header
+    rows.add_column(Text(f"line {row}\n" if row else ""), no_wrap=True)
+    names = log.table.column_names[:_COLUMNS]
+    for name in names:
+        heading = Text(f"{shortened(name, _MAX_CELL)}\n", Style(color=palette.WHITE, bold=True))
+        heading.append(_role(log, name), Style(color=palette.YELLOW, bold=False))
+        numeric = is_numeric(log.table.schema.field(name).type)
+        rows.add_column(heading, no_wrap=True, justify="right" if numeric else "left")
+    for cells in zip(*(log.table.column(name)[:_ROWS].to_pylist() for name in names), strict=True):
+        rows.add_row("", *(Text(_cell(cell)) for cell in cells))
+    return rows
+
+
+def _role(log: Log, name: str) -> str:
+    """Return what a column was taken for, empty for values."""
+    layout = log.layout
+    if name == layout.time:
+        return "time"
+    roles = {layout.variable: "variable", layout.run: "run"}
+    return roles.get(name) or ("" if name in layout.values else "not drawn")
+
+
+def _cell(value: object) -> str:
+    text = f"{value:.6g}" if isinstance(value, float) else "" if value is None else str(value)
+    return shortened(text, _MAX_CELL)
