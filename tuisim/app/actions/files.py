@@ -16,7 +16,7 @@ from tuisim.app.actions.time_travel import to_tick
 from tuisim.app.editor.document import NEW_NAME
 from tuisim.app.editor.text_file import find_draft
 from tuisim.app.setup import next_run as plans
-from tuisim.config.folders import programs_folder
+from tuisim.config.folders import programs_folder, user_path
 from tuisim.config.obstacles import save_obstacles as write
 from tuisim.config.options import Settings
 from tuisim.config.preferences import keep, preference
@@ -45,11 +45,13 @@ def clear_log(context: ActionContext) -> None:
 
 
 def open_program(context: ActionContext) -> None:
-    """Ask for a program and open it."""
-    from tuisim.app.dialogs.chooser import program_chooser
+    """Ask for a program, a world, goals or a log and open it."""
+    from tuisim.app.dialogs.chooser import is_log, program_chooser
 
     def opened(path: str | None) -> None:
-        if path:
+        if path and is_log(path):
+            analyse_file(context, str(user_path(path)))
+        elif path:
             open_path(context, path)
 
     context.app.push_screen(program_chooser(), opened)

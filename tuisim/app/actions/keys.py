@@ -404,7 +404,7 @@ ACTIONS: Mapping[str, LabAction] = {
         Action(
             "open",
             "o",
-            "Open a program, a world or goals",
+            "Open a program, a world, goals or a log",
             FILES,
             files.open_program,
             _can_change_world,

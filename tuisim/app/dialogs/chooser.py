@@ -31,7 +31,7 @@ from tuisim.config.profiles import load_profile
 from tuisim.core.profile import PROFILES
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
 from tuisim.data_class import dataclass
-from tuisim.errors import TuisimError
+from tuisim.errors import LogError, TuisimError
 from tuisim.logs.export import is_companion
 from tuisim.scene.mat import shrink
 from tuisim.scene.view import Viewport, whole_field
@@ -43,6 +43,7 @@ if TYPE_CHECKING:
     from tuisim.config.mats import Background
 
 OPENABLE, TABLES = (".py", ".toml"), (".toml", ".json")
+LOGS = (".csv", ".tsv", ".txt", ".log", ".jsonl", ".parquet", ".arrow")
 IMAGES = (".png", ".jpg", ".jpeg", ".gif", ".webp", ".bmp", ".tif", ".tiff")
 """Endings of the files that choosers list in a folder."""
 MAX_FILES = 200
@@ -319,7 +320,7 @@ def best_match(groups: Iterable[ChoiceGroup], typed: str) -> str:
 
 
 def program_chooser() -> Chooser:
-    """Return the dialog for programs, worlds and goals: those in the current folder, and the examples."""
+    """Return the dialog for programs, worlds, goals and logs: those in the current folder, and the examples."""
     from tuisim.config.program_file import programs
     from tuisim.config.worlds import load_world
     from tuisim.goals.files import examples as goals_examples
@@ -335,23 +336,32 @@ def program_chooser() -> Chooser:
         ChoiceGroup(
             "Worlds and goals" if own.entries else f"{here.title}: worlds and goals", worlds
         ),
+        ChoiceGroup("Logs", files_here(LOGS).entries),
         ChoiceGroup("Examples", [(str(path), name, title) for name, path, title in examples]),
         ChoiceGroup(
             "Examples of goals", [(str(path), path.name, title_of(path)) for path in goals]
         ),
     ]
-    hint = "path of a program, world or goals file"
-    return Chooser(
-        "Programs, worlds and goals", groups, path_hint=hint, read=_read_openable, suffixes=OPENABLE
-    )
+    title, suffixes = "Programs, worlds, goals and logs", (*OPENABLE, *LOGS)
+    hint = "path of a program, world, goals file or log"
+    return Chooser(title, groups, path_hint=hint, read=_read_openable, suffixes=suffixes)
+
+
+def is_log(word: str) -> bool:
+    """Return whether a path names a log."""
+    return Path(word).suffix.lower() in LOGS
 
 
 def _read_openable(word: str) -> object:
-    """Read a program, a world or goals.
+    """Read a program, a world or goals; a log is read as it opens.
 
     Raises:
-        ConfigError: there is no such file, or it is wrong.
+        TuisimError: there is no such file, or it is wrong.
     """
+    if is_log(word):
+        if not os.path.isfile(user_path(word)):
+            raise LogError("no such file", file=word)
+        return word
     from tuisim.config.program_file import find_program, read_program
     from tuisim.config.worlds import means_world
     from tuisim.goals.files import load_task
