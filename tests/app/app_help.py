@@ -18,6 +18,7 @@ from tuisim.app.snapshot import RunPhase
 from tuisim.app.terminal_app import TerminalApp
 from tuisim.config.build import build_run_spec
 from tuisim.config.options import Settings
+from tuisim.runs.recorded_run import Recording
 from tuisim.source import Program
 
 LOGS = """\
@@ -73,6 +74,20 @@ def notices(app: App[Any]) -> list[str]:
     return app.notices.list_messages()
 
 
+def program_of(app: LabApp) -> Program:
+    """The program that is open."""
+    opened = app.run_controller.program
+    assert opened is not None
+    return opened
+
+
+def recording_of(app: LabApp) -> Recording:
+    """The run in view."""
+    recording = app.run_controller.timeline.recording
+    assert recording is not None
+    return recording
+
+
 def message_of(app: LabApp) -> str:
     """What the open dialog says about what was typed."""
     return "".join(str(one.content) for one in app.screen.query("#message").results(Static))
@@ -114,6 +129,16 @@ async def run_from_start(pilot: Pilot[None], app: LabApp, text: str) -> None:
         pilot,
         lambda: app.run_controller.run_id != before and app.run_controller.state is RunPhase.ENDED,
     )
+
+
+async def until_typing(pilot: Pilot[Any]) -> None:
+    """Wait until the program is typed into."""
+
+    def is_typed() -> bool:
+        code = lab(pilot).panel_area.code
+        return code is not None and code.typing
+
+    await until(pilot, is_typed)
 
 
 async def until_shown(pilot: Pilot[Any], text: str) -> None:

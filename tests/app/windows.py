@@ -172,11 +172,6 @@ class Display:
             assert time.monotonic() < give_up, "it never comes to rest"
             before = picture
 
-    def press(self, key: str) -> None:
-        """Type a key, by its name in X."""
-        environment = {**os.environ, "DISPLAY": self._name}
-        subprocess.run(["xdotool", "key", key], env=environment, check=True, timeout=PATIENCE_S)
-
 
 @contextmanager
 def shown_in(window: Window, arguments: list[str], folder: Path) -> Iterator[Display]:

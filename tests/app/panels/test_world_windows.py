@@ -50,16 +50,3 @@ def test_the_world_is_seen(name: str, tmp_path: Path) -> None:
     # Neither leftovers in the colours of codes that were misunderstood, nor a world that is still black in part.
     for garbage in ((205, 0, 205), (0, 205, 205)):
         assert _share(picture, garbage) < 0.001
-
-
-@_where_installed("xterm-sixel", "xdotool")
-def test_one_key_switches_from_sixel_to_characters_and_back(tmp_path: Path) -> None:
-    with shown_in(WINDOWS["xterm-sixel"], ["log_greys"], tmp_path) as display:
-        display.until(_is_world)
-        display.press("numbersign")
-        # Characters have 16 colours there, and no grey of the mat.
-        display.until(
-            lambda picture: _share(picture, (255, 255, 255)) > 0.15 and not _is_world(picture)
-        )
-        display.press("numbersign")
-        display.until(_is_world)
