@@ -2,20 +2,16 @@
 
 from __future__ import annotations
 
-import re
 from itertools import groupby
-from pathlib import Path
 
 import pytest
 from textual.widgets import OptionList
 
-from tests.app.app_help import open_lab, ready, screen_text, settings, until
-from tuisim.analysis.source import LogRequest
+from tests.app.app_help import open_lab, until
 from tuisim.app.action import fitting, most_entries
 from tuisim.app.actions.keys import ACTIONS
-from tuisim.app.analyser.app import Analyser
-from tuisim.app.app import LabApp
 from tuisim.app.dialogs.palette import Palette
+from tuisim.app.snapshot import RunPhase, Situation
 
 
 async def test_it_offers_every_key_those_that_work_now_first_and_finds_one_by_its_title() -> None:
@@ -35,28 +31,20 @@ async def test_it_offers_every_key_those_that_work_now_first_and_finds_one_by_it
         await until(pilot, lambda: app.run_controller.pen_down)
 
 
-FITTED = {80: 9, 120: 11, 200: 15, 300: 20}
+FITTED = {60: 9, 80: 9, 120: 11, 200: 15, 300: 20}
 
 
 @pytest.mark.parametrize("columns, most", FITTED.items(), ids=map(str, FITTED))
-def test_the_footer_has_few_entries_in_groups_with_the_palette_among_them(
-    columns: int, most: int
+@pytest.mark.parametrize("state", [RunPhase.IDLE, RunPhase.RUNNING, RunPhase.PAUSED])
+def test_the_footer_has_few_entries_in_groups_that_fit_with_help_palette_and_quit_as_the_last(
+    columns: int, most: int, state: RunPhase
 ) -> None:
-    shown = fitting([*ACTIONS.values()], columns, most_entries(columns))
+    now = Situation(state, has_program=True, has_run=state != RunPhase.IDLE)
+    works = [action for action in ACTIONS.values() if not action.why_not(now)]
+    shown = fitting(works, columns, most_entries(columns))
     assert len(shown) <= most
-    assert {"palette", "help", "quit"} <= {one.id for one in shown}
+    assert [one.id for one in shown[-3:]] == ["help", "palette", "quit"]
     groups = [group for group, _ in groupby(shown, lambda one: one.group)]
     assert len(groups) == len(set(groups))
-
-
-@pytest.mark.slow
-async def test_above_the_analyser_it_offers_no_key_of_the_lab(tmp_path: Path) -> None:
-    log = tmp_path / "log.txt"
-    log.write_text("Colour: 1\nColour: 2\n")
-    async with LabApp(settings()).run_test(size=(120, 40)) as pilot:
-        app, analyser = await ready(pilot), Analyser(LogRequest(file=str(log)))
-        await app.push_screen(analyser)
-        await until(pilot, lambda: analyser.is_open)
-        await pilot.press("ctrl+p", *"quit")
-        await until(pilot, lambda: re.search("No command has|Quit", screen_text(app)) is not None)
-        assert "Quit" not in screen_text(app)
+    words = sum(len(f" {one.footer_key or one.key_label} {one.footer}") for one in shown)
+    assert words + 2 * (len(groups) - 1) <= columns

@@ -8,10 +8,7 @@ from functools import partial
 import pytest
 
 from tests.app.app_help import LOGS, lab, notices, open_lab, screen_text, settings, until
-from tuisim.app.actions.keys import ACTIONS
 from tuisim.app.panels import PANELS, TerminalSize
-
-SIZES = [(80, 24), (120, 40), (200, 60)]
 
 
 @pytest.mark.slow
@@ -36,28 +33,6 @@ async def test_every_panels_key_shows_and_hides_it() -> None:
                 ), panel.id
 
 
-@pytest.mark.slow
-async def test_a_panel_that_its_key_opens_takes_the_focus_and_gives_it_back() -> None:
-    panels = PANELS.keys() - {"world", "output"}
-    async with open_lab(LOGS, panels_off=frozenset(panels)) as (pilot, app):
-
-        def has_focus(panel: str) -> bool:
-            return (
-                app.focused is not None
-                and app.panel_area.panels[panel] in app.focused.ancestors_with_self
-            )
-
-        for panel in panels:
-            await pilot.press(PANELS[panel].key)
-            await until(pilot, partial(app.panel_area.shown, panel), panel)
-            # Those that hear no keys leave the focus where it is.
-            deaf = not app.panel_area._can_focus(panel)
-            await until(pilot, partial(has_focus, "world" if deaf else panel), panel)
-            await pilot.press(PANELS[panel].key)
-            await until(pilot, partial(has_focus, "world"), panel)
-            assert not app.panel_area.shown(panel), panel
-
-
 async def test_the_key_of_a_panel_that_is_shown_focuses_it_first() -> None:
     async with open_lab(size=(200, 60)) as (pilot, app):
         assert app.panel_area.shown("chart") and app.panel_area.focused_panel() == "world"
@@ -66,28 +41,6 @@ async def test_the_key_of_a_panel_that_is_shown_focuses_it_first() -> None:
         await pilot.press("c")
         await until(pilot, lambda: app.panel_area.focused_panel() == "world")
         assert not app.panel_area.shown("chart")
-
-
-@pytest.mark.slow
-async def test_help_has_as_many_columns_as_there_is_room_for() -> None:
-    async with open_lab(LOGS, size=SIZES[0]) as (pilot, app):
-        groups = {"In the code", *(action.group for action in ACTIONS.values())}
-
-        def top() -> str:
-            """The row in which each column begins with the name of a group."""
-            return next(
-                (row for row in screen_text(app).split("\n") if re.search(r" {3}Program  ", row)),
-                "",
-            )
-
-        def has_columns(count: int) -> bool:
-            return sum(f" {group}  " in top() for group in groups) == count
-
-        for columns, size in zip((1, 1, 1), SIZES, strict=True):
-            await pilot.resize_terminal(*size)
-            await pilot.press("question_mark")
-            await until(pilot, partial(has_columns, columns), str(size))
-            await pilot.press("escape")
 
 
 @pytest.mark.slow

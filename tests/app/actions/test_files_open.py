@@ -5,32 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from textual.widgets import Input
 
 from tests.app.app_help import message_of, notices, open_lab, until
 from tuisim.app.analyser.app import Analyser
 from tuisim.app.analyser.preview import PreviewDialog
-from tuisim.app.snapshot import RunPhase
-
-
-@pytest.mark.slow
-async def test_opening_a_program_by_its_path(tmp_path: Path) -> None:
-    path = tmp_path / "mine.py"
-    path.write_text("# %%sim_magic_preloaded -b Square -x 500\nprint(1)\n")
-    async with open_lab() as (pilot, app):
-        await pilot.press("o")
-        entry = app.screen.query_one(Input)
-        entry.focus()
-        entry.value = str(path)
-        await pilot.press("enter")
-        await until(
-            pilot,
-            lambda: app.run_controller.mat is not None and app.run_controller.mat.name == "Square",
-        )
-        assert app.run_controller.program is not None
-        assert app.run_controller.program.name == "mine.py"
-        assert app.run_controller.pose.x_mm == 500
-        assert app.run_controller.state == RunPhase.IDLE
 
 
 async def test_a_program_that_is_not_there_is_a_notice(tmp_path: Path) -> None:

@@ -7,66 +7,14 @@ from collections.abc import Mapping
 from typing import Any
 
 import pytest
-from textual.widgets import OptionList
 
-from tests.app.app_help import LOGS, notices, open_lab, screen_text, settings, until
+from tests.app.app_help import LOGS, notices, open_lab, screen_text, until
 from tuisim.app.action import Action, fitting
 from tuisim.app.actions.keys import ACTIONS, working
 from tuisim.app.analyser.actions.keys import ACTIONS as ANALYSER_ACTIONS
-from tuisim.app.app import LabApp
 from tuisim.app.guide.screen import GuideScreen
-from tuisim.app.panels import PANELS
 from tuisim.app.snapshot import RunPhase, Situation
 from tuisim.core.geometry import Pose
-
-SIZES = [(80, 24), (120, 40), (200, 60)]
-
-
-@pytest.mark.quick_cases("80x24")
-@pytest.mark.parametrize("size", SIZES, ids=[f"{w}x{h}" for w, h in SIZES])
-async def test_first_picture(size: tuple[int, int]) -> None:
-    async with open_lab(LOGS, size=size) as (pilot, app):
-        await until(
-            pilot,
-            lambda: all(
-                words in screen_text(app) for words in ("World", "Instrumentation", "R run")
-            ),
-        )
-        assert screen_text(app).count("\n") == size[1] - 1
-
-
-@pytest.mark.slow
-async def test_a_key_clears_the_log_as_shown_and_the_run_keeps_it() -> None:
-    app = LabApp(settings(LOGS, panels_on=frozenset({"chart", "output"}), autorun=True, speed=0.0))
-    async with app.run_test(size=(120, 40)) as pilot:
-        await until(
-            pilot, lambda: "— finished" in screen_text(app) and "[x] Colour" in screen_text(app)
-        )
-        await pilot.press("x")
-        await until(
-            pilot,
-            lambda: "— finished" not in screen_text(app) and "Nothing logged" in screen_text(app),
-        )
-        recording = app.run_controller.timeline.recording
-        assert "[x] Colour" not in screen_text(app)
-        assert recording is not None
-        assert any("Colour" in row.text for row in recording.rows.rows(0))
-
-
-@pytest.mark.slow
-async def test_resize_there_and_back() -> None:
-    async with open_lab(LOGS, size=(80, 24)) as (pilot, app):
-        await until(
-            pilot,
-            lambda: all(words in screen_text(app) for words in ("White", "World: Grey_bands")),
-        )
-        before = screen_text(app)
-        await pilot.resize_terminal(200, 60)
-        await until(pilot, lambda: app.panel_area.shown("positioning"))
-        assert all(app.panel_area.shown(panel.id) for panel in PANELS.values() if panel.sizes)
-        await pilot.resize_terminal(80, 24)
-        await until(pilot, lambda: not app.panel_area.shown("chart"))
-        await until(pilot, lambda: screen_text(app) == before)
 
 
 async def test_a_key_that_does_nothing_says_why() -> None:
@@ -143,45 +91,6 @@ async def test_help_lists_every_key() -> None:
             assert action.id.startswith("nudge") or action.title in text
         await pilot.press("escape")
         assert not isinstance(app.screen, GuideScreen)
-
-
-@pytest.mark.slow
-async def test_choosing_a_mat_lays_it_out_with_its_start() -> None:
-    async with open_lab(LOGS) as (pilot, app):
-        await pilot.press("b")
-        mats = app.screen.query_one(OptionList)
-        mats.highlighted = mats.get_option_index("Lollipop")
-        await pilot.press("enter")
-        await until(
-            pilot,
-            lambda: (
-                app.run_controller.mat is not None and app.run_controller.mat.name == "Lollipop"
-            ),
-        )
-        assert app.run_controller.pose.heading_deg == -180
-        assert app.run_controller.program is not None
-
-
-@pytest.mark.parametrize("width", [60, 80, 120, 200])
-@pytest.mark.parametrize("state", [RunPhase.IDLE, RunPhase.RUNNING, RunPhase.PAUSED])
-def test_footer_fits_and_always_shows_help_palette_and_quit(width: int, state: RunPhase) -> None:
-    now = Situation(state, has_program=True, has_run=state != RunPhase.IDLE)
-    shown = fitting([action for action in ACTIONS.values() if not action.why_not(now)], width, 9)
-    assert [action.id for action in shown[-3:]] == ["help", "palette", "quit"]
-    groups = len({action.group for action in shown})
-    assert (
-        sum(len(f" {a.footer_key or a.key_label} {a.footer}") for a in shown) + 2 * (groups - 1)
-        <= width
-    )
-
-
-def test_each_line_of_the_table_is_an_action() -> None:
-    for name, action in ACTIONS.items():
-        assert action.title, name
-        assert callable(action.do), name
-        for state in (RunPhase.IDLE, RunPhase.RUNNING, RunPhase.PAUSED):
-            for yes in (True, False):
-                assert isinstance(action.why_not(Situation(state, yes, yes)), str), name
 
 
 @pytest.mark.parametrize("table", [ACTIONS, ANALYSER_ACTIONS], ids=["app", "analyser"])

@@ -78,17 +78,6 @@ def last_line(pilot: Pilot[Any]) -> str:
     return text_of(pilot).split("\n")[-1]
 
 
-@pytest.mark.slow
-async def test_letters_that_are_typed_are_not_offered_as_keys() -> None:
-    async with open_lab(LOGS, panels_on=frozenset({"code"})) as (pilot, _):
-        await until(pilot, lambda: "R run" in last_line(pilot))
-        await pilot.press("d")
-        await until(pilot, lambda: "esc done" in last_line(pilot))
-        assert "R run" not in last_line(pilot)
-        await pilot.press("escape")
-        await until(pilot, lambda: "R run" in last_line(pilot))
-
-
 async def test_the_key_of_a_panel_that_is_not_shown_looks_like_any_other() -> None:
     async with open_lab(LOGS, autorun=True, speed=0.0, size=(80, 24)) as (pilot, app):
         await until(pilot, lambda: "chart" in app.key_footer.render().plain)

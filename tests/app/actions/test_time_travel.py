@@ -14,6 +14,7 @@ from tests.app.app_help import (
     open_lab,
     press_and_stand,
     ready,
+    recording_of,
     settings,
     until,
     until_shown,
@@ -83,8 +84,7 @@ async def test_the_robot_stays_where_it_is_put_while_a_line_holds_the_run() -> N
         assert app.run_controller.pose.y_mm == start.y_mm + 20
         await pilot.press("full_stop")
         await until(pilot, lambda: app.run_controller.timeline.newest == tick + 1)
-        recording = app.run_controller.timeline.recording
-        assert recording is not None
+        recording = recording_of(app)
         kinds = ["set_noise", *["set_pose"] * 3, *["set_pen"] * 3]
         assert [(one.tick, one.command.kind) for one in recording.actions()] == [
             (tick, kind) for kind in kinds
@@ -123,8 +123,7 @@ def light(app: LabApp) -> int:
 
 def noises(app: LabApp) -> list[int]:
     """The light noise that the user has set in the run at hand."""
-    recording = app.run_controller.timeline.recording
-    assert recording is not None
+    recording = recording_of(app)
     return [one.command.light for one in recording.actions() if isinstance(one.command, SetNoise)]
 
 

@@ -10,15 +10,14 @@ from typing import Any
 import pandas as pd
 import pytest
 from textual.pilot import Pilot
-from textual.widgets import Input
+from textual.widgets import Input, OptionList
 
-from tests.app.app_help import LOGS, notices, program, ready, until
+from tests.app.app_help import LOGS, notices, open_lab, program, until
 from tuisim.analysis.model import Model
 from tuisim.analysis.source import NOTES_FILE, LogRequest, read_notes
 from tuisim.app.analyser.actions.keys import ACTIONS
 from tuisim.app.analyser.app import Analyser, AnalyserApp
 from tuisim.app.analyser.panes import PaneView
-from tuisim.app.app import AppSettings, LabApp
 from tuisim.app.dialogs.palette import Palette
 from tuisim.config.build import build_run_spec
 from tuisim.config.options import Settings
@@ -330,11 +329,7 @@ async def test_what_cannot_be_opened_ends_the_app_with_the_reason(tmp_path: Path
 
 @pytest.mark.slow
 async def test_the_lab_below_hears_no_key(run: StoredRun) -> None:
-    spec = build_run_spec(Settings({"background": "Grey_bands"}))
-    async with LabApp(AppSettings(spec=spec, program=program(LOGS))).run_test(
-        size=(120, 40)
-    ) as pilot:
-        lab = await ready(pilot)
+    async with open_lab(LOGS) as (pilot, lab):
         below, pose = lab.screen, lab.run_controller.snapshot().instant.pose
         analyser = Analyser(LogRequest(runs=(run.id,)))
         await lab.push_screen(analyser)
@@ -344,6 +339,8 @@ async def test_the_lab_below_hears_no_key(run: StoredRun) -> None:
         assert lab.run_controller.snapshot().instant.pose == pose
         await pilot.press("ctrl+p")
         await until(pilot, lambda: isinstance(lab.screen, Palette))
+        offered = lab.screen.query_one(OptionList).options
+        assert {option.id for option in offered} <= ACTIONS.keys()
         await pilot.press("escape")
         await until(pilot, lambda: lab.screen is analyser)
         await pilot.press("q")
