@@ -6,14 +6,13 @@ import pytest
 from textual.widgets import OptionList
 
 from tests.app.app_help import LOGS, ready, settings, until
-from tests.app.wires import on_wire, until_quiet
 from tuisim.app.app import LabApp
 from tuisim.app.dialogs.cells import CellsCard
 from tuisim.config.user_config import CELL_SET, load_config
 from tuisim.terminal import picture_mode as modes
 from tuisim.terminal.cell_view import PixelView
 from tuisim.terminal.glyphs import GLYPHS
-from tuisim.terminal.picture_mode import PictureMode, Sharpness, picture_mode_for
+from tuisim.terminal.picture_mode import PictureMode, picture_mode_for
 from tuisim.terminal.picture_options import CellSet
 
 
@@ -56,32 +55,3 @@ async def test_a_set_is_chosen_by_eye_and_kept(size: tuple[int, int]) -> None:
     assert started(None).cells is CellSet.OCTANT
     assert started("half").cells is CellSet.HALF
     assert started("auto").cells is CellSet.SEXTANT
-
-
-@pytest.mark.slow
-async def test_on_a_slow_link_cells_are_coarse_while_something_moves(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    slow, still = True, False
-    # Whether something has moved a moment ago, however fast the machine is.
-    monkeypatch.setattr(Sharpness, "is_still", property(lambda sharpness: still))
-    picture_mode = PictureMode(CellSet.OCTANT)
-    app = LabApp(settings(LOGS), picture_mode)
-    picture_mode.is_slow = lambda: slow
-    async with on_wire(app) as pilot:
-        await until(pilot, lambda: app.query_one("WorldView", PixelView)._cells.size > 0)
-        view = app.query_one("WorldView", PixelView)
-        assert glyphs(view) == {"▀"}
-
-        # Once nothing has moved for a moment, the picture becomes fine, on a slow link, too.
-        still = True
-        await until(pilot, lambda: not view._coarse.any())
-        assert len(glyphs(view)) > 5
-        await until_quiet(pilot)
-        still, fine = False, view._cells.copy()
-        await pilot.press("up")
-        await until(pilot, lambda: bool((view._cells != fine).any()))
-        assert view._coarse.any()
-        slow = False
-        await pilot.press("up")
-        await until(pilot, lambda: not view._coarse.any())

@@ -51,24 +51,6 @@ async def enter_path(pilot: Pilot[None], path: Path) -> None:
     await pilot.press("enter")
 
 
-@pytest.mark.slow
-async def test_an_image_is_laid_out_by_its_path(tmp_path: Path) -> None:
-    path = tmp_path / "red.png"
-    Image.new("RGB", (300, 200), (200, 0, 0)).save(path)
-    async with open_lab(LOGS) as (pilot, app):
-        await pilot.press("b")
-        await pilot.pause()
-        await enter_path(pilot, path)
-        await until(
-            pilot,
-            lambda: (
-                app.run_controller.next_run.spec.world.background == str(path)
-                and app.loader.mat_is_ready
-            ),
-        )
-        assert app.run_controller.snapshot().colors["left"].rgb == (200, 0, 0)
-
-
 @pytest.mark.quick_cases("missing")
 @pytest.mark.parametrize("content", [None, "no picture"], ids=["missing", "text"])
 async def test_what_is_no_image_changes_nothing(content: str | None, tmp_path: Path) -> None:
@@ -124,17 +106,6 @@ async def test_mats_of_ones_own_are_listed_by_name(named: bool, home: Path, tmp_
             ),
         )
         assert app.run_controller.next_run.spec.world.start.x_mm == 150
-
-
-@pytest.mark.slow
-async def test_a_mat_without_a_picture_says_which_file_to_bring(home: Path) -> None:
-    async with open_lab(LOGS) as (pilot, app):
-        before = app.run_controller.next_run
-        await choose(pilot, "FLL_2018_Into_Orbit")
-        await until(
-            pilot, lambda: any("save it as FLL2018.jpg" in notice for notice in notices(app))
-        )
-        assert app.run_controller.next_run == before
 
 
 async def test_a_folder_of_mats_that_is_gone_is_told(tmp_path: Path) -> None:

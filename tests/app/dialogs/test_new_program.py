@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.app.app_help import open_lab, ready, until, until_shown
+from tests.app.app_help import open_lab, ready, until, until_shown, until_typing
 from tests.cases import cases
 from tuisim.app.app import AppSettings, LabApp
 from tuisim.app.dialogs.chooser import MatPicker
@@ -38,7 +38,7 @@ async def test_a_new_program_is_chosen_by_keys(
         await pilot.press("ctrl+t")
         await until(pilot, lambda: isinstance(app.screen, NewProgramDialog))
         await pilot.press(*keys, "enter")
-        await until(pilot, lambda: app.panel_area.code is not None and app.panel_area.code.typing)
+        await until_typing(pilot)
         assert app.query_one(CodeArea).program_text == program_text(*wanted)
         assert app.run_controller.next_run.spec.world.background == wanted[0]
 

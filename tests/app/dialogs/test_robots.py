@@ -4,10 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from textual.widgets import OptionList
 
-from tests.app.app_help import LOGS, open_lab, until
-from tuisim.app.dialogs.robots import RobotParts, RobotPicture, part_lines, robot_picture, view_of
+from tuisim.app.dialogs.robots import part_lines, robot_picture, view_of
 from tuisim.config.robots import ROBOTS
 from tuisim.core.spec import RobotSpec
 from tuisim.scene.robot import COLORED
@@ -40,21 +38,3 @@ def test_a_robot_is_whole_in_its_picture(robot: str, size: tuple[int, int]) -> N
     assert not drawn[[0, -1]].any() and not drawn[:, [0, -1]].any()
     for part in (COLORED.body, COLORED.wheel, COLORED.marker):
         assert (np.abs(picture - part).sum(axis=2) < 90).any(), part
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("size", [(80, 24), (120, 40)], ids=["80x24", "120x40"])
-async def test_the_chosen_robot_is_drawn_with_its_parts(size: tuple[int, int]) -> None:
-    async with open_lab(LOGS, size=size) as (pilot, app):
-        await pilot.press("r")
-        view = app.screen.query_one(RobotPicture)
-        await until(pilot, lambda: view._cells.shape[0] == view.size.height >= 6)
-        before = view._cells.copy()
-        robots = app.screen.query_one(OptionList)
-        robots.highlighted = robots.get_option_index("Explorer")
-        await until(
-            pilot, lambda: view._cells.shape != before.shape or bool((view._cells != before).any())
-        )
-        parts = app.screen.query_one(RobotParts)
-        assert parts.size.height == len(words_of(ROBOTS["Explorer"]))
-        assert app.screen.query_one(".dialog").region.contains_region(parts.region)

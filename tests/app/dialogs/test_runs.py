@@ -17,6 +17,7 @@ from tests.app.app_help import (
     notices,
     open_lab,
     program,
+    program_of,
     screen_text,
     until,
     until_shown,
@@ -130,8 +131,7 @@ async def test_mat_and_program_may_be_gone(tmp_path: Path) -> None:
         await until_state(pilot, RunPhase.ENDED)
         # The prepared mat is in the cache still.
         assert app.run_controller.snapshot().colors["left"].green > 150
-        assert app.run_controller.program is not None
-        assert app.run_controller.program.path == ""
+        assert program_of(app).path == ""
         await pilot.press("R")
         await until(pilot, lambda: any("own.png" in notice for notice in notices(app)))
         assert app.run_controller.run_id == run_id

@@ -18,6 +18,7 @@ from tests.app.app_help import (
     settings,
     until,
     until_shown,
+    until_typing,
 )
 from tests.cases import cases
 from tuisim.app.app import AppSettings, LabApp
@@ -98,7 +99,7 @@ async def test_a_later_start_offers_unsaved_text_to_go_on_with(
     async with open_lab(FIRST) as (pilot, app):
         await until_shown(pilot, f"5 {name or 'new.py'}")
         await pilot.press("enter")
-        await until(pilot, lambda: app.panel_area.code is not None and app.panel_area.code.typing)
+        await until_typing(pilot)
         assert app.query_one(CodeArea).program_text == text
         assert app.document.dirty
         assert name or app.run_controller.next_run.spec.world.background == "Loop"

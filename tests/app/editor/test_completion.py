@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-import json
-import subprocess
 import sys
 from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
 
-from tests.conftest import ROOT
 from tuisim.app.editor.completion import (
     Candidate,
     Signature,
@@ -29,12 +26,6 @@ from pybricks.parameters import Port, Color
 ev3 = EV3Brick()
 motor = Motor(Port.A)
 """
-MEMBERS = json.loads((ROOT / "tests/shim/pybricks/api.json").read_text())["calls"]
-CLASSES = (
-    "pybricks.ev3devices:Motor",
-    "pybricks.ev3devices:GyroSensor",
-    "pybricks.robotics:DriveBase",
-)
 
 
 def at_end(text: str, path: str = "prog.py") -> tuple[Candidate, ...]:
@@ -119,17 +110,6 @@ def test_names_that_may_follow(home: Path, text: str, found: list[str]) -> None:
     assert names(text) == found
 
 
-@pytest.mark.parametrize("name", CLASSES)
-def test_all_members_of_a_class_of_pybricks_are_there(home: Path, name: str) -> None:
-    module, _, made = name.partition(":")
-    members = {
-        member.removeprefix(f"{name}.").split(".")[0]
-        for member in MEMBERS
-        if member.startswith(f"{name}.") and "__" not in member
-    }
-    assert members <= set(names(f"from {module} import {made}\n{made}()."))
-
-
 @pytest.mark.parametrize("text", ["", "    ", "'tank_drive.o", "# tank_drive.o", "3.", "x ="])
 def test_nothing_may_follow(text: str) -> None:
     assert names(text) == []
@@ -161,14 +141,6 @@ def test_a_module_beside_the_program_is_read_and_not_run(home: Path, tmp_path: P
     found = at_end("import helper\nhelper.tu", str(tmp_path / "prog.py"))
     assert [one.name for one in found] == ["turn_left"]
     assert not ran.exists()
-
-
-def test_it_is_not_imported_before_it_is_asked() -> None:
-    code = "import sys, tuisim.app.app, tuisim.app.panels.code; print('jedi' in sys.modules)"
-    assert (
-        subprocess.run([sys.executable, "-c", code], capture_output=True, text=True).stdout
-        == "False\n"
-    )
 
 
 @pytest.mark.parametrize(

@@ -12,18 +12,17 @@ import pytest
 from textual.pilot import Pilot
 
 from tests.app.app_help import (
-    ENDLESS,
     notices,
     open_lab,
+    program_of,
     screen_text,
-    settings,
     until,
     until_shown,
     until_state,
+    until_typing,
 )
 from tuisim.app.actions.files import open_path
 from tuisim.app.app import AppSettings, LabApp
-from tuisim.app.dialogs.new_program import Skeleton, program_text
 from tuisim.app.dialogs.question import Question
 from tuisim.app.dialogs.save import ProgramDialog
 from tuisim.app.editor.area import CodeArea
@@ -97,26 +96,6 @@ async def test_a_mistake_is_saved_and_marked(tmp_path: Path) -> None:
         assert "✗ 2 if print" in screen_text(app)
 
 
-@pytest.mark.slow
-async def test_text_with_a_mistake_does_not_run_and_leaves_the_world_alone(tmp_path: Path) -> None:
-    path = tmp_path / "prog.py"
-    async with open_code(own(path, "# %%sim_magic_preloaded -x 300\n" + TEXT)) as (
-        pilot,
-        app,
-        code,
-    ):
-        start = app.run_controller.next_run.spec.world.start
-        await typed(pilot, code, "i", "f", "enter", "ctrl+r")
-        assert app.run_controller.state == RunPhase.IDLE
-        assert app.run_controller.next_run.spec.world.start == start
-        assert "✗ 1 if" in screen_text(app)
-        assert any("cannot run: line 1" in text for text in notices(app))
-        # The notice goes; the reason stays at the mark.
-        assert "line 1" in str(code.border_subtitle)
-        await pilot.press(*["backspace"] * 3, "ctrl+r")
-        await until_state(pilot, RunPhase.ENDED)
-
-
 async def test_a_program_opened_without_its_mat_runs_only_on_one_that_is_chosen(
     tmp_path: Path,
 ) -> None:
@@ -162,56 +141,7 @@ async def test_an_example_is_saved_to_another_place(
         await until(pilot, lambda: not isinstance(app.screen, ProgramDialog))
         assert (tmp_path / example.name).read_bytes() == b"#\n" + before
         assert example.path.read_bytes() == before
-        assert app.run_controller.program is not None
-        assert app.run_controller.program.path == str(tmp_path / example.name)
-
-
-@pytest.mark.slow
-async def test_a_small_panel_has_the_whole_place_while_one_types(tmp_path: Path) -> None:
-    async with open_lab(own(tmp_path / "prog.py"), size=(80, 24)) as (pilot, app):
-        await pilot.press("d")
-        await until(
-            pilot, lambda: app.panel_area.code is not None and app.panel_area.code.size.height > 20
-        )
-        assert not app.panel_area.shown("world")
-        await pilot.press("x", "escape")
-        await until(pilot, lambda: app.panel_area.shown("world"))
-        assert app.panel_area.shown("code")
-        await pilot.press("d", "ctrl+r")
-        await until(
-            pilot,
-            lambda: app.run_controller.state == RunPhase.ENDED and app.panel_area.shown("world"),
-        )
-        assert app.document.dirty
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("size", [(80, 24), (100, 30), (120, 40), (200, 60)], ids=str)
-async def test_editing_gets_the_room(size: tuple[int, int], tmp_path: Path) -> None:
-    async with open_lab(own(tmp_path / "prog.py"), size=size) as (pilot, app):
-        before = (
-            app.panel_area.code.size
-            if app.panel_area.shown("code") and app.panel_area.code
-            else None
-        )
-        await pilot.press("d")
-        await until(pilot, lambda: app.panel_area.code is not None and app.panel_area.code.typing)
-        await pilot.pause()
-        assert app.panel_area.code is not None
-        width, height = app.panel_area.code.size
-        # From 110 columns on, it leaves the world its place beside it.
-        assert width >= min(79 + 5, size[0] - (2 if size[0] < 110 else 44))
-        assert height >= 13
-        assert app.panel_area.shown("world") is (size[0] >= 110)
-        await pilot.press(*"abcdefghijklmnopqrstuvwxyzabcdefghijklmnopqrstuvwxyz", "escape")
-        await until(
-            pilot,
-            lambda: (
-                app.panel_area.shown("world")
-                and before in (None, app.panel_area.code and app.panel_area.code.size)
-            ),
-        )
-        await until(pilot, lambda: app.query_one(CodeArea).scroll_offset.x == 0)
+        assert program_of(app).path == str(tmp_path / example.name)
 
 
 WRONG = "print('A: 1')\nfor n in range(3):\n    n.x\n"
@@ -226,7 +156,7 @@ async def test_after_an_error_typing_begins_on_its_line(
         await pilot.press("R")
         await until_state(pilot, RunPhase.ENDED)
         await pilot.press("d")
-        await until(pilot, lambda: app.panel_area.code is not None and app.panel_area.code.typing)
+        await until_typing(pilot)
         assert app.panel_area.code is not None
         await until(
             pilot, lambda: app.panel_area.code is not None and app.panel_area.code.error_line == 3
@@ -347,26 +277,6 @@ async def test_a_change_of_the_plan_leaves_edits_alone(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-async def test_a_new_program_runs_and_asks_for_its_file(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.chdir(tmp_path)
-    async with open_code(settings(speed=0.0)) as (pilot, app, code):
-        await pilot.press("ctrl+t", "enter")
-        await until(pilot, lambda: code.typing)
-        text = program_text("Grey_bands", "colorLeft", Skeleton.LOG)
-        assert code.query_one(CodeArea).program_text == text
-        await pilot.press("f5")
-        await until_state(pilot, RunPhase.ENDED)
-        assert app.run_controller._end == "finished"
-        await pilot.press("ctrl+s")
-        await until(pilot, lambda: isinstance(app.screen, ProgramDialog))
-        await pilot.press("enter")
-        await until(pilot, lambda: (tmp_path / "new.py").exists())
-        assert (tmp_path / "new.py").read_text() == text
-
-
-@pytest.mark.slow
 async def test_an_edited_magic_line_changes_the_world_when_it_runs(tmp_path: Path) -> None:
     path = tmp_path / "prog.py"
     text = "%%sim_magic_preloaded -x 300\nprint('A: 1')\n"
@@ -377,22 +287,6 @@ async def test_an_edited_magic_line_changes_the_world_when_it_runs(tmp_path: Pat
         await until_state(pilot, RunPhase.ENDED)
         assert app.run_controller.timeline.recording is not None
         assert app.run_controller.timeline.recording.spec.world.start.x_mm == 500
-
-
-@pytest.mark.slow
-async def test_the_text_may_be_edited_and_saved_during_a_run(tmp_path: Path) -> None:
-    path = tmp_path / "prog.py"
-    async with open_code(own(path, "# %%sim_magic_preloaded\n" + ENDLESS)) as (pilot, app, code):
-        await pilot.press("R")
-        await until_state(pilot, RunPhase.RUNNING)
-        await until_shown(pilot, "▶")
-        await typed(pilot, code, "#", "enter", "ctrl+s")
-        await until_shown(pilot, "running text differs")
-        assert path.read_text().startswith("#\n# %%")
-        assert "▶ 4" not in screen_text(app)
-        app.run_controller.stop()
-        await until_state(pilot, RunPhase.ENDED)
-        await until(pilot, lambda: "running text differs" not in screen_text(app))
 
 
 @pytest.mark.slow

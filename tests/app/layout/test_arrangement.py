@@ -13,16 +13,10 @@ from tuisim.app.layout.arrangement import (
     arrange_beside_world,
     wanted_panels,
 )
-from tuisim.app.layout.forms import size_class
 from tuisim.app.layout.tree import PanelBox
-from tuisim.app.panels import PANELS, PanelInfo, TerminalSize
+from tuisim.app.panels import PANELS
 
 SIZES = [(80, 23), (80, 40), (100, 30), (120, 39), (132, 43), (200, 59), (237, 70), (60, 18)]
-
-
-def defaults(width: int, height: int) -> list[str]:
-    size = size_class(width, height + 1)
-    return [panel.id for panel in PANELS.values() if size in panel.sizes]
 
 
 def assert_fills(boxes: dict[str, PanelBox], width: int, height: int) -> None:
@@ -65,20 +59,6 @@ def test_what_is_shown_unless_asked_otherwise(size: tuple[int, int], expected: s
     placed = arrange(wanted_panels(Preset.STANDARD, {}, width, height)[0], width, height)
     assert set(placed.boxes) == expected
     assert not placed.left_out
-
-
-@pytest.mark.parametrize(
-    "size, name",
-    [
-        ((80, 24), TerminalSize.SMALL),
-        ((99, 40), TerminalSize.SMALL),
-        ((100, 30), TerminalSize.MEDIUM),
-        ((120, 40), TerminalSize.MEDIUM),
-        ((200, 60), TerminalSize.LARGE),
-    ],
-)
-def test_size_class(size: tuple[int, int], name: str) -> None:
-    assert size_class(*size) == name
 
 
 def test_the_most_wanted_panel_gets_the_room() -> None:
@@ -160,15 +140,6 @@ def test_the_editor_stands_beside_the_world() -> None:
         assert_fills(layout.boxes, width, height)
         assert layout.boxes["code"].height == height
         assert layout.boxes["code"].width >= 68 and layout.boxes["world"].width >= 42
-
-
-def test_no_panels_no_boxes() -> None:
-    assert arrange([], 80, 23).boxes == {}
-
-
-@pytest.mark.parametrize("panel", PANELS.values(), ids=list(PANELS))
-def test_each_line_of_the_table_is_a_panel(panel: PanelInfo) -> None:
-    assert callable(panel.load().show)
 
 
 def test_panel_keys_differ() -> None:

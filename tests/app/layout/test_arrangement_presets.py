@@ -5,18 +5,14 @@ from __future__ import annotations
 import pytest
 
 from tests.app.app_help import (
-    ENDLESS,
     LOGS,
     open_lab,
     screen_text,
     until,
-    until_shown,
-    until_state,
 )
 from tuisim.app.layout.arrangement import Preset, arrange, core_panels, mat_cells, wanted_panels
 from tuisim.app.layout.tree import PanelLayout
 from tuisim.app.panels import PANELS
-from tuisim.app.snapshot import RunPhase
 
 SIZES = [(80, 24), (100, 30), (120, 40), (160, 48), (200, 60), (300, 100), (60, 80)]
 KEYS = {Preset.DRIVE: "f6", Preset.DEBUG: "f7", Preset.ANALYSE: "f8"}
@@ -113,25 +109,6 @@ async def test_one_key_goes_round_the_presets_that_differ(
             assert app.panel_area.arrangement.boxes != before
             shown.append(str(app.panel_area.preset))
         assert shown == round_
-
-
-@pytest.mark.slow
-async def test_a_preset_leaves_the_run_alone() -> None:
-    async with open_lab(ENDLESS, autorun=True) as (pilot, app):
-        await until_state(pilot, RunPhase.RUNNING)
-        run, plan = app.run_controller.run, app.run_controller.next_run
-        await pilot.press(*KEYS.values())
-        assert (app.run_controller.run, app.run_controller.next_run) == (run, plan)
-        assert app.run_controller.state == RunPhase.RUNNING
-
-
-@pytest.mark.slow
-async def test_the_palette_offers_every_preset() -> None:
-    async with open_lab(LOGS, size=(80, 24)) as (pilot, app):
-        await pilot.press("ctrl+p", *"analyse: large")
-        await until_shown(pilot, "Layout to analyse")
-        await pilot.press("enter")
-        await until(pilot, lambda: app.panel_area.preset == Preset.ANALYSE)
 
 
 @in_each_size

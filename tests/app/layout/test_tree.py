@@ -6,7 +6,6 @@ import pytest
 
 from tuisim.app.layout.tree import (
     Axis,
-    PanelBox,
     PanelLayout,
     Split,
     fair_rows,
@@ -15,7 +14,6 @@ from tuisim.app.layout.tree import (
     least_columns,
     least_rows,
     panels_of,
-    place,
 )
 from tuisim.app.panels import PANELS
 
@@ -49,19 +47,6 @@ def test_the_world_is_shown_well_in_the_shape_of_the_mat() -> None:
     assert fair_rows(ABOVE, 80) == ideal_rows(80) + max(
         PANELS["chart"].fair_rows, PANELS["output"].fair_rows
     )
-
-
-@pytest.mark.parametrize("size", [(60, 18), (80, 24), (200, 60)], ids=str)
-def test_boxes_fill_the_screen_without_overlap(size: tuple[int, int]) -> None:
-    layout = PanelLayout()
-    place(ABOVE, PanelBox(0, 0, *size), layout)
-    cells = [
-        (x, y)
-        for box in layout.boxes.values()
-        for x in range(box.x, box.x + box.width)
-        for y in range(box.y, box.y + box.height)
-    ]
-    assert len(cells) == len(set(cells)) == size[0] * size[1]
 
 
 def test_rows_go_to_the_world_first_and_then_to_what_is_wanted_most() -> None:
