@@ -103,24 +103,6 @@ async def test_a_run_may_end_while_a_pressed_button_is_about_to_be_released() ->
 
 
 @pytest.mark.slow
-async def test_the_mouse_holds_a_button_as_long_as_it_is_down() -> None:
-    async with open_lab(WATCHES) as (pilot, app):
-        await pilot.press("K", "R")
-        await until(pilot, lambda: "ready" in printed(app))
-        brick = app.panel_area.brick
-        assert brick is not None
-        await until(pilot, lambda: bool(brick._picture.buttons))
-        box = next(box for box in brick._picture.buttons if box.name == "right")
-        # The border takes a row and a column.
-        spot = (box.first + 2, box.row + 1)
-        await pilot.mouse_down(brick, offset=spot)
-        await until(pilot, lambda: printed(app).count("right") > 3)
-        assert brick.held == {"right"}
-        await pilot.mouse_up(brick, offset=spot)
-        await until(pilot, lambda: actions(app) == [["right"], []])
-
-
-@pytest.mark.slow
 async def test_a_former_instant_shows_the_brick_as_it_was() -> None:
     async with open_lab(WATCHES) as (pilot, app):
         await pilot.press("K", "R")
@@ -241,14 +223,3 @@ async def test_a_hand_presses_as_the_first_line_says(
         await until(pilot, lambda: not app.run_controller.in_run)
         app.loader.apply_text("print('other')", str(tmp_path / "waits.py"), "waits.py")
         assert app.run_controller.next_run.actions == ()
-
-
-async def test_a_wrong_press_in_the_first_line_is_told(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "waits.py").write_text(PRESSED.replace("enter@", "entre@"))
-    async with open_lab() as (pilot, app):
-        app.loader.open_file("waits.py")
-        message = "waits.py, line 1: --press: 'entre' cannot be pressed"
-        await until(pilot, lambda: any(message in text for text in notices(app)))

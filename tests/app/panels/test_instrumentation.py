@@ -163,6 +163,10 @@ def test_a_past_instant_is_not_called_finished(height: int) -> None:
     assert height == 4 or "past" in rows[-1]
 
 
+def test_a_motor_that_is_blocked_is_called_stalled() -> None:
+    assert "".join(text(moment(stalled=(True, True)), 40, 11)).count("stalled") == 2
+
+
 def test_how_the_run_ended_is_said() -> None:
     assert "output limit" in text(EXTREME, 40, 11)[-1]
 

@@ -11,7 +11,16 @@ import pytest
 from textual.pilot import Pilot
 from textual.widgets import Input, OptionList, Static
 
-from tests.app.app_help import notices, open_lab, ready, until, until_state
+from tests.app.app_help import (
+    notices,
+    open_lab,
+    program_of,
+    ready,
+    recording_of,
+    until,
+    until_state,
+    until_typing,
+)
 from tests.app.lesson_help import (
     LARGE,
     PROGRAM,
@@ -60,16 +69,6 @@ async def test_lesson_that_found_no_room_is_drawn_later(tmp_path: Path) -> None:
         assert "1. Think" in shown(app)
 
 
-@pytest.mark.slow
-async def test_leaving_and_coming_back_to_the_step(tmp_path: Path) -> None:
-    async with open_lab(opened(tmp_path), size=LARGE) as (pilot, app):
-        await type_answer(pilot, app, "42")
-        await until(pilot, lambda: "2. Drive" in shown(app))
-    async with LabApp(opened(tmp_path)).run_test(size=LARGE) as pilot:
-        again = await ready(pilot)
-        await until(pilot, lambda: "2. Drive" in shown(again))
-
-
 async def test_hints_come_one_by_one_and_are_counted(tmp_path: Path) -> None:
     async with open_lab(opened(tmp_path), size=LARGE) as (pilot, app):
         await until(pilot, lambda: "Y shows hint 1 of 2." in shown(app))
@@ -82,7 +81,7 @@ async def test_hints_come_one_by_one_and_are_counted(tmp_path: Path) -> None:
         assert "There are no more hints. M skips the step" in notices(app)
 
 
-async def test_skip_and_start_over(tmp_path: Path) -> None:
+async def test_a_run_is_judged_after_skip_and_start_over(tmp_path: Path) -> None:
     async with open_lab(opened(tmp_path), size=SMALL) as (pilot, app):
         await until(pilot, lambda: "1. Think" in shown(app))
         app.lesson.skip_step()
@@ -91,15 +90,8 @@ async def test_skip_and_start_over(tmp_path: Path) -> None:
         app.lesson.start_over()
         await until(pilot, lambda: "1. Think" in shown(app))
         assert states() == {}
-        assert app.run_controller.program is not None
-        assert app.run_controller.program.text == PROGRAM
+        assert program_of(app).text == PROGRAM
         assert program_path(app.lesson.lesson).with_suffix(".old.py").read_text() == "pass\n"  # type: ignore[arg-type]
-
-
-async def test_run_after_starting_over_is_judged(tmp_path: Path) -> None:
-    async with open_lab(opened(tmp_path), size=SMALL) as (pilot, app):
-        app.lesson.skip_step()
-        app.lesson.start_over()
         app.lesson.skip_step()
         await run_over(pilot, app)
         await until(pilot, lambda: "✓ Drive" in shown(app))
@@ -118,8 +110,7 @@ async def test_menu_opens_another_lesson(tmp_path: Path) -> None:
         await pilot.press("enter")
         await until(pilot, lambda: "The first run" in shown(app))
         assert app.run_controller.next_run.spec.world.background == "Grey_bands"
-        assert app.run_controller.program is not None
-        assert app.run_controller.program.name == "first-run.py"
+        assert program_of(app).name == "first-run.py"
         # The run belonged to the other lesson.
         assert app.run_controller.timeline.recording is None
 
@@ -134,19 +125,6 @@ async def test_run_that_misses_a_goal_says_why_and_counts_as_a_try(tmp_path: Pat
         assert "At the end the robot was 280 mm left of x = 780 mm." in " ".join(shown(app).split())
         assert "Faster." in shown(app)
         assert load_progress()["try"].of("drive").tries == 1
-
-
-@pytest.mark.slow
-async def test_run_from_elsewhere_does_not_count(tmp_path: Path) -> None:
-    async with open_lab(opened(tmp_path), size=LARGE) as (pilot, app):
-        app.lesson.skip_step()
-        await pilot.press("shift+right")
-        await run_over(pilot, app)
-        await until(pilot, lambda: "This run began elsewhere" in shown(app))
-        assert states() == {"number": "skipped"}
-        await pilot.press("m")
-        await run_over(pilot, app)
-        await until(pilot, lambda: "✓ Drive" in shown(app))
 
 
 @pytest.mark.slow
@@ -177,10 +155,6 @@ async def _go_back(pilot: Pilot[Any], app: LabApp) -> None:
     await pilot.press("home", "greater_than_sign")
 
 
-async def _open_panel(pilot: Pilot[Any], app: LabApp) -> None:
-    await pilot.press("i")
-
-
 async def _export(pilot: Pilot[Any], app: LabApp) -> None:
     await run_over(pilot, app)
     await pilot.press("e")
@@ -190,8 +164,7 @@ async def _export(pilot: Pilot[Any], app: LabApp) -> None:
 
 async def _note(pilot: Pilot[Any], app: LabApp) -> None:
     await run_over(pilot, app)
-    recording = app.run_controller.timeline.recording
-    assert recording is not None
+    recording = recording_of(app)
     write_notes(recording.folder / NOTES_FILE, [Note("dark", 0.0, 0.1, "Level")])
 
 
@@ -199,13 +172,12 @@ DONE: dict[str, tuple[str, Callable[[Pilot[Any], LabApp], Awaitable[None]]]] = {
     "watch": ("watch = 'x + 1'", _watch),
     "breakpoint": ("breakpoint = '^2$'\nmodel = '2'", _stop_at_breakpoint),
     "visit": ("visit = { from_s = 0.9, to_s = 1.05 }", _go_back),
-    "show": ("show = 'instrumentation'", _open_panel),
     "export": ("export = '.csv'", _export),
     "note": ("note = { matches = 'dark', level = 50 }\nmodel = 'dark'", _note),
 }
 
 
-@pytest.mark.quick_cases("show", "breakpoint")
+@pytest.mark.quick_cases("breakpoint")
 @pytest.mark.parametrize("name", DONE)
 async def test_step_is_done_by_doing_it(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
@@ -230,53 +202,6 @@ async def test_panel_that_a_step_asks_for_is_not_open_already(tmp_path: Path) ->
         assert app.lesson.step is not None
         await pilot.press("i")
         await until(pilot, lambda: states().get("do") == "done")
-
-
-async def test_typing_ends_when_the_program_is_run_from_the_editor(tmp_path: Path) -> None:
-    async with open_lab(opened(tmp_path), size=SMALL) as (pilot, app):
-        await pilot.press("d")
-        await until(pilot, lambda: app.panel_area.code is not None and app.panel_area.code.typing)
-        await pilot.press("ctrl+r")
-        await until(
-            pilot, lambda: app.panel_area.code is not None and not app.panel_area.code.typing
-        )
-        assert app.panel_area.shown("lesson")
-
-
-@pytest.mark.slow
-async def test_program_is_saved_when_it_runs(tmp_path: Path) -> None:
-    async with open_lab(opened(tmp_path), size=SMALL) as (pilot, app):
-        await pilot.press("d")
-        await until(pilot, lambda: app.panel_area.code is not None and app.panel_area.code.typing)
-        await pilot.press("y", "=", "2", "enter", "ctrl+r")
-        await until_state(pilot, RunPhase.ENDED)
-        assert not app.document.dirty
-        assert program_path(app.lesson.lesson).read_text() == f"y=2\n{PROGRAM}"  # type: ignore[arg-type]
-
-
-@pytest.mark.slow
-async def test_other_panels_do_not_replace_the_lesson(tmp_path: Path) -> None:
-    async with open_lab(opened(tmp_path), size=SMALL) as (pilot, app):
-        for key, panel in (
-            ("i", "instrumentation"),
-            ("A", "arrays"),
-            ("G", "debug"),
-            ("X", "positioning"),
-        ):
-            await pilot.press(key)
-            await until(pilot, lambda panel=panel: app.panel_area.shown(panel))  # type: ignore[misc]
-            assert app.panel_area.shown("lesson"), panel
-            await pilot.press("escape")
-
-
-@pytest.mark.slow
-async def test_page_keys_scroll_the_text_while_the_world_has_the_focus(tmp_path: Path) -> None:
-    async with open_lab(with_lines(opened(tmp_path), 40), size=SMALL) as (pilot, app):
-        await until(pilot, lambda: "Line 0" in shown(app))
-        await pilot.press("pagedown")
-        await until(pilot, lambda: "Line 0\n" not in shown(app))
-        await pilot.press("pageup")
-        await until(pilot, lambda: "Line 0\n" in shown(app))
 
 
 @pytest.mark.quick_cases("debug", "output")
@@ -304,7 +229,7 @@ async def test_page_keys_belong_to_the_editor_while_it_is_typed_in(tmp_path: Pat
     async with open_lab(with_lines(opened(tmp_path), 60), size=(200, 60)) as (pilot, app):
         await until(pilot, lambda: "Line 0" in shown(app))
         await pilot.press("d")
-        await until(pilot, lambda: app.panel_area.code is not None and app.panel_area.code.typing)
+        await until_typing(pilot)
         assert app.panel_area.lesson is not None
         assert app.panel_area.lesson.border_subtitle == "ctrl+↑ ctrl+↓ read on"
         await pilot.press("pagedown")
@@ -355,13 +280,6 @@ def test_steps_can_ask_for_every_panel() -> None:
     assert set(SHOWABLE) == set(PANELS) - {"lesson"}
 
 
-async def test_page_keys_scroll_the_text_after_a_run_from_the_editor(tmp_path: Path) -> None:
-    async with open_lab(with_lines(opened(tmp_path), 40), size=SMALL) as (pilot, app):
-        await until(pilot, lambda: "Line 0" in shown(app))
-        await pilot.press("d", "escape", "pagedown")
-        await until(pilot, lambda: "Line 0\n" not in shown(app))
-
-
 @pytest.mark.parametrize(
     "text, words",
     [
@@ -380,16 +298,24 @@ async def test_answer_that_is_not_right_says_what_to_do(
         assert app.screen.query_one(".dialog").region.y == 0
 
 
-async def test_running_an_edited_text_ends_the_run_of_the_former_one(tmp_path: Path) -> None:
+async def test_running_an_edited_text_saves_it_and_ends_typing_and_the_former_run(
+    tmp_path: Path,
+) -> None:
     async with open_lab(opened(tmp_path), size=SMALL) as (pilot, app):
         await pilot.press("n")
         await until_state(pilot, RunPhase.PAUSED)
         first = app.run_controller.run_id
         await pilot.press("d")
-        await until(pilot, lambda: app.panel_area.code is not None and app.panel_area.code.typing)
+        await until_typing(pilot)
         await pilot.press("y", "=", "2", "enter", "ctrl+r")
         await until(pilot, lambda: app.run_controller.run_id not in ("", first))
         await until_state(pilot, RunPhase.ENDED)
+        await until(
+            pilot, lambda: app.panel_area.code is not None and not app.panel_area.code.typing
+        )
+        assert app.panel_area.shown("lesson")
+        assert not app.document.dirty
+        assert program_path(app.lesson.lesson).read_text() == f"y=2\n{PROGRAM}"  # type: ignore[arg-type]
 
 
 async def test_the_last_lesson_can_be_reached_in_a_low_terminal(tmp_path: Path) -> None:

@@ -12,24 +12,18 @@ from textual.pilot import Pilot
 from textual.widgets import Input, OptionList, Static
 
 from tests.app.app_help import (
-    ENDLESS,
     LOGS,
-    notices,
     open_lab,
     screen_text,
     until,
     until_shown,
-    until_state,
 )
 from tuisim.app.app import LabApp
 from tuisim.app.panels.obstacles import BoxGrip, Obstacles, box_at
 from tuisim.app.panels.world import WorldView
 from tuisim.app.setup.next_run import with_obstacles
-from tuisim.app.snapshot import RunPhase
 from tuisim.config.obstacles import OBSTACLES, load_obstacles
 from tuisim.core.spec import Obstacle
-
-SHOWN = frozenset({"obstacles"})
 
 
 def boxes(app: LabApp) -> tuple[Obstacle, ...]:
@@ -90,16 +84,6 @@ async def test_add_type_and_remove() -> None:
         await pilot.pause()
         await pilot.press("delete")
         assert "No obstacle to remove" in screen_text(app)
-
-
-@pytest.mark.slow
-async def test_no_box_is_lost_when_two_are_added_at_once() -> None:
-    async with open_obstacles(size=(80, 24)) as (pilot, app):
-        panel = app.query_one(Obstacles)
-        panel.action_add()
-        panel.action_add()
-        await until(pilot, lambda: len(boxes(app)) == 2)
-        assert boxes(app)[0] != boxes(app)[1]
 
 
 @pytest.mark.slow
@@ -190,34 +174,6 @@ async def test_a_set_is_chosen_and_saved(tmp_path: Path, monkeypatch: pytest.Mon
         await pilot.press("k")
         sets = app.screen.query_one(OptionList)
         assert str(tmp_path / "mine.toml") in [option.id for option in sets.options]
-
-
-@pytest.mark.slow
-async def test_obstacles_are_not_changed_during_a_run() -> None:
-    async with open_lab(ENDLESS, autorun=True, panels_on=SHOWN) as (pilot, app):
-        await until_state(pilot, RunPhase.RUNNING)
-        await drag(pilot, cell(app, 1000, 900), cell(app, 1300, 600))
-        await until(pilot, lambda: "Not available during a run: S stops it" in notices(app))
-        assert boxes(app) == ()
-
-
-@pytest.mark.slow
-async def test_a_blocked_motor_is_shown_as_stalled() -> None:
-    wall = "tank_drive.on(SpeedPercent(50), SpeedPercent(50))\nimport time\ntime.sleep(60)\n"
-    async with open_lab(wall, background="Empty_Map", autorun=False) as (pilot, app):
-        from tuisim.app.setup.next_run import with_values
-
-        plan = with_values(app.run_controller.next_run, {"solid": True})
-        start = app.run_controller.pose
-        app.loader.set_next_run(
-            with_obstacles(plan, (Obstacle(start.x_mm + 60, start.y_mm - 100, 50, 200),))
-        )
-        await pilot.press("R")
-        await until(pilot, lambda: app.run_controller.snapshot().stalled == (True, True))
-        await until(pilot, lambda: screen_text(app).count("stalled") == 2)
-        await pilot.press("S")
-        await until_state(pilot, RunPhase.ENDED)
-        await until(pilot, lambda: "stalled" not in screen_text(app))
 
 
 BOXES = (Obstacle(100, 100, 200, 200), Obstacle(200, 200, 200, 200), Obstacle(900, 100, 2, 300))

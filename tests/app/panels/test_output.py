@@ -7,7 +7,6 @@ from textual.app import App, ComposeResult
 from textual.widget import Widget
 
 from tests.app.app_help import until
-from tuisim.app.panels.code import Code
 from tuisim.app.panels.output import KEPT_LINES, MAX_LINE_CHARS, Log, shown_lines
 from tuisim.runs.records import OutputRow, Stream
 
@@ -141,16 +140,3 @@ async def test_lines_wrap_anew_when_the_panel_gets_narrower() -> None:
         assert lines(pilot.app)[0] == "one two three four five six"
         await pilot.resize_terminal(16, 6)
         await until(pilot, lambda: lines(pilot.app)[:2] == ["one two three", "four five six"])
-
-
-async def test_the_line_of_an_error_is_brought_into_view() -> None:
-    async with Frame(Code()).run_test(size=(40, 10)) as pilot:
-        code = pilot.app.query_one(Code)
-        code.set_program("long.py", "\n".join(f"x{n} = {n}" for n in range(1, 101)))
-        await pilot.pause()
-        code.mark_error(70)
-        await pilot.pause()
-        assert any("✗ 70 x70 = 70" in line for line in lines(pilot.app))
-        code.mark_error(0)
-        await pilot.pause()
-        assert not any("✗" in line for line in lines(pilot.app))

@@ -196,24 +196,6 @@ async def test_a_profile_is_chosen_and_seen_in_the_controls() -> None:
         assert app.run_controller.next_run.spec.world.solid
 
 
-@pytest.mark.slow
-async def test_the_pen_draws_with_its_own_place_width_and_colour() -> None:
-    drive = "tank_drive.on_for_seconds(SpeedPercent(20), SpeedPercent(20), 1)\n"
-    async with open_settings(drive, speed=0.0) as (pilot, app):
-        for field, text in (("pen.color", "teal"), ("pen.width_mm", "40"), ("pen.x_mm", "150")):
-            await enter(pilot, field, text)
-        await enter(pilot, "pen.down", "off")
-        assert app.run_controller.pen_down
-        await pilot.press("escape", "R")
-        await until_state(pilot, RunPhase.ENDED)
-        world = app.panel_area.world
-        assert world is not None
-        await until(pilot, lambda: len(world._view.trace) > 0)
-        pieces = list(world._view.trace.pieces(0))
-        assert {piece.pen for piece in pieces} == {((0, 128, 128), 40)}
-        assert pieces[0].ys_mm[1] == pytest.approx(500 - 150)
-
-
 async def test_what_a_robots_file_has_that_means_nothing_here_is_said(tmp_path: Path) -> None:
     (tmp_path / "mine.json").write_text('{"owner": "Ann"}')
     async with open_lab() as (pilot, app):

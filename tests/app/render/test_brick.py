@@ -49,13 +49,6 @@ def test_half_blocks_show_every_pixel_where_there_is_room() -> None:
     assert dark == list(range(20, 30))
 
 
-def test_dots_keep_a_thin_line() -> None:
-    lines = text_of(BrickState(picture=picture((slice(64, 65), slice(0, DISPLAY_WIDTH)))), 89, 36)
-    rows = [line for line in lines if any(0x2800 < ord(char) <= 0x28FF for char in line)]
-    assert len(rows) == 1
-    assert sum(0x2800 < ord(char) <= 0x28FF for char in rows[0]) == 89
-
-
 @pytest.mark.parametrize("width, height", [(60, 24), (30, 9), (16, 6)])
 def test_a_small_display_keeps_every_thin_line(width: int, height: int) -> None:
     def dots(*place: slice) -> int:

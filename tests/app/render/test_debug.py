@@ -23,16 +23,6 @@ def test_all_keys_are_told_in_a_narrow_panel_too(state: RunPhase, width: int) ->
     assert " ".join(narrow).split() == " ".join(wide).split()
 
 
-def test_a_module_beside_the_program_is_named() -> None:
-    frames = (FrameState("drive", 4, "/lab/ann/helper.py"), FrameState("<module>", 3, ""))
-    looked = Inspected(5, 50_000_000, "main", 0, "", (), frames, (), (), ())
-    paused = Paused(5, 50_000_000, 4, PauseReason.STEP, file="/lab/ann/helper.py")
-    rows = text(DebugView(RunPhase.PAUSED, paused, looked, source="    return speed\n"), 60)
-    first = ["line 4 of helper.py · 0.05 s · tick 5", "  return speed", "paused after a step"]
-    assert rows[:3] == first
-    assert rows[-2:] == ["▸ drive() line 4 of helper.py", "  program line 3"]
-
-
 def test_what_is_known_of_another_instant_has_the_time_that_is_looked_at() -> None:
     looked = Inspected(
         469, 4_690_000_000, "main", 0, "", (), (FrameState("<module>", 13, ""),), (), (), ()

@@ -161,23 +161,15 @@ def test_a_plan_of_a_run_of_which_nothing_else_is_known() -> None:
 # Field, what is typed, and what is said.
 WRONG = [
     ("wheel_diameter_mm", "abc", "must be a number from 1 to 500, got 'abc'"),
-    ("wheel_diameter_mm", "", "must be a number from 1 to 500, got ''"),
-    ("wheel_spacing_mm", "1e9", "must be a number from 1 to 1000, got '1e9'"),
-    ("back_mm", "5", "must be a number from -1000 to 0, got '5'"),
     (
         "weight",
         "fat",
         "must be weightless, light, medium, heavy, or a number from 0 to 1000, got 'fat'",
     ),
-    ("weight", "nan", "must be weightless, light, medium, heavy, or a number from 0 to 1000"),
     ("name", "  ", "must be one line of 1 to 100 characters"),
     ("left.diameter_mm", "7.5", "must be a whole number from 2 to 100, got '7.5'"),
-    ("left.diameter_mm", "1", "must be a whole number from 2 to 100, got '1'"),
-    ("left.y_mm", "-501", "must be a number from -500 to 500, got '-501'"),
     ("ultrasonic.ray_angles_deg", "0 up", "must be 1 to 100 numbers from -360 to 360, got '0 up'"),
-    ("ultrasonic.ray_angles_deg", "", "must be 1 to 100 numbers from -360 to 360"),
     ("pen.color", "reddish", "no such colour 'reddish'"),
-    ("pen.width_mm", "0", "must be a number from 0.1 to 200, got '0'"),
 ]
 
 
@@ -201,10 +193,7 @@ RIGHT: list[tuple[str, str, Callable[[NextRun], object], object]] = [
     ("preset", "Small_Robot", lambda p: p.spec.robot, ROBOTS["Small_Robot"]),
     ("name", " Robbie ", lambda p: p.spec.robot.name, "Robbie"),
     ("wheel_spacing_mm", "90,5", lambda p: p.spec.robot.wheel_spacing_mm, 90.5),
-    ("wheel_width_mm", "15", lambda p: p.spec.robot.wheel_width_mm, 15),
-    ("back_mm", "-60", lambda p: p.spec.robot.back_mm, -60),
     ("weight", "Heavy", lambda p: p.spec.robot.weight, 9),
-    ("weight", "2.5", lambda p: p.spec.robot.weight, 2.5),
     (
         "left_port",
         "outD",
@@ -223,31 +212,20 @@ RIGHT: list[tuple[str, str, Callable[[NextRun], object], object]] = [
         lambda p: [s.port for s in p.spec.robot.sensors],
         ["in4", "in3", "in1", "in2"],
     ),
-    ("left.diameter_mm", "30", lambda p: p.spec.robot.color_sensors[0].diameter_mm, 30),
     ("right.strategy", "centre", lambda p: p.spec.robot.color_sensors[1].strategy, "centre"),
     ("left.used", "off", lambda p: [s.name for s in p.spec.robot.color_sensors], ["right"]),
     ("ultrasonic.used", "off", lambda p: p.spec.robot.ultrasonic, None),
-    (
-        "ultrasonic.angle_deg",
-        "90",
-        lambda p: p.spec.robot.ultrasonic and p.spec.robot.ultrasonic.angle_deg,
-        90,
-    ),
     (
         "ultrasonic.ray_angles_deg",
         "-5, 0 5",
         lambda p: p.spec.robot.ultrasonic and p.spec.robot.ultrasonic.ray_angles_deg,
         (-5, 0, 5),
     ),
-    ("gyro.used", "off", lambda p: p.spec.robot.gyro, None),
     ("pen.color", "Teal", lambda p: p.spec.robot.pen.color, "teal"),
-    ("pen.width_mm", "12", lambda p: p.spec.robot.pen.width_mm, 12),
-    ("pen.x_mm", "3", lambda p: p.spec.robot.pen.x_mm, 3),
     ("pen.down", "on", lambda p: p.spec.robot.pen.down, True),
     ("pen_marks", "on", lambda p: p.spec.world.pen_marks, True),
     ("profile", "ev3", lambda p: p.spec.profile.name, "ev3"),
     ("solid", "on", lambda p: p.spec.world.solid, True),
-    ("walls", "off", lambda p: p.spec.world.walls, False),
     ("background_fit", "centre", lambda p: p.spec.world.background_fit, "centre"),
 ]
 

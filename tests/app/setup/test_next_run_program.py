@@ -20,7 +20,6 @@ TOUCH = f"{USUAL}from ev3dev2.sensor.lego import TouchSensor\nTouchSensor('in1')
 COURSE = "tank_drive.on(5, 5)\n"
 PYBRICKS = "from pybricks.ev3devices import Motor\nfrom pybricks.parameters import Port\nMotor(Port.A).run(100)\n"
 MAGIC = f"# %%sim_magic\n{CLAW}"
-MIDDLE, MAT = Pose(1181.0, 571.5, 0.0), Pose(157.0, 800.0, 0.0)
 
 Step = str | Callable[[NextRun], NextRun]
 

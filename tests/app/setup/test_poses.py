@@ -9,22 +9,18 @@ import pytest
 from textual.widgets import Input, OptionList
 
 from tests.app.app_help import (
-    ENDLESS,
     LOGS,
     open_lab,
     screen_text,
     until,
     until_shown,
-    until_state,
 )
 from tuisim.app.setup.next_run import plan_of
 from tuisim.app.setup.poses import delete_pose, fits, load_poses, poses_file, random_pose, save_pose
-from tuisim.app.snapshot import RunPhase
 from tuisim.config.options import Settings
 from tuisim.core.geometry import Pose
 from tuisim.core.spec import Obstacle
 from tuisim.errors import ConfigError
-from tuisim.scene.painter import Faint
 
 SPEC = plan_of(Settings()).spec
 POSTS = tuple(Obstacle(x, y, 150, 150) for x in range(200, 2300, 500) for y in (150, 500, 850))
@@ -65,15 +61,6 @@ def test_no_free_place_is_told() -> None:
         SPEC, world=replace(SPEC.world, obstacles=(Obstacle(0, 0, 2362, 1143),), solid=True)
     )
     assert random_pose(spec, random.Random(1)) is None
-
-
-async def test_random_and_back_to_the_start() -> None:
-    async with open_lab(LOGS, size=(80, 24)) as (pilot, app):
-        await pilot.press("j")
-        assert app.run_controller.pose != Pose(150, 500, 0)
-        assert fits(app.run_controller.spec, app.run_controller.pose)
-        await pilot.press("m")
-        assert app.run_controller.pose == Pose(150, 500, 0)
 
 
 def test_poses_are_kept_replaced_and_deleted() -> None:
@@ -143,49 +130,3 @@ async def test_saved_poses_in_the_app() -> None:
         await pilot.press("down", "delete")
         await until_shown(pilot, "None yet")
         assert load_poses() == {}
-
-
-@pytest.mark.slow
-async def test_a_place_during_a_run_is_an_action_of_the_user() -> None:
-    async with open_lab(ENDLESS, autorun=True) as (pilot, app):
-        await until_state(pilot, RunPhase.RUNNING)
-        await pilot.press("j")
-        run = app.run_controller.run
-        assert run is not None
-        await until(pilot, lambda: bool((last := run.telemetry.last()) and last.actions == 1))
-        await pilot.press("S")
-        await until_state(pilot, RunPhase.ENDED)
-
-
-@pytest.mark.slow
-async def test_the_cursor_of_the_chart_shows_where_the_robot_was() -> None:
-    async with open_lab(LOGS, autorun=True, speed=0.0, size=(200, 60)) as (pilot, app):
-        await until_state(pilot, RunPhase.ENDED)
-        chart, world = app.panel_area.chart, app.panel_area.world
-        assert chart is not None
-        assert world is not None
-        await until(
-            pilot,
-            lambda: (
-                chart._picture is not None
-                and chart._picture.columns > 0
-                and chart._traces.end_s() > 5
-            ),
-        )
-        chart.focus()
-        now = app.run_controller.pose
-        await pilot.press("left", *["shift+left"] * 2)
-        await until(pilot, lambda: app.run_controller.snapshot().past)
-        await pilot.pause()
-        snapshot, cursor_s = app.run_controller.snapshot(), chart._state.cursor_s
-        assert cursor_s == snapshot.time_s
-        assert 150 < snapshot.instant.pose.x_mm < now.x_mm
-        assert snapshot.now_pose == now
-        assert world._view._scene is not None
-        assert (world._view._scene.pose, world._view._scene.faint) == (
-            snapshot.instant.pose,
-            ((Faint.NOW, now),),
-        )
-        await pilot.press("escape")
-        await until(pilot, lambda: not app.run_controller.snapshot().past)
-        assert chart._state.cursor_s is None
