@@ -2,10 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
-import pytest
-
 from tests.app.app_help import LOGS, notices, open_lab, until, until_shown
 from tuisim.app.app import LabApp
 from tuisim.protocol import End
@@ -72,10 +68,3 @@ async def test_an_error_is_copied_with_its_line() -> None:
         await until(pilot, lambda: app.panel_area.focused_panel() == "code")
         await pilot.press("ctrl+c")
         await until(pilot, lambda: copied_text(app).startswith("line 2: NameError"))
-
-
-@pytest.mark.slow
-async def test_the_palette_finds_it(tmp_path: Path) -> None:
-    async with open_lab(LOGS) as (pilot, _app):
-        await pilot.press("ctrl+p", *"copy")
-        await until_shown(pilot, "Copy what has the focus")

@@ -8,7 +8,16 @@ import pytest
 from textual.pilot import Pilot
 from textual.widgets import Input, OptionList, Static
 
-from tests.app.app_help import notices, open_lab, press_and_stand, ready, settings, until
+from tests.app.app_help import (
+    notices,
+    open_lab,
+    press_and_stand,
+    program_of,
+    ready,
+    settings,
+    until,
+    until_typing,
+)
 from tuisim.app.app import LabApp
 from tuisim.app.debugger import Kept, following, keep, load_kept
 from tuisim.app.snapshot import RunPhase
@@ -265,14 +274,13 @@ def test_what_is_kept_comes_back(home: object) -> None:
 
 async def test_breaks_are_kept_with_a_program_that_no_panel_shows() -> None:
     app = LabApp(settings(COUNTS, panels_off=("code", "controls")))
-    assert app.run_controller.program is not None
-    keep(app.run_controller.program.path, Kept(parse_breakpoints(("4",)), ("total",)))
+    keep(program_of(app).path, Kept(parse_breakpoints(("4",)), ("total",)))
     async with app.run_test(size=(80, 24)) as pilot:
         await ready(pilot)
         await until(pilot, lambda: bool(app.debugger.breaks))
         assert (app.panel_area.code, app.debugger.watches) == (None, ("total",))
         app.debugger.set_breaks(parse_breakpoints(("4", "6")))
-        assert load_kept(app.run_controller.program.path).breaks == app.debugger.breaks
+        assert load_kept(program_of(app).path).breaks == app.debugger.breaks
         await pilot.press("D")
         await until(pilot, lambda: app.panel_area.code is not None)
         assert [one.text for one in app.debugger.breaks] == ["4", "6"]
@@ -287,6 +295,6 @@ async def test_editing_begins_where_the_program_is_paused() -> None:
         # A panel that is opened has seen nothing of the run.
         assert not app.panel_area.shown("code")
         await pilot.press("d")
-        await until(pilot, lambda: app.panel_area.code is not None and app.panel_area.code.typing)
+        await until_typing(pilot)
         assert app.panel_area.code is not None
         assert app.panel_area.code.cursor_line == app.run_controller.snapshot().line > 1

@@ -13,6 +13,7 @@ from textual.widgets import Input, OptionList
 from tests.app.app_help import (
     notices,
     open_lab,
+    program_of,
     screen_text,
     settings,
     until,
@@ -216,8 +217,7 @@ async def test_examples_of_goals_are_offered_and_opened_by_name(task: Path) -> N
         await pilot.press("escape")
         await open_path(pilot, app, "square_goals.toml")
         await until_shown(pilot, "A square, closed within 20 mm")
-        assert app.run_controller.program is not None
-        assert app.run_controller.program.name == "square.py"
+        assert program_of(app).name == "square.py"
 
 
 @pytest.mark.quick_cases("beside a world")

@@ -53,16 +53,6 @@ async def test_the_new_key_works_and_is_shown_and_the_old_one_does_nothing(tmp_p
         assert row.partition("Pen up")[0].split()[-1] == "%"
 
 
-@pytest.mark.quick_cases("positioning-*")
-@pytest.mark.parametrize("panel, shown", [("positioning", "[ Start"), ("settings", "% Robots")])
-async def test_the_words_of_a_panel_follow_the_new_key(
-    panel: str, shown: str, tmp_path: Path
-) -> None:
-    (tmp_path / "config.toml").write_text("[keys]\nrobot = '%'\nhome = '['\nslower = 'm'\n")
-    async with open_lab(panels_on=frozenset({panel})) as (pilot, _app):
-        await until_shown(pilot, shown)
-
-
 @pytest.mark.parametrize("panel", ["controls", "code"])
 async def test_notices_and_panels_name_the_new_key(panel: str, tmp_path: Path) -> None:
     (tmp_path / "config.toml").write_text("[keys]\nopen = '%'\nrun = 'ctrl+k'\n")

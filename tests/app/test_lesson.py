@@ -11,7 +11,7 @@ from textual.events import MouseScrollUp
 from textual.pilot import Pilot
 from textual.widgets import Static
 
-from tests.app.app_help import open_lab, ready, until
+from tests.app.app_help import open_lab, ready, recording_of, until
 from tests.app.lesson_help import (
     LARGE,
     SMALL,
@@ -63,8 +63,7 @@ async def test_note_that_does_not_pass_is_told_why(tmp_path: Path) -> None:
         app.lesson.skip_step()
         app.lesson.skip_step()
         await run_over(pilot, app)
-        recording = app.run_controller.timeline.recording
-        assert recording is not None
+        recording = recording_of(app)
         write_notes(recording.folder / NOTES_FILE, [Note("dark", 0.0, 0.1, "Level")])
         words = (
             "Your note “dark” is on samples with a mean of 50.0; this step is about those with 86."
@@ -73,10 +72,9 @@ async def test_note_that_does_not_pass_is_told_why(tmp_path: Path) -> None:
 
 
 async def test_panel_of_a_paused_program(tmp_path: Path) -> None:
-    async with LabApp(opened(tmp_path, "show = { panel = 'debug', paused = true }")).run_test(
-        size=SMALL
-    ) as pilot:
-        app = await ready(pilot)
+    async with open_lab(
+        opened(tmp_path, "show = { panel = 'debug', paused = true }"), size=SMALL
+    ) as (pilot, app):
         app.lesson.skip_step()
         app.lesson.skip_step()
         await pilot.press("G")

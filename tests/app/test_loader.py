@@ -15,6 +15,7 @@ from tests.app.app_help import (
     message_of,
     notices,
     open_lab,
+    program_of,
     ready,
     screen_text,
     settings,
@@ -91,8 +92,7 @@ async def test_a_world_is_opened_whole(folder: Path) -> None:
         assert spec.world.start.x_mm == 600
         assert spec.world.noise == NoiseSpec(7, 0)
         assert (spec.robot.wheel_diameter_mm, spec.seed) == (40, 5)
-        assert app.run_controller.program is not None
-        assert app.run_controller.program.name == "mine.py"
+        assert program_of(app).name == "mine.py"
         await pilot.press("m")
         assert app.run_controller.pose.x_mm == 600
 
@@ -209,8 +209,7 @@ async def test_a_changed_program_is_reloaded_at_once(folder: Path) -> None:
         look(app)
         await until_shown(pilot, "Better: 2")
         await until(pilot, lambda: "mine.py changed on disk: reloaded" in notices(app))
-        assert app.run_controller.program is not None
-        assert app.run_controller.program.text == "print('Better: 2')\n"
+        assert program_of(app).text == "print('Better: 2')\n"
         # The world is as the user left it.
         assert app.run_controller.pose == Pose(500, 500, 0)
 
@@ -256,16 +255,12 @@ async def test_a_program_changed_during_a_run_waits_for_its_end(folder: Path) ->
         await until(
             pilot, lambda: notices(app) == ["mine.py changed on disk: reloaded when the run ends"]
         )
-        assert app.run_controller.program is not None
-        assert app.run_controller.program.text == ENDLESS
+        assert program_of(app).text == ENDLESS
         await pilot.press("S")
         await until_state(pilot, RunPhase.ENDED)
         await until(
             pilot,
-            lambda: (
-                app.run_controller.program is not None
-                and "Later" in app.run_controller.program.text
-            ),
+            lambda: app.run_controller.program is not None and "Later" in program_of(app).text,
         )
 
 
@@ -313,39 +308,6 @@ async def test_robot_obstacles_and_world_are_reloaded(folder: Path) -> None:
         look(app)
         assert app.run_controller.next_run.spec.world.noise.light == 8
         assert app.run_controller.next_run.spec.robot.wheel_diameter_mm == 44
-
-
-@pytest.mark.slow
-async def test_the_command_opens_a_world_that_is_watched(folder: Path) -> None:
-    from tuisim.commands.resolve import NO_CONFIG, prepare_app
-    from tuisim.config.command_line import Arguments
-
-    prepared = prepare_app(["lab.toml"], Arguments(world=None, settings={}), NO_CONFIG)
-    assert prepared.world is not None
-    opened = AppSettings(
-        spec=prepared.spec,
-        settings=prepared.settings,
-        world_file=prepared.world.path,
-        program=prepared.program,
-    )
-    async with open_lab(opened) as (_, app):
-        assert app.run_controller.next_run.spec == prepared.spec
-        (folder / "lab.toml").write_text(LAB.replace("seed = 5", "seed = 6"))
-        look(app)
-        assert app.run_controller.next_run.spec.seed == 6
-
-
-@pytest.mark.slow
-async def test_an_example_is_opened_by_its_name_and_the_footer_shows_the_keys_again(
-    folder: Path,
-) -> None:
-    async with open_lab(size=(80, 24)) as (pilot, app):
-        await pilot.press("o", *"log_greys", "enter")
-        await until(pilot, lambda: len(app.screen_stack) == 1)
-        await until(pilot, lambda: not any(word == "apply" for _, word in app.key_footer._typing))
-
-        assert app.run_controller.program is not None
-        assert app.run_controller.program.name == "log_greys.py"
 
 
 @pytest.mark.slow

@@ -5,7 +5,6 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from textual.pilot import Pilot
 from textual.widgets import OptionList
 
 from tests.app.app_help import lab, notices, open_lab, screen_text, until, until_shown
@@ -75,27 +74,6 @@ async def test_another_robot_is_chosen_and_the_program_s_again(claw: Path) -> No
             await until(pilot, lambda ports=ports: extra_ports(app) == ports)  # type: ignore[misc]
 
 
-async def choose(pilot: Pilot[None], app: LabApp, key: str, name: str) -> None:
-    """Choose an entry of the dialog that a key opens."""
-    await pilot.press(key)
-    await until(pilot, lambda: bool(app.screen.query(OptionList)))
-    entries = app.screen.query_one(OptionList)
-    entries.highlighted = entries.get_option_index(name)
-    await pilot.press("enter")
-
-
-async def test_a_mat_and_a_profile_chosen_by_key_leave_the_robot(claw: Path) -> None:
-    async with open_lab(opened(claw)) as (pilot, app):
-        plan = app.run_controller.next_run
-        await choose(pilot, app, "b", "Loop")
-        await until(pilot, lambda: app.run_controller.next_run.spec.world.background == "Loop")
-        on_mat = app.run_controller.next_run.spec
-        assert (on_mat.robot, on_mat.profile) == (plan.spec.robot, plan.spec.profile)
-        await choose(pilot, app, "F", "robolab")
-        await until(pilot, lambda: app.run_controller.next_run.spec.profile.name == "robolab")
-        assert app.run_controller.next_run.spec.robot == plan.spec.robot
-
-
 async def test_it_follows_the_text_of_the_program(claw: Path) -> None:
     async with open_lab(opened(claw)) as (pilot, app):
         claw.write_text(CLAW.replace("outA", "outD"))
@@ -114,39 +92,10 @@ async def test_opening_a_program_gives_it_its_robot(claw: Path) -> None:
         assert app.run_controller.next_run.spec.profile.name == "ev3"
 
 
-DRIVES = """\
-from pybricks.ev3devices import Motor
-from pybricks.parameters import Direction, Port
-from pybricks.robotics import DriveBase
-left, right = Motor(Port.B, Direction.COUNTERCLOCKWISE), Motor(Port.C, Direction.COUNTERCLOCKWISE)
-DriveBase(left, right, 55.5, 104).straight(100)
-"""
-
-
 def stored_profile(app: LabApp) -> str:
     """The profile of the newest run; empty without one."""
     run = app.run_controller.run
     return run.stored().spec.profile.name if run else ""
-
-
-async def test_programs_of_both_libraries_run_one_after_another(claw: Path) -> None:
-    (claw.parent / "drives.py").write_text(DRIVES)
-    settings, decided = Settings(), Decided(free=frozenset(PROGRAM_PATHS))
-    start = AppSettings(spec=build_run_spec(settings), settings=settings, decided=decided)
-    async with open_lab(start) as (pilot, app):
-        for name, profile in (
-            ("drives", "lego-micropython"),
-            ("claw", "ev3"),
-            ("drives", "lego-micropython"),
-        ):
-            app.loader.open_file(str(claw.parent / f"{name}.py"))
-            await until(pilot, lambda: app.loader.mat_is_ready)
-            await pilot.press("R")
-            await until(pilot, lambda profile=profile: stored_profile(app) == profile)  # type: ignore[misc]
-            await until(pilot, lambda: not app.run_controller.in_run)
-            run = app.run_controller.run
-            assert run is not None
-            assert str(run.stored().state) == "finished"
 
 
 async def test_a_chosen_profile_that_does_not_fit_the_program_is_told_when_it_is_to_run(

@@ -102,7 +102,7 @@ async def test_the_panel_with_the_focus_stays_when_the_keyboard_of_a_phone_takes
             assert (area.shown("code"), area.focused_panel()) == (True, "code"), rows
 
 
-def test_a_panel_is_imported_when_it_is_shown() -> None:
-    code = "import sys, tuisim.app.app; print('tuisim.app.panels.chart' in sys.modules)"
+def test_panels_and_what_they_ask_are_imported_when_they_are_shown() -> None:
+    code = "import sys, tuisim.app.app; print({'tuisim.app.panels.chart', 'jedi'} & {*sys.modules})"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
-    assert done.stdout == "False\n"
+    assert done.stdout == "set()\n"

@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Any, cast
 
 import pytest
-from textual.geometry import Region
 from textual.pilot import Pilot
 from textual.widget import Widget
 
@@ -13,26 +12,6 @@ from tests.app.app_help import LOGS, ready, settings, until
 from tuisim.app.app import LabApp
 from tuisim.app.guide.screen import GuideScreen
 from tuisim.app.notices import NoticeRow
-from tuisim.app.panels.world import World
-
-
-def rows_with_text(app: LabApp, region: Region) -> Region:
-    """The part of a panel's inside down to its last row that is not blank."""
-    lines = [
-        "".join(part.text for part in strip) for strip in app.screen._compositor.render_strips()
-    ]
-    inside = region.shrink((1, 1, 1, 1))
-    texts = [line[inside.x : inside.right].strip() for line in lines[inside.y : inside.bottom]]
-    last = max((at for at, text in enumerate(texts, 1) if text), default=0)
-    return Region(inside.x, inside.y, inside.width, last)
-
-
-NOTICES = {
-    "one": ["Nothing is running: R runs the program"],
-    "two": ["Nothing is running: R runs the program", "A branch begins in the past: , goes back"],
-    "long": ["words of an error that names a file and a key, and says what is allowed " * 2],
-    "with a word that does not fit": ["x" * 100],
-}
 
 
 async def shown_row(pilot: Pilot[Any], app: LabApp, message: str) -> NoticeRow:
@@ -46,7 +25,10 @@ async def shown_row(pilot: Pilot[Any], app: LabApp, message: str) -> NoticeRow:
     return app.screen.query_one(NoticeRow)
 
 
-@pytest.mark.quick_cases("(65, 58)", "(100, 30)")
+LONG = "words of an error that names a file and a key, and says what is allowed " * 2
+
+
+@pytest.mark.quick_cases("(65, 58)", "(80, 24)", "(100, 30)")
 @pytest.mark.parametrize("size", [(65, 58), (80, 24), (100, 30), (120, 40)], ids=str)
 async def test_a_notice_lies_on_the_border_and_leaves_axis_and_keys_free(
     size: tuple[int, int],
@@ -55,34 +37,13 @@ async def test_a_notice_lies_on_the_border_and_leaves_axis_and_keys_free(
         app = await ready(pilot)
         app.panel_area.bring("chart")
         await until(pilot, lambda: bool(app.panel_area.panels["chart"].region))
-        app.say(NOTICES["long"][0])
-        row = (await shown_row(pilot, app, NOTICES["long"][0])).region
+        app.say(LONG)
+        row = (await shown_row(pilot, app, LONG)).region
         assert row.height == 1 and row.y == app.panel_area.region.bottom - 1
         assert app.screen.region.contains_region(row)
         assert not row.overlaps(app.key_footer.region)
         for panel in app.panel_area.on_screen():
             assert not row.overlaps(cast(Widget, panel).region.shrink((1, 1, 1, 1)))
-
-
-@pytest.mark.quick_cases("two")
-@pytest.mark.parametrize("texts", NOTICES.values(), ids=list(NOTICES))
-async def test_the_newest_notice_covers_neither_mat_nor_readings_nor_output(
-    texts: list[str],
-) -> None:
-    async with LabApp(settings(LOGS)).run_test(size=(80, 24), notifications=True) as pilot:
-        app = await ready(pilot)
-        world, readings = (
-            app.query_one(World).region,
-            app.panel_area.panels["instrumentation"].region,
-        )
-        read = rows_with_text(app, readings)
-        for text in texts:
-            app.say(text)
-        row = (await shown_row(pilot, app, texts[-1])).region
-        assert app.screen.region.contains_region(row)
-        assert not row.overlaps(world)
-        assert not row.overlaps(read)
-        assert not row.overlaps(app.panel_area.panels["output"].region.shrink((1, 1, 1, 1)))
 
 
 async def test_a_notice_outlives_the_screen_that_it_is_on() -> None:

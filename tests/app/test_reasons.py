@@ -4,11 +4,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import pytest
 from textual.pilot import Pilot
 
 from tests.app.app_help import notices, open_lab, run_from_start, screen_text, until
-from tests.reasons.runs import WRONG_SIGN
 from tuisim.app.app import LabApp
 from tuisim.goals.files import load_goals
 
@@ -46,18 +44,6 @@ async def test_after_a_run_that_went_wrong_the_footer_names_it() -> None:
         await run_from_start(pilot, app, "print(colour)\n")
         await until(pilot, lambda: "! wrong?" in screen_text(app))
         assert "! goes to where it went wrong" in screen_text(app)
-
-
-@pytest.mark.slow
-async def test_the_chart_the_code_and_the_world_are_there() -> None:
-    async with open_lab(WRONG_SIGN, speed=0.0, size=SIZE, background="Lollipop") as (pilot, app):
-        await run_from_start(pilot, app, WRONG_SIGN)
-        await pilot.press("c")
-        await ask(pilot, app, "line 4: the right sensor left the black, and saw it no more")
-        snapshot = app.run_controller.snapshot()
-        assert (snapshot.past, snapshot.line) == (True, 4)
-        assert snapshot.time_s == pytest.approx(1.04)
-        await until(pilot, lambda: "▶ 4" in screen_text(app))
 
 
 GOALS = """\

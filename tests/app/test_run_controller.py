@@ -3,11 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from pathlib import Path
 
-import pandas as pd
 import pytest
-from textual.widgets import Input
 
 from tests.app.app_help import (
     ENDLESS,
@@ -16,6 +13,7 @@ from tests.app.app_help import (
     notices,
     open_lab,
     ready,
+    recording_of,
     screen_text,
     settings,
     until,
@@ -31,7 +29,6 @@ from tuisim.config import mat_cache
 from tuisim.core.field import Field
 from tuisim.core.geometry import Pose
 from tuisim.errors import BackgroundError
-from tuisim.logs.frames import read_log
 from tuisim.terminal.picture_mode import PictureMode
 from tuisim.terminal.picture_options import CellSet
 
@@ -64,51 +61,6 @@ async def test_the_end_says_that_the_robot_stood_at_a_wall() -> None:
         assert f"finished, {stood}" not in notices(app)
 
 
-@pytest.mark.slow
-async def test_the_same_run_again_gives_the_same_log(tmp_path: Path) -> None:
-    files = [tmp_path / f"{number}.csv" for number in (1, 2)]
-    async with open_lab(LOGS, speed=0.0) as (pilot, app):
-        for file in files:
-            await pilot.press("R")
-            await until_state(pilot, RunPhase.ENDED)
-            await pilot.press("e")
-            entry = app.screen.query_one(Input)
-            entry.value = str(file)
-            await pilot.press("enter")
-            await until(pilot, lambda: len(app.screen_stack) == 1)
-    assert files[0].read_bytes() == files[1].read_bytes()
-    frame = read_log(files[0])
-    assert isinstance(frame, pd.DataFrame)
-    assert frame["value"].iloc[-1] == 0
-
-
-@pytest.mark.slow
-async def test_export_asks_before_it_replaces_a_file(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    # A long path breaks the messages elsewhere.
-    monkeypatch.chdir(tmp_path)
-    target = Path("old.csv")
-    target.write_text("mine")
-    async with open_lab("print('A: 1')\n", autorun=True, speed=0.0) as (pilot, app):
-        await until_state(pilot, RunPhase.ENDED)
-        await pilot.press("e")
-        app.screen.query_one(Input).value = "x.xls"
-        await pilot.press("enter")
-        await until_shown(pilot, "unknown format")
-        app.screen.query_one(Input).value = str(target)
-        await pilot.pause()
-        await pilot.press("enter")
-        await until_shown(pilot, "already exists")
-        assert target.read_text() == "mine"
-        await pilot.press("enter")
-        await until(pilot, lambda: len(app.screen_stack) == 1)
-        await until(
-            pilot, lambda: any(text.endswith("its units: old.csv.json") for text in notices(app))
-        )
-    assert target.read_text() != "mine"
-
-
 async def test_pause_one_tick_go_on_and_stop() -> None:
     async with open_lab(ENDLESS, autorun=True) as (pilot, app):
         await until(
@@ -137,8 +89,7 @@ async def test_the_robot_can_be_placed_during_a_run() -> None:
         await until(pilot, lambda: app.run_controller.pose.y_mm >= 700)
         await pilot.press("S")
         await until_state(pilot, RunPhase.ENDED)
-        recording = app.run_controller.timeline.recording
-        assert recording is not None
+        recording = recording_of(app)
         last = recording.telemetry.last()
         assert last is not None
         # The recording ends in the middle of the drive; what is shown is a robot that stands.

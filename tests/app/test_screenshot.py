@@ -9,10 +9,7 @@ from xml.etree import ElementTree
 import pytest
 from PIL import Image
 
-from tests.app.analyser.test_screen import text_of
 from tests.app.app_help import notices, open_lab, until
-from tuisim.analysis.source import LogRequest
-from tuisim.app.analyser.app import AnalyserApp
 from tuisim.app.app import LabApp
 from tuisim.app.screenshot import screen_cells
 from tuisim.terminal.cell_image import CELL_PX
@@ -81,16 +78,6 @@ async def test_from_the_palette_the_palette_is_not_shown(tmp_path: Path) -> None
         await pilot.press("down", "enter")
         await until(pilot, lambda: (tmp_path / "tuisim-1.png").exists())
     assert "Saveascreenshot" not in words_in(tmp_path / "tuisim-1.svg")
-
-
-@pytest.mark.slow
-async def test_the_analyser(tmp_path: Path) -> None:
-    (tmp_path / "log.txt").write_text("Colour: 1\nColour: 2\n")
-    async with AnalyserApp(LogRequest(file="log.txt")).run_test(size=(100, 30)) as pilot:
-        await until(pilot, lambda: "2 rows" in text_of(pilot))
-        await pilot.press("I")
-        await until(pilot, lambda: (tmp_path / "tuisim-1.png").exists())
-    assert "Colour" in words_in(tmp_path / "tuisim-1.svg")
 
 
 @pytest.mark.slow

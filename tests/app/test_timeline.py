@@ -18,6 +18,7 @@ from tests.app.app_help import (
     LOGS,
     notices,
     open_lab,
+    recording_of,
     screen_text,
     until,
     until_shown,
@@ -40,8 +41,7 @@ async def a_run(
     """A run that is over, in the app."""
     async with open_lab(text, autorun=True, speed=0.0, size=size) as (pilot, app):
         await until_state(pilot, RunPhase.ENDED)
-        recording = app.run_controller.timeline.recording
-        assert recording is not None
+        recording = recording_of(app)
         await until(pilot, lambda: not recording.rows.take(1) and not app._last_words)
         yield pilot, app
 
@@ -126,8 +126,7 @@ async def test_the_pen_has_drawn_no_more_than_then() -> None:
         world = app.panel_area.world
         assert world is not None
         assert world._view.past_trace is not None
-        recording = app.run_controller.timeline.recording
-        assert recording is not None
+        recording = recording_of(app)
         drawn = [piece.xs_mm for piece in world._view.past_trace.pieces(0)]
         if drawn:
             ahead = recording.spec.robot.pen.y_mm
@@ -193,25 +192,6 @@ async def test_a_click_on_the_bar_or_a_panel_leaves_no_instant() -> None:
         )
         await pilot.click("Instrumentation", offset=(5, 1))
         assert app.run_controller.timeline.at == at
-
-
-@pytest.mark.slow
-async def test_the_bar_is_clicked_and_dragged() -> None:
-    async with a_run() as (pilot, app):
-        world = app.panel_area.world
-        assert world is not None
-        bar = world.time_bar
-        await until(pilot, lambda: bar._times is not None and bar.region.width > 0)
-        await pilot.mouse_down(bar, offset=(0, 0))
-        await until(pilot, lambda: app.run_controller.timeline.at == 0)
-        await pilot.hover(bar, offset=(20, 0))
-        await until(pilot, lambda: (app.run_controller.timeline.at or 0) > 0)
-        await pilot.mouse_up(bar, offset=(20, 0))
-        at = app.run_controller.timeline.at
-        await pilot.hover(bar, offset=(5, 0))
-        assert app.run_controller.timeline.at == at
-        await pilot.mouse_down(bar, offset=(bar.size.width - 2, 0))
-        await until(pilot, lambda: not app.run_controller.in_past)
 
 
 async def test_words_that_are_no_place_are_answered() -> None:
@@ -293,6 +273,15 @@ async def test_words_find_their_instants() -> None:
         assert find("sample", timeline) == min(r.tick for r in rows if r.tick > dark)
 
 
+async def test_a_column_finds_the_tick_at_which_it_becomes_so() -> None:
+    async with a_run() as (_, app):
+        timeline, telemetry = app.run_controller.timeline, recording_of(app).telemetry
+        mat = app.run_controller.mat
+        assert mat is not None
+        there = next(tick for tick in range(400) if telemetry.record(tick).x_mm > 300)
+        assert find("x_mm > 300 first", timeline, mat.field) == there
+
+
 @pytest.mark.slow
 async def test_the_dialog_says_what_is_wrong_and_the_keys_go_from_sample_to_sample() -> None:
     async with a_run() as (pilot, app):
@@ -301,8 +290,7 @@ async def test_the_dialog_says_what_is_wrong_and_the_keys_go_from_sample_to_samp
         await pilot.press("enter")
         await until_shown(pilot, "'nowhere' is not an instant")
         await pilot.press("escape", "home")
-        recording = app.run_controller.timeline.recording
-        assert recording is not None
+        recording = recording_of(app)
         ticks = sorted({row.tick for row in recording.rows.rows(0)})
         await pilot.press(
             "right_parenthesis", "right_parenthesis", "right_parenthesis", "left_parenthesis"
