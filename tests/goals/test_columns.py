@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import Path
+
+import pytest
 
 from tests.cases import cases
 from tests.goals.recorded import Run, Step, ahead, goals_of, says, wait, world
@@ -11,6 +14,7 @@ from tuisim.core.spec import Obstacle
 from tuisim.goals.judge import judge
 from tuisim.runs.brick_state import TextScreen, console_row, led_row
 from tuisim.runs.records import Stream
+from tuisim.runs.run_folder import StoredRun
 from tuisim.runs.store import RunStore
 
 
@@ -118,12 +122,22 @@ reach = { x_mm = 2000 }
 """
 
 
+@pytest.fixture(scope="module")
+def driven(tmp_path_factory: pytest.TempPathFactory) -> Iterator[StoredRun]:
+    """A run of that way, beside an obstacle that it does not reach."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("TUISIM_HOME", str(tmp_path_factory.mktemp("home")))
+        run = Run(RunStore(), world(obstacles=(Obstacle(1000, 0, 50, 1143),)), "")
+        run.do(WAY)
+        yield run.end()
+
+
 @cases("lines, reason", GOALS)
-def test_a_goal_on_what_happened(lines: str, reason: str, tmp_path: Path, home: Path) -> None:
+def test_a_goal_on_what_happened(
+    lines: str, reason: str, tmp_path: Path, driven: StoredRun
+) -> None:
     goals = goals_of(tmp_path, f"[[goal]]\nname = 'a'\n{lines}\n{OTHERS}")
-    run = Run(RunStore(), world(obstacles=(Obstacle(1000, 0, 50, 1143),)), "")
-    run.do(WAY)
-    found = judge(goals, run.end())[0]
+    found = judge(goals, driven)[0]
     assert (found.state, reason in found.reason) == ("missed" if reason else "met", True), (
         found.reason
     )

@@ -60,7 +60,7 @@ def report(tmp_path: Path, here: Command) -> str:
     return (tmp_path / "marks-runs" / "ada-seed-0.html").read_text()
 
 
-def test_goals_are_told_with_result_place_reason_and_points(report: str) -> None:
+def test_goals_are_told_with_result_place_reason_and_points(report: str, tmp_path: Path) -> None:
     (section,) = re.findall("<h2>Goals</h2>.*?</section>", report, re.DOTALL)
     rows = [re.findall("<td[^>]*>(.*?)</td>", row) for row in section.split("</tr>")[1:-1]]
     words = [
@@ -79,14 +79,14 @@ def test_goals_are_told_with_result_place_reason_and_points(report: str) -> None
     # From x 200 on by three rotations of 175.93 mm; the obstacle is at x 700, the front some 50 mm before the axle.
     assert 390 <= there <= 400 and 640 <= touched <= 660 and end == 728
     assert "(line 2)" in rows[2][3] and "line" not in rows[3][3]
-
-
-def test_goals_are_marked_on_the_mat(report: str) -> None:
+    # The same goals on the mat.
     (pins,) = re.findall('<svg class="pins".*?</svg>', report, re.DOTALL)
     labels = [re.findall("<tspan[^>]*>(.*?)</tspan>", ring) for ring in pins.split("</g>")[:-1]]
     x_px = [float(x) for x in re.findall('cx="(.*?)"', pins)]
     assert (labels, x_px == sorted(x_px)) == ([["✓1"], ["✗2"], ["✗3"]], True)
     assert "<title>1. Come to x = 400. met at " in pins
+    # No path of the machine is told.
+    assert str(tmp_path) not in report and "the mat own.png and" in report
 
 
 @pytest.mark.slow
@@ -106,7 +106,3 @@ def test_a_movie_of_a_run_that_missed_a_goal_has_the_goals_on_it(
     assert '<details class="movie">' not in report + right
     movie = missed.partition('<details class="movie">')[2].partition("</details>")[0]
     assert "data:image/gif" in movie and movie.count("✗1") == 1
-
-
-def test_no_path_of_the_machine_is_told(report: str, tmp_path: Path) -> None:
-    assert str(tmp_path) not in report and "the mat own.png and" in report
