@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import os
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 from weakref import finalize
 
@@ -75,9 +75,9 @@ class Recorder:
         return self.store.load_run(self.run.id)
 
 
-def begun(store: RunStore, spec: RunSpec, **options: Any) -> Recorder:
+def begun(store: RunStore, spec: RunSpec, text: str = PROGRAM.text, **options: Any) -> Recorder:
     """Begin a run in a store."""
-    run = store.new_run(PROGRAM, spec, **options)
+    run = store.new_run(replace(PROGRAM, text=text), spec, **options)
     telemetry = TelemetryWriter(run.folder)
     return Recorder(
         store, run, spec, telemetry, OutputWriter(run.folder), Simulation(spec, telemetry)

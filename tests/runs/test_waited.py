@@ -22,6 +22,7 @@ from tuisim.core.spec import (
     WorldSpec,
 )
 from tuisim.protocol import End
+from tuisim.runs.records import Stream
 from tuisim.runs.side_files import READINGS_FILE
 from tuisim.runs.waited import Subject, find_awaited
 
@@ -66,12 +67,6 @@ def drive_and_poll(recorder: Recorder, port: str, mode: str) -> None:
     for _ in range(70):
         recorder.read(port, mode, 5)
         recorder.drive(100, -100, 10, 6)
-
-
-def print_what_is_seen(recorder: Recorder) -> None:
-    for _ in range(7):
-        poll(recorder, "in2", "COL-REFLECT", seconds=1)
-        recorder.print("100")
 
 
 def start_by_button_and_wait(recorder: Recorder) -> None:
@@ -147,7 +142,6 @@ WAITS: dict[str, tuple[WorldSpec, Moves, list[tuple[Subject, str, int, str]]]] =
     ),
     "a bumper at a box": (AT_BOX, lambda r: poll(r, "in1", "TOUCH"), []),
     "a remote of the world": (WITH_REMOTE, lambda r: poll(r, "in4", "IR-REMOTE"), []),
-    "printed readings": (SPEC.world, print_what_is_seen, []),
     "a sleep on purpose": (SPEC.world, sleep_after_reading, []),
     "a motor": (SPEC.world, lambda r: poll(r, "outB", "state"), []),
     "nothing": (SPEC.world, lambda r: None, []),
@@ -180,6 +174,33 @@ def test_only_a_run_that_was_stopped_or_stood_still_waited(
     recorder = record(SPEC)
     poll(recorder, "in1", "TOUCH", seconds=seconds)
     assert bool(find_awaited(recorder.end(end))) is is_told
+
+
+GUARDED = "while not ts.is_pressed:\n    print(us.distance_centimeters)\n    sleep(0.1)\n"
+
+
+@pytest.mark.parametrize(
+    ("text", "sounds", "is_told"),
+    [
+        ("print(ts.is_pressed)\nprint(us.distance_centimeters)", False, False),
+        ("while not ts.is_pressed:\n    sleep(0.1)\n", False, True),
+        ("while not ts.is_pressed:\n    sleep(0.1)\n", True, False),
+        (GUARDED, False, False),
+        (f"{GUARDED}tank.on(50, 50)", False, True),
+    ],
+)
+def test_logging_and_playing_until_something_is_pressed_is_no_wait(
+    record: Record, text: str, sounds: bool, is_told: bool
+) -> None:
+    recorder = record(SPEC, text=text)
+    for _ in range(70):
+        recorder.read("in1", "TOUCH", 1)
+        recorder.read("in2", "COL-REFLECT", 2)
+        recorder.simulation.advance(10)
+    if sounds:
+        recorder.print("[tone 440 Hz 1.0 s]", stream=Stream.SPEECH)
+    touched = [one for one in find_awaited(recorder.end(End.TIME_LIMIT)) if one.subject is T]
+    assert bool(touched) is is_told
 
 
 def test_without_a_record_of_readings_nothing_is_said(record: Record) -> None:

@@ -4,16 +4,27 @@ from __future__ import annotations
 
 import json
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
 from tests.cases import cases
 from tests.conftest import Command
+from tuisim.config.mat_cache import open_field
+from tuisim.config.mats import background
 from tuisim.core.profile import PROFILES
+from tuisim.core.sensors.color import clear_reading
 from tuisim.core.spec import RobotSpec, RunSpec, WorldSpec
-from tuisim.runs.waited import Awaited, Subject
-from tuisim.runs.waited_words import describe_awaited, describe_wait_with_keys, name_remedy
+from tuisim.runs.run_folder import field_files
+from tuisim.runs.waited import Awaited, HandPress, Subject
+from tuisim.runs.waited_words import (
+    COLOR_PLACES_MM,
+    COLORED_MAT,
+    describe_awaited,
+    describe_wait_with_keys,
+    name_remedy,
+)
 
 SPEC = RunSpec(RobotSpec(), WorldSpec(), PROFILES["ev3"])
 
@@ -81,7 +92,7 @@ PROGRAMS = {
     "touch": (WAIT_TOUCH, "touch sensor on in1 was never pressed: --press in1@2"),
     "remote": (
         REMOTE,
-        "infrared sensor on in1: no button of the remote was pressed: --press remote.left_up@1-3",
+        "infrared sensor on in1: no button of the remote was pressed: --press remote.left_up@2-4",
     ),
     "line": (
         FOLLOW,
@@ -108,22 +119,101 @@ def test_the_last_line_and_json_say_what_was_waited_for(
     assert _TIMES.sub("N times", json.loads(done.stdout)["waited_for"]) == sentence
 
 
-@pytest.mark.parametrize(
-    ("text", "press"),
-    [
-        (WAIT_BUTTON, "enter@1"),
-        (WAIT_TOUCH, "in1@2-2.5"),
-        (WAIT_TOUCH, "touch@2"),
-    ],
-)
+RED = """
+from ev3dev2.sensor.lego import ColorSensor
+cs = ColorSensor()
+while cs.color != ColorSensor.COLOR_RED:
+    pass
+"""
+HAND = """
+from time import sleep
+from ev3dev2.sensor.lego import UltrasonicSensor
+us = UltrasonicSensor()
+while us.distance_centimeters > 8:
+    sleep(0.5)
+"""
+TWO = """
+from ev3dev2.button import Button
+btn = Button()
+while not (btn.up and btn.left):
+    pass
+"""
+SECOND = """
+from time import sleep
+from ev3dev2.button import Button
+sleep(2.5)
+Button().wait_for_pressed("down")
+"""
+SLOW = """
+from time import sleep
+from ev3dev2.sensor.lego import TouchSensor
+touch = TouchSensor()
+while not touch.is_pressed:
+    print("waiting")
+    sleep(0.7)
+"""
+PAD = """
+import evdev
+from time import sleep
+while len(evdev.list_devices()) < 2:
+    sleep(1)
+"""
+GIVEN = {
+    "any button": (WAIT_BUTTON, "--press enter@1"),
+    "one button, later": (SECOND, "--press down@3"),
+    "two buttons at once": (TWO, "--press up@1-2 --press left@1-2"),
+    "touch": (WAIT_TOUCH, "--press in1@2"),
+    "a slow look at touch": (SLOW, "--press in1@2-3"),
+    "a colour": (RED, "-b Rainbow_bands -x 240"),
+    "a hand": (HAND, "-o Central_post -x 824"),
+}
+
+
+@cases("text, options", GIVEN)
 def test_what_the_sentence_advises_ends_the_wait(
-    tmp_path: Path, here: Command, text: str, press: str
+    tmp_path: Path, here: Command, text: str, options: str
 ) -> None:
     (tmp_path / "prog.py").write_text(text)
-    done = here("run", "prog.py", "--press", press, "--json")
-    facts = json.loads(done.stdout)
+    facts = json.loads(here("run", "prog.py", "--timeout", 6, "--json").stdout)
+    assert f": {options}" in facts["waited_for"]
+    facts = json.loads(here("run", "prog.py", *options.split(), "--json").stdout)
     assert (facts["state"], facts["waited_for"]) == ("finished", "")
-    assert facts["x_mm"] == pytest.approx(1181 + 352, abs=8)
+
+
+VAIN = {
+    "too early": (
+        SECOND,
+        "down@1",
+        "down was pressed at 1 s, before the program asked (first at 2.5 s): --press down@3",
+    ),
+    "another button": (SECOND, "enter@3", "only enter was pressed, not down: --press down@3"),
+    "one of two": (TWO, "left@1", "only left was pressed, not up: --press up@1-2 --press left@1-2"),
+    "another sensor": (
+        WAIT_TOUCH,
+        "in2@1",
+        "touch sensor on in1: only in2 was pressed: --press in1@2",
+    ),
+    "between two looks": (
+        SLOW,
+        "touch@1.1-1.3",
+        "touch sensor on in1: touch was pressed at 1.1 s, between two looks (0.7 s apart):",
+    ),
+}
+
+
+@cases("text, press, sentence", VAIN)
+def test_a_press_that_did_not_help_is_named(
+    tmp_path: Path, here: Command, text: str, press: str, sentence: str
+) -> None:
+    (tmp_path / "prog.py").write_text(text)
+    done = here("run", "prog.py", "--press", press, "--timeout", 6, "--json")
+    assert json.loads(done.stdout)["waited_for"].startswith(sentence)
+
+
+def test_a_gamepad_that_never_comes_is_named(tmp_path: Path, here: Command) -> None:
+    (tmp_path / "prog.py").write_text(PAD)
+    facts = json.loads(here("run", "prog.py", "--timeout", 6, "--json").stdout)
+    assert facts["waited_for"].startswith("looked for a gamepad 7 times, none is simulated: ")
 
 
 def test_the_remote_drives_while_it_is_pressed(tmp_path: Path, here: Command) -> None:
@@ -149,8 +239,33 @@ def test_there_are_words_for_everything(subject: Subject) -> None:
     assert describe_wait_with_keys([awaited], SPEC).startswith(describe_awaited(awaited))
 
 
-def test_without_walls_they_are_advised() -> None:
-    open_floor = RunSpec(RobotSpec(), WorldSpec(walls=False), PROFILES["ev3"])
-    awaited = Awaited(Subject.DISTANCE, "in4", 3, 0.5, 7, "255 cm")
-    assert name_remedy(awaited, open_floor).startswith("--walls on, or -o ")
-    assert "--walls" not in name_remedy(awaited, SPEC)
+def test_buttons_that_are_asked_for_at_once_are_pressed_at_once() -> None:
+    up = HandPress("up", 1.0, 1.1)
+    left = HandPress("left", 3.0, 3.1)
+    awaited = Awaited(
+        Subject.BUTTONS,
+        "buttons",
+        9,
+        0.0,
+        4,
+        sought=("up", "left"),
+        needs_all=True,
+        pressed=(up, left),
+    )
+    assert describe_awaited(awaited) == "up and left were not pressed at once"
+    assert "↑ and ← press up and left" in describe_wait_with_keys([awaited], SPEC)
+
+
+def test_a_run_that_took_as_long_as_in_reality_is_not_told_to() -> None:
+    awaited = Awaited(Subject.CONNECTION, "socket", 3, 0.5, 7)
+    assert "--speed 1" in name_remedy(awaited, SPEC)
+    assert "--speed" not in name_remedy(awaited, SPEC, is_live=True)
+
+
+@pytest.mark.parametrize(("color", "x_mm"), COLOR_PLACES_MM.items())
+def test_the_coloured_mat_has_each_colour_there(color: str, x_mm: int) -> None:
+    spec = replace(SPEC, world=WorldSpec(background=COLORED_MAT))
+    field = open_field(field_files(spec))
+    pose = replace(background(COLORED_MAT).start, x_mm=float(x_mm))
+    for sensor in spec.robot.color_sensors:
+        assert clear_reading(sensor, pose, field).name.lower() == color

@@ -1,8 +1,8 @@
 """What a program read, and when: `READINGS_FILE` of a run folder, and its writer and reader.
 
 Written in pure Python: the child imports it. The file is one of `records`: a header, then one record of 16 bytes for
-each reading of a sensor, an encoder or the brick's buttons, and for each vain look at a socket. The value follows from
-telemetry, world and user actions.
+each reading of a sensor, an encoder or the brick's buttons, and for each vain look at a socket or for a gamepad. The
+value follows from telemetry, world and user actions.
 """
 
 from __future__ import annotations
@@ -38,7 +38,9 @@ BUTTONS_PORT = "buttons"
 """What stands for a port when the brick's buttons are read."""
 SOCKET_PORT = "socket"
 """What stands for a port when the program waits for a socket."""
-READING_PORTS = (*INPUT_PORTS, *OUTPUT_PORTS, BUTTONS_PORT, SOCKET_PORT)
+GAMEPAD_PORT = "gamepad"
+"""What stands for a port when the program looks for input devices."""
+READING_PORTS = (*INPUT_PORTS, *OUTPUT_PORTS, BUTTONS_PORT, SOCKET_PORT, GAMEPAD_PORT)
 MODES_BY_KIND: Mapping[str, tuple[str, ...]] = {
     "color": ("COL-REFLECT", "COL-AMBIENT", "COL-COLOR", "REF-RAW", "RGB-RAW", "COL-CAL"),
     "ultrasonic": ("US-DIST-CM", "US-DIST-IN", "US-LISTEN", "US-SI-CM", "US-SI-IN"),
@@ -51,8 +53,9 @@ MODES_BY_KIND: Mapping[str, tuple[str, ...]] = {
     "motor": ("position", "speed", "state"),
     "buttons": ("pressed",),
     "socket": ("accept", "receive"),
+    "gamepad": ("list",),
 }
-"""What can be read, by the kind of device: modes of sensors, attributes of motors, the buttons, sockets."""
+"""What can be read, by the kind of device: modes of sensors, attributes of motors, the buttons, sockets, gamepads."""
 READING_MODES = tuple(mode for modes in MODES_BY_KIND.values() for mode in modes)
 READING_CODES: Mapping[tuple[str, str], int] = {
     (port, mode): port_index | mode_index << 8

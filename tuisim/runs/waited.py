@@ -1,7 +1,8 @@
 """What a program waited for in vain: what it read up to the end of its run and never saw change.
 
-It is found in the recording alone. A reading counts if its line ran in the last seconds; of these, those in the call
-that the program was in come first. What the program turns itself, its motors and the gyro, does not count.
+It is found in the recording and the program's text in it. A reading counts if its line ran in the last seconds, and
+something depends on it: what is only printed or stored was not waited for. Of these, those in the call that the program
+was in come first. What the program turns itself, its motors and the gyro, does not count.
 """
 
 from __future__ import annotations
@@ -13,12 +14,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tuisim.core.columns import COLOR_NAMES
-from tuisim.core.profile import NS_PER_S
+from tuisim.core.geometry import Pose
+from tuisim.core.profile import NS_PER_S, Library
 from tuisim.core.sensors import mounted_sensor
 from tuisim.core.sensors.color import color_code
 from tuisim.core.spec import (
     BUTTONS,
+    INPUT_PORTS,
     REMOTE_BY_HAND,
+    TOUCH,
     ColorSensorSpec,
     InfraredSpec,
     RunSpec,
@@ -30,8 +34,15 @@ from tuisim.data_class import dataclass
 from tuisim.errors import LogError
 from tuisim.protocol import End, SetButtons, UserAction
 from tuisim.runs.brick_state import BrickState, face_after
+from tuisim.runs.questions import (
+    BUTTON_WORDS,
+    COLOR_WORDS,
+    REMOTE_WORDS,
+    Question,
+    find_question,
+)
 from tuisim.runs.readings import MODES_BY_KIND, READING_MODES, READING_PORTS, read_readings
-from tuisim.runs.records import TEXT_STREAMS, Stream
+from tuisim.runs.records import Stream
 from tuisim.runs.run_folder import StoredRun, open_mat
 from tuisim.runs.views import OutputView, TelemetryView, instant_of
 
@@ -50,6 +61,8 @@ _ENDS = frozenset({End.TIME_LIMIT, End.STOPPED})
 """Ends in the middle of a wait."""
 _SAME_LIGHT = 25
 """A colour sensor whose channels change by less, of 255, sees the same."""
+_MOVED_MM = 50.0
+"""A robot that got no farther looks at the same place."""
 _MAX_POSES = 4000
 """Distances are measured again at so many poses."""
 
@@ -66,6 +79,7 @@ class Subject(Enum):
     PROXIMITY = auto()
     CONNECTION = auto()
     DATA = auto()
+    GAMEPAD = auto()
 
 
 _MODES: dict[Subject, tuple[str, ...]] = {
@@ -78,11 +92,32 @@ _MODES: dict[Subject, tuple[str, ...]] = {
     Subject.PROXIMITY: ("IR-PROX",),
     Subject.CONNECTION: ("accept",),
     Subject.DATA: ("receive",),
+    Subject.GAMEPAD: MODES_BY_KIND["gamepad"],
 }
+_HANDS: dict[Subject, tuple[str, ...]] = {
+    Subject.BUTTONS: BUTTONS,
+    Subject.TOUCH: (TOUCH, *INPUT_PORTS),
+    Subject.REMOTE: tuple(REMOTE_BY_HAND),
+}
+"""What can be pressed by hand for a subject."""
 _BY_HAND = (Subject.BUTTONS, Subject.REMOTE)
 """While the robot moves, a look at these is a guard, not a wait."""
+_PRESSED = (*_BY_HAND, Subject.TOUCH)
+"""While the program logs or plays, a look at these that only ends it is a guard."""
 _SEEN = (Subject.COLOR, Subject.DISTANCE, Subject.PROXIMITY)
-"""A robot that stands and prints what it sees of these does not wait for them."""
+"""A robot that drives waits for these first."""
+_FROM_OUTSIDE = (Subject.CONNECTION, Subject.DATA, Subject.GAMEPAD)
+"""Each recorded look at these was in vain."""
+
+
+@dataclass(frozen=True, slots=True)
+class HandPress:
+    """Something that was held by hand."""
+
+    name: str
+    """One of `PRESSABLE`."""
+    from_s: float
+    until_s: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,6 +134,22 @@ class Awaited:
     """The line that read it last."""
     value: str = ""
     """What was read each time: a colour, a distance with its unit."""
+    sought: tuple[str, ...] = ()
+    """What the program asks for: some of `PRESSABLE`, or colours; empty for any."""
+    needs_all: bool = False
+    """Whether it asks for all of them at once."""
+    limit: float | None = None
+    """The distance that it asks for, in mm or %; None if that is not known."""
+    pace_s: float = 0.0
+    """Time between two readings."""
+    pressed: tuple[HandPress, ...] = ()
+    """What was pressed by hand in vain."""
+    pose: Pose | None = None
+    """Where the robot was when it read it for the first time."""
+    has_moved: bool = False
+    """Whether it went elsewhere until it read it for the last time."""
+    mode: str = ""
+    """What was read, one of `READING_MODES`."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,6 +157,8 @@ class Recorded:
     """The recording of a run up to an instant."""
 
     folder: Path
+    text: str
+    """The program."""
     spec: RunSpec
     telemetry: TelemetryView
     output: OutputView
@@ -118,6 +171,7 @@ def find_awaited(run: StoredRun) -> tuple[Awaited, ...]:
     """Return what a stored run waited for."""
     recorded = Recorded(
         folder=run.folder,
+        text=run.program.text,
         spec=run.spec,
         telemetry=run.telemetry,
         output=run.output,
@@ -184,23 +238,16 @@ class _Search:
         """Yield what the program waits for, most important first."""
         if not len(self._rows) or not len(self._records):
             return
-        subjects = [one for one in Subject if not (one in _BY_HAND and self._drives)]
+        subjects = [subject for subject in Subject if not (subject in _BY_HAND and self._drives)]
         if self._drives:
             subjects.sort(key=lambda one: one not in _SEEN)
         for subject in subjects:
             if subject in _BY_HAND and self._is_turning():
                 continue
-            if subject in _SEEN and not self._drives and self._is_printing():
-                continue
             for port in READING_PORTS:
                 rows = self._find_readings(subject, port)
-                if (
-                    len(rows)
-                    and (value := self._describe_constant(subject, port, rows)) is not None
-                ):
-                    since_s = float(self._rows["time_ns"][rows[0]]) / NS_PER_S
-                    line = int(self._rows["line"][rows[-1]])
-                    yield Awaited(subject, port, len(rows), since_s, line, value)
+                if len(rows) and (awaited := self._describe(subject, port, rows)) is not None:
+                    yield awaited
 
     def _find_readings(self, subject: Subject, port: str) -> Array:
         """Return the indices of all readings of a subject on the lines that the program is busy with."""
@@ -209,11 +256,33 @@ class _Search:
         modes = [READING_MODES.index(mode) for mode in _MODES[subject]]
         is_meant = np.isin(self._rows["mode"], modes)
         is_meant &= self._rows["port"] == READING_PORTS.index(port)
-        lines = self._rows["line"][is_meant & (self._ticks >= self._first)]
+        lines = np.unique(self._rows["line"][is_meant & (self._ticks >= self._first)])
         if (line := self._find_blocking_line()) is not None:
             lines = lines[lines == line]
-        rows: Array = np.flatnonzero(is_meant & np.isin(self._rows["line"], lines))
+        asking = [line for line in lines.tolist() if self._is_asking(subject, line)]
+        rows: Array = np.flatnonzero(is_meant & np.isin(self._rows["line"], asking))
         return rows
+
+    def _ask(self, line: int) -> Question:
+        return find_question(self._run.text, line)
+
+    def _is_asking(self, subject: Subject, line: int) -> bool:
+        """Return whether the program waits for a subject on a line, if it waits at all."""
+        question = self._ask(line)
+        if subject in _FROM_OUTSIDE:
+            return True
+        is_guard = subject in _PRESSED and question.is_last and self._is_logging_or_playing()
+        return question.decides and not is_guard
+
+    def _is_logging_or_playing(self) -> bool:
+        """Return whether the program has shown or stored readings in the last seconds, or has played sounds."""
+        import numpy as np
+
+        lines = np.unique(self._rows["line"][self._ticks >= self._first]).tolist()
+        return any(not self._ask(line).decides for line in lines) or any(
+            row.tick > self._first and row.stream is Stream.SPEECH
+            for row in self._run.output.rows()
+        )
 
     def _find_blocking_line(self) -> int | None:
         """Return the line of the call that the program is in, if it reads anything there."""
@@ -233,27 +302,90 @@ class _Search:
                 face = face_after(face, [row])
         return any(dps for _, dps in face.turns)
 
-    def _is_printing(self) -> bool:
-        """Return whether the program has printed in the last seconds."""
-        return any(
-            row.tick > self._first
-            for row in self._run.output.rows()
-            if row.stream in TEXT_STREAMS or row.stream is Stream.CONSOLE
+    def _describe(self, subject: Subject, port: str, rows: Array) -> Awaited | None:
+        """Return a subject with what the program asks of it; None if it changed, or came."""
+        import numpy as np
+
+        mode = READING_MODES[self._rows["mode"][rows[-1]]]
+        questions = [self._ask(line) for line in dict.fromkeys(self._rows["line"][rows].tolist())]
+        sought = tuple(
+            dict.fromkeys(
+                name
+                for question in questions
+                for name in _find_sought(subject, port, mode, question)
+            )
+        )
+        # It usually ends a program.
+        sought = tuple(sorted(sought, key="backspace".__eq__))
+        needs_all = len(sought) > 1 and any(question.needs_all for question in questions)
+        value = self._describe_constant(subject, port, rows, sought, needs_all)
+        if value is None:
+            return None
+        times_s = self._rows["time_ns"][rows] / NS_PER_S
+        first, last = (
+            self._run.telemetry.record(int(self._ticks[row])).pose for row in rows[[0, -1]]
+        )
+        return Awaited(
+            subject,
+            port,
+            len(rows),
+            float(times_s[0]),
+            int(self._rows["line"][rows[-1]]),
+            value,
+            sought=sought,
+            needs_all=needs_all,
+            limit=self._find_limit(mode, questions[0]),
+            pace_s=float(np.median(np.diff(times_s))) if len(rows) > 1 else 0.0,
+            pressed=self._find_presses(subject),
+            pose=first,
+            has_moved=math.dist((first.x_mm, first.y_mm), (last.x_mm, last.y_mm)) > _MOVED_MM,
+            mode=mode,
         )
 
-    def _describe_constant(self, subject: Subject, port: str, rows: Array) -> str | None:
+    def _find_limit(self, mode: str, question: Question) -> float | None:
+        """Return the distance that the program asks for, in mm or in % for an infrared sensor."""
+        limit = question.find_limit()
+        if limit is None or mode not in _MODES[Subject.DISTANCE]:
+            return limit
+        is_pybricks = self._run.spec.profile.motor_law.library is Library.PYBRICKS
+        is_in_mm = is_pybricks or "value" in question.words
+        return limit * (1.0 if is_in_mm else 25.4 if mode.endswith("IN") else 10.0)
+
+    def _find_presses(self, subject: Subject) -> tuple[HandPress, ...]:
+        """Return what was pressed by hand of what can be pressed for a subject."""
+        names = _HANDS.get(subject, ())
+        since: dict[str, int] = {}
+        presses: list[HandPress] = []
+        for action in self._run.actions:
+            if not isinstance(action.command, SetButtons):
+                continue
+            pressed = action.command.pressed
+            for name in [name for name in since if name not in pressed]:
+                presses.append(HandPress(name, since.pop(name) / self._hz, action.tick / self._hz))
+            since |= {name: action.tick for name in pressed if name in names and name not in since}
+        end_s = len(self._records) / self._hz
+        return (
+            *presses,
+            *(HandPress(name, tick / self._hz, end_s) for name, tick in since.items()),
+        )
+
+    def _describe_constant(
+        self, subject: Subject, port: str, rows: Array, sought: tuple[str, ...], needs_all: bool
+    ) -> str | None:
         """Return what was read each time, in words; None if it changed, or was what a program waits for."""
         import numpy as np
 
-        if subject in (Subject.CONNECTION, Subject.DATA):
-            return ""
+        if subject in _FROM_OUTSIDE:
+            return "" if subject is not Subject.GAMEPAD or len(rows) > 1 else None
         ticks = np.unique(self._ticks[rows])
-        sensor = next((one for one in self._run.spec.robot.sensors if one.port == port), None)
+        sensor = next(
+            (sensor for sensor in self._run.spec.robot.sensors if sensor.port == port), None
+        )
         match subject, sensor:
             case Subject.BUTTONS, _:
-                return None if self._is_pressed(ticks, BUTTONS).any() else ""
+                return None if self._is_pressed(ticks, sought or BUTTONS, needs_all) else ""
             case Subject.REMOTE, InfraredSpec():
-                return None if self._is_remote_pressed(ticks) else ""
+                return None if self._is_remote_pressed(ticks, sought, needs_all) else ""
             case Subject.BEACON, InfraredSpec():
                 return None if self._run.spec.world.beacon else ""
             case Subject.TOUCH, TouchSpec():
@@ -266,26 +398,27 @@ class _Search:
                 return self._describe_distance(sensor, ticks, 1, 2)
         return None
 
-    def _is_pressed(self, ticks: Array, names: Sequence[str]) -> Array:
-        """Return at each of some ticks whether any of some names is pressed by hand."""
+    def _is_pressed(self, ticks: Array, names: Sequence[str], needs_all: bool) -> bool:
+        """Return whether any of some names, or all at once, was pressed by hand at any of some ticks."""
         import numpy as np
 
+        enough = len(names) if needs_all else 1
         changes = [
-            (action.tick, not {*names}.isdisjoint(action.command.pressed))
+            (action.tick, len({*names} & {*action.command.pressed}) >= enough)
             for action in self._run.actions
             if isinstance(action.command, SetButtons)
         ]
         states = [False, *(is_pressed for _, is_pressed in changes)]
         at = np.searchsorted([tick for tick, _ in changes], ticks, side="right")
-        return np.array(states)[at]
+        return bool(np.array(states)[at].any())
 
-    def _is_remote_pressed(self, ticks: Array) -> bool:
+    def _is_remote_pressed(self, ticks: Array, sought: tuple[str, ...], needs_all: bool) -> bool:
         times_s = ticks / self._hz
         in_world = any(
             ((times_s >= press.from_s) & (times_s < press.until_s)).any()
             for press in self._run.spec.world.remote
         )
-        return in_world or bool(self._is_pressed(ticks, tuple(REMOTE_BY_HAND)).any())
+        return in_world or self._is_pressed(ticks, sought or tuple(REMOTE_BY_HAND), needs_all)
 
     def _measure(self, sensor: SensorSpec, ticks: Array) -> Iterator[tuple[float, ...]]:
         """Yield what a sensor that needs no mat measures at each pose that the robot had at some ticks."""
@@ -325,3 +458,17 @@ class _Search:
             return None
         red, green, blue = (int(level) for level in channels.mean(axis=1))
         return COLOR_NAMES[color_code(red, green, blue)].lower()
+
+
+def _find_sought(subject: Subject, port: str, mode: str, question: Question) -> tuple[str, ...]:
+    """Return what a program asks for of a subject; empty for anything."""
+    match subject:
+        case Subject.BUTTONS:
+            return question.find_words(BUTTON_WORDS)
+        case Subject.REMOTE:
+            return question.find_words(REMOTE_WORDS)
+        case Subject.TOUCH:
+            return (port,)
+        case Subject.COLOR if mode == "COL-COLOR":
+            return question.find_words(COLOR_WORDS)
+    return ()

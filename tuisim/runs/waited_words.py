@@ -2,25 +2,34 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import math
+from collections.abc import Iterable, Mapping
 from typing import assert_never
 
-from tuisim.core.spec import EMPTY_MAT, RunSpec
+from tuisim.core.spec import EMPTY_MAT, TOUCH, InfraredSpec, RunSpec, UltrasonicSpec
+from tuisim.runs.obstacle_advice import find_obstacle
 from tuisim.runs.run_folder import StoredRun
 from tuisim.runs.waited import Awaited, Subject, find_awaited
+
+COLORED_MAT = "Rainbow_bands"
+COLOR_PLACES_MM: Mapping[str, int] = {"red": 240, "green": 440, "blue": 740, "yellow": 1245}
+"""Where on that mat, in x, a robot looks at a colour."""
+_KEYS = {"up": "↑", "down": "↓", "left": "←", "right": "→"}
+_SHORT_PRESS_S = 0.1
 
 
 def describe_wait(run: StoredRun) -> str:
     """Return what a run waited for in one sentence without its full stop; empty if for nothing."""
     return "; ".join(
-        f"{describe_awaited(one)}: {name_remedy(one, run.spec)}" for one in find_awaited(run)
+        f"{describe_awaited(awaited)}: {name_remedy(awaited, run.spec, run.live)}"
+        for awaited in find_awaited(run)
     )
 
 
 def describe_wait_with_keys(awaited: Iterable[Awaited], spec: RunSpec) -> str:
     """Return the same for the app, with ids of actions in braces; empty if nothing was waited for."""
     return "; ".join(
-        f"{describe_awaited(one)}: {name_remedy_with_keys(one, spec)}" for one in awaited
+        f"{describe_awaited(wait)}: {name_remedy_with_keys(wait, spec)}" for wait in awaited
     )
 
 
@@ -29,15 +38,20 @@ def describe_awaited(awaited: Awaited) -> str:
     port, value = awaited.port, awaited.value
     match awaited.subject:
         case Subject.BUTTONS:
-            return f"read the brick's buttons {awaited.times:,} times, none was pressed"
+            return _describe_presses(awaited) or (
+                f"read the brick's buttons {awaited.times:,} times, none was pressed"
+            )
         case Subject.TOUCH:
-            return f"touch sensor on {port} was never pressed"
+            presses = _describe_presses(awaited)
+            return f"touch sensor on {port}" + (f": {presses}" if presses else " was never pressed")
         case Subject.REMOTE:
-            return f"infrared sensor on {port}: no button of the remote was pressed"
+            presses = _describe_presses(awaited) or "no button of the remote was pressed"
+            return f"infrared sensor on {port}: {presses}"
         case Subject.BEACON:
             return f"infrared sensor on {port} found no beacon"
         case Subject.COLOR:
-            return f"colour sensor on {port} saw only {value}"
+            color = _find_color(awaited)
+            return f"colour sensor on {port} saw only {value}" + (f", not {color}" if color else "")
         case Subject.DISTANCE:
             return f"ultrasonic sensor on {port} saw nothing nearer than {value}"
         case Subject.PROXIMITY:
@@ -46,40 +60,115 @@ def describe_awaited(awaited: Awaited) -> str:
             return f"socket.accept in line {awaited.line}: nobody connected"
         case Subject.DATA:
             return f"a socket in line {awaited.line}: nothing arrived"
+        case Subject.GAMEPAD:
+            return f"looked for a gamepad {awaited.times:,} times, none is simulated"
         case other:
             assert_never(other)
 
 
-def name_remedy(awaited: Awaited, spec: RunSpec) -> str:
-    """Return the option or file that gives it, for users of the command line."""
+def _describe_presses(awaited: Awaited) -> str:
+    """Return why what was pressed by hand did not help; empty if nothing was pressed."""
+    names = list(dict.fromkeys(press.name for press in awaited.pressed))
+    wants = [*awaited.sought, *([TOUCH] if awaited.subject is Subject.TOUCH else [])]
+    hits = [press for press in awaited.pressed if not wants or press.name in wants]
+    missing = [name for name in wants if name not in names]
+    if not names:
+        return ""
+    if not hits or (awaited.needs_all and missing):
+        others = "" if awaited.subject is Subject.TOUCH else f", not {' or '.join(missing)}"
+        return f"only {' and '.join(names)} {'was' if len(names) == 1 else 'were'} pressed{others}"
+    if awaited.needs_all:
+        return f"{' and '.join(wants)} were not pressed at once"
+    words = f"{hits[0].name} was pressed at {hits[0].from_s:.3g} s"
+    if all(press.until_s <= awaited.since_s for press in hits):
+        return f"{words}, before the program asked (first at {awaited.since_s:.3g} s)"
+    return f"{words}, between two looks ({awaited.pace_s:.2g} s apart)"
+
+
+def _find_color(awaited: Awaited) -> str:
+    """Return the first colour that the program asks for and did not see; empty if that is not known."""
+    return next((name for name in awaited.sought if name != awaited.value), "")
+
+
+def name_remedy(awaited: Awaited, spec: RunSpec, is_live: bool = False) -> str:
+    """Return the option or file that gives it, for users of the command line.
+
+    Args:
+        awaited: What was waited for.
+        spec: The run.
+        is_live: Whether the run had as much time as another program has.
+    """
     match awaited.subject:
         case Subject.BUTTONS:
-            return "--press enter@1, or K in the app"
+            return f"{_name_presses(awaited, 'enter')}, or K in the app"
         case Subject.TOUCH:
-            return f"--press {awaited.port}@2"
+            return _name_presses(awaited, awaited.port)
         case Subject.REMOTE:
-            return "--press remote.left_up@1-3"
+            return _name_presses(awaited, "remote.left_up")
         case Subject.BEACON:
             return "[beacon] in a world file places one (tuisim guide world-files)"
-        case Subject.COLOR if spec.world.background == EMPTY_MAT:
-            return "-b Loop gives it a line (tuisim backgrounds)"
         case Subject.COLOR:
-            return "-x, -y and -a place it elsewhere on the mat"
+            return _name_mat(awaited, spec)
         case Subject.DISTANCE | Subject.PROXIMITY:
-            walls = "" if spec.world.walls else "--walls on, or "
-            return f"{walls}-o Central_post puts something before it (tuisim obstacles)"
+            return _name_obstacle(awaited, spec)
+        case Subject.CONNECTION | Subject.DATA if is_live:
+            return "start the other program while this one runs"
         case Subject.CONNECTION | Subject.DATA:
             return "--speed 1 gives the other program the time to come"
+        case Subject.GAMEPAD:
+            return "the brick's buttons drive by hand (--press enter@1, or K in the app)"
         case other:
             assert_never(other)
+
+
+def _name_presses(awaited: Awaited, default: str) -> str:
+    """Return the options that press what the program asks for, when and as long as it looks."""
+    names = awaited.sought or (default,)
+    is_touch, is_remote = awaited.subject is Subject.TOUCH, awaited.subject is Subject.REMOTE
+    from_s = math.floor(awaited.since_s) + (2 if is_touch else 1)
+    held_s = 2 if is_remote else int(awaited.needs_all)
+    if awaited.pace_s > _SHORT_PRESS_S:
+        held_s = max(held_s, math.ceil(awaited.pace_s))
+    until = f"-{from_s + held_s}" if held_s else ""
+    pressed = names if awaited.needs_all else names[:1]
+    return " ".join(f"--press {name}@{from_s}{until}" for name in pressed)
+
+
+def _name_mat(awaited: Awaited, spec: RunSpec) -> str:
+    color = _find_color(awaited)
+    if color in COLOR_PLACES_MM:
+        if awaited.has_moved and spec.world.background != COLORED_MAT:
+            return f"-b {COLORED_MAT} has it (tuisim backgrounds)"
+        return f"-b {COLORED_MAT} -x {COLOR_PLACES_MM[color]} has it (tuisim backgrounds)"
+    if spec.world.background != EMPTY_MAT:
+        return "-x, -y and -a place it elsewhere on the mat"
+    if awaited.mode == "COL-COLOR" and color != "black":
+        return f"-b {COLORED_MAT} has seven bands of colours (tuisim backgrounds)"
+    return "-b Loop gives it a line (tuisim backgrounds)"
+
+
+def _name_obstacle(awaited: Awaited, spec: RunSpec) -> str:
+    # A robot that drives gets near by itself.
+    limit = None if awaited.has_moved else awaited.limit
+    pose = awaited.pose or spec.world.start
+    options = ""
+    for sensor in spec.robot.sensors:
+        if sensor.port == awaited.port and isinstance(sensor, UltrasonicSpec | InfraredSpec):
+            options = find_obstacle(sensor, spec, pose, limit)
+    return f"{options or '-o with a file'} puts one before it (tuisim obstacles)"
 
 
 def name_remedy_with_keys(awaited: Awaited, spec: RunSpec) -> str:
     """Return the key that gives it, as an id of an action in braces."""
+    names = awaited.sought if awaited.needs_all else awaited.sought[:1]
     match awaited.subject:
+        case Subject.BUTTONS if names:
+            keys = " and ".join(_KEYS.get(name, name.capitalize()) for name in names)
+            verb = "presses" if len(names) == 1 else "press"
+            return f"{{panel-brick}} opens the brick, where {keys} {verb} {' and '.join(names)}"
         case Subject.BUTTONS:
             return "{panel-brick} opens the brick, whose buttons the arrows and Enter press"
         case Subject.TOUCH:
             return f"{{panel-brick}} opens the brick, where {awaited.port[2:]} presses it"
         case _:
-            return name_remedy(awaited, spec)
+            return name_remedy(awaited, spec, is_live=True)

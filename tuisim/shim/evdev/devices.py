@@ -12,6 +12,7 @@ from typing import Any, NoReturn
 from tuisim.core.profile import NS_PER_S
 from tuisim.data_class import dataclass
 from tuisim.errors import NotSimulated
+from tuisim.runs.readings import GAMEPAD_PORT, READING_CODES
 from tuisim.shim.buttons import (
     DEVICE_NAME,
     DEVICE_PATH,
@@ -230,7 +231,9 @@ def evdev_modules(session: DeviceSession) -> dict[str, types.ModuleType]:
     def list_devices(input_device_dir: str = "/dev/input") -> list[str]:
         """Return the paths of the input devices."""
         # The library looks for the buttons by it.
-        _looked.for_devices |= sys._getframe(1).f_globals.get("__name__") != "ev3dev2.button"
+        if sys._getframe(1).f_globals.get("__name__") != "ev3dev2.button":
+            _looked.for_devices = True
+            session.note_reading(READING_CODES[GAMEPAD_PORT, "list"])
         return [DEVICE_PATH]
 
     def is_device(fn: object) -> bool:
