@@ -238,7 +238,8 @@ def test_suffix_in_capitals_is_the_same_format(
 @each_format
 def test_damaged_file_is_named(tmp_path: Path, suffix: str) -> None:
     target = tmp_path / f"x{suffix}"
-    target.write_bytes(b'\xff\x00"rubbish\n{"')
+    magic = {".parquet": b"PAR1", ".arrow": b"ARROW1"}.get(suffix, b"")
+    target.write_bytes(magic + b'\xff\x00"rubbish\n{"')
     companion_of(target).write_text("{}")
     with pytest.raises(LogError, match=target.name):
         read_log(target)

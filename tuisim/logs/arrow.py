@@ -172,6 +172,7 @@ def unique_names(names: Sequence[str], notes: Notes | None = None) -> list[str]:
     return unique
 
 
+_FILE_MAGIC = b"ARROW1"
 _CUT_OFF = "the file is truncated: only the readable part was read"
 
 
@@ -215,9 +216,7 @@ def parquet_parts(path: Path, notes: Notes) -> Iterator[tuple[float, pa.Table]]:
         _check_columns(file.schema_arrow)
     except (pa.ArrowException, OSError, ValueError) as error:
         hint = "a truncated Parquet file cannot be read: its index is at its end"
-        raise LogError(
-            f"not a readable Parquet file: {_short(error)}", hint, file=str(path)
-        ) from error
+        raise LogError(f"not a readable Parquet file: {_short(error)}", hint) from error
     with file:
         count = file.metadata.num_row_groups
         if not count:
@@ -240,71 +239,36 @@ def parquet_parts(path: Path, notes: Notes) -> Iterator[tuple[float, pa.Table]]:
 
 
 def arrow_parts(path: Path, notes: Notes) -> Iterator[tuple[float, pa.Table]]:
-    """Yield the record batches of a file; if it was cut off, those that are complete.
+    """Yield the record batches of a file or stream; if it was cut off, those that are complete.
 
     Raises:
         LogError: not even the names of the columns can be read.
     """
     with pa.memory_map(str(path)) as source:
+        # After eight magic bytes, a file is a stream of batches.
+        source.seek(8 if source.read(len(_FILE_MAGIC)) == _FILE_MAGIC else 0)
+        size = max(path.stat().st_size, 1)
         try:
-            with pa.ipc.open_file(source) as reader:
-                _check_columns(reader.schema)
-                count = reader.num_record_batches
-                if not count:
-                    yield 1.0, _named(reader.schema.empty_table(), notes)
-                for at in range(count):
-                    try:
-                        part = _whole(reader.get_batch(at))
-                    except (pa.ArrowException, OSError, ValueError):
-                        damaged = "batch of rows is damaged", "batches of rows are damaged"
-                        notes.add(
-                            f"{damaged[0]} and was skipped", f"{damaged[1]} and were skipped", [], 1
-                        )
-                    else:
-                        yield (at + 1) / count, _named(part, notes)
+            stream = pa.ipc.open_stream(source)
+            _check_columns(stream.schema)
+        except (pa.ArrowException, OSError, ValueError) as error:
+            raise LogError(f"not a readable Arrow file: {_short(error)}") from error
+        yield 0.0, _named(stream.schema.empty_table(), notes)
+        while True:
+            try:
+                part = _whole(stream.read_next_batch())
+            except StopIteration:
                 return
-        except (pa.ArrowException, OSError, ValueError):
-            notes.say(_CUT_OFF)
-        # After eight magic bytes, an Arrow file is a stream of batches.
-        yield from _stream_parts(path, source, 8, notes)
-
-
-def arrow_stream_parts(path: Path, notes: Notes) -> Iterator[tuple[float, pa.Table]]:
-    """Yield the record batches of an Arrow stream; if it was cut off, those that are complete.
-
-    Raises:
-        LogError: not even the names of the columns can be read.
-    """
-    with pa.memory_map(str(path)) as source:
-        yield from _stream_parts(path, source, 0, notes)
-
-
-def _stream_parts(
-    path: Path, source: Any, start: int, notes: Notes
-) -> Iterator[tuple[float, pa.Table]]:
-    size = max(path.stat().st_size, 1)
-    source.seek(start)
-    try:
-        stream = pa.ipc.open_stream(source)
-        _check_columns(stream.schema)
-    except (pa.ArrowException, OSError, ValueError) as error:
-        raise LogError(f"not a readable Arrow file: {_short(error)}", file=str(path)) from error
-    yield 0.0, _named(stream.schema.empty_table(), notes)
-    while True:
-        try:
-            part = _whole(stream.read_next_batch())
-        except StopIteration:
-            return
-        except (pa.ArrowException, OSError, ValueError):
-            notes.say(_CUT_OFF)
-            return
-        yield source.tell() / size, _named(part, notes)
+            except (pa.ArrowException, OSError, ValueError):
+                notes.say(_CUT_OFF)
+                return
+            yield source.tell() / size, _named(part, notes)
 
 
 FORMATS: Mapping[bytes, Callable[[Path, Notes], Iterator[tuple[float, pa.Table]]]] = {
     b"PAR1": parquet_parts,
-    b"ARROW1": arrow_parts,
-    b"\xff\xff\xff\xff": arrow_stream_parts,
+    _FILE_MAGIC: arrow_parts,
+    b"\xff\xff\xff\xff": arrow_parts,
 }
 """The readers by the first bytes of a file."""
 

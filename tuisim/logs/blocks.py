@@ -221,7 +221,7 @@ MAGICS = (*_FORMATS, *_REFUSED)
 MAGIC_BYTES = max(map(len, MAGICS))
 
 
-def unpacked(title: str, head: bytes, handle: Any, notes: Notes) -> Readable | None:
+def unpacked(head: bytes, handle: Any, notes: Notes) -> Readable | None:
     """Return the text in a compressed file, None if it is not compressed.
 
     Args:
@@ -236,7 +236,6 @@ def unpacked(title: str, head: bytes, handle: Any, notes: Notes) -> Readable | N
         raise LogError(
             f"is {refused}, which cannot be read",
             "a log is CSV, Parquet, JSONL, Arrow or text",
-            file=title,
         )
     open_file = next((one for magic, one in _FORMATS.items() if head.startswith(magic)), None)
     return None if open_file is None else _Unpacked(open_file(handle), notes)

@@ -62,7 +62,7 @@ _GAPS = NumberForm(
 _HEXADECIMAL = NumberForm(r"^0[xX][0-9a-fA-F]{1,15}$", (), "are hexadecimal", True)
 
 
-def parse_numbers(cells: pa.Array, form: NumberForm = PLAIN) -> tuple[pa.Array, pa.Array]:
+def parse_numbers(cells: pa.Array, form: NumberForm) -> tuple[pa.Array, pa.Array]:
     """Parse texts as float64, with nulls for those that are not numbers.
 
     Returns:
@@ -102,7 +102,7 @@ def _trim(cells: pa.Array) -> tuple[Any, Any]:
     return pc.if_else(empty, pa.nulls(len(texts), pa.string()), texts), empty
 
 
-def find_form(cells: pa.Array, separator: str, decimal: str = "") -> NumberForm | None:
+def find_form(cells: pa.Array, separator: str, decimal: str) -> NumberForm | None:
     """Return the form of most of the cells of a column; None if most are not numbers.
 
     Args:

@@ -151,7 +151,7 @@ def seconds_of(column: pa.ChunkedArray, unit_s: float, since_first: bool = False
     return read_times(column, unit_s, since_first).seconds
 
 
-def read_times(column: pa.ChunkedArray, unit_s: float, since_first: bool = False) -> Times:
+def read_times(column: pa.ChunkedArray, unit_s: float, since_first: bool) -> Times:
     """Return a time column: dates since the first of them, numbers times their unit.
 
     Args:

@@ -17,7 +17,7 @@ from tuisim.logs.choices import NO_CHOICES, ReadChoices
 from tuisim.logs.columns import ROW
 from tuisim.logs.export import EXPORTERS, companion_of, typed_frame
 from tuisim.logs.json_rows import JsonReader
-from tuisim.logs.reader import joined, open_log, read_companion
+from tuisim.logs.reader import joined, open_log, read_companion, read_parts
 from tuisim.logs.text_tables import exported_csv
 from tuisim.logs.units import TEXT, TIMEDELTA
 from tuisim.logs.warnings import Notes
@@ -99,5 +99,4 @@ def _exported(source: Path, notes: Notes) -> pa.Table:
             name: pa.string() if name in (*TIMEDELTA, *TEXT) else pa.float64() for name in names
         }
         return pa.schema(kinds).empty_table() if table is None else table
-    parts = arrow.parquet_parts if suffix == ".parquet" else arrow.arrow_parts
-    return joined([table for _, table in parts(source, notes)])
+    return joined([table for _, table in read_parts(source, notes) if table is not None])

@@ -116,7 +116,7 @@ def _kind(cell: str) -> str:
 
 
 def find_heading(
-    lines: Sequence[tuple[int, str]], notes: Notes, separator: str = "", header_row: int = 0
+    lines: Sequence[tuple[int, str]], notes: Notes, separator: str, header_row: int
 ) -> Heading:
     """Find the table in the first lines of a text that are not blank, each with its number in the file.
 

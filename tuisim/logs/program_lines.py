@@ -179,7 +179,7 @@ class SampleReader:
         has_seconds: Whether times are numbers; else they are dates or times of day.
     """
 
-    def __init__(self, notes: Notes, has_seconds: bool = True) -> None:
+    def __init__(self, notes: Notes, has_seconds: bool) -> None:
         self._notes, self._has_seconds = notes, has_seconds
 
     def read(self, block: Block) -> pa.Table | None:

@@ -8,7 +8,7 @@ import os
 import stat
 import sys
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import suppress
+from contextlib import contextmanager, suppress
 from dataclasses import replace
 from itertools import islice
 from pathlib import Path
@@ -115,11 +115,11 @@ def read_beginning(path: str, choices: ReadChoices) -> Log:
 
 def read_pieces(source: str | Path, choices: ReadChoices = NO_CHOICES) -> Iterator[Loaded]:
     """Read a log; yield the log so far, soon after the start and then repeatedly; arguments are those of `open_log`."""
-    title = "standard input" if str(source) == STDIN else str(source)
+    title = _name_source(source)
     notes = Notes()
     parts: list[pa.Table] = []
     show_at = 0.0
-    for part, table in _parts(source, title, notes, choices):
+    for part, table in read_parts(source, notes, choices):
         if table is not None:
             parts.append(table)
         now = monotonic()
@@ -211,17 +211,14 @@ def read_first_lines(path: str, encoding: str) -> list[tuple[int, str]]:
         LogError: it cannot be read.
     """
     notes = Notes()
-    try:
-        with open(path, "rb") as handle:
-            head = handle.read(MAGIC_BYTES)
-            handle.seek(0)
-            if head.startswith(tuple(arrow.FORMATS)):
-                return []
-            text = unpacked(path, head, handle, notes) or handle
-            cutter = LineCutter(notes, encoding=encoding)
-            block = cutter.feed(text.read(FIRST_BYTES) or b"") or cutter.finish()
-    except OSError as error:
-        raise LogError(f"cannot be read: {error.strerror or error}", file=path) from error
+    with _name_in_errors(path), open(path, "rb") as handle:
+        head = handle.read(MAGIC_BYTES)
+        handle.seek(0)
+        if head.startswith(tuple(arrow.FORMATS)):
+            return []
+        text = unpacked(head, handle, notes) or handle
+        cutter = LineCutter(notes, encoding=encoding)
+        block = cutter.feed(text.read(FIRST_BYTES) or b"") or cutter.finish()
     return [] if block is None else list(islice(block.lines(), _SHOWN_LINES))
 
 
@@ -239,52 +236,64 @@ def _fill_types(table: pa.Table) -> pa.Table:
     return table.cast(pa.schema(kinds, table.schema.metadata))
 
 
-def _parts(
-    source: str | Path, title: str, notes: Notes, choices: ReadChoices
+def read_parts(
+    source: str | Path, notes: Notes, choices: ReadChoices = NO_CHOICES
 ) -> Iterator[tuple[float, pa.Table | None]]:
-    try:
-        yield from _source_parts(source, notes, choices)
-    except LogError as error:
-        if error.file:
-            raise
-        raise LogError(error.message, error.hint, file=title) from error
+    """Yield the rows of a file, with the fraction of it that has been read.
 
-
-def _source_parts(
-    source: str | Path, notes: Notes, choices: ReadChoices
-) -> Iterator[tuple[float, pa.Table | None]]:
-    if str(source) == STDIN:
+    Raises:
+        LogError: it cannot be read.
+    """
+    with _name_in_errors(_name_source(source)):
+        if str(source) != STDIN:
+            yield from _read_file(Path(source), notes, choices)
+            return
         # None if the shell closed it.
         if cast("Any", sys.stdin) is None:
-            raise LogError("is closed", "name a file instead of -", file="standard input")
+            raise LogError("is closed", "name a file instead of -")
         yield from text_parts(sys.stdin.buffer, 0, "", notes, choices)
-        return
-    path = Path(source)
+
+
+@contextmanager
+def _name_in_errors(title: str) -> Iterator[None]:
+    """Raise each error as a LogError that names the file."""
     try:
-        if os.path.isdir(path):
-            raise LogError("is a folder, not a log", file=str(path))
-        mode = path.stat().st_mode
-        if stat.S_ISCHR(mode) or stat.S_ISBLK(mode):
-            # A device need not have an end.
-            raise LogError("is a device, not a log", file=str(path))
-        regular = stat.S_ISREG(mode)
-        with path.open("rb", buffering=0 if not regular else -1) as handle:
-            head = handle.read(MAGIC_BYTES) if regular else b""
-            for magic, parts in arrow.FORMATS.items():
-                if head.startswith(magic):
-                    yield from parts(path, notes)
-                    return
-            if regular:
-                handle.seek(0)
-            if (inner := unpacked(str(path), head, handle, notes)) is not None:
-                yield from text_parts(inner, 0, path.with_suffix("").suffix.lower(), notes, choices)
-            else:
-                size = path.stat().st_size if regular else 0
-                yield from text_parts(handle, size, path.suffix.lower(), notes, choices)
+        yield
+    except LogError as error:
+        raise LogError(error.message, error.hint, file=title) from error
     except FileNotFoundError as error:
-        raise LogError("no such file", file=str(path)) from error
+        raise LogError("no such file", file=title) from error
     except OSError as error:
-        raise LogError(f"cannot be read: {error.strerror or error}", file=str(path)) from error
+        raise LogError(f"cannot be read: {error.strerror or error}", file=title) from error
+
+
+def _name_source(source: str | Path) -> str:
+    return "standard input" if str(source) == STDIN else str(source)
+
+
+def _read_file(
+    path: Path, notes: Notes, choices: ReadChoices
+) -> Iterator[tuple[float, pa.Table | None]]:
+    if os.path.isdir(path):
+        raise LogError("is a folder, not a log")
+    mode = path.stat().st_mode
+    if stat.S_ISCHR(mode) or stat.S_ISBLK(mode):
+        # A device need not have an end.
+        raise LogError("is a device, not a log")
+    regular = stat.S_ISREG(mode)
+    with path.open("rb", buffering=0 if not regular else -1) as handle:
+        head = handle.read(MAGIC_BYTES) if regular else b""
+        for magic, parts in arrow.FORMATS.items():
+            if head.startswith(magic):
+                yield from parts(path, notes)
+                return
+        if regular:
+            handle.seek(0)
+        if (inner := unpacked(head, handle, notes)) is not None:
+            yield from text_parts(inner, 0, path.with_suffix("").suffix.lower(), notes, choices)
+        else:
+            size = path.stat().st_size if regular else 0
+            yield from text_parts(handle, size, path.suffix.lower(), notes, choices)
 
 
 def text_parts(

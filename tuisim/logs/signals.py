@@ -123,7 +123,7 @@ def _window_sums(values: FloatArray, width: int) -> FloatArray:
 
 
 def resample(
-    time_s: FloatArray, values: FloatArray, period_s: float, between: Between = Between.HOLD
+    time_s: FloatArray, values: FloatArray, period_s: float
 ) -> tuple[FloatArray, FloatArray]:
     """Resample a signal at a fixed period, from the first sample to the last.
 
@@ -141,7 +141,7 @@ def resample(
     if not len(values):
         return np.empty(0), np.empty(0)
     moments = even_moments(float(time_s.min()), float(time_s.max()), period_s)
-    return moments, known_at(time_s, values, moments, between)
+    return moments, known_at(time_s, values, moments)
 
 
 def even_moments(start_s: float, stop_s: float, period_s: float) -> FloatArray:

@@ -28,7 +28,7 @@ from tuisim.logs.cells import (
     parse_numbers,
     parse_truths,
 )
-from tuisim.logs.choices import NAMES_OF_SIGNS, NO_CHOICES, ReadChoices
+from tuisim.logs.choices import NAMES_OF_SIGNS, ReadChoices
 from tuisim.logs.csv_cells import WRITTEN, restored
 from tuisim.logs.heading import (
     BLANKS,
@@ -79,17 +79,11 @@ def text_kind(cells: pa.Array) -> pa.DataType:
 
 
 class CsvReader:
-    """Reads blocks of one file; names and types of the columns are fixed by the first.
+    """Reads blocks of one file; names and types of the columns are fixed by the first."""
 
-    Args:
-        heading: The format of the table; without one it is found.
-    """
-
-    def __init__(
-        self, notes: Notes, choices: ReadChoices = NO_CHOICES, heading: Heading | None = None
-    ) -> None:
+    def __init__(self, notes: Notes, choices: ReadChoices) -> None:
         self._notes, self._choices = notes, choices
-        self._heading = heading or Heading()
+        self._heading = Heading()
         self._tables_left = choices.table - 1
         """Tables that are still to be passed by."""
         self._is_over = False
