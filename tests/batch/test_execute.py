@@ -15,7 +15,7 @@ from tests.cases import cases
 from tests.running import over
 from tuisim.batch import execute as execute_module
 from tuisim.batch.execute import _prepared, _to_the_end, execute
-from tuisim.batch.pool import _results_of
+from tuisim.batch.pool import _take_results
 from tuisim.batch.task import Keep, Result
 from tuisim.faults import report_file
 from tuisim.goals.judgement import GoalState
@@ -145,14 +145,14 @@ def test_a_fault_of_tuisim_is_a_result_with_a_report(
         "",
         f"could not be judged: {type(error).__name__}: {why}",
     )
-    assert "in _executed" in report_file().read_text()
+    assert "in _run_task" in report_file().read_text()
     assert not list(tmp_path.iterdir())
 
 
 def test_a_result_that_cannot_be_sent_is_told() -> None:
     future: Future[list[Result]] = Future()
     future.set_exception(MemoryError())
-    (result,) = _results_of(future, [task("print(1)")])
+    (result,) = _take_results(future, [task("print(1)")])
     assert (result.end, result.summary) == ("", "could not be judged: MemoryError: ")
 
 

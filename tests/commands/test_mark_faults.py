@@ -125,8 +125,32 @@ def test_a_class_of_which_nobody_could_be_judged_has_every_export(
 def test_a_page_is_written_without_the_report_that_fails(
     mark: Any, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    where = reports, "_report_of"
+    where = reports, "_build_report"
     monkeypatch.setattr(*where, _fail(where))
     code, rows = mark({**HONEST, "zoltan.py": "print('Done: 3')\n"}, keep="all")
     assert code == 2 and rows["zoltan"][2] == "0.0"
     assert "is without 1 report: zoltan: could not be judged" in capsys.readouterr().err
+
+
+GRADEBOOKS = {
+    "Ben Weiß_4713_assignsubmission_file_/lab/main.py": "open('log.txt', 'w')\nprint('Done: 2')\n",
+    "Ben Weiß_4713_assignsubmission_onlinetext_/onlinetext.html": "<p>text</p>",
+    "weissben_LATE_12_340_main.py": "import helper\n",
+    "weissben_12_340_helper.py": "print('Done: 2')\n",
+    "weissben_12_99_main.py": "print('Done: 3')\n",
+    "ada/lab1/main.py": "print('Done: 2')\n",
+    "__MACOSX/ada/._main.py": "",
+}
+
+
+def test_downloads_of_gradebooks_are_marked_as_they_are(
+    mark: Any, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    code, rows = mark(GRADEBOOKS)
+    assert code == 0
+    marks = [("ada", "2.0"), ("Ben Weiß", "2.0"), ("weissben", "2.0")]
+    assert [(name, row[2]) for name, row in rows.items()][1:] == marks
+    assert capsys.readouterr().err.count("__MACOSX") == 1
+    (book,) = tmp_path.glob("*/moodle.csv")
+    assert "\nParticipant 4713,Ben Weiß,,2," in book.read_text("utf-8")
+    assert "\nweissben,12,,,,2" in book.with_name("canvas.csv").read_text("utf-8")

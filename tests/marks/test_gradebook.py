@@ -11,7 +11,8 @@ import pytest
 
 from tests.marks.test_sheet import SHEET
 from tuisim.errors import ConfigError
-from tuisim.marks.gradebook import GradebookKind, Roster, read_roster, write_gradebook
+from tuisim.marks.gradebook import Roster, read_roster, write_gradebook
+from tuisim.marks.hand_ins import GradebookKind
 
 SOURCES = ("",) * len(SHEET.rows)
 
@@ -38,6 +39,32 @@ def test_moodle_finds_students_by_user_name_number_and_address(tmp_path: Path) -
     assert ben[:4] == ["b1", "0042", "ben@x.org", "8.25"] and ben[4].startswith(
         "ben: 8.25 of 10 points"
     )
+
+
+def test_moodles_worksheet_finds_students_by_the_number_in_their_names(tmp_path: Path) -> None:
+    ada, ben, *_ = SHEET.rows
+    rows = (replace(ada, ids={GradebookKind.MOODLE: "4713"}), ben)
+    sheet, sources = replace(SHEET, rows=rows), ("", "")
+    write_gradebook(
+        tmp_path / "m.csv", GradebookKind.MOODLE, sheet, sources, Roster({}), goals=False
+    )
+    heads, *found = _rows(tmp_path / "m.csv")
+    assert heads == [
+        *("Identifier", "Full name", "Last modified (grade)", "Grade", "Feedback comments")
+    ]
+    assert [row[:4] for row in found] == [
+        ["Participant 4713", "ada", "", "10"],
+        ["", "ben", "", "8.25"],
+    ]
+    roster = _roster(tmp_path, "submission,username\nada,al1\n")
+    write_gradebook(tmp_path / "m.csv", GradebookKind.MOODLE, sheet, sources, roster, goals=False)
+    assert _rows(tmp_path / "m.csv")[1][0] == "al1"
+
+
+def test_canvas_finds_students_by_the_user_in_their_names(tmp_path: Path) -> None:
+    sheet = replace(SHEET, rows=(replace(SHEET.rows[0], ids={GradebookKind.CANVAS: "12"}),))
+    write_gradebook(tmp_path / "c.csv", GradebookKind.CANVAS, sheet, ("",), Roster({}), goals=False)
+    assert _rows(tmp_path / "c.csv")[2] == ["ada", "12", "", "", "", "10"]
 
 
 def test_canvas_gets_points_possible_and_a_column_a_goal(tmp_path: Path) -> None:

@@ -19,7 +19,8 @@ from tuisim.config.program_file import ProgramSource
 from tuisim.errors import printable
 from tuisim.goals.spec import FinishCondition, Goal
 from tuisim.marks.feedback import feedback_of, file_stems, write_feedback
-from tuisim.marks.gradebook import GradebookKind, Roster, write_gradebook
+from tuisim.marks.gradebook import Roster, write_gradebook
+from tuisim.marks.hand_ins import GradebookKind
 from tuisim.marks.outcome import GoalOutcome, Outcome
 from tuisim.marks.overrides import Override, overridden
 from tuisim.marks.page import distribution, goal_statistics, page_of

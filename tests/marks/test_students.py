@@ -53,8 +53,17 @@ CASES = {
         "",
         "which of a.py, b.py is the main program? (main.py)",
     ),
-    "none": (("ada/notes.txt",), "", "", "there is no Python file (main.py)"),
-    "an archive": (("ada/robot.ZIP",), "", "", "robot.ZIP: it is an archive; unpack it (main.py)"),
+    "none": (("ada/notes.txt",), "", "", "there is no Python file, only: notes.txt (main.py)"),
+    "an archive": (("ada/robot.7Z",), "", "", "robot.7Z: it is an archive; unpack it (main.py)"),
+    "a Mac's": (("ada/._robot.py", "ada/robot.py", "ada/.main.py"), "", "robot.py", ""),
+    "a package": (("ada/__init__.py", "ada/robot.py"), "", "robot.py", ""),
+    "too deep": (("ada/lab1/main.py", "ada/__pycache__/x.pyc"), "", "main.py", ""),
+    "beside another": (
+        ("ada/lab1/main.py", "ada/notes.txt"),
+        "",
+        "",
+        "there is no Python file, only: lab1/, notes.txt (main.py)",
+    ),
     "text": (
         ("ada/main.py.txt",),
         "",
@@ -284,8 +293,8 @@ def _many(folder: Path) -> None:
     "hands_in, problem",
     [
         (_nested, "its folders are nested more than 50 deep"),
-        (_large, "it has more than 20 files or 1 GiB"),
-        (_many, "it has more than 20 files or 1 GiB"),
+        (_large, "it has more than 20 files or 1,024 MiB"),
+        (_many, "it has more than 20 files or 1,024 MiB"),
     ],
     ids=["nested", "large", "many"],
 )

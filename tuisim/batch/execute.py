@@ -40,12 +40,12 @@ def execute(task: Task, folder: Path) -> Result:
         folder: Where its recording is until it has been evaluated; see `runs.temporary.batch_folder`.
     """
     try:
-        return _executed(task, folder)
+        return _run_task(task, folder)
     except Exception as error:  # Also a mistake of tuisim's: the other runs go on.
-        return unjudged(task, describe_fault(error))
+        return build_unjudged(task, describe_fault(error))
 
 
-def _executed(task: Task, folder: Path) -> Result:
+def _run_task(task: Task, folder: Path) -> Result:
     with TemporaryRun(folder) as temporary:
         try:
             handle = RunHandle(
@@ -58,7 +58,7 @@ def _executed(task: Task, folder: Path) -> Result:
                 isolated=task.isolate,
             )
         except TuisimError as error:
-            return unjudged(task, str(error))
+            return build_unjudged(task, str(error))
         try:
             ended = _to_the_end(handle, task.real_time_limit_s)
             run = handle.stored()
@@ -71,7 +71,7 @@ def _executed(task: Task, folder: Path) -> Result:
         except LogError as error:
             cause = error.__cause__
             if isinstance(cause, OSError) and of_the_machine(cause):
-                return unjudged(task, str(error))
+                return build_unjudged(task, str(error))
             why = f"the program has falsified its recording: {error.message}"
             return nothing_known_of(task, End.FALSIFIED, why)
         finally:
@@ -133,7 +133,7 @@ def _keep(temporary: TemporaryRun, ended: Ended) -> str:
     return RunStore().adopt(temporary.folder).id
 
 
-def unjudged(task: Task, why: str) -> Result:
+def build_unjudged(task: Task, why: str) -> Result:
     """Return the result of a run that says nothing about the program."""
     return Result(
         task.index, task.parameters, "", 2, why, why, 0, 0, 0.0, math.nan, math.nan, math.nan

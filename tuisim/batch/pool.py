@@ -16,7 +16,7 @@ from multiprocessing.context import SpawnContext, SpawnProcess
 from pathlib import Path
 from typing import Any
 
-from tuisim.batch.execute import execute, nothing_known_of, unjudged
+from tuisim.batch.execute import build_unjudged, execute, nothing_known_of
 from tuisim.batch.task import Result, Task
 from tuisim.faults import describe_fault
 from tuisim.protocol import End
@@ -99,7 +99,7 @@ class _Pool:
             done, _ = wait(self._pending, return_when=FIRST_COMPLETED)
             try:
                 for future in done:
-                    found = _results_of(future, self._pending[future])
+                    found = _take_results(future, self._pending[future])
                     del self._pending[future]
                     yield from found
             except BrokenProcessPool:
@@ -141,13 +141,13 @@ class _Pool:
             process.join()
 
 
-def _results_of(future: Future[list[Result]], tasks: Sequence[Task]) -> list[Result]:
+def _take_results(future: Future[list[Result]], tasks: Sequence[Task]) -> list[Result]:
     try:
         return future.result()
     except BrokenProcessPool:
         raise
     except Exception as error:  # One that cannot be sent, or is too large: the others go on.
-        return [unjudged(task, describe_fault(error)) for task in tasks]
+        return [build_unjudged(task, describe_fault(error)) for task in tasks]
 
 
 def _is_done(future: Future[list[Result]]) -> bool:

@@ -316,7 +316,7 @@ class Pyramid:
     def figures(self, start_s: float, stop_s: float) -> Summary:
         """Return the statistics of a time range, both ends included, without quantiles."""
         first, last = self._span(start_s, stop_s)
-        if last - first <= _SUMMED_AT_ONCE or find_scale(*self._ends()) != 1.0:
+        if last - first <= _SUMMED_AT_ONCE or find_scale(*self._find_ends()) != 1.0:
             return summary_of(self.values[first:last], quantiles=())
         # Whole blocks are cached; only the partial blocks at both ends are computed.
         begin, end = -(-first // _BLOCK), last // _BLOCK
@@ -334,7 +334,7 @@ class Pyramid:
             count, 0, low, mean, high, float(np.sqrt(off / (count - 1))) if low != high else 0.0, ()
         )
 
-    def _ends(self) -> tuple[float, float]:
+    def _find_ends(self) -> tuple[float, float]:
         least, greatest = self._levels[-1]
         return float(least.min()), float(greatest.max())
 

@@ -30,8 +30,9 @@ from tuisim.commands.exit_status import Interrupted, signals_raise
 from tuisim.commands.listings import names_of
 from tuisim.commands.run_options import input_option, timeout_option
 from tuisim.config.command_line import Arguments, WordType, argument, command, option
-from tuisim.config.options import APP, PANEL, settings_of
+from tuisim.config.options import APP, PANEL, parse, settings_of
 from tuisim.config.shared_options import shared_options
+from tuisim.core.values import Whole
 from tuisim.errors import (
     ConfigError,
     ExportError,
@@ -47,7 +48,8 @@ from tuisim.goals.trial_world import TrialWorld
 from tuisim.logs.export import ALLOWED, EXPORTERS, check_place, check_target
 from tuisim.marks.entries import entries_of
 from tuisim.marks.feedback import write_feedback
-from tuisim.marks.gradebook import GradebookKind, Roster, read_roster, write_gradebook
+from tuisim.marks.gradebook import Roster, read_roster, write_gradebook
+from tuisim.marks.hand_ins import GradebookKind
 from tuisim.marks.journal import Journal, journal_of
 from tuisim.marks.outcome import Outcome, unknown_goals
 from tuisim.marks.overrides import Override, overridden, read_overrides
@@ -55,9 +57,10 @@ from tuisim.marks.page import page_of, reports_folder
 from tuisim.marks.runs import STALL_LIMIT_S, TIME_LIMIT_S, MarkPlan, RunEntry, outcomes_of, runs_of
 from tuisim.marks.sheet import Sheet, columns_of, export_marks, lines_of, sheet_of, summary_of
 from tuisim.marks.students import Student, StudentsFound, find_students
-from tuisim.runs.child.isolation import check_isolation
+from tuisim.runs.child.isolation import MOST_BYTES, check_isolation
 from tuisim.runs.child.supervisor import supervised
 from tuisim.runs.handle import RunOptions
+from tuisim.runs.temporary import temporary_home
 from tuisim.source import source_lines
 
 PAGE_SUFFIXES = (".html", ".htm")
@@ -67,6 +70,7 @@ USUAL_KEEP = Keep.FAILED
 _LEFT_OUT = ("seed", "speed", "press")
 """Shared options that marking does not take: each program has several seeds, and runs as fast as possible; a task says
 what is pressed in each of its worlds."""
+_MEGABYTES = Whole(1, 1 << 20)
 _RUNS, _RESULTS = "Runs", "Results"
 _OPTIONS = (
     argument("goals", "GOALS"),
@@ -93,6 +97,15 @@ _OPTIONS = (
         is_flag=True,
         group=_RUNS,
         help="Do not isolate programs; otherwise each runs through bubblewrap, where that starts.",
+    ),
+    option(
+        "--max-mb",
+        "max_mb",
+        default=MOST_BYTES >> 20,
+        metavar="MB",
+        type=WordType(lambda word: parse(_MEGABYTES, word, "--max-mb")),
+        group=_RUNS,
+        help=f"Run no hand-in that is larger ({MOST_BYTES >> 20}).",
     ),
     option(
         "--resume",
@@ -191,11 +204,20 @@ def mark(**given: Any) -> int:
     task = load_goals(Path(arguments.goals))
     seeds = parse_seeds(arguments.seeds, "--seeds")
     _check(arguments, task)
-    found = find_students(
-        arguments.folders,
-        Path(task.program).name if task.program else "",
-        _excluded(arguments, task),
-    )
+    with temporary_home("tuisim-hand-ins-") as unpacked:
+        found = find_students(
+            arguments.folders,
+            Path(task.program).name if task.program else "",
+            _excluded(arguments, task),
+            unpacked.resolve(),
+            arguments.max_mb << 20,
+        )
+        return _mark(task, seeds, found, arguments)
+
+
+def _mark(
+    task: GoalsFile, seeds: tuple[int, ...], found: StudentsFound, arguments: Arguments
+) -> int:
     roster, overrides = _tutor_files(found, task, arguments)
     entries, students = entries_of(found.students, task, arguments.settings)
     plan = MarkPlan(
@@ -220,9 +242,9 @@ def mark(**given: Any) -> int:
             return interrupted.exit_code
         sheet = overridden(_sheet(task, plan, students, outcomes), overrides)
         # First, so that marks are seen also if a file cannot be written.
-        _print(sheet, found.ignored)
+        _print(sheet, found)
         _tell_refusals(students)
-        code = _write(_exports(sheet, task.worlds, students, found.ignored, roster, arguments))
+        code = _write(_list_exports(sheet, task.worlds, students, found.ignored, roster, arguments))
     return max(code, _tell_unread(students), _tell_missing(outcomes), _tell_unknown(outcomes))
 
 
@@ -266,7 +288,7 @@ def _tell_so_far(
         or len(outcomes[student.name]) == runs_of(outcomes[student.name], plan)
     ]
     if done:
-        _print(_sheet(task, plan, done, outcomes), ())
+        _print(_sheet(task, plan, done, outcomes))
     echo_error(
         f"tuisim: interrupted with {len(done)} of {counted(len(students), 'student')} marked, nothing exported;"
     )
@@ -400,7 +422,7 @@ def _collect(
             tell(f"run {done} of {total}", done, total)
 
 
-def _exports(
+def _list_exports(
     sheet: Sheet,
     worlds: Sequence[TrialWorld],
     students: Sequence[Student],
@@ -477,7 +499,7 @@ _NARROWER = ((40, 60), (24, 20), (16, 10), (12, 6))
 """Characters of the names of students and goals, from wide terminals to narrow ones."""
 
 
-def _print(sheet: Sheet, ignored: Sequence[str]) -> None:
+def _print(sheet: Sheet, found: StudentsFound | None = None) -> None:
     columns = shutil.get_terminal_size().columns if sys.stdout.isatty() else 0
     heads, rows = lines_of(sheet)
     text = table(heads, rows)
@@ -492,8 +514,11 @@ def _print(sheet: Sheet, ignored: Sequence[str]) -> None:
     echo_lines(text)
     echo()
     echo_wrapped(summary_of(sheet))
-    if ignored:
-        echo_error(f"note: not marked, because they are no Python programs: {listed(ignored)}")
+    if found and found.ignored:
+        names = listed(found.ignored)
+        echo_error(f"note: not marked, because they are no Python programs: {names}")
+    if found and found.left_out:
+        echo_error(f"note: left out, because nobody hands them in: {listed(found.left_out)}")
 
 
 def _width(text: str) -> int:

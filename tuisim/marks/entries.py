@@ -44,7 +44,7 @@ def entries_of(
     for student in found:
         if student.source:
             try:
-                entries.append(_entry_of(student, student.source, task, given))
+                entries.append(_build_entry(student, student.source, task, given))
                 student = entries[-1].student
             except ConfigError as error:
                 misfits += [error] if isinstance(error, ProfileError) and names_profile else []
@@ -63,7 +63,7 @@ def entries_of(
     return entries, students
 
 
-def _entry_of(
+def _build_entry(
     student: Student, source: ProgramSource, task: GoalsFile, given: Mapping[str, Any]
 ) -> RunEntry:
     every = [_settings(student, world, given) for world in task.worlds]

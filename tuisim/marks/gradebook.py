@@ -1,6 +1,7 @@
 """The marks of a class as files that the gradebooks of Moodle and Canvas import.
 
 Moodle finds a student by one column, which one chooses when one imports: user name, ID number or e-mail address.
+Moodle's grading worksheet finds a student by the number that is in the names of the hand-ins, `Participant 4713`.
 Canvas finds a student by `ID` or one of the SIS columns, and reads the most points from a row `Points Possible`.
 """
 
@@ -10,7 +11,6 @@ import csv
 import io
 import math
 from collections.abc import Mapping, Sequence
-from enum import StrEnum
 from pathlib import Path
 
 from tuisim.charts.files import write_whole
@@ -19,18 +19,12 @@ from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError, listed
 from tuisim.logs.csv_cells import harmless, restored
 from tuisim.marks.feedback import feedback_of
+from tuisim.marks.hand_ins import GradebookKind
 from tuisim.marks.sheet import Sheet, SheetRow, in_words
 
 MOST_BYTES = 16 << 20
 ITEM = "tuisim"
 """Name of the assignment, if the task has no title."""
-
-
-class GradebookKind(StrEnum):
-    """Whose gradebook imports the file."""
-
-    MOODLE = "moodle"
-    CANVAS = "canvas"
 
 
 SUBMISSION = "submission"
@@ -46,6 +40,8 @@ _BY_NAME: Mapping[GradebookKind, str] = {
     GradebookKind.CANVAS: "SIS Login ID",
 }
 """The column that is the name of the submission, unless a roster says more."""
+_WORKSHEET = ("Identifier", "Full name", "Last modified (grade)")
+"""The first columns of Moodle's grading worksheet; without the third one, which may be empty, it imports nothing."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -132,22 +128,23 @@ def write_gradebook(
         for at, column in enumerate(sheet.columns)
         if goals and not column.hidden and column.points >= 0
     ]
-    names = [item, *(f"{item}: {sheet.columns[at].name}" for at in shown)]
-    heads = [*_IDENTITY[kind], *names]
+    identity, total, feedback = _choose_heads(kind, sheet, roster)
+    names = [total or item, *(f"{item}: {sheet.columns[at].name}" for at in shown)]
+    heads = [*identity, *names]
     table = []
     if kind is GradebookKind.CANVAS:
         most = [
             in_words(points)
             for points in (sheet.most_points, *(sheet.columns[at].points for at in shown))
         ]
-        table.append(["Points Possible", *[""] * (len(_IDENTITY[kind]) - 1), *most])
+        table.append(["Points Possible", *[""] * (len(identity) - 1), *most])
     else:
-        heads.append("Feedback")
+        heads.append(feedback)
     for row, source in zip(sheet.rows, sources, strict=True):
         points = [row.points, *(row.cells[at].points for at in shown)]
         # What could not be judged stays empty.
         words = ["" if math.isnan(one) else in_words(one) for one in points]
-        cells = [*_identity(row, kind, roster), *words]
+        cells = [*_identity(row, identity, kind, roster), *words]
         table.append(
             cells if kind is GradebookKind.CANVAS else [*cells, feedback_of(sheet, row, source)]
         )
@@ -158,9 +155,22 @@ def write_gradebook(
     write_whole(path, text.getvalue().encode("utf-8", "backslashreplace"))
 
 
-def _identity(row: SheetRow, kind: GradebookKind, roster: Roster) -> list[str]:
-    person = {_BY_NAME[kind].casefold(): row.name, **roster.people.get(row.name, {})}
-    return [
-        person.get(head.casefold(), "") or (row.name if head == "Student" else "")
-        for head in _IDENTITY[kind]
-    ]
+def _choose_heads(
+    kind: GradebookKind, sheet: Sheet, roster: Roster
+) -> tuple[Sequence[str], str, str]:
+    """Return the columns that say who a student is, that of the total if it is no task's, and that of the feedback."""
+    has_numbers = kind is GradebookKind.MOODLE and any(kind in row.ids for row in sheet.rows)
+    if has_numbers and not roster.people:
+        return _WORKSHEET, "Grade", "Feedback comments"
+    return _IDENTITY[kind], "", "Feedback"
+
+
+def _identity(
+    row: SheetRow, heads: Sequence[str], kind: GradebookKind, roster: Roster
+) -> list[str]:
+    names = ("student", "full name", *(() if kind in row.ids else [_BY_NAME[kind].casefold()]))
+    person = dict.fromkeys(names, row.name)
+    if number := row.ids.get(kind):
+        person |= {"id": number, "identifier": f"Participant {number}"}
+    person |= {head: cell for head, cell in roster.people.get(row.name, {}).items() if cell}
+    return [person.get(head.casefold(), "") for head in heads]

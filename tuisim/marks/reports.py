@@ -89,7 +89,7 @@ def write_reports(
                     goals = columns, _judged(world.own_goals, outcome, run)
                     misses = _misses(row.name, *goals, outcome, run)
                     shows = movies and bool(misses)
-                    _write(folder / name, _report_of(row.name, goals, outcome, run, movie=shows))
+                    _write(folder / name, _build_report(row.name, goals, outcome, run, movie=shows))
                     written[recorded] = f"{folder.name}/{name}"
                 path = written[recorded]
             except ExportError:
@@ -105,7 +105,7 @@ _Judged = tuple[Sequence[Goal], Mapping[str, Change]]
 """The goals that are shown, and when and where they were decided, as of `_judged`."""
 
 
-def _report_of(
+def _build_report(
     student: str, goals: _Judged, outcome: Outcome, run: StoredRun, *, movie: bool
 ) -> str:
     *_, opened = opening(LogRequest(runs=(run.id,)))

@@ -169,7 +169,7 @@ def _run(turns: Sequence[_Turn], plan: MarkPlan, journal: Journal) -> Iterator[t
             try:
                 outcome = outcome_of(result, turn.seed, place, turn.world)
             except Exception as error:  # Whatever it is, the others go on.
-                outcome = _unjudged(turn, error)
+                outcome = _build_unjudged(turn, error)
             remove_tree(place)
             if outcome.counts:
                 journal.add(turn.key, outcome)
@@ -177,7 +177,7 @@ def _run(turns: Sequence[_Turn], plan: MarkPlan, journal: Journal) -> Iterator[t
         yield from uncopied
 
 
-def _unjudged(turn: _Turn, error: Exception) -> Outcome:
+def _build_unjudged(turn: _Turn, error: Exception) -> Outcome:
     return Outcome(turn.seed, "", describe_fault(error), world=turn.world.where)
 
 
@@ -193,7 +193,7 @@ def _tasks(
         try:
             folder = copy_of(student, workspace / str(index))
         except Exception as error:  # Whatever it is, the others go on.
-            uncopied.append((student.name, _unjudged(turn, error)))
+            uncopied.append((student.name, _build_unjudged(turn, error)))
             continue
         program = program_in(
             student, folder, arguments=plan.arguments, python_path=user_python_path()

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -17,6 +17,7 @@ from tuisim.faults import UNJUDGED
 from tuisim.goals.judgement import most_points, points_of
 from tuisim.goals.spec import Goal
 from tuisim.logs.export import export_frame
+from tuisim.marks.hand_ins import GradebookKind
 from tuisim.marks.outcome import Outcome, merged
 from tuisim.marks.students import Student
 from tuisim.source import source_lines
@@ -87,6 +88,8 @@ class SheetRow:
     """The points that the runs have earned, if the tutor has set others."""
     comment: str = ""
     """The tutor's."""
+    ids: Mapping[GradebookKind, str] = field(default_factory=dict)
+    """How a gradebook names the student; see `Student.ids`."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -141,7 +144,7 @@ def row_of(
     """Return the row of a student."""
     ordered = merged(outcomes, seeds, worlds)
     if not student.source or not ordered:
-        return _row_without_runs(student, columns, outcomes)
+        return _build_empty_row(student, columns, outcomes)
     totals = [_points(columns, one) for one in ordered]
     # In a task without points, every goal counts.
     counted_goals = [column for column in columns if column.points] or columns
@@ -165,6 +168,7 @@ def row_of(
         runs=len(ordered),
         stopped_early=len(ordered) < len(seeds) and ordered[0].gave_up,
         refusal=student.refusal,
+        ids=student.ids,
         outcomes=tuple(
             sorted(
                 (one for one in outcomes if one.counts),
@@ -174,7 +178,7 @@ def row_of(
     )
 
 
-def _row_without_runs(
+def _build_empty_row(
     student: Student, columns: Sequence[Goal], outcomes: Sequence[Outcome]
 ) -> SheetRow:
     """Return the row of a student of whom no run is known; the points are NaN unless that is the student's doing."""
@@ -187,7 +191,9 @@ def _row_without_runs(
     points = math.nan if failed or student.is_unread else 0.0
     cells = tuple(Cell(points, 0, reason) for _ in columns)
     return SheetRow(
-        student.name, student.shown_main, points, 0.0, cells, reason, failure=student.problem
+        *(student.name, student.shown_main, points, 0.0, cells, reason),
+        failure=student.problem,
+        ids=student.ids,
     )
 
 

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import os
-import shutil
 from collections import Counter
-from collections.abc import Collection, Iterable, Iterator, Sequence
-from dataclasses import replace
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from dataclasses import field, replace
 from pathlib import Path
 
 from tuisim.config.notebook_file import SUFFIX as NOTEBOOK_SUFFIX
@@ -15,6 +14,8 @@ from tuisim.config.program_file import FILE_FIELDS, ProgramSource, names_file, r
 from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError, listed, printable, see_page
 from tuisim.faults import describe_fault
+from tuisim.marks.files import LEFT_OUT, unpack_zip
+from tuisim.marks.hand_ins import GradebookKind, HandIn, gather_files, group_hand_ins
 from tuisim.runs.child.isolation import MOST_BYTES, MOST_FILES
 
 MAIN = "main.py"
@@ -26,8 +27,9 @@ _NO_PROGRAM = {
     ),
 }
 """What students hand in instead of a program, by the end of its name, and what to do."""
-LEFT_OUT = shutil.ignore_patterns("__pycache__", ".git", ".venv", "venv", "node_modules")
-"""Folders that are no part of what a student has handed in."""
+ZIP_SUFFIX = ".zip"
+_PACKAGE = "__init__.py"
+"""What makes a folder a package is no program."""
 _LINK = "it is a link; hand in the files themselves"
 _MOST_LEVELS = 50
 
@@ -46,6 +48,8 @@ class Student:
     """The main program; None if there is none that could be run."""
     problem: str = ""
     """Why there is none, one sentence."""
+    ids: Mapping[GradebookKind, str] = field(default_factory=dict)
+    """How a gradebook names the student; empty if the names of the files do not say."""
     is_unread: bool = False
     """Whether this machine could not read what the student has handed in, which is not the student's fault."""
     refusal: str = ""
@@ -69,10 +73,50 @@ class StudentsFound:
     students: tuple[Student, ...]
     ignored: tuple[str, ...]
     """Names of files that are no programs."""
+    left_out: tuple[str, ...] = ()
+    """Names of what nobody has handed in, such as `__MACOSX`, and of devices, pipes and sockets."""
+
+
+@dataclass(slots=True)
+class _Search:
+    """How hand-ins are read, and what is left out."""
+
+    program: str
+    unpacked: Path | None
+    max_bytes: int
+    left_out: dict[str, None] = field(default_factory=dict)
+    places: int = 0
+
+    def new_place(self, name: str) -> Path:
+        """Return the path of a folder of a name for what is unpacked."""
+        assert self.unpacked is not None
+        self.places += 1
+        place = self.unpacked / str(self.places)
+        place.mkdir()
+        return place / name
+
+    def unpack(self, path: Path) -> Path:
+        """Unpack a zip, if zips are unpacked; return the folder, or the path as it is."""
+        if self.unpacked is None or path.suffix.lower() != ZIP_SUFFIX or not os.path.isfile(path):
+            return path
+        place = self.new_place(path.stem)
+        unpack_zip(path, place, self.max_bytes)
+        return place
+
+    def names_in(self, folder: Path) -> list[str]:
+        """Return the names in a folder that may be a student's, in order."""
+        names = os.listdir(folder)
+        left_out = LEFT_OUT(str(folder), names)
+        self.left_out |= dict.fromkeys(sorted(map(_shown, left_out)))
+        return sorted(set(names) - left_out, key=lambda name: (name.casefold(), name))
 
 
 def find_students(
-    words: Sequence[str], program: str = "", excluded: Collection[Path] = ()
+    words: Sequence[str],
+    program: str = "",
+    excluded: Collection[Path] = (),
+    unpacked: Path | None = None,
+    max_bytes: int = MOST_BYTES,
 ) -> StudentsFound:
     """Return the students in folders; a folder that contains a main program, or a file, is one student.
 
@@ -81,25 +125,28 @@ def find_students(
         program: Name of the main program in a student's folder, if there is one of that name; else it is `MAIN`, or the
             only one.
         excluded: Files and folders that belong to no student, such as the goals file; resolved.
+        unpacked: A folder for the contents of zips, and for files that gradebooks deliver one by one; None to leave
+            them as they are.
+        max_bytes: A larger folder is not read.
 
     Raises:
         ConfigError: there is no such file or folder, or nothing in it.
     """
-    students: list[tuple[Path, Student]] = []
+    students: list[_Found] = []
     ignored: list[str] = []
+    search = _Search(program, unpacked, max_bytes)
     for word in words:
-        path = Path(word)
+        path = search.unpack(Path(word))
         if os.path.isdir(path) and not os.path.isfile(path / MAIN):
-            for entry in _entries(path, excluded):
-                is_program = entry.suffix.lower() in (SUFFIX, NOTEBOOK_SUFFIX) or _why_no_program(
-                    entry.name
-                )
-                if entry.is_symlink() or entry.is_dir() or is_program:
-                    students.append((path, _student(entry, program)))
+            for hand_in in _find_hand_ins(_entries(path, excluded, search), unpacked):
+                entry = next(iter(hand_in.paths.values()))
+                if hand_in.name or entry.is_symlink() or entry.is_dir() or _is_program(entry):
+                    students.append((path, _own_name(entry), _student(hand_in, search)))
                 else:
-                    ignored.append(printable(entry.name))
+                    ignored.append(_shown(entry.name))
         elif os.path.exists(path):
-            students.append((_real(path).parent, _student(path, program)))
+            student = _student(HandIn({path.name: path}), search)
+            students.append((_real(path).parent, _own_name(path), student))
         else:
             raise ConfigError(
                 "there is no such file or folder", "name a folder of students' programs", file=word
@@ -107,7 +154,19 @@ def find_students(
     if not students:
         hint = f"a file NAME.py or a folder for each student; {see_page('marking')}"
         raise ConfigError("has no programs", hint, file=listed(words))
-    return StudentsFound(tuple(_named(students)), tuple(ignored))
+    return StudentsFound(tuple(_named(students)), tuple(ignored), tuple(search.left_out))
+
+
+_Found = tuple[Path, str, Student]
+"""The folder, the name of the file or folder there, and the student."""
+
+
+def _find_hand_ins(paths: Iterable[Path], unpacked: Path | None) -> list[HandIn]:
+    return group_hand_ins(paths) if unpacked else [HandIn({path.name: path}) for path in paths]
+
+
+def _is_program(path: Path) -> bool:
+    return path.suffix.lower() in (SUFFIX, NOTEBOOK_SUFFIX) or bool(_why_no_program(path.name))
 
 
 def _real(path: Path) -> Path:
@@ -115,50 +174,59 @@ def _real(path: Path) -> Path:
     return Path(os.path.realpath(path))
 
 
-def _entries(folder: Path, excluded: Collection[Path]) -> Iterator[Path]:
+def _entries(folder: Path, excluded: Collection[Path], search: _Search) -> Iterator[Path]:
     """Return the visible entries of a folder by name."""
     try:
-        names = sorted(os.listdir(folder), key=lambda name: (name.casefold(), name))
+        names = search.names_in(folder)
     except OSError as error:
         raise ConfigError(f"cannot be read: {error.strerror or error}", file=str(folder)) from error
-    hidden = (".", "__pycache__")
+    search.left_out |= dict.fromkeys(_shown(name) for name in names if name.startswith("."))
     return (
         folder / name
         for name in names
-        if not name.startswith(hidden) and _real(folder / name) not in excluded
+        if not name.startswith(".") and _real(folder / name) not in excluded
     )
 
 
-def _named(students: Iterable[tuple[Path, Student]]) -> Iterator[Student]:
+def _named(students: Iterable[_Found]) -> Iterator[Student]:
     """Return the students with names that are unique.
 
     A file whose name without `.py` is also that of a neighbour keeps the ending. Where names are the same in several
-    folders, they have the name of the folder before them, and otherwise a number after them.
+    folders, they have the name of the folder before them, and otherwise a number after them, that of the
+    gradebook where it gives one.
     """
-    every = [(_real(folder), student) for folder, student in students]
-    beside = Counter((folder, student.name) for folder, student in every)
+    every = [(_real(folder), student, own) for folder, own, student in students]
+    beside = Counter((folder, student.name) for folder, student, _ in every)
     names = [
-        _own_name(one.path) if beside[folder, one.name] > 1 else one.name for folder, one in every
+        one.name if one.ids or beside[folder, one.name] < 2 else own for folder, one, own in every
     ]
     counts = Counter(names)
     full = [
-        f"{folder.name}/{name}" if counts[name] > 1 else name
-        for (folder, _), name in zip(every, names, strict=True)
+        name
+        if counts[name] < 2
+        else " ".join([name, *one.ids.values()])
+        if one.ids
+        else f"{folder.name}/{name}"
+        for (folder, one, _), name in zip(every, names, strict=True)
     ]
     seen: Counter[str] = Counter()
-    for name, (_, student) in zip(full, every, strict=True):
+    for name, (_, student, _) in zip(full, every, strict=True):
         seen[name] += 1
         yield replace(student, name=name if seen[name] == 1 else f"{name} ({seen[name]})")
 
 
-def _student(path: Path, program: str) -> Student:
+def _student(hand_in: HandIn, search: _Search) -> Student:
+    path = next(iter(hand_in.paths.values()))
+    name = hand_in.name or _own_name(path)
     try:
-        return _read_student(path, program)
+        path = gather_files(hand_in, search.new_place(hand_in.name)) if hand_in.name else path
+        student = _read_student(path, search)
     except Exception as error:  # Whatever it is, the others go on.
-        return Student(_own_name(path), path, problem=describe_fault(error), is_unread=True)
+        student = Student(name, path, problem=describe_fault(error), is_unread=True)
+    return replace(student, name=_shown(hand_in.name) or student.name, ids=hand_in.ids)
 
 
-def _read_student(path: Path, program: str) -> Student:
+def _read_student(path: Path, search: _Search) -> Student:
     own = _own_name(path)
     is_file = not os.path.isdir(path)
     endings = (SUFFIX, NOTEBOOK_SUFFIX, *_NO_PROGRAM)
@@ -166,19 +234,42 @@ def _read_student(path: Path, program: str) -> Student:
     name = own[: -len(ending)] if is_file and 0 < len(ending) < len(own) else own
     if path.is_symlink():
         return Student(name, path, problem=_LINK)
-    if is_file and (why := _why_no_program(own)):
-        return Student(name, path, problem=f"{own}: {why}")
-    if is_file:
-        # Its copy has the name of the file.
-        return _read(Student(name, path, own), path, program.partition("#")[2])
+    cell = search.program.partition("#")[2]
     try:
-        if refused := _what_is_refused(path):
+        path = _enter_folder(path, search)
+        if not os.path.isdir(path) and (why := _why_no_program(own)):
+            return Student(name, path, problem=f"{own}: {why}")
+        if not os.path.isdir(path):
+            # Its copy has the name of the file.
+            return _read(Student(name, path, own), path, cell)
+        if refused := _what_is_refused(path, name, search):
             return Student(name, path, problem=refused)
-        main = _main_of(path, program)
+        main = _main_of(path, search.program)
     except (ConfigError, OSError) as error:
         problem = str(error).replace(f"{path}{os.sep}", "")
         return Student(name, path, problem=problem, is_unread=isinstance(error, OSError))
-    return _read(Student(name, path, main), path / main, program.partition("#")[2])
+    return _read(Student(name, path, main), path / main, cell)
+
+
+def _enter_folder(path: Path, search: _Search) -> Path:
+    """Return the folder with a student's files: one that is alone in its folder is entered, and so is a zip, once.
+
+    Raises:
+        ConfigError: a zip cannot be unpacked.
+        OSError: a folder cannot be read.
+    """
+    is_packed = True
+    for _ in range(_MOST_LEVELS):
+        unpacked = search.unpack(path) if is_packed else path
+        is_packed, path = is_packed and unpacked == path, unpacked
+        names = search.names_in(path) if os.path.isdir(path) else []
+        if len(names) != 1 or (path / names[0]).is_symlink():
+            break
+        is_zip = is_packed and search.unpacked and names[0].lower().endswith(ZIP_SUFFIX)
+        if not is_zip and not os.path.isdir(path / names[0]):
+            break
+        path = path / names[0]
+    return path
 
 
 def _why_no_program(name: str) -> str:
@@ -191,16 +282,14 @@ def _own_name(path: Path) -> str:
     return _shown(path.name if path.name not in ("", "..") else _real(path).name)
 
 
-def _what_is_refused(folder: Path) -> str:
+def _what_is_refused(folder: Path, name: str, search: _Search) -> str:
     """Return why what is in a student's folder is not copied, as a sentence; empty if it is."""
     own = _real(folder)
     files = size = 0
     inside = [folder]
     while inside:
         place = inside.pop()
-        names = sorted(os.listdir(place))
-        left_out = LEFT_OUT(str(place), names)
-        for path in (place / name for name in names if name not in left_out):
+        for path in (place / inner for inner in search.names_in(place)):
             if path.is_symlink():
                 if not _real(path).is_relative_to(own):
                     return f"{_shown(os.path.relpath(path, folder))} is a link that leads out of the folder"
@@ -208,10 +297,16 @@ def _what_is_refused(folder: Path) -> str:
                 if len(path.relative_to(folder).parts) > _MOST_LEVELS:
                     return f"its folders are nested more than {_MOST_LEVELS} deep"
                 inside.append(path)
-            else:
+            elif path.is_file():
                 files, size = files + 1, size + path.lstat().st_size
-                if files > MOST_FILES or size > MOST_BYTES:
-                    return f"it has more than {MOST_FILES:,} files or {MOST_BYTES >> 30} GiB"
+                if files > MOST_FILES or size > search.max_bytes:
+                    return (
+                        f"it has more than {MOST_FILES:,} files or {search.max_bytes >> 20:,} MiB"
+                    )
+            else:
+                search.left_out[
+                    f"{name}/{_shown(os.path.relpath(path, folder))}, which is no file"
+                ] = None
     return ""
 
 
@@ -224,16 +319,16 @@ def file_outside(student: Student) -> str:
     assert student.source is not None
     is_file = not student.path.is_dir()
     own = _real(student.path.parent if is_file else student.path)
-    for field in sorted(FILE_FIELDS & student.source.options.keys()):
-        word = str(student.source.options[field])
-        if field == "mats" or names_file(word):
+    for name in sorted(FILE_FIELDS & student.source.options.keys()):
+        word = str(student.source.options[name])
+        if name == "mats" or names_file(word):
             place = _real(Path(word))
             if is_file and (
                 place.parent != own or place.is_dir() or place.suffix.lower() == SUFFIX
             ):
-                return field
+                return name
             if not place.is_relative_to(own):
-                return field
+                return name
     return ""
 
 
@@ -291,13 +386,18 @@ def _main_of(folder: Path, program: str) -> str:
     named = program.partition("#")[0]
     if named and os.path.isfile(folder / named):
         return named
-    files = sorted(name for name in os.listdir(folder) if os.path.isfile(folder / name))
+    every = sorted(name for name in os.listdir(folder) if not name.startswith("."))
+    files = [name for name in every if os.path.isfile(folder / name)]
     if MAIN in files:
         return MAIN
-    names = [name for name in files if name.lower().endswith((SUFFIX, NOTEBOOK_SUFFIX))]
+    programs = [name for name in files if name.lower().endswith((SUFFIX, NOTEBOOK_SUFFIX))]
+    names = [name for name in programs if name != _PACKAGE]
     if len(names) == 1:
         return names[0]
     if names:
-        raise ConfigError(f"which of {listed(names)} is the main program?", MAIN)
-    instead = next((f"{name}: {why}" for name in files if (why := _why_no_program(name))), "")
-    raise ConfigError(instead or "there is no Python file", MAIN)
+        raise ConfigError(f"which of {listed(map(_shown, names))} is the main program?", MAIN)
+    instead = next(
+        (f"{_shown(name)}: {why}" for name in files if (why := _why_no_program(name))), ""
+    )
+    found = listed(_shown(f"{name}/" if os.path.isdir(folder / name) else name) for name in every)
+    raise ConfigError(instead or f"there is no Python file, only: {found}", MAIN)

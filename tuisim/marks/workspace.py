@@ -2,22 +2,20 @@
 
 from __future__ import annotations
 
-import errno
 import hashlib
 import os
-import shutil
 from collections.abc import Iterator
-from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from tuisim.errors import LogError
-from tuisim.marks.students import LEFT_OUT, Student
+from tuisim.marks.files import LEFT_OUT, copy_file, copy_tree
+from tuisim.marks.students import Student
+from tuisim.regular_file import open_regular
 from tuisim.source import Program
 
-_FULL = (errno.ENOSPC, errno.EDQUOT, errno.EROFS)
-"""Errors about the copy, not about the file."""
+_PIECE = 1 << 20
 
 
 def copy_of(student: Student, place: Path) -> Path:
@@ -30,27 +28,13 @@ def copy_of(student: Student, place: Path) -> Path:
     """
     try:
         if os.path.isdir(student.path):
-            _copy_folder(student.path, place)
+            copy_tree(student.path, place)
         else:
             place.mkdir()
-            _copy_file(student.path, place / student.main)
+            copy_file(student.path, place / student.main)
     except OSError as error:
         raise LogError(f"its copy cannot be written: {error.strerror or error}") from error
     return place
-
-
-def _copy_folder(folder: Path, place: Path) -> None:
-    # Links are copied as links: what they point to is not the student's. An error about a part is raised at the end.
-    with suppress(shutil.Error):
-        shutil.copytree(folder, place, symlinks=True, ignore=LEFT_OUT, copy_function=_copy_file)
-
-
-def _copy_file(source: str | Path, target: str | Path) -> None:
-    try:
-        shutil.copyfile(source, target)
-    except OSError as error:
-        if error.errno in _FULL:
-            raise LogError(f"its copy cannot be written: {error.strerror}") from error
 
 
 def program_in(student: Student, folder: Path, **changes: Any) -> Program:
@@ -73,11 +57,21 @@ def digest_of(student: Student) -> str:
         found.update(os.fsencode(relative) + b"\0")
         try:
             # A link is what it says: what it leads to may be no file of the student's.
-            content = os.fsencode(os.readlink(path)) if path.is_symlink() else path.read_bytes()
-            found.update(hashlib.sha256(content).digest())
+            if path.is_symlink():
+                found.update(hashlib.sha256(os.fsencode(os.readlink(path))).digest())
+            else:
+                found.update(_hash_file(path))
         except OSError as error:
             found.update(str(error.errno).encode())
     return found.hexdigest()
+
+
+def _hash_file(path: Path) -> bytes:
+    digest = hashlib.sha256()
+    with open_regular(path, follow_links=True) as file:
+        while piece := file.read(_PIECE):
+            digest.update(piece)
+    return digest.digest()
 
 
 def _files(path: Path) -> Iterator[Path]:
