@@ -10,12 +10,16 @@ from tuisim.goals.judge import judge
 from tuisim.goals.program_text import fault_in
 from tuisim.runs.store import RunStore
 
+NO_TEXT = "'rot13' is not a text encoding; use codecs.encode() to handle arbitrary codecs"
 FAULTS = {
     "good": ("print(1)\n", None),
     "empty": ("", None),
     "a bracket": ("print(1\n", ("'(' was never closed", 1)),
     "outside of a function": ("x = 1\nreturn x\n", ("'return' outside function", 2)),
     "an encoding that there is not": ("# coding: klingon\n", ("unknown encoding: klingon", 0)),
+    "one that is no text": ("# coding: rot13\n", (NO_TEXT, 0)),
+    "UTF-7": ("# coding: utf-7\nprint('Ä ~')\n", None),
+    "Latin-1": ("# coding: latin-1\nprint('Ä ~')\n", None),
     "an odd escape, which is only warned of": ("print('\\d')\n", None),
 }
 

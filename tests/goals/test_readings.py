@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 from pathlib import Path
+from textwrap import indent
+
+import pytest
 
 from tests.conftest import Command
 
@@ -69,3 +72,26 @@ def test_readings_of_an_own_module_count(tmp_path: Path, here: Command) -> None:
     lines = here("goals", "check", "goals.toml").stdout.splitlines()
     marks = [line.split()[:2] for line in lines if line.lstrip()[:1] in "✓✗" and line.strip()]
     assert marks == [["✓", "log"], ["✓", "print"], ["✓", "read"], ["✗", "read_more"]], lines
+
+
+IDIOMS = {
+    "arguments": "def show(*args):\n    print(*args, sep='')\nshow('Light: ', light)",
+    "match": "match light:\n    case value if value > 50:\n        print(f'Light: {value}')",
+    "getattr": "print('Light: {}'.format(getattr(colorLeft, 'reflected_light_intensity_pc')))",
+    "debug_print": (
+        "import sys\ndef debug_print(*args, **kwargs):\n    print(*args, **kwargs, file=sys.stderr)\n"
+        "debug_print('Light:', light)\nprint('Light:', light)"
+    ),
+}
+
+
+@pytest.mark.parametrize("idiom", IDIOMS)
+def test_honest_idioms_cost_no_points(tmp_path: Path, here: Command, idiom: str) -> None:
+    text = f"sleep(0.05)\nlight = colorLeft.reflected_light_intensity_pc\n{IDIOMS[idiom]}\n"
+    loop = f"from time import sleep\nfor _ in range(5):\n{indent(text, '    ')}"
+    (tmp_path / "reads.py").write_text(loop)
+    (tmp_path / "goals.toml").write_text(GOALS)
+    assert here("run", "goals.toml").returncode == 0
+    lines = here("goals", "check", "goals.toml").stdout.splitlines()
+    marks = [line.split()[:2] for line in lines if line.lstrip()[:1] in "✓✗" and line.strip()]
+    assert marks[:3] == [["✓", "log"], ["✓", "print"], ["✓", "read"]], lines

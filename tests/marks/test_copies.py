@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection, Mapping
+
 from tests.marks.the_class import CLASS
-from tuisim.marks.copies import LEAST_TOKENS, similar
+from tuisim.marks.copies import LEAST_TOKENS, Similar, similar
 
 LINE = """\
 while True:
@@ -43,15 +45,25 @@ for side in reversed(range(4)):
 """
 
 
+def _similar(programs: Mapping[str, str], given: Collection[str] = ()) -> Similar:
+    return similar({name: [text] for name, text in programs.items()}, given)
+
+
+def test_a_copy_in_a_module_is_a_pair() -> None:
+    found = similar({"ada": [LINE], "ben": ["import sol\nsol.drive()\n", RENAMED], "cleo": [OTHER]})
+    (pair,) = found.pairs
+    assert pair.names == ("ada", "ben") and pair.share > 0.9
+
+
 def test_other_names_numbers_and_comments_are_the_same_program() -> None:
-    found = similar({"ada": LINE, "ben": RENAMED, "cleo": OTHER, "dora": LINE + "\n# end\n"})
+    found = _similar({"ada": LINE, "ben": RENAMED, "cleo": OTHER, "dora": LINE + "\n# end\n"})
     (group,) = found.groups
     assert (group.names, group.same) == (("ada", "ben", "dora"), (("ada", "dora"),))
     assert found.pairs == () and found.compared == 3 + 1
 
 
 def test_a_copy_with_a_new_beginning_is_a_pair() -> None:
-    found = similar(
+    found = _similar(
         {
             "ada": LINE,
             "ben": "x = [1, 2, 3]\nfor one in x:\n    print(one, x)\n" + RENAMED,
@@ -64,22 +76,22 @@ def test_a_copy_with_a_new_beginning_is_a_pair() -> None:
 
 def test_what_everybody_was_given_or_has_is_left_out() -> None:
     programs = {"ada": LINE + OTHER, "ben": LINE + "print(1)\n" * 12}
-    assert similar(programs).pairs
-    assert not similar(programs, given=[LINE]).pairs
+    assert _similar(programs).pairs
+    assert not _similar(programs, given=[LINE]).pairs
     many = {f"student {at}": LINE + f"print({at})\n" * at for at in range(1, 12)}
-    assert not similar(many).pairs
+    assert not _similar(many).pairs
 
 
 def test_short_and_broken_programs_are_not_compared() -> None:
     short = "tank_drive.on_for_rotations(50, 50, 3)\n"
-    assert similar({"ada": short, "ben": short}).compared == 0
-    broken = similar({"ada": LINE + "\n)\x00 '''", "ben": LINE})
+    assert _similar({"ada": short, "ben": short}).compared == 0
+    broken = _similar({"ada": LINE + "\n)\x00 '''", "ben": LINE})
     assert broken.compared == 2 and LEAST_TOKENS > 20
 
 
 def test_the_result_does_not_depend_on_the_order() -> None:
     texts = {one.row: text for one in CLASS for text in one.files.values() if isinstance(text, str)}
-    backwards = similar(dict(reversed(texts.items())))
-    assert {one.names for one in similar(texts).pairs} == {
+    backwards = _similar(dict(reversed(texts.items())))
+    assert {one.names for one in _similar(texts).pairs} == {
         tuple(sorted(one.names)) for one in backwards.pairs
     }

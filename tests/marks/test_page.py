@@ -25,7 +25,7 @@ def test_every_student_is_in_the_distribution_of_points() -> None:
 
 
 def test_goals_and_similar_programs_are_told() -> None:
-    page = page_of(SHEET, similar=similar({"ada": LINE, "ben": RENAMED, "cleo": OTHER}))
+    page = page_of(SHEET, similar=similar({"ada": [LINE], "ben": [RENAMED], "cleo": [OTHER]}))
     assert "<h2>Similar programs</h2>" in page and "ada, ben" in page
     assert (
         re.search(r"met by.*1 of 5, 1 in some runs", page, re.DOTALL)
@@ -36,6 +36,6 @@ def test_goals_and_similar_programs_are_told() -> None:
 def test_a_class_of_one_has_no_statistics_of_points_and_resemblance() -> None:
     page = page_of(
         sheet_of("", SHEET.columns, range(4), STUDENTS[:1], OUTCOMES),
-        similar=similar({"ada": LINE}),
+        similar=similar({"ada": [LINE]}),
     )
     assert "<h2>Points</h2>" not in page and "Similar" not in page and "<h2>Goals</h2>" in page

@@ -50,6 +50,13 @@ def test_of_a_long_chain_the_first_and_the_last_errors_are_told(run: Run) -> Non
     assert sum(line.startswith("ValueError: ") for line in errors) == 19
 
 
+def test_an_error_that_is_too_long_is_cut_off(run: Run) -> None:
+    done = run("raise ValueError('x' * (9 << 20))", prelude="none")
+    assert done.ended.end == "raised"
+    assert done.ended.summary.endswith("x… (too long: 9,437,196 characters) (line 1)")
+    assert len(done.ended.error) < 1 << 20 and "too long" in done.ended.error
+
+
 EXITS = {
     "no text": (
         "class A:\n    def __str__(self): 1 / 0\nraise SystemExit(A())",

@@ -479,6 +479,7 @@ def _write_page(
     from tuisim.marks.class_map import build_class_maps
     from tuisim.marks.copies import similar
     from tuisim.marks.reports import write_reports
+    from tuisim.marks.workspace import read_modules
 
     kept = sum(bool(outcome.run_id) for row in sheet.rows for outcome in row.outcomes)
     links, misses, faults = {}, [], []
@@ -489,7 +490,7 @@ def _write_page(
         links[one.student, one.world, one.seed] = one.path
         misses.append(one.misses)
         tell(f"report {len(links)} of {kept}", len(links), kept)
-    alike = similar({student.name: student.text for student in students})
+    alike = similar({student.name: read_modules(student) for student in students})
     write_whole(target, page_of(sheet, links, ignored, alike, build_class_maps(misses)).encode())
     if faults:
         raise ExportError(f"{target} is without {counted(len(faults), 'report')}: {faults[0]}")

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import ast
+import io
+import tokenize
 import warnings
 from collections.abc import Callable, Iterator, Mapping
 from functools import lru_cache, partial
@@ -22,11 +24,13 @@ def fault_in(text: str) -> tuple[str, int] | None:
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
-            # From bytes: a line may name an encoding that there is not.
-            compile(text.encode("utf-8", "surrogateescape"), "program", "exec", dont_inherit=True)
+            data = text.encode("utf-8", "surrogateescape")
+            # From bytes, in its own encoding: a line may name one that there is not.
+            encoding, _ = tokenize.detect_encoding(io.BytesIO(data).readline)
+            compile(text.encode(encoding, "surrogateescape"), "program", "exec", dont_inherit=True)
     except SyntaxError as error:
         return error.msg, error.lineno or 0
-    except (ValueError, RecursionError, MemoryError) as error:
+    except (LookupError, ValueError, RecursionError, MemoryError) as error:
         return str(error) or type(error).__name__, 0
     return None
 

@@ -14,7 +14,7 @@ import tokenize
 import zlib
 from collections import Counter, defaultdict
 from collections.abc import Collection, Mapping, Sequence
-from itertools import combinations
+from itertools import chain, combinations
 
 from tuisim.data_class import dataclass
 
@@ -131,17 +131,17 @@ def _prints(tokens: Sequence[_Token]) -> _Prints:
     return {key: frozenset(found) for key, found in lines.items()}
 
 
-def similar(programs: Mapping[str, str], given: Collection[str] = ()) -> Similar:
+def similar(programs: Mapping[str, Sequence[str]], given: Collection[str] = ()) -> Similar:
     """Return which programs resemble each other.
 
     Args:
-        programs: The texts by the student's name.
+        programs: The texts of the main program and its modules, by the student's name.
         given: Texts that everybody was given, such as a skeleton: what is in them is left out.
     """
     tokens = {
         name: found
-        for name, text in programs.items()
-        if len(found := _tokens(text)) >= LEAST_TOKENS
+        for name, texts in programs.items()
+        if len(found := list(chain.from_iterable(map(_tokens, texts)))) >= LEAST_TOKENS
     }
     alike = _groups({name: tuple(token.kind for token in found) for name, found in tokens.items()})
     words = {name: tuple(token.text for token in found) for name, found in tokens.items()}

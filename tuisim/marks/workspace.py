@@ -5,14 +5,15 @@ from __future__ import annotations
 import hashlib
 import os
 from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from tuisim.errors import LogError
 from tuisim.marks.files import LEFT_OUT, copy_file, copy_tree
-from tuisim.marks.students import Student
-from tuisim.regular_file import open_regular
+from tuisim.marks.students import SUFFIX, Student
+from tuisim.regular_file import open_regular, read_regular
 from tuisim.source import Program
 
 _PIECE = 1 << 20
@@ -64,6 +65,16 @@ def digest_of(student: Student) -> str:
         except OSError as error:
             found.update(str(error.errno).encode())
     return found.hexdigest()
+
+
+def read_modules(student: Student) -> list[str]:
+    """Return the texts of the main program and of a student's other Python files."""
+    texts = [student.text]
+    for path in _files(student.path) if os.path.isdir(student.path) else ():
+        if path.suffix == SUFFIX and path != student.path / student.main:
+            with suppress(OSError):
+                texts.append(read_regular(path, _PIECE).decode("utf-8", "replace"))
+    return texts
 
 
 def _hash_file(path: Path) -> bytes:

@@ -19,6 +19,8 @@ from tuisim.source import source_lines
 _OUR_NAMES = ("tuisim.errors.", "tuisim.runtime.session.")
 MOST_LINKED = 10
 """Of a longer chain of causes, this many are shown at either end."""
+_MAX_CHARACTERS = 500_000
+"""Of a traceback: the host takes a longer message for one that no program sends."""
 _HEADING = "Traceback (most recent call last):\n"
 _show = sys.excepthook
 _SYNTAX_ERRORS: tuple[type[SyntaxError], ...] = (SyntaxError, IndentationError, TabError)
@@ -75,8 +77,16 @@ def report_error(error: BaseException, file: str, source: str, alone: bool = Fal
         text = _HEADING + "".join(stack.format()) + summary + "\n"
     for name in _OUR_NAMES:
         text, summary = text.replace(name, ""), summary.replace(name, "")
+    text, summary = _cut(text), _cut(summary)
     line = line_in(error.__traceback__, file) or _line_of(error)
     return ErrorReport(text, line, f"{summary} (line {line})" if line else summary)
+
+
+def _cut(text: str) -> str:
+    """Return a text that can be sent; of one that is too long, the beginning."""
+    if len(text) <= _MAX_CHARACTERS:
+        return text
+    return f"{text[:_MAX_CHARACTERS]}… (too long: {len(text):,} characters)"
 
 
 def _add_text(error: BaseException, file: str, source: str) -> None:
