@@ -399,5 +399,5 @@ def _main_of(folder: Path, program: str) -> str:
     instead = next(
         (f"{_shown(name)}: {why}" for name in files if (why := _why_no_program(name))), ""
     )
-    found = listed(_shown(f"{name}/" if os.path.isdir(folder / name) else name) for name in every)
-    raise ConfigError(instead or f"there is no Python file, only: {found}", MAIN)
+    entries = listed(_shown(f"{name}/" if os.path.isdir(folder / name) else name) for name in every)
+    raise ConfigError(instead or f"there is no Python file, only: {entries}", MAIN)

@@ -52,19 +52,19 @@ def program_in(student: Student, folder: Path, **changes: Any) -> Program:
 
 def digest_of(student: Student) -> str:
     """Return a hash of the names and contents of a student's files, hexadecimal."""
-    found = hashlib.sha256()
+    digest = hashlib.sha256()
     for path in _files(student.path):
         relative = os.path.relpath(path, student.path.parent)
-        found.update(os.fsencode(relative) + b"\0")
+        digest.update(os.fsencode(relative) + b"\0")
         try:
             # A link is what it says: what it leads to may be no file of the student's.
             if path.is_symlink():
-                found.update(hashlib.sha256(os.fsencode(os.readlink(path))).digest())
+                digest.update(hashlib.sha256(os.fsencode(os.readlink(path))).digest())
             else:
-                found.update(_hash_file(path))
+                digest.update(_hash_file(path))
         except OSError as error:
-            found.update(str(error.errno).encode())
-    return found.hexdigest()
+            digest.update(str(error.errno).encode())
+    return digest.hexdigest()
 
 
 def read_modules(student: Student) -> list[str]:
