@@ -113,28 +113,6 @@ def test_a_screen_and_a_file_have_the_same_scales(columns: dict[str, object]) ->
     assert drawn == len(picture.plot.curves)
 
 
-@pytest.mark.parametrize("name", ["backwards", "infinite now and then", "two scales"])
-def test_a_screen_and_a_file_have_the_same_scales_when_zoomed(name: str) -> None:
-    model = log_of(COLUMNS[name])
-    model.limits = 5.5, 20.3
-    chart = chart_of(model, View(), 960, 420)
-    for trace in model.traces.ticked():
-        trace.prepare(model.x_limits(), 960, False)
-
-    picture = ChartPainter().paint(
-        model.traces, ChartState(x_limits=model.x_limits(), zoomed=True), 400, 24
-    )
-
-    (frame,) = laid_out(chart, 960, 420).plots
-    assert picture.plot is not None
-    assert (picture.plot.x_limits, picture.plot.y_limits) == (
-        frame.x,
-        axes.on_rows(frame.y, picture.rows),
-    )
-    shown = [(trace.name, trace.scale) for trace in model.traces.drawn()]
-    assert shown == [(line.name, line.scale) for line in chart.lines]
-
-
 def test_a_chart_is_cut_off_at_its_limits() -> None:
     model = log_of({"time": [0.0, 10.0], "a": [0.0, 100.0]})
     model.limits = 2.0, 4.0

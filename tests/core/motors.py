@@ -16,8 +16,6 @@ COMMANDED = sorted(
     name for name, profile in PROFILES.items() if profile.motor_law.library is Library.EV3DEV2
 )
 """The profiles whose motors a driver commands."""
-SERVO = sorted(set(PROFILES) - set(COMMANDED))
-"""The profiles whose motors follow trajectories."""
 
 
 class CommandedMotor(Motor, Protocol):

@@ -86,6 +86,22 @@ def test_a_wheel_that_is_held_back_has_not_reached_its_goal() -> None:
     assert motor.blocked_ticks == 1
 
 
+@pytest.mark.parametrize("approach_dps2", [0.0, 400.0], ids=["at full speed", "slowing down"])
+def test_wheels_end_their_moves_alike_however_ticks_are_divided(approach_dps2: float) -> None:
+    ends = []
+    for step in (1, 7, 400):
+        sim = simulation_of(RunSpec(RobotSpec(), WorldSpec(), PROFILES["robolab"]), MemorySink())
+        for motor, goal_deg in ((sim.left, -300.0), (sim.right, 333.0)):
+            assert isinstance(motor, BrickMotor)
+            motor.run_to(goal_deg, 400.0, backwards=goal_deg < 0)
+            motor.approach_dps2 = approach_dps2
+        for _ in range(400 // step):
+            sim.advance(step)
+        ends.append((sim.pose, sim.left.position_deg, sim.right.position_deg))
+    assert ends[0] == ends[1] == ends[2]
+    assert ends[0][1:] == (-300.0, 333.0)
+
+
 @pytest.mark.parametrize("goal_deg", [60.0, -60.0], ids=["forwards", "backwards"])
 def test_a_motor_slows_down_evenly_before_its_goal(goal_deg: float) -> None:
     sim, motor = arm()

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 from typing import Any
 
 import pytest
@@ -12,7 +11,6 @@ from hypothesis import strategies as st
 
 from tests.core.memory_sink import MemorySink
 from tests.core.motors import commanded
-from tuisim.core.collision import Solids
 from tuisim.core.geometry import Pose, world_point
 from tuisim.core.outline import outline_of
 from tuisim.core.profile import PROFILES
@@ -81,25 +79,6 @@ def test_a_thin_post_is_not_passed_at_full_speed() -> None:
         commanded(motor).run(1050.0)
     sim.advance(300)
     assert sim.pose.x_mm + 45 == pytest.approx(1000.0, abs=0.001)
-
-
-@pytest.mark.parametrize("left_dps", [-300.0, 0.0], ids=["on the spot", "round one wheel"])
-@pytest.mark.parametrize("x_mm", [121.0, 140.0], ids=["at the wall", "near it"])
-def test_a_turn_pushes_the_robot_away_from_a_wall(left_dps: float, x_mm: float) -> None:
-    sim = simulation(WorldSpec(start=Pose(x_mm, 571.0, 0.0), solid=True), profile="ev3")
-    assert drive(sim, [("forever", left_dps, 300.0, 400)]) <= ALLOWED_MM
-    assert sim.pose.heading_deg > 90.0
-    assert sim.left.blocked_ticks == 0
-
-
-def test_without_solid_the_robot_drives_through() -> None:
-    sim = simulation(
-        WorldSpec(start=Pose(300.0, 571.0, 0.0), obstacles=(Obstacle(1000.0, 500.0, 100.0, 100.0),))
-    )
-    for motor in (sim.left, sim.right):
-        commanded(motor).run(1050.0)
-    sim.advance(1000)
-    assert sim.pose.x_mm > FIELD_WIDTH_MM
 
 
 def test_a_move_to_a_position_goes_on_once_the_way_is_clear() -> None:
@@ -192,27 +171,3 @@ def test_noise_does_not_push_through_a_wall() -> None:
     world = WorldSpec(start=Pose(2000.0, 571.0, 30.0), noise=NoiseSpec(0, 300), solid=True)
     sim = simulation(world)
     assert drive(sim, [("forever", 900.0, 880.0, 600)]) <= ALLOWED_MM
-
-
-@pytest.mark.quick_cases("on")
-@pytest.mark.parametrize("straight", [-1, 0, 1], ids=["back", "anyhow", "on"])
-def test_the_way_said_to_be_free_is_free(straight: int) -> None:
-    obstacles = tuple(Obstacle(100.0 * i, 60.0 * (i % 9), 30.0, 30.0) for i in range(20))
-    world = WorldSpec(obstacles=obstacles, solid=True)
-    solids = Solids(world, RobotSpec())
-    ways = []
-    for number in range(400):
-        pose = (200.0 + 37.0 * number % 1900, 200.0 + 53.0 * number % 700, 17.0 * number)
-        sim = simulation(replace(world, start=Pose(*pose)))
-        if overlap_mm(sim) > 0:
-            continue
-        way = solids.free_way_mm(pose, 1e9, straight)
-        ways.append(way)
-        heading = math.radians(pose[2]) + (0.0 if straight else 1.0 + number)
-        step = way * 0.999 * (straight or 1)
-        there = Pose(
-            pose[0] + step * math.cos(heading), pose[1] + step * math.sin(heading), pose[2]
-        )
-        sim.place(there)
-        assert overlap_mm(sim) <= 1e-6
-    assert max(ways) > 50

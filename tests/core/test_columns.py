@@ -3,23 +3,15 @@
 from __future__ import annotations
 
 import json
-import os
-import shutil
-import site
-import subprocess
 from pathlib import Path
-from venv import EnvBuilder
 
 import pytest
 
-from tests.conftest import ROOT
 from tests.goals.recorded import goals_of
-from tests.running import PATIENCE_S
 from tuisim.analysis.events import events_of, thresholds_of
 from tuisim.analysis.model import Model, derive
 from tuisim.analysis.source import LogRequest, opening
 from tuisim.analysis.table import conditions_of
-from tuisim.app.timeline import Timeline, find
 from tuisim.cli import run_command
 from tuisim.config.build import build_run_spec
 from tuisim.config.options import Settings
@@ -27,7 +19,6 @@ from tuisim.core.columns import column_name
 from tuisim.core.sensors import columns_of
 from tuisim.goals.judge import judge
 from tuisim.runs.frames import column_values
-from tuisim.runs.recorded_run import Recording
 from tuisim.runs.run_folder import StoredRun, open_mat
 from tuisim.runs.store import RunStore
 
@@ -55,14 +46,6 @@ def run(home_of_runs: Path, monkeypatch: pytest.MonkeyPatch) -> StoredRun:
 def value_of(run: StoredRun, name: str) -> float:
     values = column_values([name], run.telemetry.array(), run, run.actions, open_mat(run))
     return float(values[name][-1])
-
-
-@pytest.mark.parametrize("name", TRACES)
-def test_the_name_of_a_trace_finds_an_instant(name: str, run: StoredRun) -> None:
-    timeline = Timeline()
-    timeline.switch_to(Recording(run))
-    timeline.go(1)
-    assert find(f"{name} > -1 first", timeline, open_mat(run)) == 0
 
 
 @pytest.mark.parametrize("name", TRACES)
@@ -154,75 +137,6 @@ def test_a_name_of_before_is_the_column_in_the_commands_for_logs(
 ) -> None:
     assert run_command(["log", "events", "1", "--when", "left.red% changes", "--json"]) == 0
     assert '"variable": "left_red_pc"' in capsys.readouterr().out
-
-
-NEW = """\
-    Column("right_speed_dps"),
-    Column("speed_mm_s", lambda ticks, run: [(tick[5] + tick[6]) * 28 * 3.14159 / 360 for tick in ticks], True),
-"""
-
-
-TRACED = """\
-from tuisim.app.feed import Feed
-from tuisim.runs.recorded_run import Recording
-from tuisim.runs.run_folder import open_mat
-from tuisim.runs.store import RunStore
-run = RunStore().load_run("last")
-print(*Feed(Recording(run)).chart_series(open_mat(run)))
-"""
-
-
-@pytest.mark.slow
-def test_a_new_value_is_added_by_one_line(tmp_path: Path) -> None:
-    shutil.copytree(
-        ROOT / "tuisim", tmp_path / "tuisim", ignore=shutil.ignore_patterns("__pycache__")
-    )
-    table = tmp_path / "tuisim" / "core" / "columns.py"
-    before = table.read_text()
-    assert before.count(NEW.splitlines()[0]) == 1
-    table.write_text(before.replace(f"{NEW.splitlines()[0]}\n", NEW))
-    (tmp_path / "a.py").write_text(
-        "tank_drive.on_for_rotations(SpeedPercent(30), SpeedPercent(30), 1)\n"
-    )
-    (tmp_path / "g.toml").write_text('[[goal]]\nname = "fast"\nwhen = "speed_mm_s > 100"\n')
-
-    # An environment of its own: the processes of programs know no PYTHONPATH.
-    python = tmp_path / "venv" / "bin" / "python"
-    EnvBuilder(symlinks=True).create(tmp_path / "venv")
-    (folder,) = (tmp_path / "venv").glob("lib/python*/site-packages")
-    (folder / "copy.pth").write_text("\n".join((str(tmp_path), *map(str, site.getsitepackages()))))
-
-    def said(*words: str, start: tuple[str, ...] = ("-m", "tuisim")) -> str:
-        environment = {
-            **os.environ,
-            "TUISIM_HOME": str(tmp_path / "home"),
-            "TUISIM_ASSETS": str(ROOT),
-        }
-        done = subprocess.run(
-            [python, *start, *words],
-            cwd=tmp_path,
-            env=environment,
-            capture_output=True,
-            text=True,
-            timeout=PATIENCE_S,
-            check=False,
-        )
-        assert done.returncode == 0, done.stderr
-        return done.stdout + done.stderr
-
-    run = said(
-        "run", "a.py", "--break", "speed_mm_s > 100", "--break-then", "go", "--watch", "speed_mm_s"
-    )
-    assert "break speed_mm_s > 100" in run
-    assert "speed_mm_s → 1" in run
-    assert "speed_mm_s" in said(TRACED, start=("-c",))
-    assert "rises" in said("log", "events", "last", "--when", "speed_mm_s > 100")
-    said("log", "export", "last", "--variable", "speed_mm_s", "--out", "speed.csv")
-    assert (tmp_path / "speed.csv").read_text().startswith("time,line,speed_mm_s\n")
-    said("log", "export", "last", "--telemetry", "--out", "all.csv")
-    assert "speed_mm_s" not in (tmp_path / "all.csv").read_text()
-    assert "1 of 1 goal" in said("goals", "check", "g.toml", "last")
-    assert "speed_mm_s" in said("guide", "breakpoints")
 
 
 @pytest.mark.parametrize(

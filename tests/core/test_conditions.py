@@ -169,24 +169,6 @@ def test_names_of_variables_may_hold_operators(text: str, name: str) -> None:
     assert threshold.name == name
 
 
-OTHER_FILTERS = {
-    "word = 'a b'": [40],
-    "word ~ A": [40],
-    "word == > 5": [50],
-    "word ==": [60],
-    "Colour < inf": [40, 50, 60],
-    "Colour = 50, word ~ 5": [50],
-    "word changes": [50, 60],
-    "Colour changes and Colour > 50": [60],
-    "word != a b and Colour < 60": [50],
-}
-
-
-@pytest.mark.parametrize("text, expected", OTHER_FILTERS.items(), ids=OTHER_FILTERS)
-def test_a_filter_also_compares_texts(text: str, expected: list[float]) -> None:
-    assert by_filter(text) == expected
-
-
 def by_event(condition: str) -> None:
     thresholds_of(condition, Log("test", pa.table({"Colour": VALUES}), Layout(values=("Colour",))))
 

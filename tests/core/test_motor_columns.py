@@ -10,9 +10,7 @@ import pytest
 
 from tests.core.driver.test_simulated import Lab
 from tuisim.core.motor_columns import (
-    HOLDING,
     MOTOR_RECORD,
-    RUNNING,
     build_motor_columns,
     name_motors,
 )
@@ -62,14 +60,6 @@ def test_what_a_breakpoint_sees_is_what_is_recorded() -> None:
     assert lab.sim.motor_values == tuple(MOTOR_RECORD.iter_unpack(data[end - size : end]))
     assert lab.sim.instant(with_motors=True).motors == lab.sim.motor_values
     assert lab.sim.instant().motors == ()
-
-
-def test_the_records_of_a_lab_are_not_all_alike() -> None:
-    lab, data = record(3, 50)
-    values = [*MOTOR_RECORD.iter_unpack(data[64 : 64 + 24 * lab.sink.count])]
-    assert {bool(state & RUNNING) for *_, state in values} == {True, False}
-    assert any(state & HOLDING for *_, state in values)
-    assert any(asked_dps and duty for asked_dps, _, duty, _ in values)
 
 
 def test_a_run_has_columns_of_its_motors_only_where_they_have_drivers() -> None:

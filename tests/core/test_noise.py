@@ -95,12 +95,6 @@ def test_readings_are_distributed_as_means_of_pixels(kind: str) -> None:
     compare(*DISCS[kind], 2_000)
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("kind", DISCS)
-def test_many_readings_are_distributed_as_means_of_pixels(kind: str) -> None:
-    compare(*DISCS[kind], 40_000)
-
-
 @pytest.mark.parametrize("level", [1, 10, 128])
 def test_clamping_moves_a_value_as_its_errors_do(level: int) -> None:
     law, errors = clamping(level), [round(level * (2 * byte / 255 - 1)) for byte in range(256)]

@@ -58,14 +58,6 @@ def test_a_pen_draws_on_the_floor_around_a_mat(white: Field) -> None:
     assert on_floor.field_of_first(0).disc_sums(20, *corner) == (250 * 305, 251 * 305, 252 * 305)
 
 
-def test_a_line_is_as_wide_as_the_pen_and_has_its_colour(white: Field) -> None:
-    sim, marks = drawn(white, PenSpec(color="#00ff00", width_mm=6.0, down=True))
-    middle = int(500 + (sim.pose.x_mm - 500) / 2)
-    rows = sorted(row for col, row in marks.field.marks if col == middle)
-    assert rows == list(range(FIELD_HEIGHT_MM - 503, FIELD_HEIGHT_MM - 497))
-    assert set(marks.field.marks.values()) == {(0, 255, 0)}
-
-
 @pytest.mark.parametrize("x_mm", [550.0, 467.0], ids=["on the line", "on its beginning"])
 def test_sensors_see_the_line_and_arrays_agree(white: Field, x_mm: float) -> None:
     _, marks = drawn(white, PenSpec(color="#102030", width_mm=10.0, down=True))

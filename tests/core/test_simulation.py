@@ -6,11 +6,11 @@ from random import Random
 import pytest
 
 from tests.core.memory_sink import MemorySink
-from tests.core.motors import commanded, run
+from tests.core.motors import run
 from tuisim.core.drift_spec import NO_DRIFT
 from tuisim.core.field import Field
 from tuisim.core.geometry import Pose
-from tuisim.core.profile import NBEV3DEVSIM, NS_PER_S, PROFILES, ROBOLAB, ProfileSpec
+from tuisim.core.profile import PROFILES, ROBOLAB
 from tuisim.core.sensors import readings
 from tuisim.core.simulation import Simulation, simulation_of
 from tuisim.core.spec import (
@@ -27,46 +27,8 @@ from tuisim.core.spec import (
 from tuisim.core.values import values_of
 
 
-def simulation(profile: ProfileSpec, motor_noise: int = 0, weight: float = 6.0) -> Simulation:
-    world = WorldSpec(start=Pose(0.0, 0.0, 0.0), noise=NoiseSpec(0, motor_noise))
-    return Simulation(RunSpec(RobotSpec(weight=weight), world, profile, seed=5), MemorySink())
-
-
-def script(sim: Simulation, step: int) -> bytes:
-    """Drive through every kind of command, `step` ticks a call."""
-
-    def advance(ticks: int) -> None:
-        while ticks > 0:
-            ticks -= sim.advance(min(step, ticks))
-
-    commanded(sim.left).run(300.0)
-    commanded(sim.right).run(-420.0)
-    advance(50)
-    commanded(sim.left).run_until(1000.0, sim.ticks_at(sim.due_ns(sim.tick) + NS_PER_S))
-    advance(120)
-    commanded(sim.left).run_to(sim.left.position_deg - 500, 400.0, backwards=True)
-    commanded(sim.right).run_to(sim.right.position_deg + 333, 250.0, backwards=False)
-    advance(90)
-    commanded(sim.left).run(0.0)
-    advance(40)
-    commanded(sim.right).stop()
-    advance(17)
-    sink = sim._sink
-    assert isinstance(sink, MemorySink)
-    return sink.records()
-
-
-@pytest.mark.parametrize("profile", [ROBOLAB, NBEV3DEVSIM], ids=lambda profile: profile.name)
-@pytest.mark.parametrize("weight", [0.0, 3.0, 7.3], ids=["weightless", "light", "odd"])
-@pytest.mark.parametrize("noise", [0, 50], ids=["quiet", "noisy"])
-def test_grouping_of_ticks_does_not_matter(profile: ProfileSpec, weight: float, noise: int) -> None:
-    whole = script(simulation(profile, noise, weight), 10_000)
-    assert script(simulation(profile, noise, weight), 1) == whole
-    assert script(simulation(profile, noise, weight), 7) == whole
-
-
 def test_no_gyro_change_when_the_robot_is_lifted() -> None:
-    sim = simulation(ROBOLAB)
+    sim = Simulation(RunSpec(RobotSpec(), WorldSpec(), ROBOLAB), MemorySink())
     sim.place(Pose(10.0, 20.0, -90.0))
     instant = sim.instant()
     assert instant.gyro_zero_deg - instant.pose.heading_deg == 0

@@ -6,13 +6,11 @@ import os
 import signal
 import subprocess
 import sys
-import time
 from contextlib import ExitStack
 from pathlib import Path
 
 import pytest
 
-from tests.cases import cases
 from tests.running import PATIENCE_S, Start, until
 from tuisim.core.tick_record import TICK_RECORD
 from tuisim.protocol import End, Ended, SetPose
@@ -44,9 +42,6 @@ def test_a_run_whose_folder_cannot_be_used_says_why(tmp_path: Path) -> None:
             os.close(fd)
     reason = "the run cannot begin: No such file or directory"
     assert (told, done.stderr) == ([Ended(End.CRASHED, 0, 0, 1, reason)], b"")
-
-
-ROOT = Path(__file__).resolve().parents[2]
 
 
 def test_commands_before_the_first_line_wait_for_it(
@@ -81,46 +76,3 @@ def test_a_child_that_is_killed_leaves_every_row(start: Start) -> None:
     texts = [row.text for row in run.output.all_rows()]
     assert texts == [f"A: {i}" for i in range(len(texts))]
     assert run.telemetry.count * TICK_RECORD.size > 0
-
-
-HOST = """
-import sys, time
-from tests.runtime.test_control import spec
-from tuisim.runs.handle import RunOptions, start_run
-from tuisim.source import Program
-run = start_run(Program("p.py", sys.argv[1], "preloaded"), spec(), RunOptions(live=True))
-while run.output.length == 0:
-    run.pump()
-print(run._process.pid, run.folder, flush=True)
-time.sleep(60)
-"""
-
-
-@pytest.mark.quick_cases("C call")
-@cases(
-    "text",
-    {
-        "python": "while True: print('A: 1')",
-        "C call": "print('A: 1')\nsum(range(10**12))",
-    },
-)
-def test_child_dies_with_its_host(text: str) -> None:
-    command = [sys.executable, "-c", HOST, text]
-    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
-    with subprocess.Popen(command, cwd=ROOT, env=environment, stdout=subprocess.PIPE) as host:
-        assert host.stdout is not None
-        pid, folder = host.stdout.readline().decode().split()
-        host.kill()
-    killed_at = time.monotonic()
-    while Path(f"/proc/{pid}").exists() and _alive(int(pid)):
-        assert time.monotonic() - killed_at < PATIENCE_S
-        os.sched_yield()
-    assert (Path(folder) / "output.bin").exists()
-
-
-def _alive(pid: int) -> bool:
-    try:
-        state = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0]
-    except FileNotFoundError:
-        return False
-    return state != "Z"

@@ -95,11 +95,3 @@ def test_answer_from_the_user(start: Start) -> None:
     ended = run.wait(PATIENCE_S)
     assert ended is not None
     assert [row.text for row in run.output.all_rows()] == ["Name? Ada", "hello Ada"]
-
-
-def spec() -> object:
-    """A plain run."""
-    from tuisim.core.profile import ROBOLAB
-    from tuisim.core.spec import RobotSpec, RunSpec, WorldSpec
-
-    return RunSpec(RobotSpec(), WorldSpec(background="Grey_bands"), ROBOLAB)

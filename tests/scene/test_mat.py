@@ -19,11 +19,6 @@ def mat(ground: int = 255) -> Pixels:
     return np.full((1143, 2362, 3), ground, np.uint8)
 
 
-def middle_row(pixels: Pixels, width: int = 76) -> list[int]:
-    picture = shrink(pixels, whole_field(width, 54), OUTSIDE)
-    return [int(value) for value in picture[27, :, 0]]
-
-
 def test_a_plain_mat_stays_plain_and_what_is_off_it_is_outside() -> None:
     picture = shrink(mat(211), whole_field(76, 54), OUTSIDE)
 
@@ -45,20 +40,6 @@ def test_a_mat_of_dots_or_signs_ends_where_a_cell_ends(size: tuple[int, int]) ->
         rows - 1,
         rows,
     )
-
-
-@pytest.mark.parametrize("width_mm", [4, 10, 20])
-@pytest.mark.parametrize(
-    "ground, ink", [(255, 0), (0, 255), (211, 80)], ids=["black on white", "white", "grey"]
-)
-def test_a_thin_line_is_kept(width_mm: int, ground: int, ink: int) -> None:
-    pixels = mat(ground)
-    pixels[:, 1000 : 1000 + width_mm] = ink
-
-    strongest = max(abs(value - ground) for value in middle_row(pixels))
-
-    # The mean alone would leave 4 of 31 parts of the contrast.
-    assert strongest > 0.3 * abs(ink - ground)
 
 
 @pytest.mark.parametrize("cells", list(CellSet))

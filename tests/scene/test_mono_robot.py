@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 
 from tests.cases import cases
@@ -11,94 +10,12 @@ from tuisim.core.geometry import Pose
 from tuisim.core.outline import outline_of
 from tuisim.core.spec import RobotSpec
 from tuisim.scene.mono_robot import body, pointer
-from tuisim.scene.painter import ScenePainter, SceneState
-from tuisim.scene.pen import PenTrace, visible_on
+from tuisim.scene.pen import visible_on
 from tuisim.scene.view import whole_field
-from tuisim.terminal.cells import mono_cells
-from tuisim.terminal.fitted_cells import all_cells
-from tuisim.terminal.glyphs import GLYPHS, SIGNS, glyph_set
-from tuisim.terminal.picture_options import CellSet
-from tuisim.terminal.pixels import CellPoints, Pixels
+from tuisim.terminal.glyphs import GLYPHS, SIGNS
+from tuisim.terminal.pixels import CellPoints
 
 ROWS, COLS = 20, 50
-SETS = (CellSet.BRAILLE, CellSet.ASCII)
-
-
-def lines(picture: Pixels, cells: CellSet) -> list[str]:
-    """A picture as text."""
-    glyphs = glyph_set(cells)
-    rows, cols = len(picture) // glyphs.rows, picture.shape[1] // glyphs.cols
-    found = mono_cells(picture, glyphs, all_cells(rows, cols), cells).reshape(rows, cols)
-    return ["".join(GLYPHS[cell >> 48] for cell in row) for row in found.tolist()]
-
-
-@pytest.mark.parametrize("cells", SETS)
-@pytest.mark.parametrize("ground", [255, 0])
-def test_the_robot_and_its_heading_are_seen(cells: CellSet, ground: int) -> None:
-    mat = np.full((1143, 2362, 3), ground, np.uint8)
-    glyphs = glyph_set(cells)
-    view = whole_field(COLS * glyphs.cols, ROWS * glyphs.rows, CellPoints(glyphs.cols, glyphs.rows))
-
-    def drawn(heading_deg: float) -> list[str]:
-        scene = SceneState(RobotSpec(), Pose(1181, 571, heading_deg))
-        return lines(
-            ScenePainter(mat, (255, 255, 255), PenTrace(), mono=True).paint(view, scene), cells
-        )
-
-    pictures = [drawn(heading) for heading in range(0, 360, 45)]
-    empty = lines(
-        ScenePainter(mat, (255,) * 3, PenTrace(), mono=True).paint(
-            view, SceneState(RobotSpec(), Pose(9000, 9000, 0))
-        ),
-        cells,
-    )
-    for at, picture in enumerate(pictures):
-        differs = [
-            sum(a != b for a, b in zip("".join(picture), "".join(other), strict=True))
-            for other in [*pictures[:at], *pictures[at + 1 :], empty]
-        ]
-        assert min(differs) >= 5
-
-
-def _reached(white: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool_]:
-    """The white points that can be reached from the edge of a picture over white points, up, down and sideways."""
-    reached = np.zeros_like(white)
-    reached[[0, -1], :] = reached[:, [0, -1]] = True
-    while True:
-        wider = reached.copy()
-        wider[1:] |= reached[:-1]
-        wider[:-1] |= reached[1:]
-        wider[:, 1:] |= reached[:, :-1]
-        wider[:, :-1] |= reached[:, 1:]
-        wider &= white
-        if (wider == reached).all():
-            return reached
-        reached = wider
-
-
-@pytest.mark.parametrize("ground", [211, 0])
-def test_the_robot_in_dots_is_a_shape_and_no_pattern(ground: int) -> None:
-    """Within a white rim it has a closed black edge, so that it is no accident of the dots around it."""
-    view = whole_field(2 * COLS, 4 * ROWS, CellPoints(2, 4))
-    painter = ScenePainter(
-        np.full((1143, 2362, 3), ground, np.uint8), (255,) * 3, PenTrace(), mono=True
-    )
-    robot = RobotSpec()
-    for heading in range(0, 360, 30):
-        pose = Pose(1181, 571, heading)
-        picture = painter.paint(view, SceneState(robot, pose))[..., 0]
-        empty = painter.paint(view, SceneState(robot, Pose(9000, 9000, 0)))[..., 0]
-        changed = picture != empty
-        assert set(np.unique(picture[changed]).tolist()) <= {0, 255}
-        rows, cols = np.nonzero(changed)
-        part = np.pad(picture, 1, constant_values=255)[
-            rows.min() : rows.max() + 3, cols.min() : cols.max() + 3
-        ]
-        white = part == 255
-        if ground not in (0, 255):
-            white |= part == ground
-        inside = white & ~_reached(white)
-        assert inside.sum() >= 10, f"the edge is open at {heading} degrees"
 
 
 @pytest.mark.parametrize("heading", range(0, 360, 45))

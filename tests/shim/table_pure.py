@@ -1,73 +1,8 @@
-"""Checks of what needs no device: units, wheels, stop watch, the library's own errors."""
+"""Checks of what needs no device: stop watch, the library's own errors."""
 
 from __future__ import annotations
 
 from tests.shim.checking import Check, Table
-
-
-def _distance(name: str, attribute: str, text: str, mm: float) -> tuple[Check, ...]:
-    return (
-        Check(
-            f"{name}(2).mm, {name}(2).{attribute}",
-            f"({2 * mm!r}, 2)",
-            f"{name} {name}.__init__ {name}.mm {name}.{attribute}",
-        ),
-        Check(f"str({name}(2))", repr(f"2{text}"), f"{name}.__str__"),
-        Check(
-            f"type({name}(2) * 3).__name__, round(({name}(2) * 3).mm, 6)",
-            f"({name!r}, {round(6 * mm, 6)!r})",
-            f"{name}.__mul__",
-        ),
-        Check(f"round((3 * {name}(2)).mm, 6)", repr(round(6 * mm, 6)), "DistanceValue.__rmul__"),
-        Check(f"{name}(2) * 'x'", "AssertionError"),
-    )
-
-
-UNIT = Table(
-    "ev3dev2.unit",
-    "from ev3dev2.unit import *",
-    (
-        Check(
-            "CENTIMETER_MM, DECIMETER_MM, METER_MM, INCH_MM, FOOT_MM, YARD_MM, STUD_MM",
-            "(10, 100, 1000, 25.4, 304.8, 914.4, 8)",
-            "CENTIMETER_MM DECIMETER_MM METER_MM INCH_MM FOOT_MM YARD_MM STUD_MM",
-        ),
-        *_distance("DistanceMillimeters", "millimeters", "mm", 1),
-        *_distance("DistanceCentimeters", "centimeters", "cm", 10),
-        *_distance("DistanceDecimeters", "decimeters", "dm", 100),
-        *_distance("DistanceMeters", "meters", "m", 1000),
-        *_distance("DistanceInches", "inches", "in", 25.4),
-        *_distance("DistanceFeet", "feet", "ft", 304.8),
-        *_distance("DistanceYards", "yards", "yd", 914.4),
-        *_distance("DistanceStuds", "studs", "stud", 8),
-        Check(
-            "DistanceInches(1) < DistanceCentimeters(3), DistanceInches(1) > DistanceCentimeters(3)",
-            "(True, False)",
-            "DistanceValue DistanceValue.__lt__",
-        ),
-        Check("DistanceInches(1) <= DistanceCentimeters(3)", "TypeError"),
-        Check("DistanceInches(1) == DistanceInches(1)", "False"),
-    ),
-)
-
-WHEEL = Table(
-    "ev3dev2.wheel",
-    "from ev3dev2.wheel import *",
-    (
-        Check("w = Wheel(40, 10)"),
-        Check(
-            "w.diameter_mm, w.width_mm, w.radius_mm, round(w.circumference_mm, 4)",
-            "(40.0, 10.0, 20.0, 125.6637)",
-            "Wheel Wheel.__init__ Wheel.diameter_mm Wheel.width_mm Wheel.radius_mm Wheel.circumference_mm",
-        ),
-        Check(
-            "[(w().diameter_mm, w().width_mm) for w in (EV3Rim, EV3Tire, EV3EducationSetRim, EV3EducationSetTire)]",
-            "[(30.0, 20.0), (43.2, 21.0), (43.0, 26.0), (56.0, 28.0)]",
-            "EV3Rim EV3Rim.__init__ EV3Tire EV3Tire.__init__ EV3EducationSetRim EV3EducationSetRim.__init__ "
-            "EV3EducationSetTire EV3EducationSetTire.__init__",
-        ),
-    ),
-)
 
 STOPWATCH = Table(
     "ev3dev2.stopwatch",

@@ -120,20 +120,6 @@ def test_pillow_is_imported_for_the_display_only(run_on: RunOn) -> None:
     assert done.lines == ["False", "True"]
 
 
-def test_live_and_headless_show_the_same(run_on: RunOn) -> None:
-    text = (
-        "import threading, time\nfrom ev3dev2.console import Console\nfrom ev3dev2.display import Display\n"
-        "from ev3dev2.sound import Sound\nd, c, s = Display(), Console(), Sound()\n"
-        "def draw():\n    for x in range(5):\n        d.point(False, x=x)\n        d.update()\n"
-        "def write():\n    for n in range(5):\n        c.text_at(str(n), n + 1)\n        time.sleep(0.007)\n"
-        "threads = [threading.Thread(target=part) for part in (draw, write, lambda: s.tone(440, 30))]\n"
-        "for thread in threads:\n    thread.start()\n"
-    )
-    headless, live = run_on(text), run_on(text, live=True)
-    assert headless.recording == live.recording
-    assert len(shown(headless)) >= 10
-
-
 TABLES: Tables = {
     "display": (DISPLAY, "plain", "empty"),
     "frame buffer": (FRAME_BUFFER, "plain", "empty"),

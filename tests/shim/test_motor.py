@@ -4,13 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-from tests.running import over
 from tests.shim import table_groups, table_motor
 from tests.shim.checking import Table, Tables, cases, check
 from tests.shim.conftest import START, RunOn
 from tuisim.runs.frames import telemetry_frame
-from tuisim.runs.rerun import rerun, same
-from tuisim.runs.store import RunStore
 
 BACKWARDS = """
 from ev3dev2.motor import *
@@ -124,14 +121,6 @@ def test_an_arm_presses_a_sensor_at_its_end_in_every_view_of_the_run(run_on: Run
     assert [pressed[tick] for tick, _ in told] == [0.0, 1.0, 0.0]
     # One stretch, that ends with the move away from the stop.
     assert (pressed.diff() != 0).sum() == 3
-
-
-@pytest.mark.parametrize("text", [HOMES, PRESSED], ids=["homes", "pressed"])
-def test_a_stored_run_of_such_a_robot_gives_the_same_bits_again(run_on: RunOn, text: str) -> None:
-    stored = run_on(text + BACKWARDS, "arm").run.stored()
-    again = rerun(stored, RunStore())
-    over(again)
-    assert same(stored, again.stored()).same
 
 
 TABLES: Tables = {

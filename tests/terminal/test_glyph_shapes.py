@@ -6,19 +6,7 @@ from itertools import pairwise
 
 import pytest
 
-from tuisim.terminal.glyph_shapes import Area, Bend, Dot, GlyphShape, shapes_of
-
-SHAPES: dict[str, tuple[GlyphShape, ...] | None] = {
-    "█": (Area(0, 0, 8, 16),),
-    "▄": (Area(0, 8, 8, 16),),
-    "▏": (Area(0, 0, 1, 16),),
-    "▚": (Area(0, 0, 4, 8), Area(4, 8, 8, 16)),
-    "⠁": (Dot(2.0, 2.0, 1.4),),
-    "─": (Area(0, 7, 8, 8),),
-    "a": None,
-    "──": None,
-}
-"""In a cell of 8 × 16 pixels."""
+from tuisim.terminal.glyph_shapes import Area, Bend, GlyphShape, shapes_of
 
 
 def painted(shapes: tuple[GlyphShape, ...] | None) -> set[tuple[int, int]]:
@@ -31,18 +19,6 @@ def painted(shapes: tuple[GlyphShape, ...] | None) -> set[tuple[int, int]]:
         for x in range(left, right)
         for y in range(top, bottom)
     }
-
-
-@pytest.mark.parametrize(
-    "char, shapes", SHAPES.items(), ids=[hex(ord(char[0])) + char for char in SHAPES]
-)
-def test_shapes_of_a_character(char: str, shapes: tuple[GlyphShape, ...] | None) -> None:
-    found = shapes_of(char, 8, 16)
-    if painted(shapes):
-        # Of how many areas it is made does not matter.
-        assert painted(found) == painted(shapes)
-    else:
-        assert found == shapes
 
 
 @pytest.mark.parametrize("width, height", [(4, 8), (7, 15), (20, 41)])

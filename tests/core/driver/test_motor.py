@@ -141,19 +141,6 @@ def test_a_move_is_the_same_in_single_steps(position: int, speed_dps: int) -> No
         )
 
 
-@pytest.mark.parametrize("seed", range(10))
-def test_a_released_motor_never_speeds_up(seed: int) -> None:
-    motor = build_motor()
-    for _ in play(motor, seed, None):
-        pass
-    give(motor, 3000 * MS, Command.RESET)
-    speed_dps = abs(motor.axle.speed_dps)
-    for now_ms in range(3000, 8000, 10):
-        motor.run_until(now_ms * MS)
-        assert abs(motor.axle.speed_dps) <= speed_dps
-        speed_dps = abs(motor.axle.speed_dps)
-
-
 def test_a_ramp_that_turns_back_goes_through_0() -> None:
     motor = build_motor()
     give(motor, 0, Command.RUN_FOREVER, speed_dps=400, ramp_up_ms=500, ramp_down_ms=500)

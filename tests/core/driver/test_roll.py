@@ -57,23 +57,6 @@ def test_a_roll_is_what_single_steps_make(seed: int, kind: str) -> None:
         assert rolling.states == stepped.states
 
 
-@pytest.mark.parametrize("kind", ROLLS)
-@pytest.mark.parametrize("seed", range(4))
-def test_a_roll_ends_where_single_steps_are(seed: int, kind: str) -> None:
-    rolling, chance = build_rolling(seed, kind)
-    stepped, _ = build_rolling(seed, kind)
-    end_ns = 402 * MS + chance.randrange(300 * MS)
-    rolling.run_until(end_ns)
-    step_on(stepped, end_ns)
-    rolling.wake(end_ns)
-    for step in range(1, 101):
-        for motor in rolling, stepped:
-            step_on(motor, end_ns + step * STEP_NS)
-        assert rolling.axle.angle_deg == pytest.approx(stepped.axle.angle_deg, abs=1e-9)
-        assert rolling.position == stepped.position
-        assert abs(rolling.speed_dps - stepped.speed_dps) <= 1
-
-
 def test_a_motor_that_rolls_out_is_not_stepped() -> None:
     rolling, _ = build_rolling(4, "coast")
     steps: list[int] = []

@@ -8,8 +8,6 @@ from dataclasses import replace
 import pytest
 
 from tests.core.memory_sink import MemorySink
-from tests.core.motors import SERVO, run
-from tuisim.core.driver.motor import Command, MotorCommand, SetPoints
 from tuisim.core.geometry import Pose
 from tuisim.core.motors import STOPPED, TIMED
 from tuisim.core.profile import PROFILES, ProfileSpec
@@ -137,33 +135,6 @@ def test_a_motion_for_a_time_ends_at_a_wall(ending: Ending) -> None:
     assert (robot.motors[0].position_deg, robot.sim.drive.x_mm) == (at_deg, 300)
 
 
-@pytest.mark.parametrize("profile", SERVO)
-@pytest.mark.parametrize("blocking", ["run", "move"])
-@pytest.mark.parametrize("freeing", ["run", "move"])
-def test_motors_that_a_wall_has_blocked_drive_back(
-    profile: str, blocking: str, freeing: str
-) -> None:
-    robot = Robot(WALLED, PROFILES[profile])
-
-    def command(way: str, counts: int) -> None:
-        for motor in robot.motors:
-            if way == "run":
-                run(robot.sim, motor, counts / 2)
-            else:
-                target = motor.milli // 1000 + counts
-                motor.control.move_to(robot.now_us, motor.measured, target, 1600, 3200)
-                motor.follow()
-
-    command(blocking, 4000)
-    robot.sim.advance(400)
-    at_mm = robot.sim.drive.x_mm
-    assert robot.motors[0].control.stalled
-    command(freeing, -2000)
-    # A motion at a speed that was blocked counts on: a move to a position begins there.
-    robot.sim.advance(800)
-    assert robot.sim.drive.x_mm < at_mm - 100
-
-
 @pytest.mark.parametrize(
     ("profile", "seed", "given"),
     [
@@ -196,17 +167,3 @@ def test_commands_give_what_they_gave(profile: str, seed: int, given: str) -> No
         )
     sums = [sum(map(abs, values)) for values in zip(*rows, strict=True)]
     assert sums == pytest.approx(list(map(int, given.split())), abs=0.6)
-
-
-@pytest.mark.parametrize("duty", [100, -60, 30])
-def test_a_free_motor_turns_as_under_ev3dev(duty: int) -> None:
-    robot, other = (
-        Robot(WORLD),
-        Simulation(RunSpec(RobotSpec(), WORLD, PROFILES["ev3"]), MemorySink()),
-    )
-    robot.motors[0].run_freely(0, 100 * duty)
-    other.command_motor(MotorCommand(0, 0, Command.RUN_DIRECT, SetPoints(duty=duty)))
-    for _ in range(30):
-        robot.sim.advance(1)
-        other.advance(1)
-        assert robot.motors[0].position_deg == pytest.approx(other.left.position_deg, abs=0.01)

@@ -241,28 +241,6 @@ def test_a_line_without_code_holds_at_the_next_one_that_has(
     assert driver.do(RunToLine(line)).line == held
 
 
-def test_history_leads_back(debug: Callable[..., Driver]) -> None:
-    driver = debug(CALLS, live=False, trace_from_tick=4, hold_at=(10, 2))
-    assert driver.paused().line == 9
-    *_, before, here = driver.history().lines
-    assert (here.tick, here.ordinal, here.line, here.depth) == (10, 2, 9, 1)
-    assert (before.tick, before.ordinal, before.line, before.depth) == (10, 1, 5, 2)
-    back = debug(CALLS, live=False, hold_at=(before.tick, before.ordinal))
-    assert (back.paused().line, back.values()) == (5, {"a": "1", "b": "2"})
-
-
-def test_ticks_are_instants_too_and_what_never_comes_holds_at_the_end(
-    debug: Callable[..., Driver],
-) -> None:
-    driver = debug(CALLS, live=False, hold_at=(3, AFTER_TICK))
-    assert driver.paused().tick == 3
-    assert driver.do(RunToInstant(12)).ordinal == BEFORE_NEXT_TICK
-    assert driver.run.telemetry.count == 13
-    assert driver.do(RunToInstant(500)).reason == "end"
-    assert driver.look("total").watches[0].value == "6"
-    assert driver.finish(Resume()).end == "finished"
-
-
 def test_a_break_in_any_thread_holds_all(debug: Callable[..., Driver]) -> None:
     driver = debug(THREADS, breaks=("5 if name == 'B'",))
     held = driver.paused()

@@ -104,35 +104,6 @@ def test_time_and_threads(run: Run, text: str, lines: list[str] | None) -> None:
     assert run(text).recording == first.recording
 
 
-STEERS_AND_LOGS = """
-import threading, time, random
-def steer():
-    while not done:
-        tank_drive.on(random.randint(10, 60), random.randint(10, 60))
-        time.sleep(0.13)
-done = []
-thread = threading.Thread(target=steer)
-thread.start()
-for i in range(40):
-    print('Colour: ' + str(colorLeft.reflected_light_intensity_pc))
-    time.sleep(0.05)
-done.append(True)
-thread.join()
-tank_drive.on_for_rotations(50, 50, 0.5)
-"""
-
-
-@pytest.mark.quick_cases("quiet")
-@pytest.mark.parametrize("noise", [(0, 0), (20, 50)], ids=["quiet", "noisy"])
-def test_live_and_headless_runs_record_the_same_bits(run: Run, noise: tuple[int, int]) -> None:
-    headless = run(STEERS_AND_LOGS, noise=noise)
-    assert headless.ended.end == "finished"
-    fast = run(STEERS_AND_LOGS, noise=noise, live=True, speed=0.0)
-    paced = run(STEERS_AND_LOGS, noise=noise, live=True, speed=20.0)
-    assert fast.recording == headless.recording
-    assert paced.recording == headless.recording
-
-
 def test_lines_of_the_program_are_recorded(run: Run) -> None:
     done = run("import time\n\nprint('A: 1')\ntime.sleep(0.1)\nprint('A: 2')\n")
     rows = done.run.output.all_rows()

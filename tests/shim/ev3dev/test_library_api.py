@@ -150,8 +150,6 @@ OWN = (
     "ev3dev2.sensor.lego",
     "ev3dev2.sound",
     "ev3dev2.stopwatch",
-    "ev3dev2.unit",
-    "ev3dev2.wheel",
     "ev3dev2.version",
 )
-"""Modules that the simulated brick has."""
+"""Modules that the simulated brick has; `unit` and `wheel` compute, and are the library's own."""

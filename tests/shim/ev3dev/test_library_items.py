@@ -25,8 +25,6 @@ from tests.shim.checking import Table, Tables, cases, check
 from tests.shim.conftest import RunOn
 
 TABLES: Tables = {
-    "unit": (table_pure.UNIT, "plain", "empty"),
-    "wheel": (table_pure.WHEEL, "plain", "empty"),
     "stopwatch": (table_pure.STOPWATCH, "plain", "empty"),
     "library": (table_pure.ROOT, "default", "empty"),
     "devices": (table_reference.DEVICES, "eyes", "empty"),
