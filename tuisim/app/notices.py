@@ -57,8 +57,7 @@ class NoticeRow(Static):
     NoticeRow {{
         layer: {NOTICE_LAYER};
         dock: bottom;
-        width: auto;
-        max-width: 100%;
+        width: 100%;
         height: 1;
         margin-bottom: 1;
         padding: 0 1;

@@ -287,13 +287,13 @@ class PanelArea(Container):
         for panel in asked:
             if not self.shown(panel):
                 self.app.notify(
-                    f"{PANELS[panel].title} does not fit here: hide another panel or enlarge the terminal"
+                    f"No room for {PANELS[panel].title}: hide another panel or enlarge the terminal"
                 )
         gone = [PANELS[panel] for panel in before if panel not in wanted and not self.shown(panel)]
         came = " and ".join(PANELS[panel].title for panel in asked if self.shown(panel))
         if gone and came:
             names = ", ".join(f"{info.title} ({label_of_key(info.key)})" for info in gone)
-            self.app.notify(f"{came} replaces {names}")
+            self.app.notify(f"{came} instead of {names}")
 
     def maximize(self, panel: str) -> None:
         """Maximize one panel; an empty id restores the others."""

@@ -54,8 +54,9 @@ async def test_a_panel_without_room_takes_the_place_of_another() -> None:
         await pilot.press("c")
         assert app.panel_area.shown("chart")
         assert not app.panel_area.shown("instrumentation")
-        assert "Chart replaces Instrumentation (i), Output (O), Simulator controls (H)" in notices(
-            app
+        assert (
+            "Chart instead of Instrumentation (i), Output (O), Simulator controls (H)"
+            in notices(app)
         )
         await pilot.press("c")
         assert app.panel_area.shown("instrumentation")

@@ -602,6 +602,7 @@ def _next_steps(now: Situation) -> tuple[str, ...]:
     """Return the ids of the likely next steps: out of the past, on with a run, to its results, or to a first run."""
     code = ("to-cursor", "break") if now.reads_code else ()
     wrong = ("went-wrong",) if now.has_reasons else ()
+    mended = ("edit",) if now.has_reasons else ()
     if now.can_undo:
         return ("undo", *_next_steps(replace(now, can_undo=False)))
     if now.looks_back:
@@ -611,9 +612,10 @@ def _next_steps(now: Situation) -> tuple[str, ...]:
     if now.state in IN_RUN:
         return ("stop", "pause")
     if now.reads_code:
-        return ("run", *wrong, *(("analyse", "panel-chart") if now.has_run else ()), "edit", *code)
+        results = ("analyse", "panel-chart") if now.has_run else ()
+        return ("run", *wrong, *mended, *results, "edit", *code)
     if now.has_run:
-        return ("run", *wrong, "analyse", "export", "panel-chart", "edit", "back")
+        return ("run", *wrong, *mended, "analyse", "export", "panel-chart", "edit", "back")
     return ("run", "open", "edit", "mats")
 
 
