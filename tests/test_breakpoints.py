@@ -31,12 +31,10 @@ RULES: dict[str, tuple[BreakRule, str]] = {
     "  7   if  a[0] ": (LineBreak(7, "a[0]"), "7 if a[0]"),
     "left_red_pc < 10": (ValueCondition("left_red_pc", "<", "10"), "left_red_pc < 10"),
     "left.red% < 10": (ValueCondition("left_red_pc", "<", "10"), "left_red_pc < 10"),
-    "left red % < 10": (ValueCondition("left_red_pc", "<", "10"), "left_red_pc < 10"),
     "left sensor red % < 10": (ValueCondition("left_red_pc", "<", "10"), "left_red_pc < 10"),
     "left.red < 10": (ValueCondition("left_red", "<", "10"), "left_red < 10"),
     "right.color changes": (ValueCondition("right_color", "changes"), "right_color changes"),
     "left.color = Blue": (ValueCondition("left_color", "==", "Blue"), "left_color == Blue"),
-    "left.color == Blue": (ValueCondition("left_color", "==", "Blue"), "left_color == Blue"),
     "ultrasonic<200": (ValueCondition("ultrasonic_mm", "<", "200"), "ultrasonic_mm < 200"),
     "ultrasonic sensor <= 2.5e2": (
         ValueCondition("ultrasonic_mm", "<=", "250"),

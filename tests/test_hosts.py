@@ -6,7 +6,6 @@ from pathlib import Path
 
 import pytest
 
-from tests.conftest import Command
 from tests.hosts import HOSTS, hosted
 from tests.marks.attackers import TO_ALL
 
@@ -26,27 +25,3 @@ def test_an_enemy_affects_its_own_run_only(host: str, tmp_path: Path) -> None:
     assert found.runs["ada"] == found.runs["zoe"]
     assert found.runs["ada"].printed == ("A: 1",)
     assert found.code == CODES.get(host, 0)
-
-
-@pytest.mark.usefixtures("home")
-def test_goals_are_checked_for_the_others(here: Command, tmp_path: Path) -> None:
-    (tmp_path / "goals.toml").write_text(
-        'title = "Done"\n[[goal]]\nname = "finish"\nfinish = true\n'
-    )
-    for name, text in PROGRAMS.items():
-        (tmp_path / f"{name}.py").write_text(text)
-    ran = here("run", "ada.py", "eve.py", "zoe.py")
-    ends = [
-        line.split()[1].strip(":")
-        for line in ran.stderr.splitlines()
-        if line.partition(".")[0] in PROGRAMS
-    ]
-    assert (ran.returncode, ends) == (1, ["finished", "falsified", "finished"]), ran
-    done = here("goals", "check", "goals.toml", "1", "2", "3")
-    marks = [
-        line.partition(" · ")[2] for line in done.stdout.splitlines() if line.startswith("run ")
-    ]
-    assert marks == [f"Done: {points} of 1 goal, {points} of 1 points" for points in (1, 0, 1)], (
-        done.stdout
-    )
-    assert done.returncode == 1

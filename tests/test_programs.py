@@ -67,26 +67,6 @@ def test_example_finishes(name: str, profile: str, here: Command) -> None:
     assert facts.items() >= EXAMPLES[name].items()
 
 
-@pytest.mark.quick_cases("calm")
-@pytest.mark.parametrize(
-    "words",
-    [[], ["-N", 20, "-M", 50], ["-N", 20, "-M", 50, "--seed", 3]],
-    ids=["calm", "noise", "seed"],
-)
-def test_line_follower_arrives_at_the_red_bar(words: list[object], here: Command) -> None:
-    done = here("run", "follow_line", "--json", "--timeout", 100, *words)
-    facts = json.loads(done.stdout)
-    assert facts["x_mm"] == pytest.approx(1855, abs=10)
-    assert facts["y_mm"] == pytest.approx(582, abs=5)
-
-
-def test_square_comes_back_to_where_it_began(here: Command) -> None:
-    facts = json.loads(here("run", "square", "--json").stdout)
-    assert facts["x_mm"] == pytest.approx(100, abs=3)
-    assert facts["y_mm"] == pytest.approx(800, abs=3)
-    assert facts["heading_deg"] == pytest.approx(-360, abs=1)
-
-
 @pytest.mark.quick_cases("100-White-6", "500-Green-3")
 @pytest.mark.parametrize(
     "x_mm, name, code",
@@ -110,7 +90,7 @@ def test_colour_is_named_and_said(x_mm: int, name: str, code: int, here: Command
 
 @pytest.mark.parametrize(
     "x_mm, value",
-    [(125, 255), (325, 220), (725, 211), (1125, 128), (1525, 0)],
+    [(125, 255), (1125, 128), (1525, 0)],
     ids=lambda value: str(value),
 )
 def test_all_properties_of_a_grey(x_mm: int, value: int, here: Command) -> None:
@@ -122,29 +102,6 @@ def test_all_properties_of_a_grey(x_mm: int, value: int, here: Command) -> None:
         f"rgb: {(value, value, value)}",
         f"color: {code}",
         f"color_name: {name}",
-    ]
-
-
-def test_log_of_the_greys_has_the_plateaus_in_driving_order(here: Command) -> None:
-    printed = here("run", "log_greys").stdout.splitlines()
-    values = [float(line.removeprefix("Colour: ")) for line in printed]
-    bands = [
-        value
-        for value, after in zip(values, [*values[1:], None], strict=True)
-        if value == after or after is None
-    ]
-    plateaus = [
-        value for value, before in zip(bands, [None, *bands], strict=False) if value != before
-    ]
-    assert plateaus == [
-        100,
-        86.27450980392157,
-        100,
-        82.74509803921568,
-        100,
-        50.19607843137255,
-        100,
-        0,
     ]
 
 
@@ -171,13 +128,7 @@ def test_pybricks_line_follower_stays_on_the_stick(here: Command) -> None:
     assert facts["heading_deg"] == pytest.approx(-360, abs=5)
 
 
-def test_pybricks_missions_end_where_they_began(here: Command) -> None:
-    facts = json.loads(here("run", "pybricks_mission", "--json").stdout)
-    assert (facts["x_mm"], facts["y_mm"]) == (
-        pytest.approx(400, abs=15),
-        pytest.approx(600, abs=15),
-    )
-    assert facts["heading_deg"] == pytest.approx(-360, abs=2)
+def test_the_mission_of_another_button_is_to_go_round_the_corner(here: Command) -> None:
     corner = here("run", "pybricks_mission", "--press", "right@1")
     assert corner.stdout == "Gyro: 0\n"
 
