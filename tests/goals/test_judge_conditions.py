@@ -178,13 +178,6 @@ PLACES = {
         "left the area",
         3,
     ),
-    "inside not at the start": Case(
-        "inside = { x_mm = 900, y_mm = 400, width_mm = 100, height_mm = 100 }",
-        ALONG,
-        "missed",
-        0.0,
-        "was not in the area from the start",
-    ),
     "inside until": Case(
         "inside = { x_mm = 400, y_mm = 400, width_mm = 300, height_mm = 200 }\nuntil = 1",
         ALONG,

@@ -16,7 +16,7 @@ from tuisim.errors import ConfigError
 from tuisim.marks import students
 from tuisim.marks.journal import Journal
 from tuisim.marks.outcome import GoalOutcome, Outcome
-from tuisim.marks.students import Student, file_outside, find_students
+from tuisim.marks.students import file_outside, find_students
 from tuisim.marks.workspace import copy_of, digest_of, program_in
 
 
@@ -227,20 +227,10 @@ def test_a_journal_knows_what_an_interrupted_marking_has_done(tmp_path: Path) ->
     assert path.stat().st_mode & 0o777 == 0o600
 
 
-def test_a_student_without_a_program_has_no_text() -> None:
-    assert Student("ada", Path("ada"), problem="nothing").text == ""
-
-
 SECRET = "secret = 1\n"
 LINKS = {
     "the file": ("eve.py", "../secret.py", "it is a link; hand in the files themselves"),
     "the folder": ("eve", "../elsewhere", "it is a link; hand in the files themselves"),
-    "another's": ("eve.py", "ada.py", "it is a link; hand in the files themselves"),
-    "the main program": (
-        "eve/main.py",
-        "../../secret.py",
-        "main.py is a link that leads out of the folder",
-    ),
     "a module": (
         "eve/lib/helper.py",
         "../../../secret.py",

@@ -68,12 +68,17 @@ def test_a_stop_lies_beyond_every_target(case: str) -> None:
     assert (motor.low_deg, motor.high_deg) == expected
 
 
-def test_targets_turn_with_a_motor_that_is_mounted_the_other_way_round() -> None:
-    text = f"arm = Motor(Port.A, Direction.COUNTERCLOCKWISE)\narm.run_target(500, 90)\n{_HOME}"
+@pytest.mark.parametrize(
+    "mounted, expected",
+    [("Direction.COUNTERCLOCKWISE", (-135.0, 225.0)), ("gears=[16, 8]", (-225.0, 90.0))],
+    ids=["the other way round", "behind gears"],
+)
+def test_targets_turn_with_the_motor(mounted: str, expected: tuple[float, float]) -> None:
+    text = f"arm = Motor(Port.A, {mounted})\narm.run_target(500, 90)\n{_HOME}"
     found = built(text, PYBRICKS_HEAD)
     assert found is not None
     (motor,) = found.choice.spec.extra_motors
-    assert (motor.low_deg, motor.high_deg) == (-135.0, 225.0)
+    assert (motor.low_deg, motor.high_deg) == expected
 
 
 def test_a_position_that_is_not_known_is_no_error() -> None:
