@@ -177,6 +177,10 @@ def test_a_switch_turns_it_off_and_on(run: Run, front: Front) -> None:
     assert "height: 300px" in run("%sim_app --height 300")
 
 
+def test_turned_off_above_the_first_picture_it_writes_nothing_into_the_notebook(run: Run) -> None:
+    assert (run("%sim_app --off"), run()) == ("", "")
+
+
 def test_without_a_picture_only_the_magic_of_the_app_offers_it(run: Run) -> None:
     assert run("%sim_magic -W") == ""
     assert run("%sim_app -W")
