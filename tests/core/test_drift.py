@@ -11,6 +11,7 @@ import pytest
 from tests.core.memory_sink import MemorySink
 from tests.core.motors import commanded
 from tuisim.core.drift import (
+    JERK_MM,
     bright_side,
     drawn_errors,
     find_drift,
@@ -149,6 +150,47 @@ def test_wrong_sizes_turn_a_square_as_far_as_the_closed_form_says() -> None:
         sides = 4 * SIDE_MM * (drawn.right - drawn.left) / (ROBOT.wheel_spacing_mm * drawn.spacing)
         turns = 2 * pi * ((drawn.left + drawn.right) / 2 / drawn.spacing - 1)
         assert radians(error.heading_deg) == pytest.approx(sides + turns, abs=1e-9)
+
+
+def test_slip_loses_a_share_of_each_turn_and_spreads_as_its_root() -> None:
+    ways = []
+    for seed in range(200):
+        sim = simulation(DriftSpec(turn_slip_pc=2.0), seed)
+        move(sim, -300.0, 300.0)
+        ways.append(sim.pose.heading_deg)
+    turned_mm = 300 * MM_PER_DEG
+    full = 2 * turned_mm / ROBOT.wheel_spacing_mm
+    spread = sqrt(2 * 0.02 * turned_mm * JERK_MM) / ROBOT.wheel_spacing_mm
+    assert radians(fmean(ways)) == pytest.approx(full * 0.98, abs=4 * spread / sqrt(200))
+    assert radians(pstdev(ways)) == pytest.approx(spread, rel=0.2)
+
+
+def test_slip_grows_with_acceleration_and_steady_wheels_do_not_slip() -> None:
+    lost_mm: dict[float, float] = {}
+    for weight in (3.0, 9.0):
+        robot, world = (
+            RobotSpec(weight=weight),
+            WorldSpec(start=Pose(0.0, 500.0, 0.0), drift=DriftSpec(slip_pc=5.0)),
+        )
+        found = []
+        for seed in range(40):
+            sim = Simulation(RunSpec(robot, world, PROFILES["robolab"], seed), MemorySink())
+            commanded(sim.left).run(500)
+            commanded(sim.right).run(500)
+            sim.advance(20)
+            found.append(
+                (sim.left.position_deg + sim.right.position_deg) / 2 * MM_PER_DEG - sim.pose.x_mm
+            )
+            sim.advance(180)
+            heading_deg, tail = sim.pose.heading_deg, sim.pose
+            sim.advance(100)
+            assert sim.pose.heading_deg == heading_deg
+            assert hypot(sim.pose.x_mm - tail.x_mm, sim.pose.y_mm - tail.y_mm) == pytest.approx(
+                500 * MM_PER_DEG
+            )
+        lost_mm[weight] = fmean(found)
+    # The share that is lost and the way in these ticks both grow with the acceleration.
+    assert lost_mm[3.0] == pytest.approx(9 * lost_mm[9.0], rel=0.3)
 
 
 def test_backlash_loses_its_angle_at_each_reversal() -> None:
