@@ -74,7 +74,7 @@ def test_a_zip_stays_in_its_folder(tmp_path: Path, name: str, kind: int, problem
         archive.writestr(entry, "/etc/passwd")
     with pytest.raises(ConfigError, match=problem):
         unpack_zip(tmp_path / "a.zip", tmp_path / "place", 1 << 20)
-    assert [path.name for path in (tmp_path / "place").rglob("*") if path.is_file()] == ["main.py"]
+    assert [path.name for path in tmp_path.iterdir()] == ["a.zip"]
 
 
 def test_a_zip_has_bounds(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

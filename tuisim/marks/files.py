@@ -15,6 +15,7 @@ from typing import BinaryIO
 from tuisim.errors import ConfigError, LogError
 from tuisim.regular_file import open_regular
 from tuisim.runs.child.isolation import MOST_FILES
+from tuisim.runs.removal import remove_tree
 
 LEFT_OUT = shutil.ignore_patterns(
     *("__pycache__", "__MACOSX", "._*", ".DS_Store", ".git", ".venv", "venv", "node_modules")
@@ -104,6 +105,7 @@ def unpack_zip(path: Path, place: Path, max_bytes: int) -> None:
         with open_regular(path, follow_links=True) as file, zipfile.ZipFile(file) as archive:
             _unpack(archive, place, max_bytes)
     except _ODD_ZIP as error:
+        remove_tree(place)
         reason = error.strerror if isinstance(error, OSError) else error
         raise ConfigError(f"cannot be unpacked: {reason}", file=path.name) from error
 
@@ -111,6 +113,8 @@ def unpack_zip(path: Path, place: Path, max_bytes: int) -> None:
 def _unpack(archive: zipfile.ZipFile, place: Path, max_bytes: int) -> None:
     if len(archive.infolist()) > MOST_FILES:
         raise ValueError(f"it has more than {MOST_FILES:,} files")
+    if sum(entry.file_size for entry in archive.infolist()) > max_bytes:
+        raise ValueError(f"it has more than {max_bytes >> 20:,} MiB")
     place.mkdir()
     left = max_bytes
     for entry in archive.infolist():
