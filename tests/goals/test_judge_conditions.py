@@ -698,3 +698,14 @@ def test_condition(case: Case, home: Path, tmp_path: Path) -> None:
         assert found.changes[-1].time_s == pytest.approx(case.time_s, abs=0.006)
     if case.line >= 0:
         assert found.line == case.line, found
+
+
+def test_numbers_of_every_size_are_judged(tmp_path: Path) -> None:
+    run = Run(RunStore(), EMPTY, "")
+    run.do([says(f"A: {value}") for value in ("1.7e308", "-1.7e308", "5e-324", "1e155", "1e999")])
+    goals = goals_of(
+        tmp_path,
+        "[[goal]]\nname = 'met'\nlog = { name = 'A', levels = [0], within = 1 }\n"
+        "[[goal]]\nname = 'missed'\nlog = { name = 'A', levels = [1e15], within = 1e3 }\n",
+    )
+    assert [one.state for one in judge(goals, run.end())] == ["met", "missed"]

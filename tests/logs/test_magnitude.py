@@ -5,18 +5,22 @@ from __future__ import annotations
 import math
 import sys
 from collections.abc import Sequence
+from pathlib import Path
 
 import numpy as np
+import pandas as pd
 import pytest
-from hypothesis import example, given
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from tuisim.batch.execute import statistics_of
 from tuisim.charts.canvas import xy_lines
-from tuisim.charts.layout import Scales
+from tuisim.charts.files import CHART_FORMATS
 from tuisim.charts.sample_chart import sample_chart
 from tuisim.charts.text_chart import ChartPainter, ChartState
 from tuisim.charts.traces import Pyramid, Traces
+from tuisim.logs.export import EXPORTERS, export_frame
+from tuisim.logs.frames import read_log
 from tuisim.logs.levels import levels_of
 from tuisim.logs.magnitude import MAX_DRAWN, find_scale, limit_drawn
 from tuisim.logs.signals import summary_of
@@ -65,6 +69,7 @@ def test_usual_numbers_are_not_scaled() -> None:
 
 
 @pytest.mark.filterwarnings("error")
+@settings(max_examples=40, deadline=None)
 @given(values=EVERY, times_s=st.lists(st.floats(0.0), min_size=40, max_size=40))
 @example(values=[1e308, -1e308], times_s=[float(at) for at in range(40)])
 @example(values=[HUGE, -HUGE, 1.0], times_s=[float(at) for at in range(40)])
@@ -90,7 +95,18 @@ def test_every_number_is_drawn(values: Sequence[float], times_s: Sequence[float]
     chart = sample_chart(
         [Sample("A", *pair[::-1], 0, 0, 0) for pair in zip(*points, strict=True)], 80
     )
-    assert Scales.of([(line.name, line.ys, line.scale) for line in chart.lines], False)
+    for suffix, size in ((".svg", (200, 150)), (".txt", (40, 8))):
+        assert CHART_FORMATS[suffix].write(chart, size)
+
+
+@pytest.mark.parametrize("suffix", EXPORTERS)
+def test_every_number_is_exported(tmp_path: Path, suffix: str) -> None:
+    of = statistics_of(_printed([HUGE, -HUGE, 5e-324, 1e155]))["A"]
+    columns = {"values": [math.nan, math.inf, -math.inf, HUGE, -HUGE, 5e-324, of.mean, of.std]}
+    path = tmp_path / f"every{suffix}"
+    export_frame(pd.DataFrame(columns), path, {})
+    found = pd.read_csv(path) if suffix == ".csv" else read_log(path)
+    assert np.array_equal(found["values"], columns["values"], equal_nan=True)
 
 
 @pytest.mark.filterwarnings("error")

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tuisim.analysis.events import THRESHOLD_FORM, threshold_of
-from tuisim.charts.axes import Limits
+from tuisim.charts.axes import Limits, widen_times
 from tuisim.charts.traces import Pyramid, Trace, Traces
 from tuisim.errors import LogError
 from tuisim.logs.bands import driven_mm
@@ -25,10 +25,6 @@ _LIGHT = "_red"
 """Suffix of the red light columns of colour sensors."""
 _SEEN = 5.0
 """A variable that spans less than 1 / this of a scale is drawn on its own one."""
-
-
-_LEAST_OF_TIMES, _LEAST_S = 1e-14, 1e-100
-"""Relative and absolute tolerance below which two times are equal."""
 
 
 class LogTrace(Trace):
@@ -178,12 +174,7 @@ class LogTraces(Traces):
         if not ends:
             return 0.0, 1.0
         low, high = float(min(end[0] for end in ends)), float(max(end[1] for end in ends))
-        size = max(abs(low), abs(high))
-        if high - low > max(_LEAST_OF_TIMES * size, _LEAST_S):
-            return low, high
-        # Half a second is below the precision of a very large time.
-        room = max(0.5, size * _LEAST_OF_TIMES)
-        return low - room, high + room
+        return widen_times(low, high)
 
 
 TIME, DISTANCE = "time", "distance"

@@ -91,6 +91,19 @@ def time_limits(end_s: float) -> Limits:
     return 0.0, math.ceil(end_s / step) * step
 
 
+_LEAST_OF_TIMES, _LEAST_S = 1e-14, 1e-100
+"""Relative and absolute tolerance below which two times are equal."""
+
+
+def widen_times(low_s: float, high_s: float) -> Limits:
+    """Return the first and the last time as limits, which are apart also if the times are equal."""
+    size_s = max(abs(low_s), abs(high_s))
+    if high_s - low_s > max(_LEAST_OF_TIMES * size_s, _LEAST_S):
+        return low_s, high_s
+    room_s = max(0.5, _LEAST_OF_TIMES * size_s)
+    return low_s - room_s, high_s + room_s
+
+
 def column_of(x: float, limits: Limits, columns: int) -> int:
     """Return the character column of a value, 0 … columns - 1 for values inside the limits."""
     low, high = limits

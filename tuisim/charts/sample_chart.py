@@ -6,7 +6,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from tuisim.charts.axes import Limits
+from tuisim.charts.axes import Limits, widen_times
 from tuisim.charts.layout import ChartData, Line
 from tuisim.charts.traces import Pyramid, min_max, scale_of
 from tuisim.logs.magnitude import limit_drawn
@@ -28,9 +28,7 @@ def sample_chart(
     series = {name: Pyramid(*np.array(rows).T) for name, rows in points.items()}
     ends = [found.times_s[[0, -1]] for found in series.values() if len(found.times_s)]
     low, high = (min(end[0] for end in ends), max(end[1] for end in ends)) if ends else (0.0, 1.0)
-    limits = limits or (
-        (float(low), float(high)) if high > low else (float(low) - 0.5, float(low) + 0.5)
-    )
+    limits = limits or widen_times(float(low), float(high))
     lines = tuple(
         Line(
             name,
