@@ -14,7 +14,6 @@ import pytest
 from tests.app.app_help import open_lab, until
 from tests.conftest import Command
 from tests.running import until as until_so
-from tuisim.api import simulate
 from tuisim.app.app import AppSettings
 from tuisim.app.branch import Branch
 from tuisim.app.run_controller import RunController
@@ -120,10 +119,6 @@ def test_arguments_are_shown_with_the_run(folder: Path, here: Command) -> None:
     assert json.loads(here("runs", "show", "last", "--json").stdout)["arguments"] == ["A", "B C"]
     here("run", "p.py", "--", "A")
     assert "program arguments" in here("log", "diff", "1", "2").stdout
-
-
-def test_a_script_gives_arguments(folder: Path) -> None:
-    assert eval(simulate(folder / "p.py", arguments=["A", "B"]).output)[1:] == ["A", "B"]
 
 
 # Folder and modules
