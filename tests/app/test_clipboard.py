@@ -31,11 +31,7 @@ async def test_each_panel_copies_what_it_shows() -> None:
         rows = copied_text(app).split("\n")
         assert any(char in "".join(rows) for char in "⣿⡇⢸") and rows[-3].startswith("L ")
         assert TOLD in notices(app)[-1] and "I writes a file" in notices(app)[-1]
-
-
-async def test_a_chart_copies_the_values_at_its_cursor() -> None:
-    async with open_lab(LOGS, autorun=True, speed=0.0) as (pilot, app):
-        await until(pilot, lambda: app.run_controller.snapshot().end == End.FINISHED)
+        # A chart copies the values at its cursor.
         app.panel_area.attend("chart")
         await until(pilot, lambda: app.panel_area.focused_panel() == "chart")
         await until_shown(pilot, "[x] Colour")

@@ -85,18 +85,6 @@ async def test_panel_of_a_paused_program(tmp_path: Path) -> None:
         await until(pilot, lambda: states().get("do") == "done")
 
 
-async def test_lesson_is_in_sight_while_one_types_in_a_small_terminal(tmp_path: Path) -> None:
-    async with open_lab(with_lines(opened(tmp_path), 40), size=SMALL) as (pilot, app):
-        await pilot.press("d")
-        await until(pilot, lambda: app.panel_area.is_stacked)
-        # The step, not the introduction before it.
-        await until(pilot, lambda: "1. Think" in shown(app).split("\n")[1])
-        code, lesson = (app.panel_area.arrangement.boxes[panel] for panel in ("code", "lesson"))
-        assert (code.width, code.height, lesson.height) == (80, 12, 11)
-        await pilot.press("escape")
-        await until(pilot, lambda: app.panel_area.shown("world"))
-
-
 @pytest.mark.parametrize("size, has_world", [(SMALL, False), (LARGE, True)], ids=["80", "120"])
 async def test_lesson_is_beside_the_log(
     size: tuple[int, int], has_world: bool, tmp_path: Path
@@ -146,15 +134,19 @@ async def test_program_is_tried_from_another_start(tmp_path: Path) -> None:
         await until(pilot, lambda: states().get("drive") == "done")
 
 
-async def test_lesson_scrolls_while_one_types_in_a_small_terminal(tmp_path: Path) -> None:
+async def test_lesson_is_in_sight_and_scrolls_while_one_types_in_a_small_terminal(
+    tmp_path: Path,
+) -> None:
     async with open_lab(with_lines(opened(tmp_path), 40), size=SMALL) as (pilot, app):
         await pilot.press("d")
         code, lesson = app.panel_area.code, app.panel_area.lesson
+        # The step, not the introduction before it.
         await until(
             pilot,
             lambda: code is not None and code.typing and "1. Think" in shown(app).split("\n")[1],
         )
         assert code is not None and lesson is not None
+        assert (code.outer_size.height, lesson.outer_size.height) == (12, 11)
         cursor = code.cursor_line
         assert "ctrl+↑ ctrl+↓ read on" in str(lesson.border_subtitle)
         await pilot.press("ctrl+up")
@@ -165,6 +157,8 @@ async def test_lesson_scrolls_while_one_types_in_a_small_terminal(tmp_path: Path
         await until(pilot, lambda: "1. Think" in shown(app).split("\n")[2])
         assert code.typing
         assert code.cursor_line == cursor
+        await pilot.press("escape")
+        await until(pilot, lambda: app.panel_area.shown("world"))
 
 
 async def test_way_to_the_next_lesson_is_in_sight_in_a_small_terminal(tmp_path: Path) -> None:

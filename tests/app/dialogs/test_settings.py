@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import AsyncIterator, Callable
+from contextlib import asynccontextmanager
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 import pytest
+from textual.pilot import Pilot
 from textual.widgets import Input, OptionList
 
 from tests.app.app_help import LOGS, open_lab, screen_text, until
@@ -15,6 +18,18 @@ from tuisim.app.dialogs.settings import SettingsScreen
 from tuisim.app.panels.world import World
 from tuisim.config.user_config import SETTINGS, load_config
 from tuisim.terminal.picture_options import CellSet
+
+
+@asynccontextmanager
+async def open_settings(
+    size: tuple[int, int] = (80, 24),
+) -> AsyncIterator[tuple[Pilot[Any], LabApp]]:
+    """Open the app and its settings."""
+    async with open_lab(LOGS, size=size) as (pilot, app):
+        await pilot.press("asterisk")
+        await until(pilot, lambda: isinstance(app.screen, SettingsScreen) and app.screen.is_ready)
+        yield pilot, app
+
 
 APPLIED: dict[str, tuple[list[str], object, Callable[[LabApp], bool]]] = {
     "app.ultrasound": (
@@ -38,37 +53,36 @@ APPLIED: dict[str, tuple[list[str], object, Callable[[LabApp], bool]]] = {
 }
 
 
-@pytest.mark.parametrize("path", APPLIED)
-async def test_a_change_is_written_and_applies(path: str) -> None:
+async def change(pilot: Pilot[Any], app: LabApp, path: str) -> None:
+    """Change a setting as a user does, see what it changes, and take it back."""
     keys, value, applies = APPLIED[path]
-    async with open_lab(LOGS, size=(80, 24)) as (pilot, app):
-        await pilot.press("asterisk")
-        await until(pilot, lambda: isinstance(app.screen, SettingsScreen) and app.screen.is_ready)
-        screen = app.screen
-        listed = screen.query_one(OptionList)
-        listed.highlighted = listed.get_option_index(path)
-        for key in keys:
-            if key == "wait":
-                await until(
-                    pilot,
-                    lambda: app.screen is not screen and getattr(app.screen, "is_ready", False),
-                )
-            else:
-                await pilot.press(key)
-        await until(pilot, lambda: load_config().written.get(path) == value)
-        await until(pilot, lambda: applies(app))
+    screen = app.screen
+    listed = screen.query_one(OptionList)
+    listed.highlighted = listed.get_option_index(path)
+    for key in keys:
+        if key == "wait":
+            await until(
+                pilot, lambda: app.screen is not screen and getattr(app.screen, "is_ready", False)
+            )
+        else:
+            await pilot.press(key)
+    await until(pilot, lambda: load_config().written.get(path) == value, path)
+    await until(pilot, lambda: applies(app), path)
+    await until(pilot, lambda: app.screen is screen)
+    await pilot.press("delete")
+    await until(pilot, lambda: path not in load_config().written)
 
-        await until(pilot, lambda: app.screen is screen)
-        await pilot.press("delete")
-        await until(pilot, lambda: path not in load_config().written)
+
+async def test_a_change_is_written_and_applies() -> None:
+    async with open_settings() as (pilot, app):
+        for path in APPLIED:
+            await change(pilot, app, path)
         await pilot.press("escape")
         await until(pilot, lambda: len(app.screen_stack) == 1)
 
 
 async def test_a_wrong_value_is_told_and_can_be_corrected() -> None:
-    async with open_lab(LOGS, size=(80, 24)) as (pilot, app):
-        await pilot.press("asterisk")
-        await until(pilot, lambda: isinstance(app.screen, SettingsScreen) and app.screen.is_ready)
+    async with open_settings() as (pilot, app):
         listed = app.screen.query_one(OptionList)
         listed.highlighted = listed.get_option_index("app.fps")
         await pilot.press("enter")
@@ -85,9 +99,7 @@ async def test_a_wrong_value_is_told_and_can_be_corrected() -> None:
 
 @pytest.mark.parametrize("size", [(80, 24), (40, 12)], ids=str)
 async def test_every_setting_can_be_reached_and_says_what_it_is(size: tuple[int, int]) -> None:
-    async with open_lab(LOGS, size=size) as (pilot, app):
-        await pilot.press("asterisk")
-        await until(pilot, lambda: isinstance(app.screen, SettingsScreen) and app.screen.is_ready)
+    async with open_settings(size) as (pilot, app):
         listed, seen = app.screen.query_one(OptionList), []
 
         def is_shown(name: str) -> bool:
@@ -106,9 +118,7 @@ async def test_every_setting_can_be_reached_and_says_what_it_is(size: tuple[int,
 
 async def test_a_file_that_is_no_toml_is_told_and_stays(tmp_path: Path) -> None:
     (tmp_path / "config.toml").write_text("[app\n")
-    async with open_lab(LOGS, size=(80, 24)) as (pilot, app):
-        await pilot.press("asterisk")
-        await until(pilot, lambda: isinstance(app.screen, SettingsScreen) and app.screen.is_ready)
+    async with open_settings() as (pilot, app):
         listed = app.screen.query_one(OptionList)
         listed.highlighted = listed.get_option_index("app.ultrasound")
         await pilot.press("enter")

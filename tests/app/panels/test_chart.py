@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
 from typing import Any
 
 import pytest
@@ -21,6 +23,17 @@ def fill(chart: Chart) -> None:
         chart.append("gyro_deg", [at / 10], [float(at)], logged=False)
 
 
+@asynccontextmanager
+async def open_chart(
+    size: tuple[int, int] = (80, 16),
+) -> AsyncIterator[tuple[Pilot[None], PanelApp[Chart]]]:
+    """Show a chart of two traces."""
+    app = PanelApp(Chart())
+    async with app.run_test(size=size) as pilot:
+        fill(app.panel)
+        yield pilot, app
+
+
 def rows(app: PanelApp[Chart]) -> list[str]:
     app.panel._redraw()
     return screen_text(app)
@@ -33,9 +46,7 @@ async def opened(app: PanelApp[Chart], pilot: Pilot[None]) -> None:
 
 @pytest.mark.parametrize("size", [(20, 6), (80, 16), (180, 30)], ids=str)
 async def test_it_draws_what_was_logged(size: tuple[int, int]) -> None:
-    app = PanelApp(Chart())
-    async with app.run_test(size=size) as pilot:
-        fill(app.panel)
+    async with open_chart(size=size) as (pilot, app):
         app.panel.show(moment())
         await pilot.pause()
 
@@ -56,9 +67,7 @@ async def test_data_from_before_it_was_shown_is_kept() -> None:
 
 
 async def test_keys_tick_traces() -> None:
-    app = PanelApp(Chart())
-    async with app.run_test(size=(80, 16)) as pilot:
-        fill(app.panel)
+    async with open_chart() as (pilot, app):
         await opened(app, pilot)
         seen = []
         for key in ("down", "space", "1", "up", "space", "2"):
@@ -76,9 +85,7 @@ async def test_keys_tick_traces() -> None:
 
 
 async def test_the_mouse_ticks_traces() -> None:
-    app = PanelApp(Chart())
-    async with app.run_test(size=(80, 16)) as pilot:
-        fill(app.panel)
+    async with open_chart() as (pilot, app):
         rows(app)
         await pilot.click(app.panel, offset=(1, 0))
 
@@ -86,9 +93,7 @@ async def test_the_mouse_ticks_traces() -> None:
 
 
 async def test_the_cursor_walks_and_goes() -> None:
-    app = PanelApp(Chart())
-    async with app.run_test(size=(80, 16)) as pilot:
-        fill(app.panel)
+    async with open_chart() as (pilot, app):
         await opened(app, pilot)
         await pilot.press("left", "left", "shift+left")
         rows(app)
@@ -106,9 +111,7 @@ async def test_the_cursor_walks_and_goes() -> None:
 
 
 async def test_the_mouse_puts_the_cursor() -> None:
-    app = PanelApp(Chart())
-    async with app.run_test(size=(80, 16)) as pilot:
-        fill(app.panel)
+    async with open_chart() as (pilot, app):
         rows(app)
         await pilot.mouse_down(app.panel, offset=(40, 5))
         await pilot.hover(app.panel, offset=(50, 5))
@@ -121,9 +124,7 @@ async def test_the_mouse_puts_the_cursor() -> None:
 
 
 async def test_the_mouse_reads_values_without_a_press() -> None:
-    app = PanelApp(Chart())
-    async with app.run_test(size=(80, 16)) as pilot:
-        fill(app.panel)
+    async with open_chart() as (pilot, app):
         rows(app)
         await pilot.hover(app.panel, offset=(60, 5))
         read = str(app.panel.border_subtitle).split()
@@ -137,9 +138,7 @@ async def test_the_mouse_reads_values_without_a_press() -> None:
 
 
 async def test_freezing_keeps_the_window() -> None:
-    app = PanelApp(Chart())
-    async with app.run_test(size=(80, 16)) as pilot:
-        fill(app.panel)
+    async with open_chart() as (pilot, app):
         await opened(app, pilot)
         rows(app)
         await pilot.press("f")
@@ -155,9 +154,7 @@ async def test_freezing_keeps_the_window() -> None:
 
 
 async def test_clearing_keeps_the_ticks() -> None:
-    app = PanelApp(Chart())
-    async with app.run_test(size=(80, 16)) as pilot:
-        fill(app.panel)
+    async with open_chart() as (pilot, app):
         await opened(app, pilot)
         await pilot.press("2", "delete")
         empty = rows(app)
@@ -193,9 +190,7 @@ async def test_it_is_not_drawn_more_often_than_can_be_seen(monkeypatch: pytest.M
 
 
 async def test_bands_are_shown_while_the_run_stands_still() -> None:
-    app = PanelApp(Chart())
-    async with app.run_test(size=(80, 16)) as pilot:
-        fill(app.panel)
+    async with open_chart() as (pilot, app):
         shown = []
         for state in (RunPhase.RUNNING, RunPhase.PAUSED, RunPhase.RUNNING, RunPhase.ENDED):
             app.panel.show(moment(state=state))

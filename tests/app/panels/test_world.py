@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
 from dataclasses import replace
 
 import numpy as np
@@ -9,18 +11,32 @@ import pytest
 from textual import events
 from textual.content import Content
 from textual.geometry import Region
+from textual.pilot import Pilot
 
 from tests.app.app_help import LOGS, open_lab, until, until_state
 from tests.app.panel_help import PanelApp, moment, white_mat
 from tuisim.app.layout.tree import TIME_BAR_ROWS
 from tuisim.app.panels.world import TURN_STEP_DEG, World, WorldView
 from tuisim.app.render.world_text import legend
-from tuisim.app.snapshot import RunPhase
+from tuisim.app.snapshot import RunPhase, Snapshot
 from tuisim.core.geometry import Pose
 from tuisim.core.spec import FIELD_WIDTH_MM
 from tuisim.scene.pictures import scene_of
 
 POSE = Pose(1000.0, 500.0, 0.0)
+
+
+@asynccontextmanager
+async def open_world(
+    now: Snapshot | None = None, size: tuple[int, int] = (76, 27)
+) -> AsyncIterator[tuple[Pilot[None], PanelApp[World]]]:
+    """Show the world on a white mat, at an instant or the usual one."""
+    app = PanelApp(World())
+    async with app.run_test(size=size) as pilot:
+        app.panel.set_mat(white_mat())
+        app.panel.show(now or moment())
+        await pilot.pause()
+        yield pilot, app
 
 
 def cell_of(world: World, x_mm: float, y_mm: float) -> tuple[int, int]:
@@ -40,22 +56,13 @@ def colours(world: World) -> int:
 
 @pytest.mark.parametrize("size", [(20, 6), (76, 27), (190, 50)], ids=str)
 async def test_it_shows_mat_and_robot(size: tuple[int, int]) -> None:
-    app = PanelApp(World())
-    async with app.run_test(size=size) as pilot:
-        app.panel.set_mat(white_mat())
-        app.panel.show(moment())
-        await pilot.pause()
-
+    async with open_world(size=size) as (_, app):
         assert view(app.panel)._cells.shape == (size[1] - TIME_BAR_ROWS, size[0])
         assert colours(app.panel) > 5
 
 
 async def test_the_world_keeps_its_size_when_a_run_starts() -> None:
-    app = PanelApp(World())
-    async with app.run_test(size=(40, 12)) as pilot:
-        app.panel.set_mat(white_mat())
-        app.panel.show(moment(state=RunPhase.IDLE))
-        await pilot.pause()
+    async with open_world(moment(state=RunPhase.IDLE), size=(40, 12)) as (pilot, app):
         before = view(app.panel).size
         app.panel.time_bar.show(moment(now_tick=321))
         await pilot.pause()
@@ -96,10 +103,7 @@ async def test_it_is_blank_until_the_mat_is_there() -> None:
 
 
 async def test_a_moment_like_the_last_one_costs_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
-    app = PanelApp(World())
-    async with app.run_test(size=(40, 12)):
-        app.panel.set_mat(white_mat())
-        app.panel.show(moment())
+    async with open_world(size=(40, 12)) as (_, app):
         painted: list[object] = []
         monkeypatch.setattr(
             view(app.panel), "set_fine_picture", lambda picture, _, **__: painted.append(picture)
@@ -112,10 +116,7 @@ async def test_a_moment_like_the_last_one_costs_nothing(monkeypatch: pytest.Monk
 
 
 async def test_only_cells_about_the_robot_are_repainted(monkeypatch: pytest.MonkeyPatch) -> None:
-    app = PanelApp(World())
-    async with app.run_test(size=(76, 27)):
-        app.panel.set_mat(white_mat())
-        app.panel.show(moment())
+    async with open_world() as (_, app):
         regions: list[Region] = []
         monkeypatch.setattr(
             view(app.panel), "refresh", lambda *changed, **_: regions.extend(changed)
@@ -127,10 +128,7 @@ async def test_only_cells_about_the_robot_are_repainted(monkeypatch: pytest.Monk
 
 
 async def test_rays_are_drawn_when_switched_on() -> None:
-    app = PanelApp(World())
-    async with app.run_test(size=(76, 27)):
-        app.panel.set_mat(white_mat())
-        app.panel.show(moment())
+    async with open_world() as (_, app):
         before = view(app.panel)._cells.copy()
 
         app.panel.show_rays = True
@@ -155,10 +153,7 @@ async def test_the_trace_survives_another_mat_and_can_be_cleared() -> None:
 
 
 async def test_where_the_robot_is_now_is_a_ghost_in_the_past() -> None:
-    app = PanelApp(World())
-    async with app.run_test(size=(76, 27)):
-        app.panel.set_mat(white_mat())
-        app.panel.show(moment())
+    async with open_world() as (_, app):
         before = view(app.panel)._cells.copy()
 
         app.panel.show(moment(now_pose=Pose(300.0, 300.0, 90.0)))
@@ -168,10 +163,7 @@ async def test_where_the_robot_is_now_is_a_ghost_in_the_past() -> None:
 
 
 async def test_zoom_goes_round_and_says_so() -> None:
-    app = PanelApp(World())
-    async with app.run_test(size=(76, 27)):
-        app.panel.set_mat(white_mat())
-        app.panel.show(moment())
+    async with open_world() as (_, app):
         seen = []
         for _ in range(3):
             app.panel.cycle_zoom()
@@ -184,11 +176,7 @@ async def test_zoom_goes_round_and_says_so() -> None:
 
 async def dragged(shift: bool, by: tuple[int, int]) -> list[World.PoseDragged]:
     """Drag the robot by some cells from a point ahead of its middle."""
-    app = PanelApp(World())
-    async with app.run_test(size=(120, 30)) as pilot:
-        app.panel.set_mat(white_mat())
-        app.panel.show(moment(POSE))
-        await pilot.pause()
+    async with open_world(moment(POSE), size=(120, 30)) as (pilot, app):
         col, row = cell_of(app.panel, POSE.x_mm + 40, POSE.y_mm)
         start, end = (col, row), (col + by[0], row + by[1])
         await pilot.mouse_down(view(app.panel), offset=start, shift=shift)
@@ -218,11 +206,7 @@ async def test_dragging_with_shift_turns_the_robot() -> None:
 
 
 async def test_pressing_elsewhere_moves_nothing() -> None:
-    app = PanelApp(World())
-    async with app.run_test(size=(120, 30)) as pilot:
-        app.panel.set_mat(white_mat())
-        app.panel.show(moment(POSE))
-        await pilot.pause()
+    async with open_world(moment(POSE), size=(120, 30)) as (pilot, app):
         await pilot.mouse_down(view(app.panel), offset=(2, 2))
         await pilot.hover(view(app.panel), offset=(20, 5))
         await pilot.mouse_up(view(app.panel), offset=(20, 5))
@@ -231,11 +215,7 @@ async def test_pressing_elsewhere_moves_nothing() -> None:
 
 
 async def test_ctrl_and_the_wheel_zoom_the_world_as_two_fingers_do() -> None:
-    app = PanelApp(World())
-    async with app.run_test(size=(120, 30)) as pilot:
-        app.panel.set_mat(white_mat())
-        app.panel.show(moment(POSE))
-        await pilot.pause()
+    async with open_world(moment(POSE), size=(120, 30)) as (pilot, app):
         target = view(app.panel)
         seen = []
         for kind in [events.MouseScrollUp] * 3 + [events.MouseScrollDown] * 3:
@@ -254,11 +234,7 @@ async def test_ctrl_and_the_wheel_zoom_the_world_as_two_fingers_do() -> None:
 async def test_the_wheel_turns_the_robot_that_it_is_over(
     kind: type[events.MouseEvent], turn: float
 ) -> None:
-    app = PanelApp(World())
-    async with app.run_test(size=(120, 30)) as pilot:
-        app.panel.set_mat(white_mat())
-        app.panel.show(moment(POSE))
-        await pilot.pause()
+    async with open_world(moment(POSE), size=(120, 30)) as (pilot, app):
         target = view(app.panel)
         robot = cell_of(app.panel, POSE.x_mm, POSE.y_mm)
         for col, row in (robot, robot, (2, 2)):
