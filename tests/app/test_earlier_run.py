@@ -10,10 +10,9 @@ from textual.widgets import OptionList
 
 from tests.app.app_help import open_lab, program, run_from_start, until
 from tests.app.lesson_help import opened, run_over
-from tests.runs.test_recorded_run import stored
 from tuisim.app.app import LabApp
 from tuisim.app.dialogs.chooser import Chooser
-from tuisim.app.earlier_run import is_comparable, stored_before
+from tuisim.app.earlier_run import stored_before
 from tuisim.config.build import build_run_spec
 from tuisim.config.options import Settings
 from tuisim.core.geometry import Pose
@@ -62,14 +61,6 @@ def test_without_a_run_before_it_is_the_last_stored_one_of_the_program() -> None
     assert found is not None and found.run_id == first.run_id
     assert stored_before(first) is None
     assert stored_before(of("")) is None
-
-
-def test_a_run_on_another_mat_is_not_comparable() -> None:
-    bands, shapes = (
-        Recording(stored(STRAIGHT, {"background": mat})) for mat in ("Grey_bands", "Two_shapes")
-    )
-    assert is_comparable(bands, bands)
-    assert not is_comparable(shapes, bands)
 
 
 @pytest.mark.slow

@@ -8,7 +8,6 @@ import pytest
 
 from tests.app.app_help import (
     ENDLESS,
-    LOGS,
     lab,
     notices,
     open_lab,
@@ -31,15 +30,6 @@ from tuisim.core.geometry import Pose
 from tuisim.errors import BackgroundError
 from tuisim.terminal.picture_mode import PictureMode
 from tuisim.terminal.picture_options import CellSet
-
-
-async def test_a_run_shows_its_output_and_its_end() -> None:
-    async with open_lab(LOGS, autorun=True, speed=0.0) as (pilot, app):
-        await until_state(pilot, RunPhase.ENDED)
-        await until_shown(pilot, "Colour: 0.0")
-        await until(pilot, lambda: "finished" in screen_text(app).splitlines()[-1])
-        assert app.run_controller.pose.x_mm > 1400
-
 
 PUSHES = "from time import sleep\ntank_drive.on(50, 50)\nsleep(2)\ntank_drive.off()\n"
 

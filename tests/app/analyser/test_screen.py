@@ -219,7 +219,6 @@ STEPS: list[tuple[list[str], Callable[[Analyser, Model], bool]]] = [
     (["f"], lambda _, model: model.limits is None),
     (["F", "=value<90", "enter"], lambda _, model: filtered(model)),
     (["U"], lambda _, model: len(model.rows) == model.log.rows),
-    (["F", "=x", "enter", "escape"], lambda _, model: len(model.rows) == model.log.rows),
     (
         [">", "o", "o"],
         lambda _, model: (
@@ -237,10 +236,6 @@ STEPS: list[tuple[list[str], Callable[[Analyser, Model], bool]]] = [
     ),
     (
         ["k", "=y_mm against x_mm", "enter"],
-        lambda screen, _: screen.chart.options.against == ("x_mm", "y_mm"),
-    ),
-    (
-        ["k", "=q", "enter", "escape"],
         lambda screen, _: screen.chart.options.against == ("x_mm", "y_mm"),
     ),
     (["k", "=", "enter"], lambda screen, _: screen.chart.options.against is None),

@@ -17,8 +17,6 @@ from textual.widgets import Input, OptionList, Static
 import tuisim.app
 from tests.app.app_help import LOGS, open_lab, ready, settings, until
 from tests.app.monkey import at_once, key_event
-from tuisim.analysis.source import LogRequest
-from tuisim.app.analyser.app import Analyser, AnalyserApp
 from tuisim.app.app import LabApp
 from tuisim.app.dialogs.chooser import Chooser
 from tuisim.app.dialogs.dialog import ClosesOnce, Dialog
@@ -53,27 +51,6 @@ async def test_a_key_too_many_leaves_the_lab_as_it_is(keys: str) -> None:
         at_once(pilot, keys.split())
         await pilot.pause(0.1)
         await until(pilot, lambda: app._input.is_idle and len(app.screen_stack) == 1)
-        at_once(pilot, ["question_mark"])
-        await until(pilot, lambda: isinstance(app.screen, GuideScreen))
-
-
-IN_THE_ANALYSER = {
-    "note": "m A enter enter",
-    "palette": "ctrl+p enter enter",
-}
-
-
-@pytest.mark.quick_cases("note")
-@pytest.mark.parametrize("keys", IN_THE_ANALYSER.values(), ids=list(IN_THE_ANALYSER))
-async def test_a_key_too_many_leaves_the_analyser_as_it_is(keys: str) -> None:
-    Path("log.txt").write_text("".join(f"Colour: {value}\n" for value in range(9)))
-    async with AnalyserApp(LogRequest(file="log.txt")).run_test(size=(80, 24)) as pilot:
-        app = pilot.app
-        await until(pilot, lambda: isinstance(app.screen, Analyser) and app.screen.is_open)
-        analyser = app.screen
-        at_once(pilot, keys.split())
-        await pilot.pause(0.1)
-        await until(pilot, lambda: app.screen is analyser)
         at_once(pilot, ["question_mark"])
         await until(pilot, lambda: isinstance(app.screen, GuideScreen))
 

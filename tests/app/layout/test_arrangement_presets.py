@@ -50,14 +50,6 @@ def test_no_third_of_a_panel_is_empty(preset: Preset, size: tuple[int, int]) -> 
             assert box.height - 2 < 1.5 * (PANELS[panel].good_rows - 2), panel
 
 
-def test_code_and_chart_have_room_beside_each_other_in_a_medium_terminal() -> None:
-    wanted, fill = wanted_panels(Preset.STANDARD, {"chart": True}, 120, 39)
-    boxes = arrange(wanted, 120, 39, fill).boxes
-    assert boxes["code"].height - 2 >= 8
-    # Two rows for the tick boxes, two for the axis of time.
-    assert boxes["chart"].height - 2 - 4 >= 7
-
-
 def test_most_lines_of_code_are_whole_in_a_medium_terminal() -> None:
     layout = layout_of(Preset.STANDARD, 120, 40)
     assert layout.boxes["code"].width - 2 >= 59 and layout.boxes["code"].height - 2 >= 14

@@ -59,14 +59,6 @@ async def test_digits_set_the_number_of_a_slider() -> None:
             assert str(app.query_one("#light-number", Static).render()) == str(number)
 
 
-async def test_tab_goes_from_slider_to_slider_to_seed() -> None:
-    async with open_lab(LOGS, panels_on=SHOWN, size=(80, 24)) as (pilot, app):
-        app.panel_area.attend("noise")
-        for name in ("light", "motor", "seed"):
-            await until(pilot, lambda name=name: app.focused is app.query_one(f"#{name}"))  # type: ignore[misc]
-            await pilot.press("tab")
-
-
 async def test_the_panel_shows_what_a_mat_or_a_program_leaves() -> None:
     async with open_lab(LOGS, panels_on=SHOWN, size=(80, 24)) as (pilot, app):
         app.query_one("#motor", Slider).focus()

@@ -47,7 +47,6 @@ def mat(name: str) -> Step:
 # What is done; then the motor ports besides the wheels, the robot's name, and the profile.
 WAYS: Mapping[str, tuple[list[Step], tuple[list[str], str, str]]] = {
     "a program": ([CLAW], (["outA"], "Robot of p.py", "ev3")),
-    "another one": ([CLAW, LIFT], (["outD"], "Robot of p.py", "ev3")),
     "one for the usual robot": ([CLAW, USUAL], ([], "Default_Robot", "ev3")),
     "one of the course": ([CLAW, COURSE], ([], "Default_Robot", "robolab")),
     "one with a magic line": ([USUAL, MAGIC], (["outA"], "Robot of p.py", "robolab")),
@@ -61,15 +60,12 @@ WAYS: Mapping[str, tuple[list[Step], tuple[list[str], str, str]]] = {
         [CLAW, lambda plan: plans.with_profile(plan, "robolab"), LIFT],
         (["outD"], "Robot of p.py", "robolab"),
     ),
-    "a mat chosen before": ([mat("Loop"), CLAW], (["outA"], "Robot of p.py", "ev3")),
     "a mat chosen after": ([CLAW, mat("Loop"), LIFT], (["outD"], "Robot of p.py", "ev3")),
     "an edited robot": (
         [CLAW, lambda plan: plans.with_robot_edited(plan, plan.robot.spec), LIFT],
         (["outD"], "Robot of p.py", "ev3"),
     ),
-    "one of the other library": ([CLAW, PYBRICKS], (["outA"], "Robot of p.py", "lego-micropython")),
     "and back": ([PYBRICKS, LIFT], (["outD"], "Robot of p.py", "ev3")),
-    "and one of the course": ([PYBRICKS, COURSE], ([], "Default_Robot", "robolab")),
     "a fitting profile chosen": (
         [PYBRICKS, lambda plan: plans.with_profile(plan, "pybricks4"), PYBRICKS],
         (["outA"], "Robot of p.py", "pybricks4"),

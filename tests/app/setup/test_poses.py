@@ -29,7 +29,6 @@ POSTS = tuple(Obstacle(x, y, 150, 150) for x in range(200, 2300, 500) for y in (
 @pytest.mark.parametrize(
     "pose, obstacles, solid, fit",
     [
-        (Pose(1000, 500, 0), (), False, True),
         (Pose(50, 500, 0), (), False, False),
         (Pose(1000, 50, 0), (), True, False),
         (Pose(1000, 500, 0), (Obstacle(950, 450, 100, 100),), False, True),
