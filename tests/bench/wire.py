@@ -29,6 +29,8 @@ _QUIET_S = 0.6
 """So long after the last output a paint is over; longer than the way there and back."""
 _DRIVES_S = 5.0
 """So long the robot has driven when a key is pressed: a backlog would have grown by then."""
+_CIRCLE_S = 22.0
+"""The robot has driven round once: what is sent depends on what it passes, up to twofold."""
 _SETTLE_S = 1.0
 _RESUMED_S = 2.0
 """So long the robot has driven again when the next key is pressed."""
@@ -217,10 +219,10 @@ def _driving(remote: Remote, name: str) -> Iterator[Figure]:
     """Yield what is sent while the robot drives, once it has driven for a while."""
     remote.terminal.read_for(_DRIVES_S)
     before = remote.link.down_bytes, remote.terminal.queries
-    remote.terminal.read_for(_DRIVES_S)
+    remote.terminal.read_for(_CIRCLE_S)
     down, frames = remote.link.down_bytes - before[0], remote.terminal.queries - before[1]
-    yield Figure(f"{name}, sent", down / _DRIVES_S / 1e3, "kB/s")
-    yield Figure(f"{name}, frames", frames / _DRIVES_S, "frames/s")
+    yield Figure(f"{name}, sent", down / _CIRCLE_S / 1e3, "kB/s")
+    yield Figure(f"{name}, frames", frames / _CIRCLE_S, "frames/s")
 
 
 def _answers(server: Sshd, line: Line, circle: Path) -> Iterator[Figure]:
