@@ -203,6 +203,12 @@ def test_logging_and_playing_until_something_is_pressed_is_no_wait(
     assert bool(touched) is is_told
 
 
+def test_a_button_that_ends_a_program_is_pressed_last(record: Record) -> None:
+    recorder = record(SPEC, text="while not btn.backspace and not btn.up:\n    go()\nrun()")
+    poll(recorder, "buttons", "pressed", line=1)
+    assert find_awaited(recorder.end(End.TIME_LIMIT))[0].sought == ("up", "backspace")
+
+
 def test_without_a_record_of_readings_nothing_is_said(record: Record) -> None:
     recorder = record(SPEC)
     poll(recorder, "in1", "TOUCH")

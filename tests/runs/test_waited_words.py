@@ -253,7 +253,7 @@ def test_buttons_that_are_asked_for_at_once_are_pressed_at_once() -> None:
         pressed=(up, left),
     )
     assert describe_awaited(awaited) == "up and left were not pressed at once"
-    assert "↑ and ← press up and left" in describe_wait_with_keys([awaited], SPEC)
+    assert "shift with ↑ and ← holds up and left" in describe_wait_with_keys([awaited], SPEC)
 
 
 def test_a_run_that_took_as_long_as_in_reality_is_not_told_to() -> None:

@@ -315,8 +315,8 @@ class _Search:
                 for name in _find_sought(subject, port, mode, question)
             )
         )
-        # It usually ends a program.
-        sought = tuple(sorted(sought, key="backspace".__eq__))
+        # These usually end a program.
+        sought = tuple(sorted(sought, key=("backspace", "remote.beacon").__contains__))
         needs_all = len(sought) > 1 and any(question.needs_all for question in questions)
         value = self._describe_constant(subject, port, rows, sought, needs_all)
         if value is None:

@@ -138,8 +138,8 @@ def _name_mat(awaited: Awaited, spec: RunSpec) -> str:
     color = _find_color(awaited)
     if color in COLOR_PLACES_MM:
         if awaited.has_moved and spec.world.background != COLORED_MAT:
-            return f"-b {COLORED_MAT} has it (tuisim backgrounds)"
-        return f"-b {COLORED_MAT} -x {COLOR_PLACES_MM[color]} has it (tuisim backgrounds)"
+            return f"-b {COLORED_MAT} has it"
+        return f"-b {COLORED_MAT} -x {COLOR_PLACES_MM[color]} has it there"
     if spec.world.background != EMPTY_MAT:
         return "-x, -y and -a place it elsewhere on the mat"
     if awaited.mode == "COL-COLOR" and color != "black":
@@ -155,7 +155,7 @@ def _name_obstacle(awaited: Awaited, spec: RunSpec) -> str:
     for sensor in spec.robot.sensors:
         if sensor.port == awaited.port and isinstance(sensor, UltrasonicSpec | InfraredSpec):
             options = find_obstacle(sensor, spec, pose, limit)
-    return f"{options or '-o with a file'} puts one before it (tuisim obstacles)"
+    return f"{options or '-o with a file (tuisim obstacles)'} puts one before it"
 
 
 def name_remedy_with_keys(awaited: Awaited, spec: RunSpec) -> str:
@@ -164,8 +164,8 @@ def name_remedy_with_keys(awaited: Awaited, spec: RunSpec) -> str:
     match awaited.subject:
         case Subject.BUTTONS if names:
             keys = " and ".join(_KEYS.get(name, name.capitalize()) for name in names)
-            verb = "presses" if len(names) == 1 else "press"
-            return f"{{panel-brick}} opens the brick, where {keys} {verb} {' and '.join(names)}"
+            does = f"shift with {keys} holds" if awaited.needs_all else f"{keys} presses"
+            return f"{{panel-brick}} opens the brick, where {does} {' and '.join(names)}"
         case Subject.BUTTONS:
             return "{panel-brick} opens the brick, whose buttons the arrows and Enter press"
         case Subject.TOUCH:
