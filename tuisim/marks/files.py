@@ -69,7 +69,7 @@ def copy_file(source: Path, target: Path) -> None:
         LogError: the copy cannot be written.
     """
     try:
-        with open_regular(source, follow_links=True) as file, open(target, "wb") as copy:
+        with open_regular(source) as file, open(target, "wb") as copy:
             size, place = os.fstat(file.fileno()).st_size, 0
             while place < size:
                 start, stop = _find_data(file, place, size)
