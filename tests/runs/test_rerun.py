@@ -11,7 +11,6 @@ from pathlib import Path
 import pytest
 
 from tests.running import Start, over, until, until_tick
-from tuisim.cli import run_command
 from tuisim.config.build import build_run_spec
 from tuisim.config.options import Settings
 from tuisim.errors import LogError
@@ -111,23 +110,6 @@ def test_runs_again(number: int, start: Start, tmp_path: Path) -> None:
     over(again)
     found = same(stored, store.load_run(again.run_id))
     assert found.same, (way, text, found)
-
-
-def test_commands(capsys: pytest.CaptureFixture[str]) -> None:
-    run_command(["run", "log_greys"])
-    run_command(["run", "log_greys", "--seed", "4", "-M", "50"])
-    capsys.readouterr()
-    assert run_command(["runs", "rerun", "last"]) == 0
-    assert "bit-identical" in capsys.readouterr().out
-    one, two = (str(info.number) for info in RunStore().runs()[-2:])
-    assert run_command(["log", "diff", one, two]) == 1
-    said = capsys.readouterr().out
-    assert (
-        "settings, seed: 0 | 4" in said
-        and "first differing tick: tick 1," in said
-        and "over 1 mm: from" in said
-    )
-    assert run_command(["log", "diff", one]) == 2
 
 
 CLEANS_UP = """

@@ -39,7 +39,7 @@ def step_on(motor: DriverMotor, time_ns: int) -> None:
 
 
 @pytest.mark.parametrize("kind", ROLLS)
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", range(20))
 def test_a_roll_is_what_single_steps_make(seed: int, kind: str) -> None:
     rolling, chance = build_rolling(seed, kind)
     stepped, _ = build_rolling(seed, kind)

@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 
 from tuisim.config import mat_cache, mats
-from tuisim.core.field import Field, disc_weights
+from tuisim.core.field import Field
 from tuisim.core.geometry import Pose
 from tuisim.core.sensors.color import reading
 from tuisim.core.spec import STRATEGIES, NoiseSpec, RobotSpec
@@ -43,16 +43,6 @@ def seen(field: Field, x_mm: float, strategy: str, light: int = 0) -> float:
 def test_readings_across_an_edge(grey_bands: Field, x_mm: int, reds: tuple[float, ...]) -> None:
     found = tuple(seen(grey_bands, float(x_mm), strategy) for strategy in STRATEGIES)
     assert found == pytest.approx(reds, abs=0.005)
-
-
-@pytest.mark.parametrize("strategy", STRATEGIES)
-@pytest.mark.parametrize("diameter", [2, 7, 10, 20, 30])
-def test_weights_are_those_of_the_disc(strategy: str, diameter: int) -> None:
-    weights = disc_weights(diameter, strategy)
-    inside = disc_weights(diameter, "mean")
-    assert len(weights) == diameter * diameter
-    assert set(inside) <= {0, 1}
-    assert all((weight > 0) == bool(one) for weight, one in zip(weights, inside, strict=True))
 
 
 @pytest.mark.parametrize("strategy", STRATEGIES)

@@ -15,7 +15,6 @@ from tuisim.protocol import (
     BEFORE_NEXT_TICK,
     Ended,
     LineStep,
-    Pause,
     Paused,
     PauseReason,
     Resume,
@@ -348,27 +347,6 @@ def test_stop_works_wherever_it_holds(
     ended = driver.finish()
     assert ended.end == "stopped"
     assert ended.tick == held.tick or "except BaseException" in text
-
-
-BUSY = [
-    pytest.param("3 if n < 0", id="plain"),
-    # Each call is worked out in a process of its own.
-    pytest.param("3 if len(str(n)) > 99", id="with a call"),
-]
-
-
-@pytest.mark.slow_cases("with a call")
-@pytest.mark.parametrize("text", BUSY)
-def test_a_break_in_a_busy_loop_leaves_the_run_in_hand(
-    debug: Callable[..., Driver], text: str
-) -> None:
-    driver = debug("n = 0\nwhile True:\n    n += 1\n", breaks=(text,), speed=1.0)
-    held = driver.do(Pause())
-    assert (held.reason, held.line) == ("asked", 3)
-    driver.run.send(Resume())
-    assert driver.do(StepLine()).reason == "step"
-    driver.run.stop()
-    assert driver.finish().end == "stopped"
 
 
 RUNNING = {
