@@ -118,8 +118,7 @@ def order_times(table: pa.Table, layout: Layout, notes: Notes) -> Ordered:
         return Ordered(table, layout, None)
     times = read_times(table.column(layout.time), layout.unit_s, layout.since_first)
     _tell_wraps(times, notes)
-    with np.errstate(invalid="ignore"):
-        back = np.flatnonzero(np.diff(times.seconds) < 0) + 1
+    back = np.flatnonzero(times.seconds[1:] < times.seconds[:-1]) + 1
     if not len(back) or layout.run or not _is_one_clock(table, layout, back):
         return Ordered(table, layout, times.seconds)
     restarts = _find_restarts(times.seconds, back)
