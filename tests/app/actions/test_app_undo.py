@@ -2,23 +2,21 @@
 
 from __future__ import annotations
 
-import pytest
-
 from tests.app.app_help import LOGS, notices, open_lab, screen_text, until, until_shown
 from tuisim.protocol import End
 
 
-@pytest.mark.parametrize("key", ["m", "j"])
-async def test_a_move_is_taken_back(key: str) -> None:
+async def test_a_move_is_taken_back() -> None:
     async with open_lab(LOGS) as (pilot, app):
         await pilot.press("right")
         await until(pilot, lambda: app.run_controller.pose.x_mm == 160)
-        await pilot.press(key)
-        await until(pilot, lambda: app.run_controller.pose.x_mm != 160)
-        await until_shown(pilot, "backspace undo")
-        await pilot.press("backspace")
-        await until(pilot, lambda: app.run_controller.pose.x_mm == 160)
-        await until(pilot, lambda: "backspace undo" not in screen_text(app))
+        for key in ("m", "j"):
+            await pilot.press(key)
+            await until(pilot, lambda: app.run_controller.pose.x_mm != 160, key)
+            await until_shown(pilot, "backspace undo")
+            await pilot.press("backspace")
+            await until(pilot, lambda: app.run_controller.pose.x_mm == 160, key)
+            await until(pilot, lambda: "backspace undo" not in screen_text(app), key)
 
 
 async def test_a_cleared_log_and_a_cleared_trace_come_back() -> None:

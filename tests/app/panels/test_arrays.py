@@ -114,35 +114,22 @@ async def test_with_few_colours_what_is_around_a_disc_is_plain_and_darker(
     assert corner.max() < disc.mean()
 
 
-async def test_another_robot_has_other_discs() -> None:
+async def test_the_same_pose_is_not_drawn_again_another_robot_is_and_without_a_mat_it_is_blank() -> (
+    None
+):
     app = PanelApp(Arrays())
     one = replace(SPEC, robot=replace(SPEC.robot, color_sensors=SPEC.robot.color_sensors[:1]))
     async with app.run_test(size=(40, 11)) as pilot:
         app.panel.show(moment(POSE, field=FIELD))
         await pilot.pause()
+        drawn: list[object] = []
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr(PixelView, "set_fine_picture", lambda *given: drawn.append(given))
+            app.panel.show(moment(POSE, field=FIELD, time_s=99.0))
+        assert not drawn
         app.panel.show(moment(POSE, field=FIELD, spec=one))
         await pilot.pause()
-        assert len(app.panel.query(PixelView)) == 1
-
-
-async def test_without_a_mat_it_is_blank() -> None:
-    app = PanelApp(Arrays())
-    async with app.run_test(size=(40, 11)) as pilot:
-        app.panel.show(moment(POSE, field=FIELD))
-        await pilot.pause()
-        app.panel.show(moment(POSE))
-
-        assert all(view._cells.size == 0 for view in app.panel.query(PixelView))
-
-
-async def test_the_same_pose_is_not_drawn_again(monkeypatch: pytest.MonkeyPatch) -> None:
-    app = PanelApp(Arrays())
-    async with app.run_test(size=(40, 11)) as pilot:
-        app.panel.show(moment(POSE, field=FIELD))
-        await pilot.pause()
-        drawn: list[object] = []
-        monkeypatch.setattr(PixelView, "set_fine_picture", lambda *given: drawn.append(given))
-
-        app.panel.show(moment(POSE, field=FIELD, time_s=99.0))
-
-        assert not drawn
+        (view,) = app.panel.query(PixelView)
+        assert view._cells.size > 0
+        app.panel.show(moment(POSE, spec=one))
+        assert view._cells.size == 0
