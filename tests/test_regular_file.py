@@ -33,14 +33,6 @@ def device(path: Path) -> None:
     path.symlink_to("/dev/zero")
 
 
-def dangling(path: Path) -> None:
-    path.symlink_to("/nowhere/at/all")
-
-
-def loop(path: Path) -> None:
-    path.symlink_to(path)
-
-
 def sparse(path: Path) -> None:
     with path.open("wb") as stream:
         stream.truncate(HUGE)

@@ -87,15 +87,6 @@ def test_a_log_without_numbers_is_refused() -> None:
         model_of(Log("test", table, Layout()))
 
 
-# The table
-
-
-# Panes
-
-
-# Notes
-
-
 def test_bands_are_those_of_the_variables_in_view() -> None:
     model = model_of(long_log())
     assert (model.unsearched(), list(model.bands())) == (["Colour", "Left"], [])

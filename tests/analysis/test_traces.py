@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import numpy as np
 import pyarrow as pa
 import pytest
 
 from tests.app.analyser.logs import long_log
-from tuisim.analysis.traces import LogTraces, aligned, sample_and_hold
+from tuisim.analysis.traces import LogTraces, aligned
 from tuisim.errors import LogError
 from tuisim.logs.columns import guess_columns
 from tuisim.logs.log import Log
@@ -46,11 +45,6 @@ def test_what_would_be_flat_beside_the_others_is_not_like_them(
 def test_a_value_holds_until_the_next_sample() -> None:
     trace = LogTraces(log_of(light=[5.0, 7.0])).named("light")
     assert [trace.at(time_s) for time_s in (-0.1, 0.0, 0.9, 1.0, 9.0)] == [None, 5.0, 5.0, 7.0, 7.0]
-
-
-def test_a_step_line_has_two_corners_at_each_step() -> None:
-    times, values = sample_and_hold(np.array([0.0, 1.0, 2.0]), np.array([5.0, 6.0, 7.0]))
-    assert list(zip(times, values, strict=True)) == [(0, 5), (1, 5), (1, 6), (2, 6), (2, 7)]
 
 
 @pytest.mark.parametrize("times, span", [([3.0, 3.0], (2.5, 3.5)), ([1.0, 4.0], (1.0, 4.0))])
