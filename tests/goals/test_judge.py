@@ -254,6 +254,12 @@ def test_no_other_end_is_a_finish(end: End, home: Path, tmp_path: Path) -> None:
     assert "what happened" in found.reason
 
 
+def test_nothing_that_is_recorded_of_a_falsified_run_counts(home: Path, tmp_path: Path) -> None:
+    goals = goals_of(tmp_path, "[[goal]]\nname = 'it'\nreach = { x_mm = 800 }\n")
+    (found,) = judge(goals, finished(home).end(End.FALSIFIED, "what happened"))
+    assert (found.state, found.reason[:18]) == ("missed", "It does not count:")
+
+
 def test_a_run_is_judged_as_it_was_when_it_ran(run: RunProgram, tmp_path: Path) -> None:
     text = (
         "print('n', input('n? '))\ntank_drive.on_for_rotations(50, 50, 1)\nprint(input('m? 1'))\n"
