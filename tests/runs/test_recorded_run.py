@@ -11,6 +11,7 @@ import pytest
 
 from tests.app.app_help import program
 from tests.running import PATIENCE_S
+from tuisim.app.timeline import Timeline
 from tuisim.config.build import build_run_spec
 from tuisim.config.options import Settings
 from tuisim.core.pen_marks import MarkedField, PenMarks
@@ -109,3 +110,21 @@ def test_the_pen_of_a_long_run_takes_little_memory() -> None:
         assert tracemalloc.get_traced_memory()[1] < 1 << 20
     finally:
         tracemalloc.stop()
+
+
+def test_a_timeline_marks_what_the_user_and_breakpoints_did() -> None:
+    timeline = Timeline()
+    recording = Recording(stored("tank_drive.on_for_seconds(50, 50, 1)\n"))
+    timeline.switch_to(recording)
+    assert recording.name == f"run {recording.number}"
+    timeline.breaks.append(40)
+    assert timeline.marks() == [(40, "break")]
+    timeline.go(30)
+    timeline.play(10.0)
+    assert not timeline.advance_playback(10.2, 1.0)
+    assert timeline.at == 50
+    assert not timeline.advance_playback(10.3, 2.0)
+    assert timeline.at == 70
+    assert timeline.advance_playback(12.0, 0.0)
+    assert not timeline.playing
+    assert timeline.record() is None
