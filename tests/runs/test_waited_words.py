@@ -16,8 +16,9 @@ from tuisim.config.mats import background
 from tuisim.core.profile import PROFILES
 from tuisim.core.sensors.color import clear_reading
 from tuisim.core.spec import RobotSpec, RunSpec, WorldSpec
+from tuisim.runs.hand_presses import HandPress
 from tuisim.runs.run_folder import field_files
-from tuisim.runs.waited import Awaited, HandPress, Subject
+from tuisim.runs.waited import Awaited, Subject
 from tuisim.runs.waited_words import (
     COLOR_PLACES_MM,
     COLORED_MAT,
@@ -180,6 +181,14 @@ def test_what_the_sentence_advises_ends_the_wait(
     assert (facts["state"], facts["waited_for"]) == ("finished", "")
 
 
+TWICE = """
+from time import sleep
+from ev3dev2.button import Button
+b = Button()
+while not b.enter: sleep(0.01)
+while b.enter: sleep(0.01)
+while not b.enter: sleep(0.01)
+"""
 VAIN = {
     "too early": (
         SECOND,
@@ -192,6 +201,11 @@ VAIN = {
         WAIT_TOUCH,
         "in2@1",
         "touch sensor on in1: only in2 was pressed: --press in1@2",
+    ),
+    "once of twice": (
+        TWICE,
+        "enter@0.5",
+        "enter was pressed at 0.5 s, and the program waits for more: add --press enter@1",
     ),
     "between two looks": (
         SLOW,
@@ -208,6 +222,47 @@ def test_a_press_that_did_not_help_is_named(
     (tmp_path / "prog.py").write_text(text)
     done = here("run", "prog.py", "--press", press, "--timeout", 6, "--json")
     assert json.loads(done.stdout)["waited_for"].startswith(sentence)
+
+
+ULTRASONIC = "from ev3dev2.sensor.lego import UltrasonicSensor\nus = UltrasonicSensor()\n"
+INFRARED = "from ev3dev2.sensor.lego import InfraredSensor\nir = InfraredSensor()\n"
+GYRO = "from ev3dev2.sensor.lego import GyroSensor\ng = GyroSensor()\n"
+TONES = "from ev3dev2.sound import Sound\ns = Sound()\n"
+TURNS = "from ev3dev2.motor import *\nMoveTank(OUTPUT_B, OUTPUT_C).on(10, -10)\n"
+MEASURED = {
+    "an obstacle around": (
+        f"{ULTRASONIC}{TURNS}while us.distance_centimeters > 25: pass",
+        "ultrasonic sensor on in1 saw nothing nearer than 5",
+    ),
+    "the way is free": (f"{ULTRASONIC}while us.distance_centimeters < 250: pass", ""),
+    "tones of a distance": (
+        f"{INFRARED}{TONES}while True: s.play_tone(200 + 8 * ir.proximity, 0.3)",
+        "",
+    ),
+    "a turn": (
+        f"{GYRO}while g.angle < 90: pass",
+        "gyro on in4 was never turned: a and f in the app turn the robot",
+    ),
+    "a turn that comes": (f"{GYRO}{TURNS}while g.angle < 9000: pass", ""),
+}
+
+
+@cases("text, sentence", MEASURED)
+def test_what_never_came_near_or_turned_is_named(
+    tmp_path: Path, here: Command, text: str, sentence: str
+) -> None:
+    (tmp_path / "prog.py").write_text(text)
+    waited_for = json.loads(here("run", "prog.py", "--timeout", 9, "--json").stdout)["waited_for"]
+    assert waited_for.startswith(sentence) and bool(waited_for) == bool(sentence)
+
+
+def test_a_program_that_reads_on_thousands_of_lines_is_told_by_its_readings(
+    tmp_path: Path, here: Command
+) -> None:
+    lines = "    v = us.distance_centimeters\n    if v < 5: v = 1\n" * 1500
+    (tmp_path / "prog.py").write_text(f"{ULTRASONIC}while True:\n{lines}")
+    facts = json.loads(here("run", "prog.py", "--timeout", 6, "--json").stdout)
+    assert facts["waited_for"].startswith("ultrasonic sensor on in1 saw nothing nearer than")
 
 
 def test_a_gamepad_that_never_comes_is_named(tmp_path: Path, here: Command) -> None:

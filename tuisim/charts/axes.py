@@ -27,8 +27,8 @@ def value_limits(low: float, high: float, from_zero: bool = False) -> Limits:
         low = min(low, 0.0)
     size = max(abs(low), abs(high), 1.0)
     if high - low < 1e-9 * size:
-        # Adding 1 does not change a number with more than sixteen digits.
-        room = max(1.0, 1e-6 * size)
+        # Adding 1 does not change a number with more than sixteen digits; labels with a power of ten show few.
+        room = max(1.0, (1e-6 if size < 1e15 else 1e-3) * size)
         low, high = low - room, high + room
     step = nice_step(high - low, 4)
     return math.floor(low / step + 1e-9) * step, math.ceil(high / step - 1e-9) * step
@@ -67,8 +67,28 @@ def label(value: float, step: float) -> str:
     digits = next(exact, _MOST_DIGITS)
     text = f"{value:.{digits}f}"
     if len(text) > _MAX_CHARACTERS:
-        return f"{value:.4g}"
+        return _label_shortly(value, step)
     return "0" if float(text) == 0 else text
+
+
+def _label_shortly(value: float, step: float) -> str:
+    """Return a tick's label as few digits, which tell it from the next one, and a power of ten."""
+    digits = math.floor(math.log10(max(abs(value) / step, 1.0))) + 2
+    return f"{value:.{max(digits, 4)}g}"
+
+
+_MAX_LABEL = 9
+"""Labels with more characters than that are written with a power of ten."""
+
+
+def labelled(limits: Limits, count: int) -> list[tuple[float, str]]:
+    """Return round positions between limits, with their labels."""
+    positions = ticks(limits, max(count, 1))
+    step = positions[1] - positions[0] if len(positions) > 1 else limits[1] - limits[0]
+    texts = [label(at, step) for at in positions]
+    if max(map(len, texts), default=0) > _MAX_LABEL:
+        texts = [_label_shortly(at, step) for at in positions]
+    return list(zip(positions, texts, strict=True))
 
 
 _SPANS_S = (5.0, 10.0, 20.0, 30.0, 60.0)

@@ -9,7 +9,7 @@ from typing import TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from tuisim.charts.axes import Limits, label, ticks, value_limits
+from tuisim.charts.axes import Limits, labelled, value_limits
 from tuisim.core.css_colors import Rgb
 from tuisim.data_class import dataclass
 from tuisim.errors import printable
@@ -38,8 +38,6 @@ PAD, LINE_PX = 10, 20
 """Margin of a picture, and height of a line of text."""
 _FACET_GAP_PX = 12
 _SCALE_GAP_PX = 6
-_LONG = 9
-"""Labels with more characters than that are written with a power of ten."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -407,16 +405,6 @@ def _limits(variables: Sequence[Variable], zoomed: bool) -> Limits:
         return 0.0, 1.0
     from_zero = not zoomed and any(units.begins_at_zero(*one) for one in ends)
     return value_limits(min(low for _, low, _ in ends), max(high for _, _, high in ends), from_zero)
-
-
-def labelled(limits: Limits, count: int) -> list[tuple[float, str]]:
-    """Return round positions between limits, with their labels."""
-    positions = ticks(limits, max(count, 1))
-    step = positions[1] - positions[0] if len(positions) > 1 else limits[1] - limits[0]
-    texts = [label(at, step) for at in positions]
-    if max(map(len, texts), default=0) > _LONG:
-        texts = [f"{at:.4g}" for at in positions]
-    return list(zip(positions, texts, strict=True))
 
 
 def _widest(limits: Limits) -> float:

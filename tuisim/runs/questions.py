@@ -14,6 +14,8 @@ from tuisim.data_class import dataclass
 
 Word = str | float
 
+MAX_TEXT = 100_000
+"""Characters of the longest text that is asked; it takes time for each line that reads something."""
 _RECORDERS = frozenset(
     {
         *("print", "pprint", "write", "writelines", "writerow", "writerows", "dump"),
@@ -65,6 +67,8 @@ class Question:
 
     decides: bool = True
     """Whether anything depends on it: it is not only shown or stored."""
+    is_test: bool = True
+    """Whether the way that the program goes depends on it, or how long it waits."""
     is_last: bool = False
     """Whether it only ends a loop after which the program does nothing more."""
     words: tuple[Word, ...] = ()
@@ -90,7 +94,7 @@ class Question:
 def find_question(text: str, line: int) -> Question:
     """Return what a program asks on one of its lines; `Question()` if its text does not tell."""
     reader = _open_reader(text)
-    steps = list(reader.find_steps(line)) if reader else []
+    steps = reader.find_steps(line) if reader else []
     if reader is None or not steps:
         return Question()
     flow = reader.find_flow(steps)
@@ -101,6 +105,7 @@ def find_question(text: str, line: int) -> Question:
         words += tuple(reader.find_handlers())
     return Question(
         decides=any(map(reader.is_deciding, flow)),
+        is_test=any(map(_is_test, flow)),
         is_last=all(map(reader.is_last, steps)),
         words=words,
         needs_all=any(map(_is_for_all, heads)),
@@ -109,7 +114,7 @@ def find_question(text: str, line: int) -> Question:
 
 @lru_cache(4)
 def _open_reader(text: str) -> _Reader | None:
-    tree = parsed(text)
+    tree = parsed(text) if len(text) <= MAX_TEXT else None
     return None if tree is None else _Reader(tree)
 
 
@@ -124,7 +129,16 @@ class _Reader:
         self._constants: dict[str, Word] = {}
         self._users: dict[str, list[ast.stmt]] = {}
         """The steps that use a name, or an attribute with a dot before it."""
+        self._parameters: dict[str, set[str]] = {}
+        """Those of all functions of a name."""
+        self._steps: dict[int, list[ast.stmt]] = {}
+        """The steps on a line that may read something."""
         for node in self._nodes:
+            if isinstance(node, ast.stmt):
+                self._add_lines(node)
+            if isinstance(node, _FUNCTIONS):
+                names = {parameter.arg for parameter in node.args.args}
+                self._parameters.setdefault(node.name, set()).update(names)
             match node:
                 case ast.Assign(
                     targets=[ast.Name(id=name)], value=ast.Constant(value=str() | int() | float())
@@ -138,21 +152,29 @@ class _Reader:
                     for name in _list_names(node):
                         self._users.setdefault(name, []).append(step)
 
-    def find_steps(self, line: int) -> Iterator[ast.stmt]:
-        """Yield the steps on a line that may read something."""
-        for node in self._nodes:
-            if isinstance(node, ast.stmt) and any(
-                head.lineno <= line <= (head.end_lineno or 0) and _is_reading(head)
-                for head in _list_heads(node)
-            ):
-                yield node
+    def _add_lines(self, step: ast.stmt) -> None:
+        """Note on which lines a step may read something."""
+        lines = {
+            line
+            for head in _list_heads(step)
+            if _is_reading(head)
+            for line in range(head.lineno, (head.end_lineno or head.lineno) + 1)
+        }
+        for line in lines:
+            self._steps.setdefault(line, []).append(step)
+
+    def find_steps(self, line: int) -> list[ast.stmt]:
+        """Return the steps on a line that may read something."""
+        return self._steps.get(line, [])
 
     def find_flow(self, steps: Iterable[ast.stmt]) -> list[ast.stmt]:
         """Return some steps, and all that use what they assign, pass on or decide."""
         flow = dict.fromkeys(steps)
-        queue = [*flow]
+        queue, followed = [*flow], set[str]()
         for step in queue:
-            users = [user for name in self._find_names(step) for user in self._users.get(name, ())]
+            names = self._find_names(step) - followed
+            followed |= names
+            users = [user for name in names for user in self._users.get(name, ())]
             if isinstance(step, ast.If) and step.orelse:
                 users += step.body + step.orelse
             for user in sorted(users, key=lambda user: user.lineno):
@@ -173,8 +195,12 @@ class _Reader:
         return not isinstance(step, ast.Pass)
 
     def find_words(self, head: ast.AST) -> Iterator[Word]:
-        """Yield the attributes, texts and numbers in an expression, in their order."""
-        nodes = [node for node in ast.walk(head) if isinstance(node, ast.expr)]
+        """Yield the attributes, texts and numbers in an expression, in their order; no numbers to compute with."""
+        nodes = [
+            node
+            for node in ast.walk(head)
+            if isinstance(node, ast.expr) and not isinstance(self._parents.get(node), ast.BinOp)
+        ]
         for node in sorted(
             nodes, key=lambda node: (node.end_lineno or 0, node.end_col_offset or 0)
         ):
@@ -235,13 +261,7 @@ class _Reader:
             ):
                 return _list_names(owner)
             case ast.Expr(value=ast.Call(func=func)):
-                called = _name_function(func)
-                return {
-                    parameter.arg
-                    for node in self._nodes
-                    if isinstance(node, _FUNCTIONS) and node.name == called
-                    for parameter in node.args.args
-                }
+                return self._parameters.get(_name_function(func), set())
             case ast.Return():
                 node: ast.AST = step
                 while not isinstance(node, (*_FUNCTIONS, ast.Module)):
@@ -274,6 +294,14 @@ def _is_recorder(step: ast.stmt) -> bool:
         case ast.Expr(value=ast.Call(func=func)):
             return _name_function(func) in _RECORDERS
     return False
+
+
+def _is_test(step: ast.stmt) -> bool:
+    return (
+        isinstance(step, ast.If | ast.While | ast.Match | ast.Assert)
+        or _is_waiting(step)
+        or any(isinstance(node, ast.Compare | ast.IfExp) for node in ast.walk(step))
+    )
 
 
 def _is_waiting(step: ast.stmt) -> bool:

@@ -8,7 +8,7 @@ was in come first. What the program turns itself, its motors and the gyro, does 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from enum import Enum, auto
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -34,6 +34,7 @@ from tuisim.data_class import dataclass
 from tuisim.errors import LogError
 from tuisim.protocol import End, SetButtons, UserAction
 from tuisim.runs.brick_state import BrickState, face_after
+from tuisim.runs.hand_presses import HandPress, find_hits, find_presses
 from tuisim.runs.questions import (
     BUTTON_WORDS,
     COLOR_WORDS,
@@ -77,6 +78,7 @@ class Subject(Enum):
     COLOR = auto()
     DISTANCE = auto()
     PROXIMITY = auto()
+    GYRO = auto()
     CONNECTION = auto()
     DATA = auto()
     GAMEPAD = auto()
@@ -90,6 +92,7 @@ _MODES: dict[Subject, tuple[str, ...]] = {
     Subject.COLOR: ("COL-REFLECT", "COL-COLOR", "REF-RAW", "RGB-RAW"),
     Subject.DISTANCE: ("US-DIST-CM", "US-DIST-IN", "US-SI-CM", "US-SI-IN"),
     Subject.PROXIMITY: ("IR-PROX",),
+    Subject.GYRO: ("GYRO-ANG", "GYRO-G&A", "GYRO-FAS"),
     Subject.CONNECTION: ("accept",),
     Subject.DATA: ("receive",),
     Subject.GAMEPAD: MODES_BY_KIND["gamepad"],
@@ -106,18 +109,13 @@ _PRESSED = (*_BY_HAND, Subject.TOUCH)
 """While the program logs or plays, a look at these that only ends it is a guard."""
 _SEEN = (Subject.COLOR, Subject.DISTANCE, Subject.PROXIMITY)
 """A robot that drives waits for these first."""
+_MAX_LINES = 64
+_MEASURED = (Subject.DISTANCE, Subject.PROXIMITY, Subject.GYRO)
+"""A program that only computes with these waits for nothing."""
+_SAME_HEADING_DEG = 2.0
+"""A robot that turns less is not turned by hand."""
 _FROM_OUTSIDE = (Subject.CONNECTION, Subject.DATA, Subject.GAMEPAD)
 """Each recorded look at these was in vain."""
-
-
-@dataclass(frozen=True, slots=True)
-class HandPress:
-    """Something that was held by hand."""
-
-    name: str
-    """One of `PRESSABLE`."""
-    from_s: float
-    until_s: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -143,7 +141,9 @@ class Awaited:
     pace_s: float = 0.0
     """Time between two readings."""
     pressed: tuple[HandPress, ...] = ()
-    """What was pressed by hand in vain."""
+    """What was pressed by hand."""
+    waits_again: bool = False
+    """Whether the program has seen what was pressed, and waits for more."""
     pose: Pose | None = None
     """Where the robot was when it read it for the first time."""
     has_moved: bool = False
@@ -233,6 +233,9 @@ class _Search:
         self._first = max(0, len(self._records) - 1 - _count_window_ticks(run.spec))
         """The tick at which the last seconds begin."""
         self._drives = len(self._records) > 0 and _is_driving(self._records[self._first :])
+        lines = np.unique(self._rows["line"][self._ticks >= self._first])
+        self._asks_text = len(lines) <= _MAX_LINES
+        """Whether the program reads on so few lines that its text is asked about each."""
 
     def find_awaited(self) -> Iterator[Awaited]:
         """Yield what the program waits for, most important first."""
@@ -253,9 +256,7 @@ class _Search:
         """Return the indices of all readings of a subject on the lines that the program is busy with."""
         import numpy as np
 
-        modes = [READING_MODES.index(mode) for mode in _MODES[subject]]
-        is_meant = np.isin(self._rows["mode"], modes)
-        is_meant &= self._rows["port"] == READING_PORTS.index(port)
+        is_meant = self._select(subject, port)
         lines = np.unique(self._rows["line"][is_meant & (self._ticks >= self._first)])
         if (line := self._find_blocking_line()) is not None:
             lines = lines[lines == line]
@@ -263,8 +264,24 @@ class _Search:
         rows: Array = np.flatnonzero(is_meant & np.isin(self._rows["line"], asking))
         return rows
 
+    def _select(self, subject: Subject, port: str) -> Array:
+        """Return of each reading whether it is one of a subject on a port."""
+        import numpy as np
+
+        modes = [READING_MODES.index(mode) for mode in _MODES[subject]]
+        is_meant: Array = np.isin(self._rows["mode"], modes)
+        is_meant &= self._rows["port"] == READING_PORTS.index(port)
+        return is_meant
+
+    def _has_seen(self, subject: Subject, port: str, presses: Iterable[HandPress]) -> bool:
+        """Return whether the program has read a subject, on any line, while something was pressed."""
+        times_s = self._ticks[self._select(subject, port)] / self._hz
+        return any(
+            ((times_s >= press.from_s) & (times_s < press.until_s)).any() for press in presses
+        )
+
     def _ask(self, line: int) -> Question:
-        return find_question(self._run.text, line)
+        return find_question(self._run.text, line) if self._asks_text else Question()
 
     def _is_asking(self, subject: Subject, line: int) -> bool:
         """Return whether the program waits for a subject on a line, if it waits at all."""
@@ -272,7 +289,8 @@ class _Search:
         if subject in _FROM_OUTSIDE:
             return True
         is_guard = subject in _PRESSED and question.is_last and self._is_logging_or_playing()
-        return question.decides and not is_guard
+        is_computed = subject in _MEASURED and not question.is_test
+        return question.decides and not is_guard and not is_computed
 
     def _is_logging_or_playing(self) -> bool:
         """Return whether the program has shown or stored readings in the last seconds, or has played sounds."""
@@ -308,23 +326,17 @@ class _Search:
 
         mode = READING_MODES[self._rows["mode"][rows[-1]]]
         questions = [self._ask(line) for line in dict.fromkeys(self._rows["line"][rows].tolist())]
-        sought = tuple(
-            dict.fromkeys(
-                name
-                for question in questions
-                for name in _find_sought(subject, port, mode, question)
-            )
-        )
-        # These usually end a program.
-        sought = tuple(sorted(sought, key=("backspace", "remote.beacon").__contains__))
+        sought = _list_sought(subject, port, mode, questions)
         needs_all = len(sought) > 1 and any(question.needs_all for question in questions)
-        value = self._describe_constant(subject, port, rows, sought, needs_all)
+        limit = self._find_limit(mode, questions[0])
+        value = self._describe_constant(subject, port, rows, sought, needs_all, limit)
+        presses = find_presses(
+            self._run.actions, _HANDS.get(subject, ()), self._hz, len(self._records)
+        )
         if value is None:
             return None
         times_s = self._rows["time_ns"][rows] / NS_PER_S
-        first, last = (
-            self._run.telemetry.record(int(self._ticks[row])).pose for row in rows[[0, -1]]
-        )
+        first, last = map(self._find_pose, rows[[0, -1]])
         return Awaited(
             subject,
             port,
@@ -334,13 +346,17 @@ class _Search:
             value,
             sought=sought,
             needs_all=needs_all,
-            limit=self._find_limit(mode, questions[0]),
+            limit=limit,
             pace_s=float(np.median(np.diff(times_s))) if len(rows) > 1 else 0.0,
-            pressed=self._find_presses(subject),
+            pressed=presses,
+            waits_again=self._has_seen(subject, port, find_hits(presses, sought)),
             pose=first,
             has_moved=math.dist((first.x_mm, first.y_mm), (last.x_mm, last.y_mm)) > _MOVED_MM,
             mode=mode,
         )
+
+    def _find_pose(self, row: int) -> Pose:
+        return self._run.telemetry.record(int(self._ticks[row])).pose
 
     def _find_limit(self, mode: str, question: Question) -> float | None:
         """Return the distance that the program asks for, in mm or in % for an infrared sensor."""
@@ -351,26 +367,14 @@ class _Search:
         is_in_mm = is_pybricks or "value" in question.words
         return limit * (1.0 if is_in_mm else 25.4 if mode.endswith("IN") else 10.0)
 
-    def _find_presses(self, subject: Subject) -> tuple[HandPress, ...]:
-        """Return what was pressed by hand of what can be pressed for a subject."""
-        names = _HANDS.get(subject, ())
-        since: dict[str, int] = {}
-        presses: list[HandPress] = []
-        for action in self._run.actions:
-            if not isinstance(action.command, SetButtons):
-                continue
-            pressed = action.command.pressed
-            for name in [name for name in since if name not in pressed]:
-                presses.append(HandPress(name, since.pop(name) / self._hz, action.tick / self._hz))
-            since |= {name: action.tick for name in pressed if name in names and name not in since}
-        end_s = len(self._records) / self._hz
-        return (
-            *presses,
-            *(HandPress(name, tick / self._hz, end_s) for name, tick in since.items()),
-        )
-
     def _describe_constant(
-        self, subject: Subject, port: str, rows: Array, sought: tuple[str, ...], needs_all: bool
+        self,
+        subject: Subject,
+        port: str,
+        rows: Array,
+        sought: tuple[str, ...],
+        needs_all: bool,
+        limit: float | None,
     ) -> str | None:
         """Return what was read each time, in words; None if it changed, or was what a program waits for."""
         import numpy as np
@@ -393,9 +397,12 @@ class _Search:
             case Subject.COLOR, ColorSensorSpec():
                 return self._describe_color(sensor, ticks)
             case Subject.DISTANCE, UltrasonicSpec():
-                return self._describe_distance(sensor, ticks, 10, sensor.noise_mm * 2 + 10)
+                return self._describe_distance(sensor, ticks, 10, sensor.noise_mm * 2 + 10, limit)
             case Subject.PROXIMITY, InfraredSpec():
-                return self._describe_distance(sensor, ticks, 1, 2)
+                return self._describe_distance(sensor, ticks, 1, 2, limit)
+            case Subject.GYRO, _:
+                headings_deg = self._records["heading_deg"][ticks]
+                return None if np.ptp(headings_deg) > _SAME_HEADING_DEG else ""
         return None
 
     def _is_pressed(self, ticks: Array, names: Sequence[str], needs_all: bool) -> bool:
@@ -434,14 +441,22 @@ class _Search:
             yield measure(sensor, instant, run.spec, None)
 
     def _describe_distance(
-        self, sensor: SensorSpec, ticks: Array, per_unit: int, tolerance: float
+        self,
+        sensor: SensorSpec,
+        ticks: Array,
+        per_unit: int,
+        tolerance: float,
+        limit: float | None,
     ) -> str | None:
-        """Return the smallest distance that was measured; None if they differ by more than a tolerance."""
+        """Return the smallest distance that was measured; None if the one that is asked for came.
+
+        If that is not known, distances that differ by more than a tolerance came.
+        """
         low, high = math.inf, -math.inf
         for value, *_ in self._measure(sensor, ticks):
             low, high = min(value, low), max(value, high)
-            if high - low > tolerance:
-                return None
+        if (low <= limit) if limit else (high - low > tolerance):
+            return None
         return f"{low / per_unit:.0f} {'cm' if per_unit > 1 else '%'}"
 
     def _describe_color(self, sensor: ColorSensorSpec, ticks: Array) -> str | None:
@@ -458,6 +473,17 @@ class _Search:
             return None
         red, green, blue = (int(level) for level in channels.mean(axis=1))
         return COLOR_NAMES[color_code(red, green, blue)].lower()
+
+
+def _list_sought(
+    subject: Subject, port: str, mode: str, questions: Iterable[Question]
+) -> tuple[str, ...]:
+    """Return what a program asks for of a subject on several lines, in their order; empty for anything."""
+    names = dict.fromkeys(
+        name for question in questions for name in _find_sought(subject, port, mode, question)
+    )
+    # These usually end a program.
+    return tuple(sorted(names, key=("backspace", "remote.beacon").__contains__))
 
 
 def _find_sought(subject: Subject, port: str, mode: str, question: Question) -> tuple[str, ...]:

@@ -6,7 +6,8 @@ import math
 from collections.abc import Iterable, Mapping
 from typing import assert_never
 
-from tuisim.core.spec import EMPTY_MAT, TOUCH, InfraredSpec, RunSpec, UltrasonicSpec
+from tuisim.core.spec import EMPTY_MAT, InfraredSpec, RunSpec, UltrasonicSpec
+from tuisim.runs.hand_presses import find_hits
 from tuisim.runs.obstacle_advice import find_obstacle
 from tuisim.runs.run_folder import StoredRun
 from tuisim.runs.waited import Awaited, Subject, find_awaited
@@ -56,6 +57,8 @@ def describe_awaited(awaited: Awaited) -> str:
             return f"ultrasonic sensor on {port} saw nothing nearer than {value}"
         case Subject.PROXIMITY:
             return f"infrared sensor on {port} saw nothing nearer than {value}"
+        case Subject.GYRO:
+            return f"gyro on {port} was never turned"
         case Subject.CONNECTION:
             return f"socket.accept in line {awaited.line}: nobody connected"
         case Subject.DATA:
@@ -69,8 +72,8 @@ def describe_awaited(awaited: Awaited) -> str:
 def _describe_presses(awaited: Awaited) -> str:
     """Return why what was pressed by hand did not help; empty if nothing was pressed."""
     names = list(dict.fromkeys(press.name for press in awaited.pressed))
-    wants = [*awaited.sought, *([TOUCH] if awaited.subject is Subject.TOUCH else [])]
-    hits = [press for press in awaited.pressed if not wants or press.name in wants]
+    wants = awaited.sought
+    hits = find_hits(awaited.pressed, wants)
     missing = [name for name in wants if name not in names]
     if not names:
         return ""
@@ -79,6 +82,8 @@ def _describe_presses(awaited: Awaited) -> str:
         return f"only {' and '.join(names)} {'was' if len(names) == 1 else 'were'} pressed{others}"
     if awaited.needs_all:
         return f"{' and '.join(wants)} were not pressed at once"
+    if awaited.waits_again:
+        return f"{hits[-1].name} was pressed at {hits[-1].from_s:.3g} s, and the program waits for more"
     words = f"{hits[0].name} was pressed at {hits[0].from_s:.3g} s"
     if all(press.until_s <= awaited.since_s for press in hits):
         return f"{words}, before the program asked (first at {awaited.since_s:.3g} s)"
@@ -111,6 +116,8 @@ def name_remedy(awaited: Awaited, spec: RunSpec, is_live: bool = False) -> str:
             return _name_mat(awaited, spec)
         case Subject.DISTANCE | Subject.PROXIMITY:
             return _name_obstacle(awaited, spec)
+        case Subject.GYRO:
+            return "a and f in the app turn the robot"
         case Subject.CONNECTION | Subject.DATA if is_live:
             return "start the other program while this one runs"
         case Subject.CONNECTION | Subject.DATA:
@@ -131,7 +138,8 @@ def _name_presses(awaited: Awaited, default: str) -> str:
         held_s = max(held_s, math.ceil(awaited.pace_s))
     until = f"-{from_s + held_s}" if held_s else ""
     pressed = names if awaited.needs_all else names[:1]
-    return " ".join(f"--press {name}@{from_s}{until}" for name in pressed)
+    options = " ".join(f"--press {name}@{from_s}{until}" for name in pressed)
+    return f"add {options}" if awaited.waits_again and not awaited.needs_all else options
 
 
 def _name_mat(awaited: Awaited, spec: RunSpec) -> str:
@@ -170,5 +178,7 @@ def name_remedy_with_keys(awaited: Awaited, spec: RunSpec) -> str:
             return "{panel-brick} opens the brick, whose buttons the arrows and Enter press"
         case Subject.TOUCH:
             return f"{{panel-brick}} opens the brick, where {awaited.port[2:]} presses it"
+        case Subject.GYRO:
+            return "{nudge-ctrl-left} and {nudge-ctrl-right} turn the robot"
         case _:
             return name_remedy(awaited, spec, is_live=True)
