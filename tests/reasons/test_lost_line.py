@@ -84,6 +84,18 @@ while get_clock() < 25:
         tank_turn.on_for_rotations(-100, SpeedPercent(30), 0.9)
 tank_drive.off()
 """
+# The mat is of several greys, and the robot sees more of them after it has lost the line.
+WRONG_SIDES = """\
+# %%sim_magic_preloaded -b Lollipop
+while True:
+    left = colorLeft.reflected_light_intensity_pc
+    if left < 50:
+        tank_drive.on(30, 10)
+    elif colorRight.reflected_light_intensity_pc < 50:
+        tank_drive.on(10, 30)
+    else:
+        tank_drive.on(20, 20)
+"""
 GOOD = {
     "edge": EDGE.format(seconds=15, left=5, right=20),
     "proportional": P.format(mat="Lollipop", seconds=20, gain=0.4, speed=15),
@@ -92,6 +104,11 @@ GOOD = {
 }
 WRONG = {
     "the sign of two sensors": (WRONG_SIGN, "1.04", "right sensor left the black, and saw it no"),
+    "and then far over the mat": (
+        WRONG_SIDES,
+        "1.03",
+        "right sensor left the black, and saw it no",
+    ),
     "too fast": (EDGE.format(seconds=9, left=30, right=40), "", "the robot left the mat"),
     "the sides swapped": (EDGE.format(seconds=18, left=20, right=5), "0.", "sensor left the black"),
     "too weak": (

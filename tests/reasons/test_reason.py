@@ -99,3 +99,12 @@ def test_without_a_line_only_the_time_is_told() -> None:
     assert (
         Reason(ReasonKind.MISSED, 3.0, 0, "a goal was missed").words == "3.00 s: a goal was missed"
     )
+
+
+def test_readings_that_came_while_a_run_was_looked_at_are_no_fault(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    run = run_text(WRONG_SIGN)
+    records = run.telemetry.array()[:-50]
+    monkeypatch.setattr(run.telemetry, "array", lambda *_: records)
+    assert find_reasons(run)[0].kind is ReasonKind.LOST

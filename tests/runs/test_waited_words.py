@@ -241,7 +241,16 @@ MEASURED = {
     ),
     "a turn": (
         f"{GYRO}while g.angle < 90: pass",
-        "gyro on in4 was never turned: a and f in the app turn the robot",
+        "gyro on in4 was never turned: only its motors turn this robot",
+    ),
+    "an obstacle for a state": (
+        f"{ULTRASONIC}state = 0\nwhile state < 2:\n    if us.distance_centimeters < 20: state = 2\n",
+        "ultrasonic sensor on in1 saw nothing nearer than 116 cm",
+    ),
+    "the largest turn": (f"{GYRO}m = 0\nwhile True:\n    if g.angle > m: m = g.angle\n", ""),
+    "a note of what is near": (
+        f"{ULTRASONIC}while True:\n    if us.distance_centimeters < 5: print('near')\n",
+        "",
     ),
     "a turn that comes": (f"{GYRO}{TURNS}while g.angle < 9000: pass", ""),
 }

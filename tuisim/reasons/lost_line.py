@@ -33,7 +33,9 @@ MIN_READINGS = 3
 _MIN_CONTRAST_PC = 40.0
 """Less difference between the darkest and the brightest reading is no line on its ground."""
 _DARKER_PC = 5.0
-"""A sensor that reads so much less than the brightest sees at least the edge of a line."""
+"""A sensor that reads so much less than the ground sees at least the edge of a line."""
+_GROUND_SHARE = 0.25
+"""Of what is brighter than the middle, so much may be darker than the ground: a line's edge, another colour."""
 _BLACK_PC = 25.0
 """A line that is darker than this is called black."""
 _MIN_DARK_SHARE = 0.25
@@ -162,12 +164,13 @@ def _see_line(
     there = np.concatenate([percent[is_on] for percent, is_on in zip(light, on, strict=True)])
     if not len(there) or np.ptp(there) < _MIN_CONTRAST_PC:
         return None
-    limits = there.max() - _DARKER_PC, (there.min() + there.max()) / 2
-    edge, middle = (
+    middle = (there.min() + there.max()) / 2
+    limits = np.quantile(there[there > middle], _GROUND_SHARE) - _DARKER_PC, middle
+    edges, middles = (
         [is_on & (percent < limit) for percent, is_on in zip(light, on, strict=True)]
         for limit in limits
     )
-    return _Seen(edge, middle, bool(there.min() < _BLACK_PC))
+    return _Seen(edges, middles, bool(there.min() < _BLACK_PC))
 
 
 class _Way:

@@ -157,7 +157,7 @@ def _find_lost(run: StoredRun, mat: Field | None) -> Iterator[Reason]:
 
     mat = open_mat(run) if mat is None else mat
     records, hz = run.telemetry.array(), run.spec.profile.tick_hz
-    read_ticks = {eye.name: _find_read_ticks(run, eye.port) for eye in eyes}
+    read_ticks = {eye.name: _find_read_ticks(run, eye.port, len(records)) for eye in eyes}
     for lost in find_lost_lines(records, run.spec, mat, read_ticks):
         yield _lost_at(run, lost.tick, _describe_loss(lost, hz))
     if seen := find_one_color(records, run.spec, mat, read_ticks):
@@ -179,14 +179,17 @@ def _lost_at(run: StoredRun, tick: int, text: str) -> Reason:
     return Reason(ReasonKind.LOST, time_s, run.telemetry.record(tick).line, text)
 
 
-def _find_read_ticks(run: StoredRun, port: str) -> NDArray[Any]:
-    """Return the ticks at which the program read the light sensor of a port, in ascending order."""
+def _find_read_ticks(run: StoredRun, port: str, count: int) -> NDArray[Any]:
+    """Return those of the first ticks at which the program read the light sensor of a port, in ascending order.
+
+    A run that goes on has more by now.
+    """
     rows = read_readings(run.folder).find(MODES_BY_KIND["color"])
     seconds, rest_ns = divmod(rows["time_ns"][rows["port"] == READING_PORTS.index(port)], NS_PER_S)
     hz = run.spec.profile.tick_hz
     ticks = seconds * hz + rest_ns * hz // NS_PER_S
-    in_recording: NDArray[Any] = ticks[ticks < run.telemetry.count]
-    return in_recording
+    first: NDArray[Any] = ticks[ticks < count]
+    return first
 
 
 def _describe_loss(lost: LostLine, hz: int) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ast
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Set
 from functools import lru_cache
 
 from tuisim.config.program_robot.source import parsed
@@ -297,11 +297,25 @@ def _is_recorder(step: ast.stmt) -> bool:
 
 
 def _is_test(step: ast.stmt) -> bool:
-    return (
-        isinstance(step, ast.If | ast.While | ast.Match | ast.Assert)
-        or _is_waiting(step)
-        or any(isinstance(node, ast.Compare | ast.IfExp) for node in ast.walk(step))
+    match step:
+        case ast.If(test=test, body=body, orelse=orelse):
+            compared = {name for node in ast.walk(test) for name in _list_names(node)}
+            return not all(_is_noted(part, compared) for part in body + orelse)
+        case ast.While() | ast.Match() | ast.Assert():
+            return True
+        case ast.Assign() | ast.AnnAssign() | ast.AugAssign() if not _is_waiting(step):
+            return False
+    return any(isinstance(node, ast.Compare | ast.IfExp) for node in ast.walk(step)) or _is_waiting(
+        step
     )
+
+
+def _is_noted(step: ast.stmt, compared: Set[str]) -> bool:
+    """Return whether a step only shows something, or stores it in what it was compared with, as the largest so far."""
+    match step:
+        case ast.Assign(targets=targets):
+            return {name for target in targets for name in _list_names(target)} <= compared
+    return isinstance(step, ast.Pass) or _is_recorder(step)
 
 
 def _is_waiting(step: ast.stmt) -> bool:
@@ -317,7 +331,7 @@ def _name_function(func: ast.expr) -> str:
     return ""
 
 
-def _list_names(target: ast.expr) -> set[str]:
+def _list_names(target: ast.AST) -> set[str]:
     """Return the names in the target of an assignment, attributes with a dot before them."""
     match target:
         case ast.Name(id=name):

@@ -117,7 +117,7 @@ def name_remedy(awaited: Awaited, spec: RunSpec, is_live: bool = False) -> str:
         case Subject.DISTANCE | Subject.PROXIMITY:
             return _name_obstacle(awaited, spec)
         case Subject.GYRO:
-            return "a and f in the app turn the robot"
+            return "only its motors turn this robot"
         case Subject.CONNECTION | Subject.DATA if is_live:
             return "start the other program while this one runs"
         case Subject.CONNECTION | Subject.DATA:
@@ -178,7 +178,5 @@ def name_remedy_with_keys(awaited: Awaited, spec: RunSpec) -> str:
             return "{panel-brick} opens the brick, whose buttons the arrows and Enter press"
         case Subject.TOUCH:
             return f"{{panel-brick}} opens the brick, where {awaited.port[2:]} presses it"
-        case Subject.GYRO:
-            return "{nudge-ctrl-left} and {nudge-ctrl-right} turn the robot"
         case _:
             return name_remedy(awaited, spec, is_live=True)

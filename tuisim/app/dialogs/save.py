@@ -65,7 +65,7 @@ class FileDialog(Dialog[Path]):
 
     def content(self) -> ComposeResult:
         yield Static(f"File ({self.SUFFIXES})", markup=False)
-        yield Input(self._proposed, compact=True, select_on_focus=False)
+        yield Input(self._proposed, compact=True)
         yield from self.more()
         yield Static(id="message", markup=False)
 
