@@ -121,6 +121,7 @@ def test_a_truncated_file_has_the_readings_that_are_left(tmp_path: Path) -> None
 def test_a_run_without_a_record_says_what_to_do(tmp_path: Path) -> None:
     with pytest.raises(LogError, match="no record of what the program read"):
         read_readings(tmp_path)
+    assert not len(read_readings(tmp_path, is_over=False).rows)
     (tmp_path / READINGS_FILE).mkdir()
     with pytest.raises(LogError, match="cannot be read"):
         read_readings(tmp_path)

@@ -129,7 +129,7 @@ class Evidence:
         Raises:
             LogError: the record of it is missing or damaged.
         """
-        return read_readings(self._run.folder)
+        return read_readings(self._run.folder, is_over=isinstance(self._run, StoredRun))
 
     @cached_property
     def samples(self) -> list[tuple[int, Sample]]:

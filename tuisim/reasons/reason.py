@@ -184,7 +184,8 @@ def _find_read_ticks(run: StoredRun, port: str, count: int) -> NDArray[Any]:
 
     A run that goes on has more by now.
     """
-    rows = read_readings(run.folder).find(MODES_BY_KIND["color"])
+    readings = read_readings(run.folder, is_over=run.end is not None)
+    rows = readings.find(MODES_BY_KIND["color"])
     seconds, rest_ns = divmod(rows["time_ns"][rows["port"] == READING_PORTS.index(port)], NS_PER_S)
     hz = run.spec.profile.tick_hz
     ticks = seconds * hz + rest_ns * hz // NS_PER_S

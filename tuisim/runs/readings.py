@@ -137,8 +137,12 @@ class Readings:
         return rows
 
 
-def read_readings(folder: Path) -> Readings:
+def read_readings(folder: Path, *, is_over: bool = True) -> Readings:
     """Return what the program of a run has read so far.
+
+    Args:
+        folder: The run's folder.
+        is_over: Whether the run is; one that has just begun may have no record yet.
 
     Raises:
         LogError: the file is missing, damaged or of another version, or this machine cannot read it.
@@ -149,6 +153,8 @@ def read_readings(folder: Path) -> Readings:
     try:
         data = read_regular(path, HEADER_BYTES + 2 * MAX_READINGS * READING_RECORD.size)
     except FileNotFoundError as error:
+        if not is_over:
+            return Readings(np.empty(0, np.dtype(list(READING_FIELDS))))
         raise LogError(
             "there is no record of what the program read", "run it again", file=str(path)
         ) from error

@@ -106,11 +106,11 @@ def _propose_to_write(context: ActionContext, mat: str) -> None:
         return
 
     def answered(answer: str | None) -> None:
-        if answer:
+        if answer == "w":
             document.write_mat(mat)
 
     text = f"{document.name} begins with {f'the mat {named}' if named else 'a first line without a mat'}."
-    answers = (("w", f"Write {mat} there"),)
+    answers = (("k", "Keep it"), ("w", f"Write {mat} there"))
     context.app.push_screen(
         Question("The program's mat", text, answers, "keeps the program as it is"), answered
     )
