@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import json
 import os
 import signal
@@ -259,6 +260,18 @@ def test_our_own_mistake_is_one_line(
     assert run_command([]) == 70
     said = "tuisim: internal error: ValueError: first line second line (TUISIM_DEBUG=1 shows the traceback)\n"
     assert capsys.readouterr().err == said
+
+
+def test_an_error_of_the_disk_names_the_file(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def fail(words: object) -> int:
+        raise OSError(errno.EIO, "Input/output error", "module.py")
+
+    monkeypatch.setattr("tuisim.cli._dispatch", fail)
+    monkeypatch.setattr("tuisim.cli._silence_stdout", lambda: None)
+    assert run_command([]) == 2
+    assert capsys.readouterr().err == "tuisim: module.py: Input/output error\n"
 
 
 def start(folder: Path, *words: str) -> subprocess.Popen[str]:

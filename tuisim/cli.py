@@ -241,7 +241,8 @@ def run_command(words: Sequence[str]) -> int:
     except Exception as error:
         if isinstance(error, OSError) and error.errno in (errno.ENOSPC, errno.EIO):
             _silence_stdout()
-            print(f"tuisim: cannot write: {error.strerror}", file=sys.stderr)
+            what = f"{error.filename}:" if error.filename else "cannot write:"
+            print(f"tuisim: {what} {error.strerror}", file=sys.stderr)
             return TuisimError.exit_code
         if os.environ.get("TUISIM_DEBUG"):
             raise
