@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from tuisim.core.profile import NS_PER_S
 from tuisim.core.spec import FIELD_HEIGHT_MM, ColorSensorSpec
 from tuisim.errors import counted
 from tuisim.goals.condition import UnjudgedError
@@ -13,7 +12,7 @@ from tuisim.goals.evidence import Evidence, EvidencePoint, EvidenceSpan
 from tuisim.goals.found import Occurrence, share_words
 from tuisim.goals.places import line_of_motion
 from tuisim.goals.spec import FollowCondition, Range, ReadCondition, Reading, place_of
-from tuisim.runs.readings import MODES_BY_KIND
+from tuisim.runs.readings import MODES_BY_KIND, find_ticks
 
 if TYPE_CHECKING:
     import numpy as np
@@ -62,9 +61,7 @@ def _readings(reading: Reading, evidence: Evidence) -> tuple[Array, Array]:
         if evidence.readings.left_out:
             raise UnjudgedError("The program read more often than a run records")
         rows = evidence.readings.find(_MODES[reading])
-        seconds, rest_ns = divmod(rows["time_ns"], NS_PER_S)
-        hz = evidence.spec.profile.tick_hz
-        ticks = seconds * hz + rest_ns * hz // NS_PER_S
+        ticks = find_ticks(rows, evidence.spec.profile.tick_hz)
         count = int(ticks.searchsorted(len(evidence.records)))
         evidence.memo[name] = ticks[:count], rows["line"][:count]
     readings: tuple[Array, Array] = evidence.memo[name]

@@ -15,7 +15,7 @@ from tuisim.data_class import dataclass
 from tuisim.goals.judgement import GoalState, Judgement
 from tuisim.protocol import End
 from tuisim.runs.diff import parted_at_s
-from tuisim.runs.readings import MODES_BY_KIND, READING_PORTS, read_readings
+from tuisim.runs.readings import MODES_BY_KIND, READING_PORTS, find_ticks, read_readings
 from tuisim.runs.records import Stream
 from tuisim.runs.run_folder import open_mat
 from tuisim.runs.standstill import standstill_of
@@ -157,7 +157,7 @@ def _find_lost(run: StoredRun, mat: Field | None) -> Iterator[Reason]:
 
     mat = open_mat(run) if mat is None else mat
     records, hz = run.telemetry.array(), run.spec.profile.tick_hz
-    read_ticks = {eye.name: _find_read_ticks(run, eye.port, len(records)) for eye in eyes}
+    read_ticks = _find_read_ticks(run, len(records))
     for lost in find_lost_lines(records, run.spec, mat, read_ticks):
         yield _lost_at(run, lost.tick, _describe_loss(lost, hz))
     if seen := find_one_color(records, run.spec, mat, read_ticks):
@@ -179,18 +179,19 @@ def _lost_at(run: StoredRun, tick: int, text: str) -> Reason:
     return Reason(ReasonKind.LOST, time_s, run.telemetry.record(tick).line, text)
 
 
-def _find_read_ticks(run: StoredRun, port: str, count: int) -> NDArray[Any]:
-    """Return those of the first ticks at which the program read the light sensor of a port, in ascending order.
+def _find_read_ticks(run: StoredRun, count: int) -> dict[str, NDArray[Any]]:
+    """Return those of the first ticks at which the program read each light sensor, by its name, in ascending order.
 
     A run that goes on has more by now.
     """
     readings = read_readings(run.folder, is_over=run.end is not None)
     rows = readings.find(MODES_BY_KIND["color"])
-    seconds, rest_ns = divmod(rows["time_ns"][rows["port"] == READING_PORTS.index(port)], NS_PER_S)
-    hz = run.spec.profile.tick_hz
-    ticks = seconds * hz + rest_ns * hz // NS_PER_S
-    first: NDArray[Any] = ticks[ticks < count]
-    return first
+    ticks = find_ticks(rows, run.spec.profile.tick_hz)
+    rows, ticks = rows[ticks < count], ticks[ticks < count]
+    return {
+        eye.name: ticks[rows["port"] == READING_PORTS.index(eye.port)]
+        for eye in run.spec.robot.color_sensors
+    }
 
 
 def _describe_loss(lost: LostLine, hz: int) -> str:

@@ -13,6 +13,7 @@ from pathlib import Path
 from struct import Struct
 from typing import TYPE_CHECKING, Any
 
+from tuisim.core.profile import NS_PER_S
 from tuisim.core.spec import INPUT_PORTS, OUTPUT_PORTS
 from tuisim.data_class import dataclass
 from tuisim.errors import LogError
@@ -135,6 +136,13 @@ class Readings:
             np.isin(self.rows["mode"], [READING_MODES.index(mode) for mode in modes])
         ]
         return rows
+
+
+def find_ticks(rows: Array, hz: int) -> Array:
+    """Return the tick at which each of some readings was taken, by ticks a second."""
+    seconds, rest_ns = divmod(rows["time_ns"], NS_PER_S)
+    ticks: Array = seconds * hz + rest_ns * hz // NS_PER_S
+    return ticks
 
 
 def read_readings(folder: Path, *, is_over: bool = True) -> Readings:

@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from enum import Enum, auto
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -42,7 +43,13 @@ from tuisim.runs.questions import (
     Question,
     find_question,
 )
-from tuisim.runs.readings import MODES_BY_KIND, READING_MODES, READING_PORTS, read_readings
+from tuisim.runs.readings import (
+    MODES_BY_KIND,
+    READING_MODES,
+    READING_PORTS,
+    find_ticks,
+    read_readings,
+)
 from tuisim.runs.records import Stream
 from tuisim.runs.run_folder import StoredRun, open_mat
 from tuisim.runs.views import OutputView, TelemetryView, instant_of
@@ -227,14 +234,13 @@ class _Search:
         self._run, self._hz = run, run.spec.profile.tick_hz
         self._records = run.telemetry.array()
         self._rows = read_readings(run.folder).rows
-        seconds, rest_ns = np.divmod(self._rows["time_ns"], NS_PER_S)
-        ticks = seconds * self._hz + rest_ns * self._hz // NS_PER_S
-        self._ticks = np.minimum(ticks, len(self._records) - 1)
+        self._ticks = np.minimum(find_ticks(self._rows, self._hz), len(self._records) - 1)
         self._first = max(0, len(self._records) - 1 - _count_window_ticks(run.spec))
         """The tick at which the last seconds begin."""
         self._drives = len(self._records) > 0 and _is_driving(self._records[self._first :])
-        lines = np.unique(self._rows["line"][self._ticks >= self._first])
-        self._asks_text = len(lines) <= _MAX_LINES
+        self._lines = np.unique(self._rows["line"][self._ticks >= self._first]).tolist()
+        """The lines that have read something in the last seconds."""
+        self._asks_text = len(self._lines) <= _MAX_LINES
         """Whether the program reads on so few lines that its text is asked about each."""
 
     def find_awaited(self) -> Iterator[Awaited]:
@@ -258,8 +264,8 @@ class _Search:
 
         is_meant = self._select(subject, port)
         lines = np.unique(self._rows["line"][is_meant & (self._ticks >= self._first)])
-        if (line := self._find_blocking_line()) is not None:
-            lines = lines[lines == line]
+        if self._blocking_line is not None:
+            lines = lines[lines == self._blocking_line]
         asking = [line for line in lines.tolist() if self._is_asking(subject, line)]
         rows: Array = np.flatnonzero(is_meant & np.isin(self._rows["line"], asking))
         return rows
@@ -294,21 +300,18 @@ class _Search:
 
     def _is_logging_or_playing(self) -> bool:
         """Return whether the program has shown or stored readings in the last seconds, or has played sounds."""
-        import numpy as np
-
-        lines = np.unique(self._rows["line"][self._ticks >= self._first]).tolist()
-        return any(not self._ask(line).decides for line in lines) or any(
+        return any(not self._ask(line).decides for line in self._lines) or any(
             row.tick > self._first and row.stream is Stream.SPEECH
             for row in self._run.output.rows()
         )
 
-    def _find_blocking_line(self) -> int | None:
-        """Return the line of the call that the program is in, if it reads anything there."""
+    @cached_property
+    def _blocking_line(self) -> int | None:
+        """The line of the call that the program is in, if it reads anything there."""
         import numpy as np
 
         lines = np.unique(self._records["line"][self._first + 1 :])
-        reads = self._rows["line"][self._ticks >= self._first]
-        return int(lines[0]) if len(lines) == 1 and (reads == lines[0]).any() else None
+        return int(lines[0]) if len(lines) == 1 and lines[0] in self._lines else None
 
     def _is_turning(self) -> bool:
         """Return whether a motor that drives no wheel has turned in the last seconds."""
@@ -330,11 +333,11 @@ class _Search:
         needs_all = len(sought) > 1 and any(question.needs_all for question in questions)
         limit = self._find_limit(mode, questions[0])
         value = self._describe_constant(subject, port, rows, sought, needs_all, limit)
+        if value is None:
+            return None
         presses = find_presses(
             self._run.actions, _HANDS.get(subject, ()), self._hz, len(self._records)
         )
-        if value is None:
-            return None
         times_s = self._rows["time_ns"][rows] / NS_PER_S
         first, last = map(self._find_pose, rows[[0, -1]])
         return Awaited(
