@@ -23,7 +23,7 @@ from tuisim.regular_file import read_regular
 from tuisim.source import LIBRARIES, PRELUDE_TEXTS, PRELUDES, Program, decode_source, source_lines
 
 MAX_PROGRAM_BYTES = 4 << 20
-_LOGS = (".csv", ".tsv", ".parquet", ".jsonl", ".arrow")
+LOG_SUFFIXES = (".csv", ".tsv", ".parquet", ".jsonl", ".arrow")
 """What files with measurements end in."""
 
 FILE_FIELDS = {"background", "robot", "obstacles", "profile", "mats"}
@@ -299,7 +299,7 @@ def read_program(path: Path, *, as_python: bool = False, alone: bool = False) ->
         raise ConfigError(f"is larger than {MAX_PROGRAM_BYTES >> 20} MiB", hint, file=shown)
     if path.suffix == ".ipynb":
         raise ConfigError("is a notebook", hint, file=shown)
-    if path.suffix.lower() in _LOGS:
+    if path.suffix.lower() in LOG_SUFFIXES:
         opens = f"`tuisim analyse {shlex.quote(shown)}` opens it"
         raise ConfigError("is a log, not a program", opens, file=shown)
     return program_of_text(_decode(data, shown, as_python), path, path.name, alone=alone)

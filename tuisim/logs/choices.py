@@ -13,7 +13,8 @@ SIGNS = {"comma": ",", "semicolon": ";", "tab": "\t", "bar": "|", "blank": " "}
 """Separators by name; a blank is any number of blanks."""
 NAMES_OF_SIGNS = {sign: name for name, sign in SIGNS.items()}
 DECIMAL_SIGNS = (".", ",")
-_ALLOWED = {"unit": tuple(SECONDS), "separator": tuple(SIGNS), "decimal": DECIMAL_SIGNS}
+WORDS = {"unit": tuple(SECONDS), "separator": tuple(SIGNS), "decimal": DECIMAL_SIGNS}
+"""What may be chosen, by name of the choice."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,7 +43,7 @@ class ReadChoices:
     """One of `DECIMAL_SIGNS`."""
 
     def __post_init__(self) -> None:
-        for name, allowed in _ALLOWED.items():
+        for name, allowed in WORDS.items():
             word = getattr(self, name)
             if word and word not in allowed:
                 raise LogError(f"no {name} {word!r}", among(word, allowed))

@@ -18,11 +18,10 @@ from textual.widgets import Label, Select, Static
 from tuisim import palette
 from tuisim.app.dialogs.dialog import Dialog
 from tuisim.errors import TuisimError, shortened
-from tuisim.logs.choices import DECIMAL_SIGNS, NO_CHOICES, SIGNS, ReadChoices
+from tuisim.logs.choices import NO_CHOICES, WORDS, ReadChoices
 from tuisim.logs.columns import ROW, UNIT_NAMES, is_numeric, time_columns
 from tuisim.logs.log import Log
 from tuisim.logs.reader import read_beginning, read_first_lines
-from tuisim.logs.units import SECONDS
 
 _ROWS, _COLUMNS = 30, 60
 """Cells that are shown."""
@@ -38,8 +37,6 @@ _FIELDS = {
 """The choices by name, with their labels, whose first letters are their keys."""
 _OF_COLUMNS = ("header", "separator")
 """Choices that change which columns there are."""
-
-_WORDS = {"separator": tuple(SIGNS), "decimal": DECIMAL_SIGNS, "unit": tuple(SECONDS)}
 
 _EXAMPLES = {".": "1.5", ",": "1,5"}
 """Numbers in place of signs that are hard to see."""
@@ -169,7 +166,7 @@ class PreviewDialog(Dialog[ReadChoices]):
                 names = time_columns(self._log.table)
                 return [*((shortened(one, _MAX_CELL), one) for one in names), ("row numbers", ROW)]
             case _:
-                return [(_EXAMPLES.get(word, word), word) for word in _WORDS[name]]
+                return [(_EXAMPLES.get(word, word), word) for word in WORDS[name]]
 
     def _find_word(self, name: str) -> str:
         """Return what was found for a choice that nobody made; empty if nothing was."""

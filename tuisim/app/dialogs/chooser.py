@@ -28,6 +28,7 @@ from tuisim.config.mat_image import decode, read_file
 from tuisim.config.mats import find_mat, spec_name
 from tuisim.config.obstacles import OBSTACLES, load_obstacles
 from tuisim.config.profiles import load_profile
+from tuisim.config.program_file import LOG_SUFFIXES
 from tuisim.core.profile import PROFILES
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
 from tuisim.data_class import dataclass
@@ -43,7 +44,7 @@ if TYPE_CHECKING:
     from tuisim.config.mats import Background
 
 OPENABLE, TABLES = (".py", ".toml"), (".toml", ".json")
-LOGS = (".csv", ".tsv", ".txt", ".log", ".jsonl", ".parquet", ".arrow")
+LOGS = (*LOG_SUFFIXES, ".txt", ".log")
 IMAGES = (".png", ".jpg", ".jpeg", ".gif", ".webp", ".bmp", ".tif", ".tiff")
 """Endings of the files that choosers list in a folder."""
 MAX_FILES = 200
