@@ -120,6 +120,63 @@ while (queue := libc.msgget(0, 0o1600)) >= 0:
 assert 'held' not in globals(), '0.5 GiB'
 raise PermissionError
 """,
+    "semaphores": OWN_RUN
+    + """
+for _ in range(2000):
+    if libc.semget(0, 32000, 0o1600) < 0:
+        raise PermissionError
+assert False, '3 GiB'
+""",
+    "files on their way": OWN_RUN
+    + """
+import array, socket
+ends = socket.socketpair()
+for _ in range(48):
+    held = libc.memfd_create(b'held', 0)
+    if held < 0:
+        held = os.open('held', os.O_CREAT | os.O_RDWR)
+        os.unlink('held')
+    for _ in range(4):
+        os.write(held, block)
+    sent = array.array('i', [held])
+    ends[0].sendmsg([b'x'], [(socket.SOL_SOCKET, socket.SCM_RIGHTS, sent)])
+    os.close(held)
+assert False, '3 GiB'
+""",
+    "connections that nobody accepts": OWN_RUN
+    + """
+import socket
+listeners = []
+for number in range(200):
+    listeners.append(socket.socket(socket.AF_UNIX))
+    listeners[-1].bind(f'\\0{number}')
+    listeners[-1].listen(4096)
+    for _ in range(4000):
+        with socket.socket(socket.AF_UNIX) as sender:
+            sender.setblocking(False)
+            sender.connect(f'\\0{number}')
+            sender.send(block[:100_000])
+assert False, '70 GiB'
+""",
+    "sockets with large buffers": OWN_RUN
+    + """
+import socket
+ends = []
+for _ in range(110):
+    ends += socket.socketpair()
+    for end in ends[-2:]:
+        end.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, 1 << 30)
+        end.setblocking(False)
+        assert end.send(block) < 1 << 20, '0.9 GiB'
+raise PermissionError
+""",
+    "pages in pipes": OWN_RUN
+    + """
+vector = (ctypes.c_void_p * 2)(ctypes.cast(ctypes.c_char_p(block), ctypes.c_void_p), 4096)
+if libc.vmsplice(os.pipe()[1], ctypes.byref(vector), 1, 0) < 0:
+    raise PermissionError
+assert False, '4 GiB'
+""",
     "memory in a file system of its own": OWN_RUN
     + """
 libc.unshare(0x10000000 | 0x20000)

@@ -145,8 +145,8 @@ PLANTED: tuple[Planted, ...] = (
     Planted(
         "a program inherits the host's end of a pipe",
         "runs/child/process.py",
-        "inherited = (command_read, event_write, lifeline_read, lock_fd)",
-        "inherited = (command_read, event_write, lifeline_read, lock_fd, command_fd)",
+        "inherited = [command_read, event_write, lifeline_read, lock_fd]",
+        "inherited = [command_read, event_write, lifeline_read, lock_fd, command_fd]",
         "enemies",
         ("app:descriptors:0",),
         "descriptors of others",

@@ -9,7 +9,7 @@ import pytest
 from tests.running import Run, Start, over
 from tests.runtime.debugging import Driver
 from tuisim.protocol import Resume
-from tuisim.runtime.raw_output import CAPACITY_BYTES
+from tuisim.runs.raw_files import RAW_BYTES
 
 MIXED = """\
 import ctypes, os, time
@@ -39,7 +39,7 @@ def test_its_order_and_time_are_those_of_the_program(run: Run) -> None:
 
 
 def test_more_than_fits_at_once_is_kept(run: Run) -> None:
-    size = 2 * CAPACITY_BYTES + 5
+    size = 2 * RAW_BYTES + 5
     done = run(f"import os\nprint(os.write(1, b'x' * {size}), end='')", prelude="none")
     assert done.lines == ["x" * size + str(size)]
 
@@ -49,7 +49,7 @@ def test_an_endless_command_of_c_comes_to_an_end(run: Run) -> None:
     text = "import ctypes\nctypes.CDLL(None).system(b'yes 0123456789012345678901234567890123456789 2>&1')\nprint('on')"
     done = run(text, prelude="none")
     assert (done.ended.end, done.lines[-1][-2:]) == ("finished", "on")
-    assert CAPACITY_BYTES < sum(len(line) + 1 for line in done.lines) < CAPACITY_BYTES + 200
+    assert RAW_BYTES < sum(len(line) + 1 for line in done.lines) < RAW_BYTES + 200
 
 
 @pytest.mark.slow

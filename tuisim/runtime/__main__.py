@@ -1,4 +1,4 @@
-"""Entry point: `python -m tuisim.runtime FOLDER COMMAND_FD EVENT_FD LIFELINE_FD`, or `--warm SOCKET_FD`."""
+"""Entry point: `python -m tuisim.runtime FOLDER FD …` with the descriptors that `main` takes, or `--warm SOCKET_FD`."""
 
 from __future__ import annotations
 

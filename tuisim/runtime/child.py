@@ -6,7 +6,7 @@ from tuisim.runtime import wallclock  # isort: skip - must come first: it saves 
 
 import os
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
@@ -66,17 +66,18 @@ def main(arguments: list[str], prepared: Child | None = None) -> NoReturn:
     """Run what a folder describes, then end the process.
 
     Args:
-        arguments: The run folder; descriptors of the commands, the events, the lifeline and the lock of the folder.
+        arguments: The run folder; descriptors of the commands, the events, the lifeline, the lock of the folder
+            and, of an isolated child, the files of `RawOutput`.
         prepared: The child, if it has been prepared already.
     """
-    command_fd, event_fd, lifeline_fd, lock_fd = map(int, arguments[1:5])
+    command_fd, event_fd, lifeline_fd, lock_fd, *raw_fds = map(int, arguments[1:])
     # The folder is locked as long as this process lives, and those that it forks.
     os.set_inheritable(lock_fd, False)
     die_with_host(lifeline_fd)
     channel = Channel(command_fd, event_fd)
     try:
         child = Child(read_config(Path(arguments[0]))) if prepared is None else prepared
-        child.connect(channel)
+        child.connect(channel, raw_fds)
     except OSError as error:
         for name in (TELEMETRY_FILE, OUTPUT_FILE, READINGS_FILE, MOTORS_FILE):
             Path(arguments[0], name).unlink(missing_ok=True)
@@ -171,11 +172,12 @@ class Child:
         self._runner = ProgramRunner(session, self._output, scheduler, turn, leave)
         session.make_debugger = lambda: _debugger(session, scheduler, self._runner)
 
-    def connect(self, channel: Channel) -> None:
+    def connect(self, channel: Channel, raw_fds: Sequence[int] = ()) -> None:
         """Create the recording of the run, and connect everything with it.
 
         Args:
             channel: Pipes to the host.
+            raw_fds: Files of `RawOutput` that the host has created.
 
         Raises:
             OSError: there is no space for the recording.
@@ -209,7 +211,7 @@ class Child:
         remember_source(session.program_file, config.program.text)
         self._runner.connect(config)
         self._reads.begin(config.folder, config.own_folder, session.program_file)
-        self._runner.raw.open()
+        self._runner.raw.open(raw_fds)
         self._output.drain = self._runner.raw.drain
 
     def _stop_when_full(self, *writers: MappedWriter | None) -> None:

@@ -10,12 +10,13 @@ from __future__ import annotations
 import fcntl
 import mmap
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import suppress
+from itertools import zip_longest
 from typing import Any
 
-CAPACITY_BYTES = 4 << 20
-"""What is written beyond this between two instants is refused."""
+from tuisim.runs.raw_files import RAW_BYTES, create_raw_file
+
 _NOTHING = b"\0"
 """What a descriptor begins with to which nothing has been written."""
 _LEAST_FD = 200
@@ -37,23 +38,22 @@ class RawFile:
     Args:
         fd: 1 or 2.
         take: Receives what was written.
+        created: A descriptor of a file that the host has created for it; None creates one.
 
     Raises:
         OSError, AttributeError: this system has no such files, or no descriptors left.
     """
 
-    def __init__(self, fd: int, take: Callable[[bytes], object]) -> None:
+    def __init__(
+        self, fd: int, take: Callable[[bytes], object], created: int | None = None
+    ) -> None:
         self._take = take
-        made = os.memfd_create(f"output {fd}", os.MFD_CLOEXEC | os.MFD_ALLOW_SEALING)
+        created = create_raw_file(fd) if created is None else created
         try:
-            os.ftruncate(made, CAPACITY_BYTES)
-            fcntl.fcntl(
-                made, fcntl.F_ADD_SEALS, fcntl.F_SEAL_GROW | fcntl.F_SEAL_SHRINK | fcntl.F_SEAL_SEAL
-            )
-            self._fd = fcntl.fcntl(made, fcntl.F_DUPFD_CLOEXEC, _LEAST_FD)
-            os.dup2(made, fd)
+            self._fd = fcntl.fcntl(created, fcntl.F_DUPFD_CLOEXEC, _LEAST_FD)
+            os.dup2(created, fd)
         finally:
-            os.close(made)
+            os.close(created)
         self._identity = os.fstat(self._fd)
         # Reading one byte of memory shows whether there is anything: asking the system would take much longer.
         self.first = mmap.mmap(self._fd, mmap.PAGESIZE)
@@ -62,7 +62,7 @@ class RawFile:
     def drain(self) -> int:
         """Pass on what was written; return its length."""
         try:
-            length = min(os.lseek(self._fd, 0, os.SEEK_CUR), CAPACITY_BYTES)
+            length = min(os.lseek(self._fd, 0, os.SEEK_CUR), RAW_BYTES)
             if not length or not os.path.samestat(os.fstat(self._fd), self._identity):
                 # Or the program has closed it, and opened another file in its place.
                 return 0
@@ -94,11 +94,11 @@ class RawOutput:
         self._flush_c: Callable[[], object] = lambda: None
         self._write = os.write
 
-    def open(self) -> None:
-        """Take over the descriptors, as far as this system can."""
+    def open(self, created: Sequence[int] = ()) -> None:
+        """Take over the descriptors, as far as this system can; `created` as for each `RawFile`."""
         with suppress(OSError, AttributeError):
-            for fd, take in self._takers.items():
-                self._files.append(RawFile(fd, take))
+            for (fd, take), file in zip_longest(self._takers.items(), created):
+                self._files.append(RawFile(fd, take, file))
         firsts = (file.first for file in self._files)
         self._first_out, self._first_err, *_ = *firsts, _NOTHING, _NOTHING
 

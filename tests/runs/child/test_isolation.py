@@ -98,6 +98,33 @@ def test_what_an_isolated_program_writes_below_python_is_its_output(
     assert execute(Task(0, program, spec, isolate=True), tmp_path).output == "below"
 
 
+SERVER = """\
+import asyncio, socket
+ends = socket.socketpair()
+print(ends[0].sendmsg([b'a', b'bc']), ends[1].recv(9))
+
+async def main():
+    async def answer(_, writer):
+        writer.writelines([b'one', b' two'])
+        await writer.drain()
+        writer.close()
+
+    server = await asyncio.start_server(answer, '127.0.0.1', 0)
+    reader, _ = await asyncio.open_connection(*server.sockets[0].getsockname())
+    print((await reader.read()).decode())
+    server.close()
+
+asyncio.run(main())
+"""
+
+
+@needs_isolation
+def test_an_isolated_program_may_be_a_server_of_its_own(tmp_path: Path, spec: RunSpec) -> None:
+    program = Program("server.py", SERVER, working_directory=str(tmp_path))
+    done = execute(Task(0, program, spec, isolate=True), tmp_path)
+    assert (done.error, done.output) == ("", "3 b'abc'\none two")
+
+
 def test_isolation_without_bubblewrap_is_refused(
     tmp_path: Path, here: Command, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -138,6 +165,7 @@ def test_the_guide_names_the_limits_that_are_set() -> None:
         "its files and its recording together": f"{isolation.MOST_BYTES >> 30} GiB, {isolation.MOST_FILES:,} files",
         "one file": f"{isolation.MOST_BYTES >> 30} GiB",
         "open files": f"{isolation._OPEN_FILES}",
+        "sockets": f"{isolation._MAX_SOCKETS}",
     }
     assert [
         f"| {what} | {most} |"

@@ -61,6 +61,9 @@ del resource, kind, most, hard
 """Code for the start of the process: it sets limits that cannot be raised again."""
 _MOST_THREADS = 2_000
 """Threads that it may have: more than the simulation allows."""
+_MAX_SOCKETS = 512
+"""Sockets that it may have: one of which it has no descriptor any more still holds what was sent."""
+_SOCKETS_USED = "sockets: used "
 _LOOK_EVERY_S = 0.25
 _BLOCK_BYTES = 512
 _HIDDEN = (errno.ENAMETOOLONG, errno.EACCES)
@@ -137,7 +140,7 @@ class IsolatedChild:
 
 
 class Quota:
-    """How many threads an isolated program may have, and how much it may add to its folders.
+    """How many threads and sockets an isolated program may have, and how much it may add to its folders.
 
     Args:
         pid: Its process.
@@ -148,6 +151,7 @@ class Quota:
         self._process = f"/proc/{pid}"
         self._folders = tuple(filter(None, map(str, folders)))
         self._next_look_s = 0.0
+        self._sockets = self._count_sockets()
         self._files = self._bytes = 0
         self._files, self._bytes = self._more(MOST_FILES, MOST_BYTES)
 
@@ -164,6 +168,8 @@ class Quota:
             # A folder has a link more for each folder in it, and two of its own.
             if os.stat(f"{self._process}/task").st_nlink - 2 > _MOST_THREADS:
                 return f"the program has started more than {_MOST_THREADS:,} threads"
+        if self._count_sockets() - self._sockets > _MAX_SOCKETS:
+            return f"the program has opened more than {_MAX_SOCKETS} sockets"
         files, size = self._more(MOST_FILES, MOST_BYTES)
         size += sum(self._without_a_name())
         if files > MOST_FILES or size > MOST_BYTES:
@@ -171,6 +177,14 @@ class Quota:
                 f"the program has written more than {MOST_FILES:,} files or {MOST_BYTES >> 30} GiB"
             )
         return ""
+
+    def _count_sockets(self) -> int:
+        """Return the number of sockets in the program's own network."""
+        with suppress(OSError):
+            first = Path(f"{self._process}/net/sockstat").read_text("ascii").partition("\n")[0]
+            if first.startswith(_SOCKETS_USED):
+                return int(first.removeprefix(_SOCKETS_USED))
+        return 0
 
     def _more(self, most_files: int, most_bytes: int) -> tuple[int, int]:
         """Return how many files and bytes there are more than at the beginning; it stops counting at these numbers."""

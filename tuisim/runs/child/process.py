@@ -20,6 +20,7 @@ from tuisim.atomic import private
 from tuisim.regular_file import read_regular
 from tuisim.runs.child.fair_clock import waited_s
 from tuisim.runs.child.isolation import LIMITS, spawn_isolated
+from tuisim.runs.raw_files import create_raw_file
 from tuisim.runs.side_files import LOG_FILE, MOST_BYTES, STACK_FILE
 from tuisim.source import source_lines
 
@@ -120,7 +121,7 @@ def start_child(
         command_read, command_fd = _pipe(theirs, ours)
         event_fd, event_write = _pipe(ours, theirs)
         lifeline_read, lifeline_fd = _pipe(theirs, ours)
-        inherited = (command_read, event_write, lifeline_read, lock_fd)
+        inherited = [command_read, event_write, lifeline_read, lock_fd]
         with open(folder / LOG_FILE, "wb", opener=private) as log:
             cwd = working_directory if os.path.isdir(working_directory) else None
             process: ChildProcess
@@ -130,6 +131,10 @@ def start_child(
                     forked = _fork(folder, cwd, log.fileno(), inherited, run, key)
                 process = forked or _spawn(folder, cwd, log, inherited)
             else:
+                for fd in (1, 2):
+                    # It may create none itself: they could outlive their descriptors.
+                    inherited.append(raw_fd := create_raw_file(fd))
+                    theirs.callback(os.close, raw_fd)
                 command = [*_command(LIMITS), str(folder), *map(str, inherited)]
                 writable = [folder, Path(cwd)] if cwd else [folder]
                 process = spawn_isolated(

@@ -40,7 +40,7 @@ _ALL_EVENTS = select.POLLIN | select.POLLPRI | select.POLLOUT
 _SELECTED = (select.POLLIN, select.POLLOUT, select.POLLPRI)
 """The event that each list of files waits for in `select.select`."""
 _READS = ("_accept", "recv", "recv_into", "recvfrom", "recvfrom_into", "recvmsg", "recvmsg_into")
-_WRITES = ("send", "sendto", "sendmsg")
+_WRITES = ("send", "sendto")
 
 
 class FileWaits:
@@ -169,6 +169,8 @@ class FileWaits:
                 if hasattr(sockets, name):
                     setattr(sockets, name, self._after_wait(getattr(sockets, name), writes))
         sockets.sendall = self._sendall(sockets.sendall, sockets.send)
+        if hasattr(sockets, "sendmsg"):
+            sockets.sendmsg = _as_one(self._after_wait(sockets.sendmsg, writes=True))
         sockets.connect = self._connect(sockets.connect, sockets.connect_ex)
 
     def _wait_for_socket(self, socket: Any, writes: bool, code: int | None = None) -> None:
@@ -337,3 +339,19 @@ class _AtOnce(_Polling):
 def _polls_devices(selector: Any) -> bool:
     poll = getattr(selector, "_selector", None)
     return isinstance(poll, _Polling) and poll.has_devices
+
+
+def _as_one(real: Any) -> Callable[..., int]:
+    """Return a method that sends parts as one, which an isolated program may, unlike to send descriptors with them."""
+
+    @wraps(real)
+    def sendmsg(
+        socket: Any, buffers: Any, ancdata: Any = (), flags: int = 0, address: Any = None
+    ) -> int:
+        if ancdata:
+            return int(real(socket, buffers, ancdata, flags, address))
+        data = b"".join(buffers)
+        sends = socket.send(data, flags) if address is None else socket.sendto(data, flags, address)
+        return int(sends)
+
+    return sendmsg

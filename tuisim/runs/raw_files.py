@@ -1,0 +1,26 @@
+"""Files in memory of a fixed size that stand for a program's descriptors 1 and 2."""
+
+from __future__ import annotations
+
+import fcntl
+import os
+
+RAW_BYTES = 4 << 20
+"""What is written beyond this between two instants of the program is refused."""
+
+
+def create_raw_file(fd: int) -> int:
+    """Return a descriptor of a new file that stands for another one, and can neither grow nor shrink.
+
+    Raises:
+        OSError, AttributeError: this system has no such files, or no descriptors left.
+    """
+    created = os.memfd_create(f"output {fd}", os.MFD_CLOEXEC | os.MFD_ALLOW_SEALING)
+    try:
+        os.ftruncate(created, RAW_BYTES)
+        seals = fcntl.F_SEAL_GROW | fcntl.F_SEAL_SHRINK | fcntl.F_SEAL_SEAL
+        fcntl.fcntl(created, fcntl.F_ADD_SEALS, seals)
+    except OSError:
+        os.close(created)
+        raise
+    return created
