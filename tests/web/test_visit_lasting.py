@@ -13,7 +13,6 @@ from tests.cases import cases
 from tests.running import PATIENCE_S
 from tests.web.test_server import Visited, Visitor, drawn, gone, heard, is_there, visited
 from tuisim.web.link import TAKEN_OVER
-from tuisim.web.server import keep_file
 
 __all__ = ["visited"]
 
@@ -222,17 +221,3 @@ async def test_a_file_is_kept_in_the_folder_only(
     ) as answer:
         assert (answer.status, "no name for a file" in await answer.text()) == (400, True)
     assert list(tmp_path.iterdir()) == []
-
-
-def test_no_file_is_replaced(tmp_path: Path) -> None:
-    for data in (b"one", b"two", b"one"):
-        keep_file(tmp_path, "lab.py", data)
-    (tmp_path / "link.py").symlink_to(tmp_path / "lab.py")
-    kept = keep_file(tmp_path, "link.py", b"three")
-    assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == {
-        "lab.py": b"one",
-        "lab-2.py": b"two",
-        "link.py": b"one",
-        "link-2.py": b"three",
-    }
-    assert kept.name == "link-2.py"

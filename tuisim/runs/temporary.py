@@ -46,13 +46,15 @@ def batch_folder() -> Path:
 def owned_folder(prefix: str = _PREFIX, parent: Path | None = None) -> Path:
     """Create a folder that counts as used as long as this process lives; its name begins with the prefix.
 
-    The first one in a parent also removes those that killed processes have left there.
+    The first one also removes those that killed processes have left, there and in the other usual places.
 
     Raises:
         LogError: it cannot be created.
     """
-    parent = parent or Path(tempfile.gettempdir())
-    _remove_left_over(parent)
+    default = Path(tempfile.gettempdir())
+    parent = parent or default
+    for place in (parent, default, _MEMORY):
+        _remove_left_over(place)
     folder = _new_folder(parent, prefix)
     with _held_lock:
         for old in [old for old in _held if not old.exists()]:

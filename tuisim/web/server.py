@@ -8,33 +8,33 @@ import errno
 import logging
 import signal
 from collections.abc import AsyncIterator, Callable, Coroutine, Mapping, Sequence
-from contextlib import asynccontextmanager
-from itertools import count
+from contextlib import AsyncExitStack, asynccontextmanager
 from pathlib import Path
 from threading import Thread
 from typing import Any, TypeVar
 from urllib.parse import quote
 
 import textual_serve
-from aiohttp import WSCloseCode, web
+from aiohttp import ClientError, WSCloseCode, web
 from aiohttp.http import HttpProcessingError
 from aiohttp.typedefs import Handler
-from textual_serve.download_manager import DownloadManager
 
 from tuisim.data_class import dataclass
 from tuisim.errors import SIGNALLED, ConfigError, TuisimError, counted
+from tuisim.web.door import Door
+from tuisim.web.downloads import Downloads
 from tuisim.web.gate import Gate
 from tuisim.web.link import close
 from tuisim.web.session import END_WITHIN_S
+from tuisim.web.uploads import Uploads
 from tuisim.web.visit import Visit, VisitLimits
 
 _HEARTBEAT_S = 15.0
 """A browser that does not answer for about this time has gone."""
 _CLOSE_WITHIN_S = 2.0
 """Time for a browser to confirm that its socket is closed."""
-_MAX_FILE_BYTES = 64 << 20
-"""The largest file that can be brought."""
-_MAX_NAME = 200
+_PIECE = 1 << 18
+"""Bytes of a file that is brought that are written at a time."""
 PAGE = Path(__file__).parent / "page"
 _FOLDERS = {
     "static": Path(textual_serve.__file__).parent / "static",
@@ -85,14 +85,16 @@ class Server:
     ) -> None:
         self._command, self._limits, self._report = command, limits, report
         self.gate = gate
-        self._downloads = DownloadManager()
+        self._downloads, self._uploads = Downloads(), Uploads()
+        self.door = Door(report)
+        """Where visitors come in."""
         self._visits: dict[str, Visit] = {}
         self._lives: dict[str, asyncio.Task[None]] = {}
 
     def application(self) -> web.Application:
         """Return the web application, in which everybody gets the same answer who may not see something, whatever it
         is."""
-        application = web.Application(middlewares=[self._guard], client_max_size=_MAX_FILE_BYTES)
+        application = web.Application(middlewares=[self._guard])
         # The gate looks at the token, which may change.
         application.router.add_routes(
             [
@@ -116,6 +118,7 @@ class Server:
         acts = request.path.endswith("/ws") or request.method == "POST"
         origin = request.headers.get("Origin")
         if self.gate.admits(request.path, request.host, origin, from_a_page=acts):
+            self.door.admit(request)
             return await handler(request)
         if "text/html" in request.headers.get("Accept", ""):
             raise web.HTTPForbidden(text=_REFUSAL_PAGE, content_type="text/html")
@@ -216,20 +219,22 @@ class Server:
         raise web.HTTPNoContent
 
     async def _bring(self, request: web.Request) -> web.StreamResponse:
-        visit, data = self._visit(request), await request.read()
+        visit, name = self._visit(request), request.query.get("name", "")
         try:
-            path = await asyncio.to_thread(
-                keep_file, Path.cwd(), request.query.get("name", ""), data
-            )
+            pieces = request.content.iter_chunked(_PIECE)
+            path = await self._uploads.take(Path.cwd(), name, pieces)
         except TuisimError as error:
             raise web.HTTPBadRequest(text=f"{error}\n") from None
+        except (ConnectionError, ClientError):
+            # The visitor has left while the file came.
+            raise web.HTTPBadRequest from None
         await visit.open_file(path)
         return web.json_response({"name": path.name})
 
     async def _download(self, request: web.Request) -> web.StreamResponse:
         key = request.match_info["key"]
         try:
-            download = await self._downloads.get_download_metadata(key)
+            download = self._downloads.take(key)
         except KeyError:
             raise web.HTTPNotFound(text="There is no such download.\n") from None
         response = web.StreamResponse()
@@ -239,9 +244,9 @@ class Server:
         )
         await response.prepare(request)
         try:
-            async for chunk in self._downloads.download(key):
-                await response.write(chunk)
-        except ValueError:
+            async for piece in self._downloads.read_pieces(download):
+                await response.write(piece)
+        except TimeoutError:
             # An app has not answered in time: the browser must not take the part for the whole.
             if request.transport is not None:
                 request.transport.abort()
@@ -270,41 +275,6 @@ async def _file_of_page(request: web.Request) -> web.StreamResponse:
     if not path.is_relative_to(folder) or not path.is_file():
         raise web.HTTPNotFound
     return web.FileResponse(path)
-
-
-def keep_file(folder: Path, name: str, data: bytes) -> Path:
-    """Write a file under its own name, or with a number if another file has that; return its path.
-
-    Raises:
-        ConfigError: the name is no plain one, or the file cannot be written.
-    """
-    # Hidden files are settings of other programs.
-    if (
-        not name.isprintable()
-        or set("/\\") & set(name)
-        or name.startswith(".")
-        or not 0 < len(name) <= _MAX_NAME
-    ):
-        raise ConfigError(
-            f"no name for a file: {name!r}",
-            "letters, digits and a suffix, such as lab.py",
-            key="name",
-        )
-    stem, suffix = Path(name).stem, Path(name).suffix
-    for number in count(1):
-        path = folder / (name if number == 1 else f"{stem}-{number}{suffix}")
-        try:
-            with path.open("xb") as file:
-                file.write(data)
-            return path
-        except FileExistsError:
-            if path.is_file() and not path.is_symlink() and path.read_bytes() == data:
-                return path
-        except OSError as error:
-            raise ConfigError(
-                f"cannot be written: {error.strerror or error}", file=str(path)
-            ) from error
-    raise AssertionError
 
 
 def _size(request: web.Request) -> tuple[int, int]:
@@ -360,13 +330,17 @@ async def listening(server: Server, host: str, port: int) -> AsyncIterator[int]:
         server.application(), access_log=None, logger=logger, shutdown_timeout=2 * END_WITHIN_S
     )
     await runner.setup()
+    stack = AsyncExitStack()
     try:
         try:
-            await web.TCPSite(runner, host or None, port).start()
+            assert runner.server is not None
+            door = server.door.open(runner.server, host or None, port)
+            actual_port = await stack.enter_async_context(door)
         except OSError as error:
             raise _cannot_listen(host, port, error) from error
-        yield runner.addresses[0][1]
+        yield actual_port
     finally:
+        await stack.aclose()
         await runner.cleanup()
 
 

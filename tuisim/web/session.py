@@ -24,6 +24,8 @@ _HEAD = b"__GANGLION__\n"
 """The line before the first packet of an app."""
 _MOST_ERROR_BYTES = 4096
 _MOST_PACKET_BYTES = 32 << 20
+_MOST_SAID_BYTES = 64 << 10
+"""A longer message of an app is dropped: some wait for a browser."""
 _OF_A_TERMINAL = (
     "LC_ALL",
     "TMUX",
@@ -104,6 +106,8 @@ class WebSession(AppService):
 
     async def on_meta(self, data: bytes) -> None:
         """Handle a message of the app."""
+        if len(data) > _MOST_SAID_BYTES:
+            return
         said = json.loads(data)
         if said.get("type") == "tell":
             self.told(said)

@@ -1,0 +1,70 @@
+"""Connections without the link: they are closed, and never keep a visitor out."""
+
+from __future__ import annotations
+
+import asyncio
+import errno
+from contextlib import AsyncExitStack
+
+import pytest
+from aiohttp import ClientSession
+
+from tests.conftest import ROOT
+from tests.running import PATIENCE_S
+from tests.web.stand_in import stand_in
+from tests.web.test_server import TOKEN, Visited, visited
+from tuisim.web import door, uploads
+from tuisim.web.door import Door
+from tuisim.web.gate import Gate
+from tuisim.web.server import Server, ServerLimits, listening
+
+assert visited
+
+
+async def test_who_asks_for_nothing_is_sent_away_and_who_has_the_link_stays(
+    visited: Visited, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(door, "STRANGER_S", 0.05)
+    visitor = await visited()
+    socket, _ = await visitor.started()
+    port = int(visitor.origin.rpartition(":")[2])
+    reader, writer = await asyncio.open_connection("127.0.0.1", port)
+    assert await asyncio.wait_for(reader.read(), PATIENCE_S) == b""
+    writer.close()
+    await socket.send_json(["ping", "1"])
+    assert (await socket.receive(PATIENCE_S)).data == '["pong", "1"]'
+
+
+async def test_of_many_who_ask_for_nothing_the_first_go(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(door, "MAX_STRANGERS", 3)
+    async with AsyncExitStack() as stack:
+        server = Server(stand_in(), Gate("127.0.0.1", TOKEN), ServerLimits(1))
+        port = await stack.enter_async_context(listening(server, "127.0.0.1", 0))
+        pairs = [await asyncio.open_connection("127.0.0.1", port) for _ in range(9)]
+        for reader, _ in pairs[:6]:
+            assert await asyncio.wait_for(reader.read(), PATIENCE_S) == b""
+        client = await stack.enter_async_context(ClientSession())
+        async with client.get(f"http://127.0.0.1:{port}/{TOKEN}/") as answer:
+            assert answer.status == 200
+        for _, writer in pairs:
+            writer.close()
+
+
+async def test_that_there_is_no_room_is_told_once_a_minute() -> None:
+    now_s, reports = [0.0], list[str]()
+    loop = asyncio.get_running_loop()
+    hears = Door(reports.append, lambda: now_s[0])._hear
+    for time_s in (0.0, 1.0, 59.0, 61.0):
+        now_s[0] = time_s
+        hears(loop, {"exception": OSError(errno.EMFILE, "Too many open files")})
+    assert reports == ["No visitor can come: Too many open files"] * 2
+
+
+def test_the_guide_names_what_visitors_may_use() -> None:
+    page = (ROOT / "tuisim" / "guide" / "pages" / "security.md").read_text(encoding="utf-8")
+    for text in (
+        f"closed after {door.STRANGER_S:g} s",
+        f"more than {door.MAX_STRANGERS};",
+        f"may have {uploads.MAX_FILE_BYTES >> 20} MB, and {uploads.MAX_BYTES >> 30} GB together",
+    ):
+        assert text in " ".join(page.split())

@@ -1,0 +1,96 @@
+"""Where connections come in: those without the link are closed after a while, and take few descriptors."""
+
+from __future__ import annotations
+
+import asyncio
+import errno
+import time
+from collections.abc import AsyncIterator, Callable
+from contextlib import asynccontextmanager
+from typing import Any
+
+from aiohttp import web
+
+STRANGER_S = 5.0
+"""Time for a connection to ask for something with the link."""
+MAX_STRANGERS = 64
+"""The most connections that have not done so; the oldest one goes first."""
+_NOT_YET_S = 0.1
+"""After this time a connection that has been accepted has come in."""
+_TOLD_EVERY_S = 60.0
+_NO_ROOM = (errno.EMFILE, errno.ENFILE, errno.ENOBUFS, errno.ENOMEM)
+
+
+class Door:
+    """Lets connections in.
+
+    Args:
+        report: Called with what the server's terminal is told.
+        clock: A monotonic clock in seconds.
+    """
+
+    def __init__(
+        self, report: Callable[[str], None], clock: Callable[[], float] = time.monotonic
+    ) -> None:
+        self._report, self._clock = report, clock
+        self._strangers: dict[web.RequestHandler, asyncio.TimerHandle] = {}
+        self._told_s = -_TOLD_EVERY_S
+
+    @asynccontextmanager
+    async def open(self, answers: web.Server, host: str | None, port: int) -> AsyncIterator[int]:
+        """Let connections in while in the context, which gets the port.
+
+        Args:
+            answers: The server behind it.
+            host: Host name or address to listen on.
+            port: Port to listen on; 0 takes any free one.
+
+        Raises:
+            OSError: the address cannot be used.
+        """
+        loop = asyncio.get_running_loop()
+
+        def answer_stranger() -> web.RequestHandler:
+            handler = answers()
+            self._strangers[handler] = loop.call_later(STRANGER_S, self._close, handler)
+            if len(self._strangers) > MAX_STRANGERS:
+                self._close(next(iter(self._strangers)))
+            return handler
+
+        before = loop.get_exception_handler()
+        loop.set_exception_handler(self._hear)
+        listener = await loop.create_server(answer_stranger, host, port)
+        try:
+            yield int(listener.sockets[0].getsockname()[1])
+        finally:
+            listener.close()
+            loop.set_exception_handler(before)
+            for timer in self._strangers.values():
+                timer.cancel()
+
+    def admit(self, request: web.BaseRequest) -> None:
+        """Let the connection of a request stay."""
+        if (timer := self._strangers.pop(request.protocol, None)) is not None:
+            timer.cancel()
+
+    def _close(self, handler: web.RequestHandler) -> None:
+        self._strangers.pop(handler).cancel()
+        if handler.transport is not None:
+            handler.transport.abort()
+        else:
+            # It has gone, or comes in this moment.
+            asyncio.get_running_loop().call_later(_NOT_YET_S, _abort, handler)
+
+    def _hear(self, loop: asyncio.AbstractEventLoop, context: dict[str, Any]) -> None:
+        """Tell what has gone wrong in the loop; that nobody can come in now, only from time to time."""
+        error = context.get("exception")
+        if not isinstance(error, OSError) or error.errno not in _NO_ROOM:
+            loop.default_exception_handler(context)
+        elif self._clock() >= self._told_s + _TOLD_EVERY_S:
+            self._told_s = self._clock()
+            self._report(f"No visitor can come: {error.strerror}")
+
+
+def _abort(handler: web.RequestHandler) -> None:
+    if handler.transport is not None:
+        handler.transport.abort()

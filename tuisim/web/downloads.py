@@ -1,0 +1,90 @@
+"""The files that apps offer to their browsers. An app is not trusted: a program can reach the app that runs it."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import AsyncIterator
+from typing import TYPE_CHECKING, Any
+
+from textual_serve.download_manager import DOWNLOAD_CHUNK_SIZE, Download, DownloadManager
+
+if TYPE_CHECKING:
+    from textual_serve.app_service import AppService
+
+ANSWER_WITHIN_S = 4.0
+"""Time for an app to send the piece of a file that it is asked for."""
+MAX_OFFERED, MAX_KEY = 20, 100
+"""The most files that an app can offer at a time, and the most characters of a key; the oldest one goes first."""
+_MAX_PIECE_BYTES = 4 * DOWNLOAD_CHUNK_SIZE
+"""A text has up to 4 bytes for each character that is asked for."""
+
+
+class Downloads(DownloadManager):
+    """Offers and passes on files; what an app sends without being asked for it is dropped."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._asked: dict[str, asyncio.Future[bytes | str]] = {}
+        """The pieces that apps have been asked for, by the keys of their files."""
+
+    async def create_download(
+        self, *, app_service: AppService, delivery_key: str, **about: Any
+    ) -> None:
+        """Offer a file, unless there is one of this key."""
+        if len(delivery_key) > MAX_KEY or delivery_key in self._active_downloads:
+            return
+        own = self._keys_of(app_service.app_service_id)
+        if len(own) >= MAX_OFFERED:
+            del self._active_downloads[own[0]]
+        await super().create_download(app_service=app_service, delivery_key=delivery_key, **about)
+
+    def take(self, key: str) -> Download:
+        """Return what is offered under a key, and offer it no more.
+
+        Raises:
+            KeyError: nothing is.
+        """
+        return self._active_downloads.pop(key)
+
+    async def read_pieces(self, download: Download) -> AsyncIterator[bytes]:
+        """Yield the pieces of a file.
+
+        Raises:
+            TimeoutError: its app does not hand it over.
+        """
+        key = download.delivery_key
+        asked: dict[str, str | int | bool | None] = {
+            "type": "deliver_chunk_request",
+            "key": key,
+            "size": DOWNLOAD_CHUNK_SIZE,
+            "name": download.name,
+        }
+        while True:
+            self._asked[key] = answer = asyncio.get_running_loop().create_future()
+            try:
+                if not await download.app_service.send_meta(asked):
+                    raise TimeoutError
+                piece = await asyncio.wait_for(answer, ANSWER_WITHIN_S)
+            finally:
+                self._asked.pop(key, None)
+            if not piece:
+                return
+            yield piece.encode(download.encoding or "utf-8") if isinstance(piece, str) else piece
+
+    async def chunk_received(self, delivery_key: str, chunk: bytes | str) -> None:
+        """Take a piece from an app."""
+        answer = self._asked.get(delivery_key)
+        if answer is not None and not answer.done() and len(chunk) <= _MAX_PIECE_BYTES:
+            answer.set_result(chunk)
+
+    async def cancel_app_downloads(self, app_service_id: str) -> None:
+        """Offer the files of an app no more."""
+        for key in self._keys_of(app_service_id):
+            del self._active_downloads[key]
+
+    def _keys_of(self, app_service_id: str) -> list[str]:
+        return [
+            key
+            for key, offered in self._active_downloads.items()
+            if offered.app_service.app_service_id == app_service_id
+        ]

@@ -1,0 +1,106 @@
+"""The files that visitors bring: written to the working directory piece by piece, so that they take no memory."""
+
+from __future__ import annotations
+
+import asyncio
+import shutil
+from collections.abc import AsyncIterable
+from itertools import count
+from pathlib import Path
+from tempfile import TemporaryFile
+from typing import IO
+
+from tuisim.errors import ConfigError
+
+MAX_FILE_BYTES = 64 << 20
+"""The largest file that can be brought."""
+MAX_BYTES = 1 << 30
+"""All files together, while a server runs."""
+_MAX_NAME_BYTES = 200
+_PIECE = 1 << 20
+
+
+class Uploads:
+    """Takes files as long as there is room for them."""
+
+    def __init__(self) -> None:
+        self._used_bytes = 0
+
+    async def take(self, folder: Path, name: str, content: AsyncIterable[bytes]) -> Path:
+        """Write a file under its own name, or with a number if another file has that; return its path.
+
+        Raises:
+            ConfigError: the name is no plain one, there is no room, or the file cannot be written.
+        """
+        _check_name(name)
+        size, path = 0, None
+        try:
+            # It has no name: whatever ends this process, nothing of it is left.
+            with TemporaryFile(dir=folder) as file:
+                async for piece in content:
+                    size, self._used_bytes = size + len(piece), self._used_bytes + len(piece)
+                    self._check_room(size)
+                    await asyncio.to_thread(file.write, piece)
+                path = await asyncio.to_thread(keep_file, folder, name, file)
+        except ConnectionError:
+            raise
+        except OSError as error:
+            raise ConfigError(f"{name} cannot be written: {error.strerror or error}") from error
+        finally:
+            if path is None:
+                self._used_bytes -= size
+        return path
+
+    def _check_room(self, size: int) -> None:
+        if size > MAX_FILE_BYTES:
+            raise ConfigError(f"larger than {MAX_FILE_BYTES >> 20} MB")
+        if self._used_bytes > MAX_BYTES:
+            raise ConfigError(f"no room: {MAX_BYTES >> 30} GB have been brought to this server")
+
+
+def _check_name(name: str) -> None:
+    # Hidden files are settings of other programs.
+    if (
+        not name.isprintable()
+        or set("/\\") & set(name)
+        or name.startswith(".")
+        or not 0 < len(name.encode("utf-8", "replace")) <= _MAX_NAME_BYTES
+    ):
+        raise ConfigError(
+            f"no name for a file: {name!r}",
+            "letters, digits and a suffix, such as lab.py",
+            key="name",
+        )
+
+
+def keep_file(folder: Path, name: str, content: IO[bytes]) -> Path:
+    """Write a file as `Uploads.take` does, unless there is one of this name and content; return its path.
+
+    Raises:
+        OSError: it cannot be written.
+    """
+    stem, suffix = Path(name).stem, Path(name).suffix
+    for number in count(1):
+        path = folder / (name if number == 1 else f"{stem}-{number}{suffix}")
+        content.seek(0)
+        try:
+            with path.open("xb") as file:
+                try:
+                    shutil.copyfileobj(content, file, _PIECE)
+                except OSError:
+                    path.unlink()
+                    raise
+            return path
+        except FileExistsError:
+            if path.is_file() and not path.is_symlink() and _is_in(path, content):
+                return path
+    raise AssertionError
+
+
+def _is_in(path: Path, content: IO[bytes]) -> bool:
+    """Return whether a file has this content."""
+    with path.open("rb") as file:
+        while piece := content.read(_PIECE):
+            if file.read(_PIECE) != piece:
+                return False
+        return not file.read(1)
