@@ -155,6 +155,9 @@ def test_what_begins_after_the_last_tick_is_judged(home: Path, tmp_path: Path) -
     goals += "follow = { sensors = 'middle', darker_than = 50 }\n"
     result = judged(finished(home), tmp_path, goals)["it"]
     assert (result.state, result.reason[:34]) == ("missed", "The robot has no colour sensor mid")
+    (end,) = result.changes
+    assert (end.tick, end.time_s) == (278, 2.78)
+    assert result.at(278) == "missed"
 
 
 def test_points_are_those_of_met_goals(home: Path, tmp_path: Path) -> None:

@@ -275,7 +275,9 @@ class Evidence:
             return moment.time_s
         if moment.row >= 0:
             return self.rows[moment.row].time_ns / NS_PER_S
-        return float(self.times_s[moment.tick]) if 0 <= moment.tick < len(self.records) else 0.0
+        if not len(self.records):
+            return 0.0
+        return float(self.times_s[min(max(moment.tick, 0), len(self.records) - 1)])
 
     def place_mm(self, tick: int) -> tuple[float, float]:
         """Return where the robot is when a tick is complete."""

@@ -118,7 +118,8 @@ class _Judge:
         return Judgement(goal, changes, outcome.reason, self._line(outcome), happened)
 
     def _change(self, moment: EvidencePoint, state: GoalState) -> Change:
-        tick = max(0, moment.tick)
+        # What begins after the last tick is decided in it.
+        tick = max(0, min(moment.tick, self._evidence.last.tick))
         return Change(tick, self._evidence.time_s(moment), state, *self._evidence.place_mm(tick))
 
     def _line(self, outcome: _Outcome) -> int:
