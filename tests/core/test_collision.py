@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 from tests.core.memory_sink import MemorySink
 from tests.core.motors import commanded
+from tuisim.core.collision import Solids
 from tuisim.core.geometry import Pose, world_point
 from tuisim.core.outline import outline_of
 from tuisim.core.profile import PROFILES
@@ -57,6 +58,25 @@ def overlap_mm(sim: Simulation) -> float:
             depth = min(depth, max(one) - min(two), max(two) - min(one))
         deepest = max(deepest, depth)
     return deepest
+
+
+def test_a_turn_beside_a_wall_pushes_the_robot_off_it() -> None:
+    robot = RobotSpec()
+    solids, corners = Solids(WorldSpec(solid=True), robot), outline_of(robot).corners_mm
+    apart_mm = 1.0 - min(y for _, y in corners)
+    deep_mm = -min(world_point(Pose(0, apart_mm, 20), *corner)[1] for corner in corners)
+    assert deep_mm > 0
+    # Its right side is beside the wall.
+    poses = {
+        (1, 0): (apart_mm, 500.0, -90.0),
+        (-1, 0): (FIELD_WIDTH_MM - apart_mm, 500.0, 90.0),
+        (0, 1): (1000.0, apart_mm, 0.0),
+        (0, -1): (1000.0, FIELD_HEIGHT_MM - apart_mm, 180.0),
+    }
+    for (x, y), pose in poses.items():
+        part, aside_mm = solids.leeway(pose, 0.0, 20.0)
+        assert part == 1.0
+        assert aside_mm == pytest.approx((deep_mm * x, deep_mm * y), abs=0.001)
 
 
 @pytest.mark.parametrize("speed", [100.0, 525.0, 1050.0])

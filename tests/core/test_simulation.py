@@ -6,7 +6,7 @@ from random import Random
 import pytest
 
 from tests.core.memory_sink import MemorySink
-from tests.core.motors import run
+from tests.core.motors import COMMANDED, run
 from tuisim.core.drift_spec import NO_DRIFT
 from tuisim.core.field import Field
 from tuisim.core.geometry import Pose
@@ -32,6 +32,29 @@ def test_no_gyro_change_when_the_robot_is_lifted() -> None:
     sim.place(Pose(10.0, 20.0, -90.0))
     instant = sim.instant()
     assert instant.gyro_zero_deg - instant.pose.heading_deg == 0
+
+
+@pytest.mark.parametrize("profile", COMMANDED)
+def test_a_motor_stays_where_it_is_when_others_are_plugged_in(profile: str) -> None:
+    ports = ("outA", "outD")
+    robots = [
+        RobotSpec(extra_motors=tuple(MotorSpec(port) for port in plugged))
+        for plugged in ((), ports[:1], ports, ports[::-1])
+    ]
+    sim = simulation_of(RunSpec(robots[0], WorldSpec(), PROFILES[profile]), MemorySink())
+    sim.change_robot(robots[1])
+    run(sim, sim.others[0], 300)
+    sim.advance(50)
+    turned_deg = sim.others[0].position_deg
+    assert turned_deg > 50
+    for robot, turned in ((robots[2], (turned_deg, 0)), (robots[3], (0, turned_deg))):
+        sim.change_robot(robot)
+        assert tuple(motor.position_deg for motor in sim.others) == turned
+        assert [sim.has_turned(number) for number in (0, 1)] == [deg > 0 for deg in turned]
+        reported: list[object] = []
+        sim.on_turns = reported.append
+        sim.advance(0)
+        assert reported == []
 
 
 FULL = WorldSpec(

@@ -6,6 +6,7 @@ import random
 from collections.abc import Iterator
 from math import inf, isfinite
 from typing import Any
+from unittest.mock import patch
 
 import pytest
 
@@ -121,6 +122,33 @@ def test_a_motor_moves_the_same_however_often_one_looks(seed: int) -> None:
     shown = [*play(motors[0], seed, None)]
     assert [*play(motors[1], seed, random.Random(seed))] == shown
     assert all(isfinite(motors[0].axle.angle_deg) for _ in shown)
+
+
+@pytest.mark.parametrize("seed", range(30))
+def test_steps_of_the_speed_control_are_the_same_one_by_one(seed: int) -> None:
+    shown = [*play(build_motor(), seed, None)]
+    with patch.object(DriverMotor, "_regulates", lambda *_: False):
+        assert [*play(build_motor(), seed, None)] == shown
+
+
+def test_a_move_is_looked_at_often_only_near_its_target() -> None:
+    motor, positions = build_motor(), []
+    give(motor, 0, Command.RUN_TO_REL_POS, speed_dps=500, position=1500)
+    motor.run_until(100 * MS)
+    control, regulate = DriverMotor.control, DriverMotor._regulate
+
+    def note_control(self: DriverMotor, time_ns: int) -> None:
+        positions.append(self.position)
+        control(self, time_ns)
+
+    def note_regulate(self: DriverMotor, step_ns: int, end_ns: int) -> int:
+        positions.append(self.position)
+        return regulate(self, step_ns, end_ns)
+
+    with patch.multiple(DriverMotor, control=note_control, _regulate=note_regulate):
+        motor.run_until(4000 * MS)
+    assert motor.position >= 1500
+    assert len([position for position in positions if position < 1490]) < 100
 
 
 def test_a_ramp_that_turns_back_goes_through_0() -> None:

@@ -57,6 +57,21 @@ def test_a_roll_is_what_single_steps_make(seed: int, kind: str) -> None:
         assert rolling.states == stepped.states
 
 
+@pytest.mark.parametrize("kind", ROLLS)
+@pytest.mark.parametrize("seed", range(20))
+def test_a_motor_that_has_rolled_knows_its_speed(seed: int, kind: str) -> None:
+    rolling, chance = build_rolling(seed, kind)
+    stepped, _ = build_rolling(seed, kind)
+    now_ns = (402 + chance.randrange(300)) * MS
+    rolling.run_until(now_ns)
+    step_on(stepped, now_ns)
+    rolling.leave_roll()
+    for time_ns in range(now_ns, now_ns + 60 * MS, MS):
+        step_on(rolling, time_ns)
+        step_on(stepped, time_ns)
+        assert abs(rolling.speed_dps - stepped.speed_dps) <= 1
+
+
 def test_a_motor_that_rolls_out_is_not_stepped() -> None:
     rolling, _ = build_rolling(4, "coast")
     steps: list[int] = []
