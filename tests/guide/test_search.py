@@ -48,6 +48,22 @@ def test_nothing_is_found_where_nothing_is_asked(question: str) -> None:
     assert search(question) == []
 
 
+@pytest.mark.parametrize("width", [24, 33, 50])
+def test_what_is_shown_of_an_answer_fits_its_width(width: int) -> None:
+    for question in ("sensor", "motor", "wall", "noise"):
+        for one in search(question):
+            lines = [line for most in range(1, 6) for line in shown_of(one, width, most)]
+            assert max(map(len, lines)) <= width
+
+
+@pytest.mark.parametrize(
+    "parts", [("gyro drift", "compare runs"), ("keyboard shortcuts", "own mat")]
+)
+def test_each_part_of_a_question_is_answered(parts: tuple[str, ...]) -> None:
+    answers = search(" and ".join(parts))[:4]
+    assert all(search(part)[0] in answers for part in parts)
+
+
 @pytest.mark.parametrize("width, begins", [(36, "gyro"), (76, "gyro"), (118, " gyro  ")])
 def test_a_row_of_a_table_is_found_in_each_width(width: int, begins: str) -> None:
     found = next(

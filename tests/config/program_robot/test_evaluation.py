@@ -53,6 +53,10 @@ PORTS: Mapping[str, tuple[str, str]] = {
         "def make(port=OUTPUT_D):\n    MediumMotor(port)\nmake(OUTPUT_A)",
         "A medium motor",
     ),
+    "made in a default argument": (
+        "def go(speed, *, angle, motor=MediumMotor(OUTPUT_D)):\n    motor.on(speed)\ngo(5, angle=1)",
+        "D medium motor",
+    ),
     "returned": ("def port():\n    return OUTPUT_D\nMediumMotor(port())", "D medium motor"),
     "class attribute": (
         "class C:\n    ARM = OUTPUT_D\n    def go(self):\n        MediumMotor(self.ARM)\nC().go()",
