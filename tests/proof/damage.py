@@ -2,20 +2,19 @@
 
 from __future__ import annotations
 
-import atexit
 import os
 import resource
 import shutil
 import tempfile
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import suppress
+from contextlib import chdir, nullcontext, suppress
 from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
 from random import Random
 
 from tests.proof.commands import check_said, said
-from tests.proof.kind import FaultError, Kind, home
+from tests.proof.kind import FaultError, Kind, home, temporary_sample
 from tests.proof.mutations import damaged, damaged_at_edge
 from tests.proof.odd_values import Syntax, with_odd_text, with_odd_value
 from tuisim.analysis.source import read_notes
@@ -27,12 +26,11 @@ from tuisim.batch.batch_file import load_batch
 from tuisim.config.build import build_run_spec
 from tuisim.config.folders import home_folder
 from tuisim.config.notebook_file import notebook_programs
-from tuisim.config.options import Settings, settings_of
+from tuisim.config.options import Settings
 from tuisim.config.preferences import preference, preferences_file
 from tuisim.config.profiles import profile_lines
-from tuisim.config.shared_options import parse_words
 from tuisim.config.user_config import config_file, load_config
-from tuisim.config.worlds import save_world
+from tuisim.config.worlds import load_world, save_world
 from tuisim.core.profile import PROFILES
 from tuisim.errors import TuisimError
 from tuisim.goals.files import examples, load_task
@@ -63,7 +61,7 @@ tank_drive.off()
 """
 _BATCH = """\
 [batch]
-programs = ["program.py"]
+program = "program.py"
 seeds = "0..9"
 
 [batch.set]
@@ -105,8 +103,7 @@ def _done(words: Sequence[str]) -> str:
 @cache
 def samples() -> Path:
     """Make a folder with a sound file of each format; it is removed when this process ends."""
-    folder = Path(tempfile.mkdtemp(prefix="tuisim-proof-samples-"))
-    atexit.register(shutil.rmtree, folder, ignore_errors=True)
+    folder = temporary_sample("samples")
     program = folder / "program.py"
     program.write_text(_PROGRAM)
     (folder / "batch.toml").write_text(_BATCH)
@@ -129,7 +126,7 @@ def samples() -> Path:
     )
     for source, name in (
         (examples()[0], "goals.toml"),
-        (shipped_paths()["band-values"], "lesson.md"),
+        (shipped_paths()["line-edge"], "lesson.md"),
     ):
         shutil.copy(source, folder / name)
     for name, text in _TEXTS.items():
@@ -137,62 +134,71 @@ def samples() -> Path:
     return folder
 
 
-def _reads(read: Callable[[str], object]) -> Callable[[str], None]:
+Check = Callable[[str, bool], None]
+"""Reads a file, which may be damaged or is sound, and then must be accepted; raises an exception for a fault."""
+
+
+def _reads(read: Callable[[str], object]) -> Check:
     """Return a check that a function reads a file, or raises an error for the user."""
 
-    def check(path: str) -> None:
-        with suppress(TuisimError):
-            read(path)
+    def check(path: str, is_sound: bool) -> None:
+        with nullcontext() if is_sound else suppress(TuisimError):
+            if not read(path) and is_sound:
+                raise FaultError("nothing is read from the sound file")
 
     return check
 
 
-def _tells(*words: str) -> Callable[[str], None]:
+def _say(line: str, file: str, is_sound: bool) -> None:
+    words = [file if word in ("FILE", "RUN") else word for word in line.split()]
+    check_said(words, codes=(0, 1) if is_sound else (0, 1, 2))
+
+
+def _tells(*words: str) -> Check:
     """Return a check that commands read a file, or tell what is wrong."""
 
-    def check(path: str) -> None:
+    def check(path: str, is_sound: bool) -> None:
         for line in words:
-            check_said([path if word == "FILE" else word for word in line.split()])
+            _say(line, path, is_sound)
 
     return check
 
 
-def _home(read: Callable[[], object], place: Callable[[], Path]) -> Callable[[str], None]:
+def _home(read: Callable[[], object], place: Callable[[], Path]) -> Check:
     """Return a check of what is read from a file at a place in the home folder."""
 
-    def check(path: str) -> None:
+    def check(path: str, is_sound: bool) -> None:
         place().parent.mkdir(parents=True, exist_ok=True)
         shutil.copy(path, place())
-        with suppress(TuisimError):
-            read()
+        _reads(lambda _: read())(path, is_sound)
 
     return check
 
 
-def _run(form: str, *words: str) -> Callable[[str], None]:
+def _run(form: str, *words: str) -> Check:
     """Return a check of commands for a stored run of which one file is damaged."""
 
-    def check(path: str) -> None:
+    def check(path: str, is_sound: bool) -> None:
         home = Path(os.environ["TUISIM_HOME"])
         run = home / "runs" / form
         shutil.copytree(samples() / "home" / "runs" / form, run)
         shutil.copy(path, run / Path(path).name)
         for line in words:
-            check_said([str(run) if word == "RUN" else word for word in line.split()])
+            _say(line, str(run), is_sound)
 
     return check
 
 
-def _catalogue(path: str) -> None:
+def _catalogue(path: str, is_sound: bool) -> None:
     home = Path(os.environ["TUISIM_HOME"])
     shutil.copytree(samples() / "home" / "runs", home / "runs")
     shutil.copy(path, home / "runs.db")
-    check_said(["runs"])
-    check_said(["runs", "show", "last"])
+    _say("runs", "", is_sound)
+    _say("runs show last", "", is_sound)
 
 
-def _settings(word: str) -> Callable[[str], object]:
-    return lambda path: build_run_spec(settings_of(parse_words([word, path])))
+def _world(path: str) -> object:
+    return build_run_spec(Settings(load_world(path).settings))
 
 
 def _breaks() -> Path:
@@ -203,9 +209,9 @@ def _draft() -> Path:
     return text_file.file_of_program(text_file.FOLDER, "program.py")
 
 
-def _journal(path: str) -> None:
+def _journal(path: str) -> object:
     with Journal(Path(path), resumes=True) as journal:
-        _ = [(outcome.counts, outcome.gave_up) for outcome in journal.known.values()]
+        return [(outcome.counts, outcome.gave_up) for outcome in journal.known.values()]
 
 
 def _layout() -> object:
@@ -218,8 +224,7 @@ class Format:
 
     sound: str
     """A sound file, in the folder of the samples."""
-    check: Callable[[str], None]
-    """Reads a damaged file; raises an exception for a fault."""
+    check: Check
     syntax: Syntax = Syntax.TOML
     is_slow: bool = False
     """Whether a check takes much longer than most others: it has fewer cases, or it would take all the time."""
@@ -246,7 +251,7 @@ FORMATS: Mapping[str, Format] = {
     "robot": Format("robots.toml", _tells("robots FILE")),
     "obstacles": Format("obstacles.toml", _tells("obstacles FILE")),
     "profile": Format("profile.toml", _tells("profiles FILE")),
-    "world": Format("world.toml", _reads(_settings("--world"))),
+    "world": Format("world.toml", _reads(_world)),
     "batch": Format("batch.toml", _reads(lambda path: load_batch(Path(path)))),
     "goals": Format("goals.toml", _reads(lambda path: load_task(Path(path)))),
     "config": Format("config.toml", _home(load_config, config_file)),
@@ -305,8 +310,22 @@ def _names(random: Random) -> Iterator[str]:
                         yield f"{name}:{random.getrandbits(32)}{way}"
 
 
+@cache
+def _check_sound(form: str) -> None:
+    """Check that the file that is damaged is accepted without a damage: else all damages say the same."""
+    with tempfile.TemporaryDirectory(prefix="tuisim-proof-") as folder, home(Path(folder, "home")):
+        source = samples() / FORMATS[form].sound
+        path = Path(shutil.copy(source, folder))
+        try:
+            with chdir(folder):
+                FORMATS[form].check(str(path), True)
+        except (FaultError, TuisimError) as error:
+            raise FaultError(f"the sound {source.name} is not accepted: {error}") from error
+
+
 def _check(name: str, folder: Path) -> None:
     form, seed, *way = name.split(":")
+    _check_sound(form)
     found = FORMATS[form]
     source = samples() / found.sound
     path = folder / source.name
@@ -325,7 +344,7 @@ def _check(name: str, folder: Path) -> None:
     held = int(Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()
     resource.setrlimit(resource.RLIMIT_AS, (held + (MEMORY_MB << 20), hard))
     try:
-        found.check(str(path))
+        found.check(str(path), False)
     finally:
         resource.setrlimit(resource.RLIMIT_AS, (resource.RLIM_INFINITY, hard))
 

@@ -32,6 +32,13 @@ class Ended:
     """Whether a call has failed that never does: a read from a pipe."""
 
 
+def temporary_folder(folder: Path) -> Path:
+    """Return the folder for temporary files of the commands in a folder, beside it."""
+    place = folder.with_name(f"{folder.name}-tmp")
+    place.mkdir(exist_ok=True)
+    return place
+
+
 def run(words: Sequence[str], folder: Path, strace: Sequence[str] = ()) -> Ended:
     """Run Python with these words in a folder, under `strace` if it gets words; a fault if it does not end."""
     command = [sys.executable, *words]
@@ -42,6 +49,7 @@ def run(words: Sequence[str], folder: Path, strace: Sequence[str] = ()) -> Ended
         "PYTHONPATH": str(ROOT),
         "PYTHONDONTWRITEBYTECODE": "1",
         "PYTHONHASHSEED": "0",
+        "TMPDIR": str(temporary_folder(folder)),
     }
     try:
         done = subprocess.run(

@@ -5,6 +5,7 @@ from __future__ import annotations
 import faulthandler
 import os
 import resource
+import shutil
 import signal
 import sys
 import tempfile
@@ -13,6 +14,7 @@ import traceback
 from collections.abc import Callable, Iterator
 from contextlib import chdir, contextmanager
 from dataclasses import dataclass
+from multiprocessing.util import Finalize
 from pathlib import Path
 from random import Random
 from types import FrameType
@@ -56,6 +58,14 @@ def home(folder: Path) -> Iterator[None]:
         os.environ.pop("TUISIM_HOME")
         if was is not None:
             os.environ["TUISIM_HOME"] = was
+
+
+def temporary_sample(name: str) -> Path:
+    """Return a new folder for the cases of this process; it is removed when the process ends."""
+    folder = Path(tempfile.mkdtemp(prefix=f"tuisim-proof-{name}-"))
+    # A process of a pool calls nothing that is registered for its exit but this.
+    Finalize(None, shutil.rmtree, (folder,), exitpriority=0)
+    return folder
 
 
 MOST_GROWTH_MB = 4096

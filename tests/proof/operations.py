@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import atexit
 import json
 import os
 import re
@@ -16,8 +15,8 @@ from pathlib import Path
 from random import Random
 
 from tests.proof.commands import said
-from tests.proof.injection import Call, Ended, calls_of, run
-from tests.proof.kind import FaultError, home
+from tests.proof.injection import Call, Ended, calls_of, run, temporary_folder
+from tests.proof.kind import FaultError, home, temporary_sample
 from tuisim.cli import EXIT_OUR_MISTAKE
 from tuisim.goals.files import examples
 from tuisim.runs.run_folder import read_run_file
@@ -163,8 +162,7 @@ OPERATIONS: Mapping[str, Operation] = {
 @cache
 def _sample() -> Path:
     """Make a folder with a home that has two runs, and files to work on; it is removed when this process ends."""
-    folder = Path(tempfile.mkdtemp(prefix="tuisim-proof-home-"))
-    atexit.register(shutil.rmtree, folder, ignore_errors=True)
+    folder = temporary_sample("home")
     (folder / "program.py").write_text(_PROGRAM)
     (folder / "class").mkdir()
     (folder / "class" / "anna.py").write_text(_PROGRAM)
@@ -359,3 +357,5 @@ def check_after(name: str, place: Path, ended: Ended) -> None:
         done = run((*operation.words, *operation.again), place)
         if done.code or contents(operation, place) != sound.after:
             raise FaultError(f"it does not go on with {' '.join(operation.again)}: {done.err}")
+        if left := [path.name for path in temporary_folder(place).iterdir()]:
+            raise FaultError(f"what was killed has left {left}, also after the next start")

@@ -11,14 +11,15 @@ import sys
 import tempfile
 import zlib
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import suppress
+from contextlib import chdir, suppress
+from functools import cache
 from html.parser import HTMLParser
 from pathlib import Path
 from random import Random
 from typing import Any
 
 from tests.proof.commands import check_said, said
-from tests.proof.kind import FaultError, Kind
+from tests.proof.kind import FaultError, Kind, home
 from tests.proof.security_app import check_shown
 from tests.proof.web_attacks import ATTACKS, check_attack
 from tuisim.config.notebook_file import notebook_programs
@@ -259,22 +260,33 @@ def _mark(random: Random) -> None:
             raise FaultError(f"{path} holds control characters")
 
 
+def _write_files(value_of: Callable[[str], str]) -> None:
+    """Write each file with values of its keys, from those that are sound."""
+    for name, lines in _FILES.items():
+        pairs = (line.partition(" = ") for line in lines)
+        texts = (f"{key} = {value_of(value)}" if value else key for key, _, value in pairs)
+        Path(name).write_text("\n".join(texts) + "\n")
+    Path("p.py").write_text("print('A: 1')\n")
+
+
+@cache
+def _check_sound() -> None:
+    """Check that the files are accepted whose texts are replaced: else nothing reads what is hostile."""
+    with (
+        tempfile.TemporaryDirectory(prefix="tuisim-proof-") as folder,
+        chdir(folder),
+        home(Path(folder, "home")),
+    ):
+        _write_files(str)
+        for words in _READ:
+            check_said(words.split(), codes=(0,))
+
+
 def _files(random: Random) -> None:
     """Worlds, robots, obstacles, batches, goals and lessons whose every text is hostile."""
-    for name, keys in _FILES.items():
-        lines = [f"{key} = {_literal(hostile(random))}" if "[" not in key else key for key in keys]
-        Path(name).write_text("\n".join(lines) + "\n")
-    Path("p.py").write_text("print('A: 1')\n")
-    _say("run", "world.toml", "p.py")
-    _say("run", "p.py", "-r", "robot.toml")
-    _say("run", "p.py", "-o", "obstacles.toml")
-    _say("run", "p.py", "--profile", "profile.toml")
-    _say("batch", "batch.toml")
-    _say("goals", "check", "goals.toml", "last")
-    Path("lesson.md").write_text(
-        f"+++\nname = {_literal(hostile(random))}\ntitle = {_literal(hostile(random))}\n+++\n"
-    )
-    _say("learn", "check", "lesson.md")
+    _write_files(lambda value: value if random.random() < 0.3 else _literal(hostile(random)))
+    for words in _READ:
+        _say(*words.split())
     for words in (
         ["guide"],
         ["guide", "--search"],
@@ -287,13 +299,62 @@ def _files(random: Random) -> None:
 
 
 _FILES: Mapping[str, tuple[str, ...]] = {
-    "world.toml": ("background", "robot", "obstacles", "profile", "program"),
-    "robot.toml": ("[robot]", "name", "wheel_diameter_mm"),
-    "obstacles.toml": ("[[obstacle]]", "name", "x_mm"),
-    "profile.toml": ("[profile]", "name", "base"),
-    "batch.toml": ("[batch]", "programs", "seeds"),
-    "goals.toml": ("title", "background", "[[goal]]", "name", "say", "finish"),
+    "world.toml": (
+        "background = 'Grey_bands'",
+        "robot = 'Explorer'",
+        "obstacles = 'Wall'",
+        "profile = 'ev3'",
+    ),
+    "robot.toml": ("name = 'own'", "wheel_diameter_mm = 50", "left_port = 'outB'"),
+    "obstacles.toml": (
+        "[[obstacle]]",
+        "x_mm = 1500",
+        "y_mm = 200",
+        "width_mm = 200",
+        "height_mm = 800",
+    ),
+    "profile.toml": ("name = 'own'", "base = 'ev3'"),
+    "batch.toml": ("[batch]", "program = 'p.py'", "seeds = '0..1'"),
+    "goals.toml": (
+        "title = 'Done'",
+        "background = 'Empty_Map'",
+        "[[goal]]",
+        "name = 'done'",
+        "say = 'Finish'",
+        "finish = true",
+    ),
+    "lesson.md": (
+        "+++",
+        "title = 'Own'",
+        "why = 'To try it.'",
+        "minutes = 5",
+        "background = 'Empty_Map'",
+        "[[step]]",
+        "name = 'run'",
+        "hints = ['So.']",
+        "why = 'So it is.'",
+        "[step.question]",
+        "ask = 'What?'",
+        "answer = 'that'",
+        "+++",
+        "It runs.",
+        "```python program",
+        "print(1)",
+        "```",
+        "## Run",
+        "Answer.",
+    ),
 }
+_READ = (
+    "run world.toml p.py",
+    "run p.py -r robot.toml",
+    "run p.py -o obstacles.toml",
+    "run p.py --profile profile.toml",
+    "batch batch.toml",
+    "goals check goals.toml last",
+    "learn check lesson.md",
+)
+"""Commands that read them all."""
 
 
 class _Pickled:
@@ -415,6 +476,8 @@ def _check(case: str, folder: Path) -> None:
     if place == "web":
         check_attack(which)
         return
+    if place == "files":
+        _check_sound()
     (folder / "in").mkdir()
     os.chdir(folder / "in")
     if not _Watch.is_installed:
