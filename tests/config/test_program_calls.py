@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from tests.cases import cases
-from tuisim.goals.calls import lines_of_calls
+from tuisim.config.program_calls import lines_of_calls
 
 CALLS = {
     "as it is": ("import time\ntime.sleep(1)\n", "time.sleep", [2]),
