@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from tuisim.app.editor.text_file import drafts, keep_draft
 from tuisim.config.preferences import keep, preference, preferences_file
 
 
@@ -20,6 +21,19 @@ def test_what_is_kept_is_found_and_leaves_the_rest() -> None:
     keep("cells", None)
 
     assert (preference("cells"), preference("theme")) == (None, "light")
+
+
+def test_an_app_that_begins_afresh_finds_nothing_of_other_ones_and_leaves_them_nothing(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    keep("theme", "light")
+    keep_draft("", "of another app")
+    monkeypatch.setenv("TUISIM_SESSION", str(tmp_path / "session"))
+    assert (preference("theme"), drafts()) == (None, [])
+    keep("theme", "dark")
+    keep_draft("", "of this one")
+    monkeypatch.delenv("TUISIM_SESSION")
+    assert (preference("theme"), drafts()[0].text) == ("light", "of another app")
 
 
 @pytest.mark.parametrize(

@@ -102,6 +102,10 @@ class Lab:
         return str(await self._page.js(f"{_SEEN}.map((one) => one.innerText).join('\\n')"))
 
 
+def _find_server_files(folder: Path) -> list[Path]:
+    return [*(folder / "runtime").glob("jpserver-*.json")]
+
+
 @asynccontextmanager
 async def jupyterlab(folder: Path, cells: dict[str, NotebookNode]) -> AsyncIterator[Lab]:
     """Open a notebook in JupyterLab, with the kernel "Python 3".
@@ -132,9 +136,9 @@ async def jupyterlab(folder: Path, cells: dict[str, NotebookNode]) -> AsyncItera
     )
     try:
         async with asyncio.timeout(PATIENCE_S):
-            while not (found := [*(folder / "runtime").glob("jpserver-*.json")]):
+            while not (texts := [*filter(None, map(Path.read_text, _find_server_files(folder)))]):
                 await asyncio.sleep(0.05)
-        port = json.loads(found[0].read_text())["port"]
+        port = json.loads(texts[0])["port"]
         async with chromium(folder / "browser", 1200, 900, 1, fingers=False) as page:
             lab = Lab(page, file, [*cells])
             await lab.open(f"http://127.0.0.1:{port}/lab/tree/{file.name}?token={_TOKEN}")

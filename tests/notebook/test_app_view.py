@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import asyncio
 import json
+import re
 from collections.abc import Coroutine, Iterator
+from contextlib import contextmanager
 from threading import Thread
 from typing import Any
 
@@ -15,12 +17,16 @@ from tests.cases import cases
 from tests.notebook.conftest import Cell
 from tests.running import PATIENCE_S
 from tests.web.test_server import is_there
+from tuisim.app.editor.text_file import find_draft, keep_draft
+from tuisim.app.layout.arrangement import KeptLayout, save_layout
+from tuisim.app.panels import TerminalSize
 from tuisim.errors import HostError
 from tuisim.notebook import lab
 from tuisim.notebook.app_run import AppRun
 from tuisim.notebook.app_view import AppView
 
 MAT = ["-b", "Grey_bands"]
+_ESCAPES = re.compile(r"\x1b\[[^A-Za-z]*[A-Za-z]")
 LAB = "http://lab:8888"
 """Where the page of the notebook is from."""
 
@@ -29,7 +35,7 @@ class Page:
     """What shows the app: a client in a thread of its own."""
 
     def __init__(self, view: AppView) -> None:
-        self._view = view
+        self._view, self._drawn = view, ""
         self._loop = asyncio.new_event_loop()
         self._thread = Thread(target=self._loop.run_forever)
         self._thread.start()
@@ -48,8 +54,19 @@ class Page:
 
     async def _read(self) -> None:
         async for message in self._socket:
-            if message.type is WSMsgType.BINARY and b"\x1b[6n" in message.data:
-                await self._socket.send_json(["stdin", "\x1b[20;40R"])
+            if message.type is WSMsgType.BINARY:
+                self._drawn += _ESCAPES.sub(" ", message.data.decode("utf-8", "replace"))
+                if b"\x1b[6n" in message.data:
+                    await self._socket.send_json(["stdin", "\x1b[20;40R"])
+
+    def wait_for(self, words: str) -> str:
+        """Return all texts that have been drawn, once words are among them."""
+        self._call(self._wait_for(words))
+        return self._drawn
+
+    async def _wait_for(self, words: str) -> None:
+        while words not in self._drawn:
+            await asyncio.sleep(0.005)
 
     def close(self) -> None:
         """Leave the app alone."""
@@ -72,12 +89,19 @@ def address(view: AppView) -> str:
     return f"http://127.0.0.1:{given['port']}/{given['token']}"
 
 
+@contextmanager
+def begin_app() -> Iterator[AppView]:
+    """Begin the app of the notebook."""
+    view = lab.roboSim._live.view = AppView(MAT, (LAB,), lab.roboSim.find_state)
+    yield view
+    view.close()
+
+
 @pytest.fixture
 def hidden(cell: Cell) -> Iterator[AppView]:
     """The app of a notebook that no page shows."""
-    view = lab.roboSim._live.view = AppView(MAT, (LAB,))
-    yield view
-    view.close()
+    with begin_app() as view:
+        yield view
 
 
 @pytest.fixture
@@ -203,6 +227,34 @@ def test_the_end_of_the_app_leaves_no_process(hidden: AppView) -> None:
     assert is_there(process.pid)
     hidden.close()
     assert not is_there(process.pid)
+
+
+@pytest.mark.slow
+def test_the_app_begins_with_the_run_of_its_cell_and_nothing_of_other_apps(cell: Cell) -> None:
+    keep_draft("", "print('unsaved')\n")
+    save_layout(TerminalSize.MEDIUM, KeptLayout(asked={"brick": True}))
+    cell("%%sim_magic_preloaded -b Grey_bands -RAc\nprint('Colour: 7')")
+    with begin_app() as view:
+        page = Page(view)
+        drawn = page.wait_for("finished at")
+        page.close()
+    assert "Sensor arrays" in drawn
+    assert ("Unsaved work" in drawn, "Brick" in drawn) == (False, False)
+    assert find_draft("") is not None
+
+
+@pytest.mark.slow
+def test_the_app_shows_a_run_that_ended_while_no_page_showed_it(
+    cell: Cell, hidden: AppView
+) -> None:
+    page = Page(hidden)
+    assert hidden._is_ready.wait(PATIENCE_S)
+    page.close()
+    cell(RUN)
+    page = Page(hidden)
+    page.wait_for("finished at")
+    page.close()
+    assert hidden.begun.empty()
 
 
 @pytest.mark.slow

@@ -31,7 +31,7 @@ def test_the_state_and_the_picture_are_of_the_world_of_the_run(cell: Cell) -> No
     cell("%sim_magic -b Grey_bands")
     begun: SimpleQueue[str] = SimpleQueue()
     begun.put(_run_elsewhere())
-    view: Any = SimpleNamespace(begun=begun, is_shown=False)
+    view: Any = SimpleNamespace(begun=begun, is_shown=False, show_state=lambda: None)
     lab._live.view = view
     state = lab.state
     assert (state["background"], state["profile"], state["seed"]) == ("Loop", "ev3", 3)

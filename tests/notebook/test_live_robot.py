@@ -6,6 +6,7 @@ import json
 import sys
 from collections.abc import Callable
 from pathlib import Path
+from queue import SimpleQueue
 from typing import Any
 
 import pytest
@@ -13,6 +14,7 @@ import pytest
 from tests.cases import cases
 from tests.notebook.conftest import Cell
 from tuisim.notebook import app_view, lab, live_robot
+from tuisim.notebook.app_view import CellState
 from tuisim.notebook.live_robot import REPLY, REQUEST, SENTENCE, find_notebook_origins
 
 
@@ -39,14 +41,21 @@ def test_only_the_server_that_has_started_the_kernel_may_show_the_app(
 class View:
     """Stands in for the app."""
 
-    def __init__(self, words: list[str], origins: tuple[str, ...]) -> None:
-        self.words, self.origins = words, origins
+    def __init__(
+        self, words: list[str], origins: tuple[str, ...], find_state: Callable[[], CellState]
+    ) -> None:
+        self.words, self.origins, self.find_state = words, origins, find_state
+        self.states: list[CellState] = []
+        self.begun: SimpleQueue[str] = SimpleQueue()
         self.is_alive, self.is_shown = True, False
         self.tokens = 0
 
     def renew_address(self, origins: tuple[str, ...]) -> dict[str, Any]:
         self.tokens += 1
         return {"port": 5, "token": f"secret-{self.tokens}"}
+
+    def show_state(self) -> None:
+        self.states.append(self.find_state())
 
     def take_cell(self, *_: object, **__: object) -> None:
         """Take a cell that runs nothing."""
@@ -129,6 +138,22 @@ def test_a_page_gets_the_address_of_the_app_which_no_output_has(run: Run, front:
     assert front.ask(offer_of(page))["token"] == "secret-2"
     assert lab.roboSim._live.view is view
     assert "secret" not in page
+
+
+def test_the_app_shows_the_run_of_the_cells_above_as_long_as_nothing_has_replaced_it(
+    run: Run, front: Front
+) -> None:
+    page = run("%%sim_magic_preloaded -b Loop -R\nprint('Colour: 7')")
+    front.ask(offer_of(page))
+    view: Any = lab.roboSim._live.view
+    first = view.find_state()
+    assert (first.settings["background"], first.program.text) == ("Loop", "\nprint('Colour: 7')\n")
+    assert first.run_id == lab.roboSim.results_log[0].id
+    run("%sim_magic -b Grey_bands")
+    run("%%sim_magic_preloaded -R\nprint('Colour: 8')")
+    run("%%sim_magic_preloaded\nprint('Colour: 9')")
+    runs = ["", lab.roboSim.results_log[1].id, ""]
+    assert [state.run_id for state in view.states] == runs
 
 
 def test_only_the_newest_offer_is_answered(run: Run, front: Front) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 from pathlib import Path
 
 import nbformat
@@ -10,6 +11,8 @@ from nbformat.notebooknode import NotebookNode
 
 from tests.notebook.jupyterlab import jupyterlab, needs_jupyterlab
 from tests.notebook.lesson import LOAD, execute, pictures, result, stream
+from tests.running import PATIENCE_S
+from tuisim.app.editor.text_file import keep_draft
 from tuisim.notebook.live_robot import SENTENCE
 
 pytestmark = [pytest.mark.slow, *needs_jupyterlab]
@@ -61,6 +64,19 @@ async def test_the_picture_becomes_the_app_in_which_later_cells_run(tmp_path: Pa
     for name in ("picture", "run"):
         assert shown(saved[name]) == shown(still[name])
     assert result(saved["data"]) == result(still["data"])
+
+
+async def test_the_app_shows_the_run_that_began_before_it(tmp_path: Path) -> None:
+    keep_draft("", "print('unsaved in another app')\n")
+    cells = {name: STEPS[name] for name in ("load", "run", "ready")}
+    async with jupyterlab(tmp_path, code(cells)) as lab:
+        await lab.run("load", "run")
+        await lab.until_live()
+        await lab.run("ready")
+        await lab.until_says("run", "%%sim_magic_preloaded")
+        async with asyncio.timeout(PATIENCE_S):
+            while (await lab.copy_by_key()).startswith("Grey_bands, 0.00 s"):
+                pass
 
 
 async def test_a_saved_notebook_that_is_not_trusted_keeps_its_picture(tmp_path: Path) -> None:

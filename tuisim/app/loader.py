@@ -141,7 +141,9 @@ class Loader:
         """Set a plan and a program together with their mat, which must have been prepared already."""
         self._run_controller.mat = mat
         self._good = plan, mat
-        self._note_program(program, read_first_line(program))
+        # One that is open already keeps what its cell has set.
+        if program != self._run_controller.program:
+            self._note_program(program, read_first_line(program))
         self._load(plan, program)
         self._app.mat_ready(mat.pixels)
 

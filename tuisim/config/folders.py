@@ -31,6 +31,13 @@ def home_folder() -> Path:
     return platformdirs.user_data_path("tuisim")
 
 
+def session_folder() -> Path:
+    """Return the folder of what the app finds again, such as panels and unsaved texts: `TUISIM_SESSION` for an app
+    that begins afresh, else `home_folder`."""
+    session = os.environ.get("TUISIM_SESSION")
+    return Path(session) if session else home_folder()
+
+
 def config_folder() -> Path:
     """Return the folder of `config.toml`: `TUISIM_HOME`, or the platform's folder for the user's configuration."""
     if home := os.environ.get("TUISIM_HOME"):

@@ -6,7 +6,7 @@ import json
 from pathlib import Path
 
 from tuisim.atomic import make_private_folder, replacing
-from tuisim.config.folders import home_folder
+from tuisim.config.folders import session_folder
 from tuisim.regular_file import read_regular
 
 _MOST_BYTES = 1 << 20
@@ -14,7 +14,7 @@ _MOST_BYTES = 1 << 20
 
 def preferences_file() -> Path:
     """Return the path of the file; it may not exist."""
-    return home_folder() / "preferences.json"
+    return session_folder() / "preferences.json"
 
 
 def preference(name: str) -> object:

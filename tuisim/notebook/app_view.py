@@ -5,13 +5,16 @@ Needs the extra `web`.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import asyncio
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import replace
 from queue import Empty, SimpleQueue
-from threading import Event
+from tempfile import TemporaryDirectory
+from threading import Event, Lock
 from typing import Any
 
+from tuisim.data_class import dataclass
 from tuisim.errors import HostError
 from tuisim.source import Program
 from tuisim.web.gate import Gate, new_token
@@ -24,19 +27,36 @@ _SIZE_AT_FIRST = (100, 30)
 """Columns and rows until the page tells its own."""
 
 
+@dataclass(frozen=True, slots=True)
+class CellState:
+    """What the cells have left."""
+
+    settings: Mapping[str, Any]
+    """By path."""
+    program: Program | None
+    run_id: str = ""
+    """The run of the program; empty for none that has ended."""
+
+
 class AppView:
-    """One app, shown by the page that has asked for it last.
+    """One app, shown by the page that has asked for it last. It knows nothing of other apps of its user.
 
     Args:
         words: What it opens, as words of `tuisim open`.
         origins: Origins of pages that may show it.
+        find_state: Returns what it shows first; called in another thread.
     """
 
-    def __init__(self, words: list[str], origins: tuple[str, ...]) -> None:
+    def __init__(
+        self, words: list[str], origins: tuple[str, ...], find_state: Callable[[], CellState]
+    ) -> None:
         gate = Gate("127.0.0.1", frames=origins)
         limits = ServerLimits(1, VisitLimits(keep_s=float("inf"), keep_unused_s=float("inf")))
-        self._server = BackgroundServer(Server(app_command(words), gate, limits))
-        self._is_ready = Event()
+        self._folder = TemporaryDirectory(prefix="tuisim-")
+        self._find_state = find_state
+        command = app_command(words, self._folder.name)
+        self._server = BackgroundServer(Server(command, gate, limits))
+        self._is_ready, self._lock = Event(), Lock()
         self.begun: SimpleQueue[str] = SimpleQueue()
         """The ids of the runs that have begun in the app."""
         self.told: SimpleQueue[Mapping[str, Any]] = SimpleQueue()
@@ -96,13 +116,27 @@ class AppView:
         with suppress(Empty):
             while True:
                 self.told.get_nowait()
-        parts = program and {"name": program.name, "text": program.text, "prelude": program.prelude}
-        self.ask("cell", settings=dict(settings), program=parts, home=home, runs=runs, speed=speed)
+        self.ask(**_ask_cell(settings, program, home=home, runs=runs, speed=speed))
+
+    def show_state(self) -> None:
+        """Let the app show what the cells have left, unless it is still starting and asks for it itself."""
+        with self._lock:
+            is_told = self._is_ready.is_set() and self.is_alive
+        if is_told:
+            for asked in _ask_state(self._find_state()):
+                self.ask(**asked)
+
+    async def _ask_first(self, asked: list[dict[str, Any]]) -> None:
+        for each in asked:
+            await self._visit.ask(each)
 
     def _take(self, told: Mapping[str, Any]) -> None:
         match told:
             case {"what": "ready"}:
-                self._is_ready.set()
+                with self._lock:
+                    asked = [*_ask_state(self._find_state())]
+                    self._asking = asyncio.get_running_loop().create_task(self._ask_first(asked))
+                    self._is_ready.set()
             case {"what": "run", "id": str(run_id)}:
                 self.begun.put(run_id)
         self.told.put(told)
@@ -110,3 +144,25 @@ class AppView:
     def close(self) -> None:
         """End the app and its server."""
         self._server.close()
+        self._folder.cleanup()
+
+
+def _ask_state(state: CellState) -> Iterator[dict[str, Any]]:
+    """Yield what to ask the app for, so that it shows what the cells have left."""
+    is_home = not state.run_id
+    yield _ask_cell(state.settings, state.program, home=is_home, runs=False, speed=None)
+    if state.run_id:
+        yield {"what": "run", "id": state.run_id}
+
+
+def _ask_cell(
+    settings: Mapping[str, Any],
+    program: Program | None,
+    *,
+    home: bool,
+    runs: bool,
+    speed: float | None,
+) -> dict[str, Any]:
+    parts = program and {"name": program.name, "text": program.text, "prelude": program.prelude}
+    how = {"home": home, "runs": runs, "speed": speed}
+    return {"what": "cell", "settings": dict(settings), "program": parts, **how}

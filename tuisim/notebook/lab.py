@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from tuisim.config.mat_cache import FieldFiles
     from tuisim.config.options import Settings
     from tuisim.core.spec import RunSpec
-    from tuisim.notebook.app_view import AppView
+    from tuisim.notebook.app_view import AppView, CellState
     from tuisim.notebook.cell_run import Listener
     from tuisim.notebook.display import Scene, Stage
     from tuisim.notebook.image_log import LoggedArray
@@ -71,7 +71,9 @@ class Lab:
         self._runs: list[StoredRun] = []
         self._last: StoredRun | None = None
         self._spec: RunSpec | None = None
-        self._live = LiveRobot()
+        self._live = LiveRobot(self.find_state)
+        self._said: Mapping[str, Any] = {}
+        """What the cells have set, as the app gets it."""
         self._followed: list[str] = []
         """The ids of runs in the app that had not ended when the log was last asked for."""
         self._traces: tuple[Piece, ...] = ()
@@ -251,6 +253,7 @@ class Lab:
         )
         self._traces = self._traces if same_mat and not plan.settings["clear_trace"] else ()
         self._persistent, self._program, self._spec = plan.persistent, plan.program, plan.spec
+        self._said = _choose_said(plan, words)
         if text is not None:
             self._presses = plan.settings["press"]
         self._show(plan, words, listener, runs=runs)
@@ -266,15 +269,35 @@ class Lab:
                 "tuisim: note: a program that is answered runs here; the app shows its run",
                 file=sys.stderr,
             )
+            view = None
         elif view is not None:
-            self._take_into_app(view, plan, words, runs=runs)
-        if not runs:
+            view.take_cell(
+                self._said,
+                plan.program,
+                home=words.move_back,
+                runs=runs,
+                speed=plan.settings["speed"],
+            )
+        if runs:
+            self._run(plan, stage, words, listener, view)
+        else:
             scene, status = self._scene(plan)
             stage.show(scene, f"nothing is running · {status}" if words.stop else status)
-            return
-        self._run(plan, stage, words, listener, None if listener.answers else view)
-        if view is not None and listener.answers and self._last is not None:
-            view.ask("run", id=self._last.id)
+        if view is None and self._live.view is not None:
+            self._live.view.show_state()
+
+    def find_state(self) -> CellState:
+        """Return what the cells have left, for an app that begins, or that no page has shown meanwhile."""
+        from tuisim.notebook.app_view import CellState
+
+        last = self._last
+        is_shown = (
+            last is not None
+            and last.end is not None
+            and self._program is not None
+            and self._program.text == last.program.text
+        )
+        return CellState(self._said, self._program, last.id if last and is_shown else "")
 
     def _checked(self, words: Arguments, text: str | None, prelude: str) -> _CellPlan:
         from tuisim.config.build import build_run_spec
@@ -331,21 +354,6 @@ class Lab:
         if asked is None and "world" in plan.settings["panels_off"]:
             return {}
         return self._live.build_captions(plan.spec.world.background, asked)
-
-    def _take_into_app(
-        self, view: AppView, plan: _CellPlan, words: Arguments, *, runs: bool
-    ) -> None:
-        from tuisim.config.options import settings_of
-
-        presses = {"press": plan.settings["press"]}
-        said = settings_of(plan.persistent, words.settings, presses).given
-        view.take_cell(
-            {path: value for path, value in said.items() if path not in ("autorun", "speed")},
-            plan.program,
-            home=words.move_back,
-            runs=runs,
-            speed=plan.settings["speed"],
-        )
 
     def _catch_up(self) -> None:
         """Take the runs that have begun in the app into the log, as far as they are."""
@@ -430,6 +438,15 @@ class Lab:
         last, samples = self._last.telemetry.last() or start, samples_of(rows)
         status = ready if is_other else end_text(self._last)
         return Scene(spec, files, program, last, self._traces, samples, printed), status
+
+
+def _choose_said(plan: _CellPlan, words: Arguments) -> Mapping[str, Any]:
+    """Return what the cells have set, by path, as the app gets it."""
+    from tuisim.config.options import settings_of
+
+    presses = {"press": plan.settings["press"]}
+    said = settings_of(plan.persistent, words.settings, presses).given
+    return {path: value for path, value in said.items() if path not in ("autorun", "speed")}
 
 
 roboSim = Lab()  # noqa: N816 - the course's cells call it so

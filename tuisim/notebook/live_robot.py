@@ -10,7 +10,7 @@ import html
 import json
 import os
 import secrets
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from contextlib import suppress
 from importlib.util import find_spec
 from pathlib import Path
@@ -19,7 +19,7 @@ from urllib.parse import urlsplit
 
 if TYPE_CHECKING:
     from tuisim.config.magic_line import AppWords
-    from tuisim.notebook.app_view import AppView
+    from tuisim.notebook.app_view import AppView, CellState
 
 REQUEST, REPLY = "tuisim_app_request", "tuisim_app_reply"
 """The messages by which a page asks for the address of the app, and gets it."""
@@ -53,9 +53,14 @@ def find_notebook_origins(environment: Mapping[str, str] = os.environ) -> tuple[
 
 
 class LiveRobot:
-    """The app of a notebook: at most one, begun when the first page asks for it."""
+    """The app of a notebook: at most one, begun when the first page asks for it.
 
-    def __init__(self) -> None:
+    Args:
+        find_state: Returns what the app shows first; called in another thread.
+    """
+
+    def __init__(self, find_state: Callable[[], CellState]) -> None:
+        self._find_state = find_state
         self.is_wanted = True
         """Whether pictures offer it."""
         self.view: AppView | None = None
@@ -144,7 +149,7 @@ class LiveRobot:
             return {}
         self._is_taken = True
         if self.view is None:
-            self.view = AppView(self._words, self._origins)
+            self.view = AppView(self._words, self._origins, self._find_state)
         return self.view.renew_address(self._origins)
 
     def turn(self, *, on: bool) -> None:

@@ -49,18 +49,26 @@ _OF_A_BROWSER = {
 }
 
 
-_BOOT = "import sys; sys.path.append(sys.argv.pop(1)); from tuisim.__main__ import main; sys.exit(main())"
+_BOOT = """\
+import os, sys
+package, os.environ["TUISIM_SESSION"] = sys.argv[1:3]
+del sys.argv[1:3]
+sys.path.append(package)
+from tuisim.__main__ import main
+sys.exit(main())
+"""
 """Startup code of an app: the package comes last in the path, as in the child of a run."""
 _PACKAGE_FOLDER = str(Path(__file__).parent.parent.parent)
 
 
-def app_command(words: Sequence[str]) -> list[str]:
+def app_command(words: Sequence[str], session_folder: str = "") -> list[str]:
     """Return the command, as words, of an app.
 
     Args:
         words: What it opens, as words of `tuisim open`.
+        session_folder: Where it finds panels and unsaved texts again; empty for where the user's other apps do.
     """
-    return [sys.executable, "-P", "-c", _BOOT, _PACKAGE_FOLDER, "open", *words]
+    return [sys.executable, "-P", "-c", _BOOT, _PACKAGE_FOLDER, session_folder, "open", *words]
 
 
 class WebSession(AppService):

@@ -16,7 +16,7 @@ from dataclasses import asdict
 from pathlib import Path
 
 from tuisim.atomic import make_private_folder, replacing
-from tuisim.config.folders import home_folder, programs_folder
+from tuisim.config.folders import programs_folder, session_folder
 from tuisim.config.program_file import MAX_PROGRAM_BYTES
 from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError
@@ -123,7 +123,7 @@ class Draft:
 def file_of_program(folder: str, path: str) -> Path:
     """Return the file, in a folder of the app's data, that belongs to a program, given by its path or name."""
     return (
-        home_folder()
+        session_folder()
         / folder
         / f"{hashlib.sha256(path.encode(errors='surrogateescape')).hexdigest()[:24]}.json"
     )
@@ -160,7 +160,7 @@ def find_draft(path: str) -> Draft | None:
 
 def drafts() -> list[Draft]:
     """Return all drafts, the newest first."""
-    found = filter(None, map(_draft_in, (home_folder() / FOLDER).glob("*.json")))
+    found = filter(None, map(_draft_in, (session_folder() / FOLDER).glob("*.json")))
     return sorted(found, key=lambda draft: -draft.written_s)
 
 
