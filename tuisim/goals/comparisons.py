@@ -4,14 +4,12 @@ from __future__ import annotations
 
 from typing import ClassVar
 
+from tuisim.config.program_structure import STRUCTURES
 from tuisim.core.conditions import COMPARE, Operator, ValueCondition, comparison_form, condition_in
 from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError, nearest, require_regex
 from tuisim.goals.brick import goal_condition_in
 from tuisim.goals.condition import Condition, ConditionKind, Gap, Share, Times, check_count
-
-STRUCTURES = ("loops", "for", "while", "if", "functions", "classes", "try", "lines", "depth")
-"""What can be counted in a program's text."""
 
 
 @dataclass(frozen=True, slots=True)

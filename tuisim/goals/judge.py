@@ -6,10 +6,11 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any, assert_never
 
+from tuisim.config.program_structure import fault_in
 from tuisim.core.field import Field
 from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError
-from tuisim.goals import calls, columns, output, pen_trace, places, program_text, readings
+from tuisim.goals import columns, output, pen_trace, places, program_text, readings
 from tuisim.goals.comparisons import (
     CountCondition,
     KeepCondition,
@@ -59,8 +60,8 @@ FINDERS: Mapping[type, Finder] = {
     CountCondition: columns.find_miscount,
     DialogueCondition: output.find_dialogue,
     FinishCondition: output.find_finish,
-    UseCondition: calls.find_used,
-    AvoidCondition: calls.find_avoided,
+    UseCondition: program_text.find_used,
+    AvoidCondition: program_text.find_avoided,
     StructureCondition: program_text.find_structure,
 }
 """Finds when a condition was reached or violated in a span of a run."""
@@ -144,7 +145,7 @@ class _Judge:
             return _Outcome(
                 GoalState.MISSED, reason=f"It does not count: {self._evidence.falsified}."
             )
-        if fault := program_text.fault_in(self._evidence.program.text):
+        if fault := fault_in(self._evidence.program.text):
             return _Outcome(
                 GoalState.MISSED, reason=f"The program does not compile: {fault[0]}.", line=fault[1]
             )

@@ -1,112 +1,49 @@
-"""What the text of a program says before it runs: whether it compiles, and how it is made."""
+"""Conditions on a program's text: its calls, and how it is made."""
 
 from __future__ import annotations
 
-import ast
-import io
-import tokenize
-import warnings
-from collections.abc import Callable, Iterator, Mapping
-from functools import lru_cache, partial
-
+from tuisim.config.program_calls import lines_of_calls
+from tuisim.config.program_structure import count_structure
 from tuisim.core.conditions import COMPARE
-from tuisim.goals.comparisons import STRUCTURES, StructureCondition
+from tuisim.goals.comparisons import StructureCondition
 from tuisim.goals.evidence import START, Evidence, EvidenceSpan
 from tuisim.goals.found import Occurrence
-
-_Function = ast.FunctionDef | ast.AsyncFunctionDef
-_BLOCKS = (ast.For, ast.While, ast.If, ast.With, ast.Try, _Function, ast.ClassDef)
+from tuisim.goals.spec import AvoidCondition, UseCondition
 
 
-@lru_cache(16)
-def fault_in(text: str) -> tuple[str, int] | None:
-    """Return why a program does not compile, and the line, 0 if there is none; None if it compiles."""
+def _found(
+    condition: UseCondition | AvoidCondition, evidence: Evidence
+) -> dict[str, list[int]] | Occurrence:
+    program = evidence.program
     try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            data = text.encode("utf-8", "surrogateescape")
-            # From bytes, in its own encoding: a line may name one that there is not.
-            encoding, _ = tokenize.detect_encoding(io.BytesIO(data).readline)
-            compile(text.encode(encoding, "surrogateescape"), "program", "exec", dont_inherit=True)
-    except SyntaxError as error:
-        return error.msg, error.lineno or 0
-    except (LookupError, ValueError, RecursionError, MemoryError) as error:
-        return str(error) or type(error).__name__, 0
-    return None
+        return {
+            call: lines_of_calls(program.text, program.prelude, call) for call in condition.calls
+        }
+    except RecursionError as error:
+        return Occurrence(None, f"The program cannot be read: {error}.")
 
 
-def _nodes(tree: ast.Module, *kinds: type[ast.AST]) -> list[ast.AST]:
-    return [node for node in ast.walk(tree) if isinstance(node, kinds) and not _is_dead(node)]
+def find_used(condition: UseCondition, evidence: Evidence, span: EvidenceSpan) -> Occurrence:
+    """Find out whether the program has each of the calls."""
+    found = _found(condition, evidence)
+    if isinstance(found, Occurrence):
+        return found
+    missing = [call for call, lines in found.items() if not lines]
+    if missing:
+        return Occurrence(None, f"The program does not call {' and '.join(missing)}.")
+    return Occurrence(START, line=min(lines[0] for lines in found.values()))
 
 
-def _is_dead(node: ast.AST) -> bool:
-    """Return whether a loop or a branch does nothing: its body is empty, or its condition is never true."""
-    if (
-        isinstance(node, ast.While | ast.If)
-        and isinstance(node.test, ast.Constant)
-        and not node.test.value
-    ):
-        return True
-    # A `while` that does nothing waits.
-    return isinstance(node, ast.For | ast.If | _Function) and all(
-        _is_idle(one) for one in node.body
-    )
-
-
-def _is_idle(statement: ast.stmt) -> bool:
-    is_text = isinstance(statement, ast.Expr) and isinstance(statement.value, ast.Constant)
-    return is_text or isinstance(statement, ast.Pass | ast.Continue | ast.Break)
-
-
-def _count(*kinds: type[ast.AST]) -> Callable[[ast.Module], int]:
-    return partial(lambda tree, wanted: len(_nodes(tree, *wanted)), wanted=kinds)
-
-
-def _functions(tree: ast.Module) -> int:
-    """Return how many functions the program defines and names elsewhere."""
-    defined = _nodes(tree, _Function)  # type: ignore[arg-type]
-    named = [
-        node.id if isinstance(node, ast.Name) else node.attr
-        for node in ast.walk(tree)
-        if isinstance(node, ast.Name | ast.Attribute)
-    ]
-    return len(
-        {node.name for node in defined if isinstance(node, _Function) and node.name in named}
-    )
-
-
-def _lines(tree: ast.Module) -> int:
-    """Return how many lines have code, without comments and texts of documentation."""
-    found = (node for node in ast.walk(tree) if isinstance(node, ast.stmt) and not _is_idle(node))
-    return len({line for node in found for line in _span(node)})
-
-
-def _span(statement: ast.stmt) -> Iterator[int]:
-    """Yield the lines of a statement, of a block only its first."""
-    is_block = isinstance(statement, _BLOCKS)
-    yield from range(
-        statement.lineno, statement.lineno + 1 if is_block else (statement.end_lineno or 0) + 1
-    )
-
-
-def _depth(node: ast.AST) -> int:
-    """Return how deep blocks are nested."""
-    inner = max(map(_depth, ast.iter_child_nodes(node)), default=0)
-    return inner + isinstance(node, _BLOCKS)
-
-
-_COUNTS = (
-    _count(ast.For, ast.While),
-    _count(ast.For),
-    _count(ast.While),
-    _count(ast.If),
-    _functions,
-    _count(ast.ClassDef),
-    _count(ast.Try),
-    _lines,
-    _depth,
-)
-_COUNT: Mapping[str, Callable[[ast.Module], int]] = dict(zip(STRUCTURES, _COUNTS, strict=True))
+def find_avoided(condition: AvoidCondition, evidence: Evidence, span: EvidenceSpan) -> Occurrence:
+    """Find out whether the program has none of the calls."""
+    found = _found(condition, evidence)
+    if isinstance(found, Occurrence):
+        return found
+    used = [(lines[0], call) for call, lines in found.items() if lines]
+    if used:
+        line, call = min(used)
+        return Occurrence(None, f"The program calls {call}.", line)
+    return Occurrence(START)
 
 
 def find_structure(
@@ -114,11 +51,10 @@ def find_structure(
 ) -> Occurrence:
     """Find out whether a program is made as it should be."""
     try:
-        tree = ast.parse(evidence.program.text)
         for wanted in condition.conditions:
-            found = _COUNT[wanted.name](tree)
-            if not COMPARE[wanted.operator](found, wanted.number):
-                return Occurrence(None, f"{wanted} is asked for, and the program has {found}.")
+            count = count_structure(evidence.program.text, wanted.name)
+            if not COMPARE[wanted.operator](count, wanted.number):
+                return Occurrence(None, f"{wanted} is asked for, and the program has {count}.")
     except RecursionError as error:
         return Occurrence(None, f"The program cannot be read: {error}.")
     return Occurrence(START)

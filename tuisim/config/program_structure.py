@@ -1,0 +1,118 @@
+"""How the text of a program is made: whether it compiles, and how much of what it has."""
+
+from __future__ import annotations
+
+import ast
+import io
+import tokenize
+import warnings
+from collections.abc import Callable, Iterator, Mapping
+from functools import lru_cache, partial
+
+_Function = ast.FunctionDef | ast.AsyncFunctionDef
+_BLOCKS = (ast.For, ast.While, ast.If, ast.With, ast.Try, _Function, ast.ClassDef)
+
+
+@lru_cache(16)
+def fault_in(text: str) -> tuple[str, int] | None:
+    """Return why a program does not compile, and the line, 0 if there is none; None if it compiles."""
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            data = text.encode("utf-8", "surrogateescape")
+            # From bytes, in its own encoding: a line may name one that there is not.
+            encoding, _ = tokenize.detect_encoding(io.BytesIO(data).readline)
+            compile(text.encode(encoding, "surrogateescape"), "program", "exec", dont_inherit=True)
+    except SyntaxError as error:
+        return error.msg, error.lineno or 0
+    except (LookupError, ValueError, RecursionError, MemoryError) as error:
+        return str(error) or type(error).__name__, 0
+    return None
+
+
+def _nodes(tree: ast.Module, *kinds: type[ast.AST]) -> list[ast.AST]:
+    return [node for node in ast.walk(tree) if isinstance(node, kinds) and not _is_dead(node)]
+
+
+def _is_dead(node: ast.AST) -> bool:
+    """Return whether a loop or a branch does nothing: its body is empty, or its condition is never true."""
+    if (
+        isinstance(node, ast.While | ast.If)
+        and isinstance(node.test, ast.Constant)
+        and not node.test.value
+    ):
+        return True
+    # A `while` that does nothing waits.
+    return isinstance(node, ast.For | ast.If | _Function) and all(
+        _is_idle(one) for one in node.body
+    )
+
+
+def _is_idle(statement: ast.stmt) -> bool:
+    is_text = isinstance(statement, ast.Expr) and isinstance(statement.value, ast.Constant)
+    return is_text or isinstance(statement, ast.Pass | ast.Continue | ast.Break)
+
+
+def _count(*kinds: type[ast.AST]) -> Callable[[ast.Module], int]:
+    return partial(lambda tree, wanted: len(_nodes(tree, *wanted)), wanted=kinds)
+
+
+def _functions(tree: ast.Module) -> int:
+    """Return how many functions the program defines and names elsewhere."""
+    defined = _nodes(tree, _Function)  # type: ignore[arg-type]
+    named = [
+        node.id if isinstance(node, ast.Name) else node.attr
+        for node in ast.walk(tree)
+        if isinstance(node, ast.Name | ast.Attribute)
+    ]
+    return len(
+        {node.name for node in defined if isinstance(node, _Function) and node.name in named}
+    )
+
+
+def _lines(tree: ast.Module) -> int:
+    """Return how many lines have code, without comments and texts of documentation."""
+    found = (node for node in ast.walk(tree) if isinstance(node, ast.stmt) and not _is_idle(node))
+    return len({line for node in found for line in _span(node)})
+
+
+def _span(statement: ast.stmt) -> Iterator[int]:
+    """Yield the lines of a statement, of a block only its first."""
+    is_block = isinstance(statement, _BLOCKS)
+    yield from range(
+        statement.lineno, statement.lineno + 1 if is_block else (statement.end_lineno or 0) + 1
+    )
+
+
+def _depth(node: ast.AST) -> int:
+    """Return how deep blocks are nested."""
+    inner = max(map(_depth, ast.iter_child_nodes(node)), default=0)
+    return inner + isinstance(node, _BLOCKS)
+
+
+STRUCTURES: Mapping[str, Callable[[ast.Module], int]] = {
+    "loops": _count(ast.For, ast.While),
+    "for": _count(ast.For),
+    "while": _count(ast.While),
+    "if": _count(ast.If),
+    "functions": _functions,
+    "classes": _count(ast.ClassDef),
+    "try": _count(ast.Try),
+    "lines": _lines,
+    "depth": _depth,
+}
+"""What can be counted in a program's text, by name."""
+
+
+@lru_cache(4)
+def _parse(text: str) -> ast.Module:
+    return ast.parse(text)
+
+
+def count_structure(text: str, name: str) -> int:
+    """Return how much a program has of one of `STRUCTURES`.
+
+    Raises:
+        SyntaxError, ValueError, RecursionError: the program is not Python.
+    """
+    return STRUCTURES[name](_parse(text))
