@@ -53,7 +53,13 @@ class Done:
         """Everything the run recorded."""
         return tuple(
             (self.run.folder / name).read_bytes()
-            for name in ("telemetry.bin", "output.bin", "readings.bin", "motors.bin")
+            for name in (
+                "telemetry.bin",
+                "output.bin",
+                "readings.bin",
+                "motors.bin",
+                "commands.bin",
+            )
             if (self.run.folder / name).exists()
         )
 

@@ -90,7 +90,7 @@ class BrickMotor:
         else:
             self._begin(FOREVER, speed_dps, 1.0)
 
-    def run_until(self, speed_dps: float, end_tick: int) -> None:
+    def run_until(self, speed_dps: float, end_tick: float) -> None:
         """Run until the end of a tick."""
         self._begin(TIMED, speed_dps, 1.0)
         self.end_tick = end_tick

@@ -16,7 +16,6 @@ from tuisim.core.collision import Solids
 from tuisim.core.drift import MOST_TIMES, build_gyro, can_strain_gyro, find_drift, slipping_wheels
 from tuisim.core.drive import BrickDrive, BrowserDrive, Drive, Glide, Records, mm_per_degree
 from tuisim.core.driver.jiffies import draw_jiffies
-from tuisim.core.driver.motor import MotorCommand
 from tuisim.core.driver.simulated import SimulatedMotor, build_axle, build_motor
 from tuisim.core.end_stops import flags_at_start
 from tuisim.core.motor_columns import MotorRecorder, MotorSink
@@ -211,14 +210,6 @@ class Motion:
     def motors(self) -> tuple[Motor, ...]:
         """All motors, in the order of `RobotSpec.motors`."""
         return self.left, self.right
-
-    def command_motor(self, command: MotorCommand) -> None:
-        """Do to a motor what a program wants."""
-        self._driven[command.motor].obey(command)
-
-    def find_number(self, motor: SimulatedMotor) -> int:
-        """Return the number by which commands name a motor."""
-        return self._driven.index(motor)
 
     @property
     def notices(self) -> bool:

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from tuisim.core.commands.table import EFFECTS
 from tuisim.core.drift import can_strain_gyro, find_drift, sensed_turn_rate_dps
 from tuisim.core.drive import float32, turn_rate_dps
 from tuisim.core.driver.jiffies import draw_jiffies
@@ -21,10 +22,14 @@ from tuisim.core.state import Instant
 from tuisim.core.tick_record import END_FLAGS, TICK_RECORD, TickSink
 
 if TYPE_CHECKING:
+    from tuisim.core.commands.calls import Call
     from tuisim.core.motors import Motor
+    from tuisim.core.servo.drive_base import DriveBase
     from tuisim.core.spec import MotorSpec, RobotSpec, RunSpec
 
 
+CommandHook = Callable[[int, int, "Call", tuple[float, ...]], None]
+"""Takes the time in ns, the number of the part, the call and its values, as in `SimulationCommand`."""
 Turn = tuple[float, float]
 """Position in degrees and speed in degrees per second, both at the axle."""
 
@@ -32,7 +37,16 @@ Turn = tuple[float, float]
 class Simulation(Motion):
     """The world of one run."""
 
-    __slots__ = ("_reported", "_reported_tick", "_reports_first", "_stops", "on_turns", "others")
+    __slots__ = (
+        "_reported",
+        "_reported_tick",
+        "_reports_first",
+        "_stops",
+        "bases",
+        "on_command",
+        "on_turns",
+        "others",
+    )
 
     def __init__(self, spec: RunSpec, sink: TickSink) -> None:
         extra = spec.robot.extra_motors
@@ -49,6 +63,10 @@ class Simulation(Motion):
         """Called when one of the other motors deviates from its last report: until then it turns as reported."""
         self._reported: tuple[Turn, ...] = ((0.0, 0.0),) * len(self.others)
         self._reported_tick = 0
+        self.bases: list[DriveBase] = []
+        """The drive bases that the program has made, in their order."""
+        self.on_command: CommandHook = lambda *_: None
+        """Called with each command before it takes effect."""
 
     @property
     def motors(self) -> tuple[Motor, ...]:
@@ -108,6 +126,20 @@ class Simulation(Motion):
         return TICK_RECORD.iter_unpack(self._buffer[64 + 64 * first : 64 + 64 * self._sink.count])
 
     # Changing
+
+    def obey(self, time_ns: int, part: int, call: Call, *values: float) -> None:
+        """Do what a program wants; arguments as of `SimulationCommand`. All that it changes comes through here.
+
+        Raises:
+            ValueError: a move is not possible.
+            RobotError: the parts that are plugged in do not fit.
+        """
+        self.on_command(time_ns, part, call, values)
+        EFFECTS[call](self, time_ns, part, values)
+
+    def find_number(self, motor: Motor) -> int:
+        """Return the number by which commands name a motor."""
+        return self.motors.index(motor)
 
     def press(self, hand_flags: int) -> None:
         """Let hands press the touch sensors with these flags, and no others."""

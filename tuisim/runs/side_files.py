@@ -55,6 +55,9 @@ READINGS_FILE = "readings.bin"
 MOTORS_FILE = "motors.bin"
 """What the drivers knew of the motors at each tick; see `runs.motor_records`. Missing if they have none."""
 
+COMMANDS_FILE = "commands.bin"
+"""What the program has changed in the simulation; see `runs.command_records`."""
+
 LOG_FILE = "child.log"
 """The stderr of the child, for errors below Python; missing if there were none."""
 
@@ -68,6 +71,7 @@ SIDE_FILES = (
     READS_FILE,
     READINGS_FILE,
     MOTORS_FILE,
+    COMMANDS_FILE,
     LOG_FILE,
     STACK_FILE,
 )

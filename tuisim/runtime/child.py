@@ -16,6 +16,7 @@ from tuisim.core.profile import NS_PER_S
 from tuisim.core.simulation import Turn, simulation_of
 from tuisim.core.tick_record import NoRecording
 from tuisim.runs.brick_state import motors_row
+from tuisim.runs.command_records import CommandsWriter
 from tuisim.runs.motor_records import MotorsWriter
 from tuisim.runs.readings import ReadingsWriter
 from tuisim.runs.records import (
@@ -27,7 +28,7 @@ from tuisim.runs.records import (
     TelemetryWriter,
     is_full,
 )
-from tuisim.runs.side_files import MOTORS_FILE, READINGS_FILE
+from tuisim.runs.side_files import COMMANDS_FILE, MOTORS_FILE, READINGS_FILE
 from tuisim.runtime.channel import Channel
 from tuisim.runtime.control import ATTENTION, STOPPING, RunControl
 from tuisim.runtime.interrupts import Interrupts, die_with_host
@@ -53,6 +54,7 @@ from tuisim.runtime.stack import finish_inspect, finish_traceback
 from tuisim.runtime.tracebacks import own_files
 
 if TYPE_CHECKING:
+    from tuisim.core.commands.calls import Call
     from tuisim.runtime.debugger.debugger import Debugger
     from tuisim.runtime.program import ProgramRunner
     from tuisim.runtime.scheduler import Scheduler
@@ -79,7 +81,7 @@ def main(arguments: list[str], prepared: Child | None = None) -> NoReturn:
         child = Child(read_config(Path(arguments[0]))) if prepared is None else prepared
         child.connect(channel, raw_fds)
     except OSError as error:
-        for name in (TELEMETRY_FILE, OUTPUT_FILE, READINGS_FILE, MOTORS_FILE):
+        for name in (TELEMETRY_FILE, OUTPUT_FILE, READINGS_FILE, MOTORS_FILE, COMMANDS_FILE):
             Path(arguments[0], name).unlink(missing_ok=True)
         end, summary = protocol.End.DISK_FULL, _no_room(error)
         if not is_full(error):
@@ -103,6 +105,9 @@ class Child:
     def __init__(self, config: RunConfig) -> None:
         self._config = config
         self._sim = simulation_of(config.spec, NoRecording())
+        self._early_commands: list[tuple[int, int, Call, tuple[float, ...]]] = []
+        """Those of the prelude."""
+        self._sim.on_command = lambda *command: self._early_commands.append(command)
         self._output = OutputRecorder()
         mat = open_field(config.field, has_floor=config.spec.world.is_open)
         self._session = session = Session(self._sim, mat, self._output)
@@ -193,6 +198,7 @@ class Child:
         session.readings = ReadingsWriter(config.folder)
         self._motors = MotorsWriter(config.folder, config.spec.robot) if self._sim.notices else None
         self._sim.restart(config.spec, self._telemetry, self._motors)
+        self._record_commands()
         steering = RunControl(
             channel,
             config.folder,
@@ -204,7 +210,9 @@ class Child:
         limits = RunLimits(int(options.time_limit_s * NS_PER_S), options.stall_limit_s)
         session.connect(channel, steering, limits, config.program.file)
         session.replies, session.shown_ports = options.replies, config.program.shown_ports
-        self._stop_when_full(self._telemetry, self._motors, self._output.writer, session.readings)
+        self._stop_when_full(
+            *(self._telemetry, self._motors, self._output.writer, session.readings, self._commands)
+        )
         self._output.place = lambda: (self._sim.tick, session.now, session.program_line(3))
         self._output.after_write = self._after_write
         self._sim.on_turns = self._write_turns
@@ -214,12 +222,24 @@ class Child:
         self._runner.raw.open(raw_fds)
         self._output.drain = self._runner.raw.drain
 
+    def _record_commands(self) -> None:
+        """Record what the program does, and what the prelude has done."""
+        self._commands = CommandsWriter(self._config.folder)
+        for command in self._early_commands:
+            self._write_command(*command)
+        self._sim.on_command = self._write_command
+
     def _stop_when_full(self, *writers: MappedWriter | None) -> None:
         """Let the run stop when there is no space for what it records."""
         for writer in filter(None, writers):
             writer.full = lambda error: self._session.request_stop(
                 protocol.End.DISK_FULL, _no_room(error)
             )
+
+    def _write_command(
+        self, time_ns: int, part: int, call: Call, values: tuple[float, ...]
+    ) -> None:
+        self._commands.add(time_ns, part, call, values, self._session.program_line(3))
 
     def _write_turns(self, turns: tuple[Turn, ...]) -> None:
         sim = self._sim
@@ -249,6 +269,7 @@ class Child:
             self._motors.close(self._telemetry.count)
         self._output.close()
         self._session.readings.close()
+        self._commands.close()
         self._channel.send(protocol.Wheels(*(read() for read in self._session.wheel_registers)))
         self._reads.end()
         self._channel.send(

@@ -7,21 +7,10 @@ direction.
 from __future__ import annotations
 
 from functools import partial
-from typing import Any
 
-from tuisim.core.driver.motor import (
-    CONSTANT,
-    DUTY,
-    POSITION,
-    RESET,
-    STATES,
-    Command,
-    Constant,
-    MotorCommand,
-    SetPoints,
-    Setting,
-)
-from tuisim.core.driver.regulator import StopAction
+from tuisim.core.commands.calls import Call
+from tuisim.core.commands.driver import COMMAND_CALLS, CONSTANTS, CONTROLS, STOP_ACTIONS
+from tuisim.core.driver.motor import STATES, SetPoints
 from tuisim.core.driver.simulated import SimulatedMotor
 from tuisim.protocol import MotorRegisters
 from tuisim.shim.device_files import NumberWriter, Reader, SimDevice, refuse
@@ -39,21 +28,24 @@ SET_POINTS = (
 """Attributes, in the order of `SetPoints`."""
 STOP_ACTION = len(SET_POINTS)
 SIGNED = ("speed_sp", "position_sp", "duty_cycle_sp")
-COMMANDS: dict[str, Command] = {command.value: command for command in Command}
-STOP_ACTIONS: dict[str, StopAction] = {action.value: action for action in StopAction}
+COMMANDS: dict[str, Call] = {command.value: call for command, call in COMMAND_CALLS.items()}
+STOP_NUMBERS = {action.value: float(number) for number, action in enumerate(STOP_ACTIONS)}
+FIRST_SET_POINTS = (*map(float, SetPoints()[:STOP_ACTION]), 0.0)
+"""Those of a fresh motor, as its commands take them."""
 STATE_TEXTS = tuple(map(" ".join, STATES))
-CONSTANTS = {"Kp": "kp", "Ki": "ki", "Kd": "kd"}
 
 
 class DriverTacho(Tacho):
     """One motor as the kernel's driver exposes it."""
 
+    _motor: SimulatedMotor
+
     def __init__(
         self, session: DeviceSession, motor: SimulatedMotor, port: str, kind: str = "large"
     ) -> None:
-        super().__init__(session, port, kind)
-        self._motor, self._sign = motor, 1
-        self._set_points: list[Any] = [*SetPoints()]
+        super().__init__(session, motor, port, kind)
+        self._sign = 1
+        self._set_points = [*FIRST_SET_POINTS]
         self._look = lambda: self._now().noticed_ns
 
     def device(self) -> SimDevice:
@@ -76,11 +68,12 @@ class DriverTacho(Tacho):
         for name in SET_POINTS:
             readers[name] = partial(self._set_point, name)
             numbers[name] = self._set_point_writer(name, *limits[name])
-        motor = self._motor
-        for group, control in (("speed", motor.speed_control), ("hold", motor.hold_control)):
-            for name, field in CONSTANTS.items():
-                readers[f"{group}_pid/{name}"] = partial(getattr, control, field)
-                numbers[f"{group}_pid/{name}"] = self._constant_writer(group, field)
+        for control, group in enumerate(CONTROLS):
+            for constant, field in enumerate(CONSTANTS):
+                name = f"{group}_pid/{field.capitalize()}"
+                controller = getattr(self._motor, f"{group}_control")
+                readers[name] = partial(getattr, controller, field)
+                numbers[name] = self._constant_writer(control, constant)
         return self._device(readers, {}, numbers)
 
     def _now(self) -> SimulatedMotor:
@@ -101,7 +94,7 @@ class DriverTacho(Tacho):
         )
 
     def _set_point(self, name: str) -> int:
-        number: int = self._set_points[SET_POINTS.index(name)]
+        number = int(self._set_points[SET_POINTS.index(name)])
         return number * self._sign if name in SIGNED else number
 
     def _set_point_writer(self, name: str, low: int, high: int) -> NumberWriter:
@@ -111,43 +104,37 @@ class DriverTacho(Tacho):
         def write(value: int) -> None:
             if not low <= value <= high:
                 raise refuse(str(value))
-            set_points[index] = value * self._sign if signed else value
+            set_points[index] = float(value * self._sign if signed else value)
             if name == "duty_cycle_sp":
-                self._tell(DUTY, set_points[index])
+                self._tell(Call.SET_DUTY, set_points[index])
 
         return write
 
-    def _constant_writer(self, control: str, field: str) -> NumberWriter:
+    def _constant_writer(self, control: int, constant: int) -> NumberWriter:
         def write(value: int) -> None:
             if not 0 <= value <= MAX_SET_POINT:
                 raise refuse(str(value))
-            self._tell(CONSTANT, Constant(control, field, value))
+            self._tell(Call.SET_CONSTANT, float(control), float(constant), float(value))
 
         return write
 
     def _set_position(self, value: int) -> None:
-        self._tell(POSITION, value * self._sign)
+        self._tell(Call.RENUMBER, float(value * self._sign))
 
     def _set_stop_action(self, text: str) -> None:
         super()._set_stop_action(text)
-        self._set_points[STOP_ACTION] = STOP_ACTIONS[text]
+        self._set_points[STOP_ACTION] = STOP_NUMBERS[text]
 
     def _set_polarity(self, text: str) -> None:
         super()._set_polarity(text)
         self._sign = -1 if text == "inversed" else 1
 
     def _command(self, text: str) -> None:
-        command = COMMANDS.get(text)
-        if command is None:
+        call = COMMANDS.get(text)
+        if call is None:
             raise refuse(text)
         self._session.command()
-        self._tell(command, SetPoints(*self._set_points))
-        if command is RESET:
-            self._set_points[:] = SetPoints()
+        self._tell(call, *self._set_points)
+        if call is Call.RESET_DRIVER:
+            self._set_points[:] = FIRST_SET_POINTS
             self._stop_action, self._polarity, self._sign = "coast", "normal", 1
-
-    def _tell(self, call: Command | Setting, values: SetPoints | Constant | int) -> None:
-        sim = self._session.sim
-        sim.command_motor(
-            MotorCommand(self._session.now, sim.find_number(self._motor), call, values)
-        )

@@ -8,7 +8,8 @@ from functools import partial
 
 from tuisim.core.brick_motor import BrickMotor
 from tuisim.core.browser_motor import BrowserMotor
-from tuisim.core.motors import MEDIUM_MAX_SPEED_DPS, POSITION, STOPPED, TIMED
+from tuisim.core.commands.calls import Call
+from tuisim.core.motors import MEDIUM_MAX_SPEED_DPS, POSITION, STOPPED, TIMED, Motor
 from tuisim.core.profile import MS
 from tuisim.core.servo.motor import ServoMotor
 from tuisim.data_class import dataclass
@@ -33,6 +34,13 @@ RAMPS = ("ramp_up_sp", "ramp_down_sp")
 COUNT_PER_ROT = 360
 MAX_RAMP_MS = 60_000
 MAX_SET_POINT = 2**31 - 1
+RUN, RUN_UNTIL, RUN_TO, STOP, SET_COUNT = (
+    Call.RUN,
+    Call.RUN_UNTIL,
+    Call.RUN_TO,
+    Call.STOP,
+    Call.SET_COUNT,
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,8 +62,9 @@ KINDS = {
 class Tacho(ABC):
     """One motor on an output port, such as `outB`; its kind is one of `KINDS`."""
 
-    def __init__(self, session: DeviceSession, port: str, kind: str) -> None:
+    def __init__(self, session: DeviceSession, motor: Motor, port: str, kind: str) -> None:
         self._session, self._port, self._kind = session, port, KINDS[kind]
+        self._motor = motor
         self._stop_action, self._polarity = "coast", "normal"
         self._last_command = ""
         self._look: Reader | None = None
@@ -64,6 +73,11 @@ class Tacho(ABC):
     @abstractmethod
     def registers(self) -> MotorRegisters:
         """Return what the program has written to the motor, and its speed."""
+
+    def _tell(self, call: Call, *values: float) -> None:
+        """Change the motor."""
+        sim = self._session.sim
+        sim.obey(self._session.now, sim.find_number(self._motor), call, *values)
 
     @abstractmethod
     def device(self) -> SimDevice:
@@ -123,11 +137,12 @@ class Tacho(ABC):
 class TachoMotor(Tacho):
     """One motor as the kernel driver exposes it."""
 
+    _motor: BrickMotor
+
     def __init__(
         self, session: DeviceSession, motor: BrickMotor, port: str, kind: str = "large"
     ) -> None:
-        super().__init__(session, port, kind)
-        self._motor = motor
+        super().__init__(session, motor, port, kind)
         self._numbers: dict[str, int] = {}
         self._direct = False
         self._standstill_tick = 0
@@ -227,7 +242,7 @@ class TachoMotor(Tacho):
         )
 
     def _set_position(self, value: int) -> None:
-        self._motor.position_deg = float(value * self._sign)
+        self._tell(SET_COUNT, float(value * self._sign))
         self._last_goal = None
 
     def _set_polarity(self, text: str) -> None:
@@ -240,16 +255,13 @@ class TachoMotor(Tacho):
         self._session.command()
         self._direct = text == "run-direct"
         speed = self._numbers["speed_sp"] * self._sign
-        motor = self._motor
         # The stop action at the start of a move applies at its end.
         self._holding = self._stop_action == "hold"
         if text == "run-forever":
-            motor.run(float(speed))
+            self._tell(RUN, float(speed))
         elif text == "run-timed":
-            sim = self._session.sim
-            motor.run_until(
-                float(speed), sim.ticks_at(self._session.now + self._numbers["time_sp"] * MS)
-            )
+            end_ns = self._session.now + self._numbers["time_sp"] * MS
+            self._tell(RUN_UNTIL, float(speed), float(self._session.sim.ticks_at(end_ns)))
         elif text == "run-to-rel-pos":
             self._run_relative(float(speed))
             return
@@ -281,19 +293,19 @@ class TachoMotor(Tacho):
         self._last_goal = None
         motor, sim, down = self._motor, self._session.sim, self._ramp_dps2("ramp_down_sp")
         if not down or not motor.moving_dps:
-            motor.stop()
+            self._tell(STOP)
             return
         if motor.mode == TIMED and motor.target_dps == 0.0:
             # It is decelerating already.
             return
-        motor.slowest_ramp_dps2 = down
+        self._tell(Call.LIMIT_RAMPS, down, motor.approach_dps2)
         self._standstill_tick = sim.tick + math.ceil(abs(motor.speed_dps) / motor.ramp_step)
-        motor.run_until(0.0, self._standstill_tick)
-        motor.slowest_ramp_dps2 = down
+        self._tell(RUN_UNTIL, 0.0, float(self._standstill_tick))
+        self._tell(Call.LIMIT_RAMPS, down, 0.0)
 
     def _run_direct(self) -> None:
-        self._motor.run(
-            self._kind.max_speed_dps * self._numbers["duty_cycle_sp"] / 100 * self._sign
+        self._tell(
+            RUN, self._kind.max_speed_dps * self._numbers["duty_cycle_sp"] / 100 * self._sign
         )
         self._begun()
 
@@ -306,8 +318,11 @@ class TachoMotor(Tacho):
         if self._last_goal is not None:
             base = self._last_goal
         self._last_goal = base + delta
-        self._motor.run_to(self._last_goal, speed, self._last_goal < self._motor.position_deg)
+        self._run_to(self._last_goal, speed)
         self._begun()
+
+    def _run_to(self, goal_deg: float, speed_dps: float) -> None:
+        self._tell(RUN_TO, goal_deg, speed_dps, float(goal_deg < self._motor.position_deg))
 
     def _ramp_dps2(self, name: str) -> float:
         """Return the acceleration that a ramp set point allows, 0 for no ramp."""
@@ -318,17 +333,17 @@ class TachoMotor(Tacho):
         """Pass the ramp set points to the motor."""
         motor = self._motor
         faster = abs(motor.target_dps) > abs(motor.speed_dps)
-        motor.slowest_ramp_dps2 = self._ramp_dps2("ramp_up_sp" if faster else "ramp_down_sp")
-        if motor.mode in (TIMED, POSITION):
-            motor.approach_dps2 = self._ramp_dps2("ramp_down_sp")
+        slowest_dps2 = self._ramp_dps2("ramp_up_sp" if faster else "ramp_down_sp")
+        ends = motor.mode in (TIMED, POSITION)
+        approach_dps2 = self._ramp_dps2("ramp_down_sp") if ends else motor.approach_dps2
+        self._tell(Call.LIMIT_RAMPS, slowest_dps2, approach_dps2)
 
     def _run_absolute(self, speed: float) -> None:
-        goal = float(self._numbers["position_sp"] * self._sign)
-        self._motor.run_to(goal, speed, goal < self._motor.position_deg)
+        self._run_to(float(self._numbers["position_sp"] * self._sign), speed)
 
     def _reset(self) -> None:
-        self._motor.stop()
-        self._motor.position_deg = 0.0
+        self._tell(STOP)
+        self._tell(SET_COUNT, 0.0)
         self._set_defaults()
 
 
@@ -349,11 +364,12 @@ WITHOUT_EFFECT = (
 class BrowserTacho(Tacho):
     """One motor of the browser simulator: set points take effect at once, commands bypass the driver."""
 
+    _motor: BrowserMotor
+
     def __init__(
         self, session: DeviceSession, motor: BrowserMotor, port: str, kind: str = "large"
     ) -> None:
-        super().__init__(session, port, kind)
-        self._motor = motor
+        super().__init__(session, motor, port, kind)
         self._numbers = dict.fromkeys(WITHOUT_EFFECT, 0)
         self._position_sp, self._time_sp_s = 0, 0.0
 
@@ -375,9 +391,9 @@ class BrowserTacho(Tacho):
             name: partial(self._numbers.__setitem__, name) for name in WITHOUT_EFFECT
         }
         numbers |= {
-            "speed_sp": lambda value: setattr(motor, "speed_sp", float(value)),
+            "speed_sp": lambda value: self._tell(Call.SET_SPEED, float(value)),
             "position_sp": self._set_position_sp,
-            "position": lambda value: setattr(motor, "position_deg", float(value)),
+            "position": lambda value: self._tell(SET_COUNT, float(value)),
         }
         return self._device(readers, {"time_sp": self._set_time}, numbers)
 
@@ -397,29 +413,30 @@ class BrowserTacho(Tacho):
         motor = self._motor
         match text:
             case "run-forever":
-                motor.run(motor.speed_sp)
+                self._tell(RUN, motor.speed_sp)
             case "run-timed":
                 sim = self._session.sim
                 # Counted from the last completed tick: the fraction of a tick since then is ignored.
-                motor.run_until(
-                    motor.speed_sp, sim.tick + self._time_sp_s * sim.spec.profile.tick_hz
-                )
+                end_tick = sim.tick + self._time_sp_s * sim.spec.profile.tick_hz
+                self._tell(RUN_UNTIL, motor.speed_sp, end_tick)
             case "run-to-rel-pos":
-                motor.run_to(
-                    motor.position_deg + self._position_sp, motor.speed_sp, self._position_sp < 0
-                )
+                self._run_to(motor.position_deg + self._position_sp)
             case "run-to-abs-pos":
-                motor.run_to(float(self._position_sp), motor.speed_sp, self._position_sp < 0)
+                self._run_to(float(self._position_sp))
             case "run-direct":
-                motor.speed_sp = float(self._numbers["duty_cycle_sp"])
+                self._tell(Call.SET_SPEED, float(self._numbers["duty_cycle_sp"]))
             case "stop" | "reset":
-                motor.stop()
+                self._tell(STOP)
             case _:
                 raise refuse(text)
 
+    def _run_to(self, goal_deg: float) -> None:
+        self._tell(RUN_TO, goal_deg, self._motor.speed_sp, float(self._position_sp < 0))
+
     def _set_position_sp(self, value: int) -> None:
         # Its sign takes effect at once, also during and after a move.
-        self._position_sp, self._motor.backwards = value, value < 0
+        self._position_sp = value
+        self._tell(Call.SET_BACKWARDS, float(value < 0))
 
     def _set_time(self, text: str) -> None:
         try:
@@ -429,17 +446,18 @@ class BrowserTacho(Tacho):
 
     def _set_polarity(self, text: str) -> None:
         super()._set_polarity(text)
-        self._motor.roll_sign = -1.0 if text == "inversed" else 1.0
+        self._tell(Call.SET_ROLL, -1.0 if text == "inversed" else 1.0)
 
 
 class ServoTacho(Tacho):
     """One motor that the Pybricks firmware moves: the driver shows it, and takes no commands."""
 
+    _motor: ServoMotor
+
     def __init__(
         self, session: DeviceSession, motor: ServoMotor, port: str, kind: str = "large"
     ) -> None:
-        super().__init__(session, port, kind)
-        self._motor = motor
+        super().__init__(session, motor, port, kind)
 
     def device(self) -> SimDevice:
         """Return the device with the state of the motor."""

@@ -10,6 +10,8 @@ import re
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from tuisim.core.commands.calls import Call
+from tuisim.core.commands.robot import encode_parts
 from tuisim.core.plugged import (
     LATE,
     LEFT,
@@ -17,7 +19,6 @@ from tuisim.core.plugged import (
     RIGHT,
     SENSOR_PARTS,
     PluggedPart,
-    plug_parts,
 )
 from tuisim.core.sensors import SENSORS
 from tuisim.core.spec import INPUT_PORTS, NO_PORT, OUTPUT_PORTS
@@ -192,8 +193,8 @@ class Plugs:
         """Change the robot, and what is connected to the brick."""
         built, sim = self._built, self._session.sim
         before = sim.spec.robot
-        robot = plug_parts(before, parts)
-        sim.change_robot(robot)
+        sim.obey(self._session.now, 0, Call.PLUG, *encode_parts(parts))
+        robot = sim.spec.robot
         simulated = sim.motors_by_port
         sensors = {sensor.port: sensor for sensor in robot.sensors}
         for port in [*built.paths]:

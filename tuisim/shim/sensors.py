@@ -8,6 +8,7 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from typing import Any, NoReturn
 
+from tuisim.core.commands.calls import Call
 from tuisim.core.drift import find_drift
 from tuisim.core.profile import ProfileSpec
 from tuisim.core.sensors import SENSORS, color, gyro, infrared, touch, ultrasonic
@@ -307,14 +308,17 @@ class GyroDevice(LegoSensor):
 
     def writers(self) -> dict[str, Writer]:
         """Return also the attribute that resets the sensor."""
-        return super().writers() | {"direct": lambda _text: self._session.sim.reset_gyro()}
+        return super().writers() | {"direct": lambda _text: self._reset()}
 
     def switch(self, mode: str) -> None:
         """Switch to a mode; a change that ends a calibration always resets the angle to 0."""
         restarts = self.restarts or self.mode == "GYRO-CAL"
         super().switch(mode)
         if restarts:
-            self._session.sim.reset_gyro()
+            self._reset()
+
+    def _reset(self) -> None:
+        self._session.sim.obey(self._session.now, 0, Call.RESET_GYRO)
 
 
 def touch_sensor(session: DeviceSession, spec: TouchSpec) -> LegoSensor:

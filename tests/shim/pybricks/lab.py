@@ -6,8 +6,11 @@ from collections.abc import Callable
 from types import SimpleNamespace
 from typing import Any, cast
 
+from tuisim.core.commands.calls import Call
+from tuisim.core.commands.table import EFFECTS
 from tuisim.core.driver.plant import Axle, PlantSpec
 from tuisim.core.profile import PROFILES, MotorLaw
+from tuisim.core.servo.drive_base import DriveBase
 from tuisim.core.servo.motor import ServoMotor
 from tuisim.core.servo.settings import BATTERY_V
 from tuisim.runs.records import Stream
@@ -21,6 +24,19 @@ RECORDED_PLANTS = {
     "medium": PlantSpec(10.727729, 0.291152, 0.245926, 0.000521, 1e-7, 0.024593, 0.024593),
 }
 """The motors of the recordings: with the firmware's own data, not with those of a brick's motors."""
+
+
+class MotorsOnly:
+    """A simulation without a robot: it obeys commands to motors and drive bases."""
+
+    spec = SimpleNamespace(profile=PROFILES["lego-micropython"])
+
+    def __init__(self, motors: list[ServoMotor]) -> None:
+        self.motors, self.bases = motors, list[DriveBase]()
+        self.find_number = motors.index
+
+    def obey(self, time_ns: int, part: int, call: Call, *values: float) -> None:
+        EFFECTS[call](cast(Any, self), time_ns, part, values)
 
 
 class Lab:
@@ -44,7 +60,7 @@ class Lab:
         self.until_ns = 1 << 62
         self.shown: list[tuple[str, Stream]] = []
         self.looks: list[Callable[[int], None]] = []
-        self.sim: Any = SimpleNamespace(spec=SimpleNamespace(profile=PROFILES["lego-micropython"]))
+        self.sim = MotorsOnly([*self.motors.values()])
         built: Any = SimpleNamespace(motors=self.motors, sensors={}, lights=None, battery=None)
         plugs: Any = SimpleNamespace(
             add=lambda *_: False,

@@ -6,8 +6,10 @@ import errno
 import sys
 from collections.abc import Callable, Generator
 from dataclasses import field
+from math import nan
 from typing import Any, ClassVar, Generic, TypeVar
 
+from tuisim.core.commands.calls import MAX_NUMBER, Call
 from tuisim.core.sensors import SENSORS
 from tuisim.core.servo.motor import ServoMotor
 from tuisim.data_class import dataclass
@@ -23,6 +25,7 @@ from tuisim.shim.session import DeviceSession
 from tuisim.shim.sound import Mixer
 from tuisim.shim.waits import Wait, waits_for
 
+LARGEST = int(MAX_NUMBER)
 POLL_US = 5000
 """A blocking call looks for the end of its move this often, as the firmware's does."""
 
@@ -111,6 +114,18 @@ class Brick:
             for code in codes[1:]:
                 session.note_reading(code)
         return session.now // 1000
+
+    def tell(self, part: int, call: Call, *values: float | None) -> None:
+        """Change a motor or a drive base.
+
+        Args:
+            part: Its number.
+            call, values: What changes; None is what is not given. Numbers beyond any that counts are cut off.
+        """
+        numbers = (
+            nan if value is None else float(max(-LARGEST, min(LARGEST, value))) for value in values
+        )
+        self.session.sim.obey(self.session.now, part, call, *numbers)
 
     def command(self) -> int:
         """Count a command, which takes no time, and return the simulated time."""

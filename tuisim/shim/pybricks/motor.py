@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import errno
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from enum import Enum
 from typing import Any, ClassVar
 
+from tuisim.core.commands.calls import Call
+from tuisim.core.commands.servo import SETTINGS
 from tuisim.core.servo.control import Controller, Ending
 from tuisim.core.servo.motor import ServoMotor
 from tuisim.core.servo.settings import FULL_ACTUATION
@@ -78,7 +79,7 @@ class DCMotor(Connected):
         if found is None:
             raise no_device(self.brick.hint(MOTOR_CLASS))
         self._motor: ServoMotor = found
-        found.set_up(self.brick.now_us, direction.sign, ratio, keeps_angle=keeps_angle)
+        self.tell(Call.SET_UP, float(direction.sign), ratio, float(keeps_angle))
 
     def _port_name(self, port: Port) -> str:
         name = _port(port)
@@ -92,28 +93,37 @@ class DCMotor(Connected):
         """The motor of the simulation."""
         return self._motor
 
-    def _command(self) -> int:
-        """Return the time of a command.
+    def tell(self, call: Call, *values: float | None) -> None:
+        """Change the motor or its controller; None is what is not given."""
+        self.brick.tell(self.brick.session.sim.find_number(self._motor), call, *values)
+
+    def _command(self) -> None:
+        """Count a command.
 
         Raises:
             OSError: a drive base moves or holds the motor.
         """
-        now_us, motor = self.brick.command(), self._motor
+        self.brick.command()
+        motor = self._motor
         if motor.guide is not None and not motor.follows_itself:
             raise not_permitted()
-        return now_us
+
+    def _run_freely(self, actuation: int | None) -> None:
+        self._command()
+        self.tell(Call.RUN_FREELY, actuation)
 
     def dc(self, duty: float) -> None:
         """Run with a power in percent, without control of the speed."""
-        self._motor.run_freely(self._command(), max(-100, min(100, whole(duty))) * PERCENT)
+        self._command()
+        self.tell(Call.RUN_FREELY, max(-100, min(100, whole(duty))) * PERCENT)
 
     def stop(self) -> None:
         """Let the motor coast."""
-        self._motor.run_freely(self._command(), None)
+        self._run_freely(None)
 
     def brake(self) -> None:
         """Let the motor brake itself."""
-        self._motor.run_freely(self._command(), 0)
+        self._run_freely(0)
 
 
 class Motor(DCMotor):
@@ -148,32 +158,35 @@ class Motor(DCMotor):
                 errno.EOPNOTSUPP,
                 "EOPNOTSUPP: the EV3's motors have no absolute encoder; give an angle",
             )
-        self._motor.set_position(
-            self._command(), self._motor.control.settings.counts(whole(angle)) * MILLI
-        )
+        self._command()
+        self.tell(Call.SET_MILLI, self._motor.control.settings.counts(whole(angle)) * MILLI)
 
     # Motions without an end
 
     def hold(self) -> None:
         """Stop and hold the angle."""
-        now_us, motor = self._command(), self._motor
-        motor.control.hold(now_us, motor.measured(now_us).milli)
-        motor.follow()
+        self._command()
+        self.tell(Call.HOLD)
+        self._follow()
 
     def run(self, speed: float) -> None:
         """Run at a speed in degrees per second."""
-        now_us, motor = self._command(), self._motor
-        settings = motor.control.settings
-        motor.control.run(
-            now_us, motor.measured, settings.counts(whole(speed)), settings.acceleration
-        )
-        motor.follow()
+        self._command()
+        settings = self._motor.control.settings
+        self._run_endlessly(settings.counts(whole(speed)), settings.acceleration)
+
+    def _run_endlessly(self, rate: int, acceleration: int) -> None:
+        self.tell(Call.RUN_AT, rate, acceleration, None, Ending.HOLD)
+
+    def _follow(self, ending: Ending = Ending.HOLD) -> None:
+        self.tell(Call.FOLLOW, ending)
 
     def track_target(self, target_angle: float) -> None:
         """Turn to an angle as fast as possible, and hold it."""
-        now_us, motor = self._command(), self._motor
-        motor.control.hold(now_us, motor.control.settings.counts(whole(target_angle)) * MILLI)
-        motor.follow()
+        self._command()
+        counts = self._motor.control.settings.counts(whole(target_angle))
+        self.tell(Call.HOLD_MILLI, counts * MILLI)
+        self._follow()
 
     # Moves
 
@@ -181,12 +194,12 @@ class Motor(DCMotor):
         self, speed: float, time: float, then: Stop = Stop.HOLD, wait: bool = True
     ) -> None:
         """Run at a speed for a time in milliseconds."""
-        now_us, motor = self._command(), self._motor
-        settings, time_us = motor.control.settings, whole(time) * MS_US
+        self._command()
+        settings, time_us = self._motor.control.settings, whole(time) * MS_US
         if not 0 <= time_us <= LONGEST_US:
             raise invalid_argument()
         rate = settings.counts(whole(speed))
-        motor.control.run(now_us, motor.measured, rate, settings.acceleration, time_us)
+        self.tell(Call.RUN_AT, rate, settings.acceleration, time_us, None)
         return self._begin(then, wait, "run_time()")
 
     def run_angle(
@@ -209,16 +222,15 @@ class Motor(DCMotor):
     def _move(
         self, speed: int, angle: int, then: Stop, wait: bool, call: str, *, relative: bool
     ) -> None:
-        now_us, motor = self._command(), self._motor
-        settings = motor.control.settings
+        self._command()
+        settings = self._motor.control.settings
         try:
-            motor.control.move_to(
-                now_us,
-                motor.measured,
+            self.tell(
+                Call.MOVE,
                 settings.counts(angle),
                 settings.counts(speed),
                 settings.acceleration,
-                relative=relative,
+                relative,
             )
         except ValueError:
             raise invalid_argument() from None
@@ -226,7 +238,7 @@ class Motor(DCMotor):
 
     def _begin(self, then: Stop, wait: bool, call: str) -> None:
         motor = self._motor
-        motor.follow(ending=ending_of(self.ENDINGS, then))
+        self._follow(ending_of(self.ENDINGS, then))
         if wait:
             done = self.brick.until_done(
                 lambda now_us: self._done(now_us, call), lambda: motor.control.end_us
@@ -255,9 +267,8 @@ class Motor(DCMotor):
         """Run at a speed until something stops the motor, and return the angle."""
         limit = None if duty_limit is None else max(0, min(100, whole(duty_limit))) * PERCENT
         self.run(speed)
-        motor = self._motor
-        motor.control.duty_limit = limit
-        motor.follow()
+        self.tell(Call.LIMIT_DUTY, limit)
+        self._follow()
         return self.brick.finish(self._until_stalled(then))
 
     def _until_stalled(self, then: Stop) -> Waiting[int]:
@@ -287,6 +298,10 @@ class Control(Connected):
     def __init__(self, owner: Any, control: Controller) -> None:
         self._owner, self._control = owner, control
 
+    def _change(self, setting: int, value: int) -> None:
+        """Change one setting, by its number."""
+        self._owner.tell(Call.SET_CONTROL, setting, value)
+
     @property
     def scale(self) -> float:
         """Counts per unit."""
@@ -311,7 +326,8 @@ class Control(Connected):
         }
         if any(value < 0 for value in changes.values()):
             raise invalid_argument()
-        self._control.settings = replace(settings, **changes)
+        for setting, value in changes.items():
+            self._change(SETTINGS.index(setting), value)
 
     def limits(
         self,

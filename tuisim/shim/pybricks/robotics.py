@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any, ClassVar
 
-from tuisim.core.servo import drive_base
+from tuisim.core.commands.calls import Call
 from tuisim.core.servo.control import Controller, Ending
 from tuisim.core.servo.trajectory import MILLI
 from tuisim.shim.plugs import PART_OF_KIND
@@ -42,15 +42,21 @@ class DriveBase(Connected):
         DriveBase.current = self
         self.left, self.right = left_motor, right_motor
         self.port_names = (*left_motor.port_names, *right_motor.port_names)
-        self._base = base = drive_base.DriveBase(
-            left_motor.simulated, right_motor.simulated, float(wheel_diameter), float(axle_track)
-        )
+        sim = self.brick.session.sim
+        numbers = (sim.find_number(motor.simulated) for motor in (left_motor, right_motor))
+        self.brick.tell(0, Call.BUILD_BASE, *numbers, float(wheel_diameter), float(axle_track))
+        self._number = len(sim.bases) - 1
+        self._base = base = sim.bases[-1]
         self.distance_control, self.heading_control = (
-            Control(self, base.distance),
-            Control(self, base.heading),
+            BaseControl(self, base.distance, 0),
+            BaseControl(self, base.heading, 1),
         )
         self._zeros = 0, 0
         self.reset()
+
+    def tell(self, call: Call, *values: float | None) -> None:
+        """Change the drive base or its controllers; None is what is not given."""
+        self.brick.tell(self._number, call, *values)
 
     # Motions
 
@@ -72,9 +78,9 @@ class DriveBase(Connected):
         wait: bool = True,
     ) -> None:
         base = self._base
-        now_us = self._command()
+        self.brick.command()
         try:
-            base.move(now_us, distance_mm, angle_deg, ending)
+            self.tell(Call.MOVE_BASE, distance_mm, angle_deg, ending)
         except ValueError:
             raise invalid_argument() from None
         if not wait:
@@ -103,7 +109,8 @@ class DriveBase(Connected):
         speed = drive_speed if speed is None else speed
         if speed is None or turn_rate is None:
             raise TypeError("drive() needs a speed and a turn_rate")
-        self._base.drive(self.brick.command(), whole(speed), whole(turn_rate))
+        self.brick.command()
+        self.tell(Call.DRIVE_BASE, whole(speed), whole(turn_rate))
 
     def drive_time(self, speed: float, steering: float, time: float) -> None:
         """Drive for a time in milliseconds, and coast; from version 1.0."""
@@ -113,19 +120,16 @@ class DriveBase(Connected):
 
     def stop(self, stop_type: Stop = Stop.COAST) -> None:
         """Stop."""
-        now_us, base = self._command(), self._base
+        self.brick.command()
         match stop_type:
             case Stop.COAST:
-                base.stop(now_us, None)
+                self.tell(Call.STOP_BASE, None)
             case Stop.BRAKE:
-                base.stop(now_us, 0)
+                self.tell(Call.STOP_BASE, 0)
             case Stop.HOLD:
                 self.straight(0)
             case _:
                 raise invalid_argument()
-
-    def _command(self) -> int:
-        return self.brick.command()
 
     # Readings
 
@@ -203,5 +207,21 @@ class DriveBase(Connected):
             usual if value is None else min(abs(whole(value)), limit)
             for value, usual, limit in zip(given, base.usual, limits, strict=True)
         ]
-        base.usual = (chosen[0], chosen[1], chosen[2], chosen[3])
+        self.tell(Call.SET_BASE, *chosen)
         return None
+
+
+class BaseControl(Control):
+    """The settings of a controller of a drive base.
+
+    Args:
+        owner, control: As of `Control`.
+        number: 0 for the distance, 1 for the heading.
+    """
+
+    def __init__(self, owner: DriveBase, control: Controller, number: int) -> None:
+        super().__init__(owner, control)
+        self._number = number
+
+    def _change(self, setting: int, value: int) -> None:
+        self._owner.tell(Call.SET_BASE_CONTROL, self._number, setting, value)

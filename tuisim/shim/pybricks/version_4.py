@@ -10,6 +10,7 @@ from enum import Enum
 from math import degrees, radians
 from typing import Any
 
+from tuisim.core.commands.calls import Call
 from tuisim.core.servo.control import Ending
 from tuisim.core.servo.trajectory import MILLI
 from tuisim.shim.pybricks import hubs, motor, robotics
@@ -63,14 +64,9 @@ class Motor(motor.Motor):
         trajectory = control.trajectory
         if ending_of(ENDINGS, then) is not Ending.NONE or trajectory is None:
             return super()._begin(then, wait, call)
-        target, rate, now_us = trajectory.end.milli, trajectory.even.rate, self.brick.now_us
-        control.run(
-            now_us,
-            motor.measured,
-            rate,
-            abs(trajectory.first.acceleration) or control.settings.acceleration,
-        )
-        motor.follow()
+        target, rate = trajectory.end.milli, trajectory.even.rate
+        acceleration = abs(trajectory.first.acceleration) or control.settings.acceleration
+        self._run_endlessly(rate, acceleration)
         if not wait:
             return None
 
@@ -145,7 +141,7 @@ class DriveBase(robotics.DriveBase):
             turn_rate = round(abs(speed) * angle_deg / abs(distance_mm))
         else:
             speed, turn_rate = 0, turn_rate if angle_deg > 0 else -turn_rate
-        begin = base.millis_at(self._command())[0 if by_way else 1]
+        begin = base.millis_at(self.brick.command())[0 if by_way else 1]
         control, way = (base.distance, distance_mm) if by_way else (base.heading, angle_deg)
         target = abs(way) * control.settings.counts_per_unit * MILLI
         self.drive(speed, turn_rate)
@@ -204,7 +200,8 @@ class DriveBase(robotics.DriveBase):
 
     def brake(self) -> None:
         """Stop and let the motors brake themselves."""
-        self._base.stop(self._command(), 0)
+        self.brick.command()
+        self.tell(Call.STOP_BASE, 0)
 
     def hold(self) -> None:
         """Stop and hold the wheels."""

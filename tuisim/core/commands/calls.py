@@ -1,0 +1,81 @@
+"""What a program can do to the simulation, and one time that it does so."""
+
+from __future__ import annotations
+
+from enum import IntEnum
+from typing import NamedTuple
+
+MAX_VALUES = 7
+"""No command has more values."""
+MAX_NUMBER = float(2**53)
+"""No value is larger: up to here, each whole number is one."""
+
+
+class Call(IntEnum):
+    """What a program can do. Recorded commands have these numbers."""
+
+    RESET_GYRO = 0
+    MOVE_PEN = 1
+    PLUG = 2
+    # A motor of a brick or of the browser simulator.
+    RUN = 10
+    RUN_UNTIL = 11
+    RUN_TO = 12
+    STOP = 13
+    SET_COUNT = 14
+    LIMIT_RAMPS = 15
+    SET_SPEED = 16
+    SET_BACKWARDS = 17
+    SET_ROLL = 18
+    # A motor with the kernel's driver: in the order of `driver.motor.Command`.
+    RUN_FOREVER = 20
+    RUN_TO_ABS_POS = 21
+    RUN_TO_REL_POS = 22
+    RUN_TIMED = 23
+    RUN_DIRECT = 24
+    STOP_DRIVER = 25
+    RESET_DRIVER = 26
+    SET_DUTY = 27
+    RENUMBER = 28
+    SET_CONSTANT = 29
+    # A motor of the Pybricks firmware, and its controller.
+    SET_UP = 40
+    RUN_FREELY = 41
+    SET_MILLI = 42
+    HOLD = 43
+    HOLD_MILLI = 44
+    RUN_AT = 45
+    MOVE = 46
+    FOLLOW = 47
+    LIMIT_DUTY = 48
+    SET_CONTROL = 49
+    # A drive base.
+    BUILD_BASE = 60
+    MOVE_BASE = 61
+    DRIVE_BASE = 62
+    STOP_BASE = 63
+    SET_BASE = 64
+    SET_BASE_CONTROL = 65
+
+
+class SimulationCommand(NamedTuple):
+    """One call of a program."""
+
+    time_ns: int
+    part: int
+    """The number of a motor among `Simulation.motors`, or of a drive base among `Simulation.bases`; else 0."""
+    call: Call
+    values: tuple[float, ...]
+    """As many as the call takes; NaN stands for one that is not given."""
+
+
+def find_index(numbers: tuple[float, ...], place: int, count: int) -> int:
+    """Return a value that counts from 0 up to below `count`.
+
+    Raises:
+        ValueError: it is something else.
+    """
+    index = int(numbers[place])
+    if not 0 <= index < count or index != numbers[place]:
+        raise ValueError(f"no number below {count}: {numbers[place]!r}")
+    return index

@@ -1,0 +1,72 @@
+"""Calls of motors with the kernel's driver."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+from tuisim.core.commands.calls import Call, find_index
+from tuisim.core.driver.motor import (
+    Command,
+    Constant,
+    MotorCommand,
+    SetPoints,
+    Setting,
+)
+from tuisim.core.driver.regulator import StopAction
+from tuisim.core.driver.simulated import SimulatedMotor
+
+if TYPE_CHECKING:
+    from tuisim.core.simulation import Simulation
+
+    Effect = Callable[[Simulation, int, int, tuple[float, ...]], None]
+
+COMMAND_CALLS: dict[Command, Call] = {
+    command: Call(Call.RUN_FOREVER + number) for number, command in enumerate(Command)
+}
+"""The call of each command of the driver; its values are those of `SetPoints`."""
+STOP_ACTIONS = (*StopAction,)
+"""In the order of their numbers in commands, which count from 0."""
+CONTROLS = ("speed", "hold")
+CONSTANTS = ("kp", "ki", "kd")
+
+
+def _obey(
+    sim: Simulation,
+    time_ns: int,
+    part: int,
+    call: Command | Setting,
+    values: SetPoints | Constant | int,
+) -> None:
+    motor = sim.motors[part]
+    assert isinstance(motor, SimulatedMotor)
+    motor.obey(MotorCommand(time_ns, part, call, values))
+
+
+def build_effect(command: Command) -> Effect:
+    """Return what a command of the driver does, with all set points."""
+
+    def obey(sim: Simulation, time_ns: int, part: int, values: tuple[float, ...]) -> None:
+        speed_dps, position, duty, time_ms, ramp_up_ms, ramp_down_ms, _ = map(int, values)
+        action = STOP_ACTIONS[find_index(values, 6, len(STOP_ACTIONS))]
+        set_points = SetPoints(speed_dps, position, duty, time_ms, ramp_up_ms, ramp_down_ms, action)
+        _obey(sim, time_ns, part, command, set_points)
+
+    return obey
+
+
+def set_duty(sim: Simulation, time_ns: int, part: int, values: tuple[float, ...]) -> None:
+    """Set the duty, which takes effect at once after `run-direct`."""
+    _obey(sim, time_ns, part, Setting.DUTY, int(values[0]))
+
+
+def renumber(sim: Simulation, time_ns: int, part: int, values: tuple[float, ...]) -> None:
+    """Make the present position another one."""
+    _obey(sim, time_ns, part, Setting.POSITION, int(values[0]))
+
+
+def set_constant(sim: Simulation, time_ns: int, part: int, values: tuple[float, ...]) -> None:
+    """Set a constant of a controller: the numbers of both, and the value."""
+    control = CONTROLS[find_index(values, 0, len(CONTROLS))]
+    name = CONSTANTS[find_index(values, 1, len(CONSTANTS))]
+    _obey(sim, time_ns, part, Setting.CONSTANT, Constant(control, name, int(values[2])))
