@@ -59,11 +59,8 @@ class MotorsWriter(MappedWriter):
     def arrange(self, sources: Sequence[int | None], ticks: int) -> None:
         """Write the records of so many ticks again for other motors; see `MotorSink.arrange`."""
         before, after = self._size // MOTOR_RECORD.size, len(sources)
-        recorded = array("Q", self._map[HEADER_BYTES : HEADER_BYTES + ticks * self._size])
-        arranged = array("Q", bytes(MOTOR_RECORD.size * after * ticks))
-        for number, source in enumerate(sources):
-            if source is not None:
-                arranged[number::after] = recorded[source::before]
+        recorded = self._map[HEADER_BYTES : HEADER_BYTES + ticks * self._size]
+        arranged = arrange_records(recorded, before, sources, ticks)
         # A reader has the old file or the new one.
         path, full, self._size = Path(self._path), self.full, MOTOR_RECORD.size * after
         self._close(HEADER_BYTES)
@@ -74,13 +71,25 @@ class MotorsWriter(MappedWriter):
         except OSError as error:
             raise full(error) from None
         self.full = full
-        self._map[HEADER_BYTES : HEADER_BYTES + size] = arranged.tobytes()
+        self._map[HEADER_BYTES : HEADER_BYTES + size] = arranged
         os.replace(new, path)
 
     def close(self, ticks: int) -> None:
         """Truncate the file to its true size."""
         self._length[0] = ticks
         self._close(HEADER_BYTES + ticks * self._size)
+
+
+def arrange_records(
+    recorded: bytes, before: int, sources: Sequence[int | None], ticks: int
+) -> bytes:
+    """Return the records of so many ticks for other motors; `before` is how many there were, others see `MotorSink`."""
+    numbers, after = array("Q", recorded), len(sources)
+    arranged = array("Q", bytes(MOTOR_RECORD.size * after * ticks))
+    for number, source in enumerate(sources):
+        if source is not None:
+            arranged[number::after] = numbers[source::before]
+    return arranged.tobytes()
 
 
 def read_motor_values(folder: Path, run: RunSpec, tick: int) -> tuple[MotorValues, ...]:

@@ -17,9 +17,6 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 from tuisim import protocol
 from tuisim.atomic import private
-from tuisim.core.geometry import Pose
-from tuisim.core.sensors.touch import find_hand_flags
-from tuisim.core.spec import NoiseSpec
 from tuisim.protocol import (
     AFTER_TICK,
     BEFORE_NEXT_TICK,
@@ -31,6 +28,7 @@ from tuisim.protocol import (
     UserAction,
 )
 from tuisim.runs.side_files import ACTIONS_FILE, write_stop_tick
+from tuisim.runs.user_changes import change_simulation
 from tuisim.runtime import wallclock
 from tuisim.runtime.channel import Channel
 
@@ -391,23 +389,13 @@ class RunControl:
                 # Does not change the world, and is not counted as a change.
                 session.ask_stop(End.STOPPED, "stopped")
                 return
-            case protocol.SetPose(x_mm=x, y_mm=y, heading_deg=heading):
-                sim.place(Pose(x, y, heading))
-            case protocol.SetNoise(light=light, motor=motor):
-                sim.noise = NoiseSpec(light, motor)
-            case protocol.SetPen(down=down):
-                sim.pen_down = down
             case protocol.SetButtons(pressed=pressed):
                 session.pressed = frozenset(pressed)
-                sim.press(find_hand_flags(session.pressed))
             case protocol.Answer(text=text):
                 self.answers.append(text)
             case protocol.Reply(messages=messages):
                 self.messages.extend(messages)
-            case _:
-                raise TypeError(f"not a user action: {action!r}")
-        sim.actions += 1
-        sim.rewrite_record()
+        change_simulation(sim, action)
         try:
             self._write_down(sim.tick, action)
         except OSError as error:
