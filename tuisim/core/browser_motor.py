@@ -270,13 +270,14 @@ class BrowserMotor:
 
     def state(self) -> MotorState:
         """Return the state that `hold_back` needs to undo a tick."""
-        return MotorState(self.mode, self._direction, self._aim, self.position_deg)
+        return self.mode, self._direction, self._aim, self.position_deg
 
     def hold_back(self, before: MotorState, turned_deg: float, part: float) -> None:
         """Undo the rest of a tick in which an obstacle stopped the wheel; see `Motor.hold_back`."""
-        if before.mode == STOPPED or turned_deg == 0.0:
+        mode, *_, position_deg = before
+        if mode == STOPPED or turned_deg == 0.0:
             return
-        self.position_deg = before.position_deg + (self.position_deg - before.position_deg) * part
+        self.position_deg = position_deg + (self.position_deg - position_deg) * part
         self.speed_dps *= part
         self.blocked_ticks = (
             self.blocked_ticks + 1 if abs(turned_deg * part) < STANDSTILL_DEG else 0

@@ -102,6 +102,7 @@ class Motion:
     Args:
         spec: Robot, world, profile and seed.
         sink: Receives one record per tick, starting with tick 0.
+        others: The motors that drive no wheel.
     """
 
     __slots__ = (
@@ -129,6 +130,7 @@ class Motion:
         "drive",
         "left",
         "line",
+        "motors",
         "noise",
         "pen_down",
         "press_flags",
@@ -138,7 +140,7 @@ class Motion:
         "tick",
     )
 
-    def __init__(self, spec: RunSpec, sink: TickSink) -> None:
+    def __init__(self, spec: RunSpec, sink: TickSink, others: tuple[Motor, ...]) -> None:
         self._hz = spec.profile.tick_hz
         self._tick_s = 1.0 / self._hz
         self.stall_ticks = stall_ticks(self._hz)
@@ -150,6 +152,8 @@ class Motion:
         self.tick = 0
         left, right = spec.robot.wheel_motors
         self.left, self.right = motor_of(spec, left.kind), motor_of(spec, right.kind)
+        self.motors: tuple[Motor, ...] = self.left, self.right, *others
+        """All motors, in the order of `RobotSpec.motors`."""
         self.pen_down = spec.robot.pen.down
         self.press_flags = flags_at_start(spec.robot)
         """End stops that motors are at, and touch sensors that a hand presses: the bits of `PRESS_FLAGS`."""
@@ -205,11 +209,6 @@ class Motion:
             jiffies = draw_jiffies(self.spec.seed)
             for motor in self._driven:
                 motor.start_clock(jiffies)
-
-    @property
-    def motors(self) -> tuple[Motor, ...]:
-        """All motors, in the order of `RobotSpec.motors`."""
-        return self.left, self.right
 
     @property
     def notices(self) -> bool:
@@ -406,8 +405,7 @@ class Motion:
 
     def _bar_wheels(self) -> None:
         """Set free the wheels that nothing blocks any more."""
-        left, right = self.left, self.right
-        assert isinstance(left, SimulatedMotor) and isinstance(right, SimulatedMotor)
+        left, right = self._driven[0], self._driven[1]
         if not (left.is_barred or right.is_barred):
             return
         left_deg, right_deg = left.tendency_deg, right.tendency_deg

@@ -9,8 +9,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Protocol
 
-from tuisim.data_class import dataclass
-
 if TYPE_CHECKING:
     from tuisim.core.drive import EvenGlide, Glide
     from tuisim.core.profile import ProfileSpec
@@ -33,14 +31,8 @@ def top_speed_dps(kind: str, profile: ProfileSpec) -> float:
     return MEDIUM_MAX_SPEED_DPS if kind == "medium" else profile.max_speed_dps
 
 
-@dataclass(frozen=True, slots=True)
-class MotorState:
-    """State of a motor before a tick."""
-
-    mode: int
-    sign: float
-    target_dps: float
-    position_deg: float
+MotorState = tuple[int, float, float, float]
+"""State of a motor before a tick: mode, sign, target speed and position."""
 
 
 class Motor(Protocol):

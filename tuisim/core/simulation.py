@@ -57,7 +57,7 @@ class Simulation(Motion):
         self._stops = tuple(
             build_stops(spec.robot, *pair) for pair in zip(extra, self.others, strict=True)
         )
-        super().__init__(spec, sink)
+        super().__init__(spec, sink, self.others)
         self._reports_first = spec.profile.motor_law.is_measured
         self.on_turns: Callable[[tuple[Turn, ...]], None] = lambda _: None
         """Called when one of the other motors deviates from its last report: until then it turns as reported."""
@@ -67,11 +67,6 @@ class Simulation(Motion):
         """The drive bases that the program has made, in their order."""
         self.on_command: CommandHook = lambda *_: None
         """Called with each command before it takes effect."""
-
-    @property
-    def motors(self) -> tuple[Motor, ...]:
-        """All motors, in the order of `RobotSpec.motors`."""
-        return self.left, self.right, *self.others
 
     @property
     def motors_by_port(self) -> dict[str, Motor]:
@@ -185,7 +180,7 @@ class Simulation(Motion):
             for number, (motor, source) in enumerate(zip(robot.motors, sources, strict=True))
         ]
         self.left, self.right, *others = motors
-        self.others = tuple(others)
+        self.others, self.motors = tuple(others), tuple(motors)
         self._take_others(sources[2:])
         self._driven = tuple(motor for motor in motors if isinstance(motor, SimulatedMotor))
         self._motor_recorder.change_motors(self._driven, sources, self._sink.count)

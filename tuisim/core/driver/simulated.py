@@ -301,8 +301,8 @@ class SimulatedMotor(DriverMotor):
     # Obstacles
 
     def state(self) -> MotorState:
-        """Return the state that `hold_back` needs to undo a tick."""
-        return MotorState(self.mode, 1.0, 0.0, self._angle_deg)
+        """Return the state that `hold_back` needs: where the axle is."""
+        return STOPPED, 1.0, 0.0, self._angle_deg
 
     def hold_back(self, before: MotorState, turned_deg: float, part: float) -> None:
         """Put the axle where an obstacle stopped it in the last tick; see `Motor.hold_back`."""
@@ -312,7 +312,8 @@ class SimulatedMotor(DriverMotor):
             self._leave_cruise()
         self.leave_roll()
         axle = self.axle
-        there_deg = before.position_deg + (self._angle_deg - before.position_deg) * part
+        before_deg = before[-1]
+        there_deg = before_deg + (self._angle_deg - before_deg) * part
         self.counter.take_back(there_deg)
         self._turn_to(self._moved_ns, there_deg)
         self.position_deg += axle.angle_deg - self._angle_deg

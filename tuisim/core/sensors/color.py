@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from enum import StrEnum
-from functools import lru_cache
+from functools import lru_cache, partial
 from math import ceil, cos, radians, sin
 from operator import attrgetter
 from typing import TYPE_CHECKING, Any, NamedTuple, assert_never
@@ -215,6 +215,18 @@ def clear_reading(spec: ColorSensorSpec, pose: Pose, field: Field) -> ColorReadi
     return ColorReading(red / count, green / count, blue / count)
 
 
+def _read_in_full(
+    spec: ColorSensorSpec,
+    profile: ProfileSpec,
+    field: Field,
+    x_mm: float,
+    y_mm: float,
+    heading_deg: float,
+) -> tuple[int, int, int]:
+    instant = Instant(0, Pose(x_mm, y_mm, heading_deg), profile=profile)
+    return reading(spec, instant, field).rgb
+
+
 def rgb_reader(
     spec: ColorSensorSpec, profile: ProfileSpec, field: Field
 ) -> Callable[[float, float, float], tuple[int, int, int]]:
@@ -225,9 +237,7 @@ def rgb_reader(
     that depends on the sensor is precomputed, and the steps are inlined.
     """
     if spec.strategy != "mean" or field.floor_rgb is not None:
-        return lambda x_mm, y_mm, heading_deg: (
-            reading(spec, Instant(0, Pose(x_mm, y_mm, heading_deg), profile=profile), field).rgb
-        )
+        return partial(_read_in_full, spec, profile, field)
     dark, span = response = find_response(spec, profile)
     is_even = response == EVEN
     diameter, right_mm, forward_mm = spec.diameter_mm, spec.x_mm, spec.y_mm
@@ -246,8 +256,11 @@ def rgb_reader(
         at = (row * width + col) * 3
         if is_even:
             return sums[at] // count, sums[at + 1] // count, sums[at + 2] // count
-        red, green, blue = (int(dark + total / count * span / WHITE) for total in sums[at : at + 3])
-        return red, green, blue
+        return (
+            int(dark + sums[at] / count * span / WHITE),
+            int(dark + sums[at + 1] / count * span / WHITE),
+            int(dark + sums[at + 2] / count * span / WHITE),
+        )
 
     return read
 

@@ -242,13 +242,14 @@ class ServoMotor:
 
     def state(self) -> MotorState:
         """Return the state that `hold_back` needs to undo a tick."""
-        return MotorState(self.mode, self.sign, 0.0, self.position_deg)
+        return self.mode, self.sign, 0.0, self.position_deg
 
     def hold_back(self, before: MotorState, turned_deg: float, part: float) -> None:
         """Undo the rest of a tick in which an obstacle stopped the wheel; see `Motor.hold_back`."""
         if turned_deg == 0.0:
             return
-        self.position_deg = before.position_deg + (self.position_deg - before.position_deg) * part
+        position_deg = before[-1]
+        self.position_deg = position_deg + (self.position_deg - position_deg) * part
         self.speed_dps *= part
         self._free_dps *= part
         self._course = None
