@@ -239,7 +239,7 @@ class Child:
     def _write_command(
         self, time_ns: int, part: int, call: Call, values: tuple[float, ...]
     ) -> None:
-        self._commands.add(time_ns, part, call, values, self._session.program_line(3))
+        self._commands.add(time_ns, part, call, values, self._session.program_line(4))
 
     def _write_turns(self, turns: tuple[Turn, ...]) -> None:
         sim = self._sim

@@ -32,6 +32,7 @@ COMMANDS: dict[str, Call] = {command.value: call for command, call in COMMAND_CA
 STOP_NUMBERS = {action.value: float(number) for number, action in enumerate(STOP_ACTIONS)}
 FIRST_SET_POINTS = (*map(float, SetPoints()[:STOP_ACTION]), 0.0)
 """Those of a fresh motor, as its commands take them."""
+RESET_DRIVER = Call.RESET_DRIVER
 STATE_TEXTS = tuple(map(" ".join, STATES))
 
 
@@ -135,6 +136,6 @@ class DriverTacho(Tacho):
             raise refuse(text)
         self._session.command()
         self._tell(call, *self._set_points)
-        if call is Call.RESET_DRIVER:
+        if call is RESET_DRIVER:
             self._set_points[:] = FIRST_SET_POINTS
             self._stop_action, self._polarity, self._sign = "coast", "normal", 1

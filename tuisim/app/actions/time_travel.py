@@ -164,14 +164,10 @@ def to_sample(context: ActionContext, words: str) -> None:
 
 
 def go_wrong(context: ActionContext) -> None:
-    """Go to the first reason why the run went wrong, then each time to the next; after the last to the end.
-
-    A program that runs is paused, and its reasons are those until then.
-    """
+    """Go to the first reason why the run went wrong, then each time to the next; after the last to the end."""
     recording = context.runs.timeline.recording
     if recording is None:
         return
-    context.runs.pause()
     tour = context.reasons
     if not tour.is_of(recording):
         tour.begin(recording)
@@ -190,7 +186,7 @@ def _show_reason(context: ActionContext, earlier: Recording | None) -> None:
     tour = context.reasons
     if (reason := tour.advance()) is None:
         to_now(context)
-        context.app.say(tour.words if tour.reasons else _say_nothing_wrong(context))
+        context.app.say(reasons.NO_REASON if not tour.reasons else tour.words)
         return
     if reason.kind is ReasonKind.DIFFERS and context.runs.earlier is None:
         context.runs.show_earlier(earlier)
@@ -198,13 +194,6 @@ def _show_reason(context: ActionContext, earlier: Recording | None) -> None:
     context.runs.printed_line = (tick, reason.line) if reason.line else None
     to_tick(context, tick)
     context.app.say(tour.words)
-
-
-def _say_nothing_wrong(context: ActionContext) -> str:
-    recording = context.runs.timeline.recording
-    if recording is None or not context.runs.in_run:
-        return reasons.NO_REASON
-    return reasons.describe_so_far(recording)
 
 
 def propose_branch(

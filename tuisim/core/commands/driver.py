@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from tuisim.core.commands.calls import Call, find_index
@@ -27,6 +28,8 @@ COMMAND_CALLS: dict[Command, Call] = {
 """The call of each command of the driver; its values are those of `SetPoints`."""
 STOP_ACTIONS = (*StopAction,)
 """In the order of their numbers in commands, which count from 0."""
+MAX_SET_POINTS = 1024
+"""A control loop comes back to the same set points: so many are built once."""
 CONTROLS = ("speed", "hold")
 CONSTANTS = ("kp", "ki", "kd")
 
@@ -43,14 +46,18 @@ def _obey(
     motor.obey(MotorCommand(time_ns, part, call, values))
 
 
+@lru_cache(MAX_SET_POINTS)
+def _build_set_points(values: tuple[float, ...]) -> SetPoints:
+    speed_dps, position, duty, time_ms, ramp_up_ms, ramp_down_ms, _ = map(int, values)
+    action = STOP_ACTIONS[find_index(values, 6, len(STOP_ACTIONS))]
+    return SetPoints(speed_dps, position, duty, time_ms, ramp_up_ms, ramp_down_ms, action)
+
+
 def build_effect(command: Command) -> Effect:
     """Return what a command of the driver does, with all set points."""
 
     def obey(sim: Simulation, time_ns: int, part: int, values: tuple[float, ...]) -> None:
-        speed_dps, position, duty, time_ms, ramp_up_ms, ramp_down_ms, _ = map(int, values)
-        action = STOP_ACTIONS[find_index(values, 6, len(STOP_ACTIONS))]
-        set_points = SetPoints(speed_dps, position, duty, time_ms, ramp_up_ms, ramp_down_ms, action)
-        _obey(sim, time_ns, part, command, set_points)
+        _obey(sim, time_ns, part, command, _build_set_points(values))
 
     return obey
 

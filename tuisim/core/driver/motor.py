@@ -328,7 +328,8 @@ class DriverMotor(MotorDriver):
 
     def wake(self, time_ns: int) -> None:
         """Run until a time at which something changes that a motor at rest does not expect."""
-        self.run_until(time_ns)
+        if self._step_ns <= time_ns or self._due_ns <= time_ns:
+            self.run_until(time_ns)
         if self._roll is not None:
             self.leave_roll()
         self.is_at_rest = False
@@ -385,12 +386,13 @@ class DriverMotor(MotorDriver):
 
     def _runs_on(self, active: SetPoints) -> bool:
         """Whether `run-forever` was the last command, too, and no ramp was or is set: at most the speed changes."""
+        before = self.active
         return (
             self._last_command is RUN_FOREVER
             and self.is_running
             and not self.is_ramping
-            and not active.ramped
-            and not self.active.ramped
+            and not (active.ramp_up_ms or active.ramp_down_ms)
+            and not (before.ramp_up_ms or before.ramp_down_ms)
         )
 
     def _take_up_speed(self, time_ns: int, speed_dps: int) -> None:
