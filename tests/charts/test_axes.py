@@ -123,6 +123,15 @@ def test_limits_are_extended_as_little_as_possible() -> None:
     assert axes.on_rows((86.0, 91.0), 7) == (86.0, 92.0)
 
 
+@pytest.mark.parametrize("rows", range(7, 40))
+def test_extended_limits_do_not_depend_on_the_unit(rows: int) -> None:
+    for low, high in ((0.0, 60.0), (-2.0, 1.0), (85.0, 97.0)):
+        extended = axes.on_rows((low, high), rows)
+        for unit in (0.001, 1000.0):
+            limits = axes.on_rows((low * unit, high * unit), rows)
+            assert [end / unit for end in limits] == pytest.approx(extended)
+
+
 def test_reduction_keeps_extremes_and_order() -> None:
     times = np.linspace(0, 60, 100_000)
     values = np.sin(times)

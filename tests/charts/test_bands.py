@@ -67,6 +67,15 @@ def test_a_name_stands_beside_a_cursor_and_within_the_chart(values: list[float])
         assert all(0 <= at <= 15 - len(text) for _, at, text in names), cursor
 
 
+@pytest.mark.parametrize("columns", range(16, 40))
+def test_a_name_at_the_edge_stands_within_the_chart(columns: int) -> None:
+    spans = spans_of(next(iter(chart(LEVELS)[0])), PLAIN_LIGHT)
+    places = [range(4), range(4, columns - 4), range(columns - 4, columns)]
+    names = placed_names(spans, places, 4, columns, lambda *_: True)
+    assert len(names) == 3
+    assert all(0 <= at <= columns - len(text) for _, at, text in names)
+
+
 def test_too_many_samples_are_left_to_the_analyser() -> None:
     assert not chart([1.0] * (MOST_SAMPLES + 1))[1].spans
 

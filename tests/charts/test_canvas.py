@@ -50,6 +50,16 @@ def test_a_dot_is_as_high_as_a_quarter_of_a_row() -> None:
     assert len(found) == 20
 
 
+def test_which_points_are_seen_depends_on_neither_unit_nor_origin() -> None:
+    turns = np.linspace(0.0, 9.0, 2000)
+    x, y = np.sin(turns), np.cos(3 * turns)
+    first, _ = seen_points(x, y, ((-1.0, 1.0), (-1.0, 1.0)), 20, 10)
+    for scale, off in ((64.0, 0.0), (1.0, 512.3), (0.5, -4.0)):
+        limits = (off - scale, off + scale)
+        found, _ = seen_points(off + scale * x, off + scale * y, (limits, limits), 20, 10)
+        assert found == pytest.approx(off + scale * first)
+
+
 def test_a_path_to_and_fro_gives_each_dot_once() -> None:
     xs = np.tile([0.0, 10.0], 50)
     found, _ = seen_points(xs, np.zeros(100), ((0.0, 10.0), (-1.0, 1.0)), 4, 4)

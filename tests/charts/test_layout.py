@@ -24,6 +24,7 @@ from tuisim.charts.layout import (
     Drawing,
     Line,
     Rule,
+    Scales,
     Stroke,
     Words,
     drawn_until,
@@ -175,6 +176,29 @@ def test_a_path_on_the_field_has_equal_scales() -> None:
         assert mm_per_px == pytest.approx((frame.y[1] - frame.y[0]) / (frame.bottom - frame.top))
         assert [sum(frame.x), sum(frame.y)] == pytest.approx([1400, 500])
         assert frame.x == pytest.approx((200, 1200)) or frame.y == pytest.approx((100, 400), abs=20)
+
+
+@pytest.mark.parametrize(
+    "greatest, is_flat", [(0.0, False), (12.4, True), (12.5, False), (800.0, False), (801.0, True)]
+)
+def test_a_variable_that_would_be_flat_has_a_scale_of_its_own(
+    greatest: float, is_flat: bool
+) -> None:
+    variables = [
+        (name, np.array([-0.3 * most, most]), "") for name, most in (("a", 100.0), ("b", greatest))
+    ]
+    scales = Scales.of(variables, zoomed=False)
+    assert [scale.names for scale in scales.right] == ([("b",)] if is_flat else [])
+    for scale in (scales.left, *scales.right):
+        ends = scales.on_left(np.array(scale.limits), scale)
+        assert ends.tolist() == pytest.approx(scales.left.limits)
+
+
+def test_facets_without_room_are_not_upside_down() -> None:
+    lines = tuple(Line(name, RAMP, RAMP, at) for at, name in enumerate("abcdef"))
+    chart = ChartData("", lines, (0.0, 49.0), "time (s)", facets=True)
+    for height in (40, 100, 200):
+        assert all(plot.top < plot.bottom for plot in laid_out(chart, 60, height).plots)
 
 
 def two_facets() -> Drawing:
