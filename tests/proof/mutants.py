@@ -28,6 +28,7 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 from tests.conftest import ROOT
+from tests.test_rules import TESTED_BESIDE
 
 ROOMS = (
     *("core", "shim", "runs", "logs", "goals"),
@@ -156,11 +157,12 @@ def draw_mutants(places: Sequence[str], seed: int, count: int) -> list[Mutant]:
 
 
 def find_tests(file: str, root: Path = ROOT) -> list[str]:
-    """Return the files of tests that a module has by its path."""
+    """Return the files of tests that a module has by its path, and the one that tests it with its caller."""
     path = Path(file)
     folder = root / "tests" / path.parent
     names = [f"test_{path.stem}.py", f"test_{path.stem}_*.py"]
-    return [str(test.relative_to(root)) for name in names for test in sorted(folder.glob(name))]
+    tests = [str(test.relative_to(root)) for name in names for test in sorted(folder.glob(name))]
+    return [*tests, *(f"tests/{test}" for test in [TESTED_BESIDE.get(file)] if test)]
 
 
 def find_failure(tests: Sequence[str], root: Path, limit_s: float | None) -> str:
