@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 
 from tests.cases import cases
+from tuisim.charts.canvas import AXIS, styled
+from tuisim.charts.cell_scales import CellScales
 from tuisim.charts.text_chart import ChartPainter, ChartPicture, ChartState
 from tuisim.charts.traces import Traces
 
@@ -64,6 +66,16 @@ def test_percent_millimetres_and_degrees_have_a_scale_each() -> None:
         87.5,
         83.3,
     ]
+
+
+@pytest.mark.parametrize(
+    "names, own", [("Left", ""), ("Left Right", ""), ("Left way_mm", "Left way_mm")]
+)
+def test_a_scale_of_one_variable_beside_others_has_its_colour(names: str, own: str) -> None:
+    made = traces({name: [0.0, 100.0] for name in names.split()})
+    styles = CellScales.of([*made], 80, 12, (0.0, 1.0), zoomed=False).styles
+    colors = {trace.name: styled(trace.rgb) for trace in made}
+    assert styles == (tuple(colors[name] for name in own.split()) or (AXIS,))
 
 
 @cases(

@@ -49,6 +49,21 @@ def test_obstacles_are_drawn(width_mm: float) -> None:
     assert at(painter().paint(VIEW, scene), 301, 350) != (255, 255, 255)
 
 
+def test_a_painter_shows_each_scene_as_a_new_one_does() -> None:
+    shared, beacon = painter(), BeaconSpec(1700, 800)
+    boxes = Obstacle(300, 200, 200, 300), Obstacle(900, 700, 100, 300)
+    scenes = [
+        SceneState(ROBOT, HERE),
+        SceneState(ROBOT, HERE, boxes),
+        SceneState(ROBOT, HERE, boxes, marked=1),
+        SceneState(ROBOT, HERE, boxes, beacon=beacon),
+        SceneState(ROBOT, HERE, beacon=beacon),
+    ]
+    for view in (VIEW, CLOSE, VIEW):
+        for scene in scenes:
+            assert np.array_equal(shared.paint(view, scene), painter().paint(view, scene))
+
+
 TOUCHES = RobotSpec(
     touch_sensors=(TouchSpec(y_mm=90.0, width_mm=60.0),),
     infrared=InfraredSpec(x_mm=50.0, y_mm=30.0),

@@ -109,6 +109,13 @@ def test_a_white_mat_has_a_frame(corner: tuple[float, float]) -> None:
     assert pixel(picture, spec.robot, (x_mm + 6 * outward, y_mm)) not in ((255, 255, 255), edge)
 
 
+@pytest.mark.parametrize("size_px", [(300, 150), (300, 400), (900, 500), (1200, 401)])
+def test_a_world_fills_a_size_that_it_fits_into(size_px: tuple[int, int]) -> None:
+    view = fitting_view(SPEC.robot, *size_px)
+    room_px = size_px[0] - view.width_px, size_px[1] - view.height_px
+    assert 0 <= min(room_px) <= 3
+
+
 def test_a_robot_on_the_edge_is_not_cut_off() -> None:
     spec = spec_of("Small_Robot")
     for x_mm, y_mm in CORNERS:
