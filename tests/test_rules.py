@@ -61,7 +61,6 @@ TESTED_BESIDE = {
     "app/setup/fields.py": "app/setup/test_next_run.py",
     "config/program_robot/scopes.py": "config/program_robot/test_evaluation.py",
     "core/servo/drive_base.py": "shim/pybricks/test_reference.py",
-    "core/servo/trajectory.py": "shim/pybricks/test_reference.py",
     "goals/evidence.py": "goals/test_judge_conditions.py",
     "goals/output.py": "goals/test_judge_conditions.py",
     "goals/places.py": "goals/test_judge_conditions.py",

@@ -19,6 +19,7 @@ from tuisim.charts import axes
 from tuisim.charts.files import image_of, svg_of
 from tuisim.charts.layout import (
     COLORS,
+    LETTER_PX,
     LINE_PX,
     ChartData,
     Drawing,
@@ -192,6 +193,20 @@ def test_a_variable_that_would_be_flat_has_a_scale_of_its_own(
     for scale in (scales.left, *scales.right):
         ends = scales.on_left(np.array(scale.limits), scale)
         assert ends.tolist() == pytest.approx(scales.left.limits)
+
+
+@pytest.mark.parametrize("width", range(250, 700, 15))
+def test_names_of_lines_stand_within_a_chart(width: int) -> None:
+    names = ["short", "a name that is longer", *("x" * size for size in range(20, 40, 3))]
+    lines = tuple(Line(name, RAMP, RAMP, at) for at, name in enumerate(names))
+    drawing = laid_out(ChartData("", lines, (0.0, 49.0), "time (s)"), width, 400)
+    words = [
+        one
+        for one in drawing.shapes
+        if isinstance(one, Words) and one.text.startswith(("s", "a", "x"))
+    ]
+    assert len(words) == len(names)
+    assert all(one.x + LETTER_PX * len(one.text) <= width for one in words)
 
 
 def test_facets_without_room_are_not_upside_down() -> None:

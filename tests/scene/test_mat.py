@@ -42,6 +42,17 @@ def test_a_mat_of_dots_or_signs_ends_where_a_cell_ends(size: tuple[int, int]) ->
     )
 
 
+def test_light_lines_on_dark_are_as_clear_as_dark_lines_on_light() -> None:
+    pixels = mat()
+    for row, col, thick in ((100, 90, 6), (400, 700, 14), (801, 1501, 40)):
+        pixels[row : row + thick] = 30
+        pixels[:, col : col + thick] = 90
+    light, dark = (shrink(one, whole_field(96, 50), OUTSIDE) for one in (pixels, 255 - pixels))
+    on_mat = (light != OUTSIDE).any(axis=2)
+    assert on_mat.mean() > 0.8
+    assert np.abs(light[on_mat] + dark[on_mat].astype(int) - 255).max() <= 1
+
+
 @pytest.mark.parametrize("cells", list(CellSet))
 @pytest.mark.parametrize("size", [(74, 20)], ids=str)
 @pytest.mark.parametrize(
