@@ -64,7 +64,7 @@ class Roll:
         """By how many counts the driver looked back for the last speed."""
         self._now = begin_ns * TICKS_PER_NS
         self.count = counter.count
-        self.time_ns = begin_ns
+        self.time_ns = begin_ns - 1
         """Up to which step the axle has turned."""
         self.end_ns = self._find_end_ns()
         """The last step of the control in which it is quick enough."""
