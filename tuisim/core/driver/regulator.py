@@ -268,18 +268,18 @@ class MotorDriver:
         circuit, duty, goal_dps = axle.circuit, self.duty, axle.goal_dps
         friction_dps = copysign(circuit.friction_dps, speed_dps)
         decay, constant_s = circuit.step_decay, circuit.time_constant_s
+        end_dps = goal_dps - friction_dps
         while step_ns < end_ns and read_dps:
-            end_dps = goal_dps - friction_dps
             after_dps = end_dps + (speed_dps - end_dps) * decay
             if after_dps * speed_dps <= 0.0:
                 break
             begin_deg = angle_deg
             angle_deg += end_dps * STEP_S + (speed_dps - after_dps) * constant_s
             middle = 0.25 + 0.5 * speed_dps / (speed_dps + after_dps)
-            counter.record(
+            read_dps = counter.count_turn(
                 (step_ns - STEP_NS) * TICKS_PER_NS, STEP_TICKS, begin_deg, angle_deg, middle
             )
-            speed_dps, read_dps = after_dps, counter.measure_speed_dps()
+            speed_dps = after_dps
             # As `Controller.compute_duty`.
             error = control.setpoint - read_dps
             total, change = control.total + error, control.error - error
@@ -291,6 +291,7 @@ class MotorDriver:
                 next_duty = control.compute_duty(read_dps)
             if next_duty != duty:
                 duty, goal_dps = next_duty, next_duty * circuit.dps_per_percent
+                end_dps = goal_dps - friction_dps
             step_ns += STEP_NS
         axle.angle_deg, axle.speed_dps, axle.goal_dps = angle_deg, speed_dps, goal_dps
         self.duty, self.speed_dps, self._moved_ns = duty, read_dps, step_ns - STEP_NS
