@@ -14,7 +14,6 @@ from typing import Any
 from tuisim import __version__
 from tuisim.batch.parameters import parse_seeds
 from tuisim.batch.task import Keep
-from tuisim.charts.files import write_whole
 from tuisim.commands.batch_options import jobs_option, keep_option
 from tuisim.commands.echo import (
     Progress,
@@ -53,7 +52,7 @@ from tuisim.marks.hand_ins import GradebookKind
 from tuisim.marks.journal import Journal, journal_of
 from tuisim.marks.outcome import Outcome, unknown_goals
 from tuisim.marks.overrides import Override, overridden, read_overrides
-from tuisim.marks.page import page_of, reports_folder
+from tuisim.marks.page import reports_folder
 from tuisim.marks.runs import STALL_LIMIT_S, TIME_LIMIT_S, MarkPlan, RunEntry, outcomes_of, runs_of
 from tuisim.marks.sheet import Sheet, columns_of, export_marks, lines_of, sheet_of, summary_of
 from tuisim.marks.students import Student, StudentsFound, find_students
@@ -475,25 +474,10 @@ def _write_page(
     *,
     movies: bool,
 ) -> None:
-    # Their charts are slow to import, and a table needs none.
-    from tuisim.marks.class_map import build_class_maps
-    from tuisim.marks.copies import similar
-    from tuisim.marks.reports import write_reports
-    from tuisim.marks.workspace import read_modules
+    # Its charts are slow to import, and a table needs none.
+    from tuisim.marks.class_page import write_class_page
 
-    kept = sum(bool(outcome.run_id) for row in sheet.rows for outcome in row.outcomes)
-    links, misses, faults = {}, [], []
-    for one in write_reports(sheet, worlds, target, movies=movies):
-        if one.fault:
-            faults.append(f"{one.student}: {one.fault}")
-            continue
-        links[one.student, one.world, one.seed] = one.path
-        misses.append(one.misses)
-        tell(f"report {len(links)} of {kept}", len(links), kept)
-    alike = similar({student.name: read_modules(student) for student in students})
-    write_whole(target, page_of(sheet, links, ignored, alike, build_class_maps(misses)).encode())
-    if faults:
-        raise ExportError(f"{target} is without {counted(len(faults), 'report')}: {faults[0]}")
+    write_class_page(sheet, worlds, students, ignored, target, tell, movies=movies)
 
 
 _NARROWER = ((40, 60), (24, 20), (16, 10), (12, 6))
