@@ -136,9 +136,9 @@ def test_one_sample_at_an_end_is_a_level(
     table = pa.table({"time": np.arange(len(light)) / 10, "Light": light})
     report = band_report(Log("log", table, guess_columns(table)), "Light")
     assert [(band.level, band.samples) for band in report.bands] == levels
-    assert ("0.00 black (one sample)" in in_words(report)) is any(
-        samples == 1 for _, samples in levels
-    )
+    words = in_words(report)
+    assert ("0.00 black (one sample)" in words) is any(samples == 1 for _, samples in levels)
+    assert (words == "Light: no level: its values stand still nowhere") is (not levels)
 
 
 def test_bands_of_one_level_are_told_together() -> None:

@@ -22,6 +22,7 @@ from tuisim.core.profile import NS_PER_S
 from tuisim.core.tick_record import FLAG_PEN_DOWN
 from tuisim.errors import ExportError, LogError, listed
 from tuisim.html.render import Table, render_page
+from tuisim.logs.bands import count_samples
 from tuisim.logs.export import check_place
 from tuisim.logs.log import Log
 from tuisim.logs.plateaus import Search, plateaus
@@ -236,7 +237,7 @@ def _bands(model: Model) -> Mapping[str, Any]:
                 f"{band.stop_s:.2f}",
             ),
             *(
-                str(band.samples),
+                count_samples(band),
                 f"{band.level:.2f}",
                 f"{band.spread:.2f}",
                 _number(band.width_mm, ".0f"),

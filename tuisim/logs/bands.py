@@ -41,8 +41,9 @@ class Band:
     level: float
     """Mean without strays."""
     spread: float
-    """Standard deviation."""
+    """Standard deviation of its samples without strays."""
     strays: int
+    """Samples that lie far off."""
     grey: str
     """Name of the nearest grey; empty if there is none, or if the variable is not a light level."""
     grey_percent: float
@@ -83,6 +84,12 @@ class BandReport:
     def bands(self) -> tuple[Band, ...]:
         """The bands one by one; a long log has a hundred thousand, which take long to make."""
         return tuple(map(Band, *map(items_of, self.columns.values())))
+
+
+def count_samples(band: Band) -> str:
+    """Return how many samples a band has, with its strays, which its level and its spread leave out."""
+    strays = f", {counted(band.strays, 'stray')}" if band.strays else ""
+    return f"{band.samples}{strays}"
 
 
 def items_of(column: Column) -> Sequence[Any]:
@@ -164,6 +171,8 @@ def distance_mm(x_mm: FloatArray, y_mm: FloatArray) -> FloatArray:
 
 def in_words(report: BandReport) -> str:
     """Return the levels of a report in words, for people."""
+    if not report.count:
+        return f"{report.variable}: no level: its values stand still nowhere"
     levels: dict[str, list[tuple[str, float, int]]] = {}
     for band in zip(
         *(items_of(report.columns[name]) for name in ("grey", "true_level", "samples")), strict=True
@@ -178,6 +187,6 @@ def in_words(report: BandReport) -> str:
         )
         grey = bands[0][0]
         said.append(f"{level:.2f}{' ' * bool(grey)}{grey}{times}")
-    known = f"{counted(len(levels), 'level')}{': ' * bool(said)}{', '.join(said)}"
+    known = f"{counted(len(levels), 'level')}: {', '.join(said)}"
     edges = f"{report.transitions} of {report.total} samples {'lies' if report.transitions == 1 else 'lie'} on edges"
     return f"{report.variable}: {known}; {edges}"

@@ -61,6 +61,24 @@ _DUST = 1e-9
 _SLOPE_OF_RANGE, _SLOPE_OF_VALUE = 0.25, 0.1
 """A piece that drifts by more than these fractions of the log's range and of its own highest value is no plateau."""
 
+_STILL_OF_RANGE, _STILL_OF_VALUE = 0.02, 0.02
+"""A piece with a spread below one of these fractions, of the log's range and its own highest value, stands still."""
+
+_STILL_NOISES = 3.0
+"""A piece whose spread is below this multiple of the noise stands still."""
+
+_WANDERS, _SHORT_WANDERS, _SHORT_SAMPLES = 0.5, 0.9, 8
+"""A piece, and one of fewer samples, wanders if neighbours differ by less than this fraction of its variance tells."""
+
+_UNSURE_OF_RANGE, _UNSURE_OF_VALUE = 0.1, 0.05
+"""A mean that is less certain than these fractions of the log's range and of its own highest value is no level."""
+
+_PART_OF_SLOPE = 0.5
+"""A part of a slope stands still if its spread is below this fraction of what the slope would give it."""
+
+_MOST_STRAYS = 0.3
+"""Largest fraction of strays in a plateau."""
+
 _BLOCK = 400_000
 """Samples that are cut at a time in a long log."""
 
@@ -118,6 +136,16 @@ def noise_of(values: FloatArray) -> float:
     return max(float(by_median), by_calm)
 
 
+def _noise_about_slopes(values: FloatArray) -> float:
+    """Return the noise as `noise_of`, but from second differences, in which a slope leaves nothing."""
+    bends = np.sort(np.abs(np.diff(values, 2)))
+    if not len(bends):
+        return 0.0
+    by_median = 1.4826 * float(np.median(bends)) / np.sqrt(6.0)
+    calm = bends[: max(1, int(0.8 * len(bends)))]
+    return max(float(by_median), float(np.sqrt(np.mean(calm**2) / 6.0)))
+
+
 def _steps(differences: FloatArray) -> BoolArray:
     """Return which differences between neighbours are steps, if the log has only short levels; otherwise none.
 
@@ -149,7 +177,7 @@ def plateaus(values: FloatArray) -> list[Plateau]:
     sigma = max(noise, least_step / CERTAINTY)
     # Squares of huge values would leave no digits for the others.
     far = _GIANT * max(scale, sigma)
-    pieces = _cut(np.clip(clean, low - far, high + far), sigma)
+    cut = pieces = _cut(np.clip(clean, low - far, high + far), sigma)
     short_levels = bool(_steps(np.abs(np.diff(clean))).any())
     # Twice: a stray may be hidden between short pieces of a drift.
     for _ in range(2):
@@ -160,7 +188,9 @@ def plateaus(values: FloatArray) -> list[Plateau]:
         if len(pieces) == count:
             break
     found = _measured(clean, pieces[lengths_of(pieces) >= MIN_SAMPLES], sigma)
-    found = found[~_are_slopes(clean, found, scale)]
+    least_noise = max(min(noise, _noise_about_slopes(clean)), least_step / CERTAINTY)
+    moving = _are_moving(clean, found, scale, least_noise, sigma)
+    found = _with_still_parts(clean, found, moving, cut, scale, least_noise, sigma)
     if not short_levels:
         found = found[~_are_ramps(clean, found, sigma)]
         found = found[~_are_edges(found)]
@@ -171,9 +201,11 @@ def plateaus(values: FloatArray) -> list[Plateau]:
         return []
     # After growing, two may be separated by no more than a stray.
     spans = joined(clean, _grown(clean, _spans(found), sigma), least_step, sigma)
-    found = _with_ends(
-        clean, _measured_again(clean, spans, found, sigma), max(least_step, FAR * sigma)
-    )
+    found = _measured_again(clean, spans, found, sigma)
+    found = found[~_are_moving(clean, found, scale, least_noise, sigma)]
+    if not len(found):
+        return []
+    found = _with_ends(clean, found, max(least_step, FAR * sigma))
     found["start"], found["stop"] = finite[found["start"]], finite[found["stop"] - 1] + 1
     return list(map(Plateau._make, found.tolist()))
 
@@ -333,19 +365,84 @@ def _are_ramps(values: FloatArray, found: _Found, sigma: float) -> BoolArray:
     ramps = lengths_of(_spans(found)) <= _EDGE_SAMPLES + 1
     short = np.flatnonzero(ramps)
     for some, part in of_one_length(values, _spans(found[short])):
-        steps = np.diff(part, axis=1)
-        one_way = (steps > 0.0).all(axis=1) | (steps < 0.0).all(axis=1)
-        ramps[short[some]] = one_way & (np.abs(steps) > CERTAINTY * sigma).all(axis=1)
+        steps = np.abs(np.diff(part, axis=1))
+        ramps[short[some]] = _go_one_way(part) & (steps > CERTAINTY * sigma).all(axis=1)
     return ramps
 
 
-def _are_slopes(values: FloatArray, found: _Found, scale: float) -> BoolArray:
-    """Return which rise or fall so much that they have no level, as an angle does in a turn."""
-    slopes: BoolArray = np.abs(found["drift"]) > _SLOPE_OF_RANGE * scale
-    for at in np.flatnonzero(slopes):
-        highest = np.max(np.abs(values[found["start"][at] : found["stop"][at]]))
-        slopes[at] = np.abs(found["drift"][at]) > _SLOPE_OF_VALUE * highest
-    return slopes
+def _go_one_way(part: FloatArray) -> BoolArray:
+    """Return which rows rise, or fall, from each sample to the next."""
+    steps = np.diff(part, axis=1)
+    one_way: BoolArray = (steps > 0.0).all(axis=1) | (steps < 0.0).all(axis=1)
+    return one_way
+
+
+def _are_moving(
+    values: FloatArray, found: _Found, scale: float, noise: float, sigma: float
+) -> BoolArray:
+    """Return which have no level: those that rise, fall or bend, and those of too few samples far apart.
+
+    Args:
+        values: The log.
+        found: Its pieces.
+        scale: Its range.
+        noise: Standard deviation of the noise about slopes.
+        sigma: The same of all the noise, by which strays are told.
+    """
+    moving: BoolArray = found["strays"] > _MOST_STRAYS * lengths_of(_spans(found))
+    samples = lengths_of(_spans(found)) - found["strays"]
+    spread, drift = found["spread"], np.abs(found["drift"])
+    wide = spread > max(_STILL_NOISES * noise, _STILL_OF_RANGE * scale)
+    steep = drift > _SLOPE_OF_RANGE * scale
+    unsure = spread > _UNSURE_OF_RANGE * scale * np.sqrt(samples)
+    unlike = np.flatnonzero(wide | steep | unsure)
+    for some, part in of_one_length(values, _spans(found[unlike])):
+        some = unlike[some]
+        highest = np.abs(part).max(axis=1)
+        is_short = part.shape[1] < _SHORT_SAMPLES
+        most = _SHORT_WANDERS if is_short else _WANDERS
+        wanders = _neighbours_variance(part, sigma) < most * spread[some] ** 2
+        if is_short:
+            wanders |= _go_one_way(part)
+        moving[some] |= wide[some] & wanders & (spread[some] > _STILL_OF_VALUE * highest)
+        moving[some] |= steep[some] & (drift[some] > _SLOPE_OF_VALUE * highest)
+        moving[some] |= unsure[some] & (
+            spread[some] > _UNSURE_OF_VALUE * highest * np.sqrt(samples[some])
+        )
+    return moving
+
+
+def _neighbours_variance(part: FloatArray, sigma: float) -> FloatArray:
+    """Return the variance of each row, shape (m, length), as far as neighbours differ, without strays."""
+    keep = ~strays(part, sigma)
+    pairs = keep[:, 1:] & keep[:, :-1]
+    return (np.diff(part, axis=1) ** 2 * pairs).sum(axis=1) / np.maximum(2 * pairs.sum(axis=1), 1)
+
+
+def _with_still_parts(
+    values: FloatArray,
+    found: _Found,
+    moving: BoolArray,
+    cut: Pieces,
+    scale: float,
+    noise: float,
+    sigma: float,
+) -> _Found:
+    """Return what stands still: whole plateaus, and instead of those that move the pieces of them that do not."""
+    parts = cut[lengths_of(cut) >= NEAR_SAMPLES]
+    inside = np.searchsorted(found["start"], parts[:, 0], side="right") - 1
+    parts = parts[(inside >= 0) & moving[inside]] if len(found) else parts[:0]
+    whole = found[np.searchsorted(found["start"], parts[:, 0], side="right") - 1]
+    rise = np.abs(whole["drift"]) / lengths_of(_spans(whole)) * lengths_of(parts)
+    measured = _measured(values, parts, sigma)
+    still = measured["spread"] <= _PART_OF_SLOPE * rise / np.sqrt(12.0)
+    for some, part in of_one_length(values, parts):
+        least = _SHORT_WANDERS * measured["spread"][some] ** 2
+        still[some] &= _neighbours_variance(part, sigma) >= least
+    measured = measured[still]
+    measured = measured[~_are_moving(values, measured, scale, noise, sigma)]
+    both = np.concatenate((found[~moving], measured))
+    return both[np.argsort(both["start"], kind="stable")]
 
 
 def _with_ends(values: FloatArray, found: _Found, least_step: float) -> _Found:
@@ -378,7 +475,13 @@ def _grown(values: FloatArray, pieces: Pieces, sigma: float) -> Pieces:
         first = grown[at - 1, 1] if at else 0
         last = pieces[at + 1, 0] if at + 1 < len(pieces) else len(values)
         for ahead in range(start - 1, max(first, start - 1 - STRAY_SAMPLES) - 1, -1):
-            if abs(values[ahead] - medians(values[None, start : start + NEAR_SAMPLES])[0]) <= near:
+            if (
+                abs(
+                    values[ahead]
+                    - medians(values[None, start : min(stop, start + NEAR_SAMPLES)])[0]
+                )
+                <= near
+            ):
                 start = ahead
         for ahead in range(stop, min(last, stop + 1 + STRAY_SAMPLES)):
             if (

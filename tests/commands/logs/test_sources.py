@@ -53,6 +53,17 @@ def test_empty_run_says_how_to_log(here: Command, tmp_path: Path) -> None:
     )
 
 
+def test_strays_are_shown_where_there_are_any(here: Command, tmp_path: Path) -> None:
+    for name, stray in (("clean.csv", 3), ("stray.csv", 50)):
+        values = [3, 3, 3, 3, stray, 3, 3, 3, 3]
+        rows = "".join(f"{at},{value}\n" for at, value in enumerate(values))
+        (tmp_path / name).write_text("time,red\n" + rows)
+    assert "STRAYS" not in here("log", "bands", "clean.csv").stdout
+    heads, band, _ = here("log", "bands", "stray.csv").stdout.splitlines()
+    assert "SAMPLES  STRAYS  LEVEL" in heads
+    assert band.split()[4:7] == ["9", "1", "3.00"]
+
+
 def test_what_was_chosen_in_the_analyser_counts_and_is_said(
     here: Command, tmp_path: Path, home: Path
 ) -> None:

@@ -23,7 +23,7 @@ from tuisim.app import background
 from tuisim.app.snapshot import end_label
 from tuisim.data_class import dataclass
 from tuisim.errors import TuisimError, counted
-from tuisim.logs.bands import Band
+from tuisim.logs.bands import Band, count_samples
 from tuisim.logs.plateaus import Search, plateaus, plateaus_in_subprocess
 from tuisim.logs.signals import QUANTILES
 from tuisim.terminal.cell_view import LinesPanel
@@ -107,7 +107,7 @@ def _band(band: Band) -> Cells:
         band.grey or "–",
         f"{band.start_s:.2f}",
         f"{band.stop_s:.2f}",
-        str(band.samples),
+        count_samples(band),
         _figure(band.width_mm, ".0f"),
         f"{band.spread:.2f}",
     )
