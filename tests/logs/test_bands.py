@@ -122,7 +122,7 @@ def test_plateaus(values: list[float], expected: list[tuple[int, int, float]]) -
 
 def ramp(samples: int, low: float = 40.0, high: float = 88.0) -> list[float]:
     """Return samples at equal steps."""
-    return np.linspace(low, high, samples).tolist()
+    return [float(value) for value in np.linspace(low, high, samples)]
 
 
 UNLEVEL = {

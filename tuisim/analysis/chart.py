@@ -12,11 +12,10 @@ from tuisim.charts.axes import Limits, column_of, value_limits
 from tuisim.charts.bands import band_span
 from tuisim.charts.canvas import DOTS_X, DOTS_Y, seen_points
 from tuisim.charts.layout import ChartData, Line, Span, with_unit
-from tuisim.charts.traces import min_max
+from tuisim.charts.traces import clip_line, min_max
 from tuisim.data_class import dataclass
 from tuisim.errors import LogError, printable
 from tuisim.logs.magnitude import limit_drawn
-from tuisim.runs.arrays import FloatArray
 
 if TYPE_CHECKING:
     from tuisim.analysis.model import Model
@@ -68,18 +67,8 @@ def chart_of(model: Model, view: View, columns: int, rows: int) -> ChartData:
 
 def _line(trace: LogTrace, number: int, hold: bool, x_limits: Limits, columns: int) -> Line:
     xs, ys = min_max(trace.times_s, trace.values, x_limits, columns)
-    xs, ys = _clipped(*(sample_and_hold(xs, ys) if hold else (xs, ys)), x_limits)
+    xs, ys = clip_line(*(sample_and_hold(xs, ys) if hold else (xs, ys)), x_limits)
     return Line(trace.name, xs, ys, number, trace.scale)
-
-
-def _clipped(xs: FloatArray, ys: FloatArray, limits: Limits) -> tuple[FloatArray, FloatArray]:
-    """Clip a line to limits, with interpolated points where it enters and leaves them."""
-    inside = (xs >= limits[0]) & (xs <= limits[1])
-    if inside.all():
-        return xs, ys
-    crossed = [edge for edge in limits if xs[0] < edge < xs[-1]]
-    at = np.searchsorted(xs[inside], crossed)
-    return np.insert(xs[inside], at, crossed), np.insert(ys[inside], at, np.interp(crossed, xs, ys))
 
 
 def _path(model: Model, names: tuple[str, str], marks: bool, columns: int, rows: int) -> ChartData:

@@ -16,7 +16,7 @@ from rich.text import Text
 from tuisim import palette
 from tuisim.charts import axes
 from tuisim.charts.axes import Limits
-from tuisim.charts.traces import min_max, within
+from tuisim.charts.traces import clip_line, min_max
 from tuisim.core.css_colors import Rgb
 from tuisim.data_class import dataclass
 from tuisim.runs.arrays import FloatArray, IntArray
@@ -142,7 +142,7 @@ def _points(
     if curve.rising:
         times_s, values = min_max(times_s, values, x_limits, columns)
         if curve.joined and curve.marker == BRAILLE:
-            times_s, values = within(times_s, values, x_limits)
+            times_s, values = clip_line(times_s, values, x_limits)
     across = (times_s - x_limits[0]) / (x_limits[1] - x_limits[0]) * (columns - 0.5) * parts[0]
     down = axes.row_of(values, y_limits, rows) * parts[1]
     # A place far outside is not drawn; a line to it needs no dots there.

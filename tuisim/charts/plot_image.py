@@ -12,7 +12,7 @@ import numpy as np
 from tuisim.charts import axes
 from tuisim.charts.bands import columns_of, placed_names
 from tuisim.charts.canvas import BRAILLE, Curve, in_turns
-from tuisim.charts.traces import min_max, within
+from tuisim.charts.traces import clip_line, min_max
 from tuisim.data_class import dataclass
 
 if TYPE_CHECKING:
@@ -203,7 +203,7 @@ def _coverage(plot: Plot, curve: Curve, cell: tuple[int, int]) -> npt.NDArray[np
     size = plot.columns * width, plot.rows * height
     mask = Image.new("L", (size[0] * _FINE, size[1] * _FINE))
     draw = ImageDraw.Draw(mask)
-    times_s, values = within(
+    times_s, values = clip_line(
         *min_max(curve.times_s, curve.values, plot.x_limits, size[0]), plot.x_limits
     )
     points = np.stack((plot.across(times_s, width), plot.down(values, height)), axis=1) * _FINE

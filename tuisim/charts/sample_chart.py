@@ -8,7 +8,7 @@ import numpy as np
 
 from tuisim.charts.axes import Limits, widen_times
 from tuisim.charts.layout import ChartData, Line
-from tuisim.charts.traces import Pyramid, min_max, scale_of
+from tuisim.charts.traces import Pyramid, clip_line, min_max, scale_of
 from tuisim.logs.magnitude import limit_drawn
 from tuisim.runs.samples import Sample
 
@@ -32,7 +32,7 @@ def sample_chart(
     lines = tuple(
         Line(
             name,
-            *min_max(found.times_s, limit_drawn(found.values), limits, columns),
+            *clip_line(*min_max(found.times_s, limit_drawn(found.values), limits, columns), limits),
             number,
             scale_of(name),
         )

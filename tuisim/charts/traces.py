@@ -208,14 +208,22 @@ def min_max(
     )
 
 
-def within(
-    times_s: FloatArray, values: FloatArray, x_limits: tuple[float, float]
+def clip_line(
+    xs: FloatArray, ys: FloatArray, limits: tuple[float, float]
 ) -> tuple[FloatArray, FloatArray]:
-    """Return points whose first and last one are at most at the limits, where their lines cross these."""
-    if len(times_s) < 2:
-        return times_s, values
-    inside = np.clip(times_s, *x_limits)
-    return inside, np.where(inside == times_s, values, np.interp(inside, times_s, values))
+    """Return the part of a line within limits, with interpolated points where it enters and leaves them.
+
+    Args:
+        xs: Places that do not fall, shape (n,).
+        ys: Values, shape (n,).
+        limits: First and last place shown.
+    """
+    inside = (xs >= limits[0]) & (xs <= limits[1])
+    if inside.all():
+        return xs, ys
+    crossed = [edge for edge in limits if xs[0] < edge < xs[-1]]
+    at = np.searchsorted(xs[inside], crossed)
+    return np.insert(xs[inside], at, crossed), np.insert(ys[inside], at, np.interp(crossed, xs, ys))
 
 
 def _visible(times_s: FloatArray, x_limits: tuple[float, float]) -> tuple[int, int]:

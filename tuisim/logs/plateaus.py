@@ -416,7 +416,9 @@ def _neighbours_variance(part: FloatArray, sigma: float) -> FloatArray:
     """Return the variance of each row, shape (m, length), as far as neighbours differ, without strays."""
     keep = ~strays(part, sigma)
     pairs = keep[:, 1:] & keep[:, :-1]
-    return (np.diff(part, axis=1) ** 2 * pairs).sum(axis=1) / np.maximum(2 * pairs.sum(axis=1), 1)
+    squares = (np.diff(part, axis=1) ** 2 * pairs).sum(axis=1)
+    variance: FloatArray = squares / np.maximum(2 * pairs.sum(axis=1), 1)
+    return variance
 
 
 def _with_still_parts(

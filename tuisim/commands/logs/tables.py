@@ -85,7 +85,7 @@ def bands(arguments: Arguments) -> int:
         "start_s": ".2f",
         "stop_s": ".2f",
         "samples": "",
-        **({"strays": ""} if any(report.columns["strays"].any() for report in reports) else {}),
+        **({"strays": ""} if any(np.any(report.columns["strays"]) for report in reports) else {}),
         "level": ".2f",
         "true_level": ".2f",
         "spread": ".2f",
