@@ -114,6 +114,10 @@ BAD = {
     "unknown run": ("runs show 99999", "99999"),
     "which run": ("runs show", "show: no run given"),
     "compact": ("runs compact", "no such command 'compact' (recordings are plain files;"),
+    "another word for a command": (
+        "log stats last",
+        "no such command 'stats' (did you mean `tuisim log summary`?)",
+    ),
     "unknown action": ("runs shwo 1", "no such command 'shwo' (did you mean show?)"),
     "export names its files": (
         "runs export 1 a.csv",

@@ -76,6 +76,8 @@ CASES: dict[str, Case] = {
     "seconds since 1970": ("a.csv", dates("t", 1), since_1970("seconds")),
     "unit in brackets": ("a.csv", b"Time [ms],red\n0,1\n1000,2\n", TWO),
     "unit after a slash": ("a.csv", b"t/ms,red\n0,1\n1000,2\n", TWO),
+    "brick clock": ("a.csv", b"red,brick clock (ms)\n1,0\n2,1000\n", TWO),
+    "only a unit of time": ("a.csv", b"red,since start [ms]\n1,0\n2,1000\n", TWO),
     "unit at the end": ("a.csv", b"timestamp_ms,red\n0,1\n1000,2\n", TWO),
     "unit as the name": ("a.csv", b"millis,red\n0,1\n1000,2\n", TWO),
     "a word of the name": ("a.csv", b"Time Stamp,red\n0,1\n1,2\n", TWO),

@@ -17,9 +17,9 @@ from tuisim.core.conditions import (
     spelled,
 )
 from tuisim.core.field import Field
-from tuisim.core.sensors import column_names, named_column
+from tuisim.core.sensors import column_name, column_names, columns_of, named_column
 from tuisim.data_class import dataclass
-from tuisim.errors import ConfigError
+from tuisim.errors import ConfigError, closest, did_you_mean
 from tuisim.runs.brick_state import BrickState, face_after
 from tuisim.runs.frames import begins, column_values, held
 from tuisim.runs.records import TEXT_STREAMS, Mark, OutputRow
@@ -260,7 +260,8 @@ def find(
         return _line(search, int(rest))
     if (condition := _condition(word, rest, text)) is None:
         raise ConfigError(
-            f"{text.strip()!r} is not an instant" if text.strip() else "no instant given", _HINT
+            f"{text.strip()!r} is not an instant" if text.strip() else "no instant given",
+            _named_hint(text.strip(), recording) or _HINT,
         )
     try:
         match condition.source:
@@ -284,6 +285,14 @@ def _condition(word: str, rest: str, text: str) -> ValueCondition | None:
     return run_condition_in(
         f"{word} {rest}" if is_sample else re.sub(r"\s+(?:back|first)$", "", text.strip())
     )
+
+
+def _named_hint(word: str, recording: Recording) -> str:
+    """Return the hint for a word that is or resembles a printed name or a column; empty for another."""
+    printed = _printed_names(recording)
+    close = closest(word, [*column_names(recording.spec), *printed], 1)
+    forms = [f"`{name} < 50`" for name in close]
+    return did_you_mean(forms + [f"`sample {name}`" for name in close if name in printed])
 
 
 def _within(tick: int, recording: Recording) -> int:
@@ -313,29 +322,29 @@ def _line(search: _Search, line: int) -> int:
 def _sample(search: _Search, condition: ValueCondition) -> int:
     tick = search.tick_of(condition)
     if tick is None:
-        seen = {sample[0] for row in search.texts() if (sample := parse_sample(row.text))}
-        hint = (
-            f"there are {', '.join(sorted(seen))}"
-            if seen and condition.name and condition.name not in seen
-            else ""
-        )
+        seen = _printed_names(search.recording)
+        is_unknown = seen and condition.name and condition.name not in seen
+        close = did_you_mean(closest(condition.name, seen, 1)) or f"there are {', '.join(seen)}"
+        hint = close if is_unknown else ""
         raise ConfigError(f"no {condition} {search.words}", hint)
     return tick
 
 
-def _is_printed(name: str, recording: Recording) -> bool:
-    """Return whether a name is no column of a run's telemetry, but one that its program has printed."""
-    if name in column_names(recording.spec):
-        return False
+def _printed_names(recording: Recording) -> list[str]:
+    """Return the names of the samples that a run has printed."""
     printed = (row for row in recording.rows.rows(0) if row.stream in TEXT_STREAMS)
-    return any((sample := parse_sample(row.text)) and sample[0] == name for row in printed)
+    return sorted({sample[0] for row in printed if (sample := parse_sample(row.text))})
 
 
 def _becomes(search: _Search, condition: ValueCondition, mat: Field | None) -> int:
     """Return the tick at which a column begins to meet a condition, or at which a printed name of no column does."""
     recording = search.recording
-    if _is_printed(condition.name, recording):
-        return _sample(search, replace(condition, source=ValueSource.SAMPLE))
+    if column_name(condition.name, columns_of(recording.spec)) is None:
+        printed = _printed_names(recording)
+        if condition.name in printed:
+            return _sample(search, replace(condition, source=ValueSource.SAMPLE))
+        if close := closest(condition.name, printed, 1):
+            raise ConfigError(f"this run has no {condition.name!r}", did_you_mean(close))
     name = named_column(condition.name, recording.spec)
     if mat is None:
         raise ConfigError("the mat is still being opened", "a moment later")

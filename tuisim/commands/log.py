@@ -252,11 +252,23 @@ def _load(name: str) -> Command:
     return Command(name, callback=work, params=[words, *options, *columns], help=f"{entry.does}.")
 
 
+_OTHER_WORDS = {
+    **dict.fromkeys(("stats", "statistics", "stat", "describe", "mean", "info"), "summary"),
+    **dict.fromkeys(("levels", "plateaus", "greys"), "bands"),
+    **dict.fromkeys(("chart", "graph", "draw", "show"), "plot"),
+    **dict.fromkeys(("save", "convert", "csv"), "export"),
+    **dict.fromkeys(("compare", "difference"), "diff"),
+    **dict.fromkeys(("smooth", "filter"), "average"),
+    **dict.fromkeys(("crossings", "threshold"), "events"),
+}
+"""What else subcommands are called."""
+
 log = Group(
     "log",
     {name: entry.does for name, entry in SUBCOMMANDS.items()},
     _load,
     subcommand_metavar="COMMAND LOG… [OPTIONS]",
+    instead={word: f"did you mean `tuisim log {name}`?" for word, name in _OTHER_WORDS.items()},
     help="""Analyse logs.
 
     A LOG is a stored run (its number, its id, `last`), a CSV, Parquet, JSONL, Arrow or text file, or - for the

@@ -50,8 +50,10 @@ NAMES = (
     "row",
 )
 """Names of time columns, the most certain first."""
-_WORDS = frozenset({"time", "timestamp", "datetime", "elapsed", "stamp"})
-"""A rising column with one of these words in its name is a time, too: `sim_time`, `Time Stamp`."""
+_WORDS = frozenset(
+    {"time", "timestamp", "datetime", "elapsed", "stamp", "clock", "timer", "uptime", "zeit"}
+)
+"""A rising column with one of these words in its name is a time, too: `sim_time`, `brick clock (ms)`."""
 
 _UNIT_WORDS_S = {
     1.0: ("s", "sec", "secs", "second", "seconds"),
@@ -101,6 +103,11 @@ def has_time_word(name: str) -> bool:
     """Return whether one of the words of a name means a time."""
     spaced = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", name)
     return not _WORDS.isdisjoint(re.split(r"[\W_]+", spaced.lower()))
+
+
+def has_time_unit(name: str) -> bool:
+    """Return whether a name ends in a unit of time in brackets: `since start (s)`."""
+    return name.rstrip().endswith((")", "]")) and time_name(name).unit_s is not None
 
 
 def unit_since_1970_s(column: pa.ChunkedArray, unit_s: float | None) -> float | None:
@@ -387,7 +394,13 @@ def _named_time(table: pa.Table) -> str:
     )
     by_type = (n for n in table.column_names if is_time(table.schema.field(n).type))
     by_content = find_texts(table, is_moment)
-    return next((name for names in (compound, by_type, by_content) for name in names), ROW)
+    by_unit = (
+        n
+        for n in table.column_names
+        if has_time_unit(n) and _is_usable(table, n) and _is_rising_time(table, n)
+    )
+    guesses = (compound, by_type, by_content, by_unit)
+    return next((name for names in guesses for name in names), ROW)
 
 
 def find_texts(table: pa.Table, fits: Callable[[str], bool]) -> Iterator[str]:
