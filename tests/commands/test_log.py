@@ -98,7 +98,10 @@ BAD = {
     "no period": (("resample", "{log}", "--period", "0"), "above 0"),
     "no numbers": (("derive", "{words}"), "no numeric column (its columns are time, said)"),
     "a name too long for the file system": (("summary", "x" * 300 + ".csv"), "File name too long"),
-    "no such format": (("export", "{log}", "--out", "x.xls"), "unknown format"),
+    "no such format": (
+        ("export", "{log}", "--out", "x.xls"),
+        "unknown format '.xls' (a file ends in .csv, .parquet, .jsonl, .arrow, .mcap)",
+    ),
     "no robot": (("reckon", "{log}"), "robot"),
 }
 

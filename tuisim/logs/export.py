@@ -31,8 +31,12 @@ _UNITS: Mapping[str, str] = {
 }
 
 
-def check_target(path: str | Path) -> Path:
+def check_target(path: str | Path, others: Sequence[str] = ()) -> Path:
     """Return the path of an export after checking that a file can be written there.
+
+    Args:
+        path: The file.
+        others: Further suffixes that the caller writes itself, for the hint.
 
     Raises:
         ExportError: unknown suffix, no such folder, a folder that cannot be written, or an
@@ -42,7 +46,8 @@ def check_target(path: str | Path) -> Path:
     exporter = EXPORTERS.get(target.suffix.lower())
     if exporter is None:
         raise ExportError(
-            f"cannot write {target}: unknown format {target.suffix!r}", f"a file ends in {ALLOWED}"
+            f"cannot write {target}: unknown format {target.suffix!r}",
+            f"a file ends in {', '.join((*EXPORTERS, *others))}",
         )
     for place in (target, companion_of(target)) if exporter.companion else (target,):
         check_place(place)

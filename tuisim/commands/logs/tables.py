@@ -292,7 +292,7 @@ def export(arguments: Arguments) -> int:
     if Path(arguments.out).suffix.lower() == SUFFIX:
         _export_mcap(arguments)
         return 0
-    check_target(arguments.out)
+    check_target(arguments.out, (SUFFIX,))
     log = the_source(arguments)
     export_log(log, _chosen_part(log, arguments), arguments.out)
     echo_written(arguments.out)
