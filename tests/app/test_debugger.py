@@ -20,6 +20,7 @@ from tests.app.app_help import (
 )
 from tuisim.app.app import LabApp
 from tuisim.app.debugger import Kept, following, keep, load_kept
+from tuisim.app.panels.chart import Chart
 from tuisim.app.snapshot import RunPhase
 from tuisim.breakpoints import parse_breakpoints
 from tuisim.protocol import Inspected
@@ -239,6 +240,24 @@ async def test_the_variables_of_any_former_instant() -> None:
         await until(pilot, lambda: not app.debugger.busy)
         await pilot.press("end")
         await until(pilot, lambda: app.debugger.view is None)
+
+
+@pytest.mark.slow
+async def test_code_and_debugger_stand_at_the_line_that_printed_a_sample() -> None:
+    async with open_lab(COUNTS, speed=0.0) as (pilot, app):
+        await pilot.press("R")
+        await until(pilot, lambda: app.run_controller.state == "ended")
+        await pilot.press("G")
+        app.run_controller.timeline.go(20)
+        await stands(pilot, app, 5)
+        app.panel_area.post_message(Chart.CursorMoved(0.2, "Total"))
+        await stands(pilot, app, 6)
+        snapshot = app.run_controller.snapshot()
+        assert (snapshot.instant.tick, snapshot.line, line(app)) == (20, 6, 6)
+        await until(pilot, lambda: "line 6" in drawn(app))
+        # From there it goes on.
+        await press(pilot, app, "n", 3)
+        assert app.run_controller.snapshot().line == 3
 
 
 async def test_run_to_the_cursor_starts_the_program() -> None:

@@ -102,6 +102,16 @@ def test_lines_back_from_an_instant(recording: Recording, looker: Looker) -> Non
     assert (paused.line, names["n"], names["m"]) == (3, "10", "81")
 
 
+def test_a_line_in_a_tick_is_where_it_began(recording: Recording, looker: Looker) -> None:
+    looker.debugger.go_to_line(recording, 110, 3, Inspect())
+    paused, names = looker.answer()
+    assert (paused.line, paused.tick, names["n"], names["m"]) == (3, 110, "11", "100")
+    # It begins later, so that the tick's end is all there is.
+    looker.debugger.go_to_line(recording, 110, 5, Inspect())
+    paused, names = looker.answer()
+    assert (paused.line, paused.ordinal, names["m"]) == (4, BEFORE_NEXT_TICK, "121")
+
+
 def test_a_step_from_an_instant(recording: Recording, looker: Looker) -> None:
     looker.debugger.go_on(recording, Position(105), StepLine(LineStep.INTO), Inspect())
     paused, _ = looker.answer()

@@ -361,6 +361,11 @@ class DebugController:
         is_own = run is not None and recording is not None and run.run_id == recording.run_id
         return self._panel_area.shown("debug") or (is_own and self._panel_area.shown("code"))
 
+    def stand_at(self, tick: int, line: int) -> None:
+        """Stand at a line of an instant that is gone to next, such as the one that printed a sample; 0 for none."""
+        self._run_controller.printed_line = (tick, line) if line else None
+        self.position = self._wanted = None
+
     def to_now(self) -> None:
         """Return to the newest instant, also from earlier lines of its own tick."""
         self.position, self._more_back = None, 0
@@ -385,7 +390,11 @@ class DebugController:
         ):
             return
         self._wanted = position
-        self.replay.go(timeline.recording, position, self.inspect_request)
+        printed = self._run_controller.printed_line
+        if printed and printed[0] == position.tick and position == Position(position.tick):
+            self.replay.go_to_line(timeline.recording, *printed, self.inspect_request)
+        else:
+            self.replay.go(timeline.recording, position, self.inspect_request)
         self.show()
 
     def _arrived(self, paused: Paused, inspected: Inspected) -> None:
@@ -400,9 +409,10 @@ class DebugController:
             # The user has gone to another instant since.
             self._wanted = None
             return
-        # The line that printed a chosen sample stays until one steps.
-        follows = self._wanted is not None and self._wanted.ordinal == protocol.BEFORE_NEXT_TICK
-        self._set_paused(PauseView(paused, inspected, True), keeps_printed=follows)
+        elif here.ordinal != protocol.BEFORE_NEXT_TICK:
+            # At the line that printed a chosen sample.
+            self.position = here
+        self._set_paused(PauseView(paused, inspected, True))
         self._app.situation_changed()
         if self._more_back:
             self.lines_back(0)
@@ -423,12 +433,11 @@ class DebugController:
         self._app.say(why)
         self.show()
 
-    def _set_paused(self, view: PauseView, *, keeps_printed: bool = False) -> None:
+    def _set_paused(self, view: PauseView) -> None:
         self.view = view
         line = view.paused.line if not view.paused.file else 0
         self._run_controller.paused_line = view.paused.tick, line
-        if not keeps_printed:
-            self._run_controller.printed_line = None
+        self._run_controller.printed_line = None
         self.show()
         self._app.draw(force=True)
 

@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from tuisim.core.columns import column_name
 from tuisim.core.conditions import (
     Operator,
     ValueCondition,
@@ -17,7 +18,7 @@ from tuisim.core.conditions import (
     spelled,
 )
 from tuisim.core.field import Field
-from tuisim.core.sensors import column_name, column_names, columns_of, named_column
+from tuisim.core.sensors import column_names, columns_of, named_column
 from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError, closest, did_you_mean
 from tuisim.runs.brick_state import BrickState, face_after

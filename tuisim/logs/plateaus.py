@@ -366,15 +366,17 @@ def _are_ramps(values: FloatArray, found: _Found, sigma: float) -> BoolArray:
     short = np.flatnonzero(ramps)
     for some, part in of_one_length(values, _spans(found[short])):
         steps = np.abs(np.diff(part, axis=1))
-        ramps[short[some]] = _go_one_way(part) & (steps > CERTAINTY * sigma).all(axis=1)
+        is_steep: BoolArray = (steps > CERTAINTY * sigma).all(axis=1)
+        ramps[short[some]] = _go_one_way(part) & is_steep
     return ramps
 
 
 def _go_one_way(part: FloatArray) -> BoolArray:
     """Return which rows rise, or fall, from each sample to the next."""
     steps = np.diff(part, axis=1)
-    one_way: BoolArray = (steps > 0.0).all(axis=1) | (steps < 0.0).all(axis=1)
-    return one_way
+    rises: BoolArray = (steps > 0.0).all(axis=1)
+    falls: BoolArray = (steps < 0.0).all(axis=1)
+    return rises | falls
 
 
 def _are_moving(

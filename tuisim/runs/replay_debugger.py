@@ -70,6 +70,8 @@ class ReplayDebugger:
         self._request = protocol.Inspect()
         self._back = 0
         """Number of lines before the paused position that is wanted."""
+        self._line = 0
+        """The line whose last start in the tick is wanted, 0 for none."""
         self._next_command: protocol.Message | None = None
         """Command for resuming once it is paused."""
         self._aim: Position | None = None
@@ -81,8 +83,17 @@ class ReplayDebugger:
 
     def go(self, recording: Recording, at: Position, look: protocol.Inspect) -> None:
         """Pause at an instant of a recording and inspect."""
+        self._line = 0
         self._request, self._back, self._next_command, self._resumes = look, 0, None, False
         self._go(recording, at, -1)
+
+    def go_to_line(
+        self, recording: Recording, tick: int, line: int, look: protocol.Inspect
+    ) -> None:
+        """Pause where a line began for the last time in a tick; at the end of the tick if it did not."""
+        self._request, self._back, self._next_command, self._resumes = look, 0, None, False
+        self._line = line
+        self._go(recording, Position(tick), tick)
 
     def look(self, look: protocol.Inspect) -> None:
         """Inspect again, with another request."""
@@ -95,6 +106,7 @@ class ReplayDebugger:
         self, recording: Recording, at: Position, command: protocol.Message, look: protocol.Inspect
     ) -> None:
         """Pause at an instant, resume with a command, and inspect where that ends."""
+        self._line = 0
         self._request, self._back, self._resumes = look, 0, True
         here = self._paused and Position(self._paused.tick, self._paused.ordinal)
         if self.run is not None and self._of is recording and here == at:
@@ -108,6 +120,7 @@ class ReplayDebugger:
         self, recording: Recording, at: Position, count: int, look: protocol.Inspect
     ) -> None:
         """Pause `count` lines before an instant."""
+        self._line = 0
         self._request, self._back, self._next_command, self._resumes = look, count, None, False
         self._go(recording, at, max(0, at.tick - FIRST_WINDOW_TICKS))
 
@@ -185,12 +198,22 @@ class ReplayDebugger:
             self.run.send(command)
             return
         self._paused = paused
-        self.run.send(protocol.RequestHistory(HISTORY) if self._back else self._request)
+        is_searched = self._back or self._line
+        self.run.send(protocol.RequestHistory(HISTORY) if is_searched else self._request)
 
     def _choose_line(self, history: LineHistory) -> None:
         """Go to the wanted line of the history; if it is farther back, search a larger window."""
         assert self._of is not None and self._aim is not None
         aim = self._aim
+        if self._line:
+            met = [one for one in history.lines if (one.tick, one.line) == (aim.tick, self._line)]
+            self._line = 0
+            if met:
+                self._go(self._of, Position(aim.tick, met[-1].ordinal), aim.tick)
+            else:
+                assert self.run is not None
+                self.run.send(self._request)
+            return
         lines = [Position(met.tick, met.ordinal) for met in history.lines]
         before = [place for place in lines if place.is_before(aim)]
         if len(before) >= self._back:
