@@ -361,7 +361,7 @@ class DebugController:
         is_own = run is not None and recording is not None and run.run_id == recording.run_id
         return self._panel_area.shown("debug") or (is_own and self._panel_area.shown("code"))
 
-    def stand_at(self, tick: int, line: int) -> None:
+    def choose_line(self, tick: int, line: int) -> None:
         """Stand at a line of an instant that is gone to next, such as the one that printed a sample; 0 for none."""
         self._run_controller.printed_line = (tick, line) if line else None
         self.position = self._wanted = None

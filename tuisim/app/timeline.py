@@ -260,10 +260,7 @@ def find(
     if word == "line" and rest.isdecimal():
         return _line(search, int(rest))
     if (condition := _condition(word, rest, text)) is None:
-        raise ConfigError(
-            f"{text.strip()!r} is not an instant" if text.strip() else "no instant given",
-            _named_hint(text.strip(), recording) or _HINT,
-        )
+        raise _refuse(text.strip(), recording)
     try:
         match condition.source:
             case ValueSource.PRINT:
@@ -288,12 +285,13 @@ def _condition(word: str, rest: str, text: str) -> ValueCondition | None:
     )
 
 
-def _named_hint(word: str, recording: Recording) -> str:
-    """Return the hint for a word that is or resembles a printed name or a column; empty for another."""
-    printed = _printed_names(recording)
+def _refuse(word: str, recording: Recording) -> ConfigError:
+    """Return the error for what is no instant, with the form that is meant if it is like a name of the run."""
+    printed = _read_printed_names(recording)
     close = closest(word, [*column_names(recording.spec), *printed], 1)
     forms = [f"`{name} < 50`" for name in close]
-    return did_you_mean(forms + [f"`sample {name}`" for name in close if name in printed])
+    hint = did_you_mean(forms + [f"`sample {name}`" for name in close if name in printed])
+    return ConfigError(f"{word!r} is not an instant" if word else "no instant given", hint or _HINT)
 
 
 def _within(tick: int, recording: Recording) -> int:
@@ -323,7 +321,7 @@ def _line(search: _Search, line: int) -> int:
 def _sample(search: _Search, condition: ValueCondition) -> int:
     tick = search.tick_of(condition)
     if tick is None:
-        seen = _printed_names(search.recording)
+        seen = _read_printed_names(search.recording)
         is_unknown = seen and condition.name and condition.name not in seen
         close = did_you_mean(closest(condition.name, seen, 1)) or f"there are {', '.join(seen)}"
         hint = close if is_unknown else ""
@@ -331,7 +329,7 @@ def _sample(search: _Search, condition: ValueCondition) -> int:
     return tick
 
 
-def _printed_names(recording: Recording) -> list[str]:
+def _read_printed_names(recording: Recording) -> list[str]:
     """Return the names of the samples that a run has printed."""
     printed = (row for row in recording.rows.rows(0) if row.stream in TEXT_STREAMS)
     return sorted({sample[0] for row in printed if (sample := parse_sample(row.text))})
@@ -341,7 +339,7 @@ def _becomes(search: _Search, condition: ValueCondition, mat: Field | None) -> i
     """Return the tick at which a column begins to meet a condition, or at which a printed name of no column does."""
     recording = search.recording
     if column_name(condition.name, columns_of(recording.spec)) is None:
-        printed = _printed_names(recording)
+        printed = _read_printed_names(recording)
         if condition.name in printed:
             return _sample(search, replace(condition, source=ValueSource.SAMPLE))
         if close := closest(condition.name, printed, 1):

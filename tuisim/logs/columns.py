@@ -100,14 +100,11 @@ def time_name(name: str) -> TimeName:
 
 
 def has_time_word(name: str) -> bool:
-    """Return whether one of the words of a name means a time."""
+    """Return whether one of the words of a name means a time, or its unit in brackets: `since start (s)`."""
+    if name.endswith((")", "]")) and time_name(name).unit_s is not None:
+        return True
     spaced = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", name)
     return not _WORDS.isdisjoint(re.split(r"[\W_]+", spaced.lower()))
-
-
-def has_time_unit(name: str) -> bool:
-    """Return whether a name ends in a unit of time in brackets: `since start (s)`."""
-    return name.rstrip().endswith((")", "]")) and time_name(name).unit_s is not None
 
 
 def unit_since_1970_s(column: pa.ChunkedArray, unit_s: float | None) -> float | None:
@@ -394,13 +391,7 @@ def _named_time(table: pa.Table) -> str:
     )
     by_type = (n for n in table.column_names if is_time(table.schema.field(n).type))
     by_content = find_texts(table, is_moment)
-    by_unit = (
-        n
-        for n in table.column_names
-        if has_time_unit(n) and _is_usable(table, n) and _is_rising_time(table, n)
-    )
-    guesses = (compound, by_type, by_content, by_unit)
-    return next((name for names in guesses for name in names), ROW)
+    return next((name for names in (compound, by_type, by_content) for name in names), ROW)
 
 
 def find_texts(table: pa.Table, fits: Callable[[str], bool]) -> Iterator[str]:

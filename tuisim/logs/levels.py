@@ -14,7 +14,8 @@ from tuisim.core.sensors.color import find_response
 from tuisim.core.spec import RunSpec
 from tuisim.data_class import dataclass
 from tuisim.logs.magnitude import find_scale
-from tuisim.logs.plateaus import FIELDS, Search, plateaus
+from tuisim.logs.plateaus import Search, plateaus
+from tuisim.logs.stillness import FIELDS
 from tuisim.runs.arrays import FloatArray, IntArray
 
 NEAR_PERCENT = 2.0

@@ -17,7 +17,6 @@ from pathlib import Path
 from typing import IO, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tuisim.errors import LogError
 from tuisim.logs.pieces import (
@@ -32,8 +31,18 @@ from tuisim.logs.pieces import (
     lengths_of,
     medians,
     of_one_length,
-    strays,
     without_strays,
+)
+from tuisim.logs.stillness import (
+    FIELDS,
+    Found,
+    Ground,
+    drop_moving,
+    go_one_way,
+    keep_still,
+    measure,
+    measure_noise_of_slopes,
+    read_spans,
 )
 from tuisim.runs.arrays import FloatArray, IntArray
 
@@ -57,27 +66,6 @@ _STEP_OF_RANGE = 0.005
 
 _DUST = 1e-9
 """Differences below this fraction of the values are rounding errors."""
-
-_SLOPE_OF_RANGE, _SLOPE_OF_VALUE = 0.25, 0.1
-"""A piece that drifts by more than these fractions of the log's range and of its own highest value is no plateau."""
-
-_STILL_OF_RANGE, _STILL_OF_VALUE = 0.02, 0.02
-"""A piece with a spread below one of these fractions, of the log's range and its own highest value, stands still."""
-
-_STILL_NOISES = 3.0
-"""A piece whose spread is below this multiple of the noise stands still."""
-
-_WANDERS, _SHORT_WANDERS, _SHORT_SAMPLES = 0.5, 0.9, 8
-"""A piece, and one of fewer samples, wanders if neighbours differ by less than this fraction of its variance tells."""
-
-_UNSURE_OF_RANGE, _UNSURE_OF_VALUE = 0.1, 0.05
-"""A mean that is less certain than these fractions of the log's range and of its own highest value is no level."""
-
-_PART_OF_SLOPE = 0.5
-"""A part of a slope stands still if its spread is below this fraction of what the slope would give it."""
-
-_MOST_STRAYS = 0.3
-"""Largest fraction of strays in a plateau."""
 
 _BLOCK = 400_000
 """Samples that are cut at a time in a long log."""
@@ -106,19 +94,6 @@ class Plateau(NamedTuple):
 Search = Callable[[FloatArray], list[Plateau]]
 """What finds the plateaus of a log: `plateaus`, or `plateaus_in_subprocess`."""
 
-_Found = NDArray[np.void]
-"""Plateaus as an array of `FIELDS`, shape (n,)."""
-FIELDS = np.dtype(
-    [
-        ("start", "i8"),
-        ("stop", "i8"),
-        ("level", "f8"),
-        ("spread", "f8"),
-        ("drift", "f8"),
-        ("strays", "i8"),
-    ]
-)
-
 
 def noise_of(values: FloatArray) -> float:
     """Return the standard deviation of the noise of finite values, shape (n,), from the differences of neighbours.
@@ -134,16 +109,6 @@ def noise_of(values: FloatArray) -> float:
     calm = np.sort(differences)[: max(1, int(0.8 * len(differences)))]
     by_calm = float(np.sqrt(np.mean(calm**2) / 2.0))
     return max(float(by_median), by_calm)
-
-
-def _noise_about_slopes(values: FloatArray) -> float:
-    """Return the noise as `noise_of`, but from second differences, in which a slope leaves nothing."""
-    bends = np.sort(np.abs(np.diff(values, 2)))
-    if not len(bends):
-        return 0.0
-    by_median = 1.4826 * float(np.median(bends)) / np.sqrt(6.0)
-    calm = bends[: max(1, int(0.8 * len(bends)))]
-    return max(float(by_median), float(np.sqrt(np.mean(calm**2) / 6.0)))
 
 
 def _steps(differences: FloatArray) -> BoolArray:
@@ -171,43 +136,48 @@ def plateaus(values: FloatArray) -> list[Plateau]:
         return []
     noise = noise_of(clean)
     low, high = _levels(clean)
-    scale = high - low
     # Without noise, the smallest step sets the price of a cut.
-    least_step = max(scale * _STEP_OF_RANGE, _DUST * max(abs(low), abs(high)), 1e-12)
+    least_step = max((high - low) * _STEP_OF_RANGE, _DUST * max(abs(low), abs(high)), 1e-12)
     sigma = max(noise, least_step / CERTAINTY)
+    ground = Ground(
+        high - low, min(sigma, max(measure_noise_of_slopes(clean), least_step / CERTAINTY)), sigma
+    )
     # Squares of huge values would leave no digits for the others.
-    far = _GIANT * max(scale, sigma)
-    cut = pieces = _cut(np.clip(clean, low - far, high + far), sigma)
-    short_levels = bool(_steps(np.abs(np.diff(clean))).any())
-    # Twice: a stray may be hidden between short pieces of a drift.
-    for _ in range(2):
-        count = len(pieces)
-        if not short_levels:
-            pieces = without_strays(clean, pieces, least_step, sigma)
-        pieces = joined(clean, pieces, least_step, sigma)
-        if len(pieces) == count:
-            break
-    found = _measured(clean, pieces[lengths_of(pieces) >= MIN_SAMPLES], sigma)
-    least_noise = max(min(noise, _noise_about_slopes(clean)), least_step / CERTAINTY)
-    moving = _are_moving(clean, found, scale, least_noise, sigma)
-    found = _with_still_parts(clean, found, moving, cut, scale, least_noise, sigma)
+    far = _GIANT * max(ground.range, sigma)
+    cut = _cut(np.clip(clean, low - far, high + far), sigma)
+    short_levels = _steps(np.abs(np.diff(clean))).any()
+    pieces = _join_pieces(clean, cut, least_step, sigma, has_strays=not short_levels)
+    found = measure(clean, pieces[lengths_of(pieces) >= MIN_SAMPLES], sigma)
+    found = keep_still(clean, found, cut, ground)
     if not short_levels:
         found = found[~_are_ramps(clean, found, sigma)]
         found = found[~_are_edges(found)]
         # With noise, two samples of about the same value are no level, except at the ends of a log.
         at_an_end = (found["start"] == 0) | (found["stop"] == len(clean))
-        found = found[at_an_end | (lengths_of(_spans(found)) >= MIN_SAMPLES + (noise > 0.0))]
+        found = found[at_an_end | (lengths_of(read_spans(found)) >= MIN_SAMPLES + (noise > 0.0))]
     if not len(found):
         return []
     # After growing, two may be separated by no more than a stray.
-    spans = joined(clean, _grown(clean, _spans(found), sigma), least_step, sigma)
-    found = _measured_again(clean, spans, found, sigma)
-    found = found[~_are_moving(clean, found, scale, least_noise, sigma)]
-    if not len(found):
-        return []
+    spans = joined(clean, _grown(clean, read_spans(found), sigma), least_step, sigma)
+    found = drop_moving(clean, _measure_again(clean, spans, found, sigma), ground)
     found = _with_ends(clean, found, max(least_step, FAR * sigma))
     found["start"], found["stop"] = finite[found["start"]], finite[found["stop"] - 1] + 1
     return list(map(Plateau._make, found.tolist()))
+
+
+def _join_pieces(
+    values: FloatArray, pieces: Pieces, least_step: float, sigma: float, *, has_strays: bool
+) -> Pieces:
+    """Return pieces joined where the log goes on, also across strays if it has some."""
+    # Twice: a stray may be hidden between short pieces of a drift.
+    for _ in range(2):
+        count = len(pieces)
+        if has_strays:
+            pieces = without_strays(values, pieces, least_step, sigma)
+        pieces = joined(values, pieces, least_step, sigma)
+        if len(pieces) == count:
+            break
+    return pieces
 
 
 def _levels(values: FloatArray) -> tuple[float, float]:
@@ -301,58 +271,19 @@ def _partition(scaled: FloatArray, places: IntArray) -> Pieces:
     return np.stack((chosen[:-1], chosen[1:]), axis=1)
 
 
-def _spans(found: _Found) -> Pieces:
-    return np.stack((found["start"], found["stop"]), axis=1)
-
-
-def _measured(values: FloatArray, pieces: Pieces, sigma: float) -> _Found:
-    """Return the pieces as plateaus."""
-    found = np.zeros(len(pieces), FIELDS)
-    found["start"], found["stop"] = pieces.T
-    for some, part in of_one_length(values, pieces):
-        off = strays(part, sigma)
-        counts = off.sum(axis=1)
-        found["strays"][some] = counts
-        for count in np.unique(counts):
-            alike = counts == count
-            found[some[alike]] = _levelled(found[some[alike]], part[alike], ~off[alike])
-    return found
-
-
-def _levelled(found: _Found, part: FloatArray, keep: BoolArray) -> _Found:
-    """Return plateaus of one length with their level, spread and drift.
-
-    Args:
-        found: The plateaus.
-        part: Their samples, shape (m, length).
-        keep: Which of them are no strays: the same number of each plateau.
-    """
-    count, length = part.shape
-    kept = part[keep].reshape(count, -1)
-    uneven = (kept != kept[:, :1]).any(axis=1)
-    found["level"] = np.where(uneven, kept.mean(axis=1), kept[:, 0])
-    found["spread"] = np.where(uneven, kept.std(axis=1), 0.0)
-    if kept.shape[1] >= 8:
-        at = np.nonzero(keep)[1].reshape(kept.shape).astype(np.float64)
-        at -= at.mean(axis=1, keepdims=True)
-        drift = (at * kept).sum(axis=1) / (at * at).sum(axis=1) * (length - 1)
-        found["drift"] = np.where(uneven, drift, 0.0)
-    return found
-
-
-def _measured_again(values: FloatArray, pieces: Pieces, found: _Found, sigma: float) -> _Found:
+def _measure_again(values: FloatArray, pieces: Pieces, found: Found, sigma: float) -> Found:
     """Return the pieces as plateaus; those that are found already are taken over."""
     known = np.minimum(np.searchsorted(found["start"], pieces[:, 0]), len(found) - 1)
     measured = found[known]
-    changed = (_spans(measured) != pieces).any(axis=1)
-    measured[changed] = _measured(values, pieces[changed], sigma)
+    changed = (read_spans(measured) != pieces).any(axis=1)
+    measured[changed] = measure(values, pieces[changed], sigma)
     return measured
 
 
-def _are_edges(found: _Found) -> BoolArray:
+def _are_edges(found: Found) -> BoolArray:
     """Return which are short pieces that are only the edge between two plateaus."""
     edges = np.zeros(len(found), bool)
-    lengths, level = lengths_of(_spans(found)), found["level"]
+    lengths, level = lengths_of(read_spans(found)), found["level"]
     low, high = np.minimum(level[:-2], level[2:]), np.maximum(level[:-2], level[2:])
     is_between = (low < level[1:-1]) & (level[1:-1] < high)
     is_shorter = np.minimum(lengths[:-2], lengths[2:]) > lengths[1:-1]
@@ -360,100 +291,25 @@ def _are_edges(found: _Found) -> BoolArray:
     return edges
 
 
-def _are_ramps(values: FloatArray, found: _Found, sigma: float) -> BoolArray:
+def _are_ramps(values: FloatArray, found: Found, sigma: float) -> BoolArray:
     """Return which are short pieces that rise or fall from each sample to the next."""
-    ramps = lengths_of(_spans(found)) <= _EDGE_SAMPLES + 1
+    ramps = lengths_of(read_spans(found)) <= _EDGE_SAMPLES + 1
     short = np.flatnonzero(ramps)
-    for some, part in of_one_length(values, _spans(found[short])):
+    for some, part in of_one_length(values, read_spans(found[short])):
         steps = np.abs(np.diff(part, axis=1))
-        is_steep: BoolArray = (steps > CERTAINTY * sigma).all(axis=1)
-        ramps[short[some]] = _go_one_way(part) & is_steep
+        ramps[short[some]] = np.logical_and(
+            go_one_way(part), (steps > CERTAINTY * sigma).all(axis=1)
+        )
     return ramps
 
 
-def _go_one_way(part: FloatArray) -> BoolArray:
-    """Return which rows rise, or fall, from each sample to the next."""
-    steps = np.diff(part, axis=1)
-    rises: BoolArray = (steps > 0.0).all(axis=1)
-    falls: BoolArray = (steps < 0.0).all(axis=1)
-    return rises | falls
-
-
-def _are_moving(
-    values: FloatArray, found: _Found, scale: float, noise: float, sigma: float
-) -> BoolArray:
-    """Return which have no level: those that rise, fall or bend, and those of too few samples far apart.
-
-    Args:
-        values: The log.
-        found: Its pieces.
-        scale: Its range.
-        noise: Standard deviation of the noise about slopes.
-        sigma: The same of all the noise, by which strays are told.
-    """
-    moving: BoolArray = found["strays"] > _MOST_STRAYS * lengths_of(_spans(found))
-    samples = lengths_of(_spans(found)) - found["strays"]
-    spread, drift = found["spread"], np.abs(found["drift"])
-    wide = spread > max(_STILL_NOISES * noise, _STILL_OF_RANGE * scale)
-    steep = drift > _SLOPE_OF_RANGE * scale
-    unsure = spread > _UNSURE_OF_RANGE * scale * np.sqrt(samples)
-    unlike = np.flatnonzero(wide | steep | unsure)
-    for some, part in of_one_length(values, _spans(found[unlike])):
-        some = unlike[some]
-        highest = np.abs(part).max(axis=1)
-        is_short = part.shape[1] < _SHORT_SAMPLES
-        most = _SHORT_WANDERS if is_short else _WANDERS
-        wanders = _neighbours_variance(part, sigma) < most * spread[some] ** 2
-        if is_short:
-            wanders |= _go_one_way(part)
-        moving[some] |= wide[some] & wanders & (spread[some] > _STILL_OF_VALUE * highest)
-        moving[some] |= steep[some] & (drift[some] > _SLOPE_OF_VALUE * highest)
-        moving[some] |= unsure[some] & (
-            spread[some] > _UNSURE_OF_VALUE * highest * np.sqrt(samples[some])
-        )
-    return moving
-
-
-def _neighbours_variance(part: FloatArray, sigma: float) -> FloatArray:
-    """Return the variance of each row, shape (m, length), as far as neighbours differ, without strays."""
-    keep = ~strays(part, sigma)
-    pairs = keep[:, 1:] & keep[:, :-1]
-    squares = (np.diff(part, axis=1) ** 2 * pairs).sum(axis=1)
-    variance: FloatArray = squares / np.maximum(2 * pairs.sum(axis=1), 1)
-    return variance
-
-
-def _with_still_parts(
-    values: FloatArray,
-    found: _Found,
-    moving: BoolArray,
-    cut: Pieces,
-    scale: float,
-    noise: float,
-    sigma: float,
-) -> _Found:
-    """Return what stands still: whole plateaus, and instead of those that move the pieces of them that do not."""
-    parts = cut[lengths_of(cut) >= NEAR_SAMPLES]
-    inside = np.searchsorted(found["start"], parts[:, 0], side="right") - 1
-    parts = parts[(inside >= 0) & moving[inside]] if len(found) else parts[:0]
-    whole = found[np.searchsorted(found["start"], parts[:, 0], side="right") - 1]
-    rise = np.abs(whole["drift"]) / lengths_of(_spans(whole)) * lengths_of(parts)
-    measured = _measured(values, parts, sigma)
-    still = measured["spread"] <= _PART_OF_SLOPE * rise / np.sqrt(12.0)
-    for some, part in of_one_length(values, parts):
-        least = _SHORT_WANDERS * measured["spread"][some] ** 2
-        still[some] &= _neighbours_variance(part, sigma) >= least
-    measured = measured[still]
-    measured = measured[~_are_moving(values, measured, scale, noise, sigma)]
-    both = np.concatenate((found[~moving], measured))
-    return both[np.argsort(both["start"], kind="stable")]
-
-
-def _with_ends(values: FloatArray, found: _Found, least_step: float) -> _Found:
+def _with_ends(values: FloatArray, found: Found, least_step: float) -> Found:
     """Add the first and the last sample as levels of their own if they are a step away from the nearest plateau.
 
     A program that logs until it meets a value ends its log at the first sample of that level.
     """
+    if not len(found):
+        return found
     first, last = 0, len(values) - 1
     before, after = found[0], found[-1]
     ends = (

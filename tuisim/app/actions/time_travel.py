@@ -63,7 +63,7 @@ def to_time(context: ActionContext, time_s: float | None, sample: str = "") -> N
         and recording is not None
         and (line := recording.rows.line_of(sample, tick))
     ):
-        context.debugger.stand_at(tick, line)
+        context.debugger.choose_line(tick, line)
         if not context.panels.shown("code"):
             context.app.say(f"Line {line} has printed this: {{panel-code}} shows it")
     to_tick(context, tick)
@@ -191,7 +191,7 @@ def _show_reason(context: ActionContext, earlier: Recording | None) -> None:
     if reason.kind is ReasonKind.DIFFERS and context.runs.earlier is None:
         context.runs.show_earlier(earlier)
     tick = round(reason.time_s * context.runs.timeline.tick_hz)
-    context.debugger.stand_at(tick, reason.line)
+    context.debugger.choose_line(tick, reason.line)
     to_tick(context, tick)
     context.app.say(tour.words)
 

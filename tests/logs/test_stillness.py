@@ -1,0 +1,57 @@
+"""What has a level, and what moves."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from tests.cases import cases
+from tests.logs.test_bands import made_log, short_log
+from tuisim.logs.plateaus import plateaus
+
+
+def ramp(samples: int, low: float = 40.0, high: float = 88.0) -> list[float]:
+    """Return samples at equal steps."""
+    return [float(value) for value in np.linspace(low, high, samples)]
+
+
+UNLEVEL = {
+    **{f"{samples} samples of a ramp": ramp(samples) for samples in (3, 4, 5, 6, 7, 10, 40, 300)},
+    "a slow ramp far from zero": ramp(40, 1000.0, 1090.0),
+    "an angle": [90.0, 181.0, 271.0, 361.0],
+    "a growing slope": (np.linspace(0.0, 1.0, 10) ** 2 * 100.0).tolist(),
+    "a wave": (50.0 + 30.0 * np.sin(np.linspace(0.0, 6.0, 15))).tolist(),
+    "a few far-apart samples": [361.0, 90.0, 300.0, 181.0],
+    "three steps down": [60.0, 41.0, 12.0],
+}
+
+
+@cases("values", UNLEVEL)
+def test_what_moves_has_no_level(values: list[float]) -> None:
+    rng = np.random.default_rng(1)
+    assert plateaus(np.array(values)) == []
+    assert plateaus(np.array(values) + rng.normal(0.0, 0.3, len(values))) == []
+
+
+@pytest.mark.parametrize("samples", [8, 10, 14, 20, 30])
+@pytest.mark.parametrize("noise", [0.0, 0.4])
+def test_a_slope_between_levels_is_none_of_them(samples: int, noise: float) -> None:
+    values = np.array([60.0] * 20 + ramp(samples, 62.0, 88.0) + [90.0] * 20)
+    values += np.random.default_rng(2).normal(0.0, noise, len(values))
+    found = plateaus(values)
+    assert [plateau.level for plateau in found] == pytest.approx([60.0, 90.0], abs=0.5)
+
+
+@pytest.mark.parametrize("make", [lambda seed: made_log(seed).values, lambda seed: short_log(seed)])
+def test_the_spread_is_that_of_the_samples(make: Callable[[int], NDArray[np.float64]]) -> None:
+    for seed in range(60):
+        values = make(seed)
+        for plateau in plateaus(values):
+            part = values[plateau.start : plateau.stop]
+            # Without strays, which are those farthest from the level.
+            nearest = np.argsort(np.abs(part - plateau.level))[: len(part) - plateau.strays]
+            assert plateau.spread == pytest.approx(part[nearest].std(), abs=0.05)
+            assert plateau.strays <= len(part) / 3

@@ -1,0 +1,188 @@
+"""Which pieces of a log stand still, so that they have a level, and the levels of pieces."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tuisim.logs.pieces import (
+    NEAR_SAMPLES,
+    BoolArray,
+    Pieces,
+    lengths_of,
+    of_one_length,
+    strays,
+)
+from tuisim.runs.arrays import FloatArray
+
+_SLOPE_OF_RANGE, _SLOPE_OF_VALUE = 0.25, 0.1
+"""A piece that drifts by more than these fractions of the log's range and of its own highest value is no plateau."""
+
+_STILL_OF_RANGE, _STILL_OF_VALUE = 0.02, 0.02
+"""A piece with a spread below one of these fractions, of the log's range and its own highest value, stands still."""
+
+_STILL_NOISES = 3.0
+"""A piece whose spread is below this multiple of the noise stands still."""
+
+_WANDERS, _SHORT_WANDERS, _SHORT_SAMPLES = 0.5, 0.9, 8
+"""A piece, and one of fewer samples, wanders if neighbours differ by less than this fraction of its variance tells."""
+
+_UNSURE_OF_RANGE, _UNSURE_OF_VALUE = 0.1, 0.05
+"""A mean that is less certain than these fractions of the log's range and of its own highest value is no level."""
+
+_PART_OF_SLOPE = 0.5
+"""A part of a slope stands still if its spread is below this fraction of what the slope would give it."""
+
+_MOST_STRAYS = 0.3
+"""Largest fraction of strays in a plateau."""
+
+Found = NDArray[np.void]
+"""Plateaus as an array of `FIELDS`, shape (n,)."""
+FIELDS = np.dtype(
+    [
+        ("start", "i8"),
+        ("stop", "i8"),
+        ("level", "f8"),
+        ("spread", "f8"),
+        ("drift", "f8"),
+        ("strays", "i8"),
+    ]
+)
+
+
+def measure_noise_of_slopes(values: FloatArray) -> float:
+    """Return the noise as `noise_of`, but from second differences, in which a slope leaves nothing."""
+    bends = np.sort(np.abs(np.diff(values, 2)))
+    if not len(bends):
+        return 0.0
+    by_median = 1.4826 * float(np.median(bends)) / np.sqrt(6.0)
+    calm = bends[: max(1, int(0.8 * len(bends)))]
+    return max(float(by_median), float(np.sqrt(np.mean(calm**2) / 6.0)))
+
+
+def read_spans(found: Found) -> Pieces:
+    """Return the spans of plateaus."""
+    return np.stack((found["start"], found["stop"]), axis=1)
+
+
+def measure(values: FloatArray, pieces: Pieces, sigma: float) -> Found:
+    """Return the pieces as plateaus."""
+    found = np.zeros(len(pieces), FIELDS)
+    found["start"], found["stop"] = pieces.T
+    for some, part in of_one_length(values, pieces):
+        off = strays(part, sigma)
+        counts = off.sum(axis=1)
+        found["strays"][some] = counts
+        for count in np.unique(counts):
+            alike = counts == count
+            found[some[alike]] = _levelled(found[some[alike]], part[alike], ~off[alike])
+    return found
+
+
+def _levelled(found: Found, part: FloatArray, keep: BoolArray) -> Found:
+    """Return plateaus of one length with their level, spread and drift.
+
+    Args:
+        found: The plateaus.
+        part: Their samples, shape (m, length).
+        keep: Which of them are no strays: the same number of each plateau.
+    """
+    count, length = part.shape
+    kept = part[keep].reshape(count, -1)
+    uneven = (kept != kept[:, :1]).any(axis=1)
+    found["level"] = np.where(uneven, kept.mean(axis=1), kept[:, 0])
+    found["spread"] = np.where(uneven, kept.std(axis=1), 0.0)
+    if kept.shape[1] >= 8:
+        at = np.nonzero(keep)[1].reshape(kept.shape).astype(np.float64)
+        at -= at.mean(axis=1, keepdims=True)
+        drift = (at * kept).sum(axis=1) / (at * at).sum(axis=1) * (length - 1)
+        found["drift"] = np.where(uneven, drift, 0.0)
+    return found
+
+
+def go_one_way(part: FloatArray) -> BoolArray:
+    """Return which rows rise, or fall, from each sample to the next."""
+    steps = np.diff(part, axis=1)
+    one_way: BoolArray = np.logical_or((steps > 0.0).all(axis=1), (steps < 0.0).all(axis=1))
+    return one_way
+
+
+class Ground(NamedTuple):
+    """What the pieces of a log are judged by."""
+
+    range: float
+    """From the lowest level to the highest."""
+    noise: float
+    """Standard deviation of the noise about slopes."""
+    sigma: float
+    """The same of all noise, by which strays are told."""
+
+
+def drop_moving(values: FloatArray, found: Found, ground: Ground) -> Found:
+    """Return the pieces that have a level: none that rises, falls or bends, nor a few samples far apart."""
+    return found[~_are_moving(values, found, ground)]
+
+
+def _are_moving(values: FloatArray, found: Found, ground: Ground) -> BoolArray:
+    lengths = lengths_of(read_spans(found))
+    moving: BoolArray = found["strays"] > _MOST_STRAYS * lengths
+    spread, drift = found["spread"], np.abs(found["drift"])
+    wide = spread > max(_STILL_NOISES * ground.noise, _STILL_OF_RANGE * ground.range)
+    steep = drift > _SLOPE_OF_RANGE * ground.range
+    root = np.sqrt(lengths - found["strays"])
+    unsure = spread > _UNSURE_OF_RANGE * ground.range * root
+    judged = np.flatnonzero(wide | steep | unsure)
+    for some, part in of_one_length(values, read_spans(found[judged])):
+        some = judged[some]
+        highest = np.abs(part).max(axis=1)
+        moving[some] |= (
+            wide[some]
+            & (spread[some] > _STILL_OF_VALUE * highest)
+            & _wander(part, spread[some], ground.sigma)
+        )
+        moving[some] |= steep[some] & (drift[some] > _SLOPE_OF_VALUE * highest)
+        moving[some] |= unsure[some] & (spread[some] > _UNSURE_OF_VALUE * highest * root[some])
+    return moving
+
+
+def _wander(part: FloatArray, spread: FloatArray, sigma: float) -> BoolArray:
+    """Return which rows go somewhere, shape (m, length): neighbours are nearer to each other than the spread tells."""
+    is_short = part.shape[1] < _SHORT_SAMPLES
+    most = _SHORT_WANDERS if is_short else _WANDERS
+    wanders: BoolArray = _compare_neighbours(part, sigma) < most * spread**2
+    return wanders | go_one_way(part) if is_short else wanders
+
+
+def _compare_neighbours(part: FloatArray, sigma: float) -> FloatArray:
+    """Return the variance of each row, shape (m, length), as far as neighbours differ, without strays."""
+    keep = ~strays(part, sigma)
+    pairs = keep[:, 1:] & keep[:, :-1]
+    squares = (np.diff(part, axis=1) ** 2 * pairs).sum(axis=1)
+    variance: FloatArray = squares / np.maximum(2 * pairs.sum(axis=1), 1)
+    return variance
+
+
+def keep_still(values: FloatArray, found: Found, cut: Pieces, ground: Ground) -> Found:
+    """Return the pieces that have a level, and instead of the others the parts of them that have one.
+
+    Args:
+        values: The log.
+        found: Its pieces.
+        cut: The parts of which they were joined.
+        ground: What they are judged by.
+    """
+    moving = _are_moving(values, found, ground)
+    parts = cut[lengths_of(cut) >= NEAR_SAMPLES]
+    owners = np.searchsorted(found["start"], parts[:, 0], side="right") - 1
+    parts = parts[(owners >= 0) & moving[owners]] if len(found) else parts[:0]
+    whole = found[np.searchsorted(found["start"], parts[:, 0], side="right") - 1]
+    rise = np.abs(whole["drift"]) / lengths_of(read_spans(whole)) * lengths_of(parts)
+    measured = measure(values, parts, ground.sigma)
+    still = measured["spread"] <= _PART_OF_SLOPE * rise / np.sqrt(12.0)
+    for some, part in of_one_length(values, parts):
+        least = _SHORT_WANDERS * measured["spread"][some] ** 2
+        still[some] &= _compare_neighbours(part, ground.sigma) >= least
+    both = np.concatenate((found[~moving], drop_moving(values, measured[still], ground)))
+    return both[np.argsort(both["start"], kind="stable")]
