@@ -1,6 +1,7 @@
 """What a student hands in besides an honest program: links, devices, and names that are formulas or markup.
 
-It harms no other student's row, gets no points for what is not the student's own, and reads nothing of the tutor's.
+Among honest programs that must get all their points. It harms no other student's row,
+gets no points for what is not the student's own, and reads nothing of the tutor's.
 """
 
 from __future__ import annotations
@@ -9,22 +10,50 @@ import csv
 import os
 import re
 import socket
+import stat
+import zipfile
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import chdir, closing
+from contextlib import AbstractContextManager, chdir, closing, nullcontext
 from functools import cache
 from html.parser import HTMLParser
+from importlib import import_module
 from pathlib import Path
 from random import Random
 from tempfile import TemporaryDirectory
+from unittest.mock import patch
 
-from tests.hosts import GOALS, MAGIC
-from tests.marks.attackers import NAMES, SECRET
+from tests.hosts import MAGIC
+from tests.marks.attackers import NAMES, OWN_RUN, SECRET
 from tests.proof.commands import check_said
+from tests.proof.deliveries import IDIOMS, deliver
 from tests.proof.kind import FaultError, Kind, home, in_time
+from tests.proof.numbers import odd_program
+from tuisim.runs import side_files
 
+GOALS = """\
+title = "Read"
+background = "Empty_Map"
+profile = "robolab"
+[[goal]]
+name = "finish"
+finish = true
+[[goal]]
+name = "grey"
+log = { name = "Grey", levels = [100], reading = "color" }
+[[goal]]
+name = "there"
+reach = { x_mm = 1700, within_mm = 20, at_end = true }
+"""
+"""Who only prints what the sensor reads meets two of three."""
 _HONEST = ("ada", "zoe")
-_WORDS = "mark goals.toml class --seeds 0 --jobs 1 --no-isolate --export marks.csv --export marks.html --feedback told"
+_ALL = 2.0
+"""Points of an honest program."""
+_WORDS = (
+    "mark goals.toml class --seeds 0 --jobs 1 --no-isolate --max-mb 64 --export marks.csv "
+    "--export marks.html --feedback told"
+)
 _SPARSE_BYTES = 1 << 36
+_TOO_LARGE = 65 << 20
 _FORMULAS = (
     "=1+1",
     "+A1",
@@ -100,13 +129,111 @@ def _names(random: Random, place: Path) -> None:
     (inside / "main.py").write_text(_program(line))
 
 
+def _numbers(random: Random, place: Path) -> None:
+    """Print numbers that overflow."""
+    place.with_suffix(".py").write_text(_program(odd_program(random)))
+
+
+def _zips(random: Random, place: Path) -> None:
+    """Hand in a zip that leads out of its folder, has a link in it, or is larger than it looks."""
+    with zipfile.ZipFile(place.with_suffix(".zip"), "w", zipfile.ZIP_DEFLATED) as archive:
+        link = zipfile.ZipInfo("main.py")
+        link.external_attr = (stat.S_IFLNK | 0o777) << 16
+        name, data = random.choice(
+            (
+                ("../../escaped.py", b"1"),
+                (f"{place.parent}/escaped.py", b"1"),
+                ("a/../../../escaped.py", b"1"),
+                ("..\\..\\escaped.py", b"1"),
+                (link, b"../ada.py"),
+                ("big.bin", bytes(_TOO_LARGE)),
+            )
+        )
+        archive.writestr(name, data)
+        if name is not link:
+            archive.writestr("main.py", _program(IDIOMS[0]))
+
+
+def _told(random: Random, place: Path) -> None:
+    """End in a way of which the row tells something: it must be true."""
+    path = place.with_suffix(".py")
+    if random.random() < 0.5:
+        path.write_text(_program("raise ValueError('x' * 9_000_000)"))
+    else:
+        path.write_bytes(f"# {MAGIC}\n# coding: utf-7\nprint('Grey: +ADE-')\n".encode())
+
+
+def _faults(random: Random, place: Path) -> None:
+    """Hand in a program for which something in tuisim fails."""
+    place.with_suffix(".py").write_text(_program(IDIOMS[0]))
+
+
+def _forged(random: Random, place: Path) -> None:
+    """Put the robot elsewhere through the insides of the simulation, or say so in the record of commands."""
+    place.with_suffix(".py").write_text(_program(f"{random.choice(FORGED)}\n{IDIOMS[0]}"))
+
+
+FORGED = (
+    "import builtins\nfrom tuisim.protocol import SetPose\n"
+    "s = next(c.cell_contents for c in builtins.__loop_turn__.__closure__"
+    " if hasattr(c.cell_contents, 'steering'))\n"
+    "s.steering.apply(s, SetPose(1700.0, 500.0, 0.0))\nimport time\ntime.sleep(1)",
+    "import builtins\ns = next(c.cell_contents for c in builtins.__loop_turn__.__closure__"
+    " if hasattr(c.cell_contents, 'steering'))\ns.sim.place(1700.0, 500.0, 0.0)\nimport time\ntime.sleep(1)",
+    OWN_RUN + "import glob\nfor name in glob.glob(run + '/*.bin') + glob.glob(run + '/*.jsonl'):\n"
+    "    with open(name, 'r+b') as f:\n        f.seek(64)\n        f.write(bytes(range(256)) * 4)",
+    OWN_RUN
+    + "for name in os.listdir(run):\n    if 'command' in name: os.truncate(run + '/' + name, 99)",
+)
+"""Ways to a pose that no command leads to."""
 SORTS: Mapping[str, Callable[[Random, Path], None]] = {
     "links": _links,
     "devices": _devices,
     "names": _names,
+    "numbers": _numbers,
+    "zips": _zips,
+    "told": _told,
+    "faults": _faults,
+    "delivered": lambda random, place: deliver(random, place, MAGIC),
+    # The judge works the run out again from what it was told.
+    **({"forged": _forged} if hasattr(side_files, "COMMANDS_FILE") else {}),
 }
-REFUSED = ("links", "devices")
+REFUSED = ("links", "devices", "zips")
 """Sorts that are refused, in the student's row."""
+BROKEN = {
+    "tuisim.marks.students._read_student": True,
+    "tuisim.marks.entries._build_entry": True,
+    "tuisim.marks.runs.digest_of": True,
+    "tuisim.marks.runs.copy_of": True,
+    "tuisim.marks.runs.outcome_of": True,
+    "tuisim.marks.feedback._feedback_of": False,
+}
+"""What fails, and whether the student cannot be judged then."""
+ERRORS = (
+    OverflowError(34, "Numerical result out of range"),
+    UnicodeEncodeError("utf-8", "\udcff", 0, 1, "surrogates not allowed"),
+    MemoryError(),
+    RecursionError("too deep"),
+    KeyError("x"),
+    OSError(5, "Input/output error"),
+    ZeroDivisionError(),
+)
+
+
+def _break_for(target: str, error: Exception) -> AbstractContextManager[object]:
+    """Let a function fail for one student."""
+    module, _, name = target.rpartition(".")
+    real = getattr(import_module(module), name)
+
+    def fail(*args: object, **named: object) -> object:
+        if _EVE.search(repr(args)):
+            raise error
+        return real(*args, **named)
+
+    return patch(target, fail)
+
+
+_EVE = re.compile(r"\beve\b")
 
 
 def _program(text: str) -> str:
@@ -118,14 +245,14 @@ def _class(folder: Path) -> Path:
     (folder / "class" / "zoe").mkdir(parents=True)
     (folder / "goals.toml").write_text(GOALS)
     (folder / "secret.txt").write_text(SECRET)
-    (folder / "class" / "ada.py").write_text(_program("print('A: 1')"))
-    (folder / "class" / "zoe" / "main.py").write_text(_program("print('B: 2')"))
+    (folder / "class" / "ada.py").write_text(_program(IDIOMS[0]))
+    (folder / "class" / "zoe" / "main.py").write_text(_program(IDIOMS[1]))
     return folder / "class" / "eve"
 
 
 def _marked() -> tuple[Rows, str]:
     """Mark the class in the working directory; return its rows by student, and what was said."""
-    found = check_said(_WORDS.split(), codes=(0,), on_terminal=True)
+    found = check_said(_WORDS.split(), codes=(0, 1), on_terminal=True)
     with open("marks.csv", newline="") as file:
         return {row["student"]: row for row in csv.DictReader(file)}, found.out + found.err
 
@@ -139,7 +266,10 @@ def _wanted() -> Rows:
         home(Path(folder, "home")),
     ):
         _class(Path(folder))
-        return _marked()[0]
+        rows, said = _marked()
+        if [float(row["points"]) for row in rows.values()] != [_ALL] * len(_HONEST):
+            raise FaultError(f"the honest ones alone have {rows}: {said}")
+        return rows
 
 
 class _Elements(HTMLParser):
@@ -175,17 +305,38 @@ def _cases(random: Random) -> Iterator[str]:
         yield from (f"{sort}:{random.getrandbits(32)}" for sort in SORTS)
 
 
+def _check_own(sort: str, own: Mapping[str, str], unjudged: str) -> None:
+    """Check the student's own row; `unjudged` is what fails in a case of `faults` so that there are no marks."""
+    points, reason = float(own["points"] or 0), own["reason"]
+    if sort in REFUSED and (points or int(own["runs"]) or not reason):
+        raise FaultError(f"not refused: {own}")
+    if sort == "delivered" and points != _ALL:
+        raise FaultError(f"an honest one has {own}")
+    if sort == "faults" and unjudged and "could not be judged" not in reason:
+        raise FaultError(f"no word of what went wrong in {unjudged}: {own}")
+    if sort == "told" and re.search("falsified|compile", reason):
+        raise FaultError(f"the reason is {reason[:300]!r}")
+    if sort == "forged" and points > _ALL:
+        raise FaultError(f"a forged run has {own}")
+
+
 def _check(case: str, folder: Path) -> None:
     sort, seed = case.split(":")
     wanted = _wanted()
-    SORTS[sort](Random(seed), _class(folder))
-    with in_time():
+    random = Random(seed)
+    SORTS[sort](random, _class(folder))
+    target = random.choice(list(BROKEN))
+    with (
+        in_time(),
+        _break_for(target, random.choice(ERRORS)) if sort == "faults" else nullcontext(),
+    ):
         rows, said = _marked()
     if {name: rows.get(name) for name in _HONEST} != wanted:
         raise FaultError(f"the others have the rows {rows}, not {wanted}")
     (own,) = (row for name, row in rows.items() if name not in _HONEST)
-    if sort in REFUSED and (float(own["points"]) or int(own["runs"]) or not own["reason"]):
-        raise FaultError(f"not refused: {own}")
+    _check_own(sort, own, target if BROKEN[target] else "")
+    if (folder / "escaped.py").exists() or (folder / "class" / "escaped.py").exists():
+        raise FaultError("a zip has written out of its folder")
     secrets = [str(path) for path in _written(folder) if SECRET.encode() in path.read_bytes()]
     if secrets or SECRET in said:
         raise FaultError(f"what is the tutor's is told in {secrets or said}")
@@ -195,4 +346,4 @@ def _check(case: str, folder: Path) -> None:
     _Elements().feed(Path("marks.html").read_text())
 
 
-HANDED_IN = Kind("links, devices and formulas among what a class hands in", _cases, _check)
+HANDED_IN = Kind("what a class hands in: attacks, oddities and honest programs", _cases, _check)

@@ -12,6 +12,7 @@ from tests.proof.handed_in import HANDED_IN
 from tests.proof.kernel import KERNEL
 from tests.proof.kind import Kind
 from tests.proof.monkey import MONKEY
+from tests.proof.numbers import NUMBERS
 from tests.proof.security import SECURITY
 from tests.proof.stateful import STATEFUL
 from tests.proof.zoo import ZOO
@@ -25,6 +26,7 @@ KINDS: dict[str, Kind] = {
     "enemies": ENEMIES,
     "class": HANDED_IN,
     "failures": FAILURES,
+    "numbers": NUMBERS,
     "monkey": MONKEY,
     "zoo": ZOO,
     "stateful": STATEFUL,

@@ -287,7 +287,7 @@ def _files(random: Random) -> None:
     _write_files(lambda value: value if random.random() < 0.3 else _literal(hostile(random)))
     for words in _READ:
         _say(*words.split())
-    for words in (
+    for command in (
         ["guide"],
         ["guide", "--search"],
         ["run"],
@@ -295,7 +295,7 @@ def _files(random: Random) -> None:
         ["run", "p.py", "-b"],
         ["robots"],
     ):
-        _say(*words, hostile(random).replace("\0", ""))
+        _say(*command, hostile(random).replace("\0", ""))
 
 
 _FILES: Mapping[str, tuple[str, ...]] = {

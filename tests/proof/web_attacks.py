@@ -4,8 +4,14 @@ from __future__ import annotations
 
 import asyncio
 import json
+import logging
+import os
+import resource
+import sys
+from asyncio.subprocess import PIPE
 from collections.abc import Awaitable, Callable, Mapping, Sequence
 from contextlib import AsyncExitStack, suppress
+from pathlib import Path
 
 from aiohttp import ClientError, ClientSession, WSMsgType
 
@@ -144,12 +150,87 @@ _ALLOWED: Mapping[str, Sequence[str]] = {
 """Headers of every answer, with what each must hold."""
 
 
+_CONNECT = """\
+import resource, socket, sys
+hard = resource.getrlimit(resource.RLIMIT_NOFILE)[1]
+resource.setrlimit(resource.RLIMIT_NOFILE, (hard, hard))
+opened = []
+for _ in range(int(sys.argv[2])):
+    opened.append(socket.create_connection(("127.0.0.1", int(sys.argv[1]))))
+print(flush=True)
+sys.stdin.read()
+"""
+
+
 async def _connections(target: Target) -> None:
-    """Connections that never ask."""
-    opened = [await asyncio.open_connection("127.0.0.1", target.port) for _ in range(200)]
-    await target.visits()
-    for _, writer in opened:
-        writer.close()
+    """More connections that never ask than this process may have descriptors."""
+    most, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
+    resource.setrlimit(resource.RLIMIT_NOFILE, (len(os.listdir("/proc/self/fd")) + 250, hard))
+    try:
+        words = (sys.executable, "-c", _CONNECT, str(target.port), "600")
+        other = await asyncio.create_subprocess_exec(*words, stdin=PIPE, stdout=PIPE)
+        assert other.stdin is not None and other.stdout is not None
+        await other.stdout.readline()
+        await target.visits()
+        other.stdin.close()
+        await other.wait()
+    finally:
+        resource.setrlimit(resource.RLIMIT_NOFILE, (most, hard))
+
+
+async def _uploads(target: Target) -> None:
+    """Files that are cut off, too large, or have names that are too long."""
+    url = f"{target.origin}/{TOKEN}/ws"
+    async with target.client.ws_connect(url, headers={"Origin": target.origin}) as socket:
+        session = json.loads((await socket.receive(PATIENCE_S)).data)[1]
+        path, before = f"/{TOKEN}/sessions/{session}/file", _resident_mb()
+        writers = []
+        for number in range(_CUT):
+            _, writer = await asyncio.open_connection("127.0.0.1", target.port)
+            writers.append(writer)
+            writer.write(
+                f"POST {path}?name=cut{number}.py HTTP/1.1\r\nHost: 127.0.0.1:{target.port}\r\n"
+                f"Origin: {target.origin}\r\nContent-Length: 60000000\r\n\r\n".encode()
+                + bytes(_CUT_MB << 20)
+            )
+            await writer.drain()
+        name = "\N{LATIN SMALL LETTER E WITH ACUTE}" * 190
+        sent = {"Origin": target.origin}
+        async with target.client.post(
+            f"{target.origin}{path}", params={"name": name}, data=b"x", headers=sent
+        ) as answer:
+            said = await answer.text()
+        if answer.status != 400 or os.getcwd() in said:
+            raise FaultError(f"a name that is too long: {answer.status} {said[:500]}")
+        if _resident_mb() - before > _CUT * _CUT_MB / 2:
+            raise FaultError(f"uploads take {_resident_mb() - before:.0f} MB")
+        for writer in writers:
+            writer.transport.abort()
+        await target.visits()
+    if left := [name for name in os.listdir() if name.startswith("cut")]:
+        raise FaultError(f"uploads that were cut off have left {left}")
+
+
+_CUT, _CUT_MB = 20, 8
+"""Uploads at the same time, and what of each has come."""
+
+
+def _resident_mb() -> float:
+    pages = int(Path("/proc/self/statm").read_text().split()[1])
+    return pages * resource.getpagesize() / (1 << 20)
+
+
+async def _unasked(target: Target) -> None:
+    """An app that offers files and sends pieces of them that nobody has asked for."""
+    url, before = f"{target.origin}/{TOKEN}/ws", _resident_mb()
+    async with target.client.ws_connect(url, headers={"Origin": target.origin}) as socket:
+        for word in ("offer", "flood"):
+            await socket.send_json(["stdin", word])
+        while (message := await socket.receive(PATIENCE_S)).data != b"flooded":
+            if message.type is WSMsgType.CLOSE:
+                raise FaultError(f"the app has ended: {message.extra}")
+        if (growth_mb := _resident_mb() - before) > 50:
+            raise FaultError(f"what an app sends unasked takes {growth_mb:.0f} MB")
 
 
 async def _heads(target: Target) -> None:
@@ -196,13 +277,32 @@ ATTACKS: Mapping[str, Callable[[Target], Awaitable[None]]] = {
     "connections": _connections,
     "heads": _heads,
     "frames": _frames,
+    "uploads": _uploads,
+    "unasked": _unasked,
 }
 """By name."""
 
 
+class _Logged(logging.Handler):
+    """Keeps what a log would write to the server's terminal."""
+
+    def __init__(self, reports: list[str]) -> None:
+        super().__init__()
+        self._reports = reports
+
+    def emit(self, record: logging.LogRecord) -> None:
+        """Keep a record."""
+        if len(self._reports) < 5:
+            self._reports.append(self.format(record)[-1000:])
+
+
 async def _attack(name: str) -> None:
     reports: list[str] = []
+    logged = _Logged(reports)
     async with AsyncExitStack() as stack:
+        for logger in map(logging.getLogger, ("asyncio", "tuisim.web.server")):
+            logger.addHandler(logged)
+            stack.callback(logger.removeHandler, logged)
         limits = ServerLimits(_VISITORS, VisitLimits(PATIENCE_S, 0.0))
         server = Server(stand_in(), Gate("127.0.0.1", TOKEN), limits, reports.append)
         port = await stack.enter_async_context(listening(server, "127.0.0.1", 0))

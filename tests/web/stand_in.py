@@ -29,6 +29,14 @@ while True:
         send(b"P", b"ts13:deliver_chunks3:key%d:%se" % (len(chunk), chunk))
     elif data.startswith(b"packet "):
         os.write(1, bytes.fromhex(data.decode().split()[1]))
+    elif data == b"flood":
+        for number in range(1000):
+            file = {"key": "k" * 2000 + str(number), "path": "/x/a.csv", "open_method": "download"}
+            file |= {"type": "deliver_file_start", "mime_type": "text/csv", "encoding": ""}
+            send(b"M", json.dumps(file).encode())
+            if number < 100:
+                send(b"P", b"ts13:deliver_chunks3:key1000000:%se" % bytes(1000000))
+        send(b"D", b"flooded")
     elif data == b"offer":
         file = {"key": "key", "path": "/x/run.csv", "open_method": "download", "mime_type": "text/csv", "encoding": ""}
         send(b"M", json.dumps({"type": "deliver_file_start"} | file).encode())
