@@ -178,3 +178,42 @@ def test_a_run_is_stopped_when_it_has_used_its_time() -> None:
     handle.wait, handle.stop = wait, lambda: done.append("stop")
     assert str(_to_the_end(handle, 5.0)) == "ended"
     assert done == [5.0, 2.0, "stop", None]
+
+
+MOVES = """\
+import builtins, time
+from tuisim.protocol import SetPose
+cells = builtins.__loop_turn__.__closure__
+session = next(c.cell_contents for c in cells if hasattr(c.cell_contents, "steering"))
+time.sleep(0.5)
+session.steering.apply(session, SetPose(1000.0, 100.0, 0.0))
+time.sleep(0.5)
+"""
+
+
+@pytest.mark.parametrize("is_replayed", [False, True])
+def test_a_run_that_is_worked_out_again_earns_what_the_program_did(
+    tmp_path: Path, is_replayed: bool
+) -> None:
+    goals = (
+        Goal("far", ReachCondition(x_mm=1000, y_mm=100)),
+        Goal("end", FinishCondition()),
+    )
+    result = execute(replace(task(MOVES, goals=goals), is_replayed=is_replayed), tmp_path)
+    states = [one.state for one in result.judgements]
+    if not is_replayed:
+        assert (result.end, states) == ("finished", [GoalState.MET] * 2)
+        return
+    assert (result.end, states) == ("falsified", [GoalState.MISSED, GoalState.MET])
+    assert result.summary.endswith("it differs from what the program did from 0.50 s on")
+
+
+def test_a_command_that_no_program_can_give_is_told_without_the_folder(tmp_path: Path) -> None:
+    text = MOVES.replace(
+        "session.steering.apply(session, SetPose(1000.0, 100.0, 0.0))",
+        "from tuisim.core.commands.calls import Call; session.sim.obey(0, 0, Call.RUN, 1e6)",
+    )
+    result = execute(replace(task(text), is_replayed=True), tmp_path)
+    assert result.end == "falsified"
+    assert "goes back in time" in result.summary or "has a value" in result.summary
+    assert str(tmp_path) not in result.summary

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import os
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from functools import lru_cache
@@ -66,13 +67,16 @@ def _run_task(task: Task, folder: Path) -> Result:
             for view in (run.telemetry, run.output):
                 view.read_on()
                 view.holds = True
+            run, told = _replay_run(task, run, ended)
             judgements = _judged(task, run)
-            result = _result(task, run, ended, judgements)
+            result = _result(task, run, told, judgements)
         except LogError as error:
             cause = error.__cause__
             if isinstance(cause, OSError) and of_the_machine(cause):
                 return build_unjudged(task, str(error))
-            why = f"the program has falsified its recording: {error.message}"
+            # Where the recording was differs from machine to machine.
+            text = error.message.replace(f"{temporary.folder}{os.sep}", "")
+            why = f"the program has falsified its recording: {text}"
             return nothing_known_of(task, End.FALSIFIED, why)
         finally:
             handle.close()
@@ -108,6 +112,24 @@ def _field_files(spec: RunSpec) -> FieldFiles:
         _prepared.cache_clear()
         found = _prepared(*mat)
     return found
+
+
+def _replay_run(task: Task, run: StoredRun, ended: Ended) -> tuple[StoredRun, Ended]:
+    """Return the run that is to be judged, and how it ended.
+
+    Raises:
+        LogError: no program can have given the commands.
+    """
+    if not task.is_replayed or ended.end in (End.FALSIFIED, End.DISK_FULL):
+        return run, ended
+    # Imported on demand: most batches need it not.
+    from tuisim.runs.replayed_run import replay_run
+
+    run, parted = replay_run(run, task.options.actions)
+    if not parted:
+        return run, ended
+    why = f"the program has falsified its recording: it differs from what the program did from {parted} on"
+    return run, replace(ended, end=End.FALSIFIED, exit_code=1, summary=why)
 
 
 def _judged(task: Task, run: StoredRun) -> tuple[Judgement, ...]:

@@ -46,6 +46,8 @@ class Task:
     keep: Keep = Keep.NONE
     isolate: bool = False
     """Whether it runs through bubblewrap, without network and without the user's files."""
+    is_replayed: bool = False
+    """Whether the run is worked out from the program's commands, and that is judged, not what its process recorded."""
     real_time_limit_s: float = 0.0
     """Real seconds, without those in which it waits for a processor, after which it is stopped; 0 is no limit."""
 

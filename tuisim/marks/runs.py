@@ -208,4 +208,5 @@ def _tasks(
             keep=plan.keep,
             real_time_limit_s=REAL_TIME_LIMIT_S,
             isolate=plan.isolate,
+            is_replayed=True,
         )

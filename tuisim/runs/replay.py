@@ -35,6 +35,8 @@ class ReplayedTicks:
     """The records of the motors for each tick; empty if they have no driver."""
     motor_bytes: int
     """Of the motors' records of one tick."""
+    robot: RobotSpec
+    """With all parts that were plugged in."""
 
 
 class _Ticks:
@@ -118,6 +120,7 @@ def replay(
         if sim.notices
         else bytearray(),
         motors.tick_bytes,
+        sim.spec.robot,
     )
 
 
