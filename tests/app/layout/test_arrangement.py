@@ -13,7 +13,7 @@ from tuisim.app.layout.arrangement import (
     arrange_beside_world,
     wanted_panels,
 )
-from tuisim.app.layout.tree import PanelBox
+from tuisim.app.layout.tree import EDGES, PanelBox
 from tuisim.app.panels import PANELS
 
 SIZES = [(80, 23), (80, 40), (100, 30), (120, 39), (132, 43), (200, 59), (237, 70), (60, 18)]
@@ -152,3 +152,14 @@ def test_a_narrow_and_high_area_shows_the_world_above_what_was_asked_for(width: 
     assert {"world", "goals"} <= boxes.keys()
     assert boxes["world"].width == width
     assert boxes["world"].y == 0
+
+
+@pytest.mark.parametrize("asked", ["chart", "code", "brick", "lesson", "controls"])
+@pytest.mark.parametrize("size", [(80, 23), (100, 29), (120, 39), (200, 59), (65, 57)], ids=str)
+def test_three_rows_of_the_output_stay_beside_a_panel_that_is_asked_for(
+    size: tuple[int, int], asked: str
+) -> None:
+    wanted, fill = wanted_panels(Preset.STANDARD, {asked: True}, *size)
+    boxes = arrange(wanted, *size, fill).boxes
+    assert boxes["output"].height - EDGES >= 3
+    assert asked in boxes

@@ -164,8 +164,9 @@ def _place_wide(
     return joined(Axis.COLUMNS, [left, joined(Axis.ROWS, side)], shares=shares)
 
 
-_STRIP_ROWS, _CODE_STRIP_ROWS = 12, 16
-"""Rows of the strip below the board: for chart and output beside each other, and beside code."""
+_STRIP_ROWS, _LOW_CODE_STRIP_ROWS, _CODE_STRIP_ROWS = 12, 13, 16
+"""Rows of the strip below the board: for chart and output beside each other, and beside code on a low and a high
+screen."""
 _CHART_ROWS = 10
 _CHART_SHARE = 5 / 8
 """Of the width, beside the output."""
@@ -189,13 +190,18 @@ def build_board(panels: Sequence[str], width: int, height: int) -> Node:
     highest = ideal_rows(world_cols) + _MAX_EMPTY_ROWS
     rows = min(
         max(ideal_rows(world_cols), fair_rows(above, width)),
-        height - (_CODE_STRIP_ROWS if roomy and height >= 3 * _STRIP_ROWS else _STRIP_ROWS),
+        height - _find_strip_rows(height) if roomy else height - _STRIP_ROWS,
         highest,
     )
     rows = max(rows, least_rows(above))
     if rows > highest or rows + least_rows(below) > height:
         return build_wide(panels, width, height)
     return Split(Axis.ROWS, (above, below), least=(rows, height - rows))
+
+
+def _find_strip_rows(height: int) -> int:
+    """Return the rows of the strip below the board with code in it."""
+    return _CODE_STRIP_ROWS if height >= 3 * _STRIP_ROWS else _LOW_CODE_STRIP_ROWS
 
 
 def _build_board_strip(roomy: Sequence[str], has_output: bool, height: int) -> Node:
@@ -212,7 +218,7 @@ def _build_board_strip(roomy: Sequence[str], has_output: bool, height: int) -> N
 
 _TIGHT_ROWS: Mapping[str, int] = {
     "instrumentation": 5,
-    "output": 4,
+    "output": 5,
     "code": 9,
     "chart": 10,
     "arrays": 9,
@@ -271,6 +277,8 @@ _LINE_ROWS = 5
 """Rows of output and readings below the world: the readings are three lines."""
 _ROOMY = ("code", "chart", "brick")
 """Panels that get the whole width of a low screen."""
+_MAX_YIELDED_ROWS = 2
+"""So many rows it leaves to those beside the world, if they find no room otherwise."""
 _FAIR_ROWS = 22
 """From this height on, such a panel shows enough beside a world, even if others find no room."""
 
@@ -288,7 +296,7 @@ def build_low(panels: Sequence[str], width: int, height: int) -> Node:
         if not main or not beside:
             return joined(Axis.ROWS, main or beside)
         return Split(Axis.ROWS, (*main, _line_of(beside, width)), least=(0, _LINE_ROWS))
-    fair = max(_fair(roomy), height // 2)
+    fair = _find_roomy_rows(roomy, beside, height)
     above = height - fair
     if not main or not beside:
         top: list[Node] = [*main] or ([joined(Axis.ROWS, beside)] if beside else [])
@@ -302,6 +310,13 @@ def build_low(panels: Sequence[str], width: int, height: int) -> Node:
         return below
     is_fair = height >= _FAIR_ROWS or least_rows(top[0]) <= above
     return Split(Axis.ROWS, (*top, below), least=(0, fair) if is_fair else ())
+
+
+def _find_roomy_rows(roomy: Sequence[str], beside: Sequence[str], height: int) -> int:
+    """Return the rows of the panels that get the whole width, below the world with others beside it."""
+    fair = max(_fair(roomy), height // 2)
+    rows = sum(PANELS[panel].min_rows for panel in beside)
+    return max(fair - _MAX_YIELDED_ROWS, min(fair, height - rows))
 
 
 def _with_pose(panels: Sequence[str], height: int) -> Node:

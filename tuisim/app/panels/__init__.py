@@ -116,7 +116,7 @@ PANELS: Mapping[str, PanelInfo] = {
             "output:Output",
             _BOTTOM,
             _ALL,
-            3,
+            5,
             7,
             9,
             weight=13,
