@@ -36,3 +36,26 @@ async def test_good_position_is_applied() -> None:
         app.query_one("#x", Input).focus()
         await pilot.press("4", "0", "0", "comma", "5", "enter")
         await until(pilot, lambda: app.run_controller.pose == Pose(400.5, 500, 0))
+
+
+@pytest.mark.parametrize(
+    "panel, field, words",
+    [("positioning", "x", "not '999999'"), ("noise", "seed", "Seed")],
+)
+async def test_what_was_said_of_a_value_goes_once_another_one_is_typed(
+    panel: str, field: str, words: str
+) -> None:
+    async with open_lab(LOGS, panels_on=frozenset({panel})) as (pilot, app):
+        await until(pilot, lambda: bool(app.query(f"#{field}")))
+        app.query_one(f"#{field}", Input).focus()
+
+        def said() -> str:
+            message = app.panel_area.panels[panel].query_one("#message", Static)
+            return str(message.render())
+
+        before = said()
+        await pilot.press(*"999999" if panel == "positioning" else "-", "enter")
+        await until(pilot, lambda: words in said())
+        await pilot.press("backspace")
+        await until(pilot, lambda: said() == before)
+        assert not app.query(".wrong")

@@ -36,7 +36,6 @@ from tuisim.app.editor.document import Document
 from tuisim.app.error_words import remedy
 from tuisim.app.feed import PanelFeed
 from tuisim.app.file_watch import PERIOD_S
-from tuisim.app.form import NumberInput
 from tuisim.app.goals import GoalsController
 from tuisim.app.keymap import check_theme, with_keys
 from tuisim.app.lesson import LessonController
@@ -565,12 +564,7 @@ class LabApp(PanelMessages):
             names = ("panel-next", *names)
         actions = footer_actions(self.ACTIONS, names, state.situation, state.playing)
         if (keys := self._field_keys()) in (FIELD_KEYS, TYPING_KEYS, CLICKED_KEYS):
-            field = self.focused
-            actions = [
-                one
-                for one in actions
-                if isinstance(field, NumberInput) and any(map(field.leaves, one.key.split(",")))
-            ]
+            actions = []
         self.key_footer.show(actions, state.status, keys, state.failed)
 
     def _field_keys(self) -> tuple[KeyWord, ...]:

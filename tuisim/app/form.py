@@ -19,7 +19,6 @@ from textual.widgets.input import Selection
 from tuisim.app.action import ActionHost
 from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError, TuisimError
-from tuisim.terminal.textual_internals import bindings_of
 
 
 def reason(error: TuisimError) -> str:
@@ -98,6 +97,14 @@ class FormPanel(Vertical):
         """Show an error; empty removes it."""
         self.query_one("#message", Static).update(wrong or self.USE)
         self.set_class(bool(wrong), "-wrong")
+
+    @on(Input.Changed)
+    def _take_back(self, event: Input.Changed) -> None:
+        """Remove the error of a value that is another one now."""
+        event.stop()
+        if self.has_class("-wrong"):
+            event.input.remove_class("wrong")
+            self.say("")
 
 
 class EntryPanel(FormPanel):
@@ -185,6 +192,12 @@ class Row(Vertical):
         event.stop()
         self._enter()
 
+    @on(Input.Changed)
+    def _take_back(self, event: Input.Changed) -> None:
+        event.stop()
+        if self.has_class("-wrong"):
+            self.complain("")
+
     def on_descendant_focus(self) -> None:
         # The cursor at the end of the selection would scroll the beginning of a long value out of sight.
         whole = Selection(0, len(self.entry.value))
@@ -204,41 +217,16 @@ class Row(Vertical):
         self.post_message(self.Entered(self, self.entry.value, event.by))
 
 
-_SIGNS = frozenset(
-    {
-        "asterisk",
-        "colon",
-        "equals_sign",
-        "left_parenthesis",
-        "left_square_bracket",
-        "less_than_sign",
-        "greater_than_sign",
-        "question_mark",
-        "right_parenthesis",
-        "right_square_bracket",
-        "space",
-    }
-)
-"""Keys of punctuation that cannot be part of a number."""
-
-
 class NumberInput(Input):
-    """A text field for a number; letters and other characters remain keys of the app."""
+    """A text field for a number, which takes no other characters."""
 
-    takes_letters = False
+    def __init__(self, value: str = "", *, id: str) -> None:  # noqa: A002 (as every widget's)
+        super().__init__(value, id=id, compact=True, select_on_focus=True, restrict=r"[-+0-9.,]*")
 
-    def on_mount(self) -> None:
-        for action in self.app.ACTIONS.values() if isinstance(self.app, ActionHost) else ():
-            for key in action.key.split(","):
-                if self.leaves(key):
-                    bindings_of(self).bind(
-                        key, f"app.act('{action.id}')", action.title, show=False, priority=True
-                    )
-
-    @staticmethod
-    def leaves(key: str) -> bool:
-        """Return whether a key cannot be part of a number, and so remains one of the app."""
-        return len(key) == 1 or key in _SIGNS
+    def on_key(self, event: events.Key) -> None:
+        """Say how to leave the field to somebody who presses a letter, which is no key here."""
+        if event.character and event.character.isalpha() and isinstance(self.app, ActionHost):
+            self.app.say("This field takes a number: escape leaves it, and letters are keys again")
 
 
 STEP, LONG_STEP = 1, 10

@@ -9,7 +9,7 @@ from textual.pilot import Pilot
 from textual.widgets import Input, OptionList
 
 from tests.app.analyser.test_screen import text_of
-from tests.app.app_help import LOGS, open_lab, program, until
+from tests.app.app_help import LOGS, notices, open_lab, program, until
 from tests.cases import cases
 from tuisim.analysis.source import LogRequest
 from tuisim.app.action import fitting
@@ -103,12 +103,19 @@ def test_the_pause_key_says_what_it_does_now(now: Situation, playing: bool, word
     assert pause.footer == word
 
 
-async def test_a_field_for_numbers_names_the_letters_that_are_keys() -> None:
-    async with open_lab("pass\n", size=(80, 24)) as (pilot, _):
+async def test_letters_and_signs_do_nothing_in_a_field_for_numbers() -> None:
+    async with open_lab("pass\n", size=(80, 24)) as (pilot, app):
         await pilot.press("X")
         await until(pilot, lambda: isinstance(pilot.app.focused, NumberInput))
-        await until(pilot, lambda: "esc leave" in last_line(pilot) and "R run" in last_line(pilot))
-        assert last_line(pilot).rstrip().split("q quit")[0].endswith("? help ")
+        await until(pilot, lambda: last_line(pilot).startswith(" enter apply esc leave tab next "))
+        assert "R run" not in last_line(pilot)
+        pose = app.run_controller.pose
+        await pilot.press("7", "R", "m", "space", "question_mark", "q", "5")
+        field = pilot.app.focused
+        assert isinstance(field, NumberInput)
+        assert field.value == "75"
+        assert (app.run_controller.run_id, app.run_controller.pose) == ("", pose)
+        assert any("This field takes a number" in words for words in notices(app))
 
 
 @pytest.mark.parametrize(

@@ -53,7 +53,7 @@ class Noise(EntryPanel):
                 yield Static("0", id=f"{kind}-number", classes="number", markup=False)
         with Horizontal(classes="field"):
             yield Label("Seed", markup=False)
-            yield NumberInput("0", id="seed", compact=True, select_on_focus=True)
+            yield NumberInput("0", id="seed")
         yield Static(self.USE, id="message", markup=False)
 
     def begin(self) -> None:

@@ -58,7 +58,7 @@ class Positioning(FormPanel):
         for field, value in _FIELDS.items():
             with Horizontal(classes="field"):
                 yield Label(f"{value.label}, {value.unit}", markup=False)
-                yield NumberInput(id=field, compact=True, select_on_focus=True)
+                yield NumberInput(id=field)
         with Horizontal(classes="links"):
             yield Static(action_link(self.app, "home", "Start"))
             yield Static(action_link(self.app, "random", "Random"))
