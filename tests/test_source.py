@@ -12,7 +12,7 @@ from tuisim.app.editor.text_file import read_text
 from tuisim.config.program_file import parse_program, read_program
 from tuisim.errors import ConfigError
 from tuisim.runs.child.process import stuck_line
-from tuisim.source import source_lines
+from tuisim.source import find_code_line, source_lines
 
 NO_ENDS = "\x0b \x0c \x1c \x1d \x1e \x85 \u2028 \u2029"
 ODD = f"# \x0c\n\x0cx = '''{NO_ENDS}'''\nprint('A: 1')\nz = 1 / 0\n"
@@ -68,3 +68,14 @@ def test_a_stuck_line_is_found_whatever_the_program_is_called(tmp_path: Path, na
         f'Current thread 0x1 (most recent call first):\n  File "{shown}", line 7 in f\n'
     )
     assert stuck_line(tmp_path, name) == 7
+
+
+@pytest.mark.parametrize(
+    "line, code",
+    [(1, 4), (2, 4), (3, 4), (4, 4), (5, 0)],
+    ids=["magic", "comment", "blank", "code", "end"],
+)
+def test_a_breakpoint_is_on_the_next_line_of_code(line: int, code: int) -> None:
+    assert (
+        find_code_line(["%%sim_magic", "  # words", "", "x = 1  # more", "# the end"], line) == code
+    )

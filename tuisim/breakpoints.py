@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import ast
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 from tuisim.core.conditions import (
     ValueCondition,
@@ -19,7 +19,8 @@ from tuisim.core.conditions import (
 )
 from tuisim.core.spec import RunSpec
 from tuisim.data_class import dataclass
-from tuisim.errors import ConfigError, see_page
+from tuisim.errors import ConfigError, counted, see_page
+from tuisim.source import find_code_line
 
 FORMS = (
     ("12", "line 12 is about to run, or the next line of code if 12 is blank or a comment"),
@@ -110,6 +111,19 @@ def parse_break(text: str, run: RunSpec | None = None) -> Breakpoint:
 def parse_breakpoints(texts: Iterable[str], run: RunSpec | None = None) -> tuple[Breakpoint, ...]:
     """Return the breakpoints of several texts; see `parse_break`."""
     return tuple(parse_break(text, run) for text in texts)
+
+
+def check_line(one: Breakpoint, lines: Sequence[str]) -> None:
+    """Check that a breakpoint is on a line of a program, or above one, that can run.
+
+    Raises:
+        ConfigError: it is not.
+    """
+    line = break_line_of(one)
+    if line and not find_code_line(lines, line):
+        last = len(lines)
+        why = f"the program has no line {line}" if line > last else f"no code follows line {line}"
+        raise _refuse(one.text, why, f"it has {counted(last, 'line')}")
 
 
 def break_lines(breaks: Iterable[Breakpoint]) -> dict[int, Breakpoint]:

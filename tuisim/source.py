@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from tuisim.data_class import dataclass
@@ -117,6 +117,14 @@ class Program:
         import hashlib
 
         return hashlib.sha256(self.text.encode("utf-8", "surrogatepass")).hexdigest()
+
+
+def find_code_line(lines: Sequence[str], line: int) -> int:
+    """Return a line, or the next one below it, that is more than a comment, a magic or blank; from 1, 0 if none is."""
+    rest = enumerate(lines[line - 1 :], line)
+    return next(
+        (at for at, text in rest if text.strip() and not text.lstrip().startswith(("#", "%"))), 0
+    )
 
 
 def source_lines(text: str) -> list[str]:

@@ -57,6 +57,23 @@ def test_a_break_may_end_the_run(program: str, capsys: pytest.CaptureFixture[str
     assert ": stopped · 0.150 s" in err
 
 
+@pytest.mark.parametrize(
+    "line, said",
+    [
+        ("99", "'99': the program has no line 99 (it has 9 lines)"),
+        ("8 if total > 1", "'8 if total > 1': no code follows line 8 (it has 9 lines)"),
+    ],
+)
+def test_a_break_on_no_line_of_code_is_refused(
+    line: str, said: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "sum.py"
+    path.write_text(PROGRAM + "\n# the end\n", encoding="utf-8")
+    assert run_command(["run", str(path), "--break", line]) == 2
+    out, err = capsys.readouterr()
+    assert (out, said in err) == ("", True)
+
+
 def test_a_break_for_another_robot_is_refused(
     program: str, capsys: pytest.CaptureFixture[str]
 ) -> None:

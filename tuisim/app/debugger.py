@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from tuisim import protocol
 from tuisim.app.editor.text_file import file_of_program, write_json
-from tuisim.app.editor.text_lines import code_line, same_lines
+from tuisim.app.editor.text_lines import same_lines
 from tuisim.app.snapshot import PauseView
 from tuisim.breakpoints import Breakpoint, LineBreak, break_line_of, break_lines, moved, parse_break
 from tuisim.config.files import MAX_FILE_BYTES
@@ -18,7 +18,7 @@ from tuisim.errors import ConfigError, TuisimError
 from tuisim.protocol import UNKNOWN_ORDINAL, Inspected, Message, Paused, PauseReason
 from tuisim.regular_file import read_regular
 from tuisim.runs.replay_debugger import Position, ReplayDebugger
-from tuisim.source import source_lines
+from tuisim.source import find_code_line, source_lines
 
 if TYPE_CHECKING:
     from tuisim.app.editor.text_lines import LineMap
@@ -144,6 +144,11 @@ class DebugController:
         """The breakpoints as sent to the run."""
         return tuple(one.written() for one in self.breaks)
 
+    @property
+    def lines(self) -> list[str]:
+        """The lines of the edited text."""
+        return source_lines(self._text)
+
     def program_changed(self, program: Program | None) -> None:
         """Update the breakpoints for another program or another text."""
         key = program.file if program else ""
@@ -204,7 +209,7 @@ class DebugController:
             line: From 1.
             which: Which line that is, in words.
         """
-        at = line if line in break_lines(self.breaks) else code_line(source_lines(self._text), line)
+        at = line if line in break_lines(self.breaks) else find_code_line(self.lines, line)
         if not at:
             self._app.say(f"No breakpoint: there is no code from line {line} on")
             return

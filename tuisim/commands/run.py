@@ -6,7 +6,7 @@ import sys
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
-from tuisim.breakpoints import parse_breakpoints, parse_watch
+from tuisim.breakpoints import check_line, parse_breakpoints, parse_watch
 from tuisim.commands import exit_status
 from tuisim.commands.echo import Progress, echo_error, echo_written, is_watched, tell
 from tuisim.commands.exit_status import signals_handled
@@ -183,11 +183,12 @@ def check_breaks(
     """Check breakpoints and watches before anything is run.
 
     Raises:
-        ConfigError: a text is not a breakpoint, or not valid for a program's robot; a watch is not an expression,
+        ConfigError: a text is not a breakpoint, or not valid for a program or its robot; a watch is not an expression,
             or there are watches without breakpoints.
     """
     for one in prepared:
-        parse_breakpoints(texts, one.spec)
+        for entry in parse_breakpoints(texts, one.spec):
+            check_line(entry, source_lines(one.program.text if one.program else ""))
     for watch in watches:
         parse_watch(watch)
     if watches and not texts:

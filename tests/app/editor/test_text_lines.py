@@ -7,16 +7,7 @@ from collections.abc import Callable
 import pytest
 
 from tuisim.app.editor import text_lines
-from tuisim.app.editor.text_lines import MOST_COMPARED, LineMap, code_line
-
-
-@pytest.mark.parametrize(
-    "line, code",
-    [(1, 4), (2, 4), (3, 4), (4, 4), (5, 0)],
-    ids=["magic", "comment", "blank", "code", "end"],
-)
-def test_a_breakpoint_is_on_the_next_line_of_code(line: int, code: int) -> None:
-    assert code_line(["%%sim_magic", "  # words", "", "x = 1  # more", "# the end"], line) == code
+from tuisim.app.editor.text_lines import MOST_COMPARED, LineMap
 
 
 @pytest.mark.parametrize(

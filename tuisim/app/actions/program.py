@@ -104,7 +104,12 @@ def list_breaks(context: ActionContext) -> None:
     from tuisim.app.dialogs.entries import BreaksDialog
 
     context.app.push_screen(
-        BreaksDialog(context.debugger.breaks, context.runs.spec, context.debugger.set_breaks)
+        BreaksDialog(
+            context.debugger.breaks,
+            context.runs.spec,
+            context.debugger.set_breaks,
+            context.debugger.lines,
+        )
     )
 
 

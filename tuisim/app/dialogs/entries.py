@@ -16,7 +16,7 @@ from textual.widgets.option_list import Option
 from tuisim.app.dialogs.dialog import Dialog, Result, name_and_title
 from tuisim.app.dialogs.question import LineInput, form_list
 from tuisim.app.setup.poses import MAX_NAME, delete_pose, load_poses, save_pose
-from tuisim.breakpoints import FORMS, Breakpoint, parse_break, parse_watch
+from tuisim.breakpoints import FORMS, Breakpoint, check_line, parse_break, parse_watch
 from tuisim.core.geometry import Pose, shown_heading_deg
 from tuisim.core.sensors import column_names
 from tuisim.core.spec import RunSpec
@@ -153,13 +153,27 @@ class BreaksDialog(_TextList[Breakpoint]):
     HINT: str = "Enter changes · Space switches · Delete removes · Escape closes"
     PLACEHOLDER: ClassVar[str] = "new breakpoint, such as 12 if x > 3"
 
+    def __init__(
+        self,
+        entries: Sequence[Breakpoint],
+        run: RunSpec,
+        changed: Callable[[tuple[Breakpoint, ...]], None],
+        lines: Sequence[str] = (),
+    ) -> None:
+        """Create the dialog for a program with these lines; none if there is no program."""
+        super().__init__(entries, run, changed)
+        self._lines = lines
+
     def explanation(self) -> ComposeResult:
         """Return the syntax of breakpoints."""
         yield form_list(FORMS)
 
     def parse(self, text: str) -> Breakpoint:
         """Parse a breakpoint."""
-        return parse_break(text, self.run_spec)
+        entry = parse_break(text, self.run_spec)
+        if self._lines:
+            check_line(entry, self._lines)
+        return entry
 
     def written(self, entry: Breakpoint) -> str:
         """Return the text of a breakpoint."""

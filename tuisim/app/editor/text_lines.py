@@ -74,14 +74,6 @@ def places(lines: Sequence[str], wanted: str) -> list[tuple[int, int]]:
     ]
 
 
-def code_line(lines: Sequence[str], line: int) -> int:
-    """Return a line, or the next one below it, that is more than a comment, a magic or blank; from 1, 0 if none is."""
-    rest = enumerate(lines[line - 1 :], line)
-    return next(
-        (at for at, text in rest if text.strip() and not text.lstrip().startswith(("#", "%"))), 0
-    )
-
-
 def differing_lines(one: str, other: str) -> int:
     """Return how many lines differ between two texts."""
     matcher = SequenceMatcher(None, source_lines(one), source_lines(other), autojunk=False)
