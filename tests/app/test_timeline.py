@@ -303,6 +303,17 @@ async def test_the_dialog_says_what_is_wrong_and_the_keys_go_from_sample_to_samp
         assert app.run_controller.timeline.at == ticks[1]
 
 
+async def test_a_refusal_in_a_low_terminal_leaves_the_keys_in_view() -> None:
+    async with a_run(size=(80, 24)) as (pilot, app):
+        await pilot.press("g")
+        app.screen.query_one(Input).value = "nowhere"
+        await pilot.press("enter")
+        await until_shown(pilot, "'nowhere' is not an instant")
+        frame = app.screen.query_one(".dialog").region
+        assert frame.bottom < app.size.height
+        assert "enter apply" in screen_text(app).splitlines()[-1]
+
+
 def test_a_timeline_without_a_run_stands_still() -> None:
     timeline = Timeline()
     timeline.step(-1)

@@ -261,7 +261,7 @@ class LinePrompt(Dialog[bool]):
         is_brief = self._sees_below and self.app.size.height < _LOW
         self.set_class(is_brief, "-brief")
         if is_brief:
-            yield Static(" · ".join(form for form, _ in self._forms), markup=False)
+            yield Static(" · ".join(form for form, _ in self._forms), id="forms", markup=False)
         else:
             yield form_list(self._forms)
 
@@ -276,6 +276,8 @@ class LinePrompt(Dialog[bool]):
             self._do(event.value.strip())
         except TuisimError as error:
             self.say(str(error), wrong=True)
+            # What is wrong takes their place, so that the dialog covers no more than before.
+            self.query("#forms").remove()
             # The next key replaces the line, an arrow key corrects it.
             event.input.action_select_all()
             return
