@@ -128,3 +128,16 @@ def test_what_is_counted_begins_again_at_a_reset(base: DriveBase) -> None:
     assert base.angle() == pytest.approx(30, abs=0.2)
     base.straight(-50)
     assert base.distance() == -30
+
+
+@pytest.mark.parametrize("port", [Port.A, Port.B])
+def test_a_motor_that_is_made_anew_leaves_its_drive_base(base: DriveBase, port: Port) -> None:
+    base.drive(100, 0)
+    wait(500)
+    Motor(port, reset_angle=False)
+    assert not base._base.active
+    base.straight(50)
+    assert base._base.active
+    for _ in range(10):
+        wait(100)
+    assert base.done()

@@ -94,8 +94,8 @@ class DriveBase:
 
     @property
     def active(self) -> bool:
-        """Whether it moves or holds its motors."""
-        return self.left.guide is self
+        """Whether it moves or holds its motors, both of them."""
+        return self.left.guide is self and self.right.guide is self
 
     def millis_at(self, now_us: int) -> tuple[int, int]:
         """Return sum and difference, in thousandths of a count."""
@@ -132,7 +132,7 @@ class DriveBase:
         Raises:
             ValueError: the usual speed is 0, or the move takes too long.
         """
-        self._begin()
+        self._begin(now_us)
         speed, acceleration, turn_rate, turn_acceleration = self.usual
         _move_by(self.distance, now_us, self._total, distance_mm, speed, acceleration)
         _move_by(self.heading, now_us, self._difference, turn_deg, turn_rate, turn_acceleration)
@@ -146,7 +146,7 @@ class DriveBase:
         runs = self.active and all(
             motor.mode == FOREVER and not motor.blocked_ticks for motor in self.motors
         )
-        self._begin()
+        self._begin(now_us)
         distance, heading = self.distance, self.heading
         ours, other = distance.settings, heading.settings
         distance.run(now_us, self._total, ours.counts(speed_mm_s), ours.acceleration)
@@ -170,9 +170,12 @@ class DriveBase:
         left, right = self.left.measured(now_us), self.right.measured(now_us)
         return Segment(now_us, left.milli - right.milli, left.rate - right.rate, 0)
 
-    def _begin(self) -> None:
-        """Make the controllers passive unless they move the motors."""
+    def _begin(self, now_us: int) -> None:
+        """Make the controllers passive unless they move both motors; let go of one that is left."""
         if not self.active:
+            for motor in self.motors:
+                if motor.guide is self:
+                    motor.run_freely(now_us, None)
             self.distance.release()
             self.heading.release()
 
