@@ -65,7 +65,8 @@ class CommandsWriter(MappedWriter):
         count = self._count
         if count < self._room or self._extend(count):
             at = HEADER_BYTES + count * COMMAND_RECORD.size
-            _pack_into(self._map, at, time_ns, line, part, call, *values, *_PADS[len(values)])
+            padded = values + _PADS[len(values)]
+            _pack_into(self._map, at, time_ns, line, part, call, *padded)
         self._count = self._length[0] = count + 1
 
     def _extend(self, count: int) -> bool:

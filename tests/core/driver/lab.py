@@ -20,7 +20,6 @@ from tuisim.core.driver.motor import (
     Command,
     Constant,
     DriverMotor,
-    MotorCommand,
     SetPoints,
     Setting,
 )
@@ -141,7 +140,7 @@ class Bench:
                 self.set_points[number][name] = StopAction(value)
             case "command":
                 set_points = SetPoints(**self.set_points[number])
-                motor.obey(MotorCommand(now_ms * MS, number, Command(value), set_points))
+                motor.obey(now_ms * MS, Command(value), set_points)
                 if value == "reset":
                     self.signs[number], self.set_points[number] = 1, {}
             case "polarity":
@@ -178,9 +177,9 @@ class Bench:
 
 def tell(motor: DriverMotor, time_ns: int, setting: Setting, value: Constant | int) -> None:
     """Set something that takes effect at once."""
-    motor.obey(MotorCommand(time_ns, 0, setting, value))
+    motor.obey(time_ns, setting, value)
 
 
 def give(motor: DriverMotor, time_ns: int, command: Command, **setpoints: Any) -> None:
     """Set values and give a command; values that are not set stay."""
-    motor.obey(MotorCommand(time_ns, 0, command, motor.active._replace(**setpoints)))
+    motor.obey(time_ns, command, motor.active._replace(**setpoints))

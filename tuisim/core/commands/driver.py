@@ -10,7 +10,6 @@ from tuisim.core.commands.calls import Call, find_index
 from tuisim.core.driver.motor import (
     Command,
     Constant,
-    MotorCommand,
     SetPoints,
     Setting,
 )
@@ -34,16 +33,10 @@ CONTROLS = ("speed", "hold")
 CONSTANTS = ("kp", "ki", "kd")
 
 
-def _obey(
-    sim: Simulation,
-    time_ns: int,
-    part: int,
-    call: Command | Setting,
-    values: SetPoints | Constant | int,
-) -> None:
+def _find_motor(sim: Simulation, part: int) -> SimulatedMotor:
     motor = sim.motors[part]
     assert isinstance(motor, SimulatedMotor)
-    motor.obey(MotorCommand(time_ns, part, call, values))
+    return motor
 
 
 @lru_cache(MAX_SET_POINTS)
@@ -57,23 +50,24 @@ def build_effect(command: Command) -> Effect:
     """Return what a command of the driver does, with all set points."""
 
     def obey(sim: Simulation, time_ns: int, part: int, values: tuple[float, ...]) -> None:
-        _obey(sim, time_ns, part, command, _build_set_points(values))
+        _find_motor(sim, part).obey(time_ns, command, _build_set_points(values))
 
     return obey
 
 
 def set_duty(sim: Simulation, time_ns: int, part: int, values: tuple[float, ...]) -> None:
     """Set the duty, which takes effect at once after `run-direct`."""
-    _obey(sim, time_ns, part, Setting.DUTY, int(values[0]))
+    _find_motor(sim, part).obey(time_ns, Setting.DUTY, int(values[0]))
 
 
 def renumber(sim: Simulation, time_ns: int, part: int, values: tuple[float, ...]) -> None:
     """Make the present position another one."""
-    _obey(sim, time_ns, part, Setting.POSITION, int(values[0]))
+    _find_motor(sim, part).obey(time_ns, Setting.POSITION, int(values[0]))
 
 
 def set_constant(sim: Simulation, time_ns: int, part: int, values: tuple[float, ...]) -> None:
     """Set a constant of a controller: the numbers of both, and the value."""
     control = CONTROLS[find_index(values, 0, len(CONTROLS))]
     name = CONSTANTS[find_index(values, 1, len(CONSTANTS))]
-    _obey(sim, time_ns, part, Setting.CONSTANT, Constant(control, name, int(values[2])))
+    constant = Constant(control, name, int(values[2]))
+    _find_motor(sim, part).obey(time_ns, Setting.CONSTANT, constant)

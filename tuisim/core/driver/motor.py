@@ -102,17 +102,6 @@ class Constant(NamedTuple):
     value: int
 
 
-class MotorCommand(NamedTuple):
-    """All that a program can do to a motor."""
-
-    time_ns: int
-    motor: int
-    """Its number: the left motor, the right one, then the further ones."""
-    call: Command | Setting
-    values: SetPoints | Constant | int
-    """The set points of a command; the constant, duty or position that is set."""
-
-
 @dataclass(frozen=True, slots=True)
 class Ramp:
     """A change of the speed setpoint."""
@@ -334,9 +323,16 @@ class DriverMotor(MotorDriver):
             self.leave_roll()
         self.is_at_rest = False
 
-    def obey(self, command: MotorCommand) -> None:
-        """Do what a program wants, after all steps and timers that are due."""
-        time_ns, _, call, values = command
+    def obey(
+        self, time_ns: int, call: Command | Setting, values: SetPoints | Constant | int
+    ) -> None:
+        """Do what a program wants, after all steps and timers that are due.
+
+        Args:
+            time_ns: When.
+            call: A command, or what is set.
+            values: The set points of a command; the constant, duty or position that is set.
+        """
         if isinstance(values, SetPoints):
             self._command(time_ns, call, values)
         elif isinstance(values, Constant):
