@@ -216,6 +216,18 @@ def test_facets_without_room_are_not_upside_down() -> None:
         assert all(plot.top < plot.bottom for plot in laid_out(chart, 60, height).plots)
 
 
+def test_a_chart_without_samples_says_so_in_its_middle() -> None:
+    line = Line("a", RAMP[:0], RAMP[:0], 0)
+    drawing = laid_out(ChartData("", (line,), (0.0, 49.0), "time (s)"), 400, 300)
+    (frame,), (words,) = (
+        drawing.plots,
+        [one for one in drawing.shapes if isinstance(one, Words) and one.text == "no samples here"],
+    )
+    assert (words.x - frame.left, words.y - frame.top) == pytest.approx(
+        (frame.right - words.x, frame.bottom - words.y)
+    )
+
+
 def two_facets() -> Drawing:
     lines = tuple(Line(name, RAMP, RAMP * 2, at) for at, name in enumerate("ab"))
     return laid_out(ChartData("", lines, (0.0, 49.0), "time (s)", facets=True), 400, 300)

@@ -48,6 +48,14 @@ def test_equal_values_have_no_spread() -> None:
     assert (found.mean, found.std) == (0.1, 0.0)
 
 
+def test_traces_end_where_the_longest_ends() -> None:
+    traces = Traces()
+    assert traces.end_s() == 0
+    traces.append("a", [0.0, 1.0, 2.0], [5.0, 5.0, 5.0])
+    traces.append("b", [0.0, 7.0, 9.0, 12.0], [1.0, 2.0, 3.0, 4.0])
+    assert traces.end_s() == 12
+
+
 def test_no_points_at_all() -> None:
     assert not len(Pyramid(np.array([np.nan]), np.array([1.0])).points((0.0, 1.0), 10)[0])
 

@@ -10,7 +10,7 @@ from numpy.testing import assert_allclose
 from tests.cases import cases
 from tests.logs.test_signals import NAN, column
 from tuisim.errors import LogError
-from tuisim.logs.expressions import FUNCTIONS, evaluate
+from tuisim.logs.expressions import FUNCTIONS, MAX_CHARS, evaluate
 
 COLUMNS = {"left": column(1, 2, 3), "right": column(4, 0, 6), "odd name": column(7, 8, 9)}
 
@@ -71,6 +71,13 @@ REFUSED = {
     "an assignment": "(left := 1)",
     "f-string": "f'{left}'",
 }
+
+
+def test_an_expression_may_be_as_long_as_is_said() -> None:
+    text = f"{'left':{MAX_CHARS}}"
+    assert [*evaluate(text, COLUMNS)] == [1, 2, 3]
+    with pytest.raises(LogError, match=f"{MAX_CHARS + 1} characters"):
+        evaluate(f"{text} ", COLUMNS)
 
 
 @cases("text", REFUSED)

@@ -8,7 +8,7 @@ import pytest
 from tuisim.core.css_colors import Rgb
 from tuisim.core.geometry import Pose
 from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, RobotSpec
-from tuisim.scene.floor import find_grid_rgb
+from tuisim.scene.floor import draw_grid, find_grid_rgb
 from tuisim.scene.painter import ScenePainter, SceneState
 from tuisim.scene.pen import PenTrace
 from tuisim.scene.view import Viewport
@@ -33,6 +33,17 @@ def test_a_floor_has_the_colour_of_the_mat_under_a_faint_grid(floor_rgb: Rgb) ->
     assert (picture[line_y, 5:50] == grid_rgb).any()
     assert (picture[line_y + 3, line_x + 3] == floor_rgb).all()
     assert (picture[150, 200] == floor_rgb).all()
+
+
+@pytest.mark.parametrize("mm_per_px", [0.5, 2.0, 10.0, 30.0])
+def test_lines_of_a_grid_are_some_cells_apart(mm_per_px: float) -> None:
+    view = Viewport(400, 300, mm_per_px, 3000.0, -1000.0)
+    picture: Pixels = np.zeros((300, 400, 3), np.uint8)
+    draw_grid(picture, view, (9, 9, 9))
+    columns = np.flatnonzero(picture[:, :].all(axis=(0, 2)))
+    apart_mm = np.diff(columns) * mm_per_px
+    assert len(columns) and (np.abs(apart_mm - apart_mm[:1]) <= 2 * mm_per_px).all()
+    assert (np.diff(columns) >= 5).all()
 
 
 def test_without_colours_a_floor_has_no_grid() -> None:

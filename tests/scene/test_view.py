@@ -8,7 +8,9 @@ from itertools import pairwise
 import pytest
 
 from tuisim.core.geometry import Pose
-from tuisim.scene.view import Area, Viewport, following, whole_field
+from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
+from tuisim.scene.view import ZOOMS, Area, Viewport, following, whole_field
+from tuisim.terminal.pixels import SQUARE, CellPoints
 
 SIZE = (76, 38)
 WHOLE = whole_field(*SIZE)
@@ -51,6 +53,25 @@ def test_a_square_from_the_middle_stays_in_view() -> None:
     ]
     view = follow(*steps)
     assert all(is_seen(view, *corner) for corner in corners)
+
+
+@pytest.mark.parametrize("cell", [SQUARE, CellPoints(2, 4), CellPoints(1, 1)], ids=str)
+@pytest.mark.parametrize("zoom", ZOOMS[1:])
+@pytest.mark.parametrize("x_mm", [0, 1200, FIELD_WIDTH_MM])
+@pytest.mark.parametrize("y_mm", [0, 570, FIELD_HEIGHT_MM])
+def test_a_closer_view_shows_nothing_beside_the_field(
+    x_mm: float, y_mm: float, zoom: int, cell: CellPoints
+) -> None:
+    view = following(160, 80, zoom, Pose(x_mm, y_mm, 0), None, cell)
+    right_mm, lower_mm = view.to_mm(160, 80)
+    for low_mm, high_mm, place_mm, field_mm in (
+        (view.left_mm, right_mm, x_mm, FIELD_WIDTH_MM),
+        (lower_mm, view.top_mm, y_mm, FIELD_HEIGHT_MM),
+    ):
+        rim_mm = 2 * view.mm_per_px
+        assert low_mm - rim_mm <= place_mm <= high_mm + rim_mm
+        if high_mm - low_mm < field_mm:
+            assert -rim_mm <= low_mm and high_mm <= field_mm + rim_mm
 
 
 def test_a_damaged_pose_leaves_the_view_as_it_is() -> None:

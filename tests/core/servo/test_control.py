@@ -80,3 +80,12 @@ def test_a_move_that_was_held_goes_on_later() -> None:
             assert held.rate(now_us) == free.rate(before_us)
             end_us = free.segment_end_us(before_us)
             assert held.segment_end_us(now_us) == (None if end_us is None else end_us + HELD_US)
+
+
+def test_a_motion_is_stalled_once_its_time_is_over() -> None:
+    control = build_controller()
+    stall_us = control.settings.stall_time_ms * MS_US
+    control.run(0, rest, 500, ACCELERATION)
+    for passed_us, is_stalled in ((stall_us - MS_US, False), (MS_US, True)):
+        control.fall_behind(2 * stall_us, passed_us, FAR_MILLI, 0)
+        assert control.stalled is is_stalled

@@ -40,7 +40,7 @@ def draw_move(seed: int) -> tuple[Segment, int, int, int]:
     """Return where a move begins, its rate, its acceleration and its target."""
     chance = random.Random(seed)
     rate = chance.choice((0, chance.randrange(-FASTEST, FASTEST)))
-    start = Segment(chance.randrange(9) * MS_US, chance.randrange(-90_000, 90_000), rate, 0)
+    start = Segment(chance.randrange(4_000_000) * MS_US, chance.randrange(-90_000, 90_000), rate, 0)
     wanted = chance.choice((-1, 1)) * chance.randrange(20, 1200)
     target = chance.choice((chance.randrange(-200, 200), chance.randrange(-3000, 3000)))
     return start, wanted, chance.randrange(800, 4000), target
@@ -65,6 +65,7 @@ def test_a_move_for_a_time_ends_with_it(seed: int) -> None:
     assert trajectory.end.start_us == start.start_us + time_us
     assert trajectory.end[2:] == (0, 0)
     if time_us > 4 * FASTEST * 1_000_000 // acceleration:
+        assert trajectory.first[:3] == start[:3]
         assert abs(trajectory.even.rate - rate) <= max(0, abs(rate) - FASTEST)
 
 
@@ -73,6 +74,7 @@ def test_a_move_without_an_end_reaches_its_rate(seed: int) -> None:
     start, rate, acceleration, _ = draw_move(seed)
     trajectory = endless_move(start, rate, acceleration, FASTEST)
     check_joints(trajectory)
+    assert trajectory.first[:3] == start[:3]
     assert abs(trajectory.even.rate - rate) <= max(0, abs(rate) - FASTEST)
 
 
