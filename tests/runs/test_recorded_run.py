@@ -38,6 +38,18 @@ def index_of(folder: Path, rows: list[tuple[int, Stream, str]]) -> RowIndex:
     return index
 
 
+def test_the_line_of_a_sample_is_that_of_the_last_one_in_its_tick(tmp_path: Path) -> None:
+    rows = [(4, "a: 1", 2), (5, "a: 2", 3), (5, "b: 1", 4), (5, "a: 3", 5), (6, "a", 6)]
+    writer = OutputWriter(tmp_path)
+    for tick, text, line in rows:
+        writer.write(text.encode(), tick, tick * 10_000_000, line, Stream.STDOUT)
+    writer.close()
+    index = RowIndex(OutputView(tmp_path))
+    index.take(9)
+    assert [index.line_of("a", tick) for tick in (3, 4, 5, 6)] == [0, 2, 5, 0]
+    assert [index.line_of("b", tick) for tick in (4, 5)] == [0, 4]
+
+
 def test_rows_are_found_by_tick(tmp_path: Path) -> None:
     leds = [led_row(dict.fromkeys(LED_NAMES, light)) for light in (0, 9)]
     index = index_of(
