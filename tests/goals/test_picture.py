@@ -21,6 +21,27 @@ BANDS = world(100, 500, background="Grey_bands")
 TO_BLACK = (ahead(1400, line=3), wait(2, line=4))
 """8 s to x 1500 on the black band, then 2 s on it."""
 
+
+@pytest.mark.parametrize(
+    "start",
+    [
+        (FIELD_WIDTH_MM - 12, 500, 0),
+        (500, FIELD_HEIGHT_MM - 12, 90),
+        (12, 500, 180),
+        (500, 12, -90),
+    ],
+)
+def test_what_is_off_the_mat_is_black(
+    start: tuple[float, float, float], home: Path, tmp_path: Path
+) -> None:
+    run = Run(RunStore(), world(*start), "")
+    run.do([drive(36, 36, 1.5)])
+    goals = "[[goal]]\nname = 'it'\nfollow = { point_mm = [0, 0], darker_than = 1 }\n"
+    (found,) = judge(goals_of(tmp_path, goals), run.end())
+    # 12 mm of 26 are on the white mat.
+    assert "was on the line for 54.3 % of the time" in found.reason
+
+
 FOLLOWED = {
     "sensor": ("sensors = 'left', darker_than = 50, share = 0.2", "met", ""),
     "too short": (
