@@ -55,3 +55,21 @@ def test_the_spread_is_that_of_the_samples(make: Callable[[int], NDArray[np.floa
             nearest = np.argsort(np.abs(part - plateau.level))[: len(part) - plateau.strays]
             assert plateau.spread == pytest.approx(part[nearest].std(), abs=0.05)
             assert plateau.strays <= len(part) / 3
+
+
+@pytest.mark.parametrize("samples", [30, 50, 100, 400])
+def test_levels_at_both_ends_of_a_slow_slope_are_told(samples: int) -> None:
+    values = np.array([10.0] * 20 + ramp(samples, 10.0, 90.0) + [90.0] * 20)
+    found = plateaus(values)
+    # The first steps of the slowest slope are no farther from the level than the smallest step.
+    assert [plateau.level for plateau in found] == pytest.approx([10.0, 90.0], abs=0.02)
+    assert max(plateau.spread for plateau in found) < 0.1
+
+
+@pytest.mark.parametrize("noise", [0.0, 0.5])
+def test_the_top_between_two_slopes_is_a_level(noise: float) -> None:
+    values = np.array(ramp(60, 0.0, 177.0) + [180.0] * 20 + ramp(40, 176.0, 20.0))
+    values += np.random.default_rng(3).normal(0.0, noise, len(values))
+    (top,) = plateaus(values)
+    assert top.level == pytest.approx(180.0, abs=noise)
+    assert top.samples == pytest.approx(20, abs=1 + 4 * noise)

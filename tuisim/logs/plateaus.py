@@ -37,9 +37,10 @@ from tuisim.logs.stillness import (
     FIELDS,
     Found,
     Ground,
+    add_apart,
     drop_moving,
+    find_still_parts,
     go_one_way,
-    keep_still,
     measure,
     measure_noise_of_slopes,
     read_spans,
@@ -148,18 +149,15 @@ def plateaus(values: FloatArray) -> list[Plateau]:
     short_levels = _steps(np.abs(np.diff(clean))).any()
     pieces = _join_pieces(clean, cut, least_step, sigma, has_strays=not short_levels)
     found = measure(clean, pieces[lengths_of(pieces) >= MIN_SAMPLES], sigma)
-    found = keep_still(clean, found, cut, ground)
+    parts = find_still_parts(clean, found, cut, ground)
+    found = drop_moving(clean, found, ground)
     if not short_levels:
         found = found[~_are_ramps(clean, found, sigma)]
         found = found[~_are_edges(found)]
         # With noise, two samples of about the same value are no level, except at the ends of a log.
         at_an_end = (found["start"] == 0) | (found["stop"] == len(clean))
         found = found[at_an_end | (lengths_of(read_spans(found)) >= MIN_SAMPLES + (noise > 0.0))]
-    if not len(found):
-        return []
-    # After growing, two may be separated by no more than a stray.
-    spans = joined(clean, _grown(clean, read_spans(found), sigma), least_step, sigma)
-    found = drop_moving(clean, _measure_again(clean, spans, found, sigma), ground)
+    found = _settle(clean, found, parts, ground, least_step)
     found = _with_ends(clean, found, max(least_step, FAR * sigma))
     found["start"], found["stop"] = finite[found["start"]], finite[found["stop"] - 1] + 1
     return list(map(Plateau._make, found.tolist()))
@@ -178,6 +176,18 @@ def _join_pieces(
         if len(pieces) == count:
             break
     return pieces
+
+
+def _settle(
+    values: FloatArray, found: Found, parts: Found, ground: Ground, least_step: float
+) -> Found:
+    """Return plateaus that have grown to their ends, and the still parts of slopes."""
+    if len(found):
+        # After growing, two may be separated by no more than a stray.
+        grown = _grown(values, read_spans(found), ground.sigma)
+        spans = joined(values, grown, least_step, ground.sigma)
+        found = drop_moving(values, _measure_again(values, spans, found, ground.sigma), ground)
+    return add_apart(found, parts)
 
 
 def _levels(values: FloatArray) -> tuple[float, float]:

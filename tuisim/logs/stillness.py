@@ -164,25 +164,50 @@ def _compare_neighbours(part: FloatArray, sigma: float) -> FloatArray:
     return variance
 
 
-def keep_still(values: FloatArray, found: Found, cut: Pieces, ground: Ground) -> Found:
-    """Return the pieces that have a level, and instead of the others the parts of them that have one.
+def find_still_parts(values: FloatArray, found: Found, cut: Pieces, ground: Ground) -> Found:
+    """Return the parts that stand still of pieces that have no level, such as the top between two slopes.
 
     Args:
         values: The log.
         found: Its pieces.
-        cut: The parts of which they were joined.
+        cut: The parts of which they were joined, without gaps between them.
         ground: What they are judged by.
     """
-    moving = _are_moving(values, found, ground)
-    parts = cut[lengths_of(cut) >= NEAR_SAMPLES]
-    owners = np.searchsorted(found["start"], parts[:, 0], side="right") - 1
-    parts = parts[(owners >= 0) & moving[owners]] if len(found) else parts[:0]
-    whole = found[np.searchsorted(found["start"], parts[:, 0], side="right") - 1]
-    rise = np.abs(whole["drift"]) / lengths_of(read_spans(whole)) * lengths_of(parts)
+    moving = found[_are_moving(values, found, ground)]
+    if not len(moving):
+        return moving
+    owners = np.maximum(np.searchsorted(moving["start"], cut[:, 0], side="right") - 1, 0)
+    chosen = (moving["start"][owners] <= cut[:, 0]) & (cut[:, 1] <= moving["stop"][owners])
+    chosen &= lengths_of(cut) >= NEAR_SAMPLES
+    levels = np.add.reduceat(values, cut[:, 0]) / lengths_of(cut)
+    rates = np.abs(np.diff(levels) / np.diff(cut.mean(axis=1)))
+    slopes = np.maximum(np.append(0.0, rates), np.append(rates, 0.0))[chosen]
+    parts = _trim(values, cut[chosen], _STILL_NOISES * ground.noise)
     measured = measure(values, parts, ground.sigma)
-    still = measured["spread"] <= _PART_OF_SLOPE * rise / np.sqrt(12.0)
+    spread = slopes * lengths_of(parts) / np.sqrt(12.0)
+    still = measured["spread"] <= _PART_OF_SLOPE * spread
     for some, part in of_one_length(values, parts):
-        least = _SHORT_WANDERS * measured["spread"][some] ** 2
+        least = _WANDERS * measured["spread"][some] ** 2
         still[some] &= _compare_neighbours(part, ground.sigma) >= least
-    both = np.concatenate((found[~moving], drop_moving(values, measured[still], ground)))
+    still &= lengths_of(parts) >= _SHORT_SAMPLES
+    return drop_moving(values, measured[still], ground)
+
+
+def _trim(values: FloatArray, parts: Pieces, far: float) -> Pieces:
+    """Return parts without the samples at their ends that are far from their medians."""
+    trimmed = parts.copy()
+    for at, (start, stop) in enumerate(parts.tolist()):
+        part = values[start:stop]
+        near = np.flatnonzero(np.abs(part - np.median(part)) <= far)
+        if len(near):
+            trimmed[at] = start + near[0], start + near[-1] + 1
+    return trimmed
+
+
+def add_apart(found: Found, parts: Found) -> Found:
+    """Return plateaus and the parts that overlap none of them, in order."""
+    after = np.searchsorted(found["start"], parts["start"], side="right")
+    stops, starts = np.append(0, found["stop"]), np.append(found["start"], np.iinfo(np.int64).max)
+    free = (stops[after] <= parts["start"]) & (parts["stop"] <= starts[after])
+    both = np.concatenate((found, parts[free]))
     return both[np.argsort(both["start"], kind="stable")]
