@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from pathlib import Path
+from threading import Event
+from typing import Any
 
 import pytest
 from PIL import Image
@@ -10,6 +12,7 @@ from textual.pilot import Pilot
 from textual.widgets import Input, OptionList, Static
 
 from tests.app.app_help import LOGS, message_of, notices, open_lab, settings, until
+from tests.running import PATIENCE_S
 from tuisim.app.app import AppSettings
 from tuisim.app.dialogs.chooser import MatPicker
 from tuisim.config.options import Settings
@@ -42,6 +45,29 @@ async def test_the_mat_at_hand_is_shown(size: tuple[int, int]) -> None:
         field = app.screen.query_one(Input)
         assert field.region.height == 1
         assert app.screen.query_one(".dialog").region.contains_region(field.region)
+
+
+async def test_no_picture_stands_beside_the_title_of_another(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    go_on = Event()
+    decode = MatPicker._decode
+
+    def wait(picker: MatPicker, name: str, *rest: Any) -> Any:
+        if name == "Rainbow_bands":
+            assert go_on.wait(PATIENCE_S)
+        return decode(picker, name, *rest)
+
+    monkeypatch.setattr(MatPicker, "_decode", wait)
+    async with open_lab(LOGS) as (pilot, app):
+        await pilot.press("b")
+        view = app.screen.query_one(PixelView)
+        await until(pilot, lambda: bool(view._strips))
+        mats = app.screen.query_one(OptionList)
+        mats.highlighted = mats.get_option_index("Rainbow_bands")
+        await until(pilot, lambda: not view._strips)
+        go_on.set()
+        await until(pilot, lambda: bool(view._strips))
 
 
 async def enter_path(pilot: Pilot[None], path: Path) -> None:

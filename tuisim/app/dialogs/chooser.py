@@ -417,6 +417,10 @@ WIDEST_NAME = 32
 """Most columns of the list: a custom file may have any name."""
 
 
+_STALE_S = 0.15
+"""How long the picture of another mat may stand beside the title of the chosen one."""
+
+
 class MatPicker(Chooser):
     """Returns the name of the chosen mat, or the path of an image.
 
@@ -486,9 +490,15 @@ class MatPicker(Chooser):
         if (picture := self._pictures.get((name, port))) is not None:
             view.set_fine_picture(picture, view.graphics)
         else:
+            self.set_timer(_STALE_S, partial(self._clear_stale, (name, port)))
             work = partial(self._decode, name, port, view.ground_rgb)
             then, failed = partial(self._decoded, (name, port)), partial(self._failed, name)
             background.run(self, work, then, failed, group="picture", exclusive=True)
+
+    def _clear_stale(self, key: tuple[str, Viewport]) -> None:
+        """Remove the picture of another mat that is still in view while that of this one is decoded."""
+        if self.is_attached and key[0] == self._shown and key not in self._pictures:
+            self.query(PixelView).first().clear_picture()
 
     def _decode(self, name: str, port: Viewport, outside_rgb: tuple[int, int, int]) -> Pixels:
         found = find_mat(name, self._folder)
