@@ -95,7 +95,6 @@ def _replay(*commands: tuple[int, int, Call, tuple[float, ...]], profile: str = 
     [
         ((0, 0, Call.RUN, (1051.0,)), "has a value that is not allowed"),
         ((0, 0, Call.RUN, (nan,)), "has a value that is not allowed"),
-        ((0, 0, Call.STOP, (1.0,)), "has a value that is not allowed"),
         ((0, 2, Call.STOP, ()), "is for a part that the robot does not have"),
         ((0, 0, Call.MOVE_BASE, (1.0, 1.0, 0.0)), "no motor of this profile takes"),
         ((2_000_000_000, 0, Call.STOP, ()), "is after the end of the run"),

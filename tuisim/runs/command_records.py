@@ -41,6 +41,7 @@ MAX_COMMANDS = 1 << 21
 """Further commands of a run are only counted."""
 _FIRST_BYTES = 1 << 14
 _PADS = tuple((nan,) * (MAX_VALUES - count) for count in range(MAX_VALUES + 1))
+_CALLS = {call.value: call for call in Call}
 _pack_into = COMMAND_RECORD.pack_into
 
 
@@ -98,7 +99,7 @@ class RecordedCommands:
             ValueError: one has a number that stands for no call.
         """
         for time_ns, _, part, call, *values in COMMAND_RECORD.iter_unpack(self.rows.tobytes()):
-            yield SimulationCommand(time_ns, part, Call(call), tuple(values))
+            yield SimulationCommand(time_ns, part, _CALLS.get(call) or Call(call), tuple(values))
 
 
 def read_commands(folder: Path) -> RecordedCommands:

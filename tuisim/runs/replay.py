@@ -8,7 +8,7 @@ from contextlib import suppress
 from typing import TYPE_CHECKING
 
 from tuisim.core.commands.calls import SimulationCommand
-from tuisim.core.commands.check import CommandTimes, find_fault
+from tuisim.core.commands.check import CommandCheck
 from tuisim.core.commands.table import CALLS
 from tuisim.core.motor_columns import MOTOR_RECORD, name_motors
 from tuisim.core.profile import NS_PER_S
@@ -97,15 +97,15 @@ def replay(
     ticks, motors = _Ticks(), _Motors(spec.robot)
     sim = simulation_of(spec, NoRecording())
     sim.restart(spec, ticks, motors if sim.notices else None)
-    advance, times = _build_advance(sim, actions), CommandTimes()
+    advance, check = _build_advance(sim, actions), CommandCheck(sim)
     for command in commands:
         tick = sim.ticks_at(command.time_ns)
-        fault = times.find_fault(command.time_ns)
+        fault = check.find_disorder(command.time_ns)
         if tick > last_tick:
             fault = "is after the end of the run"
         if not fault:
             advance(tick)
-            fault = find_fault(command, sim)
+            fault = check.find_fault(command)
         if fault:
             time_s = command.time_ns / NS_PER_S
             raise LogError(f"at {time_s:.2f} s there is a command that {fault}")

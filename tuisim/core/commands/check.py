@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from tuisim.core.commands.calls import Call, SimulationCommand
-from tuisim.core.commands.table import CALLS, CallSpec, Range
+from tuisim.core.commands.table import CALLS, Range
 from tuisim.core.driver.regulator import MODELS
 from tuisim.core.profile import MotorLaw
 
@@ -27,15 +26,22 @@ _SPEED_PLACES = {
 """Which value of a call is a speed that the kind of the motor limits."""
 
 
-class CommandTimes:
-    """Follows the times of the commands of a run."""
+class CommandCheck:
+    """Finds commands that no program can have given.
 
-    __slots__ = ("_count", "_newest_ns")
+    Args:
+        sim: The simulation that is to obey them.
+    """
 
-    def __init__(self) -> None:
+    __slots__ = ("_count", "_newest_ns", "_ranges", "_robot", "_sim")
+
+    def __init__(self, sim: Simulation) -> None:
+        self._sim, self._robot = sim, sim.spec.robot
         self._newest_ns = self._count = 0
+        self._ranges: dict[tuple[Call, int], tuple[Range, ...]] = {}
+        """The ranges of the values of calls to parts, as far as they are known of this robot."""
 
-    def find_fault(self, time_ns: int) -> str:
+    def find_disorder(self, time_ns: int) -> str:
         """Take the time of the next command, and return why it cannot be; words as of `find_fault`."""
         if time_ns < self._newest_ns:
             return "goes back in time"
@@ -43,28 +49,27 @@ class CommandTimes:
         self._newest_ns = time_ns
         return "the time is too short for" if self._count > MAX_AN_INSTANT else ""
 
+    def find_fault(self, command: SimulationCommand) -> str:
+        """Return why no program can have given a command, as words after "that"; empty if one can.
 
-def find_fault(command: SimulationCommand, sim: Simulation) -> str:
-    """Return why no program can have given a command, as words after "that"; empty if one can.
-
-    Args:
-        command: The command, with all values that its record has.
-        sim: The simulation right before it.
-    """
-    spec = CALLS[command.call]
-    if sim.spec.profile.motor_law not in spec.laws:
-        return "no motor of this profile takes"
-    if command.part >= _count_parts(command.call, sim):
-        return "is for a part that the robot does not have"
-    values = command.values
-    ranges = [*_narrow_ranges(command, spec, sim)]
-    are_allowed = all(
-        low <= value <= high or (value != value and spec.may_be_missing)
-        for value, (low, high) in zip(values, ranges, strict=False)
-    )
-    if not are_allowed or any(value == value for value in values[len(ranges) :]):
-        return "has a value that is not allowed"
-    return ""
+        Args:
+            command: The command, right before it is obeyed. Values that its call does not take do not matter.
+        """
+        _, part, call, values = command
+        if self._sim.spec.robot is not self._robot:
+            self._robot = self._sim.spec.robot
+            self._ranges.clear()
+        ranges = self._ranges.get((call, part))
+        if ranges is None:
+            if self._sim.spec.profile.motor_law not in CALLS[call].laws:
+                return "no motor of this profile takes"
+            if part >= _count_parts(call, self._sim):
+                return "is for a part that the robot does not have"
+            ranges = self._ranges[call, part] = _narrow_ranges(call, part, self._sim)
+        for value, (low, high) in zip(values, ranges, strict=False):
+            if not low <= value <= high and (value == value or not CALLS[call].may_be_missing):
+                return "has a value that is not allowed"
+        return ""
 
 
 def _count_parts(call: Call, sim: Simulation) -> int:
@@ -74,12 +79,11 @@ def _count_parts(call: Call, sim: Simulation) -> int:
     return len(sim.bases) if call in _OF_BASES else len(sim.motors)
 
 
-def _narrow_ranges(command: SimulationCommand, spec: CallSpec, sim: Simulation) -> Iterator[Range]:
-    """Yield the ranges of the values of a command, those of speeds as the kind of its motor has them."""
-    place = _SPEED_PLACES.get(command.call, -1)
-    if place < 0 or sim.spec.profile.motor_law is MotorLaw.NBEV3DEVSIM:
-        yield from spec.ranges
-        return
-    max_dps = float(MODELS[sim.spec.robot.motors[command.part].kind].max_speed_dps)
-    for number, limits in enumerate(spec.ranges):
-        yield (-max_dps, max_dps) if number == place else limits
+def _narrow_ranges(call: Call, part: int, sim: Simulation) -> tuple[Range, ...]:
+    """Return the ranges of the values of a call, that of a speed as the kind of its motor has it."""
+    ranges = [*CALLS[call].ranges]
+    place = _SPEED_PLACES.get(call)
+    if place is not None and sim.spec.profile.motor_law is not MotorLaw.NBEV3DEVSIM:
+        max_dps = float(MODELS[sim.spec.robot.motors[part].kind].max_speed_dps)
+        ranges[place] = -max_dps, max_dps
+    return tuple(ranges)
