@@ -299,10 +299,15 @@ class Differences(Dialog[bool]):
         table = Table.grid(padding=(0, 2))
         table.add_column(style="bold")
         table.add_column()
-        for name, what in (*recording_in_words(self._diff), *setup_in_words(self._diff)):
-            table.add_row(Text(name), Text(what))
+        rows = [*recording_in_words(self._diff), *setup_in_words(self._diff)]
+        for name, what in rows:
+            if name:
+                table.add_row(Text(name), Text(what))
         with VerticalScroll():
             yield Static(table)
+            # The lines of the programs have the whole width.
+            if lines := [what for name, what in rows if not name]:
+                yield Static(Text("\n".join(["", *lines])))
 
     def action_go(self) -> None:
         self.dismiss(self._goes)
