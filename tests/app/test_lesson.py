@@ -11,7 +11,7 @@ from textual.events import MouseScrollUp
 from textual.pilot import Pilot
 from textual.widgets import Static
 
-from tests.app.app_help import open_lab, ready, recording_of, until
+from tests.app.app_help import open_lab, program_of, ready, recording_of, until
 from tests.app.lesson_help import (
     LARGE,
     SMALL,
@@ -27,6 +27,7 @@ from tuisim.app.analyser.app import Analyser
 from tuisim.app.app import LabApp
 from tuisim.app.panels.lesson import LessonPanel
 from tuisim.lessons import trial
+from tuisim.lessons.files import load_lesson
 from tuisim.lessons.progress import load_progress, program_path
 from tuisim.lessons.trial import tried_elsewhere
 
@@ -212,3 +213,28 @@ async def test_run_counts_although_the_next_one_is_over_before_it_was_tried(
             await until(pilot, lambda: len(tries) == count)  # noqa: B023
         both.set()
         await until(pilot, lambda: states().get("drive") == "done")
+
+
+async def test_a_lesson_that_is_opened_again_shows_the_last_run_of_its_program(
+    tmp_path: Path,
+) -> None:
+    lesson = opened(tmp_path)
+    async with open_lab(lesson, size=SMALL) as (pilot, app):
+        app.lesson.skip_step()
+        await run_over(pilot, app)
+        await until(pilot, lambda: states().get("drive") == "done")
+        run_id = app.run_controller.run_id
+    path = program_path(load_lesson(tmp_path / "lessons/try.md"))
+    async with open_lab(lesson, size=SMALL) as (pilot, app):
+        await until(pilot, lambda: app.run_controller.run_id == run_id)
+        assert program_of(app).path == str(path)
+        assert "Do it" in shown(app)
+        # It has counted when it was made.
+        app.lesson.start_over()
+        await pilot.pause()
+        assert states() == {}
+    path.write_text(path.read_text() + "x = 2\n")
+    async with open_lab(opened(tmp_path), size=SMALL) as (pilot, app):
+        await until(pilot, lambda: app.lesson.lesson is not None)
+        assert program_of(app).text.endswith("x = 2\n")
+        assert app.run_controller.run_id == ""

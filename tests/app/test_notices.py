@@ -15,6 +15,12 @@ LONG = "words of an error that names a file and a key, and says what is allowed"
 def test_a_message_is_shown_whole_part_by_part(columns: int) -> None:
     parts = split_message(LONG, columns)
     assert all(len(part) <= columns for part in parts)
+    if len(parts) > 1:
+        count = len(parts)
+        assert [part.partition(" ")[0] for part in parts] == [
+            f"{at}/{count}" for at in range(1, count + 1)
+        ]
+        parts = [part.partition(" ")[2] for part in parts]
     assert " ".join(part.removesuffix(" …") for part in parts) == LONG
     assert all(part.endswith(" …") for part in parts[:-1])
 

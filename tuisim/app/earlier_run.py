@@ -2,12 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from contextlib import suppress
 from itertools import takewhile
+from typing import TYPE_CHECKING
 
 from tuisim.core.geometry import Pose
 from tuisim.errors import LogError
 from tuisim.runs.recorded_run import Recording
+from tuisim.runs.run_folder import StoredRun
+from tuisim.source import Program
+
+if TYPE_CHECKING:
+    from tuisim.app.run_controller import RunController
 
 
 def is_comparable(earlier: Recording, later: Recording) -> bool:
@@ -27,18 +34,31 @@ def stored_before(later: Recording) -> Recording | None:
     Raises:
         LogError: the store cannot be read.
     """
+    before = map(Recording, _load_runs(later.program, later.run_id))
+    return next((run for run in before if is_comparable(run, later)), None)
+
+
+def find_last_like(runs: RunController) -> StoredRun | None:
+    """Return the last stored run of the program file that is open; None during a run, if there is none, and if its
+    text or what else it was made of is not the same now."""
+    program = runs.program
+    if program is None or runs.in_run:
+        return None
+    with suppress(LogError):
+        run = next(_load_runs(program, ""), None)
+        if run and run.program.text == program.text and run.spec == runs.next_run.spec:
+            return run
+    return None
+
+
+def _load_runs(program: Program, before: str) -> Iterator[StoredRun]:
+    """Yield the stored runs of a program file before one with an id, the newest first; empty means all."""
     from tuisim.runs.store import RunStore
 
-    store, path = RunStore(), later.program.path
-    if not path:
-        return None
-    listed = takewhile(lambda info: info.id != later.run_id, store.runs())
-    for info in reversed(
-        [info for info in listed if info.program == later.program.name and info.ticks]
-    ):
+    store = RunStore()
+    listed = takewhile(lambda info: info.id != before, store.runs() if program.path else ())
+    for info in reversed([info for info in listed if info.program == program.name and info.ticks]):
         # One that cannot be read is no reason to find none.
         with suppress(LogError):
-            run = Recording(store.load_run(info.id))
-            if run.program.path == path and is_comparable(run, later):
-                return run
-    return None
+            if (run := store.load_run(info.id)).program.path == program.path:
+                yield run

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, assert_never
 
 from tuisim.app import background
+from tuisim.app.earlier_run import find_last_like
 from tuisim.app.panels import PANELS, PanelPlace
 from tuisim.app.snapshot import RunPhase
 from tuisim.config.build import build_run_spec
@@ -56,6 +57,8 @@ from tuisim.lessons.spec import (
     ShowCheck,
     VisitCheck,
     WatchCheck,
+    list_place,
+    list_world,
 )
 from tuisim.lessons.story import story
 from tuisim.protocol import End, PauseReason
@@ -179,6 +182,9 @@ class LessonController:
             self._panel_area.world.focus()
         self._done = None
         self._begin_step()
+        if run := find_last_like(self._run_controller):
+            self._before = run.id
+            self._loader.open_run(run)
 
     def _panels_for(self, lesson: Lesson) -> dict[str, bool | None]:
         """Return which panels to show and hide: the text gets the side column, but for readings where there is room."""
@@ -404,7 +410,7 @@ class LessonController:
             return
         self.judgements = judgements
         met = frozenset(each.goal.name for each in judgements if each.state is GoalState.MET)
-        is_from_start = _world_of(self._wanted_spec()) == _world_of(recording.spec)
+        is_from_start = list_world(self._wanted_spec()) == list_world(recording.spec)
         self._elsewhere = None if is_from_start else recording.spec
         yield JudgedRun(recording.run_id, recording.spec.seed, met, is_from_start)
         if self.step is step:
@@ -494,7 +500,7 @@ class LessonController:
         if self._elsewhere is None:
             return ""
         wanted = self._wanted_spec().world
-        if _place_of(self._elsewhere.world) == _place_of(wanted):
+        if list_place(self._elsewhere.world) == list_place(wanted):
             noise, drift = wanted.noise, values_of(WorldSpec)["drift"].to_text(wanted.drift)
             levels = f"light {noise.light}, motors {noise.motor} (panel Noise, z), drift {drift} (panel Settings, Z)"
             return f"This run had other noise or drift: the lesson's is {levels}."
@@ -606,15 +612,6 @@ def _why_elsewhere(missed: Judgement) -> str:
     if any(isinstance(part, LogCondition | PrintCondition) for part in missed.goal.parts):
         return "what it prints is not what the robot sees there, at the places where it sees it."
     return missed.reason
-
-
-def _world_of(spec: RunSpec) -> tuple[object, ...]:
-    """Return what must be as the lesson says for a run to count."""
-    return (*_place_of(spec.world), spec.world.noise, spec.world.drift)
-
-
-def _place_of(world: WorldSpec) -> tuple[object, ...]:
-    return world.background, world.start, world.obstacles
 
 
 def _at_start(other: TrialWorld) -> str:

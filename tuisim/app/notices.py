@@ -21,6 +21,8 @@ CHARACTERS_A_SECOND = 25
 _MIN_PART_S = 2.5
 _MORE = " …"
 """At the end of a part that another one follows."""
+_NUMBER = "1/2 "
+"""Before each of several parts."""
 _EDGES = 3
 """Columns of the row beside its text."""
 
@@ -36,13 +38,18 @@ class Notice:
 
 
 def split_message(message: str, columns: int) -> list[str]:
-    """Return the parts of a message that are shown one after the other, each in that many columns."""
-    columns = max(columns, len(_MORE) + 1)
+    """Return the parts of a message that are shown one after the other, each in that many columns.
+
+    Several ones are numbered, so that the reader knows that another one comes, or has been there.
+    """
     text = " ".join(message.split())
+    columns = max(columns, len(_NUMBER) + len(_MORE) + 1)
     if len(text) <= columns:
         return [text]
-    parts = wrap(text, columns - len(_MORE))
-    return [part + _MORE for part in parts[:-1]] + parts[-1:]
+    parts = wrap(text, columns - len(_NUMBER) - len(_MORE))
+    ends = [*(_MORE for _ in parts[1:]), ""]
+    numbered = zip(range(1, len(parts) + 1), parts, ends, strict=True)
+    return [f"{number}/{len(parts)} {part}{end}" for number, part, end in numbered]
 
 
 class NoticeRow(Static):

@@ -165,7 +165,9 @@ class PanelArea(Container):
         if show:
             self.front = panel
         self._chosen.pop(panel, None)
-        self._chosen[panel] = show
+        # One that no terminal shows unasked belongs to what is done now.
+        if PANELS[panel].sizes:
+            self._chosen[panel] = show
         if self.preset == self._kept_preset:
             self.keep_panels()
 

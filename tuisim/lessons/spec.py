@@ -14,6 +14,7 @@ from typing import Annotated, Any, ClassVar, TypeAlias
 from msgspec import Meta
 
 from tuisim.config.options import OPTION_PANELS
+from tuisim.core.spec import RunSpec, WorldSpec
 from tuisim.data_class import dataclass
 from tuisim.errors import ConfigError, nearest, require_regex
 from tuisim.goals.spec import Goal, Range
@@ -335,3 +336,13 @@ class Lesson:
     def model_answer(self) -> str:
         """The last model answer, which appears when every step is done; empty if there is none."""
         return next((step.answer for step in reversed(self.steps) if step.answer), "")
+
+
+def list_world(spec: RunSpec) -> tuple[object, ...]:
+    """Return what must be as the lesson says for a run to count."""
+    return (*list_place(spec.world), spec.world.noise, spec.world.drift)
+
+
+def list_place(world: WorldSpec) -> tuple[object, ...]:
+    """Return what of it is about places."""
+    return world.background, world.start, world.obstacles

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tests.app.app_help import LOGS, open_lab
+from tests.app.app_help import LOGS, open_lab, until
 from tuisim.app.layout.arrangement import KeptLayout, Preset, load_layout, save_layout
 from tuisim.app.panels import TerminalSize
 
@@ -27,3 +27,10 @@ async def test_the_next_start_finds_the_arrangement_only_if_it_was_kept_for_its_
 def test_what_is_known_stays() -> None:
     save_layout(TerminalSize.SMALL, KeptLayout(Preset.DRIVE, {"chart": True}))
     assert load_layout(TerminalSize.SMALL) == KeptLayout(Preset.DRIVE, {"chart": True})
+
+
+async def test_panels_that_nothing_shows_unasked_are_not_kept_for_the_next_start() -> None:
+    async with open_lab(LOGS, size=(80, 24)) as (pilot, app):
+        await pilot.press("G", "K", "c")
+        await until(pilot, lambda: app.panel_area.shown("chart"))
+    assert load_layout(TerminalSize.SMALL).asked == {"chart": True}
