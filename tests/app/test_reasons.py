@@ -6,8 +6,10 @@ from pathlib import Path
 
 from textual.pilot import Pilot
 
-from tests.app.app_help import notices, open_lab, run_from_start, screen_text, until
+from tests.app.app_help import notices, open_lab, run_from_start, screen_text, until, until_state
+from tests.cases import cases
 from tuisim.app.app import LabApp
+from tuisim.app.snapshot import RunPhase
 from tuisim.goals.files import load_goals
 
 STRAIGHT = "tank_drive.on_for_seconds(20, 20, 1)\n"
@@ -64,3 +66,32 @@ async def test_the_goals_that_are_open_are_judged(tmp_path: Path) -> None:
         await run_from_start(pilot, app, STRAIGHT)
         app.goals.change(load_goals(path))
         await ask(pilot, app, "a goal was missed: ")
+
+
+WAITS = """\
+from ev3dev2.button import Button
+brick = Button()
+while not brick.any():
+    pass
+"""
+SLEEPS = "import time\nwhile True:\n    time.sleep(9)\n"
+
+
+@cases(
+    "text, words",
+    {
+        "it waits": (WAITS, "line 3: from here on it waits: read the brick's buttons"),
+        "it sleeps": (SLEEPS, "the robot stands still in line"),
+    },
+)
+async def test_a_program_that_goes_on_is_paused_and_it_says_what_that_waits_for(
+    text: str, words: str
+) -> None:
+    async with open_lab(text, speed=0.0, size=SIZE) as (pilot, app):
+        await pilot.press("R")
+        await until(pilot, lambda: app.run_controller.snapshot().time_s > 20.0)
+        assert "! wrong?" in screen_text(app)
+        await ask(pilot, app, words)
+        await until_state(pilot, RunPhase.PAUSED)
+        await pilot.press("S")
+        await until_state(pilot, RunPhase.ENDED)

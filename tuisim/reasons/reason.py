@@ -132,8 +132,9 @@ def _find_blocked(run: StoredRun) -> Iterator[Reason]:
     if stood := standstill_of(run.telemetry, run.spec):
         line = _line_at(run, stood.since_s)
         yield Reason(ReasonKind.BLOCKED, stood.since_s, line, f"the robot {stood.words}")
+    waits = "waited" if run.end else "waits"
     for awaited in find_awaited(run):
-        text = f"from here on it waited: {describe_awaited(awaited)}"
+        text = f"from here on it {waits}: {describe_awaited(awaited)}"
         yield Reason(ReasonKind.BLOCKED, awaited.since_s, awaited.line, text)
 
 

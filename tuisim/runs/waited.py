@@ -175,7 +175,7 @@ class Recorded:
 
 
 def find_awaited(run: StoredRun) -> tuple[Awaited, ...]:
-    """Return what a stored run waited for."""
+    """Return what a stored run waited for; of one that goes on, what it waits for."""
     recorded = Recorded(
         folder=run.folder,
         text=run.program.text,
@@ -185,7 +185,7 @@ def find_awaited(run: StoredRun) -> tuple[Awaited, ...]:
         actions=run.actions,
         open_mat=lambda: open_mat(run),
     )
-    return find_at_end(recorded, run.end.end) if run.end else ()
+    return find_at_end(recorded, run.end.end) if run.end else find_in_recording(recorded)
 
 
 def find_at_end(run: Recorded, end: End) -> tuple[Awaited, ...]:

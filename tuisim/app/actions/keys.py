@@ -610,7 +610,7 @@ def _next_steps(now: Situation) -> tuple[str, ...]:
     if now.state == RunPhase.PAUSED:
         return ("stop", "pause", "next-line", "line-back", *code, *wrong)
     if now.state in IN_RUN:
-        return ("stop", "pause")
+        return ("stop", "pause", "went-wrong")
     if now.reads_code:
         results = ("analyse", "panel-chart") if now.has_run else ()
         return ("run", *wrong, *mended, *results, "edit", *code)

@@ -164,10 +164,14 @@ def to_sample(context: ActionContext, words: str) -> None:
 
 
 def go_wrong(context: ActionContext) -> None:
-    """Go to the first reason why the run went wrong, then each time to the next; after the last to the end."""
+    """Go to the first reason why the run went wrong, then each time to the next; after the last to the end.
+
+    A program that runs is paused, and its reasons are those until then.
+    """
     recording = context.runs.timeline.recording
     if recording is None:
         return
+    context.runs.pause()
     tour = context.reasons
     if not tour.is_of(recording):
         tour.begin(recording)
@@ -186,7 +190,7 @@ def _show_reason(context: ActionContext, earlier: Recording | None) -> None:
     tour = context.reasons
     if (reason := tour.advance()) is None:
         to_now(context)
-        context.app.say(reasons.NO_REASON if not tour.reasons else tour.words)
+        context.app.say(tour.words if tour.reasons else _say_nothing_wrong(context))
         return
     if reason.kind is ReasonKind.DIFFERS and context.runs.earlier is None:
         context.runs.show_earlier(earlier)
@@ -194,6 +198,13 @@ def _show_reason(context: ActionContext, earlier: Recording | None) -> None:
     context.debugger.choose_line(tick, reason.line)
     to_tick(context, tick)
     context.app.say(tour.words)
+
+
+def _say_nothing_wrong(context: ActionContext) -> str:
+    recording = context.runs.timeline.recording
+    if recording is None or not context.runs.in_run:
+        return reasons.NO_REASON
+    return reasons.describe_so_far(recording)
 
 
 def propose_branch(
