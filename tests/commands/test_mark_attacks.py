@@ -188,3 +188,86 @@ def test_what_the_guide_says_that_only_isolation_prevents(
     rows, _ = _mark(field, isolation)
     can = {name for name in DEEDS if float(rows[name]["points"])}
     assert can == (set(DEEDS) if isolation == "--no-isolate" else set())
+
+
+_STEERING = (
+    "import builtins, time\nfrom tuisim.protocol import SetPose\n"
+    "s = next(c.cell_contents for c in builtins.__loop_turn__.__closure__"
+    " if hasattr(c.cell_contents, 'steering'))\n"
+)
+FOUND = {
+    "huge numbers": "print('A: 1e155')\nprint('A: 0')",
+    "opposite numbers": "print('A: 1e308')\nprint('A: -1e308')",
+    "a controller that diverges": "x = 1.0\nfor _ in range(700):\n    print('Error:', x)\n    x *= 2",
+    "a long error": "raise ValueError('x' * 9_000_000)",
+    "many names": "if False:\n"
+    + "".join(f"    a{number} = a{number + 1}\n" for number in range(1500))
+    + "print('Colour: 86.3')",
+    "a pose": f"{_STEERING}s.steering.apply(s, SetPose(1750.0, 500.0, 0.0))\ntime.sleep(1)",
+    "another coding": "# coding: utf-7\nprint('Colour: +ADE-')",
+    "a sparse file": "open('x', 'w').truncate(1 << 30)",
+}
+"""Programs that have cost others their marks, or the tutor time."""
+HONEST_MANY = tuple(f"honest{number:02}" for number in range(20))
+ATTACKS_EACH = 3
+
+
+def _class_of_60(field: Path, *, attacked: bool) -> Path:
+    """Make the place of a marking with 20 honest students, and 40 attackers if it is attacked."""
+    (field / "class").mkdir(parents=True)
+    (field / "goals.toml").write_text(GOALS.read_text())
+    (field / "secret.txt").write_text(SECRET)
+    for number, name in enumerate(HONEST_MANY):
+        text = HOPS.replace("230 / ", f"{230 - 5 * number} / ")
+        (field / "class" / f"{name}.py").write_text(text)
+    if attacked:
+        attacks = dict(
+            chain.from_iterable([*table.items()][-ATTACKS_EACH:] for table in TABLES.values())
+        )
+        write_attackers(field / "class", attacks | FOUND)
+        latin = field / "class" / "latin"
+        latin.mkdir()
+        Path(os.fsdecode(os.fsencode(latin) + b"/m\xff.py")).write_text("print(1)")
+        (field / "class" / "sparse").mkdir()
+        with (field / "class" / "sparse" / "main.py").open("wb") as file:
+            file.truncate(1 << 36)
+        (field / "class" / "zip.zip").write_bytes(b"PK\3\4" + bytes(99))
+        os.mkfifo(field / "class" / "pipe.py")
+    return field
+
+
+_OUTPUTS = ("marks.csv", "marks.html", "moodle.csv", "canvas.csv", "told")
+
+
+def _mark_class(field: Path) -> tuple[int, list[str]]:
+    """Mark a class; return the exit code, and the lines of the honest students in the sheet."""
+    words = ["mark", "goals.toml", "class", "--seeds", "0", "--timeout", "30", "--isolate"]
+    for option, output in zip(
+        ("--export", "--export", "--moodle", "--canvas", "--feedback"), _OUTPUTS, strict=True
+    ):
+        words += [option, output]
+    done = subprocess.run(
+        [sys.executable, "-m", "tuisim", *words],
+        cwd=field,
+        env={**os.environ, "PYTHONPATH": str(ROOT), "TUISIM_HOME": str(field / "home")},
+        stdin=subprocess.DEVNULL,
+        capture_output=True,
+        text=True,
+        errors="surrogateescape",
+        timeout=MOST_S,
+    )
+    assert [name for name in _OUTPUTS if not (field / name).exists()] == [], done.stderr
+    lines = (field / "marks.csv").read_text(errors="surrogateescape").splitlines()
+    return done.returncode, [line for line in lines if line.startswith("honest")]
+
+
+@needs_isolation
+@pytest.mark.slow
+def test_twenty_honest_students_have_the_same_rows_with_forty_attackers(tmp_path: Path) -> None:
+    code, alone = _mark_class(_class_of_60(tmp_path / "alone", attacked=False))
+    assert (code, len(alone)) == (0, 20)
+    field = _class_of_60(tmp_path / "attacked", attacked=True)
+    code, rows = _mark_class(field)
+    assert (code in (0, 1), rows) == (True, alone)
+    with open(field / "marks.csv", newline="", errors="surrogateescape") as file:
+        assert len([*csv.DictReader(file)]) == 60

@@ -25,6 +25,7 @@ FEWER = {
     "clients": 1,
     "crashes": 4,
     "enemies": 2,
+    "limits": 4,
     "monkey": 1,
     "class": 8,
     "numbers": 3,

@@ -6,7 +6,7 @@ import json
 import os
 import re
 import stat
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
@@ -17,11 +17,11 @@ from typing import Any
 import numpy as np
 
 from tests.hosts import HOSTS, Hosted, Stored, hosted, isolated
-from tests.isolated import refusal
 from tests.marks.attackers import DISK, FILES, MEMORY, OWN_RUN, PROC, PROCESSES, SECRET
 from tests.proof.commands import check_said
 from tests.proof.kind import FaultError, Kind, home, in_time
 from tuisim.cli import EXIT_OUR_MISTAKE
+from tuisim.faults import report_file
 from tuisim.protocol import EVENTS, End
 from tuisim.runs.catalogue import RunInfo
 from tuisim.runs.removal import remove_tree
@@ -262,7 +262,7 @@ _FILES_AND_AN_END = {
 LIMITED: Mapping[str, str] = {**DISK, **MEMORY, **PROCESSES, **PROC, **FILES, **_FILES_AND_AN_END}
 """Attacks for isolated programs, which a limit ends."""
 LIMITED_ENDS: Mapping[str, tuple[str, ...]] = {
-    **dict.fromkeys((*PROC, *FILES), ("raised",)),
+    **dict.fromkeys((*PROC, *FILES, "memory in files without a name"), ("raised",)),
     **dict.fromkeys(_FILES_AND_AN_END, ("output_limit",)),
 }
 """How some of them end."""
@@ -270,11 +270,17 @@ _ISOLATED = "isolated"
 
 
 def _names(random: Random) -> Iterator[str]:
-    cases = [f"{host}:{sort}" for host in HOSTS for sort in SORTS]
-    if not refusal():
-        cases += [f"{_ISOLATED}:{name}" for name in LIMITED]
+    return _drawn_cases([f"{host}:{sort}" for host in HOSTS for sort in SORTS], random)
+
+
+def _limited_names(random: Random) -> Iterator[str]:
+    return _drawn_cases([f"{_ISOLATED}:{name}" for name in LIMITED], random)
+
+
+def _drawn_cases(cases: Sequence[str], random: Random) -> Iterator[str]:
     while True:
-        yield from (f"{case}:{random.getrandbits(32)}" for case in random.sample(cases, len(cases)))
+        for case in random.sample(cases, len(cases)):
+            yield f"{case}:{random.getrandbits(32)}"
 
 
 def _class(eve: str) -> dict[str, str]:
@@ -321,6 +327,8 @@ def _check_others(found: Hosted, wanted: Mapping[str, Stored], text: str) -> Non
     others = {name: run for name, run in found.runs.items() if name != "eve"}
     if others != wanted:
         raise FaultError(f"the others end with {others}, not {wanted}; {found.said[-500:]}\n{text}")
+    if report_file().exists():
+        raise FaultError(f"a mistake of ours: {report_file().read_text()[-2000:]}\n{text}")
     if found.code == EXIT_OUR_MISTAKE or "internal error" in found.said or "/tuisim/" in found.said:
         raise FaultError(f"exit code {found.code}: {found.said[-2000:]}\n{text}")
 
@@ -416,3 +424,4 @@ def _check_recording(run: StoredRun) -> None:
 
 
 ENEMIES = Kind("an enemy between honest programs, in each of the five hosts", _names, _check)
+LIMITS = Kind("isolated programs that want more than they may have", _limited_names, _check)

@@ -28,6 +28,7 @@ from tests.proof.commands import check_said
 from tests.proof.deliveries import IDIOMS, deliver
 from tests.proof.kind import FaultError, Kind, home, in_time
 from tests.proof.numbers import odd_program
+from tuisim.faults import report_file
 from tuisim.runs import side_files
 
 GOALS = """\
@@ -334,6 +335,8 @@ def _check(case: str, folder: Path) -> None:
     if {name: rows.get(name) for name in _HONEST} != wanted:
         raise FaultError(f"the others have the rows {rows}, not {wanted}")
     (own,) = (row for name, row in rows.items() if name not in _HONEST)
+    if sort != "faults" and report_file().exists():
+        raise FaultError(f"a mistake of ours: {report_file().read_text()[-2000:]}")
     _check_own(sort, own, target if BROKEN[target] else "")
     if (folder / "escaped.py").exists() or (folder / "class" / "escaped.py").exists():
         raise FaultError("a zip has written out of its folder")

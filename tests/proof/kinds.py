@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from tests.isolated import refusal
 from tests.proof.arguments import ARGUMENTS
 from tests.proof.clients import CLIENTS
 from tests.proof.crashes import CRASHES
 from tests.proof.damage import DAMAGE
-from tests.proof.enemies import ENEMIES
+from tests.proof.enemies import ENEMIES, LIMITS
 from tests.proof.failures import FAILURES
 from tests.proof.handed_in import HANDED_IN
 from tests.proof.kernel import KERNEL
@@ -24,6 +25,8 @@ KINDS: dict[str, Kind] = {
     "clients": CLIENTS,
     "crashes": CRASHES,
     "enemies": ENEMIES,
+    # Where nothing can be isolated, there is nothing to try.
+    **({} if refusal() else {"limits": LIMITS}),
     "class": HANDED_IN,
     "failures": FAILURES,
     "numbers": NUMBERS,

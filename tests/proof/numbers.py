@@ -10,6 +10,7 @@ from tests.hosts import MAGIC
 from tests.proof.commands import check_said
 from tests.proof.kind import FaultError, Kind, in_time
 from tests.proof.security_app import check_shown
+from tuisim.faults import report_file
 
 ODD = (
     *("0", "-0.0", "1", "1e155", "-1e155", "1e308", "-1e308", "1.7976931348623157e308", "1e300"),
@@ -75,6 +76,8 @@ def _check(case: str, folder: Path) -> None:
     Path("goals.toml").write_text(_GOALS)
     with in_time():
         WAYS[way](text, random)
+    if report_file().exists():
+        raise FaultError(f"a mistake of ours: {report_file().read_text()[-2000:]}\n{text}")
 
 
 NUMBERS = Kind("odd numbers in logs, batches and charts", _names, _check)
