@@ -149,5 +149,5 @@ def test_bands_of_one_level_are_told_together() -> None:
         "samples": np.array([10, 4, 20, 1]),
     }
     assert in_words(BandReport("Grey", columns, 1, 36)) == (
-        "Grey: 3 levels: 54.00 grey (2x), 7.00, 100.00 white (one sample); 1 of 36 samples lies on edges"
+        "Grey: 3 levels: 54.00 grey (2x), 7.00, 100.00 white (one sample); 1 of 36 samples lies on edges or slopes"
     )

@@ -72,7 +72,7 @@ class BandReport:
     columns: Mapping[str, Column]
     """The fields of the bands by name, in their order: numbers as arrays, texts as lists, each of shape (n,)."""
     transitions: int
-    """Samples on edges, which belong to no band."""
+    """Samples on edges and slopes, which belong to no band."""
     total: int
 
     @property
@@ -188,5 +188,6 @@ def in_words(report: BandReport) -> str:
         grey = bands[0][0]
         said.append(f"{level:.2f}{' ' * bool(grey)}{grey}{times}")
     known = f"{counted(len(levels), 'level')}: {', '.join(said)}"
-    edges = f"{report.transitions} of {report.total} samples {'lies' if report.transitions == 1 else 'lie'} on edges"
+    lie = "lies" if report.transitions == 1 else "lie"
+    edges = f"{report.transitions} of {report.total} samples {lie} on edges or slopes"
     return f"{report.variable}: {known}; {edges}"
