@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -9,7 +10,15 @@ import pytest
 
 from tests.core.memory_sink import MemorySink
 from tests.core.motors import commanded
-from tuisim.core.drive import turn_rate_dps
+from tuisim.core.drive import (
+    BrickDrive,
+    BrowserDrive,
+    Drive,
+    EvenGlide,
+    Glide,
+    Records,
+    turn_rate_dps,
+)
 from tuisim.core.geometry import Pose
 from tuisim.core.profile import PROFILES
 from tuisim.core.simulation import Simulation
@@ -40,6 +49,47 @@ def records(sim: Simulation) -> np.ndarray:
     sink = sim._sink
     assert isinstance(sink, MemorySink)
     return np.frombuffer(sink.records(), np.dtype(list(TICK_FIELDS))).copy()
+
+
+TICKS, TICK_HZ = 60, 100
+
+
+def roll_one_by_one(drive: Drive, turns_deg: tuple[float, float]) -> list[tuple[float, ...]]:
+    """Return the fields of each tick's record: the pose, then those of the motors."""
+    rows = []
+    for tick in range(1, TICKS + 1):
+        drive.roll(*turns_deg)
+        pose = drive.x_mm, drive.y_mm, drive.heading_deg, drive.gyro_zero_deg
+        motors = [(tick * deg, TICK_HZ * deg) for deg in turns_deg]
+        rows.append((tick, *pose, *motors[0], *motors[1]))
+    return rows
+
+
+def new_records() -> Records:
+    buffer, offsets = bytearray(64 * TICKS), range(0, 64 * TICKS, 64)
+    return Records(buffer, offsets, range(1, TICKS + 1), 0, 0, 0, TICK_HZ)
+
+
+@pytest.mark.parametrize("turns_deg", [(-3.0, 5.0), (5.0, -3.0), (2.0, 6.0), (4.0, 4.0)], ids=str)
+@pytest.mark.parametrize("early", [0.0, 0.5])
+@pytest.mark.parametrize("kind", [BrickDrive, BrowserDrive])
+def test_ticks_together_are_as_one_by_one(
+    kind: Callable[[RobotSpec, Pose, float], Drive], early: float, turns_deg: tuple[float, float]
+) -> None:
+    rolled, gliding, even = (kind(RobotSpec(), Pose(900.0, 500.0, 340.0), early) for _ in range(3))
+    rows = roll_one_by_one(rolled, turns_deg)
+    counts = [[tick * deg for tick in range(1, TICKS + 1)] for deg in turns_deg]
+    sides = [*zip(turns_deg, counts, strict=True)]
+    together, evenly = new_records(), new_records()
+    gliding.glide(together, *(Glide([deg] * TICKS, places) for deg, places in sides))
+    even.glide_evenly(evenly, *(EvenGlide(deg, iter(places)) for deg, places in sides))
+    names = ["tick", "x_mm", "y_mm", "heading_deg", "gyro_zero_deg", *MOTOR_FIELDS]
+    for records, drive in ((together, gliding), (evenly, even)):
+        found = np.frombuffer(records.buffer, np.dtype(list(TICK_FIELDS)))
+        columns = np.column_stack([found[name] for name in names])
+        np.testing.assert_allclose(columns, rows, rtol=1e-6)
+        pose = drive.x_mm, drive.y_mm, drive.heading_deg, drive.gyro_zero_deg
+        assert pose == pytest.approx(rows[-1][1:5])
 
 
 @pytest.mark.parametrize("step", [1, 8, 400])
