@@ -102,7 +102,7 @@ def test_each_time_lies_in_a_part(is_endless: bool) -> None:
         if is_endless
         else angle_move(start, 2000, 500, 900, FASTEST)
     )
-    parts = trajectory[: 2 if is_endless else 4]
+    parts = trajectory[:2] if is_endless else trajectory[:4]
     ends_us = [*(part.start_us for part in parts[1:]), None]
     for part, end_us in zip(parts, ends_us, strict=True):
         middle_us = part.start_us + 100 * MS_US if end_us is None else (part.start_us + end_us) // 2
