@@ -29,7 +29,6 @@ from tests.proof.deliveries import IDIOMS, deliver
 from tests.proof.kind import FaultError, Kind, home, in_time
 from tests.proof.numbers import odd_program
 from tuisim.faults import report_file
-from tuisim.runs import side_files
 
 GOALS = """\
 title = "Read"
@@ -196,8 +195,7 @@ SORTS: Mapping[str, Callable[[Random, Path], None]] = {
     "told": _told,
     "faults": _faults,
     "delivered": lambda random, place: deliver(random, place, MAGIC),
-    # The judge works the run out again from what it was told.
-    **({"forged": _forged} if hasattr(side_files, "COMMANDS_FILE") else {}),
+    "forged": _forged,
 }
 REFUSED = ("links", "devices", "zips")
 """Sorts that are refused, in the student's row."""
