@@ -56,7 +56,7 @@ TICKS, TICK_HZ = 60, 100
 
 def roll_one_by_one(drive: Drive, turns_deg: tuple[float, float]) -> list[tuple[float, ...]]:
     """Return the fields of each tick's record: the pose, then those of the motors."""
-    rows = []
+    rows: list[tuple[float, ...]] = []
     for tick in range(1, TICKS + 1):
         drive.roll(*turns_deg)
         pose = drive.x_mm, drive.y_mm, drive.heading_deg, drive.gyro_zero_deg
