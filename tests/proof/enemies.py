@@ -226,7 +226,7 @@ def _forged(random: Random) -> str:
 _FD = "descriptor "
 _OWN = re.compile(
     r"/dev/null$|pipe:|/memfd:output |.*[.](rgb|sums)$"
-    r"|.*/((telemetry|motors|readings|output)[.]bin|lock|(stack|log)[.]txt)$"
+    r"|.*/((telemetry|motors|readings|commands|output)[.]bin|lock|(stack|log)[.]txt)$"
 )
 """What a program reaches of its own run: its recordings, its mat, and three pipes."""
 _OWN_PIPES = 3

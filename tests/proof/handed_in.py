@@ -179,7 +179,8 @@ FORGED = (
     " if hasattr(c.cell_contents, 'steering'))\n"
     "s.steering.apply(s, SetPose(1700.0, 500.0, 0.0))\nimport time\ntime.sleep(1)",
     "import builtins\ns = next(c.cell_contents for c in builtins.__loop_turn__.__closure__"
-    " if hasattr(c.cell_contents, 'steering'))\ns.sim.place(1700.0, 500.0, 0.0)\nimport time\ntime.sleep(1)",
+    " if hasattr(c.cell_contents, 'steering'))\nfrom tuisim.core.geometry import Pose\n"
+    "s.sim.place(Pose(1700.0, 500.0, 0.0))\nimport time\ntime.sleep(1)",
     OWN_RUN + "import glob\nfor name in glob.glob(run + '/*.bin') + glob.glob(run + '/*.jsonl'):\n"
     "    with open(name, 'r+b') as f:\n        f.seek(64)\n        f.write(bytes(range(256)) * 4)",
     OWN_RUN
