@@ -54,6 +54,7 @@ CASES = {
     "any": ("any = ['never', 'b', 'a']", "met", 1.08, ""),
     "any with none": ("any = ['never']", "missed", 2.78, "None of its goals was met."),
     "all before": ("all = ['a', 'b']\nbefore = 2.2", "met", 2.15, ""),
+    "the first line again": ("print = 'one'\nafter = 'one'", "missed", 2.78, "one"),
     "all too late": ("all = ['a', 'b']\nbefore = 2", "missed", 2.0, "not met before 2 s"),
     "before a goal": ("print = 'one'\nbefore = 'b'", "met", 1.14, ""),
     "not before a goal": (
