@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator
-from math import nan
 from pathlib import Path
 from struct import Struct
 from typing import TYPE_CHECKING, Any
@@ -26,23 +25,22 @@ if TYPE_CHECKING:
     Array = np.ndarray[Any, Any]
 
 COMMANDS_MAGIC = b"TUISIMCM"
-COMMAND_RECORD = Struct(f"<qIBB2x{MAX_VALUES}d")
-"""Simulated time in ns, source line (0: none), part, call, values; those that a call does not take are NaN."""
+COMMAND_RECORD = Struct(f"<qBB6x{MAX_VALUES}d")
+"""Simulated time in ns, part, call, values; those that a call does not take are 0."""
 COMMAND_FIELDS = (
     ("time_ns", "<i8"),
-    ("line", "<u4"),
     ("part", "u1"),
     ("call", "u1"),
-    ("", "V2"),
+    ("", "V6"),
     ("values", f"({MAX_VALUES},)<f8"),
 )
 """Name and type of each field of a record, the type as numpy writes it."""
 MAX_COMMANDS = 1 << 21
 """Further commands of a run are only counted."""
 _FIRST_BYTES = 1 << 14
-_PADS = tuple((nan,) * (MAX_VALUES - count) for count in range(MAX_VALUES + 1))
+_PACKERS = tuple(Struct(f"<qBB6x{count}d").pack_into for count in range(MAX_VALUES + 1))
+"""By the number of values."""
 _CALLS = {call.value: call for call in Call}
-_pack_into = COMMAND_RECORD.pack_into
 
 
 class CommandsWriter(MappedWriter):
@@ -56,18 +54,12 @@ class CommandsWriter(MappedWriter):
         self._room = _FIRST_BYTES // COMMAND_RECORD.size
         """How many commands fit."""
 
-    def add(self, time_ns: int, part: int, call: int, values: tuple[float, ...], line: int) -> None:
-        """Append a command.
-
-        Args:
-            time_ns, part, call, values: As in `SimulationCommand`.
-            line: Source line; 0 for none.
-        """
+    def add(self, time_ns: int, part: int, call: int, values: tuple[float, ...]) -> None:
+        """Append a command; arguments as of `SimulationCommand`."""
         count = self._count
         if count < self._room or self._extend(count):
             at = HEADER_BYTES + count * COMMAND_RECORD.size
-            padded = values + _PADS[len(values)]
-            _pack_into(self._map, at, time_ns, line, part, call, *padded)
+            _PACKERS[len(values)](self._map, at, time_ns, part, call, *values)
         self._count = self._length[0] = count + 1
 
     def _extend(self, count: int) -> bool:
@@ -98,7 +90,7 @@ class RecordedCommands:
         Raises:
             ValueError: one has a number that stands for no call.
         """
-        for time_ns, _, part, call, *values in COMMAND_RECORD.iter_unpack(self.rows.tobytes()):
+        for time_ns, part, call, *values in COMMAND_RECORD.iter_unpack(self.rows.tobytes()):
             yield SimulationCommand(time_ns, part, _CALLS.get(call) or Call(call), tuple(values))
 
 

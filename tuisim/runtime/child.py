@@ -226,8 +226,8 @@ class Child:
         """Record what the program does, and what the prelude has done."""
         self._commands = CommandsWriter(self._config.folder)
         for command in self._early_commands:
-            self._write_command(*command)
-        self._sim.on_command = self._write_command
+            self._commands.add(*command)
+        self._sim.on_command = self._commands.add
 
     def _stop_when_full(self, *writers: MappedWriter | None) -> None:
         """Let the run stop when there is no space for what it records."""
@@ -235,11 +235,6 @@ class Child:
             writer.full = lambda error: self._session.request_stop(
                 protocol.End.DISK_FULL, _no_room(error)
             )
-
-    def _write_command(
-        self, time_ns: int, part: int, call: Call, values: tuple[float, ...]
-    ) -> None:
-        self._commands.add(time_ns, part, call, values, self._session.program_line(4))
 
     def _write_turns(self, turns: tuple[Turn, ...]) -> None:
         sim = self._sim

@@ -11,9 +11,13 @@ if TYPE_CHECKING:
     from tuisim.core.simulation import Simulation
 
 
+_DRIVEN = BrickMotor, BrowserMotor
+"""A union is built anew each time that it is written, and commands come by the thousand."""
+
+
 def _find_motor(sim: Simulation, part: int) -> BrickMotor | BrowserMotor:
     motor = sim.motors[part]
-    assert isinstance(motor, BrickMotor | BrowserMotor)
+    assert isinstance(motor, _DRIVEN)
     return motor
 
 
