@@ -75,7 +75,10 @@ def test_the_tour_can_be_typed(terminal: Terminal, tmp_path: Path) -> None:
             # The first press of a key focuses the panel.
             terminal.keys("D", "c", "c", "G", "G")
             terminal.until(
-                lambda text: "D Code" not in text and re.search(_POSITION, text) is not None
+                lambda text: (
+                    not re.search("D Code|c Chart|G Debug", text)
+                    and re.search(_POSITION, text) is not None
+                )
             )
         before = terminal.screen()
         for key in keys_of(row):
