@@ -26,6 +26,12 @@ def test_few_points_reach_as_far_as_all(limits: tuple[float, float]) -> None:
     assert (np.diff(times_s) >= 0).all()
 
 
+@pytest.mark.parametrize("sign", [1, -1])
+def test_a_ramp_of_many_points_is_drawn_as_a_ramp(sign: int) -> None:
+    _, drawn = Pyramid(TIMES, sign * TIMES).points((0.0, 200.0), 100)
+    assert (sign * np.diff(drawn) >= 0).all()
+
+
 def test_what_is_not_finite_or_not_in_order_is_put_right() -> None:
     pyramid = Pyramid(np.array([3.0, 1.0, 2.0, 5.0]), np.array([30.0, 10.0, np.nan, 50.0]))
     assert pyramid.times_s.tolist() == [1.0, 3.0, 5.0]

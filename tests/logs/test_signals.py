@@ -148,6 +148,11 @@ class TestCrossings:
     def test_a_touch_from_above_is_none(self) -> None:
         assert crossings(column(0, 1, 2), column(9, 5, 9), 5) == []
 
+    def test_what_stays_within_the_hysteresis_crosses_nothing(self) -> None:
+        times_s, values = column(*range(7)), column(0, 10, 4, 10, 0, 6, 0)
+        found = crossings(times_s, values, 5, hysteresis=2)
+        assert [(one.at, one.rising) for one in found] == [(1, True), (4, False)]
+
     def test_hysteresis_passes_over_jitter(self) -> None:
         values = column(0, 4.9, 5.1, 4.9, 5.1, 9, 5.1, 4.9, 0)
         time = np.arange(9.0)
