@@ -211,7 +211,7 @@ def test_a_run_that_is_worked_out_again_earns_what_the_program_did(
 def test_a_command_that_no_program_can_give_is_told_without_the_folder(tmp_path: Path) -> None:
     text = MOVES.replace(
         "session.steering.apply(session, SetPose(1000.0, 100.0, 0.0))",
-        "from tuisim.core.commands.calls import Call; session.sim.obey(0, 0, Call.RUN, 1e6)",
+        "from tuisim.core.commands.table import Call, obey; obey(session.sim, 0, 0, Call.RUN, 1e6)",
     )
     result = execute(replace(task(text), is_replayed=True), tmp_path)
     assert result.end == "falsified"

@@ -5,16 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import suppress
 from itertools import takewhile
-from typing import TYPE_CHECKING
 
 from tuisim.core.geometry import Pose
+from tuisim.core.spec import RunSpec
 from tuisim.errors import LogError
 from tuisim.runs.recorded_run import Recording
 from tuisim.runs.run_folder import StoredRun
 from tuisim.source import Program
-
-if TYPE_CHECKING:
-    from tuisim.app.run_controller import RunController
 
 
 def is_comparable(earlier: Recording, later: Recording) -> bool:
@@ -38,15 +35,11 @@ def stored_before(later: Recording) -> Recording | None:
     return next((run for run in before if is_comparable(run, later)), None)
 
 
-def find_last_like(runs: RunController) -> StoredRun | None:
-    """Return the last stored run of the program file that is open; None during a run, if there is none, and if its
-    text or what else it was made of is not the same now."""
-    program = runs.program
-    if program is None or runs.in_run:
-        return None
+def find_last_like(program: Program, spec: RunSpec) -> StoredRun | None:
+    """Return the last stored run of a program file; None if there is none, or if it was made of something else."""
     with suppress(LogError):
         run = next(_load_runs(program, ""), None)
-        if run and run.program.text == program.text and run.spec == runs.next_run.spec:
+        if run and run.program.text == program.text and run.spec == spec:
             return run
     return None
 

@@ -182,7 +182,10 @@ class LessonController:
             self._panel_area.world.focus()
         self._done = None
         self._begin_step()
-        if run := find_last_like(self._run_controller):
+        runs = self._run_controller
+        if runs.program is None or runs.in_run:
+            return
+        if run := find_last_like(runs.program, runs.next_run.spec):
             self._before = run.id
             self._loader.open_run(run)
 

@@ -6,7 +6,6 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from tuisim.core.commands.table import EFFECTS
 from tuisim.core.drift import can_strain_gyro, find_drift, sensed_turn_rate_dps
 from tuisim.core.drive import float32, turn_rate_dps
 from tuisim.core.driver.jiffies import draw_jiffies
@@ -121,16 +120,6 @@ class Simulation(Motion):
         return TICK_RECORD.iter_unpack(self._buffer[64 + 64 * first : 64 + 64 * self._sink.count])
 
     # Changing
-
-    def obey(self, time_ns: int, part: int, call: Call, *values: float) -> None:
-        """Do what a program wants; arguments as of `SimulationCommand`. All that it changes comes through here.
-
-        Raises:
-            ValueError: a move is not possible.
-            RobotError: the parts that are plugged in do not fit.
-        """
-        self.on_command(time_ns, part, call, values)
-        EFFECTS[call](self, time_ns, part, values)
 
     def find_number(self, motor: Motor) -> int:
         """Return the number by which commands name a motor."""

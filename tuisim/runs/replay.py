@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from tuisim.core.commands.calls import SimulationCommand
 from tuisim.core.commands.check import CommandCheck
-from tuisim.core.commands.table import CALLS
+from tuisim.core.commands.table import CALLS, obey
 from tuisim.core.motor_columns import MOTOR_RECORD, name_motors
 from tuisim.core.profile import NS_PER_S
 from tuisim.core.simulation import Simulation, simulation_of
@@ -112,7 +112,7 @@ def replay(
         count = len(CALLS[command.call].ranges)
         # Whatever was raised in the program, here it ends the command, too.
         with suppress(Exception):
-            sim.obey(command.time_ns, command.part, command.call, *command.values[:count])
+            obey(sim, command.time_ns, command.part, command.call, *command.values[:count])
     advance(last_tick)
     return ReplayedTicks(
         ticks.buffer[HEADER_BYTES : HEADER_BYTES + TICK_RECORD.size * ticks.count],

@@ -9,6 +9,7 @@ from functools import partial
 from tuisim.core.brick_motor import BrickMotor
 from tuisim.core.browser_motor import BrowserMotor
 from tuisim.core.commands.calls import Call
+from tuisim.core.commands.table import obey
 from tuisim.core.motors import MEDIUM_MAX_SPEED_DPS, POSITION, STOPPED, TIMED, Motor
 from tuisim.core.profile import MS
 from tuisim.core.servo.motor import ServoMotor
@@ -77,7 +78,7 @@ class Tacho(ABC):
     def _tell(self, call: Call, *values: float) -> None:
         """Change the motor."""
         sim = self._session.sim
-        sim.obey(self._session.now, sim.find_number(self._motor), call, *values)
+        obey(sim, self._session.now, sim.find_number(self._motor), call, *values)
 
     @abstractmethod
     def device(self) -> SimDevice:

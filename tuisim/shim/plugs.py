@@ -12,6 +12,7 @@ from typing import Any
 
 from tuisim.core.commands.calls import Call
 from tuisim.core.commands.robot import encode_parts
+from tuisim.core.commands.table import obey
 from tuisim.core.plugged import (
     LATE,
     LEFT,
@@ -193,7 +194,7 @@ class Plugs:
         """Change the robot, and what is connected to the brick."""
         built, sim = self._built, self._session.sim
         before = sim.spec.robot
-        sim.obey(self._session.now, 0, Call.PLUG, *encode_parts(parts))
+        obey(sim, self._session.now, 0, Call.PLUG, *encode_parts(parts))
         robot = sim.spec.robot
         simulated = sim.motors_by_port
         sensors = {sensor.port: sensor for sensor in robot.sensors}

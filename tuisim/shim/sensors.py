@@ -9,6 +9,7 @@ from functools import partial
 from typing import Any, NoReturn
 
 from tuisim.core.commands.calls import Call
+from tuisim.core.commands.table import obey
 from tuisim.core.drift import find_drift
 from tuisim.core.profile import ProfileSpec
 from tuisim.core.sensors import SENSORS, color, gyro, infrared, touch, ultrasonic
@@ -318,7 +319,7 @@ class GyroDevice(LegoSensor):
             self._reset()
 
     def _reset(self) -> None:
-        self._session.sim.obey(self._session.now, 0, Call.RESET_GYRO)
+        obey(self._session.sim, self._session.now, 0, Call.RESET_GYRO)
 
 
 def touch_sensor(session: DeviceSession, spec: TouchSpec) -> LegoSensor:

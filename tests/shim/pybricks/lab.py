@@ -6,13 +6,12 @@ from collections.abc import Callable
 from types import SimpleNamespace
 from typing import Any, cast
 
-from tuisim.core.commands.calls import Call
-from tuisim.core.commands.table import EFFECTS
 from tuisim.core.driver.plant import Axle, PlantSpec
 from tuisim.core.profile import PROFILES, MotorLaw
 from tuisim.core.servo.drive_base import DriveBase
 from tuisim.core.servo.motor import ServoMotor
 from tuisim.core.servo.settings import BATTERY_V
+from tuisim.core.simulation import CommandHook
 from tuisim.runs.records import Stream
 from tuisim.shim.display import Screen
 from tuisim.shim.pybricks.brick import Brick, Connected
@@ -34,9 +33,7 @@ class MotorsOnly:
     def __init__(self, motors: list[ServoMotor]) -> None:
         self.motors, self.bases = motors, list[DriveBase]()
         self.find_number = motors.index
-
-    def obey(self, time_ns: int, part: int, call: Call, *values: float) -> None:
-        EFFECTS[call](cast(Any, self), time_ns, part, values)
+        self.on_command: CommandHook = lambda *_: None
 
 
 class Lab:

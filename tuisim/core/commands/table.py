@@ -96,3 +96,14 @@ CALLS: Mapping[Call, CallSpec] = {
 }
 EFFECTS = {call: spec.apply for call, spec in CALLS.items()}
 """What each call does, for a quick look-up."""
+
+
+def obey(sim: Simulation, time_ns: int, part: int, call: Call, *values: float) -> None:
+    """Do what a program wants; arguments as of `SimulationCommand`. All that it changes comes through here.
+
+    Raises:
+        ValueError: a move is not possible.
+        RobotError: the parts that are plugged in do not fit.
+    """
+    sim.on_command(time_ns, part, call, values)
+    EFFECTS[call](sim, time_ns, part, values)

@@ -6,6 +6,7 @@ import types
 from typing import Any, NoReturn
 
 from tuisim.core.commands.calls import Call
+from tuisim.core.commands.table import obey
 from tuisim.errors import NotSimulated
 from tuisim.shim.session import DeviceSession
 
@@ -62,12 +63,12 @@ def virtual_module(session: DeviceSession) -> types.ModuleType:
         def down(self) -> None:
             """Draw from now on."""
             session.charge(cost_ns)
-            sim.obey(session.now, 0, Call.MOVE_PEN, 1.0)
+            obey(sim, session.now, 0, Call.MOVE_PEN, 1.0)
 
         def up(self) -> None:
             """Draw no longer."""
             session.charge(cost_ns)
-            sim.obey(session.now, 0, Call.MOVE_PEN, 0.0)
+            obey(sim, session.now, 0, Call.MOVE_PEN, 0.0)
 
         def setColor(self, *_given: object, **_named: object) -> None:  # noqa: N802
             """Do nothing: the robot has one colour, see the option --pen-color."""

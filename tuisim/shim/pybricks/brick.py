@@ -10,6 +10,7 @@ from math import nan
 from typing import Any, ClassVar, Generic, TypeVar
 
 from tuisim.core.commands.calls import MAX_NUMBER, Call
+from tuisim.core.commands.table import obey
 from tuisim.core.sensors import SENSORS
 from tuisim.core.servo.motor import ServoMotor
 from tuisim.data_class import dataclass
@@ -125,7 +126,7 @@ class Brick:
         numbers = (
             nan if value is None else float(max(-LARGEST, min(LARGEST, value))) for value in values
         )
-        self.session.sim.obey(self.session.now, part, call, *numbers)
+        obey(self.session.sim, self.session.now, part, call, *numbers)
 
     def command(self) -> int:
         """Count a command, which takes no time, and return the simulated time."""
