@@ -16,6 +16,7 @@ from tuisim.app.timeline import find
 from tuisim.breakpoints import parse_break
 from tuisim.core.conditions import Edge, ValueCondition, ValueSource, condition_in, run_condition_in
 from tuisim.core.profile import PROFILES
+from tuisim.core.spec import RobotSpec
 from tuisim.errors import ConfigError, LogError
 from tuisim.logs.columns import Layout
 from tuisim.logs.expressions import evaluate
@@ -48,7 +49,7 @@ class OneRow:
 def by_goto(condition: str) -> list[float]:
     found = []
     for value in VALUES:
-        spec = SimpleNamespace(profile=next(iter(PROFILES.values())))
+        spec = SimpleNamespace(profile=next(iter(PROFILES.values())), robot=RobotSpec())
         recording = SimpleNamespace(newest=9, rows=OneRow(value), spec=spec)
         timeline: Any = SimpleNamespace(recording=recording, tick=0, tick_hz=100)
         try:
