@@ -12,7 +12,7 @@ from mats import BLUE, GREEN, LIGHT_GREY, MID_GREY, RED, VERY_LIGHT_GREY, YELLOW
 from PIL import Image
 from shapes import BLACK, WIDTH, Rgb
 
-FOLDER = Path(__file__).resolve().parent.parent / "tuisim" / "lessons" / "mats"
+FOLDER = Path(__file__).resolve().parent.parent / "tuisim" / "tasks" / "lessons" / "mats"
 WIDTH_OF_BAND = 201
 BANDS: dict[str, dict[int, Rgb]] = {
     "other_greys": {250: (225, 225, 225), 650: (207, 207, 207), 1050: (124, 124, 124), 1450: BLACK},

@@ -16,16 +16,16 @@ import pytest
 from hypothesis import HealthCheck, settings
 
 from tests.running import PATIENCE_S, Done, Run, Start, over
-from tuisim.atomic import make_private_folder
+from tuisim.base.atomic import make_private_folder
+from tuisim.base.folders import cache_folder
+from tuisim.base.source import Program
 from tuisim.cli import run_command
-from tuisim.config import mat_cache
-from tuisim.config.folders import cache_folder
-from tuisim.core.geometry import Pose
-from tuisim.core.profile import PROFILES
-from tuisim.core.spec import NoiseSpec, PenSpec, RobotSpec, RunSpec, WorldSpec
-from tuisim.runs.child import process
-from tuisim.runs.handle import RunHandle, RunOptions, start_run
-from tuisim.source import Program
+from tuisim.engine import mat_cache
+from tuisim.engine.core.geometry import Pose
+from tuisim.engine.core.profile import PROFILES
+from tuisim.engine.core.spec import NoiseSpec, PenSpec, RobotSpec, RunSpec, WorldSpec
+from tuisim.engine.runs.child import process
+from tuisim.engine.runs.handle import RunHandle, RunOptions, start_run
 
 ROOT = Path(__file__).resolve().parent.parent
 MATS = {name: getattr(mat_cache, name) for name in ("_in_use", "_store")}

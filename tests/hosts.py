@@ -16,9 +16,9 @@ from pathlib import Path
 
 from tests.proof.kind import home
 from tuisim.cli import run_command
-from tuisim.runs.handle import RunHandle
-from tuisim.runs.records import Stream
-from tuisim.runs.store import RunStore
+from tuisim.engine.runs.handle import RunHandle
+from tuisim.engine.runs.records import Stream
+from tuisim.engine.runs.store import RunStore
 
 MAGIC = "%%sim_magic_preloaded -b Empty_Map"
 GOALS = """\
@@ -124,7 +124,7 @@ def _app(programs: Mapping[str, str], folder: Path) -> Hosted:
     # Imported here: the other hosts need not wait for it.
     from tests.app.app_help import ready, settings, until
     from tuisim.app.app import LabApp
-    from tuisim.config.preferences import keep
+    from tuisim.settings.preferences import keep
 
     files = _write(folder / "own", programs)
 

@@ -6,8 +6,8 @@ from functools import cache
 
 import pytest
 
-from tuisim.errors import ConfigError
-from tuisim.runs.child.isolation import check_isolation
+from tuisim.base.errors import ConfigError
+from tuisim.engine.runs.child.isolation import check_isolation
 
 
 @cache

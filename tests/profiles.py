@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from tuisim.core.profile import EV3, MS, MotorLaw
+from tuisim.engine.core.profile import EV3, MS, MotorLaw
 
 EXACT = replace(
     EV3,

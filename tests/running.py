@@ -9,8 +9,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
-from tuisim.protocol import Ended, Message
-from tuisim.runs.handle import RunHandle
+from tuisim.engine.protocol import Ended, Message
+from tuisim.engine.runs.handle import RunHandle
 
 PATIENCE_S = 120.0
 """How long a test waits before it fails: what never comes must not pass, and what comes late on a busy machine must."""

@@ -14,7 +14,7 @@ import pytest
 import tuisim
 from tests.cases import cases
 from tests.conftest import ROOT
-from tuisim.errors import ConfigError, LogError
+from tuisim.base.errors import ConfigError, LogError
 from tuisim.guide.catalogue import find_page
 
 LOGGER = """\
@@ -77,9 +77,14 @@ def test_import_loads_next_to_nothing() -> None:
     done = subprocess.run(
         [sys.executable, "-c", program], cwd=ROOT, capture_output=True, text=True, check=True
     )
-    assert not {"numpy", "pandas", "PIL", "IPython", "tuisim.api", "tuisim.runs.handle"} & set(
-        done.stdout.split()
-    )
+    assert not {
+        "numpy",
+        "pandas",
+        "PIL",
+        "IPython",
+        "tuisim.api",
+        "tuisim.engine.runs.handle",
+    } & set(done.stdout.split())
 
 
 def test_the_guides_example_does_as_it_says(

@@ -14,12 +14,12 @@ from typing import Any
 import pytest
 
 from tuisim import __version__
+from tuisim.base.errors import ConfigError
 from tuisim.cli import run_command
 from tuisim.commands.runs import export, list_runs, rerun_runs, rm, show
-from tuisim.config.magic_line import parse_line
-from tuisim.config.options import Settings
-from tuisim.errors import ConfigError
-from tuisim.runs.store import RunStore
+from tuisim.engine.runs.store import RunStore
+from tuisim.settings.magic_line import parse_line
+from tuisim.settings.options import Settings
 
 TABLE = Path(__file__).with_name("cli_lines.jsonl")
 ROWS = [json.loads(line) for line in TABLE.read_text(encoding="utf-8").split("\n") if line]

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from tests.hosts import HOSTS, hosted
-from tests.marks.attackers import TO_ALL
+from tests.tasks.marks.attackers import TO_ALL
 
 OTHER = "tank_drive.on_for_rotations(50, 50, 1)\nprint('A: 1')"
 PROGRAMS = {"ada": f"{OTHER}  # ada", "eve": f"{TO_ALL}print('B: 1')", "zoe": f"{OTHER}  # zoe"}

@@ -12,14 +12,9 @@ from tests.cases import cases
 from tuisim.analysis.source import read_notes
 from tuisim.app import debugger
 from tuisim.app.editor import text_file
+from tuisim.base.errors import LogError
 from tuisim.batch.partial import _decoded
-from tuisim.config.preferences import preference, preferences_file
-from tuisim.errors import LogError
-from tuisim.logs.arrow import METADATA_KEY, metadata_in
-from tuisim.logs.export import companion_of
-from tuisim.logs.reader import read_companion
-from tuisim.marks.journal import Journal
-from tuisim.runs.side_files import (
+from tuisim.engine.runs.side_files import (
     MODULES_FILE,
     READS_FILE,
     STOP_FILE,
@@ -27,6 +22,11 @@ from tuisim.runs.side_files import (
     read_reads,
     read_stop_tick,
 )
+from tuisim.logs.arrow import METADATA_KEY, metadata_in
+from tuisim.logs.export import companion_of
+from tuisim.logs.reader import read_companion
+from tuisim.settings.preferences import preference, preferences_file
+from tuisim.tasks.marks.journal import Journal
 
 DEEP = b"[" * 100_000 + b"\n"
 PROGRAM = "drive.py"

@@ -15,7 +15,7 @@ import pytest
 
 from tests.conftest import ROOT, Command
 from tests.typed_programs import check_typed, names_in, run_typed
-from tuisim.runs.store import RunStore
+from tuisim.engine.runs.store import RunStore
 
 FOLDER = ROOT / "tests" / "pybricks_programs"
 START = (1181, 571, 0)

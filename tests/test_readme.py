@@ -15,12 +15,12 @@ from tuisim.app.analyser.actions.keys import ACTIONS as ANALYSER_ACTIONS
 from tuisim.app.panels import PANELS
 from tuisim.cli import COMMANDS
 from tuisim.commands.log import SUBCOMMANDS
-from tuisim.config.options import OPTIONS
-from tuisim.core.profile import PROFILES
-from tuisim.core.spec import MOUNTS
+from tuisim.engine.core.profile import PROFILES
+from tuisim.engine.core.spec import MOUNTS
 from tuisim.guide.catalogue import pages
 from tuisim.guide.tables import markdown_of
 from tuisim.logs.export import EXPORTERS
+from tuisim.settings.options import OPTIONS
 
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 GUIDE = "\n\n".join(markdown_of(page).replace("\\|", "|") for page in pages().values())

@@ -16,11 +16,11 @@ from pathlib import Path
 import pytest
 
 from tests.conftest import ROOT, Command
-from tuisim.config.program_file import read_program
-from tuisim.config.program_settings import facts_of
-from tuisim.config.robots import ROBOTS, ports_of
-from tuisim.core.spec import RobotSpec
-from tuisim.runs.store import RunStore
+from tuisim.engine.core.spec import RobotSpec
+from tuisim.engine.runs.store import RunStore
+from tuisim.programs.program_file import read_program
+from tuisim.programs.program_settings import facts_of
+from tuisim.settings.robots import ROBOTS, ports_of
 
 USUAL = ROBOTS["Default_Robot"]
 FOLDER = ROOT / "tests" / "real_programs"

@@ -59,22 +59,22 @@ LONG_TOKENS = 1_300
 TESTED_BESIDE = {
     "app/analyser/actions/keys.py": "app/analyser/test_screen.py",
     "app/setup/fields.py": "app/setup/test_next_run.py",
-    "config/program_robot/scopes.py": "config/program_robot/test_evaluation.py",
-    "core/servo/drive_base.py": "shim/pybricks/test_reference.py",
-    "goals/evidence.py": "goals/test_judge_conditions.py",
-    "goals/output.py": "goals/test_judge_conditions.py",
-    "goals/places.py": "goals/test_judge_conditions.py",
-    "goals/spec.py": "goals/test_files.py",
-    "lessons/spec.py": "lessons/test_files.py",
-    "runtime/debugger/conditions.py": "runtime/debugger/test_debugger.py",
-    "shim/pybricks/motor.py": "shim/pybricks/test_reference.py",
-    "shim/pybricks/robotics.py": "shim/pybricks/test_reference.py",
+    "programs/robot/scopes.py": "programs/robot/test_evaluation.py",
+    "engine/core/servo/drive_base.py": "engine/shim/pybricks/test_reference.py",
+    "tasks/goals/evidence.py": "tasks/goals/test_judge_conditions.py",
+    "tasks/goals/output.py": "tasks/goals/test_judge_conditions.py",
+    "tasks/goals/places.py": "tasks/goals/test_judge_conditions.py",
+    "tasks/goals/spec.py": "tasks/goals/test_files.py",
+    "tasks/lessons/spec.py": "tasks/lessons/test_files.py",
+    "engine/runtime/debugger/conditions.py": "engine/runtime/debugger/test_debugger.py",
+    "engine/shim/pybricks/motor.py": "engine/shim/pybricks/test_reference.py",
+    "engine/shim/pybricks/robotics.py": "engine/shim/pybricks/test_reference.py",
 }
 """Long modules whose only caller is tested, with every case of theirs: by module, the test."""
 OF_NO_MODULE = {
-    "config/golden/test_golden.py": "what settings and programs gave before",
-    "shim/pybricks/test_reference.py": "what the firmware's own code did",
-    "shim/pybricks/test_api.py": "the whole library, as its firmware has it",
+    "settings/golden/test_golden.py": "what settings and programs gave before",
+    "engine/shim/pybricks/test_reference.py": "what the firmware's own code did",
+    "engine/shim/pybricks/test_api.py": "the whole library, as its firmware has it",
     "guide/test_claims.py": "what the pages claim",
     "guide/test_documents.py": "what the pages run and name",
     "guide/test_ev3dev2_and_pybricks.py": "the table with the calls of both libraries",
@@ -85,7 +85,7 @@ OF_NO_MODULE = {
     "test_hosts.py": "an enemy in every host",
     "test_licences.py": "the packages that an install brings",
     "test_nested_json.py": "one kind of damage in each file that is read",
-    "test_programs.py": "the examples",
+    "test_examples.py": "the examples",
     "test_pybricks_programs.py": "programs of others, as a whole",
     "test_readme.py": "README and guide beside all tables",
     "test_real_programs.py": "programs of others, as a whole",
@@ -385,7 +385,7 @@ RULES: dict[str, tuple[Callable[[Source], Iterable[object]], list[Path]]] = {
     "commands print by echo": (prints, python_files("tuisim/commands")),
     "core has no clock and no global random": (
         clocks_and_global_random,
-        python_files("tuisim/core"),
+        python_files("tuisim/engine/core"),
     ),
     "no test is skipped": (skipped_tests, TESTS),
     "long modules have tests of their own": (untested, PACKAGE),
@@ -466,7 +466,7 @@ def test_types_are_strict() -> None:
     assert tool("mypy") == ""
 
 
-@pytest.mark.parametrize("module", ["tuisim.runtime", "tuisim.shim"])
+@pytest.mark.parametrize("module", ["tuisim.engine.runtime", "tuisim.engine.shim"])
 def test_child_starts_light(module: str) -> None:
     program = (
         f"import importlib, pkgutil, sys; package = importlib.import_module({module!r})\n"

@@ -39,7 +39,7 @@ def list_words(data: object) -> Iterator[str]:
 @cache
 def library_names() -> frozenset[str]:
     """Return the names that the brick's libraries give to functions."""
-    api = (ROOT / "tests" / "shim" / "pybricks" / "api.json").read_bytes()
+    api = (ROOT / "tests" / "engine" / "shim" / "pybricks" / "api.json").read_bytes()
     names = set(list_words(json.loads(api)))
     for library in ("ev3dev2", "ev3dev"):
         spec = find_spec(library)

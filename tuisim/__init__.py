@@ -12,15 +12,15 @@ if TYPE_CHECKING:
     from IPython.core.interactiveshell import InteractiveShell
 
     from tuisim.api import experiment, simulate
+    from tuisim.engine.runs.store import load_run
     from tuisim.logs.frames import read_log
-    from tuisim.runs.store import load_run
 
 __version__ = "1.0.0"
 __all__ = ["__version__", "experiment", "load_run", "read_log", "simulate"]
 
 _HOMES = {
     "experiment": "tuisim.api",
-    "load_run": "tuisim.runs.store",
+    "load_run": "tuisim.engine.runs.store",
     "read_log": "tuisim.logs.frames",
     "simulate": "tuisim.api",
 }

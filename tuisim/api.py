@@ -7,28 +7,28 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from tuisim.config.build import build_run_spec
-from tuisim.config.options import APP, OPTIONS, Option, Settings
-from tuisim.config.program_file import ProgramSource, find_program, program_of_text, read_program
-from tuisim.config.program_settings import ProgramSettings, program_settings
-from tuisim.config.worlds import load_world
-from tuisim.core.spec import RunSpec
-from tuisim.data_class import dataclass
-from tuisim.errors import ConfigError, nearest
-from tuisim.runs.handle import DEFAULT_TIME_LIMIT_S, RunOptions, start_run
-from tuisim.runs.plugged_words import describe_plugged
-from tuisim.runs.presses import press_actions
-from tuisim.runs.records import Stream
-from tuisim.runs.run_folder import StoredRun
-from tuisim.runs.store import RunStore
-from tuisim.source import Program
+from tuisim.base.data_class import dataclass
+from tuisim.base.errors import ConfigError, nearest
+from tuisim.base.source import Program
+from tuisim.engine.core.spec import RunSpec
+from tuisim.engine.runs.handle import DEFAULT_TIME_LIMIT_S, RunOptions, start_run
+from tuisim.engine.runs.presses import press_actions
+from tuisim.engine.runs.records import Stream
+from tuisim.engine.runs.run_folder import StoredRun
+from tuisim.engine.runs.store import RunStore
+from tuisim.programs.plugged_words import describe_plugged
+from tuisim.programs.program_file import ProgramSource, find_program, program_of_text, read_program
+from tuisim.programs.program_settings import ProgramSettings, program_settings
+from tuisim.settings.build import build_run_spec
+from tuisim.settings.options import APP, OPTIONS, Option, Settings
+from tuisim.settings.worlds import load_world
 
 if TYPE_CHECKING:
     import pandas as pd
     from PIL.Image import Image
 
     from tuisim.batch.parameters import Choice
-    from tuisim.batch.task import Value
+    from tuisim.tasks.task import Value
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,21 +64,21 @@ class SimulatedRun:
 
     @property
     def samples(self) -> pd.DataFrame:
-        """One row per printed `NAME: number`; columns as in `runs.frames.SAMPLE_COLUMNS`."""
-        from tuisim.runs.frames import samples_frame
+        """One row per printed `NAME: number`; columns as in `engine.runs.frames.SAMPLE_COLUMNS`."""
+        from tuisim.engine.runs.frames import samples_frame
 
         return samples_frame([self.stored])
 
     @property
     def telemetry(self) -> pd.DataFrame:
         """One row per tick; times in s, lengths in mm, angles in degrees."""
-        from tuisim.runs.frames import telemetry_frame
+        from tuisim.engine.runs.frames import telemetry_frame
 
         return telemetry_frame(self.stored)
 
     def picture(self) -> Image:
         """Return the world at the end of the run, with the pen's trace, as a Pillow image."""
-        from tuisim.scene.pictures import world_at_end
+        from tuisim.pictures.scene.pictures import world_at_end
 
         return world_at_end(self.stored)
 
@@ -228,8 +228,8 @@ def experiment(
     from tuisim.batch.plan import Plan, Subject
     from tuisim.batch.sweep import Workers, run_plan
     from tuisim.batch.table import Row, check_expressions, frame_of
-    from tuisim.batch.task import MAX_JOBS, Keep
-    from tuisim.goals.files import load_goals
+    from tuisim.tasks.goals.files import load_goals
+    from tuisim.tasks.task import MAX_JOBS, Keep
 
     _check_timeout(timeout_s)
     if keep not in [*Keep]:

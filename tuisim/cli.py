@@ -17,9 +17,8 @@ import click
 from click.shell_completion import get_completion_class, shell_complete
 
 from tuisim import __version__
-from tuisim.config.command_line import Group, command
-from tuisim.data_class import dataclass
-from tuisim.errors import (
+from tuisim.base.data_class import dataclass
+from tuisim.base.errors import (
     EXIT_BROKEN_PIPE,
     EXIT_INTERRUPTED,
     ConfigError,
@@ -30,6 +29,7 @@ from tuisim.errors import (
     printable,
     shortened,
 )
+from tuisim.settings.command_line import Group, command
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,7 +116,7 @@ def _find_commands(word: str, others: Sequence[str]) -> list[str]:
 
 def _check_command(word: str, others: Sequence[str]) -> None:
     """Raise ConfigError if a word looks like a misspelt command, or like one of a group, and is not a program."""
-    from tuisim.config.program_file import find_program
+    from tuisim.programs.program_file import find_program
 
     if "." in word or os.path.exists(find_program(word)):
         return

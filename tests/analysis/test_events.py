@@ -9,7 +9,7 @@ from tests.cases import cases
 from tuisim.analysis.chart import event_marks
 from tuisim.analysis.events import events_of, thresholds_of
 from tuisim.app.analyser.panes import PANES, pane_lines
-from tuisim.errors import LogError
+from tuisim.base.errors import LogError
 
 # `Colour` falls by 10 a second from 90, `Left` rises by 1.
 FOUND = {

@@ -8,7 +8,7 @@ import pytest
 from tests.app.analyser.logs import long_log, model_of, wide_log
 from tuisim.analysis.chart import View, chart_of
 from tuisim.analysis.model import derive
-from tuisim.errors import LogError
+from tuisim.base.errors import LogError
 from tuisim.logs.columns import Layout
 from tuisim.logs.log import Log
 from tuisim.logs.plateaus import Plateau

@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 from tuisim.analysis.pins import Pin, place_pins
-from tuisim.core.spec import RobotSpec
-from tuisim.scene.pictures import world_view
+from tuisim.engine.core.spec import RobotSpec
+from tuisim.pictures.scene.pictures import world_view
 
 
 def _labels(*pins: Pin) -> list[tuple[bool, list[str]]]:

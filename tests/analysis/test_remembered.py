@@ -16,8 +16,8 @@ from tuisim.analysis.remembered import (
     request_file,
 )
 from tuisim.analysis.source import LogRequest, opening
-from tuisim.config.preferences import keep, preferences_file
 from tuisim.logs.choices import NO_CHOICES, ReadChoices
+from tuisim.settings.preferences import keep, preferences_file
 
 CHOICES = ReadChoices(time="boot", unit="ms", header=1, separator="semicolon", decimal=",")
 

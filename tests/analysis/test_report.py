@@ -18,8 +18,8 @@ from tests.cases import cases
 from tests.conftest import Command
 from tuisim.analysis.source import NOTES_FILE, Note, notes_of_file, write_notes
 from tuisim.cli import run_command
-from tuisim.runs.run_folder import StoredRun
-from tuisim.runs.store import RunStore
+from tuisim.engine.runs.run_folder import StoredRun
+from tuisim.engine.runs.store import RunStore
 
 VOID = {"meta", "img", "br", "link", "input"}
 PROGRAM = """# %%sim_magic_preloaded -b Grey_bands

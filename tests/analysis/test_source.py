@@ -16,7 +16,7 @@ from tuisim.analysis.source import (
     read_notes,
     write_notes,
 )
-from tuisim.errors import LogError
+from tuisim.base.errors import LogError
 
 
 def test_notes_are_kept_with_a_file(tmp_path: Path, home: Path) -> None:

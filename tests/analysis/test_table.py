@@ -10,7 +10,7 @@ from tests.app.analyser.logs import long_log, model_of
 from tuisim.analysis import table as rows_module
 from tuisim.analysis.model import Model
 from tuisim.analysis.table import TableTask, conditions_of
-from tuisim.errors import LogError
+from tuisim.base.errors import LogError
 
 
 def test_a_search_goes_round_in_stretches(monkeypatch: pytest.MonkeyPatch) -> None:

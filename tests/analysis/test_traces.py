@@ -7,7 +7,7 @@ import pytest
 
 from tests.app.analyser.logs import long_log
 from tuisim.analysis.traces import LogTraces, aligned
-from tuisim.errors import LogError
+from tuisim.base.errors import LogError
 from tuisim.logs.columns import guess_columns
 from tuisim.logs.log import Log
 

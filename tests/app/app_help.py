@@ -16,10 +16,10 @@ from tests.running import PATIENCE_S
 from tuisim.app.app import AppSettings, LabApp
 from tuisim.app.snapshot import RunPhase
 from tuisim.app.terminal_app import TerminalApp
-from tuisim.config.build import build_run_spec
-from tuisim.config.options import Settings
-from tuisim.runs.recorded_run import Recording
-from tuisim.source import Program
+from tuisim.base.source import Program
+from tuisim.engine.runs.recorded_run import Recording
+from tuisim.settings.build import build_run_spec
+from tuisim.settings.options import Settings
 
 LOGS = """\
 sensor_val = colorLeft.reflected_light_intensity_pc

@@ -24,7 +24,7 @@ from textual.pilot import Pilot
 from tests.app.terminals import Terminal
 from tests.running import PATIENCE_S
 from tuisim.app import background
-from tuisim.config import user_config
+from tuisim.settings import user_config
 
 
 @pytest.fixture(scope="session", autouse=True)

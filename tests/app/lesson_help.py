@@ -13,11 +13,11 @@ from tuisim.app.app import AppSettings, LabApp
 from tuisim.app.dialogs.question import LinePrompt
 from tuisim.app.lesson import goals_of
 from tuisim.app.snapshot import RunPhase
-from tuisim.config.build import build_run_spec
-from tuisim.config.options import settings_of
-from tuisim.config.program_file import read_program
-from tuisim.lessons.files import load_lesson
-from tuisim.lessons.progress import load_progress, prepare_program
+from tuisim.programs.program_file import read_program
+from tuisim.settings.build import build_run_spec
+from tuisim.settings.options import settings_of
+from tuisim.tasks.lessons.files import load_lesson
+from tuisim.tasks.lessons.progress import load_progress, prepare_program
 
 PROGRAM = (
     "x = 1\nprint('Level: 50')\ntank_drive.on_for_seconds(SpeedPercent(30), SpeedPercent(30), 2)\n"

@@ -12,12 +12,12 @@ from textual.message import Message
 from textual.widget import Widget
 
 from tuisim.app.snapshot import RunPhase, Snapshot
-from tuisim.core.field import Field
-from tuisim.core.geometry import Pose
-from tuisim.core.profile import ROBOLAB
-from tuisim.core.sensors.color import ColorReading
-from tuisim.core.spec import RobotSpec, RunSpec, WorldSpec
-from tuisim.core.state import Instant
+from tuisim.engine.core.field import Field
+from tuisim.engine.core.geometry import Pose
+from tuisim.engine.core.profile import ROBOLAB
+from tuisim.engine.core.sensors.color import ColorReading
+from tuisim.engine.core.spec import RobotSpec, RunSpec, WorldSpec
+from tuisim.engine.core.state import Instant
 from tuisim.terminal.pixels import Pixels
 
 P = TypeVar("P", bound=Widget)

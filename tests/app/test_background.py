@@ -14,8 +14,8 @@ from textual.app import App
 from tests.cases import cases
 from tests.running import PATIENCE_S
 from tuisim.app import background
-from tuisim.atomic import replacing
-from tuisim.errors import TuisimError
+from tuisim.base.atomic import replacing
+from tuisim.base.errors import TuisimError
 
 
 def succeed(may_end: Event) -> str:

@@ -22,10 +22,10 @@ from tuisim.app.actions.time_travel import to_tick
 from tuisim.app.app import LabApp
 from tuisim.app.dialogs.runs import branch_root
 from tuisim.app.snapshot import RunPhase
-from tuisim.core.geometry import Pose
-from tuisim.core.spec import NoiseSpec
-from tuisim.runs.catalogue import RunInfo
-from tuisim.runs.store import RunStore
+from tuisim.engine.core.geometry import Pose
+from tuisim.engine.core.spec import NoiseSpec
+from tuisim.engine.runs.catalogue import RunInfo
+from tuisim.engine.runs.store import RunStore
 
 DRIVES = """\
 import threading, time, random

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from tests.app.app_help import LOGS, notices, open_lab, until, until_shown
 from tuisim.app.app import LabApp
-from tuisim.protocol import End
+from tuisim.engine.protocol import End
 
 TOLD = "sent to the terminal's clipboard"
 

@@ -22,8 +22,8 @@ from tuisim.app.app import LabApp
 from tuisim.app.debugger import Kept, following, keep, load_kept
 from tuisim.app.panels.chart import Chart
 from tuisim.app.snapshot import RunPhase
-from tuisim.breakpoints import parse_breakpoints
-from tuisim.protocol import Inspected
+from tuisim.engine.breakpoints import parse_breakpoints
+from tuisim.engine.protocol import Inspected
 
 COUNTS = """\
 import time

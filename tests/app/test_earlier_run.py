@@ -13,11 +13,11 @@ from tests.app.lesson_help import opened, run_over
 from tuisim.app.app import LabApp
 from tuisim.app.dialogs.chooser import Chooser
 from tuisim.app.earlier_run import stored_before
-from tuisim.config.build import build_run_spec
-from tuisim.config.options import Settings
-from tuisim.core.geometry import Pose
-from tuisim.runs.handle import RunOptions, start_run
-from tuisim.runs.recorded_run import Recording
+from tuisim.engine.core.geometry import Pose
+from tuisim.engine.runs.handle import RunOptions, start_run
+from tuisim.engine.runs.recorded_run import Recording
+from tuisim.settings.build import build_run_spec
+from tuisim.settings.options import Settings
 
 STRAIGHT = "tank_drive.on_for_seconds(20, 20, 1)\n"
 LONGER = STRAIGHT + "tank_drive.on_for_seconds(20, 10, 1)\n"

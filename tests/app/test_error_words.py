@@ -6,7 +6,7 @@ import pytest
 
 from tests.cases import cases
 from tuisim.app.error_words import fitting, in_a_list, remedy
-from tuisim.errors import TuisimError
+from tuisim.base.errors import TuisimError
 
 PORT = (
     "ev3dev2.DeviceNotFound: ColorSensor(ev3-ports:in1) is not connected. This robot has: in1 lego-ev3-us, "

@@ -10,7 +10,7 @@ import pytest
 
 from tuisim.app.feed import PanelFeed, _thinned, _with_gaps, sample_series
 from tuisim.app.snapshot import CHART_PERIOD_S, RunPhase
-from tuisim.runs.records import OutputRow, Stream
+from tuisim.engine.runs.records import OutputRow, Stream
 
 
 def row(text: str, time_ns: int = 0) -> OutputRow:

@@ -26,10 +26,10 @@ from tests.running import PATIENCE_S
 from tuisim.app import goals as app_goals
 from tuisim.app.app import AppSettings, LabApp
 from tuisim.app.snapshot import RunPhase
-from tuisim.config.build import build_run_spec
-from tuisim.config.options import settings_of
-from tuisim.goals.files import load_goals
-from tuisim.runs.handle import RunOptions, start_run
+from tuisim.engine.runs.handle import RunOptions, start_run
+from tuisim.settings.build import build_run_spec
+from tuisim.settings.options import settings_of
+from tuisim.tasks.goals.files import load_goals
 
 GOALS = """\
 title = "There and done"

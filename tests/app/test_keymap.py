@@ -11,8 +11,8 @@ from tests.cases import cases
 from tuisim.app.actions.keys import ACTIONS
 from tuisim.app.guide.screen import GuideScreen
 from tuisim.app.keymap import with_keys
-from tuisim.config.user_config import UserConfig
 from tuisim.guide import tables
+from tuisim.settings.user_config import UserConfig
 
 
 @cases(

@@ -26,10 +26,10 @@ from tuisim.analysis.source import NOTES_FILE, Note, write_notes
 from tuisim.app.analyser.app import Analyser
 from tuisim.app.app import LabApp
 from tuisim.app.panels.lesson import LessonPanel
-from tuisim.lessons import trial
-from tuisim.lessons.files import load_lesson
-from tuisim.lessons.progress import load_progress, program_path
-from tuisim.lessons.trial import tried_elsewhere
+from tuisim.tasks.lessons import trial
+from tuisim.tasks.lessons.files import load_lesson
+from tuisim.tasks.lessons.progress import load_progress, program_path
+from tuisim.tasks.lessons.trial import tried_elsewhere
 
 
 async def wheel_up(pilot: Pilot[Any], panel: LessonPanel) -> None:

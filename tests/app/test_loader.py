@@ -25,12 +25,12 @@ from tests.app.app_help import (
 )
 from tuisim.app.app import AppSettings, LabApp
 from tuisim.app.snapshot import RunPhase
-from tuisim.config.build import build_run_spec
-from tuisim.config.options import Settings, settings_of
-from tuisim.config.worlds import load_world
-from tuisim.core.geometry import Pose
-from tuisim.core.spec import NoiseSpec
-from tuisim.source import Program
+from tuisim.base.source import Program
+from tuisim.engine.core.geometry import Pose
+from tuisim.engine.core.spec import NoiseSpec
+from tuisim.settings.build import build_run_spec
+from tuisim.settings.options import Settings, settings_of
+from tuisim.settings.worlds import load_world
 
 LAB = """\
 program = "mine.py"

@@ -10,10 +10,10 @@ from textual.widgets import OptionList
 from tests.app.app_help import lab, notices, open_lab, screen_text, until, until_shown
 from tuisim.app.app import AppSettings, LabApp
 from tuisim.app.setup import next_run as plans
-from tuisim.config.build import build_run_spec
-from tuisim.config.options import Settings
-from tuisim.config.program_file import read_program
-from tuisim.config.program_settings import PROGRAM_PATHS, Decided, program_settings
+from tuisim.programs.program_file import read_program
+from tuisim.programs.program_settings import PROGRAM_PATHS, Decided, program_settings
+from tuisim.settings.build import build_run_spec
+from tuisim.settings.options import Settings
 
 CLAW = "from ev3dev2.motor import MediumMotor\nclaw = MediumMotor('outA')\nclaw.on_for_degrees(20, 90)\n"
 

@@ -16,8 +16,8 @@ from tests.app.app_help import LOGS, open_lab, screen_text, until
 from tests.app.layout.test_arrangement_presets import KEYS, SIZES
 from tuisim.app.app import LabApp
 from tuisim.app.panels.world import WorldView
-from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
-from tuisim.protocol import End
+from tuisim.engine.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
+from tuisim.engine.protocol import End
 
 USERS = frozenset({"code", "output"})
 """Panels with the user's own text, whose lines may be longer than any panel."""

@@ -6,7 +6,7 @@ import pytest
 from textual.widgets import Input, Static
 
 from tests.app.app_help import LOGS, open_lab, until
-from tuisim.core.geometry import Pose
+from tuisim.engine.core.geometry import Pose
 
 
 @pytest.mark.slow

@@ -13,9 +13,9 @@ from tuisim.app.panels.chart import Chart
 from tuisim.app.setup import next_run as plans
 from tuisim.app.setup.next_run import NextRun
 from tuisim.app.snapshot import RunPhase
-from tuisim.core.drift_spec import DriftSpec
-from tuisim.core.geometry import Pose
-from tuisim.core.spec import NoiseSpec
+from tuisim.engine.core.drift_spec import DriftSpec
+from tuisim.engine.core.geometry import Pose
+from tuisim.engine.core.spec import NoiseSpec
 
 OF_THE_RUN = frozenset({"chart", "code", "output", "TimeBar"})
 """What shows the end of a run; the others show the robot as the next run begins with it."""

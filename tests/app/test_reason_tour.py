@@ -6,7 +6,7 @@ from types import SimpleNamespace
 from typing import Any
 
 from tuisim.app.reason_tour import ReasonTour
-from tuisim.reasons.reason import Reason, ReasonKind
+from tuisim.tasks.reasons.reason import Reason, ReasonKind
 
 REASONS = (
     Reason(ReasonKind.BLOCKED, 1.0, 3, "the robot stood at the wall"),

@@ -10,7 +10,7 @@ from tests.app.app_help import notices, open_lab, run_from_start, screen_text, u
 from tests.cases import cases
 from tuisim.app.app import LabApp
 from tuisim.app.snapshot import RunPhase
-from tuisim.goals.files import load_goals
+from tuisim.tasks.goals.files import load_goals
 
 STRAIGHT = "tank_drive.on_for_seconds(20, 20, 1)\n"
 SIZE = (120, 40)

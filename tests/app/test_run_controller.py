@@ -24,10 +24,10 @@ from tuisim.app.panels.code import Code
 from tuisim.app.panels.output import Answer
 from tuisim.app.panels.world import WorldView
 from tuisim.app.snapshot import RunPhase
-from tuisim.config import mat_cache
-from tuisim.core.field import Field
-from tuisim.core.geometry import Pose
-from tuisim.errors import BackgroundError
+from tuisim.base.errors import BackgroundError
+from tuisim.engine import mat_cache
+from tuisim.engine.core.field import Field
+from tuisim.engine.core.geometry import Pose
 from tuisim.terminal.picture_mode import PictureMode
 from tuisim.terminal.picture_options import CellSet
 

@@ -5,12 +5,12 @@ from __future__ import annotations
 from dataclasses import replace
 
 from tests.app.app_help import ready, settings, until
-from tests.shim.late_programs import LATE_PROGRAMS
+from tests.engine.shim.late_programs import LATE_PROGRAMS
 from tuisim.app.app import LabApp
-from tuisim.config.build import build_run_spec
-from tuisim.config.program_file import parse_program
-from tuisim.config.program_settings import program_settings
-from tuisim.core.sensors import column_names
+from tuisim.engine.core.sensors import column_names
+from tuisim.programs.program_file import parse_program
+from tuisim.programs.program_settings import program_settings
+from tuisim.settings.build import build_run_spec
 
 
 def begin(text: str) -> LabApp:

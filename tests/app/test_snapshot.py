@@ -8,7 +8,7 @@ import pytest
 
 from tests.app.panel_help import moment
 from tuisim.app.snapshot import AppState, RunPhase, Situation, short_value
-from tuisim.protocol import End, Unended
+from tuisim.engine.protocol import End, Unended
 
 
 def app_state(looks_back: bool, playing: bool, **run: Any) -> AppState:

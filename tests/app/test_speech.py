@@ -13,7 +13,7 @@ import pytest
 
 from tests.running import PATIENCE_S
 from tuisim.app.speech import MAX_SOUND_S, RATE_HZ, Voice, wav_of
-from tuisim.protocol import Spoke
+from tuisim.engine.protocol import Spoke
 
 
 def samples(data: bytes) -> array[int]:

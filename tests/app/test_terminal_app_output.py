@@ -20,7 +20,7 @@ from tuisim.app.analyser.app import AnalyserApp
 from tuisim.app.app import LabApp
 from tuisim.app.run_update import RunUpdate
 from tuisim.app.snapshot import RunPhase
-from tuisim.protocol import Resumed
+from tuisim.engine.protocol import Resumed
 from tuisim.terminal.pacer import Pacer
 
 LOG = "index,variable,value,time\n0,Colour,1.0,0.1\n1,Colour,2.0,0.2\n"

@@ -16,11 +16,11 @@ from textual.theme import BUILTIN_THEMES
 
 import tuisim.app
 from tests.app.app_help import LOGS, open_lab, settings, until
-from tuisim import palette
 from tuisim.app.app import LabApp
 from tuisim.app.dialogs.palette import ThemeChooser
 from tuisim.app.themes import HIGH_CONTRAST, LIGHT, OWN_THEME, UNUSED_THEMES, ThemeColors, contrast
-from tuisim.charts.traces import TRACE_COLORS
+from tuisim.base import palette
+from tuisim.pictures.charts.traces import TRACE_COLORS
 
 THEMES = [
     *(

@@ -27,9 +27,9 @@ from tests.app.app_help import (
 from tuisim.app.app import LabApp
 from tuisim.app.snapshot import RunPhase, Snapshot
 from tuisim.app.timeline import Timeline, find
-from tuisim.errors import ConfigError
-from tuisim.protocol import End
-from tuisim.runs.views import instant_of
+from tuisim.base.errors import ConfigError
+from tuisim.engine.protocol import End
+from tuisim.engine.runs.views import instant_of
 
 PEN = LOGS.replace("tank_drive.on", "print('off we go')\ntank_drive.on", 1)
 

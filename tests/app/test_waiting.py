@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import replace
 
 from tests.app.app_help import open_lab, settings, until
-from tuisim.core.profile import PROFILES
-from tuisim.core.spec import RobotSpec, RunSpec, TouchSpec, WorldSpec
+from tuisim.engine.core.profile import PROFILES
+from tuisim.engine.core.spec import RobotSpec, RunSpec, TouchSpec, WorldSpec
 
 WAITS = """\
 from ev3dev2.sensor.lego import TouchSensor

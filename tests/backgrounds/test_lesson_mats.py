@@ -7,7 +7,7 @@ import pytest
 from lesson_mats import BANDS, FOLDER, draw
 from PIL import Image
 
-from tuisim.lessons.catalogue import shipped_paths
+from tuisim.tasks.lessons.catalogue import shipped_paths
 
 
 @pytest.mark.parametrize("name", BANDS)

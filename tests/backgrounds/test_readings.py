@@ -26,10 +26,10 @@ import pytest
 from mats import MATS
 from PIL import Image
 
-from tuisim.core.field import Field, disc_mask
-from tuisim.core.geometry import Pose
-from tuisim.core.sensors.color import box_corner
-from tuisim.core.spec import ColorSensorSpec
+from tuisim.engine.core.field import Field, disc_mask
+from tuisim.engine.core.geometry import Pose
+from tuisim.engine.core.sensors.color import box_corner
+from tuisim.engine.core.spec import ColorSensorSpec
 
 SENSOR = ColorSensorSpec("left", "in2", -20.0, 30.0)
 ROUNDED = 0.0006

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from typing import Any
 
-from tuisim.batch.task import Result, Task, VariableStatistics
+from tuisim.tasks.task import Result, Task, VariableStatistics
 
 SEED_THAT_FAILS = 13
 
@@ -36,5 +36,5 @@ def result_of(task: Task, **changed: Any) -> Result:
 
 
 def run_backwards(tasks: Iterable[Task], jobs: int = 0) -> Iterator[Result]:
-    """Yield the results in reverse order, as `batch.pool.run_many` may."""
+    """Yield the results in reverse order, as `tasks.pool.run_many` may."""
     yield from map(result_of, reversed(list(tasks)))

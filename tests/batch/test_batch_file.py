@@ -8,10 +8,10 @@ from typing import Any
 import pytest
 
 from tests.cases import cases
+from tuisim.base.errors import ConfigError
 from tuisim.batch.batch_file import load_batch, means_batch
 from tuisim.batch.parameters import RandomDraw, SampleValues
-from tuisim.config.worlds import load_world
-from tuisim.errors import ConfigError
+from tuisim.settings.worlds import load_world
 
 WHOLE = """
 background = "Loop"

@@ -14,13 +14,13 @@ from pathlib import Path
 
 import pytest
 
-from tests.batch.test_pool import LOGS, by_index, task
 from tests.cases import cases
 from tests.conftest import ROOT
 from tests.running import PATIENCE_S
+from tests.tasks.test_pool import LOGS, by_index, task
+from tuisim.base.errors import ConfigError, HostError
 from tuisim.batch.cluster import run_on_cluster
-from tuisim.batch.pool import run_many
-from tuisim.errors import ConfigError, HostError
+from tuisim.tasks.pool import run_many
 
 pytestmark = pytest.mark.slow
 

@@ -10,9 +10,9 @@ import pytest
 
 from tests.cases import cases
 from tuisim import __version__
+from tuisim.base.errors import HostError
 from tuisim.batch import cluster_watch
 from tuisim.batch.cluster_watch import ClusterWatch, within
-from tuisim.errors import HostError
 
 NOBODY = ModuleNotFoundError("No module named 'tuisim'")
 

@@ -7,6 +7,7 @@ from itertools import pairwise
 import pytest
 
 from tests.cases import cases
+from tuisim.base.errors import ConfigError
 from tuisim.batch.parameters import (
     RandomDraw,
     SampleValues,
@@ -15,7 +16,6 @@ from tuisim.batch.parameters import (
     parse_set,
     parse_values,
 )
-from tuisim.errors import ConfigError
 
 
 @cases(

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
+from tuisim.base.errors import ConfigError, ExportError
 from tuisim.batch.partial import PartialTable, partial_of
-from tuisim.errors import ConfigError, ExportError
 
 ROWS = {
     0: {"run": 1, "x_mm": 0.1 + 0.2, "end": "finished"},

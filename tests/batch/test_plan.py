@@ -9,12 +9,12 @@ from typing import Any
 import pytest
 
 from tests.cases import cases
+from tuisim.base.errors import ConfigError
+from tuisim.base.source import Program
 from tuisim.batch.parameters import RandomDraw, SampleValues
 from tuisim.batch.plan import Plan, Subject
-from tuisim.config.options import Settings
-from tuisim.errors import ConfigError
-from tuisim.runs.handle import RunOptions
-from tuisim.source import Program
+from tuisim.engine.runs.handle import RunOptions
+from tuisim.settings.options import Settings
 
 HERE = Path("--set")
 

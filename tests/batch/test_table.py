@@ -10,6 +10,7 @@ import pytest
 from tests.batch.stand_in import result_of
 from tests.batch.test_plan import plan, subject
 from tests.cases import cases
+from tuisim.base.errors import ConfigError, LogError
 from tuisim.batch.table import (
     check_expressions,
     frame_of,
@@ -18,7 +19,6 @@ from tuisim.batch.table import (
     row_of,
     summaries,
 )
-from tuisim.errors import ConfigError, LogError
 
 NOISES = plan({"noise.motor": (0, 20), "seed": (1, 2, 13)})
 ROWS = [row_of(result_of(task), "", task.spec.seed) for task in NOISES.tasks()]

@@ -28,8 +28,8 @@ from tests.bench.starts import commands, first_line, first_paint, help_text, imp
 from tests.bench.stops import stop_latency
 from tests.bench.variables import variables
 from tests.bench.wire import wire
-from tuisim.config.preferences import keep
-from tuisim.runs.handle import RunOptions
+from tuisim.engine.runs.handle import RunOptions
+from tuisim.settings.preferences import keep
 
 BENCHES: Mapping[str, Callable[[Effort], Iterator[Figure]]] = {
     "speed": speeds,

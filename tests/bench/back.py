@@ -12,10 +12,10 @@ from tests.bench.references import paints_elapsed
 from tests.bench.running import LOG
 from tests.bench.sampling import Effort
 from tests.bench.terminal import Terminal
-from tuisim.config.build import build_run_spec
-from tuisim.config.options import Settings
-from tuisim.runs.handle import RunOptions, start_run
-from tuisim.source import Program
+from tuisim.base.source import Program
+from tuisim.engine.runs.handle import RunOptions, start_run
+from tuisim.settings.build import build_run_spec
+from tuisim.settings.options import Settings
 
 RUN_S = 600.0
 PANELS = ("-O", "-A", "-i", "-D", "-c")

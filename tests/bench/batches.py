@@ -15,8 +15,8 @@ from tests.bench.processes import command_used
 from tests.bench.references import Ratio, forks, start_wall_s, starts, usual
 from tests.bench.running import begin, started_by_itself
 from tests.bench.sampling import Effort, measured
-from tuisim.runs.child import process
-from tuisim.runs.handle import RunOptions
+from tuisim.engine.runs.child import process
+from tuisim.engine.runs.handle import RunOptions
 
 PROGRAM = """\
 tank_drive.on(20, 20)

@@ -24,9 +24,9 @@ from tests.bench.processes import ROOT, app_environment
 from tests.bench.running import begin
 from tests.bench.sampling import Effort
 from tests.bench.terminal import Terminal
-from tuisim.atomic import replacing
+from tuisim.base.atomic import replacing
 from tuisim.cli import run_command
-from tuisim.runs.handle import RunOptions
+from tuisim.engine.runs.handle import RunOptions
 
 SAMPLES = """\
 import time

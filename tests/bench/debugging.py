@@ -11,8 +11,8 @@ from tests.bench.references import starts_elapsed
 from tests.bench.running import LINE, begin
 from tests.bench.sampling import Effort
 from tests.bench.speed import speed
-from tuisim.protocol import Inspect, Inspected, Message, Pause, Paused, Resume, StepLine
-from tuisim.runs.handle import RunHandle, RunOptions
+from tuisim.engine.protocol import Inspect, Inspected, Message, Pause, Paused, Resume, StepLine
+from tuisim.engine.runs.handle import RunHandle, RunOptions
 
 PATIENCE_S = 5.0
 NEVER = 999

@@ -20,7 +20,7 @@ from tests.bench.frames import CIRCLE
 from tests.bench.module_moves import MoveCounter
 from tests.bench.sampling import Effort
 from tests.bench.terminal import Terminal
-from tuisim.atomic import replacing
+from tuisim.base.atomic import replacing
 from tuisim.cli import run_command
 from tuisim.terminal.pacer import Pacer
 

@@ -17,9 +17,9 @@ from tests.bench.processes import app_environment
 from tests.bench.references import starts_elapsed
 from tests.bench.running import begin
 from tests.bench.sampling import Effort
-from tuisim.runs.catalogue import CATALOGUE_FILE
-from tuisim.runs.handle import RunOptions
-from tuisim.runs.run_folder import RUN_FILE
+from tuisim.engine.runs.catalogue import CATALOGUE_FILE
+from tuisim.engine.runs.handle import RunOptions
+from tuisim.engine.runs.run_folder import RUN_FILE
 
 RUNS = 2000
 FEW = "import time\nfor n in range(50):\n    print('n:', n)\n    time.sleep(0.1)\n"

@@ -9,7 +9,7 @@ from tempfile import TemporaryDirectory
 from unittest.mock import patch
 
 from tests.bench import processes
-from tuisim.runs.child import process
+from tuisim.engine.runs.child import process
 
 SLOW = """
 import sys, threading
@@ -23,7 +23,7 @@ threading.setprofile(burn)
 """
 """Makes every call and every return of a process cost so many turns of a loop."""
 NOISY = """
-from tuisim.core import noise
+from tuisim.engine.core import noise
 moved = noise._moved
 
 def burn(values, level):
@@ -35,7 +35,7 @@ noise._moved = burn
 """
 """Makes every channel of a noisy reading cost so many turns of a loop."""
 FOLLOWING = """
-from tuisim.core.servo.control import Controller
+from tuisim.engine.core.servo.control import Controller
 milli = Controller.milli
 
 def burn(control, now_us):
@@ -47,8 +47,8 @@ Controller.milli = burn
 """
 """Makes every look at a trajectory cost so many turns of a loop."""
 ANSWERS = """
-from tuisim.runtime import wallclock
-from tuisim.runtime.channel import Channel
+from tuisim.engine.runtime import wallclock
+from tuisim.engine.runtime.channel import Channel
 send = Channel.send
 
 def burn(channel, event):

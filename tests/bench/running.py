@@ -9,12 +9,12 @@ from unittest.mock import patch
 
 from tests.bench.processes import children_cpu_s
 from tests.bench.sampling import measured
-from tuisim.config.build import build_run_spec
-from tuisim.config.options import Settings
-from tuisim.core.spec import RunSpec
-from tuisim.runs.child import process
-from tuisim.runs.handle import RunHandle, RunOptions, start_run
-from tuisim.source import Program
+from tuisim.base.source import Program
+from tuisim.engine.core.spec import RunSpec
+from tuisim.engine.runs.child import process
+from tuisim.engine.runs.handle import RunHandle, RunOptions, start_run
+from tuisim.settings.build import build_run_spec
+from tuisim.settings.options import Settings
 
 EMPTY = "pass\n"
 

@@ -10,8 +10,8 @@ from tests.bench.figures import Figure
 from tests.bench.references import tick_cpu_s, tick_speed
 from tests.bench.running import LINE, LOG, MOVES, TWINS, simulating_cpu_s, spec_of
 from tests.bench.sampling import Effort, in_turns
-from tuisim.core.profile import PROFILES
-from tuisim.runs.handle import RunOptions
+from tuisim.engine.core.profile import PROFILES
+from tuisim.engine.runs.handle import RunOptions
 
 UNIT = "sim s / CPU s"
 

@@ -15,8 +15,8 @@ from tests.bench.references import Ratio, paint_cpu_s, start_cpu_s
 from tests.bench.running import begin, started_by_itself
 from tests.bench.sampling import Effort, Samples, in_turns
 from tests.bench.terminal import Terminal
-from tuisim.protocol import Started
-from tuisim.runs.handle import RunOptions
+from tuisim.engine.protocol import Started
+from tuisim.engine.runs.handle import RunOptions
 
 STOPS_ITSELF = "import os, signal; os.kill(os.getpid(), signal.SIGSTOP)\n"
 """A program that stands still in its first line, so that the CPU used until then can be read at leisure."""

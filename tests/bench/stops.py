@@ -9,8 +9,8 @@ from tests.bench.figures import Figure
 from tests.bench.references import starts_elapsed
 from tests.bench.running import begin
 from tests.bench.sampling import Effort
-from tuisim.protocol import Started
-from tuisim.runs.handle import RunOptions
+from tuisim.engine.protocol import Started
+from tuisim.engine.runs.handle import RunOptions
 
 SPIN = "while True:\n    pass\n"
 SLEEP = "import time\nwhile True:\n    time.sleep(0.1)\n"

@@ -32,7 +32,7 @@ def function_of(module: str, calls: Callable[[], object] | None = None) -> Calla
     return names["walk"]  # type: ignore[return-value]
 
 
-INNER = function_of("tuisim.core.geometry")
+INNER = function_of("tuisim.engine.core.geometry")
 STRANGER = function_of("textual.widget", INNER)
 SAME = function_of("tuisim.app.app", function_of("tuisim.app.app", STRANGER))
 
@@ -48,7 +48,7 @@ def test_a_call_from_another_module_enters_one(tmp_path: Path) -> None:
         SAME()
 
     walks.drawn()
-    once = {"tuisim.app.app": 1, "tuisim.core.geometry": 1}
+    once = {"tuisim.app.app": 1, "tuisim.engine.core.geometry": 1}
     assert json.loads((tmp_path / "counted.json").read_text()) == [once, once]
     assert sys.getprofile() is None
 

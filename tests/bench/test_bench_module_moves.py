@@ -18,7 +18,7 @@ def walk_through(function: Callable[[], object]) -> Walk:
 
 def test_calls_are_counted_also_where_the_module_stays() -> None:
     walk = walk_through(SAME)
-    assert walk == Walk(3, {"tuisim.app.app": 1, "tuisim.core.geometry": 1})
+    assert walk == Walk(3, {"tuisim.app.app": 1, "tuisim.engine.core.geometry": 1})
     assert walk.moves == 2
 
 

@@ -27,8 +27,8 @@ from tests.bench.plants import (
 )
 from tests.bench.references import usual
 from tests.bench.sampling import Effort
-from tuisim.config.preferences import keep
-from tuisim.runs import handle
+from tuisim.engine.runs import handle
+from tuisim.settings.preferences import keep
 
 pytestmark = pytest.mark.bench
 

@@ -11,14 +11,14 @@ from tests.bench.figures import Figure
 from tests.bench.references import ticks_elapsed
 from tests.bench.running import LOG
 from tests.bench.sampling import Effort
-from tuisim.config.build import build_run_spec
-from tuisim.config.options import Settings
-from tuisim.protocol import Inspect, Inspected, Paused
-from tuisim.runs.handle import RunOptions, start_run
-from tuisim.runs.recorded_run import Recording
-from tuisim.runs.replay_debugger import Position, ReplayDebugger
-from tuisim.runs.store import load_run
-from tuisim.source import Program
+from tuisim.base.source import Program
+from tuisim.engine.protocol import Inspect, Inspected, Paused
+from tuisim.engine.runs.handle import RunOptions, start_run
+from tuisim.engine.runs.recorded_run import Recording
+from tuisim.engine.runs.replay_debugger import Position, ReplayDebugger
+from tuisim.engine.runs.store import load_run
+from tuisim.settings.build import build_run_spec
+from tuisim.settings.options import Settings
 
 RUN_S = 600.0
 PLACES_A_REPEAT = 5

@@ -16,10 +16,10 @@ from tests.batch.stand_in import result_of
 from tests.cases import cases
 from tests.commands.conftest import PROGRAM, SPEC, Batch
 from tuisim.batch import sweep
-from tuisim.batch.task import Result, Task
 from tuisim.cli import run_command
-from tuisim.goals.judgement import Change, GoalState, Judgement
-from tuisim.runs.store import RunStore
+from tuisim.engine.runs.store import RunStore
+from tuisim.tasks.goals.judgement import Change, GoalState, Judgement
+from tuisim.tasks.task import Result, Task
 
 
 def interrupt_after(count: int) -> Callable[..., Iterator[Result]]:

@@ -10,14 +10,14 @@ from PIL import Image
 
 from tests.cases import cases
 from tests.conftest import Command
-from tests.goals.recorded import Run, ahead, says, wait, world
-from tuisim.config.build import build_run_spec
-from tuisim.config.options import settings_of
-from tuisim.config.worlds import load_world, save_world
-from tuisim.goals.files import example_names, load_goals
-from tuisim.goals.judge import judge
-from tuisim.runs.records import HEADER_BYTES, TELEMETRY_FILE
-from tuisim.runs.store import RunStore
+from tests.tasks.goals.recorded import Run, ahead, says, wait, world
+from tuisim.engine.runs.records import HEADER_BYTES, TELEMETRY_FILE
+from tuisim.engine.runs.store import RunStore
+from tuisim.settings.build import build_run_spec
+from tuisim.settings.options import settings_of
+from tuisim.settings.worlds import load_world, save_world
+from tuisim.tasks.goals.files import example_names, load_goals
+from tuisim.tasks.goals.judge import judge
 
 GOALS = """\
 title = "A task"
@@ -226,7 +226,7 @@ def test_program_that_does_not_compile(task: Path, here: Command) -> None:
 
 
 def test_rows_of_a_flood_are_limited(task: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("tuisim.goals.evidence.MAX_ROWS", 5)
+    monkeypatch.setattr("tuisim.tasks.goals.evidence.MAX_ROWS", 5)
     run = Run(RunStore(), world(), "")
     run.do([says("x")] * 9 + [says("done")])
     assert [each.state for each in judge(load_goals(task).goals, run.end())] == ["missed", "missed"]

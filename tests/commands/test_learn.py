@@ -10,9 +10,9 @@ import pytest
 from tests.cases import cases
 from tests.conftest import Command
 from tuisim.app.app import AppSettings
-from tuisim.core.geometry import Pose
-from tuisim.lessons.progress import LessonProgress, StepState, program_path, save_progress
-from tuisim.lessons.skeleton import SKELETON
+from tuisim.engine.core.geometry import Pose
+from tuisim.tasks.lessons.progress import LessonProgress, StepState, program_path, save_progress
+from tuisim.tasks.lessons.skeleton import SKELETON
 
 FAULTY = {
     "model answer": (

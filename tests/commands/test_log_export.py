@@ -15,11 +15,11 @@ import pytest
 
 from tests.conftest import Command
 from tuisim.cli import run_command
+from tuisim.engine.runs.frames import samples_frame, telemetry_frame
+from tuisim.engine.runs.store import RunStore
 from tuisim.logs.export import EXPORTERS, companion_of
 from tuisim.logs.frames import read_log
 from tuisim.logs.reader import open_log
-from tuisim.runs.frames import samples_frame, telemetry_frame
-from tuisim.runs.store import RunStore
 
 PROGRAM = """# %%sim_magic_preloaded -b Grey_bands -N 30 -M 20
 tank_drive.on(10, 12)

@@ -19,18 +19,18 @@ import pytest
 
 from tests.cases import cases
 from tests.conftest import ROOT, Command
-from tests.marks.hazards import ODD_NAME
-from tests.marks.student import GOAL_POINTS, GOALS, Student
-from tests.marks.test_sheet import LONG_SHEET
-from tests.marks.the_class import CLASS, write_class
 from tests.running import PATIENCE_S
-from tuisim.batch import execute
+from tests.tasks.marks.hazards import ODD_NAME
+from tests.tasks.marks.student import GOAL_POINTS, GOALS, Student
+from tests.tasks.marks.test_sheet import LONG_SHEET
+from tests.tasks.marks.the_class import CLASS, write_class
+from tuisim.base.errors import HostError
 from tuisim.cli import run_command
 from tuisim.commands import mark
-from tuisim.errors import HostError
-from tuisim.goals import patterns
-from tuisim.marks.outcome import Outcome
-from tuisim.runs.handle import RunHandle
+from tuisim.engine.runs.handle import RunHandle
+from tuisim.tasks import execute
+from tuisim.tasks.goals import patterns
+from tuisim.tasks.marks.outcome import Outcome
 
 FEW = ("ada.py", "ben.py", "gustav.py", "raises.py", "empty.py", "zip.py", "viktor")
 PROCESSES_S = 600.0

@@ -19,9 +19,9 @@ import pytest
 
 from tests.conftest import ROOT, Command
 from tests.isolated import needs_isolation
-from tests.marks.attackers import ALWAYS, DEEDS, RUN_FOLDER, SECRET, TABLES, write_attackers
-from tests.marks.right import HOPS, MAGIC
-from tests.marks.student import GOALS
+from tests.tasks.marks.attackers import ALWAYS, DEEDS, RUN_FOLDER, SECRET, TABLES, write_attackers
+from tests.tasks.marks.right import HOPS, MAGIC
+from tests.tasks.marks.student import GOALS
 
 MOST_S = 600.0
 HONEST = ("ada", "ben", "zoe")
@@ -191,7 +191,7 @@ def test_what_the_guide_says_that_only_isolation_prevents(
 
 
 _STEERING = (
-    "import builtins, time\nfrom tuisim.protocol import SetPose\n"
+    "import builtins, time\nfrom tuisim.engine.protocol import SetPose\n"
     "s = next(c.cell_contents for c in builtins.__loop_turn__.__closure__"
     " if hasattr(c.cell_contents, 'steering'))\n"
 )

@@ -14,7 +14,7 @@ import pytest
 
 from tests.conftest import ROOT
 from tests.hosts import GOALS, MAGIC, Stored, hosted
-from tests.marks.fair import FAIR
+from tests.tasks.marks.fair import FAIR
 
 QUICK = ("plain", "busy_daemon", "raises", "exits", "condition")
 MOST_S = 900.0

@@ -11,10 +11,10 @@ from unittest.mock import MagicMock
 
 import pytest
 
-from tuisim.batch import execute
+from tuisim.base.faults import report_file
 from tuisim.cli import run_command
-from tuisim.faults import report_file
-from tuisim.marks import reports, runs
+from tuisim.tasks import execute
+from tuisim.tasks.marks import reports, runs
 
 GOALS = """\
 title = "Say"

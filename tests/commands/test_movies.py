@@ -12,22 +12,22 @@ import pytest
 from PIL import Image
 
 from tests.conftest import Command
+from tests.engine.runs.run_recorder import PROGRAM, begun
 from tests.running import told
-from tests.runs.run_recorder import PROGRAM, begun
-from tuisim.core.geometry import Pose
-from tuisim.core.profile import ROBOLAB
-from tuisim.core.spec import PenSpec, RobotSpec, RunSpec, WorldSpec
-from tuisim.core.tick_record import TICK_FIELDS
-from tuisim.movies.clip import END_MS, Recorded
-from tuisim.movies.files import SMALL_BYTES, small_movie
-from tuisim.movies.painter import FramePainter
-from tuisim.runs.records import HEADER_BYTES, OUTPUT_FILE, TELEMETRY_FILE
-from tuisim.runs.run_folder import StoredRun
-from tuisim.runs.store import RunStore
-from tuisim.scene.pen import pen_trace
-from tuisim.scene.pictures import fitting_view
-from tuisim.scene.robot import COLORED
-from tuisim.scene.view import Viewport
+from tuisim.engine.core.geometry import Pose
+from tuisim.engine.core.profile import ROBOLAB
+from tuisim.engine.core.spec import PenSpec, RobotSpec, RunSpec, WorldSpec
+from tuisim.engine.core.tick_record import TICK_FIELDS
+from tuisim.engine.runs.records import HEADER_BYTES, OUTPUT_FILE, TELEMETRY_FILE
+from tuisim.engine.runs.run_folder import StoredRun
+from tuisim.engine.runs.store import RunStore
+from tuisim.pictures.movies.clip import END_MS, Recorded
+from tuisim.pictures.movies.files import SMALL_BYTES, small_movie
+from tuisim.pictures.movies.painter import FramePainter
+from tuisim.pictures.scene.pen import pen_trace
+from tuisim.pictures.scene.pictures import fitting_view
+from tuisim.pictures.scene.robot import COLORED
+from tuisim.pictures.scene.view import Viewport
 
 ROBOT = RobotSpec(pen=PenSpec(down=True, color="#ff00ff"))
 START = Pose(600, 570, 0)
@@ -166,7 +166,7 @@ def test_a_small_movie_of_a_long_run_is_faster() -> None:
     "speed_dps, most", [(0, SMALL_BYTES), (100, 1000)], ids=["stands still", "too large"]
 )
 def test_no_small_movie(monkeypatch: pytest.MonkeyPatch, speed_dps: float, most: int) -> None:
-    monkeypatch.setattr("tuisim.movies.files.SMALL_BYTES", most)
+    monkeypatch.setattr("tuisim.pictures.movies.files.SMALL_BYTES", most)
     assert small_movie(Recorded(record(speed_dps))) is None
 
 

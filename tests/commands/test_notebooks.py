@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 from tests.cases import cases
-from tests.config.test_notebook_file import BESIDE, LESSON, VARIABLES, write
 from tests.conftest import Command
+from tests.programs.test_notebook_file import BESIDE, LESSON, VARIABLES, write
 
 WHERE = "%%sim_magic\nprint('x: ' + str({}))\n"
 RGB = "%%sim_magic_preloaded\nprint(colorLeft.rgb)\n"

@@ -10,7 +10,7 @@ import pytest
 
 import tuisim
 from tests.conftest import Command
-from tuisim.runs.store import RunStore
+from tuisim.engine.runs.store import RunStore
 
 CLAW = """\
 from ev3dev2.motor import MediumMotor, MoveTank, OUTPUT_A, OUTPUT_B, OUTPUT_D

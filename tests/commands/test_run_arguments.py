@@ -19,14 +19,14 @@ from tuisim.app.branch import Branch
 from tuisim.app.run_controller import RunController
 from tuisim.app.setup.fields import find
 from tuisim.app.setup.next_run import plan_of_run
-from tuisim.config.build import build_run_spec
-from tuisim.config.options import Settings, settings_of
-from tuisim.config.worlds import load_world, save_world
-from tuisim.core.profile import PROFILES
-from tuisim.runs.handle import RunHandle
-from tuisim.runs.recorded_run import Recording
-from tuisim.runs.store import RunStore
-from tuisim.source import Program
+from tuisim.base.source import Program
+from tuisim.engine.core.profile import PROFILES
+from tuisim.engine.runs.handle import RunHandle
+from tuisim.engine.runs.recorded_run import Recording
+from tuisim.engine.runs.store import RunStore
+from tuisim.settings.build import build_run_spec
+from tuisim.settings.options import Settings, settings_of
+from tuisim.settings.worlds import load_world, save_world
 
 SHOWS = "# %%sim_magic\nimport sys\nprint(sys.argv)\n"
 

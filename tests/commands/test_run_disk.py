@@ -17,19 +17,19 @@ import pytest
 
 from tests.conftest import Command
 from tests.running import PATIENCE_S, Start, over
+from tuisim.base.errors import ExportError, LogError
 from tuisim.commands import run as run_command
-from tuisim.core.profile import ROBOLAB
-from tuisim.core.spec import RobotSpec, RunSpec, WorldSpec
-from tuisim.core.tick_record import TICK_RECORD
-from tuisim.errors import ExportError, LogError
+from tuisim.engine.core.profile import ROBOLAB
+from tuisim.engine.core.spec import RobotSpec, RunSpec, WorldSpec
+from tuisim.engine.core.tick_record import TICK_RECORD
+from tuisim.engine.runs import run_folder
+from tuisim.engine.runs import store as store_module
+from tuisim.engine.runs.records import OUTPUT_FILE, TELEMETRY_CHUNK, TELEMETRY_FILE
+from tuisim.engine.runs.run_folder import RUN_FILE, StoredRun, field_files
+from tuisim.engine.runs.side_files import STACK_FILE
+from tuisim.engine.runs.store import RunStore
 from tuisim.logs.export import export_samples
 from tuisim.logs.frames import read_log
-from tuisim.runs import run_folder
-from tuisim.runs import store as store_module
-from tuisim.runs.records import OUTPUT_FILE, TELEMETRY_CHUNK, TELEMETRY_FILE
-from tuisim.runs.run_folder import RUN_FILE, StoredRun, field_files
-from tuisim.runs.side_files import STACK_FILE
-from tuisim.runs.store import RunStore
 
 ENDLESS = """
 import time

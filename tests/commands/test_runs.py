@@ -15,19 +15,19 @@ import pytest
 
 from tests.cases import cases
 from tests.conftest import Command
-from tests.runs.run_recorder import PROGRAM, begun
+from tests.engine.runs.run_recorder import PROGRAM, begun
 from tuisim.cli import run_command
 from tuisim.commands import runs as runs_command
 from tuisim.commands.echo import size
-from tuisim.core.profile import ROBOLAB
-from tuisim.core.spec import RobotSpec, RunSpec, WorldSpec
-from tuisim.runs import store as store_module
-from tuisim.runs.catalogue import CATALOGUE_FILE
-from tuisim.runs.records import TELEMETRY_FILE, OutputRow
-from tuisim.runs.run_folder import StoredRun
-from tuisim.runs.side_files import READS_FILE
-from tuisim.runs.store import RunStore
-from tuisim.runs.views import OutputView
+from tuisim.engine.core.profile import ROBOLAB
+from tuisim.engine.core.spec import RobotSpec, RunSpec, WorldSpec
+from tuisim.engine.runs import store as store_module
+from tuisim.engine.runs.catalogue import CATALOGUE_FILE
+from tuisim.engine.runs.records import TELEMETRY_FILE, OutputRow
+from tuisim.engine.runs.run_folder import StoredRun
+from tuisim.engine.runs.side_files import READS_FILE
+from tuisim.engine.runs.store import RunStore
+from tuisim.engine.runs.views import OutputView
 
 Make = Callable[..., StoredRun]
 """The fixture `make`."""

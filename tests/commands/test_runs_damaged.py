@@ -14,15 +14,15 @@ import pytest
 
 from tests.cases import cases
 from tests.conftest import ROOT, Command
-from tests.runs.run_recorder import begun
+from tests.engine.runs.run_recorder import begun
 from tuisim.cli import EXIT_OUR_MISTAKE
-from tuisim.core.profile import ROBOLAB
-from tuisim.core.spec import MotorSpec, RobotSpec, RunSpec, WorldSpec
-from tuisim.runs.catalogue import CATALOGUE_FILE
-from tuisim.runs.records import OUTPUT_FILE, TELEMETRY_FILE, Stream
-from tuisim.runs.run_folder import RUN_FILE
-from tuisim.runs.side_files import ACTIONS_FILE, STOP_FILE
-from tuisim.runs.store import RunStore
+from tuisim.engine.core.profile import ROBOLAB
+from tuisim.engine.core.spec import MotorSpec, RobotSpec, RunSpec, WorldSpec
+from tuisim.engine.runs.catalogue import CATALOGUE_FILE
+from tuisim.engine.runs.records import OUTPUT_FILE, TELEMETRY_FILE, Stream
+from tuisim.engine.runs.run_folder import RUN_FILE
+from tuisim.engine.runs.side_files import ACTIONS_FILE, STOP_FILE
+from tuisim.engine.runs.store import RunStore
 
 Damage = Callable[[Path], Any]
 """Does harm to a run folder."""

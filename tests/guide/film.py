@@ -20,10 +20,10 @@ from tuisim.app.app import AppSettings, LabApp
 from tuisim.app.screenshot import screen_cells
 from tuisim.app.snapshot import RunPhase
 from tuisim.app.terminal_app import picture_mode_at_start
-from tuisim.config.build import build_run_spec
-from tuisim.config.options import Settings
-from tuisim.movies.image_files import PALETTE_FRAMES, encode_gif
-from tuisim.source import Program
+from tuisim.base.source import Program
+from tuisim.pictures.movies.image_files import PALETTE_FRAMES, encode_gif
+from tuisim.settings.build import build_run_spec
+from tuisim.settings.options import Settings
 from tuisim.terminal.cell_image import CellGrid, image_of_cells
 from tuisim.terminal.picture_options import CellSet
 

@@ -12,12 +12,12 @@ from tests.cases import cases
 from tests.conftest import ROOT, Command
 from tuisim.app.actions.keys import ACTIONS
 from tuisim.cli import COMMANDS
-from tuisim.config.options import OPTIONS
-from tuisim.config.user_config import SETTINGS
-from tuisim.core.profile import PROFILES
+from tuisim.engine.core.profile import PROFILES
+from tuisim.engine.runs.frames import SAMPLE_COLUMNS
 from tuisim.guide.catalogue import GuidePart, pages
 from tuisim.guide.tables import TABLES, table
-from tuisim.runs.frames import SAMPLE_COLUMNS
+from tuisim.settings.options import OPTIONS
+from tuisim.settings.user_config import SETTINGS
 
 WORDS_OF = {
     "keys": [action.key_label for action in ACTIONS.values()],

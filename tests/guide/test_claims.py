@@ -22,9 +22,9 @@ import pytest
 from tests.conftest import ROOT, Command
 from tests.guide.documents import DOCUMENTS, blocks
 from tuisim.guide.catalogue import pages
-from tuisim.lessons.catalogue import shipped_paths
-from tuisim.lessons.files import load_lesson
-from tuisim.lessons.spec import Lesson
+from tuisim.tasks.lessons.catalogue import shipped_paths
+from tuisim.tasks.lessons.files import load_lesson
+from tuisim.tasks.lessons.spec import Lesson
 
 LESSONS = {name: load_lesson(path) for name, path in shipped_paths().items()}
 TEXTS = {"README": DOCUMENTS["README"]} | {name: page.source for name, page in pages().items()}

@@ -18,8 +18,8 @@ from tests.guide.documents import DOCUMENTS, Block, blocks, commands_in_text, pr
 from tuisim.app import app as lab_app
 from tuisim.cli import COMMANDS
 from tuisim.commands import app as app_command
-from tuisim.config.command_line import Group
 from tuisim.guide.catalogue import pages
+from tuisim.settings.command_line import Group
 
 
 def _class(where: Path) -> None:
@@ -46,7 +46,7 @@ RUN_ELSEWHERE = {
     "sh test": ".ci/run",
     "sh cluster": "tests/batch/test_cluster.py",
     "python notebook": "tests/notebook/test_lab_responder.py",
-    "toml": "tests/config/test_files.py",
+    "toml": "tests/engine/test_files.py",
 }
 """Where blocks are run that need a fresh environment, several processes, a notebook or the other files of the guide."""
 WITH_BLOCKS = [

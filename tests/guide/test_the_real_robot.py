@@ -7,14 +7,14 @@ from itertools import pairwise
 
 import pytest
 
-from tests.core.driver.lab import MS, give
-from tuisim.config.robots import ROBOTS
-from tuisim.core.driver.jiffies import JIFFY_US, STEP_US, Jiffies, round_up
-from tuisim.core.driver.motor import Command, DriverMotor, State
-from tuisim.core.driver.plant import NS_PER_S, STEP_NS
-from tuisim.core.driver.regulator import MODELS, StopAction
-from tuisim.core.driver.simulated import load_wheel
+from tests.engine.core.driver.lab import MS, give
+from tuisim.engine.core.driver.jiffies import JIFFY_US, STEP_US, Jiffies, round_up
+from tuisim.engine.core.driver.motor import Command, DriverMotor, State
+from tuisim.engine.core.driver.plant import NS_PER_S, STEP_NS
+from tuisim.engine.core.driver.regulator import MODELS, StopAction
+from tuisim.engine.core.driver.simulated import load_wheel
 from tuisim.guide.catalogue import pages
+from tuisim.settings.robots import ROBOTS
 
 ROBOT = ROBOTS["Default_Robot"]
 CLOCKS = [Jiffies(first, us) for first in range(64) for us in range(0, JIFFY_US, STEP_US)]

@@ -8,18 +8,18 @@ from pathlib import Path
 import pytest
 
 from tests.conftest import Command
-from tests.core.memory_sink import MemorySink
-from tuisim.core.drift import draw_echo_bias_mm
-from tuisim.core.drift_spec import DriftSpec
-from tuisim.core.geometry import Pose
-from tuisim.core.profile import EV3, PROFILES
-from tuisim.core.sensors.gyro import angle_deg, rate_dps
-from tuisim.core.sensors.ultrasonic import reading_mm
-from tuisim.core.servo.motor import ServoMotor
-from tuisim.core.simulation import Simulation
-from tuisim.core.spec import FIELD_WIDTH_MM, RobotSpec, RunSpec, UltrasonicSpec, WorldSpec
-from tuisim.core.state import Instant
-from tuisim.core.values import values_of
+from tests.engine.core.memory_sink import MemorySink
+from tuisim.engine.core.drift import draw_echo_bias_mm
+from tuisim.engine.core.drift_spec import DriftSpec
+from tuisim.engine.core.geometry import Pose
+from tuisim.engine.core.profile import EV3, PROFILES
+from tuisim.engine.core.sensors.gyro import angle_deg, rate_dps
+from tuisim.engine.core.sensors.ultrasonic import reading_mm
+from tuisim.engine.core.servo.motor import ServoMotor
+from tuisim.engine.core.simulation import Simulation
+from tuisim.engine.core.spec import FIELD_WIDTH_MM, RobotSpec, RunSpec, UltrasonicSpec, WorldSpec
+from tuisim.engine.core.state import Instant
+from tuisim.engine.core.values import values_of
 from tuisim.guide.catalogue import pages
 
 TYPICAL: DriftSpec = values_of(WorldSpec)["drift"].from_text("typical")

@@ -1,3 +1,3 @@
-"""The recorded runs of `tests.runs`."""
+"""The recorded runs of `tests.engine.runs`."""
 
-from tests.runs.conftest import *  # noqa: F403
+from tests.engine.runs.conftest import *  # noqa: F403

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from tuisim.errors import LogError
+from tuisim.base.errors import LogError
 from tuisim.logs.log import Log
 from tuisim.logs.reader import open_log
 

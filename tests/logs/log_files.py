@@ -26,7 +26,7 @@ from tests.logs.drawn_lines import (
 )
 from tests.logs.drawn_tables import draw_table, draw_words_only
 from tests.logs.drawn_values import Draft, Points
-from tuisim.errors import LogError
+from tuisim.base.errors import LogError
 from tuisim.logs.reader import open_log
 
 MAX_REFUSED = 0.02

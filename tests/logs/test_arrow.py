@@ -9,8 +9,8 @@ import pandas as pd
 import pyarrow as pa
 import pytest
 
-from tuisim.core.conditions import Operator, ValueCondition
-from tuisim.errors import LogError
+from tuisim.base.errors import LogError
+from tuisim.engine.core.conditions import Operator, ValueCondition
 from tuisim.logs.arrow import (
     cell_text,
     contains,

@@ -8,9 +8,9 @@ import numpy as np
 import pyarrow as pa
 import pytest
 
-from tuisim.core.noise import clamping
-from tuisim.core.profile import EV3
-from tuisim.core.spec import RobotSpec, RunSpec, WorldSpec
+from tuisim.engine.core.noise import clamping
+from tuisim.engine.core.profile import EV3
+from tuisim.engine.core.spec import RobotSpec, RunSpec, WorldSpec
 from tuisim.logs.bands import BandReport, band_report, in_words, read_light
 from tuisim.logs.columns import guess_columns
 from tuisim.logs.levels import (

@@ -15,9 +15,9 @@ from tests.cases import cases
 from tests.logs.test_signals import column
 from tuisim.analysis.model import derive
 from tuisim.app.analyser.panes import PANES
-from tuisim.core.geometry import Pose
-from tuisim.core.spec import RobotSpec
-from tuisim.errors import LogError
+from tuisim.base.errors import LogError
+from tuisim.engine.core.geometry import Pose
+from tuisim.engine.core.spec import RobotSpec
 from tuisim.logs.bands import distance_mm
 from tuisim.logs.columns import guess_columns
 from tuisim.logs.derived import (

@@ -17,9 +17,11 @@ import pytest
 
 import tuisim
 from tests.cases import cases
-from tests.runs.run_recorder import Recorder
-from tuisim.core.spec import RunSpec
-from tuisim.errors import ExportError, LogError
+from tests.engine.runs.run_recorder import Recorder
+from tuisim.base.errors import ExportError, LogError
+from tuisim.engine.core.spec import RunSpec
+from tuisim.engine.runs.frames import samples_frame, telemetry_frame
+from tuisim.engine.runs.run_folder import StoredRun
 from tuisim.logs.export import (
     EXPORTERS,
     check_target,
@@ -31,8 +33,6 @@ from tuisim.logs.export import (
 )
 from tuisim.logs.frames import read_log
 from tuisim.logs.reader import open_log
-from tuisim.runs.frames import samples_frame, telemetry_frame
-from tuisim.runs.run_folder import StoredRun
 
 each_format = pytest.mark.parametrize("suffix", EXPORTERS)
 
@@ -350,10 +350,17 @@ def test_lines_are_whole_numbers_where_all_are(lines: list[float], kind: str) ->
 # Imports
 
 
-@pytest.mark.quick_cases("logs.export", "runs.store")
+@pytest.mark.quick_cases("logs.export", "engine.runs.store")
 @pytest.mark.parametrize(
     "module",
-    ["runs.records", "runs.samples", "runs.side_files", "runs.views", "runs.store", "logs.export"],
+    [
+        "engine.runs.records",
+        "engine.runs.samples",
+        "engine.runs.side_files",
+        "engine.runs.views",
+        "engine.runs.store",
+        "logs.export",
+    ],
 )
 def test_importing_is_light(module: str) -> None:
     code = (

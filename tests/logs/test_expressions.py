@@ -9,7 +9,7 @@ from numpy.testing import assert_allclose
 
 from tests.cases import cases
 from tests.logs.test_signals import NAN, column
-from tuisim.errors import LogError
+from tuisim.base.errors import LogError
 from tuisim.logs.expressions import FUNCTIONS, MAX_CHARS, evaluate
 
 COLUMNS = {"left": column(1, 2, 3), "right": column(4, 0, 6), "odd name": column(7, 8, 9)}

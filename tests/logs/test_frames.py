@@ -11,8 +11,8 @@ from typing import Any
 import pytest
 
 from tests.cases import cases
+from tuisim.base.errors import LogError
 from tuisim.commands.log import COLUMNS
-from tuisim.errors import LogError
 from tuisim.logs.choices import ReadChoices
 from tuisim.logs.frames import read_log
 from tuisim.logs.reader import open_log

@@ -8,7 +8,7 @@ import pytest
 
 from tests.cases import cases
 from tests.logs.log_cases import Case, Read, check_input, times, values
-from tuisim.errors import LogError
+from tuisim.base.errors import LogError
 from tuisim.logs.choices import ReadChoices
 from tuisim.logs.reader import open_log
 

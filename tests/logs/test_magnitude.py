@@ -13,19 +13,19 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from tuisim.batch.execute import statistics_of
-from tuisim.charts.canvas import xy_lines
-from tuisim.charts.files import CHART_FORMATS
-from tuisim.charts.sample_chart import sample_chart
-from tuisim.charts.text_chart import ChartPainter, ChartState
-from tuisim.charts.traces import Pyramid, Traces
+from tuisim.engine.runs.records import OutputRow, Stream
+from tuisim.engine.runs.samples import Sample
 from tuisim.logs.export import EXPORTERS, export_frame
 from tuisim.logs.frames import read_log
 from tuisim.logs.levels import levels_of
 from tuisim.logs.magnitude import MAX_DRAWN, find_scale, limit_drawn
 from tuisim.logs.signals import summary_of
-from tuisim.runs.records import OutputRow, Stream
-from tuisim.runs.samples import Sample
+from tuisim.pictures.charts.canvas import xy_lines
+from tuisim.pictures.charts.files import CHART_FORMATS
+from tuisim.pictures.charts.sample_chart import sample_chart
+from tuisim.pictures.charts.text_chart import ChartPainter, ChartState
+from tuisim.pictures.charts.traces import Pyramid, Traces
+from tuisim.tasks.execute import statistics_of
 
 HUGE = sys.float_info.max
 EVERY = st.lists(

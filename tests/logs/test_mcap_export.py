@@ -14,9 +14,9 @@ import numpy as np
 import pytest
 
 from tests.conftest import Command
-from tests.runs.run_recorder import Recorder
-from tuisim.core.spec import RunSpec
-from tuisim.errors import ConfigError, ExportError
+from tests.engine.runs.run_recorder import Recorder
+from tuisim.base.errors import ConfigError, ExportError
+from tuisim.engine.core.spec import RunSpec
 from tuisim.logs.log import Log
 from tuisim.logs.mcap_export import POSE, export_mcap
 from tuisim.logs.reader import log_of_runs, open_log, telemetry_log

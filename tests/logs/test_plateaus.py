@@ -10,7 +10,7 @@ from types import ModuleType
 import numpy as np
 import pytest
 
-from tuisim.errors import LogError
+from tuisim.base.errors import LogError
 from tuisim.logs import pieces as pieces_module
 from tuisim.logs import plateaus as plateaus_module
 from tuisim.logs.plateaus import plateaus, plateaus_in_subprocess

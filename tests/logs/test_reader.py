@@ -16,15 +16,15 @@ import pyarrow.parquet as pq
 import pytest
 
 from tests.cases import cases
+from tests.engine.runs.run_recorder import Recorder
 from tests.logs.log_cases import Case, Read, check_input, times, values
-from tests.runs.run_recorder import Recorder
-from tuisim.core.spec import RunSpec
-from tuisim.core.tick_record import TICK_FIELDS
-from tuisim.errors import LogError
+from tuisim.base.errors import LogError
+from tuisim.engine.core.spec import RunSpec
+from tuisim.engine.core.tick_record import TICK_FIELDS
+from tuisim.engine.runs.records import HEADER_BYTES, TELEMETRY_FILE
+from tuisim.engine.runs.run_folder import read_run
 from tuisim.logs.choices import ReadChoices
 from tuisim.logs.reader import log_of_runs, open_log, telemetry_log
-from tuisim.runs.records import HEADER_BYTES, TELEMETRY_FILE
-from tuisim.runs.run_folder import read_run
 
 ROWS = "".join(f"{at / 10},{at * 2}\n" for at in range(40))
 CSV = "time,red\n" + ROWS

@@ -9,7 +9,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from tuisim.analysis.events import crossings
-from tuisim.errors import LogError
+from tuisim.base.errors import LogError
 from tuisim.logs.signals import (
     Between,
     derivative,

@@ -20,7 +20,7 @@ from tests.web.test_server import is_there
 from tuisim.app.editor.text_file import find_draft, keep_draft
 from tuisim.app.layout.arrangement import KeptLayout, save_layout
 from tuisim.app.panels import TerminalSize
-from tuisim.errors import HostError
+from tuisim.base.errors import HostError
 from tuisim.notebook import lab
 from tuisim.notebook.app_run import AppRun
 from tuisim.notebook.app_view import AppView

@@ -83,13 +83,15 @@ def test_an_interrupt_reaches_the_responder(cell: Cell) -> None:
 def test_an_interrupt_before_the_run_leaves_everything_as_it_was(
     cell: Cell, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    import tuisim.runs.run_folder
+    import tuisim.engine.runs.run_folder
 
     cell("%sim_magic -b Grey_bands -x 700 -W")
     cell("%%sim_magic -RW\nprint('Colour: 1')\n")
     with monkeypatch.context() as patch:
         patch.setattr(
-            tuisim.runs.run_folder, "field_files", striking(tuisim.runs.run_folder.field_files)
+            tuisim.engine.runs.run_folder,
+            "field_files",
+            striking(tuisim.engine.runs.run_folder.field_files),
         )
         shown = cell("%%sim_magic -RW -x 900\nprint('never')\n")
     assert (shown.out, shown.err) == ("", "tuisim: interrupted; no program was running\n")

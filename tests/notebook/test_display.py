@@ -9,14 +9,14 @@ from typing import TypeVar
 import numpy as np
 
 from tests.cases import cases
-from tests.charts.test_layout import log_of
+from tests.pictures.charts.test_layout import log_of
 from tuisim.analysis.chart import View
 from tuisim.analysis.chart import chart_of as plotted
-from tuisim.charts.files import svg_of
-from tuisim.charts.layout import ChartData, Stroke, Words, laid_out
-from tuisim.charts.sample_chart import sample_chart
+from tuisim.engine.runs.samples import Sample
 from tuisim.notebook.display import CHART_SIZE
-from tuisim.runs.samples import Sample
+from tuisim.pictures.charts.files import svg_of
+from tuisim.pictures.charts.layout import ChartData, Stroke, Words, laid_out
+from tuisim.pictures.charts.sample_chart import sample_chart
 
 Kind = TypeVar("Kind", Stroke, Words)
 chart_of = partial(sample_chart, columns=CHART_SIZE[0])

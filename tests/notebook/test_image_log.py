@@ -5,9 +5,9 @@ from __future__ import annotations
 import pytest
 
 from tests.notebook.conftest import Cell
+from tuisim.engine.runs.records import OutputRow, Stream
+from tuisim.engine.runs.store import RunStore
 from tuisim.notebook.image_log import asked_side
-from tuisim.runs.records import OutputRow, Stream
-from tuisim.runs.store import RunStore
 
 LINES = [
     ("image_data left", "left"),

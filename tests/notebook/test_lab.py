@@ -22,7 +22,7 @@ from tests.notebook.lesson import (
     texts,
 )
 from tuisim.notebook.live_robot import SENTENCE
-from tuisim.scene.robot import COLORED
+from tuisim.pictures.scene.robot import COLORED
 
 pytestmark = pytest.mark.slow
 

@@ -8,11 +8,11 @@ from typing import Any
 
 from tests.notebook.conftest import Cell
 from tests.running import PATIENCE_S
-from tuisim.config.build import build_run_spec
-from tuisim.config.magic_line import parse_line
-from tuisim.config.options import Settings
-from tuisim.runs.handle import RunOptions, start_run
-from tuisim.source import Program
+from tuisim.base.source import Program
+from tuisim.engine.runs.handle import RunOptions, start_run
+from tuisim.settings.build import build_run_spec
+from tuisim.settings.magic_line import parse_line
+from tuisim.settings.options import Settings
 
 OTHER = {"background": "Loop", "profile": "ev3", "seed": 3, "noise.light": 74}
 

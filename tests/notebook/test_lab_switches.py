@@ -14,7 +14,7 @@ import pytest
 from PIL import Image
 
 from tests.notebook.conftest import Cell, Shown
-from tuisim.config.magic_line import _command
+from tuisim.settings.magic_line import _command
 
 DRIVE = "tank_drive.on_for_rotations(SpeedPercent(50), SpeedPercent(50), 2)"
 PROGRAM = (
@@ -75,7 +75,7 @@ def another_simulator(cell: Cell, words: str) -> Any:
 
 def refreshed(cell: Cell, words: str) -> int:
     """How often a run that takes half a second is drawn."""
-    from tuisim.config import magic_line as said
+    from tuisim.settings import magic_line as said
 
     return int(1000 * said.parse_line(words, "sim_magic").refresh_s)
 

@@ -11,7 +11,7 @@ import pytest
 from PIL import Image
 
 from tests.notebook.conftest import Cell
-from tuisim.errors import ConfigError, LogError
+from tuisim.base.errors import ConfigError, LogError
 from tuisim.notebook.image_log import LoggedArray
 from tuisim.notebook.old_formats import (
     bw_picture,

@@ -17,9 +17,9 @@ from tests.proof.kind import FaultError
 from tests.proof.run_model import RunModel, Seen
 from tests.proof.run_steps import ENDLESS, PROGRAMS, done_in, spec_of
 from tuisim.app.app import AppSettings
-from tuisim.config.build import build_run_spec
+from tuisim.engine.protocol import Unended
 from tuisim.logs.frames import read_log
-from tuisim.protocol import Unended
+from tuisim.settings.build import build_run_spec
 
 KEYS: Mapping[str, Sequence[str]] = {
     "run": ("R", "y"),

@@ -27,14 +27,14 @@ from tests.proof.shared_home import (
     listed,
     note,
 )
-from tuisim.config.build import build_run_spec
-from tuisim.config.options import Settings
-from tuisim.errors import LogError
-from tuisim.protocol import End, Pause, Resume, StepTicks, Unended
-from tuisim.runs.child import process
-from tuisim.runs.handle import RunHandle, RunOptions, start_run
-from tuisim.runs.store import RunStore
-from tuisim.source import Program
+from tuisim.base.errors import LogError
+from tuisim.base.source import Program
+from tuisim.engine.protocol import End, Pause, Resume, StepTicks, Unended
+from tuisim.engine.runs.child import process
+from tuisim.engine.runs.handle import RunHandle, RunOptions, start_run
+from tuisim.engine.runs.store import RunStore
+from tuisim.settings.build import build_run_spec
+from tuisim.settings.options import Settings
 
 ROUND_FILE = "rounds"
 """Gets a line for each round."""

@@ -22,23 +22,11 @@ from tuisim.app import debugger
 from tuisim.app.editor import text_file
 from tuisim.app.layout.arrangement import load_layout
 from tuisim.app.panels import TerminalSize
+from tuisim.base.errors import TuisimError
+from tuisim.base.folders import home_folder
 from tuisim.batch.batch_file import load_batch
-from tuisim.config.build import build_run_spec
-from tuisim.config.folders import home_folder
-from tuisim.config.notebook_file import notebook_programs
-from tuisim.config.options import Settings
-from tuisim.config.preferences import preference, preferences_file
-from tuisim.config.profiles import profile_lines
-from tuisim.config.user_config import config_file, load_config
-from tuisim.config.worlds import load_world, save_world
-from tuisim.core.profile import PROFILES
-from tuisim.errors import TuisimError
-from tuisim.goals.files import examples, load_task
-from tuisim.lessons.catalogue import shipped_paths
-from tuisim.lessons.files import load_lesson
-from tuisim.lessons.progress import load_progress
-from tuisim.marks.journal import Journal
-from tuisim.runs.side_files import (
+from tuisim.engine.core.profile import PROFILES
+from tuisim.engine.runs.side_files import (
     ACTIONS_FILE,
     MODULES_FILE,
     READS_FILE,
@@ -48,6 +36,18 @@ from tuisim.runs.side_files import (
     read_reads,
     read_stop_tick,
 )
+from tuisim.programs.notebook_file import notebook_programs
+from tuisim.settings.build import build_run_spec
+from tuisim.settings.options import Settings
+from tuisim.settings.preferences import preference, preferences_file
+from tuisim.settings.profiles import profile_lines
+from tuisim.settings.user_config import config_file, load_config
+from tuisim.settings.worlds import load_world, save_world
+from tuisim.tasks.goals.files import examples, load_task
+from tuisim.tasks.lessons.catalogue import shipped_paths
+from tuisim.tasks.lessons.files import load_lesson
+from tuisim.tasks.lessons.progress import load_progress
+from tuisim.tasks.marks.journal import Journal
 
 MEMORY_MB = 2048
 """What the address space of this process may grow by while it reads a damaged file."""

@@ -17,17 +17,17 @@ from typing import Any
 import numpy as np
 
 from tests.hosts import HOSTS, Hosted, Stored, hosted, isolated
-from tests.marks.attackers import DISK, FILES, MEMORY, OWN_RUN, PROC, PROCESSES, SECRET
 from tests.proof.commands import check_said
 from tests.proof.kind import FaultError, Kind, home, in_time
+from tests.tasks.marks.attackers import DISK, FILES, MEMORY, OWN_RUN, PROC, PROCESSES, SECRET
+from tuisim.base.faults import report_file
 from tuisim.cli import EXIT_OUR_MISTAKE
-from tuisim.faults import report_file
-from tuisim.protocol import EVENTS, End
-from tuisim.runs.catalogue import RunInfo
-from tuisim.runs.removal import remove_tree
-from tuisim.runs.run_folder import StoredRun
-from tuisim.runs.side_files import ACTIONS_FILE, SIDE_FILES, STOP_FILE
-from tuisim.runs.store import RunStore
+from tuisim.engine.protocol import EVENTS, End
+from tuisim.engine.runs.catalogue import RunInfo
+from tuisim.engine.runs.removal import remove_tree
+from tuisim.engine.runs.run_folder import StoredRun
+from tuisim.engine.runs.side_files import ACTIONS_FILE, SIDE_FILES, STOP_FILE
+from tuisim.engine.runs.store import RunStore
 
 HONEST = """\
 tank_drive.on_for_rotations(50, 50, 1)

@@ -23,12 +23,12 @@ from tempfile import TemporaryDirectory
 from unittest.mock import patch
 
 from tests.hosts import MAGIC
-from tests.marks.attackers import NAMES, OWN_RUN, SECRET
 from tests.proof.commands import check_said
 from tests.proof.deliveries import IDIOMS, deliver
 from tests.proof.kind import FaultError, Kind, home, in_time
 from tests.proof.numbers import odd_program
-from tuisim.faults import report_file
+from tests.tasks.marks.attackers import NAMES, OWN_RUN, SECRET
+from tuisim.base.faults import report_file
 
 GOALS = """\
 title = "Read"
@@ -174,12 +174,12 @@ def _forged(random: Random, place: Path) -> None:
 
 
 FORGED = (
-    "import builtins\nfrom tuisim.protocol import SetPose\n"
+    "import builtins\nfrom tuisim.engine.protocol import SetPose\n"
     "s = next(c.cell_contents for c in builtins.__loop_turn__.__closure__"
     " if hasattr(c.cell_contents, 'steering'))\n"
     "s.steering.apply(s, SetPose(1700.0, 500.0, 0.0))\nimport time\ntime.sleep(1)",
     "import builtins\ns = next(c.cell_contents for c in builtins.__loop_turn__.__closure__"
-    " if hasattr(c.cell_contents, 'steering'))\nfrom tuisim.core.geometry import Pose\n"
+    " if hasattr(c.cell_contents, 'steering'))\nfrom tuisim.engine.core.geometry import Pose\n"
     "s.sim.place(Pose(1700.0, 500.0, 0.0))\nimport time\ntime.sleep(1)",
     OWN_RUN + "import glob\nfor name in glob.glob(run + '/*.bin') + glob.glob(run + '/*.jsonl'):\n"
     "    with open(name, 'r+b') as f:\n        f.seek(64)\n        f.write(bytes(range(256)) * 4)",
@@ -201,12 +201,12 @@ SORTS: Mapping[str, Callable[[Random, Path], None]] = {
 REFUSED = ("links", "devices", "zips")
 """Sorts that are refused, in the student's row."""
 BROKEN = {
-    "tuisim.marks.students._read_student": True,
-    "tuisim.marks.entries._build_entry": True,
-    "tuisim.marks.runs.digest_of": True,
-    "tuisim.marks.runs.copy_of": True,
-    "tuisim.marks.runs.outcome_of": True,
-    "tuisim.marks.feedback._feedback_of": False,
+    "tuisim.tasks.marks.students._read_student": True,
+    "tuisim.tasks.marks.entries._build_entry": True,
+    "tuisim.tasks.marks.runs.digest_of": True,
+    "tuisim.tasks.marks.runs.copy_of": True,
+    "tuisim.tasks.marks.runs.outcome_of": True,
+    "tuisim.tasks.marks.feedback._feedback_of": False,
 }
 """What fails, and whether the student cannot be judged then."""
 ERRORS = (

@@ -12,14 +12,14 @@ from typing import Any
 from tests.proof.kind import FaultError, Kind
 from tests.proof.tacho_model import HELD, NEAR, RANGES, WORDS, TachoMotor
 from tests.running import PATIENCE_S
-from tuisim.config.build import build_run_spec
-from tuisim.config.options import Settings
-from tuisim.core.spec import MotorSpec, RobotSpec
-from tuisim.protocol import End
-from tuisim.runs.child import process
-from tuisim.runs.handle import RunOptions, start_run
-from tuisim.runs.records import Stream
-from tuisim.source import Program
+from tuisim.base.source import Program
+from tuisim.engine.core.spec import MotorSpec, RobotSpec
+from tuisim.engine.protocol import End
+from tuisim.engine.runs.child import process
+from tuisim.engine.runs.handle import RunOptions, start_run
+from tuisim.engine.runs.records import Stream
+from tuisim.settings.build import build_run_spec
+from tuisim.settings.options import Settings
 
 _CONSTANTS = [f"{control}_{part}" for control in ("speed", "position") for part in "pid"]
 _READ = ("state", "position", "speed", "duty_cycle", *RANGES, "speed_sp", *WORDS)

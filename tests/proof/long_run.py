@@ -21,9 +21,14 @@ from tempfile import TemporaryDirectory
 from tests.proof.kind import FaultError, home
 from tests.proof.monkey import ROOT, leave
 from tests.proof.terminals import Terminal
-from tuisim.runs.catalogue import RunInfo
-from tuisim.runs.records import HEADER_BYTES, TELEMETRY_FILE, TELEMETRY_MAGIC, published_length
-from tuisim.runs.store import RunStore, bytes_in
+from tuisim.engine.runs.catalogue import RunInfo
+from tuisim.engine.runs.records import (
+    HEADER_BYTES,
+    TELEMETRY_FILE,
+    TELEMETRY_MAGIC,
+    published_length,
+)
+from tuisim.engine.runs.store import RunStore, bytes_in
 
 PROGRAM = """\
 import time

@@ -22,7 +22,7 @@ from tests.running import PATIENCE_S
 from tuisim.app.action import Action
 from tuisim.app.actions.keys import ACTIONS as LAB_ACTIONS
 from tuisim.app.analyser.actions.keys import ACTIONS as LOG_ACTIONS
-from tuisim.lessons.catalogue import shipped_paths
+from tuisim.tasks.lessons.catalogue import shipped_paths
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 ARROWS = [

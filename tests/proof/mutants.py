@@ -31,8 +31,8 @@ from tests.conftest import ROOT
 from tests.test_rules import TESTED_BESIDE
 
 ROOMS = (
-    *("core", "shim", "runs", "logs", "goals"),
-    *("batch", "config", "analysis", "charts", "scene"),
+    *("engine/core", "engine/shim", "engine/runs", "logs", "tasks/goals"),
+    *("batch", "settings", "programs", "analysis", "pictures/charts", "pictures/scene"),
 )
 """What is drawn from otherwise."""
 
@@ -64,7 +64,7 @@ FLIPS: Mapping[type[ast.AST], tuple[type[Any], ...]] = {
 TESTS: Mapping[str, Sequence[str]] = {
     **{room: (f"tests/{room}",) for room in ROOMS},
     "programs": (
-        "tests/test_programs.py",
+        "tests/test_examples.py",
         "tests/test_brick_programs.py",
         "tests/test_pybricks_programs.py",
         "tests/test_real_programs.py",
@@ -98,7 +98,7 @@ class Mutant:
     @property
     def room(self) -> str:
         """The room that it is in."""
-        return self.file.partition("/")[0]
+        return next(room for room in ROOMS if self.file.startswith(f"{room}/"))
 
 
 def find_mutants(file: str, text: str) -> Iterator[Mutant]:

@@ -10,7 +10,7 @@ from tests.hosts import MAGIC
 from tests.proof.commands import check_said
 from tests.proof.kind import FaultError, Kind, in_time
 from tests.proof.security_app import check_shown
-from tuisim.faults import report_file
+from tuisim.base.faults import report_file
 
 ODD = (
     *("0", "-0.0", "1", "1e155", "-1e155", "1e308", "-1e308", "1.7976931348623157e308", "1e300"),

@@ -18,8 +18,8 @@ from tests.proof.commands import said
 from tests.proof.injection import Call, Ended, calls_of, run, temporary_folder
 from tests.proof.kind import FaultError, home, temporary_sample
 from tuisim.cli import EXIT_OUR_MISTAKE
-from tuisim.goals.files import examples
-from tuisim.runs.run_folder import read_run_file
+from tuisim.engine.runs.run_folder import read_run_file
+from tuisim.tasks.goals.files import examples
 
 _PROGRAM = """\
 tank_drive.on(20, 20)
@@ -38,7 +38,7 @@ _COMMAND = ("-P", "-m", "tuisim")
 
 
 def _call(code: str) -> tuple[str, ...]:
-    lines = ["import sys", "from tuisim.errors import TuisimError", "try:", f"    {code}"]
+    lines = ["import sys", "from tuisim.base.errors import TuisimError", "try:", f"    {code}"]
     # As the app does, which shows the error in a notice.
     lines += ["except (TuisimError, OSError) as error:", "    sys.exit(str(error))"]
     return ("-P", "-c", "\n".join(lines))
@@ -98,17 +98,17 @@ OPERATIONS: Mapping[str, Operation] = {
     "lesson": Operation((*_COMMAND, "learn", "new", "out.md"), ("out.md",)),
     "robot": Operation(
         _call(
-            "from tuisim.config import robots; robots.save_robot(robots.load_robot('Small_Robot'), 'out.toml')"
+            "from tuisim.settings import robots; robots.save_robot(robots.load_robot('Small_Robot'), 'out.toml')"
         ),
         ("out.toml",),
     ),
     "preference": Operation(
-        _call("from tuisim.config.preferences import keep; keep('theme', 'dark')"),
+        _call("from tuisim.settings.preferences import keep; keep('theme', 'dark')"),
         ("home/preferences.json",),
     ),
     "setting": Operation(
         _call(
-            "from tuisim.config import user_config as c, user_config_file as f; "
+            "from tuisim.settings import user_config as c, user_config_file as f; "
             "f.save_setting(c.SETTINGS['app.fps'], 9)"
         ),
         ("home/config.toml",),
@@ -125,7 +125,7 @@ OPERATIONS: Mapping[str, Operation] = {
     ),
     "progress": Operation(
         _call(
-            "from tuisim.lessons import progress; "
+            "from tuisim.tasks.lessons import progress; "
             "progress.save_progress('first-run', progress.LessonProgress({}, '2026-01-02'))"
         ),
         ("home/lessons/progress.json",),

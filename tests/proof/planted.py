@@ -45,7 +45,7 @@ class Planted:
 PLANTED: tuple[Planted, ...] = (
     Planted(
         "the end of a run is written through a link in place of run.json",
-        "runs/run_folder.py",
+        "engine/runs/run_folder.py",
         "replacing(path, owner_only=True, follow_links=False)",
         "replacing(path, owner_only=True)",
         "enemies",
@@ -54,7 +54,7 @@ PLANTED: tuple[Planted, ...] = (
     ),
     Planted(
         "a file of a run may be a link to any other",
-        "regular_file.py",
+        "base/regular_file.py",
         "0 if follow_links else os.O_NOFOLLOW",
         "0",
         "enemies",
@@ -63,7 +63,7 @@ PLANTED: tuple[Planted, ...] = (
     ),
     Planted(
         "a pipe or a device is read as a file",
-        "regular_file.py",
+        "base/regular_file.py",
         "if not stat.S_ISREG(os.fstat(descriptor).st_mode):",
         "if stat.S_ISDIR(os.fstat(descriptor).st_mode):",
         "enemies",
@@ -72,7 +72,7 @@ PLANTED: tuple[Planted, ...] = (
     ),
     Planted(
         "a program that is a link is marked",
-        "marks/students.py",
+        "tasks/marks/students.py",
         "    if path.is_symlink():\n        return Student",
         "    if False:\n        return Student",
         "class",
@@ -81,7 +81,7 @@ PLANTED: tuple[Planted, ...] = (
     ),
     Planted(
         "a link that leads out of a student's folder is no reason to refuse it",
-        "marks/students.py",
+        "tasks/marks/students.py",
         "if not _real(path).is_relative_to(own):",
         "if False:",
         "class",
@@ -99,7 +99,7 @@ PLANTED: tuple[Planted, ...] = (
     ),
     Planted(
         "what is no event ends the host",
-        "runs/child/events.py",
+        "engine/runs/child/events.py",
         "            self.falsified = str(error)\n            return None",
         "            raise",
         "enemies",
@@ -108,7 +108,7 @@ PLANTED: tuple[Planted, ...] = (
     ),
     Planted(
         "an event may have any number",
-        "runs/child/events.py",
+        "engine/runs/child/events.py",
         "if not _is_sound(asdict(event)):",
         "if False:",
         "enemies",
@@ -117,7 +117,7 @@ PLANTED: tuple[Planted, ...] = (
     ),
     Planted(
         "an end is believed that the recording does not have",
-        "runs/handle.py",
+        "engine/runs/handle.py",
         "if is_whole and end is not None and end.tick != ticks - 1:",
         "if False:",
         "enemies",
@@ -126,7 +126,7 @@ PLANTED: tuple[Planted, ...] = (
     ),
     Planted(
         "records are not checked",
-        "runs/views.py",
+        "engine/runs/views.py",
         "        if are_all(part, begin, end):\n            return end",
         "        return end",
         "enemies",
@@ -135,7 +135,7 @@ PLANTED: tuple[Planted, ...] = (
     ),
     Planted(
         "run.json is taken from the run folder, not from what was started",
-        "runs/store.py",
+        "engine/runs/store.py",
         '{**run.data, "tags": _tags_in(run.folder), "end"',
         '{**read_run_file(run.folder), "tags": _tags_in(run.folder), "end"',
         "enemies",
@@ -144,7 +144,7 @@ PLANTED: tuple[Planted, ...] = (
     ),
     Planted(
         "a program inherits the host's end of a pipe",
-        "runs/child/process.py",
+        "engine/runs/child/process.py",
         "inherited = [command_read, event_write, lifeline_read, lock_fd]",
         "inherited = [command_read, event_write, lifeline_read, lock_fd, command_fd]",
         "enemies",
@@ -153,7 +153,7 @@ PLANTED: tuple[Planted, ...] = (
     ),
     Planted(
         "a mat in the cache is trusted although it was written to",
-        "config/mat_cache.py",
+        "engine/mat_cache.py",
         "if _checksum(stream.fileno()) != checksum:",
         "if False:",
         "enemies",
@@ -162,7 +162,7 @@ PLANTED: tuple[Planted, ...] = (
     ),
     Planted(
         "an isolated program may write to what it reads",
-        "runs/child/isolation.py",
+        "engine/runs/child/isolation.py",
         '"--ro-bind-try"',
         '"--bind-try"',
         "limits",
@@ -171,7 +171,7 @@ PLANTED: tuple[Planted, ...] = (
     ),
     Planted(
         "an isolated program may have any number of files",
-        "runs/handle.py",
+        "engine/runs/handle.py",
         "        if self._quota is not None and not self._exceeded:",
         "        if False:",
         "limits",
@@ -198,7 +198,7 @@ PLANTED: tuple[Planted, ...] = (
     ),
     Planted(
         "what cannot be copied ends the marking",
-        "marks/runs.py",
+        "tasks/marks/runs.py",
         "except Exception as error:  # Whatever it is, the others go on.\n            uncopied",
         "except ZeroDivisionError as error:\n            uncopied",
         "class",
@@ -207,7 +207,7 @@ PLANTED: tuple[Planted, ...] = (
     ),
     Planted(
         "what cannot be judged ends the marking",
-        "marks/runs.py",
+        "tasks/marks/runs.py",
         "except Exception as error:  # Whatever it is, the others go on.\n                outcome",
         "except ZeroDivisionError as error:\n                outcome",
         "class",
@@ -216,7 +216,7 @@ PLANTED: tuple[Planted, ...] = (
     ),
     Planted(
         "what cannot be read ends the marking",
-        "marks/students.py",
+        "tasks/marks/students.py",
         "except Exception as error:",
         "except ZeroDivisionError as error:",
         "class",
@@ -225,7 +225,7 @@ PLANTED: tuple[Planted, ...] = (
     ),
     Planted(
         "a file name that is not UTF-8 ends the marking",
-        "marks/students.py",
+        "tasks/marks/students.py",
         'return printable(os.fsencode(name).decode("utf-8", "backslashreplace"))',
         "return name",
         "class",
@@ -234,7 +234,7 @@ PLANTED: tuple[Planted, ...] = (
     ),
     Planted(
         "an isolated program may have semaphores",
-        "runs/child/seccomp.py",
+        "engine/runs/child/seccomp.py",
         "29, 68, 64, 248",
         "29, 68, 248",
         "limits",
@@ -243,7 +243,7 @@ PLANTED: tuple[Planted, ...] = (
     ),
     Planted(
         "an isolated program may send descriptors",
-        "runs/child/seccomp.py",
+        "engine/runs/child/seccomp.py",
         "250, 46, 307, 319",
         "250, 307, 319",
         "limits",
@@ -252,7 +252,7 @@ PLANTED: tuple[Planted, ...] = (
     ),
     Planted(
         "an isolated program may have files in memory",
-        "runs/child/seccomp.py",
+        "engine/runs/child/seccomp.py",
         "307, 319, 278",
         "307, 278",
         "limits",
@@ -261,7 +261,7 @@ PLANTED: tuple[Planted, ...] = (
     ),
     Planted(
         "an isolated program may give pages to a pipe",
-        "runs/child/seccomp.py",
+        "engine/runs/child/seccomp.py",
         "319, 278)",
         "319)",
         "limits",
@@ -270,7 +270,7 @@ PLANTED: tuple[Planted, ...] = (
     ),
     Planted(
         "an isolated program may have any number of sockets",
-        "runs/child/isolation.py",
+        "engine/runs/child/isolation.py",
         "if self._count_sockets() - self._sockets > _MAX_SOCKETS:",
         "if False:",
         "limits",
@@ -279,7 +279,7 @@ PLANTED: tuple[Planted, ...] = (
     ),
     Planted(
         "an isolated program may enlarge the buffers of sockets",
-        "runs/child/seccomp.py",
+        "engine/runs/child/seccomp.py",
         "_instruction(_EQUAL, machine.setsockopt, 0, 7)",
         "_instruction(_EQUAL, _X32, 0, 7)",
         "limits",
@@ -351,7 +351,7 @@ PLANTED: tuple[Planted, ...] = (
     ),
     Planted(
         "what a killed command has left stays",
-        "runs/temporary.py",
+        "engine/runs/temporary.py",
         "for place in (parent, default, _MEMORY):",
         "for place in ():",
         "crashes",
@@ -360,7 +360,7 @@ PLANTED: tuple[Planted, ...] = (
     ),
     Planted(
         "names of Moodle are names of students",
-        "marks/hand_ins.py",
+        "tasks/marks/hand_ins.py",
         "if match := _MOODLE.fullmatch(path.name):",
         "if match := None:",
         "class",
@@ -369,7 +369,7 @@ PLANTED: tuple[Planted, ...] = (
     ),
     Planted(
         "names of Canvas are names of students",
-        "marks/hand_ins.py",
+        "tasks/marks/hand_ins.py",
         "elif (match := _CANVAS.fullmatch(path.name)) and os.path.isfile(path):",
         "elif match := None:",
         "class",
@@ -378,7 +378,7 @@ PLANTED: tuple[Planted, ...] = (
     ),
     Planted(
         "what a Mac adds is handed in",
-        "marks/files.py",
+        "tasks/marks/files.py",
         '"__MACOSX", "._*", ',
         "",
         "class",
@@ -387,7 +387,7 @@ PLANTED: tuple[Planted, ...] = (
     ),
     Planted(
         "a folder that is alone is not entered",
-        "marks/students.py",
+        "tasks/marks/students.py",
         "        path = path / names[0]\n    return path",
         "        break\n    return path",
         "class",
@@ -396,7 +396,7 @@ PLANTED: tuple[Planted, ...] = (
     ),
     Planted(
         "a zip is no folder",
-        "marks/students.py",
+        "tasks/marks/students.py",
         "unpacked = search.unpack(path) if is_packed else path",
         "unpacked = path",
         "class",
@@ -405,7 +405,7 @@ PLANTED: tuple[Planted, ...] = (
     ),
     Planted(
         "a zip may lead out of its folder",
-        "marks/files.py",
+        "tasks/marks/files.py",
         'if inside.is_absolute() or ".." in inside.parts:',
         "if False:",
         "class",
@@ -414,7 +414,7 @@ PLANTED: tuple[Planted, ...] = (
     ),
     Planted(
         "a zip may have links",
-        "marks/files.py",
+        "tasks/marks/files.py",
         "if mode not in (0, stat.S_IFREG, stat.S_IFDIR):",
         "if False:",
         "class",
@@ -423,7 +423,7 @@ PLANTED: tuple[Planted, ...] = (
     ),
     Planted(
         "copies have the modes of what was handed in",
-        "marks/files.py",
+        "tasks/marks/files.py",
         "            copy.truncate(size)\n",
         "            copy.truncate(size)\n            os.fchmod(copy.fileno(), os.fstat(file.fileno()).st_mode)\n",
         "class",
@@ -432,7 +432,7 @@ PLANTED: tuple[Planted, ...] = (
     ),
     Planted(
         "copies have no holes",
-        "marks/files.py",
+        "tasks/marks/files.py",
         "start, stop = _find_data(file, place, size)",
         "start, stop = place, size",
         "class",
@@ -441,7 +441,7 @@ PLANTED: tuple[Planted, ...] = (
     ),
     Planted(
         "a package is a candidate",
-        "marks/students.py",
+        "tasks/marks/students.py",
         "names = [name for name in programs if name != _PACKAGE]",
         "names = programs",
         "class",

@@ -16,20 +16,20 @@ from tests.proof.commands import check_said
 from tests.proof.kind import FaultError
 from tests.proof.operations import prepared
 from tests.running import PATIENCE_S
-from tuisim.config.build import build_run_spec
-from tuisim.config.options import Settings
-from tuisim.core.tick_record import TICK_FIELDS, TICK_RECORD
-from tuisim.protocol import (
+from tuisim.base.source import Program
+from tuisim.engine.core.tick_record import TICK_FIELDS, TICK_RECORD
+from tuisim.engine.protocol import (
     Message,
     Pause,
 )
-from tuisim.runs.child import process
-from tuisim.runs.handle import RunHandle, RunOptions, start_run
-from tuisim.runs.records import OutputRow
-from tuisim.runs.rerun import rerun, same
-from tuisim.runs.run_folder import StoredRun
-from tuisim.runs.store import RunStore
-from tuisim.source import Program
+from tuisim.engine.runs.child import process
+from tuisim.engine.runs.handle import RunHandle, RunOptions, start_run
+from tuisim.engine.runs.records import OutputRow
+from tuisim.engine.runs.rerun import rerun, same
+from tuisim.engine.runs.run_folder import StoredRun
+from tuisim.engine.runs.store import RunStore
+from tuisim.settings.build import build_run_spec
+from tuisim.settings.options import Settings
 
 
 def _actions(record: bytes) -> int:

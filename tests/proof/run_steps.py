@@ -13,11 +13,9 @@ from tests.proof.kind import FaultError
 from tests.proof.run_model import RunModel, Seen, again
 from tests.running import PATIENCE_S
 from tuisim.app.branch import Branch, first_difference
-from tuisim.config.options import Settings
-from tuisim.errors import LogError, TuisimError
-from tuisim.logs.export import export_samples, export_telemetry
-from tuisim.logs.frames import read_log
-from tuisim.protocol import (
+from tuisim.base.errors import LogError, TuisimError
+from tuisim.base.source import Program
+from tuisim.engine.protocol import (
     BEFORE_NEXT_TICK,
     Answer,
     Inspect,
@@ -34,11 +32,13 @@ from tuisim.protocol import (
     StepLine,
     StepTicks,
 )
-from tuisim.runs.frames import samples_frame, telemetry_frame
-from tuisim.runs.handle import RunHandle, RunOptions, start_run
-from tuisim.runs.recorded_run import Recording
-from tuisim.runs.store import RunStore
-from tuisim.source import Program
+from tuisim.engine.runs.frames import samples_frame, telemetry_frame
+from tuisim.engine.runs.handle import RunHandle, RunOptions, start_run
+from tuisim.engine.runs.recorded_run import Recording
+from tuisim.engine.runs.store import RunStore
+from tuisim.logs.export import export_samples, export_telemetry
+from tuisim.logs.frames import read_log
+from tuisim.settings.options import Settings
 
 ENDLESS = """\
 tank_drive.on(20, -20)

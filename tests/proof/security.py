@@ -22,8 +22,8 @@ from tests.proof.commands import check_said, said
 from tests.proof.kind import FaultError, Kind, home
 from tests.proof.security_app import check_shown
 from tests.proof.web_attacks import ATTACKS, check_attack
-from tuisim.config.notebook_file import notebook_programs
-from tuisim.errors import TuisimError
+from tuisim.base.errors import TuisimError
+from tuisim.programs.notebook_file import notebook_programs
 
 _RUNS = "__import__('os').mkdir('owned')"
 TEXTS = (

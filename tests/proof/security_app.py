@@ -10,8 +10,8 @@ from random import Random
 from tests.app.app_help import open_lab, screen_text, settings, until
 from tests.proof.kind import FaultError
 from tuisim.app.app import LabApp
-from tuisim.config.preferences import keep
-from tuisim.source import Program
+from tuisim.base.source import Program
+from tuisim.settings.preferences import keep
 
 KEYS = ("c", "G", "l", "escape", "f1", "o", "escape", "question_mark", "escape")
 """Panels, the analyser and dialogs that show names and texts of runs."""

@@ -10,10 +10,10 @@ from typing import Any
 
 from tests.proof.commands import check_said
 from tests.proof.kind import FaultError
-from tuisim.config.folders import home_folder
-from tuisim.errors import LogError
-from tuisim.protocol import End, Unended
-from tuisim.runs.run_folder import RUN_FILE, read_run
+from tuisim.base.errors import LogError
+from tuisim.base.folders import home_folder
+from tuisim.engine.protocol import End, Unended
+from tuisim.engine.runs.run_folder import RUN_FILE, read_run
 
 LINES = [f"A: {number}" for number in range(30)]
 PROGRAM = f"import time\nfor n in range({len(LINES)}):\n    print('A:', n)\n    time.sleep(0.05)\n"

@@ -38,23 +38,26 @@ def test_a_flip_leaves_the_rest_and_the_numbers_of_the_lines() -> None:
 
 
 def test_a_seed_draws_the_same_mutants() -> None:
-    drawn = draw_mutants(["core", "tuisim/scene"], 7, 300)
-    assert (len(drawn), {mutant.room for mutant in drawn}) == (300, {"core", "scene"})
-    assert draw_mutants(["core", "scene"], 7, 300) == drawn
-    assert draw_mutants(["core", "scene"], 8, 300) != drawn
+    drawn = draw_mutants(["engine/core", "tuisim/pictures/scene"], 7, 300)
+    assert (len(drawn), {mutant.room for mutant in drawn}) == (
+        300,
+        {"engine/core", "pictures/scene"},
+    )
+    assert draw_mutants(["engine/core", "pictures/scene"], 7, 300) == drawn
+    assert draw_mutants(["engine/core", "pictures/scene"], 8, 300) != drawn
     place = f"{drawn[0].file}:{drawn[0].line}"
     operators = {mutant.operator for mutant in draw_mutants([place], 1, 100)}
     assert drawn[0].operator in operators
 
 
 def test_a_module_has_the_tests_at_its_path() -> None:
-    tests = ["tests/core/test_spec.py", "tests/core/test_spec_fields.py"]
-    assert find_tests("core/spec.py") == tests
+    tests = ["tests/engine/core/test_spec.py", "tests/engine/core/test_spec_fields.py"]
+    assert find_tests("engine/core/spec.py") == tests
 
 
 @pytest.mark.proof
 def test_a_mutant_is_found_in_a_copy(capsys: pytest.CaptureFixture[str]) -> None:
-    rows = (ROOT / "tuisim/core/geometry.py").read_text().splitlines()
+    rows = (ROOT / "tuisim/engine/core/geometry.py").read_text().splitlines()
     line = next(number for number, row in enumerate(rows, 1) if "return pose.x_mm" in row)
-    assert main(["mutants", f"core/geometry.py:{line}", "--count", "1", "--seed", "1"]) == 0
+    assert main(["mutants", f"engine/core/geometry.py:{line}", "--count", "1", "--seed", "1"]) == 0
     assert capsys.readouterr().out.endswith("\n1 of 1 found (seed 1)\n")

@@ -17,14 +17,14 @@ from tests.proof import zoo_programs as plain
 from tests.proof.kind import FaultError, Kind
 from tests.proof.zoo_programs import ENDINGS, Ending, Piece
 from tests.running import PATIENCE_S, as_python
-from tuisim.config.build import build_run_spec
-from tuisim.config.options import Settings
-from tuisim.protocol import End, Ended
-from tuisim.runs.child import process
-from tuisim.runs.handle import RunHandle, RunOptions, start_run
-from tuisim.runs.records import Stream
-from tuisim.runs.store import RunStore
-from tuisim.source import Program
+from tuisim.base.source import Program
+from tuisim.engine.protocol import End, Ended
+from tuisim.engine.runs.child import process
+from tuisim.engine.runs.handle import RunHandle, RunOptions, start_run
+from tuisim.engine.runs.records import Stream
+from tuisim.engine.runs.store import RunStore
+from tuisim.settings.build import build_run_spec
+from tuisim.settings.options import Settings
 
 FAMILIES: Mapping[str, Mapping[str, Piece]] = {
     "threads": plain.THREADS,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from tests.proof.zoo_programs import Piece
-from tuisim.protocol import End
+from tuisim.engine.protocol import End
 
 TIME: Mapping[str, Piece] = {
     "patched": Piece(
@@ -65,7 +65,7 @@ IMPORTS: Mapping[str, Piece] = {
         "import sys\nprint(len(sys.path) > 0)"
     ),
     "tuisim": Piece(
-        "try:\n    import tuisim.runtime.session as s\n    s.Session.checkpoint = None\n"
+        "try:\n    import tuisim.engine.runtime.session as s\n    s.Session.checkpoint = None\n"
         "except BaseException as e: print(type(e).__name__)",
         breaks=True,
     ),

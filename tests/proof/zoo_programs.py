@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from tuisim.protocol import End
+from tuisim.engine.protocol import End
 
 
 @dataclass(frozen=True, slots=True)

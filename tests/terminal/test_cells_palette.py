@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tests.cases import cases
-from tuisim.scene.robot import COLORED, GREY
+from tuisim.pictures.scene.robot import COLORED, GREY
 from tuisim.terminal.cells import (
     PALETTE_8,
     PALETTE_16,

@@ -31,7 +31,7 @@ from tuisim.app.dialogs.entries import SavedPoses
 from tuisim.app.dialogs.palette import Palette
 from tuisim.app.panel_area import PanelArea
 from tuisim.app.terminal_app import TerminalApp
-from tuisim.core.geometry import Pose
+from tuisim.engine.core.geometry import Pose
 from tuisim.terminal.driver import ResilientOutput, TerminalDriver
 
 ENTER = "import fcntl, os, sys, termios; fcntl.ioctl(0, termios.TIOCSCTTY, 0); os.execv(sys.executable, sys.argv[1:])"

@@ -14,7 +14,7 @@ import pytest
 from tests.cases import cases
 from tests.running import PATIENCE_S
 from tests.web.test_server import TOKEN, Visited, drawn, visited
-from tuisim.errors import ConfigError
+from tuisim.base.errors import ConfigError
 from tuisim.web import uploads
 from tuisim.web.uploads import Uploads, keep_file
 

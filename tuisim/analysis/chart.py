@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tuisim.analysis.traces import DISTANCE, LogTrace, sample_and_hold
-from tuisim.charts.axes import Limits, column_of, value_limits
-from tuisim.charts.bands import band_span
-from tuisim.charts.canvas import DOTS_X, DOTS_Y, seen_points
-from tuisim.charts.layout import ChartData, Line, Span, with_unit
-from tuisim.charts.traces import clip_line, min_max
-from tuisim.data_class import dataclass
-from tuisim.errors import LogError, printable
+from tuisim.base.data_class import dataclass
+from tuisim.base.errors import LogError, printable
 from tuisim.logs.magnitude import limit_drawn
+from tuisim.pictures.charts.axes import Limits, column_of, value_limits
+from tuisim.pictures.charts.bands import band_span
+from tuisim.pictures.charts.canvas import DOTS_X, DOTS_Y, seen_points
+from tuisim.pictures.charts.layout import ChartData, Line, Span, with_unit
+from tuisim.pictures.charts.traces import clip_line, min_max
 
 if TYPE_CHECKING:
     from tuisim.analysis.model import Model

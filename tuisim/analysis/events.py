@@ -8,11 +8,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tuisim.core.conditions import NUMBER, Operator, ValueCondition, comparison_form, condition_in
-from tuisim.data_class import dataclass
-from tuisim.errors import LogError, among
+from tuisim.base.data_class import dataclass
+from tuisim.base.errors import LogError, among
+from tuisim.engine.core.conditions import (
+    NUMBER,
+    Operator,
+    ValueCondition,
+    comparison_form,
+    condition_in,
+)
+from tuisim.engine.runs.arrays import FloatArray
 from tuisim.logs.signals import known_in_order
-from tuisim.runs.arrays import FloatArray
 
 if TYPE_CHECKING:
     from tuisim.logs.log import Log, Series

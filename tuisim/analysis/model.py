@@ -15,8 +15,8 @@ from tuisim.analysis.events import Events
 from tuisim.analysis.source import Note, OpenedLog, read_notes, write_notes
 from tuisim.analysis.table import Rows
 from tuisim.analysis.traces import TIME, LogTrace, LogTraces, aligned
-from tuisim.charts.axes import Limits
-from tuisim.errors import LogError, among
+from tuisim.base.errors import LogError, among
+from tuisim.engine.runs.arrays import FloatArray
 from tuisim.logs.bands import Band, BandReport, band_report, in_words
 from tuisim.logs.columns import numeric_columns
 from tuisim.logs.derived import (
@@ -28,7 +28,7 @@ from tuisim.logs.derived import (
 )
 from tuisim.logs.plateaus import Search, plateaus
 from tuisim.logs.signals import Summary, known_at, summary_of
-from tuisim.runs.arrays import FloatArray
+from tuisim.pictures.charts.axes import Limits
 
 if TYPE_CHECKING:
     from tuisim.logs.log import Log

@@ -7,8 +7,8 @@ import io
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from tuisim.data_class import dataclass
-from tuisim.scene.view import Viewport
+from tuisim.base.data_class import dataclass
+from tuisim.pictures.scene.view import Viewport
 
 if TYPE_CHECKING:
     from PIL.Image import Image

@@ -12,12 +12,12 @@ from dataclasses import asdict, replace
 import msgspec
 
 from tuisim.analysis.source import LogRequest
-from tuisim.config.preferences import keep, preference
-from tuisim.data_class import dataclass
-from tuisim.errors import LogError
+from tuisim.base.data_class import dataclass
+from tuisim.base.errors import LogError
 from tuisim.logs.choices import NO_CHOICES, ReadChoices
 from tuisim.logs.log import Log
 from tuisim.logs.reader import STDIN, read_beginning
+from tuisim.settings.preferences import keep, preference
 
 MAX_FILES = 200
 _NAME = "logs"

@@ -14,25 +14,25 @@ from tuisim.analysis.chart import View, chart_of, spans_of_bands
 from tuisim.analysis.model import Model
 from tuisim.analysis.pins import Picture, Pin, encode_data, encode_picture, place_pins
 from tuisim.analysis.source import LogRequest, OpenedLog, opening
-from tuisim.charts.files import FACET_PX, svg_of, write_whole
-from tuisim.charts.layout import laid_out
-from tuisim.config.files import name_of
-from tuisim.core.geometry import pose_in_words
-from tuisim.core.profile import NS_PER_S
-from tuisim.core.tick_record import FLAG_PEN_DOWN
-from tuisim.errors import ExportError, LogError, listed
-from tuisim.html.render import Table, render_page
+from tuisim.base.errors import ExportError, LogError, listed
+from tuisim.base.source import source_lines
+from tuisim.engine.core.geometry import pose_in_words
+from tuisim.engine.core.profile import NS_PER_S
+from tuisim.engine.core.tick_record import FLAG_PEN_DOWN
+from tuisim.engine.files import name_of
+from tuisim.engine.protocol import SetNoise
+from tuisim.engine.runs.run_folder import StoredRun
 from tuisim.logs.bands import count_samples
 from tuisim.logs.export import check_place
 from tuisim.logs.log import Log
 from tuisim.logs.plateaus import Search, plateaus
 from tuisim.logs.signals import QUANTILES
-from tuisim.movies.clip import Recorded
-from tuisim.movies.files import small_movie
-from tuisim.protocol import SetNoise
-from tuisim.runs.run_folder import StoredRun
-from tuisim.scene.pictures import find_area, find_view, world_at_end
-from tuisim.source import source_lines
+from tuisim.pictures.charts.files import FACET_PX, svg_of, write_whole
+from tuisim.pictures.charts.layout import laid_out
+from tuisim.pictures.html.render import Table, render_page
+from tuisim.pictures.movies.clip import Recorded
+from tuisim.pictures.movies.files import small_movie
+from tuisim.pictures.scene.pictures import find_area, find_view, world_at_end
 
 if TYPE_CHECKING:
     from PIL.Image import Image

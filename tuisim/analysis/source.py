@@ -12,16 +12,16 @@ from dataclasses import asdict, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from tuisim.atomic import make_private_folder, replacing
-from tuisim.config.folders import home_folder
-from tuisim.data_class import dataclass
-from tuisim.errors import LogError
+from tuisim.base.atomic import make_private_folder, replacing
+from tuisim.base.data_class import dataclass
+from tuisim.base.errors import LogError
+from tuisim.base.folders import home_folder
+from tuisim.base.regular_file import open_regular, read_regular
 from tuisim.logs.choices import NO_CHOICES, ReadChoices
-from tuisim.regular_file import open_regular, read_regular
 
 if TYPE_CHECKING:
+    from tuisim.engine.runs.run_folder import StoredRun
     from tuisim.logs.log import Log
-    from tuisim.runs.run_folder import StoredRun
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,8 +92,8 @@ def opening(request: LogRequest) -> Iterator[OpenedLog]:
     Raises:
         LogError: there is no such run or file, or it cannot be read.
     """
+    from tuisim.engine.runs.store import RunStore
     from tuisim.logs.reader import log_of_runs, read_pieces, telemetry_log
-    from tuisim.runs.store import RunStore
 
     if not request.file:
         store = RunStore()

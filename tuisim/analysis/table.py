@@ -9,11 +9,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tuisim.core.conditions import COMPARE, Operator, ValueCondition, comparison_form, condition_in
-from tuisim.data_class import dataclass
-from tuisim.errors import LogError, among
+from tuisim.base.data_class import dataclass
+from tuisim.base.errors import LogError, among
+from tuisim.engine.core.conditions import (
+    COMPARE,
+    Operator,
+    ValueCondition,
+    comparison_form,
+    condition_in,
+)
+from tuisim.engine.runs.arrays import IntArray
 from tuisim.logs.arrow import cell_text, contains, mask_of, sorted_places
-from tuisim.runs.arrays import IntArray
 
 if TYPE_CHECKING:
     from tuisim.logs.log import Log, LogTable

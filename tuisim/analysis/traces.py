@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tuisim.analysis.events import THRESHOLD_FORM, threshold_of
-from tuisim.charts.axes import Limits, widen_times
-from tuisim.charts.traces import Pyramid, Trace, Traces
-from tuisim.errors import LogError
+from tuisim.base.errors import LogError
+from tuisim.engine.runs.arrays import FloatArray
 from tuisim.logs.bands import driven_mm
 from tuisim.logs.signals import value_at
-from tuisim.runs.arrays import FloatArray
+from tuisim.pictures.charts.axes import Limits, widen_times
+from tuisim.pictures.charts.traces import Pyramid, Trace, Traces
 
 if TYPE_CHECKING:
     from tuisim.logs.log import Log, Series

@@ -20,9 +20,9 @@ from textual.message import Message
 from textual.screen import Screen
 from textual.widget import Widget
 
-from tuisim import palette
-from tuisim.data_class import dataclass
-from tuisim.errors import TuisimError
+from tuisim.base import palette
+from tuisim.base.data_class import dataclass
+from tuisim.base.errors import TuisimError
 from tuisim.terminal.text_runs import as_markup
 from tuisim.terminal.textual_internals import bindings_of, is_leaving
 

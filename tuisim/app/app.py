@@ -57,17 +57,17 @@ from tuisim.app.snapshot import (
 )
 from tuisim.app.speech import Voice
 from tuisim.app.terminal_app import picture_mode_at_start
-from tuisim.config.options import DEFAULT_FPS, Settings
-from tuisim.config.program_settings import Decided
-from tuisim.config.user_config import FILE, UserConfig, load_config
-from tuisim.core.spec import RunSpec
-from tuisim.data_class import dataclass
-from tuisim.errors import ConfigError, TuisimError
-from tuisim.protocol import Answer, Ended
-from tuisim.runs.child.process import warm_up
-from tuisim.runs.records import Stream
-from tuisim.runs.run_folder import StoredRun
-from tuisim.source import Program
+from tuisim.base.data_class import dataclass
+from tuisim.base.errors import ConfigError, TuisimError
+from tuisim.base.source import Program
+from tuisim.engine.core.spec import RunSpec
+from tuisim.engine.protocol import Answer, Ended
+from tuisim.engine.runs.child.process import warm_up
+from tuisim.engine.runs.records import Stream
+from tuisim.engine.runs.run_folder import StoredRun
+from tuisim.programs.program_settings import Decided
+from tuisim.settings.options import DEFAULT_FPS, Settings
+from tuisim.settings.user_config import FILE, UserConfig, load_config
 from tuisim.terminal.pacer import PAGE_QUEUED_S, Pacer
 from tuisim.terminal.picture_mode import PictureMode
 from tuisim.terminal.picture_options import AUTO
@@ -76,8 +76,8 @@ from tuisim.terminal.textual_internals import is_leaving
 
 if TYPE_CHECKING:
     from tuisim.app.panels.output import Output
-    from tuisim.goals.files import GoalsFile
-    from tuisim.lessons.spec import Lesson
+    from tuisim.tasks.goals.files import GoalsFile
+    from tuisim.tasks.lessons.spec import Lesson
     from tuisim.terminal.app import ServerAsks
     from tuisim.terminal.pixels import Pixels
 

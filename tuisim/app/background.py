@@ -18,8 +18,8 @@ from textual.app import App
 from textual.dom import DOMNode
 from textual.worker import get_current_worker
 
-from tuisim.atomic import drop_unfinished, unfinished
-from tuisim.errors import TuisimError
+from tuisim.base.atomic import drop_unfinished, unfinished
+from tuisim.base.errors import TuisimError
 from tuisim.terminal.textual_internals import is_leaving
 
 Made = TypeVar("Made")

@@ -10,14 +10,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tuisim import protocol
-from tuisim.core.spec import NoiseSpec
-from tuisim.data_class import dataclass
-from tuisim.protocol import UserAction
+from tuisim.base.data_class import dataclass
+from tuisim.engine import protocol
+from tuisim.engine.core.spec import NoiseSpec
+from tuisim.engine.protocol import UserAction
 
 if TYPE_CHECKING:
-    from tuisim.runs.recorded_run import Recording
-    from tuisim.source import Program
+    from tuisim.base.source import Program
+    from tuisim.engine.runs.recorded_run import Recording
 
 BRANCH_TAG = "branch-of-"
 """Prefix of the tag that names the run from which another one branched off."""

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Protocol, runtime_checkable
 from textual.widget import Widget
 
 from tuisim.app.panels import PANELS
-from tuisim.data_class import dataclass
+from tuisim.base.data_class import dataclass
 from tuisim.terminal.textual_internals import screen_strips
 
 if TYPE_CHECKING:

@@ -7,25 +7,32 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from tuisim import protocol
 from tuisim.app.editor.text_file import file_of_program, write_json
 from tuisim.app.editor.text_lines import same_lines
 from tuisim.app.snapshot import PauseView
-from tuisim.breakpoints import Breakpoint, LineBreak, break_line_of, break_lines, moved, parse_break
-from tuisim.config.files import MAX_FILE_BYTES
-from tuisim.data_class import dataclass
-from tuisim.errors import ConfigError, TuisimError
-from tuisim.protocol import UNKNOWN_ORDINAL, Inspected, Message, Paused, PauseReason
-from tuisim.regular_file import read_regular
-from tuisim.runs.replay_debugger import Position, ReplayDebugger
-from tuisim.source import find_code_line, source_lines
+from tuisim.base.data_class import dataclass
+from tuisim.base.errors import ConfigError, TuisimError
+from tuisim.base.regular_file import read_regular
+from tuisim.base.source import find_code_line, source_lines
+from tuisim.engine import protocol
+from tuisim.engine.breakpoints import (
+    Breakpoint,
+    LineBreak,
+    break_line_of,
+    break_lines,
+    moved,
+    parse_break,
+)
+from tuisim.engine.files import MAX_FILE_BYTES
+from tuisim.engine.protocol import UNKNOWN_ORDINAL, Inspected, Message, Paused, PauseReason
+from tuisim.engine.runs.replay_debugger import Position, ReplayDebugger
 
 if TYPE_CHECKING:
     from tuisim.app.editor.text_lines import LineMap
     from tuisim.app.host import LabHost
     from tuisim.app.panel_area import PanelArea
     from tuisim.app.run_controller import RunController
-    from tuisim.source import Program
+    from tuisim.base.source import Program
 
 FOLDER = "breaks"
 MAX_KEPT = 200

@@ -6,12 +6,12 @@ from collections.abc import Iterator
 from contextlib import suppress
 from itertools import takewhile
 
-from tuisim.core.geometry import Pose
-from tuisim.core.spec import RunSpec
-from tuisim.errors import LogError
-from tuisim.runs.recorded_run import Recording
-from tuisim.runs.run_folder import StoredRun
-from tuisim.source import Program
+from tuisim.base.errors import LogError
+from tuisim.base.source import Program
+from tuisim.engine.core.geometry import Pose
+from tuisim.engine.core.spec import RunSpec
+from tuisim.engine.runs.recorded_run import Recording
+from tuisim.engine.runs.run_folder import StoredRun
 
 
 def is_comparable(earlier: Recording, later: Recording) -> bool:
@@ -46,7 +46,7 @@ def find_last_like(program: Program, spec: RunSpec) -> StoredRun | None:
 
 def _load_runs(program: Program, before: str) -> Iterator[StoredRun]:
     """Yield the stored runs of a program file before one with an id, the newest first; empty means all."""
-    from tuisim.runs.store import RunStore
+    from tuisim.engine.runs.store import RunStore
 
     store = RunStore()
     listed = takewhile(lambda info: info.id != before, store.runs() if program.path else ())

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
-from tuisim.errors import TuisimError
+from tuisim.base.errors import TuisimError
 from tuisim.terminal.text_runs import cut
 
 _KIND = re.compile(r"^[\w.]+: ")

@@ -11,19 +11,19 @@ import numpy as np
 import numpy.typing as npt
 
 from tuisim.app.snapshot import CHART_PERIOD_S, RunPhase
-from tuisim.core.field import Field
-from tuisim.core.sensors import columns_of
-from tuisim.core.tick_record import FLAG_PEN_DOWN
-from tuisim.data_class import dataclass
-from tuisim.runs.frames import column_values
-from tuisim.runs.records import OutputRow
-from tuisim.runs.samples import samples_of
-from tuisim.scene.pen import drawn_points_mm
+from tuisim.base.data_class import dataclass
+from tuisim.engine.core.field import Field
+from tuisim.engine.core.sensors import columns_of
+from tuisim.engine.core.tick_record import FLAG_PEN_DOWN
+from tuisim.engine.runs.frames import column_values
+from tuisim.engine.runs.records import OutputRow
+from tuisim.engine.runs.samples import samples_of
+from tuisim.pictures.scene.pen import drawn_points_mm
 
 if TYPE_CHECKING:
     from tuisim.app.panel_area import PanelArea
     from tuisim.app.run_controller import RunController
-    from tuisim.runs.recorded_run import Recording
+    from tuisim.engine.runs.recorded_run import Recording
 
 Series = dict[str, tuple[list[float], list[float]]]
 """By trace name: times in s, values."""

@@ -17,8 +17,8 @@ from textual.widgets import Input, Label, Static
 from textual.widgets.input import Selection
 
 from tuisim.app.action import ActionHost
-from tuisim.data_class import dataclass
-from tuisim.errors import ConfigError, TuisimError
+from tuisim.base.data_class import dataclass
+from tuisim.base.errors import ConfigError, TuisimError
 
 
 def reason(error: TuisimError) -> str:

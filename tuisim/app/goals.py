@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING
 
 from tuisim.app import background
 from tuisim.app.snapshot import RunPhase
-from tuisim.config.worlds import means_world
-from tuisim.protocol import Unended
-from tuisim.runs.store import load_run
+from tuisim.engine.protocol import Unended
+from tuisim.engine.runs.store import load_run
+from tuisim.settings.worlds import means_world
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -20,12 +20,12 @@ if TYPE_CHECKING:
     from tuisim.app.host import LabHost
     from tuisim.app.panel_area import PanelArea
     from tuisim.app.run_controller import RunController
-    from tuisim.core.field import Field
-    from tuisim.errors import TuisimError
-    from tuisim.goals.files import GoalsFile
-    from tuisim.goals.judgement import Judgement
-    from tuisim.goals.spec import Goal
-    from tuisim.runs.recorded_run import Recording
+    from tuisim.base.errors import TuisimError
+    from tuisim.engine.core.field import Field
+    from tuisim.engine.runs.recorded_run import Recording
+    from tuisim.tasks.goals.files import GoalsFile
+    from tuisim.tasks.goals.judgement import Judgement
+    from tuisim.tasks.goals.spec import Goal
 
 PERIOD_S = 0.5
 """Least time between two judgements of a run that goes on."""
@@ -169,7 +169,7 @@ def _judged(
 
     The app goes on reading the recording, so that this needs views of its own.
     """
-    from tuisim.goals.judge import judge
+    from tuisim.tasks.goals.judge import judge
 
     began_s = time.monotonic()
     run = load_run(folder)

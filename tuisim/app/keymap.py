@@ -11,9 +11,9 @@ from textual.keys import KEY_NAME_REPLACEMENTS, Keys
 
 from tuisim.app.action import Action, label_of_key
 from tuisim.app.themes import theme_names
-from tuisim.config.files import Location
-from tuisim.config.user_config import THEME, Section, UserConfig
-from tuisim.errors import nearest
+from tuisim.base.errors import nearest
+from tuisim.engine.files import Location
+from tuisim.settings.user_config import THEME, Section, UserConfig
 from tuisim.terminal.textual_internals import key_of_character
 
 Host = TypeVar("Host")

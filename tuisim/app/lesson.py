@@ -13,18 +13,20 @@ from tuisim.app import background
 from tuisim.app.earlier_run import find_last_like
 from tuisim.app.panels import PANELS, PanelPlace
 from tuisim.app.snapshot import RunPhase
-from tuisim.config.build import build_run_spec
-from tuisim.config.options import settings_of
-from tuisim.core.spec import RunSpec, WorldSpec
-from tuisim.core.values import values_of
-from tuisim.errors import ConfigError, TuisimError
-from tuisim.goals.files import GoalsFile
-from tuisim.goals.judgement import GoalState, Judgement
-from tuisim.goals.spec import LogCondition, PrintCondition
-from tuisim.goals.trial_world import TrialWorld
-from tuisim.lessons import progress as stored
-from tuisim.lessons.catalogue import find_lesson, lesson_paths
-from tuisim.lessons.events import (
+from tuisim.base.errors import ConfigError, TuisimError
+from tuisim.engine.core.spec import RunSpec, WorldSpec
+from tuisim.engine.core.values import values_of
+from tuisim.engine.protocol import End, PauseReason
+from tuisim.engine.runs.store import load_run
+from tuisim.settings.build import build_run_spec
+from tuisim.settings.options import settings_of
+from tuisim.tasks.goals.files import GoalsFile
+from tuisim.tasks.goals.judgement import GoalState, Judgement
+from tuisim.tasks.goals.spec import LogCondition, PrintCondition
+from tuisim.tasks.goals.trial_world import TrialWorld
+from tuisim.tasks.lessons import progress as stored
+from tuisim.tasks.lessons.catalogue import find_lesson, lesson_paths
+from tuisim.tasks.lessons.events import (
     BreakMet,
     Event,
     Exported,
@@ -42,9 +44,9 @@ from tuisim.lessons.events import (
     unready,
     wanted_form,
 )
-from tuisim.lessons.files import load_lesson
-from tuisim.lessons.progress import LessonProgress, StepState
-from tuisim.lessons.spec import (
+from tuisim.tasks.lessons.files import load_lesson
+from tuisim.tasks.lessons.progress import LessonProgress, StepState
+from tuisim.tasks.lessons.spec import (
     SEEABLE,
     BreakCheck,
     Check,
@@ -60,9 +62,7 @@ from tuisim.lessons.spec import (
     list_place,
     list_world,
 )
-from tuisim.lessons.story import story
-from tuisim.protocol import End, PauseReason
-from tuisim.runs.store import load_run
+from tuisim.tasks.lessons.story import story
 
 if TYPE_CHECKING:
     from tuisim.app.debugger import DebugController
@@ -73,7 +73,7 @@ if TYPE_CHECKING:
     from tuisim.app.panels.lesson import LessonPanel
     from tuisim.app.render.lesson import LessonView
     from tuisim.app.run_controller import RunController
-    from tuisim.runs.recorded_run import Recording
+    from tuisim.engine.runs.recorded_run import Recording
 
 NOTES_PERIOD_S = 0.5
 """Least time between two looks at the notes of a run."""
@@ -451,7 +451,7 @@ class LessonController:
         )
 
         def work() -> list[tuple[TrialWorld, tuple[Judgement, ...]]]:
-            from tuisim.lessons.trial import tried_elsewhere
+            from tuisim.tasks.lessons.trial import tried_elsewhere
 
             return tried_elsewhere(lesson, check, load_run(recording.folder))
 
@@ -631,7 +631,7 @@ def noted(folder: Path) -> Iterator[Noted]:
         LogError: the notes or the recording are damaged.
     """
     from tuisim.analysis.source import NOTES_FILE, read_notes
-    from tuisim.runs.samples import samples_of
+    from tuisim.engine.runs.samples import samples_of
 
     notes = read_notes(folder / NOTES_FILE)
     if not notes:

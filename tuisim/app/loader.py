@@ -15,26 +15,26 @@ from tuisim.app.setup import next_run as plans
 from tuisim.app.setup.mat import SOON, Mat, blank_mat, mat_key, prepare_mat, prepare_mat_of
 from tuisim.app.setup.next_run import NextRun, plan_of_run, read_first_line
 from tuisim.app.snapshot import end_label
-from tuisim.config.files import means_file
-from tuisim.config.folders import user_path
-from tuisim.config.magic_mat import without_wrong_mat
-from tuisim.config.options import START, Settings, settings_of
-from tuisim.config.program_settings import Decided, free_paths
-from tuisim.errors import LogError, TuisimError
-from tuisim.runs.run_folder import program_again
-from tuisim.runs.standstill import standstill_words
-from tuisim.runs.store import RunStore
-from tuisim.source import Program
+from tuisim.base.errors import LogError, TuisimError
+from tuisim.base.folders import user_path
+from tuisim.base.source import Program
+from tuisim.engine.files import means_file
+from tuisim.engine.runs.run_folder import program_again
+from tuisim.engine.runs.standstill import standstill_words
+from tuisim.engine.runs.store import RunStore
+from tuisim.programs.magic_mat import without_wrong_mat
+from tuisim.programs.program_settings import Decided, free_paths
+from tuisim.settings.options import START, Settings, settings_of
 
 if TYPE_CHECKING:
     from tuisim.app.goals import GoalsController
     from tuisim.app.host import LabHost
     from tuisim.app.panel_area import PanelArea
     from tuisim.app.run_controller import RunController
-    from tuisim.config.program_file import ProgramSource
-    from tuisim.core.spec import RunSpec
-    from tuisim.goals.files import GoalsFile
-    from tuisim.runs.run_folder import StoredRun
+    from tuisim.engine.core.spec import RunSpec
+    from tuisim.engine.runs.run_folder import StoredRun
+    from tuisim.programs.program_file import ProgramSource
+    from tuisim.tasks.goals.files import GoalsFile
 
 NOT_NOW = "Not available during a run: {stop} stops it"
 
@@ -191,8 +191,8 @@ class Loader:
         Args:
             path: The file, or the name of an example program.
         """
-        from tuisim.config.program_file import find_program
-        from tuisim.config.worlds import means_world
+        from tuisim.programs.program_file import find_program
+        from tuisim.settings.worlds import means_world
 
         opened = self._open_world if means_world(path) else self._open_program
         try:
@@ -263,7 +263,7 @@ class Loader:
 
     def _read_world(self, path: Path) -> tuple[str | None, GoalsFile | None]:
         """Read a world file and remember its settings. Return the path of its program, and its goals, if any."""
-        from tuisim.goals.files import load_task
+        from tuisim.tasks.goals.files import load_task
 
         world, goals = load_task(path, self._run_controller.next_run.settings["mats"])
         self.world_file, self._world_settings, self._world_refers = (
@@ -396,7 +396,7 @@ class Loader:
                 self.goals.change(goals)
             return True
         if path == self.goals.path:
-            from tuisim.goals.files import load_goals
+            from tuisim.tasks.goals.files import load_goals
 
             self.goals.change(load_goals(path))
             return True
@@ -424,7 +424,7 @@ class Loader:
         Raises:
             TuisimError: its magic line is wrong.
         """
-        from tuisim.config.program_file import program_of_text
+        from tuisim.programs.program_file import program_of_text
 
         self._apply_program(program_of_text(text, Path(path) if path else None, name))
 
@@ -454,7 +454,7 @@ class Loader:
         Raises:
             TuisimError: its magic line is wrong.
         """
-        from tuisim.config.program_file import program_of_text
+        from tuisim.programs.program_file import program_of_text
 
         self._open_source(program_of_text(text, None, name))
 
@@ -513,7 +513,7 @@ class Loader:
 
 
 def _read_program(path: str) -> ProgramSource:
-    from tuisim.config.program_file import read_program
+    from tuisim.programs.program_file import read_program
 
     return read_program(user_path(path))
 
@@ -534,7 +534,7 @@ def _in_world(
 
 def _program_path(word: str) -> str:
     """Return the path of a program that a world file names: a path, or the name of an example."""
-    from tuisim.config.program_file import programs
+    from tuisim.programs.program_file import programs
 
     examples = {name: path for name, path, _ in programs()}
     return (
@@ -563,7 +563,7 @@ def _differences(before: Mapping[str, Any], now: Mapping[str, Any]) -> dict[str,
 
 def program_of(run: StoredRun) -> Program:
     """Return the program of a run as it was then; with its file only if that still has the same text."""
-    from tuisim.config.program_file import read_program
+    from tuisim.programs.program_file import read_program
 
     stored = run.program
     try:

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any
 
 from tuisim.app.actions import robot
 from tuisim.app.actions.files import open_brought
-from tuisim.config.program_file import ProgramSource
-from tuisim.errors import TuisimError
-from tuisim.runs.run_options import RunOptions
-from tuisim.source import Program
+from tuisim.base.errors import TuisimError
+from tuisim.base.source import Program
+from tuisim.engine.runs.run_options import RunOptions
+from tuisim.programs.program_file import ProgramSource
 
 if TYPE_CHECKING:
     from tuisim.app.actions import ActionContext

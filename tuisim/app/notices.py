@@ -13,7 +13,7 @@ from textual.app import App
 from textual.notifications import SeverityLevel
 from textual.widgets import Static
 
-from tuisim.data_class import dataclass
+from tuisim.base.data_class import dataclass
 from tuisim.terminal.textual_internals import NOTICE_LAYER, can_show_notices, is_leaving
 
 CHARACTERS_A_SECOND = 25

@@ -28,7 +28,7 @@ from tuisim.app.layout.forms import is_single, size_class
 from tuisim.app.layout.tree import PanelLayout
 from tuisim.app.panels import PANELS, NextRunPanel, Panel, TerminalSize
 from tuisim.app.panels.titles import build_title
-from tuisim.data_class import dataclass
+from tuisim.base.data_class import dataclass
 from tuisim.terminal.pacer import Throttle
 
 if TYPE_CHECKING:

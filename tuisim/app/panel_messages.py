@@ -12,7 +12,7 @@ from tuisim.app.actions import ActionContext, time_travel
 from tuisim.app.dialogs.dialog import ClosesOnce
 from tuisim.app.host import LabHost
 from tuisim.app.setup.next_run import with_obstacles
-from tuisim.errors import TuisimError
+from tuisim.base.errors import TuisimError
 
 if TYPE_CHECKING:
     from tuisim.app.panels.brick import Brick

@@ -12,17 +12,17 @@ from rich.segment import Segment
 from textual.geometry import Region
 from textual.strip import Strip
 
-from tuisim.charts.bands import SHADES
-from tuisim.charts.canvas import AXIS
-from tuisim.charts.plot_image import Plot, PlotInks, plot_image
-from tuisim.charts.text_chart import ChartPicture
+from tuisim.pictures.charts.bands import SHADES
+from tuisim.pictures.charts.canvas import AXIS
+from tuisim.pictures.charts.plot_image import Plot, PlotInks, plot_image
+from tuisim.pictures.charts.text_chart import ChartPicture
 from tuisim.terminal.cell_view import JoinedStrip, LinesView, PictureStrip
 from tuisim.terminal.picture import Graphics, TilePicture
 from tuisim.terminal.picture_mode import Sharpness, picture_mode_of
 from tuisim.terminal.text_runs import Run, rgb_of
 
 if TYPE_CHECKING:
-    from tuisim.core.css_colors import Rgb
+    from tuisim.engine.core.css_colors import Rgb
     from tuisim.terminal.pixels import Pixels
 
 Lines = Sequence[Sequence[Run]]

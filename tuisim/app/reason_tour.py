@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from tuisim.app.run_controller import RunController
-    from tuisim.reasons.reason import Reason
-    from tuisim.runs.recorded_run import Recording
+    from tuisim.engine.runs.recorded_run import Recording
+    from tuisim.tasks.reasons.reason import Reason
 
 
 class ReasonTour:

@@ -7,21 +7,21 @@ from typing import TYPE_CHECKING
 from tuisim.app import background
 from tuisim.app.earlier_run import stored_before
 from tuisim.app.snapshot import RunPhase
-from tuisim.lessons.spec import RunCheck
-from tuisim.reasons.reason import find_reasons
-from tuisim.runs.store import load_run
-from tuisim.runs.waited import WINDOW_S, is_standing
+from tuisim.engine.runs.store import load_run
+from tuisim.tasks.lessons.spec import RunCheck
+from tuisim.tasks.reasons.reason import find_reasons
+from tuisim.tasks.reasons.waited import WINDOW_S, is_standing
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
     from pathlib import Path
 
     from tuisim.app.actions import ActionContext
-    from tuisim.core.field import Field
-    from tuisim.goals.judgement import Judgement
-    from tuisim.goals.spec import Goal
-    from tuisim.reasons.reason import Reason
-    from tuisim.runs.recorded_run import Recording
+    from tuisim.engine.core.field import Field
+    from tuisim.engine.runs.recorded_run import Recording
+    from tuisim.tasks.goals.judgement import Judgement
+    from tuisim.tasks.goals.spec import Goal
+    from tuisim.tasks.reasons.reason import Reason
 
 NO_REASON = "No reason found: nothing raised, blocked, missed or lost. {compare} compares two runs"
 
@@ -104,7 +104,7 @@ def _read(
     mat: Field | None,
 ) -> tuple[Reason, ...]:
     """Return the reasons of a run. The app goes on reading the recording, so that this needs views of its own."""
-    from tuisim.goals.judge import judge
+    from tuisim.tasks.goals.judge import judge
 
     run = load_run(folder)
     return find_reasons(run, judge(goals, run, mat) if goals else judgements, earlier, mat)

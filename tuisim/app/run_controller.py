@@ -6,7 +6,6 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from tuisim import protocol
 from tuisim.app.earlier_run import is_comparable, pose_at
 from tuisim.app.run_update import RunUpdate, describe_remarks
 from tuisim.app.setup import next_run as plans
@@ -14,28 +13,29 @@ from tuisim.app.setup.next_run import NextRun
 from tuisim.app.snapshot import RunPhase, Snapshot
 from tuisim.app.timeline import Timeline
 from tuisim.app.waiting import WaitWatch
-from tuisim.config.program_settings import require_library
-from tuisim.core.drift import find_drift
-from tuisim.core.end_stops import flags_at_start
-from tuisim.core.field import Field
-from tuisim.core.geometry import Pose
-from tuisim.core.spec import PRESSABLE, NoiseSpec, RunSpec
-from tuisim.core.state import Instant
-from tuisim.core.tick_record import FLAG_PEN_DOWN
-from tuisim.data_class import dataclass
-from tuisim.protocol import RunState
-from tuisim.runs.handle import RunOptions, start_run
-from tuisim.runs.recorded_run import Recording
-from tuisim.runs.standstill import standstill_words
-from tuisim.runs.store import RunStore
+from tuisim.base.data_class import dataclass
+from tuisim.engine import protocol
+from tuisim.engine.core.drift import find_drift
+from tuisim.engine.core.end_stops import flags_at_start
+from tuisim.engine.core.field import Field
+from tuisim.engine.core.geometry import Pose
+from tuisim.engine.core.spec import PRESSABLE, NoiseSpec, RunSpec
+from tuisim.engine.core.state import Instant
+from tuisim.engine.core.tick_record import FLAG_PEN_DOWN
+from tuisim.engine.protocol import RunState
+from tuisim.engine.runs.handle import RunOptions, start_run
+from tuisim.engine.runs.recorded_run import Recording
+from tuisim.engine.runs.standstill import standstill_words
+from tuisim.engine.runs.store import RunStore
+from tuisim.programs.program_settings import require_library
 
 if TYPE_CHECKING:
     from tuisim.app.branch import Branch
     from tuisim.app.setup.mat import Mat
-    from tuisim.runs.handle import RunHandle
-    from tuisim.runs.run_folder import StoredRun
-    from tuisim.runs.views import TickRecord
-    from tuisim.source import Program
+    from tuisim.base.source import Program
+    from tuisim.engine.runs.handle import RunHandle
+    from tuisim.engine.runs.run_folder import StoredRun
+    from tuisim.engine.runs.views import TickRecord
 
 
 FIRST_LINE = (0, 1)

@@ -5,15 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from tuisim import protocol
 from tuisim.app.branch import Branch
 from tuisim.app.snapshot import busy_loop_words
-from tuisim.data_class import dataclass
-from tuisim.runs.plugged_words import describe_newest
-from tuisim.runs.records import OutputRow
+from tuisim.base.data_class import dataclass
+from tuisim.engine import protocol
+from tuisim.engine.runs.records import OutputRow
+from tuisim.programs.plugged_words import describe_newest
 
 if TYPE_CHECKING:
-    from tuisim.runs.recorded_run import Recording
+    from tuisim.engine.runs.recorded_run import Recording
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,8 +9,8 @@ from typing import Any
 
 from textual.app import App
 
-from tuisim.charts.files import write_whole
 from tuisim.logs.export import check_place
+from tuisim.pictures.charts.files import write_whole
 from tuisim.terminal.cell_image import CellGrid, image_of_cells, row_of_cells, svg_of_cells
 from tuisim.terminal.textual_internals import screen_strips
 

@@ -8,16 +8,16 @@ from enum import StrEnum
 from functools import cached_property
 from typing import assert_never
 
-from tuisim.core.field import Field
-from tuisim.core.geometry import Pose
-from tuisim.core.sensors import color, gyro, readings, ultrasonic
-from tuisim.core.sensors.color import ColorReading
-from tuisim.core.spec import RunSpec
-from tuisim.core.state import Instant
-from tuisim.data_class import dataclass
-from tuisim.protocol import BusyLoop, End, Ended, Inspected, Paused, RunState, Unended
-from tuisim.runs.brick_state import BrickState
-from tuisim.source import Program
+from tuisim.base.data_class import dataclass
+from tuisim.base.source import Program
+from tuisim.engine.core.field import Field
+from tuisim.engine.core.geometry import Pose
+from tuisim.engine.core.sensors import color, gyro, readings, ultrasonic
+from tuisim.engine.core.sensors.color import ColorReading
+from tuisim.engine.core.spec import RunSpec
+from tuisim.engine.core.state import Instant
+from tuisim.engine.protocol import BusyLoop, End, Ended, Inspected, Paused, RunState, Unended
+from tuisim.engine.runs.brick_state import BrickState
 
 CHART_PERIOD_S = 0.33
 """Drawing a chart takes tens of milliseconds: three times a second is enough to follow it."""

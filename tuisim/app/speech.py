@@ -14,8 +14,8 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from threading import Thread
 
-from tuisim.protocol import Spoke
-from tuisim.regular_file import open_regular
+from tuisim.base.regular_file import open_regular
+from tuisim.engine.protocol import Spoke
 
 SPEAKS = "espeak-ng"
 PLAYS = (("paplay", ()), ("aplay", ("-q", "-")))

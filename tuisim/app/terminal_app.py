@@ -16,7 +16,6 @@ from textual.notifications import SeverityLevel
 from textual.screen import Screen
 from textual.theme import Theme
 
-from tuisim import palette
 from tuisim.app import background
 from tuisim.app.action import ActionHost, KeyFooter, with_keys_of
 from tuisim.app.dialogs.dialog import ClosesOnce, Dialog
@@ -29,10 +28,11 @@ from tuisim.app.themes import (
     ThemeColors,
     theme_names,
 )
-from tuisim.charts.traces import TRACE_COLORS
-from tuisim.config.files import Scalar
-from tuisim.config.user_config import CELL_SET, SETTINGS, THEME, load_config
-from tuisim.errors import ConfigError, TuisimError
+from tuisim.base import palette
+from tuisim.base.errors import ConfigError, TuisimError
+from tuisim.engine.files import Scalar
+from tuisim.pictures.charts.traces import TRACE_COLORS
+from tuisim.settings.user_config import CELL_SET, SETTINGS, THEME, load_config
 from tuisim.terminal.app import ActionAsked, BufferedApp, offer
 from tuisim.terminal.cells import PALETTE_256
 from tuisim.terminal.picture_mode import PictureMode, choose_colors, color_depth, picture_mode_for
@@ -241,7 +241,7 @@ class TerminalApp(BufferedApp):
 
     def keep_setting(self, path: str, value: Scalar | None) -> None:
         """Write a setting that applies already to `config.toml`; None for the usual one."""
-        from tuisim.config.user_config_file import save_setting
+        from tuisim.settings.user_config_file import save_setting
 
         try:
             save_setting(SETTINGS[path], value)

@@ -18,7 +18,7 @@ from textual.color import Color
 from textual.filter import LineFilter
 from textual.theme import BUILTIN_THEMES, Theme
 
-from tuisim import palette
+from tuisim.base import palette
 from tuisim.terminal.pixels import Rgb
 from tuisim.terminal.text_runs import rgb_of
 

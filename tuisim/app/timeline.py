@@ -8,8 +8,11 @@ from collections.abc import Iterator
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from tuisim.core.columns import column_name
-from tuisim.core.conditions import (
+from tuisim.base.data_class import dataclass
+from tuisim.base.errors import ConfigError, closest, did_you_mean
+from tuisim.base.source import source_lines
+from tuisim.engine.core.columns import column_name
+from tuisim.engine.core.conditions import (
     Operator,
     ValueCondition,
     ValueSource,
@@ -17,19 +20,16 @@ from tuisim.core.conditions import (
     run_condition_in,
     spelled,
 )
-from tuisim.core.field import Field
-from tuisim.core.sensors import column_names, columns_of, named_column
-from tuisim.data_class import dataclass
-from tuisim.errors import ConfigError, closest, did_you_mean
-from tuisim.runs.brick_state import BrickState, face_after
-from tuisim.runs.frames import begins, column_values, held
-from tuisim.runs.records import TEXT_STREAMS, Mark, OutputRow
-from tuisim.runs.samples import parse_sample, rows_when
-from tuisim.source import source_lines
+from tuisim.engine.core.field import Field
+from tuisim.engine.core.sensors import column_names, columns_of, named_column
+from tuisim.engine.runs.brick_state import BrickState, face_after
+from tuisim.engine.runs.frames import begins, column_values, held
+from tuisim.engine.runs.records import TEXT_STREAMS, Mark, OutputRow
+from tuisim.engine.runs.samples import parse_sample, rows_when
 
 if TYPE_CHECKING:
-    from tuisim.runs.recorded_run import Recording
-    from tuisim.runs.views import TickRecord
+    from tuisim.engine.runs.recorded_run import Recording
+    from tuisim.engine.runs.views import TickRecord
 
 FASTEST = 16.0
 """Playback speed, relative to real time, when the speed is as fast as possible."""

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from tuisim.core.field import Field
-from tuisim.core.spec import RunSpec
-from tuisim.protocol import Ended
-from tuisim.runs.recorded_run import Recording
-from tuisim.runs.waited import (
+from tuisim.engine.core.field import Field
+from tuisim.engine.core.spec import RunSpec
+from tuisim.engine.protocol import Ended
+from tuisim.engine.runs.recorded_run import Recording
+from tuisim.tasks.reasons.waited import (
     WINDOW_S,
     Awaited,
     Recorded,
@@ -16,7 +16,7 @@ from tuisim.runs.waited import (
     find_in_recording,
     is_standing,
 )
-from tuisim.runs.waited_words import describe_wait_with_keys
+from tuisim.tasks.reasons.waited_words import describe_wait_with_keys
 
 
 class WaitWatch:

@@ -10,15 +10,15 @@ from typing import Annotated, Any
 
 from msgspec import UNSET, Meta, Struct, UnsetType
 
+from tuisim.base.data_class import dataclass
+from tuisim.base.errors import ConfigError
+from tuisim.base.folders import user_path
 from tuisim.batch.parameters import SEED, Choice, checked_seeds, parse_seeds, parse_values
-from tuisim.batch.task import MAX_JOBS, Keep, Value
-from tuisim.config import files
-from tuisim.config.files import Location
-from tuisim.config.folders import user_path
-from tuisim.config.worlds import BATCH_KEY, WORLD_SUFFIX, WorldFile, load_world, world_from_table
-from tuisim.core.values import shown
-from tuisim.data_class import dataclass
-from tuisim.errors import ConfigError
+from tuisim.engine import files
+from tuisim.engine.core.values import shown
+from tuisim.engine.files import Location
+from tuisim.settings.worlds import BATCH_KEY, WORLD_SUFFIX, WorldFile, load_world, world_from_table
+from tuisim.tasks.task import MAX_JOBS, Keep, Value
 
 MAX_PROGRAMS = 10_000
 
@@ -73,7 +73,7 @@ def load_batch(path: Path, mats: str | None = None) -> BatchFile:
     """Read a batch file.
 
     Args:
-        mats: As for `config.worlds.load_world`.
+        mats: As for `settings.worlds.load_world`.
 
     Raises:
         ConfigError: the file, or its world, cannot be read or is wrong.

@@ -14,12 +14,12 @@ from contextlib import suppress
 from itertools import islice
 from typing import TYPE_CHECKING, Any
 
+from tuisim.base.errors import ConfigError, HostError, TuisimError
 from tuisim.batch.cluster_watch import ClusterWatch, within
-from tuisim.batch.execute import execute
-from tuisim.batch.task import Result, Task
-from tuisim.errors import ConfigError, HostError, TuisimError
-from tuisim.runs.child.process import warm_up
-from tuisim.runs.temporary import batch_folder
+from tuisim.engine.runs.child.process import warm_up
+from tuisim.engine.runs.temporary import batch_folder
+from tuisim.tasks.execute import execute
+from tuisim.tasks.task import Result, Task
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -9,7 +9,7 @@ from collections.abc import Callable
 from importlib import import_module
 from typing import Any, ClassVar, TypeVar
 
-from tuisim.errors import HostError, counted
+from tuisim.base.errors import HostError, counted
 
 _Found = TypeVar("_Found")
 

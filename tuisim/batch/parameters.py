@@ -14,10 +14,10 @@ from decimal import Decimal
 from enum import StrEnum
 from random import Random
 
-from tuisim.batch.task import Value
-from tuisim.core.values import MAX_SEED
-from tuisim.data_class import dataclass
-from tuisim.errors import ConfigError, nearest, see_page
+from tuisim.base.data_class import dataclass
+from tuisim.base.errors import ConfigError, nearest, see_page
+from tuisim.engine.core.values import MAX_SEED
+from tuisim.tasks.task import Value
 
 MAX_VALUES = 1_000_000
 """Most values of one parameter, and most runs of a batch."""

@@ -8,9 +8,9 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any, BinaryIO, Self
 
-from tuisim.atomic import replacing
+from tuisim.base.atomic import replacing
+from tuisim.base.errors import ConfigError, ExportError, TuisimError
 from tuisim.batch.table import RUN, RUN_ID, Row, is_statistic
-from tuisim.errors import ConfigError, ExportError, TuisimError
 
 SUFFIX = ".part"
 

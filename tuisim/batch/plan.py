@@ -10,19 +10,19 @@ from dataclasses import field, replace
 from pathlib import Path
 from typing import Any
 
+from tuisim.base.data_class import dataclass
+from tuisim.base.errors import ConfigError
+from tuisim.base.source import Program
 from tuisim.batch.parameters import SEED, Choice, Grid, checked_seeds, grid_of
-from tuisim.batch.task import Keep, Task, Value
-from tuisim.config.build import build_run_spec
-from tuisim.config.options import Settings
-from tuisim.config.overrides import settings_of_keys
-from tuisim.config.program_settings import require_library
-from tuisim.core.spec import RunSpec
-from tuisim.core.tree import to_plain
-from tuisim.data_class import dataclass
-from tuisim.errors import ConfigError
-from tuisim.goals.spec import Goal
-from tuisim.runs.handle import RunOptions, in_surroundings
-from tuisim.source import Program
+from tuisim.engine.core.spec import RunSpec
+from tuisim.engine.core.tree import to_plain
+from tuisim.engine.runs.handle import RunOptions, in_surroundings
+from tuisim.programs.program_settings import require_library
+from tuisim.settings.build import build_run_spec
+from tuisim.settings.options import Settings
+from tuisim.settings.overrides import settings_of_keys
+from tuisim.tasks.goals.spec import Goal
+from tuisim.tasks.task import Keep, Task, Value
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,11 +6,11 @@ from collections.abc import Callable, Generator, Iterable, MutableMapping
 from contextlib import closing
 from typing import TYPE_CHECKING
 
+from tuisim.base.data_class import dataclass
 from tuisim.batch.plan import Plan
-from tuisim.batch.pool import run_many
 from tuisim.batch.table import Row, row_of
-from tuisim.batch.task import Result, Task
-from tuisim.data_class import dataclass
+from tuisim.tasks.pool import run_many
+from tuisim.tasks.task import Result, Task
 
 if TYPE_CHECKING:
     from tuisim.batch.partial import PartialTable

@@ -7,15 +7,15 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
+from tuisim.base.data_class import dataclass
+from tuisim.base.errors import ConfigError, LogError, nearest
 from tuisim.batch.parameters import SEED
-from tuisim.batch.task import Result, Value, VariableStatistics
-from tuisim.data_class import dataclass
-from tuisim.errors import ConfigError, LogError, nearest
-from tuisim.goals.judgement import GoalState, points
 from tuisim.logs.export import table_metadata
 from tuisim.logs.expressions import evaluate, names_in
 from tuisim.logs.signals import Summary, summary_of
 from tuisim.logs.units import unit_of
+from tuisim.tasks.goals.judgement import GoalState, points
+from tuisim.tasks.task import Result, Value, VariableStatistics
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -11,20 +11,20 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from tuisim import __version__
+from tuisim.base.data_class import dataclass
+from tuisim.base.errors import ConfigError
 from tuisim.commands.listings import WORLD, names_of
 from tuisim.commands.log import COLUMNS, TELEMETRY
-from tuisim.config.command_line import Arguments, WordType, argument, command, option
-from tuisim.config.shared_options import shared_options
-from tuisim.data_class import dataclass
-from tuisim.errors import ConfigError
+from tuisim.settings.command_line import Arguments, WordType, argument, command, option
+from tuisim.settings.shared_options import shared_options
 
 if TYPE_CHECKING:
     from tuisim.commands.resolve import Prepared
-    from tuisim.config.options import Settings
-    from tuisim.config.worlds import WorldFile
-    from tuisim.goals.files import GoalsFile
-    from tuisim.lessons.spec import Lesson
-    from tuisim.runs.run_folder import StoredRun
+    from tuisim.engine.runs.run_folder import StoredRun
+    from tuisim.settings.options import Settings
+    from tuisim.settings.worlds import WorldFile
+    from tuisim.tasks.goals.files import GoalsFile
+    from tuisim.tasks.lessons.spec import Lesson
 
 VERSION = "%(prog)s %(version)s"
 _WORLD = frozenset({"background", "robot", "obstacles"})
@@ -65,7 +65,7 @@ def read_opened(arguments: Arguments) -> Opened | None:
     """
     from tuisim.commands.notebooks import print_list, to_list
     from tuisim.commands.resolve import check_arguments, prepare_app, prepare_replay
-    from tuisim.config.user_config import load_config
+    from tuisim.settings.user_config import load_config
 
     check_arguments(arguments.words, arguments)
     if listed := to_list(arguments.words):
@@ -161,11 +161,11 @@ def open_lesson_in_app(lesson: Lesson, folder: str | None) -> int:
     """
     from tuisim.app.app import AppSettings, run_app
     from tuisim.app.lesson import goals_of
-    from tuisim.config.build import build_run_spec
-    from tuisim.config.program_file import read_program
-    from tuisim.config.program_settings import program_settings
-    from tuisim.config.user_config import Section, load_config
-    from tuisim.lessons.progress import prepare_program
+    from tuisim.programs.program_file import read_program
+    from tuisim.programs.program_settings import program_settings
+    from tuisim.settings.build import build_run_spec
+    from tuisim.settings.user_config import Section, load_config
+    from tuisim.tasks.lessons.progress import prepare_program
 
     source = read_program(prepare_program(lesson))
     found = program_settings(source, lesson.settings, below=load_config().layer(Section.APP))
@@ -200,7 +200,7 @@ def _in_browser() -> bool:
 def _goals(word: str | None) -> GoalsFile | None:
     if word is None:
         return None
-    from tuisim.goals.files import load_goals
+    from tuisim.tasks.goals.files import load_goals
 
     return load_goals(word)
 
@@ -208,14 +208,14 @@ def _goals(word: str | None) -> GoalsFile | None:
 def _goals_in(world: WorldFile | None, mats: str | None) -> GoalsFile | None:
     if world is None:
         return None
-    from tuisim.goals.files import load_task
+    from tuisim.tasks.goals.files import load_task
 
     return load_task(world.path, mats)[1]
 
 
 def _words(arguments: Arguments, goals: GoalsFile | None) -> tuple[str, ...]:
     """Return the words of the command line; unless another world is named, with the goals file as the world."""
-    from tuisim.config.worlds import means_world
+    from tuisim.settings.worlds import means_world
 
     words: tuple[str, ...] = arguments.words
     if goals is None or arguments.world or any(map(means_world, words)):

@@ -12,6 +12,9 @@ from dataclasses import field
 from typing import TYPE_CHECKING, Any
 
 from tuisim import __version__
+from tuisim.base.data_class import dataclass
+from tuisim.base.errors import ConfigError, counted
+from tuisim.base.faults import UNJUDGED, report_file
 from tuisim.batch.partial import PartialTable, partial_of, rows_of_table
 from tuisim.batch.sweep import run_plan
 from tuisim.batch.table import (
@@ -42,15 +45,12 @@ from tuisim.commands.echo import (
 )
 from tuisim.commands.exit_status import Interrupted, signals_raise
 from tuisim.commands.listings import names_of
-from tuisim.config.command_line import Arguments, command
-from tuisim.config.options import APP, PANEL
-from tuisim.config.shared_options import shared_options
-from tuisim.data_class import dataclass
-from tuisim.errors import ConfigError, counted
-from tuisim.faults import UNJUDGED, report_file
+from tuisim.engine.protocol import End
 from tuisim.logs.export import export_frame
 from tuisim.logs.signals import QUANTILES
-from tuisim.protocol import End
+from tuisim.settings.command_line import Arguments, command
+from tuisim.settings.options import APP, PANEL
+from tuisim.settings.shared_options import shared_options
 
 if TYPE_CHECKING:
     import pandas as pd

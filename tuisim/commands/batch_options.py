@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import Any
 
-from tuisim.batch.task import MAX_JOBS, Keep
-from tuisim.config.command_line import GroupedOption, WordType, choice, option
-from tuisim.config.options import parse
-from tuisim.core.values import Whole
+from tuisim.engine.core.values import Whole
+from tuisim.settings.command_line import GroupedOption, WordType, choice, option
+from tuisim.settings.options import parse
+from tuisim.tasks.task import MAX_JOBS, Keep
 
 _WORKERS = Whole(1, MAX_JOBS)
 

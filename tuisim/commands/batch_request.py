@@ -7,30 +7,30 @@ from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 
+from tuisim.base.data_class import dataclass
+from tuisim.base.errors import ConfigError
+from tuisim.base.folders import user_path
 from tuisim.batch.batch_file import BatchFile, load_batch, means_batch
 from tuisim.batch.parameters import SEED, Choice, parse_seeds, parse_set
 from tuisim.batch.plan import Plan, Subject
 from tuisim.batch.sweep import Workers
 from tuisim.batch.table import check_expressions
-from tuisim.batch.task import Keep
 from tuisim.commands.batch_options import jobs_option, keep_option, workers_option
 from tuisim.commands.echo import echo_error
 from tuisim.commands.listings import WORLD, names_of
 from tuisim.commands.notebooks import NotRun
 from tuisim.commands.resolve import check_arguments, prepare_runs
 from tuisim.commands.run_options import input_option, timeout_option
-from tuisim.config.command_line import Arguments, WordType, argument, option
-from tuisim.config.files import read_file
-from tuisim.config.folders import user_path
-from tuisim.config.options import Settings
-from tuisim.config.worlds import WorldFile, means_world
-from tuisim.core.spec import RunSpec
-from tuisim.data_class import dataclass
-from tuisim.errors import ConfigError
-from tuisim.goals.files import GoalsFile, load_goals
+from tuisim.engine.core.spec import RunSpec
+from tuisim.engine.files import read_file
+from tuisim.engine.runs.handle import RunOptions
+from tuisim.engine.runs.presses import press_actions
 from tuisim.logs.export import LISTED, check_target
-from tuisim.runs.handle import RunOptions
-from tuisim.runs.presses import press_actions
+from tuisim.settings.command_line import Arguments, WordType, argument, option
+from tuisim.settings.options import Settings
+from tuisim.settings.worlds import WorldFile, means_world
+from tuisim.tasks.goals.files import GoalsFile, load_goals
+from tuisim.tasks.task import Keep
 
 _GRID, _RESULTS, _LIMITS = "Parameters", "Results", "Input and limits"
 OPTIONS = (

@@ -20,7 +20,7 @@ from pathlib import Path
 from textwrap import wrap
 from typing import TYPE_CHECKING, Any, Self, TextIO
 
-from tuisim.errors import printable
+from tuisim.base.errors import printable
 
 if TYPE_CHECKING:
     from rich.progress import Progress as Bar

@@ -9,16 +9,16 @@ from dataclasses import asdict
 from types import FrameType
 from typing import Any, assert_never
 
+from tuisim.base.errors import SIGNALLED, counted
 from tuisim.commands.echo import echo_error, echo_error_lines, echo_json
-from tuisim.core.geometry import Pose, pose_in_words
-from tuisim.errors import SIGNALLED, counted
-from tuisim.protocol import NO_ANSWER, End
-from tuisim.runs.plugged_words import describe_plugged
-from tuisim.runs.records import Stream
-from tuisim.runs.run_folder import StoredRun
-from tuisim.runs.samples import counts_of
-from tuisim.runs.standstill import Standstill, has_left_field, standstill_of
-from tuisim.runs.waited_words import describe_wait
+from tuisim.engine.core.geometry import Pose, pose_in_words
+from tuisim.engine.protocol import NO_ANSWER, End
+from tuisim.engine.runs.records import Stream
+from tuisim.engine.runs.run_folder import StoredRun
+from tuisim.engine.runs.samples import counts_of
+from tuisim.engine.runs.standstill import Standstill, has_left_field, standstill_of
+from tuisim.programs.plugged_words import describe_plugged
+from tuisim.tasks.reasons.waited_words import describe_wait
 
 EXIT_RAISED, EXIT_BAD_OUTPUT, EXIT_LIMIT = 1, 2, 3
 

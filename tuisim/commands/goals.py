@@ -9,8 +9,8 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
+from tuisim.base.errors import ConfigError, counted, nearest
 from tuisim.batch.parameters import parse_seeds
-from tuisim.batch.task import Keep
 from tuisim.commands.batch_options import jobs_option
 from tuisim.commands.echo import (
     Progress,
@@ -23,21 +23,21 @@ from tuisim.commands.echo import (
     tell,
 )
 from tuisim.commands.run_options import timeout_option
-from tuisim.config.build import build_run_spec, settings_from
-from tuisim.config.command_line import AS_JSON, Group, WordType, argument, command, option
-from tuisim.config.options import START, settings_of
-from tuisim.core.values import MAX_SEED
-from tuisim.errors import ConfigError, counted, nearest
-from tuisim.goals.drawn_mats import DRAWN_MATS, drawn_mat, world_lines
-from tuisim.goals.files import GoalsFile, example_names, load_goals
-from tuisim.goals.judge import judge
-from tuisim.goals.judgement import GoalState, Judgement, most_points, points
-from tuisim.marks.runs import STALL_LIMIT_S, TIME_LIMIT_S, MarkPlan
-from tuisim.marks.sheet import Sheet, SheetRow, in_words
-from tuisim.runs.handle import RunOptions
-from tuisim.runs.presses import press_actions
-from tuisim.runs.run_folder import StoredRun
-from tuisim.runs.store import RunStore
+from tuisim.engine.core.values import MAX_SEED
+from tuisim.engine.runs.handle import RunOptions
+from tuisim.engine.runs.presses import press_actions
+from tuisim.engine.runs.run_folder import StoredRun
+from tuisim.engine.runs.store import RunStore
+from tuisim.settings.build import build_run_spec, settings_from
+from tuisim.settings.command_line import AS_JSON, Group, WordType, argument, command, option
+from tuisim.settings.options import START, settings_of
+from tuisim.tasks.goals.drawn_mats import DRAWN_MATS, drawn_mat, world_lines
+from tuisim.tasks.goals.files import GoalsFile, example_names, load_goals
+from tuisim.tasks.goals.judge import judge
+from tuisim.tasks.goals.judgement import GoalState, Judgement, most_points, points
+from tuisim.tasks.marks.runs import STALL_LIMIT_S, TIME_LIMIT_S, MarkPlan
+from tuisim.tasks.marks.sheet import Sheet, SheetRow, in_words
+from tuisim.tasks.task import Keep
 
 _RANGE = re.compile(r"(\d{1,9})\.\.(\d{1,9})")
 _WHERE = ("background", *START)
@@ -222,7 +222,7 @@ def _details(judgement: Judgement) -> Iterator[str]:
 )
 def try_task(goals_path: str, wrong: Sequence[str], seeds: str, timeout: float, jobs: int) -> int:
     """Try a task out."""
-    from tuisim.marks.trial import trial_of
+    from tuisim.tasks.marks.trial import trial_of
 
     task = load_goals(goals_path)
     plan = MarkPlan(
@@ -274,7 +274,7 @@ def _earned(sheet: Sheet, row: SheetRow) -> tuple[str, str]:
 )
 def draw_mat(kind: str, seed: int, out: str | None) -> int:
     """Write a drawn mat."""
-    from tuisim.charts.files import check_format, write_whole
+    from tuisim.pictures.charts.files import check_format, write_whole
 
     if kind not in DRAWN_MATS:
         raise ConfigError(

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING
 
 import click
 
+from tuisim.base.errors import ConfigError
 from tuisim.commands.echo import echo
-from tuisim.config.command_line import WordType, argument, command, option
-from tuisim.errors import ConfigError
+from tuisim.settings.command_line import WordType, argument, command, option
 
 if TYPE_CHECKING:
     from tuisim.terminal.text_runs import Line

@@ -13,12 +13,12 @@ from glob import escape, glob
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from tuisim.atomic import replacing
+from tuisim.base.atomic import replacing
+from tuisim.base.data_class import dataclass
+from tuisim.base.errors import ConfigError
+from tuisim.base.folders import user_path
 from tuisim.commands.echo import echo, echo_json, echo_lines, table
-from tuisim.config.command_line import AS_JSON, Group, command, option
-from tuisim.config.folders import user_path
-from tuisim.data_class import dataclass
-from tuisim.errors import ConfigError
+from tuisim.settings.command_line import AS_JSON, Group, command, option
 
 if TYPE_CHECKING:
     from jupyter_client.kernelspec import KernelSpecManager

@@ -7,16 +7,22 @@ from typing import Any
 
 import click
 
+from tuisim.base.errors import ConfigError, counted
+from tuisim.base.folders import user_path
 from tuisim.commands.echo import Progress, echo, echo_json, echo_lines, table, tell
-from tuisim.config.command_line import AS_JSON, Group, WordType, argument, choice, command, option
-from tuisim.config.folders import user_path
-from tuisim.core.profile import Library
-from tuisim.errors import ConfigError, counted
-from tuisim.lessons.catalogue import find_lesson, lesson_paths, load_all, shipped_paths, telling_of
-from tuisim.lessons.files import load_lesson
-from tuisim.lessons.markdown import plain_text
-from tuisim.lessons.progress import LessonProgress, StepState, last_opened, load_progress
-from tuisim.lessons.spec import Lesson, LessonStep, QuestionCheck
+from tuisim.engine.core.profile import Library
+from tuisim.settings.command_line import AS_JSON, Group, WordType, argument, choice, command, option
+from tuisim.tasks.lessons.catalogue import (
+    find_lesson,
+    lesson_paths,
+    load_all,
+    shipped_paths,
+    telling_of,
+)
+from tuisim.tasks.lessons.files import load_lesson
+from tuisim.tasks.lessons.markdown import plain_text
+from tuisim.tasks.lessons.progress import LessonProgress, StepState, last_opened, load_progress
+from tuisim.tasks.lessons.spec import Lesson, LessonStep, QuestionCheck
 
 _COLUMNS = 80
 _MARKS = {StepState.OPEN: "·", StepState.DONE: "✓", StepState.SKIPPED: "–"}
@@ -218,7 +224,7 @@ def check(paths: Sequence[str], no_runs: bool, strict: bool) -> int:
 
     Exit code: 0 if all is well, 1 if a model answer does not pass or a wrong program does, 2 if a file is wrong.
     """
-    from tuisim.lessons.trial import faults, warnings
+    from tuisim.tasks.lessons.trial import faults, warnings
 
     files = [find_lesson(path) for path in paths] or list(shipped_paths().values())
     lessons = [load_lesson(path) for path in files]
@@ -251,7 +257,7 @@ def _ways(lesson: Lesson) -> str:
 @command(argument("path", "FILE"))
 def new(path: str) -> int:
     """Write a lesson to start from: a file FILE that ends in .md."""
-    from tuisim.lessons.skeleton import write_skeleton
+    from tuisim.tasks.lessons.skeleton import write_skeleton
 
     target = user_path(path)
     write_skeleton(target)

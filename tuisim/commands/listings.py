@@ -10,44 +10,44 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from tuisim.base.errors import ConfigError, counted, listed
 from tuisim.commands.echo import echo, echo_error, echo_json, echo_lines, table
-from tuisim.config.command_line import AS_JSON, WordType, argument, command, option
-from tuisim.core.profile import MS, PROFILES, MotorLaw, ProfileSpec
-from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, RobotSpec, RunSpec, WorldSpec
-from tuisim.core.values import values_of
-from tuisim.errors import ConfigError, counted, listed
+from tuisim.engine.core.profile import MS, PROFILES, MotorLaw, ProfileSpec
+from tuisim.engine.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, RobotSpec, RunSpec, WorldSpec
+from tuisim.engine.core.values import values_of
+from tuisim.settings.command_line import AS_JSON, WordType, argument, command, option
 
 if TYPE_CHECKING:
-    from tuisim.config.mats import Background, Taken
+    from tuisim.engine.mats import Background, Taken
 
 
 def names_of(field: str) -> Iterable[str]:
     """Return the names of programs, columns or goal files, or those that an option such as `background` accepts."""
     match field:
         case "programs":
-            from tuisim.config.program_file import programs
+            from tuisim.programs.program_file import programs
 
             return [program.name.removesuffix(".py") for program in programs()]
         case "background":
-            from tuisim.config.mats import mats
+            from tuisim.engine.mats import mats
 
             return mats(None)
         case "robot":
-            from tuisim.config.robots import ROBOTS
+            from tuisim.settings.robots import ROBOTS
 
             return ROBOTS
         case "obstacles":
-            from tuisim.config.obstacles import OBSTACLES
+            from tuisim.engine.obstacles import OBSTACLES
 
             return OBSTACLES
         case "profile":
             return PROFILES
         case "columns":
-            from tuisim.core.sensors import column_names
+            from tuisim.engine.core.sensors import column_names
 
             return column_names(RunSpec(RobotSpec(), WorldSpec(), PROFILES["ev3"]))
         case "goals":
-            from tuisim.goals.files import example_names
+            from tuisim.tasks.goals.files import example_names
 
             return example_names()
     return ()
@@ -78,8 +78,8 @@ WORLD = option(
 )
 def backgrounds(folder: str | None, use_originals: str | None, as_json: bool) -> int:
     """List the mats with their start poses, or import images."""
-    from tuisim.config.folders import user_path
-    from tuisim.config.mats import import_originals, mats, own_folder
+    from tuisim.base.folders import user_path
+    from tuisim.engine.mats import import_originals, mats, own_folder
 
     if use_originals is not None:
         taken, left = import_originals(user_path(use_originals))
@@ -170,7 +170,7 @@ def robots(robot: str | None, program: str | None, out: str | None, as_json: boo
     Raises:
         ConfigError: there is no such robot or program, or the file cannot be written.
     """
-    from tuisim.config.robots import ROBOTS, load_robot, robot_file
+    from tuisim.settings.robots import ROBOTS, load_robot, robot_file
 
     if program is not None:
         if robot is not None:
@@ -193,9 +193,9 @@ def _robot_from(program: str, out: str | None, *, as_json: bool) -> int:
     """Print or write the robot that a program talks about."""
     if program.isdecimal() or program == "last":
         return _print_robot_of_run(program, out, as_json=as_json)
-    from tuisim.config.program_file import find_program, read_program
-    from tuisim.config.program_robot.report import USUAL, robot_file_of, save_robot_of
-    from tuisim.config.program_settings import robot_for
+    from tuisim.programs.program_file import find_program, read_program
+    from tuisim.programs.program_settings import robot_for
+    from tuisim.programs.robot.report import USUAL, robot_file_of, save_robot_of
 
     source = read_program(find_program(program))
     built = robot_for(source)
@@ -211,9 +211,9 @@ def _robot_from(program: str, out: str | None, *, as_json: bool) -> int:
 
 def _print_robot_of_run(word: str, out: str | None, *, as_json: bool) -> int:
     """Print or write the robot of a run."""
-    from tuisim.config.robots import robot_file, save_robot
-    from tuisim.runs.plugged_words import list_parts
-    from tuisim.runs.store import load_run
+    from tuisim.engine.runs.store import load_run
+    from tuisim.programs.plugged_words import list_parts
+    from tuisim.settings.robots import robot_file, save_robot
 
     run = load_run(word)
     robot, parts = run.spec.robot, list_parts(run.plugged)
@@ -229,7 +229,7 @@ def _print_robot_of_run(word: str, out: str | None, *, as_json: bool) -> int:
 
 
 def _robot_row(robot: RobotSpec) -> tuple[str, ...]:
-    from tuisim.config.robots import ports_of
+    from tuisim.settings.robots import ports_of
 
     wheels = f"{robot.wheel_diameter_mm:g} mm, {robot.wheel_spacing_mm:g} mm apart"
     sensors = [f"{s.name} {s.x_mm:g}, {s.y_mm:g}, {s.diameter_mm}" for s in robot.color_sensors]
@@ -240,7 +240,7 @@ def _robot_row(robot: RobotSpec) -> tuple[str, ...]:
 @command(argument("word", "[NAME|FILE]", lambda: names_of("obstacles"), required=False), AS_JSON)
 def obstacles(word: str | None, as_json: bool) -> int:
     """List the sets of obstacles, or print one in TOML as a starting point for your own."""
-    from tuisim.config.obstacles import OBSTACLES, load_obstacles, obstacle_file
+    from tuisim.engine.obstacles import OBSTACLES, load_obstacles, obstacle_file
 
     chosen = OBSTACLES if word is None else {word: load_obstacles(word)}
     if as_json:
@@ -271,8 +271,8 @@ def obstacles(word: str | None, as_json: bool) -> int:
 @command(AS_JSON)
 def programs(as_json: bool) -> int:
     """List the example programs."""
-    from tuisim.config.folders import programs_folder
-    from tuisim.config.program_file import programs as example_programs
+    from tuisim.base.folders import programs_folder
+    from tuisim.programs.program_file import programs as example_programs
 
     found = example_programs()
     if as_json:
@@ -288,7 +288,7 @@ def programs(as_json: bool) -> int:
 @command(argument("words", "[NAME|FILE]…", lambda: PROFILES, nargs=-1), AS_JSON)
 def profiles(words: Sequence[str], as_json: bool) -> int:
     """List the profiles: the simulated time of each call, the motors of a brick, and the source of each number."""
-    from tuisim.config.profiles import load_profile
+    from tuisim.settings.profiles import load_profile
 
     chosen = [load_profile(word) for word in words] or PROFILES.values()
     shown = [asdict(profile) for profile in chosen]
@@ -315,7 +315,7 @@ def profiles(words: Sequence[str], as_json: bool) -> int:
 
 
 def _motor_rows() -> list[tuple[str, ...]]:
-    from tuisim.core.driver.figures import list_figures
+    from tuisim.engine.core.driver.figures import list_figures
 
     return [
         (figure.name, f"{figure.large:g}", f"{figure.medium:g}", figure.source)

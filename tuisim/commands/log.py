@@ -9,9 +9,13 @@ from collections.abc import Callable, Mapping
 from importlib import import_module
 from typing import cast
 
+from tuisim.base.data_class import dataclass
 from tuisim.commands.echo import Progress
 from tuisim.commands.listings import COLUMN
-from tuisim.config.command_line import (
+from tuisim.logs.choices import DECIMAL_SIGNS, SIGNS
+from tuisim.logs.export import EXPORTERS, LISTED
+from tuisim.logs.units import SECONDS
+from tuisim.settings.command_line import (
     Arguments,
     Command,
     Group,
@@ -21,10 +25,6 @@ from tuisim.config.command_line import (
     choice,
     option,
 )
-from tuisim.data_class import dataclass
-from tuisim.logs.choices import DECIMAL_SIGNS, SIGNS
-from tuisim.logs.export import EXPORTERS, LISTED
-from tuisim.logs.units import SECONDS
 
 
 def _or_empty(_: object, __: object, word: str | None) -> str:

@@ -12,8 +12,18 @@ from pathlib import Path
 from typing import Any
 
 from tuisim import __version__
+from tuisim.base.errors import (
+    ConfigError,
+    ExportError,
+    TuisimError,
+    counted,
+    listed,
+    printable,
+    see_page,
+)
+from tuisim.base.faults import UNJUDGED, describe_fault, report_file
+from tuisim.base.source import source_lines
 from tuisim.batch.parameters import parse_seeds
-from tuisim.batch.task import Keep
 from tuisim.commands.batch_options import jobs_option, keep_option
 from tuisim.commands.echo import (
     Progress,
@@ -28,39 +38,36 @@ from tuisim.commands.echo import (
 from tuisim.commands.exit_status import Interrupted, signals_raise
 from tuisim.commands.listings import names_of
 from tuisim.commands.run_options import input_option, timeout_option
-from tuisim.config.command_line import Arguments, WordType, argument, command, option
-from tuisim.config.options import APP, PANEL, parse, settings_of
-from tuisim.config.shared_options import shared_options
-from tuisim.core.values import Whole
-from tuisim.errors import (
-    ConfigError,
-    ExportError,
-    TuisimError,
-    counted,
-    listed,
-    printable,
-    see_page,
-)
-from tuisim.faults import UNJUDGED, describe_fault, report_file
-from tuisim.goals.files import GoalsFile, load_goals
-from tuisim.goals.trial_world import TrialWorld
+from tuisim.engine.core.values import Whole
+from tuisim.engine.runs.child.isolation import MOST_BYTES, check_isolation
+from tuisim.engine.runs.child.supervisor import supervised
+from tuisim.engine.runs.handle import RunOptions
+from tuisim.engine.runs.temporary import temporary_home
 from tuisim.logs.export import ALLOWED, EXPORTERS, check_place, check_target
-from tuisim.marks.entries import entries_of
-from tuisim.marks.feedback import write_feedback
-from tuisim.marks.gradebook import Roster, read_roster, write_gradebook
-from tuisim.marks.hand_ins import GradebookKind
-from tuisim.marks.journal import Journal, journal_of
-from tuisim.marks.outcome import Outcome, unknown_goals
-from tuisim.marks.overrides import Override, overridden, read_overrides
-from tuisim.marks.page import reports_folder
-from tuisim.marks.runs import STALL_LIMIT_S, TIME_LIMIT_S, MarkPlan, RunEntry, outcomes_of, runs_of
-from tuisim.marks.sheet import Sheet, columns_of, export_marks, lines_of, sheet_of, summary_of
-from tuisim.marks.students import Student, StudentsFound, find_students
-from tuisim.runs.child.isolation import MOST_BYTES, check_isolation
-from tuisim.runs.child.supervisor import supervised
-from tuisim.runs.handle import RunOptions
-from tuisim.runs.temporary import temporary_home
-from tuisim.source import source_lines
+from tuisim.settings.command_line import Arguments, WordType, argument, command, option
+from tuisim.settings.options import APP, PANEL, parse, settings_of
+from tuisim.settings.shared_options import shared_options
+from tuisim.tasks.goals.files import GoalsFile, load_goals
+from tuisim.tasks.goals.trial_world import TrialWorld
+from tuisim.tasks.marks.entries import entries_of
+from tuisim.tasks.marks.feedback import write_feedback
+from tuisim.tasks.marks.gradebook import Roster, read_roster, write_gradebook
+from tuisim.tasks.marks.hand_ins import GradebookKind
+from tuisim.tasks.marks.journal import Journal, journal_of
+from tuisim.tasks.marks.outcome import Outcome, unknown_goals
+from tuisim.tasks.marks.overrides import Override, overridden, read_overrides
+from tuisim.tasks.marks.page import reports_folder
+from tuisim.tasks.marks.runs import (
+    STALL_LIMIT_S,
+    TIME_LIMIT_S,
+    MarkPlan,
+    RunEntry,
+    outcomes_of,
+    runs_of,
+)
+from tuisim.tasks.marks.sheet import Sheet, columns_of, export_marks, lines_of, sheet_of, summary_of
+from tuisim.tasks.marks.students import Student, StudentsFound, find_students
+from tuisim.tasks.task import Keep
 
 PAGE_SUFFIXES = (".html", ".htm")
 DEFAULT_SEEDS = "0..19"
@@ -475,7 +482,7 @@ def _write_page(
     movies: bool,
 ) -> None:
     # Its charts are slow to import, and a table needs none.
-    from tuisim.marks.class_page import write_class_page
+    from tuisim.tasks.marks.class_page import write_class_page
 
     write_class_page(sheet, worlds, students, ignored, target, tell, movies=movies)
 

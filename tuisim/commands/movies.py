@@ -7,16 +7,16 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from tuisim.base.errors import ConfigError, nearest
 from tuisim.commands.echo import Progress, echo, echo_error, tell
-from tuisim.config.command_line import WordType, argument, command, option
-from tuisim.config.files import name_of
-from tuisim.errors import ConfigError, nearest
-from tuisim.runs.store import RunStore
+from tuisim.engine.files import name_of
+from tuisim.engine.runs.store import RunStore
+from tuisim.settings.command_line import WordType, argument, command, option
 
 if TYPE_CHECKING:
-    from tuisim.movies.clip import ClipPanel, Recorded
-    from tuisim.movies.painter import Size
-    from tuisim.runs.run_folder import StoredRun
+    from tuisim.engine.runs.run_folder import StoredRun
+    from tuisim.pictures.movies.clip import ClipPanel, Recorded
+    from tuisim.pictures.movies.painter import Size
 
 _PANELS = "world, chart, arrays"
 _FAST_S = 60
@@ -62,8 +62,8 @@ def movie(
     size: str,
 ) -> int:
     """Save a run as a movie: the world, the chart, the sensor arrays, with time and values."""
-    from tuisim.charts.files import check_format
-    from tuisim.movies.files import MOVIE_SUFFIXES, Clip, save_movie
+    from tuisim.pictures.charts.files import check_format
+    from tuisim.pictures.movies.files import MOVIE_SUFFIXES, Clip, save_movie
 
     run = RunStore().load_run(word)
     path = Path(out or _default_name(run, "movie.gif"))
@@ -98,8 +98,8 @@ def movie(
 )
 def picture(word: str, out: str | None, time_s: float | None, panels: str | None, size: str) -> int:
     """Save one instant of a run as a picture: the world, the chart, the sensor arrays."""
-    from tuisim.charts.files import check_format
-    from tuisim.movies.files import PICTURE_FORMATS, save_picture
+    from tuisim.pictures.charts.files import check_format
+    from tuisim.pictures.movies.files import PICTURE_FORMATS, save_picture
 
     run = RunStore().load_run(word)
     path = Path(out or _default_name(run, "picture.png"))
@@ -120,8 +120,8 @@ def _default_name(run: StoredRun, end: str) -> str:
 
 
 def _recorded(run: StoredRun) -> Recorded:
-    from tuisim.movies.clip import Recorded
-    from tuisim.runs.frames import damage_note
+    from tuisim.engine.runs.frames import damage_note
+    from tuisim.pictures.movies.clip import Recorded
 
     recorded = Recorded(run)
     for note in filter(None, (*run.notes, damage_note(run))):
@@ -137,14 +137,14 @@ def _check_number(value: float, low: float, high: float, key: str) -> None:
 
 def _useful(recorded: Recorded) -> tuple[ClipPanel, ...]:
     """Return the panels that have something to show."""
-    from tuisim.movies.clip import ClipPanel
+    from tuisim.pictures.movies.clip import ClipPanel
 
     return (ClipPanel.WORLD, ClipPanel.CHART) if recorded.samples else (ClipPanel.WORLD,)
 
 
 def _panels_of(text: str | None) -> tuple[ClipPanel, ...]:
     """Return the named panels, in their order on the picture; none for None."""
-    from tuisim.movies.clip import ClipPanel
+    from tuisim.pictures.movies.clip import ClipPanel
 
     if text is None:
         return ()
@@ -158,8 +158,8 @@ def _panels_of(text: str | None) -> tuple[ClipPanel, ...]:
 
 
 def _size_of(text: str) -> Size | None:
-    from tuisim.charts.files import limits_in_words, parse_size
-    from tuisim.movies.painter import LEAST, MOST
+    from tuisim.pictures.charts.files import limits_in_words, parse_size
+    from tuisim.pictures.movies.painter import LEAST, MOST
 
     if not text:
         return None

@@ -6,12 +6,17 @@ import os
 from collections.abc import Sequence
 from pathlib import Path
 
+from tuisim.base.data_class import dataclass
+from tuisim.base.errors import ConfigError, counted
 from tuisim.commands import exit_status
 from tuisim.commands.echo import echo, echo_error, echo_json, echo_lines, table
-from tuisim.config.notebook_file import NotebookProgram, chosen_programs, is_notebook, notebooks_in
-from tuisim.data_class import dataclass
-from tuisim.errors import ConfigError, counted
-from tuisim.runs.run_folder import StoredRun
+from tuisim.engine.runs.run_folder import StoredRun
+from tuisim.programs.notebook_file import (
+    NotebookProgram,
+    chosen_programs,
+    is_notebook,
+    notebooks_in,
+)
 
 NOT_RUN = "not_run"
 

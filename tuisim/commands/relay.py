@@ -10,12 +10,12 @@ from itertools import groupby
 from types import FrameType
 from typing import TextIO
 
+from tuisim.base.data_class import dataclass
+from tuisim.base.errors import EXIT_BROKEN_PIPE, SIGNALLED
 from tuisim.commands.echo import echo_error, progress_hidden, tell
-from tuisim.data_class import dataclass
-from tuisim.errors import EXIT_BROKEN_PIPE, SIGNALLED
-from tuisim.protocol import Ended, Message
-from tuisim.runs.handle import RunHandle
-from tuisim.runs.records import OutputRow, Stream, line_of
+from tuisim.engine.protocol import Ended, Message
+from tuisim.engine.runs.handle import RunHandle
+from tuisim.engine.runs.records import OutputRow, Stream, line_of
 
 POLL_S = 0.05
 """The interval at which printed lines are relayed."""

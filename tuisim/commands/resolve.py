@@ -14,24 +14,24 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+from tuisim.base.data_class import dataclass
+from tuisim.base.errors import ConfigError
+from tuisim.base.source import Program
 from tuisim.commands.echo import echo_error
 from tuisim.commands.notebooks import NotRun, check_folder, known_programs, without_unknown
-from tuisim.config.build import build_run_spec
-from tuisim.config.command_line import ARGUMENTS_FOLLOW, Arguments
-from tuisim.config.magic_mat import without_wrong_mat, wrong_mat
-from tuisim.config.notebook_file import is_notebook, notebook_programs
-from tuisim.config.options import OF_THE_APP, Settings, settings_of
-from tuisim.config.program_file import ProgramSource, find_program, read_program
-from tuisim.config.program_settings import Decided, free_paths, program_settings
-from tuisim.config.robots import RobotChoice, choose_robot
-from tuisim.config.user_config import Section, UserConfig
-from tuisim.config.worlds import WorldFile, load_world, means_world
-from tuisim.core.spec import RunSpec
-from tuisim.data_class import dataclass
-from tuisim.errors import ConfigError
-from tuisim.runs.run_folder import StoredRun, field_files
-from tuisim.runs.store import RunStore
-from tuisim.source import Program
+from tuisim.engine.core.spec import RunSpec
+from tuisim.engine.runs.run_folder import StoredRun, field_files
+from tuisim.engine.runs.store import RunStore
+from tuisim.programs.magic_mat import without_wrong_mat, wrong_mat
+from tuisim.programs.notebook_file import is_notebook, notebook_programs
+from tuisim.programs.program_file import ProgramSource, find_program, read_program
+from tuisim.programs.program_settings import Decided, free_paths, program_settings
+from tuisim.settings.build import build_run_spec
+from tuisim.settings.command_line import ARGUMENTS_FOLLOW, Arguments
+from tuisim.settings.options import OF_THE_APP, Settings, settings_of
+from tuisim.settings.robots import RobotChoice, choose_robot
+from tuisim.settings.user_config import Section, UserConfig
+from tuisim.settings.worlds import WorldFile, load_world, means_world
 
 NO_CONFIG = UserConfig(Path())
 """No defaults of the user."""

@@ -6,22 +6,7 @@ import sys
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
-from tuisim.breakpoints import check_line, parse_breakpoints, parse_watch
-from tuisim.commands import exit_status
-from tuisim.commands.echo import Progress, echo_error, echo_written, is_watched, tell
-from tuisim.commands.exit_status import signals_handled
-from tuisim.commands.listings import COLUMN, WORLD, names_of
-from tuisim.commands.notebooks import NotRun, print_list, print_results, to_list
-from tuisim.commands.relay import Follower, RelayInterrupts, is_piped, next_answer
-from tuisim.commands.resolve import Prepared, check_arguments, prepare_runs
-from tuisim.commands.run_options import input_option, timeout_option
-from tuisim.config.command_line import Arguments, WordType, argument, choice, command, option
-from tuisim.config.options import APP, PANEL
-from tuisim.config.shared_options import shared_options
-from tuisim.config.user_config import FILE, Section, load_config
-from tuisim.core.geometry import pose_in_words
-from tuisim.core.profile import NS_PER_S
-from tuisim.errors import (
+from tuisim.base.errors import (
     SIGNALLED,
     ConfigError,
     ExportError,
@@ -30,13 +15,28 @@ from tuisim.errors import (
     counted,
     shortened,
 )
+from tuisim.base.source import source_lines
+from tuisim.commands import exit_status
+from tuisim.commands.echo import Progress, echo_error, echo_written, is_watched, tell
+from tuisim.commands.exit_status import signals_handled
+from tuisim.commands.listings import COLUMN, WORLD, names_of
+from tuisim.commands.notebooks import NotRun, print_list, print_results, to_list
+from tuisim.commands.relay import Follower, RelayInterrupts, is_piped, next_answer
+from tuisim.commands.resolve import Prepared, check_arguments, prepare_runs
+from tuisim.commands.run_options import input_option, timeout_option
+from tuisim.engine.breakpoints import check_line, parse_breakpoints, parse_watch
+from tuisim.engine.core.geometry import pose_in_words
+from tuisim.engine.core.profile import NS_PER_S
+from tuisim.engine.protocol import Answer, InputWanted, Inspect, Inspected, Message, Paused, Resume
+from tuisim.engine.runs.handle import RunHandle, RunOptions, start_run
+from tuisim.engine.runs.presses import press_actions
+from tuisim.engine.runs.run_folder import StoredRun
+from tuisim.engine.runs.store import RunStore
 from tuisim.logs.export import EXPORTERS, check_targets, export_samples, export_telemetry
-from tuisim.protocol import Answer, InputWanted, Inspect, Inspected, Message, Paused, Resume
-from tuisim.runs.handle import RunHandle, RunOptions, start_run
-from tuisim.runs.presses import press_actions
-from tuisim.runs.run_folder import StoredRun
-from tuisim.runs.store import RunStore
-from tuisim.source import source_lines
+from tuisim.settings.command_line import Arguments, WordType, argument, choice, command, option
+from tuisim.settings.options import APP, PANEL
+from tuisim.settings.shared_options import shared_options
+from tuisim.settings.user_config import FILE, Section, load_config
 
 MOST_CHARACTERS = 200
 GO, STOP = "go", "stop"

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from tuisim.config.command_line import GroupedOption, WordType, option
-from tuisim.config.options import parse
-from tuisim.core.values import Number
-from tuisim.runs.handle import DEFAULT_TIME_LIMIT_S
+from tuisim.engine.core.values import Number
+from tuisim.engine.runs.handle import DEFAULT_TIME_LIMIT_S
+from tuisim.settings.command_line import GroupedOption, WordType, option
+from tuisim.settings.options import parse
 
 MAX_TIME_LIMIT_S = 1e6
 

@@ -14,6 +14,7 @@ from math import degrees
 from pathlib import Path
 from typing import Any
 
+from tuisim.base.errors import ConfigError, LogError, counted, shortened
 from tuisim.commands.echo import (
     Progress,
     echo,
@@ -28,25 +29,24 @@ from tuisim.commands.echo import (
 )
 from tuisim.commands.exit_status import describe, last_state
 from tuisim.commands.movies import movie, picture
-from tuisim.config.command_line import AS_JSON, Group, WordType, argument, command, option
-from tuisim.config.files import toml_form
-from tuisim.config.options import RUN_VALUES
-from tuisim.core import tree
-from tuisim.core.drift import draw_echo_bias_mm, draw_light_gain, drawn_errors, find_drift
-from tuisim.core.spec import ColorSensorSpec, RunSpec, UltrasonicSpec
-from tuisim.core.values import shown
-from tuisim.errors import ConfigError, LogError, counted, shortened
+from tuisim.engine.core import tree
+from tuisim.engine.core.drift import draw_echo_bias_mm, draw_light_gain, drawn_errors, find_drift
+from tuisim.engine.core.spec import ColorSensorSpec, RunSpec, UltrasonicSpec
+from tuisim.engine.core.values import shown
+from tuisim.engine.files import toml_form
+from tuisim.engine.protocol import Unended
+from tuisim.engine.runs.diff import RunDiff, recording_in_words, setup_in_words
+from tuisim.engine.runs.frames import damage_note
+from tuisim.engine.runs.handle import ASK_AGAIN_S
+from tuisim.engine.runs.records import OutputRow, Stream, line_of
+from tuisim.engine.runs.rerun import changed_files, rerun, same
+from tuisim.engine.runs.run_folder import StoredRun
+from tuisim.engine.runs.side_files import MOST_PATH, FilesRead, read_reads
+from tuisim.engine.runs.store import RunStore, bytes_in
+from tuisim.engine.runs.temporary import temporary_home
 from tuisim.logs.export import EXPORTERS, LISTED, check_targets, export_samples, export_telemetry
-from tuisim.protocol import Unended
-from tuisim.runs.diff import RunDiff, recording_in_words, setup_in_words
-from tuisim.runs.frames import damage_note
-from tuisim.runs.handle import ASK_AGAIN_S
-from tuisim.runs.records import OutputRow, Stream, line_of
-from tuisim.runs.rerun import changed_files, rerun, same
-from tuisim.runs.run_folder import StoredRun
-from tuisim.runs.side_files import MOST_PATH, FilesRead, read_reads
-from tuisim.runs.store import RunStore, bytes_in
-from tuisim.runs.temporary import temporary_home
+from tuisim.settings.command_line import AS_JSON, Group, WordType, argument, command, option
+from tuisim.settings.options import RUN_VALUES
 
 QUICK_BYTES = 8 << 20
 """Samples are not counted in outputs longer than this."""

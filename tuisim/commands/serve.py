@@ -6,12 +6,12 @@ import socket
 import sys
 from typing import TYPE_CHECKING, Any
 
+from tuisim.base.errors import ConfigError
 from tuisim.commands.app import OPENED, read_opened
 from tuisim.commands.echo import echo, echo_error_lines
-from tuisim.config.command_line import Arguments, WordType, command, option, words_without
-from tuisim.config.options import parse
-from tuisim.core.values import Number, Whole
-from tuisim.errors import ConfigError
+from tuisim.engine.core.values import Number, Whole
+from tuisim.settings.command_line import Arguments, WordType, command, option, words_without
+from tuisim.settings.options import parse
 
 if TYPE_CHECKING:
     from tuisim.web.gate import Gate

@@ -13,8 +13,8 @@ from enum import StrEnum
 from functools import cache
 from pathlib import Path
 
-from tuisim.data_class import dataclass
-from tuisim.errors import ConfigError, nearest
+from tuisim.base.data_class import dataclass
+from tuisim.base.errors import ConfigError, nearest
 
 _PAGES = Path(__file__).resolve().parent / "pages"
 _PARTS = re.compile(

@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
-from tuisim.breakpoints import FORMS
-from tuisim.config.files import toml_value
-from tuisim.config.options import OPTIONS
-from tuisim.config.user_config import SETTINGS
-from tuisim.core.drift_spec import DriftSpec
-from tuisim.core.profile import MS, PROFILES, ProfileSpec
-from tuisim.core.sensors import column_names, mounted
-from tuisim.core.spec import RobotSpec, RunSpec, WorldSpec
-from tuisim.core.values import NamedNumber, values_of
+from tuisim.engine.breakpoints import FORMS
+from tuisim.engine.core.drift_spec import DriftSpec
+from tuisim.engine.core.profile import MS, PROFILES, ProfileSpec
+from tuisim.engine.core.sensors import column_names, mounted
+from tuisim.engine.core.spec import RobotSpec, RunSpec, WorldSpec
+from tuisim.engine.core.values import NamedNumber, values_of
+from tuisim.engine.files import toml_value
+from tuisim.engine.runs.frames import MOTION_COLUMNS, SAMPLE_COLUMNS
 from tuisim.guide.tables import Table, code
 from tuisim.logs.export import EXPORTERS
 from tuisim.logs.units import unit_of
-from tuisim.runs.frames import MOTION_COLUMNS, SAMPLE_COLUMNS
+from tuisim.settings.options import OPTIONS
+from tuisim.settings.user_config import SETTINGS
 
 _MEANINGS = {
     "index": "time since the first row of the run (`Timedelta`)",

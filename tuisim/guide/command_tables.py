@@ -7,8 +7,8 @@ from importlib import import_module
 
 import click
 
-from tuisim.config.command_line import Group, GroupedOption
 from tuisim.guide.tables import Table, code
+from tuisim.settings.command_line import Group, GroupedOption
 
 
 def _commands() -> Iterator[tuple[str, click.Command, str]]:

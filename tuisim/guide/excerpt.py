@@ -9,7 +9,7 @@ from textwrap import dedent, wrap
 
 from tuisim.guide.catalogue import LINK
 from tuisim.guide.search import SET_IN, SearchResult
-from tuisim.lessons.markdown import CODE, PLAIN, markdown_lines, plain_text
+from tuisim.tasks.lessons.markdown import CODE, PLAIN, markdown_lines, plain_text
 from tuisim.terminal.text_runs import Line
 
 _CLEAR_COLUMNS = 2

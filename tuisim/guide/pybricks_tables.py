@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from tuisim.core.profile import LEGO_MICROPYTHON, PYBRICKS_4
-from tuisim.core.servo.drive_base import base_settings, usual_settings
-from tuisim.core.servo.settings import MODELS, ControlSettings, motor_settings
+from tuisim.engine.core.profile import LEGO_MICROPYTHON, PYBRICKS_4
+from tuisim.engine.core.servo.drive_base import base_settings, usual_settings
+from tuisim.engine.core.servo.settings import MODELS, ControlSettings, motor_settings
 from tuisim.guide.tables import Table, code
 
 _PROFILES = (LEGO_MICROPYTHON, PYBRICKS_4)

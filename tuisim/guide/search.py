@@ -20,7 +20,7 @@ from statistics import median
 from textwrap import indent
 from typing import TypeAlias
 
-from tuisim.data_class import dataclass
+from tuisim.base.data_class import dataclass
 from tuisim.guide.catalogue import pages
 from tuisim.guide.tables import markdown_of
 from tuisim.guide.words import stems_of, words_of

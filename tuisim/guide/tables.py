@@ -11,7 +11,7 @@ from functools import cache
 from importlib import import_module
 from typing import cast
 
-from tuisim.data_class import dataclass
+from tuisim.base.data_class import dataclass
 from tuisim.guide.catalogue import Page
 
 TABLES: Mapping[str, str] = {

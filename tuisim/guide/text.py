@@ -11,7 +11,7 @@ from tuisim.guide.catalogue import CONTENTS, LINK, Page, pages
 from tuisim.guide.excerpt import cells_of, excerpt_of, passage_text
 from tuisim.guide.search import SearchResult
 from tuisim.guide.tables import markdown_of
-from tuisim.lessons.markdown import PLAIN, markdown_lines
+from tuisim.tasks.lessons.markdown import PLAIN, markdown_lines
 from tuisim.terminal.text_runs import Line
 
 _HEADING = re.compile(r"^## (.+)$", re.MULTILINE)

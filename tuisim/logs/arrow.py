@@ -11,10 +11,10 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.compute as pc
 
-from tuisim.core.conditions import Operator, ValueCondition
-from tuisim.errors import LogError
+from tuisim.base.errors import LogError
+from tuisim.engine.core.conditions import Operator, ValueCondition
+from tuisim.engine.runs.arrays import FloatArray, IntArray
 from tuisim.logs.warnings import Notes
-from tuisim.runs.arrays import FloatArray, IntArray
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -9,14 +9,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tuisim.data_class import dataclass
-from tuisim.errors import counted
+from tuisim.base.data_class import dataclass
+from tuisim.base.errors import counted
+from tuisim.engine.runs.arrays import FloatArray, IntArray
 from tuisim.logs.columns import numeric_columns
 from tuisim.logs.derived import spec_in
 from tuisim.logs.levels import Light, find_light, levels_of
 from tuisim.logs.plateaus import Search, plateaus
 from tuisim.logs.units import may_be_light
-from tuisim.runs.arrays import FloatArray, IntArray
 
 if TYPE_CHECKING:
     from tuisim.logs.log import Log, Series

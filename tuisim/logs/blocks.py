@@ -12,8 +12,8 @@ from typing import Any, Protocol
 
 import pyarrow as pa
 
-from tuisim.data_class import dataclass
-from tuisim.errors import LogError
+from tuisim.base.data_class import dataclass
+from tuisim.base.errors import LogError
 from tuisim.logs.warnings import Notes
 
 BLOCK_BYTES = 4 << 20

@@ -9,8 +9,8 @@ from typing import Any
 import pyarrow as pa
 import pyarrow.compute as pc
 
-from tuisim.core.conditions import NUMBER
-from tuisim.data_class import dataclass
+from tuisim.base.data_class import dataclass
+from tuisim.engine.core.conditions import NUMBER
 from tuisim.logs.arrow import texts_array
 
 EMPTY_CELLS = ("", "NA", "N/A", "null", "None", "-")

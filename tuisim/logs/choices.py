@@ -5,8 +5,8 @@ from __future__ import annotations
 import shlex
 from dataclasses import fields
 
-from tuisim.data_class import dataclass
-from tuisim.errors import LogError, among
+from tuisim.base.data_class import dataclass
+from tuisim.base.errors import LogError, among
 from tuisim.logs.units import SECONDS
 
 SIGNS = {"comma": ",", "semicolon": ";", "tab": "\t", "bar": "|", "blank": " "}

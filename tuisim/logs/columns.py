@@ -11,13 +11,13 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.compute as pc
 
-from tuisim.data_class import dataclass
-from tuisim.errors import LogError, among
+from tuisim.base.data_class import dataclass
+from tuisim.base.errors import LogError, among
+from tuisim.engine.runs.arrays import FloatArray, IntArray
 from tuisim.logs.arrow import PER_S, numbers_of
 from tuisim.logs.choices import ReadChoices
 from tuisim.logs.dates import in_usual_form, is_moment, order_is_guessed
 from tuisim.logs.units import SECONDS
-from tuisim.runs.arrays import FloatArray, IntArray
 
 NAMES = (
     "time",

@@ -10,15 +10,17 @@ from typing import Any
 
 import numpy as np
 
-from tuisim.core.columns import Column, measured_names
-from tuisim.core.conditions import NUMBER
-from tuisim.core.drive import mm_per_degree
-from tuisim.core.geometry import Pose
-from tuisim.core.sensors import owners
-from tuisim.core.spec import RobotSpec, RunSpec
-from tuisim.core.tree import from_plain
-from tuisim.data_class import dataclass
-from tuisim.errors import ConfigError, LogError, among
+from tuisim.base.data_class import dataclass
+from tuisim.base.errors import ConfigError, LogError, among
+from tuisim.engine.core.columns import Column, measured_names
+from tuisim.engine.core.conditions import NUMBER
+from tuisim.engine.core.drive import mm_per_degree
+from tuisim.engine.core.geometry import Pose
+from tuisim.engine.core.sensors import owners
+from tuisim.engine.core.spec import RobotSpec, RunSpec
+from tuisim.engine.core.tree import from_plain
+from tuisim.engine.runs.arrays import FloatArray
+from tuisim.engine.runs.frames import computed
 from tuisim.logs.columns import is_numeric, numeric_columns
 from tuisim.logs.expressions import FUNCTIONS, Functions, evaluate, names_in
 from tuisim.logs.log import Log, Series
@@ -31,8 +33,6 @@ from tuisim.logs.signals import (
     resample,
 )
 from tuisim.logs.units import unit_of
-from tuisim.runs.arrays import FloatArray
-from tuisim.runs.frames import computed
 
 TIME = "time"
 """Name of the sample times in an expression."""

@@ -8,7 +8,7 @@ from typing import Any
 
 import pyarrow as pa
 
-from tuisim.errors import LogError, counted, listed, shortened
+from tuisim.base.errors import LogError, counted, listed, shortened
 from tuisim.logs.arrow import unique_names
 from tuisim.logs.blocks import MAX_DOCUMENT_BYTES, Block
 from tuisim.logs.columns import NAMES, time_name

@@ -9,11 +9,11 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, BinaryIO, NamedTuple
 
-from tuisim.atomic import replacing
-from tuisim.core.tree import to_plain
-from tuisim.errors import ConfigError, ExportError
+from tuisim.base.atomic import replacing
+from tuisim.base.errors import ConfigError, ExportError
+from tuisim.engine.core.tree import to_plain
+from tuisim.engine.runs.run_folder import StoredRun
 from tuisim.logs.units import TIMEDELTA, WHOLE, unit_of
-from tuisim.runs.run_folder import StoredRun
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -126,7 +126,7 @@ def export_samples(runs: Sequence[StoredRun], path: str | Path) -> None:
         LogError: a recording is damaged.
     """
     check_target(path)
-    from tuisim.runs.frames import samples_frame
+    from tuisim.engine.runs.frames import samples_frame
 
     frame = samples_frame(runs)
     export_frame(frame, path, log_metadata("samples", frame, runs))
@@ -140,7 +140,7 @@ def export_telemetry(run: StoredRun, path: str | Path) -> None:
         LogError: a recording is damaged, or the mat cannot be found any more.
     """
     check_target(path)
-    from tuisim.runs.frames import telemetry_frame
+    from tuisim.engine.runs.frames import telemetry_frame
 
     frame = telemetry_frame(run)
     export_frame(frame, path, log_metadata("telemetry", frame, [run]))

@@ -18,9 +18,9 @@ from typing import Any
 
 import numpy as np
 
-from tuisim.core.conditions import COMPARE, Operator, spelled
-from tuisim.errors import LogError, among
-from tuisim.runs.arrays import FloatArray
+from tuisim.base.errors import LogError, among
+from tuisim.engine.core.conditions import COMPARE, Operator, spelled
+from tuisim.engine.runs.arrays import FloatArray
 
 MAX_CHARS = 1000
 ALLOWED = f"numbers, columns, + - * / // % ** {spelled()} and or not, a if b else c, and functions"

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import pyarrow as pa
 
-from tuisim.errors import LogError
+from tuisim.base.errors import LogError
 from tuisim.logs import arrow
 from tuisim.logs.blocks import Block
 from tuisim.logs.choices import NO_CHOICES, ReadChoices

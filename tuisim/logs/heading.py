@@ -8,9 +8,9 @@ from collections.abc import Iterator, Sequence
 from itertools import pairwise, starmap, takewhile
 from typing import NamedTuple
 
-from tuisim.core.conditions import NUMBER
-from tuisim.data_class import dataclass
-from tuisim.errors import LogError, counted
+from tuisim.base.data_class import dataclass
+from tuisim.base.errors import LogError, counted
+from tuisim.engine.core.conditions import NUMBER
 from tuisim.logs.arrow import unique_names
 from tuisim.logs.cells import EMPTY_CELLS, is_unit
 from tuisim.logs.columns import NAMES, time_name

@@ -9,14 +9,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tuisim.core.css_colors import css_names
-from tuisim.core.sensors.color import find_response
-from tuisim.core.spec import RunSpec
-from tuisim.data_class import dataclass
+from tuisim.base.data_class import dataclass
+from tuisim.engine.core.css_colors import css_names
+from tuisim.engine.core.sensors.color import find_response
+from tuisim.engine.core.spec import RunSpec
+from tuisim.engine.runs.arrays import FloatArray, IntArray
 from tuisim.logs.magnitude import find_scale
 from tuisim.logs.plateaus import Search, plateaus
 from tuisim.logs.stillness import FIELDS
-from tuisim.runs.arrays import FloatArray, IntArray
 
 NEAR_PERCENT = 2.0
 """Largest distance from a named grey."""

@@ -11,12 +11,12 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.compute as pc
 
-from tuisim.data_class import dataclass
-from tuisim.errors import LogError, among
+from tuisim.base.data_class import dataclass
+from tuisim.base.errors import LogError, among
+from tuisim.engine.runs.arrays import FloatArray, IntArray
 from tuisim.logs.arrow import numbers_of, whole_numbers, whole_numbers_of
 from tuisim.logs.choices import NO_CHOICES, ReadChoices
 from tuisim.logs.columns import ROW, Layout, seconds_of
-from tuisim.runs.arrays import FloatArray, IntArray
 
 LogTable = pa.Table
 

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from tuisim.runs.arrays import FloatArray
+from tuisim.engine.runs.arrays import FloatArray
 
 _MAX_EXPONENT = 400
 """Of numbers between this power of two and its inverse, the sums of squares neither overflow nor vanish."""

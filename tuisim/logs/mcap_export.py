@@ -10,12 +10,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from tuisim.atomic import replacing
-from tuisim.errors import ConfigError, ExportError
+from tuisim.base.atomic import replacing
+from tuisim.base.errors import ConfigError, ExportError
+from tuisim.engine.runs.arrays import FloatArray, IntArray
 from tuisim.logs.export import check_place
 from tuisim.logs.log import Log
 from tuisim.logs.units import unit_of
-from tuisim.runs.arrays import FloatArray, IntArray
 
 SUFFIX = ".mcap"
 POSE = ("x_mm", "y_mm", "heading_deg")

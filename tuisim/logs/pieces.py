@@ -9,7 +9,7 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
-from tuisim.runs.arrays import FloatArray, IntArray
+from tuisim.engine.runs.arrays import FloatArray, IntArray
 
 MIN_SAMPLES = 2
 """Fewest samples of a plateau; one more with noise, one at the ends of the log."""

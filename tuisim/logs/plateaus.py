@@ -18,7 +18,8 @@ from typing import IO, NamedTuple
 
 import numpy as np
 
-from tuisim.errors import LogError
+from tuisim.base.errors import LogError
+from tuisim.engine.runs.arrays import FloatArray, IntArray
 from tuisim.logs.pieces import (
     CERTAINTY,
     FAR,
@@ -45,7 +46,6 @@ from tuisim.logs.stillness import (
     measure_noise_of_slopes,
     read_spans,
 )
-from tuisim.runs.arrays import FloatArray, IntArray
 
 EVERY_PLACE = 4000
 """Most samples for which every position may be a cut; in longer logs, only those where neighbouring means differ."""

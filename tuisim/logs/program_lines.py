@@ -10,7 +10,8 @@ from typing import NamedTuple
 
 import pyarrow as pa
 
-from tuisim.core.conditions import NUMBER
+from tuisim.engine.core.conditions import NUMBER
+from tuisim.engine.runs.samples import parse_sample
 from tuisim.logs.blocks import Block
 from tuisim.logs.cells import UNIT
 from tuisim.logs.choices import ReadChoices
@@ -19,7 +20,6 @@ from tuisim.logs.dates import MOMENT
 from tuisim.logs.heading import BLANKS, SEPARATORS, count_rows, parse_kinds, split_cells
 from tuisim.logs.text_tables import CsvReader
 from tuisim.logs.warnings import Notes
-from tuisim.runs.samples import parse_sample
 
 _STAMPED = re.compile(
     rf"\s*(?:(?P<open>[\[(<])\s*)?(?P<stamp>(?>{MOMENT})|(?>{NUMBER}))(?(open)\s*[\])>])"

@@ -18,8 +18,11 @@ from typing import TYPE_CHECKING, Any, BinaryIO, cast
 import pyarrow as pa
 import pyarrow.compute as pc
 
-from tuisim.data_class import dataclass
-from tuisim.errors import LogError, counted, listed
+from tuisim.base.data_class import dataclass
+from tuisim.base.errors import LogError, counted, listed
+from tuisim.base.regular_file import read_regular
+from tuisim.engine.runs.frames import damage_note, sample_columns, telemetry_columns
+from tuisim.engine.runs.run_folder import StoredRun
 from tuisim.logs import arrow
 from tuisim.logs.blocks import (
     BLOCK_BYTES,
@@ -55,9 +58,6 @@ from tuisim.logs.program_lines import (
 from tuisim.logs.text_tables import CsvReader
 from tuisim.logs.time_order import guess_unit_s, join_times, order_times
 from tuisim.logs.warnings import Notes
-from tuisim.regular_file import read_regular
-from tuisim.runs.frames import damage_note, sample_columns, telemetry_columns
-from tuisim.runs.run_folder import StoredRun
 
 if TYPE_CHECKING:
     pass

@@ -8,10 +8,10 @@ from enum import StrEnum
 
 import numpy as np
 
-from tuisim.data_class import dataclass
-from tuisim.errors import LogError
+from tuisim.base.data_class import dataclass
+from tuisim.base.errors import LogError
+from tuisim.engine.runs.arrays import FloatArray, IntArray
 from tuisim.logs.magnitude import find_scale
-from tuisim.runs.arrays import FloatArray, IntArray
 
 
 class Between(StrEnum):

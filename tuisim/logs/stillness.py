@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from tuisim.engine.runs.arrays import FloatArray
 from tuisim.logs.pieces import (
     NEAR_SAMPLES,
     BoolArray,
@@ -15,7 +16,6 @@ from tuisim.logs.pieces import (
     of_one_length,
     strays,
 )
-from tuisim.runs.arrays import FloatArray
 
 _SLOPE_OF_RANGE, _SLOPE_OF_VALUE = 0.25, 0.1
 """A piece that drifts by more than these fractions of the log's range and of its own highest value is no plateau."""

@@ -14,8 +14,8 @@ import pyarrow as pa
 import pyarrow.compute as pc
 import pyarrow.csv as pa_csv
 
-from tuisim.data_class import dataclass
-from tuisim.errors import LogError, counted, listed
+from tuisim.base.data_class import dataclass
+from tuisim.base.errors import LogError, counted, listed
 from tuisim.logs.arrow import texts_array
 from tuisim.logs.blocks import Block
 from tuisim.logs.cells import (

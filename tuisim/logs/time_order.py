@@ -11,7 +11,8 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.compute as pc
 
-from tuisim.errors import counted
+from tuisim.base.errors import counted
+from tuisim.engine.runs.arrays import FloatArray, IntArray
 from tuisim.logs.arrow import numbers_of, unique_names, whole_numbers
 from tuisim.logs.columns import (
     COUNTS,
@@ -26,7 +27,6 @@ from tuisim.logs.columns import (
 )
 from tuisim.logs.dates import is_clock, is_date
 from tuisim.logs.warnings import Notes, list_rows
-from tuisim.runs.arrays import FloatArray, IntArray
 
 _SECONDS = re.compile(r"(.*?)[._ ]?\b_?(?:tv_)?(?:secs?|seconds)", re.IGNORECASE)
 _PARTS = {

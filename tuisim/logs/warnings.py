@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from tuisim.errors import counted, shortened
+from tuisim.base.errors import counted, shortened
 from tuisim.logs.choices import NO_CHOICES
 
 ROWS_NAMED = 3

@@ -7,13 +7,13 @@ from collections.abc import Callable, Mapping
 from queue import Empty
 from typing import TYPE_CHECKING, Any
 
-from tuisim.errors import HostError
-from tuisim.protocol import Ended, Message, Wheels
-from tuisim.runs.store import RunStore
+from tuisim.base.errors import HostError
+from tuisim.engine.protocol import Ended, Message, Wheels
+from tuisim.engine.runs.store import RunStore
 
 if TYPE_CHECKING:
+    from tuisim.engine.runs.run_folder import StoredRun
     from tuisim.notebook.app_view import AppView
-    from tuisim.runs.run_folder import StoredRun
 
 
 _START_WITHIN_S = 60.0

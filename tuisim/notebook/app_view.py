@@ -14,9 +14,9 @@ from tempfile import TemporaryDirectory
 from threading import Event, Lock
 from typing import Any
 
-from tuisim.data_class import dataclass
-from tuisim.errors import HostError
-from tuisim.source import Program
+from tuisim.base.data_class import dataclass
+from tuisim.base.errors import HostError
+from tuisim.base.source import Program
 from tuisim.web.gate import Gate, new_token
 from tuisim.web.server import BackgroundServer, Server, ServerLimits
 from tuisim.web.session import app_command

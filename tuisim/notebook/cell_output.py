@@ -10,9 +10,9 @@ from itertools import groupby
 
 from IPython.display import DisplayHandle, display
 
-from tuisim.errors import counted
+from tuisim.base.errors import counted
+from tuisim.engine.runs.records import OutputRow, Stream, line_of
 from tuisim.notebook.image_log import IMAGE_DATA, asked_side
-from tuisim.runs.records import OutputRow, Stream, line_of
 
 FIRST_LINES, LAST_LINES = 20, 5
 """What of a long output is always shown."""

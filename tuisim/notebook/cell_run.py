@@ -15,25 +15,25 @@ from itertools import islice
 from types import FrameType
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from tuisim.config.mat_cache import FieldFiles
-from tuisim.core.spec import RunSpec
-from tuisim.data_class import dataclass
-from tuisim.errors import ConfigError, counted
+from tuisim.base.data_class import dataclass
+from tuisim.base.errors import ConfigError, counted
+from tuisim.base.source import Program
+from tuisim.engine.core.spec import RunSpec
+from tuisim.engine.mat_cache import FieldFiles
+from tuisim.engine.protocol import Answer, Reply, Wheels
+from tuisim.engine.runs.handle import RunHandle, RunOptions, start_run
+from tuisim.engine.runs.presses import press_actions
+from tuisim.engine.runs.records import OutputRow, Stream
+from tuisim.engine.runs.run_folder import StoredRun, field_files
+from tuisim.engine.runs.samples import Sample, samples_of
+from tuisim.engine.runs.store import RunStore
 from tuisim.notebook.app_run import AppRun
 from tuisim.notebook.cell_output import CellOutput
 from tuisim.notebook.display import Scene, Stage, start_record
 from tuisim.notebook.image_log import SENT_DATA, ArrayReader, ImageLog, asked_side
 from tuisim.notebook.old_formats import sent_text
-from tuisim.protocol import Answer, Reply, Wheels
-from tuisim.runs.handle import RunHandle, RunOptions, start_run
-from tuisim.runs.plugged_words import list_parts
-from tuisim.runs.presses import press_actions
-from tuisim.runs.records import OutputRow, Stream
-from tuisim.runs.run_folder import StoredRun, field_files
-from tuisim.runs.samples import Sample, samples_of
-from tuisim.runs.store import RunStore
-from tuisim.scene.pen import Piece, pen_trace
-from tuisim.source import Program
+from tuisim.pictures.scene.pen import Piece, pen_trace
+from tuisim.programs.plugged_words import list_parts
 
 if TYPE_CHECKING:
     from tuisim.notebook.app_view import AppView

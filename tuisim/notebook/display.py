@@ -12,25 +12,25 @@ from typing import TYPE_CHECKING, Any
 from IPython.core.getipython import get_ipython
 from IPython.display import DisplayHandle, display
 
-from tuisim.charts.files import image_of, png_of
-from tuisim.charts.layout import laid_out
-from tuisim.charts.sample_chart import sample_chart
-from tuisim.config.mat_cache import FieldFiles, mat_pixels, open_field
-from tuisim.config.options import Settings
-from tuisim.core.end_stops import flags_at_start
-from tuisim.core.field import Field
-from tuisim.core.geometry import shown_heading_deg
-from tuisim.core.sensors import readings
-from tuisim.core.sensors.color import ColorReading
-from tuisim.core.spec import RunSpec
-from tuisim.data_class import dataclass
-from tuisim.movies.arrays import FACE_PX, arrays_drawing
-from tuisim.runs.samples import Sample
-from tuisim.runs.views import TickRecord, instant_of
-from tuisim.scene.discs import disc_faces
-from tuisim.scene.pen import Piece
-from tuisim.scene.pictures import world_picture
-from tuisim.source import Program, source_lines
+from tuisim.base.data_class import dataclass
+from tuisim.base.source import Program, source_lines
+from tuisim.engine.core.end_stops import flags_at_start
+from tuisim.engine.core.field import Field
+from tuisim.engine.core.geometry import shown_heading_deg
+from tuisim.engine.core.sensors import readings
+from tuisim.engine.core.sensors.color import ColorReading
+from tuisim.engine.core.spec import RunSpec
+from tuisim.engine.mat_cache import FieldFiles, mat_pixels, open_field
+from tuisim.engine.runs.samples import Sample
+from tuisim.engine.runs.views import TickRecord, instant_of
+from tuisim.pictures.charts.files import image_of, png_of
+from tuisim.pictures.charts.layout import laid_out
+from tuisim.pictures.charts.sample_chart import sample_chart
+from tuisim.pictures.movies.arrays import FACE_PX, arrays_drawing
+from tuisim.pictures.scene.discs import disc_faces
+from tuisim.pictures.scene.pen import Piece
+from tuisim.pictures.scene.pictures import world_picture
+from tuisim.settings.options import Settings
 
 if TYPE_CHECKING:
     from PIL.Image import Image

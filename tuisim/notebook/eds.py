@@ -9,23 +9,23 @@ from collections.abc import Iterable, Sequence
 from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 
-from tuisim.errors import LogError
+from tuisim.base.errors import LogError
 
 if TYPE_CHECKING:
     import pandas as pd
     from PIL.Image import Image
 
+    from tuisim.engine.runs.run_folder import StoredRun
     from tuisim.notebook.image_log import LoggedArray
-    from tuisim.runs.run_folder import StoredRun
 
 IMAGE_COLUMNS = ("side", "vals", "clock", "run")
 """Columns of the frame of pixel arrays."""
 
 
 def get_dataframe_from_datalog(log: Iterable[StoredRun]) -> pd.DataFrame:
-    """Return the samples of runs as one long frame, see `runs.frames.samples_frame`."""
+    """Return the samples of runs as one long frame, see `engine.runs.frames.samples_frame`."""
+    from tuisim.engine.runs.frames import samples_frame
     from tuisim.notebook.eds import use_seconds
-    from tuisim.runs.frames import samples_frame
 
     # It may be plotted next.
     use_seconds()
@@ -135,7 +135,7 @@ def use_seconds() -> None:
         import numpy as np
         from matplotlib import ticker, units
 
-        from tuisim.core.profile import NS_PER_S
+        from tuisim.engine.core.profile import NS_PER_S
 
         class Seconds(units.ConversionInterface):
             """Converts spans."""

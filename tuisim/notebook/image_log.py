@@ -6,15 +6,15 @@ import re
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
-from tuisim.data_class import dataclass
-from tuisim.runs.records import Stream
+from tuisim.base.data_class import dataclass
+from tuisim.engine.runs.records import Stream
 
 if TYPE_CHECKING:
-    from tuisim.core.field import Field
-    from tuisim.core.spec import ColorSensorSpec, NoiseSpec, RunSpec
-    from tuisim.runs.records import OutputRow
-    from tuisim.runs.run_folder import StoredRun
-    from tuisim.runs.views import TickRecord
+    from tuisim.engine.core.field import Field
+    from tuisim.engine.core.spec import ColorSensorSpec, NoiseSpec, RunSpec
+    from tuisim.engine.runs.records import OutputRow
+    from tuisim.engine.runs.run_folder import StoredRun
+    from tuisim.engine.runs.views import TickRecord
 
 IMAGE_DATA, SENT_DATA = "image_data", "IMG_DATA"
 """Begin of a line that logs pixel arrays, and of one that also sends them to a responder."""
@@ -50,8 +50,8 @@ def arrays_at(
     spec: RunSpec, record: TickRecord, noise: NoiseSpec, field: Field
 ) -> list[tuple[ColorSensorSpec, bytes]]:
     """Return the pixels under the colour sensors at a tick: RGB bytes, row by row."""
-    from tuisim.core.sensors.color import pixel_array
-    from tuisim.runs.views import instant_of
+    from tuisim.engine.core.sensors.color import pixel_array
+    from tuisim.engine.runs.views import instant_of
 
     instant = instant_of(record, spec, noise)
     return [(sensor, pixel_array(sensor, instant, field)) for sensor in spec.robot.color_sensors]
@@ -89,7 +89,7 @@ class ArrayReader:
         Raises:
             LogError: as for `arrays`.
         """
-        from tuisim.runs.run_folder import open_mat
+        from tuisim.engine.runs.run_folder import open_mat
 
         run = self._run
         if row.tick >= run.telemetry.count:

@@ -10,27 +10,27 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from tuisim.data_class import dataclass
-from tuisim.errors import ConfigError
+from tuisim.base.data_class import dataclass
+from tuisim.base.errors import ConfigError
+from tuisim.engine.protocol import Wheels
 from tuisim.notebook import eds, old_formats
 from tuisim.notebook.image_log import ImageLog
 from tuisim.notebook.live_robot import LiveRobot
-from tuisim.protocol import Wheels
 
 if TYPE_CHECKING:
     import pandas as pd
 
-    from tuisim.config.command_line import Arguments
-    from tuisim.config.mat_cache import FieldFiles
-    from tuisim.config.options import Settings
-    from tuisim.core.spec import RunSpec
+    from tuisim.base.source import Program
+    from tuisim.engine.core.spec import RunSpec
+    from tuisim.engine.mat_cache import FieldFiles
+    from tuisim.engine.runs.run_folder import StoredRun
     from tuisim.notebook.app_view import AppView, CellState
     from tuisim.notebook.cell_run import Listener
     from tuisim.notebook.display import Scene, Stage
     from tuisim.notebook.image_log import LoggedArray
-    from tuisim.runs.run_folder import StoredRun
-    from tuisim.scene.pen import Piece
-    from tuisim.source import Program
+    from tuisim.pictures.scene.pen import Piece
+    from tuisim.settings.command_line import Arguments
+    from tuisim.settings.options import Settings
 
 
 @dataclass(frozen=True, slots=True)
@@ -168,9 +168,9 @@ class Lab:
 
     def robot_state(self) -> dict[str, Any]:
         """Return the old simulator's dictionary of the robot's state, see `old_formats.robot_state`."""
-        from tuisim.config.mat_cache import open_field
+        from tuisim.engine.mat_cache import open_field
+        from tuisim.engine.runs.run_folder import field_files, open_mat
         from tuisim.notebook.display import start_record
-        from tuisim.runs.run_folder import field_files, open_mat
 
         self._catch_up()
         run = self._last
@@ -192,8 +192,8 @@ class Lab:
     @property
     def spec(self) -> RunSpec:
         """Robot, world, profile and seed as the cells have set them."""
-        from tuisim.config.build import build_run_spec
-        from tuisim.config.options import settings_of
+        from tuisim.settings.build import build_run_spec
+        from tuisim.settings.options import settings_of
 
         return self._spec or build_run_spec(settings_of(self._persistent))
 
@@ -300,14 +300,14 @@ class Lab:
         return CellState(self._said, self._program, last.id if last and is_shown else "")
 
     def _checked(self, words: Arguments, text: str | None, prelude: str) -> _CellPlan:
-        from tuisim.config.build import build_run_spec
-        from tuisim.config.magic_line import persistent_after
-        from tuisim.config.options import settings_of
-        from tuisim.config.program_file import ProgramSource
-        from tuisim.config.program_settings import program_settings
-        from tuisim.config.robots import choose_robot
-        from tuisim.runs.run_folder import field_files
-        from tuisim.source import Program
+        from tuisim.base.source import Program
+        from tuisim.engine.runs.run_folder import field_files
+        from tuisim.programs.program_file import ProgramSource
+        from tuisim.programs.program_settings import program_settings
+        from tuisim.settings.build import build_run_spec
+        from tuisim.settings.magic_line import persistent_after
+        from tuisim.settings.options import settings_of
+        from tuisim.settings.robots import choose_robot
 
         if isinstance(robot := words.settings.get("robot"), str):
             for note in choose_robot(robot, "-r").notes:
@@ -362,7 +362,7 @@ class Lab:
         while not self._live.view.begun.empty():
             self._followed.append(self._live.view.begun.get())
         if self._followed:
-            from tuisim.runs.store import RunStore
+            from tuisim.engine.runs.store import RunStore
 
             for run in map(RunStore().load_run, tuple(self._followed)):
                 known = [one.id for one in self._runs]
@@ -381,7 +381,7 @@ class Lab:
         view: AppView | None,
     ) -> None:
         from tuisim.notebook.cell_run import CellRun, run_cell
-        from tuisim.scene.pen import pen_trace
+        from tuisim.pictures.scene.pen import pen_trace
 
         assert plan.program is not None
         cell = CellRun(
@@ -418,12 +418,12 @@ class Lab:
 
     def _scene(self, plan: _CellPlan) -> tuple[Scene, str]:
         """Return the scene while nothing runs, and its status line."""
+        from tuisim.engine.runs.records import TEXT_STREAMS
+        from tuisim.engine.runs.run_folder import mat_files
+        from tuisim.engine.runs.samples import samples_of
         from tuisim.notebook.cell_output import shown_text
         from tuisim.notebook.cell_run import end_text
         from tuisim.notebook.display import Scene, start_record
-        from tuisim.runs.records import TEXT_STREAMS
-        from tuisim.runs.run_folder import mat_files
-        from tuisim.runs.samples import samples_of
 
         program, start = plan.program, start_record(plan.spec)
         ready = "ready: -R runs the program" if program and program.text else "ready"
@@ -442,7 +442,7 @@ class Lab:
 
 def _choose_said(plan: _CellPlan, words: Arguments) -> Mapping[str, Any]:
     """Return what the cells have set, by path, as the app gets it."""
-    from tuisim.config.options import settings_of
+    from tuisim.settings.options import settings_of
 
     presses = {"press": plan.settings["press"]}
     said = settings_of(plan.persistent, words.settings, presses).given

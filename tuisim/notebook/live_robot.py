@@ -18,8 +18,8 @@ from typing import TYPE_CHECKING, Any
 from urllib.parse import urlsplit
 
 if TYPE_CHECKING:
-    from tuisim.config.magic_line import AppWords
     from tuisim.notebook.app_view import AppView, CellState
+    from tuisim.settings.magic_line import AppWords
 
 REQUEST, REPLY = "tuisim_app_request", "tuisim_app_reply"
 """The messages by which a page asks for the address of the app, and gets it."""

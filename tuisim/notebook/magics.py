@@ -11,15 +11,15 @@ from typing import TYPE_CHECKING, Any
 
 from IPython.core.interactiveshell import InteractiveShell
 
-from tuisim.errors import ConfigError, TuisimError
+from tuisim.base.errors import ConfigError, TuisimError
+from tuisim.base.source import APP_MAGIC, PRELUDE_TEXTS, PRELUDES
 from tuisim.notebook import eds, old_formats
 from tuisim.notebook.lab import Lab, roboSim
-from tuisim.source import APP_MAGIC, PRELUDE_TEXTS, PRELUDES
 
 if TYPE_CHECKING:
     from PIL.Image import Image
 
-    from tuisim.config.command_line import Arguments
+    from tuisim.settings.command_line import Arguments
 
 Handler = Callable[[str, str | None], Any]
 
@@ -49,7 +49,7 @@ def _lab(shell: InteractiveShell, name: str | None) -> Lab:
 
 def _sim_magic(shell: InteractiveShell, magic: str) -> Handler:
     def act(line: str, cell: str | None) -> str | None:
-        from tuisim.config.magic_line import parse_line
+        from tuisim.settings.magic_line import parse_line
 
         words = parse_line(line, magic)
         prelude = PRELUDES.get(magic, "none")
@@ -75,7 +75,7 @@ Log = Callable[[Lab, "Arguments"], Any]
 
 def _log_magic(shell: InteractiveShell, magic: str, act: Log) -> Handler:
     def read(line: str, cell: str | None) -> Any:
-        from tuisim.config.magic_line import parse_log_line
+        from tuisim.settings.magic_line import parse_log_line
 
         found = parse_log_line(line, magic)
         if found.help:

@@ -10,18 +10,18 @@ import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from tuisim.errors import ConfigError, LogError
+from tuisim.base.errors import ConfigError, LogError
 from tuisim.notebook.eds import check_logged, picture_of
 
 if TYPE_CHECKING:
     import pandas as pd
     from PIL.Image import Image
 
-    from tuisim.core.field import Field
-    from tuisim.core.spec import NoiseSpec, RunSpec
+    from tuisim.engine.core.field import Field
+    from tuisim.engine.core.spec import NoiseSpec, RunSpec
+    from tuisim.engine.protocol import MotorRegisters, Wheels
+    from tuisim.engine.runs.views import TickRecord
     from tuisim.notebook.image_log import LoggedArray
-    from tuisim.protocol import MotorRegisters, Wheels
-    from tuisim.runs.views import TickRecord
 
 TICKS_PER_S = 30
 SIDES = ("left", "right")
@@ -115,7 +115,7 @@ class ImagePair(NamedTuple):
     def _repr_png_(self) -> bytes:
         from PIL import Image, ImageDraw
 
-        from tuisim.charts.files import png_of
+        from tuisim.pictures.charts.files import png_of
 
         scale = 10
         width, height = self.left.width * scale, self.left.height * scale
@@ -204,10 +204,10 @@ def robot_state(
         highest_deg: The largest heading up to then.
         wheels: The registers of the wheel motors.
     """
-    from tuisim.core.sensors import readings
-    from tuisim.core.tick_record import FLAG_LEFT_RUNNING, FLAG_PEN_DOWN, FLAG_RIGHT_RUNNING
+    from tuisim.engine.core.sensors import readings
+    from tuisim.engine.core.tick_record import FLAG_LEFT_RUNNING, FLAG_PEN_DOWN, FLAG_RIGHT_RUNNING
+    from tuisim.engine.runs.views import instant_of
     from tuisim.notebook.image_log import arrays_at, with_alpha
-    from tuisim.runs.views import instant_of
 
     start, pose, instant = spec.world.start, record.pose, instant_of(record, spec, noise)
     measured = readings(spec.robot.sensors, instant, spec, field)
@@ -252,7 +252,7 @@ def _wrapped(heading_deg: float, highest_deg: float) -> float:
 
 
 def _place(prefix: str, x_mm: float, y_mm: float, heading_deg: float) -> dict[str, float]:
-    from tuisim.core.spec import FIELD_HEIGHT_MM
+    from tuisim.engine.core.spec import FIELD_HEIGHT_MM
 
     return {
         f"{prefix}x": x_mm,

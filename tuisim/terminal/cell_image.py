@@ -178,7 +178,7 @@ def _drawn(shapes: Sequence[GlyphShape]) -> Mask:
 def _font() -> FreeTypeFont:
     from PIL import ImageFont
 
-    content = files("tuisim.charts").joinpath("fonts", "DejaVuSansMono.ttf").read_bytes()
+    content = files("tuisim.pictures.charts").joinpath("fonts", "DejaVuSansMono.ttf").read_bytes()
     return ImageFont.truetype(io.BytesIO(content), _FONT_PX, layout_engine=ImageFont.Layout.BASIC)
 
 

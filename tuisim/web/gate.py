@@ -8,7 +8,7 @@ from dataclasses import field
 from ipaddress import ip_address
 from urllib.parse import urlsplit
 
-from tuisim.data_class import dataclass
+from tuisim.base.data_class import dataclass
 
 _HOST = re.compile(r"[\w.-]+(:\d+)?|\[[\da-fA-F:.]+\](:\d+)?", re.ASCII)
 _LOCAL = frozenset({"127.0.0.1", "localhost", "::1"})

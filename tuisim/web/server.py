@@ -19,8 +19,8 @@ from aiohttp import ClientError, WSCloseCode, web
 from aiohttp.http import HttpProcessingError
 from aiohttp.typedefs import Handler
 
-from tuisim.data_class import dataclass
-from tuisim.errors import SIGNALLED, ConfigError, TuisimError, counted
+from tuisim.base.data_class import dataclass
+from tuisim.base.errors import SIGNALLED, ConfigError, TuisimError, counted
 from tuisim.web.door import Door
 from tuisim.web.downloads import Downloads
 from tuisim.web.gate import Gate
@@ -39,7 +39,7 @@ PAGE = Path(__file__).parent / "page"
 _FOLDERS = {
     "static": Path(textual_serve.__file__).parent / "static",
     "page": PAGE,
-    "fonts": Path(__file__).parent.parent / "charts" / "fonts",
+    "fonts": Path(__file__).parent.parent / "pictures" / "charts" / "fonts",
 }
 """Folders of files that every visitor gets, by name."""
 _REFUSAL = "This address leads nowhere; `tuisim serve` prints the right one.\n"

@@ -10,7 +10,7 @@ from pathlib import Path
 from tempfile import TemporaryFile
 from typing import IO
 
-from tuisim.errors import ConfigError
+from tuisim.base.errors import ConfigError
 
 MAX_FILE_BYTES = 64 << 20
 """The largest file that can be brought."""

@@ -14,8 +14,8 @@ from typing import Any
 from aiohttp import WSMsgType, web
 from textual_serve.download_manager import DownloadManager
 
-from tuisim.data_class import dataclass
-from tuisim.errors import printable
+from tuisim.base.data_class import dataclass
+from tuisim.base.errors import printable
 from tuisim.web.link import Link, close
 from tuisim.web.session import WebSession
 

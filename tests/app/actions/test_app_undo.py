@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from tests.app.app_help import LOGS, notices, open_lab, screen_text, until, until_shown
-from tuisim.protocol import End
+from tuisim.engine.protocol import End
 
 
 async def test_a_move_is_taken_back() -> None:

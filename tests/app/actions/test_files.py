@@ -15,7 +15,7 @@ from tests.app.terminals import Terminal
 from tests.cases import cases
 from tuisim.app.actions.files import own_editor
 from tuisim.app.app import LabApp
-from tuisim.errors import TuisimError
+from tuisim.base.errors import TuisimError
 
 EDITOR = """\
 import sys

@@ -14,7 +14,7 @@ from tuisim.app.actions.keys import ACTIONS, working
 from tuisim.app.analyser.actions.keys import ACTIONS as ANALYSER_ACTIONS
 from tuisim.app.guide.screen import GuideScreen
 from tuisim.app.snapshot import RunPhase, Situation
-from tuisim.core.geometry import Pose
+from tuisim.engine.core.geometry import Pose
 
 
 async def test_a_key_that_does_nothing_says_why() -> None:

@@ -18,9 +18,9 @@ from tuisim.app.analyser.app import AnalyserApp
 from tuisim.app.dialogs.question import Question
 from tuisim.app.form import NumberInput
 from tuisim.app.snapshot import RunPhase, Situation
-from tuisim.config.build import build_run_spec
-from tuisim.config.options import Settings
-from tuisim.runs.handle import RunOptions, start_run
+from tuisim.engine.runs.handle import RunOptions, start_run
+from tuisim.settings.build import build_run_spec
+from tuisim.settings.options import Settings
 
 
 @pytest.mark.parametrize("width", [80, 100, 120])

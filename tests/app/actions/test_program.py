@@ -6,8 +6,8 @@ from tests.app.app_help import ENDLESS, open_lab, until, until_state
 from tuisim.app.app import AppSettings
 from tuisim.app.dialogs.question import Question
 from tuisim.app.snapshot import RunPhase
-from tuisim.config.build import build_run_spec
-from tuisim.config.options import Settings
+from tuisim.settings.build import build_run_spec
+from tuisim.settings.options import Settings
 
 
 async def test_a_paused_program_starts_again() -> None:

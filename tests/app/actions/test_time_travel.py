@@ -28,11 +28,11 @@ from tuisim.app.form import Slider
 from tuisim.app.panels.chart import Chart
 from tuisim.app.setup.next_run import with_obstacles
 from tuisim.app.snapshot import RunPhase
-from tuisim.core.geometry import Pose
-from tuisim.core.spec import NoiseSpec, Obstacle
-from tuisim.protocol import Answer, Resume, SetNoise
-from tuisim.runs.rerun import rerun, same
-from tuisim.runs.store import RunStore
+from tuisim.engine.core.geometry import Pose
+from tuisim.engine.core.spec import NoiseSpec, Obstacle
+from tuisim.engine.protocol import Answer, Resume, SetNoise
+from tuisim.engine.runs.rerun import rerun, same
+from tuisim.engine.runs.store import RunStore
 
 STEPS = """\
 import time

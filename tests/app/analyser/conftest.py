@@ -8,12 +8,12 @@ from pathlib import Path
 import pytest
 
 from tests.app.app_help import LOGS, program
-from tuisim.config.build import build_run_spec
-from tuisim.config.options import Settings
-from tuisim.core.spec import NoiseSpec
-from tuisim.runs.handle import RunOptions, start_run
-from tuisim.runs.run_folder import StoredRun
-from tuisim.runs.store import RunStore
+from tuisim.engine.core.spec import NoiseSpec
+from tuisim.engine.runs.handle import RunOptions, start_run
+from tuisim.engine.runs.run_folder import StoredRun
+from tuisim.engine.runs.store import RunStore
+from tuisim.settings.build import build_run_spec
+from tuisim.settings.options import Settings
 
 
 @pytest.fixture(scope="session")

@@ -14,7 +14,7 @@ from tuisim.analysis.source import LogRequest
 from tuisim.app.analyser.app import Analyser, AnalyserApp
 from tuisim.app.analyser.chart import LogChart
 from tuisim.app.plot_view import PlotView
-from tuisim.charts.traces import TRACE_COLORS
+from tuisim.pictures.charts.traces import TRACE_COLORS
 from tuisim.terminal.picture_options import Protocol
 from tuisim.terminal.queries import TerminalAnswered, facts_in
 

@@ -19,13 +19,13 @@ from tuisim.app.analyser.actions.keys import ACTIONS
 from tuisim.app.analyser.app import Analyser, AnalyserApp
 from tuisim.app.analyser.panes import PaneView
 from tuisim.app.dialogs.palette import Palette
-from tuisim.config.build import build_run_spec
-from tuisim.config.options import Settings
-from tuisim.config.program_file import parse_program
-from tuisim.errors import LogError
+from tuisim.base.errors import LogError
+from tuisim.engine.runs.handle import RunOptions, start_run
+from tuisim.engine.runs.run_folder import StoredRun
 from tuisim.logs.frames import read_log
-from tuisim.runs.handle import RunOptions, start_run
-from tuisim.runs.run_folder import StoredRun
+from tuisim.programs.program_file import parse_program
+from tuisim.settings.build import build_run_spec
+from tuisim.settings.options import Settings
 
 SIZES = [(80, 24), (120, 40), (200, 60)]
 

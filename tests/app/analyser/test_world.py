@@ -7,17 +7,17 @@ from pathlib import Path
 import pyarrow as pa
 import pytest
 
-from tests.runs.run_recorder import begun
+from tests.engine.runs.run_recorder import begun
 from tuisim.analysis.source import LogRequest, OpenedLog
 from tuisim.app.analyser.world import has_poses, world_at
-from tuisim.core.geometry import Pose
-from tuisim.core.profile import ROBOLAB
-from tuisim.core.spec import RobotSpec, RunSpec, WorldSpec
-from tuisim.core.tree import to_plain
+from tuisim.engine.core.geometry import Pose
+from tuisim.engine.core.profile import ROBOLAB
+from tuisim.engine.core.spec import RobotSpec, RunSpec, WorldSpec
+from tuisim.engine.core.tree import to_plain
+from tuisim.engine.runs.run_folder import StoredRun
+from tuisim.engine.runs.store import RunStore
 from tuisim.logs.columns import guess_columns
 from tuisim.logs.log import Log
-from tuisim.runs.run_folder import StoredRun
-from tuisim.runs.store import RunStore
 
 SPEC = RunSpec(RobotSpec(), WorldSpec(start=Pose(300, 500, 0)), ROBOLAB)
 POSES: dict[str, list[float | None]] = {

@@ -8,7 +8,7 @@ from textual.widgets import OptionList
 from tests.app.app_help import LOGS, ready, settings, until
 from tuisim.app.app import LabApp
 from tuisim.app.dialogs.cells import CellsCard
-from tuisim.config.user_config import CELL_SET, load_config
+from tuisim.settings.user_config import CELL_SET, load_config
 from tuisim.terminal import picture_mode as modes
 from tuisim.terminal.cell_view import PixelView
 from tuisim.terminal.glyphs import GLYPHS

@@ -11,7 +11,7 @@ from textual.widgets import Input, OptionList, Static
 from tuisim.app.dialogs.chooser import ChoiceGroup, Chooser, files_here
 from tuisim.app.notices import NoticeRow
 from tuisim.app.terminal_app import TerminalApp
-from tuisim.errors import ConfigError
+from tuisim.base.errors import ConfigError
 
 GROUPS = [
     ChoiceGroup("Here", [("/x/mine.py", "mine.py", "")]),

@@ -15,8 +15,8 @@ from tests.app.app_help import LOGS, message_of, notices, open_lab, settings, un
 from tests.running import PATIENCE_S
 from tuisim.app.app import AppSettings
 from tuisim.app.dialogs.chooser import MatPicker
-from tuisim.config.options import Settings
-from tuisim.errors import TuisimError
+from tuisim.base.errors import TuisimError
+from tuisim.settings.options import Settings
 from tuisim.terminal.cell_view import PixelView
 
 

@@ -10,7 +10,7 @@ from textual.widgets import Input
 
 from tests.app.app_help import open_lab, screen_text, settings, until, until_shown
 from tuisim.app.dialogs.save import SaveDialog
-from tuisim.source import Program
+from tuisim.base.source import Program
 
 
 async def test_a_click_on_a_word_of_the_footer_presses_its_key(

@@ -7,8 +7,8 @@ from textual.app import App
 from textual.widgets import Input, OptionList
 
 from tuisim.app.dialogs.entries import BreaksDialog, WatchesDialog
-from tuisim.core.profile import PROFILES
-from tuisim.core.spec import RobotSpec, RunSpec, WorldSpec
+from tuisim.engine.core.profile import PROFILES
+from tuisim.engine.core.spec import RobotSpec, RunSpec, WorldSpec
 
 RUN = RunSpec(RobotSpec(), WorldSpec(), PROFILES["ev3"])
 

@@ -12,11 +12,11 @@ from tests.cases import cases
 from tuisim.app.dialogs.entries import BreaksDialog, SavedPoses, WatchesDialog
 from tuisim.app.dialogs.runs import Differences
 from tuisim.app.setup.poses import save_pose
-from tuisim.breakpoints import parse_break
-from tuisim.core.geometry import Pose
-from tuisim.core.profile import PROFILES
-from tuisim.core.spec import RobotSpec, RunSpec, WorldSpec
-from tuisim.runs.diff import RowDifference, RunDiff
+from tuisim.engine.breakpoints import parse_break
+from tuisim.engine.core.geometry import Pose
+from tuisim.engine.core.profile import PROFILES
+from tuisim.engine.core.spec import RobotSpec, RunSpec, WorldSpec
+from tuisim.engine.runs.diff import RowDifference, RunDiff
 
 RUN = RunSpec(RobotSpec(), WorldSpec(), PROFILES["ev3"])
 

@@ -13,9 +13,9 @@ from tuisim.app.dialogs.chooser import MatPicker
 from tuisim.app.dialogs.new_program import NewProgramDialog, Skeleton, program_text
 from tuisim.app.dialogs.question import Question
 from tuisim.app.editor.area import CodeArea
-from tuisim.config.build import build_run_spec
-from tuisim.config.options import Settings
-from tuisim.config.program_file import read_program
+from tuisim.programs.program_file import read_program
+from tuisim.settings.build import build_run_spec
+from tuisim.settings.options import Settings
 
 CHOSEN = {
     "as it is": ([], ("Grey_bands", "colorLeft", Skeleton.LOG)),

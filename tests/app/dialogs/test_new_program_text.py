@@ -6,7 +6,7 @@ import pytest
 
 from tests.running import Run
 from tuisim.app.dialogs.new_program import READINGS, Skeleton, program_text
-from tuisim.config.program_file import parse_program
+from tuisim.programs.program_file import parse_program
 
 
 @pytest.mark.parametrize("skeleton", Skeleton)

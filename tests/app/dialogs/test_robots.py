@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from tuisim.app.dialogs.robots import part_lines, robot_picture, view_of
-from tuisim.config.robots import ROBOTS
-from tuisim.core.spec import RobotSpec
-from tuisim.scene.robot import COLORED
+from tuisim.engine.core.spec import RobotSpec
+from tuisim.pictures.scene.robot import COLORED
+from tuisim.settings.robots import ROBOTS
 from tuisim.terminal.pixels import SQUARE
 
 

@@ -28,13 +28,13 @@ from tests.running import PATIENCE_S
 from tuisim.app.app import AppSettings
 from tuisim.app.dialogs.runs import RunChooser, matching, run_line
 from tuisim.app.snapshot import RunPhase
-from tuisim.config.build import build_run_spec
-from tuisim.config.command_line import Arguments
-from tuisim.config.options import Settings
-from tuisim.protocol import End, SetNoise, UserAction
-from tuisim.runs.catalogue import RunInfo
-from tuisim.runs.handle import RunOptions, start_run
-from tuisim.runs.store import RunStore
+from tuisim.engine.protocol import End, SetNoise, UserAction
+from tuisim.engine.runs.catalogue import RunInfo
+from tuisim.engine.runs.handle import RunOptions, start_run
+from tuisim.engine.runs.store import RunStore
+from tuisim.settings.build import build_run_spec
+from tuisim.settings.command_line import Arguments
+from tuisim.settings.options import Settings
 from tuisim.terminal.cell_view import PixelView
 
 

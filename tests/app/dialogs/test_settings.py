@@ -16,7 +16,7 @@ from tests.app.app_help import LOGS, open_lab, screen_text, until
 from tuisim.app.app import LabApp
 from tuisim.app.dialogs.settings import SettingsScreen
 from tuisim.app.panels.world import World
-from tuisim.config.user_config import SETTINGS, load_config
+from tuisim.settings.user_config import SETTINGS, load_config
 from tuisim.terminal.picture_options import CellSet
 
 

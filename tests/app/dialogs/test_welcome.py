@@ -30,8 +30,8 @@ from tuisim.app.editor.text_file import keep_draft
 from tuisim.app.snapshot import IN_RUN, RunPhase
 from tuisim.cli import run_command
 from tuisim.commands import app as command
-from tuisim.config.build import build_run_spec
-from tuisim.config.options import Settings
+from tuisim.settings.build import build_run_spec
+from tuisim.settings.options import Settings
 
 FIRST = AppSettings(spec=build_run_spec(Settings()), settings=Settings(), welcomes=True)
 WRONG = "".join(f"x{number} = {number}\n" for number in range(60)) + "print((1)\n"

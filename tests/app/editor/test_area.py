@@ -7,7 +7,7 @@ import pytest
 from tests.app.app_help import until
 from tests.app.code_help import TEXT, CodeApp, alone
 from tests.app.panel_help import moment, screen_text
-from tuisim.protocol import Variable
+from tuisim.engine.protocol import Variable
 
 Keys = list[str]
 

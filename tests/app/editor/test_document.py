@@ -29,9 +29,9 @@ from tuisim.app.editor.area import CodeArea
 from tuisim.app.editor.text_file import find_draft, keep_draft
 from tuisim.app.panels.code import Code
 from tuisim.app.snapshot import RunPhase
-from tuisim.config.build import build_run_spec
-from tuisim.config.options import Settings
-from tuisim.config.program_file import programs, read_program
+from tuisim.programs.program_file import programs, read_program
+from tuisim.settings.build import build_run_spec
+from tuisim.settings.options import Settings
 
 TEXT = "print('A: 1')\nfor n in range(3):\n    print('B: ' + str(n))\n"
 

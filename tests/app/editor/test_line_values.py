@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import pytest
 
 from tuisim.app.editor.line_values import MODULE, line_values
-from tuisim.protocol import FrameState, Inspected, Variable
+from tuisim.engine.protocol import FrameState, Inspected, Variable
 
 TEXT = """\
 total = 0

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from tuisim.app.editor.syntax import Colouring, mistake_in, spans
-from tuisim.config.program_file import programs
+from tuisim.programs.program_file import programs
 
 
 @pytest.mark.parametrize(

@@ -19,8 +19,8 @@ from tuisim.app.editor.text_file import (
     read_text,
     write_text,
 )
-from tuisim.config.program_file import programs
-from tuisim.errors import ConfigError
+from tuisim.base.errors import ConfigError
+from tuisim.programs.program_file import programs
 
 
 @pytest.mark.parametrize(

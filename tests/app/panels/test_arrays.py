@@ -13,8 +13,8 @@ from tests.app.app_help import until
 from tests.app.panel_help import SPEC, PanelApp, moment, screen_text, small_field
 from tests.cases import cases
 from tuisim.app.panels.arrays import Arrays
-from tuisim.core.geometry import Pose
-from tuisim.source import Program
+from tuisim.base.source import Program
+from tuisim.engine.core.geometry import Pose
 from tuisim.terminal.cell_view import PixelView
 from tuisim.terminal.cells import PALETTE_8, PALETTE_16, ColorMode
 from tuisim.terminal.picture_mode import PictureMode

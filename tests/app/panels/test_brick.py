@@ -12,8 +12,8 @@ from tests.app.app_help import notices, open_lab, settings, until
 from tuisim.app.app import LabApp
 from tuisim.app.panels.brick import Brick
 from tuisim.app.snapshot import RunPhase
-from tuisim.core.profile import PROFILES
-from tuisim.core.spec import RobotSpec, RunSpec, TouchSpec, WorldSpec
+from tuisim.engine.core.profile import PROFILES
+from tuisim.engine.core.spec import RobotSpec, RunSpec, TouchSpec, WorldSpec
 
 WATCHES = """\
 from ev3dev2.button import Button

@@ -14,7 +14,7 @@ from tests.app.panel_help import PanelApp, moment, screen_text
 from tests.cases import cases
 from tuisim.app.panels.chart import Chart
 from tuisim.app.snapshot import RunPhase
-from tuisim.charts.text_chart import ChartPainter, ChartPicture
+from tuisim.pictures.charts.text_chart import ChartPainter, ChartPicture
 
 
 def fill(chart: Chart) -> None:

@@ -9,9 +9,9 @@ from tests.app.code_help import CodeApp, alone
 from tests.app.panel_help import moment, screen_text
 from tuisim.app.panels.code import Code
 from tuisim.app.snapshot import PauseView, RunPhase
-from tuisim.core.geometry import Pose
-from tuisim.core.state import Instant
-from tuisim.protocol import FrameState, Inspected, Paused, Variable
+from tuisim.engine.core.geometry import Pose
+from tuisim.engine.core.state import Instant
+from tuisim.engine.protocol import FrameState, Inspected, Paused, Variable
 
 Keys = list[str]
 

@@ -11,10 +11,10 @@ from tests.app.panel_help import SPEC, PanelApp, moment, screen_text
 from tests.cases import cases
 from tuisim.app.panels.instrumentation import Instrumentation, lines
 from tuisim.app.snapshot import RunPhase, Snapshot
-from tuisim.core.geometry import Pose
-from tuisim.core.sensors.color import ColorReading
-from tuisim.core.spec import MotorSpec
-from tuisim.protocol import End
+from tuisim.engine.core.geometry import Pose
+from tuisim.engine.core.sensors.color import ColorReading
+from tuisim.engine.core.spec import MotorSpec
+from tuisim.engine.protocol import End
 
 EXTREME = moment(
     Pose(-12345.67, 98765.43, -3600.5),

@@ -40,8 +40,8 @@ from tuisim.app.dialogs.chooser import Chooser
 from tuisim.app.panels import PANELS
 from tuisim.app.render.lesson import LessonPicture
 from tuisim.app.snapshot import RunPhase
-from tuisim.lessons.progress import load_progress, program_path
-from tuisim.lessons.spec import SHOWABLE
+from tuisim.tasks.lessons.progress import load_progress, program_path
+from tuisim.tasks.lessons.spec import SHOWABLE
 
 
 @pytest.mark.slow

@@ -12,7 +12,7 @@ from tests.app.app_help import (
 from tuisim.app.app import LabApp
 from tuisim.app.form import Slider
 from tuisim.app.panels.noise import Noise
-from tuisim.core.spec import NoiseSpec
+from tuisim.engine.core.spec import NoiseSpec
 
 SHOWN = frozenset({"noise"})
 

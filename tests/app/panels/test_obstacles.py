@@ -22,8 +22,8 @@ from tuisim.app.app import LabApp
 from tuisim.app.panels.obstacles import BoxGrip, Obstacles, box_at
 from tuisim.app.panels.world import WorldView
 from tuisim.app.setup.next_run import with_obstacles
-from tuisim.config.obstacles import OBSTACLES, load_obstacles
-from tuisim.core.spec import Obstacle
+from tuisim.engine.core.spec import Obstacle
+from tuisim.engine.obstacles import OBSTACLES, load_obstacles
 
 
 def boxes(app: LabApp) -> tuple[Obstacle, ...]:

@@ -8,7 +8,7 @@ from textual.widget import Widget
 
 from tests.app.app_help import until
 from tuisim.app.panels.output import KEPT_LINES, MAX_LINE_CHARS, Log, shown_lines
-from tuisim.runs.records import OutputRow, Stream
+from tuisim.engine.runs.records import OutputRow, Stream
 
 
 def row(text: str, stream: Stream = Stream.STDOUT) -> OutputRow:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from tuisim.app.panels.pose_grip import PoseGrip
-from tuisim.core.geometry import Pose
+from tuisim.engine.core.geometry import Pose
 
 START = Pose(1000.0, 500.0, 30.0)
 

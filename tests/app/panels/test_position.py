@@ -7,7 +7,7 @@ from textual.widgets import Input
 
 from tests.app.panel_help import PanelApp, moment
 from tuisim.app.panels.position import Positioning, parse_field
-from tuisim.core.geometry import Pose
+from tuisim.engine.core.geometry import Pose
 
 
 @pytest.mark.parametrize("text", ["1", " -2.5 ", "3,5", "+4e2"])

@@ -26,7 +26,7 @@ from tuisim.app.app import LabApp
 from tuisim.app.form import Choice, Row
 from tuisim.app.setup.next_run import with_robot
 from tuisim.app.snapshot import RunPhase
-from tuisim.config.robots import ROBOTS, load_robot
+from tuisim.settings.robots import ROBOTS, load_robot
 
 
 @asynccontextmanager

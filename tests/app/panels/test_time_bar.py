@@ -10,9 +10,9 @@ from textual.message import Message
 from tests.app.panel_help import PanelApp, moment
 from tuisim.app.panels.time_bar import BarTimes, TimeBar, bar_cells, mark_cells, words
 from tuisim.app.snapshot import RunPhase
-from tuisim.core.geometry import Pose
-from tuisim.core.state import Instant
-from tuisim.runs.records import Mark
+from tuisim.engine.core.geometry import Pose
+from tuisim.engine.core.state import Instant
+from tuisim.engine.runs.records import Mark
 
 BAR = BarTimes(tick=200, newest=1000, tick_hz=100, past=True, over=True)
 

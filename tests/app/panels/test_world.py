@@ -19,9 +19,9 @@ from tuisim.app.layout.tree import TIME_BAR_ROWS
 from tuisim.app.panels.world import TURN_STEP_DEG, World, WorldView
 from tuisim.app.render.world_text import legend
 from tuisim.app.snapshot import RunPhase, Snapshot
-from tuisim.core.geometry import Pose
-from tuisim.core.spec import FIELD_WIDTH_MM
-from tuisim.scene.pictures import scene_of
+from tuisim.engine.core.geometry import Pose
+from tuisim.engine.core.spec import FIELD_WIDTH_MM
+from tuisim.pictures.scene.pictures import scene_of
 
 POSE = Pose(1000.0, 500.0, 0.0)
 

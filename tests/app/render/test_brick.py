@@ -8,9 +8,15 @@ import numpy as np
 import pytest
 
 from tuisim.app.render.brick import draw_brick, led_name
-from tuisim.core.spec import BUTTONS
-from tuisim.runs.brick_state import DISPLAY_HEIGHT, DISPLAY_WIDTH, ROW_BYTES, BrickState, TextScreen
-from tuisim.scene.discs import shrunk
+from tuisim.engine.core.spec import BUTTONS
+from tuisim.engine.runs.brick_state import (
+    DISPLAY_HEIGHT,
+    DISPLAY_WIDTH,
+    ROW_BYTES,
+    BrickState,
+    TextScreen,
+)
+from tuisim.pictures.scene.discs import shrunk
 
 SIZES = [(178, 70), (118, 37), (78, 20), (44, 12), (26, 6), (12, 3), (1, 1)]
 

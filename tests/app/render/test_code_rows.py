@@ -8,8 +8,8 @@ import pytest
 
 from tests.cases import cases
 from tuisim.app.render.code_rows import code_rows
-from tuisim.lessons.catalogue import shipped_paths
-from tuisim.lessons.files import load_lesson
+from tuisim.tasks.lessons.catalogue import shipped_paths
+from tuisim.tasks.lessons.files import load_lesson
 
 ANSWERS = {name: load_lesson(path).model_answer for name, path in shipped_paths().items()}
 PROGRAMS = {

@@ -6,7 +6,7 @@ import pytest
 
 from tuisim.app.render.debug import DebugView, debug_lines
 from tuisim.app.snapshot import RunPhase
-from tuisim.protocol import FrameState, Inspected, Paused, PauseReason, Variable
+from tuisim.engine.protocol import FrameState, Inspected, Paused, PauseReason, Variable
 
 
 def text(view: DebugView, width: int) -> list[str]:

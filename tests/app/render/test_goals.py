@@ -8,8 +8,8 @@ from dataclasses import replace
 import pytest
 
 from tuisim.app.render.goals import GoalsView, draw_goals
-from tuisim.goals.judgement import Change, GoalState, Judgement
-from tuisim.goals.spec import AllOf, FinishCondition, Goal, UseCondition
+from tuisim.tasks.goals.judgement import Change, GoalState, Judgement
+from tuisim.tasks.goals.spec import AllOf, FinishCondition, Goal, UseCondition
 from tuisim.terminal.text_runs import Line
 
 MET = Judgement(

@@ -11,8 +11,8 @@ import pytest
 
 from tests.app.lesson_help import opened
 from tuisim.app.render.lesson import Away, LessonView, draw_lesson
-from tuisim.goals.judgement import Change, GoalState, Judgement
-from tuisim.lessons.progress import StepState
+from tuisim.tasks.goals.judgement import Change, GoalState, Judgement
+from tuisim.tasks.lessons.progress import StepState
 
 
 def _lesson_view(tmp_path: Path, **changes: Any) -> LessonView:

@@ -12,12 +12,12 @@ from tests.cases import cases
 from tuisim.app.setup import next_run as plans
 from tuisim.app.setup.fields import find
 from tuisim.app.setup.next_run import NextRun, plan_of, plan_of_spec, with_robot_edited
-from tuisim.config.build import build_run_spec
-from tuisim.config.options import Settings
-from tuisim.config.robots import ROBOTS, load_robot, save_robot
-from tuisim.core.geometry import Pose
-from tuisim.core.spec import NO_PORT, NoiseSpec, Obstacle, RobotSpec
-from tuisim.errors import ConfigError
+from tuisim.base.errors import ConfigError
+from tuisim.engine.core.geometry import Pose
+from tuisim.engine.core.spec import NO_PORT, NoiseSpec, Obstacle, RobotSpec
+from tuisim.settings.build import build_run_spec
+from tuisim.settings.options import Settings
+from tuisim.settings.robots import ROBOTS, load_robot, save_robot
 
 BOX = (Obstacle(1, 2, 3, 4),)
 

@@ -8,10 +8,10 @@ import pytest
 
 from tuisim.app.setup import next_run as plans
 from tuisim.app.setup.next_run import NextRun
-from tuisim.config.options import Settings
-from tuisim.config.program_file import parse_program
-from tuisim.config.program_settings import PROGRAM_PATHS
-from tuisim.core.geometry import Pose
+from tuisim.engine.core.geometry import Pose
+from tuisim.programs.program_file import parse_program
+from tuisim.programs.program_settings import PROGRAM_PATHS
+from tuisim.settings.options import Settings
 
 CLAW = "from ev3dev2.motor import MediumMotor\nMediumMotor('outA').on(5)\n"
 LIFT = CLAW.replace("outA", "outD")

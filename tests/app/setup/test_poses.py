@@ -17,10 +17,10 @@ from tests.app.app_help import (
 )
 from tuisim.app.setup.next_run import plan_of
 from tuisim.app.setup.poses import delete_pose, fits, load_poses, poses_file, random_pose, save_pose
-from tuisim.config.options import Settings
-from tuisim.core.geometry import Pose
-from tuisim.core.spec import Obstacle
-from tuisim.errors import ConfigError
+from tuisim.base.errors import ConfigError
+from tuisim.engine.core.geometry import Pose
+from tuisim.engine.core.spec import Obstacle
+from tuisim.settings.options import Settings
 
 SPEC = plan_of(Settings()).spec
 POSTS = tuple(Obstacle(x, y, 150, 150) for x in range(200, 2300, 500) for y in (150, 500, 850))

@@ -7,10 +7,10 @@ from pathlib import Path
 from tests.running import over
 from tuisim.app.editor.text_file import drop_draft, keep_draft
 from tuisim.app.setup.recent import Kind, recent
-from tuisim.config.build import build_run_spec
-from tuisim.config.options import Settings
-from tuisim.runs.handle import RunOptions, start_run
-from tuisim.source import Program
+from tuisim.base.source import Program
+from tuisim.engine.runs.handle import RunOptions, start_run
+from tuisim.settings.build import build_run_spec
+from tuisim.settings.options import Settings
 
 
 def kinds() -> list[tuple[Kind, str]]:

@@ -12,7 +12,7 @@ from tests.cases import cases
 from tests.conftest import Command
 from tuisim.app import app as lab_app
 from tuisim.commands import app as app_command
-from tuisim.runs.store import RunStore
+from tuisim.engine.runs.store import RunStore
 
 PROGRAM = "print('Colour: 1')\n"
 WORLD = 'background = "Loop"\n'

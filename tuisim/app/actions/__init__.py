@@ -6,7 +6,7 @@ from dataclasses import field
 from typing import TYPE_CHECKING
 
 from tuisim.app.reason_tour import ReasonTour
-from tuisim.data_class import dataclass
+from tuisim.base.data_class import dataclass
 
 if TYPE_CHECKING:
     from tuisim.app.debugger import DebugController

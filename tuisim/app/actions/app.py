@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 from tuisim.app.action import KeyWord, key_groups
 from tuisim.app.layout.arrangement import Preset
 from tuisim.app.panels import PANELS
-from tuisim.config.files import Scalar
-from tuisim.config.user_config import CELL_SET, THEME, Setting, load_config
+from tuisim.engine.files import Scalar
+from tuisim.settings.user_config import CELL_SET, THEME, Setting, load_config
 from tuisim.terminal.picture_options import AUTO
 
 if TYPE_CHECKING:
@@ -167,7 +167,7 @@ def change_setting(context: ActionContext, one: Setting, value: Scalar | None) -
     Raises:
         ConfigError: the value is wrong, or the file cannot be written.
     """
-    from tuisim.config.user_config_file import save_setting
+    from tuisim.settings.user_config_file import save_setting
 
     save_setting(one, value)
     if apply := _APPLY.get(one.path):

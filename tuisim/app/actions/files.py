@@ -16,13 +16,13 @@ from tuisim.app.actions.time_travel import to_tick
 from tuisim.app.editor.document import NEW_NAME
 from tuisim.app.editor.text_file import find_draft
 from tuisim.app.setup import next_run as plans
-from tuisim.config.folders import programs_folder, user_path
-from tuisim.config.obstacles import save_obstacles as write
-from tuisim.config.options import Settings
-from tuisim.config.preferences import keep, preference
-from tuisim.errors import TuisimError
-from tuisim.runs.recorded_run import Recording
-from tuisim.runs.store import RunStore
+from tuisim.base.errors import TuisimError
+from tuisim.base.folders import programs_folder, user_path
+from tuisim.engine.obstacles import save_obstacles as write
+from tuisim.engine.runs.recorded_run import Recording
+from tuisim.engine.runs.store import RunStore
+from tuisim.settings.options import Settings
+from tuisim.settings.preferences import keep, preference
 
 _LOGGED = "Grey_bands"
 """What a new program is offered in place of the empty mat, on which there is nothing to log."""
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from tuisim.analysis.source import LogRequest
     from tuisim.app.actions import ActionContext
     from tuisim.app.setup.recent import Recent
-    from tuisim.runs.diff import RunDiff
+    from tuisim.engine.runs.diff import RunDiff
 
 
 def clear_log(context: ActionContext) -> None:
@@ -152,7 +152,7 @@ def _go_on(context: ActionContext, what: Recent) -> None:
 
 def save_robot(context: ActionContext) -> None:
     """Ask for a file and write the robot to it."""
-    from tuisim.config.robots import save_robot as write
+    from tuisim.settings.robots import save_robot as write
 
     runs = context.runs
     name = f"{runs.next_run.robot_choice.spec.name}.toml"
@@ -185,7 +185,7 @@ def _save(context: ActionContext, what: str, name: str, write: Callable[[Path], 
 def save_world(context: ActionContext) -> None:
     """Ask for a file and write the world to it, with the program that is open."""
     from tuisim.app.dialogs.save import SaveDialog
-    from tuisim.config.worlds import save_world as write
+    from tuisim.settings.worlds import save_world as write
 
     def save(path: Path) -> None:
         program = context.runs.program
@@ -254,7 +254,7 @@ def new_program(context: ActionContext) -> None:
 
 def _ask_for_new(context: ActionContext) -> None:
     from tuisim.app.dialogs.new_program import NewProgramDialog
-    from tuisim.config.mats import mats, spec_name
+    from tuisim.engine.mats import mats, spec_name
 
     plan = context.runs.next_run
     known = mats(plan.settings["mats"])
@@ -299,7 +299,7 @@ def compare(context: ActionContext) -> None:
 
 def _diff(run_id: str, other_id: str) -> tuple[Recording, RunDiff]:
     """Return the other run and the differences. Reads both runs."""
-    from tuisim.runs.diff import diff_runs
+    from tuisim.engine.runs.diff import diff_runs
 
     store = RunStore()
     other = store.load_run(other_id)

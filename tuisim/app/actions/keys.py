@@ -17,7 +17,7 @@ from tuisim.app.actions.files import analyse
 from tuisim.app.layout.arrangement import Preset
 from tuisim.app.panels import PANELS
 from tuisim.app.snapshot import IN_RUN, RunPhase, Situation
-from tuisim.protocol import LineStep
+from tuisim.engine.protocol import LineStep
 
 PROGRAM, DEBUG, TIME, ROBOT, PANEL = "Program", "Debugging", "Time", "Robot", "Panels"
 FILES, LESSON, APP = "Files", "Lesson", "App"

@@ -6,13 +6,13 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from tuisim.app import background
-from tuisim.lessons.progress import LessonProgress, load_progress
-from tuisim.lessons.spec import QuestionCheck as LessonQuestion
+from tuisim.tasks.lessons.progress import LessonProgress, load_progress
+from tuisim.tasks.lessons.spec import QuestionCheck as LessonQuestion
 
 if TYPE_CHECKING:
     from tuisim.app.actions import ActionContext
     from tuisim.app.panel_area import PanelArea
-    from tuisim.runs.recorded_run import Recording
+    from tuisim.engine.runs.recorded_run import Recording
 
 _BEFORE, _SKIP, _MODEL, _OVER, _OPEN = "before", "skip", "model", "over", "open "
 
@@ -137,7 +137,7 @@ def _ask_to_start_over(context: ActionContext) -> None:
 
 def _switch_model(context: ActionContext) -> None:
     """Let the robot of the model answer drive along beside every run, or no longer."""
-    from tuisim.lessons.trial import model_run
+    from tuisim.tasks.lessons.trial import model_run
 
     lesson, runs = context.lesson.lesson, context.runs
     if lesson is None or runs.companion is not None:

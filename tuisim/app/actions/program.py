@@ -5,9 +5,9 @@ from __future__ import annotations
 import time
 from typing import TYPE_CHECKING
 
-from tuisim import protocol
 from tuisim.app.actions.time_travel import propose_branch, refresh
 from tuisim.app.snapshot import RunPhase, speed_label
+from tuisim.engine import protocol
 
 if TYPE_CHECKING:
     from tuisim.app.actions import ActionContext

@@ -6,10 +6,10 @@ from random import Random
 from typing import TYPE_CHECKING
 
 from tuisim.app.setup import next_run as plans
-from tuisim.config.folders import user_path
-from tuisim.config.mats import mats
-from tuisim.core.geometry import Pose
-from tuisim.errors import TuisimError
+from tuisim.base.errors import TuisimError
+from tuisim.base.folders import user_path
+from tuisim.engine.core.geometry import Pose
+from tuisim.engine.mats import mats
 
 if TYPE_CHECKING:
     from tuisim.app.actions import ActionContext

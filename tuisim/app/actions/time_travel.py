@@ -5,19 +5,19 @@ from __future__ import annotations
 import time
 from typing import TYPE_CHECKING
 
-from tuisim import protocol
 from tuisim.app import reasons
 from tuisim.app.branch import Branch, action_words
 from tuisim.app.setup.mat import mat_key
 from tuisim.app.snapshot import RunPhase
 from tuisim.app.timeline import find, forms
-from tuisim.core.sensors import column_names
-from tuisim.errors import TuisimError
-from tuisim.reasons.reason import ReasonKind
+from tuisim.base.errors import TuisimError
+from tuisim.engine import protocol
+from tuisim.engine.core.sensors import column_names
+from tuisim.tasks.reasons.reason import ReasonKind
 
 if TYPE_CHECKING:
     from tuisim.app.actions import ActionContext
-    from tuisim.runs.recorded_run import Recording
+    from tuisim.engine.runs.recorded_run import Recording
 
 MANY_TICKS = 10
 """Ticks that `:` runs."""

@@ -14,7 +14,7 @@ from tuisim.app.analyser.actions.keys import ACTIONS
 from tuisim.app.analyser.screen import LogScreen
 from tuisim.app.background import enter, leave
 from tuisim.app.terminal_app import TerminalApp, picture_mode_at_start
-from tuisim.errors import TuisimError
+from tuisim.base.errors import TuisimError
 from tuisim.terminal.picture_mode import PictureMode
 from tuisim.terminal.picture_options import AUTO
 

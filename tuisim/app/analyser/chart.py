@@ -10,15 +10,21 @@ from rich.style import Style
 from textual import events
 from textual.message import Message
 
-from tuisim import palette
 from tuisim.analysis.chart import event_marks, spans_of_bands
 from tuisim.analysis.traces import DISTANCE, TIME
 from tuisim.app.plot_view import PlotView
-from tuisim.charts.canvas import BRAILLE, xy_lines
-from tuisim.charts.text_chart import ChartPainter, ChartPicture, ChartState, margins_of, values_at
-from tuisim.charts.traces import Traces
-from tuisim.data_class import dataclass
+from tuisim.base import palette
+from tuisim.base.data_class import dataclass
 from tuisim.logs.magnitude import limit_drawn
+from tuisim.pictures.charts.canvas import BRAILLE, xy_lines
+from tuisim.pictures.charts.text_chart import (
+    ChartPainter,
+    ChartPicture,
+    ChartState,
+    margins_of,
+    values_at,
+)
+from tuisim.pictures.charts.traces import Traces
 from tuisim.terminal.cell_view import LinesPanel
 from tuisim.terminal.picture import MOST_POINTS
 from tuisim.terminal.picture_mode import shows_ascii

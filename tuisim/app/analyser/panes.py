@@ -15,14 +15,14 @@ from typing import TYPE_CHECKING, Generic, TypeVar, overload
 from rich.style import Style
 from textual.worker import get_current_worker
 
-from tuisim import palette
 from tuisim.analysis.events import Event
 from tuisim.analysis.model import Model
 from tuisim.analysis.table import AT_ONCE
 from tuisim.app import background
 from tuisim.app.snapshot import end_label
-from tuisim.data_class import dataclass
-from tuisim.errors import TuisimError, counted
+from tuisim.base import palette
+from tuisim.base.data_class import dataclass
+from tuisim.base.errors import TuisimError, counted
 from tuisim.logs.bands import Band, count_samples
 from tuisim.logs.plateaus import Search, plateaus, plateaus_in_subprocess
 from tuisim.logs.signals import QUANTILES

@@ -15,9 +15,9 @@ from textual.binding import Binding, BindingType
 from textual.containers import Horizontal, ScrollableContainer, VerticalScroll
 from textual.widgets import Label, Select, Static
 
-from tuisim import palette
 from tuisim.app.dialogs.dialog import Dialog
-from tuisim.errors import TuisimError, shortened
+from tuisim.base import palette
+from tuisim.base.errors import TuisimError, shortened
 from tuisim.logs.choices import NO_CHOICES, WORDS, ReadChoices
 from tuisim.logs.columns import ROW, UNIT_NAMES, is_numeric, time_columns
 from tuisim.logs.log import Log

@@ -15,7 +15,6 @@ from textual.containers import Horizontal, Vertical
 from textual.events import Event, Key, Resize
 from textual.widget import Widget
 
-from tuisim import palette
 from tuisim.analysis.model import RECKONING, Model
 from tuisim.analysis.remembered import is_readable_again, read_doubtful, remember_choices
 from tuisim.analysis.source import LogRequest, opening
@@ -29,7 +28,8 @@ from tuisim.app.analyser.world import WorldPane
 from tuisim.app.dialogs.dialog import ClosesOnce
 from tuisim.app.dialogs.question import Form, LinePrompt
 from tuisim.app.layout.forms import is_tall
-from tuisim.errors import LogError, TuisimError
+from tuisim.base import palette
+from tuisim.base.errors import LogError, TuisimError
 from tuisim.logs.choices import ReadChoices
 from tuisim.logs.columns import numeric_columns
 from tuisim.logs.derived import SIGNALS, TIME, computed_columns

@@ -12,32 +12,32 @@ from rich.style import Style
 from textual.app import ComposeResult
 from textual.containers import Vertical
 
-from tuisim import palette
 from tuisim.app import background
 from tuisim.app.panels import PANELS
 from tuisim.app.panels.arrays import Arrays
 from tuisim.app.panels.world import WorldView
 from tuisim.app.setup.mat import Mat, blank_mat, prepare_mat, prepare_mat_of
 from tuisim.app.snapshot import RunPhase, Snapshot
-from tuisim.core.drift import find_drift
-from tuisim.core.geometry import Pose
-from tuisim.core.spec import RunSpec
-from tuisim.core.state import Instant
-from tuisim.core.tick_record import FLAG_PEN_DOWN
-from tuisim.errors import TuisimError, printable
+from tuisim.base import palette
+from tuisim.base.errors import TuisimError, printable
+from tuisim.base.source import source_lines
+from tuisim.engine.core.drift import find_drift
+from tuisim.engine.core.geometry import Pose
+from tuisim.engine.core.spec import RunSpec
+from tuisim.engine.core.state import Instant
+from tuisim.engine.core.tick_record import FLAG_PEN_DOWN
+from tuisim.engine.runs.recorded_run import Recording
+from tuisim.engine.runs.views import instant_of
 from tuisim.logs.derived import spec_in
-from tuisim.runs.recorded_run import Recording
-from tuisim.runs.views import instant_of
-from tuisim.source import source_lines
 from tuisim.terminal.cell_view import LinesView
 from tuisim.terminal.text_runs import Run, first_shown
 
 if TYPE_CHECKING:
     from tuisim.analysis.model import Model
     from tuisim.analysis.source import OpenedLog
-    from tuisim.core.field import Field
+    from tuisim.engine.core.field import Field
+    from tuisim.engine.runs.run_folder import StoredRun
     from tuisim.logs.log import Log
-    from tuisim.runs.run_folder import StoredRun
 
 _POSE = ("x_mm", "y_mm", "heading_deg")
 _PLAIN, _DIM = Style(color=palette.INK), Style(color=palette.SUBTITLE)

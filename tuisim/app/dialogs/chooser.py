@@ -23,25 +23,25 @@ from tuisim.app.dialogs.dialog import MOVE_KEYS, Dialog, name_and_title
 from tuisim.app.dialogs.paths import completed, is_path, paths_after
 from tuisim.app.dialogs.save import typed_path
 from tuisim.app.error_words import in_a_list
-from tuisim.config.folders import user_path
-from tuisim.config.mat_image import decode, read_file
-from tuisim.config.mats import find_mat, spec_name
-from tuisim.config.obstacles import OBSTACLES, load_obstacles
-from tuisim.config.profiles import load_profile
-from tuisim.config.program_file import LOG_SUFFIXES
-from tuisim.core.profile import PROFILES
-from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
-from tuisim.data_class import dataclass
-from tuisim.errors import LogError, TuisimError
+from tuisim.base.data_class import dataclass
+from tuisim.base.errors import LogError, TuisimError
+from tuisim.base.folders import user_path
+from tuisim.engine.core.profile import PROFILES
+from tuisim.engine.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
+from tuisim.engine.mat_image import decode, read_file
+from tuisim.engine.mats import find_mat, spec_name
+from tuisim.engine.obstacles import OBSTACLES, load_obstacles
 from tuisim.logs.export import is_companion
-from tuisim.scene.mat import shrink
-from tuisim.scene.view import Viewport, whole_field
+from tuisim.pictures.scene.mat import shrink
+from tuisim.pictures.scene.view import Viewport, whole_field
+from tuisim.programs.program_file import LOG_SUFFIXES
+from tuisim.settings.profiles import load_profile
 from tuisim.terminal.cell_view import PixelView
 from tuisim.terminal.pixels import Pixels
 
 if TYPE_CHECKING:
     from tuisim.app.setup.next_run import NextRun
-    from tuisim.config.mats import Background
+    from tuisim.engine.mats import Background
 
 OPENABLE, TABLES = (".py", ".toml"), (".toml", ".json")
 LOGS = (*LOG_SUFFIXES, ".txt", ".log")
@@ -322,10 +322,10 @@ def best_match(groups: Iterable[ChoiceGroup], typed: str) -> str:
 
 def program_chooser() -> Chooser:
     """Return the dialog for programs, worlds, goals and logs: those in the current folder, and the examples."""
-    from tuisim.config.program_file import programs
-    from tuisim.config.worlds import load_world
-    from tuisim.goals.files import examples as goals_examples
-    from tuisim.goals.files import title_of
+    from tuisim.programs.program_file import programs
+    from tuisim.settings.worlds import load_world
+    from tuisim.tasks.goals.files import examples as goals_examples
+    from tuisim.tasks.goals.files import title_of
 
     examples, goals = programs(), goals_examples()
     known = {str(path.resolve()) for path in (*(path for _, path, _ in examples), *goals)}
@@ -363,9 +363,9 @@ def _read_openable(word: str) -> object:
         if not os.path.isfile(user_path(word)):
             raise LogError("no such file", file=word)
         return word
-    from tuisim.config.program_file import find_program, read_program
-    from tuisim.config.worlds import means_world
-    from tuisim.goals.files import load_task
+    from tuisim.programs.program_file import find_program, read_program
+    from tuisim.settings.worlds import means_world
+    from tuisim.tasks.goals.files import load_task
 
     path = find_program(str(user_path(word)))
     return load_task(path) if means_world(word) else read_program(path)

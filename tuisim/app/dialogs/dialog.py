@@ -25,7 +25,7 @@ from textual.widgets import Input, OptionList, Static
 from tuisim.app import background
 from tuisim.app.action import KeyFooter, KeyWord, label_of_key, press
 from tuisim.app.background import Made
-from tuisim.errors import TuisimError
+from tuisim.base.errors import TuisimError
 from tuisim.terminal.cell_view import JoinedStrip, LazyStrip
 from tuisim.terminal.textual_internals import HookedScreen, bindings_of
 

@@ -16,11 +16,11 @@ from textual.widgets.option_list import Option
 from tuisim.app.dialogs.dialog import Dialog, Result, name_and_title
 from tuisim.app.dialogs.question import LineInput, form_list
 from tuisim.app.setup.poses import MAX_NAME, delete_pose, load_poses, save_pose
-from tuisim.breakpoints import FORMS, Breakpoint, check_line, parse_break, parse_watch
-from tuisim.core.geometry import Pose, shown_heading_deg
-from tuisim.core.sensors import column_names
-from tuisim.core.spec import RunSpec
-from tuisim.errors import TuisimError
+from tuisim.base.errors import TuisimError
+from tuisim.engine.breakpoints import FORMS, Breakpoint, check_line, parse_break, parse_watch
+from tuisim.engine.core.geometry import Pose, shown_heading_deg
+from tuisim.engine.core.sensors import column_names
+from tuisim.engine.core.spec import RunSpec
 
 Entry = TypeVar("Entry")
 

@@ -14,7 +14,7 @@ from textual.widgets import OptionList, Static
 from textual.widgets.option_list import Option
 
 from tuisim.app.dialogs.dialog import Dialog
-from tuisim.config.program_file import with_mat
+from tuisim.programs.program_file import with_mat
 
 
 class Skeleton(StrEnum):

@@ -12,9 +12,9 @@ from textual.binding import BindingType
 from textual.widgets import Input, OptionList, Static
 from textual.widgets.option_list import Option
 
-from tuisim import palette
 from tuisim.app.action import Action
 from tuisim.app.dialogs.dialog import MOVE_KEYS, Dialog
+from tuisim.base import palette
 from tuisim.terminal.text_runs import cut
 
 _WIDTH, _BESIDE = 74, 10

@@ -7,7 +7,7 @@ from collections.abc import Collection
 from itertools import takewhile
 from pathlib import Path
 
-from tuisim.config.folders import user_path
+from tuisim.base.folders import user_path
 from tuisim.logs.export import is_companion
 
 

@@ -15,7 +15,7 @@ from textual.widgets import Input, Static
 
 from tuisim.app.action import KeyWord
 from tuisim.app.dialogs.dialog import Dialog
-from tuisim.errors import TuisimError
+from tuisim.base.errors import TuisimError
 from tuisim.terminal.text_runs import as_markup
 
 if TYPE_CHECKING:

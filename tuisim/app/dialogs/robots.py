@@ -15,16 +15,16 @@ from textual.app import ComposeResult
 from textual.containers import Horizontal, Vertical
 from textual.widgets import OptionList
 
-from tuisim import palette
 from tuisim.app.dialogs.chooser import TABLES, WIDEST_NAME, ChoiceGroup, Chooser, files_here
-from tuisim.config.robots import ROBOTS, choose_robot, load_robot
-from tuisim.core.geometry import Pose
-from tuisim.core.outline import outline_of
-from tuisim.core.spec import ColorSensorSpec, RobotSpec, SensorSpec, TouchSpec
-from tuisim.errors import TuisimError
-from tuisim.scene.mono_robot import draw_mono_robot
-from tuisim.scene.robot import COLORED, GREY, MONO, RobotColors, draw_robot
-from tuisim.scene.view import Viewport
+from tuisim.base import palette
+from tuisim.base.errors import TuisimError
+from tuisim.engine.core.geometry import Pose
+from tuisim.engine.core.outline import outline_of
+from tuisim.engine.core.spec import ColorSensorSpec, RobotSpec, SensorSpec, TouchSpec
+from tuisim.pictures.scene.mono_robot import draw_mono_robot
+from tuisim.pictures.scene.robot import COLORED, GREY, MONO, RobotColors, draw_robot
+from tuisim.pictures.scene.view import Viewport
+from tuisim.settings.robots import ROBOTS, choose_robot, load_robot
 from tuisim.terminal import cells
 from tuisim.terminal.cell_view import LinesPanel, PixelView
 from tuisim.terminal.pixels import CellPoints, Pixels, Rgb

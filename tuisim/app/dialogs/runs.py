@@ -17,23 +17,23 @@ from textual.containers import Horizontal, VerticalScroll
 from textual.widgets import Input, OptionList, Static
 from textual.widgets.option_list import Option
 
-from tuisim import palette
 from tuisim.app import background
 from tuisim.app.branch import BRANCH_TAG
 from tuisim.app.dialogs.chooser import ListDialog, field_view
 from tuisim.app.dialogs.dialog import Dialog
 from tuisim.app.snapshot import GOOD_ENDS, end_label
-from tuisim.protocol import End
-from tuisim.runs.catalogue import RunInfo
-from tuisim.runs.store import RunStore
-from tuisim.scene.view import Viewport
+from tuisim.base import palette
+from tuisim.engine.protocol import End
+from tuisim.engine.runs.catalogue import RunInfo
+from tuisim.engine.runs.store import RunStore
+from tuisim.pictures.scene.view import Viewport
 from tuisim.terminal.cell_view import PixelView
 from tuisim.terminal.pixels import Pixels, Rgb
 from tuisim.terminal.text_runs import cut
 
 if TYPE_CHECKING:
-    from tuisim.runs.diff import RunDiff
-    from tuisim.runs.recorded_run import Recording
+    from tuisim.engine.runs.diff import RunDiff
+    from tuisim.engine.runs.recorded_run import Recording
 
 MOST_LISTED = 300
 """Most runs listed at once; a search finds the others."""
@@ -212,7 +212,7 @@ class RunChooser(ListDialog):
 
 
 def _way(run_id: str, port: Viewport, outside_rgb: Rgb) -> Pixels:
-    from tuisim.scene.pictures import path_picture
+    from tuisim.pictures.scene.pictures import path_picture
 
     return path_picture(RunStore().load_run(run_id), port, outside_rgb)
 
@@ -294,7 +294,7 @@ class Differences(Dialog[bool]):
         self._diff = diff
 
     def content(self) -> ComposeResult:
-        from tuisim.runs.diff import recording_in_words, setup_in_words
+        from tuisim.engine.runs.diff import recording_in_words, setup_in_words
 
         table = Table.grid(padding=(0, 2))
         table.add_column(style="bold")

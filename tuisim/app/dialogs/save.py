@@ -15,8 +15,9 @@ from textual.widgets import Input, Static
 
 from tuisim.app.dialogs.dialog import Dialog
 from tuisim.app.dialogs.question import Form, form_list
-from tuisim.config.folders import user_path
-from tuisim.errors import ConfigError, TuisimError, shortened
+from tuisim.base.errors import ConfigError, TuisimError, shortened
+from tuisim.base.folders import user_path
+from tuisim.engine.runs.store import RunStore
 from tuisim.logs.export import (
     LISTED,
     check_target,
@@ -24,7 +25,6 @@ from tuisim.logs.export import (
     export_telemetry,
     files_in_words,
 )
-from tuisim.runs.store import RunStore
 from tuisim.terminal.app import offer
 
 

@@ -16,8 +16,9 @@ from textual.widgets.option_list import Option
 from tuisim.app.dialogs.chooser import ChoiceGroup, Chooser
 from tuisim.app.dialogs.dialog import Dialog, name_and_title
 from tuisim.app.dialogs.question import LinePrompt
-from tuisim.config.files import Scalar
-from tuisim.config.user_config import (
+from tuisim.base.errors import TuisimError
+from tuisim.engine.files import Scalar
+from tuisim.settings.user_config import (
     FILE,
     SETTINGS,
     THEME,
@@ -26,7 +27,6 @@ from tuisim.config.user_config import (
     UserConfig,
     load_config,
 )
-from tuisim.errors import TuisimError
 
 Change = Callable[[Setting, Scalar | None], None]
 """Writes a setting and applies it; None for the usual value. Raises TuisimError."""

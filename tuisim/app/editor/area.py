@@ -24,11 +24,11 @@ from textual.widgets.text_area import Edit, EditResult, Selection
 from tuisim.app.editor import text_lines
 from tuisim.app.editor.candidate_list import CandidateList
 from tuisim.app.editor.completion import Candidate, candidates, word_before
-from tuisim.app.editor.names import UnknownName
 from tuisim.app.editor.syntax import KINDS, Colouring
 from tuisim.app.snapshot import short_value
-from tuisim.data_class import dataclass
-from tuisim.protocol import Variable
+from tuisim.base.data_class import dataclass
+from tuisim.engine.protocol import Variable
+from tuisim.programs.names import UnknownName
 from tuisim.terminal.text_runs import Line, cut_line
 from tuisim.terminal.textual_internals import columns_to_tab_stop, line_at_row
 

@@ -11,9 +11,9 @@ from textual.timer import Timer
 from tuisim.app import background
 from tuisim.app.editor import completion
 from tuisim.app.editor.area import CodeArea
-from tuisim.app.editor.attributes import AttributeCheck
 from tuisim.app.editor.candidate_list import signature_text
-from tuisim.app.editor.names import UnknownName, unknown_names
+from tuisim.programs.attributes import AttributeCheck
+from tuisim.programs.names import UnknownName, unknown_names
 from tuisim.terminal.text_runs import cut
 
 CHECK_AFTER_S = 0.5

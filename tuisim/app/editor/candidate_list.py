@@ -14,9 +14,9 @@ from textual.message import Message
 from textual.strip import Strip
 from textual.widget import Widget
 
-from tuisim import palette
 from tuisim.app.editor.completion import Candidate, Signature
-from tuisim.data_class import dataclass
+from tuisim.base import palette
+from tuisim.base.data_class import dataclass
 from tuisim.terminal.text_runs import Line, cut, cut_line, first_shown
 
 MOST_ROWS = 8

@@ -16,10 +16,10 @@ from threading import Lock
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from tuisim.app.editor.syntax import spans
-from tuisim.config.folders import cache_folder
-from tuisim.config.program_file import parse_unfinished
-from tuisim.data_class import dataclass
-from tuisim.source import PRELUDE_TEXTS
+from tuisim.base.data_class import dataclass
+from tuisim.base.folders import cache_folder
+from tuisim.base.source import PRELUDE_TEXTS
+from tuisim.programs.program_file import parse_unfinished
 
 if TYPE_CHECKING:
     from jedi import Script
@@ -35,8 +35,8 @@ MOST_LINES_OF_CALL = 20
 _PACKAGE = Path(__file__).resolve().parents[2]
 _WORD_END = re.compile(r"[^\W\d]\w*$")
 _SENTENCE_END = re.compile(r"\.(?= [A-Z])")
-_COURSE = "from tuisim.shim.names.course import ColorSensor\n"
-_PYBRICKS = "tuisim.shim.pybricks."
+_COURSE = "from tuisim.engine.shim.names.course import ColorSensor\n"
+_PYBRICKS = "tuisim.engine.shim.pybricks."
 _NOT_OF_THE_BRICK = frozenset(
     {"KIND", "ENDINGS", "SETTINGS_WHILE_ACTIVE", "brick", "device_port", "port", "sign"}
 )
@@ -45,7 +45,7 @@ _GENERAL = frozenset({"ev3dev2", "ev3dev2.sensor"})
 """Modules of the classes that all devices of `ev3dev2` share, which few programs use."""
 _OF_THE_COURSE = frozenset({"reflected_light_intensity_pc", "full_reflected_light_intensity"})
 """Attributes that colour sensors have while a program runs, however they were made."""
-_LIBRARIES = ("ev3dev2", "tuisim.shim.names.course", "time")
+_LIBRARIES = ("ev3dev2", "tuisim.engine.shim.names.course", "time")
 _USUAL = (
     "on",
     "off",
@@ -225,7 +225,7 @@ def _script(text: str, path: str) -> tuple[Script, int]:
         prelude = imports + _COURSE + prelude.removeprefix(imports)
     folder = Path(path).parent
     own = [
-        str(_PACKAGE / "shim" / "names"),
+        str(_PACKAGE / "engine" / "shim" / "names"),
         str(_PACKAGE.parent),
         *([str(folder.resolve())] if path else []),
     ]

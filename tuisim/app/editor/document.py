@@ -18,10 +18,10 @@ from tuisim.app.editor.text_file import (
     write_text,
 )
 from tuisim.app.editor.text_lines import LineMap, differing_lines
-from tuisim.config.magic_mat import wrong_mat
-from tuisim.config.options import Settings
-from tuisim.errors import ConfigError, TuisimError, counted
-from tuisim.source import source_lines
+from tuisim.base.errors import ConfigError, TuisimError, counted
+from tuisim.base.source import source_lines
+from tuisim.programs.magic_mat import wrong_mat
+from tuisim.settings.options import Settings
 
 if TYPE_CHECKING:
     from tuisim.app.editor.syntax import Mistake
@@ -29,8 +29,8 @@ if TYPE_CHECKING:
     from tuisim.app.loader import Loader
     from tuisim.app.panel_area import PanelArea
     from tuisim.app.run_controller import RunController
-    from tuisim.runs.recorded_run import Recording
-    from tuisim.source import Program
+    from tuisim.base.source import Program
+    from tuisim.engine.runs.recorded_run import Recording
 
 DRAFT_AFTER_S = 1.0
 """Delay after an edit before unsaved text is stored as a draft, in case of a crash."""
@@ -141,7 +141,7 @@ class Document:
 
     def _runnable(self, text: str | None = None) -> str | None:
         """Return the text as a program runs it, None if its magic line is invalid."""
-        from tuisim.config.program_file import parse_program
+        from tuisim.programs.program_file import parse_program
 
         try:
             return parse_program(self._text if text is None else text, self._name).program.text
@@ -360,7 +360,7 @@ class Document:
 
     def write_mat(self, mat: str) -> None:
         """Write a mat into the magic line, and into the file unless that has to wait for other changes."""
-        from tuisim.config.program_file import with_mat
+        from tuisim.programs.program_file import with_mat
 
         was_dirty = self.dirty
         try:
@@ -377,7 +377,7 @@ class Document:
     @property
     def named_mat(self) -> str | None:
         """The mat in the magic line of a program that may be written, empty for none; None without such a line."""
-        from tuisim.config.program_file import find_magic
+        from tuisim.programs.program_file import find_magic
 
         if not self._text or (self._path and is_protected(Path(self._path))):
             return None

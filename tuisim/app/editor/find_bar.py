@@ -10,7 +10,7 @@ from textual.containers import Horizontal
 from textual.message import Message
 from textual.widgets import Input, Static
 
-from tuisim.data_class import dataclass
+from tuisim.base.data_class import dataclass
 
 FIND, LINE = "find", "line"
 

@@ -7,7 +7,7 @@ import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from functools import lru_cache
 
-from tuisim.protocol import FrameState, Inspected, Variable
+from tuisim.engine.protocol import FrameState, Inspected, Variable
 
 MODULE = "<module>"
 """The function of a frame that is the program itself."""

@@ -12,10 +12,10 @@ import re
 import warnings
 from collections.abc import Sequence
 
-from tuisim.config.magic_mat import wrong_mat
-from tuisim.config.program_file import parse_program
-from tuisim.data_class import dataclass
-from tuisim.errors import TuisimError
+from tuisim.base.data_class import dataclass
+from tuisim.base.errors import TuisimError
+from tuisim.programs.magic_mat import wrong_mat
+from tuisim.programs.program_file import parse_program
 
 Span = tuple[int, int, str]
 """Start and end in characters, and one of `KINDS`."""

@@ -15,13 +15,13 @@ from contextlib import suppress
 from dataclasses import asdict
 from pathlib import Path
 
-from tuisim.atomic import make_private_folder, replacing
-from tuisim.config.folders import programs_folder, session_folder
-from tuisim.config.program_file import MAX_PROGRAM_BYTES
-from tuisim.data_class import dataclass
-from tuisim.errors import ConfigError
-from tuisim.regular_file import read_regular
-from tuisim.source import decode_source
+from tuisim.base.atomic import make_private_folder, replacing
+from tuisim.base.data_class import dataclass
+from tuisim.base.errors import ConfigError
+from tuisim.base.folders import programs_folder, session_folder
+from tuisim.base.regular_file import read_regular
+from tuisim.base.source import decode_source
+from tuisim.programs.program_file import MAX_PROGRAM_BYTES
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,7 +6,7 @@ import re
 from collections.abc import Callable, Sequence
 from difflib import SequenceMatcher
 
-from tuisim.source import source_lines
+from tuisim.base.source import source_lines
 
 Change = Callable[[Sequence[str]], list[str]]
 """A function that returns edited lines."""

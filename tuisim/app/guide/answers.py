@@ -11,7 +11,7 @@ from textual.geometry import Size
 from textual.widgets import OptionList
 from textual.widgets.option_list import Option
 
-from tuisim import palette
+from tuisim.base import palette
 from tuisim.guide.catalogue import pages
 from tuisim.guide.excerpt import excerpt_of
 from tuisim.guide.search import SearchResult

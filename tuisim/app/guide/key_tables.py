@@ -15,9 +15,9 @@ from tuisim.app.action import FIELD_KEYS, Action, KeyWord, label_of_key
 from tuisim.app.editor.area import EDITOR_KEYS
 from tuisim.app.keymap import with_keys
 from tuisim.app.panels import PANELS
-from tuisim.config.user_config import load_config
-from tuisim.errors import ConfigError
+from tuisim.base.errors import ConfigError
 from tuisim.guide.tables import Table, code
+from tuisim.settings.user_config import load_config
 
 EVERYWHERE = (("tab", "Next panel or field"), ("Escape", "Leave a field"))
 """Keys that are no lines of the app's table."""

@@ -16,12 +16,12 @@ from textual.geometry import Size
 from textual.widgets import Input, Static, Tree
 from textual.widgets.tree import TreeNode
 
-from tuisim import palette
 from tuisim.app import background
 from tuisim.app.action import KeyWord, key_table
 from tuisim.app.dialogs.dialog import Dialog
 from tuisim.app.guide.answers import AnswerList, name_of
-from tuisim.data_class import dataclass
+from tuisim.base import palette
+from tuisim.base.data_class import dataclass
 from tuisim.guide.catalogue import CONTENTS, pages
 from tuisim.guide.search import SearchResult, search
 from tuisim.guide.text import (

@@ -40,9 +40,9 @@ from tuisim.app.layout.tree import (
     place,
 )
 from tuisim.app.panels import PANELS, PanelPlace, TerminalSize
-from tuisim.config.preferences import keep, preference
-from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
-from tuisim.data_class import dataclass
+from tuisim.base.data_class import dataclass
+from tuisim.engine.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
+from tuisim.settings.preferences import keep, preference
 
 _CODE_FROM_COLS = 120
 """From this width on, code is shown beside them."""

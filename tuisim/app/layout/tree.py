@@ -8,8 +8,8 @@ from enum import StrEnum
 from itertools import accumulate, pairwise
 
 from tuisim.app.panels import PANELS
-from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
-from tuisim.data_class import dataclass
+from tuisim.base.data_class import dataclass
+from tuisim.engine.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
 
 EDGES = 2
 """Rows or columns that the two edges of a panel take."""

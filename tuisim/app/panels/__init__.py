@@ -13,7 +13,7 @@ from enum import StrEnum
 from importlib import import_module
 from typing import TYPE_CHECKING, Protocol, cast, runtime_checkable
 
-from tuisim.data_class import dataclass
+from tuisim.base.data_class import dataclass
 
 if TYPE_CHECKING:
     from tuisim.app.setup.next_run import NextRun

@@ -9,7 +9,7 @@ from textual.widget import Widget
 
 from tuisim.app.panels.titles import name_sensors
 from tuisim.app.render.arrays import Arrangement, arranged, face_lines, names_in_border
-from tuisim.scene.discs import RIM_16_RGB, RIM_RGB, DiscFace, disc_faces, draw_disc
+from tuisim.pictures.scene.discs import RIM_16_RGB, RIM_RGB, DiscFace, disc_faces, draw_disc
 from tuisim.terminal.cell_view import LinesView, PixelView
 from tuisim.terminal.text_runs import Line
 

@@ -12,8 +12,8 @@ from textual.timer import Timer
 
 from tuisim.app.render.brick import BrickPicture, draw_brick
 from tuisim.app.snapshot import IN_RUN, RunPhase, Snapshot
-from tuisim.core.spec import BUTTONS, INPUT_PORTS
-from tuisim.data_class import dataclass
+from tuisim.base.data_class import dataclass
+from tuisim.engine.core.spec import BUTTONS, INPUT_PORTS
 from tuisim.terminal.cell_view import LinesPanel
 from tuisim.terminal.pacer import Throttle
 

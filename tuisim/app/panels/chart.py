@@ -15,13 +15,13 @@ from tuisim.app.action import KeyWord
 from tuisim.app.clipboard import Copied
 from tuisim.app.plot_view import PlotView
 from tuisim.app.snapshot import AT_REST, CHART_PERIOD_S, RunPhase, Snapshot
-from tuisim.charts import axes
-from tuisim.charts.bands import spans_of
-from tuisim.charts.layout import Span
-from tuisim.charts.text_chart import ChartPainter, ChartPicture, ChartState, values_at
-from tuisim.charts.traces import Trace, Traces
-from tuisim.data_class import dataclass
+from tuisim.base.data_class import dataclass
 from tuisim.logs.levels import PLAIN_LIGHT, find_light
+from tuisim.pictures.charts import axes
+from tuisim.pictures.charts.bands import spans_of
+from tuisim.pictures.charts.layout import Span
+from tuisim.pictures.charts.text_chart import ChartPainter, ChartPicture, ChartState, values_at
+from tuisim.pictures.charts.traces import Trace, Traces
 from tuisim.terminal.cell_view import LinesPanel
 from tuisim.terminal.pacer import Throttle
 from tuisim.terminal.picture_mode import shows_ascii

@@ -28,8 +28,8 @@ from tuisim.app.error_words import fitting
 from tuisim.app.panels import PANELS
 from tuisim.app.panels.titles import build_title
 from tuisim.app.snapshot import PauseView, RunPhase, Snapshot
-from tuisim.data_class import dataclass
-from tuisim.source import source_lines
+from tuisim.base.data_class import dataclass
+from tuisim.base.source import source_lines
 from tuisim.terminal.text_runs import as_markup
 
 LIT_GAP_S = 0.1

@@ -13,12 +13,12 @@ from tuisim.app.panels import PANELS
 from tuisim.app.panels.titles import build_title
 from tuisim.app.render.debug import DebugView, debug_lines
 from tuisim.app.snapshot import PauseView, RunPhase, Snapshot
-from tuisim.data_class import dataclass
+from tuisim.base.data_class import dataclass
 from tuisim.terminal.cell_view import LinesPanel
 from tuisim.terminal.text_runs import Line
 
 if TYPE_CHECKING:
-    from tuisim.protocol import Paused
+    from tuisim.engine.protocol import Paused
 
 _INFO = PANELS["debug"]
 

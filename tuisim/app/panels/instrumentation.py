@@ -22,8 +22,8 @@ from tuisim.app.panels.reading_runs import (
 from tuisim.app.panels.titles import build_title, name_setup
 from tuisim.app.render.arrays import swatch_of
 from tuisim.app.snapshot import RunPhase, Snapshot, end_label
-from tuisim.core.geometry import shown_heading_deg
-from tuisim.core.sensors.color import ColorReading
+from tuisim.engine.core.geometry import shown_heading_deg
+from tuisim.engine.core.sensors.color import ColorReading
 from tuisim.logs.units import unit_of
 from tuisim.terminal.cell_view import LinesPanel
 from tuisim.terminal.text_runs import Line, Run, cut

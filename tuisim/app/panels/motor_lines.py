@@ -12,8 +12,8 @@ from tuisim.app.panels.reading_runs import (
     value_runs,
 )
 from tuisim.app.snapshot import Snapshot
-from tuisim.core.motor_columns import STATE_BITS
-from tuisim.core.state import MotorValues
+from tuisim.engine.core.motor_columns import STATE_BITS
+from tuisim.engine.core.state import MotorValues
 from tuisim.terminal.text_runs import Line, Run
 
 _LONGEST_STATE = 10

@@ -11,9 +11,9 @@ from textual.message import Message
 from textual.widgets import Input, Label, Static
 
 from tuisim.app.form import EntryPanel, NumberInput, Slider
-from tuisim.core.spec import NoiseSpec, RunSpec
-from tuisim.core.values import Whole, WrongValue, values_of
-from tuisim.data_class import dataclass
+from tuisim.base.data_class import dataclass
+from tuisim.engine.core.spec import NoiseSpec, RunSpec
+from tuisim.engine.core.values import Whole, WrongValue, values_of
 
 if TYPE_CHECKING:
     from tuisim.app.snapshot import Snapshot

@@ -16,9 +16,9 @@ from textual.widgets import Input, Label, OptionList, Static
 from textual.widgets.option_list import Option
 
 from tuisim.app.form import EntryPanel, reason, typed_number
-from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, Obstacle
-from tuisim.data_class import dataclass
-from tuisim.errors import ConfigError, ObstacleError
+from tuisim.base.data_class import dataclass
+from tuisim.base.errors import ConfigError, ObstacleError
+from tuisim.engine.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, Obstacle
 
 if TYPE_CHECKING:
     from tuisim.app.setup.next_run import NextRun

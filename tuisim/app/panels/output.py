@@ -24,9 +24,9 @@ from tuisim.app.clipboard import Copied
 from tuisim.app.panels import PANELS
 from tuisim.app.panels.titles import build_title
 from tuisim.app.snapshot import RunPhase, Snapshot
-from tuisim.data_class import dataclass
-from tuisim.errors import counted
-from tuisim.runs.records import OutputRow, Stream, line_of
+from tuisim.base.data_class import dataclass
+from tuisim.base.errors import counted
+from tuisim.engine.runs.records import OutputRow, Stream, line_of
 
 _INFO = PANELS["output"]
 BEFORE_A_RUN = "What the program prints appears here: {run} runs it"

@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
-from tuisim.core.geometry import Pose
-from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, START_VALUES
-from tuisim.data_class import dataclass
+from tuisim.base.data_class import dataclass
+from tuisim.engine.core.geometry import Pose
+from tuisim.engine.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, START_VALUES
 
 _ON_FIELD = (0, FIELD_WIDTH_MM), (0, FIELD_HEIGHT_MM)
 _ON_FLOOR = tuple((START_VALUES[key].low, START_VALUES[key].high) for key in ("x_mm", "y_mm"))

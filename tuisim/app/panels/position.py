@@ -12,10 +12,10 @@ from textual.widgets import Input, Label, Static
 
 from tuisim.app.action import action_link
 from tuisim.app.form import FormPanel, NumberInput
-from tuisim.core.geometry import Pose, shown_heading_deg
-from tuisim.core.spec import START_VALUES
-from tuisim.core.values import WrongValue
-from tuisim.data_class import dataclass
+from tuisim.base.data_class import dataclass
+from tuisim.engine.core.geometry import Pose, shown_heading_deg
+from tuisim.engine.core.spec import START_VALUES
+from tuisim.engine.core.values import WrongValue
 
 if TYPE_CHECKING:
     from tuisim.app.snapshot import Snapshot

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from rich.style import Style
 
-from tuisim import palette
+from tuisim.base import palette
 from tuisim.terminal.text_runs import Line, Run
 
 LABEL = Style(color=palette.LABEL)

@@ -17,7 +17,7 @@ from tuisim.app.form import Choice, Row
 from tuisim.app.setup.fields import FieldGroup, FormField, find, sections, step
 from tuisim.app.setup.next_run import NextRun
 from tuisim.app.snapshot import Snapshot
-from tuisim.data_class import dataclass
+from tuisim.base.data_class import dataclass
 
 _LINKS = (
     (("robot", "Robots"), ("save-robot", "Save")),

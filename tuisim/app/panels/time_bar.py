@@ -10,11 +10,11 @@ from rich.style import Style
 from textual import events
 from textual.message import Message
 
-from tuisim import palette
 from tuisim.app.snapshot import RunPhase, Snapshot
-from tuisim.charts.axes import time_limits
-from tuisim.data_class import dataclass
-from tuisim.runs.records import Mark
+from tuisim.base import palette
+from tuisim.base.data_class import dataclass
+from tuisim.engine.runs.records import Mark
+from tuisim.pictures.charts.axes import time_limits
 from tuisim.terminal.cell_view import LinesView
 from tuisim.terminal.text_runs import Run
 

@@ -11,7 +11,7 @@ from textual.app import App
 from tuisim.app.action import ActionHost, label_of_key
 from tuisim.app.panels import PANELS
 from tuisim.app.snapshot import Snapshot
-from tuisim.source import PRELUDE_TEXTS
+from tuisim.base.source import PRELUDE_TEXTS
 from tuisim.terminal.text_runs import as_markup
 
 _PREDEFINED = re.compile(r"^(\w+) = ColorSensor\(INPUT_(\d)\)$", re.MULTILINE)

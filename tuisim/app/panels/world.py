@@ -20,15 +20,15 @@ from tuisim.app.panels.time_bar import TimeBar
 from tuisim.app.panels.titles import build_title, name_mat
 from tuisim.app.render.world_text import draw_signs, draw_world_text, legend
 from tuisim.app.snapshot import AT_REST, Snapshot
-from tuisim.core.geometry import Pose
-from tuisim.core.outline import outline_of
-from tuisim.core.spec import Obstacle, PenSpec
-from tuisim.data_class import dataclass
-from tuisim.scene.off_field import off_field_words
-from tuisim.scene.painter import Faint, ScenePainter, SceneState
-from tuisim.scene.pen import PenTrace, Piece
-from tuisim.scene.robot import drawn_scale
-from tuisim.scene.view import ZOOMS, Viewport, following
+from tuisim.base.data_class import dataclass
+from tuisim.engine.core.geometry import Pose
+from tuisim.engine.core.outline import outline_of
+from tuisim.engine.core.spec import Obstacle, PenSpec
+from tuisim.pictures.scene.off_field import off_field_words
+from tuisim.pictures.scene.painter import Faint, ScenePainter, SceneState
+from tuisim.pictures.scene.pen import PenTrace, Piece
+from tuisim.pictures.scene.robot import drawn_scale
+from tuisim.pictures.scene.view import ZOOMS, Viewport, following
 from tuisim.terminal.cell_view import PixelView
 from tuisim.terminal.cells import MONO
 from tuisim.terminal.picture_mode import BLOCKS

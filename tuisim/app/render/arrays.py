@@ -8,9 +8,9 @@ from typing import NamedTuple
 from rich.color import Color
 from rich.style import Style
 
-from tuisim import palette
-from tuisim.core.sensors.color import ColorReading
-from tuisim.scene.discs import DiscFace
+from tuisim.base import palette
+from tuisim.engine.core.sensors.color import ColorReading
+from tuisim.pictures.scene.discs import DiscFace
 from tuisim.terminal.text_runs import Line, Run, cut
 
 FULL_COLS, LARGE_COLS = 20, 40

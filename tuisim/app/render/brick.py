@@ -10,12 +10,18 @@ from numpy.typing import NDArray
 from rich.color import Color
 from rich.style import Style
 
-from tuisim import palette
-from tuisim.core.css_colors import Rgb
-from tuisim.core.spec import TOUCH
-from tuisim.data_class import dataclass
-from tuisim.runs.brick_state import DISPLAY_HEIGHT, DISPLAY_WIDTH, ROW_BYTES, BrickState, TextScreen
-from tuisim.scene.discs import shrunk
+from tuisim.base import palette
+from tuisim.base.data_class import dataclass
+from tuisim.engine.core.css_colors import Rgb
+from tuisim.engine.core.spec import TOUCH
+from tuisim.engine.runs.brick_state import (
+    DISPLAY_HEIGHT,
+    DISPLAY_WIDTH,
+    ROW_BYTES,
+    BrickState,
+    TextScreen,
+)
+from tuisim.pictures.scene.discs import shrunk
 from tuisim.terminal.text_runs import Run
 
 _PAPER_RGB, _INK_RGB = (172, 186, 158), (22, 28, 20)

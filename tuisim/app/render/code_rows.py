@@ -8,8 +8,8 @@ import tokenize
 from collections.abc import Iterator, Mapping
 from dataclasses import field
 
-from tuisim.data_class import dataclass
-from tuisim.source import source_lines
+from tuisim.base.data_class import dataclass
+from tuisim.base.source import source_lines
 
 _INDENT = "  "
 """What the further rows of a line are indented by."""

@@ -10,10 +10,10 @@ from typing import assert_never
 
 from rich.style import Style
 
-from tuisim import palette
 from tuisim.app.snapshot import RunPhase, short_value
-from tuisim.data_class import dataclass
-from tuisim.protocol import FrameState, Inspected, Paused, PauseReason, Variable
+from tuisim.base import palette
+from tuisim.base.data_class import dataclass
+from tuisim.engine.protocol import FrameState, Inspected, Paused, PauseReason, Variable
 from tuisim.terminal.text_runs import Line, cut
 
 _PLAIN = Style(color=palette.INK)

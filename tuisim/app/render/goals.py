@@ -8,11 +8,11 @@ from typing import assert_never
 
 from rich.style import Style
 
-from tuisim import palette
-from tuisim.data_class import dataclass
-from tuisim.goals.condition import ConditionKind
-from tuisim.goals.judgement import GoalState, Judgement, most_points, points_of
-from tuisim.goals.spec import Goal
+from tuisim.base import palette
+from tuisim.base.data_class import dataclass
+from tuisim.tasks.goals.condition import ConditionKind
+from tuisim.tasks.goals.judgement import GoalState, Judgement, most_points, points_of
+from tuisim.tasks.goals.spec import Goal
 from tuisim.terminal.text_runs import Line, cut
 
 _NAME = Style(color=palette.WHITE, bold=True)

@@ -8,14 +8,14 @@ from enum import StrEnum
 
 from rich.style import Style
 
-from tuisim import palette
 from tuisim.app.panels import PANELS
 from tuisim.app.render.code_rows import code_rows
-from tuisim.data_class import dataclass
-from tuisim.goals.judgement import GoalState, Judgement
-from tuisim.lessons.markdown import markdown_lines
-from tuisim.lessons.progress import StepState
-from tuisim.lessons.spec import (
+from tuisim.base import palette
+from tuisim.base.data_class import dataclass
+from tuisim.tasks.goals.judgement import GoalState, Judgement
+from tuisim.tasks.lessons.markdown import markdown_lines
+from tuisim.tasks.lessons.progress import StepState
+from tuisim.tasks.lessons.spec import (
     BreakCheck,
     ExportCheck,
     Lesson,

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from tuisim.app.snapshot import Snapshot
-from tuisim.core.outline import outline_of
-from tuisim.scene.mono_robot import body, pointer
-from tuisim.scene.off_field import off_field_words
-from tuisim.scene.painter import Faint, ScenePainter, SceneState
-from tuisim.scene.pen import PenTrace
-from tuisim.scene.robot import drawn_scale
-from tuisim.scene.view import Viewport, following
+from tuisim.engine.core.outline import outline_of
+from tuisim.pictures.scene.mono_robot import body, pointer
+from tuisim.pictures.scene.off_field import off_field_words
+from tuisim.pictures.scene.painter import Faint, ScenePainter, SceneState
+from tuisim.pictures.scene.pen import PenTrace
+from tuisim.pictures.scene.robot import drawn_scale
+from tuisim.pictures.scene.view import Viewport, following
 from tuisim.terminal.cells import draw_mono_rows, find_cell_points
 from tuisim.terminal.picture_options import CellSet
 from tuisim.terminal.pixels import Pixels

@@ -20,11 +20,11 @@ from tuisim.app.setup.next_run import (
     with_robot_edited,
     with_values,
 )
-from tuisim.config.options import RUN_VALUES
-from tuisim.config.robots import ROBOTS
-from tuisim.core import tree
-from tuisim.core.profile import PROFILES
-from tuisim.core.spec import (
+from tuisim.base.data_class import dataclass
+from tuisim.base.errors import ConfigError, RobotError
+from tuisim.engine.core import tree
+from tuisim.engine.core.profile import PROFILES
+from tuisim.engine.core.spec import (
     INPUT_PORTS,
     MOUNTS,
     OUTPUT_PORTS,
@@ -35,9 +35,9 @@ from tuisim.core.spec import (
     SensorSpec,
     UltrasonicSpec,
 )
-from tuisim.core.values import OFF, ON, Number, Numbers, Value, WrongValue, values_of
-from tuisim.data_class import dataclass
-from tuisim.errors import ConfigError, RobotError
+from tuisim.engine.core.values import OFF, ON, Number, Numbers, Value, WrongValue, values_of
+from tuisim.settings.options import RUN_VALUES
+from tuisim.settings.robots import ROBOTS
 
 SWITCHED = (ON, OFF)
 MAX_LABEL = 12

@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from tuisim.config import mat_cache, mats
-from tuisim.config.mat_cache import FieldFiles
-from tuisim.core.field import Field
-from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, RunSpec
-from tuisim.data_class import dataclass
-from tuisim.runs.run_folder import StoredRun, mat_files
+from tuisim.base.data_class import dataclass
+from tuisim.engine import mat_cache, mats
+from tuisim.engine.core.field import Field
+from tuisim.engine.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, RunSpec
+from tuisim.engine.mat_cache import FieldFiles
+from tuisim.engine.runs.run_folder import StoredRun, mat_files
 
 PATIENCE_S = 1.0
 """A run that waits longer than this for its mat says so: mostly it is prepared sooner."""

@@ -11,9 +11,25 @@ from dataclasses import field, replace
 from pathlib import Path
 from typing import Any
 
-from tuisim.config.build import build_run_spec, settings_from
-from tuisim.config.obstacles import load_obstacles
-from tuisim.config.options import (
+from tuisim.base.data_class import dataclass
+from tuisim.base.errors import BackgroundError, TuisimError
+from tuisim.base.source import Program
+from tuisim.engine.core import tree
+from tuisim.engine.core.geometry import Pose
+from tuisim.engine.core.spec import EMPTY_MAT, NoiseSpec, Obstacle, RobotSpec, RunSpec
+from tuisim.engine.obstacles import load_obstacles
+from tuisim.engine.protocol import UserAction
+from tuisim.engine.runs.presses import press_actions
+from tuisim.programs.program_file import ProgramSource, program_of_text
+from tuisim.programs.program_settings import (
+    OF_THE_GROUND,
+    PROGRAM_PATHS,
+    Decided,
+    decide,
+    has_brick_rules,
+)
+from tuisim.settings.build import build_run_spec, settings_from
+from tuisim.settings.options import (
     OF_THE_MAT,
     OF_THE_PROFILE,
     RUN_VALUES,
@@ -21,24 +37,8 @@ from tuisim.config.options import (
     Settings,
     settings_of,
 )
-from tuisim.config.profiles import load_profile
-from tuisim.config.program_file import ProgramSource, program_of_text
-from tuisim.config.program_settings import (
-    OF_THE_GROUND,
-    PROGRAM_PATHS,
-    Decided,
-    decide,
-    has_brick_rules,
-)
-from tuisim.config.robots import DEFAULT_ROBOT, RobotChoice, choose_robot
-from tuisim.core import tree
-from tuisim.core.geometry import Pose
-from tuisim.core.spec import EMPTY_MAT, NoiseSpec, Obstacle, RobotSpec, RunSpec
-from tuisim.data_class import dataclass
-from tuisim.errors import BackgroundError, TuisimError
-from tuisim.protocol import UserAction
-from tuisim.runs.presses import press_actions
-from tuisim.source import Program
+from tuisim.settings.profiles import load_profile
+from tuisim.settings.robots import DEFAULT_ROBOT, RobotChoice, choose_robot
 
 WORLD_PATHS = frozenset(
     {

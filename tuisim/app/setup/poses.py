@@ -8,8 +8,13 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
 
-from tuisim.atomic import make_private_folder
-from tuisim.config.files import (
+from tuisim.base.atomic import make_private_folder
+from tuisim.base.errors import ConfigError
+from tuisim.base.folders import home_folder
+from tuisim.engine.core.geometry import Pose, world_point
+from tuisim.engine.core.outline import outline_of
+from tuisim.engine.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, RunSpec
+from tuisim.engine.files import (
     Location,
     read_file,
     required,
@@ -18,12 +23,7 @@ from tuisim.config.files import (
     toml_key,
     toml_lines,
 )
-from tuisim.config.folders import home_folder
-from tuisim.config.worlds import pose_from_table
-from tuisim.core.geometry import Pose, world_point
-from tuisim.core.outline import outline_of
-from tuisim.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, RunSpec
-from tuisim.errors import ConfigError
+from tuisim.settings.worlds import pose_from_table
 
 MOST_TRIES = 2000
 

@@ -9,12 +9,12 @@ from enum import StrEnum
 from pathlib import Path
 
 from tuisim.app.editor.text_file import drafts, is_protected
-from tuisim.config.folders import home_folder
-from tuisim.data_class import dataclass
-from tuisim.errors import LogError
-from tuisim.runs.catalogue import RunInfo
-from tuisim.runs.run_folder import read_run_file
-from tuisim.runs.store import RunStore
+from tuisim.base.data_class import dataclass
+from tuisim.base.errors import LogError
+from tuisim.base.folders import home_folder
+from tuisim.engine.runs.catalogue import RunInfo
+from tuisim.engine.runs.run_folder import read_run_file
+from tuisim.engine.runs.store import RunStore
 
 _RUNS_READ = 20
 """So many of the newest runs are read for their programs."""

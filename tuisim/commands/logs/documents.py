@@ -11,7 +11,12 @@ from pathlib import Path
 from tuisim.analysis.chart import View, chart_of
 from tuisim.analysis.model import Model
 from tuisim.analysis.source import LogRequest, OpenedLog, opening
-from tuisim.charts.files import (
+from tuisim.base.errors import ConfigError, LogError, listed
+from tuisim.commands.echo import echo, echo_drawn, echo_error, echo_written
+from tuisim.commands.logs.sources import asked, names_of, the_source
+from tuisim.logs.derived import with_named_columns
+from tuisim.logs.log import Log
+from tuisim.pictures.charts.files import (
     CHART_FORMATS,
     Size,
     format_of,
@@ -19,12 +24,7 @@ from tuisim.charts.files import (
     parse_size,
     save_chart,
 )
-from tuisim.commands.echo import echo, echo_drawn, echo_error, echo_written
-from tuisim.commands.logs.sources import asked, names_of, the_source
-from tuisim.config.command_line import Arguments
-from tuisim.errors import ConfigError, LogError, listed
-from tuisim.logs.derived import with_named_columns
-from tuisim.logs.log import Log
+from tuisim.settings.command_line import Arguments
 
 _LEAST_COLUMNS, _ROWS = 20, (12, 32)
 """Size of the chart in the shell: minimum width, and limits of its height."""
@@ -118,7 +118,7 @@ def _against(log: Log, model: Model, arguments: Arguments) -> tuple[str, str] | 
 
 def _show(model: Model, view: View, size: Size | None) -> None:
     """Print the chart, in colour if the terminal supports it."""
-    from tuisim.charts.text_chart import text_of
+    from tuisim.pictures.charts.text_chart import text_of
 
     terminal = shutil.get_terminal_size()
     width, height = size or (

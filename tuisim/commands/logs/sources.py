@@ -10,19 +10,19 @@ from pathlib import Path
 
 from tuisim.analysis.remembered import request_file
 from tuisim.analysis.source import LogRequest
+from tuisim.base.errors import ConfigError, LogError, among, listed
 from tuisim.commands.echo import echo_error, tell
-from tuisim.config.command_line import Arguments
-from tuisim.core.columns import column_name
-from tuisim.core.sensors import column_names, columns_of
-from tuisim.errors import ConfigError, LogError, among, listed
+from tuisim.engine.core.columns import column_name
+from tuisim.engine.core.sensors import column_names, columns_of
+from tuisim.engine.runs.run_folder import StoredRun
+from tuisim.engine.runs.store import RunStore
 from tuisim.logs.choices import ReadChoices
 from tuisim.logs.columns import choose_columns, time_in_words
 from tuisim.logs.derived import spec_in, with_named_columns
 from tuisim.logs.expressions import names_in
 from tuisim.logs.log import Log
 from tuisim.logs.reader import STDIN, log_of_runs, read_pieces, telemetry_log
-from tuisim.runs.run_folder import StoredRun
-from tuisim.runs.store import RunStore
+from tuisim.settings.command_line import Arguments
 
 
 def is_file(word: str) -> bool:

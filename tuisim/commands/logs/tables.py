@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tuisim.analysis.events import THRESHOLD_FORM, Threshold, threshold_of
+from tuisim.base.errors import ConfigError, LogError, counted
 from tuisim.commands.echo import (
     CsvOut,
     echo,
@@ -25,9 +26,8 @@ from tuisim.commands.echo import (
     tell,
 )
 from tuisim.commands.logs.sources import names_of, open_sources, the_source
-from tuisim.config.command_line import Arguments
-from tuisim.core.conditions import Operator
-from tuisim.errors import ConfigError, LogError, counted
+from tuisim.engine.core.conditions import Operator
+from tuisim.engine.runs.arrays import FloatArray
 from tuisim.logs import signals
 from tuisim.logs.arrow import unique_names
 from tuisim.logs.bands import BandReport, Column, band_report, in_words, items_of
@@ -39,7 +39,7 @@ from tuisim.logs.expressions import evaluate
 from tuisim.logs.log import Log, LogTable, Series
 from tuisim.logs.mcap_export import POSE, SUFFIX, export_mcap, load_writer
 from tuisim.logs.signals import Between
-from tuisim.runs.arrays import FloatArray
+from tuisim.settings.command_line import Arguments
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -341,8 +341,8 @@ def diff(arguments: Arguments) -> int:
         raise ConfigError("takes two runs", f"got {len(words)}", key="diff")
     # Imported on demand: no other command here needs stored runs.
     from tuisim.commands.runs import diff_text
-    from tuisim.runs.diff import diff_runs
-    from tuisim.runs.store import RunStore
+    from tuisim.engine.runs.diff import diff_runs
+    from tuisim.engine.runs.store import RunStore
 
     store = RunStore()
     found = diff_runs(*map(store.load_run, words))

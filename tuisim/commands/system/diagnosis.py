@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from enum import StrEnum
 
-from tuisim.data_class import dataclass
+from tuisim.base.data_class import dataclass
 from tuisim.terminal.picture_options import CellSet
 
 SMALLEST, COMFORTABLE = (60, 18), (80, 24)

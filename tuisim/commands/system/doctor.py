@@ -16,13 +16,13 @@ from pathlib import Path
 from textwrap import wrap
 
 from tuisim import __version__
+from tuisim.base.errors import ConfigError, TuisimError
+from tuisim.base.folders import backgrounds_folder, home_folder, programs_folder
 from tuisim.commands.echo import echo, echo_json
 from tuisim.commands.system import diagnosis
 from tuisim.commands.system.diagnosis import Finding, State, prevents_use
-from tuisim.config.command_line import AS_JSON, command, option
-from tuisim.config.folders import backgrounds_folder, home_folder, programs_folder
-from tuisim.errors import ConfigError, TuisimError
 from tuisim.notebook.kernel import find_old_simulator
+from tuisim.settings.command_line import AS_JSON, command, option
 
 EXIT_PREVENTED = 1
 _WIDTH = 78
@@ -235,7 +235,7 @@ def _why_no_assets() -> str:
 
 def _store(home: Path) -> tuple[int, int, int]:
     """Return the number of stored runs, their size and the free space on the disk in bytes."""
-    from tuisim.runs.store import bytes_in
+    from tuisim.engine.runs.store import bytes_in
 
     try:
         runs = [entry for entry in (home / "runs").iterdir() if entry.is_dir()]

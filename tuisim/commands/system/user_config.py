@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+from tuisim.base.errors import ConfigError
 from tuisim.commands.echo import echo, echo_json, echo_lines, table
-from tuisim.config.command_line import AS_JSON, command, option
-from tuisim.config.user_config import FILE, SETTINGS, UserConfig, load_config
-from tuisim.config.user_config_file import write_template
-from tuisim.errors import ConfigError
+from tuisim.settings.command_line import AS_JSON, command, option
+from tuisim.settings.user_config import FILE, SETTINGS, UserConfig, load_config
+from tuisim.settings.user_config_file import write_template
 
 
 @command(

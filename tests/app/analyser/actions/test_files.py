@@ -16,11 +16,11 @@ from tests.app.app_help import notices, until
 from tuisim.analysis.source import LogRequest
 from tuisim.app.analyser.app import Analyser, AnalyserApp
 from tuisim.app.dialogs.save import FileDialog
+from tuisim.engine.runs.frames import samples_frame
+from tuisim.engine.runs.run_folder import StoredRun
 from tuisim.logs.export import log_metadata
 from tuisim.logs.frames import read_log
 from tuisim.logs.reader import open_log
-from tuisim.runs.frames import samples_frame
-from tuisim.runs.run_folder import StoredRun
 
 
 async def answered(pilot: Pilot[Any], key: str, text: object) -> str:

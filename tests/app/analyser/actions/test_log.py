@@ -9,10 +9,10 @@ import pytest
 from tests.app.analyser.test_screen import open_analyser, text_of, typed
 from tests.app.app_help import LOGS, program, until
 from tuisim.app.dialogs.runs import Differences
-from tuisim.core.spec import NoiseSpec
-from tuisim.runs.handle import RunOptions, start_run
-from tuisim.runs.run_folder import StoredRun
-from tuisim.runs.store import RunStore
+from tuisim.engine.core.spec import NoiseSpec
+from tuisim.engine.runs.handle import RunOptions, start_run
+from tuisim.engine.runs.run_folder import StoredRun
+from tuisim.engine.runs.store import RunStore
 
 
 @pytest.fixture

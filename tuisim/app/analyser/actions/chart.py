@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from tuisim.analysis.traces import TIME
 from tuisim.app.analyser.chart import FACETS_ROWS
-from tuisim.errors import LogError
+from tuisim.base.errors import LogError
 
 if TYPE_CHECKING:
     from tuisim.app.analyser.screen import LogScreen

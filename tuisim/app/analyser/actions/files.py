@@ -12,7 +12,7 @@ from tuisim.analysis.source import OpenedLog
 from tuisim.app import background
 from tuisim.app.analyser.panes import PANES, band_search, pane_frame
 from tuisim.app.dialogs.save import SaveDialog
-from tuisim.errors import counted
+from tuisim.base.errors import counted
 from tuisim.terminal.app import offer
 
 if TYPE_CHECKING:
@@ -101,7 +101,7 @@ def _write_rows(model: Model, frame: pd.DataFrame | None, target: Path) -> None:
 def chart(screen: LogScreen) -> None:
     """Ask for the file to save the chart to: with the time range and the variables as shown."""
     from tuisim.analysis.chart import View, chart_of
-    from tuisim.charts.files import CHART_FORMATS, format_of, save_chart
+    from tuisim.pictures.charts.files import CHART_FORMATS, format_of, save_chart
 
     options = screen.chart.options
 

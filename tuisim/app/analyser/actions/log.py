@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING
 from tuisim.analysis.model import RECKONING, Model, apply_definition, derive, with_definition
 from tuisim.analysis.source import LogRequest
 from tuisim.app.dialogs.question import Form
-from tuisim.errors import LogError
+from tuisim.base.errors import LogError
+from tuisim.engine.runs.diff import RunDiff, diff_runs
+from tuisim.engine.runs.run_folder import StoredRun
+from tuisim.engine.runs.store import RunStore
 from tuisim.logs.derived import NEEDED
 from tuisim.logs.expressions import FUNCTIONS
 from tuisim.logs.log import Log
-from tuisim.runs.diff import RunDiff, diff_runs
-from tuisim.runs.run_folder import StoredRun
-from tuisim.runs.store import RunStore
 
 if TYPE_CHECKING:
     from tuisim.app.analyser.screen import LogScreen

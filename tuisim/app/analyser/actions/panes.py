@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 from tuisim.analysis.events import Event, Threshold, events_of, thresholds_of
 from tuisim.analysis.table import TableTask, TableView, conditions_of
 from tuisim.app.analyser.world import NO_POSES, has_poses
-from tuisim.core.conditions import spelled
-from tuisim.errors import LogError
+from tuisim.base.errors import LogError
+from tuisim.engine.core.conditions import spelled
 from tuisim.logs.log import Log
 
 if TYPE_CHECKING:

@@ -1,0 +1,77 @@
+"""The speed that a driver reads off the counter: late, cut off, and lingering."""
+
+from __future__ import annotations
+
+import random
+
+import pytest
+
+from tuisim.engine.core.driver.counter import LOOK, Counter
+
+
+def turn(counter: Counter, begin_ms: int, end_ms: int, speed_dps: float) -> None:
+    """Turn evenly, from a middle of a count."""
+    angle_deg = counter.count / 2 + 0.25
+    for now_ms in range(begin_ms, end_ms, 2):
+        after_deg = angle_deg + speed_dps * 0.002
+        counter.record(now_ms * LOOK, 2 * LOOK, angle_deg, after_deg, 0.5)
+        angle_deg = after_deg
+
+
+@pytest.mark.parametrize("speed_dps", [60.4, -60.4, 250.7, 1050.2, -1560.9])
+def test_a_steady_speed_is_cut_off(speed_dps: float) -> None:
+    counter = Counter()
+    turn(counter, 0, 600, speed_dps)
+    assert counter.measure_speed_dps() == int(speed_dps)
+
+
+def test_the_speed_of_a_motor_that_stops_lingers() -> None:
+    counter = Counter()
+    turn(counter, 0, 200, 500.0)
+    speeds = []
+    for now_ms in range(200, 450, 10):
+        counter.record_rest(now_ms * LOOK)
+        speeds.append(counter.measure_speed_dps())
+    assert speeds[:5] == [500] * 5 and speeds == sorted(speeds, reverse=True)
+    assert speeds.index(0) * 10 == pytest.approx(204, abs=10)
+
+
+def test_turning_back_counts_the_same_counts() -> None:
+    counter = Counter()
+    counter.record(0, 2 * LOOK, 0.1, 3.1, 0.5)
+    counter.record(2 * LOOK, 2 * LOOK, 3.1, -3.1, 0.5)
+    assert counter.count == -7
+
+
+@pytest.mark.parametrize("speed_dps", [500.0, -500.0])
+def test_what_an_obstacle_prevented_was_never_counted(speed_dps: float) -> None:
+    counter, stopped = Counter(), Counter()
+    for each in counter, stopped:
+        turn(each, 0, 200, speed_dps)
+    turn(counter, 200, 210, speed_dps)
+    counter.take_back(stopped.count / 2 + 0.25)
+    assert counter.count == stopped.count
+    for now_ms in range(210, 500, 10):
+        counter.record_rest(now_ms * LOOK)
+        stopped.record_rest(now_ms * LOOK)
+        assert counter.measure_speed_dps() == stopped.measure_speed_dps()
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_a_turn_is_recorded_and_measured_as_one_after_the_other(seed: int) -> None:
+    chance, counted, measured = random.Random(seed), Counter(), Counter()
+    angle_deg = speed_dps = 0.125
+    for step in range(4000):
+        if step % 200 == 0:
+            goal_dps = chance.choice((-1000.0, -200.0, -4.0, 4.0, 30.0, 200.0, 1000.0))
+        speed_dps += (goal_dps - speed_dps) * 0.03
+        after_deg = angle_deg + speed_dps * 0.002
+        turned = step * 2.0 * LOOK, 2.0 * LOOK, angle_deg, after_deg, chance.uniform(0.4, 0.6)
+        measured.record(*turned)
+        assert counted.count_turn(*turned) == measured.measure_speed_dps()
+        assert counted.count == measured.count
+        angle_deg = after_deg
+    for now in range(step * 2 * LOOK, step * 2 * LOOK + 300 * LOOK, LOOK):
+        for counter in counted, measured:
+            counter.record_rest(now)
+        assert counted.measure_speed_dps() == measured.measure_speed_dps()

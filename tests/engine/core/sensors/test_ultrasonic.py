@@ -1,0 +1,69 @@
+"""Ultrasonic sensor: walls, obstacles, flat angles, range."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.cases import cases
+from tuisim.engine.core.geometry import Pose
+from tuisim.engine.core.sensors.ultrasonic import distance_mm, rays_mm
+from tuisim.engine.core.spec import Obstacle, UltrasonicSpec, WorldSpec
+
+SENSOR = UltrasonicSpec()
+WALLS = WorldSpec()
+POST = WorldSpec(obstacles=(Obstacle(900, 500, 200, 200),))
+
+
+@pytest.mark.parametrize(
+    "heading_deg, expected_mm",
+    [
+        (0.0, 1342),
+        (40.0, 1424),
+        (40.1, 720),
+        (139.9, 720),
+        (140.1, 1041),
+        (360.0, 1342),
+        (-719.9 + 40.0, 720),
+    ],
+)
+def test_walls_from_the_middle(heading_deg: float, expected_mm: int) -> None:
+    assert distance_mm(Pose(1000, 500, heading_deg), SENSOR, WALLS) == expected_mm
+
+
+@cases(
+    "pose, world, expected_mm",
+    {
+        "post in front": (Pose(500, 600, 0), POST, 380),
+        "post from the right": (Pose(1400, 600, 180), POST, 280),
+        "post from below": (Pose(1000, 300, 90), POST, 180),
+        "post from above": (Pose(1000, 1000, -90), POST, 280),
+        "past the post": (Pose(500, 1000, 0), POST, 1842),
+        "post behind": (Pose(500, 600, 180), POST, 480),
+        "no echo": (Pose(500, 500, 0), WorldSpec(walls=False), 2550),
+        "post, no walls": (
+            Pose(500, 500, 0),
+            WorldSpec(walls=False, obstacles=POST.obstacles),
+            380,
+        ),
+        "outside, facing away": (Pose(3000, 500, 0), WALLS, 2550),
+    },
+)
+def test_distance(pose: Pose, world: WorldSpec, expected_mm: int) -> None:
+    assert distance_mm(pose, SENSOR, world) == expected_mm
+
+
+def test_range_is_the_most_that_is_reported() -> None:
+    assert distance_mm(Pose(500, 500, 0), UltrasonicSpec(max_range_mm=1000), WALLS) == 1000
+
+
+def test_a_sensor_mounted_backwards_looks_back() -> None:
+    assert distance_mm(Pose(1000, 500, 0), UltrasonicSpec(angle_deg=180, y_mm=-20), WALLS) == 980
+
+
+def test_every_ray_is_given_and_the_nearest_counts() -> None:
+    rays = rays_mm(Pose(1000, 500, 30), SENSOR, WALLS)
+    assert [angle for angle, _ in rays] == [9, 16, 23, 30, 37, 44, 51]
+    assert round(min(length for _, length in rays)) == distance_mm(
+        Pose(1000, 500, 30), SENSOR, WALLS
+    )
+    assert all(0 < length <= 2550 for _, length in rays)

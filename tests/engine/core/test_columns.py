@@ -1,0 +1,159 @@
+"""Columns: the name that the chart shows can be typed wherever a value over time is asked for."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from tests.tasks.goals.recorded import goals_of
+from tuisim.analysis.events import events_of, thresholds_of
+from tuisim.analysis.model import Model, derive
+from tuisim.analysis.source import LogRequest, opening
+from tuisim.analysis.table import conditions_of
+from tuisim.cli import run_command
+from tuisim.engine.core.columns import column_name
+from tuisim.engine.core.sensors import columns_of
+from tuisim.engine.runs.frames import column_values
+from tuisim.engine.runs.run_folder import StoredRun, open_mat
+from tuisim.engine.runs.store import RunStore
+from tuisim.settings.build import build_run_spec
+from tuisim.settings.options import Settings
+from tuisim.tasks.goals.judge import judge
+
+RUN = build_run_spec(Settings())
+TRACES = [column.name for column in columns_of(RUN) if column.is_traced]
+PROGRAM = "tank_drive.on_for_rotations(30, 20, 1)\nx = 1\n"
+
+
+@pytest.fixture(scope="module")
+def home_of_runs(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return tmp_path_factory.mktemp("columns")
+
+
+@pytest.fixture
+def run(home_of_runs: Path, monkeypatch: pytest.MonkeyPatch) -> StoredRun:
+    """A run on the grey bands; one for all tests of this module."""
+    monkeypatch.setenv("TUISIM_HOME", str(home_of_runs / "home"))
+    program = home_of_runs / "a.py"
+    if not program.exists():
+        program.write_text(PROGRAM)
+        assert run_command(["run", str(program), "--background", "Grey_bands"]) == 0
+    return RunStore().load_run("1")
+
+
+def value_of(run: StoredRun, name: str) -> float:
+    values = column_values([name], run.telemetry.array(), run, run.actions, open_mat(run))
+    return float(values[name][-1])
+
+
+@pytest.mark.parametrize("name", TRACES)
+def test_the_name_of_a_trace_is_a_condition_of_a_goal(
+    name: str, run: StoredRun, tmp_path: Path
+) -> None:
+    condition = f'when = "{name} == {value_of(run, name)!r}"'
+    (judgement,) = judge(goals_of(tmp_path, f"[[goal]]\nname = 'it'\n{condition}\n"), run)
+    assert judgement.state == "met"
+
+
+@pytest.mark.parametrize("name", ["left_red_pc", "gyro_deg"])
+def test_the_name_of_a_trace_is_a_breakpoint_a_watch_and_an_event(
+    name: str, run: StoredRun, home_of_runs: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    words = ["run", str(home_of_runs / "a.py"), "--background", "Grey_bands", "--watch", name]
+    assert (
+        run_command([*words, "--break", f"{name} > -1", "--break", "2", "--break-then", "go"]) == 0
+    )
+    said = capsys.readouterr().err
+    assert f"{name} > -1" in said
+    values = [
+        float(line.rpartition(" → ")[2])
+        for line in said.splitlines()
+        if line.strip().startswith(f"{name} →")
+    ]
+    assert values[-1] == value_of(run, name)
+    assert run_command(["log", "events", "1", "--when", f"{name} > -1", "--json"]) == 0
+    assert capsys.readouterr().out == "[]\n"
+
+
+@pytest.mark.parametrize("name", TRACES)
+def test_the_name_of_a_trace_is_an_event_a_filter_and_a_variable_of_the_analyser(
+    name: str, run: StoredRun
+) -> None:
+    *_, opened = opening(LogRequest(runs=("1",), telemetry=True))
+    model = Model(opened)
+    model.add_named_columns(f"{name} changes")
+    assert len(events_of(model.log, thresholds_of(f"{name} changes", model.log))) > 5
+    conditions = conditions_of(f"{name} == {value_of(run, name)!r}", model.log.table.column_names)
+    model.rows.view = model.rows.filtered(tuple(conditions))
+    assert 0 < len(model.rows) < model.log.rows
+    derive(model, f"half = {name} / 2")
+    assert model.log.series("half").values[-1] == value_of(run, name) / 2
+
+
+@pytest.mark.parametrize("name", ["left_red_pc", "gyro_deg"])
+def test_the_name_of_a_trace_is_a_variable_of_every_log_command(
+    name: str, run: StoredRun, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert run_command(["log", "summary", "1", "--variable", name, "--json"]) == 0
+    assert f'"variable": "{name}"' in capsys.readouterr().out
+    assert run_command(["log", "calc", "1", "--expression", f"{name} + 1"]) == 0
+    out = capsys.readouterr().out.splitlines()
+    assert float(out[-1].rpartition(",")[2]) == value_of(run, name) + 1
+    assert (
+        run_command(["log", "export", "1", "--variable", name, "--out", str(tmp_path / "a.csv")])
+        == 0
+    )
+    assert set((tmp_path / "a.csv").read_text().splitlines()[0].split(",")) == {
+        "time",
+        "line",
+        name,
+    }
+    assert name in json.loads((tmp_path / "a.csv.json").read_text())["units"]
+    assert (
+        run_command(["log", "plot", "1", "--telemetry", "--variable", "x_mm", "--against", name])
+        == 0
+    )
+    assert f"x_mm against {name}" in capsys.readouterr().out
+
+
+def test_a_name_that_is_nearly_a_column_is_told(
+    run: StoredRun, capsys: pytest.CaptureFixture[str]
+) -> None:
+    said = []
+    for words in (
+        ["events", "1", "--when", "left_red_p < 50"],
+        ["summary", "1", "--variable", "gyro_d"],
+    ):
+        assert run_command(["log", *words, "--telemetry"]) == 2
+        said.append(capsys.readouterr().err)
+    assert "did you mean 'left_red_pc'?" in said[0]
+    assert "did you mean 'gyro_deg'?" in said[1]
+
+
+def test_a_name_of_before_is_the_column_in_the_commands_for_logs(
+    run: StoredRun, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert run_command(["log", "events", "1", "--when", "left.red% changes", "--json"]) == 0
+    assert '"variable": "left_red_pc"' in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    "text, name",
+    [
+        ("left.red%", "left_red_pc"),
+        ("left red %", "left_red_pc"),
+        ("left sensor red %", "left_red_pc"),
+        ("left.red", "left_red"),
+        ("right.color", "right_color"),
+        ("gyro", "gyro_deg"),
+        ("gyro °", "gyro_deg"),
+        ("gyro.rate", "gyro_rate_dps"),
+        ("ultrasonic mm", "ultrasonic_mm"),
+        ("x_mm", "x_mm"),
+        ("gyro.x", None),
+    ],
+)
+def test_names_of_before_are_understood(text: str, name: str | None) -> None:
+    assert column_name(text, columns_of(RUN)) == name

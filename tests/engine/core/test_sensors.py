@@ -1,0 +1,184 @@
+"""The contract of every line of `SENSORS`: a sensor that is in the table is known wherever sensors matter."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import fields, replace
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tests.cases import cases
+from tests.engine.runtime.debugging import Driver
+from tuisim.app.setup.fields import find
+from tuisim.app.setup.next_run import plan_of_spec
+from tuisim.app.snapshot import RunPhase, Snapshot
+from tuisim.base.source import Program
+from tuisim.engine.core.geometry import Pose
+from tuisim.engine.core.profile import ROBOLAB
+from tuisim.engine.core.sensors import SENSORS, SensorKind, mounted_sensor
+from tuisim.engine.core.spec import MOUNTS, Mount, RobotSpec, RunSpec, SensorSpec, WorldSpec
+from tuisim.engine.core.tree import from_plain, to_plain
+from tuisim.engine.protocol import Resume
+from tuisim.engine.runs.frames import MOTION_COLUMNS, telemetry_frame
+from tuisim.engine.runs.handle import RunOptions, start_run
+from tuisim.engine.runs.run_folder import StoredRun, open_mat
+from tuisim.engine.runs.store import RunStore
+from tuisim.engine.runs.views import instant_of
+from tuisim.engine.shim.sensors import DEVICES
+from tuisim.settings.robots import load_robot, save_robot
+
+each_kind = cases("kind", SENSORS)
+each_mount = pytest.mark.parametrize("mount", MOUNTS, ids=lambda mount: mount.field)
+
+NONE: dict[str, Any] = {mount.field: () if mount.many else None for mount in MOUNTS}
+READS_ALL = """
+import time
+from ev3dev2.sensor import Sensor
+time.sleep(0.02)
+sensor = Sensor()
+print(sensor.driver_name)
+for mode in sensor.modes:
+    sensor.mode = mode
+    print(mode, [sensor.value(n) for n in range(sensor.num_values)])
+print('done')
+"""
+
+
+def sensor_of(mount: Mount) -> Any:
+    """A sensor that may stand there, as it comes."""
+    usual = RobotSpec().sensors_in(mount)
+    return usual[0] if usual else mount.spec()
+
+
+def robot_with(mount: Mount, *sensors: SensorSpec) -> RobotSpec:
+    """A robot with no other sensors than these."""
+    return RobotSpec(**{**NONE, mount.field: sensors if mount.many else sensors[0]})
+
+
+def mount_of(kind: SensorKind) -> Mount:
+    return next(mount for mount in MOUNTS if mount.spec is kind.spec)
+
+
+def run_of(robot: RobotSpec) -> RunSpec:
+    return RunSpec(robot, WorldSpec("Grey_bands", start=Pose(325.0, 500.0, 0.0)), ROBOLAB)
+
+
+def test_every_kind_has_a_place_on_the_robot_and_a_device() -> None:
+    kinds = {kind.spec for kind in SENSORS.values()}
+    assert len(kinds) == len(SENSORS)
+    assert {mount.spec for mount in MOUNTS} == kinds == set(DEVICES)
+    assert len({mount.key for mount in MOUNTS}) == len(MOUNTS)
+    assert {mount.field for mount in MOUNTS} <= {field.name for field in fields(RobotSpec)}
+
+
+@each_mount
+def test_a_run_remembers_it(mount: Mount) -> None:
+    run = run_of(robot_with(mount, sensor_of(mount)))
+    assert from_plain(json.loads(json.dumps(to_plain(run)))) == run
+
+
+@each_mount
+def test_a_robots_file_says_all_of_it_and_may_leave_it_out(mount: Mount, tmp_path: Path) -> None:
+    sensor = sensor_of(mount)
+    moved = {
+        field.name: getattr(sensor, field.name) + 1.0
+        for field in fields(sensor)
+        if field.type == "float"
+    }
+    robot = robot_with(mount, replace(sensor, **moved))
+    save_robot(robot, tmp_path / "robot.toml")
+    assert load_robot(str(tmp_path / "robot.toml")) == robot
+    word = f"[{mount.key}]\n{sensor.name} = false" if mount.many else f"{mount.key} = false"
+    (tmp_path / "less.toml").write_text(f"{word}\n")
+    left = load_robot(str(tmp_path / "less.toml")).sensors_in(mount)
+    assert sensor.name not in [other.name for other in left]
+
+
+@each_mount
+def test_the_settings_have_a_field_for_each_of_its_numbers(mount: Mount) -> None:
+    sensor = sensor_of(mount)
+    plan = plan_of_spec(run_of(robot_with(mount, sensor)))
+    for field in fields(sensor):
+        edit = find(plan, f"{sensor.name}.{field.name}")
+        if field.name == "port" or field.type == "float":
+            assert edit is not None, field.name
+        if edit is not None and field.type == "float":
+            changed = edit.write(plan, str(getattr(sensor, field.name) + 1.0))
+            (after,) = changed.spec.robot.sensors_in(mount)
+            assert getattr(after, field.name) == getattr(sensor, field.name) + 1.0
+
+
+@cache
+def read_out(kind: SensorKind) -> StoredRun:
+    """A run that reads all that a sensor has, and was held when its first quantity was met."""
+    mount = mount_of(kind)
+    sensor = sensor_of(mount)
+    spec = run_of(robot_with(mount, sensor))
+    met = f"{kind.names(sensor)[0]} > -1000"
+    handle = start_run(
+        Program("reads.py", READS_ALL, "none"),
+        spec,
+        RunOptions(live=True, speed=0.0, breaks=(met,)),
+    )
+    try:
+        driver = Driver(handle)
+        assert driver.paused().detail == met
+        assert driver.finish(Resume()).end == "finished"
+    finally:
+        handle.close()
+    return RunStore().load_run(handle.run_id)
+
+
+@each_kind
+def test_a_program_reads_it_in_every_mode(kind: SensorKind) -> None:
+    run = read_out(kind)
+    lines = [row.text for row in run.output.all_rows()]
+    assert (lines[0], lines[-1]) == (kind.driver_name, "done")
+    assert len(lines) > 2
+
+
+@each_kind
+def test_it_is_in_the_telemetry_as_measured(kind: SensorKind) -> None:
+    run = read_out(kind)
+    (sensor,) = run.spec.robot.sensors
+    names = kind.names(sensor)
+    frame = telemetry_frame(run)
+    assert set(frame.columns) >= {"time", *MOTION_COLUMNS, *names, "line"}
+    assert all(name.startswith(f"{sensor.name}_") for name in names)
+    last = run.telemetry.last()
+    assert last is not None
+    measured = kind.measure(
+        sensor, instant_of(last, run.spec, run.spec.world.noise), run.spec, open_mat(run)
+    )
+    assert frame.iloc[-1][list(names)].tolist() == list(measured)
+
+
+@each_kind
+def test_the_panels_show_it(kind: SensorKind) -> None:
+    run = read_out(kind)
+    last = run.telemetry.last()
+    assert last is not None
+    instant, field = instant_of(last, run.spec, run.spec.world.noise), open_mat(run)
+    (sensor,) = run.spec.robot.sensors
+    now = Snapshot(
+        RunPhase.ENDED, None, run.spec, field, instant, line=0, speed=1.0, pen_down=False
+    )
+    if mount_of(kind).standard:
+        shown: dict[str, object] = {
+            "color": now.colors,
+            "ultrasonic": now.ultrasonic_mm,
+            "gyro": now.spec.robot.gyro,
+        }
+        assert shown[next(name for name, one in SENSORS.items() if one is kind)]
+    else:
+        assert set(now.further) == set(kind.names(sensor))
+
+
+def test_kinds_are_told_apart_by_their_specs() -> None:
+    sensors = [sensor_of(mount) for mount in MOUNTS]
+    assert [mounted_sensor(sensor).kind.spec for sensor in sensors] == [
+        mount.spec for mount in MOUNTS
+    ]

@@ -1,0 +1,59 @@
+"""Two runs compared."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from tests.engine.runs.test_recorded_run import stored
+from tuisim.engine.core.tick_record import TICK_FIELDS
+from tuisim.engine.runs.diff import diff_runs, parted_at_s, recording_in_words, setup_in_words
+
+
+def test_the_difference_of_two_runs_is_told() -> None:
+    text = "for speed in (30, 60):\n    tank_drive.on_for_seconds({}, speed, 0.5)\n    print('Speed: ' + str(speed))\n"
+    one, two = stored(text.format(30), {"seed": 1}), stored(text.format("speed"), {"seed": 2})
+    found = diff_runs(one, two)
+    recording, setup = dict(recording_in_words(found)), dict(setup_in_words(found))
+    assert "x_mm" in recording["first differing tick"]
+    assert "mm apart" in recording["poses"]
+    assert setup["settings, seed"] == "1 | 2"
+    assert "--- prog.py" in [line for label, line in setup_in_words(found) if not label]
+    assert list(recording_in_words(diff_runs(one, one))) == [
+        ("bit-identical", "recording, output, settings")
+    ]
+
+
+@pytest.mark.parametrize(
+    "field, step, at_s",
+    [
+        ("x_mm", 0.3, 0.4),
+        ("heading_deg", -0.3, 0.4),
+        ("heading_deg", 36.0, 0.1),
+        ("y_mm", 0.01, None),
+    ],
+)
+def test_robots_part_by_distance_or_heading(field: str, step: float, at_s: float | None) -> None:
+    one = np.zeros(11, np.dtype(list(TICK_FIELDS)))
+    two = one.copy()
+    two[field] += step * np.arange(11)
+    assert parted_at_s(one, two, (10, 10)) == at_s
+
+
+def test_a_full_turn_is_no_parting() -> None:
+    one = np.zeros(3, np.dtype(list(TICK_FIELDS)))
+    two = one.copy()
+    two["heading_deg"] += 360.0
+    assert parted_at_s(one, two, (10, 10)) is None
+
+
+@pytest.mark.parametrize(
+    "until, prefix, row",
+    [(None, False, 2), (None, True, 2), (99, False, None), (100, False, None), (101, False, 2)],
+)
+def test_output_is_compared_up_to_a_tick(until: int | None, prefix: bool, row: int | None) -> None:
+    text = "for number in (1, 2):\n    tank_drive.on_for_seconds(20, 20, 0.5)\n    print({})\n"
+    one, two = stored(text.format("'a', number")), stored(text.format("'a', number * number"))
+    found = diff_runs(one, two, until=until, prefix=prefix)
+    assert (found.output and found.output.row) == row
+    assert (found.tick, found.same) == (None, row is None)

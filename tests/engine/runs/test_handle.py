@@ -1,0 +1,41 @@
+"""What a child says right before it goes is heard."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from tests.running import PATIENCE_S, Start
+from tuisim.engine.protocol import Message
+
+
+def test_a_child_that_goes_while_its_events_are_read_has_not_crashed(
+    start: Start, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    handle = start("print('bye')")
+    read = handle._events.read
+
+    def read_then_let_it_end() -> list[Message]:
+        events = read()
+        handle._process.wait()
+        return events
+
+    monkeypatch.setattr(handle._events, "read", read_then_let_it_end)
+    ended = handle.wait(PATIENCE_S)
+    assert ended is not None
+    assert ended.end == "finished"
+
+
+def test_who_follows_a_run_sees_all_of_it_however_short_it_is(start: Start) -> None:
+    handle = start("print('bye')")
+    handle._look_at_s = math.inf
+    for view in (handle.telemetry, handle.output):
+        view.read_on()
+        view.holds = True
+    ended = handle.wait(PATIENCE_S)
+    assert ended is not None
+    assert ([row.text for row in handle.output.all_rows()], handle.telemetry.count) == (
+        ["bye"],
+        ended.tick + 1,
+    )

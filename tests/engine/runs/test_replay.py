@@ -1,0 +1,120 @@
+"""A run is worked out again from what its program did: the same ticks come out, to the last bit."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import nan
+from typing import Any
+
+import pytest
+
+from tests.engine.runs.random_programs import draw_program
+from tests.running import Done, Run
+from tuisim.base.errors import LogError
+from tuisim.engine.core.commands.calls import Call, SimulationCommand
+from tuisim.engine.core.profile import PROFILES
+from tuisim.engine.core.spec import RobotSpec, RunSpec, WorldSpec
+from tuisim.engine.core.tick_record import TICK_FIELDS
+from tuisim.engine.protocol import SetButtons, SetNoise, SetPen, SetPose, UserAction
+from tuisim.engine.runs.command_records import read_commands
+from tuisim.engine.runs.records import HEADER_BYTES
+from tuisim.engine.runs.replay import replay
+from tuisim.engine.runs.side_files import MOTORS_FILE
+
+ACTIONS = (
+    UserAction(20, SetPose(700.0, 400.0, 30.0)),
+    UserAction(40, SetButtons(("left",))),
+    UserAction(60, SetPen(True)),
+    UserAction(60, SetNoise(5, 30)),
+)
+
+
+def assert_is_replayed(done: Done, actions: Sequence[UserAction] = ()) -> None:
+    import numpy as np
+
+    folder, recorded = done.run.folder, done.run.telemetry.array()
+    commands = read_commands(folder)
+    assert not commands.left_out
+    ticks = replay(done.run.first_spec, commands.unpack(), actions, len(recorded) - 1)
+    again = np.frombuffer(bytes(ticks.telemetry), recorded.dtype)
+    assert len(again) == len(recorded)
+    for field, _ in TICK_FIELDS:
+        # The program's line is its own word.
+        if field != "line":
+            parts = np.flatnonzero(again[field] != recorded[field])
+            assert not len(parts), f"{field} at tick {parts[0]}"
+    if (folder / MOTORS_FILE).exists():
+        assert (folder / MOTORS_FILE).read_bytes()[HEADER_BYTES:] == bytes(ticks.motors)
+
+
+@pytest.mark.parametrize("profile", sorted(PROFILES))
+def test_a_random_program_is_worked_out_again(run: Run, profile: str) -> None:
+    text = draw_program(len(profile), profile)
+    assert_is_replayed(run(text, profile=profile, prelude="none", seed=3))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(12))
+@pytest.mark.parametrize("profile", sorted(PROFILES))
+def test_random_programs_are_worked_out_again(run: Run, profile: str, seed: int) -> None:
+    how: dict[str, Any] = {"noise": (5, 20 * (seed % 3)), "solid": seed % 2 == 0, "seed": seed}
+    actions = ACTIONS if seed % 4 == 0 else ()
+    done = run(
+        draw_program(100 + seed, profile), profile=profile, prelude="none", actions=actions, **how
+    )
+    assert_is_replayed(done, actions)
+
+
+def test_what_a_user_does_is_done_again(run: Run) -> None:
+    done = run(draw_program(7, "robolab"), prelude="none", actions=ACTIONS)
+    assert_is_replayed(done, ACTIONS)
+
+
+def test_the_prelude_may_give_commands(run: Run) -> None:
+    assert_is_replayed(run("tank_drive.on_for_seconds(50, 20, 0.5)\n", profile="nbev3devsim"))
+
+
+# What no program can have given
+
+
+def _replay(*commands: tuple[int, int, Call, tuple[float, ...]], profile: str = "robolab") -> None:
+    spec = RunSpec(RobotSpec(), WorldSpec(), PROFILES[profile])
+    replay(
+        spec,
+        (
+            SimulationCommand(time_ns, part, call, values + (nan,) * (7 - len(values)))
+            for time_ns, part, call, values in commands
+        ),
+        (),
+        100,
+    )
+
+
+@pytest.mark.parametrize(
+    ("command", "why"),
+    [
+        ((0, 0, Call.RUN, (1051.0,)), "has a value that is not allowed"),
+        ((0, 0, Call.RUN, (nan,)), "has a value that is not allowed"),
+        ((0, 2, Call.STOP, ()), "is for a part that the robot does not have"),
+        ((0, 0, Call.MOVE_BASE, (1.0, 1.0, 0.0)), "no motor of this profile takes"),
+        ((2_000_000_000, 0, Call.STOP, ()), "is after the end of the run"),
+    ],
+)
+def test_a_command_that_no_program_can_give_is_named(
+    command: tuple[int, int, Call, tuple[float, ...]], why: str
+) -> None:
+    with pytest.raises(LogError, match=f"there is a command that {why}"):
+        _replay(command)
+
+
+def test_time_does_not_go_back() -> None:
+    stop = Call.STOP, ()
+    _replay((10, 0, *stop), (10, 1, *stop))
+    with pytest.raises(LogError, match=r"at 0\.50 s there is a command that goes back in time"):
+        _replay((600_000_000, 0, *stop), (500_000_000, 0, *stop))
+
+
+def test_commands_cost_time() -> None:
+    stop = 0, Call.STOP, ()
+    with pytest.raises(LogError, match=r"at 0\.10 s there is a command that the time is too short"):
+        _replay(*[(100_000_000, *stop)] * 10_001)

@@ -1,0 +1,92 @@
+"""Which printed lines are samples."""
+
+from __future__ import annotations
+
+from tests.cases import cases
+from tuisim.engine.core.conditions import ValueCondition, ValueSource
+from tuisim.engine.runs.records import OutputRow, Stream
+from tuisim.engine.runs.samples import Sample, parse_sample, rows_when, samples_of
+
+SAMPLES = {
+    "whole number": ("Ultrasonic: 2550", ("Ultrasonic", 2550.0, None)),
+    "decimals": ("Light_left: 86.27450980392157", ("Light_left", 86.27450980392157, None)),
+    "negative": ("Gyro: -90", ("Gyro", -90.0, None)),
+    "plus sign": ("Gyro: +90", ("Gyro", 90.0, None)),
+    "exponent": ("x: 1.5e-07", ("x", 1.5e-07, None)),
+    "capital exponent": ("x: 2E3", ("x", 2000.0, None)),
+    "no digit before the point": ("x: .5", ("x", 0.5, None)),
+    "no digit after the point": ("x: 5.", ("x", 5.0, None)),
+    "with a time": ("Wheel_right: 12 3.25", ("Wheel_right", 12.0, 3.25)),
+    "with a time and tabs": ("Colour:\t12\t3", ("Colour", 12.0, 3.0)),
+    "several blanks": ("Colour:   12", ("Colour", 12.0, None)),
+    "no blank": ("Colour:12", ("Colour", 12.0, None)),
+    "blanks at the end": ("Colour: 12  ", ("Colour", 12.0, None)),
+    "marked": ("^log Colour: 12 1", ("Colour", 12.0, 1.0)),
+    "own name": ("_speed2: 1", ("_speed2", 1.0, None)),
+    "letters of another language": ("Größe: 1", ("Größe", 1.0, None)),
+}
+TEXTS = {
+    "empty": "",
+    "no colon": "Colour 12",
+    "no number": "Colour: black",
+    "no name": ": 12",
+    "name with a blank": "Light left: 12",
+    "name that begins with a digit": "2x: 12",
+    "blank before the name": " Colour: 12",
+    "blank before the colon": "Colour : 12",
+    "three numbers": "rgb: 1 2 3",
+    "unit after the number": "Colour: 12 mm",
+    "comma": "Colour: 1,5",
+    "tuple": "rgb: (1, 2, 3)",
+    "none": "Colour: None",
+    "infinite": "Colour: inf",
+    "not a number": "Colour: nan",
+    "hexadecimal": "Colour: 0x10",
+    "underscores": "Colour: 1_000",
+    "digits of another script": "Colour: ١٢",
+    "larger than any number": "Colour: 1e999",
+    "time larger than any number": "Colour: 1 1e999",
+    "lone sign": "Colour: -",
+    "two lines": "Colour: 1\nColour: 2",
+    "half a mark": "log Colour: 12",
+}
+
+
+@cases("text, expected", SAMPLES)
+def test_line_is_a_sample(text: str, expected: tuple[str, float, float | None]) -> None:
+    assert parse_sample(text) == expected
+
+
+@cases("text", TEXTS)
+def test_line_is_only_text(text: str) -> None:
+    assert parse_sample(text) is None
+
+
+def test_only_what_was_printed_is_logged() -> None:
+    rows = [
+        OutputRow("a: 1", 5, 50_000_000, 3, stream)
+        for stream in (Stream.STDOUT, Stream.STDERR, Stream.SPEECH, Stream.INPUT)
+    ]
+    assert list(samples_of(rows)) == [Sample("a", 1.0, 0.05, 50_000_000, 5, 3)]
+
+
+def test_printed_time_counts() -> None:
+    (sample,) = samples_of([OutputRow("a: 1 7.5", 5, 50_000_000, 3, Stream.STDOUT)])
+    assert (sample.time_s, sample.time_ns) == (7.5, 50_000_000)
+
+
+@cases(
+    "name, sign, value, source, texts",
+    {
+        "of any name": ("", ">", "2", ValueSource.SAMPLE, ["a: 3", "b: 4"]),
+        "of one name": ("a", ">", "2", ValueSource.SAMPLE, ["a: 3"]),
+        "a line": ("", "matches", "x$", ValueSource.PRINT, ["max"]),
+    },
+)
+def test_lines_of_which_a_condition_is_true(
+    name: str, sign: str, value: str, source: ValueSource, texts: list[str]
+) -> None:
+    printed = ("a: 1", "max", "a: 3", "b: 4")
+    rows = [OutputRow(text, tick, tick, 1, Stream.STDOUT) for tick, text in enumerate(printed)]
+    condition = ValueCondition(name, sign, value, source)
+    assert [row.text for row in rows_when(condition, rows)] == texts

@@ -1,0 +1,73 @@
+"""A run that another process removes meanwhile is gone, and not damaged."""
+
+from __future__ import annotations
+
+import os
+import shutil
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tests.engine.runs.run_recorder import PROGRAM
+from tuisim.base.errors import LogError
+from tuisim.engine.core.profile import ROBOLAB
+from tuisim.engine.core.spec import RobotSpec, RunSpec, WorldSpec
+from tuisim.engine.runs import run_folder
+from tuisim.engine.runs import store as store_module
+from tuisim.engine.runs.catalogue import CATALOGUE_FILE, RunInfo
+from tuisim.engine.runs.rerun import rerun
+from tuisim.engine.runs.store import NewRun, RunStore
+
+READ = run_folder.read_run_file
+
+
+@pytest.fixture
+def run(home: Path) -> NewRun:
+    """A run that was interrupted."""
+    found = RunStore().new_run(PROGRAM, RunSpec(RobotSpec(), WorldSpec(), ROBOLAB))
+    os.close(found.lock_fd)
+    return found
+
+
+def remove_before_reading(folder: Path) -> dict[str, Any]:
+    shutil.rmtree(folder, ignore_errors=True)
+    return READ(folder)
+
+
+@pytest.mark.parametrize(
+    "is_made_again", [False, True], ids=["a list", "a list that is made again"]
+)
+def test_it_is_not_listed(
+    home: Path, run: NewRun, monkeypatch: pytest.MonkeyPatch, is_made_again: bool
+) -> None:
+    if is_made_again:
+        (home / CATALOGUE_FILE).unlink()
+    monkeypatch.setattr(store_module, "read_run_file", remove_before_reading)
+    assert RunStore().runs() == []
+
+
+def test_it_does_not_exist_for_who_has_just_found_it(
+    run: NewRun, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def find(store: RunStore, _: str) -> RunInfo:
+        shutil.rmtree(run.folder)
+        return store._catalogue.rows()[0]
+
+    monkeypatch.setattr(RunStore, "find", find)
+    with pytest.raises(LogError, match="no run '1'"):
+        RunStore().load_run("1")
+
+
+def test_it_does_not_exist_for_who_removes_it(run: NewRun, monkeypatch: pytest.MonkeyPatch) -> None:
+    shutil.rmtree(run.folder)
+    monkeypatch.setattr(os.path, "isdir", lambda _: True)
+    with pytest.raises(LogError, match="no run '"):
+        RunStore().remove(run.id)
+
+
+def test_it_does_not_exist_for_who_runs_it_again(run: NewRun) -> None:
+    stored = RunStore().load_run("1")
+    shutil.rmtree(run.folder)
+    with pytest.raises(LogError, match="no run '1': it has been removed"):
+        rerun(stored, RunStore())

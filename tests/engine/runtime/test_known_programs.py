@@ -1,0 +1,66 @@
+"""Programs that are compiled before their processes are forked."""
+
+from __future__ import annotations
+
+import sys
+import types
+import warnings
+
+import pytest
+
+from tuisim.base.source import Program
+from tuisim.engine.runtime import known_programs
+from tuisim.engine.runtime.known_programs import MOST_CHARACTERS, MOST_KNOWN, KnownPrograms
+from tuisim.engine.runtime.loader import LOOP_HOOK, compile_program
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "x = = 1",
+        "x is 1\nif x is 1: pass",
+        "'\\d'",
+        "x = " + "-" * 5000 + "1",
+        "#" * (MOST_CHARACTERS + 1),
+    ],
+    ids=["wrong", "with a warning", "with an ignored warning", "too deep", "too long"],
+)
+def test_a_program_with_anything_to_tell_is_compiled_by_its_own_process(text: str) -> None:
+    known, filters = KnownPrograms(), list(warnings.filters)
+    limit = sys.getrecursionlimit()
+    assert [known.code(Program("p.py", text)) for _ in range(3)] == [None, None, None]
+    assert (warnings.filters, sys.getrecursionlimit()) == (filters, limit)
+
+
+def test_a_program_is_compiled_when_it_is_run_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    known, program = (
+        KnownPrograms(),
+        Program("p.py", "for i in (1, 2): print(i)", path="/folder/p.py"),
+    )
+    compiled = []
+
+    def compile_noted(text: str, file: str) -> types.CodeType:
+        compiled.append(file)
+        return compile_program(text, file)
+
+    monkeypatch.setattr(known_programs, "compile_program", compile_noted)
+    first, *others = [known.code(program) for _ in range(3)]
+    assert (first, compiled) == (None, [program.file])
+    assert others[0] is not None
+    assert others[0] is others[1]
+    turns: list[None] = []
+    exec(others[0], {LOOP_HOOK: lambda: turns.append(None), "print": lambda _: None})
+    assert len(turns) == 2
+
+
+def test_the_same_text_in_another_file_is_another_program() -> None:
+    known = KnownPrograms()
+    codes = [known.code(Program(name, "x = 1")) for name in ("a.py", "b.py", "a.py", "b.py")]
+    assert [code and code.co_filename for code in codes] == [None, None, "a.py", "b.py"]
+
+
+def test_not_more_programs_are_kept_than_that() -> None:
+    known = KnownPrograms()
+    for number in range(3 * MOST_KNOWN):
+        known.code(Program("p.py", f"x = {number}"))
+    assert len(known._seen) <= MOST_KNOWN

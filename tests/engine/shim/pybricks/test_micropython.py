@@ -1,0 +1,149 @@
+"""MicroPython's modules: every one can be imported, and its own names work in simulated time."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import pytest
+
+from tests.conftest import Command
+from tests.engine.shim.conftest import RunOn
+from tuisim.engine.shim.pybricks.micropython import (
+    BUILT_IN,
+    OF_PYTHON,
+    TICKS_PERIOD,
+    ticks_add,
+    ticks_diff,
+)
+
+PROFILE = "lego-micropython"
+
+
+def test_every_module_can_be_imported(run_on: RunOn) -> None:
+    names = [
+        *OF_PYTHON,
+        *OF_PYTHON.values(),
+        *BUILT_IN,
+        "micropython",
+        "_thread",
+        "threading",
+        "math",
+        "gc",
+        "umqtt.simple",
+    ]
+    done = run_on(
+        f"import {', '.join(names)}\nfrom utime import *\nprint(utime.sleep is sleep)",
+        profile=PROFILE,
+    )
+    assert done.lines == ["True"], done.errors
+
+
+def test_a_file_of_the_program_is_no_built_in_module(here: Command, tmp_path: Path) -> None:
+    for name in ("utime", "umqtt"):
+        (tmp_path / f"{name}.py").write_text("own = True\n")
+    text = "import pybricks, utime, umqtt\nprint(hasattr(utime, 'own'), hasattr(umqtt, 'own'))"
+    (tmp_path / "main.py").write_text(text)
+    assert here("run", "main.py").stdout == "False True\n"
+
+
+def test_the_interpreter_has_its_name_and_still_imports(here: Command, tmp_path: Path) -> None:
+    (tmp_path / "helper.py").write_text("import usys\nprint(usys.implementation.name)\n")
+    (tmp_path / "main.py").write_text(
+        "import pybricks, sys, helper\nprint(sys.implementation.cache_tag)"
+    )
+    assert here("run", "main.py").stdout == f"micropython\n{sys.implementation.cache_tag}\n"
+
+
+def test_they_are_not_there_for_another_library(run_on: RunOn) -> None:
+    text = "import time\ntry:\n    import utime\nexcept ImportError:\n    print(hasattr(time, 'ticks_ms'))"
+    assert run_on(text).lines == ["False"]
+
+
+CLOCK = """
+import time, utime
+begin = time.ticks_ms(), utime.ticks_us()
+utime.sleep_ms(20)
+time.sleep_us(1500)
+utime.sleep(0.5)
+utime.sleep_ms(-5)
+print(utime.ticks_diff(utime.ticks_ms(), begin[0]), time.ticks_diff(time.ticks_us(), begin[1]) // 100)
+try:
+    utime.sleep_ms(1.5)
+except TypeError:
+    print('whole numbers')
+"""
+
+
+def test_ticks_count_simulated_time(run_on: RunOn) -> None:
+    assert run_on(CLOCK, profile=PROFILE).lines == ["521 5215", "whole numbers"]
+
+
+@pytest.mark.parametrize("late", [0, 5, TICKS_PERIOD // 2 - 1, -1, -TICKS_PERIOD // 2])
+def test_ticks_that_began_again_differ_by_what_was_added(late: int) -> None:
+    start = TICKS_PERIOD - 3
+    assert 0 <= ticks_add(start, late) < TICKS_PERIOD
+    assert ticks_diff(ticks_add(start, late), start) == late
+
+
+NAMES = """
+import micropython, os, sys, uos, urandom, ustruct
+from micropython import const
+LIMIT = const(3)
+
+@micropython.native
+def twice(value):
+    return 2 * value
+
+@micropython.viper
+def thrice(value):
+    return 3 * value
+
+micropython.alloc_emergency_exception_buf(100)
+micropython.opt_level(2)
+micropython.schedule(print, 'scheduled')
+print(LIMIT, twice(4), thrice(4), urandom.getrandbits(3) < 8, 1 <= urandom.randint(1, 6) <= 6)
+print(ustruct.unpack('<H', b'\\x02\\x01'))
+print(sorted(entry[:2] for entry in uos.ilistdir(FOLDER)))
+try:
+    1 / 0
+except ZeroDivisionError as error:
+    sys.print_exception(error)
+"""
+
+
+def test_its_own_names_work(run_on: RunOn, tmp_path: Path) -> None:
+    (tmp_path / "folder").mkdir()
+    (tmp_path / "file").touch()
+    lines = run_on(f"FOLDER = {str(tmp_path)!r}\n{NAMES}", profile=PROFILE).lines
+    assert lines[:4] == [
+        "scheduled",
+        "3 8 12 True True",
+        "(258,)",
+        "[('file', 32768), ('folder', 16384)]",
+    ]
+    assert lines[4 :: len(lines) - 5] == [
+        "Traceback (most recent call last):",
+        "ZeroDivisionError: division by zero",
+    ]
+
+
+@pytest.mark.parametrize(
+    "use",
+    ["micropython.qstr_info()", "uctypes.UINT32 | 4", "ffi.open('libc')", "machine.Pin(1)"],
+)
+def test_what_has_no_sense_says_so_when_it_is_used(run_on: RunOn, use: str) -> None:
+    done = run_on(f"import {use.partition('.')[0]}\n{use}", profile=PROFILE)
+    name = use.partition("(")[0].partition(" ")[0]
+    assert done.ended.summary.startswith(f"NotSimulated: {name}: ")
+
+
+def test_names_and_sizes_that_python_does_not_allow_are_taken(run_on: RunOn) -> None:
+    text = """\
+from ucollections import namedtuple
+import _thread, gc
+Action = namedtuple('Action ', ['drive_speed', 'steering'])
+print(Action(1, 2).steering, namedtuple('My Robot', 'class x')(3, 4).x, _thread.stack_size(8192))
+print(gc.mem_free() > gc.mem_alloc() > 0)
+"""
+    assert run_on(text, profile=PROFILE).lines == ["2 4 0", "True"]

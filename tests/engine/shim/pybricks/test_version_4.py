@@ -1,0 +1,143 @@
+"""Version 4: moves that end otherwise, arcs, and tasks, in which nothing blocks."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from tests.engine.shim.pybricks.lab import Lab
+from tuisim.engine.core.profile import MotorLaw
+from tuisim.engine.shim.pybricks import robotics
+from tuisim.engine.shim.pybricks.motor import Motor as EarlierMotor
+from tuisim.engine.shim.pybricks.parameters import Port
+from tuisim.engine.shim.pybricks.tools import StopWatch, wait
+from tuisim.engine.shim.pybricks.version_4 import DriveBase, Motor, Stop, multitask, run_task
+
+
+def call(function: Any, *given: Any) -> Any:
+    """Call a blocking function in a task: its type says what it returns elsewhere."""
+    return function(*given)
+
+
+@pytest.fixture
+def base() -> DriveBase:
+    Lab(MotorLaw.PYBRICKS_4, {"outA": "large", "outB": "large", "outC": "medium"})
+    robotics.DriveBase.current = None
+    return DriveBase(Motor(Port.A), Motor(Port.B), 56, 114)
+
+
+@pytest.mark.parametrize(
+    "then, active", [(Stop.HOLD, True), (Stop.COAST, False), (Stop.BRAKE, False)]
+)
+def test_a_move_ends_as_it_is_told(base: DriveBase, then: Stop, active: bool) -> None:
+    base.straight(100, then)
+    wait(20)
+    assert base.state()[:2] == (100, 0)
+    assert base._base.active == active
+
+
+def test_what_is_no_end_of_a_move_is_refused(base: DriveBase) -> None:
+    with pytest.raises(TypeError, match="a Stop is needed, not"):
+        call(base.straight, 100, Port.A)
+
+
+def test_a_move_without_an_end_drives_on(base: DriveBase) -> None:
+    base.straight(100, Stop.NONE)
+    assert base.state()[1] == 156
+    wait(1000)
+    assert base.distance() == pytest.approx(257, abs=3)
+
+
+def test_a_call_need_not_wait(base: DriveBase) -> None:
+    base.turn(90, wait=False)
+    assert not base.done()
+    wait(2000)
+    assert base.done() and base.angle() == pytest.approx(90, abs=0.2)
+    base.turn(90, absolute=True)
+    assert base.angle() == pytest.approx(90, abs=0.2)
+
+
+def test_both_parts_of_an_arc_end_together(base: DriveBase) -> None:
+    base.arc(200, angle=60, wait=False)
+    for _ in range(8):
+        wait(100)
+        distance, _, angle, _ = base.state()
+        assert angle == pytest.approx(distance / 200 * 57.3, abs=1.5)
+
+
+def test_settings_change_while_it_drives(base: DriveBase) -> None:
+    base.drive(100, 0)
+    base.settings(straight_speed=200)
+    assert base.settings()[0] == 200  # type: ignore[index]
+
+
+def test_tasks_run_side_by_side(base: DriveBase) -> None:
+    watch, told = StopWatch(), []
+
+    async def drive() -> str:
+        await call(base.straight, 100)
+        told.append(("driven", watch.time()))
+        return "there"
+
+    async def blink() -> None:
+        for _ in range(3):
+            await call(wait, 100)
+        told.append(("blinked", watch.time()))
+
+    async def main() -> Any:
+        assert run_task()
+        return await multitask(drive(), blink())
+
+    assert run_task(main()) == ("there", None)
+    assert [name for name, _ in told] == ["blinked", "driven"]
+    assert [at for _, at in told] == pytest.approx([300, 860], abs=10)
+    assert not run_task()
+
+
+def test_a_race_ends_with_the_first(base: DriveBase) -> None:
+    arm = Motor(Port.C)
+
+    async def main() -> Any:
+        return await multitask(call(arm.run_angle, 100, 3600), call(wait, 250), race=True)
+
+    watch = StopWatch()
+    run_task(main())
+    assert watch.time() == 250
+    with pytest.raises(TypeError):
+        run_task(5)
+
+
+def test_version_2_says_where_its_later_names_are() -> None:
+    Lab(MotorLaw.PYBRICKS, {"outA": "large", "outB": "large"})
+    robotics.DriveBase.current = None
+    base = robotics.DriveBase(EarlierMotor(Port.A), EarlierMotor(Port.B), 56, 114)
+    with pytest.raises(
+        AttributeError, match="no attribute 'curve': it is of Pybricks 4, which --profile pybricks4"
+    ):
+        base.curve(100, 90)
+    with pytest.raises(AttributeError, match=r"no attribute 'fly'$"):
+        base.fly()
+
+
+def test_what_is_counted_begins_again_at_a_reset(base: DriveBase) -> None:
+    base.straight(100)
+    base.turn(90)
+    base.reset(20, 30)
+    assert base.distance() == 20
+    assert base.angle() == pytest.approx(30, abs=0.2)
+    base.straight(-50)
+    assert base.distance() == -30
+
+
+@pytest.mark.parametrize("port", [Port.A, Port.B])
+def test_a_motor_that_is_made_anew_leaves_its_drive_base(base: DriveBase, port: Port) -> None:
+    base.drive(100, 0)
+    wait(500)
+    Motor(port, reset_angle=False)
+    assert not base._base.active
+    base.straight(50)
+    assert bool(base._base.active)
+    for _ in range(10):
+        wait(100)
+    assert base.done()

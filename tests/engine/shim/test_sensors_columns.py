@@ -1,0 +1,30 @@
+"""What further sensors showed is told tick by tick, the same as the program saw."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.engine.shim.conftest import RunOn
+from tuisim.engine.mat_cache import open_field
+from tuisim.engine.runs.frames import column_values
+
+PROGRAM = """
+from ev3dev2.motor import *
+from ev3dev2.sensor.lego import *
+tank, touch, eye = MoveTank('outB', 'outC'), TouchSensor(), InfraredSensor()
+tank.on(20, 20)
+touch.wait_for_pressed()
+print(touch.is_pressed, eye.proximity)
+"""
+
+
+@pytest.mark.parametrize("profile", ["ev3", "robolab"])
+def test_columns_of_touch_and_infrared(run_on: RunOn, profile: str) -> None:
+    done = run_on(PROGRAM, "eyes", "furnished", profile)
+    names, mat = ["touch_pressed", "infrared_proximity"], open_field(done.run.field)
+    columns = column_values(names, done.run.telemetry.array(), done.run, [], mat)
+    assert list(columns) == names
+    pressed, proximity = columns["touch_pressed"], columns["infrared_proximity"]
+    assert (pressed[0], pressed[-1]) == (0, 1)
+    assert proximity[0] == 54
+    assert done.lines == [f"1 {proximity[-1]:.0f}"]

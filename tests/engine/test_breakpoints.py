@@ -1,0 +1,119 @@
+"""The language of breaks."""
+
+from __future__ import annotations
+
+import pytest
+
+from tuisim.base.errors import ConfigError
+from tuisim.engine.breakpoints import (
+    Breakpoint,
+    BreakRule,
+    LineBreak,
+    StallBreak,
+    TimeBreak,
+    break_line_of,
+    break_lines,
+    moved,
+    parse_break,
+    parse_breakpoints,
+)
+from tuisim.engine.core.conditions import ValueCondition, ValueSource
+from tuisim.engine.core.profile import PROFILES
+from tuisim.engine.core.sensors import columns_of
+from tuisim.engine.core.spec import RobotSpec, RunSpec, WorldSpec
+
+RUN = RunSpec(RobotSpec(), WorldSpec(), PROFILES["ev3"])
+
+RULES: dict[str, tuple[BreakRule, str]] = {
+    "12": (LineBreak(12), "12"),
+    "line 12": (LineBreak(12), "12"),
+    "12 if x > 3": (LineBreak(12, "x > 3"), "12 if x > 3"),
+    "  7   if  a[0] ": (LineBreak(7, "a[0]"), "7 if a[0]"),
+    "left_red_pc < 10": (ValueCondition("left_red_pc", "<", "10"), "left_red_pc < 10"),
+    "left.red% < 10": (ValueCondition("left_red_pc", "<", "10"), "left_red_pc < 10"),
+    "left sensor red % < 10": (ValueCondition("left_red_pc", "<", "10"), "left_red_pc < 10"),
+    "left.red < 10": (ValueCondition("left_red", "<", "10"), "left_red < 10"),
+    "right.color changes": (ValueCondition("right_color", "changes"), "right_color changes"),
+    "left.color = Blue": (ValueCondition("left_color", "==", "Blue"), "left_color == Blue"),
+    "ultrasonic<200": (ValueCondition("ultrasonic_mm", "<", "200"), "ultrasonic_mm < 200"),
+    "ultrasonic sensor <= 2.5e2": (
+        ValueCondition("ultrasonic_mm", "<=", "250"),
+        "ultrasonic_mm <= 250",
+    ),
+    "gyro > 90": (ValueCondition("gyro_deg", ">", "90"), "gyro_deg > 90"),
+    "gyro.rate != 0": (ValueCondition("gyro_rate_dps", "!=", "0"), "gyro_rate_dps != 0"),
+    "x_mm > 1000": (ValueCondition("x_mm", ">", "1000"), "x_mm > 1000"),
+    "x_mm > 0.1234567890123456": (
+        ValueCondition("x_mm", ">", "0.1234567890123456"),
+        "x_mm > 0.1234567890123456",
+    ),
+    "time 3.5": (TimeBreak(3.5), "time 3.5"),
+    "time 3.5 s": (TimeBreak(3.5), "time 3.5"),
+    "sample Colour": (ValueCondition("Colour", "is seen", "", ValueSource.SAMPLE), "sample Colour"),
+    "sample Colour changes": (
+        ValueCondition("Colour", "changes", "", ValueSource.SAMPLE),
+        "sample Colour changes",
+    ),
+    "sample Colour >= -1.5": (
+        ValueCondition("Colour", ">=", "-1.5", ValueSource.SAMPLE),
+        "sample Colour >= -1.5",
+    ),
+    "print matches a|b c": (
+        ValueCondition("", "matches", "a|b c", ValueSource.PRINT),
+        "print matches a|b c",
+    ),
+    "stall": (StallBreak(), "stall"),
+}
+
+
+@pytest.mark.parametrize("text, rule, common", [(t, *r) for t, r in RULES.items()], ids=RULES)
+def test_a_text_is_a_rule_and_back(text: str, rule: BreakRule, common: str) -> None:
+    found = parse_break(text, RUN)
+    assert found == Breakpoint(rule, common)
+    assert parse_break(found.written(), RUN) == found
+    off = parse_break("# " + text, RUN)
+    assert off.disabled
+    assert parse_break(off.written(), RUN) == off
+
+
+WRONG = {
+    "": "is empty",
+    "#": "is empty",
+    "0": "count from 1",
+    "hello": "is not a breakpoint",
+    "12 if": "is not a breakpoint",
+    "12 if x >": "is not an expression",
+    "12 if " + "(" * 500: "is not an expression",
+    "left.purple < 3": "has no 'left.purple'",
+    "middle.red < 3": "has no 'middle.red'",
+    "ultrasonic < far": "'far' is not a number",
+    "ultrasonic < nan": "not a finite number",
+    "time -1": "not possible",
+    "time": "is not a number",
+    "print hello": "only be matched",
+    "print matches (": "not a regular expression",
+    "sample 1x < 3": "a sample has a name",
+    "sample": "a sample has a name",
+}
+
+
+@pytest.mark.parametrize("text, why", WRONG.items(), ids=[text[:20] or "empty" for text in WRONG])
+def test_what_is_no_break_says_why_and_what_is_allowed(text: str, why: str) -> None:
+    with pytest.raises(ConfigError, match="break: ") as refused:
+        parse_break(text, RUN)
+    assert why in refused.value.message
+    assert refused.value.hint
+
+
+def test_every_column_of_a_robot_can_be_compared_and_without_one_any_name() -> None:
+    for column in columns_of(RUN):
+        for name in (column.name, *column.also):
+            assert parse_break(f"{name} > 1.5", RUN).rule == ValueCondition(column.name, ">", "1.5")
+    assert parse_break("middle.red > 1").rule == ValueCondition("middle.red", ">", "1")
+
+
+def test_lines_with_a_break_and_breaks_that_move() -> None:
+    breaks = parse_breakpoints(["# 3", "3 if x", "# 5", "stall"])
+    assert {line: one.text for line, one in break_lines(breaks).items()} == {3: "3 if x", 5: "5"}
+    assert [break_line_of(one) for one in breaks] == [3, 3, 5, 0]
+    assert [moved(one, 9).written() for one in breaks] == ["# 9", "9 if x", "# 9", "stall"]

@@ -1,0 +1,62 @@
+"""Messages between host and child as lines, and user actions as they are stored with a run."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+
+from tuisim.engine.protocol import (
+    ACTIONS,
+    COMMANDS,
+    EVENTS,
+    Message,
+    Pause,
+    RunToInstant,
+    SetNoise,
+    SetPose,
+    Spoke,
+    Stop,
+    UserAction,
+    parse_command,
+)
+
+SENT: tuple[Message, ...] = (Stop(), SetPose(1.5, -2.0, 90.0), SetNoise(3, 4), RunToInstant(5, 6))
+
+
+@pytest.mark.parametrize("message", SENT, ids=[message.kind for message in SENT])
+def test_a_command_is_read_as_it_was_sent(message: Message) -> None:
+    line = message.encode()
+    assert line.endswith(b"\n") and line.count(b"\n") == 1
+    assert parse_command(line) == message
+
+
+def test_kinds_are_the_names_of_the_classes() -> None:
+    assert (SetPose.kind, RunToInstant.kind) == ("set_pose", "run_to_instant")
+    assert not COMMANDS.keys() & EVENTS.keys()
+
+
+def test_names_that_are_not_utf_8_are_sent_as_escapes() -> None:
+    line = Spoke("é\udcff", 7).encode()
+    assert json.loads(line)["text"] == "é\\udcff"
+
+
+@pytest.mark.parametrize(
+    "line", [b"rubbish", b'{"kind": "fly"}', b'{"kind": "stop", "now": 1}', b'{"tick": 3}'], ids=str
+)
+def test_a_line_that_is_no_command_is_an_error(line: bytes) -> None:
+    with pytest.raises((ValueError, KeyError, TypeError)):
+        parse_command(line)
+
+
+def test_an_action_comes_back_from_its_stored_form() -> None:
+    action = UserAction(12, SetNoise(1, 2))
+    plain = action.to_plain()
+    assert (plain["tick"], plain["kind"]) == (12, "set_noise")
+    assert UserAction.from_plain(plain) == action
+    assert all(kind.kind in COMMANDS for kind in ACTIONS)
+
+
+def test_what_a_debugger_does_is_no_action_of_a_run() -> None:
+    with pytest.raises(TypeError, match="not a user action"):
+        UserAction(1, Pause())

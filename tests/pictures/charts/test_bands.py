@@ -1,0 +1,110 @@
+"""Bands as spans of a chart."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from tuisim.logs.levels import PLAIN_LIGHT
+from tuisim.pictures.charts.bands import MOST_SAMPLES, SHADES, placed_names, spans_of
+from tuisim.pictures.charts.plot_image import PlotInks, plot_image
+from tuisim.pictures.charts.text_chart import ChartPainter, ChartState
+from tuisim.pictures.charts.traces import Traces
+
+LEVELS = [100.0] * 20 + [60.0] * 20 + [0.0] * 20
+GROUND, AXIS, WHITE, SHADED = (
+    (10, 20, 30),
+    (200, 200, 200),
+    (255, 255, 255),
+    ((40, 50, 60), (30, 40, 50)),
+)
+
+
+def chart(values: list[float]) -> tuple[Traces, ChartState]:
+    traces = Traces()
+    traces.append("Colour", (np.arange(len(values)) / 10).tolist(), values)
+    return traces, ChartState(spans=spans_of(next(iter(traces)), PLAIN_LIGHT))
+
+
+def test_each_band_is_named_by_its_level_and_grey() -> None:
+    _, state = chart(LEVELS)
+
+    assert [span.texts for span in state.spans] == [
+        ("100 white", "100"),
+        ("60", "60"),
+        ("0 black", "0"),
+    ]
+    assert [(span.start, span.stop) for span in state.spans] == [(0.0, 1.9), (2.0, 3.9), (4.0, 5.9)]
+
+
+def test_names_are_all_long_or_all_short_and_never_touch() -> None:
+    spans = spans_of(next(iter(chart([86.2745] * 9 + [82.745] * 9 + [0.0])[0])), PLAIN_LIGHT)
+
+    wide = placed_names(spans, [range(20), range(20, 40), range(40, 41)], 4, 41, lambda *_: True)
+    narrow = placed_names(spans, [range(3), range(3, 6), range(6, 7)], 4, 7, lambda *_: True)
+
+    assert [text for _, _, text in wide] == ["86.27 pale grey", "82.75 light grey"]
+    assert narrow == [(3, 0, "86.27"), (2, 2, "82.75")]
+
+
+def test_names_with_room_between_them_are_in_the_lowest_row() -> None:
+    spans = spans_of(next(iter(chart(LEVELS)[0])), PLAIN_LIGHT)
+    places = [range(20), range(20, 40), range(40, 60)]
+    assert [row for row, _, _ in placed_names(spans, places, 4, 60, lambda *_: True)] == [3, 3, 3]
+
+
+@pytest.mark.parametrize("values", [LEVELS, LEVELS[::-1]], ids=["white first", "white last"])
+def test_a_name_stands_beside_a_cursor_and_within_the_chart(values: list[float]) -> None:
+    spans = spans_of(next(iter(chart(values)[0])), PLAIN_LIGHT)
+    places = [range(5), range(5, 10), range(10, 15)]
+
+    def put(cursors: list[int]) -> list[tuple[int, int, str]]:
+        return placed_names(spans, places, 4, 15, lambda *_: True, cursors)
+
+    for cursor in range(15):
+        names = put([cursor])
+        assert all(not at <= cursor < at + len(text) for _, at, text in names), cursor
+        assert all(0 <= at <= 15 - len(text) for _, at, text in names), cursor
+
+
+@pytest.mark.parametrize("columns", range(16, 40))
+def test_a_name_at_the_edge_stands_within_the_chart(columns: int) -> None:
+    spans = spans_of(next(iter(chart(LEVELS)[0])), PLAIN_LIGHT)
+    places = [range(4), range(4, columns - 4), range(columns - 4, columns)]
+    names = placed_names(spans, places, 4, columns, lambda *_: True)
+    assert len(names) == 3
+    assert all(0 <= at <= columns - len(text) for _, at, text in names)
+
+
+def test_too_many_samples_are_left_to_the_analyser() -> None:
+    assert not chart([1.0] * (MOST_SAMPLES + 1))[1].spans
+
+
+@pytest.mark.parametrize("width, name", [(80, "100 white"), (30, "100"), (12, "")])
+def test_a_band_in_cells_is_shaded_and_named_where_nothing_is_drawn(width: int, name: str) -> None:
+    traces, state = chart(LEVELS)
+    picture = ChartPainter().paint(traces, state, width, 12)
+    rows = picture.lines[picture.top : picture.top + picture.rows]
+
+    texts = ["".join(text for text, _ in row)[picture.left :] for row in rows]
+    assert {sum(map(len, (text for text, _ in row))) for row in rows} == {width}
+    assert name in texts[-1]
+    # The last band is along the lowest row.
+    assert "black" not in texts[-1]
+    shades = {style.bgcolor for row in rows for _, style in row if style.bgcolor}
+    assert shades == {shade.bgcolor for shade in SHADES}
+
+
+def test_a_band_in_pixels_is_shaded_and_named_where_nothing_is_drawn() -> None:
+    traces, state = chart(LEVELS)
+    plot = ChartPainter().paint(traces, state, 80, 12, is_blank=True).plot
+    assert plot is not None
+    image = plot_image(plot, (8, 16), PlotInks(GROUND, AXIS, WHITE, SHADED))
+
+    first, second, third = np.array_split(image[:, 8 : 8 + plot.columns * 8], 3, axis=1)
+    assert [
+        bool((part == rgb).all(axis=2).any()) for part in (first, second) for rgb in SHADED
+    ] == [1, 0, 0, 1]
+    lowest = slice((plot.rows - 1) * 16, plot.rows * 16 - 2)
+    named = [bool((part[lowest, 20:-20] == AXIS).all(axis=2).any()) for part in (first, third)]
+    assert named == [True, False]

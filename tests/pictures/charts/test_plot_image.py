@@ -1,0 +1,73 @@
+"""The canvas of a chart as an image."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from tests.cases import cases
+from tuisim.engine.core.css_colors import Rgb
+from tuisim.pictures.charts import axes
+from tuisim.pictures.charts.canvas import Curve
+from tuisim.pictures.charts.plot_image import Plot, PlotInks, plot_image
+
+CELL = WIDTH, HEIGHT = 8, 16
+COLUMNS, ROWS = 30, 10
+GROUND, AXIS, CURSOR, CURVE = (10, 20, 30), (200, 200, 200), (255, 255, 255), (240, 0, 0)
+EMPTY = Plot((), COLUMNS, ROWS, (0.0, 10.0), (0.0, 100.0), (), (), True, ())
+
+
+def cells_with(plot: Plot, rgb: Rgb) -> set[tuple[int, int]]:
+    """Row and column on the canvas, whose axis is column -1, of the cells that show a colour."""
+    at = (plot_image(plot, CELL, PlotInks(GROUND, AXIS, CURSOR)) == rgb).all(axis=2)
+    rows, cols = plot.size
+    assert at.shape == (rows * HEIGHT, cols * WIDTH)
+    found = at.reshape(rows, HEIGHT, cols, WIDTH).any(axis=(1, 3))
+    return {(row, col - 1) for row, col in np.argwhere(found).tolist()}
+
+
+def curve(*points: tuple[float, float], marker: str = "braille") -> Plot:
+    times_s, values = np.array(points, float).T
+    return replace(EMPTY, curves=(Curve(times_s, values, CURVE, marker),))
+
+
+CORNERS = {(0, 0), (0, 29), (9, 0), (9, 29)}
+DRAWN = {
+    "a line at the top": (curve((0, 100), (10, 100)), CURVE, {(0, col) for col in range(30)}),
+    "a line at the bottom": (curve((0, 0), (10, 0)), CURVE, {(9, col) for col in range(30)}),
+    "beyond the edges": (curve((-1e9, 100), (1e9, 100)), CURVE, {(0, col) for col in range(30)}),
+    "a single point": (curve((0, 0)), CURVE, {(9, 0)}),
+    "marks": (curve((0, 0), (0, 100), (10, 0), (10, 100), marker="o"), CURVE, CORNERS),
+    "a cursor": (replace(EMPTY, cursors=(0.0,)), CURSOR, {(row, 0) for row in range(ROWS)}),
+    "a cursor that is not in view": (replace(EMPTY, cursors=(11.0,)), CURSOR, set()),
+    "axes": (
+        EMPTY,
+        AXIS,
+        {(row, -1) for row in range(ROWS + 1)} | {(ROWS, col) for col in range(COLUMNS)},
+    ),
+    "no time line": (replace(EMPTY, has_time_line=False), AXIS, {(row, -1) for row in range(ROWS)}),
+}
+
+
+@cases("plot, rgb, expected", DRAWN)
+def test_everything_is_where_it_belongs(
+    plot: Plot, rgb: Rgb, expected: set[tuple[int, int]]
+) -> None:
+    assert cells_with(plot, rgb) == expected
+
+
+def test_the_grid_is_at_the_labels() -> None:
+    limits = 0.0, 100.0
+    grid = 48, 56, 64
+    plot = replace(
+        EMPTY,
+        y_ticks=tuple(axes.row_ticks(limits, ROWS)),
+        x_ticks=tuple(axes.time_ticks((0.0, 10.0), 30)),
+    )
+    found = cells_with(plot, grid)
+    rows = {row for row in range(ROWS) if all((row, col) in found for col in range(COLUMNS))}
+    cols = {col for col in range(COLUMNS) if all((row, col) in found for row in range(ROWS))}
+    assert rows == set(axes.row_labels(limits, ROWS))
+    line, _ = axes.time_axis((0.0, 10.0), COLUMNS)
+    assert cols == {col for col, char in enumerate(line) if char == "┬"}

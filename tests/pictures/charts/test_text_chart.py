@@ -1,0 +1,291 @@
+"""The chart as text."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from typing import Any
+
+import pytest
+
+from tests.cases import cases
+from tuisim.pictures.charts import axes
+from tuisim.pictures.charts.bands import band_span
+from tuisim.pictures.charts.canvas import TextRun, canvas, styled
+from tuisim.pictures.charts.text_chart import ChartPainter, ChartPicture, ChartState, values_at
+from tuisim.pictures.charts.traces import Traces
+
+TELEMETRY = ("left_red_pc", "gyro_deg")
+
+
+def traces(*names: str) -> Traces:
+    made = Traces()
+    for at, name in enumerate(names):
+        made.append(
+            name,
+            [0.0, 1.0, 2.0, 3.0],
+            [at + 0.0, at + 100.0, at + 50.0, at + 50.0],
+            name not in TELEMETRY,
+        )
+    return made
+
+
+def text(picture: ChartPicture) -> list[str]:
+    return ["".join(part for part, _ in line) for line in picture.lines]
+
+
+SIZES = [(20, 6), (38, 8), (72, 16), (160, 20)]
+
+
+@pytest.mark.parametrize("width, height", SIZES, ids=str)
+@pytest.mark.parametrize("cursor_s", [None, 1.5], ids=["no cursor", "cursor"])
+@pytest.mark.parametrize("grey", [False, True], ids=["colours", "grey"])
+def test_it_fits(width: int, height: int, cursor_s: float | None, grey: bool) -> None:
+    made = traces(
+        "Colour",
+        "Light_left",
+        "Ultrasonic",
+        "left_red_pc",
+        "gyro_deg",
+        "a_very_long_name_of_a_trace",
+    )
+
+    picture = ChartPainter().paint(made, ChartState("Colour", cursor_s, grey=grey), width, height)
+
+    rows = text(picture)
+    assert len(rows) <= height
+    assert max(map(len, rows)) <= width
+    assert any("0" in row for row in rows)
+    for box in picture.boxes:
+        assert rows[box.row][box.first] == "["
+
+
+@pytest.mark.parametrize("width, height", SIZES, ids=str)
+def test_an_empty_chart_says_how_to_log(width: int, height: int) -> None:
+    rows = text(ChartPainter().paint(traces(), ChartState(), width, height))
+
+    assert max(map(len, rows)) <= width
+    assert len(rows) <= height
+    assert "print('Colour: '" in "\n".join(rows)
+
+
+def test_a_chart_without_a_tick_says_so() -> None:
+    logged, measured = traces("Colour"), traces("gyro_deg")
+    for made in (logged, measured):
+        for trace in made:
+            trace.on = False
+    said = [
+        "\n".join(text(ChartPainter().paint(made, ChartState(), 80, 16)))
+        for made in (logged, measured)
+    ]
+    assert ["No trace is ticked" in words for words in said] == [True, False]
+    assert not any("space" in words for words in said)
+    focused = ChartPainter().paint(logged, ChartState("Colour"), 80, 16)
+    assert "↑ ↓ and space show a trace" in "\n".join(text(focused))
+    assert ["Nothing logged yet" in words for words in said] == [False, True]
+
+
+@pytest.mark.parametrize(
+    "name, values, state, lowest",
+    [
+        ("Colour", [60.0, 98.8], ChartState(), "0"),
+        ("Light_left", [180.0, 255.0], ChartState(), "0"),
+        ("left_red_pc", [60.0, 98.8], ChartState(), "0"),
+        ("right_green #2", [180.0, 200.0], ChartState(), "0"),
+        ("Colour", [60.0, 98.8], ChartState(zoomed=True), "60"),
+        ("Light", [600.0, 980.0], ChartState(), "600"),
+        ("Distance", [60.0, 98.8], ChartState(), "60"),
+        ("Light_slope", [-20.0, 40.0], ChartState(), "-20"),
+    ],
+    ids=[
+        "percent",
+        "level",
+        "telemetry",
+        "column",
+        "zoomed",
+        "out of range",
+        "other reading",
+        "below zero",
+    ],
+)
+def test_readings_with_a_known_range_begin_at_zero(
+    name: str, values: list[float], state: ChartState, lowest: str
+) -> None:
+    made = Traces()
+    made.append(name, [0.0, 1.0], values)
+    next(iter(made)).on = True
+    rows = text(ChartPainter().paint(made, state, 60, 8))
+    assert [row.split("┤")[0].strip() for row in rows if "┤" in row][-1] == lowest
+
+
+@pytest.mark.parametrize("end_s", [0.7, 5.41, 61.3, 723.0])
+@pytest.mark.parametrize("grows", [False, True], ids=["over", "live"])
+def test_the_horizontal_axis_ends_at_the_data(end_s: float, grows: bool) -> None:
+    made = Traces()
+    made.append("Colour", [0.0, end_s], [1.0, 2.0])
+    limits = ChartPainter().paint(made, ChartState(grows=grows), 60, 12).x_limits
+    # While more is to come, there is a little room for it.
+    assert limits[0] == 0
+    assert limits[1] == end_s if not grows else end_s <= limits[1] <= max(1.3 * end_s, 1)
+
+
+@cases(
+    "names, is_ascii, signs",
+    {
+        "one trace": (["Colour"], False, "braille"),
+        "two traces": (["Colour", "Gyro"], False, "marks"),
+        "one trace in ASCII": (["Colour"], True, "marks"),
+    },
+)
+def test_without_colours_marks_are_drawn_only_where_they_are_needed(
+    names: list[str], is_ascii: bool, signs: str
+) -> None:
+    picture = ChartPainter().paint(traces(*names), ChartState(grey=True, is_ascii=is_ascii), 40, 12)
+    shown = "\n".join(text(picture))
+
+    assert ("braille" if re.search("[\u2801-\u28ff]", shown) else "marks") == signs
+    assert ("[x] Colour" in shown) is (signs == "braille")
+
+
+@pytest.mark.parametrize(
+    "width, row",
+    [
+        (68, "[x] a_long_name_0  [x] a_long_name_1  [x] a_long_name_2  [x] Light"),
+        (65, "[x] a_long_name_0  [x] a_long_name_1  [x] a_long_name_2        +1"),
+        (40, "[x] a_long_name_0  [x] a_long_name_1  +2"),
+        (19, "[x] a_long_name… +3"),
+        (12, "[x] a_lo… +3"),
+    ],
+)
+def test_tick_boxes_are_one_row_that_counts_what_does_not_fit(width: int, row: str) -> None:
+    made = traces(*(f"a_long_name_{at}" for at in range(3)), "Light")
+    picture = ChartPainter().paint(made, ChartState(), width, 24)
+    assert picture.top == 1
+    assert text(picture)[0].rstrip() == row
+
+
+def test_a_name_that_does_not_fit_ends_in_an_ellipsis() -> None:
+    rows = text(ChartPainter().paint(traces("a_name_that_is_much_too_long"), ChartState(), 20, 8))
+    assert rows[0].rstrip() == "[x] a_name_that_is_…"
+
+
+def test_a_variable_with_the_name_of_a_column_is_the_programs() -> None:
+    made = Traces()
+    for logged, value in ((False, 1.0), (True, 2.0), (False, 3.0)):
+        made.append("gyro_deg", [value], [value], logged)
+    (trace,) = made
+    assert (trace.logged, trace.values.tolist()) == (True, [2.0])
+
+
+def test_telemetry_is_not_ticked_at_first() -> None:
+    rows = text(ChartPainter().paint(traces("gyro_deg", "Colour"), ChartState(), 80, 16))
+
+    assert rows[0].startswith("[x] Colour  [ ] gyro_deg")
+
+
+def test_the_selected_box_is_in_sight() -> None:
+    names = [f"Trace_number_{number}" for number in range(9)]
+
+    picture = ChartPainter().paint(traces(*names), ChartState("Trace_number_8"), 40, 8)
+
+    assert "Trace_number_8" in [box.name for box in picture.boxes]
+
+
+@pytest.mark.parametrize("ticked", [("a_long_name_0", "a_long_name_3"), ("a_long_name_3",)])
+def test_what_is_drawn_is_named(ticked: tuple[str, ...]) -> None:
+    made = traces(*(f"a_long_name_{number}" for number in range(9)))
+    for trace in made:
+        trace.on = trace.name in ticked
+
+    rows = text(ChartPainter().paint(made, ChartState("a_long_name_0"), 60, 10))
+
+    assert all(f"[x] {name}" in "\n".join(rows) for name in ticked)
+    assert len(rows) == 10
+
+
+@pytest.mark.parametrize("other", ["way_mm", ""])
+def test_names_of_bands_have_the_colour_of_their_curve_beside_others(other: str) -> None:
+    made = traces(*filter(None, ("Colour", other)))
+    spans = (band_span("Colour", 1.5, 3.0, 50.0, ""),)
+    lines = ChartPainter().paint(made, ChartState(spans=spans), 80, 16).lines
+    (color,) = {
+        style.color for line in lines for part, style in line if part == "50" and style.bgcolor
+    }
+    assert (color == styled(next(iter(made)).rgb).color) is bool(other)
+
+
+def test_values_at_the_cursor() -> None:
+    assert (
+        values_at(list(traces("Colour", "way_mm")), 1.25, "s", 80)
+        == "1.25 s  Colour 100  way_mm 101mm"
+    )
+
+
+def test_values_that_do_not_fit_are_counted() -> None:
+    drawn = list(traces("Colour", "Light_left", "Light_right"))
+
+    assert values_at(drawn, 1.0, "s", 24) == "1.00 s  Colour 100 +2"
+
+
+def test_a_chart_of_twelve_rows_has_ten_for_its_lines() -> None:
+    assert (
+        ChartPainter().paint(traces("Colour"), ChartState(cursor_s=1.0, grid=True), 78, 12).rows
+        == 10
+    )
+
+
+def test_the_canvas_is_kept_while_only_the_cursor_moves(monkeypatch: pytest.MonkeyPatch) -> None:
+    calls: list[object] = []
+
+    def counted(*words: Any) -> list[list[TextRun]]:
+        calls.append(words)
+        return canvas(*words)
+
+    monkeypatch.setattr("tuisim.pictures.charts.text_chart.canvas", counted)
+    painter, made, state = ChartPainter(), traces("Colour"), ChartState(cursor_s=1.0)
+
+    painter.paint(made, state, 80, 16)
+    painter.paint(made, replace(state, cursor_s=2.0), 80, 16)
+    made.append("Colour", [4.0], [7.0])
+    painter.paint(made, state, 80, 16)
+
+    assert len(calls) == 2
+
+
+def test_limits_stay_while_frozen() -> None:
+    made = traces("Colour")
+    made.append("Colour", [100.0], [1.0])
+
+    assert ChartPainter().paint(made, ChartState(x_limits=(0.0, 5.0)), 80, 16).x_limits == (
+        0.0,
+        5.0,
+    )
+    assert ChartPainter().paint(made, ChartState(), 80, 16).x_limits == (0.0, 100.0)
+
+
+def test_points_out_of_order_and_numbers_that_are_none() -> None:
+    made = Traces()
+    made.append("t", [3.0, 1.0, float("nan")], [30.0, 10.0, 5.0])
+    made.append("t", [2.0], [float("inf")])
+    made.append("t", [2.0], [20.0])
+    (trace,) = made
+
+    assert trace.times_s.tolist() == [1.0, 2.0, 3.0]
+    assert [trace.at(time_s) for time_s in (0.5, 1.0, 2.9)] == [None, 10.0, 20.0]
+
+
+def test_a_faint_grid_stands_at_the_labels_and_gives_way_to_curves_and_cursors() -> None:
+    traces = Traces()
+    traces.append("Colour", [0.0, 10.0], [0.0, 100.0])
+    state = ChartState(grid=True, cursor_s=2.5)
+    picture = ChartPainter().paint(traces, state, 60, 16)
+    rows = [
+        "".join(text for text, _ in line)
+        for line in picture.lines[picture.top : picture.top + picture.rows]
+    ]
+    for row in rows:
+        assert ("┈" in row) is ("┤" in row)
+    assert all(
+        row[picture.left + axes.column_of(2.5, picture.x_limits, picture.columns)] != "┈"
+        for row in rows
+    )

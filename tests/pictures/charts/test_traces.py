@@ -1,0 +1,127 @@
+from __future__ import annotations
+
+from dataclasses import astuple
+
+import numpy as np
+import pytest
+
+from tuisim.logs.signals import summary_of
+from tuisim.pictures.charts.canvas import seen_points, xy_lines
+from tuisim.pictures.charts.traces import MOST_POINTS, TRACE_COLORS, Pyramid, Trace, Traces
+
+TIMES = np.arange(200_000) / 1000.0
+
+
+@pytest.mark.parametrize(
+    "limits", [(0.0, 200.0), (50.0, 150.0), (10.0, 10.05), (-5.0, 500.0)], ids=str
+)
+def test_few_points_reach_as_far_as_all(limits: tuple[float, float]) -> None:
+    values = np.sin(TIMES)
+    values[123_456] = 9.0
+    times_s, drawn = Pyramid(TIMES, values).points(limits, 100)
+    inside = (limits[0] <= TIMES) & (limits[1] >= TIMES)
+    assert len(times_s) <= 2 * 16 * 4 * 100 + 4
+    assert drawn.max() >= values[inside].max()
+    assert drawn.min() <= values[inside].min()
+    assert (np.diff(times_s) >= 0).all()
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+def test_a_ramp_of_many_points_is_drawn_as_a_ramp(sign: int) -> None:
+    _, drawn = Pyramid(TIMES, sign * TIMES).points((0.0, 200.0), 100)
+    assert (sign * np.diff(drawn) >= 0).all()
+
+
+def test_what_is_not_finite_or_not_in_order_is_put_right() -> None:
+    pyramid = Pyramid(np.array([3.0, 1.0, 2.0, 5.0]), np.array([30.0, 10.0, np.nan, 50.0]))
+    assert pyramid.times_s.tolist() == [1.0, 3.0, 5.0]
+    assert [pyramid.nearest(time_s) for time_s in (-9.0, 1.9, 2.1, 4.1, 99.0)] == [1, 1, 0, 3, 3]
+    assert pyramid.between(1.0, 3.0)[1].tolist() == [10.0, 30.0]
+
+
+@pytest.mark.parametrize(
+    "span", [(0.0, 200.0), (3.0011, 171.9), (5.008, 5.02), (90.0, 80.0)], ids=str
+)
+def test_figures_of_a_span_are_those_of_its_points(span: tuple[float, float]) -> None:
+    values = 1e6 + np.sin(TIMES) * np.random.default_rng(1).random(len(TIMES))
+    inside = values[(span[0] <= TIMES) & (span[1] >= TIMES)]
+    found, expected = Pyramid(TIMES, values).figures(*span), summary_of(inside, quantiles=())
+    assert astuple(found)[:6] == pytest.approx(astuple(expected)[:6], rel=1e-9, nan_ok=True)
+
+
+def test_equal_values_have_no_spread() -> None:
+    found = Pyramid(TIMES, np.full(len(TIMES), 0.1)).figures(0.0, 150.0)
+    assert (found.mean, found.std) == (0.1, 0.0)
+
+
+def test_traces_end_where_the_longest_ends() -> None:
+    traces = Traces()
+    assert traces.end_s() == 0
+    traces.append("a", [0.0, 1.0, 2.0], [5.0, 5.0, 5.0])
+    traces.append("b", [0.0, 7.0, 9.0, 12.0], [1.0, 2.0, 3.0, 4.0])
+    assert traces.end_s() == 12
+
+
+def test_no_points_at_all() -> None:
+    assert not len(Pyramid(np.array([np.nan]), np.array([1.0])).points((0.0, 1.0), 10)[0])
+
+
+def test_the_place_that_is_looked_at_is_marked() -> None:
+    xs, ys = np.array([0.0, 5.0, 10.0]), np.array([0.0, 5.0, 10.0])
+    lines = xy_lines(xs, ys, 2, ("x", "y"), (255, 0, 0), "braille", 40, 12)
+    text = ["".join(part for part, _ in line) for line in lines]
+    assert len(text) == 12
+    assert "●" in text[1]
+    assert text[0].endswith("x 10  y 10")
+
+
+def test_a_trace_without_end_keeps_its_extremes_in_bounded_memory() -> None:
+    trace, values = Trace("Colour", 0), np.sin(TIMES)
+    values[[1_234, 150_001]] = 9.0, -9.0
+    for at in range(0, len(TIMES), 100):
+        trace.add(TIMES[at : at + 100].tolist(), values[at : at + 100].tolist())
+    assert len(trace.times_s) == len(trace.values) <= MOST_POINTS < len(TIMES)
+    assert (trace.at(TIMES[1_234]), trace.at(TIMES[150_001])) == (9.0, -9.0)
+    assert (trace.times_s[0], trace.times_s[-1]) == (TIMES[0], TIMES[-1])
+    assert (np.diff(trace.times_s) >= 0).all()
+    # What came last is there as it came.
+    assert trace.values[-1000:].tolist() == values[-1000:].tolist()
+
+
+@pytest.mark.parametrize(
+    "name, scale",
+    [
+        ("front_mm", "mm"),
+        ("turn_deg #2", "°"),
+        ("speed_mm_s", "mm/s"),
+        ("eye_red_pc", ""),
+        ("Gyro", "gyro"),
+        ("Left", ""),
+    ],
+)
+def test_traces_with_one_unit_share_a_scale(name: str, scale: str) -> None:
+    assert Trace(name, 0).scale == scale
+
+
+def test_each_trace_keeps_its_colour() -> None:
+    traces = Traces()
+    for name, is_logged in (("a", True), ("x_mm", False), ("b", True), ("y_mm", False)):
+        traces.append(name, [0.0], [1.0], is_logged)
+    colors = {trace.name: trace.rgb for trace in traces}
+    first, second, *_, last = TRACE_COLORS
+    assert colors == {"a": first, "b": second, "x_mm": last, "y_mm": TRACE_COLORS[-2]}
+    traces.append("x_mm", [1.0], [5.0], True)
+    traces.append("x_mm", [2.0], [6.0], False)
+    assert [(trace.name, len(trace.times_s)) for trace in traces][-1] == ("y_mm", 1)
+    traces.clear()
+    assert len(traces) == 0
+    for name, is_logged in (("c", True), ("b", True), ("z", False)):
+        traces.append(name, [0.0], [1.0], is_logged)
+    colors = {trace.name: trace.rgb for trace in traces}
+    assert colors == {"b": second, "c": TRACE_COLORS[3], "z": TRACE_COLORS[-2]}
+
+
+def test_a_path_is_seen_between_its_limits() -> None:
+    xs, ys = np.array([10.0, 10.1, 12.0, 14.0]), np.array([100.0, 100.1, 108.0, 100.0])
+    seen = seen_points(xs, ys, [(10.0, 14.0), (100.0, 108.0)], 2, 2)
+    assert np.array(seen).tolist() == [[10.0, 12.0, 14.0], [100.0, 108.0, 100.0]]

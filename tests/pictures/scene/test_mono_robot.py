@@ -1,0 +1,73 @@
+"""The robot in pictures without colours."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from tests.cases import cases
+from tuisim.engine.core.geometry import Pose
+from tuisim.engine.core.outline import outline_of
+from tuisim.engine.core.spec import RobotSpec
+from tuisim.pictures.scene.mono_robot import body, pointer
+from tuisim.pictures.scene.pen import visible_on
+from tuisim.pictures.scene.view import whole_field
+from tuisim.terminal.glyphs import GLYPHS, SIGNS
+from tuisim.terminal.pixels import CellPoints
+
+ROWS, COLS = 20, 50
+
+
+@pytest.mark.parametrize("heading", range(0, 360, 45))
+def test_the_robot_in_signs_has_a_sign_of_its_own(heading: int) -> None:
+    view = whole_field(2 * COLS, 4 * ROWS, CellPoints(2, 4))
+    signs = body(view, Pose(1181, 571, heading), outline_of(RobotSpec()))
+
+    assert {GLYPHS[cell >> 48] for cell in signs.values()} == {"&"}
+    assert 8 <= len(signs) <= 22
+    rows, cols = ({at[axis] for at in signs} for axis in (0, 1))
+    assert rows <= set(range(8, 13)) and cols <= set(range(21, 30))
+    assert "&" not in SIGNS
+
+
+@pytest.mark.parametrize("grey", [False, True], ids=["colours", "greys"])
+@pytest.mark.parametrize(
+    "ground", [(255, 0, 0), (255, 255, 255), (0, 0, 0), (128, 128, 128), (200, 30, 30)], ids=str
+)
+def test_a_line_shows_on_any_ground(ground: tuple[int, int, int], grey: bool) -> None:
+    below = np.array([ground], np.uint8)
+
+    shown = visible_on(below, (255, 0, 0), grey).astype(float)
+
+    light = np.array([0.299, 0.587, 0.114])
+    away = abs((shown - below) @ light)[0] if grey else np.sqrt(np.square(shown - below).sum())
+    assert away > 50
+    assert ground != (255, 255, 255) or shown.tolist() == [[255, 0, 0]]
+
+
+@cases(
+    "heading, shown",
+    {
+        "ahead": (0, ["O---->"]),
+        "up": (90, ["^", "|", "|", "O"]),
+        "back": (180, ["<----O"]),
+        "down": (-90, ["O", "|", "|", "v"]),
+        "ahead and up": (30, ["  ////", "O//"]),
+        "back and up": (135, ["\\\\", " \\\\\\", "   \\O"]),
+    },
+)
+def test_a_pointer_of_signs_shows_the_heading(heading: float, shown: list[str]) -> None:
+    view = whole_field(2 * COLS, 4 * ROWS, CellPoints(2, 4))
+
+    signs = pointer(view, Pose(1181.0, 571.0, heading), 3.2 * 2 * view.mm_per_px, "O")
+
+    top, left = (min(at[axis] for at in signs) for axis in (0, 1))
+    bottom, right = (max(at[axis] for at in signs) for axis in (0, 1))
+    rows = [
+        "".join(
+            GLYPHS[signs[row, col] >> 48] if (row, col) in signs else " "
+            for col in range(left, right + 1)
+        )
+        for row in range(top, bottom + 1)
+    ]
+    assert [row.rstrip() for row in rows] == shown

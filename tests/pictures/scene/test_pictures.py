@@ -1,0 +1,166 @@
+"""Pictures for files: what the app shows at the same instant, in the same colours."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import atan2, degrees, nan
+
+import numpy as np
+import pytest
+
+from tests.pictures.scene.scenes import CORNERS, MIDDLE, pixel, spec_of
+from tests.running import Run
+from tuisim.engine.core.geometry import Pose
+from tuisim.engine.core.profile import ROBOLAB
+from tuisim.engine.core.spec import (
+    FIELD_HEIGHT_MM,
+    FIELD_WIDTH_MM,
+    BeaconSpec,
+    Obstacle,
+    PenSpec,
+    RobotSpec,
+    RunSpec,
+    TouchSpec,
+    WorldSpec,
+)
+from tuisim.engine.core.tick_record import TICK_FIELDS
+from tuisim.engine.runs.views import TickRecord
+from tuisim.pictures.scene.painter import ScenePainter
+from tuisim.pictures.scene.pen import PenTrace, Piece
+from tuisim.pictures.scene.pictures import (
+    find_area,
+    find_view,
+    fitting_view,
+    path_picture,
+    scene_of,
+    sound_pose,
+    world_painter,
+    world_picture,
+    world_view,
+)
+from tuisim.pictures.scene.robot import COLORED
+from tuisim.pictures.scene.view import FIELD, Area, whole_field
+from tuisim.terminal.pixels import Pixels
+
+WHITE: Pixels = np.full((FIELD_HEIGHT_MM, FIELD_WIDTH_MM, 3), 255, np.uint8)
+HERE = Pose(900, 480, 25)
+SPEC = RunSpec(
+    RobotSpec(
+        pen=PenSpec(color="teal", width_mm=9.0),
+        gyro=None,
+        touch_sensors=(TouchSpec(port="in4", y_mm=90.0),),
+    ),
+    WorldSpec(
+        obstacles=(Obstacle(400, 300, 200, 150), Obstacle(985, 480, 60, 100)),
+        beacon=BeaconSpec(1700, 800),
+    ),
+    ROBOLAB,
+)
+TRACE = Piece.of(np.array([700.0, 900.0]), np.array([900.0, 700.0]), SPEC.robot.pen)
+
+
+def test_it_is_what_a_screen_shows_in_a_frame() -> None:
+    view = world_view(SPEC.robot)
+    trace = PenTrace()
+    trace.add(TRACE)
+    screen = ScenePainter(WHITE, (0, 0, 0), trace).paint(view, scene_of(SPEC, HERE))
+
+    picture = np.asarray(world_picture(SPEC, WHITE, HERE, (TRACE,)))
+
+    differs = np.argwhere((picture != screen).any(axis=2))
+    places = np.array([view.to_mm(col + 0.5, row + 0.5) for row, col in differs.tolist()])
+    outside = (places < 0).any(axis=1) | (places > (FIELD_WIDTH_MM, FIELD_HEIGHT_MM)).any(axis=1)
+    assert len(places) and outside.mean() > 0.99
+
+
+@pytest.mark.parametrize(
+    "pose, rays, is_seen", [(HERE, True, True), (HERE, False, False), (None, True, False)]
+)
+def test_rays_are_those_of_a_robot_that_is_there(
+    pose: Pose | None, rays: bool, is_seen: bool
+) -> None:
+    assert bool(scene_of(SPEC, pose, rays=rays).rays) == is_seen
+
+
+def test_runs_whose_pens_have_not_touched_are_not_joined() -> None:
+    other = replace(TRACE, xs_mm=TRACE.xs_mm + 100, ys_mm=TRACE.ys_mm + 100)
+    view = fitting_view(SPEC.robot, 600, 400)
+    scene = scene_of(SPEC, None)
+
+    picture = world_painter(WHITE, (TRACE, other)).paint(view, scene)
+
+    col, row = view.to_px(850, 850)
+    assert tuple(picture[int(row), int(col)]) == (255, 255, 255)
+    assert not (picture == COLORED.body).all(axis=2).any()
+
+
+@pytest.mark.parametrize("corner", CORNERS, ids=str)
+def test_a_white_mat_has_a_frame(corner: tuple[float, float]) -> None:
+    spec = spec_of()
+    picture, (x_mm, y_mm) = world_picture(spec, WHITE, MIDDLE), corner
+    inward, outward = (-3, 3) if x_mm else (3, -3)
+    edge = pixel(picture, spec.robot, (x_mm + outward / 2, 570))
+    assert pixel(picture, spec.robot, (x_mm + inward, y_mm + (-3 if y_mm else 3))) == (
+        255,
+        255,
+        255,
+    )
+    assert max(edge) < 100
+    assert pixel(picture, spec.robot, (x_mm + 6 * outward, y_mm)) not in ((255, 255, 255), edge)
+
+
+@pytest.mark.parametrize("size_px", [(300, 150), (300, 400), (900, 500), (1200, 401)])
+def test_a_world_fills_a_size_that_it_fits_into(size_px: tuple[int, int]) -> None:
+    view = fitting_view(SPEC.robot, *size_px)
+    room_px = size_px[0] - view.width_px, size_px[1] - view.height_px
+    assert 0 <= min(room_px) <= 3
+
+
+def test_a_robot_on_the_edge_is_not_cut_off() -> None:
+    spec = spec_of("Small_Robot")
+    for x_mm, y_mm in CORNERS:
+        outward = degrees(atan2(y_mm - FIELD_HEIGHT_MM / 2, x_mm - FIELD_WIDTH_MM / 2))
+        picture = np.asarray(world_picture(spec, WHITE, Pose(x_mm, y_mm, outward)))
+        border = np.concatenate([picture[0], picture[-1], picture[:, 0], picture[:, -1]])
+        assert len(np.unique(border, axis=0)) == 1
+
+
+def test_the_way_of_a_run_is_drawn_small(run: Run) -> None:
+    done = run(
+        "tank_drive.on_for_seconds(50, 50, 2)\n", background="Empty_Map", pose=(500.0, 500.0, 0.0)
+    )
+    picture = path_picture(done.run.stored(), whole_field(50, 26), (0, 0, 0))
+    reddish = (picture[..., 0] > 200) & (picture[..., 1] < 150)
+    rows, columns = np.nonzero(reddish)
+    assert len({*rows}) <= 2
+    assert 5 < np.ptp(columns) < 20
+
+
+def records_at(*places: tuple[float, float]) -> np.ndarray:
+    records = np.zeros(len(places), np.dtype(list(TICK_FIELDS)))
+    records["x_mm"], records["y_mm"] = zip(*places, strict=True)
+    return records
+
+
+def test_a_picture_shows_how_far_a_robot_has_left_the_field() -> None:
+    on_floor = replace(SPEC, world=replace(SPEC.world, floor=True, walls=False))
+    records = records_at((900.0, 480.0), (5362.0, 480.0), (900.0, -700.0), (nan, 0.0))
+    area = find_area(on_floor, records)
+    assert area == Area(0.0, -700.0, 5362.0, FIELD_HEIGHT_MM)
+    away, view = Pose(5362.0, -700.0, 0.0), find_view(on_floor, area)
+    picture = world_picture(on_floor, WHITE, away, area=area)
+    assert picture.size == (view.width_px, view.height_px)
+    field = world_picture(on_floor, WHITE, HERE).size
+    assert abs(picture.size[0] - field[0]) < 100
+    col, row = (int(at) for at in view.to_px(away.x_mm, away.y_mm))
+    assert (np.asarray(picture)[row - 3 : row + 4, col - 9 : col] == COLORED.body).all(2).any()
+
+
+def test_without_a_floor_a_picture_shows_the_field() -> None:
+    assert find_area(SPEC, records_at((5362.0, 480.0))) == FIELD
+
+
+def test_a_damaged_record_has_no_pose() -> None:
+    record = TickRecord(12, 3, 1.0, 2.0, 30.0, 4.0, 5.0, 100.0, 200.0, 8.0, 0, 0)
+    poses = [sound_pose(one) for one in (None, replace(record, x_mm=nan), record)]
+    assert poses == [None, None, record.pose]

@@ -1,0 +1,47 @@
+"""The robot of a program: what is told of another reading, and programs that cannot be read."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.programs.robot.reading import built
+
+
+@pytest.mark.parametrize(
+    "text, doubt",
+    [
+        (
+            "[LargeMotor(p) for p in (OUTPUT_A, OUTPUT_B, OUTPUT_C)]",
+            "those on outB and outC are taken for the wheels",
+        ),
+        (
+            "MoveTank(OUTPUT_A, OUTPUT_D)\nMoveTank(OUTPUT_B, OUTPUT_C)",
+            "MoveTank on outB and outC is taken",
+        ),
+        (
+            "ColorSensor('in1')\nTouchSensor('in1')\nTouchSensor('in1')",
+            "in1 is taken for a touch sensor",
+        ),
+        ("GyroSensor('in1')\nGyroSensor('in2')", "a robot has one gyro"),
+    ],
+    ids=["wheels", "pairs", "kinds", "gyros"],
+)
+def test_another_reading_is_told(text: str, doubt: str) -> None:
+    found = built(text)
+    assert found is not None
+    assert any(doubt in one for one in found.doubts)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "def f(:",
+        "x = " + "(" * 3000,
+        "x = " + "-" * 5000 + "1",
+        "a.b" + ".c" * 5000 + "()",
+        "import ev3dev2\0",
+    ],
+    ids=["syntax", "brackets", "signs", "attributes", "null"],
+)
+def test_a_program_that_cannot_be_read_has_no_robot(text: str) -> None:
+    assert built(text) is None

@@ -1,0 +1,26 @@
+"""What of a program can run."""
+
+from __future__ import annotations
+
+from tests.programs.robot.reading import changed
+
+_LIFT = """\
+class LiftMotor(Motor):
+    def __init__(self):
+        Motor.__init__(self, OUTPUT_A)
+class Lift:
+    motor = LiftMotor()
+    def up(self):
+        MediumMotor(OUTPUT_D)
+"""
+
+
+def test_the_body_of_a_class_runs_without_an_object_of_it() -> None:
+    assert changed(_LIFT) == "A large motor"
+    assert changed(f"{_LIFT}Lift().up()") == "A large motor, D medium motor"
+
+
+def test_methods_of_a_class_that_nobody_names_do_not_run() -> None:
+    unused = "class Arm:\n    def __init__(self):\n        self.motor = MediumMotor(OUTPUT_A)\n"
+    assert changed(unused) == ""
+    assert changed(f"{unused}Arm()") == "A medium motor"

@@ -1,0 +1,97 @@
+"""What a program compares its colour sensors with."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.cases import cases
+from tuisim.base.source import Program
+from tuisim.engine.core.sensors.color import LightRead
+from tuisim.engine.core.spec import RobotSpec
+from tuisim.programs.robot.thresholds import read_in, thresholds_in
+
+EV3DEV2 = (
+    "from ev3dev2.sensor.lego import ColorSensor\nfrom ev3dev2.sensor import INPUT_2, INPUT_3\n"
+)
+PYBRICKS = (
+    "from pybricks.ev3devices import ColorSensor\nfrom pybricks.parameters import Port, Color\n"
+)
+
+
+def found(text: str, prelude: str = "none") -> dict[str, list[str]]:
+    thresholds = thresholds_in(Program("test.py", text, prelude), RobotSpec())
+    return {
+        name: [f"{one.read} {one.words} {one.line}" for one in some]
+        for name, some in thresholds.items()
+        if some
+    }
+
+
+@cases(
+    "text, expected",
+    {
+        "as it is": (
+            "while colorLeft.reflected_light_intensity_pc > 5:\n    pass\n",
+            {"left": ["reflected_light_intensity_pc > 5 1"]},
+        ),
+        "by names, the other way round": (
+            "LIMIT = 40\nseen = colorRight.reflected_light_intensity\nif LIMIT >= seen:\n    pass\n",
+            {"right": ["reflected_light_intensity <= 40 3"]},
+        ),
+        "colours": (
+            "def dark(value):\n    return value < 3\n\n"
+            "if colorLeft.color == 5 or colorLeft.color_name == 'Blue':\n    pass\n",
+            {"left": ["color == Red 4", "color_name == Blue 4"]},
+        ),
+        "an aim": (
+            "error = int(colorLeft.full_reflected_light_intensity) - 50\n",
+            {"left": ["full_reflected_light_intensity aim 50 1"]},
+        ),
+        "between": (
+            "if 20 < colorLeft.reflected_light_intensity <= 60:\n  pass\n",
+            {"left": ["reflected_light_intensity > 20 1", "reflected_light_intensity <= 60 1"]},
+        ),
+        "no number": (
+            "if colorLeft.reflected_light_intensity > colorRight.reflected_light_intensity: pass\n",
+            {},
+        ),
+        "others": ("if gyro.angle > 90: pass\nif len([]) > 3: pass\n", {}),
+        "no Python": ("if (:\n", {}),
+        "too deep": (
+            f"if colorLeft.reflected_light_intensity < {'+'.join(['1'] * 5000)}: pass\n",
+            {},
+        ),
+    },
+)
+def test_of_a_program_with_the_prelude(text: str, expected: dict[str, list[str]]) -> None:
+    assert found(text, "preloaded") == expected
+
+
+def test_of_ports_in_a_class() -> None:
+    text = EV3DEV2 + (
+        "class Eyes:\n    limit = 30\n    def __init__(self):\n        self.eye = ColorSensor(INPUT_3)\n"
+        "    def on_line(self):\n        return self.eye.reflected_light_intensity < self.limit\n"
+        "print(Eyes().on_line())\n"
+    )
+    assert found(text) == {"right": ["reflected_light_intensity < 30 8"]}
+
+
+def test_of_pybricks() -> None:
+    text = (
+        PYBRICKS
+        + "eye = ColorSensor(Port.S2)\nwhile eye.color() != Color.BLACK and eye.reflection() > 9:\n    pass\n"
+    )
+    assert found(text) == {"left": ["color != Black 4", "reflection > 9 4"]}
+
+
+@pytest.mark.parametrize(
+    "text, read",
+    [
+        ("print(eye.reflection())", LightRead.REFLECTION),
+        ("colorLeft.reflected_light_intensity_pc", LightRead.PERCENT),
+        ("colorLeft.reflected_light_intensity", LightRead.REFLECTED),
+        ("print(1)", LightRead.PERCENT),
+    ],
+)
+def test_what_a_program_reads(text: str, read: LightRead) -> None:
+    assert read_in(Program("test.py", text)) is read

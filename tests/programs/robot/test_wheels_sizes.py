@@ -1,0 +1,48 @@
+"""What constants of a program say about sizes."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import pytest
+
+from tests.programs.robot.reading import built
+
+SAID_SIZES: Mapping[str, tuple[str, tuple[float, float]]] = {
+    "with units": ("WHEEL_DIAMETER_CM = 6.24\naxle_track_mm = 118", (62.4, 118.0)),
+    "without units": ("WHEEL_D = 6.24\nTRACK = 17.8", (62.4, 178.0)),
+    "in a dict": ("config = {'wheel_diameter': 43.2, 'wheelbase': 120}", (43.2, 120.0)),
+    "the circumference": ("WHEEL_CIRC_CM = 13.57", (43.2, 180.0)),
+    "a default": ("def turn(deg, track_mm=88): pass\nturn(5)", (56.0, 88.0)),
+    "a track of music": ("TRACK = 12", (56.0, 180.0)),
+    "no size of a robot": ("WHEEL_MM = 5000", (56.0, 180.0)),
+    "two sizes": ("WHEEL_MM = 30\nwheel_cm = 4.5", (56.0, 180.0)),
+    "said to the library": (
+        "MoveDifferential(OUTPUT_A, OUTPUT_D, EV3Tire, 100)\nWHEEL_MM = 50\nTRACK_MM = 90",
+        (43.2, 100.0),
+    ),
+}
+
+
+@pytest.mark.parametrize("case", SAID_SIZES)
+def test_what_constants_say_about_wheels(case: str) -> None:
+    text, expected = SAID_SIZES[case]
+    found = built(f"MoveTank(OUTPUT_A, OUTPUT_D)\n{text}")
+    assert found is not None
+    assert (found.choice.spec.wheel_diameter_mm, found.choice.spec.wheel_spacing_mm) == expected
+
+
+def test_constants_count_on_the_usual_ports_too() -> None:
+    found = built("MoveTank(OUTPUT_B, OUTPUT_C)\nWHEEL_MM = 30")
+    assert found is not None
+    assert (found.choice.spec.wheel_diameter_mm, found.keeps_ports) == (30.0, True)
+
+
+@pytest.mark.parametrize("ports", ["OUTPUT_A, OUTPUT_D", "OUTPUT_B, OUTPUT_C"])
+@pytest.mark.parametrize(
+    "named", ["WHEEL_RAD = 3.44  # cm", "wheel_radius_mm = 34.4", "wheelR = 3.44"]
+)
+def test_a_radius_is_half_a_diameter(ports: str, named: str) -> None:
+    found = built(f"{named}\nMoveTank({ports})")
+    assert found is not None
+    assert found.choice.spec.wheel_diameter_mm == 68.8

@@ -1,0 +1,83 @@
+"""Names become specifications: robots, obstacles, mats and switches."""
+
+from __future__ import annotations
+
+import pytest
+
+from tuisim.engine.core.geometry import Pose
+from tuisim.engine.core.outline import outline_of
+from tuisim.engine.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, Obstacle, RobotSpec
+from tuisim.engine.mats import catalogue
+from tuisim.engine.obstacles import OBSTACLES
+from tuisim.settings.build import build_run_spec
+from tuisim.settings.options import Settings, settings_of
+from tuisim.settings.robots import ROBOTS
+from tuisim.settings.shared_options import parse_words
+
+SHIPPED = {name: mat for name, mat in catalogue().items() if mat.shipped}
+
+
+@pytest.mark.parametrize("name", SHIPPED)
+def test_the_robot_starts_where_solid_walls_let_it_turn(name: str) -> None:
+    spec = build_run_spec(Settings({"background": name, "profile": "ev3"}))
+    reach, start, mat = outline_of(spec.robot).reach_mm, spec.world.start, SHIPPED[name].start
+    assert reach <= start.x_mm <= FIELD_WIDTH_MM - reach
+    assert reach <= start.y_mm <= FIELD_HEIGHT_MM - reach
+    assert start.heading_deg == mat.heading_deg
+    assert build_run_spec(Settings({"background": name})).world.start == mat
+    assert (
+        build_run_spec(
+            Settings({"background": name, "profile": "ev3", "start.x_mm": 90.0})
+        ).world.start.x_mm
+        == 90.0
+    )
+
+
+def test_default_robot_is_the_default_of_the_specification() -> None:
+    assert ROBOTS["Default_Robot"] == RobotSpec()
+
+
+@pytest.mark.parametrize(
+    "name, boxes",
+    [
+        ("None", set()),
+        ("Central_post", {Obstacle(900, 500, 200, 200)}),
+        (
+            "Square_posts",
+            {
+                Obstacle(x, y, 100, 100)
+                for x, y in ((500, 200), (500, 700), (1500, 200), (1500, 700))
+            },
+        ),
+        ("Wall", {Obstacle(1500, 200, 200, 800)}),
+    ],
+    ids=["none", "post", "posts", "wall"],
+)
+def test_obstacles(name: str, boxes: set[Obstacle]) -> None:
+    assert set(OBSTACLES[name]) == boxes
+
+
+@pytest.mark.parametrize(
+    "words, start",
+    [
+        ("-b Grey_bands", Pose(150, 500, 0)),
+        ("-b Grey_bands -x 100", Pose(100, 500, 0)),
+        ("-b Grey_bands -y 643", Pose(150, 643, 0)),
+        ("-b Grey_bands -a -90", Pose(150, 500, -90)),
+        ("-b Lollipop", Pose(750, 375, -180)),
+        ("-b Lollipop -a 0 -x 0 -y 0", Pose(0, 0, 0)),
+        ("", Pose(100, 800, 0)),
+    ],
+    ids=lambda value: value or "nothing" if isinstance(value, str) else "",
+)
+def test_start_pose_is_the_mats_unless_given(words: str, start: Pose) -> None:
+    assert build_run_spec(settings_of(parse_words(words.split()))).world.start == start
+
+
+def test_sensors_are_moved_on_the_mat_that_wants_it_and_nowhere_else() -> None:
+    moved = build_run_spec(Settings({"background": "Radial_grey"})).robot
+    assert [sensor.x_mm for sensor in moved.color_sensors] == [-60, 60]
+    assert (
+        build_run_spec(Settings({"background": "Grey_bands"})).robot.color_sensors
+        == RobotSpec().color_sensors
+    )

@@ -1,0 +1,48 @@
+"""What the user has chosen in the app is found again."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tuisim.app.editor.text_file import drafts, keep_draft
+from tuisim.settings.preferences import keep, preference, preferences_file
+
+
+@pytest.fixture(autouse=True)
+def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("TUISIM_HOME", str(tmp_path / "home"))
+
+
+def test_what_is_kept_is_found_and_leaves_the_rest() -> None:
+    keep("cells", "octant")
+    keep("theme", "light")
+    keep("cells", None)
+
+    assert (preference("cells"), preference("theme")) == (None, "light")
+
+
+def test_an_app_that_begins_afresh_finds_nothing_of_other_ones_and_leaves_them_nothing(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    keep("theme", "light")
+    keep_draft("", "of another app")
+    monkeypatch.setenv("TUISIM_SESSION", str(tmp_path / "session"))
+    assert (preference("theme"), drafts()) == (None, [])
+    keep("theme", "dark")
+    keep_draft("", "of this one")
+    monkeypatch.delenv("TUISIM_SESSION")
+    assert (preference("theme"), drafts()[0].text) == ("light", "of another app")
+
+
+@pytest.mark.parametrize(
+    "text", ["", "{", "[1]", "\udc80"], ids=["empty", "cut off", "a list", "no UTF-8"]
+)
+def test_a_damaged_file_is_an_empty_one(text: str) -> None:
+    preferences_file().parent.mkdir()
+    preferences_file().write_bytes(text.encode("utf-8", "surrogateescape"))
+
+    assert preference("cells") is None
+    keep("cells", "half")
+    assert preference("cells") == "half"

@@ -1,0 +1,46 @@
+"""Tables of Markdown in a given width."""
+
+from __future__ import annotations
+
+import pytest
+
+from tuisim.guide.catalogue import pages
+from tuisim.guide.text import page_lines
+from tuisim.tasks.lessons.markdown import markdown_lines
+
+TABLE = """
+| to | ev3dev2 | Pybricks |
+| --- | --- | --- |
+| ask the gyro | `gyro = GyroSensor(INPUT_4); gyro.angle` | `gyro = GyroSensor(Port.S4)` |
+"""
+
+
+def _texts(width: int) -> list[str]:
+    return ["".join(part for part, _ in line).rstrip() for line in markdown_lines(TABLE, width)]
+
+
+def test_a_cell_breaks_between_words() -> None:
+    texts = _texts(66)
+    assert max(map(len, texts)) <= 66
+    words = " ".join(texts).split()
+    assert {"GyroSensor(INPUT_4);", "gyro.angle", "GyroSensor(Port.S4)"} <= {*words}
+    assert any(
+        text.split()[:3] == ["ask", "the", "gyro"] and len(text.split()) > 3 for text in texts
+    )
+
+
+def test_rows_are_lists_where_the_longest_words_have_no_room_beside_each_other() -> None:
+    assert [text for text in _texts(46) if text] == [
+        "ask the gyro",
+        "  ev3dev2: gyro = GyroSensor(INPUT_4);",
+        "  gyro.angle",
+        "  Pybricks: gyro = GyroSensor(Port.S4)",
+    ]
+
+
+@pytest.mark.parametrize("width", [36, 76, 118])
+def test_nothing_of_a_page_is_cut(width: int) -> None:
+    page = pages()["ev3dev2-and-pybricks"]
+    texts = ["".join(part for part, _ in line) for line in page_lines(page, width)]
+    assert not [text for text in texts if "…" in text and "…" not in page.source]
+    assert 'Leds().set_color("LEFT",' in "\n".join(texts)

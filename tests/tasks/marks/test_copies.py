@@ -1,0 +1,97 @@
+"""Programs that resemble each other are found under other names, and what a class has in common is left out."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+
+from tests.tasks.marks.the_class import CLASS
+from tuisim.tasks.marks.copies import LEAST_TOKENS, Similar, similar
+
+LINE = """\
+while True:
+    if colorLeft.reflected_light_intensity < 40:
+        tank_drive.on(SpeedPercent(20), SpeedPercent(40))
+    else:
+        tank_drive.on(SpeedPercent(40), SpeedPercent(20))
+    if ultrasonic.distance_centimeters < 12:
+        tank_drive.off()
+        break
+print('done')
+"""
+RENAMED = """\
+# My own idea.
+while True:
+
+    if sensor.value < 55:  # dark
+        drive.go(Speed(10), Speed(30))
+    else:
+        drive.go(Speed(30), Speed(10))
+    if eyes.cm < 9:
+        drive.halt()
+        break
+print("stop")
+"""
+OTHER = """\
+def turn(degrees):
+    steering.on_for_degrees(100, 20, degrees * 2.3)
+
+for side in range(4):
+    tank_drive.on_for_rotations(30, 30, 2.5)
+    turn(90)
+    print('side', side, gyro.angle)
+for side in reversed(range(4)):
+    turn(-90)
+    tank_drive.on_for_seconds(20, 20, 1)
+"""
+
+
+def _similar(programs: Mapping[str, str], given: Collection[str] = ()) -> Similar:
+    return similar({name: [text] for name, text in programs.items()}, given)
+
+
+def test_a_copy_in_a_module_is_a_pair() -> None:
+    found = similar({"ada": [LINE], "ben": ["import sol\nsol.drive()\n", RENAMED], "cleo": [OTHER]})
+    (pair,) = found.pairs
+    assert pair.names == ("ada", "ben") and pair.share > 0.9
+
+
+def test_other_names_numbers_and_comments_are_the_same_program() -> None:
+    found = _similar({"ada": LINE, "ben": RENAMED, "cleo": OTHER, "dora": LINE + "\n# end\n"})
+    (group,) = found.groups
+    assert (group.names, group.same) == (("ada", "ben", "dora"), (("ada", "dora"),))
+    assert found.pairs == () and found.compared == 3 + 1
+
+
+def test_a_copy_with_a_new_beginning_is_a_pair() -> None:
+    found = _similar(
+        {
+            "ada": LINE,
+            "ben": "x = [1, 2, 3]\nfor one in x:\n    print(one, x)\n" + RENAMED,
+            "cleo": OTHER,
+        }
+    )
+    (pair,) = found.pairs
+    assert pair.names == ("ada", "ben") and pair.share > 0.9 and pair.lines >= 8
+
+
+def test_what_everybody_was_given_or_has_is_left_out() -> None:
+    programs = {"ada": LINE + OTHER, "ben": LINE + "print(1)\n" * 12}
+    assert _similar(programs).pairs
+    assert not _similar(programs, given=[LINE]).pairs
+    many = {f"student {at}": LINE + f"print({at})\n" * at for at in range(1, 12)}
+    assert not _similar(many).pairs
+
+
+def test_short_and_broken_programs_are_not_compared() -> None:
+    short = "tank_drive.on_for_rotations(50, 50, 3)\n"
+    assert _similar({"ada": short, "ben": short}).compared == 0
+    broken = _similar({"ada": LINE + "\n)\x00 '''", "ben": LINE})
+    assert broken.compared == 2 and LEAST_TOKENS > 20
+
+
+def test_the_result_does_not_depend_on_the_order() -> None:
+    texts = {one.row: text for one in CLASS for text in one.files.values() if isinstance(text, str)}
+    backwards = _similar(dict(reversed(texts.items())))
+    assert {one.names for one in _similar(texts).pairs} == {
+        tuple(sorted(one.names)) for one in backwards.pairs
+    }

@@ -1,0 +1,108 @@
+"""Outcomes from results of tasks made by hand."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import nan
+from pathlib import Path
+
+from ev3dev2 import motor
+
+from tests.cases import cases
+from tuisim.tasks.goals.judgement import Change, GoalState, Judgement
+from tuisim.tasks.goals.spec import AllOf, FinishCondition, Goal, ReachCondition
+from tuisim.tasks.marks.outcome import GoalOutcome, outcome_of
+from tuisim.tasks.task import Result
+
+FOLDER = Path("/copy-of/student/7")
+DONE = Result(7, {}, "finished", 0, "", "", 0, 100, 1.0, 0.0, 0.0, 0.0)
+
+
+def _judgement(goal: Goal, state: GoalState, reason: str = "", line: int = 0) -> Judgement:
+    return Judgement(goal, (Change(10, 0.1, state, 0.0, 0.0),), reason, line)
+
+
+FAILURES = {
+    "finished": (DONE, ""),
+    "exit code": (
+        replace(DONE, exit_code=1, summary="ended itself with exit code 1"),
+        "ended itself with exit code 1",
+    ),
+    "exception": (
+        replace(
+            DONE,
+            end="raised",
+            error=f'File "{FOLDER}/a.py"\n',
+            summary="OSError: <A object at 0x7f00deadbeef>",
+        ),
+        "OSError: <A object at 0x…>",
+    ),
+    "path": (
+        replace(DONE, end="raised", summary=f"OSError: '{FOLDER}/data.csv'"),
+        "OSError: 'data.csv'",
+    ),
+    "control characters": (replace(DONE, end="raised", summary="E: \x1b[2J"), "E: \ufffd[2J"),
+    "too long": (replace(DONE, end="raised", summary="x" * 1000), "x" * 300 + "…"),
+    "real time": (
+        replace(DONE, end="stopped", summary="stopped"),
+        "stopped, because it took too long",
+    ),
+    "stuck": (
+        replace(
+            DONE, end="stalled", summary="no simulated time passed in 10 s of computing, in line 3"
+        ),
+        "stuck: no simulated time passed",
+    ),
+    "not started": (replace(DONE, end="", error="no mat Nowhere", x_mm=nan), "no mat Nowhere"),
+    "crashed without a word": (replace(DONE, end="crashed", exit_code=1), "crashed"),
+}
+
+
+@cases("result, failure", FAILURES)
+def test_why_a_program_did_not_finish(result: Result, failure: str) -> None:
+    assert outcome_of(result, 3, FOLDER).failure == failure
+
+
+def test_a_traceback_has_no_path_and_a_limited_length() -> None:
+    error = f'Traceback\n  File "{FOLDER}/main.py", line 3\n' + "ValueError: " + "y" * 100_000
+    found = outcome_of(replace(DONE, end="raised", error=error, error_line=3), 3, FOLDER)
+    assert (
+        found.error.startswith('Traceback\n  File "main.py", line 3\nValueError: y')
+        and len(found.error) < 5000
+    )
+
+
+def test_a_traceback_has_no_path_of_this_machine() -> None:
+    library = f"cannot import name 'MoveTanks' from 'ev3dev2.motor' ({motor.__file__})"
+    found = outcome_of(
+        replace(DONE, end="raised", error="Traceback", summary=f"ImportError: {library}"), 0, FOLDER
+    )
+    assert (
+        found.failure
+        == "ImportError: cannot import name 'MoveTanks' from 'ev3dev2.motor' (ev3dev2/motor.py)"
+    )
+
+
+def test_a_path_of_the_students_own_stays() -> None:
+    found = outcome_of(
+        replace(DONE, end="raised", summary="FileNotFoundError: '/data/of/ada/x.csv'"), 0, FOLDER
+    )
+    assert found.failure == "FileNotFoundError: '/data/of/ada/x.csv'"
+
+
+def test_a_goal_made_of_others_is_missed_for_the_reason_of_the_first_that_is() -> None:
+    near, finish = Goal("near", ReachCondition(x_mm=5)), Goal("finish", FinishCondition())
+    both = Goal("both", AllOf(("near", "finish")))
+    every = Goal("every", AllOf(("both",)))
+    judgements = (
+        _judgement(every, GoalState.MISSED, "“both” was missed.", 1),
+        _judgement(both, GoalState.MISSED, "“finish” was missed.", 2),
+        _judgement(near, GoalState.MET),
+        _judgement(finish, GoalState.MISSED, "It raised an exception.", 9),
+    )
+    found = outcome_of(replace(DONE, judgements=judgements), 0, FOLDER)
+    missed = [
+        GoalOutcome(name, False, "It raised an exception.", 9)
+        for name in ("every", "both", "finish")
+    ]
+    assert found.goals == (*missed[:2], GoalOutcome("near", True), missed[2])

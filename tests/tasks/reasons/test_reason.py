@@ -1,0 +1,110 @@
+"""The reasons why a run went wrong, and their order."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from tests.tasks.goals.recorded import goals_of
+from tests.tasks.reasons.runs import WRONG_SIGN, run_text
+from tuisim.engine.runs.recorded_run import Recording
+from tuisim.tasks.goals.judge import judge
+from tuisim.tasks.reasons.reason import Reason, ReasonKind, find_reasons
+
+MISTAKE = """\
+tank_drive.on_for_seconds(SpeedPercent(20), SpeedPercent(20), 1)
+print(colour)
+"""
+IN_A_THREAD = """\
+import threading, time
+def work():
+    time.sleep(1)
+    print(1 / 0)
+threading.Thread(target=work).start()
+tank_drive.on_for_seconds(SpeedPercent(20), SpeedPercent(20), 2)
+"""
+AT_THE_WALL = """\
+# %%sim_magic_preloaded -b Empty_Map -o Wall -x 700 -y 600 --solid
+tank_drive.on_for_seconds(SpeedPercent(40), SpeedPercent(40), 6)
+"""
+WAITS = """\
+# %%sim_magic_imports -r Explorer -b Empty_Map
+from ev3dev2.sensor.lego import TouchSensor
+MoveTank(OUTPUT_B, OUTPUT_C).on_for_seconds(20, 20, 2)
+TouchSensor(INPUT_1).wait_for_pressed()
+"""
+OFF_THE_MAT = """\
+# %%sim_magic_preloaded -b Empty_Map -x 2100 -a 0
+tank_drive.on_for_seconds(SpeedPercent(40), SpeedPercent(40), 3)
+"""
+CASES = {
+    "raised": (MISTAKE, ReasonKind.RAISED, "1.00 s, line 2: NameError: name 'colour' is not"),
+    "in a thread": (IN_A_THREAD, ReasonKind.RAISED, "1.00 s, line 4: ZeroDivisionError: division"),
+    "at a wall": (AT_THE_WALL, ReasonKind.BLOCKED, "line 2: the robot stood at an obstacle from"),
+    "waits": (WAITS, ReasonKind.BLOCKED, "2.00 s, line 4: from here on it waited: touch sensor on"),
+    "lost": (WRONG_SIGN, ReasonKind.LOST, "line 4: the right sensor left the black, and saw it"),
+    "off the mat": (OFF_THE_MAT, ReasonKind.LOST, "line 2: the robot left the mat"),
+}
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_a_reason_says_when_at_which_line_and_why(name: str) -> None:
+    text, kind, words = CASES[name]
+    first = find_reasons(run_text(text))[0]
+    assert first.kind is kind
+    assert words in first.words
+
+
+GOALS = """\
+[[goal]]
+name = "far"
+say = "Drive far."
+pass = { places_mm = [[1700, 500]], within_mm = 40 }
+
+[[goal]]
+name = "ends"
+say = "Finish without an error."
+finish = true
+hidden = {hidden}
+"""
+
+
+def test_they_come_in_order_and_a_hidden_goal_is_not_told(tmp_path: Path) -> None:
+    run, earlier = run_text(MISTAKE), run_text(MISTAKE.replace("20)", "30)"))
+    mine, other = Recording(run), Recording(earlier)
+    assert find_reasons(run)[0].line == 2
+    for hidden, missed in (("false", 2), ("true", 1)):
+        judgements = judge(goals_of(tmp_path, GOALS.replace("{hidden}", hidden)), run)
+        kinds = [reason.kind for reason in find_reasons(run, judgements, other)]
+        assert kinds == [ReasonKind.RAISED, *[ReasonKind.MISSED] * missed, ReasonKind.DIFFERS]
+    assert find_reasons(run, (), mine) == find_reasons(run)
+
+
+def test_a_run_that_met_its_goals_has_lost_nothing(tmp_path: Path) -> None:
+    run = run_text(OFF_THE_MAT)
+    goals = goals_of(tmp_path, '[[goal]]\nname = "ends"\nsay = "End."\nfinish = true\n')
+    judgements = judge(goals, run)
+    assert find_reasons(run) != ()
+    assert find_reasons(run, judgements) == ()
+    away = tuple(replace(each, goal=replace(each.goal, points=-1.0)) for each in judgements)
+    assert [reason.kind for reason in find_reasons(run, away)] == [
+        ReasonKind.MISSED,
+        ReasonKind.LOST,
+    ]
+
+
+def test_without_a_line_only_the_time_is_told() -> None:
+    assert (
+        Reason(ReasonKind.MISSED, 3.0, 0, "a goal was missed").words == "3.00 s: a goal was missed"
+    )
+
+
+def test_readings_that_came_while_a_run_was_looked_at_are_no_fault(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    run = run_text(WRONG_SIGN)
+    records = run.telemetry.array()[:-50]
+    monkeypatch.setattr(run.telemetry, "array", lambda *_: records)
+    assert find_reasons(run)[0].kind is ReasonKind.LOST

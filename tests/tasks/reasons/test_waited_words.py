@@ -1,0 +1,335 @@
+"""What a run waited for, in words: of real programs, as they are run."""
+
+from __future__ import annotations
+
+import json
+import re
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from tests.cases import cases
+from tests.conftest import Command
+from tuisim.engine.core.profile import PROFILES
+from tuisim.engine.core.sensors.color import clear_reading
+from tuisim.engine.core.spec import RobotSpec, RunSpec, WorldSpec
+from tuisim.engine.mat_cache import open_field
+from tuisim.engine.mats import background
+from tuisim.engine.runs.run_folder import field_files
+from tuisim.tasks.reasons.hand_presses import HandPress
+from tuisim.tasks.reasons.waited import Awaited, Subject
+from tuisim.tasks.reasons.waited_words import (
+    COLOR_PLACES_MM,
+    COLORED_MAT,
+    describe_awaited,
+    describe_wait_with_keys,
+    name_remedy,
+)
+
+SPEC = RunSpec(RobotSpec(), WorldSpec(), PROFILES["ev3"])
+
+_TIMES = re.compile(r"[\d,]+ times")
+"""How often a program reads depends on the costs of a profile."""
+
+WAIT_BUTTON = """
+from ev3dev2.button import Button
+from ev3dev2.motor import MoveTank, OUTPUT_A, OUTPUT_D
+btn = Button()
+tank = MoveTank(OUTPUT_A, OUTPUT_D)
+print("Press a button to start")
+while not btn.any():
+    pass
+tank.on_for_rotations(30, 30, 2)
+"""
+WAIT_TOUCH = """
+from ev3dev2.sensor.lego import TouchSensor
+from ev3dev2.motor import MoveTank, OUTPUT_A, OUTPUT_D
+ts = TouchSensor()
+tank = MoveTank(OUTPUT_A, OUTPUT_D)
+ts.wait_for_pressed()
+tank.on_for_rotations(30, 30, 2)
+"""
+REMOTE = """
+from ev3dev2.sensor.lego import InfraredSensor
+from ev3dev2.motor import MoveTank, OUTPUT_B, OUTPUT_C
+ir = InfraredSensor()
+tank = MoveTank(OUTPUT_B, OUTPUT_C)
+while True:
+    if ir.top_left(1):
+        tank.on(30, 30)
+    else:
+        tank.off()
+"""
+FOLLOW = """
+from ev3dev2.sensor.lego import ColorSensor
+from ev3dev2.motor import MoveSteering, OUTPUT_B, OUTPUT_C
+cs = ColorSensor()
+steer = MoveSteering(OUTPUT_B, OUTPUT_C)
+while True:
+    error = cs.reflected_light_intensity - 45
+    steer.on(max(-100, min(100, error)), 20)
+"""
+ACCEPT = """
+import socket
+server = socket.socket()
+server.bind(("localhost", 0))
+server.listen()
+server.accept()
+"""
+PLAY = """
+from time import sleep
+from ev3dev2.sound import Sound
+while True:
+    Sound().beep()
+    sleep(2)
+"""
+
+PROGRAMS = {
+    "button": (
+        WAIT_BUTTON,
+        "read the brick's buttons N times, none was pressed: --press enter@1, or K in the app",
+    ),
+    "touch": (WAIT_TOUCH, "touch sensor on in1 was never pressed: --press in1@2"),
+    "remote": (
+        REMOTE,
+        "infrared sensor on in1: no button of the remote was pressed: --press remote.left_up@2-4",
+    ),
+    "line": (
+        FOLLOW,
+        "colour sensor on in2 saw only white: -b Loop gives it a line (tuisim backgrounds)",
+    ),
+    "socket": (
+        ACCEPT,
+        "socket.accept in line 6: nobody connected: --speed 1 gives the other program the time to come",
+    ),
+    "on purpose": (PLAY, ""),
+}
+
+
+@cases("text, sentence", PROGRAMS)
+def test_the_last_line_and_json_say_what_was_waited_for(
+    tmp_path: Path, here: Command, text: str, sentence: str
+) -> None:
+    (tmp_path / "prog.py").write_text(text)
+    done = here("run", "prog.py", "--timeout", 6)
+    assert done.returncode == 3
+    last = _TIMES.sub("N times", done.stderr)
+    assert (f" · {sentence} · 0 samples" if sentence else "° · 0 samples") in last
+    done = here("run", "prog.py", "--timeout", 6, "--json")
+    assert _TIMES.sub("N times", json.loads(done.stdout)["waited_for"]) == sentence
+
+
+RED = """
+from ev3dev2.sensor.lego import ColorSensor
+cs = ColorSensor()
+while cs.color != ColorSensor.COLOR_RED:
+    pass
+"""
+HAND = """
+from time import sleep
+from ev3dev2.sensor.lego import UltrasonicSensor
+us = UltrasonicSensor()
+while us.distance_centimeters > 8:
+    sleep(0.5)
+"""
+TWO = """
+from ev3dev2.button import Button
+btn = Button()
+while not (btn.up and btn.left):
+    pass
+"""
+SECOND = """
+from time import sleep
+from ev3dev2.button import Button
+sleep(2.5)
+Button().wait_for_pressed("down")
+"""
+SLOW = """
+from time import sleep
+from ev3dev2.sensor.lego import TouchSensor
+touch = TouchSensor()
+while not touch.is_pressed:
+    print("waiting")
+    sleep(0.7)
+"""
+PAD = """
+import evdev
+from time import sleep
+while len(evdev.list_devices()) < 2:
+    sleep(1)
+"""
+GIVEN = {
+    "any button": (WAIT_BUTTON, "--press enter@1"),
+    "one button, later": (SECOND, "--press down@3"),
+    "two buttons at once": (TWO, "--press up@1-2 --press left@1-2"),
+    "touch": (WAIT_TOUCH, "--press in1@2"),
+    "a slow look at touch": (SLOW, "--press in1@2-3"),
+    "a colour": (RED, "-b Rainbow_bands -x 240"),
+    "a hand": (HAND, "-o Central_post -x 824"),
+}
+
+
+@cases("text, options", GIVEN)
+def test_what_the_sentence_advises_ends_the_wait(
+    tmp_path: Path, here: Command, text: str, options: str
+) -> None:
+    (tmp_path / "prog.py").write_text(text)
+    facts = json.loads(here("run", "prog.py", "--timeout", 6, "--json").stdout)
+    assert f": {options}" in facts["waited_for"]
+    facts = json.loads(here("run", "prog.py", *options.split(), "--json").stdout)
+    assert (facts["state"], facts["waited_for"]) == ("finished", "")
+
+
+TWICE = """
+from time import sleep
+from ev3dev2.button import Button
+b = Button()
+while not b.enter: sleep(0.01)
+while b.enter: sleep(0.01)
+while not b.enter: sleep(0.01)
+"""
+VAIN = {
+    "too early": (
+        SECOND,
+        "down@1",
+        "down was pressed at 1 s, before the program asked (first at 2.5 s): --press down@3",
+    ),
+    "another button": (SECOND, "enter@3", "only enter was pressed, not down: --press down@3"),
+    "one of two": (TWO, "left@1", "only left was pressed, not up: --press up@1-2 --press left@1-2"),
+    "another sensor": (
+        WAIT_TOUCH,
+        "in2@1",
+        "touch sensor on in1: only in2 was pressed: --press in1@2",
+    ),
+    "once of twice": (
+        TWICE,
+        "enter@0.5",
+        "enter was pressed at 0.5 s, and the program waits for more: add --press enter@1",
+    ),
+    "between two looks": (
+        SLOW,
+        "touch@1.1-1.3",
+        "touch sensor on in1: touch was pressed at 1.1 s, between two looks (0.7 s apart):",
+    ),
+}
+
+
+@cases("text, press, sentence", VAIN)
+def test_a_press_that_did_not_help_is_named(
+    tmp_path: Path, here: Command, text: str, press: str, sentence: str
+) -> None:
+    (tmp_path / "prog.py").write_text(text)
+    done = here("run", "prog.py", "--press", press, "--timeout", 6, "--json")
+    assert json.loads(done.stdout)["waited_for"].startswith(sentence)
+
+
+ULTRASONIC = "from ev3dev2.sensor.lego import UltrasonicSensor\nus = UltrasonicSensor()\n"
+INFRARED = "from ev3dev2.sensor.lego import InfraredSensor\nir = InfraredSensor()\n"
+GYRO = "from ev3dev2.sensor.lego import GyroSensor\ng = GyroSensor()\n"
+TONES = "from ev3dev2.sound import Sound\ns = Sound()\n"
+TURNS = "from ev3dev2.motor import *\nMoveTank(OUTPUT_B, OUTPUT_C).on(10, -10)\n"
+MEASURED = {
+    "an obstacle around": (
+        f"{ULTRASONIC}{TURNS}while us.distance_centimeters > 25: pass",
+        "ultrasonic sensor on in1 saw nothing nearer than 5",
+    ),
+    "the way is free": (f"{ULTRASONIC}while us.distance_centimeters < 250: pass", ""),
+    "tones of a distance": (
+        f"{INFRARED}{TONES}while True: s.play_tone(200 + 8 * ir.proximity, 0.3)",
+        "",
+    ),
+    "a turn": (
+        f"{GYRO}while g.angle < 90: pass",
+        "gyro on in4 was never turned: only its motors turn this robot",
+    ),
+    "an obstacle for a state": (
+        f"{ULTRASONIC}state = 0\nwhile state < 2:\n    if us.distance_centimeters < 20: state = 2\n",
+        "ultrasonic sensor on in1 saw nothing nearer than 116 cm",
+    ),
+    "the largest turn": (f"{GYRO}m = 0\nwhile True:\n    if g.angle > m: m = g.angle\n", ""),
+    "a note of what is near": (
+        f"{ULTRASONIC}while True:\n    if us.distance_centimeters < 5: print('near')\n",
+        "",
+    ),
+    "a turn that comes": (f"{GYRO}{TURNS}while g.angle < 9000: pass", ""),
+}
+
+
+@cases("text, sentence", MEASURED)
+def test_what_never_came_near_or_turned_is_named(
+    tmp_path: Path, here: Command, text: str, sentence: str
+) -> None:
+    (tmp_path / "prog.py").write_text(text)
+    waited_for = json.loads(here("run", "prog.py", "--timeout", 9, "--json").stdout)["waited_for"]
+    assert waited_for.startswith(sentence) and bool(waited_for) == bool(sentence)
+
+
+def test_a_program_that_reads_on_thousands_of_lines_is_told_by_its_readings(
+    tmp_path: Path, here: Command
+) -> None:
+    lines = "    v = us.distance_centimeters\n    if v < 5: v = 1\n" * 1500
+    (tmp_path / "prog.py").write_text(f"{ULTRASONIC}while True:\n{lines}")
+    facts = json.loads(here("run", "prog.py", "--timeout", 6, "--json").stdout)
+    assert facts["waited_for"].startswith("ultrasonic sensor on in1 saw nothing nearer than")
+
+
+def test_a_gamepad_that_never_comes_is_named(tmp_path: Path, here: Command) -> None:
+    (tmp_path / "prog.py").write_text(PAD)
+    facts = json.loads(here("run", "prog.py", "--timeout", 6, "--json").stdout)
+    assert facts["waited_for"].startswith("looked for a gamepad 7 times, none is simulated: ")
+
+
+def test_the_remote_drives_while_it_is_pressed(tmp_path: Path, here: Command) -> None:
+    (tmp_path / "prog.py").write_text(REMOTE)
+    done = here("run", "prog.py", "--press", "remote.left_up@1-3", "--timeout", 9, "--json")
+    facts = json.loads(done.stdout)
+    assert 1181 + 250 < facts["x_mm"] < 1181 + 400
+    assert facts["waited_for"] == ""
+
+
+def test_a_batch_says_it_in_a_column(tmp_path: Path, here: Command) -> None:
+    (tmp_path / "prog.py").write_text(WAIT_TOUCH)
+    here("batch", "prog.py", "--seeds", "0..1", "--timeout", 6, "--out", "rows.csv")
+    header, first, _ = (tmp_path / "rows.csv").read_text().splitlines()
+    assert "waited_for" in header.split(",")
+    assert "touch sensor on in1 was never pressed: --press in1@2" in first
+
+
+@pytest.mark.parametrize("subject", Subject)
+def test_there_are_words_for_everything(subject: Subject) -> None:
+    awaited = Awaited(subject, "in4", 3, 0.5, 7, "12 cm")
+    assert describe_awaited(awaited) and name_remedy(awaited, SPEC)
+    assert describe_wait_with_keys([awaited], SPEC).startswith(describe_awaited(awaited))
+
+
+def test_buttons_that_are_asked_for_at_once_are_pressed_at_once() -> None:
+    up = HandPress("up", 1.0, 1.1)
+    left = HandPress("left", 3.0, 3.1)
+    awaited = Awaited(
+        Subject.BUTTONS,
+        "buttons",
+        9,
+        0.0,
+        4,
+        sought=("up", "left"),
+        needs_all=True,
+        pressed=(up, left),
+    )
+    assert describe_awaited(awaited) == "up and left were not pressed at once"
+    assert "shift with ↑ and ← holds up and left" in describe_wait_with_keys([awaited], SPEC)
+
+
+def test_a_run_that_took_as_long_as_in_reality_is_not_told_to() -> None:
+    awaited = Awaited(Subject.CONNECTION, "socket", 3, 0.5, 7)
+    assert "--speed 1" in name_remedy(awaited, SPEC)
+    assert "--speed" not in name_remedy(awaited, SPEC, is_live=True)
+
+
+@pytest.mark.parametrize(("color", "x_mm"), COLOR_PLACES_MM.items())
+def test_the_coloured_mat_has_each_colour_there(color: str, x_mm: int) -> None:
+    spec = replace(SPEC, world=WorldSpec(background=COLORED_MAT))
+    field = open_field(field_files(spec))
+    pose = replace(background(COLORED_MAT).start, x_mm=float(x_mm))
+    for sensor in spec.robot.color_sensors:
+        assert clear_reading(sensor, pose, field).name.lower() == color

@@ -1,0 +1,42 @@
+"""What goes wrong while one of many programs is handled: told in a line, so that the others go on."""
+
+from __future__ import annotations
+
+import os
+import traceback
+from contextlib import suppress
+from pathlib import Path
+
+from tuisim.base.atomic import make_private_folder, private
+from tuisim.base.errors import TuisimError, printable, shortened
+from tuisim.base.folders import home_folder
+
+UNJUDGED = "could not be judged"
+_MAX_BYTES = 1 << 20
+"""A longer file of reports begins anew."""
+
+
+def report_file() -> Path:
+    """Return the file with the tracebacks of tuisim's own faults; there may be none."""
+    return home_folder() / "faults.txt"
+
+
+def describe_fault(error: Exception) -> str:
+    """Return in one line that something could not be judged, and why; a fault of tuisim's is added to the reports."""
+    if isinstance(error, TuisimError):
+        where = str(getattr(error, "file", ""))
+        return f"{UNJUDGED}: {printable(error.message.removeprefix(f'{where}: '))}"
+    # Neither a full disk nor a lack of memory may end the others.
+    with suppress(Exception):
+        _add_report("".join(traceback.format_exception(error)))
+    # What is marked again has the same reason: that of a file has no path.
+    reason = error.strerror if isinstance(error, OSError) else error
+    return printable(shortened(f"{UNJUDGED}: {type(error).__name__}: {reason}"))
+
+
+def _add_report(text: str) -> None:
+    file = report_file()
+    make_private_folder(file.parent)
+    is_long = file.exists() and os.path.getsize(file) > _MAX_BYTES
+    with open(file, "wb" if is_long else "ab", opener=private) as handle:
+        handle.write(text.encode("utf-8", "backslashreplace") + b"\n")

@@ -1,0 +1,87 @@
+"""Folders: the user's own data, the cache, the mats and the example programs.
+
+The folders `backgrounds` and `programs` are in the folder named by the environment
+variable TUISIM_ASSETS; without it, beside the package (a checkout or an editable
+install), else inside it (an installed copy).
+"""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+from tuisim.base.errors import ConfigError
+
+_PACKAGE = Path(__file__).resolve().parent.parent
+_FOLDERS = ("backgrounds", "programs")
+
+
+def user_path(word: str | Path) -> Path:
+    """Return a path in which `~` or `~NAME` is the folder of a user; that of an unknown user stays as it is."""
+    return Path(os.path.expanduser(word))
+
+
+def home_folder() -> Path:
+    """Return the folder of the user's own data: `TUISIM_HOME`, or the platform's user data folder."""
+    home = os.environ.get("TUISIM_HOME")
+    if home:
+        return Path(home)
+    import platformdirs
+
+    return platformdirs.user_data_path("tuisim")
+
+
+def session_folder() -> Path:
+    """Return the folder of what the app finds again, such as panels and unsaved texts: `TUISIM_SESSION` for an app
+    that begins afresh, else `home_folder`."""
+    session = os.environ.get("TUISIM_SESSION")
+    return Path(session) if session else home_folder()
+
+
+def config_folder() -> Path:
+    """Return the folder of `config.toml`: `TUISIM_HOME`, or the platform's folder for the user's configuration."""
+    if home := os.environ.get("TUISIM_HOME"):
+        return Path(home)
+    import platformdirs
+
+    return platformdirs.user_config_path("tuisim")
+
+
+def cache_folder() -> Path:
+    """Return the folder of prepared mats: `cache` in TUISIM_HOME, else the user's cache folder."""
+    if home := os.environ.get("TUISIM_HOME"):
+        return Path(home) / "cache"
+    import platformdirs
+
+    return platformdirs.user_cache_path("tuisim")
+
+
+def _folder(name: str) -> Path:
+    given = os.environ.get("TUISIM_ASSETS")
+    places = [Path(given)] if given else [_PACKAGE.parent, _PACKAGE / "_assets"]
+    # Beside the package, a single folder of such a name may belong to something else.
+    needed = (name,) if given else _FOLDERS
+    for place in places:
+        if all((place / each).is_dir() for each in needed):
+            return place / name
+    looked = " and ".join(str(place) for place in places)
+    hint = "set TUISIM_ASSETS to the folder that contains backgrounds and programs"
+    raise ConfigError(f"no folder {name!r} in {looked}", hint)
+
+
+def backgrounds_folder() -> Path:
+    """Return the folder of the mats and their catalogue.
+
+    Raises:
+        ConfigError: it does not exist.
+    """
+    return _folder("backgrounds")
+
+
+def programs_folder() -> Path:
+    """Return the folder of the example programs.
+
+    Raises:
+        ConfigError: it does not exist.
+    """
+    return _folder("programs")

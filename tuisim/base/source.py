@@ -1,0 +1,162 @@
+"""A program to run, its prelude, and its text as Python reads it: from bytes, and line by line."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+from tuisim.base.data_class import dataclass
+from tuisim.base.errors import ConfigError
+
+_IMPORTS = """\
+from ev3dev2.motor import MoveTank, MoveSteering, SpeedPercent, OUTPUT_B, OUTPUT_C
+from ev3dev2.sensor import INPUT_1, INPUT_2, INPUT_3, INPUT_4
+from ev3dev2.sensor.lego import ColorSensor, GyroSensor, UltrasonicSensor
+from ev3dev2.sound import Sound
+from ev3dev2_glue import get_clock
+"""
+
+_INSTANCES = """\
+tank_turn = MoveSteering(OUTPUT_B, OUTPUT_C)
+tank_drive = MoveTank(OUTPUT_B, OUTPUT_C)
+ultrasonic = UltrasonicSensor(INPUT_1)
+colorLeft = ColorSensor(INPUT_2)
+colorRight = ColorSensor(INPUT_3)
+gyro = GyroSensor(INPUT_4)
+
+
+def say(txt, wait=False, show=True):
+    \"\"\"Print a text and speak it; wait=True lets the program wait until it is said.\"\"\"
+    if show:
+        print(txt)
+    Sound().speak(str(txt).replace("'", "\\u2019"), play_type=0 if wait else 1)
+"""
+
+PRELUDE_TEXTS: Mapping[str, str] = {
+    "none": "",
+    "imports": _IMPORTS,
+    "preloaded": _IMPORTS + _INSTANCES,
+}
+"""The text of each prelude, by name: it runs before a program and defines names for it."""
+
+PYBRICKS = "pybricks"
+LIBRARIES = ("ev3dev2", "ev3dev", PYBRICKS)
+"""The packages of the libraries for a brick: a program that imports one needs no prelude."""
+SPIKE_MODULES = (
+    "color_sensor",
+    "distance_sensor",
+    "force_sensor",
+    "hub",
+    "motor",
+    "motor_pair",
+    "runloop",
+    "spike",
+)
+"""Modules of LEGO's Python for the SPIKE hub."""
+OTHER_HUBS = (
+    "CityHub",
+    "EssentialHub",
+    "InventorHub",
+    "MoveHub",
+    "PrimeHub",
+    "TechnicHub",
+    "VirtualHub",
+)
+"""Classes of `pybricks.hubs` for hubs of SPIKE, Technic and others."""
+OTHER_HUB_DEVICES = "pybricks.pupdevices"
+"""The module of Pybricks for motors and sensors of these."""
+FOR_SPIKE = "a program for a SPIKE hub; tuisim simulates the EV3"
+"""What is told about a program that imports one of these."""
+
+PRELUDES: Mapping[str, str] = {
+    "sim_magic": "none",
+    "sim_magic_imports": "imports",
+    "sim_magic_preloaded": "preloaded",
+}
+"""The prelude of each magic."""
+APP_MAGIC = "sim_app"
+"""The magic that shows the app in its cell, beside all that the others do."""
+
+
+@dataclass(frozen=True, slots=True)
+class Program:
+    """A program to run, or that of a stored run."""
+
+    name: str
+    """File name as displayed to the user."""
+    text: str
+    """The source; a magic line is commented out, which keeps the file's line numbers."""
+    prelude: str = "none"
+    """none, imports or preloaded."""
+    path: str = ""
+    """Path of its file; empty if it is in no file."""
+    arguments: tuple[str, ...] = ()
+    """Contents of `sys.argv` after the path."""
+    python_path: tuple[str, ...] = ()
+    """Folders besides its own in which it searches modules: the user's PYTHONPATH."""
+    working_directory: str = ""
+    """Initial working directory; empty means the current one, with the PYTHONPATH of this process."""
+    module_folder: str = ""
+    """Module folder of a program without a file, such as the folder of the notebook whose cell it is."""
+    shown_ports: tuple[str, ...] | None = None
+    """The ports of the parts that its text shows, such as `in1`: what it asks for elsewhere is plugged in. None: the
+    robot stays as it is."""
+    modules_from: Path | None = None
+    """Folder of an earlier run: modules are read as that one recorded them; None reads them from their files."""
+
+    @property
+    def file(self) -> str:
+        """File name of its frames: its path, or the name of a program that is in no file."""
+        return self.path or self.name
+
+    @property
+    def sha256(self) -> str:
+        """Hash of the text in UTF-8, hexadecimal."""
+        # Imported here: the child process that runs a program does not need it.
+        import hashlib
+
+        return hashlib.sha256(self.text.encode("utf-8", "surrogatepass")).hexdigest()
+
+
+def find_code_line(lines: Sequence[str], line: int) -> int:
+    """Return a line, or the next one below it, that is more than a comment, a magic or blank; from 1, 0 if none is."""
+    rest = enumerate(lines[line - 1 :], line)
+    return next(
+        (at for at, text in rest if text.strip() and not text.lstrip().startswith(("#", "%"))), 0
+    )
+
+
+def source_lines(text: str) -> list[str]:
+    """Return the lines of a program, without line endings, numbered as Python numbers them.
+
+    `str.splitlines` also splits at form feed, U+2028 and others; line numbers would then differ from those in
+    tracebacks and breakpoints.
+    """
+    lines = text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
+    # A final line ending does not start another line.
+    return lines if lines[-1] else lines[:-1]
+
+
+def decode_source(data: bytes, shown: str) -> tuple[str, str]:
+    """Decode a program file, by its name for the error; return its text and its encoding as Python names it.
+
+    Raises:
+        ConfigError: it is not text, or its encoding is not a text encoding.
+    """
+    # Imported here: the child process that runs a program does not need them.
+    import io
+    import tokenize
+
+    try:
+        encoding, _ = tokenize.detect_encoding(io.BytesIO(data).readline)
+        return data.decode(encoding), encoding
+    # For example `rot13`, which is not a text encoding, and `undefined`, which always raises.
+    except (SyntaxError, LookupError, ValueError) as error:
+        raise ConfigError(f"is not Python text: {error}", "save it as UTF-8", file=shown) from None
+
+
+def user_python_path() -> tuple[str, ...]:
+    """Return the folders of the user's PYTHONPATH; an empty one is the current folder, as in Python."""
+    folders = os.environ.get("PYTHONPATH")
+    return tuple(os.path.abspath(folder) for folder in folders.split(os.pathsep)) if folders else ()

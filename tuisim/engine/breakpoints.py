@@ -1,0 +1,256 @@
+"""Breakpoints: when a run pauses, in a small language shared by app, command line and child.
+
+`FORMS` lists what a breakpoint can be. A leading `#` disables it. A comparison
+triggers when it becomes true, not while it stays true.
+"""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections.abc import Iterable, Sequence
+
+from tuisim.base.data_class import dataclass
+from tuisim.base.errors import ConfigError, counted, see_page
+from tuisim.base.source import find_code_line
+from tuisim.engine.core.conditions import (
+    ValueCondition,
+    ValueSource,
+    comparison_form,
+    finite_number,
+    run_condition_in,
+)
+from tuisim.engine.core.spec import RunSpec
+
+FORMS = (
+    ("12", "line 12 is about to run, or the next line of code if 12 is blank or a comment"),
+    ("12 if x > 3", "line 12 is about to run, and the expression is true"),
+    (
+        "left_red_pc < 10",
+        "a column becomes so; also ultrasonic_mm <= 200, gyro_deg > 90, x_mm > 1000",
+    ),
+    ("left_color changes", "the sensor sees another colour; left_color == Blue: it sees this one"),
+    ("sample Colour < 50", "such a sample is printed; also sample Colour changes, sample Colour"),
+    ("print matches black", "a line is printed in which the regular expression is found"),
+    ("time 3.5", "3.5 simulated seconds have passed"),
+    ("stall", "an obstacle stalls a running motor"),
+)
+"""The forms of a breakpoint, and when it pauses."""
+
+ALLOWED = (
+    f"{comparison_form()}, such as left_red_pc < 10 · x_mm > 1000 · sample Colour < 50; or 12 · 12 if x > 3 · "
+    "left_color changes · print matches REGEX · time 3.5 · stall"
+)
+
+_PRINT_FORM = "such as: print matches black|white"
+_NO_CONDITION = {
+    "print": ("what is printed can only be matched", _PRINT_FORM),
+    "sample": (
+        "a sample has a name",
+        f"{comparison_form()}, such as: sample Colour < 50, sample Colour changes",
+    ),
+}
+"""What is wrong with a text that begins like a condition, and the hint."""
+
+
+@dataclass(frozen=True, slots=True)
+class LineBreak:
+    """Pauses when a line of the program is about to run."""
+
+    line: int
+    condition: str = ""
+    """A Python expression that must be true; empty for none."""
+
+
+@dataclass(frozen=True, slots=True)
+class TimeBreak:
+    """Pauses when a simulated time is reached."""
+
+    time_s: float
+
+
+@dataclass(frozen=True, slots=True)
+class StallBreak:
+    """Pauses when a running motor is blocked."""
+
+
+BreakRule = LineBreak | ValueCondition | TimeBreak | StallBreak
+
+
+@dataclass(frozen=True, slots=True)
+class Breakpoint:
+    """A breakpoint: its rule, its text, and whether it is enabled."""
+
+    rule: BreakRule
+    text: str
+    """The normalized text, without the mark of a disabled breakpoint."""
+    disabled: bool = False
+
+    def written(self) -> str:
+        """The text from which `parse_break` creates this breakpoint again."""
+        return f"# {self.text}" if self.disabled else self.text
+
+
+_LINE = re.compile(r"(?:line\s+)?(\d+)(?:\s+if\s+(.*))?", re.DOTALL)
+_NAME = re.compile(r"\w+(?:[. ]\w+)*\s*%?")
+
+
+def parse_break(text: str, run: RunSpec | None = None) -> Breakpoint:
+    """Return the breakpoint that a text describes; without a run any name of a sensor is accepted.
+
+    Raises:
+        ConfigError: the text is not a valid breakpoint; the hint lists what is allowed.
+    """
+    stripped = text.strip()
+    disabled = stripped.startswith("#")
+    bare = stripped.lstrip("#").strip()
+    rule = _rule(bare, run)
+    return Breakpoint(rule, _common_text(rule), disabled)
+
+
+def parse_breakpoints(texts: Iterable[str], run: RunSpec | None = None) -> tuple[Breakpoint, ...]:
+    """Return the breakpoints of several texts; see `parse_break`."""
+    return tuple(parse_break(text, run) for text in texts)
+
+
+def check_line(one: Breakpoint, lines: Sequence[str]) -> None:
+    """Check that a breakpoint is on a line of a program, or above one, that can run.
+
+    Raises:
+        ConfigError: it is not.
+    """
+    line = break_line_of(one)
+    if line and not find_code_line(lines, line):
+        last = len(lines)
+        why = f"the program has no line {line}" if line > last else f"no code follows line {line}"
+        raise _refuse(one.text, why, f"it has {counted(last, 'line')}")
+
+
+def break_lines(breaks: Iterable[Breakpoint]) -> dict[int, Breakpoint]:
+    """Return the line breakpoints by line; of several on one line, an enabled one takes precedence."""
+    found: dict[int, Breakpoint] = {}
+    for one in sorted(breaks, key=lambda one: not one.disabled):
+        line = break_line_of(one)
+        if line:
+            found[line] = one
+    return found
+
+
+def break_line_of(one: Breakpoint) -> int:
+    """Return the line of a breakpoint; 0 if it has none."""
+    return one.rule.line if isinstance(one.rule, LineBreak) else 0
+
+
+def moved(one: Breakpoint, line: int) -> Breakpoint:
+    """Return a copy of a line breakpoint on another line."""
+    if not isinstance(one.rule, LineBreak):
+        return one
+    rule = LineBreak(line, one.rule.condition)
+    return Breakpoint(rule, _common_text(rule), one.disabled)
+
+
+def _refuse(
+    text: str, why: str, hint: str = f"{ALLOWED}; {see_page('breakpoints')}"
+) -> ConfigError:
+    return ConfigError(f"{text!r}: {why}", hint, key="break")
+
+
+def _rule(text: str, run: RunSpec | None) -> BreakRule:
+    if not text:
+        raise _refuse(text, "is empty")
+    word, _, rest = text.partition(" ")
+    if found := _LINE.fullmatch(text):
+        return _line_rule(text, int(found[1]), found[2])
+    if text == "stall":
+        return StallBreak()
+    if word == "time":
+        return TimeBreak(_seconds(text, rest.strip().removesuffix("s").strip()))
+    return _condition(text, word, run)
+
+
+def _line_rule(text: str, line: int, condition: str | None) -> LineBreak:
+    if line < 1:
+        raise _refuse(text, "lines count from 1")
+    if condition is None:
+        return LineBreak(line)
+    condition = condition.strip()
+    if why := _why_no_expression(condition):
+        raise _refuse(text, why, "such as: 12 if x > 3")
+    return LineBreak(line, condition)
+
+
+def _why_no_expression(text: str) -> str:
+    """Return why Python cannot parse an expression; empty if it can."""
+    try:
+        ast.parse(text, mode="eval")
+    except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
+        return f"{text!r} is not an expression: {getattr(error, 'msg', None) or error}"
+    return ""
+
+
+def parse_watch(text: str) -> str:
+    """Return a watch expression without surrounding whitespace.
+
+    Raises:
+        ConfigError: Python cannot parse it.
+    """
+    text = text.strip()
+    if why := _why_no_expression(text):
+        raise ConfigError(why, "such as len(values)", key="watch")
+    return text
+
+
+def _condition(text: str, word: str, run: RunSpec | None) -> ValueCondition:
+    found = run_condition_in(text)
+    if found is None or (found.source is ValueSource.SAMPLE and not found.name):
+        raise _refuse(text, *_NO_CONDITION.get(word, ("is not a breakpoint",)))
+    name = found.name
+    match found.source:
+        case ValueSource.PRINT:
+            try:
+                re.compile(found.value)
+            except (re.error, OverflowError, RecursionError) as error:
+                raise _refuse(text, f"not a regular expression: {error}", _PRINT_FORM) from error
+        case ValueSource.COLUMN:
+            name = _column(text, found.name, run)
+    try:
+        return found.of_column(name)
+    except ValueError as error:
+        raise _refuse(text, str(error)) from None
+
+
+def _column(text: str, written: str, run: RunSpec | None) -> str:
+    """Return the name of a column; without a run, what is written, if it can be one."""
+    if run is None:
+        if not _NAME.fullmatch(written):
+            raise _refuse(text, f"there is no {written!r}")
+        return written
+    try:
+        # Imported on demand: most runs have no breakpoints, and nothing else in a host needs the sensors.
+        from tuisim.engine.core.sensors import named_column
+
+        return named_column(written, run)
+    except ConfigError as error:
+        raise _refuse(text, error.message, error.hint) from None
+
+
+def _seconds(text: str, written: str) -> float:
+    try:
+        time_s = finite_number(written)
+    except ValueError as error:
+        raise _refuse(text, str(error)) from None
+    if time_s < 0.0:
+        raise _refuse(text, f"{written!r} is not possible here")
+    return time_s
+
+
+def _common_text(rule: BreakRule) -> str:
+    match rule:
+        case LineBreak(line=line, condition=condition):
+            return f"{line} if {condition}" if condition else str(line)
+        case ValueCondition():
+            return str(rule)
+        case TimeBreak(time_s=time_s):
+            return f"time {time_s:.12g}"
+        case StallBreak():
+            return "stall"

@@ -1,0 +1,302 @@
+"""Wheel motors of a brick: their commands, speed ramps and ends of moves.
+
+Motors are mutable and updated every tick: this is the hottest data of the simulation.
+Angles are in degrees of the wheel (one encoder count is one degree), speeds in degrees per
+second.
+"""
+
+from __future__ import annotations
+
+import math
+from bisect import bisect_left
+from collections.abc import Sequence
+from itertools import accumulate, repeat
+from operator import neg
+
+from tuisim.engine.core.drive import EvenGlide, Glide
+from tuisim.engine.core.motors import (
+    ENDLESS,
+    FOREVER,
+    POSITION,
+    STANDSTILL_DEG,
+    STOPPED,
+    TIMED,
+    MotorState,
+)
+
+
+def ramped(speed: float, target: float, step: float) -> float:
+    """Return the speed one tick later; it changes at most by `step`, or at once if that is 0."""
+    if step == 0.0:
+        speed = target
+    elif speed < target:
+        speed += step
+        if speed > target:
+            speed = target
+    elif speed > target:
+        speed -= step
+        if speed < target:
+            speed = target
+    return speed
+
+
+class BrickMotor:
+    """One motor with its encoder.
+
+    Args:
+        tick_hz: Ticks per second.
+        weight_step: Largest change of speed in one tick that the weight allows; 0 is unlimited.
+        limit_dps: Highest speed that noise can cause.
+    """
+
+    __slots__ = (
+        "_limit_dps",
+        "_tick_s",
+        "_weight_step",
+        "approach_dps2",
+        "blocked_ticks",
+        "end_tick",
+        "goal_deg",
+        "mode",
+        "position_deg",
+        "sign",
+        "slowest_ramp_dps2",
+        "speed_dps",
+        "target_dps",
+    )
+
+    def __init__(self, tick_hz: int, weight_step: float, limit_dps: float) -> None:
+        self._tick_s, self._weight_step, self._limit_dps = 1.0 / tick_hz, weight_step, limit_dps
+        self.mode = STOPPED
+        self.position_deg = 0.0
+        self.speed_dps = 0.0
+        self.target_dps = 0.0
+        self.sign = 1.0
+        """-1 while a move runs backwards and its speed is given without sign."""
+        self.goal_deg = 0.0
+        self.end_tick: float = 0
+        self.slowest_ramp_dps2 = 0.0
+        """Acceleration that the program set; 0 if only the motor's weight limits it."""
+        self.approach_dps2 = 0.0
+        """Deceleration before the goal or the end time; 0 stops abruptly."""
+        self.blocked_ticks = 0
+        """Number of consecutive ticks in which an obstacle or wall has blocked the wheel."""
+
+    def run(self, speed_dps: float) -> None:
+        """Run until the next command."""
+        if self.mode == FOREVER and not (self.slowest_ramp_dps2 or self.blocked_ticks):
+            # A control loop calls this a hundred times a second: only the speed changes.
+            self.target_dps = speed_dps
+        else:
+            self._begin(FOREVER, speed_dps, 1.0)
+
+    def run_until(self, speed_dps: float, end_tick: float) -> None:
+        """Run until the end of a tick."""
+        self._begin(TIMED, speed_dps, 1.0)
+        self.end_tick = end_tick
+
+    def run_to(self, goal_deg: float, speed_dps: float, backwards: bool) -> None:
+        """Run to an encoder position; the speed has no sign."""
+        self._begin(POSITION, abs(speed_dps), -1.0 if backwards else 1.0)
+        self.goal_deg = goal_deg
+
+    def _begin(self, mode: int, speed_dps: float, sign: float) -> None:
+        if sign != self.sign:
+            # The wheel keeps its direction: only the sign convention changes.
+            self.speed_dps = -self.speed_dps
+        self.mode, self.target_dps, self.sign = mode, speed_dps, sign
+        self.slowest_ramp_dps2 = self.approach_dps2 = 0.0
+        self.blocked_ticks = 0
+
+    def stop(self) -> None:
+        """Stop immediately."""
+        self.mode = STOPPED
+        self.target_dps = 0.0
+        self.blocked_ticks = 0
+        self.speed_dps = 0.0
+        self.sign = 1.0
+
+    def state(self) -> MotorState:
+        """Return the state that `hold_back` needs to undo a tick."""
+        return self.mode, self.sign, self.target_dps, self.position_deg
+
+    def hold_back(self, before: MotorState, turned_deg: float, part: float) -> None:
+        """Undo the rest of a tick in which an obstacle stopped the wheel; see `Motor.hold_back`."""
+        mode, sign, target_dps, position_deg = before
+        if mode == STOPPED or turned_deg == 0.0:
+            return
+        if mode == POSITION and self.mode == STOPPED:
+            # The motor did not reach its goal after all.
+            self.mode, self.sign, self.target_dps = mode, sign, target_dps
+        self.position_deg = position_deg + (self.position_deg - position_deg) * part
+        self.speed_dps *= part
+        self.blocked_ticks = (
+            self.blocked_ticks + 1 if abs(turned_deg * part) < STANDSTILL_DEG else 0
+        )
+
+    @property
+    def moving_dps(self) -> float:
+        """Current speed of the wheel, signed."""
+        return 0.0 if self.mode == STOPPED else self.speed_dps * self.sign
+
+    @property
+    def counting_dps(self) -> float:
+        """Current speed of the encoder."""
+        return self.moving_dps
+
+    @property
+    def aim_dps(self) -> float:
+        """Target speed of the wheel, signed."""
+        return self.target_dps * self.sign if self.mode else 0.0
+
+    @property
+    def resting(self) -> bool:
+        """Whether ticks leave this motor unchanged until its next command."""
+        return self.mode == STOPPED
+
+    @property
+    def ramp_step(self) -> float:
+        """Largest change of speed in one tick; 0 is unlimited."""
+        if not self.slowest_ramp_dps2:
+            return self._weight_step
+        asked = self.slowest_ramp_dps2 * self._tick_s
+        return min(self._weight_step, asked) if self._weight_step else asked
+
+    @property
+    def ramping_ticks(self) -> int:
+        """Number of ticks until the speed is steady."""
+        if self.mode == STOPPED or self.speed_dps == self.target_dps:
+            return 0
+        step = self.ramp_step
+        return math.ceil(abs(self.target_dps - self.speed_dps) / step) if step else 1
+
+    def glide_evenly(self, ticks: int) -> EvenGlide:
+        """Run quiet ticks at a steady speed; see `Motor.glide_evenly`."""
+        if self.mode == STOPPED:
+            return EvenGlide(0.0, repeat(self.position_deg, ticks))
+        turned = self.speed_dps * self.sign * self._tick_s
+        return EvenGlide(
+            turned, accumulate(repeat(turned, ticks - 1), initial=self.position_deg + turned)
+        )
+
+    def glide(self, ticks: int) -> Glide:
+        """Run quiet ticks; see `Motor.glide`."""
+        if self.mode == STOPPED:
+            return Glide([0.0] * ticks, [self.position_deg] * ticks)
+        sign, tick_s = self.sign, self._tick_s
+        turns = [speed * sign * tick_s for speed in self._speeds_ahead(ticks)]
+        counts = list(accumulate(turns, initial=self.position_deg))
+        self.position_deg = counts[-1]
+        return Glide(turns, counts[1:])
+
+    def glide_noisily(self, ticks: int, noise_dps: Sequence[float]) -> Glide:
+        """Run quiet ticks with noise added to the speed in each; for moves that do not end at a position."""
+        if self.mode == STOPPED:
+            return Glide([0.0] * ticks, [self.position_deg] * ticks)
+        sign, tick_s, limit, steady = self.sign, self._tick_s, self._limit_dps, self.speed_dps
+        # The products of `step` and `_disturbed`, without a call per tick.
+        if steady == self.target_dps:
+            noisy: Sequence[float] = (
+                [round(steady + noise) for noise in noise_dps] if steady else [0] * ticks
+            )
+        else:
+            speeds = zip(self._speeds_ahead(ticks), noise_dps, strict=True)
+            noisy = [round(speed + noise) if speed else 0 for speed, noise in speeds]
+        if max(noisy) > limit or min(noisy) < -limit:
+            noisy = [max(-limit, min(limit, one)) for one in noisy]
+        turns = [one * sign * tick_s for one in noisy]
+        counts = list(accumulate(turns, initial=self.position_deg))
+        self.position_deg = counts[-1]
+        return Glide(turns, counts[1:])
+
+    def _speeds_ahead(self, ticks: int) -> list[float]:
+        """Advance the speed by `ticks` ticks and return the speed after each."""
+        speed, target, step = self.speed_dps, self.target_dps, self.ramp_step
+        if speed == target or step == 0.0:
+            speeds = [speed if speed == target else target] * ticks
+        else:
+            # Same sums as `ramped`, without a call per tick; values beyond the target are clamped to it.
+            change = step if speed < target else -step
+            speeds = list(accumulate(repeat(change, ticks - 1), initial=speed + change))
+            short = (
+                bisect_left(speeds, target) if change > 0 else bisect_left(speeds, -target, key=neg)
+            )
+            speeds[short:] = repeat(target, ticks - short)
+        self.speed_dps = speeds[-1]
+        return speeds
+
+    def quiet_ticks(self, tick: int) -> int:
+        """Return for how many ticks only the ramp changes this motor; see `Motor.quiet_ticks`."""
+        if self.approach_dps2:
+            return 0
+        if self.mode == TIMED:
+            return max(0, int(self.end_tick) - tick - 1)
+        if self.mode == POSITION:
+            fastest = max(abs(self.speed_dps), abs(self.target_dps)) * self._tick_s
+            if fastest == 0.0:
+                return ENDLESS
+            left = (self.goal_deg - self.position_deg) * self.sign
+            return max(0, int(left / fastest) - 1)
+        return ENDLESS
+
+    def step(self, tick: int, noise_dps: float) -> float:
+        """Run one tick; see `Motor.step`."""
+        mode = self.mode
+        if mode == FOREVER and not noise_dps:
+            # The common case: only the ramp matters.
+            if self.speed_dps != self.target_dps:
+                step = self.ramp_step if self.slowest_ramp_dps2 else self._weight_step
+                self.speed_dps = ramped(self.speed_dps, self.target_dps, step)
+            turned = self.speed_dps * self.sign * self._tick_s
+            self.position_deg += turned
+            return turned
+        if mode == STOPPED:
+            return 0.0
+        if mode == TIMED and tick > self.end_tick:
+            self.stop()
+            return 0.0
+        self.speed_dps = ramped(self.speed_dps, self.target_dps, self.ramp_step)
+        if self.approach_dps2:
+            self._slow_down(tick)
+        speed = self._disturbed(noise_dps) if noise_dps else self.speed_dps
+        turned = speed * self.sign * self._tick_s
+        if mode == POSITION:
+            return self._step_to_goal(turned)
+        self.position_deg += turned
+        if mode == TIMED and tick == self.end_tick:
+            self.stop()
+        return turned
+
+    def _slow_down(self, tick: int) -> None:
+        """Limit the speed so that the motor can stop at its goal or at its end time."""
+        change = self._ramp_down_step
+        if self.mode == TIMED:
+            limit = change * max(0, self.end_tick - tick)
+        else:
+            left = max(0.0, (self.goal_deg - self.position_deg) * self.sign)
+            half = change / 2
+            limit = math.sqrt(half * half + 2 * change * left / self._tick_s) - half
+        if abs(self.speed_dps) > limit:
+            self.speed_dps = math.copysign(limit, self.speed_dps)
+
+    @property
+    def _ramp_down_step(self) -> float:
+        """Decrease of speed in one tick while the motor decelerates by itself."""
+        asked = self.approach_dps2 * self._tick_s
+        return min(self._weight_step, asked) if self._weight_step else asked
+
+    def _step_to_goal(self, turned: float) -> float:
+        left = (self.goal_deg - self.position_deg) * self.sign
+        if turned * self.sign >= left:
+            turned = self.goal_deg - self.position_deg
+            self.position_deg = self.goal_deg
+            self.stop()
+            return turned
+        self.position_deg += turned
+        return turned
+
+    def _disturbed(self, noise_dps: float) -> float:
+        if self.speed_dps == 0.0:
+            return 0.0
+        limit = self._limit_dps
+        return max(-limit, min(limit, float(round(self.speed_dps + noise_dps))))

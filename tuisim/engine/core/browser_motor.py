@@ -1,0 +1,284 @@
+"""Motors of the browser simulator nbev3devsim, reproduced to the last bit.
+
+A motor has a speed register that follows its set point in every tick, even while the motor
+is stopped, and a command that decides how the register is used. In a move to a
+position the encoder counts each step twice, so the wheel covers half the distance, and it
+continues to count after the end. Set points are live: a written value takes effect at once.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from itertools import accumulate, islice, repeat
+
+from tuisim.engine.core.drive import EvenGlide, Glide
+from tuisim.engine.core.motors import (
+    ENDLESS,
+    FOREVER,
+    POSITION,
+    STANDSTILL_DEG,
+    STOPPED,
+    TIMED,
+    MotorState,
+)
+
+
+class BrowserMotor:
+    """One motor with its encoder.
+
+    Args:
+        tick_hz: Ticks per second.
+        ramp_step: Largest change of speed in one tick that the weight allows; 0 is unlimited.
+        limit_dps: Highest forward speed.
+    """
+
+    __slots__ = (
+        "_command",
+        "_limit_dps",
+        "_ramp_step",
+        "_tick_s",
+        "backwards",
+        "blocked_ticks",
+        "end_tick",
+        "goal_deg",
+        "mode",
+        "position_deg",
+        "roll_sign",
+        "speed_dps",
+        "speed_sp",
+    )
+
+    def __init__(self, tick_hz: int, ramp_step: float, limit_dps: float) -> None:
+        self._tick_s, self._limit_dps = 1.0 / tick_hz, limit_dps
+        self._ramp_step = ramp_step or math.inf
+        self._command = STOPPED
+        self.mode = STOPPED
+        """The command while the motor reports `running`."""
+        self.position_deg = 0.0
+        self.speed_dps = 0.0
+        """The speed register: a magnitude in moves to a position, otherwise a signed speed."""
+        self.speed_sp = 0.0
+        """The speed that the register follows, in every state."""
+        self.backwards = False
+        """Direction of a move to a position; it may change during the move and afterwards."""
+        self.goal_deg = 0.0
+        self.end_tick = 0.0
+        self.roll_sign = 1.0
+        """-1 for a motor of inversed polarity: the wheel rolls the other way, the encoder counts as usual."""
+        self.blocked_ticks = 0
+
+    # Commands
+
+    def run(self, speed_dps: float) -> None:
+        """Run until the next command."""
+        self._begin(FOREVER, speed_dps)
+
+    def run_until(self, speed_dps: float, end_tick: float) -> None:
+        """Run while ticks are before `end_tick`, which need not be whole."""
+        self._begin(TIMED, speed_dps)
+        self.end_tick = end_tick
+
+    def run_to(self, goal_deg: float, speed_dps: float, backwards: bool) -> None:
+        """Run to an encoder position."""
+        self._begin(POSITION, speed_dps)
+        self.goal_deg, self.backwards = goal_deg, backwards
+        if goal_deg == self.position_deg:
+            self.mode = STOPPED
+
+    def _begin(self, command: int, speed_dps: float) -> None:
+        self._command = self.mode = command
+        self.speed_sp = speed_dps
+        self.blocked_ticks = 0
+
+    def stop(self) -> None:
+        """Stop from the next tick on; this also ends the state."""
+        self._command = STOPPED
+        self.blocked_ticks = 0
+
+    # Ticks
+
+    def step(self, tick: int, noise_dps: float) -> float:
+        """Run one tick; see `Motor.step`."""
+        speed = self.speed_dps
+        if speed != self.speed_sp or noise_dps:
+            self.speed_dps = speed = self._next(speed, noise_dps)
+        turned = speed * self._tick_s
+        command = self._command
+        if command == FOREVER or (command == TIMED and tick < self.end_tick):
+            self.position_deg += turned
+            return turned * self.roll_sign + 0.0
+        if command != POSITION:
+            self.mode = STOPPED
+            return 0.0
+        if self.backwards:
+            turned = -turned
+        self.position_deg += turned
+        if self._beyond():
+            self.mode = STOPPED
+            return 0.0
+        self.position_deg += turned
+        return turned * self.roll_sign + 0.0
+
+    def _next(self, speed: float, noise_dps: float = 0.0) -> float:
+        """Return the register after one more tick."""
+        target, step = self.speed_sp, self._ramp_step
+        if speed < target:
+            speed += step
+            if speed > target:
+                speed = target
+        elif speed > target:
+            speed -= step
+            if speed < target:
+                speed = target
+        # A speed that is negative even with the noise is left unchanged.
+        noisy = speed + noise_dps
+        if noisy < 0.0:
+            return speed
+        noisy = float(math.floor(noisy + 0.5))
+        return noisy if noisy <= self._limit_dps else self._limit_dps
+
+    def _beyond(self) -> bool:
+        return (
+            self.position_deg < self.goal_deg
+            if self.backwards
+            else self.position_deg > self.goal_deg
+        )
+
+    @property
+    def _aim(self) -> float:
+        """The final value of the register."""
+        return min(self.speed_sp, self._limit_dps)
+
+    @property
+    def _ended(self) -> bool:
+        """Whether a move to a position is over, so that only the encoder continues."""
+        return self._command == POSITION and self.mode == STOPPED
+
+    # Ticks ahead
+
+    @property
+    def ramping_ticks(self) -> int:
+        """Approximate number of ticks until the register is steady; 0 only if it is steady."""
+        if self.speed_dps == self.speed_sp <= self._limit_dps:
+            return 0
+        way = abs(self._aim - self.speed_dps)
+        return math.ceil(way / self._ramp_step) or int(way > 0)
+
+    def quiet_ticks(self, tick: int) -> int:
+        """Return for how many ticks only the register changes; see `Motor.quiet_ticks`."""
+        if self._command == FOREVER or (self.mode == STOPPED and self._command != POSITION):
+            return ENDLESS
+        if self._command == POSITION:
+            return self._quiet_ticks_to_goal()
+        # After a stop command the state changes in the next tick.
+        return max(0, math.ceil(self.end_tick) - 1 - tick) if self._command == TIMED else 0
+
+    def _quiet_ticks_to_goal(self) -> int:
+        if self._ended and self.speed_dps == self.speed_sp == 0.0:
+            return ENDLESS
+        if self._ended:
+            # The motor must be beyond its goal and also stay there.
+            return ENDLESS if self._beyond() and self.speed_dps >= 0 and self.speed_sp >= 0 else 0
+        # Rounding adds up to half a degree a second.
+        fastest = (max(abs(self.speed_dps), abs(self.speed_sp)) + 0.5) * self._tick_s
+        left = abs(self.goal_deg - self.position_deg)
+        return 0 if self._beyond() else max(0, int(left / (2 * fastest)) - 1)
+
+    def glide_evenly(self, ticks: int) -> EvenGlide:
+        """Run quiet ticks at a steady speed; see `Motor.glide_evenly`."""
+        turned = self.speed_dps * (
+            -self._tick_s if self._command == POSITION and self.backwards else self._tick_s
+        )
+        start = self.position_deg
+        counts: Iterator[float]
+        if self.mode == STOPPED and not self._ended:
+            return EvenGlide(0.0, repeat(start, ticks))
+        if self.mode == STOPPED or self._command != POSITION:
+            counts = accumulate(repeat(turned, ticks - 1), initial=start + turned)
+        else:
+            counts = islice(accumulate(repeat(turned, 2 * ticks), initial=start), 2, None, 2)
+        return EvenGlide(0.0 if self.mode == STOPPED else turned * self.roll_sign + 0.0, counts)
+
+    def glide(self, ticks: int) -> Glide:
+        """Run quiet ticks; see `Motor.glide`."""
+        speeds = self._registers(ticks)
+        tick_s = -self._tick_s if self._command == POSITION and self.backwards else self._tick_s
+        turns = [speed * tick_s for speed in speeds]
+        counts = self._counts(turns)
+        self.position_deg = counts[-1]
+        if self.mode == STOPPED:
+            return Glide([0.0] * ticks, counts)
+        sign = self.roll_sign
+        return Glide([turned * sign + 0.0 for turned in turns], counts)
+
+    def _registers(self, ticks: int) -> list[float]:
+        """Advance the register by `ticks` ticks and return it after each."""
+        speed, aim = self.speed_dps, self._aim
+        speeds: list[float] = []
+        while speed != aim and len(speeds) < ticks:
+            speed = self._next(speed)
+            speeds.append(speed)
+        self.speed_dps = speed
+        speeds += [speed] * (ticks - len(speeds))
+        return speeds
+
+    def _counts(self, turns: list[float]) -> list[float]:
+        start = self.position_deg
+        if self._command == POSITION and self.mode != STOPPED:
+            twice = (turned for pair in zip(turns, turns, strict=True) for turned in pair)
+            return list(accumulate(twice, initial=start))[2::2]
+        if self.mode == STOPPED and not self._ended:
+            return [start] * len(turns)
+        return list(accumulate(turns, initial=start))[1:]
+
+    # State for other modules
+
+    @property
+    def _direction(self) -> float:
+        return (
+            self.roll_sign if self._command != POSITION or not self.backwards else -self.roll_sign
+        )
+
+    @property
+    def moving_dps(self) -> float:
+        """Current speed of the wheel, signed."""
+        return 0.0 if self.mode == STOPPED else self.speed_dps * self._direction
+
+    @property
+    def counting_dps(self) -> float:
+        """Current speed of the encoder."""
+        if self._command == POSITION:
+            return self.speed_dps * ((self.mode != STOPPED) + 1) * (-1.0 if self.backwards else 1.0)
+        return 0.0 if self.mode == STOPPED else self.speed_dps
+
+    @property
+    def aim_dps(self) -> float:
+        """Target speed of the wheel, signed."""
+        return 0.0 if self.mode == STOPPED else self._aim * self._direction
+
+    @property
+    def resting(self) -> bool:
+        """Whether ticks leave this motor unchanged until its next command."""
+        return (
+            self.mode == STOPPED
+            and self.speed_dps == self._aim
+            and (self.speed_dps == 0.0 or not self._ended)
+        )
+
+    # Collisions
+
+    def state(self) -> MotorState:
+        """Return the state that `hold_back` needs to undo a tick."""
+        return self.mode, self._direction, self._aim, self.position_deg
+
+    def hold_back(self, before: MotorState, turned_deg: float, part: float) -> None:
+        """Undo the rest of a tick in which an obstacle stopped the wheel; see `Motor.hold_back`."""
+        mode, *_, position_deg = before
+        if mode == STOPPED or turned_deg == 0.0:
+            return
+        self.position_deg = position_deg + (self.position_deg - position_deg) * part
+        self.speed_dps *= part
+        self.blocked_ticks = (
+            self.blocked_ticks + 1 if abs(turned_deg * part) < STANDSTILL_DEG else 0
+        )

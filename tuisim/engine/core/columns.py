@@ -1,0 +1,85 @@
+"""The columns of a recording: every value that a run has over time, by its name, and how it is measured.
+
+Telemetry, chart, breakpoints, go to, goals and the guide take the names and the values from here. To add a value,
+add a line to `MOTION`, or to `columns` of a kind of sensor.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable, Sequence
+from typing import TYPE_CHECKING
+
+from tuisim.base.data_class import dataclass
+
+if TYPE_CHECKING:
+    from tuisim.engine.core.field import Field
+    from tuisim.engine.core.spec import RunSpec
+    from tuisim.engine.core.state import Instant
+
+
+COLOR_NAMES = ("NoColor", "Black", "Blue", "Green", "Yellow", "Red", "White", "Brown")
+"""Names by colour code, as in ev3dev2."""
+
+
+@dataclass(frozen=True, slots=True)
+class Column:
+    """A value at each tick. What is measured with others comes first among the columns of its owner, in that order."""
+
+    name: str
+    """An identifier that ends in the unit, such as `left_red_pc`; see `logs.units`."""
+    of: Callable[[Iterable[Sequence[float]], RunSpec], list[float]] | None = None
+    """Computes it from what its owner measures, at each of some ticks; None: it is measured."""
+    is_traced: bool = False
+    """Whether the chart offers it."""
+    also: tuple[str, ...] = ()
+    """Other names that are understood."""
+
+
+def measured_names(columns: Iterable[Column]) -> tuple[str, ...]:
+    """Return the names of the columns that are measured: those that telemetry exports if it is not asked for others."""
+    return tuple(column.name for column in columns if column.of is None)
+
+
+MOTION: tuple[Column, ...] = (
+    Column("x_mm"),
+    Column("y_mm"),
+    Column("heading_deg"),
+    Column("left_position_deg"),
+    Column("right_position_deg"),
+    Column("left_speed_dps"),
+    Column("right_speed_dps"),
+)
+"""The columns of the robot itself."""
+
+
+def motion_of(instant: Instant, run: RunSpec, field: Field) -> tuple[float, ...]:
+    """Return what is measured of `MOTION`, in that order."""
+    pose = instant.pose
+    return (
+        pose.x_mm,
+        pose.y_mm,
+        pose.heading_deg,
+        instant.left_position_deg,
+        instant.right_position_deg,
+        instant.left_speed_dps,
+        instant.right_speed_dps,
+    )
+
+
+def column_name(text: str, columns: Iterable[Column]) -> str | None:
+    """Return the name of the column that a text means, however its words are joined; None if there is none.
+
+    Args:
+        text: Such as `left_red_pc`, or as it was written before, `left.red%` or `left sensor red %`.
+        columns: Those that there are.
+    """
+    names = {column.name: (column.name, *column.also) for column in columns}
+    if text in names:
+        return text
+    wanted = _words(text)
+    return next((name for name, known in names.items() if wanted in map(_words, known)), None)
+
+
+def _words(text: str) -> tuple[str, ...]:
+    return tuple(word for word in re.findall(r"[^\W_]+|[%°]", text) if word != "sensor")

@@ -1,0 +1,73 @@
+"""Calls of motors with the kernel's driver."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import lru_cache
+from typing import TYPE_CHECKING
+
+from tuisim.engine.core.commands.calls import Call, find_index
+from tuisim.engine.core.driver.motor import (
+    Command,
+    Constant,
+    SetPoints,
+    Setting,
+)
+from tuisim.engine.core.driver.regulator import StopAction
+from tuisim.engine.core.driver.simulated import SimulatedMotor
+
+if TYPE_CHECKING:
+    from tuisim.engine.core.simulation import Simulation
+
+    Effect = Callable[[Simulation, int, int, tuple[float, ...]], None]
+
+COMMAND_CALLS: dict[Command, Call] = {
+    command: Call(Call.RUN_FOREVER + number) for number, command in enumerate(Command)
+}
+"""The call of each command of the driver; its values are those of `SetPoints`."""
+STOP_ACTIONS = (*StopAction,)
+"""In the order of their numbers in commands, which count from 0."""
+MAX_SET_POINTS = 1024
+"""A control loop comes back to the same set points: so many are built once."""
+CONTROLS = ("speed", "hold")
+CONSTANTS = ("kp", "ki", "kd")
+
+
+def _find_motor(sim: Simulation, part: int) -> SimulatedMotor:
+    motor = sim.motors[part]
+    assert isinstance(motor, SimulatedMotor)
+    return motor
+
+
+@lru_cache(MAX_SET_POINTS)
+def _build_set_points(values: tuple[float, ...]) -> SetPoints:
+    speed_dps, position, duty, time_ms, ramp_up_ms, ramp_down_ms, _ = map(int, values)
+    action = STOP_ACTIONS[find_index(values, 6, len(STOP_ACTIONS))]
+    return SetPoints(speed_dps, position, duty, time_ms, ramp_up_ms, ramp_down_ms, action)
+
+
+def build_effect(command: Command) -> Effect:
+    """Return what a command of the driver does, with all set points."""
+
+    def obey(sim: Simulation, time_ns: int, part: int, values: tuple[float, ...]) -> None:
+        _find_motor(sim, part).obey(time_ns, command, _build_set_points(values))
+
+    return obey
+
+
+def set_duty(sim: Simulation, time_ns: int, part: int, values: tuple[float, ...]) -> None:
+    """Set the duty, which takes effect at once after `run-direct`."""
+    _find_motor(sim, part).obey(time_ns, Setting.DUTY, int(values[0]))
+
+
+def renumber(sim: Simulation, time_ns: int, part: int, values: tuple[float, ...]) -> None:
+    """Make the present position another one."""
+    _find_motor(sim, part).obey(time_ns, Setting.POSITION, int(values[0]))
+
+
+def set_constant(sim: Simulation, time_ns: int, part: int, values: tuple[float, ...]) -> None:
+    """Set a constant of a controller: the numbers of both, and the value."""
+    control = CONTROLS[find_index(values, 0, len(CONTROLS))]
+    name = CONSTANTS[find_index(values, 1, len(CONSTANTS))]
+    constant = Constant(control, name, int(values[2]))
+    _find_motor(sim, part).obey(time_ns, Setting.CONSTANT, constant)

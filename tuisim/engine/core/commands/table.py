@@ -1,0 +1,109 @@
+"""What each call does, which values it takes, and which motors have it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from math import inf
+from typing import TYPE_CHECKING
+
+from tuisim.base.data_class import dataclass
+from tuisim.engine.core.commands import driver, motors, robot, servo
+from tuisim.engine.core.commands.calls import MAX_NUMBER, MAX_VALUES, Call
+from tuisim.engine.core.motors import MEDIUM_MAX_SPEED_DPS
+from tuisim.engine.core.profile import MotorLaw
+from tuisim.engine.core.servo.settings import FULL_ACTUATION
+
+if TYPE_CHECKING:
+    from tuisim.engine.core.simulation import Simulation
+
+Range = tuple[float, float]
+
+ALL_LAWS = frozenset(MotorLaw)
+DRIVEN_LAWS = frozenset({MotorLaw.BRICK, MotorLaw.NBEV3DEVSIM})
+SERVO_LAWS = frozenset({MotorLaw.PYBRICKS, MotorLaw.PYBRICKS_4})
+_ANY: Range = -MAX_NUMBER, MAX_NUMBER
+_POSITIVE: Range = 0.0, MAX_NUMBER
+_FLAG: Range = 0.0, 1.0
+_ENDING: Range = 0.0, 3.0
+_SPEED: Range = -MEDIUM_MAX_SPEED_DPS, MEDIUM_MAX_SPEED_DPS
+_DUTY: Range = -float(FULL_ACTUATION), float(FULL_ACTUATION)
+_INT: Range = -float(2**31), float(2**31)
+_RAMP_MS: Range = 0.0, 60_000.0
+_SET_POINTS = (_SPEED, _INT, (-100.0, 100.0), _INT, _RAMP_MS, _RAMP_MS, (0.0, 2.0))
+
+
+@dataclass(frozen=True, slots=True)
+class CallSpec:
+    """One call."""
+
+    apply: Callable[[Simulation, int, int, tuple[float, ...]], None]
+    """Does it: the simulation, the time in ns, the part's number, the values."""
+    ranges: tuple[Range, ...] = ()
+    """The least and the highest of each value."""
+    laws: frozenset[MotorLaw] = ALL_LAWS
+    may_be_missing: bool = False
+    """Whether values may be NaN."""
+
+
+CALLS: Mapping[Call, CallSpec] = {
+    Call.RESET_GYRO: CallSpec(robot.reset_gyro),
+    Call.MOVE_PEN: CallSpec(robot.move_pen, (_FLAG,)),
+    Call.PLUG: CallSpec(
+        robot.plug, ((0.0, robot.PART_CODES - 1.0),) * MAX_VALUES, may_be_missing=True
+    ),
+    Call.RUN: CallSpec(motors.start, (_ANY,), DRIVEN_LAWS),
+    Call.RUN_UNTIL: CallSpec(motors.start_timed, (_ANY, (-inf, inf)), DRIVEN_LAWS),
+    Call.RUN_TO: CallSpec(motors.start_move, (_ANY, _ANY, _FLAG), DRIVEN_LAWS),
+    Call.STOP: CallSpec(motors.stop, (), DRIVEN_LAWS),
+    Call.SET_COUNT: CallSpec(motors.set_count, (_ANY,), DRIVEN_LAWS),
+    Call.LIMIT_RAMPS: CallSpec(
+        motors.limit_ramps, (_POSITIVE, _POSITIVE), frozenset({MotorLaw.BRICK})
+    ),
+    Call.SET_SPEED: CallSpec(motors.set_speed, (_ANY,), frozenset({MotorLaw.NBEV3DEVSIM})),
+    Call.SET_BACKWARDS: CallSpec(motors.set_backwards, (_FLAG,), frozenset({MotorLaw.NBEV3DEVSIM})),
+    Call.SET_ROLL: CallSpec(motors.set_roll, ((-1.0, 1.0),), frozenset({MotorLaw.NBEV3DEVSIM})),
+    **{
+        call: CallSpec(driver.build_effect(command), _SET_POINTS, frozenset({MotorLaw.EV3DEV}))
+        for command, call in driver.COMMAND_CALLS.items()
+    },
+    Call.SET_DUTY: CallSpec(driver.set_duty, ((-100.0, 100.0),), frozenset({MotorLaw.EV3DEV})),
+    Call.RENUMBER: CallSpec(driver.renumber, (_ANY,), frozenset({MotorLaw.EV3DEV})),
+    Call.SET_CONSTANT: CallSpec(
+        driver.set_constant, (_FLAG, (0.0, 2.0), _INT), frozenset({MotorLaw.EV3DEV})
+    ),
+    Call.SET_UP: CallSpec(servo.begin_anew, ((-1.0, 1.0), _POSITIVE, _FLAG), SERVO_LAWS),
+    Call.RUN_FREELY: CallSpec(servo.run_freely, (_DUTY,), SERVO_LAWS, may_be_missing=True),
+    Call.SET_MILLI: CallSpec(servo.set_milli, (_ANY,), SERVO_LAWS),
+    Call.HOLD: CallSpec(servo.hold, (), SERVO_LAWS),
+    Call.HOLD_MILLI: CallSpec(servo.hold_milli, (_ANY,), SERVO_LAWS),
+    Call.RUN_AT: CallSpec(
+        servo.run_control, (_ANY, _ANY, _POSITIVE, _ENDING), SERVO_LAWS, may_be_missing=True
+    ),
+    Call.MOVE: CallSpec(servo.move, (_ANY, _ANY, _ANY, _FLAG), SERVO_LAWS),
+    Call.FOLLOW: CallSpec(servo.follow, (_ENDING,), SERVO_LAWS),
+    Call.LIMIT_DUTY: CallSpec(servo.limit_duty, (_DUTY,), SERVO_LAWS, may_be_missing=True),
+    Call.SET_CONTROL: CallSpec(servo.set_control, (_POSITIVE, _POSITIVE), SERVO_LAWS),
+    Call.BUILD_BASE: CallSpec(
+        servo.build_base, (_POSITIVE, _POSITIVE, _POSITIVE, _POSITIVE), SERVO_LAWS
+    ),
+    Call.MOVE_BASE: CallSpec(servo.move_base, (_ANY, _ANY, _ENDING), SERVO_LAWS),
+    Call.DRIVE_BASE: CallSpec(servo.drive_base, (_ANY, _ANY), SERVO_LAWS),
+    Call.STOP_BASE: CallSpec(servo.stop_base, (_DUTY,), SERVO_LAWS, may_be_missing=True),
+    Call.SET_BASE: CallSpec(servo.set_base, (_ANY, _ANY, _ANY, _ANY), SERVO_LAWS),
+    Call.SET_BASE_CONTROL: CallSpec(
+        servo.set_base_control, (_FLAG, _POSITIVE, _POSITIVE), SERVO_LAWS
+    ),
+}
+EFFECTS = {call: spec.apply for call, spec in CALLS.items()}
+"""What each call does, for a quick look-up."""
+
+
+def obey(sim: Simulation, time_ns: int, part: int, call: Call, *values: float) -> None:
+    """Do what a program wants; arguments as of `SimulationCommand`. All that it changes comes through here.
+
+    Raises:
+        ValueError: a move is not possible.
+        RobotError: the parts that are plugged in do not fit.
+    """
+    sim.on_command(time_ns, part, call, values)
+    EFFECTS[call](sim, time_ns, part, values)

@@ -1,0 +1,373 @@
+"""Differential drive: how two rolling wheels move the robot.
+
+A profile's motor law also selects the arithmetic, because results that must be the same
+to the last bit need the same operations in the same order. The loops over many ticks inline
+the arithmetic of one tick and write the records themselves, because they are the hottest.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from math import cos, degrees, radians, sin
+from struct import Struct
+from typing import TYPE_CHECKING, NamedTuple, Protocol
+
+from tuisim.engine.core.tick_record import POSITION_FIELDS, TICK_RECORD, Buffer
+
+if TYPE_CHECKING:
+    from tuisim.engine.core.geometry import Pose
+    from tuisim.engine.core.spec import RobotSpec
+
+_FLOAT32 = Struct("<f")
+_WHOLE_TURN = 2 * math.pi
+
+
+def float32(value: float) -> float:
+    """Return `value` rounded to single precision, as the telemetry stores it."""
+    return float(_FLOAT32.unpack(_FLOAT32.pack(value))[0])
+
+
+def mm_per_degree(robot: RobotSpec) -> tuple[float, float]:
+    """Return how far the left and the right wheel roll forwards per degree of their motors; negative if reversed."""
+    return _signed(math.pi * robot.wheel_diameter_mm / 360.0 / robot.gear_ratio, robot)
+
+
+def _signed(forwards_mm: float, robot: RobotSpec) -> tuple[float, float]:
+    """Return the same way for the left and the right wheel, negative where the motor is reversed."""
+    return (
+        -forwards_mm if robot.left_reversed else forwards_mm,
+        -forwards_mm if robot.right_reversed else forwards_mm,
+    )
+
+
+def turn_rate_dps(left_dps: float, right_dps: float, robot: RobotSpec) -> float:
+    """Return the counter-clockwise rate of turn that results from the speeds of the wheels' motors."""
+    left_dps, right_dps = (
+        -left_dps if robot.left_reversed else left_dps,
+        -right_dps if robot.right_reversed else right_dps,
+    )
+    return (
+        (right_dps - left_dps)
+        * robot.wheel_diameter_mm
+        / (2.0 * robot.wheel_spacing_mm)
+        / robot.gear_ratio
+    )
+
+
+class Records(NamedTuple):
+    """Destination of the records of several ticks, and the fields that are the same in all of them."""
+
+    buffer: Buffer
+    offsets: range
+    """Offset of each record in the buffer, in bytes."""
+    ticks: range
+    line: int
+    flags: int
+    actions: int
+    tick_hz: int
+
+
+def _fill(records: Records, at: int, left: EvenGlide, right: EvenGlide, zero_deg: float) -> None:
+    """Write what is the same in all records from offset `at` on; the loops then pack only the positions, quickly."""
+    left_dps, right_dps = left.roll_deg * records.tick_hz, right.roll_deg * records.tick_hz
+    zeros = 0, 0, 0.0, 0.0, 0.0, 0.0, 0.0
+    common = TICK_RECORD.pack(*zeros, left_dps, right_dps, zero_deg, records.flags, records.actions)
+    end = records.offsets.stop
+    records.buffer[at:end] = common * ((end - at) // 64)
+
+
+class Glide(NamedTuple):
+    """Motion of one wheel's motor over several ticks."""
+
+    rolls_deg: list[float]
+    """Rotation in each tick."""
+    counts_deg: list[float]
+    """Encoder position after each tick."""
+
+
+class EvenGlide(NamedTuple):
+    """Motion of one wheel's motor at a steady speed over several ticks."""
+
+    roll_deg: float
+    """Rotation in each tick."""
+    counts_deg: Iterator[float]
+    """Encoder position after each tick."""
+
+
+class Drive(Protocol):
+    """The robot's pose, and how its wheels change it."""
+
+    x_mm: float
+    y_mm: float
+    heading_deg: float
+    gyro_zero_deg: float
+    """Heading at which the gyro reads 0."""
+
+    def put(self, pose: Pose) -> None: ...
+
+    def roll(self, left_deg: float, right_deg: float) -> None: ...
+
+    def glide(self, records: Records, left: Glide, right: Glide) -> None: ...
+
+    def glide_evenly(
+        self, records: Records, left: EvenGlide, right: EvenGlide
+    ) -> tuple[float, float]: ...
+
+
+def _glide_straight(
+    drive: Drive, forward_mm: float, way: float, records: Records, left: EvenGlide, right: EvenGlide
+) -> tuple[float, float]:
+    """Move the robot by equal steps in the direction `way`, in radians; see `BrickDrive.glide_evenly`."""
+    buffer, offsets, ticks, line, *_ = records
+    _fill(records, offsets.start, left, right, drive.gyro_zero_deg)
+    x, y, heading, pack_into = drive.x_mm, drive.y_mm, drive.heading_deg, POSITION_FIELDS.pack_into
+    across, up = forward_mm * cos(way), forward_mm * sin(way)
+    left_at = right_at = 0.0
+    for at, tick, left_at, right_at in zip(
+        offsets, ticks, left.counts_deg, right.counts_deg, strict=True
+    ):
+        x += across
+        y += up
+        pack_into(buffer, at, tick, line, x, y, heading, left_at, right_at)
+    drive.x_mm, drive.y_mm = x, y
+    return left_at, right_at
+
+
+class BrickDrive:
+    """The drive of a brick.
+
+    `early` is the fraction of a tick's turn that already applies to the motion of that tick.
+    """
+
+    __slots__ = (
+        "_early",
+        "_left_mm_per_deg",
+        "_right_mm_per_deg",
+        "_spacing_mm",
+        "gyro_zero_deg",
+        "heading_deg",
+        "x_mm",
+        "y_mm",
+    )
+
+    def __init__(self, robot: RobotSpec, start: Pose, early: float) -> None:
+        self._left_mm_per_deg, self._right_mm_per_deg = mm_per_degree(robot)
+        self._spacing_mm, self._early = robot.wheel_spacing_mm, early
+        self.x_mm, self.y_mm, self.heading_deg = start.x_mm, start.y_mm, start.heading_deg
+        self.gyro_zero_deg = float32(start.heading_deg)
+
+    def put(self, pose: Pose) -> None:
+        """Set the robot's pose."""
+        self.x_mm, self.y_mm, self.heading_deg = pose.x_mm, pose.y_mm, pose.heading_deg
+
+    def roll(self, left_deg: float, right_deg: float) -> None:
+        """Move the robot by one tick's rotation of the wheels' motors."""
+        left_mm, right_mm = left_deg * self._left_mm_per_deg, right_deg * self._right_mm_per_deg
+        turned = degrees((right_mm - left_mm) / self._spacing_mm)
+        heading = radians(self.heading_deg + turned * self._early)
+        forward = (left_mm + right_mm) / 2
+        self.x_mm += forward * cos(heading)
+        self.y_mm += forward * sin(heading)
+        self.heading_deg += turned
+
+    def glide(self, records: Records, left: Glide, right: Glide) -> None:
+        """Move the robot by several ticks and write a record for each."""
+        buffer, offsets, ticks, line, flags, actions, hz = records
+        left_per_deg, right_per_deg = self._left_mm_per_deg, self._right_mm_per_deg
+        spacing, early, zero = self._spacing_mm, self._early, self.gyro_zero_deg
+        x, y, heading, pack_into = self.x_mm, self.y_mm, self.heading_deg, TICK_RECORD.pack_into
+        for at, tick, left_deg, left_at, right_deg, right_at in zip(
+            offsets, ticks, *left, *right, strict=True
+        ):
+            left_mm, right_mm = left_deg * left_per_deg, right_deg * right_per_deg
+            turned, forward = degrees((right_mm - left_mm) / spacing), (left_mm + right_mm) / 2
+            way = radians(heading + turned * early)
+            x += forward * cos(way)
+            y += forward * sin(way)
+            heading += turned
+            pack_into(
+                buffer,
+                at,
+                tick,
+                line,
+                x,
+                y,
+                heading,
+                left_at,
+                right_at,
+                left_deg * hz,
+                right_deg * hz,
+                zero,
+                flags,
+                actions,
+            )
+        self.x_mm, self.y_mm, self.heading_deg = x, y, heading
+
+    def glide_evenly(
+        self, records: Records, left: EvenGlide, right: EvenGlide
+    ) -> tuple[float, float]:
+        """As `glide`, with the same rotation in each tick; returns the final encoder positions."""
+        left_mm, right_mm = (
+            left.roll_deg * self._left_mm_per_deg,
+            right.roll_deg * self._right_mm_per_deg,
+        )
+        turned, forward = degrees((right_mm - left_mm) / self._spacing_mm), (left_mm + right_mm) / 2
+        if not turned:
+            return _glide_straight(self, forward, radians(self.heading_deg), records, left, right)
+        buffer, offsets, ticks, line, *_ = records
+        _fill(records, offsets.start, left, right, self.gyro_zero_deg)
+        x, y, heading, pack_into = self.x_mm, self.y_mm, self.heading_deg, POSITION_FIELDS.pack_into
+        early = turned * self._early
+        left_at = right_at = 0.0
+        for at, tick, left_at, right_at in zip(
+            offsets, ticks, left.counts_deg, right.counts_deg, strict=True
+        ):
+            way = radians(heading + early)
+            x += forward * cos(way)
+            y += forward * sin(way)
+            heading += turned
+            pack_into(buffer, at, tick, line, x, y, heading, left_at, right_at)
+        self.x_mm, self.y_mm, self.heading_deg = x, y, heading
+        return left_at, right_at
+
+
+class BrowserDrive:
+    """The drive of the browser simulator: headings in radians, reduced by a whole turn when they exceed one.
+
+    `early` is as in `BrickDrive`.
+    """
+
+    __slots__ = (
+        "_early",
+        "_forward_mm",
+        "_heading",
+        "_left_deg",
+        "_left_rim_mm",
+        "_right_deg",
+        "_right_rim_mm",
+        "_spacing_mm",
+        "_turn",
+        "gyro_zero_deg",
+        "heading_deg",
+        "x_mm",
+        "y_mm",
+    )
+
+    def __init__(self, robot: RobotSpec, start: Pose, early: float) -> None:
+        self._left_rim_mm, self._right_rim_mm = _signed(
+            math.pi * robot.wheel_diameter_mm / robot.gear_ratio, robot
+        )
+        """How far each wheel rolls per turn of its motor."""
+        self._spacing_mm, self._early = robot.wheel_spacing_mm, early
+        self._left_deg = self._right_deg = self._forward_mm = self._turn = 0.0
+        """Rotation of the wheels' motors in the last tick, and the step and turn that result from it."""
+        self.put(start)
+        self.gyro_zero_deg = float32(self.heading_deg)
+
+    def put(self, pose: Pose) -> None:
+        """Set the robot's pose."""
+        self.x_mm, self.y_mm = pose.x_mm, pose.y_mm
+        self._heading = radians(pose.heading_deg)
+        self.heading_deg = self._heading * 180.0 / math.pi
+
+    def roll(self, left_deg: float, right_deg: float) -> None:
+        """Move the robot by one tick's rotation of the wheels' motors."""
+        if left_deg != self._left_deg or right_deg != self._right_deg:
+            self._left_deg, self._right_deg = left_deg, right_deg
+            self._forward_mm, self._turn = self._step(left_deg, right_deg)
+        turned, forward = self._turn, self._forward_mm
+        way = self._heading + turned * self._early
+        self.x_mm += forward * cos(way)
+        self.y_mm += forward * sin(way)
+        if turned:
+            heading = self._heading + turned
+            if heading > _WHOLE_TURN:
+                heading -= _WHOLE_TURN
+                self.gyro_zero_deg = float32(self.gyro_zero_deg - 360)
+            self._heading, self.heading_deg = heading, heading * 180.0 / math.pi
+
+    def _step(self, left_deg: float, right_deg: float) -> tuple[float, float]:
+        """Return the step in mm and the turn in radians for a rotation of the wheels' motors."""
+        left_mm, right_mm = (
+            left_deg / 360.0 * self._left_rim_mm,
+            right_deg / 360.0 * self._right_rim_mm,
+        )
+        return (left_mm + right_mm) / 2, (right_mm - left_mm) / self._spacing_mm
+
+    def glide(self, records: Records, left: Glide, right: Glide) -> None:
+        """Move the robot by several ticks and write a record for each."""
+        buffer, offsets, ticks, line, flags, actions, hz = records
+        left_rim, right_rim = self._left_rim_mm, self._right_rim_mm
+        spacing, early, zero = self._spacing_mm, self._early, self.gyro_zero_deg
+        x, y, heading, shown, pack_into = (
+            self.x_mm,
+            self.y_mm,
+            self._heading,
+            self.heading_deg,
+            TICK_RECORD.pack_into,
+        )
+        whole, pi = _WHOLE_TURN, math.pi
+        for at, tick, left_deg, left_at, right_deg, right_at in zip(
+            offsets, ticks, *left, *right, strict=True
+        ):
+            left_mm, right_mm = left_deg / 360.0 * left_rim, right_deg / 360.0 * right_rim
+            turned, forward = (right_mm - left_mm) / spacing, (left_mm + right_mm) / 2
+            way = heading + turned * early
+            x += forward * cos(way)
+            y += forward * sin(way)
+            if turned:
+                heading += turned
+                if heading > whole:
+                    heading, zero = heading - whole, float32(zero - 360)
+                shown = heading * 180.0 / pi
+            pack_into(
+                buffer,
+                at,
+                tick,
+                line,
+                x,
+                y,
+                shown,
+                left_at,
+                right_at,
+                left_deg * hz,
+                right_deg * hz,
+                zero,
+                flags,
+                actions,
+            )
+        self.x_mm, self.y_mm, self._heading, self.heading_deg, self.gyro_zero_deg = (
+            x,
+            y,
+            heading,
+            shown,
+            zero,
+        )
+
+    def glide_evenly(
+        self, records: Records, left: EvenGlide, right: EvenGlide
+    ) -> tuple[float, float]:
+        """As `glide`, with the same rotation in each tick; returns the final encoder positions."""
+        forward, turned = self._step(left.roll_deg, right.roll_deg)
+        if not turned:
+            return _glide_straight(self, forward, self._heading, records, left, right)
+        buffer, offsets, ticks, line, *_ = records
+        _fill(records, offsets.start, left, right, self.gyro_zero_deg)
+        x, y, heading, pack_into = self.x_mm, self.y_mm, self._heading, POSITION_FIELDS.pack_into
+        whole, pi, early = _WHOLE_TURN, math.pi, turned * self._early
+        left_at = right_at = 0.0
+        for at, tick, left_at, right_at in zip(
+            offsets, ticks, left.counts_deg, right.counts_deg, strict=True
+        ):
+            way = heading + early
+            x += forward * cos(way)
+            y += forward * sin(way)
+            heading += turned
+            if heading > whole:
+                heading -= whole
+                self.gyro_zero_deg = float32(self.gyro_zero_deg - 360)
+                _fill(records, at, left, right, self.gyro_zero_deg)
+            pack_into(buffer, at, tick, line, x, y, heading * 180.0 / pi, left_at, right_at)
+        self.x_mm, self.y_mm, self._heading, self.heading_deg = x, y, heading, heading * 180.0 / pi
+        return left_at, right_at

@@ -1,0 +1,60 @@
+"""The kernel's ticks of 10 ms, and when its timers fire."""
+
+from __future__ import annotations
+
+from tuisim.base.data_class import dataclass
+from tuisim.engine.core.noise import drawn_numbers
+
+JIFFY_US = 10_000
+NS_PER_US = 1000
+STEP_US = 2000
+"""The period of the driver's control."""
+LOOK_JIFFIES = 6
+"""A driver looks once in this time whether its state has changed."""
+FIRST_JIFFIES = 4096
+"""A run begins at any of so many."""
+LEVEL_JIFFIES = 63
+"""The finest wheel of the timers holds this many jiffies."""
+COARSER = 8
+"""Each further wheel reaches this many times as far, and is as many times coarser."""
+
+
+@dataclass(frozen=True, slots=True)
+class Jiffies:
+    """Where a run begins on the kernel's clock."""
+
+    first: int = 0
+    """Jiffies at the start of the run."""
+    phase_us: int = 0
+    """How long the first jiffy has lasted by then."""
+    first_look: int = 2
+    """Number of jiffies until the drivers look for the first time whether a state has changed."""
+
+    def count(self, time_ns: int) -> int:
+        """Return how many jiffies the kernel has counted."""
+        return self.first + (time_ns // NS_PER_US + self.phase_us) // JIFFY_US
+
+    def begin_ns(self, jiffy: int) -> int:
+        """Return when a jiffy begins."""
+        return ((jiffy - self.first) * JIFFY_US - self.phase_us) * NS_PER_US
+
+    def find_expiry_ns(self, now_ns: int, jiffies: int) -> int:
+        """Return when a timer fires that is set now for a number of jiffies."""
+        expiry, grain, reach = self.count(now_ns) + jiffies, 1, LEVEL_JIFFIES
+        while jiffies > reach:
+            grain, reach = grain * COARSER, reach * COARSER
+        return self.begin_ns((expiry // grain + 1) * grain)
+
+
+def draw_jiffies(seed: int) -> Jiffies:
+    """Return the clock of a run; its jiffies begin with a step of the control."""
+    first, phase, look = drawn_numbers(seed, 0, "jiffies", 3)
+    steps = JIFFY_US // STEP_US
+    return Jiffies(
+        int(first * FIRST_JIFFIES), int(phase * steps) * STEP_US, 1 + int(look * LOOK_JIFFIES)
+    )
+
+
+def round_up(time_ms: int) -> int:
+    """Return how many jiffies a time in milliseconds takes."""
+    return -(-time_ms * NS_PER_US // JIFFY_US)

@@ -1,0 +1,483 @@
+"""A motor as programs see it: attributes, commands, ramps, timed moves and states of the class of all motors.
+
+A command comes with all set points: what a program writes later waits for the next command.
+"""
+
+from __future__ import annotations
+
+from enum import StrEnum
+from typing import NamedTuple
+
+from tuisim.base.data_class import dataclass
+from tuisim.engine.core.driver.control import divide
+from tuisim.engine.core.driver.jiffies import JIFFY_US, LOOK_JIFFIES, NS_PER_US, Jiffies, round_up
+from tuisim.engine.core.driver.plant import STEP_NS, PlantSpec
+from tuisim.engine.core.driver.regulator import COAST, Model, MotorDriver, StopAction
+from tuisim.engine.core.motor_columns import (
+    HOLDING,
+    OVERLOADED,
+    RAMPING,
+    RUNNING,
+    STALLED,
+    STATE_BITS,
+)
+
+NEVER_NS = 1 << 62
+RAMP_JIFFIES = 10
+"""A ramp changes the setpoint again after about this time, less the time since its change before."""
+LOOK_NS = LOOK_JIFFIES * JIFFY_US * NS_PER_US
+"""A state that has changed is noticed with the next look, once in this time."""
+RAMP_LEAD_JIFFIES = 5
+"""A ramp begins this long before its command."""
+
+
+class Command(StrEnum):
+    """What a program writes to `command`."""
+
+    RUN_FOREVER = "run-forever"
+    RUN_TO_ABS_POS = "run-to-abs-pos"
+    RUN_TO_REL_POS = "run-to-rel-pos"
+    RUN_TIMED = "run-timed"
+    RUN_DIRECT = "run-direct"
+    STOP = "stop"
+    RESET = "reset"
+
+
+RUN_FOREVER, RUN_TO_ABS_POS, RUN_TO_REL_POS, RUN_TIMED, RUN_DIRECT, STOP, RESET = Command
+"""By themselves: to look up a member in its class takes longer than a call."""
+
+
+class State(StrEnum):
+    """What `state` can list, in this order."""
+
+    RUNNING = "running"
+    RAMPING = "ramping"
+    HOLDING = "holding"
+    OVERLOADED = "overloaded"
+    STALLED = "stalled"
+
+
+STATES = tuple(
+    tuple(state for state in State if STATE_BITS[state] & bits)
+    for bits in range(2 * max(STATE_BITS.values()))
+)
+"""What `state` lists, by the bits that are recorded."""
+
+
+class Setting(StrEnum):
+    """What a program sets without a command, and what takes effect at once."""
+
+    DUTY = "duty"
+    POSITION = "position"
+    CONSTANT = "constant"
+
+
+DUTY, POSITION, CONSTANT = Setting
+
+
+class SetPoints(NamedTuple):
+    """What a program has set by the time of its command, in the motor's own direction."""
+
+    speed_dps: int = 0
+    position: int = 0
+    duty: int = 0
+    time_ms: int = 0
+    ramp_up_ms: int = 0
+    ramp_down_ms: int = 0
+    stop_action: StopAction = COAST
+
+    @property
+    def ramped(self) -> bool:
+        """Whether the speed changes by ramps."""
+        return bool(self.ramp_up_ms or self.ramp_down_ms)
+
+
+class Constant(NamedTuple):
+    """A constant of one of the two controllers."""
+
+    control: str
+    """`speed` or `hold`."""
+    name: str
+    """`kp`, `ki` or `kd`."""
+    value: int
+
+
+@dataclass(frozen=True, slots=True)
+class Ramp:
+    """A change of the speed setpoint."""
+
+    start_jiffy: int
+    jiffies: int
+    """How long it takes."""
+    start_dps: int
+    end_dps: int
+
+    def compute_setpoint(self, jiffy: int) -> int:
+        """Return the setpoint at a time."""
+        left = self.start_jiffy + self.jiffies - jiffy
+        if left <= 0:
+            return self.end_dps
+        return self.end_dps - divide((self.end_dps - self.start_dps) * left, self.jiffies)
+
+
+class DriverMotor(MotorDriver):
+    """A motor with the class of all motors above its driver.
+
+    Args:
+        model: The kind of motor.
+        plant: The motor with its load.
+        battery_v: The voltage of the battery, open.
+        jiffies: The kernel's clock.
+    """
+
+    __slots__ = (
+        "_due_ns",
+        "_ends_at_target",
+        "_jiffies",
+        "_last_command",
+        "_look_ns",
+        "_looked_bits",
+        "_ramp",
+        "_ramp_goal_dps",
+        "_ramp_jiffy",
+        "_ramp_ns",
+        "_ramp_setpoint",
+        "_step_ns",
+        "_stops_after_ramp",
+        "_timed_ns",
+        "_timers_ns",
+        "active",
+        "is_at_rest",
+        "is_ramping",
+        "noticed_ns",
+    )
+
+    def __init__(self, model: Model, plant: PlantSpec, battery_v: float, jiffies: Jiffies) -> None:
+        super().__init__(model, plant, battery_v)
+        self.start_clock(jiffies)
+        self.active = SetPoints()
+        """The set points of the last command."""
+        self._last_command: Command | Setting | None = None
+        self._step_ns = STEP_NS
+        self._ramp_ns = self._timed_ns = self._timers_ns = NEVER_NS
+        """When a ramp's next change and the end of a timed move are due, and the earlier of the two."""
+        self._ramp = Ramp(0, 0, 0, 0)
+        self._ramp_goal_dps = self._ramp_jiffy = self._ramp_setpoint = 0
+        self.is_ramping = self._stops_after_ramp = self._ends_at_target = False
+        self._looked_bits = 0
+        self.noticed_ns = -1
+        """When a change of the state was noticed last: then who waits for it goes on."""
+        self.is_at_rest = True
+        """Whether time changes nothing: a fresh motor, or one that `settle` found so."""
+
+    def start_clock(self, jiffies: Jiffies) -> None:
+        """Take a clock, before any time has passed."""
+        self._jiffies = jiffies
+        self._look_ns = jiffies.begin_ns(jiffies.first + jiffies.first_look)
+        self._due_ns = self._look_ns
+        """When a timer or the next look is due."""
+
+    @property
+    def state_bits(self) -> int:
+        """The bits of `STATES` that apply."""
+        bits = 0
+        if self.is_running:
+            bits = STALLED | RUNNING if self.is_stalled else RUNNING
+        if self.is_ramping or self.is_lowering:
+            bits |= RAMPING
+        control = self._control
+        if control is not None:
+            if control is self.hold_control:
+                bits |= HOLDING
+            if control.overloaded:
+                bits |= OVERLOADED
+        return bits
+
+    @property
+    def states(self) -> tuple[State, ...]:
+        """What `state` lists."""
+        return STATES[self.state_bits]
+
+    @property
+    def ends_alone(self) -> bool:
+        """Whether it runs, and stops by itself: at a time, at a position, or at the end of a ramp."""
+        return self.is_running and (
+            self._timed_ns < NEVER_NS
+            or self._arrival_action is not None
+            or (self._stops_after_ramp and self._ramp_ns < NEVER_NS)
+        )
+
+    # Time
+
+    @property
+    def next_look_ns(self) -> int:
+        """When the driver looks next whether the state has changed."""
+        return self._look_ns
+
+    def run_until(self, time_ns: int) -> None:
+        """Run all steps and timers that are due."""
+        if self.is_at_rest:
+            self._skip(time_ns)
+            return
+        if self._roll is not None and self._follow_roll(time_ns):
+            return
+        while (step_ns := self._step_ns) <= time_ns:
+            if self._due_ns <= step_ns:
+                self._fire()
+                continue
+            if self._is_regulated and self._regulates(step_ns):
+                end_ns = min(self._due_ns, time_ns + 1)
+                if self._arrival_action is not None:
+                    end_ns = min(end_ns, self._find_arrival_ns(step_ns))
+                self._step_ns = self._regulate(step_ns, end_ns)
+                if self._step_ns != step_ns:
+                    continue
+            elif self._control is None and self._try_to_roll():
+                if self._follow_roll(time_ns):
+                    return
+                continue
+            if not self.is_running and self._is_still():
+                step_ns = time_ns // STEP_NS * STEP_NS
+            self.control(step_ns)
+            self._step_ns = step_ns + STEP_NS
+            if self.is_stalled and self.settle():
+                self._skip(time_ns)
+                return
+        while self._due_ns <= time_ns:
+            self._fire()
+
+    def _try_to_roll(self) -> bool:
+        """Return whether the motor rolls on from now, without any control or timer."""
+        return self._timers_ns == NEVER_NS and super()._try_to_roll()
+
+    def _follow_roll(self, time_ns: int) -> bool:
+        """Roll until a time, and return whether the roll goes on."""
+        rolls_on = self._advance_roll(time_ns)
+        self._step_ns = (self._moved_ns // STEP_NS + 1) * STEP_NS
+        while rolls_on and self._due_ns <= time_ns:
+            self._fire()
+        return rolls_on
+
+    def _is_still(self) -> bool:
+        """Return whether only the reading of its speed changes: the axle stands, and no timer is set."""
+        return (
+            self._timers_ns == NEVER_NS
+            and self.axle.stands
+            and self._knows_count()
+            and self._control_rests()
+        )
+
+    def settle(self) -> bool:
+        """Return whether time changes nothing any more: the axle stands, and its driver leaves it alone."""
+        self.is_at_rest = (
+            self.is_stalled == self.is_running
+            and not (self.speed_dps or self._timers_ns < NEVER_NS)
+            and self._control_rests()
+            and self.state_bits == self._looked_bits
+            and (self.axle.stands or self.axle.is_blocked)
+        )
+        return self.is_at_rest
+
+    def _skip(self, time_ns: int) -> None:
+        """Go on to a time, of a motor at rest."""
+        if self._step_ns <= time_ns:
+            self._step_ns = (time_ns // STEP_NS + 1) * STEP_NS
+            self._moved_ns = time_ns
+        self._skip_looks(time_ns)
+
+    def _skip_looks(self, time_ns: int) -> None:
+        """Let looks pass that have nothing to notice."""
+        if self._look_ns <= time_ns:
+            passed = (time_ns - self._look_ns) // LOOK_NS + 1
+            self._look_ns += passed * LOOK_NS
+            self._due_ns = min(self._timers_ns, self._look_ns)
+
+    def _fire(self) -> None:
+        """Do what a timer is for."""
+        time_ns = self._due_ns
+        if self._timed_ns == time_ns:
+            self._set_timers(ramp_ns=self._ramp_ns)
+            self._end_timed(time_ns)
+        elif self._ramp_ns == time_ns:
+            self._set_timers(timed_ns=self._timed_ns)
+            self._continue_ramp(time_ns)
+        else:
+            self._look_ns += LOOK_NS
+            self._due_ns = min(self._timers_ns, self._look_ns)
+            bits = self.state_bits
+            if bits != self._looked_bits:
+                self._looked_bits, self.noticed_ns = bits, time_ns
+
+    def _set_timers(self, ramp_ns: int = NEVER_NS, timed_ns: int = NEVER_NS) -> None:
+        self._ramp_ns, self._timed_ns = ramp_ns, timed_ns
+        self._timers_ns = min(ramp_ns, timed_ns)
+        self._due_ns = min(self._timers_ns, self._look_ns)
+
+    # Commands
+
+    def wake(self, time_ns: int) -> None:
+        """Run until a time at which something changes that a motor at rest does not expect."""
+        if self._step_ns <= time_ns or self._due_ns <= time_ns:
+            self.run_until(time_ns)
+        if self._roll is not None:
+            self.leave_roll()
+        self.is_at_rest = False
+
+    def obey(
+        self, time_ns: int, call: Command | Setting, values: SetPoints | Constant | int
+    ) -> None:
+        """Do what a program wants, after all steps and timers that are due.
+
+        Args:
+            time_ns: When.
+            call: A command, or what is set.
+            values: The set points of a command; the constant, duty or position that is set.
+        """
+        if isinstance(values, SetPoints):
+            self._command(time_ns, call, values)
+        elif isinstance(values, Constant):
+            self.wake(time_ns)
+            control = self.speed_control if values.control == "speed" else self.hold_control
+            setattr(control, values.name, values.value)
+        elif call is POSITION:
+            self.wake(time_ns)
+            self.renumber(values)
+        elif self._last_command is RUN_DIRECT:
+            self.wake(time_ns)
+            self.run_direct(time_ns, values)
+
+    def _command(self, time_ns: int, command: Command | Setting, active: SetPoints) -> None:
+        if command is RUN_FOREVER and self._runs_on(active):
+            if active != self.active:
+                self.wake(time_ns)
+                self.active = active
+                self.run_regulated(active.speed_dps)
+            return
+        self.wake(time_ns)
+        if self._timers_ns < NEVER_NS:
+            self._set_timers()
+        last, self._last_command = self._last_command, command
+        self.active = active
+        self.ramp_down_ms = active.ramp_down_ms
+        if command is RUN_FOREVER or command is RUN_TIMED:
+            self._take_up_speed(time_ns, active.speed_dps)
+            if command is RUN_TIMED:
+                end_ns = self._jiffies.find_expiry_ns(time_ns, round_up(active.time_ms))
+                self._set_timers(self._ramp_ns, end_ns)
+        elif command is RUN_TO_ABS_POS:
+            self.target = active.position
+            self._run_to_target(time_ns)
+        elif command is RUN_TO_REL_POS:
+            self.target = (self.target if last is command else self.position) + active.position
+            if active.position:
+                self._run_to_target(time_ns)
+            else:
+                self._stop(time_ns)
+        elif command is RUN_DIRECT:
+            self.run_direct(time_ns, active.duty)
+        elif command is STOP:
+            self._stop(time_ns)
+        else:
+            self._reset(time_ns)
+
+    def _runs_on(self, active: SetPoints) -> bool:
+        """Whether `run-forever` was the last command, too, and no ramp was or is set: at most the speed changes."""
+        before = self.active
+        return (
+            self._last_command is RUN_FOREVER
+            and self.is_running
+            and not self.is_ramping
+            and not (active.ramp_up_ms or active.ramp_down_ms)
+            and not (before.ramp_up_ms or before.ramp_down_ms)
+        )
+
+    def _take_up_speed(self, time_ns: int, speed_dps: int) -> None:
+        self._ends_at_target = self._stops_after_ramp = False
+        if self.active.ramped:
+            self._begin_ramp(time_ns, speed_dps)
+        else:
+            self._run(speed_dps)
+
+    def _run_to_target(self, time_ns: int) -> None:
+        self._ends_at_target, self._stops_after_ramp = True, False
+        if self.active.ramp_up_ms:
+            speed_dps = abs(self.active.speed_dps)
+            self._begin_ramp(time_ns, -speed_dps if self.position > self.target else speed_dps)
+        else:
+            self._run(self.active.speed_dps)
+
+    def _run(self, speed_dps: int) -> None:
+        if self._ends_at_target:
+            self.run_to(self.target, speed_dps, self.active.stop_action)
+        else:
+            self.run_regulated(speed_dps)
+
+    def _stop(self, time_ns: int) -> None:
+        if self.active.ramped:
+            self._ramp_down(time_ns)
+        else:
+            self.halt(time_ns, self.active.stop_action)
+
+    def _end_timed(self, time_ns: int) -> None:
+        self._set_timers()
+        if self.active.ramp_down_ms:
+            self._ramp_down(time_ns)
+        else:
+            self.halt(time_ns, self.active.stop_action)
+
+    def _ramp_down(self, time_ns: int) -> None:
+        self._ends_at_target, self._stops_after_ramp = False, True
+        self._begin_ramp(time_ns, 0)
+
+    def _reset(self, time_ns: int) -> None:
+        self.active = SetPoints()
+        self.halt(time_ns, COAST)
+        self.speed_control.reset()
+        self.hold_control.reset()
+        self.renumber(0)
+
+    def arrive(self, time_ns: int, action: StopAction) -> None:
+        """End a move to a position, and all ramps and timers with it."""
+        super().arrive(time_ns, action)
+        self._set_timers()
+        self.is_ramping = False
+
+    # Ramps
+
+    def _begin_ramp(self, time_ns: int, goal_dps: int) -> None:
+        """Begin to change the speed setpoint: first to 0 if it changes its sign."""
+        start_dps = self._ramp_setpoint if self.is_ramping else self.speed_dps
+        self._ramp_goal_dps = goal_dps
+        end_dps = 0 if start_dps * goal_dps < 0 else goal_dps
+        leads_away = abs(end_dps) > abs(start_dps)
+        ramp_ms = self.active.ramp_up_ms if leads_away else self.active.ramp_down_ms
+        change_dps = abs(end_dps - start_dps)
+        jiffies = round_up(ramp_ms) * change_dps // self.model.max_speed_dps
+        start_jiffy = self._jiffies.count(time_ns) - RAMP_LEAD_JIFFIES
+        self._ramp = Ramp(start_jiffy, jiffies, start_dps, end_dps)
+        self._ramp_jiffy, self.is_ramping = start_jiffy, True
+        if jiffies:
+            self._change_ramp(time_ns)
+        else:
+            self._ramp_setpoint = end_dps
+            self._run(end_dps)
+            self._continue_ramp(time_ns)
+
+    def _change_ramp(self, time_ns: int) -> None:
+        jiffy = self._jiffies.count(time_ns)
+        wait = max(RAMP_JIFFIES - (jiffy - self._ramp_jiffy), 0)
+        self._ramp_jiffy = jiffy
+        setpoint = self._ramp_setpoint = self._ramp.compute_setpoint(jiffy)
+        self._run(setpoint)
+        self._set_timers(self._jiffies.find_expiry_ns(time_ns, wait), self._timed_ns)
+
+    def _continue_ramp(self, time_ns: int) -> None:
+        """Change the setpoint again, or end the ramp if the last change was its last."""
+        if self._ramp_setpoint != self._ramp.end_dps:
+            self._change_ramp(time_ns)
+        elif self._ramp_setpoint != self._ramp_goal_dps:
+            self._begin_ramp(time_ns, self._ramp_goal_dps)
+        else:
+            self.is_ramping = False
+            if self._stops_after_ramp:
+                self.halt(time_ns, self.active.stop_action)

@@ -1,0 +1,203 @@
+"""The electric motor: how its axle turns under a mean voltage, in closed form.
+
+`engine.core.driver.figures` has the source of each constant.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import degrees, exp, inf, log
+
+from tuisim.base.data_class import dataclass
+
+NS_PER_S = 1_000_000_000
+STEP_NS = 2_000_000
+"""The period of the driver's control."""
+STEP_S = STEP_NS / NS_PER_S
+
+
+@dataclass(frozen=True, slots=True)
+class PlantSpec:
+    """The constants of a motor with what it moves."""
+
+    resistance_ohm: float
+    """Of the winding, the bridge and the battery."""
+    back_emf_v_s: float
+    torque_nm_per_a: float
+    inertia_kg_m2: float
+    damping_nm_s: float
+    friction_nm: float
+    """Friction of the turning axle."""
+    breakaway_nm: float
+    """Torque that an axle at rest withstands."""
+
+    def add_load(self, inertia_kg_m2: float, friction_nm: float) -> PlantSpec:
+        """Return the constants with something more to move."""
+        return replace(
+            self,
+            inertia_kg_m2=self.inertia_kg_m2 + inertia_kg_m2,
+            friction_nm=self.friction_nm + friction_nm,
+            breakaway_nm=self.breakaway_nm + friction_nm,
+        )
+
+
+LARGE = PlantSpec(
+    resistance_ohm=6.832749,
+    back_emf_v_s=0.459966,
+    torque_nm_per_a=0.304767,
+    inertia_kg_m2=0.001502739,
+    damping_nm_s=0.000726962,
+    friction_nm=0.0118,
+    breakaway_nm=0.0232,
+)
+MEDIUM = PlantSpec(
+    resistance_ohm=10.71,
+    back_emf_v_s=0.2915,
+    torque_nm_per_a=0.2276,
+    inertia_kg_m2=0.0003,
+    damping_nm_s=0.0005,
+    friction_nm=0.0092,
+    breakaway_nm=0.012,
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Circuit:
+    """What the constants amount to while the bridge is in one state; braking is a duty of 0."""
+
+    dps_per_percent: float
+    """Steady speed per percent of duty, without friction; 0 while it coasts."""
+    friction_dps: float
+    """How much slower friction makes it."""
+    breakaway_dps: float
+    """The steady speed without friction that an axle at rest withstands."""
+    time_constant_s: float
+    step_decay: float
+    """What remains of a difference in speed after one step of the control."""
+
+
+def build_circuit(plant: PlantSpec, battery_v: float | None) -> Circuit:
+    """Return the circuit of a motor on a battery; without a battery it coasts."""
+    damping, torque_per_percent = plant.damping_nm_s, 0.0
+    if battery_v is not None:
+        per_v = plant.torque_nm_per_a / plant.resistance_ohm
+        damping += per_v * plant.back_emf_v_s
+        torque_per_percent = per_v * battery_v / 100
+    time_constant_s = plant.inertia_kg_m2 / damping
+    return Circuit(
+        dps_per_percent=degrees(torque_per_percent / damping),
+        friction_dps=degrees(plant.friction_nm / damping),
+        breakaway_dps=degrees(plant.breakaway_nm / damping),
+        time_constant_s=time_constant_s,
+        step_decay=exp(-STEP_NS / NS_PER_S / time_constant_s),
+    )
+
+
+class Axle:
+    """The axle of a motor. It stands at first, and the bridge lets it coast.
+
+    Args:
+        plant: The motor, with its load.
+        battery_v: The voltage of the battery, open.
+    """
+
+    __slots__ = (
+        "_coasting",
+        "_powered",
+        "angle_deg",
+        "circuit",
+        "goal_dps",
+        "high_deg",
+        "low_deg",
+        "speed_dps",
+    )
+
+    def __init__(self, plant: PlantSpec, battery_v: float) -> None:
+        self._powered, self._coasting = build_circuit(plant, battery_v), build_circuit(plant, None)
+        self.circuit = self._coasting
+        self.goal_dps = 0.0
+        """The speed that the duty leads to, without friction."""
+        self.angle_deg = 0.125
+        """From the zero of the counter, which stands in the middle of a count."""
+        self.speed_dps = 0.0
+        self.low_deg, self.high_deg = -inf, inf
+        """An obstacle keeps the axle between these angles."""
+
+    def change_load(self, plant: PlantSpec, battery_v: float) -> None:
+        """Let the motor move something else from now on; arguments as for the class."""
+        is_powered = self.circuit is self._powered
+        self._powered, self._coasting = build_circuit(plant, battery_v), build_circuit(plant, None)
+        self.circuit = self._powered if is_powered else self._coasting
+
+    @property
+    def stands(self) -> bool:
+        """Whether it is at rest, and the torque is too small to start it."""
+        return self.speed_dps == 0.0 and abs(self.goal_dps) <= self.circuit.breakaway_dps
+
+    @property
+    def is_blocked(self) -> bool:
+        """Whether it is at rest because an obstacle is in the way of a torque that is enough."""
+        return not (self.speed_dps or self.stands or self._leaves_rest(self.goal_dps > 0.0))
+
+    @property
+    def turns_freely(self) -> bool:
+        """Whether it turns with power on, and no obstacle is anywhere."""
+        return (
+            self.circuit is self._powered
+            and self.speed_dps != 0.0
+            and self.low_deg == -inf
+            and self.high_deg == inf
+        )
+
+    def power(self, duty: float | None) -> None:
+        """Set the duty of the bridge in percent; 0 brakes, None coasts."""
+        self.circuit = self._coasting if duty is None else self._powered
+        self.goal_dps = 0.0 if duty is None else duty * self._powered.dps_per_percent
+
+    def turn_step(self) -> bool:
+        """Turn for one step of the control; return False, and do nothing, unless it turns on freely all the time."""
+        circuit, speed_dps = self.circuit, self.speed_dps
+        if speed_dps > 0.0:
+            end_dps = self.goal_dps - circuit.friction_dps
+            after_dps = end_dps + (speed_dps - end_dps) * circuit.step_decay
+            if after_dps <= 0.0:
+                return False
+        else:
+            end_dps = self.goal_dps + circuit.friction_dps
+            after_dps = end_dps + (speed_dps - end_dps) * circuit.step_decay
+            if after_dps >= 0.0 or speed_dps == 0.0:
+                return False
+        turned_deg = end_dps * STEP_S + (speed_dps - after_dps) * circuit.time_constant_s
+        angle_deg = self.angle_deg + turned_deg
+        if not self.low_deg <= angle_deg <= self.high_deg:
+            return False
+        self.angle_deg, self.speed_dps = angle_deg, after_dps
+        return True
+
+    def advance(self, duration_ns: float) -> float:
+        """Turn until the time is over or the axle comes to rest on its way, and return the time that is left, in ns."""
+        circuit, speed_dps = self.circuit, self.speed_dps
+        forwards = speed_dps > 0.0 if speed_dps else self.goal_dps > 0.0
+        if not speed_dps and not self._leaves_rest(forwards):
+            return 0.0
+        constant_s, decay = circuit.time_constant_s, circuit.step_decay
+        if duration_ns != STEP_NS:
+            decay = exp(-duration_ns / NS_PER_S / constant_s)
+        end_dps = self.goal_dps - (circuit.friction_dps if forwards else -circuit.friction_dps)
+        after_dps, left_ns = end_dps + (speed_dps - end_dps) * decay, 0.0
+        if after_dps < 0.0 if forwards else after_dps > 0.0:
+            until_rest_ns = constant_s * log(1.0 - speed_dps / end_dps) * NS_PER_S
+            after_dps, left_ns = 0.0, max(duration_ns - until_rest_ns, 0.0)
+            duration_ns = until_rest_ns
+        self.angle_deg += end_dps * duration_ns / NS_PER_S + (speed_dps - after_dps) * constant_s
+        self.speed_dps = after_dps
+        if not self.low_deg <= self.angle_deg <= self.high_deg:
+            self.angle_deg = min(max(self.angle_deg, self.low_deg), self.high_deg)
+            self.speed_dps = left_ns = 0.0
+        return left_ns
+
+    def _leaves_rest(self, forwards: bool) -> bool:
+        """Whether the axle at rest begins to turn: the torque is enough, and no obstacle is in the way."""
+        if abs(self.goal_dps) <= self.circuit.breakaway_dps:
+            return False
+        return self.angle_deg < self.high_deg if forwards else self.angle_deg > self.low_deg

@@ -1,0 +1,349 @@
+"""The driver of one motor: every 2 ms it reads the counter and sets a duty, by one of two controllers or none."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+from math import copysign
+
+from tuisim.base.data_class import dataclass
+from tuisim.engine.core.driver.control import (
+    FULL,
+    MAX_DUTY,
+    SCALE,
+    SPEED_CONSTANTS,
+    Controller,
+    divide,
+)
+from tuisim.engine.core.driver.counter import TICKS_PER_NS, Counter
+from tuisim.engine.core.driver.plant import LARGE, MEDIUM, STEP_NS, STEP_S, Axle, PlantSpec
+from tuisim.engine.core.driver.roll import Roll, begin_roll
+
+STEP_TICKS = STEP_NS * TICKS_PER_NS
+STALL_NS = 100_000_000
+"""A running motor whose speed reads 0 for longer than this is stalled."""
+
+
+COUNTED_DEG = 2
+"""A position differs from the axle's angle by less than this."""
+
+
+class StopAction(StrEnum):
+    """What a motor does at the end of a command."""
+
+    COAST = "coast"
+    BRAKE = "brake"
+    HOLD = "hold"
+
+
+COAST, BRAKE, HOLD = StopAction
+"""By themselves: to look up a member in its class takes longer than a call."""
+
+
+@dataclass(frozen=True, slots=True)
+class Model:
+    """A kind of motor, as the driver knows it."""
+
+    plant: PlantSpec
+    max_speed_dps: int
+    hold_kp: int
+
+
+MODELS = {"large": Model(LARGE, 1050, 80_000), "medium": Model(MEDIUM, 1560, 160_000)}
+
+
+class MotorDriver:
+    """A motor with its driver; its axle stands at first, and nothing controls it.
+
+    Args:
+        model: The kind of motor.
+        plant: The motor with its load.
+        battery_v: The voltage of the battery, open.
+    """
+
+    __slots__ = (
+        "_arrival_action",
+        "_control",
+        "_is_regulated",
+        "_moved_ns",
+        "_offset",
+        "_raw",
+        "_roll",
+        "_still_ns",
+        "axle",
+        "counter",
+        "duty",
+        "hold_control",
+        "is_lowering",
+        "is_running",
+        "is_stalled",
+        "model",
+        "position",
+        "ramp_down_ms",
+        "speed_control",
+        "speed_dps",
+        "target",
+    )
+
+    def __init__(self, model: Model, plant: PlantSpec, battery_v: float) -> None:
+        self.model = model
+        self.axle, self.counter = Axle(plant, battery_v), Counter()
+        self.speed_control = Controller(SPEED_CONSTANTS)
+        self.hold_control = Controller((model.hold_kp, 0, 0))
+        self._control: Controller | None = None
+        """The active controller."""
+        self._moved_ns = 0
+        """Up to when the axle has moved."""
+        self._raw = self._offset = 0
+        self.position = self.speed_dps = 0
+        """As the last step read them."""
+        self.duty = 0
+        """The duty last set; the bridge may still have an earlier one."""
+        self.target = 0
+        """Where the last move to a position ends."""
+        self._arrival_action: StopAction | None = None
+        """What happens at the target; None if no move to a position is active."""
+        self._is_regulated = False
+        """Whether nothing but the speed control is active, and the arrival at a target."""
+        self._roll: Roll | None = None
+        """How the axle rolls, without any control."""
+        self.ramp_down_ms = 0
+        self.is_running = self.is_lowering = self.is_stalled = False
+        self._still_ns: int | None = None
+        """Since when the speed of the running motor reads 0."""
+
+    @property
+    def lowering_s(self) -> float:
+        """How long before its target a motor begins to slow down."""
+        return abs(self.speed_dps) * self.ramp_down_ms / self.model.max_speed_dps / 2000
+
+    # Commands
+
+    def run_regulated(self, speed_dps: int) -> None:
+        """Keep a speed; the next step takes it up."""
+        self.speed_control.setpoint = speed_dps
+        self._start(self.speed_control)
+
+    def run_direct(self, time_ns: int, duty: int) -> None:
+        """Keep a duty."""
+        self._start(None)
+        self._set_duty(time_ns, duty)
+
+    def run_to(self, target: int, speed_dps: int, action: StopAction) -> None:
+        """Run to a position, at a speed without sign."""
+        self.speed_control.setpoint = -abs(speed_dps) if self.position > target else abs(speed_dps)
+        self._start(self.speed_control)
+        self.target, self._arrival_action = target, action
+        if self.ramp_down_ms:
+            self._is_regulated = False
+
+    def _start(self, control: Controller | None) -> None:
+        self._control, self._arrival_action, self.is_running = control, None, True
+        self._is_regulated = control is not None and control.setpoint != 0
+
+    def halt(self, time_ns: int, action: StopAction, held: int | None = None) -> None:
+        """Stop, and hold a position if the action says so: if none is given, the present one."""
+        self.speed_control.clear()
+        self.hold_control.clear()
+        self._control = self._arrival_action = self._still_ns = None
+        self._is_regulated = self.is_running = self.is_lowering = self.is_stalled = False
+        self.duty = 0
+        if action is HOLD:
+            self._control = self.hold_control
+            self.hold_control.setpoint = self.position if held is None else held
+        else:
+            self.move_axle(time_ns)
+            self.axle.power(None if action is COAST else 0)
+
+    def renumber(self, position: int) -> None:
+        """Make the present position another one; a target becomes it, too."""
+        self._offset = position - self._raw
+        self.position = self.target = self.hold_control.setpoint = position
+
+    # Time
+
+    def move_axle(self, time_ns: int) -> None:
+        """Let the axle turn until a time."""
+        axle, left_ns = self.axle, float(time_ns - self._moved_ns)
+        self._moved_ns = time_ns
+        while left_ns:
+            begin_ns, begin_deg, begin_dps = left_ns, axle.angle_deg, axle.speed_dps
+            left_ns = axle.advance(begin_ns)
+            if axle.angle_deg != begin_deg:
+                both_dps = begin_dps + axle.speed_dps
+                self.counter.record(
+                    (time_ns - begin_ns) * TICKS_PER_NS,
+                    (begin_ns - left_ns) * TICKS_PER_NS,
+                    begin_deg,
+                    axle.angle_deg,
+                    0.25 + 0.5 * begin_dps / both_dps if both_dps else 0.5,
+                )
+            else:
+                self.counter.record_rest(time_ns * TICKS_PER_NS)
+
+    def read_counts(self, count: int) -> None:
+        """Take the position from a count."""
+        self._raw = raw = count // 2 if count >= 0 else -(-count // 2)
+        self.position = raw + self._offset
+
+    def control(self, time_ns: int) -> None:
+        """Run one step of the control."""
+        axle, counter = self.axle, self.counter
+        begin_deg, begin_dps = axle.angle_deg, axle.speed_dps
+        if time_ns - self._moved_ns == STEP_NS and axle.turn_step():
+            # The usual case of `move_axle`, in few calls.
+            self._moved_ns = time_ns
+            middle = 0.25 + 0.5 * begin_dps / (begin_dps + axle.speed_dps)
+            begin = (time_ns - STEP_NS) * TICKS_PER_NS
+            counter.record(begin, STEP_TICKS, begin_deg, axle.angle_deg, middle)
+        else:
+            self.move_axle(time_ns)
+        count = counter.count
+        self._raw = raw = count // 2 if count >= 0 else -(-count // 2)
+        self.position = raw + self._offset
+        self.speed_dps = speed_dps = counter.measure_speed_dps()
+        if self.is_running and (speed_dps == 0 or self._still_ns is not None):
+            self._watch_stall(time_ns)
+        control = self._control
+        if control is None:
+            return
+        if control is self.hold_control:
+            duty = control.compute_duty(self.position)
+        elif control.setpoint:
+            duty = control.compute_duty(speed_dps)
+        else:
+            control.clear()
+            duty = 0
+        if duty != self.duty:
+            self.duty = duty
+            axle.power(duty)
+        if self._arrival_action is not None:
+            self._approach(time_ns, self._arrival_action)
+
+    def _try_to_roll(self) -> bool:
+        """Return whether the motor rolls on from now, without any control, and its steps can be left out."""
+        if self.is_running and not self.speed_dps:
+            return False
+        self._roll = begin_roll(self.axle, self.counter, self._moved_ns)
+        return self._roll is not None
+
+    def _advance_roll(self, time_ns: int) -> bool:
+        """Roll until the last step that is due; return False, and roll no further, if the roll ends before."""
+        roll = self._roll
+        if roll is None:
+            return False
+        step_ns = min(time_ns // STEP_NS * STEP_NS, roll.end_ns)
+        if step_ns > roll.time_ns:
+            self._moved_ns = step_ns
+            roll.turn_to(step_ns)
+            self.read_counts(roll.count)
+            self.speed_dps = roll.measure_speed_dps()
+        if time_ns < roll.end_ns + STEP_NS:
+            return True
+        self.leave_roll()
+        return False
+
+    def leave_roll(self) -> None:
+        """Go on in single steps from where the axle is."""
+        if self._roll is not None:
+            self._roll.tell_counter()
+            self._roll = None
+
+    def _regulates(self, step_ns: int) -> bool:
+        """Whether the next step is one of the speed control alone, with a motor that turns."""
+        return (
+            self.speed_dps != 0
+            and self._still_ns is None
+            and self._moved_ns == step_ns - STEP_NS
+            and self.axle.turns_freely
+        )
+
+    def _find_arrival_ns(self, step_ns: int) -> int:
+        """Return before when a motor that does not slow down cannot be at its target."""
+        way = self.target - self.position
+        way_deg = (way if self.speed_control.setpoint > 0 else -way) - COUNTED_DEG
+        top_dps = max(abs(self.axle.speed_dps), MAX_DUTY * self.axle.circuit.dps_per_percent)
+        return step_ns + int(way_deg / (top_dps * STEP_S)) * STEP_NS
+
+    def _regulate(self, step_ns: int, end_ns: int) -> int:
+        """Run steps of the speed control alone: `control`, in few calls, as long as the motor turns on.
+
+        Returns:
+            When the next step is due: before the end if it is not one of these.
+        """
+        axle, counter, control = self.axle, self.counter, self.speed_control
+        angle_deg, speed_dps, read_dps = axle.angle_deg, axle.speed_dps, self.speed_dps
+        circuit, duty, goal_dps = axle.circuit, self.duty, axle.goal_dps
+        friction_dps = copysign(circuit.friction_dps, speed_dps)
+        decay, constant_s = circuit.step_decay, circuit.time_constant_s
+        end_dps = goal_dps - friction_dps
+        while step_ns < end_ns and read_dps:
+            after_dps = end_dps + (speed_dps - end_dps) * decay
+            if after_dps * speed_dps <= 0.0:
+                break
+            begin_deg = angle_deg
+            angle_deg += end_dps * STEP_S + (speed_dps - after_dps) * constant_s
+            middle = 0.25 + 0.5 * speed_dps / (speed_dps + after_dps)
+            read_dps = counter.count_turn(
+                (step_ns - STEP_NS) * TICKS_PER_NS, STEP_TICKS, begin_deg, angle_deg, middle
+            )
+            speed_dps = after_dps
+            # As `Controller.compute_duty`.
+            error = control.setpoint - read_dps
+            total, change = control.total + error, control.error - error
+            scaled = error * control.kp + total * control.ki + change * control.kd
+            if -FULL < scaled < FULL:
+                control.error, control.total, control.overloaded = error, total, False
+                next_duty = scaled // SCALE if scaled > 0 else -(-scaled // SCALE)
+            else:
+                next_duty = control.compute_duty(read_dps)
+            if next_duty != duty:
+                duty, goal_dps = next_duty, next_duty * circuit.dps_per_percent
+                end_dps = goal_dps - friction_dps
+            step_ns += STEP_NS
+        axle.angle_deg, axle.speed_dps, axle.goal_dps = angle_deg, speed_dps, goal_dps
+        self.duty, self.speed_dps, self._moved_ns = duty, read_dps, step_ns - STEP_NS
+        self.read_counts(counter.count)
+        if not read_dps:
+            self._still_ns = self._moved_ns
+        return step_ns
+
+    def _knows_count(self) -> bool:
+        """Whether nothing has turned the axle since its position was read."""
+        return self._raw == divide(self.counter.count, 2)
+
+    def _control_rests(self) -> bool:
+        """Whether the control of a motor at rest sets the same duty in every step."""
+        control = self._control
+        value = self.speed_dps if control is self.speed_control else self.position
+        return control is None or control.is_steady(value, self.duty)
+
+    def _set_duty(self, time_ns: int, duty: int) -> None:
+        if duty != self.duty:
+            self.duty = duty
+            self.move_axle(time_ns)
+            self.axle.power(duty)
+
+    def _watch_stall(self, time_ns: int) -> None:
+        if self.speed_dps:
+            self._still_ns, self.is_stalled = None, False
+        elif self._still_ns is None:
+            self._still_ns = time_ns
+        elif time_ns - self._still_ns > STALL_NS:
+            self.is_stalled = True
+
+    def _approach(self, time_ns: int, action: StopAction) -> None:
+        """Slow down before the target, and stop at it."""
+        target, position, speed_dps = self.target, self.position, self.speed_dps
+        setpoint = self.speed_control.setpoint
+        ramp = divide(abs(speed_dps) * self.ramp_down_ms, 1 + self.model.max_speed_dps)
+        end = position + divide(speed_dps * ramp, 2000)
+        if (end > target and setpoint > 0) or (end < target and setpoint < 0):
+            self.speed_control.setpoint = divide(2000 * (target - position), 1 + ramp)
+            self.is_lowering = True
+        # A speed of 0 arrives only where it is already.
+        if (position >= target or setpoint < 0) and (position <= target or setpoint > 0):
+            self.arrive(time_ns, action)
+
+    def arrive(self, time_ns: int, action: StopAction) -> None:
+        """End a move to a position."""
+        self.halt(time_ns, action, held=self.target)

@@ -1,0 +1,352 @@
+"""A motor of the driver in the simulation: it runs in ticks, meets obstacles, and carries its share of a robot."""
+
+from __future__ import annotations
+
+from itertools import accumulate, repeat
+from math import copysign, floor, inf
+from typing import TYPE_CHECKING
+
+from tuisim.engine.core.drive import EvenGlide, Glide
+from tuisim.engine.core.driver.counter import TICKS_PER_NS
+from tuisim.engine.core.driver.jiffies import Jiffies
+from tuisim.engine.core.driver.motor import NEVER_NS, DriverMotor
+from tuisim.engine.core.driver.plant import NS_PER_S, STEP_NS, Axle, PlantSpec
+from tuisim.engine.core.driver.regulator import MODELS
+from tuisim.engine.core.motor_columns import MOTOR_RECORD
+from tuisim.engine.core.motors import (
+    ENDLESS,
+    FOREVER,
+    POSITION,
+    STANDSTILL_DEG,
+    STOPPED,
+    TIMED,
+    MotorState,
+)
+
+if TYPE_CHECKING:
+    from tuisim.engine.core.spec import RobotSpec, RunSpec
+    from tuisim.engine.core.tick_record import Buffer
+
+_pack_into = MOTOR_RECORD.pack_into
+
+WHEEL_KG = 0.0194
+"""Mass of a wheel, which is taken for a disc."""
+ROLLING_SHARE = 0.046
+"""Friction of a wheel and a castor at the axle, as a share of the weight on the wheel times its radius: an estimate."""
+GRAVITY_M_S2 = 9.81
+EVEN_TICKS = 12
+"""A motor whose speed has been right for so many ticks runs on evenly..."""
+MAX_ERROR_DPS = 2
+MIN_CRUISE_DPS = 80
+CUT_OFF_DPS = 0.5
+"""...faster than it reads, which is cut off, by so much on average..."""
+MARGIN_S = 0.03
+"""...until so shortly before it arrives somewhere."""
+MAX_CRUISE_S = 1e9
+PUSH_DEG = 0.05
+"""How far a motor at rest that pushes is taken to turn, to find out whether an obstacle blocks it."""
+
+
+def load_wheel(plant: PlantSpec, robot: RobotSpec) -> PlantSpec:
+    """Return a motor with one wheel of a robot and its share of the robot's mass."""
+    radius_m, gears = robot.wheel_diameter_mm / 2000, robot.gear_ratio
+    inertia_kg_m2 = (robot.mass_kg + WHEEL_KG) / 2 * radius_m**2
+    friction_nm = ROLLING_SHARE * robot.mass_kg / 2 * GRAVITY_M_S2 * radius_m
+    return plant.add_load(inertia_kg_m2 / gears**2, friction_nm / gears)
+
+
+def choose_plant(spec: RunSpec, kind: str, *, free: bool) -> PlantSpec:
+    """Return the constants of a motor with what it moves: a wheel with its share of the robot, unless it is free."""
+    plant = MODELS[kind].plant
+    return plant if free else load_wheel(plant, spec.robot)
+
+
+def build_motor(spec: RunSpec, kind: str, *, free: bool) -> SimulatedMotor:
+    """Return a motor in its initial state."""
+    plant = choose_plant(spec, kind, free=free)
+    return SimulatedMotor(spec.profile.tick_hz, kind, plant, spec.robot.battery_v)
+
+
+def build_axle(spec: RunSpec, kind: str, *, free: bool) -> Axle:
+    """Return the axle of a motor that something else controls."""
+    return Axle(choose_plant(spec, kind, free=free), spec.robot.battery_v)
+
+
+def change_load(axle: Axle, spec: RunSpec, kind: str, *, free: bool) -> None:
+    """Let a motor carry a wheel from now on, or no longer; arguments as of `choose_plant`."""
+    axle.change_load(choose_plant(spec, kind, free=free), spec.robot.battery_v)
+
+
+class SimulatedMotor(DriverMotor):
+    """One motor of a robot.
+
+    Args:
+        tick_hz: Ticks per second.
+        kind: One of `MODELS`.
+        plant: The motor with its load.
+        battery_v: The voltage of the battery, open.
+    """
+
+    __slots__ = (
+        "_angle_deg",
+        "_cruise_dps",
+        "_cruise_end_ns",
+        "_even_ticks",
+        "_hz",
+        "_tick",
+        "_tick_ns",
+        "blocked_ticks",
+        "counting_dps",
+        "is_barred",
+        "position_deg",
+    )
+
+    def __init__(self, tick_hz: int, kind: str, plant: PlantSpec, battery_v: float) -> None:
+        super().__init__(MODELS[kind], plant, battery_v, Jiffies())
+        self._hz, self._tick_ns = tick_hz, NS_PER_S / tick_hz
+        self._angle_deg = self.axle.angle_deg
+        """At the end of the last tick, from the zero of the counter."""
+        self.position_deg = 0.0
+        """Encoder position at the end of the last tick."""
+        self.counting_dps = 0.0
+        """Speed of the encoder at the end of the last tick, whoever looks in between."""
+        self.blocked_ticks = 0
+        self.is_barred = False
+        """Whether an obstacle of the world keeps it from turning on."""
+        self._tick = 0
+        """The last tick."""
+        self._even_ticks = 0
+        """For how many ticks the speed has been as the control wants it."""
+        self._cruise_dps = 0.0
+        """The speed at which it runs on evenly, without single steps; 0 if it does not."""
+        self._cruise_end_ns = 0
+        """When that ends at the latest."""
+
+    # What it shows
+
+    @property
+    def mode(self) -> int:
+        """The current command; anything but `STOPPED` counts as running."""
+        if not self.is_running:
+            return STOPPED
+        if self._timed_ns < NEVER_NS:
+            return TIMED
+        return POSITION if self._arrival_action is not None else FOREVER
+
+    @property
+    def goal_deg(self) -> float:
+        """Target of a move to a position."""
+        return float(self.target)
+
+    @property
+    def end_tick(self) -> float:
+        """End of a timed move."""
+        return ENDLESS if self._timed_ns == NEVER_NS else self._timed_ns / self._tick_ns
+
+    @property
+    def moving_dps(self) -> float:
+        """Current speed of the wheel, signed."""
+        return self.axle.speed_dps
+
+    @property
+    def aim_dps(self) -> float:
+        """Speed of the wheel that its control or its duty leads to, signed."""
+        if self._control is self.speed_control:
+            return float(self.speed_control.setpoint)
+        return self.axle.goal_dps
+
+    @property
+    def resting(self) -> bool:
+        """Whether ticks leave this motor unchanged until its next command."""
+        return self.is_at_rest
+
+    @property
+    def ramping_ticks(self) -> int:
+        """Approximate number of ticks until the speed is steady; 0 only if it is steady."""
+        return 0 if self.is_at_rest or self._cruise_dps else 1
+
+    def renumber(self, position: int) -> None:
+        """Make the present position another one; a target becomes it, too."""
+        before = self.position
+        super().renumber(position)
+        self.position_deg += position - before
+
+    def record(self, buffer: Buffer, at: int) -> None:
+        """Write `MOTOR_RECORD` at a place in a buffer; a speed is asked only by the speed control."""
+        control = self.speed_control
+        asked_dps = control.setpoint if self._control is control else 0
+        _pack_into(buffer, at, asked_dps, self.speed_dps, self.duty, self.state_bits)
+
+    # Ticks
+
+    def _end_ns(self, tick: int) -> int:
+        return -(-tick * NS_PER_S // self._hz)
+
+    def step(self, tick: int, noise_dps: float) -> float:
+        """Run one tick; see `Motor.step`."""
+        end_ns = self._end_ns(tick)
+        if self._cruise_dps:
+            if end_ns < self._cruise_end_ns and not noise_dps:
+                turned_deg = self._cruise_dps / self._hz
+                self._tick = tick
+                self._angle_deg += turned_deg
+                self.position_deg += turned_deg
+                return turned_deg
+            self._leave_cruise()
+        self._tick = tick
+        axle = self.axle
+        if self.is_at_rest and axle.angle_deg == self._angle_deg:
+            return 0.0
+        DriverMotor.run_until(self, end_ns)
+        if self._moved_ns != end_ns:
+            self.leave_roll()
+            self.move_axle(end_ns)
+        if noise_dps and axle.speed_dps:
+            self._turn_to(end_ns, axle.angle_deg + noise_dps / self._hz)
+        turned_deg = axle.angle_deg - self._angle_deg
+        self._angle_deg = axle.angle_deg
+        self.position_deg += turned_deg
+        if axle.speed_dps == 0.0:
+            self.settle()
+            if turned_deg == 0.0 and (axle.low_deg > -inf or axle.high_deg < inf):
+                self.blocked_ticks = 0 if axle.stands else self.blocked_ticks + 1
+        elif self._control is self.speed_control:
+            self._consider_cruise(end_ns, noise_dps)
+        self.counting_dps = axle.speed_dps
+        return turned_deg
+
+    # Even speed
+
+    def _consider_cruise(self, now_ns: int, noise_dps: float) -> None:
+        """Run on evenly if the control has kept its speed for a while, and nothing is due for a while."""
+        setpoint = self.speed_control.setpoint
+        if noise_dps or not -MAX_ERROR_DPS <= self.speed_dps - setpoint <= MAX_ERROR_DPS:
+            self._even_ticks = 0
+            return
+        self._even_ticks += 1
+        if self._even_ticks < EVEN_TICKS or abs(setpoint) < MIN_CRUISE_DPS:
+            return
+        cruise_dps = setpoint + copysign(CUT_OFF_DPS, setpoint)
+        end_ns = min(self._timers_ns, now_ns + self._free_ns(cruise_dps))
+        if end_ns > now_ns + self._tick_ns and self.state_bits == self._looked_bits:
+            self._cruise_dps, self._cruise_end_ns = cruise_dps, end_ns
+            self.axle.speed_dps = cruise_dps
+
+    def _free_ns(self, cruise_dps: float) -> int:
+        """Return how long nothing but the control matters: target and stops are far."""
+        axle = self.axle
+        end_deg = axle.high_deg if cruise_dps > 0 else axle.low_deg
+        free_s = (end_deg - axle.angle_deg) / cruise_dps
+        if self._arrival_action is not None:
+            free_s = min(free_s, (self.target - self.position) / cruise_dps - self.lowering_s)
+        return int(min((free_s - MARGIN_S), MAX_CRUISE_S) * NS_PER_S)
+
+    def _leave_cruise(self) -> None:
+        """Go on in single steps from the end of the last tick."""
+        now_ns, cruise_dps, axle = self._end_ns(self._tick), self._cruise_dps, self.axle
+        self._cruise_dps, self._even_ticks = 0.0, 0
+        axle.angle_deg, self._moved_ns = self._angle_deg, now_ns
+        self.counter.refill(now_ns * TICKS_PER_NS, axle.angle_deg, cruise_dps)
+        self._step_ns = (now_ns // STEP_NS + 1) * STEP_NS
+        self.read_counts(self.counter.count)
+
+    def wake(self, time_ns: int) -> None:
+        """Run until a time at which something changes that a motor at rest does not expect."""
+        if self._cruise_dps:
+            self._leave_cruise()
+        DriverMotor.wake(self, time_ns)
+        self._even_ticks = 0
+
+    def run_until(self, time_ns: int) -> None:
+        """Run all steps and timers that are due."""
+        if not self._cruise_dps:
+            DriverMotor.run_until(self, time_ns)
+            return
+        self._skip_looks(time_ns)
+        since_s = (time_ns // STEP_NS * STEP_NS - self._end_ns(self._tick)) / NS_PER_S
+        self.read_counts(floor(2 * (self._angle_deg + self._cruise_dps * since_s)))
+
+    def _turn_to(self, time_ns: int, angle_deg: float) -> None:
+        """Turn the axle from outside, at once."""
+        self.leave_roll()
+        axle, before_deg = self.axle, self.axle.angle_deg
+        axle.angle_deg = min(max(angle_deg, axle.low_deg), axle.high_deg)
+        self.counter.record(time_ns * TICKS_PER_NS, 0.0, before_deg, axle.angle_deg, 0.5)
+
+    def quiet_ticks(self, tick: int) -> int:
+        """Return for how many ticks after `tick` the motor rests or runs evenly."""
+        self._tick = tick
+        if self.is_at_rest:
+            return ENDLESS
+        return int((self._cruise_end_ns - 1) // self._tick_ns) - tick if self._cruise_dps else 0
+
+    def glide(self, ticks: int) -> Glide:
+        """Run quiet ticks."""
+        even = self.glide_evenly(ticks)
+        counts_deg = [*even.counts_deg]
+        self.position_deg = counts_deg[-1]
+        return Glide([even.roll_deg] * ticks, counts_deg)
+
+    def glide_evenly(self, ticks: int) -> EvenGlide:
+        """Run quiet ticks of a motor at a steady speed; see `Motor.glide_evenly`."""
+        self._tick += ticks
+        turned_deg = self._cruise_dps / self._hz
+        if not turned_deg:
+            return EvenGlide(0.0, repeat(self.position_deg, ticks))
+        turns_deg = repeat(turned_deg, ticks)
+        *_, self._angle_deg = accumulate(turns_deg, initial=self._angle_deg)
+        first_deg = self.position_deg + turned_deg
+        return EvenGlide(turned_deg, accumulate(repeat(turned_deg, ticks - 1), initial=first_deg))
+
+    # Obstacles
+
+    def state(self) -> MotorState:
+        """Return the state that `hold_back` needs: where the axle is."""
+        return STOPPED, 1.0, 0.0, self._angle_deg
+
+    def hold_back(self, before: MotorState, turned_deg: float, part: float) -> None:
+        """Put the axle where an obstacle stopped it in the last tick; see `Motor.hold_back`."""
+        if turned_deg == 0.0:
+            return
+        if self._cruise_dps:
+            self._leave_cruise()
+        self.leave_roll()
+        axle = self.axle
+        before_deg = before[-1]
+        there_deg = before_deg + (self._angle_deg - before_deg) * part
+        self.counter.take_back(there_deg)
+        self._turn_to(self._moved_ns, there_deg)
+        self.position_deg += axle.angle_deg - self._angle_deg
+        self._angle_deg = axle.angle_deg
+        axle.speed_dps = self.counting_dps = 0.0
+        self.bar(turned_deg)
+        self.blocked_ticks = (
+            self.blocked_ticks + 1 if abs(turned_deg * part) < STANDSTILL_DEG else 0
+        )
+
+    @property
+    def tendency_deg(self) -> float:
+        """How far the wheel is about to turn in a tick, roughly: its sign is right."""
+        axle = self.axle
+        if axle.speed_dps:
+            return axle.speed_dps / self._hz
+        return 0.0 if axle.stands else PUSH_DEG if axle.goal_dps > 0 else -PUSH_DEG
+
+    def bar(self, direction: float) -> None:
+        """Let nothing turn the axle further in a direction; 0 sets it free."""
+        axle = self.axle
+        low_deg = axle.angle_deg if direction < 0 else -inf
+        high_deg = axle.angle_deg if direction > 0 else inf
+        if self.is_at_rest and (low_deg, high_deg) != (axle.low_deg, axle.high_deg):
+            self.wake(self._end_ns(self._tick))
+        self.leave_roll()
+        axle.low_deg, axle.high_deg = low_deg, high_deg
+        self.is_barred = bool(direction)
+        if not direction:
+            self.blocked_ticks = 0
+
+    def fence(self, low_deg: float, high_deg: float) -> None:
+        """Keep the axle between two angles from where it is now."""
+        self.leave_roll()
+        angle_deg = self.axle.angle_deg
+        self.axle.low_deg, self.axle.high_deg = angle_deg + low_deg, angle_deg + high_deg

@@ -1,0 +1,84 @@
+"""End stops of motors that drive no wheel: such a motor turns from one to the other, and no further.
+
+Where a motor is between its stops counts from its position at the start, whatever position the program sets: a
+program that homes an arm sets the motor's position to 0 at a stop.
+"""
+
+from __future__ import annotations
+
+import math
+
+from tuisim.engine.core.driver.simulated import SimulatedMotor
+from tuisim.engine.core.motors import Motor
+from tuisim.engine.core.spec import MOTOR_ENDS, MotorSpec, RobotSpec
+from tuisim.engine.core.tick_record import FLAG_FIRST_END
+
+NEAR_DEG = 2.0
+"""A motor is at a stop from this distance on: a touch sensor that it presses there gives way before it stops."""
+
+
+def end_flag(robot: RobotSpec, port: str, end: str) -> int:
+    """Return the flag of a tick record for a motor on a port at one of its `MOTOR_ENDS`."""
+    number = [motor.port for motor in robot.extra_motors].index(port)
+    return FLAG_FIRST_END << len(MOTOR_ENDS) * number + MOTOR_ENDS.index(end)
+
+
+def flags_at_start(robot: RobotSpec) -> int:
+    """Return the flags of all motors at the start of a run."""
+    return sum(EndStops(robot, motor).flags for motor in robot.extra_motors)
+
+
+class EndStops:
+    """The stops of one motor, and where the motor is between them."""
+
+    __slots__ = ("_at_deg", "_high_deg", "_high_flag", "_low_deg", "_low_flag")
+
+    def __init__(self, robot: RobotSpec, motor: MotorSpec) -> None:
+        self._low_deg = -math.inf if motor.low_deg is None else motor.low_deg
+        self._high_deg = math.inf if motor.high_deg is None else motor.high_deg
+        self._low_flag, self._high_flag = (end_flag(robot, motor.port, end) for end in MOTOR_ENDS)
+        self._at_deg = 0.0
+
+    @property
+    def flags(self) -> int:
+        """The flag of the stop that the motor is at; 0 between them."""
+        if self._at_deg - self._low_deg <= NEAR_DEG:
+            return self._low_flag
+        return self._high_flag if self._high_deg - self._at_deg <= NEAR_DEG else 0
+
+    def step(self, motor: Motor, tick: int) -> None:
+        """Run one tick of the motor, as far as its stops allow."""
+        before = motor.state()
+        turned_deg = motor.step(tick, 0.0)
+        there_deg = self._at_deg + turned_deg
+        stop_deg = min(max(there_deg, self._low_deg), self._high_deg)
+        if stop_deg == there_deg:
+            motor.blocked_ticks = 0
+        else:
+            motor.hold_back(before, turned_deg, (stop_deg - self._at_deg) / turned_deg)
+        self._at_deg = stop_deg
+
+
+class Fence(EndStops):
+    """The stops of a motor that feels them itself.
+
+    Args:
+        robot: The robot.
+        spec: The motor as the robot has it.
+        motor: The motor.
+    """
+
+    def __init__(self, robot: RobotSpec, spec: MotorSpec, motor: SimulatedMotor) -> None:
+        super().__init__(robot, spec)
+        motor.fence(self._low_deg, self._high_deg)
+
+    def step(self, motor: Motor, tick: int) -> None:
+        """Run one tick of the motor."""
+        self._at_deg += motor.step(tick, 0.0)
+
+
+def build_stops(robot: RobotSpec, spec: MotorSpec, motor: Motor) -> EndStops:
+    """Return the stops of a motor."""
+    if isinstance(motor, SimulatedMotor):
+        return Fence(robot, spec, motor)
+    return EndStops(robot, spec)

@@ -1,0 +1,507 @@
+"""Motion: advances motors and robot, by the motor law of the profile, in whole ticks, each of which is recorded.
+
+`advance` gives the same state to the last bit however the ticks are divided among
+calls: stretches with nothing but motion run in tight loops, and every loop does the same
+floating-point operations in the same order as a single tick.
+"""
+
+from __future__ import annotations
+
+from math import degrees
+from typing import TYPE_CHECKING, assert_never
+
+from tuisim.engine.core.brick_motor import BrickMotor
+from tuisim.engine.core.browser_motor import BrowserMotor
+from tuisim.engine.core.collision import Solids
+from tuisim.engine.core.drift import (
+    MOST_TIMES,
+    build_gyro,
+    can_strain_gyro,
+    find_drift,
+    slipping_wheels,
+)
+from tuisim.engine.core.drive import BrickDrive, BrowserDrive, Drive, Glide, Records, mm_per_degree
+from tuisim.engine.core.driver.jiffies import draw_jiffies
+from tuisim.engine.core.driver.simulated import SimulatedMotor, build_axle, build_motor
+from tuisim.engine.core.end_stops import flags_at_start
+from tuisim.engine.core.motor_columns import MotorRecorder, MotorSink
+from tuisim.engine.core.motors import POSITION, STANDSTILL_DEG, Motor, MotorState, top_speed_dps
+from tuisim.engine.core.noise import wheel_noise, wheel_noises
+from tuisim.engine.core.profile import NS_PER_S, MotorLaw
+from tuisim.engine.core.servo.motor import ServoMotor
+from tuisim.engine.core.tick_record import (
+    FLAG_LEFT_RUNNING,
+    FLAG_PEN_DOWN,
+    FLAG_RIGHT_RUNNING,
+    TICK_RECORD,
+    Buffer,
+    TickSink,
+)
+
+if TYPE_CHECKING:
+    from tuisim.engine.core.spec import RunSpec
+    from tuisim.engine.core.state import MotorValues
+
+STALL_MS = 100
+"""A running motor that does not turn for longer than this is stalled (EV3 motor driver)."""
+
+ROOM_TICKS = 256
+"""Number of records beyond the current ones for which space is requested from the sink."""
+
+CHECK_TICKS = 4
+"""Obstacles are checked again when the distance known to be free is less than this many ticks need."""
+
+FEW_TICKS = 3
+"""Up to this number of ticks, setting up a tight loop costs more than it saves."""
+
+
+def stall_ticks(tick_hz: int) -> int:
+    """Return the number of ticks without motion after which a running motor is stalled."""
+    return STALL_MS * tick_hz // 1000 + 1
+
+
+WEIGHT_DPS2 = 5000.0
+"""Change of speed per second, times the robot's weight."""
+
+
+def weight_step(spec: RunSpec) -> float:
+    """Return the largest change of a motor's speed in one tick, in degrees per second; 0 is unlimited."""
+    return WEIGHT_DPS2 / spec.robot.weight / spec.profile.tick_hz if spec.robot.weight else 0.0
+
+
+def motor_of(spec: RunSpec, kind: str, *, free: bool = False) -> Motor:
+    """Return a motor of one of `MOTOR_KINDS`, in its initial state.
+
+    Args:
+        free: Whether it drives no wheel.
+    """
+    profile, step, fastest_dps = spec.profile, weight_step(spec), top_speed_dps(kind, spec.profile)
+    match profile.motor_law:
+        case MotorLaw.BRICK:
+            return BrickMotor(profile.tick_hz, step, fastest_dps)
+        case MotorLaw.EV3DEV:
+            return build_motor(spec, kind, free=free)
+        case MotorLaw.NBEV3DEVSIM:
+            return BrowserMotor(profile.tick_hz, step, fastest_dps)
+        case MotorLaw.PYBRICKS | MotorLaw.PYBRICKS_4:
+            axle = build_axle(spec, kind, free=free)
+            return ServoMotor(profile.tick_hz, profile.motor_law, kind, axle)
+        case _:
+            assert_never(profile.motor_law)
+
+
+def drive_of(spec: RunSpec) -> Drive:
+    """Return the drive of a run's robot, at its initial pose."""
+    robot, start, early = spec.robot, spec.world.start, 0.5 if spec.profile.halfway_heading else 0.0
+    match spec.profile.motor_law:
+        case MotorLaw.BRICK | MotorLaw.EV3DEV | MotorLaw.PYBRICKS | MotorLaw.PYBRICKS_4:
+            return BrickDrive(robot, start, early)
+        case MotorLaw.NBEV3DEVSIM:
+            return BrowserDrive(robot, start, early)
+        case _:
+            assert_never(spec.profile.motor_law)
+
+
+class Motion:
+    """Robot and motors of one run.
+
+    Args:
+        spec: Robot, world, profile and seed.
+        sink: Receives one record per tick, starting with tick 0.
+        others: The motors that drive no wheel.
+    """
+
+    __slots__ = (
+        "_buffer",
+        "_driven",
+        "_early",
+        "_hz",
+        "_left_dps",
+        "_left_mm_per_deg",
+        "_longest_mm",
+        "_motor_recorder",
+        "_right_dps",
+        "_right_mm_per_deg",
+        "_roll",
+        "_room_end",
+        "_sink",
+        "_slipping",
+        "_solids",
+        "_spacing_mm",
+        "_strains_gyro",
+        "_tick_s",
+        "actions",
+        "changed",
+        "changed_ns",
+        "drive",
+        "left",
+        "line",
+        "motors",
+        "noise",
+        "pen_down",
+        "press_flags",
+        "right",
+        "spec",
+        "stall_ticks",
+        "tick",
+    )
+
+    def __init__(self, spec: RunSpec, sink: TickSink, others: tuple[Motor, ...]) -> None:
+        self._hz = spec.profile.tick_hz
+        self._tick_s = 1.0 / self._hz
+        self.stall_ticks = stall_ticks(self._hz)
+        self._left_mm_per_deg, self._right_mm_per_deg = mm_per_degree(spec.robot)
+        self._spacing_mm = spec.robot.wheel_spacing_mm
+        self._early = 0.5 if spec.profile.halfway_heading else 0.0
+        """Fraction of a tick's turn that already applies to the motion of that tick."""
+        self._build_solids(spec)
+        self.tick = 0
+        left, right = spec.robot.wheel_motors
+        self.left, self.right = motor_of(spec, left.kind), motor_of(spec, right.kind)
+        self.motors: tuple[Motor, ...] = self.left, self.right, *others
+        """All motors, in the order of `RobotSpec.motors`."""
+        self.pen_down = spec.robot.pen.down
+        self.press_flags = flags_at_start(spec.robot)
+        """End stops that motors are at, and touch sensors that a hand presses: the bits of `PRESS_FLAGS`."""
+        self.line = 0
+        """Source line that spends the simulated time, for the record."""
+        self.actions = 0
+        """Number of user actions applied."""
+        self.changed = False
+        """Set when a motor ends a move by itself; the caller clears it."""
+        self._left_dps = self._right_dps = 0.0
+        self._driven: tuple[SimulatedMotor, ...] = ()
+        """The motors whose driver notices changes of their states by itself."""
+        self.changed_ns = 0
+        """When a driver noticed the last such change."""
+        self._begin(spec, sink)
+
+    def _build_solids(self, spec: RunSpec) -> None:
+        """Prepare what the robot can meet."""
+        self._solids = Solids(spec.world, spec.robot, self._early) if spec.world.solid else None
+        if self._solids is not None:
+            # One wheel at full speed forwards, the other backwards.
+            fastest = max(
+                top_speed_dps(motor.kind, spec.profile) for motor in spec.robot.wheel_motors
+            )
+            farthest = fastest * self._tick_s * abs(self._left_mm_per_deg)
+            farthest *= 1 if find_drift(spec).is_none else MOST_TIMES
+            self._longest_mm = farthest * (1 + 2 * self._solids.reach_mm / self._spacing_mm)
+
+    def _begin(self, spec: RunSpec, sink: TickSink, motor_sink: MotorSink | None = None) -> None:
+        """Take up its initial state, as far as it differs between runs of one robot in one world."""
+        self.spec, self._sink = spec, sink
+        self.noise = spec.world.noise
+        self.drive = drive_of(spec)
+        """The robot's pose and how its wheels change it."""
+        self._slipping = slipping_wheels(spec)
+        gyro = build_gyro(spec, self.drive)
+        self._roll = self.drive.roll if gyro is None else gyro.roll
+        """Moves the robot, and what its gyro senses."""
+        self._strains_gyro = can_strain_gyro(spec)
+        self._start_clocks()
+        self._buffer: Buffer = sink.room(ROOM_TICKS)
+        self._room_end = ROOM_TICKS
+        """Number of records the buffer has space for."""
+        self._motor_recorder = MotorRecorder(self._driven, motor_sink)
+        self._motor_recorder.make_room(ROOM_TICKS)
+        TICK_RECORD.pack_into(self._buffer, 64, *self._fields())
+        self._publish(1)
+
+    def _start_clocks(self) -> None:
+        """Let the drivers' clocks begin where the seed says."""
+        self._driven = tuple(motor for motor in self.motors if isinstance(motor, SimulatedMotor))
+        if self._driven:
+            jiffies = draw_jiffies(self.spec.seed)
+            for motor in self._driven:
+                motor.start_clock(jiffies)
+
+    @property
+    def notices(self) -> bool:
+        """Whether drivers notice changes of the motors' states late, when they look."""
+        return bool(self._driven)
+
+    @property
+    def motor_values(self) -> tuple[MotorValues, ...]:
+        """What the drivers of all motors know, as it is recorded at the end of the last tick; empty without drivers."""
+        return self._motor_recorder.read_values(self._sink.count - 1)
+
+    def _publish(self, ticks: int) -> None:
+        """Let readers see the records of some more ticks; in all of them the drivers know the same."""
+        count = self._sink.count
+        self._motor_recorder.record(count, ticks)
+        self._sink.publish(count + ticks)
+
+    def next_change_ns(self, now_ns: int) -> int:
+        """Return when a motor may change next, as far as a program can be told: with the next tick or look."""
+        ends_ns = -(-(self.tick + 1) * NS_PER_S // self._hz)
+        looks_ns = [motor.next_look_ns for motor in self._driven if motor.next_look_ns > now_ns]
+        return min([ends_ns, *looks_ns])
+
+    def notice_change(self) -> bool:
+        """Return whether a driver notices a change before the next tick is over; the motors run until then."""
+        end_ns = -(-(self.tick + 1) * NS_PER_S // self._hz)
+        for motor in self._driven:
+            if motor.next_look_ns <= end_ns:
+                motor.run_until(motor.next_look_ns)
+            if motor.noticed_ns > self.changed_ns:
+                self.changed_ns, self.changed = motor.noticed_ns, True
+        return self.changed
+
+    def advance(self, ticks: int, until_change: bool = False) -> int:
+        """Run ticks and return their number; with `until_change` they end early when a motor ends a move."""
+        if ticks == 1 and not until_change:
+            self.tick_once()
+            return 1
+        done = 0
+        while done < ticks:
+            if until_change and self._driven and self.notice_change():
+                break
+            quiet = self._quiet_ticks(ticks - done) if ticks - done > FEW_TICKS else 0
+            if quiet > 0:
+                self._glide(quiet)
+                done += quiet
+            else:
+                self.tick_once()
+                done += 1
+                if until_change and self.changed:
+                    break
+        return done
+
+    def _quiet_ticks(self, most: int) -> int:
+        """Return for how many ticks, at most `most`, nothing but ramps and motion happens."""
+        left, right = self.left, self.right
+        if self._slipping is not None or (self.noise.motor and not self._glides_with_noise()):
+            return 0
+        if self._strains_gyro and not (left.resting and right.resting):
+            return 0
+        return min(
+            most,
+            left.quiet_ticks(self.tick),
+            right.quiet_ticks(self.tick),
+            self._clear_ticks(most),
+        )
+
+    def _glides_with_noise(self) -> bool:
+        """Return whether motors with noise can run several ticks at once: nothing blocks them, and none has a goal."""
+        left, right = self.left, self.right
+        if self._solids is not None or left.mode == POSITION or right.mode == POSITION:
+            return False
+        return isinstance(left, BrickMotor) and isinstance(right, BrickMotor)
+
+    def tick_once(self) -> None:
+        """Run one tick in full: the reference for the loops below."""
+        count = self._sink.count
+        # Before anything moves: without space for its record there is no tick.
+        buffer = self._buffer if count < self._room_end else self._make_room(1)
+        self.tick = tick = self.tick + 1
+        left, right, drive = self.left, self.right, self.drive
+        before, aside_mm, slipping = None, None, self._slipping
+        if self._solids is not None and self._solids.remaining_mm(self._pose()) < self._longest_mm:
+            before = left.state(), right.state()
+        noise = self.noise.motor
+        left_noise, right_noise = wheel_noise(self.spec.seed, tick, noise) if noise else (0.0, 0.0)
+        modes = None if self._driven else (left.mode, right.mode)
+        left_deg, right_deg = left.step(tick, left_noise), right.step(tick, right_noise)
+        if modes is not None and modes != (left.mode, right.mode):
+            self.changed = True
+        left_roll, right_roll = left_deg, right_deg
+        if slipping is not None:
+            left_roll, right_roll = slipping.turned_deg(tick, left_deg, right_deg)
+        if before is not None:
+            part, aside_mm = self._obstructed(before, left_roll, right_roll)
+            left_deg, right_deg = left_deg * part, right_deg * part
+            left_roll, right_roll = left_roll * part, right_roll * part
+        self._roll(left_roll, right_roll)
+        if aside_mm is not None:
+            self._push(aside_mm)
+        if self._driven:
+            self._bar_wheels()
+        self._left_dps, self._right_dps = left_deg * self._hz, right_deg * self._hz
+        flags = (left.mode and FLAG_LEFT_RUNNING) | (right.mode and FLAG_RIGHT_RUNNING)
+        flags |= (self.pen_down and FLAG_PEN_DOWN) | self.press_flags
+        TICK_RECORD.pack_into(
+            buffer,
+            64 + 64 * count,
+            tick,
+            self.line,
+            drive.x_mm,
+            drive.y_mm,
+            drive.heading_deg,
+            left.position_deg,
+            right.position_deg,
+            self._left_dps,
+            self._right_dps,
+            drive.gyro_zero_deg,
+            flags,
+            self.actions & 0xFFFF,
+        )
+        self._publish(1)
+
+    def _push(self, aside_mm: tuple[float, float]) -> None:
+        """Move the robot aside, along x and y."""
+        drive = self.drive
+        drive.x_mm, drive.y_mm = drive.x_mm + aside_mm[0], drive.y_mm + aside_mm[1]
+
+    def _clear_ticks(self, most: int) -> int:
+        """Return for how many ticks, at most `most`, no collision is possible without a new command."""
+        left, right = self.left, self.right
+        if self._solids is None or (self._driven and left.resting and right.resting):
+            return most
+        if left.blocked_ticks or right.blocked_ticks:
+            return 0
+        left_ends, right_ends = self._wheel_ends(left, right)
+        per_dps = self._tick_s * abs(self._left_mm_per_deg)
+        straight, turn = 0, 0.0
+        if left_ends == right_ends and left_ends[0] * left_ends[1] >= 0:
+            straight = 1 if sum(left_ends) > 0 else -1
+        else:
+            turn = (
+                max(max(right_ends) - min(left_ends), max(left_ends) - min(right_ends))
+                * per_dps
+                / self._spacing_mm
+            )
+        fastest = max(map(abs, (*left_ends, *right_ends))) * per_dps
+        way = fastest + turn * self._solids.reach_mm
+        if way == 0.0:
+            return most
+        pose = self._pose()
+        free = self._solids.free_way_mm(pose, way * min(most, CHECK_TICKS), straight)
+        # Without any obstacle it is infinite.
+        return most if free >= way * most else int(free / way)
+
+    def _wheel_ends(
+        self, left: Motor, right: Motor
+    ) -> tuple[tuple[float, float], tuple[float, float]]:
+        """Return the current and the target speed that each wheel's motor gives it, positive forwards."""
+        left_ends, right_ends = (left.moving_dps, left.aim_dps), (right.moving_dps, right.aim_dps)
+        return (
+            left_ends if self._left_mm_per_deg > 0 else (-left_ends[0], -left_ends[1]),
+            right_ends if self._right_mm_per_deg > 0 else (-right_ends[0], -right_ends[1]),
+        )
+
+    def _pose(self) -> tuple[float, float, float]:
+        drive = self.drive
+        return drive.x_mm, drive.y_mm, drive.heading_deg
+
+    def _obstructed(
+        self, before: tuple[MotorState, MotorState], left_deg: float, right_deg: float
+    ) -> tuple[float, tuple[float, float] | None]:
+        """Undo the part of a tick that an obstacle or wall blocks.
+
+        Returns:
+            The part of the tick that remains, and the displacement that pushes the robot aside along x and y.
+        """
+        left_mm, right_mm = left_deg * self._left_mm_per_deg, right_deg * self._right_mm_per_deg
+        if self._solids is None or (left_mm == 0.0 and right_mm == 0.0):
+            return 1.0, None
+        turn_deg = degrees((right_mm - left_mm) / self._spacing_mm)
+        pose = self._pose()
+        part, aside_mm = self._solids.leeway(pose, (left_mm + right_mm) / 2, turn_deg)
+        if part == 1.0:
+            self.left.blocked_ticks = self.right.blocked_ticks = 0
+            return part, aside_mm
+        for motor, state, turned_deg in zip(
+            (self.left, self.right), before, (left_deg, right_deg), strict=True
+        ):
+            motor.hold_back(state, turned_deg, part)
+            if motor.blocked_ticks == self.stall_ticks and not self._driven:
+                self.changed = True
+        return part, aside_mm
+
+    def _bar_wheels(self) -> None:
+        """Set free the wheels that nothing blocks any more."""
+        left, right = self._driven[0], self._driven[1]
+        if not (left.is_barred or right.is_barred):
+            return
+        left_deg, right_deg = left.tendency_deg, right.tendency_deg
+        left_mm, right_mm = left_deg * self._left_mm_per_deg, right_deg * self._right_mm_per_deg
+        blocked = self._meets(left_mm, right_mm)
+        left.bar(left_deg if blocked else 0.0)
+        right.bar(right_deg if blocked else 0.0)
+
+    def _meets(self, left_mm: float, right_mm: float) -> bool:
+        """Whether an obstacle allows no part of a motion of the wheels that is worth mentioning."""
+        if self._solids is None or (left_mm == 0.0 and right_mm == 0.0):
+            return False
+        turn_deg = degrees((right_mm - left_mm) / self._spacing_mm)
+        part = self._solids.leeway(self._pose(), (left_mm + right_mm) / 2, turn_deg).part
+        way_mm = part * max(abs(left_mm), abs(right_mm))
+        return way_mm < STANDSTILL_DEG * abs(self._left_mm_per_deg)
+
+    def _fields(self) -> tuple[float, ...]:
+        """Return the record of the current tick."""
+        return (
+            self.tick,
+            self.line,
+            *self._pose(),
+            self.left.position_deg,
+            self.right.position_deg,
+            self._left_dps,
+            self._right_dps,
+            self.drive.gyro_zero_deg,
+            self._flags(),
+            self.actions & 0xFFFF,
+        )
+
+    def _flags(self) -> int:
+        return (
+            (FLAG_LEFT_RUNNING if self.left.mode else 0)
+            | (FLAG_RIGHT_RUNNING if self.right.mode else 0)
+            | (FLAG_PEN_DOWN if self.pen_down else 0)
+            | self.press_flags
+        )
+
+    def _make_room(self, ticks: int) -> Buffer:
+        """Return a buffer with space for `ticks` more records, and usually for some beyond."""
+        end = self._sink.count + ticks
+        if end > self._room_end:
+            self._buffer, self._room_end = self._sink.room(ticks + ROOM_TICKS), end + ROOM_TICKS
+            self._motor_recorder.make_room(self._room_end)
+        return self._buffer
+
+    def _glide(self, ticks: int) -> None:
+        """Run ticks in which only ramps and motion happen."""
+        while ticks:
+            noise = self.noise.motor
+            ramping = (
+                ticks
+                if noise
+                else min(ticks, max(self.left.ramping_ticks, self.right.ramping_ticks))
+            )
+            part = ramping or ticks
+            if part <= FEW_TICKS:
+                for _ in range(part):
+                    self.tick_once()
+                ticks -= part
+                continue
+            # Before anything moves: without space for the records there are no ticks.
+            buffer = self._make_room(part)
+            sink, hz = self._sink, self._hz
+            at, flags, actions = 64 + 64 * sink.count, self._flags(), self.actions & 0xFFFF
+            offsets, ticks_ahead = (
+                range(at, at + 64 * part, 64),
+                range(self.tick + 1, self.tick + 1 + part),
+            )
+            records = Records(buffer, offsets, ticks_ahead, self.line, flags, actions, hz)
+            if ramping:
+                left, right = (
+                    self._glides(part) if noise else (self.left.glide(part), self.right.glide(part))
+                )
+                self.drive.glide(records, left, right)
+                left_deg, right_deg = left.rolls_deg[-1], right.rolls_deg[-1]
+            else:
+                left_even, right_even = self.left.glide_evenly(part), self.right.glide_evenly(part)
+                counts = self.drive.glide_evenly(records, left_even, right_even)
+                self.left.position_deg, self.right.position_deg = counts
+                left_deg, right_deg = left_even.roll_deg, right_even.roll_deg
+            self._left_dps, self._right_dps = left_deg * hz, right_deg * hz
+            self.tick += part
+            self._publish(part)
+            ticks -= part
+
+    def _glides(self, ticks: int) -> tuple[Glide, Glide]:
+        """Run the motors with noise."""
+        assert isinstance(self.left, BrickMotor) and isinstance(self.right, BrickMotor)
+        left, right = wheel_noises(self.spec.seed, self.tick + 1, ticks, self.noise.motor)
+        return self.left.glide_noisily(ticks, left), self.right.glide_noisily(ticks, right)

@@ -1,0 +1,153 @@
+"""What the driver knows of each motor at the end of a tick: its record, and its columns.
+
+Only profiles with the driver's motors have them: see `Motion.motor_values`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import partial
+from struct import Struct
+from typing import TYPE_CHECKING, Protocol
+
+from tuisim.engine.core.columns import Column
+from tuisim.engine.core.profile import MotorLaw
+
+if TYPE_CHECKING:
+    from tuisim.engine.core.field import Field
+    from tuisim.engine.core.spec import RobotSpec, RunSpec
+    from tuisim.engine.core.state import Instant, MotorValues
+    from tuisim.engine.core.tick_record import Buffer
+
+MOTOR_FIELDS = (
+    ("asked_dps", "<i4"),
+    ("measured_dps", "<i2"),
+    ("duty_pc", "i1"),
+    ("state", "u1"),
+)
+"""Name and type of each value, the type as numpy writes it."""
+MOTOR_RECORD = Struct("<ihbB")
+
+
+class MotorSink(Protocol):
+    """Receives a `MOTOR_RECORD` of each motor for each tick of telemetry, which says how many there are."""
+
+    def extend_buffer(self, ticks: int) -> Buffer:
+        """Return a writable buffer with space for the records of so many ticks, from byte 64 on."""
+
+    def arrange(self, sources: Sequence[int | None], ticks: int) -> None:
+        """Write what there is again for other motors.
+
+        Args:
+            sources: Of each motor the number that it had, in their new order; None for one that was at rest.
+            ticks: How many ticks are recorded.
+        """
+
+
+RUNNING, RAMPING, HOLDING, STALLED, OVERLOADED = (1 << bit for bit in range(5))
+"""The bits of `state`."""
+STATE_BITS: Mapping[str, int] = {
+    "running": RUNNING,
+    "ramping": RAMPING,
+    "holding": HOLDING,
+    "stalled": STALLED,
+    "overloaded": OVERLOADED,
+}
+
+
+class DrivenMotor(Protocol):
+    """A motor with a driver."""
+
+    def record(self, buffer: Buffer, at: int) -> None: ...
+
+
+class MotorRecorder:
+    """Writes the records of the motors of a run.
+
+    Args:
+        motors: Those with a driver, in the order of `name_motors`.
+        sink: Receives the records; None if nobody does.
+    """
+
+    __slots__ = ("_buffer", "_motors", "_sink", "_size")
+
+    def __init__(self, motors: tuple[DrivenMotor, ...], sink: MotorSink | None) -> None:
+        self._motors, self._sink = motors, sink
+        self._size = MOTOR_RECORD.size * len(motors)
+        """Bytes of a tick."""
+        self._buffer: Buffer | None = None
+
+    def change_motors(
+        self, motors: tuple[DrivenMotor, ...], sources: Sequence[int | None], ticks: int
+    ) -> None:
+        """Go on with other motors; `sources` and `ticks` as of `MotorSink.arrange`."""
+        self._motors, self._size = motors, MOTOR_RECORD.size * len(motors)
+        if self._sink is not None:
+            self._sink.arrange(sources, ticks)
+
+    def make_room(self, ticks: int) -> None:
+        """Make room for the records of so many ticks."""
+        if self._sink is not None:
+            self._buffer = self._sink.extend_buffer(ticks)
+
+    def record(self, tick: int, ticks: int) -> None:
+        """Record what the drivers know at the end of each of some ticks: the same in all."""
+        buffer = self._buffer
+        if buffer is None:
+            return
+        begin = at = 64 + self._size * tick
+        for motor in self._motors:
+            motor.record(buffer, at)
+            at += MOTOR_RECORD.size
+        if ticks > 1:
+            buffer[at : begin + self._size * ticks] = buffer[begin:at] * (ticks - 1)
+
+    def read_values(self, tick: int) -> tuple[MotorValues, ...]:
+        """Return what was recorded at a tick; without a sink, what the drivers know now."""
+        buffer, begin = self._buffer, self._size * tick + 64
+        if buffer is None:
+            buffer, begin = bytearray(self._size), 0
+            for number, motor in enumerate(self._motors):
+                motor.record(buffer, MOTOR_RECORD.size * number)
+        return tuple(MOTOR_RECORD.iter_unpack(buffer[begin : begin + self._size]))
+
+
+def has_driver(run: RunSpec) -> bool:
+    """Return whether the motors of a run have a driver that knows more of them than telemetry holds."""
+    return run.profile.motor_law is MotorLaw.EV3DEV
+
+
+def name_motors(robot: RobotSpec) -> tuple[str, ...]:
+    """Return how the columns of each motor begin: `left`, `right`, then by port such as `motor_a`."""
+    return "left", "right", *(f"motor_{motor.port[-1].lower()}" for motor in robot.extra_motors)
+
+
+def build_motor_columns(name: str) -> tuple[Column, ...]:
+    """Return the columns of a motor; each state is 1 as long as it applies, and `state` the sum of their bits."""
+    measured = (Column(f"{name}_{field}", is_traced=field != "state") for field, _ in MOTOR_FIELDS)
+    states = (
+        Column(f"{name}_{state}", partial(_apply_bit, bit)) for state, bit in STATE_BITS.items()
+    )
+    return *measured, *states
+
+
+def _apply_bit(bit: int, rows: Iterable[Sequence[float]], _: RunSpec) -> list[float]:
+    # NaN, where nothing is recorded, stays.
+    return [float(int(row[3]) & bit != 0) if row[3] >= 0 else row[3] for row in rows]
+
+
+def measure_motor(number: int, instant: Instant, _: RunSpec, __: Field) -> tuple[float, ...]:
+    """Return what is measured of a motor, by its number among all motors."""
+    return tuple(map(float, instant.motors[number]))
+
+
+def find_motor_owners(
+    run: RunSpec,
+) -> list[tuple[tuple[Column, ...], Callable[[Instant, RunSpec, Field], tuple[float, ...]]]]:
+    """Return the columns of each motor, and how they are measured; none without a driver."""
+    if not has_driver(run):
+        return []
+    return [
+        (build_motor_columns(name), partial(measure_motor, number))
+        for number, name in enumerate(name_motors(run.robot))
+    ]

@@ -1,0 +1,93 @@
+"""The interface of a motor to the rest of the simulation, for any motor law.
+
+Motors are mutable and updated every tick: this is the hottest data of the simulation.
+Angles are in degrees of the wheel (one encoder count is one degree), speeds in degrees per
+second.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Protocol
+
+if TYPE_CHECKING:
+    from tuisim.engine.core.drive import EvenGlide, Glide
+    from tuisim.engine.core.profile import ProfileSpec
+
+STOPPED, FOREVER, TIMED, POSITION = range(4)
+"""Values of `Motor.mode`."""
+
+ENDLESS = 1 << 60
+"""More ticks than any run has."""
+
+MEDIUM_MAX_SPEED_DPS = 1560.0
+"""Medium motor, no load (EV3 motor driver table)."""
+
+STANDSTILL_DEG = 1e-3
+"""A wheel that turns less than this in a tick does not turn."""
+
+
+def top_speed_dps(kind: str, profile: ProfileSpec) -> float:
+    """Return the speed of a kind of motor without load."""
+    return MEDIUM_MAX_SPEED_DPS if kind == "medium" else profile.max_speed_dps
+
+
+MotorState = tuple[int, float, float, float]
+"""State of a motor before a tick: mode, sign, target speed and position."""
+
+
+class Motor(Protocol):
+    """One motor with its encoder. Its class implements the motor law; see `BrickMotor` for what is without a text."""
+
+    position_deg: float
+    """Encoder position."""
+    blocked_ticks: int
+    """Number of consecutive ticks in which an obstacle or wall has blocked the wheel."""
+
+    @property
+    def mode(self) -> int:
+        """The current command; anything but `STOPPED` counts as running."""
+
+    @property
+    def speed_dps(self) -> float:
+        """Current speed; some laws keep it while the motor is stopped."""
+
+    @property
+    def goal_deg(self) -> float:
+        """Target of a move to a position."""
+
+    @property
+    def end_tick(self) -> float:
+        """End of a timed move."""
+
+    @property
+    def moving_dps(self) -> float: ...
+
+    @property
+    def counting_dps(self) -> float: ...
+
+    @property
+    def aim_dps(self) -> float: ...
+
+    @property
+    def resting(self) -> bool: ...
+
+    @property
+    def ramping_ticks(self) -> int:
+        """Approximate number of ticks until the speed is steady; 0 only if it is steady."""
+
+    def step(self, tick: int, noise_dps: float) -> float:
+        """Run one tick of any kind with noise added to the speed, and return the rotation of the wheel, in degrees."""
+
+    def quiet_ticks(self, tick: int) -> int:
+        """Return for how many ticks after `tick` only the ramp changes this motor."""
+
+    def glide(self, ticks: int) -> Glide:
+        """Run quiet ticks."""
+
+    def glide_evenly(self, ticks: int) -> EvenGlide:
+        """Run quiet ticks of a motor at a steady speed; the caller sets the final encoder position."""
+
+    def state(self) -> MotorState: ...
+
+    def hold_back(self, before: MotorState, turned_deg: float, part: float) -> None:
+        """Undo the rest of a tick in which an obstacle stopped the wheel: only a part of it, below 1, was possible."""

@@ -1,0 +1,162 @@
+"""Parts that were plugged in while a program ran, and the robot with them.
+
+A run begins with its first robot. A part that is plugged in takes the place of what was on its port; motors are added
+behind all others, so that a motor keeps its number.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
+from itertools import pairwise
+from typing import Any
+
+from tuisim.base.data_class import dataclass
+from tuisim.engine.core.sensor_places import ORDERS, SENSOR_MAKERS, measure_body
+from tuisim.engine.core.spec import (
+    INPUT_PORTS,
+    MOUNTS,
+    NO_PORT,
+    OUTPUT_PORTS,
+    ColorSensorSpec,
+    GyroSpec,
+    InfraredSpec,
+    MotorSpec,
+    RobotSpec,
+    SensorSpec,
+    TouchSpec,
+    UltrasonicSpec,
+)
+
+MOTOR_PARTS: Mapping[str, str] = {"LargeMotor": "large", "MediumMotor": "medium"}
+"""Kinds of motors, by the classes of parts."""
+SENSOR_PARTS: Mapping[str, type[SensorSpec]] = {
+    "ColorSensor": ColorSensorSpec,
+    "UltrasonicSensor": UltrasonicSpec,
+    "GyroSensor": GyroSpec,
+    "TouchSensor": TouchSpec,
+    "InfraredSensor": InfraredSpec,
+}
+"""Classes of sensors, by the classes of parts."""
+PLUGGED_DIAMETER_MM = ColorSensorSpec("color", "in1", 0.0, 0.0).diameter_mm
+"""What a colour sensor sees that is plugged in."""
+LEFT, RIGHT, LATE = "left", "right", "late"
+ROLES = ("", LEFT, RIGHT, LATE)
+"""What a motor that is plugged in is for: nothing special, a wheel, or a wheel if it had not been too late for that."""
+
+
+@dataclass(frozen=True, slots=True)
+class PluggedPart:
+    """A part that was plugged in when the program asked for it."""
+
+    port: str
+    part: str
+    """Its class, such as `ColorSensor`: one of `MOTOR_PARTS` or `SENSOR_PARTS`."""
+    tick: int
+    """After this tick, before the next one."""
+    line: int
+    """The line of the program that asked for it; 0 if it is in none."""
+    role: str = ""
+    """One of `ROLES`. The entry of a left wheel is followed by that of the right one."""
+
+    def __post_init__(self) -> None:
+        known, ports = (
+            (MOTOR_PARTS, OUTPUT_PORTS) if self.part in MOTOR_PARTS else (SENSOR_PARTS, INPUT_PORTS)
+        )
+        if self.part not in known or self.port not in ports or self.role not in ROLES:
+            raise ValueError(f"no part: {self.part!r} on {self.port!r} as {self.role!r}")
+
+    def to_plain(self) -> dict[str, Any]:
+        """Return the form that is stored with a run."""
+        plain = {"port": self.port, "class": self.part, "tick": self.tick, "line": self.line}
+        return {**plain, "role": self.role} if self.role else plain
+
+    @classmethod
+    def from_plain(cls, plain: Mapping[str, Any]) -> PluggedPart:
+        """Rebuild a part from the output of `to_plain`.
+
+        Raises:
+            KeyError, TypeError, ValueError: the data is not a part.
+        """
+        tick, line = int(plain["tick"]), int(plain["line"])
+        return cls(plain["port"], plain["class"], tick, line, plain.get("role", ""))
+
+
+def plug_parts(robot: RobotSpec, parts: Sequence[PluggedPart]) -> RobotSpec:
+    """Return a robot with parts plugged in, one after another."""
+    for part, following in pairwise([*parts, None]):
+        assert part is not None
+        if part.role == LEFT:
+            # Both wheels change at once.
+            robot = robot if following is None else _change_wheels(robot, part, following)
+        elif part.role != RIGHT:
+            robot = _plug_one(robot, part)
+    return robot
+
+
+def _plug_one(robot: RobotSpec, part: PluggedPart) -> RobotSpec:
+    if part.part in SENSOR_PARTS:
+        return _add_sensor(robot, part.port, SENSOR_PARTS[part.part])
+    motor = MotorSpec(part.port, MOTOR_PARTS[part.part])
+    others = _leave_out(robot.extra_motors, (part.port,))
+    if part.port in (robot.left_port, robot.right_port):
+        # A robot with a wheel on one side only drives nowhere.
+        robot = _put_wheels(robot, MotorSpec(NO_PORT, "large"), MotorSpec(NO_PORT, "large"))
+    return replace(robot, extra_motors=(*others, motor))
+
+
+def _change_wheels(robot: RobotSpec, left: PluggedPart, right: PluggedPart) -> RobotSpec:
+    others = _leave_out(robot.extra_motors, (left.port, right.port))
+    wheels = (MotorSpec(one.port, MOTOR_PARTS[one.part]) for one in (left, right))
+    return _put_wheels(replace(robot, extra_motors=others), *wheels)
+
+
+def _put_wheels(robot: RobotSpec, left: MotorSpec, right: MotorSpec) -> RobotSpec:
+    return replace(
+        robot,
+        left_port=left.port,
+        right_port=right.port,
+        left_motor=left.kind,
+        right_motor=right.kind,
+    )
+
+
+def _leave_out(motors: Iterable[MotorSpec], ports: Iterable[str]) -> tuple[MotorSpec, ...]:
+    return tuple(motor for motor in motors if motor.port not in ports)
+
+
+def _add_sensor(robot: RobotSpec, port: str, kind: type[SensorSpec]) -> RobotSpec:
+    """Return a robot with a sensor at a place that is free, in place of what was on the port; it has one gyro."""
+    others = [
+        sensor
+        for sensor in robot.sensors
+        if sensor.port != port and not (kind is GyroSpec and isinstance(sensor, GyroSpec))
+    ]
+    names = {sensor.name for sensor in others}
+    alike = [sensor for sensor in others if isinstance(sensor, kind)]
+    body = measure_body(robot)
+    sides = ORDERS[kind] if alike or kind is not TouchSpec else ("front",)
+    choices = [SENSOR_MAKERS[kind](port, side, names, body) for side in sides]
+    places = {_find_place(sensor) for sensor in alike}
+    new = next((one for one in choices if _find_place(one) not in places), choices[-1])
+    return _put_sensors(robot, [*others, new])
+
+
+def _find_place(sensor: Any) -> tuple[float, float]:
+    return getattr(sensor, "x_mm", 0.0), getattr(sensor, "y_mm", 0.0)
+
+
+def _put_sensors(robot: RobotSpec, sensors: Sequence[SensorSpec]) -> RobotSpec:
+    """Return a robot with these sensors and no others: those of a kind in the given order."""
+    fields: dict[str, Any] = {}
+    left = [*sensors]
+    for mount in sorted(MOUNTS, key=lambda mount: mount.many):
+        alike = [one for one in left if type(one) is mount.spec]
+        if mount.many:
+            fields[mount.field] = tuple(alike)
+        else:
+            before = getattr(robot, mount.field)
+            first = next((one for one in alike if one == before), alike[0] if alike else None)
+            fields[mount.field], alike = first, alike[:0] if first is None else [first]
+        left = [one for one in left if one not in alike]
+    return replace(robot, **fields)

@@ -1,0 +1,103 @@
+"""Where on a robot a further sensor sits, by the side that it is on, and what it is called."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Mapping
+from typing import Any
+
+from tuisim.base.data_class import dataclass
+from tuisim.engine.core.spec import (
+    ColorSensorSpec,
+    GyroSpec,
+    InfraredSpec,
+    RobotSpec,
+    SensorSpec,
+    TouchSpec,
+    UltrasonicSpec,
+)
+
+BUMPER_MM = 60.0
+"""How far a bumper is ahead of the axle, before the front of the robot."""
+LOOKS: Mapping[str, tuple[float, float, float]] = {
+    "front": (0.0, 20.0, 0.0),
+    "left": (-60.0, 0.0, 90.0),
+    "right": (60.0, 0.0, -90.0),
+    "back": (0.0, -100.0, 180.0),
+    "middle": (0.0, 20.0, 0.0),
+}
+"""x, y and direction of a sensor that looks to a side."""
+DOWN: Mapping[str, tuple[float, float]] = {
+    "middle": (0.0, 30.0),
+    "front": (0.0, 60.0),
+    "left": (-50.0, 30.0),
+    "right": (50.0, 30.0),
+    "back": (0.0, -60.0),
+}
+"""x and y of a colour sensor."""
+ORDERS: Mapping[type[SensorSpec], tuple[str, ...]] = {
+    ColorSensorSpec: ("middle", "front", "left", "right"),
+    UltrasonicSpec: ("front", "right", "left", "back"),
+    InfraredSpec: ("front", "right", "left", "back"),
+    TouchSpec: ("left", "right", "back", "front"),
+    GyroSpec: ("middle",),
+}
+"""The sides of sensors of which nothing says the side, in turn."""
+
+
+@dataclass(frozen=True, slots=True)
+class Body:
+    """How far a robot extends."""
+
+    half_width_mm: float
+    """To either side of its middle."""
+    back_mm: float
+    """Behind the axle, as a negative y."""
+
+
+def measure_body(robot: RobotSpec) -> Body:
+    """Return how far a robot extends."""
+    return Body((robot.wheel_spacing_mm + robot.wheel_width_mm) / 2, robot.back_mm)
+
+
+def _name(base: str, side: str, names: Collection[str]) -> str:
+    """Return a name that is free: the base, else with its side, else with a number."""
+    choices = [base, f"{base}_{side}", *(f"{base}{number}" for number in range(2, 6))]
+    return next(name for name in choices if name not in names)
+
+
+def _color(port: str, side: str, names: Collection[str], _body: Body) -> SensorSpec:
+    x_mm, y_mm = DOWN[side]
+    name = str(side) if side not in names else _name("color", side, names)
+    return ColorSensorSpec(name, port, x_mm, y_mm)
+
+
+def _ultrasonic(port: str, side: str, names: Collection[str], _body: Body) -> SensorSpec:
+    return UltrasonicSpec(_name("ultrasonic", side, names), port, *LOOKS[side])
+
+
+def _infrared(port: str, side: str, names: Collection[str], _body: Body) -> SensorSpec:
+    return InfraredSpec(_name("infrared", side, names), port, *LOOKS[side])
+
+
+def _touch(port: str, side: str, names: Collection[str], body: Body) -> SensorSpec:
+    # As wide as the robot, or half as wide: one of its corners would meet a wall before a narrow bumper does.
+    half_mm = body.half_width_mm
+    x_mm = {"left": -half_mm / 2, "right": half_mm / 2}.get(side, 0.0)
+    y_mm = body.back_mm - 15.0 if side == "back" else BUMPER_MM
+    return TouchSpec(
+        _name("touch", side, names), port, x_mm, y_mm, half_mm if x_mm else 2 * half_mm
+    )
+
+
+def _gyro(port: str, _side: str, names: Collection[str], _body: Body) -> SensorSpec:
+    return GyroSpec(_name("gyro", "", names), port)
+
+
+SENSOR_MAKERS: Mapping[type[SensorSpec], Callable[[str, str, Collection[str], Body], Any]] = {
+    ColorSensorSpec: _color,
+    UltrasonicSpec: _ultrasonic,
+    GyroSpec: _gyro,
+    TouchSpec: _touch,
+    InfraredSpec: _infrared,
+}
+"""Make a sensor of a class: they take its port, its side, the names of the other sensors, and the robot's body."""

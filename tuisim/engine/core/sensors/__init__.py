@@ -1,0 +1,163 @@
+"""Sensors: one file for each kind, and the table of kinds.
+
+To add a sensor: write its frozen spec and add a field of `RobotSpec` in `engine.core.spec`, write its file, with
+its columns and pure functions from an `Instant` to values, and add a line to `SENSORS`; its device and a line in
+`DEVICES` go to `engine/shim/sensors.py`. Robot files, settings, breakpoints, the telemetry frame, the panels and the
+contract test walk these tables.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import replace
+from functools import lru_cache, partial
+from typing import Any, NamedTuple
+
+from tuisim.base.data_class import dataclass
+from tuisim.base.errors import ConfigError, nearest
+from tuisim.engine.core.columns import MOTION, Column, column_name, measured_names, motion_of
+from tuisim.engine.core.field import Field
+from tuisim.engine.core.motor_columns import find_motor_owners
+from tuisim.engine.core.profile import PROFILES
+from tuisim.engine.core.sensors import color, gyro, infrared, touch, ultrasonic
+from tuisim.engine.core.spec import (
+    ColorSensorSpec,
+    GyroSpec,
+    InfraredSpec,
+    RobotSpec,
+    RunSpec,
+    SensorSpec,
+    TouchSpec,
+    UltrasonicSpec,
+)
+from tuisim.engine.core.state import Instant
+
+
+@dataclass(frozen=True, slots=True)
+class SensorKind:
+    """How one kind of sensor is measured and named."""
+
+    driver_name: str
+    """Name of the kernel driver; `ev3dev2` searches for this name."""
+    spec: type
+    columns: Callable[[Any], tuple[Column, ...]]
+    """Takes a sensor's spec; returns its columns."""
+    measure: Callable[[Any, Instant, RunSpec, Field], tuple[float, ...]]
+    """Takes spec and instant; returns the values of those columns that are measured."""
+    port_mode: str = "ev3-uart"
+    """The port mode it needs; `ev3-analog` for a sensor without a processor of its own."""
+
+    def names(self, sensor: Any) -> tuple[str, ...]:
+        """Return the names of what is measured of a sensor: its columns of telemetry."""
+        return measured_names(self.columns(sensor))
+
+
+SENSORS: Mapping[str, SensorKind] = {
+    "color": SensorKind("lego-ev3-color", ColorSensorSpec, color.columns, color.measure),
+    "ultrasonic": SensorKind("lego-ev3-us", UltrasonicSpec, ultrasonic.columns, ultrasonic.measure),
+    "gyro": SensorKind("lego-ev3-gyro", GyroSpec, gyro.columns, gyro.measure),
+    "touch": SensorKind("lego-ev3-touch", TouchSpec, touch.columns, touch.measure, "ev3-analog"),
+    "infrared": SensorKind("lego-ev3-ir", InfraredSpec, infrared.columns, infrared.measure),
+}
+"""All kinds of sensors, in the order of the telemetry columns."""
+
+
+Measure = Callable[[Instant, RunSpec, Field], tuple[float, ...]]
+"""Returns the values of the columns of an owner that are measured."""
+
+
+def owners(run: RunSpec) -> list[tuple[tuple[Column, ...], Measure]]:
+    """Return the columns of the robot, of each sensor and of each motor with a driver, and how they are measured."""
+    of_sensors = [
+        (mount.columns, partial(mount.kind.measure, mount.sensor)) for mount in mounted(run.robot)
+    ]
+    return [(MOTION, motion_of), *of_sensors, *find_motor_owners(run)]
+
+
+def columns_of(run: RunSpec) -> tuple[Column, ...]:
+    """Return the columns of a run, in the order of telemetry."""
+    return tuple(column for columns, _ in owners(run) for column in columns)
+
+
+def column_names(run: RunSpec) -> tuple[str, ...]:
+    """Return the names of `columns_of`."""
+    return tuple(column.name for column in columns_of(run))
+
+
+def named_column(text: str, run: RunSpec) -> str:
+    """Return the name of the column that a text means, see `column_name`.
+
+    Raises:
+        ConfigError: the run has no such column.
+    """
+    found = column_name(text, columns_of(run))
+    if found is None:
+        measured = column_names(replace(run, profile=PROFILES["ev3"]))
+        hint = "only profile ev3 has it" if text in measured else nearest(text, column_names(run))
+        raise ConfigError(f"this robot has no {text!r}", hint)
+    return found
+
+
+def reader_of(name: str, run: RunSpec) -> Callable[[Instant, RunSpec, Field], float] | None:
+    """Return a function that gives the value of a column at an instant `with_motors`; None if the run has none."""
+    for columns, measure in owners(run):
+        for column in columns:
+            if column.name == name:
+                return partial(_value, column, measured_names(columns), measure)
+    return None
+
+
+def _value(
+    column: Column,
+    names: tuple[str, ...],
+    measure: Measure,
+    instant: Instant,
+    spec: RunSpec,
+    field: Field,
+) -> float:
+    measured = measure(instant, spec, field)
+    return (
+        measured[names.index(column.name)] if column.of is None else column.of([measured], spec)[0]
+    )
+
+
+def readings(
+    sensors: Iterable[SensorSpec], instant: Instant, spec: RunSpec, field: Field
+) -> dict[str, float]:
+    """Return what some sensors measure at an instant, by column."""
+    return {
+        name: value
+        for mount in map(mounted_sensor, sensors)
+        for name, value in zip(
+            mount.names,
+            mount.kind.measure(mount.sensor, instant, spec, field),
+            strict=True,
+        )
+    }
+
+
+class MountedSensor(NamedTuple):
+    """A sensor, and what its kind says about it."""
+
+    kind: SensorKind
+    sensor: Any
+    """Its spec."""
+    columns: tuple[Column, ...]
+    names: tuple[str, ...]
+    """Those of the columns that are measured."""
+
+
+_KINDS = {kind.spec: kind for kind in SENSORS.values()}
+
+
+@lru_cache(maxsize=64)
+def mounted_sensor(sensor: SensorSpec) -> MountedSensor:
+    """Return a sensor with what its kind says about it."""
+    kind = _KINDS[type(sensor)]
+    return MountedSensor(kind, sensor, kind.columns(sensor), kind.names(sensor))
+
+
+@lru_cache(maxsize=16)
+def mounted(robot: RobotSpec) -> tuple[MountedSensor, ...]:
+    """Return the robot's sensors, in the order of the telemetry columns."""
+    return tuple(map(mounted_sensor, robot.sensors))

@@ -1,0 +1,429 @@
+"""Colour sensor: the mean colour of a disc of mat pixels under it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from enum import StrEnum
+from functools import lru_cache, partial
+from math import ceil, cos, radians, sin
+from operator import attrgetter
+from typing import TYPE_CHECKING, Any, NamedTuple, assert_never
+
+from tuisim.base.data_class import dataclass
+from tuisim.engine.core.columns import COLOR_NAMES, Column
+from tuisim.engine.core.drift import draw_light_gain, light_share
+from tuisim.engine.core.field import (
+    OUTSIDE_DISC_RGB,
+    Field,
+    disc_pixels,
+    disc_weights,
+    weighted_mean,
+)
+from tuisim.engine.core.geometry import Pose, world_point
+from tuisim.engine.core.noise import noisy_channel, noisy_sums, reading_noise, stream
+from tuisim.engine.core.spec import FIELD_HEIGHT_MM, ColorSensorSpec, RunSpec
+from tuisim.engine.core.state import Instant
+
+if TYPE_CHECKING:
+    from tuisim.engine.core.drift_spec import DriftSpec
+    from tuisim.engine.core.profile import ProfileSpec
+
+WHITE = 255
+"""Maximum of a channel."""
+
+
+def percent(value: int, whole: int) -> float:
+    """Return a value as a percentage of `whole`, with the rounding that the course's programs expect."""
+    # Division first: the other order changes the last digit for 57 of the 256 channel values.
+    return 100 * (value / whole)
+
+
+@dataclass(frozen=True, slots=True)
+class ColorReading:
+    """The reading of one colour sensor: mean channels, 0 … 255."""
+
+    red: float
+    green: float
+    blue: float
+    is_bricks: bool = False
+    """Whether the colour is the brick's."""
+
+    @property
+    def rgb(self) -> tuple[int, int, int]:
+        """The channels truncated to integers, as programs get them."""
+        return int(self.red), int(self.green), int(self.blue)
+
+    @property
+    def red_percent(self) -> float:
+        """`reflected_light_intensity_pc`: 100 · (int(red) / 255)."""
+        return percent(int(self.red), WHITE)
+
+    @property
+    def mean_percent(self) -> float:
+        """`full_reflected_light_intensity`: 100 · (the sum of the whole channels / 765)."""
+        return percent(sum(self.rgb), 3 * WHITE)
+
+    @property
+    def code(self) -> int:
+        """Colour code, see `color_code` and `bricks_color_code`."""
+        return bricks_color_code(*self.rgb) if self.is_bricks else color_code(*self.rgb)
+
+    @property
+    def name(self) -> str:
+        """Colour name, such as `Blue`."""
+        return COLOR_NAMES[self.code]
+
+
+def hsv(red: int, green: int, blue: int) -> tuple[int, int, int]:
+    """Return hue 0 … 360 and saturation and value 0 … 100, truncated to integers."""
+    high, low = max(red, green, blue), min(red, green, blue)
+    span = high - low
+    if not span:
+        return 0, 0, int(100 * high / 255)
+    if high == red:
+        hue = (green - blue) / span % 6
+    elif high == green:
+        hue = (blue - red) / span + 2
+    else:
+        hue = (red - green) / span + 4
+    return int(60 * hue), int(100 * span / high), int(100 * high / 255)
+
+
+def color_code(red: int, green: int, blue: int) -> int:
+    """Return the colour code of a reading: 1 black, 2 blue, 3 green, 4 yellow, 5 red, 6 white."""
+    hue, saturation, value = hsv(red, green, blue)
+    if saturation < 20:
+        return 1 if value < 30 else 6
+    for limit, code in ((30, 5), (90, 4), (163, 3), (283, 2)):
+        if hue < limit:
+            return code
+    return 5
+
+
+def bricks_color_code(red: int, green: int, blue: int) -> int:
+    """Return the colour code of a reading as on the brick: also 0 for nothing and 7 for brown."""
+    hue, saturation, value = hsv(red, green, blue)
+    if not value:
+        return 0
+    code = color_code(red, green, blue)
+    if code == WHITE_CODE and min(red, green, blue) < WHITE_SHARE * WHITE:
+        return 0
+    is_brown = saturation >= MIN_BROWN_SATURATION and value < MAX_BROWN_VALUE
+    return BROWN_CODE if is_brown and hue in BROWN_HUES else code
+
+
+WHITE_CODE, BROWN_CODE = 6, 7
+WHITE_SHARE = 0.5
+"""White has at least this share of each channel."""
+BROWN_HUES = range(10, 60)
+MAX_BROWN_VALUE = 50
+"""Brown is darker than this, in percent."""
+MIN_BROWN_SATURATION = 20
+
+
+class LightRead(StrEnum):
+    """What a program can read of a colour sensor, by the name that it uses."""
+
+    REFLECTED = "reflected_light_intensity"
+    PERCENT = "reflected_light_intensity_pc"
+    MEAN = "full_reflected_light_intensity"
+    REFLECTION = "reflection"
+    """Of Pybricks."""
+    COLOR = "color"
+    COLOR_NAME = "color_name"
+
+    @property
+    def is_color(self) -> bool:
+        """Whether it is the colour, and no number."""
+        return self in (LightRead.COLOR, LightRead.COLOR_NAME)
+
+    def measured(self, seen: ColorReading, reflected_max: int) -> float:
+        """Return what a program gets; the colour code for a colour.
+
+        Args:
+            seen: The reading.
+            reflected_max: Value of `reflected_light_intensity` on white in the profile.
+        """
+        match self:
+            case LightRead.REFLECTED:
+                return int(seen.red) * self.most(reflected_max) // WHITE
+            case LightRead.REFLECTION:
+                return int(seen.red) * 100 // WHITE
+            case LightRead.PERCENT:
+                return seen.red_percent
+            case LightRead.MEAN:
+                return seen.mean_percent
+            case LightRead.COLOR | LightRead.COLOR_NAME:
+                return seen.code
+            case _:
+                assert_never(self)
+
+    def most(self, reflected_max: int) -> int:
+        """Return the value on white."""
+        return reflected_max if self is LightRead.REFLECTED else 100
+
+
+def box_corner(pose: Pose, spec: ColorSensorSpec) -> tuple[int, int]:
+    """Return the image column and row of the corner of the box under a sensor."""
+    x_mm, y_mm = world_point(pose, spec.x_mm, spec.y_mm)
+    radius = spec.diameter_mm / 2
+    # Truncated toward zero, not floored: this matches the original simulator.
+    return int(x_mm - radius), int(FIELD_HEIGHT_MM - y_mm - radius)
+
+
+class Response(NamedTuple):
+    """What a colour sensor makes of the channels of the mat."""
+
+    dark: int
+    """What it reads of black."""
+    span: int
+    """What it reads of white in addition."""
+
+    def channel(self, value: float, is_over_field: bool) -> float:
+        """Return what it reads of a channel; beyond the edge of the field nothing reflects."""
+        if self == EVEN:
+            return value
+        return (self.dark if is_over_field else 0) + value * self.span / WHITE
+
+
+EVEN = Response(0, WHITE)
+"""It reads the channels as they are."""
+
+
+def find_response(spec: ColorSensorSpec, profile: ProfileSpec) -> Response:
+    """Return the response of a sensor, in whole channels that give at least its percents of black and white."""
+    white = profile.white_percent if spec.white_percent is None else spec.white_percent
+    black = profile.black_percent if spec.black_percent is None else spec.black_percent
+    dark = ceil(WHITE * black / 100)
+    return Response(dark, ceil(WHITE * white / 100) - dark)
+
+
+def light_seen(x_mm: Any, y_mm: Any, spec: ColorSensorSpec, drift: DriftSpec, seed: int) -> Any:
+    """Return the brightness that a sensor sees at places of the field, numbers or arrays: 1 without drift."""
+    share = light_share(x_mm, y_mm, drift, seed) if drift.light_pc else 1.0
+    return share * draw_light_gain(spec.port, drift, seed) if drift.light_gain_pc else share
+
+
+def _is_over(field: Field, diameter: int, corner: tuple[int, int]) -> bool:
+    """Return whether a box is on the mat, at least in part, or on the floor around it."""
+    col, row = corner
+    is_on_mat = -diameter <= col < field.width_px and -diameter <= row < field.height_px
+    return is_on_mat or field.floor_rgb is not None
+
+
+def clear_reading(spec: ColorSensorSpec, pose: Pose, field: Field) -> ColorReading:
+    """Return the mean of the mat under a colour sensor, without noise."""
+    if spec.strategy != "mean":
+        box = field.box(spec.diameter_mm, *box_corner(pose, spec))
+        return ColorReading(*weighted_mean(box, spec.diameter_mm, spec.strategy))
+    red, green, blue = field.disc_sums(spec.diameter_mm, *box_corner(pose, spec))
+    count = disc_pixels_of(spec.diameter_mm)
+    return ColorReading(red / count, green / count, blue / count)
+
+
+def _read_in_full(
+    spec: ColorSensorSpec,
+    profile: ProfileSpec,
+    field: Field,
+    x_mm: float,
+    y_mm: float,
+    heading_deg: float,
+) -> tuple[int, int, int]:
+    instant = Instant(0, Pose(x_mm, y_mm, heading_deg), profile=profile)
+    return reading(spec, instant, field).rgb
+
+
+def rgb_reader(
+    spec: ColorSensorSpec, profile: ProfileSpec, field: Field
+) -> Callable[[float, float, float], tuple[int, int, int]]:
+    """Return a function that gives a sensor's channels without noise and drift, truncated to integers.
+
+    It takes the robot's x and y in mm and its heading in degrees, and agrees with
+    `reading(...).rgb`. A tight control loop spends much of its time here, so everything
+    that depends on the sensor is precomputed, and the steps are inlined.
+    """
+    if spec.strategy != "mean" or field.floor_rgb is not None:
+        return partial(_read_in_full, spec, profile, field)
+    dark, span = response = find_response(spec, profile)
+    is_even = response == EVEN
+    diameter, right_mm, forward_mm = spec.diameter_mm, spec.x_mm, spec.y_mm
+    radius, count, sums = diameter / 2, disc_pixels_of(diameter), field.sums[diameter]
+    width, height = field.width_px + diameter, field.height_px + diameter
+
+    def read(x_mm: float, y_mm: float, heading_deg: float) -> tuple[int, int, int]:
+        turn = radians(heading_deg - 90.0)
+        across, up = cos(turn), sin(turn)
+        col = int(x_mm + across * right_mm - up * forward_mm - radius) + diameter
+        row = (
+            int(FIELD_HEIGHT_MM - (y_mm + up * right_mm + across * forward_mm) - radius) + diameter
+        )
+        if not (0 <= col < width and 0 <= row < height):
+            return 0, 0, 0
+        at = (row * width + col) * 3
+        if is_even:
+            return sums[at] // count, sums[at + 1] // count, sums[at + 2] // count
+        return (
+            int(dark + sums[at] / count * span / WHITE),
+            int(dark + sums[at + 1] / count * span / WHITE),
+            int(dark + sums[at + 2] / count * span / WHITE),
+        )
+
+    return read
+
+
+def noisy_rgb_reader(
+    spec: ColorSensorSpec, profile: ProfileSpec, field: Field
+) -> Callable[[float, float, float, int, int, int], tuple[int, int, int]]:
+    """Return a function that gives a sensor's channels with noise, truncated to integers.
+
+    It takes the robot's x and y in mm, its heading in degrees, and the level, seed and tick of the noise, and agrees
+    with `reading(...).rgb`; as `rgb_reader`, it is called in every turn of a control loop.
+    """
+    diameter, right_mm, forward_mm, name = spec.diameter_mm, spec.x_mm, spec.y_mm, spec.name
+    radius, count = diameter / 2, disc_pixels_of(diameter)
+    disc_sums, disc, response = field.disc_sums, field.disc, find_response(spec, profile)
+
+    def read(
+        x_mm: float, y_mm: float, heading_deg: float, level: int, seed: int, tick: int
+    ) -> tuple[int, int, int]:
+        turn = radians(heading_deg - 90.0)
+        across, up = cos(turn), sin(turn)
+        col = int(x_mm + across * right_mm - up * forward_mm - radius)
+        row = int(FIELD_HEIGHT_MM - (y_mm + up * right_mm + across * forward_mm) - radius)
+        sums, normals = disc_sums(diameter, col, row), reading_noise(seed, tick, name)
+        red, green, blue = noisy_sums(lambda: disc(diameter, col, row), count, sums, level, normals)
+        if response == EVEN:
+            return red // count, green // count, blue // count
+        is_over = _is_over(field, diameter, (col, row))
+        return (
+            int(response.channel(red / count, is_over)),
+            int(response.channel(green / count, is_over)),
+            int(response.channel(blue / count, is_over)),
+        )
+
+    return read
+
+
+def _noisy_sums(spec: ColorSensorSpec, instant: Instant, field: Field) -> tuple[int, int, int]:
+    """Return the sums of the channels in the disc under a sensor, including noise."""
+    diameter, (col, row) = spec.diameter_mm, box_corner(instant.pose, spec)
+    normals = reading_noise(instant.seed, instant.tick, spec.name)
+    return noisy_sums(
+        lambda: field.disc(diameter, col, row),
+        disc_pixels_of(diameter),
+        field.disc_sums(diameter, col, row),
+        instant.noise.light,
+        normals,
+    )
+
+
+def _seen_box(spec: ColorSensorSpec, instant: Instant, field: Field) -> bytes:
+    """Return the pixels of the box under a sensor; the mean of those in the disc is what the sensor reads."""
+    diameter = spec.diameter_mm
+    box = field.box(diameter, *box_corner(instant.pose, spec))
+    if not instant.noise.light:
+        return box
+    seen = bytearray(box)
+    inside = [at for at, weight in enumerate(disc_weights(diameter, "mean")) if weight]
+    random = stream(instant.seed, instant.tick, spec.name, 3 * len(inside))
+    for channel, total in enumerate(_noisy_sums(spec, instant, field)):
+        clear = bytes(box[3 * at + channel] for at in inside)
+        for at, value in zip(
+            inside,
+            noisy_channel(clear, total, instant.noise.light, random[channel::3]),
+            strict=True,
+        ):
+            seen[3 * at + channel] = value
+    return bytes(seen)
+
+
+def reading(spec: ColorSensorSpec, instant: Instant, field: Field) -> ColorReading:
+    """Return the reading of a colour sensor at an instant, including noise, its response and the light of the place."""
+    mean, tell = _mean_of_mat(spec, instant, field), _teller(spec, instant, field)
+    return ColorReading(
+        tell(mean.red), tell(mean.green), tell(mean.blue), instant.profile.brick_colors
+    )
+
+
+def _teller(spec: ColorSensorSpec, instant: Instant, field: Field) -> Callable[[float], float]:
+    """Return a function that gives what a sensor reads of a channel of the mat."""
+    response = find_response(spec, instant.profile)
+    is_over = _is_over(field, spec.diameter_mm, box_corner(instant.pose, spec))
+    place = world_point(instant.pose, spec.x_mm, spec.y_mm)
+    light: float = light_seen(*place, spec, instant.drift, instant.seed)
+    return lambda value: min(response.channel(value, is_over) * light, float(WHITE))
+
+
+def _mean_of_mat(spec: ColorSensorSpec, instant: Instant, field: Field) -> ColorReading:
+    if not instant.noise.light:
+        return clear_reading(spec, instant.pose, field)
+    if spec.strategy != "mean":
+        return ColorReading(
+            *weighted_mean(_seen_box(spec, instant, field), spec.diameter_mm, spec.strategy)
+        )
+    red, green, blue = _noisy_sums(spec, instant, field)
+    count = disc_pixels_of(spec.diameter_mm)
+    return ColorReading(red / count, green / count, blue / count)
+
+
+disc_pixels_of = lru_cache(maxsize=16)(disc_pixels)
+"""`field.disc_pixels`, cached."""
+
+
+def pixel_array(spec: ColorSensorSpec, instant: Instant, field: Field) -> bytes:
+    """Return the pixels under a sensor as RGB bytes, row-major, d × d pixels, including noise and light.
+
+    Pixels outside the disc are OUTSIDE_DISC_RGB.
+    """
+    box = bytearray(_lit_box(spec, instant, field))
+    for at, weight in enumerate(disc_weights(spec.diameter_mm, "mean")):
+        if not weight:
+            box[3 * at : 3 * at + 3] = bytes(OUTSIDE_DISC_RGB)
+    return bytes(box)
+
+
+def _lit_box(spec: ColorSensorSpec, instant: Instant, field: Field) -> bytes:
+    tell = _teller(spec, instant, field)
+    return _seen_box(spec, instant, field).translate(bytes(round(tell(value)) for value in _LEVELS))
+
+
+_LEVELS = range(WHITE + 1)
+
+
+def _compute(name: str) -> Callable[[Iterable[Sequence[float]], RunSpec], list[float]]:
+    """Return a function of channels at some ticks, which returns what a reading says there."""
+    read = attrgetter(name)
+    return lambda channels, run: [
+        float(read(ColorReading(red, green, blue, run.profile.brick_colors)))
+        for red, green, blue in channels
+    ]
+
+
+def columns(spec: ColorSensorSpec) -> tuple[Column, ...]:
+    """Return the columns of a sensor: the channels, and what a program reads of them."""
+    name = spec.name
+    return (
+        Column(f"{name}_red"),
+        Column(f"{name}_green"),
+        Column(f"{name}_blue"),
+        Column(
+            f"{name}_red_pc",
+            _compute("red_percent"),
+            True,
+            (f"{name}.red%",),
+        ),
+        Column(
+            f"{name}_mean_pc",
+            _compute("mean_percent"),
+            also=(f"{name}.mean%",),
+        ),
+        Column(f"{name}_color", _compute("code")),
+    )
+
+
+def measure(
+    spec: ColorSensorSpec, instant: Instant, run: RunSpec, field: Field
+) -> tuple[float, ...]:
+    """Return what is measured of `columns`: mean red, green and blue, 0 … 255."""
+    seen = reading(spec, instant, field)
+    return seen.red, seen.green, seen.blue

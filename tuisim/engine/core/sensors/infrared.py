@@ -1,0 +1,114 @@
+"""Infrared sensor: proximity, direction and distance of a beacon, buttons of a remote control."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection
+from typing import TYPE_CHECKING
+
+from tuisim.engine.core.columns import Column
+from tuisim.engine.core.geometry import Pose, world_point
+from tuisim.engine.core.sensors.ultrasonic import first_hit_mm, surfaces
+from tuisim.engine.core.spec import REMOTE_BY_HAND, REMOTE_CODES, InfraredSpec, RunSpec, WorldSpec
+
+if TYPE_CHECKING:
+    from tuisim.engine.core.field import Field
+    from tuisim.engine.core.state import Instant
+
+PROXIMITY_RANGE_MM = 700.0
+"""Distance that is 100 % proximity."""
+RAY_ANGLES_DEG = (-10.0, -5.0, 0.0, 5.0, 10.0)
+"""Rays of the narrow cone in which light is emitted and received."""
+SEEK_RANGE_MM = 2000.0
+"""Distance of a beacon that reads 100 %; farther beacons are not found."""
+SEEK_ANGLE_DEG = 100.0
+"""A beacon at a larger angle is not found."""
+SEEK_STEPS = 25
+"""Heading reading for a beacon at `SEEK_ANGLE_DEG`."""
+NOT_FOUND = (0, -128)
+"""Heading and distance readings without a beacon."""
+
+_REM_A_NONE = 262
+_REM_A_BUTTONS = {"top_left": 16, "bottom_left": 32, "top_right": 64, "bottom_right": 128}
+
+
+def _way_mm(
+    place: tuple[float, float], angle_deg: float, world: WorldSpec, most_mm: float
+) -> float:
+    """Return how far light travels before it meets a surface, at most `most_mm`."""
+    found, angle = surfaces(world), math.radians(angle_deg)
+    (x_mm, y_mm), cos, sin = place, math.cos(angle), math.sin(angle)
+    way = first_hit_mm(found.upright, found.upright_at, (x_mm, y_mm), (cos, sin), most_mm)
+    return first_hit_mm(found.level, found.level_at, (y_mm, x_mm), (sin, cos), way)
+
+
+def proximity(pose: Pose, spec: InfraredSpec, world: WorldSpec) -> int:
+    """Return the distance to the nearest surface ahead, 0 … 100 % of `PROXIMITY_RANGE_MM`."""
+    place, facing = world_point(pose, spec.x_mm, spec.y_mm), pose.heading_deg + spec.angle_deg
+    nearest = min(
+        _way_mm(place, facing + ray_deg, world, PROXIMITY_RANGE_MM) for ray_deg in RAY_ANGLES_DEG
+    )
+    return round(100 * nearest / PROXIMITY_RANGE_MM)
+
+
+def seek(pose: Pose, spec: InfraredSpec, world: WorldSpec) -> tuple[int, ...]:
+    """Return heading (-25 … 25, positive to the right) and distance (0 … 100, or -128) for channels 1 to 4."""
+    beacon = world.beacon
+    if beacon is None:
+        return NOT_FOUND * 4
+    x_mm, y_mm = world_point(pose, spec.x_mm, spec.y_mm)
+    way_mm = math.hypot(beacon.x_mm - x_mm, beacon.y_mm - y_mm)
+    bearing_deg = math.degrees(math.atan2(beacon.y_mm - y_mm, beacon.x_mm - x_mm))
+    aside_deg = (pose.heading_deg + spec.angle_deg - bearing_deg + 180.0) % 360.0 - 180.0
+    seen = NOT_FOUND
+    if (
+        way_mm <= SEEK_RANGE_MM
+        and abs(aside_deg) <= SEEK_ANGLE_DEG
+        and _way_mm((x_mm, y_mm), bearing_deg, world, way_mm) >= way_mm - 1e-9
+    ):
+        seen = (round(SEEK_STEPS * aside_deg / SEEK_ANGLE_DEG), round(100 * way_mm / SEEK_RANGE_MM))
+    return NOT_FOUND * (beacon.channel - 1) + seen + NOT_FOUND * (4 - beacon.channel)
+
+
+def _pressed(
+    channel: int, time_s: float, world: WorldSpec, by_hand: Collection[str]
+) -> frozenset[str]:
+    """Return the buttons pressed on a channel; of two presses at the same time the later in the list counts."""
+    if held := [button for name, button in REMOTE_BY_HAND.items() if name in by_hand]:
+        return frozenset(held)
+    for press in reversed(world.remote):
+        if press.channel == channel and press.from_s <= time_s < press.until_s:
+            return frozenset(press.buttons)
+    return frozenset()
+
+
+def remote(
+    time_s: float, world: WorldSpec, by_hand: Collection[str] = ()
+) -> tuple[int, int, int, int]:
+    """Return the code of the pressed buttons, for channels 1 to 4; 0 is none.
+
+    Args:
+        time_s: Simulated time, for the presses that the world has.
+        world: The world.
+        by_hand: Names of `REMOTE_BY_HAND`: while there is one, its buttons are pressed on every channel, and no others.
+    """
+    one, two, three, four = (
+        REMOTE_CODES.get(_pressed(channel, time_s, world, by_hand), 0) for channel in range(1, 5)
+    )
+    return one, two, three, four
+
+
+def remote_bits(time_s: float, world: WorldSpec, by_hand: Collection[str] = ()) -> int:
+    """Return the buttons pressed on channel 1 as bits; arguments as of `remote`."""
+    pressed = _pressed(1, time_s, world, by_hand)
+    return _REM_A_NONE + sum(_REM_A_BUTTONS.get(button, 0) for button in pressed)
+
+
+def columns(spec: InfraredSpec) -> tuple[Column, ...]:
+    """Return the column of an infrared sensor."""
+    return (Column(f"{spec.name}_proximity", is_traced=True),)
+
+
+def measure(spec: InfraredSpec, instant: Instant, run: RunSpec, field: Field) -> tuple[float, ...]:
+    """Return the value of `columns`, 0 … 100."""
+    return (float(proximity(instant.pose, spec, run.world)),)

@@ -1,0 +1,78 @@
+"""Touch sensor: pressed while its bumper touches an obstacle or a wall, by a motor at its end stop, or by hand."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from typing import TYPE_CHECKING
+
+from tuisim.engine.core.columns import Column
+from tuisim.engine.core.end_stops import end_flag
+from tuisim.engine.core.geometry import Pose, world_point
+from tuisim.engine.core.spec import (
+    FIELD_HEIGHT_MM,
+    FIELD_WIDTH_MM,
+    INPUT_PORTS,
+    TOUCH,
+    RunSpec,
+    TouchSpec,
+    WorldSpec,
+)
+from tuisim.engine.core.tick_record import FLAG_FIRST_HAND
+
+if TYPE_CHECKING:
+    from tuisim.engine.core.field import Field
+    from tuisim.engine.core.state import Instant
+
+REACH_MM = 2.0
+"""The bumper reacts at this distance: it gives way before the robot is stopped."""
+
+
+def pressed(pose: Pose, spec: TouchSpec, world: WorldSpec) -> bool:
+    """Return whether either end or the centre of a bumper touches something."""
+    half = spec.width_mm / 2
+    return any(
+        _meets(*world_point(pose, spec.x_mm + aside, spec.y_mm), world)
+        for aside in (-half, 0.0, half)
+    )
+
+
+def _meets(x_mm: float, y_mm: float, world: WorldSpec) -> bool:
+    near = REACH_MM
+    if world.walls and not (
+        near < x_mm < FIELD_WIDTH_MM - near and near < y_mm < FIELD_HEIGHT_MM - near
+    ):
+        return True
+    return any(
+        box.x_mm - near <= x_mm <= box.x_mm + box.width_mm + near
+        and box.y_mm - near <= y_mm <= box.y_mm + box.height_mm + near
+        for box in world.obstacles
+    )
+
+
+def find_hand_flags(pressed: Collection[str]) -> int:
+    """Return the flags of a tick record for the touch sensors that are pressed by hand.
+
+    Args:
+        pressed: Names of `PRESSABLE`; `TOUCH` presses the sensors on all ports.
+    """
+    return sum(
+        FLAG_FIRST_HAND << number
+        for number, port in enumerate(INPUT_PORTS)
+        if port in pressed or TOUCH in pressed
+    )
+
+
+def columns(spec: TouchSpec) -> tuple[Column, ...]:
+    """Return the column of a touch sensor."""
+    return (Column(f"{spec.name}_pressed", is_traced=True),)
+
+
+def measure(spec: TouchSpec, instant: Instant, run: RunSpec, field: Field) -> tuple[float, ...]:
+    """Return the value of `columns`: 1 pressed, 0 not."""
+    if instant.press_flags & find_hand_flags((spec.port,)):
+        return (1.0,)
+    if spec.pressed_by:
+        return (
+            float(instant.press_flags & end_flag(run.robot, spec.pressed_by, spec.pressed_at) != 0),
+        )
+    return (float(pressed(instant.pose, spec, run.world)),)

@@ -1,0 +1,303 @@
+"""A controller: it follows one trajectory, of a motor or of the sum or difference of two.
+
+The simulated motor follows exactly as long as nothing holds it back. Where an obstacle does, the trajectory of a move
+to a position pauses, and a move at a speed forgets what it cannot catch up, as soon as the motor's power is used up.
+"""
+
+from __future__ import annotations
+
+from enum import IntEnum
+
+from tuisim.engine.core.servo.settings import PAUSE_MARGIN_MS, ControlSettings
+from tuisim.engine.core.servo.trajectory import (
+    MILLI,
+    MS_US,
+    Measure,
+    Segment,
+    Trajectory,
+    angle_move,
+    divided,
+    endless_move,
+    proportional,
+    standing,
+    timed_move,
+)
+
+
+class Ending(IntEnum):
+    """What a motor does after a move; the values are those of `pybricks.parameters.Stop`."""
+
+    COAST = 0
+    BRAKE = 1
+    HOLD = 2
+    NONE = 3
+    """It keeps on running."""
+
+
+class Controller:
+    """Follows one trajectory, or none.
+
+    Args:
+        slips: Whether a move after something held the motion back begins where the motion is, not where it would be:
+            the wheels of a real robot that pushes a wall slip, and count on.
+    """
+
+    __slots__ = (
+        "_behind_milli",
+        "_paused_us",
+        "_slips",
+        "_stalled_us",
+        "duty_limit",
+        "settings",
+        "timed",
+        "trajectory",
+    )
+
+    def __init__(self, settings: ControlSettings, *, slips: bool = False) -> None:
+        self.settings, self._slips = settings, slips
+        self.trajectory: Trajectory | None = None
+        """None while it is passive."""
+        self.timed = False
+        """Whether it controls the speed, not the position."""
+        self.duty_limit: int | None = None
+        """Highest power of the current move, in hundredths of a percent; None for that of the settings."""
+        self._paused_us = 0
+        """How long the trajectory has paused."""
+        self._behind_milli = 0
+        """How far a motion at a speed is behind its trajectory for good, in thousandths of a count."""
+        self._stalled_us = 0
+        """For how long it has hardly moved at its full power."""
+
+    @property
+    def actuation(self) -> int:
+        """The highest power, in hundredths of a percent."""
+        return self.settings.actuation if self.duty_limit is None else self.duty_limit
+
+    # The reference
+
+    def milli(self, now_us: int) -> int:
+        """Return where the motion is wanted to be, in thousandths of a count."""
+        assert self.trajectory is not None
+        then_us = now_us - self._paused_us
+        return self.trajectory.segment(then_us).milli_at(then_us) - self._behind_milli
+
+    def millis(self, times_us: range) -> list[int]:
+        """Return where the motion is wanted to be at several times of one segment."""
+        assert self.trajectory is not None
+        paused_us, behind = self._paused_us, self._behind_milli
+        then_us = range(times_us.start - paused_us, times_us.stop - paused_us, times_us.step)
+        millis = self.trajectory.segment(then_us[0]).millis(then_us)
+        return [milli - behind for milli in millis] if behind else millis
+
+    def halves(self, now_us: int, _motor: object) -> int:
+        """Return where a motor is wanted to be; see `motor.Guide`."""
+        return 2 * self.milli(now_us)
+
+    def many_halves(self, times_us: range, _motor: object) -> list[int]:
+        """Return where a motor is wanted to be at several times of one segment."""
+        return [2 * milli for milli in self.millis(times_us)]
+
+    def rate(self, now_us: int, _motor: object = None) -> int:
+        """Return the wanted rate; 0 while it is passive."""
+        if self.trajectory is None:
+            return 0
+        then_us = now_us - self._paused_us
+        return self.trajectory.segment(then_us).rate_at(then_us)
+
+    @property
+    def end_us(self) -> int | None:
+        """When the trajectory ends; None if it has no end, or there is none."""
+        if self.trajectory is None or self.trajectory.endless:
+            return None
+        return self.trajectory.end_us + self._paused_us
+
+    def segment_end_us(self, now_us: int) -> int | None:
+        """Return when the current segment of the trajectory ends; None if it does not."""
+        if self.trajectory is None:
+            return None
+        end_us = self.trajectory.segment_end_us(now_us - self._paused_us)
+        return None if end_us is None else end_us + self._paused_us
+
+    # Commands
+
+    def release(self) -> None:
+        """Become passive."""
+        self.trajectory, self.duty_limit, self._stalled_us = None, None, 0
+
+    def hold(self, now_us: int, milli: int) -> None:
+        """Stay at a position."""
+        self._begin(standing(now_us, milli), timed=False)
+
+    def move_to(
+        self,
+        now_us: int,
+        measured: Measure,
+        target: int,
+        rate: int,
+        acceleration: int,
+        *,
+        relative: bool = False,
+    ) -> None:
+        """Begin a move to a position.
+
+        Args:
+            measured: Returns where the motion is, from which it begins if this controller is passive.
+            target: Where it shall end, in counts.
+            rate, acceleration: How.
+            relative: Whether `target` counts from where the motion begins.
+
+        Raises:
+            ValueError: the rate is 0, or the move takes too long.
+        """
+        settings = self.settings
+        rate, acceleration = (
+            min(abs(rate), settings.speed),
+            min(abs(acceleration), settings.acceleration),
+        )
+        start, spliced = self._starts(now_us, measured)
+        if relative:
+            target += divided(start.milli, MILLI)
+        found = angle_move(start, target, rate, acceleration, settings.speed)
+        if spliced is not None and found.first.acceleration == start.acceleration:
+            found = angle_move(spliced, target, rate, acceleration, settings.speed)
+        self._begin(found, timed=False)
+
+    def keep_pace_with(self, other: Controller) -> None:
+        """Make the new trajectory take as long as that of another controller, in proportion to it at every time."""
+        if self.trajectory is not None and other.trajectory is not None:
+            self.trajectory = proportional(self.trajectory, other.trajectory)
+
+    def run(
+        self,
+        now_us: int,
+        measured: Measure,
+        rate: int,
+        acceleration: int,
+        time_us: int | None = None,
+    ) -> None:
+        """Begin a motion at a speed.
+
+        Args:
+            measured: Returns where the motion is, from which it begins if this controller is passive.
+            rate, acceleration: How.
+            time_us: How long it takes; None if it does not end.
+
+        Raises:
+            ValueError: the time is negative or too long.
+        """
+        if time_us is None and self._runs_at(now_us, rate):
+            return
+        settings = self.settings
+        acceleration = min(abs(acceleration), settings.acceleration)
+        start, spliced = self._starts(now_us, measured)
+        if time_us is None:
+            found = endless_move(start, rate, acceleration, settings.speed)
+            if spliced is not None and found.first.acceleration == start.acceleration:
+                found = endless_move(spliced, rate, acceleration, settings.speed)
+        else:
+            found = timed_move(start, time_us, rate, acceleration, settings.speed)
+            if spliced is not None and found.first.acceleration == start.acceleration:
+                takes_us = time_us + now_us - spliced.start_us
+                found = timed_move(spliced, takes_us, rate, acceleration, settings.speed)
+        # What a motion at a speed has forgotten, the next one does not catch up either.
+        behind_milli = (
+            self._behind_milli
+            if self.timed and self.trajectory is not None and not self._slips
+            else 0
+        )
+        self._begin(found, timed=True)
+        self._behind_milli = behind_milli
+
+    def _runs_at(self, now_us: int, rate: int) -> bool:
+        """Return whether a motion at a rate has reached it, so that the same command changes nothing."""
+        if (
+            not self.timed
+            or self.trajectory is None
+            or self._paused_us
+            or self._behind_milli
+            or self._stalled_us
+        ):
+            return False
+        even = self.trajectory.even
+        # After whole milliseconds there is no rounding that a new trajectory would begin with.
+        passed_us = now_us - even.start_us
+        return (
+            self.trajectory.endless
+            and even.rate == rate
+            and passed_us >= 0
+            and not passed_us % MS_US
+        )
+
+    def _starts(self, now_us: int, measured: Measure) -> tuple[Segment, Segment | None]:
+        """Return where a new trajectory begins, and where the running segment began, if it changes the speed."""
+        if self.trajectory is None or (self._slips and self._behind_milli):
+            return measured(now_us), None
+        then_us = now_us - self._paused_us
+        running = self.trajectory.segment(then_us)
+        start = Segment(
+            now_us, running.milli_at(then_us), running.rate_at(then_us), running.acceleration
+        )
+        if not running.acceleration:
+            return start, None
+        return start, running._replace(start_us=running.start_us + self._paused_us)
+
+    def _begin(self, trajectory: Trajectory, *, timed: bool) -> None:
+        self.trajectory, self.timed, self.duty_limit = trajectory, timed, None
+        self._paused_us = self._behind_milli = self._stalled_us = 0
+
+    # Following
+
+    def fall_behind(self, now_us: int, passed_us: int, milli: int, rate: int) -> None:
+        """Take note that the motion is not where it is wanted to be.
+
+        Args:
+            passed_us: Time since the last call, or since the motion was last where it was wanted.
+            milli, rate: Where the motion is, and how fast.
+        """
+        settings, trajectory = self.settings, self.trajectory
+        assert trajectory is not None
+        error = self.milli(now_us) - milli
+        power = settings.kp * abs(error) // MILLI
+        limit = (
+            self.actuation
+            - settings.feed_forward
+            + settings.kp * abs(rate) * PAUSE_MARGIN_MS // 1000
+        )
+        moved = self.milli(now_us) - self.milli(now_us - passed_us)
+        # A trajectory that leads back to the motion goes on: a blocked motor comes free when it reverses.
+        leads_back = (moved if self.timed else trajectory.even.rate) * error < 0
+        if power < limit or leads_back:
+            self._stalled_us = 0
+            return
+        if self.timed:
+            self._behind_milli += moved
+        else:
+            self._paused_us += passed_us
+        self._stalled_us = self._stalled_us + passed_us if abs(rate) < settings.stall_speed else 0
+
+    @property
+    def stalled(self) -> bool:
+        """Whether the motion has hardly moved at full power for the time of the settings."""
+        return (
+            self.trajectory is not None and self._stalled_us >= self.settings.stall_time_ms * MS_US
+        )
+
+    def is_over(self, now_us: int) -> bool:
+        """Return whether a motion for a time has come to its end."""
+        return self.timed and (end_us := self.end_us) is not None and now_us >= end_us
+
+    def done(self, now_us: int, milli: int, rate: int) -> bool:
+        """Return whether no move is under way.
+
+        Args:
+            milli, rate: Where the motion is, and how fast.
+        """
+        end_us = self.end_us
+        if end_us is None:
+            return self.trajectory is None
+        if now_us < end_us:
+            return False
+        if self.timed:
+            return True
+        near = abs(self.milli(now_us) - milli) <= self.settings.position_tolerance * MILLI
+        return near and abs(rate) < self.settings.speed_tolerance

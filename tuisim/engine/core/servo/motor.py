@@ -1,0 +1,392 @@
+"""A servo motor: it follows the trajectory of its own controller or of a drive base, or runs freely.
+
+A motor that follows is exactly where its trajectory is, at every time; see `control` for what happens when something
+holds it back. A free motor is the electric motor that other libraries drive, too.
+"""
+
+from __future__ import annotations
+
+from itertools import pairwise, repeat
+from typing import TYPE_CHECKING, Protocol
+
+from tuisim.engine.core.drive import EvenGlide, Glide
+from tuisim.engine.core.driver.plant import Axle
+from tuisim.engine.core.motors import (
+    ENDLESS,
+    FOREVER,
+    POSITION,
+    STANDSTILL_DEG,
+    STOPPED,
+    TIMED,
+    MotorState,
+)
+from tuisim.engine.core.servo.control import Controller, Ending
+from tuisim.engine.core.servo.settings import BATTERY_V, COUNTS_PER_DEG, MODELS, motor_settings
+from tuisim.engine.core.servo.trajectory import MILLI, Segment
+
+if TYPE_CHECKING:
+    from tuisim.engine.core.profile import MotorLaw
+
+PER_PERCENT = 100
+HALVES_PER_DEG = 2 * MILLI * COUNTS_PER_DEG
+"""Positions are kept in half thousandths of a count: a drive base divides a sum of counts by two."""
+
+
+class Guide(Protocol):
+    """What a motor follows; times in microseconds, positions in half thousandths of a count."""
+
+    @property
+    def end_us(self) -> int | None:
+        """When the motion ends; None if it does not."""
+
+    def halves(self, now_us: int, motor: ServoMotor) -> int:
+        """Return where the motor is wanted to be."""
+
+    def many_halves(self, times_us: range, motor: ServoMotor) -> list[int]:
+        """Return where the motor is wanted to be at several times of one segment."""
+
+    def rate(self, now_us: int, motor: ServoMotor) -> float:
+        """Return the wanted rate, in counts per second."""
+
+    def segment_end_us(self, now_us: int) -> int | None:
+        """Return when the current segment of the motion ends; None if it does not."""
+
+    def fall_behind(self, now_us: int, passed_us: int, milli: int, rate: int) -> None:
+        """Take note that a motor is not where it is wanted to be, for a time since the last call."""
+
+
+class ServoMotor:
+    """One motor with its encoder. It stands at first, and nothing controls it.
+
+    Args:
+        tick_hz: Ticks per second.
+        law: Which firmware moves it.
+        kind: One of `settings.MODELS`.
+        axle: How it turns while nothing controls it.
+    """
+
+    __slots__ = (
+        "_actuation",
+        "_course",
+        "_ending",
+        "_fastest_deg",
+        "_free_dps",
+        "_free_us",
+        "_guide",
+        "_hz",
+        "_jump_deg",
+        "_quiet",
+        "_tick",
+        "_tick_s",
+        "_tick_us",
+        "axle",
+        "blocked_ticks",
+        "control",
+        "duty",
+        "kind",
+        "law",
+        "mode",
+        "model",
+        "position_deg",
+        "sign",
+        "speed_dps",
+    )
+
+    def __init__(self, tick_hz: int, law: MotorLaw, kind: str, axle: Axle) -> None:
+        self._hz, self._tick_s, self._tick_us = tick_hz, 1.0 / tick_hz, 1_000_000 // tick_hz
+        self.law, self.kind, self.model, self.axle = law, kind, MODELS[kind], axle
+        self.mode = STOPPED
+        self.position_deg = 0.0
+        self.speed_dps = 0.0
+        self.blocked_ticks = 0
+        self.sign = 1
+        """-1 if the program counts against the motor's own direction."""
+        self.control = Controller(motor_settings(law, kind))
+        """The motor's own controller."""
+        self._guide: Guide | None = None
+        self._ending = Ending.HOLD
+        self._course: int | None = 0
+        """Its position in the program's direction while it is exactly where it is wanted to be."""
+        self.duty: int | None = None
+        """Its power while it runs freely, in hundredths of a percent; None if it coasts."""
+        self._free_us, self._free_dps, self._jump_deg = 0, 0.0, 0.0
+        self._tick = self._quiet = 0
+        self._limit_speed()
+
+    # What the program sees
+
+    @property
+    def guide(self) -> Guide | None:
+        """What it follows; None while it runs freely."""
+        return self._guide
+
+    @property
+    def follows_itself(self) -> bool:
+        """Whether it follows its own controller."""
+        return self._guide is self.control
+
+    @property
+    def milli(self) -> int:
+        """Its position in thousandths of a count, in the program's direction."""
+        return round((self.position_deg + self._jump_deg) * self.sign * MILLI * COUNTS_PER_DEG)
+
+    @property
+    def counts_per_s(self) -> int:
+        """Its speed, in the program's direction."""
+        return round(self.speed_dps * self.sign * COUNTS_PER_DEG)
+
+    def milli_at(self, now_us: int) -> int:
+        """Return where it is at a time after the last tick, before anything can hold it back."""
+        if self._guide is not None and self._course is not None:
+            return self._guide.halves(now_us, self) // 2
+        return self.milli
+
+    def counts_per_s_at(self, now_us: int) -> int:
+        """Return its speed at a time after the last tick."""
+        if self._guide is None:
+            return round(self._free_dps * self.sign * COUNTS_PER_DEG)
+        return self.counts_per_s if self._course is None else round(self._guide.rate(now_us, self))
+
+    def measured(self, now_us: int) -> Segment:
+        """Return where a motion begins that nothing has controlled before, as the encoder shows it."""
+        return Segment(
+            now_us, round(self.milli_at(now_us) / MILLI) * MILLI, self.counts_per_s_at(now_us), 0
+        )
+
+    # Commands
+
+    def set_up(
+        self, now_us: int, sign: int, gear_ratio: float, *, keeps_angle: bool = False
+    ) -> None:
+        """Begin anew, as a program does that makes a motor: it coasts, and its position is 0 unless it is kept."""
+        self.run_freely(now_us, None)
+        self.sign = sign
+        if not keeps_angle:
+            self.position_deg = self._jump_deg = 0.0
+        self.control.settings = motor_settings(self.law, self.kind, gear_ratio)
+
+    def follow(self, guide: Guide | None = None, ending: Ending = Ending.HOLD) -> None:
+        """Follow a guide from now on, if none is given the motor's own controller, which has just got its trajectory.
+
+        Args:
+            ending: What it does at the end of the motion.
+        """
+        if guide is not None and guide is self._guide:
+            self._ending = ending
+            self.mode, self.blocked_ticks = FOREVER if guide.end_us is None else POSITION, 0
+            return
+        if self._guide is None:
+            self._course = round(self.position_deg * self.sign * HALVES_PER_DEG)
+        if guide is not None:
+            self.control.release()
+        self._guide, self._ending = guide or self.control, ending
+        timed = guide is None and self.control.timed
+        self.mode = FOREVER if self._guide.end_us is None else TIMED if timed else POSITION
+        self.blocked_ticks, self.duty, self._jump_deg = 0, None, 0.0
+        if self.control.actuation != self._actuation:
+            self._limit_speed()
+
+    def _limit_speed(self) -> None:
+        """Take note of the highest speed that its power allows."""
+        self._actuation = self.control.actuation
+        self._fastest_deg = self.model.steady_dps(self._actuation, BATTERY_V) * self._tick_s
+
+    def run_freely(self, now_us: int, duty: int | None) -> None:
+        """Let go of what it follows, and run with a power.
+
+        Args:
+            duty: In hundredths of a percent; 0 brakes, None coasts.
+        """
+        guide, self._free_us = self._guide, now_us
+        if guide is not None:
+            there = self.milli_at(now_us) * self.sign / (MILLI * COUNTS_PER_DEG)
+            self._free_dps = self.counts_per_s_at(now_us) * self.sign / COUNTS_PER_DEG
+            self._jump_deg = there - self.position_deg
+            self._guide = self._course = None
+            self.control.release()
+        self.duty = None if duty is None else duty * self.sign
+        self.blocked_ticks = 0
+        self.mode = FOREVER if self.duty or self._free_dps or self._jump_deg else STOPPED
+
+    def set_position(self, now_us: int, milli: int) -> None:
+        """Make the current position another one; a motion ends there, and the motor holds."""
+        shift = milli - self.milli_at(now_us)
+        self.position_deg += shift * self.sign / (MILLI * COUNTS_PER_DEG)
+        if self._course is not None:
+            self._course += 2 * shift
+        if self._guide is not None:
+            self.control.hold(now_us, milli)
+            self.follow()
+
+    # What the simulation needs
+
+    @property
+    def goal_deg(self) -> float:
+        """Where the motion ends."""
+        guide = self._guide
+        end_us = guide.end_us if guide else None
+        return (
+            self.position_deg
+            if guide is None or end_us is None
+            else self._deg(guide.halves(end_us, self))
+        )
+
+    @property
+    def end_tick(self) -> float:
+        """When the motion ends."""
+        end_us = self._guide.end_us if self._guide else None
+        return ENDLESS if end_us is None else end_us / self._tick_us
+
+    def _deg(self, halves: int) -> float:
+        return halves * self.sign / HALVES_PER_DEG
+
+    def state(self) -> MotorState:
+        """Return the state that `hold_back` needs to undo a tick."""
+        return self.mode, self.sign, 0.0, self.position_deg
+
+    def hold_back(self, before: MotorState, turned_deg: float, part: float) -> None:
+        """Undo the rest of a tick in which an obstacle stopped the wheel; see `Motor.hold_back`."""
+        if turned_deg == 0.0:
+            return
+        position_deg = before[-1]
+        self.position_deg = position_deg + (self.position_deg - position_deg) * part
+        self.speed_dps *= part
+        self._free_dps *= part
+        self._course = None
+        self.blocked_ticks = (
+            self.blocked_ticks + 1 if abs(turned_deg * part) < STANDSTILL_DEG else 0
+        )
+
+    @property
+    def moving_dps(self) -> float:
+        """Current speed of the wheel, signed."""
+        if self._guide is None or self.mode == STOPPED:
+            return self.speed_dps
+        return self._guide.rate(self._tick * self._tick_us, self) * self.sign / COUNTS_PER_DEG
+
+    @property
+    def counting_dps(self) -> float:
+        """Current speed of the encoder."""
+        return self.speed_dps
+
+    @property
+    def aim_dps(self) -> float:
+        """Speed of the wheel at the end of the current segment, signed."""
+        guide = self._guide
+        if guide is None:
+            return self.speed_dps
+        end_us = guide.segment_end_us(self._tick * self._tick_us)
+        now_us = self._tick * self._tick_us if end_us is None else end_us
+        return guide.rate(now_us, self) * self.sign / COUNTS_PER_DEG
+
+    @property
+    def resting(self) -> bool:
+        """Whether ticks leave this motor unchanged until its next command."""
+        return self.mode == STOPPED
+
+    @property
+    def ramping_ticks(self) -> int:
+        """Number of ticks that the last `quiet_ticks` allowed: a servo motor always glides along its trajectory."""
+        return 0 if self.mode == STOPPED else self._quiet
+
+    def quiet_ticks(self, tick: int) -> int:
+        """Return for how many ticks the motor only follows one segment; see `Motor.quiet_ticks`."""
+        self._tick, self._quiet = tick, self._quiet_ticks(tick)
+        return self._quiet
+
+    def _quiet_ticks(self, tick: int) -> int:
+        if self.mode == STOPPED:
+            return ENDLESS
+        guide, now_us = self._guide, tick * self._tick_us
+        if guide is None or self._course is None or not self._can_follow(guide, now_us):
+            return 0
+        end_us = guide.segment_end_us(now_us)
+        if end_us is not None:
+            return max(0, (end_us - 1) // self._tick_us - tick)
+        return 0 if guide.end_us is not None else ENDLESS
+
+    def _can_follow(self, guide: Guide, now_us: int) -> bool:
+        """Return whether the motor is fast enough for the next tick and for the rest of the segment."""
+        assert self._course is not None
+        next_deg = abs(guide.halves(now_us + self._tick_us, self) - self._course) / HALVES_PER_DEG
+        fastest_dps = max(abs(self.moving_dps), abs(self.aim_dps))
+        return next_deg <= self._fastest_deg and fastest_dps * self._tick_s <= self._fastest_deg
+
+    def glide_evenly(self, ticks: int) -> EvenGlide:
+        """Stand for some ticks; see `Motor.glide_evenly`."""
+        return EvenGlide(0.0, repeat(self.position_deg, ticks))
+
+    def glide(self, ticks: int) -> Glide:
+        """Run quiet ticks; see `Motor.glide`."""
+        if self.mode == STOPPED or self._guide is None or self._course is None:
+            return Glide([0.0] * ticks, [self.position_deg] * ticks)
+        tick_us = self._tick_us
+        times_us = range((self._tick + 1) * tick_us, (self._tick + ticks + 1) * tick_us, tick_us)
+        halves = self._guide.many_halves(times_us, self)
+        turns = [self._deg(after - before) for before, after in pairwise([self._course, *halves])]
+        self._course, self._tick = halves[-1], self._tick + ticks
+        self.position_deg, self.speed_dps = self._deg(halves[-1]), turns[-1] * self._hz
+        return Glide(turns, [self._deg(one) for one in halves])
+
+    def step(self, tick: int, noise_dps: float) -> float:
+        """Run one tick; see `Motor.step`."""
+        self._tick = tick
+        if self.mode == STOPPED:
+            return 0.0
+        now_us, guide = tick * self._tick_us, self._guide
+        if guide is None:
+            return self._run_on(now_us)
+        if self._course is None:
+            if guide is self.control and self.control.is_over(now_us):
+                # A motion for a time ends where it is.
+                self.control.hold(now_us, self.milli)
+                self._end()
+                return 0.0
+            guide.fall_behind(now_us - self._tick_us, self._tick_us, self.milli, self.counts_per_s)
+        halves = guide.halves(now_us, self)
+        if self._course is not None:
+            turned = (halves - self._course) * self.sign / HALVES_PER_DEG
+            if not noise_dps and -self._fastest_deg <= turned <= self._fastest_deg:
+                self._course, self.position_deg = halves, halves * self.sign / HALVES_PER_DEG
+                self.speed_dps = turned * self._hz
+                if turned == 0.0 and (end_us := guide.end_us) is not None and now_us >= end_us:
+                    self._end()
+                return turned
+        return self._catch_up(halves, noise_dps)
+
+    def _catch_up(self, halves: int, noise_dps: float) -> float:
+        """Run towards where the motor is wanted to be."""
+        fastest_deg, wanted_deg = self._fastest_deg, self._deg(halves)
+        turned = max(-fastest_deg, min(fastest_deg, wanted_deg - self.position_deg))
+        reached = turned == wanted_deg - self.position_deg and not noise_dps
+        turned += noise_dps * self._tick_s if turned else 0.0
+        self.position_deg = wanted_deg if reached else self.position_deg + turned
+        self.speed_dps = turned * self._hz
+        self._course = halves if reached else None
+        return turned
+
+    def _end(self) -> None:
+        """End the motion: from now on the motor stands."""
+        self.mode, self.speed_dps, self.blocked_ticks = STOPPED, 0.0, 0
+        if self._ending != Ending.HOLD and self._guide is not None:
+            self.control.release()
+            self._guide, self._free_dps, self.duty = (
+                None,
+                0.0,
+                0 if self._ending == Ending.BRAKE else None,
+            )
+
+    def _run_on(self, now_us: int) -> float:
+        """Run one tick without a guide."""
+        axle, left_ns = self.axle, min(self._tick_us, now_us - self._free_us) * 1000.0
+        begin_deg, axle.speed_dps = axle.angle_deg, self._free_dps
+        axle.power(None if self.duty is None else self.duty / PER_PERCENT)
+        while left_ns:
+            left_ns = axle.advance(left_ns)
+        turned = self._jump_deg + axle.angle_deg - begin_deg
+        self._jump_deg, self._free_dps = 0.0, axle.speed_dps
+        self.position_deg += turned
+        self.speed_dps = axle.speed_dps
+        if not (turned or axle.speed_dps or self.duty):
+            self.mode = STOPPED
+        return turned

@@ -1,0 +1,201 @@
+"""The numbers of the Pybricks firmware: limits, tolerances and gains, and the motors that it was tuned for.
+
+Sources: Pybricks 2.0.0, `lib/pbio/src/{servo,control,drivebase}.c` and `extmod/modrobotics.c`; Pybricks 4.1,
+`lib/pbio/src/motor/servo_settings.c`. A motor has two counts per degree.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from math import pi
+
+from tuisim.base.data_class import dataclass
+from tuisim.engine.core.profile import MotorLaw
+from tuisim.engine.core.servo.trajectory import divided
+
+COUNTS_PER_DEG = 2
+"""Counts of a motor's encoder per degree."""
+FULL_ACTUATION = 10_000
+"""Full power, in hundredths of a percent."""
+PAUSE_MARGIN_MS = 12
+"""A controller gives up following this long before its power is used up: two turns of the firmware's loop."""
+_ONE = 1 << 16
+
+
+@dataclass(frozen=True, slots=True)
+class ControlSettings:
+    """Settings of a controller, in counts."""
+
+    scale: int
+    """Counts per unit of the program, times 65,536: the firmware computes with such fractions."""
+    speed: int
+    """Highest rate."""
+    acceleration: int
+    actuation: int
+    """Highest power, in hundredths of a percent."""
+    kp: int
+    ki: int
+    kd: int
+    integral_range: int
+    integral_rate: int
+    feed_forward: int
+    """In hundredths of a percent."""
+    position_tolerance: int
+    """A move is done when it is this close to its target..."""
+    speed_tolerance: int
+    """...and slower than this."""
+    stall_speed: int
+    """A motor that is slower than this while its power is used up..."""
+    stall_time_ms: int
+    """...for this long is stalled."""
+
+    @property
+    def counts_per_unit(self) -> float:
+        """Counts per unit of the program."""
+        return self.scale / _ONE
+
+    def counts(self, units: int) -> int:
+        """Return a number of the program's units in counts, rounded."""
+        return _times(units, self.scale)
+
+    def units(self, counts: int) -> int:
+        """Return a number of counts in the program's units, rounded; the firmware multiplies by a rounded inverse."""
+        return _times(counts, (_ONE * _ONE + self.scale // 2) // self.scale)
+
+
+def _times(number: int, factor: int) -> int:
+    """Return a number times a factor of 1/65,536, rounded."""
+    size = (abs(number) * factor + _ONE // 2) // _ONE
+    return size if number >= 0 else -size
+
+
+@dataclass(frozen=True, slots=True)
+class MotorModel:
+    """What a motor that is controlled can do at most, by the data that the firmware's authors measured."""
+
+    resistance_ohm: float
+    back_emf_v_s: float
+    torque_nm_per_a: float
+    friction_nm: float
+
+    def steady_dps(self, actuation: int, battery_v: float) -> float:
+        """Return the speed that a power leads to; 0 if friction holds the motor."""
+        ideal_dps = battery_v * abs(actuation) / FULL_ACTUATION / self.back_emf_v_s * 180 / pi
+        speed = max(0.0, ideal_dps - self.friction_dps)
+        return speed if actuation >= 0 else -speed
+
+    @property
+    def friction_dps(self) -> float:
+        """The speed that the voltage lost by friction would lead to."""
+        return (
+            self.resistance_ohm
+            * self.friction_nm
+            / self.torque_nm_per_a
+            / self.back_emf_v_s
+            * 180
+            / pi
+        )
+
+
+MODELS: Mapping[str, MotorModel] = {
+    "large": MotorModel(5.504587, 0.473084, 0.274603, 0.016476),
+    "medium": MotorModel(10.727729, 0.291152, 0.245926, 0.024593),
+}
+"""By `MotorSpec.kind`."""
+
+BATTERY_V = 8.0
+"""The voltage at which the motors' numbers hold."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Motor:
+    """What differs between kinds of motor; angles in degrees, power in percent."""
+
+    speed: int
+    acceleration: int
+    gains: tuple[int, int, int]
+    feed_forward: int
+
+
+@dataclass(frozen=True, slots=True)
+class Firmware:
+    """One version of the firmware."""
+
+    motors: Mapping[str, _Motor]
+    position_tolerance_deg: int
+    stall_speed_dps: int
+    straight_speed: tuple[int, int]
+    """The usual speed of a drive base, as a fraction of its limit; likewise the following."""
+    straight_acceleration: tuple[int, int]
+    turn_rate: tuple[int, int]
+    turn_acceleration: tuple[int, int]
+    divides_units: bool
+    """Whether it takes these fractions of limits that are rounded to units of the program."""
+
+
+THIRD = (1, 3)
+FIRMWARES: Mapping[MotorLaw, Firmware] = {
+    MotorLaw.PYBRICKS: Firmware(
+        {"large": _Motor(800, 1600, (400, 1200, 5), 0), "medium": _Motor(1000, 4000, (300, 400, 3), 20)},
+        5, 15, THIRD, THIRD, THIRD, THIRD, divides_units=True,
+    ),
+    MotorLaw.PYBRICKS_4: Firmware(
+        {"large": _Motor(800, 2000, (400, 1200, 5), 0), "medium": _Motor(1200, 2000, (300, 400, 3), 20)},
+        10, 20, (2, 5), (3, 8), THIRD, (3, 8), divides_units=False,
+    ),
+}  # fmt: skip
+
+
+def motor_settings(law: MotorLaw, kind: str, gear_ratio: float = 1.0) -> ControlSettings:
+    """Return the settings of a new motor.
+
+    Args:
+        kind: One of `MODELS`.
+        gear_ratio: Turns of the motor per turn of what it drives.
+    """
+    firmware = FIRMWARES[law]
+    motor = firmware.motors[kind]
+    kp, ki, kd = motor.gains
+    return ControlSettings(
+        scale=round(COUNTS_PER_DEG * gear_ratio * _ONE),
+        speed=motor.speed * COUNTS_PER_DEG,
+        acceleration=motor.acceleration * COUNTS_PER_DEG,
+        actuation=FULL_ACTUATION,
+        kp=kp,
+        ki=ki,
+        kd=kd,
+        integral_range=45,
+        integral_rate=10,
+        feed_forward=motor.feed_forward * 100,
+        position_tolerance=firmware.position_tolerance_deg * COUNTS_PER_DEG,
+        speed_tolerance=50 * COUNTS_PER_DEG,
+        stall_speed=firmware.stall_speed_dps * COUNTS_PER_DEG,
+        stall_time_ms=200,
+    )
+
+
+def pair_settings(
+    left: ControlSettings, right: ControlSettings, counts_per_unit: float
+) -> ControlSettings:
+    """Return the settings of one controller of a drive base, which moves the sum or the difference of two motors.
+
+    Args:
+        counts_per_unit: Counts of the sum or the difference per mm or degree of the robot.
+    """
+    return replace(
+        left,
+        scale=round(counts_per_unit * _ONE),
+        speed=left.speed + right.speed,
+        acceleration=2 * (left.acceleration + right.acceleration),
+        actuation=left.actuation + right.actuation,
+        kp=divided(left.kp + right.kp, 4),
+        ki=divided(left.ki + right.ki, 4),
+        kd=divided(left.kd + right.kd, 4),
+        integral_range=left.integral_range + right.integral_range,
+        integral_rate=left.integral_rate + right.integral_rate,
+        feed_forward=(left.feed_forward + right.feed_forward) // 2,
+        position_tolerance=left.position_tolerance + right.position_tolerance,
+        speed_tolerance=left.speed_tolerance + right.speed_tolerance,
+        stall_speed=left.stall_speed + right.stall_speed,
+    )

@@ -1,0 +1,294 @@
+"""The simulation of one run: the current state of the world, and changes from outside."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from tuisim.engine.core.drift import can_strain_gyro, find_drift, sensed_turn_rate_dps
+from tuisim.engine.core.drive import float32, turn_rate_dps
+from tuisim.engine.core.driver.jiffies import draw_jiffies
+from tuisim.engine.core.driver.simulated import SimulatedMotor, change_load
+from tuisim.engine.core.end_stops import build_stops
+from tuisim.engine.core.geometry import Pose
+from tuisim.engine.core.motion import Motion, motor_of
+from tuisim.engine.core.motor_columns import MotorSink
+from tuisim.engine.core.profile import NS_PER_S
+from tuisim.engine.core.servo.motor import ServoMotor
+from tuisim.engine.core.spec import NO_PORT
+from tuisim.engine.core.state import Instant
+from tuisim.engine.core.tick_record import END_FLAGS, TICK_RECORD, TickSink
+
+if TYPE_CHECKING:
+    from tuisim.engine.core.commands.calls import Call
+    from tuisim.engine.core.motors import Motor
+    from tuisim.engine.core.servo.drive_base import DriveBase
+    from tuisim.engine.core.spec import MotorSpec, RobotSpec, RunSpec
+
+
+CommandHook = Callable[[int, int, "Call", tuple[float, ...]], None]
+"""Takes the time in ns, the number of the part, the call and its values, as in `SimulationCommand`."""
+Turn = tuple[float, float]
+"""Position in degrees and speed in degrees per second, both at the axle."""
+
+
+class Simulation(Motion):
+    """The world of one run."""
+
+    __slots__ = (
+        "_reported",
+        "_reported_tick",
+        "_reports_first",
+        "_stops",
+        "bases",
+        "on_command",
+        "on_turns",
+        "others",
+    )
+
+    def __init__(self, spec: RunSpec, sink: TickSink) -> None:
+        extra = spec.robot.extra_motors
+        self.others: tuple[Motor, ...] = tuple(
+            motor_of(spec, motor.kind, free=True) for motor in extra
+        )
+        """Motors that do not drive a wheel, in the order of `RobotSpec.extra_motors`."""
+        self._stops = tuple(
+            build_stops(spec.robot, *pair) for pair in zip(extra, self.others, strict=True)
+        )
+        super().__init__(spec, sink, self.others)
+        self._reports_first = spec.profile.motor_law.is_measured
+        self.on_turns: Callable[[tuple[Turn, ...]], None] = lambda _: None
+        """Called when one of the other motors deviates from its last report: until then it turns as reported."""
+        self._reported: tuple[Turn, ...] = ((0.0, 0.0),) * len(self.others)
+        self._reported_tick = 0
+        self.bases: list[DriveBase] = []
+        """The drive bases that the program has made, in their order."""
+        self.on_command: CommandHook = lambda *_: None
+        """Called with each command before it takes effect."""
+
+    @property
+    def motors_by_port(self) -> dict[str, Motor]:
+        """The motors that are on a port, by it."""
+        pairs = zip(self.spec.robot.motors, self.motors, strict=True)
+        return {spec.port: motor for spec, motor in pairs if spec.port != NO_PORT}
+
+    # Reading
+
+    def due_ns(self, tick: int) -> int:
+        """Return when a tick is due, in ns from the start: `profile.due_ns`, inlined."""
+        return -(-tick * NS_PER_S // self._hz)
+
+    def ticks_at(self, time_ns: int) -> int:
+        """Return the number of ticks that are due at a time."""
+        return time_ns * self._hz // NS_PER_S
+
+    @property
+    def pose(self) -> Pose:
+        """The robot's pose."""
+        drive = self.drive
+        return Pose(drive.x_mm, drive.y_mm, drive.heading_deg)
+
+    def instant(self, *, with_motors: bool = False) -> Instant:
+        """Return the current instant, with values rounded as the telemetry stores them.
+
+        Args:
+            with_motors: Whether with what the drivers know of the motors.
+        """
+        left, right, spec = float32(self._left_dps), float32(self._right_dps), self.spec
+        return Instant(
+            tick=self.tick,
+            pose=self.pose,
+            left_position_deg=self.left.position_deg,
+            right_position_deg=self.right.position_deg,
+            left_speed_dps=left,
+            right_speed_dps=right,
+            turn_rate_dps=turn_rate_dps(left, right, spec.robot)
+            if self._slipping is None
+            else sensed_turn_rate_dps(left, right, spec),
+            gyro_zero_deg=self.drive.gyro_zero_deg,
+            press_flags=self.press_flags,
+            noise=self.noise,
+            drift=find_drift(spec),
+            profile=spec.profile,
+            seed=spec.seed,
+            motors=self.motor_values if with_motors else (),
+        )
+
+    def records_since(self, first: int) -> Iterator[tuple[float, ...]]:
+        """Return the tick records from `first` on, with the fields of `TICK_RECORD`."""
+        return TICK_RECORD.iter_unpack(self._buffer[64 + 64 * first : 64 + 64 * self._sink.count])
+
+    # Changing
+
+    def find_number(self, motor: Motor) -> int:
+        """Return the number by which commands name a motor."""
+        return self.motors.index(motor)
+
+    def press(self, hand_flags: int) -> None:
+        """Let hands press the touch sensors with these flags, and no others."""
+        self.press_flags = self.press_flags & END_FLAGS | hand_flags
+
+    def restart(self, spec: RunSpec, sink: TickSink, motor_sink: MotorSink | None = None) -> None:
+        """Begin the recorded run of a simulation that was prepared without one, and has not run yet.
+
+        Args:
+            spec: Differs from the earlier one at most in seed, noise and start.
+            sink: Receives the tick records.
+            motor_sink: Receives what the drivers of the motors know; None if they have none, or nobody asks.
+        """
+        self._begin(spec, sink, motor_sink)
+
+    def place(self, pose: Pose) -> None:
+        """Set the robot's pose; the gyro keeps its angle."""
+        drive, before_deg = self.drive, self.drive.heading_deg
+        drive.put(pose)
+        drive.gyro_zero_deg = float32(drive.gyro_zero_deg + drive.heading_deg - before_deg)
+        if self._driven:
+            self._bar_wheels()
+
+    def reset_gyro(self) -> None:
+        """Make the current heading the gyro's 0."""
+        self.drive.gyro_zero_deg = float32(self.drive.heading_deg)
+
+    def change_robot(self, robot: RobotSpec) -> None:
+        """Go on with a robot that has other parts.
+
+        A motor of the same kind stays where its port is, as a wheel's or not; any other one is new, and at rest.
+        """
+        before = {
+            find_place(number, motor): number for number, motor in enumerate(self.spec.robot.motors)
+        }
+        sources = [before.get(find_place(at, motor)) for at, motor in enumerate(robot.motors)]
+        self.spec = replace(self.spec, robot=robot)
+        earlier = self.motors
+        motors = [
+            self._add_motor(motor.kind, free=number > 1)
+            if source is None
+            else self._keep_motor(earlier[source], motor.kind, source, number)
+            for number, (motor, source) in enumerate(zip(robot.motors, sources, strict=True))
+        ]
+        self.left, self.right, *others = motors
+        self.others, self.motors = tuple(others), tuple(motors)
+        self._take_others(sources[2:])
+        self._driven = tuple(motor for motor in motors if isinstance(motor, SimulatedMotor))
+        self._motor_recorder.change_motors(self._driven, sources, self._sink.count)
+        self._motor_recorder.make_room(self._room_end)
+        self._build_solids(self.spec)
+        self._strains_gyro = can_strain_gyro(self.spec)
+        if others:
+            # The robot had wheel motors only, until now.
+            self.__class__ = FurtherMotors
+
+    def _take_others(self, sources: Sequence[int | None]) -> None:
+        """Take over the stops and the reports of the other motors, by the numbers that they had among all motors."""
+        stops, reported, robot = self._stops, self._reported, self.spec.robot
+        pairs = [*zip(robot.extra_motors, self.others, sources, strict=True)]
+        self._stops = tuple(
+            stops[number] if source == number + 2 else build_stops(robot, motor, simulated)
+            for number, (motor, simulated, source) in enumerate(pairs)
+        )
+        self._reported = tuple(
+            (0.0, 0.0) if source is None or source < 2 else reported[source - 2]
+            for source in sources
+        )
+
+    def _add_motor(self, kind: str, *, free: bool) -> Motor:
+        """Return a motor that has been at rest until now."""
+        motor = motor_of(self.spec, kind, free=free)
+        if isinstance(motor, SimulatedMotor):
+            motor.start_clock(draw_jiffies(self.spec.seed))
+        motor.glide_evenly(self.tick)
+        return motor
+
+    def _keep_motor(self, motor: Motor, kind: str, before: int, after: int) -> Motor:
+        """Return a motor that was at rest until now, or stays what it is: a wheel's or not, by its number."""
+        free = after > 1
+        if free != (before > 1) and isinstance(motor, SimulatedMotor | ServoMotor):
+            change_load(motor.axle, self.spec, kind, free=free)
+        return motor
+
+    @property
+    def has_driven(self) -> bool:
+        """Whether a wheel has turned, or is about to."""
+        is_moving = self.left.mode or self.right.mode
+        return bool(is_moving) or any(record[7] or record[8] for record in self.records_since(0))
+
+    def has_turned(self, number: int) -> bool:
+        """Return whether a motor that drives no wheel has turned or is about to, by its number among them."""
+        motor = self.others[number]
+        return bool(motor.mode or motor.position_deg) or self._reported[number] != (0.0, 0.0)
+
+    def rewrite_record(self) -> None:
+        """Write the current tick's record again, after a change from outside."""
+        # In one write: readers see this record already.
+        at = 64 * self._sink.count
+        self._buffer[at : at + 64] = TICK_RECORD.pack(*self._fields())
+
+
+REPORT_DEG = 0.25
+"""A motor farther than this from the position that its last report predicts is reported again."""
+
+
+def find_place(number: int, motor: MotorSpec) -> tuple[str | int, str]:
+    """Return by what a motor is known again: its port, or its number if it has none, and its kind."""
+    return number if motor.port == NO_PORT else motor.port, motor.kind
+
+
+class FurtherMotors(Simulation):
+    """A simulation whose robot has motors besides its two wheel motors. They do not change the pose."""
+
+    __slots__ = ()
+
+    def advance(self, ticks: int, until_change: bool = False) -> int:
+        """Run ticks as `Motion.advance` does, one by one while an extra motor runs."""
+        done = 0
+        self._report_turns()
+        while done < ticks and not all(motor.resting for motor in self.others):
+            if until_change and self._driven and self.notice_change():
+                return done
+            self.tick_once()
+            done += 1
+            if until_change and self.changed:
+                return done
+        return done + super().advance(ticks - done, until_change) if done < ticks else done
+
+    def notice_change(self) -> bool:
+        """Report the turns first, as `advance` does."""
+        self._report_turns()
+        return super().notice_change()
+
+    def tick_once(self) -> None:
+        """Run one tick of the extra motors, then of the robot, which records it."""
+        if self._reports_first:
+            # A position may have been set since the last tick.
+            self._report_turns()
+        # Before anything moves: without space for its record there is no tick.
+        self._make_room(1)
+        for motor, stops in zip(self.others, self._stops, strict=True):
+            if not motor.resting:
+                before = motor.mode
+                stops.step(motor, self.tick + 1)
+                if not self._driven and (
+                    motor.mode != before or motor.blocked_ticks == self.stall_ticks
+                ):
+                    self.changed = True
+        flags = sum(stops.flags for stops in self._stops)
+        self.press_flags = self.press_flags & ~END_FLAGS | flags
+        super().tick_once()
+        self._report_turns()
+
+    def _report_turns(self) -> None:
+        turns = tuple((motor.position_deg, motor.counting_dps) for motor in self.others)
+        since_s = (self.tick - self._reported_tick) * self._tick_s
+        if any(
+            dps != before_dps or abs(position - before - before_dps * since_s) > REPORT_DEG
+            for (position, dps), (before, before_dps) in zip(turns, self._reported, strict=True)
+        ):
+            self._reported, self._reported_tick = turns, self.tick
+            self.on_turns(turns)
+
+
+def simulation_of(spec: RunSpec, sink: TickSink) -> Simulation:
+    """Return the simulation of a run: the plain one if the wheel motors are its only motors."""
+    return FurtherMotors(spec, sink) if spec.robot.extra_motors else Simulation(spec, sink)

@@ -1,0 +1,784 @@
+"""The specification of a run: robot, world, noise and profile as frozen data.
+
+Lengths are in mm, angles in degrees, x to the right of the robot and y forward of the
+midpoint between its wheels. Defaults are those of the original course's Default_Robot.
+
+To add a value: add a line to its spec, `later=True`. Files, options, magic lines, forms and tables then have it.
+To add a sensor: add its spec, and a field of `RobotSpec`.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import MISSING
+from typing import Any, NamedTuple
+
+from tuisim.base.errors import ObstacleError, RobotError, require_one_of
+from tuisim.engine.core.drift_spec import NO_DRIFT, DriftSpec
+from tuisim.engine.core.geometry import Pose
+from tuisim.engine.core.profile import ProfileSpec
+from tuisim.engine.core.spec_fields import (
+    Spec,
+    choice,
+    color,
+    flag,
+    named_number,
+    named_part,
+    number,
+    numbers,
+    part,
+    parts,
+    seed,
+    some,
+    spec,
+    text,
+    whole,
+)
+from tuisim.engine.core.values import Number, Part, Parts, values_of
+
+FIELD_WIDTH_MM = 2362
+"""Width of the field; one mat pixel is one mm."""
+
+FIELD_HEIGHT_MM = 1143
+"""Height of the field."""
+
+OUTPUT_PORTS = ("outA", "outB", "outC", "outD")
+NO_PORT = "none"
+"""In place of the ports of both wheels: the robot has none."""
+INPUT_PORTS = ("in1", "in2", "in3", "in4")
+
+ROBOT_WEIGHTS: Mapping[str, float] = {"weightless": 0.0, "light": 3.0, "medium": 6.0, "heavy": 9.0}
+"""Names for `RobotSpec.weight`: a motor accelerates by 5000 / weight degrees per second each second."""
+
+STRATEGIES = ("mean", "gaussian", "centre")
+"""How a colour sensor weights the pixels of its disc: equally, by a bell curve, or the centre threefold."""
+
+BACKGROUND_FITS = ("stretch", "fit", "centre", "corner")
+"""How the user's image becomes a mat: stretched over the field, as large as fits, or pixel for pixel in the
+centre or from the upper left corner."""
+
+MOTOR_KINDS = ("large", "medium")
+"""Kinds of motors, for `MotorSpec.kind` and the wheel motors."""
+
+EMPTY_MAT = "Empty_Map"
+"""The mat without anything on it."""
+
+BUTTONS = ("up", "down", "left", "right", "enter", "backspace")
+"""The brick's buttons, by their names in the library."""
+
+REMOTE_BUTTONS = ("top_left", "bottom_left", "top_right", "bottom_right", "beacon")
+"""Buttons of the remote control, by their names in ev3dev2."""
+
+REMOTE_BY_HAND = {
+    "remote.left_up": "top_left",
+    "remote.left_down": "bottom_left",
+    "remote.right_up": "top_right",
+    "remote.right_down": "bottom_right",
+    "remote.beacon": "beacon",
+}
+"""Names of the remote control's buttons for presses by hand; each of `REMOTE_BUTTONS` by its name."""
+
+TOUCH = "touch"
+"""Presses every touch sensor by hand."""
+
+PRESSABLE = (*BUTTONS, TOUCH, *INPUT_PORTS, *REMOTE_BY_HAND)
+"""What can be pressed by hand: buttons, touch sensors by their ports, and the remote control."""
+
+REMOTE_CHANNELS = (1, 2, 3, 4)
+"""Channels of a remote control or beacon."""
+
+MOTOR_ENDS = ("low", "high")
+"""Ends of the range of a motor with end stops, for `TouchSpec.pressed_at`."""
+
+MIN_RANGE_DEG = 5.0
+"""Smallest distance between the end stops of a motor."""
+
+_MAX_RANGE_DEG = 100_000
+_MAX_POSITION_MM = 10_000
+
+
+def _x(default: Any = MISSING) -> Any:
+    return number(
+        -500,
+        500,
+        default=default,
+        unit="mm",
+        label="x mm",
+        help="to the right of the robot's centre",
+    )
+
+
+def _y(default: Any = MISSING) -> Any:
+    return number(-500, 500, default=default, unit="mm", label="y mm", help="forward of the axle")
+
+
+def _direction() -> Any:
+    about = "counter-clockwise from straight ahead"
+    return number(-360, 360, default=0.0, unit="°", label="Angle °", help=about)
+
+
+def _input_port(default: str) -> Any:
+    return choice(INPUT_PORTS, what="port", default=default, label="Port", help="in1 … in4")
+
+
+def _output_port(default: str, label: str) -> Any:
+    return choice(
+        (*OUTPUT_PORTS, NO_PORT), what="port", default=default, label=label, help="outA … outD"
+    )
+
+
+def _sensor_name(default: str) -> Any:
+    return text(what="sensor name", pattern=SENSOR_NAME, default=default)
+
+
+SENSOR_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,30}")
+"""The names that sensors can have."""
+
+
+@spec
+class MotorSpec(Spec):
+    """A motor on a port. Its end stops are in degrees of the motor from its position at the start; None is no stop.
+
+    A motor that is mounted the other way round just has its stops at other degrees, so this is no value of its own.
+    """
+
+    port: str = choice((*OUTPUT_PORTS, NO_PORT), what="port")
+    kind: str = choice(MOTOR_KINDS, what="kind of motor", default="medium", help="large or medium")
+    low_deg: float | None = number(
+        -_MAX_RANGE_DEG,
+        0,
+        default=None,
+        later=True,
+        unit="°",
+        help="end stop backwards, from the position at the start",
+    )
+    """The motor turns no further backwards than here; 0 or below."""
+    high_deg: float | None = number(
+        0,
+        _MAX_RANGE_DEG,
+        default=None,
+        later=True,
+        unit="°",
+        help="end stop forwards, from the position at the start",
+    )
+    """The motor turns no further forwards than here; 0 or above."""
+
+    def check(self) -> None:
+        if (
+            self.low_deg is not None
+            and self.high_deg is not None
+            and self.high_deg - self.low_deg < MIN_RANGE_DEG
+        ):
+            raise RobotError(f"must be at least {MIN_RANGE_DEG:g} above low_deg", key="high_deg")
+
+
+@spec
+class SensorSpec(Spec):
+    """Any sensor."""
+
+    name: str = _sensor_name("sensor")
+    """Prefix of its telemetry columns, such as `left`."""
+    port: str = _input_port("in1")
+
+    def key_of(self, name: str) -> str:
+        return f"{self.name}.{name}"
+
+
+@spec
+class TouchSpec(SensorSpec):
+    """A touch sensor: pressed while its bumper touches an obstacle or a wall, or by a motor at its end stop."""
+
+    name: str = _sensor_name("touch")
+    port: str = _input_port("in1")
+    x_mm: float = _x(0.0)
+    y_mm: float = _y(45.0)
+    width_mm: float = number(
+        1, 500, default=20.0, unit="mm", label="width mm", help="of the bumper, across the robot"
+    )
+    """Width of the bumper, across the robot."""
+    pressed_by: str = choice(
+        (*OUTPUT_PORTS, ""),
+        what="port",
+        default="",
+        later=True,
+        help="port of the motor that presses it, in place of obstacles and walls",
+    )
+    """Port of the motor that presses it at an end stop, in place of obstacles and walls; empty for a bumper."""
+    pressed_at: str = choice(
+        MOTOR_ENDS,
+        what="end",
+        default="low",
+        later=True,
+        help="low or high: the motor's end stop where it does",
+    )
+    """The end stop at which that motor presses it, one of `MOTOR_ENDS`."""
+
+
+@spec
+class InfraredSpec(SensorSpec):
+    """The infrared sensor: proximity, direction and distance of a beacon, buttons of a remote control."""
+
+    name: str = _sensor_name("infrared")
+    port: str = _input_port("in4")
+    x_mm: float = _x(0.0)
+    y_mm: float = _y(20.0)
+    angle_deg: float = _direction()
+    """Direction, counter-clockwise from straight ahead."""
+
+
+@spec
+class ColorSensorSpec(SensorSpec):
+    """A downward colour sensor: the mean of a disc of mat pixels."""
+
+    name: str = text(what="sensor name", pattern=SENSOR_NAME)
+    port: str = choice(INPUT_PORTS, what="port", label="Port", help="in1 … in4")
+    x_mm: float = _x()
+    y_mm: float = _y()
+    # A disc of 1 pixel has no pixel strictly inside it.
+    diameter_mm: int = whole(
+        2, 100, default=20, unit="mm", label="⌀ mm", help="of the visible disc, whole mm"
+    )
+    strategy: str = choice(
+        STRATEGIES,
+        what="strategy",
+        default="mean",
+        label="Weighing",
+        help="weights of the disc's pixels: mean, gaussian or centre",
+    )
+    """How the pixels of the disc are weighted, one of `STRATEGIES`."""
+    white_percent: float | None = number(
+        50,
+        100,
+        default=None,
+        later=True,
+        unit="%",
+        label="White %",
+        help="reflected light of white; by default as the profile says",
+    )
+    """Reflected light of white; None: `ProfileSpec.white_percent`."""
+    black_percent: float | None = number(
+        0,
+        49,
+        default=None,
+        later=True,
+        unit="%",
+        label="Black %",
+        help="reflected light of black; by default as the profile says",
+    )
+    """Reflected light of black; None: `ProfileSpec.black_percent`."""
+
+
+@spec
+class UltrasonicSpec(SensorSpec):
+    """The forward distance sensor: the nearest echo of a fan of rays."""
+
+    name: str = _sensor_name("ultrasonic")
+    port: str = _input_port("in1")
+    x_mm: float = _x(0.0)
+    y_mm: float = _y(20.0)
+    angle_deg: float = _direction()
+    max_range_mm: float = number(
+        1, 10_000, default=2550.0, unit="mm", label="Range mm", help="reported when no echo returns"
+    )
+    """Reading when no echo returns (EV3 sensor data sheet)."""
+    ray_angles_deg: tuple[float, ...] = numbers(
+        -360,
+        360,
+        100,
+        default=(-21.0, -14.0, -7.0, 0.0, 7.0, 14.0, 21.0),
+        unit="°",
+        label="Rays °",
+        help="directions of the rays; the nearest echo counts",
+    )
+    noise_mm: float = number(
+        0,
+        1000,
+        default=0.0,
+        unit="mm",
+        label="Noise ± mm",
+        help="uniform, plus or minus this value",
+    )
+    """Uniform ±noise_mm on every distance."""
+
+
+@spec
+class GyroSpec(SensorSpec):
+    """The gyro: clockwise angle since the last reset, and rate of turn."""
+
+    name: str = _sensor_name("gyro")
+    port: str = _input_port("in4")
+    keeps_angle: bool = flag(
+        default=False,
+        later=True,
+        label="Keeps angle",
+        help="a newer sensor, from date code N4 on: a change of mode leaves its angle",
+    )
+    """Whether a change of mode leaves the angle as it is, where the profile lets it restart."""
+
+
+@spec
+class BeaconSpec(Spec):
+    """An infrared beacon on the field, in world coordinates."""
+
+    ERROR = ObstacleError
+    KEY = "beacon"
+
+    x_mm: float = number(-_MAX_POSITION_MM, _MAX_POSITION_MM, unit="mm")
+    y_mm: float = number(-_MAX_POSITION_MM, _MAX_POSITION_MM, unit="mm")
+    channel: int = choice(REMOTE_CHANNELS, what="channel", default=1, help="1 to 4")
+
+
+@spec
+class RemotePress(Spec):
+    """Buttons of the remote control that are pressed for some time."""
+
+    ERROR = ObstacleError
+    KEY = "remote"
+
+    buttons: tuple[str, ...] = some(
+        REMOTE_BUTTONS,
+        what="button",
+        help=f"one or two of {', '.join(REMOTE_BUTTONS[:4])}, or beacon",
+    )
+    """One or two of `REMOTE_BUTTONS`; `beacon` only alone, since the sensor cannot distinguish other combinations."""
+    from_s: float = number(0, 1e9, default=0.0, unit="s", help="simulated seconds")
+    until_s: float = number(0, 1e9, default=1e9, unit="s")
+    channel: int = choice(REMOTE_CHANNELS, what="channel", default=1, help="1 to 4")
+
+    def check(self) -> None:
+        if frozenset(self.buttons) not in REMOTE_CODES:
+            raise ObstacleError(
+                f"the sensor does not report {', '.join(self.buttons) or 'no button'}",
+                f"one or two of {', '.join(REMOTE_BUTTONS[:4])}, or beacon",
+                key="remote.buttons",
+            )
+        if not self.from_s <= self.until_s:
+            raise ObstacleError("ends before it begins", key="remote.until_s")
+
+
+REMOTE_CODES = {
+    frozenset(buttons.split("+")): code
+    for code, buttons in enumerate(
+        (
+            "top_left",
+            "bottom_left",
+            "top_right",
+            "bottom_right",
+            "top_left+top_right",
+            "top_left+bottom_right",
+            "bottom_left+top_right",
+            "bottom_left+bottom_right",
+            "beacon",
+            "top_left+bottom_left",
+            "top_right+bottom_right",
+        ),
+        start=1,
+    )
+}
+"""Value of the sensor for each set of buttons; 0 is none."""
+
+
+@spec
+class PenSpec(Spec):
+    """The pen that draws the robot's trace."""
+
+    KEY = "pen"
+
+    x_mm: float = _x(0.0)
+    y_mm: float = _y(0.0)
+    color: str = color(
+        default="red",
+        label="Colour",
+        flags=("-P", "--pencolor"),
+        help="colour of the pen: a CSS name, or #rrggbb",
+    )
+    """Any CSS colour name, or #rrggbb."""
+    width_mm: float = number(
+        0.1,
+        200,
+        default=6.0,
+        unit="mm",
+        label="Width mm",
+        flags=("--pen-width",),
+        in_config=False,
+        help="width of the trace",
+    )
+    down: bool = flag(
+        default=False,
+        label="Down",
+        flags=("-p", "--pendown"),
+        in_config=False,
+        help="start with the pen down",
+    )
+
+
+@spec
+class RobotSpec(Spec):
+    """A robot with two wheels, or one that stands and only moves other motors."""
+
+    name: str = text(what="name", default="Default_Robot", label="Name", most=100)
+    wheel_diameter_mm: float = number(1, 500, default=56.0, unit="mm", label="Wheel ⌀ mm")
+    wheel_spacing_mm: float = number(
+        1,
+        1000,
+        default=180.0,
+        unit="mm",
+        label="Spacing mm",
+        help="between the centres of the wheels",
+    )
+    wheel_width_mm: float = number(1, 200, default=20.0, unit="mm", label="Width mm")
+    back_mm: float = number(
+        -1000,
+        0,
+        default=-120.0,
+        unit="mm",
+        label="Back mm",
+        help="how far the body reaches behind the axle, as a negative y",
+    )
+    """How far the body extends behind the axle, as a negative y."""
+    weight: float = named_number(
+        0,
+        1000,
+        ROBOT_WEIGHTS,
+        default=ROBOT_WEIGHTS["medium"],
+        label="Weight",
+        help=f"{', '.join(ROBOT_WEIGHTS)}, or a number",
+    )
+    """0 changes speed at once; otherwise the acceleration is 5000 / weight degrees per second each second."""
+    left_port: str = _output_port("outB", "Left motor")
+    """Port of the motor of the left wheel; `NO_PORT`, as `right_port`, on a robot without wheels."""
+    right_port: str = _output_port("outC", "Right motor")
+    color_sensors: tuple[ColorSensorSpec, ...] = parts(
+        ColorSensorSpec,
+        default=(
+            ColorSensorSpec("left", "in2", -20.0, 30.0),
+            ColorSensorSpec("right", "in3", 20.0, 30.0),
+        ),
+        standard=True,
+    )
+    ultrasonic: UltrasonicSpec | None = part(
+        UltrasonicSpec, default=UltrasonicSpec(), optional=True, standard=True
+    )
+    gyro: GyroSpec | None = part(GyroSpec, default=GyroSpec(), optional=True, standard=True)
+    pen: PenSpec = part(PenSpec, default=PenSpec())
+    extra_motors: tuple[MotorSpec, ...] = parts(MotorSpec, default=())
+    """Motors that do not drive a wheel."""
+    extra_ultrasonics: tuple[UltrasonicSpec, ...] = parts(
+        UltrasonicSpec, default=(), key="ultrasonics"
+    )
+    touch_sensors: tuple[TouchSpec, ...] = parts(TouchSpec, default=())
+    infrared: InfraredSpec | None = part(InfraredSpec, default=None)
+    extra_infrareds: tuple[InfraredSpec, ...] = parts(
+        InfraredSpec, default=(), key="infrareds", later=True
+    )
+    left_motor: str = choice(
+        MOTOR_KINDS, what="kind of motor", default="large", later=True, label="Left kind"
+    )
+    """Kind of the motor of the left wheel, one of `MOTOR_KINDS`."""
+    right_motor: str = choice(
+        MOTOR_KINDS, what="kind of motor", default="large", later=True, label="Right kind"
+    )
+    left_reversed: bool = flag(
+        default=False,
+        later=True,
+        label="Left rev.",
+        help="mounted the other way round: positive speeds turn the wheel backwards",
+    )
+    """Whether the motor of the left wheel is mounted the other way round: positive speeds turn the wheel backwards."""
+    right_reversed: bool = flag(
+        default=False,
+        later=True,
+        label="Right rev.",
+        help="mounted the other way round: positive speeds turn the wheel backwards",
+    )
+    gear_ratio: float = number(
+        0.01, 100, default=1.0, later=True, label="Gear ratio", help="motor turns per wheel turn"
+    )
+    """Turns of a wheel's motor for one turn of the wheel: above 1 the robot is slower than its motors."""
+    mass_kg: float = number(
+        0.1,
+        20,
+        default=0.95,
+        unit="kg",
+        later=True,
+        label="Mass kg",
+        help="with brick and battery; only where motors are as on the brick",
+    )
+    battery_v: float = number(
+        5,
+        9,
+        default=8.0,
+        unit="V",
+        later=True,
+        label="Battery V",
+        help="without a load: it sets the highest speed",
+    )
+
+    @property
+    def has_wheels(self) -> bool:
+        """Whether motors drive the robot."""
+        return self.left_port != NO_PORT
+
+    @property
+    def wheel_motors(self) -> tuple[MotorSpec, MotorSpec]:
+        """The motors of the left and the right wheel, of a robot with wheels."""
+        return MotorSpec(self.left_port, self.left_motor), MotorSpec(
+            self.right_port, self.right_motor
+        )
+
+    @property
+    def motors(self) -> tuple[MotorSpec, ...]:
+        """All motors, wheel motors first."""
+        return *self.wheel_motors, *self.extra_motors
+
+    @property
+    def sensors(self) -> tuple[SensorSpec, ...]:
+        """All mounted sensors, in the order of the telemetry columns."""
+        return tuple(sensor for mount in MOUNTS for sensor in self.sensors_in(mount))
+
+    @property
+    def further_sensors(self) -> tuple[SensorSpec, ...]:
+        """Sensors that are not standard equipment, in the same order."""
+        return tuple(
+            sensor for mount in MOUNTS if not mount.standard for sensor in self.sensors_in(mount)
+        )
+
+    def sensors_in(self, mount: Mount) -> tuple[SensorSpec, ...]:
+        """Return the sensors of one mount."""
+        found = getattr(self, mount.field)
+        if mount.many:
+            return tuple(found)
+        return () if found is None else (found,)
+
+    def check(self) -> None:
+        used = self._check_wheel_ports()
+        for motor in self.extra_motors:
+            require_one_of(motor.port, "port", OUTPUT_PORTS, "motors")
+            if motor.port in used:
+                raise RobotError(
+                    f"two motors are on {motor.port}", "give each its own port", key="motors"
+                )
+            used.add(motor.port)
+        for sensor in self.sensors:
+            if sensor.port in used:
+                raise RobotError(
+                    f"two sensors are on {sensor.port}",
+                    "give each its own port, or remove one, such as `ultrasonic = false`",
+                    key=f"{sensor.name}.port",
+                )
+            used.add(sensor.port)
+        self._check_names()
+        for touch in self.touch_sensors:
+            self._check_presser(touch)
+
+    def _check_wheel_ports(self) -> set[str]:
+        """Return the ports of the wheels."""
+        if self.left_port == self.right_port == NO_PORT:
+            return set()
+        for key in ("left_port", "right_port"):
+            require_one_of(getattr(self, key), "port", OUTPUT_PORTS, key)
+        if self.left_port == self.right_port:
+            raise RobotError(
+                f"both motors are on {self.left_port}", "give each its own port", key="right_port"
+            )
+        return {self.left_port, self.right_port}
+
+    def _check_names(self) -> None:
+        names = [sensor.name for sensor in self.color_sensors]
+        if len(set(names)) < len(names):
+            raise RobotError(
+                "two colour sensors have the same name", "give each its own", key="color_sensors"
+            )
+        if len({sensor.name for sensor in self.sensors}) < len(self.sensors):
+            raise RobotError("two sensors have the same name", "give each its own", key="sensors")
+
+    def _check_presser(self, touch: TouchSpec) -> None:
+        port, end = touch.pressed_by, f"{touch.pressed_at}_deg"
+        motors = {motor.port: motor for motor in self.extra_motors}
+        if port and port not in motors:
+            what = "drives a wheel" if port in (self.left_port, self.right_port) else "has no motor"
+            raise RobotError(
+                f"{port} {what}", "the port of another motor", key=f"{touch.name}.pressed_by"
+            )
+        if port and getattr(motors[port], end) is None:
+            raise RobotError(
+                f"the motor on {port} has no such end stop",
+                f"give it {end}",
+                key=f"{touch.name}.pressed_at",
+            )
+
+
+class Mount(NamedTuple):
+    """Where `RobotSpec` stores sensors of one class."""
+
+    field: str
+    """The field of `RobotSpec`."""
+    spec: type[SensorSpec]
+    """Class of the sensors."""
+    many: bool
+    """Whether the field is a tuple; otherwise it is one sensor or None."""
+    standard: bool
+    """Whether panels and files have a dedicated place for it; all others are handled generically."""
+    key: str
+    """Key in a robot file."""
+
+
+MOUNTS = tuple(
+    Mount(name, value.of, isinstance(value, Parts), value.standard, value.key or name)
+    for name, value in values_of(RobotSpec).items()
+    if isinstance(value, Part) and issubclass(value.of, SensorSpec)
+)
+"""All fields for sensors, in the order of the telemetry columns."""
+
+
+@spec
+class Obstacle(Spec):
+    """An upright box, seen from above: lower-left corner and size in mm."""
+
+    ERROR = ObstacleError
+
+    x_mm: float = number(-_MAX_POSITION_MM, _MAX_POSITION_MM, unit="mm")
+    y_mm: float = number(-_MAX_POSITION_MM, _MAX_POSITION_MM, unit="mm")
+    width_mm: float = number(-_MAX_POSITION_MM, _MAX_POSITION_MM, unit="mm")
+    height_mm: float = number(-_MAX_POSITION_MM, _MAX_POSITION_MM, unit="mm")
+
+    def check(self) -> None:
+        for key in ("width_mm", "height_mm"):
+            if getattr(self, key) <= 0:
+                raise ObstacleError(f"must be above 0, got {getattr(self, key)!r}", key=key)
+
+
+@spec
+class NoiseSpec(Spec):
+    """Amplitude of the noise on readings and wheel speeds."""
+
+    KEY = "noise"
+
+    light: int = whole(
+        0, 128, default=0, label="Light", flags=("-N", "--sensornoise"), help="light noise, 0 … 128"
+    )
+    """0 … 128: uniform ±light on every pixel and channel that a colour sensor sees."""
+    motor: int = whole(
+        0,
+        500,
+        default=0,
+        unit="°/s",
+        label="Motor",
+        flags=("-M", "--motornoise"),
+        help="motor noise, 0 … 500",
+    )
+    """0 … 500: uniform ±motor degrees per second on the wheel speed, every tick."""
+
+
+START_VALUES = {
+    "x_mm": Number(
+        -_MAX_POSITION_MM,
+        _MAX_POSITION_MM,
+        unit="mm",
+        flags=("-x", "--x", "--xpos"),
+        in_config=False,
+        label="X",
+        help="start x in mm",
+    ),
+    "y_mm": Number(
+        -_MAX_POSITION_MM,
+        _MAX_POSITION_MM,
+        unit="mm",
+        flags=("-y", "--y", "--ypos"),
+        in_config=False,
+        label="Y",
+        help="start y in mm",
+    ),
+    "heading_deg": Number(
+        -36_000,
+        36_000,
+        unit="°",
+        flags=("-a", "--angle"),
+        in_config=False,
+        label="Angle",
+        help="start heading, counter-clockwise from +x",
+    ),
+}
+"""The values of a start pose; a run may go on from any other pose."""
+
+
+@spec
+class WorldSpec(Spec):
+    """The robot's environment."""
+
+    background: str = text(what="name of a mat", default=EMPTY_MAT)
+    obstacles: tuple[Obstacle, ...] = parts(Obstacle, default=())
+    walls: bool = flag(
+        default=True, label="Walls", flags=("--walls",), help="walls on the edges of the field"
+    )
+    """Whether the field has walls on its four edges: they echo, and stop the robot if `solid`."""
+    solid: bool = flag(
+        default=False,
+        label="Solid",
+        flags=("--solid",),
+        off_flag="--no-solid",
+        in_config=False,
+        help="obstacles and walls stop the robot",
+        off_help="the robot drives through obstacles and walls",
+    )
+    """Whether obstacles and walls stop the robot."""
+    background_fit: str = choice(
+        BACKGROUND_FITS,
+        default=BACKGROUND_FITS[0],
+        label="Image fit",
+        flags=("--background-fit",),
+        in_config=False,
+        help="how an image is placed on the field",
+    )
+    """One of `BACKGROUND_FITS`, for the user's image."""
+    pen_marks: bool = flag(
+        default=False,
+        label="Marks mat",
+        flags=("--pen-marks",),
+        in_config=False,
+        help="the sensors see what the pen draws",
+    )
+    """Whether the pen marks the mat that the sensors see."""
+    start: Pose = part(Pose, values=START_VALUES, default=Pose(100.0, 800.0, 0.0))
+    noise: NoiseSpec = part(NoiseSpec, default=NoiseSpec())
+    drift: DriftSpec = named_part(
+        DriftSpec,
+        default=NO_DRIFT,
+        later=True,
+        label="Drift",
+        flags=("--drift",),
+        help="errors of wheels and sensors: none, typical, or values",
+    )
+    """Errors of wheels and sensors that a program does not know of."""
+    floor: bool = flag(
+        default=False,
+        later=True,
+        help="where there are no walls, the ground goes on around the mat in the colour of its edges",
+    )
+    """Whether the mat lies on a floor of its own colour."""
+    beacon: BeaconSpec | None = part(BeaconSpec, default=None)
+    """An infrared beacon."""
+    remote: tuple[RemotePress, ...] = parts(RemotePress, default=())
+    """Presses of buttons on the infrared remote control."""
+
+    @property
+    def is_open(self) -> bool:
+        """Whether the robot may leave the field for a floor that goes on around it."""
+        return self.floor and not self.walls
+
+
+@spec
+class RunSpec(Spec):
+    """Everything that determines a run besides the program: the same spec gives the same log."""
+
+    robot: RobotSpec = part(RobotSpec)
+    world: WorldSpec = part(WorldSpec)
+    profile: ProfileSpec = part(ProfileSpec)
+    seed: int = seed(
+        default=0,
+        label="Seed",
+        flags=("--seed",),
+        in_config=False,
+        help="seed for noise and `random`",
+    )

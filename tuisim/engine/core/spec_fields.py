@@ -1,0 +1,226 @@
+"""Specs: frozen data whose fields are values, each made by the function here for its kind."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import MISSING, Field, dataclass, field
+from typing import Any, ClassVar, NoReturn, Self, TypeVar, dataclass_transform
+
+from tuisim.base.errors import ConfigError, RobotError
+from tuisim.engine.core.values import (
+    MAX_SEED,
+    METADATA,
+    Choice,
+    Choices,
+    Color,
+    Flag,
+    NamedNumber,
+    NamedPart,
+    Number,
+    Numbers,
+    Part,
+    Parts,
+    Seed,
+    Text,
+    Value,
+    Whole,
+    WrongValue,
+    values_of,
+)
+
+
+def _field(value: Value, default: Any, *, optional: bool = False) -> Any:
+    value.optional = optional or default is None
+    return field(default=default, metadata={METADATA: value})
+
+
+def flag(*, default: Any = MISSING, **about: Any) -> Any:
+    """Return a field for a `Flag`."""
+    return _field(Flag(**about), default)
+
+
+def number(low: float, high: float, *, default: Any = MISSING, **about: Any) -> Any:
+    """Return a field for a `Number`."""
+    return _field(Number(low, high, **about), default)
+
+
+def whole(low: int, high: int, *, default: Any = MISSING, **about: Any) -> Any:
+    """Return a field for a `Whole` number."""
+    return _field(Whole(low, high, **about), default)
+
+
+def seed(*, default: Any = MISSING, **about: Any) -> Any:
+    """Return a field for a `Seed`."""
+    return _field(Seed(0, MAX_SEED, **about), default)
+
+
+def named_number(
+    low: float, high: float, names: Mapping[str, float], *, default: Any = MISSING, **about: Any
+) -> Any:
+    """Return a field for a `NamedNumber`."""
+    return _field(NamedNumber(low, high, names, **about), default)
+
+
+def numbers(low: float, high: float, most: int, *, default: Any = MISSING, **about: Any) -> Any:
+    """Return a field for `Numbers`."""
+    return _field(Numbers(low, high, most, **about), default)
+
+
+def text(*, default: Any = MISSING, **about: Any) -> Any:
+    """Return a field for a `Text`."""
+    return _field(Text(**about), default)
+
+
+def choice(choices: Iterable[Any], *, default: Any = MISSING, **about: Any) -> Any:
+    """Return a field for a `Choice`."""
+    return _field(Choice(choices, **about), default)
+
+
+def some(choices: Iterable[str], *, default: Any = MISSING, **about: Any) -> Any:
+    """Return a field for `Choices`."""
+    return _field(Choices(choices, **about), default)
+
+
+def color(*, default: Any = MISSING, **about: Any) -> Any:
+    """Return a field for a `Color`."""
+    return _field(Color(**about), default)
+
+
+def part(of: type, *, default: Any = MISSING, optional: bool = False, **about: Any) -> Any:
+    """Return a field for a `Part`."""
+    value = Part(of, **about)
+    return _field(value, default, optional=optional)
+
+
+def named_part(of: type, *, default: Any = MISSING, **about: Any) -> Any:
+    """Return a field for a `NamedPart`."""
+    return _field(NamedPart(of, **about), default)
+
+
+def parts(of: type, *, default: Any = MISSING, **about: Any) -> Any:
+    """Return a field for `Parts`."""
+    return _field(Parts(of, **about), default)
+
+
+_Spec = TypeVar("_Spec", bound="Spec")
+
+
+class Spec:
+    """Frozen data whose values are checked when it is made.
+
+    Its methods serve all specs, where those of an ordinary data class are compiled for each class, at each start.
+    """
+
+    __slots__ = ("_hash",)
+    _hash: int
+    __dataclass_fields__: ClassVar[dict[str, Field[Any]]]
+    ERROR: ClassVar[type[ConfigError]] = RobotError
+    """What is raised about its values."""
+    KEY: ClassVar[str] = ""
+    """What its keys in errors begin with."""
+
+    def __init__(self, *args: Any, **given: Any) -> None:
+        names = self.__dataclass_fields__
+        if len(args) > len(names):
+            raise TypeError(f"{type(self).__name__} has {len(names)} values, got {len(args)}")
+        for name, value in zip(names, args, strict=False):
+            if name in given:
+                raise TypeError(f"{type(self).__name__} got {name} twice")
+            given[name] = value
+        self._set_values(given)
+        self._check_values()
+        self.check()
+
+    @classmethod
+    def restore(cls, **values: Any) -> Self:
+        """Return a spec with values that were checked when they were stored.
+
+        Raises:
+            TypeError: one is missing or unknown.
+        """
+        spec = cls.__new__(cls)
+        spec._set_values(values)
+        return spec
+
+    def _set_values(self, values: Mapping[str, Any]) -> None:
+        for name, one in self.__dataclass_fields__.items():
+            value = values.get(name, one.default)
+            if value is MISSING:
+                raise TypeError(f"{type(self).__name__} lacks {name}")
+            object.__setattr__(self, name, value)
+        if unknown := [name for name in values if name not in self.__dataclass_fields__]:
+            raise TypeError(f"{type(self).__name__} has no {', '.join(unknown)}")
+
+    def _check_values(self) -> None:
+        for name, value in values_of(type(self)).items():
+            found = getattr(self, name)
+            if found is None and value.optional:
+                continue
+            try:
+                value.check(found)
+            except WrongValue as error:
+                raise self.ERROR(
+                    error.message, error.hint, key=self.key_of(name) + error.part
+                ) from None
+
+    def check(self) -> None:
+        """Check the rules across values.
+
+        Raises:
+            ConfigError: one is broken.
+        """
+
+    def key_of(self, name: str) -> str:
+        """Return the name of a value in errors."""
+        return f"{self.KEY}.{name}" if self.KEY else name
+
+    def __setattr__(self, name: str, value: object) -> NoReturn:
+        raise AttributeError(f"{type(self).__name__} is frozen")
+
+    def __delattr__(self, name: str) -> NoReturn:
+        raise AttributeError(f"{type(self).__name__} is frozen")
+
+    def _contents(self) -> tuple[Any, ...]:
+        return tuple(getattr(self, name) for name in self.__dataclass_fields__)
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Spec) or type(other) is not type(self):
+            return NotImplemented
+        return self._contents() == other._contents()
+
+    def __hash__(self) -> int:
+        try:
+            return self._hash
+        except AttributeError:
+            object.__setattr__(self, "_hash", hash(self._contents()))
+            return self._hash
+
+    def __repr__(self) -> str:
+        pairs = zip(self.__dataclass_fields__, self._contents(), strict=True)
+        return f"{type(self).__name__}({', '.join(f'{name}={value!r}' for name, value in pairs)})"
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), self._contents()
+
+
+@dataclass_transform(
+    frozen_default=True,
+    field_specifiers=(
+        flag,
+        number,
+        whole,
+        seed,
+        named_number,
+        numbers,
+        text,
+        choice,
+        some,
+        color,
+        part,
+        named_part,
+        parts,
+    ),
+)
+def spec(cls: type[_Spec]) -> type[_Spec]:
+    """Make a class a spec: a subclass of `Spec` whose fields are values."""
+    return dataclass(init=False, repr=False, eq=False, slots=True)(cls)

@@ -1,0 +1,44 @@
+"""The state of the world at one tick."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TypeAlias
+
+from tuisim.base.data_class import dataclass
+from tuisim.engine.core.drift_spec import NO_DRIFT, DriftSpec
+from tuisim.engine.core.geometry import Pose
+from tuisim.engine.core.profile import ROBOLAB, ProfileSpec
+from tuisim.engine.core.spec import NoiseSpec
+
+MotorValues: TypeAlias = tuple[int, int, int, int]
+"""Of one motor, in the order of `MOTOR_FIELDS`."""
+
+
+@dataclass(frozen=True, slots=True)
+class Instant:
+    """One moment of a run: the values that the telemetry stores for a tick."""
+
+    tick: int
+    pose: Pose
+    left_position_deg: float = 0.0
+    right_position_deg: float = 0.0
+    left_speed_dps: float = 0.0
+    right_speed_dps: float = 0.0
+    turn_rate_dps: float = 0.0
+    """Counter-clockwise, over the last tick, as a gyro senses it."""
+    gyro_zero_deg: float = 0.0
+    """Heading at which the gyro reads 0."""
+    press_flags: int = 0
+    """End stops that motors are at, and touch sensors that a hand presses: the bits of `PRESS_FLAGS`."""
+    noise: NoiseSpec = NoiseSpec()
+    drift: DriftSpec = NO_DRIFT
+    profile: ProfileSpec = ROBOLAB
+    seed: int = 0
+    motors: tuple[MotorValues, ...] = ()
+    """What the drivers know of all motors, if they have drivers and it was asked for."""
+
+    def stop(self) -> Instant:
+        """Return the same instant with motors that stand, and of which nothing is asked."""
+        motors = ((0, 0, 0, 0),) * len(self.motors)
+        return replace(self, left_speed_dps=0.0, right_speed_dps=0.0, motors=motors)

@@ -1,0 +1,622 @@
+"""Configuration files: read, converted to typed data, and written; every error names file and key.
+
+Files are not trusted: size, depth and types are checked before their values are used.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import re
+import stat
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager, suppress
+from dataclasses import MISSING, replace
+from functools import lru_cache
+from pathlib import Path
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any, TypeVar
+
+from tuisim.base.atomic import replacing
+from tuisim.base.data_class import dataclass
+from tuisim.base.errors import ConfigError, closest, did_you_mean, nearest
+from tuisim.base.folders import user_path
+from tuisim.engine.core.spec_fields import Spec
+from tuisim.engine.core.values import NamedNumber, NamedPart, Value, WrongValue, shown, values_of
+
+if TYPE_CHECKING:
+    from msgspec import inspect as types
+
+_Kind = TypeVar("_Kind")
+_Spec = TypeVar("_Spec", bound=Spec)
+
+MAX_FILE_BYTES = 1_000_000
+MAX_LINE = 1000
+"""Longest line of a TOML file: a key of many thousand parts would take the parser hours."""
+
+MAX_NAME = 100
+MAX_WHOLE = 2**63
+"""Larger integers have no use in any key."""
+FILE_SUFFIXES = (".toml", ".json")
+
+
+@dataclass(frozen=True, slots=True)
+class Location:
+    """Where a value is in a file, for errors about it."""
+
+    file: str
+    error: type[ConfigError] = ConfigError
+    key: str = ""
+    """The path of the value in the file, such as `ultrasonic.x_mm` or `obstacle[1]`; empty for the top level."""
+
+    def at(self, key: str, error: type[ConfigError] | None = None) -> Location:
+        """Return the location of a key of this table, with another class of errors if given."""
+        joint = "." if self.key and not key.startswith("[") else ""
+        return replace(self, key=f"{self.key}{joint}{key}", error=error or self.error)
+
+    def wrong(self, message: str, hint: str = "") -> ConfigError:
+        """Return an error about this value, to be raised."""
+        return self.error(message, hint, file=self.file, key=self.key)
+
+
+def means_file(word: str) -> bool:
+    """Return whether a word names a file, not a preset."""
+    return os.sep in word or Path(word).suffix.lower() in FILE_SUFFIXES
+
+
+def read_named(
+    word: str,
+    what: str,
+    known: Iterable[str],
+    error: type[ConfigError],
+    key: str,
+    kinds: Sequence[str] = FILE_SUFFIXES,
+) -> tuple[Any, str, Location]:
+    """Read the file that a word names; return its data, the default name of the object in it, and its location.
+
+    Raises:
+        ConfigError: of the class `error`: the word is the name of nothing `known` and of no file, or `read_file`
+            cannot read it. `what` and `key` are what it should name, and the option to blame.
+    """
+    if not means_file(word):
+        allowed = f"{nearest(word, known)}; or a {' or '.join(kinds)} file"
+        raise error(f"no such {what} {word!r}", allowed, key=key)
+    path = user_path(word)
+    if len(kinds) == 1 and path.suffix.lower() not in kinds:
+        raise error(f"is not a {kinds[0]} file", "the suffix selects the format", file=str(path))
+    return read_file(path, error), name_of(path), Location(str(path), error)
+
+
+def name_of(path: Path) -> str:
+    """Return the default name of the object in a file, from the file name."""
+    return (
+        "".join(letter if letter.isprintable() else "_" for letter in path.stem)[:MAX_NAME]
+        or "unnamed"
+    )
+
+
+def with_location(error: ConfigError, file: str, key: str) -> ConfigError:
+    """Return the same error with another file and key as its location."""
+    where = ": ".join(part for part in (error.file, error.key) if part)
+    message = error.message.removeprefix(f"{where}: ") if where else error.message
+    return type(error)(message, error.hint, file=file, key=key)
+
+
+@contextmanager
+def errors_at(file: str, prefix: str = "") -> Iterator[None]:
+    """Add a file and the key of a table to ConfigErrors that are raised in the block without a file."""
+    try:
+        yield
+    except ConfigError as error:
+        if error.file:
+            raise
+        raise with_location(error, file, ".".join(filter(None, (prefix, error.key)))) from None
+
+
+def read_file(path: Path, error: type[ConfigError]) -> Any:
+    """Read a TOML or JSON file and return its data.
+
+    Raises:
+        ConfigError: of the class `error`: the file is missing, not a regular file, too large, not text, empty or
+            not valid TOML or JSON.
+    """
+    shown_path = str(path)
+    suffix = path.suffix.lower()
+    if suffix not in FILE_SUFFIXES:
+        raise error(
+            "is neither a .toml nor a .json file", "the suffix selects the format", file=shown_path
+        )
+    text = _text(path, error)
+    if not text.strip():
+        raise error("is empty", file=shown_path)
+    if suffix == ".json":
+        return _json(text, shown_path, error)
+    return parse_toml(text, shown_path, error)
+
+
+def read_bytes(
+    path: Path,
+    most_bytes: int,
+    error: type[ConfigError],
+    missing: str = "there is no such file",
+    folder: str = "is a folder, not a file",
+    hint: str = "",
+    neighbours: Callable[[Path], str] = lambda _: "",
+) -> bytes:
+    """Return the bytes of a regular file, one more than `most_bytes` if it is larger.
+
+    Args:
+        missing, folder: What is wrong if there is no such file, or a folder.
+        hint: What is allowed instead of a folder or a device.
+        neighbours: Returns the hint for a missing file.
+
+    Raises:
+        ConfigError: of the class `error`: it is missing, not a regular file, or cannot be read.
+    """
+    file = str(path)
+    try:
+        mode = path.stat().st_mode
+        if stat.S_ISDIR(mode):
+            raise error(folder, hint, file=file)
+        # Reading from a device or a pipe may never end.
+        if not stat.S_ISREG(mode):
+            raise error("is not a regular file", hint, file=file)
+        with path.open("rb") as stream:
+            return stream.read(most_bytes + 1)
+    except (FileNotFoundError, NotADirectoryError):
+        raise error(missing, neighbours(path), file=file) from None
+    except (OSError, ValueError) as reason:
+        raise error(
+            f"cannot be read: {getattr(reason, 'strerror', None) or reason}", file=file
+        ) from reason
+
+
+def _text(path: Path, error: type[ConfigError]) -> str:
+    file = str(path)
+    data = read_bytes(path, MAX_FILE_BYTES, error, neighbours=_neighbours)
+    if len(data) > MAX_FILE_BYTES:
+        raise error(
+            "is too large", f"at most {MAX_FILE_BYTES:,} bytes".replace(",", " "), file=file
+        )
+    try:
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError as reason:
+        line = data.count(b"\n", 0, reason.start) + 1
+        raise error(f"line {line} is not UTF-8 text", "save it as UTF-8", file=file) from None
+
+
+def _neighbours(path: Path) -> str:
+    return did_you_mean(close_beside(path, FILE_SUFFIXES))
+
+
+def close_beside(path: Path, suffixes: Collection[str]) -> list[str]:
+    """Return the names of files beside a missing one that are like its name; the suffixes do not count."""
+    try:
+        beside = sorted(
+            other for other in path.parent.iterdir() if other.suffix.lower() in suffixes
+        )
+    except (OSError, ValueError):
+        return []
+    close = closest(path.stem, [other.stem for other in beside])
+    return [other.name for stem in close for other in beside if other.stem == stem]
+
+
+def parse_toml(text: str, file: str, error: type[ConfigError]) -> Any:
+    """Parse a TOML text and return its data.
+
+    Raises:
+        ConfigError: of the class `error`: it is not valid TOML, or is nested too deeply.
+    """
+    import tomllib
+
+    for number, line in enumerate(text.split("\n"), start=1):
+        if len(line) > MAX_LINE:
+            raise error(f"line {number} is too long", f"at most {MAX_LINE} characters", file=file)
+    try:
+        return tomllib.loads(text)
+    except RecursionError:
+        raise error("is nested too deeply", file=file) from None
+    except ValueError as reason:
+        raise error(f"is not TOML: {reason}", file=file) from None
+
+
+def _json(text: str, file: str, error: type[ConfigError]) -> Any:
+    def unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+        found: dict[str, Any] = {}
+        for key, value in pairs:
+            if key in found:
+                raise error("is given twice", file=file, key=shown(key)[1:-1])
+            found[key] = value
+        return found
+
+    try:
+        return json.loads(text, object_pairs_hook=unique)
+    except RecursionError:
+        raise error("is nested too deeply", file=file) from None
+    except ValueError as reason:
+        raise error(f"is not JSON: {reason}", file=file) from None
+
+
+def table(
+    data: object, at: Location, keys: Iterable[str] | None = None, unlisted: Collection[str] = ()
+) -> Any:
+    """Return data that is a table, as a dict.
+
+    Args:
+        keys: The keys that it may have; None for any.
+        unlisted: Further keys, which hints omit.
+
+    Raises:
+        ConfigError: it is not a table, or has another key.
+    """
+    if not isinstance(data, dict):
+        raise at.wrong(f"must be {_TABLE}, got {shown(data)}")
+    if keys is not None:
+        known = list(keys)
+        for key in data:
+            if key not in known and key not in unlisted:
+                raise at.at(shown(key)[1:-1]).wrong("no such key", nearest(key[:MAX_NAME], known))
+    return data
+
+
+def required(data: Mapping[str, object], key: str, at: Location) -> object:
+    """Return a value of a table.
+
+    Raises:
+        ConfigError: the key is missing.
+    """
+    if key not in data:
+        raise at.at(key).wrong("is missing")
+    return data[key]
+
+
+def entries(data: object, at: Location, most: int, what: str) -> list[tuple[object, Location]]:
+    """Return the entries of a list, each with its location; the first is `key[1]`.
+
+    Raises:
+        ConfigError: it is not a list, or has more than `most` entries; `what` is their name in the plural.
+    """
+    if not isinstance(data, list):
+        raise at.wrong(f"must be a list, got {shown(data)}")
+    if len(data) > most:
+        raise at.wrong(f"has {len(data)} {what}", f"at most {most}")
+    return [(entry, at.at(f"[{number}]")) for number, entry in enumerate(data, start=1)]
+
+
+def one_of(data: object, at: Location, allowed: Iterable[str]) -> str:
+    """Return a text that must be one of `allowed`.
+
+    Raises:
+        ConfigError: it is another one, or no text.
+    """
+    word, words = convert(data, str, at), list(allowed)
+    if word not in words:
+        raise at.wrong(f"no such value {shown(word)}", f"one of {', '.join(words)}")
+    return word
+
+
+def read_value(data: object, value: Value, at: Location) -> Any:
+    """Return a value of a run from a file.
+
+    Raises:
+        ConfigError: it is not allowed.
+    """
+    try:
+        return value.from_data(data)
+    except WrongValue as error:
+        raise (at.at(error.part) if error.part else at).wrong(error.message, error.hint) from None
+
+
+def read_part(data: object, base: _Spec | type[_Spec], at: Location, **given: object) -> _Spec:
+    """Return a sensor or another spec with the values in a table, which never give its name.
+
+    Args:
+        base: The spec that has the values which the table leaves out; or the class of a new one.
+        given: Values that the table does not give, by name.
+
+    Raises:
+        ConfigError: a key is unknown or missing, or a value is wrong.
+    """
+    kind = base if isinstance(base, type) else type(base)
+    values = {
+        key: value for key, value in values_of(kind).items() if key not in given and key != "name"
+    }
+    found = {
+        key: read_value(one, values[key], at.at(key))
+        for key, one in table(data, at, values).items()
+    }
+    if isinstance(base, type):
+        for key in values:
+            if kind.__dataclass_fields__[key].default is MISSING:
+                required(found, key, at)
+    return with_values(base, found | given, at)
+
+
+def with_values(base: _Spec | type[_Spec], values: Mapping[str, Any], at: Location) -> _Spec:
+    """Return a spec with other values, or a new one of a class.
+
+    Raises:
+        ConfigError: they break a rule.
+    """
+    try:
+        return base(**values) if isinstance(base, type) else replace(base, **values)
+    except ConfigError as error:
+        # The specs begin the keys in their errors with the name of the part, in which `at` may already end.
+        part = re.sub(r"\[\d+\]$", "", at.key).rpartition(".")[2]
+        inner = at.at(error.key.removeprefix(f"{part}.")) if error.key else at
+        raise inner.wrong(error.message.removeprefix(f"{error.key}: "), error.hint) from None
+
+
+def convert(data: object, kind: type[_Kind], at: Location) -> _Kind:
+    """Return data of a file as an object of a type: a dataclass, a `msgspec.Struct` or a simple type.
+
+    Args:
+        data: The data: tables as dicts, lists, texts, numbers and booleans.
+        kind: The type. Numbers must be finite, texts one line.
+
+    Raises:
+        ConfigError: a key is missing or unknown, or a value is wrong.
+    """
+    import msgspec
+
+    found = dict(_walk(data, _type_info(kind), at))  # type: ignore[arg-type]  # a type is hashable
+    try:
+        return msgspec.convert(data, kind)
+    except ConfigError as error:
+        inner = at.at(error.key) if error.key else at
+        raise inner.wrong(error.message.removeprefix(f"{error.key}: "), error.hint) from None
+    except msgspec.ValidationError as error:
+        message, _, path = str(error).partition(" - at `$")
+        path = re.sub(
+            r"(?<=\[)\d+", lambda index: str(int(index[0]) + 1), path.rstrip("`").lstrip(".")
+        )
+        where = at.at(path) if path else at
+        if missing := re.fullmatch(r"Object missing required field `(\w+)`", message):
+            raise where.at(missing[1]).wrong("is missing") from None
+        value, info = found[where.key]
+        raise _mismatch(value, info, where) from None
+
+
+@lru_cache
+def _type_info(kind: Any) -> types.Type:
+    from msgspec import inspect
+
+    return inspect.type_info(kind)
+
+
+def _walk(
+    data: object, info: types.Type, at: Location
+) -> Iterator[tuple[str, tuple[object, types.Type]]]:
+    """Yield the key, value and type of everything in a file; raise for what types do not express."""
+    from msgspec import inspect as types
+
+    match info, data:
+        case types.UnionType(types=members), _:
+            texts = [member for member in members if isinstance(member, types.StrType)]
+            for member in texts if texts and isinstance(data, str) else members:
+                yield from _walk(data, member, at)
+        case types.StructType(fields=inner) | types.DataclassType(fields=inner), dict():
+            table(data, at, [field.name for field in inner])
+            for field in inner:
+                if field.name in data:
+                    yield from _walk(data[field.name], field.type, at.at(field.name))
+        case types.TupleType(item_types=items), list():
+            if len(data) != len(items):
+                raise at.wrong(f"must be a list of {len(items)} values, got {shown(data)}")
+            for number, (entry, item) in enumerate(zip(data, items, strict=True), start=1):
+                yield from _walk(entry, item, at.at(f"[{number}]"))
+        case types.ListType(item_type=item) | types.VarTupleType(item_type=item), list() | tuple():
+            for number, entry in enumerate(data, start=1):
+                yield from _walk(entry, item, at.at(f"[{number}]"))
+        case types.StrType(), str() if (
+            not data.strip() or len(data) > MAX_LINE or not data.isprintable()
+        ):
+            raise at.wrong(f"must be one line of text, got {shown(data)}")
+        case types.FloatType(), float() if not math.isfinite(data):
+            raise _mismatch(data, info, at)
+        case types.IntType(), int() if not isinstance(data, bool) and abs(data) > MAX_WHOLE:
+            raise _mismatch(data, info, at)
+        case types.FloatType() | types.IntType() | types.BoolType(), str():
+            # msgspec raises UnicodeEncodeError for half a surrogate pair.
+            raise _mismatch(data, info, at)
+    yield at.key, (data, info)
+
+
+def _mismatch(value: object, info: types.Type, at: Location) -> ConfigError:
+    from msgspec import inspect as types
+
+    if isinstance(info, types.UnionType):
+        kinds = [member for member in info.types if not isinstance(member, types.NoneType)]
+        info = kinds[0] if len(kinds) == 1 else info
+    if isinstance(info, types.EnumType):
+        return at.wrong(
+            f"no such value {shown(value)}", f"one of {', '.join(each.value for each in info.cls)}"
+        )
+    return at.wrong(f"must be {_expected(info)}, got {shown(value)}")
+
+
+_TABLE = "a table of keys and values"
+
+
+def _expected(info: types.Type) -> str:
+    """Return in words what a type allows."""
+    from msgspec import inspect as types
+
+    match info:
+        case types.IntType(ge=low, le=high) | types.FloatType(ge=low, le=high):
+            whole = isinstance(info, types.IntType)
+            what = "a whole number" if whole else "a number"
+            if low is None or high is None:
+                return what
+            return f"{what} from {low} to {high}" if whole else f"{what} from {low:g} to {high:g}"
+        case types.StrType():
+            return "text"
+        case types.BoolType():
+            return "true or false"
+        case types.ListType() | types.VarTupleType() | types.TupleType():
+            return "a list"
+        case types.UnionType(types=members):
+            # TOML has no null: None stands for a missing key.
+            return " or ".join(
+                _expected(member) for member in members if not isinstance(member, types.NoneType)
+            )
+        case _:
+            return _TABLE
+
+
+Scalar = str | bool | int | float | list[str] | list[float]
+
+_BARE = re.compile(r"[A-Za-z0-9_-]+")
+
+
+def toml_key(key: str) -> str:
+    """Return a key in TOML syntax."""
+    return key if _BARE.fullmatch(key) else toml_value(key)
+
+
+def toml_value(value: Scalar) -> str:
+    """Return a value in TOML syntax; numbers round-trip exactly."""
+    match value:
+        case bool():
+            return str(value).lower()
+        case str():
+            # TOML has all escapes of JSON, and requires one more character to be escaped.
+            return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
+        case list():
+            return f"[{', '.join(map(toml_value, value))}]"
+        case _:
+            return repr(value)
+
+
+def toml_lines(
+    values: Mapping[str, Scalar], comments: Mapping[str, str] = MappingProxyType({})
+) -> list[str]:
+    """Return the lines of one table, with their comments, aligned."""
+    pairs = [
+        (f"{toml_key(key)} = {toml_value(value)}", comments.get(key, ""))
+        for key, value in values.items()
+    ]
+    width = max((len(pair) for pair, comment in pairs if comment and len(pair) <= 36), default=0)
+    return [f"{pair:<{width}}  # {comment}" if comment else pair for pair, comment in pairs]
+
+
+def value_lines(part: Spec, keys: Iterable[str]) -> list[str]:
+    """Return the lines of some values of a spec, with their help as comments."""
+    values = values_of(type(part))
+    found = {key: getattr(part, key) for key in keys}
+    shown_values = {
+        key: toml_form(values[key], one) for key, one in found.items() if one is not None
+    }
+    return toml_lines(shown_values, {key: values[key].help for key in found})
+
+
+def toml_form(value: Value, found: Any) -> Scalar:
+    """Return a value as a file gives it."""
+    if isinstance(value, NamedNumber):
+        return value.named(found)
+    if isinstance(value, NamedPart):
+        return value.to_text(found)
+    scalar: Scalar = list(found) if isinstance(found, tuple) else found
+    return scalar
+
+
+def save_toml(
+    path: Path,
+    lines: Iterable[str],
+    at: Location,
+    read: Callable[[Any], object],
+    expected: object,
+    *,
+    check: Callable[[Any], object] | None = None,
+    kept: Collection[str] = (),
+    owner_only: bool = False,
+) -> None:
+    """Write a TOML file atomically. In an existing file the user's comments, layout and order stay.
+
+    Args:
+        lines: The contents of a new file.
+        read: Returns the object in the file's data.
+        expected: The object that `read` must return.
+        check: Raises for data of another kind of file, without looking into further files; by default `read`.
+        kept: Keys of an existing file that the lines do not cover.
+        owner_only: Whether only the owner may read a new file.
+
+    Raises:
+        ConfigError: an existing file is not of this kind, or the file cannot be written, or cannot represent the
+            object; an existing file is unchanged.
+    """
+    if path.suffix != ".toml":
+        raise at.wrong("must end in .toml")
+    new = text = "\n".join(lines) + "\n"
+    if read(parse_toml(text, at.file, at.error)) != expected:
+        raise at.wrong("a file cannot represent this")
+    if os.path.isfile(path) and (old := _text(path, at.error)).strip():
+        try:
+            (check or read)(parse_toml(old, at.file, at.error))
+        except ConfigError as error:
+            hint = "; ".join(
+                filter(None, (error.hint, "correct the file, or save under another name"))
+            )
+            raise type(error)(error.message, hint) from None
+        for whole in (False, True):
+            # The order of sensors may matter, so tables may have to be replaced as a whole.
+            with suppress(ConfigError):
+                text = _updated_text(old, new, kept, whole)
+                if read(parse_toml(text, at.file, at.error)) == expected:
+                    break
+        else:
+            raise at.wrong("cannot be updated", "save under another name")
+    try:
+        with replacing(path, owner_only=owner_only) as stream:
+            stream.write(text.encode())
+    except (OSError, ValueError) as reason:
+        raise at.wrong(
+            f"cannot be written: {getattr(reason, 'strerror', None) or reason}"
+        ) from None
+
+
+def _updated_text(old: str, new: str, kept: Collection[str], whole: bool) -> str:
+    """Return a TOML text with the values of a new one, but comments, layout and order of the old one.
+
+    Only the old text has the keys `kept`; `whole` tells whether tables are replaced as a whole.
+    """
+    import tomlkit
+    from tomlkit.exceptions import TOMLKitError
+
+    try:
+        document = tomlkit.parse(old)
+        _update(document, tomlkit.parse(new), kept, whole)
+        return tomlkit.dumps(document)
+    except (TOMLKitError, RecursionError, IndexError) as error:
+        # IndexError: tables whose parts lie apart in the file.
+        raise ConfigError(f"cannot be updated: {error}") from None
+
+
+def _update(old: Any, new: Any, kept: Collection[str] = (), whole: bool = False) -> None:
+    from tomlkit.items import AoT, InlineTable
+
+    for key in [key for key in old if key not in new and key not in kept]:
+        del old[key]
+    for key, value in new.items():
+        before = old.get(key)
+        if not whole and isinstance(before, Mapping) and isinstance(value, Mapping):
+            _update(before, value)
+        elif not whole and isinstance(before, AoT) and isinstance(value, AoT):
+            for one, other in zip(before, value, strict=False):
+                _update(one, other)
+            del before[len(value) :]
+            for other in value[len(before) :]:
+                before.append(other)
+        elif (
+            before is None or isinstance(before, Mapping | AoT) or isinstance(value, Mapping | AoT)
+        ):
+            old.pop(key, None)
+            # There is no room for the comment of a value in an inline table.
+            old[key] = _plain(value) if isinstance(old, InlineTable) else value
+        elif _plain(before) != _plain(value) or isinstance(before, bool) != isinstance(value, bool):
+            old[key] = _plain(value)
+
+
+def _plain(value: Any) -> Any:
+    return value.unwrap() if hasattr(value, "unwrap") else value

@@ -1,0 +1,75 @@
+"""Presses by hand, as texts: `enter@1.0-1.5`, `in1@2`, `remote.left_up@1-3`."""
+
+from __future__ import annotations
+
+from tuisim.base.data_class import dataclass
+from tuisim.base.errors import nearest
+from tuisim.engine.core.spec import PRESSABLE
+from tuisim.engine.core.values import Number, Value, WrongValue
+
+DEFAULT_PRESS_S = 0.1
+MAX_PRESS_S = 1e6
+MAX_PRESSES = 10_000
+_SECONDS = Number(0.0, MAX_PRESS_S)
+
+
+@dataclass(frozen=True, slots=True)
+class Press:
+    """One button or touch sensor, held for a while; times in simulated seconds."""
+
+    name: str
+    """One of `PRESSABLE`."""
+    from_s: float
+    until_s: float
+
+
+def parse_press(text: str) -> Press:
+    """Parse a press such as `enter@1.0-1.5` or `in1@1`.
+
+    Raises:
+        WrongValue: nothing of that name can be pressed, or the times are wrong.
+    """
+    name, at, times = text.partition("@")
+    if not at:
+        raise WrongValue(f"must be NAME@FROM or NAME@FROM-UNTIL, got {text!r}", "such as enter@1.5")
+    if name not in PRESSABLE:
+        raise WrongValue(f"{name!r} cannot be pressed", nearest(name, PRESSABLE))
+    # A leading minus is a sign: negative times are refused.
+    begin, to, end = (times, "", "") if times.startswith("-") else times.partition("-")
+    from_s = _SECONDS.from_text(begin)
+    until_s = _SECONDS.from_text(end) if to else from_s + DEFAULT_PRESS_S
+    if until_s <= from_s:
+        raise WrongValue(f"{text!r} ends before it begins", "NAME@FROM-UNTIL, in simulated seconds")
+    return Press(name, from_s, until_s)
+
+
+class Presses(Value):
+    """Presses by hand as a tuple of texts, of which an option gives one at a time."""
+
+    __slots__ = ()
+
+    @property
+    def allowed(self) -> str:
+        return "a list of presses such as enter@1.5"
+
+    @property
+    def metavar(self) -> str:
+        return "NAME@S"
+
+    def from_data(self, data: object) -> tuple[str, ...]:
+        if not isinstance(data, list | tuple):
+            raise self.wrong(data)
+        if len(data) > MAX_PRESSES:
+            raise WrongValue(f"has {len(data)} presses", f"at most {MAX_PRESSES}")
+        for number, text in enumerate(data, start=1):
+            if not isinstance(text, str):
+                raise WrongValue(f"must be text, got {text!r}", part=f"[{number}]")
+            try:
+                parse_press(text)
+            except WrongValue as error:
+                raise WrongValue(error.message, error.hint, f"[{number}]") from None
+        return tuple(data)
+
+    def from_text(self, text: str) -> tuple[str, ...]:
+        parse_press(text)
+        return (text,)

@@ -1,0 +1,557 @@
+"""Messages between host and child: one JSON object per line, `kind` names the message."""
+
+from __future__ import annotations
+
+import json
+import re
+import signal
+from collections.abc import Mapping
+from dataclasses import asdict
+from enum import StrEnum
+from typing import Any, ClassVar
+
+from tuisim.base.data_class import dataclass
+from tuisim.base.errors import ConfigError
+from tuisim.engine.core.spec import PRESSABLE
+
+
+@dataclass(frozen=True, slots=True)
+class ThreadState:
+    """One thread of a paused program."""
+
+    name: str
+    line: int
+    """Its current line in the program; 0 if it is in none."""
+    waiting: str
+    """What it waits for and until when; empty if it is ready to run."""
+    held: bool
+    """Whether it is the thread that was paused."""
+
+
+@dataclass(frozen=True, slots=True)
+class FrameState:
+    """One call of the program's own code."""
+
+    function: str
+    line: int
+    file: str
+    """Empty for the program itself, otherwise the path of the module."""
+
+
+@dataclass(frozen=True, slots=True)
+class Variable:
+    """A name and its value."""
+
+    name: str
+    kind: str
+    """Name of the type."""
+    value: str
+    """The value as text, truncated for display."""
+    changed: bool
+    """Whether the text differs from the last inspection of this function; new names count as changed."""
+
+
+@dataclass(frozen=True, slots=True)
+class Watched:
+    """A watch and its value."""
+
+    text: str
+    value: str
+    """Empty if evaluation failed."""
+    error: str
+
+
+@dataclass(frozen=True, slots=True)
+class ExecutedLine:
+    """A line of the program that was about to run."""
+
+    tick: int
+    ordinal: int
+    line: int
+    thread: str
+    depth: int
+    """Number of open calls of the program's own code, from 1."""
+
+
+CLEANUP_S = 2
+"""Simulated time for the program's cleanup after a stop: so far beyond its time limit a run may be recorded."""
+
+PROTOCOL_VERSION = 4
+COMMAND_SIGNAL, STACK_SIGNAL = signal.SIGRTMIN + 11, signal.SIGRTMIN + 12
+"""To the child: a command has been sent; write the stack to a file. A program has SIGUSR1 and SIGUSR2 for itself."""
+
+
+class End(StrEnum):
+    """How a run ended."""
+
+    FINISHED = "finished"
+    RAISED = "raised"
+    """By an exception of the program."""
+    STOPPED = "stopped"
+    """By the user."""
+    TIME_LIMIT = "time_limit"
+    STALLED = "stalled"
+    DEADLOCK = "deadlock"
+    OUTPUT_LIMIT = "output_limit"
+    DISK_FULL = "disk_full"
+    KILLED = "killed"
+    CRASHED = "crashed"
+    FALSIFIED = "falsified"
+    """The program has written to its recording, or to the pipes, in place of the simulation."""
+
+
+class Unended(StrEnum):
+    """State of a stored run without an end."""
+
+    RUNNING = "running"
+    INTERRUPTED = "interrupted"
+    """Its process has disappeared."""
+    DAMAGED = "damaged"
+    """Its end cannot be read."""
+
+
+RunState = End | Unended
+RUN_STATES: Mapping[str, RunState] = {state.value: state for state in (*End, *Unended)}
+
+
+class PauseReason(StrEnum):
+    """Why a run pauses."""
+
+    ASKED = "asked"
+    TICKS = "ticks"
+    """The ticks of `StepTicks` are done."""
+    STEP = "step"
+    """The step of `StepLine` is done."""
+    LINE = "line"
+    """The line of `RunToLine` is reached."""
+    BREAK = "break"
+    """A breakpoint is hit."""
+    INSTANT = "instant"
+    """The instant of `RunToInstant` is reached."""
+    END = "end"
+    """The program is over before that."""
+
+
+class LineStep(StrEnum):
+    """How to step from line to line: over calls, into them, out of this function."""
+
+    OVER = "over"
+    INTO = "into"
+    OUT = "out"
+
+
+AFTER_TICK = 0
+"""Ordinal of the instant right after a tick."""
+BEFORE_NEXT_TICK = -1
+"""Ordinal of the instant right before the next tick, where a pause takes effect."""
+NO_ANSWER = "there is no further answer to input()"
+"""Message of the EOFError from input() when no answer is available."""
+_SURROGATE = re.compile("[\ud800-\udfff]")
+_encoded = json.JSONEncoder(
+    separators=(",", ":"), ensure_ascii=False, default=lambda part: asdict(part)
+).encode
+
+UNKNOWN_ORDINAL = -2
+"""Ordinal of a line in a tick whose lines were not counted from its start."""
+
+
+@dataclass(frozen=True, slots=True)
+class Message:
+    """Base of all messages."""
+
+    kind: ClassVar[str]
+    """The name of its class in small letters, such as `set_pose`; for user actions also the name in stored runs."""
+
+    def __init_subclass__(cls) -> None:
+        cls.kind = re.sub(r"(?<!^)(?=[A-Z])", "_", cls.__name__).lower()
+
+    def encode(self) -> bytes:
+        """Return the message as one JSON line."""
+        text = _encoded(
+            {"kind": self.kind, **{name: getattr(self, name) for name in self.__dataclass_fields__}}
+        )
+        # A lone surrogate, such as in a file name that is not UTF-8, is not valid text: it is written as an escape.
+        return _SURROGATE.sub(lambda found: f"\\\\u{ord(found[0]):x}", text).encode() + b"\n"
+
+
+# Commands: host to child.
+
+
+@dataclass(frozen=True, slots=True)
+class Stop(Message):
+    """Stop the program."""
+
+
+@dataclass(frozen=True, slots=True)
+class Pause(Message):
+    """Pause at the next instant outside a device call."""
+
+
+@dataclass(frozen=True, slots=True)
+class Resume(Message):
+    """Resume."""
+
+
+@dataclass(frozen=True, slots=True)
+class StepTicks(Message):
+    """While paused: run this number of ticks, then pause again."""
+
+    ticks: int = 1
+
+
+@dataclass(frozen=True, slots=True)
+class StepLine(Message):
+    """Run to the next line of the program, then pause; a running program pauses at its next line."""
+
+    how: LineStep = LineStep.OVER
+
+    def __post_init__(self) -> None:
+        # JSON gives a text.
+        object.__setattr__(self, "how", LineStep(self.how))
+
+
+@dataclass(frozen=True, slots=True)
+class RunToLine(Message):
+    """Run until a line of the program is about to run, in any thread, then pause."""
+
+    line: int
+
+
+@dataclass(frozen=True, slots=True)
+class RunToInstant(Message):
+    """Run at full speed to a later instant and pause there, or at the end if it is never reached."""
+
+    tick: int
+    ordinal: int = BEFORE_NEXT_TICK
+    """As in `Paused`."""
+
+
+@dataclass(frozen=True, slots=True)
+class SetBreaks(Message):
+    """Replace all breakpoints of the run."""
+
+    breaks: tuple[str, ...]
+    """Breakpoints in the syntax of `tuisim.engine.breakpoints`; disabled ones are ignored."""
+
+    def __post_init__(self) -> None:
+        # JSON gives a list.
+        object.__setattr__(self, "breaks", tuple(self.breaks))
+
+
+@dataclass(frozen=True, slots=True)
+class Inspect(Message):
+    """Request the state of a paused run; `Inspected` is the answer."""
+
+    watches: tuple[str, ...] = ()
+    """Expressions, evaluated in the frame."""
+    thread: str = ""
+    """Name of the thread to inspect; empty for the one that was paused."""
+    frame: int = 0
+    """Index of the frame: 0 is the innermost of the program's own."""
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "watches", tuple(self.watches))
+
+
+@dataclass(frozen=True, slots=True)
+class RequestHistory(Message):
+    """Request the last executed lines; `LineHistory` is the answer."""
+
+    count: int = 100
+
+
+@dataclass(frozen=True, slots=True)
+class SetSpeed(Message):
+    """Set the pace against the wall clock: 1.0 is real time, 0 is as fast as possible."""
+
+    speed: float
+
+
+@dataclass(frozen=True, slots=True)
+class SetPose(Message):
+    """User action: set the robot's pose."""
+
+    x_mm: float
+    y_mm: float
+    heading_deg: float
+
+
+@dataclass(frozen=True, slots=True)
+class SetNoise(Message):
+    """User action: set the noise."""
+
+    light: int
+    motor: int
+
+
+@dataclass(frozen=True, slots=True)
+class SetPen(Message):
+    """User action: lift or lower the pen."""
+
+    down: bool
+
+
+@dataclass(frozen=True, slots=True)
+class SetButtons(Message):
+    """User action: this is pressed by hand from now on, all else is released: buttons and touch sensors."""
+
+    pressed: tuple[str, ...]
+    """Names from `PRESSABLE`; others raise a ConfigError."""
+
+    def __post_init__(self) -> None:
+        # JSON gives a list.
+        object.__setattr__(self, "pressed", tuple(self.pressed))
+        for name in self.pressed:
+            if name not in PRESSABLE:
+                raise ConfigError(f"{name!r} cannot be pressed", f"one of {', '.join(PRESSABLE)}")
+
+
+@dataclass(frozen=True, slots=True)
+class Answer(Message):
+    """User action: the answer to an `input()`; None is end of file."""
+
+    text: str | None
+    at_once: bool = False
+    """Whether simulated time was stopped until it arrived."""
+
+
+@dataclass(frozen=True, slots=True)
+class Reply(Message):
+    """User action: the answer of a responder to a request of the program; simulated time was stopped until then."""
+
+    messages: tuple[Any, ...]
+    """JSON data, oldest first."""
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "messages", tuple(self.messages))
+
+
+ACTIONS: tuple[type[Message], ...] = (SetPose, SetNoise, SetPen, SetButtons, Answer, Reply)
+"""The commands that are user actions."""
+_CONTROLS: tuple[type[Message], ...] = (
+    Stop,
+    Pause,
+    Resume,
+    StepTicks,
+    StepLine,
+    RunToLine,
+    RunToInstant,
+    SetBreaks,
+    Inspect,
+    RequestHistory,
+    SetSpeed,
+)
+COMMANDS: dict[str, type[Message]] = {command.kind: command for command in (*_CONTROLS, *ACTIONS)}
+
+
+@dataclass(frozen=True, slots=True)
+class UserAction:
+    """An action of the user in a run: one that was recorded, or that is known before the run starts."""
+
+    tick: int
+    """It takes effect after this number of ticks, right before the next one."""
+    command: Message
+    """One of `ACTIONS`, or `Stop`."""
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.command, (*ACTIONS, Stop)):
+            raise TypeError(f"not a user action: {self.command!r}")
+
+    def to_plain(self) -> dict[str, Any]:
+        """Return the form that is stored with a run."""
+        return {"tick": self.tick, "kind": self.command.kind, **asdict(self.command)}
+
+    @classmethod
+    def from_plain(cls, row: Mapping[str, Any]) -> UserAction:
+        """Rebuild an action from the output of `to_plain`.
+
+        Raises:
+            KeyError, TypeError, ValueError, ConfigError: the data is not a user action.
+        """
+        fields = {name: value for name, value in row.items() if name not in ("tick", "kind")}
+        return cls(int(row["tick"]), COMMANDS[row["kind"]](**fields))
+
+
+# Events: child to host.
+
+
+@dataclass(frozen=True, slots=True)
+class Started(Message):
+    """The program's first line is about to run."""
+
+    protocol: int
+    pid: int
+
+
+@dataclass(frozen=True, slots=True)
+class Paused(Message):
+    """The run has paused: program and world together."""
+
+    tick: int
+    time_ns: int
+    line: int
+    """Line of the program that is about to run, or that spends the time; 0 if there is none."""
+    reason: PauseReason = PauseReason.ASKED
+    detail: str = ""
+    """Text of the breakpoint that was hit."""
+    value: str = ""
+    """The reason for the hit: the value, the printed line, or why the condition could not be evaluated."""
+    ordinal: int = BEFORE_NEXT_TICK
+    """With `tick` the exact instant. From 1: the number of program lines since the tick, of which the last is about
+    to run; otherwise `AFTER_TICK`, `BEFORE_NEXT_TICK` or `UNKNOWN_ORDINAL`."""
+    thread: str = ""
+    """Name of the thread that was paused."""
+    file: str = ""
+    """File of the line, if it is a module and not the program itself."""
+
+
+@dataclass(frozen=True, slots=True)
+class Resumed(Message):
+    """The run has resumed."""
+
+
+@dataclass(frozen=True, slots=True)
+class Spoke(Message):
+    """The program said or played something."""
+
+    text: str
+    """The spoken text; in brackets for other sounds."""
+    time_ns: int
+    tones: str = ""
+    """Successive tones, as JSON: a list of [Hz, ms, pause in ms after it]; 0 Hz is silence.
+
+    Empty for speech; for a sound file its duration as silence.
+    """
+    file: str = ""
+    """Absolute path of the sound file; empty for other sounds."""
+
+
+@dataclass(frozen=True, slots=True)
+class BusyLoop(Message):
+    """A loop has gone on for long without a wait; sent once, in a live run."""
+
+    line: int
+    """A line in the loop, or of a function that it calls."""
+    since_ns: int
+    """When it began."""
+
+
+@dataclass(frozen=True, slots=True)
+class InputWanted(Message):
+    """The program waits in `input()`."""
+
+    prompt: str
+
+
+@dataclass(frozen=True, slots=True)
+class ReplyWanted(Message):
+    """The program has called `pyState()`: simulated time is stopped until a `Reply` arrives."""
+
+
+@dataclass(frozen=True, slots=True)
+class Plugged(Message):
+    """A part was plugged in that the program has asked for; the values are those of
+    `engine.core.plugged.PluggedPart`."""
+
+    port: str
+    part: str
+    tick: int
+    line: int
+    role: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class MotorRegisters:
+    """What a driver holds of a motor at the end of a run: what the program has written, and the speed."""
+
+    command: str = ""
+    """The last command; empty if it was `stop` or there was none."""
+    polarity: str = "normal"
+    speed_sp: float = 0.0
+    """In degrees per second."""
+    position_sp: float = 0.0
+    """In degrees."""
+    time_sp_s: float = 0.0
+    speed_dps: float | None = None
+    """In the browser simulator also of a wheel that stands; None if it is not known."""
+
+
+@dataclass(frozen=True, slots=True)
+class Wheels(Message):
+    """The registers of the two wheel motors; it comes shortly before `Ended`, and is not stored."""
+
+    left: MotorRegisters = MotorRegisters()
+    right: MotorRegisters = MotorRegisters()
+
+
+@dataclass(frozen=True, slots=True)
+class Ended(Message):
+    """The end of a run: its last event, and part of what is stored of it."""
+
+    end: End
+    tick: int
+    time_ns: int
+    exit_code: int = 0
+    summary: str = ""
+    """Description of what happened, one line."""
+    error: str = ""
+    """The program's traceback."""
+    error_line: int = 0
+    """Its last line in the program; 0 if there is none."""
+    deterministic: bool = True
+
+
+@dataclass(frozen=True, slots=True)
+class Inspected(Message):
+    """The state of a paused run."""
+
+    tick: int
+    time_ns: int
+    thread: str
+    frame: int
+    waiting: str
+    """What the thread waits for and until when, such as `sleeps until 1.23 s`; empty if it is ready to run."""
+    threads: tuple[ThreadState, ...]
+    stack: tuple[FrameState, ...]
+    """Frames of the thread in the program's own files, innermost first."""
+    variables: tuple[Variable, ...]
+    """Locals of the frame; for the module's frame its globals."""
+    globals: tuple[Variable, ...]
+    """Globals of the program, if the frame is not the module's own; without modules and functions."""
+    watches: tuple[Watched, ...]
+    note: str = ""
+    """Why data is missing, such as values that took too long."""
+
+
+@dataclass(frozen=True, slots=True)
+class LineHistory(Message):
+    """The last executed lines, oldest first; the last one is about to run."""
+
+    lines: tuple[ExecutedLine, ...]
+
+
+_EVENTS = (
+    Started,
+    Paused,
+    Resumed,
+    Inspected,
+    LineHistory,
+    Spoke,
+    BusyLoop,
+    InputWanted,
+    ReplyWanted,
+    Plugged,
+    Wheels,
+    Ended,
+)
+EVENTS: dict[str, type[Message]] = {event.kind: event for event in _EVENTS}
+
+
+def parse_command(line: bytes) -> Message:
+    """Return the command in one line from the host.
+
+    Raises:
+        ValueError, KeyError, TypeError, ConfigError: the line is not a valid command.
+    """
+    fields: dict[str, Any] = json.loads(line)
+    return COMMANDS[fields.pop("kind")](**fields)

@@ -1,0 +1,37 @@
+"""The array types for logs, and arrays from the poses of a recording."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+FloatArray = NDArray[np.float64]
+"""Real numbers, shape (n,)."""
+
+IntArray = NDArray[np.int64]
+"""Row numbers, shape (n,)."""
+
+
+def world_points_mm(
+    records: NDArray[Any], x_mm: float, y_mm: float
+) -> tuple[NDArray[Any], NDArray[Any]]:
+    """Return x and y in the world of a point of the robot at every tick, as `engine.core.geometry.world_point`; shape
+    (n,).
+
+    Args:
+        records: Telemetry, structured as `TICK_FIELDS`, shape (n,).
+        x_mm: To the right of the midpoint between the wheels.
+        y_mm: Forward of it.
+    """
+    cos, sin = cos_and_sin(records["heading_deg"] - 90.0)
+    return records["x_mm"] + cos * x_mm - sin * y_mm, records["y_mm"] + sin * x_mm + cos * y_mm
+
+
+def cos_and_sin(angles_deg: NDArray[Any]) -> tuple[FloatArray, FloatArray]:
+    """Return cosine and sine of angles, shape (n,), to the bit as `math` does; NaN where there is no angle."""
+    # Those of numpy may differ in the last bit, which can change a pixel. A damaged record may have no valid heading.
+    turns = list(map(math.radians, np.where(np.isfinite(angles_deg), angles_deg, np.nan).tolist()))
+    return np.array(list(map(math.cos, turns))), np.array(list(map(math.sin, turns)))

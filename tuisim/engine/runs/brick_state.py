@@ -1,0 +1,163 @@
+"""The visible state of the brick, as rows of the output: LEDs, display, text screen, sounds, extra motors.
+
+Pure Python: the child imports it.
+
+Each row holds the complete state of its kind, so that a viewer needs only the newest row of each stream.
+"""
+
+from __future__ import annotations
+
+import base64
+import json
+import zlib
+from collections.abc import Iterable, Mapping
+from dataclasses import field, replace
+from typing import assert_never
+
+from tuisim.base.data_class import dataclass
+from tuisim.engine.runs.records import OutputRow, Stream
+
+DISPLAY_WIDTH, DISPLAY_HEIGHT = 178, 128
+"""Size of the display in pixels."""
+ROW_BYTES = -(-DISPLAY_WIDTH // 8)
+"""Bytes per row of the picture; the bits after the last pixel are 0."""
+
+LED_NAMES = ("left red", "left green", "right red", "right green")
+
+BLANK = bytes(ROW_BYTES * DISPLAY_HEIGHT)
+_MOST_CELLS = 1000
+"""More columns and rows than the text screen has with any font."""
+_MOST_NUMBER = 1e12
+
+
+@dataclass(frozen=True, slots=True)
+class TextScreen:
+    """Contents of the text screen."""
+
+    columns: int
+    rows: int
+    lines: tuple[str, ...]
+    """One text per row, at most `columns` characters."""
+    inverse: tuple[tuple[int, int, int], ...] = ()
+    """Spans in reverse video: row, first column and end column (exclusive), all from 0."""
+
+
+@dataclass(frozen=True, slots=True)
+class BrickState:
+    """What the brick shows at one time."""
+
+    leds: Mapping[str, int] = field(default_factory=dict)
+    """Brightness by name, as in `LED_NAMES`, 0 to 255. Empty until the program sets an LED: then they are green."""
+    picture: bytes = BLANK
+    """The display, one bit per pixel, 1 is dark, from the top left; rows of `ROW_BYTES` bytes, highest bit first."""
+    text: TextScreen | None = None
+    """The text screen; None until the program writes to it."""
+    shows_text: bool = False
+    """Whether the text screen was changed after the picture."""
+    turns: tuple[tuple[float, float], ...] = ()
+    """Position in degrees and speed in degrees per second of each motor in `RobotSpec.extra_motors`.
+
+    Valid at `turns_tick`; from then on each motor turns at its speed. Empty until one of them has turned.
+    """
+    turns_tick: int = 0
+    sound: str = ""
+    """What the brick said or played last; in brackets unless it is speech."""
+
+    def turns_at(self, time_s: float, tick_hz: int) -> tuple[tuple[float, float], ...]:
+        """Return `turns` extrapolated to a later time."""
+        since_s = time_s - self.turns_tick / tick_hz
+        return tuple((position_deg + dps * since_s, dps) for position_deg, dps in self.turns)
+
+
+def led_row(brightness: Mapping[str, int]) -> str:
+    """Return the row for the LEDs: brightness 0 to 255 by name, as in `LED_NAMES`."""
+    return json.dumps(dict(brightness))
+
+
+def display_row(picture: bytes) -> str:
+    """Return the row for a picture in the format of `BrickState.picture`."""
+    return base64.b85encode(zlib.compress(picture, 6)).decode()
+
+
+def console_row(screen: TextScreen) -> str:
+    """Return the row for the text screen."""
+    return json.dumps([screen.columns, screen.rows, screen.lines, screen.inverse])
+
+
+def motors_row(turns: Iterable[tuple[float, float]]) -> str:
+    """Return the row for the motors: `BrickState.turns`, valid from the row's tick on."""
+    return json.dumps(list(turns))
+
+
+DRAWN_STREAMS = frozenset({Stream.LED, Stream.DISPLAY, Stream.CONSOLE, Stream.MOTORS})
+"""Streams whose rows are data of the brick's own, and not texts."""
+
+
+def is_sound(stream: Stream, text: bytes) -> bool:
+    """Return whether a row of one of `DRAWN_STREAMS` is what the functions of this module write."""
+    try:
+        face = face_after(BrickState(), [OutputRow(text.decode(), 0, 0, 0, stream)])
+    except (ValueError, TypeError, AttributeError, RecursionError, zlib.error):
+        return False
+    match stream:
+        case Stream.LED:
+            return all(type(value) is int and 0 <= value <= 255 for value in face.leds.values())
+        case Stream.MOTORS:
+            return all(_is_number(value) for turn in face.turns for value in turn)
+        case Stream.CONSOLE:
+            return face.text is not None and _is_screen(face.text)
+        case _:
+            return len(face.picture) == len(BLANK)
+
+
+def _is_number(value: object) -> bool:
+    return (
+        isinstance(value, int | float) and not isinstance(value, bool) and abs(value) < _MOST_NUMBER
+    )
+
+
+def _is_screen(screen: TextScreen) -> bool:
+    sizes = (screen.columns, screen.rows, *(number for span in screen.inverse for number in span))
+    return (
+        all(type(size) is int and 0 <= size <= _MOST_CELLS for size in sizes)
+        and len(screen.lines) <= _MOST_CELLS
+        and all(isinstance(line, str) and len(line) <= _MOST_CELLS for line in screen.lines)
+    )
+
+
+def _unpacked(text: str) -> bytes:
+    """Return the picture in a row; at most one byte more than a picture has, whatever the row claims."""
+    return zlib.decompressobj().decompress(base64.b85decode(text), len(BLANK) + 1)
+
+
+def face_after(face: BrickState, rows: Iterable[OutputRow]) -> BrickState:
+    """Return the state after more output; rows of other streams are ignored."""
+    for row in rows:
+        match row.stream:
+            case Stream.LED:
+                face = replace(face, leds=json.loads(row.text))
+            case Stream.DISPLAY:
+                face = replace(face, picture=_unpacked(row.text), shows_text=False)
+            case Stream.CONSOLE:
+                columns, count, lines, inverse = json.loads(row.text)
+                spans = tuple((line, start, end) for line, start, end in inverse)
+                face = replace(
+                    face, text=TextScreen(columns, count, tuple(lines), spans), shows_text=True
+                )
+            case Stream.SPEECH:
+                face = replace(face, sound=row.text)
+            case Stream.MOTORS:
+                turns = tuple((position_deg, dps) for position_deg, dps in json.loads(row.text))
+                face = replace(face, turns=turns, turns_tick=row.tick)
+            case (
+                Stream.STDOUT
+                | Stream.STDERR
+                | Stream.INPUT
+                | Stream.NOTE
+                | Stream.DATA
+                | Stream.UNKNOWN
+            ):
+                pass
+            case _:
+                assert_never(row.stream)
+    return face

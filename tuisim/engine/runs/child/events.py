@@ -1,0 +1,178 @@
+"""The events of a child, as far as it may send them: its program can write to the pipe as well."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import asdict
+
+import msgspec
+
+from tuisim.base.errors import HostError
+from tuisim.engine.core.plugged import PluggedPart
+from tuisim.engine.protocol import (
+    EVENTS,
+    PROTOCOL_VERSION,
+    BusyLoop,
+    Ended,
+    InputWanted,
+    Inspected,
+    LineHistory,
+    Message,
+    Paused,
+    Plugged,
+    ReplyWanted,
+    Resumed,
+    Spoke,
+    Started,
+    Wheels,
+)
+from tuisim.engine.runs.run_options import RunOptions
+
+MOST_EVENT_BYTES = 8 << 20
+"""More than any event has."""
+MOST_AT_ONCE_BYTES = 1 << 20
+"""As much as a pipe of Linux can hold; of a flood of events the rest follows with the next read."""
+_CHUNK_BYTES = 1 << 16
+_MOST_SHOWN = 60
+_MOST_NUMBER = 1 << 53
+"""Larger than any integer in an event, in either direction; that of nanoseconds is 104 days."""
+
+_Kinds = tuple[type[Message], ...]
+DEBUGGED: _Kinds = (Paused, Resumed, Inspected, LineHistory, BusyLoop)
+"""Events of a run that can be paused."""
+
+
+class _Envelope(msgspec.Struct):
+    kind: str
+
+
+def decode_event(line: bytes) -> Message:
+    """Return the event in one line from the child.
+
+    Raises:
+        HostError: the line is not an event of this protocol.
+    """
+    try:
+        kind = EVENTS[msgspec.json.decode(line, type=_Envelope).kind]
+        event = msgspec.json.decode(line, type=kind)
+        if not _is_sound(asdict(event)):
+            raise ValueError(line)
+        if isinstance(event, Plugged):
+            # Raises a ValueError unless it is a part.
+            build_part(event)
+    except (msgspec.MsgspecError, ValueError, KeyError, RecursionError) as error:
+        raise HostError(
+            f"the program's process sent an invalid message: {line[:_MOST_SHOWN]!r}"
+        ) from error
+    return event
+
+
+def build_part(event: Plugged) -> PluggedPart:
+    """Return the part that an event tells of.
+
+    Raises:
+        ValueError: there is no such part.
+    """
+    return PluggedPart(event.port, event.part, event.tick, event.line, event.role)
+
+
+def _is_sound(value: object) -> bool:
+    """Return whether all integers in a part of an event are ones that catalogue, files and screen can hold."""
+    match value:
+        case int():
+            return abs(value) < _MOST_NUMBER
+        case dict():
+            return all(map(_is_sound, value.values()))
+        case tuple() | list():
+            return all(map(_is_sound, value))
+        case _:
+            return True
+
+
+class EventStream:
+    """Reads the events from a pipe, without blocking.
+
+    Args:
+        descriptor: The read end, non-blocking.
+        allowed: The classes of events that this run can send besides those of every run.
+    """
+
+    def __init__(self, descriptor: int, allowed: _Kinds) -> None:
+        self._descriptor = descriptor
+        self._allowed: _Kinds = (Started, Spoke, Wheels, Ended, *allowed)
+        self._rest = b""
+        self._last: Message | None = None
+        self.at_end = False
+        """Whether all writers have closed the pipe."""
+        self.falsified = ""
+        """Why what has arrived does not come from the simulation; nothing is read after it. Empty if it does."""
+
+    def allow(self, kinds: _Kinds) -> None:
+        """Let the child send further classes of events: it has been asked for them."""
+        self._allowed = (*self._allowed, *kinds)
+
+    def read(self) -> list[Message]:
+        """Return the events that have arrived; see `falsified`."""
+        events: list[Message] = []
+        for line in self._lines():
+            event = self._decoded(line)
+            if event is None:
+                break
+            events.append(event)
+            self._last = event
+        return events
+
+    def _lines(self) -> list[bytes]:
+        data, left = self._rest, MOST_AT_ONCE_BYTES
+        while left > 0 and not self.at_end and not self.falsified:
+            try:
+                chunk = os.read(self._descriptor, _CHUNK_BYTES)
+            except BlockingIOError:
+                break
+            self.at_end = not chunk
+            data += chunk
+            left -= len(chunk)
+        *lines, self._rest = data.split(b"\n")
+        if len(self._rest) > MOST_EVENT_BYTES:
+            self.falsified = "the program's process sent an endless message"
+        return lines
+
+    def _decoded(self, line: bytes) -> Message | None:
+        """Return the event in a line; None if there is none that can come now."""
+        try:
+            event = decode_event(line)
+        except HostError as error:
+            self.falsified = str(error)
+            return None
+        is_first, is_start = self._last is None, isinstance(event, Started)
+        match event:
+            case Started(protocol=number) if number != PROTOCOL_VERSION:
+                self.falsified = (
+                    f"the program's process speaks protocol {number}, this is {PROTOCOL_VERSION}"
+                )
+            case _ if not isinstance(event, self._allowed) or isinstance(self._last, Ended):
+                self.falsified = (
+                    f"the program's process sent the message {event.kind}, which cannot come here"
+                )
+            # A run that cannot begin ends without a start.
+            case _ if is_start != is_first and not (is_first and isinstance(event, Ended)):
+                when = "first" if is_first else "again"
+                self.falsified = (
+                    f"the program's process sent the message {event.kind}, which cannot come {when}"
+                )
+        return None if self.falsified else event
+
+
+def allowed_events(options: RunOptions, *, plugs: bool) -> _Kinds:
+    """Return the classes of events that a run can send besides its start, its sounds and its end.
+
+    Args:
+        options: How it is run.
+        plugs: Whether parts may be plugged in.
+    """
+    return (
+        *((Plugged,) if plugs else ()),
+        *(DEBUGGED if options.can_pause else ()),
+        *((InputWanted,) if options.asks_user else ()),
+        *((ReplyWanted,) if options.replies else ()),
+    )

@@ -1,0 +1,317 @@
+"""Runs a child process through bubblewrap: without network, without the user's files, and with limits.
+
+The program sees its own folder, the run folder, Python and its packages, and the libraries of the system. It may start
+no process, and use only so much memory and space.
+"""
+
+from __future__ import annotations
+
+import errno
+import json
+import os
+import stat
+import subprocess
+import sys
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
+from pathlib import Path
+from typing import IO
+
+from tuisim.base.errors import ConfigError
+from tuisim.engine.runs.child.readable import is_readable
+from tuisim.engine.runs.child.seccomp import filter_descriptor
+
+BWRAP = "bwrap"
+START_S = 10.0
+"""Real seconds that bubblewrap may take to start."""
+_SYSTEM = (
+    "/usr",
+    "/lib",
+    "/lib32",
+    "/lib64",
+    "/libx32",
+    "/bin",
+    "/etc/ld.so.cache",
+    "/etc/alternatives",
+)
+_SIGNALLED = 128
+"""bubblewrap reports a signal N that ended the child as exit status 128 + N."""
+_PACKAGES = ("site-packages", "dist-packages")
+_KEY = "--isolate"
+_TMP_BYTES = 64 << 20
+"""Size of the program's own `/tmp`, which is in memory."""
+MOST_FILES, MOST_BYTES = 20_000, 1 << 30
+"""Files, and bytes in them, that it may have in its folders; see `Quota`."""
+_MEMORY_BYTES = 2 << 30
+"""Address space of its process; it is told at half of that."""
+_OPEN_FILES = 256
+LIMITS = f"""\
+import resource
+for kind, most in (
+    (resource.RLIMIT_AS, {_MEMORY_BYTES}),
+    (resource.RLIMIT_FSIZE, {MOST_BYTES}),
+    (resource.RLIMIT_NOFILE, {_OPEN_FILES}),
+    (resource.RLIMIT_CORE, 0),
+):
+    hard = resource.getrlimit(kind)[1]
+    most = most if hard == resource.RLIM_INFINITY else min(most, hard)
+    resource.setrlimit(kind, (most, most))
+del resource, kind, most, hard
+"""
+"""Code for the start of the process: it sets limits that cannot be raised again."""
+_MOST_THREADS = 2_000
+"""Threads that it may have: more than the simulation allows."""
+_MAX_SOCKETS = 512
+"""Sockets that it may have: one of which it has no descriptor any more still holds what was sent."""
+_SOCKETS_USED = "sockets: used "
+_LOOK_EVERY_S = 0.25
+_BLOCK_BYTES = 512
+_HIDDEN = (errno.ENAMETOOLONG, errno.EACCES)
+"""Errors of folders that are nested too deep to be looked at, or that the program has closed."""
+
+
+def check_isolation() -> None:
+    """Start bubblewrap once, and wait for its end.
+
+    Raises:
+        ConfigError: it is not installed, or cannot start here.
+    """
+    import shutil
+
+    hint = "--no-isolate goes without"
+    if shutil.which(BWRAP) is None:
+        raise ConfigError(f"{BWRAP} is not installed", f"install bubblewrap; {hint}", key=_KEY)
+    try:
+        done = subprocess.run(
+            [*_confined(Path("/"), (), ()), sys.executable, "-c", ""],
+            stdin=subprocess.DEVNULL,
+            capture_output=True,
+            text=True,
+            errors="replace",
+            timeout=START_S,
+        )
+        reason = (
+            done.stderr.strip().rpartition("\n")[2] or f"exit status {done.returncode}"
+            if done.returncode
+            else ""
+        )
+    except (OSError, subprocess.TimeoutExpired) as error:
+        reason = str(error)
+    if reason:
+        raise ConfigError(f"{BWRAP} cannot start here: {reason}", hint, key=_KEY)
+
+
+class IsolatedChild:
+    """A child inside bubblewrap.
+
+    Args:
+        process: bubblewrap itself, which waits for the child.
+        pid: The child.
+    """
+
+    def __init__(self, process: subprocess.Popen[bytes], pid: int) -> None:
+        self._process, self.pid = process, pid
+        self.returncode: int | None = None
+
+    def poll(self) -> int | None:
+        """Return the exit status, negative for a signal; None while it runs."""
+        return self._ended(self._process.poll())
+
+    def wait(self, timeout: float | None = None) -> int:
+        """Block until it has ended.
+
+        Raises:
+            subprocess.TimeoutExpired: it is still running after `timeout` seconds.
+        """
+        status = self._ended(self._process.wait(timeout))
+        assert status is not None
+        return status
+
+    def send_signal(self, number: int, /) -> None:
+        """Send a signal, unless it has ended."""
+        if self.poll() is None:
+            with suppress(ProcessLookupError):
+                os.kill(self.pid, number)
+
+    def _ended(self, status: int | None) -> int | None:
+        if status is not None:
+            self.returncode = _SIGNALLED - status if status > _SIGNALLED else status
+        return self.returncode
+
+
+class Quota:
+    """How many threads and sockets an isolated program may have, and how much it may add to its folders.
+
+    Args:
+        pid: Its process.
+        folders: The folders, before it has begun; empty names are left out.
+    """
+
+    def __init__(self, pid: int, folders: Iterable[str | Path]) -> None:
+        self._process = f"/proc/{pid}"
+        self._folders = tuple(filter(None, map(str, folders)))
+        self._next_look_s = 0.0
+        self._sockets = self._count_sockets()
+        self._files = self._bytes = 0
+        self._files, self._bytes = self._more(MOST_FILES, MOST_BYTES)
+
+    def exceeded(self, now_s: float) -> str:
+        """Return which limit is exceeded; empty if none is, or if it has been looked at a moment ago.
+
+        Args:
+            now_s: The time on any clock.
+        """
+        if now_s < self._next_look_s:
+            return ""
+        self._next_look_s = now_s + _LOOK_EVERY_S
+        with suppress(OSError):
+            # A folder has a link more for each folder in it, and two of its own.
+            if os.stat(f"{self._process}/task").st_nlink - 2 > _MOST_THREADS:
+                return f"the program has started more than {_MOST_THREADS:,} threads"
+        if self._count_sockets() - self._sockets > _MAX_SOCKETS:
+            return f"the program has opened more than {_MAX_SOCKETS} sockets"
+        files, size = self._more(MOST_FILES, MOST_BYTES)
+        size += sum(self._without_a_name())
+        if files > MOST_FILES or size > MOST_BYTES:
+            return (
+                f"the program has written more than {MOST_FILES:,} files or {MOST_BYTES >> 30} GiB"
+            )
+        return ""
+
+    def _count_sockets(self) -> int:
+        """Return the number of sockets in the program's own network."""
+        with suppress(OSError):
+            first = Path(f"{self._process}/net/sockstat").read_text("ascii").partition("\n")[0]
+            if first.startswith(_SOCKETS_USED):
+                return int(first.removeprefix(_SOCKETS_USED))
+        return 0
+
+    def _more(self, most_files: int, most_bytes: int) -> tuple[int, int]:
+        """Return how many files and bytes there are more than at the beginning; it stops counting at these numbers."""
+        files, size = -self._files, -self._bytes
+        for one in self._blocks():
+            files, size = files + 1, size + one
+            if files > most_files or size > most_bytes:
+                break
+        return files, size
+
+    def _blocks(self) -> Iterator[int]:
+        """Yield the bytes that each file and folder takes."""
+        folders = list(self._folders)
+        while folders:
+            # Another process writes there: what is gone takes no space.
+            try:
+                with os.scandir(folders.pop()) as entries:
+                    for entry in entries:
+                        with suppress(FileNotFoundError):
+                            yield _BLOCK_BYTES * entry.stat(follow_symlinks=False).st_blocks
+                        if entry.is_dir(follow_symlinks=False):
+                            folders.append(entry.path)
+            except OSError as error:
+                if error.errno in _HIDDEN:
+                    # Whatever it holds: too much.
+                    yield MOST_BYTES + 1
+
+    def _without_a_name(self) -> Iterator[int]:
+        """Yield the bytes of open files that have no name, or none any more: also those in memory."""
+        with suppress(OSError):
+            for entry in os.scandir(f"{self._process}/fd"):
+                with suppress(OSError):
+                    found = entry.stat()
+                    if stat.S_ISREG(found.st_mode) and not found.st_nlink:
+                        yield _BLOCK_BYTES * found.st_blocks
+
+
+def spawn_isolated(
+    command: Sequence[str],
+    environment: Mapping[str, str],
+    log: IO[bytes],
+    inherited: Sequence[int],
+    writable: Sequence[Path],
+    readable: Sequence[Path],
+) -> IsolatedChild:
+    """Start a child that can change nothing but some folders, and read little else. Blocks until it has started.
+
+    Args:
+        command: Its command.
+        environment: Its environment.
+        log: Its stderr.
+        inherited: File descriptors that it keeps.
+        writable: Folders that it may change; the last one is its working directory.
+        readable: Further files and folders that it may read.
+
+    Raises:
+        OSError: bubblewrap cannot be started, or has not started the child.
+    """
+    info_fd, info_write = os.pipe()
+    filter_fd = filter_descriptor()
+    filtered = [] if filter_fd is None else ["--seccomp", str(filter_fd)]
+    theirs = [info_write] if filter_fd is None else [info_write, filter_fd]
+    try:
+        process = subprocess.Popen(
+            [
+                *_confined(writable[-1], writable, readable),
+                "--as-pid-1",
+                *filtered,
+                "--info-fd",
+                str(info_write),
+                "--",
+                *command,
+            ],
+            pass_fds=[*inherited, *theirs],
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.DEVNULL,
+            stderr=log,
+            env=environment,
+            start_new_session=True,
+        )
+    finally:
+        for fd in theirs:
+            os.close(fd)
+    with open(info_fd, "rb") as info:
+        # It is closed when the child starts, or when bubblewrap has given up.
+        text = info.read() if is_readable(info_fd, START_S) else b""
+    try:
+        return IsolatedChild(process, int(json.loads(text)["child-pid"]))
+    except (ValueError, KeyError) as error:
+        process.kill()
+        process.wait()
+        raise OSError(f"{BWRAP} has not started the program") from error
+
+
+def _confined(cwd: Path, writable: Sequence[Path], readable: Sequence[Path]) -> list[str]:
+    """Return the command of bubblewrap, up to its last options; what it starts ends when bubblewrap is ended.
+
+    Args:
+        cwd: The working directory.
+        writable: Folders that the process may change.
+        readable: Files and folders that it may read, besides Python and the system.
+    """
+    words = [BWRAP, "--unshare-all", "--new-session", "--die-with-parent"]
+    # It leaves them to root, who could mount again for writing what is mounted for reading.
+    words += ["--cap-drop", "ALL"]
+    words += ["--proc", "/proc", "--dev", "/dev", "--size", str(_TMP_BYTES), "--tmpfs", "/tmp"]
+    for place in (*_SYSTEM, *_python(), *map(str, readable)):
+        words += ["--ro-bind-try", place, place]
+    for folder in writable:
+        words += ["--bind", str(folder), str(folder)]
+    # /dev and / are in memory, too, and in /proc root could change the settings of the whole system.
+    for place in ("/proc", "/dev", "/"):
+        words += ["--remount-ro", place]
+    return [*words, "--chdir", str(cwd)]
+
+
+def _python() -> list[str]:
+    """Return the folders that Python and its packages are in."""
+    package = Path(__file__).parents[3]
+    packages = [folder for folder in sys.path if Path(folder).name in _PACKAGES]
+    folders = [
+        sys.base_prefix,
+        sys.base_exec_prefix,
+        sys.prefix,
+        sys.exec_prefix,
+        *packages,
+        str(package),
+    ]
+    # A prefix such as / would show everything; what Python needs of it is part of the system.
+    return [folder for folder in dict.fromkeys(map(os.path.realpath, folders)) if folder != os.sep]

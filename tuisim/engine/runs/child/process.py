@@ -1,0 +1,364 @@
+"""The child process of a run: starting it, writing commands, decoding and validating events."""
+
+from __future__ import annotations
+
+import os
+import resource
+import select
+import signal
+import subprocess
+import sys
+import threading
+import time
+from collections import OrderedDict
+from collections.abc import Hashable, Mapping, Sequence
+from contextlib import ExitStack, suppress
+from pathlib import Path
+from typing import IO, TYPE_CHECKING, Any, ClassVar
+
+from tuisim.base.atomic import private
+from tuisim.base.regular_file import read_regular
+from tuisim.base.source import source_lines
+from tuisim.engine.runs.child.fair_clock import waited_s
+from tuisim.engine.runs.child.isolation import LIMITS, spawn_isolated
+from tuisim.engine.runs.raw_files import create_raw_file
+from tuisim.engine.runs.side_files import LOG_FILE, MOST_BYTES, STACK_FILE
+
+if TYPE_CHECKING:
+    from tuisim.engine.runs.child.warm import ChildProcess, Template, WarmProcess
+
+PATIENCE_S = 0.2
+"""Longest wait for a full command pipe: a child that listens empties it at once."""
+
+BOOT = (
+    "import runpy, sys; sys.path.append(sys.argv.pop(1)); "
+    "runpy.run_module('tuisim.engine.runtime', run_name='__main__', alter_sys=True)"
+)
+"""Startup code of the child: the package comes last in the path, so that nothing beside it shadows Python's modules."""
+
+MOST_TEMPLATES = 4
+
+FEW_IDS = 32
+"""So many process ids are tried one by one: it takes longer to list all processes of the machine."""
+FILE_LOCKS = 10
+"""Number of a limit that every process inherits on Linux, and that is unused since 2.4.25."""
+
+STACK_WRITTEN_WITHIN_S, STACK_AWAITED_S, LOOK_AGAIN_S = 0.05, 0.1, 0.003
+"""Time for a stuck child to write its stack, that with its wait for a processor, and the interval of checks."""
+
+_DIGITS = 10
+"""Fewer than these has the number of a line."""
+MOST_SHOWN = 500
+"""Stacks contain at most this many characters of a file name."""
+
+
+class _Starts:
+    """What this process has started: the warm process, templates by what they are prepared for, number of children."""
+
+    warm: WarmProcess | None = None
+    templates: ClassVar[OrderedDict[Hashable, Template]] = OrderedDict()
+    """The one used last comes last."""
+    count = 0
+    lock: ClassVar = threading.RLock()
+    """Held while they are looked up or changed: threads of an app start runs at the same time."""
+
+
+def warm_up() -> None:
+    """Start the warm process, from which all later children are forked, unless it is running. Does not block."""
+    with _Starts.lock:
+        if _Starts.warm is None or not _Starts.warm.is_usable:
+            cool_down()
+            # Imported on demand: it imports what most commands need not.
+            from tuisim.engine.runs.child.warm import WarmProcess
+
+            # If it cannot be started, each child is started by itself.
+            with suppress(OSError):
+                _Starts.warm = WarmProcess(_command(), _environment())
+
+
+def cool_down() -> None:
+    """End the warm process and all templates; their children go on."""
+    with _Starts.lock:
+        while _Starts.templates:
+            _Starts.templates.popitem()[1].close()
+        if _Starts.warm is not None:
+            _Starts.warm.close()
+        _Starts.warm = None
+
+
+def start_child(
+    folder: Path,
+    lock_fd: int,
+    working_directory: str,
+    run: Mapping[str, Any],
+    template_key: Hashable = None,
+    makes_template: bool = False,
+    isolated_with: Sequence[Path] | None = None,
+) -> tuple[ChildProcess, int, int, int]:
+    """Start the process that executes the run of a folder.
+
+    The first child of this process is started by itself; with the second comes the warm process.
+
+    Args:
+        folder: The run folder.
+        lock_fd: Its lock, which the process inherits; it is closed here.
+        working_directory: Initial working directory, if it still exists.
+        run: The contents of the `run.json` in the folder.
+        template_key: What a template must be prepared for to fork the child; None forks it from the warm process.
+        makes_template: Whether such a template is made if there is none; otherwise the warm process forks the child.
+        isolated_with: The files and folders that it needs besides its run folder and its working directory; it is then
+            started by itself, isolated from the others. None starts it without isolation.
+
+    Returns:
+        The process; write end of its commands and read end of its events, both non-blocking; and its lifeline, at
+        whose end it dies.
+    """
+    _Starts.count += 1
+    if _Starts.count > 1 and isolated_with is None:
+        warm_up()
+    with ExitStack() as theirs, ExitStack() as ours:
+        theirs.callback(os.close, lock_fd)
+        command_read, command_fd = _pipe(theirs, ours)
+        event_fd, event_write = _pipe(ours, theirs)
+        lifeline_read, lifeline_fd = _pipe(theirs, ours)
+        inherited = [command_read, event_write, lifeline_read, lock_fd]
+        with open(folder / LOG_FILE, "wb", opener=private) as log:
+            cwd = working_directory if os.path.isdir(working_directory) else None
+            process: ChildProcess
+            if isolated_with is None:
+                key = template_key if makes_template or template_key in _Starts.templates else None
+                with _Starts.lock:
+                    forked = _fork(folder, cwd, log.fileno(), inherited, run, key)
+                process = forked or _spawn(folder, cwd, log, inherited)
+            else:
+                for fd in (1, 2):
+                    # It may create none itself: they could outlive their descriptors.
+                    inherited.append(raw_fd := create_raw_file(fd))
+                    theirs.callback(os.close, raw_fd)
+                command = [*_command(LIMITS), str(folder), *map(str, inherited)]
+                writable = [folder, Path(cwd)] if cwd else [folder]
+                process = spawn_isolated(
+                    command, _environment(), log, inherited, writable, isolated_with
+                )
+        ours.pop_all()
+    os.set_blocking(event_fd, False)
+    os.set_blocking(command_fd, False)
+    return process, command_fd, event_fd, lifeline_fd
+
+
+def _pipe(reader: ExitStack, writer: ExitStack) -> tuple[int, int]:
+    """Return the ends of a pipe, which are closed with these stacks."""
+    read_fd, write_fd = os.pipe()
+    reader.callback(os.close, read_fd)
+    writer.callback(os.close, write_fd)
+    return read_fd, write_fd
+
+
+def prepare_template(key: Hashable, folder: Path, run: Mapping[str, Any]) -> None:
+    """Make a template unless there is one, if the warm process runs. Does not block until it is ready.
+
+    Args:
+        key: What it is prepared for.
+        folder: A run folder with that.
+        run: The contents of its `run.json`, as it was started.
+    """
+    with _Starts.lock:
+        if _Starts.warm is not None and _Starts.warm.is_usable:
+            # Without a template, children are forked from the warm process.
+            with suppress(OSError):
+                _template(_Starts.warm, key, folder, run)
+
+
+def _command(first: str = "") -> list[str]:
+    """Return the command of a child without its arguments; `first` is code for its start."""
+    return [sys.executable, "-s", "-P", "-c", first + BOOT, str(Path(__file__).parents[4])]
+
+
+def _fork(
+    folder: Path,
+    cwd: str | None,
+    log_fd: int,
+    inherited: Sequence[int],
+    run: Mapping[str, Any],
+    key: Hashable,
+) -> ChildProcess | None:
+    """Fork a child from a template or the warm process; return None if there is none, or it cannot."""
+    if _Starts.warm is None or not _Starts.warm.is_usable:
+        return None
+    try:
+        here = cwd or os.getcwd()
+    except OSError:
+        # The working directory no longer exists; only a process that is started there can be in it.
+        return None
+    try:
+        server = _Starts.warm if key is None else _template(_Starts.warm, key, folder, run)
+        return server.fork(str(folder), here, _environment(), [log_fd, *inherited], run)
+    except OSError:
+        cool_down()
+        return None
+
+
+def _template(warm: WarmProcess, key: Hashable, folder: Path, run: Mapping[str, Any]) -> Template:
+    templates = _Starts.templates
+    if key not in templates:
+        if len(templates) >= MOST_TEMPLATES:
+            templates.popitem(last=False)[1].close()
+        templates[key] = warm.template(str(folder), run)
+    templates.move_to_end(key)
+    return templates[key]
+
+
+def _spawn(folder: Path, cwd: str | None, log: IO[bytes], inherited: Sequence[int]) -> ChildProcess:
+    return subprocess.Popen(
+        [*_command(), str(folder), *map(str, inherited)],
+        pass_fds=inherited,
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.DEVNULL,
+        stderr=log,
+        env=_environment(),
+        cwd=cwd,
+        start_new_session=True,
+    )
+
+
+def mark(pid: int) -> int:
+    """Mark a child and all its future descendants; no new session, program or environment removes the mark.
+
+    Returns:
+        The mark; 0 if that is not supported.
+    """
+    wanted = 1 << 62 | int.from_bytes(os.urandom(7))
+    try:
+        resource.prlimit(pid, FILE_LOCKS, (wanted, wanted))
+    # Not Linux, exited already, or a limit is set.
+    except (AttributeError, OSError, ValueError):
+        return 0
+    return wanted
+
+
+def end_group(pid: int) -> None:
+    """Kill a child and its process group."""
+    try:
+        os.killpg(pid, signal.SIGKILL)
+    except (ProcessLookupError, PermissionError):
+        return
+
+
+def end_left_over(pid: int, marked: int) -> None:
+    """Kill all processes that an exited child has left behind; without a mark not those in sessions of their own."""
+    ended = {pid}
+    try:
+        while marked and (
+            found := {one for one in _younger_than(pid) - ended if _has_mark(one, marked)}
+        ):
+            ended |= found
+            for one in found:
+                with suppress(ProcessLookupError, PermissionError):
+                    os.kill(one, signal.SIGKILL)
+    except OSError:
+        # No such file system, or no permission to read it.
+        marked = 0
+    if not marked:
+        end_group(pid)
+
+
+def _younger_than(pid: int) -> set[int]:
+    """Return the processes that may have been started after a process, and ids that may belong to none."""
+    last = int(Path("/proc/loadavg").read_text("ascii").split()[-1])
+    # Process ids increase, and wrap around when they are used up.
+    if pid <= last < pid + FEW_IDS:
+        return set(range(pid + 1, last + 1))
+    there = {int(name) for name in os.listdir("/proc") if name.isdigit()}
+    return {one for one in there if one > pid} if last >= pid else there
+
+
+def _has_mark(pid: int, marked: int) -> bool:
+    try:
+        return f" {marked} " in Path(f"/proc/{pid}/limits").read_text("ascii")
+    except OSError:
+        return False
+
+
+def _environment() -> dict[str, str]:
+    """Return the child's environment: isolated from the user's, with reproducible hashes."""
+    kept = {
+        name: os.environ[name]
+        for name in ("PATH", "HOME", "LD_LIBRARY_PATH", "TMPDIR")
+        if name in os.environ
+    }
+    return {
+        **kept,
+        "PYTHONHASHSEED": "0",
+        "PYTHONUTF8": "1",
+        # One thread runs at a time: a further heap would only use address space.
+        "MALLOC_ARENA_MAX": "1",
+        "OPENBLAS_NUM_THREADS": "1",
+        "OMP_NUM_THREADS": "1",
+        "TZ": "UTC",
+        "LANG": "C.UTF-8",
+    }
+
+
+def write_command(fd: int, data: bytes) -> bool:
+    """Write a command, which may exceed the pipe's capacity; return whether it was written completely."""
+    while data:
+        try:
+            data = data[os.write(fd, data) :]
+        except BrokenPipeError:
+            return False
+        except BlockingIOError:
+            poll = select.poll()
+            poll.register(fd, select.POLLOUT)
+            if not poll.poll(round(PATIENCE_S * 1000)):
+                return False
+    return True
+
+
+def await_stack(folder: Path, pid: int) -> None:
+    """Block for a short time until a stuck child has written its stack."""
+    start_s, waited_before_s = time.monotonic(), waited_s(pid)
+    size, path = 0, folder / STACK_FILE
+    while (passed_s := time.monotonic() - start_s) < STACK_AWAITED_S and passed_s - (
+        waited_s(pid) - waited_before_s
+    ) < STACK_WRITTEN_WITHIN_S:
+        time.sleep(LOOK_AGAIN_S)
+        before, size = size, path.stat().st_size if path.exists() else 0
+        if size and size == before:
+            return
+
+
+def stuck_line(folder: Path, program_file: str) -> int:
+    """Return the program's line in the stack that a stuck child wrote; 0 if there is none."""
+    try:
+        stack = read_regular(folder / STACK_FILE, MOST_BYTES).decode("utf-8", "replace")
+    except OSError:
+        return 0
+    # In the format of that file: ASCII, truncated.
+    shown = program_file.encode("ascii", "backslashreplace").decode()
+    for line in source_lines(stack):
+        if f'"{shown}"' in line or (
+            len(program_file) > MOST_SHOWN and f'"{shown[:MOST_SHOWN]}' in line
+        ):
+            number = line.partition(", line ")[2].partition(" ")[0]
+            return int(number) if number.isdecimal() and len(number) < _DIGITS else 0
+    return 0
+
+
+def what_ended(exit_status: int, folder: Path, line: int) -> str:
+    """Return the reason why a child ended without an event: a signal and a line, or exit status and error text."""
+    if exit_status < 0:
+        where = f" in line {line}" if line else ""
+        return f"the program's process was ended by {_signal_name(-exit_status)}{where}"
+    log = ""
+    with suppress(OSError):
+        log = read_regular(folder / LOG_FILE, MOST_BYTES).decode("utf-8", "replace").strip()
+    last = f": {source_lines(log)[-1]}" if log else ""
+    return f"the program's process ended with exit status {exit_status}{last}"
+
+
+def _signal_name(number: int) -> str:
+    try:
+        return signal.Signals(number).name
+    except ValueError:
+        # Most real-time signals have no name of their own.
+        return f"signal {number}"

@@ -1,0 +1,122 @@
+"""Continues what a program has stopped: `python supervisor.py PID` watches a process and all that it has started.
+
+A program that is not isolated can send SIGSTOP to the processes that wait for it, which then wait for ever. The
+supervisor is a process of its own, so that its clock goes on. It ends with the process that it watches. It imports
+nothing of the package: it starts in milliseconds.
+
+Its standard input tells it that the user has suspended the watched process (`s`), and that it goes on (`c`).
+"""
+
+from __future__ import annotations
+
+import os
+import select
+import signal
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from types import FrameType
+
+LOOK_EVERY_S = 0.5
+STOPPED = "T"
+
+
+def processes() -> dict[int, tuple[int, str]]:
+    """Return parent and state of each process of this machine, by process id."""
+    found = {}
+    for name in os.listdir("/proc"):
+        if name.isdigit():
+            try:
+                with open(f"/proc/{name}/stat", "rb") as file:
+                    # The name, in parentheses, may contain anything.
+                    state, parent = file.read().rpartition(b")")[2].split()[:2]
+            except (OSError, ValueError):
+                continue
+            found[int(name)] = int(parent), state.decode("latin-1")
+    return found
+
+
+def tree(root: int, known: dict[int, tuple[int, str]]) -> Iterator[int]:
+    """Yield a process and all that descend from it."""
+    children: dict[int, list[int]] = {}
+    for pid, (parent, _) in known.items():
+        children.setdefault(parent, []).append(pid)
+    found = [root] if root in known else []
+    while found:
+        pid = found.pop()
+        yield pid
+        found += children.get(pid, [])
+
+
+def continue_stopped(root: int, before: set[int]) -> set[int]:
+    """Continue the processes that were stopped at the last look, too; return those that are stopped now."""
+    known = processes()
+    stopped = {pid for pid in tree(root, known) if known[pid][1] == STOPPED and pid != os.getpid()}
+    for pid in stopped & before:
+        try:
+            os.kill(pid, signal.SIGCONT)
+        except OSError:
+            continue
+    return stopped
+
+
+def supervise(root: int) -> None:
+    """Look after a process until it has ended. Blocks."""
+    stopped: set[int] = set()
+    is_suspended = False
+    while True:
+        if select.select([sys.stdin], [], [], LOOK_EVERY_S)[0]:
+            told = os.read(sys.stdin.fileno(), 1)
+            if not told:
+                return
+            is_suspended = told == b"s"
+        stopped = set() if is_suspended else continue_stopped(root, stopped)
+
+
+@contextmanager
+def supervised() -> Iterator[None]:
+    """Continue this process, and those that it starts in the block, when a program stops them.
+
+    Without `/proc` nothing is continued.
+
+    Raises:
+        HostError: this machine cannot start the process that does it.
+    """
+    if not os.path.isdir("/proc/self"):
+        yield
+        return
+    # Not at the top: the supervisor itself does not need it.
+    import subprocess
+
+    command = [sys.executable, "-I", "-S", __file__, str(os.getpid())]
+    try:
+        process = subprocess.Popen(
+            command, stdin=subprocess.PIPE, stderr=subprocess.DEVNULL, start_new_session=True
+        )
+    except OSError as error:
+        from tuisim.base.errors import HostError
+
+        raise HostError(
+            f"the process that watches over programs cannot be started: {error.strerror or error}"
+        ) from error
+    with process:
+        assert process.stdin is not None
+        told = process.stdin.fileno()
+
+        def suspend(number: int, frame: FrameType | None) -> None:
+            # By the user: the supervisor leaves it so.
+            with suppress(OSError):
+                os.write(told, b"s")
+            os.kill(os.getpid(), signal.SIGSTOP)
+            with suppress(OSError):
+                os.write(told, b"c")
+
+        before = signal.signal(signal.SIGTSTP, suspend)
+        try:
+            yield
+        finally:
+            signal.signal(signal.SIGTSTP, before)
+
+
+if __name__ == "__main__":
+    supervise(int(sys.argv[1]))

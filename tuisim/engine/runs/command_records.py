@@ -1,0 +1,121 @@
+"""What a program changed in the simulation, and when: `COMMANDS_FILE` of a run folder, and its writer and reader.
+
+Written in pure Python: the child imports it. The file is one of `records`: a header, then one record of 72 bytes for
+each command.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from pathlib import Path
+from struct import Struct
+from typing import TYPE_CHECKING, Any
+
+from tuisim.base.data_class import dataclass
+from tuisim.base.errors import LogError
+from tuisim.base.regular_file import of_the_machine, read_regular
+from tuisim.engine.core.commands.calls import MAX_VALUES, Call, SimulationCommand
+from tuisim.engine.runs.records import HEADER_BYTES, MappedWriter, read_header
+from tuisim.engine.runs.side_files import COMMANDS_FILE
+
+if TYPE_CHECKING:
+    import numpy as np
+
+    Array = np.ndarray[Any, Any]
+
+COMMANDS_MAGIC = b"TUISIMCM"
+COMMAND_RECORD = Struct(f"<qBB6x{MAX_VALUES}d")
+"""Simulated time in ns, part, call, values; those that a call does not take are 0."""
+COMMAND_FIELDS = (
+    ("time_ns", "<i8"),
+    ("part", "u1"),
+    ("call", "u1"),
+    ("", "V6"),
+    ("values", f"({MAX_VALUES},)<f8"),
+)
+"""Name and type of each field of a record, the type as numpy writes it."""
+MAX_COMMANDS = 1 << 21
+"""Further commands of a run are only counted."""
+_FIRST_BYTES = 1 << 14
+_PACKERS = tuple(Struct(f"<qBB6x{count}d").pack_into for count in range(MAX_VALUES + 1))
+"""By the number of values."""
+_CALLS = {call.value: call for call in Call}
+
+
+class CommandsWriter(MappedWriter):
+    """Appends commands and publishes each at once."""
+
+    def __init__(self, folder: Path) -> None:
+        super().__init__(
+            f"{folder}{os.sep}{COMMANDS_FILE}", COMMANDS_MAGIC, COMMAND_RECORD.size, _FIRST_BYTES
+        )
+        self._count = 0
+        self._room = _FIRST_BYTES // COMMAND_RECORD.size
+        """How many commands fit."""
+
+    def add(self, time_ns: int, part: int, call: int, values: tuple[float, ...]) -> None:
+        """Append a command; arguments as of `SimulationCommand`."""
+        count = self._count
+        if count < self._room or self._extend(count):
+            at = HEADER_BYTES + count * COMMAND_RECORD.size
+            _PACKERS[len(values)](self._map, at, time_ns, part, call, *values)
+        self._count = self._length[0] = count + 1
+
+    def _extend(self, count: int) -> bool:
+        """Make room for one more command than `count`; return whether there is any."""
+        if count >= MAX_COMMANDS or self._is_full:
+            return False
+        self._make_room(HEADER_BYTES + (count + 1) * COMMAND_RECORD.size)
+        self._room = min(MAX_COMMANDS, (self._capacity - HEADER_BYTES) // COMMAND_RECORD.size)
+        return True
+
+    def close(self) -> None:
+        """Truncate the file to its true size."""
+        self._close(HEADER_BYTES + min(self._count, self._room) * COMMAND_RECORD.size)
+
+
+@dataclass(frozen=True, slots=True)
+class RecordedCommands:
+    """The commands of a run, in the order in which they were given."""
+
+    rows: Array
+    """One row of `COMMAND_FIELDS` for each."""
+    left_out: int = 0
+    """How many more there were than the file holds."""
+
+    def unpack(self) -> Iterator[SimulationCommand]:
+        """Yield the commands, all their values with them.
+
+        Raises:
+            ValueError: one has a number that stands for no call.
+        """
+        for time_ns, part, call, *values in COMMAND_RECORD.iter_unpack(self.rows.tobytes()):
+            yield SimulationCommand(time_ns, part, _CALLS.get(call) or Call(call), tuple(values))
+
+
+def read_commands(folder: Path) -> RecordedCommands:
+    """Return what the program of a run has changed in the simulation so far.
+
+    Raises:
+        LogError: the file is missing, damaged or of another version, or this machine cannot read it.
+    """
+    import numpy as np
+
+    path = folder / COMMANDS_FILE
+    try:
+        data = read_regular(path, HEADER_BYTES + 2 * MAX_COMMANDS * COMMAND_RECORD.size)
+    except FileNotFoundError as error:
+        raise LogError(
+            "there is no record of what the program did", "run it again", file=str(path)
+        ) from error
+    except OSError as error:
+        raise LogError(f"cannot be read: {error.strerror or error}", file=str(path)) from (
+            error if of_the_machine(error) else None
+        )
+    size, published = read_header(data, COMMANDS_MAGIC, str(path))
+    if size != COMMAND_RECORD.size:
+        raise LogError("damaged: these are no commands", file=str(path))
+    count = min(published, MAX_COMMANDS, (len(data) - HEADER_BYTES) // size)
+    rows = np.frombuffer(data, np.dtype([*COMMAND_FIELDS]), count, HEADER_BYTES)
+    return RecordedCommands(rows, published - count)

@@ -1,0 +1,346 @@
+"""Differences between two runs: their setup, then tick by tick, row by row, and the distance of the poses over time."""
+
+from __future__ import annotations
+
+import difflib
+import shlex
+from collections.abc import Iterator
+from dataclasses import asdict
+from itertools import takewhile, zip_longest
+from typing import TYPE_CHECKING, Any, assert_never
+
+from tuisim.base.data_class import dataclass
+from tuisim.base.source import source_lines
+from tuisim.engine.core.tree import to_plain
+from tuisim.engine.runs.records import TEXT_STREAMS, OutputRow, Stream, line_of
+from tuisim.engine.runs.run_folder import StoredRun
+from tuisim.engine.runs.samples import samples_of
+
+if TYPE_CHECKING:
+    import numpy as np
+
+    _Series = np.ndarray[Any, Any]
+
+DIFF_LINES = 20
+"""Maximum number of lines of the unified diff of two programs."""
+EXCEEDED_MM = (1.0, 10.0, 100.0)
+PARTED_MM, PARTED_DEG = 1.0, 1.0
+"""Robots that are farther apart have parted."""
+TABLE_ROWS = 10
+
+
+@dataclass(frozen=True, slots=True)
+class TickDifference:
+    """The first tick at which two recordings are not identical bit by bit."""
+
+    tick: int
+    time_s: float
+    fields: tuple[str, ...]
+    """Fields that differ; empty if one recording ends before this tick."""
+
+
+@dataclass(frozen=True, slots=True)
+class RowDifference:
+    """The first position at which two runs' rows differ; None for a run that has no more rows."""
+
+    row: int
+    """Number from 1 among the readable rows; a row of a motor gets the number of the next readable one."""
+    first: str | None
+    second: str | None
+    times_s: tuple[float | None, float | None]
+    """Simulated time in each run, in seconds."""
+
+
+@dataclass(frozen=True, slots=True)
+class Divergence:
+    """Distance between the robots over the time that both runs cover."""
+
+    max_mm: float
+    max_at_s: float
+    end_mm: float
+    end_s: float
+    exceeded: tuple[tuple[float, float | None], ...]
+    """Distances in mm, and the time in s at which each was first exceeded; None for never."""
+    table: tuple[tuple[float, float, float], ...]
+    """Time in s, distance in mm, difference of heading in degrees, at regular intervals."""
+
+
+@dataclass(frozen=True, slots=True)
+class RunDiff:
+    """All differences between two runs."""
+
+    setup: tuple[tuple[str, str, str], ...]
+    """Differences in the setup: name, and values in the first and the second run."""
+    program: tuple[str, ...]
+    """First lines of a unified diff of the programs; empty if they are equal."""
+    by_time: bool
+    """Whether the tick rates differ: then times are compared, and no record is equal."""
+    tick: TickDifference | None
+    line: TickDifference | None
+    """The first tick with a different source line."""
+    output: RowDifference | None
+    sample: RowDifference | None
+    divergence: Divergence | None
+    """None if one of the runs has no telemetry."""
+
+    @property
+    def same(self) -> bool:
+        """Whether recording and output are identical bit by bit."""
+        return not self.by_time and self.tick is None and self.output is None
+
+    def to_plain(self) -> dict[str, Any]:
+        """Return the differences as JSON-compatible data."""
+        return {"same": self.same, **asdict(self)}
+
+
+def diff_runs(
+    first: StoredRun, second: StoredRun, *, prefix: bool = False, until: int | None = None
+) -> RunDiff:
+    """Compare two runs.
+
+    Args:
+        prefix: Whether the first run was cut off: anything in the second after its last record is ignored.
+        until: Last tick to compare; None for all.
+
+    Raises:
+        LogError: a recording is damaged.
+    """
+    one, two = first.telemetry.array(), second.telemetry.array()
+    hz = (first.spec.profile.tick_hz, second.spec.profile.tick_hz)
+    by_time = hz[0] != hz[1]
+    if until is not None:
+        one, two = one[: until + 1], two[: until + 1]
+    if prefix:
+        two = two[: len(one)]
+    old, new = source_lines(first.program.text), source_lines(second.program.text)
+    unified = difflib.unified_diff(
+        old, new, first.program.name, second.program.name, n=1, lineterm=""
+    )
+    return RunDiff(
+        setup=tuple(_setup(first, second)),
+        program=tuple(line for line, _ in zip(unified, range(DIFF_LINES), strict=False)),
+        by_time=by_time,
+        tick=None if by_time else first_tick(one, two, hz[0]),
+        line=None if by_time else _first_line(one, two, hz[0]),
+        output=_first_row(_rows(first, until), _rows(second, until), prefix),
+        sample=_first_row(_samples(first, until), _samples(second, until), prefix),
+        divergence=divergence(one, two, hz) if len(one) and len(two) else None,
+    )
+
+
+def first_tick(
+    one: np.ndarray[Any, Any], two: np.ndarray[Any, Any], tick_hz: int
+) -> TickDifference | None:
+    """Return the first tick at which two `TelemetryView.array` of one tick rate differ; None if they are equal."""
+    import numpy as np
+
+    count = min(len(one), len(two))
+    # Compare bytes, not numbers: NaN equals itself, and 0.0 differs from -0.0.
+    size = one.dtype.itemsize
+    raw = [
+        np.ascontiguousarray(records[:count]).view(np.uint8).reshape(count, size)
+        for records in (one, two)
+    ]
+    differ = np.flatnonzero((raw[0] != raw[1]).any(axis=1))
+    if len(differ):
+        tick = int(differ[0])
+        names = one.dtype.names or ()
+        fields = tuple(
+            name for name in names if one[name][tick].tobytes() != two[name][tick].tobytes()
+        )
+        return TickDifference(tick, tick / tick_hz, fields)
+    return None if len(one) == len(two) else TickDifference(count, count / tick_hz, ())
+
+
+def divergence(
+    one: np.ndarray[Any, Any], two: np.ndarray[Any, Any], tick_hz: tuple[int, int]
+) -> Divergence:
+    """Return the distance between two robots at the ticks of the first run that both runs cover.
+
+    Args:
+        one: Records of the first run, at least one.
+        two: Records of the second, at least one; if the tick rates differ, its poses are interpolated.
+        tick_hz: Ticks per second of each.
+    """
+    import numpy as np
+
+    times, distance, turned = _apart(one, two, tick_hz)
+    top = int(distance.argmax())
+    exceeded = []
+    for limit in EXCEEDED_MM:
+        over = np.flatnonzero(distance > limit)
+        exceeded.append((limit, float(times[over[0]]) if len(over) else None))
+    rows = np.unique(np.linspace(0, len(times) - 1, TABLE_ROWS).round().astype(int))
+    table = tuple((float(times[row]), float(distance[row]), float(turned[row])) for row in rows)
+    return Divergence(
+        float(distance[top]),
+        float(times[top]),
+        float(distance[-1]),
+        float(times[-1]),
+        tuple(exceeded),
+        table,
+    )
+
+
+def parted_at_s(
+    one: np.ndarray[Any, Any], two: np.ndarray[Any, Any], tick_hz: tuple[int, int]
+) -> float | None:
+    """Return the time at which the robots were first over 1 mm or 1 degree apart; arguments as of `divergence`.
+
+    None if they never were: one run may still have ended before the other.
+    """
+    times, distance, turned = _apart(one, two, tick_hz)
+    is_apart = (distance > PARTED_MM) | (abs(turned) > PARTED_DEG)
+    return float(times[is_apart.argmax()]) if is_apart.any() else None
+
+
+def _apart(
+    one: np.ndarray[Any, Any], two: np.ndarray[Any, Any], tick_hz: tuple[int, int]
+) -> tuple[_Series, ...]:
+    """Return times in s, distances in mm and differences of heading in degrees; arguments as of `divergence`."""
+    import numpy as np
+
+    end_s = min((len(one) - 1) / tick_hz[0], (len(two) - 1) / tick_hz[1])
+    times = np.arange(int(end_s * tick_hz[0] + 1e-9) + 1) / tick_hz[0]
+    theirs = np.arange(len(two)) / tick_hz[1]
+    apart = []
+    for name in ("x_mm", "y_mm", "heading_deg"):
+        other = (
+            two[name][: len(times)]
+            if tick_hz[0] == tick_hz[1]
+            else np.interp(times, theirs, two[name])
+        )
+        apart.append(other - one[name][: len(times)])
+    return times, np.hypot(apart[0], apart[1]), (apart[2] + 180.0) % 360.0 - 180.0
+
+
+def _first_line(
+    one: np.ndarray[Any, Any], two: np.ndarray[Any, Any], tick_hz: int
+) -> TickDifference | None:
+    count = min(len(one), len(two))
+    differ = (one["line"][:count] != two["line"][:count]).nonzero()[0]
+    return (
+        TickDifference(int(differ[0]), int(differ[0]) / tick_hz, ("line",)) if len(differ) else None
+    )
+
+
+_Row = tuple[Any, str, float]
+"""Value to compare, its text, its time in s."""
+
+
+def _written(run: StoredRun, until: int | None) -> Iterator[OutputRow]:
+    # Rows of the last tick itself may have been written after the end.
+    return takewhile(lambda row: until is None or row.tick < until, run.output.rows())
+
+
+def _shown(row: OutputRow) -> str:
+    """Return a row as text, also one of the brick's state."""
+    match row.stream:
+        case (
+            Stream.STDOUT | Stream.STDERR | Stream.SPEECH | Stream.INPUT | Stream.NOTE | Stream.DATA
+        ):
+            return line_of(row)
+        case Stream.LED:
+            return "[lights]"
+        case Stream.CONSOLE:
+            return "[text screen]"
+        case Stream.DISPLAY | Stream.MOTORS | Stream.UNKNOWN:
+            return f"[{row.stream.name.lower()}]"
+        case _:
+            assert_never(row.stream)
+
+
+def _rows(run: StoredRun, until: int | None) -> Iterator[_Row]:
+    for row in _written(run, until):
+        yield row, _shown(row), row.time_ns / 1e9
+
+
+def _samples(run: StoredRun, until: int | None) -> Iterator[_Row]:
+    for sample in samples_of(_written(run, until)):
+        yield (
+            (sample.name, sample.value, sample.time_s),
+            f"{sample.name}: {sample.value:g}",
+            sample.time_ns / 1e9,
+        )
+
+
+def _first_row(one: Iterator[_Row], two: Iterator[_Row], prefix: bool) -> RowDifference | None:
+    number = 1
+    for left, right in zip_longest(one, two):
+        if left is None and prefix:
+            return None
+        if left is None or right is None or left[0] != right[0]:
+            _, was, was_s = left or (None, None, None)
+            _, now, now_s = right or (None, None, None)
+            return RowDifference(number, was, now, (was_s, now_s))
+        # Rows of motors, LEDs and pictures are compared, too, but not counted, because users do not see them as rows.
+        number += not isinstance(left[0], OutputRow) or left[0].stream in TEXT_STREAMS
+    return None
+
+
+def _setup(first: StoredRun, second: StoredRun) -> Iterator[tuple[str, str, str]]:
+    plain = to_plain(first.spec), to_plain(second.spec)
+    names = {**_flat(plain[0]), **_flat(plain[1])}
+    values = _flat(plain[0]), _flat(plain[1])
+    for name in names:
+        left, right = (str(one.get(name, "—")) for one in values)
+        if left != right:
+            yield name, left, right
+    for name, label in (("name", "program name"), ("prelude", "predefined names")):
+        left, right = getattr(first.program, name), getattr(second.program, name)
+        if left != right:
+            yield label, left, right
+    if first.program.arguments != second.program.arguments:
+        yield (
+            "program arguments",
+            shlex.join(first.program.arguments),
+            shlex.join(second.program.arguments),
+        )
+    if first.actions != second.actions:
+        yield "user actions", str(len(first.actions)), str(len(second.actions))
+
+
+def _flat(plain: Any, name: str = "") -> dict[str, Any]:
+    """Return nested data as one flat table, with names such as `world.noise.light`."""
+    if isinstance(plain, dict) and plain:
+        pairs = [(f"{name}.{key}" if name else str(key), value) for key, value in plain.items()]
+    elif isinstance(plain, list | tuple) and plain:
+        pairs = [(f"{name}.{number}", value) for number, value in enumerate(plain)]
+    else:
+        return {name: plain}
+    return {path: leaf for below, value in pairs for path, leaf in _flat(value, below).items()}
+
+
+def setup_in_words(found: RunDiff) -> Iterator[tuple[str, str]]:
+    """Yield a label and a text per difference of the setup, then the lines of the programs' diff without labels."""
+    for name, left, right in found.setup:
+        yield f"settings, {name}", f"{left} | {right}"
+    for line in found.program:
+        yield "", line
+
+
+def recording_in_words(found: RunDiff) -> Iterator[tuple[str, str]]:
+    """Yield a label and a text for each difference between the recordings, or one pair if they are identical."""
+    if found.same:
+        settings = "" if found.setup or found.program else ", settings"
+        yield "bit-identical", f"recording, output{settings}"
+        return
+    if found.by_time:
+        yield "tick rates differ", "compared by time, no record is the same"
+    for what, at in (("tick", found.tick), ("line", found.line)):
+        if at:
+            how = ", ".join(at.fields) if at.fields else "one recording ends"
+            yield f"first differing {what}", f"tick {at.tick}, {at.time_s:.2f} s: {how}"
+    for what, row in (("output row", found.output), ("sample", found.sample)):
+        if row:
+            sides = zip((row.first, row.second), row.times_s, strict=True)
+            left, right = (
+                "no more" if text is None else f"{text!r} at {at_s:.3f} s" for text, at_s in sides
+            )
+            yield f"first differing {what}", f"{row.row}: {left} | {right}"
+    if found.divergence:
+        apart = found.divergence
+        most = f"at most {apart.max_mm:.3f} mm apart, at {apart.max_at_s:.2f} s"
+        yield "poses", f"{most}; {apart.end_mm:.3f} mm at the common end, {apart.end_s:.2f} s"
+        for limit, since_s in apart.exceeded:
+            yield f"over {limit:g} mm", "never" if since_s is None else f"from {since_s:.2f} s"

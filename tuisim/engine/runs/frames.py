@@ -1,0 +1,335 @@
+"""Recordings as columns and pandas frames: printed samples, and telemetry of every tick with readings of every sensor.
+
+The readings are computed from the telemetry. They equal those of `engine.core.sensors` bit by bit: what `sensor_arrays`
+can is measured at all ticks at once, everything else tick by tick with the same functions.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from itertools import chain, pairwise, repeat
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Protocol, TypeAlias
+
+from tuisim.engine.core.columns import MOTION, Column, measured_names
+from tuisim.engine.core.conditions import ValueCondition
+from tuisim.engine.core.field import Field
+from tuisim.engine.core.motor_columns import find_motor_owners
+from tuisim.engine.core.pen_marks import PenMarks
+from tuisim.engine.core.profile import NS_PER_S
+from tuisim.engine.core.sensors import MountedSensor, columns_of, mounted
+from tuisim.engine.core.spec import NoiseSpec, RunSpec
+from tuisim.engine.core.tick_record import TICK_RECORD
+from tuisim.engine.protocol import SetNoise, UserAction
+from tuisim.engine.runs.motor_records import read_motor_columns
+from tuisim.engine.runs.records import TELEMETRY_FILE
+from tuisim.engine.runs.run_folder import StoredRun, noise_at, open_mat
+from tuisim.engine.runs.samples import samples_of
+from tuisim.engine.runs.views import TickRecord, instant_of
+
+if TYPE_CHECKING:
+    import numpy as np
+    import pandas as pd
+
+    Array = np.ndarray[Any, Any]
+
+FieldAt: TypeAlias = Callable[[tuple[float, ...]], Field]
+"""Returns the mat as the sensors see it in the tick of a record, which has the fields of `TICK_RECORD`."""
+
+
+class RecordedRun(Protocol):
+    """A run with its folder, running or stored."""
+
+    @property
+    def spec(self) -> RunSpec: ...
+
+    @property
+    def folder(self) -> Path: ...
+
+
+_POSE = ("x_mm", "y_mm", "heading_deg")
+SAMPLE_COLUMNS = ("index", "variable", "value", "time", "run", *_POSE, "line")
+"""Columns of the samples frame, in order."""
+
+MOTION_COLUMNS = measured_names(MOTION)
+"""Columns of the telemetry frame that are copied from the recording."""
+
+_MOST = 1e15
+"""Larger values, in mm or degrees, count as damage: no motion gets this far."""
+
+
+def samples_frame(runs: Iterable[StoredRun]) -> pd.DataFrame:
+    """Return the samples of one or more runs as a frame, see `sample_columns`.
+
+    Raises:
+        LogError: a recording is damaged.
+    """
+    import pandas as pd
+
+    columns = sample_columns(runs)
+    return pd.DataFrame({**columns, "variable": pd.Series(columns["variable"], dtype="str")})
+
+
+def sample_columns(runs: Iterable[StoredRun]) -> dict[str, Any]:
+    """Return the samples of one or more runs, in the order of the runs and of printing.
+
+    Columns, as SAMPLE_COLUMNS: `index` timedelta64[ns] since the first sample of its run was
+    printed; `variable` the name; `value`; `time` in s, simulated, of the print or as printed;
+    `run` numbers the runs of this frame from 1; `x_mm`, `y_mm`, `heading_deg` the pose of the robot
+    at the tick of the print, NaN if that tick was lost; `line` in the program.
+
+    Raises:
+        LogError: a recording is damaged.
+    """
+    import numpy as np
+
+    parts = [_samples_of_run(run, ordinal) for ordinal, run in enumerate(runs, 1)]
+    joined: dict[str, Any] = {}
+    for name in SAMPLE_COLUMNS:
+        if name == "variable":
+            joined[name] = [text for part in parts for text in part[name]]
+        else:
+            empty = {
+                "index": np.empty(0, "m8[ns]"),
+                "run": np.empty(0, np.int64),
+                "line": np.empty(0, np.int64),
+            }
+            joined[name] = np.concatenate(
+                [empty.get(name, np.empty(0)), *(part[name] for part in parts)]
+            )
+    return joined
+
+
+def _samples_of_run(run: StoredRun, ordinal: int) -> dict[str, Any]:
+    import numpy as np
+
+    samples = samples_of(run.output.rows())
+    times_ns = np.array([sample.time_ns for sample in samples], np.int64)
+    records = run.telemetry.array()
+    ticks = np.array([sample.tick for sample in samples], np.int64)
+    known = ticks < len(records)
+    columns: dict[str, Any] = {
+        "index": (times_ns - times_ns[:1]).astype("m8[ns]"),
+        "variable": [sample.name for sample in samples],
+        "value": np.array([sample.value for sample in samples], np.float64),
+        "time": np.array([sample.time_s for sample in samples], np.float64),
+        "run": np.full(len(samples), ordinal, np.int64),
+        "line": np.array([sample.line for sample in samples], np.int64),
+    }
+    for name in _POSE:
+        columns[name] = np.full(len(samples), np.nan)
+        columns[name][known] = records[name][ticks[known]]
+    return columns
+
+
+def telemetry_frame(run: StoredRun, field: Field | None = None) -> pd.DataFrame:
+    """Return the telemetry of a run as a frame, see `telemetry_columns`.
+
+    Raises:
+        LogError: a recording is damaged, or the mat no longer exists.
+    """
+    import pandas as pd
+
+    return pd.DataFrame(telemetry_columns(run, field))
+
+
+def telemetry_columns(run: StoredRun, field: Field | None = None) -> dict[str, Array]:
+    """Return one row per tick, including tick 0 (the start); damaged records are omitted, see `damage_note`.
+
+    Columns: `time` in s, simulated; MOTION_COLUMNS; those of every mounted sensor, such as
+    `left_red` (0 … 255), `ultrasonic_mm`, `gyro_deg`, `gyro_rate_dps`; those of every motor with
+    a driver, such as `left_asked_dps`; `line`, the source line that spent the time, 0 for none.
+
+    Args:
+        field: The mat; by default that of the run.
+
+    Raises:
+        LogError: a recording is damaged, or the mat no longer exists.
+    """
+    records = _sound(run.telemetry.array())
+    mat = open_mat(run) if field is None else field
+    exported = measured_names(columns_of(run.spec))
+    values = column_values(exported, records, run, run.actions, mat)
+    return {"time": tick_times_s(records, run.spec), **values, "line": records["line"].astype("i8")}
+
+
+def column_values(
+    names: Collection[str],
+    records: Array,
+    run: RecordedRun,
+    actions: Sequence[UserAction],
+    field: Field,
+    field_at: FieldAt | None = None,
+) -> dict[str, Array]:
+    """Return columns at every tick by name: float64, shape (n,).
+
+    Args:
+        names: Some of `columns_of` the run.
+        records: Telemetry, structured as `TICK_FIELDS`, shape (n,).
+        run: The run.
+        actions: The user's actions, which may have changed the noise.
+        field: The mat.
+        field_at: Returns the mat as the sensors saw it in a tick; needed if the records do not begin with tick 0, or
+            some are left out. None: the pen's marks are drawn on it as the records say.
+    """
+    spec = run.spec
+    sensors = [
+        mount
+        for mount in mounted(spec.robot)
+        if any(column.name in names for column in mount.columns)
+    ]
+    measured = {name: records[name].astype("f8") for name in MOTION_COLUMNS}
+    measured |= _measured(records, sensors, _noises(records, spec, actions), spec, field, field_at)
+    motors = [
+        columns
+        for columns, _ in find_motor_owners(spec)
+        if any(column.name in names for column in columns)
+    ]
+    if motors:
+        measured |= read_motor_columns(run.folder, spec.robot, records["tick"])
+    return {
+        column.name: measured[column.name]
+        if column.of is None
+        else computed(column.of, columns, measured, spec)
+        for columns in (MOTION, *(mount.columns for mount in sensors), *motors)
+        for column in columns
+        if column.name in names
+    }
+
+
+def computed(
+    of: Callable[[Iterable[Sequence[float]], RunSpec], list[float]],
+    columns: Iterable[Column],
+    measured: Mapping[str, Array],
+    spec: RunSpec,
+) -> Array:
+    """Return what is computed from the measured columns of an owner, at every tick, shape (n,)."""
+    import numpy as np
+
+    rows = zip(*(measured[name].tolist() for name in measured_names(columns)), strict=True)
+    return np.array(of(rows, spec), np.float64)
+
+
+def held(condition: ValueCondition, values: Array) -> Array:
+    """Return whether a condition on a column is true at each tick, from its values there.
+
+    Raises:
+        ValueError: what it compares with is no number.
+    """
+    import numpy as np
+
+    true: Array = condition.test()(values, np.concatenate(([np.nan], values[:-1])))
+    return true
+
+
+def begins(condition: ValueCondition, true: Array) -> Array:
+    """Return the ticks at which a condition becomes true, in ascending order, from whether it is true at each."""
+    import numpy as np
+
+    before = np.concatenate(([False], true[:-1]))
+    began: Array = np.flatnonzero(true if condition.is_momentary else true & ~before)
+    return began
+
+
+def damage_note(run: StoredRun) -> str:
+    """Return a message with the number of damaged records; empty if there are none.
+
+    Raises:
+        LogError: a recording is damaged.
+    """
+    records = run.telemetry.array()
+    lost = len(records) - len(_sound(records))
+    return (
+        f"{TELEMETRY_FILE}: {lost} of {len(records)} records {'is' if lost == 1 else 'are'} damaged and left out"
+        if lost
+        else ""
+    )
+
+
+def _sound(records: Array) -> Array:
+    """Return the records that contain only plausible numbers."""
+    import numpy as np
+
+    whole = np.ones(len(records), np.bool_)
+    for name in (*MOTION_COLUMNS, "gyro_zero_deg"):
+        # Also false for NaN.
+        whole &= np.abs(records[name]) < _MOST
+    return records if whole.all() else records[whole]
+
+
+def tick_times_s(records: Array, spec: RunSpec) -> Array:
+    """Return the time at which each tick is due, in simulated seconds, shape (n,)."""
+    ticks = records["tick"].astype("i8")
+    times: Array = -(-ticks * NS_PER_S // spec.profile.tick_hz) / NS_PER_S
+    return times
+
+
+def _noises(
+    records: Array, spec: RunSpec, actions: Sequence[UserAction]
+) -> list[tuple[NoiseSpec, int]]:
+    """Return the noises in order of time, each with its number of ticks."""
+    import numpy as np
+
+    if not any(isinstance(action.command, SetNoise) for action in actions):
+        return [(spec.world.noise, len(records))]
+    # The noise can change only where the count of actions does.
+    starts = [0, *(np.flatnonzero(np.diff(records["actions"])) + 1).tolist(), len(records)]
+    return [
+        (noise_at(spec, actions, TickRecord(*records[start].item())), end - start)
+        for start, end in pairwise(starts)
+        if end > start
+    ]
+
+
+def _measured(
+    records: Array,
+    sensors: Sequence[MountedSensor],
+    noises: Sequence[tuple[NoiseSpec, int]],
+    spec: RunSpec,
+    field: Field,
+    field_at: FieldAt | None,
+) -> dict[str, Array]:
+    """Return the measured columns of sensors: at once where that is possible, else tick by tick."""
+    import numpy as np
+
+    from tuisim.engine.runs.sensor_arrays import measured_at_once
+
+    found: dict[str, Array] = {}
+    slow: list[MountedSensor] = []
+    lit = any(noise.light for noise, _ in noises)
+    for mount in sensors:
+        values = measured_at_once(mount.sensor, records, spec, field, lit)
+        if values is None:
+            slow.append(mount)
+        else:
+            found.update(zip(mount.names, values, strict=True))
+    if not slow:
+        return found
+    names = [name for mount in slow for name in mount.names]
+    rows = np.empty((len(records), len(names)))
+    field_at = field_at or _field_with_marks(field, spec)
+    every = chain.from_iterable(repeat(noise, count) for noise, count in noises)
+    # One by one: all at once, as objects, the records of a long run take much memory.
+    for at, (record, noise) in enumerate(
+        zip(TICK_RECORD.iter_unpack(records.data), every, strict=True)
+    ):
+        instant, seen = instant_of(TickRecord(*record), spec, noise), field_at(record)
+        rows[at] = [
+            value
+            for mount in slow
+            for value in mount.kind.measure(mount.sensor, instant, spec, seen)
+        ]
+    return {**found, **{name: rows[:, at] for at, name in enumerate(names)}}
+
+
+def _field_with_marks(field: Field, spec: RunSpec) -> FieldAt:
+    """Return a function that takes every record from tick 0 on, and returns the mat as the sensors saw it then."""
+    if not spec.world.pen_marks:
+        return lambda _: field
+    pen = PenMarks(field, spec)
+
+    def field_at(record: tuple[float, ...]) -> Field:
+        pen.take_in([record])
+        return pen.field
+
+    return field_at

@@ -1,0 +1,595 @@
+"""Parent side of a run: starts the child, reads its events, sends commands, stops it.
+
+Only methods named `wait…` block, and nothing depends on the display: the
+child writes its recording by itself, and viewers read the run folder.
+"""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import time
+from collections.abc import Hashable, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import replace
+from pathlib import Path
+from typing import Any, Protocol
+
+from tuisim.base.errors import HostError, LogError, RobotError, counted
+from tuisim.base.source import Program, user_python_path
+from tuisim.engine.breakpoints import parse_breakpoints
+from tuisim.engine.core.geometry import Pose
+from tuisim.engine.core.plugged import PluggedPart
+from tuisim.engine.core.profile import due_ns
+from tuisim.engine.core.spec import NoiseSpec, RunSpec
+from tuisim.engine.mat_cache import FieldFiles
+from tuisim.engine.protocol import (
+    CLEANUP_S,
+    COMMAND_SIGNAL,
+    STACK_SIGNAL,
+    Answer,
+    End,
+    Ended,
+    InputWanted,
+    Message,
+    Paused,
+    Plugged,
+    Reply,
+    ReplyWanted,
+    Resumed,
+    SetBreaks,
+    Started,
+    Stop,
+    Wheels,
+)
+from tuisim.engine.runs.child.events import DEBUGGED, EventStream, allowed_events, build_part
+from tuisim.engine.runs.child.fair_clock import FairClock
+from tuisim.engine.runs.child.isolation import Quota
+from tuisim.engine.runs.child.process import (
+    await_stack,
+    end_group,
+    end_left_over,
+    mark,
+    prepare_template,
+    start_child,
+    stuck_line,
+    what_ended,
+    write_command,
+)
+from tuisim.engine.runs.child.readable import is_readable
+from tuisim.engine.runs.run_folder import RUN_FILE, StoredRun, add_plugged, field_files
+from tuisim.engine.runs.run_options import DEFAULT_TIME_LIMIT_S as DEFAULT_TIME_LIMIT_S
+from tuisim.engine.runs.run_options import RunOptions as RunOptions
+from tuisim.engine.runs.side_files import (
+    LOG_FILE,
+    MOST_BYTES,
+    STACK_FILE,
+    copy_modules,
+    read_actions,
+    read_stop_tick,
+)
+from tuisim.engine.runs.store import NewRun, RunStore
+from tuisim.engine.runs.views import TelemetryView, views_of
+
+STUCK_AFTER_S = 0.3
+"""A child that has not ended this long after a stop is killed; see `RunHandle._fair_time_s`."""
+ASK_AGAIN_S = 0.05
+LOOK_EVERY_S = 0.03
+"""What a child records is looked at this often while it runs: most are over before the first look."""
+ENDED_CHILD_S = 0.2
+"""Time for a child to exit after its last event."""
+_BEYOND_LIMIT_S = CLEANUP_S + 1.0
+STALL_FACTOR = 2.0
+"""A headless child without progress for this many stall limits of real time is stuck in C code."""
+
+
+class RunFolders(Protocol):
+    """Where a handle stores its run: a `RunStore`, or a `TemporaryRun`."""
+
+    def new_run(
+        self,
+        program: Program,
+        spec: RunSpec,
+        field: Mapping[str, Any] | None = None,
+        options: Mapping[str, Any] | None = None,
+        live: bool = False,
+    ) -> NewRun: ...
+
+    def finish(self, run: NewRun, end: Ended, /) -> None: ...
+
+    def note_plugged(self, run: NewRun, parts: Sequence[PluggedPart], /) -> None: ...
+
+    def forget(self, run_id: str, /) -> None: ...
+
+    def load_run(self, run: Path, /) -> StoredRun: ...
+
+
+def _template_key(program: Program, spec: RunSpec, field: FieldFiles) -> Hashable:
+    """Return what a template is prepared for: all of a run except its program, its options, seed, noise and start."""
+    world = replace(spec.world, noise=NoiseSpec(), start=Pose(0.0, 0.0, 0.0))
+    # A file of the mat that was made again is another one.
+    return program.prelude, field, field.identities(), replace(spec, seed=0, world=world)
+
+
+def _needs(program: Program, field: FieldFiles) -> list[Path]:
+    """Return the files and folders that a program reads besides its run folder and its working directory."""
+    own = [program.module_folder or os.path.dirname(program.path), *program.python_path]
+    return [
+        *(Path(os.path.abspath(folder)) for folder in own if folder),
+        *field.paths,
+    ]
+
+
+class RunHandle:
+    """One run: its child process, pipes and recording. Create it with `start_run`.
+
+    Its process is forked from a template for runs of the same robot and world, if there is one. With `of_many` one is
+    made; `prepare_next` makes one for later runs. With `isolated` the process is started through bubblewrap instead.
+    """
+
+    def __init__(
+        self,
+        program: Program,
+        spec: RunSpec,
+        field: FieldFiles,
+        options: RunOptions,
+        store: RunFolders,
+        of_many: bool = False,
+        isolated: bool = False,
+    ) -> None:
+        self.program, self.first_spec, self.field = program, spec, field
+        self.spec, self.plugged = spec, list[PluggedPart]()
+        """The run with the parts that have been plugged in, and these."""
+        self._options, self._store = options, store
+        self._run = run = store.new_run(
+            program, spec, field.to_plain(), options.to_plain(), options.live
+        )
+        self.run_id, self.number, self.folder = run.id, run.number, run.folder
+        self._copy_modules()
+        self.ended: Ended | None = None
+        self.started = False
+        """Whether the child has reached the program's first line."""
+        self.paused = False
+        self.waiting_for_input: str | None = None
+        self.waiting_for_reply = False
+        self.wheels = Wheels()
+        """The registers of the wheel motors; known once the run has ended, unless it was killed."""
+        self.telemetry, self.output = views_of(self.folder, is_checked=True)
+        self._unsent: list[Message] = []
+        """Commands sent before the child listens: the signal that announces one would kill it."""
+        self._stop_at: float | None = None
+        self._asked_at = self._announced_at = 0.0
+        self._look_at_s = time.monotonic() + LOOK_EVERY_S
+        self._is_followed = not of_many
+        """Whether its recording is looked at once more when the process is gone. Short runs of batches are not."""
+        self._progress, self._stack_asked = (0, 0.0), False
+        self._announced: Ended | None = None
+        self.unstored = ""
+        """Why the run or its end is not stored; empty if it is."""
+        # Held beyond the end of the process: until its end is stored, nobody else may remove the run.
+        self._lock_fd = os.dup(run.lock_fd)
+        self._start(of_many=of_many, isolated=isolated)
+        self._mark = mark(self._process.pid)
+        self._clock = FairClock(self._process.pid)
+        allowed = allowed_events(options, plugs=program.shown_ports is not None)
+        self._events = EventStream(self._event_fd, allowed)
+        writable: list[str | Path] = [run.folder, program.working_directory]
+        self._quota = Quota(self._process.pid, writable) if isolated else None
+        self._exceeded = self._falsified = ""
+        """Which limit an isolated program has exceeded; why what the child does is not what the simulation does."""
+
+    def _start(self, *, of_many: bool, isolated: bool) -> None:
+        """Start the child; arguments as of the class."""
+        program, run = self.program, self._run
+        try:
+            self._process, self._command_fd, self._event_fd, self._lifeline_fd = start_child(
+                run.folder,
+                run.lock_fd,
+                program.working_directory,
+                run.data,
+                _template_key(program, self.first_spec, self.field),
+                of_many,
+                _needs(program, self.field) if isolated else None,
+            )
+        except OSError as error:
+            os.close(self._lock_fd)
+            self._store.forget(run.id)
+            raise HostError(
+                f"the program's process cannot be started: {error.strerror or error}",
+                str(run.folder),
+            ) from error
+
+    def _copy_modules(self) -> None:
+        if self.program.modules_from is None:
+            return
+        try:
+            copy_modules(self.program.modules_from, self.folder)
+        except LogError:
+            os.close(self._run.lock_fd)
+            self._store.forget(self.run_id)
+            raise
+
+    @property
+    def answers(self) -> tuple[str, ...]:
+        """Scripted answers to `input()`."""
+        return self._options.answers
+
+    # Events
+
+    def fileno(self) -> int:
+        """Return the event pipe's descriptor, for `select` or an event loop."""
+        return self._event_fd
+
+    def pump(self) -> list[Message]:
+        """Return the events that have arrived, without blocking; `Ended` comes once, as the last.
+
+        Must be called regularly while the run is active: it also kills a child that does not stop, and one that sends
+        or records what the simulation does not: such a run ends as falsified.
+        """
+        if self.ended is not None:
+            return []
+        # Checked before reading: all output of a child that has exited is in the pipe then.
+        exited = self._process.poll() is not None
+        events = self._events.read()
+        for event in events:
+            match event:
+                case Started():
+                    self.started = True
+                    unsent, self._unsent = self._unsent, []
+                    for command in unsent:
+                        self.send(command)
+                case Paused():
+                    self.paused = True
+                case Resumed():
+                    self.paused = False
+                case InputWanted(prompt=prompt):
+                    self.waiting_for_input = prompt
+                case ReplyWanted():
+                    self.waiting_for_reply = True
+                case Plugged():
+                    self._note_plugged(event)
+                case Wheels():
+                    self.wheels = event
+                case Ended():
+                    self._announced, self._announced_at = event, time.monotonic()
+        now_s = time.monotonic()
+        # A view that holds is one that somebody follows: only this lets it go on.
+        is_due = now_s >= self._look_at_s or self.telemetry.holds or self.output.holds
+        if is_due or self._events.falsified or (exited and self._is_followed):
+            self._look_for_falsified()
+        if is_due:
+            self._is_followed, self._look_at_s = True, now_s + LOOK_EVERY_S
+            self._enforce_quota()
+            self._look_for_stall()
+        self._enforce_stop()
+        final = self._final_event(exited)
+        kept = [event for event in events if not isinstance(event, Ended)]
+        if final is None:
+            return kept
+        self._finish(final)
+        return [*kept, final]
+
+    def _note_plugged(self, event: Plugged) -> None:
+        self.plugged.append(build_part(event))
+        try:
+            self.spec = add_plugged(self.first_spec, self.plugged)
+            self._store.note_plugged(self._run, self.plugged)
+        except RobotError as error:
+            self._events.falsified = f"it plugged in what does not fit: {error.message}"
+        except LogError as error:
+            self.unstored = self._what_is_wrong(error)
+
+    def _look_for_falsified(self) -> None:
+        """Kill a child that has sent or recorded what the simulation does not."""
+        # In a folder that was deleted there is nothing to look at: such a run is stopped.
+        if not self._falsified and self.folder.is_dir():
+            damages = self.telemetry.read_on(), self.output.read_on()
+            self._falsified = (
+                self._events.falsified
+                or next(filter(None, damages), "")
+                or self._too_much(self.telemetry)
+            )
+            if self._falsified:
+                end_group(self._process.pid)
+
+    def _enforce_quota(self) -> None:
+        if self._quota is not None and not self._exceeded:
+            self._exceeded = self._quota.exceeded(time.monotonic())
+            if self._exceeded:
+                end_group(self._process.pid)
+
+    def _too_much(self, telemetry: TelemetryView) -> str:
+        """Return what is larger than the run can have made it; empty if nothing is."""
+        with suppress(OSError):
+            if (self.folder / LOG_FILE).stat().st_size > MOST_BYTES:
+                return f"it has written more than {MOST_BYTES >> 20} MiB to {LOG_FILE}"
+        limit_s, hz = self._options.time_limit_s, self.spec.profile.tick_hz
+        # The host reads what is recorded: it must not grow beyond what the run can record.
+        if limit_s and telemetry.count > (limit_s + _BEYOND_LIMIT_S) * hz:
+            return f"it has recorded more than {limit_s:g} s"
+        return ""
+
+    def _final_event(self, exited: bool) -> Ended | None:
+        if (
+            self._announced is not None
+            and not exited
+            and time.monotonic() - self._announced_at > ENDED_CHILD_S
+        ):
+            end_group(self._process.pid)
+        if not exited:
+            return None
+        falsified = self._falsified or (self._what_is_falsified() if self.folder.is_dir() else "")
+        if self._announced is not None and not falsified and not self._exceeded:
+            return self._announced
+        tick = max(0, self.telemetry.count - 1)
+        time_ns = due_ns(tick, self.spec.profile.tick_hz)
+        if falsified:
+            return Ended(
+                End.FALSIFIED,
+                tick,
+                time_ns,
+                1,
+                f"the program has falsified its recording: {falsified}",
+            )
+        if self._exceeded:
+            return Ended(End.OUTPUT_LIMIT, tick, time_ns, 1, self._exceeded)
+        line = stuck_line(self.folder, self.program.file)
+        if self._stop_at is not None:
+            where = f" in line {line}, where it was stuck" if line else ""
+            return Ended(End.STOPPED, tick, time_ns, summary=f"stopped{where}", error_line=line)
+        if self._stack_asked:
+            summary = (
+                f"stuck in line {line}: no simulated time passed"
+                if line
+                else "stuck: no simulated time passed"
+            )
+            return Ended(End.STALLED, tick, time_ns, 1, summary, error_line=line)
+        status = self._process.wait()
+        return Ended(
+            End.CRASHED, tick, time_ns, 1, what_ended(status, self.folder, line), error_line=line
+        )
+
+    def _what_is_falsified(self) -> str:
+        """Return what the run has left that the simulation does not leave; empty if there is nothing."""
+        end = self._announced
+        # One that could not begin, or found no room, leaves what it could write.
+        is_whole = end is not None and end.end not in (End.CRASHED, End.DISK_FULL)
+        # As whoever opens the run later finds them: what this host has seen before may be gone.
+        telemetry, output = views_of(self.folder, is_checked=True)
+        # Each is read once: the process has ended.
+        damages = telemetry.read_on(), output.read_on()
+        telemetry.holds = output.holds = True
+        if wrong := next(filter(None, damages), "") or self._too_much(telemetry):
+            return wrong
+        for view in (telemetry, output) if is_whole else ():
+            if view.note or view.is_missing:
+                return view.note or "a part of it was deleted"
+        ticks = telemetry.count
+        if is_whole and end is not None and end.tick != ticks - 1:
+            return (
+                f"it ends at tick {end.tick}, and {counted(ticks, 'tick is', 'ticks are')} recorded"
+            )
+        hz = self.spec.profile.tick_hz
+        if (
+            is_whole
+            and end is not None
+            and not due_ns(end.tick, hz) <= end.time_ns <= due_ns(end.tick + 1, hz)
+        ):
+            return f"its end at tick {end.tick} has another time"
+        try:
+            read_actions(self.folder)
+            read_stop_tick(self.folder)
+        except LogError as error:
+            return error.message.replace(f"{self.folder}{os.sep}", "")
+        return ""
+
+    def _finish(self, final: Ended) -> None:
+        self.ended = final
+        self.paused, self.waiting_for_input, self.waiting_for_reply = False, None, False
+        for fd in (self._event_fd, self._command_fd, self._lifeline_fd):
+            os.close(fd)
+        end_left_over(self._process.pid, self._mark)
+        for name in (LOG_FILE, STACK_FILE):
+            path = self.folder / name
+            # The folder may be about to be deleted.
+            with suppress(OSError):
+                if not path.stat().st_size:
+                    path.unlink()
+        try:
+            self._store.finish(self._run, final)
+        except LogError as error:
+            self.unstored = self._what_is_wrong(error)
+            summary = f"{final.summary}; its end" if final.summary else "its end"
+            self.ended = replace(final, summary=f"{summary} cannot be stored: {self.unstored}")
+        finally:
+            os.close(self._lock_fd)
+
+    def stored(self) -> StoredRun:
+        """Return the stored run, including its end even if that could not be written.
+
+        Raises:
+            LogError: it no longer exists, or is damaged.
+        """
+        try:
+            run = self._store.load_run(self.folder)
+        except LogError as error:
+            self.unstored = self._what_is_wrong(error)
+            raise
+        if run.end is None and self.ended is not None:
+            return replace(run, end=self.ended)
+        return run
+
+    def _what_is_wrong(self, error: LogError) -> str:
+        # A folder that is being deleted loses its files one by one.
+        return (
+            str(error)
+            if (self.folder / RUN_FILE).exists()
+            else "its folder was deleted while it ran"
+        )
+
+    def wait(self, timeout_s: float | None = None) -> Ended | None:
+        """Block until the run is over.
+
+        Returns:
+            How it ended; None if it is still running after `timeout_s`.
+        """
+        until = None if timeout_s is None else time.monotonic() + timeout_s
+        while self.ended is None:
+            now = time.monotonic()
+            rest = ASK_AGAIN_S if until is None else min(ASK_AGAIN_S, until - now)
+            if rest <= 0:
+                break
+            if (
+                self._stop_at is not None
+                and (left := self._stop_at + STUCK_AFTER_S - self._clock.now_s()) > 0
+            ):
+                # A stuck child is killed on time.
+                rest = min(rest, left)
+            self.wait_for_event(rest)
+            self.pump()
+        return self.ended
+
+    def wait_for_event(self, timeout_s: float) -> None:
+        """Block until the child sends an event, exits, or the timeout is over."""
+        if self._events.at_end:
+            try:
+                self._process.wait(timeout_s)
+            except subprocess.TimeoutExpired:
+                return
+        else:
+            is_readable(self._event_fd, timeout_s)
+
+    # Commands
+
+    def send(self, command: Message) -> None:
+        """Send a command; after the end of the run it is ignored.
+
+        Raises:
+            ConfigError: a breakpoint in it is invalid.
+        """
+        if isinstance(command, SetBreaks):
+            # Rejected here: the child could not tell the user.
+            parse_breakpoints(command.breaks)
+        if self.ended is not None or self._announced is not None:
+            return
+        if not self.started:
+            self._unsent.append(command)
+            return
+        match command:
+            case Answer():
+                self.waiting_for_input = None
+            case Reply():
+                self.waiting_for_reply = False
+            case _ if not self._options.can_pause:
+                # It may pause at this command, and tell what is asked for.
+                self._events.allow(DEBUGGED)
+        # If it cannot be written completely, the child is gone or stuck: pump() handles that.
+        if write_command(self._command_fd, command.encode()):
+            self._signal(COMMAND_SIGNAL)
+
+    def stop(self) -> None:
+        """Ask the program to stop; `pump` or `wait` kill the child if it does not."""
+        if self._stop_at is None:
+            self._stop_at = self._clock.now_s()
+        self._asked_at = time.monotonic()
+        self.send(Stop())
+
+    def kill(self) -> None:
+        """Kill the child immediately; what it has written is kept."""
+        if self._stop_at is None:
+            self._stop_at = self._clock.now_s()
+        end_group(self._process.pid)
+
+    def prepare_next(self) -> None:
+        """Prepare a process for later runs of this robot and world, which then start sooner. Does not block."""
+        prepare_template(
+            _template_key(self.program, self.first_spec, self.field), self.folder, self._run.data
+        )
+
+    def close(self) -> None:
+        """Make sure that the child is gone and the end of the run is recorded."""
+        if self.ended is None:
+            self.kill()
+            self._process.wait()
+            while self.ended is None:
+                self.pump()
+
+    def _enforce_stop(self) -> None:
+        """Repeat a stop that has had no effect, and kill what is stuck."""
+        if self._announced is not None:
+            return
+        if self._stop_at is None and not self.folder.is_dir():
+            # Deleted while it runs: nobody can see its results.
+            self.stop()
+        if self._stop_at is not None:
+            if self._clock.now_s() - self._stop_at > STUCK_AFTER_S:
+                self._read_stack_and_kill()
+            elif self.started and time.monotonic() - self._asked_at > ASK_AGAIN_S:
+                self._asked_at = time.monotonic()
+                self._signal(COMMAND_SIGNAL)
+
+    def _look_for_stall(self) -> None:
+        """Kill a child that has made no progress for too long."""
+        if (
+            self._announced is not None
+            or self._stop_at is not None
+            or not self._options.stall_limit_s
+            or self.paused
+        ):
+            return
+        tick, now = self.telemetry.count, self._clock.now_s()
+        if (
+            tick != self._progress[0]
+            or self.waiting_for_reply
+            or self.waiting_for_input is not None
+        ):
+            self._progress = (tick, now)
+        elif now - self._progress[1] > STALL_FACTOR * self._options.stall_limit_s:
+            self._read_stack_and_kill()
+
+    @property
+    def time_used_s(self) -> float:
+        """Real seconds since the start without those in which the child waited for a processor."""
+        return self._clock.now_s()
+
+    def _read_stack_and_kill(self) -> None:
+        if not self._stack_asked:
+            # faulthandler writes the stack even from inside a C call, within this one signal.
+            self._stack_asked = self._stop_at is None
+            self._signal(STACK_SIGNAL)
+            await_stack(self.folder, self._process.pid)
+        end_group(self._process.pid)
+
+    def _signal(self, number: int) -> None:
+        if self._process.poll() is None:
+            self._process.send_signal(number)
+
+
+def _here() -> str:
+    try:
+        return os.getcwd()
+    except FileNotFoundError:
+        # It has been deleted.
+        return ""
+
+
+def in_surroundings(program: Program) -> Program:
+    """Return a program with the working directory and PYTHONPATH of this process, unless it has its own."""
+    if program.working_directory:
+        return program
+    return replace(program, python_path=user_python_path(), working_directory=_here())
+
+
+def start_run(
+    program: Program, spec: RunSpec, options: RunOptions, store: RunStore | None = None
+) -> RunHandle:
+    """Start a program, by default in the user's store. Does not block.
+
+    Raises:
+        BackgroundError: the mat does not exist.
+        LogError: the run cannot be stored.
+    """
+    parse_breakpoints(options.breaks, spec)
+    return RunHandle(
+        in_surroundings(program), spec, field_files(spec), options, store or RunStore()
+    )

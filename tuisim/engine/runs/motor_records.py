@@ -1,0 +1,151 @@
+"""What the drivers knew of the motors at each tick: `MOTORS_FILE` of a run folder, and its writer and reader.
+
+Written in pure Python: the child imports it. The file is one of `records`: a header, then for each tick one
+`MOTOR_RECORD` of each motor, in the order of `name_motors`.
+"""
+
+from __future__ import annotations
+
+import mmap
+import os
+from array import array
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from tuisim.base.errors import LogError
+from tuisim.base.regular_file import of_the_machine, open_regular
+from tuisim.engine.core.motor_columns import (
+    MOTOR_FIELDS,
+    MOTOR_RECORD,
+    has_driver,
+    name_motors,
+)
+from tuisim.engine.core.spec import OUTPUT_PORTS, RobotSpec, RunSpec
+from tuisim.engine.core.state import MotorValues
+from tuisim.engine.runs.records import HEADER_BYTES, MappedWriter, read_header
+from tuisim.engine.runs.side_files import MOTORS_FILE
+
+if TYPE_CHECKING:
+    import numpy as np
+
+    Array = np.ndarray[Any, Any]
+
+MOTORS_MAGIC = b"TUISIMMO"
+_FIRST_BYTES = 1 << 16
+MAX_MOTORS = 2 + len(OUTPUT_PORTS)
+"""A robot without wheels has motors in their places, too."""
+
+
+class MotorsWriter(MappedWriter):
+    """The records of all motors. Telemetry says how many ticks there are: this file's own length is told at its end.
+
+    Args:
+        folder: The run folder.
+        robot: The robot.
+    """
+
+    def __init__(self, folder: Path, robot: RobotSpec) -> None:
+        self._size = MOTOR_RECORD.size * len(name_motors(robot))
+        self._path = f"{folder}{os.sep}{MOTORS_FILE}"
+        super().__init__(self._path, MOTORS_MAGIC, self._size, _FIRST_BYTES)
+
+    def extend_buffer(self, ticks: int) -> mmap.mmap:
+        """Return the map, with space for the records of so many ticks."""
+        if (need := HEADER_BYTES + ticks * self._size) > self._capacity:
+            self._make_room(need)
+        return self._map
+
+    def arrange(self, sources: Sequence[int | None], ticks: int) -> None:
+        """Write the records of so many ticks again for other motors; see `MotorSink.arrange`."""
+        before, after = self._size // MOTOR_RECORD.size, len(sources)
+        recorded = self._map[HEADER_BYTES : HEADER_BYTES + ticks * self._size]
+        arranged = arrange_records(recorded, before, sources, ticks)
+        # A reader has the old file or the new one.
+        path, full, self._size = Path(self._path), self.full, MOTOR_RECORD.size * after
+        self._close(HEADER_BYTES)
+        new = path.with_name(f"{path.name}.new")
+        size = ticks * self._size
+        try:
+            super().__init__(str(new), MOTORS_MAGIC, self._size, max(_FIRST_BYTES, size))
+        except OSError as error:
+            raise full(error) from None
+        self.full = full
+        self._map[HEADER_BYTES : HEADER_BYTES + size] = arranged
+        os.replace(new, path)
+
+    def close(self, ticks: int) -> None:
+        """Truncate the file to its true size."""
+        self._length[0] = ticks
+        self._close(HEADER_BYTES + ticks * self._size)
+
+
+def arrange_records(
+    recorded: bytes, before: int, sources: Sequence[int | None], ticks: int
+) -> bytes:
+    """Return the records of so many ticks for other motors; `before` is how many there were, others see `MotorSink`."""
+    numbers, after = array("Q", recorded), len(sources)
+    arranged = array("Q", bytes(MOTOR_RECORD.size * after * ticks))
+    for number, source in enumerate(sources):
+        if source is not None:
+            arranged[number::after] = numbers[source::before]
+    return arranged.tobytes()
+
+
+def read_motor_values(folder: Path, run: RunSpec, tick: int) -> tuple[MotorValues, ...]:
+    """Return what the drivers of all motors knew at the end of a tick; empty where nothing is recorded.
+
+    Raises:
+        LogError: the file is damaged, or this machine cannot read it.
+    """
+    if not has_driver(run):
+        return ()
+    return tuple(MOTOR_RECORD.iter_unpack(_read_part(folder, tick, tick + 1)[1]))
+
+
+def read_motor_columns(folder: Path, robot: RobotSpec, ticks: Array) -> dict[str, Array]:
+    """Return the measured columns of all motors at some ticks: float64, shape (n,), NaN where nothing is recorded.
+
+    Args:
+        folder: The run folder.
+        robot: The robot.
+        ticks: Numbers of ticks, shape (n,).
+
+    Raises:
+        LogError: the file is damaged, or this machine cannot read it.
+    """
+    import numpy as np
+
+    names = name_motors(robot)
+    first = int(ticks.min()) if len(ticks) else 0
+    count, data = _read_part(folder, first, int(ticks.max()) + 1 if len(ticks) else 0)
+    rows = np.frombuffer(data, np.dtype((np.dtype(list(MOTOR_FIELDS)), (count,))))
+    known = ticks < first + len(rows)
+    places = ticks[known].astype(np.int64) - first
+    columns: dict[str, Array] = {}
+    for number, name in enumerate(names):
+        for field, _ in MOTOR_FIELDS:
+            values = np.full(len(ticks), np.nan)
+            if number < count:
+                values[known] = rows[field][places, number]
+            columns[f"{name}_{field}"] = values
+    return columns
+
+
+def _read_part(folder: Path, first: int, end: int) -> tuple[int, bytes]:
+    """Return the number of motors, and their records of some ticks as far as there are any: whole ones."""
+    path = folder / MOTORS_FILE
+    try:
+        with open_regular(path) as file:
+            size, _ = read_header(file.read(HEADER_BYTES), MOTORS_MAGIC, str(path))
+            if not size or size % MOTOR_RECORD.size or size > MOTOR_RECORD.size * MAX_MOTORS:
+                raise LogError("not a recording of motors", file=str(path))
+            file.seek(HEADER_BYTES + first * size)
+            data: bytes = file.read((end - first) * size)
+    except FileNotFoundError:
+        return 1, b""
+    except OSError as error:
+        raise LogError(f"cannot be read: {error.strerror or error}", file=str(path)) from (
+            error if of_the_machine(error) else None
+        )
+    return size // MOTOR_RECORD.size, data[: len(data) // size * size]

@@ -1,0 +1,182 @@
+"""What a program read, and when: `READINGS_FILE` of a run folder, and its writer and reader.
+
+Written in pure Python: the child imports it. The file is one of `records`: a header, then one record of 16 bytes for
+each reading of a sensor, an encoder or the brick's buttons, and for each vain look at a socket or for a gamepad. The
+value follows from telemetry, world and user actions.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from pathlib import Path
+from struct import Struct
+from typing import TYPE_CHECKING, Any
+
+from tuisim.base.data_class import dataclass
+from tuisim.base.errors import LogError
+from tuisim.base.regular_file import of_the_machine, read_regular
+from tuisim.engine.core.profile import NS_PER_S
+from tuisim.engine.core.spec import INPUT_PORTS, OUTPUT_PORTS
+from tuisim.engine.runs.records import HEADER_BYTES, MappedWriter, published_length
+from tuisim.engine.runs.side_files import READINGS_FILE
+
+if TYPE_CHECKING:
+    import numpy as np
+
+    Array = np.ndarray[Any, Any]
+
+READINGS_MAGIC = b"TUISIMRD"
+READING_RECORD = Struct("<qIBB2x")
+"""Simulated time in ns, source line (0: none), index into `READING_PORTS`, index into `READING_MODES`."""
+_PACKED = Struct("<qIH2x")
+"""The same with a code of `READING_CODES` in place of both indices."""
+_pack_into = _PACKED.pack_into
+READING_FIELDS = (("time_ns", "<i8"), ("line", "<u4"), ("port", "u1"), ("mode", "u1"), ("", "V2"))
+"""Name and type of each field of a record, the type as numpy writes it."""
+
+BUTTONS_PORT = "buttons"
+"""What stands for a port when the brick's buttons are read."""
+SOCKET_PORT = "socket"
+"""What stands for a port when the program waits for a socket."""
+GAMEPAD_PORT = "gamepad"
+"""What stands for a port when the program looks for input devices."""
+READING_PORTS = (*INPUT_PORTS, *OUTPUT_PORTS, BUTTONS_PORT, SOCKET_PORT, GAMEPAD_PORT)
+MODES_BY_KIND: Mapping[str, tuple[str, ...]] = {
+    "color": ("COL-REFLECT", "COL-AMBIENT", "COL-COLOR", "REF-RAW", "RGB-RAW", "COL-CAL"),
+    "ultrasonic": ("US-DIST-CM", "US-DIST-IN", "US-LISTEN", "US-SI-CM", "US-SI-IN"),
+    "gyro": (
+        *("GYRO-ANG", "GYRO-RATE", "GYRO-FAS", "GYRO-G&A", "GYRO-CAL"),
+        *("TILT-ANG", "TILT-RATE"),
+    ),
+    "touch": ("TOUCH",),
+    "infrared": ("IR-PROX", "IR-SEEK", "IR-REMOTE", "IR-REM-A", "IR-CAL"),
+    "motor": ("position", "speed", "state"),
+    "buttons": ("pressed",),
+    "socket": ("accept", "receive"),
+    "gamepad": ("list",),
+}
+"""What can be read, by the kind of device: modes of sensors, attributes of motors, the buttons, sockets, gamepads."""
+READING_MODES = tuple(mode for modes in MODES_BY_KIND.values() for mode in modes)
+READING_CODES: Mapping[tuple[str, str], int] = {
+    (port, mode): port_index | mode_index << 8
+    for port_index, port in enumerate(READING_PORTS)
+    for mode_index, mode in enumerate(READING_MODES)
+}
+"""What `ReadingsWriter.add` is told, by port and mode."""
+
+MAX_READINGS = 1 << 22
+"""Further readings of a run are only counted."""
+_FIRST_BYTES = 1 << 14
+
+
+class ReadingsWriter(MappedWriter):
+    """Appends readings and publishes each at once."""
+
+    def __init__(self, folder: Path) -> None:
+        super().__init__(
+            f"{folder}{os.sep}{READINGS_FILE}", READINGS_MAGIC, READING_RECORD.size, _FIRST_BYTES
+        )
+        self._count = 0
+        self._room = _FIRST_BYTES // READING_RECORD.size
+        """How many readings fit."""
+        self.newest_ns = -1
+
+    def add(self, code: int, time_ns: int, line: int) -> None:
+        """Append a reading.
+
+        Args:
+            code: One of `READING_CODES`.
+            time_ns: Simulated time, not before that of the reading before.
+            line: Source line; 0 for none.
+        """
+        self.newest_ns = time_ns
+        count = self._count
+        if count < self._room or self._extend(count):
+            _pack_into(self._map, HEADER_BYTES + (count << 4), time_ns, line, code)
+        self._count = self._length[0] = count + 1
+
+    def has(self, code: int) -> bool:
+        """Return whether a reading was taken at the newest time already."""
+        for index in range(min(self._count, self._room) - 1, -1, -1):
+            time_ns, _, other = _PACKED.unpack_from(self._map, HEADER_BYTES + (index << 4))
+            if time_ns != self.newest_ns:
+                return False
+            if other == code:
+                return True
+        return False
+
+    def _extend(self, count: int) -> bool:
+        """Make room for one more reading than `count`; return whether there is any."""
+        if count >= MAX_READINGS or self._is_full:
+            return False
+        self._make_room(HEADER_BYTES + (count + 1) * READING_RECORD.size)
+        self._room = min(MAX_READINGS, (self._capacity - HEADER_BYTES) // READING_RECORD.size)
+        return True
+
+    def close(self) -> None:
+        """Truncate the file to its true size."""
+        self._close(HEADER_BYTES + min(self._count, self._room) * READING_RECORD.size)
+
+
+@dataclass(frozen=True, slots=True)
+class Readings:
+    """The readings of a run, in the order in which they were taken."""
+
+    rows: Array
+    """One row of `READING_FIELDS` for each."""
+    left_out: int = 0
+    """How many more there were than the file holds."""
+
+    def find(self, modes: tuple[str, ...]) -> Array:
+        """Return the rows with one of some modes, in their order."""
+        import numpy as np
+
+        rows: Array = self.rows[
+            np.isin(self.rows["mode"], [READING_MODES.index(mode) for mode in modes])
+        ]
+        return rows
+
+
+def find_ticks(rows: Array, hz: int) -> Array:
+    """Return the tick at which each of some readings was taken, by ticks a second."""
+    seconds, rest_ns = divmod(rows["time_ns"], NS_PER_S)
+    ticks: Array = seconds * hz + rest_ns * hz // NS_PER_S
+    return ticks
+
+
+def read_readings(folder: Path, *, is_over: bool = True) -> Readings:
+    """Return what the program of a run has read so far.
+
+    Args:
+        folder: The run's folder.
+        is_over: Whether the run is; one that has just begun may have no record yet.
+
+    Raises:
+        LogError: the file is missing, damaged or of another version, or this machine cannot read it.
+    """
+    import numpy as np
+
+    path = folder / READINGS_FILE
+    try:
+        data = read_regular(path, HEADER_BYTES + 2 * MAX_READINGS * READING_RECORD.size)
+    except FileNotFoundError as error:
+        if not is_over:
+            return Readings(np.empty(0, np.dtype(list(READING_FIELDS))))
+        raise LogError(
+            "there is no record of what the program read", "run it again", file=str(path)
+        ) from error
+    except OSError as error:
+        raise LogError(f"cannot be read: {error.strerror or error}", file=str(path)) from (
+            error if of_the_machine(error) else None
+        )
+    published = published_length(data, READINGS_MAGIC, str(path))
+    count = min(published, MAX_READINGS, (len(data) - HEADER_BYTES) // READING_RECORD.size)
+    rows = np.frombuffer(data, np.dtype(list(READING_FIELDS)), count, HEADER_BYTES)
+    if (
+        (np.diff(rows["time_ns"], prepend=0) < 0).any()
+        or (rows["port"] >= len(READING_PORTS)).any()
+        or (rows["mode"] >= len(READING_MODES)).any()
+    ):
+        raise LogError("damaged: these are no readings", file=str(path))
+    return Readings(rows, published - count)

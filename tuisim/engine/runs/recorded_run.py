@@ -1,0 +1,298 @@
+"""A run to display: running, finished or stored, with one interface for all, and its output by tick."""
+
+from __future__ import annotations
+
+from array import array
+from bisect import bisect_right
+from collections.abc import Iterator, Sequence
+from contextlib import suppress
+from dataclasses import replace
+from itertools import islice
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from tuisim.base.errors import LogError
+from tuisim.engine.core.field import Field
+from tuisim.engine.core.motion import stall_ticks
+from tuisim.engine.core.pen_marks import MarkedField, PenMarks
+from tuisim.engine.core.spec import NoiseSpec, RunSpec
+from tuisim.engine.core.state import Instant, MotorValues
+from tuisim.engine.core.tick_record import FLAG_LEFT_RUNNING, FLAG_RIGHT_RUNNING, TICK_RECORD
+from tuisim.engine.protocol import SetButtons, UserAction
+from tuisim.engine.runs.motor_records import read_motor_values
+from tuisim.engine.runs.records import SAMPLE_STREAMS, TEXT_STREAMS, Mark, OutputRow, Stream
+from tuisim.engine.runs.run_folder import StoredRun, noise_at, program_again
+from tuisim.engine.runs.samples import parse_sample
+from tuisim.engine.runs.side_files import read_actions
+from tuisim.engine.runs.views import instant_of
+
+if TYPE_CHECKING:
+    from tuisim.engine.core.plugged import PluggedPart
+    from tuisim.engine.runs.handle import RunHandle
+    from tuisim.engine.runs.views import OutputView, TelemetryView, TickRecord
+
+_STILL_DEG = 0.05
+"""Less rotation than this in that time counts as none."""
+
+
+class Recording:
+    """Everything a run has written up to now.
+
+    Args:
+        source: A running run, or a stored one.
+        answers: Scripted answers of a running run; for a stored run they are read from its options.
+        name: Display name; by default the number, or the id if it has none.
+    """
+
+    def __init__(
+        self, source: RunHandle | StoredRun, answers: tuple[str, ...] = (), name: str = ""
+    ) -> None:
+        self.run_id = source.id if isinstance(source, StoredRun) else source.run_id
+        self.number: int = source.number
+        """Number in the catalogue; 0 if it is not listed."""
+        self.name = name or (f"run {self.number}" if self.number else self.run_id)
+        """Display name."""
+        self._source = source
+        self.first_spec: RunSpec = source.first_spec
+        """As it began."""
+        self.folder: Path = source.folder
+        self.telemetry: TelemetryView = source.telemetry
+        self.output = source.output
+        self.rows = RowIndex(source.output)
+        self.program = program_again(source.program, source.folder)
+        self.known_actions: tuple[UserAction, ...] = (
+            source.actions if isinstance(source, StoredRun) else ()
+        )
+        """The user's actions, as far as `actions` has last found them."""
+        self._stall_ticks = stall_ticks(self.spec.profile.tick_hz)
+        self._marks: _TimedMarks | None = None
+        self.answers = (
+            tuple(source.options.get("answers", ())) if isinstance(source, StoredRun) else answers
+        )
+        """Scripted answers to `input()`."""
+
+    @property
+    def spec(self) -> RunSpec:
+        """The run with all parts that have been plugged in."""
+        return self._source.spec
+
+    @property
+    def plugged(self) -> Sequence[PluggedPart]:
+        """These parts."""
+        return self._source.plugged
+
+    def hold(self) -> None:
+        """Stay as written up to now, until the next `RunHandle.pump` of a running run."""
+        for view in (self.telemetry, self.output):
+            view.read_on()
+            view.holds = True
+
+    @property
+    def newest(self) -> int:
+        """Tick of the newest record; -1 before the first."""
+        return self.telemetry.count - 1
+
+    def actions(self) -> tuple[UserAction, ...]:
+        """Return the user's actions, as far as their file is not damaged."""
+        last = self.telemetry.last()
+        # The record counts the actions modulo 65536, and may be slightly ahead of their file.
+        if last is not None and 0 < (last.actions - len(self.known_actions)) & 0xFFFF < 0x8000:
+            # What is damaged makes the end of the run, or is a note of a stored one.
+            with suppress(LogError):
+                self.known_actions = read_actions(self.folder)[0]
+        return self.known_actions
+
+    def noise_at(self, record: TickRecord) -> NoiseSpec:
+        """Return the noise at the tick of a record."""
+        actions = self.actions()
+        return noise_at(self.spec, actions, record) if actions else self.spec.world.noise
+
+    def pressed_at(self, tick: int) -> frozenset[str]:
+        """Return the brick's buttons that were pressed when a tick was complete."""
+        for action in reversed(self.actions()):
+            if isinstance(action.command, SetButtons) and action.tick < tick:
+                return frozenset(action.command.pressed)
+        return frozenset()
+
+    def field_at(self, tick: int, mat: Field) -> Field:
+        """Return the mat as the sensors saw it at a tick: with pen marks if they are visible to sensors."""
+        if not self.spec.world.pen_marks:
+            return mat
+        if self._marks is None:
+            self._marks = _TimedMarks(mat, self)
+        return self._marks.at(tick)
+
+    def instant(self, record: TickRecord, spec: RunSpec, noise: NoiseSpec) -> Instant:
+        """Return the instant of a record, with what the drivers knew of the motors if that is not damaged."""
+        motors: tuple[MotorValues, ...] = ()
+        with suppress(LogError):
+            motors = read_motor_values(self.folder, self.spec, record.tick)
+        return replace(instant_of(record, spec, noise), motors=motors)
+
+    def stalled(self, record: TickRecord) -> tuple[bool, bool]:
+        """Return whether the left and the right motor were running but did not turn."""
+        ticks = self._stall_ticks
+        if record.tick < ticks:
+            return False, False
+        before = self.telemetry.record(record.tick - ticks)
+        running = record.flags & before.flags
+        turned = (
+            abs(record.left_position_deg - before.left_position_deg),
+            abs(record.right_position_deg - before.right_position_deg),
+        )
+        return (
+            bool(running & FLAG_LEFT_RUNNING) and turned[0] < _STILL_DEG,
+            bool(running & FLAG_RIGHT_RUNNING) and turned[1] < _STILL_DEG,
+        )
+
+
+class _TimedMarks:
+    """The pen's marks at any tick: they only grow, and are stored in drawing order."""
+
+    def __init__(self, mat: Field, run: Recording) -> None:
+        self._run = run
+        self._drawn = PenMarks(mat, run.spec)
+        self._counts = array("Q")
+        """Number of marks after each record."""
+        self._cut: tuple[int, MarkedField] | None = None
+        """The last requested field, with its number of marks."""
+
+    def at(self, tick: int) -> Field:
+        marks = self._drawn.field.marks
+        if tick >= len(self._counts):
+            # One by one: all at once, as objects, the records of a long run take much memory.
+            for record in TICK_RECORD.iter_unpack(
+                self._run.telemetry.array(len(self._counts)).data
+            ):
+                self._drawn.take_in([record])
+                self._counts.append(len(marks))
+        count = self._counts[min(tick, len(self._counts) - 1)] if self._counts else 0
+        if count == len(marks):
+            return self._drawn.field
+        if self._cut is None or self._cut[0] != count:
+            self._cut = count, self._drawn.field_of_first(count)
+        return self._cut[1]
+
+
+_FACE_STREAMS = (Stream.LED, Stream.DISPLAY, Stream.CONSOLE, Stream.MOTORS, Stream.SPEECH)
+_LEVEL_SHARE = 0.15
+"""A change by this fraction of its variable's range puts a sample on another level."""
+
+_FINEST = 500
+"""Changes closer than the elapsed time divided by this are one mark, so that marks stay few."""
+
+
+class _Level:
+    """Tracks the level of one variable."""
+
+    def __init__(self, value: float) -> None:
+        self._low = self._high = self._level = value
+
+    def changes(self, value: float) -> bool:
+        """Process a value; return whether it has reached another level."""
+        self._low, self._high = min(self._low, value), max(self._high, value)
+        if abs(value - self._level) <= _LEVEL_SHARE * (self._high - self._low):
+            return False
+        self._level = value
+        return True
+
+
+class RowIndex:
+    """Tick and position of each row that has been read of an output, which may still grow."""
+
+    def __init__(self, output: OutputView) -> None:
+        self._output = output
+        self._end = 0
+        # 16 bytes a row: a program may print for hours.
+        self._ticks, self._lines, self._starts = array("I"), array("I"), array("I")
+        self._texts: array[int] = array("I")
+        """Indices of the readable rows."""
+        self._faces: dict[int, array[int]] = {stream: array("I") for stream in _FACE_STREAMS}
+        self._levels: dict[str, _Level] = {}
+        self._last_change = -1
+        """Tick of the last changed sample that was marked."""
+        self.marks: list[tuple[int, Mark]] = []
+        """Ticks of changed samples and of errors, in order."""
+
+    def __len__(self) -> int:
+        return len(self._ticks)
+
+    def take(self, limit: int) -> list[OutputRow]:
+        """Read and return at most `limit` further rows.
+
+        Raises:
+            LogError: the recording is damaged.
+        """
+        rows = []
+        for row, after in islice(self._output.rows_from(self._end), limit):
+            self._note(row)
+            self._end = after
+            rows.append(row)
+        return rows
+
+    def _note(self, row: OutputRow) -> None:
+        number = len(self._ticks)
+        self._ticks.append(row.tick)
+        self._lines.append(row.line)
+        self._starts.append(self._end)
+        if row.stream in TEXT_STREAMS:
+            self._texts.append(number)
+        if row.stream in self._faces:
+            self._faces[row.stream].append(number)
+        if row.stream == Stream.STDERR:
+            if not self.marks or self.marks[-1] != (row.tick, Mark.ERROR):
+                self.marks.append((row.tick, Mark.ERROR))
+        elif row.stream in SAMPLE_STREAMS and (sample := parse_sample(row.text)):
+            level = self._levels.get(sample[0])
+            if level is None:
+                self._levels[sample[0]] = _Level(sample[1])
+            elif level.changes(sample[1]) and row.tick - self._last_change > row.tick // _FINEST:
+                self._last_change = row.tick
+                self.marks.append((row.tick, Mark.SAMPLE))
+
+    def until(self, tick: int) -> int:
+        """Return the number of rows when a tick was complete."""
+        return bisect_right(self._ticks, tick)
+
+    def texts_until(self, tick: int, most: int) -> tuple[list[OutputRow], int]:
+        """Return the last readable rows at the end of a tick, and the number of readable rows before them."""
+        end = bisect_right(self._texts, self.until(tick) - 1)
+        first = max(0, end - most)
+        return [self.row(number) for number in self._texts[first:end]], first
+
+    def face_numbers(self, tick: int) -> list[int]:
+        """Return the indices of the rows that define the brick's state at the end of a tick, in order."""
+        count = self.until(tick)
+        return sorted(
+            numbers[at - 1]
+            for numbers in self._faces.values()
+            if (at := bisect_right(numbers, count - 1))
+        )
+
+    def row(self, number: int) -> OutputRow:
+        """Return one row by its index, from 0."""
+        # Nothing, if the program has changed its recording meanwhile.
+        nothing = OutputRow("", self._ticks[number], 0, 0, Stream.NOTE), 0
+        return next(self._output.rows_from(self._starts[number]), nothing)[0]
+
+    def rows(self, first: int, step: int = 1) -> Iterator[OutputRow]:
+        """Yield the rows from an index on; with a step of -1 backwards."""
+        if step < 0:
+            yield from (self.row(number) for number in range(first, -1, -1))
+        elif first < len(self):
+            rows = self._output.rows_from(self._starts[first])
+            yield from (row for row, _ in islice(rows, len(self) - first))
+
+    def line_of(self, name: str, tick: int) -> int:
+        """Return the line that printed the last sample of a name in a tick, 0 if there is none."""
+        for row in map(self.row, reversed(range(self.until(tick - 1), self.until(tick)))):
+            sample = parse_sample(row.text) if row.stream in SAMPLE_STREAMS else None
+            if sample is not None and sample[0] == name:
+                return row.line
+        return 0
+
+    def ticks_of_line(self, line: int) -> list[int]:
+        """Return the ticks at which a line of the program printed."""
+        return [
+            tick for tick, number in zip(self._ticks, self._lines, strict=True) if number == line
+        ]

@@ -1,0 +1,340 @@
+"""The two binary files of a run folder, and their writers. Pure Python: the child imports it.
+
+Both files are shared memory maps that begin with a 64-byte header and grow while the
+program runs. A writer stores a record first and then publishes the new length in the
+header, so that a reader, even after a `kill -9`, never sees half a record.
+
+`telemetry.bin`: one 64-byte record per tick (`TICK_RECORD`); length = number of records.
+`output.bin`: rows of any size (`OUTPUT_ROW` and the text in UTF-8); length = bytes.
+"""
+
+from __future__ import annotations
+
+import errno
+import mmap
+import os
+import resource
+from collections.abc import Callable, Iterator
+from contextlib import suppress
+from enum import IntEnum, StrEnum
+from pathlib import Path
+from struct import Struct
+
+from tuisim.base.atomic import private
+from tuisim.base.data_class import dataclass
+from tuisim.base.errors import LogError
+from tuisim.engine.core.tick_record import TICK_RECORD
+
+HEADER_BYTES = 64
+_HEADER = Struct("<8sIIQ")
+"""Magic, format version, record size (0: variable), published length."""
+_LENGTH_AT = 16
+FORMAT_VERSION = 1
+
+TELEMETRY_MAGIC = b"TUISIMTL"
+OUTPUT_MAGIC = b"TUISIMOU"
+
+OUTPUT_ROW = Struct("<IIqIB3x")
+"""Number of bytes of text, tick, simulated time in ns, source line (0: none), stream; then the text."""
+
+
+class Mark(StrEnum):
+    """What a tick of a run is marked for."""
+
+    ERROR = "error"
+    """An error text."""
+    BREAK = "break"
+    """A breakpoint was hit."""
+    ACTION = "action"
+    """An action of the user."""
+    SAMPLE = "sample"
+    """A sample that has reached another level."""
+
+
+class Stream(IntEnum):
+    """What an output row belongs to."""
+
+    NOTE = 0
+    """A line of the app itself; never recorded."""
+    STDOUT = 1
+    STDERR = 2
+    SPEECH = 3
+    """Spoken texts and, in brackets, other sounds."""
+    INPUT = 4
+    """The echo of an answer to `input()`."""
+    LED = 5
+    DISPLAY = 6
+    CONSOLE = 7
+    """The text screen of the brick."""
+    MOTORS = 8
+    """Rotation of motors that do not drive a wheel."""
+    DATA = 9
+    """A sample that the program wrote into a log file of its library, as a line that prints it."""
+    UNKNOWN = 255
+    """A number that stands for no stream, in a damaged recording."""
+
+
+TEXT_STREAMS = frozenset({Stream.STDOUT, Stream.STDERR, Stream.SPEECH, Stream.INPUT})
+"""Streams with readable text."""
+
+SAMPLE_STREAMS = frozenset({Stream.STDOUT, Stream.DATA})
+"""Streams in which there are samples."""
+
+_STREAMS = {stream.value: stream for stream in Stream}
+
+TELEMETRY_FILE = "telemetry.bin"
+OUTPUT_FILE = "output.bin"
+TELEMETRY_CHUNK = 64 * 1024
+OUTPUT_CHUNK = 1 << 16
+"""Initial size of an output file after the header; it is truncated to its true size at the end."""
+
+_ZEROS = 1 << 16
+_LEAST_STEP = 4096
+"""If the disk lacks space, a file requests less in steps of at least this size."""
+
+MAX_OUTPUT_BYTES = 256 << 20
+"""A run that prints more than this is stopped."""
+MAX_OUTPUT_ROWS, MAX_ROWS_PER_S = 1_000_000, 1_000
+"""So is one with more rows than these together: for each, whoever judges a run needs time and memory."""
+_NS_PER_ROW = 1_000_000_000 // MAX_ROWS_PER_S
+
+
+def header(magic: bytes, record_bytes: int, length: int) -> bytes:
+    """Return the header of a recording: HEADER_BYTES bytes."""
+    return _HEADER.pack(magic, FORMAT_VERSION, record_bytes, length).ljust(HEADER_BYTES, b"\0")
+
+
+def is_full(error: OSError) -> bool:
+    """Return whether an error means that nothing can be written: full disk, quota, or limit of file sizes."""
+    return error.errno in (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
+
+
+def _allow_address_space(more: int) -> None:
+    """Raise this process's limit of address space: it is for the memory of the program, not for its recording."""
+    soft, hard = resource.getrlimit(resource.RLIMIT_AS)
+    if soft != resource.RLIM_INFINITY:
+        wanted = soft + more if hard == resource.RLIM_INFINITY else min(hard, soft + more)
+        # Where the system refuses, the program may use the less.
+        with suppress(OSError, ValueError):
+            resource.setrlimit(resource.RLIMIT_AS, (wanted, hard))
+
+
+def _reserve(fd: int, start: int, size: int) -> None:
+    """Allocate disk space for a file: writing to a map without space would kill the process."""
+    try:
+        os.posix_fallocate(fd, start, size)
+    # macOS has no such call, and some file systems refuse it.
+    except (AttributeError, OSError) as error:
+        if isinstance(error, OSError) and error.errno not in (
+            errno.EINVAL,
+            errno.EOPNOTSUPP,
+            errno.ENOSYS,
+        ):
+            raise
+        nothing, end = bytes(min(size, _ZEROS)), start + size
+        while start < end:
+            start += os.pwrite(fd, nothing[: end - start], start)
+
+
+class MappedWriter:
+    """A recording in a memory-mapped file that grows in ever larger steps while the disk has space.
+
+    Raises:
+        OSError: by the constructor, without space.
+    """
+
+    def __init__(self, path: str, magic: bytes, record_bytes: int, first_bytes: int) -> None:
+        self.full: Callable[[OSError], BaseException] = lambda error: error
+        """Returns the exception to raise when the disk is full; what was written before is kept."""
+        self._is_full = False
+        self._fd = private(path, os.O_RDWR | os.O_CREAT | os.O_EXCL)
+        self._capacity = HEADER_BYTES + first_bytes
+        _reserve(self._fd, 0, self._capacity)
+        self._map_file()
+        self._map[0:HEADER_BYTES] = header(magic, record_bytes, 0)
+
+    def _make_room(self, need: int) -> None:
+        try:
+            self._grow(need)
+        except OSError as error:
+            self._is_full = True
+            raise self.full(error) from None
+
+    def _grow(self, need: int) -> None:
+        wanted = self._capacity
+        while wanted < need:
+            wanted *= 2
+        while True:
+            try:
+                _reserve(self._fd, self._capacity, wanted - self._capacity)
+                break
+            except OSError as error:
+                # Some file systems keep the part for which there was space.
+                os.ftruncate(self._fd, self._capacity)
+                if not is_full(error) or wanted == need:
+                    raise
+                wanted = max(need, (self._capacity + wanted) // 2 - _LEAST_STEP)
+        self._unmap()
+        _allow_address_space(wanted - self._capacity)
+        self._capacity = wanted
+        self._map_file()
+
+    def _map_file(self) -> None:
+        self._map = mmap.mmap(self._fd, self._capacity)
+        # Set in one aligned store, which readers see atomically: pack_into would clear the bytes first.
+        self._length = memoryview(self._map)[_LENGTH_AT : _LENGTH_AT + 8].cast("Q")
+
+    def _unmap(self) -> None:
+        self._length.release()
+        self._map.close()
+
+    def _close(self, used: int) -> None:
+        self._unmap()
+        # The header says what is used, so the rest may stay.
+        with suppress(OSError):
+            os.ftruncate(self._fd, used)
+        os.close(self._fd)
+
+
+class TelemetryWriter(MappedWriter):
+    """Appends tick records. The hot loop packs into the map of `room` directly, then calls `publish`."""
+
+    def __init__(self, folder: Path) -> None:
+        super().__init__(
+            f"{folder}{os.sep}{TELEMETRY_FILE}", TELEMETRY_MAGIC, TICK_RECORD.size, TELEMETRY_CHUNK
+        )
+        self.count = 0
+
+    def room(self, records: int) -> mmap.mmap:
+        """Return the map, with space for `records` more records after `count`."""
+        need = HEADER_BYTES + (self.count + records) * TICK_RECORD.size
+        if need > self._capacity:
+            self._make_room(need)
+        return self._map
+
+    def publish(self, count: int) -> None:
+        """Make the first `count` records visible to readers."""
+        self.count = self._length[0] = count
+
+    def close(self) -> None:
+        """Truncate the file to its true size."""
+        self._close(HEADER_BYTES + self.count * TICK_RECORD.size)
+
+
+class OutputWriter(MappedWriter):
+    """Appends printed lines and publishes each at once; when the disk is full, later output is lost."""
+
+    def __init__(self, folder: Path) -> None:
+        super().__init__(f"{folder}{os.sep}{OUTPUT_FILE}", OUTPUT_MAGIC, 0, OUTPUT_CHUNK)
+        self.length = self._rows = 0
+
+    def write(self, text: bytes, tick: int, time_ns: int, line: int, stream: Stream) -> None:
+        """Append one row.
+
+        Args:
+            text: The line without its newline, UTF-8.
+            tick: Number of completed ticks.
+            time_ns: Simulated time.
+            line: Source line that printed it; 0 for none.
+            stream: The stream.
+
+        Raises:
+            LogError: the output has reached MAX_OUTPUT_BYTES, or more rows than are allowed up to this time.
+        """
+        if self._is_full:
+            return
+        self._rows += 1
+        if self._rows > MAX_OUTPUT_ROWS + time_ns // _NS_PER_ROW:
+            raise LogError(
+                f"the program printed more than {MAX_OUTPUT_ROWS:,} lines and {MAX_ROWS_PER_S:,} a second"
+            )
+        at = HEADER_BYTES + self.length
+        end = at + OUTPUT_ROW.size + len(text)
+        if end > self._capacity:
+            if end > MAX_OUTPUT_BYTES:
+                raise LogError(f"the program printed more than {MAX_OUTPUT_BYTES >> 20} MiB")
+            self._make_room(end)
+        self._map[at:end] = OUTPUT_ROW.pack(len(text), tick, time_ns, line, stream) + text
+        self.length = self._length[0] = end - HEADER_BYTES
+
+    def close(self) -> None:
+        """Truncate the file to its true size."""
+        self._close(HEADER_BYTES + self.length)
+
+
+@dataclass(frozen=True, slots=True)
+class OutputRow:
+    """One line of output: printed, spoken, or an answer to input()."""
+
+    text: str
+    tick: int
+    time_ns: int
+    line: int
+    stream: Stream
+
+
+def line_of(row: OutputRow) -> str:
+    """Return the display text of a row; speech and answers are marked."""
+    if row.stream is Stream.SPEECH and not row.text.startswith("["):
+        # Sounds are in brackets already.
+        return f"says: {row.text}"
+    return f"> {row.text}" if row.stream is Stream.INPUT else row.text
+
+
+def published_length(data: bytes, magic: bytes, file: str) -> int:
+    """Return the length in a header: number of telemetry records, or bytes of output.
+
+    Raises:
+        LogError: the file is not such a recording, or of another version.
+    """
+    return read_header(data, magic, file)[1]
+
+
+def read_header(data: bytes, magic: bytes, file: str) -> tuple[int, int]:
+    """Return the size of a record and the length in a header; errors as of `published_length`."""
+    if len(data) < HEADER_BYTES:
+        raise LogError("too short to be a recording", file=file)
+    found, version, record_bytes, length = _HEADER.unpack_from(data)
+    if found != magic:
+        raise LogError("not a tuisim recording", file=file)
+    if version != FORMAT_VERSION:
+        raise LogError(f"format version {version}, this tuisim reads {FORMAT_VERSION}", file=file)
+    return int(record_bytes), int(length)
+
+
+def is_hole(part: bytes | memoryview) -> bool:
+    """Return whether a part of a recording, far larger than a record, was never written: a file may seem to be of any
+    length without taking space on the disk."""
+    return not bytes(part[-HEADER_BYTES:]).strip(b"\0") and not bytes(part).strip(b"\0")
+
+
+def raw_rows(data: bytes | memoryview, end: int) -> Iterator[tuple[int, bytes]]:
+    """Yield stream and text of each complete row, a cheaper variant of `output_rows`."""
+    start, head, after_head = HEADER_BYTES, OUTPUT_ROW.unpack_from, OUTPUT_ROW.size
+    end += HEADER_BYTES
+    while start + after_head <= end:
+        size, _, _, _, stream = head(data, start)
+        start += after_head + size
+        if start > end:
+            return
+        yield stream, bytes(data[start - size : start])
+
+
+def output_rows(data: bytes | memoryview, start: int, end: int) -> Iterator[tuple[OutputRow, int]]:
+    """Yield each complete row between two byte positions, with the position after it.
+
+    Args:
+        data: The contents of an output file.
+        start: Byte position after the header: 0, or one that was yielded before.
+        end: Published length in bytes.
+    """
+    while start + OUTPUT_ROW.size <= end:
+        at = HEADER_BYTES + start
+        size, tick, time_ns, line, stream = OUTPUT_ROW.unpack_from(data, at)
+        start += OUTPUT_ROW.size + size
+        if start > end:
+            return
+        text = bytes(data[at + OUTPUT_ROW.size : at + OUTPUT_ROW.size + size]).decode(
+            "utf-8", "replace"
+        )
+        yield OutputRow(text, tick, time_ns, line, _STREAMS.get(stream, Stream.UNKNOWN)), start

@@ -1,0 +1,138 @@
+"""Works a run out again: its world, its user and the commands of its program make the same ticks, to the last bit."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable, Iterable, Sequence
+from contextlib import suppress
+from typing import TYPE_CHECKING
+
+from tuisim.base.data_class import dataclass
+from tuisim.base.errors import LogError
+from tuisim.engine.core.commands.calls import SimulationCommand
+from tuisim.engine.core.commands.check import CommandCheck
+from tuisim.engine.core.commands.table import CALLS, obey
+from tuisim.engine.core.motor_columns import MOTOR_RECORD, name_motors
+from tuisim.engine.core.profile import NS_PER_S
+from tuisim.engine.core.simulation import Simulation, simulation_of
+from tuisim.engine.core.tick_record import TICK_RECORD, NoRecording
+from tuisim.engine.protocol import Stop, UserAction
+from tuisim.engine.runs.motor_records import arrange_records
+from tuisim.engine.runs.records import HEADER_BYTES
+from tuisim.engine.runs.user_changes import change_simulation
+
+if TYPE_CHECKING:
+    from tuisim.engine.core.spec import RobotSpec, RunSpec
+
+
+@dataclass(frozen=True, slots=True)
+class ReplayedTicks:
+    """What a run would have recorded."""
+
+    telemetry: bytearray
+    """A record for each tick, without a header; the lines of the program are 0."""
+    motors: bytearray
+    """The records of the motors for each tick; empty if they have no driver."""
+    motor_bytes: int
+    """Of the motors' records of one tick."""
+    robot: RobotSpec
+    """With all parts that were plugged in."""
+
+
+class _Ticks:
+    """Tick records in memory."""
+
+    def __init__(self) -> None:
+        self.count = 0
+        self.buffer = bytearray(HEADER_BYTES)
+
+    def room(self, records: int) -> bytearray:
+        need = HEADER_BYTES + TICK_RECORD.size * (self.count + records)
+        if need > len(self.buffer):
+            self.buffer += bytes(2 * need)
+        return self.buffer
+
+    def publish(self, count: int) -> None:
+        self.count = count
+
+
+class _Motors:
+    """Records of motors in memory."""
+
+    def __init__(self, robot: RobotSpec) -> None:
+        self.tick_bytes = MOTOR_RECORD.size * len(name_motors(robot))
+        self.buffer = bytearray(HEADER_BYTES)
+
+    def extend_buffer(self, ticks: int) -> bytearray:
+        need = HEADER_BYTES + ticks * self.tick_bytes
+        if need > len(self.buffer):
+            self.buffer += bytes(need)
+        return self.buffer
+
+    def arrange(self, sources: Sequence[int | None], ticks: int) -> None:
+        end = HEADER_BYTES + ticks * self.tick_bytes
+        count = self.tick_bytes // MOTOR_RECORD.size
+        arranged = arrange_records(bytes(self.buffer[HEADER_BYTES:end]), count, sources, ticks)
+        self.tick_bytes = MOTOR_RECORD.size * len(sources)
+        self.buffer = bytearray(HEADER_BYTES) + arranged
+
+
+def replay(
+    spec: RunSpec,
+    commands: Iterable[SimulationCommand],
+    actions: Iterable[UserAction],
+    last_tick: int,
+) -> ReplayedTicks:
+    """Work a run out from what is known of it, and what its program did.
+
+    Args:
+        spec: The run, as it began.
+        commands: Those of the program in their order, with all values of their records.
+        actions: What a user did, in the order of the ticks.
+        last_tick: The last tick that is wanted.
+
+    Raises:
+        LogError: no program can have given these commands.
+    """
+    ticks, motors = _Ticks(), _Motors(spec.robot)
+    sim = simulation_of(spec, NoRecording())
+    sim.restart(spec, ticks, motors if sim.notices else None)
+    advance, check = _build_advance(sim, actions), CommandCheck(sim)
+    for command in commands:
+        tick = sim.ticks_at(command.time_ns)
+        fault = check.find_disorder(command.time_ns)
+        if tick > last_tick:
+            fault = "is after the end of the run"
+        if not fault:
+            advance(tick)
+            fault = check.find_fault(command)
+        if fault:
+            time_s = command.time_ns / NS_PER_S
+            raise LogError(f"at {time_s:.2f} s there is a command that {fault}")
+        count = len(CALLS[command.call].ranges)
+        # Whatever was raised in the program, here it ends the command, too.
+        with suppress(Exception):
+            obey(sim, command.time_ns, command.part, command.call, *command.values[:count])
+    advance(last_tick)
+    return ReplayedTicks(
+        ticks.buffer[HEADER_BYTES : HEADER_BYTES + TICK_RECORD.size * ticks.count],
+        motors.buffer[HEADER_BYTES : HEADER_BYTES + motors.tick_bytes * ticks.count]
+        if sim.notices
+        else bytearray(),
+        motors.tick_bytes,
+        sim.spec.robot,
+    )
+
+
+def _build_advance(sim: Simulation, actions: Iterable[UserAction]) -> Callable[[int], None]:
+    """Return what runs ticks up to one; right before it runs a tick, the user does what is due."""
+    script = deque(action for action in actions if not isinstance(action.command, Stop))
+
+    def advance(tick: int) -> None:
+        while sim.tick < tick:
+            while script and script[0].tick <= sim.tick:
+                change_simulation(sim, script.popleft().command)
+            until = min(tick, script[0].tick) if script else tick
+            sim.advance(until - sim.tick)
+
+    return advance

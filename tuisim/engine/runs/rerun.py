@@ -1,0 +1,130 @@
+"""Repeats a stored run: same program, world, seed and user actions, headless, bit by bit.
+
+What a run folder does not hold is read from its original place: the image of the mat, files that the program opens,
+and modules that are installed or compiled.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+from tuisim.base.errors import LogError, shortened
+from tuisim.engine.protocol import End, RunState, Stop, Unended, UserAction
+from tuisim.engine.runs.diff import RunDiff, diff_runs
+from tuisim.engine.runs.handle import RunHandle, RunOptions, start_run
+from tuisim.engine.runs.run_folder import program_again
+from tuisim.engine.runs.side_files import MOST_PATH, read_reads, read_stop_tick, state_of
+
+if TYPE_CHECKING:
+    from tuisim.engine.runs.run_folder import StoredRun
+    from tuisim.engine.runs.store import RunStore
+
+CUT_OFF: frozenset[RunState] = frozenset(
+    {
+        End.STOPPED,
+        End.KILLED,
+        End.CRASHED,
+        Unended.INTERRUPTED,
+        Unended.RUNNING,
+        End.STALLED,
+        End.DISK_FULL,
+    }
+)
+"""Ends that do not result from the program and its limits: such a run is a prefix of its re-run."""
+
+
+def rerun(run: StoredRun, store: RunStore, **options: Any) -> RunHandle:
+    """Start a stored run again, at full speed.
+
+    Args:
+        run: The run.
+        store: Where the new run is stored; not the user's store, who did not request another run.
+        options: Fields of `RunOptions` to change, such as `hold_at`.
+
+    Raises:
+        BackgroundError: the mat no longer exists.
+        LogError: the run has no recording, or its options are invalid.
+    """
+    return start_run(
+        program_again(run.program, run.folder),
+        run.first_spec,
+        replace(_options(run), **options),
+        store,
+    )
+
+
+def same(run: StoredRun, again: StoredRun) -> RunDiff:
+    """Compare a run with its re-run; `same` of the result is true if all bits are equal.
+
+    Args:
+        run: The run; one that was cut off is compared up to its last record, unless the position of its stop is known.
+        again: Its re-run.
+    """
+    if not _stopped_by_itself(run):
+        return diff_runs(run, again, prefix=run.state in CUT_OFF)
+    whole = diff_runs(run, again)
+    # How far threads get during cleanup depends on the real clock.
+    return (
+        whole
+        if whole.same
+        else diff_runs(run, again, prefix=True, until=read_stop_tick(run.folder))
+    )
+
+
+def changed_files(run: StoredRun) -> tuple[str, ...]:
+    """Return a note for each file that the run has read and that is another one now, so that a re-run may differ.
+
+    Raises:
+        LogError: the list of the files is damaged.
+    """
+    notes = []
+    for read in read_reads(run.folder).files:
+        now = state_of(read.path)
+        if now is not None and read.same_as(now):
+            continue
+        if not read.there:
+            what = "was not there, and is there now"
+        else:
+            what = "has changed since" if now is not None and now.there else "is gone"
+        notes.append(f"a file that the program opens {what}: {shortened(read.path, MOST_PATH)}")
+    return tuple(notes)
+
+
+def _stopped_by_itself(run: StoredRun) -> bool:
+    """Return whether the program obeyed a stop that can be repeated at the same position."""
+    # The summary of a run that had to be killed says more than that.
+    return (
+        run.end is not None
+        and run.end.summary == "stopped"
+        and read_stop_tick(run.folder) is not None
+    )
+
+
+def _options(run: StoredRun) -> RunOptions:
+    last = run.telemetry.last()
+    if last is None and not run.folder.is_dir():
+        raise LogError(
+            f"no run {str(run.number or run.id)!r}: it has been removed", file=str(run.folder)
+        )
+    if last is None:
+        raise LogError(
+            run.telemetry.note or "has no recording: it ended before its first tick",
+            file=str(run.folder),
+        )
+    # A run that was stopped might never end by itself; any other ends before the tick after its last. The stop comes
+    # right before that tick, which has to be reached, whichever way times are rounded.
+    enough_s = (last.tick + 1.5) / run.spec.profile.tick_hz
+    stored, stop_tick = run.options, read_stop_tick(run.folder)
+    stop = () if stop_tick is None else (UserAction(stop_tick, Stop()),)
+    try:
+        limit_s = float(stored.get("time_limit_s", 0.0))
+        return RunOptions(
+            time_limit_s=min(limit_s, enough_s) if limit_s else enough_s,
+            stall_limit_s=float(stored.get("stall_limit_s", 0.0)),
+            answers=tuple(stored.get("answers", ())),
+            asks_user=bool(stored.get("asks_user", False)),
+            actions=run.actions + stop,
+        )
+    except (TypeError, ValueError) as error:
+        raise LogError(f"cannot be run again: {error}", file=str(run.folder)) from error

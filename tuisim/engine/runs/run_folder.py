@@ -1,0 +1,378 @@
+"""A run folder as data: the contents of `run.json`, the run that it describes, and the mat of the run."""
+
+from __future__ import annotations
+
+import json
+from bisect import bisect_right
+from collections.abc import Mapping, Sequence
+from dataclasses import fields, replace
+from pathlib import Path
+from typing import Any, TypeVar
+
+from tuisim.base.atomic import replacing
+from tuisim.base.data_class import dataclass
+from tuisim.base.errors import ConfigError, LogError, TuisimError, shortened
+from tuisim.base.regular_file import read_regular
+from tuisim.base.source import Program
+from tuisim.engine.core.field import Field
+from tuisim.engine.core.plugged import PLUGGED_DIAMETER_MM, PluggedPart, plug_parts
+from tuisim.engine.core.profile import NS_PER_S, due_ns
+from tuisim.engine.core.spec import NoiseSpec, RunSpec
+from tuisim.engine.core.tree import restore, to_plain
+from tuisim.engine.mat_cache import FieldFiles, open_field, prepare
+from tuisim.engine.mats import background
+from tuisim.engine.protocol import End, Ended, RunState, SetNoise, Unended, UserAction
+from tuisim.engine.runs.removal import remove_tree
+from tuisim.engine.runs.side_files import MOST_BYTES, is_held, read_actions
+from tuisim.engine.runs.views import OutputView, TelemetryView, TickRecord, views_of
+
+RUN_FILE = "run.json"
+RUN_FORMAT = 3
+_PROGRAM_KEYS = (
+    "name",
+    "path",
+    "text",
+    "sha256",
+    "prelude",
+    "arguments",
+    "python_path",
+    "working_directory",
+    "module_folder",
+    "shown_ports",
+)
+"""What `run.json` holds of the program, in this order."""
+
+_ACTION_COUNTS = 1 << 16
+"""The telemetry counts user actions in 16 bits."""
+
+
+_Kind = TypeVar("_Kind")
+MOST_INTEGER = (1 << 63) - 1
+"""What the catalogue can hold."""
+_ANY_END = Ended(End.FINISHED, 0, 0)
+_TOLD = frozenset({End.FINISHED, End.RAISED, End.TIME_LIMIT, End.DEADLOCK})
+"""Ends that a program's process tells after it has written both recordings."""
+
+
+@dataclass(frozen=True, slots=True)
+class StoredRun:
+    """A run in the store; its views also follow a run that is still running."""
+
+    folder: Path
+    id: str
+    number: int
+    """Number in the catalogue; 0 if the folder is not listed."""
+    created: str
+    """ISO 8601, UTC."""
+    live: bool
+    program: Program
+    spec: RunSpec
+    """With all parts that were plugged in."""
+    first_spec: RunSpec
+    """As it began."""
+    plugged: tuple[PluggedPart, ...]
+    field: Mapping[str, Any] | None
+    """Files of the prepared mat, as written by the host."""
+    options: Mapping[str, Any]
+    tags: tuple[str, ...]
+    end: Ended | None
+    """None while it runs, and if it was interrupted."""
+    actions: tuple[UserAction, ...]
+    notes: tuple[str, ...]
+    """Incomplete parts that were ignored, one sentence each."""
+    telemetry: TelemetryView
+    output: OutputView
+
+    @property
+    def state(self) -> RunState:
+        """How it ended, or its state without an end."""
+        if self.end is not None:
+            return self.end.end
+        return state_without_end(self.folder)
+
+    @property
+    def time_s(self) -> float:
+        """Simulated seconds: up to its end or, without an end, its newest tick."""
+        if self.end is not None:
+            return self.end.time_ns / NS_PER_S
+        last = self.telemetry.last()
+        return due_ns(last.tick, self.spec.profile.tick_hz) / NS_PER_S if last else 0.0
+
+    def noise_at(self, record: TickRecord) -> NoiseSpec:
+        """Return the noise at the tick of a telemetry record."""
+        return noise_at(self.spec, self.actions, record)
+
+
+def state_without_end(folder: Path) -> Unended:
+    """Return whether the run in a folder without a stored end is running or was interrupted."""
+    return Unended.RUNNING if is_held(folder) else Unended.INTERRUPTED
+
+
+def program_again(program: Program, folder: Path) -> Program:
+    """Return the program of a run with its arguments, working directory and own modules, to be run again.
+
+    Args:
+        program: The program.
+        folder: The folder of the run.
+    """
+    return replace(program, modules_from=folder)
+
+
+def noise_at(spec: RunSpec, actions: Sequence[UserAction], record: TickRecord) -> NoiseSpec:
+    """Return the noise at the tick of a record: that of the spec, changed by the user's actions, which are in order."""
+    # The record counts the actions modulo 65536; their ticks resolve the ambiguity.
+    due = bisect_right(actions, record.tick, key=lambda action: action.tick)
+    offset = (record.actions - due + _ACTION_COUNTS // 2) % _ACTION_COUNTS - _ACTION_COUNTS // 2
+    for action in reversed(actions[: max(0, due + offset)]):
+        if isinstance(action.command, SetNoise):
+            return NoiseSpec(int(action.command.light), int(action.command.motor))
+    return spec.world.noise
+
+
+def new_run_data(
+    run_id: str,
+    number: int,
+    created: str,
+    program: Program,
+    spec: RunSpec,
+    field: Mapping[str, Any] | None,
+    options: Mapping[str, Any] | None,
+    live: bool,
+) -> dict[str, Any]:
+    """Return the contents of the `run.json` of a run that is about to start."""
+    return {
+        "format": RUN_FORMAT,
+        "id": run_id,
+        "number": number,
+        "created": created,
+        "live": live,
+        "program": {name: getattr(program, name) for name in _PROGRAM_KEYS},
+        "spec": to_plain(spec),
+        "plugged": [],
+        "field": None if field is None else dict(field),
+        "options": dict(options or {}),
+        "tags": [],
+        "end": None,
+    }
+
+
+def run_document(data: Mapping[str, Any]) -> bytes:
+    """Return the contents of a `run.json`."""
+    return json.dumps(data, indent=1, ensure_ascii=True).encode() + b"\n"
+
+
+def write_run_file(folder: Path, data: Mapping[str, Any]) -> None:
+    """Write or replace `run.json`.
+
+    Raises:
+        LogError: it cannot be written.
+    """
+    path = folder / RUN_FILE
+    if path.is_dir() and not path.is_symlink():
+        # The program has put it there.
+        remove_tree(path)
+    try:
+        with replacing(path, owner_only=True, follow_links=False) as handle:
+            handle.write(run_document(data))
+    except OSError as error:
+        raise LogError(f"cannot write: {error.strerror or error}", file=str(path)) from error
+
+
+def read_run_file(folder: Path) -> dict[str, Any]:
+    """Return the contents of `run.json`.
+
+    Raises:
+        LogError: it is missing, damaged or of another version.
+    """
+    path = folder / RUN_FILE
+    try:
+        data = json.loads(read_regular(path, MOST_BYTES))
+    except FileNotFoundError as error:
+        raise LogError(f"no run here: {RUN_FILE} is missing", file=str(folder)) from error
+    except (OSError, ValueError, RecursionError) as error:
+        raise LogError(f"cannot be read: {error}", file=str(path)) from error
+    if not isinstance(data, dict) or "format" not in data:
+        raise LogError("not a run", file=str(path))
+    if data["format"] != RUN_FORMAT:
+        stored_format = shortened(str(data["format"]))
+        raise LogError(
+            f"stored by another version of tuisim: format {stored_format}, this one reads {RUN_FORMAT}",
+            "run its program again",
+            file=str(path),
+        )
+    return data
+
+
+def _typed(value: Any, kind: type[_Kind], name: str) -> _Kind:
+    if not isinstance(value, kind) or (isinstance(value, int) and abs(value) > MOST_INTEGER):
+        raise TypeError(f"{name} is {value!r}")
+    return value
+
+
+def _restored(plain: Mapping[str, Any]) -> RunSpec:
+    """Return the spec in a run file, whose numbers are ones to reckon with."""
+    spec = restore(plain)
+    if not 1 <= spec.profile.tick_hz <= NS_PER_S:
+        raise ValueError(f"a tick rate of {spec.profile.tick_hz}")
+    # A seed may be any whole number.
+    parts = [plain[name] for name in ("robot", "world", "profile")]
+    while parts:
+        part = parts.pop()
+        if isinstance(part, dict | list):
+            parts += part.values() if isinstance(part, dict) else part
+        elif isinstance(part, int | float) and not abs(part) <= MOST_INTEGER:
+            raise ValueError(f"{part} is out of range")
+    return spec
+
+
+def add_plugged(spec: RunSpec, parts: Sequence[PluggedPart]) -> RunSpec:
+    """Return a run whose robot has the parts, too, that were plugged in."""
+    return replace(spec, robot=plug_parts(spec.robot, parts)) if parts else spec
+
+
+def _parse_program(plain: Mapping[str, Any]) -> Program:
+    """Return the program in a run file."""
+    texts = ("name", "path", "text", "prelude", "working_directory", "module_folder")
+    found: dict[str, Any] = {key: _typed(plain[key], str, key) for key in texts}
+    lists = ["arguments", "python_path"]
+    lists += ["shown_ports"] if plain["shown_ports"] is not None else []
+    for key in lists:
+        found[key] = tuple(_typed(word, str, key) for word in _typed(plain[key], list, key))
+    return Program(**found)
+
+
+def _options_of(data: Mapping[str, Any]) -> dict[str, Any]:
+    options = _typed(data["options"], dict, "options")
+    for answer in _typed(options.get("answers", []), list, "answers"):
+        _typed(answer, str, "an answer")
+    return options
+
+
+def _end_of(data: Mapping[str, Any]) -> Ended:
+    kinds = {field.name: type(getattr(_ANY_END, field.name)) for field in fields(Ended)}
+    known = {**data, "end": End(data["end"])}
+    return Ended(
+        **{name: _typed(value, kinds.get(name, object), name) for name, value in known.items()}
+    )
+
+
+def read_run(folder: Path, document: str | None = None, known: RunSpec | None = None) -> StoredRun:
+    """Return the run in a folder.
+
+    Args:
+        folder: The run folder.
+        document: The contents of its `run.json`, if they are known; otherwise they are read.
+        known: The spec in it, if it is known.
+
+    Raises:
+        LogError: the folder holds no run, or a damaged one.
+    """
+    data = read_run_file(folder) if document is None else json.loads(document)
+    # The intact parts of a damaged run are readable: its program, its world, and the other recording.
+    is_falsified = isinstance(data.get("end"), dict) and data["end"].get("end") == End.FALSIFIED
+    telemetry, output = views_of(folder, is_falsified)
+    try:
+        actions, cut = read_actions(folder)
+    except LogError as error:
+        actions, cut = (), f"{error.message}: the user's actions are ignored"
+    try:
+        first_spec = _restored(data["spec"]) if known is None else known
+        plugged = tuple(map(PluggedPart.from_plain, _typed(data["plugged"], list, "plugged")))
+        end = None if data["end"] is None else _end_of(data["end"])
+        lost = [view.note or _lost_of(view, end) for view in (telemetry, output)]
+        # What has ended stays as it is.
+        telemetry.holds = output.holds = end is not None
+        return StoredRun(
+            folder=folder,
+            id=_typed(data["id"], str, "id"),
+            number=int(data["number"]),
+            created=_typed(data["created"], str, "created"),
+            live=bool(data["live"]),
+            program=_parse_program(data["program"]),
+            spec=add_plugged(first_spec, plugged),
+            first_spec=first_spec,
+            plugged=plugged,
+            field=_typed(data["field"] or {}, dict, "field") or None,
+            options=_options_of(data),
+            tags=tuple(_typed(tag, str, "a tag") for tag in data["tags"]),
+            end=end,
+            actions=actions,
+            notes=tuple(filter(None, (*lost, cut))),
+            telemetry=telemetry,
+            output=output,
+        )
+    except LogError:
+        raise
+    except (KeyError, TypeError, ValueError, OverflowError, AttributeError, TuisimError) as error:
+        what = f"{error} is missing" if isinstance(error, KeyError) else str(error)
+        raise LogError(f"damaged: {shortened(what)}", file=str(folder / RUN_FILE)) from error
+
+
+def _lost_of(view: TelemetryView | OutputView, end: Ended | None) -> str:
+    """Return what a sound recording lacks of a run that has told its own end; empty if nothing."""
+    if end is None or end.end not in _TOLD:
+        return ""
+    if view.is_missing:
+        return f"{view.name} is missing"
+    if isinstance(view, TelemetryView) and view.count <= end.tick:
+        return f"{view.name} has {view.count} of {end.tick + 1} records"
+    return ""
+
+
+def field_files(spec: RunSpec) -> FieldFiles:
+    """Prepare the mat of a run for its robot's sensors, unless it is cached.
+
+    Raises:
+        BackgroundError: the mat does not exist, or its image cannot be read.
+    """
+    image = background(spec.world.background).image
+    return prepare(image, find_diameters(spec), fit=spec.world.background_fit)
+
+
+def find_diameters(spec: RunSpec) -> frozenset[int]:
+    """Return the diameters of a run's colour sensors, also of one that may be plugged in."""
+    sensors = spec.robot.color_sensors
+    return frozenset({PLUGGED_DIAMETER_MM, *(sensor.diameter_mm for sensor in sensors)})
+
+
+def open_mat(run: StoredRun) -> Field:
+    """Return the mat of a run; prepares it again if it is no longer cached.
+
+    Raises:
+        LogError: the mat no longer exists, or its image has changed.
+    """
+    files = mat_files(run)
+    try:
+        return open_field(files, has_floor=run.spec.world.is_open)
+    except ConfigError as error:
+        raise _no_mat(run, error) from error
+
+
+def mat_files(run: StoredRun) -> FieldFiles:
+    """Return the files of the mat that `open_mat` opens; prepares them again if necessary.
+
+    Raises:
+        LogError: as `open_mat`.
+    """
+    try:
+        made_on = None if run.field is None else FieldFiles.from_plain(run.field)
+        diameters = {sensor.diameter_mm for sensor in run.spec.robot.color_sensors}
+        if made_on is not None and made_on.is_for(diameters) and made_on.are_sound:
+            return made_on
+        found = field_files(run.spec)
+        # The file names are derived from the contents of the image.
+        if made_on is not None and found.pixels.name != made_on.pixels.name:
+            name = run.spec.world.background
+            raise LogError(
+                f"the mat {name} has changed since the run", file=str(background(name).image)
+            )
+    except ConfigError as error:
+        raise _no_mat(run, error) from error
+    # The system refuses some names that come from damaged files.
+    except (KeyError, TypeError, ValueError, AttributeError, OverflowError, OSError) as error:
+        raise LogError(f"the mat of the run is not named: {error}", file=str(run.folder)) from error
+    return found
+
+
+def _no_mat(run: StoredRun, error: ConfigError) -> LogError:
+    return LogError(f"the mat of the run: {error.message}", error.hint, file=str(run.folder))

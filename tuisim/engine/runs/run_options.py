@@ -1,0 +1,72 @@
+"""How a run is executed, as the host asks for it and the child obeys.
+
+Pure Python: the child imports it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import asdict
+from typing import Any
+
+from tuisim.base.data_class import dataclass
+from tuisim.engine.protocol import UserAction
+
+DEFAULT_TIME_LIMIT_S = 600.0
+"""Simulated time that a run may take if nothing else is asked for."""
+
+
+@dataclass(frozen=True, slots=True)
+class RunOptions:
+    """How a run is executed; apart from limits and answers, nothing here changes what it records."""
+
+    live: bool = False
+    """Whether it is paced by the wall clock, can be paused and accepts user actions; otherwise it is headless."""
+    speed: float = 1.0
+    """1.0 is real time, 0 as fast as possible."""
+    start_paused: bool = False
+    time_limit_s: float = DEFAULT_TIME_LIMIT_S
+    """Simulated time after which the run is stopped; 0 is no limit."""
+    stall_limit_s: float = 60.0
+    """CPU seconds in one instant of simulated time after which the run is stopped; 0 is no limit."""
+    answers: tuple[str, ...] = ()
+    """Scripted answers to input()."""
+    asks_user: bool = False
+    """Whether input() asks the user after the scripted answers; otherwise it raises EOFError."""
+    time_waits: bool = False
+    """Whether simulated time stops while input() waits for the user."""
+    replies: bool = False
+    """Whether the host answers `pyState()`, while simulated time stops; otherwise there are no messages."""
+    actions: tuple[UserAction, ...] = ()
+    """Known user actions, in the order of their ticks."""
+    breaks: tuple[str, ...] = ()
+    """Initial breakpoints, in the syntax of `tuisim.engine.breakpoints`."""
+    trace_from_tick: int | None = None
+    """Count lines from this tick on, so that `LineHistory` includes them; until the run first pauses."""
+    hold_at: tuple[int, int] | None = None
+    """Run at full speed to this instant and pause: tick and ordinal, as in `Paused`. (0, 1) is the first line."""
+
+    @property
+    def can_pause(self) -> bool:
+        """Whether the run can be paused without further commands."""
+        return bool(self.live or self.start_paused or self.breaks or self.hold_at)
+
+    def to_plain(self) -> dict[str, Any]:
+        """Return the options in the form that is stored with a run."""
+        return {**asdict(self), "actions": [action.to_plain() for action in self.actions]}
+
+    @classmethod
+    def from_plain(cls, plain: Mapping[str, Any]) -> RunOptions:
+        """Rebuild options from the output of `to_plain`.
+
+        Raises:
+            KeyError, TypeError, ValueError, ConfigError: the data is not the options of a run.
+        """
+        hold_at = plain["hold_at"]
+        rebuilt = {
+            "answers": tuple(plain["answers"]),
+            "actions": tuple(UserAction.from_plain(row) for row in plain["actions"]),
+            "breaks": tuple(plain["breaks"]),
+            "hold_at": None if hold_at is None else (int(hold_at[0]), int(hold_at[1])),
+        }
+        return cls(**{**plain, **rebuilt})

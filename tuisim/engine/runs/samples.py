@@ -1,0 +1,128 @@
+"""Samples: printed lines of the form `NAME: number [time]`. Pure Python, no numpy.
+
+NAME is any identifier. A time in seconds may follow the number, and `^log ` may precede
+the name. Any other line is text, not a sample.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable, Iterable, Iterator
+from typing import TYPE_CHECKING
+
+from tuisim.base.data_class import dataclass
+from tuisim.engine.core.conditions import NUMBER, ValueCondition, ValueSource
+from tuisim.engine.runs.records import SAMPLE_STREAMS, OutputRow, Stream
+
+if TYPE_CHECKING:
+    from tuisim.engine.runs.views import OutputView
+
+_STDOUT = Stream.STDOUT
+"""Runs may print millions of rows, and an attribute of an enumeration is slow to reach."""
+
+_SAMPLE = re.compile(rf"(?:\^log[ \t]+)?([^\W\d]\w*):[ \t]*({NUMBER})(?:[ \t]+({NUMBER}))?\s*")
+_PLAIN_SAMPLE = re.compile(
+    rb"(?:\^log[ \t]+)?[A-Za-z_]\w*:[ \t]*[+-]?[0-9]{1,18}(?:\.[0-9]{0,18})?[ \t]*"
+)
+"""Matches most samples in the bytes of the recording; a line that it does not match may still be a sample."""
+
+
+@dataclass(frozen=True, slots=True)
+class Sample:
+    """One logged value and its origin."""
+
+    name: str
+    value: float
+    time_s: float
+    """Simulated time of the print, or the time in the line."""
+    time_ns: int
+    """Simulated time of the print."""
+    tick: int
+    line: int
+    """ValueSource line that printed it; 0 for none."""
+
+
+def parse_sample(text: str) -> tuple[str, float, float | None] | None:
+    """Return name, value and printed time (None without one) of a line; None if it is not a sample."""
+    if ":" not in text:
+        return None
+    found = _SAMPLE.fullmatch(text)
+    if found is None:
+        return None
+    name, value, time = found[1], float(found[2]), None if found[3] is None else float(found[3])
+    # Extremely long numbers are parsed as infinity; such lines are not samples.
+    if (
+        not name.isidentifier()
+        or not math.isfinite(value)
+        or (time is not None and not math.isfinite(time))
+    ):
+        return None
+    return name, value, time
+
+
+@dataclass(frozen=True, slots=True)
+class Counts:
+    """Counts of a program's output."""
+
+    lines: int
+    samples: int
+
+
+def counts_of(output: OutputView) -> Counts:
+    """Count printed lines and samples without creating row objects: there may be a million."""
+    lines = samples = 0
+    for stream, text in output.raw_rows():
+        if stream in SAMPLE_STREAMS:
+            lines += stream == _STDOUT
+            if b":" in text and (
+                _PLAIN_SAMPLE.fullmatch(text)
+                or parse_sample(str(text, "utf-8", "replace")) is not None
+            ):
+                samples += 1
+    return Counts(lines, samples)
+
+
+def samples_of(rows: Iterable[OutputRow]) -> list[Sample]:
+    """Return the samples among the rows that a program printed, in order."""
+    samples: list[Sample] = []
+    for row in rows:
+        if row.stream not in SAMPLE_STREAMS:
+            continue
+        parsed = parse_sample(row.text)
+        if parsed is not None:
+            name, value, time_s = parsed
+            printed_s = row.time_ns / 1e9 if time_s is None else time_s
+            samples.append(Sample(name, value, printed_s, row.time_ns, row.tick, row.line))
+    return samples
+
+
+def value_reader(condition: ValueCondition) -> Callable[[str], float | None]:
+    """Return a function that takes a printed line, and returns the value that a condition on such lines tests.
+
+    That is the number of a sample with its name, or 1 for a line that it matches; None where there is nothing to test.
+    """
+    if condition.source is ValueSource.PRINT:
+        pattern = re.compile(condition.value)
+        return lambda text: 1.0 if pattern.search(text) else None
+
+    def number(text: str) -> float | None:
+        sample = parse_sample(text)
+        return sample[1] if sample is not None and condition.name in ("", sample[0]) else None
+
+    return number
+
+
+def rows_when(condition: ValueCondition, rows: Iterable[OutputRow]) -> Iterator[OutputRow]:
+    """Yield the rows of printed lines of which a condition is true.
+
+    Raises:
+        ValueError: what a sample is to be compared with is no number.
+    """
+    read, test, before = value_reader(condition), condition.test(), math.nan
+    for row in rows:
+        value = read(row.text)
+        if value is not None:
+            if test(value, before):
+                yield row
+            before = value

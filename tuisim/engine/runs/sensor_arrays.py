@@ -1,0 +1,199 @@
+"""What sensors measure at many ticks at once, equal to their functions in `engine.core.sensors` to the last bit.
+
+To add a kind of sensor: a function of its spec, the records, the run and the mat, and a line in `_AT_ONCE`. A kind
+without one is measured tick by tick.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tuisim.engine.core.drift import draw_echo_bias_mm, find_drift, sensed_turn_rate_dps
+from tuisim.engine.core.field import Field, disc_mask
+from tuisim.engine.core.noise import stream
+from tuisim.engine.core.sensors import SENSORS
+from tuisim.engine.core.sensors.color import EVEN, WHITE, disc_pixels_of, find_response, light_seen
+from tuisim.engine.core.sensors.ultrasonic import MAX_ECHO_DEG, MIN_ECHO_DEG, Edge, surfaces
+from tuisim.engine.core.spec import (
+    FIELD_HEIGHT_MM,
+    ColorSensorSpec,
+    GyroSpec,
+    RunSpec,
+    SensorSpec,
+    UltrasonicSpec,
+)
+from tuisim.engine.runs.arrays import cos_and_sin, world_points_mm
+
+Array = NDArray[Any]
+
+
+def measured_at_once(
+    sensor: SensorSpec, records: Array, run: RunSpec, field: Field, has_light_noise: bool
+) -> tuple[Array, ...] | None:
+    """Return what is measured of a sensor at every tick, in the order of its columns; None if it cannot be at once.
+
+    Args:
+        records: Telemetry, structured as `TICK_FIELDS`, shape (n,).
+        run: The specification of the run.
+        field: The mat.
+        has_light_noise: Whether there is light noise at any of the ticks.
+    """
+    if isinstance(sensor, ColorSensorSpec) and (
+        has_light_noise or sensor.strategy != "mean" or run.world.pen_marks
+    ):
+        return None
+    if isinstance(sensor, UltrasonicSpec) and find_drift(run).echo_loss_pc:
+        return None
+    measure = _AT_ONCE.get(type(sensor))
+    if measure is None:
+        return None
+    # A ray may be parallel to an edge, and a damaged record may hold any numbers.
+    with np.errstate(all="ignore"):
+        return measure(sensor, records, run, field)
+
+
+def quiet_color_columns(
+    records: Array, sensor: ColorSensorSpec, run: RunSpec, field: Field
+) -> dict[str, Array]:
+    """Return red, green and blue of a colour sensor at every tick without light noise, by column.
+
+    Args:
+        records: Telemetry, structured as `TICK_FIELDS`, shape (n,).
+        sensor: The sensor.
+        run: The specification of the run.
+        field: The mat; it must have sums of the sensor's diameter.
+    """
+    x_mm, y_mm = world_points_mm(records, sensor.x_mm, sensor.y_mm)
+    diameter = sensor.diameter_mm
+    with np.errstate(invalid="ignore"):  # a position beyond all integers is off the mat either way
+        col = (x_mm - diameter / 2).astype(np.int64) + diameter
+        row = (FIELD_HEIGHT_MM - y_mm - diameter / 2).astype(np.int64) + diameter
+    sums, inside = _sum_discs(col, row, diameter, field)
+    means = sums / disc_pixels_of(diameter)
+    response, drift = find_response(sensor, run.profile), find_drift(run)
+    if response != EVEN:
+        means = response.dark * inside[:, None] + means * response.span / WHITE
+    if drift.light_pc or drift.light_gain_pc:
+        light = np.broadcast_to(light_seen(x_mm, y_mm, sensor, drift, run.seed), x_mm.shape)
+        means = np.minimum(means * light[:, None], WHITE)
+    return {name: means[:, channel] for channel, name in enumerate(SENSORS["color"].names(sensor))}
+
+
+def _sum_discs(col: Array, row: Array, diameter: int, field: Field) -> tuple[Array, Array]:
+    """Return the sums of red, green and blue over discs, and whether there is anything below them.
+
+    Args:
+        col, row: The corners of their boxes, from `diameter` before those of the mat, shape (n,).
+        diameter: Of the discs.
+        field: The mat.
+    """
+    height, width = field.height_px + diameter, field.width_px + diameter
+    inside = (col >= 0) & (col < width) & (row >= 0) & (row < height)
+    sums = np.zeros((len(col), 3), np.uint32)
+    table = np.frombuffer(field.sums[diameter], np.uint32).reshape(height, width, 3)
+    sums[inside] = table[row[inside], col[inside]]
+    if field.floor_rgb is None:
+        return sums, inside
+    counts = np.zeros((diameter + 1, diameter + 1), np.uint32)
+    counts[1:, 1:] = np.array(disc_mask(diameter)).cumsum(0).cumsum(1)
+    left, right = (np.clip(end - col, 0, diameter) for end in (diameter, width))
+    upper, lower = (np.clip(end - row, 0, diameter) for end in (diameter, height))
+    on_mat = counts[lower, right] - counts[upper, right] - counts[lower, left] + counts[upper, left]
+    beside = (counts[-1, -1] - on_mat)[:, None] * np.array(field.floor_rgb, np.uint32)
+    return sums + beside, np.ones(len(col), np.bool_)
+
+
+def _color(
+    sensor: ColorSensorSpec, records: Array, run: RunSpec, field: Field
+) -> tuple[Array, ...]:
+    return tuple(quiet_color_columns(records, sensor, run, field).values())
+
+
+def _gyro(sensor: GyroSpec, records: Array, run: RunSpec, field: Field) -> tuple[Array, ...]:
+    left_dps: Any = records["left_speed_dps"].astype("f8")
+    right_dps: Any = records["right_speed_dps"].astype("f8")
+    angle_deg = records["gyro_zero_deg"].astype("f8") - records["heading_deg"]
+    fastest = run.profile.gyro_max_dps or np.inf
+    rate_dps: Any = np.clip(-sensed_turn_rate_dps(left_dps, right_dps, run), -fastest, fastest)
+    return _rounded(angle_deg), _rounded(rate_dps)
+
+
+def _ultrasonic(
+    sensor: UltrasonicSpec, records: Array, run: RunSpec, field: Field
+) -> tuple[Array, ...]:
+    start = world_points_mm(records, sensor.x_mm, sensor.y_mm)
+    facing_deg = records["heading_deg"] + sensor.angle_deg
+    found = surfaces(run.world)
+    nearest_mm = np.full(len(records), sensor.max_range_mm)
+    for ray_deg in sensor.ray_angles_deg:
+        cos, sin = cos_and_sin(facing_deg + ray_deg)
+        nearest_mm = _cut_off(
+            nearest_mm, found.upright, start, (cos, sin), _echoes(90.0, facing_deg)
+        )
+        nearest_mm = _cut_off(
+            nearest_mm, found.level, start[::-1], (sin, cos), _echoes(0.0, facing_deg)
+        )
+    distance_mm, farthest = _rounded(nearest_mm), float(round(sensor.max_range_mm))
+    is_near = distance_mm < run.profile.min_echo_mm
+    drift = find_drift(run)
+    if drift.echo_bias_mm:
+        bias_mm = draw_echo_bias_mm(sensor.port, drift, run.seed)
+        biased_mm = np.clip(distance_mm + bias_mm, 0.0, farthest)
+        distance_mm = np.where(distance_mm < farthest, biased_mm, distance_mm)
+    distance_mm = np.where(is_near, farthest, distance_mm)
+    if not sensor.noise_mm:
+        return (distance_mm,)
+    drawn = (stream(run.seed, tick, sensor.name, 4) for tick in records["tick"].tolist())
+    shares = np.array([int.from_bytes(four, "little") / 2147483647.5 - 1 for four in drawn])
+    noisy_mm = _rounded(distance_mm + sensor.noise_mm * shares)
+    return (np.clip(noisy_mm, 0.0, farthest),)
+
+
+def _cut_off(
+    nearest_mm: Array,
+    edges: tuple[Edge, ...],
+    start: tuple[Array, Array],
+    step: tuple[Array, Array],
+    echoes: Array,
+) -> Array:
+    """Return the lengths of rays that end at the first of some edges, as `engine.core.sensors.ultrasonic.first_hit_mm`.
+
+    Args:
+        nearest_mm: Their lengths without the edges, shape (n,).
+        edges: Parallel to one axis.
+        start: Where they begin: across the edges, and along them.
+        step: Change in each direction per mm along the ray.
+        echoes: Whether the edges return an echo at each tick.
+    """
+    across, along = start
+    across_step, along_step = step
+    echoes = echoes & (np.abs(across_step) >= 1e-12)
+    for place, low, high in edges:
+        way_mm = (place - across) / across_step
+        at = along + way_mm * along_step
+        ahead = np.where(across_step > 0, place >= across, place <= across)
+        hits = echoes & ahead & (way_mm < nearest_mm) & (low - 1e-9 <= at) & (at <= high + 1e-9)
+        nearest_mm = np.where(hits, way_mm, nearest_mm)
+    return nearest_mm
+
+
+def _echoes(edge_deg: float, facing_deg: Array) -> Array:
+    angle_deg = np.abs(edge_deg - facing_deg) % 180.0
+    return (angle_deg > MIN_ECHO_DEG) & (angle_deg < MAX_ECHO_DEG)
+
+
+def _rounded(values: Array) -> Array:
+    """Return whole numbers, as Python rounds; -0.0 becomes 0.0."""
+    rounded: Array = np.rint(values) + 0.0
+    return rounded
+
+
+_AT_ONCE: Mapping[type[SensorSpec], Callable[..., tuple[Array, ...]]] = {
+    ColorSensorSpec: _color,
+    UltrasonicSpec: _ultrasonic,
+    GyroSpec: _gyro,
+}

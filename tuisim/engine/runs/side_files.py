@@ -1,0 +1,389 @@
+"""The side files of a run folder: lock, user actions, place of a stop, own modules, and files that were read.
+
+Pure Python: the child, which writes them, imports it.
+"""
+
+from __future__ import annotations
+
+import fcntl
+import json
+import os
+import stat
+from binascii import crc32
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager, suppress
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+from tuisim.base.atomic import private
+from tuisim.base.data_class import dataclass
+from tuisim.base.errors import LogError, TuisimError
+from tuisim.base.regular_file import read_regular
+from tuisim.engine.core.spec import NoiseSpec
+from tuisim.engine.protocol import SetNoise, UserAction
+
+LOCK_FILE = "lock"
+"""Locked by the process that runs the program, as long as it lives.
+
+The kernel releases the lock when the process ends in any way, which distinguishes a run without an end from one that
+is still running.
+"""
+
+ACTIONS_FILE = "actions.jsonl"
+"""The user's actions, one JSON object per line."""
+
+STOP_FILE = "stop.json"
+"""The tick before which the user's stop reached the program; missing if it was stopped elsewhere."""
+
+MODULES_FILE = "modules.jsonl"
+"""Copies of the program's own modules that it has imported, one JSON object per line.
+
+They allow repeating the run after the modules have changed or are gone.
+"""
+
+READS_FILE = "reads.jsonl"
+"""Files outside the run folder that the program has opened for reading, one JSON object per line."""
+MOST_READS = 100
+"""Further files are only counted."""
+MOST_PATH = 200
+"""Characters of a path that are shown."""
+
+READINGS_FILE = "readings.bin"
+"""What sensors, encoders and buttons the program has read; see `engine.runs.readings`."""
+
+MOTORS_FILE = "motors.bin"
+"""What the drivers knew of the motors at each tick; see `engine.runs.motor_records`. Missing if they have none."""
+
+COMMANDS_FILE = "commands.bin"
+"""What the program has changed in the simulation; see `engine.runs.command_records`."""
+
+LOG_FILE = "child.log"
+"""The stderr of the child, for errors below Python; missing if there were none."""
+
+STACK_FILE = "stack.txt"
+"""The stack of a child that was stuck."""
+
+SIDE_FILES = (
+    ACTIONS_FILE,
+    STOP_FILE,
+    MODULES_FILE,
+    READS_FILE,
+    READINGS_FILE,
+    MOTORS_FILE,
+    COMMANDS_FILE,
+    LOG_FILE,
+    STACK_FILE,
+)
+"""All of them but the lock."""
+
+MOST_BYTES = 64 << 20
+"""More than any of those has that are read whole."""
+
+
+def hold(folder: Path) -> int:
+    """Lock a run folder and return the file descriptor of the lock; closing it and all its copies releases the lock.
+
+    Raises:
+        OSError: the folder cannot be written to, or not be locked.
+    """
+    # The file is locked before it gets its name: `is_held` never finds it without an owner.
+    name = folder / f".{LOCK_FILE}-{os.getpid()}"
+    descriptor = private(str(name), os.O_RDONLY | os.O_CREAT | os.O_CLOEXEC)
+    try:
+        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        os.rename(name, folder / LOCK_FILE)
+    except OSError:
+        os.close(descriptor)
+        with suppress(OSError):
+            os.unlink(name)
+        raise
+    return descriptor
+
+
+def is_held(folder: Path) -> bool | None:
+    """Return whether a living process holds the lock; None if it was never acquired, or cannot be asked for."""
+    try:
+        # Not blocked by a pipe in its place.
+        descriptor = os.open(folder / LOCK_FILE, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC)
+    except OSError:
+        return None
+    try:
+        fcntl.flock(descriptor, fcntl.LOCK_SH | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return True
+    except OSError:
+        return None
+    finally:
+        os.close(descriptor)
+    return False
+
+
+def read_actions(folder: Path) -> tuple[tuple[UserAction, ...], str]:
+    """Return the user's actions, and a note if the last one is incomplete, otherwise an empty string.
+
+    Raises:
+        LogError: a line other than the last is invalid.
+    """
+    path = folder / ACTIONS_FILE
+    try:
+        data = read_regular(path, MOST_BYTES)
+    except FileNotFoundError:
+        return (), ""
+    except OSError as error:
+        raise LogError(f"cannot be read: {error.strerror or error}", file=str(path)) from error
+    *lines, rest = data.split(b"\n")
+    actions = []
+    for row, line in enumerate(lines, 1):
+        try:
+            action = UserAction.from_plain(json.loads(line))
+            if isinstance(action.command, SetNoise):
+                NoiseSpec(int(action.command.light), int(action.command.motor))
+            actions.append(action)
+        except (
+            ValueError,
+            TypeError,
+            KeyError,
+            AttributeError,
+            OverflowError,
+            RecursionError,
+            TuisimError,
+        ) as error:
+            raise LogError("not a user action", file=str(path), row=row) from error
+    return tuple(
+        actions
+    ), f"{ACTIONS_FILE}: the last line is incomplete and is ignored" if rest else ""
+
+
+@contextmanager
+def _reading(path: Path) -> Iterator[None]:
+    """Turn whatever goes wrong while a file is read, and taken apart, into a LogError."""
+    try:
+        yield
+    except (OSError, ValueError, KeyError, TypeError, OverflowError, RecursionError) as error:
+        raise LogError(f"cannot be read: {error}", file=str(path)) from error
+
+
+def _rows(path: Path) -> Iterator[Any]:
+    """Return the rows of a file of JSON lines, none if it is missing; an incomplete last one is ignored."""
+    try:
+        *lines, _ = read_regular(path, MOST_BYTES).split(b"\n")
+    except FileNotFoundError:
+        lines = []
+    return map(json.loads, lines)
+
+
+def _append(path: Path, row: Mapping[str, object]) -> None:
+    """Add a row to a file of JSON lines."""
+    with open(path, "ab", opener=private) as file:
+        file.write(json.dumps(row).encode() + b"\n")
+
+
+def write_stop_tick(folder: Path, tick: int) -> None:
+    """Record the tick before which the user's stop reached the program.
+
+    Raises:
+        OSError: it cannot be written.
+    """
+    with open(folder / STOP_FILE, "w", encoding="utf-8", opener=private) as file:
+        file.write(json.dumps({"tick": tick}))
+
+
+def read_stop_tick(folder: Path) -> int | None:
+    """Return the tick before which the user's stop reached the program; None if it was not stopped there.
+
+    Raises:
+        LogError: the file is damaged.
+    """
+    path = folder / STOP_FILE
+    with _reading(path):
+        try:
+            data = read_regular(path, MOST_BYTES)
+        except FileNotFoundError:
+            return None
+        return int(json.loads(data)["tick"])
+
+
+@dataclass(frozen=True, slots=True)
+class OwnModule:
+    """Result of one import of a name."""
+
+    name: str
+    """Full name with packages, such as `tools.drive`."""
+    file: str = ""
+    """Its file; empty for a folder without a file, and for a name that was not found."""
+    folders: tuple[str, ...] | None = None
+    """Of a package: the folders of its modules."""
+    text: str = ""
+    """The source; bytes that are not valid UTF-8 as lone surrogates."""
+
+    @property
+    def missing(self) -> bool:
+        """Whether no module of that name was found."""
+        return not self.file and self.folders is None
+
+
+def note_module(run_folder: Path, module: OwnModule) -> None:
+    """Add a module to those of a run.
+
+    Raises:
+        LogError: it cannot be written.
+    """
+    try:
+        _append(run_folder / MODULES_FILE, asdict(module))
+    except OSError as error:
+        raise LogError(
+            f"cannot be written: {error.strerror or error}", file=str(run_folder / MODULES_FILE)
+        ) from error
+
+
+def read_modules(run_folder: Path) -> list[OwnModule]:
+    """Return the modules of a run in the order of their import; an incomplete last one is ignored.
+
+    Raises:
+        LogError: the file is damaged.
+    """
+    path = run_folder / MODULES_FILE
+    with _reading(path):
+        try:
+            # Most runs have none, and each looks for it.
+            _lstat(f"{run_folder}{os.sep}{MODULES_FILE}")
+        except FileNotFoundError:
+            return []
+        return [
+            OwnModule(
+                row["name"],
+                row["file"],
+                None if row["folders"] is None else tuple(row["folders"]),
+                row["text"],
+            )
+            for row in _rows(path)
+        ]
+
+
+def copy_modules(source: Path, target: Path) -> None:
+    """Copy the modules of another run, if it has any.
+
+    Raises:
+        LogError: they cannot be copied.
+    """
+    try:
+        with suppress(FileNotFoundError):
+            (target / MODULES_FILE).write_bytes(read_regular(source / MODULES_FILE, MOST_BYTES))
+    except OSError as error:
+        raise LogError(
+            f"cannot be copied: {error.strerror or error}", file=str(source / MODULES_FILE)
+        ) from error
+
+
+@dataclass(frozen=True, slots=True)
+class FileRead:
+    """A file when a program first opened it to read it."""
+
+    path: str
+    there: bool
+    """Whether there was a file."""
+    bytes: int = 0
+    mtime_ns: int = 0
+    crc32: int = -1
+    """Checksum of the contents; -1 if there is none."""
+
+    def same_as(self, other: FileRead) -> bool:
+        """Return whether the contents are equal, as far as can be told."""
+        if not (self.there and other.there):
+            return self.there == other.there
+        if self.crc32 < 0 or other.crc32 < 0:
+            return (self.bytes, self.mtime_ns) == (other.bytes, other.mtime_ns)
+        return (self.bytes, self.crc32) == (other.bytes, other.crc32)
+
+
+@dataclass(frozen=True, slots=True)
+class FilesRead:
+    """The files that a program has read."""
+
+    files: tuple[FileRead, ...] = ()
+    left_out: int = 0
+    """How many more there were."""
+
+
+_stat, _lstat, _open, _read, _close = os.stat, os.lstat, os.open, os.read, os.close
+"""Saved before those of the program are replaced, which note what it opens."""
+_PART_BYTES = 1 << 20
+MOST_SUMMED_BYTES = 1 << 22
+"""A larger file has no checksum: its size and time tell whether it has changed."""
+
+
+def state_of(path: str) -> FileRead | None:
+    """Return a file as it is now, or that there is none; None for folders, devices and the like."""
+    try:
+        found = _stat(path)
+    except (OSError, ValueError) as error:
+        gone = isinstance(error, FileNotFoundError | NotADirectoryError)
+        return FileRead(path, there=False) if gone else None
+    if not stat.S_ISREG(found.st_mode):
+        return None
+    return FileRead(path, True, found.st_size, found.st_mtime_ns, _checksum(path, found.st_size))
+
+
+def _checksum(path: str, size: int) -> int:
+    if size > MOST_SUMMED_BYTES:
+        return -1
+    total = 0
+    try:
+        descriptor = _open(path, os.O_RDONLY | os.O_CLOEXEC | os.O_NONBLOCK)
+    except OSError:
+        return -1
+    try:
+        for _ in range(0, MOST_SUMMED_BYTES + 1, _PART_BYTES):
+            total = crc32(_read(descriptor, _PART_BYTES), total)
+    except OSError:
+        return -1
+    finally:
+        _close(descriptor)
+    return total
+
+
+def note_read(run_folder: Path, read: FileRead) -> None:
+    """Add a file to those that were read.
+
+    Raises:
+        OSError: it cannot be written.
+    """
+    _append(run_folder / READS_FILE, asdict(read))
+
+
+def note_reads_left_out(run_folder: Path, count: int) -> None:
+    """Note how many more files were read.
+
+    Raises:
+        OSError: it cannot be written.
+    """
+    _append(run_folder / READS_FILE, {"left_out": count})
+
+
+def read_reads(run_folder: Path) -> FilesRead:
+    """Return the files that the program of a run has read; an incomplete last row is ignored.
+
+    Raises:
+        LogError: the file is damaged.
+    """
+    path = run_folder / READS_FILE
+    found: dict[str, FileRead] = {}
+    left_out = 0
+    with _reading(path):
+        for row in _rows(path):
+            if "left_out" in row:
+                left_out = int(row["left_out"])
+                continue
+            name = str(row["path"])
+            found.setdefault(
+                name,
+                FileRead(
+                    name,
+                    bool(row["there"]),
+                    int(row["bytes"]),
+                    int(row["mtime_ns"]),
+                    int(row["crc32"]),
+                ),
+            )
+    return FilesRead(tuple(found.values())[:MOST_READS], left_out + max(0, len(found) - MOST_READS))

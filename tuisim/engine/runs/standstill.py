@@ -1,0 +1,185 @@
+"""Where something solid stopped the robot: since when it stood there, and how long its wheels pushed.
+
+It is found in the recording alone: a motor runs, no wheel turns, and the robot touches a wall or an obstacle. So is
+whether it left the field, where nothing stops it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from itertools import pairwise
+from typing import TYPE_CHECKING, Any
+
+from tuisim.base.data_class import dataclass
+from tuisim.base.errors import counted
+from tuisim.engine.core.profile import NS_PER_S, due_ns
+from tuisim.engine.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, RunSpec
+from tuisim.engine.core.tick_record import FLAG_LEFT_RUNNING, FLAG_RIGHT_RUNNING
+from tuisim.engine.runs.views import TelemetryView
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from tuisim.engine.core.collision import PoseTuple, Solids
+
+_CONTACT_MM = 0.01
+"""A robot that is closer than this touches; collisions end within a small part of it."""
+
+_STILL = 1e-3
+"""A robot that moves less, in mm or degrees, stands: wheels that push anew press it on by parts of that."""
+
+WALL = "the wall"
+_WALLS = 4
+"""`Solids.gaps_mm` begins with the walls."""
+
+_POSE = ["x_mm", "y_mm", "heading_deg"]
+
+
+@dataclass(frozen=True, slots=True)
+class Standstill:
+    """Every time that something stopped the robot in a run."""
+
+    at: str
+    """What did: `the wall`, `an obstacle`, or both."""
+    times: int
+    """How often it stood; it stands once until it moves, whatever its motors do meanwhile."""
+    since_s: float
+    """When it stood for the first time."""
+    until_s: float | None
+    """When it moved on for the last time; None if it has not."""
+    pushed_s: float
+    """How long its wheels pushed in all."""
+    on_floor: bool = False
+    """Whether there would be a floor behind the wall."""
+
+    @property
+    def words(self) -> str:
+        """The sentence for people, without a subject."""
+        if self.on_floor and WALL in self.at:
+            return f"stood at {self.at} for {self.pushed_s:.1f} s (--walls off)"
+        pushed = f"its wheels pushed for {self.pushed_s:.1f} s"
+        if self.times > 1:
+            return f"stood at {self.at} {counted(self.times, 'time')}, first at {self.since_s:.2f} s, {pushed} in all"
+        how_long = "on" if self.until_s is None else f"to {self.until_s:.2f} s"
+        return f"stood at {self.at} from {self.since_s:.2f} s {how_long}, {pushed}"
+
+
+@dataclass(frozen=True, slots=True)
+class _Stretch:
+    """Ticks in which the wheels pushed."""
+
+    start: int
+    end: int
+    """The tick after the last one."""
+    at: str
+
+
+def standstill_of(telemetry: TelemetryView, spec: RunSpec) -> Standstill | None:
+    """Return when the robot of a run stood at something solid; None if it never did, or if nothing is solid.
+
+    Raises:
+        LogError: the recording is damaged.
+    """
+    if not spec.world.solid:
+        return None
+    records = telemetry.array()
+    stretches = list(_stretches(records, spec))
+    if not stretches:
+        return None
+    moved = [_moves_on(records, one.end - 1, other.start) for one, other in pairwise(stretches)]
+    last = stretches[-1].end - 1
+    until = _moves_on(records, last, len(records) - 1)
+    kinds = sorted({stretch.at for stretch in stretches}, reverse=True)
+
+    def time_s(tick: int) -> float:
+        return due_ns(tick, spec.profile.tick_hz) / NS_PER_S
+
+    return Standstill(
+        " and ".join(kinds),
+        1 + sum(tick is not None for tick in moved),
+        # It stood at the end of the tick before already.
+        time_s(stretches[0].start - 1),
+        None if until is None else time_s(until - 1),
+        time_s(sum(stretch.end - stretch.start for stretch in stretches)),
+        spec.world.floor,
+    )
+
+
+def has_left_field(telemetry: TelemetryView, spec: RunSpec) -> bool:
+    """Return whether a robot on an open floor has been off the field.
+
+    Raises:
+        LogError: the recording is damaged.
+    """
+    if not spec.world.is_open:
+        return False
+    records = telemetry.array()
+    sides = (records["x_mm"], FIELD_WIDTH_MM), (records["y_mm"], FIELD_HEIGHT_MM)
+    return any(bool(((at_mm < 0) | (at_mm > size_mm)).any()) for at_mm, size_mm in sides)
+
+
+def standstill_words(telemetry: TelemetryView, spec: RunSpec) -> str:
+    """Return `Standstill.words` of a run; empty if there is nothing to say.
+
+    Raises:
+        LogError: the recording is damaged.
+    """
+    found = standstill_of(telemetry, spec)
+    return found.words if found else ""
+
+
+def _stretches(records: NDArray[Any], spec: RunSpec) -> Iterator[_Stretch]:
+    """Yield each stretch that is long enough for the motors to stall.
+
+    Noise lets the wheels turn a little between ticks in which they are stopped: those are one stretch.
+    """
+    # Imported on demand: in most worlds nothing is solid.
+    import numpy as np
+
+    from tuisim.engine.core.collision import Solids
+    from tuisim.engine.core.motion import stall_ticks
+    from tuisim.engine.core.motors import STANDSTILL_DEG
+
+    runs = (records["flags"] & (FLAG_LEFT_RUNNING | FLAG_RIGHT_RUNNING)) != 0
+    # The first record is the state before any motion.
+    runs[:1] = False
+    pushes = runs.copy()
+    for name in ("left_speed_dps", "right_speed_dps"):
+        pushes &= np.abs(records[name]) < STANDSTILL_DEG * spec.profile.tick_hz
+    edges = np.flatnonzero(np.diff(pushes, prepend=False, append=False))
+    solids, shortest = Solids(spec.world, spec.robot), stall_ticks(spec.profile.tick_hz)
+    now: _Stretch | None = None
+    for start, end in edges.reshape(-1, 2).tolist():
+        if at := _touched(solids, records, start, spec):
+            goes_on = now is not None and start - now.end < shortest and runs[now.end : start].all()
+            if now is not None and not goes_on and now.end - now.start >= shortest:
+                yield now
+            now = replace(now, end=end) if now is not None and goes_on else _Stretch(start, end, at)
+    if now is not None and now.end - now.start >= shortest:
+        yield now
+
+
+def _touched(solids: Solids, records: NDArray[Any], tick: int, spec: RunSpec) -> str:
+    """Return what the robot touches at a tick, in words; empty if it is nothing."""
+    gaps = solids.gaps_mm(_pose(records, tick))
+    number = next((number for number, gap in enumerate(gaps) if gap < _CONTACT_MM), None)
+    if number is None:
+        return ""
+    return WALL if spec.world.walls and number < _WALLS else "an obstacle"
+
+
+def _pose(records: NDArray[Any], tick: int) -> PoseTuple:
+    x_mm, y_mm, heading_deg = records[_POSE][tick].item()
+    return x_mm, y_mm, heading_deg
+
+
+def _moves_on(records: NDArray[Any], start: int, end: int) -> int | None:
+    """Return the first tick after `start`, up to `end`, at which the robot is elsewhere; None without one."""
+    import numpy as np
+
+    moved = np.zeros(max(0, end - start), np.bool_)
+    for name in _POSE:
+        moved |= np.abs(records[name][start + 1 : end + 1] - records[name][start]) > _STILL
+    ticks = np.flatnonzero(moved)
+    return start + 1 + int(ticks[0]) if len(ticks) else None

@@ -1,0 +1,206 @@
+"""Runs that are not listed: their recordings lie in temporary files until they have been evaluated."""
+
+from __future__ import annotations
+
+import json
+import os
+import tempfile
+import threading
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager, suppress
+from dataclasses import asdict
+from datetime import UTC, datetime
+from functools import cache
+from pathlib import Path
+from types import TracebackType
+from typing import Any
+
+from tuisim.base.errors import LogError
+from tuisim.base.source import Program
+from tuisim.engine.core.plugged import PluggedPart
+from tuisim.engine.core.spec import RunSpec
+from tuisim.engine.protocol import Ended
+from tuisim.engine.runs.removal import remove_tree
+from tuisim.engine.runs.run_folder import (
+    RUN_FILE,
+    StoredRun,
+    new_run_data,
+    read_run,
+    write_run_file,
+)
+from tuisim.engine.runs.side_files import hold, is_held
+from tuisim.engine.runs.store import NewRun
+
+_MEMORY = Path("/dev/shm")
+"""A file system in memory, on Linux: to create and delete files on a disk takes longer than a short run."""
+_FREE_BYTES = 2 << 30
+"""It is used with at least this much space: programs may print a lot."""
+_PREFIX = "tuisim-"
+"""Each folder that is created here begins with it."""
+_BATCH_PREFIX = f"{_PREFIX}batch-"
+
+
+def batch_folder() -> Path:
+    """Create a folder for the temporary runs of a batch.
+
+    Raises:
+        LogError: it cannot be created.
+    """
+    return owned_folder(_BATCH_PREFIX, _parent())
+
+
+def owned_folder(prefix: str = _PREFIX, parent: Path | None = None) -> Path:
+    """Create a folder that counts as used as long as this process lives; its name begins with the prefix.
+
+    The first one also removes those that killed processes have left, there and in the other usual places.
+
+    Raises:
+        LogError: it cannot be created.
+    """
+    default = Path(tempfile.gettempdir())
+    parent = parent or default
+    for place in (parent, default, _MEMORY):
+        _remove_left_over(place)
+    folder = _new_folder(parent, prefix)
+    with _held_lock:
+        for old in [old for old in _held if not old.exists()]:
+            os.close(_held.pop(old))
+        # Where it cannot be locked, nothing shows that it is used: it is never removed by others either.
+        with suppress(OSError):
+            _held[folder] = hold(folder)
+    return folder
+
+
+_held: dict[Path, int] = {}
+"""The locks of the folders of this process."""
+_held_lock = threading.Lock()
+"""Held while they are changed: threads of an app try programs at the same time."""
+
+
+@cache
+def _remove_left_over(parent: Path) -> None:
+    """Remove folders of this user whose process has ended; one without a lock is another program's."""
+    for folder in parent.glob(f"{_PREFIX}*"):
+        with suppress(OSError):
+            if folder.lstat().st_uid == os.getuid() and is_held(folder) is False:
+                remove_tree(folder)
+
+
+@contextmanager
+def temporary_home(prefix: str = _PREFIX) -> Iterator[Path]:
+    """Create a home folder for temporary runs, and delete it afterwards; its name begins with the prefix.
+
+    Raises:
+        LogError: it cannot be created.
+    """
+    folder = owned_folder(prefix)
+    try:
+        yield folder
+    finally:
+        remove_tree(folder)
+
+
+def _new_folder(parent: Path, prefix: str = "") -> Path:
+    try:
+        return Path(tempfile.mkdtemp(prefix=prefix, dir=parent))
+    except OSError as error:
+        reason = error.strerror or error
+        raise LogError(
+            f"no folder for temporary runs can be created: {reason}", file=str(parent)
+        ) from error
+
+
+def _parent() -> Path:
+    default = Path(tempfile.gettempdir())
+    try:
+        space = os.statvfs(_MEMORY)
+    except OSError:
+        return default
+    has_room = space.f_bavail * space.f_frsize >= _FREE_BYTES
+    return _MEMORY if has_room and os.access(_MEMORY, os.W_OK) else default
+
+
+class TemporaryRun:
+    """Folder of one run that is deleted at the end of a `with` block. It stands in for the store of a `RunHandle`.
+
+    Args:
+        parent: Where it is created; see `batch_folder`.
+
+    Raises:
+        LogError: it cannot be created.
+    """
+
+    def __init__(self, parent: Path) -> None:
+        self.folder = _new_folder(parent)
+        self._data: dict[str, Any] = {}
+        """The contents of `run.json`: the program could change the file."""
+        self._document = ""
+        """They as text."""
+        self._spec: RunSpec | None = None
+
+    def __enter__(self) -> TemporaryRun:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        remove_tree(self.folder)
+
+    def new_run(
+        self,
+        program: Program,
+        spec: RunSpec,
+        field: Mapping[str, Any] | None = None,
+        options: Mapping[str, Any] | None = None,
+        live: bool = False,
+    ) -> NewRun:
+        """Write the `run.json` of a run that is about to start; arguments as in `RunStore.new_run`.
+
+        Raises:
+            LogError: it cannot be written.
+        """
+        created = datetime.now(UTC).isoformat(timespec="milliseconds")
+        run_id = self.folder.name
+        self._data = data = new_run_data(run_id, 0, created, program, spec, field, options, live)
+        self._document, self._spec = json.dumps(data), spec
+        file = self.folder / RUN_FILE
+        try:
+            file.write_text(self._document, "utf-8")
+            return NewRun(run_id, 0, self.folder, hold(self.folder), data)
+        except OSError as error:
+            raise LogError(
+                f"cannot be written: {error.strerror or error}", file=str(file)
+            ) from error
+
+    def finish(self, _run: NewRun, _end: Ended) -> None:
+        """Do nothing: the handle of the run keeps its end."""
+
+    def note_plugged(self, _run: NewRun, parts: Sequence[PluggedPart]) -> None:
+        """Record which parts have been plugged in up to now."""
+        self._data["plugged"] = [part.to_plain() for part in parts]
+        self._document = json.dumps(self._data)
+
+    def forget(self, _run_id: str) -> None:
+        """Do nothing: the end of the `with` block deletes the folder."""
+
+    def load_run(self, folder: Path) -> StoredRun:
+        """Return the run, without its end; see `RunStore.load_run`.
+
+        Raises:
+            LogError: the program has deleted it, or it is damaged.
+        """
+        if not folder.is_dir():
+            raise LogError("its folder was deleted while it ran", file=str(folder))
+        return read_run(folder, self._document, self._spec)
+
+    def write_end(self, end: Ended) -> None:
+        """Write the end of the run to its folder, which then is as that of a stored run.
+
+        Raises:
+            LogError: it cannot be written.
+        """
+        self._data["end"] = asdict(end)
+        write_run_file(self.folder, self._data)

@@ -1,0 +1,541 @@
+"""Readers of a run folder's two binary files, also while the program runs.
+
+A view never changes the file and never blocks. A missing file reads as empty; of a file
+that has grown the rest is read. Data that has been read stays valid, whatever happens to the file.
+
+The program could write to these files as well. So a view of a run that is running reads only
+as far as they are what the simulation writes: ticks in order, finite numbers, whole rows.
+"""
+
+from __future__ import annotations
+
+import os
+from abc import ABC, abstractmethod
+from collections.abc import Iterator
+from itertools import islice
+from math import hypot
+from mmap import MAP_ANONYMOUS, MAP_PRIVATE, mmap
+from operator import itemgetter
+from pathlib import Path
+from stat import S_IRUSR
+from typing import TYPE_CHECKING, Any, ClassVar
+from weakref import finalize
+
+from tuisim.base.data_class import dataclass
+from tuisim.base.errors import LogError, counted
+from tuisim.base.regular_file import of_the_machine, open_regular
+from tuisim.engine.core.drift import find_drift
+from tuisim.engine.core.geometry import Pose
+from tuisim.engine.core.spec import NoiseSpec, RunSpec
+from tuisim.engine.core.state import Instant
+from tuisim.engine.core.tick_record import PRESS_FLAGS, TICK_FIELDS, TICK_RECORD
+from tuisim.engine.runs.brick_state import DRAWN_STREAMS, is_sound
+from tuisim.engine.runs.records import (
+    HEADER_BYTES,
+    MAX_OUTPUT_BYTES,
+    OUTPUT_FILE,
+    OUTPUT_MAGIC,
+    OUTPUT_ROW,
+    TELEMETRY_FILE,
+    TELEMETRY_MAGIC,
+    OutputRow,
+    Stream,
+    is_hole,
+    output_rows,
+    published_length,
+    raw_rows,
+)
+
+if TYPE_CHECKING:
+    import numpy as np
+
+_LARGE_BYTES = 1 << 20
+_CHUNK_BYTES = 1 << 22
+"""So much is read and checked at a time: a file may claim, or seem to have, any length."""
+_AGAIN_BYTES = 1 << 14
+"""So much is read at a time of rows that are no longer in memory."""
+_MANY_TICKS = 1 << 13
+"""From this number on it is worth importing numpy to check them."""
+_MOST_NUMBER = 1e12
+"""Larger than any position, angle or speed that a run can reach."""
+
+
+@dataclass(frozen=True, slots=True)
+class TickRecord:
+    """Telemetry of one tick; see `engine.core.tick_record.TICK_RECORD`."""
+
+    tick: int
+    line: int
+    x_mm: float
+    y_mm: float
+    heading_deg: float
+    left_position_deg: float
+    right_position_deg: float
+    left_speed_dps: float
+    right_speed_dps: float
+    gyro_zero_deg: float
+    flags: int
+    actions: int
+
+    @property
+    def pose(self) -> Pose:
+        """The robot's pose."""
+        return Pose(self.x_mm, self.y_mm, self.heading_deg)
+
+
+def instant_of(record: TickRecord, spec: RunSpec, noise: NoiseSpec) -> Instant:
+    """Return the instant of a record with the noise at its tick, for the functions of `engine.core.sensors`."""
+    from tuisim.engine.core.drift import sensed_turn_rate_dps
+
+    return Instant(
+        tick=record.tick,
+        pose=record.pose,
+        left_position_deg=record.left_position_deg,
+        right_position_deg=record.right_position_deg,
+        left_speed_dps=record.left_speed_dps,
+        right_speed_dps=record.right_speed_dps,
+        turn_rate_dps=sensed_turn_rate_dps(record.left_speed_dps, record.right_speed_dps, spec),
+        gyro_zero_deg=record.gyro_zero_deg,
+        press_flags=record.flags & PRESS_FLAGS,
+        noise=noise,
+        drift=find_drift(spec),
+        profile=spec.profile,
+        seed=spec.seed,
+    )
+
+
+class _View(ABC):
+    """A recording as far as it has been written, copied incrementally.
+
+    It is not mapped: truncating a mapped file would kill its reader.
+
+    Args:
+        folder: The run folder.
+        is_checked: Whether it is read only as far as it is what the simulation writes, as of a run that is running or
+            falsified. Then a file that was there stays.
+
+    Raises:
+        LogError: by every method, if this machine cannot read the file.
+    """
+
+    name: ClassVar[str]
+    """That of the file."""
+    _magic: ClassVar[bytes]
+    _record_bytes: ClassVar[int]
+    """Size of a record; 1 if it varies."""
+    _kept: ClassVar[int | None] = None
+    """So many records of a run that is running are kept in memory, at least; None for all."""
+    _most_bytes: ClassVar[int | None] = None
+    """The length that the program's process never exceeds; None if there is none."""
+
+    def __init__(self, folder: Path, is_checked: bool = False) -> None:
+        self._path = folder / self.name
+        self._is_checked = is_checked
+        self._damage = ""
+        self.holds = False
+        """Whether it stays as it is until the next `read_on`, so that all who look at it see the same."""
+        self._copy: bytearray | mmap = bytearray()
+        """Starts like the file, with spare capacity; without the first `_dropped` records."""
+        self._dropped = 0
+        self._source: int | None = None
+        """Descriptor of the file, from which records that were dropped are read again; open only if some were."""
+        self._published = self._there = 0
+        self._has_begun = False
+
+    @property
+    def damage(self) -> str:
+        """Why the file, or the rest of it, is not a recording; empty as long as it is one."""
+        return self._damage if self.holds else self.read_on()
+
+    @property
+    def is_missing(self) -> bool:
+        """Whether there is no recording, not even an empty one."""
+        return not self._extent() and not self._has_begun
+
+    @property
+    def note(self) -> str:
+        """A description of what is missing in a truncated or damaged file, or empty."""
+        there = self._extent()
+        if self._damage or self._published == there:
+            return self._damage
+        return f"{self._path.name} was truncated: {self._lost(self._published - there)}"
+
+    @abstractmethod
+    def _lost(self, count: int) -> str:
+        """Return in words that `count` records, or bytes, are lost."""
+
+    @abstractmethod
+    def _sound(self, data: memoryview, begin: int, end: int) -> int:
+        """Return up to where the recording, already read up to `end`, is what the simulation writes.
+
+        Args:
+            data: The copy.
+            begin: The first record, or byte, to check.
+            end: The one after the last.
+        """
+
+    @property
+    def _done(self) -> int:
+        """How many records need not be checked any more."""
+        return self._there
+
+    def _look(self) -> tuple[memoryview, int]:
+        """Return the recording, and the length that exists."""
+        there = self._extent()
+        return memoryview(self._copy).toreadonly(), there
+
+    def _extent(self) -> int:
+        """Return the length that exists, unless it holds after a look at what has been published since."""
+        if not self.holds:
+            self.read_on()
+        return self._there
+
+    def read_on(self) -> str:
+        """Look at what has been published since. Return why it is not a recording; empty as long as it is one."""
+        if not self._damage:
+            self._read_on()
+        return self._damage
+
+    def _known(self, count: int) -> memoryview | None:
+        """Return the recording if `count` records that can no longer change have been read, else None."""
+        return memoryview(self._copy).toreadonly() if count < self._there else None
+
+    def _read_on(self) -> None:
+        try:
+            with open_regular(self._path) as handle:
+                self._read_from(handle.fileno())
+        except FileNotFoundError:
+            if self._is_checked and self._there:
+                self._damage = f"{self._path.name} was deleted"
+        except OSError as error:
+            reason = error.strerror or str(error)
+            if of_the_machine(error) or self._is_withheld(error):
+                raise LogError(f"cannot be read: {reason}", file=str(self._path)) from error
+            self._damage = f"{self._path.name} cannot be read: {reason}"
+
+    def _is_withheld(self, error: OSError) -> bool:
+        """Return whether this machine forbids to read a file whose owner may read it: no program has seen to that."""
+        try:
+            return isinstance(error, PermissionError) and bool(self._path.stat().st_mode & S_IRUSR)
+        except OSError:
+            return False
+
+    def _read_from(self, fd: int) -> None:
+        head = _whole_header(fd)
+        # The writer sizes a new file before it writes the header. A file that has been emptied since is ignored.
+        if not head.strip(b"\0") or (self._there and len(head) < HEADER_BYTES):
+            return
+        try:
+            published = published_length(head, self._magic, self._path.name)
+        except LogError as error:
+            self._damage = f"{error.message}: nothing of it can be read"
+            return
+        self._has_begun = True
+        if self._most_bytes is not None and published > self._most_bytes:
+            self._damage = f"{self._path.name} is longer than a recording can be"
+            return
+        room = max(0, os.fstat(fd).st_size - HEADER_BYTES) // self._record_bytes
+        self._published = max(published, self._published)
+        # The last record may have been rewritten.
+        kept = max(0, self._there - 1) if self._record_bytes > 1 else self._there
+        wanted = min(published, room)
+        step = _CHUNK_BYTES // self._record_bytes
+        while kept < wanted and not self._damage:
+            end = min(wanted, kept + step)
+            kept = self._read_chunk(fd, head, kept, end)
+            if kept < end:
+                # A file that was truncated meanwhile, or never written, has no more; what was read before stays.
+                return
+
+    def _read_chunk(self, fd: int, head: bytes, kept: int, wanted: int) -> int:
+        """Read and check the records between two positions; return the position up to which there are sound ones."""
+        begin, end = (
+            HEADER_BYTES + self._record_bytes * (count - self._dropped) for count in (kept, wanted)
+        )
+        if end > len(self._copy):
+            begin, end = self._make_room(fd, head, begin, end)
+        at = HEADER_BYTES + self._record_bytes * kept
+        got = _read_into(fd, memoryview(self._copy)[begin:end], at) // self._record_bytes
+        if self._is_checked:
+            sound = self._sound(memoryview(self._copy).toreadonly(), kept, kept + got)
+        elif got * self._record_bytes == _CHUNK_BYTES and is_hole(
+            memoryview(self._copy)[begin:end]
+        ):
+            sound = kept
+        else:
+            sound = kept + got
+        self._there = max(self._there, sound)
+        return sound
+
+    def _make_room(self, fd: int, head: bytes, begin: int, end: int) -> tuple[int, int]:
+        """Make the copy large enough; return where in it the next records begin and end."""
+        drops = 0
+        if self._is_checked and self._kept is not None:
+            drops = min(
+                (begin - HEADER_BYTES) // self._record_bytes - self._kept,
+                self._done - self._dropped,
+            )
+            drops = max(0, drops)
+        if drops and self._source is None:
+            self._source = os.dup(fd)
+            finalize(self, os.close, self._source)
+        first = HEADER_BYTES + drops * self._record_bytes
+        begin, end = begin - first + HEADER_BYTES, end - first + HEADER_BYTES
+        # A new buffer instead of a resized one: arrays may still refer to the old one.
+        larger = _zeros(end if not self._there else 2 * end)
+        larger[:HEADER_BYTES] = head
+        larger[HEADER_BYTES:begin] = memoryview(self._copy)[first : first + begin - HEADER_BYTES]
+        self._copy, self._dropped = larger, self._dropped + drops
+        return begin, end
+
+
+def _are_few_sound(part: memoryview, begin: int, end: int) -> bool:
+    """Return whether tick records have these ticks, and all their numbers are finite, and not beyond what a run can
+    reach."""
+    doubles, floats = part.cast("d"), part.cast("f")
+    columns = [doubles[at :: TICK_RECORD.size // 8] for at in range(1, 6)]
+    columns += [floats[at :: TICK_RECORD.size // 4] for at in range(12, 15)]
+    ticks = part.cast("I")[:: TICK_RECORD.size // 4].tolist()
+    # No number is larger than the root of the sum of all squares; NaN is not below anything, nor is a sum with it.
+    return ticks == list(range(begin, end)) and all(
+        hypot(*column.tolist()) <= _MOST_NUMBER for column in columns
+    )
+
+
+def _are_all_sound(part: memoryview, begin: int, end: int) -> bool:
+    """Return the same as `_are_few_sound` for many records, a hundred times faster."""
+    import numpy as np
+
+    records = np.frombuffer(part, np.dtype(list(TICK_FIELDS)))
+    numbers = [name for name, _ in TICK_FIELDS[1:]]
+    return bool((records["tick"] == np.arange(begin, end)).all()) and all(
+        bool((np.abs(records[name]) <= _MOST_NUMBER).all()) for name in numbers
+    )
+
+
+def _zeros(size: int) -> bytearray | mmap:
+    """Return a buffer; a large one takes memory only as it is filled."""
+    return bytearray(size) if size < _LARGE_BYTES else mmap(-1, size, MAP_PRIVATE | MAP_ANONYMOUS)
+
+
+def _whole_header(fd: int) -> bytes:
+    """Return the header, read until two reads are equal: a number in it may be half written."""
+    head = b""
+    while (again := os.pread(fd, HEADER_BYTES, 0)) != head:
+        head = again
+    return head
+
+
+def _read_into(fd: int, place: memoryview, at: int) -> int:
+    """Fill a buffer from a file position; return the number of bytes read."""
+    done = 0
+    while done < len(place) and (got := os.preadv(fd, [place[done:]], at + done)):
+        done += got
+    return done
+
+
+class TelemetryView(_View):
+    """The tick records of a run."""
+
+    name, _magic, _record_bytes = TELEMETRY_FILE, TELEMETRY_MAGIC, TICK_RECORD.size
+    _kept = 1 << 14
+
+    @property
+    def count(self) -> int:
+        """Number of complete records; record k is that of tick k."""
+        return self._extent()
+
+    def _lost(self, count: int) -> str:
+        return f"the last {count} of {self._published} records {'is' if count == 1 else 'are'} lost"
+
+    def _sound(self, data: memoryview, begin: int, end: int) -> int:
+        first, after = (
+            HEADER_BYTES + TICK_RECORD.size * (tick - self._dropped) for tick in (begin, end)
+        )
+        return self._sound_ticks(data[first:after], begin)
+
+    def _sound_ticks(self, part: memoryview, begin: int) -> int:
+        """Return up to which tick records, from that of tick `begin` on, are what the simulation writes."""
+        end = begin + len(part) // TICK_RECORD.size
+        # Ticks are numbered from 0; all other fields are finite numbers. Whole columns, for their speed.
+        are_all = _are_all_sound if end - begin >= _MANY_TICKS else _are_few_sound
+        if are_all(part, begin, end):
+            return end
+        for tick, record in enumerate(TICK_RECORD.iter_unpack(part), begin):
+            if record[0] != tick or not all(abs(value) <= _MOST_NUMBER for value in record):
+                what = f"record {tick} of {self._path.name} is not one that the simulation writes"
+                self._damage = self._damage or what
+                return tick
+        return end
+
+    def _read_again(self, begin: int, end: int) -> memoryview:
+        """Return records that were dropped from memory.
+
+        Those that have been changed meanwhile, which only the program can have done, are replaced by the oldest one
+        that is in memory: whoever follows the run learns of its damage, and must not fail before.
+        """
+        assert self._source is not None
+        size, step = TICK_RECORD.size, _CHUNK_BYTES // TICK_RECORD.size
+        found = memoryview(_zeros((end - begin) * size))
+        for first in range(begin, end, step):
+            part = found[(first - begin) * size : (first - begin + step) * size]
+            _read_into(self._source, part, HEADER_BYTES + first * size)
+            if lost := first + len(part) // size - (sound := self._sound_ticks(part, first)):
+                oldest = memoryview(self._copy)[HEADER_BYTES : HEADER_BYTES + size]
+                part[(sound - first) * size :] = bytes(oldest) * lost
+        return found.toreadonly()
+
+    def last(self) -> TickRecord | None:
+        """Return the newest record; None if there is none."""
+        count = self.count
+        return self.record(count - 1) if count else None
+
+    def record(self, index: int) -> TickRecord:
+        """Return one record.
+
+        Raises:
+            IndexError: the record does not exist (yet).
+        """
+        data = self._known(index + 1) if index >= 0 else None
+        if data is None:
+            data, count = self._look()
+            if not 0 <= index < count:
+                raise IndexError(f"no telemetry record {index}, there are {count}")
+        if index < self._dropped:
+            return TickRecord(*TICK_RECORD.unpack(self._read_again(index, index + 1)))
+        return TickRecord(
+            *TICK_RECORD.unpack_from(
+                data, HEADER_BYTES + (index - self._dropped) * TICK_RECORD.size
+            )
+        )
+
+    def array(self, first: int = 0) -> np.ndarray[Any, Any]:
+        """Return all records from one on as a structured array of `TICK_FIELDS`, read-only; later ones need a new call.
+
+        It is a view, not a copy, unless the run is running and the first of them are no longer in memory.
+        """
+        import numpy as np
+
+        kind = np.dtype(list(TICK_FIELDS))
+        data, count = self._look()
+        if first >= count:
+            return np.empty(0, kind)
+        if first >= self._dropped:
+            at = HEADER_BYTES + (first - self._dropped) * TICK_RECORD.size
+            return np.frombuffer(data, kind, count - first, at)
+        # Those that are still in memory, too: the whole array must be one buffer.
+        return np.frombuffer(self._read_again(first, count), kind)
+
+
+class OutputView(_View):
+    """The rows of a run: printed, spoken, answers to input(), brick state."""
+
+    name, _magic, _record_bytes = OUTPUT_FILE, OUTPUT_MAGIC, 1
+    # The file is larger by its last step of growth.
+    _most_bytes = 2 * MAX_OUTPUT_BYTES
+    _kept = 1 << 20
+    _seen = 0
+    _checked = 0
+    """Up to here there are whole and sound rows."""
+
+    @property
+    def length(self) -> int:
+        """Number of bytes of rows."""
+        return self._extent()
+
+    def _lost(self, count: int) -> str:
+        return f"its last {counted(count, 'byte is', 'bytes are')} lost"
+
+    def _sound(self, data: memoryview, begin: int, end: int) -> int:
+        at, shift = self._checked, HEADER_BYTES - self._dropped
+        while at + OUTPUT_ROW.size <= end:
+            size, _, _, _, stream = OUTPUT_ROW.unpack_from(data, shift + at)
+            after = at + OUTPUT_ROW.size + size
+            if after > end and after <= self._published:
+                # The rest of the row has not been read yet, or is lost.
+                break
+            body = slice(shift + after - size, shift + after)
+            if after > end or (
+                stream in DRAWN_STREAMS and not is_sound(Stream(stream), bytes(data[body]))
+            ):
+                self._damage = (
+                    f"the row at byte {at} of {self._path.name} is not one that the brick writes"
+                )
+                return at
+            at = after
+        self._checked = at
+        return end
+
+    @property
+    def _done(self) -> int:
+        return self._checked
+
+    def new_rows(self, limit: int | None = None) -> list[OutputRow]:
+        """Return the rows since the last call, at most `limit`; the others follow with the next call."""
+        rows: list[OutputRow] = []
+        for row, after in islice(self.rows_from(self._seen), limit):
+            rows.append(row)
+            self._seen = after
+        return rows
+
+    def all_rows(self) -> list[OutputRow]:
+        """Return all rows up to now; does not affect `new_rows`."""
+        return list(self.rows())
+
+    def rows_from(self, position: int) -> Iterator[tuple[OutputRow, int]]:
+        """Return the rows from a position on, 0 or one that was yielded before, each with the position after it."""
+        data, end = self._look()
+        if not self._dropped:
+            return output_rows(data, position, end)
+        return self._rows_of_two(data, position, end, self._dropped)
+
+    def _rows_of_two(
+        self, data: memoryview, position: int, end: int, dropped: int
+    ) -> Iterator[tuple[OutputRow, int]]:
+        """Yield the rows that were dropped from memory, then those in it."""
+        for row, after in self._rows_again(position, dropped):
+            yield row, after
+            position = after
+        if position >= dropped:
+            for row, after in output_rows(data, position - dropped, end - dropped):
+                yield row, dropped + after
+
+    def _rows_again(self, position: int, end: int) -> Iterator[tuple[OutputRow, int]]:
+        """Yield the rows between two positions that were dropped from memory, as far as the program left them."""
+        size = _AGAIN_BYTES
+        while position < end and self._source is not None:
+            part = bytearray(HEADER_BYTES + size)
+            got = _read_into(self._source, memoryview(part)[HEADER_BYTES:], HEADER_BYTES + position)
+            begin = position
+            for row, after in output_rows(memoryview(part), 0, got):
+                if row.stream in DRAWN_STREAMS and not is_sound(row.stream, row.text.encode()):
+                    break
+                position = begin + after
+                yield row, position
+                if position >= end:
+                    return
+            if position == begin:
+                # A row longer than that; or one that was changed meanwhile, and seems to be.
+                if got < size or size > MAX_OUTPUT_BYTES:
+                    self._damage = (
+                        self._damage
+                        or f"the row at byte {position} of {self._path.name} was changed"
+                    )
+                    return
+                size *= 4
+
+    def raw_rows(self) -> Iterator[tuple[int, bytes]]:
+        """Yield stream and text of each row, the text as bytes of the file."""
+        data, end = self._look()
+        if self._dropped:
+            return ((row.stream, row.text.encode()) for row in self.rows())
+        return raw_rows(data, end)
+
+    def rows(self) -> Iterator[OutputRow]:
+        """Yield the rows of `all_rows` one by one: a run may print a million lines."""
+        return map(itemgetter(0), self.rows_from(0))
+
+
+def views_of(folder: Path, is_checked: bool = False) -> tuple[TelemetryView, OutputView]:
+    """Return both views of a run folder; see `_View` for `is_checked`."""
+    return TelemetryView(folder, is_checked), OutputView(folder, is_checked)

@@ -1,0 +1,417 @@
+"""Control of a run: commands from the host, pacing against the wall clock, user actions.
+
+User actions take effect right before a tick and are recorded with it, so that a
+run can be repeated bit by bit.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from collections import deque
+from collections.abc import Iterable
+from contextlib import suppress
+from enum import IntFlag
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Protocol
+
+from tuisim.base.atomic import private
+from tuisim.engine import protocol
+from tuisim.engine.protocol import (
+    AFTER_TICK,
+    BEFORE_NEXT_TICK,
+    Answer,
+    End,
+    Message,
+    PauseReason,
+    Reply,
+    UserAction,
+)
+from tuisim.engine.runs.side_files import ACTIONS_FILE, write_stop_tick
+from tuisim.engine.runs.user_changes import change_simulation
+from tuisim.engine.runtime import wallclock
+from tuisim.engine.runtime.channel import Channel
+
+if TYPE_CHECKING:
+    from tuisim.engine.core.simulation import Simulation
+    from tuisim.engine.runs.run_options import RunOptions
+
+
+class SessionFlag(IntFlag):
+    """What keeps time from passing on the short path: the bits of `Session.flags`."""
+
+    LIVE = 1
+    """The control is called before ticks."""
+    ATTENTION = 2
+    """A command has arrived."""
+    THREADS = 4
+    """The program has several threads."""
+    STOPPING = 8
+    """The program is being unwound."""
+    DEBUG = 16
+    """Tracing has been switched."""
+
+
+LIVE, ATTENTION, THREADS, STOPPING, DEBUG = (flag.value for flag in SessionFlag)
+"""The bits as plain numbers: every reading of a sensor tests some, and an enumeration computes ten times slower."""
+
+SLICE_S = 0.02
+"""Longest uninterrupted wait in real time."""
+BEHIND_S = 0.25
+"""A run that is later than this restarts its pace."""
+STOP_GRACE_S = 0.2
+"""Real time for the program's cleanup after a stop of a live run."""
+STOP_GRACE_CPU_S = 2.0
+"""Its own computing time for that in a headless run."""
+FAST_SLICE_TICKS = 64
+"""Ticks between two checks for commands in a run without pacing."""
+
+
+class DebugHooks(Protocol):
+    """What session and control need of the debugger."""
+
+    def begin(self, options: RunOptions) -> None:
+        """Apply the settings that are known before the program's first line."""
+
+    def take(self, command: Message) -> None:
+        """Process a command; the caller handles pausing and resuming."""
+
+    def enter(self) -> None:
+        """Switch tracing in the current thread on or off as needed."""
+
+    def before_tick(self) -> None:
+        """Pause if the goal is reached. Called right before a tick, after user actions."""
+
+    def most_ticks(self, most: int) -> int:
+        """Return the number of ticks that may run before `after_ticks` has to be called."""
+
+    def after_ticks(self) -> None:
+        """Pause if a breakpoint matches the tick that was just run."""
+
+    def at_end(self) -> None:
+        """Pause at the end of the program if a requested instant was never reached."""
+
+    def pause(self) -> None:
+        """Pause at the next line, if it is reached before the next tick."""
+
+    def answer(self) -> None:
+        """Answer the requests received while paused."""
+
+    def forget_goals(self) -> None:
+        """Cancel steps and goals: the user has requested something else."""
+
+    def go_on(self) -> None:
+        """Prepare for resuming from a pause."""
+
+
+class ControlledRun(Protocol):
+    """What the control needs of the session; see there."""
+
+    sim: Simulation
+    now: int
+    flags: int
+    pressed: frozenset[str]
+    debugger: DebugHooks | None
+
+    @property
+    def stop_reason(self) -> BaseException | None:
+        """Why the run stops; None while it does not."""
+
+    def debug(self) -> DebugHooks:
+        """Return the debugger; it is created on first use."""
+
+    def checkpoint(self, before_tick: bool = False) -> None:
+        """Raise if the program has to stop."""
+
+    def ask_stop(self, end: End, summary: str) -> None:
+        """Record that the run has to end at the next checkpoint."""
+
+
+class RunControl:
+    """Lets the host control the run.
+
+    Args:
+        channel: Pipes to the host.
+        folder: Run folder, for the user actions.
+        live: Whether the run is paced and can be paused.
+        speed: 1.0 is real time, 0 as fast as possible; a run that is not live is not paced.
+        paused: Whether to start paused.
+        script: Known user actions, in the order of their ticks.
+    """
+
+    def __init__(
+        self,
+        channel: Channel,
+        folder: Path,
+        live: bool,
+        speed: float,
+        paused: bool,
+        script: Iterable[UserAction],
+    ) -> None:
+        self.live = live
+        self._channel, self._folder = channel, folder
+        self._speed = speed if live else 0.0
+        self._script = deque(script)
+        self._paused = paused
+        self._steps = 0
+        self._anchor: tuple[float, int] | None = None
+        self._waiting: deque[Message] = deque()
+        self._reason = PauseReason.ASKED
+        self._rushing = False
+        """Whether pacing is suspended until the run pauses."""
+        self.debugged = False
+        """Whether the debugger is called before and after ticks."""
+        self.holding = False
+        """Whether the run is paused and waits for commands."""
+        self.between_ticks = False
+        """While paused: whether no code of the program runs between here and the next tick, or since the last."""
+        self._actions_fd = -1
+        self._stop_asked_at: float | None = None
+        self.answers: deque[str | None] = deque()
+        """Answers to input() that have arrived."""
+        self.messages: list[Any] = []
+        """All messages of the host's responder."""
+
+    # Commands
+
+    def receive(self, session: ControlledRun) -> None:
+        """Process the commands that have arrived; user actions wait for the next tick."""
+        for command in self._channel.receive():
+            match command:
+                case protocol.Stop():
+                    session.ask_stop(End.STOPPED, "stopped")
+                case protocol.Pause():
+                    self._paused, self._steps, self._reason = True, 0, PauseReason.ASKED
+                    session.flags |= LIVE if self.live else 0
+                    if session.debugger is not None:
+                        session.debugger.pause()
+                case protocol.Resume():
+                    self._paused, self._steps = False, 0
+                case protocol.StepTicks(ticks=ticks):
+                    self._steps, self._reason = self._steps + max(0, ticks), PauseReason.TICKS
+                    self._forget_goals(session)
+                case protocol.SetSpeed(speed=speed):
+                    self._speed, self._anchor = max(0.0, speed), None
+                case _ if isinstance(command, protocol.ACTIONS):
+                    self._waiting.append(command)
+                case _:
+                    session.debug().take(command)
+
+    def resume(self, at_full_speed: bool = False) -> None:
+        """Resume the run until the debugger pauses it again."""
+        self._paused, self._steps, self._rushing = False, 0, at_full_speed
+
+    @property
+    def only_rushes(self) -> bool:
+        """Whether there is nothing to do before the debugger's next goal."""
+        return self._rushing and not self._script and not self._waiting
+
+    @staticmethod
+    def _forget_goals(session: ControlledRun) -> None:
+        if session.debugger is not None:
+            session.debugger.forget_goals()
+
+    def begin_grace(self) -> None:
+        """Start the grace period of a stop."""
+        self._stop_asked_at = self._grace_clock()
+
+    def grace_is_over(self) -> bool:
+        """Whether the time for the program's cleanup is over."""
+        most_s = STOP_GRACE_S if self.live else STOP_GRACE_CPU_S
+        return (
+            self._stop_asked_at is not None and self._grace_clock() - self._stop_asked_at > most_s
+        )
+
+    def _grace_clock(self) -> float:
+        # A user waits in real time; what a program of a batch does must not depend on what else the machine does.
+        return wallclock.monotonic() if self.live else wallclock.process_time()
+
+    # Right before ticks
+
+    @property
+    def wanted(self) -> bool:
+        """Whether it must be called before ticks: the run is live, actions are pending, or the debugger needs it."""
+        return self.live or self.debugged or bool(self._script)
+
+    def before_ticks(self, session: ControlledRun, most: int) -> int:
+        """Block until ticks may run.
+
+        Args:
+            session: The run.
+            most: Number of ticks that the caller wants.
+
+        Returns:
+            Number of ticks to run now, at least 1.
+
+        Raises:
+            StopProgram: the run has to stop.
+        """
+        self.receive(session)
+        self._apply_actions(session)
+        if session.stop_reason is not None:
+            session.checkpoint(before_tick=True)
+            return most
+        if self._script:
+            # The next action must find its tick.
+            most = min(most, self._script[0].tick - session.sim.tick)
+        if self.debugged:
+            debugger = session.debug()
+            debugger.before_tick()
+            most = debugger.most_ticks(most)
+        if self._paused and not self._steps:
+            sim = session.sim
+            self.hold(session, protocol.Paused(sim.tick, session.now, sim.line, self._reason))
+        if self._steps:
+            self._steps -= 1
+            return 1
+        if not self._speed or self._rushing:
+            return min(most, FAST_SLICE_TICKS)
+        return self._pace(session, most)
+
+    def hold(self, session: ControlledRun, moment: protocol.Paused) -> None:
+        """Pause the run; block until it is resumed or stopped.
+
+        Args:
+            session: The run.
+            moment: Where it pauses. User actions take effect immediately only right before a tick.
+
+        Raises:
+            StopProgram: the run has to stop.
+        """
+        # The run is live from here on, however it started.
+        self.live, session.flags = True, session.flags | LIVE
+        self._paused, self._steps, self._rushing = True, 0, False
+        self.holding, self.between_ticks = True, moment.ordinal in (AFTER_TICK, BEFORE_NEXT_TICK)
+        self._forget_goals(session)
+        self._channel.send(moment)
+        while self._paused and not self._steps and session.stop_reason is None:
+            self._channel.wait(1.0)
+            self.receive(session)
+            if moment.ordinal == BEFORE_NEXT_TICK:
+                self._apply_actions(session)
+            if session.debugger is not None:
+                session.debugger.answer()
+        self.holding = session.stop_reason is not None
+        if session.debugger is not None:
+            session.debugger.go_on()
+        self._anchor = None
+        if not self._paused:
+            self._channel.send(protocol.Resumed())
+        self._raise_here(session, before_tick=moment.ordinal == BEFORE_NEXT_TICK)
+
+    def _raise_here(self, session: ControlledRun, before_tick: bool = False) -> None:
+        """Raise a stop in the thread that has waited for commands, not in the main one, which the signal reaches."""
+        try:
+            session.checkpoint(before_tick)
+        finally:
+            self.holding = False
+
+    def replay_next(self, session: ControlledRun, kind: type[Answer | Reply]) -> bool:
+        """Apply the next known action if it has this type and was made here, while simulated time did not pass."""
+        if not self._script or self._script[0].tick > session.sim.tick:
+            return False
+        action = self._script[0].command
+        if not isinstance(action, kind) or (isinstance(action, Answer) and not action.at_once):
+            return False
+        self._script.popleft()
+        self.apply(session, action)
+        return True
+
+    def wait_for_reply(
+        self, session: ControlledRun, kind: type[Answer | Reply], question: Message
+    ) -> None:
+        """Ask the host, and block until its answer is applied. No simulated time passes.
+
+        Args:
+            session: The run.
+            kind: Type of the answer.
+            question: Event that asks for it.
+
+        Raises:
+            StopProgram: the run has to stop.
+        """
+        # Commands are processed here, not in the handler of the signal that announces them.
+        self.holding = True
+        self._channel.send(question)
+        while (
+            not (here := [one for one in self._waiting if isinstance(one, kind)])
+            and session.stop_reason is None
+        ):
+            self._channel.wait(1.0)
+            self.receive(session)
+        self.holding = session.stop_reason is not None
+        self._anchor = None
+        if here:
+            self._waiting.remove(here[0])
+            self.apply(session, here[0])
+        self._raise_here(session)
+
+    def _pace(self, session: ControlledRun, most: int) -> int:
+        sim = session.sim
+        # A command that is received meanwhile can change it, also to full speed.
+        while speed := self._speed:
+            wall, simulated = wallclock.monotonic(), sim.due_ns(sim.tick + 1)
+            # A signal may remove it at any moment.
+            anchor = self._anchor = self._anchor or (wall, sim.due_ns(sim.tick))
+            wait_s = anchor[0] + (simulated - anchor[1]) / 1e9 / speed - wall
+            if wait_s < -BEHIND_S:
+                self._anchor = None
+                return 1
+            if wait_s <= 0.0:
+                return 1
+            if self._channel.wait(min(wait_s, SLICE_S)):
+                self.receive(session)
+                self._apply_actions(session)
+                if session.stop_reason is not None:
+                    session.checkpoint(before_tick=True)
+                    return most
+                if self._paused:
+                    return self.before_ticks(session, most)
+        return min(most, FAST_SLICE_TICKS)
+
+    # User actions
+
+    def _apply_actions(self, session: ControlledRun) -> None:
+        while self._script and self._script[0].tick <= session.sim.tick:
+            self.apply(session, self._script.popleft().command)
+        while self._waiting:
+            self.apply(session, self._waiting.popleft())
+
+    def apply(self, session: ControlledRun, action: Message) -> None:
+        """Apply a user action now, right before the next tick, and record it.
+
+        Raises:
+            TypeError: the message is not a user action.
+        """
+        sim = session.sim
+        match action:
+            case protocol.Stop():
+                # Does not change the world, and is not counted as a change.
+                session.ask_stop(End.STOPPED, "stopped")
+                return
+            case protocol.SetButtons(pressed=pressed):
+                session.pressed = frozenset(pressed)
+            case protocol.Answer(text=text):
+                self.answers.append(text)
+            case protocol.Reply(messages=messages):
+                self.messages.extend(messages)
+        change_simulation(sim, action)
+        try:
+            self._write_down(sim.tick, action)
+        except OSError as error:
+            # Without this record the run could not be repeated.
+            session.ask_stop(
+                End.DISK_FULL, f"what was done cannot be written down: {error.strerror}"
+            )
+
+    def write_down_stop(self, tick: int) -> None:
+        """Record that the stop reaches the program right before the tick after `tick`."""
+        # Without it a re-run compares what both runs have.
+        with suppress(OSError):
+            write_stop_tick(self._folder, tick)
+
+    def _write_down(self, tick: int, action: Message) -> None:
+        if self._actions_fd < 0:
+            path = self._folder / ACTIONS_FILE
+            self._actions_fd = private(str(path), os.O_WRONLY | os.O_CREAT | os.O_APPEND)
+        os.write(self._actions_fd, json.dumps(UserAction(tick, action).to_plain()).encode() + b"\n")

@@ -1,0 +1,216 @@
+"""When breakpoints match: expressions of line breakpoints, values after each tick, printed rows."""
+
+from __future__ import annotations
+
+import ast
+import types
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from typing import Any
+
+from tuisim.engine.breakpoints import Breakpoint, LineBreak, StallBreak, TimeBreak
+from tuisim.engine.core.columns import column_name
+from tuisim.engine.core.conditions import Edge, Operator, ValueCondition, ValueSource, value_text
+from tuisim.engine.core.profile import NS_PER_S
+from tuisim.engine.core.sensors import columns_of, reader_of
+from tuisim.engine.runs.records import SAMPLE_STREAMS, Stream
+from tuisim.engine.runs.samples import value_reader
+from tuisim.engine.runtime.debugger.value_text import evaluate_truth
+from tuisim.engine.runtime.session import Session
+
+_SCALARS = (bool, int, float, str, types.NoneType)
+_PLAIN_NODES = (
+    ast.Expression,
+    ast.BoolOp,
+    ast.And,
+    ast.Or,
+    ast.UnaryOp,
+    ast.Not,
+    ast.USub,
+    ast.UAdd,
+    ast.BinOp,
+    ast.Add,
+    ast.Sub,
+    ast.Div,
+    ast.FloorDiv,
+    ast.Mod,
+    ast.Compare,
+    ast.Eq,
+    ast.NotEq,
+    ast.Lt,
+    ast.LtE,
+    ast.Gt,
+    ast.GtE,
+    ast.Is,
+    ast.IsNot,
+    ast.Name,
+    ast.Load,
+    ast.Constant,
+)
+
+Apart = Callable[[Callable[[], bytes]], bytes | None]
+
+
+class LineCondition:
+    """The condition of one line breakpoint.
+
+    It is evaluated in place if no code of the program can run, otherwise in a copy of the process.
+
+    Args:
+        text: A syntactically valid expression.
+    """
+
+    def __init__(self, text: str) -> None:
+        self._text = text
+        tree = ast.parse(text, mode="eval")
+        nodes = list(ast.walk(tree))
+        self._code = compile(tree, "<break>", "eval", dont_inherit=True)
+        self._names = tuple({node.id for node in nodes if isinstance(node, ast.Name)})
+        # On strings, % and + produce at most the combined length of their operands; * and ** could produce far more.
+        self._plain = all(isinstance(node, _PLAIN_NODES) for node in nodes)
+
+    def holds(self, frame: types.FrameType, apart: Apart) -> str:
+        """Return why the run has to pause; empty if it does not.
+
+        Args:
+            frame: Where the expression is evaluated.
+            apart: Calls a function in a copy of the process.
+        """
+        names: Mapping[str, Any] = frame.f_locals
+        if self._plain and type(names) is dict:
+            values = {
+                name: names.get(name, frame.f_globals.get(name, self)) for name in self._names
+            }
+            values = {
+                name: value
+                for name, value in values.items()
+                if value is not self or name in frame.f_builtins
+            }
+            if all(type(value) in _SCALARS for value in values.values()):
+                return self._at_once(values)
+        answer = apart(
+            lambda: evaluate_truth(
+                self._text, {**frame.f_globals, **names}, frame.f_builtins
+            ).encode("utf-8", "backslashreplace")
+        )
+        return "takes too long" if answer is None else answer.decode()[1:]
+
+    def _at_once(self, values: dict[str, Any]) -> str:
+        try:
+            return "is true" if eval(self._code, {"__builtins__": {}}, values) else ""
+        except NameError:
+            # Names that do not exist yet make the condition false.
+            return ""
+        except Exception as error:  # an expression can fail in any way; worth pausing for
+            return f"cannot be evaluated: {type(error).__name__}: {error}"
+
+
+Value = Callable[[], float]
+
+
+class Watcher:
+    """The breakpoints of one run that have no line. They cost nothing while there are none.
+
+    Args:
+        session: The run.
+    """
+
+    def __init__(self, session: Session) -> None:
+        self._session = session
+        self._after_tick: dict[str, Callable[[], str]] = {}
+        """By text, a function that returns the value that matches now; empty without a match."""
+        self._on_row: dict[str, Callable[[str], str]] = {}
+
+    @property
+    def ticks(self) -> bool:
+        """Whether each tick must be checked."""
+        return bool(self._after_tick)
+
+    @property
+    def rows(self) -> bool:
+        """Whether each printed row must be checked."""
+        return bool(self._on_row)
+
+    def set(self, breaks: Iterable[Breakpoint]) -> None:
+        """Replace the breakpoints; those that stay keep their state."""
+        ticks, rows = self._after_tick, self._on_row
+        self._after_tick, self._on_row = {}, {}
+        for one in breaks:
+            match one.rule:
+                case LineBreak():
+                    pass
+                case ValueCondition(source=ValueSource.SAMPLE | ValueSource.PRINT) as condition:
+                    self._on_row[one.text] = rows.get(one.text) or _row_check(condition)
+                case rule:
+                    check = ticks.get(one.text) or self._tick_check(rule)
+                    if check is not None:
+                        self._after_tick[one.text] = check
+
+    def after_tick(self) -> tuple[str, str] | None:
+        """Return text and value of a breakpoint that matches after this tick."""
+        return _first((text, check()) for text, check in self._after_tick.items())
+
+    def after_row(self, row: str, stream: Stream) -> tuple[str, str] | None:
+        """Return text and value of a breakpoint that matches this printed row."""
+        if stream not in SAMPLE_STREAMS:
+            return None
+        return _first((text, check(row)) for text, check in self._on_row.items())
+
+    # Checks
+
+    def _tick_check(
+        self, rule: ValueCondition | TimeBreak | StallBreak
+    ) -> Callable[[], str] | None:
+        match rule:
+            case TimeBreak(time_s=time_s):
+                value: Value | None = self._time_s
+                condition = ValueCondition(
+                    "time", Operator.GREATER_EQUAL, repr(time_s - 0.5 / NS_PER_S)
+                )
+            case StallBreak():
+                value, condition = self._stalled, ValueCondition("stall", Operator.GREATER, "0")
+            case ValueCondition():
+                value, condition = self._value_of(rule.name), rule
+        if value is None:
+            return None
+        edge = Edge(condition)
+        if isinstance(rule, TimeBreak) and self._time_s() >= rule.time_s:
+            # That time has passed already and does not come again.
+            edge.meets(rule.time_s)
+
+        def check() -> str:
+            number = value()
+            return value_text(number, condition.name) if edge.meets(number) else ""
+
+        return check
+
+    def _time_s(self) -> float:
+        return self._session.sim.due_ns(self._session.sim.tick) / NS_PER_S
+
+    def _stalled(self) -> float:
+        sim = self._session.sim
+        return float(sum(motor.blocked_ticks >= sim.stall_ticks for motor in sim.motors))
+
+    def _value_of(self, column: str) -> Value | None:
+        """Return a function that reads a column; None if this robot does not have it."""
+        session, sim = self._session, self._session.sim
+        spec = sim.spec
+        read = reader_of(column_name(column, columns_of(spec)) or "", spec)
+        if read is None:
+            return None
+        return lambda: read(sim.instant(with_motors=True), sim.spec, session.field)
+
+
+def _first(found: Iterator[tuple[str, str]]) -> tuple[str, str] | None:
+    """Return the first match; every check is called nevertheless."""
+    met = [(text, value) for text, value in found if value]
+    return met[0] if met else None
+
+
+def _row_check(condition: ValueCondition) -> Callable[[str], str]:
+    read, edge = value_reader(condition), Edge(condition)
+
+    def check(row: str) -> str:
+        value = read(row)
+        return row if value is not None and edge.meets(value) else ""
+
+    return check

@@ -1,0 +1,373 @@
+"""The debugger of one run: its commands, and when the run pauses."""
+
+from __future__ import annotations
+
+import types
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from sys import _getframe
+from typing import TYPE_CHECKING, Any, assert_never
+
+from tuisim.base.data_class import dataclass
+from tuisim.engine import protocol
+from tuisim.engine.breakpoints import Breakpoint, LineBreak, parse_breakpoints
+from tuisim.engine.protocol import (
+    AFTER_TICK,
+    BEFORE_NEXT_TICK,
+    LineStep,
+    Message,
+    Paused,
+    PauseReason,
+)
+from tuisim.engine.runs.records import Stream
+from tuisim.engine.runtime.control import ATTENTION, DEBUG, LIVE
+from tuisim.engine.runtime.debugger.conditions import LineCondition, Watcher
+from tuisim.engine.runtime.debugger.fork import apart
+from tuisim.engine.runtime.debugger.inspection import Inspector
+from tuisim.engine.runtime.debugger.tracer import Tracer
+from tuisim.engine.runtime.scheduler import ScheduledThread, Scheduler
+from tuisim.engine.runtime.session import Session
+
+if TYPE_CHECKING:
+    from tuisim.engine.runs.run_options import RunOptions
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """A step in progress."""
+
+    task: ScheduledThread | None
+    """Thread that is stepped; None completes it at the next line of any thread."""
+    most_depth: int
+    """Largest number of open calls of the program's own code at which it is complete."""
+
+    def is_done(self, task: ScheduledThread, depth: int) -> bool:
+        """Return whether a line that is about to run completes the step."""
+        if self.task is None or self.task.done:
+            return True
+        return task is self.task and depth <= self.most_depth
+
+
+ENDLESS_DEPTH = 1 << 30
+"""Larger than the depth of any stack."""
+
+
+def step_from(how: LineStep, task: ScheduledThread, depth: int) -> Step:
+    """Return the step that starts at a line.
+
+    Args:
+        how: The way to step.
+        task: Thread that is paused there.
+        depth: Number of open calls of the program's own code.
+    """
+    match how:
+        case LineStep.INTO:
+            return Step(task, ENDLESS_DEPTH)
+        case LineStep.OVER:
+            return Step(task, depth)
+        case LineStep.OUT:
+            return Step(task, depth - 1)
+        case _:
+            assert_never(how)
+
+
+NEXT_LINE = Step(None, ENDLESS_DEPTH)
+"""Complete at the next line of any thread."""
+
+
+def line_with_code(program: types.CodeType | None, line: int) -> int:
+    """Return `line` or, if it has no code in the program, the next line that has: any other would never be hit.
+
+    After the last such line, and for 0, return `line`.
+    """
+    if program is None or not line:
+        return line
+    return min((one for one in _lines_of(program) if one >= line), default=line)
+
+
+def _lines_of(code: types.CodeType) -> Iterator[int]:
+    left = [code]
+    while left:
+        one = left.pop()
+        yield from (line for _, _, line in one.co_lines() if line)
+        left += [part for part in one.co_consts if isinstance(part, types.CodeType)]
+
+
+CONDITION_LIMIT_S = 0.2
+"""Time limit of a condition, in real seconds."""
+
+Instant = tuple[int, int]
+"""Tick, and ordinal of the line in that tick."""
+
+
+class Debugger:
+    """The debugger's state for one run.
+
+    Args:
+        session: The run.
+        scheduler: The program's threads.
+        module: Holds the program's global names.
+        prepared: Identities of the objects that existed before the program, by name.
+        code: The program itself.
+    """
+
+    def __init__(
+        self,
+        session: Session,
+        scheduler: Scheduler,
+        module: Mapping[str, Any],
+        prepared: Mapping[str, int],
+        code: types.CodeType | None,
+    ) -> None:
+        self._session, self._scheduler = session, scheduler
+        self._code = code
+        self._tracer = Tracer(session, scheduler, self._at_line)
+        self._looker = Inspector(session, scheduler, self._tracer, module, prepared)
+        self._watcher = Watcher(session)
+        self._by_line: dict[int, list[tuple[Breakpoint, LineCondition | None]]] = {}
+        self._step: Step | None = None
+        self._step_reason = PauseReason.STEP
+        self._line = 0
+        self._instant: Instant | None = None
+        self._trace_from: int | None = None
+        self._looks: list[Message] = []
+
+    def begin(self, options: RunOptions) -> None:
+        """Apply the settings that are known before the program's first line."""
+        self._set_breaks(parse_breakpoints(options.breaks))
+        self._trace_from = options.trace_from_tick
+        if options.hold_at is not None:
+            self._set_instant(*options.hold_at)
+            self._session.steering.resume(at_full_speed=True)
+        self._trace(at_tick=True)
+        self._update_session()
+        if self._instant == (0, AFTER_TICK):
+            self._hold(Paused(0, 0, 0, PauseReason.INSTANT, ordinal=AFTER_TICK))
+
+    # Commands
+
+    def take(self, command: Message) -> None:
+        """Process a command; the caller handles pausing and resuming."""
+        steering = self._session.steering
+        match command:
+            case protocol.StepLine(how=how):
+                self._forget_goals()
+                # A paused run waits for commands in the thread that was paused.
+                depth = self._tracer.depth_of(_getframe())
+                self._step = (
+                    step_from(how, self._scheduler.current, depth)
+                    if steering.holding
+                    else NEXT_LINE
+                )
+                steering.resume()
+            case protocol.RunToLine(line=line):
+                self._forget_goals()
+                self._line = line_with_code(self._code, line)
+                steering.resume()
+            case protocol.RunToInstant(tick=tick, ordinal=ordinal):
+                self._forget_goals()
+                self._set_instant(tick, ordinal)
+                steering.resume(at_full_speed=True)
+            case protocol.SetBreaks(breaks=texts):
+                self._set_breaks(parse_breakpoints(texts))
+            case protocol.Inspect() | protocol.RequestHistory():
+                if steering.holding:
+                    self._looks.append(command)
+        if not steering.holding:
+            self._trace(at_tick=False)
+            self._update_session()
+
+    def go_on(self) -> None:
+        """Prepare for resuming from a pause."""
+        # When paused between ticks, lines of the next tick are counted from its start.
+        self._trace(at_tick=self._session.steering.between_ticks)
+        self._update_session()
+
+    def answer(self) -> None:
+        """Answer the requests received while paused."""
+        looks, self._looks = self._looks, []
+        for asked in looks:
+            if isinstance(asked, protocol.Inspect):
+                self._session.channel.send(self._looker.look(asked, self._take_more))
+            elif isinstance(asked, protocol.RequestHistory):
+                lines = self._tracer.history(max(0, asked.count), self._looker.name_of)
+                self._session.channel.send(protocol.LineHistory(lines))
+
+    def _take_more(self) -> bool:
+        """Process commands that arrive during an inspection; return False if it is no longer needed."""
+        self._session.steering.receive(self._session)
+        return self._session.stop_reason is None
+
+    def forget_goals(self) -> None:
+        """Cancel steps and goals: the user has requested something else."""
+        self._forget_goals()
+        if not self._session.steering.holding:
+            self._trace(at_tick=False)
+            self._update_session()
+
+    def pause(self) -> None:
+        """Pause at the next line, if it is reached before the next tick."""
+        self.forget_goals()
+        if self._tracer.on and not self._session.steering.holding:
+            self._step, self._step_reason = NEXT_LINE, PauseReason.ASKED
+            self._trace(at_tick=False)
+
+    def _forget_goals(self) -> None:
+        self._step, self._step_reason, self._line, self._instant = None, PauseReason.STEP, 0, None
+
+    def _set_instant(self, tick: int, ordinal: int) -> None:
+        self._instant = (tick, ordinal)
+        if ordinal > AFTER_TICK:
+            self._trace_from = tick if self._trace_from is None else min(tick, self._trace_from)
+
+    def _set_breaks(self, breaks: Iterable[Breakpoint]) -> None:
+        wanted = [one for one in breaks if not one.disabled]
+        before = {
+            one.text: condition for found in self._by_line.values() for one, condition in found
+        }
+        self._by_line = {}
+        for one in wanted:
+            if isinstance(one.rule, LineBreak):
+                text = one.rule.condition
+                condition = before.get(one.text) or (LineCondition(text) if text else None)
+                line = line_with_code(self._code, one.rule.line)
+                self._by_line.setdefault(line, []).append((one, condition))
+        self._watcher.set(wanted)
+        self._session.output.watch = self._after_row if self._watcher.rows else None
+
+    def _trace(self, at_tick: bool) -> None:
+        tracer, tick = self._tracer, self._session.sim.tick
+        counting = self._trace_from is not None and tick >= self._trace_from
+        line_goal = bool(self._line or self._step)
+        tracer.lines = frozenset({*self._by_line, *((self._line,) if self._line else ())})
+        tracer.closely = self._step is not None or self._instant is not None
+        tracer.switch(bool(self._by_line) or line_goal or counting, at_tick)
+
+    def _update_session(self) -> None:
+        """Let the session call the debugger at ticks only when needed."""
+        session, goals = self._session, self._goal_ticks()
+        session.steering.debugged = self._watcher.ticks or bool(goals)
+        session.flags |= DEBUG
+        if (
+            goals
+            and session.steering.only_rushes
+            and not self._watcher.ticks
+            and min(goals) > session.sim.tick
+        ):
+            session.rush_to(min(goals))
+        elif session.steering.debugged:
+            session.flags |= LIVE
+
+    def _goal_ticks(self) -> list[int]:
+        goals = [] if self._instant is None else [self._instant[0]]
+        return goals if self._trace_from is None or self._tracer.on else [*goals, self._trace_from]
+
+    # Ticks
+
+    def most_ticks(self, most: int) -> int:
+        """Return the number of ticks that may run before `after_ticks` has to be called."""
+        tick = self._session.sim.tick
+        if self._watcher.ticks:
+            return 1
+        return min([most, *(goal - tick for goal in self._goal_ticks() if goal > tick)])
+
+    def before_tick(self) -> None:
+        """Pause if the goal is reached. Called right before a tick, after user actions."""
+        tick = self._session.sim.tick
+        if self._instant is not None and self._instant <= (tick, BEFORE_NEXT_TICK):
+            self._hold_at_tick(PauseReason.INSTANT, BEFORE_NEXT_TICK)
+
+    def after_ticks(self) -> None:
+        """Pause if a breakpoint matches the tick that was just run."""
+        tick = self._session.sim.tick
+        met = self._watcher.after_tick() if self._watcher.ticks else None
+        self._trace(at_tick=True)
+        if met is not None:
+            self._hold_at_tick(PauseReason.BREAK, AFTER_TICK, *met)
+        elif self._instant is not None and self._is_past(tick):
+            self._hold_at_tick(PauseReason.INSTANT, AFTER_TICK)
+
+    def _is_past(self, tick: int) -> bool:
+        assert self._instant is not None
+        return self._instant == (tick, AFTER_TICK) or self._instant[0] < tick
+
+    def at_end(self) -> None:
+        """Pause at the end of the program if a requested instant was never reached."""
+        if self._instant is not None:
+            self._hold_at_tick(PauseReason.END, self._tracer.ordinal)
+
+    def enter(self) -> None:
+        """Switch tracing in the current thread on or off as needed."""
+        self._tracer.enter()
+
+    # Lines and rows
+
+    def _at_line(self, frame: types.FrameType, line: int) -> None:
+        session = self._session
+        if session.flags & ATTENTION:
+            session.checkpoint()
+        if session.stop_reason is not None:
+            return
+        own = frame.f_code.co_filename == session.program_file
+        reason: PauseReason | None = None
+        text = value = ""
+        depth = self._tracer.depth_of(frame) if self._step is not None else 0
+        if self._instant is not None and self._is_reached(self._tracer.ordinal):
+            reason = PauseReason.INSTANT
+        elif self._step is not None and self._step.is_done(self._scheduler.current, depth):
+            reason = self._step_reason
+        elif own and line == self._line:
+            reason = PauseReason.LINE
+        elif own:
+            for one, condition in self._by_line.get(line, ()):
+                value = condition.holds(frame, self._apart) if condition is not None else ""
+                if condition is None or value:
+                    reason, text = PauseReason.BREAK, one.text
+                    break
+        if reason is not None:
+            file = "" if own else frame.f_code.co_filename
+            moment = self._moment(line, reason, text, value, self._tracer.ordinal, file)
+            self._hold(moment)
+
+    def _is_reached(self, ordinal: int) -> bool:
+        assert self._instant is not None
+        tick, wanted = self._instant
+        now = self._session.sim.tick
+        return now > tick or (now == tick and wanted > AFTER_TICK and ordinal >= wanted)
+
+    def _after_row(self, row: str, stream: Stream) -> None:
+        met = self._watcher.after_row(row, stream)
+        if met is not None and self._session.stop_reason is None:
+            line = self._session.program_line()
+            self._hold(self._moment(line, PauseReason.BREAK, *met, self._tracer.ordinal))
+
+    def _apart(self, work: Callable[[], bytes]) -> bytes | None:
+        return apart(self._session, self._scheduler, work, CONDITION_LIMIT_S, self._take_more)
+
+    # Pausing
+
+    def _moment(
+        self,
+        line: int,
+        reason: PauseReason,
+        text: str = "",
+        value: str = "",
+        ordinal: int = 0,
+        file: str = "",
+    ) -> Paused:
+        session = self._session
+        thread = self._looker.name_of(self._scheduler.current)
+        return Paused(
+            session.sim.tick, session.now, line, reason, text, value, ordinal, thread, file
+        )
+
+    def _hold_at_tick(
+        self, reason: PauseReason, ordinal: int, text: str = "", value: str = ""
+    ) -> None:
+        session = self._session
+        session.now = max(session.now, session.sim.due_ns(session.sim.tick))
+        self._hold(self._moment(session.sim.line, reason, text, value, ordinal))
+
+    def _hold(self, moment: Paused) -> None:
+        session = self._session
+        self._trace_from = None if self._tracer.on else self._trace_from
+        session.steering.hold(session, moment)

@@ -1,0 +1,154 @@
+"""Runs a function in a forked copy of the process, so that it has no side effects.
+
+A `__repr__`, property or comparison of the program may loop, print, change state or use up
+memory: that happens only in the copy, which is discarded.
+"""
+
+from __future__ import annotations
+
+import builtins
+import os
+import signal
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import Any, NoReturn
+
+from tuisim.engine.protocol import COMMAND_SIGNAL, STACK_SIGNAL
+from tuisim.engine.runtime import wallclock
+from tuisim.engine.runtime.channel import Channel
+from tuisim.engine.runtime.loader import LOOP_HOOK
+from tuisim.engine.runtime.raw_output import silence_descriptors
+from tuisim.engine.runtime.scheduler import Scheduler
+from tuisim.engine.runtime.session import Session
+
+MOST_BYTES = 4 << 20
+"""A longer answer is discarded."""
+BLOCKED_LIMIT_S = 2.0
+"""Real seconds after which a copy that uses no CPU time is killed, for instance when it waits for a lock."""
+
+
+class TooLong(BaseException):
+    """Evaluating a value takes too long. Not an `Exception`, so that the program's handlers do not catch it."""
+
+
+def apart(
+    session: Session,
+    scheduler: Scheduler,
+    work: Callable[[], bytes],
+    limit_s: float,
+    go_on: Callable[[], bool],
+) -> bytes | None:
+    """Return the result of `work` from a copy of this process.
+
+    Args:
+        session: The run, frozen in the copy.
+        scheduler: The program's threads.
+        work: Function to call in the copy.
+        limit_s: CPU seconds after which the copy is killed: load on the machine changes no result.
+        go_on: Called when a command has arrived; False cancels.
+
+    Returns:
+        The result; None if there is none in time.
+    """
+    try:
+        answer_fd, answer_write = os.pipe()
+    except OSError:
+        # The program has no file descriptors left.
+        return None
+    try:
+        pid = wallclock.fork()
+    except OSError:
+        # The machine has no processes left.
+        os.close(answer_fd)
+        os.close(answer_write)
+        return None
+    if not pid:
+        _be_the_copy(session, scheduler, work, answer_write, limit_s)
+    os.close(answer_write)
+    try:
+        return _answer(session.channel, answer_fd, wallclock.monotonic() + BLOCKED_LIMIT_S, go_on)
+    finally:
+        os.close(answer_fd)
+        os.kill(pid, signal.SIGKILL)
+        os.waitpid(pid, 0)
+
+
+def _answer(channel: Channel, fd: int, until_s: float, go_on: Callable[[], bool]) -> bytes | None:
+    data = b""
+    while (rest_s := until_s - wallclock.monotonic()) > 0:
+        ready = wallclock.select_files([fd, channel.command_fd], [], [], rest_s)[0]
+        if channel.command_fd in ready and not go_on():
+            return None
+        if fd in ready:
+            chunk = os.read(fd, 1 << 16)
+            if not chunk:
+                return data or None
+            data += chunk
+            if len(data) > MOST_BYTES:
+                return None
+    return None
+
+
+def _be_the_copy(
+    session: Session,
+    scheduler: Scheduler,
+    work: Callable[[], bytes],
+    answer_fd: int,
+    limit_s: float,
+) -> NoReturn:
+    try:
+        # These end the copy in any case, even inside a long C call.
+        for number, timer, seconds in (
+            (signal.SIGPROF, signal.ITIMER_PROF, limit_s),
+            (signal.SIGALRM, signal.ITIMER_REAL, 2 * BLOCKED_LIMIT_S),
+        ):
+            wallclock.set_signal(number, int(signal.SIG_DFL))
+            wallclock.set_timer(timer, seconds)
+        wallclock.settrace(None)
+        _freeze(session, scheduler)
+        data = work()
+        while data:
+            data = data[os.write(answer_fd, data) :]
+    except BaseException:  # the parent handles a missing answer
+        pass
+    finally:
+        wallclock.exit_process(0)
+
+
+def _freeze(session: Session, scheduler: Scheduler) -> None:
+    """Disable motion and writing in the copy; reading devices is free of charge there."""
+    frozen: Any = session
+    threads: Any = scheduler
+    session.free = 1
+    for name in ("spend", "advance", "command", "wait_for_motor", "speak", "show", "_pass"):
+        setattr(frozen, name, _refuse)
+    for name in ("wait", "give_way", "spawn"):
+        setattr(threads, name, _refuse)
+    setattr(builtins, LOOP_HOOK, lambda: None)
+    frozen.note_reading = lambda *_: None
+    silent: Any = session.output
+    silent.row, silent.after_write, silent.drain = lambda *_: None, lambda: None, lambda: None
+    silence_descriptors()
+    for number in (COMMAND_SIGNAL, STACK_SIGNAL, signal.SIGVTALRM):
+        signal.signal(number, signal.SIG_IGN)
+
+
+def _refuse(*_args: object, **_kwargs: object) -> NoReturn:
+    raise RuntimeError(
+        "the program is paused: no time can pass and nothing can move while it is inspected"
+    )
+
+
+@contextmanager
+def time_limit(seconds: float) -> Iterator[None]:
+    """Raise `TooLong` in the body after `seconds` of real time, repeatedly; only for use in a copy."""
+
+    def too_long(_number: int, _frame: object) -> None:
+        raise TooLong
+
+    signal.signal(signal.SIGVTALRM, too_long)
+    wallclock.set_timer(signal.ITIMER_VIRTUAL, seconds, seconds / 10)
+    try:
+        yield
+    finally:
+        wallclock.set_timer(signal.ITIMER_VIRTUAL, 0.0)

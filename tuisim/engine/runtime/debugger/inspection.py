@@ -1,0 +1,254 @@
+"""Inspection of a paused program: threads, frames, variables, watches."""
+
+from __future__ import annotations
+
+import ast
+import json
+import sys
+import threading
+import types
+from collections.abc import Callable, Mapping
+from contextlib import suppress
+from typing import Any
+
+from tuisim.base.data_class import dataclass
+from tuisim.engine.core.sensors import reader_of
+from tuisim.engine.protocol import FrameState, Inspect, Inspected, ThreadState, Variable, Watched
+from tuisim.engine.runtime.debugger.fork import apart
+from tuisim.engine.runtime.debugger.tracer import Tracer
+from tuisim.engine.runtime.debugger.value_text import Renderer, cut, evaluate, kind_of
+from tuisim.engine.runtime.debugger.wait_reason import waiting_note
+from tuisim.engine.runtime.scheduler import ScheduledThread, Scheduler
+from tuisim.engine.runtime.session import Session
+
+LOOK_LIMIT_S = 0.3
+"""Time for the program's own code to render all values together, in real seconds."""
+TOO_LONG = "values that are worked out by the program's own code take too long"
+MOST_NAMES = 200
+MOST_FRAMES = 200
+MOST_WATCHES = 50
+_UNSHOWN = (types.ModuleType, types.FunctionType, types.BuiltinFunctionType, type)
+"""Types of globals that are not listed: imports and definitions, not data."""
+
+Names = list[tuple[str, str, str]]
+"""Name, type and text."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Place:
+    """The thread and frame to inspect."""
+
+    task: ScheduledThread
+    top: types.FrameType | None
+    """Innermost frame of the thread, including library and runtime frames."""
+    frames: list[types.FrameType]
+    """The program's own frames, innermost first."""
+    at: int
+
+    @property
+    def frame(self) -> types.FrameType | None:
+        return self.frames[self.at] if self.frames else None
+
+
+class Inspector:
+    """Inspects a paused run.
+
+    Args:
+        session: The run.
+        scheduler: The program's threads.
+        tracer: Knows which code is the program's own.
+        module: Holds the program's global names.
+        prepared: Identities of the objects that existed before the program, by name; they are not listed.
+    """
+
+    def __init__(
+        self,
+        session: Session,
+        scheduler: Scheduler,
+        tracer: Tracer,
+        module: Mapping[str, Any],
+        prepared: Mapping[str, int],
+    ) -> None:
+        self._prepared = prepared
+        self._session, self._scheduler, self._tracer, self._module = (
+            session,
+            scheduler,
+            tracer,
+            module,
+        )
+        self._seen: dict[tuple[str, str], dict[str, str]] = {}
+        """Texts of the names at the last inspection, by scope."""
+
+    def look(self, wanted: Inspect, go_on: Callable[[], bool]) -> Inspected:
+        """Return the state of the run.
+
+        Args:
+            wanted: The request.
+            go_on: Called when a command arrives before it returns; False cancels the values.
+        """
+        tops = sys._current_frames()
+        place = self._place(wanted, tops)
+        shown, note = self._values(place, wanted.watches[:MOST_WATCHES], go_on)
+        frame = place.frame
+        scope = (
+            (frame.f_code.co_filename, frame.f_code.co_qualname) if frame is not None else ("", "")
+        )
+        variables = self._marked(("local", *scope), shown["locals"])
+        found_globals = self._marked(("global", "", ""), shown["globals"])
+        return Inspected(
+            tick=self._session.sim.tick,
+            time_ns=self._session.now,
+            thread=self.name_of(place.task),
+            frame=place.at,
+            waiting=waiting_note(self._session, place.task, place.top),
+            threads=tuple(self._thread_state(task, tops) for task in self._scheduler.tasks),
+            stack=tuple(self._frame_state(found) for found in place.frames[:MOST_FRAMES]),
+            variables=variables,
+            globals=found_globals,
+            watches=tuple(Watched(*one) for one in shown["watches"]),
+            note=note,
+        )
+
+    def name_of(self, task: ScheduledThread) -> str:
+        """Return the name of a thread, as the program sees it."""
+        threads: Any = threading
+        thread = threads._active.get(task.ident)
+        name = getattr(thread, "_name", "")
+        return cut(str(name), 60) if isinstance(name, str) and name else f"thread {task.ident}"
+
+    # Selection
+
+    def _place(self, wanted: Inspect, tops: Mapping[int, types.FrameType]) -> _Place:
+        tasks = self._scheduler.tasks
+        task = next(
+            (task for task in tasks if wanted.thread and self.name_of(task) == wanted.thread), None
+        )
+        task = task or self._scheduler.current
+        top = tops.get(task.ident)
+        frames = self._tracer.own_frames(top)
+        return _Place(task, top, frames, max(0, min(wanted.frame, len(frames) - 1)))
+
+    def _thread_state(
+        self, task: ScheduledThread, tops: Mapping[int, types.FrameType]
+    ) -> ThreadState:
+        top = tops.get(task.ident)
+        paused = task is self._scheduler.current
+        file = self._session.program_file
+        frames = [
+            frame for frame in self._tracer.own_frames(top) if frame.f_code.co_filename == file
+        ]
+        line = frames[0].f_lineno if frames else 0
+        return ThreadState(
+            self.name_of(task), line or 0, waiting_note(self._session, task, top), paused
+        )
+
+    def _frame_state(self, frame: types.FrameType) -> FrameState:
+        file = frame.f_code.co_filename
+        shown = "" if file == self._session.program_file else file
+        return FrameState(frame.f_code.co_name, frame.f_lineno or 0, shown)
+
+    # Variables
+
+    def _values(
+        self, place: _Place, watches: tuple[str, ...], go_on: Callable[[], bool]
+    ) -> tuple[dict[str, Any], str]:
+        frame = place.frame
+        # The locals of a frame of this thread are read in the copy: read here, they would be kept alive.
+        local = None if frame is None or place.task is self._scheduler.current else frame.f_locals
+
+        def shown(seconds: float, expressions: tuple[str, ...]) -> dict[str, Any] | None:
+            def work() -> bytes:
+                return json.dumps(self._shown(frame, local, expressions, seconds)).encode(
+                    "utf-8", "replace"
+                )
+
+            answer = apart(self._session, self._scheduler, work, LOOK_LIMIT_S, go_on)
+            found: dict[str, Any] | None = None if answer is None else json.loads(answer)
+            return found
+
+        whole = shown(LOOK_LIMIT_S / 2, watches)
+        if whole is not None:
+            return whole, ""
+        # Again without the program's own code, which may be what does not return.
+        plain = shown(0.0, ()) or {"locals": [], "globals": []}
+        return {**plain, "watches": [(text, "", "takes too long") for text in watches]}, TOO_LONG
+
+    def _shown(
+        self,
+        frame: types.FrameType | None,
+        local: Mapping[str, Any] | None,
+        watches: tuple[str, ...],
+        seconds: float,
+    ) -> dict[str, Any]:
+        """Return names and watches as plain data. Runs in the copy."""
+        inside = self._module if frame is None else frame.f_globals
+        names = inside if frame is None else frame.f_locals if local is None else local
+        own_module = names is inside
+        renderer = Renderer(seconds)
+        plain = _plain(names)
+        visible = {**inside, **plain}
+        builtin = frame.f_builtins if frame is not None else self._module.get("__builtins__", {})
+        watched = {**self._columns_in(watches), **visible}
+        return {
+            "watches": [(text, *evaluate(renderer, text, watched, builtin)) for text in watches],
+            "locals": _texts(
+                renderer, self._own_names(plain) if own_module else plain, whole=not own_module
+            ),
+            "globals": [] if own_module else _texts(renderer, self._own_names(inside), whole=False),
+        }
+
+    def _columns_in(self, watches: tuple[str, ...]) -> dict[str, float]:
+        """Return the values of the recording's columns that watches name."""
+        sim, field = self._session.sim, self._session.field
+        readers = {name: reader_of(name, sim.spec) for text in watches for name in _names_in(text)}
+        return {
+            name: read(sim.instant(with_motors=True), sim.spec, field)
+            for name, read in readers.items()
+            if read is not None
+        }
+
+    def _own_names(self, names: Mapping[str, Any]) -> dict[str, Any]:
+        prepared = self._prepared
+        return {name: value for name, value in names.items() if prepared.get(name) != id(value)}
+
+    def _marked(self, scope: tuple[str, ...], names: Names) -> tuple[Variable, ...]:
+        key = (scope[0], "\0".join(scope[1:]))
+        before = self._seen.get(key)
+        if names:
+            self._seen[key] = {name: text for name, _, text in names}
+        return tuple(
+            Variable(name, kind, text, before is not None and before.get(name) != text)
+            for name, kind, text in names
+        )
+
+
+def _names_in(expression: str) -> set[str]:
+    with suppress(SyntaxError, ValueError, RecursionError, MemoryError):
+        return {
+            node.id
+            for node in ast.walk(ast.parse(expression.strip(), mode="eval"))
+            if isinstance(node, ast.Name)
+        }
+    return set()
+
+
+def _plain(names: Mapping[str, Any]) -> dict[str, Any]:
+    """Return names as a dict; a class body may use a mapping of the program."""
+    try:
+        return dict(names)
+    except Exception:  # the mapping's own code may raise anything
+        return {}
+
+
+def _texts(renderer: Renderer, names: Mapping[str, Any], whole: bool) -> Names:
+    """Return names with their values as text; without hidden names and, unless `whole`, without modules etc."""
+    found: Names = []
+    for name, value in list(names.items()):
+        if not isinstance(name, str) or name.startswith(("__", ".")):
+            continue
+        if not whole and issubclass(type(value), _UNSHOWN):
+            continue
+        found.append((cut(name, 80), kind_of(value), renderer.render(value)))
+        if len(found) == MOST_NAMES:
+            break
+    return found

@@ -1,0 +1,169 @@
+"""Short texts for arbitrary values. Runs in a copy of the process (`apart`)."""
+
+from __future__ import annotations
+
+import re
+import types
+from collections.abc import Iterable, Mapping
+from itertools import islice
+from typing import Any
+
+from tuisim.engine.runtime import wallclock
+from tuisim.engine.runtime.debugger.fork import TooLong, time_limit
+
+MOST_CHARACTERS = 400
+MOST_ITEMS = 24
+MOST_DEPTH = 3
+VALUE_LIMIT_S = 0.04
+"""CPU time for the program's own code to render one value."""
+MOST_DIGITS = 200
+"""Integers with more digits are shown by their size: converting them takes long."""
+
+_ADDRESS = re.compile(r" at 0x[0-9a-f]{6,}")
+"""Meaningless to the user, and different in every run."""
+_BRACKETS = {
+    list: ("[", "]"),
+    tuple: ("(", ")"),
+    set: ("{", "}"),
+    frozenset: ("{", "}"),
+    dict: ("{", "}"),
+}
+
+
+def kind_of(value: object) -> str:
+    """Return the name of a value's type."""
+    name = type.__dict__["__name__"].__get__(type(value))
+    return cut(str(name), 60)
+
+
+def cut(text: str, most: int = MOST_CHARACTERS) -> str:
+    """Return a text on one line, truncated."""
+    return text if len(text) <= most else text[: most - 1] + "…"
+
+
+class Renderer:
+    """Renders values until the time limit is reached.
+
+    Args:
+        seconds: CPU time for the program's own code, for all values together.
+    """
+
+    def __init__(self, seconds: float) -> None:
+        self._until_s = wallclock.process_time() + seconds
+
+    def render(self, value: object, depth: int = 0) -> str:
+        """Return a value as text of at most `MOST_CHARACTERS` characters; never raises."""
+        exact: Any = type(value)
+        if exact in (bool, types.NoneType, float, complex, types.EllipsisType):
+            return repr(value)
+        if exact is int:
+            return _render_int(value)  # type: ignore[arg-type]
+        if exact in (str, bytes, bytearray):
+            text: Any = value
+            return cut(repr(text[:MOST_CHARACTERS]) + ("…" if len(text) > MOST_CHARACTERS else ""))
+        if exact in _BRACKETS:
+            return self._render_container(value, exact, depth)
+        return self._render_foreign(value)
+
+    def _render_container(self, value: Any, exact: Any, depth: int) -> str:
+        opening, closing = _BRACKETS[exact]
+        size = len(value)
+        if not size:
+            return {set: "set()", frozenset: "frozenset()"}.get(exact, opening + closing)
+        if depth >= MOST_DEPTH:
+            return f"{opening}… {size} items{closing}"
+        shown: list[str] = []
+        room = MOST_CHARACTERS
+        for item in islice(_items(value, exact), MOST_ITEMS):
+            part = ": ".join(self.render(piece, depth + 1) for piece in item)
+            shown.append(part)
+            room -= len(part) + 2
+            if room < 0:
+                break
+        if size > len(shown):
+            shown.append(f"… {size} items")
+        inside = ", ".join(shown) + ("," if exact is tuple and size == 1 else "")
+        text = f"{opening}{inside}{closing}"
+        return cut(f"frozenset({text})" if exact is frozenset else text)
+
+    def _render_foreign(self, value: object) -> str:
+        left_s = self._until_s - wallclock.process_time()
+        if left_s <= 0:
+            return f"<{kind_of(value)}, not shown: values take too long>"
+        try:
+            with time_limit(min(VALUE_LIMIT_S, left_s)):
+                return _own_text(value)
+        except TooLong:
+            return "<repr takes too long>"
+        except RecursionError:
+            return "<repr calls itself without end>"
+        except MemoryError:
+            return "<repr uses up the memory>"
+        except BaseException as error:  # the program's own code may raise anything at all
+            return f"<repr raised {describe(error)}>"
+
+
+def _render_int(value: int) -> str:
+    bits = value.bit_length()
+    return str(value) if bits < 3.3 * MOST_DIGITS else f"<whole number of {bits} bits>"
+
+
+def _items(value: Any, exact: Any) -> Iterable[tuple[Any, ...]]:
+    return value.items() if exact is dict else ((item,) for item in value)
+
+
+def _own_text(value: Any) -> str:
+    kind: Any = type(value)
+    if kind.__module__ == "numpy" and kind.__name__ == "ndarray":
+        return cut(f"array(shape={value.shape}, dtype={value.dtype})")
+    # An exact str, even if the program returned a subclass.
+    text = _ADDRESS.sub("", str.__str__(repr(value))[: 2 * MOST_CHARACTERS])
+    return cut(text[:MOST_CHARACTERS] + ("…" if len(text) > MOST_CHARACTERS else ""))
+
+
+def describe(error: BaseException) -> str:
+    """Return type and message of an error; never raises."""
+    try:
+        with time_limit(VALUE_LIMIT_S):
+            message = str(error)
+    except BaseException:  # formatting the message may run code of the program
+        message = ""
+    return cut(f"{kind_of(error)}: {message}" if message else kind_of(error), 200)
+
+
+def evaluate(
+    renderer: Renderer, text: str, names: Mapping[str, Any], builtin: Any
+) -> tuple[str, str]:
+    """Return value and error of an expression, one of them empty.
+
+    Args:
+        renderer: Renders the value.
+        text: The expression.
+        names: Values of its names.
+        builtin: The program's builtins.
+    """
+    try:
+        with time_limit(VALUE_LIMIT_S):
+            value = eval(text.strip(), {"__builtins__": builtin, **names})
+    except TooLong:
+        return "", "takes too long"
+    except BaseException as error:  # any error of an expression is its answer
+        return "", describe(error)
+    return renderer.render(value), ""
+
+
+def evaluate_truth(text: str, names: Mapping[str, Any], builtin: Any) -> str:
+    """Return `.`, followed by a reason to pause if an expression is true or cannot be evaluated.
+
+    An expression with an undefined name is not true.
+    """
+    code = compile(text.strip(), "<break>", "eval", dont_inherit=True)
+    try:
+        with time_limit(VALUE_LIMIT_S):
+            return ".is true" if eval(code, {"__builtins__": builtin, **names}) else "."
+    except TooLong:
+        return ".takes too long"
+    except BaseException as error:  # any error of the condition is worth pausing for
+        if isinstance(error, NameError) and error.name in code.co_names:
+            return "."
+        return f".cannot be evaluated: {describe(error)}"

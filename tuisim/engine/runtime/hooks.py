@@ -1,0 +1,163 @@
+"""How the program's errors are told: where Python tells them, through the hooks that a program may replace."""
+
+from __future__ import annotations
+
+import os
+import sys
+import types
+from collections.abc import Callable
+from contextlib import suppress
+from typing import Any
+
+from tuisim.base.errors import LogError
+from tuisim.engine.runs.records import Stream
+from tuisim.engine.runtime import wallclock
+from tuisim.engine.runtime.loader import point_at_prelude
+from tuisim.engine.runtime.output import LineStream, OutputRecorder
+from tuisim.engine.runtime.patches.replacement import replace
+from tuisim.engine.runtime.session import Session, StopProgram
+from tuisim.engine.runtime.tracebacks import ErrorReport, point_at_namesake, report_error
+from tuisim.engine.shim.evdev.devices import point_at_gamepads
+from tuisim.engine.shim.unsupported.modules import point_at_package
+
+
+def safe_text(write: Callable[[object], str], value: object) -> str:
+    """Return the `str` or `repr` of a value, or a placeholder if that fails."""
+    try:
+        return write(value)
+    except BaseException:  # a program's own method may do anything
+        return f"<{type(value).__name__}, whose {write.__name__}() failed>"
+
+
+class ErrorHooks:
+    """The hooks of `sys` and `threading`.
+
+    Args:
+        session: The program's clock.
+        output: Where rows go.
+        stderr: The program's error output, unless it has another one.
+        source: Returns the program's text.
+    """
+
+    def __init__(
+        self,
+        session: Session,
+        output: OutputRecorder,
+        stderr: LineStream,
+        source: Callable[[], str],
+    ) -> None:
+        self._session, self._output, self._stderr, self._source = session, output, stderr, source
+
+    def install(self) -> None:
+        """Replace Python's own hooks."""
+        # Not earlier: its functions are patched first.
+        import threading
+
+        replace(sys, "excepthook", lambda _kind, error, _trace: self.show(error), (3, 3))
+        replace(sys, "unraisablehook", self._show_ignored, (1, 1))
+        vars(sys).update(__excepthook__=sys.excepthook, __unraisablehook__=sys.unraisablehook)
+        replace(threading, "excepthook", self._show_of_thread, (1, 1))
+        vars(threading)["__excepthook__"] = threading.excepthook
+        self._own = sys.excepthook
+
+    def report(self, error: BaseException, alone: bool = False) -> ErrorReport:
+        """Return the report of an error; `alone` as of `report_error`."""
+        if not alone:
+            point_at_prelude(error)
+            point_at_namesake(error, self._session.program_file)
+            point_at_package(error, os.path.dirname(self._session.program_file) or os.curdir)
+            point_at_gamepads(error)
+        report = report_error(error, self._session.program_file, self._source(), alone)
+        text, summary = self._output.stable(report.text, report.summary)
+        return ErrorReport(text, report.line, summary)
+
+    def show_uncaught(self, error: BaseException) -> ErrorReport:
+        """Show the error that ended the program, as its hook wants it; return the report of it.
+
+        Raises:
+            SystemExit: by the hook of the program.
+        """
+        report = self.report(error)
+        hook = vars(sys).get("excepthook", self)
+        if hook is self:
+            self.write("sys.excepthook is missing\n" + report.text)
+        elif hook is self._own:
+            self.write(report.text)
+        else:
+            try:
+                hook(type(error), error, error.__traceback__)
+            except (SystemExit, StopProgram, LogError):
+                raise
+            except BaseException as further:  # as in Python, both are shown
+                further.__context__ = None
+                told = self.report(further).text
+                self.write(
+                    f"Error in sys.excepthook:\n{told}\nOriginal exception was:\n{report.text}"
+                )
+        return report
+
+    def show(self, error: BaseException | None) -> None:
+        """Show an error that ends nothing; a stop is none."""
+        if error is not None and not isinstance(error, StopProgram):
+            self.write(self.report(error).text)
+
+    def _show_of_thread(self, args: Any) -> None:
+        kind, error, _trace, thread = args
+        if error is None or issubclass(kind, SystemExit | StopProgram):
+            # As in Python: it ends the thread silently.
+            return
+        name = thread.name if thread is not None else wallclock.get_ident()
+        self.write(f"Exception in thread {name}:\n{self.report(error).text}")
+
+    def _show_ignored(self, ignored: Any) -> None:
+        """Show an error that Python cannot raise, such as in a `__del__`; a stop is raised again elsewhere."""
+        error = ignored.exc_value
+        if isinstance(error, StopProgram):
+            self._session.stop_lost()
+            return
+        what = "" if ignored.object is None else f": {safe_text(repr, ignored.object)}"
+        text = "" if error is None else self.report(error, alone=True).text
+        self.write(f"{ignored.err_msg or 'Exception ignored in'}{what}\n{text}")
+
+    def show_end_of_bare_thread(
+        self, function: Callable[..., object], error: BaseException
+    ) -> None:
+        """Show the error that ended a thread of `_thread`."""
+        hook = vars(sys).get("unraisablehook")
+        message = "Exception ignored in thread started by"
+        ignored = types.SimpleNamespace(
+            exc_type=type(error),
+            exc_value=error,
+            exc_traceback=error.__traceback__,
+            err_msg=message,
+            object=function,
+        )
+        (hook if callable(hook) else self._show_ignored)(ignored)
+
+    def write(self, text: str) -> None:
+        """Write an error text to where the program has its error output."""
+        file = vars(sys).get("stderr")
+        if file is None:
+            # As in Python: there is none.
+            return
+        if file is not self._stderr:
+            try:
+                file.write(text)
+                file.flush()
+            except Exception:  # the program's own stream; an error must be told nevertheless
+                pass
+            else:
+                return
+        with suppress(LogError):
+            # A full file reports itself.
+            for line in (self._stderr.take_part() + text).rstrip("\n").split("\n"):
+                self._output.row(line, Stream.STDERR)
+
+
+def flush_streams(own: tuple[LineStream, LineStream]) -> None:
+    """Flush the streams that a program has put in the place of its own, as Python does at the end."""
+    for stream in (vars(sys).get("stdout"), vars(sys).get("stderr")):
+        if stream is not None and not any(stream is one for one in own):
+            # What is wrong with them is nobody's concern any more.
+            with suppress(Exception):
+                stream.flush()

@@ -1,0 +1,60 @@
+"""The code of programs that are run again and again, compiled before their processes are forked."""
+
+from __future__ import annotations
+
+import signal
+import sys
+import types
+import warnings
+
+from tuisim.base.source import Program
+from tuisim.engine.runtime import wallclock
+from tuisim.engine.runtime.loader import compile_program
+
+MOST_KNOWN = 8
+MOST_CHARACTERS = 1 << 16
+MOST_CPU_S = 1.0
+"""A program that takes longer to compile ends this process; its runs are then started by themselves."""
+SPARE_FRAMES = 100
+"""What can be compiled with this many frames less can be compiled by the process of a run."""
+
+
+class KnownPrograms:
+    """Compiles a program when it is run for the second time.
+
+    The first time its own process does it, as always when there is anything to tell: an error, or a warning.
+    """
+
+    def __init__(self) -> None:
+        self._seen: set[tuple[str, str]] = set()
+        self._codes: dict[tuple[str, str], types.CodeType | None] = {}
+
+    def code(self, program: Program) -> types.CodeType | None:
+        """Return the code of a program that is about to be run; None if its own process has to compile it."""
+        key = program.file, program.text
+        if len(program.text) > MOST_CHARACTERS:
+            return None
+        if key not in self._seen:
+            if len(self._seen) >= MOST_KNOWN:
+                self._seen.clear()
+                self._codes.clear()
+            self._seen.add(key)
+            return None
+        if key not in self._codes:
+            self._codes[key] = _compiled(*key)
+        return self._codes[key]
+
+
+def _compiled(file: str, text: str) -> types.CodeType | None:
+    before = sys.getrecursionlimit()
+    sys.setrecursionlimit(before - SPARE_FRAMES)
+    wallclock.set_timer(signal.ITIMER_VIRTUAL, MOST_CPU_S)
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            return compile_program(text, file)
+    except Exception:  # whatever it is, it is told by the program's own process
+        return None
+    finally:
+        wallclock.set_timer(signal.ITIMER_VIRTUAL, 0.0)
+        sys.setrecursionlimit(before)

@@ -1,0 +1,170 @@
+"""From source text to code: loop hooks, prelude, and names of the prelude without a part on this robot."""
+
+from __future__ import annotations
+
+import ast
+import types
+from collections.abc import Iterator
+from typing import Any, NoReturn
+
+from tuisim.base.source import PRELUDE_TEXTS
+
+
+class MissingPart:
+    """Placeholder for a name of the prelude when the robot has no such part.
+
+    Args:
+        name: The name.
+        error: The error on creating the part; raised again on any use.
+    """
+
+    __slots__ = ("_error", "_name")
+    _name: str
+    _error: Exception
+
+    def __init__(self, name: str, error: Exception) -> None:
+        error.add_note(f"`{name}` is a predefined name, for a part of Default_Robot.")
+        object.__setattr__(self, "_name", name)
+        object.__setattr__(self, "_error", error.with_traceback(None))
+
+    def __repr__(self) -> str:
+        return f"<{self._name}: this robot has no such part>"
+
+    def _used(self, *_: Any, **__: Any) -> NoReturn:
+        raise self._error.with_traceback(None)
+
+    __getattr__ = __setattr__ = __delattr__ = __call__ = __str__ = _used
+
+
+PRELUDE_FILE = "<prelude>"
+LOOP_HOOK = "__loop_turn__"
+
+
+class _LoopHooks(ast.NodeTransformer):
+    """Inserts a call of the loop hook at the start of every loop body."""
+
+    def _hooked(self, node: ast.For | ast.While | ast.AsyncFor) -> ast.AST:
+        self.generic_visit(node)
+        call = ast.Expr(ast.Call(ast.Name(LOOP_HOOK, ast.Load()), [], []))
+        first = node.body[0]
+        for part in ast.walk(call):
+            ast.copy_location(part, first)
+        node.body.insert(0, call)
+        return node
+
+    visit_For = visit_While = visit_AsyncFor = _hooked  # noqa: N815
+
+
+_FIRST_BYTE, _LAST_BYTE = "\udc80", "\udcff"
+"""The lone surrogates that stand for bytes of a file that are not UTF-8."""
+_MOST_DECLARATION = 1000
+"""Characters at the beginning of a program in which it may declare its encoding."""
+
+
+def _check_encoding(text: str, file: str) -> None:
+    """Raise the SyntaxError that Python raises for a file that is not text in the encoding that it declares."""
+    if "coding" in text[:_MOST_DECLARATION] and (declared := _declared_encoding(text)):
+        number, encoding = declared
+        if not _is_text_encoding(encoding):
+            raise SyntaxError(f"encoding problem: {encoding}", (file, number, None, None))
+    if text.isascii() and "\0" not in text:
+        return
+    for number, line in enumerate(text.split("\n"), start=1):
+        if wrong := next((one for one in line if _FIRST_BYTE <= one <= _LAST_BYTE), ""):
+            byte = f"\\x{ord(wrong) & 0xFF:02x}"
+            what = (
+                f"Non-UTF-8 code starting with '{byte}', but no encoding declared; save it as UTF-8"
+            )
+            raise SyntaxError(what, (file, number, None, None))
+        if "\0" in line:
+            raise SyntaxError("source code cannot contain null bytes", (file, number, None, None))
+
+
+def _declared_encoding(text: str) -> tuple[int, str] | None:
+    """Return the line of a declaration and its encoding, by the rules of PEP 263; None if there is none."""
+    import re
+
+    for number, line in enumerate(text.split("\n", 2)[:2], start=1):
+        if found := re.match(r"[ \t\f]*#.*?coding[:=][ \t]*([-\w.]+)", line, re.ASCII):
+            return number, found[1]
+        if not re.match(r"[ \t\f]*(?:#|$)", line):
+            break
+    return None
+
+
+def _is_text_encoding(name: str) -> bool:
+    try:
+        return b"a\n".decode(name) == "a\n"
+    except (LookupError, ValueError):
+        return False
+
+
+def compile_program(text: str, file: str) -> types.CodeType:
+    """Return the program's code, with loop hooks and its own line numbers.
+
+    Raises:
+        SyntaxError, ValueError: the text is not Python.
+    """
+    _check_encoding(text, file)
+    return compile_with_hooks(text, file)
+
+
+def compile_with_hooks(source: str | bytes, file: str) -> types.CodeType:
+    """Return the code of a program or of one of its modules, with loop hooks and its own line numbers.
+
+    Raises:
+        SyntaxError, ValueError: the source is not Python.
+    """
+    tree = ast.parse(source, file)
+    return compile(_LoopHooks().visit(tree), file, "exec", dont_inherit=True)
+
+
+def compile_prelude(name: str) -> Iterator[tuple[str, types.CodeType]]:
+    """Yield the statements of a prelude: the name of the part that it creates, or an empty string, and its code.
+
+    Raises:
+        KeyError: no prelude has this name.
+    """
+    for statement in ast.parse(PRELUDE_TEXTS[name], PRELUDE_FILE).body:
+        code = compile(ast.Module([statement], []), PRELUDE_FILE, "exec", dont_inherit=True)
+        match statement:
+            case ast.Assign(targets=[ast.Name(id=part)]):
+                yield part, code
+            case _:
+                yield "", code
+
+
+def point_at_prelude(error: BaseException) -> None:
+    """Add a note to an error about a name of the prelude: how the program can get that name."""
+    if not isinstance(error, NameError) or not error.name:
+        return
+    statement = _statement_of(error.name)
+    if statement is None:
+        return
+    magic = "put `# %%sim_magic_preloaded` into its first line"
+    match statement:
+        case ast.ImportFrom(module=str(module)):
+            how = f", or `from {module} import {error.name}`"
+        case ast.Assign():
+            how = f", or make it: `{ast.unparse(statement)}`"
+        case _:
+            how = ""
+    error.add_note(
+        f"`{error.name}` is a predefined name, which this program has not asked for: {magic}{how}."
+    )
+
+
+def _statement_of(name: str) -> ast.stmt | None:
+    for statement in ast.parse(PRELUDE_TEXTS["preloaded"]).body:
+        match statement:
+            case ast.ImportFrom(names=aliases):
+                made = [alias.name for alias in aliases]
+            case ast.Assign(targets=[ast.Name(id=target)]):
+                made = [target]
+            case ast.FunctionDef(name=function):
+                made = [function]
+            case _:
+                made = []
+        if name in made:
+            return statement
+    return None

@@ -1,0 +1,183 @@
+"""Notes which files the program reads that were there before it, or that it looked for in vain.
+
+They may have come from an earlier run, and the same program may do something else without them.
+"""
+
+from __future__ import annotations
+
+import builtins
+import os
+import sys
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+from tuisim.engine.runs.side_files import (
+    MOST_READS,
+    FileRead,
+    note_read,
+    note_reads_left_out,
+    state_of,
+)
+from tuisim.engine.runtime.modules import OWN_FILES, is_own
+from tuisim.engine.runtime.patches.replacement import replace
+
+MOST_KNOWN = 100_000
+"""Of so many files it is remembered that they were opened."""
+LONGEST_PATH = 4096
+"""No system opens a file of a longer one."""
+_SYSTEM = ("/usr", "/etc", "/proc", "/sys", "/dev")
+_SHARED = "/dev/shm/"
+_MODES = frozenset("rwxabt+")
+
+
+def _given(at: int, name: str, given: Sequence[Any], named: Mapping[str, Any]) -> Any:
+    """Return an argument of a call; None if it is not given, which is then for the real function to judge."""
+    return given[at] if at < len(given) else named.get(name)
+
+
+class FileReads:
+    """The files that a program has opened."""
+
+    def __init__(self) -> None:
+        self._folder: Path | None = None
+        self._run_folder = os.sep
+        self._ignored: tuple[str, ...] = ()
+        self._program_file = ""
+        self._seen: set[str] = set()
+        self._made: set[str] = set()
+        """Files that the run has made itself: what it reads there is its own."""
+        self._before: dict[str, FileRead] = {}
+        """Files to which the run has added something, as they were before."""
+        self._noted = self._left_out = 0
+
+    def patch(self) -> None:
+        """Replace the functions that open and rename files."""
+        real_open, real_os_open = builtins.open, os.open
+
+        def open_noted(*given: Any, **named: Any) -> Any:
+            if self._folder is not None:
+                self._opens(
+                    *(_given(at, name, given, named) for at, name in enumerate(("file", "mode")))
+                )
+            return real_open(*given, **named)
+
+        def os_open_noted(*given: Any, **named: Any) -> Any:
+            # A path in a folder that is given by its descriptor is not known.
+            if self._folder is not None and named.get("dir_fd") is None:
+                self._os_opens(
+                    *(_given(at, name, given, named) for at, name in enumerate(("path", "flags")))
+                )
+            return real_os_open(*given, **named)
+
+        replace(builtins, "open", open_noted)
+        replace(os, "open", os_open_noted)
+        for name in ("rename", "replace"):
+            replace(os, name, self._moving(getattr(os, name)))
+
+    def _moving(self, real: Any) -> Any:
+        def move(*given: Any, **named: Any) -> None:
+            real(*given, **named)
+            if (
+                self._folder is not None
+                and len(given) == 2
+                and not named
+                and self._absolute(given[0]) in self._made
+            ):
+                self._make(self._absolute(given[1]))
+
+        return move
+
+    def begin(self, folder: Path, own_folder: str, program_file: str) -> None:
+        """Note from now on what the program reads.
+
+        Args:
+            folder: Of the run.
+            own_folder: Of the program.
+            program_file: The program, which is no data.
+        """
+        self._program_file = os.path.abspath(program_file)
+        around = {
+            place
+            for place in (sys.prefix, sys.base_prefix)
+            if not f"{own_folder}{os.sep}".startswith(place)
+        }
+        self._run_folder = f"{folder}{os.sep}"
+        self._ignored = tuple(f"{place}{os.sep}" for place in (*_SYSTEM, *sorted(around)))
+        self._folder = folder
+
+    def end(self) -> None:
+        """Note how many more files were read."""
+        if self._folder is not None and self._left_out:
+            # What is noted stays without it.
+            with suppress(OSError):
+                note_reads_left_out(self._folder, self._left_out)
+
+    def _opens(self, file: Any, mode: Any) -> None:
+        mode = "r" if mode is None else mode
+        if isinstance(mode, str) and _MODES.issuperset(mode):
+            makes = "w" in mode or "x" in mode
+            self._opened(
+                file, "r" in mode or "+" in mode, makes or "a" in mode or "+" in mode, makes
+            )
+
+    def _os_opens(self, path: Any, flags: Any) -> None:
+        if isinstance(flags, int):
+            access = flags & os.O_ACCMODE
+            makes = bool(flags & (os.O_TRUNC | os.O_EXCL))
+            self._opened(path, access != os.O_WRONLY, access != os.O_RDONLY or makes, makes)
+
+    def _opened(self, file: Any, reads: bool, writes: bool, makes: bool) -> None:
+        path = self._absolute(file)
+        if not path or path in self._made or path in self._seen or not self._is_data(path):
+            return
+        if makes:
+            self._make(path)
+            return
+        was = self._before.get(path) or state_of(path)
+        if was is None:
+            return
+        if writes and not was.there:
+            self._make(path)
+        elif reads:
+            self._note(was)
+        elif len(self._before) < MOST_KNOWN:
+            self._before[path] = was
+
+    def _make(self, path: str) -> None:
+        if len(self._made) < MOST_KNOWN:
+            self._made.add(path)
+
+    @staticmethod
+    def _absolute(file: Any) -> str:
+        """Return the absolute path; empty for a descriptor, and for what is no path."""
+        if isinstance(file, os.PathLike):
+            file = os.fspath(file)
+        if not isinstance(file, str | bytes) or len(file) > LONGEST_PATH:
+            return ""
+        try:
+            return os.path.abspath(os.fsdecode(file))
+        except OSError:
+            # The working directory is gone.
+            return ""
+
+    def _is_data(self, path: str) -> bool:
+        if path.startswith(self._run_folder) or (
+            path.startswith(self._ignored) and not path.startswith(_SHARED)
+        ):
+            return False
+        return is_own(path) and path != self._program_file and path not in OWN_FILES
+
+    def _note(self, read: FileRead) -> None:
+        assert self._folder is not None
+        if len(self._seen) >= MOST_KNOWN:
+            return
+        self._seen.add(read.path)
+        if self._noted >= MOST_READS:
+            self._left_out += 1
+            return
+        self._noted += 1
+        # Without space the run ends by itself, and says so.
+        with suppress(OSError):
+            note_read(self._folder, read)

@@ -1,0 +1,357 @@
+"""Waiting for sockets and the brick's files in simulated time: `select`, `selectors` and `socket`."""
+
+from __future__ import annotations
+
+import errno
+import os
+import select
+import stat
+import types
+from collections.abc import Callable
+from functools import wraps
+from typing import Any, NoReturn, TypeVar
+
+from tuisim.base.errors import NotSimulated
+from tuisim.engine.core.profile import NS_PER_S
+from tuisim.engine.runs.readings import READING_CODES, SOCKET_PORT
+from tuisim.engine.runtime.control import THREADS
+from tuisim.engine.runtime.patches.replacement import replace
+from tuisim.engine.runtime.session import Session
+from tuisim.engine.shim.files.entries import OpenFile
+from tuisim.engine.shim.files.open_files import OpenFiles
+from tuisim.engine.shim.unsupported.modules import refuse_bluetooth
+from tuisim.engine.shim.waits import Wait, waits_for
+
+Found = TypeVar("Found")
+
+POLL_NS = 1_000_000
+"""Interval at which a wait checks for the effects of other threads."""
+_NS_PER_MS = 1_000_000
+
+_SELECTORS = {
+    "PollSelector": "poll",
+    "EpollSelector": "epoll",
+    "KqueueSelector": "kqueue",
+    "DevpollSelector": "devpoll",
+}
+"""Selector classes, and the class of `select` that each is based on."""
+_ALL_EVENTS = select.POLLIN | select.POLLPRI | select.POLLOUT
+"""What `register` asks for by default."""
+_SELECTED = (select.POLLIN, select.POLLOUT, select.POLLPRI)
+"""The event that each list of files waits for in `select.select`."""
+_READS = ("_accept", "recv", "recv_into", "recvfrom", "recvfrom_into", "recvmsg", "recvmsg_into")
+_WRITES = ("send", "sendto")
+
+
+class FileWaits:
+    """Polls sockets without blocking, and the brick's files, and waits on the simulated clock.
+
+    Args:
+        session: The run.
+        devices: The device files that the program has open.
+    """
+
+    def __init__(self, session: Session, devices: OpenFiles) -> None:
+        self._session, self.devices = session, devices
+        self._select = select.select
+        self._classes = {name: getattr(select, name, None) for name in _SELECTORS.values()}
+
+    @waits_for(Wait.FILES)
+    def until_found(
+        self, look: Callable[[], Found], timeout_ns: int | None, devices: bool = False
+    ) -> Found:
+        """Poll until something is found or the timeout is over; return the last result.
+
+        Args:
+            look: Polls without blocking; returns something falsy if nothing is ready.
+            timeout_ns: Longest simulated time to wait; at most 0 polls once, None waits indefinitely.
+            devices: Whether device files are among those polled: a tick may change them.
+        """
+        session = self._session
+        found = look()
+        if found or (timeout_ns is not None and timeout_ns <= 0):
+            if not found:
+                session.command()
+            return found
+        until = None if timeout_ns is None else session.now + timeout_ns
+        while not found and (until is None or session.now < until):
+            rest = POLL_NS if until is None else until - session.now
+            if devices:
+                to_tick = session.sim.next_change_ns(session.now) - session.now
+                rest = to_tick if until is None else min(rest, to_tick)
+            session.spend(min(rest, POLL_NS) if session.flags & THREADS else rest)
+            found = look()
+        return found
+
+    # select
+
+    def patch_select(self) -> None:
+        """Replace the blocking functions of `select`."""
+
+        def simulated(readers: Any, writers: Any, others: Any, timeout: Any = None) -> Any:
+            groups = [list(group) for group in (readers, writers, others)]
+            sockets = [[file for file in group if not self.find_device(file)] for group in groups]
+
+            def look() -> tuple[Any, ...]:
+                # The real function validates the arguments.
+                found = self._select(sockets[0], sockets[1], sockets[2], min(timeout or 0, 0))
+                ready = tuple(
+                    [file for file in group if file in there or self._is_ready(file, events)]
+                    for group, there, events in zip(groups, found, _SELECTED, strict=True)
+                )
+                return ready if any(ready) else ()
+
+            devices = sockets != groups
+            if timeout == 0 and not devices:
+                return look() or ([], [], [])
+            limit = _nanoseconds(timeout, NS_PER_S)
+            return self.until_found(look, limit, devices) or ([], [], [])
+
+        replace(select, "select", simulated, (3, 4))
+        if (real_poll := self._classes["poll"]) is not None:
+            replace(select, "poll", lambda: _Polling(self, real_poll()), (0, 0))
+        if self._classes["epoll"] is not None:
+            vars(select)["epoll"] = _RefusedEpoll
+
+    def find_device(self, file: Any) -> OpenFile | None:
+        """Return the device file behind a file; None for a socket.
+
+        Raises:
+            NotSimulated: it is neither.
+        """
+        opened = self.devices.opened(file)
+        if opened is None and not _is_socket(file):
+            raise NotSimulated(
+                "waiting for a file is not part of the simulated brick",
+                "wait for sockets or the brick's files; use queue.Queue between threads",
+            )
+        return opened
+
+    def _is_ready(self, file: Any, events: int) -> bool:
+        opened = self.devices.opened(file)
+        return opened is not None and bool(opened.file.ready(opened) & events)
+
+    # selectors
+
+    def finish_selectors(self, module: types.ModuleType) -> None:
+        """Let every selector wait in simulated time; they poll the files with the real functions."""
+        selector: Any = module
+        selector.SelectSelector._select = staticmethod(self._select)
+        for name in ("SelectSelector", *_SELECTORS):
+            found = getattr(module, name, None)
+            if found is None:
+                continue
+            if name in _SELECTORS:
+                found._selector_cls = self._selector_class(_SELECTORS[name])
+            found.select = self._selector_select(found.select)
+
+    def _selector_class(self, name: str) -> Any:
+        """Return what a selector polls with; it waits itself."""
+        real: Any = self._classes[name]
+        return staticmethod(lambda: _AtOnce(self, real())) if name in ("poll", "epoll") else real
+
+    def _selector_select(self, look: Callable[[Any, float], Any]) -> Callable[..., Any]:
+        @wraps(look)
+        def select_simulated(selector: Any, timeout: float | None = None) -> Any:
+            limit = _nanoseconds(timeout, NS_PER_S)
+            return self.until_found(lambda: look(selector, 0), limit, _polls_devices(selector))
+
+        return select_simulated
+
+    # socket
+
+    def finish_socket(self, module: types.ModuleType) -> None:
+        """Let blocking sockets wait in simulated time, and refuse those for Bluetooth."""
+        refuse_bluetooth(module, self._session.sim.spec.profile.motor_law.library)
+        sockets: Any = module.socket
+        for names, writes in ((_READS, False), (_WRITES, True)):
+            for name in names:
+                if hasattr(sockets, name):
+                    setattr(sockets, name, self._after_wait(getattr(sockets, name), writes))
+        sockets.sendall = self._sendall(sockets.sendall, sockets.send)
+        if hasattr(sockets, "sendmsg"):
+            sockets.sendmsg = _as_one(self._after_wait(sockets.sendmsg, writes=True))
+        sockets.connect = self._connect(sockets.connect, sockets.connect_ex)
+
+    def _wait_for_socket(self, socket: Any, writes: bool, code: int | None = None) -> None:
+        """Wait until a socket is ready; each vain look at one that reads is recorded, by its code."""
+        timeout_s = socket.gettimeout()
+        if timeout_s == 0.0:
+            return
+        readers, writers = ([], [socket]) if writes else ([socket], [])
+
+        def look() -> bool:
+            is_ready = any(self._select(readers, writers, [], 0))
+            if code is not None and not is_ready:
+                self._session.note_reading(code)
+            return is_ready
+
+        if not self.until_found(look, _nanoseconds(timeout_s, NS_PER_S)):
+            raise TimeoutError("timed out")
+
+    def _after_wait(self, real: Any, writes: bool) -> Callable[..., Any]:
+        mode = "accept" if real.__name__ == "_accept" else "receive"
+        code = None if writes else READING_CODES[SOCKET_PORT, mode]
+
+        @wraps(real)
+        def method(socket: Any, *given: Any, **named: Any) -> Any:
+            self._wait_for_socket(socket, writes, code)
+            return real(socket, *given, **named)
+
+        return method
+
+    def _sendall(self, real: Any, send: Callable[..., int]) -> Callable[..., Any]:
+        @wraps(real)
+        def sendall(socket: Any, data: Any, flags: int = 0) -> None:
+            rest = memoryview(data).cast("B")
+            # As much at a time as fits: the reader may be another thread of the program.
+            while len(rest):
+                rest = rest[send(socket, rest, flags | _dont_wait()) :]
+
+        return sendall
+
+    def _connect(self, real: Any, connect_ex: Callable[[Any, Any], int]) -> Callable[..., Any]:
+        @wraps(real)
+        def connect(socket: Any, address: Any) -> None:
+            timeout_s = socket.gettimeout()
+            if timeout_s == 0.0:
+                real(socket, address)
+                return
+            socket.settimeout(0.0)
+            try:
+                code = connect_ex(socket, address)
+            finally:
+                socket.settimeout(timeout_s)
+            if code in (errno.EINPROGRESS, errno.EALREADY, errno.EAGAIN):
+                self._wait_for_socket(socket, writes=True)
+                code = _pending_error(socket)
+            if code:
+                raise OSError(code, os.strerror(code))
+
+        return connect
+
+
+def _descriptor(file: Any) -> int:
+    return file if isinstance(file, int) else int(file.fileno())
+
+
+def _is_socket(file: Any) -> bool:
+    try:
+        return stat.S_ISSOCK(os.fstat(_descriptor(file)).st_mode)
+    except (AttributeError, OSError, TypeError, ValueError):
+        # The real function raises its error.
+        return True
+
+
+class _RefusedEpoll:
+    """Replaces `select.epoll`, which `selectors` opens and closes when it is imported."""
+
+    def __init__(self, *_arguments: Any) -> None:
+        pass
+
+    def close(self) -> None:
+        """Do nothing."""
+
+    def __getattr__(self, _name: str) -> NoReturn:
+        raise NotSimulated("select.epoll is not part of the simulated brick", "use select.poll")
+
+
+def _pending_error(socket: Any) -> int:
+    import socket as module
+
+    return int(socket.getsockopt(module.SOL_SOCKET, module.SO_ERROR))
+
+
+def _dont_wait() -> int:
+    import socket as module
+
+    return int(module.MSG_DONTWAIT)
+
+
+def _nanoseconds(timeout: Any, per_unit: int) -> int | None:
+    return None if timeout is None else round(timeout * per_unit)
+
+
+class _Polling:
+    """Wraps an object that polls files; only the waiting is replaced.
+
+    Args:
+        waits: How to wait.
+        real: The wrapped object.
+    """
+
+    def __init__(self, waits: FileWaits, real: Any) -> None:
+        self._waits, self._real = waits, real
+        self._polled: dict[int, tuple[OpenFile, int]] = {}
+        """The device files, and the events that are asked for, by descriptor."""
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._real, name)
+
+    @property
+    def has_devices(self) -> bool:
+        """Whether device files are among those polled."""
+        return bool(self._polled)
+
+    def register(self, file: Any, *events: int) -> None:
+        """Add a file."""
+        opened = self._waits.find_device(file)
+        if opened is None:
+            self._real.register(file, *events)
+        else:
+            self._polled[_descriptor(file)] = opened, events[0] if events else _ALL_EVENTS
+
+    def modify(self, file: Any, events: int) -> None:
+        """Change what is asked for of a file."""
+        if _descriptor(file) not in self._polled:
+            self._real.modify(file, events)
+        else:
+            self.register(file, events)
+
+    def unregister(self, file: Any) -> None:
+        """Remove a file."""
+        if self._polled.pop(_descriptor(file), None) is None:
+            self._real.unregister(file)
+
+    def poll(self, timeout_ms: Any = None) -> Any:
+        """Return the events; blocks in simulated time."""
+        # Negative means without limit, as in the real one.
+        unlimited = timeout_ms is None or timeout_ms < 0
+        limit = None if unlimited else _nanoseconds(timeout_ms, _NS_PER_MS)
+        return self._waits.until_found(self._look, limit, self.has_devices)
+
+    def _look(self, *more: Any) -> Any:
+        found = self._real.poll(0, *more)
+        for fd, (opened, wanted) in self._polled.items():
+            if ready := opened.file.ready(opened) & (wanted | select.POLLERR):
+                found.append((fd, ready))
+        return found
+
+
+class _AtOnce(_Polling):
+    """The same without waiting."""
+
+    def poll(self, timeout_ms: Any = None, *more: Any) -> Any:
+        """Return the events that there are."""
+        return self._look(*more)
+
+
+def _polls_devices(selector: Any) -> bool:
+    poll = getattr(selector, "_selector", None)
+    return isinstance(poll, _Polling) and poll.has_devices
+
+
+def _as_one(real: Any) -> Callable[..., int]:
+    """Return a method that sends parts as one, which an isolated program may, unlike to send descriptors with them."""
+
+    @wraps(real)
+    def sendmsg(
+        socket: Any, buffers: Any, ancdata: Any = (), flags: int = 0, address: Any = None
+    ) -> int:
+        if ancdata:
+            return int(real(socket, buffers, ancdata, flags, address))
+        data = b"".join(buffers)
+        sends = socket.send(data, flags) if address is None else socket.sendto(data, flags, address)
+        return int(sends)
+
+    return sendmsg

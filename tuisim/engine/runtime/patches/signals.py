@@ -1,0 +1,124 @@
+"""Signals of a program: the interrupt that it sends to itself, in simulated time; alarms are refused."""
+
+from __future__ import annotations
+
+import _thread
+import os
+import signal
+import types
+from sys import _getframe
+from typing import Any, NoReturn
+
+from tuisim.base.errors import NotSimulated
+from tuisim.engine.runtime import wallclock
+from tuisim.engine.runtime.patches.replacement import replace
+from tuisim.engine.runtime.scheduler import Scheduler
+from tuisim.engine.runtime.session import Session
+
+ALARMS = ("alarm", "setitimer", "getitimer")
+
+
+class Interrupt:
+    """The interrupt of a program, otherwise sent by a terminal: it reaches the main thread at a fixed instant.
+
+    The signal itself belongs to the runtime: the program's handler is only stored here.
+
+    Args:
+        session: Knows the program's lines.
+        scheduler: Calls the handler in the main thread.
+    """
+
+    def __init__(self, session: Session, scheduler: Scheduler) -> None:
+        self._session, self._scheduler = session, scheduler
+        self.handler: Any = signal.default_int_handler
+        """The program's handler, or the number of a standard action."""
+
+    def send(self) -> None:
+        """Call the handler at once in the main thread; otherwise as soon as that waits."""
+        if self.handler in (signal.SIG_IGN, None):
+            return
+        if self._scheduler.current is self._scheduler.main:
+            self._call()
+        else:
+            self._scheduler.interrupt_main(self._call)
+
+    def _call(self) -> None:
+        if self.handler == signal.SIG_DFL:
+            wallclock.set_signal(signal.SIGINT, self.handler)
+            wallclock.signals.raise_signal(signal.SIGINT)
+        self.handler(int(signal.SIGINT), self._program_frame())
+
+    def _program_frame(self) -> types.FrameType | None:
+        frame: types.FrameType | None = _getframe(1)
+        while frame is not None and frame.f_code.co_filename != self._session.program_file:
+            frame = frame.f_back
+        return frame
+
+
+def patch_signals(session: Session, scheduler: Scheduler) -> None:
+    """Replace the functions of `signal`, `os` and `_thread` that have to do with alarms and interrupts."""
+    interrupt = Interrupt(session, scheduler)
+    for name in ALARMS:
+        replace(signal, name, lambda *_: _refuse_alarm())
+    replace(signal, "pause", scheduler.pause, (0, 0))
+    _patch_sending(interrupt)
+    _patch_handlers(interrupt)
+
+
+def _refuse_alarm() -> NoReturn:
+    raise NotSimulated(
+        "an alarm is not part of the simulated brick",
+        "use threading.Timer, or compare time.time() in the loop",
+    )
+
+
+def _patch_sending(interrupt: Interrupt) -> None:
+    real_kill, real_raise, real_interrupt = (
+        os.kill,
+        wallclock.signals.raise_signal,
+        _thread.interrupt_main,
+    )
+
+    def kill(pid: Any, number: Any) -> None:
+        if number == signal.SIGINT and pid == wallclock.getpid():
+            interrupt.send()
+        else:
+            real_kill(pid, number)
+
+    def raise_signal(number: Any) -> None:
+        if number == signal.SIGINT:
+            interrupt.send()
+        else:
+            real_raise(number)
+
+    def interrupt_main(number: Any = signal.SIGINT) -> None:
+        if number == signal.SIGINT:
+            interrupt.send()
+        else:
+            real_interrupt(number)
+
+    replace(os, "kill", kill, (2, 2))
+    replace(signal, "raise_signal", raise_signal, (1, 1))
+    replace(_thread, "interrupt_main", interrupt_main, (0, 1))
+
+
+def _patch_handlers(interrupt: Interrupt) -> None:
+    real_signal, real_getsignal = wallclock.set_signal, wallclock.signals.getsignal
+
+    def set_handler(number: Any, handler: Any) -> Any:
+        if number == signal.SIGALRM:
+            _refuse_alarm()
+        before = real_signal(number, handler)
+        if number != signal.SIGINT:
+            return before
+        # The handler was valid for the signal, which the runtime itself uses.
+        real_signal(number, before)
+        before, interrupt.handler = interrupt.handler, handler
+        return before
+
+    def handler_of(number: Any) -> Any:
+        return interrupt.handler if number == signal.SIGINT else real_getsignal(number)
+
+    # Those of `signal` call them, and convert numbers to enum members and back.
+    replace(wallclock.signals, "signal", set_handler, (2, 2))
+    replace(wallclock.signals, "getsignal", handler_of, (1, 1))

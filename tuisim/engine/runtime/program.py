@@ -1,0 +1,368 @@
+"""Runs the program: its streams, its input, its module, and how it ends."""
+
+from __future__ import annotations
+
+import atexit
+import builtins
+import gc
+import io
+import operator
+import os
+import signal
+import sys
+import types
+from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import replace as replace_fields
+from typing import NoReturn
+
+from tuisim.base.data_class import dataclass
+from tuisim.base.errors import LogError, NotSimulated
+from tuisim.engine.core.profile import NS_PER_S
+from tuisim.engine.protocol import NO_ANSWER, Answer, End, InputWanted
+from tuisim.engine.runs.records import Stream
+from tuisim.engine.runtime import wallclock
+from tuisim.engine.runtime.hooks import ErrorHooks, flush_streams, safe_text
+from tuisim.engine.runtime.loader import LOOP_HOOK, MissingPart, compile_prelude, compile_program
+from tuisim.engine.runtime.modules import find_modules_for
+from tuisim.engine.runtime.output import LineStream, OutputRecorder
+from tuisim.engine.runtime.patches.home_folder import HomeFolder
+from tuisim.engine.runtime.patches.replacement import replace
+from tuisim.engine.runtime.raw_output import RawOutput
+from tuisim.engine.runtime.run_config import RunConfig
+from tuisim.engine.runtime.scheduler import Scheduler
+from tuisim.engine.runtime.session import Deadlock, Session, StopProgram
+from tuisim.engine.runtime.stack import patch_faulthandler
+from tuisim.engine.runtime.tracebacks import line_in
+from tuisim.engine.runtime.unended_moves import finish_moves
+from tuisim.engine.shim.waits import Wait, waits_for
+
+
+@dataclass(frozen=True, slots=True)
+class ProgramOutcome:
+    """How the program ended; fields as in `engine.protocol.Ended`."""
+
+    end: End
+    exit_code: int = 0
+    summary: str = ""
+    error: str = ""
+    error_line: int = 0
+
+
+_INTERRUPTED = 128 + signal.SIGINT
+"""What a shell reports of a program that an interrupt has ended."""
+
+
+def _has_finalizer(value: object) -> bool:
+    """Return whether code of the program runs when a value is deleted."""
+    words = hasattr(type(value), "__del__") or isinstance(
+        value, types.GeneratorType | types.CoroutineType
+    )
+    return words and not isinstance(value, io.IOBase)
+
+
+def _is_data(value: object) -> bool:
+    """Return whether a value is neither code nor an open file."""
+    return not isinstance(
+        value, types.ModuleType | types.FunctionType | types.BuiltinFunctionType | type | io.IOBase
+    )
+
+
+def _add(outcome: ProgramOutcome, words: str) -> ProgramOutcome:
+    """Add words to the summary."""
+    return replace_fields(outcome, summary="; ".join(filter(None, (outcome.summary, words))))
+
+
+def _with_caught(outcome: ProgramOutcome) -> ProgramOutcome:
+    """Add to the summary what the program used that is not simulated, if it caught the error about it."""
+    if not NotSimulated.first or outcome.end not in (End.FINISHED, End.TIME_LIMIT):
+        return outcome
+    return _add(outcome, f"caught NotSimulated: {NotSimulated.first}")
+
+
+class ProgramRunner:
+    """The environment that the program sees in this process.
+
+    Args:
+        session: The program's clock.
+        output: Where its lines go.
+        scheduler: The program's threads.
+        loop_hook: Called at the start of each loop body.
+        leave: Ends the process at once, with an outcome.
+    """
+
+    def __init__(
+        self,
+        session: Session,
+        output: OutputRecorder,
+        scheduler: Scheduler,
+        loop_hook: Callable[[], None],
+        leave: Callable[[ProgramOutcome], NoReturn],
+    ) -> None:
+        self._session, self._output, self._scheduler = session, output, scheduler
+        self._leave = leave
+        self.stdout, self.stderr = LineStream(output), LineStream(output, Stream.STDERR)
+        self.raw = RawOutput(self.stdout.put_bytes, self.stderr.put_bytes)
+        self.hooks = ErrorHooks(session, output, self.stderr, lambda: self._config.program.text)
+        self._module = types.ModuleType("__main__")
+        self._prelude_error: BaseException | None = None
+        self.prepared: dict[str, int] = {}
+        """Identities of the objects that the prelude has created, by name."""
+        self.code: types.CodeType | None = None
+        """The program; None before it is compiled."""
+        self.names = self._module.__dict__
+        """The program's global names."""
+        output.names = lambda: self.names
+        self._loop_hook = loop_hook
+
+    def prepare(self, prelude: str) -> None:
+        """Do what comes before the program and is the same for every program: streams, and the prelude of a name."""
+        vars(builtins)[LOOP_HOOK] = self._loop_hook
+        self._patch()
+        vars(self._module)["__builtins__"] = builtins
+        sys.modules["__main__"] = self._module
+        # The prelude is free of charge.
+        self._session.free += 1
+        try:
+            self._run_prelude(prelude)
+        except BaseException as error:
+            # It is an error of the program, and is raised when that begins.
+            self._prelude_error = error
+        self._session.free -= 1
+
+    def _run_prelude(self, prelude: str) -> None:
+        for part, code in compile_prelude(prelude):
+            try:
+                exec(code, self.names)
+            except Exception as error:  # such as a sensor that this robot does not have
+                if not part:
+                    raise
+                self.names[part] = MissingPart(part, error)
+
+    def connect(self, config: RunConfig) -> None:
+        """Connect it with the program of a run."""
+        self._config, session = config, self._session
+        self._starts_in_own_folder = config.starts_in_own_folder
+        # A relative path would mean another file from there.
+        in_own_folder = os.path.join(config.own_folder, os.path.basename(session.program_file))
+        self._file = in_own_folder if self._starts_in_own_folder else session.program_file
+        self._answers = list(config.options.answers)
+        sys.argv = [self._file, *config.program.arguments]
+
+    def run(self) -> ProgramOutcome:
+        """Run prelude and program to their end; never raises."""
+        try:
+            return self._run()
+        except StopProgram as stop:
+            # The last write had no space.
+            return ProgramOutcome(stop.end, 0, stop.summary, error_line=stop.line)
+
+    def _run(self) -> ProgramOutcome:
+        outcome = self._outcome(self._execute)
+        joins = self._config.spec.profile.motor_law.library.joins_threads
+        if (
+            joins
+            and self._session.stop_reason is None
+            and outcome.end in (End.FINISHED, End.RAISED)
+        ):
+            # As in Python, also after an error or an exit of the main thread.
+            later = self._outcome(self._scheduler.join_all)
+            outcome = outcome if later.end is End.FINISHED else later
+        outcome = self._hold_at_end(outcome)
+        self._shut_down()
+        self._finish_streams()
+        if outcome.end is End.FINISHED and self._session.stop_reason is None:
+            outcome = self._finish_moves(outcome)
+        # A stop in another thread, an exit function or a `__del__` need not have arrived here.
+        stop = self._session.stop_reason
+        if stop is not None and outcome.end is End.FINISHED:
+            outcome = ProgramOutcome(stop.end, 0, stop.summary)
+        return _with_caught(outcome)
+
+    def _outcome(self, part: Callable[[], None]) -> ProgramOutcome:
+        try:
+            part()
+        except BaseException as error:  # any uncaught exception is an outcome of the program
+            return self._outcome_of(error)
+        return ProgramOutcome(End.FINISHED)
+
+    def _hold_at_end(self, outcome: ProgramOutcome) -> ProgramOutcome:
+        """Let the debugger pause a program that ended before the requested instant."""
+        if self._session.debugger is None or self._session.stop_reason is not None:
+            return outcome
+        try:
+            self._session.debugger.at_end()
+        except StopProgram as stop:
+            return ProgramOutcome(stop.end, 0, stop.summary, error_line=stop.line)
+        return outcome
+
+    def _finish_moves(self, outcome: ProgramOutcome) -> ProgramOutcome:
+        """Let the moves end that the program has begun, as they do on a brick, and say what it left running."""
+        try:
+            left = finish_moves(self._session)
+        except StopProgram as stop:
+            return ProgramOutcome(stop.end, 0, stop.summary)
+        return _add(outcome, left)
+
+    def _shut_down(self) -> None:
+        """Do what Python does at the end of a program: exit functions, open files, finalizers."""
+        try:
+            atexit._run_exitfuncs()
+            flush_streams((self.stdout, self.stderr))
+            if self._session.stop_reason is not None:
+                # Its traceback keeps frames alive.
+                self._session.stop_reason.with_traceback(None)
+            if self._session.stop_reason is None or len(self._scheduler.tasks) == 1:
+                # A thread that still computes when the user stops the program needs its names.
+                self._clear_module()
+        except BaseException as error:  # the program is over: later errors are only reported
+            self.hooks.show(error)
+
+    def _clear_module(self) -> None:
+        """Clear the program's module in such an order that finalizers still find most of its names."""
+        # The program's functions that are called all the time need theirs, too.
+        gc.collect()
+        wallclock.settrace(None)
+        wallclock.setprofile(None)
+        gc.callbacks.clear()
+        for removable in (_has_finalizer, _is_data):
+            for name in [
+                name
+                for name, value in self.names.items()
+                if removable(value) and not name.startswith("__")
+            ]:
+                self.names.pop(name, None)
+            gc.collect()
+        self.names.clear()
+        gc.collect()
+
+    def _finish_streams(self) -> None:
+        with suppress(LogError):
+            self.raw.finish()
+        for stream in (self.stdout, self.stderr):
+            try:
+                stream.finish()
+            except LogError:
+                # The file is full, and reports that itself.
+                continue
+
+    @property
+    def _has_brick_folder(self) -> bool:
+        """Whether the program's folder is in the home folder of the brick."""
+        return self._session.sim.spec.profile.starts_in_own_folder
+
+    def _patch(self) -> None:
+        sys.stdout, sys.stderr = self.stdout, self.stderr
+        # Also for code that replaces a stream and restores it.
+        vars(sys).update(__stdout__=self.stdout, __stderr__=self.stderr)
+        self.hooks.install()
+        patch_faulthandler()
+        replace(builtins, "input", self._input, (0, 1))
+        replace(os, "write", self.raw.write, (2, 2))
+        if self._has_brick_folder:
+            HomeFolder(lambda: self._config.own_folder).patch()
+        replace(os, "_exit", lambda status: self._exit_now(operator.index(status)))
+
+    def _execute(self) -> None:
+        if self.code is None:
+            self.code = compile_program(self._config.program.text, self._session.program_file)
+        self.names["__file__"] = self._file
+        if self._prelude_error is not None:
+            raise self._prelude_error
+        # Not earlier: a program named logging.py is not what the library means by `import logging`.
+        folder = self._config.own_folder
+        sys.path[:0] = [folder, *self._config.program.python_path]
+        find_modules_for(self._config.folder, folder if self._has_brick_folder else "")
+        if self._starts_in_own_folder:
+            # If a repeated run's folder no longer exists, only files that it opens there are missing.
+            with suppress(OSError):
+                os.chdir(folder)
+        self.prepared |= {name: id(value) for name, value in self.names.items()}
+        # Existing objects stay; only the program's own garbage is collected from here on.
+        gc.freeze()
+        gc.enable()
+        if self._config.debugged:
+            self._session.debug().begin(self._config.options)
+        NotSimulated.first = ""
+        exec(self.code, self.names)
+
+    # Ends
+
+    def _outcome_of(self, error: BaseException) -> ProgramOutcome:
+        stop = self._session.stop_reason
+        if stop is not None:
+            return ProgramOutcome(stop.end, 0, stop.summary, error_line=stop.line)
+        match error:
+            case SystemExit():
+                return self._exit_outcome(error.code)
+            case LogError():
+                line = line_in(error.__traceback__, self._session.program_file)
+                return ProgramOutcome(End.OUTPUT_LIMIT, 0, error.message, error_line=line)
+            case MemoryError():
+                return self._raised(
+                    MemoryError("the program used up the memory it may have"), error.__traceback__
+                )
+        return self._raised(error, error.__traceback__)
+
+    def _raised(self, error: BaseException, trace: types.TracebackType | None) -> ProgramOutcome:
+        self.stdout.finish()
+        try:
+            report = self.hooks.show_uncaught(error.with_traceback(trace))
+        except SystemExit as left:
+            return self._exit_outcome(left.code)
+        end = End.DEADLOCK if isinstance(error, Deadlock) else End.RAISED
+        code = _INTERRUPTED if isinstance(error, KeyboardInterrupt) else 1
+        return ProgramOutcome(end, code, report.summary, report.text, report.line)
+
+    def _exit_outcome(self, code: object) -> ProgramOutcome:
+        if code is None:
+            number = 0
+        elif isinstance(code, int):
+            number = int.__index__(code)
+            # As Python does for invalid exit statuses.
+            number = number if abs(number) < 1 << 31 else -1
+        else:
+            self.hooks.write(safe_text(str, code) + "\n")
+            number = 1
+        return ProgramOutcome(
+            End.FINISHED,
+            number,
+            f"the program ended itself with exit code {number}" if number else "",
+        )
+
+    def _exit_now(self, status: int) -> NoReturn:
+        self._finish_streams()
+        self._leave(self._exit_outcome(status))
+
+    # Input
+
+    @waits_for(Wait.INPUT)
+    def _input(self, prompt: object = "") -> str:
+        """Replacement for input(): returns scripted answers, or the user's."""
+        self.stdout.write(str(prompt))
+        (asked,) = self._output.stable(self.stdout.take_part())
+        answer: str | None
+        if self._answers:
+            answer = self._answers.pop(0)
+        elif not self._config.options.asks_user:
+            answer = None
+        else:
+            answer = self._users_answer(asked)
+        self._output.row(asked + (answer or ""), Stream.INPUT)
+        # Answers that exist already let no time pass: a stop is checked between them.
+        self._output.after_write()
+        if answer is None:
+            raise EOFError(NO_ANSWER)
+        return answer
+
+    def _users_answer(self, asked: str) -> str | None:
+        session, steering = self._session, self._session.steering
+        if not steering.replay_next(session, Answer):
+            if self._config.options.time_waits:
+                steering.wait_for_reply(session, Answer, InputWanted(asked))
+            else:
+                session.channel.send(InputWanted(asked))
+        tick_ns = NS_PER_S // session.sim.spec.profile.tick_hz
+        while not steering.answers:
+            session.spend(tick_ns)
+        return steering.answers.popleft()

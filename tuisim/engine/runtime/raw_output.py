@@ -1,0 +1,143 @@
+"""What is written below Python's streams: by `os.write(1, ...)`, by a file opened on 1 or 2, by C, by a forked copy.
+
+Descriptors 1 and 2 are files in memory of a fixed size. So a write never blocks, an endless one comes to an end, and
+nothing outside this process sees it. What is in them is taken at fixed instants of the program, which makes a run
+with such output as reproducible as any other.
+"""
+
+from __future__ import annotations
+
+import fcntl
+import mmap
+import os
+from collections.abc import Callable, Sequence
+from contextlib import suppress
+from itertools import zip_longest
+from typing import Any
+
+from tuisim.engine.runs.raw_files import RAW_BYTES, create_raw_file
+
+_NOTHING = b"\0"
+"""What a descriptor begins with to which nothing has been written."""
+_LEAST_FD = 200
+"""Our own descriptors are beyond those that programs count through."""
+_LINE_BUFFERED = 1
+
+
+def silence_descriptors() -> None:
+    """Lose what is written from now on: this process is a copy, and shares the files with the original."""
+    with suppress(OSError):
+        null = os.open(os.devnull, os.O_WRONLY)
+        for fd in (1, 2):
+            os.dup2(null, fd)
+
+
+class RawFile:
+    """One of the descriptors.
+
+    Args:
+        fd: 1 or 2.
+        take: Receives what was written.
+        created: A descriptor of a file that the host has created for it; None creates one.
+
+    Raises:
+        OSError, AttributeError: this system has no such files, or no descriptors left.
+    """
+
+    def __init__(
+        self, fd: int, take: Callable[[bytes], object], created: int | None = None
+    ) -> None:
+        self._take = take
+        created = create_raw_file(fd) if created is None else created
+        try:
+            self._fd = fcntl.fcntl(created, fcntl.F_DUPFD_CLOEXEC, _LEAST_FD)
+            os.dup2(created, fd)
+        finally:
+            os.close(created)
+        self._identity = os.fstat(self._fd)
+        # Reading one byte of memory shows whether there is anything: asking the system would take much longer.
+        self.first = mmap.mmap(self._fd, mmap.PAGESIZE)
+        """Begins with 0 unless something has been written; what begins with a null byte is not seen."""
+
+    def drain(self) -> int:
+        """Pass on what was written; return its length."""
+        try:
+            length = min(os.lseek(self._fd, 0, os.SEEK_CUR), RAW_BYTES)
+            if not length or not os.path.samestat(os.fstat(self._fd), self._identity):
+                # Or the program has closed it, and opened another file in its place.
+                return 0
+            data = os.pread(self._fd, length, 0)
+            os.lseek(self._fd, 0, os.SEEK_SET)
+        except OSError:
+            return 0
+        self.first[0] = 0
+        self._take(data)
+        return length
+
+
+class RawOutput:
+    """Both descriptors.
+
+    Args:
+        stdout: Receives what was written to descriptor 1.
+        stderr: Receives what was written to descriptor 2.
+    """
+
+    def __init__(
+        self, stdout: Callable[[bytes], object], stderr: Callable[[bytes], object]
+    ) -> None:
+        self._takers = {1: stdout, 2: stderr}
+        self._files: list[RawFile] = []
+        self._first_out: bytes | mmap.mmap = _NOTHING
+        self._first_err: bytes | mmap.mmap = _NOTHING
+        self._busy = False
+        self._flush_c: Callable[[], object] = lambda: None
+        self._write = os.write
+
+    def open(self, created: Sequence[int] = ()) -> None:
+        """Take over the descriptors, as far as this system can; `created` as for each `RawFile`."""
+        with suppress(OSError, AttributeError):
+            for (fd, take), file in zip_longest(self._takers.items(), created):
+                self._files.append(RawFile(fd, take, file))
+        firsts = (file.first for file in self._files)
+        self._first_out, self._first_err, *_ = *firsts, _NOTHING, _NOTHING
+
+    def drain(self) -> None:
+        """Pass on what was written, if it is seen at once."""
+        # A loop would take longer than both looks, and this is called at each reading.
+        if self._first_out[0] or self._first_err[0]:
+            self.drain_all()
+
+    def drain_all(self) -> int:
+        """Pass on everything that was written; return its length."""
+        if self._busy:
+            return 0
+        self._busy = True
+        try:
+            return sum(file.drain() for file in self._files)
+        finally:
+            self._busy = False
+
+    def finish(self) -> None:
+        """Pass on everything, also what C has not written yet."""
+        self._flush_c()
+        self.drain_all()
+
+    def write(self, fd: int, data: Any) -> int:
+        """Replacement for os.write(): what is output is passed on at once."""
+        count = self._write(fd, data)
+        drained = self.drain_all()
+        size = memoryview(data).nbytes
+        while drained and count < size:
+            # More than the file can take.
+            count += self._write(fd, memoryview(data).cast("B")[count:])
+            drained = self.drain_all()
+        return count
+
+    def finish_ctypes(self, module: Any) -> None:
+        """Let C write its lines at once, as to a terminal: nobody calls the functions that would write them later."""
+        # Where C has other names for this, its output comes at the end.
+        with suppress(OSError, ValueError, AttributeError):
+            c = module.CDLL(None)
+            self._flush_c = lambda: c.fflush(None)
+            c.setvbuf(module.c_void_p.in_dll(c, "stdout"), None, _LINE_BUFFERED, 0)

@@ -1,0 +1,126 @@
+"""The run's configuration, read from its folder."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from tuisim.base.data_class import dataclass
+from tuisim.base.errors import ConfigError
+from tuisim.base.folders import programs_folder
+from tuisim.base.source import Program
+from tuisim.engine.core.geometry import Pose
+from tuisim.engine.core.spec import NoiseSpec, RunSpec
+from tuisim.engine.core.tree import put_all, restore
+from tuisim.engine.mat_cache import FieldFiles
+from tuisim.engine.runs.run_options import RunOptions
+from tuisim.engine.runtime import wallclock
+
+
+@dataclass(frozen=True, slots=True)
+class RunConfig:
+    """The part of `run.json` that the child needs."""
+
+    folder: Path
+    """The run folder."""
+    program: Program
+    spec: RunSpec
+    field: FieldFiles
+    options: RunOptions
+
+    @property
+    def own_folder(self) -> str:
+        """Folder of the program's own modules: that of its file, or the configured one, or the working directory."""
+        program = self.program
+        return program.module_folder or os.path.dirname(wallclock.absolute(program.file))
+
+    @property
+    def starts_in_own_folder(self) -> bool:
+        """Whether the program starts in its own folder. What an example writes is for the user."""
+        program = self.program
+        if not self.spec.profile.starts_in_own_folder or not (
+            program.path or program.module_folder
+        ):
+            return False
+        try:
+            return Path(self.own_folder) != programs_folder()
+        except ConfigError:
+            # An isolated process does not see the examples.
+            return True
+
+    @property
+    def debugged(self) -> bool:
+        """Whether the debugger is needed from the first line on."""
+        options = self.options
+        return (
+            bool(options.breaks)
+            or options.trace_from_tick is not None
+            or options.hold_at is not None
+        )
+
+
+def read_config(folder: Path) -> RunConfig:
+    """Read `run.json`.
+
+    Raises:
+        OSError, ValueError, KeyError, TypeError: the host has not prepared the folder.
+    """
+    return config_of(folder, json.loads((folder / "run.json").read_text("utf-8")))
+
+
+def config_of(folder: Path, data: Mapping[str, Any]) -> RunConfig:
+    """Return the configuration in the contents of a `run.json`.
+
+    Raises:
+        ValueError, KeyError, TypeError: they are none.
+    """
+    return RunConfig(
+        folder=folder,
+        program=_program_of(data["program"]),
+        spec=restore(data["spec"]),
+        field=FieldFiles.from_plain(data["field"]),
+        options=RunOptions.from_plain(data["options"]),
+    )
+
+
+def next_config(last: RunConfig, folder: Path, changes: Mapping[str, Any]) -> RunConfig:
+    """Return the configuration of another run of the same robot and world.
+
+    Args:
+        last: That of the run before.
+        folder: The run folder.
+        changes: What is different, as the host sends it; see `tuisim.engine.runs.child.warm.Template`.
+    """
+    values = {path: of(changes[name]) for name, (path, of) in _VALUES.items() if name in changes}
+    return replace(
+        last,
+        folder=folder,
+        program=_program_of(changes["program"]) if "program" in changes else last.program,
+        spec=put_all(last.spec, values) if values else last.spec,
+        options=RunOptions.from_plain(changes["options"]) if "options" in changes else last.options,
+    )
+
+
+_VALUES: dict[str, tuple[str, Callable[[Any], object]]] = {
+    "seed": ("seed", int),
+    "noise": ("world.noise", lambda plain: NoiseSpec(**plain)),
+    "start": ("world.start", lambda plain: Pose(**plain)),
+}
+"""Values of a spec that may be different, by their names as changes: their paths, and what makes them."""
+
+
+def _program_of(plain: Mapping[str, Any]) -> Program:
+    return Program(
+        name=plain["name"],
+        text=plain["text"],
+        prelude=plain["prelude"],
+        path=plain["path"],
+        arguments=tuple(plain["arguments"]),
+        python_path=tuple(plain["python_path"]),
+        module_folder=plain["module_folder"],
+        shown_ports=None if plain["shown_ports"] is None else tuple(plain["shown_ports"]),
+    )

@@ -1,0 +1,198 @@
+"""The stack as the program sees it: its frames and those of the library, without those of the runtime.
+
+Affects `traceback`, `inspect` and `faulthandler`.
+"""
+
+from __future__ import annotations
+
+import faulthandler
+import os
+import signal
+import sys
+import types
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
+from functools import wraps
+from pathlib import Path
+from typing import Any
+
+from tuisim.engine.protocol import COMMAND_SIGNAL, STACK_SIGNAL
+from tuisim.engine.runtime import wallclock
+from tuisim.engine.runtime.patches.replacement import replace
+
+_CRASHES = (signal.SIGSEGV, signal.SIGFPE, signal.SIGABRT, signal.SIGBUS, signal.SIGILL)
+_OURS = (COMMAND_SIGNAL, STACK_SIGNAL, signal.SIGALRM, signal.SIGVTALRM, signal.SIGINT)
+"""Signals that the runtime handles."""
+PACKAGE_FOLDER = str(Path(__file__).parents[2]) + os.sep
+_BOTTOM = os.path.join(PACKAGE_FOLDER, "engine", "runtime", "__main__.py")
+"""File of the outermost frame of the process."""
+
+
+_shows_whole = False
+
+
+@contextmanager
+def show_whole_stacks() -> Iterator[None]:
+    """Let `traceback` and `inspect` return the frames of the runtime, too."""
+    global _shows_whole
+    _shows_whole = True
+    try:
+        yield
+    finally:
+        _shows_whole = False
+
+
+def _seen(walk: Iterable[Any], file_of: Callable[[Any], str]) -> Iterator[Any]:
+    """Yield items whose frames a program may see: none of the runtime, and none below the program."""
+    for one in walk:
+        if _shows_whole:
+            yield one
+            continue
+        file = file_of(one)
+        if file == _BOTTOM:
+            return
+        if not file.startswith(PACKAGE_FOLDER):
+            yield one
+
+
+def _frames_from(frame: types.FrameType | None) -> Iterator[types.FrameType]:
+    while frame is not None:
+        yield frame
+        frame = frame.f_back
+
+
+def finish_traceback(module: types.ModuleType) -> None:
+    """Restrict `traceback` to the frames that a program may see."""
+    changed: Any = module
+
+    def walk_stack(f: types.FrameType | None) -> Iterator[tuple[types.FrameType, int]]:
+        """Walk a stack yielding the frame and line number for each frame."""
+        frames = _frames_from(sys._getframe(1) if f is None else f)
+        for frame in _seen(frames, lambda frame: frame.f_code.co_filename):
+            # Without a frame it starts at the caller of this module's function.
+            if f is not None or frame.f_code.co_filename != module.__file__:
+                yield frame, frame.f_lineno
+
+    changed.walk_stack = wraps(changed.walk_stack)(walk_stack)
+    for name in ("walk_tb", "_walk_tb_with_full_positions"):
+        setattr(
+            changed, name, _filtered(getattr(changed, name), lambda row: row[0].f_code.co_filename)
+        )
+
+
+def finish_inspect(module: types.ModuleType) -> None:
+    """Restrict `inspect` to the frames that a program may see."""
+    changed: Any = module
+    for name in ("getouterframes", "getinnerframes"):
+        setattr(
+            changed,
+            name,
+            _listed(_filtered(getattr(changed, name), lambda info: str(info.filename))),
+        )
+
+
+def _filtered(
+    walk: Callable[..., Iterable[Any]], file_of: Callable[[Any], str]
+) -> Callable[..., Iterator[Any]]:
+    @wraps(walk)
+    def filtered(*args: Any, **kwargs: Any) -> Iterator[Any]:
+        return _seen(walk(*args, **kwargs), file_of)
+
+    return filtered
+
+
+def _listed(walk: Callable[..., Iterator[Any]]) -> Callable[..., list[Any]]:
+    @wraps(walk)
+    def listed(*args: Any, **kwargs: Any) -> list[Any]:
+        return list(walk(*args, **kwargs))
+
+    return listed
+
+
+def patch_faulthandler() -> None:
+    """Let a program enable what is always enabled: crashes are written for the host, and their line is reported.
+
+    Functions that write the stack after a real time do nothing: time in a run is simulated, its limits are the host's.
+    """
+    on = False
+
+    def switch(wanted: bool) -> bool:
+        nonlocal on
+        was, on = on, wanted
+        return was
+
+    def enable(file: Any = None, all_threads: bool = True, **_further: Any) -> None:
+        switch(True)
+
+    def dump_traceback(file: Any = None, all_threads: bool = True, **_further: Any) -> None:
+        _write(_stacks_text(sys._getframe(1), all_threads), sys.stderr if file is None else file)
+
+    replace(faulthandler, "enable", enable)
+    replace(faulthandler, "disable", lambda: switch(False), (0, 0))
+    replace(faulthandler, "is_enabled", lambda: on, (0, 0))
+    replace(faulthandler, "dump_traceback", dump_traceback)
+    for name in ("dump_traceback_later", "cancel_dump_traceback_later"):
+        replace(faulthandler, name, lambda *_args, **_named: None)
+    _patch_registration()
+
+
+def _patch_registration() -> None:
+    """Write the stack on a signal that the runtime does not use itself."""
+    before: dict[int, Any] = {}
+
+    def register(
+        signum: int, file: Any = None, all_threads: bool = True, chain: bool = False
+    ) -> None:
+        if signum in _CRASHES:
+            raise RuntimeError(f"signal {signum} cannot be registered, use enable() instead")
+        out = sys.stderr if file is None else file
+
+        def handle(number: int, frame: types.FrameType | None) -> None:
+            if frame is not None:
+                _write(_stacks_text(frame, all_threads), out)
+            if chain and callable(previous := before.get(number)):
+                previous(number, frame)
+
+        was = None if signum in _OURS else set_signal(signum, handle)
+        before.setdefault(signum, was)
+
+    def unregister(signum: int) -> bool:
+        if signum not in before:
+            return False
+        was = before.pop(signum)
+        if signum not in _OURS:
+            set_signal(signum, was)
+        return True
+
+    set_signal = wallclock.set_signal
+    replace(faulthandler, "register", register)
+    replace(faulthandler, "unregister", unregister, (1, 1))
+
+
+def _stacks_text(frame: types.FrameType, all_threads: bool) -> str:
+    if not all_threads:
+        return _stack_text("Stack", frame)
+    import threading
+
+    frames, here = sys._current_frames(), threading.current_thread()
+    others = [one for one in threading.enumerate() if one is not here and one.ident in frames]
+    others_text = [_stack_text(f"Thread {one.name}", frames[one.ident or 0]) for one in others]
+    return "\n".join([_stack_text(f"Current thread {here.name}", frame), *others_text])
+
+
+def _stack_text(heading: str, frame: types.FrameType) -> str:
+    seen = _seen(_frames_from(frame), lambda frame: frame.f_code.co_filename)
+    lines = [
+        f'  File "{one.f_code.co_filename}", line {one.f_lineno} in {one.f_code.co_name}\n'
+        for one in seen
+    ]
+    return f"{heading} (most recent call first):\n{''.join(lines)}"
+
+
+def _write(text: str, file: Any) -> None:
+    """Write to a file, which may be a descriptor as in the real function."""
+    if isinstance(file, int):
+        os.write(file, text.encode("utf-8", "backslashreplace"))
+    else:
+        file.write(text)
+        file.flush()

@@ -1,0 +1,254 @@
+"""Reports of a program's uncaught error: its own frames, without those of the runtime."""
+
+from __future__ import annotations
+
+import io
+import os
+import sys
+import traceback
+from collections.abc import Callable
+from typing import Any
+
+from tuisim.base.data_class import dataclass
+from tuisim.base.errors import counted
+from tuisim.base.source import source_lines
+from tuisim.engine.runtime import wallclock
+from tuisim.engine.runtime.modules import OWN_FILES, is_own, remember_source
+from tuisim.engine.runtime.stack import show_whole_stacks
+
+_OUR_NAMES = ("tuisim.base.errors.", "tuisim.engine.runtime.session.")
+MOST_LINKED = 10
+"""Of a longer chain of causes, this many are shown at either end."""
+_MAX_CHARACTERS = 500_000
+"""Of a traceback: the host takes a longer message for one that no program sends."""
+_HEADING = "Traceback (most recent call last):\n"
+_show = sys.excepthook
+_SYNTAX_ERRORS: tuple[type[SyntaxError], ...] = (SyntaxError, IndentationError, TabError)
+Trace = Any
+"""`traceback.TracebackException`, some of whose attributes type checkers do not know."""
+
+
+@dataclass(frozen=True, slots=True)
+class ErrorReport:
+    """An uncaught error."""
+
+    text: str
+    """The traceback as Python prints it, reduced to the program's frames."""
+    line: int
+    """Last line of the program in it; 0 if there is none."""
+    summary: str
+    """Error and location in one line."""
+
+
+def report_error(error: BaseException, file: str, source: str, alone: bool = False) -> ErrorReport:
+    """Return the report of an error.
+
+    Args:
+        error: What the program raised.
+        file: File name of the program's frames.
+        source: The program's text.
+        alone: Whether to leave out suggestions, notes, and the errors that led to it, as Python does where it cannot
+            raise an error.
+    """
+    remember_source(file, source)
+    _add_text(error, file, source)
+    try:
+        # All frames: an error without any was created but never raised.
+        with show_whole_stacks():
+            trace: Trace = traceback.TracebackException.from_exception(
+                error, limit=sys.maxsize, lookup_lines=False, compact=True
+            )
+        if alone:
+            trace.__cause__ = trace.__context__ = trace.__notes__ = None
+        elif sys.version_info < (3, 12):
+            _add_suggestions(trace, error)
+        chain = _keep_program_frames(trace, own_files(file))
+        text, summary = _text_of(chain), _summary(trace)
+    except Exception as problem:
+        # An error may be anything, and nested too deeply: it is reported nevertheless.
+        stack = traceback.StackSummary.from_list(
+            [
+                frame
+                for frame in traceback.extract_tb(error.__traceback__)
+                if own_files(file)(frame.filename)
+            ]
+        )
+        summary = f"{_kind_of(error)}: <cannot be shown: {type(problem).__name__}>"
+        text = _HEADING + "".join(stack.format()) + summary + "\n"
+    for name in _OUR_NAMES:
+        text, summary = text.replace(name, ""), summary.replace(name, "")
+    text, summary = _cut(text), _cut(summary)
+    line = line_in(error.__traceback__, file) or _line_of(error)
+    return ErrorReport(text, line, f"{summary} (line {line})" if line else summary)
+
+
+def _cut(text: str) -> str:
+    """Return a text that can be sent; of one that is too long, the beginning."""
+    if len(text) <= _MAX_CHARACTERS:
+        return text
+    return f"{text[:_MAX_CHARACTERS]}… (too long: {len(text):,} characters)"
+
+
+def _add_text(error: BaseException, file: str, source: str) -> None:
+    """Add the program's line to a syntax error for which Python has looked for the file, which need not exist."""
+    if type(error) in _SYNTAX_ERRORS and isinstance(error, SyntaxError) and error.text is None:
+        lines, line = source_lines(source), _line_of(error)
+        if error.filename == file and 0 < line <= len(lines):
+            # Bytes that are no text cannot be shown.
+            error.text = (
+                lines[line - 1].encode("utf-8", "surrogateescape").decode("utf-8", "replace") + "\n"
+            )
+
+
+def line_in(trace: Any, file: str) -> int:
+    """Return a file's last line in a traceback; 0 if there is none."""
+    line = 0
+    while trace is not None:
+        line = trace.tb_lineno if trace.tb_frame.f_code.co_filename == file else line
+        trace = trace.tb_next
+    return line
+
+
+# What only the interpreter itself prints, not its module `traceback`: up to Python 3.11 the names that were meant
+
+
+def _add_suggestions(trace: Trace, error: BaseException) -> None:
+    """Add the names that Python suggests to an error and those linked to it."""
+    pairs: list[tuple[Trace, Any]] = [(trace, error)]
+    for one, real in pairs:
+        if one is None or real is None:
+            continue
+        kind = type(real)
+        if kind is NameError or kind is AttributeError:
+            one._str = (one._str or "") + _suggestion(real)
+        elif kind in _SYNTAX_ERRORS:
+            _show_as_python(one, real)
+        pairs += [(one.__cause__, real.__cause__), (one.__context__, real.__context__)]
+        pairs += zip(one.exceptions or (), getattr(real, "exceptions", ()), strict=False)
+
+
+def _suggestion(error: Any) -> str:
+    """Return what Python adds to the message of a NameError or an AttributeError."""
+    kind = type(error)
+    # Without a message, whose text might be written by the program.
+    bare = kind(name=error.name) if kind is NameError else kind(name=error.name, obj=error.obj)
+    bare.__traceback__ = error.__traceback__
+    return _shown(bare).removeprefix(kind.__name__).rstrip("\n")
+
+
+def _show_as_python(trace: Trace, error: SyntaxError) -> None:
+    """Let a syntax error be formatted by Python itself, whose carets differ."""
+    bare: Any = type(error)()
+    for name in (
+        "msg",
+        "filename",
+        "lineno",
+        "offset",
+        "text",
+        "end_lineno",
+        "end_offset",
+        "print_file_and_line",
+    ):
+        setattr(bare, name, getattr(error, name, None))
+    shown = _shown(bare)
+
+    trace._format_syntax_error = lambda _kind: [shown]
+
+
+def _shown(error: BaseException) -> str:
+    """Return what Python prints of an error, without its frames."""
+    names, shown = vars(sys), io.StringIO()
+    meanwhile = {"stderr": shown, "tracebacklimit": 0}
+    before = {name: names[name] for name in meanwhile if name in names}
+    names.update(meanwhile)
+    try:
+        _show(type(error), error, error.__traceback__)
+    finally:
+        for name in meanwhile:
+            del names[name]
+        names.update(before)
+    return shown.getvalue()
+
+
+def _kind_of(error: BaseException) -> str:
+    """Return the name of an error's class, even if its metaclass redefines it."""
+    return str(type.__dict__["__name__"].__get__(type(error)))
+
+
+def _line_of(error: BaseException) -> int:
+    """Return the line of a syntax error; 0 if it has none or is another error."""
+    line = error.lineno if isinstance(error, SyntaxError) else None
+    return line if isinstance(line, int) else 0
+
+
+def _summary(trace: Trace) -> str:
+    only = source_lines("".join(trace.format_exception_only()).strip())
+    # A syntax error starts with its location; of a message of several lines the first is the most useful.
+    return only[-1] if only[0].startswith("File ") else only[0]
+
+
+def own_files(file: str) -> Callable[[str], bool]:
+    """Return a function that tests for the program's files: itself, those beside it, and those it has imported."""
+    beside = os.path.dirname(wallclock.absolute(file)) + os.sep
+
+    def own(name: str) -> bool:
+        if name == file or name in OWN_FILES:
+            return True
+        path = wallclock.absolute(name)
+        return path.startswith(beside) and is_own(path) and not name.startswith("<")
+
+    return own
+
+
+def point_at_namesake(error: BaseException, file: str) -> None:
+    """Add a note to an error if a module beside the program shadows one of Python's.
+
+    Args:
+        error: What the program raised.
+        file: File name of the program.
+    """
+    if not isinstance(error, ImportError | AttributeError):
+        return
+    own = own_files(file)
+    for name, module in list(sys.modules.items()):
+        if name in sys.stdlib_module_names and own(
+            str(getattr(module, "__file__", None) or "<builtin>")
+        ):
+            error.add_note(f"{name}.py beside the program shadows Python's own {name}: rename it.")
+
+
+def _keep_program_frames(trace: Trace, own: Callable[[str], bool]) -> list[Trace]:
+    """Remove all other frames from an error and the errors linked to it; return it and its causes, newest first."""
+    chains = [[trace]]
+    limit = vars(sys).get("tracebacklimit")
+    most = max(limit, 0) if isinstance(limit, int) else sys.maxsize
+    for chain in chains:
+        for one in chain:
+            was_raised = bool(one.stack)
+            kept = [frame for frame in one.stack if own(frame.filename)]
+            one.stack = traceback.StackSummary.from_list(kept[-most:] if most else [])
+            chains += [[inner] for inner in getattr(one, "exceptions", None) or ()]
+            before = chain[-2] if one is not chain[0] else None
+            # An error that never touched the program's code is a detail of the runtime or of the library.
+            if before is not None and was_raised and not kept:
+                before.__cause__ = before.__context__ = None
+                chain.pop()
+            elif (linked := _linked(one)) is not None:
+                chain.append(linked)
+    return chains[0]
+
+
+def _linked(trace: Trace) -> Trace | None:
+    """Return the error that is printed before this one."""
+    return trace.__cause__ or (None if trace.__suppress_context__ else trace.__context__)
+
+
+def _text_of(chain: list[Trace]) -> str:
+    left_out = len(chain) - 2 * MOST_LINKED
+    if left_out <= 0:
+        return "".join(chain[0].format())
+    last_told: Any = chain[MOST_LINKED - 1]
+    last_told.__cause__ = last_told.__context__ = None
+    oldest, newest = "".join(chain[-MOST_LINKED].format()), "".join(chain[0].format())
+    between = counted(left_out, "more error, which", "more errors, each of which")
+    return f"{oldest}\n[{between} led to the next one]\n\n{newest}"

@@ -1,0 +1,213 @@
+"""Simulated devices: named attributes, which programs read and write as text.
+
+One table of devices, `DeviceFiles`, is behind everything that reaches them: `engine.shim.files` shows it as the tree of
+`/sys/class` to any code, and `shim.library` is a shorter way to the same attributes for the library.
+"""
+
+from __future__ import annotations
+
+import errno
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from functools import partial, wraps
+from typing import TYPE_CHECKING, Any
+
+from tuisim.engine.shim.waits import Wait, waits_for
+
+if TYPE_CHECKING:
+    from tuisim.engine.shim.session import DeviceSession
+
+Reader = Callable[[], object]
+Writer = Callable[[str], None]
+NumberWriter = Callable[[int], None]
+
+
+class _Writers(dict[str, Writer]):
+    """Writers by attribute; a missing one raises the driver's error."""
+
+    def __init__(self, writers: Mapping[str, Writer], readable: Collection[str]) -> None:
+        super().__init__(writers)
+        self._readable = readable
+
+    def __missing__(self, name: str) -> Writer:
+        raise OSError(errno.EACCES if name in self._readable else errno.ENOENT, name)
+
+
+class _NumberWriters(dict[str, NumberWriter]):
+    """The same for integers; an attribute that accepts only text gets the number as text."""
+
+    def __init__(
+        self, number_writers: Mapping[str, NumberWriter], writers: Mapping[str, Writer]
+    ) -> None:
+        super().__init__(number_writers)
+        self._writers = writers
+
+    def __missing__(self, name: str) -> NumberWriter:
+        write = self._writers[name]
+        return lambda value: write(str(value))
+
+
+class SimDevice:
+    """One device whose attributes are functions.
+
+    Args:
+        session: Charged for each read.
+        readers: Functions that return the current value, by attribute.
+        writers: Functions that accept the written text, by attribute.
+        costs: Cost of a read in ns, by attribute, if it differs from the default.
+        number_writers: Functions that accept a written integer, by attribute.
+        notifying: Attributes that wake up who polls their files, with functions whose values differ after a change.
+        temporary: Attributes whose files exist only while their readers raise no ENOENT.
+        codes: What is recorded of a read, by attribute; see `DeviceSession.note_reading`.
+    """
+
+    def __init__(
+        self,
+        session: DeviceSession,
+        readers: Mapping[str, Reader],
+        writers: Mapping[str, Writer],
+        costs: Mapping[str, int] | None = None,
+        number_writers: Mapping[str, NumberWriter] | None = None,
+        notifying: Mapping[str, Reader] | None = None,
+        temporary: Collection[str] = (),
+        codes: Mapping[str, int] | None = None,
+    ) -> None:
+        self.session = session
+        self.notifying, self._temporary = dict(notifying or {}), temporary
+        self.is_opened = False
+        """Whether the program has taken hold of it."""
+        self.commands = 0
+        """Number of commands that were written to its file: who polls it sees each."""
+        self.readers = dict(readers)
+        self.writers = _Writers(writers, self.readers)
+        """Setters from text, by attribute; one that cannot be set raises the driver's OSError."""
+        self.number_writers = _NumberWriters(number_writers or {}, self.writers)
+        """Setters from an integer, by attribute, without conversion to text."""
+        for name, write_number in self.number_writers.items():
+            self.writers[name] = partial(_write_whole, write_number)
+        if session.sim.spec.profile.attribute_write_ns:
+            for charged in (self.writers, self.number_writers):
+                charged.update({name: self._charge(write) for name, write in charged.items()})
+        costs, codes = costs or {}, codes or {}
+        common_ns = session.sim.spec.profile.attribute_read_ns
+        self._reads = {
+            name: (reader, costs.get(name, common_ns), codes.get(name, -1))
+            for name, reader in readers.items()
+        }
+        """Value, cost in ns, and code of each attribute; -1 if it is not recorded."""
+
+    def _charge(self, write: Callable[[Any], None]) -> Callable[[Any], None]:
+        """Return a function that lets the time of a write pass first."""
+        session, cost_ns = self.session, self.session.sim.spec.profile.attribute_write_ns
+
+        def write_slowly(value: Any) -> None:
+            session.charge(cost_ns)
+            write(value)
+
+        return write_slowly
+
+    def attributes(self) -> list[str]:
+        """Return the names of the attributes that exist at present."""
+        return [name for name in {**self.readers, **self.writers} if self.has(name)]
+
+    def has(self, name: str) -> bool:
+        """Return whether an attribute exists at present."""
+        if name in self._temporary:
+            try:
+                self.readers[name]()
+            except OSError:
+                return False
+        return name in self.readers or name in self.writers
+
+    @waits_for(Wait.READING)
+    def read(self, name: str) -> object:
+        """Return an attribute's value. Charges its cost.
+
+        Raises:
+            OSError: ENOENT if the device has no such attribute, EACCES if it is write-only.
+        """
+        try:
+            reader, cost_ns, code = self._reads[name]
+        except KeyError:
+            raise OSError(errno.EACCES if name in self.writers else errno.ENOENT, name) from None
+        session = self.session
+        if not session.free:
+            if cost_ns:
+                session.spend(cost_ns, code)
+            elif code >= 0:
+                session.note_reading(code)
+        return reader()
+
+    def write(self, name: str, text: str) -> None:
+        """Set an attribute.
+
+        Raises:
+            OSError: ENOENT or EACCES as for `read`, EINVAL if the driver rejects the value.
+        """
+        self.writers[name](text)
+
+
+def _write_whole(write: NumberWriter, text: str) -> None:
+    try:
+        number = int(text)
+    except ValueError:
+        raise refuse(text) from None
+    write(number)
+
+
+CLASSES_FOLDER = "/sys/class"
+"""The folder of the classes of devices."""
+
+
+class DeviceFiles:
+    """All devices, by path, such as `/sys/class/tacho-motor/motor0`.
+
+    Args:
+        classes: Names of the classes of devices; a class may be without a device.
+    """
+
+    def __init__(self, classes: Iterable[str]) -> None:
+        self.classes = tuple(classes)
+        self.by_path: dict[str, SimDevice] = {}
+        self._next_numbers: dict[str, int] = {}
+
+    def add(self, class_name: str, name: str, device: SimDevice) -> None:
+        """Add a device."""
+        self.by_path[f"{CLASSES_FOLDER}/{class_name}/{name}"] = device
+
+    def add_numbered(self, class_name: str, name: str, device: SimDevice) -> str:
+        """Add a device whose name gets the next number of its class, and return its path."""
+        number = self._next_numbers.get(class_name, 0)
+        self._next_numbers[class_name] = number + 1
+        self.add(class_name, f"{name}{number}", device)
+        return f"{CLASSES_FOLDER}/{class_name}/{name}{number}"
+
+    def names(self, class_path: str) -> Iterator[str]:
+        """Yield the names of the devices of one class, like a listing of its folder."""
+        prefix = class_path.rstrip("/") + "/"
+        for path in self.by_path:
+            if path.startswith(prefix):
+                yield path[len(prefix) :]
+
+
+def plain(number: float) -> float:
+    """Return a whole number as int, so that it is shown without a decimal point."""
+    return int(number) if float(number).is_integer() else number
+
+
+def refuse(text: str) -> OSError:
+    """Return the error of a driver that rejects a value."""
+    return OSError(errno.EINVAL, f"invalid value {text!r}")
+
+
+def free_of_charge(session: DeviceSession, function: Callable[..., Any]) -> Callable[..., Any]:
+    """Return `function` with the library's own look-ups inside it free of charge."""
+
+    @wraps(function)
+    def wrapper(*args: Any, **kwargs: Any) -> Any:
+        session.free += 1
+        try:
+            return function(*args, **kwargs)
+        finally:
+            session.free -= 1
+
+    return wrapper

@@ -1,0 +1,179 @@
+"""The screen, and the frame buffer into which the library copies its image."""
+
+from __future__ import annotations
+
+import errno
+import mmap
+import os
+import stat
+import struct
+from functools import cached_property, wraps
+from typing import TYPE_CHECKING, Any
+
+from tuisim.engine.runs.brick_state import DISPLAY_HEIGHT, DISPLAY_WIDTH, display_row
+from tuisim.engine.runs.records import Stream
+from tuisim.engine.shim.files.entries import DeviceFile, OpenFile, refuse_ioctl
+from tuisim.engine.shim.fonts import plain_font
+from tuisim.engine.shim.session import DeviceSession
+
+if TYPE_CHECKING:
+    from PIL.Image import Image as Picture
+
+BITS_A_PIXEL = 32
+"""As the driver reports it; the display itself is black and white."""
+LINE_BYTES = DISPLAY_WIDTH * BITS_A_PIXEL // 8
+WHITE, DARK_BELOW = 255, 128
+"""Greys below `DARK_BELOW` are dark."""
+TRUE_COLOR = 2
+"""The kernel's visual type for red, green and blue pixels."""
+NO_FILE = -1
+"""The descriptor of memory without a file."""
+DISPLAY_PATH = "/dev/fb0"
+FIXED_INFO = struct.pack(
+    "@16s L 4I 3H I L I I 3H", b"st7586", 0, LINE_BYTES * DISPLAY_HEIGHT, 0, 0, TRUE_COLOR, 0, 0, 0, LINE_BYTES,
+    0, 0, 0, 0, 0, 0,
+)  # fmt: skip
+"""The kernel's `fb_fix_screeninfo`."""
+VARIABLE_INFO = struct.pack(
+    "@8I 3I 3I 3I 3I 20I", DISPLAY_WIDTH, DISPLAY_HEIGHT, DISPLAY_WIDTH, DISPLAY_HEIGHT, 0, 0, BITS_A_PIXEL, 0,
+    16, 8, 0, 8, 8, 0, 0, 8, 0, 0, 0, 0, *[0] * 20,
+)  # fmt: skip
+"""The kernel's `fb_var_screeninfo`: sizes, then offset, length and order of the bits of red, green, blue, alpha."""
+
+
+class Screen:
+    """Records the contents of the brick's screen, images and text, each time they change."""
+
+    def __init__(self, session: DeviceSession) -> None:
+        self._session = session
+        self._shown: tuple[str, Stream] | None = None
+
+    def show(self, row: str, stream: Stream) -> None:
+        """Show an image or a text, in the format of `engine.runs.brick_state`; unchanged contents are not recorded
+        again."""
+        if (row, stream) != self._shown:
+            self._shown = (row, stream)
+            self._session.show(row, stream)
+
+
+class DisplayBuffer(mmap.mmap):
+    """The memory of the display: bytes written there are displayed.
+
+    Each pixel has four bytes: unused, red, green, blue.
+    """
+
+    def __new__(cls, _session: DeviceSession, _screen: Screen) -> DisplayBuffer:
+        """Allocate anonymous memory instead of mapping a file."""
+        return super().__new__(cls, NO_FILE, LINE_BYTES * DISPLAY_HEIGHT)
+
+    def __init__(self, session: DeviceSession, screen: Screen) -> None:
+        self.session, self.screen = session, screen
+        self.pixels, self.row = b"", ""
+        super().__setitem__(slice(None), bytes([WHITE]) * len(self))
+
+    def __setitem__(self, key: Any, value: Any) -> None:
+        """Write bytes and display them."""
+        super().__setitem__(key, value)
+        self._update()
+
+    def write(self, data: Any) -> int:
+        """Write bytes at the position and display them."""
+        size = super().write(data)
+        self._update()
+        return size
+
+    def flush(self, *_part: int) -> None:
+        """Display what was written in other ways, such as through a `memoryview`."""
+        self._update()
+
+    def close(self) -> None:
+        """Do nothing: every mapping of the display is this one, and another may be in use."""
+
+    def _update(self) -> None:
+        """Display the memory. Charges the time of an update on the brick."""
+        # Counted even if it costs nothing.
+        self.session.command()
+        self.session.charge(self.session.sim.spec.profile.display_update_ns)
+        pixels = self[:]
+        if pixels != self.pixels:
+            self.pixels, self.row = pixels, display_row(picture_of(pixels))
+        self.screen.show(self.row, Stream.DISPLAY)
+
+
+class DisplayFile(DeviceFile):
+    """The device file of the display's memory."""
+
+    def __init__(self, session: DeviceSession, screen: Screen) -> None:
+        super().__init__(DISPLAY_PATH, stat.S_IFCHR | 0o660)
+        self._session, self._screen = session, screen
+
+    @cached_property
+    def _memory(self) -> DisplayBuffer:
+        return DisplayBuffer(self._session, self._screen)
+
+    def read(self, opened: OpenFile, size: int) -> bytes:
+        """Read pixels."""
+        end = len(self._memory) if size < 0 else opened.at + size
+        part = self._memory[opened.at : end]
+        opened.at += len(part)
+        return part
+
+    def write(self, opened: OpenFile, data: bytes) -> int:
+        """Write pixels, and display them."""
+        room = len(self._memory) - opened.at
+        if data and room <= 0:
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+        part = data[:room]
+        self._memory[opened.at : opened.at + len(part)] = part
+        opened.at += len(part)
+        return len(part)
+
+    def ioctl(self, request: int) -> bytes:
+        """Return what the kernel tells about the display."""
+        match request:
+            case 0x4600:
+                return VARIABLE_INFO
+            case 0x4602:
+                return FIXED_INFO
+        raise refuse_ioctl(
+            self.path,
+            request,
+            "a program may ask for the screen's size and format, and write pixels",
+        )
+
+    def mapping(self, length: int) -> Any:
+        """Return the memory."""
+        if length > len(self._memory):
+            raise OSError(errno.EINVAL, os.strerror(errno.EINVAL))
+        return self._memory
+
+
+def picture_of(pixels: bytes) -> bytes:
+    """Return the image in the display's memory, one bit per pixel, in the format of `engine.runs.brick_state`.
+
+    Of the four bytes per pixel the display shows the green one.
+    """
+    from PIL import Image
+
+    return dark_pixels(Image.frombytes("L", (DISPLAY_WIDTH, DISPLAY_HEIGHT), pixels[2::4]))
+
+
+def dark_pixels(grey: Picture) -> bytes:
+    """Return the dark pixels of a grey picture, one bit per pixel, in the format of `engine.runs.brick_state`."""
+    return grey.point([WHITE if level < DARK_BELOW else 0 for level in range(256)], "1").tobytes()
+
+
+def draw_with_the_bricks_font(screen_class: Any) -> None:
+    """Draw text without a named font in the default font of the brick's Pillow.
+
+    Args:
+        screen_class: A class of the library, with the Pillow object that draws in `draw`.
+    """
+    make = screen_class.__init__
+
+    @wraps(make)
+    def __init__(self: Any, *args: Any, **kwargs: Any) -> None:  # noqa: N807
+        make(self, *args, **kwargs)
+        self.draw.font = plain_font()
+
+    screen_class.__init__ = __init__

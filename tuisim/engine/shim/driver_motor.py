@@ -1,0 +1,141 @@
+"""Tacho motors of a brick with ev3dev: every attribute as the kernel's class of motors has it.
+
+`polarity` negates what is read and what is written from then on: a set point that was written before it keeps its
+direction.
+"""
+
+from __future__ import annotations
+
+from functools import partial
+
+from tuisim.engine.core.commands.calls import Call
+from tuisim.engine.core.commands.driver import COMMAND_CALLS, CONSTANTS, CONTROLS, STOP_ACTIONS
+from tuisim.engine.core.driver.motor import STATES, SetPoints
+from tuisim.engine.core.driver.simulated import SimulatedMotor
+from tuisim.engine.protocol import MotorRegisters
+from tuisim.engine.shim.device_files import NumberWriter, Reader, SimDevice, refuse
+from tuisim.engine.shim.motor import MAX_RAMP_MS, MAX_SET_POINT, Tacho
+from tuisim.engine.shim.session import DeviceSession
+
+SET_POINTS = (
+    "speed_sp",
+    "position_sp",
+    "duty_cycle_sp",
+    "time_sp",
+    "ramp_up_sp",
+    "ramp_down_sp",
+)
+"""Attributes, in the order of `SetPoints`."""
+STOP_ACTION = len(SET_POINTS)
+SIGNED = ("speed_sp", "position_sp", "duty_cycle_sp")
+COMMANDS: dict[str, Call] = {command.value: call for command, call in COMMAND_CALLS.items()}
+STOP_NUMBERS = {action.value: float(number) for number, action in enumerate(STOP_ACTIONS)}
+FIRST_SET_POINTS = (*map(float, SetPoints()[:STOP_ACTION]), 0.0)
+"""Those of a fresh motor, as its commands take them."""
+RESET_DRIVER = Call.RESET_DRIVER
+STATE_TEXTS = tuple(map(" ".join, STATES))
+
+
+class DriverTacho(Tacho):
+    """One motor as the kernel's driver exposes it."""
+
+    _motor: SimulatedMotor
+
+    def __init__(
+        self, session: DeviceSession, motor: SimulatedMotor, port: str, kind: str = "large"
+    ) -> None:
+        super().__init__(session, motor, port, kind)
+        self._sign = 1
+        self._set_points = [*FIRST_SET_POINTS]
+        self._look = lambda: self._now().noticed_ns
+
+    def device(self) -> SimDevice:
+        """Return the device that the library reads and writes."""
+        readers: dict[str, Reader] = {
+            "position": lambda: self._now().position * self._sign,
+            "speed": lambda: self._now().speed_dps * self._sign,
+            "duty_cycle": lambda: self._now().duty * self._sign,
+            "state": lambda: STATE_TEXTS[self._now().state_bits],
+        }
+        max_speed = self._kind.max_speed_dps
+        limits = dict.fromkeys(SET_POINTS, (0, MAX_SET_POINT)) | {
+            "speed_sp": (-max_speed, max_speed),
+            "duty_cycle_sp": (-100, 100),
+            "position_sp": (-MAX_SET_POINT - 1, MAX_SET_POINT),
+            "ramp_up_sp": (0, MAX_RAMP_MS),
+            "ramp_down_sp": (0, MAX_RAMP_MS),
+        }
+        numbers: dict[str, NumberWriter] = {"position": self._set_position}
+        for name in SET_POINTS:
+            readers[name] = partial(self._set_point, name)
+            numbers[name] = self._set_point_writer(name, *limits[name])
+        for control, group in enumerate(CONTROLS):
+            for constant, field in enumerate(CONSTANTS):
+                name = f"{group}_pid/{field.capitalize()}"
+                controller = getattr(self._motor, f"{group}_control")
+                readers[name] = partial(getattr, controller, field)
+                numbers[name] = self._constant_writer(control, constant)
+        return self._device(readers, {}, numbers)
+
+    def _now(self) -> SimulatedMotor:
+        """Return the motor as it is now."""
+        motor = self._motor
+        if not motor.is_at_rest:
+            motor.run_until(self._session.now)
+        return motor
+
+    def registers(self) -> MotorRegisters:
+        """Return what the program has written to the motor, and its speed."""
+        speed, position, time_ms = (
+            self._set_point(name) for name in ("speed_sp", "position_sp", "time_sp")
+        )
+        speed_dps = self._motor.speed_dps * self._sign
+        return MotorRegisters(
+            self._last_command, self._polarity, speed, position, time_ms / 1000, speed_dps
+        )
+
+    def _set_point(self, name: str) -> int:
+        number = int(self._set_points[SET_POINTS.index(name)])
+        return number * self._sign if name in SIGNED else number
+
+    def _set_point_writer(self, name: str, low: int, high: int) -> NumberWriter:
+        index, signed = SET_POINTS.index(name), name in SIGNED
+        set_points = self._set_points
+
+        def write(value: int) -> None:
+            if not low <= value <= high:
+                raise refuse(str(value))
+            set_points[index] = float(value * self._sign if signed else value)
+            if name == "duty_cycle_sp":
+                self._tell(Call.SET_DUTY, set_points[index])
+
+        return write
+
+    def _constant_writer(self, control: int, constant: int) -> NumberWriter:
+        def write(value: int) -> None:
+            if not 0 <= value <= MAX_SET_POINT:
+                raise refuse(str(value))
+            self._tell(Call.SET_CONSTANT, float(control), float(constant), float(value))
+
+        return write
+
+    def _set_position(self, value: int) -> None:
+        self._tell(Call.RENUMBER, float(value * self._sign))
+
+    def _set_stop_action(self, text: str) -> None:
+        super()._set_stop_action(text)
+        self._set_points[STOP_ACTION] = STOP_NUMBERS[text]
+
+    def _set_polarity(self, text: str) -> None:
+        super()._set_polarity(text)
+        self._sign = -1 if text == "inversed" else 1
+
+    def _command(self, text: str) -> None:
+        call = COMMANDS.get(text)
+        if call is None:
+            raise refuse(text)
+        self._session.command()
+        self._tell(call, *self._set_points)
+        if call is RESET_DRIVER:
+            self._set_points[:] = FIRST_SET_POINTS
+            self._stop_action, self._polarity, self._sign = "coast", "normal", 1

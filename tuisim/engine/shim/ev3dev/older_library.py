@@ -1,0 +1,149 @@
+"""What the older library, `python-ev3dev` 1.x, needs besides the device files: it reads and writes those itself."""
+
+from __future__ import annotations
+
+import importlib.machinery
+import os
+import sys
+import types
+import warnings
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from functools import wraps
+from typing import Any
+
+from tuisim.engine.shim.display import draw_with_the_bricks_font
+from tuisim.engine.shim.ev3dev.library import refuse_values
+from tuisim.engine.shim.leds import mend_trigger
+from tuisim.engine.shim.plugs import Plugs
+from tuisim.engine.shim.session import DeviceSession
+from tuisim.engine.shim.unsupported.devices import refused_device
+
+NAME = "ev3dev"
+INSTALL = "pip install 'tuisim[ev3dev]'"
+
+
+class MissingLibrary:
+    """Finds the library only to say how to get it; the last of the finders, so that it is not installed."""
+
+    def find_spec(
+        self,
+        fullname: str,
+        path: Sequence[str] | None = None,
+        target: types.ModuleType | None = None,
+    ) -> importlib.machinery.ModuleSpec | None:
+        """Raise for the library; None for other modules."""
+        if fullname == NAME:
+            raise ModuleNotFoundError(f"No module named {NAME!r}: {INSTALL} installs it", name=NAME)
+        return None
+
+
+@contextmanager
+def surroundings() -> Iterator[None]:
+    """While its modules are imported: what Python and its packages have changed since the library was written."""
+    missing = "pkg_resources" not in sys.modules
+    if missing:
+        sys.modules["pkg_resources"] = _resources()
+    try:
+        with warnings.catch_warnings():
+            # Of patterns that are no raw strings.
+            warnings.simplefilter("ignore")
+            yield
+    finally:
+        if missing:
+            del sys.modules["pkg_resources"]
+
+
+def _resources() -> types.ModuleType:
+    """Return what the library uses of `pkg_resources`, which later versions of setuptools do not have."""
+    module = types.ModuleType("pkg_resources")
+
+    def folder(package: str) -> str:
+        return os.path.dirname(str(sys.modules[package].__file__))
+
+    vars(module).update(
+        resource_listdir=lambda package, _name: os.listdir(folder(package)),
+        resource_filename=lambda package, name: os.path.join(folder(package), name),
+    )
+    return module
+
+
+def finish_core(
+    session: DeviceSession, module: types.ModuleType, plugs: Plugs, hint: Callable[[str], str]
+) -> None:
+    """Patch `ev3dev.core` after its import: the screen's font, and what it says about a missing device.
+
+    Args:
+        session: The run.
+        module: The module.
+        plugs: Plugs in what is missing.
+        hint: Returns what to add to the error about a missing device of a class.
+    """
+    core: Any = module
+    draw_with_the_bricks_font(core.Screen)
+    if session.sim.spec.profile.mend_library:
+        mend_trigger(core.Led)
+    _run_by_duty_cycle(core.Motor)
+
+    def explained(access: Callable[..., Any]) -> Callable[..., Any]:
+        @wraps(access)
+        def call(self: Any, *args: Any) -> Any:
+            try:
+                return access(self, *args)
+            except Exception as error:
+                # The library raises this very class for a device that is not connected.
+                class_name = getattr(self, "SYSTEM_CLASS_NAME", "")
+                if not self.connected and (
+                    refused := refused_device(self, class_name, type(error))
+                ):
+                    raise refused from None
+                if not self.connected and (addition := hint(class_name)):
+                    error.args = (f"{error}. {addition}",)
+                raise
+
+        return call
+
+    refuse_values(core.Sensor, plugs)
+    device = core.Device
+    device.__init__ = _look_up(device.__init__, plugs)
+    device._get_attribute, device._set_attribute = (
+        explained(device._get_attribute),
+        explained(device._set_attribute),
+    )
+
+
+def _look_up(look_up: Callable[..., None], plugs: Plugs) -> Callable[..., None]:
+    """Return the library's search for a device, which plugs in what is missing."""
+
+    @wraps(look_up)
+    def __init__(self: Any, class_name: str, *args: Any, **kwargs: Any) -> None:  # noqa: N807
+        look_up(self, class_name, *args, **kwargs)
+        if not self.connected and plugs.add_device(class_name, self.kwargs):
+            look_up(self, class_name, *args, **kwargs)
+        plugs.take_hold(self._path)
+
+    return __init__
+
+
+def _run_by_duty_cycle(motor: Any) -> None:
+    """Let `run_forever` turn a motor by its duty cycle if no speed was ever written, as the kernel of 2015 did.
+
+    Args:
+        motor: The class of motors.
+    """
+    with_speed: set[str] = set()
+    speed_sp, run_forever = motor.speed_sp, motor.run_forever
+
+    def set_speed(self: Any, value: Any) -> None:
+        with_speed.add(self._path)
+        speed_sp.fset(self, value)
+
+    @wraps(run_forever)
+    def run(self: Any, **given: Any) -> None:
+        for name, value in given.items():
+            setattr(self, name, value)
+        by_duty = self._path not in with_speed and self.duty_cycle_sp
+        self.command = self.COMMAND_RUN_DIRECT if by_duty else self.COMMAND_RUN_FOREVER
+
+    motor.speed_sp = property(speed_sp.fget, set_speed, doc=speed_sp.__doc__)
+    motor.run_forever = run

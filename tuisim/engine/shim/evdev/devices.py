@@ -1,0 +1,259 @@
+"""Input devices: the brick's buttons, which are the only one; opening another raises NotSimulated."""
+
+from __future__ import annotations
+
+import os
+import sys
+import types
+from collections.abc import AsyncIterator, Iterator
+from contextlib import contextmanager
+from typing import Any, NoReturn
+
+from tuisim.base.data_class import dataclass
+from tuisim.base.errors import NotSimulated
+from tuisim.engine.core.profile import NS_PER_S
+from tuisim.engine.runs.readings import GAMEPAD_PORT, READING_CODES
+from tuisim.engine.shim.buttons import (
+    DEVICE_NAME,
+    DEVICE_PATH,
+    DEVICE_PATHS,
+    EV_KEY,
+    KEY_CODES,
+    POLL_NS,
+    READING_CODE,
+    InputEvent,
+    changes,
+    read_pressed,
+)
+from tuisim.engine.shim.evdev.codes import codes_module
+from tuisim.engine.shim.session import DeviceSession
+from tuisim.engine.shim.waits import Wait, waits_for
+
+_INSTEAD = "to drive by hand, use the brick's buttons or RemoteControlledTank"
+ONLY_BUTTONS = (
+    f"Gamepads are not simulated: evdev.list_devices() has the brick's buttons only ({_INSTEAD})."
+)
+
+
+@dataclass(frozen=True, slots=True)
+class SynEvent:
+    """An event that separates others; its subclasses are those of keys and axes, as `categorize` returns them."""
+
+    event: InputEvent
+
+
+class RelEvent(SynEvent):
+    """A movement, such as of a mouse."""
+
+
+class AbsEvent(SynEvent):
+    """A position, such as of a stick."""
+
+
+class KeyEvent(SynEvent):
+    """A press or release."""
+
+    key_up, key_down, key_hold = 0, 1, 2
+
+    @property
+    def scancode(self) -> int:
+        """The code of the key."""
+        return self.event.code
+
+    @property
+    def keystate(self) -> int:
+        """1 for a press, 0 for a release."""
+        return self.event.value
+
+    @property
+    def keycode(self) -> str | list[str]:
+        """The names of the key."""
+        names: str | list[str] = _CODES.keys.get(self.event.code, "?")
+        return names
+
+
+_CODES: Any = codes_module("evdev.ecodes")
+_KINDS = {
+    _CODES.EV_SYN: SynEvent,
+    _CODES.EV_KEY: KeyEvent,
+    _CODES.EV_REL: RelEvent,
+    _CODES.EV_ABS: AbsEvent,
+}
+
+
+def categorize(event: InputEvent) -> SynEvent | InputEvent:
+    """Return an event of the class for its type; itself if there is none."""
+    kind = _KINDS.get(event.type)
+    return event if kind is None else kind(event)
+
+
+class InputDevice:
+    """The buttons as an input device of `evdev`.
+
+    Raises:
+        NotSimulated: `dev` is not the path of the buttons.
+    """
+
+    def __init__(self, session: DeviceSession, dev: object) -> None:
+        path = os.fspath(dev) if isinstance(dev, os.PathLike) else dev
+        if path not in DEVICE_PATHS:
+            raise NotSimulated(
+                f"evdev.InputDevice({path!r}): gamepads and keyboards are not simulated", _INSTEAD
+            )
+        self._session = session
+        self._seen, self._events = session.pressed, list[InputEvent]()
+        self.path = self.fn = DEVICE_PATH
+        self.name, self.phys, self.uniq, self.version = DEVICE_NAME, "gpio-keys/input0", "", 65537
+
+    def capabilities(self, verbose: bool = False, absinfo: bool = True) -> dict[Any, list[Any]]:
+        """Return which codes of which types there are."""
+        codes = sorted(KEY_CODES.values())
+        if verbose:
+            return {("EV_KEY", EV_KEY): [(_CODES.KEY[code], code) for code in codes]}
+        return {EV_KEY: codes}
+
+    def active_keys(self) -> list[int]:
+        """Return the key codes of the pressed buttons. Charges the cost of a read."""
+        return [KEY_CODES[name] for name in read_pressed(self._session)]
+
+    def _changes(self) -> list[InputEvent]:
+        """Return what has happened since the last call."""
+        now, before = self._session.pressed, self._seen
+        self._seen = now
+        return changes(before, now, self._session.now)
+
+    def read_one(self) -> InputEvent | None:
+        """Return the next event; None if there is none. Charges the cost of a read.
+
+        A button that was pressed and released since the last read is not noticed.
+        """
+        read_pressed(self._session)
+        self._events += self._changes()
+        return self._events.pop(0) if self._events else None
+
+    def read(self) -> Iterator[InputEvent]:
+        """Return the events since the last read. Charges the cost of a read.
+
+        Raises:
+            BlockingIOError: there are none.
+        """
+        first = self.read_one()
+        if first is None:
+            raise BlockingIOError(11, "Resource temporarily unavailable")
+        found, self._events = [first, *self._events], []
+        return iter(found)
+
+    @waits_for(Wait.BUTTON_EVENT)
+    def read_loop(self) -> Iterator[InputEvent]:
+        """Yield events forever, blocking between them; buttons that are already pressed yield none."""
+        self._seen = self._session.pressed
+        while True:
+            self._session.note_reading(READING_CODE)
+            yield from self._changes()
+            self._session.spend(POLL_NS)
+
+    async def async_read_loop(self) -> AsyncIterator[InputEvent]:
+        """Yield events forever, as `read_loop` does."""
+        import asyncio
+
+        self._seen = self._session.pressed
+        while True:
+            self._session.note_reading(READING_CODE)
+            for event in self._changes():
+                yield event
+            await asyncio.sleep(POLL_NS / NS_PER_S)
+
+    def fileno(self) -> NoReturn:
+        """Refuse to be waited for as a file.
+
+        Raises:
+            NotSimulated: always.
+        """
+        raise NotSimulated(
+            "evdev.InputDevice.fileno is not part of the simulated brick", "use read_loop()"
+        )
+
+    def grab(self) -> None:
+        """Do nothing: nobody else reads the buttons."""
+
+    ungrab = close = grab
+
+    @contextmanager
+    def grab_context(self) -> Iterator[None]:
+        """Do nothing: nobody else reads the buttons."""
+        yield
+
+    def __repr__(self) -> str:
+        return f"InputDevice({self.path!r})"
+
+    def __str__(self) -> str:
+        return f'device {self.path}, name "{self.name}", phys "{self.phys}"'
+
+
+class UInput:
+    """Refuses to make an input device.
+
+    Raises:
+        NotSimulated: always.
+    """
+
+    def __init__(self, *_: object, **__: object) -> None:
+        raise NotSimulated("evdev.UInput: input devices of a program are not simulated", _INSTEAD)
+
+
+class _Looked:
+    """Whether the program has asked for the input devices."""
+
+    def __init__(self) -> None:
+        self.for_devices = False
+
+
+_looked = _Looked()
+
+
+def point_at_gamepads(error: BaseException) -> None:
+    """Add a note to the error of a program that has looked for a gamepad and goes on as if it had one."""
+    if _looked.for_devices and isinstance(
+        error, NameError | LookupError | AttributeError | StopIteration | TypeError
+    ):
+        error.add_note(ONLY_BUTTONS)
+
+
+def evdev_modules(session: DeviceSession) -> dict[str, types.ModuleType]:
+    """Return the module `evdev` with its submodules, by name; its only device is the brick's buttons."""
+
+    class Device(InputDevice):
+        def __init__(self, dev: object) -> None:
+            super().__init__(session, dev)
+
+    Device.__name__ = Device.__qualname__ = "InputDevice"
+
+    def list_devices(input_device_dir: str = "/dev/input") -> list[str]:
+        """Return the paths of the input devices."""
+        # The library looks for the buttons by it.
+        if sys._getframe(1).f_globals.get("__name__") != "ev3dev2.button":
+            _looked.for_devices = True
+            session.note_reading(READING_CODES[GAMEPAD_PORT, "list"])
+        return [DEVICE_PATH]
+
+    def is_device(fn: object) -> bool:
+        """Return whether a path is that of an input device."""
+        return fn in DEVICE_PATHS
+
+    events = {kind.__name__: kind for kind in (InputEvent, SynEvent, KeyEvent, RelEvent, AbsEvent)}
+    parts: dict[str, dict[str, Any]] = {
+        "device": {"InputDevice": Device, "EvdevError": type("EvdevError", (Exception,), {})},
+        "events": events,
+        "util": {"list_devices": list_devices, "is_device": is_device, "categorize": categorize},
+        "uinput": {"UInput": UInput, "UInputError": type("UInputError", (Exception,), {})},
+    }
+    modules = {"evdev": types.ModuleType("evdev", "The input devices of the brick: its buttons.")}
+    whole: Any = modules["evdev"]
+    whole.__path__ = []
+    for name, words in parts.items():
+        part = modules[f"evdev.{name}"] = types.ModuleType(f"evdev.{name}")
+        vars(part).update(words)
+        vars(whole).update(words, **{name: part})
+    modules["evdev.ecodes"] = whole.ecodes = _CODES
+    whole.event_factory = {kind: of for kind, of in _KINDS.items() if of is not SynEvent}
+    return modules

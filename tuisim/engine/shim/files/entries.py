@@ -1,0 +1,190 @@
+"""What is in the tree of device files: folders, attributes of devices, and files of other kinds."""
+
+from __future__ import annotations
+
+import errno
+import os
+import select
+import stat
+from typing import TYPE_CHECKING, Any
+
+from tuisim.base.data_class import dataclass
+from tuisim.base.errors import NotSimulated
+
+if TYPE_CHECKING:
+    from tuisim.engine.shim.device_files import SimDevice
+
+FOLDER_MODE = stat.S_IFDIR | 0o755
+READ_MODE, WRITE_MODE = 0o444, 0o220
+"""Permissions of attributes: everybody may read, the programs' group may write."""
+ATTRIBUTE_BYTES = 4096
+"""Size of every attribute's file, as the kernel reports it."""
+IDENTITY = ("address", "driver_name")
+"""Attributes by which a library looks for a device: to read them is not to use it."""
+ALWAYS_READY = select.POLLIN | select.POLLOUT
+
+
+@dataclass(slots=True)
+class OpenFile:
+    """One opened file of the tree."""
+
+    path: str
+    file: DeviceFile
+    readable: bool
+    writable: bool
+    fd: int = -1
+    at: int = 0
+    """Position of the next read or write."""
+    data: bytes = b""
+    """What was read from the device, and is handed out in parts."""
+    seen: object = None
+    """The device's state when it was last read; None until then."""
+
+
+@dataclass(frozen=True, slots=True)
+class Folder:
+    """A folder."""
+
+    path: str
+    names: tuple[str, ...]
+
+
+class DeviceFile:
+    """A file of the tree.
+
+    Args:
+        path: Its path.
+        mode: Type and permissions, as `stat` reports them.
+        size: Size in bytes, as `stat` reports it.
+    """
+
+    def __init__(self, path: str, mode: int, size: int = 0) -> None:
+        self.path, self.mode, self.size = path, mode, size
+
+    def begin(self, opened: OpenFile) -> None:
+        """Prepare a file that was just opened."""
+
+    def read(self, opened: OpenFile, size: int) -> bytes:
+        """Read up to `size` bytes, all for a negative size.
+
+        Raises:
+            OSError: the driver's error.
+        """
+        raise OSError(errno.EINVAL, os.strerror(errno.EINVAL))
+
+    def write(self, opened: OpenFile, data: bytes) -> int:
+        """Write; return the number of bytes.
+
+        Raises:
+            OSError: the driver's error.
+        """
+        raise OSError(errno.EINVAL, os.strerror(errno.EINVAL))
+
+    def ready(self, opened: OpenFile) -> int:
+        """Return what `poll` reports."""
+        return ALWAYS_READY
+
+    def ioctl(self, request: int) -> bytes:
+        """Return what a request reads into its buffer.
+
+        Raises:
+            OSError: the driver's error.
+            NotSimulated: the device has this request, and it is not simulated.
+        """
+        raise OSError(errno.ENOTTY, os.strerror(errno.ENOTTY))
+
+    def mapping(self, length: int) -> Any:
+        """Return the memory of the device as `mmap.mmap` does.
+
+        Raises:
+            OSError: it has none.
+        """
+        raise OSError(errno.ENODEV, os.strerror(errno.ENODEV))
+
+
+class AttributeFile(DeviceFile):
+    """An attribute of a device.
+
+    A read at the start of the file takes its value, and costs what the attribute costs; reads after it hand out
+    the rest of the same text.
+
+    Args:
+        path: Its path.
+        device: The device.
+        name: The attribute.
+    """
+
+    def __init__(self, path: str, device: SimDevice, name: str) -> None:
+        readable, writable = name in device.readers, name in device.writers
+        mode = stat.S_IFREG | (READ_MODE if readable else 0) | (WRITE_MODE if writable else 0)
+        super().__init__(path, mode, ATTRIBUTE_BYTES)
+        self._device, self._name = device, name
+
+    def begin(self, opened: OpenFile) -> None:
+        """Take hold of the device."""
+        if self._name not in IDENTITY:
+            self._device.is_opened = True
+
+    def read(self, opened: OpenFile, size: int) -> bytes:
+        """Read the value as text with an end of line; a value of bytes as it is."""
+        if not opened.at:
+            try:
+                value = self._device.read(self._name)
+            except OSError as error:
+                raise _as_the_kernel(error, self.path) from None
+            opened.data = value if isinstance(value, bytes) else f"{value}\n".encode()
+            opened.seen = self._state()
+        part = opened.data[opened.at :] if size < 0 else opened.data[opened.at : opened.at + size]
+        opened.at += len(part)
+        return part
+
+    def write(self, opened: OpenFile, data: bytes) -> int:
+        """Set the attribute at once."""
+        if data:
+            try:
+                self._device.write(self._name, data.decode("latin-1").removesuffix("\n"))
+            except OSError as error:
+                raise _as_the_kernel(error, self.path) from None
+            if self._name == "command":
+                self._device.commands += 1
+        opened.at += len(data)
+        return len(data)
+
+    def ready(self, opened: OpenFile) -> int:
+        """Return POLLPRI and POLLERR, too, if the attribute tells of changes and has changed since it was read."""
+        if self._name in self._device.notifying and opened.seen != self._state():
+            return ALWAYS_READY | select.POLLPRI | select.POLLERR
+        return ALWAYS_READY
+
+    def _state(self) -> object:
+        """Return what differs after a change; None if the attribute does not tell of changes."""
+        look = self._device.notifying.get(self._name)
+        return None if look is None else (self._device.commands, look())
+
+
+class TextFile(DeviceFile):
+    """A file whose text never changes; reading it costs nothing."""
+
+    def __init__(self, path: str, text: str) -> None:
+        self._data = text.encode()
+        super().__init__(path, stat.S_IFREG | READ_MODE, len(self._data))
+
+    def read(self, opened: OpenFile, size: int) -> bytes:
+        """Read text."""
+        part = self._data[opened.at :] if size < 0 else self._data[opened.at : opened.at + size]
+        opened.at += len(part)
+        return part
+
+
+def refuse_ioctl(path: str, request: int, hint: str) -> NotSimulated:
+    """Return the error about a request of a device that is not simulated."""
+    return NotSimulated(f"ioctl {request:#x} of {path} is not part of the simulated brick", hint)
+
+
+def _as_the_kernel(error: OSError, path: str) -> OSError:
+    """Return a driver's error with the text that the kernel gives, and what the driver knows as a note."""
+    number = error.errno or errno.EIO
+    told = OSError(number, os.strerror(number))
+    if len(error.args) > 1 and str(error.args[1]) not in path:
+        told.add_note(f"{path}: {error.args[1]}")
+    return told

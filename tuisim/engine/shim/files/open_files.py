@@ -1,0 +1,240 @@
+"""Opened device files: their descriptors, and the file objects that `open` returns for them.
+
+The descriptor of a device file is a real one, of /dev/null, so that it is no other file's, and what takes any
+descriptor, such as `fcntl.fcntl`, takes it; `engine.shim.files.patches` looks it up here before it asks the kernel.
+"""
+
+from __future__ import annotations
+
+import errno
+import io
+import os
+import stat
+from functools import cache, wraps
+from typing import Any
+
+from tuisim.engine.shim.files.entries import DeviceFile, Folder, OpenFile
+
+_real_open = os.open
+_real_file = io.FileIO
+
+
+class OpenFiles:
+    """The device files that the program has open, by descriptor."""
+
+    def __init__(self) -> None:
+        self.by_fd: dict[int, OpenFile] = {}
+
+    def opened(self, file: Any) -> OpenFile | None:
+        """Return the opened device file behind a descriptor or a file object; None for any other."""
+        if not self.by_fd:
+            return None
+        if not isinstance(file, int):
+            try:
+                file = file.fileno()
+            except (AttributeError, OSError, ValueError, TypeError):
+                return None
+        return self.by_fd.get(file)
+
+    def open(self, path: str, entry: DeviceFile | Folder, flags: int) -> OpenFile:
+        """Open a file of the tree.
+
+        Raises:
+            OSError: it is a folder, or must not be opened like this.
+        """
+        if isinstance(entry, Folder):
+            raise _error(errno.EISDIR, path)
+        if flags & os.O_CREAT and flags & os.O_EXCL:
+            raise _error(errno.EEXIST, path)
+        access = flags & os.O_ACCMODE
+        readable, writable = access != os.O_WRONLY, access != os.O_RDONLY
+        if (readable and not entry.mode & stat.S_IRGRP) or (
+            writable and not entry.mode & stat.S_IWGRP
+        ):
+            raise _error(errno.EACCES, path)
+        opened = OpenFile(path, entry, readable, writable)
+        entry.begin(opened)
+        opened.fd = _real_open(os.devnull, os.O_RDWR | os.O_CLOEXEC | (flags & os.O_NONBLOCK))
+        self.by_fd[opened.fd] = opened
+        return opened
+
+    def forget(self, fd: int) -> None:
+        """Forget a descriptor that is closed."""
+        self.by_fd.pop(fd, None)
+
+
+def read(opened: OpenFile, size: int) -> bytes:
+    """Read from a device file, as `os.read`."""
+    if not opened.readable:
+        raise _error(errno.EBADF)
+    return opened.file.read(opened, size)
+
+
+def write(opened: OpenFile, data: Any) -> int:
+    """Write to a device file, as `os.write`."""
+    if not opened.writable:
+        raise _error(errno.EBADF)
+    return opened.file.write(opened, bytes(data))
+
+
+def seek(opened: OpenFile, position: int, whence: int) -> int:
+    """Move the position of a device file, as `os.lseek`."""
+    base = {os.SEEK_SET: 0, os.SEEK_CUR: opened.at, os.SEEK_END: opened.file.size}.get(whence)
+    if base is None or base + position < 0:
+        raise _error(errno.EINVAL)
+    opened.at = base + position
+    return opened.at
+
+
+class DeviceIO(_real_file):
+    """An opened device file as `io.FileIO` has it.
+
+    Args:
+        files: The opened files.
+        opened: This one.
+        mode: As of `open`.
+        name: What it was opened by: a path or a descriptor.
+        closefd: Whether closing this closes the descriptor.
+    """
+
+    def __init__(
+        self, files: OpenFiles, opened: OpenFile, mode: str, name: object, closefd: bool = True
+    ) -> None:
+        super().__init__(opened.fd, mode, closefd)
+        self._files, self._opened = files, opened
+        vars(self)["name"] = name
+
+    def seekable(self) -> bool:
+        """Return whether the file has positions."""
+        self._checkClosed()
+        return True
+
+    def seek(self, position: int, whence: int = 0, /) -> int:
+        """Move the position."""
+        self._checkClosed()
+        return seek(self._opened, position, whence)
+
+    def tell(self) -> int:
+        """Return the position."""
+        self._checkClosed()
+        return self._opened.at
+
+    def truncate(self, size: int | None = None, /) -> int:
+        """Do nothing: the files of devices have no length."""
+        self._checkClosed()
+        return self._opened.at if size is None else size
+
+    def read(self, size: int | None = -1, /) -> Any:
+        """Read bytes; None if there are none and reading must not block."""
+        self._checkClosed()
+        if not self.readable():
+            raise io.UnsupportedOperation("File not open for reading")
+        try:
+            return read(self._opened, -1 if size is None else size)
+        except BlockingIOError:
+            return None
+
+    def readall(self) -> Any:
+        """Read all bytes."""
+        return self.read()
+
+    def readinto(self, buffer: Any, /) -> Any:
+        """Read into a buffer."""
+        view = memoryview(buffer).cast("B")
+        data = self.read(len(view))
+        if data is None:
+            return None
+        view[: len(data)] = data
+        return len(data)
+
+    def write(self, data: Any, /) -> int:
+        """Write bytes; they reach the device at once."""
+        self._checkClosed()
+        if not self.writable():
+            raise io.UnsupportedOperation("File not open for writing")
+        return write(self._opened, data)
+
+    def close(self) -> None:
+        """Close the file."""
+        if not self.closed and self.closefd:
+            self._files.forget(self._opened.fd)
+        super().close()
+
+
+@cache
+def _in_turn(kind: Any) -> Any:
+    """Return a buffered class whose calls take turns in simulated time.
+
+    Its own lock belongs to no thread of the program: a thread that waits for it, while the one inside lets time pass
+    in the driver, would wait for ever.
+    """
+
+    def method(name: str) -> Any:
+        does = getattr(kind, name)
+
+        @wraps(does)
+        def call(self: Any, *given: Any) -> Any:
+            with self._turn:
+                return does(self, *given)
+
+        return call
+
+    def __init__(self: Any, *given: Any) -> None:  # noqa: N807
+        # Not earlier: its locks are the simulated ones only when threads are patched.
+        from threading import RLock
+
+        self._turn = RLock()
+        kind.__init__(self, *given)
+
+    names = [name for name in _BUFFERED if hasattr(kind, name)]
+    return type(
+        kind.__name__, (kind,), {"__init__": __init__, **{name: method(name) for name in names}}
+    )
+
+
+_BUFFERED = (
+    "read",
+    "read1",
+    "readinto",
+    "readinto1",
+    "readline",
+    "peek",
+    "write",
+    "flush",
+    "seek",
+    "close",
+)
+"""Methods of buffered files that may reach the device."""
+
+
+def file_object(
+    raw: DeviceIO,
+    mode: str,
+    buffering: int,
+    encoding: str | None,
+    errors: str | None,
+    newline: str | None,
+) -> Any:
+    """Return what `open` returns for a device file: it decodes and buffers as for any file."""
+    if "b" in mode and buffering == 0:
+        return raw
+    if buffering == 0:
+        raise ValueError("can't have unbuffered text I/O")
+    size = buffering if buffering > 1 else io.DEFAULT_BUFFER_SIZE
+    kind = (
+        io.BufferedRandom
+        if "+" in mode
+        else io.BufferedReader
+        if "r" in mode
+        else io.BufferedWriter
+    )
+    buffer: Any = _in_turn(kind)(raw, size)
+    if "b" in mode:
+        return buffer
+    text: Any = io.TextIOWrapper(buffer, encoding, errors, newline, buffering == 1)
+    text.mode = mode
+    return text
+
+
+def _error(number: int, *path: str) -> OSError:
+    return OSError(number, os.strerror(number), *path)

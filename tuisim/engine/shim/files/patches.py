@@ -1,0 +1,471 @@
+"""Shows the tree of device files to any code: `open`, `io`, `os`, `os.path`, `glob`, `pathlib`, `fcntl` and `mmap`.
+
+Each replacement looks at the first characters of a path, or whether a descriptor is a device file's, and leaves
+everything else to the real function. What Python itself builds on these functions needs no replacement.
+"""
+
+from __future__ import annotations
+
+import builtins
+import errno
+import fcntl
+import io
+import mmap
+import os
+import stat
+import zlib
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import Any
+
+from tuisim.base.errors import NotSimulated
+from tuisim.engine.shim.files.entries import FOLDER_MODE, DeviceFile, Folder, OpenFile
+from tuisim.engine.shim.files.open_files import DeviceIO, OpenFiles, file_object, read, seek, write
+from tuisim.engine.shim.files.tree import MAYBE_OURS, DeviceTree
+
+Replace = Callable[[Any, str, Callable[..., Any]], None]
+"""Replaces a function of a module, by its name."""
+
+_MISSING: Any = object()
+
+_FLAGS = {
+    "r": os.O_RDONLY,
+    "w": os.O_WRONLY | os.O_CREAT,
+    "a": os.O_WRONLY | os.O_CREAT | os.O_APPEND,
+}
+_FLAGS["x"] = _FLAGS["w"] | os.O_EXCL
+"""How each mode of `open` opens a file; with + also for the other direction."""
+
+_FALLS_BACK = ("sendfile", "copy_file_range")
+"""Calls whose users, such as `shutil`, read and write instead when the kernel refuses."""
+_REFUSED = ("dup2", "readv", "writev", "preadv", "pwritev", "splice")
+"""Further calls that take descriptors, and which hardly any program for a brick uses."""
+
+
+class DeviceEntry:
+    """One entry of a folder of the tree, as `os.scandir` yields them."""
+
+    def __init__(self, tree: DeviceTree, folder: str, name: str, as_bytes: bool) -> None:
+        path = os.path.join(folder, name)
+        self._found = tree.find(f"{os.path.normpath(folder)}/{name}")
+        self.name: Any = os.fsencode(name) if as_bytes else name
+        self.path: Any = os.fsencode(path) if as_bytes else path
+
+    def __fspath__(self) -> Any:
+        return self.path
+
+    def __repr__(self) -> str:
+        return f"<DirEntry {self.name!r}>"
+
+    def inode(self) -> int:
+        """Return the number that `os.stat` reports."""
+        assert self._found is not None
+        return _inode(self._found)
+
+    def is_dir(self, *, follow_symlinks: bool = True) -> bool:
+        """Return whether it is a folder."""
+        return isinstance(self._found, Folder)
+
+    def is_file(self, *, follow_symlinks: bool = True) -> bool:
+        """Return whether it is a file with text."""
+        return isinstance(self._found, DeviceFile) and stat.S_ISREG(self._found.mode)
+
+    def is_symlink(self) -> bool:
+        """Return False: what are links on a brick are folders here."""
+        return False
+
+    def is_junction(self) -> bool:
+        """Return False."""
+        return False
+
+    def stat(self, *, follow_symlinks: bool = True) -> os.stat_result:
+        """Return what `os.stat` does."""
+        assert self._found is not None
+        return _status(self._found)
+
+
+class Entries:
+    """The iterator that `os.scandir` returns."""
+
+    def __init__(self, entries: Iterator[DeviceEntry]) -> None:
+        self._entries = entries
+
+    def __iter__(self) -> Entries:
+        return self
+
+    def __next__(self) -> DeviceEntry:
+        return next(self._entries)
+
+    def __enter__(self) -> Entries:
+        return self
+
+    def __exit__(self, *_error: object) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """End the iteration."""
+        self._entries = iter(())
+
+
+def _status(entry: Folder | DeviceFile) -> os.stat_result:
+    mode, size = (FOLDER_MODE, 0) if isinstance(entry, Folder) else (entry.mode, entry.size)
+    return os.stat_result((mode, _inode(entry), 0, 1, 0, 0, size, 0, 0, 0))
+
+
+def _inode(entry: Folder | DeviceFile) -> int:
+    return zlib.crc32(entry.path.encode())
+
+
+class FilePatches:
+    """The replacements.
+
+    Args:
+        tree: The device files.
+        files: Those that the program has open.
+        replace: Replaces a function of a module.
+    """
+
+    def __init__(self, tree: DeviceTree, files: OpenFiles, replace: Replace) -> None:
+        self._tree, self._files, self._replace = tree, files, replace
+
+    def apply(self) -> None:
+        """Replace everything."""
+        self._patch_open()
+        self._patch_descriptors()
+        self._patch_positions()
+        self._refuse_others()
+        self._patch_paths()
+        self._patch_folders()
+        self._replace(fcntl, "ioctl", self._ioctl(fcntl.ioctl))
+        vars(mmap)["mmap"] = _branching(mmap.mmap, self._mapping)
+
+    # Opening
+
+    def _patch_open(self) -> None:
+        real_open, real_os_open = builtins.open, os.open
+        files, tree, by_fd = self._files, self._tree, self._files.by_fd
+
+        def open(  # noqa: A001 - the name that the program sees
+            file: Any = _MISSING,
+            mode: str = "r",
+            buffering: int = -1,
+            encoding: Any = None,
+            errors: Any = None,
+            newline: Any = None,
+            closefd: bool = True,
+            opener: Any = None,
+        ) -> Any:
+            if file is _MISSING:
+                nothing: tuple[Any, ...] = ()
+                # Raises its own error.
+                return real_open(*nothing)
+            if (
+                (file.__class__ is str and not file.startswith(MAYBE_OURS))
+                or mode.__class__ is not str
+                or (raw := self._raw(file, mode.replace("t", ""), closefd)) is None
+            ):
+                return real_open(file, mode, buffering, encoding, errors, newline, closefd, opener)
+            return file_object(raw, mode, buffering, encoding, errors, newline)
+
+        def os_open(path: Any = _MISSING, flags: Any = _MISSING, *given: Any, **named: Any) -> int:
+            if flags is _MISSING:
+                return real_os_open(*(() if path is _MISSING else (path,)), **named)
+            if path.__class__ is str and not path.startswith(MAYBE_OURS):
+                return real_os_open(path, flags, *given, **named)
+            entry = _or_refuse(tree, path, flags)
+            if entry is None:
+                return real_os_open(path, flags, *given, **named)
+            return files.open(os.fsdecode(path), entry, flags).fd
+
+        self._replace(builtins, "open", open)
+        vars(io)["open"] = builtins.open
+        self._replace(os, "open", os_open)
+        real_dup = os.dup
+
+        def dup(fd: int) -> int:
+            copy = real_dup(fd)
+            if fd in by_fd:
+                by_fd[copy] = by_fd[fd]
+            return copy
+
+        self._replace(os, "dup", dup)
+        vars(io)["FileIO"] = _branching(io.FileIO, self._file_io)
+
+    def _file_io(
+        self, file: Any, mode: str = "r", closefd: bool = True, opener: Any = None
+    ) -> DeviceIO | None:
+        return self._raw(file, mode, closefd)
+
+    def _raw(self, file: Any, mode: str, closefd: bool) -> DeviceIO | None:
+        """Return the opened device file; None if it is another file, or the real function has to complain."""
+        kinds = [kind for kind in mode if kind in _FLAGS]
+        if len(kinds) != 1 or set(mode) - {*_FLAGS, "b", "+"}:
+            return None
+        if isinstance(file, int):
+            held = self._files.by_fd.get(file)
+            return (
+                None
+                if held is None
+                else DeviceIO(self._files, held, mode.replace("b", ""), file, closefd)
+            )
+        flags = _FLAGS[kinds[0]]
+        if "+" in mode:
+            flags = flags & ~os.O_ACCMODE | os.O_RDWR
+        entry = _or_refuse(self._tree, file, flags)
+        if entry is None:
+            return None
+        opened = self._files.open(os.fsdecode(file), entry, flags)
+        return DeviceIO(self._files, opened, mode.replace("b", ""), file)
+
+    # Descriptors
+
+    def _patch_descriptors(self) -> None:
+        files, by_fd, replace = self._files, self._files.by_fd, self._replace
+        real_close, real_read, real_write, real_fstat = os.close, os.read, os.write, os.fstat
+
+        def close(fd: int) -> None:
+            if by_fd:
+                files.forget(fd)
+            real_close(fd)
+
+        def os_read(fd: int, length: int, /) -> bytes:
+            return real_read(fd, length) if fd not in by_fd else read(by_fd[fd], length)
+
+        def os_write(fd: int, data: Any, /) -> int:
+            return real_write(fd, data) if fd not in by_fd else write(by_fd[fd], data)
+
+        def fstat(fd: int) -> os.stat_result:
+            return real_fstat(fd) if fd not in by_fd else _status(by_fd[fd].file)
+
+        replace(os, "close", close)
+        replace(os, "read", os_read)
+        replace(os, "write", os_write)
+        replace(os, "fstat", fstat)
+
+    def _patch_positions(self) -> None:
+        by_fd, replace = self._files.by_fd, self._replace
+        real_lseek, real_pread, real_pwrite, real_ftruncate = (
+            os.lseek,
+            os.pread,
+            os.pwrite,
+            os.ftruncate,
+        )
+
+        def lseek(fd: int, position: int, whence: int, /) -> int:
+            return (
+                real_lseek(fd, position, whence)
+                if fd not in by_fd
+                else seek(by_fd[fd], position, whence)
+            )
+
+        def pread(fd: int, length: int, offset: int, /) -> bytes:
+            if fd not in by_fd:
+                return real_pread(fd, length, offset)
+            with _moved_to(by_fd[fd], offset) as opened:
+                return read(opened, length)
+
+        def pwrite(fd: int, data: Any, offset: int, /) -> int:
+            if fd not in by_fd:
+                return real_pwrite(fd, data, offset)
+            with _moved_to(by_fd[fd], offset) as opened:
+                return write(opened, data)
+
+        def ftruncate(fd: int, length: int) -> None:
+            if fd not in by_fd:
+                real_ftruncate(fd, length)
+
+        replace(os, "lseek", lseek)
+        replace(os, "pread", pread)
+        replace(os, "pwrite", pwrite)
+        replace(os, "ftruncate", ftruncate)
+
+    def _refuse_others(self) -> None:
+        """Refuse the calls that would reach the descriptors of device files past all this."""
+        by_fd = self._files.by_fd
+
+        def guarded(name: str, real: Callable[..., Any]) -> Callable[..., Any]:
+            def call(*given: Any, **named: Any) -> Any:
+                if by_fd and any(
+                    isinstance(one, int) and one in by_fd for one in (*given[:2], *named.values())
+                ):
+                    if name in _FALLS_BACK:
+                        raise OSError(errno.EINVAL, os.strerror(errno.EINVAL))
+                    hint = "use os.read, os.write and os.dup"
+                    raise NotSimulated(
+                        f"os.{name} on a device file is not part of the simulated brick", hint
+                    )
+                return real(*given, **named)
+
+            return call
+
+        for name in (*_FALLS_BACK, *_REFUSED):
+            if hasattr(os, name):
+                self._replace(os, name, guarded(name, getattr(os, name)))
+
+    # Paths
+
+    def _patch_paths(self) -> None:
+        tree, by_fd = self._tree, self._files.by_fd
+        real_access, real_chdir = os.access, os.chdir
+
+        def looker(real: Any) -> Callable[..., os.stat_result]:
+            def look(path: Any, *given: Any, **named: Any) -> Any:
+                if path.__class__ is str and not path.startswith(MAYBE_OURS):
+                    return real(path, *given, **named)
+                if isinstance(path, int):
+                    return (
+                        real(path, *given, **named)
+                        if path not in by_fd
+                        else _status(by_fd[path].file)
+                    )
+                entry = tree.find(path)
+                return real(path, *given, **named) if entry is None else _status(entry)
+
+            return look
+
+        def access(path: Any, mode: int, **named: Any) -> bool:
+            try:
+                entry = tree.find(path)
+            except FileNotFoundError:
+                return False
+            if entry is None:
+                return real_access(path, mode, **named)
+            allowed = FOLDER_MODE & ~stat.S_IWUSR if isinstance(entry, Folder) else entry.mode
+            # As one of the group: the permissions of group and owner.
+            return mode & ~(allowed >> 3 | allowed >> 6) & 0o7 == 0
+
+        def chdir(path: Any) -> None:
+            if tree.find(path) is not None:
+                hint = "use the whole path of a file"
+                raise NotSimulated(
+                    f"os.chdir to {os.fsdecode(path)} is not part of the simulated brick", hint
+                )
+            real_chdir(path)
+
+        self._replace(os, "stat", looker(os.stat))
+        self._replace(os, "lstat", looker(os.lstat))
+        self._replace(os, "access", access)
+        self._replace(os, "chdir", chdir)
+
+    def _patch_folders(self) -> None:
+        tree = self._tree
+        real_list, real_scan = os.listdir, os.scandir
+
+        def listdir(path: Any = None) -> Any:
+            if (names := _names(tree, path)) is None:
+                return real_list(path)
+            return [os.fsencode(name) for name in names] if isinstance(path, bytes) else list(names)
+
+        def scandir(path: Any = None) -> Any:
+            if (names := _names(tree, path)) is None:
+                return real_scan(path)
+            folder = os.fsdecode(path)
+            return Entries(
+                DeviceEntry(tree, folder, name, isinstance(path, bytes)) for name in names
+            )
+
+        self._replace(os, "listdir", listdir)
+        self._replace(os, "scandir", scandir)
+
+    def finish_glob(self, module: Any) -> None:
+        """Patch `glob` after its import: in later versions of Python its classes hold functions of `os`."""
+        for held in list(vars(module).values()):
+            if isinstance(held, type) and "scandir" in vars(held):
+                held.scandir = staticmethod(os.scandir)  # type: ignore[attr-defined]
+
+    # Devices
+
+    def _ioctl(self, real: Any) -> Callable[..., Any]:
+        def ioctl(fd: Any, request: int, arg: Any = 0, mutate_flag: bool = True, /) -> Any:
+            if (opened := self._files.opened(fd)) is None:
+                return real(fd, request, arg, mutate_flag)
+            data = opened.file.ioctl(request & 0xFFFFFFFF)
+            if isinstance(arg, int):
+                return 0
+            if isinstance(arg, bytes) or not mutate_flag:
+                return (data + bytes(arg)[len(data) :])[: len(bytes(arg))]
+            from ctypes import c_char
+
+            size = min(len(data), memoryview(arg).nbytes)
+            (c_char * size).from_buffer(arg).raw = data[:size]
+            return 0
+
+        return ioctl
+
+    def _mapping(self, fileno: Any, length: int, *_given: Any, **_named: Any) -> Any:
+        opened = self._files.opened(fileno)
+        return None if opened is None else opened.file.mapping(length)
+
+
+@contextmanager
+def _moved_to(opened: OpenFile, offset: int) -> Iterator[OpenFile]:
+    """Work at another position of a file, and leave its own as it was."""
+    before, opened.at = opened.at, offset
+    try:
+        yield opened
+    finally:
+        opened.at = before
+
+
+def _or_refuse(tree: DeviceTree, path: Any, flags: int) -> Folder | DeviceFile | None:
+    """Return what `tree.find` does; a file that would have to be made cannot be made in these folders."""
+    try:
+        return tree.find(path)
+    except FileNotFoundError as error:
+        if not flags & os.O_CREAT or not isinstance(_parent(tree, path), Folder):
+            raise
+        refused = PermissionError(errno.EACCES, os.strerror(errno.EACCES), os.fsdecode(path))
+        for note in error.__notes__:
+            refused.add_note(note)
+        raise refused from None
+
+
+def _parent(tree: DeviceTree, path: Any) -> Folder | DeviceFile | None:
+    """Return the folder that a path would be in; None if that is missing."""
+    try:
+        return tree.find(os.path.dirname(os.path.normpath(os.fsdecode(path))))
+    except FileNotFoundError:
+        return None
+
+
+def _names(tree: DeviceTree, path: Any) -> tuple[str, ...] | None:
+    """Return the names in a folder of the tree; None for a folder of this computer."""
+    if path is None or (path.__class__ is str and not path.startswith(MAYBE_OURS)):
+        return None
+    entry = tree.find(path)
+    if isinstance(entry, DeviceFile):
+        raise NotADirectoryError(errno.ENOTDIR, os.strerror(errno.ENOTDIR), os.fsdecode(path))
+    return None if entry is None else entry.names
+
+
+def _branching(real: type, choose: Callable[..., Any]) -> type:
+    """Return a class in place of one of Python's: a call gives what `choose` returns, if anything, else a real one.
+
+    Programs can test for it and derive from it as from the real class.
+    """
+
+    class Branching(type):
+        def __call__(cls, *given: Any, **named: Any) -> Any:
+            if cls is not made:
+                return super().__call__(*given, **named)
+            try:
+                found = choose(*given, **named)
+            except TypeError:
+                # The real class complains about its arguments.
+                found = None
+            return real(*given, **named) if found is None else found
+
+        def __instancecheck__(cls, instance: object) -> bool:
+            return (
+                isinstance(instance, real) if cls is made else super().__instancecheck__(instance)
+            )
+
+        def __subclasscheck__(cls, subclass: type) -> bool:
+            return (
+                issubclass(subclass, real) if cls is made else super().__subclasscheck__(subclass)
+            )
+
+    made = Branching(
+        real.__name__, (real,), {"__module__": real.__module__, "__doc__": real.__doc__}
+    )
+    return made

@@ -1,0 +1,143 @@
+"""Prepares what a program finds when it runs: the brick's files, and its library."""
+
+from __future__ import annotations
+
+import importlib.machinery
+import sys
+import types
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import AbstractContextManager, nullcontext
+from types import MappingProxyType
+
+from tuisim.engine.core.profile import Library
+from tuisim.engine.shim.brick import build_brick
+from tuisim.engine.shim.buttons import DEVICE_PATHS, ButtonsFile
+from tuisim.engine.shim.console import Terminal
+from tuisim.engine.shim.display import DisplayFile, Screen
+from tuisim.engine.shim.files.entries import TextFile
+from tuisim.engine.shim.files.open_files import OpenFiles
+from tuisim.engine.shim.files.patches import FilePatches
+from tuisim.engine.shim.files.tree import DeviceTree
+from tuisim.engine.shim.fonts import quiet_pillow
+from tuisim.engine.shim.plugs import Plugs
+from tuisim.engine.shim.session import DeviceSession
+from tuisim.engine.shim.shell.commands import Shell
+from tuisim.engine.shim.shell.processes import Replace, System, finish_asyncio
+from tuisim.engine.shim.sound import Mixer
+
+Finish = Callable[[types.ModuleType], None]
+Around = Callable[[], AbstractContextManager[None]]
+
+
+CACHES = {"/tmp/current_platform": "ev3\n"}
+"""Files in which libraries keep what they found out about the brick: they shall not look at this computer instead."""
+
+
+class FinishingFinder:
+    """Calls a function on a module right after its import.
+
+    Args:
+        finishers: Functions by module name.
+        is_own: Whether a file belongs to the program: such a module may have any name.
+        around: Contexts in which to import, by module name.
+    """
+
+    def __init__(
+        self,
+        finishers: Mapping[str, Finish],
+        is_own: Callable[[str], bool],
+        around: Mapping[str, Around],
+    ) -> None:
+        self._finishers, self._is_own, self._around = finishers, is_own, around
+
+    def find_spec(
+        self, fullname: str, path: Sequence[str] | None, target: types.ModuleType | None = None
+    ) -> importlib.machinery.ModuleSpec | None:
+        """Find the module as usual and wrap its loader."""
+        finish = self._finishers.get(fullname)
+        if finish is None:
+            return None
+        spec = importlib.machinery.PathFinder.find_spec(fullname, path, target)
+        if spec is None or spec.loader is None or self._is_own(spec.origin or "<unknown>"):
+            return None
+        load = spec.loader.exec_module
+
+        def load_and_finish(module: types.ModuleType) -> None:
+            with self._around.get(fullname, nullcontext)():
+                load(module)
+            finish(module)
+
+        spec.loader.exec_module = load_and_finish  # type: ignore[method-assign]
+        return spec
+
+
+def finish_imports(
+    finishers: Mapping[str, Finish],
+    is_own: Callable[[str], bool],
+    around: Mapping[str, Around] = MappingProxyType({}),
+) -> None:
+    """Call functions on modules, by name, right after their import; at once if already imported.
+
+    Args:
+        finishers, is_own, around: As for `FinishingFinder`.
+    """
+    for name, finish in finishers.items():
+        if (there := sys.modules.get(name)) is not None:
+            finish(there)
+    sys.meta_path.insert(0, FinishingFinder(finishers, is_own, around))
+
+
+def install(
+    session: DeviceSession,
+    files: OpenFiles,
+    more_finishers: Mapping[str, Finish],
+    replace: Replace,
+    is_own: Callable[[str], bool],
+) -> None:
+    """Prepare the import of the program's library, and show it the brick's files.
+
+    Args:
+        session: Clock and simulation.
+        files: Remembers the device files that the program opens.
+        more_finishers: Functions for other modules, by name.
+        replace: Replaces a function of a module.
+        is_own: Whether a file belongs to the program.
+    """
+    built = build_brick(session)
+    plugs = Plugs(built)
+    screen = Screen(session)
+    terminal, mixer = Terminal(session, screen), Mixer()
+    system = System(session, Shell(session, terminal, mixer))
+    system.patch_os(replace)
+    tree = DeviceTree(
+        built.files,
+        (
+            DisplayFile(session, screen),
+            *(ButtonsFile(session, path) for path in DEVICE_PATHS),
+            *(TextFile(path, text) for path, text in CACHES.items()),
+        ),
+    )
+    patches = FilePatches(tree, files, replace)
+    patches.apply()
+    finishers: dict[str, Finish] = {
+        "PIL": quiet_pillow,
+        "glob": patches.finish_glob,
+        "subprocess": system.finish_subprocess,
+        "asyncio.base_events": finish_asyncio,
+        **more_finishers,
+    }
+    # Imported on demand: a program uses one library.
+    if session.sim.spec.profile.motor_law.library == Library.PYBRICKS:
+        from tuisim.engine.shim.pybricks import modules as pybricks
+
+        finish_imports(finishers, is_own)
+        pybricks.install(session, built, plugs, screen, mixer)
+    else:
+        from tuisim.engine.shim.ev3dev import modules as ev3dev
+
+        finish_imports(
+            ev3dev.finishers(session, built, plugs, terminal, mixer) | finishers,
+            is_own,
+            ev3dev.AROUND,
+        )
+        ev3dev.install(session, built, plugs)

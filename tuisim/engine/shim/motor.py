@@ -1,0 +1,486 @@
+"""Tacho motors: set points, commands and state, as the kernel driver or the browser simulator exposes them."""
+
+from __future__ import annotations
+
+import math
+from abc import ABC, abstractmethod
+from functools import partial
+
+from tuisim.base.data_class import dataclass
+from tuisim.base.errors import NotSimulated
+from tuisim.engine.core.brick_motor import BrickMotor
+from tuisim.engine.core.browser_motor import BrowserMotor
+from tuisim.engine.core.commands.calls import Call
+from tuisim.engine.core.commands.table import obey
+from tuisim.engine.core.motors import MEDIUM_MAX_SPEED_DPS, POSITION, STOPPED, TIMED, Motor
+from tuisim.engine.core.profile import MS
+from tuisim.engine.core.servo.motor import ServoMotor
+from tuisim.engine.protocol import MotorRegisters
+from tuisim.engine.runs.readings import MODES_BY_KIND, READING_CODES
+from tuisim.engine.shim.device_files import NumberWriter, Reader, SimDevice, Writer, plain, refuse
+from tuisim.engine.shim.session import DeviceSession
+
+COMMANDS = (
+    "run-forever",
+    "run-to-abs-pos",
+    "run-to-rel-pos",
+    "run-timed",
+    "run-direct",
+    "stop",
+    "reset",
+)
+STOP_ACTIONS = ("coast", "brake", "hold")
+POLARITIES = ("normal", "inversed")
+RAMPS = ("ramp_up_sp", "ramp_down_sp")
+COUNT_PER_ROT = 360
+MAX_RAMP_MS = 60_000
+MAX_SET_POINT = 2**31 - 1
+RUN, RUN_UNTIL, RUN_TO, STOP, SET_COUNT = (
+    Call.RUN,
+    Call.RUN_UNTIL,
+    Call.RUN_TO,
+    Call.STOP,
+    Call.SET_COUNT,
+)
+
+
+@dataclass(frozen=True, slots=True)
+class MotorKind:
+    """The driver's constants for one kind of motor."""
+
+    driver_name: str
+    max_speed_dps: int
+    hold_kp: int
+
+
+KINDS = {
+    "large": MotorKind("lego-ev3-l-motor", 1050, 80_000),
+    "medium": MotorKind("lego-ev3-m-motor", int(MEDIUM_MAX_SPEED_DPS), 160_000),
+}
+"""By `MotorSpec.kind`."""
+
+
+class Tacho(ABC):
+    """One motor on an output port, such as `outB`; its kind is one of `KINDS`."""
+
+    def __init__(self, session: DeviceSession, motor: Motor, port: str, kind: str) -> None:
+        self._session, self._port, self._kind = session, port, KINDS[kind]
+        self._motor = motor
+        self._stop_action, self._polarity = "coast", "normal"
+        self._last_command = ""
+        self._look: Reader | None = None
+        """What differs after a change of the state that the driver tells of, if not the state itself."""
+
+    @abstractmethod
+    def registers(self) -> MotorRegisters:
+        """Return what the program has written to the motor, and its speed."""
+
+    def _tell(self, call: Call, *values: float) -> None:
+        """Change the motor."""
+        sim = self._session.sim
+        obey(sim, self._session.now, sim.find_number(self._motor), call, *values)
+
+    @abstractmethod
+    def device(self) -> SimDevice:
+        """Return the device that the library reads and writes."""
+
+    def _device(
+        self,
+        readers: dict[str, Reader],
+        writers: dict[str, Writer],
+        numbers: dict[str, NumberWriter],
+    ) -> SimDevice:
+        """Return the device with these attributes and those that all motors have."""
+        common: dict[str, Reader] = {
+            "address": lambda: f"ev3-ports:{self._port}",
+            "driver_name": lambda: self._kind.driver_name,
+            "commands": lambda: " ".join(COMMANDS),
+            "stop_actions": lambda: " ".join(STOP_ACTIONS),
+            "count_per_rot": lambda: COUNT_PER_ROT,
+            "max_speed": lambda: self._kind.max_speed_dps,
+            "stop_action": lambda: self._stop_action,
+            "polarity": lambda: self._polarity,
+        }
+        writers |= {
+            "stop_action": self._set_stop_action,
+            "polarity": self._set_polarity,
+            "command": self._take_command,
+        }
+        notifying = {"state": self._look or readers["state"]}
+        return SimDevice(
+            self._session,
+            common | readers,
+            writers,
+            None,
+            numbers,
+            notifying=notifying,
+            codes={name: READING_CODES[self._port, name] for name in MODES_BY_KIND["motor"]},
+        )
+
+    def _take_command(self, text: str) -> None:
+        self._command(text)
+        self._last_command = "" if text == "stop" else text
+
+    @abstractmethod
+    def _command(self, text: str) -> None: ...
+
+    def _set_stop_action(self, text: str) -> None:
+        if text not in STOP_ACTIONS:
+            raise refuse(text)
+        self._stop_action = text
+
+    def _set_polarity(self, text: str) -> None:
+        if text not in POLARITIES:
+            raise refuse(text)
+        self._polarity = text
+
+
+class TachoMotor(Tacho):
+    """One motor as the kernel driver exposes it."""
+
+    _motor: BrickMotor
+
+    def __init__(
+        self, session: DeviceSession, motor: BrickMotor, port: str, kind: str = "large"
+    ) -> None:
+        super().__init__(session, motor, port, kind)
+        self._numbers: dict[str, int] = {}
+        self._direct = False
+        self._standstill_tick = 0
+        """Tick at which a motor with target speed 0 comes to a stop."""
+        self._set_defaults()
+
+    def _set_defaults(self) -> None:
+        self._numbers |= {
+            "speed_sp": 0,
+            "position_sp": 0,
+            "time_sp": 0,
+            "duty_cycle_sp": 0,
+            "ramp_up_sp": 0,
+            "ramp_down_sp": 0,
+            "speed_pid/Kp": 1000,
+            "speed_pid/Ki": 60,
+            "speed_pid/Kd": 0,
+            "hold_pid/Kp": self._kind.hold_kp,
+            "hold_pid/Ki": 0,
+            "hold_pid/Kd": 0,
+        }
+        self._stop_action = "coast"
+        self._polarity, self._sign = "normal", 1
+        self._last_goal: float | None = None
+        self._holding = False
+        self._ramps = False
+        """Whether a ramp set point limits changes of speed."""
+
+    def device(self) -> SimDevice:
+        """Return the device that the library reads and writes."""
+        readers: dict[str, Reader] = {
+            name: partial(self._numbers.__getitem__, name) for name in self._numbers
+        }
+        readers |= {
+            "position": lambda: round(self._motor.position_deg) * self._sign,
+            "speed": self._speed,
+            "duty_cycle": self._duty_cycle,
+            "state": self.state,
+        }
+        limits = dict.fromkeys(self._numbers, (0, MAX_SET_POINT))
+        max_speed = self._kind.max_speed_dps
+        limits |= {
+            "speed_sp": (-max_speed, max_speed),
+            "duty_cycle_sp": (-100, 100),
+            "position_sp": (-MAX_SET_POINT - 1, MAX_SET_POINT),
+            "ramp_up_sp": (0, MAX_RAMP_MS),
+            "ramp_down_sp": (0, MAX_RAMP_MS),
+        }
+        numbers = {name: self._number_writer(name, *limits[name]) for name in self._numbers}
+        return self._device(readers, {}, {**numbers, "position": self._set_position})
+
+    def registers(self) -> MotorRegisters:
+        """Return what the program has written to the motor, and its speed."""
+        speed, position, time_ms = (
+            self._numbers[name] for name in ("speed_sp", "position_sp", "time_sp")
+        )
+        return MotorRegisters(
+            self._last_command, self._polarity, speed, position, time_ms / 1000, self._speed()
+        )
+
+    def _number_writer(self, name: str, low: int, high: int) -> NumberWriter:
+        numbers = self._numbers
+
+        def write(value: int) -> None:
+            if not low <= value <= high:
+                raise refuse(str(value))
+            numbers[name] = value
+            if name in RAMPS:
+                self._ramps = any(numbers[ramp] for ramp in RAMPS)
+            if self._direct and name == "duty_cycle_sp" and self._motor.mode != STOPPED:
+                self._run_direct()
+
+        return write
+
+    def _speed(self) -> int:
+        return round(self._motor.moving_dps) * self._sign
+
+    def _duty_cycle(self) -> int:
+        if self._direct and self._motor.mode != STOPPED:
+            return self._numbers["duty_cycle_sp"]
+        return round(100 * self._speed() / self._kind.max_speed_dps)
+
+    def state(self) -> str:
+        """Return the state flags, separated by spaces, in the driver's order."""
+        motor = self._motor
+        if motor.mode == STOPPED:
+            return "holding" if self._holding else ""
+        sim = self._session.sim
+        if motor.blocked_ticks >= sim.stall_ticks:
+            return "running overloaded stalled"
+        if motor.target_dps == 0.0 and sim.tick >= self._standstill_tick + sim.stall_ticks:
+            return "running stalled"
+        return (
+            "running ramping"
+            if motor.speed_dps != motor.target_dps and not self._direct
+            else "running"
+        )
+
+    def _set_position(self, value: int) -> None:
+        self._tell(SET_COUNT, float(value * self._sign))
+        self._last_goal = None
+
+    def _set_polarity(self, text: str) -> None:
+        super()._set_polarity(text)
+        self._sign = -1 if text == "inversed" else 1
+
+    def _command(self, text: str) -> None:
+        if text not in COMMANDS:
+            raise refuse(text)
+        self._session.command()
+        self._direct = text == "run-direct"
+        speed = self._numbers["speed_sp"] * self._sign
+        # The stop action at the start of a move applies at its end.
+        self._holding = self._stop_action == "hold"
+        if text == "run-forever":
+            self._tell(RUN, float(speed))
+        elif text == "run-timed":
+            end_ns = self._session.now + self._numbers["time_sp"] * MS
+            self._tell(RUN_UNTIL, float(speed), float(self._session.sim.ticks_at(end_ns)))
+        elif text == "run-to-rel-pos":
+            self._run_relative(float(speed))
+            return
+        elif text == "run-to-abs-pos":
+            self._run_absolute(float(speed))
+        elif text == "run-direct":
+            self._run_direct()
+        elif text == "stop":
+            self._stop()
+            return
+        else:
+            self._reset()
+        self._last_goal = None
+        self._begun()
+
+    def _begun(self) -> None:
+        """Handle the rare cases of a move: ramps, which a duty cycle does not have, and target speed 0."""
+        if self._ramps and not self._direct:
+            self._ramp()
+        motor = self._motor
+        if motor.target_dps == 0.0:
+            step = motor.ramp_step
+            self._standstill_tick = self._session.sim.tick + (
+                math.ceil(abs(motor.speed_dps) / step) if step else 0
+            )
+
+    def _stop(self) -> None:
+        """Stop, decelerating first if a ramp is set."""
+        self._last_goal = None
+        motor, sim, down = self._motor, self._session.sim, self._ramp_dps2("ramp_down_sp")
+        if not down or not motor.moving_dps:
+            self._tell(STOP)
+            return
+        if motor.mode == TIMED and motor.target_dps == 0.0:
+            # It is decelerating already.
+            return
+        self._tell(Call.LIMIT_RAMPS, down, motor.approach_dps2)
+        self._standstill_tick = sim.tick + math.ceil(abs(motor.speed_dps) / motor.ramp_step)
+        self._tell(RUN_UNTIL, 0.0, float(self._standstill_tick))
+        self._tell(Call.LIMIT_RAMPS, down, 0.0)
+
+    def _run_direct(self) -> None:
+        self._tell(
+            RUN, self._kind.max_speed_dps * self._numbers["duty_cycle_sp"] / 100 * self._sign
+        )
+        self._begun()
+
+    def _run_relative(self, speed: float) -> None:
+        delta = self._numbers["position_sp"] * self._sign
+        if delta == 0:
+            self._stop()
+            return
+        base = self._motor.position_deg
+        if self._last_goal is not None:
+            base = self._last_goal
+        self._last_goal = base + delta
+        self._run_to(self._last_goal, speed)
+        self._begun()
+
+    def _run_to(self, goal_deg: float, speed_dps: float) -> None:
+        self._tell(RUN_TO, goal_deg, speed_dps, float(goal_deg < self._motor.position_deg))
+
+    def _ramp_dps2(self, name: str) -> float:
+        """Return the acceleration that a ramp set point allows, 0 for no ramp."""
+        ramp_ms = self._numbers[name]
+        return self._kind.max_speed_dps / ramp_ms * 1000 if ramp_ms else 0.0
+
+    def _ramp(self) -> None:
+        """Pass the ramp set points to the motor."""
+        motor = self._motor
+        faster = abs(motor.target_dps) > abs(motor.speed_dps)
+        slowest_dps2 = self._ramp_dps2("ramp_up_sp" if faster else "ramp_down_sp")
+        ends = motor.mode in (TIMED, POSITION)
+        approach_dps2 = self._ramp_dps2("ramp_down_sp") if ends else motor.approach_dps2
+        self._tell(Call.LIMIT_RAMPS, slowest_dps2, approach_dps2)
+
+    def _run_absolute(self, speed: float) -> None:
+        self._run_to(float(self._numbers["position_sp"] * self._sign), speed)
+
+    def _reset(self) -> None:
+        self._tell(STOP)
+        self._tell(SET_COUNT, 0.0)
+        self._set_defaults()
+
+
+WITHOUT_EFFECT = (
+    "duty_cycle_sp",
+    "ramp_up_sp",
+    "ramp_down_sp",
+    "speed_pid/Kp",
+    "speed_pid/Ki",
+    "speed_pid/Kd",
+    "hold_pid/Kp",
+    "hold_pid/Ki",
+    "hold_pid/Kd",
+)
+"""Attributes that are stored without effect."""
+
+
+class BrowserTacho(Tacho):
+    """One motor of the browser simulator: set points take effect at once, commands bypass the driver."""
+
+    _motor: BrowserMotor
+
+    def __init__(
+        self, session: DeviceSession, motor: BrowserMotor, port: str, kind: str = "large"
+    ) -> None:
+        super().__init__(session, motor, port, kind)
+        self._numbers = dict.fromkeys(WITHOUT_EFFECT, 0)
+        self._position_sp, self._time_sp_s = 0, 0.0
+
+    def device(self) -> SimDevice:
+        """Return the device that the library reads and writes."""
+        motor = self._motor
+        readers: dict[str, Reader] = {
+            "position": lambda: plain(motor.position_deg),
+            "speed": lambda: plain(motor.speed_dps),
+            "duty_cycle": lambda: round(100 * motor.speed_dps / self._kind.max_speed_dps),
+            "state": lambda: "running" if motor.mode else "",
+            "speed_sp": lambda: int(motor.speed_sp),
+            "position_sp": lambda: self._position_sp,
+            # As in the browser simulator.
+            "time_sp": lambda: int(motor.speed_sp),
+        }
+        readers |= {name: partial(self._numbers.__getitem__, name) for name in WITHOUT_EFFECT}
+        numbers: dict[str, NumberWriter] = {
+            name: partial(self._numbers.__setitem__, name) for name in WITHOUT_EFFECT
+        }
+        numbers |= {
+            "speed_sp": lambda value: self._tell(Call.SET_SPEED, float(value)),
+            "position_sp": self._set_position_sp,
+            "position": lambda value: self._tell(SET_COUNT, float(value)),
+        }
+        return self._device(readers, {"time_sp": self._set_time}, numbers)
+
+    def registers(self) -> MotorRegisters:
+        """Return what the program has written to the motor, and its speed."""
+        motor = self._motor
+        return MotorRegisters(
+            self._last_command,
+            self._polarity,
+            motor.speed_sp,
+            self._position_sp,
+            self._time_sp_s,
+            motor.speed_dps,
+        )
+
+    def _command(self, text: str) -> None:
+        motor = self._motor
+        match text:
+            case "run-forever":
+                self._tell(RUN, motor.speed_sp)
+            case "run-timed":
+                sim = self._session.sim
+                # Counted from the last completed tick: the fraction of a tick since then is ignored.
+                end_tick = sim.tick + self._time_sp_s * sim.spec.profile.tick_hz
+                self._tell(RUN_UNTIL, motor.speed_sp, end_tick)
+            case "run-to-rel-pos":
+                self._run_to(motor.position_deg + self._position_sp)
+            case "run-to-abs-pos":
+                self._run_to(float(self._position_sp))
+            case "run-direct":
+                self._tell(Call.SET_SPEED, float(self._numbers["duty_cycle_sp"]))
+            case "stop" | "reset":
+                self._tell(STOP)
+            case _:
+                raise refuse(text)
+
+    def _run_to(self, goal_deg: float) -> None:
+        self._tell(RUN_TO, goal_deg, self._motor.speed_sp, float(self._position_sp < 0))
+
+    def _set_position_sp(self, value: int) -> None:
+        # Its sign takes effect at once, also during and after a move.
+        self._position_sp = value
+        self._tell(Call.SET_BACKWARDS, float(value < 0))
+
+    def _set_time(self, text: str) -> None:
+        try:
+            self._time_sp_s = float(text)
+        except ValueError:
+            raise refuse(text) from None
+
+    def _set_polarity(self, text: str) -> None:
+        super()._set_polarity(text)
+        self._tell(Call.SET_ROLL, -1.0 if text == "inversed" else 1.0)
+
+
+class ServoTacho(Tacho):
+    """One motor that the Pybricks firmware moves: the driver shows it, and takes no commands."""
+
+    _motor: ServoMotor
+
+    def __init__(
+        self, session: DeviceSession, motor: ServoMotor, port: str, kind: str = "large"
+    ) -> None:
+        super().__init__(session, motor, port, kind)
+
+    def device(self) -> SimDevice:
+        """Return the device with the state of the motor."""
+        motor = self._motor
+        readers: dict[str, Reader] = {
+            "position": lambda: round(motor.position_deg),
+            "speed": lambda: round(motor.speed_dps),
+            "duty_cycle": lambda: round(100 * motor.speed_dps / self._kind.max_speed_dps),
+            "state": lambda: "running" if motor.mode else "",
+        }
+        return self._device(readers, {}, {})
+
+    def registers(self) -> MotorRegisters:
+        """Return the state of the motor."""
+        motor = self._motor
+        command = "run-direct" if motor.mode else ""
+        return MotorRegisters(
+            command, "normal", motor.aim_dps, round(motor.goal_deg), 0.0, motor.speed_dps
+        )
+
+    def _command(self, text: str) -> None:
+        raise NotSimulated(
+            f"the motor on {self._port}: the command {text!r} of its driver is not simulated in a Pybricks program",
+            "use pybricks.ev3devices.Motor",
+        )

@@ -1,0 +1,22 @@
+"""Enumerations of ports, colours, buttons and directions."""
+
+from tuisim.engine.shim.pybricks.media import ImageFile as ImageFile
+from tuisim.engine.shim.pybricks.media import SoundFile as SoundFile
+from tuisim.engine.shim.pybricks.parameters import (
+    Align as Align,
+)
+from tuisim.engine.shim.pybricks.parameters import (
+    Button as Button,
+)
+from tuisim.engine.shim.pybricks.parameters import (
+    Color as Color,
+)
+from tuisim.engine.shim.pybricks.parameters import (
+    Direction as Direction,
+)
+from tuisim.engine.shim.pybricks.parameters import (
+    Port as Port,
+)
+from tuisim.engine.shim.pybricks.parameters import (
+    Stop as Stop,
+)

@@ -1,0 +1,7 @@
+"""Waits, stop watch and log; tasks, as version 4 has them."""
+
+from tuisim.engine.shim.pybricks.tools import DataLog as DataLog
+from tuisim.engine.shim.pybricks.tools import StopWatch as StopWatch
+from tuisim.engine.shim.pybricks.tools import wait as wait
+from tuisim.engine.shim.pybricks.version_4 import multitask as multitask
+from tuisim.engine.shim.pybricks.version_4 import run_task as run_task

@@ -1,0 +1,215 @@
+"""Plugs in what a program asks for, where its robot has nothing else that counts.
+
+A part of the default robot that the program has not taken hold of gives way; what the program's text shows stays. A
+program that catches the library's error about a missing device just tries what there is: it gets nothing.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from tuisim.base.errors import NotSimulated
+from tuisim.engine.core.commands.calls import Call
+from tuisim.engine.core.commands.robot import encode_parts
+from tuisim.engine.core.commands.table import obey
+from tuisim.engine.core.plugged import (
+    LATE,
+    LEFT,
+    MOTOR_PARTS,
+    RIGHT,
+    SENSOR_PARTS,
+    PluggedPart,
+)
+from tuisim.engine.core.sensors import SENSORS
+from tuisim.engine.core.spec import INPUT_PORTS, NO_PORT, OUTPUT_PORTS
+from tuisim.engine.shim.brick import MOTOR_CLASS, SENSOR_CLASS, BuiltBrick
+from tuisim.engine.shim.motor import KINDS
+
+PART_OF_KIND = {kind: part for part, kind in MOTOR_PARTS.items()}
+"""Classes of motors, by their kinds."""
+
+
+PART_OF_DRIVER = {
+    **{KINDS[kind].driver_name: part for part, kind in MOTOR_PARTS.items()},
+    **{
+        kind.driver_name: part
+        for part, spec in SENSOR_PARTS.items()
+        for kind in SENSORS.values()
+        if kind.spec is spec
+    },
+}
+"""Classes of parts, by the names of their drivers."""
+_PORT = re.compile(r"(?:ev3-ports:)?(out[A-D]|in[1-4])")
+
+
+def find_port(address: object) -> str:
+    """Return the port, such as `in1`, that a program gives; empty for none."""
+    match = _PORT.fullmatch(address) if isinstance(address, str) else None
+    return match[1] if match else ""
+
+
+class Plugs:
+    """What is plugged into the brick of one run.
+
+    Args:
+        built: The brick.
+    """
+
+    def __init__(self, built: BuiltBrick) -> None:
+        self._built, self._session = built, built.session
+        self.missing: type[Exception] = Exception
+        """The library's error about a device that is not there."""
+        self._late: frozenset[str] = frozenset()
+        """The ports of motors that are asked for as wheels, when it is too late for that."""
+
+    def add_device(self, class_name: str, wanted: Mapping[str, Any]) -> bool:
+        """Plug in what a library for device files looks for, and return whether it is there now.
+
+        Args:
+            class_name: Kernel name of the class that was searched.
+            wanted: What the device was to match, by attribute.
+        """
+        if wanted.keys() - {"driver_name", "address"} or class_name not in (
+            MOTOR_CLASS,
+            SENSOR_CLASS,
+        ):
+            return False
+        drivers = wanted.get("driver_name", [])
+        names = [drivers] if isinstance(drivers, str) else drivers
+        known = [PART_OF_DRIVER[name] for name in names if name in PART_OF_DRIVER]
+        # A motor of any kind is a large one.
+        known += [PART_OF_KIND["large"]] if class_name == MOTOR_CLASS and not names else []
+        if not known:
+            return False
+        address = wanted.get("address")
+        port = self._choose_port(known[0]) if address is None else find_port(address)
+        return bool(port) and self.add(known[0], port)
+
+    def _choose_port(self, part: str) -> str:
+        """Return a port for a part of which the program does not say it; empty if all are used."""
+        ports = OUTPUT_PORTS if part in MOTOR_PARTS else INPUT_PORTS
+        free = [port for port in ports if not self.find_path(port)]
+        return next((port for port in (*free, *ports) if self._can_give_way(port)), "")
+
+    def take_hold(self, path: str) -> None:
+        """Note that the program uses the device with a path."""
+        if (device := self._built.files.by_path.get(path)) is not None:
+            device.is_opened = True
+
+    def refuse_value(self, path: str, number: int) -> NotSimulated | None:
+        """Return the error about a value that the sensor with a path has in no mode; None if it has."""
+        found = (
+            sensor for port, sensor in self._built.sensors.items() if self.find_path(port) == path
+        )
+        return next((sensor.refuse_value(number) for sensor in found), None)
+
+    def find_path(self, port: str) -> str:
+        """Return the path of what is on a port; empty for nothing."""
+        return self._built.paths.get(port, "")
+
+    def add(self, part: str, port: str) -> bool:
+        """Plug in a part, and return whether it is there now.
+
+        Args:
+            part: A class of `engine.core.plugged`.
+            port: Where the program asks for it, such as `in1`.
+        """
+        if self._session.shown_ports is None or not self._can_give_way(port):
+            return False
+        robot = self._session.sim.spec.robot
+        wheels = (robot.left_port, robot.right_port)
+        if port in wheels and self._session.sim.has_driven:
+            return False
+        if part == "GyroSensor" and robot.gyro and not self._can_give_way(robot.gyro.port):
+            # A robot has one.
+            return False
+        if self._session.is_tried(self.missing):
+            return False
+        parts = [self._session.describe_part(port, part, LATE if port in self._late else "")]
+        if port in wheels:
+            # Without this wheel, the other motor is one like any other.
+            parts += self._keep_wheels((port,))
+        self._plug(parts)
+        return True
+
+    def make_wheels(self, left: str, right: str, part: str) -> None:
+        """Plug in two motors as the wheels, unless a wheel has turned: then they are plugged in as other motors.
+
+        Args:
+            left, right: Their ports.
+            part: Their class.
+        """
+        session, ports = self._session, (left, right)
+        if session.shown_ports is None or left == right:
+            return
+        robot = session.sim.spec.robot
+        wheels = (robot.left_port, robot.right_port)
+        if ports == wheels or ({*ports} == {*wheels} and {*ports} <= {*session.shown_ports}):
+            return
+        if not all(self._is_there(part, port) or self._can_give_way(port) for port in ports):
+            return
+        if session.is_tried(self.missing):
+            return
+        if self._can_change_wheels(ports):
+            parts = [session.describe_part(left, part, LEFT)]
+            parts += [session.describe_part(right, part, RIGHT), *self._keep_wheels(ports)]
+            self._plug(parts)
+        else:
+            self._late |= {*ports}
+
+    def _can_change_wheels(self, ports: Sequence[str]) -> bool:
+        """Return whether motors can become the wheels: nothing that would get another number has turned."""
+        sim = self._session.sim
+        others = [motor.port for motor in sim.spec.robot.extra_motors]
+        first = min((others.index(port) for port in ports if port in others), default=len(others))
+        return not sim.has_driven and not any(map(sim.has_turned, range(first, len(others))))
+
+    def _is_there(self, part: str, port: str) -> bool:
+        """Return whether a motor of a class is on a port."""
+        kind = MOTOR_PARTS[part]
+        return any(
+            (motor.port, motor.kind) == (port, kind)
+            for motor in self._session.sim.spec.robot.motors
+        )
+
+    def _can_give_way(self, port: str) -> bool:
+        """Return whether nothing is on a port, or a part of the default robot that the program does not use."""
+        path = self._built.paths.get(port)
+        if path is None:
+            return True
+        shown = self._session.shown_ports or ()
+        return port not in shown and not self._built.files.by_path[path].is_opened
+
+    def _keep_wheels(self, without: Sequence[str]) -> list[PluggedPart]:
+        """Return the wheels' motors that the program uses, except on some ports, as parts that are no wheels'."""
+        return [
+            self._session.describe_part(motor.port, PART_OF_KIND[motor.kind])
+            for motor in self._session.sim.spec.robot.wheel_motors
+            if motor.port not in (NO_PORT, *without) and not self._can_give_way(motor.port)
+        ]
+
+    def _plug(self, parts: Sequence[PluggedPart]) -> None:
+        """Change the robot, and what is connected to the brick."""
+        built, sim = self._built, self._session.sim
+        before = sim.spec.robot
+        obey(sim, self._session.now, 0, Call.PLUG, *encode_parts(parts))
+        robot = sim.spec.robot
+        simulated = sim.motors_by_port
+        sensors = {sensor.port: sensor for sensor in robot.sensors}
+        for port in [*built.paths]:
+            if port in built.motors:
+                stays = simulated.get(port) is built.motors[port]
+            else:
+                stays = sensors.get(port) in before.sensors
+            if not stays:
+                built.disconnect(port)
+        for motor in robot.motors:
+            if motor.port in simulated and motor.port not in built.paths:
+                built.connect_motor(motor)
+        for port, sensor in sensors.items():
+            if port not in built.paths:
+                built.connect_sensor(sensor)
+        built.take_wheels()
+        self._session.tell_plugged(parts)

@@ -1,0 +1,280 @@
+"""The simulated brick as the library's classes see it, and the errors that they raise."""
+
+from __future__ import annotations
+
+import errno
+import sys
+from collections.abc import Callable, Generator
+from dataclasses import field
+from math import nan
+from typing import Any, ClassVar, Generic, TypeVar
+
+from tuisim.base.data_class import dataclass
+from tuisim.engine.core.commands.calls import MAX_NUMBER, Call
+from tuisim.engine.core.commands.table import obey
+from tuisim.engine.core.sensors import SENSORS
+from tuisim.engine.core.servo.motor import ServoMotor
+from tuisim.engine.runs.readings import READING_CODES
+from tuisim.engine.shim.brick import BuiltBrick
+from tuisim.engine.shim.display import Screen
+from tuisim.engine.shim.leds import Lights
+from tuisim.engine.shim.plugs import PART_OF_DRIVER, PART_OF_KIND, Plugs
+from tuisim.engine.shim.power import Battery
+from tuisim.engine.shim.pybricks.parameters import Port
+from tuisim.engine.shim.sensors import LegoSensor
+from tuisim.engine.shim.session import DeviceSession
+from tuisim.engine.shim.sound import Mixer
+from tuisim.engine.shim.waits import Wait, waits_for
+
+LARGEST = int(MAX_NUMBER)
+POLL_US = 5000
+"""A blocking call looks for the end of its move this often, as the firmware's does."""
+
+BLOCKED_POLL_US = 100_000
+"""Likewise while something blocks a motor, to say it when the motor is stalled."""
+
+
+Result = TypeVar("Result")
+Waiting = Generator[int, None, Result]
+"""Something that takes time: it yields the times in microseconds until which to wait."""
+
+
+class Awaited(Generic[Result]):
+    """What a task awaits in place of a blocking call."""
+
+    def __init__(self, waiting: Waiting[Result]) -> None:
+        self._waiting = waiting
+
+    def __await__(self) -> Waiting[Result]:
+        return self._waiting
+
+
+@dataclass(slots=True)
+class Brick:
+    """The brick of one run."""
+
+    session: DeviceSession
+    built: BuiltBrick
+    plugs: Plugs
+    screen: Screen
+    mixer: Mixer
+    hint: Callable[[str], str]
+    """Returns what is on the ports of a class of devices."""
+    said: set[str] = field(default_factory=set)
+    """What was said that is said once, by subject."""
+    in_task: bool = False
+    """Whether the program runs a task of version 4, in which nothing blocks."""
+
+    @property
+    def lights(self) -> Lights:
+        """The lights of its buttons."""
+        return self.built.lights
+
+    @property
+    def battery(self) -> Battery:
+        """Its battery."""
+        return self.built.battery
+
+    def find_motor(self, port: str) -> ServoMotor | None:
+        """Return the motor on a port such as `outA`, which may be plugged in now; None for none."""
+        if port not in self.built.motors:
+            self.plugs.add(PART_OF_KIND["large"], port)
+        self.plugs.take_hold(self.plugs.find_path(port))
+        motor = self.built.motors.get(port)
+        return motor if isinstance(motor, ServoMotor) else None
+
+    def find_sensor(self, port: str, kind: str) -> LegoSensor | None:
+        """Return the sensor on a port, which may be plugged in now; None for none.
+
+        Args:
+            port: The port, such as `in1`.
+            kind: One of `engine.core.sensors.SENSORS`; empty for any of them.
+        """
+        driver, sensors = SENSORS[kind].driver_name if kind else "", self.built.sensors
+        sensor = sensors.get(port)
+        if kind and (sensor is None or sensor.driver_name != driver):
+            sensor = sensors[port] if self.plugs.add(PART_OF_DRIVER[driver], port) else None
+        self.plugs.take_hold(self.plugs.find_path(port) if sensor else "")
+        return sensor
+
+    @property
+    def now_us(self) -> int:
+        """The simulated time."""
+        return self.session.now // 1000
+
+    def read(self, mode: str = "", *ports: str) -> int:
+        """Let the time of a reading pass, and return the simulated time.
+
+        Args:
+            mode, ports: What is recorded of it, as in `engine.runs.readings.READING_CODES`.
+        """
+        session = self.session
+        if not session.free:
+            codes = [READING_CODES[port, mode] for port in ports]
+            session.spend(session.sim.spec.profile.attribute_read_ns, *codes[:1])
+            for code in codes[1:]:
+                session.note_reading(code)
+        return session.now // 1000
+
+    def tell(self, part: int, call: Call, *values: float | None) -> None:
+        """Change a motor or a drive base.
+
+        Args:
+            part: Its number.
+            call, values: What changes; None is what is not given. Numbers beyond any that counts are cut off.
+        """
+        numbers = (
+            nan if value is None else float(max(-LARGEST, min(LARGEST, value))) for value in values
+        )
+        obey(self.session.sim, self.session.now, part, call, *numbers)
+
+    def command(self) -> int:
+        """Count a command, which takes no time, and return the simulated time."""
+        self.session.command()
+        return self.session.now // 1000
+
+    def until_done(
+        self, done: Callable[[int], bool], end_us: Callable[[], int | None]
+    ) -> Waiting[None]:
+        """Wait until a move is done.
+
+        Args:
+            done: Whether it is, at a time.
+            end_us: When its trajectory ends.
+        """
+        begin = now = self.now_us
+        while not done(now):
+            until = max(end_us() or 0, now + 1)
+            if any(motor.blocked_ticks for motor in self.built.motors.values()):
+                until = min(until, now + BLOCKED_POLL_US)
+            yield begin - (begin - until) // POLL_US * POLL_US
+            now = self.now_us
+
+    def finish(self, waiting: Waiting[Result]) -> Result:
+        """Do what waits: block until it is over, or, in a task of version 4, return what a task awaits."""
+        awaited: Any = Awaited(waiting)
+        return awaited if self.in_task else self.block(waiting)
+
+    @waits_for(Wait.MOTOR)
+    def block(self, waiting: Waiting[Result]) -> Result:
+        """Block until what waits is over, and return its result."""
+        while True:
+            try:
+                until_us = waiting.send(None)
+            except StopIteration as end:
+                self.session.held_up = ""
+                result: Result = end.value
+                return result
+            self.session.wait_for_motor((until_us - self.now_us) * 1000)
+
+    def say_stalled(self, what: str, call: str) -> None:
+        """Say once that a call waits because something blocks a motor.
+
+        Args:
+            what: What is blocked, with its verb, such as `the wheels are`.
+        """
+        told = f"{what} stalled: {call} waits until the way is free, as on the brick"
+        self.session.held_up = told
+        self.say_once(what, told)
+
+    def say_once(self, subject: str, text: str) -> None:
+        """Say something to the user, in the program's error output, unless something was said of the subject."""
+        if subject not in self.said:
+            self.said.add(subject)
+            print(f"tuisim: {text}", file=sys.__stderr__)
+
+
+ONLY_IN_4 = frozenset(
+    {
+        "arc",
+        "brake",
+        "calibrate",
+        "close",
+        "curve",
+        "done",
+        "hold",
+        "load",
+        "model",
+        "move_by",
+        "stalled",
+        "system",
+    }
+)
+"""Attributes that some class has in version 4 of the library only."""
+
+
+class Connected:
+    """A class of the library: its objects are parts of the brick."""
+
+    brick: ClassVar[Brick]
+
+    port: Port | None = None
+    """Where it is connected."""
+
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}({self.port or ''})"
+
+    def __getattr__(self, name: str) -> Any:
+        known = name in ONLY_IN_4
+        hint = ": it is of Pybricks 4, which --profile pybricks4 chooses" if known else ""
+        raise AttributeError(
+            f"{type(self).__name__!r} object has no attribute {name!r}{hint}", name=name, obj=self
+        )
+
+
+def invalid_argument() -> ValueError:
+    """Return the firmware's error about a bad value."""
+    return ValueError("Invalid argument")
+
+
+def refused(text: str) -> RuntimeError:
+    """Return the error that MicroPython raises for what the firmware does not have."""
+    return NotImplementedError(text)  # as on the brick
+
+
+FirmwareError: Any = type("OSError", (OSError,), {"__module__": "builtins"})
+"""An OSError that is shown as on the brick: Python makes others of some numbers."""
+
+
+def not_permitted() -> Any:
+    """Return the firmware's error about a command that must not be given now."""
+    return FirmwareError(
+        errno.EPERM,
+        "EPERM:\n\nThis operation is not permitted now: the motor is in use by a drive base, or a move is under way."
+        "\n--> Call stop() first.",
+    )
+
+
+def no_device(hint: str) -> Any:
+    """Return the firmware's error about a port without the device.
+
+    Args:
+        hint: What is on the ports.
+    """
+    return FirmwareError(
+        errno.ENODEV,
+        f"ENODEV:\n\nA sensor or motor is not connected to the specified port.\n--> Check the port of the program, "
+        f"and the robot.\n--> {hint}",
+    )
+
+
+def whole(value: Any) -> int:
+    """Return a number as the firmware takes it: without its fraction.
+
+    Raises:
+        TypeError: it is no number.
+    """
+    if not isinstance(value, int | float):
+        raise TypeError(f"can't convert {type(value).__name__} to int")
+    return int(value)
+
+
+def text_of(value: Any) -> str:
+    """Return a text where the firmware takes nothing else.
+
+    Raises:
+        TypeError: it is no text.
+    """
+    if not isinstance(value, str):
+        raise TypeError(f"can't convert '{type(value).__name__}' object to str implicitly")
+    return value

@@ -1,0 +1,197 @@
+"""The sensors of `pybricks.ev3devices`; its `Motor` stands in `motor`."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar
+
+from tuisim.engine.core.sensors import color
+from tuisim.engine.shim.brick import SENSOR_CLASS
+from tuisim.engine.shim.pybricks.brick import Connected, invalid_argument, no_device, whole
+from tuisim.engine.shim.pybricks.parameters import Button, Color, Direction, Port
+from tuisim.engine.shim.sensors import ColorDevice, GyroDevice
+
+CODES = (
+    None,
+    Color.BLACK,
+    Color.BLUE,
+    Color.GREEN,
+    Color.YELLOW,
+    Color.RED,
+    Color.WHITE,
+    Color.BROWN,
+)
+"""What the colour sensor's codes stand for."""
+REMOTE_BUTTONS: tuple[tuple[Button, ...], ...] = (
+    (),
+    (Button.LEFT_UP,),
+    (Button.LEFT_DOWN,),
+    (Button.RIGHT_UP,),
+    (Button.RIGHT_DOWN,),
+    (Button.LEFT_UP, Button.RIGHT_UP),
+    (Button.LEFT_UP, Button.RIGHT_DOWN),
+    (Button.LEFT_DOWN, Button.RIGHT_UP),
+    (Button.LEFT_DOWN, Button.RIGHT_DOWN),
+    (Button.BEACON,),
+    (Button.LEFT_UP, Button.LEFT_DOWN),
+    (Button.RIGHT_UP, Button.RIGHT_DOWN),
+)
+"""What the codes of the infrared remote stand for."""
+KEYPAD_BITS = {
+    0x10: Button.LEFT_UP,
+    0x20: Button.LEFT_DOWN,
+    0x40: Button.RIGHT_UP,
+    0x80: Button.RIGHT_DOWN,
+}
+NO_BEACON = -128
+"""The distance that the sensor tells without a beacon."""
+DEG_PER_HEADING = 3
+CHANNELS = range(1, 5)
+
+
+class Sensor(Connected):
+    """A sensor on an input port."""
+
+    KIND: ClassVar[str] = ""
+    """One of `engine.core.sensors.SENSORS`; empty for any of them."""
+
+    def __init__(self, port: Port) -> None:
+        if not isinstance(port, Port):
+            raise TypeError(f"a Port is needed, not {type(port).__name__}")
+        if not port.device_port.startswith("in"):
+            raise ValueError("Invalid port")
+        found = self.brick.find_sensor(port.device_port, self.KIND)
+        if found is None:
+            raise no_device(self.brick.hint(SENSOR_CLASS))
+        self.port, self._sensor = port, found
+
+    def _read(self, mode: str) -> tuple[int, ...]:
+        """Return a measurement in a mode; the first one in another mode than before costs the time of the change."""
+        return self._sensor.measure(mode) if self._sensor.mode == mode else self._switched(mode)
+
+    def _switched(self, mode: str) -> tuple[int, ...]:
+        """Switch the mode, and return the first measurement in it."""
+        self._sensor.switch(mode)
+        return self._sensor.measure_switched(mode)
+
+
+class TouchSensor(Sensor):
+    """A touch sensor."""
+
+    KIND = "touch"
+
+    def pressed(self) -> bool:
+        """Return whether it is pressed."""
+        return bool(self._read("TOUCH")[0])
+
+
+class ColorSensor(Sensor):
+    """A colour sensor."""
+
+    KIND = "color"
+
+    def color(self) -> Color | None:
+        """Return the colour; None if there is none."""
+        code = self._read("COL-COLOR")[0]
+        return CODES[code] if 0 <= code < len(CODES) else None
+
+    def reflection(self) -> int:
+        """Return the reflected light in percent."""
+        return self._read("COL-REFLECT")[0]
+
+    def ambient(self) -> int:
+        """Return the light around in percent."""
+        return self._read("COL-AMBIENT")[0]
+
+    def rgb(self) -> tuple[int, int, int]:
+        """Return the reflected red, green and blue light in percent."""
+        self._read("RGB-RAW")
+        assert isinstance(self._sensor, ColorDevice)
+        red, green, blue = (100 * channel // color.WHITE for channel in self._sensor.channels())
+        return red, green, blue
+
+
+class UltrasonicSensor(Sensor):
+    """An ultrasonic sensor."""
+
+    KIND = "ultrasonic"
+
+    def distance(self, silent: bool = False) -> int:
+        """Return the distance to the next object in mm; `silent` switches the sensor off after the measurement."""
+        if silent:
+            return self._switched("US-SI-CM")[0]
+        return self._read("US-DIST-CM")[0]
+
+    def presence(self) -> bool:
+        """Return whether another ultrasonic sensor is heard."""
+        return bool(self._read("US-LISTEN")[0])
+
+
+class InfraredSensor(Sensor):
+    """An infrared sensor."""
+
+    KIND = "infrared"
+
+    def distance(self) -> int:
+        """Return the distance to the next object, 0 to 100."""
+        return self._read("IR-PROX")[0]
+
+    def _channel(self, channel: Any) -> int:
+        number = whole(channel)
+        if number not in CHANNELS:
+            raise invalid_argument()
+        return number - 1
+
+    def beacon(self, channel: int) -> tuple[int, int] | tuple[None, None]:
+        """Return the distance of the beacon, 0 to 100, and its direction in degrees."""
+        at = 2 * self._channel(channel)
+        heading, distance = self._read("IR-SEEK")[at : at + 2]
+        return (None, None) if distance == NO_BEACON else (distance, DEG_PER_HEADING * heading)
+
+    def buttons(self, channel: int) -> list[Button]:
+        """Return the pressed buttons of the remote."""
+        return list(REMOTE_BUTTONS[self._read("IR-REMOTE")[self._channel(channel)]])
+
+    def keypad(self) -> list[Button]:
+        """Return the pressed buttons of the remote on channel 1, any number of them."""
+        bits = self._read("IR-REM-A")[0]
+        return [button for bit, button in KEYPAD_BITS.items() if bits & bit]
+
+
+class GyroSensor(Sensor):
+    """A gyro. Reading the speed and then the angle restarts the angle from 0, as on the brick."""
+
+    KIND = "gyro"
+
+    def __init__(self, port: Port, *direction: Direction, **named: Direction) -> None:
+        super().__init__(port)
+        chosen = [
+            *direction,
+            *(named[key] for key in ("direction", "positive_direction") if key in named),
+        ]
+        if len(chosen) > 1 or len(chosen) != len(direction) + len(named):
+            raise TypeError("GyroSensor takes a port and a direction")
+        self._sign = (chosen[0] if chosen else Direction.CLOCKWISE).sign
+        self._zero = 0
+        self._zero = self._angle()
+
+    def _switched(self, mode: str) -> tuple[int, ...]:
+        values = super()._switched(mode)
+        assert isinstance(self._sensor, GyroDevice)
+        if self._sensor.restarts:
+            self._zero = 0
+        return values
+
+    def _angle(self) -> int:
+        return self._read("GYRO-ANG")[0] * self._sign
+
+    def angle(self) -> int:
+        """Return the angle in degrees, clockwise."""
+        return self._angle() - self._zero
+
+    def speed(self) -> int:
+        """Return the rate of turn in degrees per second, clockwise."""
+        return self._read("GYRO-RATE")[0] * self._sign
+
+    def reset_angle(self, angle: float) -> None:
+        """Make the current angle another one."""
+        self._zero = self._angle() - whole(angle)

@@ -1,0 +1,83 @@
+"""`EV3Brick` of `pybricks.hubs`: buttons, light, battery, speaker and screen."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from enum import Enum
+
+from tuisim.engine.runs.readings import BUTTONS_PORT
+from tuisim.engine.shim.leds import MAX_BRIGHTNESS
+from tuisim.engine.shim.pybricks.brick import Connected, refused
+from tuisim.engine.shim.pybricks.image import THE_SCREEN, Image
+from tuisim.engine.shim.pybricks.parameters import Button
+from tuisim.engine.shim.pybricks.speaker import Speaker
+
+BUTTON_NAMES: Mapping[str, Button] = {
+    "enter": Button.CENTER,
+    "left": Button.LEFT,
+    "right": Button.RIGHT,
+    "up": Button.UP,
+    "down": Button.DOWN,
+    "backspace": Button.LEFT_UP,
+}
+"""By the name of the button in the session, in the order in which `pressed` lists them."""
+LIGHTS: Mapping[str, tuple[int, int]] = {
+    "RED": (MAX_BRIGHTNESS, 0),
+    "ORANGE": (MAX_BRIGHTNESS, MAX_BRIGHTNESS),
+    "YELLOW": (30, MAX_BRIGHTNESS),
+    "GREEN": (0, MAX_BRIGHTNESS),
+}
+"""Brightness of the red and the green LED for each colour; for others the light is off."""
+
+
+class Buttons(Connected):
+    """The buttons of the brick."""
+
+    def pressed(self) -> list[Button]:
+        """Return the pressed buttons."""
+        self.brick.read("pressed", BUTTONS_PORT)
+        pressed = self.brick.session.pressed
+        return [button for name, button in BUTTON_NAMES.items() if name in pressed]
+
+
+class Light(Connected):
+    """The light around the buttons."""
+
+    def on(self, color: Enum | None, brightness: int = 100) -> None:
+        """Turn it on in a colour."""
+        if brightness != 100:
+            raise refused("the light of the EV3 has one brightness")
+        self._shine(*LIGHTS.get(color.name, (0, 0)) if color is not None else (0, 0))
+
+    def off(self) -> None:
+        """Turn it off."""
+        self._shine(0, 0)
+
+    def _shine(self, red: int, green: int) -> None:
+        self.brick.command()
+        lights = self.brick.lights
+        lights.shine({name: red if name.endswith("red") else green for name in lights.lights})
+
+
+class Battery(Connected):
+    """The battery."""
+
+    def voltage(self) -> int:
+        """Return the voltage in mV."""
+        self.brick.read()
+        return round(1000 * self.brick.battery.voltage_v())
+
+    def current(self) -> int:
+        """Return the current in mA."""
+        self.brick.read()
+        return round(1000 * self.brick.battery.current_a())
+
+
+class EV3Brick(Connected):
+    """The brick."""
+
+    buttons = Buttons()
+    light = Light()
+    battery = Battery()
+    speaker = Speaker()
+    screen = Image(THE_SCREEN)

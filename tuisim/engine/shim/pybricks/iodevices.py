@@ -1,0 +1,38 @@
+"""`Ev3devSensor` of `pybricks.iodevices`; its `DCMotor` stands in `motor`."""
+
+from __future__ import annotations
+
+import errno
+
+from tuisim.engine.core.spec import INPUT_PORTS
+from tuisim.engine.shim.pybricks.ev3devices import Sensor
+from tuisim.engine.shim.pybricks.parameters import Port
+
+
+class Ev3devSensor(Sensor):
+    """Any sensor, by the modes of its driver."""
+
+    def __init__(self, port: Port) -> None:
+        super().__init__(port)
+        _, _, number = self.brick.plugs.find_path(port.device_port).rpartition("/sensor")
+        self.sensor_index = int(number)
+        """The number of the sensor's device."""
+        self.port_index = INPUT_PORTS.index(port.device_port)
+        """The number of the port's device."""
+
+    def read(self, mode: str) -> tuple[int, ...]:
+        """Return the values of a measurement in a mode such as `COL-REFLECT`. Another mode than before costs time.
+
+        Raises:
+            OSError: the sensor has no such mode.
+            NotSimulated: it is a mode of a sensor that is not simulated.
+        """
+        if mode not in self._sensor.modes:
+            self._refuse(mode)
+        return self._read(mode)
+
+    def _refuse(self, mode: str) -> None:
+        try:
+            self._sensor.set_mode(mode)
+        except OSError:
+            raise OSError(errno.EIO, f"EIO:\n\nThe sensor has no mode {mode!r}.") from None

@@ -1,0 +1,262 @@
+"""`pybricks.messaging`: mailboxes between a server and a client of the same program."""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Callable
+from typing import Any, ClassVar, Self
+
+from tuisim.base.errors import NotSimulated
+from tuisim.engine.core.profile import MS
+from tuisim.engine.shim.pybricks.brick import Connected
+
+__all__ = [
+    "BluetoothMailboxClient",
+    "BluetoothMailboxServer",
+    "LogicMailbox",
+    "Mailbox",
+    "MailboxHandlerMixIn",
+    "NumericMailbox",
+    "TextMailbox",
+]
+
+_ALONE = "there is one brick; a server and a client in the threads of one program can talk"
+
+
+CLIENT_WITHIN_MS, POLL_MS = 5000, 10
+"""A server gives up if no thread of the program makes a client within this time; it looks this often."""
+CONNECT_MS, SEND_MS = 500, 10
+"""What a connection and a message take, estimates: the library says nothing of it."""
+
+
+class Mailbox(Connected):
+    """A named value that both ends of a connection share.
+
+    Args:
+        name: The same at both ends.
+        connection: A server or a client.
+        encode, decode: Turn a value into bytes and back; None leaves it as it is.
+    """
+
+    def __init__(
+        self,
+        name: str,
+        connection: MailboxHandlerMixIn,
+        encode: Callable[[Any], Any] | None = None,
+        decode: Callable[[Any], Any] | None = None,
+    ) -> None:
+        self.name, self._connection = name, connection
+        own = {"encode": encode, "decode": decode}
+        vars(self).update({name: convert for name, convert in own.items() if convert is not None})
+
+    def encode(self, value: Any) -> Any:
+        """Return a value as bytes."""
+        return value
+
+    def decode(self, payload: Any) -> Any:
+        """Return the value of bytes."""
+        return payload
+
+    def read(self) -> Any:
+        """Return the newest value; None before the first one."""
+        payload = self._connection.read_from_mailbox(self.name)
+        return None if payload is None else self.decode(payload)
+
+    def send(self, value: Any, destination: str | None = None) -> None:
+        """Send a value to a brick by its name; to every connected one if that is None."""
+        self._connection.send_to_mailbox(destination, self.name, self.encode(value))
+
+    def wait(self) -> None:
+        """Block until a value arrives."""
+        self._connection.wait_for_mailbox_update(self.name)
+
+    def wait_new(self) -> Any:
+        """Block until a value arrives that is another one than before, and return it."""
+        before = self.read()
+        while (value := self._next()) == before:
+            pass
+        return value
+
+    def _next(self) -> Any:
+        self.wait()
+        return self.read()
+
+
+class LogicMailbox(Mailbox):
+    """A mailbox for True and False."""
+
+    def encode(self, value: Any) -> bytes:
+        """Return one byte."""
+        return b"\x01" if value else b"\x00"
+
+    def decode(self, payload: bytes) -> bool:
+        """Return whether the byte is not 0."""
+        return bool(payload[0])
+
+
+class NumericMailbox(Mailbox):
+    """A mailbox for numbers."""
+
+    def encode(self, value: float) -> bytes:
+        """Return a 32-bit float: about seven digits are kept."""
+        return struct.pack("<f", value)
+
+    def decode(self, payload: bytes) -> float:
+        """Return the number."""
+        number: float = struct.unpack("<f", payload)[0]
+        return number
+
+
+class TextMailbox(Mailbox):
+    """A mailbox for texts."""
+
+    def encode(self, value: Any) -> bytes:
+        """Return the text in UTF-8, ended by a zero byte."""
+        return f"{value}\0".encode()
+
+    def decode(self, payload: bytes) -> str:
+        """Return the text without its zero byte."""
+        return payload.decode().strip("\0")
+
+
+class MailboxHandlerMixIn(Connected):
+    """One end of connections, with what has arrived for its mailboxes."""
+
+    def __init__(self) -> None:
+        self._payloads: dict[str, Any] = {}
+        self._waiting: dict[str, list[Any]] = {}
+        self._peers: list[tuple[str, MailboxHandlerMixIn]] = []
+
+    def read_from_mailbox(self, mbox: str) -> Any:
+        """Return the newest bytes in a mailbox; None before the first."""
+        self.brick.command()
+        return self._payloads.get(mbox)
+
+    def send_to_mailbox(self, brick: str | None, mbox: str, payload: Any) -> None:
+        """Send bytes to a mailbox of a brick; of every connected one if that is None.
+
+        Raises:
+            ValueError: no brick of that name is connected.
+        """
+        self.brick.command()
+        peers = [peer for name, peer in self._peers if brick in (None, name)]
+        if brick is not None and not peers:
+            raise ValueError(f'no paired devices matching "{brick}"')
+        self.brick.session.spend(SEND_MS * MS)
+        for peer in peers:
+            peer.receive(mbox, payload)
+
+    def receive(self, mbox: str, payload: Any) -> None:
+        """Put bytes into a mailbox, and wake those that wait for them."""
+        self._payloads[mbox] = payload
+        self._wake(mbox)
+
+    def wait_for_mailbox_update(self, mbox: str) -> None:
+        """Block until bytes arrive in a mailbox."""
+        self._wait(mbox)
+
+    def _wait(self, event: str) -> None:
+        # Not earlier: its functions are patched first.
+        import _thread
+
+        lock = _thread.allocate_lock()
+        lock.acquire()
+        self._waiting.setdefault(event, []).append(lock)
+        lock.acquire()
+
+    def _wake(self, event: str) -> None:
+        for lock in self._waiting.pop(event, ()):
+            lock.release()
+
+    def join(self, name: str, peer: MailboxHandlerMixIn) -> None:
+        """Connect with another end, by the name of its brick."""
+        self._peers.append((name, peer))
+        self._wake(_CONNECTION)
+
+    def leave(self, peer: MailboxHandlerMixIn) -> None:
+        """End the connection with another end."""
+        self._peers = [one for one in self._peers if one[1] is not peer]
+
+
+_CONNECTION = "\0connection"
+"""What a server waits for; no mailbox has such a name."""
+
+
+class BluetoothMailboxServer(MailboxHandlerMixIn):
+    """The end that waits for others."""
+
+    newest: ClassVar[BluetoothMailboxServer | None] = None
+    """The server of this program, if it has one."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        BluetoothMailboxServer.newest = self
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_error: object) -> None:
+        self.server_close()
+
+    def wait_for_connection(self, count: int = 1) -> None:
+        """Block until this number of clients is connected.
+
+        Raises:
+            NotSimulated: the program has no client: another brick would have to connect.
+        """
+        session = self.brick.session
+        until_ns = session.now + CLIENT_WITHIN_MS * MS
+        while len(self._peers) < count:
+            if BluetoothMailboxClient.exists:
+                self._wait(_CONNECTION)
+            elif session.now >= until_ns:
+                raise NotSimulated(
+                    "BluetoothMailboxServer.wait_for_connection: no other brick is simulated",
+                    _ALONE,
+                )
+            else:
+                # Another thread of the program may be about to make the client.
+                session.spend(POLL_MS * MS)
+
+    def server_close(self) -> None:
+        """Accept no more clients."""
+        if BluetoothMailboxServer.newest is self:
+            BluetoothMailboxServer.newest = None
+
+
+class BluetoothMailboxClient(MailboxHandlerMixIn):
+    """The end that connects to another."""
+
+    exists: ClassVar[bool] = False
+    """Whether the program has made one."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        BluetoothMailboxClient.exists = True
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_error: object) -> None:
+        self.close()
+
+    def connect(self, brick: str) -> None:
+        """Connect to the server of a brick, by its name or address.
+
+        Raises:
+            NotSimulated: the program has no server: it would be on another brick.
+        """
+        server = BluetoothMailboxServer.newest
+        if server is None:
+            raise NotSimulated(
+                f"BluetoothMailboxClient.connect: {brick!r} is not simulated", _ALONE
+            )
+        self.brick.session.spend(CONNECT_MS * MS)
+        self.join(brick, server)
+        server.join(brick, self)
+
+    def close(self) -> None:
+        """End all connections."""
+        for _, peer in self._peers:
+            peer.leave(self)
+        self._peers.clear()

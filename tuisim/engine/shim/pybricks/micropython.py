@@ -1,0 +1,266 @@
+"""MicroPython's modules, made from Python's own ones, and the names that Python's own ones lack."""
+
+from __future__ import annotations
+
+import operator
+import re
+import sys
+import types
+from collections import namedtuple
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import wraps
+from importlib import import_module
+from importlib.machinery import ModuleSpec
+from typing import Any
+
+from tuisim.engine.core.profile import MS
+from tuisim.engine.shim.session import DeviceSession
+from tuisim.engine.shim.unsupported.modules import Hardware, HardwareModule
+from tuisim.engine.shim.waits import Wait, waits_for
+
+TICKS_PERIOD = 1 << 30
+"""Counters of ticks begin again at 0 after this number."""
+US = MS // 1000
+FOLDER, FILE = 0x4000, 0x8000
+"""What `ilistdir` says of an entry."""
+
+OF_PYTHON: Mapping[str, str] = {
+    f"u{name}": name
+    for name in (
+        "array",
+        "asyncio",
+        "binascii",
+        "collections",
+        "errno",
+        "hashlib",
+        "heapq",
+        "io",
+        "json",
+        "os",
+        "queue",
+        "random",
+        "re",
+        "select",
+        "signal",
+        "socket",
+        "ssl",
+        "struct",
+        "sys",
+        "time",
+        "zlib",
+    )
+}
+"""Python's modules, by MicroPython's name for them."""
+
+_MACHINE = Hardware("the processor of the brick", "use the modules of pybricks")
+_MEMORY = Hardware("the memory of MicroPython", "leave it out: a program has more memory here")
+_NETWORK = Hardware("a network", "leave it out: a program has no network")
+_C_CODE = Hardware(
+    "code in C, and its data in memory", "use the modules of pybricks, and struct for bytes"
+)
+
+BUILT_IN: Mapping[str, Hardware] = {
+    "btree": Hardware("the database btree", "use a file: open()"),
+    "ffi": _C_CODE,
+    "framebuf": Hardware("framebuf", "draw on EV3Brick().screen"),
+    "machine": _MACHINE,
+    "ucryptolib": Hardware("ucryptolib", "leave it out"),
+    "uctypes": _C_CODE,
+    "umachine": _MACHINE,
+    "utimeq": Hardware("utimeq", "use a list, and sort()"),
+    "uwebsocket": _NETWORK,
+}
+"""Built-in modules that can be imported but not used, by name."""
+INSTALLED: Mapping[str, Hardware] = {"umqtt": _NETWORK, "urequests": _NETWORK}
+"""Likewise, modules in files of the brick: a file of the program comes first."""
+
+
+class MicroPythonFinder:
+    """Finds MicroPython's modules.
+
+    Args:
+        of_python: As `OF_PYTHON`.
+        refused: As `BUILT_IN`.
+    """
+
+    def __init__(self, of_python: Mapping[str, str], refused: Mapping[str, Hardware]) -> None:
+        self._of_python, self._refused = of_python, refused
+
+    def find_spec(
+        self,
+        fullname: str,
+        path: Sequence[str] | None = None,
+        target: types.ModuleType | None = None,
+    ) -> ModuleSpec | None:
+        """Return how to load a module; None for others."""
+        loader: Any = self
+        is_refused = fullname.partition(".")[0] in self._refused
+        known = fullname in self._of_python or is_refused
+        return (
+            ModuleSpec(fullname, loader, origin="MicroPython", is_package=is_refused)
+            if known
+            else None
+        )
+
+    def create_module(self, spec: ModuleSpec) -> types.ModuleType:
+        """Return the module, still empty."""
+        hardware = self._refused.get(spec.name.partition(".")[0])
+        return (
+            types.ModuleType(spec.name) if hardware is None else HardwareModule(spec.name, hardware)
+        )
+
+    def exec_module(self, module: types.ModuleType) -> None:
+        """Fill the module with the names of Python's own one."""
+        if (source := self._of_python.get(module.__name__)) is not None:
+            names = vars(import_module(source))
+            vars(module).update(
+                {name: value for name, value in names.items() if not name.startswith("__")}
+            )
+            if source == "asyncio":
+                vars(module)["sleep_ms"] = lambda time: names["sleep"](operator.index(time) / 1000)
+
+
+def install(session: DeviceSession) -> None:
+    """Let a program import MicroPython's modules, and add their names to those of Python's modules that it has."""
+    for name, more in (
+        ("time", clock_names(session)),
+        ("gc", GARBAGE),
+        ("os", FILES),
+        ("sys", SYSTEM),
+    ):
+        vars(import_module(name)).update(more)
+    for name, function, fitted in (
+        ("collections", "namedtuple", _named_tuple),
+        ("_thread", "stack_size", lambda _: 0),
+    ):
+        names = vars(import_module(name))
+        names[function] = _lenient(names[function], fitted)
+    module = sys.modules["micropython"] = HardwareModule("micropython", _MEMORY)
+    vars(module).update(LANGUAGE)
+    # What is built in comes before files of the same name.
+    sys.meta_path.insert(0, MicroPythonFinder(OF_PYTHON, BUILT_IN))
+    sys.meta_path.append(MicroPythonFinder({}, INSTALLED))
+
+
+def clock_names(session: DeviceSession) -> dict[str, Callable[..., Any]]:
+    """Return the functions that `time` has in MicroPython only; they count simulated time from the start on."""
+    cost = session.sim.spec.profile.clock_read_ns
+
+    def counter(tick_ns: int) -> Callable[[], int]:
+        def ticks() -> int:
+            session.charge(cost)
+            return session.now // tick_ns % TICKS_PERIOD
+
+        return ticks
+
+    def sleeper(unit_ns: int) -> Callable[[int], None]:
+        @waits_for(Wait.SLEEP)
+        def sleep(duration: int) -> None:
+            if (length := operator.index(duration)) > 0:
+                session.spend(length * unit_ns)
+            else:
+                session.command()
+
+        return sleep
+
+    ticks_us = counter(US)
+    return {
+        "clock": lambda: ticks_us() / 1e6,
+        "sleep_ms": sleeper(MS),
+        "sleep_us": sleeper(US),
+        "ticks_add": ticks_add,
+        "ticks_cpu": ticks_us,
+        "ticks_diff": ticks_diff,
+        "ticks_ms": counter(MS),
+        "ticks_us": ticks_us,
+    }
+
+
+def ticks_add(ticks: int, delta: int) -> int:
+    """Return the count that a counter of ticks has later by `delta`."""
+    return (operator.index(ticks) + operator.index(delta)) % TICKS_PERIOD
+
+
+def ticks_diff(end: int, start: int) -> int:
+    """Return the ticks from one count to another, at most half a period either way."""
+    half = TICKS_PERIOD // 2
+    return (operator.index(end) - operator.index(start) + half) % TICKS_PERIOD - half
+
+
+def _unchanged(value: Any) -> Any:
+    return value
+
+
+def _without_effect(*_given: object) -> None:
+    """Do nothing: what it sets has no effect on a simulated program."""
+
+
+def _opt_level(level: int | None = None) -> int | None:
+    return 0 if level is None else None
+
+
+def _lenient(real: Callable[..., Any], fitted: Callable[..., Any]) -> Callable[..., Any]:
+    """Return a function that also takes what only MicroPython's own takes: it is then fitted to Python's."""
+
+    @wraps(real)
+    def function(*given: Any, **named: Any) -> Any:
+        try:
+            return real(*given, **named)
+        except ValueError:
+            return fitted(*given, **named)
+
+    return function
+
+
+def _named_tuple(name: str, fields: Any, **named: Any) -> type:
+    """Return a named tuple whose names Python does not allow: they are changed."""
+    return namedtuple("_" + re.sub(r"\W", "_", name.strip()), fields, rename=True, **named)
+
+
+LANGUAGE: Mapping[str, Any] = {
+    "alloc_emergency_exception_buf": _without_effect,
+    "const": _unchanged,
+    "heap_lock": _without_effect,
+    "heap_unlock": _without_effect,
+    "kbd_intr": _without_effect,
+    "mem_info": _without_effect,
+    "native": _unchanged,
+    "opt_level": _opt_level,
+    "schedule": lambda function, argument: function(argument),
+    "viper": _unchanged,
+}
+"""The names of `micropython` that can be used; others tell of its memory."""
+
+FREE_BYTES, USED_BYTES = 48_000_000, 200_000
+"""What a program is told of its memory, an estimate: the brick has 64 MB."""
+
+GARBAGE: Mapping[str, Any] = {
+    "mem_alloc": lambda: USED_BYTES,
+    "mem_free": lambda: FREE_BYTES,
+    "threshold": _without_effect,
+}
+"""What `gc` has in MicroPython only."""
+
+
+def _ilistdir(folder: str = ".") -> Iterator[tuple[str, int, int]]:
+    """Yield name, kind and inode of the entries of a folder."""
+    os = import_module("os")
+    for entry in os.scandir(folder):
+        yield entry.name, FOLDER if entry.is_dir() else FILE, entry.inode()
+
+
+FILES: Mapping[str, Any] = {"ilistdir": _ilistdir}
+"""What `os` has in MicroPython only."""
+
+
+def _print_exception(error: BaseException, file: Any = None) -> None:
+    """Print an error with its traceback, to the program's output if no other file is given."""
+    import_module("traceback").print_exception(error, file=sys.stdout if file is None else file)
+
+
+SYSTEM: Mapping[str, Any] = {
+    # The rest stays: Python's import needs it.
+    "implementation": types.SimpleNamespace(**{**vars(sys.implementation), "name": "micropython"}),
+    "print_exception": _print_exception,
+}
+"""What `sys` has in MicroPython only."""

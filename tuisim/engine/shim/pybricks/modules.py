@@ -1,0 +1,117 @@
+"""The modules of the library, by the names under which a program imports them."""
+
+from __future__ import annotations
+
+import sys
+import types
+from collections.abc import Mapping
+from functools import partial
+from typing import Any
+
+from tuisim.engine.core.profile import Library, MotorLaw
+from tuisim.engine.shim.brick import BuiltBrick, ports_hint
+from tuisim.engine.shim.display import Screen
+from tuisim.engine.shim.plugs import Plugs
+from tuisim.engine.shim.pybricks import (
+    ev3devices,
+    experimental,
+    font,
+    hubs,
+    image,
+    iodevices,
+    media,
+    messaging,
+    micropython,
+    motor,
+    parameters,
+    robotics,
+    speaker,
+    tools,
+    version_1,
+)
+from tuisim.engine.shim.pybricks.brick import Brick, Connected
+from tuisim.engine.shim.pybricks.unsimulated import (
+    IO_DEVICES,
+    NXT_DEVICES,
+    OtherHub,
+    refused_classes,
+    refused_hub,
+)
+from tuisim.engine.shim.session import DeviceSession
+from tuisim.engine.shim.sound import Mixer
+from tuisim.engine.shim.unsupported.modules import HardwareFinder, OtherLibrary
+
+
+def _public(module: types.ModuleType, *names: str) -> dict[str, Any]:
+    return {name: getattr(module, name) for name in names}
+
+
+FILES = _public(media, "SoundFile", "ImageFile")
+MODULES: Mapping[str, Mapping[str, Any]] = {
+    "pybricks": {},
+    "pybricks.hubs": _public(hubs, "EV3Brick"),
+    "pybricks.ev3devices": _public(motor, "Motor")
+    | _public(
+        ev3devices, "TouchSensor", "ColorSensor", "InfraredSensor", "UltrasonicSensor", "GyroSensor"
+    ),
+    "pybricks.ev3brick": _public(version_1, "sound", "display", "light", "buttons", "battery"),
+    "pybricks.experimental": _public(experimental, "run_parallel"),
+    "pybricks.iodevices": _public(motor, "DCMotor")
+    | _public(iodevices, "Ev3devSensor")
+    | refused_classes("pybricks.iodevices", IO_DEVICES),
+    "pybricks.messaging": _public(messaging, *messaging.__all__),
+    "pybricks.nxtdevices": _public(motor, "Motor")
+    | refused_classes("pybricks.nxtdevices", NXT_DEVICES),
+    "pybricks.parameters": _public(
+        parameters, "Port", "Stop", "Direction", "Button", "Color", "Align"
+    )
+    | FILES,
+    "pybricks.robotics": _public(robotics, "DriveBase"),
+    "pybricks.tools": _public(tools, "wait", "StopWatch", "DataLog") | {"print": print},
+    "pybricks.media": {},
+    "pybricks.media.ev3dev": _public(image, "Image") | _public(font, "Font") | FILES,
+}
+"""Names of each module of version 2.0."""
+
+
+def _version_4() -> Mapping[str, Mapping[str, Any]]:
+    """Return the names of each module of version 4."""
+    from tuisim.engine.shim.pybricks import version_4
+
+    hub = type("EV3Brick", (hubs.EV3Brick,), {"buttons": version_4.Buttons()})
+    changed = {
+        "pybricks.hubs": {"EV3Brick": hub, "ThisHub": hub},
+        "pybricks.ev3devices": _public(version_4, "Motor", "ColorSensor"),
+        "pybricks.parameters": _public(version_4, "Stop", "Color"),
+        "pybricks.robotics": _public(version_4, "DriveBase"),
+        "pybricks.tools": _public(version_4, "run_task", "multitask"),
+    }
+    return {
+        name: {**MODULES.get(name, {}), **changed.get(name, {})} for name in {**MODULES, **changed}
+    }
+
+
+def install(
+    session: DeviceSession, built: BuiltBrick, plugs: Plugs, screen: Screen, mixer: Mixer
+) -> None:
+    """Let a program import the library, and the modules of MicroPython."""
+    sys.meta_path.insert(0, OtherLibrary(("ev3dev2", "ev3dev"), Library.PYBRICKS))
+    sys.meta_path.append(HardwareFinder(Library.PYBRICKS))
+    micropython.install(session)
+    plugs.missing = OSError
+    brick = Brick(session, built, plugs, screen, mixer, partial(ports_hint, session))
+    Connected.brick = brick
+    law = session.sim.spec.profile.motor_law
+    sys.meta_path.insert(0, OtherHub())
+    names = _version_4() if law == MotorLaw.PYBRICKS_4 else MODULES
+    speaker.set_volumes(brick.mixer, speaker.START_VOLUMES)
+    made = {name: types.ModuleType(name) for name in names}
+    vars(made["pybricks.hubs"])["__getattr__"] = refused_hub
+    for name, module in made.items():
+        vars(module).update(names[name])
+        parent, _, last = name.rpartition(".")
+        if parent:
+            setattr(made[parent], last, module)
+        if any(other.startswith(f"{name}.") for other in names):
+            module.__path__ = []
+    sys.modules.update(made)

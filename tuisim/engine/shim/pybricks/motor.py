@@ -1,0 +1,434 @@
+"""`Motor` of `pybricks.ev3devices`, its `control`, and `DCMotor` of `pybricks.iodevices`."""
+
+from __future__ import annotations
+
+import errno
+from collections.abc import Mapping, Sequence
+from enum import Enum
+from typing import Any, ClassVar
+
+from tuisim.engine.core.commands.calls import Call
+from tuisim.engine.core.commands.servo import SETTINGS
+from tuisim.engine.core.servo.control import Controller, Ending
+from tuisim.engine.core.servo.motor import ServoMotor
+from tuisim.engine.core.servo.settings import FULL_ACTUATION
+from tuisim.engine.core.servo.trajectory import LONGEST_US, MILLI, MS_US
+from tuisim.engine.shim.brick import MOTOR_CLASS
+from tuisim.engine.shim.pybricks.brick import (
+    Connected,
+    Waiting,
+    invalid_argument,
+    no_device,
+    not_permitted,
+    whole,
+)
+from tuisim.engine.shim.pybricks.parameters import Direction, Port, Stop
+from tuisim.engine.shim.pybricks.unsimulated import LOGGER
+from tuisim.engine.shim.unsupported.modules import refused_part
+
+PERCENT = FULL_ACTUATION // 100
+
+
+def gear_ratio(gears: Any) -> float:
+    """Return the turns of a motor per turn of what it drives.
+
+    Args:
+        gears: None, the teeth of one gear train, or a list of trains.
+
+    Raises:
+        TypeError, ValueError: it is something else.
+    """
+    if gears is None:
+        return 1.0
+    trains = gears if gears and isinstance(gears[0], Sequence) else [gears]
+    ratio = 1.0
+    for train in trains:
+        if len(train) < 2 or whole(train[0]) <= 0 or whole(train[-1]) <= 0:
+            raise invalid_argument()
+        ratio *= whole(train[-1]) / whole(train[0])
+    return ratio
+
+
+def _port(port: Any) -> str:
+    if not isinstance(port, Port):
+        raise TypeError(f"a Port is needed, not {type(port).__name__}")
+    return port.device_port
+
+
+def ending_of(known: Mapping[Any, Ending], then: Any) -> Ending:
+    """Return what a motor does after a move, by the library's name for it.
+
+    Raises:
+        TypeError: it is no such name.
+    """
+    if not isinstance(then, Enum) or then not in known:
+        raise TypeError(f"a Stop is needed, not {then!r}")
+    return known[then]
+
+
+class DCMotor(Connected):
+    """A motor without control of its speed."""
+
+    def __init__(self, port: Port, positive_direction: Direction = Direction.CLOCKWISE) -> None:
+        self._set_up(port, positive_direction, 1.0)
+
+    def _set_up(
+        self, port: Port, direction: Direction, ratio: float, *, keeps_angle: bool = False
+    ) -> None:
+        found = self.brick.find_motor(self._port_name(port))
+        if found is None:
+            raise no_device(self.brick.hint(MOTOR_CLASS))
+        self._motor: ServoMotor = found
+        self.tell(Call.SET_UP, float(direction.sign), ratio, float(keeps_angle))
+
+    def _port_name(self, port: Port) -> str:
+        name = _port(port)
+        if not name.startswith("out"):
+            raise ValueError("Invalid port")
+        self.port_names, self.port = (name,), port
+        return name
+
+    @property
+    def simulated(self) -> ServoMotor:
+        """The motor of the simulation."""
+        return self._motor
+
+    def tell(self, call: Call, *values: float | None) -> None:
+        """Change the motor or its controller; None is what is not given."""
+        self.brick.tell(self.brick.session.sim.find_number(self._motor), call, *values)
+
+    def _command(self) -> None:
+        """Count a command.
+
+        Raises:
+            OSError: a drive base moves or holds the motor.
+        """
+        self.brick.command()
+        motor = self._motor
+        if motor.guide is not None and not motor.follows_itself:
+            raise not_permitted()
+
+    def _run_freely(self, actuation: int | None) -> None:
+        self._command()
+        self.tell(Call.RUN_FREELY, actuation)
+
+    def dc(self, duty: float) -> None:
+        """Run with a power in percent, without control of the speed."""
+        self._command()
+        self.tell(Call.RUN_FREELY, max(-100, min(100, whole(duty))) * PERCENT)
+
+    def stop(self) -> None:
+        """Let the motor coast."""
+        self._run_freely(None)
+
+    def brake(self) -> None:
+        """Let the motor brake itself."""
+        self._run_freely(0)
+
+
+class Motor(DCMotor):
+    """A large or medium motor."""
+
+    ENDINGS: ClassVar[Mapping[Any, Ending]] = {stop: Ending(stop.value) for stop in Stop}
+    """What it does after a move, by the library's name for it."""
+    log = refused_part("Motor", "log", LOGGER)
+
+    def __init__(
+        self, port: Port, positive_direction: Direction = Direction.CLOCKWISE, gears: Any = None
+    ) -> None:
+        self._set_up(port, positive_direction, gear_ratio(gears))
+        self.control = Control(self, self._motor.control)
+
+    # Readings
+
+    def angle(self) -> int:
+        """Return the angle in degrees."""
+        now_us = self.brick.read("position", *self.port_names)
+        return self._motor.control.settings.units(round(self._motor.milli_at(now_us) / MILLI))
+
+    def speed(self) -> int:
+        """Return the speed in degrees per second."""
+        now_us = self.brick.read("speed", *self.port_names)
+        return self._motor.control.settings.units(self._motor.counts_per_s_at(now_us))
+
+    def reset_angle(self, angle: float | None = None) -> None:
+        """Make the current angle another one; a motion ends there."""
+        if angle is None:
+            raise OSError(
+                errno.EOPNOTSUPP,
+                "EOPNOTSUPP: the EV3's motors have no absolute encoder; give an angle",
+            )
+        self._command()
+        self.tell(Call.SET_MILLI, self._motor.control.settings.counts(whole(angle)) * MILLI)
+
+    # Motions without an end
+
+    def hold(self) -> None:
+        """Stop and hold the angle."""
+        self._command()
+        self.tell(Call.HOLD)
+        self._follow()
+
+    def run(self, speed: float) -> None:
+        """Run at a speed in degrees per second."""
+        self._command()
+        settings = self._motor.control.settings
+        self._run_endlessly(settings.counts(whole(speed)), settings.acceleration)
+
+    def _run_endlessly(self, rate: int, acceleration: int) -> None:
+        self.tell(Call.RUN_AT, rate, acceleration, None, Ending.HOLD)
+
+    def _follow(self, ending: Ending = Ending.HOLD) -> None:
+        self.tell(Call.FOLLOW, ending)
+
+    def track_target(self, target_angle: float) -> None:
+        """Turn to an angle as fast as possible, and hold it."""
+        self._command()
+        counts = self._motor.control.settings.counts(whole(target_angle))
+        self.tell(Call.HOLD_MILLI, counts * MILLI)
+        self._follow()
+
+    # Moves
+
+    def run_time(
+        self, speed: float, time: float, then: Stop = Stop.HOLD, wait: bool = True
+    ) -> None:
+        """Run at a speed for a time in milliseconds."""
+        self._command()
+        settings, time_us = self._motor.control.settings, whole(time) * MS_US
+        if not 0 <= time_us <= LONGEST_US:
+            raise invalid_argument()
+        rate = settings.counts(whole(speed))
+        self.tell(Call.RUN_AT, rate, settings.acceleration, time_us, None)
+        return self._begin(then, wait, "run_time()")
+
+    def run_angle(
+        self, speed: float, rotation_angle: float, then: Stop = Stop.HOLD, wait: bool = True
+    ) -> None:
+        """Turn by an angle in degrees."""
+        speed, angle = whole(speed), whole(rotation_angle)
+        return self._move(
+            speed, angle if speed >= 0 else -angle, then, wait, "run_angle()", relative=True
+        )
+
+    def run_target(
+        self, speed: float, target_angle: float, then: Stop = Stop.HOLD, wait: bool = True
+    ) -> None:
+        """Turn to an angle in degrees."""
+        return self._move(
+            whole(speed), whole(target_angle), then, wait, "run_target()", relative=False
+        )
+
+    def _move(
+        self, speed: int, angle: int, then: Stop, wait: bool, call: str, *, relative: bool
+    ) -> None:
+        self._command()
+        settings = self._motor.control.settings
+        try:
+            self.tell(
+                Call.MOVE,
+                settings.counts(angle),
+                settings.counts(speed),
+                settings.acceleration,
+                relative,
+            )
+        except ValueError:
+            raise invalid_argument() from None
+        return self._begin(then, wait, call)
+
+    def _begin(self, then: Stop, wait: bool, call: str) -> None:
+        motor = self._motor
+        self._follow(ending_of(self.ENDINGS, then))
+        if wait:
+            done = self.brick.until_done(
+                lambda now_us: self._done(now_us, call), lambda: motor.control.end_us
+            )
+            return self.brick.finish(done)
+        return None
+
+    def _done(self, now_us: int, call: str) -> bool:
+        """Return whether the motor's move is over; say it once if it cannot end."""
+        motor = self._motor
+        if motor.guide is None:
+            return True
+        if motor.control.stalled and not motor.control.timed:
+            self.brick.say_stalled(f"the motor on {self.port_names[0]} is", call)
+        return self.move_done(now_us, motor.control)
+
+    def move_done(self, now_us: int, control: Controller) -> bool:
+        """Return whether a controller of the motor has no move under way."""
+        return control.done(
+            now_us, self._motor.milli_at(now_us), self._motor.counts_per_s_at(now_us)
+        )
+
+    def run_until_stalled(
+        self, speed: float, then: Stop = Stop.COAST, duty_limit: float | None = None
+    ) -> int:
+        """Run at a speed until something stops the motor, and return the angle."""
+        limit = None if duty_limit is None else max(0, min(100, whole(duty_limit))) * PERCENT
+        self.run(speed)
+        self.tell(Call.LIMIT_DUTY, limit)
+        self._follow()
+        return self.brick.finish(self._until_stalled(then))
+
+    def _until_stalled(self, then: Stop) -> Waiting[int]:
+        motor = self._motor
+        yield from self.brick.until_done(
+            lambda _: motor.guide is None or motor.control.stalled, lambda: None
+        )
+        angle = self.angle()
+        match ending_of(self.ENDINGS, then):
+            case Ending.HOLD:
+                self.hold()
+            case Ending.BRAKE:
+                self.brake()
+            case _:
+                self.stop()
+        return angle
+
+
+class Control(Connected):
+    """The settings of a controller.
+
+    Args:
+        owner: The motor or drive base that it belongs to.
+        control: The controller.
+    """
+
+    def __init__(self, owner: Any, control: Controller) -> None:
+        self._owner, self._control = owner, control
+
+    def _change(self, setting: int, value: int) -> None:
+        """Change one setting, by its number."""
+        self._owner.tell(Call.SET_CONTROL, setting, value)
+
+    @property
+    def scale(self) -> float:
+        """Counts per unit."""
+        return self._control.settings.counts_per_unit
+
+    def _set(self, *given: tuple[str, Any, int]) -> None:
+        """Change what is given.
+
+        Args:
+            given: The name of a setting, the value or None, and what to multiply it by; 0 for counts per unit.
+
+        Raises:
+            OSError: a move is under way, or the motor holds.
+        """
+        if self._control.trajectory is not None:
+            raise not_permitted()
+        settings = self._control.settings
+        changes = {
+            setting: settings.counts(whole(value)) if times == 0 else whole(value) * times
+            for setting, value, times in given
+            if value is not None
+        }
+        if any(value < 0 for value in changes.values()):
+            raise invalid_argument()
+        for setting, value in changes.items():
+            self._change(SETTINGS.index(setting), value)
+
+    def limits(
+        self,
+        speed: float | None = None,
+        acceleration: float | None = None,
+        actuation: float | None = None,
+    ) -> tuple[int, int, int] | None:
+        """Return the highest speed, acceleration and power, or set them."""
+        settings = self._control.settings
+        if speed is None and acceleration is None and actuation is None:
+            units = settings.units
+            return (
+                units(settings.speed),
+                units(settings.acceleration),
+                settings.actuation // PERCENT,
+            )
+        if any(
+            value is not None and whole(value) < 1 for value in (speed, acceleration, actuation)
+        ):
+            raise invalid_argument()
+        self._set(
+            ("speed", speed, 0),
+            ("acceleration", acceleration, 0),
+            ("actuation", actuation, PERCENT),
+        )
+        return None
+
+    def pid(
+        self,
+        kp: float | None = None,
+        ki: float | None = None,
+        kd: float | None = None,
+        integral_range: float | None = None,
+        integral_rate: float | None = None,
+        feed_forward: float | None = None,
+    ) -> tuple[int, ...] | None:
+        """Return the gains of the controller, or set them. Of these, only `kp` changes a simulated motion."""
+        settings = self._control.settings
+        if all(one is None for one in (kp, ki, kd, integral_range, integral_rate, feed_forward)):
+            units = settings.units
+            return (
+                settings.kp,
+                settings.ki,
+                settings.kd,
+                units(settings.integral_range),
+                units(settings.integral_rate),
+                settings.feed_forward // PERCENT,
+            )
+        self._set(
+            ("kp", kp, 1),
+            ("ki", ki, 1),
+            ("kd", kd, 1),
+            ("integral_range", integral_range, 0),
+            ("integral_rate", integral_rate, 0),
+            ("feed_forward", feed_forward, PERCENT),
+        )
+        return None
+
+    def target_tolerances(
+        self, speed: float | None = None, position: float | None = None
+    ) -> tuple[int, int] | None:
+        """Return how slow and how near a move must be to be done, or set it."""
+        settings = self._control.settings
+        if speed is None and position is None:
+            return settings.units(settings.speed_tolerance), settings.units(
+                settings.position_tolerance
+            )
+        self._set(("speed_tolerance", speed, 0), ("position_tolerance", position, 0))
+        return None
+
+    def stall_tolerances(
+        self, speed: float | None = None, time: float | None = None
+    ) -> tuple[int, int] | None:
+        """Return how slow and for how long a stalled motor is, or set it."""
+        settings = self._control.settings
+        if speed is None and time is None:
+            return settings.units(settings.stall_speed), settings.stall_time_ms
+        self._set(("stall_speed", speed, 0), ("stall_time_ms", time, 1))
+        return None
+
+    def trajectory(self) -> tuple[int, ...] | None:
+        """Return the running trajectory: four times in ms, four positions, the speed and the two accelerations."""
+        trajectory = self._control.trajectory
+        if trajectory is None:
+            return None
+        parts = (trajectory.first, trajectory.even, trajectory.last, trajectory.end)
+        return (
+            *((part.start_us - parts[0].start_us) // MS_US for part in parts),
+            *(part.milli // MILLI for part in parts),
+            parts[1].rate,
+            parts[0].acceleration,
+            parts[2].acceleration,
+        )
+
+    def done(self) -> bool:
+        """Return whether no move is under way."""
+        return bool(
+            self._owner.move_done(self.brick.read("state", *self._owner.port_names), self._control)
+        )
+
+    def stalled(self) -> bool:
+        """Return whether something keeps the motion from going on."""
+        self.brick.read("state", *self._owner.port_names)
+        return self._control.stalled

@@ -1,0 +1,227 @@
+"""`DriveBase` of `pybricks.robotics`."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar
+
+from tuisim.engine.core.commands.calls import Call
+from tuisim.engine.core.servo.control import Controller, Ending
+from tuisim.engine.core.servo.trajectory import MILLI
+from tuisim.engine.shim.plugs import PART_OF_KIND
+from tuisim.engine.shim.pybricks.brick import Connected, invalid_argument, not_permitted, whole
+from tuisim.engine.shim.pybricks.motor import Control, Motor
+from tuisim.engine.shim.pybricks.parameters import Stop
+from tuisim.engine.shim.pybricks.tools import wait
+from tuisim.engine.shim.pybricks.unsimulated import LOGGER
+from tuisim.engine.shim.unsupported.modules import refused_part
+
+
+class DriveBase(Connected):
+    """A robot with two driven wheels."""
+
+    SETTINGS_WHILE_ACTIVE: ClassVar[bool] = False
+
+    current: ClassVar[DriveBase | None] = None
+    """The newest one: it stops the one before."""
+    log = refused_part("DriveBase", "log", LOGGER)
+
+    def __init__(
+        self, left_motor: Motor, right_motor: Motor, wheel_diameter: float, axle_track: float
+    ) -> None:
+        for motor in (left_motor, right_motor):
+            if not isinstance(motor, Motor):
+                raise TypeError(f"a Motor is needed, not {type(motor).__name__}")
+        kind = PART_OF_KIND[left_motor.simulated.kind]
+        self.brick.plugs.make_wheels(*left_motor.port_names, *right_motor.port_names, kind)
+        if left_motor.simulated is right_motor.simulated or wheel_diameter <= 0 or axle_track <= 0:
+            raise invalid_argument()
+        if left_motor.simulated.control.settings != right_motor.simulated.control.settings:
+            raise invalid_argument()
+        if DriveBase.current is not None:
+            DriveBase.current.stop()
+        DriveBase.current = self
+        self.left, self.right = left_motor, right_motor
+        self.port_names = (*left_motor.port_names, *right_motor.port_names)
+        sim = self.brick.session.sim
+        numbers = (sim.find_number(motor.simulated) for motor in (left_motor, right_motor))
+        self.brick.tell(0, Call.BUILD_BASE, *numbers, float(wheel_diameter), float(axle_track))
+        self._number = len(sim.bases) - 1
+        self._base = base = sim.bases[-1]
+        self.distance_control, self.heading_control = (
+            BaseControl(self, base.distance, 0),
+            BaseControl(self, base.heading, 1),
+        )
+        self._zeros = 0, 0
+        self.reset()
+
+    def tell(self, call: Call, *values: float | None) -> None:
+        """Change the drive base or its controllers; None is what is not given."""
+        self.brick.tell(self._number, call, *values)
+
+    # Motions
+
+    def straight(self, distance: float) -> None:
+        """Drive a distance in mm, and hold."""
+        return self._move(whole(distance), 0, "straight()")
+
+    def turn(self, angle: float) -> None:
+        """Turn by an angle in degrees, clockwise, and hold."""
+        return self._move(0, whole(angle), "turn()")
+
+    def _move(
+        self,
+        distance_mm: float,
+        angle_deg: float,
+        call: str,
+        ending: Ending = Ending.HOLD,
+        *,
+        wait: bool = True,
+    ) -> None:
+        base = self._base
+        self.brick.command()
+        try:
+            self.tell(Call.MOVE_BASE, distance_mm, angle_deg, ending)
+        except ValueError:
+            raise invalid_argument() from None
+        if not wait:
+            return None
+
+        def done(now_us: int) -> bool:
+            if base.stalled:
+                self.brick.say_stalled("the wheels are", call)
+            return not base.active or base.done(now_us)
+
+        return self.brick.finish(self.brick.until_done(done, lambda: base.end_us))
+
+    def drive(
+        self,
+        speed: float | None = None,
+        turn_rate: float | None = None,
+        *,
+        drive_speed: float | None = None,
+    ) -> None:
+        """Drive on at a speed in mm/s and a rate of turn in degrees per second.
+
+        Args:
+            speed, turn_rate: Both are needed.
+            drive_speed: The speed, under the name that the handbook gives it.
+        """
+        speed = drive_speed if speed is None else speed
+        if speed is None or turn_rate is None:
+            raise TypeError("drive() needs a speed and a turn_rate")
+        self.brick.command()
+        self.tell(Call.DRIVE_BASE, whole(speed), whole(turn_rate))
+
+    def drive_time(self, speed: float, steering: float, time: float) -> None:
+        """Drive for a time in milliseconds, and coast; from version 1.0."""
+        self.drive(speed, steering)
+        wait(time)
+        self.stop()
+
+    def stop(self, stop_type: Stop = Stop.COAST) -> None:
+        """Stop."""
+        self.brick.command()
+        match stop_type:
+            case Stop.COAST:
+                self.tell(Call.STOP_BASE, None)
+            case Stop.BRAKE:
+                self.tell(Call.STOP_BASE, 0)
+            case Stop.HOLD:
+                self.straight(0)
+            case _:
+                raise invalid_argument()
+
+    # Readings
+
+    def _read(self) -> int:
+        """Let the time of a reading of both motors pass, and return the simulated time."""
+        return self.brick.read("position", *self.port_names)
+
+    def distance(self) -> int:
+        """Return the driven distance in mm."""
+        return self._position(self._read())[0]
+
+    def angle(self) -> int:
+        """Return the turned angle in degrees, clockwise."""
+        return self._position(self._read())[1]
+
+    def _position(self, now_us: int) -> tuple[int, int]:
+        total, difference = self._base.millis_at(now_us)
+        return (
+            self._base.distance.settings.units(round(total / MILLI) - self._zeros[0]),
+            self._base.heading.settings.units(round(difference / MILLI) - self._zeros[1]),
+        )
+
+    def state(self) -> tuple[int, int, int, int]:
+        """Return distance, speed, angle and rate of turn."""
+        now_us, base = self._read(), self._base
+        (distance, angle), (speed, turn_rate) = self._position(now_us), base.rates_at(now_us)
+        return (
+            distance,
+            base.distance.settings.units(speed),
+            angle,
+            base.heading.settings.units(turn_rate),
+        )
+
+    def reset(self) -> None:
+        """Make the current distance and angle 0."""
+        total, difference = self._base.millis_at(self.brick.command())
+        self._zeros = round(total / MILLI), round(difference / MILLI)
+
+    def move_done(self, now_us: int, control: Controller) -> bool:
+        """Return whether one of its controllers has no move under way."""
+        at = 0 if control is self._base.distance else 1
+        return control.done(
+            now_us, self._base.millis_at(now_us)[at], self._base.rates_at(now_us)[at]
+        )
+
+    # Settings
+
+    def settings(
+        self,
+        straight_speed: float | None = None,
+        straight_acceleration: float | None = None,
+        turn_rate: float | None = None,
+        turn_acceleration: float | None = None,
+    ) -> tuple[int, ...] | None:
+        """Return how it moves in `straight` and `turn`, or set it."""
+        base = self._base
+        given: tuple[Any, ...] = (
+            straight_speed,
+            straight_acceleration,
+            turn_rate,
+            turn_acceleration,
+        )
+        if all(one is None for one in given):
+            return base.usual
+        if base.active and not self.SETTINGS_WHILE_ACTIVE:
+            raise not_permitted()
+        distance, heading = base.distance.settings, base.heading.settings
+        limits = (
+            distance.units(distance.speed),
+            distance.units(distance.acceleration),
+            heading.units(heading.speed),
+            heading.units(heading.acceleration),
+        )
+        chosen = [
+            usual if value is None else min(abs(whole(value)), limit)
+            for value, usual, limit in zip(given, base.usual, limits, strict=True)
+        ]
+        self.tell(Call.SET_BASE, *chosen)
+        return None
+
+
+class BaseControl(Control):
+    """The settings of a controller of a drive base.
+
+    Args:
+        owner, control: As of `Control`.
+        number: 0 for the distance, 1 for the heading.
+    """
+
+    def __init__(self, owner: DriveBase, control: Controller, number: int) -> None:
+        super().__init__(owner, control)
+        self._number = number
+
+    def _change(self, setting: int, value: int) -> None:
+        self._owner.tell(Call.SET_BASE_CONTROL, self._number, setting, value)

@@ -1,0 +1,187 @@
+"""`EV3Brick().speaker`: beeps, notes, sound files and speech."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from tuisim.engine.core.profile import MS
+from tuisim.engine.shim.pybricks.brick import Connected, invalid_argument, text_of, whole
+from tuisim.engine.shim.pybricks.media import SOUNDS, name_of
+from tuisim.engine.shim.sound import LOUDEST, Loudspeaker, Mixer
+from tuisim.engine.shim.tones import Heard, Tone, file_heard, song_of, speech_heard, tones_heard
+
+BRICK_SOUND_MS = 1000.0
+"""How long each of the brick's own sounds takes here, an estimate: most are one word, or a short effect."""
+UNTIL_NEXT_MS = 1000.0
+"""How long a loudspeaker of this computer plays a tone that lasts until the next beep."""
+START_VOLUMES: Mapping[str, int] = {"PCM": 70, "Beep": 30}
+"""Volumes at the start in percent, by the name of the mixer's control."""
+ALL_VOLUMES = "_all_"
+START_WORDS_A_MINUTE = 130
+
+A4_HZ, OCTAVE, NOTES_AN_OCTAVE = 440.0, 4, 12
+FROM_A = {"C": -9, "D": -7, "E": -5, "F": -4, "G": -2, "A": 0, "B": 2}
+"""Semitones from A of the same octave."""
+NOTE = re.compile(r"(?:R|([A-G])([#b]?)([2-8]))/(\d{1,2})(\.?)(_?)")
+NO_NOTES = frozenset({"Cb", "Fb", "E#", "B#"})
+"""The firmware does not know these spellings."""
+WHOLE_NOTE_MS_AT_1 = 240_000
+"""Length of a whole note at one quarter note per minute."""
+
+
+def note_of(text: Any, whole_ms: int) -> Tone:
+    """Return the tone of a note such as `C#4/8._`; one without `_` is silent in its last eighth.
+
+    Args:
+        text: The note: a name, or R for a rest; the octave; a fraction of a whole note; a dot; an underscore.
+        whole_ms: Length of a whole note.
+
+    Raises:
+        TypeError: it is no text.
+        ValueError: it is no note.
+    """
+    found = NOTE.fullmatch(text_of(text))
+    if found is None:
+        raise ValueError(f"{text!r} is no note such as 'C4/4', 'F#5/8.' or 'R/2'")
+    name, accidental, octave, fraction, dot, tied = found.groups()
+    if f"{name}{accidental}" in NO_NOTES or not int(fraction):
+        raise ValueError(f"{text!r} is no note that the brick knows")
+    length_ms = whole_ms // int(fraction)
+    if dot:
+        length_ms = 3 * length_ms // 2
+    if name is None:
+        return Tone(0.0, length_ms)
+    semitones = (
+        FROM_A[name]
+        + {"": 0, "#": 1, "b": -1}[accidental]
+        + NOTES_AN_OCTAVE * (int(octave) - OCTAVE)
+    )
+    sounding_ms = length_ms if tied else 7 * length_ms // 8
+    return Tone(
+        round(A4_HZ * 2 ** (semitones / NOTES_AN_OCTAVE)), sounding_ms, length_ms - sounding_ms
+    )
+
+
+def set_volumes(mixer: Mixer, volumes: Mapping[str, int]) -> None:
+    """Set volumes in percent, by the name of their control."""
+    for control, percent in volumes.items():
+        mixer.do(("set", control, f"{percent}%"))
+
+
+class Speaker(Connected):
+    """The speaker of the brick. The volume is remembered, and changes nothing that is recorded."""
+
+    def __init__(self) -> None:
+        self._words_a_minute = START_WORDS_A_MINUTE
+
+    def _play(self, heard: Heard) -> None:
+        Loudspeaker(self.brick.session).play(heard, heard.length_ns)
+
+    def beep(self, frequency: float = 500, duration: float = 100) -> None:
+        """Play a tone of a frequency in Hz for a duration in ms, and wait for its end.
+
+        A negative duration returns at once; the tone then lasts until the next beep.
+        """
+        frequency_hz, length_ms = max(0, whole(frequency)), whole(duration)
+        if length_ms >= 0:
+            self._play(tones_heard((Tone(frequency_hz, length_ms),)))
+            return
+        self._play(
+            Heard(
+                f"[tone {frequency_hz} Hz until the next beep]",
+                0,
+                (Tone(frequency_hz, UNTIL_NEXT_MS),),
+            )
+        )
+        self.brick.command()
+
+    def play_notes(self, notes: Iterable[str], tempo: float = 120) -> None:
+        """Play notes, and wait for their end.
+
+        Args:
+            notes: Such as `['C4/4', 'R/8', 'E5/2_']`; see `note_of`.
+            tempo: Quarter notes per minute.
+
+        Raises:
+            ValueError: the tempo is not above 0, or a note is wrong; those before it were played.
+        """
+        if whole(tempo) <= 0:
+            raise invalid_argument()
+        whole_ms = WHOLE_NOTE_MS_AT_1 // whole(tempo)
+        tones: list[Tone] = []
+        try:
+            for note in notes:
+                tones.append(note_of(note, whole_ms))
+        finally:
+            if tones:
+                self._play(song_of(tones))
+
+    def play_file(self, file: str | None = None, *, file_name: str | None = None) -> None:
+        """Play a sound file, and wait for its end.
+
+        One of the brick's own sounds, which are not part of tuisim, is shown by its name and takes a second.
+
+        Args:
+            file: A constant of `SoundFile`, or the path of a WAV file.
+            file_name: The same, under the name that the handbook gives it.
+
+        Raises:
+            RuntimeError: the file is missing, or no WAV file.
+        """
+        path = text_of(file if file_name is None else file_name)
+        name = name_of(path, SOUNDS)
+        if name is None:
+            heard = file_heard(path)
+        else:
+            text = f"[plays SoundFile.{name}, {BRICK_SOUND_MS / 1000:.1f} s]"
+            heard = Heard(text, round(BRICK_SOUND_MS * MS), (Tone(0.0, BRICK_SOUND_MS),))
+        if heard.refused:
+            raise RuntimeError(f"Playing file failed: {heard.text.strip('[]')}")
+        self._play(heard)
+
+    def say(self, text: str) -> None:
+        """Speak a text, and wait for its end.
+
+        Raises:
+            TypeError: it is no text, such as a number.
+        """
+        self._play(speech_heard(text_of(text), str(self._words_a_minute)))
+
+    def set_speech_options(
+        self,
+        language: str | None = None,
+        voice: str | None = None,
+        speed: float | None = None,
+        pitch: float | None = None,
+    ) -> None:
+        """Set how `say` speaks; None leaves an option. Of these, only the speed, in words per minute, is simulated."""
+        for text in (language, voice):
+            if text is not None:
+                text_of(text)
+        for number in (speed, pitch):
+            if number is not None:
+                whole(number)
+        self.brick.command()
+        if speed is not None:
+            self._words_a_minute = whole(speed)
+
+    def set_volume(self, volume: float, which: str = ALL_VOLUMES) -> None:
+        """Set the volume in percent.
+
+        Args:
+            volume: Clipped to 0 to 100.
+            which: `'Beep'` for tones, `'PCM'` for files and speech, `'_all_'` for both.
+
+        Raises:
+            ValueError: there is no such volume.
+        """
+        percent = min(max(whole(volume), 0), LOUDEST)
+        if which != ALL_VOLUMES and which not in START_VOLUMES:
+            raise invalid_argument()
+        self.brick.command()
+        set_volumes(
+            self.brick.mixer,
+            dict.fromkeys(START_VOLUMES if which == ALL_VOLUMES else (which,), percent),
+        )

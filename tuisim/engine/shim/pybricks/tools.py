@@ -1,0 +1,106 @@
+"""`pybricks.tools`: waiting, a stopwatch and a log."""
+
+from __future__ import annotations
+
+import re
+import time as clock
+from collections.abc import Iterable
+from typing import Any
+
+from tuisim.engine.core.profile import MS
+from tuisim.engine.runs.records import Stream
+from tuisim.engine.shim.pybricks.brick import Connected, Waiting, whole
+from tuisim.engine.shim.waits import Wait, waits_for
+
+
+@waits_for(Wait.SLEEP)
+def wait(time: float) -> None:
+    """Wait for a time in milliseconds."""
+    brick, time_ms = Connected.brick, whole(time)
+    if brick.in_task:
+        return brick.finish(_until(brick.now_us + time_ms * 1000))
+    if time_ms > 0:
+        brick.session.spend(time_ms * MS)
+    else:
+        brick.session.command()
+    return None
+
+
+def _until(end_us: int) -> Waiting[None]:
+    while Connected.brick.now_us < end_us:
+        yield end_us
+
+
+class StopWatch(Connected):
+    """A stopwatch, which runs at once."""
+
+    def __init__(self) -> None:
+        self._began_ns, self._counted_ns, self._runs = self.brick.session.now, 0, True
+
+    def _passed_ns(self) -> int:
+        return self._counted_ns + (self.brick.session.now - self._began_ns if self._runs else 0)
+
+    def time(self) -> int:
+        """Return the counted milliseconds."""
+        self.brick.session.charge(self.brick.session.sim.spec.profile.clock_read_ns)
+        return self._passed_ns() // MS
+
+    def pause(self) -> None:
+        """Stop counting."""
+        self._counted_ns, self._runs = self._passed_ns(), False
+
+    def resume(self) -> None:
+        """Go on counting."""
+        self._counted_ns, self._began_ns, self._runs = (
+            self._passed_ns(),
+            self.brick.session.now,
+            True,
+        )
+
+    def reset(self) -> None:
+        """Count from 0, if it is running."""
+        self._counted_ns, self._began_ns = 0, self.brick.session.now
+
+
+class DataLog(Connected):
+    """A file with rows of values."""
+
+    def __init__(
+        self,
+        *headers: Any,
+        name: str = "log",
+        timestamp: bool = True,
+        extension: str = "csv",
+        append: bool = False,
+    ) -> None:
+        now_us = self.brick.now_us
+        stamp = (
+            f"{clock.strftime('_%Y_%m_%d_%H_%M_%S')}_{now_us % 1_000_000:06}" if timestamp else ""
+        )
+        self.file = open(f"{name}{stamp}.{extension}", "a+" if append else "w+")  # noqa: SIM115 - the program's
+        self.file.seek(0, 2)
+        self._names = [re.sub(r"\W+", "_", str(header)).strip("_") for header in headers]
+        if headers and not self.file.tell():
+            self._write(headers)
+
+    def log(self, *values: Any) -> None:
+        """Write one row. Its numbers are samples of the run, too, but for a time, which each sample has."""
+        self._write(values)
+        for at, value in enumerate(values):
+            name = self._names[at] if at < len(self._names) else f"value{at + 1}"
+            if (
+                isinstance(value, int | float)
+                and name.isidentifier()
+                and not name.lower().startswith("time")
+            ):
+                self.brick.session.show(f"{name}: {value}", Stream.DATA)
+
+    def _write(self, values: Iterable[Any]) -> None:
+        print(*values, sep=", ", file=self.file)
+        self.file.flush()
+
+    def __repr__(self) -> str:
+        self.file.seek(0)
+        text = self.file.read()
+        self.file.seek(0, 2)
+        return text

@@ -1,0 +1,81 @@
+"""Parts of the library that the simulated brick does not have."""
+
+from __future__ import annotations
+
+import types
+from collections.abc import Mapping, Sequence
+from typing import Any, NoReturn
+
+from tuisim.base.source import OTHER_HUB_DEVICES, OTHER_HUBS
+from tuisim.engine.shim.unsupported.modules import SPIKE, Hardware, refused_as, refused_part
+
+LOGGER = Hardware(
+    "the log of a motor",
+    "tuisim records every motor: see the chart, or tuisim run --telemetry FILE",
+)
+_LEGO = "use the sensors of pybricks.ev3devices, or Ev3devSensor"
+
+IO_DEVICES: Mapping[str, Hardware] = {
+    "AnalogSensor": Hardware("an analog sensor", _LEGO),
+    "I2CDevice": Hardware("an I2C device", _LEGO),
+    "LUMPDevice": Hardware("a sensor with the protocol of LEGO's UART sensors", _LEGO),
+    "UARTDevice": Hardware("an UART device", _LEGO),
+}
+"""Classes of `pybricks.iodevices`."""
+
+NXT_DEVICES: Mapping[str, Hardware] = {
+    "ColorSensor": Hardware("the NXT colour sensor", "use pybricks.ev3devices.ColorSensor"),
+    "EnergyMeter": Hardware(
+        "the energy meter", "EV3Brick().battery has the voltage and the current of the battery"
+    ),
+    "LightSensor": Hardware("the NXT light sensor", "use pybricks.ev3devices.ColorSensor"),
+    "SoundSensor": Hardware(
+        "the NXT sound sensor", "it is silent here: start by a TouchSensor or a button"
+    ),
+    "TemperatureSensor": Hardware("the NXT temperature sensor", _LEGO),
+    "TouchSensor": Hardware("the NXT touch sensor", "use pybricks.ev3devices.TouchSensor"),
+    "UltrasonicSensor": Hardware(
+        "the NXT ultrasonic sensor", "use pybricks.ev3devices.UltrasonicSensor"
+    ),
+    "VernierAdapter": Hardware("the adapter for Vernier sensors", _LEGO),
+}
+"""Classes of `pybricks.nxtdevices`."""
+
+
+class OtherHub:
+    """Refuses to import the modules for the motors and sensors of other hubs; the first finder."""
+
+    def find_spec(
+        self,
+        fullname: str,
+        path: Sequence[str] | None = None,
+        target: types.ModuleType | None = None,
+    ) -> None:
+        """Raise for such a module.
+
+        Raises:
+            NotSimulated: it is one; it is an ImportError, too.
+        """
+        if fullname == OTHER_HUB_DEVICES:
+            raise _refusal(fullname)
+
+
+def refused_hub(name: str) -> NoReturn:
+    """Raise the error about a name that `pybricks.hubs` does not have here.
+
+    Raises:
+        NotSimulated: it is that of another hub; it is an ImportError, too.
+        AttributeError: it is none.
+    """
+    if name in OTHER_HUBS:
+        raise _refusal(f"pybricks.hubs.{name}")
+    raise AttributeError(f"module 'pybricks.hubs' has no attribute {name!r}")
+
+
+def _refusal(name: str) -> Exception:
+    return refused_as(ImportError, f"{name}: {SPIKE.title} is not simulated", SPIKE.instead)
+
+
+def refused_classes(module: str, classes: Mapping[str, Hardware]) -> dict[str, Any]:
+    """Return the classes of a module of the library that can be imported but not used, by name."""
+    return {name: refused_part(module, name, hardware) for name, hardware in classes.items()}

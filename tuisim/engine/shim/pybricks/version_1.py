@@ -1,0 +1,104 @@
+"""`pybricks.ev3brick` of version 1.0, which version 2.0 still has: sound, display, light, buttons and battery."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+from tuisim.engine.shim.pybricks import hubs
+from tuisim.engine.shim.pybricks.brick import whole
+from tuisim.engine.shim.pybricks.image import Image
+from tuisim.engine.shim.pybricks.parameters import Align, Button, Color
+from tuisim.engine.shim.pybricks.speaker import START_VOLUMES
+from tuisim.engine.shim.pybricks.tools import wait
+
+BEEPS_PAUSE_MS = 100
+"""Silence after each of several beeps."""
+
+_brick = hubs.EV3Brick()
+battery = _brick.battery
+
+
+class Sound:
+    """The speaker. Each sound sets the volume, in percent."""
+
+    def beep(
+        self, frequency: float = 500, duration: float = 100, volume: float = START_VOLUMES["Beep"]
+    ) -> None:
+        """Play a tone, and wait for its end."""
+        _brick.speaker.set_volume(volume, "Beep")
+        _brick.speaker.beep(frequency, duration)
+
+    def beeps(self, number: float) -> None:
+        """Play several short tones."""
+        for _ in range(whole(number)):
+            self.beep()
+            wait(BEEPS_PAUSE_MS)
+
+    def tune(
+        self,
+        frequencies_and_durations: Iterable[tuple[float, float]],
+        volume: float = START_VOLUMES["Beep"],
+    ) -> None:
+        """Play tones of a frequency in Hz and a duration in ms."""
+        for frequency, duration in frequencies_and_durations:
+            self.beep(frequency, duration, volume)
+
+    def file(self, file_name: str, volume: float = START_VOLUMES["Beep"]) -> None:
+        """Play a sound file, and wait for its end."""
+        _brick.speaker.set_volume(volume, "PCM")
+        _brick.speaker.play_file(file_name)
+
+    def speech(self, text: str, volume: float = START_VOLUMES["Beep"]) -> None:
+        """Speak a text, and wait for its end."""
+        _brick.speaker.set_volume(volume, "PCM")
+        _brick.speaker.say(text)
+
+
+class Display:
+    """The screen."""
+
+    def clear(self) -> None:
+        """Make it white."""
+        _brick.screen.clear()
+
+    def text(self, text: Any, location: tuple[float, float] | None = None) -> None:
+        """Show a line of text at a place, or below the line before."""
+        if location is None:
+            _brick.screen.print(text)
+        else:
+            _brick.screen.draw_text(*location, text)
+
+    def image(
+        self,
+        file_name: str,
+        location_or_alignment: tuple[float, float] | Align = Align.CENTER,
+        clear: bool = True,
+    ) -> None:
+        """Show an image at a place, after clearing the screen unless told otherwise."""
+        screen, source = _brick.screen, Image(file_name)
+        place = location_or_alignment
+        if isinstance(place, Align):
+            # The numbers of the alignments are those of a number pad.
+            row, column = divmod(place.value - 1, 3)
+            place = (
+                (screen.width - source.width) * column // 2,
+                (screen.height - source.height) * (2 - row) // 2,
+            )
+        if clear:
+            screen.clear()
+        x, y = place
+        screen.draw_image(x, y, source)
+
+
+sound, display = Sound(), Display()
+
+
+def light(color: Color | None) -> None:
+    """Turn the light on in a colour; None turns it off."""
+    _brick.light.on(color)
+
+
+def buttons() -> list[Button]:
+    """Return the pressed buttons."""
+    return _brick.buttons.pressed()

@@ -1,0 +1,327 @@
+"""What version 4 of the library has besides version 2.0, or in another way: moves that end otherwise, arcs, tasks.
+
+In a task, which `run_task` runs, a blocking call returns at once what the task awaits.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from enum import Enum
+from math import degrees, radians
+from typing import Any
+
+from tuisim.engine.core.commands.calls import Call
+from tuisim.engine.core.servo.control import Ending
+from tuisim.engine.core.servo.trajectory import MILLI
+from tuisim.engine.shim.pybricks import hubs, motor, robotics
+from tuisim.engine.shim.pybricks.brick import Connected, Waiting, invalid_argument, whole
+from tuisim.engine.shim.pybricks.ev3devices import ColorSensor as EarlierColorSensor
+from tuisim.engine.shim.pybricks.motor import ending_of, gear_ratio
+from tuisim.engine.shim.pybricks.parameters import Button, Direction, Port, shown_by_name
+
+NOMINAL_VOLTAGE_MV = 9000
+
+
+@shown_by_name
+class Stop(Enum):
+    """What a motor does after a move."""
+
+    COAST, BRAKE, HOLD, NONE, COAST_SMART, BRAKE_SMART = range(6)
+
+
+ENDINGS: Mapping[Any, Ending] = {
+    **motor.Motor.ENDINGS,
+    Stop.COAST: Ending.COAST,
+    Stop.COAST_SMART: Ending.COAST,
+    Stop.BRAKE: Ending.BRAKE,
+    Stop.BRAKE_SMART: Ending.BRAKE,
+    Stop.HOLD: Ending.HOLD,
+    Stop.NONE: Ending.NONE,
+}
+"""The simulated motor is always where it is wanted to be: a smart ending is like a plain one."""
+
+
+class Motor(motor.Motor):
+    """A large or medium motor."""
+
+    ENDINGS = ENDINGS
+
+    def __init__(
+        self,
+        port: Port,
+        positive_direction: Direction = Direction.CLOCKWISE,
+        gears: Any = None,
+        reset_angle: bool = True,
+        profile: int | None = None,
+    ) -> None:
+        if profile is not None and whole(profile) < 0:
+            raise invalid_argument()
+        self._set_up(port, positive_direction, gear_ratio(gears), keeps_angle=not reset_angle)
+        self.control = Control(self, self._motor.control)
+
+    def _begin(self, then: Any, wait: bool, call: str) -> None:
+        control, motor = self._motor.control, self._motor
+        trajectory = control.trajectory
+        if ending_of(ENDINGS, then) is not Ending.NONE or trajectory is None:
+            return super()._begin(then, wait, call)
+        target, rate = trajectory.end.milli, trajectory.even.rate
+        acceleration = abs(trajectory.first.acceleration) or control.settings.acceleration
+        self._run_endlessly(rate, acceleration)
+        if not wait:
+            return None
+
+        def passed(now_us: int) -> bool:
+            return motor.guide is None or (motor.milli_at(now_us) - target) * rate >= 0
+
+        return self.brick.finish(self.brick.until_done(passed, lambda: None))
+
+    def speed(self, window: float = 100) -> int:
+        """Return the speed in degrees per second, which is exact for any window."""
+        if whole(window) <= 0:
+            raise invalid_argument()
+        return super().speed()
+
+    def done(self) -> bool:
+        """Return whether no move is under way."""
+        return self.move_done(self.brick.read("state", *self.port_names), self._motor.control)
+
+    def stalled(self) -> bool:
+        """Return whether something keeps the motor from going on."""
+        self.brick.read("state", *self.port_names)
+        return self._motor.control.stalled
+
+    def load(self) -> int:
+        """Return the load in mNm: nothing but an obstacle loads a simulated motor."""
+        self.brick.read()
+        return 0
+
+    def settings(self, max_voltage: float | None = None) -> tuple[int] | None:
+        """Return the highest voltage in mV, or set it."""
+        control = self._motor.control
+        if max_voltage is None:
+            return (control.settings.actuation * NOMINAL_VOLTAGE_MV // 10_000,)
+        self.control.limits(
+            actuation=max(1, min(100, 100 * whole(max_voltage) // NOMINAL_VOLTAGE_MV))
+        )
+        return None
+
+    def close(self) -> None:
+        """Let the motor coast."""
+        self.stop()
+
+
+class Control(motor.Control):
+    """The settings of a motor's controller."""
+
+    def load(self) -> int:
+        """Return the load in mNm."""
+        self.brick.read()
+        return 0
+
+
+class DriveBase(robotics.DriveBase):
+    """A robot with two driven wheels. Its settings may be changed while it drives."""
+
+    SETTINGS_WHILE_ACTIVE = True
+
+    def _move(
+        self,
+        distance_mm: float,
+        angle_deg: float,
+        call: str,
+        ending: Ending = Ending.HOLD,
+        *,
+        wait: bool = True,
+    ) -> None:
+        if ending is not Ending.NONE:
+            return super()._move(distance_mm, angle_deg, call, ending, wait=wait)
+        base, by_way = self._base, bool(distance_mm)
+        speed, turn_rate = (base.usual[0] if distance_mm > 0 else -base.usual[0], base.usual[2])
+        if by_way:
+            turn_rate = round(abs(speed) * angle_deg / abs(distance_mm))
+        else:
+            speed, turn_rate = 0, turn_rate if angle_deg > 0 else -turn_rate
+        begin = base.millis_at(self.brick.command())[0 if by_way else 1]
+        control, way = (base.distance, distance_mm) if by_way else (base.heading, angle_deg)
+        target = abs(way) * control.settings.counts_per_unit * MILLI
+        self.drive(speed, turn_rate)
+        if not wait:
+            return None
+
+        def passed(now_us: int) -> bool:
+            return (
+                not base.active or abs(base.millis_at(now_us)[0 if by_way else 1] - begin) >= target
+            )
+
+        return self.brick.finish(self.brick.until_done(passed, lambda: None))
+
+    def straight(self, distance: float, then: Stop = Stop.HOLD, wait: bool = True) -> None:
+        """Drive a distance in mm."""
+        return self._move(whole(distance), 0, "straight()", ending_of(ENDINGS, then), wait=wait)
+
+    def turn(
+        self, angle: float, then: Stop = Stop.HOLD, wait: bool = True, absolute: bool = False
+    ) -> None:
+        """Turn by an angle in degrees, clockwise; `absolute`: to an angle."""
+        by = whole(angle) - round(self.angle()) if absolute else whole(angle)
+        return self._move(0, by, "turn()", ending_of(ENDINGS, then), wait=wait)
+
+    def curve(self, radius: float, angle: float, then: Stop = Stop.HOLD, wait: bool = True) -> None:
+        """Drive along an arc by an angle; a negative radius turns the other way."""
+        turned = -whole(angle) if radius < 0 else whole(angle)
+        return self._move(
+            whole(radius) * radians(whole(angle)),
+            turned,
+            "curve()",
+            ending_of(ENDINGS, then),
+            wait=wait,
+        )
+
+    def arc(
+        self,
+        radius: float,
+        angle: float | None = None,
+        distance: float | None = None,
+        then: Stop = Stop.HOLD,
+        wait: bool = True,
+    ) -> None:
+        """Drive along an arc by an angle or a distance; a negative radius turns the other way."""
+        if (angle is None) == (distance is None) or not radius:
+            raise invalid_argument()
+        way = whole(distance) if distance is not None else abs(radius) * radians(whole(angle))
+        return self._move(way, degrees(way / radius), "arc()", ending_of(ENDINGS, then), wait=wait)
+
+    def angle(self) -> float:  # type: ignore[override]
+        """Return the turned angle in degrees, clockwise."""
+        now_us, base = self._read(), self._base
+        return (
+            base.millis_at(now_us)[1] / MILLI - self._zeros[1]
+        ) / base.heading.settings.counts_per_unit
+
+    def brake(self) -> None:
+        """Stop and let the motors brake themselves."""
+        self.brick.command()
+        self.tell(Call.STOP_BASE, 0)
+
+    def hold(self) -> None:
+        """Stop and hold the wheels."""
+        return self._move(0, 0, "hold()", wait=False)
+
+    def done(self) -> bool:
+        """Return whether no move is under way."""
+        now_us = self.brick.read("state", *self.port_names)
+        return not self._base.active or self._base.done(now_us)
+
+    def stalled(self) -> bool:
+        """Return whether something has blocked the robot."""
+        self.brick.read("state", *self.port_names)
+        return self._base.stalled
+
+    def reset(self, distance: float = 0, angle: float = 0) -> None:
+        """Make the current distance and angle other ones."""
+        super().reset()
+        total, difference = self._zeros
+        counts = self._base.distance.settings.counts, self._base.heading.settings.counts
+        self._zeros = total - counts[0](whole(distance)), difference - counts[1](whole(angle))
+
+
+class ColorSensor(EarlierColorSensor):
+    """A colour sensor."""
+
+    def color(self, surface: bool = True) -> Any:
+        """Return the colour; `Color.NONE` if there is none."""
+        found = super().color()
+        return Color.NONE if found is None else Color[found.name]
+
+
+@shown_by_name
+class Color(Enum):
+    """Colours, by hue in degrees, saturation and value in percent."""
+
+    NONE = (0, 0, 0)
+    BLACK = (0, 0, 10)
+    GRAY = (0, 0, 50)
+    WHITE = (0, 0, 100)
+    RED = (0, 100, 100)
+    BROWN = (30, 100, 50)
+    ORANGE = (30, 100, 100)
+    YELLOW = (60, 100, 100)
+    GREEN = (120, 100, 100)
+    CYAN = (180, 100, 100)
+    BLUE = (240, 100, 100)
+    VIOLET = (270, 100, 100)
+    MAGENTA = (300, 100, 100)
+
+    @property
+    def h(self) -> int:
+        """The hue."""
+        return self.value[0]
+
+    @property
+    def s(self) -> int:
+        """The saturation."""
+        return self.value[1]
+
+    @property
+    def v(self) -> int:
+        """The value."""
+        return self.value[2]
+
+
+class Buttons(hubs.Buttons):
+    """The buttons of the brick."""
+
+    def pressed(self) -> set[Button]:  # type: ignore[override]
+        """Return the pressed buttons."""
+        return set(super().pressed())
+
+
+# Tasks
+
+
+def _steps(task: Any) -> Waiting[Any]:
+    """Return what yields the times until which a task waits."""
+    if hasattr(task, "send"):
+        return task  # type: ignore[no-any-return]
+    if hasattr(task, "__await__"):
+        return task.__await__()  # type: ignore[no-any-return]
+    raise TypeError(f"a task is needed, not {type(task).__name__}")
+
+
+def run_task(task: Any = None) -> Any:
+    """Run a task to its end, and return its result; without one, return whether a task runs."""
+    brick = Connected.brick
+    if task is None:
+        return brick.in_task
+    if brick.in_task:
+        raise RuntimeError("run_task() must not be used in a task")
+    brick.in_task = True
+    try:
+        return brick.block(_steps(task))
+    finally:
+        brick.in_task = False
+
+
+class multitask:  # noqa: N801 - as the library names it
+    """Runs several tasks at once: what a task awaits."""
+
+    def __init__(self, *tasks: Any, race: bool = False) -> None:
+        self._tasks, self._race = [_steps(task) for task in tasks], race
+
+    def __await__(self) -> Waiting[Any]:
+        brick, results = Connected.brick, [None] * len(self._tasks)
+        until_us = dict.fromkeys(range(len(self._tasks)), 0)
+        while until_us:
+            for at in [at for at, until in until_us.items() if until <= brick.now_us]:
+                try:
+                    until_us[at] = self._tasks[at].send(None)
+                except StopIteration as end:
+                    results[at] = end.value
+                    del until_us[at]
+                    if self._race:
+                        for other in until_us:
+                            self._tasks[other].close()
+                        return tuple(results)
+            if until_us:
+                yield min(until_us.values())
+        return tuple(results)

@@ -1,0 +1,83 @@
+"""The shim's view of the session that runs the program."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any, Protocol
+
+if TYPE_CHECKING:
+    from tuisim.engine.core.field import Field
+    from tuisim.engine.core.plugged import PluggedPart
+    from tuisim.engine.core.simulation import Simulation
+    from tuisim.engine.protocol import MotorRegisters
+    from tuisim.engine.runs.records import Stream
+
+
+class DeviceSession(Protocol):
+    """The program's clock and the simulation behind it."""
+
+    sim: Simulation
+    now: int
+    """Simulated ns since the start."""
+    free: int
+    """Above 0 while calls are free of charge: the library's own look-ups, constructors, the prelude."""
+
+    wheel_registers: tuple[Callable[[], MotorRegisters], ...]
+    """Read the registers of the left and the right wheel; set with the brick."""
+
+    held_up: str
+    """What keeps the program from going on, for the summary if a limit ends the run; empty for nothing."""
+
+    shown_ports: tuple[str, ...] | None
+    """As `Program.shown_ports`; None also before the program begins."""
+
+    pressed: frozenset[str]
+    """The pressed buttons of the brick, by their names in the library."""
+
+    @property
+    def field(self) -> Field:
+        """The mat in its current state."""
+
+    def spend(self, duration_ns: int, code: int = -1) -> None:
+        """Let simulated time pass, even where calls are free.
+
+        Args:
+            duration_ns: How long.
+            code: What the program has read then, see `note_reading`; -1 for nothing.
+        """
+
+    def note_reading(self, code: int) -> None:
+        """Record that the program has read something, by one of `engine.runs.readings.READING_CODES`.
+
+        Not where calls are free. The caller is not the program.
+        """
+
+    def charge(self, cost_ns: int) -> None:
+        """Let the time of a call pass, unless calls are free."""
+
+    def command(self) -> None:
+        """Count a call without a cost, so that no loop of such calls runs forever without time passing."""
+
+    def wait_for_motor(self, timeout_ns: int, again: bool = False) -> None:
+        """Block until a motor ends a move or the timeout is over; `again`: the caller then just waits again."""
+
+    def speak(self, text: str, wait_ns: int, tones: str = "", file: str = "") -> None:
+        """Record a sound and block for `wait_ns`. The other arguments are as in `engine.protocol.Spoke`."""
+
+    def messages(self) -> list[Any]:
+        """Return all answers of the host's responder; waits for pending ones, without simulated time passing."""
+
+    def show(self, row: str, stream: Stream) -> None:
+        """Record what the brick shows; `row` has the format of `engine.runs.brick_state`."""
+
+    def tell_plugged(self, parts: Sequence[PluggedPart]) -> None:
+        """Tell the host which parts have been plugged in."""
+
+    def describe_part(self, port: str, part: str, role: str = "") -> PluggedPart:
+        """Return a part that is plugged in now; arguments as of `PluggedPart`."""
+
+    def is_tried(self, error: type[Exception]) -> bool:
+        """Return whether the program would catch an error that is raised here, and so just tries what there is."""
+
+    def spawn_daemon(self, work: Callable[[], None]) -> None:
+        """Run `work` in the background while the program continues."""

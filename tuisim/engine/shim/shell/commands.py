@@ -1,0 +1,323 @@
+"""The brick's programs for text screen and sound, and the shell lines that start them.
+
+To add a program: its function, and a row in `COMMANDS`.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import shlex
+import sys
+from collections.abc import Callable, Generator, Mapping, Sequence
+
+from tuisim.base.data_class import dataclass
+from tuisim.base.errors import NotSimulated
+from tuisim.engine.core.profile import NS_PER_S
+from tuisim.engine.shim.console import Terminal
+from tuisim.engine.shim.session import DeviceSession
+from tuisim.engine.shim.sound import Mixer
+from tuisim.engine.shim.tones import Heard, beep_heard, file_heard, speech_heard
+from tuisim.engine.shim.unsupported.modules import refused_as
+
+Steps = Generator[int, None, int]
+"""A running line: yields the ns that each sound or pause takes, and returns its exit status."""
+
+Sink = Callable[[bytes], None]
+"""Receives the output of a program."""
+
+Outcome = bytes | Heard | int
+"""What a program does: it writes, sounds, or lets as many ns pass."""
+
+PLAIN_FONT = "default8x16"
+"""Default font of `setfont`."""
+DEVICE_FOLDERS = ("/sys/", "/dev/")
+OPERATORS, JOINTS = "();<>|&", (";", "&&", "|")
+SPEECH_PIPE = ("espeak", "aplay")
+SHELL_HINT = "join programs by ; or &&, use open for files and subprocess.Popen beside the program"
+
+
+@dataclass(slots=True)
+class Call:
+    """One call of a program in a line."""
+
+    words: list[str]
+    """The program and its arguments."""
+    joint: str = ";"
+    """What joins it to the call before: `;`, `&&`, or `|` for speech on its way to `aplay`."""
+    file: str = ""
+    """The device file that its output is written to; empty for none."""
+
+    @property
+    def name(self) -> str:
+        """The program, without its folder."""
+        return os.path.basename(self.words[0])
+
+
+def own_output(data: bytes) -> None:
+    """Write to the program's real standard output, even if the program has replaced the stream."""
+    assert sys.__stdout__ is not None
+    sys.__stdout__.write(data.decode("utf-8", "replace"))
+
+
+def own_errors(data: bytes) -> None:
+    """Write to the program's real standard error."""
+    assert sys.__stderr__ is not None
+    sys.__stderr__.write(data.decode("utf-8", "replace"))
+
+
+@dataclass(slots=True)
+class Streams:
+    """Standard streams of one process, and where it runs."""
+
+    output: Sink = own_output
+    errors: Sink = own_errors
+    folder: str = ""
+    """Base of relative paths; empty for the program's working directory."""
+    speech: Heard | None = None
+    """What `espeak --stdout` has said, on its way to `aplay`."""
+
+
+def refuse(what: str, hint: str) -> Exception:
+    """Return the error about something that is not simulated; Python's own modules take it for a missing program."""
+    return refused_as(OSError, f"{what} is not part of the simulated brick", hint)
+
+
+def parse_line(text: str) -> list[Call]:
+    """Return the calls of a shell line.
+
+    Raises:
+        NotSimulated: the brick's shell does not have a part of it.
+    """
+    if odd := re.search(r"[$`\n]|\d>", text.strip()):
+        raise refuse(f"{odd[0]!r} in a shell line", SHELL_HINT)
+    lexer = shlex.shlex(text, posix=True, punctuation_chars=OPERATORS)
+    lexer.whitespace_split, lexer.commenters = True, ""
+    try:
+        tokens = iter(list(lexer))
+    except ValueError:
+        raise refuse("an open quote in a shell line", SHELL_HINT) from None
+    calls = [Call([])]
+    for token in tokens:
+        if token in JOINTS:
+            calls.append(Call([], token))
+        elif token == ">" and (file := next(tokens, "")).startswith(DEVICE_FOLDERS):
+            calls[-1].file = file
+        elif token and set(token) <= set(OPERATORS):
+            raise refuse(f"{token!r} in a shell line", SHELL_HINT)
+        else:
+            calls[-1].words.append(token)
+    if calls[-1] == Call([]):
+        calls.pop()
+    return calls
+
+
+class Shell:
+    """Runs the programs of the brick."""
+
+    def __init__(self, session: DeviceSession, terminal: Terminal, mixer: Mixer) -> None:
+        self.session, self.terminal, self.mixer = session, terminal, mixer
+
+    def start(self, calls: Sequence[Call], streams: Streams) -> Steps:
+        """Start the calls of a line.
+
+        Raises:
+            NotSimulated: the brick does not have one of the programs.
+        """
+        before = ""
+        for call in calls:
+            if not call.words or (call.joint == "|" and (before, call.name) != SPEECH_PIPE):
+                raise refuse(f"{call.joint!r} in a shell line", SHELL_HINT)
+            before = call.name
+            if before not in COMMANDS:
+                raise refuse(call.words[0], f"use Python, or {', '.join(COMMANDS)}")
+        return self._run(calls, streams)
+
+    def _run(self, calls: Sequence[Call], streams: Streams) -> Steps:
+        status = 0
+        for call in calls:
+            if call.joint != ";" and status:
+                continue
+            outcome: Outcome = 0
+            try:
+                outcome = COMMANDS[call.name](self, call.words[1:], streams)
+                status = 0
+                if isinstance(outcome, bytes):
+                    _write_output(outcome, call.file, streams)
+            except NotSimulated:
+                raise
+            except OSError as error:
+                status = 1
+                streams.errors(f"{call.name}: {error}\n".encode())
+            if isinstance(outcome, Heard):
+                self.session.speak(outcome.text, 0, outcome.tones_row, outcome.file)
+                status = int(outcome.refused)
+                yield outcome.length_ns
+            elif isinstance(outcome, int):
+                yield outcome
+        if streams.speech is not None and streams.output is own_output:
+            raise refuse("espeak --stdout alone", "use espeak --stdout TEXT | aplay")
+        return status
+
+
+def _write_output(data: bytes, file: str, streams: Streams) -> None:
+    if file:
+        with open(file, "wb", 0) as device:
+            device.write(data)
+    elif data:
+        streams.output(data)
+
+
+class Running:
+    """Commands that run in the background.
+
+    Args:
+        several: Whether more sounds may follow the first one, so that progress must not depend on calls of `poll`.
+    """
+
+    def __init__(self, session: DeviceSession, steps: Steps, several: bool = False) -> None:
+        self._session, self._steps = session, steps
+        self.status: int | None = None
+        """Exit status; None while they run."""
+        self._due = session.now
+        self._busy = False
+        self.go_on()
+        if several and self.status is None:
+            session.spawn_daemon(self._finish)
+
+    def go_on(self) -> None:
+        """Run what is due."""
+        while self.status is None and not self._busy and self._session.now >= self._due:
+            self._busy = True
+            try:
+                self._due = self._session.now + next(self._steps)
+            except StopIteration as end:
+                self.status = end.value
+            except NotSimulated:
+                self.status = 1
+                raise
+            finally:
+                self._busy = False
+
+    def wait(self, limit_ns: int | None = None) -> bool:
+        """Block until the end or the limit; return whether they have ended."""
+        until = None if limit_ns is None else self._session.now + limit_ns
+        self.go_on()
+        while self.status is None:
+            rest_ns = max(self._due - self._session.now, 0)
+            if until is not None and self._session.now + rest_ns > until:
+                self._session.spend(max(until - self._session.now, 0))
+                return False
+            self._session.spend(rest_ns)
+            self.go_on()
+        return True
+
+    def end(self, status: int) -> None:
+        """End the commands; a sound that has started plays to its end."""
+        if self.status is None:
+            self.status = status
+
+    def _finish(self) -> None:
+        self.wait()
+
+
+# Programs: what each does with its arguments
+
+
+def _set_font(shell: Shell, words: list[str], _streams: Streams) -> Outcome:
+    names = [word for word in words if not word.startswith("-")]
+    shell.terminal.set_font(os.path.basename(names[-1]) if names else PLAIN_FONT)
+    return b""
+
+
+def _clear(shell: Shell, _words: list[str], _streams: Streams) -> Outcome:
+    shell.terminal.clear()
+    return b""
+
+
+def _stty(shell: Shell, words: list[str], _streams: Streams) -> Outcome:
+    # Settings such as echo have no effect: the brick's buttons write nothing on this screen.
+    return shell.terminal.size.encode() if words == ["size"] else b""
+
+
+def _amixer(shell: Shell, words: list[str], _streams: Streams) -> Outcome:
+    try:
+        output = shell.mixer.do([word for word in words if word != "-q"])
+    except ValueError as error:
+        raise refuse(f"amixer {' '.join(words)}", f"use {error}") from None
+    return b"" if "-q" in words else output.encode()
+
+
+def _echo(_shell: Shell, words: list[str], _streams: Streams) -> Outcome:
+    no_end = words[:1] == ["-n"]
+    text = " ".join(words[no_end:])
+    if "\\" in text or text.startswith("-e "):
+        raise refuse("an escape of echo", "use print")
+    return (text if no_end else f"{text}\n").encode("utf-8", "surrogateescape")
+
+
+def _cat(_shell: Shell, words: list[str], _streams: Streams) -> Outcome:
+    if len(words) != 1 or not words[0].startswith(DEVICE_FOLDERS):
+        raise refuse(f"cat {' '.join(words)}", "use open, or cat for one of the brick's files")
+    with open(words[0], "rb") as file:
+        return file.read()
+
+
+def _sleep(_shell: Shell, words: list[str], _streams: Streams) -> Outcome:
+    if len(words) != 1 or not re.fullmatch(r"\d*\.?\d+", words[0]):
+        raise refuse(f"sleep {' '.join(words)}", "use sleep and a number of seconds")
+    return round(float(words[0]) * NS_PER_S)
+
+
+def _beep(_shell: Shell, words: list[str], _streams: Streams) -> Outcome:
+    return beep_heard(words)
+
+
+def _espeak(_shell: Shell, words: list[str], streams: Streams) -> Outcome:
+    options, texts = _parse_options("espeak", words, "a:s:v:p:g:k:l:b:mz", "stdout")
+    if not texts:
+        raise refuse("espeak without a text", "use espeak TEXT")
+    heard = speech_heard(" ".join(texts[0].split("\n")).strip(), options.get("-s", ""))
+    if "--stdout" not in options:
+        return heard
+    streams.speech = heard
+    return b""
+
+
+def _aplay(_shell: Shell, words: list[str], streams: Streams) -> Outcome:
+    files = _parse_options("aplay", words, "D:q", "quiet")[1]
+    heard, streams.speech = streams.speech, None
+    if len(files) == 1 and files != ["-"]:
+        return file_heard(files[0], streams.folder)
+    if heard is None or len(files) > 1:
+        raise refuse(
+            f"aplay {' '.join(words)}".rstrip(), "use aplay FILE, or espeak --stdout TEXT | aplay"
+        )
+    return heard
+
+
+def _parse_options(
+    name: str, words: list[str], short: str, long: str
+) -> tuple[dict[str, str], list[str]]:
+    import getopt
+
+    try:
+        options, arguments = getopt.gnu_getopt(words, short, [long])
+    except getopt.GetoptError as error:
+        raise refuse(f"the option {error.opt} of {name}", f"it has --{long} and {short}") from None
+    return dict(options), arguments
+
+
+COMMANDS: Mapping[str, Callable[[Shell, list[str], Streams], Outcome]] = {
+    "setfont": _set_font,
+    "clear": _clear,
+    "beep": _beep,
+    "echo": _echo,
+    "espeak": _espeak,
+    "aplay": _aplay,
+    "amixer": _amixer,
+    "stty": _stty,
+    "cat": _cat,
+    "sleep": _sleep,
+}
+"""The programs of the brick, by name."""

@@ -1,0 +1,297 @@
+"""`os.system`, `os.popen` and `subprocess`: they run the commands of the brick, nothing on this computer."""
+
+from __future__ import annotations
+
+import io
+import os
+import signal
+import types
+from collections.abc import Callable
+from contextlib import suppress
+from itertools import count
+from typing import IO, Any, NoReturn
+
+from tuisim.base.errors import NotSimulated
+from tuisim.engine.core.profile import MS
+from tuisim.engine.shim.session import DeviceSession
+from tuisim.engine.shim.shell.commands import (
+    Call,
+    Running,
+    Shell,
+    Sink,
+    Streams,
+    own_errors,
+    own_output,
+    parse_line,
+    refuse,
+)
+from tuisim.engine.shim.sound import NO_PID
+from tuisim.engine.shim.tones import Heard
+
+Replace = Callable[[types.ModuleType, str, Callable[..., Any]], None]
+"""Replaces a function of a module, by its name."""
+EXIT_SHIFT = 8
+"""Bits below the exit status in the result of `os.system`."""
+
+
+class OutPipe(io.RawIOBase):
+    """Output of a process; reading blocks until the process ends."""
+
+    def __init__(self, process: Process) -> None:
+        self.process, self._data = process, bytearray()
+
+    def take(self, data: bytes) -> None:
+        """Append output of the process."""
+        self._data += data
+
+    def readable(self) -> bool:
+        """Return True."""
+        return True
+
+    def readinto(self, buffer: Any) -> int:
+        """Read into a buffer; 0 bytes is the end."""
+        self.process.wait()
+        if self.process.streams.speech is not None:
+            raise refuse("reading from espeak --stdout", "use it as the standard input of aplay")
+        size = min(len(buffer), len(self._data))
+        buffer[:size] = self._data[:size]
+        del self._data[:size]
+        return size
+
+    def take_speech(self) -> Heard | None:
+        """Return the speech that is on its way to a player, once."""
+        speech, self.process.streams.speech = self.process.streams.speech, None
+        return speech
+
+
+class Process:
+    """Replaces `subprocess.Popen`, with the same arguments and methods.
+
+    A subclass that is made for the run has the `system`.
+    """
+
+    system: System
+
+    def __init__(
+        self,
+        args: Any,
+        bufsize: int = -1,
+        executable: Any = None,
+        stdin: Any = None,
+        stdout: Any = None,
+        stderr: Any = None,
+        preexec_fn: Any = None,
+        close_fds: bool = True,
+        shell: bool = False,
+        cwd: Any = None,
+        env: Any = None,
+        universal_newlines: bool | None = None,
+        startupinfo: Any = None,
+        creationflags: int = 0,
+        restore_signals: bool = True,
+        start_new_session: bool = False,
+        pass_fds: Any = (),
+        *,
+        user: Any = None,
+        group: Any = None,
+        extra_groups: Any = None,
+        encoding: str | None = None,
+        errors: str | None = None,
+        text: bool | None = None,
+        umask: int = -1,
+        pipesize: int = -1,
+        process_group: Any = None,
+    ) -> None:
+        system = self.system
+        system.session.command()
+        self.args, self.pid = args, next(system.pids)
+        self.returncode: int | None = None
+        self.text_mode = self.universal_newlines = bool(
+            encoding or errors or text or universal_newlines
+        )
+        self.encoding, self.errors = encoding, errors
+        if stdin == system.module.PIPE:
+            raise refuse("the standard input of a process", "give it arguments")
+        self.stdin = None
+        folder = "" if cwd is None else os.path.abspath(os.fsdecode(cwd))
+        self.streams = Streams(folder=folder, speech=_take_speech(stdin))
+        self.streams.output, self.stdout = self._open_output(stdout, own_output)
+        if stderr == system.module.STDOUT:
+            self.streams.errors, self.stderr = self.streams.output, None
+        else:
+            self.streams.errors, self.stderr = self._open_output(stderr, own_errors)
+        steps = system.shell.start(_calls(args, shell), self.streams)
+        self.running = Running(system.session, steps, several=shell)
+        system.processes[self.pid] = self
+
+    def _open_output(self, target: Any, own: Sink) -> tuple[Sink, IO[Any] | None]:
+        """Return where output goes, and the pipe from which the program reads it, as bytes or as text."""
+        if target != self.system.module.PIPE:
+            return _sink(target, own), None
+        outlet = OutPipe(self)
+        pipe: Any = io.BufferedReader(outlet)
+        if self.text_mode:
+            pipe = io.TextIOWrapper(pipe, self.encoding or "utf-8", self.errors)
+        return outlet.take, pipe
+
+    def __class_getitem__(cls, item: Any) -> types.GenericAlias:
+        """Support annotations like the real class."""
+        return types.GenericAlias(cls, item)
+
+    def __repr__(self) -> str:
+        """Return the same text as the real class."""
+        return f"<Popen: returncode: {self.returncode} args: {self.args!r}>"
+
+    def __enter__(self) -> Process:
+        return self
+
+    def __exit__(self, *_error: object) -> None:
+        for stream in (self.stdout, self.stderr):
+            if stream is not None:
+                stream.close()
+        self.wait()
+
+    def poll(self) -> int | None:
+        """Return the exit status; None while the process runs."""
+        self.system.session.command()
+        self.running.go_on()
+        return self._current_status()
+
+    def _current_status(self) -> int | None:
+        if self.returncode is None:
+            self.returncode = self.running.status
+        return self.returncode
+
+    def wait(self, timeout: float | None = None) -> int:
+        """Block until the process ends; return the exit status.
+
+        Raises:
+            subprocess.TimeoutExpired: it takes longer than `timeout` seconds.
+        """
+        if not self.running.wait(None if timeout is None else max(int(timeout * 1000 * MS), 0)):
+            raise self.system.module.TimeoutExpired(self.args, timeout)
+        status = self._current_status()
+        assert status is not None
+        return status
+
+    def communicate(self, input: Any = None, timeout: float | None = None) -> tuple[Any, Any]:  # noqa: A002
+        """Block until the process ends, and return its output.
+
+        Raises:
+            subprocess.TimeoutExpired: it takes longer than `timeout` seconds.
+        """
+        self.wait(timeout)
+        read = [
+            stream.read() if stream and not stream.closed else None
+            for stream in (self.stdout, self.stderr)
+        ]
+        return read[0], read[1]
+
+    def send_signal(self, sig: int) -> None:
+        """End the process, whatever the signal is."""
+        if self.poll() is None:
+            self.running.end(-sig)
+            self._current_status()
+
+    def terminate(self) -> None:
+        """End the process."""
+        self.send_signal(signal.SIGTERM)
+
+    def kill(self) -> None:
+        """End the process."""
+        self.send_signal(signal.SIGKILL)
+
+
+class System:
+    """State shared by all processes of a run."""
+
+    def __init__(self, session: DeviceSession, shell: Shell) -> None:
+        self.session, self.shell = session, shell
+        self.module: Any = None
+        """The module `subprocess`, once it is imported."""
+        self.processes: dict[int, Process] = {}
+        self.pids = count(NO_PID + 1)
+
+    def patch_os(self, replace: Replace) -> None:
+        """Replace the functions of `os` that start and end processes."""
+        group_of = os.getpgid
+
+        def getpgid(pid: int) -> int:
+            # Each process has its own group.
+            return pid if pid in self.processes else group_of(pid)
+
+        def system(command: Any) -> int:
+            # Returns the kernel's wait status.
+            self.session.command()
+            steps = self.shell.start(parse_line(os.fsdecode(command)), Streams())
+            running = Running(self.session, steps)
+            running.wait()
+            return (running.status or 0) << EXIT_SHIFT
+
+        replace(os, "system", system)
+        replace(os, "kill", self._reaching(os.kill))
+        replace(os, "killpg", self._reaching(os.killpg))
+        replace(os, "getpgid", getpgid)
+
+    def _reaching(self, real: Callable[[int, int], None]) -> Callable[[int, int], None]:
+        def send(pid: int, sig: int) -> None:
+            if pid not in self.processes:
+                real(pid, sig)
+            elif sig:
+                self.processes[pid].send_signal(sig)
+
+        return send
+
+    def finish_subprocess(self, module: types.ModuleType) -> None:
+        """Patch `subprocess` after its import: everything in it builds on `Popen`."""
+        self.module = module
+        vars(module)["Popen"] = type(
+            "Popen", (Process,), {"system": self, "__module__": "subprocess"}
+        )
+
+
+def finish_asyncio(module: types.ModuleType) -> None:
+    """Refuse processes of `asyncio`; called after the import of its event loop."""
+
+    async def refuse(*_args: object, **_kwargs: object) -> NoReturn:
+        hint = "use subprocess.run, or os.system for commands of the brick"
+        raise NotSimulated(
+            "asyncio.create_subprocess_exec is not part of the simulated brick", hint
+        )
+
+    loop = vars(module)["BaseEventLoop"]
+    loop.subprocess_exec = loop.subprocess_shell = refuse
+
+
+def _calls(args: Any, in_shell: bool) -> list[Call]:
+    """Return what a process runs."""
+    words = [
+        os.fsdecode(word)
+        for word in ([args] if isinstance(args, str | bytes | os.PathLike) else args)
+    ]
+    return parse_line(words[0]) if in_shell else [Call(words)]
+
+
+def _take_speech(source: Any) -> Heard | None:
+    """Return the speech that comes from the output of another process."""
+    raw = getattr(getattr(source, "buffer", source), "raw", source)
+    return raw.take_speech() if isinstance(raw, OutPipe) else None
+
+
+def _sink(target: Any, own: Sink) -> Sink:
+    """Return a function that writes to the target of an output stream."""
+    if target is None:
+        return own
+    if isinstance(target, int):
+        return (lambda _data: None) if target < 0 else lambda data: _write_all(target, data)
+    with suppress(OSError, ValueError):
+        target.flush()
+        number = target.fileno()
+        return lambda data: _write_all(number, data)
+    # The program's own streams have no descriptor here.
+    return own if own is own_errors or getattr(target, "name", "") != "<stderr>" else own_errors
+
+
+def _write_all(number: int, data: bytes) -> None:
+    while data:
+        data = data[os.write(number, data) :]

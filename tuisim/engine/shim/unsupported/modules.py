@@ -1,0 +1,350 @@
+"""Modules for hardware that the simulated brick does not have, and what to do about others that are missing.
+
+A module of the brick that drives its radio, its bus or its USB port can be imported; what the program uses of it
+raises NotSimulated. A module for another computer cannot be imported on a brick either: the import raises
+NotSimulated, which is an ImportError, too, for programs that can do without it.
+"""
+
+from __future__ import annotations
+
+import sys
+import types
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, replace
+from functools import wraps
+from importlib.machinery import ModuleSpec
+from typing import Any, NoReturn
+
+from tuisim.base.data_class import dataclass
+from tuisim.base.errors import NotSimulated
+from tuisim.base.repository import find_module_folder
+from tuisim.base.source import FOR_SPIKE, SPIKE_MODULES
+from tuisim.engine.core.profile import Library
+
+
+@dataclass(frozen=True, slots=True)
+class Instead:
+    """Names in the library of a program, for what it can do instead."""
+
+    library: str
+    sensors: str
+    sound: str
+    remote: str
+    queue: str
+
+
+INSTEAD: Mapping[Library, Instead] = {
+    Library.EV3DEV2: Instead(
+        "ev3dev2", "ev3dev2.sensor.lego", "ev3dev2.sound", "RemoteControlledTank", "queue.Queue"
+    ),
+    Library.PYBRICKS: Instead(
+        "pybricks",
+        "pybricks.ev3devices",
+        "EV3Brick().speaker",
+        "an InfraredSensor",
+        "mailboxes of pybricks.messaging",
+    ),
+}
+
+_RADIO = (
+    "to drive by hand, use the brick's buttons or {remote}; parts of a program can talk by {queue}"
+)
+_BUS = "the sensors of {sensors} are simulated"
+CAMERA = "use a ColorSensor for colours, and an UltrasonicSensor for distances"
+_GAMEPAD = "to drive by hand, use the brick's buttons or {remote}"
+_MICROPHONE = "it is silent here: start by a TouchSensor or a button; {sound} makes sounds"
+
+
+@dataclass(frozen=True, slots=True)
+class Hardware:
+    """What no robot here can have: what a module is for, or a kind of device."""
+
+    title: str
+    instead: str
+    """What a program can do instead; may have fields of `Instead`."""
+    names: tuple[str, ...] = ()
+    """What `from … import *` gives."""
+
+    def told_to(self, library: Library) -> Hardware:
+        """Return the same with the names of a library."""
+        return replace(self, instead=self.instead.format_map(asdict(INSTEAD[library])))
+
+
+_SMBUS = Hardware("the I2C bus of the brick", _BUS, ("SMBus",))
+_USB = Hardware("the brick's USB port", _BUS)
+_SOUND_CARD = Hardware("the brick's sound card", _MICROPHONE)
+
+ON_THE_BRICK: Mapping[str, Hardware] = {
+    "bluetooth": Hardware(
+        "Bluetooth",
+        _RADIO,
+        (
+            "BluetoothError",
+            "BluetoothSocket",
+            "DeviceDiscoverer",
+            "HCI",
+            "L2CAP",
+            "PORT_ANY",
+            "RFCOMM",
+            "SCO",
+            "SERIAL_PORT_CLASS",
+            "SERIAL_PORT_PROFILE",
+            "advertise_service",
+            "discover_devices",
+            "find_service",
+            "get_available_port",
+            "is_valid_address",
+            "is_valid_uuid",
+            "lookup_name",
+            "read_local_bdaddr",
+            "stop_advertising",
+        ),
+    ),
+    "smbus": _SMBUS,
+    "smbus2": Hardware(_SMBUS.title, _BUS, ("SMBus", "i2c_msg")),
+    "serial": Hardware("a serial port", _BUS, ("Serial", "SerialException")),
+    "usb": _USB,
+    "hid": _USB,
+    "pyudev": _USB,
+    "pixycamev3": Hardware("the Pixy camera", CAMERA),
+    "approxeng": Hardware("a gamepad", _GAMEPAD),
+    "alsaaudio": _SOUND_CARD,
+    "pyaudio": _SOUND_CARD,
+    "sounddevice": _SOUND_CARD,
+}
+"""Modules that can be imported but not used, by name."""
+
+_PI = Hardware("the Raspberry Pi", "this is an EV3: use {library}")
+_PI_CAMERA = Hardware("the camera of the Raspberry Pi", CAMERA)
+_BRICKPI = Hardware("the BrickPi", "this is an EV3: use {library}")
+SPIKE = Hardware("the SPIKE hub", FOR_SPIKE)
+
+ELSEWHERE: Mapping[str, Hardware] = {
+    "RPi": _PI,
+    "gpiozero": _PI,
+    "pigpio": _PI,
+    "spidev": _PI,
+    "wiringpi": _PI,
+    "picamera": _PI_CAMERA,
+    "picamera2": _PI_CAMERA,
+    "brickpi": _BRICKPI,
+    "brickpi3": _BRICKPI,
+    "microbit": Hardware("the micro:bit", "this is an EV3: use {library}"),
+    **dict.fromkeys(SPIKE_MODULES, SPIKE),
+    "mindstorms": Hardware("the hub of the Robot Inventor", "this is an EV3: use {library}"),
+    "ev3sim": Hardware(
+        "the simulator ev3sim", "leave out its import: the rest of the program needs only {library}"
+    ),
+}
+"""Modules that cannot be imported, by name."""
+
+PACKAGES: Mapping[str, str] = {
+    "cv2": "opencv-python-headless",
+    "ev3dev": "python-ev3dev",
+    "paho": "paho-mqtt",
+    "sklearn": "scikit-learn",
+    "skimage": "scikit-image",
+    "yaml": "PyYAML",
+    "zmq": "pyzmq",
+}
+"""Packages that have another name than their module, by that."""
+
+_ERRORS = ("Error", "Exception", "Timeout")
+"""Ends of the names of exceptions, which a program names in its handlers."""
+
+
+def _told(name: str, hardware: Hardware) -> tuple[str, str]:
+    """Return the words of the error about the use of a module: the message and the hint."""
+    return f"{name}: {hardware.title} is not simulated", hardware.instead
+
+
+def refused_as(kind: type[Exception], message: str, hint: str) -> Exception:
+    """Return an error that is of another kind, too: a program may try what there is, and do without it."""
+    both: Any = type("NotSimulated", (NotSimulated, kind), {"__module__": NotSimulated.__module__})
+    error: Exception = both(message, hint)
+    return error
+
+
+class _Part(type):
+    """A name of a module: a class, so that it can be derived from; any use raises NotSimulated."""
+
+    full_name: str
+    hardware: Hardware
+
+    def _use(cls, *_: object, **__: object) -> NoReturn:
+        raise NotSimulated(*_told(cls.full_name, cls.hardware))
+
+    __call__ = __getitem__ = __iter__ = __len__ = __int__ = __index__ = __float__ = __enter__ = (
+        __exit__
+    ) = _use
+    __add__ = __radd__ = __sub__ = __rsub__ = __mul__ = __rmul__ = __lt__ = __le__ = __gt__ = (
+        __ge__
+    ) = _use
+    __and__ = __rand__ = __or__ = __ror__ = __xor__ = __rxor__ = __lshift__ = __rlshift__ = (
+        __invert__
+    ) = _use
+
+    def __getattr__(cls, name: str) -> Any:
+        return _kept_part(cls, cls.full_name, name, cls.hardware)
+
+    def __repr__(cls) -> str:
+        return f"<{cls.full_name}, which is not simulated>"
+
+
+def refused_part(path: str, name: str, hardware: Hardware) -> Any:
+    """Return a name of a module, or of a part of it, that can be imported but not used."""
+    words = {"full_name": f"{path}.{name}", "hardware": hardware, "__module__": path}
+    return type(name, (OSError,), words) if name.endswith(_ERRORS) else _Part(name, (), words)
+
+
+def _kept_part(place: Any, path: str, name: str, hardware: Hardware) -> Any:
+    """Return such a name, and keep it at its place."""
+    if name.startswith("__"):
+        raise AttributeError(f"{path} has no attribute {name!r}")
+    made = refused_part(path, name, hardware)
+    setattr(place, name, made)
+    return made
+
+
+class HardwareModule(types.ModuleType):
+    """A module, or a module in it, that can be imported but not used.
+
+    Args:
+        name: Its full name.
+        hardware: What it is for.
+    """
+
+    def __init__(self, name: str, hardware: Hardware) -> None:
+        super().__init__(name, f"{hardware.title}, which is not simulated.")
+        vars(self)["_hardware"] = hardware
+
+    def __getattr__(self, name: str) -> Any:
+        return _kept_part(self, self.__name__, name, vars(self)["_hardware"])
+
+
+class OtherLibrary:
+    """Refuses to import the library that the rules of this run are not for; the first finder.
+
+    Args:
+        names: The packages of that library.
+        library: The one of this run.
+    """
+
+    def __init__(self, names: Sequence[str], library: Library) -> None:
+        self._names, self._library = names, library
+
+    def find_spec(
+        self,
+        fullname: str,
+        path: Sequence[str] | None = None,
+        target: types.ModuleType | None = None,
+    ) -> None:
+        """Raise for a package of the library.
+
+        Raises:
+            NotSimulated: it is one; it is an ImportError, too.
+        """
+        if fullname in self._names:
+            told = f"{fullname}: this program runs by the rules of {self._library}"
+            raise refused_as(ImportError, told, "a program uses one of the two libraries")
+
+
+class HardwareFinder:
+    """Finds the modules for hardware; the last finder, so that a file of the program or a package comes first.
+
+    Args:
+        library: The library of the program.
+    """
+
+    def __init__(self, library: Library) -> None:
+        self._library = library
+
+    def find_spec(
+        self,
+        fullname: str,
+        path: Sequence[str] | None = None,
+        target: types.ModuleType | None = None,
+    ) -> ModuleSpec | None:
+        """Return how to load a module; None for others."""
+        top = fullname.partition(".")[0]
+        if top == fullname:
+            known = top in ON_THE_BRICK or top in ELSEWHERE
+        else:
+            known = top in ON_THE_BRICK and isinstance(sys.modules.get(top), HardwareModule)
+        loader: Any = self
+        return (
+            ModuleSpec(fullname, loader, origin="not simulated", is_package=True) if known else None
+        )
+
+    def create_module(self, spec: ModuleSpec) -> types.ModuleType:
+        """Return the module.
+
+        Raises:
+            NotSimulated: it is for another computer.
+        """
+        if (top := spec.name.partition(".")[0]) in ELSEWHERE:
+            raise refused_as(ImportError, *_told(spec.name, ELSEWHERE[top].told_to(self._library)))
+        module = HardwareModule(spec.name, ON_THE_BRICK[top].told_to(self._library))
+        if spec.name == top:
+            vars(module)["__all__"] = list(ON_THE_BRICK[top].names)
+        return module
+
+    def exec_module(self, module: types.ModuleType) -> None:
+        """Do nothing: names are made when they are used."""
+
+
+BLUETOOTH: Mapping[str, Any] = {
+    "AF_BLUETOOTH": 31,
+    "BTPROTO_L2CAP": 0,
+    "BTPROTO_HCI": 1,
+    "BTPROTO_SCO": 2,
+    "BTPROTO_RFCOMM": 3,
+    "BDADDR_ANY": "00:00:00:00:00:00",
+    "BDADDR_LOCAL": "00:00:00:FF:FF:FF",
+}
+"""Names of `socket` that are missing where Python was built without Bluetooth."""
+
+
+def refuse_bluetooth(module: types.ModuleType, library: Library) -> None:
+    """Refuse sockets for Bluetooth; called after the import of `socket`.
+
+    Args:
+        library: The library of the program.
+    """
+    names: Any = vars(module)
+    told = ON_THE_BRICK["bluetooth"].told_to(library)
+    for name, value in BLUETOOTH.items():
+        names.setdefault(name, value)
+    real = module.socket.__init__
+
+    @wraps(real)
+    def __init__(self: Any, family: int = -1, *given: Any, **named: Any) -> None:  # noqa: N807
+        if family == names["AF_BLUETOOTH"]:
+            raise NotSimulated(*_told("socket.AF_BLUETOOTH", told))
+        real(self, family, *given, **named)
+
+    module.socket.__init__ = __init__
+
+
+def point_at_package(error: BaseException, folder: str) -> None:
+    """Add a note to the error about a missing module: where it can come from.
+
+    Args:
+        error: Any error of the program.
+        folder: That of the program.
+    """
+    if not isinstance(error, ModuleNotFoundError) or not isinstance(error.name, str):
+        return
+    top = error.name.partition(".")[0]
+    if not top.isidentifier() or top in sys.modules or top in sys.stdlib_module_names:
+        return
+    if place := find_module_folder(top, folder):
+        error.add_note(
+            f"{top} is in {place}, which Python does not search: PYTHONPATH={place} finds it."
+        )
+        return
+    package = PACKAGES.get(top, top)
+    error.add_note(
+        f"{top} is neither beside the program nor installed. A package of Python is installed with "
+        f"`pip install {package}`, in the environment of tuisim."
+    )

@@ -1,0 +1,1 @@
+"""What people look at: worlds, charts, movies and pages for browsers."""

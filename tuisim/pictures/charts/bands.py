@@ -1,0 +1,159 @@
+"""The bands of a variable as spans of a chart: computed from its samples, and drawn in cells."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+from rich.style import Style
+
+from tuisim.base import palette
+from tuisim.logs.levels import Light, levels_of
+from tuisim.logs.units import may_be_light
+from tuisim.pictures.charts import axes
+from tuisim.pictures.charts.axes import Limits
+from tuisim.pictures.charts.layout import Span, names_of
+from tuisim.pictures.charts.traces import Trace
+from tuisim.terminal.text_runs import Run
+
+MOST_SAMPLES = 4000
+"""Bands of more samples take too long to find for a chart that is on the screen: the analyser finds them."""
+SHADES = Style(bgcolor=palette.HERE), Style(bgcolor=palette.FIELD)
+"""In turns, so that bands without an edge between them stay apart."""
+NAME = Style(color=palette.SOFT)
+_LEAST_COLUMNS = 3
+"""Narrower bands have no name."""
+_OVERHANG = 2
+"""Columns that a level may be wider than its band: names beside each other are in different rows."""
+_SHIFTS = (0, 1, -1, 2, -2, 3, -3)
+"""Columns from its middle to which the name of a band gives way."""
+FREE = " ┈"
+"""What a name may be written over."""
+
+
+def band_span(name: str, start: float, stop: float, level: float, grey: str) -> Span:
+    """Return the span of a band, named by its level and its grey."""
+    text = f"{level:.4g}"
+    return Span(start, stop, (f"{text} {grey}".rstrip(), text), name)
+
+
+def spans_of(trace: Trace, light: Light) -> tuple[Span, ...]:
+    """Return the bands of a trace, none if it has more than `MOST_SAMPLES`.
+
+    Args:
+        trace: A variable over time.
+        light: What stands between it and the greys of the mat.
+    """
+    if len(trace.times_s) > MOST_SAMPLES:
+        return ()
+    found = levels_of(trace.values, light if may_be_light(trace.name) else None)
+    ends = trace.times_s[found.start].tolist(), trace.times_s[found.stop - 1].tolist()
+    names = [grey.name if grey and not trace.scale else "" for grey in found.greys]
+    rows = zip(*ends, found.true_level.tolist(), names, strict=True)
+    return tuple(
+        band_span(trace.name, start_s, stop_s, level, name) for start_s, stop_s, level, name in rows
+    )
+
+
+def columns_of(span: Span, x_limits: Limits, columns: int) -> range:
+    """Return the columns of a canvas that a span covers."""
+    first, last = (axes.column_of(x, x_limits, columns) for x in (span.start, span.stop))
+    return range(max(first, 0), min(last + 1, columns))
+
+
+def placed_names(
+    spans: Sequence[Span],
+    places: Sequence[range],
+    rows: int,
+    columns: int,
+    is_free: Callable[[int, int, int], bool],
+    avoided: Sequence[int] = (),
+) -> list[tuple[int, int, str]]:
+    """Return the names of spans on a canvas: row, first column and text, each in the lowest place that is free.
+
+    Args:
+        spans: What is named.
+        places: Their columns.
+        rows, columns: Size of the canvas.
+        is_free: Returns whether nothing is drawn in a row between two columns.
+        avoided: Columns, such as that of a cursor, beside which a name stands rather than in them.
+    """
+    found: list[tuple[int, int, str]] = []
+    letters = [len(place) if len(place) >= _LEAST_COLUMNS else 0 for place in places]
+    for place, name in zip(places, names_of(spans, letters, _OVERHANG), strict=True):
+        middle = min(max(place.start + (len(place) - len(name) + 1) // 2, 0), columns - len(name))
+        near = (middle + by for by in _SHIFTS if 0 <= middle + by <= columns - len(name))
+        first = next(
+            (at for at in near if not any(at <= column < at + len(name) for column in avoided)),
+            middle,
+        )
+        stop = first + len(name)
+        for row in reversed(range(rows)) if name else ():
+            beside = (at for at in found if at[0] == row)
+            if is_free(row, first, stop) and not any(
+                at <= stop and first <= at + len(text) for _, at, text in beside
+            ):
+                found.append((row, first, name))
+                break
+    return found
+
+
+def shaded(
+    rows: Sequence[list[Run]],
+    spans: Sequence[Span],
+    x_limits: Limits,
+    columns: int,
+    cursors: Sequence[int] = (),
+    style: Style = NAME,
+) -> list[list[Run]]:
+    """Return the rows of a canvas with shaded spans, each with its name in the lowest place where nothing is drawn.
+
+    Args:
+        rows: The canvas.
+        spans: What is shaded.
+        x_limits: Of the canvas.
+        columns: Its width.
+        cursors: Columns of cursors, beside which names stand.
+        style: Of the names.
+    """
+    texts = ["".join(text for text, _ in row) for row in rows]
+    places = [columns_of(span, x_limits, columns) for span in spans]
+    made = list(rows)
+    for at, first, name in placed_names(
+        spans,
+        places,
+        len(rows),
+        columns,
+        lambda at, first, stop: not texts[at][first:stop].strip(FREE),
+        cursors,
+    ):
+        made[at] = [
+            *_cut(made[at], 0, first),
+            (name, style),
+            *_cut(made[at], first + len(name), columns),
+        ]
+    return [_shaded(row, places, columns) for row in made]
+
+
+def _cut(row: list[Run], start: int, stop: int) -> list[Run]:
+    """Return the pieces of a row between two columns."""
+    made, at = [], 0
+    for text, style in row:
+        part = text[max(start - at, 0) : max(stop - at, 0)]
+        if part:
+            made.append((part, style))
+        at += len(text)
+    return made
+
+
+def _shaded(row: list[Run], places: Sequence[range], columns: int) -> list[Run]:
+    made: list[Run] = []
+    done = 0
+    for number, place in enumerate(places):
+        start = max(place.start, done)
+        made += _cut(row, done, start)
+        made += [
+            (text, style + SHADES[number % len(SHADES)])
+            for text, style in _cut(row, start, max(place.stop, start))
+        ]
+        done = max(place.stop, start)
+    return made + _cut(row, done, columns)

@@ -1,0 +1,328 @@
+"""Canvases of character cells: a chart over time, and one variable against another."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+from functools import lru_cache
+from types import ModuleType
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from rich.color import Color
+from rich.style import Style
+from rich.text import Text
+
+from tuisim.base import palette
+from tuisim.base.data_class import dataclass
+from tuisim.engine.core.css_colors import Rgb
+from tuisim.engine.runs.arrays import FloatArray, IntArray
+from tuisim.pictures.charts import axes
+from tuisim.pictures.charts.axes import Limits
+from tuisim.pictures.charts.traces import clip_line, min_max
+from tuisim.terminal.text_runs import Run
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
+
+TextRun = tuple[str, Rgb | None]
+"""A piece of a row in one colour, None where nothing is drawn."""
+
+BRAILLE = "braille"
+DOTS_X, DOTS_Y = 2, 4
+"""Dots of a braille character."""
+_BLANK, _NO_DOTS = ord(" "), 0x2800
+_BITS = np.array([[0x01, 0x08], [0x02, 0x10], [0x04, 0x20], [0x40, 0x80]], np.uint32)
+"""The bit of each dot in the number of a braille character."""
+_TURN = 4
+"""Columns that a curve has at a time where it shares its cells with others."""
+
+
+@dataclass(frozen=True, slots=True)
+class Curve:
+    """One trace to be drawn."""
+
+    times_s: FloatArray
+    values: FloatArray
+    rgb: Rgb
+    marker: str = BRAILLE
+    """`braille`, or one character, for terminals without colours."""
+    rising: bool = True
+    """Whether the times rise, so that points may be left out; a path may go anywhere."""
+    joined: bool = True
+    """Whether braille dots are joined by lines."""
+
+
+@lru_cache(maxsize=1)
+def _plotext() -> Any:
+    # Most of its import is spent on its manual, which nobody opens here.
+    manual = ModuleType("plotext._doc.doc")
+    vars(manual)["docs"] = None
+    sys.modules.setdefault(manual.__name__, manual)
+    # Costs more than the rest of the app's start: imported when the first curve is drawn.
+    import plotext
+
+    # Otherwise plotext crops a chart to what it detects as the size of the terminal.
+    plotext.terminal.limit(False, False)
+    return plotext
+
+
+def canvas(
+    curves: Sequence[Curve], columns: int, rows: int, x_limits: Limits, y_limits: Limits
+) -> list[list[TextRun]]:
+    """Return curves as rows of text, without axes.
+
+    Where several lines share cells, these have the colours of the lines in turns, so that none is hidden. Of
+    points that are not joined, the topmost is seen.
+
+    Args:
+        curves: What to draw, the topmost last.
+        columns: Width in characters, at least 1.
+        rows: Height in characters, at least 1.
+        x_limits: Times at the left and right edge.
+        y_limits: Values in the middle of the lowest and the highest row.
+    """
+    signs, dots = (
+        np.full((len(curves), rows, columns), _BLANK, np.uint32),
+        np.zeros((rows, columns), np.uint32),
+    )
+    inked = np.zeros(signs.shape, np.bool_)
+    for number, curve in enumerate(curves):
+        if not len(curve.times_s):
+            continue
+        if curve.marker == BRAILLE:
+            cells = _braille(curve, columns, rows, x_limits, y_limits)
+            inked[number] = cells > 0
+            dots |= cells
+        else:
+            across, down = _inside(
+                *_points(curve, columns, rows, x_limits, y_limits), columns, rows
+            )
+            inked[number, down, across] = True
+            signs[number] = ord(curve.marker)
+    shown = in_turns(inked, _TURN if all(curve.joined for curve in curves) else columns)
+    for number, curve in enumerate(curves):
+        if curve.marker == BRAILLE:
+            signs[number] = _NO_DOTS + dots
+    owners = (
+        np.where(shown.any(axis=0), shown.argmax(axis=0), -1)
+        if len(curves)
+        else np.full((rows, columns), -1)
+    )
+    drawn = np.where(shown, signs, 0).max(axis=0, initial=0)
+    drawn[owners < 0] = _BLANK
+    colors = [*(curve.rgb for curve in curves), None]
+    return [_runs(text, owner, colors) for text, owner in zip(drawn, owners, strict=True)]
+
+
+def in_turns(covered: npt.NDArray[np.bool_], width: int) -> npt.NDArray[np.bool_]:
+    """Return which curve is seen at each place: the only one there, or each in turns along a row.
+
+    Args:
+        covered: Shape (curves, rows, columns): where each curve is, the topmost last.
+        width: Columns of a turn.
+    """
+    count = covered.sum(axis=0)
+    turn = np.arange(covered.shape[2]) // width % np.maximum(count, 1)
+    above = count - covered.cumsum(axis=0)
+    seen: npt.NDArray[np.bool_] = covered & (above == turn)
+    return seen
+
+
+def _points(
+    curve: Curve,
+    columns: int,
+    rows: int,
+    x_limits: Limits,
+    y_limits: Limits,
+    parts: tuple[int, int] = (1, 1),
+) -> tuple[FloatArray, FloatArray]:
+    """Return the places of the points of a curve from the left and the top, in parts of cells."""
+    times_s, values = curve.times_s, curve.values
+    if curve.rising:
+        times_s, values = min_max(times_s, values, x_limits, columns)
+        if curve.joined and curve.marker == BRAILLE:
+            times_s, values = clip_line(times_s, values, x_limits)
+    across = (times_s - x_limits[0]) / (x_limits[1] - x_limits[0]) * (columns - 0.5) * parts[0]
+    down = axes.row_of(values, y_limits, rows) * parts[1]
+    # A place far outside is not drawn; a line to it needs no dots there.
+    return across.clip(-columns, 4 * columns), down.clip(-4 * rows, 8 * rows)
+
+
+def _inside(
+    across: FloatArray, down: FloatArray, columns: int, rows: int
+) -> tuple[IntArray, IntArray]:
+    """Return places as whole numbers; those outside a canvas of so many are left out."""
+    at = np.floor(across).astype(np.int64), np.floor(down).astype(np.int64)
+    good = (at[0] >= 0) & (at[0] < columns) & (at[1] >= 0) & (at[1] < rows)
+    return at[0][good], at[1][good]
+
+
+def _braille(
+    curve: Curve, columns: int, rows: int, x_limits: Limits, y_limits: Limits
+) -> npt.NDArray[np.uint32]:
+    """Return the dots of a curve, shape (rows, columns): as bits of a braille character."""
+    across, down = _points(curve, columns, rows, x_limits, y_limits, (DOTS_X, DOTS_Y))
+    is_thick = curve.joined and curve.rising
+    # A line over time is two dots thick: those above and below its place.
+    # A margin of one character: plotext places limits in the middle of the outermost ones.
+    across, down = (
+        np.floor(across) + DOTS_X,
+        (np.rint(down) - 1 if is_thick else np.floor(down)) + DOTS_Y,
+    )
+    width, height = (columns + 2) * DOTS_X, (rows + 2) * DOTS_Y
+    if curve.joined:
+        # What lies outside is at the edge of the margin: lines lead there.
+        across, down = across.clip(0, width - 1), down.clip(0, height - 1)
+    else:
+        across, down = (at.astype(np.float64) for at in _inside(across, down, width, height))
+    if not len(across):
+        return np.zeros((rows, columns), np.uint32)
+    bits = _plotted(across, down, columns + 2, rows + 2, curve.joined)
+    dots = (bits[:, None, :, None] & _BITS[None, :, None, :] > 0).reshape(height, width)
+    if is_thick:
+        dots[:, 1:] |= dots[:, :-1].copy()
+        dots[1:] |= dots[:-1].copy()
+    inner = dots[DOTS_Y:-DOTS_Y, DOTS_X:-DOTS_X].astype(np.uint32)
+    cells: npt.NDArray[np.uint32] = np.einsum(
+        "ryck,yk->rc", inner.reshape(rows, DOTS_Y, columns, DOTS_X), _BITS
+    )
+    return cells
+
+
+def _plotted(
+    across: FloatArray, down: FloatArray, columns: int, rows: int, joined: bool
+) -> npt.NDArray[np.uint32]:
+    """Return the braille characters that plotext draws, shape (rows, columns): as bits.
+
+    plotext has one figure a process: call this from one thread only.
+
+    Args:
+        across, down: Places of dots, from the left and the top.
+        columns, rows: Size in characters.
+        joined: Whether the dots are joined by lines.
+    """
+    plotext = _plotext()
+    figure = plotext.figure
+    figure.clear()
+    figure.axes(False)
+    figure.canvas("default")
+    for axis, last in (("x", columns - 1), ("y", rows - 1)):
+        for side in (0, 1):
+            figure.ruler(axis, side).frequency(0)
+        figure.ruler(axis, 0).lim(0, last)
+    figure.plot_size(columns, rows)
+    # In characters, whose middles are whole numbers; upwards.
+    xs, ys = (across + 0.5) / DOTS_X - 0.5, rows - 0.5 - (down + 0.5) / DOTS_Y
+    figure.draw(
+        figure.signal(xs.tolist(), ys.tolist(), marker=plotext.marker(BRAILLE)).lines(joined)
+    )
+    bits = np.zeros((rows, columns), np.uint32)
+    for row, line in enumerate(figure.build().string().split("\n")[:rows]):
+        signs = np.array([*map(ord, Text.from_ansi(line).plain[:columns])], np.uint32)
+        bits[row, : len(signs)] = np.where(signs > _NO_DOTS, signs - _NO_DOTS, 0)
+    return bits
+
+
+def _runs(
+    text: npt.NDArray[np.uint32], owners: npt.NDArray[np.int64], colors: Sequence[Rgb | None]
+) -> list[TextRun]:
+    """Return a row as pieces of one colour: that of the owner of each cell, the last one for nobody's."""
+    starts = np.flatnonzero(np.diff(owners, prepend=-2)).tolist()
+    ends = [*starts[1:], len(text)]
+    return [
+        ("".join(map(chr, text[start:end].tolist())), colors[owners[start]])
+        for start, end in zip(starts, ends, strict=True)
+    ]
+
+
+AXIS, PLAIN = Style(color=palette.LABEL), Style(color=palette.INK)
+_HERE = Style(color=palette.BLACK, bgcolor=palette.WHITE, bold=True)
+
+
+def styled(rgb: Rgb | None) -> Style:
+    """Return the style of a text in a colour, `PLAIN` without one."""
+    return Style(color=Color.from_rgb(*rgb)) if rgb else PLAIN
+
+
+def seen_points(
+    xs: FloatArray, ys: FloatArray, limits: Sequence[axes.Limits], columns: int, rows: int
+) -> tuple[FloatArray, FloatArray]:
+    """Return the points of a path that a canvas can distinguish: only the first of neighbours at the same dot.
+
+    Args:
+        xs, ys: Finite, shape (n,).
+        limits: Of x and of y.
+        columns, rows: Size of the canvas in characters.
+    """
+    (left, right), (low, high) = limits
+    across = np.floor((xs - left) / (right - left) * (DOTS_X * columns - 1)).astype(np.int64)
+    up = np.floor((ys - low) / (high - low) * (DOTS_Y * rows - 1)).astype(np.int64)
+    dots = across * (DOTS_Y * rows) + up
+    moved = np.flatnonzero(np.diff(dots, prepend=dots[:1] - 1))
+    if len(moved) > len(np.unique(dots)) * 4:
+        # The path moves to and fro so often that no line is discernible: draw each dot once.
+        moved = np.unique(dots, return_index=True)[1]
+    return xs[moved], ys[moved]
+
+
+def xy_lines(
+    xs: FloatArray,
+    ys: FloatArray,
+    here: int | None,
+    names: tuple[str, str],
+    rgb: Rgb,
+    marker: str,
+    width: int,
+    height: int,
+) -> list[list[Run]]:
+    """Return the chart as lines of text.
+
+    Args:
+        xs, ys: Shape (n,); pairs that are not finite are left out.
+        here: Index of the point to mark, None for none.
+        names: Of x and of y.
+        marker: `braille`, or one character.
+        width, height: Size in characters.
+    """
+    good = np.isfinite(xs) & np.isfinite(ys)
+    title: list[Run] = [(f"{names[1]} against {names[0]}", PLAIN)]
+    if not good.any():
+        return [title, [("no sample has both", AXIS)]]
+    x_limits, y_limits = (
+        axes.value_limits(float(a[good].min()), float(a[good].max())) for a in (xs, ys)
+    )
+    rows = max(height - 3, 1)
+    y_limits = axes.on_rows(y_limits, rows)
+    labels = axes.row_labels(y_limits, rows)
+    left = max(map(len, labels.values())) + 1
+    columns = max(width - left, 2)
+    points = seen_points(xs[good], ys[good], (x_limits, y_limits), columns, rows)
+    curve = Curve(*points, rgb, marker, rising=False)
+    drawn = canvas([curve], columns, rows, x_limits, y_limits)
+    lines = [title]
+    for row in range(rows):
+        text = labels.get(row, "")
+        inside = [(part, styled(color)) for part, color in drawn[row]]
+        lines.append([(text.rjust(left - 1) + ("┤" if text else "│"), AXIS), *inside])
+    if here is not None and good[here]:
+        title.append((f"   {names[0]} {xs[here]:.5g}  {names[1]} {ys[here]:.5g}", Style(bold=True)))
+        column = axes.column_of(float(xs[here]), x_limits, columns)
+        row = int(axes.row_of(float(ys[here]), y_limits, rows))
+        _put(lines[1 + row], left + column)
+    line, below = axes.time_axis(x_limits, columns, "")
+    return [*lines, [(" " * (left - 1) + "└" + line, AXIS)], [(" " * left + below, AXIS)]]
+
+
+def _put(line: list[Run], column: int) -> None:
+    at = 0
+    for number, (text, style) in enumerate(line):
+        if at <= column < at + len(text):
+            inside = column - at
+            line[number : number + 1] = [
+                (text[:inside], style),
+                ("●", _HERE),
+                (text[inside + 1 :], style),
+            ]
+            return
+        at += len(text)

@@ -1,0 +1,538 @@
+"""A chart as data, and its layout in pixels, which `pictures.charts.files` writes as SVG and PNG."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from tuisim.base.data_class import dataclass
+from tuisim.base.errors import printable
+from tuisim.engine.core.css_colors import Rgb
+from tuisim.engine.runs.arrays import FloatArray
+from tuisim.logs import units
+from tuisim.pictures.charts.axes import Limits, labelled, value_limits
+
+COLORS: tuple[Rgb, ...] = (
+    (31, 119, 180),
+    (217, 95, 2),
+    (27, 158, 119),
+    (201, 60, 140),
+    (117, 112, 199),
+    (166, 118, 29),
+    (214, 39, 40),
+    (80, 150, 30),
+    (23, 160, 190),
+    (120, 120, 120),
+)
+"""Line colours, distinguishable on white and on black."""
+
+FONT_PX = 13
+"""Height of the letters."""
+LETTER_PX = 7.2
+"""Upper estimate of a character's width."""
+PAD, LINE_PX = 10, 20
+"""Margin of a picture, and height of a line of text."""
+_FACET_GAP_PX = 12
+_SCALE_GAP_PX = 6
+
+
+@dataclass(frozen=True, slots=True)
+class Line:
+    """One variable."""
+
+    name: str
+    xs: FloatArray
+    """Shape (n,), finite; increasing except for a path."""
+    ys: FloatArray
+    """Shape (n,), finite."""
+    number: int
+    """Index that selects colour and marker."""
+    scale: str = ""
+    """Which scale it is drawn on, as `Trace.scale`."""
+
+    @property
+    def label(self) -> str:
+        """Its name, with the unit if the name has one."""
+        return with_unit(self.name)
+
+
+@dataclass(frozen=True, slots=True)
+class Span:
+    """A highlighted range of the x axis, with a label."""
+
+    start: float
+    stop: float
+    texts: tuple[str, ...]
+    """What it may be called, the longest first: the first one with room is written."""
+    name: str
+    """Variable that it is about."""
+
+
+@dataclass(frozen=True, slots=True)
+class ChartData:
+    """The data of a whole chart."""
+
+    title: str
+    lines: tuple[Line, ...]
+    x_limits: Limits
+    x_label: str
+    facets: bool = False
+    marks: bool = False
+    path: bool = False
+    """Whether one variable is drawn against another."""
+    spans: tuple[Span, ...] = ()
+    zoomed: bool = False
+    """Whether the time range is zoomed: the vertical axis then fits the visible data."""
+
+
+def with_unit(name: str) -> str:
+    """Return a variable's name as it is written beside a chart."""
+    unit = unit_of(name)
+    return printable(f"{name} ({unit})" if unit else name)
+
+
+def unit_of(name: str) -> str:
+    """Return the unit of a variable from its name, empty if there is none."""
+    return units.unit_of(name.partition(" #")[0]).sign
+
+
+@dataclass(frozen=True, slots=True)
+class Rule:
+    """A straight line of an axis or of the grid behind the data."""
+
+    x1: float
+    y1: float
+    x2: float
+    y2: float
+    faint: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Words:
+    """A line of text."""
+
+    x: float
+    y: float
+    """Middle of the letters."""
+    text: str
+    anchor: str = "start"
+    """Anchor at x: `start`, `middle` or `end`."""
+    rgb: Rgb | None = None
+    """None for the default text colour."""
+    strong: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Shade:
+    """A shaded area."""
+
+    x: float
+    y: float
+    width: float
+    height: float
+
+
+@dataclass(frozen=True, slots=True)
+class Stroke:
+    """A line of the data, or its points."""
+
+    points: FloatArray
+    """Shape (n, 2): x and y."""
+    rgb: Rgb
+    dots: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Raster:
+    """Pixels stretched over a rectangle."""
+
+    x: float
+    y: float
+    width: float
+    height: float
+    pixels: npt.NDArray[np.uint8]
+    """Shape (rows, columns, 3)."""
+
+
+Shape: TypeAlias = Rule | Words | Shade | Stroke | Raster
+
+
+@dataclass(frozen=True, slots=True)
+class Drawing:
+    """A picture."""
+
+    title: str
+    width: int
+    height: int
+    shapes: tuple[Shape, ...]
+    plots: tuple[Frame, ...] = ()
+    """Where the data of a chart are, the facets from the top."""
+
+
+@dataclass(frozen=True, slots=True)
+class Frame:
+    """The rectangle in which data are drawn, in pixels, and the limits of its axes."""
+
+    left: float
+    top: float
+    right: float
+    bottom: float
+    x: Limits
+    y: Limits
+
+    def xs(self, values: FloatArray | float) -> FloatArray:
+        """Return the pixel columns of values."""
+        return np.asarray(
+            self.left
+            + (np.asarray(values) - self.x[0]) / (self.x[1] - self.x[0]) * (self.right - self.left)
+        )
+
+    def ys(self, values: FloatArray | float) -> FloatArray:
+        """Return the pixel rows of values."""
+        return np.asarray(
+            self.bottom
+            - (np.asarray(values) - self.y[0]) / (self.y[1] - self.y[0]) * (self.bottom - self.top)
+        )
+
+    def with_y(self, limits: Limits) -> Frame:
+        """Return the frame with other limits of y."""
+        return Frame(self.left, self.top, self.right, self.bottom, self.x, limits)
+
+
+def laid_out(chart: ChartData, width: int, height: int, *, titled: bool = True) -> Drawing:
+    """Return the picture of a chart in a size in pixels, with or without the title above it."""
+    shapes: list[Shape] = []
+    top: float = PAD
+    if titled:
+        shapes.append(
+            Words(PAD, top + LINE_PX / 2, shortened(chart.title, width - 2 * PAD), strong=True)
+        )
+        top += LINE_PX + 4
+    groups = [(line,) for line in chart.lines] if chart.facets else [chart.lines]
+    scales = [_scales_of(group, chart.zoomed or chart.path) for group in groups]
+    if not chart.facets:
+        legend, lines = _legend(chart.lines, scales[0], width, top)
+        shapes += legend
+        top += lines * LINE_PX + 4
+    plots: list[Frame] = []
+    left = PAD + max(_widest(one.left.limits) for one in scales)
+    right_px = max([3 * LETTER_PX, *(_width_on_right(one) for one in scales)])
+    right = max(width - PAD - right_px, left + 1)
+    bottom = height - PAD - 2 * LINE_PX
+    each = (bottom - top) / len(groups)
+    for at, (group, scale) in enumerate(zip(groups, scales, strict=True)):
+        upper, lower = top + at * each, top + (at + 1) * each
+        if chart.facets:
+            shapes.append(
+                Words(
+                    left, upper + LINE_PX / 2, group[0].label, rgb=color_of(group[0]), strong=True
+                )
+            )
+            upper += LINE_PX + 4
+        last = at == len(groups) - 1
+        lower = max(lower if last else lower - _FACET_GAP_PX, upper + 1)
+        frame = _squared(chart, Frame(left, upper, right, lower, chart.x_limits, scale.left.limits))
+        plots.append(frame)
+        shapes += _spans(chart, group, frame)
+        shapes += _axes(frame, scale, group, with_x=last)
+        shapes += _strokes(chart, group, scale, frame)
+    shapes.append(Words((left + right) / 2, bottom + 1.7 * LINE_PX, chart.x_label, "middle"))
+    return Drawing(chart.title, width, height, tuple(shapes), tuple(plots))
+
+
+def drawn_until(drawing: Drawing, x: float) -> Drawing:
+    """Return the picture of a chart without its data after an x of its axis, with a line there."""
+    shapes: list[Shape] = []
+    for shape in drawing.shapes:
+        plot = next((plot for plot in drawing.plots if _is_inside(shape, plot)), None)
+        if isinstance(shape, Stroke) and plot is not None:
+            points = shape.points[shape.points[:, 0] <= float(plot.xs(x)) + _EDGE_PX]
+            if len(points):
+                shapes.append(replace(shape, points=points, dots=shape.dots or len(points) == 1))
+        else:
+            shapes.append(shape)
+    for plot in drawing.plots:
+        at = float(plot.xs(x))
+        shapes.append(Rule(at, plot.top, at, plot.bottom))
+    return replace(drawing, shapes=tuple(shapes))
+
+
+_EDGE_PX = 0.5
+"""Tolerance for points at the edge of a plot."""
+
+
+def _is_inside(shape: Shape, plot: Frame) -> bool:
+    if not isinstance(shape, Stroke):
+        return False
+    rows = shape.points[:, 1]
+    return bool(rows.min() >= plot.top - _EDGE_PX and rows.max() <= plot.bottom + _EDGE_PX)
+
+
+def moved(drawing: Drawing, right_px: float, down_px: float) -> list[Shape]:
+    """Return the shapes of a picture at another place."""
+    shapes: list[Shape] = []
+    for shape in drawing.shapes:
+        match shape:
+            case Stroke():
+                shapes.append(replace(shape, points=shape.points + np.array([right_px, down_px])))
+            case Rule():
+                ends = (
+                    shape.x1 + right_px,
+                    shape.y1 + down_px,
+                    shape.x2 + right_px,
+                    shape.y2 + down_px,
+                )
+                shapes.append(Rule(*ends, shape.faint))
+            case _:
+                shapes.append(replace(shape, x=shape.x + right_px, y=shape.y + down_px))
+    return shapes
+
+
+def color_of(line: Line) -> Rgb:
+    """Return the colour of a line."""
+    return COLORS[line.number % len(COLORS)]
+
+
+def shortened(text: str, width_px: float) -> str:
+    """Return a text that fits into a width; a truncated one ends in an ellipsis."""
+    most = max(int(width_px / LETTER_PX), 1)
+    return text if len(text) <= most else text[: most - 1] + "…"
+
+
+def _width_on_right(scales: Scales) -> float:
+    return sum(_widest(scale.limits) + _SCALE_GAP_PX for scale in scales.right)
+
+
+def _legend(
+    lines: Sequence[Line], scales: Scales, width: int, top: float
+) -> tuple[list[Shape], int]:
+    """Return the legend and its number of text lines: a stroke and a name per line, and which use a right scale."""
+    shapes: list[Shape] = []
+    x, row = float(PAD), 0
+    for line in lines:
+        is_right = scales.of_variable(line.name) is not scales.left
+        text = shortened(line.label + (", right scale" if is_right else ""), width - 2 * PAD - 30)
+        width_px = 30 + len(text) * LETTER_PX
+        if x > PAD and x + width_px > width - PAD:
+            x, row = float(PAD), row + 1
+        y = top + (row + 0.5) * LINE_PX
+        shapes.append(Stroke(np.array([[x, y], [x + 22, y]]), color_of(line)))
+        shapes.append(Words(x + 28, y, text))
+        x += width_px + 14
+    return shapes, row + 1 if lines else 0
+
+
+Variable: TypeAlias = tuple[str, FloatArray, str]
+"""Name and finite values of a variable, and its scale."""
+
+_SEEN = 8.0
+"""A variable whose values reach less than 1 / this of those of another one is drawn on a scale of its own."""
+
+
+@dataclass(frozen=True, slots=True)
+class Scale:
+    """One vertical scale."""
+
+    limits: Limits
+    unit: str
+    """Of its variables; empty if they have none, or several."""
+    names: tuple[str, ...]
+    """Its variables."""
+
+
+@dataclass(frozen=True, slots=True)
+class Scales:
+    """The vertical scales of a chart, so that no variable flattens another one."""
+
+    left: Scale
+    right: tuple[Scale, ...]
+
+    @classmethod
+    def of(cls, variables: Sequence[Variable], zoomed: bool) -> Scales:
+        """Return the scales of variables: that of light and of unknown units is on the left, if there is one."""
+        groups: dict[str, list[Variable]] = {}
+        common = next((values for _, values, scale in variables if not scale and len(values)), None)
+        for variable in variables:
+            name, values, scale = variable
+            own = not scale and common is not None and _is_flat(values, common)
+            groups.setdefault(name if own else scale, []).append(variable)
+        made = {scale: _scale(group, zoomed) for scale, group in groups.items()} or {
+            "": _scale([], zoomed)
+        }
+        left = made.pop("" if "" in made else next(iter(made)))
+        return cls(left, tuple(made.values()))
+
+    def of_variable(self, name: str) -> Scale:
+        """Return the scale of a variable."""
+        return next((scale for scale in self.right if name in scale.names), self.left)
+
+    def on_left(self, values: FloatArray, scale: Scale) -> FloatArray:
+        """Return where values of a scale are on the left one."""
+        if scale is self.left:
+            return values
+        share = (values - scale.limits[0]) / (scale.limits[1] - scale.limits[0])
+        low, high = self.left.limits
+        return low + share * (high - low)
+
+
+def _is_flat(values: FloatArray, others: FloatArray) -> bool:
+    """Return whether values would be a flat line on the scale of others, or the others on theirs."""
+    least, greatest = sorted(float(np.abs(one).max(initial=0.0)) for one in (values, others))
+    return 0.0 < least * _SEEN < greatest
+
+
+def _scale(variables: Sequence[Variable], zoomed: bool) -> Scale:
+    found = {unit_of(name) for name, _, _ in variables}
+    names = tuple(name for name, _, _ in variables)
+    return Scale(_limits(variables, zoomed), found.pop() if len(found) == 1 else "", names)
+
+
+def _scales_of(lines: Sequence[Line], zoomed: bool) -> Scales:
+    return Scales.of([(line.name, line.ys, line.scale) for line in lines], zoomed)
+
+
+def _limits(variables: Sequence[Variable], zoomed: bool) -> Limits:
+    ends = [
+        (name, float(values.min()), float(values.max()))
+        for name, values, _ in variables
+        if len(values)
+    ]
+    if not ends:
+        return 0.0, 1.0
+    from_zero = not zoomed and any(units.begins_at_zero(*one) for one in ends)
+    return value_limits(min(low for _, low, _ in ends), max(high for _, _, high in ends), from_zero)
+
+
+def _widest(limits: Limits) -> float:
+    # The number of ticks depends on the height; with twenty, labels are longest.
+    return max((len(text) for _, text in labelled(limits, 20)), default=1) * LETTER_PX + 8
+
+
+def _squared(chart: ChartData, frame: Frame) -> Frame:
+    """Use equal scales on both axes, for a path on the field."""
+    names = [chart.x_label.partition(" (")[0], *(line.name for line in chart.lines)]
+    if not chart.path or {unit_of(name) for name in names} != {"mm"}:
+        return frame
+    width_px, height_px = frame.right - frame.left, frame.bottom - frame.top
+    scale = max((frame.x[1] - frame.x[0]) / width_px, (frame.y[1] - frame.y[0]) / height_px)
+    limits = []
+    for (low, high), size_px in ((frame.x, width_px), (frame.y, height_px)):
+        more = (scale * size_px - (high - low)) / 2
+        limits.append((low - more, high + more))
+    return Frame(frame.left, frame.top, frame.right, frame.bottom, limits[0], limits[1])
+
+
+def grid_of(frame: Frame, *, with_x: bool = True) -> list[Shape]:
+    """Return the grid behind the data with the labels of the left scale, and of the lower one if `with_x`."""
+    shapes: list[Shape] = []
+    for value, text in labelled(frame.y, _labels_above(frame)):
+        y = float(frame.ys(value))
+        shapes += [
+            Rule(frame.left, y, frame.right, y, faint=True),
+            Words(frame.left - 6, y, text, "end"),
+        ]
+    for value, text in labelled(frame.x, max(int((frame.right - frame.left) / 90), 2)):
+        x = float(frame.xs(value))
+        shapes.append(Rule(x, frame.top, x, frame.bottom, faint=True))
+        if with_x:
+            shapes.append(Words(x, frame.bottom + 0.7 * LINE_PX, text, "middle"))
+    return shapes
+
+
+def _labels_above(frame: Frame) -> int:
+    return max(int((frame.bottom - frame.top) / 40), 2)
+
+
+def borders_of(frame: Frame) -> list[Shape]:
+    """Return the left and the lower axis."""
+    return [
+        Rule(frame.left, frame.top, frame.left, frame.bottom),
+        Rule(frame.left, frame.bottom, frame.right, frame.bottom),
+    ]
+
+
+def _axes(frame: Frame, scales: Scales, lines: Sequence[Line], *, with_x: bool) -> list[Shape]:
+    shapes = grid_of(frame, with_x=with_x)
+    x = frame.right
+    for scale in scales.right:
+        other = frame.with_y(scale.limits)
+        rgb = (
+            next(color_of(line) for line in lines if line.name == scale.names[0])
+            if len(scale.names) == 1
+            else None
+        )
+        for value, text in labelled(scale.limits, _labels_above(frame)):
+            y = float(other.ys(value))
+            shapes += [Rule(x, y, x + 4, y), Words(x + 7, y, text, rgb=rgb)]
+        shapes.append(Rule(x, frame.top, x, frame.bottom))
+        x += _widest(scale.limits) + _SCALE_GAP_PX
+    return shapes + borders_of(frame)
+
+
+def _strokes(chart: ChartData, lines: Sequence[Line], scales: Scales, frame: Frame) -> list[Shape]:
+    shapes: list[Shape] = []
+    for line in lines:
+        own = frame.with_y(scales.of_variable(line.name).limits)
+        if len(line.xs):
+            points = np.column_stack((own.xs(line.xs), own.ys(line.ys)))
+            shapes.append(Stroke(points, color_of(line), dots=chart.marks or len(points) == 1))
+    if not shapes:
+        shapes.append(
+            Words(
+                (frame.left + frame.right) / 2,
+                (frame.top + frame.bottom) / 2,
+                "no samples here",
+                "middle",
+            )
+        )
+    return shapes
+
+
+def _spans(chart: ChartData, lines: Sequence[Line], frame: Frame) -> list[Shape]:
+    names = {line.name for line in lines}
+    seen = [
+        span
+        for span in chart.spans
+        if span.name in names and frame.x[0] <= span.stop and span.start <= frame.x[1]
+    ]
+    shades: list[Shade] = []
+    for span in seen:
+        x1, x2 = (
+            float(frame.xs(min(max(x, frame.x[0]), frame.x[1]))) for x in (span.start, span.stop)
+        )
+        shades.append(Shade(x1, frame.top, x2 - x1, frame.bottom - frame.top))
+    texts = names_of(seen, [shade.width / LETTER_PX for shade in shades])
+    words = (
+        Words(shade.x + shade.width / 2, frame.bottom - LINE_PX / 2, name, "middle")
+        for shade, name in zip(shades, texts, strict=True)
+        if name
+    )
+    return [*shades, *words]
+
+
+_NARROW = 8
+"""Spans of fewer letters do not keep others from their long names."""
+
+
+def names_of(spans: Sequence[Span], letters: Sequence[float], overhang: int = 0) -> list[str]:
+    """Return the names of spans: the long forms, if all but those of very narrow spans fit; empty without room.
+
+    Args:
+        spans: What is named.
+        letters: How many letters each is wide.
+        overhang: Letters that a short form may be wider.
+    """
+    rooms = list(zip(spans, letters, strict=True))
+    is_long = all(len(span.texts[0]) < room for span, room in rooms if room >= _NARROW)
+    names = [
+        span.texts[0] if is_long and len(span.texts[0]) < room else span.texts[-1]
+        for span, room in rooms
+    ]
+    return [
+        name if room and len(name) <= room + overhang else ""
+        for name, room in zip(names, letters, strict=True)
+    ]

@@ -1,0 +1,228 @@
+"""The canvas of a chart with its axes as an image: grid, curves, marks and cursors."""
+
+from __future__ import annotations
+
+from functools import cache
+from importlib.resources import files
+from io import BytesIO
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from tuisim.base.data_class import dataclass
+from tuisim.pictures.charts import axes
+from tuisim.pictures.charts.bands import columns_of, placed_names
+from tuisim.pictures.charts.canvas import BRAILLE, Curve, in_turns
+from tuisim.pictures.charts.traces import clip_line, min_max
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
+    from PIL.ImageFont import FreeTypeFont
+
+    from tuisim.engine.core.css_colors import Rgb
+    from tuisim.engine.runs.arrays import FloatArray
+    from tuisim.pictures.charts.axes import Limits
+    from tuisim.pictures.charts.layout import Span
+    from tuisim.terminal.pixels import Pixels
+
+    _Points = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class Plot:
+    """What is drawn on a canvas, and between the labels of its axes."""
+
+    curves: tuple[Curve, ...]
+    """The topmost last."""
+    columns: int
+    """Size of the canvas in cells. A cell more on the left is for the axis there."""
+    rows: int
+    x_limits: Limits
+    y_limits: Limits
+    x_ticks: tuple[float, ...]
+    y_ticks: tuple[float, ...]
+    has_time_line: bool
+    """Whether a row of cells below the canvas is for the axis of time."""
+    cursors: tuple[float, ...]
+    """Their times."""
+    spans: tuple[Span, ...] = ()
+    """What is shaded and named."""
+
+    @property
+    def size(self) -> tuple[int, int]:
+        """Its rows and columns in cells, with the axes."""
+        return self.rows + self.has_time_line, 1 + self.columns
+
+    def across(self, times_s: FloatArray, width: int) -> _Points:
+        """Return how far from the left edge of the canvas times are, for cells of that width."""
+        # As `axes.column_of`, so that a label is below its tick.
+        low, high = self.x_limits
+        return (times_s - low) / (high - low) * (self.columns - 0.5) * width + 1
+
+    def down(self, values: FloatArray, height: int) -> _Points:
+        """Return how far from the top of the canvas values are, for cells of that height."""
+        return axes.row_of(values, self.y_limits, self.rows) * height
+
+
+@dataclass(frozen=True, slots=True)
+class PlotInks:
+    """The colours of a plot besides those of its curves."""
+
+    ground: Rgb
+    axis: Rgb
+    cursor: Rgb
+    shades: tuple[Rgb, ...] = ()
+    """For spans in turns."""
+
+
+_GRID_SHARE = 0.2
+"""How much of the colour of the axes the grid has."""
+_FINE = 3
+"""Curves are drawn so many times finer, and then reduced, for smooth edges."""
+_LETTER = 0.602
+"""Width of a letter of the font, of its size."""
+_LEVELS = 4
+"""Shades of a smooth edge: each shade more is another colour to be sent."""
+_TURN = 4
+"""Cells across that a curve has at a time where it lies on others."""
+_LINE_SHARE, _MARK_SHARE = 1 / 9, 1 / 5
+"""Width of a line and radius of a mark, of the height of a cell."""
+
+
+def plot_image(plot: Plot, cell: tuple[int, int], inks: PlotInks) -> Pixels:
+    """Return a plot as an image of the size of its cells.
+
+    Args:
+        plot: What to draw; the colours of its curves are final.
+        cell: Width and height of a cell in points.
+        inks: The other colours.
+    """
+    width, height = cell
+    rows, cols = plot.size
+    image: Pixels = np.full((rows * height, cols * width, 3), inks.ground, np.uint8)
+    inside = image[: plot.rows * height, width : (1 + plot.columns) * width]
+    for number, span in enumerate(plot.spans):
+        start, stop = _cells_of(span, plot, width)
+        inside[:, start:stop] = inks.shades[number % len(inks.shades)]
+    _draw_axes(image, inside, plot, cell, inks)
+    covered = [_coverage(plot, curve, cell) for curve in plot.curves]
+    _draw_names(inside, covered, plot, cell, inks)
+    seen = in_turns(np.array(covered, np.bool_), _TURN * width) if covered else ()
+    for curve, coverage, is_seen in zip(plot.curves, covered, seen, strict=True):
+        _lay(inside, coverage * is_seen, curve.rgb)
+    for at in _places(plot.across(np.array(plot.cursors), width), inside.shape[1]):
+        inside[:, at] = inks.cursor
+    return image
+
+
+def _cells_of(span: Span, plot: Plot, width: int) -> tuple[int, int]:
+    """Return the first column of points of a span, and the one behind it."""
+    start, stop = np.clip(
+        plot.across(np.array([span.start, span.stop]), width), 0, plot.columns * width
+    ).astype(int)
+    return int(start), int(stop) + 1
+
+
+def _draw_names(
+    inside: Pixels,
+    covered: list[npt.NDArray[np.uint8]],
+    plot: Plot,
+    cell: tuple[int, int],
+    inks: PlotInks,
+) -> None:
+    """Write the names of spans, each in the lowest row of cells where there is no curve."""
+    # Imported on demand: few terminals need it.
+    from PIL import Image, ImageDraw
+
+    width, height = cell
+    places = [columns_of(span, plot.x_limits, plot.columns) for span in plot.spans]
+
+    def is_free(row: int, first: int, stop: int) -> bool:
+        return not any(
+            one[row * height : (row + 1) * height, first * width : stop * width].any()
+            for one in covered
+        )
+
+    cursors = [axes.column_of(x, plot.x_limits, plot.columns) for x in plot.cursors]
+    for row, first, text in placed_names(
+        plot.spans, places, plot.rows, plot.columns, is_free, cursors
+    ):
+        mask = Image.new("L", (len(text) * width, height))
+        ImageDraw.Draw(mask).text((0, height // 2), text, 255, _font(width), anchor="lm")
+        place = inside[
+            row * height : (row + 1) * height, first * width : (first + len(text)) * width
+        ]
+        _lay(place, np.asarray(mask) // (256 // (_LEVELS + 1)), inks.axis)
+
+
+@cache
+def _font(width: int) -> FreeTypeFont:
+    """Return the font whose letters have a width in points."""
+    from PIL import ImageFont
+
+    content = files("tuisim.pictures.charts").joinpath("fonts", "DejaVuSansMono.ttf").read_bytes()
+    return ImageFont.truetype(BytesIO(content), width / _LETTER)
+
+
+def _draw_axes(
+    image: Pixels, inside: Pixels, plot: Plot, cell: tuple[int, int], inks: PlotInks
+) -> None:
+    width, height = cell
+    grid = _mixed(inks.ground, inks.axis, _GRID_SHARE)
+    across = _places(plot.across(np.array(plot.x_ticks), width), inside.shape[1])
+    down = _places(plot.down(np.array(plot.y_ticks), height), len(inside))
+    inside[:, across] = grid
+    inside[down] = grid
+    bottom = len(inside)
+    image[:bottom, width - 1] = inks.axis
+    image[down, width - 1 - width // 3 : width] = inks.axis
+    if plot.has_time_line:
+        image[bottom, width - 1 :] = inks.axis
+        image[bottom : bottom + 1 + height // 4, width + across] = inks.axis
+
+
+def _places(points: _Points, length: int) -> npt.NDArray[np.intp]:
+    """Return the points of an image at places on it; others are left out."""
+    places = np.floor(points).astype(np.intp)
+    return places[(places >= 0) & (places < length)]
+
+
+def _mixed(ground: Rgb, rgb: Rgb, share: float) -> Rgb:
+    red, green, blue = (
+        round(below + (above - below) * share) for below, above in zip(ground, rgb, strict=True)
+    )
+    return red, green, blue
+
+
+def _coverage(plot: Plot, curve: Curve, cell: tuple[int, int]) -> npt.NDArray[np.uint8]:
+    """Return how much of each point of the canvas a curve covers, from 0 to `_LEVELS`."""
+    # Imported on demand: few terminals need it.
+    from PIL import Image, ImageDraw
+
+    width, height = cell
+    size = plot.columns * width, plot.rows * height
+    mask = Image.new("L", (size[0] * _FINE, size[1] * _FINE))
+    draw = ImageDraw.Draw(mask)
+    times_s, values = clip_line(
+        *min_max(curve.times_s, curve.values, plot.x_limits, size[0]), plot.x_limits
+    )
+    points = np.stack((plot.across(times_s, width), plot.down(values, height)), axis=1) * _FINE
+    if curve.marker != BRAILLE or len(points) == 1:
+        radius = max(height * _MARK_SHARE, 1.5) * _FINE
+        for x, y in points.tolist():
+            draw.ellipse((x - radius, y - radius, x + radius, y + radius), fill=255)
+    else:
+        draw.line(
+            points.ravel().tolist(), fill=255, width=max(round(height * _LINE_SHARE * _FINE), _FINE)
+        )
+    covered: npt.NDArray[np.uint8] = (
+        np.asarray(mask.reduce(_FINE)) // (256 // (_LEVELS + 1))
+    ).clip(max=_LEVELS)
+    return covered
+
+
+def _lay(image: Pixels, covered: npt.NDArray[np.uint8], rgb: Rgb) -> None:
+    at = np.nonzero(covered)
+    below = image[at].astype(np.float32)
+    share = covered[at][:, np.newaxis] / _LEVELS
+    image[at] = np.rint(below + (np.array(rgb) - below) * share).astype(np.uint8)

@@ -1,0 +1,401 @@
+"""Charts as lines of text: tick boxes, and the canvas with its axes; and whole charts for files."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import field, replace
+
+from rich.style import Style
+from rich.text import Text
+
+from tuisim.base import palette
+from tuisim.base.data_class import dataclass
+from tuisim.base.errors import printable
+from tuisim.pictures.charts import axes
+from tuisim.pictures.charts.axes import Limits
+from tuisim.pictures.charts.bands import FREE, NAME, shaded
+from tuisim.pictures.charts.canvas import (
+    AXIS,
+    BRAILLE,
+    PLAIN,
+    Curve,
+    TextRun,
+    canvas,
+    styled,
+    xy_lines,
+)
+from tuisim.pictures.charts.cell_scales import CellScales
+from tuisim.pictures.charts.layout import COLORS, ChartData, Line, Span, color_of, unit_of
+from tuisim.pictures.charts.plot_image import Plot
+from tuisim.pictures.charts.traces import Trace, Traces
+from tuisim.terminal.text_runs import Run, cut
+
+_CURSOR = Style(color=palette.WHITE, bgcolor=palette.LINE)
+_STRONG = Style(color=palette.WHITE, bold=True)
+_FAINT = Style(color=palette.LINE)
+_GRID = "┈"
+
+_LINE_ROWS = 13
+"""Lower charts have no line above the labels of time, so that the curves have its row."""
+_BETWEEN_BOXES = "  "
+"""What stands between tick boxes."""
+
+EMPTY_TEXT = (
+    "Nothing logged yet. To log a value, print it with a name:",
+    "print('Colour: ' + str(value))",
+)
+EMPTY_SHORT = ("Nothing logged yet.", "print('Colour: '", "      + str(value))")
+
+
+@dataclass(frozen=True, slots=True)
+class ChartState:
+    """What the user has set."""
+
+    selected: str | None = None
+    """Name of the trace whose tick box has the focus."""
+    cursor_s: float | None = None
+    x_limits: Limits | None = None
+    """Fixed limits while the chart is frozen, None to follow."""
+    grey: bool = False
+    """Without colours: marks tell several traces apart."""
+    is_ascii: bool = False
+    """Without braille: without colours even a single trace is drawn as marks."""
+    other_s: float | None = None
+    """The second cursor; distances are measured from it."""
+    unit: str = "s"
+    """Unit of the horizontal axis."""
+    marks: bool = False
+    """Draw the points as marks, not joined by lines."""
+    grows: bool = False
+    """Whether more data may follow, so that the horizontal axis extends a little beyond them."""
+    grid: bool = False
+    """Draw a faint line at each label of the left scale."""
+    spans: tuple[Span, ...] = ()
+    """What is shaded and named, in order of time."""
+    margins: tuple[int, int] = (0, 0)
+    """Columns on the left and the right of the canvas at least."""
+    zoomed: bool = False
+    """Whether the time range is zoomed: the vertical axis then fits the visible data."""
+
+
+@dataclass(frozen=True, slots=True)
+class Box:
+    """Where a tick box is: row, first column, first column after it."""
+
+    row: int
+    first: int
+    end: int
+    name: str
+
+
+@dataclass(frozen=True, slots=True)
+class ChartPicture:
+    """A drawn chart and where its parts are, in characters."""
+
+    lines: list[list[Run]]
+    boxes: tuple[Box, ...]
+    left: int = 0
+    top: int = 0
+    columns: int = 0
+    """Size of the canvas, 0 if there is none."""
+    rows: int = 0
+    x_limits: Limits = (0.0, 1.0)
+    plot: Plot | None = None
+    """What is on the canvas, for an image in place of it; None if there is none, or no room for it."""
+
+    def time_at(self, column: int, row: int) -> float | None:
+        """Return the time at a place, None beside the canvas."""
+        if 0 <= column - self.left < self.columns and 0 <= row - self.top < self.rows:
+            return axes.at_column(column - self.left, self.x_limits, self.columns)
+        return None
+
+
+@dataclass(slots=True)
+class ChartPainter:
+    """Draws charts; the canvas is cached while its points and limits stay the same."""
+
+    _key: object = field(default=None, init=False)
+    _canvas: list[list[TextRun]] = field(default_factory=list, init=False)
+
+    def paint(
+        self, traces: Traces, state: ChartState, width: int, height: int, *, is_blank: bool = False
+    ) -> ChartPicture:
+        """Return the chart in a panel of that inner size, each at least 1; `is_blank` for an image on the canvas."""
+        drawn = traces.drawn()
+        by_mark = state.grey and (len(drawn) > 1 or state.is_ascii)
+        lines, boxes = _tick_boxes(traces, state.selected, by_mark, width)
+        if not drawn:
+            return ChartPicture(
+                (lines + _empty(traces, width, height - len(lines), state.selected))[:height], boxes
+            )
+        with_line = height >= _LINE_ROWS
+        rows = max(height - len(lines) - 1 - with_line, 1)
+        x_limits = state.x_limits or _time_limits(traces.end_s(), state.grows)
+        scales = CellScales.of(drawn, width, rows, x_limits, state.zoomed, state.margins)
+        columns = max(width - scales.left_width - scales.right_width, 2)
+        left, top = scales.left_width, len(lines)
+        cursors = [time_s for time_s in (state.cursor_s, state.other_s) if time_s is not None]
+        curves = tuple(scales.curve(trace, by_mark or state.marks) for trace in drawn)
+        has_room = (
+            len(lines) + rows + with_line <= height and left + columns + scales.right_width <= width
+        )
+        plot = None
+        if has_room:
+            ticks = (
+                tuple(axes.time_ticks(x_limits, columns)),
+                tuple(axes.row_ticks(scales.y_limits, rows)),
+            )
+            plot = Plot(
+                curves,
+                columns,
+                rows,
+                x_limits,
+                scales.y_limits,
+                *ticks,
+                with_line,
+                tuple(cursors),
+                state.spans,
+            )
+        line, below = axes.time_axis(x_limits, columns, state.unit)
+        if is_blank and plot:
+            lines += [scales.framed(row, [(" " * columns, AXIS)]) for row in range(rows)] + [
+                []
+            ] * with_line
+        else:
+            self._draw(drawn, scales, columns, rows, x_limits, curves)
+            at = sorted({axes.column_of(time_s, x_limits, columns) for time_s in cursors})
+            on_grid = scales.labels[0] if state.grid and not state.is_ascii else {}
+            inside = [_styled(self._canvas[row], is_on_grid=row in on_grid) for row in range(rows)]
+            if state.spans:
+                inside = shaded(
+                    inside, state.spans, x_limits, columns, at, _style_of_names(drawn, state.spans)
+                )
+            lines += [scales.framed(row, _with_cursors(inside[row], at)) for row in range(rows)]
+            if with_line:
+                lines.append([(" " * (left - 1) + "└" + line, AXIS)])
+        lines.append([(" " * left + below, AXIS)])
+        return ChartPicture(lines[:height], boxes, left, top, columns, rows, x_limits, plot)
+
+    def _draw(
+        self,
+        drawn: list[Trace],
+        scales: CellScales,
+        columns: int,
+        rows: int,
+        x_limits: Limits,
+        curves: Sequence[Curve],
+    ) -> None:
+        points = [(trace.name, len(trace.times_s)) for trace in drawn]
+        key = (points, scales.scales, columns, rows, x_limits, [curve.marker for curve in curves])
+        if key == self._key:
+            return
+        self._key = key
+        self._canvas = canvas(curves, columns, rows, x_limits, scales.y_limits)
+
+
+_MIN_SPAN_S = 1e-9
+"""Shorter than the clock's step: such times were printed."""
+
+
+def _time_limits(end_s: float, grows: bool) -> Limits:
+    if grows:
+        return axes.growing_limits(end_s)
+    return 0.0, end_s if end_s > _MIN_SPAN_S else 1.0
+
+
+def _styled(runs: list[TextRun], is_on_grid: bool) -> list[Run]:
+    """Return a row of the canvas, with the line of the grid where nothing is drawn."""
+    if not is_on_grid:
+        return [(text, styled(rgb)) for text, rgb in runs]
+    return [
+        (text.replace(" ", _GRID), _FAINT) if rgb is None else (text, styled(rgb))
+        for text, rgb in runs
+    ]
+
+
+def _style_of_names(drawn: Sequence[Trace], spans: Sequence[Span]) -> Style:
+    """Return the style of the names of bands: the colour of their curve, where there are others."""
+    names = {span.name for span in spans}
+    of_bands = [trace for trace in drawn if {trace.name} == names]
+    return styled(of_bands[0].rgb) if of_bands and len(drawn) > 1 else NAME
+
+
+def _with_cursors(runs: list[Run], columns: Sequence[int]) -> list[Run]:
+    """Return a row of the canvas with lines at rising columns; a column outside it draws none."""
+    line: list[Run] = []
+    at = 0
+    for text, style in runs:
+        done = 0
+        for inside in (column - at for column in columns):
+            if 0 <= inside < len(text):
+                mark = text[inside]
+                line.append((text[done:inside], style))
+                line.append(("│", _CURSOR) if mark in FREE else (mark, style + _CURSOR))
+                done = inside + 1
+        line.append((text[done:], style))
+        at += len(text)
+    return [run for run in line if run[0]]
+
+
+def _tick_boxes(
+    traces: Traces, selected: str | None, by_mark: bool, width: int
+) -> tuple[list[list[Run]], tuple[Box, ...]]:
+    """Return the row of tick boxes, none without a trace, and where they are; what does not fit is counted."""
+    every = [*traces]
+    if not every:
+        return [], ()
+    widest = width - len(f" +{len(every)}") * (len(every) > 1)
+    texts = [
+        (cut(f"[{'x' if trace.on else ' '}] {trace.name}", max(widest, 1)), trace)
+        for trace in every
+    ]
+    shown = _boxes_in_sight(texts, selected, width)
+    runs: list[Run] = []
+    boxes, column = [], 0
+    for text, trace in (texts[at] for at in shown):
+        if column:
+            runs.append((_BETWEEN_BOXES, PLAIN))
+            column += len(_BETWEEN_BOXES)
+        boxes.append(Box(0, column, column + len(text), trace.name))
+        runs += _box_runs(text, trace, trace.name == selected, by_mark)
+        column += len(text)
+    if more := len(texts) - len(shown):
+        runs.append((f"+{more}".rjust(width - column), AXIS))
+    return [runs], tuple(boxes)
+
+
+def _boxes_in_sight(
+    texts: Sequence[tuple[str, Trace]], selected: str | None, width: int
+) -> list[int]:
+    """Return the numbers of the boxes that fit into a row, in order: the selected one, what is drawn, then others."""
+    gap = len(_BETWEEN_BOXES)
+    if sum(len(text) + gap for text, _ in texts) - gap <= width:
+        return [*range(len(texts))]
+    shown: list[int] = []
+    room = width - len(f"+{len(texts)}") - 1
+    for at in sorted(
+        range(len(texts)), key=lambda at: (texts[at][1].name != selected, not texts[at][1].on)
+    ):
+        room -= len(texts[at][0]) + gap * bool(shown)
+        if room < 0 and shown:
+            break
+        shown.append(at)
+    return sorted(shown)
+
+
+def _box_runs(text: str, trace: Trace, selected: bool, by_mark: bool) -> list[Run]:
+    color = styled(trace.rgb) if trace.on else AXIS
+    if by_mark and trace.on:
+        text = text.replace("[x]", f"[{trace.mark}]", 1)
+    return [(text, color + Style(reverse=True) if selected else color)]
+
+
+def margins_of(
+    parts: Sequence[Traces], state: ChartState, width: int, rows: int
+) -> tuple[int, int]:
+    """Return the columns beside the canvases of charts below each other, of so many rows, that are in line."""
+    drawn = [part.drawn() for part in parts if part.drawn()]
+    limits = state.x_limits or (0.0, 1.0)
+    rows = max(rows - 2 - (rows >= _LINE_ROWS), 1)
+    scales = [CellScales.of(traces, width, rows, limits, state.zoomed) for traces in drawn]
+    return max((one.left_width for one in scales), default=0), max(
+        (one.right_width for one in scales), default=0
+    )
+
+
+def values_at(drawn: Sequence[Trace], cursor_s: float, unit: str, width: int) -> str:
+    """Return the value of each trace at a time, as many as fit."""
+    line = f"{cursor_s:.2f} {unit}"
+    for at, trace in enumerate(drawn):
+        value = trace.at(cursor_s)
+        read = (
+            f"  {trace.name} {value:.5g}{unit_of(trace.name)}"
+            if value is not None
+            else f"  {trace.name} –"
+        )
+        more = len(drawn) - at - 1
+        if len(line) + len(read) + (4 if more else 0) > width:
+            return f"{line} +{more + 1}"[:width]
+        line += read
+    return line
+
+
+def _empty(traces: Traces, width: int, height: int, selected: str | None) -> list[list[Run]]:
+    """Return what stands in place of curves: how to log a value, or that the traces there are have no tick.
+
+    Args:
+        selected: The trace that the keys show; None while the keys do something else.
+    """
+    how = ("↑ ↓ and space show a trace",) if selected is not None and width >= 26 else ()
+    if any(trace.logged for trace in traces):
+        words: tuple[str, ...] = ("No trace is ticked.", *how)
+    else:
+        words = EMPTY_TEXT if width >= len(EMPTY_TEXT[0]) else EMPTY_SHORT
+        words = (*words, "", *how) if how else words
+    above = max((height - len(words)) // 2, 0)
+    widest = max(map(len, words))
+    margin = " " * max((width - widest) // 2, 0)
+    lines: list[list[Run]] = [[] for _ in range(above)]
+    return lines + [
+        [(margin + text, _STRONG if "print" in text or "str(" in text else PLAIN)] for text in words
+    ]
+
+
+LEAST_ROWS = 8
+"""Minimum height of a chart of one variable."""
+
+
+def text_of(chart: ChartData, width: int, height: int, *, colors: bool = False) -> Text:
+    """Return a chart as text of a given size in characters.
+
+    Args:
+        width, height: Size in characters; facets use more lines if necessary.
+        colors: Whether colours distinguish the lines; otherwise marks do.
+    """
+    shown: list[list[Run]] = []
+    if chart.path:
+        (line,) = chart.lines
+        trace = _trace(line)
+        marker = trace.mark if chart.marks else BRAILLE
+        names = chart.x_label.partition(" (")[0], printable(line.name)
+        shown = xy_lines(line.xs, line.ys, None, names, trace.rgb, marker, width, height)
+    else:
+        groups = [(line,) for line in chart.lines] if chart.facets else [chart.lines]
+        rows = max(height // len(groups), LEAST_ROWS)
+        parts = [Traces({line.name: _trace(line) for line in group}) for group in groups]
+        grey = not colors and not chart.facets and len(chart.lines) > 1
+        state = ChartState(
+            x_limits=chart.x_limits,
+            grey=grey,
+            marks=chart.marks,
+            unit=_unit(chart),
+            zoomed=chart.zoomed,
+        )
+        state = replace(state, margins=margins_of(parts, state, width, rows))
+        for part in parts:
+            shown += ChartPainter().paint(part, state, width, rows).lines
+    lines = [
+        Text(chart.title, "bold"),
+        *(Text.assemble(*map(_on_any_ground, line)) for line in shown),
+    ]
+    for at in lines:
+        at.rstrip()
+        at.truncate(width)
+    return Text("\n").join(lines)
+
+
+def _trace(line: Line) -> Trace:
+    trace = Trace(printable(line.name), line.number)
+    trace.rgb, trace.scale = color_of(line), line.scale
+    trace.add(line.xs.tolist(), line.ys.tolist())
+    return trace
+
+
+def _on_any_ground(run: Run) -> Run:
+    """Use the terminal's default colour for everything but data, for light and dark themes."""
+    text, style = run
+    return run if style.color and style.color.triplet in COLORS else (text, Style())
+
+
+def _unit(chart: ChartData) -> str:
+    return chart.x_label.rpartition("(")[2].rstrip(")") if "(" in chart.x_label else ""

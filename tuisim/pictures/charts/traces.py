@@ -1,0 +1,366 @@
+"""Traces of a chart: the points logged and measured so far, and their decimation for any width and zoom."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+
+import numpy as np
+import numpy.typing as npt
+
+from tuisim.engine.core.css_colors import Rgb
+from tuisim.engine.runs.arrays import FloatArray
+from tuisim.logs.magnitude import MAX_DRAWN, find_scale, limit_drawn
+from tuisim.logs.signals import Summary, summary_of
+from tuisim.logs.units import unit_of
+
+TRACE_COLORS: tuple[Rgb, ...] = (
+    (240, 228, 66),
+    (86, 180, 233),
+    (213, 94, 0),
+    (0, 158, 115),
+    (204, 121, 167),
+    (255, 255, 255),
+    (230, 159, 0),
+    (60, 110, 220),
+)
+"""Those of Okabe and Ito, with a lighter blue and white for a dark ground: they stay apart for people who see fewer
+colours. Source: https://jfly.uni-koeln.de/color/."""
+MARKS = "o+x*#%=~&@"
+"""For terminals without colours; more than there are colours, so that many traces differ in one or the other."""
+
+_OTHER_READINGS = ("ultrasonic", "gyro", "wheel")
+"""Names that begin so are distances and angles, whose unit a program may choose."""
+
+MOST_POINTS = 1 << 16
+"""A trace with more points keeps the least and the greatest of each few, so that a run without end needs a bounded
+memory: what was recorded long ago is drawn as before, unless one zooms in."""
+_THINNED = 4
+
+
+def scale_of(name: str) -> str:
+    """Return the scale of a variable: its unit or reading; empty for light, in percent or not, and what is unknown."""
+    name = name.partition(" #")[0]
+    sign = unit_of(name).sign
+    if sign:
+        return "" if sign == "%" else sign
+    return next((reading for reading in _OTHER_READINGS if name.lower().startswith(reading)), "")
+
+
+class Trace:
+    """One trace: points in order of time, a colour, and whether it is ticked.
+
+    Args:
+        name: As it was logged, or the name of a column of telemetry.
+        number: Chooses colour and mark.
+        logged: Whether the program has printed it, rather than the app measured it.
+    """
+
+    def __init__(self, name: str, number: int, logged: bool = True) -> None:
+        self.name = name
+        self.on = self.logged = logged
+        self.rgb = TRACE_COLORS[number % len(TRACE_COLORS)]
+        self.mark = MARKS[number % len(MARKS)]
+        self.scale = scale_of(name)
+        """Which scale it is drawn on; traces of one scale have the same text."""
+        self._times_s = np.empty(256)
+        self._values = np.empty(256)
+        self._count = 0
+
+    @property
+    def times_s(self) -> FloatArray:
+        """Simulated times, shape (n,)."""
+        return self._times_s[: self._count]
+
+    @property
+    def values(self) -> FloatArray:
+        """Values as they are drawn, shape (n,)."""
+        return limit_drawn(self._values[: self._count])
+
+    def add(self, times_s: Sequence[float], values: Sequence[float]) -> None:
+        """Append points; those that are not finite are left out, as are times beyond `MAX_DRAWN`."""
+        new_times, new_values = np.array(times_s, float), np.array(values, float)
+        good = (np.abs(new_times) < MAX_DRAWN) & np.isfinite(new_values)
+        new_times, new_values = new_times[good], new_values[good]
+        end = self._count + len(new_times)
+        if end > len(self._times_s):
+            room = max(end, 2 * len(self._times_s)) - self._count
+            self._times_s = np.concatenate((self.times_s, np.empty(room)))
+            self._values = np.concatenate((self._values[: self._count], np.empty(room)))
+        self._times_s[self._count : end], self._values[self._count : end] = new_times, new_values
+        late = self._count and len(new_times) and new_times[0] < self._times_s[self._count - 1]
+        self._count = end
+        if late or (np.diff(new_times) < 0).any():
+            # A program may log its own times; lookups need them sorted.
+            order = np.argsort(self.times_s, kind="stable")
+            self._times_s[:end], self._values[:end] = self.times_s[order], self._values[order]
+        if end > MOST_POINTS:
+            self._thin()
+
+    def _thin(self) -> None:
+        """Keep two of every four points: the least and the greatest, in their order."""
+        whole = self._count // _THINNED * _THINNED
+        values = self._values[:whole].reshape(-1, _THINNED)
+        kept = np.sort(
+            np.stack(
+                (values.argmin(axis=1), _THINNED - 1 - values[:, ::-1].argmax(axis=1)), axis=1
+            ),
+            axis=1,
+        )
+        at = (kept + np.arange(0, whole, _THINNED)[:, np.newaxis]).ravel()
+        at = np.concatenate((at, np.arange(whole, self._count)))
+        self._times_s, self._values, self._count = self._times_s[at], self._values[at], len(at)
+
+    def at(self, time_s: float) -> float | None:
+        """Return the last value at or before a time, None before the first."""
+        index = int(np.searchsorted(self.times_s, time_s, "right")) - 1
+        return float(self._values[index]) if index >= 0 else None
+
+    def nearest_s(self, time_s: float) -> float:
+        """Return the time of the point nearest to a time; there must be one."""
+        return float(self.times_s[np.abs(self.times_s - time_s).argmin()])
+
+    def clear(self) -> None:
+        """Remove the points; keep visibility and colour."""
+        self._count = 0
+
+
+class Traces:
+    """All traces, those that the program logged first.
+
+    Args:
+        traces: Those that are there at first, by name.
+    """
+
+    def __init__(self, traces: Mapping[str, Trace] | None = None) -> None:
+        self._by_name = dict(traces or {})
+        self._cleared: dict[str, Trace] = {}
+        """Traces without points since `clear`: each gets its tick and its colour again with its next points."""
+
+    def __iter__(self) -> Iterator[Trace]:
+        return iter(sorted(self._by_name.values(), key=lambda trace: not trace.logged))
+
+    def __len__(self) -> int:
+        return len(self._by_name)
+
+    def append(
+        self, name: str, times_s: Sequence[float], values: Sequence[float], logged: bool = True
+    ) -> None:
+        """Add points to a trace, which is made if it is new.
+
+        Where a program logs a variable with the name of a column of telemetry, the trace is the program's.
+        """
+        trace = self._by_name.get(name) or self._cleared.pop(name, None)
+        if trace is not None and trace.logged and not logged:
+            self._by_name[name] = trace
+            return
+        if trace is None or trace.logged != logged:
+            # Logged traces use colours from the front of the list, telemetry from the back.
+            alike = sum(
+                known.logged == logged
+                for known in (*self._by_name.values(), *self._cleared.values())
+            )
+            trace = Trace(name, alike if logged else -1 - alike, logged)
+        self._by_name[name] = trace
+        trace.add(times_s, values)
+
+    def clear(self) -> None:
+        """Remove all traces."""
+        for trace in self._by_name.values():
+            trace.clear()
+        self._cleared.update(self._by_name)
+        self._by_name.clear()
+
+    def drawn(self) -> list[Trace]:
+        """Return the ticked traces that have points."""
+        return [trace for trace in self if trace.on and len(trace.times_s)]
+
+    def end_s(self) -> float:
+        """Return the latest time of all points, 0 if there are none."""
+        return max((float(trace.times_s[-1]) for trace in self if len(trace.times_s)), default=0.0)
+
+
+def min_max(
+    times_s: FloatArray, values: FloatArray, x_limits: tuple[float, float], columns: int
+) -> tuple[FloatArray, FloatArray]:
+    """Return the points of a trace that a chart of this width can distinguish.
+
+    Args:
+        times_s: Rising times, shape (n,).
+        values: Shape (n,).
+        x_limits: First and last time shown; one point beyond each is kept, so that lines extend to the edges.
+        columns: Width of the chart, at least 1.
+
+    Returns:
+        Times and values, each shape (m,), m at most 2 * columns + 2; all points if there are no more.
+    """
+    low, high = x_limits
+    first, last = _visible(times_s, x_limits)
+    times_s, values = times_s[first:last], values[first:last]
+    if len(times_s) <= 2 * columns:
+        return times_s, values
+    edges = np.searchsorted(times_s, low + (high - low) * np.arange(1, columns) / columns)
+    starts = np.unique(np.concatenate(([0], edges)))
+    starts = starts[starts < len(times_s)]
+    ends = np.concatenate((starts[1:], [len(times_s)])) - 1
+    least, greatest = np.minimum.reduceat(values, starts), np.maximum.reduceat(values, starts)
+    return _in_pairs(times_s[starts], times_s[ends]), _extremes(
+        values[starts] <= values[ends], least, greatest
+    )
+
+
+def clip_line(
+    xs: FloatArray, ys: FloatArray, limits: tuple[float, float]
+) -> tuple[FloatArray, FloatArray]:
+    """Return the part of a line within limits, with interpolated points where it enters and leaves them.
+
+    Args:
+        xs: Places that do not fall, shape (n,).
+        ys: Values, shape (n,).
+        limits: First and last place shown.
+    """
+    inside = (xs >= limits[0]) & (xs <= limits[1])
+    if inside.all():
+        return xs, ys
+    crossed = [edge for edge in limits if xs[0] < edge < xs[-1]]
+    at = np.searchsorted(xs[inside], crossed)
+    return np.insert(xs[inside], at, crossed), np.insert(ys[inside], at, np.interp(crossed, xs, ys))
+
+
+def _visible(times_s: FloatArray, x_limits: tuple[float, float]) -> tuple[int, int]:
+    first = max(int(np.searchsorted(times_s, x_limits[0], "left")) - 1, 0)
+    return first, min(int(np.searchsorted(times_s, x_limits[1], "right")) + 1, len(times_s))
+
+
+def _in_pairs(firsts: FloatArray, seconds: FloatArray) -> FloatArray:
+    return np.stack((firsts, seconds), axis=1).ravel().astype(np.float64, copy=False)
+
+
+def _extremes(rising: npt.NDArray[np.bool_], least: FloatArray, greatest: FloatArray) -> FloatArray:
+    return _in_pairs(np.where(rising, least, greatest), np.where(rising, greatest, least))
+
+
+_BLOCK = 16
+"""Each level has this many times fewer blocks than the one below."""
+_ENOUGH = 4
+"""Blocks per column of the chart: with fewer, edges would appear at the wrong column."""
+
+_SUMMED_AT_ONCE = 10_000
+"""Up to this number of points, statistics are computed directly."""
+
+
+class Pyramid:
+    """The finite points of a series, sorted by time.
+
+    Args:
+        times_s: Shape (n,).
+        values: Shape (n,); those that are not finite are left out, as are times beyond `MAX_DRAWN`.
+    """
+
+    def __init__(self, times_s: FloatArray, values: FloatArray) -> None:
+        self._index: npt.NDArray[np.intp] | None = None
+        """Index of each point in the input; None if the order is unchanged."""
+        if not (_are_within(values, np.inf) and _are_within(times_s, MAX_DRAWN)):
+            good = (np.abs(values) < np.inf) & (np.abs(times_s) < MAX_DRAWN)
+            self._index = np.flatnonzero(good)
+            times_s, values = times_s[good], values[good]
+        if len(times_s) > 1 and (times_s[1:] < times_s[:-1]).any():
+            order = np.argsort(times_s, kind="stable")
+            times_s, values = times_s[order], values[order]
+            self._index = order if self._index is None else self._index[order]
+        self.times_s, self.values = times_s, values
+        self._sums: tuple[FloatArray, FloatArray] | None = None
+        self._levels: list[tuple[FloatArray, FloatArray]] = []
+        while len(self._levels[-1][0] if self._levels else values) > _BLOCK:
+            self._add_level()
+
+    def points(self, x_limits: tuple[float, float], columns: int) -> tuple[FloatArray, FloatArray]:
+        """Return times and values as they are drawn: at most a few thousand points that give the drawing of all.
+
+        Args:
+            x_limits: First and last time shown; one point beyond each is kept.
+            columns: Width of the chart, at least 1.
+        """
+        first, last = _visible(self.times_s, x_limits)
+        level, size = -1, 1
+        while (last - first) // (size * _BLOCK) >= _ENOUGH * columns:
+            level, size = level + 1, size * _BLOCK
+        if level < 0:
+            return self.times_s[first:last], limit_drawn(self.values[first:last])
+        least, greatest = self._levels[level]
+        blocks = np.arange(first // size, (last - 1) // size + 1)
+        starts, ends = blocks * size, np.minimum((blocks + 1) * size, len(self.times_s)) - 1
+        rising = self.values[starts] <= self.values[ends]
+        values = _extremes(rising, least[blocks], greatest[blocks])
+        return _in_pairs(self.times_s[starts], self.times_s[ends]), limit_drawn(values)
+
+    def _add_level(self) -> None:
+        least, greatest = self._levels[-1] if self._levels else (self.values, self.values)
+        starts = np.arange(0, len(least), _BLOCK)
+        self._levels.append(
+            (np.minimum.reduceat(least, starts), np.maximum.reduceat(greatest, starts))
+        )
+
+    def nearest(self, time_s: float) -> int:
+        """Return the index of the input point nearest to a time; there must be a finite one."""
+        at = int(np.searchsorted(self.times_s, time_s))
+        if at == len(self.times_s) or (
+            at and time_s - self.times_s[at - 1] <= self.times_s[at] - time_s
+        ):
+            at -= 1
+        return at if self._index is None else int(self._index[at])
+
+    def between(self, start_s: float, stop_s: float) -> tuple[FloatArray, FloatArray]:
+        """Return the points in a time range, both ends included."""
+        first, last = self._span(start_s, stop_s)
+        return self.times_s[first:last], self.values[first:last]
+
+    def _span(self, start_s: float, stop_s: float) -> tuple[int, int]:
+        first, last = (
+            np.searchsorted(self.times_s, start_s, "left"),
+            np.searchsorted(self.times_s, stop_s, "right"),
+        )
+        return int(first), int(last)
+
+    def figures(self, start_s: float, stop_s: float) -> Summary:
+        """Return the statistics of a time range, both ends included, without quantiles."""
+        first, last = self._span(start_s, stop_s)
+        if last - first <= _SUMMED_AT_ONCE or find_scale(*self._find_ends()) != 1.0:
+            return summary_of(self.values[first:last], quantiles=())
+        # Whole blocks are cached; only the partial blocks at both ends are computed.
+        begin, end = -(-first // _BLOCK), last // _BLOCK
+        ends = np.concatenate(
+            (self.values[first : begin * _BLOCK], self.values[end * _BLOCK : last])
+        )
+        means, squares = (part[begin:end] for part in self._moments())
+        least, greatest = (part[begin:end] for part in self._levels[0])
+        low = float(np.minimum.reduce(ends, initial=float(least.min())))
+        high = float(np.maximum.reduce(ends, initial=float(greatest.max())))
+        count = last - first
+        mean = low if low == high else float(means.sum() * _BLOCK + ends.sum()) / count
+        off = squares.sum() + _BLOCK * np.square(means - mean).sum() + np.square(ends - mean).sum()
+        return Summary(
+            count, 0, low, mean, high, float(np.sqrt(off / (count - 1))) if low != high else 0.0, ()
+        )
+
+    def _find_ends(self) -> tuple[float, float]:
+        least, greatest = self._levels[-1]
+        return float(least.min()), float(greatest.max())
+
+    def _moments(self) -> tuple[FloatArray, FloatArray]:
+        """Mean and sum of squared deviations of each whole block; cached."""
+        if self._sums is None:
+            whole = self.values[: len(self.values) // _BLOCK * _BLOCK].reshape(-1, _BLOCK)
+            means, squares = np.empty(len(whole)), np.empty(len(whole))
+            # In parts, so that a long log is not copied as a whole.
+            for at in range(0, len(whole), _SUMMED_AT_ONCE):
+                part = slice(at, at + _SUMMED_AT_ONCE)
+                means[part] = whole[part].mean(axis=1)
+                squares[part] = np.square(whole[part] - means[part, np.newaxis]).sum(axis=1)
+            self._sums = means, squares
+        return self._sums
+
+
+def _are_within(numbers: FloatArray, limit: float) -> bool:
+    """Return whether all numbers are below a limit, without a copy."""
+    # One NaN makes minimum and maximum NaN, and all comparisons false.
+    return not len(numbers) or bool(numbers.min() > -limit and numbers.max() < limit)

@@ -1,0 +1,163 @@
+"""Files of movies and pictures; the suffix selects the format."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from tuisim.base.data_class import dataclass
+from tuisim.base.errors import ConfigError
+from tuisim.pictures.charts.files import check_format, png_of, svg_of, write_whole
+from tuisim.pictures.movies.clip import ClipPanel, Recorded, Shot, shot_count, shots_of
+from tuisim.pictures.movies.image_files import PALETTE_FRAMES, encode_gif
+from tuisim.pictures.movies.painter import FramePainter, Size, view_of_frame
+from tuisim.pictures.scene.view import Viewport
+
+if TYPE_CHECKING:
+    from PIL.Image import Image
+
+MOVIE_SUFFIXES = (".gif",)
+
+Watch = Callable[[int, int], None]
+"""Called with the number of frames drawn and of all frames."""
+
+MOST_BYTES = 400_000_000
+"""Frames of a movie in memory."""
+MOST_FRAMES = 20_000
+
+
+@dataclass(frozen=True, slots=True)
+class Clip:
+    """A movie to be written."""
+
+    recorded: Recorded
+    panels: tuple[ClipPanel, ...]
+    span_s: tuple[float, float]
+    """Range of simulated time."""
+    speed: float = 1.0
+    """Simulated seconds per second."""
+    fps: float = 20.0
+    size: Size | None = None
+    """In pixels; None for the size that fits the panels."""
+
+    @property
+    def shots(self) -> tuple[Shot, ...]:
+        """Its frames."""
+        return shots_of(*self.span_s, self.speed, self.fps)
+
+    @property
+    def view(self) -> Viewport:
+        """Which part of the field its frames would show if the world filled them; it has the panel of the world."""
+        return view_of_frame(self.recorded, self.panels, self.size)
+
+
+def _encode_gif(clip: Clip, watch: Watch) -> bytes:
+    shots = clip.shots
+
+    def draw(numbers: Iterable[int]) -> Iterator[Image]:
+        painter = FramePainter(clip.recorded, clip.panels, clip.span_s, clip.size)
+        for number in numbers:
+            yield painter.image(clip.recorded.moment(shots[number].time_s))
+
+    def report_numbers() -> Iterator[int]:
+        for number in range(len(shots)):
+            watch(number, len(shots))
+            yield number
+
+    last = len(shots) - 1
+    spread = sorted({round(part * last / (PALETTE_FRAMES - 1)) for part in range(PALETTE_FRAMES)})
+    return encode_gif(
+        draw(report_numbers()), list(draw(spread)), [shot.duration_ms for shot in shots]
+    )
+
+
+def _png(painter: FramePainter, recorded: Recorded, time_s: float) -> bytes:
+    return png_of(painter.image(recorded.moment(time_s)))
+
+
+def _svg(painter: FramePainter, recorded: Recorded, time_s: float) -> bytes:
+    return svg_of(painter.drawing(recorded.moment(time_s))).encode()
+
+
+PICTURE_FORMATS: Mapping[str, Callable[[FramePainter, Recorded, float], bytes]] = {
+    ".png": _png,
+    ".svg": _svg,
+}
+"""Every format of a picture by the suffix of its files. To add one: write its function and a line here."""
+
+
+def save_movie(clip: Clip, path: Path, watch: Watch = lambda done, total: None) -> int:
+    """Write a movie as GIF, replacing an existing file; return its size in bytes.
+
+    Raises:
+        ConfigError: the movie is too large, or its panels do not fit.
+        ExportError: it cannot be written; an existing file is unchanged.
+        LogError: the mat no longer exists.
+    """
+    check_format(path, "movie", MOVIE_SUFFIXES)
+    _check_size(clip)
+    content = _encode_gif(clip, watch)
+    write_whole(path, content)
+    return len(content)
+
+
+def _check_size(clip: Clip) -> None:
+    width, height = FramePainter(clip.recorded, clip.panels, clip.span_s, clip.size).size
+    # A frame takes a byte a pixel.
+    most = min(MOST_BYTES // (width * height), MOST_FRAMES)
+    count = shot_count(*clip.span_s, clip.speed, clip.fps)
+    if count > most:
+        raise ConfigError(
+            f"too large: {count:,} frames of {width}x{height}, at most {most:,}",
+            "a higher --speed, a lower --fps, a smaller --size, or a shorter range between --from and --to",
+        )
+
+
+SMALL_BYTES = 300_000
+"""Maximum size of a movie in a page."""
+_SMALL_S, _SMALL_FPS = 10, (10, 5)
+"""Its longest duration, and its frames per second: fewer of them where it would be too large."""
+
+
+def small_movie(recorded: Recorded) -> tuple[Clip, bytes] | None:
+    """Return a movie of the world as GIF, small enough for a page; a long run is shown faster.
+
+    Returns:
+        None if the robot does not move, and if the movie would be too large.
+
+    Raises:
+        LogError: the mat no longer exists.
+    """
+    moves = any(np.ptp(recorded.telemetry[name]) > 0 for name in ("x_mm", "y_mm", "heading_deg"))
+    if not moves:
+        return None
+    speed = max(1, math.ceil(recorded.end_s / _SMALL_S))
+    for fps in _SMALL_FPS:
+        clip = Clip(recorded, (ClipPanel.WORLD,), recorded.span_s(None, None), speed, fps)
+        content = _encode_gif(clip, lambda done, total: None)
+        if len(content) <= SMALL_BYTES:
+            return clip, content
+    return None
+
+
+def save_picture(
+    recorded: Recorded,
+    panels: Sequence[ClipPanel],
+    time_s: float,
+    path: Path,
+    size: Size | None = None,
+) -> None:
+    """Write the picture of a run at an instant, replacing an existing file.
+
+    Raises:
+        ConfigError: the panels do not fit the size.
+        ExportError: it cannot be written; an existing file is unchanged.
+        LogError: the mat no longer exists.
+    """
+    check_format(path, "picture", PICTURE_FORMATS)
+    painter = FramePainter(recorded, panels, recorded.span_s(None, None), size)
+    write_whole(path, PICTURE_FORMATS[path.suffix.lower()](painter, recorded, time_s))

@@ -1,0 +1,292 @@
+"""One frame of a movie in pixels: the world, the chart, the sensor arrays, and a line with time and values."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from tuisim.base.data_class import dataclass
+from tuisim.base.errors import ConfigError, printable
+from tuisim.engine.core.spec import RobotSpec
+from tuisim.engine.mat_cache import mat_pixels
+from tuisim.engine.runs.recorded_run import Recording
+from tuisim.engine.runs.run_folder import mat_files, open_mat
+from tuisim.engine.runs.views import instant_of
+from tuisim.pictures.charts.files import image_of
+from tuisim.pictures.charts.layout import (
+    LETTER_PX,
+    LINE_PX,
+    PAD,
+    ChartData,
+    Drawing,
+    Raster,
+    Shape,
+    Words,
+    drawn_until,
+    laid_out,
+    moved,
+)
+from tuisim.pictures.charts.sample_chart import sample_chart
+from tuisim.pictures.movies.arrays import arrays_drawing
+from tuisim.pictures.movies.clip import ClipMoment, ClipPanel, Recorded
+from tuisim.pictures.scene.discs import DiscFace, disc_faces
+from tuisim.pictures.scene.pen import pen_trace
+from tuisim.pictures.scene.pictures import (
+    find_area,
+    fitting_view,
+    scene_of,
+    sound_pose,
+    world_painter,
+)
+from tuisim.pictures.scene.view import Area, Viewport
+
+if TYPE_CHECKING:
+    from PIL.Image import Image
+
+Size = tuple[int, int]
+
+WIDTH_PX = 600
+"""Default width."""
+LEAST, MOST = (160, 120), (3840, 2160)
+"""Limits of a size."""
+
+_STRIP_PX = 190
+"""Default height of chart and arrays below the world."""
+_STRIP_SHARE = 0.34
+"""Their share of a given height."""
+_CAPTION_PX = LINE_PX + 8
+_LABELS_PX = 5 * LINE_PX
+_FACE_PX = 130
+"""Width of a disc with its words."""
+_ARRAYS_SHARE = 0.45
+"""Largest share of the width that the arrays take beside a chart."""
+
+
+@dataclass(frozen=True, slots=True)
+class PictureBox:
+    """A part of the picture, in pixels."""
+
+    left: int
+    top: int
+    width: int
+    height: int
+
+
+def _fitting_size(panels: Sequence[ClipPanel], robot: RobotSpec, area: Area) -> Size:
+    height_px = _CAPTION_PX
+    if ClipPanel.WORLD in panels:
+        height_px += fitting_view(robot, WIDTH_PX - 2 * PAD, MOST[1], area).height_px
+    if ClipPanel.CHART in panels or ClipPanel.ARRAYS in panels:
+        height_px += _STRIP_PX
+    return WIDTH_PX, height_px + PAD
+
+
+def view_of_frame(
+    recorded: Recorded, panels: Sequence[ClipPanel], size: Size | None = None
+) -> Viewport:
+    """Return which part of the world a whole frame would show if its world, which it has, filled it.
+
+    What is drawn over a frame in this view lies on the frame's world.
+
+    Args:
+        recorded: The run.
+        panels: What is shown.
+        size: Width and height in pixels; None for the size that fits the panels.
+    """
+    robot, area = recorded.run.spec.robot, find_area(recorded.run.spec, recorded.telemetry)
+    size = size or _fitting_size(panels, robot, area)
+    room = _boxes(panels, size, len(robot.color_sensors))[ClipPanel.WORLD]
+    shown = fitting_view(robot, room.width, room.height, area)
+    box = _centred(room, (shown.width_px, shown.height_px))
+    left_mm, top_mm = shown.to_mm(-box.left, -box.top)
+    return Viewport(*size, shown.mm_per_px, left_mm, top_mm)
+
+
+class FramePainter:
+    """Draws a recorded run at one instant after the other.
+
+    Args:
+        recorded: The run.
+        panels: What is shown, at least one.
+        span_s: Range of simulated time of the chart.
+        size: Width and height in pixels; None for the size that fits the panels.
+
+    Raises:
+        ConfigError: the panels do not fit the size.
+        LogError: the mat no longer exists.
+    """
+
+    def __init__(
+        self,
+        recorded: Recorded,
+        panels: Sequence[ClipPanel],
+        span_s: tuple[float, float],
+        size: Size | None = None,
+    ) -> None:
+        run = recorded.run
+        self._recorded, self._panels = recorded, panels
+        area = find_area(run.spec, recorded.telemetry)
+        self.size = size or _fitting_size(panels, run.spec.robot, area)
+        boxes = self._boxes = _boxes(panels, self.size, len(run.spec.robot.color_sensors))
+        if ClipPanel.WORLD in boxes:
+            box = boxes[ClipPanel.WORLD]
+            view = fitting_view(run.spec.robot, box.width, box.height, area)
+            self._world = MovingWorld(recorded, view)
+        if ClipPanel.CHART in boxes:
+            box = boxes[ClipPanel.CHART]
+            self._chart = laid_out(
+                _chart(recorded, box.width, span_s), box.width, box.height, titled=False
+            )
+        if ClipPanel.ARRAYS in boxes:
+            self._arrays = SensorArrays(recorded)
+
+    def image(self, moment: ClipMoment) -> Image:
+        """Return the frame as a Pillow image. The instants of successive calls must not decrease."""
+        from PIL import Image
+
+        image = Image.new("RGB", self.size, "white")
+        for box, part in self._parts(moment):
+            image.paste(image_of(part) if isinstance(part, Drawing) else part, (box.left, box.top))
+        return image
+
+    def drawing(self, moment: ClipMoment) -> Drawing:
+        """Return the frame as a drawing, with text and curves as shapes."""
+        shapes: list[Shape] = []
+        for box, part in self._parts(moment):
+            if isinstance(part, Drawing):
+                shapes += moved(part, box.left, box.top)
+            else:
+                shapes.append(Raster(box.left, box.top, part.width, part.height, np.asarray(part)))
+        return Drawing(printable(self._recorded.run.program.name), *self.size, tuple(shapes))
+
+    def _parts(self, moment: ClipMoment) -> Iterable[tuple[PictureBox, Drawing | Image]]:
+        """Yield everything that is drawn, with its place."""
+        caption = PictureBox(0, 0, self.size[0], _CAPTION_PX)
+        yield caption, _caption(moment, caption)
+        if box := self._boxes.get(ClipPanel.WORLD):
+            picture = self._world.at(moment)
+            yield _centred(box, picture.size), picture
+        if box := self._boxes.get(ClipPanel.ARRAYS):
+            yield box, arrays_drawing(self._arrays.at(moment), box.width, box.height)
+        if box := self._boxes.get(ClipPanel.CHART):
+            yield box, drawn_until(self._chart, moment.time_s)
+
+
+def _boxes(panels: Sequence[ClipPanel], size: Size, sensors: int) -> dict[ClipPanel, PictureBox]:
+    """Return the place of each panel: the world above, arrays and chart below.
+
+    Raises:
+        ConfigError: one is too small.
+    """
+    width, height = size[0] - 2 * PAD, size[1] - _CAPTION_PX - PAD
+    below = [panel for panel in (ClipPanel.ARRAYS, ClipPanel.CHART) if panel in panels]
+    strip = 0
+    if below:
+        strip = height
+        if ClipPanel.WORLD in panels:
+            strip = min(
+                max(round(size[1] * _STRIP_SHARE), 100),
+                max(_STRIP_PX, round(size[1] * _STRIP_SHARE)),
+            )
+    boxes: dict[ClipPanel, PictureBox] = {}
+    if ClipPanel.WORLD in panels:
+        boxes[ClipPanel.WORLD] = PictureBox(PAD, _CAPTION_PX, width, height - strip)
+    left, top = PAD, size[1] - PAD - strip
+    if ClipPanel.ARRAYS in below:
+        wanted = sensors * max(strip - _LABELS_PX + PAD, _FACE_PX)
+        taken = min(wanted, round(width * _ARRAYS_SHARE)) if ClipPanel.CHART in below else width
+        boxes[ClipPanel.ARRAYS] = PictureBox(left, top, taken, strip)
+        left, width = left + taken, width - taken
+    if ClipPanel.CHART in below:
+        boxes[ClipPanel.CHART] = PictureBox(left, top, width, strip)
+    for panel, box in boxes.items():
+        if box.width < 60 or box.height < 50:
+            raise ConfigError(
+                f"{size[0]}x{size[1]} is too small", f"no room for the panel {panel}", key="--size"
+            )
+    return boxes
+
+
+def _centred(box: PictureBox, size: Size) -> PictureBox:
+    return PictureBox(
+        box.left + (box.width - size[0]) // 2, box.top + (box.height - size[1]) // 2, *size
+    )
+
+
+def _chart(recorded: Recorded, columns: int, span_s: tuple[float, float]) -> ChartData:
+    """Return the chart of the printed samples, at the times at which they were printed."""
+    low, high = span_s
+    return sample_chart(recorded.samples, columns, span_s if high > low else (low - 0.5, low + 0.5))
+
+
+def _caption(moment: ClipMoment, box: PictureBox) -> Drawing:
+    """Return a line with the time and as many values as fit."""
+    words: list[Shape] = []
+    x = float(PAD)
+    for at, text in enumerate(
+        [f"{moment.time_s:.2f} s", *(f"{name}: {value:.5g}" for name, value in moment.values)]
+    ):
+        text = printable(text)
+        if at and x + len(text) * LETTER_PX > box.width - PAD:
+            break
+        words.append(Words(x, box.height / 2, text, strong=not at))
+        x += len(text) * LETTER_PX + 2 * PAD
+    return Drawing("", box.width, box.height, tuple(words))
+
+
+class MovingWorld:
+    """The world with the robot and what its pen has drawn.
+
+    Args:
+        recorded: The run.
+        view: Scale and size.
+
+    Raises:
+        LogError: the mat no longer exists.
+    """
+
+    def __init__(self, recorded: Recorded, view: Viewport) -> None:
+        self._recorded, self._spec, self._view = recorded, recorded.run.spec, view
+        mat = mat_pixels(mat_files(recorded.run))
+        self._painter = world_painter(mat, has_floor=self._spec.world.is_open)
+        self._traced = 0
+        """Records whose pen traces are drawn."""
+
+    def at(self, moment: ClipMoment) -> Image:
+        """Return the picture. The instants of successive calls must not decrease."""
+        from PIL import Image
+
+        self._painter.trace.add(
+            pen_trace(self._spec, self._recorded.telemetry[self._traced : moment.tick + 1])
+        )
+        self._traced = moment.tick + 1
+        return Image.fromarray(
+            self._painter.paint(self._view, scene_of(self._spec, sound_pose(moment.record)))
+        )
+
+
+class SensorArrays:
+    """What the colour sensors see.
+
+    Args:
+        recorded: The run.
+
+    Raises:
+        LogError: the mat no longer exists.
+    """
+
+    def __init__(self, recorded: Recorded) -> None:
+        self._run = recorded.run
+        self._mat, self._recording = open_mat(recorded.run), Recording(recorded.run)
+
+    def at(self, moment: ClipMoment) -> list[DiscFace]:
+        """Return what is shown of each sensor; nothing for a damaged record."""
+        if sound_pose(moment.record) is None:
+            return []
+        run = self._run
+        instant = instant_of(moment.record, run.spec, run.noise_at(moment.record))
+        return disc_faces(
+            run.spec, instant, self._recording.field_at(moment.tick, self._mat), run.program
+        )

@@ -1,0 +1,213 @@
+"""What colour sensors see: discs of pixels, drawn in any size from one description."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import numpy.typing as npt
+
+from tuisim.base.data_class import dataclass
+from tuisim.base.source import Program
+from tuisim.engine.core.css_colors import Rgb
+from tuisim.engine.core.field import Field, disc_mask
+from tuisim.engine.core.sensors.color import ColorReading, LightRead, pixel_array, reading
+from tuisim.engine.core.spec import RunSpec
+from tuisim.engine.core.state import Instant
+from tuisim.programs.robot.thresholds import AIM, ProgramThreshold, read_in, thresholds_in
+from tuisim.terminal.pixels import Pixels
+
+RIM_RGB = (58, 70, 88)
+"""Around a disc: neither black, white nor a colour of a mat, so that its outline is seen on any of them."""
+
+RIM_16_RGB = (0, 0, 135)
+"""In place of `RIM_RGB` for 8 or 16 colours: they have no grey to spare, and a pattern would outshine the disc."""
+
+RINGS = ("centre", "middle", "edge")
+"""Rings of equal width, from the inside."""
+
+_RIM_SHARE = 0.06
+"""Width of the rim, as a share of the diameter."""
+_FINEST = 80
+"""Samples across a disc: of a small one, several a pixel."""
+
+
+@dataclass(frozen=True, slots=True)
+class DiscFace:
+    """What is shown of a colour sensor."""
+
+    name: str
+    box: bytes
+    """The pixels of the box around its disc: d × d, three bytes a pixel, row-major."""
+    seen: ColorReading
+    read: LightRead
+    """What the program reads of it."""
+    reflected_max: int
+    """Value of `reflected_light_intensity` on white."""
+    thresholds: tuple[ProgramThreshold, ...] = ()
+    """What the program compares it with."""
+
+    @property
+    def value_words(self) -> str:
+        """What the program gets."""
+        value = self.read.measured(self.seen, self.reflected_max)
+        match self.read:
+            case LightRead.REFLECTED:
+                return f"{value:.0f} of {self.reflected_max}"
+            case LightRead.MEAN:
+                return f"mean {value:.1f} %"
+            case LightRead.REFLECTION:
+                return f"{value:.0f} %"
+            case _:
+                return f"{value:.1f} %"
+
+    @property
+    def share(self) -> float:
+        """What the program gets, as a share of what it gets on white."""
+        return self.read.measured(self.seen, self.reflected_max) / self.read.most(
+            self.reflected_max
+        )
+
+    @property
+    def limit_shares(self) -> tuple[float, ...]:
+        """The thresholds on the same scale, those on it."""
+        shares = [
+            one.value / one.read.most(self.reflected_max)
+            for one in self.thresholds
+            if not one.read.is_color
+        ]
+        return tuple(share for share in dict.fromkeys(shares) if 0 <= share <= 1)
+
+    def limit_words(self, width: int) -> str:
+        """Return the comparisons of the program and what they give now, such as `line 15 asks > 90: no`.
+
+        Args:
+            width: Letters; to fit, `asks` is left out, then the lines, then all but the first comparison.
+        """
+        said = []
+        for one in self.thresholds:
+            holds = one.holds(one.read.measured(self.seen, self.reflected_max))
+            said.append(one.words + ("" if holds is None else ": yes" if holds else ": no"))
+        asking = (
+            f"line {one.line}{':' if one.sign == AIM else ' asks'} {words}"
+            for words, one in zip(said, self.thresholds, strict=True)
+        )
+        short = [
+            f"line {one.line} {words}" for words, one in zip(said, self.thresholds, strict=True)
+        ]
+        variants = ("; ".join(asking), "; ".join(short), "; ".join(said), *short[:1], *said[:1])
+        return next((words for words in variants if len(words) <= width), variants[-1])
+
+    @property
+    def rings(self) -> tuple[float, ...]:
+        """The mean red of each of `RINGS`, in percent: red is what programs read as light."""
+        red = np.frombuffer(self.box, np.uint8)[::3]
+        side = round(len(red) ** 0.5)
+        at = np.arange(side) - side / 2
+        ring = np.hypot(at[:, None], at[None, :]).ravel() / (side / 2) * len(RINGS)
+        found = [red[(ring >= first) & (ring < first + 1)] for first in range(len(RINGS))]
+        # The disc of a sensor of 2 mm has no middle.
+        return tuple(float(part.mean()) / 255 * 100 if len(part) else math.nan for part in found)
+
+    @property
+    def ring_words(self) -> list[str]:
+        """The rings as whole numbers."""
+        return ["–" if math.isnan(value) else f"{value:.0f}" for value in self.rings]
+
+
+def disc_faces(
+    spec: RunSpec, instant: Instant, field: Field, program: Program | None
+) -> list[DiscFace]:
+    """Return what is shown of each colour sensor of a run at an instant.
+
+    Args:
+        spec: The run.
+        instant: The instant.
+        field: The mat, prepared for the sensors.
+        program: What tells which value is shown, and its thresholds; None for none.
+    """
+    thresholds = thresholds_in(program, spec.robot) if program else {}
+    faces = []
+    for sensor in spec.robot.color_sensors:
+        limits = thresholds.get(sensor.name, ())
+        read = next((one.read for one in limits if not one.read.is_color), read_in(program))
+        box, seen = pixel_array(sensor, instant, field), reading(sensor, instant, field)
+        faces.append(DiscFace(sensor.name, box, seen, read, spec.profile.reflected_max, limits))
+    return faces
+
+
+def draw_disc(
+    box: bytes, width_px: int, height_px: int, ground_rgb: Rgb, rim_rgb: Rgb, tall: float = 1.0
+) -> Pixels:
+    """Return the picture of a disc, as large as it fits, in the middle.
+
+    Args:
+        box: The pixels of its box: d × d, three bytes a pixel, row-major.
+        width_px: Width of the picture, at least 1.
+        height_px: Its height, at least 1.
+        ground_rgb: Background colour.
+        rim_rgb: Colour around the disc.
+        tall: Height of a pixel, as a multiple of its width.
+
+    Returns:
+        Shape (height_px, width_px, 3).
+    """
+    pixels = np.frombuffer(box, np.uint8).reshape(-1, 3)
+    diameter = round(len(pixels) ** 0.5)
+    side_px = min(width_px, height_px * tall)
+    fine = max(1, min(6, math.ceil(_FINEST / side_px)))
+    rim_mm = _RIM_SHARE * diameter
+    mm_per_px = (diameter + 2 * rim_mm) / side_px
+    east = _from_middle(width_px, fine) * mm_per_px
+    north = _from_middle(height_px, fine) * mm_per_px * tall
+    # A disc lies around the middle of a pixel of its box, see `disc_mask`.
+    cols, rows = (np.floor(at + diameter / 2 + 0.5).astype(np.intp) for at in (east, north))
+    inside = np.zeros((diameter + 2, diameter + 2), bool)
+    inside[1:-1, 1:-1] = disc_mask(diameter)
+    cols, rows = cols.clip(-1, diameter), rows.clip(-1, diameter)
+    within = inside[rows[:, None] + 1, cols[None, :] + 1]
+    is_rim = np.hypot(north[:, None], east[None, :]) <= diameter / 2 + rim_mm
+    inside_share, rim_share = (_means(part[..., None], fine)[..., 0] for part in (within, is_rim))
+    # Each pixel has one colour of disc, rim or ground: mixed ones would blur the outline.
+    picture = np.empty((height_px, width_px, 3), np.uint8)
+    picture[:] = ground_rgb
+    picture[rim_share >= 0.5] = rim_rgb
+    at = rows.clip(0, diameter - 1)[:, None] * diameter + cols.clip(0, diameter - 1)[None, :]
+    seen = _means(pixels[at] * within[..., None], fine) / np.maximum(inside_share, 1e-9)[..., None]
+    is_disc = inside_share >= 0.5
+    picture[is_disc] = np.rint(seen[is_disc])
+    return picture
+
+
+def _means(samples: npt.NDArray[np.generic], fine: int) -> npt.NDArray[np.float64]:
+    """Return the mean of each block of `fine` × `fine` samples, shape (rows, columns, channels)."""
+    rows, cols, channels = samples.shape
+    means: npt.NDArray[np.float64] = samples.reshape(
+        rows // fine, fine, cols // fine, fine, channels
+    ).mean(axis=(1, 3))
+    return means
+
+
+def _from_middle(size_px: int, fine: int) -> npt.NDArray[np.float64]:
+    """Return the places of samples in pixels from the middle; the middle of an odd size is that of a pixel."""
+    return (np.arange(size_px * fine) + 0.5) / fine - size_px / 2
+
+
+def shrunk(pixels: npt.NDArray[np.uint8], rows: int, columns: int) -> npt.NDArray[np.float64]:
+    """Return the mean of the pixels in each cell of a coarser grid.
+
+    Args:
+        pixels: Shape (h, w).
+        rows: Of the coarser grid, at most h.
+        columns: Of the coarser grid, at most w.
+
+    Returns:
+        Shape (rows, columns).
+    """
+    down = np.arange(rows + 1) * pixels.shape[0] // rows
+    across = np.arange(columns + 1) * pixels.shape[1] // columns
+    sums = np.add.reduceat(
+        np.add.reduceat(pixels, down[:-1], axis=0, dtype=np.float64), across[:-1], axis=1
+    )
+    means: npt.NDArray[np.float64] = sums / (np.diff(down)[:, None] * np.diff(across)[None, :])
+    return means

@@ -1,0 +1,221 @@
+"""What the pen has drawn."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from itertools import groupby
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from tuisim.base.data_class import dataclass
+from tuisim.engine.core.css_colors import Rgb, css_rgb
+from tuisim.engine.core.spec import PenSpec, RobotSpec, RunSpec
+from tuisim.engine.core.tick_record import FLAG_PEN_DOWN
+from tuisim.engine.runs.arrays import FloatArray, world_points_mm
+from tuisim.pictures.scene.view import Viewport
+from tuisim.terminal.pixels import Pixels
+
+_LUMA = np.array([0.299, 0.587, 0.114])
+_APART, _GREY_APART = 130.0, 90.0
+"""Least difference of a line from the ground: as a distance of colours, and of their brightness."""
+
+
+def visible_on(ground: Pixels, rgb: Rgb, grey: bool = False) -> Pixels:
+    """Return a colour for each pixel below a line: that of the line, or a darker or lighter one where it would vanish.
+
+    Args:
+        ground: Shape (n, 3).
+        rgb: Colour of the line.
+        grey: Only brightness will be seen.
+    """
+    line = np.array(rgb, np.float64)
+    if grey:
+        vanishes = np.abs(ground @ _LUMA - line @ _LUMA) < _GREY_APART
+    else:
+        vanishes = np.square(ground - line).sum(axis=1) < _APART**2
+    shown = np.repeat(line[None], len(ground), axis=0)
+    is_light = (ground @ _LUMA > 127)[:, None]
+    shown[vanishes] = np.where(is_light, line * 0.3, line * 0.3 + 178)[vanishes]
+    pixels: Pixels = np.rint(shown).astype(np.uint8)
+    return pixels
+
+
+_LONGEST_STEP_MM = 250.0
+"""Two trace points further apart are not joined: the robot was placed elsewhere."""
+
+
+def trace_pixels(
+    view: Viewport, xs_mm: FloatArray, ys_mm: FloatArray, width_mm: float
+) -> tuple[FloatArray, ...]:
+    """Return the picture pixels that a trace covers.
+
+    Args:
+        view: The visible part of the field.
+        xs_mm: World x of the points in order, shape (n,); NaN lifts the pen.
+        ys_mm: World y of the points, shape (n,).
+        width_mm: Width of the pen; at least one pixel is drawn.
+
+    Returns:
+        Rows and columns, each shape (m,), whole numbers inside the picture, possibly repeated.
+    """
+    xs, ys = _joined(xs_mm, ys_mm, view.mm_per_px / 2)
+    cols = (xs - view.left_mm) / view.mm_per_px
+    rows = (view.top_mm - ys) / view.mm_per_row
+    across, down = _spread(width_mm / view.mm_per_px), _spread(width_mm / view.mm_per_row)
+    cols = np.floor(cols[:, None, None] + across[None, :, None] + 0 * down[None, None, :]).ravel()
+    rows = np.floor(rows[:, None, None] + 0 * across[None, :, None] + down[None, None, :]).ravel()
+    inside = (cols >= 0) & (cols < view.width_px) & (rows >= 0) & (rows < view.height_px)
+    return rows[inside].astype(np.intp), cols[inside].astype(np.intp)
+
+
+def _spread(width_px: float) -> FloatArray:
+    """Return the pixels across a line, relative to its middle."""
+    count = max(1, round(width_px))
+    return np.arange(count, dtype=np.float64) - (count - 1) / 2
+
+
+def _joined(xs: FloatArray, ys: FloatArray, step_mm: float) -> tuple[FloatArray, FloatArray]:
+    """Return points no further apart than a step along the trace, NaN dropped."""
+    good = np.isfinite(xs) & np.isfinite(ys)
+    if len(xs) < 2:
+        return xs[good], ys[good]
+    lengths = np.hypot(np.diff(xs), np.diff(ys))
+    drawn = np.isfinite(lengths) & (lengths <= _LONGEST_STEP_MM) & (lengths > step_mm)
+    starts = np.flatnonzero(drawn)
+    counts = np.ceil(lengths[starts] / step_mm).astype(np.intp)
+    if not len(starts):
+        return xs[good], ys[good]
+    which = np.repeat(starts, counts)
+    first = np.repeat(np.cumsum(counts) - counts, counts)
+    share = (np.arange(len(which)) - first) / np.repeat(counts, counts)
+    between_x = xs[which] + share * (xs[which + 1] - xs[which])
+    between_y = ys[which] + share * (ys[which + 1] - ys[which])
+    return np.concatenate((xs[good], between_x)), np.concatenate((ys[good], between_y))
+
+
+_FALLBACK = "red"
+
+
+def pen_rgb(color: str) -> Rgb:
+    """Return the colour of a pen: a CSS name or `#rrggbb`; red for anything else."""
+    found = css_rgb(color) or css_rgb(_FALLBACK)
+    assert found is not None
+    return found
+
+
+@dataclass(frozen=True, slots=True)
+class Piece:
+    """A part of the trace, drawn with one pen."""
+
+    xs_mm: FloatArray
+    """Shape (n,); NaN lifts the pen."""
+    ys_mm: FloatArray
+    rgb: Rgb
+    width_mm: float
+
+    @classmethod
+    def of(cls, xs_mm: FloatArray, ys_mm: FloatArray, pen: PenSpec) -> Piece:
+        """Return what a pen has drawn."""
+        return cls(xs_mm, ys_mm, pen_rgb(pen.color), pen.width_mm)
+
+    def apart(self) -> Piece:
+        """Return the same after the pen was lifted."""
+        return replace(
+            self, xs_mm=np.insert(self.xs_mm, 0, np.nan), ys_mm=np.insert(self.ys_mm, 0, np.nan)
+        )
+
+    @property
+    def pen(self) -> tuple[Rgb, float]:
+        """The colour and width of the pen."""
+        return self.rgb, self.width_mm
+
+
+class PenTrace:
+    """Everything that the pen has drawn since the trace was last cleared."""
+
+    def __init__(self) -> None:
+        self._pieces: list[Piece] = []
+        self.count = 0
+        """Number of points ever added; grows with every change but clearing."""
+        self.clears = 0
+        """How often the trace was cleared."""
+
+    def add(self, piece: Piece) -> None:
+        """Add points, joined to the last ones if the pen is the same."""
+        if not len(piece.xs_mm):
+            return
+        self.count += len(piece.xs_mm)
+        if self._pieces and self._pieces[-1].pen == piece.pen:
+            last = self._pieces[-1]
+            xs_mm = np.concatenate((last.xs_mm[-1:], piece.xs_mm))
+            piece = replace(
+                piece, xs_mm=xs_mm, ys_mm=np.concatenate((last.ys_mm[-1:], piece.ys_mm))
+            )
+        self._pieces.append(piece)
+
+    def clear(self) -> list[Piece]:
+        """Clear the trace; return its pieces."""
+        pieces, self._pieces = self._pieces, []
+        self.clears += 1
+        return pieces
+
+    def put_back(self, pieces: list[Piece]) -> None:
+        """Put pieces of a cleared trace before all others; what is drawn is drawn anew."""
+        self._pieces[:0] = pieces
+        self.clears += 1
+
+    def pieces(self, first: int) -> Iterator[Piece]:
+        """Return the pieces from index `first` on."""
+        return iter(self._pieces[first:])
+
+    def __len__(self) -> int:
+        return len(self._pieces)
+
+    def join(self) -> None:
+        """Merge consecutive pieces of the same pen, so that they are drawn in one step."""
+        joined = []
+        for (rgb, width_mm), alike in groupby(self._pieces, key=lambda piece: piece.pen):
+            pieces = list(alike)
+            xs_mm, ys_mm = (
+                np.concatenate(parts)
+                for parts in zip(*((p.xs_mm, p.ys_mm) for p in pieces), strict=True)
+            )
+            joined.append(Piece(xs_mm, ys_mm, rgb, width_mm))
+        self._pieces = joined
+
+
+def pen_points_mm(robot: RobotSpec, telemetry: npt.NDArray[Any]) -> tuple[FloatArray, FloatArray]:
+    """Return x and y of the pen in the world at each record of telemetry, up or down, each of shape (n,)."""
+    return world_points_mm(telemetry, robot.pen.x_mm, robot.pen.y_mm)
+
+
+def drawn_points_mm(
+    robot: RobotSpec, telemetry: npt.NDArray[Any]
+) -> tuple[FloatArray, FloatArray, npt.NDArray[np.bool_]]:
+    """Return x and y of the pen at each record of telemetry, NaN where it was up, and whether it was; shape (n,)."""
+    xs_mm, ys_mm = pen_points_mm(robot, telemetry)
+    lifted = (telemetry["flags"] & FLAG_PEN_DOWN) == 0
+    xs_mm[lifted] = ys_mm[lifted] = np.nan
+    return xs_mm, ys_mm, lifted
+
+
+FAR_MM = 1e5
+"""What is drawn farther from the field is left out: the time for a line grows with its length."""
+_FINE_MM = 1.0
+"""In most ticks the pen moves less."""
+
+
+def pen_trace(spec: RunSpec, telemetry: npt.NDArray[Any]) -> Piece:
+    """Return the pen trace of a run, from the records of `engine.runs.views.TelemetryView.array`."""
+    xs_mm, ys_mm, _ = drawn_points_mm(spec.robot, telemetry)
+    # Damaged records may have no valid pose.
+    far = (np.abs(xs_mm) >= FAR_MM) | (np.abs(ys_mm) >= FAR_MM)
+    xs_mm[far] = ys_mm[far] = np.nan
+    places = np.nan_to_num(np.round(np.stack((xs_mm, ys_mm)) / _FINE_MM), nan=FAR_MM)
+    moved = np.any(np.diff(places, axis=1, prepend=np.nan) != 0, axis=0)
+    # The end of a line is where the next one begins, or the pen is lifted.
+    kept = moved | np.append(moved[1:], True)
+    return Piece.of(xs_mm[kept], ys_mm[kept], spec.robot.pen)

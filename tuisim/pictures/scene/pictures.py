@@ -1,0 +1,188 @@
+"""Whole pictures of the world of a run for files, notebooks and reports: as the app draws it, in a frame."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tuisim.engine.core.css_colors import Rgb
+from tuisim.engine.core.geometry import Pose
+from tuisim.engine.core.outline import outline_of
+from tuisim.engine.core.sensors.touch import pressed
+from tuisim.engine.core.sensors.ultrasonic import rays_mm
+from tuisim.engine.core.spec import PenSpec, RobotSpec, RunSpec
+from tuisim.pictures.scene.painter import FRAME_PX, ScenePainter, SceneState
+from tuisim.pictures.scene.pen import FAR_MM, PenTrace, Piece, pen_trace
+from tuisim.pictures.scene.robot import drawn_reach_mm
+from tuisim.pictures.scene.view import FIELD, Area, Viewport, whole_field
+from tuisim.terminal.pixels import Pixels
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+    from PIL.Image import Image
+
+    from tuisim.engine.runs.run_folder import StoredRun
+    from tuisim.engine.runs.views import TickRecord
+
+MM_PER_PX = 3
+"""Scale of the picture of a run."""
+
+RIM_RGB: Rgb = (232, 234, 238)
+"""Around the field."""
+
+
+def find_area(spec: RunSpec, records: NDArray[Any]) -> Area:
+    """Return where a robot has been, with the whole field; without a floor around it, the field.
+
+    Args:
+        records: Telemetry, structured as `TICK_FIELDS`.
+    """
+    if not spec.world.is_open or not len(records):
+        return FIELD
+    xs_mm, ys_mm = (
+        np.clip(np.nan_to_num(records[key]), -FAR_MM, FAR_MM) for key in ("x_mm", "y_mm")
+    )
+    return Area(
+        min(FIELD.left, float(xs_mm.min())),
+        min(FIELD.lower, float(ys_mm.min())),
+        max(FIELD.right, float(xs_mm.max())),
+        max(FIELD.upper, float(ys_mm.max())),
+    )
+
+
+def world_view(robot: RobotSpec, mm_per_px: float = MM_PER_PX, area: Area = FIELD) -> Viewport:
+    """Return a view in which a robot is completely visible while its axle is in an area."""
+    # The field is no multiple of three mm wide: the rest of the last column is left out.
+    width_px, height_px = (max(int(side_mm / mm_per_px), 1) for side_mm in area.size_mm)
+    rim_px = math.ceil(drawn_reach_mm(outline_of(robot)) / mm_per_px) + FRAME_PX
+    left_mm, top_mm = area.left - rim_px * mm_per_px, area.upper + rim_px * mm_per_px
+    return Viewport(width_px + 2 * rim_px, height_px + 2 * rim_px, mm_per_px, left_mm, top_mm)
+
+
+def find_view(spec: RunSpec, area: Area = FIELD) -> Viewport:
+    """Return the view of `world_picture`: a larger area is shown in a picture that is about as large."""
+    larger = max(
+        side_mm / field_mm for side_mm, field_mm in zip(area.size_mm, FIELD.size_mm, strict=True)
+    )
+    return world_view(spec.robot, MM_PER_PX * larger, area)
+
+
+def fitting_view(robot: RobotSpec, width_px: int, height_px: int, area: Area = FIELD) -> Viewport:
+    """Return the view of `world_view` in the largest scale that fits a size."""
+    reach_mm = drawn_reach_mm(outline_of(robot))
+    # The rim is rounded up to whole pixels on both sides.
+    sides = zip(area.size_mm, (width_px, height_px), strict=True)
+    mm_per_px = max(
+        (side_mm + 2 * reach_mm) / max(side_px - 2 * (FRAME_PX + 1), 1)
+        for side_mm, side_px in sides
+    )
+    return world_view(robot, mm_per_px, area)
+
+
+def scene_of(spec: RunSpec, pose: Pose | None, *, rays: bool = False) -> SceneState:
+    """Return what is on the field of a run.
+
+    Args:
+        pose: Where the robot is; None for no robot.
+        rays: Whether the rays of the ultrasonic sensor are seen.
+    """
+    robot, world, at = spec.robot, spec.world, pose or spec.world.start
+    sensor = robot.ultrasonic if rays and pose else None
+    return SceneState(
+        robot,
+        at,
+        world.obstacles,
+        tuple(rays_mm(at, sensor, world)) if sensor else (),
+        pressed=tuple(
+            not touch.pressed_by and pressed(at, touch, world) for touch in robot.touch_sensors
+        ),
+        beacon=world.beacon,
+        has_robot=pose is not None,
+    )
+
+
+def world_painter(
+    mat: Pixels, traces: Sequence[Piece] = (), *, has_floor: bool = False
+) -> ScenePainter:
+    """Return what draws a field for files, with pen traces on it."""
+    trace = PenTrace()
+    for piece in traces:
+        trace.add(piece.apart())
+    return ScenePainter(mat, RIM_RGB, trace, for_file=True, has_floor=has_floor)
+
+
+def world_picture(
+    spec: RunSpec,
+    mat: Pixels,
+    pose: Pose | None = None,
+    traces: Sequence[Piece] = (),
+    *,
+    rays: bool = False,
+    area: Area = FIELD,
+) -> Image:
+    """Return mat, obstacles, pen traces and robot.
+
+    Args:
+        mat: Shape (height, width, 3), rows from the top.
+        pose: Where the robot is, by default at its start.
+        rays: Whether to draw the rays of the ultrasonic sensor.
+        area: What is shown.
+
+    Returns:
+        The picture, in the size of `find_view`.
+    """
+    from PIL import Image
+
+    scene = scene_of(spec, pose or spec.world.start, rays=rays)
+    painter = world_painter(mat, traces, has_floor=spec.world.is_open)
+    return Image.fromarray(painter.paint(find_view(spec, area), scene))
+
+
+def sound_pose(record: TickRecord | None) -> Pose | None:
+    """Return the pose of a record; None without one, and for a damaged record, which may have no valid pose."""
+    valid = record is not None and math.isfinite(record.x_mm + record.y_mm + record.heading_deg)
+    return record.pose if record is not None and valid else None
+
+
+def world_at_end(run: StoredRun) -> Image:
+    """Return the world at the end of a run, or at the latest tick of a running one, as a Pillow image.
+
+    Raises:
+        LogError: the recording is damaged, or the mat no longer exists.
+    """
+    from tuisim.engine.mat_cache import mat_pixels
+    from tuisim.engine.runs.run_folder import mat_files
+
+    last, records = run.telemetry.last(), run.telemetry.array()
+    mat, trace = mat_pixels(mat_files(run)), pen_trace(run.spec, records)
+    return world_picture(
+        run.spec, mat, sound_pose(last), (trace,), area=find_area(run.spec, records)
+    )
+
+
+_PATH = PenSpec(color="red", width_mm=12.0)
+_MOST_PATH_POINTS = 2000
+
+
+def path_picture(run: StoredRun, port: Viewport, outside_rgb: Rgb) -> Pixels:
+    """Return a small picture of the way of a run on its mat, in the size of a view.
+
+    Raises:
+        LogError: the recording is damaged, or the mat no longer exists.
+    """
+    from tuisim.engine.mat_cache import mat_pixels
+    from tuisim.engine.runs.run_folder import mat_files
+
+    records = run.telemetry.array()
+    some = records[:: max(1, len(records) // _MOST_PATH_POINTS)]
+    trace = PenTrace()
+    trace.add(Piece.of(some["x_mm"].astype(float), some["y_mm"].astype(float), _PATH))
+    mat, has_floor = mat_pixels(mat_files(run)), run.spec.world.is_open
+    painter = ScenePainter(mat, outside_rgb, trace, has_floor=has_floor)
+    shown = find_area(run.spec, records)
+    if shown != FIELD:
+        port = whole_field(port.width_px, port.height_px, port.cell, shown)
+    return painter.paint(port, scene_of(run.spec, None))

@@ -1,0 +1,277 @@
+"""The robot from above."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import numpy.typing as npt
+
+from tuisim.base.data_class import dataclass
+from tuisim.engine.core.css_colors import Rgb
+from tuisim.engine.core.geometry import Pose
+from tuisim.engine.core.outline import RobotOutline
+from tuisim.engine.runs.arrays import FloatArray
+from tuisim.pictures.scene.view import Viewport
+from tuisim.terminal.pixels import Pixels
+
+_SAMPLES = (4, 8)
+"""Samples across and down a character cell."""
+
+_MIN_CELLS = 7.0
+"""A robot narrower than this many cells is drawn enlarged, to be recognisable."""
+
+_FEW_PX = {1: 8.0, 2: 18.0}
+"""By the pixels across a cell: in a robot narrower than this many pixels the heading marker needs to project beyond
+the body."""
+_NOSE_PX = {1: 1.2, 2: 2.5}
+"""How far it projects."""
+_THIN_PX = {1: 0.4, 2: 1.0}
+"""Half of its width at the tip: in two colours a cell, less of it is lost in what is behind."""
+
+_CRISP_PX = 40.0
+"""A robot narrower than this many pixels has no mixed colours: each pixel shows the part that weighs most in it, and
+its centre is that of a pixel, so that its shape stays the same while it drives straight on."""
+
+_BUMPER_MM = 8.0
+"""Thickness of the bar of a touch sensor."""
+
+_SPOT_MM = 10.0
+"""Radius of a further sensor."""
+
+_NONE, _EDGE, _BODY, _WHEEL, _SENSOR, _MARKER, _BUMPER, _PRESSED, _SPOT = range(9)
+_WEIGHTS = np.array([1.0, 1.5, 1.0, 2.0, 1.5, 2.0, 2.0, 2.0, 1.2])
+"""Of each part where a pixel shows one only: what tells place and heading wins over the body."""
+
+
+@dataclass(frozen=True, slots=True)
+class RobotColors:
+    """Colours of the parts; the defaults are in every 256-colour palette."""
+
+    edge: Rgb = (255, 255, 255)
+    body: Rgb = (0, 95, 215)
+    wheel: Rgb = (28, 28, 28)
+    sensor: Rgb = (255, 95, 95)
+    marker: Rgb = (255, 215, 0)
+    bumper: Rgb = (0, 135, 95)
+    pressed: Rgb = (255, 0, 0)
+    spot: Rgb = (135, 0, 95)
+    edge_cells: float = 0.35
+    """Width of the edge, as a share of a cell's width."""
+    edge_mm: float = 12.0
+    """Largest width of the edge."""
+    has_marker: bool = True
+    has_small_edge: bool = False
+    """Whether a robot of few pixels has an edge too: one without colours would not be seen without."""
+    is_outline: bool = False
+    """Whether only edge and marker are drawn, so that what is below is seen."""
+
+
+COLORED = RobotColors()
+GREY = RobotColors(
+    body=(48, 48, 48),
+    wheel=(0, 0, 0),
+    sensor=(188, 188, 188),
+    marker=(255, 255, 255),
+    bumper=(108, 108, 108),
+    pressed=(0, 0, 0),
+    spot=(128, 128, 128),
+    has_small_edge=True,
+)
+"""For a terminal without colours: dark body, white edge and marker, to stand out on any grey."""
+MONO = RobotColors(
+    edge=(0, 0, 0),
+    body=(255, 255, 255),
+    wheel=(0, 0, 0),
+    sensor=(0, 0, 0),
+    marker=(0, 0, 0),
+    edge_cells=0.6,
+    edge_mm=100.0,
+    has_small_edge=True,
+)
+"""For a terminal of two colours: a black arrow on white within a black edge."""
+CLEARED = RobotColors((255,) * 3, (255,) * 3, (255,) * 3, (255,) * 3, has_marker=False)
+"""For a terminal of two colours and of signs only: a white place for the signs of the robot."""
+GHOST = RobotColors(
+    edge=(175, 0, 175),
+    marker=(175, 0, 175),
+    edge_cells=0.5,
+    edge_mm=30.0,
+    has_small_edge=True,
+    is_outline=True,
+)
+"""For the robot now, while an earlier instant is in view."""
+GREY_GHOST = replace(GHOST, edge=(88, 88, 88), marker=(88, 88, 88))
+
+EARLIER = RobotColors(
+    body=(108, 108, 108), wheel=(68, 68, 68), sensor=(148, 148, 148), marker=(218, 218, 218)
+)
+"""For the robot of an earlier run."""
+
+
+def drawn_reach_mm(outline: RobotOutline) -> float:
+    """Return the radius about a robot's pose of a circle that holds everything that is drawn of it."""
+    wheels_mm = math.hypot(outline.half_width_mm, outline.wheel_radius_mm)
+    bars_mm = (math.hypot(abs(x) + half, abs(y) + _BUMPER_MM) for x, y, half in outline.bumpers_mm)
+    spots_mm = (math.hypot(*spot) + _SPOT_MM for spot in outline.other_sensors_mm)
+    return max((outline.reach_mm, wheels_mm, *spots_mm, *bars_mm))
+
+
+def drawn_scale(outline: RobotOutline, view: Viewport) -> float:
+    """Return the factor by which a robot is drawn enlarged, at least 1."""
+    return max(1.0, _MIN_CELLS * view.cell.cols * view.mm_per_px / (2 * outline.half_width_mm))
+
+
+def draw_robot(
+    picture: Pixels,
+    view: Viewport,
+    pose: Pose,
+    outline: RobotOutline,
+    colors: RobotColors,
+    opacity: float = 1.0,
+    pressed: tuple[bool, ...] = (),
+    detail_cols: int | None = None,
+) -> None:
+    """Paint a robot into a picture, clipped to it.
+
+    Args:
+        picture: Written in place, shape (view.height_px, view.width_px, 3).
+        opacity: 0 … 1.
+        pressed: Whether each bumper is pressed; empty for none.
+        detail_cols: Details are drawn for so many pixels across a cell, 1 or 2; None: for those of the view.
+    """
+    detail_cols = detail_cols or min(view.cell.cols, 2)
+    scale = drawn_scale(outline, view)
+    col, row = view.to_px(pose.x_mm, pose.y_mm)
+    is_crisp = 2 * outline.half_width_mm * scale < _CRISP_PX * view.mm_per_px
+    if is_crisp:
+        col, row = math.floor(col) + 0.5, math.floor(row) + 0.5
+    step_mm, row_mm = view.mm_per_px / scale, view.mm_per_row / scale
+    reach_mm = drawn_reach_mm(outline)
+    left, right = _around(col, reach_mm / step_mm + 2, view.width_px)
+    top, bottom = _around(row, reach_mm / row_mm + 2, view.height_px)
+    if left >= right or top >= bottom:
+        return
+    across, down = (
+        -(-samples // points) for samples, points in zip(_SAMPLES, view.cell[:2], strict=True)
+    )
+    east = (_sampled(left, right, across) - col)[None, :] * step_mm
+    north = (row - _sampled(top, bottom, down))[:, None] * row_mm
+    heading = math.radians(pose.heading_deg)
+    cos, sin = math.cos(heading), math.sin(heading)
+    side, ahead = east * sin - north * cos, east * cos + north * sin
+    detail_mm = step_mm * view.cell.cols / detail_cols
+    # Fine pixels are too small for a part of one to be seen.
+    edge_mm = min(colors.edge_cells * detail_cols * detail_mm, colors.edge_mm)
+    if is_crisp and not colors.has_small_edge:
+        edge_mm = 0.0
+    parts = _parts(
+        outline, side, ahead, detail_mm, detail_cols, edge_mm, has_marker=colors.has_marker
+    )
+    if colors.is_outline:
+        parts[(parts != _EDGE) & (parts != _MARKER)] = _NONE
+    else:
+        _mount(parts, outline, side, ahead, detail_mm, pressed)
+    blocks = parts.reshape(bottom - top, down, right - left, across)
+    _blend(
+        picture[top:bottom, left:right], _strongest(blocks) if is_crisp else blocks, colors, opacity
+    )
+
+
+def _around(middle_px: float, reach_px: float, size_px: int) -> tuple[int, int]:
+    return max(math.floor(middle_px - reach_px), 0), min(math.ceil(middle_px + reach_px), size_px)
+
+
+def _sampled(first_px: int, end_px: int, samples: int) -> FloatArray:
+    fine = (np.arange(samples) + 0.5) / samples
+    return (np.arange(first_px, end_px)[:, None] + fine).ravel()
+
+
+def _parts(
+    outline: RobotOutline,
+    side: FloatArray,
+    ahead: FloatArray,
+    px_mm: float,
+    cell_cols: int,
+    edge_mm: float,
+    *,
+    has_marker: bool,
+) -> npt.NDArray[np.intp]:
+    """Return which part covers each sample, given by its distance to the right and ahead in mm."""
+    across = np.abs(side)
+    parts = np.zeros(side.shape, np.intp)
+    front_mm, back_mm = outline.front_mm, outline.back_mm
+    inside_mm = np.minimum(
+        outline.half_width_mm - across, np.minimum(ahead - back_mm, front_mm - ahead)
+    )
+    parts[inside_mm >= 0] = _EDGE
+    parts[inside_mm >= edge_mm] = _BODY
+    wheel_mm = max(outline.wheel_width_mm, 1.2 * px_mm)
+    beside = np.abs(across - outline.half_width_mm + wheel_mm / 2) <= wheel_mm / 2
+    if outline.has_wheels:
+        parts[beside & (np.abs(ahead) <= outline.wheel_radius_mm)] = _WHEEL
+    # In few pixels the nose sticks out by one, and it is never thinner than that, so that the heading can be seen.
+    is_small = 2 * outline.half_width_mm < _FEW_PX[cell_cols] * px_mm
+    nose_mm = _NOSE_PX[cell_cols] * px_mm if is_small else 0.0
+    tip = front_mm + nose_mm
+    base = back_mm * 0.55
+    # Longer than wide: in an even triangle of few pixels any corner could be the tip.
+    widest_mm = min(0.62 * (outline.half_width_mm - outline.wheel_width_mm), 0.28 * (tip - base))
+    thinnest_mm = (_THIN_PX[cell_cols] if is_small else 0.4) * px_mm
+    flank = np.maximum(widest_mm * (tip - ahead) / (tip - base), thinnest_mm)
+    if has_marker:
+        parts[(ahead >= base) & (ahead <= tip) & (across <= flank)] = _MARKER
+    for x_mm, y_mm, radius in outline.color_sensors_mm:
+        # In pixels of a whole cell a small sensor would only blur the marker.
+        if 2 * radius >= 1.5 * px_mm or cell_cols > 1:
+            parts[np.hypot(side - x_mm, ahead - y_mm) <= max(radius, 0.7 * px_mm)] = _SENSOR
+    return parts
+
+
+def _mount(
+    parts: npt.NDArray[np.intp],
+    outline: RobotOutline,
+    side: FloatArray,
+    ahead: FloatArray,
+    px_mm: float,
+    pressed: tuple[bool, ...],
+) -> None:
+    """Add bumpers and other sensors; the heading marker stays on top."""
+    free = parts != _MARKER
+    for at, (x_mm, y_mm, half) in enumerate(outline.bumpers_mm):
+        # A bar is at least half a pixel thick and long, to stay visible.
+        bar = np.abs(ahead - y_mm) <= max(_BUMPER_MM / 2, 0.5 * px_mm)
+        bar = bar & (np.abs(side - x_mm) <= max(half, 0.5 * px_mm))
+        parts[bar & free] = _PRESSED if at < len(pressed) and pressed[at] else _BUMPER
+    for x_mm, y_mm in outline.other_sensors_mm if 2 * _SPOT_MM >= 1.5 * px_mm else ():
+        parts[np.hypot(side - x_mm, ahead - y_mm) <= _SPOT_MM] = _SPOT
+
+
+def _strongest(blocks: npt.NDArray[np.intp]) -> npt.NDArray[np.intp]:
+    """Return the part that weighs most in each pixel, as blocks of one sample."""
+    weights = np.stack(
+        [(blocks == part).sum(axis=(1, 3)) * weight for part, weight in enumerate(_WEIGHTS)]
+    )
+    strongest: npt.NDArray[np.intp] = weights.argmax(axis=0)[:, None, :, None]
+    return strongest
+
+
+def _blend(
+    target: Pixels, blocks: npt.NDArray[np.intp], colors: RobotColors, opacity: float
+) -> None:
+    drawn = (colors.edge, colors.body, colors.wheel, colors.sensor, colors.marker)
+    table = np.array([(0, 0, 0), *drawn, colors.bumper, colors.pressed, colors.spot], np.int64)
+    # The sums of the three channels and the number of covered samples are added up together, in 16 bits each.
+    packed = (
+        table[:, 0] | table[:, 1] << 16 | table[:, 2] << 32 | (np.arange(len(table)) != _NONE) << 48
+    )
+    _, down, _, across = blocks.shape
+    samples = packed[blocks]
+    total = sum(samples[:, row, :, col] for row in range(down) for col in range(across))
+    red, green, blue, covered = (np.right_shift(total, 16 * field) & 0xFFFF for field in range(4))
+    share = opacity / (down * across)
+    mixed = target * (1 - share * covered)[..., None] + share * np.stack(
+        (red, green, blue), axis=-1
+    )
+    target[:] = np.rint(mixed).astype(np.uint8)

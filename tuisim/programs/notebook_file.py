@@ -1,0 +1,189 @@
+"""Programs in a notebook file, each with the world set up by the cells before it."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+from tuisim.base.data_class import dataclass
+from tuisim.base.errors import ConfigError, nearest
+from tuisim.base.source import PRELUDES, Program, source_lines
+from tuisim.engine.files import read_bytes
+from tuisim.programs.program_file import ProgramSource, beside
+from tuisim.settings.magic_line import parse_line, persistent_after
+
+MAX_NOTEBOOK_BYTES = 64 << 20
+SUFFIX = ".ipynb"
+
+_MAGIC = re.compile(r"%(?P<cell>%)?(?P<name>sim_magic\w*)(?P<words>.*)")
+_VARIABLE = re.compile(r"(?<!\$)\$[A-Za-z_][\w.]*|\{[^{}]+\}")
+"""Variables that IPython expands in a magic line."""
+
+_NUMBERS = re.compile(r"([0-9]+)|([^0-9]+)")
+_HEADING = re.compile(r"#+\s+(.*\S)")
+
+
+@dataclass(frozen=True, slots=True)
+class NotebookProgram:
+    """One program cell."""
+
+    number: int
+    """From 1, among the program cells."""
+    title: str
+    """The nearest heading above it, empty if there is none."""
+    source: ProgramSource
+    unknown: str = ""
+    """A notebook variable in its magic line, such as `$x`; it can run only in the notebook. Empty if there is none."""
+    notes: tuple[str, ...] = ()
+    """Warnings about skipped parts of the cells between the previous program and this one."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Words:
+    """A magic line, as far as it can be evaluated outside the notebook."""
+
+    magic: re.Match[str]
+    settings: Mapping[str, Any]
+    unknown: str
+
+
+def is_notebook(word: str) -> bool:
+    """Return whether a word of the command line names a notebook, or a cell of one as `FILE#number`."""
+    return word.partition("#")[0].endswith(SUFFIX)
+
+
+def notebooks_in(folder: Path) -> list[Path]:
+    """Return the notebooks in a folder and its subfolders, in natural order: 2 comes before 10.
+
+    Hidden folders are left out: Jupyter keeps former versions in them.
+    """
+    found: list[Path] = []
+    for place, folders, files in os.walk(folder):
+        folders[:] = [name for name in folders if not name.startswith(".")]
+        found += [
+            Path(place, name)
+            for name in files
+            if name.endswith(SUFFIX) and not name.startswith(".")
+        ]
+    return sorted(found, key=lambda path: [_natural(part) for part in path.parts])
+
+
+def _natural(name: str) -> list[tuple[int, str]]:
+    """Return a sort key for natural order."""
+    return [
+        (int(digits), "") if digits else (-1, text.lower())
+        for digits, text in _NUMBERS.findall(name)
+    ]
+
+
+def _cells(path: Path) -> Iterator[tuple[str, str]]:
+    """Yield (cell type, text)."""
+    shown, missing = str(path), "there is no such notebook"
+    data = read_bytes(path, MAX_NOTEBOOK_BYTES, ConfigError, missing, folder=missing)
+    if len(data) > MAX_NOTEBOOK_BYTES:
+        raise ConfigError(f"is larger than {MAX_NOTEBOOK_BYTES >> 20} MiB", file=shown)
+    try:
+        for cell in json.loads(data)["cells"]:
+            source = cell["source"]
+            yield str(cell["cell_type"]), source if isinstance(source, str) else "".join(source)
+    except (ValueError, KeyError, TypeError, RecursionError):
+        raise ConfigError(
+            "is not a readable notebook", "one of format 4, as Jupyter saves it", file=shown
+        ) from None
+
+
+def notebook_programs(path: Path) -> list[NotebookProgram]:
+    """Return the programs in a notebook, from the top; what only the notebook knows is left out of their world.
+
+    Raises:
+        ConfigError: it cannot be read, is no notebook, or a magic line in it is wrong.
+    """
+    found: list[NotebookProgram] = []
+    title, persistent, notes = "", dict[str, Any](), list[str]()
+    folder = os.path.dirname(os.path.abspath(path))
+    for place, (kind, text) in enumerate(_cells(path), 1):
+        if kind == "markdown":
+            headings = [match[1] for line in source_lines(text) if (match := _HEADING.match(line))]
+            title = headings[-1] if headings else title
+        if kind != "code":
+            continue
+        where = f"{path}, cell {place}"
+        for words in _magics(text, where):
+            said = beside(path.parent, words.settings)
+            persistent = persistent_after(persistent, said)
+            if words.magic["cell"]:
+                number = len(found) + 1
+                # The magic's line is left empty, so that line numbers are those of the cell.
+                at = text.index("%%")
+                body = "\n" * (text.count("\n", 0, at) + 1) + text[at:].partition("\n")[2]
+                prelude = str(said.get("preload", PRELUDES[words.magic["name"]]))
+                options = {**persistent, **said}
+                cell = Program(f"{path.name}#{number}", body, prelude, module_folder=folder)
+                source = ProgramSource(cell, options, has_magic=True)
+                found.append(NotebookProgram(number, title, source, words.unknown, tuple(notes)))
+                notes.clear()
+            elif words.unknown:
+                notes.append(
+                    f"{where}: {words.unknown} is defined only in the notebook, and is ignored"
+                )
+    return found
+
+
+def _magics(text: str, where: str) -> Iterator[_Words]:
+    """Yield each magic that sets the world, parsed; a cell magic is the first line of its cell."""
+    stripped = text.lstrip()
+    lines = source_lines(stripped)
+    if stripped.startswith("%%"):
+        lines = lines[:1]
+    for line in lines:
+        match = _MAGIC.fullmatch(line.strip())
+        if match is None:
+            continue
+        if match["name"] not in PRELUDES:
+            known = nearest(match["name"], PRELUDES)
+            raise ConfigError(
+                f"no such magic %{match['cell'] or ''}{match['name']}", known, file=where
+            )
+        line_words, unknown = _without_variables(match["words"])
+        try:
+            yield _Words(match, parse_line(line_words, match["name"]).settings, unknown)
+        except ConfigError as error:
+            raise ConfigError(error.message, error.hint, file=where) from None
+
+
+def _without_variables(words: str) -> tuple[str, str]:
+    """Return a magic line without the words that contain variables and their options, and those variables."""
+    unknown = ", ".join(_VARIABLE.findall(words))
+    kept: list[str] = []
+    # A word may contain a variable with blanks in its braces.
+    for word in re.findall(rf"(?:{_VARIABLE.pattern}|\S)+", words) if unknown else ():
+        if not _VARIABLE.search(word):
+            kept.append(word)
+        elif not word.startswith("-") and kept and kept[-1].startswith("-"):
+            kept.pop()
+    return (" ".join(kept) if unknown else words), unknown
+
+
+def chosen_programs(word: str) -> list[NotebookProgram]:
+    """Return the programs that `FILE` or `FILE#number` names.
+
+    Raises:
+        ConfigError: there is no such notebook or program.
+    """
+    name, sharp, cell = word.partition("#")
+    programs = notebook_programs(Path(name))
+    if not programs:
+        raise ConfigError("has no program cells", "they begin with %%sim_magic", file=name)
+    if not sharp:
+        return programs
+    if not cell.isdecimal() or not 1 <= int(cell) <= len(programs):
+        raise ConfigError(f"no program {cell!r}", f"a number from 1 to {len(programs)}", file=name)
+    chosen = programs[int(cell) - 1]
+    if chosen.unknown:
+        hint = "run the cell there, or write a value in its place"
+        raise ConfigError(f"{chosen.unknown} is defined only in the notebook", hint, file=word)
+    return [chosen]

@@ -1,0 +1,54 @@
+"""The parts that were plugged in during a run, in words."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from tuisim.engine.core.plugged import LATE, LEFT, RIGHT, PluggedPart
+from tuisim.engine.core.spec import RunSpec
+from tuisim.engine.runs.run_folder import StoredRun
+from tuisim.programs.robot.library import DEVICES, SENSES_WALLS
+
+
+def describe_plugged(run: StoredRun) -> str:
+    """Return in one sentence which parts a program got that its text did not show, and what to do; empty for none."""
+    parts = list_parts(run.plugged)
+    if not parts:
+        return ""
+    words = f"plugged in {parts}{_name_remedy(run.plugged, run.spec)}"
+    shown = f"; `tuisim robots --from {run.number}` shows the robot" if run.number else ""
+    return f"{run.program.name} asked for parts that its text does not show: {words}{shown}"
+
+
+def _name_remedy(parts: Sequence[PluggedPart], spec: RunSpec) -> str:
+    """Return how a sensor for walls that was plugged in gets some; empty for none, or if there are walls."""
+    is_blind = spec.world.is_open and any(DEVICES[part.part] in SENSES_WALLS for part in parts)
+    return "; there are no walls: --walls on" if is_blind else ""
+
+
+def describe_newest(parts: Sequence[PluggedPart], spec: RunSpec) -> str:
+    """Return what was plugged in last; empty for a left wheel, which is told of together with the right one."""
+    last = parts[-2:] if parts[-1].role == RIGHT else parts[-1:]
+    words = f"{list_parts(last)}{_name_remedy(last, spec)}"
+    return "" if parts[-1].role == LEFT else f"— plugged in, as the program asked for it: {words}"
+
+
+def list_parts(parts: Sequence[PluggedPart]) -> str:
+    """Return the parts with their ports and the lines that asked for them; empty for none."""
+    right = {(part.tick, part.line): part.port for part in parts if part.role == RIGHT}
+    words = []
+    wheels = {part.port: number for number, part in enumerate(parts) if part.role in (LEFT, RIGHT)}
+    for number, part in enumerate(parts):
+        if not part.role and wheels.get(part.port, 0) > number:
+            # It has become a wheel's.
+            continue
+        line = f" (line {part.line})" if part.line else ""
+        kind = DEVICES[part.part]
+        if part.role == LEFT:
+            other = right.get((part.tick, part.line), "")
+            words.append(f"wheels on {part.port} (left) and {other}{line}")
+        elif part.role == LATE:
+            words.append(f"{kind} on {part.port}, no wheel's since the robot had driven{line}")
+        elif not part.role:
+            words.append(f"{kind} on {part.port}{line}")
+    return ", ".join(words)

@@ -1,0 +1,356 @@
+"""Program files: the examples, and what a program file contains: its text, its magic line, its prelude."""
+
+from __future__ import annotations
+
+import ast
+import os
+import re
+import shlex
+from collections.abc import Iterator, Mapping
+from contextlib import suppress
+from dataclasses import field, replace
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from tuisim.base.data_class import dataclass
+from tuisim.base.errors import ConfigError, closest, did_you_mean, nearest, see_page
+from tuisim.base.folders import programs_folder, user_path
+from tuisim.base.regular_file import read_regular
+from tuisim.base.source import (
+    LIBRARIES,
+    PRELUDE_TEXTS,
+    PRELUDES,
+    Program,
+    decode_source,
+    source_lines,
+)
+from tuisim.engine.files import close_beside, read_bytes
+from tuisim.programs.robot.course import global_names, uses_course_names
+from tuisim.programs.robot.source import library_of, read_modules
+from tuisim.settings.shared_options import parse_words
+
+MAX_PROGRAM_BYTES = 4 << 20
+LOG_SUFFIXES = (".csv", ".tsv", ".parquet", ".jsonl", ".arrow")
+"""What files with measurements end in."""
+
+FILE_FIELDS = {"background", "robot", "obstacles", "profile", "mats"}
+"""Settings that may name a file or a folder."""
+
+_MAGIC = re.compile(r"(?P<comment>#\s*)?%%?(?P<name>sim_magic\w*)(?P<words>.*)")
+_READS_ANY_NAME = {"eval", "exec", "globals", "vars"}
+"""Functions that may use names that do not appear in the program."""
+
+_IMPORT = re.compile(rf"^\s*(from|import)\s+({'|'.join(LIBRARIES)})\b", re.MULTILINE)
+
+_DOCSTRING = re.compile(r"[rRuU]?(\"\"\"|'''|\"|')")
+
+
+@dataclass(frozen=True, slots=True)
+class Magic:
+    """A program's magic line."""
+
+    line: int
+    """From 1."""
+    prelude: str
+    options: Mapping[str, Any]
+    """By path."""
+    comment: bool
+    """Whether it is a comment; if not, it is not Python and must be commented out."""
+
+
+@dataclass(frozen=True, slots=True)
+class ProgramSource:
+    """A program as read from its file."""
+
+    program: Program
+    options: Mapping[str, Any] = field(default_factory=dict)
+    """Options of the magic line, by path; file names are resolved from the program's folder."""
+    has_magic: bool = False
+    """Whether it has a magic line, or is the cell of a notebook."""
+
+
+class ProgramFile(NamedTuple):
+    """One example program."""
+
+    name: str
+    """File name, such as `log_greys.py`."""
+    path: Path
+    title: str
+    """First line of the program's docstring, empty if it has none."""
+
+
+def _title_of(path: Path) -> str:
+    try:
+        lines = source_lines(read_regular(path, MAX_PROGRAM_BYTES, follow_links=True).decode())
+        # A program may begin with a magic line, which is not Python.
+        module = ast.parse("\n".join("" if line.startswith("%") else line for line in lines))
+    except (SyntaxError, ValueError, OSError):
+        return ""
+    return (ast.get_docstring(module) or "").partition("\n")[0].strip()
+
+
+def programs() -> list[ProgramFile]:
+    """Return the example programs by name.
+
+    Raises:
+        ConfigError: there is no folder of programs.
+    """
+    return [
+        ProgramFile(path.name, path, _title_of(path))
+        for path in sorted(programs_folder().glob("*.py"))
+    ]
+
+
+def _head(lines: list[str]) -> Iterator[tuple[int, str]]:
+    """Yield (line number, text) of the lines before the first statement, without the docstring."""
+    closing = ""
+    for number, raw in enumerate(lines, start=1):
+        line = raw.strip()
+        if closing:
+            closing = "" if closing in line else closing
+        elif not line or line.startswith(("#", "%")):
+            yield number, line
+        elif opened := _DOCSTRING.match(line):
+            quote = opened.group(1)
+            if quote not in line[opened.end() :]:
+                closing = quote
+        else:
+            return
+
+
+def beside(folder: Path, options: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the options of a magic line, with file names resolved from the folder of the program or its notebook."""
+    found = dict(options)
+    for field_name in FILE_FIELDS & found.keys():
+        word = found[field_name]
+        if field_name == "mats" or names_file(word):
+            found[field_name] = str(folder / user_path(word))
+    return found
+
+
+def names_file(word: str) -> bool:
+    """Return whether the value of one of `FILE_FIELDS` names a file, and not something built in."""
+    return os.sep in word or bool(Path(word).suffix)
+
+
+def find_magic(text: str, name: str) -> Magic | None:
+    """Return the magic line before the program's first statement, or None; errors blame the file `name`.
+
+    Raises:
+        ConfigError: the magic is not one of `PRELUDES`, or an option in it is wrong.
+    """
+    for number, line in _head(source_lines(text)):
+        match = _MAGIC.fullmatch(line)
+        if match is None:
+            continue
+        where = f"{name}, line {number}"
+        if match["name"] not in PRELUDES:
+            hint = f"{nearest(match['name'], PRELUDES)} {see_page('writing-programs')}"
+            raise ConfigError(f"no such magic %%{match['name']}", hint, file=where)
+        try:
+            options = parse_words(shlex.split(match["words"]))
+        except ConfigError as error:
+            raise ConfigError(error.message, error.hint, file=where) from None
+        except ValueError as error:
+            raise ConfigError(f"cannot be split into words: {error}", file=where) from None
+        return Magic(number, PRELUDES[match["name"]], options, match["comment"] is not None)
+    return None
+
+
+def with_mat(text: str, name: str, mat: str) -> str:
+    """Return a program whose magic line names a mat; if it has none, with a line for the preloaded prelude.
+
+    Args:
+        text: The program.
+        name: Of its file, for errors.
+        mat: Name of the mat, or path of its image.
+
+    Raises:
+        ConfigError: the magic line that is there is wrong.
+    """
+    magic = find_magic(text, name)
+    lines = text.split("\n")
+    if magic is None:
+        at = _after_docstring(lines)
+        return "\n".join(
+            [*lines[:at], f"# %%sim_magic_preloaded -b {shlex.quote(mat)}", *lines[at:]]
+        )
+    line = lines[magic.line - 1].rstrip()
+    wanted = {**magic.options, "background": mat}
+    before, quoted = str(magic.options.get("background", "\n")), shlex.quote(mat)
+    # Of several the last one counts.
+    named = (line.rpartition(word) for word in (f'"{before}"', shlex.quote(before), before))
+    for changed in (
+        *(f"{one[0]}{quoted}{one[2]}" for one in named if one[1]),
+        f"{line} -b {quoted}",
+    ):
+        lines[magic.line - 1] = changed
+        with suppress(ConfigError):
+            found = find_magic("\n".join(lines), name)
+            if found is not None and dict(found.options) == wanted:
+                break
+    return "\n".join(lines)
+
+
+def _after_docstring(lines: list[str]) -> int:
+    """Return the index of the line after the docstring, or after the lines that Python wants to be first."""
+    try:
+        first = ast.parse("\n".join(lines)).body[:1]
+    # It is being edited.
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        first = []
+    match first:
+        case [ast.Expr(value=ast.Constant(value=str()), end_lineno=int(last))]:
+            return last
+    return next(
+        (at for at, line in enumerate(lines[:2]) if not line.startswith(("#!", "# -*-"))), 0
+    )
+
+
+def prelude_for(text: str, path: str = "") -> str:
+    """Return the prelude of a program without a magic line, in a file or none.
+
+    It is `none` if the program imports the library, or uses no name of a prelude.
+    """
+    if imports_library(text):
+        return "none"
+    try:
+        used, defined = global_names(text)
+    # Errors of the program are reported when it runs; here a search must do.
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        return "preloaded"
+    _, ready = global_names(PRELUDE_TEXTS["preloaded"])
+    if not (used - defined) & (ready | _READS_ANY_NAME):
+        return "none"
+    if "import *" in text:
+        # The names may be those of a module of its own, which imports the library.
+        modules = read_modules(Program("", text, path=path))
+        if library_of(modules) is not None and not uses_course_names(modules, text):
+            return "none"
+    return "preloaded"
+
+
+def imports_library(text: str) -> bool:
+    """Return whether a program imports a library for a brick."""
+    try:
+        tree = ast.parse(text)
+    # As above.
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        return _IMPORT.search(text) is not None
+    for node in ast.walk(tree):
+        match node:
+            case ast.Import(names=names) if any(
+                alias.name.split(".")[0] in LIBRARIES for alias in names
+            ):
+                return True
+            case ast.ImportFrom(module=str(module), level=0) if module.split(".")[0] in LIBRARIES:
+                return True
+    return False
+
+
+def parse_program(text: str, name: str, path: str = "") -> ProgramSource:
+    """Return a program from its text.
+
+    Raises:
+        ConfigError: its magic line is wrong.
+    """
+    magic = find_magic(text, name)
+    if magic is None:
+        return ProgramSource(Program(name, text, prelude_for(text, path), path))
+    if not magic.comment:
+        lines = source_lines(text)
+        lines[magic.line - 1] = f"# {lines[magic.line - 1].strip()}"
+        text = "\n".join(lines) + ("\n" if text.endswith(("\n", "\r")) else "")
+    prelude = str(magic.options.get("preload", magic.prelude))
+    return ProgramSource(Program(name, text, prelude, path), magic.options, has_magic=True)
+
+
+def parse_unfinished(text: str, name: str) -> Program:
+    """Return a program that is being edited, with the prelude that it has, or would have if it used a name of it."""
+    try:
+        source = parse_program(text, name)
+    except ConfigError:
+        # Its magic line is not finished.
+        return Program(name, text, "preloaded")
+    if source.has_magic or imports_library(text):
+        return source.program
+    return replace(source.program, prelude="preloaded")
+
+
+def find_program(word: str) -> Path:
+    """Return the file that a word names: a path, else an example program. The file may be missing."""
+    path = Path(word)
+    if not path.name or path.parent != Path() or os.path.exists(path):
+        return path
+    for name in (path.name, f"{path.name}.py"):
+        if os.path.isfile(example := programs_folder() / name):
+            return example
+    return path
+
+
+def read_program(path: Path, *, as_python: bool = False, alone: bool = False) -> ProgramSource:
+    """Read a program file; files in its magic line are looked up beside it.
+
+    Args:
+        alone: Whether no module lies beside it: a class's files may lie in one folder. Its path then is one in itself.
+        as_python: Whether a file that is not text is read all the same, its wrong bytes as lone surrogates: when it is
+            run, it raises what Python raises.
+
+    Raises:
+        ConfigError: it is missing, a directory, not Python text, too large, or its magic line is wrong.
+    """
+    shown, hint = str(path), "name a Python file"
+    missing, folder = "there is no such program", "is a directory, not a program"
+    data = read_bytes(path, MAX_PROGRAM_BYTES, ConfigError, missing, folder, hint, _neighbours)
+    if len(data) > MAX_PROGRAM_BYTES:
+        raise ConfigError(f"is larger than {MAX_PROGRAM_BYTES >> 20} MiB", hint, file=shown)
+    if path.suffix == ".ipynb":
+        raise ConfigError("is a notebook", hint, file=shown)
+    if path.suffix.lower() in LOG_SUFFIXES:
+        opens = f"`tuisim analyse {shlex.quote(shown)}` opens it"
+        raise ConfigError("is a log, not a program", opens, file=shown)
+    return program_of_text(_decode(data, shown, as_python), path, path.name, alone=alone)
+
+
+def program_of_text(
+    text: str, path: Path | None, name: str, *, alone: bool = False
+) -> ProgramSource:
+    """Like `read_program`, from a text; files in its magic line are looked up beside `path`.
+
+    Args:
+        text: The source, with `\\n` as line endings.
+        path: Its file, which may not exist; None if it has none.
+        name: Its name, for errors and tables.
+        alone: As in `read_program`.
+
+    Raises:
+        ConfigError: its magic line is wrong.
+    """
+    # In a file, nothing can be found.
+    where = path / name if path and alone else path
+    source = parse_program(text, name, str(where) if where else "")
+    return replace(source, options=beside(path.parent if path else Path.cwd(), source.options))
+
+
+def _decode(data: bytes, shown: str, as_python: bool) -> str:
+    try:
+        text, _ = decode_source(data, shown)
+        if "\0" in text:
+            raise ConfigError(
+                "is not Python text: it contains null characters", "name a Python file", file=shown
+            )
+    except ConfigError:
+        if not as_python:
+            raise
+        text = data.decode("utf-8", "surrogateescape")
+    return text.replace("\r\n", "\n").replace("\r", "\n")
+
+
+def _neighbours(path: Path) -> str:
+    """Return the hint for a missing file: similar names beside it, else similar examples, else how to list them."""
+    close = close_beside(path, (".py",))
+    if not close and path.parent == Path():
+        # A word without a folder may also be meant as an example, which needs no suffix.
+        stems = [file.path.stem for file in programs()]
+        close = [f"{stem}{path.suffix}" for stem in closest(path.stem, stems)]
+    return did_you_mean(close) or "see `tuisim programs` for examples"

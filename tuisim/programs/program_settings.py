@@ -1,0 +1,384 @@
+"""The settings of a run of a program: what options and files say, and what its source says where they do not.
+
+Every host that runs a program gets its settings here. A program for a real brick, which imports its library itself,
+says which robot it needs; if nothing marks it as one of the course's, it runs by the rules of the brick. What its
+source says stands below everything that somebody has chosen, and a choice replaces only itself.
+"""
+
+from __future__ import annotations
+
+import shlex
+from collections.abc import Collection, Mapping
+from dataclasses import field, replace
+from typing import TYPE_CHECKING, Any
+
+from tuisim.base.data_class import dataclass
+from tuisim.base.errors import ProfileError, RobotError
+from tuisim.base.source import FOR_SPIKE, Program
+from tuisim.engine.core.profile import PROFILES, PYBRICKS_4, Library, MotorLaw, ProfileSpec
+from tuisim.programs.program_file import ProgramSource
+from tuisim.programs.robot.course import uses_course_names
+from tuisim.programs.robot.source import (
+    Module,
+    data_files,
+    is_for_other_hub,
+    library_of,
+    missing_module,
+    read_modules,
+)
+from tuisim.settings.options import Settings, settings_of
+from tuisim.settings.profiles import DEFAULT_PROFILE, load_profile
+from tuisim.settings.robots import RobotChoice
+
+if TYPE_CHECKING:
+    from tuisim.programs.robot.assembly import BuiltRobot
+    from tuisim.programs.robot.brick_syntax import RefusedLine
+
+BRICK_PROFILE = "ev3"
+"""The profile of programs that are for a real brick."""
+PROFILE_OF: Mapping[Library, str] = {
+    Library.EV3DEV2: BRICK_PROFILE,
+    Library.PYBRICKS: "lego-micropython",
+}
+"""The profile with the rules of a real brick, by the library of the program."""
+OF_BRICKS = (*PROFILE_OF.values(), PYBRICKS_4.name)
+"""All profiles with the rules of a real brick."""
+SHEBANG = "#!/usr/bin/env pybricks-micropython"
+"""The first line of a program for LEGO's MicroPython."""
+_NO_PRELUDE = "none"
+
+
+@dataclass(frozen=True, slots=True)
+class SourceFacts:
+    """What the source of a program says about its run."""
+
+    library: Library | None = None
+    """The library for a brick that it imports, in itself or in its own modules."""
+    of_course: bool = False
+    """Whether it uses names that only the course has."""
+    robot: BuiltRobot | None = None
+    """The robot that it needs; None if the default one does."""
+    refused: tuple[RefusedLine, ...] = ()
+    """Its lines that LEGO's MicroPython refuses, if it is for that."""
+    unread: str = ""
+    """Why the robot is not read from all of it, in words; empty if it is."""
+    shown_ports: tuple[str, ...] | None = None
+    """The ports of the parts that it shows; None if it does not bring its library."""
+    senses_walls: bool = False
+    """Whether it makes a sensor that can tell a wall."""
+    hides_parts: bool = False
+    """Whether it names classes of motors or sensors, and its text shows no part that is made."""
+    for_other_hub: bool = False
+    """Whether it is for a hub that no profile is for."""
+
+
+OF_THE_GROUND = ("floor", "walls")
+PROGRAM_PATHS = ("robot", "profile", "for_brick", *OF_THE_GROUND)
+"""The paths of the settings that the source of a program may decide."""
+
+
+@dataclass(frozen=True, slots=True)
+class Decided:
+    """What the source of a program decides."""
+
+    layer: Mapping[str, Any] = field(default_factory=dict)
+    """By path; below everything that somebody has chosen."""
+    said: str = ""
+    """The same in one line; empty for nothing."""
+    hint: str = ""
+    """How to change it in the shell."""
+    robot: RobotChoice | None = None
+    """The robot that the program needs, even if another one was chosen; None for the default one."""
+    shown_ports: tuple[str, ...] | None = None
+    """As `Program.shown_ports`: None if somebody has named the robot, or the program does not bring its library."""
+    free: frozenset[str] = frozenset()
+    """Which of `PROGRAM_PATHS` nobody has chosen."""
+    refused: tuple[RefusedLine, ...] = ()
+    """The lines that the Python of the simulated brick would refuse."""
+
+    @property
+    def note(self) -> str:
+        """What is decided and how to change it, in one line; empty for nothing."""
+        return f"{self.said}. {self.hint}" if self.said else ""
+
+    @property
+    def refusal(self) -> str:
+        """The first line that the brick's Python would refuse, and how many follow; empty for none."""
+        if not self.refused:
+            return ""
+        first, *others = self.refused
+        return f"{first}, and {len(others)} more" if others else str(first)
+
+
+@dataclass(frozen=True, slots=True)
+class ProgramSettings:
+    """The settings of a run of a program."""
+
+    settings: Settings
+    decided: Decided
+
+    def applied_to(self, program: Program) -> Program:
+        """Return a program with the prelude and the arguments that are chosen, and what its text shows."""
+        prelude = self.settings["preload"] or program.prelude
+        return replace(
+            program,
+            prelude=prelude,
+            arguments=self.settings["arguments"],
+            shown_ports=self.decided.shown_ports,
+        )
+
+
+def facts_of(program: Program) -> SourceFacts:
+    """Return what the source of a program says; nothing if it is not Python, or too deeply nested to be read."""
+    library = None
+    try:
+        modules = read_modules(program)
+        library = _library_in(program, modules)
+        if is_for_other_hub(modules):
+            return SourceFacts(library, unread=f"it is {FOR_SPIKE}", for_other_hub=True)
+        if not modules or library is None:
+            return SourceFacts(library, unread=missing_module(program, modules))
+        # Most programs are the course's, and need no reading of their own.
+        return _facts_in(program, modules, library)
+    except (RecursionError, SyntaxError):
+        # What is wrong with the program is said when it runs.
+        return SourceFacts()
+    except RobotError as error:
+        why = f"no robot can be what its text says ({error.message})"
+        unread = f"{why}: it gets the default robot"
+        return SourceFacts(library, unread=unread, shown_ports=() if library else None)
+    except Exception as error:  # no text ends a run before it begins
+        why = f"tuisim failed to read the robot from its text ({type(error).__name__})"
+        unread = f"{why}: it gets the default robot"
+        return SourceFacts(library, unread=unread, shown_ports=() if library else None)
+
+
+def _facts_in(program: Program, modules: dict[str, Module], library: Library) -> SourceFacts:
+    from tuisim.programs.robot.assembly import build_robot, find_shown_ports
+    from tuisim.programs.robot.brick_syntax import refused_lines
+    from tuisim.programs.robot.library import SENSES_WALLS
+    from tuisim.programs.robot.mentions import mentions_in
+    from tuisim.programs.robot.report import USUAL, hides_parts
+
+    mentions = mentions_in(modules, data_files(program))
+    robot = build_robot(mentions, program.name, USUAL)
+    return SourceFacts(
+        library,
+        uses_course_names(modules, program.text),
+        robot,
+        refused_lines(modules.values()) if library is Library.PYBRICKS else (),
+        missing_module(program, modules),
+        find_shown_ports(mentions, robot.choice.spec if robot else USUAL),
+        any(one.kind in SENSES_WALLS for one in mentions.devices),
+        hides_parts(mentions),
+    )
+
+
+def _library_in(program: Program, modules: dict[str, Module]) -> Library | None:
+    """Return the library for a brick that a program uses, by its imports, else by its first line; None for none."""
+    library = library_of(modules)
+    return Library.PYBRICKS if library is None and program.text.startswith(SHEBANG) else library
+
+
+def require_library(program: Program, profile: ProfileSpec) -> None:
+    """Check that a profile is for the library that a program uses, if it uses one.
+
+    Raises:
+        ProfileError: it is for another one.
+    """
+    for_course = program.prelude != _NO_PRELUDE
+    library = Library.EV3DEV2 if for_course else _library_in(program, read_modules(program))
+    if library is not None and profile.motor_law.library is not library:
+        raise _misfit(program, library, profile)
+
+
+def program_settings(
+    source: ProgramSource,
+    *above: Mapping[str, Any],
+    below: Mapping[str, Any] | None = None,
+    insists: bool = True,
+) -> ProgramSettings:
+    """Return the settings of a program.
+
+    Args:
+        source: The program with the options of its magic line.
+        above: What takes precedence over them, such as a world file and the command line, by path.
+        below: What they take precedence over: the user's defaults.
+        insists: Whether what is chosen must be for the program's library; else another profile takes its place.
+
+    Raises:
+        ProfileError: the chosen profile is not, or the prelude is not.
+    """
+    layers = (below or {}, source.options, *above)
+    settings = settings_of(*layers)
+    if insists and (settings["preload"] or source.program.prelude) != _NO_PRELUDE:
+        _check_prelude(source.program)
+    # A default of the user is no choice for this program.
+    is_chosen = any(layer.get("profile") is not None for layer in (source.options, *above))
+    decided = decide(source, settings, free_paths(settings), insists=insists and is_chosen)
+    return ProgramSettings(settings_of(*layers, decided.layer), decided)
+
+
+def free_paths(settings: Settings) -> frozenset[str]:
+    """Return which of `PROGRAM_PATHS` nobody has chosen; who says whether there is a floor also decides on walls."""
+    free = {path for path in PROGRAM_PATHS if settings.given.get(path) is None}
+    return frozenset(free if "floor" in free else free - {*OF_THE_GROUND})
+
+
+def decide(
+    source: ProgramSource, settings: Settings, free: Collection[str], *, insists: bool = True
+) -> Decided:
+    """Return what the source of a program decides.
+
+    Args:
+        source: The program.
+        settings: What is chosen.
+        free: The fields that are not.
+        insists: Whether a chosen profile counts that is not for the program's library; else it is replaced.
+
+    Raises:
+        ProfileError: the chosen profile is not for the program's library.
+    """
+    prelude = settings["preload"] or source.program.prelude
+    for_course = prelude != _NO_PRELUDE
+    facts = SourceFacts(Library.EV3DEV2) if for_course else _facts_in_run(source)
+    layer: dict[str, Any] = {}
+    if facts.robot and "robot" in free:
+        layer["robot"] = facts.robot.choice
+    by_brick_rules = not for_course and _brings_rules(source, facts)
+    if facts.library and by_brick_rules and "profile" in free:
+        layer["profile"] = PROFILE_OF[facts.library]
+    elif facts.library and not _fits(settings, facts.library):
+        if insists and settings.given.get("profile") is not None:
+            raise _misfit(source.program, facts.library, _profile(settings["profile"]))
+        layer["profile"] = (
+            DEFAULT_PROFILE if for_course or facts.of_course else PROFILE_OF[facts.library]
+        )
+    profile = layer.get("profile", settings["profile"])
+    has_rules = has_brick_rules(profile)
+    if "for_brick" in free and (by_brick_rules or (has_rules and not source.has_magic)):
+        layer["for_brick"] = True
+    if by_brick_rules and has_rules:
+        layer |= _decide_ground(facts, free)
+    needed = facts.robot.choice if facts.robot else None
+    words, shown = _in_words(source.program, facts, layer), _find_shown(facts, free)
+    return Decided(layer, *words, needed, shown, frozenset(free), _find_refused(facts, profile))
+
+
+def has_brick_rules(profile: str | ProfileSpec) -> bool:
+    """Return whether a profile, or the one of a name, has the rules of a real brick."""
+    return profile in OF_BRICKS or profile in [PROFILES[name] for name in OF_BRICKS]
+
+
+def _decide_ground(facts: SourceFacts, free: Collection[str]) -> dict[str, bool]:
+    """Return whether a program for a brick drives on a floor, and whether there are walls."""
+    ground = {"floor": True, "walls": facts.senses_walls} if "floor" in free else {}
+    return {path: value for path, value in ground.items() if path in free}
+
+
+def _find_refused(facts: SourceFacts, profile: str | ProfileSpec) -> tuple[RefusedLine, ...]:
+    """Return the lines that the Python of the simulated brick would refuse."""
+    law = _law(profile) if facts.refused else None
+    return facts.refused if law is MotorLaw.PYBRICKS else ()
+
+
+def _find_shown(facts: SourceFacts, free: Collection[str]) -> tuple[str, ...] | None:
+    """Return `Decided.shown_ports`."""
+    return facts.shown_ports if "robot" in free else None
+
+
+def _check_prelude(program: Program) -> None:
+    """Check that a program with a prelude, which uses ev3dev2, does not use Pybricks itself."""
+    if Library.PYBRICKS in program.text and library_of(read_modules(program)) is Library.PYBRICKS:
+        raise ProfileError(
+            f"{program.name} uses {Library.PYBRICKS}, and its predefined names are of {Library.EV3DEV2}",
+            "use %%sim_magic, or --preload none",
+            key="preload",
+        )
+
+
+def _law(named: str | ProfileSpec) -> MotorLaw | None:
+    """Return the motor law of a profile; None if there is no such profile, which is told later."""
+    try:
+        return _profile(named).motor_law
+    except ProfileError:
+        return None
+
+
+def _fits(settings: Settings, library: Library) -> bool:
+    """Return whether the chosen profile is for a library; also if there is no such profile."""
+    law = _law(settings["profile"])
+    return law is None or law.library is library
+
+
+def _profile(named: str | ProfileSpec) -> ProfileSpec:
+    return named if isinstance(named, ProfileSpec) else load_profile(named)
+
+
+def _misfit(program: Program, library: Library, profile: ProfileSpec) -> ProfileError:
+    if is_for_other_hub(read_modules(program)):
+        return ProfileError(f"it is {FOR_SPIKE}", file=program.name)
+    fitting = [known for known, profile in PROFILES.items() if profile.motor_law.library is library]
+    return ProfileError(
+        f"{program.name} uses {library}, and the profile {profile.name} is for {profile.motor_law.library}",
+        f"choose {' or '.join(fitting)}, or none",
+        key="profile",
+    )
+
+
+def robot_for(source: ProgramSource) -> BuiltRobot | None:
+    """Return the robot on which a program runs without further options; None for the default one.
+
+    Raises:
+        RobotError: the program has parts that its text does not show.
+    """
+    facts = _facts_in_run(source)
+    if facts.robot is None and (facts.unread or facts.hides_parts):
+        raise RobotError(
+            facts.unread or "makes its motors and sensors where tuisim cannot read their ports",
+            "`tuisim robots Default_Robot` shows the robot that it gets",
+            file=source.program.name,
+        )
+    return facts.robot
+
+
+def _facts_in_run(source: ProgramSource) -> SourceFacts:
+    """Return what the source of a program says that counts in its run.
+
+    What it says of sizes, sides and mountings counts only where it also brings its rules, as one for Pybricks always
+    does. A program of the course keeps the default robot if that has every part on its port.
+    """
+    facts = facts_of(source.program)
+    brings_rules = facts.library is Library.PYBRICKS or _brings_rules(source, facts)
+    if facts.robot and facts.robot.keeps_ports and not brings_rules:
+        return replace(facts, robot=None)
+    return facts
+
+
+def _brings_rules(source: ProgramSource, facts: SourceFacts) -> bool:
+    """Return whether a program is for a brick, and nothing marks it as one of the course's."""
+    return facts.library is not None and not facts.of_course and not source.has_magic
+
+
+def _in_words(program: Program, facts: SourceFacts, layer: Mapping[str, Any]) -> tuple[str, str]:
+    """Return what the source of a program decided, and how to change it; both empty for nothing."""
+    if facts.for_other_hub:
+        # Nothing of that helps.
+        return "", ""
+    rules = f"as on a brick (profile {layer['profile']})" if "profile" in layer else ""
+    if facts.robot and "robot" in layer:
+        from tuisim.programs.robot.report import in_words
+
+        runs_on = f"{program.name} runs on a robot built from it: {in_words(facts.robot)}"
+        parts = [runs_on, *facts.robot.doubts, facts.unread]
+        options = "-r or --profile" if rules else "-r"
+        shown = (
+            f"; `tuisim robots --from {shlex.quote(program.path)}` shows the robot"
+            if program.path
+            else ""
+        )
+        return "; ".join(filter(None, [*parts, rules])), f"{options} to change it{shown}"
+    if rules:
+        runs = f"{program.name} runs {rules}"
+        return "; ".join(filter(None, [runs, facts.unread])), "--profile to change it"
+    return (f"{program.name}: {facts.unread}", "-r to name a robot") if facts.unread else ("", "")

@@ -1,0 +1,376 @@
+"""What the text of a program asks on a line that reads something, and whether anything depends on it."""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections.abc import Iterable, Iterator, Mapping, Set
+from functools import lru_cache
+
+from tuisim.base.data_class import dataclass
+from tuisim.engine.core.columns import COLOR_NAMES
+from tuisim.engine.core.spec import BUTTONS, REMOTE_BY_HAND
+from tuisim.programs.robot.source import parsed
+
+Word = str | float
+
+MAX_TEXT = 100_000
+"""Characters of the longest text that is asked; it takes time for each line that reads something."""
+_RECORDERS = frozenset(
+    {
+        *("print", "pprint", "write", "writelines", "writerow", "writerows", "dump"),
+        *("log", "info", "debug", "warning", "send", "sendall", "sendto", "publish"),
+        *("text", "text_pixels", "text_grid", "draw_text"),
+    }
+)
+"""Functions that show or store what they are given."""
+_COLLECTORS = frozenset({"append", "add", "put", "extend", "insert"})
+"""Methods that put what they are given into their object."""
+_ENDINGS = _RECORDERS | {
+    *("off", "all_off", "stop", "brake", "coast", "hold", "exit", "close", "reset", "clear"),
+    *("update", "sleep", "wait", "set_color", "beep", "speak", "say", "join"),
+}
+"""Functions with which programs end."""
+
+BUTTON_WORDS: Mapping[Word, str] = {
+    **{name: name for name in BUTTONS},
+    "center": "enter",
+    "back": "backspace",
+}
+"""The brick's buttons, by the words of all libraries."""
+REMOTE_WORDS: Mapping[Word, str] = {
+    word: name
+    for name, word_of_ev3dev2 in REMOTE_BY_HAND.items()
+    for short_name in [name.removeprefix("remote.")]
+    for word in (
+        word_of_ev3dev2,
+        short_name,
+        short_name.replace("left", "red").replace("right", "blue"),
+    )
+}
+"""Names of `REMOTE_BY_HAND`, by the words of all libraries."""
+COLOR_WORDS: Mapping[Word, str] = {
+    word: name.lower()
+    for code, name in enumerate(COLOR_NAMES)
+    if code
+    for word in (code, name.lower())
+}
+"""Names of colours, by words and codes."""
+_PREFIX = re.compile(r"(on_)?(channel\d_|color_)?")
+_LOOPS = (ast.While, ast.For, ast.AsyncFor)
+_FUNCTIONS = (ast.FunctionDef, ast.AsyncFunctionDef)
+
+
+@dataclass(frozen=True, slots=True)
+class Question:
+    """What a program does with what a line reads."""
+
+    decides: bool = True
+    """Whether anything depends on it: it is not only shown or stored."""
+    is_test: bool = True
+    """Whether the way that the program goes depends on it, or how long it waits."""
+    is_last: bool = False
+    """Whether it only ends a loop after which the program does nothing more."""
+    words: tuple[Word, ...] = ()
+    """Attributes, texts and numbers that the program compares it with, in their order."""
+    needs_all: bool = False
+    """Whether several of them must hold at once."""
+
+    def find_words(self, names: Mapping[Word, str]) -> tuple[str, ...]:
+        """Return what it asks for of some names by word, in its order; empty for any."""
+        words = [
+            _PREFIX.sub("", word.lower(), count=1) if isinstance(word, str) else word
+            for word in self.words
+        ]
+        return tuple(dict.fromkeys(names[word] for word in words if word in names))
+
+    def find_limit(self) -> float | None:
+        """Return the first number above 0 that it is compared with."""
+        numbers = (word for word in self.words if not isinstance(word, str))
+        return next((number for number in numbers if number > 0), None)
+
+
+@lru_cache(256)
+def find_question(text: str, line: int) -> Question:
+    """Return what a program asks on one of its lines; `Question()` if its text does not tell."""
+    reader = _open_reader(text)
+    steps = reader.find_steps(line) if reader else []
+    if reader is None or not steps:
+        return Question()
+    flow = reader.find_flow(steps)
+    heads = [head for step in flow if not _is_recorder(step) for head in _list_heads(step)]
+    words = tuple(word for head in heads for word in reader.find_words(head))
+    if "process" in words:
+        # It calls the functions that were given for each button.
+        words += tuple(reader.find_handlers())
+    return Question(
+        decides=any(map(reader.is_deciding, flow)),
+        is_test=any(map(_is_test, flow)),
+        is_last=all(map(reader.is_last, steps)),
+        words=words,
+        needs_all=any(map(_is_for_all, heads)),
+    )
+
+
+@lru_cache(4)
+def _open_reader(text: str) -> _Reader | None:
+    tree = parsed(text) if len(text) <= MAX_TEXT else None
+    return None if tree is None else _Reader(tree)
+
+
+class _Reader:
+    """Reads the text of a program. A step is one statement, of a compound one only what is before its colon."""
+
+    def __init__(self, tree: ast.Module) -> None:
+        self._nodes = list(ast.walk(tree))
+        self._parents = {
+            child: node for node in self._nodes for child in ast.iter_child_nodes(node)
+        }
+        self._constants: dict[str, Word] = {}
+        self._users: dict[str, list[ast.stmt]] = {}
+        """The steps that use a name, or an attribute with a dot before it."""
+        self._parameters: dict[str, set[str]] = {}
+        """Those of all functions of a name."""
+        self._steps: dict[int, list[ast.stmt]] = {}
+        """The steps on a line that may read something."""
+        for node in self._nodes:
+            if isinstance(node, ast.stmt):
+                self._add_lines(node)
+            if isinstance(node, _FUNCTIONS):
+                names = {parameter.arg for parameter in node.args.args}
+                self._parameters.setdefault(node.name, set()).update(names)
+            match node:
+                case ast.Assign(
+                    targets=[ast.Name(id=name)], value=ast.Constant(value=str() | int() | float())
+                ):
+                    assert isinstance(node.value, ast.Constant)
+                    self._constants[name] = node.value.value  # type: ignore[assignment]
+                case ast.Name(ctx=ast.Load()) | ast.Attribute(ctx=ast.Load()):
+                    step: ast.AST = node
+                    while not isinstance(step, ast.stmt):
+                        step = self._parents[step]
+                    for name in _list_names(node):
+                        self._users.setdefault(name, []).append(step)
+
+    def _add_lines(self, step: ast.stmt) -> None:
+        """Note on which lines a step may read something."""
+        lines = {
+            line
+            for head in _list_heads(step)
+            if _is_reading(head)
+            for line in range(head.lineno, (head.end_lineno or head.lineno) + 1)
+        }
+        for line in lines:
+            self._steps.setdefault(line, []).append(step)
+
+    def find_steps(self, line: int) -> list[ast.stmt]:
+        """Return the steps on a line that may read something."""
+        return self._steps.get(line, [])
+
+    def find_flow(self, steps: Iterable[ast.stmt]) -> list[ast.stmt]:
+        """Return some steps, and all that use what they assign, pass on or decide."""
+        flow = dict.fromkeys(steps)
+        queue, followed = [*flow], set[str]()
+        for step in queue:
+            names = self._find_names(step) - followed
+            followed |= names
+            users = [user for name in names for user in self._users.get(name, ())]
+            if isinstance(step, ast.If) and step.orelse:
+                users += step.body + step.orelse
+            for user in sorted(users, key=lambda user: user.lineno):
+                if user not in flow:
+                    flow[user] = None
+                    queue.append(user)
+        return queue
+
+    def is_deciding(self, step: ast.stmt) -> bool:
+        """Return whether a step does more with what it reads than to show, store or pass it on."""
+        match step:
+            case ast.Expr(value=ast.Call()):
+                return not _is_recorder(step) and not self._find_names(step)
+            case ast.If(orelse=orelse):
+                return not orelse
+            case ast.Assign() | ast.AnnAssign() | ast.AugAssign() | ast.Return():
+                return _is_waiting(step)
+        return not isinstance(step, ast.Pass)
+
+    def find_words(self, head: ast.AST) -> Iterator[Word]:
+        """Yield the attributes, texts and numbers in an expression, in their order; no numbers to compute with."""
+        nodes = [
+            node
+            for node in ast.walk(head)
+            if isinstance(node, ast.expr) and not isinstance(self._parents.get(node), ast.BinOp)
+        ]
+        for node in sorted(
+            nodes, key=lambda node: (node.end_lineno or 0, node.end_col_offset or 0)
+        ):
+            match node:
+                case ast.Attribute(attr=attr):
+                    yield attr
+                case ast.Constant(value=str() | int() | float() as value) if value is not True:
+                    yield value
+                case ast.Name(id=name) if name in self._constants:
+                    yield self._constants[name]
+
+    def find_handlers(self) -> Iterator[str]:
+        """Yield the attributes such as `on_up` that are assigned anywhere, in their order."""
+        for node in sorted(
+            (node for node in self._nodes if isinstance(node, ast.Attribute)),
+            key=lambda node: node.lineno,
+        ):
+            if isinstance(node.ctx, ast.Store) and node.attr.startswith("on_"):
+                yield node.attr
+
+    def is_last(self, step: ast.stmt) -> bool:
+        """Return whether a step only ends a loop, and the program then."""
+        loop = step
+        while not isinstance(loop, _LOOPS):
+            if not isinstance(loop, ast.stmt) or isinstance(loop, _FUNCTIONS):
+                return False
+            loop = self._parents[loop]  # type: ignore[assignment]
+        rest = [*step.body] if isinstance(step, ast.If) else []
+        if step is not loop and not any(isinstance(way, ast.Break | ast.Return) for way in rest):
+            return False
+        node: ast.AST = loop
+        while not isinstance(node, (ast.Module, *_FUNCTIONS)):
+            parent = self._parents[node]
+            if isinstance(parent, _LOOPS):
+                return False
+            for block in ("body", "orelse"):
+                statements = getattr(parent, block, [])
+                if node in statements:
+                    rest += statements[statements.index(node) + 1 :]
+            node = parent
+        return all(
+            _name_function(node.func) in _ENDINGS
+            for statement in rest
+            if not isinstance(statement, (*_FUNCTIONS, ast.ClassDef))
+            for node in ast.walk(statement)
+            if isinstance(node, ast.Call)
+        )
+
+    def _find_names(self, step: ast.stmt) -> set[str]:
+        """Return what holds the value of a step then: names, and attributes with a dot before them."""
+        match step:
+            case ast.Assign(targets=targets):
+                return {name for target in targets for name in _list_names(target)}
+            case ast.AnnAssign(target=target) | ast.AugAssign(target=target):
+                return _list_names(target)
+            case ast.Expr(value=ast.Call(func=ast.Attribute(value=owner, attr=name))) if (
+                name in _COLLECTORS
+            ):
+                return _list_names(owner)
+            case ast.Expr(value=ast.Call(func=func)):
+                return self._parameters.get(_name_function(func), set())
+            case ast.Return():
+                node: ast.AST = step
+                while not isinstance(node, (*_FUNCTIONS, ast.Module)):
+                    node = self._parents[node]
+                return {node.name, f".{node.name}"} if isinstance(node, _FUNCTIONS) else set()
+        return set()
+
+
+def _list_heads(step: ast.stmt) -> list[ast.expr | ast.pattern | ast.stmt]:
+    match step:
+        case ast.If(test=test) | ast.While(test=test):
+            return [test]
+        case ast.For(iter=values) | ast.AsyncFor(iter=values):
+            return [values]
+        case ast.With(items=items) | ast.AsyncWith(items=items):
+            return [item.context_expr for item in items]
+        case ast.Match(subject=subject, cases=cases):
+            return [subject, *(case.pattern for case in cases)]
+        case ast.Try() | ast.ClassDef() | ast.FunctionDef() | ast.AsyncFunctionDef():
+            return []
+    return [step]
+
+
+def _is_reading(head: ast.AST) -> bool:
+    return any(isinstance(node, ast.Call | ast.Attribute) for node in ast.walk(head))
+
+
+def _is_recorder(step: ast.stmt) -> bool:
+    match step:
+        case ast.Expr(value=ast.Call(func=func)):
+            return _name_function(func) in _RECORDERS
+    return False
+
+
+def _is_test(step: ast.stmt) -> bool:
+    match step:
+        case ast.If(test=test, body=body, orelse=orelse):
+            compared = {name for node in ast.walk(test) for name in _list_names(node)}
+            return not all(_is_noted(part, compared) for part in body + orelse)
+        case ast.While() | ast.Match() | ast.Assert():
+            return True
+        case ast.Assign() | ast.AnnAssign() | ast.AugAssign() if not _is_waiting(step):
+            return False
+    return any(isinstance(node, ast.Compare | ast.IfExp) for node in ast.walk(step)) or _is_waiting(
+        step
+    )
+
+
+def _is_noted(step: ast.stmt, compared: Set[str]) -> bool:
+    """Return whether a step only shows something, or stores it in what it was compared with, as the largest so far."""
+    match step:
+        case ast.Assign(targets=targets):
+            return {name for target in targets for name in _list_names(target)} <= compared
+    return isinstance(step, ast.Pass) or _is_recorder(step)
+
+
+def _is_waiting(step: ast.stmt) -> bool:
+    return any(
+        isinstance(node, ast.Attribute) and node.attr.startswith("wait") for node in ast.walk(step)
+    )
+
+
+def _name_function(func: ast.expr) -> str:
+    match func:
+        case ast.Attribute(attr=name) | ast.Name(id=name):
+            return name
+    return ""
+
+
+def _list_names(target: ast.AST) -> set[str]:
+    """Return the names in the target of an assignment, attributes with a dot before them."""
+    match target:
+        case ast.Name(id=name):
+            return {name}
+        case ast.Attribute(attr=attr):
+            return {f".{attr}"}
+        case ast.Tuple(elts=parts) | ast.List(elts=parts):
+            return {name for part in parts for name in _list_names(part)}
+        case ast.Subscript(value=value) | ast.Starred(value=value):
+            return _list_names(value)
+    return set()
+
+
+def _is_for_all(head: ast.AST) -> bool:
+    """Return whether a condition holds only if several things hold at once, as in `a and b` or `not a or not b`."""
+    for node in ast.walk(head):
+        match node:
+            case ast.BoolOp(op=op, values=values):
+                if all(_is_negated(value) is isinstance(op, ast.Or) for value in values):
+                    return True
+            case ast.Call(args=args):
+                if any(map(_is_list_of_texts, args)):
+                    return True
+            case ast.Compare(ops=[ast.Eq() | ast.NotEq()], comparators=[other]):
+                if _is_list_of_texts(other):
+                    return True
+    return False
+
+
+def _is_negated(node: ast.expr) -> bool:
+    match node:
+        case ast.UnaryOp(op=ast.Not()) | ast.Compare(ops=[ast.NotIn() | ast.NotEq()]):
+            return True
+    return False
+
+
+def _is_list_of_texts(node: ast.expr) -> bool:
+    match node:
+        case ast.List(elts=parts) | ast.Tuple(elts=parts) | ast.Set(elts=parts):
+            texts = [part for part in parts if isinstance(getattr(part, "value", None), str)]
+            return len(texts) > 1
+    return False

@@ -1,0 +1,503 @@
+"""Builds the robot of a program: the default robot with the parts changed that the program asks for."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import field, replace
+from typing import Any
+
+from tuisim.base.data_class import dataclass
+from tuisim.engine.core.sensor_places import Body
+from tuisim.engine.core.spec import (
+    INPUT_PORTS,
+    NO_PORT,
+    OUTPUT_PORTS,
+    ColorSensorSpec,
+    InfraredSpec,
+    MotorSpec,
+    RobotSpec,
+    SensorSpec,
+    TouchSpec,
+    UltrasonicSpec,
+)
+from tuisim.programs.robot.end_stops import Mechanics
+from tuisim.programs.robot.library import PAIRS, DeviceKind
+from tuisim.programs.robot.mechanics import mechanics_in
+from tuisim.programs.robot.mentions import Mention, Mentions, Pair, Where
+from tuisim.programs.robot.places import (
+    SENSOR_SPECS,
+    NewSensors,
+    fields_of,
+    mounted,
+    on_port,
+    places_for,
+    say_other_sides,
+    with_sides,
+)
+from tuisim.programs.robot.wheels import (
+    Size,
+    WheelMotors,
+    sizes_in,
+    wheels_of,
+    with_others,
+    with_tools,
+)
+from tuisim.programs.robot.words import side_of
+from tuisim.settings.robots import RobotChoice
+
+KINDS: Mapping[type, DeviceKind] = {spec: kind for kind, spec in SENSOR_SPECS.items()}
+"""The kind of each sensor, by the class of its spec."""
+MOTOR_KINDS_SHOWN = {"large": DeviceKind.LARGE, "medium": DeviceKind.MEDIUM}
+_USUAL_PORTS = {
+    DeviceKind.TOUCH: "in1",
+    DeviceKind.INFRARED: "in1",
+    DeviceKind.GYRO: "in4",
+    DeviceKind.ULTRASONIC: "in1",
+    DeviceKind.COLOR: "in3",
+}
+"""Where a sensor goes of which the program does not say the port; the infrared one in place of the ultrasonic one."""
+_MAX_NAME = 80
+
+
+@dataclass(frozen=True, slots=True)
+class RobotPart:
+    """A part of the robot that differs from the default one, or that a line of the program asks for."""
+
+    what: str
+    """In words, such as `medium motor on outA`."""
+    path: str
+    """Its key in a robot file."""
+    where: Where | None = None
+    """The line of the program that asks for it; None if another part takes its place."""
+    changes: bool = True
+    """Whether it differs from the default robot."""
+
+
+@dataclass(frozen=True, slots=True)
+class BuiltRobot:
+    """A robot that was built for a program."""
+
+    choice: RobotChoice
+    parts: tuple[RobotPart, ...]
+    doubts: tuple[str, ...] = ()
+    """Where the program can be read in another way: what was taken, in words."""
+    keeps_ports: bool = False
+    """Whether the usual robot has the same parts on the same ports: only sizes, sides or mountings differ."""
+
+
+def build_robot(mentions: Mentions, name: str, usual: RobotSpec) -> BuiltRobot | None:
+    """Return the robot that a program talks about; None if the usual one has everything on its ports.
+
+    Args:
+        name: What the program is called.
+        usual: The robot that is changed.
+
+    Raises:
+        RobotError: what the program says is impossible, such as a wheel of 0 mm.
+    """
+    builder = _Builder(mentions, mechanics_in(mentions), usual)
+    motors = builder.motors()
+    # A wrong size is told as such, not as the wrong place of a sensor beside the wheels.
+    replace(usual, **motors)
+    changes = builder.with_presses({**motors, **builder.sensors(motors)})
+    changes |= builder.said_sizes(motors)
+    if all(getattr(usual, key) == value for key, value in changes.items()):
+        return None
+    shown = "".join(letter if letter.isprintable() else "?" for letter in name)[:_MAX_NAME]
+    spec = replace(usual, name=f"Robot of {shown}", **changes)
+    own_places = {sensor.name for sensor in spec.color_sensors} > {
+        sensor.name for sensor in usual.color_sensors
+    }
+    keeps = _on_ports(spec) == _on_ports(usual)
+    return BuiltRobot(
+        RobotChoice(spec, own_places=own_places), tuple(builder.parts), tuple(builder.doubts), keeps
+    )
+
+
+def find_shown_ports(mentions: Mentions, robot: RobotSpec) -> tuple[str, ...]:
+    """Return the ports of the parts that a program shows on its robot, also of those whose ports it does not say."""
+    pairs = [port for pair in mentions.pairs for port in (pair.left, pair.right)]
+    shown = {one.port for one in mentions.devices} | {*pairs}
+    without_port = {one.kind for one in mentions.devices if not one.port}
+    kinds = {motor.port: MOTOR_KINDS_SHOWN[motor.kind] for motor in robot.motors}
+    kinds |= {sensor.port: KINDS[type(sensor)] for sensor in robot.sensors}
+    return tuple(
+        port
+        for port in (*INPUT_PORTS, *OUTPUT_PORTS)
+        if port in shown or kinds.get(port) in without_port
+    )
+
+
+def _on_ports(robot: RobotSpec) -> dict[str, object]:
+    """Return the kind of the part on each port."""
+    return {motor.port: motor.kind for motor in robot.motors} | {
+        one.port: type(one) for one in robot.sensors
+    }
+
+
+@dataclass(slots=True)
+class _Builder:
+    mentions: Mentions
+    mechanics: Mechanics
+    usual: RobotSpec
+    parts: list[RobotPart] = field(default_factory=list)
+    doubts: list[str] = field(default_factory=list)
+
+    # Motors
+
+    def motors(self) -> dict[str, Any]:
+        """Return the fields of the robot that are about motors and wheels."""
+        motors = (one for one in self.mentions.devices if one.kind.is_motor)
+        kinds = with_tools(self._kinds([*self._of_pairs(), *motors]), self.mentions)
+        where = {
+            one.port: one.where for one in (*self.mentions.devices, *self._of_pairs()) if one.port
+        }
+        wheels = wheels_of(self.mentions, kinds, self.usual, self.mechanics.driven_to_stops)
+        left, right = (kinds.get(port, DeviceKind.LARGE) for port in (wheels.left, wheels.right))
+        changes: dict[str, Any] = {"left_port": wheels.left, "right_port": wheels.right}
+        changes |= {"left_motor": _motor_kind(left), "right_motor": _motor_kind(right)}
+        changes |= self._sizes(wheels.pair)
+        further = [port for port in sorted(kinds) if port not in (wheels.left, wheels.right)]
+        further_kinds = with_others({port: kinds[port] for port in further}, self.mentions)
+        self._free_motors(further_kinds, (wheels.left, wheels.right))
+        self._tell_wheels(wheels, changes)
+        changes |= self._reversed(wheels) | self._geared(wheels)
+        extra = [self._further(port, kind) for port, kind in further_kinds.items()]
+        changes["extra_motors"] = tuple(extra)
+        for motor in extra:
+            ends = [f"{end:g}°" for end in (motor.low_deg, motor.high_deg) if end is not None]
+            stops = (
+                f" with {'end stops' if ends[1:] else 'an end stop'} at {' and '.join(ends)}"
+                if ends
+                else ""
+            )
+            said = where.get(motor.port) or self._first(further_kinds[motor.port])
+            self.parts.append(
+                RobotPart(
+                    f"{motor.kind} motor on {motor.port}{stops}", f"motors.{motor.port}", said
+                )
+            )
+        if wheels.doubt:
+            self.doubts.append(wheels.doubt)
+        return changes
+
+    def _further(self, port: str, kind: DeviceKind) -> MotorSpec:
+        """Return a motor that drives no wheel, with the end stops that the program relies on."""
+        known = any(one.port == port for one in self.mentions.devices)
+        low_deg, high_deg = self.mechanics.range_of(port if known else "")
+        return MotorSpec(port, _motor_kind(kind), low_deg, high_deg)
+
+    def _reversed(self, wheels: WheelMotors) -> dict[str, bool]:
+        """Return which wheels the program says to be mounted the other way round."""
+        turned = self.mechanics.reversed
+        sides = [
+            side
+            for side, port in (("left", wheels.left), ("right", wheels.right))
+            if port in turned
+        ]
+        if sides:
+            what = "both wheel motors" if len(sides) == 2 else f"the {sides[0]} wheel's motor"
+            where = turned[wheels.left if "left" in sides else wheels.right]
+            self.parts.append(
+                RobotPart(f"{what} the other way round", f"{sides[0]}_reversed", where)
+            )
+        return {f"{side}_reversed": True for side in sides}
+
+    def _geared(self, wheels: WheelMotors) -> dict[str, float]:
+        """Return the gears between the wheels and their motors; a robot has the same on both sides."""
+        motors = [
+            motor for port in (wheels.left, wheels.right) if (motor := self.mentions.motor_on(port))
+        ]
+        ratios = {motor.gear_ratio for motor in motors}
+        if len(motors) < 2 or ratios == {self.usual.gear_ratio}:
+            return {}
+        if len(ratios) > 1:
+            self.doubts.append("the gears of the two wheels differ: none are built")
+            return {}
+        ratio = ratios.pop()
+        self.parts.append(
+            RobotPart(
+                f"gears of {ratio:g} motor turns per wheel turn", "gear_ratio", motors[0].where
+            )
+        )
+        return {"gear_ratio": ratio}
+
+    def with_presses(self, changes: dict[str, Any]) -> dict[str, Any]:
+        """Return the changes with the touch sensors that a motor presses at its end."""
+        motors = {motor.port: motor for motor in changes["extra_motors"]}
+        touches = list(changes["touch_sensors"])
+        for press in self.mechanics.presses:
+            motor = motors.get(press.motor or next(iter(motors), ""))
+            at = next((at for at, one in enumerate(touches) if press.touch in ("", one.port)), None)
+            end = "high" if press.stop.forwards else "low"
+            if (
+                motor is None
+                or getattr(motor, f"{end}_deg") is None
+                or at is None
+                or touches[at].pressed_by
+            ):
+                continue
+            touches[at] = replace(touches[at], pressed_by=motor.port, pressed_at=end)
+            what = f"{DeviceKind.TOUCH} on {touches[at].port} pressed by {motor.port}"
+            path = _path(touches[at])
+            self.parts[:] = [part for part in self.parts if part.path != path]
+            self.parts.append(RobotPart(what, path, press.stop.where))
+        return {**changes, "touch_sensors": tuple(touches)}
+
+    def _of_pairs(self) -> list[Mention]:
+        return [
+            Mention(pair.kind, port, pair.where)
+            for pair in self.mentions.pairs
+            for port in (pair.left, pair.right)
+        ]
+
+    def _first(self, kind: DeviceKind) -> Where | None:
+        return next((one.where for one in self.mentions.devices if one.kind is kind), None)
+
+    def _free_motors(self, kinds: dict[str, DeviceKind], wheels: tuple[str, str]) -> None:
+        """Add the motors that the program makes without saying the port, on free ports."""
+        unknown = sum(
+            one.kind is DeviceKind.MEDIUM and not one.port and not one.is_any
+            for one in self.mentions.devices
+        )
+        has_any = any(one.kind is DeviceKind.MEDIUM and one.is_any for one in self.mentions.devices)
+        medium = DeviceKind.MEDIUM in kinds.values()
+        missing = unknown + (1 if has_any and not medium and not unknown else 0)
+        for port in ("outA", "outD", "outB", "outC"):
+            if missing and port not in kinds and port not in wheels:
+                kinds[port] = DeviceKind.MEDIUM
+                missing -= 1
+
+    def _sizes(self, pair: Pair | None) -> dict[str, float]:
+        """Return what the class of the wheels says about them, if it differs from those of the usual robot."""
+        found: dict[str, float] = {}
+        if pair and pair.wheel_mm and pair.wheel_mm[0] != self.usual.wheel_diameter_mm:
+            found["wheel_diameter_mm"], width_mm = pair.wheel_mm
+            found["wheel_width_mm"] = self.usual.wheel_width_mm if width_mm is None else width_mm
+        if pair and pair.spacing_mm is not None and pair.spacing_mm != self.usual.wheel_spacing_mm:
+            found["wheel_spacing_mm"] = pair.spacing_mm
+        return found
+
+    def said_sizes(self, motors: Mapping[str, Any]) -> dict[str, float]:
+        """Return what constants of the program say about the wheels, where their class says nothing."""
+        said = self._said_sizes(motors)
+        self._tell_sizes(
+            {key: size.mm for key, size in said.items()},
+            {key: size.where for key, size in said.items()},
+        )
+        return {key: size.mm for key, size in said.items()}
+
+    def _said_sizes(self, motors: Mapping[str, Any]) -> dict[str, Size]:
+        said = sizes_in(self.mentions)
+        sizes = {"wheel_diameter_mm": said.wheel, "wheel_spacing_mm": said.spacing}
+        return {
+            key: size
+            for key, size in sizes.items()
+            if size
+            and motors["left_port"] != NO_PORT
+            and key not in {*motors, *self._exact()}
+            and size.mm != getattr(self.usual, key)
+        }
+
+    def _exact(self) -> Iterator[str]:
+        """Yield the sizes that a `DriveBase` says, also if they are as usual."""
+        for pair in self.mentions.pairs:
+            if PAIRS[pair.class_name].takes_motors:
+                yield from ["wheel_diameter_mm"] if pair.wheel_mm else []
+                yield from ["wheel_spacing_mm"] if pair.spacing_mm is not None else []
+
+    def _tell_sizes(self, sizes: Mapping[str, float], where: Mapping[str, Where | None]) -> None:
+        for key, words in (
+            ("wheel_diameter_mm", "wheels of {:g} mm"),
+            ("wheel_spacing_mm", "{:g} mm apart"),
+        ):
+            if key in sizes:
+                self.parts.append(RobotPart(words.format(sizes[key]), key, where[key]))
+
+    def _tell_wheels(self, wheels: WheelMotors, changes: Mapping[str, Any]) -> None:
+        moved = (wheels.left, wheels.right) != (self.usual.left_port, self.usual.right_port)
+        kinds = [changes["left_motor"], changes["right_motor"]]
+        medium = " (medium motors)" if kinds == ["medium"] * 2 else ""
+        what = (
+            f"wheels on {wheels.left} (left) and {wheels.right}{medium}"
+            if wheels.left != NO_PORT
+            else "no wheels"
+        )
+        self.parts.append(RobotPart(what, "left_port", wheels.where, moved or bool(medium)))
+        self._tell_sizes(changes, dict.fromkeys(changes, wheels.where))
+
+    def _kinds(self, mentions: Iterable[Mention]) -> dict[str, DeviceKind]:
+        """Return the kind of device on each port that is named; of several the one that is named most often."""
+        votes: dict[str, Counter[DeviceKind]] = {}
+        for one in mentions:
+            if one.port:
+                votes.setdefault(one.port, Counter())[one.kind] += (
+                    0 if one.kind in (DeviceKind.MOTOR, DeviceKind.SENSOR) else 1
+                )
+        found = {}
+        for port, count in votes.items():
+            (kind, _), *others = count.most_common()
+            found[port] = kind
+            said = [other for other, number in others if number]
+            if said:
+                self.doubts.append(f"{port} is taken for a {kind}, not a {said[0]}")
+        return found
+
+    # Sensors
+
+    def sensors(self, motors: Mapping[str, Any]) -> dict[str, Any]:
+        """Return the fields of the robot that are about sensors.
+
+        Args:
+            motors: The fields that are about motors and wheels.
+        """
+        mentions = with_sides([one for one in self.mentions.devices if not one.kind.is_motor])
+        kinds = self._kinds(mentions)
+        usual = {sensor.port: sensor for sensor in self.usual.sensors}
+        by_port = {
+            port: next(one for one in mentions if one.port == port and one.kind is kinds[port])
+            for port in kinds
+        }
+        by_side = say_other_sides(by_port, usual)
+        placed = {
+            port: mounted(sensor, by_port[port])
+            for port, sensor in usual.items()
+            if _is_there(sensor, by_port.get(port), by_side=by_side)
+        }
+        waiting = {
+            port: one
+            for port, one in by_port.items()
+            if port not in placed and one.kind is not DeviceKind.SENSOR
+        }
+        wanted = [
+            *waiting.items(),
+            *self._without_port(mentions, kinds, placed, {*placed, *waiting}),
+        ]
+        if by_side:
+            wanted.sort(key=lambda one: not side_of(one[1].names))
+        left = [sensor for sensor in self.usual.sensors if sensor.port not in placed]
+        new = NewSensors()
+        for port, mention in wanted:
+            alike = [sensor for sensor in left if KINDS[type(sensor)] is mention.kind]
+            if by_side and mention.kind is DeviceKind.COLOR and (side := side_of(mention.names)):
+                alike = [sensor for sensor in alike if sensor.name == side]
+            if alike:
+                chosen = new.likeliest(alike, mention)
+                left.remove(chosen)
+                placed[port] = mounted(on_port(chosen, port), mention)
+            else:
+                new.add(port, mention)
+        placed |= places_for(new, placed, self._body(motors), self.doubts)
+        self._stay(left, placed)
+        self._tell_sensors(placed, by_port, mentions)
+        return fields_of(placed, self.usual)
+
+    def _body(self, motors: Mapping[str, Any]) -> Body:
+        said = {**{key: size.mm for key, size in self._said_sizes(motors).items()}, **motors}
+        spacing_mm, width_mm = (
+            said.get(key, getattr(self.usual, key))
+            for key in ("wheel_spacing_mm", "wheel_width_mm")
+        )
+        return Body((spacing_mm + width_mm) / 2, self.usual.back_mm)
+
+    def _without_port(
+        self,
+        mentions: list[Mention],
+        kinds: Mapping[str, DeviceKind],
+        placed: Mapping[str, SensorSpec],
+        taken: set[str],
+    ) -> list[tuple[str, Mention]]:
+        """Return the sensors that a program makes without saying the port, with ports for them."""
+        found: list[tuple[str, Mention]] = []
+        for kind in dict.fromkeys(
+            one.kind for one in mentions if not one.port and one.kind is not DeviceKind.SENSOR
+        ):
+            of_kind = [one for one in mentions if one.kind is kind and not one.port]
+            unknown = [one for one in of_kind if not one.is_any]
+            needed = unknown or ([] if kind in kinds.values() else of_kind[:1])
+            usual = [
+                sensor.port
+                for sensor in self.usual.sensors
+                if KINDS[type(sensor)] is kind and sensor not in placed.values()
+            ]
+            for one in needed:
+                ports = [*usual, _USUAL_PORTS[kind], *reversed(INPUT_PORTS)]
+                if port := next((port for port in ports if port not in taken), ""):
+                    taken.add(port)
+                    found.append((port, one))
+                else:
+                    self.doubts.append(f"no port is free for the {kind}")
+        return found
+
+    def _stay(self, left: list[SensorSpec], placed: dict[str, SensorSpec]) -> None:
+        """Keep the usual sensors that the program does not name where a port is free for them."""
+        moving = []
+        for sensor in left:
+            if sensor.port in placed:
+                moving.append(sensor)
+            else:
+                placed[sensor.port] = sensor
+        for sensor in moving:
+            if port := next((port for port in INPUT_PORTS if port not in placed), ""):
+                placed[port] = on_port(sensor, port)
+
+    def _tell_sensors(
+        self,
+        placed: Mapping[str, SensorSpec],
+        by_port: Mapping[str, Mention],
+        mentions: Iterable[Mention],
+    ) -> None:
+        usual = {sensor.port: sensor for sensor in self.usual.sensors}
+        first = {one.kind: one.where for one in reversed([*mentions])}
+        for port, sensor in sorted(placed.items()):
+            kind = KINDS[type(sensor)]
+            where = (
+                by_port[port].where
+                if port in by_port
+                else first.get(kind)
+                if usual.get(port) != sensor
+                else None
+            )
+            if where or usual.get(port) != sensor:
+                self.parts.append(
+                    RobotPart(f"{kind} on {port}", _path(sensor), where, usual.get(port) != sensor)
+                )
+        names = {sensor.name for sensor in placed.values()}
+        for sensor in self.usual.sensors:
+            if sensor.name not in names:
+                self.parts.append(RobotPart(f"no {_called(sensor)}", _path(sensor)))
+
+
+def _is_there(sensor: SensorSpec, mention: Mention | None, *, by_side: bool) -> bool:
+    """Return whether a sensor of the usual robot is the one that the program makes on its port.
+
+    Args:
+        by_side: Whether the colour sensors are where their names say.
+    """
+    if mention is None or mention.kind not in (KINDS[type(sensor)], DeviceKind.SENSOR):
+        return False
+    is_moved = by_side and mention.kind is DeviceKind.COLOR
+    return not is_moved or side_of(mention.names) == sensor.name
+
+
+def _called(sensor: SensorSpec) -> str:
+    kind = KINDS[type(sensor)]
+    return f"{sensor.name} {kind}" if kind is DeviceKind.COLOR else str(kind)
+
+
+def _path(sensor: SensorSpec) -> str:
+    match sensor:
+        case ColorSensorSpec():
+            return f"color_sensors.{sensor.name}"
+        case TouchSpec():
+            return f"touch_sensors.{sensor.name}"
+        case UltrasonicSpec() if sensor.name != UltrasonicSpec().name:
+            return f"ultrasonics.{sensor.name}"
+        case InfraredSpec() if sensor.name != InfraredSpec().name:
+            return f"infrareds.{sensor.name}"
+    return sensor.name
+
+
+def _motor_kind(kind: DeviceKind) -> str:
+    return "medium" if kind is DeviceKind.MEDIUM else "large"

@@ -1,0 +1,73 @@
+"""Syntax that MicroPython 1.11 on the brick refuses: it has the syntax of Python 3.4, and a bit more."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterable, Iterator
+
+from tuisim.base.data_class import dataclass
+from tuisim.programs.robot.source import Module
+
+
+@dataclass(frozen=True, slots=True)
+class RefusedLine:
+    """A line that the brick refuses."""
+
+    file: str
+    line: int
+    what: str
+    """What is on it, such as `f-string`."""
+
+    def __str__(self) -> str:
+        return f"{self.file}:{self.line}: the brick's Python would refuse this line ({self.what})"
+
+
+def refused_lines(modules: Iterable[Module]) -> tuple[RefusedLine, ...]:
+    """Return the lines of a program that the brick refuses, in the order of its files and their lines."""
+    return tuple(
+        RefusedLine(module.file, line, what)
+        for module in modules
+        for line, what in sorted({*_refused_in(module.tree)})
+    )
+
+
+def _refused_in(tree: ast.Module) -> Iterator[tuple[int, str]]:
+    for node in ast.walk(tree):
+        if what := _refused(node):
+            yield getattr(node, "lineno", 0), what
+
+
+def _refused(node: ast.AST) -> str:
+    """Return what a node is that the brick refuses; empty if it takes it."""
+    match node:
+        case ast.JoinedStr():
+            return "f-string"
+        case ast.NamedExpr():
+            return "assignment in an expression, :="
+        case ast.Match():
+            return "match statement"
+        case ast.AnnAssign():
+            return "annotation of a variable"
+        case ast.TryStar():
+            return "except*"
+        case ast.BinOp(op=ast.MatMult()) | ast.AugAssign(op=ast.MatMult()):
+            return "operator @"
+        case ast.FunctionDef(args=arguments) | ast.AsyncFunctionDef(args=arguments) if (
+            arguments.posonlyargs
+        ):
+            return "positional-only parameters, /"
+        case (
+            ast.List(ctx=ast.Load(), elts=parts)
+            | ast.Tuple(ctx=ast.Load(), elts=parts)
+            | ast.Set(elts=parts)
+        ):
+            return "* in a list, tuple or set" if _stars(parts) else ""
+        case ast.Dict(keys=keys):
+            return "** in a dictionary" if None in keys else ""
+        case ast.Call(args=given):
+            return "something after * in a call" if _stars(given[:-1]) else ""
+    return ""
+
+
+def _stars(parts: Iterable[ast.expr]) -> bool:
+    return any(isinstance(part, ast.Starred) for part in parts)

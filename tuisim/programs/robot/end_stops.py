@@ -1,0 +1,128 @@
+"""The end stops of motors: where they are, by what a program does with its motors."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Sequence
+from dataclasses import field
+
+from tuisim.base.data_class import dataclass
+from tuisim.programs.robot.call_order import CallOrder
+from tuisim.programs.robot.mentions import Where
+from tuisim.programs.robot.scopes import Scope
+
+_USUAL_REACH_DEG = 180.0
+_MARGIN_DEG = 45.0
+"""How far the end stop, at which a motor finds its place, is from where it is at the start."""
+_MOST_REACH_DEG = 20_000.0
+
+
+@dataclass(frozen=True, slots=True)
+class EndStop:
+    """A motor that drives against an end stop."""
+
+    where: Where
+    forwards: bool | None
+    """Its direction; None if the program does not say it."""
+    scope: Scope
+    """The function or module that drives it there."""
+
+
+@dataclass(frozen=True, slots=True)
+class StopPress:
+    """A motor that presses a touch sensor at its end."""
+
+    touch: str
+    """The port of the sensor; empty if the program does not say it."""
+    motor: str
+    stop: EndStop
+
+
+@dataclass(frozen=True, slots=True)
+class Target:
+    """A position to which the program turns a motor, or how far it turns it."""
+
+    deg: float
+    where: Where
+    scope: Scope
+    """The function or module that turns it."""
+
+
+@dataclass(slots=True)
+class Mechanics:
+    """What a program says about its motors, by port; the port is empty if the program does not say it."""
+
+    order: CallOrder = field(default_factory=CallOrder)
+    """What the program does first."""
+    reversed: dict[str, Where] = field(default_factory=dict)
+    stops: dict[str, EndStop] = field(default_factory=dict)
+    presses: list[StopPress] = field(default_factory=list)
+    reach_deg: dict[str, float] = field(default_factory=dict)
+    """The farthest that the program turns a motor, from where it stands or from its end stop."""
+    turns: dict[str, list[Target]] = field(default_factory=dict)
+    """How far it turns them from where they stand."""
+    targets_deg: dict[str, tuple[float, float]] = field(default_factory=dict)
+    """The farthest positions that a motor can reach that stands at 0 at the start: backwards and forwards."""
+    endless: set[str] = field(default_factory=set)
+    """The motors that the program turns by an angle that is not known."""
+    driven_to_stops: set[str] = field(default_factory=set)
+    """The motors of which a call ends when an end stop stops them: they drive no wheel."""
+    closed: set[str] = field(default_factory=set)
+    """The motors that the program drives against an end stop in both directions."""
+
+    def stop_of(self, port: str) -> EndStop | None:
+        """Return the end stop of a motor; None if it has none."""
+        pressed = (press.stop for press in self.presses if press.motor == port)
+        return self.stops.get(port) or next(pressed, None)
+
+    def range_of(self, port: str) -> tuple[float | None, float | None]:
+        """Return the end stops of a motor, from its position at the start; None for a side without one."""
+        stop = self.stop_of(port)
+        if stop is None:
+            return None, None
+        reach = (
+            max(_USUAL_REACH_DEG, min(self.reach_deg.get(port, 0.0), _MOST_REACH_DEG)) + _MARGIN_DEG
+        )
+        if stop.forwards is None:
+            return -reach, reach
+        far = None if port in self.endless - self.closed else reach
+        back_deg, ahead_deg = self.targets_deg.get(port, (0.0, 0.0))
+        if stop.forwards:
+            return (-far if far else None), min(ahead_deg, _MOST_REACH_DEG) + _MARGIN_DEG
+        return max(back_deg, -_MOST_REACH_DEG) - _MARGIN_DEG, far
+
+    def note_turn(self, port: str, turn: Target) -> None:
+        """Note a turn of a motor from where it stands."""
+        self.reach_deg[port] = max(self.reach_deg.get(port, 0.0), turn.deg)
+        self.turns.setdefault(port, []).append(turn)
+
+    def note_targets(self, port: str, targets: Sequence[Target], places: Collection[float]) -> None:
+        """Note how far a motor turns for some targets, and for its turns, once these are known.
+
+        Args:
+            places: The positions that the program says the motor has, as at an end stop. Once it is there, targets
+                count from the end stop.
+        """
+        far = max(
+            (abs(one.deg - place) for one in targets for place in places or (0.0,)), default=0
+        )
+        self.reach_deg[port] = max(self.reach_deg.get(port, 0.0), far)
+        stop = self.stop_of(port)
+        first = [one.deg for one in targets if not places or self._is_before(one, stop)]
+        # Which way they lead is not known.
+        turned_deg = sum(one.deg for one in self.turns.get(port, ()) if self._is_before(one, stop))
+        self.targets_deg[port] = min((0.0, *first)) - turned_deg, max((0.0, *first)) + turned_deg
+
+    def _is_before(self, target: Target, stop: EndStop | None) -> bool:
+        """Return whether a motor turns to a target before it is driven to its end stop."""
+        if stop is None:
+            return False
+        before, driven = (
+            self.order.find_order(one.where.line, one.scope) for one in (target, stop)
+        )
+        return before < driven
+
+    def turn_motor(self, port: str, gear_ratio: float, *, is_turned: bool) -> None:
+        """Change the angles of the program into those of a motor."""
+        self.reach_deg[port] = self.reach_deg.get(port, 0.0) * gear_ratio
+        back_deg, ahead_deg = (deg * gear_ratio for deg in self.targets_deg.get(port, (0.0, 0.0)))
+        self.targets_deg[port] = (-ahead_deg, -back_deg) if is_turned else (back_deg, ahead_deg)

@@ -1,0 +1,422 @@
+"""What a program says about how its motors are mounted: reversed, with end stops, pressing a touch sensor."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import field
+
+from tuisim.base.data_class import dataclass
+from tuisim.programs.robot import library
+from tuisim.programs.robot.call_order import CallOrder
+from tuisim.programs.robot.end_stops import EndStop, Mechanics, StopPress, Target
+from tuisim.programs.robot.evaluation import Evaluation
+from tuisim.programs.robot.library import INVERSED, NORMAL, DeviceKind, Moves
+from tuisim.programs.robot.mentions import Mentions, Pair, Where
+from tuisim.programs.robot.scopes import FUNCTIONS, Bound, Scope
+from tuisim.programs.robot.values import Instance, OwnClass, OwnFunction, Value
+from tuisim.programs.robot.words import means_forwards
+
+
+def mechanics_in(mentions: Mentions) -> Mechanics:
+    """Return what a program says about how its motors are mounted."""
+    if mentions.evaluation is None:
+        return Mechanics()
+    evaluation, moves = mentions.evaluation, library.MOVES[mentions.library]
+    found = Mechanics(CallOrder(evaluation.calls))
+    return _MechanicsReader(mentions, evaluation, moves, found).read()
+
+
+@dataclass(slots=True)
+class _MechanicsReader:
+    mentions: Mentions
+    evaluation: Evaluation
+    moves: Moves
+    """Of the library."""
+    found: Mechanics
+    normal: set[str] = field(default_factory=set)
+    places: dict[str, set[float]] = field(default_factory=dict)
+    """The positions that the program says its motors have, as at an end stop, by port."""
+    targets: dict[str, list[Target]] = field(default_factory=dict)
+    """The positions to which it turns them."""
+    backwards: dict[str, Where] = field(default_factory=dict)
+    """The motors that have negative speeds where the program says that it drives forwards."""
+    inside: dict[ast.Call, Evaluation] = field(default_factory=dict)
+    """What the program's expressions can be in an object, by the call that makes it."""
+
+    def read(self) -> Mechanics:
+        for pair in self.mentions.pairs:
+            if library.PAIRS[pair.class_name].reverses and pair.polarity != NORMAL:
+                self._turn((pair.left, pair.right), INVERSED, pair.where)
+        for device in self.mentions.devices:
+            if device.is_turned:
+                self._turn([device.port], INVERSED, device.where)
+        for scope in self.mentions.scopes:
+            for node in scope.body:
+                self._read(node, scope)
+            for block in _blocks(scope):
+                for before, statement in zip([None, *block], block, strict=False):
+                    self._read_press([*([before] if before else []), statement], scope)
+            if isinstance(scope.node, FUNCTIONS) and means_forwards(scope.node.name):
+                self._read_forwards(scope)
+        for port in self.normal:
+            # A program that turns the polarity to and fro tries it out.
+            self.found.reversed.pop(port, None)
+        for port, where in self.backwards.items():
+            # With the polarity turned as well, the motor is mounted the usual way.
+            if self.found.reversed.pop(port, None) is None:
+                self.found.reversed[port] = where
+        for port in {**self.targets, **self.found.turns}:
+            self.found.note_targets(port, self.targets.get(port, ()), self.places.get(port, ()))
+        for port in {*self.found.reach_deg, *self.found.targets_deg}:
+            if mention := self.mentions.motor_on(port):
+                self.found.turn_motor(port, mention.gear_ratio, is_turned=mention.is_turned)
+        return self.found
+
+    def _read(self, node: ast.AST, scope: Scope) -> None:
+        match node:
+            case ast.Assign(targets=targets, value=value):
+                for target in targets:
+                    if isinstance(target, ast.Attribute):
+                        self._read_assigned(target, value, scope)
+            case ast.Call(func=ast.Attribute(value=base, attr="set_polarity"), args=[value, *_]):
+                for text in self.evaluation.values(value, scope):
+                    self._turn(self._known_motors(base, scope), text, _where(node, scope))
+            case ast.Attribute(value=base, attr="is_stalled"):
+                self._stall(base, scope, node)
+            case ast.While(test=ast.Compare(left=left, ops=[ast.Gt() | ast.GtE() | ast.NotEq()])):
+                motor = _speed_of(left)
+                if motor is not None and self._only_moves_endlessly(motor, scope):
+                    self._stall(motor, scope, node)
+            case ast.Compare(left=left, comparators=[ast.Attribute(value=base, attr="state")]):
+                if "stalled" in self.evaluation.values(left, scope):
+                    self._stall(base, scope, node)
+            case ast.Call(func=ast.Attribute(value=base, attr="wait_until"), args=[state, *_]):
+                if "stalled" in self.evaluation.values(state, scope):
+                    self._stall(base, scope, node)
+            case ast.Call(func=ast.Attribute(value=base, attr="wait_until_not_moving")):
+                if self._only_moves_endlessly(base, scope):
+                    self._stall(base, scope, node)
+            case ast.Call(func=ast.Attribute(value=base, attr=name)):
+                self._read_call(node, name, base, scope)
+
+    def _read_call(self, call: ast.Call, name: str, base: ast.expr, scope: Scope) -> None:
+        """Note a move, or what a method of Pybricks says about a motor."""
+        if name in self.moves.ending:
+            self._note_reach(call, name, self._motors(base, scope), scope)
+        elif name in self.moves.stalling:
+            self.found.driven_to_stops.update(self._motors(base, scope))
+            self._stall(
+                base, scope, call, [speed > 0 for speed in self._speeds(call, scope) if speed]
+            )
+        elif name == "stalled":
+            match base:
+                case ast.Attribute(value=motor, attr="control"):
+                    self._stall(motor, scope, call)
+                case _:
+                    self._stall(base, scope, call)
+        elif name == "reset_angle" and call.args:
+            self._note_places(base, call.args[0], scope)
+
+    def _read_assigned(self, target: ast.Attribute, value: ast.expr, scope: Scope) -> None:
+        match target.attr:
+            case "polarity":
+                for text in self.evaluation.values(value, scope):
+                    self._turn(self._known_motors(target.value, scope), text, _where(target, scope))
+            case "position":
+                self._note_places(target.value, value, scope)
+            case "position_sp":
+                self._note_targets(value, self._motors(target.value, scope), scope)
+
+    def _note_places(self, base: ast.expr, value: ast.expr, scope: Scope) -> None:
+        for port in self._motors(base, scope):
+            self.places.setdefault(port, set()).update(self._numbers(value, scope))
+
+    def _read_forwards(self, scope: Scope) -> None:
+        """Note motors that a function, which is named for driving forwards, turns backwards only."""
+        speeds: dict[str, list[float]] = {}
+        where: dict[str, Where] = {}
+        for node in scope.body:
+            if not (isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute)):
+                continue
+            if node.func.attr not in self.moves.endless | self.moves.ending - self.moves.unsigned:
+                continue
+            if any(
+                length < 0
+                for one in self._lengths(node, node.func.attr, scope)
+                for length in self._numbers(one, scope)
+            ):
+                return
+            for port in self._known_motors(node.func.value, scope):
+                speeds.setdefault(port, []).extend(self._speeds(node, scope))
+                where.setdefault(port, _where(node, scope))
+        for port, found in speeds.items():
+            if found and max(found) < 0:
+                self.backwards[port] = where[port]
+
+    def _speeds(self, call: ast.Call, scope: Scope) -> Iterator[float]:
+        """Yield the speeds that a call gives, to one motor or to both of a pair."""
+        assert isinstance(call.func, ast.Attribute)
+        pairs = self._pairs(call.func.value, scope)
+        first, last = (0, 1) if not pairs or call.func.attr in self.moves.of_both else (0, 2)
+        if any(pair.class_name == "MoveSteering" for pair in pairs):
+            first, last = 1, 2
+        names = (*self.moves.speeds, "left_speed", "right_speed")
+        given = [keyword.value for keyword in call.keywords if keyword.arg in names]
+        for node in (*given, *call.args[first:last]):
+            yield from self._numbers(
+                node.args[0] if isinstance(node, ast.Call) and node.args else node, scope
+            )
+
+    def _lengths(self, call: ast.Call, name: str, scope: Scope) -> list[ast.expr]:
+        """Return what a call of a movement gives for its length or its end."""
+        given = [keyword.value for keyword in call.keywords if keyword.arg in self.moves.lengths]
+        if name not in self.moves.length_at:
+            return given
+        assert isinstance(call.func, ast.Attribute)
+        at = self.moves.length_at[name] + (1 if self._pairs(call.func.value, scope) else 0)
+        return given + call.args[at : at + 1]
+
+    def _numbers(self, node: ast.expr, scope: Scope) -> list[float]:
+        return [
+            value for value in self.evaluation.values(node, scope) if isinstance(value, int | float)
+        ]
+
+    def _turn(self, ports: Iterable[str], text: object, where: Where) -> None:
+        for port in ports:
+            if text == INVERSED:
+                self.found.reversed.setdefault(port, where)
+            elif text == NORMAL:
+                self.normal.add(port)
+
+    def _stall(
+        self, base: ast.expr, scope: Scope, node: ast.AST, said: Sequence[bool] = ()
+    ) -> None:
+        """Note an end stop of a motor.
+
+        Args:
+            said: Whether the motor turns forwards there, for each time; empty if its movements say it.
+        """
+        for port in self._motors(base, scope):
+            forwards = next(iter(said or self._directions(scope.body, [port], scope)), None)
+            stop = EndStop(_where(node, scope), self._as_mounted(port, forwards), scope)
+            known = self.found.stops.setdefault(port, stop)
+            if any(self._as_mounted(port, way) != known.forwards for way in said):
+                self.found.closed.add(port)
+
+    def _as_mounted(self, port: str, forwards: bool | None) -> bool | None:
+        """Return a direction of the program as that of a motor."""
+        mention = self.mentions.motor_on(port)
+        return not forwards if forwards is not None and mention and mention.is_turned else forwards
+
+    # Movements
+
+    def _calls(
+        self, nodes: Iterable[ast.AST], ports: Iterable[str], names: Iterable[str], scope: Scope
+    ) -> list[ast.Call]:
+        wanted, known = {*ports}, {*names}
+        return [
+            node
+            for node in nodes
+            if isinstance(node, ast.Call)
+            and isinstance(node.func, ast.Attribute)
+            and node.func.attr in known
+            and wanted & {*self._motors(node.func.value, scope)}
+        ]
+
+    def _moves(self, scope: Scope, ports: Iterable[str], names: Iterable[str]) -> bool:
+        return bool(self._calls(scope.body, ports, names, scope))
+
+    def _only_moves_endlessly(self, base: ast.expr, scope: Scope) -> bool:
+        """Return whether a motor, in some part of the program, moves and never by itself ends to."""
+        ports = self._motors(base, scope)
+        return self._moves(scope, ports, self.moves.endless) and not self._moves(
+            scope, ports, self.moves.ending
+        )
+
+    def _directions(
+        self, nodes: Sequence[ast.AST], ports: Iterable[str], scope: Scope
+    ) -> Iterator[bool]:
+        """Yield whether the movements without an end among some nodes are forwards."""
+        ports = [*ports]
+        for call in self._calls(nodes, ports, self.moves.endless, scope):
+            given = [keyword.value for keyword in call.keywords if keyword.arg in self.moves.speeds]
+            for node in (*given, *call.args[:1]):
+                inside = node.args[0] if isinstance(node, ast.Call) and node.args else node
+                yield from (value > 0 for value in self._numbers(inside, scope) if value)
+        for one in nodes:
+            match one:
+                case ast.Assign(targets=[ast.Attribute(value=base, attr=name)], value=speed) if (
+                    name in self.moves.speeds
+                ):
+                    if {*ports} & {*self._motors(base, scope)}:
+                        yield from (value > 0 for value in self._numbers(speed, scope) if value)
+
+    def _note_reach(self, call: ast.Call, name: str, ports: Sequence[str], scope: Scope) -> None:
+        turns = 360.0 if name == "on_for_rotations" else 1.0
+        for node in self._lengths(call, name, scope):
+            if name in self.moves.unsigned:
+                self._note_targets(node, ports, scope)
+                continue
+            lengths = self._numbers(node, scope)
+            self.found.endless.update(() if lengths else ports)
+            for length in lengths:
+                turn = Target(abs(length) * turns, _where(node, scope), scope)
+                for port in ports:
+                    self.found.note_turn(port, turn)
+
+    def _note_targets(self, node: ast.expr, ports: Sequence[str], scope: Scope) -> None:
+        targets = self._numbers(node, scope)
+        if not targets:
+            self.found.endless.update(ports)
+            return
+        for port in ports:
+            where = _where(node, scope)
+            self.targets.setdefault(port, []).extend(Target(deg, where, scope) for deg in targets)
+
+    # Touch sensors
+
+    def _read_press(self, statements: list[ast.stmt], scope: Scope) -> None:
+        """Note a motor that runs until a touch sensor is pressed, while nothing else moves."""
+        last = statements[-1]
+        match last:
+            case ast.While(
+                test=ast.UnaryOp(op=ast.Not(), operand=ast.Attribute(value=base, attr="is_pressed"))
+            ):
+                pass
+            case ast.While(
+                test=ast.UnaryOp(
+                    op=ast.Not(),
+                    operand=ast.Call(func=ast.Attribute(value=base, attr="value" | "pressed")),
+                )
+            ):
+                pass
+            case ast.Expr(value=ast.Call(func=ast.Attribute(value=base, attr="wait_for_pressed"))):
+                pass
+            case _:
+                return
+        touches = self._devices(base, scope, DeviceKind.TOUCH)
+        nodes = [inner for statement in statements for inner in ast.walk(statement)]
+        moved = {
+            port
+            for node in nodes
+            if isinstance(node, ast.Call)
+            and isinstance(node.func, ast.Attribute)
+            and node.func.attr in self.moves.endless | self.moves.ending
+            for port in self._motors(node.func.value, scope)
+        }
+        if len(moved) == 1 and touches:
+            forwards = next(self._directions([*nodes, *scope.body], moved, scope), None)
+            motor = moved.pop()
+            stop = EndStop(_where(last, scope), self._as_mounted(motor, forwards), scope)
+            self.found.presses.append(StopPress(touches[0], motor, stop))
+
+    # Devices
+
+    def _known_motors(self, node: ast.expr, scope: Scope) -> list[str]:
+        """Return the ports of the motors that an expression can be; none if it stands for one of several in turn."""
+        calls = [
+            value.call
+            for value in self.evaluation.values(node, scope)
+            if isinstance(value, Instance)
+        ]
+        in_turn = any(
+            sum(one.call is call for one in self.mentions.devices) > 1 for call in calls if call
+        )
+        return [] if in_turn else self._motors(node, scope)
+
+    def _motors(self, node: ast.expr, scope: Scope) -> list[str]:
+        return self._devices(node, scope, DeviceKind.LARGE, DeviceKind.MEDIUM, DeviceKind.MOTOR)
+
+    def _devices(self, node: ast.expr, scope: Scope, *kinds: DeviceKind) -> list[str]:
+        """Return the ports of the devices of some kinds that an expression can be."""
+        if isinstance(node, ast.Attribute) and node.attr in ("left_motor", "right_motor"):
+            pairs = self._pairs(node.value, scope)
+            if pairs:
+                return [pair.left if node.attr == "left_motor" else pair.right for pair in pairs]
+        found = [port for pair in self._pairs(node, scope) for port in (pair.left, pair.right)]
+        for value in self._values(node, scope):
+            if isinstance(value, Instance):
+                found += [
+                    one.port
+                    for one in self.mentions.devices
+                    if one.kind in kinds and one.makes(value)
+                ]
+        return list(dict.fromkeys(found))
+
+    def _values(self, node: ast.expr, scope: Scope) -> Sequence[Value]:
+        """Return what an expression can be at its place: by the nearest assignment above, and in its own object."""
+        match node:
+            case ast.Name(id=name):
+                known = [
+                    one
+                    for one in scope.names.get(name, ())
+                    if isinstance(one, Bound) and one.scope is scope
+                ]
+                above = [
+                    one
+                    for one in known
+                    if one.node.lineno < node.lineno and not (one.path or one.is_item)
+                ]
+                if len(known) > 1 and above:
+                    return self._values(max(above, key=lambda one: one.node.lineno).node, scope)
+            case ast.Attribute(value=base, attr=name):
+                of = self._values(base, scope)
+                if any(isinstance(one, Instance) for one in of):
+                    return [
+                        value
+                        for one in of
+                        for value in self._evaluation_in(one).attribute(one, name)
+                    ]
+        return self.evaluation.values(node, scope)
+
+    def _evaluation_in(self, value: Value) -> Evaluation:
+        """Return what the program's expressions can be in one object of a class of the program."""
+        match value:
+            case Instance(of=OwnClass(scope=scope), call=ast.Call() as call):
+                if call not in self.inside:
+                    self.inside[call] = self.evaluation
+                    if isinstance(init := self.evaluation.method(scope, "__init__"), OwnFunction):
+                        for made in self.evaluation.calls.get(init.node, ()):
+                            if made.node is call:
+                                self.inside[call] = self.evaluation.within(init.node, made)
+                return self.inside[call]
+        return self.evaluation
+
+    def _pairs(self, node: ast.expr, scope: Scope) -> list[Pair]:
+        found = []
+        for value in self.evaluation.values(node, scope):
+            if isinstance(value, Instance):
+                found += [pair for pair in self.mentions.pairs if pair.makes(value)]
+        return found
+
+
+def _speed_of(node: ast.expr) -> ast.expr | None:
+    """Return the motor whose speed an expression is, or the amount of its speed; None if it is no speed."""
+    match node:
+        case ast.Call(func=ast.Name(id="abs"), args=[inner]):
+            return _speed_of(inner)
+        case (
+            ast.Attribute(value=base, attr="speed")
+            | ast.Call(func=ast.Attribute(value=base, attr="speed"))
+        ):
+            return base
+    return None
+
+
+def _where(node: ast.AST, scope: Scope) -> Where:
+    return Where(scope.module.file, getattr(node, "lineno", 0))
+
+
+def _blocks(scope: Scope) -> Iterator[list[ast.stmt]]:
+    """Yield every sequence of statements of a scope."""
+    yield scope.node.body
+    for node in scope.body:
+        for name in ("body", "orelse", "finalbody"):
+            block = getattr(node, name, None)
+            if (
+                isinstance(block, list)
+                and block
+                and not isinstance(node, ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef)
+            ):
+                yield block

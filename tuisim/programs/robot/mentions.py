@@ -1,0 +1,646 @@
+"""The devices that a program makes: their kinds and ports, and what it says about them."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import field, replace
+
+from tuisim.base.data_class import dataclass
+from tuisim.engine.core.profile import Library
+from tuisim.programs.robot import library
+from tuisim.programs.robot.calls import Call, argument_node, argument_of
+from tuisim.programs.robot.evaluation import Evaluation
+from tuisim.programs.robot.library import DeviceKind, PairClass
+from tuisim.programs.robot.reach import reachable, skipped
+from tuisim.programs.robot.scopes import FUNCTIONS, Function, Parameter, Scope, scope_of
+from tuisim.programs.robot.source import DataFiles, Module, library_of
+from tuisim.programs.robot.values import (
+    Instance,
+    LibraryClass,
+    OwnClass,
+    OwnFunction,
+    Parent,
+    SourceCollection,
+    Value,
+)
+
+_ROUNDS = 3
+"""How often the calls are looked up: each time more is known about what is called."""
+_MAX_WAYS = 40
+"""Functions with more calls than these are read for all of them at once."""
+
+
+@dataclass(frozen=True, slots=True)
+class Where:
+    """A line of a program."""
+
+    file: str
+    line: int
+
+    def __str__(self) -> str:
+        return f"{self.file}, line {self.line}"
+
+
+@dataclass(frozen=True, slots=True)
+class Mention:
+    """A device that a program makes."""
+
+    kind: DeviceKind
+    port: str
+    """Its short name, such as `outA`; empty if the program does not say it."""
+    where: Where
+    names: tuple[str, ...] = ()
+    """What the program calls it, the nearest name first."""
+    owner: Scope | None = None
+    """The class in which it is made."""
+    is_any: bool = False
+    """Whether the program takes any device of the kind; else its port is not known."""
+    call: ast.Call | None = None
+    """What makes it."""
+    via: ast.Call | None = field(default=None, compare=False)
+    """The call of the function in which it is made, if that has several."""
+    is_turned: bool = False
+    """Whether the program makes the motor with the opposite direction as the positive one."""
+    gear_ratio: float = 1.0
+    """Turns of the motor per turn of what it drives, as the program says."""
+
+    def makes(self, value: Instance) -> bool:
+        """Return whether this makes an instance: itself, or from the `__init__` of its class."""
+        return _makes(self.call, self.owner, value)
+
+
+@dataclass(frozen=True, slots=True)
+class Pair:
+    """Two motors that a program drives together."""
+
+    left: str
+    right: str
+    """Their ports."""
+    kind: DeviceKind
+    rank: int
+    """The higher, the likelier these are the wheels."""
+    where: Where
+    class_name: str
+    wheel_mm: tuple[float, float | None] | None = None
+    """Diameter and width; the width is None if it does not say that."""
+    spacing_mm: float | None = None
+    names: tuple[str, ...] = ()
+    call: ast.Call | None = None
+    """What makes it."""
+    owner: Scope | None = None
+    """The class in which it is made."""
+    polarity: str = ""
+    """What the program gives for the polarity of its motors, for a class that takes it."""
+
+    def makes(self, value: Instance) -> bool:
+        """Return whether this makes an instance: itself, or from the `__init__` of its class."""
+        return _makes(self.call, self.owner, value)
+
+
+@dataclass(frozen=True, slots=True)
+class Mentions:
+    """The devices that a program makes, and what can tell more about them."""
+
+    devices: tuple[Mention, ...] = ()
+    pairs: tuple[Pair, ...] = ()
+    scopes: Sequence[Scope] = ()
+    """What of the program can run."""
+    evaluation: Evaluation | None = None
+    """What its expressions can be."""
+    library: Library = Library.EV3DEV2
+    """The library that it uses."""
+
+    def motor_on(self, port: str) -> Mention | None:
+        """Return the first motor that the program makes on a port."""
+        return next((one for one in self.devices if one.port == port and one.kind.is_motor), None)
+
+
+def mentions_in(modules: dict[str, Module], files: DataFiles) -> Mentions:
+    """Return what a program says about its robot.
+
+    Args:
+        modules: The program and its own modules.
+        files: What it may read besides.
+    """
+    scopes = {name: scope_of(module) for name, module in modules.items()}
+    found = _Reader(scopes, files).read()
+    return replace(found, library=library_of(modules) or found.library)
+
+
+@dataclass(slots=True)
+class _Reader:
+    modules: dict[str, Scope]
+    files: DataFiles
+    scopes: list[Scope] = field(init=False)
+    evaluation: Evaluation = field(init=False)
+    made: list[tuple[str, Call]] = field(init=False, default_factory=list)
+    """Each class of the library with a call that makes one of it."""
+    parts: set[ast.AST] = field(init=False, default_factory=set)
+    """The calls in `made`."""
+    hints: dict[ast.AST, list[str]] = field(init=False, default_factory=dict)
+    via: Call | None = field(init=False, default=None)
+    """The call of the function that is being read, if it has several."""
+
+    def read(self) -> Mentions:
+        self.scopes = reachable(self.modules)
+        calls = [Call(node, scope) for scope in self.scopes for node in _calls_in(scope)]
+        options = _options(calls)
+        self.evaluation = Evaluation(self.modules, self.files, options)
+        for _ in range(_ROUNDS):
+            found: dict[Function, list[Call]] = {}
+            self.made = []
+            for call in calls:
+                self._sort(call, found)
+            if found == self.evaluation.calls:
+                break
+            self.evaluation = Evaluation(self.modules, self.files, options, found)
+        self.parts = {call.node for _, call in self.made}
+        for scope in self.scopes:
+            self._note_names(scope)
+        devices: list[Mention] = []
+        pairs: list[Pair] = []
+        whole = self.evaluation
+        of_ports = [one for one in self.made if not _takes_motors(one[0])]
+        # Its motors are known by then.
+        for name, call in (*of_ports, *(one for one in self.made if _takes_motors(one[0]))):
+            for inside, via in self._ways(name, call, whole):
+                self.evaluation, self.via = inside, via
+                if name in library.PAIRS:
+                    pairs += self._pairs(name, call, devices)
+                    devices += self._needs(name, call)
+                elif name == library.MOTOR_SET:
+                    devices += self._motor_set(call)
+                elif name in library.DEVICES:
+                    devices += self._devices(name, call)
+        self.evaluation = whole
+        # What is known in one call of a function may not be in another one, such as that in itself.
+        known = {one.call for one in devices if one.port}
+        devices = [one for one in devices if one.port or one.is_any or one.call not in known]
+        return Mentions(
+            tuple(dict.fromkeys(devices)), tuple(dict.fromkeys(pairs)), self.scopes, whole
+        )
+
+    def _ways(
+        self, name: str, call: Call, whole: Evaluation
+    ) -> Iterator[tuple[Evaluation, Call | None]]:
+        """Yield what is known in each call of the function in which something is made, with that call."""
+        function = call.scope.node
+        calls = whole.calls.get(function, ()) if isinstance(function, FUNCTIONS) else ()
+        if not 1 < len(calls) <= _MAX_WAYS or not isinstance(function, FUNCTIONS):
+            yield whole, None
+            return
+        for via in calls:
+            inside = whole.within(function, via)
+            made = inside.values(call.node.func, call.scope)
+            # A class that is given to the function is another one in another call.
+            if (
+                not any(isinstance(value, LibraryClass) for value in made)
+                or LibraryClass(name) in made
+            ):
+                yield inside, via
+
+    # Calls
+
+    def _sort(self, call: Call, found: dict[Function, list[Call]]) -> None:
+        """Note what a call calls: a function of the program, or a class of the library."""
+        match call.node.func:
+            case ast.Attribute(value=base, attr="__init__"):
+                for value in self.evaluation.values(base, call.scope):
+                    self._sort_init(value, call, found)
+                return
+        for value in self.evaluation.values(call.node.func, call.scope):
+            match value:
+                case LibraryClass(name=name):
+                    self.made.append((name, call))
+                case OwnClass(scope=scope):
+                    self._sort_class(scope, call, found)
+                case OwnFunction(node=node, is_bound=is_bound):
+                    found.setdefault(node, []).append(replace(call, is_bound=is_bound))
+
+    def _sort_init(self, value: Value, call: Call, found: dict[Function, list[Call]]) -> None:
+        """Note a call of `super().__init__` or `Base.__init__`."""
+        match value:
+            case Parent(of=scope):
+                for base in self.evaluation.bases(scope):
+                    if isinstance(base, LibraryClass):
+                        self.made.append((base.name, call))
+                    elif isinstance(base, OwnClass):
+                        self._sort_class(base.scope, call, found)
+            case LibraryClass() | OwnClass() if call.node.args:
+                node = ast.copy_location(
+                    ast.Call(call.node.func, call.node.args[1:], call.node.keywords), call.node
+                )
+                rest = Call(node, call.scope)
+                if isinstance(value, LibraryClass):
+                    self.made.append((value.name, rest))
+                else:
+                    self._sort_class(value.scope, rest, found)
+
+    def _sort_class(self, scope: Scope, call: Call, found: dict[Function, list[Call]]) -> None:
+        match self.evaluation.method(scope, "__init__"):
+            case OwnFunction(node=node):
+                found.setdefault(node, []).append(replace(call, is_bound=True))
+            case LibraryClass(name=name):
+                self.made.append((name, call))
+
+    # Names
+
+    def _note_names(self, scope: Scope) -> None:
+        for node in scope.body:
+            match node:
+                case ast.Assign(targets=targets, value=value):
+                    for target in targets:
+                        self._note(target, value)
+                case (
+                    ast.AnnAssign(target=target, value=ast.expr() as value)
+                    | ast.NamedExpr(target=target, value=value)
+                ):
+                    self._note(target, value)
+                case ast.Dict(keys=keys, values=values):
+                    for key, value in zip(keys, values, strict=True):
+                        if isinstance(key, ast.Constant) and isinstance(key.value, str):
+                            self._hint(value, key.value)
+                case ast.keyword(arg=str(name), value=value):
+                    self._hint(value, name)
+                case ast.Return(value=ast.expr() as value) if isinstance(scope.node, FUNCTIONS):
+                    self._hint(value, scope.node.name)
+        for function, calls in self.evaluation.calls.items():
+            for call in calls:
+                if call.scope is scope:
+                    names = [argument.arg for argument in function.args.args][
+                        1 if call.is_bound else 0 :
+                    ]
+                    for name, value in zip(names, call.node.args, strict=False):
+                        self._hint(value, name)
+
+    def _note(self, target: ast.expr, value: ast.expr) -> None:
+        match target, value:
+            case (
+                ast.Tuple(elts=targets) | ast.List(elts=targets),
+                ast.Tuple(elts=values) | ast.List(elts=values),
+            ):
+                for one, inside in zip(targets, values, strict=False):
+                    self._note(one, inside)
+            case ((ast.Name(id=name) | ast.Attribute(attr=name)), _):
+                self._hint(value, name)
+
+    def _hint(self, value: ast.expr, name: str) -> None:
+        if name not in (known := self.hints.setdefault(value, [])):
+            known.append(name)
+        match value:
+            case ast.IfExp(body=one, orelse=other):
+                self._hint(one, name)
+                self._hint(other, name)
+            case ast.BoolOp(values=parts):
+                for part in parts:
+                    self._hint(part, name)
+            case ast.Call(args=args):
+                # As in `elbow = Joint(LargeMotor(OUTPUT_B))`: the thing is named after its only part.
+                parts = [part for part in args if part in self.parts]
+                if len(parts) == 1 and value not in self.parts:
+                    self._hint(parts[0], name)
+
+    # Devices
+
+    def _devices(self, name: str, call: Call) -> Iterator[Mention]:
+        kind, where = library.DEVICES[name], _where(call)
+        driver = argument_of(call, "driver_name", None, self.evaluation)
+        if driver:
+            told = [library.kind_of_driver(one) for one in self._flat(driver)]
+            if not told or told[0] is None:
+                return
+            kind = told[0]
+        elif kind is DeviceKind.SENSOR:
+            kind = self._kind_by_mode(call) or kind
+        names = self._called(call)
+        made = Mention(
+            kind,
+            "",
+            where,
+            names,
+            call.scope.owner,
+            call=call.node,
+            via=self.via.node if self.via else None,
+        )
+        word = next(
+            (one.arg for one in call.node.keywords if one.arg in library.PORT_NAMES),
+            library.PORT_NAMES[0],
+        )
+        ports = (
+            [("", names)]
+            if name in library.WITHOUT_PORT
+            else list(self._ports(call, word, 0, names))
+        )
+        if not ports and not any(isinstance(value, str) for value in self._given(call, word)):
+            # A text that is no port of the brick names something that is not simulated.
+            yield replace(made, is_any=self._takes_any(call, word))
+        for port, called in dict(ports).items():
+            if port and port.startswith("out") != kind.is_motor:
+                continue
+            found = replace(made, port=port, names=called, is_any=not port)
+            yield self._mounted(found, call) if kind.is_motor else found
+
+    def _mounted(self, motor: Mention, call: Call) -> Mention:
+        """Return a motor with the direction and the gears that the call says."""
+        is_turned = library.INVERSED in (
+            argument_of(call, library.DIRECTION, 1, self.evaluation) or ()
+        )
+        return replace(motor, is_turned=is_turned, gear_ratio=self._gear_ratio(call))
+
+    def _gear_ratio(self, call: Call) -> float:
+        """Return the turns of a motor per turn of what it drives: its gears are one train, or a list of trains."""
+        parts = [*self._flat(argument_of(call, library.GEARS, 2, self.evaluation) or ())]
+        trains = [
+            [*self._flat([part])] for part in parts if isinstance(part, SourceCollection)
+        ] or [parts]
+        ratio = 1.0
+        for train in trains:
+            teeth = [one for one in train if isinstance(one, int | float) and one > 0]
+            if len(teeth) > 1:
+                ratio *= teeth[-1] / teeth[0]
+        return ratio
+
+    def _called(self, call: Call) -> tuple[str, ...]:
+        """Return what the program calls the thing that a call makes."""
+        outside = self.hints.get(self.via.node, ()) if self.via else ()
+        return tuple(dict.fromkeys((*self.hints.get(call.node, ()), *outside)))
+
+    def _given(self, call: Call, word: str) -> Sequence[Value]:
+        return argument_of(call, word, 0, self.evaluation) or ()
+
+    def _takes_any(self, call: Call, word: str) -> bool:
+        node = argument_node(call, word, 0)
+        return node is None or (isinstance(node, ast.Constant) and node.value is None)
+
+    def _ports(
+        self, call: Call, name: str, at: int, names: tuple[str, ...]
+    ) -> Iterator[tuple[str, tuple[str, ...]]]:
+        """Yield the ports that an argument can be, each with what the program calls the device."""
+        node = argument_node(call, name, at)
+        if node is None:
+            given: Iterable[Value] = argument_of(call, name, at, self.evaluation) or ()
+            yield from ((port, names) for value in given if (port := library.port_of(value)))
+            return
+        own = _names_in(node)
+        parameters = (
+            [one for one in call.scope.names.get(node.id, ()) if isinstance(one, Parameter)]
+            if isinstance(node, ast.Name)
+            else []
+        )
+        if parameters:
+            for value, via in self.evaluation.arguments(parameters[0]):
+                if port := library.port_of(value):
+                    said = self._said_in(via, parameters[0]) if via else ()
+                    yield port, (*names, *own, *said)
+            return
+        for value in self.evaluation.values(node, call.scope):
+            if port := library.port_of(value):
+                yield port, (*names, *own)
+
+    def _said_in(self, call: Call, parameter: Parameter) -> tuple[str, ...]:
+        names = [argument.arg for argument in parameter.function.args.args]
+        name = parameter.argument.arg
+        at = names.index(name) - (1 if call.is_bound else 0) if name in names else None
+        node = argument_node(call, name, at)
+        return (*self.hints.get(call.node, ()), *(_names_in(node) if node is not None else ()))
+
+    def _flat(self, values: Sequence[Value]) -> Iterator[Value]:
+        for value in values:
+            if isinstance(value, SourceCollection):
+                for item in value.items:
+                    yield from self.evaluation.values(item, value.scope)
+            else:
+                yield value
+
+    def _kind_by_mode(self, call: Call) -> DeviceKind | None:
+        """Return the kind of a sensor whose mode the program sets."""
+        names = self.hints.get(call.node, ())
+        for scope in self.scopes:
+            for node in scope.body:
+                match node:
+                    case ast.Assign(
+                        targets=[
+                            ast.Attribute(
+                                value=ast.Name(id=name) | ast.Attribute(attr=name), attr="mode"
+                            )
+                        ],
+                        value=mode,
+                    ) if name in names:
+                        for value in self.evaluation.values(mode, scope):
+                            if kind := library.kind_of_mode(value):
+                                return kind
+        return None
+
+    def _motor_set(self, call: Call) -> Iterator[Mention]:
+        owner, where = call.scope.owner, _where(call)
+        for table in argument_of(call, "motor_specs", 0, self.evaluation) or ():
+            if isinstance(table, SourceCollection) and isinstance(table.node, ast.Dict):
+                for key, item in zip(table.keys, table.items, strict=True):
+                    ports = self.evaluation.values(key, table.scope) if key is not None else ()
+                    kinds = [
+                        kind
+                        for one in self.evaluation.values(item, table.scope)
+                        if (kind := _motor_of(one))
+                    ]
+                    for port in map(library.port_of, ports):
+                        if port and kinds:
+                            names = _names_in(key) if key is not None else ()
+                            yield Mention(
+                                kinds[0],
+                                port,
+                                where,
+                                (*names, *self._called(call)),
+                                owner,
+                                call=call.node,
+                            )
+
+    # Pairs
+
+    def _pairs(self, name: str, call: Call, devices: Sequence[Mention]) -> Iterator[Pair]:
+        """Yield the pairs of motors that a call makes.
+
+        Args:
+            devices: What the program makes besides, with the motors of a class that takes motors.
+        """
+        known, names = library.PAIRS[name], self._called(call)
+        polarities = [
+            str(value) for value in argument_of(call, library.POLARITY, 2, self.evaluation) or ()
+        ]
+        for one, other in self._ends(known, call, names, devices):
+            if one != other and one.startswith("out") and other.startswith("out"):
+                yield Pair(
+                    one,
+                    other,
+                    self._motor_kind(name, known, call),
+                    known.rank,
+                    _where(call),
+                    name,
+                    *self._sizes(known, call),
+                    names,
+                    call.node,
+                    call.scope.owner,
+                    polarities[0] if polarities else "",
+                )
+
+    def _ends(
+        self, known: PairClass, call: Call, names: tuple[str, ...], devices: Sequence[Mention]
+    ) -> Iterable[tuple[str, str]]:
+        """Return the ports of the left and the right motor, for each pair that a call can make."""
+        if known.takes_motors:
+            left, right = (
+                self._driven(call, known.left, 0, devices),
+                self._driven(call, known.right, 1, devices),
+            )
+            if len(left) == 2 and right in ([], left):
+                # As `motors[0]` and `motors[1]` of `motors = [Motor(port) for port in ports]`.
+                left, right = left[:1], left[1:]
+        else:
+            # The ports of a balancing robot come last.
+            at = (10, 11) if known.usual[0] else (0, 1)
+            left = [port for port, _ in self._ports(call, known.left, at[0], names)]
+            right = [port for port, _ in self._ports(call, known.right, at[1], names)]
+        left = left or ([known.usual[0]] if known.usual[0] else [])
+        right = right or ([known.usual[1]] if known.usual[1] else [])
+        if len(left) != len(right):
+            left, right = left[:1], right[:1]
+        return dict.fromkeys(zip(left, right, strict=False))
+
+    def _driven(self, call: Call, name: str, at: int, devices: Sequence[Mention]) -> list[str]:
+        """Return the ports of the motors that an argument can be."""
+        given = [
+            one
+            for one in argument_of(call, name, at, self.evaluation) or ()
+            if isinstance(one, Instance)
+        ]
+        made = [
+            (one, value)
+            for value in given
+            for one in devices
+            if one.kind.is_motor and one.makes(value)
+        ]
+        return list(
+            dict.fromkeys(
+                one.port for one, value in made if value.via is None or one.via in (None, value.via)
+            )
+        )
+
+    def _sizes(
+        self, known: PairClass, call: Call
+    ) -> tuple[tuple[float, float | None] | None, float | None]:
+        """Return the size of the wheels, and their distance."""
+        if known.takes_motors:
+            diameter_mm = self._size(call, library.WHEEL_DIAMETER, 2)
+            wheel_mm = (diameter_mm, None) if diameter_mm is not None else None
+            return wheel_mm, self._size(call, library.AXLE_TRACK, 3)
+        return (
+            (self._wheel(call), self._size(call, library.DISTANCE, 3))
+            if known.rank == 3
+            else (None, None)
+        )
+
+    def _size(self, call: Call, name: str, at: int) -> float | None:
+        given = argument_of(call, name, at, self.evaluation) or ()
+        return next((float(value) for value in given if isinstance(value, int | float)), None)
+
+    def _motor_kind(self, name: str, known: PairClass, call: Call) -> DeviceKind:
+        given = argument_of(
+            call, library.MOTOR_CLASS, library.MOTOR_CLASS_AT.get(name), self.evaluation
+        )
+        return next((kind for value in given or () if (kind := _motor_of(value))), known.kind)
+
+    def _wheel(self, call: Call) -> tuple[float, float] | None:
+        for value in argument_of(call, library.WHEEL_CLASS, 2, self.evaluation) or ():
+            if found := self._size_of(value, ()):
+                return found
+        return None
+
+    def _size_of(self, wheel: Value, seen: tuple[Value, ...]) -> tuple[float, float] | None:
+        match wheel:
+            case LibraryClass(name=name):
+                return library.WHEELS.get(name)
+            case OwnClass(scope=scope) if wheel not in seen:
+                for name, call in self.made:
+                    if name == library.WHEEL and call.scope.owner is scope:
+                        sizes = [
+                            [
+                                one
+                                for one in argument_of(call, key, at, self.evaluation) or ()
+                                if _is_number(one)
+                            ]
+                            for at, key in enumerate(("diameter_mm", "width_mm"))
+                        ]
+                        if all(sizes):
+                            return float(str(sizes[0][0])), float(str(sizes[1][0]))
+                for base in self.evaluation.bases(scope):
+                    if found := self._size_of(base, (*seen, wheel)):
+                        return found
+        return None
+
+    def _needs(self, name: str, call: Call) -> Iterator[Mention]:
+        for kind in library.PAIRS[name].needs:
+            yield Mention(kind, "", _where(call), is_any=True)
+
+
+def _calls_in(scope: Scope) -> list[ast.Call]:
+    left_out = skipped(scope)
+    return [node for node in scope.body if isinstance(node, ast.Call) and node not in left_out]
+
+
+def _takes_motors(name: str) -> bool:
+    return name in library.PAIRS and library.PAIRS[name].takes_motors
+
+
+def _makes(call: ast.Call | None, owner: Scope | None, value: Instance) -> bool:
+    """Return whether a call in a class makes an instance."""
+    if value.call is not None and value.call is call:
+        return True
+    from_init = (
+        call is not None and isinstance(call.func, ast.Attribute) and call.func.attr == "__init__"
+    )
+    return from_init and isinstance(value.of, OwnClass) and value.of.scope is owner
+
+
+def _where(call: Call) -> Where:
+    return Where(call.scope.module.file, call.node.lineno)
+
+
+def _motor_of(value: Value) -> DeviceKind | None:
+    """Return the kind of motor that a class of the library is for."""
+    kind = library.DEVICES.get(value.name) if isinstance(value, LibraryClass) else None
+    return kind if kind and kind.is_motor else None
+
+
+def _is_number(value: Value) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool)
+
+
+def _names_in(node: ast.AST) -> tuple[str, ...]:
+    """Return the names in an expression, such as that of the constant for a port."""
+    found = []
+    for inner in ast.walk(node):
+        match inner:
+            case ast.Name(id=name) | ast.Attribute(attr=name) | ast.Constant(value=str(name)):
+                if name not in library.CONSTANTS and not library.port_of(name):
+                    found.append(name)
+    return tuple(found)
+
+
+def _options(calls: Sequence[Call]) -> dict[str, list[tuple[ast.expr, Scope]]]:
+    """Return the defaults of the options that a program gives to argparse."""
+    found: dict[str, list[tuple[ast.expr, Scope]]] = {}
+    for call in calls:
+        match call.node.func:
+            case ast.Attribute(attr="add_argument"):
+                default = argument_node(call, "default", None)
+                flags = [one.value for one in call.node.args if isinstance(one, ast.Constant)]
+                named = argument_node(call, "dest", None)
+                words = [str(flag) for flag in flags]
+                name = max(words, key=lambda word: (word.startswith("--"), len(word)), default="")
+                if isinstance(named, ast.Constant):
+                    name = str(named.value)
+                if name and default is not None:
+                    found.setdefault(name.lstrip("-").replace("-", "_"), []).append(
+                        (default, call.scope)
+                    )
+    return found

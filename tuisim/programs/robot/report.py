@@ -1,0 +1,112 @@
+"""What was built for a program: in one line, and as a robot file that says which line of the program asks for what."""
+
+from __future__ import annotations
+
+import ast
+import tomllib
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+from tuisim.base.errors import RobotError
+from tuisim.engine.core.spec import RobotSpec
+from tuisim.engine.files import Location, save_toml, toml_key, toml_lines
+from tuisim.programs.robot.assembly import BuiltRobot
+from tuisim.programs.robot.library import DEVICES, PAIRS
+from tuisim.programs.robot.mentions import Mentions
+from tuisim.settings.robots import DEFAULT_ROBOT, ROBOTS, robot_from_table, robot_lines, values_in
+
+USUAL = ROBOTS[DEFAULT_ROBOT]
+"""The robot that programs change."""
+
+
+def hides_parts(mentions: Mentions) -> bool:
+    """Return whether a program uses classes of motors or sensors, and its text shows no part that it makes."""
+    if mentions.devices or mentions.pairs:
+        return False
+    for scope in mentions.scopes:
+        for node in scope.body:
+            match node:
+                case ast.Name(id=name, ctx=ast.Load()) | ast.Attribute(attr=name):
+                    if name in DEVICES or name in PAIRS:
+                        return True
+    return False
+
+
+def in_words(built: BuiltRobot) -> str:
+    """Return how a robot differs from the default one, in words."""
+    return ", ".join(part.what for part in built.parts if part.changes)
+
+
+def robot_file_of(program: str, built: BuiltRobot | None) -> list[str]:
+    """Return the lines of a robot file with what a program changes in the default robot, and why.
+
+    Args:
+        program: What the program is called.
+        built: The robot; None if the program needs no other than the default one.
+    """
+    lines = [
+        f"# The robot that {program} talks about: {DEFAULT_ROBOT} with these parts changed. -r takes this file.",
+        "# Lengths in mm, angles in degrees; x to the right of the midpoint between the wheels, y forward of it.",
+    ]
+    top = f'base = "{DEFAULT_ROBOT}"'
+    if built is None:
+        return [
+            *lines,
+            "# It has everything on the ports that the program names.",
+            "",
+            top,
+            f'name = "{USUAL.name}"',
+        ]
+    lines += [f"# Another reading is possible: {doubt}." for doubt in built.doubts]
+    same = [part for part in built.parts if not part.changes and part.where]
+    lines += [f"# As in {DEFAULT_ROBOT}: {part.what} ({part.where})." for part in same]
+    changed = _difference(_table(built.choice.spec), _table(USUAL))
+    said = {
+        part.path: f"{part.where}: {part.what}" if part.where else part.what for part in built.parts
+    }
+    return [*lines, "", top, *_lines(changed, "", said)]
+
+
+def save_robot_of(program: str, built: BuiltRobot | None, path: Path) -> None:
+    """Write the robot of a program atomically to a robot file; comments in an existing file stay.
+
+    Raises:
+        RobotError: the file cannot be written, or is no robot file.
+    """
+    at = Location(str(path), RobotError)
+    spec = built.choice.spec if built else USUAL
+    lines = robot_file_of(program, built)
+    save_toml(path, lines, at, lambda data: robot_from_table(data, spec.name, at).spec, spec)
+
+
+def _table(spec: RobotSpec) -> dict[str, Any]:
+    """Return the robot as a file has it, with every value."""
+    return tomllib.loads("\n".join(robot_lines(spec)))
+
+
+def _difference(robot: Mapping[str, Any], usual: Mapping[str, Any]) -> dict[str, Any]:
+    found: dict[str, Any] = {}
+    for key, value in robot.items():
+        before = usual.get(key)
+        if isinstance(value, dict) and isinstance(before, dict):
+            if inside := _difference(value, before):
+                found[key] = inside
+        elif value != before:
+            found[key] = value
+    return found
+
+
+def _lines(table: Mapping[str, Any], place: str, said: Mapping[str, str]) -> Iterator[str]:
+    values = {key: value for key, value in table.items() if not isinstance(value, dict)}
+    under = f"{place}." if place else ""
+    known = values_in(place)
+    comments = {
+        key: said.get(f"{under}{key}", known[key].help if key in known else "") for key in values
+    }
+    if values and place:
+        yield from ("", *([f"# {said[place]}"] if place in said else []), f"[{place}]")
+    yield from toml_lines(values, comments)
+    for key, value in table.items():
+        if isinstance(value, dict):
+            yield from _lines(value, f"{under}{toml_key(key)}", said)

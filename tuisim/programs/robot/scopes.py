@@ -1,0 +1,190 @@
+"""What the names in a program are bound to, scope by scope, in whatever order it would bind them."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+from dataclasses import field
+from typing import TypeAlias
+
+from tuisim.base.data_class import dataclass
+from tuisim.programs.robot.source import Module
+
+Function: TypeAlias = ast.FunctionDef | ast.AsyncFunctionDef
+FUNCTIONS = (ast.FunctionDef, ast.AsyncFunctionDef)
+UNITS = (*FUNCTIONS, ast.ClassDef)
+
+
+@dataclass(frozen=True, slots=True)
+class Bound:
+    """An expression that a name may be bound to."""
+
+    node: ast.expr
+    scope: Scope
+    path: tuple[int, ...] = ()
+    """Where in the value, for `a, b = …`."""
+    is_item: bool = False
+    """Whether it is bound to each item of the value, as by `for`."""
+
+
+@dataclass(frozen=True, slots=True)
+class Defined:
+    """A function or class that a name is bound to."""
+
+    node: Function | ast.ClassDef
+    scope: Scope
+
+
+@dataclass(frozen=True, slots=True)
+class Imported:
+    """What an import binds a name to."""
+
+    module: str
+    name: str = ""
+    """Of something in the module; empty for the module itself."""
+
+
+@dataclass(frozen=True, slots=True)
+class Parameter:
+    """A parameter of a function."""
+
+    function: Function
+    argument: ast.arg
+    scope: Scope
+    """Of the function."""
+
+
+Binding: TypeAlias = Bound | Defined | Imported | Parameter
+
+
+@dataclass(eq=False, slots=True)
+class Scope:
+    """The names of a module, class or function."""
+
+    module: Module
+    node: ast.Module | Function | ast.ClassDef
+    outer: Scope | None
+    names: dict[str, list[Binding]] = field(default_factory=dict)
+    stars: list[str] = field(default_factory=list)
+    """Modules from which it imports all names."""
+    attributes: dict[str, list[Binding]] = field(default_factory=dict)
+    """Of a class: what its methods set on `self`."""
+    body: list[ast.AST] = field(default_factory=list)
+    """Every node inside it, without those of inner functions and classes."""
+    inner: dict[ast.AST, Scope] = field(default_factory=dict)
+    """By function or class."""
+
+    @property
+    def owner(self) -> Scope | None:
+        """The class whose method or body this is."""
+        if isinstance(self.node, ast.ClassDef):
+            return self
+        return self.outer.owner if self.outer is not None else None
+
+    @property
+    def top(self) -> Scope:
+        """The scope of the module."""
+        return self if self.outer is None else self.outer.top
+
+
+def scope_of(module: Module) -> Scope:
+    """Return the scopes of a module."""
+    top = Scope(module, module.tree, None)
+    _fill(top, module.tree.body)
+    return top
+
+
+def _fill(scope: Scope, body: list[ast.stmt]) -> None:
+    declared: set[str] = set()
+    for statement in body:
+        for node in _nodes(statement):
+            scope.body.append(node)
+            if isinstance(node, ast.Global):
+                declared.update(node.names)
+            _bind(scope, node)
+            if isinstance(node, UNITS):
+                scope.inner[node] = inner = Scope(scope.module, node, scope)
+                if not isinstance(node, ast.ClassDef):
+                    _bind_parameters(inner, node)
+                _fill(inner, node.body)
+    if isinstance(scope.node, FUNCTIONS):
+        for name in declared & scope.names.keys():
+            scope.top.names.setdefault(name, []).extend(scope.names.pop(name))
+
+
+def _nodes(node: ast.AST) -> Iterator[ast.AST]:
+    """Yield a node and those inside it in the order of the text, without the bodies of functions and classes."""
+    yield node
+    if isinstance(node, FUNCTIONS):
+        arguments = node.args
+        defaults = [
+            default
+            for default in (*arguments.defaults, *arguments.kw_defaults)
+            if default is not None
+        ]
+        children: list[ast.AST] = [*node.decorator_list, *defaults]
+    elif isinstance(node, ast.ClassDef):
+        children = [*node.decorator_list, *node.bases, *node.keywords]
+    else:
+        children = list(ast.iter_child_nodes(node))
+    for child in children:
+        yield from _nodes(child)
+
+
+def _bind_parameters(scope: Scope, function: Function) -> None:
+    arguments = function.args
+    for argument in (*arguments.posonlyargs, *arguments.args, *arguments.kwonlyargs):
+        scope.names.setdefault(argument.arg, []).append(Parameter(function, argument, scope))
+    for rest in filter(None, (arguments.vararg, arguments.kwarg)):
+        scope.names.setdefault(rest.arg, []).append(Parameter(function, rest, scope))
+
+
+def _bind(scope: Scope, node: ast.AST) -> None:
+    match node:
+        case ast.Import(names=names):
+            for alias in names:
+                bound = alias.asname or alias.name.split(".")[0]
+                _add(scope, bound, Imported(alias.name if alias.asname else bound))
+        case ast.ImportFrom(module=module, level=level, names=names):
+            source = scope.module.absolute(module, level)
+            for alias in names:
+                if alias.name == "*":
+                    scope.stars.append(source)
+                else:
+                    _add(scope, alias.asname or alias.name, Imported(source, alias.name))
+        case ast.FunctionDef() | ast.AsyncFunctionDef() | ast.ClassDef():
+            _add(scope, node.name, Defined(node, scope))
+        case ast.Assign(targets=targets, value=value):
+            for target in targets:
+                _bind_target(scope, target, Bound(value, scope))
+        case (
+            ast.AnnAssign(target=target, value=ast.expr() as value)
+            | ast.NamedExpr(target=target, value=value)
+        ):
+            _bind_target(scope, target, Bound(value, scope))
+        case ast.AugAssign(target=target, value=value):
+            _bind_target(scope, target, Bound(value, scope))
+        case ast.For(target=target, iter=items) | ast.AsyncFor(target=target, iter=items):
+            _bind_target(scope, target, Bound(items, scope, is_item=True))
+        case ast.comprehension(target=target, iter=items):
+            _bind_target(scope, target, Bound(items, scope, is_item=True))
+        case ast.withitem(context_expr=value, optional_vars=ast.expr() as target):
+            _bind_target(scope, target, Bound(value, scope))
+
+
+def _add(scope: Scope, name: str, binding: Binding) -> None:
+    scope.names.setdefault(name, []).append(binding)
+
+
+def _bind_target(scope: Scope, target: ast.expr, bound: Bound) -> None:
+    match target:
+        case ast.Name(id=name):
+            _add(scope, name, bound)
+        case ast.Attribute(value=ast.Name(id="self" | "cls"), attr=name) if scope.owner is not None:
+            scope.owner.attributes.setdefault(name, []).append(bound)
+        case ast.Tuple(elts=parts) | ast.List(elts=parts):
+            for at, part in enumerate(parts):
+                inside = part.value if isinstance(part, ast.Starred) else part
+                _bind_target(
+                    scope, inside, Bound(bound.node, scope, (*bound.path, at), bound.is_item)
+                )

@@ -1,0 +1,207 @@
+"""A program's own modules: its text and the files beside it that it imports, as syntax trees."""
+
+from __future__ import annotations
+
+import ast
+import json
+import os
+import sys
+from collections.abc import Iterator
+from dataclasses import field
+from pathlib import Path
+
+from tuisim.base.data_class import dataclass
+from tuisim.base.errors import ConfigError
+from tuisim.base.repository import find_module_folder
+from tuisim.base.source import (
+    LIBRARIES,
+    OTHER_HUB_DEVICES,
+    OTHER_HUBS,
+    PYBRICKS,
+    SPIKE_MODULES,
+    Program,
+    decode_source,
+)
+from tuisim.engine.brick_home import place_folder
+from tuisim.engine.core.profile import Library
+from tuisim.engine.files import read_bytes
+from tuisim.programs.robot.search_path import added_folders, first_folders, own_folder
+
+MAX_MODULES = 100
+MAX_MODULE_BYTES = 1 << 20
+MAX_DATA_BYTES = 1 << 16
+
+
+@dataclass(frozen=True, slots=True)
+class Module:
+    """One file of a program."""
+
+    name: str
+    """As it is imported, with dots; empty for the program itself."""
+    file: str
+    """What messages call it."""
+    tree: ast.Module
+    is_package: bool = False
+
+    def absolute(self, name: str | None, level: int) -> str:
+        """Return the name of a module that this one imports, maybe relatively."""
+        if not level:
+            return name or ""
+        parts = self.name.split(".") if self.name else []
+        kept = parts[: len(parts) - level + (1 if self.is_package else 0)]
+        return ".".join([*kept, *([name] if name else [])])
+
+
+def parsed(text: str) -> ast.Module | None:
+    """Return the syntax tree of a text; None if it is not Python."""
+    try:
+        return ast.parse(text)
+    # What is wrong with the program is said when it runs.
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        return None
+
+
+def read_modules(program: Program) -> dict[str, Module]:
+    """Return a program and its own modules by name, the program first; empty if it is not Python."""
+    tree = parsed(program.text)
+    if tree is None:
+        return {}
+    search = _Search(program)
+    search.extend(tree, program.file)
+    found = {"": Module("", program.name, tree)}
+    waiting = [found[""]]
+    while waiting and len(found) < MAX_MODULES:
+        module = waiting.pop()
+        for name in _imported(module):
+            if name in found or name.split(".")[0] in LIBRARIES:
+                continue
+            if (read := search.module(name)) is not None:
+                found[name] = read
+                waiting.append(read)
+    return found
+
+
+def missing_module(program: Program, modules: dict[str, Module]) -> str:
+    """Return how to find a module that a program imports and that lies elsewhere in its repository; empty for none."""
+    known = {"", *modules, *LIBRARIES, *SPIKE_MODULES, *sys.stdlib_module_names}
+    named = (name.split(".")[0] for module in modules.values() for name in _imported(module))
+    for name in dict.fromkeys(named):
+        if name not in known and (folder := find_module_folder(name, own_folder(program))):
+            return f"it imports {name}, which is in {folder}: PYTHONPATH={folder} finds it"
+    return ""
+
+
+class _Search:
+    """The folders in which a program finds its modules.
+
+    Args:
+        program: The program.
+    """
+
+    def __init__(self, program: Program) -> None:
+        self._own = own_folder(program)
+        self._folders = first_folders(program)
+
+    def extend(self, tree: ast.Module, file: str) -> None:
+        """Add the folders that a module puts into `sys.path`; a relative one is beside the program, as on the brick."""
+        if os.path.isdir(self._own):
+            own = os.path.abspath(self._own)
+            places = (place_folder(folder, own) for folder in added_folders(tree, file))
+            self._folders += [os.path.join(own, place) for place in places]
+
+    def module(self, name: str) -> Module | None:
+        """Return a module by its name; None if it is in none of the folders."""
+        if not all(part.isidentifier() for part in name.split(".")):
+            return None
+        for folder in self._folders:
+            if (found := self._read(Path(folder), name)) is not None:
+                return found
+        return None
+
+    def _read(self, folder: Path, name: str) -> Module | None:
+        place = folder.joinpath(*name.split("."))
+        for path, is_package in ((place / "__init__.py", True), (place.with_suffix(".py"), False)):
+            try:
+                data = read_bytes(path, MAX_MODULE_BYTES, ConfigError)
+                text, _ = decode_source(data[:MAX_MODULE_BYTES], str(path))
+            except ConfigError:
+                continue
+            if (tree := parsed(text)) is None:
+                return None
+            self.extend(tree, str(path))
+            return Module(name, os.path.relpath(path, self._own), tree, is_package)
+        # A folder without __init__.py is a package, too.
+        return Module(name, name, ast.Module([], []), is_package=True) if place.is_dir() else None
+
+
+def _imported(module: Module) -> Iterator[str]:
+    """Yield the names that may be modules in the imports of a module, packages before what is in them."""
+    for node in ast.walk(module.tree):
+        match node:
+            case ast.Import(names=names):
+                for alias in names:
+                    parts = alias.name.split(".")
+                    yield from (".".join(parts[:end]) for end in range(1, len(parts) + 1))
+            case ast.ImportFrom(module=name, level=level, names=names):
+                base = module.absolute(name, level)
+                parts = base.split(".") if base else []
+                yield from (".".join(parts[:end]) for end in range(1, len(parts) + 1))
+                yield from (f"{base}.{alias.name}" if base else alias.name for alias in names)
+
+
+@dataclass(slots=True)
+class DataFiles:
+    """The files with values beside a program that it may read."""
+
+    folder: Path
+    found: dict[str, ast.expr | None] = field(default_factory=dict)
+
+    def values_in(self, name: str) -> ast.expr | None:
+        """Return what a JSON file in the folder holds, as an expression of Python; None if nothing can be read."""
+        if name not in self.found:
+            self.found[name] = self._read(name)
+        return self.found[name]
+
+    def _read(self, name: str) -> ast.expr | None:
+        try:
+            path = (self.folder / name).resolve()
+            if not path.is_relative_to(self.folder.resolve()):
+                return None
+            data = read_bytes(path, MAX_DATA_BYTES, ConfigError)
+            if len(data) > MAX_DATA_BYTES:
+                return None
+            return ast.parse(repr(json.loads(data)), mode="eval").body
+        # What is wrong with the file is said when the program reads it.
+        except (
+            ConfigError,
+            OSError,
+            RuntimeError,
+            ValueError,
+            SyntaxError,
+            RecursionError,
+            MemoryError,
+        ):
+            return None
+
+
+def data_files(program: Program) -> DataFiles:
+    """Return the files beside a program."""
+    return DataFiles(Path(own_folder(program)))
+
+
+def is_for_other_hub(modules: dict[str, Module]) -> bool:
+    """Return whether a program, or one of its own modules, imports what only hubs other than the EV3 have."""
+    names = {name for module in modules.values() for name in _imported(module)} - {*modules}
+    other = {*SPIKE_MODULES, OTHER_HUB_DEVICES, *(f"pybricks.hubs.{hub}" for hub in OTHER_HUBS)}
+    ours = {"pybricks.hubs.EV3Brick", "pybricks.ev3devices", "ev3dev2", "ev3dev"}
+    return bool(names & other) and not names & ours
+
+
+def library_of(modules: dict[str, Module]) -> Library | None:
+    """Return the library for a brick that a program imports, in itself or in its own modules; None for none."""
+    names = {name.split(".")[0] for module in modules.values() for name in _imported(module)} & {
+        *LIBRARIES
+    }
+    if PYBRICKS in names:
+        return Library.PYBRICKS
+    return Library.EV3DEV2 if names else None

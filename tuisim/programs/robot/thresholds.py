@@ -1,0 +1,195 @@
+"""The numbers and colours that a program compares the readings of its colour sensors with."""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from functools import lru_cache
+
+from tuisim.base.data_class import dataclass
+from tuisim.base.source import PRELUDE_TEXTS, Program
+from tuisim.engine.core.columns import COLOR_NAMES
+from tuisim.engine.core.sensors.color import LightRead
+from tuisim.engine.core.spec import RobotSpec
+from tuisim.programs.robot.library import DeviceKind
+from tuisim.programs.robot.mentions import Mention, Mentions, mentions_in
+from tuisim.programs.robot.scopes import Bound, Scope
+from tuisim.programs.robot.source import Module, data_files, parsed, read_modules
+from tuisim.programs.robot.values import Instance
+
+_SIGNS: Mapping[type[ast.cmpop], str] = {
+    ast.Lt: "<",
+    ast.LtE: "<=",
+    ast.Gt: ">",
+    ast.GtE: ">=",
+    ast.Eq: "==",
+    ast.NotEq: "!=",
+}
+_TURNED = {"<": ">", "<=": ">=", ">": "<", ">=": "<="}
+AIM = "-"
+"""The sign of a difference: the program drives toward that value."""
+_KEPT = {"int", "float", "round", "abs", "max", "min"}
+"""Functions of a reading that is then still compared."""
+_READS = {str(read): read for read in LightRead}
+_MOST_STEPS = 4
+"""Most variables between a reading and its comparison."""
+_PRELUDE = "*prelude"
+
+
+@dataclass(frozen=True, slots=True)
+class ProgramThreshold:
+    """What a program compares a reading with."""
+
+    read: LightRead
+    sign: str
+    """As in Python, such as `<=`, or `AIM`; the reading stands on its left."""
+    value: float
+    """A colour code for a colour."""
+    line: int
+    """Where, in the program itself."""
+
+    def holds(self, value: float) -> bool | None:
+        """Return whether the comparison is true for a value; None for a difference."""
+        match self.sign:
+            case "<":
+                return value < self.value
+            case "<=":
+                return value <= self.value
+            case ">":
+                return value > self.value
+            case ">=":
+                return value >= self.value
+            case "==":
+                return value == self.value
+            case "!=":
+                return value != self.value
+            case _:
+                return None
+
+    @property
+    def words(self) -> str:
+        """The comparison without the reading, such as `> 90`, `== Red`, `aim 50`."""
+        shown = COLOR_NAMES[int(self.value)] if self.read.is_color else f"{self.value:g}"
+        return f"{'aim' if self.sign == AIM else self.sign} {shown}"
+
+
+_READ = re.compile("|".join(rf"\.{read}\b" for read in LightRead if not read.is_color))
+
+
+def read_in(program: Program | None) -> LightRead:
+    """Return what a program reads first of a colour sensor as a number, by its text; percent if it reads none."""
+    found = _READ.search(program.text) if program else None
+    return LightRead(found[0][1:]) if found else LightRead.PERCENT
+
+
+@lru_cache(maxsize=4)
+def thresholds_in(program: Program, robot: RobotSpec) -> Mapping[str, tuple[ProgramThreshold, ...]]:
+    """Return what a program compares its colour sensors with, in the order of its lines, by name of the sensor.
+
+    Read from its syntax tree: the program does not run for it. What is computed while it runs is not known; nothing of
+    a program that is not Python, or too deeply nested to be read.
+    """
+    try:
+        return _found(program, robot)
+    except RecursionError:
+        return {}
+
+
+def _found(program: Program, robot: RobotSpec) -> Mapping[str, tuple[ProgramThreshold, ...]]:
+    modules = read_modules(program)
+    if not modules:
+        return {}
+    if prelude := parsed(PRELUDE_TEXTS[program.prelude]):
+        modules[_PRELUDE] = Module(_PRELUDE, _PRELUDE, prelude)
+        star = ast.ImportFrom(_PRELUDE, [ast.alias("*")], 0)
+        tree = modules[""].tree
+        modules[""] = replace(modules[""], tree=ast.Module([star, *tree.body], tree.type_ignores))
+    found: dict[str, list[ProgramThreshold]] = {sensor.name: [] for sensor in robot.color_sensors}
+    for port, threshold in _compared(mentions_in(modules, data_files(program))):
+        for sensor in robot.color_sensors:
+            if port in ("", sensor.port) and threshold not in found[sensor.name]:
+                found[sensor.name].append(threshold)
+    return {name: tuple(sorted(some, key=lambda one: one.line)) for name, some in found.items()}
+
+
+def _compared(mentions: Mentions) -> Iterator[tuple[str, ProgramThreshold]]:
+    """Yield each comparison of a reading with a constant, with the sensor's port, empty if that is unknown."""
+    for scope in mentions.scopes:
+        if scope.module.name:
+            continue
+        for node in scope.body:
+            match node:
+                case ast.Compare(left=left, ops=signs, comparators=others):
+                    for sign, right in zip(signs, others, strict=True):
+                        if word := _SIGNS.get(type(sign)):
+                            yield from _pair(mentions, scope, left, word, right)
+                            yield from _pair(mentions, scope, right, _TURNED.get(word, word), left)
+                        left = right
+                case ast.BinOp(left=left, op=ast.Sub(), right=right):
+                    yield from _pair(mentions, scope, left, AIM, right)
+                    yield from _pair(mentions, scope, right, AIM, left)
+
+
+def _pair(
+    mentions: Mentions, scope: Scope, reading: ast.expr, sign: str, other: ast.expr
+) -> Iterator[tuple[str, ProgramThreshold]]:
+    for port, read in dict.fromkeys(_reads(mentions, scope, reading, 0)):
+        values = _numbers(mentions, scope, other, read)
+        # What a reading drives toward is one number.
+        if values and (sign != AIM or (len(values) == 1 and not read.is_color)):
+            yield port, ProgramThreshold(read, sign, values[0], reading.lineno)
+
+
+def _numbers(mentions: Mentions, scope: Scope, node: ast.expr, read: LightRead) -> list[float]:
+    """Return the numbers that an expression can be, the likeliest first; for a colour its code."""
+    assert mentions.evaluation is not None
+    found = mentions.evaluation.values(node, scope)
+    if not read.is_color:
+        return [value for value in found if isinstance(value, int | float)]
+    names = [_color(node), *(value for value in found if isinstance(value, str))]
+    codes = [value for value in found if isinstance(value, int) and 0 <= value < len(COLOR_NAMES)]
+    return [*(COLOR_NAMES.index(name) for name in names if name in COLOR_NAMES), *codes]
+
+
+def _color(node: ast.expr) -> str | None:
+    """Return the name of a colour that is written as `Color.RED` or `ColorSensor.COLOR_RED`."""
+    match node:
+        case ast.Attribute(attr=name) | ast.Name(id=name):
+            word = name.removeprefix("COLOR_").title().replace("Nocolor", "NoColor")
+            return word if word in COLOR_NAMES else None
+    return None
+
+
+def _reads(
+    mentions: Mentions, scope: Scope, node: ast.expr, steps: int
+) -> Iterator[tuple[str, LightRead]]:
+    """Yield the ports and reads of colour sensors that an expression may be."""
+    match node:
+        case (
+            ast.Attribute(value=base, attr=name)
+            | ast.Call(func=ast.Attribute(value=base, attr=name))
+        ) if name in _READS:
+            if (sensor := _sensor(mentions, scope, base)) is not None:
+                yield sensor.port, _READS[name]
+        case ast.Call(func=ast.Name(id=name), args=args) if name in _KEPT:
+            for part in args:
+                yield from _reads(mentions, scope, part, steps)
+        case ast.NamedExpr(value=value):
+            yield from _reads(mentions, scope, value, steps)
+        case ast.Name(id=name) if steps < _MOST_STEPS:
+            owner = next((one for one in (scope, scope.top) if name in one.names), None)
+            for binding in owner.names[name] if owner else ():
+                if isinstance(binding, Bound) and not binding.path and not binding.is_item:
+                    yield from _reads(mentions, binding.scope, binding.node, steps + 1)
+
+
+def _sensor(mentions: Mentions, scope: Scope, node: ast.expr) -> Mention | None:
+    assert mentions.evaluation is not None
+    for value in mentions.evaluation.values(node, scope):
+        if isinstance(value, Instance):
+            for one in mentions.devices:
+                if one.kind is DeviceKind.COLOR and one.makes(value):
+                    return one
+    return None

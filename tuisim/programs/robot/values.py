@@ -1,0 +1,125 @@
+"""What an expression of a program can be, besides the numbers and texts of Python."""
+
+from __future__ import annotations
+
+import ast
+from dataclasses import field
+from typing import TypeAlias
+
+from tuisim.base.data_class import dataclass
+from tuisim.programs.robot.scopes import Function, Scope
+
+
+@dataclass(frozen=True, slots=True)
+class LibraryModule:
+    """A module of a library for a brick."""
+
+    name: str
+
+
+@dataclass(frozen=True, slots=True)
+class LibraryClass:
+    """A class of a library."""
+
+    name: str
+
+
+@dataclass(frozen=True, slots=True)
+class SourceModule:
+    """A module of the program."""
+
+    name: str
+
+
+@dataclass(frozen=True, slots=True)
+class OwnClass:
+    """A class of the program."""
+
+    scope: Scope
+
+
+@dataclass(frozen=True, slots=True)
+class OwnFunction:
+    """A function of the program."""
+
+    node: Function
+    scope: Scope
+    """Its own."""
+    is_bound: bool = False
+    """Whether it is called without its first parameter."""
+
+
+@dataclass(frozen=True, slots=True)
+class Instance:
+    """What a call of a class makes."""
+
+    of: OwnClass | LibraryClass
+    call: ast.Call | None = None
+    """None for the `self` of a method."""
+    via: ast.Call | None = field(default=None, compare=False)
+    """The call of the program's function or class that makes it with `call`, if that is known."""
+
+
+@dataclass(frozen=True, slots=True)
+class Parent:
+    """What `super()` is in a method of a class."""
+
+    of: Scope
+
+
+@dataclass(frozen=True, slots=True)
+class Options:
+    """What `parse_args()` of argparse returns."""
+
+
+@dataclass(frozen=True, slots=True)
+class File:
+    """A file that the program reads, or the path to it."""
+
+    name: str
+    """As the program says it, from its own folder on."""
+
+
+@dataclass(frozen=True, slots=True)
+class SourceCollection:
+    """A list, tuple, set or dict that is written out."""
+
+    node: ast.List | ast.Tuple | ast.Set | ast.Dict | ast.Call
+    """A call is one of `dict(…)`."""
+    scope: Scope
+
+    @property
+    def keys(self) -> list[ast.expr | None]:
+        """The keys of a dict; empty for others."""
+        if isinstance(self.node, ast.Dict):
+            return list(self.node.keys)
+        if isinstance(self.node, ast.Call):
+            return [ast.Constant(keyword.arg) for keyword in self.node.keywords]
+        return []
+
+    @property
+    def items(self) -> list[ast.expr]:
+        """The values of a dict, else the items."""
+        match self.node:
+            case ast.Dict(values=values):
+                return values
+            case ast.Call(keywords=keywords):
+                return [keyword.value for keyword in keywords]
+            case ast.List(elts=items) | ast.Tuple(elts=items) | ast.Set(elts=items):
+                return items
+
+
+Constant: TypeAlias = str | int | float | None
+Value: TypeAlias = (
+    Constant
+    | LibraryModule
+    | LibraryClass
+    | SourceModule
+    | OwnClass
+    | OwnFunction
+    | Instance
+    | Parent
+    | Options
+    | File
+    | SourceCollection
+)

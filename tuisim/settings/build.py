@@ -1,0 +1,142 @@
+"""Build the frozen specification of a run from settings, and the settings that give a specification."""
+
+from __future__ import annotations
+
+import math
+import os
+from dataclasses import replace
+from typing import Any
+
+from tuisim.engine.core import tree
+from tuisim.engine.core.geometry import Pose
+from tuisim.engine.core.outline import outline_of
+from tuisim.engine.core.profile import PROFILES, ProfileSpec
+from tuisim.engine.core.spec import (
+    BACKGROUND_FITS,
+    FIELD_HEIGHT_MM,
+    FIELD_WIDTH_MM,
+    NoiseSpec,
+    Obstacle,
+    RobotSpec,
+    RunSpec,
+    WorldSpec,
+)
+from tuisim.engine.files import errors_at
+from tuisim.engine.mats import Background, find_mat, mat_of_spec, spec_name
+from tuisim.engine.obstacles import OBSTACLES, load_obstacles
+from tuisim.settings.options import RUN_VALUES, START, Settings
+from tuisim.settings.profiles import load_profile
+from tuisim.settings.robots import ROBOTS, RobotChoice, choose_robot
+
+
+def robot_on_mat(choice: RobotChoice, mat: Background) -> RobotSpec:
+    """Return the robot with its colour sensors at the mat's positions, unless its file sets their positions."""
+    if choice.own_places:
+        return choice.spec
+    moved = tuple(
+        replace(sensor, x_mm=mat.sensor_x_mm.get(sensor.name, sensor.x_mm))
+        for sensor in choice.spec.color_sensors
+    )
+    return replace(choice.spec, color_sensors=moved)
+
+
+def _start(settings: Settings, mat: Background, robot: RobotSpec, walled: bool) -> Pose:
+    """Return the mat's start pose, overridden by the settings; with solid walls, moved so the robot can turn."""
+    start = (settings["for_brick"] and mat.brick_start) or mat.start
+    if walled:
+        margin_mm = outline_of(robot).reach_mm
+        start = replace(
+            start,
+            x_mm=_inside(start.x_mm, margin_mm, FIELD_WIDTH_MM),
+            y_mm=_inside(start.y_mm, margin_mm, FIELD_HEIGHT_MM),
+        )
+    chosen = {path: value for path in START if (value := settings[path]) is not None}
+    return replace(start, **{path.removeprefix("start."): value for path, value in chosen.items()})
+
+
+def _inside(at_mm: float, margin_mm: float, size_mm: float) -> float:
+    """Clamp a coordinate to whole mm inside the margins of a side of the field; the middle if the margins overlap."""
+    least, most = math.ceil(margin_mm), math.floor(size_mm - margin_mm)
+    return min(max(at_mm, least), most) if least <= most else size_mm / 2
+
+
+def _obstacles(settings: Settings, mat: Background) -> tuple[Obstacle, ...]:
+    chosen: str | tuple[Obstacle, ...] | None = settings["obstacles"]
+    match chosen:
+        case None:
+            return mat.obstacles
+        case str(word):
+            return load_obstacles(word, "-o")
+        case boxes:
+            return boxes
+
+
+def build_run_spec(settings: Settings) -> RunSpec:
+    """Return the run specification of the settings; unset ones are decided by mat, robot and profile.
+
+    Raises:
+        BackgroundError, RobotError, ObstacleError, ProfileError: an unknown mat, robot, set of obstacles or
+            profile, or an invalid file.
+    """
+    with errors_at("", "-b"):
+        mat = find_mat(os.path.expanduser(settings["background"]), settings["mats"])
+    chosen = settings["robot"]
+    choice = chosen if isinstance(chosen, RobotChoice) else choose_robot(chosen, "-r")
+    named = settings["profile"]
+    profile = named if isinstance(named, ProfileSpec) else load_profile(named, "--profile")
+    world = WorldSpec(
+        background=spec_name(mat),
+        obstacles=_obstacles(settings, mat),
+        solid=profile.solid,
+        background_fit=mat.fit or BACKGROUND_FITS[0],
+        noise=NoiseSpec(light=choice.light_noise or 0, motor=choice.motor_noise or 0),
+        beacon=settings["beacon"],
+        remote=settings["remote"],
+    )
+    given = {
+        one.spec_path: value
+        for path, one in RUN_VALUES.items()
+        if (value := settings[path]) is not None
+    }
+    spec = tree.put_all(RunSpec(robot_on_mat(choice, mat), world, profile), given)
+    world = spec.world
+    return tree.put(
+        spec, "world.start", _start(settings, mat, spec.robot, walled=world.solid and world.walls)
+    )
+
+
+def settings_from(spec: RunSpec) -> dict[str, Any]:
+    """Return the settings that give this run, by path; presets are given by name.
+
+    `solid` is None where it equals the profile's default.
+
+    Raises:
+        ConfigError: its mat no longer exists.
+    """
+    world = spec.world
+    word, mat = mat_of_spec(world.background)
+    found = {path: tree.at(spec, one.spec_path) for path, one in RUN_VALUES.items()}
+    return found | {
+        "background": word,
+        "robot": _robot(spec.robot, mat),
+        "obstacles": next(
+            (name for name, boxes in OBSTACLES.items() if boxes == world.obstacles), world.obstacles
+        ),
+        "solid": None if world.solid == spec.profile.solid else world.solid,
+        "profile": spec.profile.name
+        if PROFILES.get(spec.profile.name) == spec.profile
+        else spec.profile,
+        "beacon": world.beacon,
+        "remote": world.remote,
+        "for_brick": world.start == mat.brick_start,
+    }
+
+
+def _robot(robot: RobotSpec, mat: Background) -> str | RobotChoice:
+    """Return the name of the preset that equals the robot except for its pen, else the robot itself."""
+    for preset in ROBOTS.values():
+        on_mat = robot_on_mat(RobotChoice(preset, own_places=False), mat)
+        place = replace(robot.pen, x_mm=on_mat.pen.x_mm, y_mm=on_mat.pen.y_mm)
+        if replace(on_mat, pen=place) == robot:
+            return preset.name
+    return RobotChoice(robot)

@@ -1,0 +1,423 @@
+"""Commands by Click: options in groups, subcommands loaded on use, and wrong use as ConfigError.
+
+Shell and notebook use it; the child process does not.
+"""
+
+from __future__ import annotations
+
+import inspect
+import re
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from glob import escape, glob
+from itertools import chain, pairwise
+from types import MappingProxyType, SimpleNamespace
+from typing import Any, Self
+
+import click
+from click.core import ParameterSource
+from click.shell_completion import CompletionItem
+
+from tuisim.base.errors import ConfigError, closest, did_you_mean, nearest
+
+ARGUMENTS_FOLLOW = "--"
+"""Words after this one on the command line are passed to the program."""
+GENERAL = "Options"
+Arguments = SimpleNamespace
+"""The parsed arguments of a command, by name; `settings` has the shared options by path."""
+
+_FILES = ("FILE", "[NAME|FILE]", "FOLDER", "MAT", "ROBOT", "NAME")
+"""Placeholders of values that may be files."""
+_WORDS = "tuisim.words"
+"""The words of a command, in the context's notes."""
+_ATTACHED = re.compile(r"\A(-[A-Za-z])=")
+"""A short option before its value, as in `-x=5`."""
+
+
+class WordType(click.ParamType):  # type: ignore[type-arg]
+    """The type of an option's or argument's value.
+
+    Args:
+        convert: Convert the text; raises ConfigError.
+        names: Return the names that completion offers besides files.
+    """
+
+    name = "value"
+
+    def __init__(
+        self, convert: Callable[[str], Any] = str, names: Callable[[], Iterable[str]] | None = None
+    ) -> None:
+        self._convert, self._names = convert, names
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """Convert a text; a default is returned as it is."""
+        return self._convert(value) if isinstance(value, str) else value
+
+    def shell_complete(
+        self, ctx: click.Context, param: click.Parameter, incomplete: str
+    ) -> list[CompletionItem]:
+        """Return the matching names and files."""
+        names = self._names() if self._names else ()
+        found = [CompletionItem(name) for name in names if name.startswith(incomplete)]
+        return (
+            _with_files(found, incomplete)
+            if param.metavar in _FILES or param.nargs == -1
+            else found
+        )
+
+
+def _with_files(found: list[CompletionItem], incomplete: str) -> list[CompletionItem]:
+    """Add the matching files; if there is nothing else, leave them to the shell, which quotes them."""
+    if not found:
+        return [CompletionItem(incomplete, type="file")]
+    return (
+        found + [CompletionItem(path) for path in sorted(glob(escape(incomplete) + "*"))]
+        if incomplete
+        else found
+    )
+
+
+class GroupedOption(click.Option):
+    """An option under a heading of the help; only its first two names are listed there.
+
+    Args:
+        sets: The path of the setting that it makes, if any.
+        adds: The word that it adds to that setting, instead of its value.
+    """
+
+    def __init__(
+        self, flags: Sequence[str], group: str = GENERAL, sets: str = "", adds: str = "", **how: Any
+    ) -> None:
+        super().__init__(flags, **how)
+        self.group, self.sets, self.adds = group, sets, adds
+        self.needs_value = not self.is_flag and "flag_value" not in how
+
+    def get_help_record(self, ctx: click.Context) -> tuple[str, str] | None:
+        """Return the names with the value, and the help."""
+        names = ", ".join(self.opts[:2])
+        return (
+            None
+            if self.hidden
+            else (f"{names} {self.metavar}" if self.metavar else names, self.help or "")
+        )
+
+
+def option(*flags: str, **how: Any) -> GroupedOption:
+    """Return an option, as `click.option` does for a decorator."""
+    return GroupedOption(flags, **how)
+
+
+def choice(flag: str, allowed: Sequence[str], **how: Any) -> GroupedOption:
+    """Return an option whose value is one of several words."""
+    return GroupedOption([flag], type=click.Choice(allowed), metavar="|".join(allowed), **how)
+
+
+AS_JSON = option("--json", "as_json", is_flag=True, help="Print JSON.")
+
+
+def argument(
+    name: str, metavar: str, names: Callable[[], Iterable[str]] | None = None, **how: Any
+) -> click.Argument:
+    """Return an argument that completion offers names for, besides files."""
+    return click.Argument([name], metavar=metavar, type=WordType(names=names), **how)
+
+
+_SYNONYMS = tuple(
+    frozenset(words.split())
+    for words in (
+        "timeout limit time-limit max-time duration seconds deadline",
+        "out export output file csv save write destination",
+        "background mat map field board",
+        "angle heading direction rotation orientation",
+        "seeds repeat repetitions runs times trials",
+        "jobs processes threads parallel cores",
+        "speed rate factor fast",
+        "fps frame-rate framerate frames",
+        "break breakpoint stop-at",
+        "profile rules physics",
+        "input stdin answer answers",
+        "press button buttons key",
+        "search find query grep",
+        "from start begin since",
+        "to end until",
+        "isolate sandbox",
+        "solid collide collisions",
+        "pixels graphics images",
+        "json format",
+        "time at when",
+    )
+)
+"""Words for the same, of which options have one or two."""
+
+
+def _close_names(typed: str, names: Iterable[str]) -> list[str]:
+    """Return the names that may have been meant: those for the same, else like the typed word or ending like it."""
+    known = [*names]
+    ends = {name[-len(typed) :] for name in known}
+    close = [name for end in closest(typed, ends, 2, 0.75) for name in known if name.endswith(end)]
+    like = [*close, *closest(typed, known, 2)]
+    same = [
+        name for words in _SYNONYMS if typed.lower() in words for name in known if name in words
+    ]
+    return list(dict.fromkeys(same or like))[:2]
+
+
+def _wrong_use(error: click.UsageError, ctx: click.Context) -> ConfigError:
+    """Return what Click says as a ConfigError: what was wrong, and what is allowed."""
+    see = f"see `{ctx.command_path} --help`" if ctx.command.add_help_option else ""
+    if isinstance(error, click.NoSuchOption):
+        names = {flag.lstrip("-"): flag for param in ctx.command.params for flag in param.opts}
+        near = [names[name] for name in _close_names(error.option_name.lstrip("-"), names)]
+        instead = ctx.command.instead if isinstance(ctx.command, Command) else {}
+        hint = instead.get(error.option_name) or did_you_mean(near) or see
+        return ConfigError(f"no such option: {error.option_name}", hint)
+    if isinstance(error, click.MissingParameter) and isinstance(error.param, click.Argument):
+        return ConfigError(f"{error.param.make_metavar(ctx)} is missing", see)
+    text = error.message.rstrip(".")
+    if isinstance(error, click.BadParameter) and error.param:
+        return ConfigError(text, see, key=error.param.opts[0])
+    return ConfigError(text[:1].lower() + text[1:], see)
+
+
+class Command(click.Command):
+    """A command whose help groups its options, and whose wrong use raises ConfigError.
+
+    Its callback gets the shared options as `settings`; if it `passes_arguments`, with the words after `--` as those of
+    the program. `instead` says what to use instead of options that it does not have.
+    """
+
+    def __init__(
+        self,
+        name: str,
+        *,
+        passes_arguments: bool = False,
+        instead: Mapping[str, str] = MappingProxyType({}),
+        **how: Any,
+    ) -> None:
+        super().__init__(name, context_settings={"help_option_names": ["-h", "--help"]}, **how)
+        self._passes_arguments, self.instead = passes_arguments, instead
+        self._shared = {
+            one.name: one for one in self.params if isinstance(one, GroupedOption) and one.sets
+        }
+
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        """Parse words as Click does, but also `-x=5`; refuse the name of an option as the value of another."""
+        ctx.meta[_WORDS] = tuple(args)
+        ours, program = args, None
+        if self._passes_arguments and ARGUMENTS_FOLLOW in args:
+            at = args.index(ARGUMENTS_FOLLOW)
+            ours, program = args[:at], tuple(args[at + 1 :])
+        ours = [_ATTACHED.sub(r"\1", word) for word in ours]
+        try:
+            if not ctx.resilient_parsing:
+                self._check_values(ctx, ours)
+            rest = super().parse_args(ctx, ours)
+        except click.UsageError as error:
+            raise _wrong_use(error, ctx) from None
+        if self._shared:
+            ctx.params["settings"] = self._settings(ctx) | (
+                {} if program is None else {"arguments": program}
+            )
+        return rest
+
+    def _settings(self, ctx: click.Context) -> dict[str, Any]:
+        """Move the shared options from the parameters to a dictionary of those that were given."""
+        found: dict[str, Any] = {}
+        for name in [name for name in ctx.params if name in self._shared]:
+            value, one = ctx.params.pop(name), self._shared[name]
+            if ctx.get_parameter_source(name) is ParameterSource.COMMANDLINE:
+                value = tuple(chain(*value)) if one.multiple else value
+                found[one.sets] = (*found.get(one.sets, ()), one.adds) if one.adds else value
+        return found
+
+    def _check_values(self, ctx: click.Context, words: Sequence[str]) -> None:
+        known = {
+            flag: param
+            for param in self.get_params(ctx)
+            for flag in param.opts
+            if flag.startswith("-")
+        }
+        for word, value in pairwise(words):
+            if value in known and getattr(known.get(word), "needs_value", False):
+                raise click.BadOptionUsage(word, f"Option '{word}' requires an argument.", ctx)
+
+    def format_options(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """Write the options under the headings of their groups."""
+        groups: dict[str, list[tuple[str, str]]] = {}
+        for param in self.get_params(ctx):
+            if isinstance(param, click.Option) and (record := param.get_help_record(ctx)):
+                groups.setdefault(getattr(param, "group", GENERAL), []).append(record)
+        for title, rows in groups.items():
+            with formatter.section(title):
+                formatter.write_dl(rows)
+
+
+def command(*params: click.Parameter, **how: Any) -> Callable[[Callable[..., int]], Command]:
+    """Return a decorator that makes a function a command: its docstring is the help, its result the exit code."""
+
+    def make(work: Callable[..., int]) -> Command:
+        given = {"name": work.__name__, "help": inspect.getdoc(work)} | how
+        return Command(callback=work, params=list(params), **given)
+
+    return make
+
+
+class Group(click.Group):
+    """Subcommands that are loaded on use.
+
+    Args:
+        listing: The help line of each subcommand.
+        load: Return a subcommand by its name.
+        default: The subcommand that is meant if none is named; empty if one must be named.
+        instead: What to use instead of subcommands that there are not.
+    """
+
+    def __init__(
+        self,
+        name: str,
+        listing: Mapping[str, str],
+        load: Callable[[str], click.Command],
+        default: str = "",
+        instead: Mapping[str, str] = MappingProxyType({}),
+        **how: Any,
+    ) -> None:
+        settings = {"help_option_names": ["-h", "--help"]}
+        how.setdefault("subcommand_metavar", "[COMMAND] …" if default else "COMMAND …")
+        super().__init__(
+            name, context_settings=settings, no_args_is_help=False, options_metavar="", **how
+        )
+        self.listing, self.load, self.default = listing, load, default
+        self._instead = instead
+
+    @classmethod
+    def of(cls, name: str, commands: Sequence[click.Command], **how: Any) -> Self:
+        """Return a group of commands that are already loaded."""
+        by_name = {one.name or "": one for one in commands}
+        firsts = {called: (one.help or "").partition("\n")[0] for called, one in by_name.items()}
+        listing = {called: first.partition(". ")[0].rstrip(".") for called, first in firsts.items()}
+        return cls(name, listing, by_name.__getitem__, **how)
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        """Return the names of the subcommands."""
+        return list(self.listing)
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        """Load a subcommand."""
+        return self.load(cmd_name) if cmd_name in self.listing else None
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """Write the subcommands without loading them."""
+        with formatter.section("Commands"):
+            formatter.write_dl(list(self.listing.items()))
+
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        """Parse words that may begin with the subcommand's options, or leave out the default subcommand."""
+        if args or not ctx.resilient_parsing:
+            args = self.with_command(ctx, args)
+        try:
+            return super().parse_args(ctx, args)
+        except click.UsageError as error:
+            raise _wrong_use(error, ctx) from None
+
+    def with_command(self, ctx: click.Context, args: list[str]) -> list[str]:
+        """Return the words with the name of the subcommand first."""
+        if args and (not args[0].startswith("-") or args[0] in ctx.help_option_names):
+            return args
+        every = [
+            param
+            for name in self.listing
+            for param in self.load(name).params
+            if isinstance(param, click.Option)
+        ]
+        unique: list[click.Parameter] = list({param.opts[0]: param for param in every}.values())
+        reader = click.Command(
+            None, params=unique, context_settings={"allow_interspersed_args": False}
+        )
+        with reader.make_context("", list(args), resilient_parsing=True) as found:
+            rest = found.args
+        if rest:
+            return [rest[0], *args[: len(args) - len(rest)], *rest[1:]]
+        return [self.default, *args] if self.default else args
+
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        """Return the named subcommand and the words after it.
+
+        Raises:
+            ConfigError: there is no such subcommand.
+        """
+        if args[0] in self.listing or ctx.resilient_parsing:
+            return super().resolve_command(ctx, args)
+        hint = self._instead.get(args[0]) or nearest(args[0], self.listing)
+        raise ConfigError(f"no such command {args[0]!r}", hint, key=self.name or "")
+
+    def invoke(self, ctx: click.Context) -> Any:
+        """Run the subcommand.
+
+        Raises:
+            ConfigError: none is named.
+        """
+        try:
+            return super().invoke(ctx)
+        except click.UsageError:
+            raise ConfigError(
+                "no command given", f"one of {', '.join(self.listing)}", key=self.name or ""
+            ) from None
+
+    def shell_complete(self, ctx: click.Context, incomplete: str) -> list[CompletionItem]:
+        """Return the matching subcommands, and what else the default subcommand may begin with."""
+        found = [
+            CompletionItem(name, help=text)
+            for name, text in self.listing.items()
+            if name.startswith(incomplete)
+        ]
+        if not (self.default and incomplete):
+            return found
+        default = self.load(self.default)
+        if incomplete.startswith("-"):
+            return default.shell_complete(ctx, incomplete)
+        more = [
+            item
+            for param in default.params
+            if isinstance(param, click.Argument)
+            for item in param.shell_complete(ctx, incomplete)
+        ]
+        plain = [item for item in more if item.type == "plain"]
+        return found + plain if plain else _with_files(found, incomplete) if more else found
+
+
+def words_without(options: Sequence[click.Option]) -> list[str]:
+    """Return the words of the command that is running, without the given options and their values.
+
+    Args:
+        options: Options without a short name.
+    """
+    flags = {flag for one in options for flag in one.opts}
+    alone = {flag for one in options if one.is_flag for flag in one.opts}
+    kept: list[str] = []
+    words = iter(click.get_current_context().meta[_WORDS])
+    for word in words:
+        if word == ARGUMENTS_FOLLOW:
+            return [*kept, word, *words]
+        if word in flags:
+            if word not in alone:
+                next(words)
+        elif word.partition("=")[0] not in flags:
+            kept.append(word)
+    return kept
+
+
+def parse(command: Command, words: Sequence[str]) -> Arguments:
+    """Return the arguments of a command that is not run by Click, such as a magic.
+
+    Raises:
+        ConfigError: a word is no option, or a value is wrong.
+    """
+    with command.make_context(command.name, list(words)) as ctx:
+        return Arguments(**ctx.params)
+
+
+def help_of(command: Command) -> str:
+    """Return the help of a command."""
+    with command.make_context(command.name, [], resilient_parsing=True) as ctx:
+        return command.get_help(ctx) + "\n"

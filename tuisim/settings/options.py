@@ -1,0 +1,411 @@
+"""The options shared by the command line, magic lines, Python and `config.toml`, and the settings that they make.
+
+Settings are values by path. The paths of a run's values are those of a world file: `walls`, `noise.light`. Values that
+`engine.core.spec` gives an option have it here, too.
+
+To add an option that is no value of a run: add a line to `OPTIONS`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import field
+from typing import Any, NamedTuple
+
+from tuisim.base.data_class import dataclass
+from tuisim.base.errors import ConfigError
+from tuisim.base.source import PRELUDE_TEXTS
+from tuisim.engine.core.spec import EMPTY_MAT, RunSpec
+from tuisim.engine.core.tree import leaves
+from tuisim.engine.core.values import Choice, Flag, NamedNumber, Value, Whole, WrongValue, values_of
+from tuisim.engine.presses import Presses
+from tuisim.terminal.picture_options import AUTO, CELLS, PIXELS
+
+COLOR_DEPTHS = ("auto", "truecolor", "256", "16", "8", "none")
+MIN_SPEED, MAX_SPEED = 0.01, 1000.0
+MAX_SPEED_WORD = "max"
+DEFAULT_FPS = 20
+
+
+def parse(value: Value, text: str, key: str) -> Any:
+    """Return the value that the text after an option gives.
+
+    Raises:
+        ConfigError: it is not allowed; `key` is to blame.
+    """
+    try:
+        return value.from_text(text)
+    except WrongValue as error:
+        raise _blame(error, key) from None
+
+
+def _blame(error: WrongValue, key: str) -> ConfigError:
+    where = f"{key} {error.part}" if error.part else key
+    return ConfigError(error.message, error.hint, key=where)
+
+
+class Name(Value):
+    """The name of something, or a path.
+
+    Args:
+        allowed: What it may name.
+        metavar: What stands for it in the help.
+    """
+
+    __slots__ = ("_allowed", "_metavar")
+
+    def __init__(self, allowed: str, metavar: str, **about: Any) -> None:
+        super().__init__(**about)
+        self._allowed, self._metavar = allowed, metavar
+
+    @property
+    def allowed(self) -> str:
+        return self._allowed
+
+    @property
+    def metavar(self) -> str:
+        return self._metavar
+
+    def from_data(self, data: object) -> str:
+        if not isinstance(data, str):
+            raise self.wrong(data)
+        if not data.strip():
+            raise WrongValue("a name is missing")
+        return data
+
+
+class RunValue(NamedTuple):
+    """A value of a run with a path of its own in settings: of the world, the pen or the seed."""
+
+    spec_path: str
+    """Its path in the specification."""
+    value: Value
+    default: Any
+
+
+def _default(path: str) -> Any:
+    """Return the default of a value of the world or the pen, by its path in the specification."""
+    *outer, name = path.split(".")
+    kind: Any = RunSpec
+    for part in outer:
+        inner: Any = values_of(kind)[part]
+        kind = inner.of
+    return kind.__dataclass_fields__[name].default
+
+
+def _run_values() -> Iterator[tuple[str, RunValue]]:
+    values = dict(leaves(RunSpec))
+    for table in ("world.", "robot.", "seed"):
+        for path, value in values.items():
+            if path.startswith(table) and (
+                value.flags or (table == "world." and path != "world.background")
+            ):
+                inside = path.removeprefix("world.").removeprefix("robot.")
+                yield inside, RunValue(path, value, _default(path))
+
+
+RUN_VALUES: Mapping[str, RunValue] = dict(_run_values())
+"""All such values by path, in the order of files."""
+
+START = tuple(path for path in RUN_VALUES if path.startswith("start."))
+"""The paths of the start pose."""
+
+OF_THE_MAT = ("obstacles", "background_fit", "floor", *START)
+"""The paths of what a mat brings with it, so that another mat replaces it."""
+
+OF_THE_PROFILE = ("solid",)
+"""The paths of what a profile brings with it, so that another profile replaces it."""
+
+
+@dataclass(frozen=True, slots=True)
+class Option:
+    """An option."""
+
+    group: str
+    path: str
+    """The setting that it makes."""
+    value: Value
+    default: Any = ""
+    """The setting without it; empty where mat, robot or program decides."""
+    flags: tuple[str, ...] = ()
+    constant: Any = None
+    """What it sets if it takes no value."""
+    panel: str = ""
+    """The panel that it shows or hides."""
+    magic_flags: tuple[str, ...] = ()
+    """Further names in a magic line only, because they mean something else on the command line."""
+    is_live: bool = True
+    """Whether the app applies a change in `config.toml` at once; else from its next start on."""
+    repeats: bool = False
+    """Whether it may be given several times, each of which adds to a tuple."""
+
+    @property
+    def name(self) -> str:
+        """Its long name as a key: without dashes."""
+        return next(flag for flag in self.flags if flag.startswith("--"))[2:].replace("-", "_")
+
+    @property
+    def help(self) -> str:
+        """What it does, as a sentence."""
+        text = self.value.help
+        if isinstance(self.value, Flag) and self.constant is False:
+            text = self.value.off_help
+        return f"{text[:1].upper()}{text[1:]}."
+
+    @property
+    def metavar(self) -> str:
+        """What stands for its value in the help; empty if it takes none."""
+        if self.constant is not None or self.panel:
+            return ""
+        return "on|off" if isinstance(self.value, Flag) else self.value.metavar
+
+    def from_python(self, value: object, key: str) -> Any:
+        """Return the setting for a value of Python.
+
+        Raises:
+            ConfigError: it is wrong; `key` is to blame.
+        """
+        if isinstance(value, str):
+            return parse(self.value, value, key)
+        if self.constant is not None and not isinstance(value, bool):
+            raise ConfigError(f"must be True or False, got {value!r}", key=key)
+        try:
+            found = self.value.from_data(value)
+        except WrongValue as error:
+            raise _blame(error, key) from None
+        return not found if self.constant is False else found
+
+
+WORLD, RUN, APP, PANEL = "World", "Run", "App", "Panels of the app"
+
+
+def _word(
+    path: str, flags: tuple[str, ...], metavar: str, allowed: str, about: str, default: str = ""
+) -> Option:
+    return Option(
+        RUN if path == "profile" else WORLD,
+        path,
+        Name(allowed, metavar, help=about),
+        default,
+        flags,
+    )
+
+
+def _of_values(*tables: str) -> Iterator[Option]:
+    """Yield the options of the values in some tables of the specification."""
+    for path, (spec_path, value, default) in RUN_VALUES.items():
+        if value.flags and spec_path.startswith(tables):
+            takes_no_value = isinstance(value, Flag) and not default
+            group = RUN if path == spec_path else WORLD
+            decided = (
+                "" if path in (*OF_THE_MAT, *OF_THE_PROFILE) or path.startswith("pen.") else default
+            )
+            yield Option(
+                group, path, value, decided, value.flags, constant=True if takes_no_value else None
+            )
+            if isinstance(value, Flag) and value.off_flag:
+                yield Option(group, path, value, decided, (value.off_flag,), constant=False)
+
+
+def _of_app(path: str, value: Value, default: Any, **about: Any) -> Option:
+    constant = True if isinstance(value, Flag) else None
+    return Option(APP, path, value, default, value.flags, constant, **about)
+
+
+def _panel(panel: str, *flags: str, hide: bool = False, magic: tuple[str, ...] = ()) -> Option:
+    words = {
+        "noise": "the noise controls",
+        "arrays": "the sensor arrays",
+        "positioning": "the positioning controls",
+        "controls": "the simulator controls",
+    }
+    about = f"{'hide' if hide else 'show'} {words.get(panel, f'the {panel}')}"
+    path = "panels_off" if hide else "panels_on"
+    return Option(
+        PANEL, path, Flag(help=about, in_config=False), (), flags, panel=panel, magic_flags=magic
+    )
+
+
+PRESSES = Presses(
+    flags=("--press",),
+    help="press by hand a button, a touch sensor or the remote: enter@1.0-1.5, in1@2, remote.left_up@1-3; "
+    "may be repeated",
+    in_config=False,
+)
+
+_SPEED = NamedNumber(
+    MIN_SPEED,
+    MAX_SPEED,
+    {MAX_SPEED_WORD: 0.0},
+    flags=("--speed",),
+    help="a multiple of real time, or max",
+)
+
+OPTIONS: tuple[Option, ...] = (
+    _word(
+        "background",
+        ("-b", "--background"),
+        "MAT",
+        "the name of a mat, or an image file",
+        "a mat from `tuisim backgrounds`, or an image file",
+        EMPTY_MAT,
+    ),
+    _word("mats", ("--mats",), "FOLDER", "a folder", "folder of images that `-b` finds by name"),
+    _word(
+        "robot",
+        ("-r", "--robot", "--robotSetup"),
+        "ROBOT",
+        "the name of a robot, or a file",
+        "a robot from `tuisim robots`, or a file",
+        "Default_Robot",
+    ),
+    _word(
+        "obstacles",
+        ("-o", "--obstacles"),
+        "NAME",
+        "the name of a set, or a file",
+        "a set from `tuisim obstacles`, or a file",
+    ),
+    *_of_values("world.", "robot."),
+    _word(
+        "profile",
+        ("--profile",),
+        "NAME",
+        "the name of a profile, or a file",
+        "a profile from `tuisim profiles`, or a file",
+        "robolab",
+    ),
+    *_of_values("seed"),
+    Option(RUN, "press", PRESSES, (), PRESSES.flags, repeats=True),
+    Option(RUN, "speed", _SPEED, 1, _SPEED.flags),
+    Option(
+        RUN,
+        "preload",
+        Choice(tuple(PRELUDE_TEXTS), help="names predefined for the program", in_config=False),
+        flags=("--preload",),
+    ),
+    _of_app("autorun", Flag(flags=("-R", "--autorun"), help="run at once", in_config=False), False),
+    _of_app(
+        "clear_trace",
+        Flag(flags=("-C", "--clear"), help="clear the trace at the start", in_config=False),
+        False,
+    ),
+    _of_app("rays", Flag(flags=("-u", "--ultrasound"), help="show the ultrasonic rays"), False),
+    _of_app("quiet", Flag(flags=("-q", "--quiet"), help="make no sound"), False, is_live=False),
+    _of_app(
+        "fps",
+        Whole(1, 60, flags=("--fps",), help="maximum frames per second, 1 … 60"),
+        DEFAULT_FPS,
+        is_live=False,
+    ),
+    _of_app(
+        "colors",
+        Choice(
+            COLOR_DEPTHS,
+            flags=("--colors",),
+            metavar="DEPTH",
+            help=f"colours: {', '.join(COLOR_DEPTHS)}",
+        ),
+        AUTO,
+        is_live=False,
+    ),
+    _of_app(
+        "cells",
+        Choice(
+            CELLS,
+            flags=("--cells",),
+            metavar="SET",
+            help=f"glyphs of the world: {', '.join(CELLS)}",
+        ),
+        AUTO,
+    ),
+    _of_app(
+        "pixels",
+        Choice(
+            PIXELS,
+            flags=("--pixels",),
+            metavar="HOW",
+            help=f"draw real pixels: {', '.join(PIXELS)}",
+        ),
+        AUTO,
+    ),
+    _panel("output", "-O", "--output"),
+    _panel("arrays", "-A", "--array"),
+    _panel("chart", "-c", "--chart"),
+    _panel("instrumentation", "-i", "--instrumentation"),
+    _panel("noise", "-z", "--noisecontrols"),
+    _panel("settings", "-Z", "--settings"),
+    _panel("positioning", "-X", "--positioning"),
+    _panel("code", "-D", "--code"),
+    _panel("world", "-W", "--hideworld", hide=True, magic=("--world",)),
+    _panel("controls", "-H", "--hidecontrols", "--hide", hide=True),
+)
+"""Every shared option, in the order of the help."""
+
+OF_THE_APP = frozenset(
+    {"speed", *(option.path for option in OPTIONS if option.group in (APP, PANEL))}
+) - {
+    "autorun",
+    "clear_trace",
+}
+"""The paths of settings that do not affect the run."""
+
+OPTION_PANELS = tuple(option.panel for option in OPTIONS if option.panel)
+"""Every panel that an option shows or hides."""
+
+_PANEL_LISTS = ("panels_on", "panels_off")
+
+_DEFAULTS: Mapping[str, Any] = {
+    **{
+        option.path: option.default
+        for option in OPTIONS
+        if option.path not in RUN_VALUES and option.default != ""
+    },
+    # The app has a memory of its own for these.
+    **dict.fromkeys(("speed", "cells")),
+    "seed": 0,
+    "arguments": (),
+    "remote": (),
+    "for_brick": False,
+}
+
+
+_PATHS = frozenset({*_DEFAULTS, "beacon", "floor", *(option.path for option in OPTIONS)})
+
+
+@dataclass(frozen=True, slots=True)
+class Settings:
+    """Values by path, as options and files give them, and the defaults of all others."""
+
+    given: Mapping[str, Any] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        if unknown := self.given.keys() - _PATHS:
+            raise LookupError(f"no such settings: {', '.join(unknown)}")
+
+    def __getitem__(self, path: str) -> Any:
+        """Return a value; None if mat, robot, profile or program decides."""
+        value = self.given.get(path)
+        return _DEFAULTS.get(path) if value is None else value
+
+    def changed(self, values: Mapping[str, Any]) -> Settings:
+        """Return the settings with other values; None leaves the decision to mat, robot, profile or program."""
+        return Settings({**self.given, **values})
+
+
+def names_world(given: Mapping[str, Any]) -> bool:
+    """Return whether settings say something of a world, and not only what a hand presses in it."""
+    return bool(given.keys() - {"press"})
+
+
+def settings_of(*layers: Mapping[str, Any]) -> Settings:
+    """Merge layers of given values: a later layer takes precedence, panels accumulate."""
+    found: dict[str, Any] = {}
+    for layer in layers:
+        panels = {
+            path: tuple(dict.fromkeys((*found.get(path, ()), *layer[path])))
+            for path in _PANEL_LISTS
+            if path in layer
+        }
+        found |= {**layer, **panels}
+    return Settings(found)

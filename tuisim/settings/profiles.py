@@ -1,0 +1,85 @@
+"""Profiles by name or from a TOML file, which needs only the keys that differ from its `base`."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from tuisim.base.errors import ProfileError
+from tuisim.engine.core.profile import MAX_COST_MS, MS, PROFILES, ProfileSpec
+from tuisim.engine.core.values import Number, values_of
+from tuisim.engine.files import (
+    Location,
+    one_of,
+    read_named,
+    read_value,
+    table,
+    toml_lines,
+    with_values,
+)
+
+DEFAULT_PROFILE = "robolab"
+
+_COST_MS = Number(0, MAX_COST_MS)
+_NS, _MS = "_ns", "_ms"
+
+
+def load_profile(word: str, key: str = "") -> ProfileSpec:
+    """Return a profile by name, or from a TOML file; errors about a name blame the option `key`.
+
+    Raises:
+        ProfileError: the name is unknown, or the file is wrong.
+    """
+    if word in PROFILES:
+        return PROFILES[word]
+    return profile_from_table(*read_named(word, "profile", PROFILES, ProfileError, key, (".toml",)))
+
+
+def profile_from_table(
+    data: object, name: str, at: Location, changes_to: ProfileSpec | None = None
+) -> ProfileSpec:
+    """Return the profile in a table, called `name` unless the table says otherwise; costs are in ms or ns.
+
+    Args:
+        changes_to: The profile with the keys that the table leaves out, unless it names its base.
+
+    Raises:
+        ProfileError: a key or a value is wrong.
+    """
+    values = values_of(ProfileSpec)
+    in_ms = {_in_ms(key): key for key in values if key.endswith(_NS)}
+    listed = ("base", *(key for key in values if not key.endswith(_NS)), *in_ms)
+    given = table(data, at, listed, unlisted=frozenset(in_ms.values()))
+    named = PROFILES[one_of(given.get("base", DEFAULT_PROFILE), at.at("base"), PROFILES)]
+    base = named if changes_to is None or "base" in given else changes_to
+    found: dict[str, Any] = {"name": name}
+    for key, value in given.items():
+        if key in in_ms:
+            if in_ms[key] in given:
+                raise at.at(key).wrong(
+                    f"is given together with {in_ms[key]}", "give only one of them"
+                )
+            found[in_ms[key]] = round(read_value(value, _COST_MS, at.at(key)) * MS)
+        elif key in values:
+            found[key] = read_value(value, values[key], at.at(key))
+    if found["name"] in PROFILES:
+        raise at.at("name").wrong(
+            f"{found['name']!r} is the name of a built-in profile", "choose another name"
+        )
+    return with_values(base, found, at)
+
+
+def _in_ms(key: str) -> str:
+    return key.removesuffix(_NS) + _MS
+
+
+def profile_lines(spec: ProfileSpec, parent: str = "") -> list[str]:
+    """Return a profile as TOML lines, with every value: the table `parent`, or a file of its own."""
+    values = {}
+    for key in values_of(ProfileSpec):
+        value = getattr(spec, key)
+        cost_ms = value / MS if key.endswith(_NS) else 0.0
+        if cost_ms and round(cost_ms * MS) == value:
+            values[_in_ms(key)] = cost_ms
+        else:
+            values[key] = value
+    return [*([f"[{parent}]"] if parent else []), *toml_lines(values)]

@@ -1,0 +1,437 @@
+"""Robots by name or from a file: TOML, or the JSON of the course's browser simulator; written so that they read back.
+
+To add a robot: add an entry to `ROBOTS`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
+from itertools import takewhile
+from pathlib import Path
+from typing import Any
+
+from tuisim.base.data_class import dataclass
+from tuisim.base.errors import ConfigError, RobotError
+from tuisim.engine import files
+from tuisim.engine.core.spec import (
+    MOTOR_KINDS,
+    MOUNTS,
+    OUTPUT_PORTS,
+    ROBOT_WEIGHTS,
+    SENSOR_NAME,
+    ColorSensorSpec,
+    InfraredSpec,
+    MotorSpec,
+    Mount,
+    NoiseSpec,
+    PenSpec,
+    RobotSpec,
+    SensorSpec,
+    TouchSpec,
+    UltrasonicSpec,
+)
+from tuisim.engine.core.values import Part, Value, shown, values_of
+from tuisim.engine.files import Location, Scalar
+
+
+@dataclass(frozen=True, slots=True)
+class RobotChoice:
+    """A robot read from a file, and the other settings in that file."""
+
+    spec: RobotSpec
+    motor_noise: int | None = None
+    """The default motor noise of a run."""
+    own_places: bool = True
+    """Whether its colour sensors keep their positions on a mat that defines its own."""
+    light_noise: int | None = None
+    """The default light noise of a run."""
+    notes: tuple[str, ...] = ()
+    """Warnings about the file, to be shown to the user."""
+
+
+def _sensor_pair(
+    x_mm: float, y_mm: float, left_diameter_mm: int, right_diameter_mm: int
+) -> tuple[ColorSensorSpec, ...]:
+    """Return two colour sensors, symmetric about the robot's axis."""
+    return (
+        ColorSensorSpec("left", "in2", -x_mm, y_mm, left_diameter_mm),
+        ColorSensorSpec("right", "in3", x_mm, y_mm, right_diameter_mm),
+    )
+
+
+_SMALL = RobotSpec(
+    name="Small_Robot",
+    wheel_diameter_mm=28.0,
+    wheel_spacing_mm=90.0,
+    back_mm=-60.0,
+    weight=ROBOT_WEIGHTS["weightless"],
+    color_sensors=_sensor_pair(10.0, 15.0, 10, 10),
+    ultrasonic=UltrasonicSpec(y_mm=10.0),
+)
+
+ROBOTS: Mapping[str, RobotSpec] = {
+    robot.name: robot
+    for robot in (
+        RobotSpec(),
+        _SMALL,
+        replace(
+            _SMALL, name="Small_Robot_Wide_Eyes", color_sensors=_sensor_pair(30.0, 15.0, 10, 10)
+        ),
+        RobotSpec(name="Sensor_Diameter_Config", color_sensors=_sensor_pair(20.0, 30.0, 30, 10)),
+        RobotSpec(
+            name="Explorer",
+            color_sensors=(ColorSensorSpec("left", "in2", 0.0, 30.0),),
+            ultrasonic=None,
+            extra_motors=(MotorSpec("outA", "medium"),),
+            touch_sensors=(TouchSpec("bumper", "in1", 0.0, 60.0, 60.0),),
+            infrared=InfraredSpec(port="in3"),
+        ),
+    )
+}
+"""Every robot by name."""
+
+DEFAULT_ROBOT = "Default_Robot"
+_VALUES = values_of(RobotSpec)
+_BODY_KEYS = tuple(
+    key
+    for key, value in _VALUES.items()
+    if not isinstance(value, Part) and key not in ("left_motor", "right_motor")
+)
+"""Keys whose values are those of the fields; the kinds of motors stand in the table `motors`."""
+_MOTOR_KEYS = ("kind", "low_deg", "high_deg")
+_PEN_KEYS = ("x_mm", "y_mm", "color", "width_mm", "down")
+_TOP_KEYS = ("base", *_BODY_KEYS, "motors", *(mount.key for mount in MOUNTS), "pen")
+
+_TABLES: Mapping[str, type] = {
+    "": RobotSpec,
+    "motors": MotorSpec,
+    "pen": PenSpec,
+    **{mount.key: mount.spec for mount in MOUNTS},
+}
+
+
+def values_in(table: str) -> Mapping[str, Value]:
+    """Return the values that stand in a table of a robot file, by key."""
+    return values_of(_TABLES[table.partition(".")[0]])
+
+
+_HEAD = (
+    "# A robot for tuisim. Lengths in mm, angles in degrees; x to the right of the midpoint between the wheels,",
+    "# y forward of it.",
+)
+
+
+def load_robot(word: str, key: str = "") -> RobotSpec:
+    """Return a robot by name, or from a TOML or JSON file; errors about a name blame the option `key`.
+
+    Raises:
+        RobotError: the name is unknown, or the file is wrong.
+    """
+    return choose_robot(word, key).spec
+
+
+def choose_robot(word: str, key: str = "") -> RobotChoice:
+    """Like `load_robot`, with the other settings in the file.
+
+    Raises:
+        RobotError: the name is unknown, or the file is wrong.
+    """
+    if word in ROBOTS:
+        return RobotChoice(ROBOTS[word], own_places=False)
+    data, name, at = files.read_named(word, "robot", ROBOTS, RobotError, key)
+    return (robot_from_json if word.lower().endswith(".json") else robot_from_table)(data, name, at)
+
+
+def robot_from_table(
+    data: object, name: str, at: Location, changes_to: RobotSpec | None = None
+) -> RobotChoice:
+    """Return the robot in a table, called `name` unless the table says otherwise.
+
+    Args:
+        changes_to: The robot with the keys that the table leaves out, unless it names its base.
+
+    Raises:
+        RobotError: a key or a value is wrong.
+    """
+    found = files.table(data, at, _TOP_KEYS)
+    named = ROBOTS[files.one_of(found.get("base", DEFAULT_ROBOT), at.at("base"), ROBOTS)]
+    base = named if changes_to is None or "base" in found else changes_to
+    changes: dict[str, Any] = {"name": name}
+    changes |= {
+        key: files.read_value(found[key], _VALUES[key], at.at(key))
+        for key in _BODY_KEYS
+        if key in found
+    }
+    if "pen" in found:
+        changes["pen"] = files.read_part(found["pen"], base.pen, at.at("pen"))
+    if "motors" in found:
+        changes |= _motors(found, base, at)
+    for mount in MOUNTS:
+        if mount.key in found:
+            read = _named if mount.many else _single
+            changes[mount.field] = read(found[mount.key], mount, base, at.at(mount.key))
+    sensors = found.get("color_sensors", {}).values()
+    own_places = any(isinstance(sensor, dict) and "x_mm" in sensor for sensor in sensors)
+    return RobotChoice(files.with_values(base, changes, at), own_places=own_places)
+
+
+def _motors(robot: Mapping[str, Any], base: RobotSpec, at: Location) -> dict[str, Any]:
+    """Return motors by port, as fields of `RobotSpec`; `false` removes a motor of the base."""
+    wheels = {robot.get(key, getattr(base, key)): key for key in ("left_port", "right_port")}
+    motors = {motor.port: motor for motor in base.extra_motors}
+    found: dict[str, Any] = {}
+    at = at.at("motors")
+    for port, data in files.table(robot["motors"], at, OUTPUT_PORTS).items():
+        wheel = wheels.get(port)
+        if wheel and data is False:
+            raise at.at(port).wrong(
+                "drives a wheel", f"it cannot be removed; {wheel} sets its port"
+            )
+        if wheel:
+            key = wheel.replace("port", "motor")
+            motor = _motor(data, MotorSpec(port, getattr(base, key)), at.at(port))
+            if (motor.low_deg, motor.high_deg) != (None, None):
+                raise at.at(port).wrong(
+                    "drives a wheel, which has no end stops", "only its kind can be set here"
+                )
+            found[key] = motor.kind
+        elif data is False:
+            motors.pop(port, None)
+        else:
+            motors[port] = _motor(data, motors.get(port, MotorSpec(port)), at.at(port))
+    return {**found, "extra_motors": tuple(motors.values())}
+
+
+def _motor(data: object, base: MotorSpec, at: Location) -> MotorSpec:
+    """Return a motor with the values in a table, or of the kind that a text names."""
+    if not isinstance(data, dict):
+        return replace(base, kind=files.one_of(data, at, MOTOR_KINDS))
+    return files.read_part(data, base, at, port=base.port)
+
+
+def _single(data: object, mount: Mount, base: RobotSpec, at: Location) -> SensorSpec | None:
+    """Return the only sensor of its kind; None for `false`, which removes it."""
+    return (
+        None
+        if data is False
+        else files.read_part(data, getattr(base, mount.field) or mount.spec(), at)
+    )
+
+
+def _named(data: object, mount: Mount, base: RobotSpec, at: Location) -> tuple[SensorSpec, ...]:
+    """Return the base's sensors with the table's changes, and those that the table adds; `false` removes one."""
+    found = {sensor.name: sensor for sensor in base.sensors_in(mount)}
+    names = files.table(data, at)
+    for name, sensor in names.items():
+        place = at.at(name)
+        if sensor is False:
+            found.pop(name, None)
+        elif not SENSOR_NAME.fullmatch(name):
+            wrong = at.at(shown(name)[1:-1]).wrong
+            raise wrong(
+                "is not a valid sensor name", "letters, digits and _, a letter first, at most 31"
+            )
+        elif name in found:
+            found[name] = files.read_part(sensor, found[name], place)
+        else:
+            if isinstance(sensor, dict):
+                # No port is free by itself.
+                files.required(
+                    files.table(sensor, place, [*values_of(mount.spec)][1:]), "port", place
+                )
+            found[name] = files.read_part(sensor, mount.spec, place, name=name)
+    # A file that names all of them also sets their order.
+    order = [name for name in names if name in found]
+    return tuple(found[name] for name in (order if len(order) == len(found) else found))
+
+
+_COLOR_SENSOR = {"x": "x_mm", "y": "y_mm", "diameter": "diameter_mm"}
+_JSON_PARTS: Mapping[str, tuple[str, Mapping[str, str]]] = {
+    "pen": ("pen", {"x": "x_mm", "y": "y_mm", "color": "color", "width": "width_mm"}),
+    "sensor1": ("color_sensors.left", _COLOR_SENSOR),
+    "sensor2": ("color_sensors.right", _COLOR_SENSOR),
+    "ultrasonic": (
+        "ultrasonic",
+        {"x": "x_mm", "y": "y_mm", "angle": "angle_deg", "noise": "noise_mm"},
+    ),
+    "gyro": ("gyro", {}),
+}
+"""The key of each part in a robot's TOML table, and the names of its keys there."""
+
+_JSON_KEYS = {
+    "wheeldiameter": "wheel_diameter_mm",
+    "wheelSpacing": "wheel_spacing_mm",
+    "back": "back_mm",
+    "weight": "weight",
+}
+_WHEEL_NOISE, _SENSOR_NOISE = "wheelNoise", "sensorNoise"
+_DEFAULT_NOISE = 1
+"""The simulator's default for motor and ultrasonic noise."""
+
+_KEYS_SHOWN = 5
+
+_WITHOUT_EFFECT = ("baseWeight", "width", "height")
+"""Keys of saved files that do not affect a run."""
+
+
+def robot_from_json(data: object, name: str, at: Location) -> RobotChoice:
+    """Return the robot saved by the course's browser simulator.
+
+    Missing keys are as in Default_Robot; its noise settings become those of the run. A key that the simulator did not
+    know either is ignored, with a note. Keys are translated to those of a robot's TOML table, so both formats are
+    checked by the same rules.
+
+    Raises:
+        RobotError: a key or a value is wrong.
+    """
+    found = files.table(data, at)
+    ours: dict[str, Any] = {"color_sensors": {}}
+    theirs: dict[str, str] = {}
+    unknown: list[str] = []
+    for key, value in found.items():
+        if key in _JSON_KEYS:
+            if key == "weight" and value in (None, ""):
+                # Medium, as without the key.
+                continue
+            ours[_JSON_KEYS[key]] = value
+            theirs[_JSON_KEYS[key]] = key
+        elif key in _JSON_PARTS:
+            place, keys = _JSON_PARTS[key]
+            theirs |= {place: key, f"{place}.port": key} | {
+                f"{place}.{to}": f"{key}.{of}" for of, to in keys.items()
+            }
+            outer, _, inner = place.rpartition(".")
+            part = files.table(value, at.at(key))
+            (ours[outer] if outer else ours)[inner] = _json_part(part, keys, at.at(key))
+            unknown += [f"{key}.{name}" for name in part if name not in ("enabled", *keys)]
+        elif key not in (_WHEEL_NOISE, _SENSOR_NOISE, *_WITHOUT_EFFECT):
+            unknown.append(key)
+    motor = _json_noise(found, _WHEEL_NOISE, "motor", at)
+    light = _json_noise(found, _SENSOR_NOISE, "light", at)
+    try:
+        choice = robot_from_table(ours, name, at)
+    except ConfigError as error:
+        raise files.with_location(error, at.file, theirs.get(error.key, error.key)) from None
+    notes = (f"{at.file}: ignored unknown keys: {shown_keys(unknown)}",) if unknown else ()
+    return replace(
+        choice,
+        motor_noise=_DEFAULT_NOISE if motor is None else motor,
+        light_noise=light,
+        notes=notes,
+    )
+
+
+def _json_noise(robot: Mapping[str, object], key: str, kind: str, at: Location) -> int | None:
+    value = robot.get(key)
+    return (
+        None if value is None else files.read_value(value, values_of(NoiseSpec)[kind], at.at(key))
+    )
+
+
+def _json_part(
+    part: Mapping[str, object], keys: Mapping[str, str], at: Location
+) -> dict[str, object] | bool:
+    """Return a sensor or the pen with the keys of a TOML table; False if it is not enabled."""
+    if at.key != "pen" and not files.convert(part.get("enabled", True), bool, at.at("enabled")):
+        return False
+    found = {keys[key]: value for key, value in part.items() if key in keys}
+    if "noise" in keys and found.get("noise_mm") is None:
+        found["noise_mm"] = _DEFAULT_NOISE
+    return found
+
+
+def shown_keys(keys: Sequence[str]) -> str:
+    """Return a short list of keys for a message, whatever their number and length."""
+    names = [shown(key)[1:-1] for key in keys[:_KEYS_SHOWN]]
+    return ", ".join(names) + (
+        f" and {len(keys) - _KEYS_SHOWN} more" if len(keys) > _KEYS_SHOWN else ""
+    )
+
+
+def ports_of(robot: RobotSpec) -> list[tuple[str, str]]:
+    """Return what is on each port of a robot, by port."""
+    found = [
+        (motor.port, wheel if motor.kind == "large" else f"{wheel} ({motor.kind} motor)")
+        for motor, wheel in zip(robot.wheel_motors, ("left wheel", "right wheel"), strict=True)
+        if robot.has_wheels
+    ]
+    found += [(motor.port, f"{motor.kind} motor") for motor in robot.extra_motors]
+    found += [(sensor.port, sensor.name) for sensor in robot.sensors]
+    return sorted(found)
+
+
+def save_robot(spec: RobotSpec, path: Path | str) -> None:
+    """Write a robot atomically to a TOML file; `load_robot` returns an equal one. Comments in the file stay.
+
+    Raises:
+        RobotError: the file cannot be written, or cannot represent the robot, such as a name of two lines.
+    """
+    path = Path(path)
+    at = Location(str(path), RobotError)
+    files.save_toml(
+        path,
+        robot_file(spec),
+        at,
+        lambda data: robot_from_table(data, files.name_of(path), at).spec,
+        spec,
+    )
+
+
+def robot_file(spec: RobotSpec) -> list[str]:
+    """Return the lines of a robot file."""
+    return [*_HEAD, "", *robot_lines(spec)]
+
+
+def robot_lines(
+    spec: RobotSpec, parent: str = "", pen_keys: Iterable[str] = _PEN_KEYS
+) -> list[str]:
+    """Return a robot as TOML lines, with every value: the table `parent`, or a file of its own."""
+    under = f"{parent}." if parent else ""
+    lines = [f"[{parent}]"] if parent else []
+    lines += files.value_lines(spec, [key for key in _BODY_KEYS if not _is_left_out(spec, key)])
+    names = [sensor.name for sensor in spec.color_sensors]
+    if gone := [
+        sensor.name for sensor in ROBOTS[DEFAULT_ROBOT].color_sensors if sensor.name not in names
+    ]:
+        lines += [
+            "",
+            f"[{under}color_sensors]",
+            *(f"{files.toml_key(name)} = false" for name in gone),
+        ]
+    for mount in MOUNTS:
+        if mount.standard and not mount.many and not spec.sensors_in(mount):
+            # Keys of the robot itself must precede its first table.
+            lines.insert(1 if parent else 0, f"{mount.key} = false")
+    for mount in MOUNTS:
+        for sensor in spec.sensors_in(mount):
+            place = f"{mount.key}.{files.toml_key(sensor.name)}" if mount.many else mount.key
+            keys = [
+                key
+                for key in values_of(mount.spec)
+                if key != "name" and not _is_no_presser(sensor, key)
+            ]
+            lines += ["", f"[{under}{place}]", *files.value_lines(sensor, keys)]
+    lines += _motor_lines(spec, f"{under}motors")
+    return [*lines, "", f"[{under}pen]", *files.value_lines(spec.pen, pen_keys)]
+
+
+def _is_left_out(spec: RobotSpec, key: str) -> bool:
+    """Return whether a file does without a value: of how the motors drive the wheels, where that is as usual."""
+    return _VALUES[key].later and getattr(spec, key) == RobotSpec.__dataclass_fields__[key].default
+
+
+def _is_no_presser(sensor: SensorSpec, key: str) -> bool:
+    return isinstance(sensor, TouchSpec) and not sensor.pressed_by and key.startswith("pressed_")
+
+
+def _motor_lines(spec: RobotSpec, table: str) -> list[str]:
+    """Return the motors that differ from a large one on each wheel: by kind, or as tables with their end stops."""
+    motors = (*(motor for motor in spec.wheel_motors if motor.kind != "large"), *spec.extra_motors)
+    # In a file all tables follow the keys, and the order of the motors counts.
+    plain = list(takewhile(lambda motor: motor.low_deg is motor.high_deg is None, motors))
+    kinds: dict[str, Scalar] = {motor.port: motor.kind for motor in plain}
+    lines = ["", f"[{table}]", *files.toml_lines(kinds)] if kinds else []
+    for motor in motors[len(plain) :]:
+        lines += ["", f"[{table}.{motor.port}]", *files.value_lines(motor, _MOTOR_KEYS)]
+    return lines

@@ -1,0 +1,66 @@
+"""The options of `OPTIONS` as options of commands and of magic lines."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from typing import Any
+
+import click
+
+from tuisim.settings.command_line import Command, GroupedOption, WordType, parse
+from tuisim.settings.options import OPTIONS, Option
+from tuisim.settings.options import parse as parse_value
+
+Names = Callable[[str], Iterable[str]]
+
+
+def _parameter(shared: Option, *, magic: bool, hidden: bool, names: Names) -> GroupedOption:
+    flags = [*shared.flags, *(shared.magic_flags if magic else ())]
+    how: dict[str, Any] = {
+        "group": shared.group,
+        "sets": shared.path,
+        "help": shared.help,
+        "hidden": hidden,
+    }
+    name = shared.path.replace(".", "_")
+    if shared.panel:
+        return GroupedOption(
+            [*flags, f"panel_{shared.panel}"], is_flag=True, adds=shared.panel, **how
+        )
+    if shared.constant is not None:
+        return GroupedOption([*flags, name], flag_value=shared.constant, default=None, **how)
+    kind = WordType(
+        lambda text: parse_value(shared.value, text, shared.flags[0]),
+        lambda: shared.value.choices or names(shared.path),
+    )
+    return GroupedOption(
+        [*flags, name], type=kind, metavar=shared.metavar, multiple=shared.repeats, **how
+    )
+
+
+def shared_options(
+    *, magic: bool = False, hidden: Iterable[str] = (), names: Names = lambda _: ()
+) -> list[click.Parameter]:
+    """Return the Click options of `OPTIONS`.
+
+    Args:
+        magic: Whether a magic line is parsed, not the command line.
+        hidden: Groups that are accepted but not listed in the help.
+        names: Return the names that completion offers for a path.
+    """
+    return [
+        _parameter(one, magic=magic, hidden=one.group in hidden, names=names) for one in OPTIONS
+    ]
+
+
+def parse_words(words: Sequence[str]) -> dict[str, Any]:
+    """Parse the words of a program's magic line and return its options, by path.
+
+    Raises:
+        ConfigError: a word is no option, or a value is wrong.
+    """
+    return dict(
+        parse(
+            Command("tuisim", params=shared_options(magic=True), add_help_option=False), words
+        ).settings
+    )

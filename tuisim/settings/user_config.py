@@ -1,0 +1,311 @@
+"""The user's own defaults: `config.toml`, its settings, and how they are read.
+
+An option of the command line is a setting unless its value says otherwise (`Value.in_config`); the others are at the
+end of `_EVERY`. To add a setting: do the one or the other.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import field, replace
+from enum import StrEnum
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+from tuisim.base.data_class import dataclass
+from tuisim.base.errors import ConfigError, nearest, see_page
+from tuisim.base.folders import config_folder, user_path
+from tuisim.base.regular_file import read_regular
+from tuisim.engine.core.values import Value, shown
+from tuisim.engine.files import (
+    Location,
+    Scalar,
+    means_file,
+    parse_toml,
+    read_value,
+    table,
+    toml_form,
+)
+from tuisim.settings.options import OF_THE_APP, OPTIONS, Name, Settings
+
+FILE = "config.toml"
+PAGE = "settings"
+MAX_FILE_BYTES = 100_000
+MAX_KEYS = 10
+
+
+class Section(StrEnum):
+    """The tables of the file."""
+
+    SIMULATION = "simulation"
+    APP = "app"
+    KEYS = "keys"
+
+
+ABOUT: Mapping[Section, str] = {
+    Section.SIMULATION: "What runs in the app and by `tuisim run` use where neither a switch nor the program's magic "
+    "line says it. It does not apply with a world file, goals or a lesson: they are the same for everybody.",
+    Section.APP: "How the app looks and sounds.",
+    Section.KEYS: "Other keys for actions of the app: `tuisim guide keys` lists the actions by id.",
+}
+"""What each table is for."""
+
+
+@dataclass(frozen=True, slots=True)
+class Setting:
+    """One line of `SETTINGS`."""
+
+    section: Section
+    name: str
+    value: Value
+    default: Any
+    """Its value without the file; an empty text where mat, robot or program decides."""
+    sets: str = ""
+    """The path of the setting that it makes; empty if there is none."""
+    at_once: bool = True
+    """Whether the app could apply a change at once."""
+
+    @property
+    def path(self) -> str:
+        """Its name with that of its table."""
+        return f"{self.section}.{self.name}"
+
+    @property
+    def help(self) -> str:
+        """What it does, as a sentence."""
+        return f"{self.value.help[0].upper()}{self.value.help[1:]}."
+
+    @property
+    def is_live(self) -> bool:
+        """Whether the app applies a change at once; else from its next start on."""
+        return self.section is not Section.SIMULATION and self.at_once
+
+
+def _of_options() -> Iterator[Setting]:
+    for option in OPTIONS:
+        if option.value.in_config and option.constant is not False:
+            section = Section.APP if option.path in OF_THE_APP else Section.SIMULATION
+            default = toml_form(option.value, option.default)
+            yield Setting(section, option.name, option.value, default, option.path, option.is_live)
+
+
+THEME, CELL_SET = f"{Section.APP}.theme", f"{Section.APP}.cells"
+"""Paths of settings that are read by themselves."""
+_THEME = Name("the name of a theme", "THEME", help="colours of the app; F10 lists the themes")
+_EVERY = (*_of_options(), Setting(Section.APP, "theme", _THEME, "textual-dark"))
+SETTINGS: Mapping[str, Setting] = {
+    one.path: one for section in Section for one in _EVERY if one.section is section
+}
+"""Every setting by its path, in the order of the file."""
+
+
+@dataclass(frozen=True, slots=True)
+class UserConfig:
+    """What `config.toml` says."""
+
+    path: Path
+    written: Mapping[str, Scalar] = field(default_factory=dict)
+    """The valid values, by path of the setting."""
+    values: Mapping[str, Any] = field(default_factory=dict)
+    """The same, as settings."""
+    keys: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    """The keys of actions by id, as they are written; whether they fit the actions is not checked."""
+    problems: tuple[ConfigError, ...] = ()
+    """What is wrong; such entries count as missing."""
+
+    def checked(self) -> UserConfig:
+        """Return it.
+
+        Raises:
+            ConfigError: something in it is wrong.
+        """
+        if self.problems:
+            raise self.problems[0]
+        return self
+
+    def value(self, path: str) -> Scalar:
+        """Return the value of a setting in the file, or its default."""
+        return self.written.get(path, SETTINGS[path].default)
+
+    def layer(self, section: Section) -> dict[str, Any]:
+        """Return the settings of a table, by path, without the glyphs: the terminal has to show them."""
+        return {
+            one.sets: self.values[path]
+            for path, one in SETTINGS.items()
+            if one.section is section and one.sets and path in self.values and path != CELL_SET
+        }
+
+    def only(self, section: Section) -> UserConfig:
+        """Return it without the settings of other tables."""
+        return replace(
+            self,
+            written={
+                path: value
+                for path, value in self.written.items()
+                if SETTINGS[path].section is section
+            },
+            values={
+                path: value
+                for path, value in self.values.items()
+                if SETTINGS[path].section is section
+            },
+        )
+
+    def in_effect(self, *above: Mapping[str, Any]) -> list[str]:
+        """Return the simulation's settings that no layer above overrides, each with its value."""
+        return [
+            f"{one.name} = {shown(self.written[path])}"
+            for path, one in SETTINGS.items()
+            if one.section is Section.SIMULATION
+            and path in self.written
+            and not any(one.sets in layer for layer in above)
+        ]
+
+
+def config_file() -> Path:
+    """Return the path of the file; it may not exist."""
+    return config_folder() / FILE
+
+
+def load_config() -> UserConfig:
+    """Read the file; what is wrong is among the problems. Without it, or empty, everything is as usual."""
+    path = config_file()
+    try:
+        stamp = path.stat()
+    except OSError:
+        return UserConfig(path)
+    return _load(path, stamp.st_mtime_ns, stamp.st_size)
+
+
+@lru_cache(maxsize=1)
+def _load(path: Path, _changed_ns: int, _size: int) -> UserConfig:
+    # The app asks for it several times while it starts.
+    try:
+        return config_of_text(config_text(path), path)
+    except ConfigError as error:
+        return UserConfig(path, problems=(error,))
+
+
+def config_text(path: Path) -> str:
+    """Return the text of the file, empty if there is none.
+
+    Raises:
+        ConfigError: it cannot be read.
+    """
+    try:
+        return read_regular(path, MAX_FILE_BYTES, follow_links=True).decode()
+    except FileNotFoundError:
+        return ""
+    except UnicodeDecodeError:
+        raise ConfigError("is not text in UTF-8", file=str(path)) from None
+    except OSError as error:
+        raise ConfigError(f"cannot be read: {error.strerror or error}", file=str(path)) from None
+
+
+def config_of_text(text: str, path: Path) -> UserConfig:
+    """Return what a text of the file says.
+
+    Raises:
+        ConfigError: it is not TOML.
+    """
+    data = parse_toml(text, str(path), ConfigError)
+    at = Location(str(path))
+    problems: list[ConfigError] = []
+    written: dict[str, Scalar] = {}
+    values: dict[str, Any] = {}
+    keys: dict[str, tuple[str, ...]] = {}
+    for name, value, here in _entries(data, at, problems):
+        try:
+            if here.key.startswith(f"{Section.KEYS}."):
+                keys[name] = _keys(value, here)
+            else:
+                one = SETTINGS[here.key]
+                written[here.key], values[here.key] = (
+                    value,
+                    _resolved(one, read_value(value, one.value, here), path),
+                )
+        except ConfigError as error:
+            problems.append(error)
+    if Section.SIMULATION in data:
+        problems += list(_without_wrong_names(written, values, at))
+    return UserConfig(path, written, values, keys, tuple(problems))
+
+
+def _entries(
+    data: Any, at: Location, problems: list[ConfigError]
+) -> Iterator[tuple[str, Any, Location]]:
+    """Yield name, value and location of the entries that exist; add an error for each of the others."""
+    names = {
+        section: [one.name for one in SETTINGS.values() if one.section is section]
+        for section in Section
+    }
+    for section, content in data.items():
+        here = at.at(section)
+        try:
+            if section not in names:
+                raise here.wrong("no such table", f"{_hint(section, names)}; {see_page(PAGE)}")
+            table(content, here)
+        except ConfigError as error:
+            problems.append(error)
+            continue
+        for name, value in content.items():
+            if section != Section.KEYS and name not in names[section]:
+                problems.append(here.at(name).wrong("no such setting", _hint(name, names[section])))
+            else:
+                yield name, value, here.at(name)
+
+
+def _hint(name: str, known: Any) -> str:
+    """Return the hint for an unknown name, and the table that has it if another one does."""
+    elsewhere = [one.section for one in SETTINGS.values() if one.name == name]
+    return f"it belongs into [{elsewhere[0]}]" if elsewhere else nearest(name, known)
+
+
+def _keys(value: object, at: Location) -> tuple[str, ...]:
+    listed = value if isinstance(value, list) else [value]
+    if (
+        not listed
+        or len(listed) > MAX_KEYS
+        or not all(isinstance(key, str) and key for key in listed)
+    ):
+        raise at.wrong(
+            f"must be a key or a list of keys, got {shown(value)}",
+            'such as "x" or ["ctrl+x", "f5"]',
+        )
+    return tuple(listed)
+
+
+_NAMES = ("mats", "background", "robot", "obstacles", "profile")
+"""Settings that are names or paths; `mats` first, since the mat may be in there."""
+
+
+def _resolved(one: Setting, value: Any, path: Path) -> Any:
+    """Return a value with the path in it relative to the folder of the file."""
+    if one.name not in _NAMES:
+        return value
+    word = user_path(value)
+    is_path = (
+        one.name == "mats" or means_file(value) or (one.name == "background" and bool(word.suffix))
+    )
+    return str(path.parent / word) if is_path else value
+
+
+def _without_wrong_names(
+    written: dict[str, Scalar], values: dict[str, Any], at: Location
+) -> Iterator[ConfigError]:
+    """Remove names of mats, robots, obstacles and profiles that do not exist; yield an error for each."""
+    from tuisim.settings.build import build_run_spec
+
+    for name in _NAMES:
+        path = f"{Section.SIMULATION}.{name}"
+        if path not in values:
+            continue
+        try:
+            build_run_spec(
+                Settings({"mats": values.get(f"{Section.SIMULATION}.mats"), name: values[path]})
+            )
+        except ConfigError as error:
+            del written[path], values[path]
+            where = "" if error.file else f"{error.key}: "
+            yield at.at(path).wrong(error.message.removeprefix(where), error.hint)

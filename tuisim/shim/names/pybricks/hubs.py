@@ -1,3 +1,0 @@
-"""The brick."""
-
-from tuisim.shim.pybricks.hubs import EV3Brick as EV3Brick

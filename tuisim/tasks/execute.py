@@ -1,0 +1,221 @@
+"""Runs one task: starts the program, waits for its end, evaluates the recording and deletes or keeps it."""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+from functools import lru_cache
+from pathlib import Path
+
+from tuisim.base.errors import LogError, TuisimError
+from tuisim.base.faults import describe_fault
+from tuisim.base.regular_file import of_the_machine
+from tuisim.engine.core.spec import RunSpec
+from tuisim.engine.mat_cache import FieldFiles, prepare
+from tuisim.engine.mats import background
+from tuisim.engine.protocol import End, Ended
+from tuisim.engine.runs.handle import RunHandle
+from tuisim.engine.runs.records import OutputRow, Stream
+from tuisim.engine.runs.run_folder import StoredRun, find_diameters
+from tuisim.engine.runs.samples import samples_of
+from tuisim.engine.runs.store import RunStore
+from tuisim.engine.runs.temporary import TemporaryRun
+from tuisim.logs.magnitude import find_scale
+from tuisim.programs.plugged_words import list_parts
+from tuisim.tasks.goals.judgement import Judgement
+from tuisim.tasks.reasons.waited_words import describe_wait
+from tuisim.tasks.task import OUTPUT_CHARACTERS, Keep, Result, Task, VariableStatistics
+
+MATS_KEPT = 20
+MOST_OUTPUT_BYTES = 16 << 20
+"""A failed run that printed more is not kept: its end says what happened, and nobody reads so much."""
+
+
+def execute(task: Task, folder: Path) -> Result:
+    """Run a task and return its result. Blocks until the run is over; whatever goes wrong is told by the result.
+
+    Args:
+        task: The task.
+        folder: Where its recording is until it has been evaluated; see `engine.runs.temporary.batch_folder`.
+    """
+    try:
+        return _run_task(task, folder)
+    except Exception as error:  # Also a mistake of tuisim's: the other runs go on.
+        return build_unjudged(task, describe_fault(error))
+
+
+def _run_task(task: Task, folder: Path) -> Result:
+    with TemporaryRun(folder) as temporary:
+        try:
+            handle = RunHandle(
+                task.program,
+                task.spec,
+                _field_files(task.spec),
+                task.options,
+                temporary,
+                of_many=not task.isolate,
+                isolated=task.isolate,
+            )
+        except TuisimError as error:
+            return build_unjudged(task, str(error))
+        try:
+            ended = _to_the_end(handle, task.real_time_limit_s)
+            run = handle.stored()
+            # Each is read once: nothing changes any more.
+            for view in (run.telemetry, run.output):
+                view.read_on()
+                view.holds = True
+            run, told = _replay_run(task, run, ended)
+            judgements = _judged(task, run)
+            result = _result(task, run, told, judgements)
+        except LogError as error:
+            cause = error.__cause__
+            if isinstance(cause, OSError) and of_the_machine(cause):
+                return build_unjudged(task, str(error))
+            # Where the recording was differs from machine to machine.
+            text = error.message.replace(f"{temporary.folder}{os.sep}", "")
+            why = f"the program has falsified its recording: {text}"
+            return nothing_known_of(task, End.FALSIFIED, why)
+        finally:
+            handle.close()
+        return (
+            replace(result, run_id=_keep(temporary, ended))
+            if _is_kept(task, run, ended, judgements)
+            else result
+        )
+
+
+def _to_the_end(handle: RunHandle, limit_s: float) -> Ended:
+    ended = handle.wait(limit_s or None)
+    while ended is None and (left_s := limit_s - handle.time_used_s) > 0:
+        # On a busy machine the child had to wait for a processor.
+        ended = handle.wait(left_s)
+    if ended is None:
+        handle.stop()
+        ended = handle.wait()
+    assert ended is not None
+    return ended
+
+
+@lru_cache(MATS_KEPT)
+def _prepared(background_name: str, fit: str, diameters: frozenset[int]) -> FieldFiles:
+    return prepare(background(background_name).image, diameters, fit=fit)
+
+
+def _field_files(spec: RunSpec) -> FieldFiles:
+    """Return the prepared mat of a run; the image is read only once in a process, while the files are kept."""
+    mat = spec.world.background, spec.world.background_fit, find_diameters(spec)
+    found = _prepared(*mat)
+    if not found.are_sound:
+        _prepared.cache_clear()
+        found = _prepared(*mat)
+    return found
+
+
+def _replay_run(task: Task, run: StoredRun, ended: Ended) -> tuple[StoredRun, Ended]:
+    """Return the run that is to be judged, and how it ended.
+
+    Raises:
+        LogError: no program can have given the commands.
+    """
+    if not task.is_replayed or ended.end in (End.FALSIFIED, End.DISK_FULL):
+        return run, ended
+    # Imported on demand: most batches need it not.
+    from tuisim.engine.runs.replayed_run import replay_run
+
+    run, parted = replay_run(run, task.options.actions)
+    if not parted:
+        return run, ended
+    why = f"the program has falsified its recording: it differs from what the program did from {parted} on"
+    return run, replace(ended, end=End.FALSIFIED, exit_code=1, summary=why)
+
+
+def _judged(task: Task, run: StoredRun) -> tuple[Judgement, ...]:
+    if not task.goals:
+        return ()
+    # Imported on demand: most batches have no goals.
+    from tuisim.tasks.goals.judge import judge
+
+    return judge(task.goals, run)
+
+
+def _is_kept(task: Task, run: StoredRun, ended: Ended, judgements: Sequence[Judgement]) -> bool:
+    if task.keep is Keep.FAILED:
+        if run.output.length > MOST_OUTPUT_BYTES:
+            return False
+        is_good = ended.end is End.FINISHED and not ended.exit_code
+        return not is_good or not all(one.is_good for one in judgements)
+    return task.keep is Keep.ALL
+
+
+def _keep(temporary: TemporaryRun, ended: Ended) -> str:
+    temporary.write_end(ended)
+    return RunStore().adopt(temporary.folder).id
+
+
+def build_unjudged(task: Task, why: str) -> Result:
+    """Return the result of a run that says nothing about the program."""
+    return Result(
+        task.index, task.parameters, "", 2, why, why, 0, 0, 0.0, math.nan, math.nan, math.nan
+    )
+
+
+def nothing_known_of(task: Task, end: End, why: str) -> Result:
+    """Return the result of a run of which nothing is recorded, by the program's own doing."""
+    return Result(
+        task.index, task.parameters, end.value, 1, why, why, 0, 0, 0.0, math.nan, math.nan, math.nan
+    )
+
+
+def _result(task: Task, run: StoredRun, ended: Ended, judgements: tuple[Judgement, ...]) -> Result:
+    last = run.telemetry.last()
+    pose = last.pose if last else run.spec.world.start
+    rows = run.output.all_rows()
+    return Result(
+        index=task.index,
+        parameters=task.parameters,
+        end=ended.end.value,
+        exit_code=ended.exit_code,
+        summary=ended.summary,
+        error=ended.error,
+        error_line=ended.error_line,
+        ticks=ended.tick,
+        time_s=run.time_s,
+        x_mm=pose.x_mm,
+        y_mm=pose.y_mm,
+        heading_deg=pose.heading_deg,
+        variables=statistics_of(rows),
+        judgements=judgements,
+        output=_beginning(rows),
+        waited_for=describe_wait(run),
+        plugged=list_parts(run.plugged),
+    )
+
+
+def statistics_of(rows: Iterable[OutputRow]) -> dict[str, VariableStatistics]:
+    """Return statistics of the samples among the rows of a run, by name."""
+    values: dict[str, list[float]] = {}
+    for sample in samples_of(rows):
+        values.setdefault(sample.name, []).append(sample.value)
+    return {name: _statistics(found) for name, found in values.items()}
+
+
+def _statistics(values: Sequence[float]) -> VariableStatistics:
+    count, low, high = len(values), min(values), max(values)
+    scale = find_scale(low, high)
+    scaled = [value / scale for value in values]
+    # Exact sums: the result does not depend on the order of equal values.
+    mean = math.fsum(scaled) / count
+    std = math.sqrt(math.fsum((value - mean) ** 2 for value in scaled) / count)
+    return VariableStatistics(values[-1], count, mean * scale, std * scale, low, high)
+
+
+def _beginning(rows: Iterable[OutputRow]) -> str:
+    text, size = [], 0
+    for row in rows:
+        if row.stream is Stream.STDOUT and size < OUTPUT_CHARACTERS:
+            text.append(row.text)
+            size += len(row.text) + 1
+    return "\n".join(text)[:OUTPUT_CHARACTERS]

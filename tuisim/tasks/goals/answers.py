@@ -1,0 +1,149 @@
+"""The answers that a task asks for, as lines that a program could print without doing anything for them."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from contextlib import suppress
+from re import _constants as op  # type: ignore[attr-defined]
+from re import _parser  # type: ignore[attr-defined]
+from typing import Any
+
+from tuisim.engine.core.conditions import Operator, ValueCondition, ValueSource
+from tuisim.tasks.goals.comparisons import CountCondition, WhenCondition
+from tuisim.tasks.goals.condition import Condition, UnjudgedError
+from tuisim.tasks.goals.patterns import build_search
+from tuisim.tasks.goals.spec import DialogueCondition, Goal, LogCondition, PrintCondition
+
+ASK = ""
+"""Stands for a question, which is answered."""
+_MOST_REPEATED = 200
+_LETTERS = "a1 .:-AZ_"
+"""Characters that stand for a class of them, the first that fits."""
+
+
+def answer_lines(goals: Sequence[Goal]) -> list[str]:
+    """Return the lines that the goals ask for, those of goals that come after others last; `ASK` is a question."""
+    by_name = {goal.name: goal for goal in goals}
+    ordered: dict[str, Goal] = {}
+
+    def add(goal: Goal) -> None:
+        # A goal that has a place needs no second visit: they refer to each other in no circle.
+        if goal.name not in ordered:
+            if isinstance(goal.after, str):
+                add(by_name[goal.after])
+            ordered[goal.name] = goal
+
+    for goal in goals:
+        add(goal)
+    return [line for goal in ordered.values() for part in goal.parts for line in _lines(part)]
+
+
+def _lines(condition: Condition) -> Iterator[str]:
+    match condition:
+        case PrintCondition(lines=lines):
+            yield from map(line_like, lines)
+        case LogCondition(name=name, levels=levels):
+            yield from (f"{name}: {level:.12g}" for level in levels)
+        case WhenCondition(conditions=conditions):
+            yield from (line for one in conditions if (line := _line_for(one)))
+        case CountCondition(condition=one, at_least=times):
+            yield from [_line_for(one)] * times if _line_for(one) else ()
+        case DialogueCondition(turns=turns):
+            for turn in turns:
+                yield ASK
+                yield from [line_like(turn.reply)] if turn.reply else ()
+
+
+def _line_for(condition: ValueCondition) -> str:
+    """Return a line that makes a condition true; empty if none does."""
+    if condition.source is ValueSource.PRINT:
+        return line_like(condition.value)
+    if condition.source is not ValueSource.SAMPLE:
+        return ""
+    name = condition.name or "Value"
+    if condition.is_momentary:
+        return f"{name}: 1" if condition.operator is Operator.SEEN else f"{name}: 1\n{name}: 2"
+    with suppress(ValueError):
+        number = condition.number
+        found = next(
+            (value for value in (number, number - 1, number + 1) if condition.test()(value, value)),
+            number,
+        )
+        return f"{name}: {found:.12g}"
+    return ""
+
+
+def line_like(pattern: str) -> str:
+    """Return a line in which a regular expression is found; its words, if none is found easily."""
+    plain = re.sub(r"[\\^$.|?*+(){}\[\]]", "", pattern)
+    with suppress(re.error, RecursionError, IndexError, OverflowError, UnjudgedError):
+        found = _text(_parser.parse(pattern), {})
+        return found if "\n" not in found and build_search(pattern)(found) else plain
+    return plain
+
+
+def _text(parsed: Any, groups: dict[int, str]) -> str:
+    """Return a text that fits a parsed expression; what looks around it is left out."""
+    return "".join(_part(kind, value, groups) for kind, value in parsed)
+
+
+def _part(kind: object, value: Any, groups: dict[int, str]) -> str:
+    match kind:
+        case op.LITERAL:
+            return chr(value)
+        case op.ANY:
+            return "a"
+        case op.NOT_LITERAL:
+            return next(one for one in _LETTERS if ord(one) != value)
+        case op.IN:
+            return _one_of(value)
+        case op.BRANCH:
+            return _text(value[1][0], groups)
+        case op.SUBPATTERN:
+            found = _text(value[3], groups)
+            if value[0] is not None:
+                groups[value[0]] = found
+            return found
+        case op.MAX_REPEAT | op.MIN_REPEAT | op.POSSESSIVE_REPEAT:
+            return _text(value[2], groups) * int(min(value[0], _MOST_REPEATED))
+        case op.ATOMIC_GROUP:
+            return _text(value, groups)
+        case op.GROUPREF:
+            return groups.get(value, "")
+    return ""
+
+
+def _one_of(members: Any) -> str:
+    """Return a character of a class."""
+    inside = [(kind, value) for kind, value in members if kind is not op.NEGATE]
+    is_negated = len(inside) < len(members)
+    candidates = [
+        chr(value if kind is op.LITERAL else value[0])
+        for kind, value in inside
+        if kind in (op.LITERAL, op.RANGE)
+    ]
+    one: str
+    for one in (*candidates, *_LETTERS):
+        if any(_is_in(ord(one), kind, value) for kind, value in inside) is not is_negated:
+            return one
+    return _LETTERS[0]
+
+
+def _is_in(code: int, kind: object, value: Any) -> bool:
+    match kind:
+        case op.LITERAL:
+            return bool(code == value)
+        case op.RANGE:
+            return bool(value[0] <= code <= value[1])
+        case op.CATEGORY:
+            letter = {
+                op.CATEGORY_DIGIT: r"\d",
+                op.CATEGORY_NOT_DIGIT: r"\D",
+                op.CATEGORY_SPACE: r"\s",
+                op.CATEGORY_NOT_SPACE: r"\S",
+                op.CATEGORY_WORD: r"\w",
+                op.CATEGORY_NOT_WORD: r"\W",
+            }
+            return re.match(letter[value], chr(code)) is not None
+    return False

@@ -1,0 +1,101 @@
+"""What the brick showed, said and felt in a run: columns and texts that conditions of goals can name."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+from tuisim.engine.core.conditions import Operator, ValueCondition, ValueSource, run_condition_in
+from tuisim.engine.core.sensors import named_column
+from tuisim.engine.core.spec import BUTTONS, RunSpec
+from tuisim.engine.protocol import SetButtons, UserAction
+from tuisim.engine.runs.brick_state import LED_NAMES, BrickState, face_after
+from tuisim.engine.runs.records import OutputRow, Stream
+from tuisim.tasks.goals.patterns import build_search
+
+if TYPE_CHECKING:
+    import numpy as np
+
+    Array = np.ndarray[Any, Any]
+
+BRICK_TEXTS: Mapping[str, Stream] = {"sound": Stream.SPEECH, "display": Stream.CONSOLE}
+"""What can match a regular expression, at the moment it is played or written, with its rows."""
+_LEDS: Mapping[str, str] = {f"led_{name.replace(' ', '_')}": name for name in LED_NAMES}
+_BUTTONS: Mapping[str, str] = {f"button_{name}": name for name in BUTTONS}
+_DARK = "display_px"
+BRICK_COLUMNS = (*_LEDS, *_BUTTONS, _DARK)
+"""Brightness of the LEDs from 0 to 255, 1 for a pressed button, and the dark pixels of the display's picture."""
+BRICK_STREAMS = (Stream.LED, Stream.DISPLAY, *BRICK_TEXTS.values())
+_GREEN = 255
+"""Until the program sets a LED, all are green."""
+
+
+def with_column(wanted: ValueCondition, run: RunSpec) -> ValueCondition:
+    """Return a condition with the name of its column.
+
+    Raises:
+        ConfigError: the run has no such column.
+    """
+    if (
+        wanted.source is not ValueSource.COLUMN
+        or wanted.is_momentary
+        or wanted.name in (*BRICK_COLUMNS, *BRICK_TEXTS)
+    ):
+        return wanted
+    return replace(wanted, name=named_column(wanted.name, run))
+
+
+def goal_condition_in(text: str) -> ValueCondition | None:
+    """Return the condition that a text of a goal is, None if it is none.
+
+    As `run_condition_in`, and `sound matches REGEX`, `display matches REGEX`.
+    """
+    word, _, rest = text.strip().partition(" ")
+    verb, _, pattern = rest.strip().partition(" ")
+    if word in BRICK_TEXTS and verb == Operator.MATCHES:
+        return ValueCondition(word, Operator.MATCHES, pattern.strip()) if pattern.strip() else None
+    return run_condition_in(text)
+
+
+def text_ticks(condition: ValueCondition, rows: Iterable[OutputRow]) -> list[int]:
+    """Return the ticks in which a sound was played, or a text written on the display, that matches.
+
+    Raises:
+        UnjudgedError: the regular expression takes too long.
+    """
+    stream = BRICK_TEXTS[condition.name]
+    search = build_search(condition.value)
+    return [row.tick for row in rows if row.stream is stream and any(map(search, _texts(row)))]
+
+
+def _texts(row: OutputRow) -> list[str]:
+    return (
+        [str(line) for line in json.loads(row.text)[2]]
+        if row.stream is Stream.CONSOLE
+        else [row.text]
+    )
+
+
+def brick_column(
+    name: str, ticks: int, rows: Iterable[OutputRow], actions: Iterable[UserAction]
+) -> Array:
+    """Return one of `BRICK_COLUMNS` at every tick, shape (ticks,)."""
+    import numpy as np
+
+    values = np.full(
+        ticks, float(_GREEN) if name.startswith("led_") and name.endswith("green") else 0.0
+    )
+    if name in _BUTTONS:
+        for action in actions:
+            if isinstance(action.command, SetButtons):
+                values[max(0, action.tick) :] = _BUTTONS[name] in action.command.pressed
+        return values
+    stream = Stream.DISPLAY if name == _DARK else Stream.LED
+    for row in rows:
+        if row.stream is stream:
+            face = face_after(BrickState(), [row])
+            dark = sum(byte.bit_count() for byte in face.picture)
+            values[max(0, row.tick) :] = dark if name == _DARK else face.leds.get(_LEDS[name], 0)
+    return values

@@ -1,0 +1,141 @@
+"""Conditions that are comparisons: with a recording over time, with how often something happened, with a text."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+from tuisim.base.data_class import dataclass
+from tuisim.base.errors import ConfigError, nearest, require_regex
+from tuisim.engine.core.conditions import (
+    COMPARE,
+    Operator,
+    ValueCondition,
+    comparison_form,
+    condition_in,
+)
+from tuisim.programs.structure import STRUCTURES
+from tuisim.tasks.goals.brick import goal_condition_in
+from tuisim.tasks.goals.condition import Condition, ConditionKind, Gap, Share, Times, check_count
+
+
+@dataclass(frozen=True, slots=True)
+class WhenCondition(Condition):
+    """Conditions on the recording are true, all in the same tick."""
+
+    SHORT: ClassVar[str] = "comparisons"
+
+    comparisons: tuple[str, ...]
+    """Such as `left_red_pc < 10`, see `engine.core.conditions`."""
+
+    def __post_init__(self) -> None:
+        check_count(self.comparisons, "comparisons")
+        for number, text in enumerate(self.comparisons, start=1):
+            _comparison(text, f"comparisons[{number}]")
+
+    @property
+    def conditions(self) -> tuple[ValueCondition, ...]:
+        """What the texts mean."""
+        return tuple(_comparison(text, "") for text in self.comparisons)
+
+
+def _comparison(text: str, key: str) -> ValueCondition:
+    """Return what a comparison means.
+
+    Raises:
+        ConfigError: it is none, or its regular expression is wrong.
+    """
+    found = goal_condition_in(text)
+    if found is None:
+        raise ConfigError(
+            f"no comparison: {text!r}", f"{comparison_form()}, such as left_red_pc < 10", key=key
+        )
+    if found.operator is Operator.MATCHES:
+        require_regex(found.value, key)
+    return found
+
+
+@dataclass(frozen=True, slots=True)
+class KeepCondition(Condition):
+    """Conditions on the recording stay true, for a share of the time."""
+
+    KIND: ClassVar[ConditionKind] = ConditionKind.HELD
+    SHORT: ClassVar[str] = "comparisons"
+
+    comparisons: tuple[str, ...] = ()
+    """Such as `ultrasonic_mm > 80`; of samples each is looked at."""
+    gap_mm: tuple[Gap, Gap] | None = None
+    """The least and the largest distance of the robot's body from the nearest obstacle or wall."""
+    share: Share = 1.0
+
+    def __post_init__(self) -> None:
+        if not self.comparisons and self.gap_mm is None:
+            raise ConfigError("does not say what is kept", "give comparisons or gap_mm")
+        if self.gap_mm is not None and self.gap_mm[0] >= self.gap_mm[1]:
+            raise ConfigError(
+                f"must be from small to large, got {self.gap_mm[0]:g} to {self.gap_mm[1]:g}",
+                key="gap_mm",
+            )
+        for number, text in enumerate(self.comparisons, start=1):
+            key = f"comparisons[{number}]"
+            if _comparison(text, key).is_momentary:
+                raise ConfigError(f"is only true at instants: {text!r}", comparison_form(), key=key)
+
+    @property
+    def conditions(self) -> tuple[ValueCondition, ...]:
+        """What the texts mean."""
+        return tuple(_comparison(text, "") for text in self.comparisons)
+
+
+@dataclass(frozen=True, slots=True)
+class CountCondition(Condition):
+    """Something happens a number of times: a comparison becomes true, or lines or samples are printed."""
+
+    KIND: ClassVar[ConditionKind] = ConditionKind.HELD
+
+    of: str
+    """Such as `print matches done`, `sample Grey` or `ultrasonic_mm < 100`."""
+    at_least: Times = 0
+    at_most: Times | None = None
+
+    def __post_init__(self) -> None:
+        _comparison(self.of, "of")
+        if not self.at_least and self.at_most is None:
+            raise ConfigError("does not say how often", "give at_least, at_most, or both")
+        if self.at_most is not None and self.at_most < self.at_least:
+            raise ConfigError(f"must be {self.at_least} or more, got {self.at_most}", key="at_most")
+
+    @property
+    def condition(self) -> ValueCondition:
+        """What the text means."""
+        return _comparison(self.of, "")
+
+
+@dataclass(frozen=True, slots=True)
+class StructureCondition(Condition):
+    """How the program's text is made."""
+
+    KIND: ClassVar[ConditionKind] = ConditionKind.FIXED
+    SHORT: ClassVar[str] = "comparisons"
+
+    comparisons: tuple[str, ...]
+    """Such as `loops >= 1` or `lines <= 30`."""
+
+    def __post_init__(self) -> None:
+        check_count(self.comparisons, "comparisons")
+        for number, text in enumerate(self.comparisons, start=1):
+            key, found = f"comparisons[{number}]", condition_in(text)
+            if found is None or found.operator not in COMPARE or not found.value.isdecimal():
+                raise ConfigError(
+                    f"no comparison: {text!r}", f"{comparison_form()}, such as loops >= 1", key=key
+                )
+            if found.name not in STRUCTURES:
+                raise ConfigError(
+                    f"nothing is counted as {found.name!r}",
+                    nearest(found.name, STRUCTURES),
+                    key=key,
+                )
+
+    @property
+    def conditions(self) -> tuple[ValueCondition, ...]:
+        """What the texts mean."""
+        return tuple(found for text in self.comparisons if (found := condition_in(text)))

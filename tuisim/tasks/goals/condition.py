@@ -1,0 +1,76 @@
+"""What every condition of a goal has: its kind, its limits, and the ranges of its values."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from enum import StrEnum
+from typing import Annotated, ClassVar
+
+from msgspec import Meta
+
+from tuisim.base.data_class import dataclass
+from tuisim.base.errors import ConfigError
+from tuisim.engine.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
+
+MAX_PLACES = 1000
+"""Largest number of places, levels, lines, calls or turns in one condition."""
+
+X = Annotated[float, Meta(ge=0, le=FIELD_WIDTH_MM)]
+Y = Annotated[float, Meta(ge=0, le=FIELD_HEIGHT_MM)]
+Heading = Annotated[float, Meta(ge=-36_000, le=36_000)]
+Tolerance = Annotated[float, Meta(ge=1, le=2000)]
+Share = Annotated[float, Meta(ge=0.01, le=1)]
+Percent = Annotated[float, Meta(ge=0, le=100)]
+Offset = Annotated[float, Meta(ge=-500, le=500)]
+Seconds = Annotated[float, Meta(ge=0, le=1e6)]
+Points = Annotated[float, Meta(ge=-1000, le=1000)]
+Gap = Annotated[float, Meta(ge=0, le=10_000)]
+Times = Annotated[int, Meta(ge=0, le=1_000_000)]
+Number = Annotated[float, Meta(ge=-1e15, le=1e15)]
+
+
+class UnjudgedError(Exception):
+    """Whether a condition is met cannot be said; its text is the reason, without the stop at its end."""
+
+
+class ConditionKind(StrEnum):
+    """When a condition is decided."""
+
+    REACHED = "reached"
+    """Met as soon as it is true once; missed if that never happens."""
+    HELD = "held"
+    """Missed as soon as it is violated; met if that never happens."""
+    FIXED = "fixed"
+    """Known from the program's text, before the run."""
+    COMBINED = "combined"
+    """Decided by other goals."""
+
+
+LIMITS: Mapping[ConditionKind, tuple[str, ...]] = {
+    ConditionKind.REACHED: ("before", "after"),
+    ConditionKind.HELD: ("after", "until"),
+    ConditionKind.FIXED: (),
+    ConditionKind.COMBINED: ("before",),
+}
+"""The limits that a condition of a kind can have."""
+WINDOWED = (ConditionKind.REACHED, ConditionKind.HELD)
+"""The kinds of conditions that can count for a while only, see `Goal.within_s`."""
+
+
+def check_count(found: tuple[object, ...], key: str) -> None:
+    """Check the number of entries in a list.
+
+    Raises:
+        ConfigError: there are none, or too many.
+    """
+    if not 1 <= len(found) <= MAX_PLACES:
+        raise ConfigError(f"must have 1 to {MAX_PLACES} entries, has {len(found)}", key=key)
+
+
+@dataclass(frozen=True, slots=True)
+class Condition:
+    """What is asked of a run."""
+
+    KIND: ClassVar[ConditionKind] = ConditionKind.REACHED
+    SHORT: ClassVar[str] = ""
+    """The key that is meant if a file gives a value instead of a table; its value may be one text instead of a list."""

@@ -1,0 +1,302 @@
+"""What a recording tells about a run, as arrays and rows, computed when a condition first asks for it."""
+
+from __future__ import annotations
+
+from bisect import bisect_left, bisect_right
+from collections.abc import Sequence
+from functools import cached_property
+from itertools import islice
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
+
+from tuisim.base.data_class import dataclass
+from tuisim.engine.core.conditions import Operator, ValueCondition, ValueSource
+from tuisim.engine.core.field import Field
+from tuisim.engine.core.profile import NS_PER_S
+from tuisim.engine.mat_cache import open_field
+from tuisim.engine.protocol import End, Ended, Unended, UserAction
+from tuisim.engine.runs.frames import column_values, held, tick_times_s
+from tuisim.engine.runs.readings import Readings, read_readings
+from tuisim.engine.runs.records import SAMPLE_STREAMS, OutputRow, Stream
+from tuisim.engine.runs.run_folder import StoredRun, open_mat
+from tuisim.engine.runs.samples import Sample, rows_when, samples_of
+from tuisim.engine.runs.side_files import read_actions
+from tuisim.tasks.goals.brick import (
+    BRICK_COLUMNS,
+    BRICK_STREAMS,
+    BRICK_TEXTS,
+    brick_column,
+    text_ticks,
+)
+from tuisim.tasks.goals.patterns import Search, build_search
+
+if TYPE_CHECKING:
+    import numpy as np
+
+    from tuisim.engine.runs.handle import RunHandle
+
+    Array = np.ndarray[Any, Any]
+
+MAX_ROWS = 200_000
+"""Later rows of output are not judged: a program that floods could fill the memory."""
+
+JudgedRun: TypeAlias = "StoredRun | RunHandle"
+"""A run to judge: a stored one, or one that may still be running."""
+
+
+class EvidencePoint(NamedTuple):
+    """An instant of a run: after a tick is complete (row -1), or when a row of output is written."""
+
+    tick: int
+    row: int = -1
+    """Index into `Evidence.rows`."""
+    time_s: float = -1.0
+    """The time of a moment that is defined by it; the row is then the first one after it."""
+
+
+START = EvidencePoint(-1, -1)
+"""Before everything that can happen."""
+
+
+@dataclass(frozen=True, slots=True)
+class EvidenceSpan:
+    """The part of a run in which a condition counts."""
+
+    first_tick: int
+    end_tick: int
+    """The tick after the last one."""
+    first_row: int
+    end_row: int
+    stop: EvidencePoint | None
+    """The limit that has been reached; None if there is none, or the run did not get there."""
+    over: bool
+    """Whether the run has ended and the span reaches to its end."""
+
+    @property
+    def ticks(self) -> slice:
+        """The ticks as a slice of the recording."""
+        return slice(self.first_tick, max(self.first_tick, self.end_tick))
+
+
+class Evidence:
+    """A recording as far as it has been written.
+
+    Args:
+        run: The run.
+        field: Its mat; None opens it when it is needed.
+    """
+
+    def __init__(self, run: JudgedRun, field: Field | None = None) -> None:
+        self._run, self._field = run, field
+        self.spec, self.program = run.spec, run.program
+        # Before the recording is read: what an ended run has recorded is complete.
+        if isinstance(run, StoredRun):
+            self.end: Ended | None = run.end
+            self.ended = run.end is not None or run.state is not Unended.RUNNING
+            self.answers = tuple(run.options.get("answers", ()))
+        else:
+            self.end = run.ended
+            self.ended = run.ended is not None
+            # Those that are known: what the user typed is only in the rows.
+            self.answers = run.answers
+        self.records: Array = run.telemetry.array()
+        self.memo: dict[str, Any] = {}
+        """What conditions have computed from it, and may need again."""
+
+    @cached_property
+    def falsified(self) -> str:
+        """What the program has falsified, as a sentence without its end; empty if its recording can be trusted."""
+        return self.end.summary if self.end is not None and self.end.end is End.FALSIFIED else ""
+
+    @property
+    def _actions(self) -> Sequence[UserAction]:
+        run = self._run
+        return run.actions if isinstance(run, StoredRun) else read_actions(run.folder)[0]
+
+    @cached_property
+    def times_s(self) -> Array:
+        """When each tick is due, shape (n,)."""
+        return tick_times_s(self.records, self.spec)
+
+    @cached_property
+    def rows(self) -> list[OutputRow]:
+        """The rows that the program printed or read, in order, up to `MAX_ROWS`."""
+        kept = (Stream.STDOUT, Stream.STDERR, Stream.INPUT, Stream.DATA)
+        return list(
+            islice((row for row in self._run.output.rows() if row.stream in kept), MAX_ROWS)
+        )
+
+    @cached_property
+    def readings(self) -> Readings:
+        """What the program has read.
+
+        Raises:
+            LogError: the record of it is missing or damaged.
+        """
+        return read_readings(self._run.folder, is_over=isinstance(self._run, StoredRun))
+
+    @cached_property
+    def samples(self) -> list[tuple[int, Sample]]:
+        """The samples, each with the index of its row."""
+        return [
+            (number, sample) for number, row in enumerate(self.rows) for sample in samples_of([row])
+        ]
+
+    def search(self, pattern: str) -> Search:
+        """Return the search for a regular expression in the lines that the program printed.
+
+        Raises:
+            UnjudgedError: it cannot be searched for.
+        """
+        key = f"search {pattern}"
+        if key not in self.memo:
+            self.memo[key] = build_search(pattern)
+        found: Search = self.memo[key]
+        return found
+
+    @cached_property
+    def brick_rows(self) -> list[OutputRow]:
+        """The rows of what the brick showed and played, in order, up to `MAX_ROWS`."""
+        return list(
+            islice(
+                (row for row in self._run.output.rows() if row.stream in BRICK_STREAMS), MAX_ROWS
+            )
+        )
+
+    def column(self, name: str) -> Array:
+        """Return a column of `columns_of` the run, or one of `BRICK_COLUMNS`, at every tick.
+
+        Raises:
+            LogError, ConfigError: the mat no longer exists, or its image has changed.
+        """
+        if name not in self.memo:
+            actions = self._actions
+            if name in BRICK_COLUMNS:
+                self.memo[name] = brick_column(name, len(self.records), self.brick_rows, actions)
+                return self.column(name)
+            self.memo |= column_values((name,), self.records, self._run, actions, self.mat)
+        found: Array = self.memo[name]
+        return found
+
+    def held(self, condition: ValueCondition) -> Array:
+        """Return whether a condition is true in each tick; one on printed lines is where such a line was printed.
+
+        Raises:
+            ValueError: what it compares with is no number.
+            UnjudgedError: its regular expression takes too long.
+            LogError, ConfigError: as `column`.
+        """
+        import numpy as np
+
+        if condition.operator is Operator.MATCHES and condition.name in BRICK_TEXTS:
+            return np.isin(np.arange(len(self.records)), text_ticks(condition, self.brick_rows))
+        if condition.source is ValueSource.COLUMN:
+            return held(condition, self.column(condition.name))
+        return np.isin(
+            np.arange(len(self.records)),
+            [self.rows[number].tick for number in self.rows_held(condition)],
+        )
+
+    def rows_held(self, condition: ValueCondition) -> list[int]:
+        """Return the indices of the rows of which a condition on printed lines is true.
+
+        Raises:
+            ValueError: what it compares with is no number.
+            UnjudgedError: its regular expression takes too long.
+        """
+        if condition.source is ValueSource.PRINT:
+            search = self.search(condition.value)
+            return [
+                number
+                for number, row in enumerate(self.rows)
+                if row.stream in SAMPLE_STREAMS and search(row.text)
+            ]
+        printed = [row for row in self.rows if row.stream in SAMPLE_STREAMS]
+        found = set(map(id, rows_when(condition, printed)))
+        return [number for number, row in enumerate(self.rows) if id(row) in found]
+
+    @cached_property
+    def mat(self) -> Field:
+        """The mat without the pen's marks.
+
+        Raises:
+            LogError, ConfigError: it no longer exists, or its image has changed.
+        """
+        if self._field is not None:
+            return self._field
+        if isinstance(self._run, StoredRun):
+            return open_mat(self._run)
+        return open_field(self._run.field, has_floor=self.spec.world.is_open)
+
+    @cached_property
+    def end_s(self) -> float:
+        """The time up to which the run is known."""
+        newest = float(self.times_s[-1]) if len(self.records) else 0.0
+        return max(newest, self.end.time_ns / NS_PER_S) if self.end else newest
+
+    @property
+    def last(self) -> EvidencePoint:
+        """The newest moment, after everything in the recording."""
+        return EvidencePoint(len(self.records) - 1, len(self.rows), self.end_s)
+
+    def at_time(self, time_s: float) -> EvidencePoint | None:
+        """Return the moment after everything up to a time; None if the recording does not go beyond that time."""
+        if time_s >= self.end_s:
+            return None
+        tick = bisect_right(self.times_s, time_s) - 1
+        row = bisect_right(self.rows, time_s * NS_PER_S, key=lambda row: row.time_ns)
+        return EvidencePoint(tick, row, time_s)
+
+    def before_time(self, time_s: float) -> EvidencePoint | None:
+        """Return the moment just before a time; None if the recording does not go that far."""
+        if time_s > self.end_s:
+            return None
+        tick = bisect_left(self.times_s, time_s) - 1
+        return EvidencePoint(
+            tick, bisect_left(self.rows, time_s * NS_PER_S, key=lambda row: row.time_ns) - 1
+        )
+
+    def span(self, start: EvidencePoint, stop: EvidencePoint | None) -> EvidenceSpan:
+        """Return the part of the run between two moments, both exclusive; None: as far as the recording goes."""
+        end = self.last if stop is None else stop
+        return EvidenceSpan(
+            first_tick=start.tick + 1,
+            end_tick=end.tick + (end.row >= 0),
+            first_row=self._row_after(start) if start.row < 0 else start.row + 1,
+            end_row=self._row_after(end) if end.row < 0 else end.row,
+            stop=stop,
+            over=stop is None and self.ended,
+        )
+
+    def _row_after(self, moment: EvidencePoint) -> int:
+        return (
+            bisect_left(self.rows, moment.tick, key=lambda row: row.tick) if moment.tick > 0 else 0
+        )
+
+    def time_s(self, moment: EvidencePoint) -> float:
+        """Return the simulated time of a moment."""
+        if moment.time_s >= 0:
+            return moment.time_s
+        if moment.row >= 0:
+            return self.rows[moment.row].time_ns / NS_PER_S
+        if not len(self.records):
+            return 0.0
+        return float(self.times_s[min(max(moment.tick, 0), len(self.records) - 1)])
+
+    def place_mm(self, tick: int) -> tuple[float, float]:
+        """Return where the robot is when a tick is complete."""
+        if not len(self.records):
+            return self.spec.world.start.x_mm, self.spec.world.start.y_mm
+        record = self.records[min(max(tick, 0), len(self.records) - 1)]
+        return float(record["x_mm"]), float(record["y_mm"])
+
+    def line(self, moment: EvidencePoint) -> int:
+        """Return the program's line at a moment; 0 if there is none."""
+        if moment.row >= 0 and moment.time_s < 0:
+            return self.rows[moment.row].line
+        if moment == self.last and self.end is not None and self.end.error_line:
+            return self.end.error_line
+        return int(self.records["line"][moment.tick]) if 0 <= moment.tick < len(self.records) else 0
+
+    def time_words(self, tick: int) -> str:
+        """Return the time of a tick for a sentence, such as `3.20 s`."""
+        return f"{float(self.times_s[tick]):.2f} s"

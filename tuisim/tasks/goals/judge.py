@@ -1,0 +1,305 @@
+"""Judges the goals of a task on the recording of a run, which may still be running."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from typing import Any, assert_never
+
+from tuisim.base.data_class import dataclass
+from tuisim.base.errors import ConfigError
+from tuisim.engine.core.field import Field
+from tuisim.programs.structure import fault_in
+from tuisim.tasks.goals import columns, output, pen_trace, places, program_text, readings
+from tuisim.tasks.goals.comparisons import (
+    CountCondition,
+    KeepCondition,
+    StructureCondition,
+    WhenCondition,
+)
+from tuisim.tasks.goals.condition import WINDOWED, Condition, ConditionKind, UnjudgedError
+from tuisim.tasks.goals.evidence import START, Evidence, EvidencePoint, EvidenceSpan, JudgedRun
+from tuisim.tasks.goals.found import Occurrence
+from tuisim.tasks.goals.judgement import Change, GoalState, Judgement
+from tuisim.tasks.goals.spec import (
+    AllOf,
+    AnyOf,
+    AvoidCondition,
+    DialogueCondition,
+    DrawCondition,
+    FinishCondition,
+    FollowCondition,
+    Goal,
+    InsideCondition,
+    LogCondition,
+    NoneOf,
+    OutsideCondition,
+    PassCondition,
+    PrintCondition,
+    ReachCondition,
+    ReadCondition,
+    TouchNothingCondition,
+    UseCondition,
+)
+
+Finder = Callable[[Any, Evidence, EvidenceSpan], Occurrence]
+
+FINDERS: Mapping[type, Finder] = {
+    ReachCondition: places.find_reach,
+    PassCondition: places.find_pass,
+    InsideCondition: places.find_left,
+    OutsideCondition: places.find_entered,
+    TouchNothingCondition: places.find_touch,
+    FollowCondition: readings.find_off_line,
+    DrawCondition: pen_trace.find_drawn,
+    PrintCondition: output.find_printed,
+    LogCondition: output.find_levels,
+    ReadCondition: readings.find_read,
+    WhenCondition: columns.find_when,
+    KeepCondition: columns.find_lapse,
+    CountCondition: columns.find_miscount,
+    DialogueCondition: output.find_dialogue,
+    FinishCondition: output.find_finish,
+    UseCondition: program_text.find_used,
+    AvoidCondition: program_text.find_avoided,
+    StructureCondition: program_text.find_structure,
+}
+"""Finds when a condition was reached or violated in a span of a run."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Outcome:
+    state: GoalState
+    moment: EvidencePoint = START
+    """When it was decided; meaningless while it is open."""
+    reason: str = ""
+    line: int | None = 0
+    """0: there is none; None: the line at the moment."""
+    happened: EvidencePoint | None = None
+    """When that happened which meets it; None: at the moment."""
+
+
+def judge(
+    goals: Sequence[Goal], run: JudgedRun, field: Field | None = None
+) -> tuple[Judgement, ...]:
+    """Judge goals on the recording of a run. Blocks while it is read, and unpacked if it is packed.
+
+    Args:
+        goals: Goals as `load_goals` returns them; their names are unique.
+        run: A stored run, or a running one, whose goals may still be open.
+        field: The mat of the run; None opens it if a goal needs it.
+
+    Returns:
+        One judgement for each goal, in their order.
+
+    Raises:
+        LogError: the recording is damaged, or the mat no longer exists.
+        ConfigError: a goal refers to one that is not among them.
+    """
+    import numpy as np
+
+    # Records of a damaged file may hold any numbers.
+    with np.errstate(all="ignore"):
+        judged = _Judge(goals, Evidence(run, field))
+        return tuple(judged.judgement(goal) for goal in goals)
+
+
+class _Judge:
+    def __init__(self, goals: Sequence[Goal], evidence: Evidence) -> None:
+        self._goals = {goal.name: goal for goal in goals}
+        self._evidence = evidence
+        self._outcomes: dict[str, _Outcome] = {}
+
+    def judgement(self, goal: Goal) -> Judgement:
+        outcome = self._outcome(goal.name)
+        if outcome.state is GoalState.OPEN:
+            return Judgement(goal, (), outcome.reason, self._line(outcome))
+        changes = (self._change(outcome.moment, outcome.state),)
+        happened = self._change(outcome.happened, outcome.state) if outcome.happened else None
+        return Judgement(goal, changes, outcome.reason, self._line(outcome), happened)
+
+    def _change(self, moment: EvidencePoint, state: GoalState) -> Change:
+        # What begins after the last tick is decided in it.
+        tick = max(0, min(moment.tick, self._evidence.last.tick))
+        return Change(tick, self._evidence.time_s(moment), state, *self._evidence.place_mm(tick))
+
+    def _line(self, outcome: _Outcome) -> int:
+        return self._evidence.line(outcome.moment) if outcome.line is None else outcome.line
+
+    def _outcome(self, name: str, if_missed: str = "") -> _Outcome:
+        """Return the outcome of a goal, if it is missed perhaps with another reason."""
+        if name not in self._goals:
+            raise ConfigError(f"there is no goal {name!r}")
+        if name not in self._outcomes:
+            self._outcomes[name] = self._judged(self._goals[name])
+        outcome = self._outcomes[name]
+        return (
+            replace(outcome, reason=if_missed)
+            if if_missed and outcome.state is GoalState.MISSED
+            else outcome
+        )
+
+    def _judged(self, goal: Goal) -> _Outcome:
+        if self._evidence.falsified:
+            # What is recorded may not have happened.
+            return _Outcome(
+                GoalState.MISSED, reason=f"It does not count: {self._evidence.falsified}."
+            )
+        if fault := fault_in(self._evidence.program.text):
+            return _Outcome(
+                GoalState.MISSED, reason=f"The program does not compile: {fault[0]}.", line=fault[1]
+            )
+        for name in (goal.before, goal.after, goal.until):
+            if isinstance(name, str) and self._outcome(name).state is GoalState.UNKNOWN:
+                return self._unknown(f"Whether “{name}” was met is not known.")
+        start = START
+        match goal.after:
+            case str(name):
+                first = self._outcome(name)
+                if first.state is GoalState.OPEN:
+                    return _Outcome(GoalState.OPEN, reason=f"“{name}” is not met yet.")
+                if first.state is GoalState.MISSED:
+                    return _Outcome(
+                        GoalState.MISSED, first.moment, f"“{name}” was not met.", first.line
+                    )
+                start = first.moment
+            case float() | int() as time_s:
+                moment = self._evidence.before_time(time_s)
+                if moment is None:
+                    return self._never(f"The program ended before {time_s:g} s.")
+                start = moment
+        outcomes = [self._part(part, goal, start) for part in goal.parts]
+        return outcomes[0] if len(outcomes) == 1 else _first_of(outcomes, GoalState.MISSED)
+
+    def _part(self, condition: Condition, goal: Goal, start: EvidencePoint) -> _Outcome:
+        """Return the outcome of one condition of a goal, which counts after a moment."""
+        if isinstance(condition, AllOf | AnyOf | NoneOf):
+            return self._combined(condition, goal)
+        stop = self._stop(goal, condition.KIND, start)
+        span = self._evidence.span(start, stop)
+        try:
+            found = FINDERS[type(condition)](condition, self._evidence, span)
+        except UnjudgedError as error:
+            return self._unknown(f"{error}.")
+        match condition.KIND:
+            case ConditionKind.REACHED:
+                return self._reached(goal, found, stop)
+            case ConditionKind.HELD:
+                return self._held(goal, found, stop)
+            case ConditionKind.FIXED:
+                state = GoalState.MET if found.moment is not None else GoalState.MISSED
+                return _Outcome(state, START, found.reason, found.line or 0)
+            case ConditionKind.COMBINED:
+                raise AssertionError(condition)
+            case _:
+                assert_never(condition.KIND)
+
+    def _stop(
+        self, goal: Goal, kind: ConditionKind, start: EvidencePoint = START
+    ) -> EvidencePoint | None:
+        """Return the moment that limits a goal's conditions of a kind, if it has come; `start` begins them."""
+        stops = []
+        for limit in (getattr(goal, limit) for limit in goal.limits(kind) if limit != "after"):
+            if isinstance(limit, str):
+                outcome = self._outcome(limit)
+                stops.append(outcome.moment if outcome.state is GoalState.MET else None)
+            else:
+                stops.append(self._evidence.at_time(limit))
+        if goal.within_s is not None and kind in WINDOWED:
+            stops.append(self._evidence.at_time(self._evidence.time_s(start) + goal.within_s))
+        return min((stop for stop in stops if stop is not None), default=None)
+
+    def _unknown(self, reason: str) -> _Outcome:
+        return _Outcome(GoalState.UNKNOWN, self._evidence.last, reason)
+
+    def _never(self, reason: str) -> _Outcome:
+        """Return the outcome of what has not happened: open, or missed if the run has ended."""
+        if not self._evidence.ended:
+            return _Outcome(GoalState.OPEN, reason="")
+        return _Outcome(GoalState.MISSED, self._evidence.last, reason)
+
+    def _reached(self, goal: Goal, found: Occurrence, stop: EvidencePoint | None) -> _Outcome:
+        if found.moment is not None:
+            return _Outcome(GoalState.MET, found.moment, line=found.line, happened=found.happened)
+        if stop is not None:
+            return _Outcome(GoalState.MISSED, stop, _too_late(goal, found.reason), found.line or 0)
+        if self._evidence.ended:
+            return _Outcome(GoalState.MISSED, self._evidence.last, found.reason, found.line or 0)
+        return _Outcome(GoalState.OPEN, reason=found.reason, line=found.line or 0)
+
+    def _held(self, goal: Goal, found: Occurrence, stop: EvidencePoint | None) -> _Outcome:
+        if found.moment is not None:
+            return _Outcome(GoalState.MISSED, found.moment, found.reason, found.line)
+        if stop is not None:
+            return _Outcome(GoalState.MET, stop, line=None)
+        if not self._evidence.ended:
+            return _Outcome(GoalState.OPEN, reason=found.reason, line=found.line or 0)
+        if isinstance(goal.until, str):
+            return _Outcome(GoalState.MISSED, self._evidence.last, f"“{goal.until}” was not met.")
+        return _Outcome(GoalState.MET, self._evidence.last, line=None)
+
+    def _combined(self, condition: AllOf | AnyOf | NoneOf, goal: Goal) -> _Outcome:
+        stop = self._stop(goal, condition.KIND)
+        if isinstance(condition, AllOf):
+            parts = [self._outcome(name, f"“{name}” was missed.") for name in condition.goals]
+            outcome = _first_of(parts, GoalState.MISSED)
+        elif isinstance(condition, NoneOf):
+            parts = [_inverted(name, self._outcome(name)) for name in condition.goals]
+            outcome = _first_of(parts, GoalState.MISSED)
+        else:
+            parts = [self._outcome(name, "None of its goals was met.") for name in condition.goals]
+            outcome = _first_of(parts, GoalState.MET)
+        if outcome.state is GoalState.UNKNOWN:
+            return outcome
+        if stop is not None and not (outcome.state is not GoalState.OPEN and outcome.moment < stop):
+            return _Outcome(GoalState.MISSED, stop, _too_late(goal, ""), self._line(outcome))
+        return outcome
+
+
+def _inverted(name: str, outcome: _Outcome) -> _Outcome:
+    """Return the outcome of not meeting a goal."""
+    match outcome.state:
+        case GoalState.MET:
+            return replace(
+                outcome, state=GoalState.MISSED, reason=f"“{name}” was met.", happened=None
+            )
+        case GoalState.MISSED:
+            return replace(outcome, state=GoalState.MET, reason="")
+        case GoalState.UNKNOWN:
+            return replace(outcome, reason=f"Whether “{name}” was met is not known.")
+        case GoalState.OPEN:
+            return outcome
+        case _:
+            assert_never(outcome.state)
+
+
+def _first_of(parts: Sequence[_Outcome], deciding: GoalState) -> _Outcome:
+    """Return the outcome of a combination: the first part with the deciding state, else the last one to be decided.
+
+    One that is open, or not known, leaves it so unless another one decides.
+    """
+    decided = [part for part in parts if part.state is deciding]
+    if decided:
+        return min(decided, key=lambda part: part.moment)
+    for state in (GoalState.OPEN, GoalState.UNKNOWN):
+        undecided = [part for part in parts if part.state is state]
+        if undecided:
+            return undecided[0]
+    return max(parts, key=lambda part: part.moment)
+
+
+def _too_late(goal: Goal, reason: str) -> str:
+    """Return the reason of a goal that was not met before its limit."""
+    if goal.before is None:
+        limit = f"within {goal.within_s:g} s"
+        return (
+            f"Not {limit}: {reason[:1].lower()}{reason[1:]}"
+            if reason
+            else f"It was not met {limit}."
+        )
+    limit = f"{goal.before:g} s" if isinstance(goal.before, float | int) else f"“{goal.before}”"
+    return (
+        f"Not before {limit}: {reason[:1].lower()}{reason[1:]}"
+        if reason
+        else f"It was not met before {limit}."
+    )

@@ -1,0 +1,92 @@
+"""How a run did on the goals of a task: states, when they changed, and why a goal is not met."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from enum import StrEnum
+
+from tuisim.base.data_class import dataclass
+from tuisim.tasks.goals.spec import Goal
+
+
+class GoalState(StrEnum):
+    """State of a goal at an instant of a run."""
+
+    OPEN = "open"
+    MET = "met"
+    MISSED = "missed"
+    UNKNOWN = "unknown"
+    """It cannot be judged; the program is not to blame."""
+
+
+@dataclass(frozen=True, slots=True)
+class Change:
+    """A change of a goal's state, and where the robot was then."""
+
+    tick: int
+    time_s: float
+    state: GoalState
+    x_mm: float
+    y_mm: float
+
+
+@dataclass(frozen=True, slots=True)
+class Judgement:
+    """How a run did on a goal."""
+
+    goal: Goal
+    changes: tuple[Change, ...]
+    """Empty while the goal is open; it is decided once."""
+    reason: str = ""
+    """Why it is not met, in one sentence; empty if it is met, and possibly while it is open."""
+    line: int = 0
+    """The program's line that the last change, or the reason, is about; 0 if there is none."""
+    happened: Change | None = None
+    """When and where that happened which meets it, if a later moment has decided; None: at its last change."""
+
+    @property
+    def state(self) -> GoalState:
+        """The state at the end of the recording."""
+        return self.changes[-1].state if self.changes else GoalState.OPEN
+
+    @property
+    def is_good(self) -> bool:
+        """Whether it is met, or not met if it takes points off."""
+        if self.state is GoalState.UNKNOWN:
+            return False
+        return (self.state is GoalState.MET) is (self.goal.points >= 0)
+
+    @property
+    def event(self) -> Change | None:
+        """When and where it was met or missed, for whoever reads of it; None while it is open."""
+        return self.happened or (self.changes[-1] if self.changes else None)
+
+    def at(self, tick: int) -> GoalState:
+        """Return the state when a tick was complete."""
+        known = [change.state for change in self.changes if change.tick <= tick]
+        return known[-1] if known else GoalState.OPEN
+
+
+def points(judgements: Iterable[Judgement]) -> float:
+    """Return the sum of the points of the goals that are met, never less than 0; NaN if one cannot be judged."""
+    counts = (GoalState.MET, GoalState.UNKNOWN)
+    return points_of(
+        math.nan if each.state is GoalState.UNKNOWN and each.goal.points else each.goal.points
+        for each in judgements
+        if each.state in counts
+    )
+
+
+def points_of(met: Iterable[float]) -> float:
+    """Return the sum of the points of goals that are met, some of which may be negative; never less than 0.
+
+    NaN stands for what is not known, and makes the sum NaN.
+    """
+    # In this order: the other one makes 0 of NaN.
+    return max(math.fsum(met), 0.0)
+
+
+def most_points(goals: Iterable[Goal]) -> float:
+    """Return the points of a run that meets every goal but those whose points are negative."""
+    return math.fsum(goal.points for goal in goals if goal.points > 0)

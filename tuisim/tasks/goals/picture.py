@@ -1,0 +1,171 @@
+"""The picture that a drawing is compared with: a set of square cells of the field.
+
+The cells are so small, compared with the tolerance, that their size does not matter, and so large that the comparison
+stays quick: their side is an eighth of the tolerance, but at least 1 mm.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from itertools import pairwise
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+from msgspec import Meta
+
+from tuisim.base.data_class import dataclass
+from tuisim.base.errors import ConfigError
+from tuisim.base.folders import user_path
+from tuisim.engine import mat_image
+from tuisim.engine.core.spec import BACKGROUND_FITS, FIELD_HEIGHT_MM, FIELD_WIDTH_MM
+from tuisim.tasks.goals.condition import MAX_PLACES, Share, X, Y
+from tuisim.tasks.goals.spec import DrawCondition
+
+if TYPE_CHECKING:
+    import numpy as np
+
+    Array = np.ndarray[Any, Any]
+
+_DARK = 128
+"""Pixels of an image that are darker on average belong to the picture."""
+_AT_ONCE = 4096
+"""Cells of a drawing that are compared in one step, which limits the memory."""
+
+
+@dataclass(frozen=True, slots=True)
+class PictureTable:
+    """The keys of the condition `draw` in a file: an image, or lines."""
+
+    within_mm: Annotated[float, Meta(ge=1, le=500)] = 15.0
+    share: Share = 0.9
+    image: str = ""
+    """A file; what is dark in it is the picture."""
+    fit: str = "stretch"
+    """How the image is placed on the field, as a mat."""
+    lines_mm: tuple[tuple[tuple[X, Y], ...], ...] = ()
+    """Lines of points that are joined, x and y of each."""
+
+    def __post_init__(self) -> None:
+        if bool(self.image) == bool(self.lines_mm):
+            raise ConfigError("needs a picture", "give image or lines_mm, not both")
+        if self.fit not in BACKGROUND_FITS:
+            raise ConfigError(
+                f"no such value {self.fit!r}", f"one of {', '.join(BACKGROUND_FITS)}", key="fit"
+            )
+        for number, line in enumerate(self.lines_mm, start=1):
+            if not 2 <= len(line) <= MAX_PLACES:
+                raise ConfigError(
+                    f"must have 2 to {MAX_PLACES} points, has {len(line)}",
+                    key=f"lines_mm[{number}]",
+                )
+
+
+def draw_from_table(table: PictureTable, folder: Path) -> DrawCondition:
+    """Return the condition with its picture; an image is read relative to a folder.
+
+    Raises:
+        ConfigError: the image cannot be read, or has nothing dark in it.
+    """
+    import numpy as np
+
+    if table.image:
+        path = folder / user_path(table.image)
+        points = _dark_points(path, table.fit)
+    else:
+        points = _points_of_lines(table.lines_mm, cell_mm(table.within_mm))
+    found = np.unique(_cell_numbers(points, table.within_mm))
+    return DrawCondition(found.astype("<i4").tobytes(), table.within_mm, table.share)
+
+
+def _dark_points(path: Path, fit: str) -> Array:
+    import numpy as np
+
+    pixels = mat_image.decode(mat_image.read_file(path), path, fit)
+    rows, cols = np.nonzero(pixels.mean(axis=2) < _DARK)
+    if not len(rows):
+        raise ConfigError("has no dark pixels", "a picture is dark on light", file=str(path))
+    return np.column_stack((cols + 0.5, FIELD_HEIGHT_MM - rows - 0.5))
+
+
+def _points_of_lines(lines: Sequence[Sequence[tuple[float, float]]], step_mm: float) -> Array:
+    import numpy as np
+
+    parts = []
+    for line in lines:
+        for (x0, y0), (x1, y1) in pairwise(line):
+            count = max(1, math.ceil(math.hypot(x1 - x0, y1 - y0) / step_mm))
+            parts.append(
+                np.column_stack((np.linspace(x0, x1, count + 1), np.linspace(y0, y1, count + 1)))
+            )
+    return np.concatenate(parts)
+
+
+def cell_mm(within_mm: float) -> float:
+    """Return the side of a cell for a tolerance."""
+    return max(1.0, within_mm / 8)
+
+
+def _grid(within_mm: float) -> tuple[int, int]:
+    """Return the number of columns and rows of cells."""
+    side = cell_mm(within_mm)
+    return math.ceil(FIELD_WIDTH_MM / side), math.ceil(FIELD_HEIGHT_MM / side)
+
+
+def _cell_numbers(points: Array, within_mm: float) -> Array:
+    import numpy as np
+
+    cols, rows = _grid(within_mm)
+    col, row = (np.floor(points / cell_mm(within_mm))).astype(np.int64).T
+    numbers: Array = np.clip(row, 0, rows - 1) * cols + np.clip(col, 0, cols - 1)
+    return numbers
+
+
+def cells(condition: DrawCondition) -> Array:
+    """Return the indices of the picture's cells, ascending, shape (n,)."""
+    import numpy as np
+
+    return np.frombuffer(condition.picture, "<i4")
+
+
+def centres_mm(numbers: Array, within_mm: float) -> Array:
+    """Return the centres of cells, shape (n, 2)."""
+    import numpy as np
+
+    cols, _ = _grid(within_mm)
+    return np.column_stack((numbers % cols + 0.5, numbers // cols + 0.5)) * cell_mm(within_mm)
+
+
+def compare(wanted: Array, points: Array, within_mm: float) -> tuple[Array, Array]:
+    """Compare a drawing with a picture.
+
+    Args:
+        wanted: Indices of the picture's cells, shape (n,).
+        points: Points of the drawing in mm, shape (m, 2); they may be off the field.
+        within_mm: How far they may be apart.
+
+    Returns:
+        Whether each cell of the picture has a point near it, shape (n,), and each point such a cell, shape (m,).
+    """
+    import numpy as np
+
+    side = cell_mm(within_mm)
+    reach = math.ceil(within_mm / side) + 1
+    # What is off the field lies in the inner half of the margin, what is near that in the outer half.
+    margin = 2 * reach
+    cols, rows = _grid(within_mm)
+    wide = cols + 2 * margin
+    col = np.clip(np.floor(points[:, 0] / side).astype(np.int64), -reach, cols + reach - 1) + margin
+    row = np.clip(np.floor(points[:, 1] / side).astype(np.int64), -reach, rows + reach - 1) + margin
+    drawn, which = np.unique(row * wide + col, return_inverse=True)
+    wanted = (wanted // cols + margin) * wide + wanted % cols + margin
+    picture, reached = (np.zeros(wide * (rows + 2 * margin), np.bool_) for _ in range(2))
+    picture[wanted] = True
+    near = np.zeros(len(drawn), np.bool_)
+    across, down = np.meshgrid(np.arange(-reach, reach + 1), np.arange(-reach, reach + 1))
+    around = (down * wide + across)[np.hypot(down, across) * side <= within_mm]
+    for start in range(0, len(drawn), _AT_ONCE):
+        there = drawn[start : start + _AT_ONCE, None] + around
+        near[start : start + _AT_ONCE] = picture[there].any(axis=1)
+        reached[there] = True
+    return reached[wanted], near[which]

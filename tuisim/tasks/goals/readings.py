@@ -1,0 +1,210 @@
+"""Conditions on what the sensors see, and on what the program reads."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+from tuisim.base.errors import counted
+from tuisim.engine.core.spec import FIELD_HEIGHT_MM, ColorSensorSpec
+from tuisim.engine.runs.readings import MODES_BY_KIND, find_ticks
+from tuisim.tasks.goals.condition import UnjudgedError
+from tuisim.tasks.goals.evidence import Evidence, EvidencePoint, EvidenceSpan
+from tuisim.tasks.goals.found import Occurrence, share_words
+from tuisim.tasks.goals.places import line_of_motion
+from tuisim.tasks.goals.spec import FollowCondition, Range, ReadCondition, Reading, place_of
+
+if TYPE_CHECKING:
+    import numpy as np
+
+    Array = np.ndarray[Any, Any]
+
+NOUNS: Mapping[Reading, str] = {
+    Reading.COLOR: "colour sensor",
+    Reading.ULTRASONIC: "ultrasonic sensor",
+    Reading.GYRO: "gyro",
+    Reading.MOTOR: "motors",
+}
+_MODES: Mapping[Reading, tuple[str, ...]] = {
+    Reading.COLOR: MODES_BY_KIND["color"],
+    Reading.ULTRASONIC: MODES_BY_KIND["ultrasonic"],
+    Reading.GYRO: MODES_BY_KIND["gyro"],
+    # Commands that wait for a motor read its state.
+    Reading.MOTOR: ("position", "speed"),
+}
+_ABOVE, _BELOW = 0.5, 1.0
+"""How far a printed level may be off the reading: programs round it, or cut off what is behind the point."""
+_NOISE_SHARE = 0.1
+"""The same for each percent of the light's noise."""
+
+
+def range_words(place: Mapping[str, Range]) -> str:
+    """Return ranges of `place_of` for a sentence."""
+    return " and ".join(
+        f"{key[0]} from {least:g} to {most:g} mm" for key, (least, most) in place.items()
+    )
+
+
+def read_ticks(reading: Reading, evidence: Evidence) -> Array:
+    """Return the tick of each such reading that the program took, in ascending order."""
+    return _readings(reading, evidence)[0]
+
+
+def _readings(reading: Reading, evidence: Evidence) -> tuple[Array, Array]:
+    """Return tick and source line of each such reading that the program took, in ascending order.
+
+    Raises:
+        UnjudgedError: they are not all recorded.
+    """
+    name = f"{reading} is read"
+    if name not in evidence.memo:
+        if evidence.readings.left_out:
+            raise UnjudgedError("The program read more often than a run records")
+        rows = evidence.readings.find(_MODES[reading])
+        ticks = find_ticks(rows, evidence.spec.profile.tick_hz)
+        count = int(ticks.searchsorted(len(evidence.records)))
+        evidence.memo[name] = ticks[:count], rows["line"][:count]
+    readings: tuple[Array, Array] = evidence.memo[name]
+    return readings
+
+
+def within(ticks: Array, place: Mapping[str, Range], evidence: Evidence) -> Array:
+    """Return those of some ticks at which the robot was in the ranges of `place_of`."""
+    for key, (least, most) in place.items():
+        values = evidence.records[key][ticks]
+        ticks = ticks[(values >= least) & (values <= most)]
+    return ticks
+
+
+def place_words(tick: int, place: Mapping[str, Range], evidence: Evidence) -> str:
+    """Return where the robot was at a tick along the axes of `place_of`, for a sentence."""
+    at = dict(zip(("x_mm", "y_mm"), evidence.place_mm(tick), strict=True))
+    return " and ".join(f"{key[0]} = {at[key]:.0f} mm" for key in place)
+
+
+def is_as_read(value: float, ticks: Array, evidence: Evidence) -> bool:
+    """Return whether a level of light is what a colour sensor gave in some of the ticks in which the program read it.
+
+    Args:
+        value: The level: of red or of all channels in percent, or of red from 0 to 255.
+        ticks: Some of `read_ticks`.
+        evidence: The recording.
+    """
+    import numpy as np
+
+    every = read_ticks(Reading.COLOR, evidence)
+    if "light as read" not in evidence.memo:
+        evidence.memo["light as read"] = _light(evidence.records[every], evidence)
+    scatter = _NOISE_SHARE * evidence.spec.world.noise.light
+    missing = evidence.memo["light as read"][:, np.isin(every, ticks)] - value
+    return bool(((missing >= -_ABOVE - scatter) & (missing <= _BELOW + scatter)).any())
+
+
+def _light(records: Array, evidence: Evidence) -> Array:
+    """Return the levels of light that each colour sensor would give without noise, shape (levels, ticks)."""
+    import numpy as np
+
+    from tuisim.engine.runs.sensor_arrays import quiet_color_columns
+
+    rows = []
+    for sensor in evidence.spec.robot.color_sensors:
+        channels = quiet_color_columns(records, sensor, evidence.spec, evidence.mat)
+        red, green, blue = (channel.astype("i8") for channel in channels.values())
+        rows += [red / 255 * 100, (red + green + blue) / 765 * 100, red]
+    return np.array(rows).reshape(len(rows), len(records))
+
+
+def find_read(condition: ReadCondition, evidence: Evidence, span: EvidenceSpan) -> Occurrence:
+    """Find when the program had taken enough readings."""
+    noun = NOUNS[condition.reading]
+    every, lines = _readings(condition.reading, evidence)
+    ticks = every[(every >= span.first_tick) & (every < span.end_tick)]
+    ticks = within(ticks, place := place_of(condition), evidence)
+    if len(ticks) >= condition.times:
+        tick = int(ticks[condition.times - 1])
+        return Occurrence(EvidencePoint(tick), line=int(lines[every.searchsorted(tick)]))
+    if not len(every):
+        return Occurrence(None, f"The program did not read the {noun}.")
+    where = f" at {range_words(place)}" if place else ""
+    when = " in that time" if span.first_tick else ""
+    times = counted(len(ticks), "time")
+    text = f"The program read the {noun} {times}{where}{when}; {condition.times:,} are needed."
+    return Occurrence(None, text, int(lines[0]))
+
+
+def find_off_line(condition: FollowCondition, evidence: Evidence, span: EvidenceSpan) -> Occurrence:
+    """Find out at the end of a span whether the robot was on a line for too small a share of the time."""
+    import numpy as np
+
+    named = {sensor.name: sensor for sensor in evidence.spec.robot.color_sensors}
+    unknown = [name for name in condition.sensors if name not in named]
+    if unknown:
+        known = ", ".join(named) or "none"
+        text = f"The robot has no colour sensor {unknown[0]}; it has: {known}."
+        return Occurrence(EvidencePoint(max(0, span.first_tick)), text, 0)
+    records = evidence.records[span.ticks]
+    if not len(records):
+        return Occurrence()
+    if condition.point_mm is not None:
+        on_line = _is_line(condition, _light_at_percent(records, *condition.point_mm, evidence))
+    else:
+        on_line = np.zeros(len(records), np.bool_)
+        for name in condition.sensors:
+            on_line |= _is_line(condition, _reflected_percent(records, named[name], evidence))
+    share = float(on_line.mean())
+    if share >= condition.share:
+        return Occurrence()
+    gap = _longest_gap(on_line)
+    lost = span.first_tick + gap
+    what = f"The sensor {' or '.join(condition.sensors)}" if condition.sensors else "The robot"
+    text = (
+        f"{what} was on the line for {share_words(share)} of the time, {share_words(condition.share)} are needed; it "
+        f"was off for longest from {evidence.time_words(lost)}."
+    )
+    decided = span.stop or (evidence.last if span.over else None)
+    return Occurrence(decided, text, line_of_motion(records, gap))
+
+
+def _light_at_percent(records: Array, x_mm: float, y_mm: float, evidence: Evidence) -> Array:
+    """Return the light of the mat's pixel under a point of the robot, at every tick; 0 where there is nothing."""
+    import numpy as np
+
+    mat = evidence.mat
+    from tuisim.engine.runs.arrays import world_points_mm
+
+    world_x_mm, world_y_mm = world_points_mm(records, x_mm, y_mm)
+    col, row = np.floor(world_x_mm), np.floor(FIELD_HEIGHT_MM - world_y_mm)
+    inside = (col >= 0) & (col < mat.width_px) & (row >= 0) & (row < mat.height_px)
+    pixels = np.frombuffer(mat.pixels, np.uint8).reshape(mat.height_px, mat.width_px, 3)
+    percent = np.full(len(records), mat.pixel(-1, -1)[0] / 255 * 100)
+    percent[inside] = pixels[row[inside].astype("i8"), col[inside].astype("i8"), 0] / 255 * 100
+    return percent
+
+
+def _reflected_percent(records: Array, sensor: ColorSensorSpec, evidence: Evidence) -> Array:
+    """Return what `reflected_light_intensity_pc` would be without noise, at every tick."""
+    from tuisim.engine.runs.sensor_arrays import quiet_color_columns
+
+    red, *_ = quiet_color_columns(records, sensor, evidence.spec, evidence.mat).values()
+    percent: Array = red.astype("i8") / 255 * 100
+    return percent
+
+
+def _is_line(condition: FollowCondition, percent: Array) -> Array:
+    import numpy as np
+
+    on_line = np.ones(len(percent), np.bool_)
+    if condition.darker_than is not None:
+        on_line &= percent < condition.darker_than
+    if condition.brighter_than is not None:
+        on_line &= percent > condition.brighter_than
+    return on_line
+
+
+def _longest_gap(on_line: Array) -> int:
+    """Return the index at which the longest time off the line begins."""
+    import numpy as np
+
+    edges = np.flatnonzero(np.diff(np.concatenate(([True], on_line, [True])).astype("i1")))
+    begins, ends = edges[::2], edges[1::2]
+    return int(begins[np.argmax(ends - begins)]) if len(begins) else 0

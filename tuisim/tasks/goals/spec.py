@@ -1,0 +1,477 @@
+"""Goals and their conditions as frozen data.
+
+To add a kind of condition: its class and a line in `CONDITIONS` here, and its function and a line in `FINDERS`,
+`tasks/goals/judge.py`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from enum import StrEnum
+from keyword import iskeyword
+from typing import Annotated, ClassVar
+
+from msgspec import Meta
+
+from tuisim.base.data_class import dataclass
+from tuisim.base.errors import ConfigError, require_regex
+from tuisim.engine.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
+from tuisim.tasks.goals.comparisons import (
+    CountCondition,
+    KeepCondition,
+    StructureCondition,
+    WhenCondition,
+)
+from tuisim.tasks.goals.condition import (
+    LIMITS,
+    Condition,
+    ConditionKind,
+    Heading,
+    Number,
+    Offset,
+    Percent,
+    Seconds,
+    Share,
+    Tolerance,
+    X,
+    Y,
+    check_count,
+)
+
+MAX_GOALS = 200
+
+
+class BodyPart(StrEnum):
+    """What of the robot must be in or out of an area."""
+
+    CENTRE = "centre"
+    """The midpoint between its wheels."""
+    BODY = "body"
+    """Its whole outline."""
+
+
+class Reading(StrEnum):
+    """What a program can read, by the kind of the sensor."""
+
+    COLOR = "color"
+    ULTRASONIC = "ultrasonic"
+    GYRO = "gyro"
+    MOTOR = "motor"
+
+
+Range = tuple[X, X]
+"""From where to where along x, or along y."""
+
+
+def _check_ranges(condition: PrintCondition | LogCondition | ReadCondition, wanted: int) -> None:
+    for key, way in (("x_mm", "left to right"), ("y_mm", "below to above")):
+        found: tuple[Range, ...] = getattr(condition, key)
+        for number, (least, most) in enumerate(found, start=1):
+            if least >= most:
+                raise ConfigError(
+                    f"must be from {way}, got {least:g} to {most:g}", key=f"{key}[{number}]"
+                )
+        if len(found) not in (0, 1, wanted):
+            raise ConfigError(f"must have one entry, or {wanted}, has {len(found)}", key=key)
+
+
+def place_of(
+    condition: PrintCondition | LogCondition | ReadCondition, count: int = 0
+) -> dict[str, Range]:
+    """Return where the robot must be for one of the lines or levels: ranges by `x_mm` and `y_mm`, as far as given."""
+    found = {key: getattr(condition, key) for key in ("x_mm", "y_mm")}
+    return {key: ranges[count if len(ranges) > 1 else 0] for key, ranges in found.items() if ranges}
+
+
+@dataclass(frozen=True, slots=True)
+class ReachCondition(Condition):
+    """The robot comes to a place, a heading, or both."""
+
+    x_mm: X | None = None
+    """None: any."""
+    y_mm: Y | None = None
+    heading_deg: Heading | None = None
+    """Counter-clockwise from +x; full turns do not matter."""
+    within_mm: Tolerance = 20.0
+    within_deg: Annotated[float, Meta(ge=0.1, le=180)] = 5.0
+    for_s: Seconds = 0.0
+    """How long it must stay there without a break."""
+    at_end: bool = False
+    """Whether it must be there when the run ends."""
+
+    def __post_init__(self) -> None:
+        if self.x_mm is None and self.y_mm is None and self.heading_deg is None:
+            raise ConfigError("names no place and no heading", "give x_mm, y_mm or heading_deg")
+        if self.at_end and self.for_s:
+            raise ConfigError("is given together with at_end", "give only one of them", key="for_s")
+
+
+@dataclass(frozen=True, slots=True)
+class AreaCondition(Condition):
+    """A part of the field: a rectangle from its lower left corner, or a circle around its centre."""
+
+    KIND: ClassVar[ConditionKind] = ConditionKind.HELD
+
+    x_mm: Annotated[float, Meta(ge=-10_000, le=10_000)]
+    y_mm: Annotated[float, Meta(ge=-10_000, le=10_000)]
+    width_mm: Annotated[float, Meta(ge=1, le=20_000)] | None = None
+    height_mm: Annotated[float, Meta(ge=1, le=20_000)] | None = None
+    radius_mm: Annotated[float, Meta(ge=1, le=20_000)] | None = None
+    part: BodyPart = BodyPart.CENTRE
+
+    def __post_init__(self) -> None:
+        if self.radius_mm is not None and (self.width_mm is not None or self.height_mm is not None):
+            raise ConfigError(
+                "is given together with width_mm or height_mm", "give only one", key="radius_mm"
+            )
+        if self.radius_mm is None and (self.width_mm is None or self.height_mm is None):
+            raise ConfigError("has no size", "give width_mm and height_mm, or radius_mm")
+        left, lower, right, upper = self.box_mm
+        if left >= FIELD_WIDTH_MM or right <= 0 or lower >= FIELD_HEIGHT_MM or upper <= 0:
+            raise ConfigError(
+                "is not on the field", f"the field is {FIELD_WIDTH_MM} × {FIELD_HEIGHT_MM} mm"
+            )
+
+    @property
+    def box_mm(self) -> tuple[float, float, float, float]:
+        """Left, lower, right and upper edge."""
+        if self.radius_mm is not None:
+            radius = self.radius_mm
+            return self.x_mm - radius, self.y_mm - radius, self.x_mm + radius, self.y_mm + radius
+        assert self.width_mm is not None and self.height_mm is not None
+        return self.x_mm, self.y_mm, self.x_mm + self.width_mm, self.y_mm + self.height_mm
+
+
+@dataclass(frozen=True, slots=True)
+class InsideCondition(AreaCondition):
+    """The robot stays inside an area."""
+
+
+@dataclass(frozen=True, slots=True)
+class OutsideCondition(AreaCondition):
+    """The robot stays out of an area."""
+
+    def __post_init__(self) -> None:
+        # `super()` without arguments does not find the class that `slots=True` makes.
+        AreaCondition.__post_init__(self)
+        left, lower, right, upper = self.box_mm
+        covers = left <= 0 and lower <= 0 and right >= FIELD_WIDTH_MM and upper >= FIELD_HEIGHT_MM
+        if covers and self.radius_mm is None:
+            raise ConfigError("covers the whole field", "no robot can stay out of it")
+
+
+@dataclass(frozen=True, slots=True)
+class TouchNothingCondition(Condition):
+    """The robot touches no obstacle and no wall; what it touches at the start counts once it has left it."""
+
+    KIND: ClassVar[ConditionKind] = ConditionKind.HELD
+
+    obstacles: bool = True
+    walls: bool = True
+    gap_mm: Annotated[float, Meta(ge=0, le=1000)] = 0.0
+    """The distance that it must keep."""
+
+    def __post_init__(self) -> None:
+        if not (self.obstacles or self.walls):
+            raise ConfigError("is about neither obstacles nor walls", "leave one of them at true")
+
+
+@dataclass(frozen=True, slots=True)
+class PassCondition(Condition):
+    """The robot passes places."""
+
+    SHORT: ClassVar[str] = "places_mm"
+
+    places_mm: tuple[tuple[X, Y], ...]
+    """x and y of each."""
+    within_mm: Tolerance = 20.0
+    in_order: bool = True
+
+    def __post_init__(self) -> None:
+        check_count(self.places_mm, "places_mm")
+
+
+@dataclass(frozen=True, slots=True)
+class FollowCondition(Condition):
+    """A part of the robot is on a line for a share of the time. Noise and the pen's marks do not count."""
+
+    KIND: ClassVar[ConditionKind] = ConditionKind.HELD
+    SHORT: ClassVar[str] = "sensors"
+
+    sensors: tuple[str, ...] = ()
+    """Names of colour sensors, such as `left`; one of them must be on the line."""
+    point_mm: tuple[Offset, Offset] | None = None
+    """Instead of sensors: a point of the robot, to the right and forward of the midpoint between its wheels."""
+    darker_than: Percent | None = None
+    """Reflected light below which it is on the line."""
+    brighter_than: Percent | None = None
+    share: Share = 0.9
+
+    def __post_init__(self) -> None:
+        if bool(self.sensors) == (self.point_mm is not None):
+            raise ConfigError(
+                "does not say what follows the line", "give sensors or point_mm, not both"
+            )
+        if self.darker_than is None and self.brighter_than is None:
+            raise ConfigError(
+                "does not describe the line", "give darker_than or brighter_than, in percent"
+            )
+
+
+@dataclass(frozen=True, slots=True)
+class DrawCondition(Condition):
+    """What the pen draws is near a picture: a share of the picture is drawn, and of the drawing lies on it."""
+
+    picture: bytes
+    """Indices of the picture's cells on the field, 32-bit integers in ascending order; see `tasks/goals/picture.py`."""
+    within_mm: float
+    share: float
+
+
+@dataclass(frozen=True, slots=True)
+class PrintCondition(Condition):
+    """The program prints lines."""
+
+    SHORT: ClassVar[str] = "lines"
+
+    lines: tuple[str, ...]
+    """Regular expressions, each searched for in single lines."""
+    in_order: bool = True
+    x_mm: tuple[Range, ...] = ()
+    """Where the robot must be when it prints them: one range for all lines, or one for each; empty for anywhere."""
+    y_mm: tuple[Range, ...] = ()
+    """The same along y."""
+    reading: Reading | None = None
+    """A kind of reading that must be taken since the line before."""
+    once: bool = False
+    """Whether the run must end without a further line that matches one of them, and no line may match several."""
+    still: bool = False
+    """Whether the robot must stand still when it prints them."""
+
+    def __post_init__(self) -> None:
+        check_count(self.lines, "lines")
+        _check_ranges(self, len(self.lines))
+        for number, pattern in enumerate(self.lines, start=1):
+            require_regex(pattern, f"lines[{number}]")
+
+
+@dataclass(frozen=True, slots=True)
+class LogCondition(Condition):
+    """The samples of a variable take levels."""
+
+    name: str
+    levels: tuple[Number, ...]
+    within: Annotated[float, Meta(ge=0, le=1e15)] = 0.5
+    in_order: bool = True
+    x_mm: tuple[Range, ...] = ()
+    """Where the robot must be when the value is read, or printed: one range, or one for each level; empty: anywhere."""
+    y_mm: tuple[Range, ...] = ()
+    """The same along y."""
+    reading: Reading | None = None
+    """A kind of reading that must be taken before the sample, where the robot must be."""
+    as_read: bool = False
+    """Whether the value must be one that a colour sensor gave where the program read it."""
+    counts: str = ""
+    """The name of other samples: the value must be how many of them were printed before; empty: any value."""
+    once: bool = False
+    """Whether the run must end without a further sample of the variable."""
+    apart_mm: Annotated[float, Meta(ge=0, le=1e6)] = 0.0
+    """How far the robot may go at most between two samples of the variable; 0: as far as it likes."""
+
+    def __post_init__(self) -> None:
+        if self.as_read and self.reading is not Reading.COLOR:
+            raise ConfigError(
+                "is only for readings of colour sensors", 'give reading = "color"', key="as_read"
+            )
+        check_count(self.levels, "levels")
+        _check_ranges(self, len(self.levels))
+        if not self.name.isidentifier():
+            raise ConfigError(
+                f"{self.name!r} cannot be the name of a sample", "such as Colour", key="name"
+            )
+
+
+@dataclass(frozen=True, slots=True)
+class ReadCondition(Condition):
+    """The program takes readings."""
+
+    reading: Reading
+    times: Annotated[int, Meta(ge=1, le=1_000_000)] = 1
+    x_mm: tuple[Range, ...] = ()
+    """Where the robot must be; empty for anywhere."""
+    y_mm: tuple[Range, ...] = ()
+    """The same along y."""
+
+    def __post_init__(self) -> None:
+        _check_ranges(self, 1)
+
+
+@dataclass(frozen=True, slots=True)
+class FinishCondition(Condition):
+    """The program finishes without an error."""
+
+
+@dataclass(frozen=True, slots=True)
+class CallsCondition(Condition):
+    """Calls in the program's text, such as `tank_drive.on_for_rotations` or `time.sleep`, also under other names."""
+
+    KIND: ClassVar[ConditionKind] = ConditionKind.FIXED
+    SHORT: ClassVar[str] = "calls"
+
+    calls: tuple[str, ...]
+
+    def __post_init__(self) -> None:
+        check_count(self.calls, "calls")
+        for number, call in enumerate(self.calls, start=1):
+            if not all(word.isidentifier() for word in call.removesuffix("()").split(".")):
+                hint = "a name such as tank_drive.on_for_rotations"
+                raise ConfigError(
+                    f"{call!r} is not the name of a call", hint, key=f"calls[{number}]"
+                )
+            if wrong := next(filter(iskeyword, call.removesuffix("()").split(".")), ""):
+                hint = "a function or method such as tank_drive.on_for_rotations; loops and definitions are no calls"
+                raise ConfigError(
+                    f"{wrong!r} is a keyword, which no program can call",
+                    hint,
+                    key=f"calls[{number}]",
+                )
+
+
+@dataclass(frozen=True, slots=True)
+class UseCondition(CallsCondition):
+    """The program uses each of the calls."""
+
+
+@dataclass(frozen=True, slots=True)
+class AvoidCondition(CallsCondition):
+    """The program uses none of the calls."""
+
+
+@dataclass(frozen=True, slots=True)
+class DialogueTurn:
+    """An answer to `input()`, and what the program prints next."""
+
+    answer: str
+    prompt: str = ""
+    """A regular expression for the prompt; empty for any."""
+    reply: str = ""
+    """A regular expression for a line printed before the next question; empty for none."""
+
+
+@dataclass(frozen=True, slots=True)
+class DialogueCondition(Condition):
+    """The program asks, is given answers, and replies."""
+
+    SHORT: ClassVar[str] = "turns"
+
+    turns: tuple[DialogueTurn, ...]
+
+    def __post_init__(self) -> None:
+        check_count(self.turns, "turns")
+        for number, turn in enumerate(self.turns, start=1):
+            require_regex(turn.prompt, f"turns[{number}].prompt")
+            require_regex(turn.reply, f"turns[{number}].reply")
+
+
+@dataclass(frozen=True, slots=True)
+class Combination(Condition):
+    """Other goals, by name."""
+
+    KIND: ClassVar[ConditionKind] = ConditionKind.COMBINED
+    SHORT: ClassVar[str] = "goals"
+
+    goals: tuple[str, ...]
+
+    def __post_init__(self) -> None:
+        check_count(self.goals, "goals")
+
+
+@dataclass(frozen=True, slots=True)
+class AllOf(Combination):
+    """All of the goals are met."""
+
+
+@dataclass(frozen=True, slots=True)
+class AnyOf(Combination):
+    """At least one of the goals is met."""
+
+
+@dataclass(frozen=True, slots=True)
+class NoneOf(Combination):
+    """None of the goals is met."""
+
+
+@dataclass(frozen=True, slots=True)
+class Together(Condition):
+    """Several conditions of one goal, which are all met; in a file, several keys of a goal."""
+
+    KIND: ClassVar[ConditionKind] = ConditionKind.COMBINED
+
+    conditions: tuple[Condition, ...]
+
+
+CONDITIONS: Mapping[str, type[Condition]] = {
+    "reach": ReachCondition,
+    "pass": PassCondition,
+    "inside": InsideCondition,
+    "outside": OutsideCondition,
+    "touch_nothing": TouchNothingCondition,
+    "follow": FollowCondition,
+    "draw": DrawCondition,
+    "print": PrintCondition,
+    "log": LogCondition,
+    "read": ReadCondition,
+    "when": WhenCondition,
+    "keep": KeepCondition,
+    "count": CountCondition,
+    "dialogue": DialogueCondition,
+    "finish": FinishCondition,
+    "use": UseCondition,
+    "avoid": AvoidCondition,
+    "structure": StructureCondition,
+    "all": AllOf,
+    "any": AnyOf,
+    "none": NoneOf,
+}
+"""The kinds of conditions by their key in a file."""
+
+
+@dataclass(frozen=True, slots=True)
+class Goal:
+    """One goal of a task. Times are simulated seconds."""
+
+    name: str
+    condition: Condition
+    say: str = ""
+    """The goal as a sentence for the student."""
+    points: float = 1.0
+    hint: str = ""
+    """Shown if the goal is missed."""
+    hidden: bool = False
+    """Whether no student is told of it."""
+    before: str | float | None = None
+    """A goal or a time: the condition must be reached before."""
+    after: str | float | None = None
+    """A goal or a time: only what happens later counts."""
+    until: str | float | None = None
+    """A goal, which must be met then, or a time: the condition must be held up to it."""
+    within_s: float | None = None
+    """How long it counts from its beginning: it must be reached within that time, or held for that time."""
+
+    @property
+    def needs(self) -> tuple[str, ...]:
+        """The names of the goals that this one refers to."""
+        named = [word for word in (self.before, self.after, self.until) if isinstance(word, str)]
+        combined = [part for part in self.parts if isinstance(part, Combination)]
+        return (*(name for part in combined for name in part.goals), *named)
+
+    @property
+    def parts(self) -> tuple[Condition, ...]:
+        """The conditions, usually one."""
+        return (
+            self.condition.conditions if isinstance(self.condition, Together) else (self.condition,)
+        )
+
+    def limits(self, kind: ConditionKind) -> tuple[str, ...]:
+        """Return which of `before`, `after` and `until` apply to its conditions of a kind."""
+        return tuple(limit for limit in LIMITS[kind] if getattr(self, limit) is not None)

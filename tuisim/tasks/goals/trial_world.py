@@ -1,0 +1,146 @@
+"""The worlds of a task, or of a step in a lesson: other ones are tables with keys of a world, `where`, and goals."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from tuisim.base.data_class import dataclass
+from tuisim.base.errors import ConfigError
+from tuisim.engine import files
+from tuisim.engine.files import Location
+from tuisim.settings.worlds import world_from_table
+from tuisim.tasks.goals.spec import DialogueCondition, Goal
+
+_OWN_KEYS = ("where", "goals", "goal")
+_WORLD_KEYS = (
+    "background",
+    "mats",
+    "start",
+    "robot",
+    "noise",
+    "drift",
+    "obstacles",
+    "obstacle",
+    "press",
+    "inputs",
+)
+_HIDDEN = "hidden"
+
+MAX_LESSON_WORLDS, MAX_TASK_WORLDS = 3, 20
+
+GoalReader = Callable[[object, Location, Path], tuple[Goal, ...]]
+"""Reads a list of goals; the files that they name are in a folder."""
+
+
+@dataclass(frozen=True, slots=True)
+class TrialWorld:
+    """A world in which a program is tried. In several, one that knows the first world by heart fails."""
+
+    where: str
+    """What is other than in the first one, for the student, such as `from 10 cm farther back`; empty for the first."""
+    settings: Mapping[str, Any]
+    """By path; of another world only what is other."""
+    goals: tuple[str, ...]
+    """Names of the goals to be met there."""
+    own_goals: tuple[Goal, ...] = ()
+    """Those of them that only this world has."""
+    inputs: tuple[str, ...] = ()
+    """The answers to `input()` there, if its goals have no dialogue."""
+    hidden: bool = False
+    """Whether no student is told what is there, and what happened there."""
+
+    @property
+    def answers(self) -> tuple[str, ...]:
+        """The answers to `input()`: those of the dialogues among its own goals, in their order, else its inputs."""
+        dialogues = (
+            part
+            for goal in self.own_goals
+            for part in goal.parts
+            if isinstance(part, DialogueCondition)
+        )
+        return (
+            tuple(turn.answer for dialogue in dialogues for turn in dialogue.turns) or self.inputs
+        )
+
+    def goals_among(self, goals: Sequence[Goal]) -> tuple[Goal, ...]:
+        """Return the goals that are judged there: those of the first world, which its own of the same name replace."""
+        own = {goal.name: goal for goal in self.own_goals}
+        return (*(own.pop(goal.name, goal) for goal in goals), *own.values())
+
+    def beside(self, first: TrialWorld) -> TrialWorld:
+        """Return another world with all that it has from the first one: settings, goals and inputs."""
+        return replace(
+            self,
+            settings={**first.settings, **self.settings},
+            own_goals=self.goals_among(first.own_goals),
+            inputs=self.inputs or first.inputs,
+        )
+
+
+def others_of(
+    data: object,
+    goals: tuple[str, ...],
+    at: Location,
+    path: Path,
+    read_goals: GoalReader,
+    *,
+    of_task: bool = False,
+) -> tuple[TrialWorld, ...]:
+    """Return the other worlds in a list of tables.
+
+    Args:
+        data: The list of tables.
+        goals: Names of the goals that count where a table names none: in a lesson, if it has none of its own, either.
+        at: The place of the list in the file.
+        path: The file, for the files that a world names.
+        read_goals: Reads the goals of a table.
+        of_task: Whether they are those of a task, which may be hidden, not of a lesson.
+
+    Raises:
+        ConfigError: one is wrong; the error names its key.
+    """
+    others: list[TrialWorld] = []
+    for entry, place in files.entries(
+        data, at, MAX_TASK_WORLDS if of_task else MAX_LESSON_WORLDS, "other worlds"
+    ):
+        found = files.table(
+            entry, place, (*_OWN_KEYS, *((_HIDDEN,) if of_task else ()), *_WORLD_KEYS)
+        )
+        where = files.convert(files.required(found, "where", place), str, place.at("where"))
+        if any(where == one.where for one in others):
+            raise place.at("where").wrong(f"there are two {where!r}", "say what is other in each")
+        own = read_goals(found["goal"], place.at("goal"), path.parent) if "goal" in found else ()
+        own_names = tuple(goal.name for goal in own)
+        named = files.convert(found.get("goals", []), tuple[str, ...], place.at("goals"))
+        usual = goals if of_task or not own else ()
+        wanted = tuple(dict.fromkeys((*(named or usual), *own_names)))
+        try:
+            world = world_from_table(
+                {key: found[key] for key in _WORLD_KEYS if key in found}, path, changes=True
+            )
+        except ConfigError as error:
+            # It names the key in the table, or another file.
+            if error.file != place.file:
+                raise
+            raise files.with_location(error, place.file, f"{place.key}.{error.key}") from None
+        if not (world.settings or world.inputs):
+            raise place.wrong("is the same world", f"one of {', '.join(_WORLD_KEYS)}")
+        is_hidden = files.convert(found.get(_HIDDEN, False), bool, place.at(_HIDDEN))
+        others.append(TrialWorld(where, world.settings, wanted, own, world.inputs, is_hidden))
+    return tuple(others)
+
+
+def check_names(names: Sequence[str], known: Collection[str], at: Location) -> None:
+    """Check the key `goals` of a table.
+
+    Raises:
+        ConfigError: one of the names is not known.
+    """
+    for number, name in enumerate(names, start=1):
+        if name not in known:
+            raise at.at(f"goals[{number}]").wrong(
+                f"there is no goal {name!r}", f"one of {', '.join(sorted(known))}"
+            )

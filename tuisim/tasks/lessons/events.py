@@ -1,0 +1,319 @@
+"""What a student has done and measured, and whether that passes the check of a step."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from typing import TypeAlias, assert_never
+
+from tuisim.base.data_class import dataclass
+from tuisim.engine.core.conditions import NUMBER
+from tuisim.tasks.lessons.spec import (
+    BreakCheck,
+    Check,
+    ExportCheck,
+    NoteCheck,
+    QuestionCheck,
+    RunCheck,
+    ShowCheck,
+    VisitCheck,
+    WatchCheck,
+)
+
+
+@dataclass(frozen=True, slots=True)
+class JudgedRun:
+    """A run has met goals; sent again as more of them are met."""
+
+    run_id: str
+    seed: int
+    met: frozenset[str]
+    """Names of the goals that it has met."""
+    from_start: bool = True
+    """Whether it began in the lesson's world, at its start."""
+
+
+@dataclass(frozen=True, slots=True)
+class TriedElsewhere:
+    """The program of a run was tried in another world."""
+
+    run_id: str
+    where: str
+    """Which of the other worlds of the step, see `TrialWorld.where`."""
+    met: frozenset[str]
+    """Names of the goals that it has met."""
+
+
+@dataclass(frozen=True, slots=True)
+class Typed:
+    """An answer was typed. Unless it is said, everything that the question needs has happened."""
+
+    text: str
+    x_mm: float | None = None
+    """Where the robot stood; None: where the question needs it."""
+    seen: frozenset[str] | None = None
+    """The panels that were on the screen since the step began; None: those that the question needs."""
+    printed: tuple[str, ...] | None = None
+    """The lines of the run in view; none without one. None: those that the question needs."""
+    has_run: bool = True
+    """Whether a run was in view."""
+
+
+@dataclass(frozen=True, slots=True)
+class ExpressionWatched:
+    """A paused program has shown the value of a watch."""
+
+    expression: str
+
+
+@dataclass(frozen=True, slots=True)
+class BreakMet:
+    """A run has stopped at a breakpoint."""
+
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class Exported:
+    """A log was written to a file."""
+
+    name: str
+
+
+@dataclass(frozen=True, slots=True)
+class Noted:
+    """The run in view has a note."""
+
+    text: str
+    level: float | None = None
+    """The mean of the samples that it is about; None if there are none."""
+
+
+@dataclass(frozen=True, slots=True)
+class Visited:
+    """A past instant is in view."""
+
+    time_s: float
+
+
+@dataclass(frozen=True, slots=True)
+class Shown:
+    """A panel is on the screen."""
+
+    panel: str
+    paused: bool = True
+    """Whether a program was paused at that moment."""
+
+
+Event: TypeAlias = (
+    JudgedRun
+    | TriedElsewhere
+    | Typed
+    | ExpressionWatched
+    | BreakMet
+    | Exported
+    | Noted
+    | Visited
+    | Shown
+)
+
+_NUMBER = re.compile(rf"(?:[^\d.,+-]*[^\w.,+-])?({NUMBER})\s*(?P<unit>[^\d.,]*)$")
+"""A number, such as in `x = 12.5 mm`."""
+_OTHER_LENGTHS = frozenset({"m", "dm", "cm", "in", "inch", "inches"})
+
+
+def is_met(check: Check, events: Sequence[Event]) -> bool:
+    """Return whether what a student has done since a step began passes its check."""
+    match check:
+        case RunCheck():
+            return good_runs(check, events) >= check.times
+        case QuestionCheck():
+            typed = [event for event in events if isinstance(event, Typed)]
+            return any(is_right(check, event.text) and not unready(check, event) for event in typed)
+        case WatchCheck(expression):
+            return any(
+                isinstance(event, ExpressionWatched) and _same(event.expression, expression)
+                for event in events
+            )
+        case BreakCheck(matches):
+            return any(
+                isinstance(event, BreakMet) and re.search(matches, event.text) for event in events
+            )
+        case ExportCheck(suffix):
+            return any(
+                isinstance(event, Exported) and event.name.endswith(suffix) for event in events
+            )
+        case NoteCheck():
+            return any(isinstance(event, Noted) and _is_noted(check, event) for event in events)
+        case VisitCheck(from_s, to_s):
+            return any(
+                isinstance(event, Visited) and from_s <= event.time_s <= to_s for event in events
+            )
+        case ShowCheck(panel, paused):
+            shown = (event for event in events if isinstance(event, Shown) and event.panel == panel)
+            return any(event.paused or not paused for event in shown)
+        case _:
+            assert_never(check)
+
+
+def good_runs(check: RunCheck, events: Sequence[Event]) -> int:
+    """Return how many runs have passed a check so far."""
+    passed = {
+        (event.run_id, other.where)
+        for event in events
+        for other in check.also
+        if isinstance(event, TriedElsewhere)
+        and event.where == other.where
+        and set(other.goals) <= event.met
+    }
+    good = [
+        run
+        for run in met_by(check, events)
+        if all((run.run_id, other.where) in passed for other in check.also)
+    ]
+    return len({run.seed for run in good} if check.seeds else {run.run_id for run in good})
+
+
+def met_by(check: RunCheck, events: Sequence[Event]) -> list[JudgedRun]:
+    """Return the runs that have met the goals of a check, whatever their programs do in other worlds."""
+    runs = [event for event in events if isinstance(event, JudgedRun)]
+    return [
+        run for run in runs if set(check.goals) <= run.met and (run.from_start or check.anywhere)
+    ]
+
+
+def is_right(question: QuestionCheck, text: str) -> bool:
+    """Return whether a typed text answers a question. A number may have a unit; a choice may be given by its number."""
+    match question.answer:
+        case int() | float() as wanted:
+            found = _number(text)
+            return found is not None and abs(found - wanted) <= question.within + 1e-9
+        case str() as wanted:
+            return _same(_chosen(question, text), wanted)
+        case several:
+            return any(_same(text, wanted) for wanted in several)
+
+
+def unready(question: QuestionCheck, event: Typed) -> str:
+    """Return in a sentence what must happen before an answer counts; empty if that has happened."""
+    if question.run and not event.has_run:
+        return "Run the program first: the question is about its run."
+    if event.printed is not None and not any(
+        re.search(question.printed, line) for line in ("", *event.printed)
+    ):
+        return "The run in view has not printed that: do what the step says, and run again."
+    if event.seen is not None and question.seen and not event.seen & set(question.seen):
+        return f"Look first: {' or '.join(view.capitalize() for view in question.seen)} shows it."
+    places, x_mm = question.at_x_mm, event.x_mm
+    if x_mm is not None and places and not any(left <= x_mm <= right for left, right in places):
+        return f"The robot is at x = {x_mm:.0f} mm. The question is about {question.where}."
+    return ""
+
+
+def wanted_form(question: QuestionCheck, text: str) -> str:
+    """Return in words what form an answer must have; empty if the text has it."""
+    if isinstance(question.answer, int | float):
+        found = _NUMBER.match(text.replace(",", "."))
+        if found is None:
+            return "a number, such as 12.5"
+        is_other_length = found["unit"].strip() in _OTHER_LENGTHS and re.search(
+            r"\bmm\b", question.ask
+        )
+        return "the number in mm" if is_other_length else ""
+    if question.choices and not any(
+        _same(_chosen(question, text), choice) for choice in question.choices
+    ):
+        return f"the number of a choice, 1 to {len(question.choices)}"
+    return ""
+
+
+def _number(text: str) -> float | None:
+    """Return the number in a text, which may have a decimal comma and a unit; None if it has another form."""
+    found = _NUMBER.match(text.replace(",", "."))
+    return None if found is None else float(found[1])
+
+
+def _chosen(question: QuestionCheck, text: str) -> str:
+    number = text.strip().rstrip(".)")
+    if question.choices and number.isdecimal() and 1 <= int(number) <= len(question.choices):
+        return question.choices[int(number) - 1]
+    return text
+
+
+def _same(text: str, wanted: str) -> bool:
+    """Compare two texts without regard to case, spaces, quotes around them and a full stop at the end."""
+    return _plain(text) == _plain(wanted)
+
+
+def _plain(text: str) -> str:
+    return "".join(text.split()).casefold().strip("\"'`“”‘’.!")
+
+
+def _is_noted(check: NoteCheck, event: Noted) -> bool:
+    if check.level is not None and (
+        event.level is None or abs(event.level - check.level) > check.within
+    ):
+        return False
+    return re.search(check.matches, event.text, re.IGNORECASE) is not None
+
+
+def note_fault(check: NoteCheck, event: Noted) -> str:
+    """Return in a sentence why a note does not pass; empty if it does."""
+    if _is_noted(check, event):
+        return ""
+    note = f"Your note “{event.text}” is on"
+    if check.level is not None and event.level is None:
+        return f"{note} no samples: select a band first."
+    if (
+        check.level is not None
+        and event.level is not None
+        and abs(event.level - check.level) > check.within
+    ):
+        return f"{note} samples with a mean of {event.level:.1f}; this step is about those with {check.level:g}."
+    return f"{note} the right samples, but its text is not what the step asks for."
+
+
+def event_of(check: Check, text: str) -> Event:
+    """Return what a text in a lesson's file stands for: an answer, a breakpoint, an expression, a file name.
+
+    Raises:
+        ValueError: the check is about runs, or needs a number and the text is none.
+    """
+    match check:
+        case RunCheck():
+            raise ValueError("a check of runs takes a program")
+        case QuestionCheck():
+            return Typed(text)
+        case WatchCheck():
+            return ExpressionWatched(text)
+        case BreakCheck():
+            return BreakMet(text)
+        case ExportCheck():
+            return Exported(text)
+        case NoteCheck(level=level):
+            return Noted(text, level)
+        case VisitCheck():
+            return Visited(float(text))
+        case ShowCheck():
+            return Shown(text)
+        case _:
+            assert_never(check)
+
+
+def model_event(check: Check, model: str) -> Event:
+    """Return what passes a check that is not about runs; `model` is needed for breakpoints and notes.
+
+    Raises:
+        ValueError: as for `event_of`.
+    """
+    if model:
+        return event_of(check, model)
+    match check:
+        case QuestionCheck(answer=answer):
+            return Typed(answer[0] if isinstance(answer, tuple) else f"{answer}")
+        case WatchCheck(text) | ExportCheck(text) | ShowCheck(text):
+            return event_of(check, text)
+        case VisitCheck(from_s, to_s):
+            return Visited((from_s + to_s) / 2)
+        case _:
+            raise ValueError("needs a model")

@@ -1,0 +1,429 @@
+"""Lesson files: Markdown, after TOML between two lines `+++` with the world, the goals and the checks of the steps.
+
+Each section `## …` of the text is a step. Blocks of code that begin with three backticks and `python program`,
+`python answer` or `python wrong` are not part of the text: the program to complete, model answers, and programs that
+must not pass. `python wrong: no sensor` also says which wrong way the program goes.
+
+With the key `tells` a file is a telling of the lesson in another file, for another library. It has a text, programs and
+hints of its own. The world, the goals and the checks are those of the other lesson, except where it has the same keys
+itself. Goals and steps belong together by their `name`, other worlds by their `where`.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import field, replace
+from enum import StrEnum
+from pathlib import Path
+from typing import Any
+
+from tuisim.base.data_class import dataclass
+from tuisim.base.errors import ConfigError
+from tuisim.base.folders import user_path
+from tuisim.engine import files
+from tuisim.engine.core.values import shown
+from tuisim.engine.files import Location
+from tuisim.settings.worlds import WorldFile, world_from_table
+from tuisim.tasks.goals.files import goals_from_list, line_in_errors
+from tuisim.tasks.goals.trial_world import check_names, others_of
+from tuisim.tasks.lessons.events import event_of, is_met, model_event
+from tuisim.tasks.lessons.spec import (
+    CHECKS,
+    MAX_HINTS,
+    MAX_STEPS,
+    BreakCheck,
+    Check,
+    Lesson,
+    LessonStep,
+    NoteCheck,
+    RunCheck,
+    Way,
+    WrongProgram,
+)
+
+SUFFIX = ".md"
+TELLS = "tells"
+"""The key that names the file of the other lesson."""
+FENCE = "+++"
+MAX_MINUTES = 600
+MAX_WRONG = 20
+
+_LESSON_KEYS = ("title", "why", "minutes", "step")
+_STEP_KEYS = ("name", "hints", "why", "model", "wrong", "excludes")
+_NUMBERED = re.compile(r"^\d+[-_ ]+")
+_CODE_FENCE = re.compile(r"^(`{3,}|~{3,})\s*(.*?)\s*$")
+
+
+class Role(StrEnum):
+    """What a block of code is for."""
+
+    PROGRAM = "program"
+    ANSWER = "answer"
+    WRONG = "wrong"
+
+
+@dataclass(frozen=True, slots=True)
+class _Block:
+    role: Role
+    text: str
+    line: int
+    way: Way | None = None
+
+
+@dataclass(slots=True)
+class _Section:
+    """A part of the Markdown: the introduction, or a step."""
+
+    title: str
+    line: int
+    lines: list[str] = field(default_factory=list)
+    blocks: list[_Block] = field(default_factory=list)
+
+    @property
+    def text(self) -> str:
+        return "\n".join(self.lines).strip()
+
+    def of(self, role: Role) -> list[_Block]:
+        return [block for block in self.blocks if block.role is role]
+
+
+def name_of(path: Path) -> str:
+    """Return the name of a lesson from its file: without suffix, and without a number that only sorts it."""
+    return files.name_of(Path(_NUMBERED.sub("", path.name) or path.name))
+
+
+def load_lesson(path: Path | str) -> Lesson:
+    """Read a lesson.
+
+    Raises:
+        ConfigError: it cannot be read or is wrong; the error names file, line and key.
+    """
+    path = user_path(path)
+    if path.suffix.lower() != SUFFIX:
+        raise ConfigError(f"is not a {SUFFIX} file", "a lesson is Markdown", file=str(path))
+    return parse_lesson(_read(path), path)
+
+
+def _read(path: Path) -> str:
+    data = files.read_bytes(path, files.MAX_FILE_BYTES, ConfigError, "there is no such lesson")
+    if len(data) > files.MAX_FILE_BYTES:
+        raise ConfigError("is too large", f"at most {files.MAX_FILE_BYTES} bytes", file=str(path))
+    try:
+        return data.decode("utf-8-sig").replace("\r\n", "\n").replace("\r", "\n")
+    except UnicodeDecodeError as reason:
+        line = data.count(b"\n", 0, reason.start) + 1
+        raise ConfigError(
+            "is not UTF-8 text", "save it as UTF-8", file=f"{path}, line {line}"
+        ) from None
+
+
+def parse_lesson(text: str, path: Path) -> Lesson:
+    """Return the lesson in a text; `path` is its file, for errors, and for the files that it names.
+
+    Raises:
+        ConfigError: it is wrong; the error names file, line and key.
+    """
+    lines = text.split("\n")
+    front, end = _front(lines, path)
+    sections = _sections(lines, end + 1, path)
+    data = files.parse_toml(front, str(path), ConfigError)
+    with line_in_errors(path, front):
+        return _lesson(_with_told(data, path), sections, path)
+
+
+def _front(lines: Sequence[str], path: Path) -> tuple[str, int]:
+    """Return the TOML, and the index of the line that ends it."""
+    end = _end_of_front(lines, path)
+    # The line with `+++` becomes an empty one, so that the lines of the TOML keep their numbers.
+    return "\n".join(["", *lines[1:end]]), end
+
+
+def _with_told(data: Any, path: Path) -> Any:
+    """Return the TOML of a lesson; if it is a telling, together with that of the lesson that it tells."""
+    if TELLS not in data:
+        return data
+    at = Location(str(path)).at(TELLS)
+    other = path.parent / files.convert(data[TELLS], str, at)
+    told = files.parse_toml(_front(_read(other).split("\n"), other)[0], str(other), ConfigError)
+    if TELLS in told:
+        raise at.wrong(f"{other.name} is a telling, too", "name the lesson that it tells")
+    return merge_telling(told, data)
+
+
+def _end_of_front(lines: Sequence[str], path: Path) -> int:
+    """Return the index of the line that ends the TOML."""
+    if not lines or lines[0].strip() != FENCE:
+        raise ConfigError(
+            f"does not begin with {FENCE}",
+            f"TOML between two lines {FENCE}",
+            file=f"{path}, line 1",
+        )
+    for index, line in enumerate(lines[1:], start=1):
+        if line.strip() == FENCE:
+            return index
+    raise ConfigError(
+        f"there is no second line {FENCE}", "it ends the TOML", file=f"{path}, line {len(lines)}"
+    )
+
+
+def _sections(lines: Sequence[str], start: int, path: Path) -> list[_Section]:
+    """Cut the Markdown into the introduction and the steps, each with its blocks of code."""
+    sections = [_Section("", start + 1)]
+    number = start
+    while number < len(lines):
+        line = lines[number]
+        number += 1
+        if opened := _CODE_FENCE.match(line):
+            first, number = number, _end_of_block(lines, number, opened[1], path)
+            at = Location(f"{path}, line {first}")
+            info, _, way = opened[2].partition(":")
+            role = _role(info, at)
+            if role is None:
+                sections[-1].lines += lines[first - 1 : number]
+            else:
+                text = "\n".join(lines[first : number - 1]) + "\n"
+                sections[-1].blocks.append(_Block(role, text, first, _way(way.strip(), role, at)))
+        elif line.startswith("## "):
+            sections.append(_Section(line[3:].strip(), number))
+        else:
+            sections[-1].lines.append(line)
+    return sections
+
+
+def _end_of_block(lines: Sequence[str], start: int, fence: str, path: Path) -> int:
+    """Return the index after the line that ends a block of code."""
+    for index in range(start, len(lines)):
+        if lines[index].strip() == fence:
+            return index + 1
+    raise ConfigError(
+        "the block of code does not end", f"close it with {fence}", file=f"{path}, line {start}"
+    )
+
+
+def _role(info: str, at: Location) -> Role | None:
+    words = info.split()
+    if len(words) < 2:
+        return None
+    if words[0] != "python" or words[1] not in list(Role) or len(words) > 2:
+        allowed = ", ".join(f"python {role}" for role in Role)
+        raise at.wrong(f"no such block of code {shown(info)}", f"one of {allowed}; or only python")
+    return Role(words[1])
+
+
+def _way(word: str, role: Role, at: Location) -> Way | None:
+    """Return the wrong way that a block of code goes."""
+    if not word:
+        return None
+    if role is not Role.WRONG:
+        raise at.wrong("only a wrong program goes a wrong way", f"python {role}")
+    return files.convert(word, Way, at)
+
+
+def _lesson(data: Any, sections: Sequence[_Section], path: Path) -> Lesson:
+    at = Location(str(path))
+    texts = {
+        key: files.convert(files.required(data, key, at), str, at.at(key))
+        for key in ("title", "why")
+    }
+    minutes = files.convert(data.get("minutes", 10), int, at.at("minutes"))
+    if not 1 <= minutes <= MAX_MINUTES:
+        raise at.at("minutes").wrong(f"must be from 1 to {MAX_MINUTES}, got {minutes}")
+    world = _world(data, path)
+    goals = goals_from_list(data["goal"], at.at("goal"), path.parent) if "goal" in data else ()
+    steps = _steps(data, sections[1:], {goal.name for goal in goals}, at)
+    programs = [block for section in sections for block in section.of(Role.PROGRAM)]
+    if len(programs) > 1:
+        raise Location(f"{path}, line {programs[1].line}").wrong(
+            "there are two programs to complete", "give one"
+        )
+    program = programs[0].text if programs else ""
+    intro = sections[0].text
+    name = name_of(path)
+    return Lesson(
+        name,
+        path,
+        texts["title"],
+        texts["why"],
+        intro,
+        steps,
+        program,
+        goals,
+        minutes,
+        world.settings,
+    )
+
+
+def _world(data: dict[str, Any], path: Path) -> WorldFile:
+    """Return the world in the front matter."""
+    at = Location(str(path))
+    for key in ("program", "world", "arguments", "autorun"):
+        if key in data:
+            hint = "put it into a block ```python program" if key == "program" else "leave it out"
+            raise at.at(key).wrong("is not a key of a lesson", hint)
+    return world_from_table(
+        {key: value for key, value in data.items() if key not in _LESSON_KEYS}, path
+    )
+
+
+def _steps(
+    data: Any, sections: Sequence[_Section], goals: set[str], at: Location
+) -> tuple[LessonStep, ...]:
+    if not data.get("step"):
+        raise at.at("step").wrong("there are no steps", "begin each with a line [[step]]")
+    listed = files.entries(data["step"], at.at("step"), MAX_STEPS, "steps")
+    if len(listed) != len(sections):
+        where = Location(f"{at.file}, line {sections[-1].line}") if sections else at
+        raise where.wrong(
+            f"there are {len(listed)} steps [[step]], but {len(sections)} sections ## in the text"
+        )
+    steps: list[LessonStep] = []
+    for (entry, place), section in zip(listed, sections, strict=True):
+        step = _step(entry, section, place, at.file)
+        if any(step.name == other.name for other in steps):
+            raise place.at("name").wrong(
+                f"there are two steps {step.name!r}", "give each its own name"
+            )
+        _check_goals(step.check, goals, place)
+        steps.append(step)
+    return _with_answers(steps, at)
+
+
+def _step(data: object, section: _Section, at: Location, file: str) -> LessonStep:
+    found = files.table(data, at, (*_STEP_KEYS, *CHECKS))
+    name = files.convert(files.required(found, "name", at), str, at.at("name"))
+    kinds = [key for key in CHECKS if key in found]
+    if len(kinds) != 1:
+        named = f"has {len(kinds)} checks: {', '.join(kinds)}" if kinds else "has no check"
+        raise at.wrong(named, f"exactly one of {', '.join(CHECKS)}")
+    check = _check(CHECKS[kinds[0]], found[kinds[0]], at.at(kinds[0]), Path(file))
+    if not section.title:
+        raise Location(f"{file}, line {section.line}").wrong("the step has no title", "## TITLE")
+    answers = section.of(Role.ANSWER)
+    step = LessonStep(
+        name=name,
+        title=section.title,
+        text=section.text,
+        check=check,
+        line=section.line,
+        hints=_texts(found, "hints", at, MAX_HINTS),
+        why=files.convert(found["why"], str, at.at("why")) if "why" in found else "",
+        answer=answers[-1].text if answers else "",
+        model=files.convert(found.get("model", ""), str, at.at("model"))
+        if "model" in found
+        else "",
+        wrong=_texts(found, "wrong", at, MAX_WRONG),
+        wrong_programs=tuple(
+            WrongProgram(block.text, block.line, block.way) for block in section.of(Role.WRONG)
+        ),
+        excludes=_excludes(found.get("excludes", {}), at.at("excludes")),
+    )
+    if step.wrong_programs and not isinstance(check, RunCheck):
+        raise Location(f"{file}, line {step.wrong_programs[0].line}").wrong(
+            "this step does not run a program"
+        )
+    _check_models(step, at)
+    return step
+
+
+def _excludes(data: object, at: Location) -> dict[Way, str]:
+    found = files.table(data, at, tuple(Way))
+    return {Way(way): files.convert(reason, str, at.at(way)) for way, reason in found.items()}
+
+
+def _texts(found: Any, key: str, at: Location, most: int) -> tuple[str, ...]:
+    listed = files.entries(found.get(key, []), at.at(key), most, key)
+    return tuple(files.convert(text, str, place) for text, place in listed)
+
+
+def _check(kind: type[Check], data: object, at: Location, path: Path) -> Check:
+    if not isinstance(data, dict) and kind.SHORT:
+        data = {kind.SHORT: [data] if kind is RunCheck and isinstance(data, str) else data}
+    if kind is not RunCheck or not isinstance(data, dict) or "also" not in data:
+        return files.convert(data, kind, at)
+    run = files.convert({key: value for key, value in data.items() if key != "also"}, RunCheck, at)
+    return replace(
+        run, also=others_of(data["also"], run.goals, at.at("also"), path, goals_from_list)
+    )
+
+
+def _check_goals(check: Check, goals: set[str], at: Location) -> None:
+    if isinstance(check, RunCheck):
+        check_names(check.goals, goals, at.at("run"))
+        for number, other in enumerate(check.also, start=1):
+            place, own = at.at(f"run.also[{number}]"), {goal.name for goal in other.own_goals}
+            if twice := sorted(own & goals):
+                raise place.wrong(
+                    f"{twice[0]!r} is a goal of the lesson, too", "give it another name"
+                )
+            check_names(other.goals, goals | own, place)
+
+
+def _check_models(step: LessonStep, at: Location) -> None:
+    """Raise ConfigError if the model does not pass, or a wrong one does."""
+    if isinstance(step.check, RunCheck):
+        for key in ("model", "wrong"):
+            if getattr(step, key):
+                raise at.at(key).wrong(
+                    "is not for a step that runs a program", f"a block ```python {key}"
+                )
+        return
+    if not step.model and isinstance(step.check, BreakCheck | NoteCheck):
+        raise at.at("model").wrong("is missing", "give what a student would type")
+    for key, text in (
+        ("model", step.model),
+        *((f"wrong[{at_}]", one) for at_, one in enumerate(step.wrong, 1)),
+    ):
+        try:
+            event = model_event(step.check, text) if key == "model" else event_of(step.check, text)
+        except ValueError:
+            raise at.at(key).wrong(f"must be a number, got {shown(text)}") from None
+        if is_met(step.check, [event]) is not (key == "model"):
+            raise at.at(key).wrong(
+                f"{shown(text)} {'does not pass' if key == 'model' else 'passes'}"
+            )
+
+
+def _with_answers(steps: Sequence[LessonStep], at: Location) -> tuple[LessonStep, ...]:
+    """Give each step that runs a program its model answer: the next one in the text."""
+    answer, found = "", []
+    for step in reversed(steps):
+        answer = step.answer or answer
+        if isinstance(step.check, RunCheck) and not answer:
+            where = Location(f"{at.file}, line {step.line}")
+            raise where.wrong(
+                f"the step {step.name!r} has no model answer", "a block ```python answer"
+            )
+        found.append(
+            replace(step, answer=answer if isinstance(step.check, RunCheck) else step.answer)
+        )
+    return tuple(reversed(found))
+
+
+def told_name(lesson: str, library: str) -> str:
+    """Return the name of the telling of a lesson for a library."""
+    return f"{lesson}-{library}"
+
+
+def merge_telling(other: Any, own: Any) -> Any:
+    """Return values of TOML where those of the telling take precedence over those of the other lesson."""
+    match other, own:
+        case dict(), dict():
+            return {
+                **other,
+                **{
+                    key: merge_telling(other.get(key), value)
+                    for key, value in own.items()
+                    if key != TELLS
+                },
+            }
+        case [dict(), *_], [dict(), *_]:
+            named = {_table_name(table): table for table in own}
+            known = {_table_name(table) for table in other}
+            tables = [merge_telling(table, named.get(_table_name(table), {})) for table in other]
+            return tables + [table for table in own if _table_name(table) not in known]
+    return own
+
+
+def _table_name(table: Any) -> Any:
+    return str(table.get("name", table.get("where"))) if isinstance(table, dict) else ""

@@ -1,0 +1,163 @@
+"""Markdown as lines of styled text; cells of its tables break between words, and no word is cut."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Iterator, Sequence
+from typing import ClassVar
+
+from rich import box
+from rich.console import Console, ConsoleOptions, Group, RenderableType, RenderResult
+from rich.markdown import Markdown, MarkdownElement, TableElement
+from rich.measure import Measurement
+from rich.padding import Padding
+from rich.style import Style
+from rich.table import Table
+from rich.text import Text
+from rich.theme import Theme
+
+from tuisim.base import palette
+from tuisim.terminal.text_runs import Line, Run
+
+_GAP = 2
+"""Cells between two columns."""
+_INDENT = 2
+_PAIR = 2
+
+
+class WholeTable(TableElement):
+    """A table whose columns are as wide as their longest word at least.
+
+    Where there is no room for that, each row is a list: its first cell, and below it the others with their headings.
+    """
+
+    def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
+        headings = (
+            [cell.content.copy() for cell in self.header.row.cells]
+            if self.header and self.header.row
+            else []
+        )
+        rows = [[cell.content for cell in row.cells] for row in self.body.rows] if self.body else []
+        for heading in headings:
+            heading.stylize("markdown.table.header")
+        columns = [
+            _measured(console, options, column) for column in zip(headings, *rows, strict=False)
+        ]
+        widths = _widths(columns, options.max_width - _GAP * len(columns))
+        yield _as_list(headings, rows) if widths is None else _as_table(headings, rows, widths)
+
+
+def _measured(console: Console, options: ConsoleOptions, column: Sequence[Text]) -> Measurement:
+    """Return the cells of the longest word and of the longest text of a column."""
+    cells = [Measurement.get(console, options, text) for text in column]
+    return Measurement(max(one.minimum for one in cells), max(one.maximum for one in cells))
+
+
+def _widths(columns: Sequence[Measurement], room: int) -> list[int] | None:
+    """Return the widths of columns; None if their longest words have no room beside each other."""
+    least = sum(one.minimum for one in columns)
+    if least > room:
+        return None
+    wanted = sum(one.span for one in columns)
+    more = min(room - least, wanted)
+    return [one.minimum + (one.span * more // wanted if wanted else 0) for one in columns]
+
+
+def _as_table(
+    headings: Sequence[Text], rows: Sequence[Sequence[Text]], widths: Sequence[int]
+) -> Table:
+    made = Table(
+        box=box.SIMPLE,
+        pad_edge=False,
+        style="markdown.table.border",
+        show_edge=True,
+        collapse_padding=True,
+    )
+    for heading, width in zip(headings, widths, strict=True):
+        made.add_column(heading, width=width, overflow="fold")
+    for row in rows:
+        made.add_row(*row)
+    return made
+
+
+def _as_list(headings: Sequence[Text], rows: Sequence[Sequence[Text]]) -> Group:
+    def lines() -> Iterator[RenderableType]:
+        for row in rows:
+            yield Text("")
+            yield Text.assemble((row[0].plain, "bold")) if not row[0].spans else row[0]
+            for heading, cell in zip(headings[1:], row[1:], strict=False):
+                if cell.plain:
+                    # Of two columns, the second one needs no name.
+                    name = (heading, ": ") if len(headings) > _PAIR else ()
+                    yield Padding(Text.assemble(*name, cell, overflow="fold"), (0, 0, 0, _INDENT))
+
+    return Group(*lines())
+
+
+CODE = Style(color=palette.YELLOW)
+_THEME = Theme(
+    {
+        "markdown.code": CODE,
+        "markdown.code_block": CODE,
+        "markdown.strong": Style(color=palette.WHITE, bold=True),
+        "markdown.item.bullet": Style(color=palette.GREEN),
+        "markdown.item.number": Style(color=palette.GREEN),
+        "markdown.h2": Style(color=palette.BLUE, bold=True),
+        "markdown.h3": Style(bold=True),
+        "markdown.link": Style(color=palette.LINK),
+    }
+)
+PLAIN = Style(color=palette.INK)
+"""The style of a text that is nothing special."""
+
+
+class _Markdown(Markdown):
+    elements: ClassVar[dict[str, type[MarkdownElement]]] = {
+        **Markdown.elements,
+        "table_open": WholeTable,
+    }
+
+
+def markdown_lines(text: str, width: int) -> list[Line]:
+    """Return Markdown as lines of at most a number of columns; lists are indented, code is coloured.
+
+    Of several empty lines, as above and below code, there is one.
+    """
+    console = Console(
+        file=io.StringIO(),
+        width=max(10, width),
+        theme=_THEME,
+        force_terminal=True,
+        color_system="truecolor",
+    )
+    drawn = _Markdown(text, code_theme="ansi_dark", justify="left")
+    lines = console.render_lines(drawn, console.options.update(width=max(10, width)), pad=False)
+    found = [
+        _stripped([_run(segment.text, segment.style) for segment in line if segment.text])
+        for line in lines
+    ]
+    return [line for line, above in zip(found, [[], *found], strict=False) if line or above]
+
+
+def _run(text: str, style: Style | None) -> Run:
+    # Without background colours, which differ from those of the panel.
+    shown = (
+        (style or Style()) + Style(bgcolor="default")
+        if style and style.bgcolor
+        else style or Style()
+    )
+    return text, PLAIN + shown
+
+
+def _stripped(line: Line) -> Line:
+    while line and not line[-1][0].strip():
+        line.pop()
+    if line:
+        text, style = line[-1]
+        line[-1] = (text.rstrip(), style)
+    return line
+
+
+def plain_text(text: str, width: int = 80) -> str:
+    """Return Markdown as plain text."""
+    return "\n".join("".join(part for part, _ in line) for line in markdown_lines(text, width))

@@ -1,0 +1,180 @@
+"""The progress of the student: which steps are done or skipped, with tries and hints; kept in one JSON file."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import asdict, field, replace
+from datetime import UTC, datetime
+from enum import StrEnum
+from pathlib import Path
+from typing import Any
+
+from tuisim.base.atomic import make_private_folder, replacing
+from tuisim.base.data_class import dataclass
+from tuisim.base.errors import ConfigError, counted
+from tuisim.base.folders import home_folder
+from tuisim.base.regular_file import read_regular
+from tuisim.tasks.lessons.spec import Lesson
+
+FOLDER = "lessons"
+"""In the user's data folder: the progress, and the programs that the student has written."""
+_FILE = "progress.json"
+_MAX_BYTES = 4_000_000
+
+
+class StepState(StrEnum):
+    """How far a student is with a step."""
+
+    OPEN = "open"
+    DONE = "done"
+    SKIPPED = "skipped"
+
+
+@dataclass(frozen=True, slots=True)
+class StepProgress:
+    """What a student has done on one step."""
+
+    state: StepState = StepState.OPEN
+    at: str = ""
+    """When it was done or skipped, in ISO 8601; empty while it is open."""
+    tries: int = 0
+    """Wrong answers, and runs that did not pass."""
+    hints: int = 0
+    """Hints that were shown."""
+
+
+@dataclass(frozen=True, slots=True)
+class LessonProgress:
+    """What a student has done on one lesson."""
+
+    steps: Mapping[str, StepProgress] = field(default_factory=dict)
+    """By the name of the step."""
+    opened_at: str = ""
+    """When it was last opened, in ISO 8601; empty if never."""
+
+    def of(self, step: str) -> StepProgress:
+        """Return the progress on a step."""
+        return self.steps.get(step, StepProgress())
+
+    def with_step(self, step: str, **changes: Any) -> LessonProgress:
+        """Return the progress with changes to a step."""
+        return replace(self, steps={**self.steps, step: replace(self.of(step), **changes)})
+
+    def current(self, lesson: Lesson) -> int | None:
+        """Return the index of the first open step of a lesson; None if there is none."""
+        open_steps = (
+            at for at, step in enumerate(lesson.steps) if self.of(step.name).state is StepState.OPEN
+        )
+        return next(open_steps, None)
+
+    def done(self, lesson: Lesson) -> int:
+        """Return how many steps of a lesson are done."""
+        return sum(self.of(step.name).state is StepState.DONE for step in lesson.steps)
+
+    def words(self, lesson: Lesson) -> str:
+        """Return the progress on a lesson in words."""
+        done, count = self.done(lesson), len(lesson.steps)
+        if done == count:
+            return "done"
+        if self.current(lesson) is None:
+            return f"done, {counted(count - done, 'step')} skipped"
+        begun = any(self.of(step.name) != StepProgress() for step in lesson.steps)
+        return f"{done} of {count} steps" if begun or self.opened_at else "new"
+
+
+def now() -> str:
+    """Return the time in ISO 8601."""
+    return datetime.now(UTC).isoformat(timespec="seconds")
+
+
+def folder() -> Path:
+    """Return the folder with the progress and the student's programs; it may not exist yet."""
+    return home_folder() / FOLDER
+
+
+def load_progress() -> dict[str, LessonProgress]:
+    """Return the progress by the name of the lesson; empty if there is none yet.
+
+    Raises:
+        ConfigError: the file is damaged.
+    """
+    path = folder() / _FILE
+    try:
+        text = read_regular(path, _MAX_BYTES, follow_links=True)
+    except FileNotFoundError:
+        return {}
+    except OSError as error:
+        raise ConfigError(f"cannot be read: {error.strerror or error}", file=str(path)) from None
+    try:
+        return {name: _lesson(entry) for name, entry in json.loads(text).items()}
+    except (ValueError, TypeError, KeyError, AttributeError, OverflowError, RecursionError):
+        raise ConfigError(
+            "is damaged", "delete it to begin all lessons anew", file=str(path)
+        ) from None
+
+
+def _lesson(data: Mapping[str, Any]) -> LessonProgress:
+    steps = {str(name): _step(entry) for name, entry in data["steps"].items()}
+    return LessonProgress(steps, str(data.get("opened_at", "")))
+
+
+def _step(data: Mapping[str, Any]) -> StepProgress:
+    return StepProgress(
+        StepState(data["state"]), str(data["at"]), int(data["tries"]), int(data["hints"])
+    )
+
+
+def save_progress(lesson: str, progress: LessonProgress) -> None:
+    """Store the progress on one lesson; that on others is read again, since another app may have changed it.
+
+    Raises:
+        ConfigError: the file is damaged or cannot be written.
+    """
+    every = {**load_progress(), lesson: progress}
+    path = folder() / _FILE
+    text = json.dumps(
+        {name: asdict(one) for name, one in every.items()}, indent=1, ensure_ascii=False
+    )
+    try:
+        make_private_folder(path.parent)
+        with replacing(path, owner_only=True) as file:
+            file.write(text.encode() + b"\n")
+    except OSError as error:
+        raise ConfigError(
+            f"progress cannot be saved: {error.strerror or error}", file=str(path)
+        ) from None
+
+
+def last_opened(progress: Mapping[str, LessonProgress]) -> str:
+    """Return the name of the lesson that was opened last; empty if none was."""
+    opened = [(one.opened_at, name) for name, one in progress.items() if one.opened_at]
+    return max(opened)[1] if opened else ""
+
+
+def program_path(lesson: Lesson) -> Path:
+    """Return the file with the student's program of a lesson; it may not exist yet."""
+    return folder() / f"{lesson.name}.py"
+
+
+def prepare_program(lesson: Lesson, anew: bool = False) -> Path:
+    """Return the student's program of a lesson; the first time it is the lesson's program to complete.
+
+    Args:
+        anew: Begin with the lesson's program again; the student's one is kept as `NAME.old.py`.
+
+    Raises:
+        ConfigError: it cannot be written.
+    """
+    path = program_path(lesson)
+    try:
+        if path.exists() and not anew:
+            return path
+        make_private_folder(path.parent)
+        if path.exists():
+            path.replace(path.with_suffix(".old.py"))
+        with replacing(path, owner_only=True) as file:
+            file.write(lesson.program.encode())
+    except OSError as error:
+        raise ConfigError(f"cannot be written: {error.strerror or error}", file=str(path)) from None
+    return path

@@ -1,0 +1,192 @@
+"""Tries a lesson out for its author: model answers must pass their steps, wrong programs must not."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+
+from tuisim.base.data_class import dataclass
+from tuisim.base.source import source_lines
+from tuisim.engine.runs.handle import RunOptions, start_run
+from tuisim.engine.runs.presses import press_actions
+from tuisim.engine.runs.recorded_run import Recording
+from tuisim.engine.runs.run_folder import StoredRun
+from tuisim.engine.runs.store import RunStore
+from tuisim.engine.runs.temporary import temporary_home
+from tuisim.programs.program_file import parse_program
+from tuisim.programs.program_settings import program_settings
+from tuisim.settings.build import build_run_spec
+from tuisim.settings.options import settings_of
+from tuisim.tasks.goals.judgement import GoalState, Judgement
+from tuisim.tasks.goals.trial_world import TrialWorld
+from tuisim.tasks.lessons.spec import Lesson, LessonStep, QuestionCheck, RunCheck, Way
+from tuisim.tasks.pool import run_many
+from tuisim.tasks.task import Result, Task
+
+TIME_LIMIT_S = 180.0
+"""Simulated seconds that a program of a lesson may take."""
+_Key = tuple[str, int, str]
+"""The text of a program, the seed, and which other world of the step it is; empty for the lesson's world."""
+
+
+@dataclass(frozen=True, slots=True)
+class Trial:
+    """A program that is tried on a step."""
+
+    step: LessonStep
+    text: str
+    line: int
+    """Where it begins in the lesson's file; 0 for the model answer."""
+    passes: bool
+    """Whether it must pass."""
+    seed: int
+    way: Way | None = None
+    """The wrong way that it goes, if it is said."""
+
+
+def trials(lesson: Lesson) -> list[Trial]:
+    """Return what has to be tried: each model answer as often as its step asks for, and each wrong program once."""
+    found = []
+    seed = build_run_spec(settings_of(lesson.settings)).seed
+    for step in lesson.steps:
+        if isinstance(step.check, RunCheck):
+            found += [
+                Trial(step, step.answer, 0, True, seed + more) for more in range(step.check.times)
+            ]
+            found += [
+                Trial(step, wrong.text, wrong.line, False, seed, wrong.way)
+                for wrong in step.wrong_programs
+            ]
+    return found
+
+
+def task_of(
+    lesson: Lesson, text: str, seed: int, index: int = 0, other: TrialWorld | None = None
+) -> Task:
+    """Return the run of a program in the world of a lesson, or in another world of a step, with a seed.
+
+    Raises:
+        ConfigError: its magic line, or the world, is wrong.
+    """
+    source = parse_program(text, f"{lesson.name}.py")
+    given = {**lesson.settings, **(other.settings if other else {})}
+    found = program_settings(source, given, {"seed": seed})
+    spec, goals = (
+        build_run_spec(found.settings),
+        (*lesson.goals, *(other.own_goals if other else ())),
+    )
+    actions = press_actions(found.settings["press"], spec.profile.tick_hz)
+    options = RunOptions(time_limit_s=TIME_LIMIT_S, actions=actions)
+    return Task(index, source.program, spec, options, goals)
+
+
+def tried_elsewhere(
+    lesson: Lesson, check: RunCheck, run: StoredRun
+) -> list[tuple[TrialWorld, tuple[Judgement, ...]]]:
+    """Try the program of a run in the other worlds of a check, and judge that; blocks meanwhile.
+
+    Raises:
+        ConfigError: the program's magic line is wrong there.
+    """
+    text, seed = run.program.text, run.spec.seed
+    tasks = [task_of(lesson, text, seed, index, other) for index, other in enumerate(check.also)]
+    return [(check.also[result.index], result.judgements) for result in run_many(tasks, jobs=1)]
+
+
+def model_run(lesson: Lesson, step: LessonStep | None) -> Recording:
+    """Run the model answer of a step, or else of the lesson, in the lesson's world; blocks meanwhile. It is not stored.
+
+    Raises:
+        TuisimError: it cannot run.
+    """
+    text = (step.answer if step else "") or lesson.model_answer
+    task = task_of(lesson, text, build_run_spec(settings_of(lesson.settings)).seed)
+    with temporary_home() as home:
+        handle = start_run(task.program, task.spec, task.options, RunStore(home))
+        try:
+            handle.wait()
+            run = handle.stored()
+            # Its folder goes.
+            for view in (run.telemetry, run.output):
+                view.read_on()
+                view.holds = True
+            return Recording(run, name="the model answer")
+        finally:
+            handle.close()
+
+
+def faults(lesson: Lesson) -> list[str]:
+    """Try a lesson out, and return what is wrong, each as a line; blocks while its programs run.
+
+    Raises:
+        ConfigError: a program's magic line, or the world, is wrong.
+    """
+    tried = trials(lesson)
+    tasks: dict[_Key, Task] = {}
+    for trial in tried:
+        for key, other in _worlds(trial):
+            if key not in tasks:
+                tasks[key] = task_of(lesson, trial.text, trial.seed, len(tasks), other)
+    keys = list(tasks)
+    results = {keys[result.index]: result for result in run_many(list(tasks.values()), jobs=1)}
+    return [fault for trial in tried for fault in _faults_of(lesson, trial, results)]
+
+
+def _worlds(trial: Trial) -> list[tuple[_Key, TrialWorld | None]]:
+    """Return the worlds in which a trial runs, each with its key; None for that of the lesson."""
+    check = trial.step.check
+    assert isinstance(check, RunCheck)
+    found = [
+        ((trial.text, trial.seed, f"{trial.step.name} {other.where}"), other)
+        for other in check.also
+    ]
+    return [((trial.text, trial.seed, ""), None), *found]
+
+
+def warnings(lesson: Lesson) -> list[str]:
+    """Return what a lesson lacks, each as a line: wrong ways that are not tried, and answers without a reason."""
+    found = []
+    for step in lesson.steps:
+        at = f"{lesson.path}, line {step.line}"
+        found += [
+            f"{at}: no wrong way “{way}” is tried on “{step.title}”, nor excluded"
+            for way in step.missing_ways()
+        ]
+        if isinstance(step.check, QuestionCheck | RunCheck) and not step.why:
+            found.append(f"{at}: no `why` says why what passes “{step.title}” is right")
+    return found
+
+
+def _faults_of(lesson: Lesson, trial: Trial, results: Mapping[_Key, Result]) -> Iterator[str]:
+    """Yield what is wrong with a trial."""
+    check = trial.step.check
+    assert isinstance(check, RunCheck)
+    tried = [(results[key], other) for key, other in _worlds(trial)]
+    missed = [
+        (result, _missed(other.goals if other else check.goals, result), other)
+        for result, other in tried
+    ]
+    result, reasons, other = next((one for one in missed if one[1]), missed[0])
+    if trial.passes and reasons:
+        error = (
+            f"; it ended with: {source_lines(result.error.strip())[-1]}"
+            if result.error.strip()
+            else ""
+        )
+        where = f" {other.where}" if other else ""
+        yield (
+            f"{lesson.path}, line {trial.step.line}: the model answer does not pass “{trial.step.title}”{where}: "
+            f"{'; '.join(reasons)}{error}"
+        )
+    elif not trial.passes and not reasons:
+        way = f" ({trial.way})" if trial.way else ""
+        yield f"{lesson.path}, line {trial.line}: this wrong program{way} passes “{trial.step.title}”"
+
+
+def _missed(goals: Sequence[str], result: Result) -> list[str]:
+    """Return which of some goals a run has missed, each with the reason."""
+    by_name = {each.goal.name: each for each in result.judgements}
+    return [
+        f"{name}: {by_name[name].reason}"
+        for name in goals
+        if by_name[name].state is not GoalState.MET
+    ]

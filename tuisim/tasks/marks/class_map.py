@@ -1,0 +1,89 @@
+"""Where on the mat a class missed its goals: one picture with a dot for each student and goal."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+
+from tuisim.analysis.pins import Dot, Picture, encode_picture
+from tuisim.base.data_class import dataclass
+from tuisim.base.errors import LogError, listed
+from tuisim.engine.mat_cache import mat_pixels
+from tuisim.engine.runs.run_folder import StoredRun, mat_files
+from tuisim.pictures.scene.pictures import world_picture, world_view
+from tuisim.pictures.scene.view import Viewport
+
+_DOT_PX = 5.0
+_GRID_MM = 4.0
+"""Places nearer than this share a dot."""
+
+
+@dataclass(frozen=True, slots=True)
+class Miss:
+    """Where a student's run missed a goal."""
+
+    student: str
+    goal: str
+    x_mm: float
+    y_mm: float
+    reason: str
+
+
+@dataclass(frozen=True, slots=True)
+class MissesOfRun:
+    """The misses of a stored run."""
+
+    run: StoredRun
+    misses: tuple[Miss, ...]
+
+    @property
+    def mat(self) -> str:
+        """The mat on which it was."""
+        return self.run.spec.world.background
+
+
+def build_class_maps(found: Sequence[MissesOfRun]) -> list[Picture]:
+    """Return a picture of each mat on which goals were missed; the mat with the most misses first.
+
+    A mat that can no longer be drawn is left out: the reports of its runs say why.
+    """
+    count = Counter[str]()
+    for one in found:
+        count[one.mat] += len(one.misses)
+    maps = [
+        _build_map([one for one in found if one.mat == mat])
+        for mat, number in count.most_common()
+        if number
+    ]
+    return [picture for picture in maps if picture is not None]
+
+
+def _build_map(found: Sequence[MissesOfRun]) -> Picture | None:
+    first, misses = found[0].run, [miss for one in found for miss in one.misses]
+    try:
+        picture = world_picture(first.spec, mat_pixels(mat_files(first)))
+    except LogError:
+        return None
+    students = {miss.student for miss in misses}
+    view = world_view(first.spec.robot)
+    return Picture(
+        f"Where goals were missed: {len(misses)} places of {len(students)} students; a dot tells whose it is",
+        encode_picture(picture),
+        picture.size,
+        view,
+        dots=_place_dots(view, misses),
+    )
+
+
+def _place_dots(view: Viewport, misses: Sequence[Miss]) -> tuple[Dot, ...]:
+    places: dict[tuple[str, int, int], list[Miss]] = {}
+    for miss in misses:
+        key = (miss.goal, round(miss.x_mm / _GRID_MM), round(miss.y_mm / _GRID_MM))
+        places.setdefault(key, []).append(miss)
+    dots = []
+    for same in places.values():
+        first = same[0]
+        x_px, y_px = view.to_px(first.x_mm, first.y_mm)
+        text = f"{first.goal}: {listed([miss.student for miss in same])}\n{first.reason}"
+        dots.append(Dot(x_px, y_px, _DOT_PX * len(same) ** 0.33, first.goal, text))
+    return tuple(dots)

@@ -1,0 +1,193 @@
+"""Programs of a class that resemble each other: shown to the tutor, never judged.
+
+The fingerprints are those of Schleimer, Wilkerson and Aiken, "Winnowing: Local Algorithms for Document Fingerprinting"
+(SIGMOD 2003), on which MOSS is built. Names, numbers and texts count as one token each, and comments and blank lines
+as none, so that a program resembles its copy with other names. What most of a class has in common says nothing and is
+left out, as are programs too short to be told apart.
+"""
+
+from __future__ import annotations
+
+import io
+import keyword
+import tokenize
+import zlib
+from collections import Counter, defaultdict
+from collections.abc import Collection, Mapping, Sequence
+from itertools import chain, combinations
+
+from tuisim.base.data_class import dataclass
+
+TOKENS = 10
+"""Length of the passages that are compared: shorter ones are found in any two programs."""
+WINDOW = 6
+"""Of so many passages in a row, one is a fingerprint: a common passage of `TOKENS + WINDOW - 1` tokens is found."""
+LEAST_TOKENS = 40
+"""Shorter programs are not compared: there are few ways to write them."""
+COMMON_SHARE, COMMON_LEAST = 0.25, 5
+"""A passage in more than this share of the programs, and in more than so many, is common to the class."""
+LEAST_SHARE = 0.6
+"""Pairs that share fewer of their fingerprints are left out."""
+LEAST_LINES = 5
+"""Nor those with fewer lines in common."""
+MOST_PAIRS = 60
+
+_SKIPPED = frozenset(
+    {
+        tokenize.COMMENT,
+        tokenize.NL,
+        tokenize.ENCODING,
+        tokenize.ENDMARKER,
+        tokenize.TYPE_COMMENT,
+    }
+)
+_ONE_TOKEN: Mapping[int, str] = {
+    tokenize.NUMBER: "0",
+    tokenize.STRING: '""',
+    tokenize.NEWLINE: "\n",
+    tokenize.INDENT: ">",
+    tokenize.DEDENT: "<",
+}
+_BLANK = frozenset({tokenize.NEWLINE, tokenize.INDENT, tokenize.DEDENT})
+
+
+@dataclass(frozen=True, slots=True)
+class SimilarPair:
+    """Two programs that share passages."""
+
+    names: tuple[str, str]
+    share: float
+    """Of the fingerprints of the one that has fewer, those that both have; 0 to 1."""
+    lines: int
+    """Number of the first one's lines in the shared passages."""
+
+
+@dataclass(frozen=True, slots=True)
+class SimilarGroup:
+    """Programs that differ at most in names, numbers, texts and comments."""
+
+    names: tuple[str, ...]
+    same: tuple[tuple[str, ...], ...]
+    """Those among them that are the same but for comments and blanks; the largest group first."""
+
+
+@dataclass(frozen=True, slots=True)
+class Similar:
+    """What resembles each other in a class."""
+
+    groups: tuple[SimilarGroup, ...]
+    """The largest first."""
+    pairs: tuple[SimilarPair, ...]
+    """Of one program of each group and all others, those that share much; the most alike first."""
+    compared: int
+    """Number of programs that were long enough."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Token:
+    """One token of a program."""
+
+    kind: str
+    """The same for all names, all numbers and all texts."""
+    text: str
+    line: int
+
+
+_Prints = Mapping[int, frozenset[int]]
+"""The fingerprints of one program: the lines of each."""
+
+
+def _tokens(text: str) -> list[_Token]:
+    """Return the tokens of a program, as far as Python can read it."""
+    found: list[_Token] = []
+    try:
+        for token in tokenize.generate_tokens(io.StringIO(text).readline):
+            if token.type in _SKIPPED:
+                continue
+            kind = _ONE_TOKEN.get(token.type, token.string)
+            if token.type == tokenize.NAME and not keyword.iskeyword(kind):
+                kind = "x"
+            word = kind if token.type in _BLANK else token.string
+            found.append(_Token(kind, word, token.start[0]))
+    except (tokenize.TokenError, SyntaxError):
+        pass
+    return found
+
+
+def _prints(tokens: Sequence[_Token]) -> _Prints:
+    """Return the fingerprints of a program: of each window the least hash, the rightmost of equal ones."""
+    kinds = [token.kind for token in tokens]
+    hashes = [
+        zlib.crc32("\0".join(kinds[at : at + TOKENS]).encode("utf-8", "surrogatepass"))
+        for at in range(len(kinds) - TOKENS + 1)
+    ]
+    chosen = {
+        min(range(at, at + WINDOW), key=lambda place: (hashes[place], -place))
+        for at in range(max(len(hashes) - WINDOW + 1, 0))
+    }
+    lines: dict[int, set[int]] = defaultdict(set)
+    for at in chosen:
+        lines[hashes[at]].update(token.line for token in tokens[at : at + TOKENS])
+    return {key: frozenset(found) for key, found in lines.items()}
+
+
+def similar(programs: Mapping[str, Sequence[str]], given: Collection[str] = ()) -> Similar:
+    """Return which programs resemble each other.
+
+    Args:
+        programs: The texts of the main program and its modules, by the student's name.
+        given: Texts that everybody was given, such as a skeleton: what is in them is left out.
+    """
+    tokens = {
+        name: found
+        for name, texts in programs.items()
+        if len(found := list(chain.from_iterable(map(_tokens, texts)))) >= LEAST_TOKENS
+    }
+    alike = _groups({name: tuple(token.kind for token in found) for name, found in tokens.items()})
+    words = {name: tuple(token.text for token in found) for name, found in tokens.items()}
+    groups = tuple(
+        SimilarGroup(
+            names,
+            tuple(same for same in _groups({name: words[name] for name in names}) if len(same) > 1),
+        )
+        for names in alike
+        if len(names) > 1
+    )
+    prints = {names[0]: _prints(tokens[names[0]]) for names in alike}
+    common = {key for text in given for key in _prints(_tokens(text))} | _common(prints)
+    return Similar(groups, _pairs(prints, common), len(tokens))
+
+
+def _groups(contents: Mapping[str, tuple[str, ...]]) -> list[tuple[str, ...]]:
+    """Return the names with equal contents, the largest group first."""
+    found: dict[tuple[str, ...], list[str]] = defaultdict(list)
+    for name, content in contents.items():
+        found[content].append(name)
+    return sorted(map(tuple, found.values()), key=lambda names: (-len(names), names))
+
+
+def _common(prints: Mapping[str, _Prints]) -> set[int]:
+    """Return the fingerprints that say nothing, because so many programs have them."""
+    count = Counter(key for one in prints.values() for key in one)
+    most = max(COMMON_LEAST, COMMON_SHARE * len(prints))
+    return {key for key, programs in count.items() if programs > most}
+
+
+def _pairs(prints: Mapping[str, _Prints], common: Collection[int]) -> tuple[SimilarPair, ...]:
+    own = {name: {key for key in one if key not in common} for name, one in prints.items()}
+    users: dict[int, list[str]] = defaultdict(list)
+    for name, keys in own.items():
+        for key in keys:
+            users[key].append(name)
+    both = Counter(pair for names in users.values() for pair in combinations(names, 2))
+    found = []
+    for (first, second), count in both.items():
+        share = count / min(len(own[first]), len(own[second]))
+        if share < LEAST_SHARE:
+            continue
+        lines = frozenset[int]().union(*(prints[first][key] for key in own[first] & own[second]))
+        if len(lines) >= LEAST_LINES:
+            found.append(SimilarPair((first, second), share, len(lines)))
+    return tuple(
+        sorted(found, key=lambda pair: (-pair.share, -pair.lines, pair.names))[:MOST_PAIRS]
+    )

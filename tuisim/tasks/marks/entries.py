@@ -1,0 +1,116 @@
+"""The entries of a marking: each student's program with the world in which it runs."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+from tuisim.base.errors import ConfigError, ProfileError, printable
+from tuisim.base.faults import describe_fault
+from tuisim.base.folders import backgrounds_folder
+from tuisim.base.regular_file import of_the_machine
+from tuisim.engine.core.spec import RunSpec
+from tuisim.engine.mat_image import decode, read_file
+from tuisim.engine.mats import background
+from tuisim.programs.program_file import ProgramSource
+from tuisim.programs.program_settings import ProgramSettings, program_settings
+from tuisim.settings.build import build_run_spec
+from tuisim.settings.options import names_world, settings_of
+from tuisim.tasks.goals.files import GoalsFile
+from tuisim.tasks.goals.trial_world import TrialWorld
+from tuisim.tasks.marks.runs import RunEntry
+from tuisim.tasks.marks.students import Student, file_outside
+
+
+def entries_of(
+    found: Sequence[Student], task: GoalsFile, given: Mapping[str, Any]
+) -> tuple[list[RunEntry], list[Student]]:
+    """Return the students whose programs can be run, and all students.
+
+    Args:
+        found: The students.
+        task: The task.
+        given: Settings that take precedence over those of the task, by path.
+
+    Raises:
+        ConfigError: the world of the goals, or an option, is wrong, or none of the programs can run by its profile.
+    """
+    for world in task.worlds:
+        build_run_spec(settings_of(world.settings, given))
+    names_profile = "profile" in {**task.settings, **given}
+    entries, students, misfits = [], [], []
+    for student in found:
+        if student.source:
+            try:
+                entries.append(_build_entry(student, student.source, task, given))
+                student = entries[-1].student
+            except ConfigError as error:
+                misfits += [error] if isinstance(error, ProfileError) and names_profile else []
+                cause = error.__cause__
+                is_unread = isinstance(cause, OSError) and of_the_machine(cause)
+                student = replace(
+                    student, source=None, problem=_told(error, student), is_unread=is_unread
+                )
+            except Exception as error:  # Whatever it is, the others go on.
+                student = replace(
+                    student, source=None, problem=describe_fault(error), is_unread=True
+                )
+        students.append(student)
+    if misfits and not entries:
+        raise misfits[0]
+    return entries, students
+
+
+def _build_entry(
+    student: Student, source: ProgramSource, task: GoalsFile, given: Mapping[str, Any]
+) -> RunEntry:
+    every = [_settings(student, world, given) for world in task.worlds]
+    specs = tuple(build_run_spec(own.settings) for own in every)
+    if not names_world(task.settings):
+        _check_background(specs[0])
+    decided = every[0].decided
+    program = replace(source.program, shown_ports=decided.shown_ports)
+    source = replace(source, program=program)
+    student = replace(student, source=source, refusal=decided.refusal)
+    return RunEntry(student, specs, tuple(own.settings["press"] for own in every))
+
+
+def _settings(student: Student, world: TrialWorld, given: Mapping[str, Any]) -> ProgramSettings:
+    """Return the settings of a student's program: in a world of the task if it is said, else in that of its magic line.
+
+    In a world of the task, the rules are those for the program's library where the goals name no others.
+
+    Raises:
+        ConfigError: the line, or a file that it names, is wrong.
+        ProfileError: a profile is named for another library.
+    """
+    assert student.source is not None
+    if names_world(world.settings):
+        bare = replace(student.source, options={})
+        return program_settings(bare, world.settings, given)
+    if outside := file_outside(student):
+        raise ConfigError("the first line names a file outside the folder", key=outside)
+    return program_settings(student.source, world.settings, given)
+
+
+def _check_background(spec: RunSpec) -> None:
+    """Read a picture of the student's own, to detect a damaged one before the runs.
+
+    Raises:
+        ConfigError: it is no picture, or it cannot be read.
+    """
+    image = background(spec.world.background).image
+    if not image.is_relative_to(backgrounds_folder()):
+        # A run for which it cannot be read is one that this machine could not make.
+        decode(read_file(image), image, spec.world.background_fit)
+
+
+def _told(error: ConfigError, student: Student) -> str:
+    """Return what is wrong, with the student's files named as they are in the folder."""
+    folder = student.path if student.path.is_dir() else student.path.parent
+    text = str(error)
+    for place in (os.path.abspath(folder), os.path.realpath(folder), str(folder)):
+        text = text.replace(f"{place}{os.sep}", "")
+    return printable(text)

@@ -1,0 +1,139 @@
+"""Files of students: copies have only regular files, without their holes; a zip is read as the folder that it is."""
+
+from __future__ import annotations
+
+import errno
+import os
+import shutil
+import stat
+import zipfile
+import zlib
+from contextlib import suppress
+from pathlib import Path, PurePosixPath
+from typing import BinaryIO
+
+from tuisim.base.errors import ConfigError, LogError
+from tuisim.base.regular_file import open_regular
+from tuisim.engine.runs.child.isolation import MOST_FILES
+from tuisim.engine.runs.removal import remove_tree
+
+LEFT_OUT = shutil.ignore_patterns(
+    *("__pycache__", "__MACOSX", "._*", ".DS_Store", ".git", ".venv", "venv", "node_modules")
+)
+"""What is no part of what a student has handed in."""
+_FULL = (errno.ENOSPC, errno.EDQUOT, errno.EROFS)
+"""Errors about the copy, not about the file."""
+_PIECE = 1 << 20
+_ODD_ZIP = (
+    zipfile.BadZipFile,
+    zlib.error,
+    EOFError,
+    OSError,
+    RuntimeError,
+    ValueError,
+)
+"""What damaged, encrypted and unusual zips raise."""
+
+
+def copy_tree(folder: Path, place: Path) -> None:
+    """Copy a folder's regular files and its links, as links, into a new folder; all copies are writable.
+
+    Files that cannot be read are left out, as the program could not read them either.
+
+    Raises:
+        LogError: the copy cannot be written.
+        OSError: likewise.
+    """
+    pending = [(folder, place)]
+    while pending:
+        source, target = pending.pop()
+        target.mkdir(exist_ok=True)
+        names = []
+        with suppress(OSError):
+            names = os.listdir(source)
+        for name in set(names) - LEFT_OUT(str(source), names):
+            path = source / name
+            mode = path.lstat().st_mode
+            if stat.S_ISLNK(mode):
+                os.symlink(os.readlink(path), target / name)
+            elif stat.S_ISDIR(mode):
+                pending.append((path, target / name))
+            elif stat.S_ISREG(mode):
+                copy_file(path, target / name)
+
+
+def copy_file(source: Path, target: Path) -> None:
+    """Copy a regular file without its holes; one that cannot be read is left out.
+
+    Raises:
+        LogError: the copy cannot be written.
+    """
+    try:
+        with open_regular(source) as file, open(target, "wb") as copy:
+            size, place = os.fstat(file.fileno()).st_size, 0
+            while place < size:
+                start, stop = _find_data(file, place, size)
+                file.seek(start)
+                copy.seek(start)
+                while start < stop and (piece := file.read(min(_PIECE, stop - start))):
+                    copy.write(piece)
+                    start += len(piece)
+                place = stop
+            copy.truncate(size)
+    except OSError as error:
+        if error.errno in _FULL:
+            raise LogError(f"its copy cannot be written: {error.strerror}") from error
+
+
+def _find_data(file: BinaryIO, place: int, size: int) -> tuple[int, int]:
+    """Return the first and the last position of the next bytes that are no hole."""
+    try:
+        start = os.lseek(file.fileno(), place, os.SEEK_DATA)
+        return start, min(os.lseek(file.fileno(), start, os.SEEK_HOLE), size)
+    except OSError as error:
+        # Not every file system knows holes.
+        return (size, size) if error.errno == errno.ENXIO else (place, size)
+
+
+def unpack_zip(path: Path, place: Path, max_bytes: int) -> None:
+    """Unpack the regular files of a zip into a new folder.
+
+    Raises:
+        ConfigError: it is no zip, is too large, or has links or paths out of its folder.
+    """
+    try:
+        with open_regular(path, follow_links=True) as file, zipfile.ZipFile(file) as archive:
+            _unpack(archive, place, max_bytes)
+    except _ODD_ZIP as error:
+        remove_tree(place)
+        reason = error.strerror if isinstance(error, OSError) else error
+        raise ConfigError(f"cannot be unpacked: {reason}", file=path.name) from error
+
+
+def _unpack(archive: zipfile.ZipFile, place: Path, max_bytes: int) -> None:
+    if len(archive.infolist()) > MOST_FILES:
+        raise ValueError(f"it has more than {MOST_FILES:,} files")
+    if sum(entry.file_size for entry in archive.infolist()) > max_bytes:
+        raise ValueError(f"it has more than {max_bytes >> 20:,} MiB")
+    place.mkdir()
+    left = max_bytes
+    for entry in archive.infolist():
+        inside = PurePosixPath(entry.filename.replace("\\", "/"))
+        if inside.is_absolute() or ".." in inside.parts:
+            raise ValueError(f"{entry.filename} leads out of it")
+        mode = stat.S_IFMT(entry.external_attr >> 16)
+        if mode not in (0, stat.S_IFREG, stat.S_IFDIR):
+            raise ValueError(f"{entry.filename} is a link or no file")
+        if any(LEFT_OUT("", [part]) for part in inside.parts):
+            continue
+        target = place / inside
+        target.parent.mkdir(parents=True, exist_ok=True)
+        if entry.is_dir() or mode == stat.S_IFDIR:
+            target.mkdir(exist_ok=True)
+            continue
+        with archive.open(entry) as file, open(target, "wb") as copy:
+            while piece := file.read(_PIECE):
+                left -= len(piece)
+                if left < 0:
+                    raise ValueError(f"it has more than {max_bytes >> 20:,} MiB")
+                copy.write(piece)

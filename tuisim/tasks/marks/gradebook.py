@@ -1,0 +1,176 @@
+"""The marks of a class as files that the gradebooks of Moodle and Canvas import.
+
+Moodle finds a student by one column, which one chooses when one imports: user name, ID number or e-mail address.
+Moodle's grading worksheet finds a student by the number that is in the names of the hand-ins, `Participant 4713`.
+Canvas finds a student by `ID` or one of the SIS columns, and reads the most points from a row `Points Possible`.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+import math
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+from tuisim.base.data_class import dataclass
+from tuisim.base.errors import ConfigError, listed
+from tuisim.engine.files import read_bytes
+from tuisim.logs.csv_cells import harmless, restored
+from tuisim.pictures.charts.files import write_whole
+from tuisim.tasks.marks.feedback import feedback_of
+from tuisim.tasks.marks.hand_ins import GradebookKind
+from tuisim.tasks.marks.sheet import Sheet, SheetRow, in_words
+
+MOST_BYTES = 16 << 20
+ITEM = "tuisim"
+"""Name of the assignment, if the task has no title."""
+
+
+SUBMISSION = "submission"
+"""Column of a roster: the name of the student's file or folder."""
+
+_IDENTITY: Mapping[GradebookKind, Sequence[str]] = {
+    GradebookKind.MOODLE: ("Username", "ID number", "Email address"),
+    GradebookKind.CANVAS: ("Student", "ID", "SIS User ID", "SIS Login ID", "Section"),
+}
+"""Columns that say who a student is."""
+_BY_NAME: Mapping[GradebookKind, str] = {
+    GradebookKind.MOODLE: "Username",
+    GradebookKind.CANVAS: "SIS Login ID",
+}
+"""The column that is the name of the submission, unless a roster says more."""
+_WORKSHEET = ("Identifier", "Full name", "Last modified (grade)")
+"""The first columns of Moodle's grading worksheet; without the third one, which may be empty, it imports nothing."""
+
+
+@dataclass(frozen=True, slots=True)
+class Roster:
+    """Who the students of a class are."""
+
+    people: Mapping[str, Mapping[str, str]]
+    """By the name of the submission: the cells of the row by the column's name in lower case."""
+
+    def missing(self, names: Sequence[str]) -> list[str]:
+        """Return which submissions have no row."""
+        return [name for name in names if name not in self.people]
+
+    def absent(self, names: Sequence[str]) -> list[str]:
+        """Return which rows have no submission."""
+        return [name for name in self.people if name not in names]
+
+
+def read_roster(path: Path) -> Roster:
+    """Read a class list: CSV with a heading, one row a student.
+
+    The column `submission` has the name of the student's file or folder; where there is none, the user name is that
+    name. The other columns have the names that the gradebook gives them, such as `Email address` or `SIS User ID`.
+
+    Raises:
+        ConfigError: it cannot be read, has no such column, or names a submission twice.
+    """
+    shown = str(path)
+    data = read_bytes(
+        path, MOST_BYTES, ConfigError, "there is no such file", "is a folder", "name a CSV file"
+    )
+    try:
+        text = data.decode("utf-8-sig")
+        heading = text.partition("\n")[0]
+        separator = max(",;\t", key=heading.count)
+        reader = csv.reader(io.StringIO(text, newline=""), delimiter=separator, strict=True)
+        rows = [cells for row in reader if any(cells := [restored(cell.strip()) for cell in row])]
+    except (UnicodeDecodeError, csv.Error) as error:
+        raise ConfigError(
+            f"is no CSV in UTF-8: {error}", "a heading, and one row for each student", file=shown
+        ) from error
+    heads = [cell.casefold() for cell in rows[0]] if rows else []
+    keys = (SUBMISSION, *(name.casefold() for name in _BY_NAME.values()))
+    key = next((name for name in keys if name in heads), None)
+    if key is None:
+        raise ConfigError(
+            "has no column that names the submissions",
+            f"name one of the columns: {listed([SUBMISSION, *_BY_NAME.values()])}",
+            file=shown,
+        )
+    people: dict[str, Mapping[str, str]] = {}
+    for row in rows[1:]:
+        person = dict(zip(heads, row, strict=False))
+        name = person.get(key, "")
+        if name in people:
+            raise ConfigError(f"has two rows for {name!r}", "one row for each student", file=shown)
+        if name:
+            people[name] = person
+    return Roster(people)
+
+
+def write_gradebook(
+    path: Path,
+    kind: GradebookKind,
+    sheet: Sheet,
+    sources: Sequence[str],
+    roster: Roster,
+    *,
+    goals: bool,
+) -> None:
+    """Write the marks for a gradebook; an existing file is replaced.
+
+    Args:
+        sources: The texts of the students' programs, in the order of the rows, which the feedback quotes.
+        goals: Whether each goal that is not hidden has a column of its own, beside the one of the total.
+
+    Raises:
+        ExportError: it cannot be written.
+    """
+    item = sheet.title or ITEM
+    # Students see them: what is hidden, and what takes points off, is only in the total.
+    shown = [
+        at
+        for at, column in enumerate(sheet.columns)
+        if goals and not column.hidden and column.points >= 0
+    ]
+    identity, total, feedback = _choose_heads(kind, sheet, roster)
+    names = [total or item, *(f"{item}: {sheet.columns[at].name}" for at in shown)]
+    heads = [*identity, *names]
+    table = []
+    if kind is GradebookKind.CANVAS:
+        most = [
+            in_words(points)
+            for points in (sheet.most_points, *(sheet.columns[at].points for at in shown))
+        ]
+        table.append(["Points Possible", *[""] * (len(identity) - 1), *most])
+    else:
+        heads.append(feedback)
+    for row, source in zip(sheet.rows, sources, strict=True):
+        points = [row.points, *(row.cells[at].points for at in shown)]
+        # What could not be judged stays empty.
+        words = ["" if math.isnan(one) else in_words(one) for one in points]
+        cells = [*_identity(row, identity, kind, roster), *words]
+        table.append(
+            cells if kind is GradebookKind.CANVAS else [*cells, feedback_of(sheet, row, source)]
+        )
+    text = io.StringIO()
+    csv.writer(text, lineterminator="\n").writerows(
+        [*map(harmless, row)] for row in [heads, *table]
+    )
+    write_whole(path, text.getvalue().encode("utf-8", "backslashreplace"))
+
+
+def _choose_heads(
+    kind: GradebookKind, sheet: Sheet, roster: Roster
+) -> tuple[Sequence[str], str, str]:
+    """Return the columns that say who a student is, that of the total if it is no task's, and that of the feedback."""
+    has_numbers = kind is GradebookKind.MOODLE and any(kind in row.ids for row in sheet.rows)
+    if has_numbers and not roster.people:
+        return _WORKSHEET, "Grade", "Feedback comments"
+    return _IDENTITY[kind], "", "Feedback"
+
+
+def _identity(
+    row: SheetRow, heads: Sequence[str], kind: GradebookKind, roster: Roster
+) -> list[str]:
+    names = ("student", "full name", *(() if kind in row.ids else [_BY_NAME[kind].casefold()]))
+    person = dict.fromkeys(names, row.name)
+    if number := row.ids.get(kind):
+        person |= {"id": number, "identifier": f"Participant {number}"}
+    person |= {head: cell for head, cell in roster.people.get(row.name, {}).items() if cell}
+    return [person.get(head.casefold(), "") for head in heads]

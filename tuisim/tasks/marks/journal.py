@@ -1,0 +1,86 @@
+"""The journal of a marking: each outcome as soon as it is known, so that an interrupted marking can be resumed."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from dataclasses import asdict
+from pathlib import Path
+from typing import IO, Self
+
+import msgspec
+
+from tuisim.base.atomic import make_private_folder, private
+from tuisim.base.errors import LogError
+from tuisim.base.folders import home_folder
+from tuisim.tasks.marks.outcome import Outcome
+
+FOLDER = "marks"
+"""In the user's data folder."""
+
+
+def journal_of(goals: Path) -> Path:
+    """Return the journal of a goals file, which depends on its path."""
+    key = hashlib.sha256(bytes(goals.resolve())).hexdigest()[:32]
+    return home_folder() / FOLDER / f"{key}.jsonl"
+
+
+class Journal:
+    """Outcomes by the key of their task, as a context manager that appends to a file.
+
+    Args:
+        path: The file.
+        resumes: Whether earlier outcomes are read; otherwise they are discarded.
+
+    Raises:
+        LogError: by `__enter__` and `add`, if the file cannot be read or written.
+    """
+
+    def __init__(self, path: Path, *, resumes: bool) -> None:
+        self._path, self._resumes = path, resumes
+        self._file: IO[bytes] | None = None
+        self.known: dict[str, Outcome] = {}
+
+    def __enter__(self) -> Self:
+        try:
+            make_private_folder(self._path.parent)
+            self.known = self._read() if self._resumes else {}
+            self._file = open(self._path, "ab" if self._resumes else "wb", opener=private)
+            if self._resumes and self._file.tell():
+                # The last line may be incomplete; an empty one is ignored.
+                self._file.write(b"\n")
+        except OSError as error:
+            raise self._error(error) from error
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        if self._file is not None:
+            self._file.close()
+
+    def add(self, key: str, outcome: Outcome) -> None:
+        """Append an outcome; it is in the file when this returns."""
+        assert self._file is not None
+        line = json.dumps({"key": key, "outcome": asdict(outcome)}).encode() + b"\n"
+        try:
+            self._file.write(line)
+            self._file.flush()
+        except OSError as error:
+            raise self._error(error) from error
+
+    def _read(self) -> dict[str, Outcome]:
+        """Return what can be read: an interrupted process may have left an incomplete line."""
+        found = {}
+        try:
+            lines = self._path.read_bytes().split(b"\n")
+        except FileNotFoundError:
+            return {}
+        for line in filter(None, lines):
+            try:
+                entry = json.loads(line)
+                found[str(entry["key"])] = msgspec.convert(entry["outcome"], Outcome)
+            except (ValueError, TypeError, KeyError, RecursionError, msgspec.ValidationError):
+                continue
+        return found
+
+    def _error(self, error: OSError) -> LogError:
+        return LogError(f"cannot be written: {error.strerror or error}", file=str(self._path))

@@ -1,0 +1,253 @@
+"""The outcome of one run of a student's program, without anything that differs from machine to machine.
+
+Its texts have no paths, addresses and control characters.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import sys
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+from tuisim.base.data_class import dataclass
+from tuisim.base.errors import printable, shortened
+from tuisim.base.source import source_lines, user_python_path
+from tuisim.engine.protocol import End
+from tuisim.tasks.goals.judgement import GoalState, Judgement
+from tuisim.tasks.goals.spec import AllOf
+from tuisim.tasks.goals.trial_world import TrialWorld
+from tuisim.tasks.task import Result
+
+_ADDRESS = re.compile(r"\b0x[0-9a-fA-F]{6,}\b")
+MOST_CHARACTERS = 300
+"""Longest reason; the rest is cut off."""
+_ERROR_HEAD, _ERROR_TAIL = 1000, 3000
+"""Characters of a long traceback that are kept, at its beginning and its end."""
+_GIVEN_UP = frozenset(
+    {
+        End.STALLED,
+        End.OUTPUT_LIMIT,
+        End.CRASHED,
+        End.KILLED,
+        End.FALSIFIED,
+        End.STOPPED,
+        End.DISK_FULL,
+    }
+)
+"""Ends that cost as much with every further seed."""
+
+
+@dataclass(frozen=True, slots=True)
+class GoalOutcome:
+    """Whether one goal was met in one run."""
+
+    name: str
+    met: bool
+    reason: str = ""
+    """Why it was missed; empty if it was met."""
+    line: int = 0
+    """The program's line that the reason is about; 0 if there is none."""
+    hidden: bool = False
+    """Whether it was missed only in hidden worlds, of which no student is told anything."""
+    is_penalty: bool = False
+    """Whether it takes points off."""
+    is_unknown: bool = False
+    """Whether it could not be judged, so that nobody knows whether it was met."""
+
+    @property
+    def is_good(self) -> bool:
+        """Whether it is as it should be."""
+        return self.met is not self.is_penalty and not self.is_unknown
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """One run of a student's program, or with a seed all of its runs in the worlds of the task: see `merged`."""
+
+    seed: int
+    end: str
+    """A value of `End`; empty if this machine could not start the program."""
+    failure: str = ""
+    """Why the program did not finish, one line; empty if it finished."""
+    line: int = 0
+    """The main program's line at which it failed; 0 if there is none."""
+    error: str = ""
+    """The program's traceback."""
+    time_s: float = 0.0
+    goals: tuple[GoalOutcome, ...] = ()
+    """In the order of the goals."""
+    run_id: str = ""
+    """Its id in the store; empty if it was not kept."""
+    world: str = ""
+    """In which of the other worlds it was, see `TrialWorld.where`; empty for the first."""
+    hidden: bool = False
+    """Whether that world is hidden; of merged ones whether it failed only in such a world."""
+
+    @property
+    def counts(self) -> bool:
+        """Whether it is the program's: not if this machine could not start it, or had no room for its recording."""
+        return bool(self.end) and self.end != End.DISK_FULL
+
+    @property
+    def gave_up(self) -> bool:
+        """Whether it hung, flooded or died, so that further seeds would only cost as much time again."""
+        return self.end in _GIVEN_UP
+
+
+def outcome_of(result: Result, seed: int, folder: Path, world: TrialWorld | None = None) -> Outcome:
+    """Return the outcome of a task.
+
+    Args:
+        result: The result of the task.
+        seed: Its seed.
+        folder: The folder in which the program ran; its path does not appear in the outcome.
+        world: Another world, of whose goals only some may count.
+    """
+    failure = "" if result.end == End.FINISHED and not result.exit_code else _failure(result)
+    judgements = {one.goal.name: one for one in result.judgements}
+    goals = []
+    for name, one in judgements.items():
+        if world is not None and name not in world.goals:
+            continue
+        if one.state is GoalState.MET:
+            goals.append(GoalOutcome(name, True, is_penalty=one.goal.points < 0))
+        else:
+            cause = _cause(one, judgements)
+            reason = _one_line(portable(cause.reason, folder))
+            goals.append(
+                GoalOutcome(
+                    name,
+                    False,
+                    reason,
+                    cause.line,
+                    is_penalty=one.goal.points < 0,
+                    is_unknown=one.state is GoalState.UNKNOWN,
+                )
+            )
+    return Outcome(
+        seed,
+        result.end,
+        _one_line(portable(failure, folder)),
+        result.error_line,
+        _head_and_tail("\n".join(map(printable, source_lines(portable(result.error, folder))))),
+        result.time_s,
+        tuple(goals),
+        result.run_id,
+        world.where if world else "",
+        bool(world and world.hidden),
+    )
+
+
+def merged(
+    outcomes: Sequence[Outcome], seeds: Sequence[int], worlds: Sequence[str] = ("",)
+) -> list[Outcome]:
+    """Return for each seed what came out of it: a goal is met if it is met in every world where it counts.
+
+    One that takes points off is met if it is in any. Seeds are left out for which a run is missing, or does not count.
+    Where the program gave up with the first seed, so it does with the others.
+
+    Args:
+        outcomes: Those of one student, in any order.
+        seeds: Those of the marking.
+        worlds: The worlds, the first one first.
+    """
+    known = {(one.world, one.seed): one for one in outcomes}
+    gave_up = {one.world: one for one in outcomes if one.gave_up and one.seed == seeds[0]}
+    found = []
+    for seed in seeds:
+        first = known.get((worlds[0], seed))
+        # A program that gave up in the first world was not run in the others.
+        own = worlds[:1] if worlds[0] in gave_up else worlds
+        parts = [first, *(known.get((world, seed), gave_up.get(world)) for world in own[1:])]
+        complete = [one for one in parts if one is not None and one.counts]
+        if len(complete) == len(parts):
+            found.append(_merged(seed, complete))
+    return found
+
+
+def _merged(seed: int, parts: Sequence[Outcome]) -> Outcome:
+    """Return what came out of the runs with a seed, the one in the first world first."""
+    # What a student may be told comes before what is hidden.
+    parts = sorted(parts, key=lambda part: part.hidden)
+    goals: dict[str, GoalOutcome] = {}
+    # Of a run of which nothing is recorded, no goal is known to be met.
+    is_known = all(part.goals for part in parts)
+    for part in parts:
+        for goal in part.goals if is_known else ():
+            if _counts_more(goal, goals.get(goal.name)):
+                reason = (
+                    f"{part.world}: {goal.reason}" if part.world and goal.reason else goal.reason
+                )
+                goals[goal.name] = replace(
+                    goal, reason=reason, hidden=part.hidden and not goal.is_good
+                )
+    failed = next((part for part in parts if part.failure), None)
+    if failed is None or not failed.world:
+        return replace(failed or parts[0], seed=seed, goals=tuple(goals.values()))
+    return replace(
+        failed, seed=seed, goals=tuple(goals.values()), failure=f"{failed.world}: {failed.failure}"
+    )
+
+
+def _counts_more(goal: GoalOutcome, before: GoalOutcome | None) -> bool:
+    """Return whether a world decides on a goal, not those before: a fault counts most, then what is not known."""
+    if before is None or before.is_good:
+        return True
+    return before.is_unknown and not (goal.is_good or goal.is_unknown)
+
+
+def unknown_goals(outcomes: Iterable[Outcome]) -> dict[str, str]:
+    """Return the goals that could not be judged in some runs, by name, each with its reason."""
+    return {goal.name: goal.reason for one in outcomes for goal in one.goals if goal.is_unknown}
+
+
+def portable(text: str, folder: Path | str) -> str:
+    """Return a text without addresses in memory, and without what its paths say about this machine.
+
+    Of files in the folder in which the program ran, in those of modules, and of Python, the path in the folder is left.
+    """
+    if "/" in text:
+        modules = {
+            *map(os.path.abspath, (*sys.path, *user_python_path())),
+            sys.prefix,
+            sys.base_prefix,
+        } - {"/"}
+        # Inner folders first.
+        places = "|".join(map(re.escape, (str(folder), *sorted(modules, reverse=True))))
+        text = re.sub(rf"(?<![\w/.~-])(?:{places})/", "", text)
+    return _ADDRESS.sub("0x…", text)
+
+
+def _cause(judgement: Judgement, judgements: Mapping[str, Judgement]) -> Judgement:
+    """Return the judgement that says why a goal was missed: of goals that must all be met, the first that was not."""
+    if isinstance(judgement.goal.condition, AllOf):
+        for name in judgement.goal.condition.goals:
+            if judgements[name].state is not GoalState.MET:
+                return _cause(judgements[name], judgements)
+    return judgement
+
+
+def _failure(result: Result) -> str:
+    """Return why a program did not finish."""
+    if result.end == End.STOPPED:
+        return "stopped, because it took too long"
+    if result.end == End.STALLED:
+        # Who has noticed it, the program's process or its host, depends on the machine.
+        return "stuck: no simulated time passed"
+    lines = source_lines(result.error.rstrip("\n"))
+    return (
+        result.summary or (lines[-1] if lines else result.end.replace("_", " ")) or "did not finish"
+    )
+
+
+def _head_and_tail(text: str) -> str:
+    if len(text) <= _ERROR_HEAD + _ERROR_TAIL:
+        return text
+    return f"{text[:_ERROR_HEAD]}…\n…{text[-_ERROR_TAIL:]}"
+
+
+def _one_line(text: str) -> str:
+    return shortened(printable(text.strip()), MOST_CHARACTERS)

@@ -1,0 +1,82 @@
+"""What a tutor decides over the runs: points and comments by student, kept in a file and applied to each marking.
+
+```toml
+[ada]
+comment = "The path is right; the robot was set down a centimetre too far."
+points = 9          # of the whole task; or, goal by goal:
+
+[ben.goals]
+heading = 1
+```
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import field, replace
+from pathlib import Path
+
+from tuisim.base.data_class import dataclass
+from tuisim.base.errors import ConfigError
+from tuisim.engine import files
+from tuisim.tasks.goals.judgement import points_of
+from tuisim.tasks.goals.spec import Goal
+from tuisim.tasks.marks.sheet import Sheet, SheetRow, rounded
+
+BY_TUTOR = "set by the tutor"
+
+
+@dataclass(frozen=True, slots=True)
+class Override:
+    """What a tutor says about one student."""
+
+    points: float | None = None
+    """Of the whole task; None if they follow from the goals."""
+    comment: str = ""
+    goals: Mapping[str, float] = field(default_factory=dict)
+    """Points by the name of the goal."""
+
+
+def read_overrides(
+    path: Path, goals: Sequence[Goal], students: Sequence[str]
+) -> Mapping[str, Override]:
+    """Read the overrides of a class, by student.
+
+    Args:
+        goals: The goals that have a column.
+        students: The names of the students.
+
+    Raises:
+        ConfigError: it cannot be read, or names a student, a goal or a key that there is not.
+    """
+    at = files.Location(str(path))
+    found: dict[str, Override] = {}
+    for student, entry in files.table(files.read_file(path, ConfigError), at, students).items():
+        found[student] = files.convert(entry, Override, at.at(student))
+        files.table(
+            dict(found[student].goals), at.at(student).at("goals"), [goal.name for goal in goals]
+        )
+    return found
+
+
+def overridden(sheet: Sheet, overrides: Mapping[str, Override]) -> Sheet:
+    """Return the sheet with what the tutor says; what the runs have earned is kept in `earned`."""
+    rows = tuple(
+        _row(row, sheet.columns, overrides[row.name]) if row.name in overrides else row
+        for row in sheet.rows
+    )
+    return replace(sheet, rows=rows)
+
+
+def _row(row: SheetRow, columns: Sequence[Goal], override: Override) -> SheetRow:
+    cells = tuple(
+        replace(cell, points=override.goals[column.name], reason=BY_TUTOR)
+        if column.name in override.goals
+        else cell
+        for column, cell in zip(columns, row.cells, strict=True)
+    )
+    points = override.points
+    if points is None:
+        points = rounded(points_of(cell.points for cell in cells)) if override.goals else row.points
+    earned = row.points if points != row.points or cells != row.cells else None
+    return replace(row, cells=cells, points=points, earned=earned, comment=override.comment)

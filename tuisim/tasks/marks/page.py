@@ -1,0 +1,192 @@
+"""The sheet of a class as one HTML page: what the class as a whole has met and missed, and each student."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from types import MappingProxyType
+
+from tuisim.analysis.pins import Picture
+from tuisim.base.data_class import dataclass
+from tuisim.pictures.html.render import Table, render_page
+from tuisim.tasks.goals.spec import Goal
+from tuisim.tasks.marks.copies import LEAST_TOKENS, Similar
+from tuisim.tasks.marks.sheet import Cell, Sheet, SheetRow, in_words, summary_of
+
+_LEAST_STUDENTS = 3
+"""Fewer have no statistics of points."""
+MOST_REASONS = 3
+BINS = 10
+
+
+Links = Mapping[tuple[str, str, int], str]
+"""Relative paths of reports by student, world and seed."""
+
+
+@dataclass(frozen=True, slots=True)
+class GoalStatistics:
+    """How a class did with one goal."""
+
+    goal: Goal
+    met: int
+    """Number of students who met it in each run."""
+    partly: int
+    """Number of students who met it in some runs."""
+    mean: float
+    """Mean points."""
+    reasons: tuple[tuple[str, int], ...]
+    """The most frequent reasons of those who missed it, each with the number of students."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Mark:
+    """How a student did with one goal."""
+
+    points: float
+    level: str
+    """A class of the style."""
+    hint: str
+
+
+@dataclass(frozen=True, slots=True)
+class _Student:
+    """A row of the table of students."""
+
+    row: SheetRow
+    level: str
+    marks: tuple[_Mark, ...]
+    reports: tuple[tuple[str, list[tuple[str, str]]], ...]
+    """For each world the paths of its reports, each with the seeds in words."""
+
+
+def page_of(
+    sheet: Sheet,
+    links: Links = MappingProxyType({}),
+    ignored: Sequence[str] = (),
+    similar: Similar | None = None,
+    maps: Sequence[Picture] = (),
+) -> str:
+    """Return the page.
+
+    Args:
+        links: The reports of runs that were kept.
+        ignored: Names of files that are no programs.
+        similar: Which programs resemble each other.
+        maps: Pictures of where goals were missed.
+    """
+    goals = [column.name for column in sheet.columns]
+    return render_page(
+        "marks.html",
+        title=f"Marks: {sheet.title}" if sheet.title else "Marks",
+        summary=summary_of(sheet),
+        bins=distribution(sheet) if len(sheet.rows) >= _LEAST_STUDENTS else (),
+        goals=goal_statistics(sheet),
+        maps=maps,
+        heads=["student", "points", "robustness", *goals, "reason"],
+        students=[_build_student(row, sheet, links) for row in sheet.rows],
+        ignored=ignored,
+        similar=_tabulate(similar) if similar is not None and similar.compared > 1 else None,
+        in_words=in_words,
+    )
+
+
+def _build_student(row: SheetRow, sheet: Sheet, links: Links) -> _Student:
+    level = (
+        _level(row.points, sheet.most_points) if sheet.most_points else _level(row.robustness, 1.0)
+    )
+    marks = [
+        _mark(cell, column, row.runs) for cell, column in zip(row.cells, sheet.columns, strict=True)
+    ]
+    return _Student(row, level, tuple(marks), tuple(_find_reports(row, links).items()))
+
+
+def _level(points: float, most: float) -> str:
+    return "met" if points >= most else "part" if points else "missed"
+
+
+def _mark(cell: Cell, column: Goal, runs: int) -> _Mark:
+    # A goal without points is met or missed, too.
+    level = "met" if runs and cell.met == runs else "part" if cell.met else "missed"
+    if column.points < 0:
+        level = "missed" if cell.met else "met"
+    seeds = f"met in {cell.met} of {runs} runs" if runs > 1 else ""
+    return _Mark(cell.points, level, "; ".join(filter(None, (seeds, cell.reason))))
+
+
+def _find_reports(row: SheetRow, links: Links) -> dict[str, list[tuple[str, str]]]:
+    """Return the reports of a student by world: their paths, each with its seeds in words."""
+    seeds: dict[str, dict[str, list[int]]] = {}
+    for outcome in row.outcomes:
+        if path := links.get((row.name, outcome.world, outcome.seed)):
+            seeds.setdefault(outcome.world, {}).setdefault(path, []).append(outcome.seed)
+    return {
+        world: [(path, _ranges(numbers)) for path, numbers in paths.items()]
+        for world, paths in seeds.items()
+    }
+
+
+def _ranges(seeds: Sequence[int]) -> str:
+    """Return ascending numbers with runs of them as ranges, such as `0, 3–5`."""
+    found: list[list[int]] = []
+    for seed in seeds:
+        if found and seed == found[-1][-1] + 1:
+            found[-1].append(seed)
+        else:
+            found.append([seed])
+    return ", ".join(f"{one[0]}–{one[-1]}" if len(one) > 1 else str(one[0]) for one in found)
+
+
+def _tabulate(similar: Similar) -> Mapping[str, object]:
+    """Return what the page shows of programs that resemble each other."""
+    heads = ("", "equal but for names, numbers and texts", "of these equal to the letter")
+    groups = [
+        (
+            str(len(group.names)),
+            ", ".join(group.names),
+            "; ".join(" = ".join(names) for names in group.same),
+        )
+        for group in similar.groups
+    ]
+    pairs = [(*pair.names, f"{pair.share:.0%}", str(pair.lines)) for pair in similar.pairs]
+    return {
+        "groups": Table(heads, groups, numbers=len(heads)),
+        "pairs": Table(("program", "and", "passages in common", "lines"), pairs, numbers=2),
+        "compared": similar.compared,
+        "least_tokens": LEAST_TOKENS,
+    }
+
+
+def goal_statistics(sheet: Sheet) -> tuple[GoalStatistics, ...]:
+    """Return the statistics of each goal that is shown."""
+    found = []
+    for at, goal in enumerate(sheet.columns):
+        cells = [(row, row.cells[at]) for row in sheet.rows]
+        met = sum(bool(row.runs) and cell.met == row.runs for row, cell in cells)
+        partly = sum(0 < cell.met < row.runs for row, cell in cells)
+        points = [cell.points for _, cell in cells if not math.isnan(cell.points)]
+        mean = math.fsum(points) / len(points) if points else 0.0
+        reasons = Counter(cell.reason for _, cell in cells if cell.reason).most_common(MOST_REASONS)
+        found.append(GoalStatistics(goal, met, partly, mean, tuple(reasons)))
+    return tuple(found)
+
+
+def distribution(sheet: Sheet) -> tuple[tuple[float, float, int], ...]:
+    """Return how many students have how many points: lower end, upper end and number for equal parts of the scale.
+
+    The upper end belongs to the next part, but for the last one; fewer and more points count at the ends.
+    """
+    most = sheet.most_points
+    known = [row.points for row in sheet.rows if not math.isnan(row.points)]
+    if not most or not known:
+        return ()
+    counts = Counter(min(max(int(points / most * BINS), 0), BINS - 1) for points in known)
+    return tuple(
+        (most * part / BINS, most * (part + 1) / BINS, counts[part]) for part in range(BINS)
+    )
+
+
+def reports_folder(file: Path) -> Path:
+    """Return the folder of the reports that the page in a file links to."""
+    return file.with_name(f"{file.stem}-runs")

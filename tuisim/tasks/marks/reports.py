@@ -1,0 +1,230 @@
+"""The reports of kept runs, beside the page of a class; each has the goals, and where on the mat they were decided."""
+
+from __future__ import annotations
+
+import hashlib
+import math
+import os
+import shutil
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+from tuisim.analysis.pins import Pin
+from tuisim.analysis.report import report_of
+from tuisim.analysis.source import LogRequest, opening
+from tuisim.base.data_class import dataclass
+from tuisim.base.errors import ExportError, LogError
+from tuisim.base.faults import describe_fault
+from tuisim.engine.protocol import End
+from tuisim.engine.runs.run_folder import StoredRun
+from tuisim.engine.runs.store import RunStore
+from tuisim.pictures.charts.files import write_whole
+from tuisim.pictures.html.render import Table
+from tuisim.tasks.goals.condition import ConditionKind
+from tuisim.tasks.goals.judgement import Change
+from tuisim.tasks.goals.spec import Goal
+from tuisim.tasks.goals.trial_world import TrialWorld
+from tuisim.tasks.marks.class_map import Miss, MissesOfRun
+from tuisim.tasks.marks.feedback import file_stems
+from tuisim.tasks.marks.outcome import GoalOutcome, Outcome, portable
+from tuisim.tasks.marks.page import reports_folder
+from tuisim.tasks.marks.sheet import Sheet, in_words
+
+MOST_OUTPUT_BYTES = 4 << 20
+"""Runs that printed more get no report: a browser could hardly show it."""
+_HEADS = ("", "goal", "result", "why", "points")
+
+
+@dataclass(frozen=True, slots=True)
+class Report:
+    """The report of a kept run."""
+
+    student: str
+    world: str
+    """See `TrialWorld.where`."""
+    seed: int
+    path: str
+    """Relative to the page."""
+    misses: MissesOfRun
+    """Where it missed goals; none if another run with the same record has said so."""
+    fault: str = ""
+    """Why there is none; empty if there is one."""
+
+
+def write_reports(
+    sheet: Sheet, worlds: Sequence[TrialWorld], page: Path, *, movies: bool = False
+) -> Iterator[Report]:
+    """Write the reports of kept runs; yield each once it is written.
+
+    Runs of a student that recorded the same have one report. Runs that were removed from the store are left out.
+    Reports of an earlier page of this name are replaced.
+
+    Args:
+        worlds: The worlds of the task, the first one first.
+        movies: Whether the report of a run that missed a goal has a movie with the goals on it.
+
+    A report that cannot be made has a fault.
+
+    Raises:
+        ExportError: a report cannot be written.
+    """
+    folder, store = reports_folder(page), RunStore()
+    shutil.rmtree(folder, ignore_errors=True)
+    for stem, row in zip(file_stems(one.name for one in sheet.rows), sheet.rows, strict=True):
+        written: dict[tuple[str, str], str] = {}
+        for outcome in row.outcomes:
+            run = _stored(store, outcome.run_id) if outcome.run_id else None
+            if run is None:
+                continue
+            number, world = next(
+                (at, one) for at, one in enumerate(worlds) if one.where == outcome.world
+            )
+            name = f"{stem}{f'-world-{number + 1}' if number else ''}-seed-{outcome.seed}.html"
+            misses, fault = tuple[Miss, ...](), ""
+            try:
+                recorded = outcome.world, _digest(run)
+                if recorded not in written:
+                    columns = [column for column in sheet.columns if column.name in world.goals]
+                    goals = columns, _judged(world.own_goals, outcome, run)
+                    misses = _misses(row.name, *goals, outcome, run)
+                    shows = movies and bool(misses)
+                    _write(folder / name, _build_report(row.name, goals, outcome, run, movie=shows))
+                    written[recorded] = f"{folder.name}/{name}"
+                path = written[recorded]
+            except ExportError:
+                raise
+            except Exception as error:  # Whatever it is, the others go on.
+                path, fault = "", describe_fault(error)
+            yield Report(
+                row.name, outcome.world, outcome.seed, path, MissesOfRun(run, misses), fault
+            )
+
+
+_Judged = tuple[Sequence[Goal], Mapping[str, Change]]
+"""The goals that are shown, and when and where they were decided, as of `_judged`."""
+
+
+def _build_report(
+    student: str, goals: _Judged, outcome: Outcome, run: StoredRun, *, movie: bool
+) -> str:
+    *_, opened = opening(LogRequest(runs=(run.id,)))
+    opened = replace(opened, runs=tuple(map(_portable, opened.runs)))
+    shown, pins = _verdicts(*goals, outcome)
+    title = ", ".join(filter(None, (student, outcome.world, f"seed {outcome.seed}")))
+    return report_of(opened, title=title, movie=movie, pins=pins, goals=shown)
+
+
+def _write(path: Path, content: str) -> None:
+    try:
+        os.makedirs(path.parent, exist_ok=True)
+    except OSError as error:
+        raise ExportError(f"cannot write to {path.parent}: {error.strerror or error}") from error
+    write_whole(path, content.encode())
+
+
+def _stored(store: RunStore, run_id: str) -> StoredRun | None:
+    """Return a run; None if it no longer exists, or is too large for a report."""
+    try:
+        run = store.load_run(run_id)
+        return run if run.output.length <= MOST_OUTPUT_BYTES else None
+    except LogError:
+        return None
+
+
+def _portable(run: StoredRun) -> StoredRun:
+    """Return a run whose end is described without what differs from machine to machine."""
+    if run.end is None:
+        return run
+    folder = run.program.working_directory
+    end = replace(
+        run.end, error=portable(run.end.error, folder), summary=portable(run.end.summary, folder)
+    )
+    return replace(run, end=end)
+
+
+def _digest(run: StoredRun) -> str:
+    """Return a hash of what a run recorded, hexadecimal."""
+    found = hashlib.sha256(run.telemetry.array().tobytes())
+    folder = run.program.working_directory.encode("utf-8", "surrogateescape")
+    for stream, row in run.output.raw_rows():
+        text = row.replace(folder, b"")
+        found.update(b"%d %d " % (stream, len(text)) + text)
+    return found.hexdigest()
+
+
+def _misses(
+    student: str,
+    columns: Sequence[Goal],
+    judged: Mapping[str, Change],
+    outcome: Outcome,
+    run: StoredRun,
+) -> tuple[Miss, ...]:
+    """Return where a run missed goals: those that were decided nowhere, at the robot's last place."""
+    last = run.telemetry.last()
+    missed = {one.name: one for one in outcome.goals if not one.is_good}
+    found = []
+    for column in columns:
+        place = judged.get(column.name) or last
+        if column.name in missed and place is not None:
+            found.append(
+                Miss(student, column.name, place.x_mm, place.y_mm, missed[column.name].reason)
+            )
+    return tuple(found)
+
+
+def _verdicts(
+    columns: Sequence[Goal], judged: Mapping[str, Change], outcome: Outcome
+) -> tuple[Table, list[Pin]]:
+    """Return the table of the goals of a run, and a pin for each goal that was decided at a place.
+
+    Args:
+        columns: The goals that are shown, in their order.
+        judged: When and where goals were decided, as of `_judged`.
+        outcome: What the run has achieved.
+    """
+    found = {one.name: one for one in outcome.goals}
+    rows, pins = [], []
+    for number, column in enumerate(columns, start=1):
+        goal = found.get(column.name, GoalOutcome(column.name, False, outcome.failure))
+        result = "could not be judged" if goal.is_unknown else "met" if goal.met else "missed"
+        why = f"{goal.reason} (line {goal.line})" if goal.line else goal.reason
+        earned = math.nan if goal.is_unknown else column.points if goal.met else 0
+        points = f"{in_words(earned)} of {in_words(max(0, column.points))}"
+        if (event := judged.get(column.name)) is not None:
+            result += f" at {event.time_s:.2f} s, x {event.x_mm:.0f}, y {event.y_mm:.0f} mm"
+            said = f"{number}. {column.say} {result}"
+            pins.append(
+                Pin(
+                    str(number),
+                    event.x_mm,
+                    event.y_mm,
+                    goal.is_good,
+                    f"{said}: {why}" if why else said,
+                )
+            )
+        rows.append([str(number), column.say, result, why, points])
+    return Table(_HEADS, rows, numbers=len(_HEADS) - 1), pins
+
+
+def _judged(goals: Sequence[Goal], outcome: Outcome, run: StoredRun) -> dict[str, Change]:
+    """Return when and where goals were met or missed, of those that were at a time and a place."""
+    if outcome.end == End.FALSIFIED:
+        return {}
+    # Judging is slow to import, and most runs have been judged.
+    from tuisim.tasks.goals.judge import judge
+
+    try:
+        judgements = judge(goals, run)
+    except LogError:
+        # What is known of the run is in its outcome.
+        return {}
+    return {
+        one.goal.name: one.event
+        for one in judgements
+        if one.event and not _is_of_the_text(one.goal)
+    }
+
+
+def _is_of_the_text(goal: Goal) -> bool:
+    return all(part.KIND is ConditionKind.FIXED for part in goal.parts)

@@ -1,0 +1,212 @@
+"""Runs the students' programs as a batch, and collects their outcomes."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Generator, Iterator, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+from tuisim.base.data_class import dataclass
+from tuisim.base.faults import describe_fault
+from tuisim.base.source import user_python_path
+from tuisim.engine.core.spec import RunSpec
+from tuisim.engine.core.tree import to_plain
+from tuisim.engine.runs.handle import RunOptions
+from tuisim.engine.runs.presses import press_actions
+from tuisim.engine.runs.removal import remove_tree
+from tuisim.engine.runs.temporary import temporary_home
+from tuisim.tasks.goals.trial_world import TrialWorld
+from tuisim.tasks.marks.journal import Journal
+from tuisim.tasks.marks.outcome import Outcome, outcome_of
+from tuisim.tasks.marks.students import Student
+from tuisim.tasks.marks.workspace import copy_of, digest_of, program_in
+from tuisim.tasks.pool import run_many
+from tuisim.tasks.task import Keep, Task
+
+STALL_LIMIT_S = 10.0
+"""CPU seconds in one instant of simulated time after which a program counts as hung."""
+TIME_LIMIT_S = 120.0
+"""Simulated seconds that a program may take, if nobody says otherwise."""
+REAL_TIME_LIMIT_S = 120.0
+"""Real seconds of one run."""
+
+
+@dataclass(frozen=True, slots=True)
+class MarkPlan:
+    """What is run for each student."""
+
+    worlds: tuple[TrialWorld, ...]
+    """Those of the task, the first one first."""
+    seeds: tuple[int, ...]
+    options: RunOptions
+    """Without answers to `input()`, it gets those of each world."""
+    keep: Keep
+    jobs: int = 0
+    """Number of workers; 0 is one for each processor."""
+    isolate: bool = False
+    version: str = ""
+    """Version of tuisim: an interrupted marking is resumed only with the same."""
+    arguments: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class RunEntry:
+    """A student whose program can be run."""
+
+    student: Student
+    specs: tuple[RunSpec, ...]
+    """In the order of the worlds, with any seed."""
+    presses: tuple[tuple[str, ...], ...]
+    """What a hand presses, in the same order."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Turn:
+    """One run of one student."""
+
+    entry: RunEntry
+    seed: int
+    world: TrialWorld
+    spec: RunSpec
+    options: RunOptions
+    key: str
+
+
+def outcomes_of(
+    entries: Sequence[RunEntry], plan: MarkPlan, journal: Journal
+) -> Generator[tuple[str, Outcome]]:
+    """Run every student's program with every seed; yield names of students and outcomes as they become known.
+
+    A program that hangs, floods or dies with the first seed is not run with the others; if it does so in the first
+    world, nor in the others. Outcomes that the journal knows are not run again. Closing the iterator stops what is
+    running.
+
+    What goes wrong with one student is an outcome that does not count.
+
+    Raises:
+        LogError: the journal cannot be read or written.
+    """
+    turns: dict[str, list[_Turn]] = {}
+    for entry in entries:
+        try:
+            turns[entry.student.name] = _turns(entry, plan)
+        except Exception as error:  # Whatever it is, the others go on.
+            yield entry.student.name, Outcome(plan.seeds[0], "", describe_fault(error))
+    given_up: set[tuple[str, str]] = set()
+    first, *others = (world.where for world in plan.worlds)
+    rounds = (
+        (plan.seeds[:1], [first]),
+        (plan.seeds[:1], others),
+        (plan.seeds[1:], [first, *others]),
+    )
+    for seeds, worlds in rounds:
+        now = [
+            turn
+            for name, every in turns.items()
+            for turn in every
+            if turn.seed in seeds
+            and turn.world.where in worlds
+            and given_up.isdisjoint({(name, first), (name, turn.world.where)})
+        ]
+        for name, outcome in _run(now, plan, journal):
+            if outcome.gave_up and outcome.seed == plan.seeds[0]:
+                given_up.add((name, outcome.world))
+            yield name, outcome
+
+
+def runs_of(outcomes: Sequence[Outcome], plan: MarkPlan) -> int:
+    """Return how many runs a student's program has in all, as far as its outcomes tell."""
+    given_up = {one.world for one in outcomes if one.gave_up and one.seed == plan.seeds[0]}
+    if plan.worlds[0].where in given_up:
+        return 1
+    return sum(1 if world.where in given_up else len(plan.seeds) for world in plan.worlds)
+
+
+def _turns(entry: RunEntry, plan: MarkPlan) -> list[_Turn]:
+    student = entry.student
+    assert student.source is not None
+    basis: list[object] = [
+        plan.version,
+        student.main,
+        student.source.program.prelude,
+        digest_of(student),
+    ]
+    basis += [plan.keep, plan.isolate, plan.arguments, user_python_path()]
+    turns = []
+    for world, of_world, presses in zip(plan.worlds, entry.specs, entry.presses, strict=True):
+        options = replace(
+            plan.options,
+            answers=plan.options.answers or world.answers,
+            actions=press_actions(presses, of_world.profile.tick_hz),
+        )
+        for seed in plan.seeds:
+            spec = replace(of_world, seed=seed)
+            own = [repr(world), options.to_plain(), to_plain(spec)]
+            text = json.dumps([*basis, *own], sort_keys=True, default=str).encode(
+                "utf-8", "surrogatepass"
+            )
+            turns.append(_Turn(entry, seed, world, spec, options, hashlib.sha256(text).hexdigest()))
+    return turns
+
+
+def _run(turns: Sequence[_Turn], plan: MarkPlan, journal: Journal) -> Iterator[tuple[str, Outcome]]:
+    unknown = []
+    for turn in turns:
+        if turn.key in journal.known:
+            yield turn.entry.student.name, replace(journal.known[turn.key], seed=turn.seed)
+        else:
+            unknown.append(turn)
+    if not unknown:
+        return
+    with temporary_home("tuisim-mark-") as home:
+        # Its resolved path is what a program sees.
+        workspace = home.resolve()
+        uncopied: list[tuple[str, Outcome]] = []
+        for result in run_many(_tasks(unknown, plan, workspace, uncopied), plan.jobs):
+            turn, place = unknown[result.index], workspace / str(result.index)
+            try:
+                outcome = outcome_of(result, turn.seed, place, turn.world)
+            except Exception as error:  # Whatever it is, the others go on.
+                outcome = _build_unjudged(turn, error)
+            remove_tree(place)
+            if outcome.counts:
+                journal.add(turn.key, outcome)
+            yield turn.entry.student.name, outcome
+        yield from uncopied
+
+
+def _build_unjudged(turn: _Turn, error: Exception) -> Outcome:
+    return Outcome(turn.seed, "", describe_fault(error), world=turn.world.where)
+
+
+def _tasks(
+    turns: Sequence[_Turn],
+    plan: MarkPlan,
+    workspace: Path,
+    uncopied: list[tuple[str, Outcome]],
+) -> Iterator[Task]:
+    """Yield the runs; those whose files cannot be copied are added to `uncopied`."""
+    for index, turn in enumerate(turns):
+        student = turn.entry.student
+        try:
+            folder = copy_of(student, workspace / str(index))
+        except Exception as error:  # Whatever it is, the others go on.
+            uncopied.append((student.name, _build_unjudged(turn, error)))
+            continue
+        program = program_in(
+            student, folder, arguments=plan.arguments, python_path=user_python_path()
+        )
+        yield Task(
+            index=index,
+            program=program,
+            spec=turn.spec,
+            options=turn.options,
+            goals=turn.world.own_goals,
+            parameters={"student": student.name, "seed": turn.seed},
+            keep=plan.keep,
+            real_time_limit_s=REAL_TIME_LIMIT_S,
+            isolate=plan.isolate,
+            is_replayed=True,
+        )

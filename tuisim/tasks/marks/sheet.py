@@ -1,0 +1,340 @@
+"""The sheet of a class: one row a student, with points, robustness and the reason of failure.
+
+It becomes a text table, or a data frame for CSV, Parquet, JSONL and Arrow files.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import field, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from tuisim.base.data_class import dataclass
+from tuisim.base.errors import counted, printable
+from tuisim.base.faults import UNJUDGED
+from tuisim.base.source import source_lines
+from tuisim.logs.export import export_frame
+from tuisim.tasks.goals.judgement import most_points, points_of
+from tuisim.tasks.goals.spec import Goal
+from tuisim.tasks.marks.hand_ins import GradebookKind
+from tuisim.tasks.marks.outcome import Outcome, merged
+from tuisim.tasks.marks.students import Student
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+NOT_RUN = "not run"
+DIGITS = 4
+"""Points and shares are rounded to so many decimals: sums of floats are not exact."""
+MARKS_FORMAT = 1
+GOAL_PREFIX = "goal_"
+"""Before the name of a goal in the name of its column."""
+
+
+@dataclass(frozen=True, slots=True)
+class Cell:
+    """One goal of one student."""
+
+    points: float
+    """Mean over the runs; NaN if one could not be judged."""
+    met: int
+    """Number of runs that met it; of a goal that takes points off, that is the fault."""
+    reason: str = ""
+    """Why it was missed by the first run that missed it; empty if none did."""
+    line: int = 0
+    """The program's line that the reason is about; 0 if there is none."""
+    seed: int = 0
+    """The seed of that run."""
+    hidden: bool = False
+    """Whether that was only in hidden worlds."""
+
+
+@dataclass(frozen=True, slots=True)
+class SheetRow:
+    """One student."""
+
+    name: str
+    program: str
+    """Name of the main program; empty if there is none."""
+    points: float
+    """Mean over the runs, NaN if one could not be judged; unless the tutor has set others."""
+    robustness: float
+    """Share of the runs with all points, 0 to 1; in a task without points, of those that met every goal."""
+    cells: tuple[Cell, ...]
+    """In the order of the columns."""
+    reason: str = ""
+    """Why the first run without all points failed; empty if each has them."""
+    line: int = 0
+    """The program's line that the reason is about; 0 if there is none."""
+    source_line: str = ""
+    """The text of that line."""
+    seed: int = 0
+    """The seed of that run."""
+    failure: str = ""
+    """Why the program of that run did not finish, or could not be run; empty if it finished."""
+    hidden: bool = False
+    """Whether that was only in a hidden world."""
+    error: str = ""
+    """The traceback of that run; empty if it has none."""
+    runs: int = 0
+    stopped_early: bool = False
+    """Whether further seeds were left out, because the program hung, flooded or died."""
+    refusal: str = ""
+    """The first line of the program that the brick's Python would refuse, and how many follow; empty for none."""
+    outcomes: tuple[Outcome, ...] = ()
+    earned: float | None = None
+    """The points that the runs have earned, if the tutor has set others."""
+    comment: str = ""
+    """The tutor's."""
+    ids: Mapping[GradebookKind, str] = field(default_factory=dict)
+    """How a gradebook names the student; see `Student.ids`."""
+
+
+@dataclass(frozen=True, slots=True)
+class Sheet:
+    """The marks of a class."""
+
+    title: str
+    columns: tuple[Goal, ...]
+    """The goals that are shown."""
+    rows: tuple[SheetRow, ...]
+    seeds: tuple[int, ...]
+
+    @property
+    def most_points(self) -> float:
+        """The points of a program that meets every goal."""
+        return rounded(most_points(self.columns))
+
+
+def columns_of(goals: Sequence[Goal]) -> list[Goal]:
+    """Return the goals that a student is shown, in words: not those that are only parts of others."""
+    return [replace(goal, say=goal.say or goal.name) for goal in goals if goal.points or goal.say]
+
+
+def sheet_of(
+    title: str,
+    columns: Sequence[Goal],
+    seeds: Sequence[int],
+    students: Sequence[Student],
+    outcomes: Mapping[str, Sequence[Outcome]],
+    worlds: Sequence[str] = ("",),
+) -> Sheet:
+    """Return the sheet of a class.
+
+    Args:
+        outcomes: The outcomes of the runs so far, by the name of the student, in any order.
+        worlds: The worlds of the task, see `TrialWorld.where`, the first one first.
+    """
+    rows = tuple(
+        row_of(student, columns, outcomes.get(student.name, ()), seeds, worlds)
+        for student in students
+    )
+    return Sheet(title, tuple(columns), rows, tuple(seeds))
+
+
+def row_of(
+    student: Student,
+    columns: Sequence[Goal],
+    outcomes: Sequence[Outcome],
+    seeds: Sequence[int],
+    worlds: Sequence[str],
+) -> SheetRow:
+    """Return the row of a student."""
+    ordered = merged(outcomes, seeds, worlds)
+    if not student.source or not ordered:
+        return _build_empty_row(student, columns, outcomes)
+    totals = [_points(columns, one) for one in ordered]
+    # In a task without points, every goal counts.
+    counted_goals = [column for column in columns if column.points] or columns
+    incomplete = [one for one in ordered if _missed(one, counted_goals)]
+    failed = incomplete[0] if incomplete else None
+    reason, line = _reason(failed, counted_goals) if failed else ("", 0)
+    lines = source_lines(student.text)
+    return SheetRow(
+        name=student.name,
+        program=student.shown_main,
+        points=rounded(math.fsum(totals) / len(totals)),
+        robustness=rounded(1 - len(incomplete) / len(ordered)),
+        cells=tuple(_cell(column, ordered) for column in columns),
+        reason=reason,
+        line=line,
+        source_line=printable(lines[line - 1].strip()) if 0 < line <= len(lines) else "",
+        seed=failed.seed if failed else 0,
+        failure=failed.failure if failed else "",
+        error=failed.error if failed else "",
+        hidden=failed.hidden if failed else False,
+        runs=len(ordered),
+        stopped_early=len(ordered) < len(seeds) and ordered[0].gave_up,
+        refusal=student.refusal,
+        ids=student.ids,
+        outcomes=tuple(
+            sorted(
+                (one for one in outcomes if one.counts),
+                key=lambda one: (worlds.index(one.world), one.seed),
+            )
+        ),
+    )
+
+
+def _build_empty_row(
+    student: Student, columns: Sequence[Goal], outcomes: Sequence[Outcome]
+) -> SheetRow:
+    """Return the row of a student of whom no run is known; the points are NaN unless that is the student's doing."""
+    failed = next((one for one in outcomes if not one.counts), None)
+    reason = student.problem or NOT_RUN
+    if failed or student.is_unread:
+        reason = (
+            f"{UNJUDGED}: {(failed.failure if failed else reason).removeprefix(f'{UNJUDGED}: ')}"
+        )
+    points = math.nan if failed or student.is_unread else 0.0
+    cells = tuple(Cell(points, 0, reason) for _ in columns)
+    return SheetRow(
+        *(student.name, student.shown_main, points, 0.0, cells, reason),
+        failure=student.problem,
+        ids=student.ids,
+    )
+
+
+def _points(columns: Sequence[Goal], outcome: Outcome) -> float:
+    """Return the points of one run; one of which nothing is recorded has no judgements, and no points."""
+    met = {goal.name for goal in outcome.goals if goal.met}
+    unknown = {goal.name for goal in outcome.goals if goal.is_unknown}
+    return points_of(
+        math.nan if column.points and column.name in unknown else column.points
+        for column in columns
+        if column.name in met | unknown
+    )
+
+
+def _cell(column: Goal, outcomes: Sequence[Outcome]) -> Cell:
+    goals = [
+        (one, next((goal for goal in one.goals if goal.name == column.name), None))
+        for one in outcomes
+    ]
+    met = sum(goal is not None and goal.met for _, goal in goals)
+    is_unknown = any(goal is not None and goal.is_unknown for _, goal in goals)
+    points = math.nan if is_unknown else rounded(column.points * met / len(goals))
+    for outcome, goal in goals:
+        if goal is None:
+            # Of a run of which nothing is recorded, it is known only that it failed.
+            return Cell(points, met, outcome.failure, 0, outcome.seed, outcome.hidden)
+        if not goal.is_good:
+            return Cell(points, met, goal.reason, goal.line, outcome.seed, goal.hidden)
+    return Cell(points, met)
+
+
+def _missed(outcome: Outcome, columns: Sequence[Goal]) -> bool:
+    """Return whether a run has missed one of the goals, or met one that takes points off."""
+    good = {goal.name for goal in outcome.goals if goal.is_good}
+    return not all(column.name in good for column in columns)
+
+
+def _reason(outcome: Outcome, columns: Sequence[Goal]) -> tuple[str, int]:
+    """Return why a run failed, and the program's line: an error comes before the goals that it prevented."""
+    names = {column.name: column.say for column in columns}
+    missed = [goal for goal in outcome.goals if not goal.is_good and goal.name in names]
+    if outcome.failure:
+        # A program that was stopped has no line of an error; what it did not get done has one.
+        return outcome.failure, outcome.line or next((goal.line for goal in missed if goal.line), 0)
+    return (missed[0].reason or names[missed[0].name], missed[0].line) if missed else ("", 0)
+
+
+def rounded(value: float) -> float:
+    """Return points or a share as they are shown and stored."""
+    # Without the sign of a zero.
+    return round(value, DIGITS) + 0.0
+
+
+def in_words(points: float) -> str:
+    """Return points as text, at most two decimals; `?` for NaN."""
+    return "?" if math.isnan(points) else f"{points:.2f}".rstrip("0").rstrip(".")
+
+
+def lines_of(
+    sheet: Sheet, most_name: int = 40, most_goal: int = 60
+) -> tuple[list[str], list[list[str]]]:
+    """Return heads and rows of the text table; the reason comes last.
+
+    Args:
+        most_name, most_goal: Characters of the names of students and goals; the middle of longer ones is left out.
+    """
+    goals = [_without_middle(column.name, most_goal) for column in sheet.columns]
+    heads = ["student", "points", "robustness", *goals, "reason"]
+    rows = []
+    for row in sheet.rows:
+        points = (
+            in_words(row.points),
+            f"{row.robustness:.0%}",
+            *(in_words(cell.points) for cell in row.cells),
+        )
+        where = f"line {row.line}: " if row.line and f"line {row.line}" not in row.reason else ""
+        rows.append([_without_middle(row.name, most_name), *points, f"{where}{row.reason}"])
+    return heads, rows
+
+
+def _without_middle(name: str, most: int) -> str:
+    # Names of files that belong together differ at either end.
+    end = most // 3
+    return name if len(name) <= most else f"{name[: most - end - 1]}…{name[-end:]}"
+
+
+def summary_of(sheet: Sheet) -> str:
+    """Return one sentence about the class."""
+    full = sum(row.robustness == 1 for row in sheet.rows)
+    known = [row.points for row in sheet.rows if not math.isnan(row.points)]
+    mean = math.fsum(known) / len(known) if known else 0.0
+    size = f"{counted(len(sheet.rows), 'student')}, {counted(len(sheet.seeds), 'seed')}"
+    points = f"mean {in_words(mean)} of {in_words(sheet.most_points)} points"
+    return f"{size}: {points}; {full} with all points" + (
+        " for every seed" if len(sheet.seeds) > 1 else ""
+    )
+
+
+def frame_of(sheet: Sheet) -> pd.DataFrame:
+    """Return the sheet as a frame: one row a student, for each goal a column `goal_NAME` with its mean points."""
+    import pandas as pd
+
+    rows = sheet.rows
+    columns: dict[str, list[Any]] = {
+        "student": [row.name for row in rows],
+        "program": [row.program for row in rows],
+        "points": [row.points for row in rows],
+        "robustness": [row.robustness for row in rows],
+        "runs": [row.runs for row in rows],
+    }
+    for at, column in enumerate(sheet.columns):
+        columns[f"{GOAL_PREFIX}{column.name}"] = [row.cells[at].points for row in rows]
+    columns |= {
+        "reason": [row.reason for row in rows],
+        "line": [row.line for row in rows],
+        "source_line": [row.source_line for row in rows],
+        "seed": [row.seed for row in rows],
+        "earned": [row.points if row.earned is None else row.earned for row in rows],
+        "comment": [row.comment for row in rows],
+    }
+    return pd.DataFrame(columns)
+
+
+def metadata_of(sheet: Sheet) -> dict[str, Any]:
+    """Return the metadata of an exported sheet: the goals with their points, and the seeds."""
+    return {
+        "format": MARKS_FORMAT,
+        "table": "marks",
+        "title": sheet.title,
+        "goals": [
+            {"name": one.name, "say": one.say, "points": one.points} for one in sheet.columns
+        ],
+        "points": sheet.most_points,
+        "seeds": list(sheet.seeds),
+    }
+
+
+def export_marks(sheet: Sheet, path: Path) -> None:
+    """Write the sheet in the format of the suffix; an existing file is replaced.
+
+    Raises:
+        ExportError: it cannot be written; an existing file is unchanged.
+    """
+    export_frame(frame_of(sheet), path, metadata_of(sheet))

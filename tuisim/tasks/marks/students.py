@@ -1,0 +1,403 @@
+"""The students of a class, as files and folders."""
+
+from __future__ import annotations
+
+import os
+from collections import Counter
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from dataclasses import field, replace
+from pathlib import Path
+
+from tuisim.base.data_class import dataclass
+from tuisim.base.errors import ConfigError, listed, printable, see_page
+from tuisim.base.faults import describe_fault
+from tuisim.engine.runs.child.isolation import MOST_BYTES, MOST_FILES
+from tuisim.programs.notebook_file import SUFFIX as NOTEBOOK_SUFFIX
+from tuisim.programs.notebook_file import chosen_programs
+from tuisim.programs.program_file import FILE_FIELDS, ProgramSource, names_file, read_program
+from tuisim.tasks.marks.files import LEFT_OUT, unpack_zip
+from tuisim.tasks.marks.hand_ins import GradebookKind, HandIn, gather_files, group_hand_ins
+
+MAIN = "main.py"
+SUFFIX = ".py"
+_NO_PROGRAM = {
+    ".py.txt": "its name ends in .txt; rename it to end in .py",
+    **dict.fromkeys(
+        (".zip", ".tar", ".tgz", ".tar.gz", ".tar.xz", ".7z", ".rar"), "it is an archive; unpack it"
+    ),
+}
+"""What students hand in instead of a program, by the end of its name, and what to do."""
+ZIP_SUFFIX = ".zip"
+_PACKAGE = "__init__.py"
+"""What makes a folder a package is no program."""
+_LINK = "it is a link; hand in the files themselves"
+_MOST_LEVELS = 50
+
+
+@dataclass(frozen=True, slots=True)
+class Student:
+    """What one student has handed in."""
+
+    name: str
+    """Name of the folder, or of the file without `.py`; unique in the class."""
+    path: Path
+    """The file or folder."""
+    main: str = ""
+    """Path of the main program relative to the folder, or the file's name; empty if there is none."""
+    source: ProgramSource | None = None
+    """The main program; None if there is none that could be run."""
+    problem: str = ""
+    """Why there is none, one sentence."""
+    ids: Mapping[GradebookKind, str] = field(default_factory=dict)
+    """How a gradebook names the student; empty if the names of the files do not say."""
+    is_unread: bool = False
+    """Whether this machine could not read what the student has handed in, which is not the student's fault."""
+    refusal: str = ""
+    """The first line that the brick's Python would refuse, and how many follow; empty for none."""
+
+    @property
+    def shown_main(self) -> str:
+        """The path of the main program as it is shown."""
+        return _shown(self.main)
+
+    @property
+    def text(self) -> str:
+        """The text of the main program; empty if there is none."""
+        return self.source.program.text if self.source else ""
+
+
+@dataclass(frozen=True, slots=True)
+class StudentsFound:
+    """The contents of the folders of a class."""
+
+    students: tuple[Student, ...]
+    ignored: tuple[str, ...]
+    """Names of files that are no programs."""
+    left_out: tuple[str, ...] = ()
+    """Names of what nobody has handed in, such as `__MACOSX`, and of devices, pipes and sockets."""
+
+
+@dataclass(slots=True)
+class _Search:
+    """How hand-ins are read, and what is left out."""
+
+    program: str
+    unpacked: Path | None
+    max_bytes: int
+    left_out: dict[str, None] = field(default_factory=dict)
+    places: int = 0
+
+    def new_place(self, name: str) -> Path:
+        """Return the path of a folder of a name for what is unpacked."""
+        assert self.unpacked is not None
+        self.places += 1
+        place = self.unpacked / str(self.places)
+        place.mkdir()
+        return place / name
+
+    def unpack(self, path: Path) -> Path:
+        """Unpack a zip, if zips are unpacked; return the folder, or the path as it is."""
+        if self.unpacked is None or path.suffix.lower() != ZIP_SUFFIX or not os.path.isfile(path):
+            return path
+        place = self.new_place(path.stem)
+        unpack_zip(path, place, self.max_bytes)
+        return place
+
+    def names_in(self, folder: Path) -> list[str]:
+        """Return the names in a folder that may be a student's, in order."""
+        names = os.listdir(folder)
+        left_out = LEFT_OUT(str(folder), names)
+        self.left_out |= dict.fromkeys(sorted(map(_shown, left_out)))
+        return sorted(set(names) - left_out, key=lambda name: (name.casefold(), name))
+
+
+def find_students(
+    words: Sequence[str],
+    program: str = "",
+    excluded: Collection[Path] = (),
+    unpacked: Path | None = None,
+    max_bytes: int = MOST_BYTES,
+) -> StudentsFound:
+    """Return the students in folders; a folder that contains a main program, or a file, is one student.
+
+    Args:
+        words: Paths of folders and files.
+        program: Name of the main program in a student's folder, if there is one of that name; else it is `MAIN`, or the
+            only one.
+        excluded: Files and folders that belong to no student, such as the goals file; resolved.
+        unpacked: A folder for the contents of zips, and for files that gradebooks deliver one by one; None to leave
+            them as they are.
+        max_bytes: A larger folder is not read.
+
+    Raises:
+        ConfigError: there is no such file or folder, or nothing in it.
+    """
+    students: list[_Found] = []
+    ignored: list[str] = []
+    search = _Search(program, unpacked, max_bytes)
+    for word in words:
+        path = search.unpack(Path(word))
+        if os.path.isdir(path) and not os.path.isfile(path / MAIN):
+            for hand_in in _find_hand_ins(_entries(path, excluded, search), unpacked):
+                entry = next(iter(hand_in.paths.values()))
+                if hand_in.name or entry.is_symlink() or entry.is_dir() or _is_program(entry):
+                    students.append((path, _own_name(entry), _student(hand_in, search)))
+                else:
+                    ignored.append(_shown(entry.name))
+        elif os.path.exists(path):
+            student = _student(HandIn({path.name: path}), search)
+            students.append((_real(path).parent, _own_name(path), student))
+        else:
+            raise ConfigError(
+                "there is no such file or folder", "name a folder of students' programs", file=word
+            )
+    if not students:
+        hint = f"a file NAME.py or a folder for each student; {see_page('marking')}"
+        raise ConfigError("has no programs", hint, file=listed(words))
+    return StudentsFound(tuple(_named(students)), tuple(ignored), tuple(search.left_out))
+
+
+_Found = tuple[Path, str, Student]
+"""The folder, the name of the file or folder there, and the student."""
+
+
+def _find_hand_ins(paths: Iterable[Path], unpacked: Path | None) -> list[HandIn]:
+    return group_hand_ins(paths) if unpacked else [HandIn({path.name: path}) for path in paths]
+
+
+def _is_program(path: Path) -> bool:
+    return path.suffix.lower() in (SUFFIX, NOTEBOOK_SUFFIX) or bool(_why_no_program(path.name))
+
+
+def _real(path: Path) -> Path:
+    """Return a path without links; `Path.resolve` raises an error for links in a circle."""
+    return Path(os.path.realpath(path))
+
+
+def _entries(folder: Path, excluded: Collection[Path], search: _Search) -> Iterator[Path]:
+    """Return the visible entries of a folder by name."""
+    try:
+        names = search.names_in(folder)
+    except OSError as error:
+        raise ConfigError(f"cannot be read: {error.strerror or error}", file=str(folder)) from error
+    search.left_out |= dict.fromkeys(_shown(name) for name in names if name.startswith("."))
+    return (
+        folder / name
+        for name in names
+        if not name.startswith(".") and _real(folder / name) not in excluded
+    )
+
+
+def _named(students: Iterable[_Found]) -> Iterator[Student]:
+    """Return the students with names that are unique.
+
+    A file whose name without `.py` is also that of a neighbour keeps the ending. Where names are the same in several
+    folders, they have the name of the folder before them, and otherwise a number after them, that of the
+    gradebook where it gives one.
+    """
+    every = [(_real(folder), student, own) for folder, own, student in students]
+    beside = Counter((folder, student.name) for folder, student, _ in every)
+    names = [
+        one.name if one.ids or beside[folder, one.name] < 2 else own for folder, one, own in every
+    ]
+    counts = Counter(names)
+    full = [
+        name
+        if counts[name] < 2
+        else " ".join([name, *one.ids.values()])
+        if one.ids
+        else f"{folder.name}/{name}"
+        for (folder, one, _), name in zip(every, names, strict=True)
+    ]
+    seen: Counter[str] = Counter()
+    for name, (_, student, _) in zip(full, every, strict=True):
+        seen[name] += 1
+        yield replace(student, name=name if seen[name] == 1 else f"{name} ({seen[name]})")
+
+
+def _student(hand_in: HandIn, search: _Search) -> Student:
+    path = next(iter(hand_in.paths.values()))
+    name = hand_in.name or _own_name(path)
+    try:
+        path = gather_files(hand_in, search.new_place(hand_in.name)) if hand_in.name else path
+        student = _read_student(path, search)
+    except Exception as error:  # Whatever it is, the others go on.
+        student = Student(name, path, problem=describe_fault(error), is_unread=True)
+    return replace(student, name=_shown(hand_in.name) or student.name, ids=hand_in.ids)
+
+
+def _read_student(path: Path, search: _Search) -> Student:
+    own = _own_name(path)
+    is_file = not os.path.isdir(path)
+    endings = (SUFFIX, NOTEBOOK_SUFFIX, *_NO_PROGRAM)
+    ending = max((one for one in endings if own.lower().endswith(one)), key=len, default="")
+    name = own[: -len(ending)] if is_file and 0 < len(ending) < len(own) else own
+    if path.is_symlink():
+        return Student(name, path, problem=_LINK)
+    cell = search.program.partition("#")[2]
+    try:
+        path = _enter_folder(path, search)
+        if not os.path.isdir(path) and (why := _why_no_program(own)):
+            return Student(name, path, problem=f"{own}: {why}")
+        if not os.path.isdir(path):
+            # Its copy has the name of the file.
+            return _read(Student(name, path, own), path, cell)
+        if refused := _what_is_refused(path, name, search):
+            return Student(name, path, problem=refused)
+        main = _main_of(path, search.program)
+    except (ConfigError, OSError) as error:
+        problem = str(error).replace(f"{path}{os.sep}", "")
+        return Student(name, path, problem=problem, is_unread=isinstance(error, OSError))
+    return _read(Student(name, path, main), path / main, cell)
+
+
+def _enter_folder(path: Path, search: _Search) -> Path:
+    """Return the folder with a student's files: one that is alone in its folder is entered, and so is a zip, once.
+
+    Raises:
+        ConfigError: a zip cannot be unpacked.
+        OSError: a folder cannot be read.
+    """
+    is_packed = True
+    for _ in range(_MOST_LEVELS):
+        unpacked = search.unpack(path) if is_packed else path
+        is_packed, path = is_packed and unpacked == path, unpacked
+        names = search.names_in(path) if os.path.isdir(path) else []
+        if len(names) != 1 or (path / names[0]).is_symlink():
+            break
+        is_zip = is_packed and search.unpacked and names[0].lower().endswith(ZIP_SUFFIX)
+        if not is_zip and not os.path.isdir(path / names[0]):
+            break
+        path = path / names[0]
+    return path
+
+
+def _why_no_program(name: str) -> str:
+    """Return what a student is to do with a file that is no program, but was meant as one; empty for others."""
+    return next((why for ending, why in _NO_PROGRAM.items() if name.lower().endswith(ending)), "")
+
+
+def _own_name(path: Path) -> str:
+    """Return the name of a file or folder as it is shown; a path such as `.` ends in none."""
+    return _shown(path.name if path.name not in ("", "..") else _real(path).name)
+
+
+def _what_is_refused(folder: Path, name: str, search: _Search) -> str:
+    """Return why what is in a student's folder is not copied, as a sentence; empty if it is."""
+    own = _real(folder)
+    files = size = 0
+    inside = [folder]
+    while inside:
+        place = inside.pop()
+        for path in (place / inner for inner in search.names_in(place)):
+            if path.is_symlink():
+                if not _real(path).is_relative_to(own):
+                    return f"{_shown(os.path.relpath(path, folder))} is a link that leads out of the folder"
+            elif path.is_dir():
+                if len(path.relative_to(folder).parts) > _MOST_LEVELS:
+                    return f"its folders are nested more than {_MOST_LEVELS} deep"
+                inside.append(path)
+            elif path.is_file():
+                files, size = files + 1, size + path.lstat().st_size
+                if files > MOST_FILES or size > search.max_bytes:
+                    return (
+                        f"it has more than {MOST_FILES:,} files or {search.max_bytes >> 20:,} MiB"
+                    )
+            else:
+                search.left_out[
+                    f"{name}/{_shown(os.path.relpath(path, folder))}, which is no file"
+                ] = None
+    return ""
+
+
+def file_outside(student: Student) -> str:
+    """Return the option of the student's magic line that names a file outside the folder; empty if there is none.
+
+    Such a file would be read with the rights of whoever marks. Beside a program that is a file, the folders and the
+    programs are those of other students.
+    """
+    assert student.source is not None
+    is_file = not student.path.is_dir()
+    own = _real(student.path.parent if is_file else student.path)
+    for name in sorted(FILE_FIELDS & student.source.options.keys()):
+        word = str(student.source.options[name])
+        if name == "mats" or names_file(word):
+            place = _real(Path(word))
+            if is_file and (
+                place.parent != own or place.is_dir() or place.suffix.lower() == SUFFIX
+            ):
+                return name
+            if not place.is_relative_to(own):
+                return name
+    return ""
+
+
+def _shown(name: str) -> str:
+    """Return the name of a file or folder as it is shown and stored; bytes that are not UTF-8 become `\\xff`."""
+    return printable(os.fsencode(name).decode("utf-8", "backslashreplace"))
+
+
+def _read(student: Student, path: Path, cell: str) -> Student:
+    """Return a student with the program of a file.
+
+    Args:
+        cell: The number of the program cell, if the file is a notebook with several.
+    """
+    try:
+        if path.suffix.lower() == NOTEBOOK_SUFFIX:
+            return replace(student, source=_program_cell(path, cell))
+        source = read_program(path, as_python=True, alone=path == student.path)
+        return replace(
+            student, source=replace(source, program=replace(source.program, name=_shown(path.name)))
+        )
+    except ConfigError as error:
+        problem = printable(str(error).replace(str(path), path.name))
+        return replace(student, problem=problem, is_unread=isinstance(error.__cause__, OSError))
+
+
+def _program_cell(path: Path, cell: str) -> ProgramSource:
+    """Return the program of a notebook.
+
+    Raises:
+        ConfigError: it cannot be read, has none, or it is not clear which one it is.
+    """
+    cells = chosen_programs(str(path))
+    if len(cells) > 1 and cell:
+        cells = chosen_programs(f"{path}#{cell}")
+    if len(cells) > 1:
+        hint = f'in the goals file: program = "{path.name}#{len(cells)}"'
+        raise ConfigError(
+            f"which of its {len(cells)} program cells is the program?", hint, file=path.name
+        )
+    if unknown := cells[0].unknown:
+        raise ConfigError(
+            f"{unknown} in its magic line is defined only in the notebook", file=path.name
+        )
+    return cells[0].source
+
+
+def _main_of(folder: Path, program: str) -> str:
+    """Return the name of a folder's main program.
+
+    Raises:
+        ConfigError: there is none, or it is not clear which one it is.
+        OSError: the folder cannot be read.
+    """
+    named = program.partition("#")[0]
+    if named and os.path.isfile(folder / named):
+        return named
+    every = sorted(name for name in os.listdir(folder) if not name.startswith("."))
+    files = [name for name in every if os.path.isfile(folder / name)]
+    if MAIN in files:
+        return MAIN
+    programs = [name for name in files if name.lower().endswith((SUFFIX, NOTEBOOK_SUFFIX))]
+    names = [name for name in programs if name != _PACKAGE]
+    if len(names) == 1:
+        return names[0]
+    if names:
+        raise ConfigError(f"which of {listed(map(_shown, names))} is the main program?", MAIN)
+    instead = next(
+        (f"{_shown(name)}: {why}" for name in files if (why := _why_no_program(name))), ""
+    )
+    entries = listed(_shown(f"{name}/" if os.path.isdir(folder / name) else name) for name in every)
+    raise ConfigError(instead or f"there is no Python file, only: {entries}", MAIN)

@@ -1,0 +1,173 @@
+"""Tries a task out for its author: what programs earn that do nothing for it, its model, and wrong examples."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import closing
+from dataclasses import replace
+from enum import StrEnum
+from pathlib import Path
+from typing import Any
+
+from tuisim.base.data_class import dataclass
+from tuisim.base.errors import ConfigError
+from tuisim.engine.runs.temporary import temporary_home
+from tuisim.programs.program_file import find_program
+from tuisim.tasks.goals.answers import ASK, answer_lines
+from tuisim.tasks.goals.condition import ConditionKind
+from tuisim.tasks.goals.files import GoalsFile
+from tuisim.tasks.goals.spec import (
+    AvoidCondition,
+    DialogueCondition,
+    FinishCondition,
+    Goal,
+    LogCondition,
+    PrintCondition,
+    UseCondition,
+)
+from tuisim.tasks.marks.entries import entries_of
+from tuisim.tasks.marks.journal import Journal
+from tuisim.tasks.marks.outcome import Outcome, unknown_goals
+from tuisim.tasks.marks.runs import MarkPlan, outcomes_of
+from tuisim.tasks.marks.sheet import Sheet, columns_of, in_words, sheet_of
+from tuisim.tasks.marks.students import Student, find_students
+
+STILL_S = 30.0
+"""Simulated seconds that a robot stands still."""
+
+
+class TrialRole(StrEnum):
+    """What a program that is tried is."""
+
+    EMPTY = "empty program"
+    STILL = "stands still"
+    PRINTS = "prints the answers"
+    MODEL = "model"
+    WRONG = "wrong example"
+
+
+_DOES = {
+    TrialRole.EMPTY: "an empty program",
+    TrialRole.STILL: "standing still",
+    TrialRole.PRINTS: "printing the answers",
+}
+"""Those that do nothing of what is asked for."""
+
+
+@dataclass(frozen=True, slots=True)
+class TaskTrial:
+    """What the programs that were tried earn."""
+
+    sheet: Sheet
+    roles: tuple[TrialRole, ...]
+    """In the order of the rows."""
+    faults: tuple[str, ...]
+    """What is wrong with the task, each as a line."""
+
+
+def trial_of(
+    task: GoalsFile, plan: MarkPlan, wrong: Sequence[str], given: Mapping[str, Any]
+) -> TaskTrial:
+    """Try a task out; blocks while the programs run.
+
+    Args:
+        task: The task.
+        plan: How each program is run.
+        wrong: Files or folders of programs that must not get all points.
+        given: Settings that take precedence over those of the task, by path.
+
+    Raises:
+        ConfigError: the world, or a program of the author's, is wrong.
+        LogError: a recording cannot be read or written.
+    """
+    with temporary_home("tuisim-try-") as home:
+        tried = [*_fakes(task, home), *_of_author(task, wrong)]
+        entries, students = entries_of([student for _, student in tried], task, given)
+        outcomes: dict[str, list[Outcome]] = {student.name: [] for student in students}
+        with (
+            Journal(home / "journal.jsonl", resumes=False) as journal,
+            closing(outcomes_of(entries, plan, journal)) as found,
+        ):
+            for name, outcome in found:
+                outcomes[name].append(outcome)
+    worlds = [world.where for world in plan.worlds]
+    sheet = sheet_of(
+        task.title, columns_of(task.every_goal), plan.seeds, students, outcomes, worlds
+    )
+    roles = tuple(role for role, _ in tried)
+    return TaskTrial(sheet, roles, tuple(_faults(sheet, roles)))
+
+
+def _fakes(task: GoalsFile, folder: Path) -> Iterator[tuple[TrialRole, Student]]:
+    """Write the programs that do nothing of what is asked for."""
+    still = f"import time\n\ntime.sleep({STILL_S:g})\n"
+    texts = {TrialRole.EMPTY: "", TrialRole.STILL: still}
+    if lines := answer_lines(task.goals):
+        said = [
+            f"print({line!r})\ntime.sleep(0.1)" if line is not ASK else "input()" for line in lines
+        ]
+        texts[TrialRole.PRINTS] = "\n".join(["import time", "", *said, ""])
+    for role, text in texts.items():
+        path = folder / f"{role}.py"
+        path.write_text(text, encoding="utf-8")
+        yield role, find_students([str(path)]).students[0]
+
+
+def _of_author(task: GoalsFile, wrong: Sequence[str]) -> Iterator[tuple[TrialRole, Student]]:
+    """Return the task's model and wrong examples.
+
+    Raises:
+        ConfigError: one of them is missing, or Python cannot read it.
+    """
+    model = [(TrialRole.MODEL, str(find_program(task.program)))] if task.program else []
+    for role, path in [*model, *((TrialRole.WRONG, path) for path in wrong)]:
+        for student in find_students([path]).students:
+            if student.source is None:
+                raise ConfigError(student.problem, f"a {role} of the task", file=str(student.path))
+            yield role, replace(student, name=f"{student.path.name} ({role})")
+
+
+def _faults(sheet: Sheet, roles: Sequence[TrialRole]) -> Iterator[str]:
+    """Yield what is wrong with a task."""
+    rows = list(zip(sheet.rows, roles, strict=True))
+    for at, goal in enumerate(sheet.columns):
+        if by := [
+            _DOES[role]
+            for row, role in rows
+            if role in _DOES and row.cells[at].met and goal.points >= 0
+        ]:
+            points = (
+                f" ({in_words(goal.points)} of {in_words(sheet.most_points)} points)"
+                if goal.points
+                else ""
+            )
+            yield f"{' and '.join(by)} meets “{goal.name}”{points}: {_remedy(goal)}"
+    for name, reason in unknown_goals(one for row in sheet.rows for one in row.outcomes).items():
+        yield f"“{name}” cannot be judged: {reason}"
+    for row, role in rows:
+        if role is TrialRole.MODEL and row.robustness < 1:
+            where = f"line {row.line}: " if row.line else ""
+            yield f"the model {row.program} does not get all points: {where}{row.reason}"
+        elif role is TrialRole.WRONG and row.robustness == 1:
+            yield f"the wrong example {row.program} gets all points"
+
+
+def _remedy(goal: Goal) -> str:
+    """Return how to change a goal that a program meets without doing anything for it."""
+    for part in goal.parts:
+        match part:
+            case FinishCondition():
+                return "every program ends: give it `after`, a goal that the robot must have met"
+            case PrintCondition() | LogCondition() | DialogueCondition():
+                return (
+                    "give it `after`, `x_mm` or `reading`, for what the robot must have done before"
+                )
+            case AvoidCondition() | UseCondition():
+                return "give it a second condition, one that the robot must meet"
+    if goal.until is not None:
+        return (
+            "it holds without doing anything: join it by `all` with a goal that the robot must meet"
+        )
+    if any(part.KIND is ConditionKind.HELD for part in goal.parts):
+        return "a robot that stands still keeps to it: give it `until`, a goal that the robot must meet"
+    return "give it `after`, a goal that the robot must have met"

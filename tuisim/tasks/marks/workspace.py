@@ -1,0 +1,96 @@
+"""Copies of what students have handed in: each run gets its own, so that no program changes what others see."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+from collections.abc import Iterator
+from contextlib import suppress
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from tuisim.base.errors import LogError
+from tuisim.base.regular_file import open_regular, read_regular
+from tuisim.base.source import Program
+from tuisim.tasks.marks.files import LEFT_OUT, copy_file, copy_tree
+from tuisim.tasks.marks.students import SUFFIX, Student
+
+_PIECE = 1 << 20
+
+
+def copy_of(student: Student, place: Path) -> Path:
+    """Return a new folder with a copy of a student's files.
+
+    Files that cannot be read are left out, as the program could not read them either.
+
+    Raises:
+        LogError: the copy cannot be written.
+    """
+    try:
+        if os.path.isdir(student.path):
+            copy_tree(student.path, place)
+        else:
+            place.mkdir()
+            copy_file(student.path, place / student.main)
+    except OSError as error:
+        raise LogError(f"its copy cannot be written: {error.strerror or error}") from error
+    return place
+
+
+def program_in(student: Student, folder: Path, **changes: Any) -> Program:
+    """Return a student's main program as one of the copy in a folder, which is its working directory."""
+    assert student.source is not None
+    program = student.source.program
+    if program.module_folder:
+        # A cell of a notebook is no file.
+        return replace(program, module_folder=str(folder), working_directory=str(folder), **changes)
+    return replace(
+        program, path=str(folder / student.main), working_directory=str(folder), **changes
+    )
+
+
+def digest_of(student: Student) -> str:
+    """Return a hash of the names and contents of a student's files, hexadecimal."""
+    digest = hashlib.sha256()
+    for path in _files(student.path):
+        relative = os.path.relpath(path, student.path.parent)
+        digest.update(os.fsencode(relative) + b"\0")
+        try:
+            # A link is what it says: what it leads to may be no file of the student's.
+            if path.is_symlink():
+                digest.update(hashlib.sha256(os.fsencode(os.readlink(path))).digest())
+            else:
+                digest.update(_hash_file(path))
+        except OSError as error:
+            digest.update(str(error.errno).encode())
+    return digest.hexdigest()
+
+
+def read_modules(student: Student) -> list[str]:
+    """Return the texts of the main program and of a student's other Python files."""
+    texts = [student.text]
+    for path in _files(student.path) if os.path.isdir(student.path) else ():
+        if path.suffix == SUFFIX and path != student.path / student.main:
+            with suppress(OSError):
+                texts.append(read_regular(path, _PIECE).decode("utf-8", "replace"))
+    return texts
+
+
+def _hash_file(path: Path) -> bytes:
+    digest = hashlib.sha256()
+    with open_regular(path, follow_links=True) as file:
+        while piece := file.read(_PIECE):
+            digest.update(piece)
+    return digest.digest()
+
+
+def _files(path: Path) -> Iterator[Path]:
+    if not os.path.isdir(path):
+        yield path
+        return
+    for folder, folders, names in os.walk(path):
+        left_out = LEFT_OUT(folder, folders)
+        folders[:] = sorted(name for name in folders if name not in left_out)
+        # A named pipe or a device would block.
+        yield from (file for name in sorted(names) if os.path.isfile(file := Path(folder, name)))

@@ -1,0 +1,200 @@
+"""The local process pool: workers that execute tasks side by side, each with a warm process of its own."""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+import threading
+import types
+from collections.abc import Generator, Iterable, Iterator, Sequence
+from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
+from concurrent.futures.process import BrokenProcessPool
+from itertools import islice
+from multiprocessing import parent_process
+from multiprocessing.context import SpawnContext, SpawnProcess
+from pathlib import Path
+from typing import Any
+
+from tuisim.base.faults import describe_fault
+from tuisim.engine.protocol import End
+from tuisim.engine.runs.child.process import warm_up
+from tuisim.engine.runs.removal import remove_tree
+from tuisim.engine.runs.temporary import batch_folder
+from tuisim.tasks.execute import build_unjudged, execute, nothing_known_of
+from tuisim.tasks.task import Result, Task
+
+CHUNK = 4
+"""Tasks that a worker gets at once: to hand them over one by one costs as much as a short run."""
+CHUNKS_AHEAD = 2
+"""Chunks for each worker that are handed over before their turn."""
+MOST_TRIES = 3
+"""A task whose workers have ended this often gets a result without a run."""
+
+
+def default_jobs() -> int:
+    """Return the number of processors that this process may use."""
+    try:
+        return len(os.sched_getaffinity(0))
+    except AttributeError:
+        # macOS
+        return os.cpu_count() or 1
+
+
+def run_many(tasks: Iterable[Task], jobs: int = 0) -> Generator[Result]:
+    """Execute tasks, and yield their results in the order in which they finish. Each `next` blocks.
+
+    A result does not depend on the number of jobs. Tasks of a worker that has died are executed again. Closing the
+    iterator stops what is running.
+
+    Args:
+        tasks: The tasks; they are consumed as workers become free.
+        jobs: Number of workers; 0 is one for each processor. A single one is this process.
+
+    Raises:
+        LogError: the folder for the recordings cannot be created.
+    """
+    jobs, folder = jobs or default_jobs(), batch_folder()
+    try:
+        if jobs == 1:
+            warm_up()
+            yield from (execute(task, folder) for task in tasks)
+            return
+        pool = _Pool(jobs, folder)
+        try:
+            yield from pool.results(iter(tasks))
+        finally:
+            pool.stop()
+    finally:
+        remove_tree(folder)
+
+
+class _Pool:
+    """Worker processes that are replaced when one has died.
+
+    Args:
+        jobs: Their number.
+        folder: For the recordings.
+    """
+
+    def __init__(self, jobs: int, folder: Path) -> None:
+        self._jobs, self._folder = jobs, folder
+        self._pending: dict[Future[list[Result]], list[Task]] = {}
+        self._tries: dict[int, int] = {}
+        self._start()
+
+    def _start(self) -> None:
+        self._context = _Context()
+        self._executor = ProcessPoolExecutor(self._jobs, self._context, _prepare_worker)
+
+    def results(self, tasks: Iterator[Task]) -> Iterator[Result]:
+        """Yield the results of tasks as they finish."""
+        while True:
+            while len(self._pending) < self._jobs * CHUNKS_AHEAD and (
+                chunk := list(islice(tasks, CHUNK))
+            ):
+                self._submit(chunk)
+            if not self._pending:
+                return
+            done, _ = wait(self._pending, return_when=FIRST_COMPLETED)
+            try:
+                for future in done:
+                    found = _take_results(future, self._pending[future])
+                    del self._pending[future]
+                    yield from found
+            except BrokenProcessPool:
+                yield from self._start_again()
+
+    def _submit(self, chunk: list[Task]) -> None:
+        self._pending[self._executor.submit(_execute_all, chunk, self._folder)] = chunk
+
+    def _start_again(self) -> Iterator[Result]:
+        """Replace all workers, and submit what was not done; yield results for tasks that end every worker."""
+        unfinished = [
+            task
+            for future, chunk in self._pending.items()
+            if not _is_done(future)
+            for task in chunk
+        ]
+        finished = [
+            result for future in self._pending if _is_done(future) for result in future.result()
+        ]
+        self.stop()
+        self._pending.clear()
+        self._start()
+        yield from finished
+        for task in unfinished:
+            self._tries[task.index] = self._tries.get(task.index, 0) + 1
+            if self._tries[task.index] < MOST_TRIES:
+                # One by one: which of them has ended the worker is not known.
+                self._submit([task])
+            else:
+                why = f"the process that ran it has ended {MOST_TRIES} times"
+                yield nothing_known_of(task, End.KILLED, why)
+
+    def stop(self) -> None:
+        """End the workers and what they run."""
+        self._executor.shutdown(wait=False, cancel_futures=True)
+        for process in self._context.processes:
+            process.kill()
+        for process in self._context.processes:
+            process.join()
+
+
+def _take_results(future: Future[list[Result]], tasks: Sequence[Task]) -> list[Result]:
+    try:
+        return future.result()
+    except BrokenProcessPool:
+        raise
+    except Exception as error:  # One that cannot be sent, or is too large: the others go on.
+        return [build_unjudged(task, describe_fault(error)) for task in tasks]
+
+
+def _is_done(future: Future[list[Result]]) -> bool:
+    return future.done() and not future.cancelled() and future.exception() is None
+
+
+def _prepare_worker() -> None:
+    # The process that waits for the results ends this one.
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    threading.Thread(target=_end_with_parent, daemon=True).start()
+    warm_up()
+
+
+def _end_with_parent() -> None:
+    """End this worker when the process that waits for its results has been killed: the other workers keep its pipe."""
+    parent = parent_process()
+    assert parent is not None
+    parent.join()
+    os._exit(1)
+
+
+def _execute_all(tasks: Sequence[Task], folder: Path) -> list[Result]:
+    return [execute(task, folder) for task in tasks]
+
+
+class _Worker(SpawnProcess):
+    """A worker that does not import the main module again: a script that starts a batch would start it once more."""
+
+    @staticmethod
+    def _Popen(process_obj: Any) -> Any:  # noqa: N802 - its name in the library
+        main = sys.modules["__main__"]
+        sys.modules["__main__"] = types.ModuleType("__main__")
+        try:
+            return SpawnProcess._Popen(process_obj)
+        finally:
+            sys.modules["__main__"] = main
+
+
+class _Context(SpawnContext):
+    """Starts workers, and remembers them."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.processes: list[_Worker] = []
+
+    def Process(self, *args: Any, **kwargs: Any) -> _Worker:  # type: ignore[override]  # noqa: N802
+        """Return a new worker, which has not been started."""
+        worker = _Worker(*args, **kwargs)
+        self.processes.append(worker)
+        return worker

@@ -1,0 +1,47 @@
+"""What was pressed by hand in a run: buttons, the remote and touch sensors."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+from tuisim.base.data_class import dataclass
+from tuisim.engine.core.spec import TOUCH
+from tuisim.engine.protocol import SetButtons, UserAction
+
+
+@dataclass(frozen=True, slots=True)
+class HandPress:
+    """Something that was held by hand."""
+
+    name: str
+    """One of `PRESSABLE`."""
+    from_s: float
+    until_s: float
+
+
+def find_presses(
+    actions: Iterable[UserAction], names: Sequence[str], hz: int, ticks: int
+) -> tuple[HandPress, ...]:
+    """Return what was pressed of some names, in the order of the ends of the presses.
+
+    Args:
+        actions: The user's actions in a run.
+        names: Some of `PRESSABLE`.
+        hz: Ticks in a second.
+        ticks: How long the run is; what is still held then ends there.
+    """
+    since: dict[str, int] = {}
+    presses: list[HandPress] = []
+    for action in actions:
+        if not isinstance(action.command, SetButtons):
+            continue
+        pressed = action.command.pressed
+        for name in [name for name in since if name not in pressed]:
+            presses.append(HandPress(name, since.pop(name) / hz, action.tick / hz))
+        since |= {name: action.tick for name in pressed if name in names and name not in since}
+    return (*presses, *(HandPress(name, tick / hz, ticks / hz) for name, tick in since.items()))
+
+
+def find_hits(presses: Iterable[HandPress], names: Sequence[str]) -> list[HandPress]:
+    """Return the presses of some names, or of all touch sensors; all if there are no names."""
+    return [press for press in presses if not names or press.name in (*names, TOUCH)]

@@ -1,0 +1,236 @@
+"""Where a robot that steered by a dark line lost it.
+
+A robot follows a line if its program reads a light sensor over and over, the line was under or between its light
+sensors for a good part of the way or came back to them several times, and the robot mostly turned otherwise soon after
+what a sensor that is read saw had changed. It has lost the line where that was not under or between them for much
+longer than ever before. Only the time in which the robot moves counts.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from dataclasses import replace
+from itertools import pairwise
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tuisim.base.data_class import dataclass
+from tuisim.engine.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM, ColorSensorSpec
+from tuisim.engine.runs.arrays import world_points_mm
+from tuisim.engine.runs.sensor_arrays import quiet_color_columns
+
+if TYPE_CHECKING:
+    from tuisim.engine.core.field import Field
+    from tuisim.engine.core.spec import RunSpec
+
+    Array = NDArray[Any]
+    Bools = NDArray[np.bool_]
+
+MIN_READINGS = 3
+"""A program that reads a sensor less often does not look for anything."""
+_MIN_CONTRAST_PC = 40.0
+"""Less difference between the darkest and the brightest reading is no line on its ground."""
+_DARKER_PC = 5.0
+"""A sensor that reads so much less than the ground sees at least the edge of a line."""
+_GROUND_SHARE = 0.25
+"""Of what is brighter than the middle, so much may be darker than the ground: a line's edge, another colour."""
+_BLACK_PC = 25.0
+"""A line that is darker than this is called black."""
+_MIN_DARK_SHARE = 0.25
+"""This share of the way over the line is a good part of it."""
+_MIN_RETURNS = 3
+"""So many returns to the line are several."""
+_MIN_GAP_S, _LONGER = 1.5, 3.0
+"""A loss lasts so long, and is so many times longer than any time beside the line before."""
+_SOON_S, _MIN_TURN_DPS = 0.4, 5.0
+"""A robot steers if its rate of turn changes by so much within this time."""
+
+
+@dataclass(frozen=True, slots=True)
+class LostLine:
+    """A time in which a robot that followed a line did not see it."""
+
+    tick: int
+    """The last one at which a sensor saw the line."""
+    sensor: str
+    """The name of that sensor."""
+    is_black: bool
+    """Whether the line is black, and not just darker than its ground."""
+    seen_again: tuple[str, int] | None
+    """The sensor that saw the line again, and the tick; None if none did."""
+
+
+def find_lost_lines(
+    records: Array, spec: RunSpec, mat: Field, read_ticks: Mapping[str, Array]
+) -> Iterator[LostLine]:
+    """Yield each loss of the line, in order of time.
+
+    Args:
+        records: Telemetry, structured as `TICK_FIELDS`, shape (n,).
+        spec: The run.
+        mat: Its mat, prepared for its sensors.
+        read_ticks: The ticks at which the program read each light sensor, by name, in ascending order.
+    """
+    eyes = spec.robot.color_sensors
+    watched = {name: ticks for name, ticks in read_ticks.items() if len(ticks) >= MIN_READINGS}
+    if not watched:
+        return
+    seen = _see_line(records, spec, mat, _find_points(eyes))
+    if seen is None:
+        return
+    read, hz = np.sort(np.concatenate([*watched.values()])), spec.profile.tick_hz
+    way = _Way(records, np.logical_or.reduce(seen.is_dark))
+    looks = [dark for eye, dark in zip(eyes, seen.is_middle, strict=False) if eye.name in watched]
+    if not any(way.is_steered(look, hz) for look in looks):
+        return
+    for number in way.find_long_gaps(hz):
+        left, end = way.find_gap(number)
+        is_looking = np.searchsorted(read, end) - np.searchsorted(read, left) >= MIN_READINGS
+        if is_looking and way.was_followed(number):
+            # The sensors come first among the points.
+            dark = {eye.name: true for eye, true in zip(eyes, seen.is_dark, strict=False)}
+            yield _name_loss(dark, watched, left, hz, seen.is_black)
+
+
+def _name_loss(
+    dark: Mapping[str, Bools], watched: Collection[str], left: int, hz: int, is_black: bool
+) -> LostLine:
+    """Return the loss after a tick by the sensor that saw the line last, if possible one that is read.
+
+    Args:
+        dark: Where each sensor saw the line, by name.
+        watched: The names of those that are read.
+        left: The tick.
+        hz: Ticks per second.
+        is_black: Whether the line is.
+    """
+    seen = {name: _find_last(true[: left + 1]) for name, true in dark.items()}
+    recent = [name for name in watched if seen[name] >= left - _MIN_GAP_S * hz]
+    sensor = max(recent or seen, key=lambda name: seen[name])
+    rests = {name: true[left + 1 :] for name, true in dark.items()}
+    again = [(left + 1 + int(rest.argmax()), name) for name, rest in rests.items() if rest.any()]
+    tick, name = min(again, default=(0, ""))
+    return LostLine(max(0, seen[sensor]), sensor, is_black, (name, tick) if name else None)
+
+
+def is_on_mat(records: Array, sensor: ColorSensorSpec) -> Bools:
+    """Return at which ticks all that a sensor sees is on the mat, shape (n,)."""
+    x_mm, y_mm = world_points_mm(records, sensor.x_mm, sensor.y_mm)
+    edge_mm = sensor.diameter_mm / 2
+    in_width = (x_mm >= edge_mm) & (x_mm <= FIELD_WIDTH_MM - edge_mm)
+    is_on: Bools = in_width & (y_mm >= edge_mm) & (y_mm <= FIELD_HEIGHT_MM - edge_mm)
+    return is_on
+
+
+def reflected_percent(records: Array, sensor: ColorSensorSpec, spec: RunSpec, mat: Field) -> Array:
+    """Return what a light sensor reads of the mat without noise, in percent, shape (n,)."""
+    red, *_ = quiet_color_columns(records, sensor, spec, mat).values()
+    percent: Array = red / 2.55
+    return percent
+
+
+@dataclass(frozen=True, slots=True)
+class _Seen:
+    """Where the line was under the sensors and the points between them."""
+
+    is_dark: list[Bools]
+    """Whether at least its edge was under each, at each tick."""
+    is_middle: list[Bools]
+    """Whether each read less than half of the way from the line to its ground."""
+    is_black: bool
+
+
+def _find_points(eyes: Sequence[ColorSensorSpec]) -> list[ColorSensorSpec]:
+    """Return the sensors, and sensors that would fill the space between them."""
+    points = [*eyes]
+    for eye, other in pairwise(eyes):
+        apart_mm = np.hypot(other.x_mm - eye.x_mm, other.y_mm - eye.y_mm)
+        count = int(apart_mm // (eye.diameter_mm / 2))
+        for share in (number / count for number in range(1, count)):
+            x_mm = eye.x_mm + share * (other.x_mm - eye.x_mm)
+            y_mm = eye.y_mm + share * (other.y_mm - eye.y_mm)
+            points.append(replace(eye, x_mm=x_mm, y_mm=y_mm))
+    return points
+
+
+def _see_line(
+    records: Array, spec: RunSpec, mat: Field, points: Sequence[ColorSensorSpec]
+) -> _Seen | None:
+    """Return where the line was under some points; None if nothing on the mat that they saw has enough contrast."""
+    on = [is_on_mat(records, point) for point in points]
+    light = [reflected_percent(records, point, spec, mat) for point in points]
+    there = np.concatenate([percent[is_on] for percent, is_on in zip(light, on, strict=True)])
+    if not len(there) or np.ptp(there) < _MIN_CONTRAST_PC:
+        return None
+    middle = (there.min() + there.max()) / 2
+    limits = np.quantile(there[there > middle], _GROUND_SHARE) - _DARKER_PC, middle
+    edges, middles = (
+        [is_on & (percent < limit) for percent, is_on in zip(light, on, strict=True)]
+        for limit in limits
+    )
+    return _Seen(edges, middles, bool(there.min() < _BLACK_PC))
+
+
+class _Way:
+    """The stretches of a run in which the robot moved, with and without a sensor over the dark.
+
+    Args:
+        records: The telemetry.
+        is_dark: Whether a sensor was over the dark, at each tick.
+    """
+
+    def __init__(self, records: NDArray[Any], is_dark: Bools) -> None:
+        moved = np.zeros(len(records), np.bool_)
+        for name in ("x_mm", "y_mm", "heading_deg"):
+            moved[1:] |= np.diff(records[name]) != 0
+        self._ticks = np.flatnonzero(moved)
+        turned_deg = np.diff(records["heading_deg"], prepend=records["heading_deg"][:1])
+        self._turned_deg = ((turned_deg + 180) % 360 - 180)[moved]
+        self._is_dark = is_dark[moved]
+        edges = np.flatnonzero(np.diff(self._is_dark, prepend=False, append=False))
+        self._starts, self._ends = edges[::2], edges[1::2]
+        """Where the stretches over the dark begin and end, the end exclusive."""
+        self._next = np.append(self._starts[1:], len(self._ticks))
+        self._last_tick = len(records) - 1
+
+    def find_long_gaps(self, hz: int) -> list[int]:
+        """Return the numbers of the stretches over the dark that a loss may follow."""
+        gaps = self._next - self._ends
+        longest = np.maximum.accumulate(np.append(0, gaps[:-1]))
+        long_enough = (gaps >= _MIN_GAP_S * hz) & (gaps > _LONGER * longest)
+        return np.flatnonzero(long_enough).tolist() if len(gaps) else []
+
+    def find_gap(self, number: int) -> tuple[int, int]:
+        """Return the tick at which the dark was last seen in a stretch, and that at which it was seen again."""
+        index = int(self._next[number])
+        end = self._ticks[index] if index < len(self._ticks) else self._last_tick
+        return int(self._ticks[self._ends[number] - 1]), int(end)
+
+    def was_followed(self, number: int) -> bool:
+        """Return whether the dark was seen for a good part of the way up to the end of a stretch, or several times."""
+        share = self._is_dark[self._starts[0] : self._ends[number]].mean()
+        return number >= _MIN_RETURNS or bool(share >= _MIN_DARK_SHARE)
+
+    def is_steered(self, is_dark: Bools, hz: int) -> bool:
+        """Return whether the robot mostly turned otherwise soon after what a sensor saw had changed.
+
+        Args:
+            is_dark: Whether the sensor was over the line, at each tick.
+            hz: Ticks per second.
+        """
+        soon, turned_deg = round(_SOON_S * hz), self._turned_deg
+        changes = np.flatnonzero(np.diff(is_dark[self._ticks])) + 1
+        steered = 0
+        for change in changes:
+            before_deg = turned_deg[max(0, change - soon) : change].mean()
+            after_deg = turned_deg[change : change + soon].mean()
+            steered += abs(after_deg - before_deg) * hz >= _MIN_TURN_DPS
+        return 0 < steered >= len(changes) / 2
+
+
+def _find_last(true: Bools) -> int:
+    """Return the last place of a true value, -1 if there is none."""
+    places = np.flatnonzero(true)
+    return int(places[-1]) if len(places) else -1

@@ -1,0 +1,63 @@
+"""Which obstacles stand where a sensor of a run would see them."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+from tuisim.engine.core.collision import TOUCH_MM, Solids
+from tuisim.engine.core.geometry import Pose
+from tuisim.engine.core.outline import outline_of
+from tuisim.engine.core.sensors.infrared import PROXIMITY_RANGE_MM, proximity
+from tuisim.engine.core.sensors.ultrasonic import distance_mm
+from tuisim.engine.core.spec import InfraredSpec, RunSpec, UltrasonicSpec, WorldSpec
+from tuisim.engine.obstacles import OBSTACLES
+
+_SHARE = 0.7
+"""Of the distance that a program asks for: that of an obstacle before the robot."""
+_NEAREST_MM = 40.0
+"""Ultrasonic sensors measure nothing that is nearer than 30 mm."""
+
+
+def find_obstacle(
+    sensor: UltrasonicSpec | InfraredSpec, spec: RunSpec, pose: Pose, limit: float | None
+) -> str:
+    """Return the options that put an obstacle before a sensor; empty if no set of ours stands there.
+
+    Args:
+        sensor: The sensor.
+        spec: The run.
+        pose: Where the robot looks for the obstacle.
+        limit: How near it has to be, in mm or in % for an infrared sensor; None for anywhere.
+    """
+    sets = {name: replace(spec.world, obstacles=boxes) for name, boxes in OBSTACLES.items()}
+    distances = {name: _measure(sensor, spec, world, pose) for name, world in sets.items()}
+    nearest = min(distances, key=distances.__getitem__)
+    if distances[nearest] < (math.inf if limit is None else limit):
+        return f"-o {nearest}"
+    start = spec.world.start
+    if limit is None or (pose.x_mm, pose.y_mm) != (start.x_mm, start.y_mm):
+        return ""
+    per_unit = 1.0 if isinstance(sensor, UltrasonicSpec) else PROXIMITY_RANGE_MM / 100
+    way_mm = max(_NEAREST_MM, limit * per_unit * _SHARE, outline_of(spec.robot).front_mm + 1.0)
+    for name, world in sets.items():
+        for box in world.obstacles:
+            x_mm = math.floor(box.x_mm - sensor.y_mm - way_mm)
+            if _measure(sensor, spec, world, replace(pose, x_mm=float(x_mm))) < limit:
+                return f"-o {name} -x {x_mm}"
+    return ""
+
+
+def _measure(
+    sensor: UltrasonicSpec | InfraredSpec, spec: RunSpec, world: WorldSpec, pose: Pose
+) -> float:
+    """Return how far a sensor sees an obstacle of a world; infinite if it sees none, or the robot has no room there."""
+    bare = replace(world, obstacles=())
+    if isinstance(sensor, UltrasonicSpec):
+        distance, free = distance_mm(pose, sensor, world), distance_mm(pose, sensor, bare)
+        is_seen = spec.profile.min_echo_mm <= distance < free
+    else:
+        distance = proximity(pose, sensor, world)
+        is_seen = distance < proximity(pose, sensor, bare)
+    gaps = Solids(world, spec.robot).gaps_mm((pose.x_mm, pose.y_mm, pose.heading_deg))
+    return distance if is_seen and min(gaps, default=0.0) >= -TOUCH_MM else math.inf

@@ -1,0 +1,73 @@
+"""A program that looked for something on the mat, and saw one colour all the time."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tuisim.base.data_class import dataclass
+from tuisim.engine.core.columns import COLOR_NAMES
+from tuisim.engine.core.sensors.color import color_code
+from tuisim.engine.runs.sensor_arrays import quiet_color_columns
+from tuisim.tasks.reasons.lost_line import is_on_mat
+
+if TYPE_CHECKING:
+    from tuisim.engine.core.field import Field
+    from tuisim.engine.core.spec import RunSpec
+
+    Array = NDArray[Any]
+
+_MIN_READINGS = 20
+"""A program that reads less often while the robot drives does not look for anything."""
+_MIN_WAY_MM = 200.0
+"""On a shorter way it may not have come to it yet."""
+_SAME_LIGHT = 25
+"""A sensor whose channels change by less, of 255, sees the same."""
+
+
+@dataclass(frozen=True, slots=True)
+class OneColor:
+    """What the light sensors that a program read saw all the time."""
+
+    tick: int
+    """When it read the first of them."""
+    sensor: str
+    """The name of that sensor."""
+    color: str
+
+
+def find_one_color(
+    records: Array, spec: RunSpec, mat: Field, read_ticks: Mapping[str, Array]
+) -> OneColor | None:
+    """Return the one colour that a program saw with every light sensor that it read while the robot drove far.
+
+    None if it saw more, if it read too seldom, or if the robot did not drive far.
+
+    Args:
+        records: Telemetry, structured as `TICK_FIELDS`, shape (n,).
+        spec: The run.
+        mat: Its mat, prepared for its sensors.
+        read_ticks: The ticks at which the program read each light sensor, by name, in ascending order.
+    """
+    step_mm = np.hypot(np.diff(records["x_mm"], prepend=0), np.diff(records["y_mm"], prepend=0))
+    step_mm[0] = 0
+    first: OneColor | None = None
+    for sensor in spec.robot.color_sensors:
+        ticks = read_ticks[sensor.name]
+        ticks = ticks[is_on_mat(records, sensor)[ticks]]
+        if not len(ticks):
+            continue
+        way_mm = step_mm[ticks[0] : ticks[-1] + 1]
+        columns = quiet_color_columns(records[ticks], sensor, spec, mat).values()
+        channels = np.array([*columns])
+        if np.ptp(channels, axis=1).max() > _SAME_LIGHT:
+            return None
+        drives = (step_mm[ticks] > 0).sum() >= _MIN_READINGS and way_mm.sum() >= _MIN_WAY_MM
+        if drives and (first is None or ticks[0] < first.tick):
+            red, green, blue = (int(level) for level in channels.mean(axis=1))
+            name = COLOR_NAMES[color_code(red, green, blue)].lower()
+            first = OneColor(int(ticks[0]), sensor.name, name)
+    return first

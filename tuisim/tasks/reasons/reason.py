@@ -1,0 +1,214 @@
+"""Where a stored run went wrong, and why: what raised, what blocked, what a goal missed, what a sensor lost, and the
+first difference from the run before.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from enum import IntEnum, auto
+from typing import TYPE_CHECKING, Any
+
+from tuisim.base.data_class import dataclass
+from tuisim.engine.core.profile import NS_PER_S
+from tuisim.engine.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
+from tuisim.engine.protocol import End
+from tuisim.engine.runs.diff import parted_at_s
+from tuisim.engine.runs.readings import MODES_BY_KIND, READING_PORTS, find_ticks, read_readings
+from tuisim.engine.runs.records import Stream
+from tuisim.engine.runs.run_folder import open_mat
+from tuisim.engine.runs.standstill import standstill_of
+from tuisim.tasks.goals.judgement import GoalState, Judgement
+from tuisim.tasks.reasons.waited import find_awaited
+from tuisim.tasks.reasons.waited_words import describe_awaited
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from tuisim.engine.core.field import Field
+    from tuisim.engine.runs.recorded_run import Recording
+    from tuisim.engine.runs.run_folder import StoredRun
+    from tuisim.tasks.reasons.lost_line import LostLine
+
+_ASKED_FOR = frozenset({End.FINISHED, End.STOPPED, End.TIME_LIMIT})
+"""Ends that are no fault by themselves."""
+_TRACEBACK = "Traceback"
+"""How the error text of an exception begins."""
+
+
+class ReasonKind(IntEnum):
+    """What went wrong, most important first."""
+
+    RAISED = auto()
+    BLOCKED = auto()
+    MISSED = auto()
+    LOST = auto()
+    DIFFERS = auto()
+
+
+@dataclass(frozen=True, slots=True)
+class Reason:
+    """An instant at which a run went wrong, and why."""
+
+    kind: ReasonKind
+    time_s: float
+    line: int
+    """The program's line then; 0 if there is none."""
+    text: str
+    """What happened, a sentence that begins small and has no full stop."""
+
+    @property
+    def words(self) -> str:
+        """The sentence with time and line, such as `14.20 s, line 7: the robot stood at the wall`."""
+        line = f", line {self.line}" if self.line else ""
+        return f"{self.time_s:.2f} s{line}: {self.text}"
+
+
+def find_reasons(
+    run: StoredRun,
+    judgements: Sequence[Judgement] = (),
+    earlier: Recording | None = None,
+    mat: Field | None = None,
+) -> tuple[Reason, ...]:
+    """Return every reason why a run went wrong, most important first, those of one kind by time.
+
+    Args:
+        run: The run; it may still be running.
+        judgements: How it did on the goals of its task. A run that met them all went wrong by none of what blocked it
+            or what a sensor lost.
+        earlier: The run to compare with; None for none.
+        mat: The mat of the run; None opens it.
+
+    Raises:
+        LogError: a recording is damaged, or the mat no longer exists.
+    """
+    has_met = bool(judgements) and all(each.is_good for each in judgements)
+    reasons = [*_find_raised(run), *_find_missed(judgements)]
+    if not has_met:
+        reasons += [*_find_blocked(run), *_find_lost(run, mat), *_find_left_mat(run)]
+    if earlier is not None:
+        reasons += _find_difference(run, earlier)
+    return tuple(sorted(reasons, key=lambda reason: (reason.kind, reason.time_s)))
+
+
+def _line_at(run: StoredRun, time_s: float) -> int:
+    """Return the program's line at a time."""
+    if not run.telemetry.count:
+        return 0
+    tick = round(time_s * run.spec.profile.tick_hz)
+    return run.telemetry.record(min(tick, run.telemetry.count - 1)).line
+
+
+def _find_raised(run: StoredRun) -> Iterator[Reason]:
+    """Yield the error that ended the run, and those of threads, which did not."""
+    end = run.end
+    ending = end.summary if end and end.end not in _ASKED_FOR else ""
+    for error in _find_tracebacks(run):
+        if error.text not in ending:
+            yield error
+    if end and ending:
+        text = ending.removesuffix(f" (line {end.error_line})")
+        yield Reason(ReasonKind.RAISED, end.time_ns / NS_PER_S, end.error_line, text)
+
+
+def _find_tracebacks(run: StoredRun) -> Iterator[Reason]:
+    """Yield each traceback in the program's error output."""
+    place, line = re.compile(rf'  File ".*{re.escape(run.program.name)}", line ([0-9]+)'), 0
+    is_inside = False
+    for row in run.output.rows():
+        if row.stream is not Stream.STDERR:
+            continue
+        if row.text.startswith(_TRACEBACK):
+            is_inside, line = True, 0
+        elif is_inside and (found := place.match(row.text)):
+            line = int(found[1])
+        elif is_inside and not row.text.startswith(" "):
+            is_inside = False
+            yield Reason(ReasonKind.RAISED, row.time_ns / NS_PER_S, line, row.text)
+
+
+def _find_blocked(run: StoredRun) -> Iterator[Reason]:
+    """Yield where something solid stopped the robot, and what the program waited for in vain."""
+    if stood := standstill_of(run.telemetry, run.spec):
+        line = _line_at(run, stood.since_s)
+        yield Reason(ReasonKind.BLOCKED, stood.since_s, line, f"the robot {stood.words}")
+    waits = "waited" if run.end else "waits"
+    for awaited in find_awaited(run):
+        text = f"from here on it {waits}: {describe_awaited(awaited)}"
+        yield Reason(ReasonKind.BLOCKED, awaited.since_s, awaited.line, text)
+
+
+def _find_missed(judgements: Sequence[Judgement]) -> Iterator[Reason]:
+    """Yield the goals that were not met, and those that were but take points off; none that is hidden."""
+    for judged in judgements:
+        is_known = judged.state is not GoalState.UNKNOWN
+        if judged.event and is_known and not judged.is_good and not judged.goal.hidden:
+            what = judged.reason or judged.goal.say or judged.goal.name
+            text = f"a goal was missed: {what.removesuffix('.')}"
+            yield Reason(ReasonKind.MISSED, judged.event.time_s, judged.line, text)
+
+
+def _find_lost(run: StoredRun, mat: Field | None) -> Iterator[Reason]:
+    """Yield where a robot that followed a line lost it, and what else its light sensors lost or never saw."""
+    eyes = run.spec.robot.color_sensors
+    if not eyes or run.telemetry.count < 2:
+        return
+    from tuisim.tasks.reasons.lost_line import find_lost_lines
+    from tuisim.tasks.reasons.one_colour import find_one_color
+
+    mat = open_mat(run) if mat is None else mat
+    records, hz = run.telemetry.array(), run.spec.profile.tick_hz
+    read_ticks = _find_read_ticks(run, len(records))
+    for lost in find_lost_lines(records, run.spec, mat, read_ticks):
+        yield _lost_at(run, lost.tick, _describe_loss(lost, hz))
+    if seen := find_one_color(records, run.spec, mat, read_ticks):
+        text = f"from here on the {seen.sensor} sensor saw only {seen.color}"
+        yield _lost_at(run, seen.tick, text)
+
+
+def _find_left_mat(run: StoredRun) -> Iterator[Reason]:
+    """Yield where the robot drove over the edge of the mat for the first time."""
+    records = run.telemetry.array()
+    x_mm, y_mm = records["x_mm"], records["y_mm"]
+    is_off = (x_mm < 0) | (x_mm > FIELD_WIDTH_MM) | (y_mm < 0) | (y_mm > FIELD_HEIGHT_MM)
+    if is_off.any():
+        yield _lost_at(run, int(is_off.argmax()), "the robot left the mat")
+
+
+def _lost_at(run: StoredRun, tick: int, text: str) -> Reason:
+    time_s = tick / run.spec.profile.tick_hz
+    return Reason(ReasonKind.LOST, time_s, run.telemetry.record(tick).line, text)
+
+
+def _find_read_ticks(run: StoredRun, count: int) -> dict[str, NDArray[Any]]:
+    """Return those of the first ticks at which the program read each light sensor, by its name, in ascending order.
+
+    A run that goes on has more by now.
+    """
+    readings = read_readings(run.folder, is_over=run.end is not None)
+    rows = readings.find(MODES_BY_KIND["color"])
+    ticks = find_ticks(rows, run.spec.profile.tick_hz)
+    rows, ticks = rows[ticks < count], ticks[ticks < count]
+    return {
+        eye.name: ticks[rows["port"] == READING_PORTS.index(eye.port)]
+        for eye in run.spec.robot.color_sensors
+    }
+
+
+def _describe_loss(lost: LostLine, hz: int) -> str:
+    """Return what a sensor lost, and when it was seen again."""
+    text = f"the {lost.sensor} sensor left the {'black' if lost.is_black else 'dark'}"
+    if lost.seen_again is None:
+        return f"{text}, and saw it no more"
+    sensor, tick = lost.seen_again
+    who = "it" if sensor == lost.sensor else f"the {sensor} one"
+    return f"{text}; {who} saw it again after {(tick - lost.tick) / hz:.1f} s"
+
+
+def _find_difference(run: StoredRun, earlier: Recording) -> Iterator[Reason]:
+    """Yield where the robot left the way of the run before."""
+    hz = run.spec.profile.tick_hz, earlier.spec.profile.tick_hz
+    time_s = parted_at_s(run.telemetry.array(), earlier.telemetry.array(), hz)
+    if time_s is not None:
+        text = f"the robot left the way of {earlier.name}"
+        yield Reason(ReasonKind.DIFFERS, time_s, _line_at(run, time_s), text)

@@ -1,0 +1,503 @@
+"""What a program waited for in vain: what it read up to the end of its run and never saw change.
+
+It is found in the recording and the program's text in it. A reading counts if its line ran in the last seconds, and
+something depends on it: what is only printed or stored was not waited for. Of these, those in the call that the program
+was in come first. What the program turns itself, its motors and the gyro, does not count.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from enum import Enum, auto
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from tuisim.base.data_class import dataclass
+from tuisim.base.errors import LogError
+from tuisim.engine.core.columns import COLOR_NAMES
+from tuisim.engine.core.geometry import Pose
+from tuisim.engine.core.profile import NS_PER_S, Library
+from tuisim.engine.core.sensors import mounted_sensor
+from tuisim.engine.core.sensors.color import color_code
+from tuisim.engine.core.spec import (
+    BUTTONS,
+    INPUT_PORTS,
+    REMOTE_BY_HAND,
+    TOUCH,
+    ColorSensorSpec,
+    InfraredSpec,
+    RunSpec,
+    SensorSpec,
+    TouchSpec,
+    UltrasonicSpec,
+)
+from tuisim.engine.protocol import End, SetButtons, UserAction
+from tuisim.engine.runs.brick_state import BrickState, face_after
+from tuisim.engine.runs.readings import (
+    MODES_BY_KIND,
+    READING_MODES,
+    READING_PORTS,
+    find_ticks,
+    read_readings,
+)
+from tuisim.engine.runs.records import Stream
+from tuisim.engine.runs.run_folder import StoredRun, open_mat
+from tuisim.engine.runs.views import OutputView, TelemetryView, instant_of
+from tuisim.programs.questions import (
+    BUTTON_WORDS,
+    COLOR_WORDS,
+    REMOTE_WORDS,
+    Question,
+    find_question,
+)
+from tuisim.tasks.reasons.hand_presses import HandPress, find_hits, find_presses
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from tuisim.engine.core.field import Field
+
+    Array = NDArray[Any]
+
+WINDOW_S = 5.0
+"""Lines that ran in this time before the end are what the program was busy with."""
+MAX_AWAITED = 2
+"""More things at once are no help."""
+_ENDS = frozenset({End.TIME_LIMIT, End.STOPPED})
+"""Ends in the middle of a wait."""
+_SAME_LIGHT = 25
+"""A colour sensor whose channels change by less, of 255, sees the same."""
+_MOVED_MM = 50.0
+"""A robot that got no farther looks at the same place."""
+_MAX_POSES = 4000
+"""Distances are measured again at so many poses."""
+
+
+class Subject(Enum):
+    """What can be waited for."""
+
+    BUTTONS = auto()
+    TOUCH = auto()
+    REMOTE = auto()
+    BEACON = auto()
+    COLOR = auto()
+    DISTANCE = auto()
+    PROXIMITY = auto()
+    GYRO = auto()
+    CONNECTION = auto()
+    DATA = auto()
+    GAMEPAD = auto()
+
+
+_MODES: dict[Subject, tuple[str, ...]] = {
+    Subject.BUTTONS: MODES_BY_KIND["buttons"],
+    Subject.TOUCH: MODES_BY_KIND["touch"],
+    Subject.REMOTE: ("IR-REMOTE", "IR-REM-A"),
+    Subject.BEACON: ("IR-SEEK",),
+    Subject.COLOR: ("COL-REFLECT", "COL-COLOR", "REF-RAW", "RGB-RAW"),
+    Subject.DISTANCE: ("US-DIST-CM", "US-DIST-IN", "US-SI-CM", "US-SI-IN"),
+    Subject.PROXIMITY: ("IR-PROX",),
+    Subject.GYRO: ("GYRO-ANG", "GYRO-G&A", "GYRO-FAS"),
+    Subject.CONNECTION: ("accept",),
+    Subject.DATA: ("receive",),
+    Subject.GAMEPAD: MODES_BY_KIND["gamepad"],
+}
+_HANDS: dict[Subject, tuple[str, ...]] = {
+    Subject.BUTTONS: BUTTONS,
+    Subject.TOUCH: (TOUCH, *INPUT_PORTS),
+    Subject.REMOTE: tuple(REMOTE_BY_HAND),
+}
+"""What can be pressed by hand for a subject."""
+_BY_HAND = (Subject.BUTTONS, Subject.REMOTE)
+"""While the robot moves, a look at these is a guard, not a wait."""
+_PRESSED = (*_BY_HAND, Subject.TOUCH)
+"""While the program logs or plays, a look at these that only ends it is a guard."""
+_SEEN = (Subject.COLOR, Subject.DISTANCE, Subject.PROXIMITY)
+"""A robot that drives waits for these first."""
+_MAX_LINES = 64
+_MEASURED = (Subject.DISTANCE, Subject.PROXIMITY, Subject.GYRO)
+"""A program that only computes with these waits for nothing."""
+_SAME_HEADING_DEG = 2.0
+"""A robot that turns less is not turned by hand."""
+_FROM_OUTSIDE = (Subject.CONNECTION, Subject.DATA, Subject.GAMEPAD)
+"""Each recorded look at these was in vain."""
+
+
+@dataclass(frozen=True, slots=True)
+class Awaited:
+    """Something that the program read and never saw change."""
+
+    subject: Subject
+    port: str
+    times: int
+    """How often it was read."""
+    since_s: float
+    """When it was read for the first time."""
+    line: int
+    """The line that read it last."""
+    value: str = ""
+    """What was read each time: a colour, a distance with its unit."""
+    sought: tuple[str, ...] = ()
+    """What the program asks for: some of `PRESSABLE`, or colours; empty for any."""
+    needs_all: bool = False
+    """Whether it asks for all of them at once."""
+    limit: float | None = None
+    """The distance that it asks for, in mm or %; None if that is not known."""
+    pace_s: float = 0.0
+    """Time between two readings."""
+    pressed: tuple[HandPress, ...] = ()
+    """What was pressed by hand."""
+    waits_again: bool = False
+    """Whether the program has seen what was pressed, and waits for more."""
+    pose: Pose | None = None
+    """Where the robot was when it read it for the first time."""
+    has_moved: bool = False
+    """Whether it went elsewhere until it read it for the last time."""
+    mode: str = ""
+    """What was read, one of `READING_MODES`."""
+
+
+@dataclass(frozen=True, slots=True)
+class Recorded:
+    """The recording of a run up to an instant."""
+
+    folder: Path
+    text: str
+    """The program."""
+    spec: RunSpec
+    telemetry: TelemetryView
+    output: OutputView
+    actions: Sequence[UserAction]
+    open_mat: Callable[[], Field | None]
+    """Return the mat, prepared for the robot's sensors; None if it is not at hand."""
+
+
+def find_awaited(run: StoredRun) -> tuple[Awaited, ...]:
+    """Return what a stored run waited for; of one that goes on, what it waits for."""
+    recorded = Recorded(
+        folder=run.folder,
+        text=run.program.text,
+        spec=run.spec,
+        telemetry=run.telemetry,
+        output=run.output,
+        actions=run.actions,
+        open_mat=lambda: open_mat(run),
+    )
+    return find_at_end(recorded, run.end.end) if run.end else find_in_recording(recorded)
+
+
+def find_at_end(run: Recorded, end: End) -> tuple[Awaited, ...]:
+    """Return what a run waited for that was stopped, or stood still at its end; otherwise nothing."""
+    is_over = end is End.FINISHED and is_standing(run.telemetry, run.spec)
+    return find_in_recording(run) if end in _ENDS or is_over else ()
+
+
+def is_standing(telemetry: TelemetryView, spec: RunSpec) -> bool:
+    """Return whether the robot has stood still for the last `WINDOW_S`."""
+    ticks = _count_window_ticks(spec)
+    return telemetry.count > ticks and not _is_driving(telemetry.array(telemetry.count - 1 - ticks))
+
+
+def find_in_recording(run: Recorded) -> tuple[Awaited, ...]:
+    """Return what the program of a recording has read in its last seconds and never saw change; most important first.
+
+    What is damaged, or missing, was not waited for.
+    """
+    try:
+        return tuple(_Search(run).find_awaited())[:MAX_AWAITED]
+    except LogError:
+        return ()
+
+
+def _count_window_ticks(spec: RunSpec) -> int:
+    return round(WINDOW_S * spec.profile.tick_hz)
+
+
+def _is_driving(records: Array) -> bool:
+    """Return whether the robot or one of its wheels moves in some records."""
+    names = ("x_mm", "y_mm", "heading_deg", "left_position_deg", "right_position_deg")
+    return any((records[name][1:] != records[name][:-1]).any() for name in names)
+
+
+class _Search:
+    """Looks for what a program waits for.
+
+    Raises:
+        LogError: a recording is damaged.
+    """
+
+    def __init__(self, run: Recorded) -> None:
+        import numpy as np
+
+        self._run, self._hz = run, run.spec.profile.tick_hz
+        self._records = run.telemetry.array()
+        self._rows = read_readings(run.folder).rows
+        self._ticks = np.minimum(find_ticks(self._rows, self._hz), len(self._records) - 1)
+        self._first = max(0, len(self._records) - 1 - _count_window_ticks(run.spec))
+        """The tick at which the last seconds begin."""
+        self._drives = len(self._records) > 0 and _is_driving(self._records[self._first :])
+        self._lines = np.unique(self._rows["line"][self._ticks >= self._first]).tolist()
+        """The lines that have read something in the last seconds."""
+        self._asks_text = len(self._lines) <= _MAX_LINES
+        """Whether the program reads on so few lines that its text is asked about each."""
+
+    def find_awaited(self) -> Iterator[Awaited]:
+        """Yield what the program waits for, most important first."""
+        if not len(self._rows) or not len(self._records):
+            return
+        subjects = [subject for subject in Subject if not (subject in _BY_HAND and self._drives)]
+        if self._drives:
+            subjects.sort(key=lambda one: one not in _SEEN)
+        for subject in subjects:
+            if subject in _BY_HAND and self._is_turning():
+                continue
+            for port in READING_PORTS:
+                rows = self._find_readings(subject, port)
+                if len(rows) and (awaited := self._describe(subject, port, rows)) is not None:
+                    yield awaited
+
+    def _find_readings(self, subject: Subject, port: str) -> Array:
+        """Return the indices of all readings of a subject on the lines that the program is busy with."""
+        import numpy as np
+
+        is_meant = self._select(subject, port)
+        lines = np.unique(self._rows["line"][is_meant & (self._ticks >= self._first)])
+        if self._blocking_line is not None:
+            lines = lines[lines == self._blocking_line]
+        asking = [line for line in lines.tolist() if self._is_asking(subject, line)]
+        rows: Array = np.flatnonzero(is_meant & np.isin(self._rows["line"], asking))
+        return rows
+
+    def _select(self, subject: Subject, port: str) -> Array:
+        """Return of each reading whether it is one of a subject on a port."""
+        import numpy as np
+
+        modes = [READING_MODES.index(mode) for mode in _MODES[subject]]
+        is_meant: Array = np.isin(self._rows["mode"], modes)
+        is_meant &= self._rows["port"] == READING_PORTS.index(port)
+        return is_meant
+
+    def _has_seen(self, subject: Subject, port: str, presses: Iterable[HandPress]) -> bool:
+        """Return whether the program has read a subject, on any line, while something was pressed."""
+        times_s = self._ticks[self._select(subject, port)] / self._hz
+        return any(
+            ((times_s >= press.from_s) & (times_s < press.until_s)).any() for press in presses
+        )
+
+    def _ask(self, line: int) -> Question:
+        return find_question(self._run.text, line) if self._asks_text else Question()
+
+    def _is_asking(self, subject: Subject, line: int) -> bool:
+        """Return whether the program waits for a subject on a line, if it waits at all."""
+        question = self._ask(line)
+        if subject in _FROM_OUTSIDE:
+            return True
+        is_guard = subject in _PRESSED and question.is_last and self._is_logging_or_playing()
+        is_computed = subject in _MEASURED and not question.is_test
+        return question.decides and not is_guard and not is_computed
+
+    def _is_logging_or_playing(self) -> bool:
+        """Return whether the program has shown or stored readings in the last seconds, or has played sounds."""
+        return any(not self._ask(line).decides for line in self._lines) or any(
+            row.tick > self._first and row.stream is Stream.SPEECH
+            for row in self._run.output.rows()
+        )
+
+    @cached_property
+    def _blocking_line(self) -> int | None:
+        """The line of the call that the program is in, if it reads anything there."""
+        import numpy as np
+
+        lines = np.unique(self._records["line"][self._first + 1 :])
+        return int(lines[0]) if len(lines) == 1 and lines[0] in self._lines else None
+
+    def _is_turning(self) -> bool:
+        """Return whether a motor that drives no wheel has turned in the last seconds."""
+        face = BrickState()
+        for row in self._run.output.rows():
+            if row.stream is Stream.MOTORS:
+                if row.tick > self._first:
+                    return True
+                face = face_after(face, [row])
+        return any(dps for _, dps in face.turns)
+
+    def _describe(self, subject: Subject, port: str, rows: Array) -> Awaited | None:
+        """Return a subject with what the program asks of it; None if it changed, or came."""
+        import numpy as np
+
+        mode = READING_MODES[self._rows["mode"][rows[-1]]]
+        questions = [self._ask(line) for line in dict.fromkeys(self._rows["line"][rows].tolist())]
+        sought = _list_sought(subject, port, mode, questions)
+        needs_all = len(sought) > 1 and any(question.needs_all for question in questions)
+        limit = self._find_limit(mode, questions[0])
+        value = self._describe_constant(subject, port, rows, sought, needs_all, limit)
+        if value is None:
+            return None
+        presses = find_presses(
+            self._run.actions, _HANDS.get(subject, ()), self._hz, len(self._records)
+        )
+        times_s = self._rows["time_ns"][rows] / NS_PER_S
+        first, last = map(self._find_pose, rows[[0, -1]])
+        return Awaited(
+            subject,
+            port,
+            len(rows),
+            float(times_s[0]),
+            int(self._rows["line"][rows[-1]]),
+            value,
+            sought=sought,
+            needs_all=needs_all,
+            limit=limit,
+            pace_s=float(np.median(np.diff(times_s))) if len(rows) > 1 else 0.0,
+            pressed=presses,
+            waits_again=self._has_seen(subject, port, find_hits(presses, sought)),
+            pose=first,
+            has_moved=math.dist((first.x_mm, first.y_mm), (last.x_mm, last.y_mm)) > _MOVED_MM,
+            mode=mode,
+        )
+
+    def _find_pose(self, row: int) -> Pose:
+        return self._run.telemetry.record(int(self._ticks[row])).pose
+
+    def _find_limit(self, mode: str, question: Question) -> float | None:
+        """Return the distance that the program asks for, in mm or in % for an infrared sensor."""
+        limit = question.find_limit()
+        if limit is None or mode not in _MODES[Subject.DISTANCE]:
+            return limit
+        is_pybricks = self._run.spec.profile.motor_law.library is Library.PYBRICKS
+        is_in_mm = is_pybricks or "value" in question.words
+        return limit * (1.0 if is_in_mm else 25.4 if mode.endswith("IN") else 10.0)
+
+    def _describe_constant(
+        self,
+        subject: Subject,
+        port: str,
+        rows: Array,
+        sought: tuple[str, ...],
+        needs_all: bool,
+        limit: float | None,
+    ) -> str | None:
+        """Return what was read each time, in words; None if it changed, or was what a program waits for."""
+        import numpy as np
+
+        if subject in _FROM_OUTSIDE:
+            return "" if subject is not Subject.GAMEPAD or len(rows) > 1 else None
+        ticks = np.unique(self._ticks[rows])
+        sensor = next(
+            (sensor for sensor in self._run.spec.robot.sensors if sensor.port == port), None
+        )
+        match subject, sensor:
+            case Subject.BUTTONS, _:
+                return None if self._is_pressed(ticks, sought or BUTTONS, needs_all) else ""
+            case Subject.REMOTE, InfraredSpec():
+                return None if self._is_remote_pressed(ticks, sought, needs_all) else ""
+            case Subject.BEACON, InfraredSpec():
+                return None if self._run.spec.world.beacon else ""
+            case Subject.TOUCH, TouchSpec():
+                return None if any(value for (value,) in self._measure(sensor, ticks)) else ""
+            case Subject.COLOR, ColorSensorSpec():
+                return self._describe_color(sensor, ticks)
+            case Subject.DISTANCE, UltrasonicSpec():
+                return self._describe_distance(sensor, ticks, 10, sensor.noise_mm * 2 + 10, limit)
+            case Subject.PROXIMITY, InfraredSpec():
+                return self._describe_distance(sensor, ticks, 1, 2, limit)
+            case Subject.GYRO, _:
+                headings_deg = self._records["heading_deg"][ticks]
+                return None if np.ptp(headings_deg) > _SAME_HEADING_DEG else ""
+        return None
+
+    def _is_pressed(self, ticks: Array, names: Sequence[str], needs_all: bool) -> bool:
+        """Return whether any of some names, or all at once, was pressed by hand at any of some ticks."""
+        import numpy as np
+
+        enough = len(names) if needs_all else 1
+        changes = [
+            (action.tick, len({*names} & {*action.command.pressed}) >= enough)
+            for action in self._run.actions
+            if isinstance(action.command, SetButtons)
+        ]
+        states = [False, *(is_pressed for _, is_pressed in changes)]
+        at = np.searchsorted([tick for tick, _ in changes], ticks, side="right")
+        return bool(np.array(states)[at].any())
+
+    def _is_remote_pressed(self, ticks: Array, sought: tuple[str, ...], needs_all: bool) -> bool:
+        times_s = ticks / self._hz
+        in_world = any(
+            ((times_s >= press.from_s) & (times_s < press.until_s)).any()
+            for press in self._run.spec.world.remote
+        )
+        return in_world or self._is_pressed(ticks, sought or tuple(REMOTE_BY_HAND), needs_all)
+
+    def _measure(self, sensor: SensorSpec, ticks: Array) -> Iterator[tuple[float, ...]]:
+        """Yield what a sensor that needs no mat measures at each pose that the robot had at some ticks."""
+        import numpy as np
+
+        run = self._run
+        state = self._records[["x_mm", "y_mm", "heading_deg", "flags"]][ticks]
+        poses = ticks[np.sort(np.unique(state, return_index=True)[1])]
+        # Only a colour sensor looks at the mat.
+        measure: Callable[..., tuple[float, ...]] = mounted_sensor(sensor).kind.measure
+        for tick in poses[:: 1 + len(poses) // _MAX_POSES].tolist():
+            instant = instant_of(run.telemetry.record(tick), run.spec, run.spec.world.noise)
+            yield measure(sensor, instant, run.spec, None)
+
+    def _describe_distance(
+        self,
+        sensor: SensorSpec,
+        ticks: Array,
+        per_unit: int,
+        tolerance: float,
+        limit: float | None,
+    ) -> str | None:
+        """Return the smallest distance that was measured; None if the one that is asked for came.
+
+        If that is not known, distances that differ by more than a tolerance came.
+        """
+        low, high = math.inf, -math.inf
+        for value, *_ in self._measure(sensor, ticks):
+            low, high = min(value, low), max(value, high)
+        if (low <= limit) if limit else (high - low > tolerance):
+            return None
+        return f"{low / per_unit:.0f} {'cm' if per_unit > 1 else '%'}"
+
+    def _describe_color(self, sensor: ColorSensorSpec, ticks: Array) -> str | None:
+        """Return the name of the one colour that a sensor saw; None if it saw more, or if that is not known."""
+        import numpy as np
+
+        from tuisim.engine.runs.sensor_arrays import quiet_color_columns
+
+        if self._run.spec.world.pen_marks or (mat := self._run.open_mat()) is None:
+            return None
+        columns = quiet_color_columns(self._records[ticks], sensor, self._run.spec, mat).values()
+        channels = np.array(list(columns))
+        if np.ptp(channels, axis=1).max() > _SAME_LIGHT:
+            return None
+        red, green, blue = (int(level) for level in channels.mean(axis=1))
+        return COLOR_NAMES[color_code(red, green, blue)].lower()
+
+
+def _list_sought(
+    subject: Subject, port: str, mode: str, questions: Iterable[Question]
+) -> tuple[str, ...]:
+    """Return what a program asks for of a subject on several lines, in their order; empty for anything."""
+    names = dict.fromkeys(
+        name for question in questions for name in _find_sought(subject, port, mode, question)
+    )
+    # These usually end a program.
+    return tuple(sorted(names, key=("backspace", "remote.beacon").__contains__))
+
+
+def _find_sought(subject: Subject, port: str, mode: str, question: Question) -> tuple[str, ...]:
+    """Return what a program asks for of a subject; empty for anything."""
+    match subject:
+        case Subject.BUTTONS:
+            return question.find_words(BUTTON_WORDS)
+        case Subject.REMOTE:
+            return question.find_words(REMOTE_WORDS)
+        case Subject.TOUCH:
+            return (port,)
+        case Subject.COLOR if mode == "COL-COLOR":
+            return question.find_words(COLOR_WORDS)
+    return ()

@@ -1,0 +1,182 @@
+"""What a run waited for, in words: what it was, and the option, key or file that gives it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping
+from typing import assert_never
+
+from tuisim.engine.core.spec import EMPTY_MAT, InfraredSpec, RunSpec, UltrasonicSpec
+from tuisim.engine.runs.run_folder import StoredRun
+from tuisim.tasks.reasons.hand_presses import find_hits
+from tuisim.tasks.reasons.obstacle_advice import find_obstacle
+from tuisim.tasks.reasons.waited import Awaited, Subject, find_awaited
+
+COLORED_MAT = "Rainbow_bands"
+COLOR_PLACES_MM: Mapping[str, int] = {"red": 240, "green": 440, "blue": 740, "yellow": 1245}
+"""Where on that mat, in x, a robot looks at a colour."""
+_KEYS = {"up": "↑", "down": "↓", "left": "←", "right": "→"}
+_SHORT_PRESS_S = 0.1
+
+
+def describe_wait(run: StoredRun) -> str:
+    """Return what a run waited for in one sentence without its full stop; empty if for nothing."""
+    return "; ".join(
+        f"{describe_awaited(awaited)}: {name_remedy(awaited, run.spec, run.live)}"
+        for awaited in find_awaited(run)
+    )
+
+
+def describe_wait_with_keys(awaited: Iterable[Awaited], spec: RunSpec) -> str:
+    """Return the same for the app, with ids of actions in braces; empty if nothing was waited for."""
+    return "; ".join(
+        f"{describe_awaited(wait)}: {name_remedy_with_keys(wait, spec)}" for wait in awaited
+    )
+
+
+def describe_awaited(awaited: Awaited) -> str:
+    """Return what did not come."""
+    port, value = awaited.port, awaited.value
+    match awaited.subject:
+        case Subject.BUTTONS:
+            return _describe_presses(awaited) or (
+                f"read the brick's buttons {awaited.times:,} times, none was pressed"
+            )
+        case Subject.TOUCH:
+            presses = _describe_presses(awaited)
+            return f"touch sensor on {port}" + (f": {presses}" if presses else " was never pressed")
+        case Subject.REMOTE:
+            presses = _describe_presses(awaited) or "no button of the remote was pressed"
+            return f"infrared sensor on {port}: {presses}"
+        case Subject.BEACON:
+            return f"infrared sensor on {port} found no beacon"
+        case Subject.COLOR:
+            color = _find_color(awaited)
+            return f"colour sensor on {port} saw only {value}" + (f", not {color}" if color else "")
+        case Subject.DISTANCE:
+            return f"ultrasonic sensor on {port} saw nothing nearer than {value}"
+        case Subject.PROXIMITY:
+            return f"infrared sensor on {port} saw nothing nearer than {value}"
+        case Subject.GYRO:
+            return f"gyro on {port} was never turned"
+        case Subject.CONNECTION:
+            return f"socket.accept in line {awaited.line}: nobody connected"
+        case Subject.DATA:
+            return f"a socket in line {awaited.line}: nothing arrived"
+        case Subject.GAMEPAD:
+            return f"looked for a gamepad {awaited.times:,} times, none is simulated"
+        case other:
+            assert_never(other)
+
+
+def _describe_presses(awaited: Awaited) -> str:
+    """Return why what was pressed by hand did not help; empty if nothing was pressed."""
+    names = list(dict.fromkeys(press.name for press in awaited.pressed))
+    wants = awaited.sought
+    hits = find_hits(awaited.pressed, wants)
+    missing = [name for name in wants if name not in names]
+    if not names:
+        return ""
+    if not hits or (awaited.needs_all and missing):
+        others = "" if awaited.subject is Subject.TOUCH else f", not {' or '.join(missing)}"
+        return f"only {' and '.join(names)} {'was' if len(names) == 1 else 'were'} pressed{others}"
+    if awaited.needs_all:
+        return f"{' and '.join(wants)} were not pressed at once"
+    if awaited.waits_again:
+        return f"{hits[-1].name} was pressed at {hits[-1].from_s:.3g} s, and the program waits for more"
+    words = f"{hits[0].name} was pressed at {hits[0].from_s:.3g} s"
+    if all(press.until_s <= awaited.since_s for press in hits):
+        return f"{words}, before the program asked (first at {awaited.since_s:.3g} s)"
+    return f"{words}, between two looks ({awaited.pace_s:.2g} s apart)"
+
+
+def _find_color(awaited: Awaited) -> str:
+    """Return the first colour that the program asks for and did not see; empty if that is not known."""
+    return next((name for name in awaited.sought if name != awaited.value), "")
+
+
+def name_remedy(awaited: Awaited, spec: RunSpec, is_live: bool = False) -> str:
+    """Return the option or file that gives it, for users of the command line.
+
+    Args:
+        awaited: What was waited for.
+        spec: The run.
+        is_live: Whether the run had as much time as another program has.
+    """
+    match awaited.subject:
+        case Subject.BUTTONS:
+            return f"{_name_presses(awaited, 'enter')}, or K in the app"
+        case Subject.TOUCH:
+            return _name_presses(awaited, awaited.port)
+        case Subject.REMOTE:
+            return _name_presses(awaited, "remote.left_up")
+        case Subject.BEACON:
+            return "[beacon] in a world file places one (tuisim guide world-files)"
+        case Subject.COLOR:
+            return _name_mat(awaited, spec)
+        case Subject.DISTANCE | Subject.PROXIMITY:
+            return _name_obstacle(awaited, spec)
+        case Subject.GYRO:
+            return "only its motors turn this robot"
+        case Subject.CONNECTION | Subject.DATA if is_live:
+            return "start the other program while this one runs"
+        case Subject.CONNECTION | Subject.DATA:
+            return "--speed 1 gives the other program the time to come"
+        case Subject.GAMEPAD:
+            return "the brick's buttons drive by hand (--press enter@1, or K in the app)"
+        case other:
+            assert_never(other)
+
+
+def _name_presses(awaited: Awaited, default: str) -> str:
+    """Return the options that press what the program asks for, when and as long as it looks."""
+    names = awaited.sought or (default,)
+    is_touch, is_remote = awaited.subject is Subject.TOUCH, awaited.subject is Subject.REMOTE
+    from_s = math.floor(awaited.since_s) + (2 if is_touch else 1)
+    held_s = 2 if is_remote else int(awaited.needs_all)
+    if awaited.pace_s > _SHORT_PRESS_S:
+        held_s = max(held_s, math.ceil(awaited.pace_s))
+    until = f"-{from_s + held_s}" if held_s else ""
+    pressed = names if awaited.needs_all else names[:1]
+    options = " ".join(f"--press {name}@{from_s}{until}" for name in pressed)
+    return f"add {options}" if awaited.waits_again and not awaited.needs_all else options
+
+
+def _name_mat(awaited: Awaited, spec: RunSpec) -> str:
+    color = _find_color(awaited)
+    if color in COLOR_PLACES_MM:
+        if awaited.has_moved and spec.world.background != COLORED_MAT:
+            return f"-b {COLORED_MAT} has it"
+        return f"-b {COLORED_MAT} -x {COLOR_PLACES_MM[color]} has it there"
+    if spec.world.background != EMPTY_MAT:
+        return "-x, -y and -a place it elsewhere on the mat"
+    if awaited.mode == "COL-COLOR" and color != "black":
+        return f"-b {COLORED_MAT} has seven bands of colours (tuisim backgrounds)"
+    return "-b Loop gives it a line (tuisim backgrounds)"
+
+
+def _name_obstacle(awaited: Awaited, spec: RunSpec) -> str:
+    # A robot that drives gets near by itself.
+    limit = None if awaited.has_moved else awaited.limit
+    pose = awaited.pose or spec.world.start
+    options = ""
+    for sensor in spec.robot.sensors:
+        if sensor.port == awaited.port and isinstance(sensor, UltrasonicSpec | InfraredSpec):
+            options = find_obstacle(sensor, spec, pose, limit)
+    return f"{options or '-o with a file (tuisim obstacles)'} puts one before it"
+
+
+def name_remedy_with_keys(awaited: Awaited, spec: RunSpec) -> str:
+    """Return the key that gives it, as an id of an action in braces."""
+    names = awaited.sought if awaited.needs_all else awaited.sought[:1]
+    match awaited.subject:
+        case Subject.BUTTONS if names:
+            keys = " and ".join(_KEYS.get(name, name.capitalize()) for name in names)
+            does = f"shift with {keys} holds" if awaited.needs_all else f"{keys} presses"
+            return f"{{panel-brick}} opens the brick, where {does} {' and '.join(names)}"
+        case Subject.BUTTONS:
+            return "{panel-brick} opens the brick, whose buttons the arrows and Enter press"
+        case Subject.TOUCH:
+            return f"{{panel-brick}} opens the brick, where {awaited.port[2:]} presses it"
+        case _:
+            return name_remedy(awaited, spec, is_live=True)

@@ -1,0 +1,96 @@
+"""A task of a batch and its result, as plain values that any process can exchange."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import field
+from enum import StrEnum
+
+from tuisim.base.data_class import dataclass
+from tuisim.base.source import Program
+from tuisim.engine.core.spec import RunSpec
+from tuisim.engine.runs.handle import RunOptions
+from tuisim.tasks.goals.judgement import Judgement
+from tuisim.tasks.goals.spec import Goal
+
+Value = str | float | int | bool
+"""Value of a parameter."""
+
+MAX_JOBS = 1000
+"""Most worker processes of a batch."""
+OUTPUT_CHARACTERS = 2000
+"""A result contains at most this much of the program's output."""
+
+
+class Keep(StrEnum):
+    """Which runs are stored."""
+
+    ALL = "all"
+    FAILED = "failed"
+    """Those that raised an exception, were stopped, or missed a goal."""
+    NONE = "none"
+
+
+@dataclass(frozen=True, slots=True)
+class Task:
+    """One run of a batch."""
+
+    index: int
+    """Its place in the batch, from 0."""
+    program: Program
+    spec: RunSpec
+    options: RunOptions = field(default_factory=RunOptions)
+    goals: tuple[Goal, ...] = ()
+    parameters: Mapping[str, Value] = field(default_factory=dict)
+    """Values that distinguish it from the other tasks, by name."""
+    keep: Keep = Keep.NONE
+    isolate: bool = False
+    """Whether it runs through bubblewrap, without network and without the user's files."""
+    is_replayed: bool = False
+    """Whether the run is worked out from the program's commands, and that is judged, not what its process recorded."""
+    real_time_limit_s: float = 0.0
+    """Real seconds, without those in which it waits for a processor, after which it is stopped; 0 is no limit."""
+
+
+@dataclass(frozen=True, slots=True)
+class VariableStatistics:
+    """Statistics of the samples of one name."""
+
+    last: float
+    count: int
+    mean: float
+    std: float
+    """Of the population; 0 for one sample."""
+    min: float
+    max: float
+
+
+@dataclass(frozen=True, slots=True)
+class Result:
+    """What is known of a task's run after its end. Does not depend on the process that ran it."""
+
+    index: int
+    parameters: Mapping[str, Value]
+    end: str
+    """A value of `engine.protocol.End`; empty if the run could not be started or judged."""
+    exit_code: int
+    summary: str
+    error: str
+    """The program's traceback, or why the run could not be started."""
+    error_line: int
+    ticks: int
+    time_s: float
+    x_mm: float
+    y_mm: float
+    heading_deg: float
+    variables: Mapping[str, VariableStatistics] = field(default_factory=dict)
+    """Statistics by name of sample, in the order of the first samples."""
+    judgements: tuple[Judgement, ...] = ()
+    output: str = ""
+    """The beginning of what it printed on stdout."""
+    waited_for: str = ""
+    """What it waited for in vain, in words; see `tasks.reasons.waited`."""
+    plugged: str = ""
+    """The parts that were plugged in, in words; see `programs.plugged_words`."""
+    run_id: str = ""
+    """Its id in the store; empty if it was not kept."""
