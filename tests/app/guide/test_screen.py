@@ -59,7 +59,7 @@ async def open_guide(
 ) -> AsyncIterator[tuple[Pilot[Any], GuideScreen]]:
     """Press keys in the app and open the guide."""
     async with open_lab(text, size=size) as (pilot, app):
-        await pilot.press(*keys, "question_mark")
+        await pilot.press(*keys, "f1")
         await until(pilot, lambda: isinstance(app.screen, GuideScreen) and app.screen.is_ready)
         yield pilot, guide(pilot)
 
