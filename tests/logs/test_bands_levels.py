@@ -11,7 +11,7 @@ import pytest
 from tuisim.engine.core.noise import clamping
 from tuisim.engine.core.profile import EV3
 from tuisim.engine.core.spec import RobotSpec, RunSpec, WorldSpec
-from tuisim.logs.bands import BandReport, band_report, in_words, read_light
+from tuisim.logs.bands import CUT_OFF, BandReport, band_report, in_words, read_light, width_in_words
 from tuisim.logs.columns import guess_columns
 from tuisim.logs.levels import (
     Light,
@@ -81,7 +81,9 @@ def test_places_and_widths() -> None:
         (100, "white"),
     ]
     assert (middle.start_s, middle.stop_s, middle.samples) == (0.6, 1.5, 10)
-    assert (middle.start_mm, middle.stop_mm, middle.width_mm) == (60.0, 150.0, 100.0)
+    assert (middle.start_mm, middle.stop_mm, middle.width_mm) == (60.0, 150.0, 108.75)
+    assert [band.cut_off for band in report.bands] == [True, False, True]
+    assert [width_in_words(band) for band in report.bands] == [CUT_OFF, "109", CUT_OFF]
     assert (middle.first_row, middle.last_row) == (6, 15)
     assert (report.transitions, report.total) == (1, 21)
 

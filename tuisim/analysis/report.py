@@ -22,7 +22,7 @@ from tuisim.engine.core.tick_record import FLAG_PEN_DOWN
 from tuisim.engine.files import name_of
 from tuisim.engine.protocol import SetNoise
 from tuisim.engine.runs.run_folder import StoredRun
-from tuisim.logs.bands import count_samples
+from tuisim.logs.bands import count_samples, width_in_words
 from tuisim.logs.export import check_place
 from tuisim.logs.log import Log
 from tuisim.logs.plateaus import Search, plateaus
@@ -240,7 +240,7 @@ def _bands(model: Model) -> Mapping[str, Any]:
                 count_samples(band),
                 f"{band.level:.2f}",
                 f"{band.spread:.2f}",
-                _number(band.width_mm, ".0f"),
+                width_in_words(band),
             ),
         ]
         for band in bands[:MOST_BANDS]

@@ -184,6 +184,8 @@ class Subcommand:
     options: tuple[str, ...] = _TABLE
     words: str = "LOG…"
     """Its logs, as the help names them."""
+    more: str = ""
+    """What else its help says."""
 
     def load(self) -> Callable[[Arguments], int]:
         """Import the function."""
@@ -198,7 +200,13 @@ SUBCOMMANDS: Mapping[str, Subcommand] = {
     "summary": Subcommand(
         "Print count, min, max, mean, std and quantiles of each variable", "tables:summary"
     ),
-    "bands": Subcommand("Find plateaus: level, name, times, width", "tables:bands"),
+    "bands": Subcommand(
+        "Find plateaus: level, name, times, width",
+        "tables:bands",
+        more="START S and STOP S are the first and the last sample of a level. WIDTH MM is the distance driven from "
+        "edge to edge: from where the reading is halfway between the level before and this one, to where it is halfway "
+        "to the level after. A band on which the log begins or ends is cut off; – means that an edge is not known.",
+    ),
     "events": Subcommand(
         "Find where a variable crosses --at, or --when",
         "tables:events",
@@ -228,7 +236,10 @@ SUBCOMMANDS: Mapping[str, Subcommand] = {
         "Show where two runs differ; exit code 1 if they do", "tables:diff", ("json",), "RUN RUN"
     ),
     "export": Subcommand(
-        "Write the log in another format", "tables:export", ("variable", "telemetry", "copy")
+        "Write the log in another format",
+        "tables:export",
+        ("variable", "telemetry", "copy"),
+        more="The column `run` counts the runs in the file, from 1: it is not the number of a stored run.",
     ),
     "plot": Subcommand("Draw the chart, as text, SVG or PNG", "documents:plot", _CHART),
     "report": Subcommand(
@@ -249,7 +260,8 @@ def _load(name: str) -> Command:
     options = [OPTIONS[option] for option in entry.options]
     columns = () if name == "diff" else COLUMNS
     words = argument("words", entry.words, lambda: ("last",), nargs=-1)
-    return Command(name, callback=work, params=[words, *options, *columns], help=f"{entry.does}.")
+    text = f"{entry.does}.\n\n{entry.more}".strip()
+    return Command(name, callback=work, params=[words, *options, *columns], help=text)
 
 
 _OTHER_WORDS = {

@@ -21,7 +21,7 @@ _MEANINGS = {
     "variable": "the name in the printed line",
     "value": "the number in the printed line",
     "time": "simulated seconds: of a sample, when the line was printed, or the time given in the line",
-    "run": "1, 2, … in the order of the programs",
+    "run": "1, 2, … in the order of the programs: not the number of a stored run",
     "x_mm": "the robot's position to the right",
     "y_mm": "the robot's position upwards",
     "heading_deg": "the robot's heading: the direction it looks in, counter-clockwise from the x axis, past 360 too",

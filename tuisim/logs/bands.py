@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from functools import cached_property
+from math import isfinite
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -11,12 +12,13 @@ from numpy.typing import NDArray
 
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import counted
-from tuisim.engine.runs.arrays import FloatArray, IntArray
+from tuisim.engine.runs.arrays import FloatArray
 from tuisim.logs.columns import numeric_columns
 from tuisim.logs.derived import spec_in
-from tuisim.logs.levels import Light, find_light, levels_of
+from tuisim.logs.levels import Levels, Light, find_light, levels_of
 from tuisim.logs.plateaus import Search, plateaus
 from tuisim.logs.units import may_be_light
+from tuisim.logs.widths import measure_widths
 
 if TYPE_CHECKING:
     from tuisim.logs.log import Log, Series
@@ -24,6 +26,8 @@ if TYPE_CHECKING:
 NAN = float("nan")
 ONE_SAMPLE = "one sample"
 """Marks a level that only the first or the last sample of the log has."""
+CUT_OFF = "cut off"
+"""Stands for the width of a band on which the log begins or ends."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,7 +59,9 @@ class Band:
     stop_mm: float
     """Distance driven at the last sample."""
     width_mm: float
-    """From halfway to the sample before it to halfway to the one after it."""
+    """From the edge before it to the edge after it, where readings are halfway between two levels; NaN if unknown."""
+    cut_off: bool
+    """Whether the log begins or ends on it, so that its width is not known."""
     first_row: int
     """Row of its first sample in the table, from 0."""
     last_row: int
@@ -123,7 +129,8 @@ def band_report(log: Log, name: str, search: Search = plateaus) -> BandReport:
             np.array([grey.percent if grey else NAN for grey in found.greys])
         ),
         "true_level": found.true_level,
-        **_places(driven_mm(log, series), first, last),
+        **_places(driven_mm(log, series), series.values, found),
+        "cut_off": (finite[first] == 0) | (finite[last + 1] == finite[-1]),
         "first_row": series.rows[first],
         "last_row": series.rows[last],
     }
@@ -131,14 +138,23 @@ def band_report(log: Log, name: str, search: Search = plateaus) -> BandReport:
     return BandReport(name, columns, total - int(samples.sum()), total)
 
 
-def _places(driven: FloatArray | None, first: IntArray, last: IntArray) -> dict[str, FloatArray]:
-    """Return where bands begin and end, and their widths, from the first and the last sample of each."""
+def _places(driven: FloatArray | None, values: FloatArray, levels: Levels) -> dict[str, FloatArray]:
+    """Return where bands begin and end, and their widths."""
     if driven is None:
-        return dict.fromkeys(("start_mm", "stop_mm", "width_mm"), np.full(len(first), NAN))
-    before, after = np.maximum(first - 1, 0), np.minimum(last + 1, len(driven) - 1)
-    start_mm, stop_mm = driven[first], driven[last]
-    width_mm = (stop_mm + driven[after] - start_mm - driven[before]) / 2.0
-    return {"start_mm": start_mm, "stop_mm": stop_mm, "width_mm": width_mm}
+        unknown = np.full(len(levels.start), NAN)
+        return dict.fromkeys(("start_mm", "stop_mm", "width_mm"), unknown)
+    return {
+        "start_mm": driven[levels.start],
+        "stop_mm": driven[levels.stop - 1],
+        "width_mm": measure_widths(values, driven, levels),
+    }
+
+
+def width_in_words(band: Band) -> str:
+    """Return the width of a band in mm, or why there is none; empty for a log without positions."""
+    if not isfinite(band.start_mm):
+        return ""
+    return f"{band.width_mm:.0f}" if isfinite(band.width_mm) else CUT_OFF if band.cut_off else "–"
 
 
 def read_light(metadata: Mapping[str, Any], run: int) -> Light:

@@ -23,7 +23,7 @@ from tuisim.app.snapshot import end_label
 from tuisim.base import palette
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import TuisimError, counted
-from tuisim.logs.bands import Band, count_samples
+from tuisim.logs.bands import Band, count_samples, width_in_words
 from tuisim.logs.plateaus import Search, plateaus, plateaus_in_subprocess
 from tuisim.logs.signals import QUANTILES
 from tuisim.terminal.cell_view import LinesPanel
@@ -108,7 +108,7 @@ def _band(band: Band) -> Cells:
         f"{band.start_s:.2f}",
         f"{band.stop_s:.2f}",
         count_samples(band),
-        _figure(band.width_mm, ".0f"),
+        width_in_words(band),
         f"{band.spread:.2f}",
     )
 

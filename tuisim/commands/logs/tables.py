@@ -30,7 +30,7 @@ from tuisim.engine.core.conditions import Operator
 from tuisim.engine.runs.arrays import FloatArray
 from tuisim.logs import signals
 from tuisim.logs.arrow import unique_names
-from tuisim.logs.bands import BandReport, Column, band_report, in_words, items_of
+from tuisim.logs.bands import BandReport, Column, band_report, in_words, items_of, width_in_words
 from tuisim.logs.columns import numeric_columns
 from tuisim.logs.csv_cells import write_csv
 from tuisim.logs.derived import reckoned_series
@@ -90,13 +90,18 @@ def bands(arguments: Arguments) -> int:
         "true_level": ".2f",
         "spread": ".2f",
         "grey": "",
-        "width_mm": ".0f",
+        "width_mm": "",
     }
     columns = {
         name: _joined([report.columns[name] for report in reports]) for name in reports[0].columns
     }
+    is_table = not arguments.json and not arguments.out
+    if is_table:
+        columns["width_mm"] = [
+            f"{width_in_words(band):>8}" for report in reports for band in report.bands
+        ]
     show_columns({"log": titles, **columns}, arguments, formats)
-    if not arguments.json and not arguments.out:
+    if is_table:
         for report in reports:
             echo_wrapped(in_words(report))
     return 0

@@ -1,0 +1,81 @@
+"""Widths of bands: from edge to edge, however often and with however large a spot the sensor reads."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from tests.cases import cases
+from tuisim.engine.runs.arrays import FloatArray
+from tuisim.logs.levels import Levels, levels_of
+from tuisim.logs.widths import measure_widths
+
+GREYS = (100.0, 86.0, 100.0, 50.0, 0.0, 83.0)
+
+
+def read_mat(places_mm: FloatArray, edges_mm: FloatArray, spot_mm: float) -> FloatArray:
+    """Return what a sensor with a round spot of that diameter reads over bands of `GREYS`, shape (n,)."""
+    values = np.full(len(places_mm), GREYS[0])
+    for edge_mm, step in zip(edges_mm, np.diff(GREYS), strict=True):
+        beyond = np.clip(2.0 * (places_mm - edge_mm) / spot_mm, -1.0, 1.0)
+        values += step * (0.5 + (np.arcsin(beyond) + beyond * np.sqrt(1.0 - beyond**2)) / np.pi)
+    return values
+
+
+def drawn_levels(places_mm: FloatArray, edges_mm: FloatArray, spot_mm: float) -> Levels:
+    """Return the levels of `GREYS`, without what the spot reads of their neighbours."""
+    start = np.searchsorted(places_mm, np.append(-np.inf, edges_mm + spot_mm / 2.0))
+    stop = np.searchsorted(places_mm, np.append(edges_mm - spot_mm / 2.0, np.inf))
+    level, none = np.array(GREYS), np.zeros(len(GREYS))
+    return Levels(start, stop, level, level, none, none.astype(np.int64), (None,) * len(GREYS))
+
+
+@pytest.mark.parametrize("width_mm", [30.0, 73.0, 200.0])
+@pytest.mark.parametrize("spot_mm", [2.0, 12.0, 20.0])
+@pytest.mark.parametrize("period_mm", [0.2, 1.0, 2.6, 6.0])
+def test_width_is_the_true_one(width_mm: float, spot_mm: float, period_mm: float) -> None:
+    random = np.random.default_rng(1)
+    for first_mm in random.uniform(60.0, 60.0 + period_mm, 10):
+        edges_mm = first_mm + width_mm * np.arange(len(GREYS) - 1)
+        places_mm = np.arange(0.0, edges_mm[-1] + 60.0, period_mm)
+        values = read_mat(places_mm, edges_mm, spot_mm)
+        widths_mm = measure_widths(values, places_mm, drawn_levels(places_mm, edges_mm, spot_mm))
+        # An edge that falls between two samples may be anywhere between them.
+        bound_mm = max(period_mm - spot_mm / 2.0, 0.02 * spot_mm)
+        assert widths_mm[1:-1] == pytest.approx([width_mm] * (len(GREYS) - 2), abs=bound_mm)
+        assert np.isnan(widths_mm[[0, -1]]).all()
+
+
+@pytest.mark.parametrize("width_mm", [73.0, 200.0])
+@pytest.mark.parametrize("spot_mm", [2.0, 12.0, 20.0])
+@pytest.mark.parametrize("period_mm", [1.0, 2.6, 6.0])
+def test_width_of_levels_that_are_searched(
+    width_mm: float, spot_mm: float, period_mm: float
+) -> None:
+    edges_mm = 60.3 + width_mm * np.arange(len(GREYS) - 1.0)
+    places_mm = np.arange(0.0, edges_mm[-1] + 60.0, period_mm)
+    values: FloatArray = np.round(2.55 * read_mat(places_mm, edges_mm, spot_mm))
+    widths_mm = measure_widths(values, places_mm, levels_of(values))
+    bound_mm = max(period_mm - spot_mm / 2.0, 0.05 * spot_mm)
+    assert widths_mm[1:-1] == pytest.approx([width_mm] * (len(GREYS) - 2), abs=bound_mm)
+
+
+NAN = float("nan")
+WIDTHS = {
+    "one level": ([5.0] * 6, [NAN]),
+    "nothing": ([], []),
+    "edges between samples": ([1.0] * 6 + [9.0] * 6 + [1.0] * 6, [NAN, 6.0, NAN]),
+    "edge on a sample": ([1.0] * 6 + [5.0] + [9.0] * 6 + [1.0] * 6, [NAN, 6.5, NAN]),
+    "gap in the samples": ([1.0] * 6 + [NAN] * 3 + [9.0] * 6 + [1.0] * 6, [NAN, 7.5, NAN]),
+    "thin line beside it": (
+        [9.0] * 6 + [1.0] * 6 + [5.0, 9.0, 5.0] + [1.0] * 6 + [9.0] * 6,
+        [NAN, NAN, NAN, NAN],
+    ),
+}
+
+
+@cases("values, widths", WIDTHS)
+def test_widths_of_drawn_steps(values: list[float], widths: list[float]) -> None:
+    samples = np.array(values, np.float64)
+    measured = measure_widths(samples, np.arange(len(values), dtype=float), levels_of(samples))
+    assert measured == pytest.approx(widths, nan_ok=True)
