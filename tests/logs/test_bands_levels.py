@@ -127,10 +127,11 @@ def test_empty_cells_belong_to_no_band() -> None:
         ([100.0] * 5 + [50.0] * 5 + [0.0], [(100, 5), (50, 5), (0, 1)]),
         ([0.0] + [100.0] * 5 + [50.0] * 5, [(0, 1), (100, 5), (50, 5)]),
         ([100.0] * 5 + [50.0] * 5 + [20.0, 0.0], [(100, 5), (50, 5), (0, 1)]),
+        ([100.0] * 9 + [84.0, 53.0, 16.0, 0.0], [(100, 9), (0, 1)]),
         ([100.0] * 5 + [50.0] * 6, [(100, 5), (50, 6)]),
         (list(np.linspace(100.0, 0.0, 12)), []),
     ],
-    ids=["at the end", "at the start", "after an edge", "none", "a ramp"],
+    ids=["at the end", "at the start", "after an edge", "after the longest edge", "none", "a ramp"],
 )
 def test_one_sample_at_an_end_is_a_level(
     light: list[float], levels: list[tuple[float, int]]

@@ -329,7 +329,7 @@ def _with_ends(values: FloatArray, found: Found, least_step: float) -> Found:
     single = [
         (at, at + 1, values[at], 0.0, 0.0, 0)
         for at, apart, level in ends
-        if 1 <= apart <= _EDGE_SAMPLES and abs(values[at] - level) > least_step
+        if 1 <= apart <= _EDGE_SAMPLES + 1 and abs(values[at] - level) > least_step
     ]
     added = np.array(single, FIELDS)
     is_first = added["start"] < before["start"]

@@ -8,9 +8,13 @@ import pytest
 
 from tests.app.analyser.logs import long_log, model_of
 from tuisim.analysis.model import Model
+from tuisim.analysis.source import LogRequest, OpenedLog
 from tuisim.app.analyser.panes import pane_lines
+from tuisim.app.analyser.table_pane import build_heading
+from tuisim.engine.runs.run_folder import StoredRun
 from tuisim.logs.columns import guess_columns
 from tuisim.logs.log import Log
+from tuisim.logs.reader import log_of_runs
 
 LEVELS = (100.0, 86.27, 50.2, 0.0)
 
@@ -132,3 +136,19 @@ def test_an_empty_log_says_what_else_there_is() -> None:
     log = long_log()
     model = model_of(type(log)("none", log.table.slice(0, 0), log.layout))
     assert "T shows the telemetry" in text_of(model)
+
+
+def test_the_column_run_does_not_look_like_the_number_of_a_stored_run(run: StoredRun) -> None:
+    opened = OpenedLog(LogRequest(), log_of_runs((run,)), (run,))
+    assert build_heading(Model(opened), "run") == "run (in log)"
+    assert build_heading(model_of(opened.log), "run") == "run"
+
+
+@pytest.mark.parametrize("height", range(6, 12))
+def test_a_sentence_below_the_rows_is_not_cut_within_its_only_line(height: int) -> None:
+    table = stepped(60, 20)
+    model = model_of(Log("test", table, guess_columns(table)))
+    model.find_bands(model.unsearched())
+    lines = text_of(model, "bands", 48, height).splitlines()
+    assert not lines[-1].endswith("…") or lines[-2].startswith("Colour:")
+    assert "pal …" not in lines[-1]

@@ -19,34 +19,36 @@ from tuisim.analysis.events import Event
 from tuisim.analysis.model import Model
 from tuisim.analysis.table import AT_ONCE
 from tuisim.app import background
+from tuisim.app.analyser.table_pane import (
+    DIM,
+    HEAD,
+    HERE,
+    MAX_CELL,
+    PLAIN,
+    count_rows,
+    table_lines,
+)
 from tuisim.app.snapshot import end_label
 from tuisim.base import palette
 from tuisim.base.data_class import dataclass
-from tuisim.base.errors import TuisimError, counted
+from tuisim.base.errors import TuisimError
 from tuisim.logs.bands import Band, count_samples, width_in_words
 from tuisim.logs.plateaus import Search, plateaus, plateaus_in_subprocess
 from tuisim.logs.signals import QUANTILES
 from tuisim.terminal.cell_view import LinesPanel
-from tuisim.terminal.text_runs import Line, as_markup, cut, first_shown
+from tuisim.terminal.text_runs import Line, cut, first_shown
 
 if TYPE_CHECKING:
     import pandas as pd
 
 Cells = tuple[str, ...]
 
-PLAIN, DIM = Style(color=palette.INK), Style(color=palette.SOFT)
-HEAD = Style(color=palette.BLUE, bold=True)
-HERE = Style(color=palette.WHITE, bgcolor=palette.CHOSEN)
-CHOSEN = Style(color=palette.YELLOW, bold=True)
-_WIDEST = 28
 _GAP = 2
 """Columns between those of a table."""
 _MOST_BELOW = 20
 """Lines below the rows of a pane at most, if there is room for all."""
-_SAMPLED = 40
-"""Number of rows that determine the width of a table's column, besides the visible ones."""
 _MEASURED = 1000
-"""In other panes with more rows than this, the visible ones determine it."""
+"""In panes with more rows than this, the visible ones determine it."""
 SEARCHED_AT_ONCE = 20_000
 """Up to this many rows, the search for bands takes a few hundredths of a second."""
 
@@ -335,13 +337,13 @@ def _wanted_rows(name: str, model: Model, width: int) -> int:
 def _below(pane: Pane, model: Model, width: int, height: int) -> tuple[list[str], int]:
     """Return the lines below the rows of a pane, and the number of rows for which there is room.
 
-    All rows come first, if they fit; among many, a sixth of the lines is for what is below them, unless that is a line
-    in which it would be cut.
+    All rows come first, if they fit; among many, a sixth of the lines is for what is below them. No line is for what
+    would be cut in it.
     """
     spare = height - 1 - len(pane.rows(model))
     texts = pane.below(model)
     below = _wrapped(texts, width, spare if spare >= 0 else height // 6)
-    if spare < 0 and len(below) == 1 and below != [*texts]:
+    if len(below) == 1 and below != [*texts]:
         below = []
     return below, max(height - 1 - len(below), 1)
 
@@ -385,7 +387,7 @@ def _fitting_whole(columns: Sequence[int], widths: Sequence[int], width: int) ->
     left = width
     seen: list[int] = []
     for at in columns:
-        if seen and widths[at] > left and (widths[at] <= _WIDEST or left < _WIDEST // 2):
+        if seen and widths[at] > left and (widths[at] <= MAX_CELL or left < MAX_CELL // 2):
             break
         left -= widths[at] + _GAP
         seen.append(at)
@@ -410,74 +412,7 @@ def _wrapped(texts: Sequence[str], width: int, most: int) -> list[str]:
     lines = [line for text in seen for line in wrap(text, wide, subsequent_indent="  ")]
     if len(lines) <= most or not most:
         return lines[:most]
-    return [*lines[: most - 1], f"{lines[most - 1][: wide - 2].rstrip()} …"]
-
-
-def table_lines(model: Model, width: int, height: int) -> list[Line]:
-    """Return the rows of the table around the cursor, with as many columns as fit."""
-    rows = model.rows
-    if not len(rows):
-        return [[("No row matches the filter: U clears it", DIM)]]
-    place = rows.place(model.row)
-    room = max(height - 1, 1)
-    first = first_shown(place, len(rows), room)
-    shown = [rows.row(at) for at in range(first, min(first + room, len(rows)))]
-    number_width = max(len(f"{shown[-1] + 1:,}"), len(f"{shown[0] + 1:,}"))
-    columns, widths = _fitting(model, shown, width - number_width - 2)
-    head: Line = [(" " * (number_width + 2), HEAD)]
-    for column, wide in zip(columns, widths, strict=True):
-        arrow = ("↓" if rows.view.descending else "↑") if column == rows.view.sorted_by else ""
-        text = cut(column + arrow, wide).ljust(wide)
-        head += [
-            (text, CHOSEN + Style(underline=True) if column == rows.chosen else HEAD),
-            ("  ", HEAD),
-        ]
-    lines = [head]
-    for row in shown:
-        style = HERE if row == model.row else PLAIN
-        line: Line = [(f"{row + 1:>{number_width},}  ", HERE if row == model.row else DIM)]
-        for column, wide in zip(columns, widths, strict=True):
-            text = rows.text(row, column).replace("\n", "↵").replace("\t", " ")
-            shown_text = cut(text, wide)
-            line.append(
-                (
-                    (shown_text.rjust(wide) if _is_number(text) else shown_text.ljust(wide)) + "  ",
-                    style,
-                )
-            )
-        if row == model.row:
-            line.append((" " * width, HERE))
-        lines.append(line)
-    return lines
-
-
-def _is_number(text: str) -> bool:
-    return text[:1].isdigit() or (text[:1] == "-" and text[1:2].isdigit())
-
-
-def _fitting(model: Model, shown: list[int], width: int) -> tuple[list[str], list[int]]:
-    """Return the columns shown and their widths: the frozen ones, then those up to the selected one."""
-    rows = model.rows
-    seen = shown[:_SAMPLED]
-
-    def wide(column: str) -> int:
-        return min(max([len(column) + 1, *(len(rows.text(row, column)) for row in seen)]), _WIDEST)
-
-    frozen = rows.columns[: rows.frozen]
-    widths = {column: wide(column) for column in frozen}
-    left = width - sum(widths.values()) - 2 * len(frozen)
-    others = rows.columns[rows.frozen :]
-    at = max(rows.column - rows.frozen, 0)
-    # First leftwards from the selected column until the width is used up, then on to its right.
-    chosen: list[str] = []
-    for column in [*reversed(others[: at + 1]), *others[at + 1 :]]:
-        need = wide(column) + 2
-        if need > left and chosen:
-            break
-        widths[column], left = min(need, max(left, 3)) - 2, left - need
-        chosen.append(column)
-    columns = frozen + [column for column in others if column in chosen]
-    return columns, [widths[column] for column in columns]
+    return [*lines[: most - 1], f"{wrap(lines[most - 1], wide - 2, subsequent_indent='  ')[0]} …"]
 
 
 class PaneView(LinesPanel):
@@ -525,7 +460,7 @@ class PaneView(LinesPanel):
         )
         self.border_title = " ".join(titles)
         is_table = self.name_shown == "table"
-        self.border_subtitle = _summary(model) if is_table else ""
+        self.border_subtitle = count_rows(model) if is_table else ""
         width, height = self._text.size
         if width and height and self.display:
             if not is_table:
@@ -575,10 +510,3 @@ def band_search(rows: int) -> Search:
         return plateaus
     worker = get_current_worker()
     return partial(plateaus_in_subprocess, stopped=lambda: worker.is_cancelled)
-
-
-def _summary(model: Model) -> str:
-    rows, total = model.rows, model.log.rows
-    words = f"{len(rows):,} of {total:,} rows" if len(rows) != total else counted(total, "row")
-    conditions = " and ".join(map(str, rows.view.conditions))
-    return as_markup(f"{words}: {conditions}") if conditions else words

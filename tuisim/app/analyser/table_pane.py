@@ -1,0 +1,115 @@
+"""The table of the analyser as lines."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from rich.style import Style
+
+from tuisim.analysis.model import Model
+from tuisim.base import palette
+from tuisim.base.errors import counted
+from tuisim.terminal.text_runs import Line, as_markup, cut, first_shown
+
+PLAIN, DIM = Style(color=palette.INK), Style(color=palette.SOFT)
+HEAD = Style(color=palette.BLUE, bold=True)
+HERE = Style(color=palette.WHITE, bgcolor=palette.CHOSEN)
+CHOSEN = Style(color=palette.YELLOW, bold=True)
+MAX_CELL = 28
+"""Characters of the widest cell."""
+_SAMPLED = 40
+"""Number of rows that determine the width of a table's column, besides the visible ones."""
+
+
+def table_lines(model: Model, width: int, height: int) -> list[Line]:
+    """Return the rows of the table around the cursor, with as many columns as fit."""
+    rows = model.rows
+    if not len(rows):
+        return [[("No row matches the filter: U clears it", DIM)]]
+    place = rows.place(model.row)
+    room = max(height - 1, 1)
+    first = first_shown(place, len(rows), room)
+    shown = [rows.row(at) for at in range(first, min(first + room, len(rows)))]
+    number_width = max(len(f"{shown[-1] + 1:,}"), len(f"{shown[0] + 1:,}"))
+    columns, widths = _fitting(model, shown, width - number_width - 2)
+    lines = [_head_line(model, columns, widths, number_width)]
+    for row in shown:
+        style = HERE if row == model.row else PLAIN
+        line: Line = [(f"{row + 1:>{number_width},}  ", HERE if row == model.row else DIM)]
+        for column, wide in zip(columns, widths, strict=True):
+            text = rows.text(row, column).replace("\n", "↵").replace("\t", " ")
+            shown_text = cut(text, wide)
+            line.append(
+                (
+                    (shown_text.rjust(wide) if _is_number(text) else shown_text.ljust(wide)) + "  ",
+                    style,
+                )
+            )
+        if row == model.row:
+            line.append((" " * width, HERE))
+        lines.append(line)
+    return lines
+
+
+def _head_line(
+    model: Model, columns: Sequence[str], widths: Sequence[int], number_width: int
+) -> Line:
+    rows = model.rows
+    head: Line = [(" " * (number_width + 2), HEAD)]
+    for column, wide in zip(columns, widths, strict=True):
+        arrow = ("↓" if rows.view.descending else "↑") if column == rows.view.sorted_by else ""
+        text = cut(build_heading(model, column) + arrow, wide).ljust(wide)
+        head += [
+            (text, CHOSEN + Style(underline=True) if column == rows.chosen else HEAD),
+            ("  ", HEAD),
+        ]
+    return head
+
+
+def _is_number(text: str) -> bool:
+    return text[:1].isdigit() or (text[:1] == "-" and text[1:2].isdigit())
+
+
+def _fitting(model: Model, shown: list[int], width: int) -> tuple[list[str], list[int]]:
+    """Return the columns shown and their widths: the frozen ones, then those up to the selected one."""
+    rows = model.rows
+    seen = shown[:_SAMPLED]
+
+    def wide(column: str) -> int:
+        widths = [
+            len(build_heading(model, column)) + 1,
+            *(len(rows.text(row, column)) for row in seen),
+        ]
+        return min(max(widths), MAX_CELL)
+
+    frozen = rows.columns[: rows.frozen]
+    widths = {column: wide(column) for column in frozen}
+    left = width - sum(widths.values()) - 2 * len(frozen)
+    others = rows.columns[rows.frozen :]
+    at = max(rows.column - rows.frozen, 0)
+    # First leftwards from the selected column until the width is used up, then on to its right.
+    chosen: list[str] = []
+    for column in [*reversed(others[: at + 1]), *others[at + 1 :]]:
+        need = wide(column) + 2
+        if need > left and chosen:
+            break
+        widths[column], left = min(need, max(left, 3)) - 2, left - need
+        chosen.append(column)
+    columns = frozen + [column for column in others if column in chosen]
+    return columns, [widths[column] for column in columns]
+
+
+def build_heading(model: Model, column: str) -> str:
+    """Return the heading of a column.
+
+    The column `run` counts the runs of the log: beside the number of a stored run in the title, its heading says so.
+    """
+    return f"{column} (in log)" if column == "run" and model.opened.runs else column
+
+
+def count_rows(model: Model) -> str:
+    """Return how many rows are shown, and the filter."""
+    rows, total = model.rows, model.log.rows
+    words = f"{len(rows):,} of {total:,} rows" if len(rows) != total else counted(total, "row")
+    conditions = " and ".join(map(str, rows.view.conditions))
+    return as_markup(f"{words}: {conditions}") if conditions else words
