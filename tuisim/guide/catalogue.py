@@ -74,6 +74,7 @@ CONTENTS: Mapping[GuidePart, tuple[str, ...]] = {
         "how-sensors-see",
         "motion-and-drift",
         "the-real-robot",
+        "other-simulators",
     ),
     GuidePart.PROJECT: ("contributing", "architecture", "security", "licences"),
 }
