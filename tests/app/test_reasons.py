@@ -80,7 +80,10 @@ SLEEPS = "import time\nwhile True:\n    time.sleep(9)\n"
 @cases(
     "text, words",
     {
-        "it waits": (WAITS, "line 3: from here on it waits: read the brick's buttons"),
+        "it waits": (
+            WAITS,
+            "So far: 0.00 s, line 3: from here on it waits: read the brick's buttons",
+        ),
         "it sleeps": (SLEEPS, "the robot stands still in line"),
     },
 )

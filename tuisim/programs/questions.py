@@ -78,16 +78,22 @@ class Question:
 
     def find_words(self, names: Mapping[Word, str]) -> tuple[str, ...]:
         """Return what it asks for of some names by word, in its order; empty for any."""
-        words = [
-            _PREFIX.sub("", word.lower(), count=1) if isinstance(word, str) else word
-            for word in self.words
-        ]
+        words = map(_shorten, self.words)
         return tuple(dict.fromkeys(names[word] for word in words if word in names))
 
     def find_limit(self) -> float | None:
         """Return the first number above 0 that it is compared with."""
         numbers = (word for word in self.words if not isinstance(word, str))
         return next((number for number in numbers if number > 0), None)
+
+
+def name_color(word: Word) -> str:
+    """Return the colour that a word or a code of any library stands for, in small letters; empty for others."""
+    return COLOR_WORDS.get(_shorten(word), "")
+
+
+def _shorten(word: Word) -> Word:
+    return _PREFIX.sub("", word.lower(), count=1) if isinstance(word, str) else word
 
 
 @lru_cache(256)

@@ -234,7 +234,10 @@ MEASURED = {
         f"{ULTRASONIC}{TURNS}while us.distance_centimeters > 25: pass",
         "ultrasonic sensor on in1 saw nothing nearer than 5",
     ),
-    "the way is free": (f"{ULTRASONIC}while us.distance_centimeters < 250: pass", ""),
+    "the way is not free": (
+        f"{ULTRASONIC}while us.distance_centimeters < 250: pass",
+        "from 0.01 s on, line 3 waited for 250 or more: it stayed at 116.1",
+    ),
     "tones of a distance": (
         f"{INFRARED}{TONES}while True: s.play_tone(200 + 8 * ir.proximity, 0.3)",
         "",
@@ -252,7 +255,10 @@ MEASURED = {
         f"{ULTRASONIC}while True:\n    if us.distance_centimeters < 5: print('near')\n",
         "",
     ),
-    "a turn that comes": (f"{GYRO}{TURNS}while g.angle < 9000: pass", ""),
+    "a turn that comes": (
+        f"{GYRO}{TURNS}while g.angle < 9000: pass",
+        "from 0.01 s on, line 5 waited for 9000 or more: it went from 0 to",
+    ),
 }
 
 

@@ -197,7 +197,8 @@ def _show_reason(context: ActionContext, earlier: Recording | None) -> None:
     tick = round(reason.time_s * context.runs.timeline.tick_hz)
     context.debugger.choose_line(tick, reason.line)
     to_tick(context, tick)
-    context.app.say(tour.words)
+    so_far = "So far: " if context.runs.in_run else ""
+    context.app.say(f"{so_far}{tour.words}")
 
 
 def _say_nothing_wrong(context: ActionContext) -> str:

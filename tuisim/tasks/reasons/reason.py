@@ -19,6 +19,7 @@ from tuisim.engine.runs.records import Stream
 from tuisim.engine.runs.run_folder import open_mat
 from tuisim.engine.runs.standstill import standstill_of
 from tuisim.tasks.goals.judgement import GoalState, Judgement
+from tuisim.tasks.reasons.unmet import find_near_miss, find_unmet
 from tuisim.tasks.reasons.waited import find_awaited
 from tuisim.tasks.reasons.waited_words import describe_awaited
 
@@ -85,7 +86,7 @@ def find_reasons(
     has_met = bool(judgements) and all(each.is_good for each in judgements)
     reasons = [*_find_raised(run), *_find_missed(judgements)]
     if not has_met:
-        reasons += [*_find_blocked(run), *_find_lost(run, mat), *_find_left_mat(run)]
+        reasons += [*_find_blocked(run, mat), *_find_lost(run, mat), *_find_left_mat(run)]
     if earlier is not None:
         reasons += _find_difference(run, earlier)
     return tuple(sorted(reasons, key=lambda reason: (reason.kind, reason.time_s)))
@@ -127,15 +128,19 @@ def _find_tracebacks(run: StoredRun) -> Iterator[Reason]:
             yield Reason(ReasonKind.RAISED, row.time_ns / NS_PER_S, line, row.text)
 
 
-def _find_blocked(run: StoredRun) -> Iterator[Reason]:
+def _find_blocked(run: StoredRun, mat: Field | None) -> Iterator[Reason]:
     """Yield where something solid stopped the robot, and what the program waited for in vain."""
     if stood := standstill_of(run.telemetry, run.spec):
         line = _line_at(run, stood.since_s)
         yield Reason(ReasonKind.BLOCKED, stood.since_s, line, f"the robot {stood.words}")
     waits = "waited" if run.end else "waits"
-    for awaited in find_awaited(run):
+    all_awaited = find_awaited(run)
+    for awaited in all_awaited:
         text = f"from here on it {waits}: {describe_awaited(awaited)}"
         yield Reason(ReasonKind.BLOCKED, awaited.since_s, awaited.line, text)
+    if not all_awaited and (unmet := find_unmet(run, mat)):
+        text = f"from here on it {waits} for {unmet.text}"
+        yield Reason(ReasonKind.BLOCKED, unmet.time_s, unmet.line, text)
 
 
 def _find_missed(judgements: Sequence[Judgement]) -> Iterator[Reason]:
@@ -157,6 +162,8 @@ def _find_lost(run: StoredRun, mat: Field | None) -> Iterator[Reason]:
     from tuisim.tasks.reasons.one_colour import find_one_color
 
     mat = open_mat(run) if mat is None else mat
+    if missed := find_near_miss(run, mat):
+        yield Reason(ReasonKind.LOST, missed.time_s, missed.line, missed.text)
     records, hz = run.telemetry.array(), run.spec.profile.tick_hz
     read_ticks = _find_read_ticks(run, len(records))
     for lost in find_lost_lines(records, run.spec, mat, read_ticks):

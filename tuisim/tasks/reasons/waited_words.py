@@ -10,6 +10,7 @@ from tuisim.engine.core.spec import EMPTY_MAT, InfraredSpec, RunSpec, Ultrasonic
 from tuisim.engine.runs.run_folder import StoredRun
 from tuisim.tasks.reasons.hand_presses import find_hits
 from tuisim.tasks.reasons.obstacle_advice import find_obstacle
+from tuisim.tasks.reasons.unmet import find_unmet
 from tuisim.tasks.reasons.waited import Awaited, Subject, find_awaited
 
 COLORED_MAT = "Rainbow_bands"
@@ -21,9 +22,12 @@ _SHORT_PRESS_S = 0.1
 
 def describe_wait(run: StoredRun) -> str:
     """Return what a run waited for in one sentence without its full stop; empty if for nothing."""
+    all_awaited = find_awaited(run)
+    if not all_awaited and (unmet := find_unmet(run)):
+        return f"from {unmet.time_s:.2f} s on, line {unmet.line} waited for {unmet.text}"
     return "; ".join(
         f"{describe_awaited(awaited)}: {name_remedy(awaited, run.spec, run.live)}"
-        for awaited in find_awaited(run)
+        for awaited in all_awaited
     )
 
 

@@ -1,0 +1,76 @@
+"""What ends a loop, and how far a call turns motors, by the text of a program."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.cases import cases
+from tuisim.programs.waits import find_turns, list_loop_ends
+
+WAITED_FOR = {
+    "an angle": ("while gyro.angle < 90:\n    pass", ">=", 90, "angle", 1),
+    "a method": ("while cs.reflection() > 30:\n    wait(5)", "<=", 30, "reflection", 1),
+    "the constant first": ("while -5 >= gyro.rate:\n    pass", ">", -5, "rate", 1),
+    "a colour": ("while cs.color_name != 'Red':\n    pass", "==", "Red", "color_name", 1),
+    "a colour of a library": ("while cs.color() != Color.RED:\n    pass", "==", "RED", "color", 1),
+    "a variable": (
+        "v = cs.color\nwhile v == 1:\n    v = cs.color\n    show(v)",
+        "!=",
+        1,
+        "color",
+        3,
+    ),
+}
+
+
+@cases("text, operator, limit, attribute, line", WAITED_FOR)
+def test_a_comparison_with_a_constant_is_waited_for(
+    text: str, operator: str, limit: str | int, attribute: str, line: int
+) -> None:
+    (end,) = list_loop_ends(text)
+    assert (end.operator, end.limit) == (operator, limit)
+    assert (end.attribute, end.read_line, end.set_line) == (attribute, line, 0)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "while True:\n    pass",
+        "while running == True:\n    drive()",
+        "while gyro.angle < goal:\n    pass",
+        "while 0 < gyro.angle < 90:\n    pass",
+        "while max(a.angle, b.angle) < 90:\n    pass",
+        "v = 1\nwhile v > 0:\n    v = look()",
+        "v = 1\ndef press():\n    global v\n    v = 0\ndef go():\n    while v > 0:\n        pass",
+        "v = 1\ndef go():\n    while v > 0:\n        rest()\ndef press():\n    global v\n    v = 0",
+        "while gyro.angle <",
+    ],
+)
+def test_other_loops_end_who_knows_how(text: str) -> None:
+    assert list_loop_ends(text) == ()
+
+
+def test_a_value_that_nothing_changes_is_named_with_the_line_that_set_it() -> None:
+    (end,) = list_loop_ends("v = cs.color\nv = cs.color\nwhile v != 5:\n    sleep(1)\n")
+    assert (end.name, end.set_line, end.is_silent) == ("v", 2, False)
+
+
+def test_a_loop_that_only_computes_is_silent_and_inner_loops_come_first() -> None:
+    text = "x = 0\nwhile gyro.angle < 90:\n    while x != 1:\n        x += 0.1\n"
+    inner, outer = list_loop_ends(text)
+    assert (inner.name, inner.is_silent, inner.set_line) == ("x", True, 0)
+    assert (outer.line, outer.last_line, outer.is_silent) == (2, 4, False)
+
+
+@cases(
+    "call, turns",
+    {
+        "rotations": ("tank.on_for_rotations(SpeedPercent(5), 30, 360)", (360, "rotations")),
+        "degrees by name": ("m.on_for_degrees(30, degrees=-90, brake=True)", (-90, "degrees")),
+        "a variable": ("m.on_for_degrees(SpeedPercent(5), far)", None),
+        "seconds": ("m.on_for_seconds(30, 5)", None),
+    },
+)
+def test_a_call_turns_so_far(call: str, turns: tuple[float, str] | None) -> None:
+    assert find_turns(f"# first\n{call}\n", 2) == turns
+    assert find_turns(call, 2) is None

@@ -1,0 +1,85 @@
+"""What a program waited for in vain in its last loop or move, and what it just missed."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.cases import cases
+from tests.tasks.reasons.runs import run_text
+from tuisim.tasks.reasons import unmet
+from tuisim.tasks.reasons.unmet import find_near_miss, find_unmet
+
+BANDS = "# %%sim_magic_preloaded -b Grey_bands\n"
+DRIVES = f"{BANDS}tank_drive.on(SpeedPercent(40), SpeedPercent(40))\n"
+TURNS = f"{BANDS}tank_drive.on(SpeedPercent(-20), SpeedPercent(20))\n"
+LIGHT = "colorLeft.reflected_light_intensity_pc"
+VAIN = {
+    "the other way": (
+        f"{TURNS}while gyro.angle < 90:\n    pass\n",
+        "90 or more: it went from 0 to -",
+    ),
+    "too far": (f"{TURNS}while gyro.angle > -90000:\n    pass\n", "-90000 or less: it went from 0"),
+    "equality": (
+        f"{DRIVES}while {LIGHT} != 50:\n    pass\n",
+        "exactly 50: 50.2 at 4.53 s came nearest",
+    ),
+    "at rest": (f"{BANDS}while {LIGHT} > 50:\n    pass\n", "50 or less: it stayed at 100"),
+    "a colour": (
+        f"{DRIVES}while colorLeft.color_name != 'Red':\n    print(1)\n",
+        "red: it saw only black and white",
+    ),
+    "read once": (
+        f"{DRIVES}from time import sleep\nv = {LIGHT}\nwhile v > 20:\n    sleep(1)\n",
+        "v to be 20 or less, but nothing changes it after line 4",
+    ),
+    "steps that pass by": (
+        f"{DRIVES}x = 0\nwhile x != 1:\n    x += 0.3\n",
+        "x to be exactly 1, in a loop without a wait",
+    ),
+    "rotations for degrees": (
+        f"{BANDS}tank_drive.on_for_rotations(20, 20, 360)\n",
+        "360 rotations: the wheels had turned 1",
+    ),
+}
+
+
+@cases("text, words", VAIN)
+def test_what_did_not_come_is_named_with_what_came(text: str, words: str) -> None:
+    wait = find_unmet(run_text(text))
+    assert wait is not None
+    assert wait.text.startswith(words)
+    assert wait.time_s < 0.1
+    assert wait.line == text.count("\n", 0, max(text.find("while"), len(BANDS))) + 1
+
+
+RIGHT = {
+    "it comes": f"{DRIVES}while {LIGHT} > 55:\n    pass\ntank_drive.off()\n",
+    "it came": f"{DRIVES}while {LIGHT} > 55:\n    pass\nwhile True:\n    pass\n",
+    "again and again": f"{TURNS}while True:\n    gyro.reset()\n    while gyro.angle > -90:\n        pass\n",
+    "for ever": f"{DRIVES}while True:\n    print({LIGHT})\n",
+}
+
+
+@cases("text", RIGHT)
+def test_a_program_that_does_what_it_should_waits_for_nothing(text: str) -> None:
+    run = run_text(text)
+    assert find_unmet(run) is None
+    assert find_near_miss(run) is None
+
+
+def test_a_level_that_is_a_little_too_low_just_misses_a_band() -> None:
+    text = f"{DRIVES}while {LIGHT} > 50:\n    pass\ntank_drive.off()\n"
+    miss = find_near_miss(run_text(text))
+    assert miss is not None
+    assert miss.text == "50.2 just missed the 50 or less that it waited for"
+    assert miss.time_s == pytest.approx(4.53, abs=0.05)
+
+
+def test_a_short_wait_is_not_in_vain(monkeypatch: pytest.MonkeyPatch) -> None:
+    run = run_text(VAIN["at rest"][0])
+    monkeypatch.setattr(unmet, "_MIN_STAY_S", 31.0)
+    assert find_unmet(run) is None
+
+
+def test_light_with_noise_is_not_measured_again() -> None:
+    assert find_unmet(run_text(VAIN["equality"][0].replace("bands", "bands -N 5"))) is None

@@ -1,0 +1,158 @@
+"""What a program waits for by its text: the comparison that ends a `while` loop, the turns of a motor."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+
+from tuisim.base.data_class import dataclass
+from tuisim.programs.questions import MAX_TEXT, Word
+from tuisim.programs.robot.source import parsed
+
+_ENDING: dict[type[ast.cmpop], str] = {
+    ast.Lt: ">=",
+    ast.LtE: ">",
+    ast.Gt: "<=",
+    ast.GtE: "<",
+    ast.Eq: "!=",
+    ast.NotEq: "==",
+}
+"""What ends a loop that goes on while a comparison holds."""
+_MIRRORED = {">=": "<=", ">": "<", "<=": ">=", "<": ">", "!=": "!=", "==": "=="}
+
+
+@dataclass(frozen=True, slots=True)
+class LoopEnd:
+    """A loop of a program that goes on while something compares with a constant."""
+
+    line: int
+    """The line of the comparison, on which the loop begins."""
+    last_line: int
+    test: str
+    """The comparison with which it goes on."""
+    operator: str
+    """The one that ends it, such as `>=`."""
+    limit: Word
+    """What the value is compared with; of a name such as `COLOR_RED` its last part."""
+    attribute: str = ""
+    """What is read of a device in the comparison, or in the loop for it; empty for none."""
+    read_line: int = 0
+    """The line that reads it."""
+    name: str = ""
+    """The variable that is compared; empty for none."""
+    set_line: int = 0
+    """The line before the loop that set this variable, if nothing in the program changes it afterwards; else 0."""
+    is_silent: bool = False
+    """Whether nothing in the loop calls or reads anything: it only computes."""
+
+
+def list_loop_ends(text: str) -> tuple[LoopEnd, ...]:
+    """Return the loops of a program of which its text tells what ends them, the inner ones first."""
+    tree = parsed(text) if len(text) <= MAX_TEXT else None
+    if tree is None:
+        return ()
+    loops = [node for node in ast.walk(tree) if isinstance(node, ast.While)]
+    loops.sort(key=lambda loop: -loop.lineno)
+    return tuple(end for loop in loops for end in _find_end(loop, tree))
+
+
+def find_turns(text: str, line: int) -> tuple[float, str] | None:
+    """Return how far a call on a line turns a motor or both wheels, and whether in rotations or in degrees."""
+    tree = parsed(text) if len(text) <= MAX_TEXT else None
+    for node in ast.walk(tree) if tree else ():
+        match node:
+            case ast.Call(func=ast.Attribute(attr=attr), lineno=lineno) if lineno == line:
+                amounts = [*node.args, *(each.value for each in node.keywords)]
+                constants = map(_find_constant, amounts)
+                numbers = [each for each in constants if isinstance(each, int | float)]
+                if numbers and attr in ("on_for_rotations", "on_for_degrees"):
+                    return numbers[-1], attr.removeprefix("on_for_")
+    return None
+
+
+def _find_end(loop: ast.While, tree: ast.Module) -> Iterator[LoopEnd]:
+    """Yield what ends a loop, if it goes on while something compares with a constant."""
+    match loop.test:
+        case ast.Compare(left=left, ops=[operator], comparators=[right]) if (
+            type(operator) in _ENDING
+        ):
+            ending = _ENDING[type(operator)]
+        case _:
+            return
+    limit = _find_constant(right)
+    if limit is None:
+        left, limit, ending = right, _find_constant(left), _MIRRORED[ending]
+    if limit is None:
+        return
+    is_silent = not any(isinstance(node, ast.Call | ast.Attribute) for node in ast.walk(loop))
+    name, set_line, read_line, attribute = "", 0, left.lineno, _find_attribute(left)
+    if isinstance(left, ast.Name):
+        name = left.id
+        values = _find_values(name, tree)
+        inner = [value for line, value in values if loop.lineno <= line <= _last_line(loop)]
+        if inner:
+            read_line, attribute = inner[-1].lineno, _find_attribute(inner[-1])
+        if values and all(line < loop.lineno for line, _ in values):
+            set_line = max(line for line, _ in values)
+        if not (attribute or set_line or (is_silent and inner)):
+            return
+    elif not attribute:
+        return
+    yield LoopEnd(
+        loop.test.lineno,
+        _last_line(loop),
+        ast.unparse(loop.test),
+        ending,
+        limit,
+        attribute,
+        read_line,
+        name,
+        set_line,
+        is_silent,
+    )
+
+
+def _last_line(node: ast.stmt) -> int:
+    return node.end_lineno or node.lineno
+
+
+def _find_constant(node: ast.expr) -> Word | None:
+    """Return a text or a number in the program, the last part of a name in capitals; None for others."""
+    match node:
+        case ast.Constant(value=str() | int() | float() as value) if not isinstance(value, bool):
+            return value
+        case ast.UnaryOp(op=ast.USub(), operand=ast.Constant(value=int() | float() as value)):
+            return -value
+        case ast.Attribute(attr=attr) if attr.isupper():
+            return attr
+    return None
+
+
+def _find_attribute(node: ast.expr) -> str:
+    """Return the attribute or the method without arguments that a value is; empty for other values."""
+    match node:
+        case ast.Attribute(attr=attr) | ast.Call(func=ast.Attribute(attr=attr), args=[]):
+            return attr
+    return ""
+
+
+def _find_values(name: str, tree: ast.Module) -> list[tuple[int, ast.expr]]:
+    """Return the lines on which a variable is set anywhere, with its value; the name itself where that is not known.
+
+    Empty if it is shared by functions, which others may call.
+    """
+    values: list[tuple[int, ast.expr]] = []
+    for node in ast.walk(tree):
+        match node:
+            case ast.Global(names=names) | ast.Nonlocal(names=names) if name in names:
+                return []
+            case ast.Name(id=other, ctx=ast.Store()) if other == name:
+                values.append((node.lineno, node))
+            case ast.Assign(targets=[ast.Name(id=other)], value=value) if other == name:
+                values.append((node.lineno, value))
+    known = {line for line, value in values if not isinstance(value, ast.Name)}
+    return [
+        (line, value)
+        for line, value in sorted(values, key=lambda each: each[0])
+        if not (line in known and isinstance(value, ast.Name))
+    ]

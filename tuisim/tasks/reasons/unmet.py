@@ -1,0 +1,267 @@
+"""The loop or the move that a run ended in, what would have ended it, and how near that came."""
+
+from __future__ import annotations
+
+import operator
+from collections.abc import Callable, Iterator, Mapping
+from typing import TYPE_CHECKING, Any
+
+from tuisim.base.data_class import dataclass
+from tuisim.base.errors import ConfigError, LogError
+from tuisim.engine.core.columns import COLOR_NAMES
+from tuisim.engine.protocol import End
+from tuisim.engine.runs.frames import column_values
+from tuisim.engine.runs.readings import READING_PORTS, find_ticks, read_readings
+from tuisim.engine.runs.run_folder import StoredRun, open_mat
+from tuisim.programs.questions import name_color
+from tuisim.programs.waits import LoopEnd, find_turns, list_loop_ends
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from tuisim.engine.core.field import Field
+
+    Array = NDArray[Any]
+
+_MIN_STAY_S = 3.0
+"""A program that has been in a loop for less time does not wait in it in vain."""
+_NEAR, _AWAY = 1.0, 5.0
+"""Light that came so near to what was waited for, in percent, and went so far away again, was just missed."""
+_TESTS: Mapping[str, Callable[[Any, Any], Any]] = {
+    ">=": operator.ge,
+    ">": operator.gt,
+    "<=": operator.le,
+    "<": operator.lt,
+    "==": operator.eq,
+    "!=": operator.ne,
+}
+_WORDS = {
+    ">=": "{} or more",
+    ">": "more than {}",
+    "<=": "{} or less",
+    "<": "less than {}",
+    "==": "exactly {}",
+    "!=": "anything but {}",
+}
+_COLUMNS: Mapping[str, tuple[str, float]] = {
+    "reflected_light_intensity": ("red_pc", 1.0),
+    "reflected_light_intensity_pc": ("red_pc", 1.0),
+    "reflection": ("red_pc", 1.0),
+    "full_reflected_light_intensity": ("mean_pc", 1.0),
+    "color": ("color", 1.0),
+    "color_name": ("color", 1.0),
+    "angle": ("deg", 1.0),
+    "rate": ("rate_dps", 1.0),
+    "distance_centimeters": ("mm", 0.1),
+    "distance_inches": ("mm", 1 / 25.4),
+    "distance": ("mm", 1.0),
+    "proximity": ("proximity", 1.0),
+}
+"""What programs read: the end of its column's name, and the factor from the column's unit to theirs."""
+_LIGHT = ("red_pc", "mean_pc")
+
+
+@dataclass(frozen=True, slots=True)
+class Unmet:
+    """What a program waited for in vain, or just missed."""
+
+    time_s: float
+    line: int
+    text: str
+    """What was waited for and what came, to follow "waited for"; of a miss a sentence. Without a full stop."""
+
+
+def find_unmet(run: StoredRun, mat: Field | None = None) -> Unmet | None:
+    """Return what a program waited for in the loop or the move that its run ended in, at a limit or by the user.
+
+    Of a run that goes on: what it waits for. None if for nothing, or if that is not known.
+
+    Args:
+        run: The run.
+        mat: Its mat; None opens it.
+    """
+    is_cut_off = run.end is None or run.end.end in (End.TIME_LIMIT, End.STOPPED)
+    return _find_first(_Search.find_unmet, run, mat) if is_cut_off else None
+
+
+def find_near_miss(run: StoredRun, mat: Field | None = None) -> Unmet | None:
+    """Return where light just missed what a loop waited for, if the program has left the loop later.
+
+    None if nowhere, or if that is not known.
+
+    Args:
+        run: The run.
+        mat: Its mat; None opens it.
+    """
+    return _find_first(_Search.find_near_misses, run, mat)
+
+
+def _find_first(
+    search: Callable[[_Search], Iterator[Unmet]], run: StoredRun, mat: Field | None
+) -> Unmet | None:
+    if run.telemetry.count < 2:
+        return None
+    try:
+        return next(search(_Search(run, mat)), None)
+    except (LogError, ConfigError):
+        return None
+
+
+class _Search:
+    """Looks for what a program waited for.
+
+    Raises:
+        LogError, ConfigError: a recording is damaged, or the mat no longer exists.
+    """
+
+    def __init__(self, run: StoredRun, mat: Field | None) -> None:
+        self._run, self._mat = run, mat
+        self._hz = run.spec.profile.tick_hz
+        self._records = run.telemetry.array()
+        self._loops = list_loop_ends(run.program.text)
+
+    def find_unmet(self) -> Iterator[Unmet]:
+        """Yield what was waited for in the last move or in each loop, the inner ones first."""
+        if move := self._find_move():
+            yield move
+        for loop in self._loops:
+            stay = self._find_stay(loop)
+            is_inside = stay and stay[1] == len(self._records) and self._is_long(stay[0])
+            if stay and is_inside and (text := self._describe(loop, stay)):
+                yield Unmet(stay[0] / self._hz, loop.line, text)
+
+    def find_near_misses(self) -> Iterator[Unmet]:
+        """Yield where light just missed what a loop waited for that the program has left."""
+        is_finished = self._run.end is not None and self._run.end.end is End.FINISHED
+        for loop in self._loops:
+            stay = self._find_stay(loop)
+            has_left = is_finished or (stay and stay[1] < len(self._records))
+            if stay and has_left and (miss := self._find_miss(loop, stay)):
+                yield miss
+
+    def _is_long(self, tick: int) -> bool:
+        """Return whether the program has waited long enough since a tick."""
+        return len(self._records) - tick >= _MIN_STAY_S * self._hz
+
+    def _find_move(self) -> Unmet | None:
+        """Return the turning of the wheels that the program waits for; None if it waits for none."""
+        import numpy as np
+
+        line = int(self._records["line"][-1])
+        turns = find_turns(self._run.program.text, line)
+        first = int(np.flatnonzero(self._records["line"] != line)[-1:].sum()) + 1
+        if turns is None or not self._is_long(first):
+            return None
+        names = ("left_position_deg", "right_position_deg")
+        turned = max(abs(np.ptp(self._records[name][first:])) for name in names)
+        amount, unit = turns
+        turned /= 360 if unit == "rotations" else 1
+        if not 0 < turned < abs(amount):
+            return None
+        text = f"{amount:g} {unit}: the wheels had turned {turned:.1f}"
+        return Unmet(first / self._hz, line, text)
+
+    def _find_stay(self, loop: LoopEnd) -> tuple[int, int] | None:
+        """Return the first tick in a loop and the one after the last; None if it was entered twice, or never."""
+        import numpy as np
+
+        lines = self._records["line"]
+        is_in = (lines >= loop.line) & (lines <= loop.last_line)
+        edges = np.flatnonzero(np.diff(is_in, prepend=False, append=False))
+        return (int(edges[0]), int(edges[1])) if len(edges) == 2 else None
+
+    def _describe(self, loop: LoopEnd, stay: tuple[int, int]) -> str:
+        """Return what a loop waited for, and what came; empty if that came, or is not known."""
+        if loop.set_line or loop.is_silent:
+            goal = _name_goal(loop, str(loop.limit))
+            why = (
+                f"but nothing changes it after line {loop.set_line}"
+                if loop.set_line
+                else "in a loop without a wait"
+            )
+            return f"{loop.name} to be {goal}, {why}"
+        series = self._measure(loop, stay)
+        if series is None:
+            return ""
+        ticks, values, column = series
+        if column == "color":
+            return _describe_colors(loop, values)
+        if isinstance(loop.limit, str) or _TESTS[loop.operator](values, loop.limit).any():
+            return ""
+        goal = _name_goal(loop, f"{loop.limit:g}")
+        return f"{goal}: {self._name_nearest(loop, ticks, values)}"
+
+    def _name_nearest(self, loop: LoopEnd, ticks: Array, values: Array) -> str:
+        """Return what came nearest to a number, or where the values went if that was the first one."""
+        nearest = int(abs(values - loop.limit).argmin())
+        if values[nearest] != values[0] and values[nearest] == values[-1]:
+            return f"it went from {values[0]:.4g} to {values[-1]:.4g} only"
+        if values[nearest] != values[0]:
+            return f"{values[nearest]:.4g} at {ticks[nearest] / self._hz:.2f} s came nearest"
+        if values[-1] == values[0]:
+            return f"it stayed at {values[0]:.4g}"
+        return f"it went from {values[0]:.4g} to {values[-1]:.4g}"
+
+    def _find_miss(self, loop: LoopEnd, stay: tuple[int, int]) -> Unmet | None:
+        """Return where light came near to what a loop waited for, and went away again; None if nowhere."""
+        import numpy as np
+
+        series = self._measure(loop, stay)
+        if series is None or series[2] not in _LIGHT or isinstance(loop.limit, str):
+            return None
+        ticks, values, _ = series
+        misses = abs(values - loop.limit)
+        away = np.flatnonzero(misses[:-1] >= _AWAY)
+        if not len(away) or _TESTS[loop.operator](values[:-1], loop.limit).any():
+            return None
+        first, last = int(away[0]), int(away[-1])
+        nearest = first + int(misses[first : last + 1].argmin())
+        if misses[nearest] > _NEAR:
+            return None
+        goal = _name_goal(loop, f"{loop.limit:g}")
+        text = f"{values[nearest]:.4g} just missed the {goal} that it waited for"
+        return Unmet(ticks[nearest] / self._hz, loop.line, text)
+
+    def _measure(self, loop: LoopEnd, stay: tuple[int, int]) -> tuple[Array, Array, str] | None:
+        """Return the ticks at which a loop read what it waits for, the values, and the end of their column's name.
+
+        None if that is not known, or if light noise or a pen would make it take long.
+        """
+        import numpy as np
+
+        spec = self._run.spec
+        if loop.attribute not in _COLUMNS or spec.world.noise.light or spec.world.pen_marks:
+            return None
+        column, factor = _COLUMNS[loop.attribute]
+        rows = read_readings(self._run.folder, is_over=self._run.end is not None).rows
+        rows = rows[rows["line"] == loop.read_line]
+        names = {sensor.port: f"{sensor.name}_{column}" for sensor in spec.robot.sensors}
+        ports = [READING_PORTS[port] for port in np.unique(rows["port"])]
+        ports = [port for port in ports if port in names]
+        ticks = np.unique(find_ticks(rows, self._hz))
+        ticks = ticks[(ticks >= stay[0]) & (ticks < stay[1])]
+        if len(ports) != 1 or not len(ticks):
+            return None
+        name, run = names[ports[0]], self._run
+        mat = open_mat(run) if self._mat is None else self._mat
+        columns = column_values((name,), self._records[ticks], run, run.actions, mat, lambda _: mat)
+        if name not in columns:
+            return None
+        values = columns[name] * factor
+        if loop.attribute == "reflected_light_intensity":
+            values = np.floor(values * spec.profile.reflected_max / 100)
+        elif loop.attribute == "reflection":
+            values = np.floor(values)
+        return ticks, values, column
+
+
+def _name_goal(loop: LoopEnd, limit: str) -> str:
+    return _WORDS[loop.operator].format(limit)
+
+
+def _describe_colors(loop: LoopEnd, codes: Array) -> str:
+    """Return the colour that a loop waited for and what was seen; empty if it came."""
+    color, seen = name_color(loop.limit), {COLOR_NAMES[int(code)].lower() for code in codes}
+    if loop.operator != "==" or color in {"", *seen}:
+        return ""
+    return f"{color}: it saw only {' and '.join(sorted(seen))}"
