@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 from textual.events import MouseScrollUp
 from textual.pilot import Pilot
-from textual.widgets import Static
+from textual.widgets import Input, Static
 
 from tests.app.app_help import open_lab, program_of, ready, recording_of, until
 from tests.app.lesson_help import (
@@ -40,6 +40,23 @@ async def wheel_up(pilot: Pilot[Any], panel: LessonPanel) -> None:
 
 
 PLACED = "question = { ask = 'What?', answer = 5, at_x_mm = [[600, 700]], where = 'the right: → moves it' }"
+
+
+async def test_a_question_is_answered_by_its_key_while_the_panel_of_the_place_is_shown(
+    tmp_path: Path,
+) -> None:
+    check = "question = { ask = 'Which x?', answer = 502 }"
+    async with LabApp(opened(tmp_path, check)).run_test(size=SMALL) as pilot:
+        app = await ready(pilot)
+        app.lesson.skip_step()
+        app.lesson.skip_step()
+        await pilot.press("X")
+        await until(pilot, lambda: app.panel_area.focused_panel() == "positioning")
+        x_mm = app.query_one("#x", Input)
+        before = x_mm.value
+        await type_answer(pilot, app, "502")
+        await until(pilot, lambda: states().get("do") == "done")
+        assert x_mm.value == before
 
 
 async def test_answer_about_another_place_is_not_wrong(tmp_path: Path) -> None:

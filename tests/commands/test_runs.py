@@ -21,6 +21,7 @@ from tuisim.commands import runs as runs_command
 from tuisim.commands.echo import size
 from tuisim.engine.core.profile import ROBOLAB
 from tuisim.engine.core.spec import RobotSpec, RunSpec, WorldSpec
+from tuisim.engine.protocol import End
 from tuisim.engine.runs import store as store_module
 from tuisim.engine.runs.catalogue import CATALOGUE_FILE
 from tuisim.engine.runs.records import TELEMETRY_FILE, OutputRow
@@ -52,6 +53,11 @@ def test_list_shows_sizes(make: Make, here: Command) -> None:
     assert re.search(r"\d+\.\d kB", here("runs").stdout.splitlines()[1])
     (listed,) = json.loads(here("runs", "--json").stdout)
     assert listed["bytes"] == sum(path.stat().st_size for path in run.folder.iterdir())
+
+
+def test_list_names_the_end_of_a_stopped_run_once(here: Command, home: Path) -> None:
+    begun(RunStore(), RunSpec(RobotSpec(), WorldSpec(), ROBOLAB)).end(End.STOPPED, "stopped")
+    assert here("runs").stdout.splitlines()[1].split().count("stopped") == 1
 
 
 @pytest.mark.parametrize(

@@ -36,6 +36,7 @@ def test_an_example_is_found_by_its_name_unless_a_file_has_it(
     [
         ("none.py", None, "there is no such program"),
         ("notes.ipynb", b"{}", "is a notebook"),
+        ("picture.txt", b"0 mm  100 mm\n", "is text, not a program"),
         ("null.py", b"x = 1\0\n", "null characters"),
         ("bytes.py", b"x = '\xff'\n", "bytes.py: is not Python text"),
         ("coding.py", b"# coding: klingon\n", "is not Python text"),
@@ -52,6 +53,12 @@ def test_what_is_no_program_is_told(
         read_program(path)
     if name == "bytes.py":
         assert read_program(path, as_python=True).program.text == "x = '\udcff'\n"
+
+
+def test_a_program_may_be_in_a_file_of_text(tmp_path: Path) -> None:
+    path = tmp_path / "prog.txt"
+    path.write_text("x = 1\n")
+    assert read_program(path).program.text == "x = 1\n"
 
 
 @pytest.mark.parametrize(

@@ -35,6 +35,7 @@ from tuisim.engine.core.spec import ColorSensorSpec, RunSpec, UltrasonicSpec
 from tuisim.engine.core.values import shown
 from tuisim.engine.files import toml_form
 from tuisim.engine.protocol import Unended
+from tuisim.engine.runs.catalogue import RunInfo
 from tuisim.engine.runs.diff import RunDiff, recording_in_words, setup_in_words
 from tuisim.engine.runs.frames import damage_note
 from tuisim.engine.runs.handle import ASK_AGAIN_S
@@ -107,7 +108,7 @@ def list_runs(as_json: bool) -> int:
                     f"{run.time_s or 0:.2f}",
                     "" if run.samples is None else str(run.samples),
                 ),
-                *(f"{size(bytes_in(store.folder(run.id))):>8}", _cut(run.summary), run.tags),
+                *(f"{size(bytes_in(store.folder(run.id))):>8}", _note(run), run.tags),
             )
             for run in runs
         ]
@@ -134,6 +135,11 @@ def list_runs(as_json: bool) -> int:
             rows = [(number, str(created)[5:16], *rest) for number, created, *rest in rows]
         echo_lines(table(heads, rows))
     return 0
+
+
+def _note(run: RunInfo) -> str:
+    """Return what the summary of a run says beyond its end, which has a column."""
+    return "" if run.summary == run.end else _cut(run.summary)
 
 
 def _cut(text: str) -> str:

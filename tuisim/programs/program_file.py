@@ -309,7 +309,18 @@ def read_program(path: Path, *, as_python: bool = False, alone: bool = False) ->
     if path.suffix.lower() in LOG_SUFFIXES:
         opens = f"`tuisim analyse {shlex.quote(shown)}` opens it"
         raise ConfigError("is a log, not a program", opens, file=shown)
-    return program_of_text(_decode(data, shown, as_python), path, path.name, alone=alone)
+    text = _decode(data, shown, as_python)
+    if path.suffix.lower() == ".txt" and not _is_python(text):
+        raise ConfigError("is text, not a program", hint, file=shown)
+    return program_of_text(text, path, path.name, alone=alone)
+
+
+def _is_python(text: str) -> bool:
+    try:
+        ast.parse(text)
+    except (SyntaxError, ValueError, MemoryError, RecursionError):
+        return False
+    return True
 
 
 def program_of_text(

@@ -106,6 +106,8 @@ def test_the_pause_key_says_what_it_does_now(now: Situation, playing: bool, word
 async def test_letters_and_signs_do_nothing_in_a_field_for_numbers() -> None:
     async with open_lab("pass\n", size=(80, 24)) as (pilot, app):
         await pilot.press("X")
+        await until(pilot, lambda: app.panel_area.focused_panel() == "positioning")
+        await pilot.press("enter")
         await until(pilot, lambda: isinstance(pilot.app.focused, NumberInput))
         await until(pilot, lambda: last_line(pilot).startswith(" enter apply esc leave tab next "))
         assert "R run" not in last_line(pilot)

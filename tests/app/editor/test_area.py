@@ -136,9 +136,11 @@ async def test_finding_goes_round_and_says_where_it_is() -> None:
         await pilot.press("down")
         await pilot.pause()
         assert code.cursor_line == 1
-        await pilot.press("escape", "shift+f3")
+        await pilot.press("up")
         await pilot.pause()
         assert code.cursor_line == 3
+        await pilot.press("escape")
+        await pilot.pause()
         await pilot.press("ctrl+g", "2", "enter")
         await pilot.pause()
         assert code.cursor_line == 2

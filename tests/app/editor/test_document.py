@@ -80,7 +80,7 @@ async def test_edited_text_runs_unsaved_and_is_stored_with_the_run(tmp_path: Pat
         assert app.run_controller.timeline.recording is not None
         assert app.run_controller.timeline.recording.program.text == "print(7)\n" + TEXT
         assert path.read_text() == TEXT
-        await pilot.press("ctrl+s")
+        await pilot.press("f3")
         await pilot.pause()
         assert path.read_text() == "print(7)\n" + TEXT
         assert str(code.border_title).endswith("Code: prog.py")

@@ -201,7 +201,7 @@ async def test_no_title_is_cut_off(size: tuple[int, int]) -> None:
     {
         "brick": ("K", "Press this button of the brick", "The brick"),
         "chart": ("c", "Previous trace", "Pause or resume"),
-        "fields": ("X", "enter  apply", "Move the robot to its start pose"),
+        "fields": ("X", "Type the place", "Move the robot to its start pose"),
     },
 )
 async def test_the_keys_of_the_panel_come_first(panel: str, first: str, then: str) -> None:

@@ -422,7 +422,7 @@ ACTIONS: Mapping[str, LabAction] = {
         Action(
             "save-program",
             "f3",
-            "Save the program (in the code also ctrl+s)",
+            "Save the program (also ctrl+s in the code)",
             FILES,
             files.save_program,
         ),

@@ -43,9 +43,9 @@ VALUE_GAP, LEAST_VALUE = 2, 10
 
 EDITOR_KEYS = (
     ("Enter", "Start editing; Escape ends it"),
-    ("ctrl+s", "Save the program"),
+    ("F3 ctrl+s", "Save the program"),
     ("ctrl+r F5", "Run the text as it is"),
-    ("ctrl+f F3 ⇧F3", "Find, next, previous"),
+    ("ctrl+f", "Find; then ↓ ↑ next, previous"),
     ("ctrl+g", "Go to a line"),
     ("ctrl+home ctrl+end", "Start, end of the text"),
     ("tab", "After part of a name or a dot: complete it, or list what may follow"),
@@ -65,8 +65,6 @@ class EditorCommand(StrEnum):
     STOP_TYPING = "stop_typing"
     FIND = "find"
     LINE = "line"
-    NEXT = "next"
-    PREVIOUS = "previous"
     NEW = "new"
     OPEN = "open"
 
@@ -92,8 +90,6 @@ class CodeArea(TextArea):
         Binding("ctrl+a", "select_text", "Select all", show=False),
         Binding("ctrl+home", "go_to_end(False)", "Start of the text", show=False),
         Binding("ctrl+end", "go_to_end(True)", "End of the text", show=False),
-        Binding("f3", "want('next')", "Next match", show=False),
-        Binding("shift+f3", "want('previous')", "Previous match", show=False),
     ]
 
     @dataclass

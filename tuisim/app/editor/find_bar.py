@@ -25,8 +25,8 @@ class FindBar(Horizontal):
     """
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("escape", "close", "Close", show=False),
-        Binding("down,f3,ctrl+f", "go(1)", "Next", show=False),
-        Binding("up,shift+f3", "go(-1)", "Before", show=False),
+        Binding("down,ctrl+f", "go(1)", "Next", show=False),
+        Binding("up", "go(-1)", "Before", show=False),
     ]
 
     @dataclass

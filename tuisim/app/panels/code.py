@@ -400,10 +400,6 @@ class Code(Vertical):
                 self._bar.open(FIND)
             case EditorCommand.LINE:
                 self._bar.open(LINE)
-            case EditorCommand.NEXT:
-                self._find(self._bar.wanted, 1)
-            case EditorCommand.PREVIOUS:
-                self._find(self._bar.wanted, -1)
             case EditorCommand.NEW:
                 self.post_message(self.Wanted(ProgramCommand.NEW))
             case EditorCommand.OPEN:

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 from textual import on
 from textual.app import ComposeResult
+from textual.binding import Binding, BindingType
 from textual.containers import Horizontal
 from textual.message import Message
 from textual.widgets import Input, Label, Static
 
-from tuisim.app.action import action_link
+from tuisim.app.action import KeyWord, action_link
 from tuisim.app.form import FormPanel, NumberInput
 from tuisim.base.data_class import dataclass
 from tuisim.engine.core.geometry import Pose, shown_heading_deg
@@ -39,10 +40,15 @@ def parse_field(field: str, text: str) -> float:
     return found
 
 
-class Positioning(FormPanel):
-    """The positioning panel: X, Y and angle of the robot."""
+class Positioning(FormPanel, can_focus=True):
+    """The positioning panel: X, Y and angle of the robot.
+
+    Its key gives the focus to the panel, in which letters are still keys of the app; enter or tab, to the first field.
+    """
 
     USE = "Enter places the robot"
+    BINDINGS: ClassVar[list[BindingType]] = [Binding("enter", "type", "Type the place", show=False)]
+    FOOTER_KEYS: ClassVar[tuple[KeyWord, ...]] = (("enter", "numbers"),)
 
     @dataclass
     class Applied(Message):
@@ -64,6 +70,9 @@ class Positioning(FormPanel):
             yield Static(action_link(self.app, "random", "Random"))
         yield Static(action_link(self.app, "poses", "Saved poses"), classes="link")
         yield Static(self.USE, id="message", markup=False)
+
+    def action_type(self) -> None:
+        self.query_one("#x", Input).focus()
 
     def show(self, snapshot: Snapshot) -> None:
         """Show the pose in the fields that are not being edited."""
