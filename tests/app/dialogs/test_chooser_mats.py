@@ -66,8 +66,11 @@ async def test_no_picture_stands_beside_the_title_of_another(
         mats = app.screen.query_one(OptionList)
         mats.highlighted = mats.get_option_index("Rainbow_bands")
         await until(pilot, lambda: not view._strips)
+        title = app.screen.query_one("#title", Static)
+        assert str(title.render()).endswith(" · loading …")
         go_on.set()
         await until(pilot, lambda: bool(view._strips))
+        assert "loading" not in str(title.render())
 
 
 async def enter_path(pilot: Pilot[None], path: Path) -> None:

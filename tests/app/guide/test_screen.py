@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
+from threading import Event
 from typing import Any
 
 import pytest
@@ -13,12 +14,13 @@ from textual.widgets import Input, Tree
 
 from tests.app.app_help import lab, open_lab, screen_text, until, until_shown
 from tests.cases import cases
+from tests.running import PATIENCE_S
 from tuisim.app.guide.answers import STANDS_OUT, AnswerList
 from tuisim.app.guide.screen import KEYS, TOPICS, GuideScreen
 from tuisim.app.panels import PANELS
 from tuisim.guide.catalogue import pages
 from tuisim.guide.excerpt import excerpt_of, passage_text
-from tuisim.guide.search import SearchResult
+from tuisim.guide.search import SearchResult, search
 from tuisim.guide.text import headings_in
 
 SMALL, MEDIUM = (80, 24), (120, 40)
@@ -210,6 +212,24 @@ async def test_the_keys_of_the_panel_come_first(panel: str, first: str, then: st
         await until_shown(pilot, then)
         text = screen_text(lab(pilot))
         assert text.find("In the panel") < text.find(first) < text.find(then)
+
+
+async def test_a_search_says_so_until_it_has_found_something(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    go_on = Event()
+
+    def search_slowly(question: str) -> list[SearchResult]:
+        assert go_on.wait(PATIENCE_S)
+        return search(question)
+
+    monkeypatch.setattr("tuisim.app.guide.screen.search", search_slowly)
+    async with open_guide() as (pilot, screen):
+        await pilot.press("slash", *"save", "space", *"the", "space", *"program")
+        await until(pilot, lambda: screen_text(lab(pilot)).count("searching …") == 2)
+        go_on.set()
+        await until(pilot, lambda: screen.answers != [])
+        await until(pilot, lambda: "searching …" not in screen_text(lab(pilot)))
 
 
 @pytest.mark.parametrize("size", [(40, 12), SMALL, (200, 60)], ids=["40x12", "80x24", "200x60"])

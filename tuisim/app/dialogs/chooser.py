@@ -483,10 +483,8 @@ class MatPicker(Chooser):
             view.clear_picture()
             self.query_one("#title", Static).update("")
             return
-        self.query_one("#title", Static).update(
-            self._mats[name].title if name in self._mats else Path(name).name
-        )
         port = field_view(view)
+        self._say_title(name, is_drawn=(name, port) in self._pictures)
         if (picture := self._pictures.get((name, port))) is not None:
             view.set_fine_picture(picture, view.graphics)
         else:
@@ -494,6 +492,10 @@ class MatPicker(Chooser):
             work = partial(self._decode, name, port, view.ground_rgb)
             then, failed = partial(self._decoded, (name, port)), partial(self._failed, name)
             background.run(self, work, then, failed, group="picture", exclusive=True)
+
+    def _say_title(self, name: str, *, is_drawn: bool) -> None:
+        title = self._mats[name].title if name in self._mats else Path(name).name
+        self.query_one("#title", Static).update(title if is_drawn else f"{title} · loading …")
 
     def _clear_stale(self, key: tuple[str, Viewport]) -> None:
         """Remove the picture of another mat that is still in view while that of this one is decoded."""
@@ -512,6 +514,7 @@ class MatPicker(Chooser):
             return
         view = self.query_one(PixelView)
         if key[1] == field_view(view):
+            self._say_title(key[0], is_drawn=True)
             view.set_fine_picture(picture, view.graphics)
         else:
             # The view got its height while the image was decoded.

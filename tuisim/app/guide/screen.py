@@ -80,6 +80,7 @@ TOPICS: Mapping[str, Topic] = {
 _SIDE_BY_SIDE, _PREVIEW = 100, 66
 """Columns from which the contents stay beside a page that is being read, and from which a page is shown beside them."""
 _SEARCH_AGAIN_S = 0.15
+_SEARCHING = "searching …"
 _CORNERS = 4
 """Columns of a frame beside its title."""
 
@@ -131,10 +132,10 @@ class _Contents(Tree[Place | None]):
         for other in linked_names(page):
             node.add_leaf(f"→ {pages()[other].title}", (other, ""))
 
-    def show_nothing(self) -> None:
-        """Say that a search has found nothing."""
+    def say(self, words: str) -> None:
+        """Say in place of the contents how a search goes."""
         self.clear()
-        self.root.add_leaf(NO_WORDS, None)
+        self.root.add_leaf(words, None)
 
     def go_to(self, place: Place) -> None:
         """Move the cursor to a page, without opening it."""
@@ -323,7 +324,9 @@ class GuideScreen(Dialog[None]):
         """Say in the frame where an answer is, and which keys lead on."""
         frame, one = self.query_one(".dialog"), self._answers.chosen
         frame.border_title, frame.border_subtitle = self.TITLE_TEXT, self.HINT
-        if self._found and not reading:
+        if self._question.strip() and self._answered != self._question:
+            frame.border_subtitle = _SEARCHING
+        elif self._found and not reading:
             frame.border_subtitle = "↑ ↓ answers · Enter opens · / search · esc back"
         elif self._found and one is not None:
             frame.border_title = self._title_of(one)
@@ -366,11 +369,14 @@ class GuideScreen(Dialog[None]):
         if question != self._question:
             return
         if not question.strip():
-            self._found = []
+            self._found, self._answered = [], question
             self._contents.show_all(self._keys.title)
             self._arrange(self._page.has_focus)
-            self._now_answered(question)
+            self._tell_answered()
             return
+        if not self._found:
+            self._contents.say(_SEARCHING)
+        self._frame(reading=False)
         # The first search loads every command, for its page.
         work: Callable[[], list[SearchResult]] = partial(search, question)
         background.run(self, work, partial(self._answer, question), group="search", exclusive=True)
@@ -378,15 +384,14 @@ class GuideScreen(Dialog[None]):
     def _answer(self, question: str, found: list[SearchResult]) -> None:
         if question != self._question or self.is_closed:
             return
-        self._found = found
+        self._found, self._answered = found, question
         self._arrange(self._page.has_focus)
         self._answers.show(question, found, self._room)
         if not found:
-            self._contents.show_nothing()
-        self._now_answered(question)
+            self._contents.say(NO_WORDS)
+        self._tell_answered()
 
-    def _now_answered(self, question: str) -> None:
-        self._answered = question
+    def _tell_answered(self) -> None:
         self.app.post_message(self.Changed())
 
     @on(Input.Submitted)
