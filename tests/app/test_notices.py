@@ -11,17 +11,22 @@ from tuisim.app.terminal_app import TerminalApp
 LONG = "words of an error that names a file and a key, and says what is allowed"
 
 
-@pytest.mark.parametrize("columns", [20, 40, 71, 200])
-def test_a_message_is_shown_whole_part_by_part(columns: int) -> None:
+@pytest.mark.parametrize(
+    "columns, count, tallest", [(20, 2, 3), (40, 1, 2), (71, 1, 1), (200, 1, 1)]
+)
+def test_a_message_is_shown_whole_in_as_few_parts_as_it_needs(
+    columns: int, count: int, tallest: int
+) -> None:
     parts = split_message(LONG, columns)
-    assert all(len(part) <= columns for part in parts)
+    rows = [part.splitlines() for part in parts]
+    assert all(len(part) <= 3 and max(map(len, part)) <= columns for part in rows)
+    assert (len(parts), len(rows[0])) == (count, tallest)
     if len(parts) > 1:
-        count = len(parts)
         assert [part.partition(" ")[0] for part in parts] == [
             f"{at}/{count}" for at in range(1, count + 1)
         ]
         parts = [part.partition(" ")[2] for part in parts]
-    assert " ".join(part.removesuffix(" …") for part in parts) == LONG
+    assert " ".join(" ".join(part.removesuffix(" …") for part in parts).split()) == LONG
     assert all(part.endswith(" …") for part in parts[:-1])
 
 

@@ -1,4 +1,4 @@
-"""Notices: one row on the lower edge of the panels, which shows one message at a time and covers no text."""
+"""Notices: one message at a time, on the lower edge of the panels or, if it is long, in a few rows at the top."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import time
 from collections import deque
 from collections.abc import Callable
 from math import inf
-from textwrap import wrap
+from textwrap import indent, wrap
 from typing import Any
 
 from textual.app import App
@@ -23,6 +23,8 @@ _MORE = " …"
 """At the end of a part that another one follows."""
 _NUMBER = "1/2 "
 """Before each of several parts."""
+_MAX_ROWS = 3
+"""Rows of a part."""
 _EDGES = 3
 """Columns of the row beside its text."""
 
@@ -38,7 +40,7 @@ class Notice:
 
 
 def split_message(message: str, columns: int) -> list[str]:
-    """Return the parts of a message that are shown one after the other, each in that many columns.
+    """Return the parts of a message that are shown one after the other, each of up to three rows of that many columns.
 
     Several ones are numbered, so that the reader knows that another one comes, or has been there.
     """
@@ -46,14 +48,20 @@ def split_message(message: str, columns: int) -> list[str]:
     columns = max(columns, len(_NUMBER) + len(_MORE) + 1)
     if len(text) <= columns:
         return [text]
-    parts = wrap(text, columns - len(_NUMBER) - len(_MORE))
+    if len(rows := wrap(text, columns)) <= _MAX_ROWS:
+        return ["\n".join(rows)]
+    rows = wrap(text, columns - len(_NUMBER) - len(_MORE))
+    parts = ["\n".join(rows[at : at + _MAX_ROWS]) for at in range(0, len(rows), _MAX_ROWS)]
     ends = [*(_MORE for _ in parts[1:]), ""]
     numbered = zip(range(1, len(parts) + 1), parts, ends, strict=True)
-    return [f"{number}/{len(parts)} {part}{end}" for number, part, end in numbered]
+    return [
+        f"{number}/{len(parts)} {indent(part, ' ' * len(_NUMBER)).strip()}{end}"
+        for number, part, end in numbered
+    ]
 
 
 class NoticeRow(Static):
-    """The row of a notice; long ones follow part by part.
+    """The row of a notice; a long one has more rows, at the top, where neither keys nor the axis of a chart are.
 
     Args:
         notice: What it shows.
@@ -73,6 +81,7 @@ class NoticeRow(Static):
         text-overflow: ellipsis;
         border-left: outer $success;
     }}
+    NoticeRow.-long {{ dock: top; height: auto; margin: 0; }}
     NoticeRow.-warning {{ border-left: outer $warning; }}
     NoticeRow.-error {{ border-left: outer $error; }}
     """
@@ -103,6 +112,7 @@ class NoticeRow(Static):
             self._ended()
             return
         part = self._parts.popleft()
+        self.set_class("\n" in part, "-long")
         self.update(part)
         reading_s = max(_MIN_PART_S, len(part) / CHARACTERS_A_SECOND)
         self._part_until_s = time.monotonic() + reading_s

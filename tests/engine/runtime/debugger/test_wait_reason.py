@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from tests.cases import cases
 from tests.engine.runtime.debugging import Driver
 from tests.running import Start
 from tuisim.engine.protocol import BEFORE_NEXT_TICK
@@ -39,3 +40,20 @@ def test_what_a_pybricks_program_waits_for_is_said(start: Start, case: str) -> N
     driver = Driver(start(PYBRICKS + text, profile="lego-micropython", prelude="none", **held))
     driver.paused()
     assert driver.look(thread="MainThread").waiting == note
+
+
+READS = {
+    "predefined": ("gyro.angle", "gyro.angle"),
+    "own name": ("turned.angle", "turned.angle"),
+    "within a call": ("gyro.angle_and_rate", "gyro.angle_and_rate"),
+    "other sensor": ("ultrasonic.distance_centimeters", "ultrasonic.distance_centimeters"),
+}
+
+
+@cases("text, words", READS)
+def test_what_is_read_is_named_as_in_the_program(start: Start, text: str, words: str) -> None:
+    before = "gyro\nturned, gyro = gyro, None\n" if text.startswith("turned") else ""
+    loop = f"{before}while True:\n    {text}\n"
+    driver = Driver(start(loop, live=True, speed=0.0, hold_at=(30, BEFORE_NEXT_TICK)))
+    driver.paused()
+    assert driver.look(thread="MainThread").waiting.startswith(f"reads {words} until")

@@ -91,13 +91,30 @@ def _note_of(
         case Wait.SOUND:
             return f"sounds{until}"
         case Wait.READING:
-            return f"reads {frame.f_locals['name']}{until}"
+            return f"reads {_reading_words(frame, outer)}{until}"
         case Wait.THREAD:
             return f"waits for the thread {getattr(frame.f_locals['self'], 'name', '')}{until}"
         case Wait.LOCK:
             return f"waits for {_lock_owner(outer)}{until}"
         case other:
             assert_never(other)
+
+
+def _reading_words(read: types.FrameType, outer: list[types.FrameType]) -> str:
+    """Return what is read as the program names it, such as `gyro.angle`; the attribute if no property reads it."""
+    properties = [frame for frame in outer if _is_property(frame)]
+    if not properties:
+        return str(read.f_locals["name"])
+    device = properties[-1].f_locals["self"]
+    program = outer[-1].f_back
+    spaces = (program.f_locals, program.f_globals, program.f_builtins) if program else ()
+    names = (name for space in spaces for name, value in space.items() if value is device)
+    return f"{next(names, type(device).__name__)}.{properties[-1].f_code.co_name}"
+
+
+def _is_property(frame: types.FrameType) -> bool:
+    owner = frame.f_locals.get("self")
+    return isinstance(getattr(type(owner), frame.f_code.co_name, None), property)
 
 
 def _lock_owner(outer: list[types.FrameType]) -> str:
