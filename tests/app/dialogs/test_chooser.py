@@ -164,3 +164,18 @@ async def test_what_was_said_before_covers_no_row_of_it() -> None:
         app.push_screen(Chooser("Open", [ChoiceGroup("", [("a.py", "a.py", "first")])]))
         await pilot.pause()
         assert not [row for screen in app.screen_stack for row in screen.query(NoticeRow)]
+
+
+async def test_short_names_of_a_group_leave_the_room_to_their_titles() -> None:
+    long_name = "a name as long as those of lessons are"
+    groups = [
+        ChoiceGroup("Here", [("skip", "Skip", "leaves one step undone")]),
+        ChoiceGroup("All", [("one", long_name, "new")]),
+    ]
+    app: App[None] = App()
+    async with app.run_test(size=(80, 24)) as pilot:
+        app.push_screen(Chooser("Lessons", groups))
+        await pilot.pause()
+        rows = [strip.text for strip in app.screen._compositor.render_strips()]
+        assert any("Skip  leaves one step undone" in row for row in rows)
+        assert any(f"{long_name}  new" in row for row in rows)

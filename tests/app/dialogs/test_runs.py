@@ -23,10 +23,11 @@ from tests.app.app_help import (
     until_shown,
     until_state,
 )
+from tests.cases import cases
 from tests.conftest import Command
 from tests.running import PATIENCE_S
 from tuisim.app.app import AppSettings
-from tuisim.app.dialogs.runs import RunChooser, matching, run_line
+from tuisim.app.dialogs.runs import RunChooser, heads, matching, run_line
 from tuisim.app.snapshot import RunPhase
 from tuisim.engine.protocol import End, SetNoise, UserAction
 from tuisim.engine.runs.catalogue import RunInfo
@@ -201,21 +202,37 @@ def info(number: int, **facts: Any) -> RunInfo:
     return replace(base, **facts)
 
 
+@cases(
+    "columns, names",
+    {
+        "wide": (100, "run when program mat end s samples note"),
+        "usual": (80, "run when program mat end s samples"),
+        "tall": (65, "run when program end s"),
+        "phone": (45, "run program end s"),
+    },
+)
+def test_a_narrow_list_of_runs_leaves_out_columns(columns: int, names: str) -> None:
+    line = run_line(info(1, program="a_long_name_of_a_program.py"), columns).plain
+    assert heads(columns).split() == names.split()
+    assert len(line) == len(heads(columns).removesuffix("  note")) <= columns - 10
+    assert "finished" in line
+
+
 @pytest.mark.parametrize(
-    "facts, noted, end",
+    "facts, columns, end",
     [
-        ({"end": End.STOPPED, "summary": "stopped"}, True, "0"),
-        ({"end": End.TIME_LIMIT, "summary": "stopped at the limit of 20 s"}, True, "0"),
-        ({"end": End.RAISED, "summary": "KeyError: 'a'"}, True, "0  KeyError: 'a'"),
-        ({"end": End.RAISED, "summary": "KeyError: 'a'"}, False, "0"),
-        ({"tags": "branch:3"}, True, "0  branch:3"),
+        ({"end": End.STOPPED, "summary": "stopped"}, 100, "0"),
+        ({"end": End.TIME_LIMIT, "summary": "stopped at the limit of 20 s"}, 100, "0"),
+        ({"end": End.RAISED, "summary": "KeyError: 'a'"}, 100, "0  KeyError: 'a'"),
+        ({"end": End.RAISED, "summary": "KeyError: 'a'"}, 99, "0"),
+        ({"tags": "branch:3"}, 100, "0  branch:3"),
     ],
     ids=["the end only", "the limit", "an error", "no room", "tags"],
 )
 def test_the_note_of_a_run_does_not_repeat_its_end(
-    facts: dict[str, Any], noted: bool, end: str
+    facts: dict[str, Any], columns: int, end: str
 ) -> None:
-    assert run_line(info(1, **facts), noted=noted).plain.partition("0.00       ")[2] == end
+    assert run_line(info(1, **facts), columns).plain.partition("0.00       ")[2] == end
 
 
 @pytest.mark.parametrize(

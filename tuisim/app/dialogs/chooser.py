@@ -180,8 +180,11 @@ class Chooser(ListDialog):
         self._current = current
         self._path_hint = path_hint
         self._read = read
-        titled = [name for group in self._groups for _, name, title in group.entries if title]
-        self._name_cells = max(map(len, titled), default=0)
+        self._name_cells = {
+            group.title: max((len(name) for _, name, title in group.entries if title), default=0)
+            for group in self._groups
+        }
+        """Of each group: a few short names leave the room to their titles."""
 
     def content(self) -> ComposeResult:
         if self._path_hint:
@@ -216,7 +219,9 @@ class Chooser(ListDialog):
                 options.append(Option(Text(group.title, "italic"), disabled=True))
             options += [
                 Option(
-                    name_and_title(name, title, self._name_cells) if title else Text(name, "bold"),
+                    name_and_title(name, title, self._name_cells[group.title])
+                    if title
+                    else Text(name, "bold"),
                     id=chosen,
                 )
                 for chosen, name, title in group.entries[:MAX_FILES]

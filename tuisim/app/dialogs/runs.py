@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from datetime import datetime
 from functools import partial
 from pathlib import Path
@@ -66,23 +66,51 @@ def _when(run: RunInfo) -> str:
         return run.created[:16]
 
 
-# As wide as fits a terminal of 80 columns; the list is indented by one.
-_HEADS = f"{'run':>5} {'when':<11} {'program':<12} {'mat':<10} {'end':<9} {'s':>6} {'samples':>7}"
+_COLUMNS = {"run": 5, "when": 11, "program": 12, "mat": 10, "end": 9, "s": 6, "samples": 7}
+"""Columns of the list, with a note behind them, and their cells."""
+_NUMBERS = ("run", "s", "samples")
+"""Columns whose texts stand at the right."""
+_LEFT_OUT = {80: (), 58: ("mat", "samples"), 0: ("when", "mat", "samples")}
+"""What a terminal of so many columns has no room for."""
 _NOTE_AT = 100
 """Columns of a terminal from which the list has notes."""
 
 
-def run_line(run: RunInfo, marked: bool = False, *, noted: bool = True) -> Text:
-    """Return one line of the list, below `_HEADS`; `noted` with tags or what went wrong."""
+def _arrange(texts: Mapping[str, str], columns: int) -> dict[str, str]:
+    """Return the cells of a line of the list for which a terminal of so many columns has room."""
+    left_out = next(names for least, names in _LEFT_OUT.items() if columns >= least)
+    return {
+        name: f"{cut(texts[name], cells):{'>' if name in _NUMBERS else '<'}{cells}}"
+        for name, cells in _COLUMNS.items()
+        if name not in left_out
+    }
+
+
+def heads(columns: int) -> str:
+    """Return the heads of the list in a terminal of so many columns."""
+    names = " ".join(_arrange({name: name for name in _COLUMNS}, columns).values())
+    return f"{names}  note" if columns >= _NOTE_AT else names
+
+
+def run_line(run: RunInfo, columns: int, *, marked: bool = False) -> Text:
+    """Return one line of the list, below `heads`; a wide one with tags or what went wrong."""
+    texts = {
+        "run": f"{run.number}{'●' if marked else ' '}",
+        "when": _when(run)[5:],
+        "program": run.program,
+        "mat": Path(run.background).name,
+        "end": end_label(run.end),
+        "s": f"{run.time_s or 0:.2f}",
+        "samples": f"{run.samples or 0:,}",
+    }
+    styles = {"run": "bold", "when": palette.SOFT, "program": "bold"}
+    if run.end not in GOOD_ENDS:
+        styles["end"] = palette.RED
     line = Text(no_wrap=True, overflow="ellipsis")
-    line.append(f"{run.number:>4}{'●' if marked else ' '}", "bold")
-    line.append(f"{_when(run)[5:]:<11} ", palette.SOFT)
-    line.append(f"{cut(run.program, 12):<12} ", "bold")
-    line.append(f"{cut(Path(run.background).name, 10):<10} ")
-    line.append(f"{cut(end_label(run.end), 9):<9} ", "" if run.end in GOOD_ENDS else palette.RED)
-    line.append(f"{run.time_s or 0:>6.2f} {run.samples or 0:>7,}")
+    for name, text in _arrange(texts, columns).items():
+        line.append(f"{' ' if line else ''}{text}", styles.get(name, ""))
     # Of most runs the summary says the end, which has its own column.
-    if noted and (
+    if columns >= _NOTE_AT and (
         note := run.tags
         or ("" if run.end is End.TIME_LIMIT or run.summary == end_label(run.end) else run.summary)
     ):
@@ -132,7 +160,7 @@ class RunChooser(ListDialog):
             compact=True,
             select_on_focus=False,
         )
-        yield Static(f"{_HEADS}  note" if self._noted else _HEADS, markup=False, classes="heads")
+        yield Static(heads(self.app.size.width), markup=False, classes="heads")
         yield OptionList()
         with Horizontal(classes="way"):
             yield PixelView()
@@ -153,14 +181,9 @@ class RunChooser(ListDialog):
             numbers = [run.number for run in matching(self._runs, "")[:MOST_LISTED]]
             options.highlighted = numbers.index(root) if root in numbers else 0
 
-    @property
-    def _noted(self) -> bool:
-        """Whether there is room for notes."""
-        return self.app.size.width >= _NOTE_AT
-
     def line(self, run: RunInfo) -> Text:
         """Return one line of the list."""
-        return run_line(run, noted=self._noted)
+        return run_line(run, self.app.size.width)
 
     def _list(self, search: str) -> None:
         found = matching(self._runs, search)
@@ -235,7 +258,7 @@ class RunsChooser(RunChooser):
 
     def line(self, run: RunInfo) -> Text:
         """Return one line of the list."""
-        return run_line(run, run.id in self._marked, noted=self._noted)
+        return run_line(run, self.app.size.width, marked=run.id in self._marked)
 
     def action_mark(self) -> None:
         options = self.query_one(OptionList)
