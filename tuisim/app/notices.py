@@ -51,7 +51,7 @@ def split_message(message: str, columns: int) -> list[str]:
     if len(rows := wrap(text, columns)) <= _MAX_ROWS:
         return ["\n".join(rows)]
     rows = wrap(text, columns - len(_NUMBER) - len(_MORE))
-    parts = ["\n".join(rows[at : at + _MAX_ROWS]) for at in range(0, len(rows), _MAX_ROWS)]
+    parts = ["\n".join(rows[first : first + _MAX_ROWS]) for first in range(0, len(rows), _MAX_ROWS)]
     ends = [*(_MORE for _ in parts[1:]), ""]
     numbered = zip(range(1, len(parts) + 1), parts, ends, strict=True)
     return [

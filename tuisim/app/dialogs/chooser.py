@@ -180,11 +180,6 @@ class Chooser(ListDialog):
         self._current = current
         self._path_hint = path_hint
         self._read = read
-        self._name_cells = {
-            group.title: max((len(name) for _, name, title in group.entries if title), default=0)
-            for group in self._groups
-        }
-        """Of each group: a few short names leave the room to their titles."""
 
     def content(self) -> ComposeResult:
         if self._path_hint:
@@ -217,11 +212,11 @@ class Chooser(ListDialog):
                 options.append(None)
             if group.title:
                 options.append(Option(Text(group.title, "italic"), disabled=True))
+            # Short names leave the room to their titles.
+            name_cells = max((len(name) for _, name, title in group.entries if title), default=0)
             options += [
                 Option(
-                    name_and_title(name, title, self._name_cells[group.title])
-                    if title
-                    else Text(name, "bold"),
+                    name_and_title(name, title, name_cells) if title else Text(name, "bold"),
                     id=chosen,
                 )
                 for chosen, name, title in group.entries[:MAX_FILES]
@@ -489,7 +484,7 @@ class MatPicker(Chooser):
             self.query_one("#title", Static).update("")
             return
         port = field_view(view)
-        self._say_title(name, is_drawn=(name, port) in self._pictures)
+        self._say_title(name, (name, port) in self._pictures)
         if (picture := self._pictures.get((name, port))) is not None:
             view.set_fine_picture(picture, view.graphics)
         else:
@@ -498,7 +493,7 @@ class MatPicker(Chooser):
             then, failed = partial(self._decoded, (name, port)), partial(self._failed, name)
             background.run(self, work, then, failed, group="picture", exclusive=True)
 
-    def _say_title(self, name: str, *, is_drawn: bool) -> None:
+    def _say_title(self, name: str, is_drawn: bool) -> None:
         title = self._mats[name].title if name in self._mats else Path(name).name
         self.query_one("#title", Static).update(title if is_drawn else f"{title} · loading …")
 

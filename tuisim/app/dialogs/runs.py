@@ -78,7 +78,7 @@ _NOTE_AT = 100
 
 def _arrange(texts: Mapping[str, str], columns: int) -> dict[str, str]:
     """Return the cells of a line of the list for which a terminal of so many columns has room."""
-    left_out = next(names for least, names in _LEFT_OUT.items() if columns >= least)
+    left_out = next(names for from_columns, names in _LEFT_OUT.items() if columns >= from_columns)
     return {
         name: f"{cut(texts[name], cells):{'>' if name in _NUMBERS else '<'}{cells}}"
         for name, cells in _COLUMNS.items()
