@@ -116,6 +116,49 @@ async def test_fingers_drag_the_robot_and_press_buttons(serve: Serve, tmp_path: 
         assert driven[1] == pytest.approx(dragged[1], abs=3)
 
 
+LAYER = "document.querySelector('.xterm-text-layer')"
+
+
+@pytest.mark.parametrize("scale", [2, 3])
+async def test_text_is_as_large_as_the_pictures_on_an_emulated_device(
+    scale: int, serve: Serve, tmp_path: Path
+) -> None:
+    async with opened(serve, tmp_path, (390, 844), 1, fingers=True) as page:
+        size = {"width": 390, "height": 844, "deviceScaleFactor": scale, "mobile": True}
+        await page.do("Emulation.setDeviceMetricsOverride", **size)
+        await page.do("Page.reload")
+        await page.until(f"{CANVAS} && {CANVAS}.width > {390 * scale - 20}")
+        await until_seen(page, is_whole)
+        assert await page.js(f"{LAYER}.width / {CANVAS}.width") == pytest.approx(1, abs=0.01)
+        assert await page.js(f"{LAYER}.height / {CANVAS}.height") == pytest.approx(1, abs=0.01)
+
+
+NOTES_INPUT = """
+window.typed = "";
+const send = Socket.prototype.send;
+Socket.prototype.send = function (said) {
+  const [kind, text] = JSON.parse(said);
+  if (kind === "stdin") typed += text;
+  send.call(this, said);
+};
+"""
+
+
+async def test_buttons_press_the_keys_that_go_back_and_forth(serve: Serve, tmp_path: Path) -> None:
+    async with opened(serve, tmp_path, (390, 844), 1, fingers=True) as page:
+        await page.js("document.querySelector('[aria-controls=keys]').click()")
+        await until_seen(page, is_whole)
+        await page.js(NOTES_INPUT)
+        for key in ("second", "tick", "end", "wrong"):
+            await page.js(f"document.querySelector('[data-key={key}]').click()")
+        # The terminal tells the app of its size, too.
+        assert (await page.js("typed")).endswith("<,\x1b[F!")
+        # All buttons are in sight, and large enough for a finger.
+        least = "Math.min(...[...document.querySelectorAll('#keys button')].map((button) => button.clientWidth))"
+        assert await page.js(least) >= 44
+        assert await page.js("document.getElementById('bar').scrollWidth") <= 390
+
+
 async def test_ctrl_c_puts_the_picture_on_the_clipboard(serve: Serve, tmp_path: Path) -> None:
     async with opened(serve, tmp_path, (1000, 700), 1) as page:
         assert (await page.copy_by_key()).startswith("Grey_bands, 0.00 s\n")

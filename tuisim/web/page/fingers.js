@@ -7,7 +7,19 @@ const [ENOUGH, LEAST] = [
   [64, 24],
   [40, 12],
 ];
-const KEYS = { enter: "\r", esc: "\x1b", tab: "\t", left: "\x1b[D", up: "\x1b[A", down: "\x1b[B", right: "\x1b[C" };
+const KEYS = {
+  enter: "\r",
+  esc: "\x1b",
+  tab: "\t",
+  left: "\x1b[D",
+  up: "\x1b[A",
+  down: "\x1b[B",
+  right: "\x1b[C",
+  wrong: "!",
+  second: "<",
+  tick: ",",
+  end: "\x1b[F",
+};
 const HOLD_PX = 8;
 // Two fingers that are this many times as far apart zoom the world by a step.
 const ZOOM_STEP = 1.5;

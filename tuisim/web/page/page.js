@@ -42,6 +42,10 @@ terminalUsers.push((terminal) => {
   terminal.loadAddon = (addon) => "onContextLoss" in addon || load(addon);
 });
 
+// The canvas of the text has the browser's ratio of pixels, as the pictures have: a box in pixels of the device leaves the
+// ratio out where a device is emulated.
+delete ResizeObserverEntry.prototype.devicePixelContentBoxSize;
+
 let socket = null;
 const say = (...words) => socket?.send(JSON.stringify(words));
 
