@@ -44,7 +44,7 @@ async def test_a_notice_lies_on_the_border_and_leaves_axis_and_keys_free(
         await until(pilot, lambda: app.screen.query_one(NoticeRow).region.height > 1)
         rows = app.screen.query_one(NoticeRow).region
         assert rows == Region(0, 0, size[0], rows.height) and rows.height <= 3
-        axis = cast(Widget, app.panel_area.panels["chart"]).region
+        axis = app.panel_area.panels["chart"].region
         assert not rows.overlaps(Region(axis.x, axis.bottom - 3, axis.width, 3))
         app.say(SHORT)
         row = (await shown_row(pilot, app, SHORT)).region

@@ -7,6 +7,7 @@ from itertools import product
 
 import pytest
 
+from tests.app.app_help import program
 from tests.app.panel_help import SPEC, PanelApp, moment, screen_text
 from tests.cases import cases
 from tuisim.app.panels.instrumentation import Instrumentation, lines
@@ -128,6 +129,39 @@ def test_names_are_whole(width: int, height: int) -> None:
 
     for name in ("LeftMotor", "RightMotor", "Sensor1", "Sensor2", "Ultrasonic"):
         assert name in rows
+
+
+@cases(
+    "read, whole, small, cell",
+    {
+        "channel": (
+            "reflected_light_intensity",
+            "red 220/255 mean 86.3 %",
+            "red 220/255 White",
+            "S1 220/255",
+        ),
+        "percent": (
+            "reflected_light_intensity_pc",
+            "red 86.3 % mean 86.3 %",
+            "red 86.3 % White",
+            "S1 86.3%",
+        ),
+        "mean": (
+            "full_reflected_light_intensity",
+            "red 86.3 % mean 86.3 %",
+            "mean 86.3 % White",
+            "S1 86.3%",
+        ),
+    },
+)
+def test_a_light_is_shown_in_the_unit_that_the_program_reads(
+    read: str, whole: str, small: str, cell: str
+) -> None:
+    now = moment(program=program(f"v = colorLeft.{read}\n"))
+    for words, width, height in ((whole, 44, 13), (small, 44, 7), (cell, 46, 3)):
+        rows = [" ".join(row.split()) for row in text(now, width, height)]
+        assert any(words in row for row in rows), (rows, words)
+        assert max(map(len, text(now, width, height))) <= width
 
 
 def test_values() -> None:

@@ -2,6 +2,13 @@
 
 from __future__ import annotations
 
+from tuisim.app.panels.light_lines import (
+    LONGEST_NAME,
+    build_color_cell,
+    build_sensor_line,
+    build_sensor_lines,
+    list_seen,
+)
 from tuisim.app.panels.motor_lines import (
     add_states,
     build_driver_line,
@@ -20,10 +27,8 @@ from tuisim.app.panels.reading_runs import (
     value_runs,
 )
 from tuisim.app.panels.titles import build_title, name_setup
-from tuisim.app.render.arrays import swatch_of
 from tuisim.app.snapshot import RunPhase, Snapshot, end_label
 from tuisim.engine.core.geometry import shown_heading_deg
-from tuisim.engine.core.sensors.color import ColorReading
 from tuisim.logs.units import unit_of
 from tuisim.terminal.cell_view import LinesPanel
 from tuisim.terminal.text_runs import Line, Run, cut
@@ -32,8 +37,6 @@ _GAP = 2
 """Columns between readings side by side."""
 _CELL = 16
 """Columns of a further reading among them."""
-_LONGEST_NAME = 7
-"""So that readings do not move when a sensor sees another colour."""
 
 
 class Instrumentation(LinesPanel):
@@ -70,22 +73,19 @@ def lines(now: Snapshot, width: int, height: int) -> list[Line]:
     if tall := _lines_with_drivers(now, width, height):
         return tall
     motors = add_states(build_wheel_lines(now, width), now, width)
-    sensors = [
-        (f"Sensor{at}", now.colors.get(s.name))
-        for at, s in enumerate(now.spec.robot.color_sensors, 1)
-    ]
+    sensors = list_seen(now, "Sensor")
     further = [*build_extra_motor_lines(now, width), *_further_sensors(now, width)]
     small = height < 7 + len(sensors) + len(further)
     if small:
-        short = [_sensor_in_one(name, seen, width) for name, seen in sensors]
+        short = [build_sensor_line(name, seen, width) for name, seen in sensors]
         whole = [*motors, *short, _distance_and_angle(now, width), _place_and_time(now, width)]
         whole += further
         return whole if len(whole) <= height else _side_by_side(now, width, max(height, 1))
     ranging = [_ultrasonic(now, width), _gyro(now, width), *further]
     rest = [*ranging, _pose(now, width), _clock(now, width), _state(now, width)]
     if height < 7 + 2 * len(sensors) + len(further):
-        return [*motors, *(_sensor_in_one(name, seen, width) for name, seen in sensors), *rest]
-    full = [line for name, seen in sensors for line in _sensor(name, seen, width)]
+        return [*motors, *(build_sensor_line(name, seen, width) for name, seen in sensors), *rest]
+    full = [line for name, seen in sensors for line in build_sensor_lines(name, seen, width)]
     if height < 10 + 2 * len(sensors) + len(further):
         return [*motors, *full, *rest]
     return [*motors, [], *full, [], *ranging, [], *rest[len(ranging) :]]
@@ -105,8 +105,8 @@ def _lines_with_drivers(now: Snapshot, width: int, height: int) -> list[Line]:
         [line for pair in zip(wheels, drivers, strict=False) for line in pair],
         [
             line
-            for at, sensor in enumerate(now.spec.robot.color_sensors, 1)
-            for line in _sensor(f"Sensor{at}", now.colors.get(sensor.name), width)
+            for name, seen in list_seen(now, "Sensor")
+            for line in build_sensor_lines(name, seen, width)
         ],
         [
             _ultrasonic(now, width),
@@ -180,7 +180,7 @@ def _names_of_colors(now: Snapshot, width: int) -> Line:
         seen = now.colors.get(sensor.name)
         more = [
             label_run(f"S{at}", 3),
-            value_run(f"{seen.name if seen else '–':<{_LONGEST_NAME}}"),
+            value_run(f"{seen.name if seen else '–':<{LONGEST_NAME}}"),
             unit_run(" " * _GAP),
         ]
         if _length(line) + _length(more) - _GAP <= width:
@@ -198,10 +198,7 @@ def _columns(now: Snapshot, height: int, detail: int) -> tuple[list[list[Line]],
     """
     robot = now.spec.robot
     motors = build_motor_cells(now, with_speed=detail > 0)
-    colors = [
-        (f"S{at}", now.colors.get(sensor.name)) for at, sensor in enumerate(robot.color_sensors, 1)
-    ]
-    sensors = [_color_cell(name, seen, detail > 1) for name, seen in colors]
+    sensors = [build_color_cell(name, seen, detail > 1) for name, seen in list_seen(now, "S")]
     ranging: list[Line] = []
     if now.ultrasonic_mm is not None:
         ranging.append([label_run("US", 3), *value_runs(f"{now.ultrasonic_mm / 10:5.1f}", "cm")])
@@ -224,102 +221,8 @@ def _columns(now: Snapshot, height: int, detail: int) -> tuple[list[list[Line]],
     ], len(groups)
 
 
-def _color_cell(name: str, seen: ColorReading | None, with_name: bool) -> Line:
-    if seen is None:
-        return [label_run(name, 3), unit_run("–")]
-    cell: Line = [
-        label_run(name, 3),
-        *value_runs(f"{seen.red_percent:5.1f}", "% "),
-        swatch_of(seen),
-    ]
-    return [*cell, value_run(f" {seen.name:<{_LONGEST_NAME}}")] if with_name else cell
-
-
 def _length(line: Line) -> int:
     return sum(len(text) for text, _ in line)
-
-
-def _sensor(name: str, seen: ColorReading | None, width: int) -> tuple[Line, Line]:
-    if seen is None:
-        return [label_run(name), unit_run("–")], []
-    red, mean = f"{seen.red_percent:5.1f}", f"{seen.mean_percent:5.1f}"
-    # 100 without a decimal leaves a space after the word before it.
-    short_red, short_mean = (
-        f"{value[:3]:>5}" if value == "100.0" else value for value in (red, mean)
-    )
-    first = fit_line(
-        width,
-        (
-            label_run(name),
-            unit_run("red "),
-            value_run(red),
-            unit_run(" %  mean "),
-            value_run(mean),
-            unit_run(" %"),
-        ),
-        (
-            label_run(name, 8),
-            unit_run("red"),
-            value_run(short_red),
-            unit_run(" mean"),
-            value_run(short_mean),
-        ),
-        (label_run(name, 8), value_run(short_red), unit_run(" mean"), value_run(short_mean)),
-        (
-            label_run(name[:1] + name[-1:], 3),
-            value_run(short_red),
-            unit_run(" mean"),
-            value_run(short_mean),
-        ),
-    )
-    channels = [f"{channel}" for channel in seen.rgb]
-    wide, narrow = f"({', '.join(channels)})", f"({','.join(channels)})"
-    second = fit_line(
-        width,
-        (label_run(""), value_run(wide.ljust(16)), swatch_of(seen), value_run(f" {seen.name}")),
-        (
-            label_run("", 2),
-            value_run(narrow.ljust(14)),
-            swatch_of(seen),
-            value_run(f" {seen.name}"),
-        ),
-        (swatch_of(seen), value_run(f" {narrow}")),
-    )
-    return first, second
-
-
-def _sensor_in_one(name: str, seen: ColorReading | None, width: int) -> Line:
-    short = name[:1] + name[-1:]
-    if seen is None:
-        return fit_line(
-            width, (label_run(name, 9), unit_run("–")), (label_run(short, 3), unit_run("–"))
-        )
-    red = f"{seen.red_percent:5.1f}"
-    return fit_line(
-        width,
-        (
-            label_run(name),
-            unit_run("red "),
-            value_run(red),
-            unit_run(" %  "),
-            swatch_of(seen),
-            value_run(f" {seen.name}"),
-        ),
-        (
-            label_run(name, 9),
-            value_run(red),
-            unit_run("% "),
-            swatch_of(seen),
-            value_run(f" {seen.name}"),
-        ),
-        (
-            label_run(short, 3),
-            value_run(red),
-            unit_run("% "),
-            swatch_of(seen),
-            value_run(f" {seen.name}"),
-        ),
-    )
 
 
 def _ultrasonic(now: Snapshot, width: int) -> Line:

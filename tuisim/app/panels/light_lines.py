@@ -1,0 +1,136 @@
+"""Lines of the instrumentation panel for the colour sensors, with the value that the program reads."""
+
+from __future__ import annotations
+
+from tuisim.app.panels.reading_runs import fit_line, label_run, unit_run, value_run
+from tuisim.app.render.arrays import swatch_of
+from tuisim.app.snapshot import Snapshot
+from tuisim.base.data_class import dataclass
+from tuisim.engine.core.sensors.color import ColorReading, LightRead
+from tuisim.programs.robot.thresholds import read_in
+from tuisim.terminal.text_runs import Line
+
+LONGEST_NAME = 7
+"""So that readings do not move when a sensor sees another colour."""
+
+
+@dataclass(frozen=True, slots=True)
+class LightSeen:
+    """A reading of a colour sensor, and what the program reads of it."""
+
+    color: ColorReading
+    read: LightRead
+    reflected_max: int
+    """Value of `reflected_light_intensity` on white."""
+
+    @property
+    def value(self) -> str:
+        """The number that the program gets."""
+        number = self.read.measured(self.color, self.reflected_max)
+        if self.read is LightRead.REFLECTED:
+            return f"{number:3.0f}"
+        return f"{number:5.0f}" if self.read is LightRead.REFLECTION else f"{number:5.1f}"
+
+    @property
+    def unit(self) -> str:
+        """What stands behind it."""
+        return f"/{self.reflected_max}" if self.read is LightRead.REFLECTED else "%"
+
+
+def list_seen(now: Snapshot, word: str) -> list[tuple[str, LightSeen | None]]:
+    """Return the number of each colour sensor behind a word, and what it sees; None before the mat is known."""
+    read, reflected_max = read_in(now.program), now.spec.profile.reflected_max
+    seen = [now.colors.get(sensor.name) for sensor in now.spec.robot.color_sensors]
+    return [
+        (f"{word}{number}", LightSeen(color, read, reflected_max) if color else None)
+        for number, color in enumerate(seen, 1)
+    ]
+
+
+def build_color_cell(name: str, seen: LightSeen | None, with_name: bool) -> Line:
+    """Return a sensor as a cell of a column."""
+    if seen is None:
+        return [label_run(name, 3), unit_run("–")]
+    cell: Line = [
+        label_run(name, 3),
+        value_run(seen.value),
+        unit_run(f"{seen.unit:<{7 - len(seen.value)}}"),
+        swatch_of(seen.color),
+    ]
+    return [*cell, value_run(f" {seen.color.name:<{LONGEST_NAME}}")] if with_name else cell
+
+
+def build_sensor_lines(name: str, seen: LightSeen | None, width: int) -> tuple[Line, Line]:
+    """Return a sensor in two lines, the second one with its channels and its colour."""
+    if seen is None:
+        return [label_run(name), unit_run("–")], []
+    color = seen.color
+    red, red_unit, mean = f"{color.red_percent:5.1f}", " %", f"{color.mean_percent:5.1f}"
+    if seen.read is LightRead.REFLECTED:
+        red, red_unit = seen.value, seen.unit
+    # 100 without a decimal leaves a space after the word before it.
+    short_red, short_mean = (
+        f"{value[:3]:>5}" if value == "100.0" else f"{value:>5}" for value in (red, mean)
+    )
+    first = fit_line(
+        width,
+        (
+            label_run(name),
+            unit_run("red "),
+            value_run(red),
+            unit_run(f"{red_unit}  mean "),
+            value_run(mean),
+            unit_run(" %"),
+        ),
+        (
+            label_run(name, 8),
+            unit_run("red"),
+            value_run(short_red),
+            unit_run(" mean"),
+            value_run(short_mean),
+        ),
+        (label_run(name, 8), value_run(short_red), unit_run(" mean"), value_run(short_mean)),
+        (
+            label_run(name[:1] + name[-1:], 3),
+            value_run(short_red),
+            unit_run(" mean"),
+            value_run(short_mean),
+        ),
+    )
+    channels = [f"{channel}" for channel in color.rgb]
+    wide, narrow = f"({', '.join(channels)})", f"({','.join(channels)})"
+    second = fit_line(
+        width,
+        (label_run(""), value_run(wide.ljust(16)), swatch_of(color), value_run(f" {color.name}")),
+        (
+            label_run("", 2),
+            value_run(narrow.ljust(14)),
+            swatch_of(color),
+            value_run(f" {color.name}"),
+        ),
+        (swatch_of(color), value_run(f" {narrow}")),
+    )
+    return first, second
+
+
+def build_sensor_line(name: str, seen: LightSeen | None, width: int) -> Line:
+    """Return a sensor in one line."""
+    short = name[:1] + name[-1:]
+    if seen is None:
+        return fit_line(
+            width, (label_run(name, 9), unit_run("–")), (label_run(short, 3), unit_run("–"))
+        )
+    what = "mean " if seen.read is LightRead.MEAN else "red "
+    after = (swatch_of(seen.color), value_run(f" {seen.color.name}"))
+    return fit_line(
+        width,
+        (
+            label_run(name),
+            unit_run(what),
+            value_run(seen.value),
+            unit_run(f"{seen.unit:>2}  "),
+            *after,
+        ),
+        (label_run(name, 9), value_run(seen.value), unit_run(f"{seen.unit} "), *after),
+        (label_run(short, 3), value_run(seen.value), unit_run(f"{seen.unit} "), *after),
+    )
