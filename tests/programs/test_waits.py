@@ -13,6 +13,14 @@ WAITED_FOR = {
     "the constant first": ("while -5 >= gyro.rate:\n    pass", ">", -5, "rate", 1),
     "a colour": ("while cs.color_name != 'Red':\n    pass", "==", "Red", "color_name", 1),
     "a colour of a library": ("while cs.color() != Color.RED:\n    pass", "==", "RED", "color", 1),
+    "a break": ("while True:\n    if gyro.angle > 90:\n        break\n", ">", 90, "angle", 2),
+    "one of two": (
+        "while btn.enter == False and us.distance() > 50:\n    wait(5)",
+        "<=",
+        50,
+        "distance",
+        1,
+    ),
     "a variable": (
         "v = cs.color\nwhile v == 1:\n    v = cs.color\n    show(v)",
         "!=",
@@ -44,6 +52,11 @@ def test_a_comparison_with_a_constant_is_waited_for(
         "v = 1\ndef press():\n    global v\n    v = 0\ndef go():\n    while v > 0:\n        pass",
         "v = 1\ndef go():\n    while v > 0:\n        rest()\ndef press():\n    global v\n    v = 0",
         "while gyro.angle <",
+        "run = 1\nwhile run == 1:\n    follow()",
+        "v = cs.color\nwhile v != 5:\n    if touch.is_pressed:\n        break",
+        "v = 1\nwhile v > 0 and ready():\n    wait(5)",
+        "while gyro.angle < 90 or ready():\n    wait(5)",
+        "while True:\n    if gyro.angle > 90:\n        stop()",
     ],
 )
 def test_other_loops_end_who_knows_how(text: str) -> None:

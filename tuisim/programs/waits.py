@@ -1,4 +1,4 @@
-"""What a program waits for by its text: the comparison that ends a `while` loop, the turns of a motor."""
+"""What a program waits for by its text: the comparison that ends a loop, the turns of a motor."""
 
 from __future__ import annotations
 
@@ -18,18 +18,19 @@ _ENDING: dict[type[ast.cmpop], str] = {
     ast.NotEq: "==",
 }
 """What ends a loop that goes on while a comparison holds."""
+_OPPOSITE = {">=": "<", ">": "<=", "<=": ">", "<": ">=", "!=": "==", "==": "!="}
 _MIRRORED = {">=": "<=", ">": "<", "<=": ">=", "<": ">", "!=": "!=", "==": "=="}
 
 
 @dataclass(frozen=True, slots=True)
 class LoopEnd:
-    """A loop of a program that goes on while something compares with a constant."""
+    """A loop of a program that ends when something compares with a constant."""
 
     line: int
-    """The line of the comparison, on which the loop begins."""
+    """The line of the comparison."""
+    first_line: int
+    """That on which the loop begins."""
     last_line: int
-    test: str
-    """The comparison with which it goes on."""
     operator: str
     """The one that ends it, such as `>=`."""
     limit: Word
@@ -41,7 +42,7 @@ class LoopEnd:
     name: str = ""
     """The variable that is compared; empty for none."""
     set_line: int = 0
-    """The line before the loop that set this variable, if nothing in the program changes it afterwards; else 0."""
+    """The line before the loop that read this variable, if nothing in the program changes it afterwards; else 0."""
     is_silent: bool = False
     """Whether nothing in the loop calls or reads anything: it only computes."""
 
@@ -53,7 +54,7 @@ def list_loop_ends(text: str) -> tuple[LoopEnd, ...]:
         return ()
     loops = [node for node in ast.walk(tree) if isinstance(node, ast.While)]
     loops.sort(key=lambda loop: -loop.lineno)
-    return tuple(end for loop in loops for end in _find_end(loop, tree))
+    return tuple(end for loop in loops for end in _find_ends(loop, tree))
 
 
 def find_turns(text: str, line: int) -> tuple[float, str] | None:
@@ -70,46 +71,62 @@ def find_turns(text: str, line: int) -> tuple[float, str] | None:
     return None
 
 
-def _find_end(loop: ast.While, tree: ast.Module) -> Iterator[LoopEnd]:
-    """Yield what ends a loop, if it goes on while something compares with a constant."""
-    match loop.test:
-        case ast.Compare(left=left, ops=[operator], comparators=[right]) if (
-            type(operator) in _ENDING
-        ):
-            ending = _ENDING[type(operator)]
-        case _:
-            return
-    limit = _find_constant(right)
-    if limit is None:
-        left, limit, ending = right, _find_constant(left), _MIRRORED[ending]
-    if limit is None:
+def _find_ends(loop: ast.While, tree: ast.Module) -> Iterator[LoopEnd]:
+    """Yield what ends a loop: what it goes on with, and in an endless one what leads to a `break`."""
+    is_endless = isinstance(loop.test, ast.Constant) and bool(loop.test.value)
+    if not is_endless:
+        yield from _find_end(loop, loop.test, tree, is_break=False)
+    for step in loop.body if is_endless else ():
+        if isinstance(step, ast.If) and any(isinstance(way, ast.Break) for way in step.body):
+            yield from _find_end(loop, step.test, tree, is_break=True)
+
+
+def _find_end(
+    loop: ast.While, test: ast.expr, tree: ast.Module, *, is_break: bool
+) -> Iterator[LoopEnd]:
+    """Yield what ends a loop, if something in a test is compared with a constant."""
+    if isinstance(test, ast.BoolOp):
+        ends = [_find_end(loop, part, tree, is_break=is_break) for part in test.values]
+        if isinstance(test.op, ast.Or) is is_break:
+            yield from (end for each in ends for end in each if end.attribute)
         return
-    is_silent = not any(isinstance(node, ast.Call | ast.Attribute) for node in ast.walk(loop))
-    name, set_line, read_line, attribute = "", 0, left.lineno, _find_attribute(left)
-    if isinstance(left, ast.Name):
-        name = left.id
+    comparison = _read_comparison(test, is_break=is_break)
+    if comparison is None:
+        return
+    value, ending, limit = comparison
+    name, set_line, read_line, attribute = "", 0, value.lineno, _find_attribute(value)
+    is_silent = not _has_any(loop, (ast.Call, ast.Attribute))
+    if isinstance(value, ast.Name):
+        name = value.id
         values = _find_values(name, tree)
         inner = [value for line, value in values if loop.lineno <= line <= _last_line(loop)]
         if inner:
             read_line, attribute = inner[-1].lineno, _find_attribute(inner[-1])
-        if values and all(line < loop.lineno for line, _ in values):
-            set_line = max(line for line, _ in values)
-        if not (attribute or set_line or (is_silent and inner)):
-            return
-    elif not attribute:
-        return
-    yield LoopEnd(
-        loop.test.lineno,
-        _last_line(loop),
-        ast.unparse(loop.test),
-        ending,
-        limit,
-        attribute,
-        read_line,
-        name,
-        set_line,
-        is_silent,
-    )
+        if values and values[-1][0] < loop.lineno and _find_attribute(values[-1][1]):
+            set_line = values[-1][0]
+        is_silent = is_silent and bool(inner)
+    has_exit = _has_any(loop, (ast.Break, ast.Return))
+    if attribute or (name and not has_exit and (set_line or is_silent)):
+        lines = test.lineno, loop.lineno, _last_line(loop)
+        yield LoopEnd(*lines, ending, limit, attribute, read_line, name, set_line, is_silent)
+
+
+def _read_comparison(test: ast.expr, *, is_break: bool) -> tuple[ast.expr, str, Word] | None:
+    """Return what a test compares, the operator that ends the loop, and the constant; None if it does not."""
+    match test:
+        case ast.Compare(left=left, ops=[operator], comparators=[right]):
+            ending = _ENDING.get(type(operator), "")
+        case _:
+            return None
+    ending = _OPPOSITE.get(ending, "") if is_break else ending
+    limit = _find_constant(right)
+    if limit is None:
+        left, limit, ending = right, _find_constant(left), _MIRRORED.get(ending, "")
+    return None if limit is None or not ending else (left, ending, limit)
+
+
+def _has_any(loop: ast.While, kinds: tuple[type[ast.AST], ...]) -> bool:
+    return any(isinstance(node, kinds) for node in ast.walk(loop))
 
 
 def _last_line(node: ast.stmt) -> int:

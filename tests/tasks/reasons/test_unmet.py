@@ -26,7 +26,7 @@ VAIN = {
     "at rest": (f"{BANDS}while {LIGHT} > 50:\n    pass\n", "50 or less: it stayed at 100"),
     "a colour": (
         f"{DRIVES}while colorLeft.color_name != 'Red':\n    print(1)\n",
-        "red: it saw only black and white",
+        "red: it saw only black, white",
     ),
     "read once": (
         f"{DRIVES}from time import sleep\nv = {LIGHT}\nwhile v > 20:\n    sleep(1)\n",

@@ -166,7 +166,7 @@ class _Search:
         import numpy as np
 
         lines = self._records["line"]
-        is_in = (lines >= loop.line) & (lines <= loop.last_line)
+        is_in = (lines >= loop.first_line) & (lines <= loop.last_line)
         edges = np.flatnonzero(np.diff(is_in, prepend=False, append=False))
         return (int(edges[0]), int(edges[1])) if len(edges) == 2 else None
 
@@ -264,4 +264,4 @@ def _describe_colors(loop: LoopEnd, codes: Array) -> str:
     color, seen = name_color(loop.limit), {COLOR_NAMES[int(code)].lower() for code in codes}
     if loop.operator != "==" or color in {"", *seen}:
         return ""
-    return f"{color}: it saw only {' and '.join(sorted(seen))}"
+    return f"{color}: it saw only {', '.join(sorted(seen))}"
