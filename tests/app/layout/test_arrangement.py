@@ -67,6 +67,14 @@ def test_the_most_wanted_panel_gets_the_room() -> None:
     assert placed.boxes["instrumentation"].height == PANELS["instrumentation"].min_rows
 
 
+@pytest.mark.parametrize("width, height", [(200, 59), (220, 64), (237, 70), (300, 99)])
+def test_a_wide_screen_has_a_chart_of_80_columns(width: int, height: int) -> None:
+    panels, fill = wanted_panels(Preset.STANDARD, {}, width, height)
+    boxes = arrange(panels, width, height, fill).boxes
+    assert boxes["chart"].width >= 80 and boxes["code"].width >= 46
+    assert boxes["output"].width >= PANELS["output"].min_cols
+
+
 LOW_SIZES = pytest.mark.parametrize("width, height", [(80, 23), (100, 28), (72, 24)])
 
 

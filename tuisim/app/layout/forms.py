@@ -14,6 +14,7 @@ from tuisim.app.layout.tree import (
     ideal_rows,
     joined,
     least_rows,
+    panels_of,
 )
 from tuisim.app.panels import PANELS, PanelPlace, TerminalSize
 
@@ -35,6 +36,8 @@ _READINGS_COLS, _TEXT_COLS = 48, 32
 _MAX_SIDE_COLS = 46
 _CODE_COLS = 64
 """Columns in which most lines of code are whole, with the values beside them."""
+_CHART_COLS, _LEAST_CODE_COLS = 80, 46
+"""Columns of the strip of a wide screen in which a chart is read, if so many are left to the code."""
 _ERROR_ROWS = 8
 """Rows of the panels below it, so that *Output* shows an error with its traceback."""
 COLUMN_COLS = 40
@@ -119,7 +122,20 @@ def _strip(panels: Sequence[str], width: int, height: int) -> list[Node]:
     stacks = [
         joined(Axis.ROWS, panels[first : first + count]) for first in range(0, len(panels), count)
     ]
-    return [joined(Axis.COLUMNS, stacks)]
+    return [joined(Axis.COLUMNS, stacks, _find_strip_shares(stacks, width))]
+
+
+def _find_strip_shares(stacks: Sequence[Node], width: int) -> list[float]:
+    """Return the shares of a strip in which code would leave little to the chart; none for the usual ones."""
+    if not {"chart", "code"}.issubset(stacks) or not {"chart", "code", "output"}.issuperset(stacks):
+        return []
+    columns = {"chart": _CHART_COLS, "output": PANELS["output"].min_cols}
+    weights = {panel: PANELS[panel].weight for panel in panels_of(joined(Axis.ROWS, stacks))}
+    rest = width - sum(columns[panel] for panel in weights if panel in columns)
+    is_wide = width * weights["chart"] >= _CHART_COLS * sum(weights.values())
+    if is_wide or rest < _LEAST_CODE_COLS:
+        return []
+    return [columns.get(panel, rest) / width for panel in weights]
 
 
 def _split_side(side: Sequence[str], height: int) -> tuple[list[str], list[str]]:
