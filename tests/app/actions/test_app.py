@@ -46,7 +46,9 @@ async def test_the_key_of_a_panel_that_is_shown_focuses_it_first() -> None:
 @pytest.mark.slow
 async def test_a_panel_without_room_takes_the_place_of_another() -> None:
     async with open_lab(LOGS, size=(80, 24)) as (pilot, app):
-        await pilot.press("X", "H")
+        await pilot.press("X")
+        await until(pilot, lambda: app.panel_area.focused_panel() == "positioning")
+        await pilot.press("H")
         assert all(
             app.panel_area.shown(panel)
             for panel in ("instrumentation", "output", "positioning", "controls")
@@ -54,10 +56,7 @@ async def test_a_panel_without_room_takes_the_place_of_another() -> None:
         await pilot.press("c")
         assert app.panel_area.shown("chart")
         assert not app.panel_area.shown("instrumentation")
-        assert (
-            "Chart instead of Instrumentation (i), Output (O), Simulator controls (H)"
-            in notices(app)
-        )
+        assert "Chart instead of Instrumentation (i), Output (O), Positioning (X)" in notices(app)
         await pilot.press("c")
         assert app.panel_area.shown("instrumentation")
 

@@ -208,7 +208,8 @@ def info(number: int, **facts: Any) -> RunInfo:
         "wide": (100, "run when program mat end s samples note"),
         "usual": (80, "run when program mat end s samples"),
         "tall": (65, "run when program end s"),
-        "phone": (45, "run program end s"),
+        "phone": (48, "run program end s"),
+        "smallest": (40, "run program end"),
     },
 )
 def test_a_narrow_list_of_runs_leaves_out_columns(columns: int, names: str) -> None:

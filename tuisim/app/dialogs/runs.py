@@ -70,7 +70,12 @@ _COLUMNS = {"run": 5, "when": 11, "program": 12, "mat": 10, "end": 9, "s": 6, "s
 """Columns of the list, with a note behind them, and their cells."""
 _NUMBERS = ("run", "s", "samples")
 """Columns whose texts stand at the right."""
-_LEFT_OUT = {80: (), 58: ("mat", "samples"), 0: ("when", "mat", "samples")}
+_LEFT_OUT = {
+    80: (),
+    58: ("mat", "samples"),
+    47: ("when", "mat", "samples"),
+    0: ("when", "mat", "s", "samples"),
+}
 """What a terminal of so many columns has no room for."""
 _NOTE_AT = 100
 """Columns of a terminal from which the list has notes."""
