@@ -75,6 +75,18 @@ def test_a_wide_screen_has_a_chart_of_80_columns(width: int, height: int) -> Non
     assert boxes["output"].width >= PANELS["output"].min_cols
 
 
+@pytest.mark.parametrize("panel", ["debug", "noise", "lesson", "arrays"])
+@pytest.mark.parametrize("width, height", [(65, 52), (65, 49), (48, 44), (78, 62)])
+def test_the_world_is_on_top_of_a_phone_in_the_whole_width(
+    panel: str, width: int, height: int
+) -> None:
+    panels, fill = wanted_panels(Preset.STANDARD, {panel: True}, width, height)
+    placed = arrange(panels, width, height, fill)
+    world = placed.boxes["world"]
+    assert (world.x, world.y, world.width) == (0, 0, width)
+    assert panel in placed.boxes
+
+
 LOW_SIZES = pytest.mark.parametrize("width, height", [(80, 23), (100, 28), (72, 24)])
 
 

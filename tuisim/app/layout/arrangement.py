@@ -272,13 +272,23 @@ def arrange(
     return layout
 
 
+_STEPPED = ("world", "instrumentation", "debug", "output", "code")
+"""What somebody who steps looks at."""
+
+
+def _is_cramped(width: int, height: int) -> bool:
+    """Return whether code and variables have no room below a world in the whole width, nor beside it."""
+    fits_below = is_tall(width, height) and sum(count_tight_rows(_STEPPED, width)) <= height
+    return width < _CODE_FROM_COLS and not fits_below
+
+
 def _scored(
     panels: Sequence[str], fill: Sequence[str], preset: Preset, width: int, height: int
 ) -> Iterator[tuple[tuple[int, float], Node]]:
     """Yield the tree in each form, and how good that is."""
     plan = _PLANS[preset]
     is_standard = preset == Preset.STANDARD
-    is_cramped = is_standard and "debug" in panels and width < _CODE_FROM_COLS
+    is_cramped = is_standard and "debug" in panels and _is_cramped(width, height)
     is_medium = size_class(width, height + 1) == TerminalSize.MEDIUM
     if is_cramped or is_low(preset, width, height):
         forms: tuple[Form, ...] = (build_low,)
