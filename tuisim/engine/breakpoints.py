@@ -6,13 +6,13 @@ triggers when it becomes true, not while it stays true.
 
 from __future__ import annotations
 
-import ast
 import re
 from collections.abc import Iterable, Sequence
 
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import ConfigError, counted, see_page
 from tuisim.base.source import find_code_line
+from tuisim.base.syntax_tree import parse_expression
 from tuisim.engine.core.conditions import (
     ValueCondition,
     ValueSource,
@@ -182,7 +182,7 @@ def _line_rule(text: str, line: int, condition: str | None) -> LineBreak:
 def _why_no_expression(text: str) -> str:
     """Return why Python cannot parse an expression; empty if it can."""
     try:
-        ast.parse(text, mode="eval")
+        parse_expression(text)
     except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
         return f"{text!r} is not an expression: {getattr(error, 'msg', None) or error}"
     return ""

@@ -19,6 +19,7 @@ from typing import Any
 import numpy as np
 
 from tuisim.base.errors import LogError, among
+from tuisim.base.syntax_tree import parse_expression
 from tuisim.engine.core.conditions import COMPARE, Operator, spelled
 from tuisim.engine.runs.arrays import FloatArray
 
@@ -142,7 +143,7 @@ def _without_backticks(text: str, names: dict[str, str]) -> str:
 
 def _parse(source: str, text: str) -> ast.Expression:
     try:
-        return ast.parse(_SINGLE_EQUAL.sub("==", source.strip()), mode="eval")
+        return parse_expression(_SINGLE_EQUAL.sub("==", source.strip()))
     except SyntaxError as error:
         at = error.offset or 0
         where = (

@@ -13,6 +13,7 @@ from functools import lru_cache
 
 from tuisim.base.data_class import dataclass
 from tuisim.base.source import PRELUDE_TEXTS, PYBRICKS
+from tuisim.base.syntax_tree import parse_module
 
 _MAX_MEANING = 200
 """Longer meanings of names, in characters, are not followed."""
@@ -87,7 +88,7 @@ class _Names:
 @lru_cache
 def _prelude_names(prelude: str) -> _Names:
     names = _Names()
-    names.take_in(ast.parse(PRELUDE_TEXTS.get(prelude, "")))
+    names.take_in(parse_module(PRELUDE_TEXTS.get(prelude, "")))
     return names
 
 
@@ -110,7 +111,7 @@ def lines_of_calls(text: str, prelude: str, wanted: str) -> list[int]:
     Raises:
         SyntaxError, ValueError, RecursionError: the program is not Python.
     """
-    tree = ast.parse(text)
+    tree = parse_module(text)
     names = _Names(dict(_prelude_names(prelude).meanings))
     names.take_in(tree)
     wanted = wanted.removesuffix("()")

@@ -17,6 +17,7 @@ from importlib import import_module
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import closest, did_you_mean
 from tuisim.base.source import PRELUDE_TEXTS, source_lines
+from tuisim.base.syntax_tree import compile_module, parse_module
 from tuisim.programs.program_file import parse_unfinished
 from tuisim.programs.robot.course import global_names
 
@@ -89,7 +90,7 @@ def unknown_names(text: str, name: str) -> tuple[UnknownName, ...] | None:
         # They are shown when the program runs.
         warnings.simplefilter("ignore")
         try:
-            _search(compile(tree, name, "exec", dont_inherit=True), found)
+            _search(compile_module(tree, name), found)
         except (SyntaxError, ValueError, RecursionError, MemoryError):
             return None
     own = found.defined | guessed | _prelude_names(program.prelude)
@@ -110,7 +111,7 @@ def readable_tree(text: str) -> tuple[ast.Module | None, set[str]]:
     kept, words = list(lines), set[str]()
     for _ in range(MOST_MENDED + 1):
         try:
-            return ast.parse("\n".join(kept)), words
+            return parse_module("\n".join(kept)), words
         except SyntaxError as error:
             at = (error.lineno or 0) - 1
             if not 0 <= at < len(kept) or kept[at] != lines[at]:
@@ -181,7 +182,7 @@ def _prelude_names(prelude: str) -> frozenset[str]:
 @cache
 def _modules() -> Mapping[str, str]:
     """Return the module of each name that a prelude imports."""
-    tree = ast.parse(PRELUDE_TEXTS["imports"])
+    tree = parse_module(PRELUDE_TEXTS["imports"])
     imports = (node for node in tree.body if isinstance(node, ast.ImportFrom))
     return {alias.name: str(node.module) for node in imports for alias in node.names}
 

@@ -24,6 +24,7 @@ from tuisim.base.source import (
     decode_source,
     source_lines,
 )
+from tuisim.base.syntax_tree import parse_module
 from tuisim.engine.files import close_beside, read_bytes
 from tuisim.programs.robot.course import global_names, uses_course_names
 from tuisim.programs.robot.source import library_of, read_modules
@@ -83,7 +84,7 @@ def _title_of(path: Path) -> str:
     try:
         lines = source_lines(read_regular(path, MAX_PROGRAM_BYTES, follow_links=True).decode())
         # A program may begin with a magic line, which is not Python.
-        module = ast.parse("\n".join("" if line.startswith("%") else line for line in lines))
+        module = parse_module("\n".join("" if line.startswith("%") else line for line in lines))
     except (SyntaxError, ValueError, OSError):
         return ""
     return (ast.get_docstring(module) or "").partition("\n")[0].strip()
@@ -195,7 +196,7 @@ def with_mat(text: str, name: str, mat: str) -> str:
 def _after_docstring(lines: list[str]) -> int:
     """Return the index of the line after the docstring, or after the lines that Python wants to be first."""
     try:
-        first = ast.parse("\n".join(lines)).body[:1]
+        first = parse_module("\n".join(lines)).body[:1]
     # It is being edited.
     except (SyntaxError, ValueError, RecursionError, MemoryError):
         first = []
@@ -233,7 +234,7 @@ def prelude_for(text: str, path: str = "") -> str:
 def imports_library(text: str) -> bool:
     """Return whether a program imports a library for a brick."""
     try:
-        tree = ast.parse(text)
+        tree = parse_module(text)
     # As above.
     except (SyntaxError, ValueError, RecursionError, MemoryError):
         return _IMPORT.search(text) is not None
@@ -317,7 +318,7 @@ def read_program(path: Path, *, as_python: bool = False, alone: bool = False) ->
 
 def _is_python(text: str) -> bool:
     try:
-        ast.parse(text)
+        parse_module(text)
     except (SyntaxError, ValueError, MemoryError, RecursionError):
         return False
     return True

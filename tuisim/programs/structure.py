@@ -9,6 +9,8 @@ import warnings
 from collections.abc import Callable, Iterator, Mapping
 from functools import lru_cache, partial
 
+from tuisim.base.syntax_tree import parse_module
+
 _Function = ast.FunctionDef | ast.AsyncFunctionDef
 _BLOCKS = (ast.For, ast.While, ast.If, ast.With, ast.Try, _Function, ast.ClassDef)
 
@@ -106,7 +108,7 @@ STRUCTURES: Mapping[str, Callable[[ast.Module], int]] = {
 
 @lru_cache(4)
 def _parse(text: str) -> ast.Module:
-    return ast.parse(text)
+    return parse_module(text)
 
 
 def count_structure(text: str, name: str) -> int:

@@ -7,6 +7,7 @@ import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from functools import lru_cache
 
+from tuisim.base.syntax_tree import parse_module
 from tuisim.engine.protocol import FrameState, Inspected, Variable
 
 MODULE = "<module>"
@@ -49,7 +50,7 @@ def _tree(text: str) -> ast.Module | None:
         # They were shown when the program started.
         warnings.simplefilter("ignore")
         try:
-            return ast.parse(text)
+            return parse_module(text)
         except (SyntaxError, ValueError, RecursionError, MemoryError):
             return None
 

@@ -22,6 +22,7 @@ from tuisim.base.source import (
     Program,
     decode_source,
 )
+from tuisim.base.syntax_tree import parse_expression, parse_module
 from tuisim.engine.brick_home import place_folder
 from tuisim.engine.core.profile import Library
 from tuisim.engine.files import read_bytes
@@ -55,7 +56,7 @@ class Module:
 def parsed(text: str) -> ast.Module | None:
     """Return the syntax tree of a text; None if it is not Python."""
     try:
-        return ast.parse(text)
+        return parse_module(text)
     # What is wrong with the program is said when it runs.
     except (SyntaxError, ValueError, RecursionError, MemoryError):
         return None
@@ -170,7 +171,7 @@ class DataFiles:
             data = read_bytes(path, MAX_DATA_BYTES, ConfigError)
             if len(data) > MAX_DATA_BYTES:
                 return None
-            return ast.parse(repr(json.loads(data)), mode="eval").body
+            return parse_expression(repr(json.loads(data))).body
         # What is wrong with the file is said when the program reads it.
         except (
             ConfigError,
