@@ -40,11 +40,12 @@ from tuisim.logs.stillness import (
     Ground,
     add_apart,
     drop_moving,
-    find_still_parts,
+    estimate_noise,
     go_one_way,
     measure,
     measure_noise_of_slopes,
     read_spans,
+    split_still,
 )
 
 EVERY_PLACE = 4000
@@ -105,11 +106,7 @@ def noise_of(values: FloatArray) -> float:
         return 0.0
     differences = np.abs(np.diff(values))
     differences = differences[~_steps(differences)]
-    by_median = 1.4826 * float(np.median(differences)) / np.sqrt(2.0)
-    # Where values jump between two neighbours of a coarse scale, the median difference is 0.
-    calm = np.sort(differences)[: max(1, int(0.8 * len(differences)))]
-    by_calm = float(np.sqrt(np.mean(calm**2) / 2.0))
-    return max(float(by_median), by_calm)
+    return estimate_noise(differences, 2.0)
 
 
 def _steps(differences: FloatArray) -> BoolArray:
@@ -149,8 +146,7 @@ def plateaus(values: FloatArray) -> list[Plateau]:
     short_levels = _steps(np.abs(np.diff(clean))).any()
     pieces = _join_pieces(clean, cut, least_step, sigma, has_strays=not short_levels)
     found = measure(clean, pieces[lengths_of(pieces) >= MIN_SAMPLES], sigma)
-    parts = find_still_parts(clean, found, cut, ground)
-    found = drop_moving(clean, found, ground)
+    found, parts = split_still(clean, found, cut, ground)
     if not short_levels:
         found = found[~_are_ramps(clean, found, sigma)]
         found = found[~_are_edges(found)]

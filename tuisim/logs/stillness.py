@@ -54,12 +54,21 @@ FIELDS = np.dtype(
 
 def measure_noise_of_slopes(values: FloatArray) -> float:
     """Return the noise as `noise_of`, but from second differences, in which a slope leaves nothing."""
-    bends = np.sort(np.abs(np.diff(values, 2)))
-    if not len(bends):
-        return 0.0
-    by_median = 1.4826 * float(np.median(bends)) / np.sqrt(6.0)
-    calm = bends[: max(1, int(0.8 * len(bends)))]
-    return max(float(by_median), float(np.sqrt(np.mean(calm**2) / 6.0)))
+    bends = np.abs(np.diff(values, 2))
+    return estimate_noise(bends, 6.0) if len(bends) else 0.0
+
+
+def estimate_noise(differences: FloatArray, variance: float) -> float:
+    """Return the standard deviation of the noise that makes absolute differences, shape (n,).
+
+    Args:
+        differences: How far samples differ from what their neighbours let expect; at least one.
+        variance: How many times the variance of the noise they have: 2 for first differences, 6 for second ones.
+    """
+    by_median = 1.4826 * float(np.median(differences)) / np.sqrt(variance)
+    # Where values jump between two neighbours of a coarse scale, the median difference is 0.
+    calm = np.sort(differences)[: max(1, int(0.8 * len(differences)))]
+    return max(float(by_median), float(np.sqrt(np.mean(calm**2) / variance)))
 
 
 def read_spans(found: Found) -> Pieces:
@@ -164,8 +173,10 @@ def _compare_neighbours(part: FloatArray, sigma: float) -> FloatArray:
     return variance
 
 
-def find_still_parts(values: FloatArray, found: Found, cut: Pieces, ground: Ground) -> Found:
-    """Return the parts that stand still of pieces that have no level, such as the top between two slopes.
+def split_still(
+    values: FloatArray, found: Found, cut: Pieces, ground: Ground
+) -> tuple[Found, Found]:
+    """Return the pieces that have a level, and the parts that stand still of the others.
 
     Args:
         values: The log.
@@ -173,7 +184,12 @@ def find_still_parts(values: FloatArray, found: Found, cut: Pieces, ground: Grou
         cut: The parts of which they were joined, without gaps between them.
         ground: What they are judged by.
     """
-    moving = found[_are_moving(values, found, ground)]
+    moving = _are_moving(values, found, ground)
+    return found[~moving], _find_still_parts(values, found[moving], cut, ground)
+
+
+def _find_still_parts(values: FloatArray, moving: Found, cut: Pieces, ground: Ground) -> Found:
+    """Return the parts that stand still of pieces that have no level, such as the top between two slopes."""
     if not len(moving):
         return moving
     owners = np.maximum(np.searchsorted(moving["start"], cut[:, 0], side="right") - 1, 0)

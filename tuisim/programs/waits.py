@@ -4,22 +4,14 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterator
+from functools import lru_cache
 
 from tuisim.base.data_class import dataclass
 from tuisim.programs.questions import MAX_TEXT, Word
-from tuisim.programs.robot.source import parsed
+from tuisim.programs.robot.source import SIGNS, TURNED, parsed
 
-_ENDING: dict[type[ast.cmpop], str] = {
-    ast.Lt: ">=",
-    ast.LtE: ">",
-    ast.Gt: "<=",
-    ast.GtE: "<",
-    ast.Eq: "!=",
-    ast.NotEq: "==",
-}
-"""What ends a loop that goes on while a comparison holds."""
 _OPPOSITE = {">=": "<", ">": "<=", "<=": ">", "<": ">=", "!=": "==", "==": "!="}
-_MIRRORED = {">=": "<=", ">": "<", "<=": ">=", "<": ">", "!=": "!=", "==": "=="}
+"""What ends a loop that goes on while a comparison holds."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,6 +39,7 @@ class LoopEnd:
     """Whether nothing in the loop calls or reads anything: it only computes."""
 
 
+@lru_cache(4)
 def list_loop_ends(text: str) -> tuple[LoopEnd, ...]:
     """Return the loops of a program of which its text tells what ends them, the inner ones first."""
     tree = parsed(text) if len(text) <= MAX_TEXT else None
@@ -115,13 +108,13 @@ def _read_comparison(test: ast.expr, *, is_break: bool) -> tuple[ast.expr, str, 
     """Return what a test compares, the operator that ends the loop, and the constant; None if it does not."""
     match test:
         case ast.Compare(left=left, ops=[operator], comparators=[right]):
-            ending = _ENDING.get(type(operator), "")
+            sign = SIGNS.get(type(operator), "")
         case _:
             return None
-    ending = _OPPOSITE.get(ending, "") if is_break else ending
+    ending = sign if is_break else _OPPOSITE.get(sign, "")
     limit = _find_constant(right)
     if limit is None:
-        left, limit, ending = right, _find_constant(left), _MIRRORED.get(ending, "")
+        left, limit, ending = right, _find_constant(left), TURNED.get(ending, ending)
     return None if limit is None or not ending else (left, ending, limit)
 
 

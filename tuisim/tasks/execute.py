@@ -16,7 +16,7 @@ from tuisim.engine.core.spec import RunSpec
 from tuisim.engine.mat_cache import FieldFiles, prepare
 from tuisim.engine.mats import background
 from tuisim.engine.protocol import End, Ended
-from tuisim.engine.runs.handle import RunHandle
+from tuisim.engine.runs.handle import RunHandle, describe_falsified
 from tuisim.engine.runs.records import OutputRow, Stream
 from tuisim.engine.runs.run_folder import StoredRun, find_diameters
 from tuisim.engine.runs.samples import samples_of
@@ -76,8 +76,7 @@ def _run_task(task: Task, folder: Path) -> Result:
                 return build_unjudged(task, str(error))
             # Where the recording was differs from machine to machine.
             text = error.message.replace(f"{temporary.folder}{os.sep}", "")
-            why = f"the program has falsified its recording: {text}"
-            return nothing_known_of(task, End.FALSIFIED, why)
+            return nothing_known_of(task, End.FALSIFIED, describe_falsified(text))
         finally:
             handle.close()
         return (
@@ -128,7 +127,7 @@ def _replay_run(task: Task, run: StoredRun, ended: Ended) -> tuple[StoredRun, En
     run, parted = replay_run(run, task.options.actions)
     if not parted:
         return run, ended
-    why = f"the program has falsified its recording: it differs from what the program did from {parted} on"
+    why = describe_falsified(f"it differs from what the program did from {parted} on")
     return run, replace(ended, end=End.FALSIFIED, exit_code=1, summary=why)
 
 

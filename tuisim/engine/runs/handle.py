@@ -329,7 +329,7 @@ class RunHandle:
                 tick,
                 time_ns,
                 1,
-                f"the program has falsified its recording: {falsified}",
+                describe_falsified(falsified),
             )
         if self._exceeded:
             return Ended(End.OUTPUT_LIMIT, tick, time_ns, 1, self._exceeded)
@@ -563,6 +563,11 @@ class RunHandle:
     def _signal(self, number: int) -> None:
         if self._process.poll() is None:
             self._process.send_signal(number)
+
+
+def describe_falsified(what: str) -> str:
+    """Return the summary of a run whose recording is not what the program did."""
+    return f"the program has falsified its recording: {what}"
 
 
 def _here() -> str:

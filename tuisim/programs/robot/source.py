@@ -6,7 +6,7 @@ import ast
 import json
 import os
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import field
 from pathlib import Path
 
@@ -28,6 +28,17 @@ from tuisim.engine.core.profile import Library
 from tuisim.engine.files import read_bytes
 from tuisim.programs.robot.search_path import added_folders, first_folders, own_folder
 
+SIGNS: Mapping[type[ast.cmpop], str] = {
+    ast.Lt: "<",
+    ast.LtE: "<=",
+    ast.Gt: ">",
+    ast.GtE: ">=",
+    ast.Eq: "==",
+    ast.NotEq: "!=",
+}
+"""Comparisons of numbers in a syntax tree, as they are written."""
+TURNED = {"<": ">", "<=": ">=", ">": "<", ">=": "<="}
+"""What a comparison becomes if its sides change places; others stay."""
 MAX_MODULES = 100
 MAX_MODULE_BYTES = 1 << 20
 MAX_DATA_BYTES = 1 << 16

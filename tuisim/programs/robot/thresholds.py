@@ -11,23 +11,15 @@ from functools import lru_cache
 from tuisim.base.data_class import dataclass
 from tuisim.base.source import PRELUDE_TEXTS, Program
 from tuisim.engine.core.columns import COLOR_NAMES
+from tuisim.engine.core.conditions import COMPARE
 from tuisim.engine.core.sensors.color import LightRead
 from tuisim.engine.core.spec import RobotSpec
 from tuisim.programs.robot.library import DeviceKind
 from tuisim.programs.robot.mentions import Mention, Mentions, mentions_in
 from tuisim.programs.robot.scopes import Bound, Scope
-from tuisim.programs.robot.source import Module, data_files, parsed, read_modules
+from tuisim.programs.robot.source import SIGNS, TURNED, Module, data_files, parsed, read_modules
 from tuisim.programs.robot.values import Instance
 
-_SIGNS: Mapping[type[ast.cmpop], str] = {
-    ast.Lt: "<",
-    ast.LtE: "<=",
-    ast.Gt: ">",
-    ast.GtE: ">=",
-    ast.Eq: "==",
-    ast.NotEq: "!=",
-}
-_TURNED = {"<": ">", "<=": ">=", ">": "<", ">=": "<="}
 AIM = "-"
 """The sign of a difference: the program drives toward that value."""
 _KEPT = {"int", "float", "round", "abs", "max", "min"}
@@ -52,21 +44,7 @@ class ProgramThreshold:
 
     def holds(self, value: float) -> bool | None:
         """Return whether the comparison is true for a value; None for a difference."""
-        match self.sign:
-            case "<":
-                return value < self.value
-            case "<=":
-                return value <= self.value
-            case ">":
-                return value > self.value
-            case ">=":
-                return value >= self.value
-            case "==":
-                return value == self.value
-            case "!=":
-                return value != self.value
-            case _:
-                return None
+        return None if self.sign == AIM else bool(COMPARE[self.sign](value, self.value))
 
     @property
     def words(self) -> str:
@@ -123,9 +101,9 @@ def _compared(mentions: Mentions) -> Iterator[tuple[str, ProgramThreshold]]:
             match node:
                 case ast.Compare(left=left, ops=signs, comparators=others):
                     for sign, right in zip(signs, others, strict=True):
-                        if word := _SIGNS.get(type(sign)):
+                        if word := SIGNS.get(type(sign)):
                             yield from _pair(mentions, scope, left, word, right)
-                            yield from _pair(mentions, scope, right, _TURNED.get(word, word), left)
+                            yield from _pair(mentions, scope, right, TURNED.get(word, word), left)
                         left = right
                 case ast.BinOp(left=left, op=ast.Sub(), right=right):
                     yield from _pair(mentions, scope, left, AIM, right)

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-import operator
 from collections.abc import Callable, Iterator, Mapping
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import ConfigError, LogError
 from tuisim.engine.core.columns import COLOR_NAMES
+from tuisim.engine.core.conditions import COMPARE
 from tuisim.engine.protocol import End
 from tuisim.engine.runs.frames import column_values
 from tuisim.engine.runs.readings import READING_PORTS, find_ticks, read_readings
@@ -27,14 +28,6 @@ _MIN_STAY_S = 3.0
 """A program that has been in a loop for less time does not wait in it in vain."""
 _NEAR, _AWAY = 1.0, 5.0
 """Light that came so near to what was waited for, in percent, and went so far away again, was just missed."""
-_TESTS: Mapping[str, Callable[[Any, Any], Any]] = {
-    ">=": operator.ge,
-    ">": operator.gt,
-    "<=": operator.le,
-    "<": operator.lt,
-    "==": operator.eq,
-    "!=": operator.ne,
-}
 _WORDS = {
     ">=": "{} or more",
     ">": "more than {}",
@@ -120,6 +113,16 @@ class _Search:
         self._records = run.telemetry.array()
         self._loops = list_loop_ends(run.program.text)
 
+    @cached_property
+    def _readings(self) -> Array:
+        """The readings of the program."""
+        return read_readings(self._run.folder, is_over=self._run.end is not None).rows
+
+    @cached_property
+    def _field(self) -> Field:
+        """The mat, opened if nobody has done so."""
+        return open_mat(self._run) if self._mat is None else self._mat
+
     def find_unmet(self) -> Iterator[Unmet]:
         """Yield what was waited for in the last move or in each loop, the inner ones first."""
         if move := self._find_move():
@@ -186,7 +189,7 @@ class _Search:
         ticks, values, column = series
         if column == "color":
             return _describe_colors(loop, values)
-        if isinstance(loop.limit, str) or _TESTS[loop.operator](values, loop.limit).any():
+        if isinstance(loop.limit, str) or COMPARE[loop.operator](values, loop.limit).any():
             return ""
         goal = _name_goal(loop, f"{loop.limit:g}")
         return f"{goal}: {self._name_nearest(loop, ticks, values)}"
@@ -212,7 +215,7 @@ class _Search:
         ticks, values, _ = series
         misses = abs(values - loop.limit)
         away = np.flatnonzero(misses[:-1] >= _AWAY)
-        if not len(away) or _TESTS[loop.operator](values[:-1], loop.limit).any():
+        if not len(away) or COMPARE[loop.operator](values[:-1], loop.limit).any():
             return None
         first, last = int(away[0]), int(away[-1])
         nearest = first + int(misses[first : last + 1].argmin())
@@ -233,8 +236,7 @@ class _Search:
         if loop.attribute not in _COLUMNS or spec.world.noise.light or spec.world.pen_marks:
             return None
         column, factor = _COLUMNS[loop.attribute]
-        rows = read_readings(self._run.folder, is_over=self._run.end is not None).rows
-        rows = rows[rows["line"] == loop.read_line]
+        rows = self._readings[self._readings["line"] == loop.read_line]
         names = {sensor.port: f"{sensor.name}_{column}" for sensor in spec.robot.sensors}
         ports = [READING_PORTS[port] for port in np.unique(rows["port"])]
         ports = [port for port in ports if port in names]
@@ -242,8 +244,7 @@ class _Search:
         ticks = ticks[(ticks >= stay[0]) & (ticks < stay[1])]
         if len(ports) != 1 or not len(ticks):
             return None
-        name, run = names[ports[0]], self._run
-        mat = open_mat(run) if self._mat is None else self._mat
+        name, run, mat = names[ports[0]], self._run, self._field
         columns = column_values((name,), self._records[ticks], run, run.actions, mat, lambda _: mat)
         if name not in columns:
             return None
