@@ -1,16 +1,32 @@
 """Syntax trees of Python texts, for any thread.
 
-Python 3.11 counts the depth of a tree that it builds in one place for all threads. If a second thread parses while the
-first one collects garbage, the first one ends with a `SystemError`: here, one waits for the other.
+Python 3.11 counts the depth of a tree that it builds in one place for all. Garbage that is collected meanwhile may run
+code, or let a thread go on, that builds another tree: the first one then ends with a `SystemError`. Here nothing is
+collected while a tree is built.
 """
 
 from __future__ import annotations
 
 import ast
+import gc
+from collections.abc import Iterator
+from contextlib import contextmanager
 from threading import RLock
-from types import CodeType
 
 _lock = RLock()
+
+
+@contextmanager
+def _collect_later() -> Iterator[None]:
+    # Two threads that take turns here could leave the collector as the other one had set it.
+    with _lock:
+        collects = gc.isenabled()
+        gc.disable()
+        try:
+            yield
+        finally:
+            if collects:
+                gc.enable()
 
 
 def parse_module(text: str) -> ast.Module:
@@ -19,18 +35,11 @@ def parse_module(text: str) -> ast.Module:
     Raises:
         SyntaxError, ValueError, RecursionError, MemoryError: it is not Python.
     """
-    with _lock:
+    with _collect_later():
         return ast.parse(text)
 
 
 def parse_expression(text: str) -> ast.Expression:
     """Return the tree of an expression; errors as of `parse_module`."""
-    with _lock:
+    with _collect_later():
         return ast.parse(text, mode="eval")
-
-
-def compile_module(tree: ast.Module, name: str) -> CodeType:
-    """Return the code of a module; errors as of `parse_module`."""
-    with _lock:
-        code: CodeType = compile(tree, name, "exec", dont_inherit=True)
-        return code

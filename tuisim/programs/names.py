@@ -17,7 +17,7 @@ from importlib import import_module
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import closest, did_you_mean
 from tuisim.base.source import PRELUDE_TEXTS, source_lines
-from tuisim.base.syntax_tree import compile_module, parse_module
+from tuisim.base.syntax_tree import parse_module
 from tuisim.programs.program_file import parse_unfinished
 from tuisim.programs.robot.course import global_names
 
@@ -90,7 +90,7 @@ def unknown_names(text: str, name: str) -> tuple[UnknownName, ...] | None:
         # They are shown when the program runs.
         warnings.simplefilter("ignore")
         try:
-            _search(compile_module(tree, name), found)
+            _search(compile(tree, name, "exec", dont_inherit=True), found)
         except (SyntaxError, ValueError, RecursionError, MemoryError):
             return None
     own = found.defined | guessed | _prelude_names(program.prelude)
