@@ -7,7 +7,7 @@ import gc
 import os
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Coroutine
 from contextlib import suppress
 from contextvars import copy_context
 from functools import partial
@@ -56,9 +56,20 @@ def run(
         exclusive: Cancel other work of the group.
     """
     thread = partial(_in_thread, node.app, work, then, failed)
-    # Not begun here: a node that is being removed never awaits it.
-    awaited: Any = partial(_awaited, thread)
-    node.run_worker(awaited, group=group, exclusive=exclusive)
+    begin(node, partial(_awaited, thread), group=group, exclusive=exclusive)
+
+
+def begin(
+    node: DOMNode,
+    work: Callable[[], Coroutine[Any, Any, None]],
+    *,
+    group: str = "default",
+    exclusive: bool = False,
+) -> None:
+    """Run a coroutine function in the app's loop, as work of a node. Does not block."""
+    # Not called here: a node that is being removed never awaits it.
+    called_later: Any = work
+    node.run_worker(called_later, group=group, exclusive=exclusive)
 
 
 async def _awaited(work: Callable[[], None]) -> None:

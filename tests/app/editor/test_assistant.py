@@ -15,7 +15,7 @@ from tests.app.code_help import CodeApp, alone
 from tests.app.panel_help import screen_text
 from tests.running import PATIENCE_S
 from tuisim.app.editor import area as area_module
-from tuisim.app.editor import completion
+from tuisim.app.editor import assistant, completion
 from tuisim.app.editor.area import CodeArea
 from tuisim.app.editor.completion import Candidate
 from tuisim.app.panels.code import Code
@@ -180,7 +180,10 @@ async def test_the_frame_shows_the_signature_of_the_call(home: Path) -> None:
         await until(pilot, lambda: "right_speed" not in str(code.border_subtitle))
 
 
-async def test_names_that_nobody_defined_are_marked_and_explained(home: Path) -> None:
+async def test_names_that_nobody_defined_are_marked_and_explained(
+    home: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(assistant, "CHECK_AFTER_S", 3600.0)
     async with CodeApp().run_test(size=SIZE) as pilot:
         code, area = await typed(pilot, "tank_drve.on(1)\n")
         assert not area.unknown

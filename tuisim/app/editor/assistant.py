@@ -110,7 +110,7 @@ class Assistant:
             self._names = found
             self._mark()
         if completion.is_ready():
-            self._area.run_worker(self._check_attributes(), group="attributes", exclusive=True)
+            background.begin(self._area, self._check_attributes, group="attributes", exclusive=True)
 
     async def _check_attributes(self) -> None:
         text, path = self._area.program_text, self._area.path
@@ -131,7 +131,7 @@ class Assistant:
             self._asks_again = True
         elif self._area.typing:
             self._is_asking = True
-            self._area.run_worker(self._ask())
+            background.begin(self._area, self._ask)
 
     async def _ask(self) -> None:
         try:
