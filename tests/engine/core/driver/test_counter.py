@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import random
-
 import pytest
 
 from tuisim.engine.core.driver.counter import LOOK, Counter
@@ -55,23 +53,3 @@ def test_what_an_obstacle_prevented_was_never_counted(speed_dps: float) -> None:
         counter.record_rest(now_ms * LOOK)
         stopped.record_rest(now_ms * LOOK)
         assert counter.measure_speed_dps() == stopped.measure_speed_dps()
-
-
-@pytest.mark.parametrize("seed", range(5))
-def test_a_turn_is_recorded_and_measured_as_one_after_the_other(seed: int) -> None:
-    chance, counted, measured = random.Random(seed), Counter(), Counter()
-    angle_deg = speed_dps = 0.125
-    for step in range(4000):
-        if step % 200 == 0:
-            goal_dps = chance.choice((-1000.0, -200.0, -4.0, 4.0, 30.0, 200.0, 1000.0))
-        speed_dps += (goal_dps - speed_dps) * 0.03
-        after_deg = angle_deg + speed_dps * 0.002
-        turned = step * 2.0 * LOOK, 2.0 * LOOK, angle_deg, after_deg, chance.uniform(0.4, 0.6)
-        measured.record(*turned)
-        assert counted.count_turn(*turned) == measured.measure_speed_dps()
-        assert counted.count == measured.count
-        angle_deg = after_deg
-    for now in range(step * 2 * LOOK, step * 2 * LOOK + 300 * LOOK, LOOK):
-        for counter in counted, measured:
-            counter.record_rest(now)
-        assert counted.measure_speed_dps() == measured.measure_speed_dps()

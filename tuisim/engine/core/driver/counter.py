@@ -86,44 +86,6 @@ class Counter:
         if len(times) > MOST:
             del times[:-CAPACITY], counts[:-CAPACITY]
 
-    def count_turn(
-        self, begin: float, duration: float, begin_deg: float, end_deg: float, middle: float
-    ) -> int:
-        """Return the speed that the driver reads after a turn in one direction; arguments as of `record`.
-
-        While the axle turns on as long before, this is `record` and `measure_speed_dps` in fewer steps.
-        """
-        count, last, times = floor(2.0 * end_deg), self.count, self._times
-        end, way = begin + duration, 2.0 * (end_deg - begin_deg)
-        one = 1 if way > 0.0 else -1
-        is_straight = count != last and self._straight * one >= MAX_DEPTH
-        if not is_straight or end - times[-1] > MIN_IDLE:
-            self.record(begin, duration, begin_deg, end_deg, middle)
-            return self.measure_speed_dps()
-        self._straight += count - last
-        counts, half_time = self._counts, 0.5 * duration
-        part = (last + (one > 0) - 2.0 * begin_deg) / way
-        while last != count:
-            last += one
-            counts.append(last)
-            if part <= middle:
-                time = floor(begin + part * (half_time / middle))
-            else:
-                time = floor(end - (1.0 - part) * (half_time / (1.0 - middle)))
-            times.append(time)
-            part += one / way
-        self.count = count
-        if len(times) > MOST:
-            del times[:-CAPACITY], counts[:-CAPACITY]
-        depth = self._depth
-        while depth > STRIDE and time - times[STRIDE - 1 - depth] >= MIN_SPAN:
-            depth -= STRIDE
-        while (span := time - times[-1 - depth]) < MIN_SPAN and depth < MAX_DEPTH:
-            depth += STRIDE
-        self._depth = depth
-        self._speed_dps = speed_dps = one * (depth * HALF_CLOCK_HZ // span) if span else 0
-        return speed_dps
-
     def record_rest(self, end: float) -> None:
         """Note that the counter has stood until a time."""
         times = self._times

@@ -7,9 +7,7 @@ from math import copysign
 
 from tuisim.base.data_class import dataclass
 from tuisim.engine.core.driver.control import (
-    FULL,
     MAX_DUTY,
-    SCALE,
     SPEED_CONSTANTS,
     Controller,
     divide,
@@ -21,8 +19,6 @@ from tuisim.engine.core.driver.roll import Roll, begin_roll
 STEP_TICKS = STEP_NS * TICKS_PER_NS
 STALL_NS = 100_000_000
 """A running motor whose speed reads 0 for longer than this is stalled."""
-
-
 COUNTED_DEG = 2
 """A position differs from the axle's angle by less than this."""
 
@@ -265,7 +261,7 @@ class MotorDriver:
         return step_ns + int(way_deg / (top_dps * STEP_S)) * STEP_NS
 
     def _regulate(self, step_ns: int, end_ns: int) -> int:
-        """Run steps of the speed control alone: `control`, in few calls, as long as the motor turns on.
+        """Run steps of the speed control alone, in few calls, as long as the motor turns on.
 
         Returns:
             When the next step is due: before the end if it is not one of these.
@@ -283,19 +279,12 @@ class MotorDriver:
             begin_deg = angle_deg
             angle_deg += end_dps * STEP_S + (speed_dps - after_dps) * constant_s
             middle = 0.25 + 0.5 * speed_dps / (speed_dps + after_dps)
-            read_dps = counter.count_turn(
+            counter.record(
                 (step_ns - STEP_NS) * TICKS_PER_NS, STEP_TICKS, begin_deg, angle_deg, middle
             )
+            read_dps = counter.measure_speed_dps()
             speed_dps = after_dps
-            # As `Controller.compute_duty`.
-            error = control.setpoint - read_dps
-            total, change = control.total + error, control.error - error
-            scaled = error * control.kp + total * control.ki + change * control.kd
-            if -FULL < scaled < FULL:
-                control.error, control.total, control.overloaded = error, total, False
-                next_duty = scaled // SCALE if scaled > 0 else -(-scaled // SCALE)
-            else:
-                next_duty = control.compute_duty(read_dps)
+            next_duty = control.compute_duty(read_dps)
             if next_duty != duty:
                 duty, goal_dps = next_duty, next_duty * circuit.dps_per_percent
                 end_dps = goal_dps - friction_dps
