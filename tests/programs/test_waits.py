@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from tests.cases import cases
-from tuisim.programs.waits import find_turns, list_loop_ends
+from tuisim.programs.waits import find_first_drive, find_turns, list_loop_ends
 
 WAITED_FOR = {
     "an angle": ("while gyro.angle < 90:\n    pass", ">=", 90, "angle", 1),
@@ -13,6 +13,14 @@ WAITED_FOR = {
     "the constant first": ("while -5 >= gyro.rate:\n    pass", ">", -5, "rate", 1),
     "a colour": ("while cs.color_name != 'Red':\n    pass", "==", "Red", "color_name", 1),
     "a colour of a library": ("while cs.color() != Color.RED:\n    pass", "==", "RED", "color", 1),
+    "a named limit": ("def go():\n    while a.value() < MAX: pass\nMAX = -4", ">=", -4, "value", 2),
+    "a limit that is passed on": (
+        "def go(limit):\n    while a.value(0) < limit: pass\nLOW = 3\ngo(LOW)\ngo(3)",
+        ">=",
+        3,
+        "value",
+        2,
+    ),
     "a break": ("while True:\n    if gyro.angle > 90:\n        break\n", ">", 90, "angle", 2),
     "one of two": (
         "while btn.enter == False and us.distance() > 50:\n    wait(5)",
@@ -46,6 +54,9 @@ def test_a_comparison_with_a_constant_is_waited_for(
         "while True:\n    pass",
         "while running == True:\n    drive()",
         "while gyro.angle < goal:\n    pass",
+        "goal = 1\nwhile gyro.angle < goal:\n    goal += 1",
+        "def go(goal):\n    while gyro.angle < goal:\n        pass\ngo(1)\ngo(2)",
+        "def go(goal):\n    while gyro.angle < goal:\n        pass\ngo(find())",
         "while 0 < gyro.angle < 90:\n    pass",
         "while max(a.angle, b.angle) < 90:\n    pass",
         "v = 1\nwhile v > 0:\n    v = look()",
@@ -87,3 +98,19 @@ def test_a_loop_that_only_computes_is_silent_and_inner_loops_come_first() -> Non
 def test_a_call_turns_so_far(call: str, turns: tuple[float, str] | None) -> None:
     assert find_turns(f"# first\n{call}\n", 2) == turns
     assert find_turns(call, 2) is None
+
+
+@cases(
+    "text, line",
+    {
+        "a tank": ("import x\ntank.on(30, 30)", 2),
+        "a motor of the old library": ("m.run_forever(speed_sp=9)", 1),
+        "in a function": ("def go():\n    base.drive(9, 0)\n\ngo()", 2),
+        "in a function that is not called": ("def go():\n    base.drive(9, 0)", 0),
+        "a lamp": ("ev3.light.on(Color.RED)", 0),
+        "no motor": ("asyncio.run(main())\nsubprocess.run([1])\nprint(1)", 0),
+        "no Python": ("tank.on(", 0),
+    },
+)
+def test_the_first_line_that_starts_motors_is_told(text: str, line: int) -> None:
+    assert find_first_drive(text) == line

@@ -18,6 +18,7 @@ from tuisim.engine.runs.run_folder import StoredRun
 from tuisim.engine.runs.samples import counts_of
 from tuisim.engine.runs.standstill import Standstill, has_left_field, standstill_of
 from tuisim.programs.plugged_words import describe_plugged
+from tuisim.tasks.reasons.reason import describe_end
 from tuisim.tasks.reasons.waited_words import describe_wait
 
 EXIT_RAISED, EXIT_BAD_OUTPUT, EXIT_LIMIT = 1, 2, 3
@@ -72,6 +73,7 @@ def describe(run: StoredRun, most_bytes: int | None = None) -> dict[str, Any]:
         "standstill": asdict(stood) if stood else None,
         "left_field": has_left_field(run.telemetry, run.spec),
         "waited_for": describe_wait(run),
+        "went_wrong": describe_end(run),
         "plugged": [part.to_plain() for part in run.plugged],
         "lines": counts.lines if counts else None,
         "samples": counts.samples if counts else None,
@@ -89,7 +91,7 @@ def last_state(facts: dict[str, Any]) -> str:
     pose = Pose(facts["x_mm"], facts["y_mm"], facts["heading_deg"])
     stood = f"{Standstill(**facts['standstill']).words} · " if facts["standstill"] else ""
     left = "left the field · " if facts["left_field"] else ""
-    waited = f"{facts['waited_for']} · " if facts["waited_for"] else ""
+    waited = "".join(f"{facts[name]} · " for name in ("waited_for", "went_wrong") if facts[name])
     samples = "" if facts["samples"] is None else f"{counted(facts['samples'], 'sample')} · "
     return (
         f"{facts['program']}: {what} · {facts['time_s']:.3f} s, tick {facts['tick']} · "

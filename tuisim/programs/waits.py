@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping
 from functools import lru_cache
+from typing import TypeGuard
 
 from tuisim.base.data_class import dataclass
 from tuisim.programs.questions import MAX_TEXT, Word
@@ -47,48 +49,89 @@ def list_loop_ends(text: str) -> tuple[LoopEnd, ...]:
         return ()
     loops = [node for node in ast.walk(tree) if isinstance(node, ast.While)]
     loops.sort(key=lambda loop: -loop.lineno)
-    return tuple(end for loop in loops for end in _find_ends(loop, tree))
+    constants = _list_constants(tree)
+    return tuple(end for loop in loops for end in _find_ends(loop, tree, constants))
 
 
 def find_turns(text: str, line: int) -> tuple[float, str] | None:
     """Return how far a call on a line turns a motor or both wheels, and whether in rotations or in degrees."""
     tree = parsed(text) if len(text) <= MAX_TEXT else None
-    for node in ast.walk(tree) if tree else ():
+    if tree is None:
+        return None
+    for node in ast.walk(tree):
         match node:
             case ast.Call(func=ast.Attribute(attr=attr), lineno=lineno) if lineno == line:
                 amounts = [*node.args, *(each.value for each in node.keywords)]
-                constants = map(_find_constant, amounts)
-                numbers = [each for each in constants if isinstance(each, int | float)]
+                constants = _list_constants(tree)
+                values = [_find_constant(each, constants) for each in amounts]
+                numbers = [each for each in values if isinstance(each, int | float)]
                 if numbers and attr in ("on_for_rotations", "on_for_degrees"):
                     return numbers[-1], attr.removeprefix("on_for_")
     return None
 
 
-def _find_ends(loop: ast.While, tree: ast.Module) -> Iterator[LoopEnd]:
+def find_first_drive(text: str) -> int:
+    """Return the first line of a program that starts motors without an end; 0 for none.
+
+    A function that the program does not mention starts nothing.
+    """
+    tree = parsed(text) if len(text) <= MAX_TEXT else None
+    nodes = [*ast.walk(tree)] if tree else []
+    mentioned = {node.id for node in nodes if isinstance(node, ast.Name) and not _is_set(node)}
+    idle = {
+        part
+        for node in nodes
+        if isinstance(node, ast.FunctionDef) and node.name not in mentioned
+        for part in ast.walk(node)
+    }
+    return min((node.lineno for node in nodes if node not in idle and _is_drive(node)), default=0)
+
+
+def _is_drive(node: ast.AST) -> TypeGuard[ast.Call]:
+    match node:
+        case ast.Call(func=ast.Attribute(attr="on"), args=args):
+            # A lamp of Pybricks is turned on with a colour.
+            return not any(isinstance(part, ast.Attribute) for part in args)
+        case ast.Call(func=ast.Attribute(attr="run_forever" | "run_direct")):
+            return True
+        case ast.Call(func=ast.Attribute(attr="run" | "dc" | "drive"), args=[speed, *_]):
+            return isinstance(speed, ast.Constant | ast.Name | ast.UnaryOp)
+    return False
+
+
+def _find_ends(
+    loop: ast.While, tree: ast.Module, constants: Mapping[str, Word]
+) -> Iterator[LoopEnd]:
     """Yield what ends a loop: what it goes on with, and in an endless one what leads to a `break`."""
     is_endless = isinstance(loop.test, ast.Constant) and bool(loop.test.value)
     if not is_endless:
-        yield from _find_end(loop, loop.test, tree, is_break=False)
+        yield from _find_end(loop, loop.test, tree, constants, is_break=False)
     for step in loop.body if is_endless else ():
         if isinstance(step, ast.If) and any(isinstance(way, ast.Break) for way in step.body):
-            yield from _find_end(loop, step.test, tree, is_break=True)
+            yield from _find_end(loop, step.test, tree, constants, is_break=True)
 
 
 def _find_end(
-    loop: ast.While, test: ast.expr, tree: ast.Module, *, is_break: bool
+    loop: ast.While,
+    test: ast.expr,
+    tree: ast.Module,
+    words: Mapping[str, Word],
+    *,
+    is_break: bool,
 ) -> Iterator[LoopEnd]:
-    """Yield what ends a loop, if something in a test is compared with a constant."""
+    """Yield what ends a loop, if something in a test is compared with a constant, or with one of some names' words."""
     if isinstance(test, ast.BoolOp):
-        ends = [_find_end(loop, part, tree, is_break=is_break) for part in test.values]
+        ends = [_find_end(loop, part, tree, words, is_break=is_break) for part in test.values]
         if isinstance(test.op, ast.Or) is is_break:
             yield from (end for each in ends for end in each if end.attribute)
         return
-    comparison = _read_comparison(test, is_break=is_break)
+    comparison = _read_comparison(test, words, is_break=is_break)
     if comparison is None:
         return
     value, ending, limit = comparison
     name, set_line, read_line, attribute = "", 0, value.lineno, _find_attribute(value)
-    is_silent = not _has_any(loop, (ast.Call, ast.Attribute))
+    is_silent = not _has_any(loop, ast.Call, ast.Attribute)
+    has_exit = _has_any(loop, ast.Break, ast.Return)
     if isinstance(value, ast.Name):
         name = value.id
         values = _find_values(name, tree)
@@ -98,13 +141,14 @@ def _find_end(
         if values and values[-1][0] < loop.lineno and _find_attribute(values[-1][1]):
             set_line = values[-1][0]
         is_silent = is_silent and bool(inner)
-    has_exit = _has_any(loop, (ast.Break, ast.Return))
     if attribute or (name and not has_exit and (set_line or is_silent)):
         lines = test.lineno, loop.lineno, _last_line(loop)
         yield LoopEnd(*lines, ending, limit, attribute, read_line, name, set_line, is_silent)
 
 
-def _read_comparison(test: ast.expr, *, is_break: bool) -> tuple[ast.expr, str, Word] | None:
+def _read_comparison(
+    test: ast.expr, constants: Mapping[str, Word], *, is_break: bool
+) -> tuple[ast.expr, str, Word] | None:
     """Return what a test compares, the operator that ends the loop, and the constant; None if it does not."""
     match test:
         case ast.Compare(left=left, ops=[operator], comparators=[right]):
@@ -112,13 +156,13 @@ def _read_comparison(test: ast.expr, *, is_break: bool) -> tuple[ast.expr, str, 
         case _:
             return None
     ending = sign if is_break else _OPPOSITE.get(sign, "")
-    limit = _find_constant(right)
+    limit = _find_constant(right, constants)
     if limit is None:
-        left, limit, ending = right, _find_constant(left), TURNED.get(ending, ending)
+        left, limit, ending = right, _find_constant(left, constants), TURNED.get(ending, ending)
     return None if limit is None or not ending else (left, ending, limit)
 
 
-def _has_any(loop: ast.While, kinds: tuple[type[ast.AST], ...]) -> bool:
+def _has_any(loop: ast.While, *kinds: type[ast.AST]) -> bool:
     return any(isinstance(node, kinds) for node in ast.walk(loop))
 
 
@@ -126,9 +170,50 @@ def _last_line(node: ast.stmt) -> int:
     return node.end_lineno or node.lineno
 
 
-def _find_constant(node: ast.expr) -> Word | None:
+def _list_constants(tree: ast.Module) -> dict[str, Word]:
+    """Return the names that are set once, to a text or a number, and parameters that each call gives the same one."""
+    nodes = [*ast.walk(tree)]
+    functions = [node for node in nodes if isinstance(node, ast.FunctionDef)]
+    times_set = Counter(
+        [
+            *(node.id for node in nodes if isinstance(node, ast.Name) and _is_set(node)),
+            *(node.arg for node in nodes if isinstance(node, ast.arg)),
+        ]
+    )
+    constants: dict[str, Word] = {}
+
+    def add(name: str, values: Iterable[ast.expr]) -> None:
+        words = {_find_constant(value, constants) for value in values}
+        if times_set[name] == 1 and len(words) == 1 and (word := words.pop()) is not None:
+            constants[name] = word
+
+    for node in nodes:
+        match node:
+            case ast.Assign(targets=[ast.Name(id=name)], value=value):
+                add(name, [value])
+    for function in functions:
+        calls = [
+            node.args
+            for node in nodes
+            if isinstance(node, ast.Call)
+            and isinstance(node.func, ast.Name)
+            and node.func.id == function.name
+        ]
+        for index, parameter in enumerate(function.args.args):
+            if all(len(values) > index for values in calls):
+                add(parameter.arg, [values[index] for values in calls])
+    return constants
+
+
+def _is_set(node: ast.Name) -> bool:
+    return not isinstance(node.ctx, ast.Load)
+
+
+def _find_constant(node: ast.expr, constants: Mapping[str, Word]) -> Word | None:
     """Return a text or a number in the program, the last part of a name in capitals; None for others."""
     match node:
+        case ast.Name(id=name):
+            return constants.get(name)
         case ast.Constant(value=str() | int() | float() as value) if not isinstance(value, bool):
             return value
         case ast.UnaryOp(op=ast.USub(), operand=ast.Constant(value=int() | float() as value)):
@@ -139,9 +224,12 @@ def _find_constant(node: ast.expr) -> Word | None:
 
 
 def _find_attribute(node: ast.expr) -> str:
-    """Return the attribute or the method without arguments that a value is; empty for other values."""
+    """Return the attribute or the method that a value is, with no argument or a 0; empty for other values."""
     match node:
-        case ast.Attribute(attr=attr) | ast.Call(func=ast.Attribute(attr=attr), args=[]):
+        case (
+            ast.Attribute(attr=attr)
+            | ast.Call(func=ast.Attribute(attr=attr), args=[] | [ast.Constant(value=0)])
+        ):
             return attr
     return ""
 

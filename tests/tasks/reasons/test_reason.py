@@ -7,11 +7,12 @@ from pathlib import Path
 
 import pytest
 
+from tests.cases import cases
 from tests.tasks.goals.recorded import goals_of
 from tests.tasks.reasons.runs import WRONG_SIGN, run_text
 from tuisim.engine.runs.recorded_run import Recording
 from tuisim.tasks.goals.judge import judge
-from tuisim.tasks.reasons.reason import Reason, ReasonKind, find_reasons
+from tuisim.tasks.reasons.reason import Reason, ReasonKind, describe_end, find_reasons
 
 MISTAKE = """\
 tank_drive.on_for_seconds(SpeedPercent(20), SpeedPercent(20), 1)
@@ -45,6 +46,11 @@ CASES = {
     "at a wall": (AT_THE_WALL, ReasonKind.BLOCKED, "line 2: the robot stood at an obstacle from"),
     "waits": (WAITS, ReasonKind.BLOCKED, "2.00 s, line 4: from here on it waited: touch sensor on"),
     "lost": (WRONG_SIGN, ReasonKind.LOST, "line 4: the right sensor left the black, and saw it"),
+    "never stopped": (
+        "from ev3dev2.motor import *\nLargeMotor(OUTPUT_B).on(20)\nimport time\ntime.sleep(1)\n",
+        ReasonKind.ENDED,
+        "the program ended while outB was still told to turn",
+    ),
     "off the mat": (OFF_THE_MAT, ReasonKind.LOST, "line 2: the robot left the mat"),
 }
 
@@ -55,6 +61,24 @@ def test_a_reason_says_when_at_which_line_and_why(name: str) -> None:
     first = find_reasons(run_text(text))[0]
     assert first.kind is kind
     assert words in first.words
+
+
+END = {
+    "a lost line": (
+        WRONG_SIGN.replace("get_clock() < 8", "True"),
+        ", line 4: the right sensor left the black, and saw it no more",
+    ),
+    "at once": ("tank_drive.on(20, 20)\n", "0.00 s, line 1: the program was over after 0.00 s"),
+    "as it should": ("tank_drive.on_for_seconds(20, 20, 1)\n", ""),
+    "a wait": (WAITS, ""),
+}
+
+
+@cases("text, words", END)
+def test_the_last_line_of_a_run_says_how_it_ended_wrong(text: str, words: str) -> None:
+    sentence = describe_end(run_text(text))
+    assert words in sentence
+    assert bool(sentence) == bool(words)
 
 
 GOALS = """\

@@ -7,7 +7,7 @@ import pytest
 from tests.cases import cases
 from tests.tasks.reasons.runs import run_text
 from tuisim.tasks.reasons import unmet
-from tuisim.tasks.reasons.unmet import find_near_miss, find_unmet
+from tuisim.tasks.reasons.unmet import find_early_end, find_near_miss, find_unmet
 
 BANDS = "# %%sim_magic_preloaded -b Grey_bands\n"
 DRIVES = f"{BANDS}tank_drive.on(SpeedPercent(40), SpeedPercent(40))\n"
@@ -16,17 +16,23 @@ LIGHT = "colorLeft.reflected_light_intensity_pc"
 VAIN = {
     "the other way": (
         f"{TURNS}while gyro.angle < 90:\n    pass\n",
-        "90 or more: it went from 0 to -",
+        "the gyro on in4 to read 90° or more: it went from 0 to -",
     ),
-    "too far": (f"{TURNS}while gyro.angle > -90000:\n    pass\n", "-90000 or less: it went from 0"),
+    "too far": (
+        f"{TURNS}while gyro.angle > -90000:\n    pass\n",
+        "the gyro on in4 to read -90000° or less: it went from 0",
+    ),
     "equality": (
         f"{DRIVES}while {LIGHT} != 50:\n    pass\n",
-        "exactly 50: 50.2 at 4.53 s came nearest",
+        "the colour sensor on in2 to read exactly 50 %: 50.2 at 4.53 s came nearest",
     ),
-    "at rest": (f"{BANDS}while {LIGHT} > 50:\n    pass\n", "50 or less: it stayed at 100"),
+    "at rest": (
+        f"{BANDS}while {LIGHT} > 50:\n    pass\n",
+        "the colour sensor on in2 to read 50 % or less: it stayed at 100",
+    ),
     "a colour": (
         f"{DRIVES}while colorLeft.color_name != 'Red':\n    print(1)\n",
-        "red: it saw only black, white",
+        "the colour sensor on in2 to see red: it saw only black, white",
     ),
     "read once": (
         f"{DRIVES}from time import sleep\nv = {LIGHT}\nwhile v > 20:\n    sleep(1)\n",
@@ -38,7 +44,7 @@ VAIN = {
     ),
     "rotations for degrees": (
         f"{BANDS}tank_drive.on_for_rotations(20, 20, 360)\n",
-        "360 rotations: the wheels had turned 1",
+        "360 rotations of the wheels: they had turned 1",
     ),
 }
 
@@ -73,6 +79,69 @@ def test_a_level_that_is_a_little_too_low_just_misses_a_band() -> None:
     assert miss is not None
     assert miss.text == "50.2 just missed the 50 or less that it waited for"
     assert miss.time_s == pytest.approx(4.53, abs=0.05)
+
+
+OLD_LIBRARY = """\
+from ev3dev.ev3 import *
+LIMIT = 3
+eye = ColorSensor()
+eye.mode = "COL-REFLECT"
+while eye.value() > LIMIT:
+    time.sleep(0.1)
+"""
+
+
+TURNS_OF_A_WHEEL = """\
+from ev3dev2.motor import *
+wheel = LargeMotor(OUTPUT_B)
+wheel.on(20)
+while wheel.rotations < 360:
+    pass
+"""
+
+
+@cases(
+    "text, words",
+    {
+        "a value": (OLD_LIBRARY, "the colour sensor on in2 to read 3 or less: it stayed at 85"),
+        "turns": (
+            TURNS_OF_A_WHEEL,
+            "the motor on outB to read 360 rotations or more: it went from 0 to ",
+        ),
+    },
+)
+def test_what_other_libraries_read_is_measured(text: str, words: str) -> None:
+    wait = find_unmet(run_text(text))
+    assert wait is not None
+    assert wait.text.startswith(words)
+
+
+EARLY = {
+    "no wait": (f"{DRIVES}tank_drive.off()\n", "over after 0.00 s: the motors that line 2 starts"),
+    "a true limit": (
+        f"{DRIVES}while {LIGHT} < 20:\n    pass\ntank_drive.off()\n",
+        "the loop was over at once: the colour sensor on in2 read 100 %, already 20 % or more",
+    ),
+}
+
+
+@cases("text, words", EARLY)
+def test_a_program_that_is_over_at_once_says_why(text: str, words: str) -> None:
+    early = find_early_end(run_text(text))
+    assert early is not None
+    assert words in early.text
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        f"{BANDS}print({LIGHT})\n",
+        f"{DRIVES}while {LIGHT} > 55:\n    pass\ntank_drive.off()\n",
+        f"{DRIVES}print(x)\n",
+    ],
+)
+def test_a_program_that_drives_no_motor_or_far_enough_is_not_over_early(text: str) -> None:
+    assert find_early_end(run_text(text)) is None
 
 
 def test_a_short_wait_is_not_in_vain(monkeypatch: pytest.MonkeyPatch) -> None:

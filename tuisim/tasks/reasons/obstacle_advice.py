@@ -19,6 +19,12 @@ _NEAREST_MM = 40.0
 """Ultrasonic sensors measure nothing that is nearer than 30 mm."""
 
 
+def find_nearest(sensor: UltrasonicSpec, spec: RunSpec) -> float:
+    """Return the least distance in mm that an ultrasonic sensor reads when its robot stands at a wall."""
+    front_mm = outline_of(spec.robot).front_mm if spec.profile.solid or spec.world.solid else 0.0
+    return max(float(spec.profile.min_echo_mm), front_mm - sensor.y_mm)
+
+
 def find_obstacle(
     sensor: UltrasonicSpec | InfraredSpec, spec: RunSpec, pose: Pose, limit: float | None
 ) -> str:

@@ -19,9 +19,9 @@ from tuisim.engine.runs.records import Stream
 from tuisim.engine.runs.run_folder import open_mat
 from tuisim.engine.runs.standstill import standstill_of
 from tuisim.tasks.goals.judgement import GoalState, Judgement
-from tuisim.tasks.reasons.unmet import find_near_miss, find_unmet
-from tuisim.tasks.reasons.waited import find_awaited
-from tuisim.tasks.reasons.waited_words import describe_awaited
+from tuisim.tasks.reasons.unmet import find_early_end, find_near_miss
+from tuisim.tasks.reasons.waited import Subject
+from tuisim.tasks.reasons.waited_words import Wait, find_waits
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -44,6 +44,7 @@ class ReasonKind(IntEnum):
     BLOCKED = auto()
     MISSED = auto()
     LOST = auto()
+    ENDED = auto()
     DIFFERS = auto()
 
 
@@ -86,7 +87,14 @@ def find_reasons(
     has_met = bool(judgements) and all(each.is_good for each in judgements)
     reasons = [*_find_raised(run), *_find_missed(judgements)]
     if not has_met:
-        reasons += [*_find_blocked(run, mat), *_find_lost(run, mat), *_find_left_mat(run)]
+        waits = find_waits(run, mat)
+        is_seen = any(wait.subject is Subject.COLOR for wait in waits)
+        reasons += [
+            *_find_blocked(run, waits),
+            *_find_lost(run, mat, is_seen),
+            *_find_left_mat(run),
+        ]
+        reasons += _find_ended(run, mat)
     if earlier is not None:
         reasons += _find_difference(run, earlier)
     return tuple(sorted(reasons, key=lambda reason: (reason.kind, reason.time_s)))
@@ -128,19 +136,15 @@ def _find_tracebacks(run: StoredRun) -> Iterator[Reason]:
             yield Reason(ReasonKind.RAISED, row.time_ns / NS_PER_S, line, row.text)
 
 
-def _find_blocked(run: StoredRun, mat: Field | None) -> Iterator[Reason]:
+def _find_blocked(run: StoredRun, all_waits: Sequence[Wait]) -> Iterator[Reason]:
     """Yield where something solid stopped the robot, and what the program waited for in vain."""
     if stood := standstill_of(run.telemetry, run.spec):
         line = _line_at(run, stood.since_s)
         yield Reason(ReasonKind.BLOCKED, stood.since_s, line, f"the robot {stood.words}")
     waits = "waited" if run.end else "waits"
-    all_awaited = find_awaited(run)
-    for awaited in all_awaited:
-        text = f"from here on it {waits}: {describe_awaited(awaited)}"
-        yield Reason(ReasonKind.BLOCKED, awaited.since_s, awaited.line, text)
-    if not all_awaited and (unmet := find_unmet(run, mat)):
-        text = f"from here on it {waits} for {unmet.text}"
-        yield Reason(ReasonKind.BLOCKED, unmet.time_s, unmet.line, text)
+    for wait in all_waits:
+        text = f"from here on it {waits}{wait.text}"
+        yield Reason(ReasonKind.BLOCKED, wait.time_s, wait.line, text)
 
 
 def _find_missed(judgements: Sequence[Judgement]) -> Iterator[Reason]:
@@ -153,8 +157,14 @@ def _find_missed(judgements: Sequence[Judgement]) -> Iterator[Reason]:
             yield Reason(ReasonKind.MISSED, judged.event.time_s, judged.line, text)
 
 
-def _find_lost(run: StoredRun, mat: Field | None) -> Iterator[Reason]:
-    """Yield where a robot that followed a line lost it, and what else its light sensors lost or never saw."""
+def _find_lost(run: StoredRun, mat: Field | None, has_waited: bool) -> Iterator[Reason]:
+    """Yield where a robot that followed a line lost it, and what else its light sensors lost or never saw.
+
+    Args:
+        run: The run.
+        mat: Its mat; None opens it.
+        has_waited: Whether it waited for what a light sensor should see: what that saw is told already.
+    """
     eyes = run.spec.robot.color_sensors
     if not eyes or run.telemetry.count < 2:
         return
@@ -164,11 +174,11 @@ def _find_lost(run: StoredRun, mat: Field | None) -> Iterator[Reason]:
     mat = open_mat(run) if mat is None else mat
     if missed := find_near_miss(run, mat):
         yield Reason(ReasonKind.LOST, missed.time_s, missed.line, missed.text)
-    records, hz = run.telemetry.array(), run.spec.profile.tick_hz
+    records = run.telemetry.array()
     read_ticks = _find_read_ticks(run, len(records))
     for lost in find_lost_lines(records, run.spec, mat, read_ticks):
-        yield _lost_at(run, lost.tick, _describe_loss(lost, hz))
-    if seen := find_one_color(records, run.spec, mat, read_ticks):
+        yield _describe_loss(run, lost)
+    if not has_waited and (seen := find_one_color(records, run.spec, mat, read_ticks)):
         text = f"from here on the {seen.sensor} sensor saw only {seen.color}"
         yield _lost_at(run, seen.tick, text)
 
@@ -180,6 +190,35 @@ def _find_left_mat(run: StoredRun) -> Iterator[Reason]:
     is_off = (x_mm < 0) | (x_mm > FIELD_WIDTH_MM) | (y_mm < 0) | (y_mm > FIELD_HEIGHT_MM)
     if is_off.any():
         yield _lost_at(run, int(is_off.argmax()), "the robot left the mat")
+
+
+def _find_ended(run: StoredRun, mat: Field | None) -> Iterator[Reason]:
+    """Yield that the program was over too early, or did not stop its motors."""
+    if early := find_early_end(run, mat):
+        yield Reason(ReasonKind.ENDED, early.time_s, early.line, early.text)
+    elif run.end and run.end.end is End.FINISHED and run.end.summary:
+        text = f"the program {run.end.summary}"
+        yield Reason(ReasonKind.ENDED, run.end.time_ns / NS_PER_S, 0, text)
+
+
+def describe_end(run: StoredRun) -> str:
+    """Return in a sentence without its full stop what a run ended with.
+
+    That is where it lost a line for good, if something cut it off that waited for nothing, or why it was over too
+    early. Empty if nothing of this is so.
+    """
+    if run.end is None:
+        return ""
+    eyes, records = run.spec.robot.color_sensors, run.telemetry.array()
+    if run.end.end in (End.TIME_LIMIT, End.STOPPED) and eyes and len(records) > 1:
+        from tuisim.tasks.reasons.lost_line import find_lost_lines
+
+        read_ticks = _find_read_ticks(run, len(records))
+        for lost in find_lost_lines(records, run.spec, open_mat(run), read_ticks):
+            if lost.seen_again is None:
+                return _describe_loss(run, lost).words
+    early = find_early_end(run)
+    return Reason(ReasonKind.ENDED, early.time_s, early.line, early.text).words if early else ""
 
 
 def _lost_at(run: StoredRun, tick: int, text: str) -> Reason:
@@ -202,14 +241,15 @@ def _find_read_ticks(run: StoredRun, count: int) -> dict[str, NDArray[Any]]:
     }
 
 
-def _describe_loss(lost: LostLine, hz: int) -> str:
+def _describe_loss(run: StoredRun, lost: LostLine) -> Reason:
     """Return what a sensor lost, and when it was seen again."""
     text = f"the {lost.sensor} sensor left the {'black' if lost.is_black else 'dark'}"
     if lost.seen_again is None:
-        return f"{text}, and saw it no more"
+        return _lost_at(run, lost.tick, f"{text}, and saw it no more")
     sensor, tick = lost.seen_again
     who = "it" if sensor == lost.sensor else f"the {sensor} one"
-    return f"{text}; {who} saw it again after {(tick - lost.tick) / hz:.1f} s"
+    after_s = (tick - lost.tick) / run.spec.profile.tick_hz
+    return _lost_at(run, lost.tick, f"{text}; {who} saw it again after {after_s:.1f} s")
 
 
 def _find_difference(run: StoredRun, earlier: Recording) -> Iterator[Reason]:

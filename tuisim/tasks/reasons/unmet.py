@@ -10,12 +10,19 @@ from tuisim.base.data_class import dataclass
 from tuisim.base.errors import ConfigError, LogError
 from tuisim.engine.core.columns import COLOR_NAMES
 from tuisim.engine.core.conditions import COMPARE
+from tuisim.engine.core.spec import (
+    ColorSensorSpec,
+    GyroSpec,
+    InfraredSpec,
+    SensorSpec,
+    UltrasonicSpec,
+)
 from tuisim.engine.protocol import End
 from tuisim.engine.runs.frames import column_values
-from tuisim.engine.runs.readings import READING_PORTS, find_ticks, read_readings
+from tuisim.engine.runs.readings import READING_MODES, READING_PORTS, find_ticks, read_readings
 from tuisim.engine.runs.run_folder import StoredRun, open_mat
 from tuisim.programs.questions import name_color
-from tuisim.programs.waits import LoopEnd, find_turns, list_loop_ends
+from tuisim.programs.waits import LoopEnd, find_first_drive, find_turns, list_loop_ends
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -26,6 +33,8 @@ if TYPE_CHECKING:
 
 _MIN_STAY_S = 3.0
 """A program that has been in a loop for less time does not wait in it in vain."""
+_MIN_RUN_S = 0.5
+"""Motors that were started have no time to drive a robot in a program that is over earlier."""
 _NEAR, _AWAY = 1.0, 5.0
 """Light that came so near to what was waited for, in percent, and went so far away again, was just missed."""
 _WORDS = {
@@ -36,22 +45,60 @@ _WORDS = {
     "==": "exactly {}",
     "!=": "anything but {}",
 }
-_COLUMNS: Mapping[str, tuple[str, float]] = {
-    "reflected_light_intensity": ("red_pc", 1.0),
-    "reflected_light_intensity_pc": ("red_pc", 1.0),
-    "reflection": ("red_pc", 1.0),
-    "full_reflected_light_intensity": ("mean_pc", 1.0),
-    "color": ("color", 1.0),
-    "color_name": ("color", 1.0),
-    "angle": ("deg", 1.0),
-    "rate": ("rate_dps", 1.0),
-    "distance_centimeters": ("mm", 0.1),
-    "distance_inches": ("mm", 1 / 25.4),
-    "distance": ("mm", 1.0),
-    "proximity": ("proximity", 1.0),
-}
-"""What programs read: the end of its column's name, and the factor from the column's unit to theirs."""
 _LIGHT = ("red_pc", "mean_pc")
+_RED = ("red_pc", 1.0, "")
+_DEGREES = ("deg", 1.0, "°")
+_DISTANCE = ("mm", 1.0, " mm")
+_COLUMNS: Mapping[str, tuple[str, float, str]] = {
+    "reflected_light_intensity": _RED,
+    "reflected_light_intensity_pc": ("red_pc", 1.0, " %"),
+    "reflection": ("red_pc", 1.0, " %"),
+    "full_reflected_light_intensity": ("mean_pc", 1.0, " %"),
+    "color": ("color", 1.0, ""),
+    "color_name": ("color", 1.0, ""),
+    "angle": _DEGREES,
+    "rate": ("rate_dps", 1.0, "°/s"),
+    "distance_centimeters": ("mm", 0.1, " cm"),
+    "distance_inches": ("mm", 1 / 25.4, " in"),
+    "distance": _DISTANCE,
+    "proximity": ("proximity", 1.0, " %"),
+}
+"""What programs read: the end of its column's name, the factor from the column's unit to theirs, and theirs."""
+_VALUES: Mapping[str, tuple[str, float, str]] = {
+    "COL-REFLECT": _RED,
+    "COL-COLOR": ("color", 1.0, ""),
+    "GYRO-ANG": _DEGREES,
+    "US-DIST-CM": _DISTANCE,
+    "IR-PROX": ("proximity", 1.0, " %"),
+}
+"""The same of `value()`, by mode."""
+_TURNS: Mapping[str, tuple[str, float, str]] = {
+    "position": _DEGREES,
+    "degrees": _DEGREES,
+    "angle": _DEGREES,
+    "rotations": ("deg", 1 / 360, " rotations"),
+}
+"""The same of the motor of a wheel."""
+_NOUNS: Mapping[type[SensorSpec], str] = {
+    ColorSensorSpec: "colour sensor",
+    UltrasonicSpec: "ultrasonic sensor",
+    InfraredSpec: "infrared sensor",
+    GyroSpec: "gyro",
+}
+
+
+@dataclass(frozen=True, slots=True)
+class _Series:
+    """What a loop read, as the program read it."""
+
+    device: str
+    """Its kind and port."""
+    column: str
+    """The end of its column's name."""
+    unit: str
+    """With a blank before it, if there is one; empty for none."""
+    ticks: Array
+    values: Array
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,10 +136,30 @@ def find_near_miss(run: StoredRun, mat: Field | None = None) -> Unmet | None:
     return _find_first(_Search.find_near_misses, run, mat)
 
 
+def find_early_end(run: StoredRun, mat: Field | None = None) -> Unmet | None:
+    """Return that a program was over before the motors that it started could turn; None if it was not.
+
+    Args:
+        run: The run.
+        mat: Its mat; None opens it.
+    """
+    end = run.end
+    if end is None or end.end is not End.FINISHED or run.time_s >= _MIN_RUN_S:
+        return None
+    line = find_first_drive(run.program.text)
+    if not line:
+        return None
+    text = (
+        f"the program was over after {run.time_s:.2f} s: the motors that line {line} starts had "
+        "no time to turn"
+    )
+    return _find_first(_Search.find_met, run, mat) or Unmet(run.time_s, line, text)
+
+
 def _find_first(
     search: Callable[[_Search], Iterator[Unmet]], run: StoredRun, mat: Field | None
 ) -> Unmet | None:
-    if run.telemetry.count < 2:
+    if not run.telemetry.count:
         return None
     try:
         return next(search(_Search(run, mat)), None)
@@ -142,6 +209,21 @@ class _Search:
             if stay and has_left and (miss := self._find_miss(loop, stay)):
                 yield miss
 
+    def find_met(self) -> Iterator[Unmet]:
+        """Yield the loops for whose end nothing had to happen: the first reading was what they waited for."""
+        for loop in self._loops:
+            series = self._measure(loop, (0, len(self._records)))
+            if series is None or isinstance(loop.limit, str):
+                continue
+            first = series.values[0]
+            if series.column != "color" and COMPARE[loop.operator](first, loop.limit):
+                goal = _name_goal(loop, f"{loop.limit:g}{series.unit}")
+                text = (
+                    f"the loop was over at once: {series.device} read {_round(first)}{series.unit}, "
+                    f"already {goal}"
+                )
+                yield Unmet(series.ticks[0] / self._hz, loop.line, text)
+
     def _is_long(self, tick: int) -> bool:
         """Return whether the program has waited long enough since a tick."""
         return len(self._records) - tick >= _MIN_STAY_S * self._hz
@@ -161,7 +243,7 @@ class _Search:
         turned /= 360 if unit == "rotations" else 1
         if not 0 < turned < abs(amount):
             return None
-        text = f"{amount:g} {unit}: the wheels had turned {turned:.1f}"
+        text = f"{amount:g} {unit} of the wheels: they had turned {turned:.1f}"
         return Unmet(first / self._hz, line, text)
 
     def _find_stay(self, loop: LoopEnd) -> tuple[int, int] | None:
@@ -186,33 +268,33 @@ class _Search:
         series = self._measure(loop, stay)
         if series is None:
             return ""
-        ticks, values, column = series
-        if column == "color":
-            return _describe_colors(loop, values)
-        if isinstance(loop.limit, str) or COMPARE[loop.operator](values, loop.limit).any():
+        if series.column == "color":
+            return _describe_colors(loop, series)
+        if isinstance(loop.limit, str) or COMPARE[loop.operator](series.values, loop.limit).any():
             return ""
-        goal = _name_goal(loop, f"{loop.limit:g}")
-        return f"{goal}: {self._name_nearest(loop, ticks, values)}"
+        goal = _name_goal(loop, f"{loop.limit:g}{series.unit}")
+        return f"{series.device} to read {goal}: {self._name_nearest(loop, series)}"
 
-    def _name_nearest(self, loop: LoopEnd, ticks: Array, values: Array) -> str:
+    def _name_nearest(self, loop: LoopEnd, series: _Series) -> str:
         """Return what came nearest to a number, or where the values went if that was the first one."""
+        values = series.values
         nearest = int(abs(values - loop.limit).argmin())
         if values[nearest] != values[0] and values[nearest] == values[-1]:
-            return f"it went from {values[0]:.4g} to {values[-1]:.4g} only"
+            return f"it went from {_round(values[0])} to {_round(values[-1])} only"
         if values[nearest] != values[0]:
-            return f"{values[nearest]:.4g} at {ticks[nearest] / self._hz:.2f} s came nearest"
+            return f"{_round(values[nearest])} at {series.ticks[nearest] / self._hz:.2f} s came nearest"
         if values[-1] == values[0]:
-            return f"it stayed at {values[0]:.4g}"
-        return f"it went from {values[0]:.4g} to {values[-1]:.4g}"
+            return f"it stayed at {_round(values[0])}"
+        return f"it went from {_round(values[0])} to {_round(values[-1])}"
 
     def _find_miss(self, loop: LoopEnd, stay: tuple[int, int]) -> Unmet | None:
         """Return where light came near to what a loop waited for, and went away again; None if nowhere."""
         import numpy as np
 
         series = self._measure(loop, stay)
-        if series is None or series[2] not in _LIGHT or isinstance(loop.limit, str):
+        if series is None or series.column not in _LIGHT or isinstance(loop.limit, str):
             return None
-        ticks, values, _ = series
+        ticks, values = series.ticks, series.values
         misses = abs(values - loop.limit)
         away = np.flatnonzero(misses[:-1] >= _AWAY)
         if not len(away) or COMPARE[loop.operator](values[:-1], loop.limit).any():
@@ -222,47 +304,84 @@ class _Search:
         if misses[nearest] > _NEAR:
             return None
         goal = _name_goal(loop, f"{loop.limit:g}")
-        text = f"{values[nearest]:.4g} just missed the {goal} that it waited for"
+        text = f"{_round(values[nearest])} just missed the {goal} that it waited for"
         return Unmet(ticks[nearest] / self._hz, loop.line, text)
 
-    def _measure(self, loop: LoopEnd, stay: tuple[int, int]) -> tuple[Array, Array, str] | None:
-        """Return the ticks at which a loop read what it waits for, the values, and the end of their column's name.
+    def _measure(self, loop: LoopEnd, stay: tuple[int, int]) -> _Series | None:
+        """Return what a loop read of what it waits for.
 
         None if that is not known, or if light noise or a pen would make it take long.
         """
         import numpy as np
 
-        spec = self._run.spec
-        if loop.attribute not in _COLUMNS or spec.world.noise.light or spec.world.pen_marks:
-            return None
-        column, factor = _COLUMNS[loop.attribute]
         rows = self._readings[self._readings["line"] == loop.read_line]
-        names = {sensor.port: f"{sensor.name}_{column}" for sensor in spec.robot.sensors}
-        ports = [READING_PORTS[port] for port in np.unique(rows["port"])]
-        ports = [port for port in ports if port in names]
         ticks = np.unique(find_ticks(rows, self._hz))
         ticks = ticks[(ticks >= stay[0]) & (ticks < stay[1])]
-        if len(ports) != 1 or not len(ticks):
+        ports = [READING_PORTS[port] for port in np.unique(rows["port"])]
+        sensors = [each for each in self._run.spec.robot.sensors if each.port in ports]
+        if not len(ticks):
             return None
-        name, run, mat = names[ports[0]], self._run, self._field
+        if wheel := self._find_wheel(ports):
+            return self._measure_wheel(loop, wheel, ports[0], ticks)
+        mode = READING_MODES[rows["mode"][0]]
+        read = _VALUES.get(mode) if loop.attribute == "value" else _COLUMNS.get(loop.attribute)
+        if len(sensors) != 1 or read is None:
+            return None
+        return self._measure_sensor(loop, sensors[0], read, ticks)
+
+    def _measure_wheel(self, loop: LoopEnd, wheel: str, port: str, ticks: Array) -> _Series | None:
+        """Return what the motor of a wheel had turned at some ticks; None if the loop reads something else of it."""
+        if loop.attribute not in _TURNS:
+            return None
+        column, factor, unit = _TURNS[loop.attribute]
+        values = self._records[f"{wheel}_position_{column}"][ticks] * factor
+        return _Series(f"the motor on {port}", column, unit, ticks, values)
+
+    def _measure_sensor(
+        self, loop: LoopEnd, sensor: SensorSpec, read: tuple[str, float, str], ticks: Array
+    ) -> _Series | None:
+        """Return what a sensor measured at some ticks; None if it does not measure that, or if that takes long."""
+        import numpy as np
+
+        spec, (column, factor, unit) = self._run.spec, read
+        if spec.world.noise.light or spec.world.pen_marks:
+            return None
+        name, run, mat = f"{sensor.name}_{column}", self._run, self._field
         columns = column_values((name,), self._records[ticks], run, run.actions, mat, lambda _: mat)
         if name not in columns:
             return None
         values = columns[name] * factor
-        if loop.attribute == "reflected_light_intensity":
+        if read is _RED:
             values = np.floor(values * spec.profile.reflected_max / 100)
         elif loop.attribute == "reflection":
             values = np.floor(values)
-        return ticks, values, column
+        device = f"the {_NOUNS.get(type(sensor), 'sensor')} on {sensor.port}"
+        return _Series(device, column, unit, ticks, values)
+
+    def _find_wheel(self, ports: list[str]) -> str:
+        """Return whether the only one of some ports is that of a wheel's motor: `left`, `right`, or nothing.
+
+        Nothing if it is reversed or geared, too.
+        """
+        robot = self._run.spec.robot
+        wheels = {
+            robot.left_port: "" if robot.left_reversed else "left",
+            robot.right_port: "" if robot.right_reversed else "right",
+        }
+        return wheels.get(ports[0], "") if len(ports) == 1 and robot.gear_ratio == 1 else ""
+
+
+def _round(value: float) -> str:
+    return f"{round(value, 2):g}"
 
 
 def _name_goal(loop: LoopEnd, limit: str) -> str:
     return _WORDS[loop.operator].format(limit)
 
 
-def _describe_colors(loop: LoopEnd, codes: Array) -> str:
+def _describe_colors(loop: LoopEnd, series: _Series) -> str:
     """Return the colour that a loop waited for and what was seen; empty if it came."""
-    color, seen = name_color(loop.limit), {COLOR_NAMES[int(code)].lower() for code in codes}
+    color, seen = name_color(loop.limit), {COLOR_NAMES[int(code)].lower() for code in series.values}
     if loop.operator != "==" or color in {"", *seen}:
         return ""
-    return f"{color}: it saw only {', '.join(sorted(seen))}"
+    return f"{series.device} to see {color}: it saw only {', '.join(sorted(seen))}"

@@ -114,7 +114,7 @@ _BY_HAND = (Subject.BUTTONS, Subject.REMOTE)
 """While the robot moves, a look at these is a guard, not a wait."""
 _PRESSED = (*_BY_HAND, Subject.TOUCH)
 """While the program logs or plays, a look at these that only ends it is a guard."""
-_SEEN = (Subject.COLOR, Subject.DISTANCE, Subject.PROXIMITY)
+SEEN = (Subject.COLOR, Subject.DISTANCE, Subject.PROXIMITY)
 """A robot that drives waits for these first."""
 _MAX_LINES = 64
 _MEASURED = (Subject.DISTANCE, Subject.PROXIMITY, Subject.GYRO)
@@ -249,7 +249,7 @@ class _Search:
             return
         subjects = [subject for subject in Subject if not (subject in _BY_HAND and self._drives)]
         if self._drives:
-            subjects.sort(key=lambda one: one not in _SEEN)
+            subjects.sort(key=lambda one: one not in SEEN)
         for subject in subjects:
             if subject in _BY_HAND and self._is_turning():
                 continue

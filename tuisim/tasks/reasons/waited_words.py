@@ -4,14 +4,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping
-from typing import assert_never
+from typing import TYPE_CHECKING, assert_never
 
+from tuisim.base.data_class import dataclass
 from tuisim.engine.core.spec import EMPTY_MAT, InfraredSpec, RunSpec, UltrasonicSpec
 from tuisim.engine.runs.run_folder import StoredRun
 from tuisim.tasks.reasons.hand_presses import find_hits
-from tuisim.tasks.reasons.obstacle_advice import find_obstacle
-from tuisim.tasks.reasons.unmet import find_unmet
-from tuisim.tasks.reasons.waited import Awaited, Subject, find_awaited
+from tuisim.tasks.reasons.obstacle_advice import find_nearest, find_obstacle
+from tuisim.tasks.reasons.unmet import Unmet, find_unmet
+from tuisim.tasks.reasons.waited import SEEN, Awaited, Subject, find_awaited
+
+if TYPE_CHECKING:
+    from tuisim.engine.core.field import Field
 
 COLORED_MAT = "Rainbow_bands"
 COLOR_PLACES_MM: Mapping[str, int] = {"red": 240, "green": 440, "blue": 740, "yellow": 1245}
@@ -20,15 +24,51 @@ _KEYS = {"up": "↑", "down": "↓", "left": "←", "right": "→"}
 _SHORT_PRESS_S = 0.1
 
 
+@dataclass(frozen=True, slots=True)
+class Wait:
+    """What a run waited for in vain."""
+
+    time_s: float
+    """When it began to."""
+    line: int
+    text: str
+    """What it waited for and what came, to follow "waited"."""
+    what: str
+    """The same as a sentence without its full stop, with what gives it."""
+    subject: Subject | None = None
+
+
+def find_waits(run: StoredRun, mat: Field | None = None) -> list[Wait]:
+    """Return what a run waited for, most important first; of one that goes on, what it waits for.
+
+    Args:
+        run: The run.
+        mat: Its mat; None opens it.
+    """
+    all_awaited = find_awaited(run)
+    is_seen = all(awaited.subject in SEEN for awaited in all_awaited)
+    unmet = find_unmet(run, mat) if is_seen else None
+    waits = []
+    for awaited in all_awaited:
+        remedy = name_remedy(awaited, run.spec, run.live)
+        if unmet and unmet.line == awaited.line:
+            remedy = _name_nearest(awaited, run.spec) or remedy
+            waits.append(_describe_unmet(unmet, f"; {remedy}", awaited.subject))
+            continue
+        text = describe_awaited(awaited)
+        what = f"{text}: {remedy}"
+        waits.append(Wait(awaited.since_s, awaited.line, f": {text}", what, awaited.subject))
+    return waits or ([_describe_unmet(unmet)] if unmet else [])
+
+
+def _describe_unmet(unmet: Unmet, remedy: str = "", subject: Subject | None = None) -> Wait:
+    what = f"from {unmet.time_s:.2f} s on, line {unmet.line} waited for {unmet.text}{remedy}"
+    return Wait(unmet.time_s, unmet.line, f" for {unmet.text}", what, subject)
+
+
 def describe_wait(run: StoredRun) -> str:
     """Return what a run waited for in one sentence without its full stop; empty if for nothing."""
-    all_awaited = find_awaited(run)
-    if not all_awaited and (unmet := find_unmet(run)):
-        return f"from {unmet.time_s:.2f} s on, line {unmet.line} waited for {unmet.text}"
-    return "; ".join(
-        f"{describe_awaited(awaited)}: {name_remedy(awaited, run.spec, run.live)}"
-        for awaited in all_awaited
-    )
+    return "; ".join(wait.what for wait in find_waits(run))
 
 
 def describe_wait_with_keys(awaited: Iterable[Awaited], spec: RunSpec) -> str:
@@ -168,6 +208,16 @@ def _name_obstacle(awaited: Awaited, spec: RunSpec) -> str:
         if sensor.port == awaited.port and isinstance(sensor, UltrasonicSpec | InfraredSpec):
             options = find_obstacle(sensor, spec, pose, limit)
     return f"{options or '-o with a file (tuisim obstacles)'} puts one before it"
+
+
+def _name_nearest(awaited: Awaited, spec: RunSpec) -> str:
+    """Return what a sensor reads at a wall; empty if that is near enough, or if it is not an ultrasonic sensor."""
+    for sensor in spec.robot.sensors:
+        if sensor.port == awaited.port and isinstance(sensor, UltrasonicSpec):
+            nearest_mm = find_nearest(sensor, spec)
+            if awaited.limit is not None and awaited.limit < nearest_mm:
+                return f"at a wall it reads {nearest_mm / 10:.2g} cm, never less"
+    return ""
 
 
 def name_remedy_with_keys(awaited: Awaited, spec: RunSpec) -> str:
