@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import IO, NamedTuple
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 
 from tuisim.base.errors import LogError
 from tuisim.engine.runs.arrays import FloatArray, IntArray
@@ -128,8 +129,8 @@ def plateaus(values: FloatArray) -> list[Plateau]:
 
     Samples that are not finite belong to no plateau.
     """
-    finite = np.flatnonzero(np.isfinite(values))
-    clean = np.asarray(values, np.float64)[finite]
+    is_finite = np.isfinite(values)
+    clean = np.asarray(values, np.float64)[is_finite]
     if not len(clean):
         return []
     noise = noise_of(clean)
@@ -155,7 +156,8 @@ def plateaus(values: FloatArray) -> list[Plateau]:
         found = found[at_an_end | (lengths_of(read_spans(found)) >= MIN_SAMPLES + (noise > 0.0))]
     found = _settle(clean, found, parts, ground, least_step)
     found = _with_ends(clean, found, max(least_step, FAR * sigma))
-    found["start"], found["stop"] = finite[found["start"]], finite[found["stop"] - 1] + 1
+    places = np.flatnonzero(is_finite)
+    found["start"], found["stop"] = places[found["start"]], places[found["stop"] - 1] + 1
     return list(map(Plateau._make, found.tolist()))
 
 
@@ -189,8 +191,8 @@ def _settle(
 def _levels(values: FloatArray) -> tuple[float, float]:
     """Return the lowest and the highest level, whatever the values of strays."""
     if len(values) > STRAY_SAMPLES:
-        parts = [values[at : len(values) - STRAY_SAMPLES + at] for at in range(STRAY_SAMPLES + 1)]
-        low, high = float(np.maximum.reduce(parts).min()), float(np.minimum.reduce(parts).max())
+        windows = sliding_window_view(values, STRAY_SAMPLES + 1).T
+        low, high = float(windows.max(axis=0).min()), float(windows.min(axis=0).max())
         if low <= high:
             return low, high
     return float(values.min()), float(values.max())
