@@ -173,6 +173,26 @@ def _forged(random: Random, place: Path) -> None:
     place.with_suffix(".py").write_text(_program(f"{random.choice(FORGED)}\n{IDIOMS[0]}"))
 
 
+def _of_others(random: Random, place: Path) -> None:
+    """Hand in a name that leads to what another student has handed in."""
+    folder = place.parent
+    if random.random() < 0.5:
+        (folder / "ada.py").unlink()
+        # Its text has been read when the file that it opens is lost.
+        _pack(folder / "ada.zip", "ada.py", f"open('ada.py').close()\n{IDIOMS[0]}")
+        place.mkdir()
+        _pack(place / f"{random.choice(('.', '..', '...'))}.zip", "main.py", "1 / 0")
+    else:
+        known = "ada_7_assignsubmission_file_ada.py"
+        (folder / "ada.py").rename(folder / known)
+        (folder / f"eve_8_assignsubmission_file_{known}").write_text(_program("1 / 0"))
+
+
+def _pack(path: Path, name: str, text: str) -> None:
+    with zipfile.ZipFile(path, "w") as archive:
+        archive.writestr(name, _program(text))
+
+
 FORGED = (
     "import builtins\nfrom tuisim.engine.protocol import SetPose\n"
     "s = next(c.cell_contents for c in builtins.__loop_turn__.__closure__"
@@ -197,6 +217,7 @@ SORTS: Mapping[str, Callable[[Random, Path], None]] = {
     "faults": _faults,
     "delivered": lambda random, place: deliver(random, place, MAGIC),
     "forged": _forged,
+    "others": _of_others,
 }
 REFUSED = ("links", "devices", "zips")
 """Sorts that are refused, in the student's row."""

@@ -135,3 +135,30 @@ def test_a_zip_of_a_class_is_its_folder(tmp_path: Path) -> None:
 def test_a_damaged_zip_is_its_students_own_row(tmp_path: Path, data: bytes) -> None:
     ada, ben = _find(tmp_path, {"ada.zip": data, "ben.py": ""}).students
     assert ada.problem and not ada.is_unread and ben.source is not None
+
+
+def test_nobody_hands_in_for_another_one(tmp_path: Path) -> None:
+    """A file has the name that its student gave it: it says no more than whose number comes first."""
+    forged = "Eve_7_assignsubmission_file_Ada_9_assignsubmission_file_main.py"
+    found = _find(tmp_path, {"Ada_9_assignsubmission_file_main.py": "1\n", forged: "2\n"})
+    rows = {student.name: (student.text, dict(student.ids)) for student in found.students}
+    assert rows == {"Ada": ("1\n", {MOODLE: "9"}), forged.removesuffix(".py"): ("2\n", {})}
+
+
+@pytest.mark.parametrize("name", ["..", ".", "..."])
+def test_a_zip_whose_name_leads_elsewhere_is_unpacked_in_a_folder_of_its_own(
+    tmp_path: Path, name: str
+) -> None:
+    inner = zipped(tmp_path / "zip", "main.py")
+    found = _find(tmp_path, {"ada.zip": inner, f"eve/{name}.zip": inner, "zoe.zip": inner})
+    assert [student.name for student in found.students] == ["ada", "eve", "zoe"]
+    for student in found.students:
+        assert (student.path / "main.py").read_text() == "print('main.py')\n"
+
+
+def test_a_name_with_a_number_is_nobody_elses(tmp_path: Path) -> None:
+    files = ["ada_1_5_a.py", "ada_2_6_b.py", "ada 1.py", "ada 1 (2).py"]
+    found = _find(tmp_path, {name: f"{name!r}\n" for name in files})
+    names = {student.name: student.text for student in found.students}
+    assert len(names) == len(files)
+    assert names["ada 1 (2)"] == "'ada 1 (2).py'\n"

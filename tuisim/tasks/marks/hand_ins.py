@@ -15,6 +15,8 @@ from tuisim.tasks.marks.files import copy_file, copy_tree
 _MOODLE = re.compile(
     r"(?P<name>.+)_(?P<id>\d+)_assignsubmission_(?P<kind>[a-z]+)(?:_(?P<file>.*))?", re.DOTALL
 )
+_MOODLE_NUMBER = re.compile(r"_\d+_assignsubmission_")
+"""What only one place of a name can be: with two, a student could have written the first or the second of them."""
 _CANVAS = re.compile(
     r"(?P<name>[^_]+)(?:_LATE)?_(?P<id>\d+)_(?P<attempt>\d+)_(?P<file>.+)", re.DOTALL
 )
@@ -45,7 +47,7 @@ def group_hand_ins(paths: Iterable[Path]) -> list[HandIn]:
     """Return files and folders by student, in their order; of several attempts the newest."""
     groups: dict[tuple[GradebookKind | Path, str], list[tuple[re.Match[str], Path]]] = {}
     for path in paths:
-        if match := _MOODLE.fullmatch(path.name):
+        if (match := _MOODLE.fullmatch(path.name)) and len(_MOODLE_NUMBER.findall(path.name)) == 1:
             groups.setdefault((GradebookKind.MOODLE, match["id"]), []).append((match, path))
         elif (match := _CANVAS.fullmatch(path.name)) and os.path.isfile(path):
             groups.setdefault((GradebookKind.CANVAS, match["id"]), []).append((match, path))

@@ -88,12 +88,12 @@ class _Search:
     places: int = 0
 
     def new_place(self, name: str) -> Path:
-        """Return the path of a folder of a name for what is unpacked."""
+        """Return the path of a folder for what is unpacked; it has the name, unless that leads elsewhere."""
         assert self.unpacked is not None
         self.places += 1
         place = self.unpacked / str(self.places)
         place.mkdir()
-        return place / name
+        return place / (name if name.strip(".") else "files")
 
     def unpack(self, path: Path) -> Path:
         """Unpack a zip, if zips are unpacked; return the folder, or the path as it is."""
@@ -209,10 +209,15 @@ def _named(students: Iterable[_Found]) -> Iterator[Student]:
         else f"{folder.name}/{name}"
         for (folder, one, _), name in zip(every, names, strict=True)
     ]
-    seen: Counter[str] = Counter()
+    taken: set[str] = set()
     for name, (_, student, _) in zip(full, every, strict=True):
-        seen[name] += 1
-        yield replace(student, name=name if seen[name] == 1 else f"{name} ({seen[name]})")
+        unique, number = name, 1
+        # Also the name with a number may be another one's.
+        while unique in taken or (number > 1 and unique in full):
+            number += 1
+            unique = f"{name} ({number})"
+        taken.add(unique)
+        yield replace(student, name=unique)
 
 
 def _student(hand_in: HandIn, search: _Search) -> Student:
