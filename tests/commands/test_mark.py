@@ -30,6 +30,7 @@ from tuisim.commands import mark
 from tuisim.engine.runs.handle import RunHandle
 from tuisim.tasks import execute
 from tuisim.tasks.goals import patterns
+from tuisim.tasks.marks import marking
 from tuisim.tasks.marks.outcome import Outcome
 
 FEW = ("ada.py", "ben.py", "gustav.py", "raises.py", "empty.py", "zip.py", "viktor")
@@ -373,7 +374,7 @@ def test_a_signal_ends_a_marking_in_good_order(
 
     write_class(tmp_path / "class", _few("ada.py"))
     # Where the command does not handle it, the signal must not end the tests.
-    monkeypatch.setattr(mark, "outcomes_of", interrupted)
+    monkeypatch.setattr(marking, "outcomes_of", interrupted)
     before = signal.signal(number, lambda *_: None)
     try:
         assert run_command(["mark", str(GOALS), str(tmp_path / "class")]) == code

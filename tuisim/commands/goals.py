@@ -24,7 +24,6 @@ from tuisim.commands.echo import (
 )
 from tuisim.commands.run_options import timeout_option
 from tuisim.engine.core.values import MAX_SEED
-from tuisim.engine.runs.handle import RunOptions
 from tuisim.engine.runs.presses import press_actions
 from tuisim.engine.runs.run_folder import StoredRun
 from tuisim.engine.runs.store import RunStore
@@ -34,10 +33,8 @@ from tuisim.settings.options import START, settings_of
 from tuisim.tasks.goals.drawn_mats import DRAWN_MATS, drawn_mat, world_lines
 from tuisim.tasks.goals.files import GoalsFile, example_names, load_goals
 from tuisim.tasks.goals.judge import judge
-from tuisim.tasks.goals.judgement import GoalState, Judgement, most_points, points
-from tuisim.tasks.marks.runs import STALL_LIMIT_S, TIME_LIMIT_S, MarkPlan
-from tuisim.tasks.marks.sheet import Sheet, SheetRow, in_words
-from tuisim.tasks.task import Keep
+from tuisim.tasks.goals.judgement import GoalState, Judgement, in_words, most_points, points
+from tuisim.tasks.task import TIME_LIMIT_S
 
 _RANGE = re.compile(r"(\d{1,9})\.\.(\d{1,9})")
 _WHERE = ("background", *START)
@@ -225,22 +222,10 @@ def try_task(goals_path: str, wrong: Sequence[str], seeds: str, timeout: float, 
     from tuisim.tasks.marks.trial import trial_of
 
     task = load_goals(goals_path)
-    plan = MarkPlan(
-        worlds=task.worlds,
-        seeds=parse_seeds(seeds, "--seeds"),
-        options=RunOptions(time_limit_s=timeout, stall_limit_s=STALL_LIMIT_S),
-        keep=Keep.NONE,
-        jobs=jobs,
-        arguments=settings_of(task.settings)["arguments"],
-    )
+    every_seed = parse_seeds(seeds, "--seeds")
     with Progress("goals try"):
-        trial = trial_of(task, plan, wrong, {})
-    echo_lines(
-        table(
-            ("PROGRAM", "POINTS", "MEETS"),
-            [(row.name, *_earned(trial.sheet, row)) for row in trial.sheet.rows],
-        )
-    )
+        trial = trial_of(task, wrong, every_seed, time_limit_s=timeout, jobs=jobs)
+    echo_lines(table(("PROGRAM", "POINTS", "MEETS"), trial.rows))
     for fault in trial.faults:
         echo_wrapped(f"{task.path.name}: {fault}")
     if not task.program:
@@ -248,17 +233,6 @@ def try_task(goals_path: str, wrong: Sequence[str], seeds: str, timeout: float, 
     if not trial.faults:
         echo(f"{task.path.name}: all is well")
     return int(bool(trial.faults))
-
-
-def _earned(sheet: Sheet, row: SheetRow) -> tuple[str, str]:
-    """Return the points of a program, and which goals it meets."""
-    met = [column.name for column, cell in zip(sheet.columns, row.cells, strict=True) if cell.met]
-    good = all(
-        (cell.met == row.runs) is (column.points >= 0)
-        for column, cell in zip(sheet.columns, row.cells, strict=True)
-    )
-    names = "all" if good and row.runs else ", ".join(met) or "-"
-    return f"{in_words(row.points)} of {in_words(sheet.most_points)}", names
 
 
 @command(

@@ -5,9 +5,7 @@ from __future__ import annotations
 import os
 import shutil
 import sys
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from contextlib import closing, nullcontext
-from functools import partial
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Any
 
@@ -40,36 +38,17 @@ from tuisim.commands.listings import names_of
 from tuisim.commands.run_options import input_option, timeout_option
 from tuisim.engine.core.values import Whole
 from tuisim.engine.runs.child.isolation import MOST_BYTES, check_isolation
-from tuisim.engine.runs.child.supervisor import supervised
-from tuisim.engine.runs.handle import RunOptions
-from tuisim.engine.runs.temporary import temporary_home
 from tuisim.logs.export import ALLOWED, EXPORTERS, check_place, check_target
 from tuisim.settings.command_line import Arguments, WordType, argument, command, option
-from tuisim.settings.options import APP, PANEL, parse, settings_of
+from tuisim.settings.options import APP, PANEL, parse
 from tuisim.settings.shared_options import shared_options
 from tuisim.tasks.goals.files import GoalsFile, load_goals
-from tuisim.tasks.goals.trial_world import TrialWorld
-from tuisim.tasks.marks.entries import entries_of
-from tuisim.tasks.marks.feedback import write_feedback
-from tuisim.tasks.marks.gradebook import Roster, read_roster, write_gradebook
-from tuisim.tasks.marks.hand_ins import GradebookKind
-from tuisim.tasks.marks.journal import Journal, journal_of
-from tuisim.tasks.marks.outcome import Outcome, unknown_goals
-from tuisim.tasks.marks.overrides import Override, overridden, read_overrides
-from tuisim.tasks.marks.page import reports_folder
-from tuisim.tasks.marks.runs import (
-    STALL_LIMIT_S,
-    TIME_LIMIT_S,
-    MarkPlan,
-    RunEntry,
-    outcomes_of,
-    runs_of,
-)
-from tuisim.tasks.marks.sheet import Sheet, columns_of, export_marks, lines_of, sheet_of, summary_of
-from tuisim.tasks.marks.students import Student, StudentsFound, find_students
-from tuisim.tasks.task import Keep
+from tuisim.tasks.marks.marking import Marking, MarkRequest, open_marking
+from tuisim.tasks.marks.sheet import Sheet
+from tuisim.tasks.task import TIME_LIMIT_S, Keep
 
 PAGE_SUFFIXES = (".html", ".htm")
+GRADEBOOKS = ("moodle", "canvas")
 DEFAULT_SEEDS = "0..19"
 USUAL_KEEP = Keep.FAILED
 
@@ -210,126 +189,95 @@ def mark(**given: Any) -> int:
     task = load_goals(Path(arguments.goals))
     seeds = parse_seeds(arguments.seeds, "--seeds")
     _check(arguments, task)
-    with temporary_home("tuisim-hand-ins-") as unpacked:
-        found = find_students(
-            arguments.folders,
-            Path(task.program).name if task.program else "",
-            _excluded(arguments, task),
-            unpacked.resolve(),
-            arguments.max_mb << 20,
-        )
-        return _mark(task, seeds, found, arguments)
-
-
-def _mark(
-    task: GoalsFile, seeds: tuple[int, ...], found: StudentsFound, arguments: Arguments
-) -> int:
-    roster, overrides = _tutor_files(found, task, arguments)
-    entries, students = entries_of(found.students, task, arguments.settings)
-    plan = MarkPlan(
-        worlds=task.worlds,
+    request = MarkRequest(
+        task=task,
+        folders=arguments.folders,
         seeds=seeds,
-        options=RunOptions(
-            time_limit_s=arguments.timeout, stall_limit_s=STALL_LIMIT_S, answers=arguments.input
-        ),
+        version=__version__,
+        settings=arguments.settings,
+        time_limit_s=arguments.timeout,
+        answers=arguments.input,
         keep=Keep(arguments.keep or USUAL_KEEP),
         jobs=arguments.jobs,
-        isolate=isolates(arguments, "programs can read and change your files", "security"),
-        version=__version__,
-        arguments=settings_of(task.settings)["arguments"],
+        max_bytes=arguments.max_mb << 20,
+        resumes=arguments.resume,
+        roster=Path(arguments.roster) if arguments.roster else None,
+        overrides=Path(arguments.overrides) if arguments.overrides else None,
+        exports=tuple(map(Path, arguments.export)),
+        gradebooks=_gradebooks(arguments),
+        goal_columns=arguments.goal_columns,
+        movies=arguments.movies,
+        feedback=Path(arguments.feedback) if arguments.feedback else None,
     )
-    outcomes: dict[str, list[Outcome]] = {student.name: [] for student in students}
+    with open_marking(request) as marking:
+        return _mark(marking, arguments)
+
+
+def _mark(marking: Marking, arguments: Arguments) -> int:
+    _tell_strangers(marking, arguments.roster)
+    marking.read_programs()
+    isolate = _isolates(arguments)
     with Progress("marking", in_lines=True):
         try:
-            with signals_raise(), nullcontext() if plan.isolate else supervised():
-                _collect(entries, plan, journal_of(task.path), outcomes, resumes=arguments.resume)
+            with signals_raise():
+                marking.run(tell, isolate=isolate)
         except Interrupted as interrupted:
-            _tell_so_far(task, plan, students, outcomes)
+            _tell_so_far(marking)
             return interrupted.exit_code
-        sheet = overridden(_sheet(task, plan, students, outcomes), overrides)
+        sheet = marking.build_sheet()
         # First, so that marks are seen also if a file cannot be written.
-        _print(sheet, found)
-        _tell_refusals(students)
-        code = _write(_list_exports(sheet, task.worlds, students, found.ignored, roster, arguments))
-    return max(code, _tell_unread(students), _tell_missing(outcomes), _tell_unknown(outcomes))
+        _print(sheet)
+        _tell_notes(marking)
+        code = _write(marking.list_exports(sheet, tell))
+    return max(code, _tell_unread(marking), _tell_missing(marking), _tell_unknown(marking))
 
 
-def _tutor_files(
-    found: StudentsFound, task: GoalsFile, arguments: Arguments
-) -> tuple[Roster, Mapping[str, Override]]:
-    """Return the class list and the tutor's overrides; say which submissions are not in the list, and who is absent.
-
-    Raises:
-        ConfigError: one of the files is wrong.
-    """
-    names = [student.name for student in found.students]
-    overrides = (
-        read_overrides(Path(arguments.overrides), columns_of(task.every_goal), names)
-        if arguments.overrides
-        else {}
-    )
-    if not arguments.roster:
-        return Roster({}), overrides
-    roster = read_roster(Path(arguments.roster))
-    if missing := roster.missing(names):
-        echo_error(f"note: not in {arguments.roster}: {listed(map(printable, missing))}")
-    if absent := roster.absent(names):
+def _tell_strangers(marking: Marking, roster: str) -> None:
+    """Say which submissions are not in the class list, and who is absent."""
+    if marking.unlisted:
+        echo_error(f"note: not in {roster}: {listed(map(printable, marking.unlisted))}")
+    if marking.absent:
         echo_error(
-            f"note: in {arguments.roster}, but without a submission: {listed(map(printable, absent))}"
+            f"note: in {roster}, but without a submission: {listed(map(printable, marking.absent))}"
         )
-    return roster, overrides
 
 
-def _tell_so_far(
-    task: GoalsFile,
-    plan: MarkPlan,
-    students: Sequence[Student],
-    outcomes: Mapping[str, Sequence[Outcome]],
-) -> None:
+def _tell_so_far(marking: Marking) -> None:
     """Print the marks of the students whose programs have had all their runs, and what is kept of the others."""
-    done = [
-        student
-        for student in students
-        if not student.source
-        or len(outcomes[student.name]) == runs_of(outcomes[student.name], plan)
-    ]
-    if done:
-        _print(_sheet(task, plan, done, outcomes))
+    sheet = marking.build_sheet_so_far()
+    if sheet.rows:
+        _print(sheet)
     echo_error(
-        f"tuisim: interrupted with {len(done)} of {counted(len(students), 'student')} marked, nothing exported;"
+        f"tuisim: interrupted with {len(sheet.rows)} of {counted(len(marking.students), 'student')} marked, "
+        "nothing exported;"
     )
-    kept = counted(sum(map(len, outcomes.values())), "run")
+    kept = counted(sum(map(len, marking.outcomes.values())), "run")
     echo_error(f"tuisim: {kept} kept: the same command with --resume goes on")
 
 
-def _sheet(
-    task: GoalsFile,
-    plan: MarkPlan,
-    students: Sequence[Student],
-    outcomes: Mapping[str, Sequence[Outcome]],
-) -> Sheet:
-    worlds = [world.where for world in plan.worlds]
-    return sheet_of(task.title, columns_of(task.every_goal), plan.seeds, students, outcomes, worlds)
+def _tell_notes(marking: Marking) -> None:
+    """Tell what was not marked, and whose programs would not start on a brick."""
+    if marking.ignored:
+        names = listed(marking.ignored)
+        echo_error(f"note: not marked, because they are no Python programs: {names}")
+    if marking.left_out:
+        echo_error(f"note: left out, because nobody hands them in: {listed(marking.left_out)}")
+    for student in marking.students:
+        if student.refusal:
+            echo_error(f"note: {printable(f'{student.name}: {student.refusal}')}")
 
 
-def _tell_unread(students: Sequence[Student]) -> int:
+def _tell_unread(marking: Marking) -> int:
     """Tell whose programs this machine could not read; return the exit code."""
-    unread = [student for student in students if student.is_unread]
+    unread = [student for student in marking.students if student.is_unread]
     for student in unread:
         echo_error(f"tuisim: the marks are without {printable(student.name)}: {student.problem}")
     return 1 if unread else 0
 
 
-def _tell_refusals(students: Sequence[Student]) -> None:
-    """Tell whose programs would not start on a brick."""
-    for student in students:
-        if student.refusal:
-            echo_error(f"note: {printable(f'{student.name}: {student.refusal}')}")
-
-
-def _tell_missing(outcomes: Mapping[str, Sequence[Outcome]]) -> int:
+def _tell_missing(marking: Marking) -> int:
     """Tell which runs are missing in the marks; return the exit code."""
-    missing = [(name, one) for name, every in outcomes.items() for one in every if not one.counts]
+    missing = marking.missing
     if not missing:
         return 0
     names = listed([f"{printable(name)} with seed {one.seed}" for name, one in missing])
@@ -344,17 +292,20 @@ def _tell_missing(outcomes: Mapping[str, Sequence[Outcome]]) -> int:
     return 1
 
 
-def _tell_unknown(outcomes: Mapping[str, Sequence[Outcome]]) -> int:
+def _tell_unknown(marking: Marking) -> int:
     """Tell which goals could not be judged; return the exit code."""
-    by_student = {name: unknown_goals(every) for name, every in outcomes.items()}
-    found = {goal: reason for unknown in by_student.values() for goal, reason in unknown.items()}
-    for goal in sorted(found):
-        by = [name for name, unknown in by_student.items() if goal in unknown]
+    unjudged = marking.unjudged
+    for goal, reason, names in unjudged:
         echo_error(
-            f"tuisim: “{goal}” cannot be judged, so that there are no points for {listed(map(printable, by))}:"
+            f"tuisim: “{goal}” cannot be judged, so that there are no points for {listed(map(printable, names))}:"
         )
-        echo_error(f"tuisim: {found[goal]}")
-    return 1 if found else 0
+        echo_error(f"tuisim: {reason}")
+    return 1 if unjudged else 0
+
+
+def _gradebooks(arguments: Arguments) -> dict[str, Path]:
+    """Return the gradebooks' files by their kinds."""
+    return {kind: Path(file) for kind in GRADEBOOKS if (file := vars(arguments)[kind])}
 
 
 def _check(arguments: Arguments, task: GoalsFile) -> None:
@@ -372,7 +323,7 @@ def _check(arguments: Arguments, task: GoalsFile) -> None:
         else:
             allowed = f"a file ends in .html, {ALLOWED}"
             raise ExportError(f"cannot write {target}: unknown format {target.suffix!r}", allowed)
-    gradebooks = [Path(target) for kind in GradebookKind if (target := vars(arguments)[kind])]
+    gradebooks = _gradebooks(arguments).values()
     for target in gradebooks:
         check_place(target)
     places = [os.path.realpath(target) for target in (*targets, *gradebooks)]
@@ -395,64 +346,6 @@ def _check(arguments: Arguments, task: GoalsFile) -> None:
         raise ConfigError(f"{arguments.feedback} is no folder", "name a folder", key="--feedback")
 
 
-def _excluded(arguments: Arguments, task: GoalsFile) -> frozenset[Path]:
-    """Return what may lie among the students' files without being one: the goals, and results."""
-    found = [task.path]
-    for name in (*GradebookKind, "roster", "overrides"):
-        found += [Path(vars(arguments)[name])] if vars(arguments)[name] else []
-    for target in map(Path, arguments.export):
-        found += [target, target.with_name(target.name + ".json"), reports_folder(target)]
-    if arguments.feedback:
-        found.append(Path(arguments.feedback))
-    return frozenset(Path(os.path.realpath(path)) for path in found)
-
-
-def _collect(
-    entries: Sequence[RunEntry],
-    plan: MarkPlan,
-    journal: Path,
-    outcomes: dict[str, list[Outcome]],
-    *,
-    resumes: bool,
-) -> None:
-    """Run what is to be run; add the outcomes by name of student as they become known."""
-    wanted = {entry.student.name: runs_of((), plan) for entry in entries}
-    with (
-        Journal(journal, resumes=resumes) as known,
-        closing(outcomes_of(entries, plan, known)) as found,
-    ):
-        for done, (name, outcome) in enumerate(found, start=1):
-            outcomes[name].append(outcome)
-            wanted[name] = runs_of(outcomes[name], plan)
-            total = sum(wanted.values())
-            tell(f"run {done} of {total}", done, total)
-
-
-def _list_exports(
-    sheet: Sheet,
-    worlds: Sequence[TrialWorld],
-    students: Sequence[Student],
-    ignored: Sequence[str],
-    roster: Roster,
-    arguments: Arguments,
-) -> Iterator[tuple[Path, Callable[[], None]]]:
-    """Yield what is to be written: each file or folder, and what writes it."""
-    for target in map(Path, arguments.export):
-        if target.suffix.lower() in EXPORTERS:
-            yield target, partial(export_marks, sheet, target)
-        else:
-            page = partial(_write_page, sheet, worlds, students, ignored, target)
-            yield target, partial(page, movies=arguments.movies)
-    sources = [student.text for student in students]
-    if arguments.feedback:
-        folder = Path(arguments.feedback)
-        yield folder, partial(write_feedback, folder, sheet, sources)
-    for kind in GradebookKind:
-        if name := vars(arguments)[kind]:
-            book = partial(write_gradebook, Path(name), kind, sheet, sources, roster)
-            yield Path(name), partial(book, goals=arguments.goal_columns)
-
-
 def _write(exports: Iterable[tuple[Path, Callable[[], None]]]) -> int:
     """Write everything that can be written; return the exit code."""
     code = 0
@@ -472,32 +365,17 @@ def _write(exports: Iterable[tuple[Path, Callable[[], None]]]) -> int:
     return code
 
 
-def _write_page(
-    sheet: Sheet,
-    worlds: Sequence[TrialWorld],
-    students: Sequence[Student],
-    ignored: Sequence[str],
-    target: Path,
-    *,
-    movies: bool,
-) -> None:
-    # Its charts are slow to import, and a table needs none.
-    from tuisim.tasks.marks.class_page import write_class_page
-
-    write_class_page(sheet, worlds, students, ignored, target, tell, movies=movies)
-
-
 _NARROWER = ((40, 60), (24, 20), (16, 10), (12, 6))
 """Characters of the names of students and goals, from wide terminals to narrow ones."""
 
 
-def _print(sheet: Sheet, found: StudentsFound | None = None) -> None:
+def _print(sheet: Sheet) -> None:
     columns = shutil.get_terminal_size().columns if sys.stdout.isatty() else 0
-    heads, rows = lines_of(sheet)
+    heads, rows = sheet.tabulate()
     text = table(heads, rows)
     if columns and _width(text) > columns:
         for most_name, most_goal in _NARROWER:
-            heads, rows = lines_of(sheet, most_name, most_goal)
+            heads, rows = sheet.tabulate(most_name, most_goal)
             text = table(heads[:-1], [row[:-1] for row in rows])
             if _width(text) <= columns:
                 break
@@ -505,25 +383,15 @@ def _print(sheet: Sheet, found: StudentsFound | None = None) -> None:
         text = "\n".join([text, "", *reasons])
     echo_lines(text)
     echo()
-    echo_wrapped(summary_of(sheet))
-    if found and found.ignored:
-        names = listed(found.ignored)
-        echo_error(f"note: not marked, because they are no Python programs: {names}")
-    if found and found.left_out:
-        echo_error(f"note: left out, because nobody hands them in: {listed(found.left_out)}")
+    echo_wrapped(sheet.summary)
 
 
 def _width(text: str) -> int:
     return max(map(len, text.split("\n")))
 
 
-def isolates(arguments: Arguments, danger: str, page: str) -> bool:
+def _isolates(arguments: Arguments) -> bool:
     """Return whether programs are isolated; say so if they are not, and nobody has asked for that.
-
-    Args:
-        arguments: Those of the command, with `isolate` and `no_isolate`.
-        danger: What programs can do that are not isolated.
-        page: The page of the guide that tells more.
 
     Raises:
         ConfigError: they cannot be isolated, and must be; or the options contradict each other.
@@ -540,6 +408,8 @@ def isolates(arguments: Arguments, danger: str, page: str) -> bool:
         if arguments.isolate:
             raise
         reason = error.message.removeprefix(f"{error.key}: ")
-        echo_error(f"note: {reason}: {danger} ({see_page(page)})")
+        echo_error(
+            f"note: {reason}: programs can read and change your files ({see_page('security')})"
+        )
         return False
     return True

@@ -18,6 +18,8 @@ Value = str | float | int | bool
 
 MAX_JOBS = 1000
 """Most worker processes of a batch."""
+TIME_LIMIT_S = 120.0
+"""Simulated seconds that a program may take that is marked, if nobody says otherwise."""
 OUTPUT_CHARACTERS = 2000
 """A result contains at most this much of the program's output."""
 

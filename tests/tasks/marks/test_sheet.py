@@ -18,6 +18,7 @@ from tests.web.chromium import needs_chromium
 from tuisim.base.errors import printable
 from tuisim.base.source import Program
 from tuisim.programs.program_file import ProgramSource
+from tuisim.tasks.goals.judgement import in_words
 from tuisim.tasks.goals.spec import FinishCondition, Goal
 from tuisim.tasks.marks.feedback import feedback_of, file_stems, write_feedback
 from tuisim.tasks.marks.gradebook import Roster, write_gradebook
@@ -29,10 +30,7 @@ from tuisim.tasks.marks.sheet import (
     Sheet,
     export_marks,
     frame_of,
-    in_words,
-    lines_of,
     sheet_of,
-    summary_of,
 )
 from tuisim.tasks.marks.students import Student
 
@@ -147,9 +145,9 @@ def _unjudged_sheet() -> Sheet:
 
 def test_what_could_not_be_judged_has_no_points() -> None:
     sheet = _unjudged_sheet()
-    table = [row[1:5] for row in lines_of(sheet)[1]]
+    table = [row[1:5] for row in sheet.tabulate()[1]]
     assert table == [["?", "0%", "?", "3"], ["3", "0%", "0", "3"], ["?", "0%", "?", "3"]]
-    assert summary_of(sheet).startswith("3 students, 1 seed: mean 3 of 10 points")
+    assert sheet.summary.startswith("3 students, 1 seed: mean 3 of 10 points")
     assert "[could not be judged] Stop at the place." in feedback_of(sheet, sheet.rows[0], TEXT)
     assert sum(count for *_, count in distribution(sheet)) == 1
     assert [one.mean for one in goal_statistics(sheet)] == [0.0, 3.0]
@@ -165,7 +163,7 @@ def test_a_gradebook_has_no_number_for_what_could_not_be_judged(tmp_path: Path) 
 
 
 def test_a_table_has_a_column_a_goal_and_names_the_line() -> None:
-    heads, rows = lines_of(SHEET)
+    heads, rows = SHEET.tabulate()
     assert heads == ["student", "points", "robustness", "place", "wall", "reason"]
     assert rows[:3] == [
         ["ada", "10", "100%", "7", "3", ""],
@@ -173,7 +171,7 @@ def test_a_table_has_a_column_a_goal_and_names_the_line() -> None:
         ["cleo", "0", "0%", "0", "0", "stuck in line 1"],
     ]
     assert (
-        summary_of(SHEET)
+        SHEET.summary
         == "5 students, 4 seeds: mean 4.25 of 10 points; 1 with all points for every seed"
     )
 
@@ -185,9 +183,9 @@ LONG_SHEET = sheet_of(
 
 
 def test_a_long_name_pushes_no_mark_off_the_table() -> None:
-    heads, (row,) = lines_of(LONG_SHEET, 12, 6)
+    heads, (row,) = LONG_SHEET.tabulate(12, 6)
     assert (heads[-2], row[0], len(row[0])) == ("ggg…gg", "nnnnnnn…mmmm", 12)
-    assert len(lines_of(LONG_SHEET)[1][0][0]) == 40
+    assert len(LONG_SHEET.tabulate()[1][0][0]) == 40
 
 
 GEOMETRY = """<script>

@@ -90,3 +90,8 @@ def points_of(met: Iterable[float]) -> float:
 def most_points(goals: Iterable[Goal]) -> float:
     """Return the points of a run that meets every goal but those whose points are negative."""
     return math.fsum(goal.points for goal in goals if goal.points > 0)
+
+
+def in_words(points: float) -> str:
+    """Return points as text, at most two decimals; `?` for NaN."""
+    return "?" if math.isnan(points) else f"{points:.2f}".rstrip("0").rstrip(".")

@@ -12,8 +12,9 @@ from tuisim.base.atomic import replacing
 from tuisim.base.errors import ExportError, printable
 from tuisim.base.faults import describe_fault
 from tuisim.base.source import source_lines
+from tuisim.tasks.goals.judgement import in_words
 from tuisim.tasks.goals.spec import Goal
-from tuisim.tasks.marks.sheet import Cell, Sheet, SheetRow, in_words
+from tuisim.tasks.marks.sheet import Cell, Sheet, SheetRow
 
 SUFFIX = ".txt"
 WIDTH = 88

@@ -18,9 +18,10 @@ from tuisim.base.errors import ConfigError, listed
 from tuisim.engine.files import read_bytes
 from tuisim.logs.csv_cells import harmless, restored
 from tuisim.pictures.charts.files import write_whole
+from tuisim.tasks.goals.judgement import in_words
 from tuisim.tasks.marks.feedback import feedback_of
 from tuisim.tasks.marks.hand_ins import GradebookKind
-from tuisim.tasks.marks.sheet import Sheet, SheetRow, in_words
+from tuisim.tasks.marks.sheet import Sheet, SheetRow
 
 MOST_BYTES = 16 << 20
 ITEM = "tuisim"

@@ -11,9 +11,10 @@ from types import MappingProxyType
 from tuisim.analysis.pins import Picture
 from tuisim.base.data_class import dataclass
 from tuisim.pictures.html.render import Table, render_page
+from tuisim.tasks.goals.judgement import in_words
 from tuisim.tasks.goals.spec import Goal
 from tuisim.tasks.marks.copies import LEAST_TOKENS, Similar
-from tuisim.tasks.marks.sheet import Cell, Sheet, SheetRow, in_words, summary_of
+from tuisim.tasks.marks.sheet import Cell, Sheet, SheetRow
 
 _LEAST_STUDENTS = 3
 """Fewer have no statistics of points."""
@@ -80,7 +81,7 @@ def page_of(
     return render_page(
         "marks.html",
         title=f"Marks: {sheet.title}" if sheet.title else "Marks",
-        summary=summary_of(sheet),
+        summary=sheet.summary,
         bins=distribution(sheet) if len(sheet.rows) >= _LEAST_STUDENTS else (),
         goals=goal_statistics(sheet),
         maps=maps,

@@ -22,14 +22,14 @@ from tuisim.engine.runs.store import RunStore
 from tuisim.pictures.charts.files import write_whole
 from tuisim.pictures.html.render import Table
 from tuisim.tasks.goals.condition import ConditionKind
-from tuisim.tasks.goals.judgement import Change
+from tuisim.tasks.goals.judgement import Change, in_words
 from tuisim.tasks.goals.spec import Goal
 from tuisim.tasks.goals.trial_world import TrialWorld
 from tuisim.tasks.marks.class_map import Miss, MissesOfRun
 from tuisim.tasks.marks.feedback import file_stems
 from tuisim.tasks.marks.outcome import GoalOutcome, Outcome, portable
 from tuisim.tasks.marks.page import reports_folder
-from tuisim.tasks.marks.sheet import Sheet, in_words
+from tuisim.tasks.marks.sheet import Sheet
 
 MOST_OUTPUT_BYTES = 4 << 20
 """Runs that printed more get no report: a browser could hardly show it."""

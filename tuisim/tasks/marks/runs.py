@@ -27,8 +27,6 @@ from tuisim.tasks.task import Keep, Task
 
 STALL_LIMIT_S = 10.0
 """CPU seconds in one instant of simulated time after which a program counts as hung."""
-TIME_LIMIT_S = 120.0
-"""Simulated seconds that a program may take, if nobody says otherwise."""
 REAL_TIME_LIMIT_S = 120.0
 """Real seconds of one run."""
 

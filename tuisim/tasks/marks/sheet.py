@@ -16,7 +16,7 @@ from tuisim.base.errors import counted, printable
 from tuisim.base.faults import UNJUDGED
 from tuisim.base.source import source_lines
 from tuisim.logs.export import export_frame
-from tuisim.tasks.goals.judgement import most_points, points_of
+from tuisim.tasks.goals.judgement import in_words, most_points, points_of
 from tuisim.tasks.goals.spec import Goal
 from tuisim.tasks.marks.hand_ins import GradebookKind
 from tuisim.tasks.marks.outcome import Outcome, merged
@@ -106,6 +106,41 @@ class Sheet:
     def most_points(self) -> float:
         """The points of a program that meets every goal."""
         return rounded(most_points(self.columns))
+
+    @property
+    def summary(self) -> str:
+        """One sentence about the class."""
+        full = sum(row.robustness == 1 for row in self.rows)
+        known = [row.points for row in self.rows if not math.isnan(row.points)]
+        mean = math.fsum(known) / len(known) if known else 0.0
+        size = f"{counted(len(self.rows), 'student')}, {counted(len(self.seeds), 'seed')}"
+        points = f"mean {in_words(mean)} of {in_words(self.most_points)} points"
+        return f"{size}: {points}; {full} with all points" + (
+            " for every seed" if len(self.seeds) > 1 else ""
+        )
+
+    def tabulate(
+        self, most_name: int = 40, most_goal: int = 60
+    ) -> tuple[list[str], list[list[str]]]:
+        """Return heads and rows of the text table; the reason comes last.
+
+        Args:
+            most_name, most_goal: Characters of the names of students and goals; the middle of longer ones is left out.
+        """
+        goals = [_without_middle(column.name, most_goal) for column in self.columns]
+        heads = ["student", "points", "robustness", *goals, "reason"]
+        rows = []
+        for row in self.rows:
+            points = (
+                in_words(row.points),
+                f"{row.robustness:.0%}",
+                *(in_words(cell.points) for cell in row.cells),
+            )
+            where = (
+                f"line {row.line}: " if row.line and f"line {row.line}" not in row.reason else ""
+            )
+            rows.append([_without_middle(row.name, most_name), *points, f"{where}{row.reason}"])
+        return heads, rows
 
 
 def columns_of(goals: Sequence[Goal]) -> list[Goal]:
@@ -247,49 +282,10 @@ def rounded(value: float) -> float:
     return round(value, DIGITS) + 0.0
 
 
-def in_words(points: float) -> str:
-    """Return points as text, at most two decimals; `?` for NaN."""
-    return "?" if math.isnan(points) else f"{points:.2f}".rstrip("0").rstrip(".")
-
-
-def lines_of(
-    sheet: Sheet, most_name: int = 40, most_goal: int = 60
-) -> tuple[list[str], list[list[str]]]:
-    """Return heads and rows of the text table; the reason comes last.
-
-    Args:
-        most_name, most_goal: Characters of the names of students and goals; the middle of longer ones is left out.
-    """
-    goals = [_without_middle(column.name, most_goal) for column in sheet.columns]
-    heads = ["student", "points", "robustness", *goals, "reason"]
-    rows = []
-    for row in sheet.rows:
-        points = (
-            in_words(row.points),
-            f"{row.robustness:.0%}",
-            *(in_words(cell.points) for cell in row.cells),
-        )
-        where = f"line {row.line}: " if row.line and f"line {row.line}" not in row.reason else ""
-        rows.append([_without_middle(row.name, most_name), *points, f"{where}{row.reason}"])
-    return heads, rows
-
-
 def _without_middle(name: str, most: int) -> str:
     # Names of files that belong together differ at either end.
     end = most // 3
     return name if len(name) <= most else f"{name[: most - end - 1]}…{name[-end:]}"
-
-
-def summary_of(sheet: Sheet) -> str:
-    """Return one sentence about the class."""
-    full = sum(row.robustness == 1 for row in sheet.rows)
-    known = [row.points for row in sheet.rows if not math.isnan(row.points)]
-    mean = math.fsum(known) / len(known) if known else 0.0
-    size = f"{counted(len(sheet.rows), 'student')}, {counted(len(sheet.seeds), 'seed')}"
-    points = f"mean {in_words(mean)} of {in_words(sheet.most_points)} points"
-    return f"{size}: {points}; {full} with all points" + (
-        " for every seed" if len(sheet.seeds) > 1 else ""
-    )
 
 
 def frame_of(sheet: Sheet) -> pd.DataFrame:

@@ -2,20 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import closing
 from dataclasses import replace
 from enum import StrEnum
 from pathlib import Path
-from typing import Any
 
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import ConfigError
+from tuisim.engine.runs.handle import RunOptions
 from tuisim.engine.runs.temporary import temporary_home
 from tuisim.programs.program_file import find_program
+from tuisim.settings.options import settings_of
 from tuisim.tasks.goals.answers import ASK, answer_lines
 from tuisim.tasks.goals.condition import ConditionKind
 from tuisim.tasks.goals.files import GoalsFile
+from tuisim.tasks.goals.judgement import in_words
 from tuisim.tasks.goals.spec import (
     AvoidCondition,
     DialogueCondition,
@@ -28,9 +30,10 @@ from tuisim.tasks.goals.spec import (
 from tuisim.tasks.marks.entries import entries_of
 from tuisim.tasks.marks.journal import Journal
 from tuisim.tasks.marks.outcome import Outcome, unknown_goals
-from tuisim.tasks.marks.runs import MarkPlan, outcomes_of
-from tuisim.tasks.marks.sheet import Sheet, columns_of, in_words, sheet_of
+from tuisim.tasks.marks.runs import STALL_LIMIT_S, MarkPlan, outcomes_of
+from tuisim.tasks.marks.sheet import Sheet, SheetRow, columns_of, sheet_of
 from tuisim.tasks.marks.students import Student, find_students
+from tuisim.tasks.task import Keep
 
 STILL_S = 30.0
 """Simulated seconds that a robot stands still."""
@@ -58,31 +61,44 @@ _DOES = {
 class TaskTrial:
     """What the programs that were tried earn."""
 
-    sheet: Sheet
-    roles: tuple[TrialRole, ...]
-    """In the order of the rows."""
+    rows: tuple[tuple[str, str, str], ...]
+    """The name of each program, its points, and which goals it meets."""
     faults: tuple[str, ...]
     """What is wrong with the task, each as a line."""
 
 
 def trial_of(
-    task: GoalsFile, plan: MarkPlan, wrong: Sequence[str], given: Mapping[str, Any]
+    task: GoalsFile,
+    wrong: Sequence[str],
+    seeds: tuple[int, ...],
+    *,
+    time_limit_s: float,
+    jobs: int,
 ) -> TaskTrial:
     """Try a task out; blocks while the programs run.
 
     Args:
         task: The task.
-        plan: How each program is run.
         wrong: Files or folders of programs that must not get all points.
-        given: Settings that take precedence over those of the task, by path.
+        seeds: Those with which each program is run.
+        time_limit_s: Simulated seconds that a program may take.
+        jobs: Number of workers; 0 is one for each processor.
 
     Raises:
         ConfigError: the world, or a program of the author's, is wrong.
         LogError: a recording cannot be read or written.
     """
+    plan = MarkPlan(
+        worlds=task.worlds,
+        seeds=seeds,
+        options=RunOptions(time_limit_s=time_limit_s, stall_limit_s=STALL_LIMIT_S),
+        keep=Keep.NONE,
+        jobs=jobs,
+        arguments=settings_of(task.settings)["arguments"],
+    )
     with temporary_home("tuisim-try-") as home:
         tried = [*_fakes(task, home), *_of_author(task, wrong)]
-        entries, students = entries_of([student for _, student in tried], task, given)
+        entries, students = entries_of([student for _, student in tried], task, {})
         outcomes: dict[str, list[Outcome]] = {student.name: [] for student in students}
         with (
             Journal(home / "journal.jsonl", resumes=False) as journal,
@@ -94,8 +110,19 @@ def trial_of(
     sheet = sheet_of(
         task.title, columns_of(task.every_goal), plan.seeds, students, outcomes, worlds
     )
-    roles = tuple(role for role, _ in tried)
-    return TaskTrial(sheet, roles, tuple(_faults(sheet, roles)))
+    rows = tuple((row.name, *_earned(sheet, row)) for row in sheet.rows)
+    return TaskTrial(rows, tuple(_faults(sheet, [role for role, _ in tried])))
+
+
+def _earned(sheet: Sheet, row: SheetRow) -> tuple[str, str]:
+    """Return the points of a program, and which goals it meets."""
+    met = [column.name for column, cell in zip(sheet.columns, row.cells, strict=True) if cell.met]
+    good = all(
+        (cell.met == row.runs) is (column.points >= 0)
+        for column, cell in zip(sheet.columns, row.cells, strict=True)
+    )
+    names = "all" if good and row.runs else ", ".join(met) or "-"
+    return f"{in_words(row.points)} of {in_words(sheet.most_points)}", names
 
 
 def _fakes(task: GoalsFile, folder: Path) -> Iterator[tuple[TrialRole, Student]]:

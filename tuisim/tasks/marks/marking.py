@@ -1,0 +1,240 @@
+"""The marking of a class: what was handed in, its runs, the marks, and the files that are written."""
+
+from __future__ import annotations
+
+import os
+from collections import defaultdict
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import closing, contextmanager, nullcontext
+from dataclasses import field, replace
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from tuisim.base.data_class import dataclass
+from tuisim.engine.runs.child.isolation import MOST_BYTES
+from tuisim.engine.runs.child.supervisor import supervised
+from tuisim.engine.runs.handle import RunOptions
+from tuisim.engine.runs.temporary import temporary_home
+from tuisim.logs.export import EXPORTERS
+from tuisim.settings.options import settings_of
+from tuisim.tasks.goals.files import GoalsFile
+from tuisim.tasks.marks.entries import entries_of
+from tuisim.tasks.marks.feedback import write_feedback
+from tuisim.tasks.marks.gradebook import Roster, read_roster, write_gradebook
+from tuisim.tasks.marks.hand_ins import GradebookKind
+from tuisim.tasks.marks.journal import Journal, journal_of
+from tuisim.tasks.marks.outcome import Outcome, unknown_goals
+from tuisim.tasks.marks.overrides import overridden, read_overrides
+from tuisim.tasks.marks.page import reports_folder
+from tuisim.tasks.marks.runs import STALL_LIMIT_S, MarkPlan, RunEntry, outcomes_of, runs_of
+from tuisim.tasks.marks.sheet import Sheet, columns_of, export_marks, sheet_of
+from tuisim.tasks.marks.students import Student, find_students
+from tuisim.tasks.task import TIME_LIMIT_S, Keep
+
+Tell = Callable[[str, float, float], None]
+"""Is told what is done, how much of it, and how much there is."""
+
+
+@dataclass(frozen=True, slots=True)
+class MarkRequest:
+    """What is marked, how programs run, and what is written."""
+
+    task: GoalsFile
+    folders: Sequence[str]
+    """Folders and files of students' programs."""
+    seeds: tuple[int, ...]
+    version: str
+    """That of tuisim: an interrupted marking is resumed only with the same."""
+    settings: Mapping[str, Any] = field(default_factory=dict)
+    """Those that take precedence over the task's, by path."""
+    time_limit_s: float = TIME_LIMIT_S
+    answers: tuple[str, ...] = ()
+    """Those to `input()`; without them, a program gets those of its world."""
+    keep: Keep = Keep.FAILED
+    jobs: int = 0
+    """Number of workers; 0 is one for each processor."""
+    max_bytes: int = MOST_BYTES
+    """A larger hand-in is not run."""
+    resumes: bool = False
+    """Whether an earlier marking goes on."""
+    roster: Path | None = None
+    overrides: Path | None = None
+    exports: tuple[Path, ...] = ()
+    """Tables, by their suffix, and pages."""
+    gradebooks: Mapping[str, Path] = field(default_factory=dict)
+    """By the value of `GradebookKind`."""
+    goal_columns: bool = False
+    """Whether gradebooks have a column for each goal."""
+    movies: bool = False
+    """Whether reports of runs that missed a goal have movies."""
+    feedback: Path | None = None
+    """A folder for what is told to each student."""
+
+    def list_own_files(self) -> frozenset[Path]:
+        """Return what may lie among the students' files without being one: the goals, and results; resolved."""
+        files = [self.task.path, self.roster, self.overrides, self.feedback]
+        files += self.gradebooks.values()
+        for target in self.exports:
+            files += [target, target.with_name(target.name + ".json"), reports_folder(target)]
+        return frozenset(Path(os.path.realpath(path)) for path in files if path)
+
+
+@contextmanager
+def open_marking(request: MarkRequest) -> Iterator[Marking]:
+    """Read what was handed in; what is unpacked of it is there in the block.
+
+    Raises:
+        ConfigError: a folder, the class list or the overrides are wrong.
+    """
+    with temporary_home("tuisim-hand-ins-") as unpacked:
+        yield Marking(request, unpacked.resolve())
+
+
+class Marking:
+    """A class that is marked: `read_programs`, then `run`, then `build_sheet` and `list_exports`.
+
+    Attributes:
+        students: In the order of the sheet; what is wrong with their programs is known once these are read.
+        ignored: Names of files that are no programs.
+        left_out: Names of what nobody has handed in.
+        unlisted: Names of students who are not in the class list.
+        absent: Names in the class list without a submission.
+        outcomes: Those of the runs so far, by the name of the student.
+    """
+
+    def __init__(self, request: MarkRequest, unpacked: Path) -> None:
+        self._request, task = request, request.task
+        found = find_students(
+            request.folders,
+            Path(task.program).name if task.program else "",
+            request.list_own_files(),
+            unpacked,
+            request.max_bytes,
+        )
+        names = [student.name for student in found.students]
+        self.students: Sequence[Student] = found.students
+        self.ignored, self.left_out = found.ignored, found.left_out
+        self.outcomes: dict[str, list[Outcome]] = {name: [] for name in names}
+        self._columns = columns_of(task.every_goal)
+        self._overrides = (
+            read_overrides(request.overrides, self._columns, names) if request.overrides else {}
+        )
+        self._roster = read_roster(request.roster) if request.roster else Roster({})
+        self.unlisted = self._roster.missing(names) if request.roster else []
+        self.absent = self._roster.absent(names)
+        self._entries: Sequence[RunEntry] = ()
+        self._plan = MarkPlan(
+            worlds=task.worlds,
+            seeds=request.seeds,
+            options=RunOptions(
+                time_limit_s=request.time_limit_s,
+                stall_limit_s=STALL_LIMIT_S,
+                answers=request.answers,
+            ),
+            keep=request.keep,
+            jobs=request.jobs,
+            version=request.version,
+            arguments=settings_of(task.settings)["arguments"],
+        )
+
+    def read_programs(self) -> None:
+        """Read the students' programs, and check the world in which each runs.
+
+        Raises:
+            ConfigError: the world of the goals, or a setting, is wrong, or none of the programs can run by its profile.
+        """
+        self._entries, self.students = entries_of(
+            self.students, self._request.task, self._request.settings
+        )
+
+    def run(self, tell: Tell, *, isolate: bool) -> None:
+        """Run what is to be run, until all outcomes are known.
+
+        Raises:
+            LogError: the journal cannot be read or written.
+        """
+        plan = replace(self._plan, isolate=isolate)
+        counts = {entry.student.name: runs_of((), plan) for entry in self._entries}
+        with (
+            nullcontext() if isolate else supervised(),
+            Journal(journal_of(self._request.task.path), resumes=self._request.resumes) as known,
+            closing(outcomes_of(self._entries, plan, known)) as outcomes,
+        ):
+            for done, (name, outcome) in enumerate(outcomes, start=1):
+                self.outcomes[name].append(outcome)
+                counts[name] = runs_of(self.outcomes[name], plan)
+                total = sum(counts.values())
+                tell(f"run {done} of {total}", done, total)
+
+    @property
+    def missing(self) -> list[tuple[str, Outcome]]:
+        """The runs that this machine could not make, each with the name of its student."""
+        return [
+            (name, outcome)
+            for name, outcomes in self.outcomes.items()
+            for outcome in outcomes
+            if not outcome.counts
+        ]
+
+    @property
+    def unjudged(self) -> list[tuple[str, str, list[str]]]:
+        """The goals that could not be judged, each with the reason and the names of the students."""
+        reasons: dict[str, str] = {}
+        names = defaultdict(list)
+        for name, outcomes in self.outcomes.items():
+            unknown = unknown_goals(outcomes)
+            reasons |= unknown
+            for goal in unknown:
+                names[goal].append(name)
+        return [(goal, reasons[goal], names[goal]) for goal in sorted(reasons)]
+
+    def build_sheet(self) -> Sheet:
+        """Return the marks of the class, with what the tutor says."""
+        return overridden(self._build_sheet(self.students), self._overrides)
+
+    def build_sheet_so_far(self) -> Sheet:
+        """Return the marks of the students whose programs have had all their runs."""
+        return self._build_sheet(
+            [
+                student
+                for student in self.students
+                if not student.source
+                or len(outcomes := self.outcomes[student.name]) == runs_of(outcomes, self._plan)
+            ]
+        )
+
+    def _build_sheet(self, students: Sequence[Student]) -> Sheet:
+        worlds = [world.where for world in self._plan.worlds]
+        return sheet_of(
+            self._request.task.title,
+            self._columns,
+            self._plan.seeds,
+            students,
+            self.outcomes,
+            worlds,
+        )
+
+    def list_exports(self, sheet: Sheet, tell: Tell) -> Iterator[tuple[Path, Callable[[], None]]]:
+        """Yield what is to be written: each file or folder, and what writes it, which may raise ExportError."""
+        request = self._request
+        sources = [student.text for student in self.students]
+        for target in request.exports:
+            if target.suffix.lower() in EXPORTERS:
+                yield target, partial(export_marks, sheet, target)
+            else:
+                yield target, partial(self._write_page, sheet, target, tell)
+        if request.feedback:
+            yield request.feedback, partial(write_feedback, request.feedback, sheet, sources)
+        for kind, target in request.gradebooks.items():
+            book = partial(
+                write_gradebook, target, GradebookKind(kind), sheet, sources, self._roster
+            )
+            yield target, partial(book, goals=request.goal_columns)
+
+    def _write_page(self, sheet: Sheet, target: Path, tell: Tell) -> None:
+        # Its charts are slow to import, and a table needs none.
+        from tuisim.tasks.marks.class_page import write_class_page
+
+        worlds, movies = self._plan.worlds, self._request.movies
+        write_class_page(sheet, worlds, self.students, self.ignored, target, tell, movies=movies)
