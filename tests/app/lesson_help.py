@@ -11,7 +11,6 @@ from textual.pilot import Pilot
 from tests.app.app_help import settings, until
 from tuisim.app.app import AppSettings, LabApp
 from tuisim.app.dialogs.question import LinePrompt
-from tuisim.app.lesson import goals_of
 from tuisim.app.snapshot import RunPhase
 from tuisim.programs.program_file import read_program
 from tuisim.settings.build import build_run_spec
@@ -72,7 +71,7 @@ def opened(tmp_path: Path, check: str = "show = 'chart'") -> AppSettings:
     path = folder / "try.md"
     path.write_text(LESSON % check)
     lesson = load_lesson(path)
-    made = settings(lesson=lesson, goals=goals_of(lesson), lessons_folder=str(folder), speed=0.0)
+    made = settings(lesson=lesson, goals=lesson.task, lessons_folder=str(folder), speed=0.0)
     spec = build_run_spec(settings_of(lesson.settings))
     return replace(made, spec=spec, program=read_program(prepare_program(lesson)).program)
 

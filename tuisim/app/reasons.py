@@ -77,13 +77,13 @@ def find(
         then: Called with what was found.
         searches: Whether the store is searched for a run to compare with, if there is none.
     """
-    lesson, file = context.lesson, context.loader.goals.file
+    session, file = context.lesson.session, context.loader.goals.file
     judgements: tuple[Judgement, ...] = ()
     goals: Sequence[Goal] = ()
-    if lesson.lesson is not None:
-        check = lesson.step.check if lesson.step else None
+    if session is not None:
+        check = session.step.check if session.step else None
         asked = check.goals if isinstance(check, RunCheck) else ()
-        judgements = tuple(each for each in lesson.judgements if each.goal.name in asked)
+        judgements = tuple(each for each in session.judgements if each.goal.name in asked)
     elif file is not None and context.loader.goals.is_of_task(recording):
         goals = file.goals
     mat = context.runs.mat_for(recording.spec)

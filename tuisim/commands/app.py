@@ -160,7 +160,6 @@ def open_lesson_in_app(lesson: Lesson, folder: str | None) -> int:
         ConfigError: the student's program of the lesson cannot be read or written.
     """
     from tuisim.app.app import AppSettings, run_app
-    from tuisim.app.lesson import goals_of
     from tuisim.programs.program_file import read_program
     from tuisim.programs.program_settings import program_settings
     from tuisim.settings.build import build_run_spec
@@ -174,7 +173,7 @@ def open_lesson_in_app(lesson: Lesson, folder: str | None) -> int:
         spec=build_run_spec(settings),
         settings=settings,
         program=source.program,
-        goals=goals_of(lesson),
+        goals=lesson.task,
         lesson=lesson,
         lessons_folder=folder,
         panels_on=frozenset(settings["panels_on"]) | {"lesson", "code"},

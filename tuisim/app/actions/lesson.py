@@ -72,18 +72,17 @@ def menu(context: ActionContext) -> None:
     """Offer to read earlier steps again, to skip the step, to start over, and all lessons."""
     from tuisim.app.dialogs.chooser import ChoiceGroup, Chooser
 
-    lesson = context.lesson
     here = []
-    if before := lesson.step_before:
-        here.append((_BEFORE, "Steps before", f"Read again: {before.title}"))
-    if step := lesson.step:
-        here.append((_SKIP, "Skip", f"Leave this step undone: {step.title}"))
-    if lesson.lesson and lesson.lesson.model_answer:
-        alone = "Drive without that of the model answer again"
-        beside = "See the way of the model answer, not its program"
-        here.append((_MODEL, "Grey robot", alone if context.runs.companion else beside))
-    if lesson.lesson:
-        here.append((_OVER, "Start over", f"All steps again: {lesson.lesson.title}"))
+    if session := context.lesson.session:
+        if before := session.step_before:
+            here.append((_BEFORE, "Steps before", f"Read again: {before.title}"))
+        if step := session.step:
+            here.append((_SKIP, "Skip", f"Leave this step undone: {step.title}"))
+        if session.lesson.model_answer:
+            alone = "Drive without that of the model answer again"
+            beside = "See the way of the model answer, not its program"
+            here.append((_MODEL, "Grey robot", alone if context.runs.companion else beside))
+        here.append((_OVER, "Start over", f"All steps again: {session.lesson.title}"))
     progress = load_progress()
     lessons = [
         (
@@ -91,7 +90,7 @@ def menu(context: ActionContext) -> None:
             f"{number:2} {one.title}",
             progress.get(one.name, LessonProgress()).words(one),
         )
-        for number, one in enumerate(lesson.lessons(), start=1)
+        for number, one in enumerate(context.lesson.lessons(), start=1)
     ]
     current = f"{_OPEN}{_wanted(context)}"
     groups = [ChoiceGroup("This lesson", here), ChoiceGroup("All lessons", lessons)]

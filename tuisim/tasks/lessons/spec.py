@@ -15,8 +15,8 @@ from msgspec import Meta
 
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import ConfigError, nearest, require_regex
-from tuisim.engine.core.spec import RunSpec, WorldSpec
 from tuisim.settings.options import OPTION_PANELS
+from tuisim.tasks.goals.files import GoalsFile
 from tuisim.tasks.goals.spec import Goal, Range
 from tuisim.tasks.goals.trial_world import TrialWorld
 
@@ -333,16 +333,11 @@ class Lesson:
     """The world, by path."""
 
     @property
+    def task(self) -> GoalsFile:
+        """Its goals, as those of a file."""
+        return GoalsFile(self.path, self.title, self.goals, self.settings)
+
+    @property
     def model_answer(self) -> str:
         """The last model answer, which appears when every step is done; empty if there is none."""
         return next((step.answer for step in reversed(self.steps) if step.answer), "")
-
-
-def list_world(spec: RunSpec) -> tuple[object, ...]:
-    """Return what must be as the lesson says for a run to count."""
-    return (*list_place(spec.world), spec.world.noise, spec.world.drift)
-
-
-def list_place(world: WorldSpec) -> tuple[object, ...]:
-    """Return what of it is about places."""
-    return world.background, world.start, world.obstacles

@@ -1,0 +1,478 @@
+"""A student's way through a lesson: the step to do, what was done since it began, and what is to follow."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator, Sequence
+from dataclasses import field, replace
+from enum import StrEnum
+from pathlib import Path
+from typing import TypeAlias, assert_never
+
+from tuisim.base.data_class import dataclass
+from tuisim.base.errors import TuisimError
+from tuisim.engine.core.geometry import Pose
+from tuisim.engine.core.spec import RunSpec, WorldSpec
+from tuisim.engine.core.values import values_of
+from tuisim.engine.runs.recorded_run import Recording
+from tuisim.engine.runs.store import load_run
+from tuisim.settings.build import build_run_spec
+from tuisim.settings.options import settings_of
+from tuisim.tasks.goals.judgement import GoalState, Judgement
+from tuisim.tasks.goals.spec import LogCondition, PrintCondition
+from tuisim.tasks.goals.trial_world import TrialWorld
+from tuisim.tasks.lessons.events import (
+    BreakMet,
+    Event,
+    Exported,
+    ExpressionWatched,
+    JudgedRun,
+    Noted,
+    Shown,
+    TriedElsewhere,
+    Typed,
+    Visited,
+    good_runs,
+    is_met,
+    met_by,
+    note_fault,
+    unready,
+    wanted_form,
+)
+from tuisim.tasks.lessons.progress import (
+    LessonProgress,
+    StepState,
+    load_progress,
+    now,
+    save_progress,
+)
+from tuisim.tasks.lessons.spec import (
+    BreakCheck,
+    ExportCheck,
+    Lesson,
+    LessonStep,
+    NoteCheck,
+    QuestionCheck,
+    RunCheck,
+    ShowCheck,
+    VisitCheck,
+    WatchCheck,
+)
+from tuisim.tasks.lessons.story import story
+
+WorldJudgements: TypeAlias = list[tuple[TrialWorld, tuple[Judgement, ...]]]
+"""How a program does in other worlds."""
+NOTES_PERIOD_S = 0.5
+"""Least time between two looks at the notes of a run."""
+_PAUSE_S = 10.0
+"""The same after notes that could not be read."""
+
+
+class Change(StrEnum):
+    """What is to follow, once something has happened."""
+
+    NONE = "none"
+    SHOW = "show"
+    """What is known of the step is to be shown."""
+    TRY = "try"
+    """So it is, and `LessonSession.trial` is to run in the background, and go to `take_trial`."""
+    GO_ON = "go on"
+    """The step is over: `begin_step` follows."""
+
+
+@dataclass(frozen=True, slots=True)
+class Sight:
+    """What a student sees at a moment."""
+
+    panels: frozenset[str]
+    """Those of `SEEABLE` that are on the screen."""
+    recording: Recording | None = None
+    """The run in view."""
+    is_paused: bool = False
+    is_over: bool = False
+    judged: Recording | None = None
+    """The run that was judged last."""
+    judgements: tuple[Judgement, ...] = ()
+    watches: tuple[str, ...] = ()
+    """Expressions of which a paused program shows the value."""
+    break_met: str | None = None
+    """The breakpoint at which the program has stopped; None if it has not."""
+    past_s: float | None = None
+    """The past instant in view, if it is one."""
+
+
+@dataclass(frozen=True, slots=True)
+class WorldTrial:
+    """The program of a good run, which is to be tried in the other worlds of its step."""
+
+    lesson: Lesson
+    check: RunCheck
+    run_id: str
+    folder: Path
+
+    def run(self) -> WorldJudgements:
+        """Return how the program does there; blocks meanwhile.
+
+        Raises:
+            TuisimError: the run is damaged, or its magic line is wrong there.
+        """
+        from tuisim.tasks.lessons.trial import tried_elsewhere
+
+        return tried_elsewhere(self.lesson, self.check, load_run(self.folder))
+
+
+@dataclass(slots=True)
+class _Attempt:
+    """What a student has done since a step began."""
+
+    run_before: str = ""
+    """Id of the run that was in view, which does not count."""
+    events: list[Event] = field(default_factory=list)
+    seen: set[str] = field(default_factory=set)
+    """What of `SEEABLE` was on the screen."""
+    judgements: tuple[Judgement, ...] = ()
+    elsewhere: RunSpec | None = None
+    """What a run was that did not begin in the lesson's world; None if the last one did."""
+    run_counted: str = ""
+    """Id of the last run that was counted as a try."""
+    trial: WorldTrial | None = None
+    """The last program that was tried in other worlds."""
+    remark: str = ""
+
+
+class LessonSession:
+    """A lesson that a student does: first `resume`, then for each step `begin_step` and what the student does.
+
+    Attributes:
+        lesson: The lesson.
+        progress: What is done; `save` stores it.
+        done: The step that has just been done.
+        story: What the run did that has passed it; empty if it was not about a run.
+    """
+
+    def __init__(self, lesson: Lesson) -> None:
+        self.lesson = lesson
+        self.progress = LessonProgress()
+        self.done: LessonStep | None = None
+        self.story = ""
+        self._saved = self.progress
+        self._attempt = _Attempt()
+        self._next_look_s = 0.0
+
+    def resume(self) -> None:
+        """Go on where the student has left the lesson.
+
+        Raises:
+            ConfigError: the progress is damaged; the lesson begins anew.
+        """
+        try:
+            self.progress = load_progress().get(self.lesson.name, LessonProgress())
+        finally:
+            self.progress = replace(self.progress, opened_at=now())
+
+    def start_over(self) -> None:
+        """Forget the progress."""
+        self.progress, self.done = LessonProgress(opened_at=now()), None
+
+    def save(self) -> None:
+        """Store the progress, if it has changed.
+
+        Raises:
+            ConfigError: it cannot be written.
+        """
+        if self.progress is not self._saved:
+            self._saved = self.progress
+            save_progress(self.lesson.name, self.progress)
+
+    def begin_step(self, run_id: str) -> None:
+        """Begin the step to do; the run in view, if there is one, does not count."""
+        self._attempt = _Attempt(run_id)
+
+    # What is known
+
+    @property
+    def at(self) -> int | None:
+        """Index of the step to do; None when all are done or skipped."""
+        return self.progress.current(self.lesson)
+
+    @property
+    def step(self) -> LessonStep | None:
+        """The step to do; None when all are done or skipped."""
+        return None if self.at is None else self.lesson.steps[self.at]
+
+    @property
+    def step_before(self) -> LessonStep | None:
+        """The step before the one to do, or the last one at the end of the lesson."""
+        at = len(self.lesson.steps) if self.at is None else self.at
+        return self.lesson.steps[at - 1] if at else None
+
+    @property
+    def hints(self) -> int:
+        """How many hints of the step are shown."""
+        return self.progress.of(self.step.name).hints if self.step else 0
+
+    @property
+    def judgements(self) -> tuple[Judgement, ...]:
+        """Those of the last run since the step began."""
+        return self._attempt.judgements
+
+    @property
+    def good_runs(self) -> int:
+        """How many runs have passed the step so far."""
+        step = self.step
+        if step is None or not isinstance(step.check, RunCheck):
+            return 0
+        return good_runs(step.check, self._attempt.events)
+
+    @property
+    def remark(self) -> str:
+        """Why the last note, or the last program in another world, does not pass."""
+        return self._attempt.remark
+
+    @property
+    def trial(self) -> WorldTrial | None:
+        """The program that is to be tried in other worlds, or was tried last."""
+        return self._attempt.trial
+
+    @property
+    def is_elsewhere(self) -> bool:
+        """Whether the last run did not begin in the lesson's world."""
+        return self._attempt.elsewhere is not None
+
+    def describe_elsewhere(self, pose: Pose, *, in_run: bool) -> str:
+        """Return why the last run does not count, in a sentence, and what to do; empty if it does.
+
+        Args:
+            pose: The robot's.
+            in_run: Whether a run has begun that is not over.
+        """
+        elsewhere = self._attempt.elsewhere
+        if elsewhere is None:
+            return ""
+        world = self._build_spec().world
+        if _list_place(elsewhere.world) == _list_place(world):
+            noise, drift = world.noise, values_of(WorldSpec)["drift"].to_text(world.drift)
+            levels = f"light {noise.light}, motors {noise.motor} (panel Noise, z), drift {drift} (panel Settings, Z)"
+            return f"This run had other noise or drift: the lesson's is {levels}."
+        if in_run:
+            return "This run began elsewhere."
+        if pose == world.start:
+            return "This run began elsewhere. The robot is back at its start: R runs the program."
+        return "This run began elsewhere: m moves the robot to its start, then R."
+
+    def _build_spec(self) -> RunSpec:
+        return build_run_spec(settings_of(self.lesson.settings))
+
+    # What the student does
+
+    def answer(self, text: str, x_mm: float, sight: Sight) -> Change:
+        """Check a typed answer; `x_mm` is where the robot stands.
+
+        Raises:
+            TuisimError: it is wrong, or does not count yet.
+        """
+        step = self.step
+        if step is None or not isinstance(step.check, QuestionCheck):
+            return Change.NONE
+        check = step.check
+        if not text:
+            raise TuisimError("Type an answer")
+        if form := wanted_form(check, text):
+            raise TuisimError(f"{text}: type {form}")
+        self._attempt.seen |= sight.panels
+        # A run may have printed millions of lines, which most questions are not about.
+        printed: tuple[str, ...] = ()
+        if sight.recording is not None and check.printed:
+            output = load_run(sight.recording.folder).output
+            printed = tuple(row.text for row in output.all_rows())
+        seen = frozenset(self._attempt.seen)
+        typed = Typed(text, x_mm, seen, printed, sight.recording is not None)
+        # What is measured elsewhere is not wrong, it is about something else.
+        if first := unready(check, typed):
+            raise TuisimError(first)
+        if self._take(typed):
+            return Change.GO_ON
+        self._count_try(step)
+        hint = ": escape, then Y shows a hint" if len(step.hints) > self.hints else ""
+        raise TuisimError(f"{text} is not right. Try again{hint}")
+
+    def _count_try(self, step: LessonStep) -> None:
+        tries = self.progress.of(step.name).tries + 1
+        self.progress = self.progress.with_step(step.name, tries=tries)
+
+    def show_hint(self) -> None:
+        """Show the next hint of the step, which has one."""
+        if self.step:
+            self.progress = self.progress.with_step(self.step.name, hints=self.hints + 1)
+
+    def skip_step(self) -> LessonStep | None:
+        """Leave the step undone, and return it; None if all are done or skipped."""
+        step = self.step
+        if step is not None:
+            self._leave_step(step, StepState.SKIPPED)
+        return step
+
+    def take_export(self, name: str) -> Change:
+        """Take in that the log was written to a file of that name."""
+        return Change.GO_ON if self._take(Exported(name)) else Change.NONE
+
+    def look(self, sight: Sight) -> Change:
+        """Check the step by what is to be seen.
+
+        Raises:
+            TuisimError: the notes on the run, or its recording, are damaged.
+        """
+        step = self.step
+        if step is None:
+            return Change.NONE
+        self._attempt.seen |= sight.panels
+        events: Sequence[Event] = ()
+        match step.check:
+            case RunCheck():
+                return self._look_at_run(step, step.check, sight)
+            case NoteCheck():
+                return self._look_at_notes(step.check, sight)
+            case WatchCheck():
+                events = [ExpressionWatched(text) for text in sight.watches]
+            case BreakCheck():
+                events = [] if sight.break_met is None else [BreakMet(sight.break_met)]
+            case VisitCheck():
+                events = [] if sight.past_s is None else [Visited(sight.past_s)]
+            case ShowCheck(panel=panel):
+                events = [Shown(panel, sight.is_paused)] if panel in sight.panels else []
+            case QuestionCheck() | ExportCheck():
+                # The student's keys tell.
+                pass
+            case _:
+                assert_never(step.check)
+        return Change.GO_ON if any(map(self._take, events)) else Change.NONE
+
+    def _look_at_run(self, step: LessonStep, check: RunCheck, sight: Sight) -> Change:
+        attempt, run, judgements = self._attempt, sight.judged, sight.judgements
+        if run is None or run.run_id == attempt.run_before or judgements is attempt.judgements:
+            return Change.NONE
+        attempt.judgements = judgements
+        is_from_start = _list_world(self._build_spec()) == _list_world(run.spec)
+        attempt.elsewhere = None if is_from_start else run.spec
+        if self._take(JudgedRun(run.run_id, run.spec.seed, _list_met(judgements), is_from_start)):
+            return Change.GO_ON
+        # A run that has ended without passing is a try.
+        states = {each.state for each in judgements if each.goal.name in check.goals}
+        is_missed = GoalState.MISSED in states and GoalState.OPEN not in states
+        if sight.is_over and is_missed and attempt.run_counted != run.run_id:
+            attempt.run_counted = run.run_id
+            self._count_try(step)
+        is_good = any(good.run_id == run.run_id for good in met_by(check, attempt.events))
+        is_tried = attempt.trial is not None and attempt.trial.run_id == run.run_id
+        if not (is_good and sight.is_over and check.also) or is_tried:
+            return Change.SHOW
+        attempt.trial = WorldTrial(self.lesson, check, run.run_id, run.folder)
+        attempt.remark = f"Your program is now also tried {check.also[0].where} …"
+        return Change.TRY
+
+    def take_trial(self, trial: WorldTrial, judged: WorldJudgements) -> Change:
+        """Take in how a program did in other worlds, unless the student has gone on meanwhile."""
+        if self.step is None or self.step.check is not trial.check:
+            return Change.NONE
+        remark = ""
+        for other, judgements in judged:
+            met = _list_met(judgements)
+            if self._take(TriedElsewhere(trial.run_id, other.where, met)):
+                return Change.GO_ON
+            missed = [
+                each
+                for each in judgements
+                if each.goal.name in other.goals and each.goal.name not in met
+            ]
+            if missed and not remark:
+                remark = f"Also tried {other.where}, it does not work{_at_start(other)}: {_why_elsewhere(missed[0])}"
+        # The student may have begun another run meanwhile: this one counts, but what is told is about that one.
+        if self.trial is trial:
+            self._attempt.remark = remark
+        return Change.SHOW
+
+    def _look_at_notes(self, check: NoteCheck, sight: Sight) -> Change:
+        if sight.recording is None or time.monotonic() < self._next_look_s:
+            return Change.NONE
+        self._next_look_s = time.monotonic() + _PAUSE_S
+        notes = list(_read_notes(sight.recording.folder))
+        self._next_look_s = time.monotonic() + NOTES_PERIOD_S
+        if any(map(self._take, notes)):
+            return Change.GO_ON
+        remark = note_fault(check, notes[-1]) if notes else ""
+        is_new = remark != self._attempt.remark
+        self._attempt.remark = remark
+        return Change.SHOW if is_new else Change.NONE
+
+    def _take(self, event: Event) -> bool:
+        """Add what has happened. Return whether the step is done now."""
+        step, events = self.step, self._attempt.events
+        if step is None or event in events:
+            return False
+        if isinstance(event, JudgedRun):
+            events[:] = [one for one in events if not _is_of(one, event.run_id)]
+        events.append(event)
+        if not is_met(step.check, events):
+            return False
+        self._leave_step(step, StepState.DONE)
+        return True
+
+    def _leave_step(self, step: LessonStep, state: StepState) -> None:
+        goals = step.check.goals if isinstance(step.check, RunCheck) else ()
+        self.story = story(each for each in self.judgements if each.goal.name in goals)
+        self.progress = self.progress.with_step(step.name, state=state, at=now())
+        self.done = step if state is StepState.DONE else None
+
+
+def _is_of(event: Event, run_id: str) -> bool:
+    return isinstance(event, JudgedRun) and event.run_id == run_id
+
+
+def _list_met(judgements: Sequence[Judgement]) -> frozenset[str]:
+    return frozenset(each.goal.name for each in judgements if each.state is GoalState.MET)
+
+
+def _list_world(spec: RunSpec) -> tuple[object, ...]:
+    """Return what must be as the lesson says for a run to count."""
+    return (*_list_place(spec.world), spec.world.noise, spec.world.drift)
+
+
+def _list_place(world: WorldSpec) -> tuple[object, ...]:
+    """Return what of it is about places."""
+    return world.background, world.start, world.obstacles
+
+
+def _why_elsewhere(missed: Judgement) -> str:
+    """Return why a goal is missed in another world, without the numbers and words that are asked for there."""
+    if any(isinstance(part, LogCondition | PrintCondition) for part in missed.goal.parts):
+        return "what it prints is not what the robot sees there, at the places where it sees it."
+    return missed.reason
+
+
+def _at_start(other: TrialWorld) -> str:
+    """Return where the robot starts in another world, for a sentence; empty if it is where the lesson starts."""
+    found = {axis: other.settings.get(f"start.{axis}_mm") for axis in "xy"}
+    places = [f"{axis} = {value:g} mm" for axis, value in found.items() if value is not None]
+    return f" (start {', '.join(places)})" if places else ""
+
+
+def _read_notes(folder: Path) -> Iterator[Noted]:
+    """Yield the notes on a run, each with the mean of the samples that it is about.
+
+    Raises:
+        LogError: the notes or the recording are damaged.
+    """
+    from tuisim.analysis.source import NOTES_FILE, read_notes
+    from tuisim.engine.runs.samples import samples_of
+
+    notes = read_notes(folder / NOTES_FILE)
+    if not notes:
+        return
+    samples = samples_of(load_run(folder).output.all_rows())
+    for note in notes:
+        values = [
+            one.value
+            for one in samples
+            if note.start_s <= one.time_s <= note.stop_s and one.name == (note.variable or one.name)
+        ]
+        yield Noted(note.text, sum(values) / len(values) if values else None)
