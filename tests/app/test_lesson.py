@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import threading
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +10,7 @@ from textual.events import MouseScrollUp
 from textual.pilot import Pilot
 from textual.widgets import Input, Static
 
-from tests.app.app_help import open_lab, program_of, ready, recording_of, until
+from tests.app.app_help import open_lab, program_of, ready, until
 from tests.app.lesson_help import (
     LARGE,
     SMALL,
@@ -22,14 +21,11 @@ from tests.app.lesson_help import (
     type_answer,
     with_lines,
 )
-from tuisim.analysis.source import NOTES_FILE, Note, write_notes
 from tuisim.app.analyser.app import Analyser
 from tuisim.app.app import LabApp
 from tuisim.app.panels.lesson import LessonPanel
-from tuisim.tasks.lessons import trial
 from tuisim.tasks.lessons.files import load_lesson
 from tuisim.tasks.lessons.progress import load_progress, program_path
-from tuisim.tasks.lessons.trial import tried_elsewhere
 
 
 async def wheel_up(pilot: Pilot[Any], panel: LessonPanel) -> None:
@@ -71,22 +67,6 @@ async def test_answer_about_another_place_is_not_wrong(tmp_path: Path) -> None:
         await until(pilot, lambda: app.run_controller.pose.x_mm == 620)
         await type_answer(pilot, app, "5")
         await until(pilot, lambda: states().get("do") == "done")
-
-
-async def test_note_that_does_not_pass_is_told_why(tmp_path: Path) -> None:
-    async with LabApp(
-        opened(tmp_path, "note = { matches = 'dark', level = 86 }\nmodel = 'dark'")
-    ).run_test(size=SMALL) as pilot:
-        app = await ready(pilot)
-        app.lesson.skip_step()
-        app.lesson.skip_step()
-        await run_over(pilot, app)
-        recording = recording_of(app)
-        write_notes(recording.folder / NOTES_FILE, [Note("dark", 0.0, 0.1, "Level")])
-        words = (
-            "Your note “dark” is on samples with a mean of 50.0; this step is about those with 86."
-        )
-        await until(pilot, lambda: words in " ".join(shown(app).split()))
 
 
 async def test_panel_of_a_paused_program(tmp_path: Path) -> None:
@@ -191,45 +171,6 @@ async def test_way_to_the_next_lesson_is_in_sight_in_a_small_terminal(tmp_path: 
         await until(
             pilot, lambda: "M, then enter: the next lesson, Next." in " ".join(shown(app).split())
         )
-
-
-async def test_way_back_to_the_start_is_said_when_the_run_is_over(tmp_path: Path) -> None:
-    made = opened(tmp_path)
-    async with open_lab(made, size=SMALL) as (pilot, app):
-        app.lesson.skip_step()
-        await pilot.press("shift+right")
-        await pilot.press("n")
-        await until(pilot, lambda: "This run began elsewhere." in " ".join(shown(app).split()))
-        assert "then R" not in shown(app)
-        await pilot.press("S")
-        words = "This run began elsewhere: m moves the robot to its start, then R."
-        await until(pilot, lambda: words in " ".join(shown(app).split()))
-
-
-@pytest.mark.slow
-async def test_run_counts_although_the_next_one_is_over_before_it_was_tried(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    made = opened(tmp_path)
-    path = tmp_path / "lessons" / "try.md"
-    also = "run = { goals = ['far'], times = 2, also = [{ where = 'a little farther back', start = { x_mm = 495 } }] }"
-    path.write_text(path.read_text().replace('run = "far"', also))
-    tries, both = [], threading.Event()
-
-    def tried_late(*of: Any) -> object:
-        tries.append(of)
-        both.wait(20)
-        return tried_elsewhere(*of)
-
-    monkeypatch.setattr(trial, "tried_elsewhere", tried_late)
-    async with open_lab(made, size=LARGE) as (pilot, app):
-        app.lesson.open("try")
-        app.lesson.skip_step()
-        for count in (1, 2):
-            await pilot.press("R")
-            await until(pilot, lambda: len(tries) == count)  # noqa: B023
-        both.set()
-        await until(pilot, lambda: states().get("drive") == "done")
 
 
 async def test_a_lesson_that_is_opened_again_shows_the_last_run_of_its_program(

@@ -129,17 +129,6 @@ async def test_run_that_misses_a_goal_says_why_and_counts_as_a_try(tmp_path: Pat
         assert load_progress()["try"].of("drive").tries == 1
 
 
-@pytest.mark.slow
-async def test_run_before_the_step_does_not_count(tmp_path: Path) -> None:
-    async with open_lab(opened(tmp_path), size=LARGE) as (pilot, app):
-        await run_over(pilot, app)
-        await until(pilot, lambda: bool(app.goals.judged[1]))
-        app.lesson.skip_step()
-        app.lesson.update()
-        assert app.lesson.step is not None
-        assert app.lesson.step.name == "drive"
-
-
 async def _watch(pilot: Pilot[Any], app: LabApp) -> None:
     app.debugger.set_watches(("x + 1",))
     await pilot.press("n")

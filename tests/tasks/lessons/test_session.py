@@ -1,0 +1,153 @@
+"""A lesson that a student does: what a moment changes, and what is to follow."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+from tuisim.base.errors import TuisimError
+from tuisim.engine.core.geometry import Pose
+from tuisim.settings.build import build_run_spec
+from tuisim.settings.options import settings_of
+from tuisim.tasks.goals.judgement import Change as Moment
+from tuisim.tasks.goals.judgement import GoalState, Judgement
+from tuisim.tasks.goals.spec import FinishCondition, Goal
+from tuisim.tasks.goals.trial_world import TrialWorld
+from tuisim.tasks.lessons import session as sessions
+from tuisim.tasks.lessons.events import Noted
+from tuisim.tasks.lessons.progress import StepState, load_progress
+from tuisim.tasks.lessons.session import Change, LessonSession, Sight
+from tuisim.tasks.lessons.spec import Check, Lesson, LessonStep, NoteCheck, QuestionCheck, RunCheck
+
+WORLD = {"background": "Empty_Map", "start.x_mm": 500.0, "start.y_mm": 500.0}
+GOAL = Goal("far", FinishCondition(), say="Drive.")
+BACK = TrialWorld("from farther back", {"start.x_mm": 460.0}, ("far",))
+
+
+def _session(*checks: Check, hints: tuple[str, ...] = ()) -> LessonSession:
+    steps = tuple(
+        LessonStep(f"step {at}", f"Step {at}", "", check, 1, hints)
+        for at, check in enumerate(checks, start=1)
+    )
+    lesson = Lesson("try", Path("try.md"), "Try", "", "", steps, "", (GOAL,), settings=WORLD)
+    session = LessonSession(lesson)
+    session.resume()
+    session.begin_step("")
+    return session
+
+
+def _run(run_id: str, **world: float) -> Any:
+    """A run in the world of the lesson, or in another one."""
+    spec = build_run_spec(settings_of({**WORLD, **world}))
+    return SimpleNamespace(run_id=run_id, spec=spec, folder=Path(run_id))
+
+
+def _judged(state: GoalState) -> tuple[Judgement, ...]:
+    return (Judgement(GOAL, (Moment(100, 1.0, state, 500.0, 500.0),), "It was too short."),)
+
+
+def _sight(run: Any, state: GoalState = GoalState.MET) -> Sight:
+    return Sight(frozenset(), is_over=True, judged=run, judgements=_judged(state))
+
+
+def test_a_good_run_ends_the_step_and_the_next_one_begins_without_it(home: Path) -> None:
+    session = _session(RunCheck(("far",)), RunCheck(("far",)))
+    sight = _sight(_run("a"))
+    assert session.look(sight) is Change.GO_ON
+    assert (session.done, session.at) == (session.lesson.steps[0], 1)
+    assert session.story == "Your run: it finished at 1.00 s."
+    session.begin_step("a")
+    assert session.look(sight) is Change.NONE
+    session.save()
+    assert load_progress()["try"].of("step 1").state is StepState.DONE
+    assert session.skip_step() is session.lesson.steps[1]
+    assert (session.step, session.step_before, session.done) == (
+        None,
+        session.lesson.steps[1],
+        None,
+    )
+
+
+def test_a_run_that_misses_a_goal_is_one_try(home: Path) -> None:
+    session = _session(RunCheck(("far",)))
+    for _ in range(2):
+        assert session.look(_sight(_run("a"), GoalState.MISSED)) is Change.SHOW
+    assert session.progress.of("step 1").tries == 1
+
+
+def test_a_run_from_elsewhere_says_what_to_do(home: Path) -> None:
+    session = _session(RunCheck(("far",)))
+    assert session.look(_sight(_run("a", **{"start.x_mm": 520.0}))) is Change.SHOW
+    there = Pose(520.0, 500.0, 0.0)
+    begun = session.describe_elsewhere(there, in_run=True)
+    over = session.describe_elsewhere(there, in_run=False)
+    back = session.describe_elsewhere(Pose(500.0, 500.0, 0.0), in_run=False)
+    assert begun == "This run began elsewhere."
+    assert over == "This run began elsewhere: m moves the robot to its start, then R."
+    assert back.endswith("The robot is back at its start: R runs the program.")
+    session.look(_sight(_run("b", **{"noise.light": 3})))
+    assert "other noise or drift" in session.describe_elsewhere(there, in_run=False)
+
+
+def test_runs_count_in_any_order_of_their_trials_and_the_newest_is_told_of(home: Path) -> None:
+    session = _session(RunCheck(("far",), times=2, also=(BACK,)))
+    trials = []
+    for run_id in "ab":
+        assert session.look(_sight(_run(run_id))) is Change.TRY
+        trials.append(session.trial)
+    first, second = trials
+    assert first and second and session.remark.endswith("also tried from farther back …")
+    assert session.take_trial(first, [(BACK, _judged(GoalState.MISSED))]) is Change.SHOW
+    assert "also tried" in session.remark
+    session.take_trial(second, [(BACK, _judged(GoalState.MISSED))])
+    missed = "Also tried from farther back, it does not work (start x = 460 mm): It was too short."
+    assert session.remark == missed
+    session.take_trial(first, [(BACK, _judged(GoalState.MET))])
+    assert session.take_trial(second, [(BACK, _judged(GoalState.MET))]) is Change.GO_ON
+    assert session.take_trial(second, []) is Change.NONE
+
+
+def test_a_note_that_does_not_pass_is_told_why(home: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    session = _session(NoteCheck("dark", 86.0))
+    levels = [50.0]
+    monkeypatch.setattr(sessions, "NOTES_PERIOD_S", 0.0)
+    monkeypatch.setattr(sessions, "_read_notes", lambda _: [Noted("dark", levels[0])])
+    sight = Sight(frozenset(), _run("a"))
+    assert session.look(sight) is Change.SHOW
+    assert session.remark.startswith("Your note “dark” is on samples with a mean of 50.0;")
+    assert session.look(sight) is Change.NONE
+    levels[0] = 86.0
+    assert session.look(sight) is Change.GO_ON
+
+
+PLACED = QuestionCheck("What?", 5, at_x_mm=((600.0, 700.0),), where="the right: → moves it")
+
+
+def test_only_an_answer_that_is_about_the_question_counts_as_a_try(home: Path) -> None:
+    session, sight = _session(PLACED, hints=("Look.",)), Sight(frozenset())
+    for text, x_mm, words in (
+        ("", 620.0, "Type an answer"),
+        ("five", 620.0, "five: type a number"),
+        ("5", 500.0, "The robot is at x = 500 mm. The question is about the right: → moves it."),
+        ("6", 620.0, "6 is not right. Try again: escape, then Y shows a hint"),
+    ):
+        with pytest.raises(TuisimError, match="^" + words.replace(".", r"\.")):
+            session.answer(text, x_mm, sight)
+    session.show_hint()
+    with pytest.raises(TuisimError, match=r"Try again$"):
+        session.answer("7", 620.0, sight)
+    progress = session.progress.of("step 1")
+    assert (progress.tries, progress.hints) == (2, 1)
+    assert session.answer("5", 620.0, sight) is Change.GO_ON
+
+
+def test_what_was_on_the_screen_since_the_step_began_is_seen(home: Path) -> None:
+    session = _session(replace(PLACED, at_x_mm=(), where="", seen=("chart",)))
+    with pytest.raises(TuisimError, match="Look first: Chart shows it"):
+        session.answer("5", 0.0, Sight(frozenset({"output"})))
+    session.look(Sight(frozenset({"chart"})))
+    assert session.answer("5", 0.0, Sight(frozenset())) is Change.GO_ON
