@@ -20,7 +20,6 @@ from tuisim.programs.program_file import ProgramSource
 from tuisim.programs.robot.course import uses_course_names
 from tuisim.programs.robot.source import (
     Module,
-    data_files,
     is_for_other_hub,
     library_of,
     missing_module,
@@ -160,7 +159,7 @@ def _facts_in(program: Program, modules: dict[str, Module], library: Library) ->
     from tuisim.programs.robot.mentions import mentions_in
     from tuisim.programs.robot.report import USUAL, hides_parts
 
-    mentions = mentions_in(modules, data_files(program))
+    mentions = mentions_in(modules)
     robot = build_robot(mentions, program.name, USUAL)
     return SourceFacts(
         library,

@@ -116,16 +116,16 @@ def build_robot(mentions: Mentions, name: str, usual: RobotSpec) -> BuiltRobot |
 
 
 def find_shown_ports(mentions: Mentions, robot: RobotSpec) -> tuple[str, ...]:
-    """Return the ports of the parts that a program shows on its robot, also of those whose ports it does not say."""
+    """Return the ports of the parts that a program shows on its robot, also of those that it takes on any port."""
     pairs = [port for pair in mentions.pairs for port in (pair.left, pair.right)]
     shown = {one.port for one in mentions.devices} | {*pairs}
-    without_port = {one.kind for one in mentions.devices if not one.port}
+    taken_anywhere = {one.kind for one in mentions.devices if one.is_any}
     kinds = {motor.port: MOTOR_KINDS_SHOWN[motor.kind] for motor in robot.motors}
     kinds |= {sensor.port: KINDS[type(sensor)] for sensor in robot.sensors}
     return tuple(
         port
         for port in (*INPUT_PORTS, *OUTPUT_PORTS)
-        if port in shown or kinds.get(port) in without_port
+        if port in shown or kinds.get(port) in taken_anywhere
     )
 
 

@@ -20,13 +20,10 @@ from tuisim.programs.robot.scopes import (
     Parameter,
     Scope,
 )
-from tuisim.programs.robot.source import DataFiles
 from tuisim.programs.robot.values import (
-    File,
     Instance,
     LibraryClass,
     LibraryModule,
-    Options,
     OwnClass,
     OwnFunction,
     Parent,
@@ -37,7 +34,7 @@ from tuisim.programs.robot.values import (
 
 MAX_VALUES = 24
 MAX_DEPTH = 40
-MAX_STEPS = 200_000
+MAX_STEPS = 20_000
 
 _OPERATORS: Mapping[type[ast.operator], Callable[[float, float], float]] = {
     ast.Add: operator.add,
@@ -47,8 +44,6 @@ _OPERATORS: Mapping[type[ast.operator], Callable[[float, float], float]] = {
 }
 _CONVERTED = {"str", "int", "float", "list", "tuple", "set", "sorted", "reversed", "iter", "const"}
 """Functions whose result is taken to be their argument."""
-_JSON = ("json", "ujson")
-"""The modules that read data, in Python and in MicroPython."""
 
 
 @dataclass(slots=True)
@@ -57,10 +52,6 @@ class Evaluation:
 
     modules: Mapping[str, Scope]
     """Its own modules by name."""
-    files: DataFiles
-    """What it may read besides."""
-    options: Mapping[str, list[tuple[ast.expr, Scope]]] = field(default_factory=dict)
-    """The default of each option of argparse, by the name of its attribute."""
     calls: Mapping[Function, Sequence[Call]] = field(default_factory=dict)
     """The known calls of each function."""
     _known: dict[tuple[ast.AST, Scope], tuple[Value, ...]] = field(default_factory=dict)
@@ -114,25 +105,17 @@ class Evaluation:
                     for value in self.values(operand, scope)
                     if isinstance(value, int | float)
                 )
-            case ast.BinOp(op=ast.Div(), right=right) if any(
-                isinstance(one, str) for one in self.values(right, scope)
-            ):
-                yield from (File(name) for name in self._file_names(node, scope))
             case ast.BinOp(left=left, op=sign, right=right):
                 yield from self._computed(left, sign, right, scope)
-            case ast.JoinedStr(values=parts):
-                yield from self._joined(parts, scope)
             case ast.ListComp(elt=item) | ast.SetComp(elt=item) | ast.GeneratorExp(elt=item):
                 # Its items are alike: one stands for all.
                 yield SourceCollection(ast.List([item]), scope)
-            case ast.DictComp(key=key, value=item):
-                yield SourceCollection(ast.Dict([key], [item]), scope)
             case ast.Call():
                 yield from self._called(node, scope)
 
     def within(self, function: Function, call: Call) -> Evaluation:
         """Return the expressions of the same program as they are while one call of a function runs."""
-        return Evaluation(self.modules, self.files, self.options, {**self.calls, function: [call]})
+        return Evaluation(self.modules, {**self.calls, function: [call]})
 
     # Names
 
@@ -228,9 +211,6 @@ class Evaluation:
                 yield library.MEMBERS[enumeration][name]
             case Instance(of=LibraryClass()) | LibraryClass() if name in library.CONSTANTS:
                 yield library.CONSTANTS[name]
-            case Options():
-                for node, scope in self.options.get(name, ()):
-                    yield from self.values(node, scope)
             case str() | int() | float() if name == "value":
                 # Of an enumeration: its members are taken to be their values.
                 yield value
@@ -240,10 +220,8 @@ class Evaluation:
         for binding in bindings:
             for value in self._bound(binding):
                 match value:
-                    case OwnFunction(node=node, scope=inner) if _is_property(node):
-                        yield from self.returned(OwnFunction(node, inner))
-                    case OwnFunction(node=node, scope=inner):
-                        yield OwnFunction(node, inner, is_bound or _is_class_method(node))
+                    case OwnFunction():
+                        yield replace(value, is_bound=is_bound)
                     case _:
                         yield value
         if not bindings:
@@ -340,36 +318,16 @@ class Evaluation:
                     ):
                         yield one.replace("%s", str(other)).replace("%d", str(other))
 
-    def _joined(self, parts: Sequence[ast.expr], scope: Scope) -> Iterator[Value]:
-        texts = [""]
-        for part in parts:
-            inside = part.value if isinstance(part, ast.FormattedValue) else part
-            found = [value for value in self.values(inside, scope) if isinstance(value, str | int)]
-            texts = [text + str(value) for text in texts for value in found][:MAX_VALUES]
-        yield from texts
-
     def _called(self, node: ast.Call, scope: Scope) -> Iterator[Value]:
         match node.func:
             case ast.Name(id="super") if scope.owner is not None:
                 yield Parent(scope.owner)
                 return
-            case ast.Name(id="dict") if not node.args:
-                yield SourceCollection(node, scope)
-                return
-            case ast.Name(id="getattr") if len(node.args) >= 2:
-                for base in self.values(node.args[0], scope):
-                    for name in self.values(node.args[1], scope):
-                        if isinstance(name, str):
-                            yield from self.attribute(base, name)
-                return
-            case ast.Name(id="open" | "Path") | ast.Attribute(attr="Path") if node.args:
-                yield from (File(name) for name in self._file_names(node.args[0], scope))
-                return
             case ast.Name(id=name) if name in _CONVERTED and node.args:
                 yield from self.values(node.args[0], scope)
                 return
-            case ast.Attribute(value=base, attr=name):
-                yield from self._of_method(base, name, node, scope)
+            case ast.Attribute(value=base, attr="get") if node.args:
+                yield from self._of_get(base, node, scope)
         for value in self.values(node.func, scope):
             match value:
                 case LibraryClass() | OwnClass():
@@ -377,82 +335,14 @@ class Evaluation:
                 case OwnFunction():
                     yield from _made_by(node, self.returned(value))
 
-    def _of_method(
-        self, base: ast.expr, name: str, node: ast.Call, scope: Scope
-    ) -> Iterator[Value]:
-        """Yield the result of a method of Python's own types."""
-        if name in ("parse_args", "parse_known_args"):
-            yield Options()
-        elif (
-            name in ("load", "loads")
-            and node.args
-            and isinstance(base, ast.Name)
-            and base.id in _JSON
-        ):
-            for file in self.values(node.args[0], scope):
-                if (
-                    isinstance(file, File)
-                    and (inside := self.files.values_in(file.name)) is not None
-                ):
-                    yield from self.values(inside, scope.top)
-        elif name in ("read", "read_text", "open"):
-            # The text of a file stands for the file.
-            yield from (value for value in self.values(base, scope) if isinstance(value, File))
-        elif name == "get" and node.args:
-            tables = [
-                value for value in self.values(base, scope) if isinstance(value, SourceCollection)
-            ]
-            for table in tables:
-                yield from self.looked_up(table, self.values(node.args[0], scope))
-            # Also of `os.environ`.
-            if len(node.args) > 1 and (tables or not self.values(base, scope)):
-                yield from self.values(node.args[1], scope)
-        elif name in ("keys", "values", "items", "copy"):
-            yield from (
-                self._view(name, value)
-                for value in self.values(base, scope)
-                if isinstance(value, SourceCollection)
-            )
-        elif name == "format" and node.args:
-            for text in self.values(base, scope):
-                for value in self.values(node.args[0], scope):
-                    if (
-                        isinstance(text, str)
-                        and isinstance(value, str | int)
-                        and text.count("{") == 1
-                    ):
-                        yield text.replace("{}", str(value)).replace("{0}", str(value))
-        elif name in ("strip", "lower", "upper"):
-            for text in self.values(base, scope):
-                if isinstance(text, str):
-                    yield str(getattr(text, name)())
-
-    def _file_names(self, node: ast.expr, scope: Scope) -> Iterator[str]:
-        """Yield the names of a file that an expression can be, from the program's own folder on."""
-        match node:
-            case (
-                ast.Call(func=ast.Attribute(attr="join"), args=[*_, last])
-                | ast.BinOp(op=ast.Div(), right=last)
-            ):
-                # What comes before is most often the program's folder.
-                yield from (value for value in self.values(last, scope) if isinstance(value, str))
-            case _:
-                for value in self.values(node, scope):
-                    if isinstance(value, str | File):
-                        yield value if isinstance(value, str) else value.name
-
-    def _view(self, name: str, table: SourceCollection) -> SourceCollection:
-        keys = [key for key in table.keys if key is not None]
-        if name == "copy" or not keys:
-            return table
-        if name == "keys":
-            return SourceCollection(ast.List(keys), table.scope)
-        if name == "values":
-            return SourceCollection(ast.List(table.items), table.scope)
-        pairs: list[ast.expr] = [
-            ast.Tuple([key, item]) for key, item in zip(keys, table.items, strict=False)
-        ]
-        return SourceCollection(ast.List(pairs), table.scope)
+    def _of_get(self, base: ast.expr, node: ast.Call, scope: Scope) -> Iterator[Value]:
+        """Yield what `get` of a dict returns, or of `os.environ`."""
+        owners = self.values(base, scope)
+        tables = [value for value in owners if isinstance(value, SourceCollection)]
+        for table in tables:
+            yield from self.looked_up(table, self.values(node.args[0], scope))
+        if len(node.args) > 1 and (tables or not owners):
+            yield from self.values(node.args[1], scope)
 
     def returned(self, function: OwnFunction) -> Iterator[Value]:
         """Yield what a function of the program can return or yield."""
@@ -469,9 +359,7 @@ class Evaluation:
         arguments = [*function.args.posonlyargs, *function.args.args]
         names = [argument.arg for argument in arguments]
         if name in names[:1] and owner is not None and isinstance(owner.node, ast.ClassDef):
-            return [
-                (OwnClass(owner) if _is_class_method(function) else Instance(OwnClass(owner)), None)
-            ]
+            return [(Instance(OwnClass(owner)), None)]
         key = (parameter,)
         if key in self._open:
             return []
@@ -489,20 +377,6 @@ class Evaluation:
             usual = [(value, None) for value in self.values(default, owner)]
         found: list[tuple[Value, Call | None]] = []
         for call in self.calls.get(parameter.function, ()):
-            if parameter.argument is parameter.function.args.vararg:
-                rest = call.node.args[len(names) - (1 if call.is_bound else 0) :]
-                found.append((SourceCollection(ast.Tuple(rest), call.scope), call))
-                continue
-            if parameter.argument is parameter.function.args.kwarg:
-                found.append(
-                    (
-                        SourceCollection(
-                            ast.Call(call.node.func, [], call.node.keywords), call.scope
-                        ),
-                        call,
-                    )
-                )
-                continue
             at = names.index(name) - (1 if call.is_bound else 0) if name in names else None
             given = argument_of(call, name, at, self)
             if given is None:
@@ -543,15 +417,3 @@ def _default_of(function: Function, name: str) -> ast.expr | None:
         *zip(arguments.kwonlyargs, arguments.kw_defaults, strict=True),
     ]
     return next((default for argument, default in pairs if argument.arg == name), None)
-
-
-def _decorators(node: Function) -> set[str]:
-    return {one.id for one in node.decorator_list if isinstance(one, ast.Name)}
-
-
-def _is_property(node: Function) -> bool:
-    return bool(_decorators(node) & {"property", "cached_property"})
-
-
-def _is_class_method(node: Function) -> bool:
-    return "classmethod" in _decorators(node)

@@ -14,7 +14,7 @@ from tuisim.programs.robot.evaluation import Evaluation
 from tuisim.programs.robot.library import DeviceKind, PairClass
 from tuisim.programs.robot.reach import reachable, skipped
 from tuisim.programs.robot.scopes import FUNCTIONS, Function, Parameter, Scope, scope_of
-from tuisim.programs.robot.source import DataFiles, Module, library_of
+from tuisim.programs.robot.source import Module, library_of
 from tuisim.programs.robot.values import (
     Instance,
     LibraryClass,
@@ -116,22 +116,16 @@ class Mentions:
         return next((one for one in self.devices if one.port == port and one.kind.is_motor), None)
 
 
-def mentions_in(modules: dict[str, Module], files: DataFiles) -> Mentions:
-    """Return what a program says about its robot.
-
-    Args:
-        modules: The program and its own modules.
-        files: What it may read besides.
-    """
+def mentions_in(modules: dict[str, Module]) -> Mentions:
+    """Return what a program, with its own modules, says about its robot."""
     scopes = {name: scope_of(module) for name, module in modules.items()}
-    found = _Reader(scopes, files).read()
+    found = _Reader(scopes).read()
     return replace(found, library=library_of(modules) or found.library)
 
 
 @dataclass(slots=True)
 class _Reader:
     modules: dict[str, Scope]
-    files: DataFiles
     scopes: list[Scope] = field(init=False)
     evaluation: Evaluation = field(init=False)
     made: list[tuple[str, Call]] = field(init=False, default_factory=list)
@@ -145,8 +139,7 @@ class _Reader:
     def read(self) -> Mentions:
         self.scopes = reachable(self.modules)
         calls = [Call(node, scope) for scope in self.scopes for node in _calls_in(scope)]
-        options = _options(calls)
-        self.evaluation = Evaluation(self.modules, self.files, options)
+        self.evaluation = Evaluation(self.modules)
         for _ in range(_ROUNDS):
             found: dict[Function, list[Call]] = {}
             self.made = []
@@ -154,7 +147,7 @@ class _Reader:
                 self._sort(call, found)
             if found == self.evaluation.calls:
                 break
-            self.evaluation = Evaluation(self.modules, self.files, options, found)
+            self.evaluation = Evaluation(self.modules, found)
         self.parts = {call.node for _, call in self.made}
         for scope in self.scopes:
             self._note_names(scope)
@@ -624,23 +617,3 @@ def _names_in(node: ast.AST) -> tuple[str, ...]:
                 if name not in library.CONSTANTS and not library.port_of(name):
                     found.append(name)
     return tuple(found)
-
-
-def _options(calls: Sequence[Call]) -> dict[str, list[tuple[ast.expr, Scope]]]:
-    """Return the defaults of the options that a program gives to argparse."""
-    found: dict[str, list[tuple[ast.expr, Scope]]] = {}
-    for call in calls:
-        match call.node.func:
-            case ast.Attribute(attr="add_argument"):
-                default = argument_node(call, "default", None)
-                flags = [one.value for one in call.node.args if isinstance(one, ast.Constant)]
-                named = argument_node(call, "dest", None)
-                words = [str(flag) for flag in flags]
-                name = max(words, key=lambda word: (word.startswith("--"), len(word)), default="")
-                if isinstance(named, ast.Constant):
-                    name = str(named.value)
-                if name and default is not None:
-                    found.setdefault(name.lstrip("-").replace("-", "_"), []).append(
-                        (default, call.scope)
-                    )
-    return found

@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import ast
-import json
 import os
 import sys
 from collections.abc import Iterator, Mapping
-from dataclasses import field
 from pathlib import Path
 
 from tuisim.base.data_class import dataclass
@@ -22,7 +20,7 @@ from tuisim.base.source import (
     Program,
     decode_source,
 )
-from tuisim.base.syntax_tree import parse_expression, parse_module
+from tuisim.base.syntax_tree import parse_module
 from tuisim.engine.brick_home import place_folder
 from tuisim.engine.core.profile import Library
 from tuisim.engine.files import read_bytes
@@ -41,7 +39,6 @@ TURNED = {"<": ">", "<=": ">=", ">": "<", ">=": "<="}
 """What a comparison becomes if its sides change places; others stay."""
 MAX_MODULES = 100
 MAX_MODULE_BYTES = 1 << 20
-MAX_DATA_BYTES = 1 << 16
 
 
 @dataclass(frozen=True, slots=True)
@@ -159,46 +156,6 @@ def _imported(module: Module) -> Iterator[str]:
                 parts = base.split(".") if base else []
                 yield from (".".join(parts[:end]) for end in range(1, len(parts) + 1))
                 yield from (f"{base}.{alias.name}" if base else alias.name for alias in names)
-
-
-@dataclass(slots=True)
-class DataFiles:
-    """The files with values beside a program that it may read."""
-
-    folder: Path
-    found: dict[str, ast.expr | None] = field(default_factory=dict)
-
-    def values_in(self, name: str) -> ast.expr | None:
-        """Return what a JSON file in the folder holds, as an expression of Python; None if nothing can be read."""
-        if name not in self.found:
-            self.found[name] = self._read(name)
-        return self.found[name]
-
-    def _read(self, name: str) -> ast.expr | None:
-        try:
-            path = (self.folder / name).resolve()
-            if not path.is_relative_to(self.folder.resolve()):
-                return None
-            data = read_bytes(path, MAX_DATA_BYTES, ConfigError)
-            if len(data) > MAX_DATA_BYTES:
-                return None
-            return parse_expression(repr(json.loads(data))).body
-        # What is wrong with the file is said when the program reads it.
-        except (
-            ConfigError,
-            OSError,
-            RuntimeError,
-            ValueError,
-            SyntaxError,
-            RecursionError,
-            MemoryError,
-        ):
-            return None
-
-
-def data_files(program: Program) -> DataFiles:
-    """Return the files beside a program."""
-    return DataFiles(Path(own_folder(program)))
 
 
 def is_for_other_hub(modules: dict[str, Module]) -> bool:

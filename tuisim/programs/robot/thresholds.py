@@ -17,7 +17,7 @@ from tuisim.engine.core.spec import RobotSpec
 from tuisim.programs.robot.library import DeviceKind
 from tuisim.programs.robot.mentions import Mention, Mentions, mentions_in
 from tuisim.programs.robot.scopes import Bound, Scope
-from tuisim.programs.robot.source import SIGNS, TURNED, Module, data_files, parsed, read_modules
+from tuisim.programs.robot.source import SIGNS, TURNED, Module, parsed, read_modules
 from tuisim.programs.robot.values import Instance
 
 AIM = "-"
@@ -85,7 +85,7 @@ def _found(program: Program, robot: RobotSpec) -> Mapping[str, tuple[ProgramThre
         tree = modules[""].tree
         modules[""] = replace(modules[""], tree=ast.Module([star, *tree.body], tree.type_ignores))
     found: dict[str, list[ProgramThreshold]] = {sensor.name: [] for sensor in robot.color_sensors}
-    for port, threshold in _compared(mentions_in(modules, data_files(program))):
+    for port, threshold in _compared(mentions_in(modules)):
         for sensor in robot.color_sensors:
             if port in ("", sensor.port) and threshold not in found[sensor.name]:
                 found[sensor.name].append(threshold)

@@ -68,45 +68,21 @@ class Parent:
 
 
 @dataclass(frozen=True, slots=True)
-class Options:
-    """What `parse_args()` of argparse returns."""
-
-
-@dataclass(frozen=True, slots=True)
-class File:
-    """A file that the program reads, or the path to it."""
-
-    name: str
-    """As the program says it, from its own folder on."""
-
-
-@dataclass(frozen=True, slots=True)
 class SourceCollection:
     """A list, tuple, set or dict that is written out."""
 
-    node: ast.List | ast.Tuple | ast.Set | ast.Dict | ast.Call
-    """A call is one of `dict(…)`."""
+    node: ast.List | ast.Tuple | ast.Set | ast.Dict
     scope: Scope
 
     @property
     def keys(self) -> list[ast.expr | None]:
         """The keys of a dict; empty for others."""
-        if isinstance(self.node, ast.Dict):
-            return list(self.node.keys)
-        if isinstance(self.node, ast.Call):
-            return [ast.Constant(keyword.arg) for keyword in self.node.keywords]
-        return []
+        return list(self.node.keys) if isinstance(self.node, ast.Dict) else []
 
     @property
     def items(self) -> list[ast.expr]:
         """The values of a dict, else the items."""
-        match self.node:
-            case ast.Dict(values=values):
-                return values
-            case ast.Call(keywords=keywords):
-                return [keyword.value for keyword in keywords]
-            case ast.List(elts=items) | ast.Tuple(elts=items) | ast.Set(elts=items):
-                return items
+        return self.node.values if isinstance(self.node, ast.Dict) else self.node.elts
 
 
 Constant: TypeAlias = str | int | float | None
@@ -119,7 +95,5 @@ Value: TypeAlias = (
     | OwnFunction
     | Instance
     | Parent
-    | Options
-    | File
     | SourceCollection
 )

@@ -279,14 +279,10 @@ def _named(mentions: Mentions) -> Iterator[tuple[str, Size]]:
         for inner in scope.body:
             if isinstance(inner, ast.Dict):
                 yield from _in_dict(inner, scope)
-    for data in filter(None, evaluation.files.found.values()):
-        yield from (
-            one for part in ast.walk(data) if isinstance(part, ast.Dict) for one in _in_dict(part)
-        )
 
 
-def _in_dict(node: ast.Dict, scope: Scope | None = None) -> Iterator[tuple[str, Size]]:
-    where = Where(scope.module.file, node.lineno) if scope else None
+def _in_dict(node: ast.Dict, scope: Scope) -> Iterator[tuple[str, Size]]:
+    where = Where(scope.module.file, node.lineno)
     for key, value in zip(node.keys, node.values, strict=True):
         match key, value:
             case ast.Constant(value=str(name)), ast.Constant(value=number):
