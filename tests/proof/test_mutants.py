@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import ast
+from pathlib import Path
 
 import pytest
 
 from tests.conftest import ROOT
 from tests.proof.__main__ import main
-from tests.proof.mutants import draw_mutants, find_mutants, find_tests
+from tests.proof.mutants import draw_mutants, find_failure, find_mutants, find_tests
 
 
 @pytest.mark.parametrize(
@@ -53,6 +54,13 @@ def test_a_seed_draws_the_same_mutants() -> None:
 def test_a_module_has_the_tests_at_its_path() -> None:
     tests = ["tests/engine/core/test_spec.py", "tests/engine/core/test_spec_fields.py"]
     assert find_tests("engine/core/spec.py") == tests
+
+
+@pytest.mark.proof
+def test_what_takes_too_much_cpu_is_found(tmp_path: Path) -> None:
+    test = tmp_path / "test_endless.py"
+    test.write_text("def test_endless():\n    while True:\n        pass\n")
+    assert find_failure([str(test)], ROOT, 10) == "CPU limit"
 
 
 @pytest.mark.proof
