@@ -12,7 +12,7 @@ from tests.cases import cases
 from tests.conftest import Command
 from tuisim.base.errors import ConfigError, ObstacleError, ProfileError, RobotError
 from tuisim.engine.core.profile import PROFILES
-from tuisim.engine.files import MAX_FILE_BYTES
+from tuisim.engine.files import MAX_FILE_BYTES, Location, convert
 from tuisim.settings.build import build_run_spec
 from tuisim.settings.options import settings_of
 from tuisim.settings.shared_options import parse_words
@@ -444,3 +444,10 @@ def test_the_command_says_it_in_one_line_and_runs_nothing(
     assert line.startswith(f"tuisim: {name}: {said}")
     assert (done.returncode, done.stdout) == (2, "")
     assert state(tmp_path) == before
+
+
+def test_a_list_where_a_text_is_allowed_too_is_checked_as_a_list() -> None:
+    where = Location("lesson.md", ConfigError, "answer")
+    assert convert("a", str | tuple[str, ...], where) == "a"  # type: ignore[arg-type]
+    with pytest.raises(ConfigError, match=r"answer\[2\]: must be one line of text"):
+        convert(["a", "b\nc"], str | tuple[str, ...], where)  # type: ignore[arg-type]

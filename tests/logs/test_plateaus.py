@@ -65,3 +65,10 @@ def test_how_much_is_looked_at_together_changes_nothing(
     found = plateaus(values)
     monkeypatch.setattr(module, name, number)
     assert plateaus(values) == found
+
+
+@pytest.mark.parametrize("values", [slice(2), slice(-2, None)], ids=["begin", "end"])
+def test_a_long_log_may_begin_and_end_with_a_level_of_two_values(values: slice) -> None:
+    noisy = np.random.default_rng(1).normal(20.0, 0.3, plateaus_module.EVERY_PLACE + 1000)
+    noisy[values] += 30.0
+    assert sorted(round(one.level, -1) for one in plateaus(noisy)) == [20.0, 50.0]

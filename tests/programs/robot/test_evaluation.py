@@ -86,6 +86,10 @@ PORTS: Mapping[str, tuple[str, str]] = {
     "only imported": ("", ""),
     "a mux": ("TouchSensor('in1:i2c80:mux1')", ""),
     "a driver that is not simulated": ("Sensor(INPUT_1, driver_name='ht-nxt-compass')", ""),
+    "a sensor whose mode is set": (
+        "some = Sensor(INPUT_2)\nsome.mode = 'GYRO-ANG'",
+        "2 gyro, 4 left",
+    ),
     "two kinds on one port": (
         "ColorSensor('in1')\nTouchSensor('in1')\nTouchSensor('in1')",
         "1 touch",
