@@ -21,6 +21,13 @@ WAITED_FOR = {
         "value",
         2,
     ),
+    "a limit that is computed": (
+        "LOW = 3\nwhile LOW * 10 - 5 < a.angle:\n    pass",
+        "<=",
+        25,
+        "angle",
+        2,
+    ),
     "a break": ("while True:\n    if gyro.angle > 90:\n        break\n", ">", 90, "angle", 2),
     "one of two": (
         "while btn.enter == False and us.distance() > 50:\n    wait(5)",
@@ -107,6 +114,7 @@ def test_a_call_turns_so_far(call: str, turns: tuple[float, str] | None) -> None
         "a motor of the old library": ("m.run_forever(speed_sp=9)", 1),
         "in a function": ("def go():\n    base.drive(9, 0)\n\ngo()", 2),
         "in a function that is not called": ("def go():\n    base.drive(9, 0)", 0),
+        "for a time": ("tank.on_for_seconds(9, 9, 1)", 1),
         "a lamp": ("ev3.light.on(Color.RED)", 0),
         "no motor": ("asyncio.run(main())\nsubprocess.run([1])\nprint(1)", 0),
         "no Python": ("tank.on(", 0),

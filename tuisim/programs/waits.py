@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import ast
+import operator
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import lru_cache
 from typing import TypeGuard
 
@@ -14,6 +15,14 @@ from tuisim.programs.robot.source import SIGNS, TURNED, parsed
 
 _OPPOSITE = {">=": "<", ">": "<=", "<=": ">", "<": ">=", "!=": "==", "==": "!="}
 """What ends a loop that goes on while a comparison holds."""
+
+
+_COMPUTE: Mapping[type[ast.operator], Callable[..., float]] = {
+    ast.Add: operator.add,
+    ast.Sub: operator.sub,
+    ast.Mult: operator.mul,
+    ast.Div: operator.truediv,
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,8 +79,18 @@ def find_turns(text: str, line: int) -> tuple[float, str] | None:
     return None
 
 
+def find_uncalled_stop(text: str) -> tuple[int, str] | None:
+    """Return the first line that names what stops motors without calling it, with that name; None for none."""
+    tree = parsed(text) if len(text) <= MAX_TEXT else None
+    for node in ast.walk(tree) if tree else ():
+        match node:
+            case ast.Expr(value=ast.Attribute(attr="off" | "stop" | "brake" | "hold") as name):
+                return node.lineno, ast.unparse(name)
+    return None
+
+
 def find_first_drive(text: str) -> int:
-    """Return the first line of a program that starts motors without an end; 0 for none.
+    """Return the first line of a program that starts motors; 0 for none.
 
     A function that the program does not mention starts nothing.
     """
@@ -92,7 +111,7 @@ def _is_drive(node: ast.AST) -> TypeGuard[ast.Call]:
         case ast.Call(func=ast.Attribute(attr="on"), args=args):
             # A lamp of Pybricks is turned on with a colour.
             return not any(isinstance(part, ast.Attribute) for part in args)
-        case ast.Call(func=ast.Attribute(attr="run_forever" | "run_direct")):
+        case ast.Call(func=ast.Attribute(attr=attr)) if attr.startswith(("on_for_", "run_")):
             return True
         case ast.Call(func=ast.Attribute(attr="run" | "dc" | "drive"), args=[speed, *_]):
             return isinstance(speed, ast.Constant | ast.Name | ast.UnaryOp)
@@ -214,6 +233,11 @@ def _find_constant(node: ast.expr, constants: Mapping[str, Word]) -> Word | None
     match node:
         case ast.Name(id=name):
             return constants.get(name)
+        case ast.BinOp(left=left, op=op, right=right) if type(op) in _COMPUTE:
+            numbers = [_find_constant(part, constants) for part in (left, right)]
+            if all(isinstance(number, int | float) for number in numbers) and numbers[1]:
+                return _COMPUTE[type(op)](*numbers)
+            return None
         case ast.Constant(value=str() | int() | float() as value) if not isinstance(value, bool):
             return value
         case ast.UnaryOp(op=ast.USub(), operand=ast.Constant(value=int() | float() as value)):

@@ -51,6 +51,11 @@ CASES = {
         ReasonKind.ENDED,
         "the program ended while outB was still told to turn",
     ),
+    "not called": (
+        "tank_drive.on_for_seconds(20, 20, 1)\ntank_drive.off\n",
+        ReasonKind.ENDED,
+        "line 2: tank_drive.off without () does nothing: tank_drive.off() stops",
+    ),
     "off the mat": (OFF_THE_MAT, ReasonKind.LOST, "line 2: the robot left the mat"),
 }
 
@@ -68,7 +73,7 @@ END = {
         WRONG_SIGN.replace("get_clock() < 8", "True"),
         ", line 4: the right sensor left the black, and saw it no more",
     ),
-    "at once": ("tank_drive.on(20, 20)\n", "0.00 s, line 1: the program was over after 0.00 s"),
+    "at once": ("tank_drive.on(20, 20)\n", "0.00 s, line 1: the program was over when"),
     "as it should": ("tank_drive.on_for_seconds(20, 20, 1)\n", ""),
     "a wait": (WAITS, ""),
 }

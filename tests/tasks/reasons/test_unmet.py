@@ -32,7 +32,15 @@ VAIN = {
     ),
     "a colour": (
         f"{DRIVES}while colorLeft.color_name != 'Red':\n    print(1)\n",
-        "the colour sensor on in2 to see red: it saw only black, white",
+        "the colour sensor on in2 to see 'Red': it saw only 'Black', 'White'",
+    ),
+    "a name in small letters": (
+        f"{DRIVES}while colorLeft.color_name != 'white2':\n    print(1)\n",
+        "the colour sensor on in2 to see 'white2': it saw only 'Black', 'White'",
+    ),
+    "a text for a number": (
+        f"{DRIVES}while colorLeft.color != 'White':\n    print(1)\n",
+        "the colour sensor on in2 to see 'White': it saw only 1, 6",
     ),
     "read once": (
         f"{DRIVES}from time import sleep\nv = {LIGHT}\nwhile v > 20:\n    sleep(1)\n",
@@ -117,7 +125,22 @@ def test_what_other_libraries_read_is_measured(text: str, words: str) -> None:
 
 
 EARLY = {
-    "no wait": (f"{DRIVES}tank_drive.off()\n", "over after 0.00 s: the motors that line 2 starts"),
+    "no wait": (
+        f"{DRIVES}tank_drive.off()\n",
+        "the program was over when the motors that this line starts had",
+    ),
+    "a small turn": (
+        f"{BANDS}tank_drive.on_for_degrees(30, 30, 1)\n",
+        "when the motors that this line starts had moved the robot by 0.5 mm",
+    ),
+    "a text that is no number": (
+        f"{DRIVES}while colorLeft.color == 'White':\n    pass\ntank_drive.off()\n",
+        "the loop was over at once: the colour sensor on in2 read 6, not 'White'",
+    ),
+    "another colour": (
+        f"{DRIVES}while colorLeft.color == ColorSensor.COLOR_RED:\n    pass\n",
+        "the colour sensor on in2 read white, not red",
+    ),
     "a true limit": (
         f"{DRIVES}while {LIGHT} < 20:\n    pass\ntank_drive.off()\n",
         "the loop was over at once: the colour sensor on in2 read 100 %, already 20 % or more",
@@ -138,6 +161,7 @@ def test_a_program_that_is_over_at_once_says_why(text: str, words: str) -> None:
         f"{BANDS}print({LIGHT})\n",
         f"{DRIVES}while {LIGHT} > 55:\n    pass\ntank_drive.off()\n",
         f"{DRIVES}print(x)\n",
+        f"{BANDS}tank_drive.on_for_degrees(80, 80, 60)\n",
     ],
 )
 def test_a_program_that_drives_no_motor_or_far_enough_is_not_over_early(text: str) -> None:

@@ -25,7 +25,7 @@ _SEED = values_of(RunSpec)["seed"]
 class Noise(EntryPanel):
     """The noise panel: two sliders, which take digits too, and the seed."""
 
-    USE = "Now; seed at next run"
+    USE = "Seed: from the next run"
 
     @dataclass
     class Changed(Message):

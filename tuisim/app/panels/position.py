@@ -46,7 +46,7 @@ class Positioning(FormPanel, can_focus=True):
     Its key gives the focus to the panel, in which letters are still keys of the app; enter or tab, to the first field.
     """
 
-    USE = "Enter places the robot"
+    USE = "Enter: type, then place"
     BINDINGS: ClassVar[list[BindingType]] = [Binding("enter", "type", "Type the place", show=False)]
     FOOTER_KEYS: ClassVar[tuple[KeyWord, ...]] = (("enter", "numbers"),)
 

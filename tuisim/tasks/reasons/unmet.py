@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator, Mapping
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -33,8 +34,9 @@ if TYPE_CHECKING:
 
 _MIN_STAY_S = 3.0
 """A program that has been in a loop for less time does not wait in it in vain."""
-_MIN_RUN_S = 0.5
-"""Motors that were started have no time to drive a robot in a program that is over earlier."""
+_CUT_OFF = (End.TIME_LIMIT, End.STOPPED, End.OUTPUT_LIMIT)
+_MIN_RUN_S, _MIN_WAY_MM, _MIN_TURN_DEG = 0.5, 10.0, 5.0
+"""A program that is over earlier, with its robot nearer to the start, gave its motors no time."""
 _NEAR, _AWAY = 1.0, 5.0
 """Light that came so near to what was waited for, in percent, and went so far away again, was just missed."""
 _WORDS = {
@@ -120,7 +122,7 @@ def find_unmet(run: StoredRun, mat: Field | None = None) -> Unmet | None:
         run: The run.
         mat: Its mat; None opens it.
     """
-    is_cut_off = run.end is None or run.end.end in (End.TIME_LIMIT, End.STOPPED)
+    is_cut_off = run.end is None or run.end.end in _CUT_OFF
     return _find_first(_Search.find_unmet, run, mat) if is_cut_off else None
 
 
@@ -146,12 +148,20 @@ def find_early_end(run: StoredRun, mat: Field | None = None) -> Unmet | None:
     end = run.end
     if end is None or end.end is not End.FINISHED or run.time_s >= _MIN_RUN_S:
         return None
-    line = find_first_drive(run.program.text)
-    if not line:
+    line, last, start = (
+        find_first_drive(run.program.text),
+        run.telemetry.last(),
+        run.spec.world.start,
+    )
+    if not line or last is None:
+        return None
+    way_mm = math.dist((last.pose.x_mm, last.pose.y_mm), (start.x_mm, start.y_mm))
+    turn_deg = abs(last.pose.heading_deg - start.heading_deg)
+    if way_mm >= _MIN_WAY_MM or turn_deg >= _MIN_TURN_DEG:
         return None
     text = (
-        f"the program was over after {run.time_s:.2f} s: the motors that line {line} starts had "
-        "no time to turn"
+        "the program was over when the motors that this line starts had moved the robot by "
+        f"{way_mm:.1f} mm"
     )
     return _find_first(_Search.find_met, run, mat) or Unmet(run.time_s, line, text)
 
@@ -213,16 +223,20 @@ class _Search:
         """Yield the loops for whose end nothing had to happen: the first reading was what they waited for."""
         for loop in self._loops:
             series = self._measure(loop, (0, len(self._records)))
-            if series is None or isinstance(loop.limit, str):
+            if series is None:
                 continue
-            first = series.values[0]
-            if series.column != "color" and COMPARE[loop.operator](first, loop.limit):
-                goal = _name_goal(loop, f"{loop.limit:g}{series.unit}")
-                text = (
-                    f"the loop was over at once: {series.device} read {_round(first)}{series.unit}, "
-                    f"already {goal}"
-                )
-                yield Unmet(series.ticks[0] / self._hz, loop.line, text)
+            text = f"the loop was over at once: {series.device} read"
+            if series.column == "color":
+                (name,) = _name_seen(loop, series.values[:1])
+                if loop.operator == "!=" and name != _name_limit(loop):
+                    text = f"{text} {name}, not {_name_limit(loop)}"
+                    yield Unmet(series.ticks[0] / self._hz, loop.line, text)
+            elif not isinstance(loop.limit, str):
+                first = series.values[0]
+                if COMPARE[loop.operator](first, loop.limit):
+                    goal = _name_goal(loop, f"{loop.limit:g}{series.unit}")
+                    text = f"{text} {_round(first)}{series.unit}, already {goal}"
+                    yield Unmet(series.ticks[0] / self._hz, loop.line, text)
 
     def _is_long(self, tick: int) -> bool:
         """Return whether the program has waited long enough since a tick."""
@@ -381,7 +395,26 @@ def _name_goal(loop: LoopEnd, limit: str) -> str:
 
 def _describe_colors(loop: LoopEnd, series: _Series) -> str:
     """Return the colour that a loop waited for and what was seen; empty if it came."""
-    color, seen = name_color(loop.limit), {COLOR_NAMES[int(code)].lower() for code in series.values}
+    seen = _name_seen(loop, series.values)
+    color = _name_limit(loop)
     if loop.operator != "==" or color in {"", *seen}:
         return ""
-    return f"{series.device} to see {color}: it saw only {', '.join(sorted(seen))}"
+    return f"{series.device} to see {color}: it saw only {', '.join(seen)}"
+
+
+def _is_text(loop: LoopEnd) -> bool:
+    """Return whether a loop compares with a text that is not the name of a constant, as it stands in a program."""
+    return isinstance(loop.limit, str) and not loop.limit.isupper()
+
+
+def _name_seen(loop: LoopEnd, codes: Array) -> list[str]:
+    """Return the colours that were seen: as the program reads them if it compares them with a text."""
+    names = {COLOR_NAMES[int(code)]: f"{code:g}" for code in codes}
+    if not _is_text(loop):
+        return sorted(name.lower() for name in names)
+    return sorted(names.values() if loop.attribute == "color" else map(repr, names))
+
+
+def _name_limit(loop: LoopEnd) -> str:
+    """Return the colour that a loop compares with, in the same way."""
+    return repr(loop.limit) if _is_text(loop) else name_color(loop.limit)
