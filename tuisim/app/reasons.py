@@ -10,7 +10,6 @@ from tuisim.app.snapshot import RunPhase
 from tuisim.engine.runs.store import load_run
 from tuisim.tasks.lessons.spec import RunCheck
 from tuisim.tasks.reasons.reason import find_reasons
-from tuisim.tasks.reasons.waited import WINDOW_S, is_standing
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -28,22 +27,6 @@ NO_REASON = "No reason found: nothing raised, blocked, missed or lost. {compare}
 
 FoundReasons = tuple[tuple["Reason", ...], "Recording | None"]
 """The reasons, and the run before that they may speak of."""
-
-
-def describe_so_far(recording: Recording) -> str:
-    """Return what a program that goes on is busy with, when there is no reason, with ids of actions in braces."""
-    import numpy as np
-
-    hz, last = recording.spec.profile.tick_hz, recording.newest
-    records = recording.telemetry.array(max(0, last - round(WINDOW_S * hz)))
-    lines = np.unique(records["line"][records["line"] > 0]).tolist()
-    where = f"lines {lines[0]} to {lines[-1]}" if len(lines) > 1 else f"line {max([0, *lines])}"
-    robot = (
-        "the robot stands still in"
-        if is_standing(recording.telemetry, recording.spec)
-        else "it is in"
-    )
-    return f"Nothing wrong until {last / hz:.2f} s: {robot} {where}. {{pause}} goes on"
 
 
 def look(context: ActionContext) -> None:

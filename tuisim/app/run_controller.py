@@ -12,7 +12,6 @@ from tuisim.app.setup import next_run as plans
 from tuisim.app.setup.next_run import NextRun
 from tuisim.app.snapshot import RunPhase, Snapshot
 from tuisim.app.timeline import Timeline
-from tuisim.app.waiting import WaitWatch
 from tuisim.base.data_class import dataclass
 from tuisim.engine import protocol
 from tuisim.engine.core.drift import find_drift
@@ -28,6 +27,7 @@ from tuisim.engine.runs.recorded_run import Recording
 from tuisim.engine.runs.standstill import standstill_words
 from tuisim.engine.runs.store import RunStore
 from tuisim.programs.program_settings import require_library
+from tuisim.tasks.reasons.waiting import WaitWatch
 
 if TYPE_CHECKING:
     from tuisim.app.branch import Branch
@@ -565,8 +565,9 @@ class RunController:
                     remarks += describe_remarks(event, recording)
         stood = standstill_words(recording.telemetry, recording.spec) if ended else ""
         if not self.in_past:
-            is_running = self.state is RunPhase.RUNNING
-            remarks += self._waits.look(recording, ended, is_running, self.mat_for)
+            remarks += self._waits.look(
+                recording, ended, self.state is RunPhase.RUNNING, self.mat_for
+            )
         rows = recording.rows.take(ROWS_A_POLL)
         prompt = self.run.waiting_for_input if self.run and self.in_run else None
         return RunUpdate(

@@ -14,6 +14,7 @@ from tuisim.base.errors import TuisimError
 from tuisim.engine import protocol
 from tuisim.engine.core.sensors import column_names
 from tuisim.tasks.reasons.reason import ReasonKind
+from tuisim.tasks.reasons.waiting import describe_so_far
 
 if TYPE_CHECKING:
     from tuisim.app.actions import ActionContext
@@ -205,7 +206,7 @@ def _say_nothing_wrong(context: ActionContext) -> str:
     recording = context.runs.timeline.recording
     if recording is None or not context.runs.in_run:
         return reasons.NO_REASON
-    return reasons.describe_so_far(recording)
+    return describe_so_far(recording)
 
 
 def propose_branch(

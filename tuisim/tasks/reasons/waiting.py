@@ -1,4 +1,4 @@
-"""Says once in a run, while the robot stands still or at the end, what the program waits for."""
+"""Says while a run goes on what its program is busy with: once what it waits for, when the robot stands still."""
 
 from __future__ import annotations
 
@@ -76,3 +76,19 @@ def _build_recorded(recording: Recording, open_mat: Callable[[RunSpec], Field | 
         actions=recording.actions(),
         open_mat=lambda: open_mat(recording.spec),
     )
+
+
+def describe_so_far(recording: Recording) -> str:
+    """Return what a program that goes on is busy with, when there is no reason, with ids of actions in braces."""
+    import numpy as np
+
+    hz, last = recording.spec.profile.tick_hz, recording.newest
+    records = recording.telemetry.array(max(0, last - round(WINDOW_S * hz)))
+    lines = np.unique(records["line"][records["line"] > 0]).tolist()
+    where = f"lines {lines[0]} to {lines[-1]}" if len(lines) > 1 else f"line {max([0, *lines])}"
+    robot = (
+        "the robot stands still in"
+        if is_standing(recording.telemetry, recording.spec)
+        else "it is in"
+    )
+    return f"Nothing wrong until {last / hz:.2f} s: {robot} {where}. {{pause}} goes on"
