@@ -13,6 +13,7 @@ import pytest
 from tests.cases import cases
 from tests.running import over
 from tests.tasks.test_pool import LOGS, task
+from tuisim.base.errors import LogError
 from tuisim.base.faults import report_file
 from tuisim.engine.runs import temporary
 from tuisim.engine.runs.handle import RunOptions, start_run
@@ -147,6 +148,17 @@ def test_a_fault_of_tuisim_is_a_result_with_a_report(
     )
     assert "in _run_task" in report_file().read_text()
     assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("step", ["write_end", "adopt"])
+def test_a_run_that_cannot_be_stored_counts(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, step: str
+) -> None:
+    """Its program could have seen to that."""
+    owner = {"write_end": temporary.TemporaryRun, "adopt": RunStore}[step]
+    monkeypatch.setattr(owner, step, MagicMock(side_effect=LogError("cannot be stored")))
+    result = execute(replace(task("1 / 0"), keep=Keep.ALL), tmp_path)
+    assert (result.end, result.run_id) == ("raised", "")
 
 
 def test_a_result_that_cannot_be_sent_is_told() -> None:

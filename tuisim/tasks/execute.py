@@ -150,8 +150,12 @@ def _is_kept(task: Task, run: StoredRun, ended: Ended, judgements: Sequence[Judg
 
 
 def _keep(temporary: TemporaryRun, ended: Ended) -> str:
-    temporary.write_end(ended)
-    return RunStore().adopt(temporary.folder).id
+    """Store a run; return its id, or none if it cannot be stored: it has been judged, and counts."""
+    try:
+        temporary.write_end(ended)
+        return RunStore().adopt(temporary.folder).id
+    except LogError:
+        return ""
 
 
 def build_unjudged(task: Task, why: str) -> Result:

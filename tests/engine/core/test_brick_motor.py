@@ -50,6 +50,23 @@ def test_a_move_backwards_ends_at_its_goal() -> None:
     assert motor.resting
 
 
+@pytest.mark.parametrize("backwards", [False, True])
+def test_a_motor_whose_count_is_set_beyond_its_goal_does_not_jump(backwards: bool) -> None:
+    sign = -1.0 if backwards else 1.0
+    robot = RobotSpec()
+    sim = simulation_of(RunSpec(robot, WorldSpec(), PROFILES["robolab"]), MemorySink())
+    for motor in sim.motors:
+        assert isinstance(motor, BrickMotor)
+        motor.run_to(sign * 360.0, 100.0, backwards)
+        motor.position_deg = sign * 5000.0
+    before = sim.pose
+    sim.advance(20)
+    assert sim.pose == before
+    assert [(motor.position_deg, motor.mode) for motor in sim.motors] == [
+        (sign * 5000.0, STOPPED)
+    ] * 2
+
+
 def test_a_move_until_a_tick_ends_with_it() -> None:
     sim, motor = arm()
     motor.run_until(100.0, 7)

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import nan
+from math import inf, nan
+from random import Random
 from typing import Any
 
 import pytest
@@ -11,7 +12,8 @@ import pytest
 from tests.engine.runs.random_programs import draw_program
 from tests.running import Done, Run
 from tuisim.base.errors import LogError
-from tuisim.engine.core.commands.calls import Call, SimulationCommand
+from tuisim.engine.core.commands.calls import MAX_VALUES, Call, SimulationCommand
+from tuisim.engine.core.commands.table import CALLS
 from tuisim.engine.core.profile import PROFILES
 from tuisim.engine.core.spec import RobotSpec, RunSpec, WorldSpec
 from tuisim.engine.core.tick_record import TICK_FIELDS
@@ -95,6 +97,7 @@ def _replay(*commands: tuple[int, int, Call, tuple[float, ...]], profile: str = 
     [
         ((0, 0, Call.RUN, (1051.0,)), "has a value that is not allowed"),
         ((0, 0, Call.RUN, (nan,)), "has a value that is not allowed"),
+        ((0, 0, Call.RUN_UNTIL, (1.0, inf)), "has a value that is not allowed"),
         ((0, 2, Call.STOP, ()), "is for a part that the robot does not have"),
         ((0, 0, Call.MOVE_BASE, (1.0, 1.0, 0.0)), "no motor of this profile takes"),
         ((2_000_000_000, 0, Call.STOP, ()), "is after the end of the run"),
@@ -118,3 +121,45 @@ def test_commands_cost_time() -> None:
     stop = 0, Call.STOP, ()
     with pytest.raises(LogError, match=r"at 0\.10 s there is a command that the time is too short"):
         _replay(*[(100_000_000, *stop)] * 10_001)
+
+
+ODD = (0.0, 0.5, 1.0, 2.0, 3.0, 100.0, 360.0, 1e6, 1e9, 2.0**53, 5e-324, 1e-300)
+FASTEST_MM_S = 1000.0
+"""No robot is so fast."""
+
+
+def _draw_commands(random: Random, profile: str) -> list[SimulationCommand]:
+    """Return commands in their order, with values that the record of commands may have."""
+    law, commands, time_ns = PROFILES[profile].motor_law, [], 0
+    calls = [call for call, spec in CALLS.items() if law in spec.laws]
+    for _ in range(random.randint(1, 12)):
+        time_ns += random.choice((0, 1, 10**6, 10**7, 10**8))
+        call = random.choice(calls)
+        values = [
+            random.choice([one for odd in ODD for one in (odd, -odd) if low <= one <= high])
+            if random.random() < 0.6
+            else random.uniform(max(low, -2000.0), min(high, 2000.0))
+            for low, high in CALLS[call].ranges
+        ]
+        if CALLS[call].may_be_missing and random.random() < 0.3:
+            values[random.randrange(len(values))] = nan
+        values += [0.0] * (MAX_VALUES - len(values))
+        commands.append(SimulationCommand(time_ns, random.choice((0, 1)), call, tuple(values)))
+    return commands
+
+
+@pytest.mark.parametrize("profile", sorted(PROFILES))
+def test_no_commands_break_the_simulation_or_the_laws_of_its_motors(profile: str) -> None:
+    import numpy as np
+
+    spec = RunSpec(RobotSpec(), WorldSpec(), PROFILES[profile])
+    hz, random = spec.profile.tick_hz, Random(29)
+    for _ in range(60):
+        commands = _draw_commands(random, profile)
+        try:
+            ticks = replay(spec, commands, (), commands[-1].time_ns * hz // 10**9 + hz)
+        except LogError:
+            continue
+        records = np.frombuffer(bytes(ticks.telemetry), np.dtype(list(TICK_FIELDS)))
+        ways_mm = np.hypot(np.diff(records["x_mm"]), np.diff(records["y_mm"]))
+        assert np.all(ways_mm * hz < FASTEST_MM_S), commands

@@ -69,6 +69,8 @@ CLASS = {
     "tells": "first = colorLeft.reflected_light_intensity_pc\n"
     + LOOK
     + "if 300 < tank_drive.left_motor.position < 400:\n    raise ValueError('secret 4711')\n",
+    "dies": "import os, signal\n"
+    "tank_drive.on_for_rotations(30, 30, 3.5)\nprint('black')\nos.kill(os.getpid(), signal.SIGKILL)\n",
     "hangs": LOOK.replace(
         "off()", "off()\nwhile 300 < tank_drive.left_motor.position < 400:\n    x = 1"
     ),
@@ -135,6 +137,12 @@ def test_a_program_that_does_not_end_in_another_world_loses_what_counts_there(
         "in the other direction: stopped at the limit of 120 s"
     )
     assert not [word for word in ("stopped", "direction", "120") if word in told["hangs"]]
+
+
+def test_a_program_that_hangs_at_its_end_leaves_no_run_out(tmp_path: Path, here: Command) -> None:
+    """What fits the known world only would not be seen otherwise."""
+    marks, _ = _mark(tmp_path, here, "dies")
+    assert (marks["points"]["dies"], marks["robustness"]["dies"]) == (1, 0)
 
 
 PRESSED = """\

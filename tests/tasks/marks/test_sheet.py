@@ -388,13 +388,28 @@ def test_a_class_that_was_interrupted_has_rows_without_runs() -> None:
 def test_a_run_that_this_machine_could_not_make_says_nothing_about_the_student() -> None:
     outcomes = {
         "ada": [*OUTCOMES["ada"], Outcome(4, "", "too many open files")],
-        "ben": [Outcome(0, "disk_full", "no space")],
+        "ben": [Outcome(0, "", "no space")],
     }
     sheet: Sheet = sheet_of("", COLUMNS, range(5), STUDENTS[:2], outcomes)
     assert [(in_words(row.points), row.runs, row.reason) for row in sheet.rows] == [
         ("10", 4, ""),
         ("?", 0, "could not be judged: no space"),
     ]
+
+
+@pytest.mark.parametrize(
+    "missing",
+    [
+        Outcome(4, "disk_full", "the recording cannot grow: No space left on device"),
+        Outcome(4, "", "could not be judged: OverflowError: inf"),
+    ],
+)
+def test_who_could_choose_which_runs_count_has_no_points(missing: Outcome) -> None:
+    earlier = [*OUTCOMES["ada"], Outcome(5, "", "too many open files")]
+    sheet = sheet_of("", COLUMNS, range(6), STUDENTS[:1], {"ada": [*earlier, missing]})
+    (row,) = sheet.rows
+    why = missing.failure.removeprefix("could not be judged: ")
+    assert (in_words(row.points), row.reason) == ("?", f"could not be judged: {why}")
 
 
 def test_a_run_of_which_nothing_is_recorded_has_no_points_and_says_why() -> None:

@@ -287,6 +287,10 @@ class BrickMotor:
 
     def _step_to_goal(self, turned: float) -> float:
         left = (self.goal_deg - self.position_deg) * self.sign
+        if left < 0.0:
+            # Its count was set beyond the goal: there is no way to go, and no jump back.
+            self.stop()
+            return 0.0
         if turned * self.sign >= left:
             turned = self.goal_deg - self.position_deg
             self.position_deg = self.goal_deg

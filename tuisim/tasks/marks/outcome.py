@@ -14,6 +14,7 @@ from pathlib import Path
 
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import printable, shortened
+from tuisim.base.faults import UNJUDGED
 from tuisim.base.source import source_lines, user_python_path
 from tuisim.engine.protocol import End
 from tuisim.tasks.goals.judgement import GoalState, Judgement
@@ -92,9 +93,19 @@ class Outcome:
         return bool(self.end) and self.end != End.DISK_FULL
 
     @property
+    def is_in_doubt(self) -> bool:
+        """Whether it does not count, and the program may have seen to that: it would leave out a run that it loses."""
+        return self.end == End.DISK_FULL or (not self.end and self.failure.startswith(UNJUDGED))
+
+    @property
     def gave_up(self) -> bool:
-        """Whether it hung, flooded or died, so that further seeds would only cost as much time again."""
-        return self.end in _GIVEN_UP
+        """Whether it hung, flooded or died with nothing earned, so that further runs would only cost as much time.
+
+        One that has met a goal must meet it in the other runs, too.
+        """
+        return self.end in _GIVEN_UP and not any(
+            goal.met and not goal.is_penalty for goal in self.goals
+        )
 
 
 def outcome_of(result: Result, seed: int, folder: Path, world: TrialWorld | None = None) -> Outcome:
@@ -146,7 +157,8 @@ def merged(
 ) -> list[Outcome]:
     """Return for each seed what came out of it: a goal is met if it is met in every world where it counts.
 
-    One that takes points off is met if it is in any. Seeds are left out for which a run is missing, or does not count.
+    One that takes points off is met if it is in any. Seeds are left out for which a run is missing, or does not count;
+    all are if one is in doubt.
     Where the program gave up with the first seed, so it does with the others.
 
     Args:
@@ -154,6 +166,8 @@ def merged(
         seeds: Those of the marking.
         worlds: The worlds, the first one first.
     """
+    if any(one.is_in_doubt for one in outcomes):
+        return []
     known = {(one.world, one.seed): one for one in outcomes}
     gave_up = {one.world: one for one in outcomes if one.gave_up and one.seed == seeds[0]}
     found = []

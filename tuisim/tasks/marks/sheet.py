@@ -216,8 +216,11 @@ def row_of(
 def _build_empty_row(
     student: Student, columns: Sequence[Goal], outcomes: Sequence[Outcome]
 ) -> SheetRow:
-    """Return the row of a student of whom no run is known; the points are NaN unless that is the student's doing."""
-    failed = next((one for one in outcomes if not one.counts), None)
+    """Return the row of a student without marks; the points are NaN unless that is the student's doing."""
+    failed = next(
+        (one for one in sorted(outcomes, key=lambda one: not one.is_in_doubt) if not one.counts),
+        None,
+    )
     reason = student.problem or NOT_RUN
     if failed or student.is_unread:
         reason = (

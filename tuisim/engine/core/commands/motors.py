@@ -69,7 +69,13 @@ def set_backwards(sim: Simulation, _time_ns: int, part: int, values: tuple[float
 
 
 def set_roll(sim: Simulation, _time_ns: int, part: int, values: tuple[float, ...]) -> None:
-    """Let the wheel roll as the encoder counts, 1, or the other way, -1."""
+    """Let the wheel roll as the encoder counts, 1, or the other way, -1.
+
+    Raises:
+        ValueError: it is neither.
+    """
     motor = _find_motor(sim, part)
     assert isinstance(motor, BrowserMotor)
+    if abs(values[0]) != 1.0:
+        raise ValueError(f"no direction: {values[0]!r}")
     motor.roll_sign = values[0]

@@ -95,8 +95,15 @@ def move(sim: Simulation, time_ns: int, part: int, values: tuple[float, ...]) ->
 
 
 def follow(sim: Simulation, _time_ns: int, part: int, values: tuple[float, ...]) -> None:
-    """Follow the controller, which has just got its trajectory, with an ending."""
-    _find_motor(sim, part).follow(ending=_find_ending(values, 0))
+    """Follow the controller, which has just got its trajectory, with an ending.
+
+    Raises:
+        ValueError: it has got none.
+    """
+    motor = _find_motor(sim, part)
+    if motor.control.trajectory is None:
+        raise ValueError("there is no trajectory to follow")
+    motor.follow(ending=_find_ending(values, 0))
 
 
 def limit_duty(sim: Simulation, _time_ns: int, part: int, values: tuple[float, ...]) -> None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from math import inf
 from typing import TYPE_CHECKING
 
 from tuisim.base.data_class import dataclass
@@ -52,7 +51,7 @@ CALLS: Mapping[Call, CallSpec] = {
         robot.plug, ((0.0, robot.PART_CODES - 1.0),) * MAX_VALUES, may_be_missing=True
     ),
     Call.RUN: CallSpec(motors.start, (_ANY,), DRIVEN_LAWS),
-    Call.RUN_UNTIL: CallSpec(motors.start_timed, (_ANY, (-inf, inf)), DRIVEN_LAWS),
+    Call.RUN_UNTIL: CallSpec(motors.start_timed, (_ANY, _ANY), DRIVEN_LAWS),
     Call.RUN_TO: CallSpec(motors.start_move, (_ANY, _ANY, _FLAG), DRIVEN_LAWS),
     Call.STOP: CallSpec(motors.stop, (), DRIVEN_LAWS),
     Call.SET_COUNT: CallSpec(motors.set_count, (_ANY,), DRIVEN_LAWS),
