@@ -108,9 +108,25 @@ while wheel.rotations < 360:
 """
 
 
+GREYS = """\
+# %%sim_magic -b Grey_bands -x 150 -y 500
+from pybricks.ev3devices import ColorSensor, Motor
+from pybricks.parameters import Color, Port
+from pybricks.robotics import DriveBase
+eye = ColorSensor(Port.S3)
+DriveBase(Motor(Port.B), Motor(Port.C), 56, 114).drive(300, 0)
+while eye.color() != Color.RED:
+    pass
+"""
+
+
 @cases(
     "text, words",
     {
+        "no colour": (
+            GREYS,
+            "the colour sensor on in3 to see red: it saw only black, blue, no colour, white",
+        ),
         "a value": (OLD_LIBRARY, "the colour sensor on in2 to read 3 or less: it stayed at 85"),
         "turns": (
             TURNS_OF_A_WHEEL,

@@ -411,7 +411,7 @@ def _name_seen(loop: LoopEnd, codes: Array) -> list[str]:
     """Return the colours that were seen: as the program reads them if it compares them with a text."""
     names = {COLOR_NAMES[int(code)]: f"{code:g}" for code in codes}
     if not _is_text(loop):
-        return sorted(name.lower() for name in names)
+        return sorted("no colour" if name == COLOR_NAMES[0] else name.lower() for name in names)
     return sorted(names.values() if loop.attribute == "color" else map(repr, names))
 
 
