@@ -7,7 +7,7 @@ import pytest
 from tests.app.analyser.logs import long_log, model_of, wide_log
 from tests.cases import cases
 from tuisim.analysis.chart import event_marks
-from tuisim.analysis.events import events_of, thresholds_of
+from tuisim.analysis.events import Event, events_of, thresholds_of
 from tuisim.app.analyser.panes import PANES, pane_lines
 from tuisim.base.errors import LogError
 
@@ -29,7 +29,9 @@ def test_where_variables_cross_a_value(
     log = long_log()
     found = events_of(log, thresholds_of(text, log))
     assert [
-        (event.variable, event.crossing.rising, event.crossing.time_s, event.row) for event in found
+        (event.variable, event.crossing.rising, event.crossing.time_s, event.row)
+        for event in found
+        if isinstance(event, Event)
     ] == events
 
 
@@ -44,13 +46,21 @@ def test_what_is_no_threshold(text: str, said: str) -> None:
 def test_events_stand_where_they_are_in_the_chart_and_in_the_pane() -> None:
     model = model_of(long_log(runs=2))
     model.events.thresholds = thresholds_of("Colour < 45", model.log)
-    assert [event.variable for event in model.events.found(model.log)] == ["Colour #1", "Colour #2"]
+    assert [row[0] for row in PANES["events"].rows(model)] == ["Colour #1", "Colour #2"]
     # The second run takes twice the time, until both are laid over each other at the event.
     assert event_marks(model, (0.0, 18.0), 19) == "    ▼    ▼         "
     model.align("Colour < 45")
     assert event_marks(model, (-9.0, 9.0), 19).strip() == "▼"
     pane = PANES["events"]
-    assert list(pane.rows(model)[0]) == ["Colour #1", "below", "4.500", "–", "40", "11", "45"]
+    assert list(pane.rows(model)[0]) == [
+        "Colour #1",
+        "below",
+        "4.500",
+        "–",
+        "40",
+        "11",
+        "Colour < 45",
+    ]
     grown = model_of(long_log(runs=3))
     grown.restore(model)
     assert len(grown.events.found(grown.log)) == 3

@@ -29,6 +29,7 @@ from tuisim.app.snapshot import RunPhase, Snapshot
 from tuisim.app.timeline import Timeline, find
 from tuisim.base.errors import ConfigError
 from tuisim.engine.protocol import End
+from tuisim.engine.runs.records import Mark
 from tuisim.engine.runs.views import instant_of
 
 PEN = LOGS.replace("tank_drive.on", "print('off we go')\ntank_drive.on", 1)
@@ -276,6 +277,24 @@ async def test_words_find_their_instants() -> None:
         )
         assert find("sample Colour back", timeline) == max(r.tick for r in rows if r.tick < dark)
         assert find("sample", timeline) == min(r.tick for r in rows if r.tick > dark)
+
+
+async def test_commands_are_marked_and_found_and_told() -> None:
+    async with a_run() as (pilot, app):
+        timeline, commands = app.run_controller.timeline, recording_of(app).commands
+        ticks = [commands.tick(number) for number in commands.find_events()]
+        assert len(ticks) >= 2 and (ticks[0], Mark.COMMAND) in timeline.marks()
+        stops = [commands.tick(number) for number in commands.find_events("stop")]
+        timeline.go(1)
+        assert find("command stop", timeline) == min(tick for tick in stops if tick > 1)
+        assert find("command back", timeline) == max(tick for tick in ticks if tick < 1)
+        with pytest.raises(ConfigError, match=re.escape("no command pen after 0.01 s")):
+            find("command pen", timeline)
+        await pilot.press("g")
+        app.screen.query_one(Input).value = "command right run first"
+        await pilot.press("enter")
+        asked = "0.01 s, right motor C: run 525 °/s → mean 495 °/s"
+        await until(pilot, lambda: asked in notices(app))
 
 
 async def test_a_column_finds_the_tick_at_which_it_becomes_so() -> None:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from tuisim.analysis.events import CommandRow
 from tuisim.analysis.traces import DISTANCE, LogTrace, sample_and_hold
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import LogError, printable
@@ -101,12 +102,15 @@ def event_marks(model: Model, limits: Limits, columns: int) -> str:
     """Return a line of text with a mark in each column of the chart that has events."""
     line = [" "] * columns
     for event in model.events.found(model.log):
-        trace, crossing = model.traces.named(event.variable), event.crossing
-        place = crossing.time_s + float(
-            trace.places[crossing.at] - trace.series.time_s[crossing.at]
-        )
+        if isinstance(event, CommandRow):
+            place, mark = model.find_place(event.row, event.time_s), "╷"
+        else:
+            trace, crossing = model.traces.named(event.variable), event.crossing
+            place = crossing.time_s + float(
+                trace.places[crossing.at] - trace.series.time_s[crossing.at]
+            )
+            mark = "▲" if crossing.rising else "▼"
         if limits[0] <= place <= limits[1]:
             column = min(max(column_of(place, limits, columns), 0), columns - 1)
-            mark = "▲" if crossing.rising else "▼"
             line[column] = mark if line[column] in (" ", mark) else "◆"
     return "".join(line)

@@ -1,10 +1,11 @@
-"""Events: where a variable crosses a threshold."""
+"""Events: where a variable crosses a threshold, and what the program asked of motors and sensors."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from functools import cached_property
+from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
@@ -18,9 +19,11 @@ from tuisim.engine.core.conditions import (
     condition_in,
 )
 from tuisim.engine.runs.arrays import FloatArray
+from tuisim.engine.runs.command_events import CommandEvent, CommandIndex, parse_command_search
 from tuisim.logs.signals import known_in_order
 
 if TYPE_CHECKING:
+    from tuisim.engine.runs.run_folder import StoredRun
     from tuisim.logs.log import Log, Series
 
 
@@ -102,7 +105,7 @@ def _meets(
 
 _OPERATORS = (Operator.LESS, Operator.GREATER, Operator.EQUAL)
 THRESHOLD_FORM = f"{comparison_form(_OPERATORS)}, such as `Colour > 50 +- 2`; `=` for both ways"
-FORM = f"{THRESHOLD_FORM}; several with `,` between them"
+FORM = f"{THRESHOLD_FORM}; `command` for what the program asked; several with `,` between them"
 _WIDTH = re.compile(rf"(?P<comparison>.+?)(?:\+-|±)\s*(?P<width>{NUMBER})\s*")
 
 
@@ -150,6 +153,43 @@ class Event:
     """Time since the variable's previous event; NaN for the first."""
 
 
+@dataclass(frozen=True, slots=True)
+class CommandChoice:
+    """A choice of what the program asked of motors and sensors."""
+
+    words: str
+    """In the names of part and call; empty for all."""
+
+    def __str__(self) -> str:
+        return f"command {self.words}".rstrip()
+
+
+EventChoice: TypeAlias = Threshold | CommandChoice
+
+
+@dataclass(frozen=True)
+class CommandRow:
+    """What a program asked, once or repeatedly, and its place in a log."""
+
+    index: CommandIndex
+    number: int
+    """Of the event in the index."""
+    row: int
+    """Row of the table with the first sample since then."""
+    run: int
+    """Number of the run in the log, 0 if there is only one."""
+
+    @property
+    def time_s(self) -> float:
+        """When it was asked first."""
+        return self.index.time_s(self.number)
+
+    @cached_property
+    def event(self) -> CommandEvent:
+        """What it was: read when it is shown, and then kept."""
+        return self.index.event(self.number)
+
+
 def threshold_of(text: str) -> Threshold | None:
     """Return the threshold in a text such as `Colour < 50`, None if it is none."""
     match = _WIDTH.fullmatch(text)
@@ -161,15 +201,18 @@ def threshold_of(text: str) -> Threshold | None:
     return Threshold(found.name, found.operator, found.value, hysteresis=width)
 
 
-def thresholds_of(text: str, log: Log) -> tuple[Threshold, ...]:
-    """Return the thresholds in a text, see `FORM`; none in an empty one.
+def thresholds_of(text: str, log: Log) -> tuple[EventChoice, ...]:
+    """Return the events that a text chooses, see `FORM`; none in an empty one.
 
     Raises:
         LogError: one is not a threshold, or there is no such variable.
     """
-    found = []
+    found: list[EventChoice] = []
     for part in text.split(",") if text.strip() else ():
         threshold = threshold_of(part)
+        if threshold is None and (words := parse_command_search(part)) is not None:
+            found.append(CommandChoice(words))
+            continue
         if threshold is None:
             raise LogError(f"no threshold: {part.strip()!r}", FORM)
         names = dict.fromkeys(name.partition(" #")[0] for name in log.names)
@@ -181,11 +224,24 @@ def thresholds_of(text: str, log: Log) -> tuple[Threshold, ...]:
     return tuple(found)
 
 
-def events_of(log: Log, thresholds: Sequence[Threshold]) -> list[Event]:
-    """Return where variables cross thresholds, in the order of the rows."""
-    found = []
-    series = [log.series(name) for name in log.names] if thresholds else []
-    for threshold in thresholds:
+def events_of(
+    log: Log, choices: Sequence[EventChoice], runs: Sequence[StoredRun] = ()
+) -> list[Event | CommandRow]:
+    """Return where variables cross thresholds, and what programs asked, in the order of the rows.
+
+    Args:
+        log: The log.
+        choices: Which events are wanted.
+        runs: The runs of the log; none for a file.
+    """
+    found: list[Event | CommandRow] = []
+    series = [log.series(name) for name in log.names] if choices else []
+    for threshold in choices:
+        if isinstance(threshold, CommandChoice):
+            for number, run in enumerate(runs, 1):
+                of_run = [each for each in series if each.run in (0, number)]
+                found += _find_commands(run, threshold, of_run, number if len(runs) > 1 else 0)
+            continue
         for one in threshold.among(series):
             before_s = float("nan")
             for crossing in threshold.crossings(one):
@@ -195,20 +251,52 @@ def events_of(log: Log, thresholds: Sequence[Threshold]) -> list[Event]:
     return sorted(found, key=lambda event: event.row)
 
 
+def _find_commands(
+    run: StoredRun, choice: CommandChoice, series: Sequence[Series], run_number: int
+) -> list[CommandRow]:
+    """Return what the program of a run asked.
+
+    Args:
+        run: The run.
+        choice: What is wanted of it.
+        series: The variables of the run in the log.
+        run_number: As of `CommandRow.run`.
+    """
+    index = CommandIndex(run)
+    index.read_all()
+    numbers = index.find_events(choice.words)
+    rows = np.concatenate([each.rows for each in series]) if series else np.empty(0, np.int64)
+    if not len(rows):
+        return []
+    order = np.argsort(rows, kind="stable")
+    times_s = np.maximum.accumulate(np.concatenate([each.time_s for each in series])[order])
+    places = np.searchsorted(times_s, [index.time_s(number) for number in numbers])
+    rows = rows[order][np.minimum(places, len(rows) - 1)]
+    pairs = zip(numbers, rows.tolist(), strict=True)
+    return [CommandRow(index, number, row, run_number) for number, row in pairs]
+
+
 class Events:
-    """The current events; they are searched again when the log changes."""
+    """The current events; they are searched again when the log changes.
 
-    def __init__(self) -> None:
-        self.thresholds: tuple[Threshold, ...] = ()
-        self._of: tuple[Log | None, tuple[Threshold, ...]] = (None, ())
-        self._found: list[Event] = []
+    Args:
+        runs: As of `events_of`.
+    """
 
-    def set(self, log: Log, thresholds: tuple[Threshold, ...], found: list[Event]) -> None:
+    def __init__(self, runs: Sequence[StoredRun] = ()) -> None:
+        self.runs = runs
+        self.thresholds: tuple[EventChoice, ...] = ()
+        self._of: tuple[Log | None, tuple[EventChoice, ...]] = (None, ())
+        self._found: list[Event | CommandRow] = []
+
+    def set(
+        self, log: Log, thresholds: tuple[EventChoice, ...], found: list[Event | CommandRow]
+    ) -> None:
         """Set the events."""
         self.thresholds, self._of, self._found = thresholds, (log, thresholds), found
 
-    def found(self, log: Log) -> list[Event]:
+    def found(self, log: Log) -> list[Event | CommandRow]:
         """Return the events of a log, in the order of its rows."""
         if self._of[0] is not log or self._of[1] != self.thresholds:
-            self.set(log, self.thresholds, events_of(log, self.thresholds))
+            self.set(log, self.thresholds, events_of(log, self.thresholds, self.runs))
         return self._found

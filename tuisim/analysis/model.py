@@ -68,7 +68,7 @@ class Model:
         """The bands of the reports, by variable."""
         self._reported: tuple[list[BandReport], list[Band]] = ([], [])
         """Cache of the bands of the latest reports."""
-        self.events = Events()
+        self.events = Events(opened.runs)
         self.definitions: dict[str, str] = {}
         """Definitions of derived variables as typed, by name."""
         self._words: dict[str, str] = {}
@@ -105,6 +105,14 @@ class Model:
         """The x position of the current row: its time, unless runs are aligned otherwise."""
         trace = self.trace_of_row(self.row)
         return float(trace.places[self._sample(trace, self.row)])
+
+    def find_place(self, row: int, time_s: float) -> float:
+        """Return the x position of a time in the run of a row."""
+        if self.alignment == TIME:
+            return time_s
+        trace = self.trace_of_row(row)
+        sample = self._sample(trace, row)
+        return time_s + float(trace.places[sample] - trace.series.time_s[sample])
 
     def time_of(self, row: int) -> float:
         """Return the time of a row in its run."""

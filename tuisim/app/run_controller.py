@@ -568,7 +568,7 @@ class RunController:
             remarks += self._waits.look(
                 recording, ended, self.state is RunPhase.RUNNING, self.mat_for
             )
-        rows = recording.rows.take(ROWS_A_POLL)
+        rows = recording.take_rows(ROWS_A_POLL)
         prompt = self.run.waiting_for_input if self.run and self.in_run else None
         return RunUpdate(
             rows, ended, stood, tuple(spoken), prompt, branched, tuple(pauses), tuple(remarks)

@@ -23,6 +23,7 @@ from tuisim.engine.core.conditions import (
 from tuisim.engine.core.field import Field
 from tuisim.engine.core.sensors import column_names, columns_of, named_column
 from tuisim.engine.runs.brick_state import BrickState, face_after
+from tuisim.engine.runs.command_events import parse_command_search
 from tuisim.engine.runs.frames import begins, column_values, held
 from tuisim.engine.runs.records import TEXT_STREAMS, Mark, OutputRow
 from tuisim.engine.runs.samples import parse_sample, rows_when
@@ -111,7 +112,8 @@ class Timeline:
         if self.recording is None:
             return []
         done = [(action.tick, Mark.ACTION) for action in self.recording.known_actions]
-        return [*self.recording.rows.marks, *done, *((tick, Mark.BREAK) for tick in self.breaks)]
+        breaks = ((tick, Mark.BREAK) for tick in self.breaks)
+        return [*self.recording.rows.marks, *self.recording.commands.marks, *done, *breaks]
 
     # Navigation
 
@@ -162,6 +164,10 @@ _FORMS = (
         "left_red_pc < 50",
         "{which} tick at which a column becomes so; also left_color changes, gyro_deg > 90, x_mm …",
     ),
+    (
+        "command run",
+        "{which} command with these words, such as left stop, or pen; `command` alone: any",
+    ),
     ("print REGEX", "{which} printed line that matches the regular expression"),
     ("start, end", "the first and the latest instant"),
     ("… back, … first", "any of these but times: searched backwards, or from the start of the run"),
@@ -176,9 +182,14 @@ def forms(timeline: Timeline) -> list[tuple[str, str]]:
     return [(form, meaning.replace("{which}", which)) for form, meaning in _FORMS]
 
 
-_HINT = f"3.5, tick 120, line 12, sample NAME, sample {comparison_form()}, COLUMN < 50, print REGEX, start or end"
+_HINT = (
+    f"3.5, tick 120, line 12, sample NAME, sample {comparison_form()}, COLUMN < 50, command, "
+    "print REGEX, start or end"
+)
 _IN_FRONT = re.compile(r"^(back|first)\s+(.+)$", re.IGNORECASE)
 """The direction, where it stands in front."""
+_MAX_DESCRIBED = 3
+"""So many commands of one instant are told."""
 _SECONDS = re.compile(r"([0-9]+\.?[0-9]*|\.[0-9]+)\s*s?")
 
 
@@ -259,8 +270,20 @@ def find(
     )
     if word == "line" and rest.isdecimal():
         return _line(search, int(rest))
-    if (condition := _condition(word, rest, text)) is None:
+    condition = _condition(word, rest, text)
+    if condition is None and word == "command":
+        return _find_command(search, rest)
+    if condition is None:
         raise _refuse(text.strip(), recording)
+    return _find_condition(search, condition, mat)
+
+
+def _find_condition(search: _Search, condition: ValueCondition, mat: Field | None) -> int:
+    """Return the tick of a condition.
+
+    Raises:
+        ConfigError: there is none.
+    """
     try:
         match condition.source:
             case ValueSource.PRINT:
@@ -271,6 +294,20 @@ def find(
                 return _becomes(search, condition, mat)
     except ValueError as error:
         raise ConfigError(str(error), _HINT) from error
+
+
+def describe_commands(text: str, timeline: Timeline) -> str:
+    """Return what the program asked at the instant in view, if a text has searched for that; else nothing."""
+    words = parse_command_search(re.sub(r"\b(?:back|first)\b", "", text))
+    if words is None or timeline.recording is None:
+        return ""
+    commands, tick = timeline.recording.commands, timeline.tick
+    numbers = [number for number in commands.find_events(words) if commands.tick(number) == tick]
+    events = [commands.event(number) for number in numbers[:_MAX_DESCRIBED]]
+    texts = [f"{event.part}: {event.words}" for event in events]
+    if more := len(numbers) - len(events):
+        texts.append(f"{more} more")
+    return f"{timeline.time_s:.2f} s, {'; '.join(texts)}" if texts else ""
 
 
 def _condition(word: str, rest: str, text: str) -> ValueCondition | None:
@@ -315,6 +352,15 @@ def _line(search: _Search, line: int) -> int:
     if tick is None:
         hint = "only lines that let time pass, or print, can be found"
         raise ConfigError(f"line {line} does not run {search.words}", hint)
+    return tick
+
+
+def _find_command(search: _Search, words: str) -> int:
+    commands = search.recording.commands
+    commands.read_all()
+    tick = search.nearest([commands.tick(number) for number in commands.find_events(words)])
+    if tick is None:
+        raise ConfigError(f"no {f'command {words}'.rstrip()} {search.words}")
     return tick
 
 

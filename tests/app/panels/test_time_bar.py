@@ -30,6 +30,9 @@ def test_the_bar_has_cursor_and_marks() -> None:
     marks = mark_cells(bar, [(0, Mark.SAMPLE), (399, Mark.ERROR), (400, Mark.SAMPLE)], 21)
     text = "".join(run for run, _ in bar_cells(bar, marks, 21))
     assert text == "┷" + "━" * 9 + "▮" + "─" * 9 + "✗"
+    marks = mark_cells(bar, [(0, Mark.COMMAND), (400, Mark.COMMAND), (400, Mark.ACTION)], 21)
+    assert {column: sign for column, (sign, _) in marks.items()} == {0: "╷", 20: "◆"}
+    assert bar_cells(bar, marks, 21)[0][0] == "┯"
     assert [bar.tick_at(column, 21) for column in (0, 10, 20, 99)] == [0, 200, 400, 400]
 
 

@@ -25,6 +25,17 @@ def test_summary(here: Command, log: Path) -> None:
     assert (right["min"], right["first_s"], right["last_s"]) == (1.0, 0.0, 4.5)
 
 
+def test_events_are_what_the_program_asked(here: Command, log: Path) -> None:
+    here("run", "square")
+    rows = json.loads(here("log", "events", "last", "--when", "command left", "--json").stdout)
+    assert rows and {row["part"] for row in rows} == {"left motor B"}
+    assert any("°/s" in row["asked"] and "°" in row["came"] for row in rows)
+    table = here("log", "events", "last", "--when", "command left").stdout
+    assert table.split()[:2] == ["PART", "TIME"] and rows[-1]["asked"] in table
+    refused = here("log", "events", str(log), "--when", "command")
+    assert refused.returncode == 2 and "only runs have commands" in refused.stderr
+
+
 def test_reckoning_without_noise_is_exact(here: Command) -> None:
     here("run", "square", "-M", "300")
     here("log", "reckon", "last", "--out", "reckoned.csv")

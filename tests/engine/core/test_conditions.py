@@ -10,7 +10,7 @@ import numpy as np
 import pyarrow as pa
 import pytest
 
-from tuisim.analysis.events import FORM, threshold_of, thresholds_of
+from tuisim.analysis.events import FORM, Threshold, threshold_of, thresholds_of
 from tuisim.analysis.table import Rows, conditions_of
 from tuisim.app.timeline import find
 from tuisim.base.errors import ConfigError, LogError
@@ -151,6 +151,7 @@ def test_an_event_is_a_comparison_with_a_direction(
 ) -> None:
     log = Log("test", pa.table({"Colour": [60.0, 40.0, 60.0]}), Layout(values=("Colour",)))
     (threshold,) = thresholds_of(text, log)
+    assert isinstance(threshold, Threshold)
     if rising is None:
         # A negative width is read, and refused where it is used.
         assert threshold.hysteresis == -0.2

@@ -9,7 +9,7 @@ from tuisim.app import reasons
 from tuisim.app.branch import Branch, action_words
 from tuisim.app.setup.mat import mat_key
 from tuisim.app.snapshot import RunPhase
-from tuisim.app.timeline import find, forms
+from tuisim.app.timeline import describe_commands, find, forms
 from tuisim.base.errors import TuisimError
 from tuisim.engine import protocol
 from tuisim.engine.core.sensors import column_names
@@ -142,6 +142,8 @@ def ask_where(context: ActionContext) -> None:
         text = text or timeline.searched
         to_tick(context, find(text, timeline, field, first_at_end=True))
         timeline.searched = text
+        if words := describe_commands(text, timeline):
+            context.app.say(words)
 
     goes_on = (
         context.runs.state in (RunPhase.STARTING, RunPhase.RUNNING) and not context.runs.in_past

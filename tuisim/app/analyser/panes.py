@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Generic, TypeVar, overload
 from rich.style import Style
 from textual.worker import get_current_worker
 
-from tuisim.analysis.events import Event
+from tuisim.analysis.events import CommandRow, Event
 from tuisim.analysis.model import Model
 from tuisim.analysis.table import AT_ONCE
 from tuisim.app import background
@@ -115,7 +115,11 @@ def _band(band: Band) -> Cells:
     )
 
 
-def _event(event: Event) -> Cells:
+def _event(event: Event | CommandRow) -> Cells:
+    if isinstance(event, CommandRow):
+        command = event.event
+        part = f"{command.part} #{event.run}" if event.run else command.part
+        return part, "", f"{command.time_s:.3f}", "", "", f"{event.row + 1:,}", command.words
     crossing = event.crossing
     return (
         event.variable,
@@ -124,7 +128,7 @@ def _event(event: Event) -> Cells:
         _figure(event.since_s, ".3f"),
         _figure(crossing.value),
         f"{event.row + 1:,}",
-        event.threshold.level,
+        str(event.threshold),
     )
 
 
@@ -213,8 +217,9 @@ PANES: Mapping[str, Pane] = {
     "events": Pane(
         "Events",
         lambda model: _LazyRows(model.events.found(model.log), _event),
-        ("variable", "comes", "at s", "after s", "value", "row", "threshold"),
-        empty="No events: c asks for a threshold, such as Colour < 50",
+        ("variable", "comes", "at s", "after s", "value", "row", "event"),
+        empty="No events: c asks for a threshold, such as Colour < 50, or for commands",
+        wraps=True,
     ),
     "notes": Pane(
         "Notes",

@@ -15,6 +15,7 @@ from textual.containers import Horizontal, Vertical
 from textual.events import Event, Key, Resize
 from textual.widget import Widget
 
+from tuisim.analysis.events import CommandRow
 from tuisim.analysis.model import RECKONING, Model
 from tuisim.analysis.remembered import is_readable_again, read_doubtful, remember_choices
 from tuisim.analysis.source import LogRequest, opening
@@ -332,7 +333,8 @@ class LogScreen(ActionHost, ClosesOnce[None]):
         """Put the cursor on an event."""
         model = self.model
         event = model.events.found(model.log)[number]
-        model.selected = event.variable
+        if not isinstance(event, CommandRow):
+            model.selected = event.variable
         model.go_to_row(event.row)
         model.follow_cursor()
         if self.pane.name_shown == "events":

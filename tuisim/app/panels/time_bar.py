@@ -35,11 +35,12 @@ _MARKS: Mapping[Mark, tuple[str, Style]] = {
     Mark.BREAK: ("●", Style(color=palette.BREAKPOINT)),
     Mark.ACTION: ("◆", Style(color=palette.KEYWORD)),
     Mark.SAMPLE: ("╵", Style(color=palette.GREEN)),
+    Mark.COMMAND: ("╷", Style(color=palette.EVENT)),
 }
 
 
-_ON_LINE = {("╵", "━"): "┷", ("╵", "─"): "┴"}
-"""A sample's marker with the line of the bar through it, which so has no gaps."""
+_ON_LINE = {("╵", "━"): "┷", ("╵", "─"): "┴", ("╷", "━"): "┯", ("╷", "─"): "┬"}
+"""The marker of a sample, or of a command, with the line of the bar through it, which so has no gaps."""
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tuisim.analysis.events import THRESHOLD_FORM, Threshold, threshold_of
+from tuisim.analysis.events import (
+    THRESHOLD_FORM,
+    CommandChoice,
+    EventChoice,
+    Threshold,
+    threshold_of,
+)
 from tuisim.base.errors import ConfigError, LogError, counted
 from tuisim.commands.echo import (
     CsvOut,
@@ -25,9 +31,10 @@ from tuisim.commands.echo import (
     finite,
     tell,
 )
-from tuisim.commands.logs.sources import names_of, open_sources, the_source
+from tuisim.commands.logs.sources import is_file, names_of, open_sources, the_source
 from tuisim.engine.core.conditions import Operator
 from tuisim.engine.runs.arrays import FloatArray
+from tuisim.engine.runs.command_events import CommandIndex, parse_command_search
 from tuisim.logs import signals
 from tuisim.logs.arrow import unique_names
 from tuisim.logs.bands import BandReport, Column, band_report, in_words, items_of, width_in_words
@@ -122,8 +129,10 @@ def _joined(columns: Sequence[Column]) -> Column:
 
 
 def events(arguments: Arguments) -> int:
-    """Print where each variable crosses the threshold."""
+    """Print where each variable crosses the threshold, or what the programs of runs asked."""
     threshold = _threshold_of(arguments)
+    if isinstance(threshold, CommandChoice):
+        return _show_commands(arguments, threshold.words)
     if threshold.name:
         arguments.variable = (threshold.name,)
     rows: list[dict[str, Any]] = []
@@ -151,7 +160,30 @@ def events(arguments: Arguments) -> int:
     return 0
 
 
-def _threshold_of(arguments: Arguments) -> Threshold:
+def _show_commands(arguments: Arguments, words: str) -> int:
+    """Print what the programs of runs asked of motors and sensors.
+
+    Raises:
+        ConfigError: a log is a file, or there is none.
+        LogError: there is no such run.
+    """
+    if not arguments.words or any(map(is_file, arguments.words)):
+        raise ConfigError("only runs have commands", "a stored run such as `last`", key="events")
+    # Imported on demand: no other figures need stored runs.
+    from tuisim.engine.runs.store import RunStore
+
+    store, rows = RunStore(), []
+    for run in map(store.load_run, arguments.words):
+        index = CommandIndex(run)
+        index.read_all()
+        for number in index.find_events(words):
+            rows.append({"run": run.number, **asdict(index.event(number))})
+    formats = {"part": "", "time_s": ".3f", "count": "", "last_s": ".3f", "asked": "", "came": ""}
+    show_rows(rows, arguments, formats)
+    return 0
+
+
+def _threshold_of(arguments: Arguments) -> EventChoice:
     """Return the threshold that is asked for; its name is empty for every variable.
 
     Raises:
@@ -166,6 +198,8 @@ def _threshold_of(arguments: Arguments) -> Threshold:
     if arguments.variable:
         raise ConfigError("names the variable already", "leave --variable out", key="--when")
     threshold = threshold_of(arguments.when)
+    if threshold is None and (words := parse_command_search(arguments.when)) is not None:
+        return CommandChoice(words)
     if threshold is None:
         raise ConfigError(f"no threshold: {arguments.when!r}", THRESHOLD_FORM, key="--when")
     return replace(threshold, hysteresis=threshold.hysteresis or arguments.hysteresis)

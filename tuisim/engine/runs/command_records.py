@@ -8,13 +8,15 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator
+from contextlib import suppress
+from functools import cache
 from pathlib import Path
 from struct import Struct
 from typing import TYPE_CHECKING, Any
 
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import LogError
-from tuisim.base.regular_file import of_the_machine, read_regular
+from tuisim.base.regular_file import of_the_machine, open_regular, read_regular
 from tuisim.engine.core.commands.calls import MAX_VALUES, Call, SimulationCommand
 from tuisim.engine.runs.records import HEADER_BYTES, MappedWriter, read_header
 from tuisim.engine.runs.side_files import COMMANDS_FILE
@@ -94,6 +96,13 @@ class RecordedCommands:
             yield SimulationCommand(time_ns, part, _CALLS.get(call) or Call(call), tuple(values))
 
 
+@cache
+def _find_kind() -> np.dtype[Any]:
+    import numpy as np
+
+    return np.dtype([*COMMAND_FIELDS])
+
+
 def read_commands(folder: Path) -> RecordedCommands:
     """Return what the program of a run has changed in the simulation so far.
 
@@ -117,5 +126,20 @@ def read_commands(folder: Path) -> RecordedCommands:
     if size != COMMAND_RECORD.size:
         raise LogError("damaged: these are no commands", file=str(path))
     count = min(published, MAX_COMMANDS, (len(data) - HEADER_BYTES) // size)
-    rows = np.frombuffer(data, np.dtype([*COMMAND_FIELDS]), count, HEADER_BYTES)
+    rows = np.frombuffer(data, _find_kind(), count, HEADER_BYTES)
     return RecordedCommands(rows, published - count)
+
+
+def read_command_rows(folder: Path, first: int, count: int) -> Array:
+    """Return at most `count` rows of `COMMAND_FIELDS` from one on; none where the file has none, or is none."""
+    import numpy as np
+
+    kind, path = _find_kind(), folder / COMMANDS_FILE
+    with suppress(OSError, LogError), open_regular(path) as handle:
+        fd = handle.fileno()
+        size, published = read_header(os.pread(fd, HEADER_BYTES, 0), COMMANDS_MAGIC, str(path))
+        count = min(count, min(published, MAX_COMMANDS) - first)
+        if size == kind.itemsize and count > 0:
+            data = os.pread(fd, count * size, HEADER_BYTES + first * size)
+            return np.frombuffer(data, kind, len(data) // size)
+    return np.empty(0, kind)

@@ -19,6 +19,7 @@ from tuisim.engine.core.spec import NoiseSpec, RunSpec
 from tuisim.engine.core.state import Instant, MotorValues
 from tuisim.engine.core.tick_record import FLAG_LEFT_RUNNING, FLAG_RIGHT_RUNNING, TICK_RECORD
 from tuisim.engine.protocol import SetButtons, UserAction
+from tuisim.engine.runs.command_events import CommandIndex
 from tuisim.engine.runs.motor_records import read_motor_values
 from tuisim.engine.runs.records import SAMPLE_STREAMS, TEXT_STREAMS, Mark, OutputRow, Stream
 from tuisim.engine.runs.run_folder import StoredRun, noise_at, program_again
@@ -59,6 +60,8 @@ class Recording:
         self.telemetry: TelemetryView = source.telemetry
         self.output = source.output
         self.rows = RowIndex(source.output)
+        self.commands = CommandIndex(source)
+        """What the program asked of motors and sensors, as far as it has been read."""
         self.program = program_again(source.program, source.folder)
         self.known_actions: tuple[UserAction, ...] = (
             source.actions if isinstance(source, StoredRun) else ()
@@ -91,6 +94,15 @@ class Recording:
     def newest(self) -> int:
         """Tick of the newest record; -1 before the first."""
         return self.telemetry.count - 1
+
+    def take_rows(self, limit: int) -> list[OutputRow]:
+        """Read and return at most `limit` further rows of the output; read further commands, too.
+
+        Raises:
+            LogError: the recording is damaged.
+        """
+        self.commands.read_piece()
+        return self.rows.take(limit)
 
     def actions(self) -> tuple[UserAction, ...]:
         """Return the user's actions, as far as their file is not damaged."""

@@ -49,6 +49,8 @@ class Mark(StrEnum):
     """An action of the user."""
     SAMPLE = "sample"
     """A sample that has reached another level."""
+    COMMAND = "command"
+    """A command of the program that is no repetition."""
 
 
 class Stream(IntEnum):

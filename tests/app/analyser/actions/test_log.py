@@ -8,6 +8,8 @@ import pytest
 
 from tests.app.analyser.test_screen import open_analyser, text_of, typed
 from tests.app.app_help import LOGS, program, until
+from tuisim.analysis.chart import event_marks
+from tuisim.analysis.events import CommandRow
 from tuisim.app.dialogs.runs import Differences
 from tuisim.engine.core.spec import NoiseSpec
 from tuisim.engine.runs.handle import RunOptions, start_run
@@ -22,6 +24,22 @@ def noisy(run: StoredRun) -> StoredRun:
     handle = start_run(program(LOGS), spec, RunOptions(speed=0.0))
     handle.wait()
     return RunStore().load_run(handle.run_id)
+
+
+async def test_commands_are_events(run: StoredRun) -> None:
+    async with open_analyser(runs=(run.id, run.id)) as (pilot, screen, model):
+        await typed(pilot, "c", "=command right, Colour < 60", "enter")
+        events = model.events.found(model.log)
+        asked = [event for event in events if isinstance(event, CommandRow)]
+        assert 2 * len(asked) > len(events) > len(asked)
+        assert {event.event.part for event in asked} == {"right motor C"}
+        assert model.row == events[0].row and "╷" in text_of(pilot)
+        assert "right motor C #1" in text_of(pilot) and asked[0].event.asked in text_of(pilot)
+        selected = model.selected
+        screen.choose(events.index(asked[-1]))
+        assert (model.row, model.selected) == (asked[-1].row, selected)
+        model.align("distance")
+        assert event_marks(model, model.x_limits(), 40).count("╷") >= 1
 
 
 @pytest.mark.slow

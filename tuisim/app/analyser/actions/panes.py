@@ -6,7 +6,7 @@ import re
 from functools import partial
 from typing import TYPE_CHECKING
 
-from tuisim.analysis.events import Event, Threshold, events_of, thresholds_of
+from tuisim.analysis.events import CommandRow, Event, EventChoice, events_of, thresholds_of
 from tuisim.analysis.table import TableTask, TableView, conditions_of
 from tuisim.app.analyser.world import NO_POSES, has_poses
 from tuisim.base.errors import LogError
@@ -23,6 +23,8 @@ _THRESHOLDS = (
     ("Colour = 50", "both"),
     ("Colour = 50 +- 5", "only if it goes 5 beyond on either side"),
     ("Colour < 50, Left > 3", "several"),
+    ("command", "what the program of a run asked of motors and sensors, and what came of it"),
+    ("command left run", "only what has these words in the names of part and command"),
     ("(nothing)", "none"),
 )
 
@@ -42,15 +44,16 @@ def _search(screen: LogScreen, text: str) -> None:
     log = screen.model.log
     thresholds = thresholds_of(text, log)
 
-    def found(result: tuple[Log, tuple[Threshold, ...], list[Event]]) -> None:
+    def found(result: tuple[Log, tuple[EventChoice, ...], list[Event | CommandRow]]) -> None:
         # The log may have grown during the search: search again.
         screen.model.events.set(*result)
         screen.choose(0)
 
+    runs = screen.model.events.runs
     screen.work(
         "searching for events …",
         log.rows,
-        lambda _: (log, thresholds, events_of(log, thresholds)),
+        lambda _: (log, thresholds, events_of(log, thresholds, runs)),
         found,
     )
 
@@ -236,7 +239,7 @@ def event(screen: LogScreen, step: int) -> None:
     model = screen.model
     events = model.events.found(model.log)
     if not events:
-        screen.say("No events: c asks for a threshold, such as Colour < 50")
+        screen.say("No events: c asks for a threshold, such as Colour < 50, or for commands")
         return
     rows = [event.row for event in events]
     ahead = [

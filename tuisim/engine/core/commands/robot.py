@@ -45,8 +45,16 @@ def plug(sim: Simulation, _time_ns: int, _part: int, values: tuple[float, ...]) 
         ValueError: they are no parts.
         RobotError: they do not fit.
     """
-    parts = [_decode_part(int(code), sim.tick) for code in values if code == code]
-    sim.change_robot(plug_parts(sim.spec.robot, parts))
+    sim.change_robot(plug_parts(sim.spec.robot, decode_parts(values, sim.tick)))
+
+
+def decode_parts(values: Iterable[float], tick: int) -> list[PluggedPart]:
+    """Return the parts that `PLUG` plugs in at a tick.
+
+    Raises:
+        ValueError, IndexError: they are no parts.
+    """
+    return [_decode_part(int(code), tick) for code in values if code == code]
 
 
 def _decode_part(code: int, tick: int) -> PluggedPart:

@@ -1,0 +1,353 @@
+"""The commands of a run as events: what the program asked of a part, how often, and what came of it."""
+
+from __future__ import annotations
+
+import re
+from array import array
+from contextlib import suppress
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Protocol
+
+from tuisim.base.data_class import dataclass
+from tuisim.base.errors import TuisimError
+from tuisim.engine.core.commands.calls import MAX_VALUES, Call
+from tuisim.engine.core.commands.robot import decode_parts
+from tuisim.engine.core.plugged import plug_parts
+from tuisim.engine.core.profile import NS_PER_S
+from tuisim.engine.core.spec import RobotSpec, RunSpec
+from tuisim.engine.core.tick_record import FLAG_LEFT_RUNNING, FLAG_RIGHT_RUNNING
+from tuisim.engine.runs.command_records import read_command_rows
+from tuisim.engine.runs.command_words import CALL_WORDS, describe_command
+from tuisim.engine.runs.records import Mark
+
+if TYPE_CHECKING:
+    import numpy as np
+
+    from tuisim.engine.runs.views import TelemetryView
+
+    Array = np.ndarray[Any, Any]
+
+_REPEAT_NS = NS_PER_S // 4
+"""A call to a part that comes again within this time repeats the one before."""
+_MAX_EVENTS = 1 << 17
+"""Of a run; further commands are left out. At four a second, these are nine hours."""
+_PIECE = 1 << 15
+"""So many commands are read at a time."""
+_FINEST = 500
+"""Events closer than the elapsed time divided by this have one mark, so that marks stay few."""
+_STILL_DPS = 0.5
+"""A motor that is slower stands still."""
+_OF_PARTS = {Call.RESET_GYRO: "gyro", Call.MOVE_PEN: "pen", Call.PLUG: "ports"}
+_SPEEDS = frozenset(
+    (
+        Call.RUN,
+        Call.RUN_UNTIL,
+        Call.SET_SPEED,
+        Call.RUN_FOREVER,
+        Call.RUN_TIMED,
+        Call.RUN_DIRECT,
+        Call.SET_DUTY,
+        Call.RUN_FREELY,
+        Call.RUN_AT,
+    )
+)
+"""Calls that ask a motor for a speed or a power."""
+_GOALS = frozenset((Call.RUN_TO, Call.RUN_TO_ABS_POS, Call.HOLD_MILLI))
+"""Calls that ask a motor for a position."""
+_TURNS = frozenset(
+    (Call.STOP, Call.STOP_DRIVER, Call.RESET_DRIVER, Call.HOLD, Call.RUN_TO_REL_POS, Call.MOVE)
+)
+"""Calls after which a motor turns by an angle, and stops."""
+_WORDS = re.compile(r"command(?:\s+(?P<words>.+))?", re.IGNORECASE)
+_OF_BASES = frozenset((Call.MOVE_BASE, Call.DRIVE_BASE, Call.STOP_BASE))
+
+
+class CommandedRun(Protocol):
+    """A run whose program may have given commands, running or stored."""
+
+    @property
+    def first_spec(self) -> RunSpec: ...
+    @property
+    def folder(self) -> Path: ...
+    @property
+    def telemetry(self) -> TelemetryView: ...
+
+
+@dataclass(frozen=True, slots=True)
+class CommandEvent:
+    """What a program asked of a part, once or repeatedly."""
+
+    time_s: float
+    """When it was asked first, simulated."""
+    part: str
+    """Such as `left motor B`."""
+    asked: str
+    """Such as `run 500 °/s`."""
+    count: int
+    """How often it was asked, each time soon after the time before."""
+    last_s: float
+    """When it was asked last."""
+    came: str
+    """What came of it, until the part was asked for something else; empty if that is not known."""
+
+    @property
+    def words(self) -> str:
+        """What was asked, how often, and what came."""
+        repeats = f", {self.count:,} times until {self.last_s:.2f} s" if self.count > 1 else ""
+        came = f" → {self.came}" if self.came else ""
+        return f"{self.asked}{repeats}{came}"
+
+
+def parse_command_search(text: str) -> str | None:
+    """Return the words in a text such as `command left run`, empty for `command` alone; None if it is another text."""
+    match = _WORDS.fullmatch(text.strip())
+    return (match["words"] or "").strip() if match else None
+
+
+class CommandIndex:
+    """The commands of a run in the order in which they came, repetitions as one; the run may go on.
+
+    Args:
+        run: The run; one without a record of commands has none.
+    """
+
+    def __init__(self, run: CommandedRun) -> None:
+        self._run, self._hz = run, run.first_spec.profile.tick_hz
+        self._robots: list[RobotSpec] = [run.first_spec.robot]
+        """The robot at the start, and after each time that parts were plugged in."""
+        self._end = self._newest_ns = 0
+        # 48 bytes an event: a program may give two million commands.
+        self._starts, self._counts, self._codes = array("I"), array("I"), array("Q")
+        """Row of the first command, number of commands, and robot, call and part of each event."""
+        self._firsts, self._lasts = array("q"), array("q")
+        """Time of the first and the last command."""
+        self._lows, self._highs = array("d"), array("d")
+        """The least and the highest main value."""
+        self._latest: dict[int, int] = {}
+        """The latest event by its code."""
+        self._ends: list[int] = []
+        self.marks: list[tuple[int, Mark]] = []
+        """Ticks of events, in order."""
+
+    def __len__(self) -> int:
+        return len(self._starts)
+
+    # Reading
+
+    def read_piece(self) -> bool:
+        """Read the next piece of the record; return whether there was one."""
+        rows = read_command_rows(self._run.folder, self._end, _PIECE)
+        if len(rows):
+            self._take(rows)
+            self._end += len(rows)
+        return bool(len(rows))
+
+    def read_all(self) -> None:
+        """Read all that there is so far."""
+        while self.read_piece():
+            pass
+
+    def _take(self, rows: Array) -> None:
+        """Add commands to the events: one that repeats another belongs to its event."""
+        import numpy as np
+
+        times = np.maximum.accumulate(np.maximum(rows["time_ns"], self._newest_ns))
+        self._newest_ns = int(times[-1])
+        codes = self._read_codes(rows)
+        mains = rows["values"][np.arange(len(rows)), _find_mains()[rows["call"]]]
+        order = np.argsort(codes, kind="stable")
+        order = order[np.isin(rows["call"][order], [*CALL_WORDS])]
+        if not len(order):
+            return
+        codes, times, mains = codes[order], times[order], mains[order]
+        begins = np.flatnonzero(
+            np.concatenate(([True], (np.diff(codes) != 0) | (np.diff(times) > _REPEAT_NS)))
+        )
+        ends = np.append(begins[1:], len(order)) - 1
+        columns = (order[begins], codes[begins], times[begins], times[ends], ends - begins + 1)
+        spreads = (np.fmin.reduceat(mains, begins), np.fmax.reduceat(mains, begins))
+        turn = np.argsort(columns[0])
+        lists = [column[turn].tolist() for column in (*columns, *spreads)]
+        for event in zip(*lists, strict=True):
+            self._add(*event)
+
+    def _read_codes(self, rows: Array) -> Array:
+        """Return the codes of commands; take note of parts that were plugged in."""
+        import numpy as np
+
+        plugs = rows["call"] == Call.PLUG
+        robots = np.cumsum(plugs) + (len(self._robots) - 1)
+        for values in rows["values"][plugs].tolist():
+            self._robots.append(self._plug(values))
+        codes: Array = (robots << 16) | (rows["call"].astype(np.int64) << 8) | rows["part"]
+        return codes
+
+    def _plug(self, values: list[float]) -> RobotSpec:
+        """Return the robot after parts were plugged in; the same one if they cannot have been."""
+        with suppress(ValueError, IndexError, TuisimError):
+            return plug_parts(self._robots[-1], decode_parts(values, 0))
+        return self._robots[-1]
+
+    def _add(
+        self, row: int, code: int, first_ns: int, last_ns: int, count: int, low: float, high: float
+    ) -> None:
+        number = self._latest.get(code)
+        if number is not None and first_ns - self._lasts[number] <= _REPEAT_NS:
+            self._lasts[number] = last_ns
+            self._counts[number] += count
+            self._lows[number] = min(self._lows[number], low)
+            self._highs[number] = max(self._highs[number], high)
+            return
+        if len(self) == _MAX_EVENTS:
+            return
+        self._latest[code] = len(self)
+        tick = self._find_tick(first_ns)
+        if not self.marks or tick - self.marks[-1][0] > tick // _FINEST:
+            self.marks.append((tick, Mark.COMMAND))
+        self._starts.append(self._end + row)
+        self._counts.append(count)
+        self._codes.append(code)
+        self._firsts.append(first_ns)
+        self._lasts.append(last_ns)
+        self._lows.append(low)
+        self._highs.append(high)
+
+    def _find_tick(self, time_ns: int) -> int:
+        return time_ns * self._hz // NS_PER_S
+
+    # Finding
+
+    def find_events(self, text: str = "") -> list[int]:
+        """Return the numbers of the events with these words in the names of part and call; of all without a word."""
+        words = text.lower().split()
+        names = {
+            code: f"{self._name_part(code)} {_name_call(code)} {CALL_WORDS[_find_call(code)].text}".lower()
+            for code in self._latest
+        }
+        matching = {code for code, name in names.items() if all(word in name for word in words)}
+        return [number for number, code in enumerate(self._codes) if code in matching]
+
+    def tick(self, number: int) -> int:
+        """Return the tick of an event."""
+        return self._find_tick(self._firsts[number])
+
+    def time_s(self, number: int) -> float:
+        """Return the time of an event."""
+        return self._firsts[number] / NS_PER_S
+
+    def event(self, number: int) -> CommandEvent:
+        """Return an event."""
+        code = self._codes[number]
+        rows = read_command_rows(self._run.folder, self._starts[number], 1)
+        # The program may have changed its record meanwhile.
+        values = rows["values"][0].tolist() if len(rows) else [0.0] * MAX_VALUES
+        call = _find_call(code)
+        text = _name_call(code)
+        with suppress(ValueError, IndexError):
+            text = describe_command(call, values, self._lows[number], self._highs[number], self._hz)
+        return CommandEvent(
+            self.time_s(number),
+            self._name_part(code),
+            text,
+            self._counts[number],
+            self._lasts[number] / NS_PER_S,
+            self._measure(number, call, is_relative=call is Call.MOVE and bool(values[3])),
+        )
+
+    def _name_part(self, code: int) -> str:
+        """Return the part that an event is for."""
+        call, number = _find_call(code), code & 0xFF
+        if call in _OF_PARTS:
+            return _OF_PARTS[call]
+        if call >= Call.BUILD_BASE:
+            return f"drive base {number + 1}" if number else "drive base"
+        motors = self._robots[code >> 16].motors
+        port = motors[number].port[-1:] if number < len(motors) else ""
+        return f"{('left ', 'right ', '')[min(number, 2)]}motor {port}".rstrip()
+
+    # What came
+
+    def _measure(self, number: int, call: Call, *, is_relative: bool) -> str:
+        """Return what came of an event, as far as telemetry knows: of the wheels."""
+        import numpy as np
+
+        part = self._codes[number] & 0xFF
+        is_speed = call in _SPEEDS or call is Call.DRIVE_BASE
+        if call not in _SPEEDS | _GOALS | _TURNS | _OF_BASES or part > 1:
+            return ""
+        start = self._find_tick((self._firsts if is_speed else self._lasts)[number])
+        records = self._run.telemetry.array(start)[: self._find_end(number) - start + 1]
+        if len(records) < 2:
+            return ""
+        flags, after = records["flags"][1:], records[1:]
+        if call in _OF_BASES:
+            speeds = np.abs(after["left_speed_dps"]) + np.abs(after["right_speed_dps"])
+            is_running = flags & (FLAG_LEFT_RUNNING | FLAG_RIGHT_RUNNING) != 0
+        else:
+            side = ("left", "right")[part]
+            speeds = after[f"{side}_speed_dps"].astype(float)
+            is_running = flags & (FLAG_LEFT_RUNNING, FLAG_RIGHT_RUNNING)[part] != 0
+        idle = np.flatnonzero(~is_running & (is_speed | (np.abs(speeds) < _STILL_DPS)))
+        if call is Call.DRIVE_BASE:
+            idle = idle[:0]
+        count = int(idle[0]) + 1 if len(idle) else len(after)
+        when = f"by {(start + count) / self._hz:.2f} s"
+        if call in _OF_BASES:
+            driven_mm, turned_deg = _measure_way(records[: count + 1])
+            if call is Call.DRIVE_BASE:
+                rate = self._hz / count
+                return f"mean {_round(driven_mm * rate)} mm/s, {_round(turned_deg * rate)} °/s"
+            return f"{_round(driven_mm)} mm, {_round(turned_deg)}° {when}"
+        if is_speed:
+            return f"mean {_round(speeds[:count].mean())} °/s"
+        if call in _GOALS or (call is Call.MOVE and not is_relative):
+            return f"{_round(after[f'{side}_position_deg'][count - 1])}° {when}"
+        return f"turned {_round(speeds[:count].sum() / self._hz)}° {when}"
+
+    def _find_end(self, number: int) -> int:
+        """Return the tick at which the part of an event was asked for something else, or the newest one."""
+        if len(self._ends) != len(self):
+            self._ends = self._list_ends()
+        return self._ends[number]
+
+    def _list_ends(self) -> list[int]:
+        """Return for each event the tick at which the next motion of its part was asked for."""
+        newest, ends = self._run.telemetry.count - 1, [0] * len(self)
+        following: dict[tuple[bool, int], int] = {}
+        for number in range(len(self) - 1, -1, -1):
+            code = self._codes[number]
+            call, part = _find_call(code), (code >> 8 & 0xFF >= Call.BUILD_BASE, code & 0xFF)
+            ends[number] = min(following.get(part, newest), newest)
+            if call in _SPEEDS | _GOALS | _TURNS | _OF_BASES:
+                following[part] = self.tick(number)
+        return ends
+
+
+def _round(value: float) -> str:
+    return f"{value + 0.0:.0f}" if abs(value) >= 0.5 else "0"
+
+
+def _find_call(code: int) -> Call:
+    return Call(code >> 8 & 0xFF)
+
+
+def _name_call(code: int) -> str:
+    return _find_call(code).name.lower().replace("_", " ")
+
+
+def _find_mains() -> Array:
+    """Return the number of the main value by the number of the call."""
+    import numpy as np
+
+    mains = np.zeros(256, np.int64)
+    for call, words in CALL_WORDS.items():
+        mains[call] = words.main
+    return mains
+
+
+def _measure_way(records: Array) -> tuple[float, float]:
+    """Return how far the robot drove in mm, and by how many degrees it turned, clockwise."""
+    import numpy as np
+
+    steps = np.hypot(np.diff(records["x_mm"]), np.diff(records["y_mm"]))
+    return float(steps.sum()), float(records["heading_deg"][0] - records["heading_deg"][-1])

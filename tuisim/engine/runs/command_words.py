@@ -1,0 +1,153 @@
+"""What a program asked of the simulation, in words: each call with its values and their units."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from math import isnan
+
+from tuisim.base.data_class import dataclass
+from tuisim.engine.core.commands.calls import Call
+from tuisim.engine.core.commands.driver import COMMAND_CALLS, CONSTANTS, CONTROLS, STOP_ACTIONS
+from tuisim.engine.core.commands.robot import decode_parts
+from tuisim.engine.core.commands.servo import SETTINGS
+from tuisim.engine.core.driver.motor import Command
+from tuisim.engine.core.servo.control import Ending
+from tuisim.engine.core.servo.settings import COUNTS_PER_DEG, FULL_ACTUATION
+from tuisim.engine.core.servo.trajectory import MILLI
+
+
+@dataclass(frozen=True, slots=True)
+class Quantity:
+    """How a value is written."""
+
+    unit: str = ""
+    share: float = 1.0
+    """How many of its unit a value of 1 is."""
+    names: Sequence[str] = ()
+    """What its whole numbers stand for, from 0; none for a value that is a number."""
+
+    def write(self, low: float, high: float) -> str:
+        """Return a value, or the least and the highest of several."""
+        if self.names:
+            return self.names[int(low)] if 0 <= low < len(self.names) else f"{low:g}"
+        ends = dict.fromkeys(f"{value * self.share:.5g}" for value in sorted((low, high)))
+        return " … ".join(ends) + self.unit
+
+
+_DEG, _DPS, _PLAIN = Quantity("°"), Quantity(" °/s"), Quantity()
+_DPS2, _MS, _PERCENT = Quantity(" °/s²"), Quantity(" ms"), Quantity(" %")
+_COUNTS, _COUNTS_PER_S = (Quantity(unit, 1 / COUNTS_PER_DEG) for unit in ("°", " °/s"))
+_MILLI_COUNTS = Quantity("°", 1 / COUNTS_PER_DEG / MILLI)
+_POWER, _US, _TICKS = Quantity(" %", 100 / FULL_ACTUATION), Quantity(" s", 1e-6), Quantity(" s")
+_MM, _MM_PER_S, _MM_PER_S2 = Quantity(" mm"), Quantity(" mm/s"), Quantity(" mm/s²")
+_ENDING = Quantity(names=[ending.name.lower().replace("none", "go on") for ending in Ending])
+_SETTING = Quantity(names=[name.replace("_", " ") for name in SETTINGS])
+
+
+@dataclass(frozen=True, slots=True)
+class CallWords:
+    """How a call is written."""
+
+    text: str
+    """With the numbers of its values, in the order of the call, in braces."""
+    quantities: tuple[Quantity, ...] = ()
+    """Of its first values."""
+    main: int = 0
+    """The number of the value that differs most when the call is repeated."""
+
+
+def _name_driver_calls() -> dict[Call, CallWords]:
+    """Return the words of the commands of the kernel's driver, which all have the same values."""
+    action = Quantity(names=STOP_ACTIONS)
+    points = _DPS, _DEG, _PERCENT, _MS, _MS, _MS, action
+    texts = {
+        Command.RUN_FOREVER: (" {0}", 0),
+        Command.RUN_TO_ABS_POS: (" {1} at {0}, then {6}", 1),
+        Command.RUN_TO_REL_POS: (" {1} at {0}, then {6}", 1),
+        Command.RUN_TIMED: (" {3} at {0}, then {6}", 0),
+        Command.RUN_DIRECT: (" {2}", 2),
+        Command.STOP: (", {6}", 0),
+        Command.RESET: ("", 0),
+    }
+    return {
+        COMMAND_CALLS[command]: CallWords(command + text, points, main)
+        for command, (text, main) in texts.items()
+    }
+
+
+CALL_WORDS: Mapping[Call, CallWords] = {
+    Call.RESET_GYRO: CallWords("reset"),
+    Call.MOVE_PEN: CallWords("{0}", (Quantity(names=("up", "down")),)),
+    Call.PLUG: CallWords("plug in"),
+    Call.RUN: CallWords("run {0}", (_DPS,)),
+    Call.RUN_UNTIL: CallWords("run {0} until {1}", (_DPS, _TICKS)),
+    Call.RUN_TO: CallWords("run to {0} at {1}", (_DEG, _DPS)),
+    Call.STOP: CallWords("stop"),
+    Call.SET_COUNT: CallWords("set position {0}", (_DEG,)),
+    Call.LIMIT_RAMPS: CallWords("set ramps {0}, {1}", (_DPS2, _DPS2)),
+    Call.SET_SPEED: CallWords("set speed {0}", (_DPS,)),
+    Call.SET_BACKWARDS: CallWords(
+        "set direction {0}", (Quantity(names=("forwards", "backwards")),)
+    ),
+    Call.SET_ROLL: CallWords("set roll {0}", (_PLAIN,)),
+    **_name_driver_calls(),
+    Call.SET_DUTY: CallWords("set duty {0}", (_PERCENT,)),
+    Call.RENUMBER: CallWords("set position {0}", (_DEG,)),
+    Call.SET_CONSTANT: CallWords(
+        "set {0} {1} {2}", (Quantity(names=CONTROLS), Quantity(names=CONSTANTS), _PLAIN), 2
+    ),
+    Call.SET_UP: CallWords("set up, direction {0}, gears {1}", (_PLAIN, _PLAIN)),
+    Call.RUN_FREELY: CallWords("power {0}", (_POWER,)),
+    Call.SET_MILLI: CallWords("set angle {0}", (_MILLI_COUNTS,)),
+    Call.HOLD: CallWords("hold"),
+    Call.HOLD_MILLI: CallWords("track {0}", (_MILLI_COUNTS,)),
+    Call.RUN_AT: CallWords("run {0} for {2}", (_COUNTS_PER_S, _PLAIN, _US)),
+    Call.MOVE: CallWords(
+        "run {3} {0} at {1}", (_COUNTS, _COUNTS_PER_S, _PLAIN, Quantity(names=("to", "by")))
+    ),
+    Call.FOLLOW: CallWords("then {0}", (_ENDING,)),
+    Call.LIMIT_DUTY: CallWords("limit power {0}", (_POWER,)),
+    Call.SET_CONTROL: CallWords("set {0} {1}", (_SETTING, _PLAIN), 1),
+    Call.BUILD_BASE: CallWords("build, wheels {2}, track {3}", (_PLAIN, _PLAIN, _MM, _MM), 2),
+    Call.MOVE_BASE: CallWords("drive {0}, turn {1}, then {2}", (_MM, _DEG, _ENDING)),
+    Call.DRIVE_BASE: CallWords("drive {0}, turn {1}", (_MM_PER_S, _DPS), 1),
+    Call.STOP_BASE: CallWords("stop, power {0}", (_POWER,)),
+    Call.SET_BASE: CallWords("set {0}, {1}, {2}, {3}", (_MM_PER_S, _MM_PER_S2, _DPS, _DPS2)),
+    Call.SET_BASE_CONTROL: CallWords(
+        "set {0} {1} {2}", (Quantity(names=("distance", "heading")), _SETTING, _PLAIN), 2
+    ),
+}
+"""The words of each call."""
+_WITHOUT: Mapping[Call, str] = {
+    Call.RUN_FREELY: "coast",
+    Call.RUN_AT: "run {0}",
+    Call.LIMIT_DUTY: "limit power no longer",
+    Call.STOP_BASE: "stop, coast",
+}
+"""The words of calls in which a value is not given that the others name."""
+
+
+def describe_command(
+    call: Call, values: Sequence[float], low: float, high: float, tick_hz: int
+) -> str:
+    """Return a command in words, such as `run 500 °/s`.
+
+    Args:
+        call: The call.
+        values: Its values.
+        low: The least of its main value, where it was repeated; else that value.
+        high: The highest of its main value.
+        tick_hz: Ticks per second.
+    """
+    if call is Call.PLUG:
+        parts = decode_parts(values, 0)
+        return "plug in " + ", ".join(f"{part.part} {part.port}" for part in parts)
+    words = CALL_WORDS[call]
+    texts = []
+    for number, (quantity, value) in enumerate(zip(words.quantities, values, strict=False)):
+        share = 1 / tick_hz if quantity is _TICKS else 1.0
+        ends = (low, high) if number == words.main else (value, value)
+        texts.append(quantity.write(ends[0] * share, ends[1] * share))
+    named = [value for number, value in enumerate(values) if f"{{{number}}}" in words.text]
+    text = _WITHOUT.get(call, words.text) if any(map(isnan, named)) else words.text
+    return text.format(*texts)
