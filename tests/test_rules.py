@@ -15,6 +15,7 @@ from pathlib import Path
 import pytest
 import textual
 
+from tests.rooms import OPEN, door_of, entered, list_rooms, write_contracts
 from tests.sources import ROOT, Function, Source, python_files, source
 from tests.words import TABLE as WORDS
 from tests.words import count_faults
@@ -343,15 +344,11 @@ def _aliases(node: ast.Import | ast.ImportFrom) -> list[str]:
     return [alias.name for alias in node.names]
 
 
-def inner_parts_of_terminal(source: Source) -> Iterable[object]:
-    """Imports of modules of the terminal kit that are none of its surface."""
-    for node in source.nodes:
-        if isinstance(node, ast.ImportFrom) and node.module == "tuisim.terminal":
-            yield from {*_aliases(node)} - {*terminal.__all__}
-        elif isinstance(node, ast.ImportFrom) and (node.module or "").startswith(
-            "tuisim.terminal."
-        ):
-            yield from {str(node.module).split(".")[2]} - {*terminal.__all__}
+def inner_parts_of_rooms(source: Source) -> Iterable[object]:
+    """Imports of modules of other rooms that are none of their doors."""
+    for room, module in entered(source):
+        if module not in door_of(room):
+            yield f"{room}: {module}"
 
 
 def slow_data_classes(source: Source) -> Iterable[object]:
@@ -399,7 +396,7 @@ RULES: dict[str, tuple[Callable[[Source], Iterable[object]], list[Path]]] = {
         slow_data_classes,
         [path for path in OUTSIDE_TERMINAL if path.name not in ("data_class.py", "spec_fields.py")],
     ),
-    "the terminal kit is reached through its surface": (inner_parts_of_terminal, OUTSIDE_TERMINAL),
+    "rooms are entered by their doors": (inner_parts_of_rooms, PACKAGE),
 }
 
 
@@ -438,10 +435,25 @@ def tool(*words: str) -> str:
     return "" if done.returncode == 0 else done.stdout + done.stderr
 
 
-def test_imports_go_one_way() -> None:
-    program = "import sys; from importlinter.cli import lint_imports; sys.exit(lint_imports(no_cache=True))"
+def test_each_door_is_used() -> None:
+    used = {place for path in PACKAGE for place in entered(source(path))}
+    doors = {(room, name) for room in list_rooms(but=OPEN) for name in door_of(room)}
+    assert doors == used
+
+
+def test_imports_go_one_way(tmp_path: Path) -> None:
+    contracts = tmp_path / "contracts.toml"
+    contracts.write_text(write_contracts(), encoding="utf-8")
+    program = (
+        "import sys; from importlinter.cli import lint_imports; "
+        "sys.exit(lint_imports(config_filename=sys.argv[1], no_cache=True))"
+    )
     done = subprocess.run(
-        [sys.executable, "-c", program], cwd=ROOT, capture_output=True, text=True, check=False
+        [sys.executable, "-c", program, str(contracts)],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        check=False,
     )
     assert done.returncode == 0, done.stdout + done.stderr
 

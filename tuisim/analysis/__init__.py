@@ -1,1 +1,13 @@
 """An open log that is analysed: cursor, selection, table, traces, events. Without Textual."""
+
+__all__ = [
+    "chart",
+    "events",
+    "model",
+    "pins",
+    "remembered",
+    "report",
+    "source",
+    "table",
+    "traces",
+]

@@ -1,1 +1,10 @@
 """Many runs: tasks as plain values, the processes that run them, and their results as a table."""
+
+__all__ = [
+    "batch_file",
+    "parameters",
+    "partial",
+    "plan",
+    "sweep",
+    "table",
+]

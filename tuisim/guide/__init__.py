@@ -1,1 +1,10 @@
 """The guide: pages of Markdown, reference tables from the code, and search."""
+
+__all__ = [
+    "catalogue",
+    "excerpt",
+    "search",
+    "tables",
+    "text",
+    "words",
+]

@@ -1,1 +1,21 @@
 """Logs: readers, columns, bands, signals, expressions, exports. Without Textual."""
+
+__all__ = [
+    "arrow",
+    "bands",
+    "choices",
+    "columns",
+    "csv_cells",
+    "derived",
+    "export",
+    "expressions",
+    "frames",
+    "levels",
+    "log",
+    "magnitude",
+    "mcap_export",
+    "plateaus",
+    "reader",
+    "signals",
+    "units",
+]

@@ -1,1 +1,27 @@
 """What people look at: worlds, charts, movies and pages for browsers."""
+
+__all__ = [
+    "charts.axes",
+    "charts.bands",
+    "charts.canvas",
+    "charts.files",
+    "charts.layout",
+    "charts.plot_image",
+    "charts.sample_chart",
+    "charts.text_chart",
+    "charts.traces",
+    "html.render",
+    "movies.arrays",
+    "movies.clip",
+    "movies.files",
+    "movies.painter",
+    "scene.discs",
+    "scene.mat",
+    "scene.mono_robot",
+    "scene.off_field",
+    "scene.painter",
+    "scene.pen",
+    "scene.pictures",
+    "scene.robot",
+    "scene.view",
+]

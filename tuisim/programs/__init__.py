@@ -1,1 +1,17 @@
 """What the text of a program says: its first line, its robot, what it calls and asks, names that it lacks."""
+
+__all__ = [
+    "attributes",
+    "calls",
+    "magic_mat",
+    "names",
+    "notebook_file",
+    "plugged_words",
+    "program_file",
+    "program_settings",
+    "questions",
+    "robot.report",
+    "robot.thresholds",
+    "structure",
+    "waits",
+]

@@ -1,1 +1,27 @@
 """Tasks: what a program is to do, whether its runs did it, why not, and lessons and marks made of that."""
+
+__all__ = [
+    "execute",
+    "goals.condition",
+    "goals.drawn_mats",
+    "goals.files",
+    "goals.judge",
+    "goals.judgement",
+    "goals.spec",
+    "lessons.catalogue",
+    "lessons.files",
+    "lessons.markdown",
+    "lessons.progress",
+    "lessons.session",
+    "lessons.skeleton",
+    "lessons.spec",
+    "lessons.trial",
+    "marks.marking",
+    "marks.sheet",
+    "marks.trial",
+    "pool",
+    "reasons.reason",
+    "reasons.waited_words",
+    "reasons.waiting",
+    "task",
+]
