@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Iterator, Mapping
+
+import pytest
 
 from tests.tasks.marks.the_class import CLASS
+from tuisim.tasks.marks import copies
 from tuisim.tasks.marks.copies import LEAST_TOKENS, Similar, similar
 
 LINE = """\
@@ -53,6 +56,17 @@ def test_a_copy_in_a_module_is_a_pair() -> None:
     found = similar({"ada": [LINE], "ben": ["import sol\nsol.drive()\n", RENAMED], "cleo": [OTHER]})
     (pair,) = found.pairs
     assert pair.names == ("ada", "ben") and pair.share > 0.9
+
+
+def test_what_is_compared_is_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(copies, "MAX_TOKENS", 100)
+
+    def write() -> Iterator[str]:
+        for _ in range(10):
+            yield LINE
+        raise AssertionError("all of it was read")
+
+    assert similar({"ada": write(), "ben": write()}).compared == 2
 
 
 def test_other_names_numbers_and_comments_are_the_same_program() -> None:

@@ -13,8 +13,8 @@ import keyword
 import tokenize
 import zlib
 from collections import Counter, defaultdict
-from collections.abc import Collection, Mapping, Sequence
-from itertools import chain, combinations
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from itertools import chain, combinations, islice
 
 from tuisim.base.data_class import dataclass
 
@@ -24,6 +24,8 @@ WINDOW = 6
 """Of so many passages in a row, one is a fingerprint: a common passage of `TOKENS + WINDOW - 1` tokens is found."""
 LEAST_TOKENS = 40
 """Shorter programs are not compared: there are few ways to write them."""
+MAX_TOKENS = 50_000
+"""So many of a student's are compared: more are data, or would take the memory of this machine."""
 COMMON_SHARE, COMMON_LEAST = 0.25, 5
 """A passage in more than this share of the programs, and in more than so many, is common to the class."""
 LEAST_SHARE = 0.6
@@ -97,9 +99,8 @@ _Prints = Mapping[int, frozenset[int]]
 """The fingerprints of one program: the lines of each."""
 
 
-def _tokens(text: str) -> list[_Token]:
-    """Return the tokens of a program, as far as Python can read it."""
-    found: list[_Token] = []
+def _tokens(text: str) -> Iterator[_Token]:
+    """Yield the tokens of a program, as far as Python can read it."""
     try:
         for token in tokenize.generate_tokens(io.StringIO(text).readline):
             if token.type in _SKIPPED:
@@ -108,10 +109,13 @@ def _tokens(text: str) -> list[_Token]:
             if token.type == tokenize.NAME and not keyword.iskeyword(kind):
                 kind = "x"
             word = kind if token.type in _BLANK else token.string
-            found.append(_Token(kind, word, token.start[0]))
+            yield _Token(kind, word, token.start[0])
     except (tokenize.TokenError, SyntaxError):
         pass
-    return found
+
+
+def _first_tokens(texts: Iterable[str]) -> list[_Token]:
+    return list(islice(chain.from_iterable(map(_tokens, texts)), MAX_TOKENS))
 
 
 def _prints(tokens: Sequence[_Token]) -> _Prints:
@@ -131,17 +135,17 @@ def _prints(tokens: Sequence[_Token]) -> _Prints:
     return {key: frozenset(found) for key, found in lines.items()}
 
 
-def similar(programs: Mapping[str, Sequence[str]], given: Collection[str] = ()) -> Similar:
+def similar(programs: Mapping[str, Iterable[str]], given: Collection[str] = ()) -> Similar:
     """Return which programs resemble each other.
 
     Args:
-        programs: The texts of the main program and its modules, by the student's name.
+        programs: The texts of the main program and its modules, by the student's name; of them, `MAX_TOKENS` count.
         given: Texts that everybody was given, such as a skeleton: what is in them is left out.
     """
     tokens = {
         name: found
         for name, texts in programs.items()
-        if len(found := list(chain.from_iterable(map(_tokens, texts)))) >= LEAST_TOKENS
+        if len(found := _first_tokens(texts)) >= LEAST_TOKENS
     }
     alike = _groups({name: tuple(token.kind for token in found) for name, found in tokens.items()})
     words = {name: tuple(token.text for token in found) for name, found in tokens.items()}
@@ -154,7 +158,7 @@ def similar(programs: Mapping[str, Sequence[str]], given: Collection[str] = ()) 
         if len(names) > 1
     )
     prints = {names[0]: _prints(tokens[names[0]]) for names in alike}
-    common = {key for text in given for key in _prints(_tokens(text))} | _common(prints)
+    common = {key for text in given for key in _prints(_first_tokens([text]))} | _common(prints)
     return Similar(groups, _pairs(prints, common), len(tokens))
 
 

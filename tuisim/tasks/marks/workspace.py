@@ -17,6 +17,7 @@ from tuisim.tasks.marks.files import LEFT_OUT, copy_file, copy_tree
 from tuisim.tasks.marks.students import SUFFIX, Student
 
 _PIECE = 1 << 20
+_MAX_MODULES_BYTES = 1 << 20
 
 
 def copy_of(student: Student, place: Path) -> Path:
@@ -67,14 +68,16 @@ def digest_of(student: Student) -> str:
     return digest.hexdigest()
 
 
-def read_modules(student: Student) -> list[str]:
-    """Return the texts of the main program and of a student's other Python files."""
-    texts = [student.text]
+def read_modules(student: Student) -> Iterator[str]:
+    """Yield the texts of the main program and of other Python files of a student, as far as they are compared."""
+    yield student.text
+    left = _MAX_MODULES_BYTES
     for path in _files(student.path) if os.path.isdir(student.path) else ():
         if path.suffix == SUFFIX and path != student.path / student.main:
             with suppress(OSError):
-                texts.append(read_regular(path, _PIECE).decode("utf-8", "replace"))
-    return texts
+                data = read_regular(path, left)
+                left -= len(data)
+                yield data.decode("utf-8", "replace")
 
 
 def _hash_file(path: Path) -> bytes:
