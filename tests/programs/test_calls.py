@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from tests.cases import cases
-from tuisim.programs.calls import lines_of_calls
+from tuisim.base.source import Program
+from tuisim.programs.facts import read_facts
 
 CALLS = {
     "as it is": ("import time\ntime.sleep(1)\n", "time.sleep", [2]),
@@ -67,4 +68,4 @@ CALLS = {
 
 @cases("text, call, lines", CALLS)
 def test_lines_of_calls(text: str, call: str, lines: list[int]) -> None:
-    assert lines_of_calls(text, "preloaded", call) == lines
+    assert read_facts(Program("p.py", text, "preloaded")).find_calls(call) == lines

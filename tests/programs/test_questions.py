@@ -7,13 +7,8 @@ from itertools import pairwise
 import pytest
 
 from tests.cases import cases
-from tuisim.programs.questions import (
-    BUTTON_WORDS,
-    COLOR_WORDS,
-    REMOTE_WORDS,
-    Question,
-    find_question,
-)
+from tuisim.base.source import Program
+from tuisim.programs.facts import ProgramFacts, Question, read_facts
 
 READ = "# reads"
 """Marks the line that reads."""
@@ -63,8 +58,14 @@ LOGS = {
 }
 
 
+def read(text: str) -> ProgramFacts:
+    return read_facts(Program("p.py", text))
+
+
 def ask(text: str) -> Question:
-    return find_question(text, 1 + next(i for i, row in enumerate(text.split("\n")) if READ in row))
+    return read(text).find_question(
+        1 + next(i for i, row in enumerate(text.split("\n")) if READ in row)
+    )
 
 
 @cases("text", WAITS)
@@ -78,8 +79,8 @@ def test_what_is_only_shown_or_stored_is_not(text: str) -> None:
 
 
 def test_where_the_text_does_not_tell_it_may_be_waited_for() -> None:
-    assert find_question("while True:\n    pass", 7) == Question()
-    assert find_question("while True", 1) == Question()
+    assert read("while True:\n    pass").find_question(7) == Question()
+    assert read("while True").find_question(1) == Question()
 
 
 @pytest.mark.parametrize(
@@ -127,7 +128,7 @@ def test_the_buttons_that_are_asked_for_are_known(
     text: str, buttons: tuple[str, ...], needs_all: bool
 ) -> None:
     question = ask(text)
-    assert question.find_words(BUTTON_WORDS) == buttons
+    assert question.buttons == buttons
     assert question.needs_all is needs_all
 
 
@@ -142,7 +143,7 @@ def test_the_buttons_that_are_asked_for_are_known(
     ],
 )
 def test_the_buttons_of_the_remote_are_known(text: str, button: str) -> None:
-    assert ask(text).find_words(REMOTE_WORDS) == (button,)
+    assert ask(text).remote_buttons == (button,)
 
 
 @pytest.mark.parametrize(
@@ -157,7 +158,7 @@ def test_the_buttons_of_the_remote_are_known(text: str, button: str) -> None:
     ],
 )
 def test_the_colours_that_are_asked_for_are_known(text: str, colors: tuple[str, ...]) -> None:
-    assert ask(text).find_words(COLOR_WORDS) == colors
+    assert ask(text).colors == colors
 
 
 def test_a_limit_is_the_first_number_that_is_compared() -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from tests.cases import cases
-from tuisim.programs.structure import fault_in
+from tuisim.programs.structure import find_fault
 
 NO_TEXT = "'rot13' is not a text encoding; use codecs.encode() to handle arbitrary codecs"
 FAULTS = {
@@ -23,4 +23,4 @@ FAULTS = {
 def test_a_program_that_does_not_compile_has_a_fault(
     text: str, fault: tuple[str, int] | None
 ) -> None:
-    assert fault_in(text) == fault
+    assert find_fault(text) == fault

@@ -5,7 +5,8 @@ from __future__ import annotations
 import pytest
 
 from tests.cases import cases
-from tuisim.programs.waits import find_first_drive, find_turns, list_loop_ends
+from tuisim.base.source import Program
+from tuisim.programs.facts import ProgramFacts, read_facts
 
 WAITED_FOR = {
     "an angle": ("while gyro.angle < 90:\n    pass", ">=", 90, "angle", 1),
@@ -46,11 +47,15 @@ WAITED_FOR = {
 }
 
 
+def read(text: str) -> ProgramFacts:
+    return read_facts(Program("p.py", text))
+
+
 @cases("text, operator, limit, attribute, line", WAITED_FOR)
 def test_a_comparison_with_a_constant_is_waited_for(
     text: str, operator: str, limit: str | int, attribute: str, line: int
 ) -> None:
-    (end,) = list_loop_ends(text)
+    (end,) = read(text).loop_ends
     assert (end.operator, end.limit) == (operator, limit)
     assert (end.attribute, end.read_line, end.set_line) == (attribute, line, 0)
 
@@ -78,17 +83,17 @@ def test_a_comparison_with_a_constant_is_waited_for(
     ],
 )
 def test_other_loops_end_who_knows_how(text: str) -> None:
-    assert list_loop_ends(text) == ()
+    assert read(text).loop_ends == ()
 
 
 def test_a_value_that_nothing_changes_is_named_with_the_line_that_set_it() -> None:
-    (end,) = list_loop_ends("v = cs.color\nv = cs.color\nwhile v != 5:\n    sleep(1)\n")
+    (end,) = read("v = cs.color\nv = cs.color\nwhile v != 5:\n    sleep(1)\n").loop_ends
     assert (end.name, end.set_line, end.is_silent) == ("v", 2, False)
 
 
 def test_a_loop_that_only_computes_is_silent_and_inner_loops_come_first() -> None:
     text = "x = 0\nwhile gyro.angle < 90:\n    while x != 1:\n        x += 0.1\n"
-    inner, outer = list_loop_ends(text)
+    inner, outer = read(text).loop_ends
     assert (inner.name, inner.is_silent, inner.set_line) == ("x", True, 0)
     assert (outer.line, outer.last_line, outer.is_silent) == (2, 4, False)
 
@@ -103,8 +108,8 @@ def test_a_loop_that_only_computes_is_silent_and_inner_loops_come_first() -> Non
     },
 )
 def test_a_call_turns_so_far(call: str, turns: tuple[float, str] | None) -> None:
-    assert find_turns(f"# first\n{call}\n", 2) == turns
-    assert find_turns(call, 2) is None
+    assert read(f"# first\n{call}\n").find_turns(2) == turns
+    assert read(call).find_turns(2) is None
 
 
 @cases(
@@ -121,4 +126,4 @@ def test_a_call_turns_so_far(call: str, turns: tuple[float, str] | None) -> None
     },
 )
 def test_the_first_line_that_starts_motors_is_told(text: str, line: int) -> None:
-    assert find_first_drive(text) == line
+    assert read(text).first_drive == line

@@ -2,16 +2,12 @@
 
 __all__ = [
     "attributes",
-    "calls",
+    "facts",
     "magic_mat",
     "names",
     "notebook_file",
     "plugged_words",
     "program_file",
     "program_settings",
-    "questions",
     "robot.report",
-    "robot.thresholds",
-    "structure",
-    "waits",
 ]

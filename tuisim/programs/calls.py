@@ -99,19 +99,15 @@ def _calls(tree: ast.AST, names: _Names) -> Iterator[tuple[str, str, int]]:
             yield names.of(node.func), ast.unparse(node.func), node.lineno
 
 
-def lines_of_calls(text: str, prelude: str, wanted: str) -> list[int]:
+def list_calls(tree: ast.Module, prelude: str, wanted: str) -> list[int]:
     """Return the lines of a program with a call, in ascending order.
 
     Args:
-        text: The program.
+        tree: The program.
         prelude: Its prelude, a key of `PRELUDE_TEXTS`.
         wanted: The call: a name such as `time.sleep`, a method of an object that the prelude defines such as
             `tank_drive.on`, or the name of a function or method alone. An object of the same class counts as well.
-
-    Raises:
-        SyntaxError, ValueError, RecursionError: the program is not Python.
     """
-    tree = parse_module(text)
     names = _Names(dict(_prelude_names(prelude).meanings))
     names.take_in(tree)
     wanted = wanted.removesuffix("()")

@@ -4,18 +4,14 @@ from __future__ import annotations
 
 import ast
 import re
-from collections.abc import Iterable, Iterator, Mapping, Set
-from functools import lru_cache
+from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 
 from tuisim.base.data_class import dataclass
 from tuisim.engine.core.columns import COLOR_NAMES
 from tuisim.engine.core.spec import BUTTONS, REMOTE_BY_HAND
-from tuisim.programs.robot.source import parsed
 
 Word = str | float
 
-MAX_TEXT = 100_000
-"""Characters of the longest text that is asked; it takes time for each line that reads something."""
 _RECORDERS = frozenset(
     {
         *("print", "pprint", "write", "writelines", "writerow", "writerows", "dump"),
@@ -76,9 +72,23 @@ class Question:
     needs_all: bool = False
     """Whether several of them must hold at once."""
 
-    def find_words(self, names: Mapping[Word, str]) -> tuple[str, ...]:
-        """Return what it asks for of some names by word, in its order; empty for any."""
-        words = map(_shorten, self.words)
+    @property
+    def buttons(self) -> tuple[str, ...]:
+        """The brick's buttons that it asks for, in its order; empty for any."""
+        return self._find_words(BUTTON_WORDS)
+
+    @property
+    def remote_buttons(self) -> tuple[str, ...]:
+        """Likewise those of the remote control, by the names of `REMOTE_BY_HAND`."""
+        return self._find_words(REMOTE_WORDS)
+
+    @property
+    def colors(self) -> tuple[str, ...]:
+        """Likewise colours, in small letters."""
+        return self._find_words(COLOR_WORDS)
+
+    def _find_words(self, names: Mapping[Word, str]) -> tuple[str, ...]:
+        words = map(shorten, self.words)
         return tuple(dict.fromkeys(names[word] for word in words if word in names))
 
     def find_limit(self) -> float | None:
@@ -87,44 +97,12 @@ class Question:
         return next((number for number in numbers if number > 0), None)
 
 
-def name_color(word: Word) -> str:
-    """Return the colour that a word or a code of any library stands for, in small letters; empty for others."""
-    return COLOR_WORDS.get(_shorten(word), "")
-
-
-def _shorten(word: Word) -> Word:
+def shorten(word: Word) -> Word:
+    """Return a word of a library as it is in the tables of words, without what libraries put before it."""
     return _PREFIX.sub("", word.lower(), count=1) if isinstance(word, str) else word
 
 
-@lru_cache(256)
-def find_question(text: str, line: int) -> Question:
-    """Return what a program asks on one of its lines; `Question()` if its text does not tell."""
-    reader = _open_reader(text)
-    steps = reader.find_steps(line) if reader else []
-    if reader is None or not steps:
-        return Question()
-    flow = reader.find_flow(steps)
-    heads = [head for step in flow if not _is_recorder(step) for head in _list_heads(step)]
-    words = tuple(word for head in heads for word in reader.find_words(head))
-    if "process" in words:
-        # It calls the functions that were given for each button.
-        words += tuple(reader.find_handlers())
-    return Question(
-        decides=any(map(reader.is_deciding, flow)),
-        is_test=any(map(_is_test, flow)),
-        is_last=all(map(reader.is_last, steps)),
-        words=words,
-        needs_all=any(map(_is_for_all, heads)),
-    )
-
-
-@lru_cache(4)
-def _open_reader(text: str) -> _Reader | None:
-    tree = parsed(text) if len(text) <= MAX_TEXT else None
-    return None if tree is None else _Reader(tree)
-
-
-class _Reader:
+class QuestionReader:
     """Reads the text of a program. A step is one statement, of a compound one only what is before its colon."""
 
     def __init__(self, tree: ast.Module) -> None:
@@ -139,6 +117,7 @@ class _Reader:
         """Those of all functions of a name."""
         self._steps: dict[int, list[ast.stmt]] = {}
         """The steps on a line that may read something."""
+        self._questions: dict[int, Question] = {}
         for node in self._nodes:
             if isinstance(node, ast.stmt):
                 self._add_lines(node)
@@ -169,11 +148,31 @@ class _Reader:
         for line in lines:
             self._steps.setdefault(line, []).append(step)
 
-    def find_steps(self, line: int) -> list[ast.stmt]:
-        """Return the steps on a line that may read something."""
-        return self._steps.get(line, [])
+    def find_question(self, line: int) -> Question:
+        """Return what the program asks on a line; `Question()` if its text does not tell."""
+        if line not in self._questions:
+            self._questions[line] = self._read_question(self._steps.get(line, []))
+        return self._questions[line]
 
-    def find_flow(self, steps: Iterable[ast.stmt]) -> list[ast.stmt]:
+    def _read_question(self, steps: Sequence[ast.stmt]) -> Question:
+        """Return what the steps of a line ask."""
+        if not steps:
+            return Question()
+        flow = self._find_flow(steps)
+        heads = [head for step in flow if not _is_recorder(step) for head in _list_heads(step)]
+        words = tuple(word for head in heads for word in self._list_words(head))
+        if "process" in words:
+            # It calls the functions that were given for each button.
+            words += tuple(self._list_handlers())
+        return Question(
+            decides=any(map(self._is_deciding, flow)),
+            is_test=any(map(_is_test, flow)),
+            is_last=all(map(self._is_last, steps)),
+            words=words,
+            needs_all=any(map(_is_for_all, heads)),
+        )
+
+    def _find_flow(self, steps: Iterable[ast.stmt]) -> list[ast.stmt]:
         """Return some steps, and all that use what they assign, pass on or decide."""
         flow = dict.fromkeys(steps)
         queue, followed = [*flow], set[str]()
@@ -189,7 +188,7 @@ class _Reader:
                     queue.append(user)
         return queue
 
-    def is_deciding(self, step: ast.stmt) -> bool:
+    def _is_deciding(self, step: ast.stmt) -> bool:
         """Return whether a step does more with what it reads than to show, store or pass it on."""
         match step:
             case ast.Expr(value=ast.Call()):
@@ -200,7 +199,7 @@ class _Reader:
                 return _is_waiting(step)
         return not isinstance(step, ast.Pass)
 
-    def find_words(self, head: ast.AST) -> Iterator[Word]:
+    def _list_words(self, head: ast.AST) -> Iterator[Word]:
         """Yield the attributes, texts and numbers in an expression, in their order; no numbers to compute with."""
         nodes = [
             node
@@ -218,7 +217,7 @@ class _Reader:
                 case ast.Name(id=name) if name in self._constants:
                     yield self._constants[name]
 
-    def find_handlers(self) -> Iterator[str]:
+    def _list_handlers(self) -> Iterator[str]:
         """Yield the attributes such as `on_up` that are assigned anywhere, in their order."""
         for node in sorted(
             (node for node in self._nodes if isinstance(node, ast.Attribute)),
@@ -227,7 +226,7 @@ class _Reader:
             if isinstance(node.ctx, ast.Store) and node.attr.startswith("on_"):
                 yield node.attr
 
-    def is_last(self, step: ast.stmt) -> bool:
+    def _is_last(self, step: ast.stmt) -> bool:
         """Return whether a step only ends a loop, and the program then."""
         loop = step
         while not isinstance(loop, _LOOPS):

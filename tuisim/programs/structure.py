@@ -7,16 +7,13 @@ import io
 import tokenize
 import warnings
 from collections.abc import Callable, Iterator, Mapping
-from functools import lru_cache, partial
-
-from tuisim.base.syntax_tree import parse_module
+from functools import partial
 
 _Function = ast.FunctionDef | ast.AsyncFunctionDef
 _BLOCKS = (ast.For, ast.While, ast.If, ast.With, ast.Try, _Function, ast.ClassDef)
 
 
-@lru_cache(16)
-def fault_in(text: str) -> tuple[str, int] | None:
+def find_fault(text: str) -> tuple[str, int] | None:
     """Return why a program does not compile, and the line, 0 if there is none; None if it compiles."""
     try:
         with warnings.catch_warnings():
@@ -104,17 +101,3 @@ STRUCTURES: Mapping[str, Callable[[ast.Module], int]] = {
     "depth": _depth,
 }
 """What can be counted in a program's text, by name."""
-
-
-@lru_cache(4)
-def _parse(text: str) -> ast.Module:
-    return parse_module(text)
-
-
-def count_structure(text: str, name: str) -> int:
-    """Return how much a program has of one of `STRUCTURES`.
-
-    Raises:
-        SyntaxError, ValueError, RecursionError: the program is not Python.
-    """
-    return STRUCTURES[name](_parse(text))

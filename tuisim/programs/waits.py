@@ -6,12 +6,11 @@ import ast
 import operator
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from functools import lru_cache
 from typing import TypeGuard
 
 from tuisim.base.data_class import dataclass
-from tuisim.programs.questions import MAX_TEXT, Word
-from tuisim.programs.robot.source import SIGNS, TURNED, parsed
+from tuisim.programs.questions import COLOR_WORDS, Word, shorten
+from tuisim.programs.robot.source import SIGNS, TURNED
 
 _OPPOSITE = {">=": "<", ">": "<=", "<=": ">", "<": ">=", "!=": "==", "==": "!="}
 """What ends a loop that goes on while a comparison holds."""
@@ -49,24 +48,22 @@ class LoopEnd:
     is_silent: bool = False
     """Whether nothing in the loop calls or reads anything: it only computes."""
 
+    @property
+    def color(self) -> str:
+        """The colour that the limit stands for, in small letters; empty for none."""
+        return COLOR_WORDS.get(shorten(self.limit), "")
 
-@lru_cache(4)
-def list_loop_ends(text: str) -> tuple[LoopEnd, ...]:
+
+def list_loop_ends(tree: ast.Module) -> tuple[LoopEnd, ...]:
     """Return the loops of a program of which its text tells what ends them, the inner ones first."""
-    tree = parsed(text) if len(text) <= MAX_TEXT else None
-    if tree is None:
-        return ()
     loops = [node for node in ast.walk(tree) if isinstance(node, ast.While)]
     loops.sort(key=lambda loop: -loop.lineno)
     constants = _list_constants(tree)
     return tuple(end for loop in loops for end in _find_ends(loop, tree, constants))
 
 
-def find_turns(text: str, line: int) -> tuple[float, str] | None:
+def find_turns(tree: ast.Module, line: int) -> tuple[float, str] | None:
     """Return how far a call on a line turns a motor or both wheels, and whether in rotations or in degrees."""
-    tree = parsed(text) if len(text) <= MAX_TEXT else None
-    if tree is None:
-        return None
     for node in ast.walk(tree):
         match node:
             case ast.Call(func=ast.Attribute(attr=attr), lineno=lineno) if lineno == line:
@@ -79,23 +76,21 @@ def find_turns(text: str, line: int) -> tuple[float, str] | None:
     return None
 
 
-def find_uncalled_stop(text: str) -> tuple[int, str] | None:
+def find_uncalled_stop(tree: ast.Module) -> tuple[int, str] | None:
     """Return the first line that names what stops motors without calling it, with that name; None for none."""
-    tree = parsed(text) if len(text) <= MAX_TEXT else None
-    for node in ast.walk(tree) if tree else ():
+    for node in ast.walk(tree):
         match node:
             case ast.Expr(value=ast.Attribute(attr="off" | "stop" | "brake" | "hold") as name):
                 return node.lineno, ast.unparse(name)
     return None
 
 
-def find_first_drive(text: str) -> int:
+def find_first_drive(tree: ast.Module) -> int:
     """Return the first line of a program that starts motors; 0 for none.
 
     A function that the program does not mention starts nothing.
     """
-    tree = parsed(text) if len(text) <= MAX_TEXT else None
-    nodes = [*ast.walk(tree)] if tree else []
+    nodes = [*ast.walk(tree)]
     mentioned = {node.id for node in nodes if isinstance(node, ast.Name) and not _is_set(node)}
     idle = {
         part

@@ -8,7 +8,7 @@ from tests.cases import cases
 from tuisim.base.source import Program
 from tuisim.engine.core.sensors.color import LightRead
 from tuisim.engine.core.spec import RobotSpec
-from tuisim.programs.robot.thresholds import read_in, thresholds_in
+from tuisim.programs.robot.thresholds import find_light_read, find_thresholds
 
 EV3DEV2 = (
     "from ev3dev2.sensor.lego import ColorSensor\nfrom ev3dev2.sensor import INPUT_2, INPUT_3\n"
@@ -19,7 +19,7 @@ PYBRICKS = (
 
 
 def found(text: str, prelude: str = "none") -> dict[str, list[str]]:
-    thresholds = thresholds_in(Program("test.py", text, prelude), RobotSpec())
+    thresholds = find_thresholds(Program("test.py", text, prelude), RobotSpec())
     return {
         name: [f"{one.read} {one.words} {one.line}" for one in some]
         for name, some in thresholds.items()
@@ -94,4 +94,4 @@ def test_of_pybricks() -> None:
     ],
 )
 def test_what_a_program_reads(text: str, read: LightRead) -> None:
-    assert read_in(Program("test.py", text)) is read
+    assert find_light_read(text) is read

@@ -7,7 +7,7 @@ from tuisim.app.render.arrays import swatch_of
 from tuisim.app.snapshot import Snapshot
 from tuisim.base.data_class import dataclass
 from tuisim.engine.core.sensors.color import ColorReading, LightRead
-from tuisim.programs.robot.thresholds import read_in
+from tuisim.programs.facts import read_facts
 from tuisim.terminal.text_runs import Line
 
 LONGEST_NAME = 7
@@ -39,7 +39,8 @@ class LightSeen:
 
 def list_seen(now: Snapshot, word: str) -> list[tuple[str, LightSeen | None]]:
     """Return the number of each colour sensor behind a word, and what it sees; None before the mat is known."""
-    read, reflected_max = read_in(now.program), now.spec.profile.reflected_max
+    read = read_facts(now.program).light_read if now.program else LightRead.PERCENT
+    reflected_max = now.spec.profile.reflected_max
     seen = [now.colors.get(sensor.name) for sensor in now.spec.robot.color_sensors]
     return [
         (f"{word}{number}", LightSeen(color, read, reflected_max) if color else None)

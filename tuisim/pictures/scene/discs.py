@@ -14,7 +14,7 @@ from tuisim.engine.core.field import Field, disc_mask
 from tuisim.engine.core.sensors.color import ColorReading, LightRead, pixel_array, reading
 from tuisim.engine.core.spec import RunSpec
 from tuisim.engine.core.state import Instant
-from tuisim.programs.robot.thresholds import AIM, ProgramThreshold, read_in, thresholds_in
+from tuisim.programs.facts import ProgramThreshold, read_facts
 from tuisim.terminal.pixels import Pixels
 
 RIM_RGB = (58, 70, 88)
@@ -89,7 +89,7 @@ class DiscFace:
             holds = one.holds(one.read.measured(self.seen, self.reflected_max))
             said.append(one.words + ("" if holds is None else ": yes" if holds else ": no"))
         asking = (
-            f"line {one.line}{':' if one.sign == AIM else ' asks'} {words}"
+            f"line {one.line}{':' if one.is_aim else ' asks'} {words}"
             for words, one in zip(said, self.thresholds, strict=True)
         )
         short = [
@@ -126,11 +126,13 @@ def disc_faces(
         field: The mat, prepared for the sensors.
         program: What tells which value is shown, and its thresholds; None for none.
     """
-    thresholds = thresholds_in(program, spec.robot) if program else {}
+    facts = read_facts(program) if program else None
+    thresholds = facts.find_thresholds(spec.robot) if facts else {}
+    first = facts.light_read if facts else LightRead.PERCENT
     faces = []
     for sensor in spec.robot.color_sensors:
         limits = thresholds.get(sensor.name, ())
-        read = next((one.read for one in limits if not one.read.is_color), read_in(program))
+        read = next((one.read for one in limits if not one.read.is_color), first)
         box, seen = pixel_array(sensor, instant, field), reading(sensor, instant, field)
         faces.append(DiscFace(sensor.name, box, seen, read, spec.profile.reflected_max, limits))
     return faces

@@ -44,26 +44,33 @@ class ProgramThreshold:
 
     def holds(self, value: float) -> bool | None:
         """Return whether the comparison is true for a value; None for a difference."""
-        return None if self.sign == AIM else bool(COMPARE[self.sign](value, self.value))
+        return None if self.is_aim else bool(COMPARE[self.sign](value, self.value))
+
+    @property
+    def is_aim(self) -> bool:
+        """Whether the program drives toward the value."""
+        return self.sign == AIM
 
     @property
     def words(self) -> str:
         """The comparison without the reading, such as `> 90`, `== Red`, `aim 50`."""
         shown = COLOR_NAMES[int(self.value)] if self.read.is_color else f"{self.value:g}"
-        return f"{'aim' if self.sign == AIM else self.sign} {shown}"
+        return f"{'aim' if self.is_aim else self.sign} {shown}"
 
 
 _READ = re.compile("|".join(rf"\.{read}\b" for read in LightRead if not read.is_color))
 
 
-def read_in(program: Program | None) -> LightRead:
-    """Return what a program reads first of a colour sensor as a number, by its text; percent if it reads none."""
-    found = _READ.search(program.text) if program else None
+def find_light_read(text: str) -> LightRead:
+    """Return what the text of a program reads first of a colour sensor as a number; percent if it reads none."""
+    found = _READ.search(text)
     return LightRead(found[0][1:]) if found else LightRead.PERCENT
 
 
 @lru_cache(maxsize=4)
-def thresholds_in(program: Program, robot: RobotSpec) -> Mapping[str, tuple[ProgramThreshold, ...]]:
+def find_thresholds(
+    program: Program, robot: RobotSpec
+) -> Mapping[str, tuple[ProgramThreshold, ...]]:
     """Return what a program compares its colour sensors with, in the order of its lines, by name of the sensor.
 
     Read from its syntax tree: the program does not run for it. What is computed while it runs is not known; nothing of

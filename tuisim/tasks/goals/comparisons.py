@@ -13,7 +13,7 @@ from tuisim.engine.core.conditions import (
     comparison_form,
     condition_in,
 )
-from tuisim.programs.structure import STRUCTURES
+from tuisim.programs.facts import STRUCTURES
 from tuisim.tasks.goals.brick import goal_condition_in
 from tuisim.tasks.goals.condition import Condition, ConditionKind, Gap, Share, Times, check_count
 

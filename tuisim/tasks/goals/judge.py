@@ -9,7 +9,7 @@ from typing import Any, assert_never
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import ConfigError
 from tuisim.engine.core.field import Field
-from tuisim.programs.structure import fault_in
+from tuisim.programs.facts import read_facts
 from tuisim.tasks.goals import columns, output, pen_trace, places, program_text, readings
 from tuisim.tasks.goals.comparisons import (
     CountCondition,
@@ -145,7 +145,7 @@ class _Judge:
             return _Outcome(
                 GoalState.MISSED, reason=f"It does not count: {self._evidence.falsified}."
             )
-        if fault := fault_in(self._evidence.program.text):
+        if fault := read_facts(self._evidence.program).fault:
             return _Outcome(
                 GoalState.MISSED, reason=f"The program does not compile: {fault[0]}.", line=fault[1]
             )

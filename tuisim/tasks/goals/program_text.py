@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from tuisim.engine.core.conditions import COMPARE
-from tuisim.programs.calls import lines_of_calls
-from tuisim.programs.structure import count_structure
+from tuisim.programs.facts import read_facts
 from tuisim.tasks.goals.comparisons import StructureCondition
 from tuisim.tasks.goals.evidence import START, Evidence, EvidenceSpan
 from tuisim.tasks.goals.found import Occurrence
@@ -14,11 +13,9 @@ from tuisim.tasks.goals.spec import AvoidCondition, UseCondition
 def _found(
     condition: UseCondition | AvoidCondition, evidence: Evidence
 ) -> dict[str, list[int]] | Occurrence:
-    program = evidence.program
+    facts = read_facts(evidence.program)
     try:
-        return {
-            call: lines_of_calls(program.text, program.prelude, call) for call in condition.calls
-        }
+        return {call: facts.find_calls(call) for call in condition.calls}
     except RecursionError as error:
         return Occurrence(None, f"The program cannot be read: {error}.")
 
@@ -52,7 +49,7 @@ def find_structure(
     """Find out whether a program is made as it should be."""
     try:
         for wanted in condition.conditions:
-            count = count_structure(evidence.program.text, wanted.name)
+            count = read_facts(evidence.program).count_structure(wanted.name)
             if not COMPARE[wanted.operator](count, wanted.number):
                 return Occurrence(None, f"{wanted} is asked for, and the program has {count}.")
     except RecursionError as error:

@@ -18,7 +18,7 @@ from tuisim.engine.runs.readings import MODES_BY_KIND, READING_PORTS, find_ticks
 from tuisim.engine.runs.records import Stream
 from tuisim.engine.runs.run_folder import open_mat
 from tuisim.engine.runs.standstill import standstill_of
-from tuisim.programs.waits import find_uncalled_stop
+from tuisim.programs.facts import read_facts
 from tuisim.tasks.goals.judgement import GoalState, Judgement
 from tuisim.tasks.reasons.unmet import find_early_end, find_near_miss
 from tuisim.tasks.reasons.waited import Subject
@@ -195,7 +195,7 @@ def _find_left_mat(run: StoredRun) -> Iterator[Reason]:
 
 def _find_ended(run: StoredRun, mat: Field | None) -> Iterator[Reason]:
     """Yield that the program was over too early, or did not stop its motors."""
-    if run.end and (uncalled := find_uncalled_stop(run.program.text)):
+    if run.end and (uncalled := read_facts(run.program).uncalled_stop):
         line, name = uncalled
         text = f"{name} without () does nothing: {name}() stops"
         yield Reason(ReasonKind.ENDED, run.time_s, line, text)

@@ -22,8 +22,7 @@ from tuisim.engine.protocol import End
 from tuisim.engine.runs.frames import column_values
 from tuisim.engine.runs.readings import READING_MODES, READING_PORTS, find_ticks, read_readings
 from tuisim.engine.runs.run_folder import StoredRun, open_mat
-from tuisim.programs.questions import name_color
-from tuisim.programs.waits import LoopEnd, find_first_drive, find_turns, list_loop_ends
+from tuisim.programs.facts import LoopEnd, read_facts
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -149,7 +148,7 @@ def find_early_end(run: StoredRun, mat: Field | None = None) -> Unmet | None:
     if end is None or end.end is not End.FINISHED or run.time_s >= _MIN_RUN_S:
         return None
     line, last, start = (
-        find_first_drive(run.program.text),
+        read_facts(run.program).first_drive,
         run.telemetry.last(),
         run.spec.world.start,
     )
@@ -188,7 +187,7 @@ class _Search:
         self._run, self._mat = run, mat
         self._hz = run.spec.profile.tick_hz
         self._records = run.telemetry.array()
-        self._loops = list_loop_ends(run.program.text)
+        self._loops = read_facts(run.program).loop_ends
 
     @cached_property
     def _readings(self) -> Array:
@@ -247,7 +246,7 @@ class _Search:
         import numpy as np
 
         line = int(self._records["line"][-1])
-        turns = find_turns(self._run.program.text, line)
+        turns = read_facts(self._run.program).find_turns(line)
         first = int(np.flatnonzero(self._records["line"] != line)[-1:].sum()) + 1
         if turns is None or not self._is_long(first):
             return None
@@ -417,4 +416,4 @@ def _name_seen(loop: LoopEnd, codes: Array) -> list[str]:
 
 def _name_limit(loop: LoopEnd) -> str:
     """Return the colour that a loop compares with, in the same way."""
-    return repr(loop.limit) if _is_text(loop) else name_color(loop.limit)
+    return repr(loop.limit) if _is_text(loop) else loop.color

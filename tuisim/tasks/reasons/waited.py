@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 from tuisim.base.data_class import dataclass
 from tuisim.base.errors import LogError
+from tuisim.base.source import Program
 from tuisim.engine.core.columns import COLOR_NAMES
 from tuisim.engine.core.geometry import Pose
 from tuisim.engine.core.profile import NS_PER_S, Library
@@ -45,13 +46,7 @@ from tuisim.engine.runs.readings import (
 from tuisim.engine.runs.records import Stream
 from tuisim.engine.runs.run_folder import StoredRun, open_mat
 from tuisim.engine.runs.views import OutputView, TelemetryView, instant_of
-from tuisim.programs.questions import (
-    BUTTON_WORDS,
-    COLOR_WORDS,
-    REMOTE_WORDS,
-    Question,
-    find_question,
-)
+from tuisim.programs.facts import Question, read_facts
 from tuisim.tasks.reasons.hand_presses import HandPress, find_hits, find_presses
 
 if TYPE_CHECKING:
@@ -164,8 +159,7 @@ class Recorded:
     """The recording of a run up to an instant."""
 
     folder: Path
-    text: str
-    """The program."""
+    program: Program
     spec: RunSpec
     telemetry: TelemetryView
     output: OutputView
@@ -178,7 +172,7 @@ def find_awaited(run: StoredRun) -> tuple[Awaited, ...]:
     """Return what a stored run waited for; of one that goes on, what it waits for."""
     recorded = Recorded(
         folder=run.folder,
-        text=run.program.text,
+        program=run.program,
         spec=run.spec,
         telemetry=run.telemetry,
         output=run.output,
@@ -287,7 +281,7 @@ class _Search:
         )
 
     def _ask(self, line: int) -> Question:
-        return find_question(self._run.text, line) if self._asks_text else Question()
+        return read_facts(self._run.program).find_question(line) if self._asks_text else Question()
 
     def _is_asking(self, subject: Subject, line: int) -> bool:
         """Return whether the program waits for a subject on a line, if it waits at all."""
@@ -493,11 +487,11 @@ def _find_sought(subject: Subject, port: str, mode: str, question: Question) -> 
     """Return what a program asks for of a subject; empty for anything."""
     match subject:
         case Subject.BUTTONS:
-            return question.find_words(BUTTON_WORDS)
+            return question.buttons
         case Subject.REMOTE:
-            return question.find_words(REMOTE_WORDS)
+            return question.remote_buttons
         case Subject.TOUCH:
             return (port,)
         case Subject.COLOR if mode == "COL-COLOR":
-            return question.find_words(COLOR_WORDS)
+            return question.colors
     return ()

@@ -69,7 +69,7 @@ class WaitWatch:
 def _build_recorded(recording: Recording, open_mat: Callable[[RunSpec], Field | None]) -> Recorded:
     return Recorded(
         folder=recording.folder,
-        text=recording.program.text,
+        program=recording.program,
         spec=recording.spec,
         telemetry=recording.telemetry,
         output=recording.output,

@@ -1,0 +1,125 @@
+"""What the text of a program says, read once: how it is made, what it calls, asks, waits for and compares."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Mapping
+from functools import cached_property, lru_cache
+
+from tuisim.base.source import Program
+from tuisim.base.syntax_tree import parse_module
+from tuisim.engine.core.sensors.color import LightRead
+from tuisim.engine.core.spec import RobotSpec
+from tuisim.programs.calls import list_calls
+from tuisim.programs.questions import Question, QuestionReader
+from tuisim.programs.robot.source import parsed
+from tuisim.programs.robot.thresholds import ProgramThreshold, find_light_read, find_thresholds
+from tuisim.programs.structure import STRUCTURES, find_fault
+from tuisim.programs.waits import (
+    LoopEnd,
+    find_first_drive,
+    find_turns,
+    find_uncalled_stop,
+    list_loop_ends,
+)
+
+__all__ = [
+    "STRUCTURES",
+    "LoopEnd",
+    "ProgramFacts",
+    "ProgramThreshold",
+    "Question",
+    "read_facts",
+]
+
+MAX_TEXT = 100_000
+"""Characters of the longest text that is read for what it waits for; it takes time for each line."""
+
+
+class ProgramFacts:
+    """What the text of a program says; nothing is executed.
+
+    Args:
+        program: The program.
+    """
+
+    def __init__(self, program: Program) -> None:
+        self._program = program
+
+    @cached_property
+    def _tree(self) -> ast.Module:
+        """The program; raises what `parse_module` does."""
+        return parse_module(self._program.text)
+
+    @cached_property
+    def _short_tree(self) -> ast.Module:
+        """The program; without statements if it is not Python, or too long."""
+        text = self._program.text
+        return (parsed(text) if len(text) <= MAX_TEXT else None) or ast.Module([], [])
+
+    @cached_property
+    def fault(self) -> tuple[str, int] | None:
+        """Why it does not compile, and the line, 0 if there is none; None if it compiles."""
+        return find_fault(self._program.text)
+
+    def count_structure(self, name: str) -> int:
+        """Return how much it has of one of `STRUCTURES`.
+
+        Raises:
+            SyntaxError, ValueError, RecursionError: it is not Python.
+        """
+        return STRUCTURES[name](self._tree)
+
+    def find_calls(self, call: str) -> list[int]:
+        """Return the lines with a call, in ascending order.
+
+        Args:
+            call: A name such as `time.sleep`, a method of an object that the prelude defines such as `tank_drive.on`,
+                or the name of a function or method alone. An object of the same class counts as well.
+
+        Raises:
+            SyntaxError, ValueError, RecursionError: it is not Python.
+        """
+        return list_calls(self._tree, self._program.prelude, call)
+
+    @cached_property
+    def _question_reader(self) -> QuestionReader:
+        return QuestionReader(self._short_tree)
+
+    def find_question(self, line: int) -> Question:
+        """Return what it asks on a line; `Question()` if its text does not tell."""
+        return self._question_reader.find_question(line)
+
+    @cached_property
+    def loop_ends(self) -> tuple[LoopEnd, ...]:
+        """The loops of which its text tells what ends them, the inner ones first."""
+        return list_loop_ends(self._short_tree)
+
+    def find_turns(self, line: int) -> tuple[float, str] | None:
+        """Return how far a call on a line turns a motor or both wheels, and whether in rotations or in degrees."""
+        return find_turns(self._short_tree, line)
+
+    @cached_property
+    def first_drive(self) -> int:
+        """The first line that starts motors; 0 for none."""
+        return find_first_drive(self._short_tree)
+
+    @cached_property
+    def uncalled_stop(self) -> tuple[int, str] | None:
+        """The first line that names what stops motors without calling it, with that name; None for none."""
+        return find_uncalled_stop(self._short_tree)
+
+    @cached_property
+    def light_read(self) -> LightRead:
+        """What it reads first of a colour sensor as a number; percent if it reads none."""
+        return find_light_read(self._program.text)
+
+    def find_thresholds(self, robot: RobotSpec) -> Mapping[str, tuple[ProgramThreshold, ...]]:
+        """Return what it compares its colour sensors with, in the order of its lines, by name of the sensor."""
+        return find_thresholds(self._program, robot)
+
+
+@lru_cache(8)
+def read_facts(program: Program) -> ProgramFacts:
+    """Return what the text of a program says."""
+    return ProgramFacts(program)
