@@ -2,12 +2,16 @@
 
 __all__ = [
     "attributes",
+    "code_rows",
     "facts",
+    "line_values",
     "magic_mat",
+    "mistakes",
     "names",
     "notebook_file",
     "plugged_words",
     "program_file",
     "program_settings",
     "robot.report",
+    "tokens",
 ]

@@ -11,10 +11,11 @@ from tuisim.base.syntax_tree import parse_module
 from tuisim.engine.core.sensors.color import LightRead
 from tuisim.engine.core.spec import RobotSpec
 from tuisim.programs.calls import list_calls
+from tuisim.programs.mistakes import find_fault
 from tuisim.programs.questions import Question, QuestionReader
 from tuisim.programs.robot.source import parsed
 from tuisim.programs.robot.thresholds import ProgramThreshold, find_light_read, find_thresholds
-from tuisim.programs.structure import STRUCTURES, find_fault
+from tuisim.programs.structure import STRUCTURES
 from tuisim.programs.waits import (
     LoopEnd,
     find_first_drive,

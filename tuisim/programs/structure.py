@@ -1,32 +1,13 @@
-"""How the text of a program is made: whether it compiles, and how much of what it has."""
+"""How the text of a program is made: how much of what it has."""
 
 from __future__ import annotations
 
 import ast
-import io
-import tokenize
-import warnings
 from collections.abc import Callable, Iterator, Mapping
 from functools import partial
 
 _Function = ast.FunctionDef | ast.AsyncFunctionDef
 _BLOCKS = (ast.For, ast.While, ast.If, ast.With, ast.Try, _Function, ast.ClassDef)
-
-
-def find_fault(text: str) -> tuple[str, int] | None:
-    """Return why a program does not compile, and the line, 0 if there is none; None if it compiles."""
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            data = text.encode("utf-8", "surrogateescape")
-            # From bytes, in its own encoding: a line may name one that there is not.
-            encoding, _ = tokenize.detect_encoding(io.BytesIO(data).readline)
-            compile(text.encode(encoding, "surrogateescape"), "program", "exec", dont_inherit=True)
-    except SyntaxError as error:
-        return error.msg, error.lineno or 0
-    except (LookupError, ValueError, RecursionError, MemoryError) as error:
-        return str(error) or type(error).__name__, 0
-    return None
 
 
 def _nodes(tree: ast.Module, *kinds: type[ast.AST]) -> list[ast.AST]:

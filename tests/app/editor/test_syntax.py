@@ -1,4 +1,4 @@
-"""Colours of a program, and what is wrong with it."""
+"""Colours of a program."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from tuisim.app.editor.syntax import Colouring, mistake_in, spans
+from tuisim.app.editor.syntax import Colouring, spans
 from tuisim.programs.program_file import programs
 
 
@@ -70,26 +70,3 @@ def test_every_example_is_coloured_in_order_and_without_overlap(path: Path) -> N
             len(line),
         ]
         assert ends == sorted(ends)
-
-
-@pytest.mark.parametrize(
-    "text, line, words",
-    [
-        ("x = 1\n", None, ""),
-        ("%%sim_magic_preloaded -b Grey_bands\nprint(colorLeft)\n", None, ""),
-        ("x = 1\nif x\n    pass\n", 2, "line 2: expected ':'"),
-        ("return 3\n", 1, "line 1: 'return' outside function"),
-        ("# %%sim_magic -b\n", 0, "-b"),
-        ("assert (1, 'x is \\d')\n", None, ""),
-        ("x = " + "(" * 500 + ")" * 500, 1, "nested"),
-    ],
-    ids=["good", "magic", "syntax", "outside", "wrong magic", "warning", "deep"],
-)
-def test_what_is_wrong_with_a_program(text: str, line: int | None, words: str) -> None:
-    found = mistake_in(text, "p.py")
-    if line is None:
-        assert found is None
-    else:
-        assert found is not None
-        assert found.line == line
-        assert words in found.message

@@ -24,13 +24,13 @@ from tuisim.programs.magic_mat import wrong_mat
 from tuisim.settings.options import Settings
 
 if TYPE_CHECKING:
-    from tuisim.app.editor.syntax import Mistake
     from tuisim.app.host import LabHost
     from tuisim.app.loader import Loader
     from tuisim.app.panel_area import PanelArea
     from tuisim.app.run_controller import RunController
     from tuisim.base.source import Program
     from tuisim.engine.runs.recorded_run import Recording
+    from tuisim.programs.mistakes import Mistake
 
 DRAFT_AFTER_S = 1.0
 """Delay after an edit before unsaved text is stored as a draft, in case of a crash."""
@@ -325,9 +325,11 @@ class Document:
 
     def _mistake(self) -> Mistake | None:
         """Return the mistake in the text, and mark its line."""
-        from tuisim.app.editor.syntax import mistake_in
+        from tuisim.programs.mistakes import find_mistake
 
-        mistake = mistake_in(self._text, self._name, self._run_controller.next_run.settings["mats"])
+        mistake = find_mistake(
+            self._text, self._name, self._run_controller.next_run.settings["mats"]
+        )
         if code := self._panel_area.code:
             code.mark_error(mistake.line if mistake else 0, mistake.message if mistake else "")
         return mistake

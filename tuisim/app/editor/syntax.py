@@ -9,13 +9,7 @@ from __future__ import annotations
 import builtins
 import keyword
 import re
-import warnings
 from collections.abc import Sequence
-
-from tuisim.base.data_class import dataclass
-from tuisim.base.errors import TuisimError
-from tuisim.programs.magic_mat import wrong_mat
-from tuisim.programs.program_file import parse_program
 
 Span = tuple[int, int, str]
 """Start and end in characters, and one of `KINDS`."""
@@ -99,36 +93,3 @@ class Colouring:
             plain = '"""' not in above and "'''" not in above
             before.append(before[-1] if plain else spans(above, before[-1])[1])
         return spans(lines[line], before[line])[0]
-
-
-@dataclass(frozen=True, slots=True)
-class Mistake:
-    """Why a program cannot run."""
-
-    line: int
-    """From 1; 0 if unknown."""
-    message: str
-
-
-def mistake_in(text: str, name: str, mats: str | None = None) -> Mistake | None:
-    """Return the syntax error of a program, or the wrong mat in its magic line; None if it can run.
-
-    Args:
-        text: The text of the file; a magic line is allowed.
-        name: Name of the file, for the message.
-        mats: The folder of the user's own mats.
-    """
-    try:
-        source = parse_program(text, name)
-        with warnings.catch_warnings():
-            # Warnings are shown when the program runs.
-            warnings.simplefilter("ignore")
-            compile(source.program.text, name, "exec", dont_inherit=True)
-    except TuisimError as error:
-        return Mistake(0, str(error))
-    except SyntaxError as error:
-        return Mistake(error.lineno or 0, f"line {error.lineno}: {error.msg}")
-    except (ValueError, RecursionError, MemoryError) as error:
-        return Mistake(0, str(error) or "too deeply nested")
-    wrong = wrong_mat(text, name, mats)
-    return Mistake(wrong.line, f"line {wrong.line}: {wrong.words}") if wrong else None

@@ -22,7 +22,6 @@ from tuisim.app.editor.area import CodeArea, EditorCommand
 from tuisim.app.editor.assistant import Assistant
 from tuisim.app.editor.candidate_list import CandidateList
 from tuisim.app.editor.find_bar import FIND, LINE, FindBar
-from tuisim.app.editor.line_values import line_values
 from tuisim.app.editor.text_lines import LineMap, places
 from tuisim.app.error_words import fitting
 from tuisim.app.panels import PANELS
@@ -30,6 +29,7 @@ from tuisim.app.panels.titles import build_title
 from tuisim.app.snapshot import PauseView, RunPhase, Snapshot
 from tuisim.base.data_class import dataclass
 from tuisim.base.source import source_lines
+from tuisim.programs.line_values import line_values
 from tuisim.terminal.text_runs import as_markup
 
 LIT_GAP_S = 0.1

@@ -9,9 +9,9 @@ from enum import StrEnum
 from rich.style import Style
 
 from tuisim.app.panels import PANELS
-from tuisim.app.render.code_rows import code_rows
 from tuisim.base import palette
 from tuisim.base.data_class import dataclass
+from tuisim.programs.code_rows import code_rows
 from tuisim.tasks.goals.judgement import GoalState, Judgement
 from tuisim.tasks.lessons.markdown import markdown_lines
 from tuisim.tasks.lessons.progress import StepState

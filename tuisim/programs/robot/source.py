@@ -5,7 +5,9 @@ from __future__ import annotations
 import ast
 import os
 import sys
+import warnings
 from collections.abc import Iterator, Mapping
+from functools import lru_cache
 from pathlib import Path
 
 from tuisim.base.data_class import dataclass
@@ -61,10 +63,14 @@ class Module:
         return ".".join([*kept, *([name] if name else [])])
 
 
+@lru_cache(16)
 def parsed(text: str) -> ast.Module | None:
-    """Return the syntax tree of a text; None if it is not Python."""
+    """Return the syntax tree of a text, which nobody changes; None if it is not Python."""
     try:
-        return parse_module(text)
+        with warnings.catch_warnings():
+            # They are shown when the program runs.
+            warnings.simplefilter("ignore")
+            return parse_module(text)
     # What is wrong with the program is said when it runs.
     except (SyntaxError, ValueError, RecursionError, MemoryError):
         return None

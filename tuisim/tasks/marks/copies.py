@@ -8,15 +8,13 @@ left out, as are programs too short to be told apart.
 
 from __future__ import annotations
 
-import io
-import keyword
-import tokenize
 import zlib
 from collections import Counter, defaultdict
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from itertools import chain, combinations, islice
 
 from tuisim.base.data_class import dataclass
+from tuisim.programs.tokens import Token, list_tokens
 
 TOKENS = 10
 """Length of the passages that are compared: shorter ones are found in any two programs."""
@@ -33,24 +31,6 @@ LEAST_SHARE = 0.6
 LEAST_LINES = 5
 """Nor those with fewer lines in common."""
 MOST_PAIRS = 60
-
-_SKIPPED = frozenset(
-    {
-        tokenize.COMMENT,
-        tokenize.NL,
-        tokenize.ENCODING,
-        tokenize.ENDMARKER,
-        tokenize.TYPE_COMMENT,
-    }
-)
-_ONE_TOKEN: Mapping[int, str] = {
-    tokenize.NUMBER: "0",
-    tokenize.STRING: '""',
-    tokenize.NEWLINE: "\n",
-    tokenize.INDENT: ">",
-    tokenize.DEDENT: "<",
-}
-_BLANK = frozenset({tokenize.NEWLINE, tokenize.INDENT, tokenize.DEDENT})
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,40 +65,15 @@ class Similar:
     """Number of programs that were long enough."""
 
 
-@dataclass(frozen=True, slots=True)
-class _Token:
-    """One token of a program."""
-
-    kind: str
-    """The same for all names, all numbers and all texts."""
-    text: str
-    line: int
-
-
 _Prints = Mapping[int, frozenset[int]]
 """The fingerprints of one program: the lines of each."""
 
 
-def _tokens(text: str) -> Iterator[_Token]:
-    """Yield the tokens of a program, as far as Python can read it."""
-    try:
-        for token in tokenize.generate_tokens(io.StringIO(text).readline):
-            if token.type in _SKIPPED:
-                continue
-            kind = _ONE_TOKEN.get(token.type, token.string)
-            if token.type == tokenize.NAME and not keyword.iskeyword(kind):
-                kind = "x"
-            word = kind if token.type in _BLANK else token.string
-            yield _Token(kind, word, token.start[0])
-    except (tokenize.TokenError, SyntaxError):
-        pass
+def _first_tokens(texts: Iterable[str]) -> list[Token]:
+    return list(islice(chain.from_iterable(map(list_tokens, texts)), MAX_TOKENS))
 
 
-def _first_tokens(texts: Iterable[str]) -> list[_Token]:
-    return list(islice(chain.from_iterable(map(_tokens, texts)), MAX_TOKENS))
-
-
-def _prints(tokens: Sequence[_Token]) -> _Prints:
+def _prints(tokens: Sequence[Token]) -> _Prints:
     """Return the fingerprints of a program: of each window the least hash, the rightmost of equal ones."""
     kinds = [token.kind for token in tokens]
     hashes = [

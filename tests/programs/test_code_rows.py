@@ -7,7 +7,7 @@ import ast
 import pytest
 
 from tests.cases import cases
-from tuisim.app.render.code_rows import code_rows
+from tuisim.programs.code_rows import code_rows
 from tuisim.tasks.lessons.catalogue import shipped_paths
 from tuisim.tasks.lessons.files import load_lesson
 

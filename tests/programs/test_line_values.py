@@ -6,8 +6,8 @@ from collections.abc import Sequence
 
 import pytest
 
-from tuisim.app.editor.line_values import MODULE, line_values
 from tuisim.engine.protocol import FrameState, Inspected, Variable
+from tuisim.programs.line_values import MODULE, line_values
 
 TEXT = """\
 total = 0

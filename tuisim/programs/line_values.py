@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import ast
-import warnings
 from collections.abc import Iterator, Mapping, Sequence
-from functools import lru_cache
 
-from tuisim.base.syntax_tree import parse_module
 from tuisim.engine.protocol import FrameState, Inspected, Variable
+from tuisim.programs.robot.source import parsed
 
 MODULE = "<module>"
 """The function of a frame that is the program itself."""
@@ -30,7 +28,7 @@ def line_values(text: str, inspected: Inspected) -> dict[int, tuple[Variable, ..
         text: The program that runs.
         inspected: Where it is paused. Of the selected function; those of the program itself stand beside its lines.
     """
-    tree = _tree(text)
+    tree = parsed(text)
     frame = inspected.stack[inspected.frame] if inspected.frame < len(inspected.stack) else None
     if tree is None:
         return {}
@@ -42,17 +40,6 @@ def line_values(text: str, inspected: Inspected) -> dict[int, tuple[Variable, ..
     found = _values_in(tree, outer, inspected.globals)
     function = None if frame.file else _function_at(tree, frame)
     return found if function is None else found | _values_in(function, frame, inspected.variables)
-
-
-@lru_cache(maxsize=1)
-def _tree(text: str) -> ast.Module | None:
-    with warnings.catch_warnings():
-        # They were shown when the program started.
-        warnings.simplefilter("ignore")
-        try:
-            return parse_module(text)
-        except (SyntaxError, ValueError, RecursionError, MemoryError):
-            return None
 
 
 def _function_at(tree: ast.Module, frame: FrameState) -> _Function | None:
