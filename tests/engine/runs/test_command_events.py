@@ -134,6 +134,7 @@ def test_repetitions_are_one_event_across_pieces(
     ]
     assert [tick for tick, _ in index.marks] == [0, 200]
     assert index.find_events("left stop") == index.find_events("STOP") == [2]
+    assert events[0].words.startswith("run 0 … 99 °/s, 100 times until 0.99 s")
     assert index.find_events("right") == [1] and not index.find_events("pen")
 
 

@@ -93,7 +93,9 @@ class CommandEvent:
     @property
     def words(self) -> str:
         """What was asked, how often, and what came."""
-        repeats = f", {self.count:,} times until {self.last_s:.2f} s" if self.count > 1 else ""
+        repeats = f", {self.count:,} times" if self.count > 1 else ""
+        if self.last_s - self.time_s >= 0.01:
+            repeats += f" until {self.last_s:.2f} s"
         came = f" → {self.came}" if self.came else ""
         return f"{self.asked}{repeats}{came}"
 
