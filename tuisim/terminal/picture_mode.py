@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import os
+import termios
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 from typing import Protocol as TypingProtocol
 
+from rich.console import Console
 from textual import constants
 from textual.app import App
 from textual.timer import Timer
@@ -19,7 +21,18 @@ from tuisim.terminal.cells import MONO, PALETTE_8, PALETTE_16, PALETTE_256, TRUE
 from tuisim.terminal.picture import MOST_PAGE_POINTS, MOST_POINTS, Graphics
 from tuisim.terminal.picture_options import AUTO, NO_PIXELS, CellSet, Protocol
 from tuisim.terminal.pixels import Rgb
-from tuisim.terminal.probe import best_cells, colors_without_asking, in_browser
+from tuisim.terminal.probe import (
+    SILENT,
+    Answers,
+    ask_everything,
+    best_cells,
+    cells_of,
+    cells_without_asking,
+    colors_without_asking,
+    first_environment,
+    in_browser,
+    name_around,
+)
 from tuisim.terminal.queries import TerminalFacts
 from tuisim.terminal.textual_internals import SUPPORTED
 
@@ -158,6 +171,69 @@ def graphics_of(
         return None
     most_points = MOST_PAGE_POINTS if facts.program == kitty.PAGE else MOST_POINTS
     return Graphics(protocol, known_px or DEFAULT_CELL_PX, facts.program == TMUX, most_points)
+
+
+@dataclass(frozen=True, slots=True)
+class TerminalReport:
+    """What a terminal shows, by its environment and its answers."""
+
+    name: str
+    """What it calls itself; empty if it does not tell."""
+    colors: str
+    """One of `COLOR_DEPTHS` other than `auto`."""
+    has_colors: bool
+    """Whether TERM and NO_COLOR leave it any."""
+    has_fixed_colors: bool
+    """Whether these decide on them, whatever else is set."""
+    cells: CellSet
+    """The finest set that it is known to show."""
+    is_limited: bool
+    """Whether TERM alone limits that set."""
+    protocol: str
+    """How it is drawn with pixels; empty if it is not."""
+    is_asked: bool
+    latency_s: float | None
+    """The shortest time that an answer took; None if there was none."""
+    environment: Mapping[str, str]
+    """As it was when this process started."""
+
+
+def describe_terminal(fd: int, environment: Mapping[str, str]) -> TerminalReport | None:
+    """Ask a terminal everything that the app asks; None if it is gone.
+
+    Args:
+        fd: The terminal, open for reading and writing.
+        environment: That of the app.
+    """
+    term, first = environment.get("TERM", ""), first_environment()
+    is_asked = term not in SILENT
+    try:
+        answers = ask_everything(fd) if is_asked else Answers()
+    except (OSError, termios.error):
+        return None
+    # Textual takes an empty variable as well.
+    colors = "none" if "NO_COLOR" in environment else colors_without_asking(environment)
+    has_colors = colors != "none"
+    cells = cells_without_asking({**first, "TERM": term}, has_colors=has_colors)
+    graphics = graphics_of(answers.facts, AUTO if has_colors else NO_PIXELS, answers.cell_px)
+    return TerminalReport(
+        name=answers.facts.name,
+        colors=_colors_of_textual(environment) if colors == AUTO else colors,
+        has_colors=has_colors,
+        has_fixed_colors=colors != AUTO,
+        cells=cells or cells_of(name_around(answers.facts.name, environment), answers.octant_cols),
+        is_limited=cells_without_asking({**first, "TERM": "xterm"}) is not cells,
+        protocol=graphics.protocol if graphics else "",
+        is_asked=is_asked,
+        latency_s=answers.latency_s,
+        environment=first,
+    )
+
+
+def _colors_of_textual(environment: Mapping[str, str]) -> str:
+    system = Console(force_terminal=True, _environ=environment).color_system
+    depths = {"truecolor": "truecolor", "256": "256", "standard": "16", "windows": "16"}
+    return depths.get(system or "", "none")
 
 
 def _protocol_of(facts: TerminalFacts) -> Protocol | None:

@@ -67,7 +67,8 @@ else:
 
 Result = TypeVar("Result")
 
-TESTED = (8, 2, 5), (8, 2, 8)
+Version = tuple[int, ...]
+TESTED: tuple[Version, Version] = (8, 2, 5), (8, 2, 8)
 """The first and the last version of Textual that the kit was tried with."""
 
 _METADATA = re.compile(r"textual-([\d.]+)\.dist-info")
@@ -137,7 +138,7 @@ def _has(owner: type, name: str) -> bool:
     return hasattr(owner, name) or any(code is not None and name in code.co_names for code in made)
 
 
-def textual_version() -> tuple[int, ...]:
+def textual_version() -> Version:
     """Return the version of the Textual that is installed; empty if it is no release.
 
     It is read from the name of its metadata: `importlib.metadata` would take a tenth of the time that Textual takes.
@@ -148,9 +149,14 @@ def textual_version() -> tuple[int, ...]:
     return next((tuple(map(int, match[1].split("."))) for match in found if match), ())
 
 
+def describe_textual() -> tuple[Version, tuple[Version, Version], list[str]]:
+    """Return the version that is installed, the first and the last one that was tried, and what it lacks."""
+    return textual_version(), TESTED, missing_names()
+
+
 def _is_tested() -> bool:
-    first, last = TESTED
-    return first <= textual_version() <= last and not missing_names()
+    version, (first, last), missing = describe_textual()
+    return first <= version <= last and not missing
 
 
 SUPPORTED = _is_tested()

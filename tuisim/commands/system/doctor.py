@@ -113,68 +113,25 @@ def _terminal_findings(environment: Mapping[str, str]) -> list[Finding]:
 
 
 def _asked_findings(fd: int, environment: Mapping[str, str], is_remote: bool) -> list[Finding]:
-    import termios
+    from tuisim.terminal.picture_mode import describe_terminal
 
-    from tuisim.terminal.picture_mode import graphics_of
-    from tuisim.terminal.picture_options import AUTO, NO_PIXELS
-    from tuisim.terminal.probe import (
-        SILENT,
-        Answers,
-        ask_everything,
-        cells_of,
-        cells_without_asking,
-        first_environment,
-        name_around,
-    )
-
-    term = environment.get("TERM", "")
-    answers = Answers()
-    if term not in SILENT:
-        try:
-            answers = ask_everything(fd)
-        except (OSError, termios.error):
-            return [diagnosis.no_terminal_finding(), _locale_finding(environment)]
-    has_colors = _colors_without_asking(environment) != "none"
-    cells = cells_without_asking({**first_environment(), "TERM": term}, has_colors=has_colors)
-    limit = "" if cells_without_asking({**first_environment(), "TERM": "xterm"}) is cells else term
-    graphics = graphics_of(answers.facts, AUTO if has_colors else NO_PIXELS, answers.cell_px)
-    size = os.get_terminal_size(fd)
+    report = describe_terminal(fd, environment)
+    if report is None:
+        return [diagnosis.no_terminal_finding(), _locale_finding(environment)]
+    term, size = environment.get("TERM", ""), os.get_terminal_size(fd)
     return [
-        diagnosis.terminal_finding(answers.facts.name, term, is_remote=is_remote),
+        diagnosis.terminal_finding(report.name, term, is_remote=is_remote),
         diagnosis.size_finding(size.columns, size.lines),
-        _colors_finding(environment, is_remote),
-        diagnosis.cells_finding(
-            cells or cells_of(name_around(answers.facts.name, environment), answers.octant_cols),
-            limit,
-            _locale_variable(first_environment()),
+        diagnosis.colors_finding(
+            report.colors, is_remote=is_remote, is_fixed=report.has_fixed_colors
         ),
-        diagnosis.graphics_finding(graphics.protocol if graphics else "", has_colors=has_colors),
-        *([] if term in SILENT else [diagnosis.latency_finding(answers.latency_s)]),
+        diagnosis.cells_finding(
+            report.cells, term if report.is_limited else "", _locale_variable(report.environment)
+        ),
+        diagnosis.graphics_finding(report.protocol, has_colors=report.has_colors),
+        *([diagnosis.latency_finding(report.latency_s)] if report.is_asked else []),
         _locale_finding(environment),
     ]
-
-
-def _colors_without_asking(environment: Mapping[str, str]) -> str:
-    """Return the colours that the environment decides, as the app takes them; `auto` if it leaves them open."""
-    from tuisim.terminal.probe import colors_without_asking
-
-    # Textual takes an empty variable as well.
-    return "none" if "NO_COLOR" in environment else colors_without_asking(environment)
-
-
-def _colors_finding(environment: Mapping[str, str], is_remote: bool) -> Finding:
-    from rich.console import Console
-
-    from tuisim.terminal.picture_options import AUTO
-
-    known = _colors_without_asking(environment)
-    if known != AUTO:
-        return diagnosis.colors_finding(known, is_remote=is_remote, is_fixed=True)
-    system = Console(force_terminal=True, _environ=environment).color_system
-    depth = {"truecolor": "truecolor", "256": "256", "standard": "16", "windows": "16"}.get(
-        system or "", "none"
-    )
-    return diagnosis.colors_finding(depth, is_remote=is_remote)
 
 
 def _locale_finding(environment: Mapping[str, str]) -> Finding:
@@ -207,9 +164,9 @@ def _machine_findings() -> list[Finding]:
 
 
 def _textual_finding() -> Finding:
-    from tuisim.terminal.textual_internals import TESTED, missing_names, textual_version
+    from tuisim.terminal.textual_internals import describe_textual
 
-    return diagnosis.textual_finding(textual_version(), TESTED, missing_names())
+    return diagnosis.textual_finding(*describe_textual())
 
 
 def _why_not_writable(folder: Path) -> str:
