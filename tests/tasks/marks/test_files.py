@@ -77,6 +77,20 @@ def test_a_zip_stays_in_its_folder(tmp_path: Path, name: str, kind: int, problem
     assert [path.name for path in tmp_path.iterdir()] == ["a.zip"]
 
 
+def test_a_zip_that_grows_beyond_measure_is_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(files, "_LOOSE_BYTES", 1 << 20)
+    with zipfile.ZipFile(tmp_path / "a.zip", "w", zipfile.ZIP_DEFLATED) as archive:
+        archive.writestr("zeros", bytes(1 << 20))
+    unpack_zip(tmp_path / "a.zip", tmp_path / "place", 1 << 30)
+    with zipfile.ZipFile(tmp_path / "b.zip", "w", zipfile.ZIP_DEFLATED) as archive:
+        archive.writestr("zeros", bytes(2 << 20))
+    with pytest.raises(ConfigError, match="it unpacks to more than 100 times its size"):
+        unpack_zip(tmp_path / "b.zip", tmp_path / "other", 1 << 30)
+    assert not (tmp_path / "other").exists()
+
+
 def test_a_zip_has_bounds(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     with zipfile.ZipFile(tmp_path / "a.zip", "w", zipfile.ZIP_DEFLATED) as archive:
         archive.writestr("zeros", bytes(3 << 20))

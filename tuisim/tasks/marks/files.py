@@ -24,6 +24,8 @@ LEFT_OUT = shutil.ignore_patterns(
 _FULL = (errno.ENOSPC, errno.EDQUOT, errno.EROFS)
 """Errors about the copy, not about the file."""
 _PIECE = 1 << 20
+_LOOSE_BYTES, _MAX_RATIO = 64 << 20, 100
+"""A zip may unpack to so many bytes, or so many times its size: each of a class could fill the disk of all others."""
 _ODD_ZIP = (
     zipfile.BadZipFile,
     zlib.error,
@@ -103,11 +105,18 @@ def unpack_zip(path: Path, place: Path, max_bytes: int) -> None:
     """
     try:
         with open_regular(path, follow_links=True) as file, zipfile.ZipFile(file) as archive:
+            _check_density(archive, os.fstat(file.fileno()).st_size)
             _unpack(archive, place, max_bytes)
     except _ODD_ZIP as error:
         remove_tree(place)
         reason = error.strerror if isinstance(error, OSError) else error
         raise ConfigError(f"cannot be unpacked: {reason}", file=path.name) from error
+
+
+def _check_density(archive: zipfile.ZipFile, packed_bytes: int) -> None:
+    size = sum(entry.file_size for entry in archive.infolist())
+    if size > max(_LOOSE_BYTES, _MAX_RATIO * packed_bytes):
+        raise ValueError(f"it unpacks to more than {_MAX_RATIO} times its size")
 
 
 def _unpack(archive: zipfile.ZipFile, place: Path, max_bytes: int) -> None:
