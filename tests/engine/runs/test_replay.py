@@ -76,6 +76,26 @@ def test_the_prelude_may_give_commands(run: Run) -> None:
     assert_is_replayed(run("tank_drive.on_for_seconds(50, 20, 0.5)\n", profile="nbev3devsim"))
 
 
+BASES = """\
+from pybricks.ev3devices import Motor
+from pybricks.parameters import Port
+from pybricks.robotics import DriveBase
+left, right = Motor(Port.B), Motor(Port.C)
+for way in range(300):
+    robot = DriveBase(left, right, 56, 114)
+    if way % 100 == 99:
+        robot.straight(100)
+"""
+
+
+def test_a_drive_base_may_be_made_in_each_turn_of_a_loop(run: Run) -> None:
+    done = run(BASES, profile="lego-micropython", prelude="none")
+    assert done.ended.summary == ""
+    last = done.run.telemetry.last()
+    assert last is not None and last.x_mm - done.run.spec.world.start.x_mm > 250
+    assert_is_replayed(done)
+
+
 # What no program can have given
 
 

@@ -15,6 +15,7 @@ from tuisim.engine.core.geometry import Pose
 from tuisim.engine.core.motion import Motion, motor_of
 from tuisim.engine.core.motor_columns import MotorSink
 from tuisim.engine.core.profile import NS_PER_S
+from tuisim.engine.core.servo.bases import DriveBases
 from tuisim.engine.core.servo.motor import ServoMotor
 from tuisim.engine.core.spec import NO_PORT
 from tuisim.engine.core.state import Instant
@@ -23,7 +24,6 @@ from tuisim.engine.core.tick_record import END_FLAGS, TICK_RECORD, TickSink
 if TYPE_CHECKING:
     from tuisim.engine.core.commands.calls import Call
     from tuisim.engine.core.motors import Motor
-    from tuisim.engine.core.servo.drive_base import DriveBase
     from tuisim.engine.core.spec import MotorSpec, RobotSpec, RunSpec
 
 
@@ -62,8 +62,8 @@ class Simulation(Motion):
         """Called when one of the other motors deviates from its last report: until then it turns as reported."""
         self._reported: tuple[Turn, ...] = ((0.0, 0.0),) * len(self.others)
         self._reported_tick = 0
-        self.bases: list[DriveBase] = []
-        """The drive bases that the program has made, in their order."""
+        self.bases = DriveBases()
+        """The drive bases that the program has made."""
         self.on_command: CommandHook = lambda *_: None
         """Called with each command before it takes effect."""
 

@@ -8,7 +8,7 @@ from typing import Any, cast
 
 from tuisim.engine.core.driver.plant import Axle, PlantSpec
 from tuisim.engine.core.profile import PROFILES, MotorLaw
-from tuisim.engine.core.servo.drive_base import DriveBase
+from tuisim.engine.core.servo.bases import DriveBases
 from tuisim.engine.core.servo.motor import ServoMotor
 from tuisim.engine.core.servo.settings import BATTERY_V
 from tuisim.engine.core.simulation import CommandHook
@@ -31,7 +31,7 @@ class MotorsOnly:
     spec = SimpleNamespace(profile=PROFILES["lego-micropython"])
 
     def __init__(self, motors: list[ServoMotor]) -> None:
-        self.motors, self.bases = motors, list[DriveBase]()
+        self.motors, self.bases = motors, DriveBases()
         self.find_number = motors.index
         self.on_command: CommandHook = lambda *_: None
 

@@ -125,7 +125,7 @@ def build_base(sim: Simulation, _time_ns: int, _part: int, values: tuple[float, 
     from tuisim.engine.core.servo.drive_base import DriveBase
 
     left, right = (_find_motor(sim, find_index(values, place, len(sim.motors))) for place in (0, 1))
-    sim.bases.append(DriveBase(left, right, *values[2:]))
+    sim.bases.add(DriveBase(left, right, *values[2:]))
 
 
 def _find_base(sim: Simulation, part: int) -> DriveBase:

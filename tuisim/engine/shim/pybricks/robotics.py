@@ -45,8 +45,8 @@ class DriveBase(Connected):
         sim = self.brick.session.sim
         numbers = (sim.find_number(motor.simulated) for motor in (left_motor, right_motor))
         self.brick.tell(0, Call.BUILD_BASE, *numbers, float(wheel_diameter), float(axle_track))
-        self._number = len(sim.bases) - 1
-        self._base = base = sim.bases[-1]
+        self._number = sim.bases.newest
+        self._base = base = sim.bases[self._number]
         self.distance_control, self.heading_control = (
             BaseControl(self, base.distance, 0),
             BaseControl(self, base.heading, 1),

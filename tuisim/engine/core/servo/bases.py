@@ -1,0 +1,37 @@
+"""The drive bases of a program, by their numbers."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from tuisim.engine.core.servo.drive_base import DriveBase
+
+MAX_BASES = 256
+"""A program may make a drive base in each turn of a loop, and uses the newest ones: these have numbers."""
+
+
+class DriveBases:
+    """The newest drive bases that a program has made."""
+
+    __slots__ = ("_bases", "_made")
+
+    def __init__(self) -> None:
+        self._bases: list[DriveBase] = []
+        self._made = 0
+
+    def __len__(self) -> int:
+        return len(self._bases)
+
+    def __getitem__(self, number: int) -> DriveBase:
+        return self._bases[number]
+
+    @property
+    def newest(self) -> int:
+        """The number of the one that was made last."""
+        return (self._made - 1) % MAX_BASES
+
+    def add(self, base: DriveBase) -> None:
+        """Add one; it has the number of the oldest one if there are `MAX_BASES`."""
+        self._made += 1
+        self._bases[self.newest : self.newest + 1] = [base]
