@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Iterable, Mapping
+from itertools import product
 
 import pytest
 
@@ -10,3 +11,27 @@ import pytest
 def cases(arguments: str, table: Mapping[str, object]) -> pytest.MarkDecorator:
     """Run a test for each row of a table: its key names the case, its value has the arguments."""
     return pytest.mark.parametrize(arguments, table.values(), ids=table)
+
+
+def for_each(**values: Iterable[object]) -> Callable[[Callable[..., None]], Callable[[], None]]:
+    """Run a test of a rule for all values, in each combination, as one test: many cases cost more than what they run.
+
+    A failure names its values.
+    """
+
+    def as_one(test: Callable[..., None]) -> Callable[[], None]:
+        rows = [dict(zip(values, row, strict=True)) for row in product(*values.values())]
+
+        def run() -> None:
+            for row in rows:
+                try:
+                    test(**row)
+                except Exception as error:  # whatever it is, it is raised again
+                    error.add_note(f"for {row}")
+                    raise
+
+        run.__name__, run.__doc__ = test.__name__, test.__doc__
+        run.__module__, run.__qualname__ = test.__module__, test.__qualname__
+        return run
+
+    return as_one

@@ -5,11 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from tests.cases import for_each
 from tuisim.logs import pieces
 from tuisim.logs.pieces import strays
 
 
-@pytest.mark.parametrize("seed", range(40))
+@for_each(seed=range(40))
 def test_steps_between_pieces_are_those_of_least_squares(seed: int) -> None:
     rng = np.random.default_rng(seed)
     edge, gap = int(rng.integers(1, 13)), int(rng.integers(0, 3))

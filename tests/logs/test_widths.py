@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tests.cases import cases
+from tests.cases import cases, for_each
 from tuisim.engine.runs.arrays import FloatArray
 from tuisim.logs.levels import Levels, levels_of
 from tuisim.logs.widths import measure_widths
@@ -30,9 +30,7 @@ def drawn_levels(places_mm: FloatArray, edges_mm: FloatArray, spot_mm: float) ->
     return Levels(start, stop, level, level, none, none.astype(np.int64), (None,) * len(GREYS))
 
 
-@pytest.mark.parametrize("width_mm", [30.0, 73.0, 200.0])
-@pytest.mark.parametrize("spot_mm", [2.0, 12.0, 20.0])
-@pytest.mark.parametrize("period_mm", [0.2, 1.0, 2.6, 6.0])
+@for_each(width_mm=[30.0, 73.0, 200.0], spot_mm=[2.0, 12.0, 20.0], period_mm=[0.2, 1.0, 2.6, 6.0])
 def test_width_is_the_true_one(width_mm: float, spot_mm: float, period_mm: float) -> None:
     random = np.random.default_rng(1)
     for first_mm in random.uniform(60.0, 60.0 + period_mm, 10):

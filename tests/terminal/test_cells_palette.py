@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tests.cases import cases
+from tests.cases import cases, for_each
 from tuisim.pictures.scene.robot import COLORED, GREY
 from tuisim.terminal.cells import (
     PALETTE_8,
@@ -18,12 +18,12 @@ from tuisim.terminal.cells import (
 from tuisim.terminal.pixels import Pixels
 
 MODES = [
-    pytest.param(ColorMode(), id="full"),
-    pytest.param(ColorMode(PALETTE_256), id="256"),
-    pytest.param(ColorMode(PALETTE_16), id="16"),
-    pytest.param(ColorMode(PALETTE_8), id="8"),
-    pytest.param(ColorMode(grey=True), id="grey"),
-    pytest.param(ColorMode(PALETTE_256, grey=True), id="grey 256"),
+    ColorMode(),
+    ColorMode(PALETTE_256),
+    ColorMode(PALETTE_16),
+    ColorMode(PALETTE_8),
+    ColorMode(grey=True),
+    ColorMode(PALETTE_256, grey=True),
 ]
 
 
@@ -33,8 +33,7 @@ def area(rgb: tuple[int, int, int], mode: ColorMode) -> Pixels:
     return reduce_pixels(np.full((64, 3), rgb, np.uint8), rows, cols, mode)
 
 
-@pytest.mark.parametrize("mode", MODES)
-@pytest.mark.parametrize("band", [220, 211, 128, 0])
+@for_each(mode=MODES, band=[220, 211, 128, 0])
 def test_bands_of_grey_stand_out_on_white(mode: ColorMode, band: int) -> None:
     white, grey = area((255, 255, 255), mode), area((band,) * 3, mode)
 
@@ -46,8 +45,7 @@ def test_the_ground_of_a_panel_is_plain_in_8_colours() -> None:
     assert len(np.unique(area((16, 20, 27), ColorMode(PALETTE_8)))) == 1
 
 
-@pytest.mark.parametrize("mode", MODES)
-@pytest.mark.parametrize("ground", [0, 128, 211, 255])
+@for_each(mode=MODES, ground=[0, 128, 211, 255])
 def test_the_robot_stands_out(mode: ColorMode, ground: int) -> None:
     colors = GREY if mode.grey else COLORED
     below = area((ground,) * 3, mode).astype(int)

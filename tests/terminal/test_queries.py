@@ -11,7 +11,7 @@ import pytest
 from textual import events
 from textual.message import Message
 
-from tests.cases import cases
+from tests.cases import cases, for_each
 from tuisim.terminal import queries
 from tuisim.terminal.picture import Graphics
 from tuisim.terminal.picture_mode import graphics_of
@@ -169,7 +169,7 @@ def test_answers_are_no_keys_however_they_arrive(answers: str, size: int) -> Non
     assert any(isinstance(message, TerminalAnswered) for message in found)
 
 
-@pytest.mark.parametrize("at", range(1, len(XTERM)))
+@for_each(at=range(1, len(XTERM)))
 def test_an_answer_may_come_in_two_reads(at: int) -> None:
     assert not _keys(_read((0.0, XTERM[:at]), (0.05, XTERM[at:]), (1.0, "")))
 

@@ -7,6 +7,7 @@ import pyarrow as pa
 import pytest
 
 from tests.app.analyser.logs import long_log, model_of
+from tests.cases import for_each
 from tuisim.analysis.model import Model
 from tuisim.analysis.source import LogRequest, OpenedLog
 from tuisim.app.analyser.panes import pane_lines
@@ -87,7 +88,7 @@ def text_of(model: Model, pane: str = "table", width: int = 100, height: int = 3
     return "\n".join("".join(text for text, _ in line) for line in lines)
 
 
-@pytest.mark.parametrize("width", range(1, 12))
+@for_each(width=range(1, 12))
 def test_a_pane_narrower_than_its_first_column_shows_that(width: int) -> None:
     table = stepped(80, 10)
     model = model_of(Log("test", table, guess_columns(table)))
@@ -144,7 +145,7 @@ def test_the_column_run_does_not_look_like_the_number_of_a_stored_run(run: Store
     assert build_heading(model_of(opened.log), "run") == "run"
 
 
-@pytest.mark.parametrize("height", range(6, 12))
+@for_each(height=range(6, 12))
 def test_a_sentence_below_the_rows_is_not_cut_within_its_only_line(height: int) -> None:
     table = stepped(60, 20)
     model = model_of(Log("test", table, guess_columns(table)))

@@ -7,6 +7,7 @@ import itertools
 import numpy as np
 import pytest
 
+from tests.cases import for_each
 from tuisim.app.layout.arrangement import (
     Preset,
     arrange,
@@ -113,7 +114,7 @@ def test_of_two_roomy_panels_the_more_wanted_one_is_shown() -> None:
     assert placed.left_out == ("code",)
 
 
-@pytest.mark.parametrize("height", range(14, 23))
+@for_each(height=range(14, 23))
 def test_a_chart_finds_room_in_a_very_low_terminal(height: int) -> None:
     assert ("chart" in arrange(["world", "chart"], 80, height).boxes) is (height >= 16)
 
@@ -174,8 +175,10 @@ def test_a_narrow_and_high_area_shows_the_world_above_what_was_asked_for(width: 
     assert boxes["world"].y == 0
 
 
-@pytest.mark.parametrize("asked", ["chart", "code", "brick", "lesson", "controls"])
-@pytest.mark.parametrize("size", [(80, 23), (100, 29), (120, 39), (200, 59), (65, 57)], ids=str)
+@for_each(
+    asked=["chart", "code", "brick", "lesson", "controls"],
+    size=[(80, 23), (100, 29), (120, 39), (200, 59), (65, 57)],
+)
 def test_three_rows_of_the_output_stay_beside_a_panel_that_is_asked_for(
     size: tuple[int, int], asked: str
 ) -> None:

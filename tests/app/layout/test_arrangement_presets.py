@@ -10,6 +10,7 @@ from tests.app.app_help import (
     screen_text,
     until,
 )
+from tests.cases import for_each
 from tuisim.app.layout.arrangement import Preset, arrange, core_panels, mat_cells, wanted_panels
 from tuisim.app.layout.tree import PanelLayout
 from tuisim.app.panels import PANELS
@@ -17,10 +18,8 @@ from tuisim.app.panels import PANELS
 SIZES = [(80, 24), (100, 30), (120, 40), (160, 48), (200, 60), (300, 100), (60, 80)]
 KEYS = {Preset.DRIVE: "f6", Preset.DEBUG: "f7", Preset.ANALYSE: "f8"}
 
-in_each_size = pytest.mark.parametrize(
-    "size", SIZES, ids=[f"{width}x{height}" for width, height in SIZES]
-)
-for_each_preset = pytest.mark.parametrize("preset", Preset)
+in_each_size = for_each(size=SIZES)
+in_each_size_and_preset = for_each(size=SIZES, preset=Preset)
 
 
 def layout_of(preset: Preset, width: int, height: int) -> PanelLayout:
@@ -28,8 +27,7 @@ def layout_of(preset: Preset, width: int, height: int) -> PanelLayout:
     return arrange(wanted, width, height - 1, fill, preset)
 
 
-@in_each_size
-@for_each_preset
+@in_each_size_and_preset
 def test_a_preset_shows_what_it_is_made_for(preset: Preset, size: tuple[int, int]) -> None:
     layout = layout_of(preset, *size)
     assert set(core_panels(preset, size[0], size[1] - 1)) <= set(layout.boxes)
@@ -39,8 +37,7 @@ def test_a_preset_shows_what_it_is_made_for(preset: Preset, size: tuple[int, int
     assert sum(box.width * box.height for box in layout.boxes.values()) == size[0] * (size[1] - 1)
 
 
-@in_each_size
-@for_each_preset
+@in_each_size_and_preset
 def test_no_third_of_a_panel_is_empty(preset: Preset, size: tuple[int, int]) -> None:
     for panel, box in layout_of(preset, *size).boxes.items():
         if panel == "world":

@@ -15,6 +15,7 @@ from tests.app.app_help import (
     until,
     until_shown,
 )
+from tests.cases import for_each
 from tuisim.app.setup.next_run import plan_of
 from tuisim.app.setup.poses import delete_pose, fits, load_poses, poses_file, random_pose, save_pose
 from tuisim.base.errors import ConfigError
@@ -47,7 +48,7 @@ def test_where_the_outline_fits(
     assert fits(spec, pose) is fit
 
 
-@pytest.mark.parametrize("seed", range(20))
+@for_each(seed=range(20))
 def test_a_random_place_is_a_free_one(seed: int) -> None:
     spec = replace(SPEC, world=replace(SPEC.world, obstacles=POSTS, solid=True))
     pose = random_pose(spec, random.Random(seed))

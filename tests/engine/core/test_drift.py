@@ -8,6 +8,7 @@ from statistics import fmean, pstdev
 
 import pytest
 
+from tests.cases import for_each
 from tests.engine.core.memory_sink import MemorySink
 from tests.engine.core.motors import commanded
 from tuisim.engine.core.drift import (
@@ -217,7 +218,7 @@ def test_the_gyro_drifts_while_the_robot_stands_and_begins_anew_at_its_reset() -
     assert angle_deg(sim.instant()) == 0
 
 
-@pytest.mark.parametrize("seed", range(4))
+@for_each(seed=range(4))
 def test_light_falls_from_one_side_of_the_field_to_the_other(seed: int) -> None:
     drift = DriftSpec(light_pc=20.0)
     corners = [

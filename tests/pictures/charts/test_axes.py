@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tests.cases import cases
+from tests.cases import cases, for_each
 from tuisim.pictures.charts import axes
 from tuisim.pictures.charts.traces import min_max
 
@@ -97,10 +97,9 @@ def test_row_labels(limits: tuple[float, float], rows: int, labels: dict[int, st
     assert axes.row_labels(limits, rows) == labels
 
 
-@pytest.mark.parametrize(
-    "limits", [(0.0, 100.0), (0.0, 60.0), (-2.0, 1.0), (85.0, 100.0), (0.0, 0.25)]
+@for_each(
+    limits=[(0.0, 100.0), (0.0, 60.0), (-2.0, 1.0), (85.0, 100.0), (0.0, 0.25)], rows=range(7, 60)
 )
-@pytest.mark.parametrize("rows", range(7, 60))
 def test_extended_limits_have_ticks_at_equal_distances_in_the_middle_of_rows(
     limits: tuple[float, float], rows: int
 ) -> None:
@@ -123,7 +122,7 @@ def test_limits_are_extended_as_little_as_possible() -> None:
     assert axes.on_rows((86.0, 91.0), 7) == (86.0, 92.0)
 
 
-@pytest.mark.parametrize("rows", range(7, 40))
+@for_each(rows=range(7, 40))
 def test_extended_limits_do_not_depend_on_the_unit(rows: int) -> None:
     for low, high in ((0.0, 60.0), (-2.0, 1.0), (85.0, 97.0)):
         extended = axes.on_rows((low, high), rows)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from tests.cases import for_each
 from tuisim.logs.levels import PLAIN_LIGHT
 from tuisim.pictures.charts.bands import MOST_SAMPLES, SHADES, placed_names, spans_of
 from tuisim.pictures.charts.plot_image import PlotInks, plot_image
@@ -67,7 +68,7 @@ def test_a_name_stands_beside_a_cursor_and_within_the_chart(values: list[float])
         assert all(0 <= at <= 15 - len(text) for _, at, text in names), cursor
 
 
-@pytest.mark.parametrize("columns", range(16, 40))
+@for_each(columns=range(16, 40))
 def test_a_name_at_the_edge_stands_within_the_chart(columns: int) -> None:
     spans = spans_of(next(iter(chart(LEVELS)[0])), PLAIN_LIGHT)
     places = [range(4), range(4, columns - 4), range(columns - 4, columns)]

@@ -12,7 +12,7 @@ import pytest
 from rich.cells import cell_len
 
 from tests.app.analyser.logs import long_log, model_of
-from tests.cases import cases
+from tests.cases import cases, for_each
 from tuisim.analysis.chart import View, chart_of
 from tuisim.analysis.model import Model
 from tuisim.logs.columns import guess_columns
@@ -195,7 +195,7 @@ def test_a_variable_that_would_be_flat_has_a_scale_of_its_own(
         assert ends.tolist() == pytest.approx(scales.left.limits)
 
 
-@pytest.mark.parametrize("width", range(250, 700, 15))
+@for_each(width=range(250, 700, 15))
 def test_names_of_lines_stand_within_a_chart(width: int) -> None:
     names = ["short", "a name that is longer", *("x" * size for size in range(20, 40, 3))]
     lines = tuple(Line(name, RAMP, RAMP, at) for at, name in enumerate(names))

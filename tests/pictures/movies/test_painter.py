@@ -7,6 +7,7 @@ from itertools import combinations
 import numpy as np
 import pytest
 
+from tests.cases import for_each
 from tuisim.base.errors import ConfigError
 from tuisim.pictures.charts.layout import Words
 from tuisim.pictures.movies.clip import ClipPanel, Recorded
@@ -25,8 +26,7 @@ def overlap(one: PictureBox, other: PictureBox) -> bool:
     )
 
 
-@pytest.mark.parametrize("size", [(320, 400), (600, 500), (1920, 1080)], ids=str)
-@pytest.mark.parametrize("panels", SETS, ids=" ".join)
+@for_each(size=[(320, 400), (600, 500), (1920, 1080)], panels=SETS)
 def test_panels_lie_inside_the_picture_without_overlap(
     panels: tuple[ClipPanel, ...], size: tuple[int, int]
 ) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tests.cases import cases
+from tests.cases import cases, for_each
 from tuisim.engine.core.geometry import Pose
 from tuisim.engine.core.outline import outline_of
 from tuisim.engine.core.spec import RobotSpec
@@ -18,7 +18,7 @@ from tuisim.terminal.pixels import CellPoints
 ROWS, COLS = 20, 50
 
 
-@pytest.mark.parametrize("heading", range(0, 360, 45))
+@for_each(heading=range(0, 360, 45))
 def test_the_robot_in_signs_has_a_sign_of_its_own(heading: int) -> None:
     view = whole_field(2 * COLS, 4 * ROWS, CellPoints(2, 4))
     signs = body(view, Pose(1181, 571, heading), outline_of(RobotSpec()))

@@ -7,6 +7,7 @@ from itertools import pairwise
 
 import pytest
 
+from tests.cases import for_each
 from tuisim.engine.core.geometry import Pose
 from tuisim.engine.core.spec import FIELD_HEIGHT_MM, FIELD_WIDTH_MM
 from tuisim.pictures.scene.view import ZOOMS, Area, Viewport, following, whole_field
@@ -55,10 +56,12 @@ def test_a_square_from_the_middle_stays_in_view() -> None:
     assert all(is_seen(view, *corner) for corner in corners)
 
 
-@pytest.mark.parametrize("cell", [SQUARE, CellPoints(2, 4), CellPoints(1, 1)], ids=str)
-@pytest.mark.parametrize("zoom", ZOOMS[1:])
-@pytest.mark.parametrize("x_mm", [0, 1200, FIELD_WIDTH_MM])
-@pytest.mark.parametrize("y_mm", [0, 570, FIELD_HEIGHT_MM])
+@for_each(
+    cell=[SQUARE, CellPoints(2, 4), CellPoints(1, 1)],
+    zoom=ZOOMS[1:],
+    x_mm=[0, 1200, FIELD_WIDTH_MM],
+    y_mm=[0, 570, FIELD_HEIGHT_MM],
+)
 def test_a_closer_view_shows_nothing_beside_the_field(
     x_mm: float, y_mm: float, zoom: int, cell: CellPoints
 ) -> None:

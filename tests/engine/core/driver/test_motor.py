@@ -10,6 +10,7 @@ from unittest.mock import patch
 
 import pytest
 
+from tests.cases import for_each
 from tests.engine.core.driver.lab import MS, Bench, give, load_recordings, tell
 from tuisim.engine.core.driver.jiffies import Jiffies
 from tuisim.engine.core.driver.motor import Command, DriverMotor, Setting, State
@@ -115,7 +116,7 @@ def play(motor: DriverMotor, seed: int, looks: random.Random | None) -> Iterator
         yield motor.position, motor.speed_dps, motor.duty, motor.axle.angle_deg, motor.states
 
 
-@pytest.mark.parametrize("seed", range(30))
+@for_each(seed=range(30))
 def test_a_motor_moves_the_same_however_often_one_looks(seed: int) -> None:
     jiffies = Jiffies(seed, 137 * seed)
     motors = build_motor(jiffies=jiffies), build_motor(jiffies=jiffies)
@@ -124,7 +125,7 @@ def test_a_motor_moves_the_same_however_often_one_looks(seed: int) -> None:
     assert all(isfinite(motors[0].axle.angle_deg) for _ in shown)
 
 
-@pytest.mark.parametrize("seed", range(30))
+@for_each(seed=range(30))
 def test_steps_of_the_speed_control_are_the_same_one_by_one(seed: int) -> None:
     shown = [*play(build_motor(), seed, None)]
     with patch.object(DriverMotor, "_regulates", lambda *_: False):

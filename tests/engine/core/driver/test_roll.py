@@ -7,6 +7,7 @@ from unittest.mock import patch
 
 import pytest
 
+from tests.cases import for_each
 from tests.engine.core.driver.lab import MS, give
 from tuisim.engine.core.driver import regulator
 from tuisim.engine.core.driver.jiffies import Jiffies
@@ -38,8 +39,7 @@ def step_on(motor: DriverMotor, time_ns: int) -> None:
         motor.run_until(time_ns)
 
 
-@pytest.mark.parametrize("kind", ROLLS)
-@pytest.mark.parametrize("seed", range(20))
+@for_each(kind=ROLLS, seed=range(20))
 def test_a_roll_is_what_single_steps_make(seed: int, kind: str) -> None:
     rolling, chance = build_rolling(seed, kind)
     stepped, _ = build_rolling(seed, kind)
@@ -57,8 +57,7 @@ def test_a_roll_is_what_single_steps_make(seed: int, kind: str) -> None:
         assert rolling.states == stepped.states
 
 
-@pytest.mark.parametrize("kind", ROLLS)
-@pytest.mark.parametrize("seed", range(20))
+@for_each(kind=ROLLS, seed=range(20))
 def test_a_motor_that_has_rolled_knows_its_speed(seed: int, kind: str) -> None:
     rolling, chance = build_rolling(seed, kind)
     stepped, _ = build_rolling(seed, kind)

@@ -6,6 +6,7 @@ import random
 
 import pytest
 
+from tests.cases import for_each
 from tuisim.engine.core.profile import MotorLaw
 from tuisim.engine.core.servo.control import Controller
 from tuisim.engine.core.servo.settings import motor_settings
@@ -41,7 +42,7 @@ def test_the_same_command_again_changes_nothing(rate: int, end_us: int | None) -
     assert milli[0] == milli[1]
 
 
-@pytest.mark.parametrize("seed", range(10))
+@for_each(seed=range(10))
 def test_another_command_begins_where_the_motion_is(seed: int) -> None:
     control, chance, now_us = build_controller(), random.Random(seed), 0
     control.run(0, rest, 500, ACCELERATION)

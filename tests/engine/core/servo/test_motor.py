@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import pytest
 
+from tests.cases import for_each
 from tests.engine.core.memory_sink import MemorySink
 from tuisim.engine.core.geometry import Pose
 from tuisim.engine.core.motors import STOPPED, TIMED
@@ -77,8 +78,7 @@ class Robot:
                 motor.set_position(now_us, chance.randrange(-90_000, 90_000))
 
 
-@pytest.mark.parametrize("world", [WORLD, WALLED], ids=["free", "walled"])
-@pytest.mark.parametrize("seed", range(8))
+@for_each(world=[WORLD, WALLED], seed=range(8))
 def test_ticks_are_the_same_however_they_are_divided(world: WorldSpec, seed: int) -> None:
     records = []
     for at_once in (True, False):

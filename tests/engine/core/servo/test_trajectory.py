@@ -7,6 +7,7 @@ from itertools import pairwise
 
 import pytest
 
+from tests.cases import for_each
 from tuisim.engine.core.servo.trajectory import (
     MILLI,
     MS_US,
@@ -46,7 +47,7 @@ def draw_move(seed: int) -> tuple[Segment, int, int, int]:
     return start, wanted, chance.randrange(800, 4000), target
 
 
-@pytest.mark.parametrize("seed", SEEDS)
+@for_each(seed=SEEDS)
 def test_a_move_ends_at_its_target(seed: int) -> None:
     start, rate, acceleration, target = draw_move(seed)
     trajectory = angle_move(start, target, rate, acceleration, FASTEST)
@@ -56,7 +57,7 @@ def test_a_move_ends_at_its_target(seed: int) -> None:
     assert abs(trajectory.even.rate) <= abs(rate)
 
 
-@pytest.mark.parametrize("seed", SEEDS)
+@for_each(seed=SEEDS)
 def test_a_move_for_a_time_ends_with_it(seed: int) -> None:
     start, rate, acceleration, target = draw_move(seed)
     time_us = (1 + 2 * abs(target)) * MS_US
@@ -69,7 +70,7 @@ def test_a_move_for_a_time_ends_with_it(seed: int) -> None:
         assert abs(trajectory.even.rate - rate) <= max(0, abs(rate) - FASTEST)
 
 
-@pytest.mark.parametrize("seed", SEEDS)
+@for_each(seed=SEEDS)
 def test_a_move_without_an_end_reaches_its_rate(seed: int) -> None:
     start, rate, acceleration, _ = draw_move(seed)
     trajectory = endless_move(start, rate, acceleration, FASTEST)
@@ -78,7 +79,7 @@ def test_a_move_without_an_end_reaches_its_rate(seed: int) -> None:
     assert abs(trajectory.even.rate - rate) <= max(0, abs(rate) - FASTEST)
 
 
-@pytest.mark.parametrize("seed", SEEDS)
+@for_each(seed=SEEDS)
 def test_a_move_in_proportion_has_the_times_of_its_leader(seed: int) -> None:
     start, rate, acceleration, target = draw_move(seed)
     leader = angle_move(start, 2000 + abs(target), rate, acceleration, FASTEST)
@@ -110,7 +111,7 @@ def test_each_time_lies_in_a_part(is_endless: bool) -> None:
         assert trajectory.segment_end_us(middle_us) == end_us
 
 
-@pytest.mark.parametrize("seed", SEEDS)
+@for_each(seed=SEEDS)
 def test_positions_at_several_times_are_those_at_each(seed: int) -> None:
     start, rate, acceleration, target = draw_move(seed)
     for part in angle_move(start, target, rate, acceleration, FASTEST)[:4]:
